@@ -1,0 +1,52 @@
+# noether_library(<folder> [SOURCES <file>...] [ROOMS <folder>...] [LINK <target>...] [LINK_PRIVATE <target>...]
+#                 [PRECOMPILE <header>...])
+#
+# The library noether::<folder> from <folder>/*.cpp (and one level of folders below) and SOURCES. A folder without sources is a
+# header-only library, a folder that does not exist is none at all, and ROOMS that do not exist are passed over.
+# Without PRECOMPILE a folder shares the precompiled header of the engine.
+
+set(NOETHER_ROOMS "" CACHE INTERNAL "folders that became libraries, lowest layer first")
+
+# Links the rooms that exist.
+function(noether_link_rooms target scope)
+  foreach(room IN LISTS ARGN)
+    if(TARGET noether_${room})
+      target_link_libraries(${target} ${scope} noether_${room})
+    endif()
+  endforeach()
+endfunction()
+
+function(noether_library folder)
+  cmake_parse_arguments(PARSE_ARGV 1 library "" "" "SOURCES;ROOMS;LINK;LINK_PRIVATE;PRECOMPILE")
+  set(root ${PROJECT_SOURCE_DIR}/${folder})
+  file(GLOB sources CONFIGURE_DEPENDS ${root}/*.cpp ${root}/*/*.cpp)
+  file(GLOB headers CONFIGURE_DEPENDS ${root}/*.hpp ${root}/*/*.hpp)
+  list(APPEND sources ${library_SOURCES})
+  if(NOT sources AND NOT headers)
+    return()
+  endif()
+
+  set(target noether_${folder})
+  set(scope PUBLIC)
+  if(sources)
+    add_library(${target} STATIC ${sources})
+    noether_warnings(${target})
+    target_link_libraries(${target} PRIVATE ${library_LINK_PRIVATE})
+    if(NOETHER_PCH AND library_PRECOMPILE)
+      target_precompile_headers(${target} PRIVATE ${library_PRECOMPILE})
+    elseif(NOETHER_PCH)
+      target_precompile_headers(${target} REUSE_FROM noether_engine)
+    endif()
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  else()
+    set(scope INTERFACE)
+    add_library(${target} INTERFACE)
+  endif()
+  add_library(noether::${folder} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${folder})
+  target_include_directories(${target} ${scope} $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+                                                $<INSTALL_INTERFACE:include/noether>)
+  target_link_libraries(${target} ${scope} noether_options ${library_LINK})
+  noether_link_rooms(${target} ${scope} ${library_ROOMS})
+  set(NOETHER_ROOMS ${NOETHER_ROOMS} ${folder} CACHE INTERNAL "")
+endfunction()

@@ -1,0 +1,106 @@
+#pragma once
+/// Time: counted in whole steps, never accumulated.
+
+#include "engine/real.hpp"
+
+#include <cstdint>
+
+namespace noether {
+
+enum class ClockMode : std::uint8_t {
+  fixed,  ///< integer n and dt; t = t0 + n dt
+  free,   ///< integer n and t as a double-double, for methods that choose their steps
+};
+
+/// The clock of a run, and the stage time within a step that time-dependent forces see.
+///
+///     t = t0 + (n + c) dt        fixed; c is the fraction of the step that the drifts have covered so far
+///     t = t_high + t_low         free
+template <class Real>
+class Clock {
+ public:
+  /// A fixed clock of step `dt` [time] that stands at step `step`.
+  static Clock fixed(double start, double dt, std::int64_t step = 0) {
+    Clock clock;
+    clock.start_ = start;
+    clock.dt_ = dt;
+    clock.step_ = step;
+    return clock;
+  }
+
+  /// A free clock standing at `start` [time].
+  static Clock free(double start) {
+    Clock clock;
+    clock.mode_ = ClockMode::free;
+    clock.start_ = start;
+    clock.high_ = start;
+    return clock;
+  }
+
+  ClockMode mode() const { return mode_; }
+  std::int64_t step() const { return step_; }
+  double start() const { return start_; }
+  double dt() const { return dt_; }
+
+  /// Time of the current stage; between steps, of the last whole step [time].
+  Real time() const {
+    if (mode_ == ClockMode::fixed) return Real(start_) + (Real(step_) + fraction_) * Real(dt_);
+    return Real(high_) + Real(low_) + stage_offset_;
+  }
+
+  /// Time at step `n` of a fixed clock [time].
+  double time_at(std::int64_t n) const { return start_ + static_cast<double>(n) * dt_; }
+
+  void set_fraction(const Real& c) { fraction_ = c; }
+  Real fraction() const { return fraction_; }
+
+  /// Ends a step of the fixed clock; `c` is the fraction at which the next step stands (0, or minus a pending drift).
+  void tick(const Real& c) {
+    ++step_;
+    fraction_ = c;
+  }
+
+  /// Ends a step of length `h` [time] of the free clock, in double-double.
+  void advance(double h) {
+    const double sum = high_ + h;
+    const double back = sum - high_;
+    const double error = (high_ - (sum - back)) + (h - back);
+    low_ += error;
+    high_ = sum + low_;
+    low_ -= high_ - sum;
+    ++step_;
+    stage_offset_ = Real(0);
+  }
+  void set_stage_offset(const Real& h) { stage_offset_ = h; }
+  double high() const { return high_; }
+  double low() const { return low_; }
+
+  /// Every number of the clock, for checkpoints.
+  struct Raw {
+    int mode;
+    std::int64_t step;
+    double start, dt, high, low;
+    Real fraction;
+  };
+  Raw raw() const { return {static_cast<int>(mode_), step_, start_, dt_, high_, low_, fraction_}; }
+  static Clock from_raw(const Raw& r) {
+    Clock clock;
+    clock.mode_ = static_cast<ClockMode>(r.mode);
+    clock.step_ = r.step;
+    clock.start_ = r.start;
+    clock.dt_ = r.dt;
+    clock.high_ = r.high;
+    clock.low_ = r.low;
+    clock.fraction_ = r.fraction;
+    return clock;
+  }
+
+ private:
+  ClockMode mode_ = ClockMode::fixed;
+  std::int64_t step_ = 0;
+  double start_ = 0, dt_ = 0;
+  double high_ = 0, low_ = 0;
+  Real fraction_ = Real(0), stage_offset_ = Real(0);
+};
+
+}  // namespace noether

@@ -1,0 +1,129 @@
+#pragma once
+/// Columns: one array per quantity, aligned and padded for vector loops, addressed per particle or as a whole.
+
+#include "engine/real.hpp"
+#include "engine/types.hpp"
+
+#include <cstddef>
+#include <new>
+#include <vector>
+
+namespace noether {
+
+/// Hands out memory on 64-byte boundaries, the width of the widest vector register and of a cache line.
+template <class T>
+struct AlignedAllocator {
+  using value_type = T;
+  static constexpr std::align_val_t alignment{64};
+
+  AlignedAllocator() = default;
+  template <class U>
+  AlignedAllocator(const AlignedAllocator<U>& /*other*/) {}  // NOLINT: converting by design
+
+  T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), alignment)); }
+  void deallocate(T* p, std::size_t /*n*/) { ::operator delete(p, alignment); }
+  template <class U>
+  bool operator==(const AlignedAllocator<U>& /*other*/) const {
+    return true;
+  }
+};
+
+template <class T>
+using AlignedVector = std::vector<T, AlignedAllocator<T>>;
+
+/// One number per particle, shape (n).
+template <class T>
+class ScalarColumn {
+ public:
+  explicit ScalarColumn(Index n = 0) : values_(static_cast<std::size_t>(n)) {}
+
+  Index size() const { return static_cast<Index>(values_.size()); }
+  T operator[](Index i) const { return values_[static_cast<std::size_t>(i)]; }
+  T& operator[](Index i) { return values_[static_cast<std::size_t>(i)]; }
+  const T* data() const { return values_.data(); }
+  T* data() { return values_.data(); }
+  auto begin() const { return values_.begin(); }
+  auto end() const { return values_.end(); }
+
+  /// The whole column as an Eigen vector, shape (n, 1).
+  auto all() const { return Eigen::Map<const Eigen::Matrix<T, Eigen::Dynamic, 1>>(values_.data(), size()); }
+  auto all() { return Eigen::Map<Eigen::Matrix<T, Eigen::Dynamic, 1>>(values_.data(), size()); }
+
+  void append(const T& value) { values_.push_back(value); }
+  void erase(Index i) { values_.erase(values_.begin() + i); }
+
+ private:
+  AlignedVector<T> values_;
+};
+
+/// One vector per particle, shape (n, 3): all x, then all y, then all z, each run padded to a multiple of eight.
+template <class Real>
+class VectorColumn {
+ public:
+  using Row = Eigen::Map<Vec3<Real>, Eigen::Unaligned, Eigen::InnerStride<>>;
+  using Block = Eigen::Matrix<Real, Eigen::Dynamic, 3>;
+
+  explicit VectorColumn(Index n = 0)
+      : size_(n), stride_(padded(n)), values_(static_cast<std::size_t>(3 * stride_), Real(0)) {}
+
+  Index size() const { return size_; }
+  /// Distance between the x and the y of one particle, in elements.
+  Index stride() const { return stride_; }
+
+  Vec3<Real> operator[](Index i) const {
+    const Real* p = values_.data() + i;
+    return Vec3<Real>(p[0], p[stride_], p[2 * stride_]);
+  }
+  Row operator[](Index i) { return Row(values_.data() + i, Eigen::InnerStride<>(stride_)); }
+  void set(Index i, const Vec3<Real>& v) {
+    Real* p = values_.data() + i;
+    p[0] = v[0];
+    p[stride_] = v[1];
+    p[2 * stride_] = v[2];
+  }
+  void add(Index i, const Vec3<Real>& v) {
+    Real* p = values_.data() + i;
+    p[0] += v[0];
+    p[stride_] += v[1];
+    p[2 * stride_] += v[2];
+  }
+
+  const Real* component(int k) const { return values_.data() + k * stride_; }
+  Real* component(int k) { return values_.data() + k * stride_; }
+
+  /// The whole column as an Eigen matrix, shape (n, 3).
+  auto all() const {
+    return Eigen::Map<const Block, Eigen::Aligned64, Eigen::OuterStride<>>(values_.data(), size_, 3,
+                                                                           Eigen::OuterStride<>(stride_));
+  }
+  auto all() {
+    return Eigen::Map<Block, Eigen::Aligned64, Eigen::OuterStride<>>(values_.data(), size_, 3,
+                                                                     Eigen::OuterStride<>(stride_));
+  }
+
+  void fill(const Real& value) { values_.assign(values_.size(), value); }
+
+  void append(const Vec3<Real>& v) {
+    resize(size_ + 1);
+    set(size_ - 1, v);
+  }
+  void erase(Index i) {
+    for (Index j = i; j + 1 < size_; ++j) set(j, static_cast<const VectorColumn&>(*this)[j + 1]);
+    resize(size_ - 1);
+  }
+
+ private:
+  static Index padded(Index n) { return (n + 7) / 8 * 8; }
+
+  void resize(Index n) {
+    VectorColumn other(n);
+    for (Index i = 0; i < std::min(n, size_); ++i) other.set(i, static_cast<const VectorColumn&>(*this)[i]);
+    *this = std::move(other);
+  }
+
+  Index size_;
+  Index stride_;
+  AlignedVector<Real> values_;
+};
+
+}  // namespace noether

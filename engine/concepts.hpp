@@ -1,0 +1,110 @@
+#pragma once
+/// The seams of the engine as concepts: what a Hamiltonian, an integrator and a monitor must offer.
+
+#include "engine/force_sink.hpp"
+#include "engine/outcome.hpp"
+
+#include <atomic>
+#include <concepts>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace noether {
+
+/// Energy of a system, in its unit system [energy].
+template <class Real>
+struct EnergyTerms {
+  Real kinetic = Real(0), potential = Real(0);
+  Real total() const { return kinetic + potential; }
+};
+
+/// Work done so far, counted where it is done.
+struct Evaluations {
+  std::int64_t force = 0, kepler = 0, jacobian = 0;
+};
+
+/// Why a step could not be done.
+struct Failure {
+  Outcome::Kind kind = Outcome::Kind::solver_failure;
+  Index particle = -1;  ///< -1: no particle in particular
+  std::string quantity;
+  std::string message;
+};
+
+/// What a split Hamiltonian says of its parts; tests verify it, `Composition` refuses by it.
+struct HamiltonianClaims {
+  std::string_view alphabet;            ///< letters `flow` accepts
+  std::string_view inexact = "";        ///< letters whose map is symmetric of order 2 instead of the exact flow
+  std::string_view irreversible = "";   ///< letters that only run forward (drag, noise)
+  bool quadratic_kinetic = true;        ///< {B,{B,{B,A}}} = 0: Runge-Kutta-Nystroem tables keep their order
+  bool near_integrable = false;         ///< B is small beside A
+  bool energy = true;                   ///< every force reports its potential
+  bool time_dependent = false;          ///< the energy is not conserved by the exact flow
+  bool dissipative = false;
+  bool keeps_momentum = true;
+  bool keeps_angular_momentum = true;
+};
+
+/// A Hamiltonian written as parts whose flows can be computed. Parts are letters.
+///
+/// `flow` advances by one part's flow; `flow_with_action` does the same (bit for bit) and returns the action increment
+/// of the flow, the integral of p dq - H dt, for which dS = p1 dq1 - p0 dq0.
+template <class H>
+concept SplitHamiltonian = requires(H& h, const H& c, ParticleSystem<typename H::real>& s,
+                                    const ParticleSystem<typename H::real>& settled, char letter,
+                                    const typename H::real& tau, VectorColumn<typename H::real>& column) {
+  { c.claims() } -> std::convertible_to<HamiltonianClaims>;
+  h.bind(s);
+  h.open(s);
+  h.close(s);
+  h.flow(letter, s, tau);
+  { h.flow_with_action(letter, s, tau) } -> std::convertible_to<typename H::real>;
+  { h.energy(settled) } -> std::convertible_to<EnergyTerms<typename H::real>>;
+  h.accelerations(settled, column);
+};
+
+/// What an integrator says of the runs it makes.
+struct IntegratorClaims {
+  std::string method;                ///< name of the scheme or method
+  std::string hamiltonian;           ///< name of the Hamiltonian
+  int order = 0;
+  ClockMode clock = ClockMode::fixed;
+  bool symplectic = false;
+  bool energy = true;                ///< an energy exists
+  bool dissipative = false;
+  bool time_dependent = false;
+};
+
+/// How far to go: so many steps, and with a free clock not past `limit` [time].
+struct Span {
+  std::int64_t steps = 0;
+  double limit = std::numeric_limits<double>::infinity();
+  const std::atomic<bool>* stop = nullptr;  ///< looked at after every step
+};
+
+/// How far it went.
+struct Advanced {
+  std::int64_t steps = 0;
+  bool at_limit = false;  ///< free clock: the next whole step would pass `limit`
+  std::optional<Failure> failure;
+};
+
+/// A method that advances a system by whole steps. `settle` completes a copy for observers: the copy is inertial, and
+/// with a free clock it is reached at time `at` by one shortened step; the run itself never shortens a step.
+template <class I>
+concept Integrator = requires(I& i, const I& c, ParticleSystem<typename I::real>& s,
+                              const ParticleSystem<typename I::real>& raw, const Span& span, Wanted wanted,
+                              std::optional<double> at, bool corrected, VectorColumn<typename I::real>& column) {
+  { c.claims() } -> std::convertible_to<IntegratorClaims>;
+  i.bind(s);
+  { i.advance(s, span) } -> std::convertible_to<Advanced>;
+  i.settle(raw, s, wanted, at, corrected);
+  { i.energy(raw) } -> std::convertible_to<EnergyTerms<typename I::real>>;
+  i.accelerations(raw, column);
+  { c.evaluations() } -> std::convertible_to<Evaluations>;
+};
+
+}  // namespace noether

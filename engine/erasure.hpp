@@ -1,0 +1,226 @@
+#pragma once
+/// The erased seams: AnyForce, AnyHamiltonian, AnyIntegrator. (AnyMonitor is in engine/monitor.hpp.) Each satisfies its
+/// own concept, so a scene is one more instantiation of the same templates.
+
+#include "engine/concepts.hpp"
+#include "engine/description.hpp"
+
+#include <memory>
+#include <string>
+#include <utility>
+
+namespace noether {
+
+namespace detail {
+
+/// Writes the state a part declares by its description, or by `save` of its own.
+template <class T>
+void save_any(SavedState& saved, const std::string& prefix, const T& value) {
+  if constexpr (requires { value.save(saved, prefix); }) {
+    value.save(saved, prefix);
+  } else {
+    save_part(saved, prefix, value);
+  }
+}
+template <class T>
+void load_any(const SavedState& saved, const std::string& prefix, T& value) {
+  if constexpr (requires { value.load(saved, prefix); }) {
+    value.load(saved, prefix);
+  } else {
+    load_part(saved, prefix, value);
+  }
+}
+template <class T>
+std::string name_of(const T& value) {
+  if constexpr (requires { std::string(value.name()); }) {
+    return std::string(value.name());
+  } else {
+    return std::string(part_name<T>());
+  }
+}
+
+/// Value semantics for a polymorphic `Base` with `clone`.
+template <class Base>
+class Erased {
+ public:
+  explicit Erased(std::unique_ptr<Base> held) : held_(std::move(held)) {}
+  Erased(const Erased& other) : held_(other.held_->clone()) {}
+  Erased(Erased&&) noexcept = default;
+  Erased& operator=(const Erased& other) {
+    held_ = other.held_->clone();
+    return *this;
+  }
+  Erased& operator=(Erased&&) noexcept = default;
+  ~Erased() = default;
+
+ protected:
+  std::unique_ptr<Base> held_;
+};
+
+template <class Real>
+struct ForceBase {
+  virtual ~ForceBase() = default;
+  virtual std::unique_ptr<ForceBase> clone() const = 0;
+  virtual void add_to(ForceSink<Real>&, const ParticleSystem<Real>&) const = 0;
+  virtual ForceClaims claims() const = 0;
+  virtual std::string name() const = 0;
+};
+template <class F, class Real>
+struct ForceModel final : ForceBase<Real> {
+  explicit ForceModel(F f) : force(std::move(f)) {}
+  std::unique_ptr<ForceBase<Real>> clone() const override { return std::make_unique<ForceModel>(force); }
+  void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const override { force.add_to(out, s); }
+  ForceClaims claims() const override { return claims_of(force); }
+  std::string name() const override { return name_of(force); }
+  F force;
+};
+
+template <class Real>
+struct HamiltonianBase {
+  virtual ~HamiltonianBase() = default;
+  virtual std::unique_ptr<HamiltonianBase> clone() const = 0;
+  virtual HamiltonianClaims claims() const = 0;
+  virtual std::string name() const = 0;
+  virtual void bind(ParticleSystem<Real>&) = 0;
+  virtual void open(ParticleSystem<Real>&) = 0;
+  virtual void close(ParticleSystem<Real>&) = 0;
+  virtual void flow(char, ParticleSystem<Real>&, const Real&) = 0;
+  virtual Real flow_with_action(char, ParticleSystem<Real>&, const Real&) = 0;
+  virtual EnergyTerms<Real> energy(const ParticleSystem<Real>&) = 0;
+  virtual void accelerations(const ParticleSystem<Real>&, VectorColumn<Real>&) = 0;
+  virtual void want(Wanted) = 0;
+  virtual const std::optional<Failure>& failure() const = 0;
+  virtual Evaluations evaluations() const = 0;
+  virtual void set_evaluations(const Evaluations&) = 0;
+  virtual void save(SavedState&, const std::string&) const = 0;
+  virtual void load(const SavedState&, const std::string&) = 0;
+};
+template <class H>
+struct HamiltonianModel final : HamiltonianBase<typename H::real> {
+  using Real = typename H::real;
+  explicit HamiltonianModel(H h) : hamiltonian(std::move(h)) {}
+  std::unique_ptr<HamiltonianBase<Real>> clone() const override { return std::make_unique<HamiltonianModel>(hamiltonian); }
+  HamiltonianClaims claims() const override { return hamiltonian.claims(); }
+  std::string name() const override { return name_of(hamiltonian); }
+  void bind(ParticleSystem<Real>& s) override { hamiltonian.bind(s); }
+  void open(ParticleSystem<Real>& s) override { hamiltonian.open(s); }
+  void close(ParticleSystem<Real>& s) override { hamiltonian.close(s); }
+  void flow(char letter, ParticleSystem<Real>& s, const Real& h) override { hamiltonian.flow(letter, s, h); }
+  Real flow_with_action(char letter, ParticleSystem<Real>& s, const Real& h) override {
+    return hamiltonian.flow_with_action(letter, s, h);
+  }
+  EnergyTerms<Real> energy(const ParticleSystem<Real>& s) override { return hamiltonian.energy(s); }
+  void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) override { hamiltonian.accelerations(s, a); }
+  void want(Wanted wanted) override { hamiltonian.want(wanted); }
+  const std::optional<Failure>& failure() const override { return hamiltonian.failure(); }
+  Evaluations evaluations() const override { return hamiltonian.evaluations(); }
+  void set_evaluations(const Evaluations& e) override { hamiltonian.set_evaluations(e); }
+  void save(SavedState& saved, const std::string& prefix) const override { save_any(saved, prefix, hamiltonian); }
+  void load(const SavedState& saved, const std::string& prefix) override { load_any(saved, prefix, hamiltonian); }
+  H hamiltonian;
+};
+
+template <class Real>
+struct IntegratorBase {
+  virtual ~IntegratorBase() = default;
+  virtual std::unique_ptr<IntegratorBase> clone() const = 0;
+  virtual IntegratorClaims claims() const = 0;
+  virtual void bind(ParticleSystem<Real>&) = 0;
+  virtual Advanced advance(ParticleSystem<Real>&, const Span&) = 0;
+  virtual void settle(const ParticleSystem<Real>&, ParticleSystem<Real>&, Wanted, std::optional<double>, bool) = 0;
+  virtual EnergyTerms<Real> energy(const ParticleSystem<Real>&) = 0;
+  virtual void accelerations(const ParticleSystem<Real>&, VectorColumn<Real>&) = 0;
+  virtual Evaluations evaluations() const = 0;
+  virtual void save(SavedState&, const std::string&) const = 0;
+  virtual void load(const SavedState&, const std::string&) = 0;
+};
+template <class I>
+struct IntegratorModel final : IntegratorBase<typename I::real> {
+  using Real = typename I::real;
+  explicit IntegratorModel(I i) : integrator(std::move(i)) {}
+  std::unique_ptr<IntegratorBase<Real>> clone() const override { return std::make_unique<IntegratorModel>(integrator); }
+  IntegratorClaims claims() const override { return integrator.claims(); }
+  void bind(ParticleSystem<Real>& s) override { integrator.bind(s); }
+  Advanced advance(ParticleSystem<Real>& s, const Span& span) override { return integrator.advance(s, span); }
+  void settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Wanted wanted, std::optional<double> at,
+              bool corrected) override {
+    integrator.settle(raw, out, wanted, at, corrected);
+  }
+  EnergyTerms<Real> energy(const ParticleSystem<Real>& s) override { return integrator.energy(s); }
+  void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) override { integrator.accelerations(s, a); }
+  Evaluations evaluations() const override { return integrator.evaluations(); }
+  void save(SavedState& saved, const std::string& prefix) const override { save_any(saved, prefix, integrator); }
+  void load(const SavedState& saved, const std::string& prefix) override { load_any(saved, prefix, integrator); }
+  I integrator;
+};
+
+}  // namespace detail
+
+/// Any force over one number type; one virtual call per evaluation.
+template <class Real = double>
+class AnyForce : private detail::Erased<detail::ForceBase<Real>> {
+ public:
+  template <class F>
+    requires(!std::is_same_v<std::decay_t<F>, AnyForce> && Force<std::decay_t<F>, Real>)
+  AnyForce(F force)  // NOLINT: erases on purpose
+      : detail::Erased<detail::ForceBase<Real>>(std::make_unique<detail::ForceModel<F, Real>>(std::move(force))) {}
+
+  void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const { this->held_->add_to(out, s); }
+  ForceClaims claims() const { return this->held_->claims(); }
+  std::string name() const { return this->held_->name(); }
+};
+
+/// Any split Hamiltonian over one number type; one virtual call per stage.
+template <class Real = double>
+class AnyHamiltonian : private detail::Erased<detail::HamiltonianBase<Real>> {
+ public:
+  using real = Real;
+  template <SplitHamiltonian H>
+    requires(!std::is_same_v<H, AnyHamiltonian>)
+  AnyHamiltonian(H h)  // NOLINT: erases on purpose
+      : detail::Erased<detail::HamiltonianBase<Real>>(std::make_unique<detail::HamiltonianModel<H>>(std::move(h))) {}
+
+  HamiltonianClaims claims() const { return this->held_->claims(); }
+  std::string name() const { return this->held_->name(); }
+  void bind(ParticleSystem<Real>& s) { this->held_->bind(s); }
+  void open(ParticleSystem<Real>& s) { this->held_->open(s); }
+  void close(ParticleSystem<Real>& s) { this->held_->close(s); }
+  void flow(char letter, ParticleSystem<Real>& s, const Real& h) { this->held_->flow(letter, s, h); }
+  Real flow_with_action(char letter, ParticleSystem<Real>& s, const Real& h) {
+    return this->held_->flow_with_action(letter, s, h);
+  }
+  EnergyTerms<Real> energy(const ParticleSystem<Real>& s) { return this->held_->energy(s); }
+  void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) { this->held_->accelerations(s, a); }
+  void want(Wanted wanted) { this->held_->want(wanted); }
+  const std::optional<Failure>& failure() const { return this->held_->failure(); }
+  Evaluations evaluations() const { return this->held_->evaluations(); }
+  void set_evaluations(const Evaluations& e) { this->held_->set_evaluations(e); }
+  void save(SavedState& saved, const std::string& prefix) const { this->held_->save(saved, prefix); }
+  void load(const SavedState& saved, const std::string& prefix) { this->held_->load(saved, prefix); }
+};
+
+/// Any integrator over one number type; one virtual call per cut of the run.
+template <class Real = double>
+class AnyIntegrator : private detail::Erased<detail::IntegratorBase<Real>> {
+ public:
+  using real = Real;
+  template <Integrator I>
+    requires(!std::is_same_v<I, AnyIntegrator>)
+  AnyIntegrator(I i)  // NOLINT: erases on purpose
+      : detail::Erased<detail::IntegratorBase<Real>>(std::make_unique<detail::IntegratorModel<I>>(std::move(i))) {}
+
+  IntegratorClaims claims() const { return this->held_->claims(); }
+  void bind(ParticleSystem<Real>& s) { this->held_->bind(s); }
+  Advanced advance(ParticleSystem<Real>& s, const Span& span) { return this->held_->advance(s, span); }
+  void settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Wanted wanted, std::optional<double> at,
+              bool corrected) {
+    this->held_->settle(raw, out, wanted, at, corrected);
+  }
+  EnergyTerms<Real> energy(const ParticleSystem<Real>& s) { return this->held_->energy(s); }
+  void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) { this->held_->accelerations(s, a); }
+  Evaluations evaluations() const { return this->held_->evaluations(); }
+  void save(SavedState& saved, const std::string& prefix) const { this->held_->save(saved, prefix); }
+  void load(const SavedState& saved, const std::string& prefix) { this->held_->load(saved, prefix); }
+};
+
+}  // namespace noether

@@ -1,0 +1,105 @@
+#pragma once
+/// Where forces write: accelerations always, energy and virial only where somebody asked.
+
+#include "engine/particle_system.hpp"
+
+namespace noether {
+
+/// What an evaluation is to sum beside the accelerations.
+struct Wanted {
+  bool energy = false;
+  bool virial = false;
+};
+
+/// Collects what the forces of one evaluation give.
+///
+///     a_i = sum of accelerations + (sum of forces) / m_i,   U = sum of energies,   W = sum of x_i (x) f_i
+///
+/// A tracer (m = 0) feels `acceleration` and ignores `force` and `pair`. The bits of the accelerations are the same
+/// with and without energy and virial.
+template <class Real>
+class ForceSink {
+ public:
+  /// @param accelerations  shape (n, 3), set to zero here [length/time^2]
+  ForceSink(VectorColumn<Real>& accelerations, const ParticleSystem<Real>& system, Wanted wanted)
+      : a_(accelerations), system_(system), wanted_(wanted) {
+    a_.fill(Real(0));
+  }
+
+  /// Adds `a` to the acceleration of particle `i` [length/time^2].
+  void acceleration(Index i, const Vec3<Real>& a) {
+    a_.add(i, a);
+    if (wanted_.virial) outer(system_.positions()[i], system_.masses()[i] * a);
+  }
+  /// Adds the force `f` on particle `i` [mass length/time^2].
+  void force(Index i, const Vec3<Real>& f) {
+    push(i, f);
+    if (wanted_.virial) outer(system_.positions()[i], f);
+  }
+  /// Adds `f` on particle `i` and `-f` on particle `j`: Newton's third law [mass length/time^2].
+  void pair(Index i, Index j, const Vec3<Real>& f) {
+    push(i, f);
+    push(j, -f);
+    if (wanted_.virial) outer(system_.positions()[i] - system_.positions()[j], f);
+  }
+  /// Adds to the potential energy [energy].
+  void energy(const Real& u) {
+    if (wanted_.energy) energy_ += u;
+  }
+  /// Adds to the virial tensor sum x (x) f what a force that writes `accelerations()` directly has summed [energy].
+  void virial(const Mat3<Real>& w) {
+    if (wanted_.virial) virial_ += w;
+  }
+
+  bool wants_energy() const { return wanted_.energy; }
+  bool wants_virial() const { return wanted_.virial; }
+  /// The column itself, for loops that own their rows; such a force adds to it, and reports its virial.
+  VectorColumn<Real>& accelerations() { return a_; }
+
+  const Real& potential() const { return energy_; }
+  const Mat3<Real>& virial() const { return virial_; }
+
+ private:
+  void push(Index i, const Vec3<Real>& f) {
+    const Real m = system_.masses()[i];
+    if (m != Real(0)) a_.add(i, f / m);
+  }
+  void outer(const Vec3<Real>& x, const Vec3<Real>& f) {
+    for (int r = 0; r < 3; ++r) {
+      for (int c = 0; c < 3; ++c) virial_(r, c) += x[r] * f[c];
+    }
+  }
+
+  VectorColumn<Real>& a_;
+  const ParticleSystem<Real>& system_;
+  Wanted wanted_;
+  Real energy_ = Real(0);
+  Mat3<Real> virial_ = Mat3<Real>::Zero();
+};
+
+/// What a force says of itself; a method states what it needs, and a refusal names what is missing.
+struct ForceClaims {
+  bool energy = true;              ///< it is the gradient of a potential and reports it
+  bool virial = true;              ///< it reports its virial
+  bool velocity_dependent = false;
+  bool time_dependent = false;
+  bool dissipative = false;
+};
+
+/// The claims of a force type; a force that declares none is conservative and depends on positions only.
+template <class F>
+ForceClaims claims_of(const F& force) {
+  if constexpr (requires { force.claims(); }) {
+    return force.claims();
+  } else {
+    return {};
+  }
+}
+
+/// A term of the force: it adds to a sink what it does to the particles, at their stage time.
+template <class F, class Real>
+concept Force = requires(const F& force, ForceSink<Real>& out, const ParticleSystem<Real>& system) {
+  force.add_to(out, system);
+};
+
+}  // namespace noether

@@ -1,0 +1,71 @@
+#pragma once
+/// The quintic Hermite polynomial between two settled states: where in a step an event happened.
+
+#include "engine/types.hpp"
+
+namespace noether {
+
+/// Position, velocity and acceleration of a point.
+template <class Real>
+struct Motion {
+  Vec3<Real> x, v, a;
+};
+
+/// The polynomial of degree 5 that meets position, velocity and acceleration at both ends of an interval.
+///
+///     x(theta), theta = (t - t0) / h in [0, 1]; its error is O(h^6)
+template <class Real>
+class Hermite {
+ public:
+  Hermite(const Motion<Real>& begin, const Motion<Real>& end, const Real& h)
+      : c0_(begin.x), c1_(h * begin.v), c2_(h * h / Real(2) * begin.a) {
+    const Vec3<Real> dx = end.x - c0_ - c1_ - c2_;
+    const Vec3<Real> dv = h * end.v - c1_ - Real(2) * c2_;
+    const Vec3<Real> da = h * h * end.a - Real(2) * c2_;
+    c3_ = Real(10) * dx - Real(4) * dv + Real(0.5) * da;
+    c4_ = Real(-15) * dx + Real(7) * dv - da;
+    c5_ = Real(6) * dx - Real(3) * dv + Real(0.5) * da;
+  }
+
+  Vec3<Real> position(const Real& u) const {
+    return c0_ + u * (c1_ + u * (c2_ + u * (c3_ + u * (c4_ + u * c5_)))).eval();
+  }
+  /// Derivative by theta.
+  Vec3<Real> slope(const Real& u) const {
+    return c1_ + u * (Real(2) * c2_ + u * (Real(3) * c3_ + u * (Real(4) * c4_ + u * (Real(5) * c5_)))).eval();
+  }
+
+  /// Smallest distance from the origin on the interval, and where.
+  struct Nearest {
+    Real distance2, at;
+  };
+  Nearest nearest() const {
+    Nearest best{norm2(position(Real(0))), Real(0)};
+    constexpr int pieces = 16;
+    for (int k = 1; k <= pieces; ++k) {
+      const Real low = Real(k - 1) / Real(pieces), high = Real(k) / Real(pieces);
+      Real u = high;
+      if (dot(position(low), slope(low)) < Real(0) && dot(position(high), slope(high)) > Real(0)) {
+        u = bisect(low, high, [this](const Real& w) { return dot(position(w), slope(w)) > Real(0); });
+      }
+      if (const Real d2 = norm2(position(u)); d2 < best.distance2) best = {d2, u};
+    }
+    return best;
+  }
+
+  /// The point in [low, high] where `past` turns from false to true.
+  template <class Past>
+  static Real bisect(Real low, Real high, const Past& past) {
+    for (int k = 0; k < 100; ++k) {
+      const Real middle = (low + high) / Real(2);
+      if (middle == low || middle == high) break;
+      (past(middle) ? high : low) = middle;
+    }
+    return high;
+  }
+
+ private:
+  Vec3<Real> c0_, c1_, c2_, c3_, c4_, c5_;
+};
+
+}  // namespace noether

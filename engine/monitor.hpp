@@ -1,0 +1,139 @@
+#pragma once
+/// Monitors and writers: what watches a run. They see settled copies and cannot change the trajectory.
+
+#include "engine/snapshot.hpp"
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace noether {
+
+/// One quantity of a monitor at one moment, as files store it.
+struct Series {
+  std::string name;               ///< "relative_error"
+  std::string dimension;          ///< in words, "1" for none
+  std::vector<Index> shape;       ///< of one sample; empty for a number
+  std::vector<double> values;
+};
+
+/// All quantities of one monitor at one moment.
+struct Sample {
+  std::string_view monitor;
+  std::int64_t step = 0;
+  double time = 0;
+  std::span<const Series> series;
+  std::optional<double> scale;    ///< what relative errors are relative to
+};
+
+/// What a monitor has to say at the end. A number that makes no sense for it stays empty, with the reason in `message`.
+struct MonitorReport {
+  std::optional<double> first, last, worst, rms, slope, slope_error, scale;
+  std::string slope_unit, message;
+  std::int64_t samples = 0;
+};
+
+/// Watches settled states. Optional members: `wanted()` (energy?), `series()` and `scale()` (what files store),
+/// `report()`, `record(Sample)` (receives every monitor's samples: writers), `flush()`, `finish(Outcome)`, and a static
+/// `looks_last` for what must see a moment after all others: checkpoints.
+template <class M, class Real>
+concept Monitor = requires(M& m, const Snapshot<Real>& snapshot) { m.observe(snapshot); };
+
+namespace detail {
+
+template <class Real>
+struct MonitorBase {
+  virtual ~MonitorBase() = default;
+  virtual std::string name() const = 0;
+  virtual bool records() const = 0;
+  virtual bool looks_last() const = 0;
+  virtual Wanted wanted() const = 0;
+  virtual void observe(const Snapshot<Real>&) = 0;
+  virtual std::vector<Series> series() const = 0;
+  virtual std::optional<double> scale() const = 0;
+  virtual std::optional<MonitorReport> report() const = 0;
+  virtual void record(const Sample&) = 0;
+  virtual void flush() = 0;
+  virtual void finish(const Outcome&) = 0;
+  virtual void save(SavedState&, const std::string&) const = 0;
+  virtual void load(const SavedState&, const std::string&) = 0;
+};
+
+template <class M, class Real>
+struct MonitorModel final : MonitorBase<Real> {
+  explicit MonitorModel(M m) : monitor(std::move(m)) {}
+  std::string name() const override { return name_of(monitor); }
+  bool records() const override { return requires(M& m, const Sample& s) { m.record(s); }; }
+  bool looks_last() const override { return requires { M::looks_last; }; }
+  Wanted wanted() const override {
+    if constexpr (requires { monitor.wanted(); }) return monitor.wanted();
+    return {};
+  }
+  void observe(const Snapshot<Real>& snapshot) override { monitor.observe(snapshot); }
+  std::vector<Series> series() const override {
+    if constexpr (requires { monitor.series(); }) return monitor.series();
+    return {};
+  }
+  std::optional<double> scale() const override {
+    if constexpr (requires { monitor.scale(); }) return monitor.scale();
+    return {};
+  }
+  std::optional<MonitorReport> report() const override {
+    if constexpr (requires { monitor.report(); }) return monitor.report();
+    return {};
+  }
+  void record(const Sample& sample) override {
+    if constexpr (requires { monitor.record(sample); }) monitor.record(sample);
+  }
+  void flush() override {
+    if constexpr (requires { monitor.flush(); }) monitor.flush();
+  }
+  void finish(const Outcome& outcome) override {
+    if constexpr (requires { monitor.finish(outcome); }) monitor.finish(outcome);
+  }
+  void save(SavedState& saved, const std::string& prefix) const override { save_any(saved, prefix, monitor); }
+  void load(const SavedState& saved, const std::string& prefix) override { load_any(saved, prefix, monitor); }
+  M monitor;
+};
+
+}  // namespace detail
+
+/// Any monitor over one number type: the fourth erased seam. It owns the monitor and never moves it.
+template <class Real = double>
+class AnyMonitor {
+ public:
+  template <class M>
+    requires(!std::is_same_v<M, AnyMonitor> && Monitor<M, Real>)
+  AnyMonitor(M monitor)  // NOLINT: erases on purpose
+      : held_(std::make_unique<detail::MonitorModel<M, Real>>(std::move(monitor))) {}
+
+  std::string name() const { return held_->name(); }
+  bool records() const { return held_->records(); }
+  bool looks_last() const { return held_->looks_last(); }
+  Wanted wanted() const { return held_->wanted(); }
+  void observe(const Snapshot<Real>& snapshot) { held_->observe(snapshot); }
+  std::vector<Series> series() const { return held_->series(); }
+  std::optional<double> scale() const { return held_->scale(); }
+  std::optional<MonitorReport> report() const { return held_->report(); }
+  void record(const Sample& sample) { held_->record(sample); }
+  /// Writers hand what they have gathered to the file, before a checkpoint counts on it.
+  void flush() { held_->flush(); }
+  void finish(const Outcome& outcome) { held_->finish(outcome); }
+  void save(SavedState& saved, const std::string& prefix) const { held_->save(saved, prefix); }
+  void load(const SavedState& saved, const std::string& prefix) { held_->load(saved, prefix); }
+
+  /// The monitor itself, when its type is known; null otherwise.
+  template <class M>
+  M* get() {
+    auto* model = dynamic_cast<detail::MonitorModel<M, Real>*>(held_.get());
+    return model == nullptr ? nullptr : &model->monitor;
+  }
+
+ private:
+  std::unique_ptr<detail::MonitorBase<Real>> held_;
+};
+
+}  // namespace noether

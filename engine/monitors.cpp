@@ -1,0 +1,224 @@
+#include "engine/monitors.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace noether {
+
+namespace {
+
+Quad wide(double x) { return Quad(x); }
+Quad wide(const Quad& x) { return x; }
+
+template <class Real>
+Vec3<Quad> wide(const Vec3<Real>& v) {
+  return Vec3<Quad>(wide(v[0]), wide(v[1]), wide(v[2]));
+}
+
+std::vector<double> list(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
+
+void fill_line(MonitorReport& report, const SeriesStatistics& series, const std::string& unit) {
+  report.slope = series.slope();
+  if (const auto line = series.line()) report.slope_error = line->error;
+  report.slope_unit = unit;
+}
+
+}  // namespace
+
+template <class Real>
+void Energy::observe(const Snapshot<Real>& now) {
+  const EnergyTerms<Real>& energy = now.energy();
+  const Quad total = wide(energy.total());
+  if (!begun_) {
+    begun_ = true;
+    reference_ = total;
+    const double t = static_cast<double>(energy.kinetic), u = static_cast<double>(energy.potential);
+    scale_ = std::max(std::abs(static_cast<double>(total)), 1e-3 * (t + std::abs(u)));
+    if (scale_ == 0) scale_ = 1;
+    const IntegratorClaims claims = now.claims();
+    if (claims.dissipative) {
+      why_not_ = "the run is dissipative: its energy changes by itself, so there is no error of it";
+    } else if (claims.time_dependent) {
+      why_not_ = "a force depends on time: the energy changes by itself, so there is no error of it";
+    }
+  }
+  time_unit_ = std::string(now.units().time);
+  now_ = {static_cast<double>(total), static_cast<double>(energy.kinetic), static_cast<double>(energy.potential),
+          static_cast<double>((total - reference_) / Quad(scale_))};
+  totals_.add(now.time(), now_[0]);
+  errors_.add(now.time(), now_[3]);
+}
+
+std::vector<Series> Energy::series() const {
+  return {{"total", "energy", {}, {now_[0]}},
+          {"kinetic", "energy", {}, {now_[1]}},
+          {"potential", "energy", {}, {now_[2]}},
+          {"relative_error", "1", {}, {now_[3]}}};
+}
+
+MonitorReport Energy::report() const {
+  MonitorReport report;
+  report.samples = totals_.samples();
+  if (report.samples == 0) return report;
+  report.first = totals_.first();
+  report.last = totals_.last();
+  report.scale = scale_;
+  report.message = why_not_;
+  if (!why_not_.empty()) return report;
+  report.worst = errors_.worst();
+  report.rms = errors_.rms();
+  fill_line(report, errors_, "1/" + time_unit_);
+  return report;
+}
+
+void VectorInvariant::add(double time, const Vec3<Quad>& value, const Quad& scale) {
+  const Quad length = sqrt(norm2(value));
+  if (!begun_) {
+    begun_ = true;
+    reference_ = value;
+    scale_ = static_cast<double>(scale);
+    if (!(scale_ > 0)) scale_ = 1;
+  }
+  for (int k = 0; k < 3; ++k) value_[static_cast<std::size_t>(k)] = static_cast<double>(value[k]);
+  const Vec3<Quad> change = value - reference_;
+  error_ = static_cast<double>(sqrt(norm2(change)) / Quad(scale_));
+  const Quad reference_length = sqrt(norm2(reference_));
+  const bool has_direction = with_direction_ && static_cast<double>(reference_length) > 1e-6 * scale_;
+  direction_error_ = 0;
+  if (has_direction) {
+    const Quad sine = sqrt(norm2(cross(reference_, value))) / (reference_length * length);
+    direction_error_ = static_cast<double>(atan2(sine, dot(reference_, value) / (reference_length * length)));
+  }
+  worst_direction_ = std::max(worst_direction_, direction_error_);
+  if (with_direction_ && !has_direction) direction_error_ = std::numeric_limits<double>::quiet_NaN();
+  errors_.add(time, error_);
+}
+
+std::vector<Series> VectorInvariant::series() const {
+  std::vector<Series> all = {{"value", dimension_, {3}, list(value_)}, {"relative_error", "1", {}, {error_}}};
+  if (with_direction_) all.push_back({"direction_error", "1", {}, {direction_error_}});
+  return all;
+}
+
+MonitorReport VectorInvariant::report() const {
+  MonitorReport report;
+  report.samples = errors_.samples();
+  if (report.samples == 0) return report;
+  report.first = errors_.first();
+  report.last = errors_.last();
+  report.worst = errors_.worst();
+  report.rms = errors_.rms();
+  report.scale = scale_;
+  fill_line(report, errors_, "1/" + time_unit_);
+  return report;
+}
+
+void VectorInvariant::save_series(SavedState& saved, const std::string& prefix) const {
+  save_value(saved, prefix + "/begun", begun_);
+  save_value(saved, prefix + "/reference", reference_);
+  save_value(saved, prefix + "/numbers",
+             std::vector<double>{scale_, error_, direction_error_, worst_direction_, value_[0], value_[1], value_[2]});
+  save_value(saved, prefix + "/errors", errors_);
+  save_value(saved, prefix + "/time_unit", time_unit_);
+}
+
+void VectorInvariant::load_series(const SavedState& saved, const std::string& prefix) {
+  std::vector<double> n;
+  load_value(saved, prefix + "/begun", begun_);
+  load_value(saved, prefix + "/reference", reference_);
+  load_value(saved, prefix + "/numbers", n);
+  load_value(saved, prefix + "/errors", errors_);
+  load_value(saved, prefix + "/time_unit", time_unit_);
+  scale_ = n.at(0);
+  error_ = n.at(1);
+  direction_error_ = n.at(2);
+  worst_direction_ = n.at(3);
+  value_ = {n.at(4), n.at(5), n.at(6)};
+}
+
+template <class Real>
+void Momentum::observe(const Snapshot<Real>& now) {
+  const ParticleSystem<Real>& s = now.state();
+  Vec3<Quad> sum = Vec3<Quad>::Zero();
+  Quad scale = 0;
+  for (Index i = 0; i < s.size(); ++i) {
+    const Vec3<Quad> p = wide(s.masses()[i]) * wide(s.velocities()[i]);
+    sum += p;
+    scale += sqrt(norm2(p));
+  }
+  time_unit_ = std::string(now.units().time);
+  add(now.time(), sum, scale);
+}
+
+template <class Real>
+void AngularMomentum::observe(const Snapshot<Real>& now) {
+  const ParticleSystem<Real>& s = now.state();
+  Vec3<Quad> sum = Vec3<Quad>::Zero();
+  Quad scale = 0;
+  for (Index i = 0; i < s.size(); ++i) {
+    const Vec3<Quad> x = wide(s.positions()[i]), p = wide(s.masses()[i]) * wide(s.velocities()[i]);
+    sum += cross(x, p);
+    scale += sqrt(norm2(x) * norm2(p));
+  }
+  time_unit_ = std::string(now.units().time);
+  add(now.time(), sum, scale);
+}
+
+template <class Real>
+void CenterOfMass::observe(const Snapshot<Real>& now) {
+  const ParticleSystem<Real>& s = now.state();
+  Vec3<Quad> x = Vec3<Quad>::Zero(), v = Vec3<Quad>::Zero();
+  Quad total = 0;
+  for (Index i = 0; i < s.size(); ++i) {
+    const Quad m = wide(s.masses()[i]);
+    x += m * wide(s.positions()[i]);
+    v += m * wide(s.velocities()[i]);
+    total += m;
+  }
+  if (total > Quad(0)) {
+    x /= total;
+    v /= total;
+  }
+  if (!begun_) {
+    begun_ = true;
+    start_ = {x[0], x[1], x[2], v[0], v[1], v[2]};
+    start_time_ = now.time();
+  }
+  const Quad t = Quad(now.time()) - Quad(start_time_);
+  Vec3<Quad> departure = x;
+  for (std::size_t k = 0; k < 3; ++k) {
+    position_[k] = static_cast<double>(x[static_cast<Index>(k)]);
+    velocity_[k] = static_cast<double>(v[static_cast<Index>(k)]);
+    departure[static_cast<Index>(k)] -= start_[k] + t * start_[k + 3];
+  }
+  time_unit_ = std::string(now.units().time);
+  departures_.add(now.time(), static_cast<double>(sqrt(norm2(departure))));
+}
+
+std::vector<Series> CenterOfMass::series() const {
+  return {{"position", "length", {3}, list(position_)}, {"velocity", "length/time", {3}, list(velocity_)}};
+}
+
+MonitorReport CenterOfMass::report() const {
+  MonitorReport report;
+  report.samples = departures_.samples();
+  if (report.samples == 0) return report;
+  report.first = departures_.first();
+  report.last = departures_.last();
+  report.worst = departures_.worst();
+  report.rms = departures_.rms();
+  report.message = "distance from the straight line of the start";
+  fill_line(report, departures_, time_unit_);
+  return report;
+}
+
+#define NOETHER_OBSERVES(Type)                            \
+  template void Type::observe(const Snapshot<double>&);   \
+  template void Type::observe(const Snapshot<Quad>&)
+NOETHER_OBSERVES(Energy);
+NOETHER_OBSERVES(Momentum);
+NOETHER_OBSERVES(AngularMomentum);
+NOETHER_OBSERVES(CenterOfMass);
+#undef NOETHER_OBSERVES
+
+}  // namespace noether

@@ -1,0 +1,136 @@
+#pragma once
+/// The monitors of conserved quantities: energy, momentum, angular momentum, centre of mass.
+
+#include "engine/monitor.hpp"
+#include "engine/statistics.hpp"
+
+#include <string>
+#include <vector>
+
+namespace noether {
+
+/// Watches the energy: total, kinetic, potential and the relative error
+///
+///     (E - E0) / max(|E0|, 1e-3 (T0 + |U0|))
+///
+/// `worst()` and `rms()` are of the relative error, `slope()` its drift per time with an error from block means. A run
+/// that is dissipative or driven has an energy, but no error of it: these figures stay empty, with the reason.
+/// @cost O(n) and one force evaluation, shared with the next kick
+class Energy {
+ public:
+  static constexpr auto describe() {
+    return part<Energy>("energy", "total energy and its relative error", state<&Energy::begun_>("begun"),
+                        state<&Energy::reference_>("reference"), state<&Energy::scale_>("scale"),
+                        state<&Energy::now_>("now"), state<&Energy::totals_>("totals"),
+                        state<&Energy::errors_>("errors"), state<&Energy::why_not_>("why_not"));
+  }
+
+  static Wanted wanted() { return {.energy = true}; }
+  template <class Real>
+  void observe(const Snapshot<Real>& now);
+  std::vector<Series> series() const;
+  std::optional<double> scale() const { return scale_; }
+  MonitorReport report() const;
+
+  /// Largest relative error so far; NaN where the energy is not conserved by the equations themselves.
+  double worst() const { return why_not_.empty() ? errors_.worst() : std::numeric_limits<double>::quiet_NaN(); }
+  double rms() const { return why_not_.empty() ? errors_.rms() : std::numeric_limits<double>::quiet_NaN(); }
+  /// Drift of the relative error [1/time]; 0 before two samples.
+  double slope() const { return errors_.slope().value_or(0); }
+  /// Total, kinetic and potential energy at the last look [energy].
+  double total() const { return now_[0]; }
+
+ private:
+  bool begun_ = false;
+  Quad reference_ = 0;
+  double scale_ = 0;
+  std::array<double, 4> now_{};   ///< total, kinetic, potential, relative error
+  SeriesStatistics totals_, errors_;
+  std::string why_not_, time_unit_;
+};
+
+/// Watches a vector that the flow keeps: its value and the relative error |value - value0| / scale.
+class VectorInvariant {
+ public:
+  std::vector<Series> series() const;
+  std::optional<double> scale() const { return scale_; }
+  MonitorReport report() const;
+  /// Largest relative error so far.
+  double worst() const { return errors_.worst(); }
+  double slope() const { return errors_.slope().value_or(0); }
+  const std::array<double, 3>& value() const { return value_; }
+  /// Largest angle between value and value0 [rad]; 0 where the vector is too short to have a direction.
+  double worst_direction() const { return worst_direction_; }
+
+ protected:
+  VectorInvariant(std::string dimension, bool with_direction)
+      : dimension_(std::move(dimension)), with_direction_(with_direction) {}
+  /// @param scale  what the error is relative to; only its first value counts
+  void add(double time, const Vec3<Quad>& value, const Quad& scale);
+  void save_series(SavedState& saved, const std::string& prefix) const;
+  void load_series(const SavedState& saved, const std::string& prefix);
+  std::string time_unit_;
+
+ private:
+  std::string dimension_;
+  bool with_direction_;
+  bool begun_ = false;
+  Vec3<Quad> reference_ = Vec3<Quad>::Zero();
+  double scale_ = 0, error_ = 0, direction_error_ = 0, worst_direction_ = 0;
+  std::array<double, 3> value_{};
+  SeriesStatistics errors_;
+};
+
+/// Linear momentum P = sum m v; relative to sum m |v| at the start.
+class Momentum : public VectorInvariant {
+ public:
+  Momentum() : VectorInvariant("mass length/time", false) {}
+  static constexpr auto describe() {
+    return part<Momentum>("momentum", "linear momentum and its relative error", formula("P = sum m_i v_i"));
+  }
+  template <class Real>
+  void observe(const Snapshot<Real>& now);
+  void save(SavedState& saved, const std::string& prefix) const { save_series(saved, prefix); }
+  void load(const SavedState& saved, const std::string& prefix) { load_series(saved, prefix); }
+};
+
+/// Angular momentum L = sum m x cross v about the origin, its direction; relative to sum m |x| |v| at the start.
+class AngularMomentum : public VectorInvariant {
+ public:
+  AngularMomentum() : VectorInvariant("mass length^2/time", true) {}
+  static constexpr auto describe() {
+    return part<AngularMomentum>("angular_momentum", "angular momentum, its relative error and its direction",
+                                 formula("L = sum m_i x_i cross v_i"));
+  }
+  template <class Real>
+  void observe(const Snapshot<Real>& now);
+  void save(SavedState& saved, const std::string& prefix) const { save_series(saved, prefix); }
+  void load(const SavedState& saved, const std::string& prefix) { load_series(saved, prefix); }
+};
+
+/// Position and velocity of the centre of mass; `worst()` is how far it has left its straight line [length].
+class CenterOfMass {
+ public:
+  static constexpr auto describe() {
+    return part<CenterOfMass>("center_of_mass", "position and velocity of the centre of mass",
+                              state<&CenterOfMass::begun_>("begun"), state<&CenterOfMass::start_>("start"),
+                              state<&CenterOfMass::start_time_>("start_time"),
+                              state<&CenterOfMass::position_>("position"), state<&CenterOfMass::velocity_>("velocity"),
+                              state<&CenterOfMass::departures_>("departures"));
+  }
+  template <class Real>
+  void observe(const Snapshot<Real>& now);
+  std::vector<Series> series() const;
+  MonitorReport report() const;
+  double worst() const { return departures_.worst(); }
+
+ private:
+  bool begun_ = false;
+  std::array<Quad, 6> start_{};
+  double start_time_ = 0;
+  std::array<double, 3> position_{}, velocity_{};
+  SeriesStatistics departures_;
+  std::string time_unit_;
+};
+
+}  // namespace noether

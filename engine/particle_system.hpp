@@ -1,0 +1,298 @@
+#pragma once
+/// All state of the particles, and nothing else.
+
+#include "engine/clock.hpp"
+#include "engine/column.hpp"
+#include "engine/error.hpp"
+#include "engine/units.hpp"
+
+#include <atomic>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace noether {
+
+/// What the position and velocity columns hold.
+enum class Coordinates : std::uint8_t {
+  inertial,    ///< what users see
+  jacobi,      ///< row 0: centre of mass; others relative to the centre of mass of all bodies further in
+  democratic,  ///< row 0: centre of mass; positions relative to particle 0, velocities to the centre of mass
+};
+
+/// Where in the word of its integrator a system stands.
+struct Phase {
+  Coordinates coordinates = Coordinates::inertial;
+  bool opened = false;   ///< working coordinates and the word before the run are in effect
+  bool pending = false;  ///< the last stage of the last step is still to be done
+
+  bool operator==(const Phase&) const = default;
+};
+
+/// The space particles live in. Open space is the only one so far; a periodic cell will be another kind.
+class Box {
+ public:
+  static Box open() { return {}; }
+  bool is_periodic() const { return false; }
+};
+
+namespace detail {
+/// A number no other call returns: names a state of the positions, so that a force already known is not computed again.
+inline std::uint64_t fresh_version() {
+  static std::atomic<std::uint64_t> next_thread{1};
+  thread_local std::uint64_t version = next_thread.fetch_add(1) << 40U;
+  return ++version;
+}
+}  // namespace detail
+
+/// Particles as a structure of arrays: id, name, x, v, m, the clock, the box and the phase.
+///
+/// Columns are 64-byte aligned, shape (n, 3) for vectors. Mass 0 marks a tracer: it feels accelerations and exerts
+/// none. Sizes and parameters of a system in a run change only in `Simulation::edit`; ids are never used twice.
+template <class Real = double>
+class ParticleSystem {
+ public:
+  using ExtraColumn = std::variant<ScalarColumn<Real>, ScalarColumn<std::int64_t>, VectorColumn<Real>>;
+
+  explicit ParticleSystem(const UnitSystem& units = unit_system("reduced")) : units_(&units) {}
+
+  /// Appends one particle and returns its index.
+  /// @param x, v  inertial [length], [length/time]
+  Index add(std::string name, const Real& mass, const Vec3<Real>& x, const Vec3<Real>& v) {
+    NOETHER_EXPECTS(extra_.empty() && !low_, "particles are added before an integrator is bound");
+    ids_.push_back(next_id_++);
+    names_.push_back(std::move(name));
+    m_.append(mass);
+    x_.append(x);
+    v_.append(v);
+    version_ = detail::fresh_version();
+    return size() - 1;
+  }
+
+  /// Takes particle `i` out; the others keep their ids.
+  void remove(Index i) {
+    NOETHER_EXPECTS(extra_.empty() && !low_, "particles are removed in Simulation::edit");
+    ids_.erase(ids_.begin() + i);
+    names_.erase(names_.begin() + i);
+    m_.erase(i);
+    x_.erase(i);
+    v_.erase(i);
+    version_ = detail::fresh_version();
+  }
+
+  Index size() const { return m_.size(); }
+
+  /// Positions, shape (n, 3) [length]. The writing access makes known forces void.
+  const VectorColumn<Real>& positions() const { return x_; }
+  VectorColumn<Real>& positions() {
+    version_ = detail::fresh_version();
+    return x_;
+  }
+  /// Velocities, shape (n, 3) [length/time].
+  const VectorColumn<Real>& velocities() const { return v_; }
+  VectorColumn<Real>& velocities() { return v_; }
+  /// Masses, shape (n) [mass]; 0 marks a tracer.
+  const ScalarColumn<Real>& masses() const { return m_; }
+  ScalarColumn<Real>& masses() {
+    version_ = detail::fresh_version();
+    return m_;
+  }
+
+  const std::vector<std::int64_t>& ids() const { return ids_; }
+  const std::vector<std::string>& names() const { return names_; }
+  const std::string& name(Index i) const { return names_[static_cast<std::size_t>(i)]; }
+  const UnitSystem& units() const { return *units_; }
+  Box box() const { return {}; }
+
+  const Clock<Real>& clock() const { return clock_; }
+  Clock<Real>& clock() { return clock_; }
+  /// Time of the current stage [time].
+  Real time() const { return clock_.time(); }
+
+  const Phase& phase() const { return phase_; }
+  Phase& phase() { return phase_; }
+
+  /// Names the present positions and masses: equal versions of copies mean equal values.
+  std::uint64_t version() const { return version_; }
+
+  /// x += h v for every particle [length].
+  /// @cost O(n), no allocation
+  void advance_positions(const Real& h) {
+    version_ = detail::fresh_version();
+    if (low_) {
+      compensated_add(x_, low_->x, h, v_);
+    } else {
+      x_.all() += h * v_.all();
+    }
+  }
+  /// v += h a for every particle [length/time].
+  void advance_velocities(const Real& h, const VectorColumn<Real>& a) {
+    if (low_) {
+      compensated_add(v_, low_->v, h, a);
+    } else {
+      v_.all() += h * a.all();
+    }
+  }
+  /// x_i += dx, v_i += dv.
+  void shift(Index i, const Vec3<Real>& dx, const Vec3<Real>& dv) {
+    if (low_) {
+      compensated_add(x_, low_->x, i, dx);
+      compensated_add(v_, low_->v, i, dv);
+    } else {
+      x_.add(i, dx);
+      v_.add(i, dv);
+    }
+  }
+  /// v_i *= factor for every particle.
+  void scale_velocities(const Real& factor) {
+    v_.all() *= factor;
+    if (low_) low_->v.all() *= factor;
+  }
+  /// Tells that `shift` changed positions: the version moves once for a whole loop.
+  void moved() { version_ = detail::fresh_version(); }
+
+  /// Rounding errors of x and v, kept beside them when an integrator sums with compensation; null otherwise.
+  struct LowWords {
+    VectorColumn<Real> x, v;
+  };
+  const LowWords* low_words() const { return low_ ? &*low_ : nullptr; }
+  LowWords* low_words() { return low_ ? &*low_ : nullptr; }
+  void keep_low_words(bool keep) {
+    if (keep && !low_) low_ = LowWords{VectorColumn<Real>(size()), VectorColumn<Real>(size())};
+    if (!keep) low_.reset();
+  }
+
+  /// A column declared by the part that needs it: charge, type, molecule. Tag has `type` and `name`.
+  template <class Tag>
+  bool has() const {
+    return extra_.count(std::string(Tag::name)) != 0;
+  }
+  template <class Tag>
+  typename Tag::template type<Real>& add_column() {
+    auto column = typename Tag::template type<Real>(size());
+    return std::get<typename Tag::template type<Real>>(extra_[std::string(Tag::name)] = std::move(column));
+  }
+  /// @throws MissingColumn
+  template <class Tag>
+  const typename Tag::template type<Real>& column() const {
+    const auto found = extra_.find(std::string(Tag::name));
+    if (found == extra_.end()) throw MissingColumn("the particles have no column '" + std::string(Tag::name) + "'");
+    return std::get<typename Tag::template type<Real>>(found->second);
+  }
+  template <class Tag>
+  typename Tag::template type<Real>& column() {
+    return const_cast<typename Tag::template type<Real>&>(std::as_const(*this).template column<Tag>());
+  }
+  const std::map<std::string, ExtraColumn>& extra_columns() const { return extra_; }
+
+  /// Bytes of state per particle, as `noether explain` prints them.
+  std::size_t bytes_per_particle() const {
+    std::size_t reals = 7 + (low_ ? 6 : 0);
+    std::size_t bytes = sizeof(std::int64_t);
+    for (const auto& [name, column] : extra_) {
+      reals += std::holds_alternative<VectorColumn<Real>>(column) ? 3 : 0;
+      reals += std::holds_alternative<ScalarColumn<Real>>(column) ? 1 : 0;
+      bytes += std::holds_alternative<ScalarColumn<std::int64_t>>(column) ? sizeof(std::int64_t) : 0;
+    }
+    return bytes + reals * sizeof(Real);
+  }
+
+  /// The same particles in another number type: doubles widen exactly.
+  template <class Other>
+  ParticleSystem<Other> as() const {
+    ParticleSystem<Other> other(*units_);
+    for (Index i = 0; i < size(); ++i) {
+      const Vec3<Real> x = x_[i], v = v_[i];
+      other.add(name(i), static_cast<Other>(m_[i]),
+                Vec3<Other>(static_cast<Other>(x[0]), static_cast<Other>(x[1]), static_cast<Other>(x[2])),
+                Vec3<Other>(static_cast<Other>(v[0]), static_cast<Other>(v[1]), static_cast<Other>(v[2])));
+    }
+    other.restore_ids(ids_);
+    return other;
+  }
+
+  /// Becomes a copy of `other`; where the particles are the same ones, only their state is copied.
+  /// @cost O(n); no allocation when sizes agree
+  void assign_state(const ParticleSystem& other) {
+    if (ids_ != other.ids_) {
+      *this = other;
+      return;
+    }
+    x_ = other.x_;
+    v_ = other.v_;
+    m_ = other.m_;
+    low_ = other.low_;
+    clock_ = other.clock_;
+    phase_ = other.phase_;
+    version_ = other.version_;
+    if (!extra_.empty()) extra_ = other.extra_;
+  }
+
+  /// Gives the particles the ids of a file or a copy, shape (n).
+  void restore_ids(const std::vector<std::int64_t>& ids) {
+    ids_ = ids;
+    for (const std::int64_t id : ids_) next_id_ = std::max(next_id_, id + 1);
+  }
+  std::int64_t next_id() const { return next_id_; }
+  void restore_next_id(std::int64_t id) { next_id_ = id; }
+
+ private:
+  static void add_with_error(Real& value, Real& low, const Real& increment) {
+    const Real d = increment + low;
+    const Real sum = value + d;
+    const Real back = sum - value;
+    low = (value - (sum - back)) + (d - back);
+    value = sum;
+  }
+  static void compensated_add(VectorColumn<Real>& value, VectorColumn<Real>& low, const Real& h,
+                              const VectorColumn<Real>& rate) {
+    for (int k = 0; k < 3; ++k) {
+      for (Index i = 0; i < value.size(); ++i) {
+        add_with_error(value.component(k)[i], low.component(k)[i], h * rate.component(k)[i]);
+      }
+    }
+  }
+  static void compensated_add(VectorColumn<Real>& value, VectorColumn<Real>& low, Index i, const Vec3<Real>& d) {
+    for (int k = 0; k < 3; ++k) add_with_error(value.component(k)[i], low.component(k)[i], d[k]);
+  }
+
+  const UnitSystem* units_;
+  std::vector<std::int64_t> ids_;
+  std::vector<std::string> names_;
+  VectorColumn<Real> x_, v_;
+  ScalarColumn<Real> m_;
+  Clock<Real> clock_;
+  Phase phase_;
+  std::optional<LowWords> low_;
+  std::map<std::string, ExtraColumn> extra_;
+  std::int64_t next_id_ = 0;
+  std::uint64_t version_ = detail::fresh_version();
+};
+
+/// Shifts positions and velocities so that the centre of mass rests in the origin.
+/// @throws Error  if all masses are 0
+template <class Real>
+void move_to_barycenter(ParticleSystem<Real>& s) {
+  Vec3<Real> x = Vec3<Real>::Zero(), v = Vec3<Real>::Zero();
+  Real total(0);
+  const auto& c = std::as_const(s);
+  for (Index i = 0; i < s.size(); ++i) {
+    x += c.masses()[i] * c.positions()[i];
+    v += c.masses()[i] * c.velocities()[i];
+    total += c.masses()[i];
+  }
+  if (!(total > Real(0))) throw Error("there is no centre of mass: every particle is a tracer of mass 0");
+  x /= total;
+  v /= total;
+  for (Index i = 0; i < s.size(); ++i) {
+    s.positions().set(i, c.positions()[i] - x);
+    s.velocities().set(i, c.velocities()[i] - v);
+  }
+}
+
+}  // namespace noether

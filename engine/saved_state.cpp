@@ -1,0 +1,89 @@
+#include "engine/saved_state.hpp"
+
+namespace noether {
+
+namespace {
+
+template <class Real>
+std::vector<double> flatten(const VectorColumn<Real>& column) {
+  std::vector<double> numbers;
+  for (Index i = 0; i < column.size(); ++i) detail::append(numbers, Vec3<Real>(column[i]));
+  return numbers;
+}
+
+template <class Real>
+void unflatten(const SavedState& saved, const std::string& name, VectorColumn<Real>& column) {
+  const std::vector<double>& numbers = detail::array_of<double>(saved, name);
+  std::size_t at = 0;
+  for (Index i = 0; i < column.size(); ++i) {
+    Vec3<Real> v;
+    detail::take(numbers, at, v);
+    column.set(i, v);
+  }
+}
+
+}  // namespace
+
+template <class Real>
+SavedState save_particles(const ParticleSystem<Real>& s) {
+  SavedState saved;
+  std::vector<double> masses;
+  for (const Real& m : s.masses()) detail::append(masses, m);
+  saved["id"] = s.ids();
+  saved["name"] = s.names();
+  saved["mass"] = std::move(masses);
+  saved["position"] = flatten(s.positions());
+  saved["velocity"] = flatten(s.velocities());
+  if (s.low_words() != nullptr) {
+    saved["position_low"] = flatten(s.low_words()->x);
+    saved["velocity_low"] = flatten(s.low_words()->v);
+  }
+  const auto clock = s.clock().raw();
+  saved["clock/counts"] = std::vector<std::int64_t>{clock.mode, clock.step};
+  saved["clock/times"] = std::vector<double>{clock.start, clock.dt, clock.high, clock.low};
+  save_value(saved, "clock/fraction", clock.fraction);
+  saved["phase"] = std::vector<std::int64_t>{static_cast<int>(s.phase().coordinates), s.phase().opened ? 1 : 0,
+                                             s.phase().pending ? 1 : 0};
+  saved["units"] = std::vector<std::string>{std::string(s.units().name)};
+  saved["next_id"] = std::vector<std::int64_t>{s.next_id()};
+  return saved;
+}
+
+template <class Real>
+ParticleSystem<Real> load_particles(const SavedState& saved) {
+  ParticleSystem<Real> s(unit_system(detail::array_of<std::string>(saved, "units").at(0)));
+  const auto& ids = detail::array_of<std::int64_t>(saved, "id");
+  const auto& names = detail::array_of<std::string>(saved, "name");
+  const auto& masses = detail::array_of<double>(saved, "mass");
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    Real m{};
+    detail::take(masses, at, m);
+    s.add(names.at(i), m, Vec3<Real>::Zero(), Vec3<Real>::Zero());
+  }
+  s.restore_ids(ids);
+  s.restore_next_id(detail::array_of<std::int64_t>(saved, "next_id").at(0));
+  unflatten(saved, "position", s.positions());
+  unflatten(saved, "velocity", s.velocities());
+  if (saved.count("position_low") != 0) {
+    s.keep_low_words(true);
+    unflatten(saved, "position_low", s.low_words()->x);
+    unflatten(saved, "velocity_low", s.low_words()->v);
+  }
+  const auto& counts = detail::array_of<std::int64_t>(saved, "clock/counts");
+  const auto& times = detail::array_of<double>(saved, "clock/times");
+  typename Clock<Real>::Raw clock{static_cast<int>(counts.at(0)), counts.at(1), times.at(0), times.at(1),
+                                  times.at(2),                    times.at(3),  Real(0)};
+  load_value(saved, "clock/fraction", clock.fraction);
+  s.clock() = Clock<Real>::from_raw(clock);
+  const auto& phase = detail::array_of<std::int64_t>(saved, "phase");
+  s.phase() = Phase{static_cast<Coordinates>(phase.at(0)), phase.at(1) != 0, phase.at(2) != 0};
+  return s;
+}
+
+template SavedState save_particles(const ParticleSystem<double>&);
+template SavedState save_particles(const ParticleSystem<Quad>&);
+template ParticleSystem<double> load_particles(const SavedState&);
+template ParticleSystem<Quad> load_particles(const SavedState&);
+
+}  // namespace noether

@@ -1,0 +1,334 @@
+#include "engine/simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace noether {
+
+namespace {
+
+using WallClock = std::chrono::steady_clock;
+
+/// The state is looked at for finite values at least this often.
+constexpr std::int64_t longest_chunk = 1024;
+/// Steps between looks at the wall clock are chosen to last about this long [s].
+constexpr double chunk_seconds = 0.05;
+
+double seconds_since(WallClock::time_point start) { return std::chrono::duration<double>(WallClock::now() - start).count(); }
+
+}  // namespace
+
+template <class Real>
+Simulation<Real>::Simulation(ParticleSystem<Real> particles, AnyIntegrator<Real> integrator, Clock<Real> clock)
+    : raw_(std::move(particles)), copy_(raw_), mapped_(raw_), integrator_(std::move(integrator)) {
+  if (raw_.size() == 0) throw Error("there are no particles; a run needs at least one");
+  if (raw_.clock().step() == 0) raw_.clock() = clock;
+  integrator_.bind(raw_);
+  copy_ = raw_;
+  mapped_ = raw_;
+}
+
+template <class Real>
+double Simulation<Real>::checked(double dt) {
+  if (!std::isfinite(dt) || dt == 0) throw Error(fmt::format("a step of {} is no step; a finite time other than 0 is expected", dt));
+  return dt;
+}
+
+template <class Real>
+std::int64_t Simulation<Real>::positive(std::int64_t steps) {
+  if (steps < 1) throw Error(fmt::format("a cadence of {} steps is impossible; at least 1 is expected", steps));
+  return steps;
+}
+
+template <class Real>
+void Simulation<Real>::register_last() {
+  Scheduled& added = monitors_.back();
+  const std::string base = added.monitor.name().empty() ? "monitor" : added.monitor.name();
+  added.name = base;
+  for (int k = 2; std::any_of(monitors_.begin(), std::prev(monitors_.end()),
+                              [&](const Scheduled& other) { return other.name == added.name; });
+       ++k) {
+    added.name = fmt::format("{}_{}", base, k);
+  }
+  if (added.schedule.interval != 0 && raw_.clock().mode() == ClockMode::fixed) {
+    added.schedule.steps = positive(steps_in(added.schedule.interval));
+    added.schedule.interval = 0;
+  }
+  if (added.monitor.wanted().energy && !integrator_.claims().energy) {
+    throw Error(fmt::format("monitor '{}' needs the energy, but a force of this run reports none", added.name));
+  }
+}
+
+template <class Real>
+std::int64_t Simulation<Real>::steps_in(double duration) const {
+  const double dt = raw_.clock().dt();
+  const double exact = duration / dt;
+  const double whole = std::round(exact);
+  if (!std::isfinite(exact) || std::abs(exact) > 9e15) {
+    throw Error(fmt::format("a duration of {} is no number of steps of {}", duration, dt));
+  }
+  if (std::abs(exact - whole) > 1e-9 * std::max(1.0, std::abs(exact)) || whole < 0) {
+    throw Error(fmt::format("a duration of {} is {} steps of {}; the nearest whole numbers are {} ({}) and {} ({})", duration,
+                            exact, dt, std::floor(exact) * dt, std::floor(exact), std::ceil(exact) * dt, std::ceil(exact)));
+  }
+  return static_cast<std::int64_t>(whole);
+}
+
+template <class Real>
+Outcome Simulation<Real>::run(std::int64_t steps) {
+  if (steps < 0) throw Error(fmt::format("{} steps cannot be made; a number of at least 0 is expected", steps));
+  return run_to(step() + steps, std::numeric_limits<double>::infinity());
+}
+
+template <class Real>
+Outcome Simulation<Real>::run_until(double until) {
+  if (raw_.clock().mode() == ClockMode::free) return run_to(std::numeric_limits<std::int64_t>::max(), until);
+  const std::int64_t end = steps_in(until - raw_.clock().start());
+  if (end < step()) throw Error(fmt::format("time {} has passed: the run stands at {}", until, time()));
+  return run_to(end, std::numeric_limits<double>::infinity());
+}
+
+template <class Real>
+Outcome Simulation<Real>::run_to(std::int64_t end, double limit) {
+  const auto started = WallClock::now();
+  const double before = seconds_;
+  auto reported = started;
+  const bool free = raw_.clock().mode() == ClockMode::free;
+  std::optional<Outcome> result;
+  while (true) {
+    seconds_ = before + seconds_since(started);
+    if (!free && (result = not_finite())) break;
+    if ((result = observe_due())) break;
+    if (step() >= end) break;
+    if (stop_flag_ != nullptr && stop_flag_->load(std::memory_order_relaxed)) {
+      result = outcome(Outcome::Kind::interrupted);
+      break;
+    }
+    const auto chunk_start = WallClock::now();
+    const std::int64_t steps = next_cut(end) - step();
+    const Advanced done = integrator_.advance(raw_, {steps, next_time(limit), stop_flag_});
+    const double took = seconds_since(chunk_start);
+    if (took < chunk_seconds / 2) chunk_ = std::min(longest_chunk, chunk_ * 2);
+    if (took > chunk_seconds && chunk_ > 1) chunk_ /= 2;
+    if (done.failure) {
+      result = failed(*done.failure);
+      break;
+    }
+    if (free && (result = not_finite())) break;
+    if (done.at_limit) {
+      const double reached = next_time(limit);
+      observe_times(reached);
+      if (reached >= limit) break;
+    }
+    if (progress_ && seconds_since(reported) > 0.1) {
+      reported = WallClock::now();
+      progress_({step(), end, time(), before + seconds_since(started)});
+    }
+  }
+  seconds_ = before + seconds_since(started);
+  return result ? *result : outcome(Outcome::Kind::completed);
+}
+
+template <class Real>
+bool Simulation<Real>::due(const Scheduled& scheduled) const {
+  if (scheduled.schedule.steps > 0) return step() % scheduled.schedule.steps == 0;
+  return scheduled.schedule.wall > 0 && seconds_since(scheduled.last_wall) >= scheduled.schedule.wall;
+}
+
+template <class Real>
+std::optional<Outcome> Simulation<Real>::observe_due() {
+  if (observed_through_ == step()) return {};
+  observed_through_ = step();
+  std::vector<Scheduled*> looking;
+  Wanted wanted;
+  for (auto& scheduled : monitors_) {
+    if (!due(scheduled)) continue;
+    looking.push_back(&scheduled);
+    scheduled.last_wall = WallClock::now();
+    wanted.energy = wanted.energy || scheduled.monitor.wanted().energy;
+  }
+  std::vector<ScheduledStop*> stops;
+  for (auto& stop : stops_) {
+    if (step() % stop.steps == 0) stops.push_back(&stop);
+  }
+  if (looking.empty() && stops.empty()) return {};
+  const Snapshot<Real> moment = snapshot(wanted);
+  std::optional<Outcome> result;
+  for (ScheduledStop* stop : stops) {
+    const auto reason = stop->check.look(moment);
+    if (!reason || result) continue;
+    result = outcome(Outcome::Kind::stopped, reason->message);
+    result->particle = ParticleRef{reason->particle, raw_.ids()[static_cast<std::size_t>(reason->particle)],
+                                   raw_.name(reason->particle)};
+  }
+  show(looking, moment);
+  return result;
+}
+
+template <class Real>
+void Simulation<Real>::show(const std::vector<Scheduled*>& looking, const Snapshot<Real>& moment) {
+  for (Scheduled* one : looking) {
+    if (one->monitor.looks_last()) continue;
+    one->monitor.observe(moment);
+    const std::vector<Series> series = one->monitor.series();
+    if (series.empty()) continue;
+    const Sample sample{one->name, moment.step(), moment.time(), series, one->monitor.scale()};
+    for (auto& other : monitors_) {
+      if (other.monitor.records()) other.monitor.record(sample);
+    }
+  }
+  const bool last = std::any_of(looking.begin(), looking.end(), [](const Scheduled* s) { return s->monitor.looks_last(); });
+  if (!last) return;
+  for (auto& writer : monitors_) writer.monitor.flush();
+  for (Scheduled* one : looking) {
+    if (one->monitor.looks_last()) one->monitor.observe(moment);
+  }
+}
+
+template <class Real>
+void Simulation<Real>::observe_times(double until) {
+  std::vector<Scheduled*> looking;
+  Wanted wanted;
+  for (auto& scheduled : monitors_) {
+    if (scheduled.schedule.interval <= 0) continue;
+    const double next = raw_.clock().start() + static_cast<double>(scheduled.observed) * scheduled.schedule.interval;
+    if (next > until) continue;
+    ++scheduled.observed;
+    looking.push_back(&scheduled);
+    wanted.energy = wanted.energy || scheduled.monitor.wanted().energy;
+  }
+  if (!looking.empty()) show(looking, snapshot(wanted, until));
+}
+
+template <class Real>
+std::int64_t Simulation<Real>::next_cut(std::int64_t end) const {
+  std::int64_t cut = std::min(end, step() + chunk_);
+  const auto limit = [&](std::int64_t cadence) {
+    if (cadence > 0) cut = std::min(cut, (step() / cadence + 1) * cadence);
+  };
+  for (const auto& scheduled : monitors_) limit(scheduled.schedule.steps);
+  for (const auto& stop : stops_) limit(stop.steps);
+  return cut;
+}
+
+template <class Real>
+double Simulation<Real>::next_time(double end) const {
+  double next = end;
+  for (const auto& scheduled : monitors_) {
+    if (scheduled.schedule.interval <= 0) continue;
+    next = std::min(next, raw_.clock().start() + static_cast<double>(scheduled.observed) * scheduled.schedule.interval);
+  }
+  return next;
+}
+
+template <class Real>
+std::optional<Outcome> Simulation<Real>::not_finite() {
+  using std::isfinite;
+  const auto& s = std::as_const(raw_);
+  for (Index i = 0; i < s.size(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const bool position = !isfinite(s.positions().component(k)[i]);
+      if (!position && isfinite(s.velocities().component(k)[i])) continue;
+      Failure failure{Outcome::Kind::diverged, i, position ? "position" : "velocity", ""};
+      failure.message = fmt::format("{} of {} is not finite", failure.quantity, s.name(i));
+      return failed(failure);
+    }
+  }
+  return {};
+}
+
+template <class Real>
+Outcome Simulation<Real>::outcome(Outcome::Kind kind, std::string message) const {
+  Outcome result;
+  result.kind = kind;
+  result.step = step();
+  result.time = time();
+  result.message = std::move(message);
+  return result;
+}
+
+template <class Real>
+Outcome Simulation<Real>::failed(const Failure& failure) const {
+  Outcome result = outcome(failure.kind, failure.message);
+  result.quantity = failure.quantity;
+  if (failure.particle >= 0) {
+    result.particle = ParticleRef{failure.particle, raw_.ids()[static_cast<std::size_t>(failure.particle)], raw_.name(failure.particle)};
+  }
+  return result;
+}
+
+template <class Real>
+const ParticleSystem<Real>& Simulation<Real>::particles() {
+  integrator_.settle(raw_, copy_, {}, std::nullopt, true);
+  return copy_;
+}
+
+template <class Real>
+void Simulation<Real>::begin_edit() {
+  integrator_.settle(raw_, copy_, {}, std::nullopt, true);
+  raw_ = copy_;
+  raw_.phase() = Phase{};
+  raw_.keep_low_words(false);
+}
+
+template <class Real>
+void Simulation<Real>::end_edit() {
+  if (raw_.size() == 0) throw Error("the edit has left no particles; a run needs at least one");
+  integrator_.bind(raw_);
+  copy_ = raw_;
+  mapped_ = raw_;
+}
+
+template <class Real>
+void Simulation<Real>::change_step(double dt) {
+  checked(dt);
+  begin_edit();
+  const double now = time();
+  raw_.clock() = Clock<Real>::fixed(now - static_cast<double>(step()) * dt, dt, step());
+  end_edit();
+}
+
+template <class Real>
+SavedRun Simulation<Real>::save() const {
+  SavedRun saved;
+  saved.particles = save_particles(raw_);
+  SavedState& run = saved.parts["simulation"];
+  save_value(run, "observed_through", observed_through_);
+  integrator_.save(saved.parts["integrator"], "");
+  for (const auto& scheduled : monitors_) {
+    SavedState& state = saved.parts[scheduled.name];
+    save_value(state, "observed", scheduled.observed);
+    scheduled.monitor.save(state, "state");
+  }
+  for (std::size_t k = 0; k < stops_.size(); ++k) stops_[k].check.save(saved.parts[fmt::format("stop_{}", k)], "state");
+  return saved;
+}
+
+template <class Real>
+void Simulation<Real>::restore(const SavedRun& saved) {
+  const auto part = [&](const std::string& name) -> const SavedState& {
+    const auto found = saved.parts.find(name);
+    if (found == saved.parts.end()) throw Error("the saved run has no part '" + name + "'; it was made by other parts");
+    return found->second;
+  };
+  ParticleSystem<Real> particles = load_particles<Real>(saved.particles);
+  if (particles.ids() != raw_.ids()) throw Error("the saved run has other particles than this one");
+  if (particles.clock().dt() != raw_.clock().dt()) {
+    throw Error(fmt::format("the saved run has a step of {}, this one of {}", particles.clock().dt(), raw_.clock().dt()));
+  }
+  integrator_.load(part("integrator"), "");
+  raw_ = std::move(particles);
+  load_value(part("simulation"), "observed_through", observed_through_);
+  for (auto& scheduled : monitors_) {
+    load_value(part(scheduled.name), "observed", scheduled.observed);
+    scheduled.monitor.load(part(scheduled.name), "state");
+  }
+  for (std::size_t k = 0; k < stops_.size(); ++k) stops_[k].check.load(part(fmt::format("stop_{}", k)), "state");
+}
+
+template class Simulation<double>;
+template class Simulation<Quad>;
+
+}  // namespace noether

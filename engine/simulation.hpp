@@ -1,0 +1,169 @@
+#pragma once
+/// A run: it owns state, integrator and monitors, and cuts time at the next moment somebody wants to see.
+
+#include "engine/monitor.hpp"
+#include "engine/stop_condition.hpp"
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <string>
+
+namespace noether {
+
+/// Where a run stands, for a progress line.
+struct Progress {
+  std::int64_t step = 0, end = 0;
+  double time = 0, seconds = 0;
+};
+
+/// Owns state, integrator and monitors.
+///
+/// The run is cut at the next monitor; all monitors of that step see one settled copy; the run goes on from the
+/// unsettled original. Outputs cannot change a trajectory.
+template <class Real = double>
+class Simulation {
+ public:
+  /// A run of fixed step `dt` [time] that begins at time 0.
+  /// @throws Error  if dt is 0 or not finite, or the integrator cannot serve these particles
+  template <Integrator I>
+  Simulation(ParticleSystem<Real> particles, I integrator, double dt)
+      : Simulation(std::move(particles), AnyIntegrator<Real>(std::move(integrator)), Clock<Real>::fixed(0, checked(dt))) {}
+
+  /// A run of an integrator that chooses its own steps, from time 0.
+  template <Integrator I>
+  Simulation(ParticleSystem<Real> particles, I integrator)
+      : Simulation(std::move(particles), AnyIntegrator<Real>(std::move(integrator)), Clock<Real>::free(0)) {}
+
+  Simulation(ParticleSystem<Real> particles, AnyIntegrator<Real> integrator, Clock<Real> clock);
+
+  /// Attaches a monitor or writer that looks at step 0 and at every multiple of `steps`.
+  /// @return the monitor, which stays where it is as long as the simulation lives
+  template <class M>
+  M& every(std::int64_t steps, M monitor) {
+    return attach<M>({.steps = positive(steps)}, std::move(monitor));
+  }
+  /// The same by time, for integrators that choose their steps [time].
+  template <class M>
+  M& every_time(double interval, M monitor) {
+    return attach<M>({.interval = interval}, std::move(monitor));
+  }
+  /// The same by wall time, at whole steps [s]. Bits of the trajectory do not depend on it.
+  template <class M>
+  M& every_wall(double seconds, M monitor) {
+    return attach<M>({.wall = seconds}, std::move(monitor));
+  }
+  /// Stops the run when `rule` holds, looked at every `steps`: `sim.stop_when(farther_than(100 * au), 4'000)`.
+  void stop_when(const StopRule& rule, std::int64_t steps) { stops_.push_back({positive(steps), StopCheck<Real>(rule)}); }
+
+  /// How many steps make `duration` [time].
+  /// @throws Error  unless it is a whole number (to 1e-9), with the two nearest durations
+  std::int64_t steps_in(double duration) const;
+
+  /// Goes on for `steps` steps. The result tells how it ended; physics never throws, a writer that cannot write does.
+  Outcome run(std::int64_t steps);
+  /// Goes on to time `until` [time]. @throws Error  if it is no whole number of steps away
+  Outcome run_until(double until);
+
+  std::int64_t step() const { return raw_.clock().step(); }
+  double time() const {
+    return raw_.clock().mode() == ClockMode::fixed ? raw_.clock().time_at(step()) : raw_.clock().high();
+  }
+  /// The settled, inertial particles at the present step.
+  const ParticleSystem<Real>& particles();
+  IntegratorClaims claims() const { return integrator_.claims(); }
+  Evaluations evaluations() const { return integrator_.evaluations(); }
+
+  /// Changes particles: settles, calls `change(ParticleSystem<Real>&)` on inertial state, binds anew.
+  template <class Change>
+  void edit(const Change& change) {
+    begin_edit();
+    change(raw_);
+    end_edit();
+  }
+  /// Changes the step [time], settling first; time and step count go on.
+  void change_step(double dt);
+
+  /// Everything a restart needs. @cost O(n)
+  SavedRun save() const;
+  /// Goes back to a saved run of the same integrator and monitors.
+  /// @throws Error  if the parts differ
+  void restore(const SavedRun& saved);
+
+  /// Calls `visit(name, AnyMonitor&)` for each monitor, in order of attachment; equal names are numbered.
+  template <class Visit>
+  void for_each_monitor(const Visit& visit) {
+    for (auto& scheduled : monitors_) visit(scheduled.name, scheduled.monitor);
+  }
+
+  /// A flag that ends the run after the current step with outcome `interrupted`.
+  void stop_on(const std::atomic<bool>* flag) { stop_flag_ = flag; }
+  /// Called about ten times a second of wall time.
+  void on_progress(std::function<void(const Progress&)> report) { progress_ = std::move(report); }
+  /// Seconds spent stepping and observing in all calls of `run`.
+  double seconds() const { return seconds_; }
+
+ private:
+  struct Schedule {
+    std::int64_t steps = 0;
+    double interval = 0, wall = 0;
+  };
+  struct Scheduled {
+    std::string name;
+    Schedule schedule;
+    AnyMonitor<Real> monitor;
+    std::chrono::steady_clock::time_point last_wall;
+    std::int64_t observed = 0;   ///< by time: how many multiples have been seen
+  };
+  struct ScheduledStop {
+    std::int64_t steps;
+    StopCheck<Real> check;
+  };
+
+  static double checked(double dt);
+  static std::int64_t positive(std::int64_t steps);
+  template <class M>
+  M& attach(Schedule schedule, M monitor) {
+    monitors_.push_back({"", schedule, AnyMonitor<Real>(std::move(monitor)), std::chrono::steady_clock::now(), 0});
+    register_last();
+    return *monitors_.back().monitor.template get<M>();
+  }
+  void register_last();
+  Snapshot<Real> snapshot(Wanted wanted, std::optional<double> at = std::nullopt) {
+    return Snapshot<Real>(integrator_, raw_, copy_, mapped_, wanted, at, [this] { return save(); });
+  }
+  std::optional<Outcome> observe_due();
+  void observe_times(double until);
+  bool due(const Scheduled& scheduled) const;
+  void show(const std::vector<Scheduled*>& due, const Snapshot<Real>& moment);
+  std::int64_t next_cut(std::int64_t end) const;
+  double next_time(double end) const;
+  std::optional<Outcome> not_finite();
+  Outcome outcome(Outcome::Kind kind, std::string message = "") const;
+  Outcome failed(const Failure& failure) const;
+  Outcome run_to(std::int64_t end, double limit);
+  void begin_edit();
+  void end_edit();
+
+  ParticleSystem<Real> raw_, copy_, mapped_;
+  AnyIntegrator<Real> integrator_;
+  std::deque<Scheduled> monitors_;
+  std::deque<ScheduledStop> stops_;
+  std::int64_t observed_through_ = -1;   ///< last step whose due monitors have looked
+  std::int64_t chunk_ = 16;
+  const std::atomic<bool>* stop_flag_ = nullptr;
+  std::function<void(const Progress&)> progress_;
+  double seconds_ = 0;
+};
+
+template <class Real, class I>
+Simulation(ParticleSystem<Real>, I, double) -> Simulation<Real>;
+template <class Real, class I>
+Simulation(ParticleSystem<Real>, I) -> Simulation<Real>;
+
+extern template class Simulation<double>;
+extern template class Simulation<Quad>;
+
+}  // namespace noether

@@ -1,0 +1,77 @@
+#pragma once
+/// What monitors see of a run: settled copies, read-only.
+
+#include "engine/erasure.hpp"
+
+#include <functional>
+#include <optional>
+
+namespace noether {
+
+/// One moment of a run. The settled copies and the energy are made when somebody asks, once for all monitors.
+///
+/// `state()` is what users see: word completed, corrector applied. `mapped()` is the word completed and nothing more.
+template <class Real>
+class Snapshot {
+ public:
+  /// @param copy, mapped  storage for the settled copies, reused from one moment to the next
+  /// @param at  free clock: the time to be shown, not beyond the next whole step
+  Snapshot(AnyIntegrator<Real>& integrator, const ParticleSystem<Real>& raw, ParticleSystem<Real>& copy,
+           ParticleSystem<Real>& mapped, Wanted wanted, std::optional<double> at, std::function<SavedRun()> save)
+      : integrator_(integrator),
+        raw_(raw),
+        copy_(copy),
+        mapped_(mapped),
+        wanted_(wanted),
+        at_(at),
+        save_(std::move(save)) {}
+
+  /// The settled, inertial particles.
+  const ParticleSystem<Real>& state() const {
+    if (!have_state_) integrator_.settle(raw_, copy_, wanted_, at_, true);
+    have_state_ = true;
+    return copy_;
+  }
+  /// The same without the corrector: the point the composed map itself reaches.
+  const ParticleSystem<Real>& mapped() const {
+    if (!have_mapped_) integrator_.settle(raw_, mapped_, wanted_, at_, false);
+    have_mapped_ = true;
+    return mapped_;
+  }
+  /// Energy of `state()` [energy].
+  const EnergyTerms<Real>& energy() const {
+    if (!energy_) energy_ = integrator_.energy(state());
+    return *energy_;
+  }
+  /// Accelerations at `state()`, shape (n, 3) [length/time^2].
+  const VectorColumn<Real>& accelerations() const {
+    if (!accelerations_) {
+      accelerations_.emplace(raw_.size());
+      integrator_.accelerations(state(), *accelerations_);
+    }
+    return *accelerations_;
+  }
+  std::int64_t step() const { return raw_.clock().step(); }
+  /// Time of this moment [time].
+  double time() const { return at_ ? *at_ : raw_.clock().mode() == ClockMode::fixed
+                                                ? raw_.clock().time_at(raw_.clock().step())
+                                                : raw_.clock().high(); }
+  IntegratorClaims claims() const { return integrator_.claims(); }
+  const UnitSystem& units() const { return raw_.units(); }
+  /// The whole run as it stands, unsettled: only checkpoints have any business here.
+  SavedRun saved_run() const { return save_(); }
+
+ private:
+  AnyIntegrator<Real>& integrator_;
+  const ParticleSystem<Real>& raw_;
+  ParticleSystem<Real>& copy_;
+  ParticleSystem<Real>& mapped_;
+  Wanted wanted_;
+  std::optional<double> at_;
+  std::function<SavedRun()> save_;
+  mutable bool have_state_ = false, have_mapped_ = false;
+  mutable std::optional<EnergyTerms<Real>> energy_;
+  mutable std::optional<VectorColumn<Real>> accelerations_;
+};
+
+}  // namespace noether

@@ -1,0 +1,30 @@
+#pragma once
+/// What a misspelt word may have meant.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace noether {
+
+/// Edits that turn one word into the other: letters put in, left out, replaced, or exchanged with their neighbor.
+///
+/// The restricted Damerau-Levenshtein distance (no letter is edited twice), byte by byte.
+/// @throws std::bad_alloc
+/// @cost length of a times length of b
+std::size_t edit_distance(std::string_view a, std::string_view b);
+
+/// The nearest known word, or nothing where none is near.
+///
+/// Near is at most max(2, length / 3) edits, case aside, and fewer than the longer word has letters. Among equals the
+/// one that agrees better in case wins, then the first.
+/// @throws std::bad_alloc
+std::string suggest(std::string_view word, const std::vector<std::string>& known);
+
+/// The end of a message: "; did you mean 'cutoff'?", or "; known are: a, b, c" where nothing is near.
+///
+/// Empty if nothing is known.
+/// @throws std::bad_alloc
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& known);
+
+}  // namespace noether

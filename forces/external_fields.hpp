@@ -1,0 +1,90 @@
+#pragma once
+/// Fields that do not come from particles: uniform, oscillating, harmonic.
+
+#include "engine/description.hpp"
+#include "engine/force_sink.hpp"
+
+#include <array>
+#include <cmath>
+
+namespace noether {
+
+namespace detail {
+template <class Real>
+Vec3<Real> widened(const std::array<double, 3>& a) {
+  return Vec3<Real>(Real(a[0]), Real(a[1]), Real(a[2]));
+}
+}  // namespace detail
+
+/// The same acceleration everywhere.
+///
+///     U = - sum_i m_i g . x_i
+struct UniformField {
+  std::array<double, 3> acceleration = {0, 0, 0};  ///< g [length/time^2]
+
+  static constexpr auto describe() {
+    return part<UniformField>("uniform_field", "the same acceleration everywhere", formula("U = - sum_i m_i g . x_i"),
+                              field<&UniformField::acceleration>("acceleration", "length/time^2", "g = [x, y, z]"));
+  }
+
+  template <class Real>
+  void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+    const Vec3<Real> g = detail::widened<Real>(acceleration);
+    for (Index i = 0; i < s.size(); ++i) {
+      out.acceleration(i, g);
+      if (out.wants_energy()) out.energy(-s.masses()[i] * dot(g, s.positions()[i]));
+    }
+  }
+};
+
+/// A uniform acceleration that oscillates; the forces of a stage see the time of that stage.
+///
+///     U = - sum_i m_i g . x_i cos(omega t + phase)
+struct OscillatingField {
+  std::array<double, 3> acceleration = {0, 0, 0};  ///< g [length/time^2]
+  double omega = 0.0;                              ///< angular frequency [1/time]
+  double phase = 0.0;                              ///< [angle]
+
+  static constexpr auto describe() {
+    return part<OscillatingField>(
+        "oscillating_field", "a uniform acceleration that oscillates in time",
+        formula("U = - sum_i m_i g . x_i cos(omega t + phase)"),
+        field<&OscillatingField::acceleration>("acceleration", "length/time^2", "amplitude g = [x, y, z]"),
+        field<&OscillatingField::omega>("omega", "1/time", "angular frequency"),
+        field<&OscillatingField::phase>("phase", "angle"));
+  }
+  static ForceClaims claims() { return {.time_dependent = true}; }
+
+  template <class Real>
+  void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+    using std::cos;
+    const Vec3<Real> g = cos(Real(omega) * s.time() + Real(phase)) * detail::widened<Real>(acceleration);
+    for (Index i = 0; i < s.size(); ++i) {
+      out.acceleration(i, g);
+      if (out.wants_energy()) out.energy(-s.masses()[i] * dot(g, s.positions()[i]));
+    }
+  }
+};
+
+/// A spring to the origin for every particle that has mass.
+///
+///     U = sum_i k |x_i|^2 / 2
+struct HarmonicField {
+  double k = 0.0;  ///< [mass/time^2]
+
+  static constexpr auto describe() {
+    return part<HarmonicField>("harmonic_field", "a spring to the origin for every massive particle",
+                               formula("U = sum_i k |x_i|^2 / 2"), field<&HarmonicField::k>("k", "mass/time^2"));
+  }
+
+  template <class Real>
+  void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+    for (Index i = 0; i < s.size(); ++i) {
+      const Vec3<Real> x = s.positions()[i];
+      out.force(i, -Real(k) * x);
+      if (out.wants_energy() && s.masses()[i] != Real(0)) out.energy(Real(k) * norm2(x) / Real(2));
+    }
+  }
+};
+
+}  // namespace noether

@@ -1,0 +1,140 @@
+#pragma once
+/// Newtonian gravity by direct summation.
+
+#include "engine/description.hpp"
+#include "engine/force_sink.hpp"
+#include "engine/parallel.hpp"
+
+#include <cmath>
+#include <optional>
+
+namespace noether {
+
+/// Newtonian attraction of all massive bodies on all particles, with Plummer softening.
+///
+///     U = - sum_{i<j} G m_i m_j / sqrt(|x_i - x_j|^2 + softening^2)
+///
+/// Tracers feel it and exert none. Up to 255 particles each pair is computed once; above, the owner of a particle sums
+/// its whole row, so that any number of threads gives the same bits.
+/// @cost O(n m) with m massive bodies, no allocation
+/// @source Newton1687, Plummer1911
+struct Gravity {
+  std::optional<double> G = {};  ///< [length^3/mass/time^2]; default: the unit system's own
+  double softening = 0.0;   ///< [length]
+
+  static constexpr auto describe() {
+    return part<Gravity>("gravity", "Newtonian gravity by direct summation, with softening and tracers",
+                         formula("U = - sum_{i<j} G m_i m_j / sqrt(r_ij^2 + softening^2)"), source("Newton1687"),
+                         field<&Gravity::G>("G", "length^3/mass/time^2", "default: the unit system's own"),
+                         field<&Gravity::softening>("softening", "length", "Plummer's length; 0 is a point mass"));
+  }
+
+  template <class Real>
+  Real constant(const ParticleSystem<Real>& s) const {
+    return Real(G ? *G : s.units().G);
+  }
+
+  template <class Real>
+  void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+    if (s.size() < parallel_threshold) {
+      add_pairs(out, s);
+    } else {
+      add_rows(out, s);
+    }
+  }
+
+ private:
+  template <class Real>
+  void add_pairs(ForceSink<Real>& out, const ParticleSystem<Real>& s) const;
+  template <class Real>
+  void add_rows(ForceSink<Real>& out, const ParticleSystem<Real>& s) const;
+};
+
+template <class Real>
+void Gravity::add_pairs(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+  using std::sqrt;
+  const Real g = constant(s), soft2 = Real(softening) * Real(softening);
+  const Real *x = s.positions().component(0), *y = s.positions().component(1), *z = s.positions().component(2);
+  const Real* m = s.masses().data();
+  VectorColumn<Real>& a = out.accelerations();
+  Real *ax = a.component(0), *ay = a.component(1), *az = a.component(2);
+  Real sum(0);
+  Mat3<Real> virial = Mat3<Real>::Zero();
+  for (Index i = 1; i < s.size(); ++i) {
+    for (Index j = 0; j < i; ++j) {
+      if (m[i] == Real(0) && m[j] == Real(0)) continue;
+      const Real dx = x[i] - x[j], dy = y[i] - y[j], dz = z[i] - z[j];
+      const Real r2 = dx * dx + dy * dy + dz * dz + soft2;
+      const Real r = sqrt(r2);
+      const Real k = g / (r2 * r);
+      const Real kj = k * m[j], ki = k * m[i];
+      ax[i] -= kj * dx;
+      ay[i] -= kj * dy;
+      az[i] -= kj * dz;
+      ax[j] += ki * dx;
+      ay[j] += ki * dy;
+      az[j] += ki * dz;
+      if (out.wants_energy()) sum -= g * m[i] * m[j] / r;
+      if (out.wants_virial()) {
+        const Vec3<Real> d(dx, dy, dz);
+        for (int row = 0; row < 3; ++row) {
+          for (int column = 0; column < 3; ++column) virial(row, column) -= m[i] * kj * d[row] * d[column];
+        }
+      }
+    }
+  }
+  out.energy(sum);
+  out.virial(virial);
+}
+
+template <class Real>
+void Gravity::add_rows(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+  using std::sqrt;
+  struct Totals {
+    Real energy = Real(0);
+    Mat3<Real> virial = Mat3<Real>::Zero();
+    Totals& operator+=(const Totals& other) {
+      energy += other.energy;
+      virial += other.virial;
+      return *this;
+    }
+  };
+  const Real g = constant(s), soft2 = Real(softening) * Real(softening);
+  const Real *x = s.positions().component(0), *y = s.positions().component(1), *z = s.positions().component(2);
+  const Real* m = s.masses().data();
+  VectorColumn<Real>& a = out.accelerations();
+  const bool sums = out.wants_energy() || out.wants_virial();
+  const auto rows = [&](Index begin, Index end) {
+    Totals totals;
+    for (Index i = begin; i < end; ++i) {
+      Vec3<Real> pull = Vec3<Real>::Zero();
+      for (Index j = 0; j < s.size(); ++j) {
+        if (m[j] == Real(0) || j == i) continue;
+        const Real dx = x[i] - x[j], dy = y[i] - y[j], dz = z[i] - z[j];
+        const Real r2 = dx * dx + dy * dy + dz * dz + soft2;
+        const Real r = sqrt(r2);
+        const Real k = g * m[j] / (r2 * r);
+        pull[0] -= k * dx;
+        pull[1] -= k * dy;
+        pull[2] -= k * dz;
+        if (!sums) continue;
+        totals.energy -= g * m[i] * m[j] / r / Real(2);
+        const Vec3<Real> d(dx, dy, dz);
+        for (int row = 0; row < 3; ++row) {
+          for (int column = 0; column < 3; ++column) totals.virial(row, column) -= m[i] * k * d[row] * d[column] / Real(2);
+        }
+      }
+      a.add(i, pull);
+    }
+    return totals;
+  };
+  if (!sums) {
+    for_blocks(s.size(), [&](Index begin, Index end) { rows(begin, end); });
+    return;
+  }
+  const Totals totals = reduce(s.size(), Totals{}, rows);
+  out.energy(totals.energy);
+  out.virial(totals.virial);
+}
+
+}  // namespace noether

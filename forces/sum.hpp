@@ -1,0 +1,68 @@
+#pragma once
+/// Sums of forces: known to the compiler (`Sum`), or assembled while the program runs (`ForceField`).
+
+#include "engine/erasure.hpp"
+
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace noether {
+
+namespace detail {
+inline void merge(ForceClaims& all, const ForceClaims& one) {
+  all.energy = all.energy && one.energy;
+  all.virial = all.virial && one.virial;
+  all.velocity_dependent = all.velocity_dependent || one.velocity_dependent;
+  all.time_dependent = all.time_dependent || one.time_dependent;
+  all.dissipative = all.dissipative || one.dissipative;
+}
+}  // namespace detail
+
+/// Forces added at compile time, in order: `Sum(Gravity{}, j2)`. Itself a force.
+template <class... Fs>
+class Sum {
+ public:
+  explicit Sum(Fs... forces) : forces_(std::move(forces)...) {}
+
+  template <class Real>
+  void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+    std::apply([&](const auto&... force) { (force.add_to(out, s), ...); }, forces_);
+  }
+  ForceClaims claims() const {
+    ForceClaims all;
+    std::apply([&](const auto&... force) { (detail::merge(all, claims_of(force)), ...); }, forces_);
+    return all;
+  }
+  std::string name() const { return "sum"; }
+
+ private:
+  std::tuple<Fs...> forces_;
+};
+
+/// Forces added at run time, in order: `forces.add(Gravity{})`. Itself a force; one virtual call per term.
+template <class Real = double>
+class ForceField {
+ public:
+  template <class F>
+  ForceField& add(F force) {
+    terms_.emplace_back(std::move(force));
+    return *this;
+  }
+
+  void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+    for (const auto& term : terms_) term.add_to(out, s);
+  }
+  ForceClaims claims() const {
+    ForceClaims all;
+    for (const auto& term : terms_) detail::merge(all, term.claims());
+    return all;
+  }
+  std::string name() const { return "force_field"; }
+  const std::vector<AnyForce<Real>>& terms() const { return terms_; }
+
+ private:
+  std::vector<AnyForce<Real>> terms_;
+};
+
+}  // namespace noether

@@ -1,0 +1,69 @@
+#pragma once
+/// A Hamiltonian with linear drag as one more letter.
+
+#include "engine/erasure.hpp"
+#include "engine/description.hpp"
+#include "forces/linear_drag.hpp"
+
+#include <cmath>
+#include <string>
+
+namespace noether {
+
+/// Adds the letter `D`, the exact flow of linear drag, to a split Hamiltonian.
+///
+///     D:  v -> exp(-rate h) v
+///
+/// It is irreversible: schemes with negative steps are refused. A word without a D gets half a D at both ends,
+/// `symplectic_euler_a` and `_b` one between their two flows (see `Composition`). Velocities of every coordinate
+/// system are linear in the inertial ones, so the same flow serves them all.
+template <SplitHamiltonian H>
+class Damped {
+ public:
+  using real = typename H::real;
+
+  Damped(H hamiltonian, LinearDrag drag) : hamiltonian_(std::move(hamiltonian)), drag_(drag) {
+    if (!(drag.rate >= 0)) throw Error("a drag rate of " + std::to_string(drag.rate) + " drives instead of damping; give 0 or more");
+  }
+
+  std::string name() const { return "damped"; }
+  HamiltonianClaims claims() const {
+    HamiltonianClaims claims = hamiltonian_.claims();
+    claims.alphabet = claims.alphabet == "AB" ? "ABD" : "ABCD";
+    claims.irreversible = "D";
+    claims.dissipative = true;
+    claims.keeps_momentum = claims.keeps_angular_momentum = false;
+    return claims;
+  }
+
+  void bind(ParticleSystem<real>& s) { hamiltonian_.bind(s); }
+  void open(ParticleSystem<real>& s) { hamiltonian_.open(s); }
+  void close(ParticleSystem<real>& s) { hamiltonian_.close(s); }
+  void flow(char letter, ParticleSystem<real>& s, const real& h) {
+    if (letter != 'D') return hamiltonian_.flow(letter, s, h);
+    using std::exp;
+    s.scale_velocities(exp(-real(drag_.rate) * h));
+  }
+  /// @throws LogicError  for D: a dissipative flow has no action
+  real flow_with_action(char letter, ParticleSystem<real>& s, const real& h) {
+    NOETHER_EXPECTS(letter != 'D', "the dissipative flow D has no action increment");
+    return hamiltonian_.flow_with_action(letter, s, h);
+  }
+  EnergyTerms<real> energy(const ParticleSystem<real>& s) { return hamiltonian_.energy(s); }
+  void accelerations(const ParticleSystem<real>& s, VectorColumn<real>& a) {
+    hamiltonian_.accelerations(s, a);
+    for (Index i = 0; i < s.size(); ++i) a.add(i, -real(drag_.rate) * s.velocities()[i]);
+  }
+  void want(Wanted wanted) { hamiltonian_.want(wanted); }
+  const std::optional<Failure>& failure() const { return hamiltonian_.failure(); }
+  Evaluations evaluations() const { return hamiltonian_.evaluations(); }
+  void set_evaluations(const Evaluations& e) { hamiltonian_.set_evaluations(e); }
+  void save(SavedState& saved, const std::string& prefix) const { detail::save_any(saved, prefix, hamiltonian_); }
+  void load(const SavedState& saved, const std::string& prefix) { detail::load_any(saved, prefix, hamiltonian_); }
+
+ private:
+  H hamiltonian_;
+  LinearDrag drag_;
+};
+
+}  // namespace noether

@@ -1,0 +1,135 @@
+#pragma once
+/// H = T(p) + U(q): free motion and kicks.
+
+#include "engine/concepts.hpp"
+#include "engine/description.hpp"
+#include "engine/parallel.hpp"
+
+#include <limits>
+#include <optional>
+#include <string>
+
+namespace noether {
+
+/// Kinetic energy of inertial particles, T = sum m v^2 / 2, summed in fixed blocks [energy].
+template <class Real>
+Real kinetic_energy(const ParticleSystem<Real>& s) {
+  return reduce(s.size(), Real(0), [&](Index begin, Index end) {
+    Real sum(0);
+    for (Index i = begin; i < end; ++i) sum += s.masses()[i] * norm2(s.velocities()[i]) / Real(2);
+    return sum;
+  });
+}
+
+/// The Hamiltonian H = T(p) + U(q, t) of forces that depend on positions and stage time.
+///
+///     A (drift):  x -> x + h v                 action increment  h T
+///     B (kick):   v -> v + h a(x, t)           action increment  - h U
+///
+/// `B A B` is velocity Verlet. Accelerations are kept until positions change: settling a step for an observer and the
+/// next kick share one evaluation.
+/// @cost one force evaluation per kick, no allocation after `bind`
+/// @source HairerLubichWanner2006
+template <class F, class Real = double>
+class KineticPotential {
+ public:
+  using real = Real;
+
+  /// @throws SchemeMismatch  if a force depends on velocities: its kick would be no exact flow
+  explicit KineticPotential(F forces) : forces_(std::move(forces)) {
+    if (claims_of(forces_).velocity_dependent) {
+      throw SchemeMismatch("a force depends on velocities, so kicks by it are no exact flow; "
+                           "give it as a letter of its own (drag: linear_drag), or use a method for q'' = f(q, v, t)");
+    }
+  }
+
+  static constexpr auto describe() {
+    return part<KineticPotential>("kinetic_potential", "free motion A and kicks B by a sum of forces",
+                                  formula("H = sum p_i^2 / 2 m_i + U(q, t)"), source("HairerLubichWanner2006"));
+  }
+
+  HamiltonianClaims claims() const {
+    const ForceClaims forces = claims_of(forces_);
+    return {.alphabet = "AB",
+            .energy = forces.energy,
+            .time_dependent = forces.time_dependent,
+            .dissipative = forces.dissipative};
+  }
+  const F& forces() const { return forces_; }
+
+  void bind(ParticleSystem<Real>& s) {
+    acceleration_ = VectorColumn<Real>(s.size());
+    known_.reset();
+  }
+  void open(ParticleSystem<Real>& /*inertial already*/) {}
+  void close(ParticleSystem<Real>& /*inertial already*/) {}
+
+  void flow(char letter, ParticleSystem<Real>& s, const Real& h) {
+    if (letter == 'A') {
+      s.advance_positions(h);
+    } else {
+      ++evaluations_.force;
+      evaluate(s, wanted_);
+      s.advance_velocities(h, acceleration_);
+    }
+  }
+
+  Real flow_with_action(char letter, ParticleSystem<Real>& s, const Real& h) {
+    if (letter == 'A') {
+      flow(letter, s, h);
+      return h * kinetic_energy(s);
+    }
+    evaluate(s, {.energy = true});
+    flow(letter, s, h);
+    return -h * potential_;
+  }
+
+  EnergyTerms<Real> energy(const ParticleSystem<Real>& s) {
+    evaluate(s, {.energy = true});
+    return {kinetic_energy(s), potential_};
+  }
+  void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) {
+    evaluate(s, {});
+    a = acceleration_;
+  }
+
+  /// What the next evaluations are to sum as well.
+  void want(Wanted wanted) { wanted_ = wanted; }
+  const std::optional<Failure>& failure() const { return failure_; }
+  Evaluations evaluations() const { return evaluations_; }
+  void set_evaluations(const Evaluations& e) { evaluations_ = e; }
+  void save(SavedState& saved, const std::string& prefix) const { save_value(saved, prefix + "kicks", evaluations_.force); }
+  void load(const SavedState& saved, const std::string& prefix) {
+    load_value(saved, prefix + "kicks", evaluations_.force);
+    known_.reset();
+  }
+
+ private:
+  struct Known {
+    std::uint64_t version;
+    Real time;
+    bool energy;
+  };
+
+  void evaluate(const ParticleSystem<Real>& s, Wanted wanted) {
+    const Real time = s.time();
+    if (known_ && known_->version == s.version() && known_->time == time && (known_->energy || !wanted.energy)) return;
+    ForceSink<Real> sink(acceleration_, s, {.energy = wanted.energy});
+    forces_.add_to(sink, s);
+    if (wanted.energy) potential_ = sink.potential();
+    known_ = Known{s.version(), time, wanted.energy};
+  }
+
+  F forces_;
+  VectorColumn<Real> acceleration_;
+  Real potential_ = Real(0);
+  std::optional<Known> known_;
+  Wanted wanted_;
+  std::optional<Failure> failure_;   ///< kicks and drifts cannot fail
+  Evaluations evaluations_;
+};
+
+template <class F>
+KineticPotential(F) -> KineticPotential<F, double>;
+
+}  // namespace noether

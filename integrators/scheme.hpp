@@ -1,0 +1,229 @@
+#pragma once
+/// Schemes: words in exactly solvable flows, with weights. Numbers only; `Composition` walks them.
+
+#include "engine/error.hpp"
+#include "engine/real.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+namespace noether {
+
+/// Apply the flow of part `letter` for `weight` steps.
+struct Stage {
+  char letter = 'A';
+  Quad weight = 0;
+
+  constexpr bool operator==(const Stage&) const = default;
+};
+
+/// Stages in order of execution, the first one first. Neighbours of one letter are joined as they are added, and
+/// stages of weight 0 dropped.
+class Word {
+ public:
+  static constexpr std::size_t capacity = 96;
+
+  constexpr std::size_t size() const { return size_; }
+  constexpr const Stage* begin() const { return stages_.data(); }
+  constexpr const Stage* end() const { return stages_.data() + size_; }
+  constexpr const Stage& operator[](std::size_t k) const { return stages_[k]; }
+  constexpr const Stage& front() const { return stages_[0]; }
+  constexpr const Stage& back() const { return stages_[size_ - 1]; }
+
+  constexpr void push_back(const Stage& stage) {
+    if (stage.weight == Quad(0)) return;
+    if (size_ > 0 && stages_[size_ - 1].letter == stage.letter) {
+      stages_[size_ - 1].weight += stage.weight;
+      return;
+    }
+    if (size_ == capacity) throw LogicError("a word holds at most 96 stages");
+    stages_[size_++] = stage;
+  }
+
+ private:
+  std::array<Stage, capacity> stages_{};
+  std::size_t size_ = 0;
+};
+
+/// For which splittings a scheme has its order.
+enum class SchemeClass : std::uint8_t {
+  general,          ///< any splitting into exact flows
+  rkn,              ///< {B,{B,{B,A}}} = 0: quadratic kinetic energy, kicks by positions
+  near_integrable,  ///< any; the error is small where B is small beside A
+};
+
+/// Order of a scheme; for H = A + eps B also (p1, p2, p3): error O(eps h^p1 + eps^2 h^p2 + eps^3 h^p3), 0 for none.
+struct Order {
+  int classical = 0;
+  std::array<int, 3> near_integrable = {0, 0, 0};
+};
+
+/// One splitting method, as data.
+struct Scheme {
+  std::string_view name;
+  std::string_view aliases = "";  ///< other names, parted by blanks
+  std::string_view summary = "";
+  std::string_view source = "";   ///< key of docs/references.bib
+  Order order = {};
+  SchemeClass scheme_class = SchemeClass::general;
+  std::string_view exact = "";    ///< letters whose maps must be exact flows
+  double stability_limit = 0;     ///< first h omega on the harmonic oscillator that is unstable; 0: not tabulated
+  int printed_digits = 34;        ///< significant digits of the shortest coefficient in the source
+  Word word = {};
+  Word before = {}, after = {};   ///< once before the run; on copies shown to users
+
+  constexpr bool has_negative_steps() const {
+    for (const Stage& stage : word) {
+      if (stage.weight < Quad(0)) return true;
+    }
+    return false;
+  }
+  /// Whether the word is a palindrome, weights included.
+  constexpr bool is_symmetric() const {
+    for (std::size_t k = 0; k < word.size(); ++k) {
+      if (!(word[k] == word[word.size() - 1 - k])) return false;
+    }
+    return true;
+  }
+  /// Kicks (B) per step, the last one joined to the first of the next step.
+  constexpr int evaluations() const {
+    int kicks = 0;
+    for (const Stage& stage : word) kicks += stage.letter == 'B' ? 1 : 0;
+    return word.size() > 1 && word.front().letter == 'B' && word.back().letter == 'B' ? kicks - 1 : kicks;
+  }
+  /// Sum of the weights of one letter.
+  constexpr Quad sum(char letter) const {
+    Quad total = 0;
+    for (const Stage& stage : word) total += stage.letter == letter ? stage.weight : Quad(0);
+    return total;
+  }
+};
+
+/// In a table: the coefficient that the sum rule fixes.
+inline constexpr Quad rest = std::numeric_limits<Quad>::quiet_NaN();
+
+/// A list of coefficients, typed as printed.
+template <class... Q>
+constexpr std::array<Quad, sizeof...(Q)> list(Q... q) {
+  return {Quad(q)...};
+}
+
+namespace detail {
+
+/// Fills in `rest` so that all weights of a letter sum to 1: the single centre of a palindrome, or the doubled one.
+template <std::size_t n>
+constexpr std::array<Quad, n> solved(std::array<Quad, n> half, bool single_center) {
+  Quad others = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    const bool center = single_center && k == n - 1;
+    if (!isnan(half[k]) && !center) others += half[k];
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    if (!isnan(half[k])) continue;
+    if (k != n - 1) throw LogicError("only the last coefficient of a half can be the rest");
+    half[k] = single_center ? Quad(1) - Quad(2) * others : Quad(1) / Quad(2) - others;
+  }
+  return half;
+}
+
+constexpr bool is_one(const Quad& sum, const Quad& unit) { return abs(sum - Quad(1)) <= Quad(4) * unit; }
+
+/// What the compiler checks of every table: the weights of each letter sum to 1.
+constexpr Scheme checked(const Scheme& scheme) {
+  Quad unit = scheme.printed_digits >= 33 ? std::numeric_limits<Quad>::epsilon() : Quad(1);
+  for (int k = 0; unit == Quad(1) || (scheme.printed_digits < 33 && k < scheme.printed_digits); ++k) unit /= Quad(10);
+  for (const char letter : {'A', 'B'}) {
+    if (!is_one(scheme.sum(letter), unit * Quad(8))) throw LogicError("the weights of a letter do not sum to 1");
+  }
+  return scheme;
+}
+
+}  // namespace detail
+
+/// A symmetric composition of velocity Verlet (kick first): weights w_1, ..., w_m of its steps, of which the first half
+/// with the centre is given. Any symmetric step of order 2 may stand in for Verlet, so no part need be exact.
+template <std::size_t n>
+constexpr Scheme symmetric_composition(Scheme scheme, const std::array<Quad, n>& half) {
+  const auto weights = detail::solved(half, true);
+  for (std::size_t k = 0; k < 2 * n - 1; ++k) {
+    const Quad w = weights[k < n ? k : 2 * n - 2 - k];
+    scheme.word.push_back({'B', w / Quad(2)});
+    scheme.word.push_back({'A', w});
+    scheme.word.push_back({'B', w / Quad(2)});
+  }
+  return detail::checked(scheme);
+}
+
+/// A palindrome that begins and ends with `outer`: outer_1, inner_1, outer_2, ...; both halves with their centres.
+template <std::size_t n, std::size_t m>
+constexpr Scheme palindrome(Scheme scheme, char outer, const std::array<Quad, n>& outer_half,
+                            const std::array<Quad, m>& inner_half) {
+  static_assert(n == m || n == m + 1, "letters alternate: one of them has a single centre");
+  const auto o = detail::solved(outer_half, n == m + 1);
+  const auto i = detail::solved(inner_half, n == m);
+  const char inner = outer == 'A' ? 'B' : 'A';
+  const std::size_t outers = n == m ? 2 * n : 2 * n - 1;
+  for (std::size_t k = 0; k < outers; ++k) {
+    scheme.word.push_back({outer, o[k < n ? k : outers - 1 - k]});
+    if (k + 1 < outers) scheme.word.push_back({inner, i[k < m ? k : outers - 2 - k]});
+  }
+  return detail::checked(scheme);
+}
+
+/// Kick b_1, drift a_1, kick b_2, ...: no symmetry; every coefficient is given.
+template <std::size_t n>
+constexpr Scheme alternating(Scheme scheme, char first, const std::array<Quad, n>& first_weights,
+                             const std::array<Quad, n>& second_weights) {
+  for (std::size_t k = 0; k < n; ++k) {
+    scheme.word.push_back({first, first_weights[k]});
+    scheme.word.push_back({first == 'A' ? 'B' : 'A', second_weights[k]});
+  }
+  return detail::checked(scheme);
+}
+
+/// Any word of letters: "BAOAB". Each letter's weights are equal and sum to 1; neighbours of one letter are joined.
+/// @throws SchemeMismatch  unless the text is one to 96 capital letters, A and B among them
+Scheme word(std::string_view letters);
+
+/// The weights of a word in the working type.
+///
+/// In double each weight is rounded, and then the middle one (or pair) of each letter is solved again, so that the
+/// exact sum of the rounded weights is that of the word to half an ulp of the middle: a sum off by 1e-16 would be a
+/// clock that is wrong by as much.
+template <class Real>
+std::vector<Real> rounded_weights(const Word& word) {
+  std::vector<Real> weights;
+  for (const Stage& stage : word) weights.push_back(static_cast<Real>(stage.weight));
+  if constexpr (!std::is_same_v<Real, double>) return weights;
+  for (const Stage& one : word) {
+    std::vector<std::size_t> places;
+    Quad total = 0;
+    for (std::size_t k = 0; k < word.size(); ++k) {
+      if (word[k].letter != one.letter) continue;
+      places.push_back(k);
+      total += word[k].weight;
+    }
+    const std::size_t n = places.size(), middle = n / 2;
+    Quad others = 0;
+    const bool pair = n % 2 == 0;
+    for (std::size_t k = 0; k < n; ++k) {
+      if (k != middle && !(pair && k + 1 == middle)) others += Quad(static_cast<double>(weights[places[k]]));
+    }
+    const Quad left = total - others;
+    weights[places[middle]] = static_cast<Real>(pair ? left / Quad(2) : left);
+    if (pair && word[places[middle - 1]].weight == word[places[middle]].weight) {
+      weights[places[middle - 1]] = weights[places[middle]];
+    } else if (pair) {
+      weights[places[middle - 1]] = static_cast<Real>(word[places[middle - 1]].weight);
+      weights[places[middle]] = static_cast<Real>(left - Quad(static_cast<double>(weights[places[middle - 1]])));
+    }
+  }
+  return weights;
+}
+
+}  // namespace noether

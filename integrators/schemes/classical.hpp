@@ -1,0 +1,43 @@
+#pragma once
+/// The classical schemes: symplectic Euler, Verlet, Ruth.
+/// A new scheme is one more table here and its name in the list at the end; tests and `noether list` follow the list.
+
+#include "integrators/scheme.hpp"
+
+#include <array>
+
+namespace noether::schemes {
+
+// clang-format off
+
+inline constexpr Scheme symplectic_euler_a = alternating(
+    {.name = "symplectic_euler_a", .summary = "order 1: kick, then drift", .source = "DeVogelaere1956", .order = {1},
+     .stability_limit = 2.0}, 'B', list(1_q), list(1_q));
+
+inline constexpr Scheme symplectic_euler_b = alternating(
+    {.name = "symplectic_euler_b", .summary = "order 1: drift, then kick", .source = "DeVogelaere1956", .order = {1},
+     .stability_limit = 2.0}, 'A', list(1_q), list(1_q));
+
+inline constexpr Scheme verlet = symmetric_composition(
+    {.name = "verlet", .aliases = "strang_verlet leapfrog velocity_verlet stormer_verlet",
+     .summary = "order 2, one kick: velocity Verlet, kick first", .source = "Verlet1967", .order = {2},
+     .stability_limit = 2.0},
+    list(rest));
+
+inline constexpr Scheme verlet_aba = palindrome(
+    {.name = "verlet_aba", .aliases = "position_verlet leapfrog_aba",
+     .summary = "order 2, one kick: position Verlet, drift first", .source = "Verlet1967", .order = {2},
+     .stability_limit = 2.0}, 'A', list(rest), list(rest));
+
+inline constexpr Scheme ruth_3 = alternating(
+    {.name = "ruth_3", .aliases = "ruth3", .summary = "order 3, 3 kicks, not symmetric", .source = "Ruth1983",
+     .order = {3}, .exact = "AB", .stability_limit = 2.50748}, 'B',
+    list(7_q / 24_q, 3_q / 4_q, -1_q / 24_q),
+    list(2_q / 3_q, -2_q / 3_q, 1_q));
+
+inline constexpr std::array classical_list = {
+    &symplectic_euler_a, &symplectic_euler_b, &verlet, &verlet_aba, &ruth_3};
+
+// clang-format on
+
+}  // namespace noether::schemes

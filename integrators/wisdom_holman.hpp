@@ -1,0 +1,137 @@
+#pragma once
+/// H = Kepler + interaction: planets on Kepler arcs, kicked by each other.
+
+#include "engine/concepts.hpp"
+#include "engine/description.hpp"
+#include "engine/parallel.hpp"
+#include "forces/gravity.hpp"
+#include "forces/sum.hpp"
+#include "integrators/kepler.hpp"
+#include "integrators/kinetic_potential.hpp"
+
+#include <array>
+#include <atomic>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace noether {
+
+template <>
+struct EnumNames<Coordinates> {
+  static constexpr std::array<std::pair<Coordinates, std::string_view>, 2> values = {
+      {{Coordinates::jacobi, "jacobi"}, {Coordinates::democratic, "democratic"}}};
+};
+
+/// Parameters of a Wisdom-Holman splitting.
+struct WisdomHolmanOptions {
+  std::optional<double> G = {};                   ///< [length^3/mass/time^2]; default: the unit system's own
+  Coordinates coordinates = Coordinates::jacobi;  ///< jacobi or democratic
+
+  static constexpr auto describe() {
+    return part<WisdomHolmanOptions>(
+        "wisdom_holman", "Kepler arcs A about particle 0 and kicks B by the interaction",
+        formula("H = sum [p'^2/2m' - G m' M/r'] + [sum G m' M/r' - sum G m_i m_j/r_ij]"), source("WisdomHolman1991"),
+        field<&WisdomHolmanOptions::G>("G", "length^3/mass/time^2", "default: the unit system's own"),
+        field<&WisdomHolmanOptions::coordinates>("coordinates", "1", "jacobi or democratic (heliocentric)"));
+  }
+};
+
+/// The Wisdom-Holman splitting in Jacobi or democratic heliocentric coordinates.
+///
+/// Particle 0 is the primary; massive bodies come before tracers. Jacobi coordinates take the bodies by semi-major axis
+/// at the start; that order is state. With M_k the mass of the first k + 1 bodies in it, m'_k = m_k M_{k-1}/M_k:
+///
+///     jacobi      A = P^2/2M + sum_k [p'_k^2/2m'_k - G m'_k M_k/r'_k]
+///                 B = sum_{k>1} G m'_k M_k/r'_k - sum_{pairs but the innermost} G m_i m_j/r_ij (+ other forces)
+///     democratic  A = P^2/2M + sum_i [p_i^2/2m_i - G m_0 m_i/Q_i],   Q_i = x_i - x_0, p_i = m_i (v_i - V)
+///                 B = J/2 K J/2 with J = |sum p_i|^2/2m_0 and K = - sum_{0<i<j} G m_i m_j/Q_ij (+ other forces)
+///
+/// Both parts are exact in Jacobi coordinates; the democratic B is a symmetric map of order 2. Other forces must depend
+/// on positions (and stage time) only. Action increments: Kepler arc h E + 2 mu s times the reduced mass (s the
+/// universal variable), free motion h T, jump h J, kick - h U.
+/// @cost one Kepler arc per body and A, one sum over pairs per B; no allocation after `bind`
+/// @source WisdomHolman1991, DuncanLevisonLee1998, ReinTamayo2015
+template <class Real = double, class F = Sum<>>
+class WisdomHolman {
+ public:
+  using real = Real;
+
+  explicit WisdomHolman(WisdomHolmanOptions options, F forces = F()) : options_(options), forces_(std::move(forces)) {
+    if (claims_of(forces_).velocity_dependent) {
+      throw SchemeMismatch("a force depends on velocities, so kicks by it are no exact flow of wisdom_holman");
+    }
+  }
+
+  std::string name() const { return "wisdom_holman"; }
+  HamiltonianClaims claims() const;
+
+  /// @throws Error  if particle 0 has no mass, or a tracer stands before a massive body
+  void bind(ParticleSystem<Real>& s);
+  void open(ParticleSystem<Real>& s);
+  void close(ParticleSystem<Real>& s);
+  void flow(char letter, ParticleSystem<Real>& s, const Real& h);
+  Real flow_with_action(char letter, ParticleSystem<Real>& s, const Real& h);
+
+  EnergyTerms<Real> energy(const ParticleSystem<Real>& s) {
+    return {kinetic_energy(s), newton(s, scratch_, {.energy = true})};
+  }
+  void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) { newton(s, a, {}); }
+
+  void want(Wanted /*kicks never need the energy*/) {}
+  const std::optional<Failure>& failure() const { return failure_; }
+  Evaluations evaluations() const { return evaluations_; }
+  void set_evaluations(const Evaluations& e) { evaluations_ = e; }
+  void save(SavedState& saved, const std::string& prefix) const {
+    save_value(saved, prefix + "order", order_);
+    save_value(saved, prefix + "kicks", evaluations_.force);
+    save_value(saved, prefix + "arcs", evaluations_.kepler);
+  }
+  void load(const SavedState& saved, const std::string& prefix) {
+    load_value(saved, prefix + "order", order_);
+    load_value(saved, prefix + "kicks", evaluations_.force);
+    load_value(saved, prefix + "arcs", evaluations_.kepler);
+    gather_masses();
+  }
+  /// Particles in the order of Jacobi coordinates, massive bodies first.
+  const std::vector<std::int64_t>& order() const { return order_; }
+
+ private:
+  bool jacobi() const { return options_.coordinates == Coordinates::jacobi; }
+  static constexpr bool has_forces = !std::is_same_v<F, Sum<>>;
+  void gather_masses();
+  std::size_t massive() const { return interior_.size(); }
+  Index at(std::size_t k) const { return static_cast<Index>(order_[k]); }
+
+  void to_jacobi(VectorColumn<Real>& column) const;
+  void from_jacobi(const VectorColumn<Real>& from, VectorColumn<Real>& to, const Vec3<Real>& center) const;
+  void to_democratic(ParticleSystem<Real>& s) const;
+  void from_democratic(ParticleSystem<Real>& s) const;
+
+  Real arcs(ParticleSystem<Real>& s, const Real& h, bool action);
+  Real kick(ParticleSystem<Real>& s, const Real& h, bool action);
+  Real jump(ParticleSystem<Real>& s, const Real& h);
+  Real interaction(const VectorColumn<Real>& x, bool skip_inner, Index first, bool energy);
+  Real indirect(const ParticleSystem<Real>& s, bool energy);
+  Real other_forces(const ParticleSystem<Real>& s, bool energy);
+  Real newton(const ParticleSystem<Real>& s, VectorColumn<Real>& a, Wanted wanted);
+
+  WisdomHolmanOptions options_;
+  F forces_;
+  Real g_ = Real(0);
+  std::vector<std::int64_t> order_;
+  std::vector<Real> masses_;     ///< by particle
+  std::vector<Real> interior_;   ///< M_k, mass of the first k + 1 bodies in order
+  VectorColumn<Real> scratch_, positions_, acceleration_, other_;
+  std::optional<ParticleSystem<Real>> inertial_;   ///< positions for other forces
+  std::optional<Failure> failure_;
+  Evaluations evaluations_;
+};
+
+extern template class WisdomHolman<double>;
+extern template class WisdomHolman<Quad>;
+
+}  // namespace noether
+
+#include "integrators/wisdom_holman_impl.hpp"  // IWYU pragma: keep

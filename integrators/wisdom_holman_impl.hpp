@@ -1,0 +1,343 @@
+#pragma once
+/// Definitions of integrators/wisdom_holman.hpp; included by it.
+
+#include "integrators/wisdom_holman.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace noether {
+
+template <class Real, class F>
+HamiltonianClaims WisdomHolman<Real, F>::claims() const {
+  const ForceClaims forces = claims_of(forces_);
+  return {.alphabet = "AB",
+          .inexact = jacobi() ? "" : "B",
+          .quadratic_kinetic = jacobi(),
+          .near_integrable = true,
+          .energy = forces.energy,
+          .time_dependent = forces.time_dependent,
+          .dissipative = forces.dissipative,
+          .keeps_momentum = !has_forces,
+          .keeps_angular_momentum = !has_forces};
+}
+
+template <class Real, class F>
+void WisdomHolman<Real, F>::bind(ParticleSystem<Real>& s) {
+  using std::sqrt;
+  const auto& c = std::as_const(s);
+  g_ = Real(options_.G ? *options_.G : s.units().G);
+  const auto n = static_cast<std::size_t>(s.size());
+  if (!(c.masses()[0] > Real(0))) {
+    throw Error(fmt::format("'{}' comes first, so it is the primary of wisdom_holman, but its mass is 0; put the most "
+                            "massive body first",
+                            s.name(0)));
+  }
+  std::vector<double> axis(n, 0.0);
+  order_.assign(1, 0);
+  masses_.assign(n, c.masses()[0]);
+  for (Index i = 1; i < s.size(); ++i) {
+    const Real m = c.masses()[i];
+    masses_[static_cast<std::size_t>(i)] = m;
+    if (m > Real(0) && c.masses()[i - 1] == Real(0)) {
+      throw Error(fmt::format("'{}' has mass but stands after the tracer '{}'; put tracers after all massive bodies",
+                              s.name(i), s.name(i - 1)));
+    }
+    const Real r = sqrt(norm2(c.positions()[i] - c.positions()[0]));
+    const Real inverse = Real(2) / r - norm2(c.velocities()[i] - c.velocities()[0]) / (g_ * (c.masses()[0] + m));
+    // Unbound bodies come last, by distance.
+    axis[static_cast<std::size_t>(i)] = inverse > Real(0) ? static_cast<double>(Real(1) / inverse) : 1e300 * (1 + static_cast<double>(r));
+    order_.push_back(i);
+  }
+  std::stable_sort(order_.begin() + 1, order_.end(), [&](std::int64_t i, std::int64_t j) {
+    const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
+    const bool tracer_a = masses_[a] == Real(0), tracer_b = masses_[b] == Real(0);
+    if (tracer_a || tracer_b) return !tracer_a && tracer_b;
+    return axis[a] < axis[b];
+  });
+  gather_masses();
+  for (auto* column : {&scratch_, &positions_, &acceleration_, &other_}) *column = VectorColumn<Real>(s.size());
+  if constexpr (has_forces) inertial_ = s;
+  failure_.reset();
+}
+
+template <class Real, class F>
+void WisdomHolman<Real, F>::gather_masses() {
+  interior_.clear();
+  Real total(0);
+  for (const std::int64_t i : order_) {
+    const Real m = masses_[static_cast<std::size_t>(i)];
+    if (m == Real(0)) break;
+    interior_.push_back(total += m);
+  }
+}
+
+template <class Real, class F>
+void WisdomHolman<Real, F>::open(ParticleSystem<Real>& s) {
+  if (jacobi()) {
+    to_jacobi(s.positions());
+    to_jacobi(s.velocities());
+  } else {
+    to_democratic(s);
+  }
+  s.phase().coordinates = options_.coordinates;
+}
+
+template <class Real, class F>
+void WisdomHolman<Real, F>::close(ParticleSystem<Real>& s) {
+  if (jacobi()) {
+    from_jacobi(s.positions(), s.positions(), std::as_const(s).positions()[0]);
+    from_jacobi(s.velocities(), s.velocities(), std::as_const(s).velocities()[0]);
+  } else {
+    from_democratic(s);
+  }
+  s.phase().coordinates = Coordinates::inertial;
+}
+
+/// x'_k = x_k - X_{k-1},  X_k = X_{k-1} + (m_k/M_k) x'_k;  row 0 becomes X of all.
+template <class Real, class F>
+void WisdomHolman<Real, F>::to_jacobi(VectorColumn<Real>& column) const {
+  const auto& read = std::as_const(column);
+  Vec3<Real> center = read[0];
+  for (std::size_t k = 1; k < order_.size(); ++k) {
+    const Vec3<Real> relative = read[at(k)] - center;
+    column.set(at(k), relative);
+    if (k < massive()) center += masses_[static_cast<std::size_t>(at(k))] / interior_[k] * relative;
+  }
+  column.set(0, center);
+}
+
+/// The inverse, from the outermost body inwards; `from` and `to` may be the same column.
+template <class Real, class F>
+void WisdomHolman<Real, F>::from_jacobi(const VectorColumn<Real>& from, VectorColumn<Real>& to,
+                                        const Vec3<Real>& center_of_all) const {
+  Vec3<Real> center = center_of_all;
+  for (std::size_t k = order_.size() - 1; k > 0; --k) {
+    const Vec3<Real> relative = from[at(k)];
+    if (k < massive()) center -= masses_[static_cast<std::size_t>(at(k))] / interior_[k] * relative;
+    to.set(at(k), center + relative);
+  }
+  to.set(0, center);
+}
+
+template <class Real, class F>
+void WisdomHolman<Real, F>::to_democratic(ParticleSystem<Real>& s) const {
+  const auto& c = std::as_const(s);
+  Vec3<Real> x = Vec3<Real>::Zero(), v = Vec3<Real>::Zero();
+  for (std::size_t k = 0; k < massive(); ++k) {
+    x += masses_[k] * c.positions()[static_cast<Index>(k)];
+    v += masses_[k] * c.velocities()[static_cast<Index>(k)];
+  }
+  x /= interior_.back();
+  v /= interior_.back();
+  const Vec3<Real> primary = c.positions()[0];
+  for (Index i = 1; i < s.size(); ++i) {
+    s.positions().set(i, c.positions()[i] - primary);
+    s.velocities().set(i, c.velocities()[i] - v);
+  }
+  s.positions().set(0, x);
+  s.velocities().set(0, v);
+}
+
+template <class Real, class F>
+void WisdomHolman<Real, F>::from_democratic(ParticleSystem<Real>& s) const {
+  const auto& c = std::as_const(s);
+  Vec3<Real> x = Vec3<Real>::Zero(), v = Vec3<Real>::Zero();
+  for (std::size_t k = 1; k < massive(); ++k) {
+    x += masses_[k] * c.positions()[static_cast<Index>(k)];
+    v += masses_[k] * c.velocities()[static_cast<Index>(k)];
+  }
+  const Vec3<Real> center_v = c.velocities()[0];
+  const Vec3<Real> primary_x = c.positions()[0] - x / interior_.back();
+  for (Index i = 1; i < s.size(); ++i) {
+    s.positions().set(i, primary_x + c.positions()[i]);
+    s.velocities().set(i, center_v + c.velocities()[i]);
+  }
+  s.positions().set(0, primary_x);
+  s.velocities().set(0, center_v - v / masses_[0]);
+}
+
+template <class Real, class F>
+void WisdomHolman<Real, F>::flow(char letter, ParticleSystem<Real>& s, const Real& h) {
+  if (letter == 'A') {
+    arcs(s, h, false);
+    return;
+  }
+  if (!jacobi()) jump(s, h / Real(2));
+  kick(s, h, false);
+  if (!jacobi()) jump(s, h / Real(2));
+}
+
+template <class Real, class F>
+Real WisdomHolman<Real, F>::flow_with_action(char letter, ParticleSystem<Real>& s, const Real& h) {
+  if (letter == 'A') return arcs(s, h, true);
+  Real action(0);
+  if (!jacobi()) action += jump(s, h / Real(2));
+  action += kick(s, h, true);
+  if (!jacobi()) action += jump(s, h / Real(2));
+  return action;
+}
+
+template <class Real, class F>
+Real WisdomHolman<Real, F>::arcs(ParticleSystem<Real>& s, const Real& h, bool action) {
+  using std::sqrt;
+  const auto& c = std::as_const(s);
+  const Index n = s.size();
+  const Vec3<Real> center_v = c.velocities()[0];
+  s.shift(0, h * center_v, Vec3<Real>::Zero());
+  std::atomic<Index> failed{n};
+  const auto advance = [&](Index begin, Index end) {
+    Real sum(0);
+    for (Index k = std::max<Index>(begin, 1); k < end; ++k) {
+      const auto rank = static_cast<std::size_t>(k);
+      const Index i = at(rank);
+      const Real inside = jacobi() ? interior_[std::min(rank, massive() - 1)] : masses_[0];
+      const Real mu = g_ * inside;
+      const Vec3<Real> x = c.positions()[i], v = c.velocities()[i];
+      const KeplerArc<Real> arc = kepler_arc(x, v, mu, h);
+      if (arc.status != KeplerStatus::converged) {
+        Index known = failed.load();
+        while (i < known && !failed.compare_exchange_weak(known, i)) {}
+      }
+      s.shift(i, arc.dx, arc.dv);
+      if (!action || rank >= massive()) continue;
+      const Real m = masses_[static_cast<std::size_t>(i)];
+      const Real reduced = jacobi() ? m * interior_[rank - 1] / interior_[rank] : m;
+      sum += reduced * (h * (norm2(v) / Real(2) - mu / sqrt(norm2(x))) + Real(2) * mu * arc.s);
+    }
+    return sum;
+  };
+  Real sum(0);
+  if (action) {
+    sum = reduce(n, Real(0), advance) + h * interior_.back() * norm2(center_v) / Real(2);
+  } else {
+    for_blocks(n, [&](Index begin, Index end) { advance(begin, end); });
+  }
+  s.moved();
+  evaluations_.kepler += n - 1;
+  if (const Index i = failed.load(); i < n) {
+    failure_ = Failure{Outcome::Kind::solver_failure, i, "position",
+                       fmt::format("the Kepler solver did not converge for {}", s.name(i))};
+  }
+  return sum;
+}
+
+template <class Real, class F>
+Real WisdomHolman<Real, F>::kick(ParticleSystem<Real>& s, const Real& h, bool action) {
+  const auto& c = std::as_const(s);
+  ++evaluations_.force;
+  acceleration_.fill(Real(0));
+  Real potential(0);
+  if (jacobi()) {
+    from_jacobi(c.positions(), positions_, Vec3<Real>::Zero());
+    potential += interaction(positions_, true, 0, action);
+  } else {
+    potential += interaction(c.positions(), false, 1, action);
+  }
+  if constexpr (has_forces) potential += other_forces(s, action);
+  if (jacobi()) {
+    to_jacobi(acceleration_);
+    potential += indirect(s, action);
+  } else if constexpr (has_forces) {
+    Vec3<Real> mean = Vec3<Real>::Zero();
+    for (std::size_t k = 0; k < massive(); ++k) mean += masses_[k] / interior_.back() * std::as_const(acceleration_)[static_cast<Index>(k)];
+    for (Index i = 1; i < s.size(); ++i) acceleration_.add(i, -mean);
+    acceleration_.set(0, mean);
+  }
+  s.advance_velocities(h, acceleration_);
+  return -h * potential;
+}
+
+/// Accelerations by all pairs of massive bodies from particle `first` on, and of tracers by them.
+template <class Real, class F>
+Real WisdomHolman<Real, F>::interaction(const VectorColumn<Real>& x, bool skip_inner, Index first, bool energy) {
+  using std::sqrt;
+  Real potential(0);
+  const auto bodies = static_cast<Index>(massive());
+  const Index inner = skip_inner && bodies > 1 ? at(1) : -1;
+  for (Index i = first + 1; i < bodies; ++i) {
+    for (Index j = first; j < i; ++j) {
+      if (j == 0 && i == inner) continue;  // exactly the innermost Kepler arc
+      const Vec3<Real> d = x[i] - x[j];
+      const Real r2 = norm2(d), r = sqrt(r2);
+      const Real k = g_ / (r2 * r);
+      const Real mi = masses_[static_cast<std::size_t>(i)], mj = masses_[static_cast<std::size_t>(j)];
+      acceleration_.add(i, -(k * mj) * d);
+      acceleration_.add(j, (k * mi) * d);
+      if (energy) potential -= g_ * mi * mj / r;
+    }
+  }
+  for_blocks(x.size() - bodies, [&](Index begin, Index end) {
+    for (Index i = bodies + begin; i < bodies + end; ++i) {
+      Vec3<Real> pull = Vec3<Real>::Zero();
+      for (Index j = first; j < bodies; ++j) {
+        const Vec3<Real> d = x[i] - x[j];
+        const Real r2 = norm2(d);
+        pull -= g_ * masses_[static_cast<std::size_t>(j)] / (r2 * sqrt(r2)) * d;
+      }
+      acceleration_.set(i, pull);
+    }
+  });
+  return potential;
+}
+
+/// What the Kepler arcs of Jacobi coordinates have done already: + G M_k x'/r'^3 for all but the innermost.
+template <class Real, class F>
+Real WisdomHolman<Real, F>::indirect(const ParticleSystem<Real>& s, bool energy) {
+  using std::sqrt;
+  Real potential(0);
+  if (!has_forces) acceleration_.set(0, Vec3<Real>::Zero());  // inner forces leave the centre of mass alone
+  const bool inner_is_massive = massive() > 1;
+  for (std::size_t k = inner_is_massive ? 2 : 1; k < order_.size(); ++k) {
+    const Vec3<Real> x = s.positions()[at(k)];
+    const Real r2 = norm2(x), r = sqrt(r2);
+    const Real mu = g_ * interior_[std::min(k, massive() - 1)];
+    acceleration_.add(at(k), mu / (r2 * r) * x);
+    if (energy && k < massive()) potential += g_ * masses_[static_cast<std::size_t>(at(k))] * interior_[k - 1] / r;
+  }
+  return potential;
+}
+
+template <class Real, class F>
+Real WisdomHolman<Real, F>::other_forces(const ParticleSystem<Real>& s, bool energy) {
+  inertial_->clock() = s.clock();
+  if (jacobi()) {
+    from_jacobi(s.positions(), inertial_->positions(), s.positions()[0]);
+  } else {
+    Vec3<Real> x = Vec3<Real>::Zero();
+    for (std::size_t k = 1; k < massive(); ++k) x += masses_[k] * s.positions()[static_cast<Index>(k)];
+    const Vec3<Real> primary = s.positions()[0] - x / interior_.back();
+    for (Index i = 1; i < s.size(); ++i) inertial_->positions().set(i, primary + s.positions()[i]);
+    inertial_->positions().set(0, primary);
+  }
+  ForceSink<Real> sink(other_, *inertial_, {.energy = energy});
+  forces_.add_to(sink, *inertial_);
+  acceleration_.all() += other_.all();
+  return sink.potential();
+}
+
+/// J = |sum m_i V_i|^2 / 2 m_0 moves every heliocentric position alike.
+template <class Real, class F>
+Real WisdomHolman<Real, F>::jump(ParticleSystem<Real>& s, const Real& h) {
+  const auto& c = std::as_const(s);
+  Vec3<Real> momentum = Vec3<Real>::Zero();
+  for (std::size_t k = 1; k < massive(); ++k) momentum += masses_[k] * c.velocities()[static_cast<Index>(k)];
+  const Vec3<Real> shift = h / masses_[0] * momentum;
+  for (Index i = 1; i < s.size(); ++i) s.shift(i, shift, Vec3<Real>::Zero());
+  s.moved();
+  return h * norm2(momentum) / (Real(2) * masses_[0]);
+}
+
+template <class Real, class F>
+Real WisdomHolman<Real, F>::newton(const ParticleSystem<Real>& s, VectorColumn<Real>& a, Wanted wanted) {
+  if (a.size() != s.size()) a = VectorColumn<Real>(s.size());
+  ForceSink<Real> sink(a, s, wanted);
+  Gravity{.G = options_.G}.add_to(sink, s);
+  forces_.add_to(sink, s);
+  return sink.potential();
+}
+
+}  // namespace noether

@@ -1,0 +1,54 @@
+#include "engine/suggest.hpp"
+
+#include "tests/support/catch.hpp"
+
+#include <string>
+#include <vector>
+
+namespace noether {
+namespace {
+
+TEST_CASE("the edit distance counts insertions, deletions, replacements and exchanges of neighbors", "[suggest]") {
+  CHECK(edit_distance("", "") == 0);
+  CHECK(edit_distance("", "abc") == 3);
+  CHECK(edit_distance("day", "day") == 0);
+  CHECK(edit_distance("cuttoff", "cutoff") == 1);
+  CHECK(edit_distance("cutof", "cutoff") == 1);
+  CHECK(edit_distance("cutaff", "cutoff") == 1);
+  CHECK(edit_distance("dya", "day") == 1);
+  CHECK(edit_distance("kitten", "sitting") == 3);
+  CHECK(edit_distance("ca", "abc") == 3);  // restricted: no letter is edited twice
+  CHECK(edit_distance("abc", "ca") == 3);
+}
+
+TEST_CASE("the nearest known word is proposed", "[suggest]") {
+  const std::vector<std::string> keys = {"softening", "cutoff", "cutoff_style", "charge"};
+  CHECK(suggest("cuttoff", keys) == "cutoff");
+  CHECK(suggest("cutofstyle", keys) == "cutoff_style");
+  CHECK(suggest("CHARGE", keys) == "charge");
+  CHECK(suggest("temperature", keys) == "");
+  CHECK(suggest("cutoff", {}) == "");
+}
+
+TEST_CASE("short words need a letter in common, long ones may differ by a third", "[suggest]") {
+  CHECK(suggest("q", {"s", "m"}) == "");
+  CHECK(suggest("zz", {"ns"}) == "");
+  CHECK(suggest("nz", {"ns"}) == "ns");
+  CHECK(suggest("yoshda_66", {"yoshida_6"}) == "yoshida_6");
+  CHECK(suggest("wisdomholm", {"wisdom_holman"}) == "wisdom_holman");  // 3 edits in 10 letters
+  CHECK(suggest("wisdomhol", {"wisdom_holman"}) == "");                // 4 edits in 9 letters
+}
+
+TEST_CASE("among equally near words the case decides, then the order", "[suggest]") {
+  CHECK(suggest("MYR", {"kyr", "myr", "Myr"}) == "Myr");
+  CHECK(suggest("xyr", {"kyr", "myr"}) == "kyr");
+}
+
+TEST_CASE("a message ends with a proposal, or with what is known", "[suggest]") {
+  CHECK(did_you_mean("cuttoff", {"cutoff", "charge"}) == "; did you mean 'cutoff'?");
+  CHECK(did_you_mean("pressure", {"a", "b", "c"}) == "; known are: a, b, c");
+  CHECK(did_you_mean("pressure", {}) == "");
+}
+
+}  // namespace
+}  // namespace noether

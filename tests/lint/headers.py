@@ -1,0 +1,44 @@
+"""Headers: each has `#pragma once`; with --compiler, each also compiles alone."""
+
+import argparse
+import concurrent.futures
+import os
+import subprocess
+
+import tree
+
+FLAGS = ["-std=c++20", "-fsyntax-only", "-ffp-contract=off", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Werror"]
+
+
+def headers(root):
+    return [path for path in tree.cpp_files(root) if path.suffix == ".hpp"]
+
+
+def pragma_problems(root):
+    return [f"{path}: no #pragma once" for path in headers(root) if "#pragma once\n" not in tree.read(root, path)]
+
+
+def compile_alone(root, compiler, flags, header):
+    """The first error of a file that includes nothing but this header, or None."""
+    done = subprocess.run([compiler, *FLAGS, *flags, f"-I{root}", "-x", "c++", "-"], text=True, capture_output=True,
+                          input=f'#include "{header}"\n#include "{header}"\n')
+    if done.returncode == 0:
+        return None
+    errors = [line for line in done.stderr.splitlines() if "error" in line]
+    return f"{header}: does not compile alone: {(errors or [done.stderr])[0]}"
+
+
+def compile_problems(root, compiler, flags):
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        results = pool.map(lambda header: compile_alone(root, compiler, flags, header), headers(root))
+    return [result for result in results if result]
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser()
+    parser.add_argument("root")
+    parser.add_argument("--compiler")
+    arguments, flags = parser.parse_known_args()  # further options are the compiler's
+    if arguments.compiler:
+        tree.report(compile_problems(arguments.root, arguments.compiler, flags))
+    tree.report(pragma_problems(arguments.root))

@@ -1,0 +1,62 @@
+"""Layering: which folder may include which, and which files may see HDF5, TOML, CLI11 and OpenSSL."""
+
+import pathlib
+import re
+import sys
+
+import tree
+
+BELOW_SCENE = {"engine", "forces", "constraints", "io", "integrators"}
+LIBRARIES = BELOW_SCENE | {"scene", "study"}
+MAY_SEE = {
+    "engine": {"engine"},
+    "forces": {"engine", "forces"},
+    "constraints": {"engine", "constraints"},
+    "io": {"engine", "io"},
+    "integrators": {"engine", "forces", "integrators"},
+    "scene": BELOW_SCENE | {"scene"},
+    "study": LIBRARIES,
+    "cli": LIBRARIES | {"cli"},
+    "examples": LIBRARIES | {"examples"},
+    "bench": LIBRARIES | {"bench"},
+    "tests": LIBRARIES | {"tests"},
+}
+# Header pattern, what it is, the only folder whose .cpp files may include it.
+GUARDED = [
+    (re.compile(r"(hdf5(_hl)?|H5\w*)\.h$"), "HDF5", "io"),
+    (re.compile(r"toml\+\+|^toml\.hpp$"), "TOML", "scene"),
+    (re.compile(r"^CLI/"), "CLI11", "cli"),
+    (re.compile(r"^openssl/"), "OpenSSL", "io"),
+]
+INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.MULTILINE)
+
+
+def problems(root):
+    found = []
+    for path in tree.cpp_files(root):
+        text = tree.blank(tree.read(root, path))
+        # An example that stands on an installed copy lives outside the rooms.
+        for match in INCLUDE.finditer(text):
+            where = f"{path}:{tree.line_of(text, match.start())}"
+            quoted, header = match.group(1) == '"', match.group(2)
+            if quoted:
+                found += room_problems(root, path, where, header)
+            for pattern, name, room in GUARDED:
+                if pattern.search(header) and not (path.parts[0] == room and path.suffix == ".cpp"):
+                    found.append(f"{where}: {name} header '{header}' may be included only in {room}/*.cpp")
+    return found
+
+
+def room_problems(root, path, where, header):
+    room, target = path.parts[0], pathlib.PurePath(header).parts[0]
+    if target not in MAY_SEE:
+        return [f"{where}: \"{header}\" does not start with a folder of the tree; write the path from the root"]
+    if target not in MAY_SEE[room]:
+        return [f"{where}: {room} may not include {target} (\"{header}\"); it sees {', '.join(sorted(MAY_SEE[room]))}"]
+    if not (pathlib.Path(root) / header).exists():
+        return [f"{where}: there is no file \"{header}\""]
+    return []
+
+
+if __name__ == "__main__":
+    tree.report(problems(sys.argv[1]))

@@ -1,0 +1,106 @@
+"""The lints' own test: each must find what is planted for it and nothing in a clean file."""
+
+import argparse
+import pathlib
+import tempfile
+
+import headers
+import layering
+import messages
+import sizes
+import sources
+import text
+
+CLEAN_HEADER = """#pragma once
+#include <vector>
+/// A thing. @source Author2001, eq. 3
+namespace a {
+struct Thing {
+  int x = 0;
+  Thing(int y) : x{y} {}
+};
+}
+"""
+
+
+def long_function(lines):
+    return "int f(int x) {\n" + "  x += 1;\n" * (lines - 3) + "  return x;\n}\n"
+
+
+# file, content, lint, what the finding must say; "" where the lint must stay silent
+SAMPLES = [
+    ("engine/a.hpp", '#include "forces/b.hpp"\n', layering.problems, "engine may not include forces"),
+    ("io/a.cpp", '#include "forces/b.hpp"\n', layering.problems, "io may not include forces"),
+    ("integrators/a.hpp", '#include "io/b.hpp"\n', layering.problems, "integrators may not include io"),
+    ("engine/a.hpp", '#include "b.hpp"\n', layering.problems, "does not start with a folder"),
+    ("engine/a.hpp", '#include "engine/absent.hpp"\n', layering.problems, "there is no file"),
+    ("io/a.hpp", "#include <hdf5.h>\n", layering.problems, "HDF5 header"),
+    ("tests/a.cpp", "#include <H5public.h>\n", layering.problems, "HDF5 header"),
+    ("scene/a.hpp", "#include <toml++/toml.h>\n", layering.problems, "TOML header"),
+    ("scene/a.cpp", "#include <CLI/CLI.hpp>\n", layering.problems, "CLI11 header"),
+    ("scene/a.cpp", "  #  include <openssl/evp.h>\n", layering.problems, "OpenSSL header"),
+    ("io/a.cpp", '#include <hdf5.h>\n// #include "forces/b.hpp"\n', layering.problems, ""),
+    ("forces/a.cpp", '#include "engine/clean.hpp"\n', layering.problems, ""),
+    ("engine/a.cpp", "int x;\n" * 601, sizes.problems, "601 lines"),
+    ("engine/a.cpp", "int x;\n" * 600, sizes.problems, ""),
+    ("engine/a.cpp", long_function(81), sizes.problems, "'f' has 81 lines"),
+    ("engine/a.cpp", long_function(80), sizes.problems, ""),
+    ("engine/a.hpp", "namespace n {\nstruct S {\n S() : a{1}, b(2) {\n" + "  ++a;\n" * 80 + "}\nint a, b;\n};\n}\n",
+     sizes.problems, "'S' has 82 lines"),
+    ("engine/a.cpp", "template <class T>\n  requires C<T>\nauto g(T t) -> int {\n" + "t('}');\n" * 80 + "}\n",
+     sizes.problems, "'g' has 84 lines"),
+    ("engine/a.cpp", "const auto t = table({\n" + "{1, 2},\n" * 90 + "});\n" + long_function(10), sizes.problems, ""),
+    ("tests/a.cpp", 'TEST_CASE("}{", "[a]") {\n' + "  x();\n" * 90 + "}\n", sizes.problems, "'TEST_CASE' has 92 lines"),
+    ("tests/lint/exceptions.txt", "sizes engine/clean.hpp a reason\n", sizes.problems, "is within its limit"),
+    ("io/a.cpp", 'void f() { throw Error("Cannot open it"); }\n', messages.problems, "starts with a capital"),
+    ("io/a.cpp", 'void f() { throw Error(fmt::format("cannot open "\n "{}.", x)); }\n', messages.problems, "full stop"),
+    ("io/a.cpp", 'void f() { throw SceneError{file, 3, "cannot open it."}; }\n', messages.problems, "full stop"),
+    ("io/a.cpp", 'void f() { NOETHER_EXPECTS(n > 0, "No particles"); }\n', messages.problems, "starts with a capital"),
+    ("io/a.cpp", 'void f() { throw Error("\'J2\' is " + x + ", it is wrong"); }\n', messages.problems, ""),
+    ("io/a.cpp", 'void f() { throw Error("J2", "HDF5 says no", "unknown: " + a + ". B"); }\n', messages.problems, ""),
+    ("engine/a.hpp", "int x;\n", headers.pragma_problems, "no #pragma once"),
+    ("engine/a.cpp", "/// @source Nobody1999, table 1\n", sources.problems, "'Nobody1999' is not in"),
+    ("engine/a.cpp", "/// @source Author2001 and Nobody1999\n", sources.problems, "'Nobody1999' is not in"),
+    ("integrators/a.hpp", 'x = {"name", "Nobody1999", 4};\n', sources.problems, "'Nobody1999' is not in"),
+    ("integrators/a.hpp", 'x = {.source = "somebody"};\n', sources.problems, "'somebody' is not in"),
+    ("docs/references.bib", "@book{A2001,}\n@book{A2001,}\n", sources.problems, "stands there 2 times"),
+    ("engine/a.cpp", "// caf\u00e9\n", text.problems, "not ASCII"),
+    ("engine/a.cpp", "//" + "x" * 119 + "\n", text.problems, "121 columns"),
+    ("engine/a.cpp", "\tint x;\n", text.problems, "a tab"),
+    ("engine/a.cpp", "int x; \n", text.problems, "blanks at the end"),
+    ("engine/a.cpp", "// TO" "DO: later\n", text.problems, "finish it"),
+]
+
+
+def planted(name, content):
+    """A small clean tree with one file planted in it."""
+    folder = tempfile.TemporaryDirectory()
+    root = pathlib.Path(folder.name)
+    tree = {"engine/clean.hpp": CLEAN_HEADER, "docs/references.bib": "@article{Author2001,\n}\n", name: content}
+    for path, text_of_file in tree.items():
+        (root / path).parent.mkdir(parents=True, exist_ok=True)
+        (root / path).write_text(text_of_file)
+    return folder
+
+
+def failures():
+    for name, content, lint, expected in SAMPLES:
+        with planted(name, content) as root:
+            found = lint(root)
+            if (expected and not any(expected in problem for problem in found)) or (not expected and found):
+                yield f"{lint.__module__}: planted {content[:60]!r}, expected {expected!r}, found {found}"
+
+
+def compiler_failures(compiler):
+    with planted("engine/bad.hpp", "#pragma once\ninline std::vector<int> f() { return {}; }\n") as root:
+        found = headers.compile_problems(root, compiler, [])
+        if len(found) != 1 or "engine/bad.hpp: does not compile alone" not in found[0]:
+            yield f"headers: planted a header that lacks <vector>, found {found}"
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--compiler", default="c++")
+    every_failure = [*failures(), *compiler_failures(parser.parse_args().compiler)]
+    print("\n".join(every_failure) or f"{len(SAMPLES) + 1} planted files, each found or passed as it should be")
+    raise SystemExit(bool(every_failure))
