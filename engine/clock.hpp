@@ -16,8 +16,7 @@ enum class ClockMode : std::uint8_t {
 ///
 ///     t = t0 + (n + c) dt        fixed; c is the fraction of the step that the drifts have covered so far
 ///     t = t_high + t_low         free
-template <class Real>
-class Clock {
+template <class Real> class Clock {
  public:
   /// A fixed clock of step `dt` [time] that stands at step `step`.
   static Clock fixed(double start, double dt, std::int64_t step = 0) {

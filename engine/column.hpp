@@ -11,29 +11,22 @@
 namespace noether {
 
 /// Hands out memory on 64-byte boundaries, the width of the widest vector register and of a cache line.
-template <class T>
-struct AlignedAllocator {
+template <class T> struct AlignedAllocator {
   using value_type = T;
   static constexpr std::align_val_t alignment{64};
 
   AlignedAllocator() = default;
-  template <class U>
-  AlignedAllocator(const AlignedAllocator<U>& /*other*/) {}  // NOLINT: converting by design
+  template <class U> AlignedAllocator(const AlignedAllocator<U>& /*other*/) {}  // NOLINT: converting by design
 
   T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), alignment)); }
   void deallocate(T* p, std::size_t /*n*/) { ::operator delete(p, alignment); }
-  template <class U>
-  bool operator==(const AlignedAllocator<U>& /*other*/) const {
-    return true;
-  }
+  template <class U> bool operator==(const AlignedAllocator<U>& /*other*/) const { return true; }
 };
 
-template <class T>
-using AlignedVector = std::vector<T, AlignedAllocator<T>>;
+template <class T> using AlignedVector = std::vector<T, AlignedAllocator<T>>;
 
 /// One number per particle, shape (n).
-template <class T>
-class ScalarColumn {
+template <class T> class ScalarColumn {
  public:
   explicit ScalarColumn(Index n = 0) : values_(static_cast<std::size_t>(n)) {}
 
@@ -57,8 +50,7 @@ class ScalarColumn {
 };
 
 /// One vector per particle, shape (n, 3): all x, then all y, then all z, each run padded to a multiple of eight.
-template <class Real>
-class VectorColumn {
+template <class Real> class VectorColumn {
  public:
   using Row = Eigen::Map<Vec3<Real>, Eigen::Unaligned, Eigen::InnerStride<>>;
   using Block = Eigen::Matrix<Real, Eigen::Dynamic, 3>;

@@ -15,8 +15,7 @@
 namespace noether {
 
 /// Energy of a system, in its unit system [energy].
-template <class Real>
-struct EnergyTerms {
+template <class Real> struct EnergyTerms {
   Real kinetic = Real(0), potential = Real(0);
   Real total() const { return kinetic + potential; }
 };
@@ -36,13 +35,13 @@ struct Failure {
 
 /// What a split Hamiltonian says of its parts; tests verify it, `Composition` refuses by it.
 struct HamiltonianClaims {
-  std::string_view alphabet;            ///< letters `flow` accepts
-  std::string_view inexact = "";        ///< letters whose map is symmetric of order 2 instead of the exact flow
-  std::string_view irreversible = "";   ///< letters that only run forward (drag, noise)
-  bool quadratic_kinetic = true;        ///< {B,{B,{B,A}}} = 0: Runge-Kutta-Nystroem tables keep their order
-  bool near_integrable = false;         ///< B is small beside A
-  bool energy = true;                   ///< every force reports its potential
-  bool time_dependent = false;          ///< the energy is not conserved by the exact flow
+  std::string_view alphabet;           ///< letters `flow` accepts
+  std::string_view inexact = "";       ///< letters whose map is symmetric of order 2 instead of the exact flow
+  std::string_view irreversible = "";  ///< letters that only run forward (drag, noise)
+  bool quadratic_kinetic = true;       ///< {B,{B,{B,A}}} = 0: Runge-Kutta-Nystroem tables keep their order
+  bool near_integrable = false;        ///< B is small beside A
+  bool energy = true;                  ///< every force reports its potential
+  bool time_dependent = false;         ///< the energy is not conserved by the exact flow
   bool dissipative = false;
   bool keeps_momentum = true;
   bool keeps_angular_momentum = true;
@@ -68,12 +67,12 @@ concept SplitHamiltonian = requires(H& h, const H& c, ParticleSystem<typename H:
 
 /// What an integrator says of the runs it makes.
 struct IntegratorClaims {
-  std::string method;                ///< name of the scheme or method
-  std::string hamiltonian;           ///< name of the Hamiltonian
+  std::string method;       ///< name of the scheme or method
+  std::string hamiltonian;  ///< name of the Hamiltonian
   int order = 0;
   ClockMode clock = ClockMode::fixed;
   bool symplectic = false;
-  bool energy = true;                ///< an energy exists
+  bool energy = true;  ///< an energy exists
   bool dissipative = false;
   bool time_dependent = false;
 };

@@ -12,34 +12,29 @@
 namespace noether {
 
 namespace detail {
-template <class M>
-struct member_of;
-template <class T, class V>
-struct member_of<V T::*> {
+template <class M> struct member_of;
+template <class T, class V> struct member_of<V T::*> {
   using part = T;
   using value = V;
 };
 }  // namespace detail
 
 /// A parameter of a part: a member, the key users type, its dimension in words ("length^3/time^2"), one line of help.
-template <auto Member>
-struct Field {
+template <auto Member> struct Field {
   using value_type = typename detail::member_of<decltype(Member)>::value;
   static constexpr auto member = Member;
   std::string_view name, dimension, help;
 };
 
 /// A member that changes while a run goes on: it goes into checkpoints and comes back from them.
-template <auto Member>
-struct State {
+template <auto Member> struct State {
   using value_type = typename detail::member_of<decltype(Member)>::value;
   static constexpr auto member = Member;
   std::string_view name;
 };
 
 /// Names of the values of an enum, as scenes type them: specialise with `static constexpr std::array<std::pair<...>>`.
-template <class E>
-struct EnumNames;
+template <class E> struct EnumNames;
 
 /// The formula of a part, in the notation of its source.
 struct Formula {
@@ -55,16 +50,12 @@ template <auto Member>
 constexpr Field<Member> field(std::string_view name, std::string_view dimension, std::string_view help = "") {
   return {name, dimension, help};
 }
-template <auto Member>
-constexpr State<Member> state(std::string_view name) {
-  return {name};
-}
+template <auto Member> constexpr State<Member> state(std::string_view name) { return {name}; }
 constexpr Formula formula(std::string_view text) { return {text}; }
 constexpr Source source(std::string_view key) { return {key}; }
 
 /// The description of a part.
-template <class T, class... Entries>
-struct Part {
+template <class T, class... Entries> struct Part {
   std::string_view name, help;
   std::tuple<Entries...> entries;
 };
@@ -76,22 +67,19 @@ constexpr Part<T, Entries...> part(std::string_view name, std::string_view help,
 }
 
 template <class T>
-concept Described = requires { T::describe().name; };
+concept Described = requires {
+  T::describe().name;
+};
 
 namespace detail {
-template <class E>
-struct is_field : std::false_type {};
-template <auto M>
-struct is_field<Field<M>> : std::true_type {};
-template <class E>
-struct is_state : std::false_type {};
-template <auto M>
-struct is_state<State<M>> : std::true_type {};
+template <class E> struct is_field : std::false_type {};
+template <auto M> struct is_field<Field<M>> : std::true_type {};
+template <class E> struct is_state : std::false_type {};
+template <auto M> struct is_state<State<M>> : std::true_type {};
 }  // namespace detail
 
 /// Calls `visit(field)` for every field of a part, in the order of its description.
-template <class T, class Visit>
-constexpr void for_each_field(const Visit& visit) {
+template <class T, class Visit> constexpr void for_each_field(const Visit& visit) {
   std::apply(
       [&](const auto&... entry) {
         (([&](const auto& e) {
@@ -103,8 +91,7 @@ constexpr void for_each_field(const Visit& visit) {
 }
 
 /// Calls `visit(state)` for every state entry of a part.
-template <class T, class Visit>
-constexpr void for_each_state(const Visit& visit) {
+template <class T, class Visit> constexpr void for_each_state(const Visit& visit) {
   std::apply(
       [&](const auto&... entry) {
         (([&](const auto& e) {
@@ -116,8 +103,7 @@ constexpr void for_each_state(const Visit& visit) {
 }
 
 /// The entry of type `E` (Formula or Source) of a part; empty if it has none.
-template <class T, class E>
-constexpr std::string_view entry_text() {
+template <class T, class E> constexpr std::string_view entry_text() {
   std::string_view found;
   std::apply(
       [&](const auto&... entry) {
@@ -134,8 +120,7 @@ constexpr std::string_view entry_text() {
 }
 
 /// Name of a part: the one it describes itself with, else empty.
-template <class T>
-constexpr std::string_view part_name() {
+template <class T> constexpr std::string_view part_name() {
   if constexpr (Described<T>) {
     return T::describe().name;
   } else {
@@ -144,8 +129,7 @@ constexpr std::string_view part_name() {
 }
 
 /// Writes every declared state of `value` below `prefix`.
-template <class T>
-void save_part(SavedState& saved, const std::string& prefix, const T& value) {
+template <class T> void save_part(SavedState& saved, const std::string& prefix, const T& value) {
   if constexpr (Described<T>) {
     for_each_state<T>([&](const auto& e) {
       save_value(saved, prefix.empty() ? std::string(e.name) : prefix + "/" + std::string(e.name), value.*(e.member));
@@ -154,8 +138,7 @@ void save_part(SavedState& saved, const std::string& prefix, const T& value) {
 }
 
 /// Reads every declared state of `value` from below `prefix`. @throws Error if one is missing
-template <class T>
-void load_part(const SavedState& saved, const std::string& prefix, T& value) {
+template <class T> void load_part(const SavedState& saved, const std::string& prefix, T& value) {
   if constexpr (Described<T>) {
     for_each_state<T>([&](const auto& e) {
       load_value(saved, prefix.empty() ? std::string(e.name) : prefix + "/" + std::string(e.name), value.*(e.member));

@@ -14,24 +14,21 @@ namespace noether {
 namespace detail {
 
 /// Writes the state a part declares by its description, or by `save` of its own.
-template <class T>
-void save_any(SavedState& saved, const std::string& prefix, const T& value) {
+template <class T> void save_any(SavedState& saved, const std::string& prefix, const T& value) {
   if constexpr (requires { value.save(saved, prefix); }) {
     value.save(saved, prefix);
   } else {
     save_part(saved, prefix, value);
   }
 }
-template <class T>
-void load_any(const SavedState& saved, const std::string& prefix, T& value) {
+template <class T> void load_any(const SavedState& saved, const std::string& prefix, T& value) {
   if constexpr (requires { value.load(saved, prefix); }) {
     value.load(saved, prefix);
   } else {
     load_part(saved, prefix, value);
   }
 }
-template <class T>
-std::string name_of(const T& value) {
+template <class T> std::string name_of(const T& value) {
   if constexpr (requires { std::string(value.name()); }) {
     return std::string(value.name());
   } else {
@@ -40,8 +37,7 @@ std::string name_of(const T& value) {
 }
 
 /// Value semantics for a polymorphic `Base` with `clone`.
-template <class Base>
-class Erased {
+template <class Base> class Erased {
  public:
   explicit Erased(std::unique_ptr<Base> held) : held_(std::move(held)) {}
   Erased(const Erased& other) : held_(other.held_->clone()) {}
@@ -57,16 +53,14 @@ class Erased {
   std::unique_ptr<Base> held_;
 };
 
-template <class Real>
-struct ForceBase {
+template <class Real> struct ForceBase {
   virtual ~ForceBase() = default;
   virtual std::unique_ptr<ForceBase> clone() const = 0;
   virtual void add_to(ForceSink<Real>&, const ParticleSystem<Real>&) const = 0;
   virtual ForceClaims claims() const = 0;
   virtual std::string name() const = 0;
 };
-template <class F, class Real>
-struct ForceModel final : ForceBase<Real> {
+template <class F, class Real> struct ForceModel final : ForceBase<Real> {
   explicit ForceModel(F f) : force(std::move(f)) {}
   std::unique_ptr<ForceBase<Real>> clone() const override { return std::make_unique<ForceModel>(force); }
   void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const override { force.add_to(out, s); }
@@ -75,8 +69,7 @@ struct ForceModel final : ForceBase<Real> {
   F force;
 };
 
-template <class Real>
-struct HamiltonianBase {
+template <class Real> struct HamiltonianBase {
   virtual ~HamiltonianBase() = default;
   virtual std::unique_ptr<HamiltonianBase> clone() const = 0;
   virtual HamiltonianClaims claims() const = 0;
@@ -95,11 +88,12 @@ struct HamiltonianBase {
   virtual void save(SavedState&, const std::string&) const = 0;
   virtual void load(const SavedState&, const std::string&) = 0;
 };
-template <class H>
-struct HamiltonianModel final : HamiltonianBase<typename H::real> {
+template <class H> struct HamiltonianModel final : HamiltonianBase<typename H::real> {
   using Real = typename H::real;
   explicit HamiltonianModel(H h) : hamiltonian(std::move(h)) {}
-  std::unique_ptr<HamiltonianBase<Real>> clone() const override { return std::make_unique<HamiltonianModel>(hamiltonian); }
+  std::unique_ptr<HamiltonianBase<Real>> clone() const override {
+    return std::make_unique<HamiltonianModel>(hamiltonian);
+  }
   HamiltonianClaims claims() const override { return hamiltonian.claims(); }
   std::string name() const override { return name_of(hamiltonian); }
   void bind(ParticleSystem<Real>& s) override { hamiltonian.bind(s); }
@@ -120,8 +114,7 @@ struct HamiltonianModel final : HamiltonianBase<typename H::real> {
   H hamiltonian;
 };
 
-template <class Real>
-struct IntegratorBase {
+template <class Real> struct IntegratorBase {
   virtual ~IntegratorBase() = default;
   virtual std::unique_ptr<IntegratorBase> clone() const = 0;
   virtual IntegratorClaims claims() const = 0;
@@ -134,8 +127,7 @@ struct IntegratorBase {
   virtual void save(SavedState&, const std::string&) const = 0;
   virtual void load(const SavedState&, const std::string&) = 0;
 };
-template <class I>
-struct IntegratorModel final : IntegratorBase<typename I::real> {
+template <class I> struct IntegratorModel final : IntegratorBase<typename I::real> {
   using Real = typename I::real;
   explicit IntegratorModel(I i) : integrator(std::move(i)) {}
   std::unique_ptr<IntegratorBase<Real>> clone() const override { return std::make_unique<IntegratorModel>(integrator); }
@@ -157,8 +149,7 @@ struct IntegratorModel final : IntegratorBase<typename I::real> {
 }  // namespace detail
 
 /// Any force over one number type; one virtual call per evaluation.
-template <class Real = double>
-class AnyForce : private detail::Erased<detail::ForceBase<Real>> {
+template <class Real = double> class AnyForce : private detail::Erased<detail::ForceBase<Real>> {
  public:
   template <class F>
     requires(!std::is_same_v<std::decay_t<F>, AnyForce> && Force<std::decay_t<F>, Real>)
@@ -171,8 +162,7 @@ class AnyForce : private detail::Erased<detail::ForceBase<Real>> {
 };
 
 /// Any split Hamiltonian over one number type; one virtual call per stage.
-template <class Real = double>
-class AnyHamiltonian : private detail::Erased<detail::HamiltonianBase<Real>> {
+template <class Real = double> class AnyHamiltonian : private detail::Erased<detail::HamiltonianBase<Real>> {
  public:
   using real = Real;
   template <SplitHamiltonian H>
@@ -200,8 +190,7 @@ class AnyHamiltonian : private detail::Erased<detail::HamiltonianBase<Real>> {
 };
 
 /// Any integrator over one number type; one virtual call per cut of the run.
-template <class Real = double>
-class AnyIntegrator : private detail::Erased<detail::IntegratorBase<Real>> {
+template <class Real = double> class AnyIntegrator : private detail::Erased<detail::IntegratorBase<Real>> {
  public:
   using real = Real;
   template <Integrator I>

@@ -17,8 +17,7 @@ struct Wanted {
 ///
 /// A tracer (m = 0) feels `acceleration` and ignores `force` and `pair`. The bits of the accelerations are the same
 /// with and without energy and virial.
-template <class Real>
-class ForceSink {
+template <class Real> class ForceSink {
  public:
   /// @param accelerations  shape (n, 3), set to zero here [length/time^2]
   ForceSink(VectorColumn<Real>& accelerations, const ParticleSystem<Real>& system, Wanted wanted)
@@ -79,16 +78,15 @@ class ForceSink {
 
 /// What a force says of itself; a method states what it needs, and a refusal names what is missing.
 struct ForceClaims {
-  bool energy = true;              ///< it is the gradient of a potential and reports it
-  bool virial = true;              ///< it reports its virial
+  bool energy = true;  ///< it is the gradient of a potential and reports it
+  bool virial = true;  ///< it reports its virial
   bool velocity_dependent = false;
   bool time_dependent = false;
   bool dissipative = false;
 };
 
 /// The claims of a force type; a force that declares none is conservative and depends on positions only.
-template <class F>
-ForceClaims claims_of(const F& force) {
+template <class F> ForceClaims claims_of(const F& force) {
   if constexpr (requires { force.claims(); }) {
     return force.claims();
   } else {

@@ -6,16 +6,12 @@
 namespace noether {
 
 /// Position, velocity and acceleration of a point.
-template <class Real>
-struct Motion {
-  Vec3<Real> x, v, a;
-};
+template <class Real> struct Motion { Vec3<Real> x, v, a; };
 
 /// The polynomial of degree 5 that meets position, velocity and acceleration at both ends of an interval.
 ///
 ///     x(theta), theta = (t - t0) / h in [0, 1]; its error is O(h^6)
-template <class Real>
-class Hermite {
+template <class Real> class Hermite {
  public:
   Hermite(const Motion<Real>& begin, const Motion<Real>& end, const Real& h)
       : c0_(begin.x), c1_(h * begin.v), c2_(h * h / Real(2) * begin.a) {
@@ -54,8 +50,7 @@ class Hermite {
   }
 
   /// The point in [low, high] where `past` turns from false to true.
-  template <class Past>
-  static Real bisect(Real low, Real high, const Past& past) {
+  template <class Past> static Real bisect(Real low, Real high, const Past& past) {
     for (int k = 0; k < 100; ++k) {
       const Real middle = (low + high) / Real(2);
       if (middle == low || middle == high) break;

@@ -14,10 +14,11 @@ namespace noether {
 
 /// One quantity of a monitor at one moment, as files store it.
 struct Series {
-  std::string name;               ///< "relative_error"
-  std::string dimension;          ///< in words, "1" for none
-  std::vector<Index> shape;       ///< of one sample; empty for a number
+  std::string name;          ///< "relative_error"
+  std::string dimension;     ///< in words, "1" for none
+  std::vector<Index> shape;  ///< of one sample; empty for a number
   std::vector<double> values;
+  std::vector<std::string> columns = {};  ///< names along the last axis of the shape, where it has any
 };
 
 /// All quantities of one monitor at one moment.
@@ -26,7 +27,7 @@ struct Sample {
   std::int64_t step = 0;
   double time = 0;
   std::span<const Series> series;
-  std::optional<double> scale;    ///< what relative errors are relative to
+  std::optional<double> scale;  ///< what relative errors are relative to
 };
 
 /// What a monitor has to say at the end. A number that makes no sense for it stays empty, with the reason in `message`.
@@ -40,12 +41,13 @@ struct MonitorReport {
 /// `report()`, `record(Sample)` (receives every monitor's samples: writers), `flush()`, `finish(Outcome)`, and a static
 /// `looks_last` for what must see a moment after all others: checkpoints.
 template <class M, class Real>
-concept Monitor = requires(M& m, const Snapshot<Real>& snapshot) { m.observe(snapshot); };
+concept Monitor = requires(M& m, const Snapshot<Real>& snapshot) {
+  m.observe(snapshot);
+};
 
 namespace detail {
 
-template <class Real>
-struct MonitorBase {
+template <class Real> struct MonitorBase {
   virtual ~MonitorBase() = default;
   virtual std::string name() const = 0;
   virtual bool records() const = 0;
@@ -62,12 +64,15 @@ struct MonitorBase {
   virtual void load(const SavedState&, const std::string&) = 0;
 };
 
-template <class M, class Real>
-struct MonitorModel final : MonitorBase<Real> {
+template <class M, class Real> struct MonitorModel final : MonitorBase<Real> {
   explicit MonitorModel(M m) : monitor(std::move(m)) {}
   std::string name() const override { return name_of(monitor); }
-  bool records() const override { return requires(M& m, const Sample& s) { m.record(s); }; }
-  bool looks_last() const override { return requires { M::looks_last; }; }
+  bool records() const override {
+    return requires(M & m, const Sample& s) { m.record(s); };
+  }
+  bool looks_last() const override {
+    return requires { M::looks_last; };
+  }
   Wanted wanted() const override {
     if constexpr (requires { monitor.wanted(); }) return monitor.wanted();
     return {};
@@ -102,8 +107,7 @@ struct MonitorModel final : MonitorBase<Real> {
 }  // namespace detail
 
 /// Any monitor over one number type: the fourth erased seam. It owns the monitor and never moves it.
-template <class Real = double>
-class AnyMonitor {
+template <class Real = double> class AnyMonitor {
  public:
   template <class M>
     requires(!std::is_same_v<M, AnyMonitor> && Monitor<M, Real>)
@@ -126,8 +130,7 @@ class AnyMonitor {
   void load(const SavedState& saved, const std::string& prefix) { held_->load(saved, prefix); }
 
   /// The monitor itself, when its type is known; null otherwise.
-  template <class M>
-  M* get() {
+  template <class M> M* get() {
     auto* model = dynamic_cast<detail::MonitorModel<M, Real>*>(held_.get());
     return model == nullptr ? nullptr : &model->monitor;
   }

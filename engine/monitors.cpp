@@ -10,10 +10,7 @@ namespace {
 Quad wide(double x) { return Quad(x); }
 Quad wide(const Quad& x) { return x; }
 
-template <class Real>
-Vec3<Quad> wide(const Vec3<Real>& v) {
-  return Vec3<Quad>(wide(v[0]), wide(v[1]), wide(v[2]));
-}
+template <class Real> Vec3<Quad> wide(const Vec3<Real>& v) { return Vec3<Quad>(wide(v[0]), wide(v[1]), wide(v[2])); }
 
 std::vector<double> list(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
@@ -25,8 +22,7 @@ void fill_line(MonitorReport& report, const SeriesStatistics& series, const std:
 
 }  // namespace
 
-template <class Real>
-void Energy::observe(const Snapshot<Real>& now) {
+template <class Real> void Energy::observe(const Snapshot<Real>& now) {
   const EnergyTerms<Real>& energy = now.energy();
   const Quad total = wide(energy.total());
   if (!begun_) {
@@ -136,8 +132,7 @@ void VectorInvariant::load_series(const SavedState& saved, const std::string& pr
   value_ = {n.at(4), n.at(5), n.at(6)};
 }
 
-template <class Real>
-void Momentum::observe(const Snapshot<Real>& now) {
+template <class Real> void Momentum::observe(const Snapshot<Real>& now) {
   const ParticleSystem<Real>& s = now.state();
   Vec3<Quad> sum = Vec3<Quad>::Zero();
   Quad scale = 0;
@@ -150,8 +145,7 @@ void Momentum::observe(const Snapshot<Real>& now) {
   add(now.time(), sum, scale);
 }
 
-template <class Real>
-void AngularMomentum::observe(const Snapshot<Real>& now) {
+template <class Real> void AngularMomentum::observe(const Snapshot<Real>& now) {
   const ParticleSystem<Real>& s = now.state();
   Vec3<Quad> sum = Vec3<Quad>::Zero();
   Quad scale = 0;
@@ -164,8 +158,7 @@ void AngularMomentum::observe(const Snapshot<Real>& now) {
   add(now.time(), sum, scale);
 }
 
-template <class Real>
-void CenterOfMass::observe(const Snapshot<Real>& now) {
+template <class Real> void CenterOfMass::observe(const Snapshot<Real>& now) {
   const ParticleSystem<Real>& s = now.state();
   Vec3<Quad> x = Vec3<Quad>::Zero(), v = Vec3<Quad>::Zero();
   Quad total = 0;
@@ -212,8 +205,8 @@ MonitorReport CenterOfMass::report() const {
   return report;
 }
 
-#define NOETHER_OBSERVES(Type)                            \
-  template void Type::observe(const Snapshot<double>&);   \
+#define NOETHER_OBSERVES(Type)                          \
+  template void Type::observe(const Snapshot<double>&); \
   template void Type::observe(const Snapshot<Quad>&)
 NOETHER_OBSERVES(Energy);
 NOETHER_OBSERVES(Momentum);

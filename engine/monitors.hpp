@@ -22,12 +22,12 @@ class Energy {
     return part<Energy>("energy", "total energy and its relative error", state<&Energy::begun_>("begun"),
                         state<&Energy::reference_>("reference"), state<&Energy::scale_>("scale"),
                         state<&Energy::now_>("now"), state<&Energy::totals_>("totals"),
-                        state<&Energy::errors_>("errors"), state<&Energy::why_not_>("why_not"));
+                        state<&Energy::errors_>("errors"), state<&Energy::why_not_>("why_not"),
+                        state<&Energy::time_unit_>("time_unit"));
   }
 
   static Wanted wanted() { return {.energy = true}; }
-  template <class Real>
-  void observe(const Snapshot<Real>& now);
+  template <class Real> void observe(const Snapshot<Real>& now);
   std::vector<Series> series() const;
   std::optional<double> scale() const { return scale_; }
   MonitorReport report() const;
@@ -44,7 +44,7 @@ class Energy {
   bool begun_ = false;
   Quad reference_ = 0;
   double scale_ = 0;
-  std::array<double, 4> now_{};   ///< total, kinetic, potential, relative error
+  std::array<double, 4> now_{};  ///< total, kinetic, potential, relative error
   SeriesStatistics totals_, errors_;
   std::string why_not_, time_unit_;
 };
@@ -88,8 +88,7 @@ class Momentum : public VectorInvariant {
   static constexpr auto describe() {
     return part<Momentum>("momentum", "linear momentum and its relative error", formula("P = sum m_i v_i"));
   }
-  template <class Real>
-  void observe(const Snapshot<Real>& now);
+  template <class Real> void observe(const Snapshot<Real>& now);
   void save(SavedState& saved, const std::string& prefix) const { save_series(saved, prefix); }
   void load(const SavedState& saved, const std::string& prefix) { load_series(saved, prefix); }
 };
@@ -102,8 +101,7 @@ class AngularMomentum : public VectorInvariant {
     return part<AngularMomentum>("angular_momentum", "angular momentum, its relative error and its direction",
                                  formula("L = sum m_i x_i cross v_i"));
   }
-  template <class Real>
-  void observe(const Snapshot<Real>& now);
+  template <class Real> void observe(const Snapshot<Real>& now);
   void save(SavedState& saved, const std::string& prefix) const { save_series(saved, prefix); }
   void load(const SavedState& saved, const std::string& prefix) { load_series(saved, prefix); }
 };
@@ -112,14 +110,13 @@ class AngularMomentum : public VectorInvariant {
 class CenterOfMass {
  public:
   static constexpr auto describe() {
-    return part<CenterOfMass>("center_of_mass", "position and velocity of the centre of mass",
-                              state<&CenterOfMass::begun_>("begun"), state<&CenterOfMass::start_>("start"),
-                              state<&CenterOfMass::start_time_>("start_time"),
-                              state<&CenterOfMass::position_>("position"), state<&CenterOfMass::velocity_>("velocity"),
-                              state<&CenterOfMass::departures_>("departures"));
+    return part<CenterOfMass>(
+        "center_of_mass", "position and velocity of the centre of mass", state<&CenterOfMass::begun_>("begun"),
+        state<&CenterOfMass::start_>("start"), state<&CenterOfMass::start_time_>("start_time"),
+        state<&CenterOfMass::position_>("position"), state<&CenterOfMass::velocity_>("velocity"),
+        state<&CenterOfMass::departures_>("departures"), state<&CenterOfMass::time_unit_>("time_unit"));
   }
-  template <class Real>
-  void observe(const Snapshot<Real>& now);
+  template <class Real> void observe(const Snapshot<Real>& now);
   std::vector<Series> series() const;
   MonitorReport report() const;
   double worst() const { return departures_.worst(); }

@@ -26,8 +26,7 @@ inline constexpr Index parallel_threshold = 256;
 ///
 /// The owner of a block computes all of it, so results cannot depend on the number of threads.
 /// @throws never; `body` must not throw
-template <class Body>
-void for_blocks(Index n, const Body& body) {
+template <class Body> void for_blocks(Index n, const Body& body) {
   const Index blocks = (n + block_size - 1) / block_size;
 #ifdef _OPENMP
   if (n >= parallel_threshold && thread_count() > 1) {
@@ -41,14 +40,14 @@ void for_blocks(Index n, const Body& body) {
 
 /// Sum over [0, n) of `partial(begin, end)`, one value per block, added in block order.
 /// @cost allocates one value per block when n is above the block size
-template <class T, class Partial>
-T reduce(Index n, T zero, const Partial& partial) {
+template <class T, class Partial> T reduce(Index n, T zero, const Partial& partial) {
   if (n <= block_size) {
     if (n > 0) zero += partial(Index(0), n);
     return zero;
   }
   std::vector<T> parts(static_cast<std::size_t>((n + block_size - 1) / block_size), zero);
-  for_blocks(n, [&](Index begin, Index end) { parts[static_cast<std::size_t>(begin / block_size)] = partial(begin, end); });
+  for_blocks(
+      n, [&](Index begin, Index end) { parts[static_cast<std::size_t>(begin / block_size)] = partial(begin, end); });
   for (const T& part : parts) zero += part;
   return zero;
 }

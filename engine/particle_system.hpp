@@ -54,8 +54,7 @@ inline std::uint64_t fresh_version() {
 ///
 /// Columns are 64-byte aligned, shape (n, 3) for vectors. Mass 0 marks a tracer: it feels accelerations and exerts
 /// none. Sizes and parameters of a system in a run change only in `Simulation::edit`; ids are never used twice.
-template <class Real = double>
-class ParticleSystem {
+template <class Real = double> class ParticleSystem {
  public:
   using ExtraColumn = std::variant<ScalarColumn<Real>, ScalarColumn<std::int64_t>, VectorColumn<Real>>;
 
@@ -168,24 +167,18 @@ class ParticleSystem {
   }
 
   /// A column declared by the part that needs it: charge, type, molecule. Tag has `type` and `name`.
-  template <class Tag>
-  bool has() const {
-    return extra_.count(std::string(Tag::name)) != 0;
-  }
-  template <class Tag>
-  typename Tag::template type<Real>& add_column() {
+  template <class Tag> bool has() const { return extra_.count(std::string(Tag::name)) != 0; }
+  template <class Tag> typename Tag::template type<Real>& add_column() {
     auto column = typename Tag::template type<Real>(size());
     return std::get<typename Tag::template type<Real>>(extra_[std::string(Tag::name)] = std::move(column));
   }
   /// @throws MissingColumn
-  template <class Tag>
-  const typename Tag::template type<Real>& column() const {
+  template <class Tag> const typename Tag::template type<Real>& column() const {
     const auto found = extra_.find(std::string(Tag::name));
     if (found == extra_.end()) throw MissingColumn("the particles have no column '" + std::string(Tag::name) + "'");
     return std::get<typename Tag::template type<Real>>(found->second);
   }
-  template <class Tag>
-  typename Tag::template type<Real>& column() {
+  template <class Tag> typename Tag::template type<Real>& column() {
     return const_cast<typename Tag::template type<Real>&>(std::as_const(*this).template column<Tag>());
   }
   const std::map<std::string, ExtraColumn>& extra_columns() const { return extra_; }
@@ -203,8 +196,7 @@ class ParticleSystem {
   }
 
   /// The same particles in another number type: doubles widen exactly.
-  template <class Other>
-  ParticleSystem<Other> as() const {
+  template <class Other> ParticleSystem<Other> as() const {
     ParticleSystem<Other> other(*units_);
     for (Index i = 0; i < size(); ++i) {
       const Vec3<Real> x = x_[i], v = v_[i];
@@ -276,8 +268,7 @@ class ParticleSystem {
 
 /// Shifts positions and velocities so that the centre of mass rests in the origin.
 /// @throws Error  if all masses are 0
-template <class Real>
-void move_to_barycenter(ParticleSystem<Real>& s) {
+template <class Real> void move_to_barycenter(ParticleSystem<Real>& s) {
   Vec3<Real> x = Vec3<Real>::Zero(), v = Vec3<Real>::Zero();
   Real total(0);
   const auto& c = std::as_const(s);

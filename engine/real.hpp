@@ -41,9 +41,7 @@ struct Quad {
 
   template <class T>
     requires std::is_arithmetic_v<T>
-  constexpr explicit operator T() const {
-    return static_cast<T>(value);
-  }
+  constexpr explicit operator T() const { return static_cast<T>(value); }
 
   constexpr Quad operator-() const { return from(-value); }
   constexpr Quad operator+() const { return *this; }
@@ -141,8 +139,7 @@ constexpr Quad from_doubles(const std::array<double, 3>& d) { return Quad(d[0]) 
 }  // namespace noether
 
 namespace std {
-template <>
-class numeric_limits<noether::Quad> {
+template <> class numeric_limits<noether::Quad> {
  public:
   static constexpr bool is_specialized = true, is_signed = true, is_integer = false, is_exact = false;
   static constexpr bool has_infinity = true, has_quiet_NaN = true, has_signaling_NaN = false;
@@ -175,8 +172,7 @@ class numeric_limits<noether::Quad> {
 }  // namespace std
 
 namespace Eigen {
-template <>
-struct NumTraits<noether::Quad> : GenericNumTraits<noether::Quad> {
+template <> struct NumTraits<noether::Quad> : GenericNumTraits<noether::Quad> {
   using Real = noether::Quad;
   using NonInteger = noether::Quad;
   using Literal = double;

@@ -4,15 +4,13 @@ namespace noether {
 
 namespace {
 
-template <class Real>
-std::vector<double> flatten(const VectorColumn<Real>& column) {
+template <class Real> std::vector<double> flatten(const VectorColumn<Real>& column) {
   std::vector<double> numbers;
   for (Index i = 0; i < column.size(); ++i) detail::append(numbers, Vec3<Real>(column[i]));
   return numbers;
 }
 
-template <class Real>
-void unflatten(const SavedState& saved, const std::string& name, VectorColumn<Real>& column) {
+template <class Real> void unflatten(const SavedState& saved, const std::string& name, VectorColumn<Real>& column) {
   const std::vector<double>& numbers = detail::array_of<double>(saved, name);
   std::size_t at = 0;
   for (Index i = 0; i < column.size(); ++i) {
@@ -24,8 +22,7 @@ void unflatten(const SavedState& saved, const std::string& name, VectorColumn<Re
 
 }  // namespace
 
-template <class Real>
-SavedState save_particles(const ParticleSystem<Real>& s) {
+template <class Real> SavedState save_particles(const ParticleSystem<Real>& s) {
   SavedState saved;
   std::vector<double> masses;
   for (const Real& m : s.masses()) detail::append(masses, m);
@@ -49,8 +46,7 @@ SavedState save_particles(const ParticleSystem<Real>& s) {
   return saved;
 }
 
-template <class Real>
-ParticleSystem<Real> load_particles(const SavedState& saved) {
+template <class Real> ParticleSystem<Real> load_particles(const SavedState& saved) {
   ParticleSystem<Real> s(unit_system(detail::array_of<std::string>(saved, "units").at(0)));
   const auto& ids = detail::array_of<std::int64_t>(saved, "id");
   const auto& names = detail::array_of<std::string>(saved, "name");
@@ -72,8 +68,8 @@ ParticleSystem<Real> load_particles(const SavedState& saved) {
   }
   const auto& counts = detail::array_of<std::int64_t>(saved, "clock/counts");
   const auto& times = detail::array_of<double>(saved, "clock/times");
-  typename Clock<Real>::Raw clock{static_cast<int>(counts.at(0)), counts.at(1), times.at(0), times.at(1),
-                                  times.at(2),                    times.at(3),  Real(0)};
+  typename Clock<Real>::Raw clock{
+      static_cast<int>(counts.at(0)), counts.at(1), times.at(0), times.at(1), times.at(2), times.at(3), Real(0)};
   load_value(saved, "clock/fraction", clock.fraction);
   s.clock() = Clock<Real>::from_raw(clock);
   const auto& phase = detail::array_of<std::int64_t>(saved, "phase");

@@ -30,21 +30,14 @@ struct SavedRun {
 
 namespace detail {
 
-template <class T>
-struct is_vector : std::false_type {};
-template <class T, class A>
-struct is_vector<std::vector<T, A>> : std::true_type {};
-template <class T>
-struct is_optional : std::false_type {};
-template <class T>
-struct is_optional<std::optional<T>> : std::true_type {};
-template <class T>
-struct is_array : std::false_type {};
-template <class T, std::size_t n>
-struct is_array<std::array<T, n>> : std::true_type {};
+template <class T> struct is_vector : std::false_type {};
+template <class T, class A> struct is_vector<std::vector<T, A>> : std::true_type {};
+template <class T> struct is_optional : std::false_type {};
+template <class T> struct is_optional<std::optional<T>> : std::true_type {};
+template <class T> struct is_array : std::false_type {};
+template <class T, std::size_t n> struct is_array<std::array<T, n>> : std::true_type {};
 
-template <class T>
-const std::vector<T>& array_of(const SavedState& saved, const std::string& name) {
+template <class T> const std::vector<T>& array_of(const SavedState& saved, const std::string& name) {
   const auto found = saved.find(name);
   const auto* array = found == saved.end() ? nullptr : std::get_if<std::vector<T>>(&found->second);
   if (array == nullptr) throw Error("the saved state has no array '" + name + "' of the expected type");
@@ -60,20 +53,17 @@ inline void take(const std::vector<double>& in, std::size_t& at, Quad& x) {
   x = from_doubles({in.at(at), in.at(at + 1), in.at(at + 2)});
   at += 3;
 }
-template <class Real>
-void append(std::vector<double>& out, const Vec3<Real>& v) {
+template <class Real> void append(std::vector<double>& out, const Vec3<Real>& v) {
   for (int k = 0; k < 3; ++k) append(out, v[k]);
 }
-template <class Real>
-void take(const std::vector<double>& in, std::size_t& at, Vec3<Real>& v) {
+template <class Real> void take(const std::vector<double>& in, std::size_t& at, Vec3<Real>& v) {
   for (int k = 0; k < 3; ++k) take(in, at, v[k]);
 }
 
 }  // namespace detail
 
 /// Writes `value` below `name`: numbers, vectors, arrays, columns, optionals, and parts that declare state themselves.
-template <class T>
-void save_value(SavedState& saved, const std::string& name, const T& value) {
+template <class T> void save_value(SavedState& saved, const std::string& name, const T& value) {
   if constexpr (std::is_integral_v<T> || std::is_enum_v<T>) {
     saved[name] = std::vector<std::int64_t>{static_cast<std::int64_t>(value)};
   } else if constexpr (std::is_same_v<T, std::string>) {
@@ -97,8 +87,7 @@ void save_value(SavedState& saved, const std::string& name, const T& value) {
 }
 
 /// Reads back what `save_value` wrote. @throws Error if the array is missing or of another type
-template <class T>
-void load_value(const SavedState& saved, const std::string& name, T& value) {
+template <class T> void load_value(const SavedState& saved, const std::string& name, T& value) {
   if constexpr (std::is_integral_v<T> || std::is_enum_v<T>) {
     value = static_cast<T>(detail::array_of<std::int64_t>(saved, name).at(0));
   } else if constexpr (std::is_same_v<T, std::string>) {
@@ -133,11 +122,9 @@ void load_value(const SavedState& saved, const std::string& name, T& value) {
 }
 
 /// The raw particles of a run, unsettled, as arrays: what a checkpoint calls `/state`.
-template <class Real>
-SavedState save_particles(const ParticleSystem<Real>& s);
+template <class Real> SavedState save_particles(const ParticleSystem<Real>& s);
 
 /// Rebuilds the particles that `save_particles` wrote. @throws Error if an array is missing or has the wrong length
-template <class Real>
-ParticleSystem<Real> load_particles(const SavedState& saved);
+template <class Real> ParticleSystem<Real> load_particles(const SavedState& saved);
 
 }  // namespace noether

@@ -16,7 +16,9 @@ constexpr std::int64_t longest_chunk = 1024;
 /// Steps between looks at the wall clock are chosen to last about this long [s].
 constexpr double chunk_seconds = 0.05;
 
-double seconds_since(WallClock::time_point start) { return std::chrono::duration<double>(WallClock::now() - start).count(); }
+double seconds_since(WallClock::time_point start) {
+  return std::chrono::duration<double>(WallClock::now() - start).count();
+}
 
 }  // namespace
 
@@ -30,20 +32,18 @@ Simulation<Real>::Simulation(ParticleSystem<Real> particles, AnyIntegrator<Real>
   mapped_ = raw_;
 }
 
-template <class Real>
-double Simulation<Real>::checked(double dt) {
-  if (!std::isfinite(dt) || dt == 0) throw Error(fmt::format("a step of {} is no step; a finite time other than 0 is expected", dt));
+template <class Real> double Simulation<Real>::checked(double dt) {
+  if (!std::isfinite(dt) || dt == 0)
+    throw Error(fmt::format("a step of {} is no step; a finite time other than 0 is expected", dt));
   return dt;
 }
 
-template <class Real>
-std::int64_t Simulation<Real>::positive(std::int64_t steps) {
+template <class Real> std::int64_t Simulation<Real>::positive(std::int64_t steps) {
   if (steps < 1) throw Error(fmt::format("a cadence of {} steps is impossible; at least 1 is expected", steps));
   return steps;
 }
 
-template <class Real>
-void Simulation<Real>::register_last() {
+template <class Real> void Simulation<Real>::register_last() {
   Scheduled& added = monitors_.back();
   const std::string base = added.monitor.name().empty() ? "monitor" : added.monitor.name();
   added.name = base;
@@ -61,8 +61,7 @@ void Simulation<Real>::register_last() {
   }
 }
 
-template <class Real>
-std::int64_t Simulation<Real>::steps_in(double duration) const {
+template <class Real> std::int64_t Simulation<Real>::steps_in(double duration) const {
   const double dt = raw_.clock().dt();
   const double exact = duration / dt;
   const double whole = std::round(exact);
@@ -70,28 +69,26 @@ std::int64_t Simulation<Real>::steps_in(double duration) const {
     throw Error(fmt::format("a duration of {} is no number of steps of {}", duration, dt));
   }
   if (std::abs(exact - whole) > 1e-9 * std::max(1.0, std::abs(exact)) || whole < 0) {
-    throw Error(fmt::format("a duration of {} is {} steps of {}; the nearest whole numbers are {} ({}) and {} ({})", duration,
-                            exact, dt, std::floor(exact) * dt, std::floor(exact), std::ceil(exact) * dt, std::ceil(exact)));
+    throw Error(fmt::format("a duration of {} is {} steps of {}; the nearest whole numbers are {} ({}) and {} ({})",
+                            duration, exact, dt, std::floor(exact) * dt, std::floor(exact), std::ceil(exact) * dt,
+                            std::ceil(exact)));
   }
   return static_cast<std::int64_t>(whole);
 }
 
-template <class Real>
-Outcome Simulation<Real>::run(std::int64_t steps) {
+template <class Real> Outcome Simulation<Real>::run(std::int64_t steps) {
   if (steps < 0) throw Error(fmt::format("{} steps cannot be made; a number of at least 0 is expected", steps));
   return run_to(step() + steps, std::numeric_limits<double>::infinity());
 }
 
-template <class Real>
-Outcome Simulation<Real>::run_until(double until) {
+template <class Real> Outcome Simulation<Real>::run_until(double until) {
   if (raw_.clock().mode() == ClockMode::free) return run_to(std::numeric_limits<std::int64_t>::max(), until);
   const std::int64_t end = steps_in(until - raw_.clock().start());
   if (end < step()) throw Error(fmt::format("time {} has passed: the run stands at {}", until, time()));
   return run_to(end, std::numeric_limits<double>::infinity());
 }
 
-template <class Real>
-Outcome Simulation<Real>::run_to(std::int64_t end, double limit) {
+template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double limit) {
   const auto started = WallClock::now();
   const double before = seconds_;
   auto reported = started;
@@ -131,14 +128,12 @@ Outcome Simulation<Real>::run_to(std::int64_t end, double limit) {
   return result ? *result : outcome(Outcome::Kind::completed);
 }
 
-template <class Real>
-bool Simulation<Real>::due(const Scheduled& scheduled) const {
+template <class Real> bool Simulation<Real>::due(const Scheduled& scheduled) const {
   if (scheduled.schedule.steps > 0) return step() % scheduled.schedule.steps == 0;
   return scheduled.schedule.wall > 0 && seconds_since(scheduled.last_wall) >= scheduled.schedule.wall;
 }
 
-template <class Real>
-std::optional<Outcome> Simulation<Real>::observe_due() {
+template <class Real> std::optional<Outcome> Simulation<Real>::observe_due() {
   if (observed_through_ == step()) return {};
   observed_through_ = step();
   std::vector<Scheduled*> looking;
@@ -179,7 +174,8 @@ void Simulation<Real>::show(const std::vector<Scheduled*>& looking, const Snapsh
       if (other.monitor.records()) other.monitor.record(sample);
     }
   }
-  const bool last = std::any_of(looking.begin(), looking.end(), [](const Scheduled* s) { return s->monitor.looks_last(); });
+  const bool last =
+      std::any_of(looking.begin(), looking.end(), [](const Scheduled* s) { return s->monitor.looks_last(); });
   if (!last) return;
   for (auto& writer : monitors_) writer.monitor.flush();
   for (Scheduled* one : looking) {
@@ -187,8 +183,7 @@ void Simulation<Real>::show(const std::vector<Scheduled*>& looking, const Snapsh
   }
 }
 
-template <class Real>
-void Simulation<Real>::observe_times(double until) {
+template <class Real> void Simulation<Real>::observe_times(double until) {
   std::vector<Scheduled*> looking;
   Wanted wanted;
   for (auto& scheduled : monitors_) {
@@ -202,8 +197,7 @@ void Simulation<Real>::observe_times(double until) {
   if (!looking.empty()) show(looking, snapshot(wanted, until));
 }
 
-template <class Real>
-std::int64_t Simulation<Real>::next_cut(std::int64_t end) const {
+template <class Real> std::int64_t Simulation<Real>::next_cut(std::int64_t end) const {
   std::int64_t cut = std::min(end, step() + chunk_);
   const auto limit = [&](std::int64_t cadence) {
     if (cadence > 0) cut = std::min(cut, (step() / cadence + 1) * cadence);
@@ -213,8 +207,7 @@ std::int64_t Simulation<Real>::next_cut(std::int64_t end) const {
   return cut;
 }
 
-template <class Real>
-double Simulation<Real>::next_time(double end) const {
+template <class Real> double Simulation<Real>::next_time(double end) const {
   double next = end;
   for (const auto& scheduled : monitors_) {
     if (scheduled.schedule.interval <= 0) continue;
@@ -223,8 +216,7 @@ double Simulation<Real>::next_time(double end) const {
   return next;
 }
 
-template <class Real>
-std::optional<Outcome> Simulation<Real>::not_finite() {
+template <class Real> std::optional<Outcome> Simulation<Real>::not_finite() {
   using std::isfinite;
   const auto& s = std::as_const(raw_);
   for (Index i = 0; i < s.size(); ++i) {
@@ -239,8 +231,7 @@ std::optional<Outcome> Simulation<Real>::not_finite() {
   return {};
 }
 
-template <class Real>
-Outcome Simulation<Real>::outcome(Outcome::Kind kind, std::string message) const {
+template <class Real> Outcome Simulation<Real>::outcome(Outcome::Kind kind, std::string message) const {
   Outcome result;
   result.kind = kind;
   result.step = step();
@@ -249,40 +240,36 @@ Outcome Simulation<Real>::outcome(Outcome::Kind kind, std::string message) const
   return result;
 }
 
-template <class Real>
-Outcome Simulation<Real>::failed(const Failure& failure) const {
+template <class Real> Outcome Simulation<Real>::failed(const Failure& failure) const {
   Outcome result = outcome(failure.kind, failure.message);
   result.quantity = failure.quantity;
   if (failure.particle >= 0) {
-    result.particle = ParticleRef{failure.particle, raw_.ids()[static_cast<std::size_t>(failure.particle)], raw_.name(failure.particle)};
+    result.particle = ParticleRef{failure.particle, raw_.ids()[static_cast<std::size_t>(failure.particle)],
+                                  raw_.name(failure.particle)};
   }
   return result;
 }
 
-template <class Real>
-const ParticleSystem<Real>& Simulation<Real>::particles() {
+template <class Real> const ParticleSystem<Real>& Simulation<Real>::particles() {
   integrator_.settle(raw_, copy_, {}, std::nullopt, true);
   return copy_;
 }
 
-template <class Real>
-void Simulation<Real>::begin_edit() {
+template <class Real> void Simulation<Real>::begin_edit() {
   integrator_.settle(raw_, copy_, {}, std::nullopt, true);
   raw_ = copy_;
   raw_.phase() = Phase{};
   raw_.keep_low_words(false);
 }
 
-template <class Real>
-void Simulation<Real>::end_edit() {
+template <class Real> void Simulation<Real>::end_edit() {
   if (raw_.size() == 0) throw Error("the edit has left no particles; a run needs at least one");
   integrator_.bind(raw_);
   copy_ = raw_;
   mapped_ = raw_;
 }
 
-template <class Real>
-void Simulation<Real>::change_step(double dt) {
+template <class Real> void Simulation<Real>::change_step(double dt) {
   checked(dt);
   begin_edit();
   const double now = time();
@@ -290,8 +277,7 @@ void Simulation<Real>::change_step(double dt) {
   end_edit();
 }
 
-template <class Real>
-SavedRun Simulation<Real>::save() const {
+template <class Real> SavedRun Simulation<Real>::save() const {
   SavedRun saved;
   saved.particles = save_particles(raw_);
   SavedState& run = saved.parts["simulation"];
@@ -306,8 +292,7 @@ SavedRun Simulation<Real>::save() const {
   return saved;
 }
 
-template <class Real>
-void Simulation<Real>::restore(const SavedRun& saved) {
+template <class Real> void Simulation<Real>::restore(const SavedRun& saved) {
   const auto part = [&](const std::string& name) -> const SavedState& {
     const auto found = saved.parts.find(name);
     if (found == saved.parts.end()) throw Error("the saved run has no part '" + name + "'; it was made by other parts");
@@ -316,7 +301,8 @@ void Simulation<Real>::restore(const SavedRun& saved) {
   ParticleSystem<Real> particles = load_particles<Real>(saved.particles);
   if (particles.ids() != raw_.ids()) throw Error("the saved run has other particles than this one");
   if (particles.clock().dt() != raw_.clock().dt()) {
-    throw Error(fmt::format("the saved run has a step of {}, this one of {}", particles.clock().dt(), raw_.clock().dt()));
+    throw Error(
+        fmt::format("the saved run has a step of {}, this one of {}", particles.clock().dt(), raw_.clock().dt()));
   }
   integrator_.load(part("integrator"), "");
   raw_ = std::move(particles);

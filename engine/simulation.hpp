@@ -23,14 +23,14 @@ struct Progress {
 ///
 /// The run is cut at the next monitor; all monitors of that step see one settled copy; the run goes on from the
 /// unsettled original. Outputs cannot change a trajectory.
-template <class Real = double>
-class Simulation {
+template <class Real = double> class Simulation {
  public:
   /// A run of fixed step `dt` [time] that begins at time 0.
   /// @throws Error  if dt is 0 or not finite, or the integrator cannot serve these particles
   template <Integrator I>
   Simulation(ParticleSystem<Real> particles, I integrator, double dt)
-      : Simulation(std::move(particles), AnyIntegrator<Real>(std::move(integrator)), Clock<Real>::fixed(0, checked(dt))) {}
+      : Simulation(std::move(particles), AnyIntegrator<Real>(std::move(integrator)),
+                   Clock<Real>::fixed(0, checked(dt))) {}
 
   /// A run of an integrator that chooses its own steps, from time 0.
   template <Integrator I>
@@ -41,22 +41,21 @@ class Simulation {
 
   /// Attaches a monitor or writer that looks at step 0 and at every multiple of `steps`.
   /// @return the monitor, which stays where it is as long as the simulation lives
-  template <class M>
-  M& every(std::int64_t steps, M monitor) {
+  template <class M> M& every(std::int64_t steps, M monitor) {
     return attach<M>({.steps = positive(steps)}, std::move(monitor));
   }
   /// The same by time, for integrators that choose their steps [time].
-  template <class M>
-  M& every_time(double interval, M monitor) {
+  template <class M> M& every_time(double interval, M monitor) {
     return attach<M>({.interval = interval}, std::move(monitor));
   }
   /// The same by wall time, at whole steps [s]. Bits of the trajectory do not depend on it.
-  template <class M>
-  M& every_wall(double seconds, M monitor) {
+  template <class M> M& every_wall(double seconds, M monitor) {
     return attach<M>({.wall = seconds}, std::move(monitor));
   }
   /// Stops the run when `rule` holds, looked at every `steps`: `sim.stop_when(farther_than(100 * au), 4'000)`.
-  void stop_when(const StopRule& rule, std::int64_t steps) { stops_.push_back({positive(steps), StopCheck<Real>(rule)}); }
+  void stop_when(const StopRule& rule, std::int64_t steps) {
+    stops_.push_back({positive(steps), StopCheck<Real>(rule)});
+  }
 
   /// How many steps make `duration` [time].
   /// @throws Error  unless it is a whole number (to 1e-9), with the two nearest durations
@@ -77,8 +76,7 @@ class Simulation {
   Evaluations evaluations() const { return integrator_.evaluations(); }
 
   /// Changes particles: settles, calls `change(ParticleSystem<Real>&)` on inertial state, binds anew.
-  template <class Change>
-  void edit(const Change& change) {
+  template <class Change> void edit(const Change& change) {
     begin_edit();
     change(raw_);
     end_edit();
@@ -93,8 +91,7 @@ class Simulation {
   void restore(const SavedRun& saved);
 
   /// Calls `visit(name, AnyMonitor&)` for each monitor, in order of attachment; equal names are numbered.
-  template <class Visit>
-  void for_each_monitor(const Visit& visit) {
+  template <class Visit> void for_each_monitor(const Visit& visit) {
     for (auto& scheduled : monitors_) visit(scheduled.name, scheduled.monitor);
   }
 
@@ -115,7 +112,7 @@ class Simulation {
     Schedule schedule;
     AnyMonitor<Real> monitor;
     std::chrono::steady_clock::time_point last_wall;
-    std::int64_t observed = 0;   ///< by time: how many multiples have been seen
+    std::int64_t observed = 0;  ///< by time: how many multiples have been seen
   };
   struct ScheduledStop {
     std::int64_t steps;
@@ -124,8 +121,7 @@ class Simulation {
 
   static double checked(double dt);
   static std::int64_t positive(std::int64_t steps);
-  template <class M>
-  M& attach(Schedule schedule, M monitor) {
+  template <class M> M& attach(Schedule schedule, M monitor) {
     monitors_.push_back({"", schedule, AnyMonitor<Real>(std::move(monitor)), std::chrono::steady_clock::now(), 0});
     register_last();
     return *monitors_.back().monitor.template get<M>();
@@ -151,17 +147,15 @@ class Simulation {
   AnyIntegrator<Real> integrator_;
   std::deque<Scheduled> monitors_;
   std::deque<ScheduledStop> stops_;
-  std::int64_t observed_through_ = -1;   ///< last step whose due monitors have looked
+  std::int64_t observed_through_ = -1;  ///< last step whose due monitors have looked
   std::int64_t chunk_ = 16;
   const std::atomic<bool>* stop_flag_ = nullptr;
   std::function<void(const Progress&)> progress_;
   double seconds_ = 0;
 };
 
-template <class Real, class I>
-Simulation(ParticleSystem<Real>, I, double) -> Simulation<Real>;
-template <class Real, class I>
-Simulation(ParticleSystem<Real>, I) -> Simulation<Real>;
+template <class Real, class I> Simulation(ParticleSystem<Real>, I, double) -> Simulation<Real>;
+template <class Real, class I> Simulation(ParticleSystem<Real>, I) -> Simulation<Real>;
 
 extern template class Simulation<double>;
 extern template class Simulation<Quad>;

@@ -11,8 +11,7 @@ namespace noether {
 /// One moment of a run. The settled copies and the energy are made when somebody asks, once for all monitors.
 ///
 /// `state()` is what users see: word completed, corrector applied. `mapped()` is the word completed and nothing more.
-template <class Real>
-class Snapshot {
+template <class Real> class Snapshot {
  public:
   /// @param copy, mapped  storage for the settled copies, reused from one moment to the next
   /// @param at  free clock: the time to be shown, not beyond the next whole step
@@ -53,9 +52,11 @@ class Snapshot {
   }
   std::int64_t step() const { return raw_.clock().step(); }
   /// Time of this moment [time].
-  double time() const { return at_ ? *at_ : raw_.clock().mode() == ClockMode::fixed
-                                                ? raw_.clock().time_at(raw_.clock().step())
-                                                : raw_.clock().high(); }
+  double time() const {
+    return at_                                       ? *at_
+           : raw_.clock().mode() == ClockMode::fixed ? raw_.clock().time_at(raw_.clock().step())
+                                                     : raw_.clock().high();
+  }
   IntegratorClaims claims() const { return integrator_.claims(); }
   const UnitSystem& units() const { return raw_.units(); }
   /// The whole run as it stands, unsettled: only checkpoints have any business here.

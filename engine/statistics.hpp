@@ -36,15 +36,13 @@ class SeriesStatistics {
   std::optional<double> slope() const;
 
   static constexpr auto describe() {
-    return part<SeriesStatistics>("series_statistics", "running figures of a series",
-                                  state<&SeriesStatistics::samples_>("samples"), state<&SeriesStatistics::first_>("first"),
-                                  state<&SeriesStatistics::last_>("last"), state<&SeriesStatistics::worst_>("worst"),
-                                  state<&SeriesStatistics::squares_>("squares"),
-                                  state<&SeriesStatistics::block_>("block"),
-                                  state<&SeriesStatistics::times_>("times"), state<&SeriesStatistics::means_>("means"),
-                                  state<&SeriesStatistics::open_>("open"),
-                                  state<&SeriesStatistics::open_time_>("open_time"),
-                                  state<&SeriesStatistics::open_sum_>("open_sum"));
+    return part<SeriesStatistics>(
+        "series_statistics", "running figures of a series", state<&SeriesStatistics::samples_>("samples"),
+        state<&SeriesStatistics::first_>("first"), state<&SeriesStatistics::last_>("last"),
+        state<&SeriesStatistics::worst_>("worst"), state<&SeriesStatistics::squares_>("squares"),
+        state<&SeriesStatistics::block_>("block"), state<&SeriesStatistics::times_>("times"),
+        state<&SeriesStatistics::means_>("means"), state<&SeriesStatistics::open_>("open"),
+        state<&SeriesStatistics::open_time_>("open_time"), state<&SeriesStatistics::open_sum_>("open_sum"));
   }
   void save(SavedState& saved, const std::string& prefix) const { save_part(saved, prefix, *this); }
   void load(const SavedState& saved, const std::string& prefix) { load_part(saved, prefix, *this); }
@@ -52,9 +50,9 @@ class SeriesStatistics {
  private:
   std::int64_t samples_ = 0;
   double first_ = 0, last_ = 0, worst_ = 0, squares_ = 0;
-  std::int64_t block_ = 1;               ///< samples in a block
-  std::vector<double> times_, means_;    ///< of the full blocks
-  std::int64_t open_ = 0;                ///< samples in the block being filled
+  std::int64_t block_ = 1;             ///< samples in a block
+  std::vector<double> times_, means_;  ///< of the full blocks
+  std::int64_t open_ = 0;              ///< samples in the block being filled
   double open_time_ = 0, open_sum_ = 0;
 };
 

@@ -10,18 +10,15 @@ namespace noether {
 
 namespace {
 
-template <class Real>
-Motion<Real> motion_of(const Snapshot<Real>& now, Index i) {
+template <class Real> Motion<Real> motion_of(const Snapshot<Real>& now, Index i) {
   return {now.state().positions()[i], now.state().velocities()[i], now.accelerations()[i]};
 }
 
-template <class Real>
-Motion<Real> difference(const Motion<Real>& a, const Motion<Real>& b) {
+template <class Real> Motion<Real> difference(const Motion<Real>& a, const Motion<Real>& b) {
   return {a.x - b.x, a.v - b.v, a.a - b.a};
 }
 
-template <class Real>
-Motion<Real> center_of_mass(const ParticleSystem<Real>& s, const std::vector<Motion<Real>>& all) {
+template <class Real> Motion<Real> center_of_mass(const ParticleSystem<Real>& s, const std::vector<Motion<Real>>& all) {
   Motion<Real> center{Vec3<Real>::Zero(), Vec3<Real>::Zero(), Vec3<Real>::Zero()};
   Real total(0);
   for (Index i = 0; i < s.size(); ++i) {
@@ -40,30 +37,27 @@ Motion<Real> center_of_mass(const ParticleSystem<Real>& s, const std::vector<Mot
   return center;
 }
 
-template <class Real>
-double root(const Real& x) {
+template <class Real> double root(const Real& x) {
   using std::sqrt;
   return static_cast<double>(sqrt(x));
 }
 
 }  // namespace
 
-template <class Real>
-StopCheck<Real>::StopCheck(const StopRule& rule) : rule_(rule) {
+template <class Real> StopCheck<Real>::StopCheck(const StopRule& rule) : rule_(rule) {
   if (!(rule.distance > 0) || !std::isfinite(rule.distance)) {
-    throw Error(fmt::format("a distance of {} cannot stop a run; a finite distance above 0 is expected", rule.distance));
+    throw Error(
+        fmt::format("a distance of {} cannot stop a run; a finite distance above 0 is expected", rule.distance));
   }
 }
 
-template <class Real>
-std::optional<StopReason> StopCheck<Real>::look(const Snapshot<Real>& snapshot) {
+template <class Real> std::optional<StopReason> StopCheck<Real>::look(const Snapshot<Real>& snapshot) {
   auto reason = rule_.kind == StopRule::Kind::escape ? look_for_escape(snapshot) : look_for_collision(snapshot);
   remember(snapshot);
   return reason;
 }
 
-template <class Real>
-std::optional<StopReason> StopCheck<Real>::look_for_escape(const Snapshot<Real>& now) {
+template <class Real> std::optional<StopReason> StopCheck<Real>::look_for_escape(const Snapshot<Real>& now) {
   const ParticleSystem<Real>& s = now.state();
   const Real limit2 = Real(rule_.distance) * Real(rule_.distance);
   Vec3<Real> center = Vec3<Real>::Zero();
@@ -87,17 +81,17 @@ std::optional<StopReason> StopCheck<Real>::look_for_escape(const Snapshot<Real>&
       const auto k = static_cast<std::size_t>(i);
       const Hermite<Real> path(difference(before[k], center_of_mass(s, before)),
                                difference(after[k], center_of_mass(s, after)), Real(now.time()) - Real(last_time_));
-      const Real u = Hermite<Real>::bisect(Real(0), Real(1), [&](const Real& w) { return norm2(path.position(w)) > limit2; });
+      const Real u =
+          Hermite<Real>::bisect(Real(0), Real(1), [&](const Real& w) { return norm2(path.position(w)) > limit2; });
       at = last_time_ + static_cast<double>(u) * (now.time() - last_time_);
     }
-    return StopReason{i, fmt::format("escape of {}, distance {:.6g} above {:.6g} since time {:.9g}", s.name(i), root(d2),
-                                     rule_.distance, at)};
+    return StopReason{i, fmt::format("escape of {}, distance {:.6g} above {:.6g} since time {:.9g}", s.name(i),
+                                     root(d2), rule_.distance, at)};
   }
   return {};
 }
 
-template <class Real>
-std::optional<StopReason> StopCheck<Real>::look_for_collision(const Snapshot<Real>& now) {
+template <class Real> std::optional<StopReason> StopCheck<Real>::look_for_collision(const Snapshot<Real>& now) {
   const ParticleSystem<Real>& s = now.state();
   const Real limit2 = Real(rule_.distance) * Real(rule_.distance);
   const bool have_before = static_cast<Index>(x_.size()) == s.size() && now.time() != last_time_;
@@ -124,8 +118,7 @@ std::optional<StopReason> StopCheck<Real>::look_for_collision(const Snapshot<Rea
   return {};
 }
 
-template <class Real>
-void StopCheck<Real>::remember(const Snapshot<Real>& now) {
+template <class Real> void StopCheck<Real>::remember(const Snapshot<Real>& now) {
   const ParticleSystem<Real>& s = now.state();
   const auto n = static_cast<std::size_t>(s.size());
   x_.resize(n);
@@ -141,16 +134,14 @@ void StopCheck<Real>::remember(const Snapshot<Real>& now) {
   last_time_ = now.time();
 }
 
-template <class Real>
-void StopCheck<Real>::save(SavedState& saved, const std::string& prefix) const {
+template <class Real> void StopCheck<Real>::save(SavedState& saved, const std::string& prefix) const {
   save_value(saved, prefix + "/time", last_time_);
   save_value(saved, prefix + "/x", x_);
   save_value(saved, prefix + "/v", v_);
   save_value(saved, prefix + "/a", a_);
 }
 
-template <class Real>
-void StopCheck<Real>::load(const SavedState& saved, const std::string& prefix) {
+template <class Real> void StopCheck<Real>::load(const SavedState& saved, const std::string& prefix) {
   load_value(saved, prefix + "/time", last_time_);
   load_value(saved, prefix + "/x", x_);
   load_value(saved, prefix + "/v", v_);

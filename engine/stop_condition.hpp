@@ -32,8 +32,7 @@ struct StopReason {
 
 /// One rule at work. Between two looks the motion is the quintic Hermite polynomial of the two settled states, so an
 /// approach is found even if it was over at the second look; its time is told, the state stays at the last whole step.
-template <class Real>
-class StopCheck {
+template <class Real> class StopCheck {
  public:
   explicit StopCheck(const StopRule& rule);
 
@@ -50,7 +49,7 @@ class StopCheck {
 
   StopRule rule_;
   double last_time_ = 0;
-  std::vector<Vec3<Real>> x_, v_, a_;   ///< at the last look
+  std::vector<Vec3<Real>> x_, v_, a_;  ///< at the last look
 };
 
 extern template class StopCheck<double>;

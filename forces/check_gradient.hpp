@@ -12,8 +12,7 @@ namespace noether {
 
 namespace detail {
 
-template <class F, class Real>
-Real potential_of(const F& force, const ParticleSystem<Real>& s, VectorColumn<Real>& a) {
+template <class F, class Real> Real potential_of(const F& force, const ParticleSystem<Real>& s, VectorColumn<Real>& a) {
   ForceSink<Real> sink(a, s, {.energy = true});
   force.add_to(sink, s);
   return sink.potential();
@@ -56,8 +55,7 @@ double gradient_error(const F& force, ParticleSystem<Real> s, const Real& relati
 ///
 /// In Quad (error of the differences about 1e-20) if the force is a template on the number type, else in double (1e-9).
 /// @cost 18 n force evaluations
-template <class F>
-double gradient_error(const F& force, const ParticleSystem<double>& s) {
+template <class F> double gradient_error(const F& force, const ParticleSystem<double>& s) {
   if constexpr (Force<F, Quad>) {
     ParticleSystem<Quad> wide = s.as<Quad>();
     wide.clock() = Clock<Quad>::fixed(s.clock().start(), s.clock().dt(), s.clock().step());
@@ -68,14 +66,14 @@ double gradient_error(const F& force, const ParticleSystem<double>& s) {
 }
 
 /// @throws Error  if a force is not minus the gradient of the energy it reports
-template <class F>
-void check_gradient(const F& force, const ParticleSystem<double>& s) {
+template <class F> void check_gradient(const F& force, const ParticleSystem<double>& s) {
   const double limit = Force<F, Quad> ? 1e-12 : 1e-6;
   const double error = gradient_error(force, s);
   if (!(error < limit)) {
-    throw Error(fmt::format("the force is not minus the gradient of its energy: they differ by {:.2g} of the largest "
-                            "force, {:.0g} is allowed; check the signs and factors of add_to",
-                            error, limit));
+    throw Error(
+        fmt::format("the force is not minus the gradient of its energy: they differ by {:.2g} of the largest "
+                    "force, {:.0g} is allowed; check the signs and factors of add_to",
+                    error, limit));
   }
 }
 

@@ -10,8 +10,7 @@
 namespace noether {
 
 namespace detail {
-template <class Real>
-Vec3<Real> widened(const std::array<double, 3>& a) {
+template <class Real> Vec3<Real> widened(const std::array<double, 3>& a) {
   return Vec3<Real>(Real(a[0]), Real(a[1]), Real(a[2]));
 }
 }  // namespace detail
@@ -27,8 +26,7 @@ struct UniformField {
                               field<&UniformField::acceleration>("acceleration", "length/time^2", "g = [x, y, z]"));
   }
 
-  template <class Real>
-  void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+  template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     const Vec3<Real> g = detail::widened<Real>(acceleration);
     for (Index i = 0; i < s.size(); ++i) {
       out.acceleration(i, g);
@@ -55,8 +53,7 @@ struct OscillatingField {
   }
   static ForceClaims claims() { return {.time_dependent = true}; }
 
-  template <class Real>
-  void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+  template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     using std::cos;
     const Vec3<Real> g = cos(Real(omega) * s.time() + Real(phase)) * detail::widened<Real>(acceleration);
     for (Index i = 0; i < s.size(); ++i) {
@@ -77,8 +74,7 @@ struct HarmonicField {
                                formula("U = sum_i k |x_i|^2 / 2"), field<&HarmonicField::k>("k", "mass/time^2"));
   }
 
-  template <class Real>
-  void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+  template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     for (Index i = 0; i < s.size(); ++i) {
       const Vec3<Real> x = s.positions()[i];
       out.force(i, -Real(k) * x);

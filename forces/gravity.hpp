@@ -20,7 +20,7 @@ namespace noether {
 /// @source Newton1687, Plummer1911
 struct Gravity {
   std::optional<double> G = {};  ///< [length^3/mass/time^2]; default: the unit system's own
-  double softening = 0.0;   ///< [length]
+  double softening = 0.0;        ///< [length]
 
   static constexpr auto describe() {
     return part<Gravity>("gravity", "Newtonian gravity by direct summation, with softening and tracers",
@@ -29,13 +29,9 @@ struct Gravity {
                          field<&Gravity::softening>("softening", "length", "Plummer's length; 0 is a point mass"));
   }
 
-  template <class Real>
-  Real constant(const ParticleSystem<Real>& s) const {
-    return Real(G ? *G : s.units().G);
-  }
+  template <class Real> Real constant(const ParticleSystem<Real>& s) const { return Real(G ? *G : s.units().G); }
 
-  template <class Real>
-  void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+  template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     if (s.size() < parallel_threshold) {
       add_pairs(out, s);
     } else {
@@ -44,14 +40,11 @@ struct Gravity {
   }
 
  private:
-  template <class Real>
-  void add_pairs(ForceSink<Real>& out, const ParticleSystem<Real>& s) const;
-  template <class Real>
-  void add_rows(ForceSink<Real>& out, const ParticleSystem<Real>& s) const;
+  template <class Real> void add_pairs(ForceSink<Real>& out, const ParticleSystem<Real>& s) const;
+  template <class Real> void add_rows(ForceSink<Real>& out, const ParticleSystem<Real>& s) const;
 };
 
-template <class Real>
-void Gravity::add_pairs(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+template <class Real> void Gravity::add_pairs(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
   using std::sqrt;
   const Real g = constant(s), soft2 = Real(softening) * Real(softening);
   const Real *x = s.positions().component(0), *y = s.positions().component(1), *z = s.positions().component(2);
@@ -87,8 +80,7 @@ void Gravity::add_pairs(ForceSink<Real>& out, const ParticleSystem<Real>& s) con
   out.virial(virial);
 }
 
-template <class Real>
-void Gravity::add_rows(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+template <class Real> void Gravity::add_rows(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
   using std::sqrt;
   struct Totals {
     Real energy = Real(0);
@@ -121,7 +113,8 @@ void Gravity::add_rows(ForceSink<Real>& out, const ParticleSystem<Real>& s) cons
         totals.energy -= g * m[i] * m[j] / r / Real(2);
         const Vec3<Real> d(dx, dy, dz);
         for (int row = 0; row < 3; ++row) {
-          for (int column = 0; column < 3; ++column) totals.virial(row, column) -= m[i] * k * d[row] * d[column] / Real(2);
+          for (int column = 0; column < 3; ++column)
+            totals.virial(row, column) -= m[i] * k * d[row] * d[column] / Real(2);
         }
       }
       a.add(i, pull);

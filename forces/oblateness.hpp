@@ -18,11 +18,11 @@ namespace noether {
 /// @cost O(n), no allocation
 /// @source MurrayDermott1999
 struct Oblateness {
-  double J2 = 0.0;                        ///< [1]
-  double J4 = 0.0;                        ///< [1]
-  double radius = 0.0;                    ///< equatorial radius of the primary [length]
-  std::array<double, 3> axis = {0, 0, 1}; ///< direction of the axis; its length does not matter
-  std::optional<double> G = {};           ///< [length^3/mass/time^2]; default: the unit system's own
+  double J2 = 0.0;                         ///< [1]
+  double J4 = 0.0;                         ///< [1]
+  double radius = 0.0;                     ///< equatorial radius of the primary [length]
+  std::array<double, 3> axis = {0, 0, 1};  ///< direction of the axis; its length does not matter
+  std::optional<double> G = {};            ///< [length^3/mass/time^2]; default: the unit system's own
 
   static constexpr auto describe() {
     return part<Oblateness>("oblateness", "zonal harmonics J2 and J4 of particle 0",
@@ -34,8 +34,7 @@ struct Oblateness {
                             field<&Oblateness::G>("G", "length^3/mass/time^2", "default: the unit system's own"));
   }
 
-  template <class Real>
-  void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+  template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     using std::sqrt;
     Vec3<Real> n{Real(axis[0]), Real(axis[1]), Real(axis[2])};
     n /= sqrt(norm2(n));
@@ -47,14 +46,14 @@ struct Oblateness {
       const Real r5 = r2 * r2 * sqrt(r2);
       const Real k2 = mu * Real(J2) * R2 / (Real(2) * r5);
       const Real k4 = mu * Real(J4) * R2 * R2 / (Real(8) * r5 * r2);
-      const Vec3<Real> gradient = Real(3) * k2 * (Real(2) * u * n + (Real(1) - Real(5) * c2) * d) +
-                                  Real(5) * k4 * ((Real(28) * c2 - Real(12)) * u * n +
-                                                  (Real(42) * c2 - Real(63) * c2 * c2 - Real(3)) * d);
+      const Vec3<Real> gradient =
+          Real(3) * k2 * (Real(2) * u * n + (Real(1) - Real(5) * c2) * d) +
+          Real(5) * k4 * ((Real(28) * c2 - Real(12)) * u * n + (Real(42) * c2 - Real(63) * c2 * c2 - Real(3)) * d);
       out.acceleration(i, -gradient);
       out.acceleration(0, s.masses()[i] / s.masses()[0] * gradient);
       if (out.wants_energy()) {
-        out.energy(s.masses()[i] * (k2 * (Real(3) * c2 - Real(1)) * r2 +
-                                    k4 * (Real(35) * c2 * c2 - Real(30) * c2 + Real(3)) * r2));
+        out.energy(s.masses()[i] *
+                   (k2 * (Real(3) * c2 - Real(1)) * r2 + k4 * (Real(35) * c2 * c2 - Real(30) * c2 + Real(3)) * r2));
       }
     }
   }

@@ -20,13 +20,11 @@ inline void merge(ForceClaims& all, const ForceClaims& one) {
 }  // namespace detail
 
 /// Forces added at compile time, in order: `Sum(Gravity{}, j2)`. Itself a force.
-template <class... Fs>
-class Sum {
+template <class... Fs> class Sum {
  public:
   explicit Sum(Fs... forces) : forces_(std::move(forces)...) {}
 
-  template <class Real>
-  void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+  template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     std::apply([&](const auto&... force) { (force.add_to(out, s), ...); }, forces_);
   }
   ForceClaims claims() const {
@@ -41,11 +39,9 @@ class Sum {
 };
 
 /// Forces added at run time, in order: `forces.add(Gravity{})`. Itself a force; one virtual call per term.
-template <class Real = double>
-class ForceField {
+template <class Real = double> class ForceField {
  public:
-  template <class F>
-  ForceField& add(F force) {
+  template <class F> ForceField& add(F force) {
     terms_.emplace_back(std::move(force));
     return *this;
   }

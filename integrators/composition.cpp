@@ -18,8 +18,8 @@ void check_letters(const Scheme& scheme, const HamiltonianClaims& claims, const 
   for (const Word* word : {&scheme.word, &scheme.before, &scheme.after}) {
     for (const Stage& stage : *word) {
       if (claims.alphabet.find(stage.letter) != std::string_view::npos) continue;
-      throw SchemeMismatch(fmt::format("scheme '{}' uses the letter {}, but '{}' has only {}", scheme.name, stage.letter,
-                                       hamiltonian, claims.alphabet));
+      throw SchemeMismatch(fmt::format("scheme '{}' uses the letter {}, but '{}' has only {}", scheme.name,
+                                       stage.letter, hamiltonian, claims.alphabet));
     }
   }
 }
@@ -27,15 +27,17 @@ void check_letters(const Scheme& scheme, const HamiltonianClaims& claims, const 
 void check_class(const Scheme& scheme, const HamiltonianClaims& claims, const std::string& hamiltonian) {
   for (const char letter : scheme.exact) {
     if (claims.inexact.find(letter) == std::string_view::npos) continue;
-    throw SchemeMismatch(fmt::format("scheme '{}' needs exact flows, but part {} of '{}' is a symmetric map of order 2; "
-                                     "use a composition of symmetric steps such as 'yoshida_6', or 'abah_10_6_4'",
-                                     scheme.name, letter, hamiltonian));
+    throw SchemeMismatch(
+        fmt::format("scheme '{}' needs exact flows, but part {} of '{}' is a symmetric map of order 2; "
+                    "use a composition of symmetric steps such as 'yoshida_6', or 'abah_10_6_4'",
+                    scheme.name, letter, hamiltonian));
   }
   if (scheme.scheme_class == SchemeClass::rkn && !claims.quadratic_kinetic) {
-    throw SchemeMismatch(fmt::format("scheme '{}' is a Runge-Kutta-Nystroem splitting and keeps its order only where "
-                                     "{{B,{{B,{{B,A}}}}}} = 0, which '{}' does not grant; use a general scheme such as "
-                                     "'blanes_moan_s10'",
-                                     scheme.name, hamiltonian));
+    throw SchemeMismatch(
+        fmt::format("scheme '{}' is a Runge-Kutta-Nystroem splitting and keeps its order only where "
+                    "{{B,{{B,{{B,A}}}}}} = 0, which '{}' does not grant; use a general scheme such as "
+                    "'blanes_moan_s10'",
+                    scheme.name, hamiltonian));
   }
 }
 
@@ -62,9 +64,10 @@ Word fitted_word(const Scheme& scheme, const HamiltonianClaims& claims, const st
   Word word = scheme.word;
   for (const char letter : claims.irreversible) {
     if (scheme.has_negative_steps()) {
-      throw SchemeMismatch(fmt::format("scheme '{}' steps backwards, but part {} of '{}' is irreversible; use a scheme with "
-                                       "forward steps only, such as 'verlet' or 'mclachlan_2_s2'",
-                                       scheme.name, letter, hamiltonian));
+      throw SchemeMismatch(
+          fmt::format("scheme '{}' steps backwards, but part {} of '{}' is irreversible; use a scheme with "
+                      "forward steps only, such as 'verlet' or 'mclachlan_2_s2'",
+                      scheme.name, letter, hamiltonian));
     }
     if (!uses(word, letter)) word = with_letter(word, letter);
   }

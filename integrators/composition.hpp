@@ -17,8 +17,7 @@ struct CompositionOptions {
 };
 
 /// One stage as the loop does it.
-template <class Real>
-struct TimedStage {
+template <class Real> struct TimedStage {
   char letter;
   Real weight;
   Real fraction;  ///< part of the step that the drifts have covered when the stage begins
@@ -39,8 +38,7 @@ Word fitted_word(const Scheme& scheme, const HamiltonianClaims& claims, const st
 /// drifts (A) before it have reached.
 /// @cost the flows of the word, nothing else: no allocation, no validation
 /// @source HairerLubichWanner2006
-template <SplitHamiltonian H>
-class Composition {
+template <SplitHamiltonian H> class Composition {
  public:
   using real = typename H::real;
 
@@ -108,7 +106,9 @@ class Composition {
   }
 
   EnergyTerms<real> energy(const ParticleSystem<real>& settled) { return hamiltonian_.energy(settled); }
-  void accelerations(const ParticleSystem<real>& settled, VectorColumn<real>& a) { hamiltonian_.accelerations(settled, a); }
+  void accelerations(const ParticleSystem<real>& settled, VectorColumn<real>& a) {
+    hamiltonian_.accelerations(settled, a);
+  }
   Evaluations evaluations() const { return hamiltonian_.evaluations(); }
 
   void save(SavedState& saved, const std::string& prefix) const {
@@ -119,7 +119,8 @@ class Composition {
   void load(const SavedState& saved, const std::string& prefix) {
     std::string method;
     load_value(saved, prefix + "method", method);
-    if (method != name_) throw Error("the saved run was made by method '" + method + "', this one uses '" + name_ + "'");
+    if (method != name_)
+      throw Error("the saved run was made by method '" + method + "', this one uses '" + name_ + "'");
     detail::load_any(saved, prefix + "hamiltonian/", hamiltonian_);
   }
 

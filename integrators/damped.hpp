@@ -1,8 +1,8 @@
 #pragma once
 /// A Hamiltonian with linear drag as one more letter.
 
-#include "engine/erasure.hpp"
 #include "engine/description.hpp"
+#include "engine/erasure.hpp"
 #include "forces/linear_drag.hpp"
 
 #include <cmath>
@@ -17,13 +17,13 @@ namespace noether {
 /// It is irreversible: schemes with negative steps are refused. A word without a D gets half a D at both ends,
 /// `symplectic_euler_a` and `_b` one between their two flows (see `Composition`). Velocities of every coordinate
 /// system are linear in the inertial ones, so the same flow serves them all.
-template <SplitHamiltonian H>
-class Damped {
+template <SplitHamiltonian H> class Damped {
  public:
   using real = typename H::real;
 
   Damped(H hamiltonian, LinearDrag drag) : hamiltonian_(std::move(hamiltonian)), drag_(drag) {
-    if (!(drag.rate >= 0)) throw Error("a drag rate of " + std::to_string(drag.rate) + " drives instead of damping; give 0 or more");
+    if (!(drag.rate >= 0))
+      throw Error("a drag rate of " + std::to_string(drag.rate) + " drives instead of damping; give 0 or more");
   }
 
   std::string name() const { return "damped"; }

@@ -40,12 +40,12 @@ struct WiderType<double> {
   using type = Quad;
 };
 
-/// (-1)^k / (2 k + n)!, enough of them for arguments up to 1; `low` is what rounding took from the first two.
+/// (-1)^k / (2 k + n)!, enough of them for arguments up to 1; `low` is what rounding took from the first three.
 template <class Real>
 struct StumpffSeries {
   static constexpr std::size_t terms = kepler_digits<Real> <= 53 ? 10 : kepler_digits<Real> <= 113 ? 17 : 34;
   std::array<Real, terms> high;
-  std::array<Real, 2> low;
+  std::array<Real, 3> low;
 
   explicit constexpr StumpffSeries(int n) : high{}, low{} {
     Quad term(1);
@@ -53,8 +53,8 @@ struct StumpffSeries {
     for (std::size_t k = 0; k < terms; ++k) {
       high[k] = kepler_constant<Real>(term);
       if constexpr (std::is_same_v<Real, double>) {
-        if (k < 2) low[k] = static_cast<double>(term - Quad(high[k]));
-      } else if (k < 2) {
+        if (k < 3) low[k] = static_cast<double>(term - Quad(high[k]));
+      } else if (k < 3) {
         low[k] = Real(0);
       }
       const int j = 2 * static_cast<int>(k) + n;
@@ -65,8 +65,8 @@ struct StumpffSeries {
   /// The low parts matter: a constant that is always rounded the same way makes the energy drift.
   Real operator()(const Real& z) const {
     Real sum = high[terms - 1];
-    for (std::size_t k = terms - 2; k >= 2; --k) sum = high[k] + z * sum;
-    return high[0] + (low[0] + z * (high[1] + (low[1] + z * sum)));
+    for (std::size_t k = terms - 2; k >= 3; --k) sum = high[k] + z * sum;
+    return high[0] + (low[0] + z * (high[1] + (low[1] + z * (high[2] + (low[2] + z * sum)))));
   }
 };
 
@@ -176,14 +176,14 @@ struct KeplerCorrection {
     const Real p = eta * d * r_inverse, q = zeta * d * d * r_inverse, u = beta * d * d;
     const Real p2 = p * p;
     step = d + d * (p * (Real(-0.5) + (Real(10) * q - Real(15) * p2 + u) / Real(24)) + (p2 / Real(2) - q / Real(6)));
-    size = p2 + abs(q) + abs(u);
+    size = p2 + abs(q) + abs(u) / Real(16);
   }
 
-  bool usable() const { return size < Real(0.0625); }
+  bool usable() const { return size < Real(0.25); }
   /// Is the error of the step, and of one Taylor shift over it, well below rounding of s?
   bool final(const Real& s) const {
     using std::abs;
-    constexpr Real negligible = kepler_constant<Real>(power_of_two(-kepler_digits<Real> - 7));
+    constexpr Real negligible = kepler_constant<Real>(power_of_two(-kepler_digits<Real> - 11));
     return usable() && abs(step) * size * size <= negligible * abs(s);
   }
 };
@@ -367,7 +367,7 @@ KeplerArc<Real> ordinary_arc(const Vec3<Real>& x, const Vec3<Real>& v, const Rea
   a.r_inverse = Real(1) / a.r;
   a.eta = dot(x, v);
   a.zeta = a.r * v2 - mu;
-  a.beta = Real(2) * mu * a.r_inverse - v2;
+  a.beta = Real(2) * mu / a.r - v2;
   Real whole(0);
   if (a.beta > Real(0) && h * h * (a.beta * a.beta * a.beta) > pi_squared * (mu * mu)) {
     whole = take_whole_periods(x, v, a);

@@ -12,8 +12,7 @@
 namespace noether {
 
 /// Kinetic energy of inertial particles, T = sum m v^2 / 2, summed in fixed blocks [energy].
-template <class Real>
-Real kinetic_energy(const ParticleSystem<Real>& s) {
+template <class Real> Real kinetic_energy(const ParticleSystem<Real>& s) {
   return reduce(s.size(), Real(0), [&](Index begin, Index end) {
     Real sum(0);
     for (Index i = begin; i < end; ++i) sum += s.masses()[i] * norm2(s.velocities()[i]) / Real(2);
@@ -30,16 +29,16 @@ Real kinetic_energy(const ParticleSystem<Real>& s) {
 /// next kick share one evaluation.
 /// @cost one force evaluation per kick, no allocation after `bind`
 /// @source HairerLubichWanner2006
-template <class F, class Real = double>
-class KineticPotential {
+template <class F, class Real = double> class KineticPotential {
  public:
   using real = Real;
 
   /// @throws SchemeMismatch  if a force depends on velocities: its kick would be no exact flow
   explicit KineticPotential(F forces) : forces_(std::move(forces)) {
     if (claims_of(forces_).velocity_dependent) {
-      throw SchemeMismatch("a force depends on velocities, so kicks by it are no exact flow; "
-                           "give it as a letter of its own (drag: linear_drag), or use a method for q'' = f(q, v, t)");
+      throw SchemeMismatch(
+          "a force depends on velocities, so kicks by it are no exact flow; "
+          "give it as a letter of its own (drag: linear_drag), or use a method for q'' = f(q, v, t)");
     }
   }
 
@@ -98,7 +97,9 @@ class KineticPotential {
   const std::optional<Failure>& failure() const { return failure_; }
   Evaluations evaluations() const { return evaluations_; }
   void set_evaluations(const Evaluations& e) { evaluations_ = e; }
-  void save(SavedState& saved, const std::string& prefix) const { save_value(saved, prefix + "kicks", evaluations_.force); }
+  void save(SavedState& saved, const std::string& prefix) const {
+    save_value(saved, prefix + "kicks", evaluations_.force);
+  }
   void load(const SavedState& saved, const std::string& prefix) {
     load_value(saved, prefix + "kicks", evaluations_.force);
     known_.reset();
@@ -125,11 +126,10 @@ class KineticPotential {
   Real potential_ = Real(0);
   std::optional<Known> known_;
   Wanted wanted_;
-  std::optional<Failure> failure_;   ///< kicks and drifts cannot fail
+  std::optional<Failure> failure_;  ///< kicks and drifts cannot fail
   Evaluations evaluations_;
 };
 
-template <class F>
-KineticPotential(F) -> KineticPotential<F, double>;
+template <class F> KineticPotential(F) -> KineticPotential<F, double>;
 
 }  // namespace noether

@@ -25,9 +25,10 @@ Scheme word(std::string_view letters) {
   const bool capitals = std::all_of(letters.begin(), letters.end(), [](char c) { return c >= 'A' && c <= 'Z'; });
   if (letters.empty() || letters.size() > Word::capacity || !capitals || letters.find('A') == letters.npos ||
       letters.find('B') == letters.npos) {
-    throw SchemeMismatch(fmt::format("'{}' is no word: 1 to {} capital letters are expected, A and B among them, such as "
-                                     "'BAB'",
-                                     letters, Word::capacity));
+    throw SchemeMismatch(
+        fmt::format("'{}' is no word: 1 to {} capital letters are expected, A and B among them, such as "
+                    "'BAB'",
+                    letters, Word::capacity));
   }
   Scheme scheme;
   scheme.name = kept(letters);

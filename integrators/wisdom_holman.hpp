@@ -18,8 +18,7 @@
 
 namespace noether {
 
-template <>
-struct EnumNames<Coordinates> {
+template <> struct EnumNames<Coordinates> {
   static constexpr std::array<std::pair<Coordinates, std::string_view>, 2> values = {
       {{Coordinates::jacobi, "jacobi"}, {Coordinates::democratic, "democratic"}}};
 };
@@ -53,8 +52,7 @@ struct WisdomHolmanOptions {
 /// universal variable), free motion h T, jump h J, kick - h U.
 /// @cost one Kepler arc per body and A, one sum over pairs per B; no allocation after `bind`
 /// @source WisdomHolman1991, DuncanLevisonLee1998, ReinTamayo2015
-template <class Real = double, class F = Sum<>>
-class WisdomHolman {
+template <class Real = double, class F = Sum<>> class WisdomHolman {
  public:
   using real = Real;
 
@@ -121,10 +119,10 @@ class WisdomHolman {
   F forces_;
   Real g_ = Real(0);
   std::vector<std::int64_t> order_;
-  std::vector<Real> masses_;     ///< by particle
-  std::vector<Real> interior_;   ///< M_k, mass of the first k + 1 bodies in order
+  std::vector<Real> masses_;    ///< by particle
+  std::vector<Real> interior_;  ///< M_k, mass of the first k + 1 bodies in order
   VectorColumn<Real> scratch_, positions_, acceleration_, other_;
-  std::optional<ParticleSystem<Real>> inertial_;   ///< positions for other forces
+  std::optional<ParticleSystem<Real>> inertial_;  ///< positions for other forces
   std::optional<Failure> failure_;
   Evaluations evaluations_;
 };

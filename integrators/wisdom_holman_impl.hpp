@@ -11,8 +11,7 @@
 
 namespace noether {
 
-template <class Real, class F>
-HamiltonianClaims WisdomHolman<Real, F>::claims() const {
+template <class Real, class F> HamiltonianClaims WisdomHolman<Real, F>::claims() const {
   const ForceClaims forces = claims_of(forces_);
   return {.alphabet = "AB",
           .inexact = jacobi() ? "" : "B",
@@ -25,16 +24,16 @@ HamiltonianClaims WisdomHolman<Real, F>::claims() const {
           .keeps_angular_momentum = !has_forces};
 }
 
-template <class Real, class F>
-void WisdomHolman<Real, F>::bind(ParticleSystem<Real>& s) {
+template <class Real, class F> void WisdomHolman<Real, F>::bind(ParticleSystem<Real>& s) {
   using std::sqrt;
   const auto& c = std::as_const(s);
   g_ = Real(options_.G ? *options_.G : s.units().G);
   const auto n = static_cast<std::size_t>(s.size());
   if (!(c.masses()[0] > Real(0))) {
-    throw Error(fmt::format("'{}' comes first, so it is the primary of wisdom_holman, but its mass is 0; put the most "
-                            "massive body first",
-                            s.name(0)));
+    throw Error(
+        fmt::format("'{}' comes first, so it is the primary of wisdom_holman, but its mass is 0; put the most "
+                    "massive body first",
+                    s.name(0)));
   }
   std::vector<double> axis(n, 0.0);
   order_.assign(1, 0);
@@ -49,7 +48,8 @@ void WisdomHolman<Real, F>::bind(ParticleSystem<Real>& s) {
     const Real r = sqrt(norm2(c.positions()[i] - c.positions()[0]));
     const Real inverse = Real(2) / r - norm2(c.velocities()[i] - c.velocities()[0]) / (g_ * (c.masses()[0] + m));
     // Unbound bodies come last, by distance.
-    axis[static_cast<std::size_t>(i)] = inverse > Real(0) ? static_cast<double>(Real(1) / inverse) : 1e300 * (1 + static_cast<double>(r));
+    axis[static_cast<std::size_t>(i)] =
+        inverse > Real(0) ? static_cast<double>(Real(1) / inverse) : 1e300 * (1 + static_cast<double>(r));
     order_.push_back(i);
   }
   std::stable_sort(order_.begin() + 1, order_.end(), [&](std::int64_t i, std::int64_t j) {
@@ -64,8 +64,7 @@ void WisdomHolman<Real, F>::bind(ParticleSystem<Real>& s) {
   failure_.reset();
 }
 
-template <class Real, class F>
-void WisdomHolman<Real, F>::gather_masses() {
+template <class Real, class F> void WisdomHolman<Real, F>::gather_masses() {
   interior_.clear();
   Real total(0);
   for (const std::int64_t i : order_) {
@@ -75,8 +74,7 @@ void WisdomHolman<Real, F>::gather_masses() {
   }
 }
 
-template <class Real, class F>
-void WisdomHolman<Real, F>::open(ParticleSystem<Real>& s) {
+template <class Real, class F> void WisdomHolman<Real, F>::open(ParticleSystem<Real>& s) {
   if (jacobi()) {
     to_jacobi(s.positions());
     to_jacobi(s.velocities());
@@ -86,8 +84,7 @@ void WisdomHolman<Real, F>::open(ParticleSystem<Real>& s) {
   s.phase().coordinates = options_.coordinates;
 }
 
-template <class Real, class F>
-void WisdomHolman<Real, F>::close(ParticleSystem<Real>& s) {
+template <class Real, class F> void WisdomHolman<Real, F>::close(ParticleSystem<Real>& s) {
   if (jacobi()) {
     from_jacobi(s.positions(), s.positions(), std::as_const(s).positions()[0]);
     from_jacobi(s.velocities(), s.velocities(), std::as_const(s).velocities()[0]);
@@ -98,8 +95,7 @@ void WisdomHolman<Real, F>::close(ParticleSystem<Real>& s) {
 }
 
 /// x'_k = x_k - X_{k-1},  X_k = X_{k-1} + (m_k/M_k) x'_k;  row 0 becomes X of all.
-template <class Real, class F>
-void WisdomHolman<Real, F>::to_jacobi(VectorColumn<Real>& column) const {
+template <class Real, class F> void WisdomHolman<Real, F>::to_jacobi(VectorColumn<Real>& column) const {
   const auto& read = std::as_const(column);
   Vec3<Real> center = read[0];
   for (std::size_t k = 1; k < order_.size(); ++k) {
@@ -123,8 +119,7 @@ void WisdomHolman<Real, F>::from_jacobi(const VectorColumn<Real>& from, VectorCo
   to.set(0, center);
 }
 
-template <class Real, class F>
-void WisdomHolman<Real, F>::to_democratic(ParticleSystem<Real>& s) const {
+template <class Real, class F> void WisdomHolman<Real, F>::to_democratic(ParticleSystem<Real>& s) const {
   const auto& c = std::as_const(s);
   Vec3<Real> x = Vec3<Real>::Zero(), v = Vec3<Real>::Zero();
   for (std::size_t k = 0; k < massive(); ++k) {
@@ -142,8 +137,7 @@ void WisdomHolman<Real, F>::to_democratic(ParticleSystem<Real>& s) const {
   s.velocities().set(0, v);
 }
 
-template <class Real, class F>
-void WisdomHolman<Real, F>::from_democratic(ParticleSystem<Real>& s) const {
+template <class Real, class F> void WisdomHolman<Real, F>::from_democratic(ParticleSystem<Real>& s) const {
   const auto& c = std::as_const(s);
   Vec3<Real> x = Vec3<Real>::Zero(), v = Vec3<Real>::Zero();
   for (std::size_t k = 1; k < massive(); ++k) {
@@ -160,8 +154,7 @@ void WisdomHolman<Real, F>::from_democratic(ParticleSystem<Real>& s) const {
   s.velocities().set(0, center_v - v / masses_[0]);
 }
 
-template <class Real, class F>
-void WisdomHolman<Real, F>::flow(char letter, ParticleSystem<Real>& s, const Real& h) {
+template <class Real, class F> void WisdomHolman<Real, F>::flow(char letter, ParticleSystem<Real>& s, const Real& h) {
   if (letter == 'A') {
     arcs(s, h, false);
     return;
@@ -181,8 +174,7 @@ Real WisdomHolman<Real, F>::flow_with_action(char letter, ParticleSystem<Real>& 
   return action;
 }
 
-template <class Real, class F>
-Real WisdomHolman<Real, F>::arcs(ParticleSystem<Real>& s, const Real& h, bool action) {
+template <class Real, class F> Real WisdomHolman<Real, F>::arcs(ParticleSystem<Real>& s, const Real& h, bool action) {
   using std::sqrt;
   const auto& c = std::as_const(s);
   const Index n = s.size();
@@ -200,7 +192,8 @@ Real WisdomHolman<Real, F>::arcs(ParticleSystem<Real>& s, const Real& h, bool ac
       const KeplerArc<Real> arc = kepler_arc(x, v, mu, h);
       if (arc.status != KeplerStatus::converged) {
         Index known = failed.load();
-        while (i < known && !failed.compare_exchange_weak(known, i)) {}
+        while (i < known && !failed.compare_exchange_weak(known, i)) {
+        }
       }
       s.shift(i, arc.dx, arc.dv);
       if (!action || rank >= massive()) continue;
@@ -225,8 +218,7 @@ Real WisdomHolman<Real, F>::arcs(ParticleSystem<Real>& s, const Real& h, bool ac
   return sum;
 }
 
-template <class Real, class F>
-Real WisdomHolman<Real, F>::kick(ParticleSystem<Real>& s, const Real& h, bool action) {
+template <class Real, class F> Real WisdomHolman<Real, F>::kick(ParticleSystem<Real>& s, const Real& h, bool action) {
   const auto& c = std::as_const(s);
   ++evaluations_.force;
   acceleration_.fill(Real(0));
@@ -243,7 +235,8 @@ Real WisdomHolman<Real, F>::kick(ParticleSystem<Real>& s, const Real& h, bool ac
     potential += indirect(s, action);
   } else if constexpr (has_forces) {
     Vec3<Real> mean = Vec3<Real>::Zero();
-    for (std::size_t k = 0; k < massive(); ++k) mean += masses_[k] / interior_.back() * std::as_const(acceleration_)[static_cast<Index>(k)];
+    for (std::size_t k = 0; k < massive(); ++k)
+      mean += masses_[k] / interior_.back() * std::as_const(acceleration_)[static_cast<Index>(k)];
     for (Index i = 1; i < s.size(); ++i) acceleration_.add(i, -mean);
     acceleration_.set(0, mean);
   }
@@ -285,8 +278,7 @@ Real WisdomHolman<Real, F>::interaction(const VectorColumn<Real>& x, bool skip_i
 }
 
 /// What the Kepler arcs of Jacobi coordinates have done already: + G M_k x'/r'^3 for all but the innermost.
-template <class Real, class F>
-Real WisdomHolman<Real, F>::indirect(const ParticleSystem<Real>& s, bool energy) {
+template <class Real, class F> Real WisdomHolman<Real, F>::indirect(const ParticleSystem<Real>& s, bool energy) {
   using std::sqrt;
   Real potential(0);
   if (!has_forces) acceleration_.set(0, Vec3<Real>::Zero());  // inner forces leave the centre of mass alone
@@ -301,8 +293,7 @@ Real WisdomHolman<Real, F>::indirect(const ParticleSystem<Real>& s, bool energy)
   return potential;
 }
 
-template <class Real, class F>
-Real WisdomHolman<Real, F>::other_forces(const ParticleSystem<Real>& s, bool energy) {
+template <class Real, class F> Real WisdomHolman<Real, F>::other_forces(const ParticleSystem<Real>& s, bool energy) {
   inertial_->clock() = s.clock();
   if (jacobi()) {
     from_jacobi(s.positions(), inertial_->positions(), s.positions()[0]);
@@ -320,8 +311,7 @@ Real WisdomHolman<Real, F>::other_forces(const ParticleSystem<Real>& s, bool ene
 }
 
 /// J = |sum m_i V_i|^2 / 2 m_0 moves every heliocentric position alike.
-template <class Real, class F>
-Real WisdomHolman<Real, F>::jump(ParticleSystem<Real>& s, const Real& h) {
+template <class Real, class F> Real WisdomHolman<Real, F>::jump(ParticleSystem<Real>& s, const Real& h) {
   const auto& c = std::as_const(s);
   Vec3<Real> momentum = Vec3<Real>::Zero();
   for (std::size_t k = 1; k < massive(); ++k) momentum += masses_[k] * c.velocities()[static_cast<Index>(k)];

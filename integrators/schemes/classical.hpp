@@ -11,7 +11,7 @@ namespace noether::schemes {
 // clang-format off
 
 inline constexpr Scheme symplectic_euler_a = alternating(
-    {.name = "symplectic_euler_a", .summary = "order 1: kick, then drift", .source = "DeVogelaere1956", .order = {1},
+    {.name = "symplectic_euler_a", .aliases = "symplectic_euler", .summary = "order 1: kick, then drift", .source = "DeVogelaere1956", .order = {1},
      .stability_limit = 2.0}, 'B', list(1_q), list(1_q));
 
 inline constexpr Scheme symplectic_euler_b = alternating(
@@ -19,7 +19,7 @@ inline constexpr Scheme symplectic_euler_b = alternating(
      .stability_limit = 2.0}, 'A', list(1_q), list(1_q));
 
 inline constexpr Scheme verlet = symmetric_composition(
-    {.name = "verlet", .aliases = "strang_verlet leapfrog velocity_verlet stormer_verlet",
+    {.name = "verlet", .aliases = "strang_verlet leapfrog velocity_verlet stormer strang",
      .summary = "order 2, one kick: velocity Verlet, kick first", .source = "Verlet1967", .order = {2},
      .stability_limit = 2.0},
     list(rest));

@@ -20,7 +20,7 @@ inline constexpr Scheme mclachlan_s4 = palindrome(
     {.name = "mclachlan_s4", .summary = "order 4, 4 kicks, drift first", .source = "McLachlan1995", .order = {4},
      .exact = "AB", .stability_limit = 3.02997, .printed_digits = 20}, 'A',
     list(0.16913927992207204518_q, -0.29918620390405079951_q, rest),
-    list(0.54545454545454545455_q, -0.045454545454545454545_q));
+    list(6_q / 11_q, rest));
 
 inline constexpr Scheme mclachlan_s5 = palindrome(
     {.name = "mclachlan_s5", .summary = "order 4, 5 kicks, drift first", .source = "McLachlan1995", .order = {4},

@@ -63,7 +63,8 @@ inline constexpr Scheme mclachlan_ss17 = symmetric_composition(
      .summary = "order 8, symmetric composition of 17 steps", .source = "McLachlan1995", .order = {8},
      .stability_limit = 3.08713, .printed_digits = 19},
     list(0.12886597938144329897_q, 0.5815140871052509624_q, -0.41017537146985013753_q, 0.1851469357165877327_q,
-         -0.40955234342085141934_q, 0.14440594108001204106_q, 0.27833550039367965131_q, 0.31495668391629485789_q, rest));
+         -0.40955234342085141934_q, 0.14440594108001204106_q, 0.27833550039367965131_q, 0.31495668391629485789_q,
+         rest));
 
 inline constexpr Scheme morales_8_s17 = symmetric_composition(
     {.name = "morales_8_s17", .aliases = "morales8_s17", .summary = "order 8, symmetric composition of 17 steps",
@@ -76,7 +77,7 @@ inline constexpr Scheme morales_8_s17 = symmetric_composition(
 inline constexpr Scheme sofroniou_spaletta_8_s21 = symmetric_composition(
     {.name = "sofroniou_spaletta_8_s21", .aliases = "sofroniou_spaletta8_s21",
      .summary = "order 8, symmetric composition of 21 steps", .source = "SofroniouSpaletta2005", .order = {8},
-     .stability_limit = 5.61092, .printed_digits = 32},
+     .stability_limit = 3.13701, .printed_digits = 32},
     list(0.10647728984550031823931967854896_q, 0.10837408645835726397433410591546_q,
          0.35337821052654342419534541324080_q, -0.23341414023165082198780281128319_q,
          -0.24445266791528841269462171413216_q, 0.11317848435755633314700952515599_q,
@@ -96,7 +97,7 @@ inline constexpr Scheme kahan_li_10_s33 = symmetric_composition(
 inline constexpr Scheme sofroniou_spaletta_10_s35 = symmetric_composition(
     {.name = "sofroniou_spaletta_10_s35", .aliases = "sofroniou_spaletta10_s35",
      .summary = "order 10, symmetric composition of 35 steps", .source = "SofroniouSpaletta2005", .order = {10},
-     .stability_limit = 5.97367, .printed_digits = 32},
+     .stability_limit = 3.14108, .printed_digits = 32},
     list(0.078795722521686419263907679337684_q, 0.31309610341510852776481247192647_q,
          0.027918383235078066109520273275299_q, -0.22959284159390709415121339679655_q,
          0.13096206107716486317465685927961_q, -0.26973340565451071434460973222411_q,

@@ -1,0 +1,134 @@
+#include "engine/orbital_monitors.hpp"
+
+#include "engine/hermite.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+namespace noether {
+
+namespace {
+
+constexpr std::size_t columns = 6;
+constexpr std::size_t motion_length = 9;
+
+template <class Real> Motion<Real> motion_at(const Snapshot<Real>& now, Index i) {
+  return {now.state().positions()[i], now.state().velocities()[i], now.accelerations()[i]};
+}
+
+/// The motion of particle `i` as it was seen before; what was a double is one again.
+template <class Real> Motion<Real> motion_from(const std::vector<Quad>& seen, Index i) {
+  const std::size_t row = static_cast<std::size_t>(i) * motion_length;
+  const auto at = [&](std::size_t k) { return static_cast<Real>(seen[row + k]); };
+  return {{at(0), at(1), at(2)}, {at(3), at(4), at(5)}, {at(6), at(7), at(8)}};
+}
+
+template <class Real> Motion<Real> operator-(const Motion<Real>& a, const Motion<Real>& b) {
+  return {a.x - b.x, a.v - b.v, a.a - b.a};
+}
+
+}  // namespace
+
+template <class Real> void Elements::observe(const Snapshot<Real>& now) {
+  const ParticleSystem<Real>& s = now.state();
+  const Real g(G ? *G : now.units().G);
+  rows_.assign(static_cast<std::size_t>(s.size()) * columns, std::numeric_limits<double>::quiet_NaN());
+  for (Index i = 1; i < s.size(); ++i) {
+    const Vec3<Real> x = s.positions()[i] - s.positions()[0], v = s.velocities()[i] - s.velocities()[0];
+    const OrbitalElements<Real> o = elements_from_state<Real>(x, v, g * (s.masses()[0] + s.masses()[i]));
+    std::size_t k = static_cast<std::size_t>(i) * columns;
+    for (const Real& value : {o.a, o.e, o.inc, o.Omega, o.omega, o.M}) rows_[k++] = static_cast<double>(value);
+  }
+  ++samples_;
+}
+
+std::vector<Series> Elements::series() const {
+  return {{"value", "1", {static_cast<Index>(rows_.size() / columns), static_cast<Index>(columns)}, rows_}};
+}
+
+MonitorReport Elements::report() const {
+  MonitorReport report;
+  report.samples = samples_;
+  report.message = "six numbers for each particle: see the trajectory file";
+  return report;
+}
+
+OrbitalElements<double> Elements::of(Index i) const {
+  const auto at = [&](std::size_t k) { return rows_.at(static_cast<std::size_t>(i) * columns + k); };
+  return {at(0), at(1), at(2), at(3), at(4), at(5)};
+}
+
+template <class Real> void ClosestApproach::observe(const Snapshot<Real>& now) {
+  look_at_pairs(now);
+  if (samples_++ == 0) first_ = distance_;
+  remember(now);
+}
+
+template <class Real> void ClosestApproach::look_at_pairs(const Snapshot<Real>& now) {
+  using std::sqrt;
+  const ParticleSystem<Real>& s = now.state();
+  const bool path_known = samples_ > 0 && seen_ids_ == s.ids() && seen_time_ != now.time();
+  const double h = now.time() - seen_time_;
+  for (Index i = 0; i < s.size(); ++i) {
+    for (Index j = 0; j < i; ++j) {
+      if (s.masses()[i] == Real(0) && s.masses()[j] == Real(0)) continue;
+      Real distance2 = norm2(s.positions()[i] - s.positions()[j]);
+      double at = now.time();
+      if (path_known) {
+        const Motion<Real> begin = motion_from<Real>(seen_, i) - motion_from<Real>(seen_, j);
+        const Motion<Real> end = motion_at(now, i) - motion_at(now, j);
+        const auto nearest = Hermite<Real>(begin, end, Real(h)).nearest();
+        if (nearest.distance2 < distance2) {
+          distance2 = nearest.distance2;
+          at = seen_time_ + static_cast<double>(nearest.at) * h;
+        }
+      }
+      const double distance = static_cast<double>(sqrt(distance2));
+      if (!(distance < distance_)) continue;
+      distance_ = distance;
+      at_time_ = at;
+      pair_ = {s.ids()[static_cast<std::size_t>(j)], s.ids()[static_cast<std::size_t>(i)]};
+      names_ = {s.name(j), s.name(i)};
+    }
+  }
+}
+
+template <class Real> void ClosestApproach::remember(const Snapshot<Real>& now) {
+  const ParticleSystem<Real>& s = now.state();
+  seen_.clear();
+  for (Index i = 0; i < s.size(); ++i) {
+    const Motion<Real> motion = motion_at(now, i);
+    for (const Vec3<Real>& vector : {motion.x, motion.v, motion.a}) {
+      for (int k = 0; k < 3; ++k) seen_.push_back(Quad(vector[k]));
+    }
+  }
+  seen_ids_ = s.ids();
+  seen_time_ = now.time();
+}
+
+std::vector<Series> ClosestApproach::series() const {
+  std::vector<double> pair(2, -1);
+  for (std::size_t k = 0; k < pair_.size(); ++k) pair[k] = static_cast<double>(pair_[k]);
+  return {{"distance", "length", {}, {distance_}}, {"pair", "1", {2}, pair}, {"at_time", "time", {}, {at_time_}}};
+}
+
+MonitorReport ClosestApproach::report() const {
+  MonitorReport report;
+  report.samples = samples_;
+  if (pair_.empty()) return report;
+  report.first = first_;
+  report.last = distance_;
+  report.message = fmt::format("{} and {} at time {:.9g}", names_[0], names_[1], at_time_);
+  return report;
+}
+
+#define NOETHER_OBSERVES(Type)                          \
+  template void Type::observe(const Snapshot<double>&); \
+  template void Type::observe(const Snapshot<Quad>&)
+NOETHER_OBSERVES(Elements);
+NOETHER_OBSERVES(ClosestApproach);
+#undef NOETHER_OBSERVES
+
+}  // namespace noether

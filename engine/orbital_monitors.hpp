@@ -1,0 +1,89 @@
+#pragma once
+/// The monitors of orbits: osculating elements, closest approach.
+
+#include "engine/monitor.hpp"
+#include "engine/orbital_elements.hpp"
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace noether {
+
+/// Watches the osculating elements a, e, inc, Omega, omega, M of every particle relative to particle 0.
+///
+/// mu = G (m_0 + m_i). Row 0, the primary itself, is NaN. Angles are in radians.
+/// @cost O(n)
+/// @source MurrayDermott1999
+class Elements {
+ public:
+  std::optional<double> G = {};  ///< [length^3/mass/time^2]; default: the unit system's own
+
+  Elements() = default;
+  explicit Elements(double constant) : G(constant) {}
+
+  static constexpr auto describe() {
+    return part<Elements>("elements", "osculating elements a, e, inc, Omega, omega, M relative to particle 0",
+                          source("MurrayDermott1999"),
+                          field<&Elements::G>("G", "length^3/mass/time^2", "default: the unit system's own"),
+                          state<&Elements::samples_>("samples"));
+  }
+
+  template <class Real> void observe(const Snapshot<Real>& now);
+  std::vector<Series> series() const;
+  MonitorReport report() const;
+
+  /// Elements of particle `i` at the last look.
+  /// @throws std::out_of_range  if there is no such particle, or nothing was looked at yet
+  OrbitalElements<double> of(Index i) const;
+
+ private:
+  std::vector<double> rows_;  ///< shape (n, 6)
+  std::int64_t samples_ = 0;
+};
+
+/// Watches for the smallest distance of two particles, one of them massive, since the start.
+///
+/// Between two looks the motion is the quintic Hermite polynomial of the two settled states, so an approach is found
+/// even if it was over at the second look.
+/// @cost O(n m) with m massive bodies, and one force evaluation
+class ClosestApproach {
+ public:
+  static constexpr auto describe() {
+    return part<ClosestApproach>(
+        "closest_approach", "smallest distance of two particles so far, and when it was",
+        state<&ClosestApproach::distance_>("distance"), state<&ClosestApproach::at_time_>("at_time"),
+        state<&ClosestApproach::first_>("first"), state<&ClosestApproach::pair_>("pair"),
+        state<&ClosestApproach::names_>("names"), state<&ClosestApproach::samples_>("samples"),
+        state<&ClosestApproach::seen_time_>("seen_time"), state<&ClosestApproach::seen_ids_>("seen_ids"),
+        state<&ClosestApproach::seen_>("seen"));
+  }
+
+  template <class Real> void observe(const Snapshot<Real>& now);
+  std::vector<Series> series() const;
+  MonitorReport report() const;
+
+  /// Smallest distance so far [length]; infinite where there is no pair.
+  double distance() const { return distance_; }
+  /// When it was [time].
+  double at_time() const { return at_time_; }
+  /// Ids of the two particles; empty where there is no pair.
+  const std::vector<std::int64_t>& pair() const { return pair_; }
+
+ private:
+  template <class Real> void look_at_pairs(const Snapshot<Real>& now);
+  template <class Real> void remember(const Snapshot<Real>& now);
+
+  double distance_ = std::numeric_limits<double>::infinity(), at_time_ = 0, first_ = 0;
+  std::vector<std::int64_t> pair_;
+  std::vector<std::string> names_;
+  std::int64_t samples_ = 0;
+  double seen_time_ = 0;                ///< of the last look
+  std::vector<std::int64_t> seen_ids_;  ///< of the particles it saw
+  std::vector<Quad> seen_;              ///< x, v, a of each, shape (n, 9)
+};
+
+}  // namespace noether

@@ -1,0 +1,95 @@
+#include "io/digest.hpp"
+
+#include <fmt/format.h>
+#include <openssl/evp.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <memory>
+#include <numeric>
+#include <utility>
+
+namespace noether::io {
+
+static_assert(std::endian::native == std::endian::little, "files and digests are little-endian as memory is");
+
+namespace {
+
+/// A running SHA-256.
+class Sha256 {
+ public:
+  Sha256() : context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) {
+    check(context_ != nullptr && EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) == 1);
+  }
+  void add(const void* data, std::size_t bytes) { check(EVP_DigestUpdate(context_.get(), data, bytes) == 1); }
+  template <class T>
+  void add(const T& number) {
+    add(&number, sizeof number);
+  }
+  std::string hex() {
+    std::array<unsigned char, EVP_MAX_MD_SIZE> hash{};
+    unsigned int size = 0;
+    check(EVP_DigestFinal_ex(context_.get(), hash.data(), &size) == 1);
+    std::string text;
+    for (unsigned int i = 0; i < size; ++i) text += fmt::format("{:02x}", hash[i]);
+    return text;
+  }
+
+ private:
+  static void check(bool done) {
+    if (!done) throw Error("the cryptographic library gives no SHA-256; is it a restricted build of OpenSSL?");
+  }
+  std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
+};
+
+}  // namespace
+
+std::string sha256(std::string_view bytes) {
+  Sha256 hash;
+  hash.add(bytes.data(), bytes.size());
+  return hash.hex();
+}
+
+std::vector<Index> id_order(const std::vector<std::int64_t>& ids) {
+  std::vector<Index> order(ids.size());
+  std::iota(order.begin(), order.end(), Index{0});
+  if (std::is_sorted(ids.begin(), ids.end())) return order;
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) {
+    return ids[static_cast<std::size_t>(a)] < ids[static_cast<std::size_t>(b)];
+  });
+  return order;
+}
+
+std::string digest(std::int64_t step, double time, std::span<const std::int64_t> ids,
+                   std::span<const double> positions, std::span<const double> velocities,
+                   std::span<const double> masses) {
+  static constexpr std::string_view head = "noether-state-1\n";
+  Sha256 hash;
+  hash.add(head.data(), head.size());
+  hash.add(step);
+  hash.add(static_cast<std::int64_t>(ids.size()));
+  hash.add(time);
+  hash.add(ids.data(), ids.size_bytes());
+  hash.add(positions.data(), positions.size_bytes());
+  hash.add(velocities.data(), velocities.size_bytes());
+  hash.add(masses.data(), masses.size_bytes());
+  return "sha256:" + hash.hex();
+}
+
+std::string digest(const ParticleSystem<double>& settled) {
+  const auto& clock = settled.clock();
+  std::vector<std::int64_t> ids;
+  std::vector<double> x, v, m;
+  for (const Index i : id_order(settled.ids())) {
+    ids.push_back(settled.ids()[static_cast<std::size_t>(i)]);
+    const Vec3<double> position = settled.positions()[i], velocity = settled.velocities()[i];
+    x.insert(x.end(), position.begin(), position.end());
+    v.insert(v.end(), velocity.begin(), velocity.end());
+    m.push_back(settled.masses()[i]);
+  }
+  const double time = clock.mode() == ClockMode::fixed ? clock.time_at(clock.step()) : clock.high();
+  return digest(clock.step(), time, ids, x, v, m);
+}
+
+}  // namespace noether::io

@@ -1,0 +1,35 @@
+#pragma once
+/// Digests: equal digests mean equal states, to the bit.
+
+#include "engine/particle_system.hpp"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace noether::io {
+
+/// SHA-256 of bytes, 64 hexadecimal digits in lower case.
+/// @throws Error if the cryptographic library refuses
+/// @cost O(bytes)
+std::string sha256(std::string_view bytes);
+
+/// The digest of a settled state, "sha256:<hex>".
+///
+/// SHA-256, little-endian, of the ASCII "noether-state-1\n", int64 step, int64 n, float64 time (t0 + n dt; of a free
+/// clock its high word), then in id order int64 id[n], float64 x[n][3], v[n][3], m[n].
+/// @cost O(n log n)
+std::string digest(const ParticleSystem<double>& settled);
+
+/// The same from arrays that stand in id order: ids (n), positions (n, 3), velocities (n, 3), masses (n), row by row.
+std::string digest(std::int64_t step, double time, std::span<const std::int64_t> ids,
+                   std::span<const double> positions, std::span<const double> velocities,
+                   std::span<const double> masses);
+
+/// Indices of the particles in the order of their ids, shape (n).
+/// @cost O(n) where they stand in order already
+std::vector<Index> id_order(const std::vector<std::int64_t>& ids);
+
+}  // namespace noether::io

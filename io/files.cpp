@@ -1,0 +1,86 @@
+#include "io/files.hpp"
+
+#include "engine/error.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+
+namespace noether::io {
+
+namespace {
+
+[[noreturn]] void fail(const std::filesystem::path& file, std::string_view what, int error) {
+  throw FileError(fmt::format("{}: {}", what, std::generic_category().message(error)), {.file = file.string()});
+}
+
+/// A file descriptor that closes itself.
+class Descriptor {
+ public:
+  Descriptor(const std::filesystem::path& file, int flags) : id_(::open(file.c_str(), flags | O_CLOEXEC, 0666)) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() {
+    if (id_ >= 0) ::close(id_);
+  }
+  operator int() const { return id_; }  // NOLINT: stands wherever the system wants one
+
+ private:
+  int id_;
+};
+
+}  // namespace
+
+std::string read_bytes(const std::filesystem::path& file) {
+  const Descriptor source(file, O_RDONLY);
+  if (source < 0) fail(file, "cannot be read", errno);
+  std::string bytes;
+  std::error_code unknown_size;
+  const auto size = std::filesystem::file_size(file, unknown_size);
+  std::size_t filled = 0;
+  bytes.resize(unknown_size ? 65536 : size + 1);
+  while (true) {
+    const ssize_t got = ::read(source, bytes.data() + filled, bytes.size() - filled);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) fail(file, "cannot be read", errno);
+    if (got == 0) break;
+    filled += static_cast<std::size_t>(got);
+    if (filled == bytes.size()) bytes.resize(2 * filled);
+  }
+  bytes.resize(filled);
+  return bytes;
+}
+
+void write_and_sync(const std::filesystem::path& file, std::string_view bytes) {
+  const auto give_up = [&](int error) {
+    ::unlink(file.c_str());
+    fail(file, "cannot be written", error);
+  };
+  const Descriptor target(file, O_WRONLY | O_CREAT | O_TRUNC);
+  if (target < 0) fail(file, "cannot be written", errno);
+  while (!bytes.empty()) {
+    const ssize_t put = ::write(target, bytes.data(), bytes.size());
+    if (put < 0 && errno == EINTR) continue;
+    if (put < 0) give_up(errno);
+    bytes.remove_prefix(static_cast<std::size_t>(put));
+  }
+  if (::fsync(target) != 0) give_up(errno);
+}
+
+void rename_if_there(const std::filesystem::path& from, const std::filesystem::path& to) {
+  if (::rename(from.c_str(), to.c_str()) != 0 && errno != ENOENT) fail(to, "cannot be written", errno);
+}
+
+void sync_folder(const std::filesystem::path& folder) {
+  const std::filesystem::path name = folder.empty() ? "." : folder;
+  const Descriptor opened(name, O_RDONLY | O_DIRECTORY);
+  if (opened < 0) fail(name, "cannot be flushed to disk", errno);
+  // Some file systems cannot flush a folder; they say so by EINVAL.
+  if (::fsync(opened) != 0 && errno != EINVAL) fail(name, "cannot be flushed to disk", errno);
+}
+
+}  // namespace noether::io

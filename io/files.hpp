@@ -1,0 +1,22 @@
+#pragma once
+/// Plain files: whole contents in and out, flushed to disk, with errors that name the file.
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace noether::io {
+
+/// All bytes of a file. @throws FileError
+std::string read_bytes(const std::filesystem::path& file);
+
+/// Writes a file and waits until it is on disk. @throws FileError; what was written of it is removed
+void write_and_sync(const std::filesystem::path& file, std::string_view bytes);
+
+/// Renames a file, replacing another; nothing happens where there is none. @throws FileError
+void rename_if_there(const std::filesystem::path& from, const std::filesystem::path& to);
+
+/// Waits until the names in a folder are on disk. @throws FileError
+void sync_folder(const std::filesystem::path& folder);
+
+}  // namespace noether::io

@@ -1,0 +1,119 @@
+#pragma once
+/// The part of HDF5 that noether's files use, without showing HDF5: every call checks, every error names its file.
+///
+/// In a build without HDF5 every function that opens a file throws FileError.
+
+#include "engine/types.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace noether::io {
+
+/// Whether this build reads and writes HDF5 files.
+bool has_hdf5() noexcept;
+
+/// What elements a dataset or attribute has; `other` is what noether never writes.
+enum class ElementType : std::uint8_t { real, integer, text, other };
+
+/// One HDF5 object, closed with its last owner.
+class Hdf5Handle;
+
+/// A dataset, open. Its first axis counts rows; the others are one sample.
+class Hdf5Dataset {
+ public:
+  Hdf5Dataset() = default;
+
+  /// Number of rows; 1 for a scalar.
+  Index rows() const;
+  /// All axes; empty for a scalar.
+  std::vector<Index> shape() const;
+  ElementType type() const;
+
+  /// Adds one row. @throws FileError if the disk refuses
+  void append(std::span<const double> row);
+  void append(std::int64_t row);
+  /// Cuts the dataset to `rows` rows, or lengthens it.
+  void resize(Index rows);
+
+  std::vector<double> read_reals() const;
+  /// Rows [first, first + count).
+  std::vector<double> read_reals(Index first, Index count) const;
+  std::vector<std::int64_t> read_integers() const;
+  std::vector<std::string> read_texts() const;
+
+ private:
+  friend class Hdf5File;
+  Hdf5Dataset(std::shared_ptr<Hdf5Handle> handle, std::string path) : handle_(std::move(handle)), path_(std::move(path)) {}
+  void append_raw(const void* row, std::size_t values, ElementType type);
+  void require(ElementType expected) const;
+
+  std::shared_ptr<Hdf5Handle> handle_;
+  std::string path_;
+};
+
+/// An open HDF5 file. Paths are absolute ("/noether/scene"); groups on the way are made as needed.
+class Hdf5File {
+ public:
+  /// Makes a new file, replacing an old one. @throws FileError
+  static Hdf5File create(const std::filesystem::path& file);
+  /// @throws FileError if it is missing or no HDF5 file
+  static Hdf5File open_to_read(const std::filesystem::path& file);
+  static Hdf5File open_to_append(const std::filesystem::path& file);
+  /// A file in memory only; `name` stands in messages.
+  static Hdf5File create_in_memory(const std::filesystem::path& name);
+  /// Reads a file that is in memory already.
+  static Hdf5File open_bytes(const std::string& bytes, const std::filesystem::path& name);
+
+  /// The bytes that a file of this content has.
+  std::string to_bytes() const;
+  /// Hands everything to the operating system.
+  void flush() const;
+
+  void make_group(const std::string& path) const;
+  bool has(const std::string& path) const;
+  bool is_group(const std::string& path) const;
+  /// Names below a group, sorted.
+  std::vector<std::string> children(const std::string& path) const;
+  /// Gives an object a second path.
+  void link(const std::string& existing, const std::string& path) const;
+
+  /// A fixed dataset, shape given; no shape: a scalar.
+  void write(const std::string& path, std::span<const double> values, const std::vector<Index>& shape) const;
+  void write(const std::string& path, std::span<const std::int64_t> values, const std::vector<Index>& shape) const;
+  void write(const std::string& path, const std::vector<std::string>& values) const;
+  void write_text(const std::string& path, const std::string& text) const;
+
+  /// A dataset that grows by rows: (unlimited, sample...), `chunk` rows to a piece on disk.
+  Hdf5Dataset create_growing(const std::string& path, ElementType type, const std::vector<Index>& sample,
+                             Index chunk) const;
+  Hdf5Dataset open(const std::string& path) const;
+  std::string read_text(const std::string& path) const;
+
+  bool has_attribute(const std::string& path, const std::string& name) const;
+  /// Attributes are replaced where they exist.
+  void set_attribute(const std::string& path, const std::string& name, const std::string& text) const;
+  void set_attribute(const std::string& path, const std::string& name, const char* text) const {
+    set_attribute(path, name, std::string(text));
+  }
+  void set_attribute(const std::string& path, const std::string& name, std::int64_t value) const;
+  void set_attribute(const std::string& path, const std::string& name, double value) const;
+  void set_attribute(const std::string& path, const std::string& name, const std::vector<std::int64_t>& values) const;
+  void set_attribute(const std::string& path, const std::string& name, const std::vector<std::string>& values) const;
+  /// Empty text, or 0, where there is no such attribute.
+  std::string text_attribute(const std::string& path, const std::string& name) const;
+  std::int64_t integer_attribute(const std::string& path, const std::string& name) const;
+  double real_attribute(const std::string& path, const std::string& name) const;
+
+ private:
+  explicit Hdf5File(std::shared_ptr<Hdf5Handle> handle) : handle_(std::move(handle)) {}
+
+  std::shared_ptr<Hdf5Handle> handle_;
+};
+
+}  // namespace noether::io

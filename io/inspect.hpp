@@ -1,0 +1,87 @@
+#pragma once
+/// What stands in a file: summaries, checks, conversions, and series for plots.
+
+#include "engine/types.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace noether::io {
+
+/// The samples of one monitor.
+struct MonitorSeries {
+  std::string name;
+  std::vector<std::int64_t> step;
+  std::vector<double> time;  ///< [time]
+  /// By name: shape of one sample (empty for a number), and all values, sample by sample.
+  std::map<std::string, std::pair<std::vector<Index>, std::vector<double>>> quantities;
+  std::map<std::string, std::string> units;  ///< by quantity, and of "time"; "1" for plain numbers
+  std::optional<double> scale;               ///< what relative errors are relative to
+};
+
+/// How much of one monitor a file holds.
+struct MonitorSummary {
+  std::string name;
+  std::vector<std::string> quantities;
+  Index samples = 0;
+};
+
+struct FileInfo {
+  std::string kind;        ///< "trajectory" or "checkpoint"; empty if the file cannot be opened
+  bool complete = false;   ///< trajectory: the run ended as asked; checkpoint: written to the end
+  std::int64_t last_step = 0;
+  double last_time = 0;    ///< [time]
+  std::string time_unit;
+  Index particles = 0, frames = 0;
+  std::string digest;      ///< trajectory: of the last frame, from its data; checkpoint: as stored; may be empty
+  std::string version, commit, simd, units;
+  std::string outcome;     ///< checkpoint: how the run ended; empty while it is unfinished
+  std::string scene_toml;
+  std::vector<MonitorSummary> monitors;
+  std::vector<std::string> damaged;  ///< what `verify` found wrong, one line each
+};
+
+/// One moment of a trajectory; particles stand in id order.
+struct Frame {
+  std::int64_t step = 0;
+  double time = 0;                            ///< [time]
+  std::vector<double> positions, velocities;  ///< (n, 3), row by row [length], [length/time]
+};
+
+/// All frames of a trajectory and what they share.
+struct Frames {
+  std::string units, length_unit, time_unit, velocity_unit;  ///< name of the unit system, symbols of its units
+  std::vector<std::int64_t> ids;
+  std::vector<std::string> names;
+  std::vector<double> masses;
+  std::vector<Frame> frames;
+};
+
+/// A summary of a trajectory or a checkpoint.
+/// @throws FileError if it is neither, or damaged
+FileInfo info(const std::filesystem::path& file);
+
+/// Reads everything: lengths agree, steps and times grow, numbers are finite, hashes fit.
+///
+/// What is wrong is listed in `damaged`, also where the file cannot be opened as HDF5 at all.
+/// @throws FileError if there is no such file
+FileInfo verify(const std::filesystem::path& file);
+
+/// Rewrites a trajectory as extended XYZ (`.xyz`) or CSV (`.csv`: step, time, id, name, x ... vz, 17 digits).
+/// @throws Error for another extension; FileError if a file cannot be read or written
+void convert(const std::filesystem::path& file, const std::filesystem::path& out);
+
+/// The samples of all monitors, in the order of their names.
+/// @throws FileError
+std::vector<MonitorSeries> read_monitors(const std::filesystem::path& file);
+
+/// All frames, in memory.
+/// @throws FileError
+Frames read_frames(const std::filesystem::path& file);
+
+}  // namespace noether::io

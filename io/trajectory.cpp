@@ -1,0 +1,374 @@
+#include "io/trajectory.hpp"
+
+#include "engine/quantity.hpp"
+#include "engine/version.hpp"
+#include "io/digest.hpp"
+#include "io/hdf5_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <map>
+#include <numeric>
+#include <utility>
+
+namespace noether::io {
+
+namespace {
+
+constexpr const char* particles_path = "/particles/system";
+constexpr const char* monitors_path = "/noether/monitors";
+
+/// Rows to a piece on disk: whole pages of 4096 bytes, at least `wanted` bytes, where that stays below 1 MiB.
+Index rows_per_chunk(Index numbers_per_row, Index wanted) {
+  const Index bytes = 8 * std::max<Index>(numbers_per_row, 1);
+  const Index whole_pages = 4096 / std::gcd(Index{4096}, bytes);
+  const Index enough = (wanted + bytes - 1) / bytes;
+  const Index rows = (enough + whole_pages - 1) / whole_pages * whole_pages;
+  return rows * bytes <= (1 << 20) ? rows : std::max<Index>(1, (1 << 20) / bytes);
+}
+constexpr Index frame_bytes = 65536, sample_bytes = 4096;
+
+/// The unit of a dimension in words; words that are no dimension stand for themselves.
+std::string unit_in_words(const std::string& dimension, const UnitSystem& units) {
+  try {
+    return unit_of(parse_dimension(dimension), units);
+  } catch (const Error&) {
+    return dimension;
+  }
+}
+
+/// Distinct names get distinct numbers, in the order of their first appearance.
+std::vector<std::int64_t> species_of(const std::vector<std::string>& names) {
+  std::map<std::string, std::int64_t> numbers;
+  std::vector<std::int64_t> species;
+  for (const std::string& name : names) {
+    species.push_back(numbers.emplace(name, static_cast<std::int64_t>(numbers.size())).first->second);
+  }
+  return species;
+}
+
+/// A sample that waits for its file.
+struct KeptSample {
+  explicit KeptSample(const Sample& s)
+      : monitor(s.monitor), step(s.step), time(s.time), series(s.series.begin(), s.series.end()), scale(s.scale) {}
+  Sample sample() const { return {monitor, step, time, series, scale}; }
+
+  std::string monitor;
+  std::int64_t step;
+  double time;
+  std::vector<Series> series;
+  std::optional<double> scale;
+};
+
+/// The datasets of one monitor, open.
+struct MonitorDatasets {
+  Hdf5Dataset step, time;
+  std::map<std::string, Hdf5Dataset> quantities;
+  std::optional<double> scale;
+};
+
+}  // namespace
+
+/// The file itself, shared by copies of the writer.
+class TrajectoryWriter::File {
+ public:
+  File(std::filesystem::path path, TrajectoryOptions options) : path_(std::move(path)), options_(std::move(options)) {}
+
+  const std::filesystem::path& path() const { return path_; }
+
+  void observe(const Snapshot<double>& now) {
+    const ParticleSystem<double>& state = now.state();
+    if (!hdf5_) create(state);
+    if (options_.frames) {
+      match(state);
+      write_frame(now, state);
+    }
+    flush_now_and_then();
+  }
+
+  void record(const Sample& sample) {
+    if (!hdf5_) {
+      waiting_.emplace_back(sample);
+      return;
+    }
+    write_sample(sample);
+    flush_now_and_then();
+  }
+
+  void flush() {
+    if (hdf5_) hdf5_->flush();
+    flushed_ = std::chrono::steady_clock::now();
+  }
+
+  void finish(const Outcome& outcome) {
+    if (!hdf5_) return;
+    hdf5_->set_attribute("/noether", "complete", std::int64_t{outcome.ok() ? 1 : 0});
+    flush();
+  }
+
+  void save(SavedState& saved, const std::string& prefix) const {
+    std::vector<std::string> paths;
+    std::vector<std::int64_t> rows;
+    if (hdf5_) {
+      for (const std::string& path : growing_paths()) {
+        paths.push_back(path);
+        rows.push_back(hdf5_->open(path).rows());
+      }
+    }
+    save_value(saved, prefix + "/created", hdf5_.has_value());
+    save_value(saved, prefix + "/dataset", paths);
+    save_value(saved, prefix + "/rows", rows);
+  }
+
+  void load(const SavedState& saved, const std::string& prefix) {
+    bool created = false;
+    std::vector<std::string> paths;
+    std::vector<std::int64_t> rows;
+    load_value(saved, prefix + "/created", created);
+    load_value(saved, prefix + "/dataset", paths);
+    load_value(saved, prefix + "/rows", rows);
+    close();
+    if (!created) return;
+    if (!std::filesystem::exists(path_)) {
+      throw FileError("the trajectory that the saved run counts on is missing; bring it back, or start afresh",
+                      {.file = path_.string()});
+    }
+    cut(paths, rows);
+    // Space that was freed by cutting is not reused before the file has been closed.
+    close();
+    open();
+  }
+
+ private:
+  void close() {
+    frame_ = {};
+    monitors_.clear();
+    waiting_.clear();
+    ids_.clear();
+    hdf5_.reset();
+  }
+
+  void create(const ParticleSystem<double>& state) {
+    units_ = &state.units();
+    hdf5_ = Hdf5File::create(path_);
+    describe_file();
+    describe_particles(state);
+    if (options_.frames) create_frames(state.size());
+    for (const KeptSample& kept : std::exchange(waiting_, {})) write_sample(kept.sample());
+  }
+
+  void describe_file() const {
+    hdf5_->make_group("/h5md/author");
+    hdf5_->make_group("/h5md/creator");
+    hdf5_->set_attribute("/h5md", "version", std::vector<std::int64_t>{1, 1});
+    hdf5_->set_attribute("/h5md/author", "name", "noether");
+    hdf5_->set_attribute("/h5md/creator", "name", "noether");
+    hdf5_->set_attribute("/h5md/creator", "version", version());
+    hdf5_->make_group(monitors_path);
+    hdf5_->set_attribute("/noether", "version", version());
+    hdf5_->set_attribute("/noether", "commit", commit());
+    hdf5_->set_attribute("/noether", "simd", options_.simd);
+    hdf5_->set_attribute("/noether", "units", std::string(units_->name));
+    hdf5_->set_attribute("/noether", "complete", std::int64_t{0});
+    hdf5_->write_text("/noether/scene", options_.scene_toml);
+  }
+
+  void describe_particles(const ParticleSystem<double>& state) {
+    const std::string root = particles_path;
+    std::vector<double> masses;
+    std::vector<std::string> names;
+    match_order(state);
+    for (const Index i : order_) {
+      masses.push_back(state.masses()[i]);
+      names.push_back(state.name(i));
+    }
+    const std::vector<Index> shape{state.size()};
+    hdf5_->write(root + "/id", sorted_ids_, shape);
+    hdf5_->write(root + "/mass", masses, shape);
+    hdf5_->write(root + "/species", species_of(names), shape);
+    hdf5_->write(root + "/name", names);
+    set_unit(root + "/mass", std::string(units_->mass), "u");
+    hdf5_->make_group(root + "/box");
+    hdf5_->set_attribute(root + "/box", "dimension", std::int64_t{3});
+    hdf5_->set_attribute(root + "/box", "boundary", std::vector<std::string>(3, "none"));
+  }
+
+  /// MDAnalysis takes only the units it knows, so an attribute `unit` stands in molecular files alone.
+  void set_unit(const std::string& path, const std::string& unit, const std::string& molecular) const {
+    const bool known = units_->name == "molecular";
+    hdf5_->set_attribute(path, known ? "unit" : "noether_unit", known ? molecular : unit);
+  }
+
+  /// Position's values come first, step and time are shared by position and velocity.
+  void create_frames(Index particles) {
+    const std::string position = std::string(particles_path) + "/position";
+    const std::string velocity = std::string(particles_path) + "/velocity";
+    const Index rows = rows_per_chunk(3 * particles, frame_bytes), few = rows_per_chunk(1, sample_bytes);
+    frame_.position = hdf5_->create_growing(position + "/value", ElementType::real, {particles, 3}, rows);
+    frame_.velocity = hdf5_->create_growing(velocity + "/value", ElementType::real, {particles, 3}, rows);
+    frame_.step = hdf5_->create_growing(position + "/step", ElementType::integer, {}, few);
+    frame_.time = hdf5_->create_growing(position + "/time", ElementType::real, {}, few);
+    hdf5_->link(position + "/step", velocity + "/step");
+    hdf5_->link(position + "/time", velocity + "/time");
+    set_unit(position + "/value", std::string(units_->length), "nm");
+    set_unit(velocity + "/value", unit_of(dimensions::velocity, *units_), "nm ps-1");
+    set_unit(position + "/time", std::string(units_->time), "ps");
+  }
+
+  /// Opens an existing file to go on with it.
+  void open() {
+    const std::string root = particles_path;
+    hdf5_ = Hdf5File::open_to_append(path_);
+    units_ = &unit_system(hdf5_->text_attribute("/noether", "units"));
+    sorted_ids_ = hdf5_->open(root + "/id").read_integers();
+    hdf5_->set_attribute("/noether", "complete", std::int64_t{0});
+    if (!options_.frames) return;
+    frame_ = {hdf5_->open(root + "/position/value"), hdf5_->open(root + "/velocity/value"),
+              hdf5_->open(root + "/position/step"), hdf5_->open(root + "/position/time")};
+  }
+
+  /// Every dataset that grows, each once.
+  std::vector<std::string> growing_paths() const {
+    const std::string root = particles_path;
+    std::vector<std::string> paths;
+    if (hdf5_->has(root + "/position")) {
+      paths = {root + "/position/step", root + "/position/time", root + "/position/value", root + "/velocity/value"};
+    }
+    for (const std::string& monitor : hdf5_->children(monitors_path)) {
+      const std::string group = std::string(monitors_path) + "/" + monitor;
+      for (const std::string& name : hdf5_->children(group)) paths.push_back(group + "/" + name);
+    }
+    return paths;
+  }
+
+  /// Cuts every dataset back to its saved length; those that came later become empty.
+  void cut(const std::vector<std::string>& paths, const std::vector<std::int64_t>& rows) {
+    hdf5_ = Hdf5File::open_to_append(path_);
+    for (const std::string& path : growing_paths()) {
+      const auto found = std::find(paths.begin(), paths.end(), path);
+      if (found == paths.end()) hdf5_->open(path).resize(0);
+    }
+    for (std::size_t k = 0; k < paths.size(); ++k) {
+      Hdf5Dataset dataset = hdf5_->open(paths[k]);
+      const Index held = dataset.rows(), wanted = rows.at(k);
+      if (held < wanted) {
+        throw FileError(fmt::format("'{}' holds {} rows where the saved run counts on {}; the file was cut or replaced: "
+                                    "bring it back, or start afresh",
+                                    paths[k], held, wanted),
+                        {.file = path_.string()});
+      }
+      if (held > wanted) dataset.resize(wanted);
+    }
+    flush();
+  }
+
+  void match_order(const ParticleSystem<double>& state) {
+    ids_ = state.ids();
+    order_ = id_order(ids_);
+    sorted_ids_.clear();
+    for (const Index i : order_) sorted_ids_.push_back(ids_[static_cast<std::size_t>(i)]);
+  }
+
+  /// The particles must be those of the file, in any order.
+  void match(const ParticleSystem<double>& state) {
+    if (state.ids() == ids_) return;
+    const std::vector<std::int64_t> expected = sorted_ids_;
+    match_order(state);
+    if (sorted_ids_ == expected) return;
+    throw FileError(fmt::format("the file holds {} particles, the run now has {}, or others: a trajectory is of one set of "
+                                "particles; after an edit write another file",
+                                expected.size(), ids_.size()),
+                    {.file = path_.string()});
+  }
+
+  void gather(const VectorColumn<double>& column) {
+    row_.clear();
+    for (const Index i : order_) {
+      for (int k = 0; k < 3; ++k) row_.push_back(column.component(k)[i]);
+    }
+  }
+
+  void write_frame(const Snapshot<double>& now, const ParticleSystem<double>& state) {
+    gather(state.velocities());
+    frame_.velocity.append(row_);
+    const double time = now.time();
+    frame_.time.append(std::span(&time, 1));
+    frame_.step.append(now.step());
+    gather(state.positions());
+    frame_.position.append(row_);
+  }
+
+  void write_sample(const Sample& sample) {
+    MonitorDatasets& monitor = datasets_of(sample);
+    for (const Series& one : sample.series) monitor.quantities.at(one.name).append(one.values);
+    monitor.time.append(std::span(&sample.time, 1));
+    monitor.step.append(sample.step);
+    if (sample.scale && sample.scale != monitor.scale) {
+      hdf5_->set_attribute(std::string(monitors_path) + "/" + std::string(sample.monitor), "scale", *sample.scale);
+      monitor.scale = sample.scale;
+    }
+  }
+
+  MonitorDatasets& datasets_of(const Sample& sample) {
+    const auto [place, is_new] = monitors_.try_emplace(std::string(sample.monitor));
+    MonitorDatasets& monitor = place->second;
+    if (!is_new) return monitor;
+    const std::string group = std::string(monitors_path) + "/" + place->first + "/";
+    const bool there = hdf5_->has(group + "step");
+    const auto dataset = [&](const std::string& name, ElementType type, const std::vector<Index>& shape) {
+      if (there) return hdf5_->open(group + name);
+      const Index values = std::accumulate(shape.begin(), shape.end(), Index{1}, std::multiplies<>());
+      return hdf5_->create_growing(group + name, type, shape, rows_per_chunk(values, sample_bytes));
+    };
+    monitor.step = dataset("step", ElementType::integer, {});
+    monitor.time = dataset("time", ElementType::real, {});
+    for (const Series& one : sample.series) monitor.quantities[one.name] = dataset(one.name, ElementType::real, one.shape);
+    if (!there) describe_monitor(group, sample);
+    return monitor;
+  }
+
+  void describe_monitor(const std::string& group, const Sample& sample) const {
+    hdf5_->set_attribute(group + "time", "noether_unit", std::string(units_->time));
+    for (const Series& one : sample.series) {
+      hdf5_->set_attribute(group + one.name, "noether_unit", unit_in_words(one.dimension, *units_));
+      if (!one.columns.empty()) hdf5_->set_attribute(group + one.name, "columns", one.columns);
+    }
+  }
+
+  /// A reader that follows the run sees it at most a second late.
+  void flush_now_and_then() {
+    if (std::chrono::steady_clock::now() - flushed_ > std::chrono::seconds(1)) flush();
+  }
+
+  struct FrameDatasets {
+    Hdf5Dataset position, velocity, step, time;
+  };
+
+  std::filesystem::path path_;
+  TrajectoryOptions options_;
+  const UnitSystem* units_ = nullptr;
+  std::optional<Hdf5File> hdf5_;
+  FrameDatasets frame_;
+  std::map<std::string, MonitorDatasets> monitors_;
+  std::vector<KeptSample> waiting_;                ///< samples that came before the first look
+  std::vector<std::int64_t> ids_, sorted_ids_;     ///< as the run has them, and as the file has them
+  std::vector<Index> order_;
+  std::vector<double> row_;
+  std::chrono::steady_clock::time_point flushed_ = std::chrono::steady_clock::now();
+};
+
+TrajectoryWriter::TrajectoryWriter(std::filesystem::path file, TrajectoryOptions options)
+    : held_(std::make_shared<File>(std::move(file), std::move(options))) {}
+
+void TrajectoryWriter::observe(const Snapshot<double>& now) { held_->observe(now); }
+void TrajectoryWriter::record(const Sample& sample) { held_->record(sample); }
+void TrajectoryWriter::flush() { held_->flush(); }
+void TrajectoryWriter::finish(const Outcome& outcome) { held_->finish(outcome); }
+void TrajectoryWriter::save(SavedState& saved, const std::string& prefix) const { held_->save(saved, prefix); }
+void TrajectoryWriter::load(const SavedState& saved, const std::string& prefix) { held_->load(saved, prefix); }
+const std::filesystem::path& TrajectoryWriter::file() const { return held_->path(); }
+
+}  // namespace noether::io

@@ -1,0 +1,97 @@
+/// Nothing is allocated inside `advance`, nor by settling a copy once its storage is there.
+
+#include "engine/simulation.hpp"
+#include "forces/external_fields.hpp"
+#include "forces/gravity.hpp"
+#include "forces/sum.hpp"
+#include "integrators/composition.hpp"
+#include "integrators/damped.hpp"
+#include "integrators/kinetic_potential.hpp"
+#include "integrators/schemes.hpp"
+#include "integrators/wisdom_holman.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/planets.hpp"
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+namespace {
+std::atomic<long> allocations{0};
+
+void* counted(std::size_t size, std::size_t alignment) {
+  ++allocations;
+  void* p = alignment > alignof(std::max_align_t)
+                ? std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment)
+                : std::malloc(size > 0 ? size : 1);
+  if (p == nullptr) throw std::bad_alloc();
+  return p;
+}
+}  // namespace
+
+void* operator new(std::size_t size) { return counted(size, 0); }
+void* operator new[](std::size_t size) { return counted(size, 0); }
+void* operator new(std::size_t size, std::align_val_t a) { return counted(size, static_cast<std::size_t>(a)); }
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete[](void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t /*size*/) noexcept { std::free(p); }
+void operator delete[](void* p, std::size_t /*size*/) noexcept { std::free(p); }
+void operator delete(void* p, std::align_val_t /*alignment*/) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t /*size*/, std::align_val_t /*alignment*/) noexcept { std::free(p); }
+
+using namespace noether;
+
+namespace {
+
+constexpr double G = test::outer_G;
+
+/// Allocations of 20 steps and of settling, after a first step.
+template <class I> std::pair<long, long> allocations_of(I integrator) {
+  ParticleSystem<double> s = test::outer_planets();
+  s.clock() = Clock<double>::fixed(0, 30);
+  integrator.bind(s);
+  integrator.advance(s, {.steps = 1});
+  ParticleSystem<double> copy = s;
+  integrator.settle(s, copy, {.energy = true}, std::nullopt, true);
+  const long start = allocations;
+  integrator.advance(s, {.steps = 20});
+  const long stepped = allocations;
+  integrator.settle(s, copy, {.energy = true}, std::nullopt, true);
+  return {stepped - start, allocations - stepped};
+}
+
+template <class I> void check_none(const I& integrator) {
+  const auto [stepping, settling] = allocations_of(integrator);
+  CHECK(stepping == 0);
+  CHECK(settling == 0);
+}
+
+/// A force that allocates: the count must see it.
+struct Careless {
+  template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+    const std::vector<double> scratch(static_cast<std::size_t>(s.size()) + 100);
+    out.energy(Real(scratch.back()));
+  }
+};
+
+}  // namespace
+
+TEST_CASE("nothing is allocated inside advance, nor by settling", "[allocation]") {
+  for (const char* name : {"verlet", "yoshida_8", "aba_10_6_4"}) {
+    const Scheme& scheme = *schemes::find(name);
+    CAPTURE(name);
+    check_none(compose(KineticPotential(Gravity{.G = G}), scheme));
+    check_none(compose(KineticPotential(Gravity{.G = G}), scheme, {.compensated = true}));
+    check_none(compose(WisdomHolman({.G = G}), scheme));
+    ForceField forces;
+    forces.add(Gravity{.G = G}).add(UniformField{.acceleration = {1e-9, 0, 0}});
+    check_none(compose(AnyHamiltonian<double>(KineticPotential<ForceField<double>>{forces}), scheme));
+    check_none(AnyIntegrator<double>(compose(WisdomHolman({.G = G}), scheme)));
+  }
+  check_none(compose(WisdomHolman({.G = G, .coordinates = Coordinates::democratic}), schemes::verlet_aba));
+  check_none(compose(Damped(KineticPotential(Gravity{.G = G}), {.rate = 1e-6}), schemes::verlet));
+}
+
+TEST_CASE("a force that allocates is seen by the count", "[allocation]") {
+  CHECK(allocations_of(compose(KineticPotential(Careless{}), schemes::verlet)).first >= 19);  // settling shares one evaluation
+}

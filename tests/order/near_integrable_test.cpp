@@ -1,0 +1,82 @@
+#include "integrators/schemes.hpp"
+#include "integrators/wisdom_holman.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/order_fit.hpp"
+#include "tests/support/problems.hpp"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace noether {
+namespace {
+
+using namespace noether::testing;
+
+constexpr double duration = 3;        // half a turn of the inner planet
+constexpr double mass_ratio = 1e-7;   // epsilon: masses of two planets are 1, 2, 3 times this
+
+/// Positions of the planets after the duration, shape (6).
+std::vector<Quad> outcome(const Scheme& scheme, double mass, long n, Coordinates coordinates) {
+  const WisdomHolman<Quad> hamiltonian({.coordinates = coordinates});
+  const auto end = run(hamiltonian, scheme, planets(mass, 2).as<Quad>(), duration / static_cast<double>(n), n);
+  std::vector<Quad> x;
+  for (Index i = 1; i < end.size(); ++i) {
+    for (int k = 0; k < 3; ++k) x.push_back(end.positions()[i][k]);
+  }
+  return x;
+}
+
+/// Sizes of e1, e2, e3 in error(eps) = eps e1 + eps^2 e2 + eps^3 e3 + ..., from three values of eps.
+std::array<double, 3> expansion(const std::array<std::vector<Quad>, 3>& end, const std::array<std::vector<Quad>, 3>& exact) {
+  std::array<double, 3> size{};
+  const Quad eps(mass_ratio);
+  for (std::size_t k = 0; k < end[0].size(); ++k) {
+    const Quad u = end[0][k] - exact[0][k], v = end[1][k] - exact[1][k], w = end[2][k] - exact[2][k];
+    const std::array<Quad, 3> e = {(Quad(18) * u - Quad(9) * v + Quad(2) * w) / (Quad(6) * eps),
+                                   (Quad(-5) * u + Quad(4) * v - w) / (Quad(2) * eps * eps),
+                                   (Quad(3) * u - Quad(3) * v + w) / (Quad(6) * eps * eps * eps)};
+    for (std::size_t p = 0; p < 3; ++p) size[p] = std::max(size[p], static_cast<double>(abs(e[p])));
+  }
+  return size;
+}
+
+std::array<std::vector<Quad>, 3> outcomes(const Scheme& scheme, long n, Coordinates coordinates) {
+  std::array<std::vector<Quad>, 3> all;
+  for (std::size_t k = 0; k < 3; ++k) all[k] = outcome(scheme, static_cast<double>(k + 1) * mass_ratio, n, coordinates);
+  return all;
+}
+
+/// The three orders of every scheme that claims them and fits the coordinates, against `exact`.
+void check_orders(Coordinates coordinates, const std::array<std::vector<Quad>, 3>& exact) {
+  for (const Scheme* scheme : schemes::all()) {
+    const bool needs_exact_b = scheme->exact.find('B') != std::string_view::npos;
+    if (scheme->scheme_class != SchemeClass::near_integrable) continue;
+    if (needs_exact_b && coordinates == Coordinates::democratic) continue;
+    std::array<std::vector<ErrorPoint>, 3> points;
+    for (const long n : ladder(16, 48)) {
+      const auto size = expansion(outcomes(*scheme, n, coordinates), exact);
+      for (std::size_t p = 0; p < 3; ++p) points[p].push_back({duration / static_cast<double>(n), size[p]});
+    }
+    for (std::size_t p = 0; p < 3; ++p) {
+      const int claim = scheme->order.near_integrable[p];
+      if (claim == 0) continue;
+      const auto used = finest(points[p], 1e-20, 0.1);
+      INFO(scheme->name << " claims order " << claim << " in epsilon^" << p + 1 << ", measured " << fitted_slope(used)
+                        << "\n" << to_text(points[p]));
+      CHECK(used.size() == 3);
+      CHECK(std::fabs(fitted_slope(used) - claim) < 0.2);
+    }
+  }
+}
+
+TEST_CASE("near-integrable schemes have their order in each power of epsilon", "[order][slow]") {
+  check_orders(Coordinates::jacobi, outcomes(schemes::sofroniou_spaletta_10_s35, 192, Coordinates::jacobi));
+}
+
+TEST_CASE("near-integrable schemes for inexact kicks have their orders in democratic coordinates too", "[order][slow]") {
+  check_orders(Coordinates::democratic, outcomes(schemes::sofroniou_spaletta_10_s35, 192, Coordinates::democratic));
+}
+
+}  // namespace
+}  // namespace noether

@@ -1,0 +1,82 @@
+#include "integrators/schemes.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/order_fit.hpp"
+#include "tests/support/problems.hpp"
+
+#include <algorithm>
+#include <string>
+
+namespace noether {
+namespace {
+
+using namespace noether::testing;
+
+/// Errors below which the digits of a table may show: it violates the conditions of its order by its last digit times
+/// the step. Order 8 and more are printed with 19 digits at least, odd orders with 17, the others with 14.
+double table_floor(const Scheme& scheme) {
+  const int order = scheme.order.classical;
+  return order >= 8 ? 1e-17 : order % 2 == 1 ? 1e-15 : 1e-12;
+}
+
+long kicks(const Scheme& scheme) {
+  return std::count_if(scheme.word.begin(), scheme.word.end(), [](const Stage& stage) { return stage.letter == 'B'; });
+}
+
+/// Errors from coarse to fine, until the floor or about `budget` kicks.
+template <class Error>
+std::vector<ErrorPoint> climb(const Scheme& scheme, double duration, long budget, const Error& error) {
+  std::vector<ErrorPoint> points;
+  for (const long n : ladder(4, std::max(16L, budget / kicks(scheme)))) {
+    points.push_back({duration / static_cast<double>(n), error(duration / static_cast<double>(n), n)});
+    if (points.back().error < table_floor(scheme)) break;
+  }
+  return points;
+}
+
+void check_order(const Scheme& scheme, const std::vector<ErrorPoint>& points) {
+  const auto used = finest(points, table_floor(scheme), 1e-2);
+  INFO(scheme.name << " claims order " << scheme.order.classical << ", measured " << fitted_slope(used) << "\n" << to_text(points));
+  CHECK(used.size() == 3);
+  CHECK(std::fabs(fitted_slope(used) - scheme.order.classical) < 0.2);
+}
+
+TEST_CASE("every scheme has its order on the potential of Henon and Heiles", "[order]") {
+  const auto start = particle_in_plane(0.1, 0.05, 0.3, 0.4).as<Quad>();
+  const double duration = 3;
+  const Motion<Quad> exact = henon_heiles_flow(motion_of(start), duration);
+  for (const Scheme* scheme : schemes::all()) {
+    check_order(*scheme, climb(*scheme, duration, 6000, [&](double dt, long n) {
+      const KineticPotential<HenonHeilesField, Quad> hamiltonian(HenonHeilesField{});
+      return distance(motion_of(run(hamiltonian, *scheme, start, dt, n)), exact);
+    }));
+  }
+}
+
+TEST_CASE("every scheme has its order on a Kepler orbit of eccentricity 0.6", "[order][slow]") {
+  const auto start = kepler_pair(0.6, 1.0).as<Quad>();
+  const double duration = 3;
+  const Motion<Quad> exact = kepler_motion(start, Quad(duration));
+  for (const Scheme* scheme : schemes::all()) {
+    check_order(*scheme, climb(*scheme, duration, 6000, [&](double dt, long n) {
+      const KineticPotential<Gravity, Quad> hamiltonian(Gravity{});
+      return distance(relative_motion(run(hamiltonian, *scheme, start, dt, n)), exact);
+    }));
+  }
+}
+
+TEST_CASE("every scheme has its order on a driven oscillator: kicks see the time of their stage", "[order]") {
+  const auto start = particle_in_plane(0.4, 0, -0.3, 0).as<Quad>();
+  const HarmonicField spring{.k = 1};
+  const OscillatingField drive{.acceleration = {0.7, 0, 0}, .omega = 2.25, .phase = 0.5};
+  const double duration = 3;
+  const Motion<Quad> exact = driven_motion(motion_of(start), spring, drive, Quad(duration));
+  for (const Scheme* scheme : schemes::all()) {
+    check_order(*scheme, climb(*scheme, duration, 2000, [&](double dt, long n) {
+      const KineticPotential<Sum<HarmonicField, OscillatingField>, Quad> hamiltonian(Sum(spring, drive));
+      return distance(motion_of(run(hamiltonian, *scheme, start, dt, n)), exact);
+    }));
+  }
+}
+
+}  // namespace
+}  // namespace noether

@@ -1,0 +1,98 @@
+#include "forces/sum.hpp"
+#include "integrators/composition.hpp"
+#include "integrators/damped.hpp"
+#include "integrators/schemes.hpp"
+#include "integrators/wisdom_holman.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/problems.hpp"
+
+#include <string>
+
+namespace noether {
+namespace {
+
+using namespace noether::testing;
+
+template <class H>
+std::string refusal(H hamiltonian, const Scheme& scheme) {
+  try {
+    compose(std::move(hamiltonian), scheme);
+  } catch (const SchemeMismatch& mismatch) {
+    return mismatch.what();
+  }
+  return "";
+}
+
+std::string refusal(const Scheme& scheme, const HamiltonianClaims& claims) {
+  try {
+    fitted_word(scheme, claims, "test");
+  } catch (const SchemeMismatch& mismatch) {
+    return mismatch.what();
+  }
+  return "";
+}
+
+const WisdomHolman<double> democratic({.coordinates = Coordinates::democratic});
+const Damped<KineticPotential<HarmonicField>> damped(KineticPotential(HarmonicField{.k = 1}), {.rate = 0.1});
+
+TEST_CASE("a scheme that needs exact kicks is refused on democratic coordinates and taken on Jacobi's", "[refusal]") {
+  CHECK(refusal(democratic, schemes::aba_10_6_4) ==
+        "scheme 'aba_10_6_4' needs exact flows, but part B of 'wisdom_holman' is a symmetric map of order 2; use a "
+        "composition of symmetric steps such as 'yoshida_6', or 'abah_10_6_4'");
+  CHECK(refusal(democratic, schemes::abah_10_6_4) == "");
+  CHECK(refusal(democratic, schemes::yoshida_6) == "");
+  CHECK(refusal(WisdomHolman<double>({}), schemes::aba_10_6_4) == "");
+}
+
+TEST_CASE("every Nystroem scheme is refused where the kinetic energy is not quadratic", "[refusal]") {
+  const HamiltonianClaims exact{.alphabet = "AB", .quadratic_kinetic = false};
+  int tested = 0;
+  for (const Scheme* scheme : schemes::all()) {
+    if (scheme->scheme_class != SchemeClass::rkn) continue;
+    CHECK(refusal(*scheme, exact) ==
+          "scheme '" + std::string(scheme->name) +
+              "' is a Runge-Kutta-Nystroem splitting and keeps its order only where {B,{B,{B,A}}} = 0, which 'test' does "
+              "not grant; use a general scheme such as 'blanes_moan_s10'");
+    CHECK(refusal(democratic, *scheme) != "");
+    CHECK(refusal(WisdomHolman<double>({}), *scheme) == "");
+    ++tested;
+  }
+  CHECK(tested == 8);
+}
+
+TEST_CASE("a scheme with negative steps is refused on an irreversible part", "[refusal]") {
+  CHECK(refusal(damped, schemes::yoshida_4) ==
+        "scheme 'yoshida_4' steps backwards, but part D of 'damped' is irreversible; use a scheme with forward steps "
+        "only, such as 'verlet' or 'mclachlan_2_s2'");
+  for (const Scheme* scheme : schemes::all()) {
+    bool backwards = false;
+    for (const Stage& stage : scheme->word) backwards = backwards || stage.weight < Quad(0);
+    CHECK((refusal(damped, *scheme) != "") == backwards);
+  }
+}
+
+TEST_CASE("a letter that the Hamiltonian does not have is refused", "[refusal]") {
+  CHECK(refusal(KineticPotential(HarmonicField{.k = 1}), word("BADAB")) ==
+        "scheme 'BADAB' uses the letter D, but 'kinetic_potential' has only AB");
+  CHECK(refusal(damped, word("BADAB")) == "");
+  CHECK(refusal(damped, word("BAOAB")) == "scheme 'BAOAB' uses the letter O, but 'damped' has only ABD");
+}
+
+TEST_CASE("a force that depends on velocities is refused as a kick", "[refusal]") {
+  struct Friction {
+    static ForceClaims claims() { return {.velocity_dependent = true}; }
+    void add_to(ForceSink<double>& out, const ParticleSystem<double>& s) const {
+      for (Index i = 0; i < s.size(); ++i) out.acceleration(i, -s.velocities()[i]);
+    }
+  };
+  CHECK_THROWS_AS(KineticPotential(Friction{}), SchemeMismatch);
+  CHECK_THROWS_AS(KineticPotential(Sum(HarmonicField{.k = 1}, Friction{})), SchemeMismatch);
+  CHECK_THROWS_AS((WisdomHolman<double, Friction>({}, Friction{})), SchemeMismatch);
+}
+
+TEST_CASE("a drag that drives is refused", "[refusal]") {
+  CHECK_THROWS_AS(Damped(KineticPotential(HarmonicField{.k = 1}), {.rate = -0.1}), Error);
+}
+
+}  // namespace
+}  // namespace noether

@@ -1,0 +1,109 @@
+/// run(2n) equals run(n) + save + load + run(n), bit for bit, for every scheme over both Hamiltonians.
+
+#include "engine/monitors.hpp"
+#include "engine/simulation.hpp"
+#include "forces/gravity.hpp"
+#include "integrators/composition.hpp"
+#include "integrators/kinetic_potential.hpp"
+#include "integrators/schemes.hpp"
+#include "integrators/wisdom_holman.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/planets.hpp"
+
+#include <fmt/format.h>
+
+#include <functional>
+#include <string>
+
+using namespace noether;
+
+namespace {
+
+template <class Real> struct Run {
+  Simulation<Real> simulation;
+  Energy* energy;
+  AngularMomentum* angular;
+  CenterOfMass* center;
+};
+
+template <class Real, class I> Run<Real> make_run(const I& integrator) {
+  Simulation<Real> simulation(test::outer_planets<Real>(), integrator, 40.0);
+  auto& energy = simulation.every(3, Energy{});
+  auto& angular = simulation.every(5, AngularMomentum{});
+  auto& center = simulation.every(7, CenterOfMass{});
+  return {std::move(simulation), &energy, &angular, &center};
+}
+
+std::string figures(const MonitorReport& report) {
+  const auto text = [](const std::optional<double>& x) { return x ? fmt::format("{}", *x) : std::string("-"); };
+  return fmt::format("{} {} {} {} {} {} {}", text(report.first), text(report.last), text(report.worst),
+                     text(report.rms), text(report.slope), text(report.slope_error), report.samples);
+}
+
+/// Runs 2n steps at once and in two halves with everything rebuilt in between.
+template <class Real, class I> void check_restart(const I& integrator, std::int64_t n) {
+  auto whole = make_run<Real>(integrator);
+  REQUIRE(whole.simulation.run(2 * n).ok());
+
+  auto first = make_run<Real>(integrator);
+  REQUIRE(first.simulation.run(n).ok());
+  const SavedRun saved = first.simulation.save();
+  auto second = make_run<Real>(integrator);
+  second.simulation.restore(saved);
+  REQUIRE(second.simulation.run(n).ok());
+
+  CHECK(test::same_bits(whole.simulation.particles(), second.simulation.particles()));
+  CHECK(figures(whole.energy->report()) == figures(second.energy->report()));
+  CHECK(figures(whole.angular->report()) == figures(second.angular->report()));
+  CHECK(figures(whole.center->report()) == figures(second.center->report()));
+  CHECK(whole.simulation.evaluations().force == second.simulation.evaluations().force);
+  CHECK(whole.simulation.evaluations().kepler == second.simulation.evaluations().kepler);
+}
+
+template <class Real> void check_all_hamiltonians(const Scheme& scheme, std::int64_t n) {
+  const Gravity gravity{.G = test::outer_G};
+  for (const bool compensated : {false, true}) {
+    CAPTURE(scheme.name, compensated);
+    check_restart<Real>(compose(KineticPotential<Gravity, Real>(gravity), scheme, {.compensated = compensated}), n);
+    check_restart<Real>(compose(WisdomHolman<Real>({.G = test::outer_G}), scheme, {.compensated = compensated}), n);
+    const WisdomHolman<Real> democratic({.G = test::outer_G, .coordinates = Coordinates::democratic});
+    try {
+      check_restart<Real>(compose(democratic, scheme, {.compensated = compensated}), n);
+    } catch (const SchemeMismatch&) {
+      CHECK((scheme.exact.find('B') != std::string_view::npos || scheme.scheme_class == SchemeClass::rkn));
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a run saved, rebuilt and restored goes on bit for bit, for every scheme over every Hamiltonian",
+          "[restart]") {
+  for (const Scheme* scheme : schemes::all()) check_all_hamiltonians<double>(*scheme, 37);
+}
+
+TEST_CASE("the same in Quad", "[restart]") {
+  for (const char* name : {"verlet", "symplectic_euler_a", "aba_10_6_4", "abah_8_6_4"}) {
+    check_all_hamiltonians<Quad>(*schemes::find(name), 8);
+  }
+}
+
+TEST_CASE("a restored run of another scheme, step or set of particles is refused", "[restart]") {
+  const KineticPotential<Gravity> gravity(Gravity{.G = test::outer_G});
+  Simulation run(test::outer_planets(), compose(gravity, schemes::verlet), 40.0);
+  CHECK(run.run(3).ok());
+  const SavedRun saved = run.save();
+
+  Simulation other_scheme(test::outer_planets(), compose(gravity, schemes::verlet_aba), 40.0);
+  CHECK_THROWS_WITH(other_scheme.restore(saved),
+                    "the saved run was made by method 'verlet', this one uses 'verlet_aba'");
+  Simulation other_step(test::outer_planets(), compose(gravity, schemes::verlet), 20.0);
+  CHECK_THROWS_WITH(other_step.restore(saved), "the saved run has a step of 40, this one of 20");
+  auto fewer = test::outer_planets();
+  fewer.remove(5);
+  Simulation other_particles(std::move(fewer), compose(gravity, schemes::verlet), 40.0);
+  CHECK_THROWS_WITH(other_particles.restore(saved), "the saved run has other particles than this one");
+  Simulation more_monitors(test::outer_planets(), compose(gravity, schemes::verlet), 40.0);
+  more_monitors.every(1, Energy{});
+  CHECK_THROWS_WITH(more_monitors.restore(saved), "the saved run has no part 'energy'; it was made by other parts");
+}
