@@ -26,7 +26,14 @@ template <class Real>
 Simulation<Real>::Simulation(ParticleSystem<Real> particles, AnyIntegrator<Real> integrator, Clock<Real> clock)
     : raw_(std::move(particles)), copy_(raw_), mapped_(raw_), integrator_(std::move(integrator)) {
   if (raw_.size() == 0) throw Error("there are no particles; a run needs at least one");
-  if (raw_.clock().step() == 0) raw_.clock() = clock;
+  const IntegratorClaims claims = integrator_.claims();
+  if (claims.clock != clock.mode()) {
+    throw Error(fmt::format(claims.clock == ClockMode::fixed
+                                ? "method '{}' takes steps of one length; give the step after the integrator"
+                                : "method '{}' chooses its steps itself; leave out the step after the integrator",
+                            claims.method));
+  }
+  raw_.clock() = clock;
   integrator_.bind(raw_);
   copy_ = raw_;
   mapped_ = raw_;
@@ -43,8 +50,23 @@ template <class Real> std::int64_t Simulation<Real>::positive(std::int64_t steps
   return steps;
 }
 
+template <class Real> double Simulation<Real>::positive(double seconds) {
+  if (!(seconds > 0) || !std::isfinite(seconds)) {
+    throw Error(fmt::format("a cadence of {} s is impossible; a finite time above 0 is expected", seconds));
+  }
+  return seconds;
+}
+
 template <class Real> void Simulation<Real>::register_last() {
-  Scheduled& added = monitors_.back();
+  try {
+    schedule(monitors_.back());
+  } catch (...) {
+    monitors_.pop_back();
+    throw;
+  }
+}
+
+template <class Real> void Simulation<Real>::schedule(Scheduled& added) {
   const std::string base = added.monitor.name().empty() ? "monitor" : added.monitor.name();
   added.name = base;
   for (int k = 2; std::any_of(monitors_.begin(), std::prev(monitors_.end()),
@@ -52,13 +74,26 @@ template <class Real> void Simulation<Real>::register_last() {
        ++k) {
     added.name = fmt::format("{}_{}", base, k);
   }
-  if (added.schedule.interval != 0 && raw_.clock().mode() == ClockMode::fixed) {
-    added.schedule.steps = positive(steps_in(added.schedule.interval));
-    added.schedule.interval = 0;
-  }
+  if (added.schedule.steps == 0 && added.schedule.wall == 0) schedule_by_time(added);
   if (added.monitor.wanted().energy && !integrator_.claims().energy) {
     throw Error(fmt::format("monitor '{}' needs the energy, but a force of this run reports none", added.name));
   }
+}
+
+template <class Real> void Simulation<Real>::schedule_by_time(Scheduled& added) {
+  const double interval = added.schedule.interval;
+  const bool forward = raw_.clock().mode() == ClockMode::free || raw_.clock().dt() > 0;
+  if (!std::isfinite(interval) || interval == 0 || (interval > 0) != forward) {
+    throw Error(fmt::format("monitor '{}' cannot look every {} of time; a finite time {} 0 is expected", added.name,
+                            interval, forward ? "above" : "below"));
+  }
+  if (raw_.clock().mode() == ClockMode::free) return;
+  const std::int64_t steps = steps_in(interval);
+  if (steps == 0) {
+    throw Error(fmt::format("monitor '{}' cannot look every {} of time; a step is {}", added.name, interval,
+                            raw_.clock().dt()));
+  }
+  added.schedule.steps = steps;
 }
 
 template <class Real> std::int64_t Simulation<Real>::steps_in(double duration) const {
@@ -68,7 +103,9 @@ template <class Real> std::int64_t Simulation<Real>::steps_in(double duration) c
   if (!std::isfinite(exact) || std::abs(exact) > 9e15) {
     throw Error(fmt::format("a duration of {} is no number of steps of {}", duration, dt));
   }
-  if (std::abs(exact - whole) > 1e-9 * std::max(1.0, std::abs(exact)) || whole < 0) {
+  if (exact < 0) throw Error(fmt::format("a duration of {} lies behind; steps of {} lead the other way", duration, dt));
+  // Beside 1e-9 of a step, the rounding of a long duration.
+  if (std::abs(exact - whole) > 1e-9 + 16 * std::numeric_limits<double>::epsilon() * exact) {
     throw Error(fmt::format("a duration of {} is {} steps of {}; the nearest whole numbers are {} ({}) and {} ({})",
                             duration, exact, dt, std::floor(exact) * dt, std::floor(exact), std::ceil(exact) * dt,
                             std::ceil(exact)));
@@ -82,16 +119,22 @@ template <class Real> Outcome Simulation<Real>::run(std::int64_t steps) {
 }
 
 template <class Real> Outcome Simulation<Real>::run_until(double until) {
+  if (std::isnan(until)) throw Error("time nan is no end of a run; a finite time is expected");
+  const bool forward = raw_.clock().mode() == ClockMode::free || raw_.clock().dt() > 0;
+  // Half a step of grace: a time that has been reached may be rounded differently.
+  const double grace = std::abs(raw_.clock().dt()) / 2;
+  if (forward ? until < time() - grace : until > time() + grace) {
+    throw Error(fmt::format("time {} has passed: the run stands at {}", until, time()));
+  }
   if (raw_.clock().mode() == ClockMode::free) return run_to(std::numeric_limits<std::int64_t>::max(), until);
-  const std::int64_t end = steps_in(until - raw_.clock().start());
-  if (end < step()) throw Error(fmt::format("time {} has passed: the run stands at {}", until, time()));
-  return run_to(end, std::numeric_limits<double>::infinity());
+  return run_to(steps_in(until - raw_.clock().start()), std::numeric_limits<double>::infinity());
 }
 
 template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double limit) {
   const auto started = WallClock::now();
   const double before = seconds_;
   auto reported = started;
+  shown_at_.reset();
   const bool free = raw_.clock().mode() == ClockMode::free;
   std::optional<Outcome> result;
   while (true) {
@@ -110,14 +153,18 @@ template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double 
     if (took < chunk_seconds / 2) chunk_ = std::min(longest_chunk, chunk_ * 2);
     if (took > chunk_seconds && chunk_ > 1) chunk_ /= 2;
     if (done.failure) {
-      result = failed(*done.failure);
+      result = not_finite();
+      if (!result) result = failed(*done.failure);
       break;
     }
     if (free && (result = not_finite())) break;
     if (done.at_limit) {
       const double reached = next_time(limit);
       observe_times(reached);
-      if (reached >= limit) break;
+      if (reached >= limit) {
+        shown_at_ = limit;
+        break;
+      }
     }
     if (progress_ && seconds_since(reported) > 0.1) {
       reported = WallClock::now();
@@ -187,7 +234,7 @@ template <class Real> void Simulation<Real>::observe_times(double until) {
   std::vector<Scheduled*> looking;
   Wanted wanted;
   for (auto& scheduled : monitors_) {
-    if (scheduled.schedule.interval <= 0) continue;
+    if (!by_time(scheduled)) continue;
     const double next = raw_.clock().start() + static_cast<double>(scheduled.observed) * scheduled.schedule.interval;
     if (next > until) continue;
     ++scheduled.observed;
@@ -210,7 +257,7 @@ template <class Real> std::int64_t Simulation<Real>::next_cut(std::int64_t end) 
 template <class Real> double Simulation<Real>::next_time(double end) const {
   double next = end;
   for (const auto& scheduled : monitors_) {
-    if (scheduled.schedule.interval <= 0) continue;
+    if (!by_time(scheduled)) continue;
     next = std::min(next, raw_.clock().start() + static_cast<double>(scheduled.observed) * scheduled.schedule.interval);
   }
   return next;
@@ -251,11 +298,12 @@ template <class Real> Outcome Simulation<Real>::failed(const Failure& failure) c
 }
 
 template <class Real> const ParticleSystem<Real>& Simulation<Real>::particles() {
-  integrator_.settle(raw_, copy_, {}, std::nullopt, true);
+  integrator_.settle(raw_, copy_, {}, shown_at_, true);
   return copy_;
 }
 
 template <class Real> void Simulation<Real>::begin_edit() {
+  shown_at_.reset();
   integrator_.settle(raw_, copy_, {}, std::nullopt, true);
   raw_ = copy_;
   raw_.phase() = Phase{};
@@ -267,10 +315,20 @@ template <class Real> void Simulation<Real>::end_edit() {
   integrator_.bind(raw_);
   copy_ = raw_;
   mapped_ = raw_;
+  for (auto& stop : stops_) stop.check.forget();
 }
 
 template <class Real> void Simulation<Real>::change_step(double dt) {
   checked(dt);
+  if (raw_.clock().mode() == ClockMode::free) {
+    throw Error(fmt::format("method '{}' chooses its steps itself; they cannot be set", integrator_.claims().method));
+  }
+  for (const auto& scheduled : monitors_) {
+    if (scheduled.schedule.interval == 0) continue;
+    throw Error(fmt::format("monitor '{}' looks every {} of time, at steps that a new step would shift; attach it by "
+                            "steps",
+                            scheduled.name, scheduled.schedule.interval));
+  }
   begin_edit();
   const double now = time();
   raw_.clock() = Clock<Real>::fixed(now - static_cast<double>(step()) * dt, dt, step());
@@ -282,6 +340,7 @@ template <class Real> SavedRun Simulation<Real>::save() const {
   saved.particles = save_particles(raw_);
   SavedState& run = saved.parts["simulation"];
   save_value(run, "observed_through", observed_through_);
+  save_value(run, "shown_at", shown_at_);
   integrator_.save(saved.parts["integrator"], "");
   for (const auto& scheduled : monitors_) {
     SavedState& state = saved.parts[scheduled.name];
@@ -304,9 +363,11 @@ template <class Real> void Simulation<Real>::restore(const SavedRun& saved) {
     throw Error(
         fmt::format("the saved run has a step of {}, this one of {}", particles.clock().dt(), raw_.clock().dt()));
   }
+  integrator_.bind(particles);  // the masses may have been edited
   integrator_.load(part("integrator"), "");
   raw_ = std::move(particles);
   load_value(part("simulation"), "observed_through", observed_through_);
+  load_value(part("simulation"), "shown_at", shown_at_);
   for (auto& scheduled : monitors_) {
     load_value(part(scheduled.name), "observed", scheduled.observed);
     scheduled.monitor.load(part(scheduled.name), "state");

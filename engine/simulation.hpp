@@ -26,7 +26,7 @@ struct Progress {
 template <class Real = double> class Simulation {
  public:
   /// A run of fixed step `dt` [time] that begins at time 0.
-  /// @throws Error  if dt is 0 or not finite, or the integrator cannot serve these particles
+  /// @throws Error  if dt is 0 or not finite, or the integrator chooses its steps or cannot serve these particles
   template <Integrator I>
   Simulation(ParticleSystem<Real> particles, I integrator, double dt)
       : Simulation(std::move(particles), AnyIntegrator<Real>(std::move(integrator)),
@@ -50,7 +50,7 @@ template <class Real = double> class Simulation {
   }
   /// The same by wall time, at whole steps [s]. Bits of the trajectory do not depend on it.
   template <class M> M& every_wall(double seconds, M monitor) {
-    return attach<M>({.wall = seconds}, std::move(monitor));
+    return attach<M>({.wall = positive(seconds)}, std::move(monitor));
   }
   /// Stops the run when `rule` holds, looked at every `steps`: `sim.stop_when(farther_than(100 * au), 4'000)`.
   void stop_when(const StopRule& rule, std::int64_t steps) {
@@ -63,14 +63,17 @@ template <class Real = double> class Simulation {
 
   /// Goes on for `steps` steps. The result tells how it ended; physics never throws, a writer that cannot write does.
   Outcome run(std::int64_t steps);
-  /// Goes on to time `until` [time]. @throws Error  if it is no whole number of steps away
+  /// Goes on to time `until` [time]. @throws Error  if it has passed, or is no whole number of steps away
   Outcome run_until(double until);
 
   std::int64_t step() const { return raw_.clock().step(); }
+  /// Time of `particles()` [time].
   double time() const {
-    return raw_.clock().mode() == ClockMode::fixed ? raw_.clock().time_at(step()) : raw_.clock().high();
+    if (raw_.clock().mode() == ClockMode::fixed) return raw_.clock().time_at(step());
+    return shown_at_.value_or(raw_.clock().high());
   }
-  /// The settled, inertial particles at the present step.
+  /// The settled, inertial particles at the present step; with a free clock, after `run_until`, at the time it was
+  /// given, which a copy has reached: the run itself stands at the whole step before.
   const ParticleSystem<Real>& particles();
   IntegratorClaims claims() const { return integrator_.claims(); }
   Evaluations evaluations() const { return integrator_.evaluations(); }
@@ -82,6 +85,7 @@ template <class Real = double> class Simulation {
     end_edit();
   }
   /// Changes the step [time], settling first; time and step count go on.
+  /// @throws Error  if the integrator chooses its steps, or a monitor looks by time
   void change_step(double dt);
 
   /// Everything a restart needs. @cost O(n)
@@ -121,12 +125,17 @@ template <class Real = double> class Simulation {
 
   static double checked(double dt);
   static std::int64_t positive(std::int64_t steps);
+  static double positive(double seconds);
   template <class M> M& attach(Schedule schedule, M monitor) {
     monitors_.push_back({"", schedule, AnyMonitor<Real>(std::move(monitor)), std::chrono::steady_clock::now(), 0});
     register_last();
     return *monitors_.back().monitor.template get<M>();
   }
   void register_last();
+  void schedule(Scheduled& added);
+  void schedule_by_time(Scheduled& added);
+  /// Whether times, not steps, tell when to look: a fixed clock has turned them into steps.
+  static bool by_time(const Scheduled& s) { return s.schedule.interval != 0 && s.schedule.steps == 0; }
   Snapshot<Real> snapshot(Wanted wanted, std::optional<double> at = std::nullopt) {
     return Snapshot<Real>(integrator_, raw_, copy_, mapped_, wanted, at, [this] { return save(); });
   }
@@ -147,6 +156,7 @@ template <class Real = double> class Simulation {
   AnyIntegrator<Real> integrator_;
   std::deque<Scheduled> monitors_;
   std::deque<ScheduledStop> stops_;
+  std::optional<double> shown_at_;      ///< free clock: where `run_until` has ended, beyond the last whole step
   std::int64_t observed_through_ = -1;  ///< last step whose due monitors have looked
   std::int64_t chunk_ = 16;
   const std::atomic<bool>* stop_flag_ = nullptr;

@@ -85,7 +85,7 @@ template <class Real> std::optional<StopReason> StopCheck<Real>::look_for_escape
           Hermite<Real>::bisect(Real(0), Real(1), [&](const Real& w) { return norm2(path.position(w)) > limit2; });
       at = last_time_ + static_cast<double>(u) * (now.time() - last_time_);
     }
-    return StopReason{i, fmt::format("escape of {}, distance {:.6g} above {:.6g} since time {:.9g}", s.name(i),
+    return StopReason{i, at, fmt::format("escape of {}, distance {:.6g} above {:.6g} since time {:.9g}", s.name(i),
                                      root(d2), rule_.distance, at)};
   }
   return {};
@@ -111,7 +111,7 @@ template <class Real> std::optional<StopReason> StopCheck<Real>::look_for_collis
         }
       }
       if (!(d2 < limit2)) continue;
-      return StopReason{i, fmt::format("collision of {} and {}, distance {:.6g} below {:.6g} at time {:.9g}", s.name(j),
+      return StopReason{i, at, fmt::format("collision of {} and {}, distance {:.6g} below {:.6g} at time {:.9g}", s.name(j),
                                        s.name(i), root(d2), rule_.distance, at)};
     }
   }

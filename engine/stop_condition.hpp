@@ -27,6 +27,7 @@ inline StopRule closer_than(double distance) { return {StopRule::Kind::collision
 /// What a condition found.
 struct StopReason {
   Index particle = -1;
+  double time = 0;  ///< when it happened, by the interpolated motion [time]
   std::string message;
 };
 
@@ -38,6 +39,13 @@ template <class Real> class StopCheck {
 
   /// @cost escape O(n); collision O(n m) with m massive bodies, and one force evaluation
   std::optional<StopReason> look(const Snapshot<Real>& snapshot);
+
+  /// The particles have been changed by hand: no motion leads from the last look to the next one.
+  void forget() {
+    x_.clear();
+    v_.clear();
+    a_.clear();
+  }
 
   void save(SavedState& saved, const std::string& prefix) const;
   void load(const SavedState& saved, const std::string& prefix);

@@ -11,8 +11,8 @@ namespace noether::schemes {
 // clang-format off
 
 inline constexpr Scheme symplectic_euler_a = alternating(
-    {.name = "symplectic_euler_a", .aliases = "symplectic_euler", .summary = "order 1: kick, then drift", .source = "DeVogelaere1956", .order = {1},
-     .stability_limit = 2.0}, 'B', list(1_q), list(1_q));
+    {.name = "symplectic_euler_a", .aliases = "symplectic_euler", .summary = "order 1: kick, then drift",
+     .source = "DeVogelaere1956", .order = {1}, .stability_limit = 2.0}, 'B', list(1_q), list(1_q));
 
 inline constexpr Scheme symplectic_euler_b = alternating(
     {.name = "symplectic_euler_b", .summary = "order 1: drift, then kick", .source = "DeVogelaere1956", .order = {1},

@@ -119,7 +119,8 @@ TEMPLATE_TEST_CASE("gravity keeps momentum and angular momentum to rounding", "[
 }
 
 TEST_CASE("a field from outside is seen as a change of momentum", "[monitors]") {
-  Simulation sim(oscillator(), compose(KineticPotential(UniformField{.acceleration = {0, 0.5, 0}}), schemes::verlet), 0.25);
+  const UniformField field{.acceleration = {0, 0.5, 0}};
+  Simulation sim(oscillator(), compose(KineticPotential(field), schemes::verlet), 0.25);
   auto& momentum = sim.every(4, Momentum{});
   CHECK(sim.run(8).ok());
   CHECK(momentum.value() == std::array<double, 3>{0, 1, 0});
@@ -166,8 +167,8 @@ TEST_CASE("a direction is told only where there is one", "[monitors]") {
 }
 
 TEST_CASE("a dissipative run has an energy but no error of it, and says why", "[monitors]") {
-  Simulation sim(oscillator(),
-                 compose(Damped(KineticPotential(HarmonicField{.k = 1}), LinearDrag{.rate = 0.125}), schemes::verlet), 0.125);
+  const Damped damped(KineticPotential(HarmonicField{.k = 1}), LinearDrag{.rate = 0.125});
+  Simulation sim(oscillator(), compose(damped, schemes::verlet), 0.125);
   auto& energy = sim.every(1, Energy{});
   CHECK(sim.run(80).ok());
   const MonitorReport report = energy.report();
@@ -213,7 +214,8 @@ TEST_CASE("monitors report the same after save and load as without", "[monitors]
     sim.for_each_monitor([&](const std::string&, auto& monitor) { all.push_back(*monitor.report()); });
     return all;
   };
-  auto whole = run_of(three_bodies<double>()), first = run_of(three_bodies<double>()), second = run_of(three_bodies<double>());
+  const auto start = [] { return run_of(three_bodies<double>()); };
+  auto whole = start(), first = start(), second = start();
   for (auto* sim : {&whole, &first, &second}) attach(*sim);
   CHECK(whole.run(600).ok());
   CHECK(first.run(245).ok());

@@ -34,7 +34,7 @@ Simulation<Real> run_of(ParticleSystem<Real> s, double dt) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("elements are relative to particle 0 and stay on a Kepler orbit", "[orbital_monitors]", double, Quad) {
+TEMPLATE_TEST_CASE("elements refer to particle 0 and stay on a Kepler orbit", "[orbital_monitors]", double, Quad) {
   using Real = TestType;
   const OrbitalElements<Real> o{Real(1.25), Real(0.25), Real(0.5), Real(1), Real(2), Real(3)};
   auto sim = run_of(planet<Real>(o), 0.01);

@@ -37,7 +37,7 @@ TEST_CASE("McLachlan's SB3A of order 4 with 5 drifts instead of 6 has order 1", 
     wrong.push_back({'B', right[2 * k + 1].weight});
     wrong.push_back({'A', a[k]});
   }
-  Scheme scheme{.word = wrong};
+  Scheme scheme{.name = "wrong", .word = wrong};
   CHECK(abs(scheme.sum('A') - 1_q) < Quad(1e-30));
   CHECK(abs(scheme.sum('B') - 1_q) < Quad(1e-30));
   CHECK(word_order(wrong, 5) == 1);
