@@ -70,6 +70,12 @@ template <class Real> class Clock {
     ++step_;
     stage_offset_ = Real(0);
   }
+  /// Puts the free clock of a copy to time `t` [time]; the step count stays.
+  void move_to(double t) {
+    high_ = t;
+    low_ = 0;
+    stage_offset_ = Real(0);
+  }
   void set_stage_offset(const Real& h) { stage_offset_ = h; }
   double high() const { return high_; }
   double low() const { return low_; }

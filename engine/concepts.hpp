@@ -92,7 +92,8 @@ struct Advanced {
 };
 
 /// A method that advances a system by whole steps. `settle` completes a copy for observers: the copy is inertial, and
-/// with a free clock it is reached at time `at` by one shortened step; the run itself never shortens a step.
+/// with a free clock it is reached at time `at` by one shortened step, and its clock moved there without counting a
+/// step; the run itself never shortens a step. `bind` comes before `load` and may see working coordinates then.
 template <class I>
 concept Integrator = requires(I& i, const I& c, ParticleSystem<typename I::real>& s,
                               const ParticleSystem<typename I::real>& raw, const Span& span, Wanted wanted,

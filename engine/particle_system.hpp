@@ -182,6 +182,8 @@ template <class Real = double> class ParticleSystem {
     return const_cast<typename Tag::template type<Real>&>(std::as_const(*this).template column<Tag>());
   }
   const std::map<std::string, ExtraColumn>& extra_columns() const { return extra_; }
+  /// Puts back a column of a file or a copy.
+  void restore_column(const std::string& name, ExtraColumn column) { extra_[name] = std::move(column); }
 
   /// Bytes of state per particle, as `noether explain` prints them.
   std::size_t bytes_per_particle() const {
@@ -222,7 +224,7 @@ template <class Real = double> class ParticleSystem {
     clock_ = other.clock_;
     phase_ = other.phase_;
     version_ = other.version_;
-    if (!extra_.empty()) extra_ = other.extra_;
+    if (!extra_.empty() || !other.extra_.empty()) extra_ = other.extra_;
   }
 
   /// Gives the particles the ids of a file or a copy, shape (n).

@@ -20,6 +20,45 @@ template <class Real> void unflatten(const SavedState& saved, const std::string&
   }
 }
 
+/// Columns beyond x, v and m, by kind: "scalar/charge", "integer/type", "vector/spin".
+template <class Real> void save_extra_columns(SavedState& saved, const ParticleSystem<Real>& s) {
+  for (const auto& [name, column] : s.extra_columns()) {
+    if (const auto* vectors = std::get_if<VectorColumn<Real>>(&column)) {
+      saved["vector/" + name] = flatten(*vectors);
+    } else if (const auto* numbers = std::get_if<ScalarColumn<Real>>(&column)) {
+      std::vector<double> flat;
+      for (const Real& x : *numbers) detail::append(flat, x);
+      saved["scalar/" + name] = std::move(flat);
+    } else {
+      const auto& integers = std::get<ScalarColumn<std::int64_t>>(column);
+      saved["integer/" + name] = std::vector<std::int64_t>(integers.begin(), integers.end());
+    }
+  }
+}
+
+template <class Real> void load_extra_columns(const SavedState& saved, ParticleSystem<Real>& s) {
+  for (const auto& [key, array] : saved) {
+    const std::size_t slash = key.find('/');
+    const std::string kind = key.substr(0, slash);
+    if (kind == "vector") {
+      VectorColumn<Real> column(s.size());
+      unflatten(saved, key, column);
+      s.restore_column(key.substr(slash + 1), std::move(column));
+    } else if (kind == "scalar") {
+      ScalarColumn<Real> column(s.size());
+      const auto& numbers = detail::array_of<double>(saved, key);
+      std::size_t at = 0;
+      for (Index i = 0; i < s.size(); ++i) detail::take(numbers, at, column[i]);
+      s.restore_column(key.substr(slash + 1), std::move(column));
+    } else if (kind == "integer") {
+      ScalarColumn<std::int64_t> column(s.size());
+      const auto& integers = detail::array_of<std::int64_t>(saved, key);
+      for (Index i = 0; i < s.size(); ++i) column[i] = integers.at(static_cast<std::size_t>(i));
+      s.restore_column(key.substr(slash + 1), std::move(column));
+    }
+  }
+}
+
 }  // namespace
 
 template <class Real> SavedState save_particles(const ParticleSystem<Real>& s) {
@@ -43,6 +82,7 @@ template <class Real> SavedState save_particles(const ParticleSystem<Real>& s) {
                                              s.phase().pending ? 1 : 0};
   saved["units"] = std::vector<std::string>{std::string(s.units().name)};
   saved["next_id"] = std::vector<std::int64_t>{s.next_id()};
+  save_extra_columns(saved, s);
   return saved;
 }
 
@@ -74,6 +114,7 @@ template <class Real> ParticleSystem<Real> load_particles(const SavedState& save
   s.clock() = Clock<Real>::from_raw(clock);
   const auto& phase = detail::array_of<std::int64_t>(saved, "phase");
   s.phase() = Phase{static_cast<Coordinates>(phase.at(0)), phase.at(1) != 0, phase.at(2) != 0};
+  load_extra_columns(saved, s);
   return s;
 }
 

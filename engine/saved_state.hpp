@@ -62,7 +62,7 @@ template <class Real> void take(const std::vector<double>& in, std::size_t& at, 
 
 }  // namespace detail
 
-/// Writes `value` below `name`: numbers, vectors, arrays, columns, optionals, and parts that declare state themselves.
+/// Writes `value` below `name`: numbers, vectors, arrays, optionals, and parts that declare state themselves.
 template <class T> void save_value(SavedState& saved, const std::string& name, const T& value) {
   if constexpr (std::is_integral_v<T> || std::is_enum_v<T>) {
     saved[name] = std::vector<std::int64_t>{static_cast<std::int64_t>(value)};

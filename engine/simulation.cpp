@@ -28,12 +28,13 @@ Simulation<Real>::Simulation(ParticleSystem<Real> particles, AnyIntegrator<Real>
   if (raw_.size() == 0) throw Error("there are no particles; a run needs at least one");
   const IntegratorClaims claims = integrator_.claims();
   if (claims.clock != clock.mode()) {
-    throw Error(fmt::format(claims.clock == ClockMode::fixed
-                                ? "method '{}' takes steps of one length; give the step after the integrator"
-                                : "method '{}' chooses its steps itself; leave out the step after the integrator",
-                            claims.method));
+    throw Error(fmt::format("method '{}' {}", claims.method,
+                            claims.clock == ClockMode::fixed
+                                ? "takes steps of one length; give the step after the integrator"
+                                : "chooses its steps itself; leave out the step after the integrator"));
   }
   raw_.clock() = clock;
+  raw_.keep_low_words(false);  // those of another run belong to its working coordinates
   integrator_.bind(raw_);
   copy_ = raw_;
   mapped_ = raw_;
@@ -325,9 +326,10 @@ template <class Real> void Simulation<Real>::change_step(double dt) {
   }
   for (const auto& scheduled : monitors_) {
     if (scheduled.schedule.interval == 0) continue;
-    throw Error(fmt::format("monitor '{}' looks every {} of time, at steps that a new step would shift; attach it by "
-                            "steps",
-                            scheduled.name, scheduled.schedule.interval));
+    throw Error(
+        fmt::format("monitor '{}' looks every {} of time, at steps that a new step would shift; attach it by "
+                    "steps",
+                    scheduled.name, scheduled.schedule.interval));
   }
   begin_edit();
   const double now = time();

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace noether {
@@ -51,71 +52,77 @@ template <class Real> StopCheck<Real>::StopCheck(const StopRule& rule) : rule_(r
   }
 }
 
-template <class Real> std::optional<StopReason> StopCheck<Real>::look(const Snapshot<Real>& snapshot) {
-  auto reason = rule_.kind == StopRule::Kind::escape ? look_for_escape(snapshot) : look_for_collision(snapshot);
-  remember(snapshot);
+template <class Real> std::optional<StopReason> StopCheck<Real>::look(const Snapshot<Real>& now) {
+  moved_ = static_cast<Index>(x_.size()) == now.state().size() && now.time() != last_time_;
+  const auto event = rule_.kind == StopRule::Kind::escape ? escape(now) : collision(now);
+  std::optional<StopReason> reason;
+  if (event) {
+    const ParticleSystem<Real>& s = now.state();
+    const double at = moved_ ? last_time_ + static_cast<double>(event->at) * (now.time() - last_time_) : now.time();
+    const std::string who = event->other < 0
+                                ? "escape of " + s.name(event->particle)
+                                : "collision of " + s.name(event->other) + " and " + s.name(event->particle);
+    reason = StopReason{event->particle, at,
+                        fmt::format("{}, distance {:.6g} {} {:.6g} since time {:.9g}", who, root(event->distance2),
+                                    event->other < 0 ? "above" : "below", rule_.distance, at)};
+  }
+  remember(now);
   return reason;
 }
 
-template <class Real> std::optional<StopReason> StopCheck<Real>::look_for_escape(const Snapshot<Real>& now) {
+template <class Real>
+std::optional<typename StopCheck<Real>::Event> StopCheck<Real>::escape(const Snapshot<Real>& now) {
   const ParticleSystem<Real>& s = now.state();
   const Real limit2 = Real(rule_.distance) * Real(rule_.distance);
-  Vec3<Real> center = Vec3<Real>::Zero();
-  Real total(0);
+  std::vector<Motion<Real>> before, after;
   for (Index i = 0; i < s.size(); ++i) {
-    center += s.masses()[i] * s.positions()[i];
-    total += s.masses()[i];
+    after.push_back(motion_of(now, i));
+    if (moved_) before.push_back(last_motion(i));
   }
-  if (total > Real(0)) center /= total;
+  const Motion<Real> center = center_of_mass(s, after);
+  std::optional<Event> first;
   for (Index i = 0; i < s.size(); ++i) {
-    const Real d2 = norm2(s.positions()[i] - center);
+    const Motion<Real> end = difference(after[static_cast<std::size_t>(i)], center);
+    const Real d2 = norm2(end.x);
     if (!(d2 > limit2)) continue;
-    double at = now.time();
-    if (static_cast<Index>(x_.size()) == s.size()) {
-      std::vector<Motion<Real>> before, after;
-      for (Index j = 0; j < s.size(); ++j) {
-        const auto k = static_cast<std::size_t>(j);
-        before.push_back({x_[k], v_[k], a_[k]});
-        after.push_back(motion_of(now, j));
-      }
-      const auto k = static_cast<std::size_t>(i);
-      const Hermite<Real> path(difference(before[k], center_of_mass(s, before)),
-                               difference(after[k], center_of_mass(s, after)), Real(now.time()) - Real(last_time_));
-      const Real u =
-          Hermite<Real>::bisect(Real(0), Real(1), [&](const Real& w) { return norm2(path.position(w)) > limit2; });
-      at = last_time_ + static_cast<double>(u) * (now.time() - last_time_);
+    Real at(1);
+    if (moved_) {
+      const Motion<Real> begin = difference(before[static_cast<std::size_t>(i)], center_of_mass(s, before));
+      const Hermite<Real> path(begin, end, Real(now.time()) - Real(last_time_));
+      at = Hermite<Real>::bisect(Real(0), Real(1), [&](const Real& u) { return norm2(path.position(u)) > limit2; });
     }
-    return StopReason{i, at, fmt::format("escape of {}, distance {:.6g} above {:.6g} since time {:.9g}", s.name(i),
-                                     root(d2), rule_.distance, at)};
+    if (!first || at < first->at) first = Event{i, -1, d2, at};
   }
-  return {};
+  return first;
 }
 
-template <class Real> std::optional<StopReason> StopCheck<Real>::look_for_collision(const Snapshot<Real>& now) {
+template <class Real>
+std::optional<typename StopCheck<Real>::Event> StopCheck<Real>::collision(const Snapshot<Real>& now) {
   const ParticleSystem<Real>& s = now.state();
   const Real limit2 = Real(rule_.distance) * Real(rule_.distance);
-  const bool have_before = static_cast<Index>(x_.size()) == s.size() && now.time() != last_time_;
   const Real h = Real(now.time()) - Real(last_time_);
+  std::optional<Event> first;
   for (Index i = 0; i < s.size(); ++i) {
     for (Index j = 0; j < i; ++j) {
       if (s.masses()[i] == Real(0) && s.masses()[j] == Real(0)) continue;
-      Real d2 = norm2(s.positions()[i] - s.positions()[j]);
-      double at = now.time();
-      if (have_before) {
-        const auto k = static_cast<std::size_t>(i), l = static_cast<std::size_t>(j);
-        const Motion<Real> before{x_[k] - x_[l], v_[k] - v_[l], a_[k] - a_[l]};
-        const auto nearest = Hermite<Real>(before, difference(motion_of(now, i), motion_of(now, j)), h).nearest();
-        if (nearest.distance2 < d2) {
-          d2 = nearest.distance2;
-          at = last_time_ + static_cast<double>(nearest.at) * (now.time() - last_time_);
-        }
+      Event event{i, j, norm2(s.positions()[i] - s.positions()[j]), Real(1)};
+      if (moved_) {
+        const Hermite<Real> path(difference(last_motion(i), last_motion(j)),
+                                 difference(motion_of(now, i), motion_of(now, j)), h);
+        const auto nearest = path.nearest();
+        event.distance2 = std::min(event.distance2, nearest.distance2);
+        event.at =
+            Hermite<Real>::bisect(Real(0), nearest.at, [&](const Real& u) { return norm2(path.position(u)) < limit2; });
       }
-      if (!(d2 < limit2)) continue;
-      return StopReason{i, at, fmt::format("collision of {} and {}, distance {:.6g} below {:.6g} at time {:.9g}", s.name(j),
-                                       s.name(i), root(d2), rule_.distance, at)};
+      if (event.distance2 < limit2 && (!first || event.at < first->at)) first = event;
     }
   }
-  return {};
+  return first;
+}
+
+template <class Real> Motion<Real> StopCheck<Real>::last_motion(Index i) const {
+  const auto k = static_cast<std::size_t>(i);
+  return {x_[k], v_[k], a_[k]};
 }
 
 template <class Real> void StopCheck<Real>::remember(const Snapshot<Real>& now) {

@@ -1,6 +1,7 @@
 #pragma once
 /// Conditions that end a run: escape and collision.
 
+#include "engine/hermite.hpp"
 #include "engine/snapshot.hpp"
 
 #include <optional>
@@ -27,17 +28,18 @@ inline StopRule closer_than(double distance) { return {StopRule::Kind::collision
 /// What a condition found.
 struct StopReason {
   Index particle = -1;
-  double time = 0;  ///< when it happened, by the interpolated motion [time]
+  double time = 0;  ///< since when, by the interpolated motion [time]
   std::string message;
 };
 
 /// One rule at work. Between two looks the motion is the quintic Hermite polynomial of the two settled states, so an
-/// approach is found even if it was over at the second look; its time is told, the state stays at the last whole step.
+/// approach is found even if it was over at the second look. Of several events between two looks the first is told,
+/// with its least distance and the time since when the distance was passed; the state stays at the last whole step.
 template <class Real> class StopCheck {
  public:
   explicit StopCheck(const StopRule& rule);
 
-  /// @cost escape O(n); collision O(n m) with m massive bodies, and one force evaluation
+  /// @cost one force evaluation, shared with the other looks of the step; escape O(n), collision O(n m), m massive
   std::optional<StopReason> look(const Snapshot<Real>& snapshot);
 
   /// The particles have been changed by hand: no motion leads from the last look to the next one.
@@ -51,13 +53,20 @@ template <class Real> class StopCheck {
   void load(const SavedState& saved, const std::string& prefix);
 
  private:
-  std::optional<StopReason> look_for_escape(const Snapshot<Real>& snapshot);
-  std::optional<StopReason> look_for_collision(const Snapshot<Real>& snapshot);
+  struct Event {
+    Index particle, other;  ///< other: -1 for an escape
+    Real distance2;
+    Real at;  ///< part of the time between the looks
+  };
+  std::optional<Event> escape(const Snapshot<Real>& now);
+  std::optional<Event> collision(const Snapshot<Real>& now);
+  Motion<Real> last_motion(Index i) const;
   void remember(const Snapshot<Real>& snapshot);
 
   StopRule rule_;
   double last_time_ = 0;
   std::vector<Vec3<Real>> x_, v_, a_;  ///< at the last look
+  bool moved_ = false;                 ///< whether a motion leads from the last look to this one
 };
 
 extern template class StopCheck<double>;

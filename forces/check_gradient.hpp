@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace noether {
 
@@ -18,7 +19,8 @@ template <class F, class Real> Real potential_of(const F& force, const ParticleS
   return sink.potential();
 }
 
-/// Largest |m a + grad U| over the largest |m a|, with grad U by central differences of order 6.
+/// Largest |m a + grad U| over the largest |m a|, with grad U by central differences of order 6; infinite if any of
+/// them is not finite.
 template <class F, class Real>
 double gradient_error(const F& force, ParticleSystem<Real> s, const Real& relative_step) {
   using std::sqrt;
@@ -41,8 +43,10 @@ double gradient_error(const F& force, ParticleSystem<Real> s, const Real& relati
       };
       const Real slope = (Real(45) * (at(1) - at(-1)) - Real(9) * (at(2) - at(-2)) + (at(3) - at(-3))) / (Real(60) * h);
       const Real f = s.masses()[i] * std::as_const(a).component(k)[i];
-      using std::abs;
-      worst = std::max(worst, Real(abs(f + slope)));
+      using std::abs, std::isfinite;
+      const Real difference = abs(f + slope);
+      if (!isfinite(difference)) return std::numeric_limits<double>::infinity();  // std::max would drop a NaN
+      worst = std::max(worst, difference);
       largest = std::max(largest, Real(abs(f)));
     }
   }

@@ -40,33 +40,32 @@ struct WiderType<double> {
   using type = Quad;
 };
 
-/// (-1)^k / (2 k + n)!, enough of them for arguments up to 1; `low` is what rounding took from the first three.
+/// n! c_n(z) = sum of (-1)^k n! / (2 k + n)! z^k, terms enough for |z| up to 1.
+///
+/// A constant that is always rounded the same way would make the energy of a long run drift. So the first coefficient
+/// is exactly 1, and `low` is what rounding took from the next two, added where the sum is still small.
 template <class Real>
 struct StumpffSeries {
   static constexpr std::size_t terms = kepler_digits<Real> <= 53 ? 10 : kepler_digits<Real> <= 113 ? 17 : 34;
   std::array<Real, terms> high;
   std::array<Real, 3> low;
 
-  explicit constexpr StumpffSeries(int n) : high{}, low{} {
+  explicit constexpr StumpffSeries(int n) : high{}, low{Real(0), Real(0), Real(0)} {
     Quad term(1);
-    for (int j = 2; j <= n; ++j) term /= Quad(j);
     for (std::size_t k = 0; k < terms; ++k) {
       high[k] = kepler_constant<Real>(term);
       if constexpr (std::is_same_v<Real, double>) {
-        if (k < 3) low[k] = static_cast<double>(term - Quad(high[k]));
-      } else if (k < 3) {
-        low[k] = Real(0);
+        if (k < low.size()) low[k] = static_cast<double>(term - Quad(high[k]));
       }
       const int j = 2 * static_cast<int>(k) + n;
       term /= -Quad(j + 1) * Quad(j + 2);
     }
   }
 
-  /// The low parts matter: a constant that is always rounded the same way makes the energy drift.
   Real operator()(const Real& z) const {
     Real sum = high[terms - 1];
     for (std::size_t k = terms - 2; k >= 3; --k) sum = high[k] + z * sum;
-    return high[0] + (low[0] + z * (high[1] + (low[1] + z * (high[2] + (low[2] + z * sum)))));
+    return Real(1) + z * (high[1] + (low[1] + z * (high[2] + (low[2] + z * sum))));
   }
 };
 
@@ -90,8 +89,8 @@ struct UniversalFunctions {
       z *= Real(0.25);
     }
     const Real square = part * part;
-    g2 = square * stumpff_2<Real>(z);
-    g3 = part * square * stumpff_3<Real>(z);
+    g2 = square * stumpff_2<Real>(z) / Real(2);
+    g3 = part * square * stumpff_3<Real>(z) / Real(6);
     g1 = part - beta * g3;
     g0 = Real(1) - beta * g2;
     for (; halvings > 0; --halvings) {
@@ -188,6 +187,20 @@ struct KeplerCorrection {
   }
 };
 
+/// Where to try next: at the root of the correction, its lower half of digits cut off.
+///
+/// The last step is then many roundings long and of either sign. Without this it would often be a fraction of one
+/// rounding, always to the same side, and rounding to nearest would drop it: a bias. Not where orbits turn so sharply
+/// that the last step must be short.
+template <class Real>
+Real next_trial(const Real& s, const KeplerCorrection<Real>& c) {
+  constexpr int cut = (kepler_digits<Real> + 1) / 2;
+  constexpr Real split = kepler_constant<Real>(power_of_two(cut) + Quad(1));
+  constexpr Real sharp = kepler_constant<Real>(power_of_two(2 * cut - 20));
+  const Real next = s + c.step, wide = split * next;
+  return c.size * next * next <= sharp * (c.step * c.step) ? wide - (wide - next) : next;
+}
+
 /// A trial, and the step from it to the root.
 template <class Real>
 struct KeplerRoot {
@@ -202,13 +215,13 @@ template <class Real>
 KeplerRoot<Real> solve_by_series(const KeplerEquation<Real>& a) {
   constexpr int most_trials = 8;
   const KeplerCorrection<Real> start(a.h, a.r_inverse, a.eta, a.zeta, a.beta);
-  Real s = start.step;
+  Real s = next_trial(Real(0), start);
   KeplerTrial<Real> trial(a, s);
   for (int n = 1; start.usable(); ++n) {
     const KeplerCorrection<Real> c(trial.missing, Real(1) / trial.r, trial.eta, trial.zeta, a.beta);
     if (c.final(s)) return {s, c.step, trial, n, true};
     if (!c.usable() || n == most_trials) break;
-    s += c.step;
+    s = next_trial(s, c);
     trial = KeplerTrial<Real>(a, s);
   }
   return {s, Real(0), trial, most_trials, false};
@@ -288,7 +301,7 @@ KeplerRoot<Real> solve_by_bracket(const KeplerEquation<Real>& a) {
     bracket.narrow(s, trial.missing);
     if (abs(trial.missing) <= rounding * trial.terms || bracket.spent()) return {s, Real(0), trial, n, true};
     if (n == most_trials) return {s, Real(0), trial, n, false};
-    s = bracket.inside(s + (good ? c.step : laguerre_step(trial)));
+    s = bracket.inside(good ? next_trial(s, c) : s + laguerre_step(trial));
   }
 }
 
@@ -320,7 +333,8 @@ KeplerArc<Real> arc_at_root(const Vec3<Real>& x, const Vec3<Real>& v, const Kepl
   using std::sqrt;
   UniversalFunctions<Real> g = root.trial.g;
   const Real d = root.step, u = a.beta * d * d;
-  const Real c1 = d - d * u / Real(6), c2 = d * d * (Real(0.5) - u / Real(24)), c3 = d * d * d / Real(6);
+  const Real c1 = d - d * u * (Real(20) - u) / Real(120), c2 = d * d * (Real(12) - u) / Real(24);
+  const Real c3 = d * d * d * (Real(20) - u) / Real(120);
   g.shift(a.beta, d, c1, c2, c3);
   Real r = root.trial.r + (root.trial.eta * c1 + root.trial.zeta * c2);
   const Real fall = a.mu * g.g3;

@@ -181,10 +181,12 @@ constexpr Scheme alternating(Scheme scheme, char first, const std::array<Quad, n
                              const std::array<Quad, n>& second_weights) {
   Quad first_rest = 1, second_rest = 1;
   for (std::size_t k = 0; k < n; ++k) {
-    scheme.word.push_back({first, isnan(first_weights[k]) ? first_rest : first_weights[k]});
-    scheme.word.push_back({first == 'A' ? 'B' : 'A', isnan(second_weights[k]) ? second_rest : second_weights[k]});
-    first_rest -= first_weights[k];
-    second_rest -= second_weights[k];
+    const Quad one = isnan(first_weights[k]) ? first_rest : first_weights[k];
+    const Quad other = isnan(second_weights[k]) ? second_rest : second_weights[k];
+    scheme.word.push_back({first, one});
+    scheme.word.push_back({first == 'A' ? 'B' : 'A', other});
+    first_rest -= one;
+    second_rest -= other;
   }
   return detail::checked(scheme);
 }
@@ -196,7 +198,7 @@ Scheme word(std::string_view letters);
 /// The weights of a word in the working type.
 ///
 /// In double each weight is rounded, and then the middle one (or pair) of each letter is solved again, so that the
-/// exact sum of the rounded weights is that of the word to half an ulp of the middle: a sum off by 1e-16 would be a
+/// exact sum of the rounded weights is that of the word to an ulp of the middle: a sum off by 1e-16 would be a
 /// clock that is wrong by as much.
 template <class Real> std::vector<Real> rounded_weights(const Word& word) {
   std::vector<Real> weights;

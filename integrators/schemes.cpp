@@ -8,7 +8,9 @@ namespace noether::schemes {
 std::span<const Scheme* const> all() {
   static const std::vector<const Scheme*> list = [] {
     std::vector<const Scheme*> every;
-    const auto append = [&](const auto& family) { every.insert(every.end(), family.begin(), family.end()); };
+    const auto append = [&](const auto& family) {
+      for (const Scheme* scheme : family) every.push_back(scheme);
+    };
     append(classical_list);
     append(symmetric_4_6_list);
     append(symmetric_8_10_list);

@@ -12,16 +12,16 @@ namespace noether::io {
 /// What a table of bodies does not say itself.
 struct BodiesOptions {
   const UnitSystem* units = &unit_system("solar");  ///< the unit system of the particles
-  std::optional<double> G;  ///< constant of gravitation [length^3/mass/time^2]; default: the unit system's own
+  std::optional<double> G = {};  ///< constant of gravitation [length^3/mass/time^2]; default: the unit system's own
 };
 
 /// Reads bodies; a table with a line "$$SOE" is one of Horizons, anything else is CSV.
 ///
 /// CSV: the first line names the columns, with the unit in brackets (none in the reduced system, which has radians for
-/// angles): `mass [Msun]`, and `x [au],y,z,vx [au/day],vy,vz` or the elements `a [au],e,inc [deg],Omega [deg],omega [deg],
-/// M [deg]` about the first body, mu = G (m_0 + m), which itself stands at rest in the origin and leaves its elements
-/// empty; also `name` (default: body_1, body_2, ...) and `id` (default: 0, 1, ...). `#` begins a comment, a field may
-/// stand in double quotes.
+/// angles): `mass [Msun]`, and `x [au],y,z,vx [au/day],vy,vz` or the elements `a [au],e,inc [deg],Omega [deg],omega
+/// [deg], M [deg]` about the first body, mu = G (m_0 + m), which itself stands at rest in the origin and leaves its
+/// elements empty; also `name` (default: body_1, body_2, ...) and `id` (default: 0, 1, ...). `#` begins a comment, a
+/// field may stand in double quotes.
 ///
 /// Horizons: any number of vector tables of one epoch, frame and center, one per body; of each the first record counts.
 /// Horizons gives no masses: mass = GM / G with GM from DE440, by body number, unless the table has a column

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <fstream>
 #include <utility>
 
 namespace noether::io {
@@ -59,9 +59,12 @@ void write_state(const Hdf5File& file, const std::string& group, const SavedStat
 
 SavedArray read_array(const Hdf5Dataset& dataset) {
   switch (dataset.type()) {
-    case ElementType::real: return dataset.read_reals();
-    case ElementType::integer: return dataset.read_integers();
-    default: return dataset.read_texts();
+    case ElementType::real:
+      return dataset.read_reals();
+    case ElementType::integer:
+      return dataset.read_integers();
+    default:
+      return dataset.read_texts();
   }
 }
 
@@ -77,6 +80,9 @@ void read_state(const Hdf5File& file, const std::string& group, const std::strin
     }
   }
 }
+
+/// A checkpoint on its way; whole from the moment the first rename is due.
+std::filesystem::path being_written(std::filesystem::path file) { return file += ".new"; }
 
 std::string to_bytes(const Checkpoint& checkpoint, const std::filesystem::path& name) {
   const Hdf5File file = Hdf5File::create_in_memory(name);
@@ -128,12 +134,19 @@ std::filesystem::path previous_checkpoint(const std::filesystem::path& file) {
 void write_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint) {
   std::string bytes = to_bytes(checkpoint, file);
   bytes += trailer_of(bytes);
-  std::filesystem::path beside = file;
-  beside += ".new";
+  const std::filesystem::path beside = being_written(file);
   write_and_sync(beside, bytes);
   rename_if_there(file, previous_checkpoint(file));
   rename_if_there(beside, file);
   sync_folder(file.parent_path());
+}
+
+bool ends_like_checkpoint(const std::filesystem::path& file) {
+  std::ifstream source(file, std::ios::binary);
+  std::string end(trailer_head.size(), '\0');
+  source.seekg(-static_cast<std::streamoff>(trailer_size), std::ios::end);
+  source.read(end.data(), static_cast<std::streamsize>(end.size()));
+  return source && end == trailer_head;
 }
 
 Checkpoint read_checkpoint(const std::filesystem::path& file) {
@@ -141,9 +154,10 @@ Checkpoint read_checkpoint(const std::filesystem::path& file) {
   const std::size_t content = bytes.size() < trailer_size ? 0 : bytes.size() - trailer_size;
   const std::string_view all = bytes;
   if (content == 0 || !all.substr(content).starts_with(trailer_head)) {
-    throw FileError(fmt::format("damaged, or no checkpoint: the line 'sha256:...' at the end of its {} bytes is missing",
-                                bytes.size()),
-                    {.file = file.string()});
+    throw FileError(
+        fmt::format("damaged, or no checkpoint: the line 'sha256:...' at the end of its {} bytes is missing",
+                    bytes.size()),
+        {.file = file.string()});
   }
   if (trailer_of(all.substr(0, content)) != all.substr(content)) {
     throw FileError("damaged: its bytes do not fit the SHA-256 at its end", {.file = file.string()});
@@ -154,15 +168,16 @@ Checkpoint read_checkpoint(const std::filesystem::path& file) {
 
 FoundCheckpoint newest_checkpoint(const std::filesystem::path& folder) {
   FoundCheckpoint found;
-  const std::filesystem::path newest = folder / "checkpoint.h5";
-  for (const std::filesystem::path& file : {newest, previous_checkpoint(newest)}) {
+  const std::filesystem::path newest = folder / "checkpoint.h5", beside = being_written(newest);
+  for (const std::filesystem::path& file : {newest, previous_checkpoint(newest), beside}) {
     std::error_code ignored;
     if (!std::filesystem::exists(file, ignored)) continue;
     try {
       Checkpoint checkpoint = read_checkpoint(file);
       if (!found.checkpoint || checkpoint.step > found.checkpoint->step) found.checkpoint = std::move(checkpoint);
     } catch (const FileError& error) {
-      found.damaged.emplace_back(error.what());
+      // A half-written file beside is what a killed process leaves: nothing is lost with it.
+      if (file != beside) found.damaged.emplace_back(error.what());
     }
   }
   return found;

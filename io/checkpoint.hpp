@@ -21,7 +21,7 @@ struct Checkpoint {
   std::string simd = "base";  ///< level of the lane kernels
   std::string outcome;        ///< how the run ended; empty while it is unfinished
   std::int64_t step = 0;
-  double time = 0;            ///< [time]
+  double time = 0;  ///< [time]
 };
 
 /// Writes a checkpoint so that at any moment a valid one is on disk.
@@ -35,6 +35,10 @@ void write_checkpoint(const std::filesystem::path& file, const Checkpoint& check
 /// Reads a checkpoint; any changed or missing byte is noticed.
 /// @throws FileError naming the file and what is damaged
 Checkpoint read_checkpoint(const std::filesystem::path& file);
+
+/// Whether a file ends as checkpoints do; its content is not looked at.
+/// @throws never
+bool ends_like_checkpoint(const std::filesystem::path& file);
 
 /// The name the generation before goes by: checkpoint.h5 -> checkpoint.previous.h5.
 std::filesystem::path previous_checkpoint(const std::filesystem::path& file);

@@ -23,10 +23,7 @@ class Sha256 {
     check(context_ != nullptr && EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) == 1);
   }
   void add(const void* data, std::size_t bytes) { check(EVP_DigestUpdate(context_.get(), data, bytes) == 1); }
-  template <class T>
-  void add(const T& number) {
-    add(&number, sizeof number);
-  }
+  template <class T> void add(const T& number) { add(&number, sizeof number); }
   std::string hex() {
     std::array<unsigned char, EVP_MAX_MD_SIZE> hash{};
     unsigned int size = 0;
@@ -55,15 +52,13 @@ std::vector<Index> id_order(const std::vector<std::int64_t>& ids) {
   std::vector<Index> order(ids.size());
   std::iota(order.begin(), order.end(), Index{0});
   if (std::is_sorted(ids.begin(), ids.end())) return order;
-  std::sort(order.begin(), order.end(), [&](Index a, Index b) {
-    return ids[static_cast<std::size_t>(a)] < ids[static_cast<std::size_t>(b)];
-  });
+  std::sort(order.begin(), order.end(),
+            [&](Index a, Index b) { return ids[static_cast<std::size_t>(a)] < ids[static_cast<std::size_t>(b)]; });
   return order;
 }
 
-std::string digest(std::int64_t step, double time, std::span<const std::int64_t> ids,
-                   std::span<const double> positions, std::span<const double> velocities,
-                   std::span<const double> masses) {
+std::string digest(std::int64_t step, double time, std::span<const std::int64_t> ids, std::span<const double> positions,
+                   std::span<const double> velocities, std::span<const double> masses) {
   static constexpr std::string_view head = "noether-state-1\n";
   Sha256 hash;
   hash.add(head.data(), head.size());

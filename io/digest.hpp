@@ -24,9 +24,8 @@ std::string sha256(std::string_view bytes);
 std::string digest(const ParticleSystem<double>& settled);
 
 /// The same from arrays that stand in id order: ids (n), positions (n, 3), velocities (n, 3), masses (n), row by row.
-std::string digest(std::int64_t step, double time, std::span<const std::int64_t> ids,
-                   std::span<const double> positions, std::span<const double> velocities,
-                   std::span<const double> masses);
+std::string digest(std::int64_t step, double time, std::span<const std::int64_t> ids, std::span<const double> positions,
+                   std::span<const double> velocities, std::span<const double> masses);
 
 /// Indices of the particles in the order of their ids, shape (n).
 /// @cost O(n) where they stand in order already

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <functional>
 #include <numeric>
 #include <utility>
@@ -17,24 +18,45 @@ namespace noether::io {
 
 bool has_hdf5() noexcept { return true; }
 
+namespace {
+
+/// What all handles of one file share.
+struct FileState {
+  std::string name;
+  bool writing = false;
+  bool broken = false;  ///< a write failed
+};
+using Context = std::shared_ptr<FileState>;
+
+/// Whether a broken file stays open to the end.
+bool left_open = false;
+
+}  // namespace
+
+/// HDF5 may crash when it closes a file that could not be written: such a file is left as it is on disk.
 class Hdf5Handle {
  public:
   using Close = herr_t (*)(hid_t);
 
-  Hdf5Handle(hid_t id, Close close, std::string file) : id_(id), close_(close), file_(std::move(file)) {}
+  Hdf5Handle(hid_t id, Close close, Context file) : id_(id), close_(close), file_(std::move(file)) {}
   Hdf5Handle(Hdf5Handle&& other) noexcept
       : id_(std::exchange(other.id_, -1)), close_(other.close_), file_(std::move(other.file_)) {}
   Hdf5Handle& operator=(Hdf5Handle&&) = delete;
   ~Hdf5Handle() {
-    if (id_ >= 0) close_(id_);
+    if (id_ < 0) return;
+    if (file_->broken) {
+      left_open = true;
+    } else {
+      close_(id_);
+    }
   }
   operator hid_t() const { return id_; }  // NOLINT: stands wherever HDF5 wants an id
-  const std::string& file() const { return file_; }
+  const Context& file() const { return file_; }
 
  private:
   hid_t id_;
   Close close_;
-  std::string file_;
+  Context file_;
 };
 
 namespace {
@@ -53,19 +75,20 @@ herr_t keep_reason(unsigned /*depth*/, const H5E_error2_t* entry, void* kept) {
   return 0;
 }
 
-[[noreturn]] void fail(const std::string& file, const std::string& what) {
+[[noreturn]] void fail(const Context& file, const std::string& what) {
   std::string reason;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_reason, &reason);
   H5Eclear2(H5E_DEFAULT);
-  throw FileError(reason.empty() ? what : fmt::format("{}: {}", what, reason), {.file = file});
+  file->broken = file->broken || file->writing;
+  throw FileError(reason.empty() ? what : fmt::format("{}: {}", what, reason), {.file = file->name});
 }
 
 /// Takes an id that HDF5 returned; a negative one is an error.
-Hdf5Handle own(hid_t id, Hdf5Handle::Close close, const std::string& file, const std::string& what) {
+Hdf5Handle own(hid_t id, Hdf5Handle::Close close, const Context& file, const std::string& what) {
   if (id < 0) fail(file, what);
   return {id, close, file};
 }
-std::shared_ptr<Hdf5Handle> share(hid_t id, Hdf5Handle::Close close, const std::string& file, const std::string& what) {
+std::shared_ptr<Hdf5Handle> share(hid_t id, Hdf5Handle::Close close, const Context& file, const std::string& what) {
   if (id < 0) fail(file, what);
   return std::make_shared<Hdf5Handle>(id, close, file);
 }
@@ -76,15 +99,28 @@ void check(herr_t status, const Hdf5Handle& handle, const std::string& what) {
 std::string writing(const std::string& path) { return fmt::format("cannot write '{}'", path); }
 std::string reading(const std::string& path) { return fmt::format("cannot read '{}'", path); }
 
-/// Old file format, and no locks: an open reader must not stop a run.
-Hdf5Handle access_list(const std::string& file) {
+/// HDF5 closes open files when the program ends, which is wrong where one is broken.
+void begin_hdf5() {
+  static const bool begun = [] {
+    H5dont_atexit();
+    return std::atexit([] {
+             if (!left_open) H5close();
+           }) == 0;
+  }();
+  static_cast<void>(begun);
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+/// Old file format, and no locks: an open reader must not stop a run.
+Hdf5Handle access_list(const std::filesystem::path& name, bool writing) {
+  begin_hdf5();
+  const Context file = std::make_shared<FileState>(FileState{name.string(), writing, false});
   Hdf5Handle list = own(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, file, "cannot prepare the file");
   check(H5Pset_file_locking(list, false, true), list, "cannot prepare the file");
   return list;
 }
 
-Hdf5Handle text_type(const std::string& file) {
+Hdf5Handle text_type(const Context& file) {
   Hdf5Handle type = own(H5Tcopy(H5T_C_S1), H5Tclose, file, "cannot prepare a type");
   H5Tset_size(type, H5T_VARIABLE);
   H5Tset_cset(type, H5T_CSET_UTF8);
@@ -94,15 +130,15 @@ Hdf5Handle text_type(const std::string& file) {
 hid_t on_disk(ElementType type) { return type == ElementType::real ? H5T_IEEE_F64LE : H5T_STD_I64LE; }
 hid_t in_memory(ElementType type) { return type == ElementType::real ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64; }
 
-Hdf5Handle space_of(const std::vector<Index>& shape, const std::string& file, bool growing = false) {
+Hdf5Handle space_of(const std::vector<Index>& shape, const Context& file, bool growing = false) {
   std::vector<hsize_t> now(shape.begin(), shape.end()), limit(now);
   if (growing) limit.at(0) = H5S_UNLIMITED;
-  const hid_t id = shape.empty() ? H5Screate(H5S_SCALAR)
-                                 : H5Screate_simple(static_cast<int>(now.size()), now.data(), limit.data());
+  const hid_t id =
+      shape.empty() ? H5Screate(H5S_SCALAR) : H5Screate_simple(static_cast<int>(now.size()), now.data(), limit.data());
   return own(id, H5Sclose, file, "cannot prepare a shape");
 }
 
-Hdf5Handle linking(const std::string& file) {
+Hdf5Handle linking(const Context& file) {
   Hdf5Handle list = own(H5Pcreate(H5P_LINK_CREATE), H5Pclose, file, "cannot prepare a link");
   H5Pset_create_intermediate_group(list, 1);
   return list;
@@ -127,8 +163,8 @@ void write_attribute(const Hdf5Handle& file, const std::string& path, const std:
   const Hdf5Handle object = own(H5Oopen(file, path.c_str(), H5P_DEFAULT), H5Oclose, file.file(), what);
   if (H5Aexists(object, name.c_str()) > 0) check(H5Adelete(object, name.c_str()), file, what);
   const Hdf5Handle space = space_of(shape, file.file());
-  const Hdf5Handle attribute = own(H5Acreate2(object, name.c_str(), stored, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
-                                   file.file(), what);
+  const Hdf5Handle attribute =
+      own(H5Acreate2(object, name.c_str(), stored, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, file.file(), what);
   check(H5Awrite(attribute, memory, data), file, what);
 }
 
@@ -154,15 +190,17 @@ bool exists(const Hdf5Handle& file, const std::string& path) {
 }
 
 /// Opens an attribute if it is there and a scalar of the expected type; else the id is negative.
-Hdf5Handle find_attribute(const Hdf5Handle& file, const std::string& path, const std::string& name, ElementType expected) {
+Hdf5Handle find_attribute(const Hdf5Handle& file, const std::string& path, const std::string& name,
+                          ElementType expected) {
   const Hdf5Handle object(H5Oopen(file, path.c_str(), H5P_DEFAULT), H5Oclose, file.file());
   if (object < 0 || H5Aexists(object, name.c_str()) <= 0) return {-1, H5Aclose, file.file()};
   Hdf5Handle attribute = own(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose, file.file(), reading(path));
   const Hdf5Handle type = own(H5Aget_type(attribute), H5Tclose, file.file(), reading(path));
   const Hdf5Handle space = own(H5Aget_space(attribute), H5Sclose, file.file(), reading(path));
   if (element_type(type) != expected || H5Sget_simple_extent_npoints(space) != 1) {
-    throw FileError(fmt::format("attribute '{}' of '{}' has an unexpected type; was the file written by noether?", name, path),
-                    {.file = file.file()});
+    throw FileError(
+        fmt::format("attribute '{}' of '{}' has an unexpected type; was the file written by noether?", name, path),
+        {.file = file.file()->name});
   }
   return attribute;
 }
@@ -190,7 +228,7 @@ ElementType Hdf5Dataset::type() const {
 void Hdf5Dataset::require(ElementType expected) const {
   if (type() == expected) return;
   throw FileError(fmt::format("'{}' has an unexpected type; was the file written by noether?", path_),
-                  {.file = handle_->file()});
+                  {.file = handle_->file()->name});
 }
 
 void Hdf5Dataset::resize(Index rows) {
@@ -264,37 +302,43 @@ std::vector<std::string> Hdf5Dataset::read_texts() const {
 // ---- files ---------------------------------------------------------------------------------------------------------
 
 Hdf5File Hdf5File::create(const std::filesystem::path& file) {
-  const Hdf5Handle access = access_list(file.string());
-  return Hdf5File(share(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, file.string(),
+  const Hdf5Handle access = access_list(file, true);
+  return Hdf5File(share(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, access.file(),
                         "cannot create the file"));
 }
 
 namespace {
-std::shared_ptr<Hdf5Handle> open_file(const std::filesystem::path& file, unsigned int mode) {
-  const Hdf5Handle access = access_list(file.string());
+std::shared_ptr<Hdf5Handle> open_file(const std::filesystem::path& file, bool writing) {
+  const Hdf5Handle access = access_list(file, writing);
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) throw FileError("there is no such file", {.file = file.string()});
   if (!std::filesystem::is_regular_file(file, ignored)) throw FileError("this is no file", {.file = file.string()});
-  return share(H5Fopen(file.c_str(), mode, access), H5Fclose, file.string(), "cannot be opened as an HDF5 file");
+  const hid_t id = H5Fopen(file.c_str(), writing ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access);
+  return share(id, H5Fclose, access.file(), "cannot be opened as an HDF5 file");
 }
 }  // namespace
 
-Hdf5File Hdf5File::open_to_read(const std::filesystem::path& file) { return Hdf5File(open_file(file, H5F_ACC_RDONLY)); }
-Hdf5File Hdf5File::open_to_append(const std::filesystem::path& file) { return Hdf5File(open_file(file, H5F_ACC_RDWR)); }
+Hdf5File Hdf5File::open_to_read(const std::filesystem::path& file) { return Hdf5File(open_file(file, false)); }
+Hdf5File Hdf5File::open_to_append(const std::filesystem::path& file) { return Hdf5File(open_file(file, true)); }
+
+namespace {
+/// A name for a file in memory: HDF5 refuses one that is on disk, and nothing lies below a file.
+std::string name_in_memory(const std::filesystem::path& name) { return (name / "in memory").string(); }
+}  // namespace
 
 Hdf5File Hdf5File::create_in_memory(const std::filesystem::path& name) {
-  const Hdf5Handle access = access_list(name.string());
+  const Hdf5Handle access = access_list(name, false);
   check(H5Pset_fapl_core(access, 1 << 20, false), access, "cannot prepare the file");
-  return Hdf5File(share(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, name.string(),
-                        "cannot prepare the file"));
+  return Hdf5File(share(H5Fcreate(name_in_memory(name).c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose,
+                        access.file(), "cannot prepare the file"));
 }
 
 Hdf5File Hdf5File::open_bytes(const std::string& bytes, const std::filesystem::path& name) {
-  const Hdf5Handle access = access_list(name.string());
+  const Hdf5Handle access = access_list(name, false);
   check(H5Pset_fapl_core(access, 1 << 20, false), access, "cannot read the file");
   // HDF5 copies the image and does not change it.
   check(H5Pset_file_image(access, const_cast<char*>(bytes.data()), bytes.size()), access, "cannot read the file");
-  return Hdf5File(share(H5Fopen(name.c_str(), H5F_ACC_RDONLY, access), H5Fclose, name.string(),
+  return Hdf5File(share(H5Fopen(name_in_memory(name).c_str(), H5F_ACC_RDONLY, access), H5Fclose, access.file(),
                         "cannot be opened as an HDF5 file"));
 }
 
@@ -338,7 +382,8 @@ std::vector<std::string> Hdf5File::children(const std::string& path) const {
 
 void Hdf5File::link(const std::string& existing, const std::string& path) const {
   const Hdf5Handle links = linking(handle_->file());
-  check(H5Lcreate_hard(*handle_, existing.c_str(), *handle_, path.c_str(), links, H5P_DEFAULT), *handle_, writing(path));
+  check(H5Lcreate_hard(*handle_, existing.c_str(), *handle_, path.c_str(), links, H5P_DEFAULT), *handle_,
+        writing(path));
 }
 
 void Hdf5File::write(const std::string& path, std::span<const double> values, const std::vector<Index>& shape) const {
@@ -377,7 +422,7 @@ Hdf5Dataset Hdf5File::create_growing(const std::string& path, ElementType type, 
 }
 
 Hdf5Dataset Hdf5File::open(const std::string& path) const {
-  if (!has(path)) throw FileError(fmt::format("there is no '{}' in the file", path), {.file = handle_->file()});
+  if (!has(path)) throw FileError(fmt::format("there is no '{}' in the file", path), {.file = handle_->file()->name});
   return {share(H5Dopen2(*handle_, path.c_str(), H5P_DEFAULT), H5Dclose, handle_->file(), reading(path)), path};
 }
 
@@ -405,7 +450,8 @@ void Hdf5File::set_attribute(const std::string& path, const std::string& name, d
 }
 void Hdf5File::set_attribute(const std::string& path, const std::string& name,
                              const std::vector<std::int64_t>& values) const {
-  write_attribute(*handle_, path, name, H5T_STD_I64LE, H5T_NATIVE_INT64, {static_cast<Index>(values.size())}, values.data());
+  write_attribute(*handle_, path, name, H5T_STD_I64LE, H5T_NATIVE_INT64, {static_cast<Index>(values.size())},
+                  values.data());
 }
 void Hdf5File::set_attribute(const std::string& path, const std::string& name,
                              const std::vector<std::string>& values) const {

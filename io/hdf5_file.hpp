@@ -49,7 +49,8 @@ class Hdf5Dataset {
 
  private:
   friend class Hdf5File;
-  Hdf5Dataset(std::shared_ptr<Hdf5Handle> handle, std::string path) : handle_(std::move(handle)), path_(std::move(path)) {}
+  Hdf5Dataset(std::shared_ptr<Hdf5Handle> handle, std::string path)
+      : handle_(std::move(handle)), path_(std::move(path)) {}
   void append_raw(const void* row, std::size_t values, ElementType type);
   void require(ElementType expected) const;
 

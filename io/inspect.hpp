@@ -32,15 +32,15 @@ struct MonitorSummary {
 };
 
 struct FileInfo {
-  std::string kind;        ///< "trajectory" or "checkpoint"; empty if the file cannot be opened
-  bool complete = false;   ///< trajectory: the run ended as asked; checkpoint: written to the end
+  std::string kind;       ///< "trajectory" or "checkpoint"; empty if the file cannot be opened
+  bool complete = false;  ///< trajectory: the run ended as asked; checkpoint: written to the end
   std::int64_t last_step = 0;
-  double last_time = 0;    ///< [time]
+  double last_time = 0;  ///< [time]
   std::string time_unit;
   Index particles = 0, frames = 0;
-  std::string digest;      ///< trajectory: of the last frame, from its data; checkpoint: as stored; may be empty
+  std::string digest;  ///< trajectory: of the last frame, from its data; checkpoint: as stored; may be empty
   std::string version, commit, simd, units;
-  std::string outcome;     ///< checkpoint: how the run ended; empty while it is unfinished
+  std::string outcome;  ///< checkpoint: how the run ended; empty while it is unfinished
   std::string scene_toml;
   std::vector<MonitorSummary> monitors;
   std::vector<std::string> damaged;  ///< what `verify` found wrong, one line each

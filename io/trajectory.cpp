@@ -255,10 +255,11 @@ class TrajectoryWriter::File {
       Hdf5Dataset dataset = hdf5_->open(paths[k]);
       const Index held = dataset.rows(), wanted = rows.at(k);
       if (held < wanted) {
-        throw FileError(fmt::format("'{}' holds {} rows where the saved run counts on {}; the file was cut or replaced: "
-                                    "bring it back, or start afresh",
-                                    paths[k], held, wanted),
-                        {.file = path_.string()});
+        throw FileError(
+            fmt::format("'{}' holds {} rows where the saved run counts on {}; the file was cut or replaced: "
+                        "bring it back, or start afresh",
+                        paths[k], held, wanted),
+            {.file = path_.string()});
       }
       if (held > wanted) dataset.resize(wanted);
     }
@@ -278,10 +279,11 @@ class TrajectoryWriter::File {
     const std::vector<std::int64_t> expected = sorted_ids_;
     match_order(state);
     if (sorted_ids_ == expected) return;
-    throw FileError(fmt::format("the file holds {} particles, the run now has {}, or others: a trajectory is of one set of "
-                                "particles; after an edit write another file",
-                                expected.size(), ids_.size()),
-                    {.file = path_.string()});
+    throw FileError(
+        fmt::format("the file holds {} particles, the run now has {}, or others: a trajectory is of one set of "
+                    "particles; after an edit write another file",
+                    expected.size(), ids_.size()),
+        {.file = path_.string()});
   }
 
   void gather(const VectorColumn<double>& column) {
@@ -325,7 +327,8 @@ class TrajectoryWriter::File {
     };
     monitor.step = dataset("step", ElementType::integer, {});
     monitor.time = dataset("time", ElementType::real, {});
-    for (const Series& one : sample.series) monitor.quantities[one.name] = dataset(one.name, ElementType::real, one.shape);
+    for (const Series& one : sample.series)
+      monitor.quantities[one.name] = dataset(one.name, ElementType::real, one.shape);
     if (!there) describe_monitor(group, sample);
     return monitor;
   }
@@ -353,8 +356,8 @@ class TrajectoryWriter::File {
   std::optional<Hdf5File> hdf5_;
   FrameDatasets frame_;
   std::map<std::string, MonitorDatasets> monitors_;
-  std::vector<KeptSample> waiting_;                ///< samples that came before the first look
-  std::vector<std::int64_t> ids_, sorted_ids_;     ///< as the run has them, and as the file has them
+  std::vector<KeptSample> waiting_;             ///< samples that came before the first look
+  std::vector<std::int64_t> ids_, sorted_ids_;  ///< as the run has them, and as the file has them
   std::vector<Index> order_;
   std::vector<double> row_;
   std::chrono::steady_clock::time_point flushed_ = std::chrono::steady_clock::now();

@@ -15,6 +15,11 @@ double relative(const Vec3<Real>& a, const Vec3<Real>& b) {
   return static_cast<double>(sqrt(norm2(a - b) / norm2(b)) / std::numeric_limits<Real>::epsilon());
 }
 
+double error_in_ulps(const Vec3<double>& rounded, const Vec3<Quad>& exact) {
+  const Vec3<Quad> wide{Quad(rounded[0]), Quad(rounded[1]), Quad(rounded[2])};
+  return static_cast<double>(sqrt(norm2(wide - exact) / norm2(exact))) / std::numeric_limits<double>::epsilon();
+}
+
 /// Elements of a state and back: the larger relative change of x and v, in units of rounding.
 template <class Real>
 double there_and_back(const OrbitalElements<Real>& o, const Real& mu) {
@@ -68,6 +73,19 @@ TEST_CASE("Kepler's equation is solved to rounding up to e = 1 - 1e-12", "[orbit
       const auto state = state_from_elements<Quad>({Quad(1), Quad(e), Quad(0), Quad(0), Quad(0), Quad(M)}, Quad(1));
       // The arc cosine of this check loses digits where the orbit is near its pericenter.
       CHECK(abs(kepler_residual(state.first, Quad(1), Quad(e), Quad(M))) < Quad(1e-27));
+    }
+  }
+}
+
+TEST_CASE("a double state is the Quad state to rounding, at the pericenter of a needle too", "[orbital_elements]") {
+  for (const double e : {0.0, 0.5, 0.99, 1 - 1e-12, 1 + 1e-12, 2.0}) {
+    for (const double M : {1e-15, 1e-9, 1e-4, 0.5, 2.5}) {
+      const double a = e < 1 ? 1 : -1;
+      const auto narrow = state_from_elements<double>({a, e, 0.5, 1, 2, M}, 1);
+      const auto wide = state_from_elements<Quad>({Quad(a), Quad(e), Quad(0.5), Quad(1), Quad(2), Quad(M)}, Quad(1));
+      CAPTURE(e, M);
+      CHECK(error_in_ulps(narrow.first, wide.first) < 8);
+      CHECK(error_in_ulps(narrow.second, wide.second) < 8);
     }
   }
 }

@@ -28,7 +28,8 @@ std::vector<Quad> outcome(const Scheme& scheme, double mass, long n, Coordinates
 }
 
 /// Sizes of e1, e2, e3 in error(eps) = eps e1 + eps^2 e2 + eps^3 e3 + ..., from three values of eps.
-std::array<double, 3> expansion(const std::array<std::vector<Quad>, 3>& end, const std::array<std::vector<Quad>, 3>& exact) {
+std::array<double, 3> expansion(const std::array<std::vector<Quad>, 3>& end,
+                                const std::array<std::vector<Quad>, 3>& exact) {
   std::array<double, 3> size{};
   const Quad eps(mass_ratio);
   for (std::size_t k = 0; k < end[0].size(); ++k) {
@@ -74,7 +75,8 @@ TEST_CASE("near-integrable schemes have their order in each power of epsilon", "
   check_orders(Coordinates::jacobi, outcomes(schemes::sofroniou_spaletta_10_s35, 192, Coordinates::jacobi));
 }
 
-TEST_CASE("near-integrable schemes for inexact kicks have their orders in democratic coordinates too", "[order][slow]") {
+TEST_CASE("near-integrable schemes for inexact kicks have their orders in democratic coordinates too",
+          "[order][slow]") {
   check_orders(Coordinates::democratic, outcomes(schemes::sofroniou_spaletta_10_s35, 192, Coordinates::democratic));
 }
 

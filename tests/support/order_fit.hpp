@@ -49,7 +49,9 @@ inline std::vector<ErrorPoint> finest(const std::vector<ErrorPoint>& points, dou
 /// The ladder in words, for messages of failed tests.
 inline std::string to_text(const std::vector<ErrorPoint>& points) {
   std::string text;
-  for (const auto& [h, error] : points) text += "h " + std::to_string(h) + " log10(error) " + std::to_string(std::log10(error)) + "\n";
+  for (const auto& [h, error] : points) {
+    text += "h " + std::to_string(h) + " log10(error) " + std::to_string(std::log10(error)) + "\n";
+  }
   return text;
 }
 

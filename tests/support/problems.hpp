@@ -1,5 +1,5 @@
 #pragma once
-/// Problems with known solutions, written once for every number type, and the shortest way to run an integrator on them.
+/// Problems with known solutions, written once for every number type, and the shortest way to run an integrator.
 
 #include "engine/particle_system.hpp"
 #include "forces/external_fields.hpp"

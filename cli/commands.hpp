@@ -1,0 +1,20 @@
+#pragma once
+/// The commands of the program: each adds itself to the parser and sets the exit code when it has run.
+
+namespace CLI {
+class App;
+}
+
+namespace noether {
+
+void add_run_command(CLI::App& app, int& exit_code);
+void add_evaluate_command(CLI::App& app, int& exit_code);
+void add_explain_command(CLI::App& app, int& exit_code);
+void add_list_command(CLI::App& app, int& exit_code);
+void add_describe_command(CLI::App& app, int& exit_code);
+void add_info_command(CLI::App& app, int& exit_code);
+void add_verify_command(CLI::App& app, int& exit_code);
+void add_convert_command(CLI::App& app, int& exit_code);
+void add_plot_command(CLI::App& app, int& exit_code);
+
+}  // namespace noether

@@ -1,0 +1,177 @@
+#include "cli/commands.hpp"
+
+#include "engine/error.hpp"
+#include "engine/quantity.hpp"
+#include "engine/suggest.hpp"
+#include "integrators/schemes.hpp"
+#include "scene/json.hpp"
+#include "scene/parts.hpp"
+#include "scene/references.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace noether {
+
+namespace {
+
+/// Entries of several sources "A, B", one below the other.
+std::string entries_of(std::string_view sources) {
+  std::string all;
+  while (!sources.empty()) {
+    const std::size_t end = sources.find_first_of(", ");
+    const std::string entry = bibtex(sources.substr(0, end));
+    if (!entry.empty()) all += entry + "\n";
+    sources = end == std::string_view::npos ? "" : sources.substr(end + 1);
+  }
+  return all;
+}
+
+std::vector<std::pair<std::string, PartInfo>> all_parts() {
+  std::vector<std::pair<std::string, PartInfo>> all;
+  for (const PartInfo& info : hamiltonian_parts()) all.emplace_back("hamiltonian", info);
+  const Parts parts = standard_parts();
+  for (const auto& kind : parts.forces()) all.emplace_back("force", kind.info);
+  for (const auto& kind : parts.monitors()) all.emplace_back("monitor", kind.info);
+  for (const PartInfo& info : writer_parts()) all.emplace_back("writer", info);
+  return all;
+}
+
+void describe_part(const std::string& kind, const PartInfo& info, bool json) {
+  if (json) {
+    std::vector<Json> fields;
+    for (const FieldInfo& f : info.fields) {
+      fields.push_back(Json::object({{"name", f.name},
+                                     {"kind", f.kind},
+                                     {"dimension", f.dimension},
+                                     {"default", f.default_value.empty() ? Json() : Json(f.default_value)},
+                                     {"choices", Json::list_of(f.choices)},
+                                     {"help", f.help}}));
+    }
+    fmt::print("{}\n", Json::object({{"schema", "noether.describe/1"},
+                                     {"kind", kind},
+                                     {"name", info.name},
+                                     {"help", info.help},
+                                     {"formula", info.formula},
+                                     {"fields", Json::list(fields)},
+                                     {"source", info.source},
+                                     {"bibtex", entries_of(info.source)}})
+                           .text());
+    return;
+  }
+  fmt::print("{} ({}): {}\n", info.name, kind, info.help);
+  if (!info.formula.empty()) fmt::print("\n    {}\n", info.formula);
+  if (!info.fields.empty()) fmt::print("\n");
+  for (const FieldInfo& f : info.fields) {
+    const std::string value = f.default_value.empty() ? "" : ", default " + f.default_value;
+    const std::string choices = f.choices.empty() ? "" : fmt::format(", one of {}", fmt::join(f.choices, ", "));
+    fmt::print("  {:<14} {} [{}]{}{}{}{}\n", f.name, f.kind, f.dimension, choices, value, f.help.empty() ? "" : ": ", f.help);
+  }
+  const std::string entries = entries_of(info.source);
+  if (!entries.empty()) fmt::print("\n{}", entries);
+}
+
+std::string word_text(const Word& word) {
+  std::string text;
+  for (const Stage& stage : word) {
+    text += fmt::format("  {}  {:.17g}\n", stage.letter, static_cast<double>(stage.weight));
+  }
+  return text;
+}
+
+void describe_scheme(const Scheme& scheme, bool json) {
+  const std::vector<std::string> aliases = schemes::aliases_of(scheme);
+  const auto orders = scheme.order.near_integrable;
+  if (json) {
+    std::vector<Json> stages;
+    for (const Stage& stage : scheme.word) {
+      stages.push_back(Json::list({std::string(1, stage.letter), static_cast<double>(stage.weight)}));
+    }
+    fmt::print("{}\n", Json::object({{"schema", "noether.describe/1"},
+                                     {"kind", "method"},
+                                     {"name", scheme.name},
+                                     {"help", scheme.summary},
+                                     {"aliases", Json::list_of(aliases)},
+                                     {"order", scheme.order.classical},
+                                     {"near_integrable_orders", Json::list_of(orders)},
+                                     {"kicks", scheme.evaluations()},
+                                     {"symmetric", scheme.is_symmetric()},
+                                     {"stability_limit", scheme.stability_limit > 0 ? Json(scheme.stability_limit) : Json()},
+                                     {"word", Json::list(stages)},
+                                     {"source", scheme.source},
+                                     {"bibtex", entries_of(scheme.source)}})
+                           .text());
+    return;
+  }
+  fmt::print("{} (method): {}\n", scheme.name, scheme.summary);
+  if (!aliases.empty()) fmt::print("also called {}\n", fmt::join(aliases, ", "));
+  fmt::print("\n  order {}, {} kicks per step, {}\n", scheme.order.classical, scheme.evaluations(),
+             scheme.is_symmetric() ? "symmetric" : "not symmetric");
+  if (orders[0] != 0) fmt::print("  for H = A + eps B: error orders {}\n", fmt::join(orders, ", "));
+  if (scheme.scheme_class == SchemeClass::rkn) {
+    fmt::print("  a Nystroem splitting: for quadratic kinetic energies only\n");
+  }
+  if (!scheme.exact.empty()) fmt::print("  needs exact flows of {}\n", scheme.exact);
+  if (scheme.stability_limit > 0) fmt::print("  stable on the oscillator up to h omega = {:.6g}\n", scheme.stability_limit);
+  fmt::print("\n{}", word_text(scheme.word));
+  const std::string entries = entries_of(scheme.source);
+  if (!entries.empty()) fmt::print("\n{}", entries);
+}
+
+void describe_unit(const UnitRow& row, bool json) {
+  const Json::Members values = {{"solar", row.solar}, {"molecular", row.molecular}, {"si", row.si}, {"reduced", row.reduced}};
+  if (json) {
+    fmt::print("{}\n", Json::object({{"schema", "noether.describe/1"},
+                                     {"kind", "unit"},
+                                     {"name", row.symbol},
+                                     {"constant", row.constant},
+                                     {"dimension", row.dimension},
+                                     {"values", Json::object(values)}})
+                           .text());
+    return;
+  }
+  fmt::print("{} (unit, {} in C++): {}\n", row.symbol, row.constant, row.dimension);
+  for (const auto& [system, value] : values) {
+    fmt::print("  {:<10} {}\n", system, value.text() == "null" ? "-" : value.text());
+  }
+}
+
+void describe(const std::string& name, bool json) {
+  std::vector<std::string> known;
+  for (const auto& [kind, info] : all_parts()) {
+    if (info.name == name) return describe_part(kind, info, json);
+    known.push_back(info.name);
+  }
+  if (const Scheme* scheme = schemes::find(name)) return describe_scheme(*scheme, json);
+  for (const UnitRow& row : list_units()) {
+    if (row.symbol == name) return describe_unit(row, json);
+  }
+  for (const Scheme* scheme : schemes::all()) {
+    known.emplace_back(scheme->name);
+    for (const std::string& alias : schemes::aliases_of(*scheme)) known.push_back(alias);
+  }
+  const std::string near = suggest(name, known);
+  throw Error(fmt::format("there is nothing called '{}'; {}", name,
+                          near.empty() ? "see `noether list`" : "did you mean '" + near + "'?"));
+}
+
+}  // namespace
+
+void add_describe_command(CLI::App& app, int& exit_code) {
+  const auto name = std::make_shared<std::string>();
+  const auto json = std::make_shared<bool>(false);
+  CLI::App* command = app.add_subcommand("describe", "formula, order, fields and source of a part or method");
+  command->add_option("name", *name, "as `noether list` shows it")->required()->type_name("NAME");
+  command->add_flag("--json", *json, "as one line of JSON");
+  command->callback([name, json, &exit_code] {
+    describe(*name, *json);
+    exit_code = 0;
+  });
+}
+
+}  // namespace noether

@@ -1,0 +1,95 @@
+#include "cli/commands.hpp"
+
+#include "engine/error.hpp"
+#include "engine/quantity.hpp"
+#include "scene/evaluate.hpp"
+#include "scene/json.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace noether {
+
+namespace {
+
+struct EvaluateArguments {
+  std::string scene, forces;
+  std::vector<std::string> sets;
+  bool check = false, json = false;
+};
+
+void write_forces(const std::string& file, const Scene& scene, const Evaluation& result) {
+  std::ofstream out(file);
+  out << "id,fx,fy,fz\n";
+  for (Index i = 0; i < scene.particles.size(); ++i) {
+    const Vec3<double> f = result.forces[i];
+    out << fmt::format("{},{:.17g},{:.17g},{:.17g}\n", scene.particles.ids()[static_cast<std::size_t>(i)], f[0], f[1], f[2]);
+  }
+  out.flush();
+  if (!out) throw FileError("the forces could not be written", {.file = file});
+}
+
+Json json_of(const Evaluation& e) {
+  Json::Members terms;
+  for (const auto& [name, energy] : e.terms) terms.emplace_back(name, energy);
+  std::vector<Json> rows;
+  for (int r = 0; r < 3; ++r) rows.push_back(Json::list({e.virial(r, 0), e.virial(r, 1), e.virial(r, 2)}));
+  return Json::object({{"schema", "noether.evaluate/1"},
+                       {"energy", Json::object({{"total", e.kinetic + e.potential},
+                                                {"kinetic", e.kinetic},
+                                                {"potential", e.potential},
+                                                {"terms", Json::object(terms)}})},
+                       {"virial", Json::list(rows)},
+                       {"pressure", Json()},
+                       {"force_max", e.force_max},
+                       {"gradient_error", e.gradient_error}});
+}
+
+void print_text(const Scene& scene, const Evaluation& e) {
+  const auto with_unit = [&](double value, const Dimension& dimension) {
+    const std::string unit = unit_of(dimension, *scene.units);
+    return format_number(value) + (unit == "1" ? "" : " " + unit);
+  };
+  const auto energy = [&](double value) { return with_unit(value, dimensions::energy); };
+  fmt::print("{:<22}{}\n", "total energy", energy(e.kinetic + e.potential));
+  fmt::print("{:<22}{}\n", "  kinetic", energy(e.kinetic));
+  fmt::print("{:<22}{}\n", "  potential", energy(e.potential));
+  for (const auto& [name, value] : e.terms) fmt::print("    {:<18}{}\n", name, energy(value));
+  fmt::print("{:<22}{}\n", "trace of the virial", energy(e.virial.trace()));
+  fmt::print("{:<22}{}\n", "largest force", with_unit(e.force_max, dimensions::force));
+  if (e.gradient_error) fmt::print("{:<22}{:.2g} of the largest force\n", "force against -grad U", *e.gradient_error);
+}
+
+int evaluate_scene(const EvaluateArguments& given) {
+  const Scene scene = load_scene(given.scene, standard_parts(), given.sets);
+  const Evaluation result = evaluate(scene, given.check);
+  if (!given.forces.empty()) write_forces(given.forces, scene, result);
+  if (given.json) {
+    fmt::print("{}\n", json_of(result).text());
+  } else {
+    print_text(scene, result);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_evaluate_command(CLI::App& app, int& exit_code) {
+  const auto given = std::make_shared<EvaluateArguments>();
+  CLI::App* command = app.add_subcommand("evaluate", "energy by term, virial and forces of the initial state");
+  command->add_option("scene", given->scene, "scene file")->required()->type_name("SCENE");
+  command->add_option("--forces", given->forces, "write id,fx,fy,fz with 17 digits")->type_name("FILE.csv");
+  command->add_option("--set", given->sets, "change a key of the scene: key.path=value")
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUE");
+  command->add_flag("--check", given->check, "compare every force with differences of its energy");
+  command->add_flag("--json", given->json, "report as one line of JSON");
+  command->callback([given, &exit_code] { exit_code = evaluate_scene(*given); });
+}
+
+}  // namespace noether

@@ -1,0 +1,181 @@
+#include "cli/commands.hpp"
+
+#include "engine/orbital_elements.hpp"
+#include "engine/quantity.hpp"
+#include "integrators/composition.hpp"
+#include "scene/json.hpp"
+#include "scene/scene.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace noether {
+
+namespace {
+
+/// What a scene does and does not do, before it runs.
+struct Explanation {
+  std::string method, hamiltonian;
+  std::vector<std::string> in, out, columns;
+  std::size_t bytes_per_particle = 0;
+  Index particles = 0;
+  std::map<char, int> flows;                 ///< stages of one step, by letter, the last joined to the next first
+  std::optional<double> recommended_step;    ///< [time]
+  std::string recommended_for;
+};
+
+/// Shortest time a body needs to go round at the speed of its pericenter, over 20.
+///
+///     P_f = 2 pi sqrt(q^3 / (mu (1 + e)))
+void recommend(const Scene& scene, Explanation& e) {
+  bool gravity = scene.hamiltonian.kind == SceneHamiltonian::Kind::wisdom_holman;
+  for (const SceneForce& force : scene.hamiltonian.forces) gravity = gravity || force.name == "gravity";
+  if (!gravity) return;
+  const ParticleSystem<double>& s = scene.particles;
+  const double G = scene.hamiltonian.G.value_or(scene.units->G);
+  for (Index i = 1; i < s.size(); ++i) {
+    const double mu = G * (s.masses()[0] + s.masses()[i]);
+    if (!(mu > 0)) continue;
+    const Vec3<double> x = s.positions()[i] - s.positions()[0], v = s.velocities()[i] - s.velocities()[0];
+    const auto orbit = elements_from_state<double>(x, v, mu);
+    const double q = orbit.a * (1 - orbit.e);
+    const double step = 2 * M_PI * std::sqrt(q * q * q / (mu * (1 + orbit.e))) / 20;
+    if (!std::isfinite(step) || !(step > 0) || (e.recommended_step && *e.recommended_step <= step)) continue;
+    e.recommended_step = step;
+    e.recommended_for = s.name(i);
+  }
+}
+
+void count_flows(const Word& word, std::map<char, int>& flows) {
+  for (const Stage& stage : word) ++flows[stage.letter];
+  if (word.size() > 1 && word.front().letter == word.back().letter) --flows[word.front().letter];
+}
+
+void sort_parts(const Scene& scene, Explanation& e) {
+  const Parts parts = standard_parts();
+  for (const SceneForce& force : scene.hamiltonian.forces) e.in.push_back("force " + force.name);
+  for (const SceneWatch& watch : scene.watches) {
+    const bool monitor = watch.kind == SceneWatch::Kind::monitor;
+    const std::string name = monitor ? "monitor " + watch.monitor.name : watch.kind == SceneWatch::Kind::trajectory ? "writer trajectory" : "writer checkpoint";
+    const std::string when = watch.cadence.wall > 0 ? fmt::format("every {} s of wall time", watch.cadence.wall)
+                                                    : fmt::format("every {} steps", watch.cadence.steps);
+    e.in.push_back(name + ", " + when);
+  }
+  for (const SceneStop& stop : scene.stops) {
+    const bool escape = stop.rule.kind == StopRule::Kind::escape;
+    e.in.push_back(fmt::format("stop {}, every {} steps", escape ? "escape" : "collision", stop.steps));
+  }
+  const auto leave_out = [&](const std::string& what) {
+    const bool used = std::any_of(e.in.begin(), e.in.end(), [&](const std::string& one) { return one == what || one.starts_with(what + ","); });
+    if (!used) e.out.push_back(what);
+  };
+  for (const auto& kind : parts.forces()) leave_out("force " + kind.info.name);
+  for (const auto& kind : parts.monitors()) leave_out("monitor " + kind.info.name);
+  leave_out("writer trajectory");
+  leave_out("stop escape");
+  leave_out("stop collision");
+}
+
+Explanation explained(const Scene& scene) {
+  Explanation e;
+  const Scheme scheme = scheme_of(scene.integrator);
+  AnyHamiltonian<double> hamiltonian = hamiltonian_of(scene);
+  e.method = scene.integrator.method;
+  e.hamiltonian = hamiltonian.name();
+  sort_parts(scene, e);
+  ParticleSystem<double> s = scene.particles;
+  s.clock() = Clock<double>::fixed(0, scene.integrator.step);
+  Composition<AnyHamiltonian<double>> integrator(hamiltonian, scheme, {.compensated = scene.integrator.compensated});
+  integrator.bind(s);
+  e.particles = s.size();
+  e.columns = {"id", "position", "velocity", "mass"};
+  if (s.low_words() != nullptr) e.columns.insert(e.columns.end(), {"low word of position", "low word of velocity"});
+  for (const auto& [name, column] : s.extra_columns()) e.columns.push_back(name);
+  e.bytes_per_particle = s.bytes_per_particle();
+  count_flows(fitted_word(scheme, hamiltonian.claims(), e.hamiltonian), e.flows);
+  recommend(scene, e);
+  return e;
+}
+
+std::string meaning(char letter, const Scene& scene) {
+  const bool wisdom_holman = scene.hamiltonian.kind == SceneHamiltonian::Kind::wisdom_holman;
+  if (letter == 'A') return wisdom_holman ? "Kepler arcs of every body" : "drifts";
+  if (letter == 'B') return wisdom_holman ? "kicks by the interaction" : "kicks, one force evaluation each";
+  return letter == 'D' ? "flows of the drag" : "flows";
+}
+
+void print_text(const Scene& scene, const Explanation& e) {
+  fmt::print("{}{}{} over {}, {} particles\n", scene.title, scene.title.empty() ? "" : ": ", e.method, e.hamiltonian, e.particles);
+  fmt::print("in:\n");
+  for (const std::string& one : e.in) fmt::print("  {}\n", one);
+  fmt::print("left out:\n");
+  for (const std::string& one : e.out) fmt::print("  {}\n", one);
+  fmt::print("columns: {}; {} bytes per particle\n", fmt::join(e.columns, ", "), e.bytes_per_particle);
+  fmt::print("each step:\n");
+  for (const auto& [letter, count] : e.flows) fmt::print("  {} x {}: {}\n", count, letter, meaning(letter, scene));
+  fmt::print("SIMD level: base\n");
+  const std::string unit = scene.units->is_reduced() ? "" : " " + std::string(scene.units->time);
+  fmt::print("step: {}", scene.integrator.step_text);
+  if (e.recommended_step) {
+    fmt::print("; recommended for a method of order 2: {:.3g}{}, a twentieth of the time {} needs around its pericenter",
+               *e.recommended_step, unit, e.recommended_for);
+  }
+  fmt::print("\n");
+}
+
+Json json_of(const Scene& scene, const Explanation& e) {
+  Json::Members flows;
+  std::vector<std::string> letters;
+  letters.reserve(e.flows.size());  // the members point into it
+  for (const auto& [letter, count] : e.flows) flows.emplace_back(letters.emplace_back(1, letter), count);
+  return Json::object({{"schema", "noether.explain/1"},
+                       {"method", e.method},
+                       {"hamiltonian", e.hamiltonian},
+                       {"parts", Json::list_of(e.in)},
+                       {"left_out", Json::list_of(e.out)},
+                       {"columns", Json::list_of(e.columns)},
+                       {"bytes_per_particle", static_cast<std::int64_t>(e.bytes_per_particle)},
+                       {"particles", std::int64_t{e.particles}},
+                       {"flows_per_step", Json::object(flows)},
+                       {"simd", "base"},
+                       {"step", scene.integrator.step},
+                       {"recommended_step", e.recommended_step},
+                       {"time_unit", scene.units->time}});
+}
+
+}  // namespace
+
+void add_explain_command(CLI::App& app, int& exit_code) {
+  struct Arguments {
+    std::string scene;
+    std::vector<std::string> sets;
+    bool json = false;
+  };
+  const auto given = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("explain", "which parts a scene uses and leaves out, and what a step costs");
+  command->add_option("scene", given->scene, "scene file")->required()->type_name("SCENE");
+  command->add_option("--set", given->sets, "change a key of the scene: key.path=value")
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUE");
+  command->add_flag("--json", given->json, "as one line of JSON");
+  command->callback([given, &exit_code] {
+    const Scene scene = load_scene(given->scene, standard_parts(), given->sets);
+    const Explanation e = explained(scene);
+    if (given->json) {
+      fmt::print("{}\n", json_of(scene, e).text());
+    } else {
+      print_text(scene, e);
+    }
+    exit_code = 0;
+  });
+}
+
+}  // namespace noether

@@ -1,0 +1,121 @@
+#include "cli/commands.hpp"
+
+#include "io/inspect.hpp"
+#include "scene/json.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace noether {
+
+namespace {
+
+Json text_or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
+
+Json json_of(const io::FileInfo& info) {
+  std::vector<Json> monitors;
+  for (const io::MonitorSummary& one : info.monitors) {
+    monitors.push_back(Json::object({{"name", one.name},
+                                     {"quantities", Json::list_of(one.quantities)},
+                                     {"samples", std::int64_t{one.samples}}}));
+  }
+  return Json::object({{"schema", "noether.info/1"},
+                       {"kind", info.kind},
+                       {"complete", info.complete},
+                       {"last_step", info.last_step},
+                       {"last_time", info.last_time},
+                       {"time_unit", info.time_unit},
+                       {"particles", std::int64_t{info.particles}},
+                       {"frames", std::int64_t{info.frames}},
+                       {"digest", text_or_null(info.digest)},
+                       {"outcome", text_or_null(info.outcome)},
+                       {"version", info.version},
+                       {"commit", info.commit},
+                       {"simd", info.simd},
+                       {"units", text_or_null(info.units)},
+                       {"monitors", Json::list(monitors)}});
+}
+
+void print_text(const std::string& file, const io::FileInfo& info) {
+  const bool checkpoint = info.kind == "checkpoint";
+  std::string state = info.complete ? "complete" : "not complete";
+  if (checkpoint) state = info.outcome.empty() ? "of an unfinished run" : "of a run that is " + info.outcome;
+  fmt::print("{}: {}, {}\n", file, info.kind, state);
+  fmt::print("  {} particles, step {}, time {:.9g}{}\n", info.particles, info.last_step, info.last_time,
+             info.time_unit.empty() || info.time_unit == "1" ? "" : " " + info.time_unit);
+  if (!checkpoint) fmt::print("  {} frames\n", info.frames);
+  for (const io::MonitorSummary& one : info.monitors) {
+    fmt::print("  {}: {} samples of {}\n", one.name, one.samples, fmt::join(one.quantities, ", "));
+  }
+  fmt::print("  written by noether {} ({}), simd {}\n", info.version, info.commit, info.simd);
+  if (!info.digest.empty()) fmt::print("  {}\n", info.digest);
+}
+
+int verify_file(const std::string& file, bool json) {
+  const io::FileInfo info = io::verify(file);
+  const bool ok = info.damaged.empty();
+  if (json) {
+    fmt::print("{}\n", Json::object({{"schema", "noether.verify/1"},
+                                     {"ok", ok},
+                                     {"complete", info.complete},
+                                     {"damaged", Json::list_of(info.damaged)},
+                                     {"last_step", info.last_step},
+                                     {"digest", text_or_null(info.digest)}})
+                           .text());
+    return ok ? 0 : 3;
+  }
+  if (ok) fmt::print("{}: sound{}, last step {}\n", file, info.complete ? " and complete" : ", not complete", info.last_step);
+  for (const std::string& line : info.damaged) fmt::print(stderr, "{}: {}\n", file, line);
+  return ok ? 0 : 3;
+}
+
+struct FileArguments {
+  std::string file, out;
+  bool json = false;
+};
+
+CLI::App* file_command(CLI::App& app, const std::string& name, const std::string& help, const std::shared_ptr<FileArguments>& given) {
+  CLI::App* command = app.add_subcommand(name, help);
+  command->add_option("file", given->file, "run.h5 or a checkpoint")->required()->type_name("FILE");
+  return command;
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app, int& exit_code) {
+  const auto given = std::make_shared<FileArguments>();
+  CLI::App* command = file_command(app, "info", "what is in a file, and its digest", given);
+  command->add_flag("--json", given->json, "as one line of JSON");
+  command->callback([given, &exit_code] {
+    const io::FileInfo info = io::info(given->file);
+    if (given->json) {
+      fmt::print("{}\n", json_of(info).text());
+    } else {
+      print_text(given->file, info);
+    }
+    exit_code = 0;
+  });
+}
+
+void add_verify_command(CLI::App& app, int& exit_code) {
+  const auto given = std::make_shared<FileArguments>();
+  CLI::App* command = file_command(app, "verify", "read everything in a file and say whether it is sound", given);
+  command->add_flag("--json", given->json, "as one line of JSON");
+  command->callback([given, &exit_code] { exit_code = verify_file(given->file, given->json); });
+}
+
+void add_convert_command(CLI::App& app, int& exit_code) {
+  const auto given = std::make_shared<FileArguments>();
+  CLI::App* command = file_command(app, "convert", "rewrite a trajectory as extended XYZ or CSV", given);
+  command->add_option("out", given->out, "FILE.xyz or FILE.csv")->required()->type_name("OUT");
+  command->callback([given, &exit_code] {
+    io::convert(given->file, given->out);
+    exit_code = 0;
+  });
+}
+
+}  // namespace noether

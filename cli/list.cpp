@@ -1,0 +1,146 @@
+#include "cli/commands.hpp"
+
+#include "engine/error.hpp"
+#include "engine/quantity.hpp"
+#include "engine/suggest.hpp"
+#include "integrators/schemes.hpp"
+#include "scene/json.hpp"
+#include "scene/parts.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace noether {
+
+namespace {
+
+/// A list: names of the columns, and rows of text for people or values for machines.
+struct Listing {
+  std::vector<std::string_view> columns;
+  std::vector<std::vector<Json>> values;
+  std::vector<std::vector<std::string>> rows;
+
+  void add(std::vector<std::string> texts, std::vector<Json> json) {
+    rows.push_back(std::move(texts));
+    values.push_back(std::move(json));
+  }
+  void add(const std::vector<std::string>& texts) { add(texts, std::vector<Json>(texts.begin(), texts.end())); }
+};
+
+std::string class_text(const Scheme& scheme) {
+  if (scheme.scheme_class == SchemeClass::rkn) return "nystrom";
+  return scheme.scheme_class == SchemeClass::near_integrable ? "near-integrable" : "general";
+}
+
+std::string order_text(const Order& order) {
+  const auto [p1, p2, p3] = order.near_integrable;
+  if (p1 == 0) return fmt::format("{}", order.classical);
+  if (p2 == 0) return fmt::format("{} ({})", order.classical, p1);
+  return p3 == 0 ? fmt::format("{} ({},{})", order.classical, p1, p2)
+                 : fmt::format("{} ({},{},{})", order.classical, p1, p2, p3);
+}
+
+Listing methods() {
+  Listing list{{"name", "order", "class", "kicks", "stability_limit", "aliases"}, {}, {}};
+  for (const Scheme* scheme : schemes::all()) {
+    const std::vector<std::string> aliases = schemes::aliases_of(*scheme);
+    const double limit = scheme->stability_limit;
+    list.add({std::string(scheme->name), order_text(scheme->order), class_text(*scheme),
+              fmt::format("{}", scheme->evaluations()), limit > 0 ? fmt::format("{:.4g}", limit) : "-",
+              fmt::format("{}", fmt::join(aliases, " "))},
+             {scheme->name, scheme->order.classical, class_text(*scheme), scheme->evaluations(),
+              limit > 0 ? Json(limit) : Json(), Json::list_of(aliases)});
+  }
+  return list;
+}
+
+Listing parts(const std::vector<PartInfo>& infos) {
+  Listing list{{"name", "help"}, {}, {}};
+  for (const PartInfo& info : infos) list.add({info.name, info.help});
+  return list;
+}
+
+template <class Kinds> std::vector<PartInfo> infos_of(const Kinds& kinds) {
+  std::vector<PartInfo> infos;
+  for (const auto& kind : kinds) infos.push_back(kind.info);
+  return infos;
+}
+
+Listing units() {
+  Listing list{{"unit", "constant", "dimension", "solar", "molecular", "si", "reduced"}, {}, {}};
+  for (const UnitRow& row : list_units()) {
+    const auto text = [](const std::optional<double>& x) { return x ? format_number(*x) : std::string("-"); };
+    list.add({row.symbol, row.constant, row.dimension, text(row.solar), text(row.molecular), text(row.si), text(row.reduced)},
+             {row.symbol, row.constant, row.dimension, row.solar, row.molecular, row.si, row.reduced});
+  }
+  return list;
+}
+
+Listing listing_of(const std::string& what) {
+  if (what == "methods") return methods();
+  if (what == "forces") return parts(infos_of(standard_parts().forces()));
+  if (what == "units") return units();
+  if (what == "constraints" || what == "builders") return parts({});
+  if (what == "monitors") {
+    std::vector<PartInfo> infos = infos_of(standard_parts().monitors());
+    for (const PartInfo& writer : writer_parts()) infos.push_back(writer);
+    return parts(infos);
+  }
+  const std::vector<std::string> known = {"methods", "forces", "constraints", "monitors", "builders", "units"};
+  throw Error(fmt::format("there is no list of '{}'{}", what, did_you_mean(what, known)));
+}
+
+void print_json(const std::string& what, const Listing& list) {
+  std::vector<Json> items;
+  for (const auto& row : list.values) {
+    Json::Members members;
+    for (std::size_t k = 0; k < row.size(); ++k) members.emplace_back(list.columns[k], row[k]);
+    items.push_back(Json::object(members));
+  }
+  fmt::print("{}\n", Json::object({{"schema", "noether.list/1"}, {"list", what}, {"items", Json::list(items)}}).text());
+}
+
+void print_text(const std::string& what, const Listing& list) {
+  if (list.rows.empty()) {
+    fmt::print("there are no {} yet\n", what);
+    return;
+  }
+  std::vector<std::vector<std::string>> rows = list.rows;
+  rows.insert(rows.begin(), std::vector<std::string>(list.columns.begin(), list.columns.end()));
+  std::vector<std::size_t> widths(list.columns.size(), 0);
+  for (const auto& row : rows) {
+    for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], row[k].size());
+  }
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t k = 0; k < row.size(); ++k) line += fmt::format("{:<{}}  ", row[k], widths[k]);
+    line.erase(line.find_last_not_of(' ') + 1);
+    fmt::print("{}\n", line);
+  }
+}
+
+}  // namespace
+
+void add_list_command(CLI::App& app, int& exit_code) {
+  const auto what = std::make_shared<std::string>();
+  const auto json = std::make_shared<bool>(false);
+  CLI::App* command = app.add_subcommand("list", "what there is: methods, forces, constraints, monitors, builders, units");
+  command->add_option("what", *what, "methods, forces, constraints, monitors, builders or units")->required()->type_name("WHAT");
+  command->add_flag("--json", *json, "as one line of JSON");
+  command->callback([what, json, &exit_code] {
+    const Listing list = listing_of(*what);
+    if (*json) {
+      print_json(*what, list);
+    } else {
+      print_text(*what, list);
+    }
+    exit_code = 0;
+  });
+}
+
+}  // namespace noether

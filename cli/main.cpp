@@ -1,0 +1,119 @@
+/// The program `noether`.
+
+#include "cli/commands.hpp"
+
+#include "engine/error.hpp"
+#include "engine/suggest.hpp"
+#include "engine/version.hpp"
+#include "scene/json.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+#include <vector>
+
+namespace {
+
+using noether::Json;
+
+/// Says what went wrong: one line on stderr and, where reports are JSON, one on stdout.
+int complain(const noether::ErrorLocation& at, const std::string& message, const std::string& line, int code, bool json) {
+  fmt::print(stderr, "{}\n", line);
+  if (json) {
+    const auto text = [](const std::string& t) { return t.empty() ? Json() : Json(t); };
+    const Json report = Json::object({{"schema", "noether.error/1"},
+                                      {"exit_code", code},
+                                      {"file", text(at.file)},
+                                      {"line", at.line > 0 ? Json(at.line) : Json()},
+                                      {"key", text(at.key)},
+                                      {"value", text(at.value)},
+                                      {"message", message}});
+    fmt::print("{}\n", report.text());
+  }
+  return code;
+}
+
+/// Another library's words in the form of ours: one line, lower case, no final stop.
+std::string in_our_words(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  while (!text.empty() && (text.back() == ' ' || text.back() == '.')) text.pop_back();
+  if (!text.empty()) text[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[0])));
+  return text;
+}
+
+std::vector<std::string> command_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  return names;
+}
+
+/// What the first argument nobody knows may have meant.
+std::string unknown_argument(const CLI::App& app, const std::string& argument) {
+  const auto used = app.get_subcommands();
+  if (used.empty() && !argument.empty() && argument[0] != '-') {
+    return fmt::format("unknown command '{}'{}", argument, noether::did_you_mean(argument, command_names(app)));
+  }
+  const CLI::App& command = used.empty() ? app : *used.front();
+  const std::string of = used.empty() ? "" : " of '" + command.get_name() + "'";
+  if (argument[0] != '-') return fmt::format("unexpected argument '{}'{}", argument, of);
+  std::vector<std::string> known;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  }
+  const std::string name = argument.substr(0, argument.find('='));
+  return fmt::format("unknown option '{}'{}{}", name, of, noether::did_you_mean(name, known));
+}
+
+int parse(CLI::App& app, int argc, char** argv, int& exit_code, bool json) {
+  try {
+    app.parse(argc, argv);
+    return exit_code;
+  } catch (const CLI::CallForHelp&) {
+    const auto used = app.get_subcommands();
+    fmt::print("{}", used.empty() ? app.help() : used.front()->help());
+    return 0;
+  } catch (const CLI::CallForVersion&) {
+    fmt::print("noether {} ({})\n", noether::version(), noether::commit());
+    return 0;
+  } catch (const CLI::ExtrasError&) {
+    const auto rest = app.remaining(true);
+    const std::string message = unknown_argument(app, rest.empty() ? std::string("?") : rest.front());
+    return complain({}, message, message, 2, json);
+  } catch (const CLI::ParseError& error) {
+    const auto used = app.get_subcommands();
+    const std::string help = used.empty() ? "noether --help" : "noether " + used.front()->get_name() + " --help";
+    const std::string message = fmt::format("{}; see `{}`", in_our_words(error.what()), help);
+    return complain({}, message, message, 2, json);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const bool json = std::any_of(argv + 1, argv + argc, [](const char* one) { return std::string(one) == "--json"; });
+  try {
+    CLI::App app("Long, honest integrations of mechanical systems", "noether");
+    app.set_version_flag("--version", "");
+    app.require_subcommand(1);
+    int exit_code = 0;
+    for (const auto add : {noether::add_run_command, noether::add_evaluate_command, noether::add_explain_command,
+                           noether::add_list_command, noether::add_describe_command, noether::add_info_command,
+                           noether::add_verify_command, noether::add_convert_command, noether::add_plot_command}) {
+      add(app, exit_code);
+    }
+    return parse(app, argc, argv, exit_code, json);
+  } catch (const noether::Error& error) {
+    return complain(error.location(), error.message(), error.what(), error.exit_code(), json);
+  } catch (const std::bad_alloc&) {
+    return complain({}, "out of memory", "out of memory", 4, json);
+  } catch (const std::exception& error) {
+    const std::string message = fmt::format("internal fault: {}; this is a bug of noether", in_our_words(error.what()));
+    return complain({}, message, message, 4, json);
+  }
+}

@@ -1,0 +1,53 @@
+#pragma once
+/// What a plot of a run shows: orbits and errors, as plain numbers.
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace noether {
+
+struct PlotPoint {
+  double x = 0, y = 0;
+};
+
+/// One body in the plane of x and y.
+struct PlotOrbit {
+  std::string name;
+  std::size_t color = 0;           ///< number in the palette
+  bool primary = false;            ///< stands in the center
+  std::vector<PlotPoint> path;     ///< joined by a line
+  std::vector<PlotPoint> samples;  ///< where it was seen, single points
+  PlotPoint end;                   ///< at the last frame
+  double size = 0;                 ///< largest distance from the center of the picture
+};
+
+/// Orbits that share one scale.
+struct PlotOrbits {
+  std::string title, x_label, y_label;
+  std::vector<PlotOrbit> orbits;
+  PlotPoint center;
+  double half_width = 1;
+};
+
+/// The size of an error against time.
+struct PlotError {
+  std::string title, label;
+  std::vector<PlotPoint> points;  ///< zeros left out: the axis is logarithmic
+  double worst = 0;
+};
+
+struct PlotData {
+  std::string title, subtitle, time_label;
+  std::vector<PlotOrbits> orbits;  ///< one, or two where inner bodies need a scale of their own
+  std::vector<PlotError> errors;
+  double end = 0;  ///< of the time axis
+};
+
+/// Gathers what a trajectory file holds.
+/// @throws FileError if it cannot be read; Error if there is nothing in it to draw
+PlotData read_plot_data(const std::filesystem::path& file);
+
+}  // namespace noether

@@ -1,0 +1,78 @@
+#include "cli/commands.hpp"
+
+#include "engine/error.hpp"
+#include "engine/parallel.hpp"
+#include "engine/suggest.hpp"
+#include "scene/run.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace noether {
+
+namespace {
+
+struct RunArguments {
+  std::string scene, out, simd, until;
+  std::vector<std::string> sets;
+  int threads = 0;
+  bool resume = false, fresh = false, quiet = false, json = false;
+};
+
+void check_simd(const std::string& level) {
+  if (level.empty() || level == "base") return;
+  if (level == "avx2" || level == "avx512") {
+    throw Error(fmt::format("SIMD level '{}' is not in this build; leave --simd out, or give base", level));
+  }
+  throw Error(fmt::format("unknown SIMD level '{}'{}", level, did_you_mean(level, {"base", "avx2", "avx512"})));
+}
+
+/// `--until T` is `--set integrator.until="T"`.
+std::string as_set(const std::string& until) { return "integrator.until=\"" + until + "\""; }
+
+int run_scene(const RunArguments& given) {
+  check_simd(given.simd);
+  if (given.threads != 0) set_thread_count(given.threads);
+  std::vector<std::string> sets = given.sets;
+  if (!given.until.empty()) sets.push_back(as_set(given.until));
+  const Scene scene = load_scene(given.scene, standard_parts(), sets);
+  RunOptions options;
+  options.out = given.out;
+  options.existing = given.resume ? Existing::resume : given.fresh ? Existing::fresh : Existing::keep;
+  options.progress = !given.quiet && !given.json;
+  const RunReport report = run(scene, options);
+  if (given.json) {
+    fmt::print("{}\n", to_json(report));
+  } else if (!given.quiet) {
+    fmt::print("{}", to_text(report));
+  }
+  return report.exit_code();
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, int& exit_code) {
+  const auto given = std::make_shared<RunArguments>();
+  CLI::App* command = app.add_subcommand("run", "integrate a scene");
+  command->add_option("scene", given->scene, "scene file")->required()->type_name("SCENE");
+  command->add_option("--out", given->out, "output folder; default: SCENE.out here")->type_name("DIR");
+  command->add_option("--threads", given->threads, "threads to use; the bits do not depend on it")
+      ->check(CLI::Range(1, 65536))
+      ->type_name("N");
+  command->add_option("--simd", given->simd, "SIMD level: base")->type_name("LEVEL");
+  command->add_option("--until", given->until, "end of the run, such as \"1 Myr\"")->type_name("T");
+  command->add_option("--set", given->sets, "change a key of the scene: key.path=value")
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUE");
+  CLI::Option* resume = command->add_flag("--resume", given->resume, "go on from the newest checkpoint");
+  command->add_flag("--fresh", given->fresh, "discard an unfinished run in the output folder")->excludes(resume);
+  CLI::Option* quiet = command->add_flag("--quiet", given->quiet, "print nothing");
+  command->add_flag("--json", given->json, "report as one line of JSON")->excludes(quiet);
+  command->callback([given, &exit_code] { exit_code = run_scene(*given); });
+}
+
+}  // namespace noether

@@ -1,0 +1,35 @@
+// Sun and eight planets for a thousand years, with a step of five days.
+#include "engine/monitors.hpp"
+#include "engine/orbital_monitors.hpp"
+#include "engine/simulation.hpp"
+#include "engine/units.hpp"
+#include "integrators/composition.hpp"
+#include "integrators/schemes.hpp"
+#include "integrators/wisdom_holman.hpp"
+#include "io/bodies.hpp"
+#include "io/digest.hpp"
+#include "io/trajectory.hpp"
+
+#include <fmt/format.h>
+
+using namespace noether;
+using namespace noether::units::solar;  // au, day, year, Msun, G
+
+int main() {
+  ParticleSystem planets = io::read_bodies("planets.csv");  // the Sun first
+  move_to_barycenter(planets);
+
+  Simulation sim(std::move(planets), compose(WisdomHolman({}), schemes::aba_10_6_4), 5 * day);
+  auto& energy = sim.every(73, Energy{});
+  auto& elements = sim.every(730, Elements{});
+  sim.every(730, io::TrajectoryWriter{"run.h5"});
+
+  const Outcome outcome = sim.run_until(1000 * year);
+  fmt::print("{} at {:.4g} yr, worst energy error {:.1e}\n", outcome, sim.time() / year, energy.worst());
+  for (Index i = 1; i < sim.particles().size(); ++i) {
+    const OrbitalElements<double> o = elements.of(i);
+    fmt::print("{:<10} a = {:9.5f} au, e = {:.5f}\n", sim.particles().name(i), o.a, o.e);
+  }
+  fmt::print("{}\n", io::digest(sim.particles()));
+  return exit_code(outcome);
+}

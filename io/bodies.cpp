@@ -1,0 +1,99 @@
+#include "io/bodies.hpp"
+
+#include "io/files.hpp"
+#include "io/text_table.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+namespace noether::io {
+
+TextFile::TextFile(std::filesystem::path file) : file_(std::move(file)) {
+  static constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  const std::string bytes = read_bytes(file_);
+  const std::size_t zero = bytes.find('\0');
+  if (zero != std::string::npos) {
+    throw FileError(fmt::format("this is no text: byte {} is zero; expected CSV or a vector table of Horizons", zero),
+                    {.file = file_.string()});
+  }
+  std::string_view rest = bytes;
+  if (rest.starts_with(byte_order_mark)) rest.remove_prefix(byte_order_mark.size());
+  while (!rest.empty()) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    std::string_view line = rest.substr(0, end);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    lines_.emplace_back(line);
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+}
+
+void TextFile::fail(std::size_t line, const std::string& message, const std::string& value) const {
+  throw SceneError(message, {.file = file_.string(), .line = static_cast<int>(line), .value = value});
+}
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  return first == std::string_view::npos ? "" : text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+std::vector<std::string> split_at_commas(std::string_view text) {
+  std::vector<std::string> fields;
+  while (true) {
+    const std::size_t end = text.find(',');
+    fields.emplace_back(trimmed(text.substr(0, end)));
+    if (end == std::string_view::npos) return fields;
+    text.remove_prefix(end + 1);
+  }
+}
+
+Heading parse_heading(std::string_view text) {
+  const std::size_t bracket = text.find('[');
+  if (bracket == std::string_view::npos || !text.ends_with(']')) return {std::string(text), {}};
+  return {std::string(trimmed(text.substr(0, bracket))),
+          std::string(trimmed(text.substr(bracket + 1, text.size() - bracket - 2)))};
+}
+
+double number_in(const TextFile& text, std::size_t line, std::string_view word, const std::string& what) {
+  const std::string shown(word);
+  if (word.empty()) text.fail(line, what + " is empty; expected a number");
+  std::string_view digits = word;
+  if (digits.front() == '+') digits.remove_prefix(1);
+  double number = 0;
+  const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  if (problem == std::errc::result_out_of_range) {
+    text.fail(line, fmt::format("{} is {}, which no double can hold", what, shown), shown);
+  }
+  if (problem != std::errc() || end != digits.data() + digits.size() || digits.front() == '+') {
+    text.fail(line, fmt::format("{} is '{}', which is no number", what, shown), shown);
+  }
+  if (!std::isfinite(number)) text.fail(line, fmt::format("{} is {}; expected a finite number", what, shown), shown);
+  return number;
+}
+
+double mass_number_in(const TextFile& text, std::size_t line, std::string_view word, const std::string& what) {
+  const double number = number_in(text, line, word, what);
+  if (number < 0) text.fail(line, fmt::format("{} is {}; expected 0 or more", what, word), std::string(word));
+  return number;
+}
+
+void BodyList::add(std::size_t line, const std::string& name, double mass, const Vec3<double>& x,
+                   const Vec3<double>& v) {
+  for (const double number : {mass, x[0], x[1], x[2], v[0], v[1], v[2]}) {
+    if (!std::isfinite(number)) text_.fail(line, fmt::format("the state of {} is not finite in these units", name));
+  }
+  if (!names_.insert(name).second)
+    text_.fail(line, fmt::format("the name '{}' is taken; names must differ", name), name);
+  particles_.add(name, mass, x, v);
+}
+
+ParticleSystem<double> read_bodies(const std::filesystem::path& file, const BodiesOptions& options) {
+  const TextFile text(file);
+  const UnitSystem& units = *options.units;
+  const double G = options.G.value_or(units.G);
+  return is_horizons(text) ? read_horizons_bodies(text, units, G) : read_csv_bodies(text, units, G);
+}
+
+}  // namespace noether::io

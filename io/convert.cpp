@@ -1,0 +1,96 @@
+// Trajectories as text: extended XYZ and CSV.
+#include "engine/error.hpp"
+#include "engine/suggest.hpp"
+#include "io/inspect.hpp"
+#include "io/trajectory_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+namespace noether::io {
+
+namespace {
+
+using Write = void (*)(const TrajectoryReader&, const Frame&, fmt::memory_buffer&);
+
+/// A name as one word of a column.
+std::string word_of(const std::string& name) {
+  std::string word = name.empty() ? "X" : name;
+  std::replace_if(
+      word.begin(), word.end(), [](char c) { return c == ' ' || c == '\t' || c == '"'; }, '_');
+  return word;
+}
+
+std::string quoted_field(const std::string& name) {
+  if (name.find_first_of(",\"# ") == std::string::npos) return name;
+  std::string field = "\"";
+  for (const char c : name) field += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return field + "\"";
+}
+
+/// The format of ASE and OVITO: a count, one line of keys, one line per particle.
+void write_xyz(const TrajectoryReader& reader, const Frame& frame, fmt::memory_buffer& out) {
+  const Frames& shared = reader.shared();
+  const auto into = std::back_inserter(out);
+  fmt::format_to(into, "{}\nProperties=species:S:1:pos:R:3:vel:R:3 Time={:.17g} Step={} pbc=\"F F F\"\n",
+                 shared.ids.size(), frame.time, frame.step);
+  for (std::size_t i = 0; i < shared.ids.size(); ++i) {
+    const double *x = &frame.positions[3 * i], *v = &frame.velocities[3 * i];
+    fmt::format_to(into, "{} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n", word_of(shared.names[i]), x[0], x[1],
+                   x[2], v[0], v[1], v[2]);
+  }
+}
+
+void write_csv(const TrajectoryReader& reader, const Frame& frame, fmt::memory_buffer& out) {
+  const Frames& shared = reader.shared();
+  for (std::size_t i = 0; i < shared.ids.size(); ++i) {
+    const double *x = &frame.positions[3 * i], *v = &frame.velocities[3 * i];
+    fmt::format_to(std::back_inserter(out), "{},{:.17g},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n",
+                   frame.step, frame.time, shared.ids[i], quoted_field(shared.names[i]), x[0], x[1], x[2], v[0], v[1],
+                   v[2]);
+  }
+}
+
+/// Units stand in brackets; the reduced system has none.
+std::string csv_head(const Frames& shared) {
+  const auto unit = [](const std::string& symbol) {
+    return symbol.empty() || symbol == "1" ? "" : " [" + symbol + "]";
+  };
+  const std::string length = unit(shared.length_unit), velocity = unit(shared.velocity_unit);
+  return fmt::format("step,time{0},id,name,x{1},y{1},z{1},vx{2},vy{2},vz{2}\n", unit(shared.time_unit), length,
+                     velocity);
+}
+
+}  // namespace
+
+void convert(const std::filesystem::path& file, const std::filesystem::path& out) {
+  const std::string extension = out.extension().string();
+  if (extension != ".xyz" && extension != ".csv") {
+    throw Error(fmt::format("cannot convert to '{}': unknown extension '{}'{}", out.string(), extension,
+                            did_you_mean(extension, {".xyz", ".csv"})),
+                {.value = extension});
+  }
+  const TrajectoryReader reader(file);
+  if (reader.frames() == 0) throw FileError("there are no frames to convert", {.file = file.string()});
+  std::ofstream target(out, std::ios::binary);
+  const auto check = [&] {
+    if (!target)
+      throw FileError("cannot be written; is the folder there, and the disk not full?", {.file = out.string()});
+  };
+  check();
+  if (extension == ".csv") target << csv_head(reader.shared());
+  const Write write = extension == ".csv" ? write_csv : write_xyz;
+  for (Index k = 0; k < reader.frames(); ++k) {
+    fmt::memory_buffer text;
+    write(reader, reader.frame(k), text);
+    target.write(text.data(), static_cast<std::streamsize>(text.size()));
+    check();
+  }
+  target.close();
+  check();
+}
+
+}  // namespace noether::io

@@ -1,0 +1,234 @@
+#include "io/inspect.hpp"
+
+#include "engine/error.hpp"
+#include "engine/units.hpp"
+#include "io/checkpoint.hpp"
+#include "io/digest.hpp"
+#include "io/trajectory_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+
+namespace noether::io {
+
+namespace {
+
+constexpr const char* monitors_path = "/noether/monitors";
+
+FileInfo checkpoint_info(const std::filesystem::path& file) {
+  const Checkpoint checkpoint = read_checkpoint(file);
+  FileInfo info;
+  info.kind = "checkpoint";
+  info.complete = true;
+  info.last_step = checkpoint.step;
+  info.last_time = checkpoint.time;
+  info.digest = checkpoint.digest;
+  info.simd = checkpoint.simd;
+  info.outcome = checkpoint.outcome;
+  info.scene_toml = checkpoint.scene_toml;
+  const Hdf5File content = Hdf5File::open_to_read(file);
+  info.version = content.text_attribute("/noether", "version");
+  info.commit = content.text_attribute("/noether", "commit");
+  const auto& particles = checkpoint.run.particles;
+  if (particles.count("id") != 0) {
+    info.particles = static_cast<Index>(std::get<std::vector<std::int64_t>>(particles.at("id")).size());
+  }
+  if (particles.count("units") != 0) {
+    info.units = std::get<std::vector<std::string>>(particles.at("units")).at(0);
+    info.time_unit = std::string(unit_system(info.units).time);
+  }
+  return info;
+}
+
+std::vector<MonitorSummary> summaries(const Hdf5File& file) {
+  std::vector<MonitorSummary> result;
+  for (const std::string& name : file.children(monitors_path)) {
+    MonitorSummary summary{name, {}, 0};
+    const std::string group = std::string(monitors_path) + "/" + name;
+    for (const std::string& quantity : file.children(group)) {
+      if (quantity != "step" && quantity != "time") summary.quantities.push_back(quantity);
+    }
+    if (file.has(group + "/step")) summary.samples = file.open(group + "/step").rows();
+    result.push_back(std::move(summary));
+  }
+  return result;
+}
+
+/// Steps and times of a trajectory without frames are those of the monitor that looked last.
+void take_last_sample(const Hdf5File& file, FileInfo& info) {
+  for (const MonitorSummary& monitor : info.monitors) {
+    if (monitor.samples == 0) continue;
+    const std::string group = std::string(monitors_path) + "/" + monitor.name;
+    const std::int64_t step = file.open(group + "/step").read_integers().back();
+    if (step < info.last_step) continue;
+    info.last_step = step;
+    info.last_time = file.open(group + "/time").read_reals(monitor.samples - 1, 1).at(0);
+  }
+}
+
+FileInfo trajectory_info(const std::filesystem::path& path) {
+  const TrajectoryReader reader(path);
+  const Hdf5File& file = reader.file();
+  FileInfo info;
+  info.kind = "trajectory";
+  info.complete = file.integer_attribute("/noether", "complete") == 1;
+  info.version = file.text_attribute("/noether", "version");
+  info.commit = file.text_attribute("/noether", "commit");
+  info.simd = file.text_attribute("/noether", "simd");
+  info.units = file.text_attribute("/noether", "units");
+  if (file.has("/noether/scene")) info.scene_toml = file.read_text("/noether/scene");
+  info.time_unit = reader.shared().time_unit;
+  info.particles = static_cast<Index>(reader.shared().ids.size());
+  info.frames = reader.frames();
+  info.monitors = summaries(file);
+  if (info.frames == 0) {
+    take_last_sample(file, info);
+    return info;
+  }
+  const Frame last = reader.frame(info.frames - 1);
+  info.last_step = last.step;
+  info.last_time = last.time;
+  info.digest =
+      digest(last.step, last.time, reader.shared().ids, last.positions, last.velocities, reader.shared().masses);
+  return info;
+}
+
+enum class Kind : std::uint8_t { trajectory, checkpoint };
+
+/// What a file is. Its own checksum line is looked for first: a damaged checkpoint is not shown to HDF5.
+/// @throws FileError if it is neither
+Kind kind_of(const std::filesystem::path& path) {
+  if (ends_like_checkpoint(path)) return Kind::checkpoint;
+  try {
+    const Hdf5File file = Hdf5File::open_to_read(path);
+    if (file.has("/h5md")) return Kind::trajectory;
+    if (file.has("/state")) return Kind::checkpoint;
+  } catch (const FileError&) {
+    std::error_code ignored;
+    const bool named = path.filename().string().find("checkpoint") != std::string::npos;
+    if (!has_hdf5() || !named || !std::filesystem::is_regular_file(path, ignored)) throw;
+    return Kind::checkpoint;
+  }
+  throw FileError("this is an HDF5 file, but neither a trajectory nor a checkpoint of noether",
+                  {.file = path.string()});
+}
+
+/// What is wrong with a series of steps and times; `who` owns it.
+void check_clock(const std::string& who, const std::vector<std::int64_t>& steps, const std::vector<double>& times,
+                 std::vector<std::string>& damaged) {
+  for (std::size_t k = 1; k < steps.size(); ++k) {
+    if (steps[k] >= steps[k - 1]) continue;
+    damaged.push_back(fmt::format("{}: step {} follows step {}", who, steps[k], steps[k - 1]));
+    return;
+  }
+  if (!std::all_of(times.begin(), times.end(), [](double t) { return std::isfinite(t); })) {
+    damaged.push_back(fmt::format("{}: a time is not finite", who));
+  }
+}
+
+void check_frames(const TrajectoryReader& reader, std::vector<std::string>& damaged) {
+  std::vector<std::int64_t> steps;
+  std::vector<double> times;
+  for (const auto& [path, rows] : reader.lengths()) {
+    if (rows != reader.frames())
+      damaged.push_back(fmt::format("'{}' has {} rows, others {}", path, rows, reader.frames()));
+  }
+  for (Index k = 0; k < reader.frames(); ++k) {
+    const Frame frame = reader.frame(k);
+    steps.push_back(frame.step);
+    times.push_back(frame.time);
+    const auto finite = [](double x) { return std::isfinite(x); };
+    if (!std::all_of(frame.positions.begin(), frame.positions.end(), finite) ||
+        !std::all_of(frame.velocities.begin(), frame.velocities.end(), finite)) {
+      damaged.push_back(fmt::format("frame {} at step {} is not finite", k, frame.step));
+    }
+  }
+  check_clock("frames", steps, times, damaged);
+}
+
+void check_monitors(const Hdf5File& file, std::vector<std::string>& damaged) {
+  for (const std::string& name : file.children(monitors_path)) {
+    const std::string group = std::string(monitors_path) + "/" + name;
+    const Index samples = file.open(group + "/step").rows();
+    for (const std::string& quantity : file.children(group)) {
+      const Hdf5Dataset dataset = file.open(group + "/" + quantity);
+      if (dataset.rows() != samples) {
+        damaged.push_back(fmt::format("'{}/{}' has {} rows, its steps {}", group, quantity, dataset.rows(), samples));
+      }
+      if (dataset.type() == ElementType::real) dataset.read_reals();
+    }
+    check_clock("monitor " + name, file.open(group + "/step").read_integers(), file.open(group + "/time").read_reals(),
+                damaged);
+  }
+}
+
+}  // namespace
+
+FileInfo info(const std::filesystem::path& file) {
+  return kind_of(file) == Kind::trajectory ? trajectory_info(file) : checkpoint_info(file);
+}
+
+FileInfo verify(const std::filesystem::path& file) {
+  FileInfo result;
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) Hdf5File::open_to_read(file);
+  try {
+    const Kind kind = kind_of(file);
+    result.kind = kind == Kind::trajectory ? "trajectory" : "checkpoint";
+    result = info(file);
+    if (kind == Kind::checkpoint) return result;
+    const TrajectoryReader reader(file);
+    check_frames(reader, result.damaged);
+    check_monitors(reader.file(), result.damaged);
+  } catch (const FileError& error) {
+    result.damaged.push_back(error.message());
+  }
+  return result;
+}
+
+std::vector<MonitorSeries> read_monitors(const std::filesystem::path& path) {
+  const Hdf5File file = Hdf5File::open_to_read(path);
+  std::vector<MonitorSeries> result;
+  for (const std::string& name : file.children(monitors_path)) {
+    const std::string group = std::string(monitors_path) + "/" + name;
+    MonitorSeries series;
+    series.name = name;
+    series.step = file.open(group + "/step").read_integers();
+    series.time = file.open(group + "/time").read_reals();
+    std::size_t samples = std::min(series.step.size(), series.time.size());
+    for (const std::string& quantity : file.children(group)) {
+      if (quantity == "step") continue;
+      series.units[quantity] = file.text_attribute(group + "/" + quantity, "noether_unit");
+      if (quantity == "time") continue;
+      const Hdf5Dataset dataset = file.open(group + "/" + quantity);
+      std::vector<Index> shape = dataset.shape();
+      samples = std::min(samples, static_cast<std::size_t>(shape.at(0)));
+      shape.erase(shape.begin());
+      series.quantities[quantity] = {std::move(shape), dataset.read_reals()};
+    }
+    if (file.has_attribute(group, "scale")) series.scale = file.real_attribute(group, "scale");
+    // A killed writer may have been a row ahead in some of the datasets.
+    series.step.resize(samples);
+    series.time.resize(samples);
+    for (auto& [quantity, content] : series.quantities) {
+      const auto& shape = content.first;
+      const Index values = std::accumulate(shape.begin(), shape.end(), Index{1}, std::multiplies<>());
+      content.second.resize(samples * static_cast<std::size_t>(values));
+    }
+    result.push_back(std::move(series));
+  }
+  return result;
+}
+
+Frames read_frames(const std::filesystem::path& file) {
+  const TrajectoryReader reader(file);
+  Frames result = reader.shared();
+  for (Index k = 0; k < reader.frames(); ++k) result.frames.push_back(reader.frame(k));
+  return result;
+}
+
+}  // namespace noether::io

@@ -1,0 +1,71 @@
+#include "io/trajectory_reader.hpp"
+
+#include "engine/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace noether::io {
+
+namespace {
+
+const std::string root = "/particles/system";
+
+/// Molecular files say `unit`, others `noether_unit`.
+std::string unit_at(const Hdf5File& file, const std::string& path) {
+  const std::string unit = file.text_attribute(path, "noether_unit");
+  if (!unit.empty()) return unit;
+  const std::string molecular = file.text_attribute(path, "unit");
+  return molecular == "nm ps-1" ? "nm/ps" : molecular;
+}
+
+}  // namespace
+
+TrajectoryReader::TrajectoryReader(const std::filesystem::path& path) : file_(Hdf5File::open_to_read(path)) {
+  if (!file_.has("/h5md") || !file_.has(root + "/id") || !file_.has("/noether")) {
+    throw FileError("this is no trajectory of noether: '/h5md', '/particles/system' and '/noether' are expected",
+                    {.file = path.string()});
+  }
+  shared_.units = file_.text_attribute("/noether", "units");
+  shared_.ids = file_.open(root + "/id").read_integers();
+  shared_.names = file_.open(root + "/name").read_texts();
+  shared_.masses = file_.open(root + "/mass").read_reals();
+  const Index n = static_cast<Index>(shared_.ids.size());
+  if (shared_.names.size() != shared_.ids.size() || shared_.masses.size() != shared_.ids.size()) {
+    throw FileError("damaged: ids, names and masses differ in number", {.file = path.string()});
+  }
+  if (!file_.has(root + "/position")) return;
+  position_ = file_.open(root + "/position/value");
+  velocity_ = file_.open(root + "/velocity/value");
+  for (const Hdf5Dataset* dataset : {&position_, &velocity_}) {
+    const std::vector<Index> shape = dataset->shape();
+    if (shape.size() != 3 || shape[1] != n || shape[2] != 3) {
+      throw FileError(
+          fmt::format("damaged: positions and velocities of {} particles do not have the shape ({}, 3)", n, n),
+          {.file = path.string()});
+    }
+  }
+  steps_ = file_.open(root + "/position/step").read_integers();
+  times_ = file_.open(root + "/position/time").read_reals();
+  shared_.length_unit = unit_at(file_, root + "/position/value");
+  shared_.velocity_unit = unit_at(file_, root + "/velocity/value");
+  shared_.time_unit = unit_at(file_, root + "/position/time");
+  frames_ = std::min(
+      {position_.rows(), velocity_.rows(), static_cast<Index>(steps_.size()), static_cast<Index>(times_.size())});
+}
+
+Frame TrajectoryReader::frame(Index k) const {
+  const auto at = static_cast<std::size_t>(k);
+  return {steps_.at(at), times_.at(at), position_.read_reals(k, 1), velocity_.read_reals(k, 1)};
+}
+
+std::vector<std::pair<std::string, Index>> TrajectoryReader::lengths() const {
+  if (!file_.has(root + "/position")) return {};
+  return {{root + "/position/value", position_.rows()},
+          {root + "/velocity/value", velocity_.rows()},
+          {root + "/position/step", static_cast<Index>(steps_.size())},
+          {root + "/position/time", static_cast<Index>(times_.size())}};
+}
+
+}  // namespace noether::io

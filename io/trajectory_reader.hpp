@@ -1,0 +1,37 @@
+#pragma once
+/// Reads the frames of a trajectory one by one.
+
+#include "io/hdf5_file.hpp"
+#include "io/inspect.hpp"
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace noether::io {
+
+class TrajectoryReader {
+ public:
+  /// @throws FileError if the file is no trajectory of noether
+  explicit TrajectoryReader(const std::filesystem::path& path);
+
+  /// Frames that every dataset has.
+  Index frames() const { return frames_; }
+  Frame frame(Index k) const;
+  /// What all frames share; without frames.
+  const Frames& shared() const { return shared_; }
+  /// Rows of each dataset of the frames.
+  std::vector<std::pair<std::string, Index>> lengths() const;
+  const Hdf5File& file() const { return file_; }
+
+ private:
+  Hdf5File file_;
+  Hdf5Dataset position_, velocity_;
+  std::vector<std::int64_t> steps_;
+  std::vector<double> times_;
+  Frames shared_;
+  Index frames_ = 0;
+};
+
+}  // namespace noether::io

@@ -1,0 +1,82 @@
+#include "scene/scene.hpp"
+
+#include "forces/sum.hpp"
+#include "integrators/composition.hpp"
+#include "integrators/damped.hpp"
+#include "integrators/kinetic_potential.hpp"
+#include "integrators/wisdom_holman.hpp"
+#include "io/checkpoint.hpp"
+#include "io/trajectory.hpp"
+
+namespace noether {
+
+template class Composition<AnyHamiltonian<double>>;
+
+namespace {
+
+/// Larger than any run: a cadence of this many steps looks at step 0 only.
+constexpr std::int64_t once = std::int64_t{1} << 62;
+
+AnyHamiltonian<double> without_drag(const Scene& scene) {
+  ForceField<double> forces;
+  for (const SceneForce& force : scene.hamiltonian.forces) {
+    if (force.force) forces.add(*force.force);
+  }
+  if (scene.hamiltonian.kind == SceneHamiltonian::Kind::kinetic_potential) {
+    return KineticPotential<ForceField<double>>(std::move(forces));
+  }
+  if (forces.terms().empty()) return WisdomHolman<double>(scene.hamiltonian.wisdom_holman);
+  return WisdomHolman<double, ForceField<double>>(scene.hamiltonian.wisdom_holman, std::move(forces));
+}
+
+void attach_writers(Simulation<double>& sim, const Scene& scene, const SceneFiles& files) {
+  bool frames = false, samples = false;
+  for (const SceneWatch& watch : scene.watches) {
+    samples = samples || watch.kind == SceneWatch::Kind::monitor;
+    if (watch.kind != SceneWatch::Kind::trajectory || files.trajectory.empty()) continue;
+    frames = true;
+    sim.every(watch.cadence.steps, io::TrajectoryWriter(files.trajectory, {.scene_toml = scene.effective_toml}));
+  }
+  if (!frames && samples && !files.trajectory.empty()) {
+    sim.every(once, io::TrajectoryWriter(files.trajectory, {.frames = false, .scene_toml = scene.effective_toml}));
+  }
+}
+
+void attach_checkpoints(Simulation<double>& sim, const Scene& scene, const SceneFiles& files) {
+  if (files.checkpoint.empty()) return;
+  const io::CheckpointWriter writer(files.checkpoint, scene.effective_toml);
+  for (const SceneWatch& watch : scene.watches) {
+    if (watch.kind == SceneWatch::Kind::checkpoint) detail::attach(sim, watch.cadence, writer);
+  }
+  if (files.checkpoint_wall > 0) sim.every_wall(files.checkpoint_wall, writer);
+}
+
+}  // namespace
+
+Scheme scheme_of(const SceneIntegrator& integrator) {
+  Scheme scheme = integrator.scheme;
+  scheme.name = integrator.method;
+  return scheme;
+}
+
+AnyHamiltonian<double> hamiltonian_of(const Scene& scene) {
+  for (const SceneForce& force : scene.hamiltonian.forces) {
+    if (force.drag) return Damped<AnyHamiltonian<double>>(without_drag(scene), *force.drag);
+  }
+  return without_drag(scene);
+}
+
+Simulation<double> assemble(const Scene& scene, const SceneFiles& files) {
+  Composition<AnyHamiltonian<double>> integrator(hamiltonian_of(scene), scheme_of(scene.integrator),
+                                                 {.compensated = scene.integrator.compensated});
+  Simulation<double> sim(scene.particles, std::move(integrator), scene.integrator.step);
+  for (const SceneWatch& watch : scene.watches) {
+    if (watch.kind == SceneWatch::Kind::monitor) watch.monitor.attach(sim, watch.cadence);
+  }
+  attach_writers(sim, scene, files);
+  for (const SceneStop& stop : scene.stops) sim.stop_when(stop.rule, stop.steps);
+  attach_checkpoints(sim, scene, files);
+  return sim;
+}
+
+}  // namespace noether

@@ -1,0 +1,63 @@
+#include "scene/evaluate.hpp"
+
+#include "forces/gravity.hpp"
+#include "integrators/kinetic_potential.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace noether {
+
+namespace {
+
+/// Every term that pulls: the forces of the scene, and gravity where the Hamiltonian has it in itself.
+std::vector<SceneForce> terms_of(const Scene& scene) {
+  std::vector<SceneForce> terms;
+  if (scene.hamiltonian.kind == SceneHamiltonian::Kind::wisdom_holman) {
+    const Gravity gravity{.G = scene.hamiltonian.G};
+    terms.push_back({"gravity", {}, AnyForce<double>(gravity), {}, [gravity](const ParticleSystem<double>& s) {
+                       return gradient_error(gravity, s);
+                     }});
+  }
+  for (const SceneForce& force : scene.hamiltonian.forces) {
+    if (force.force) terms.push_back(force);
+  }
+  return terms;
+}
+
+std::string numbered(const std::string& name, const std::vector<std::pair<std::string, double>>& taken) {
+  std::string result = name;
+  const auto is_taken = [&] {
+    return std::any_of(taken.begin(), taken.end(), [&](const auto& term) { return term.first == result; });
+  };
+  for (int k = 2; is_taken(); ++k) result = fmt::format("{}_{}", name, k);
+  return result;
+}
+
+}  // namespace
+
+Evaluation evaluate(const Scene& scene, bool check) {
+  ParticleSystem<double> s = scene.particles;
+  s.clock() = Clock<double>::fixed(0, scene.integrator.step);
+  Evaluation result;
+  result.forces = VectorColumn<double>(s.size());
+  result.kinetic = kinetic_energy(s);
+  VectorColumn<double> a(s.size());
+  for (const SceneForce& term : terms_of(scene)) {
+    ForceSink<double> sink(a, s, {.energy = true, .virial = true});
+    term.force->add_to(sink, s);
+    result.terms.emplace_back(numbered(term.name, result.terms), sink.potential());
+    result.potential += sink.potential();
+    result.virial += sink.virial();
+    for (Index i = 0; i < s.size(); ++i) result.forces.add(i, std::as_const(s).masses()[i] * a[i]);
+    if (check) result.gradient_error = std::max(result.gradient_error.value_or(0), term.gradient_error(s));
+  }
+  for (Index i = 0; i < s.size(); ++i) {
+    result.force_max = std::max(result.force_max, std::sqrt(norm2(std::as_const(result.forces)[i])));
+  }
+  return result;
+}
+
+}  // namespace noether

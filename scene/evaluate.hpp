@@ -1,0 +1,27 @@
+#pragma once
+/// The initial state of a scene, looked at once: energy by term, virial, forces.
+
+#include "scene/scene.hpp"
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace noether {
+
+struct Evaluation {
+  double kinetic = 0, potential = 0;                   ///< [energy]
+  std::vector<std::pair<std::string, double>> terms;   ///< potential energy of each force; equal names are numbered
+  Mat3<double> virial = Mat3<double>::Zero();          ///< sum of x (x) f [energy]
+  VectorColumn<double> forces;                         ///< m a, shape (n, 3); drag is not among them
+  double force_max = 0;                                ///< largest |m a|
+  std::optional<double> gradient_error;                ///< worst of all forces, where it was asked for
+};
+
+/// Evaluates every force of a scene at its start.
+/// @param check  compare each force with differences of its energy, too
+/// @cost one evaluation of each force; 18 n more to check
+Evaluation evaluate(const Scene& scene, bool check = false);
+
+}  // namespace noether

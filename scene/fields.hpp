@@ -1,0 +1,181 @@
+#pragma once
+/// Fields of a part, read from a scene as the part's own description tells.
+
+#include "engine/description.hpp"
+#include "engine/suggest.hpp"
+#include "scene/reader.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace noether {
+
+/// One field as `noether describe` shows it.
+struct FieldInfo {
+  std::string name, dimension, help;
+  std::string kind;           ///< number, whole number, flag, text, vector, list, choice
+  std::string default_value;  ///< as a scene writes it in the reduced system; empty: none
+  std::vector<std::string> choices;
+};
+
+/// A part as `noether list` and `noether describe` show it.
+struct PartInfo {
+  std::string name, help, formula, source;
+  std::vector<FieldInfo> fields;
+};
+
+namespace detail {
+
+template <class T> struct optional_value {
+  using type = T;
+};
+template <class T> struct optional_value<std::optional<T>> {
+  using type = T;
+};
+
+/// A default in the units of a scene, as text that reads back to the same bits.
+SceneValue quantity_value(double value, std::string_view dimension, const UnitSystem& units);
+
+template <class E> std::vector<std::string> choice_names() {
+  std::vector<std::string> names;
+  for (const auto& [value, name] : EnumNames<E>::values) names.emplace_back(name);
+  return names;
+}
+
+template <class V> std::string field_kind() {
+  using T = typename optional_value<V>::type;
+  if constexpr (std::is_same_v<T, bool>) return "flag";
+  else if constexpr (std::is_integral_v<T>) return "whole number";
+  else if constexpr (std::is_floating_point_v<T>) return "number";
+  else if constexpr (std::is_enum_v<T>) return "choice";
+  else if constexpr (std::is_same_v<T, std::string>) return "text";
+  else if constexpr (std::is_same_v<T, std::array<double, 3>>) return "vector";
+  else return "list";
+}
+
+/// A value of a field as a scene writes it.
+template <class V> SceneValue field_value(const V& value, std::string_view dimension, const UnitSystem& units) {
+  if constexpr (std::is_same_v<V, bool>) {
+    return SceneValue::of(value);
+  } else if constexpr (std::is_integral_v<V>) {
+    return SceneValue::of(static_cast<std::int64_t>(value));
+  } else if constexpr (std::is_floating_point_v<V>) {
+    return quantity_value(value, dimension, units);
+  } else if constexpr (std::is_enum_v<V>) {
+    for (const auto& [known, name] : EnumNames<V>::values) {
+      if (known == value) return SceneValue::of(std::string(name));
+    }
+    return SceneValue::of(std::string());
+  } else if constexpr (std::is_same_v<V, std::string>) {
+    return SceneValue::of(value);
+  } else {
+    SceneValue::Array list;
+    for (const auto& element : value) list.push_back(field_value(element, dimension, units));
+    return SceneValue::of(std::move(list));
+  }
+}
+
+template <class V> V read_element(const TableReader& reader, const SceneValue& value, std::string_view key, std::string_view dimension) {
+  if constexpr (std::is_same_v<V, std::string>) {
+    const std::string* text = value.get<std::string>();
+    if (text == nullptr) reader.wrong_kind(value, key, "a list of texts");
+    return *text;
+  } else {
+    return static_cast<V>(reader.number(value, key, dimension));
+  }
+}
+
+template <class E> E read_choice(TableReader& reader, std::string_view key) {
+  const std::string text = reader.text(key);
+  for (const auto& [value, name] : EnumNames<E>::values) {
+    if (name == text) return value;
+  }
+  reader.fail(key, fmt::format("unknown {} '{}' in {}{}", key, text, reader.what(), did_you_mean(text, choice_names<E>())));
+}
+
+/// Reads one field where the scene gives it.
+template <class V> void read_field(TableReader& reader, std::string_view key, std::string_view dimension, V& target) {
+  using T = typename optional_value<V>::type;
+  const SceneValue* value = reader.find(key);
+  if (value == nullptr) {
+    // G of the Hamiltonian is the default of every field of that name.
+    if constexpr (std::is_same_v<V, std::optional<double>>) {
+      if (key == "G" && reader.context().G) target = reader.number(*reader.context().G, "G", dimension);
+    }
+  } else if constexpr (std::is_same_v<T, bool>) {
+    target = reader.flag(key, false);
+  } else if constexpr (std::is_integral_v<T>) {
+    target = static_cast<T>(*reader.integer(key));
+  } else if constexpr (std::is_floating_point_v<T>) {
+    target = *reader.quantity(key, dimension);
+  } else if constexpr (std::is_enum_v<T>) {
+    target = read_choice<T>(reader, key);
+  } else if constexpr (std::is_same_v<T, std::string>) {
+    target = reader.text(key);
+  } else if constexpr (std::is_same_v<T, std::array<double, 3>>) {
+    target = *reader.vector(key, dimension);
+  } else {
+    const auto* list = value->template get<SceneValue::Array>();
+    if (list == nullptr) reader.wrong_kind(*value, key, "a list");
+    T elements;
+    for (const SceneValue& one : *list) {
+      elements.push_back(read_element<typename T::value_type>(reader, one, key, dimension));
+    }
+    target = std::move(elements);
+  }
+}
+
+}  // namespace detail
+
+/// What part `T` says of itself.
+template <class T> PartInfo part_info() {
+  PartInfo info{std::string(T::describe().name), std::string(T::describe().help),
+                std::string(entry_text<T, Formula>()), std::string(entry_text<T, Source>()), {}};
+  if constexpr (std::is_default_constructible_v<T>) {
+    const T defaults{};
+    for_each_field<T>([&](const auto& field) {
+      using V = typename std::decay_t<decltype(field)>::value_type;
+      using Plain = typename detail::optional_value<V>::type;
+      FieldInfo one{std::string(field.name), std::string(field.dimension), std::string(field.help),
+                    detail::field_kind<V>(), "", {}};
+      const V& value = defaults.*(field.member);
+      if constexpr (std::is_same_v<V, Plain>) {
+        one.default_value = to_text(detail::field_value(value, "1", unit_system("reduced")));
+      } else if (value) {
+        one.default_value = to_text(detail::field_value(*value, "1", unit_system("reduced")));
+      }
+      if constexpr (std::is_enum_v<Plain>) one.choices = detail::choice_names<Plain>();
+      info.fields.push_back(std::move(one));
+    });
+  }
+  return info;
+}
+
+/// Reads every field of a part that the table gives; the others keep their defaults.
+template <class T> void read_fields(TableReader& reader, T& part) {
+  for_each_field<T>(
+      [&](const auto& field) { detail::read_field(reader, field.name, field.dimension, part.*(field.member)); });
+}
+
+/// Appends every field of a part as it is: what the scene wrote, and defaults in the units of the scene.
+template <class T> void put_fields(TableReader& reader, const T& part, SceneValue& effective) {
+  for_each_field<T>([&](const auto& field) {
+    using V = typename std::decay_t<decltype(field)>::value_type;
+    const std::string name(field.name);
+    const auto& value = part.*(field.member);
+    if (const SceneValue* written = reader.find(name)) {
+      effective.put(name, *written);
+    } else if constexpr (std::is_same_v<V, typename detail::optional_value<V>::type>) {
+      effective.put(name, detail::field_value(value, field.dimension, *reader.context().units));
+    } else if (value && name != "G") {
+      effective.put(name, detail::field_value(*value, field.dimension, *reader.context().units));
+    }
+  });
+}
+
+}  // namespace noether

@@ -1,0 +1,412 @@
+#include "scene/scene.hpp"
+
+#include "engine/suggest.hpp"
+#include "integrators/composition.hpp"
+#include "integrators/schemes.hpp"
+#include "io/files.hpp"
+#include "scene/read_particles.hpp"
+#include "scene/sets.hpp"
+#include "scene/toml.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace noether {
+
+namespace {
+
+template <class Kinds> std::vector<std::string> names_of(const Kinds& kinds) {
+  std::vector<std::string> names;
+  for (const auto& kind : kinds) names.push_back(kind.info.name);
+  return names;
+}
+
+/// A duration as the scene wrote it, for messages.
+std::string written(const SceneValue& value) {
+  const std::string* text = value.get<std::string>();
+  return text != nullptr ? *text : to_text(value);
+}
+
+/// How many steps make a duration. @throws SceneError  unless it is a whole number, with the two nearest
+std::int64_t whole_steps(const TableReader& reader, std::string_view key, const SceneValue& value, const SceneIntegrator& integrator) {
+  const double duration = reader.number(value, key, "time"), exact = duration / integrator.step, whole = std::round(exact);
+  const auto fail = [&](const std::string& message) {
+    reader.fail(&value, key, fmt::format("{} = \"{}\" {}", key, written(value), message));
+  };
+  if (!(exact > 0)) fail(fmt::format("is no time ahead; steps are of {}", integrator.step_text));
+  if (exact > 9e15) fail(fmt::format("is {:.3g} steps of {}, more than can be counted", exact, integrator.step_text));
+  if (std::abs(exact - whole) > 1e-9 + 16 * std::numeric_limits<double>::epsilon() * exact) {
+    const std::string unit = unit_of(dimensions::time, *reader.context().units);
+    const auto nearest = [&](double steps) {
+      return fmt::format("\"{}{}\" ({} {})", format_number(steps * integrator.step), unit == "1" ? "" : " " + unit,
+                         format_number(steps), steps == 1 ? "step" : "steps");
+    };
+    fail(fmt::format("is {:.12g} steps of {}; the nearest whole numbers are {} and {}", exact, integrator.step_text,
+                     nearest(std::floor(exact)), nearest(std::ceil(exact))));
+  }
+  return static_cast<std::int64_t>(whole);
+}
+
+std::int64_t counted_steps(TableReader& reader, std::string_view key) {
+  const std::int64_t steps = *reader.integer(key);
+  if (steps < 1) reader.fail(key, fmt::format("{} = {} is too few; at least 1 is expected", key, steps));
+  return steps;
+}
+
+/// Reads a scene, table by table.
+class SceneReader {
+ public:
+  SceneReader(const SceneValue& root, const Parts& parts, Scene& scene) : root_(root), parts_(parts), scene_(scene) {
+    context_.source = scene.source;
+  }
+
+  void read() {
+    TableReader top(context_, root_, "", "");
+    top.expect_only({"title", "units", "particles", "hamiltonian", "integrator", "every", "stop", "expect"});
+    scene_.title = top.text("title");
+    read_units(top);
+    scene_.effective = SceneValue::table();
+    scene_.effective.put("title", SceneValue::of(scene_.title));
+    scene_.effective.put("units", SceneValue::of(std::string(scene_.units->name)));
+    read_constant(table(top, "hamiltonian"));
+    SceneValue& particles = scene_.effective.put("particles", SceneValue::table());
+    scene_.particles = read_particles(context_, table(top, "particles"), scene_.file.parent_path(), particles);
+    read_hamiltonian(table(top, "hamiltonian"));
+    read_integrator(table(top, "integrator"));
+    read_watches(top);
+    read_stops(top);
+    if (const SceneValue* expect = top.find("expect")) read_expectations(*expect, "");
+    if (const SceneValue* expect = top.find("expect")) scene_.effective.put("expect", *expect);
+    check(top);
+    scene_.effective_toml = print_toml(scene_.effective);
+  }
+
+ private:
+  static const SceneValue& table(TableReader& top, std::string_view key) {
+    const SceneValue* value = top.find(key);
+    if (value == nullptr) top.fail(nullptr, key, fmt::format("the table [{}] is missing", key));
+    return *value;
+  }
+
+  void read_units(TableReader& top) {
+    if (!top.has("units")) top.fail(nullptr, "units", "units are missing; give units = \"solar\", \"molecular\", \"si\" or \"reduced\"");
+    try {
+      scene_.units = context_.units = &unit_system(top.text("units"));
+    } catch (const SceneError&) {
+      throw;
+    } catch (const Error& error) {
+      top.fail("units", error.message());
+    }
+  }
+
+  void read_constant(const SceneValue& hamiltonian) {
+    TableReader reader(context_, hamiltonian, "[hamiltonian]", "hamiltonian");
+    const SceneValue* G = reader.find("G");
+    if (G == nullptr) return;
+    scene_.hamiltonian.G = reader.number(*G, "G", "length^3/mass/time^2");
+    context_.G = *G;
+  }
+
+  void read_hamiltonian(const SceneValue& table) {
+    SceneHamiltonian& made = scene_.hamiltonian;
+    TableReader reader(context_, table, "[hamiltonian]", "hamiltonian");
+    SceneValue& effective = scene_.effective.put("hamiltonian", SceneValue::table());
+    const std::string type = reader.text("type");
+    if (!reader.has("type")) reader.fail(nullptr, "type", "[hamiltonian] has no type; give \"kinetic_potential\" or \"wisdom_holman\"");
+    if (type != "kinetic_potential" && type != "wisdom_holman") {
+      reader.fail("type", fmt::format("unknown hamiltonian '{}'{}", type, did_you_mean(type, {"kinetic_potential", "wisdom_holman"})));
+    }
+    effective.put("type", SceneValue::of(type));
+    const SceneValue* G = reader.find("G");
+    effective.put("G", G != nullptr ? *G : SceneValue::of(scene_.units->G));
+    const auto forces = tables_of(reader, "force");
+    if (type == "wisdom_holman") {
+      made.kind = SceneHamiltonian::Kind::wisdom_holman;
+      read_fields(reader, made.wisdom_holman);
+      effective.put("coordinates", detail::field_value(made.wisdom_holman.coordinates, "1", *scene_.units));
+    }
+    reader.finish();
+    if (type == "wisdom_holman" && made.wisdom_holman.coordinates == Coordinates::inertial) {
+      reader.fail("coordinates", "wisdom_holman has jacobi or democratic coordinates");
+    }
+    if (type == "kinetic_potential" && forces.empty()) {
+      reader.fail("type", "kinetic_potential has no force, so nothing would move anything; add a [[hamiltonian.force]] table");
+    }
+    SceneValue::Array list;
+    for (const SceneValue* force : forces) read_force(*force, list);
+    if (!list.empty()) effective.put("force", SceneValue::of(std::move(list)));
+  }
+
+  void read_force(const SceneValue& table, SceneValue::Array& list) {
+    const std::string path = fmt::format("hamiltonian.force.{}", list.size());
+    const auto [kind, type] = kind_of_part(table, path, "force", parts_.forces(), {});
+    TableReader reader(context_, table, fmt::format("force '{}'", type), path);
+    reader.find("type");
+    SceneForce force = kind->read(reader);
+    reader.finish();
+    const bool wisdom_holman = scene_.hamiltonian.kind == SceneHamiltonian::Kind::wisdom_holman;
+    if (type == "gravity" && wisdom_holman) {
+      reader.fail("type", "wisdom_holman has gravity in itself; take this force out, or use kinetic_potential");
+    }
+    for (const SceneForce& other : scene_.hamiltonian.forces) {
+      if (force.drag && other.drag) reader.fail("type", "linear_drag stands twice in the scene; add the rates up");
+    }
+    SceneValue effective = SceneValue::table();
+    effective.put("type", SceneValue::of(type));
+    for (auto& [key, value] : *force.effective.get<SceneValue::Table>()) effective.put(key, value);
+    list.push_back(effective);
+    force.effective = std::move(effective);
+    scene_.hamiltonian.forces.push_back(std::move(force));
+  }
+
+  /// Finds the kind a table names in its `type`.
+  template <class Kind>
+  std::pair<const Kind*, std::string> kind_of_part(const SceneValue& table, const std::string& path, const std::string& what,
+                                                   const std::vector<Kind>& kinds, std::vector<std::string> others) {
+    TableReader reader(context_, table, fmt::format("[[{}]]", path.substr(0, path.rfind('.'))), path);
+    const std::string type = reader.text("type");
+    for (const Kind& kind : kinds) {
+      if (kind.info.name == type) return {&kind, type};
+    }
+    if (std::find(others.begin(), others.end(), type) != others.end()) return {nullptr, type};
+    std::vector<std::string> known = names_of(kinds);
+    known.insert(known.end(), others.begin(), others.end());
+    if (!reader.has("type")) {
+      reader.fail(nullptr, "type", fmt::format("this {} has no type; known are: {}", what, fmt::join(known, ", ")));
+    }
+    reader.fail("type", fmt::format("unknown {} '{}'{}", what, type, did_you_mean(type, known)));
+  }
+
+  void read_integrator(const SceneValue& table) {
+    SceneIntegrator& made = scene_.integrator;
+    TableReader reader(context_, table, "[integrator]", "integrator");
+    reader.expect_only({"method", "step", "until", "steps", "compensated"});
+    SceneValue& effective = scene_.effective.put("integrator", SceneValue::table());
+    read_method(reader);
+    effective.put("method", SceneValue::of(made.method));
+    const SceneValue* step = reader.find("step");
+    if (step == nullptr) reader.fail(nullptr, "step", "[integrator] has no step; give one, such as \"1 day\"");
+    made.step = reader.number(*step, "step", "time");
+    made.step_text = written(*step);
+    if (made.step == 0) reader.fail("step", fmt::format("a step of {} is no step; a time other than 0 is expected", made.step_text));
+    effective.put("step", *step);
+    const SceneValue* until = reader.find("until");
+    if (until != nullptr && reader.has("steps")) {
+      reader.fail(until, "until", "until and steps stand both in [integrator]; give one of them");
+    }
+    if (until != nullptr) made.steps = whole_steps(reader, "until", *until, made);
+    if (until != nullptr) effective.put("until", *until);
+    if (reader.has("steps")) made.steps = reader.integer("steps");
+    if (made.steps && *made.steps < 0) reader.fail("steps", fmt::format("steps = {} is negative; 0 or more is expected", *made.steps));
+    if (reader.has("steps")) effective.put("steps", SceneValue::of(*made.steps));
+    made.compensated = reader.flag("compensated", false);
+    effective.put("compensated", SceneValue::of(made.compensated));
+  }
+
+  void read_method(TableReader& reader) {
+    SceneIntegrator& made = scene_.integrator;
+    const std::string name = reader.text("method");
+    if (!reader.has("method")) reader.fail(nullptr, "method", "[integrator] has no method; see `noether list methods`");
+    const bool letters = !name.empty() && name.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ") == std::string::npos;
+    if (const Scheme* scheme = schemes::find(name)) {
+      made.scheme = *scheme;
+      made.method = std::string(scheme->name);
+    } else if (letters) {
+      try {
+        made.scheme = word(name);
+      } catch (const Error& error) {
+        reader.fail("method", error.message());
+      }
+      made.method = name;
+    } else {
+      std::vector<std::string> known = schemes::names();
+      for (const Scheme* each : schemes::all()) {
+        for (const std::string& alias : schemes::aliases_of(*each)) known.push_back(alias);
+      }
+      const std::string near = suggest(name, known);
+      reader.fail("method", fmt::format("unknown method '{}'; {}", name,
+                                        near.empty() ? "see `noether list methods`" : "did you mean '" + near + "'?"));
+    }
+  }
+
+  /// The cadence of one `[[every]]`: its steps, and what the scene wrote of them.
+  Cadence read_cadence(TableReader& reader, bool may_be_wall, SceneValue& effective) {
+    const SceneValue *every = reader.find("every"), *steps = reader.find("steps");
+    const SceneValue* wall = may_be_wall ? reader.find("wall") : nullptr;
+    const int given = (every != nullptr) + (steps != nullptr) + (wall != nullptr);
+    const std::string_view choices = may_be_wall ? "every, steps or wall" : "every or steps";
+    if (given == 0) reader.fail(nullptr, "steps", fmt::format("{} does not say when; give {}", reader.what(), choices));
+    if (given > 1) reader.fail(every != nullptr ? every : wall, every != nullptr ? "every" : "wall", fmt::format("{} says twice when; give one of {}", reader.what(), choices));
+    Cadence cadence;
+    if (every != nullptr) cadence.steps = whole_steps(reader, "every", *every, scene_.integrator);
+    if (steps != nullptr) cadence.steps = counted_steps(reader, "steps");
+    if (wall != nullptr) cadence.wall = wall_seconds(reader, *wall);
+    if (every != nullptr) effective.put("every", *every);
+    if (steps != nullptr) effective.put("steps", SceneValue::of(cadence.steps));
+    if (wall != nullptr) effective.put("wall", *wall);
+    return cadence;
+  }
+
+  static double wall_seconds(const TableReader& reader, const SceneValue& wall) {
+    const std::string* text = wall.get<std::string>();
+    if (text == nullptr) reader.wrong_kind(wall, "wall", "a time in quotes, such as \"5 min\"");
+    double seconds = 0;
+    try {
+      seconds = parse_quantity(*text, dimensions::time, unit_system("si"));
+    } catch (const Error& error) {
+      reader.fail(&wall, "wall", fmt::format("wall: {}", error.message()));
+    }
+    if (!(seconds > 0)) reader.fail(&wall, "wall", fmt::format("wall = \"{}\" is no time ahead", *text));
+    return seconds;
+  }
+
+  void read_watches(TableReader& top) {
+    const auto tables = tables_of(top, "every");
+    SceneValue::Array list;
+    for (const SceneValue* table : tables) {
+      const std::string path = fmt::format("every.{}", list.size());
+      const auto [kind, type] = kind_of_part(*table, path, "monitor", parts_.monitors(), {"trajectory", "checkpoint"});
+      TableReader reader(context_, *table, fmt::format("monitor '{}'", type), path);
+      reader.find("type");
+      SceneValue effective = SceneValue::table();
+      effective.put("type", SceneValue::of(type));
+      SceneWatch watch;
+      if (type == "trajectory") watch.kind = SceneWatch::Kind::trajectory;
+      if (type == "checkpoint") watch.kind = SceneWatch::Kind::checkpoint;
+      if (kind != nullptr) watch.monitor = kind->read(reader);
+      for (const char* key : {"every", "steps"}) reader.find(key);
+      if (kind == nullptr && type == "checkpoint") reader.find("wall");
+      reader.finish();
+      for (const SceneWatch& other : scene_.watches) {
+        if (type == "trajectory" && other.kind == watch.kind) {
+          reader.fail("type", "trajectory stands twice in the scene; there is one run.h5, so give one cadence");
+        }
+      }
+      watch.cadence = read_cadence(reader, type == "checkpoint", effective);
+      if (kind != nullptr) {
+        for (auto& [key, value] : *watch.monitor.effective.get<SceneValue::Table>()) effective.put(key, value);
+      }
+      list.push_back(std::move(effective));
+      scene_.watches.push_back(std::move(watch));
+    }
+    if (!list.empty()) scene_.effective.put("every", SceneValue::of(std::move(list)));
+  }
+
+  void read_stops(TableReader& top) {
+    const auto tables = tables_of(top, "stop");
+    SceneValue::Array list;
+    for (const SceneValue* table : tables) {
+      TableReader reader(context_, *table, "[[stop]]", fmt::format("stop.{}", list.size()));
+      reader.expect_only({"type", "distance", "steps", "every"});
+      const std::string type = reader.text("type");
+      if (type != "escape" && type != "collision") {
+        reader.fail("type", fmt::format("unknown stop '{}'{}", type, did_you_mean(type, {"escape", "collision"})));
+      }
+      const auto distance = reader.quantity("distance", "length");
+      if (!distance) reader.fail(nullptr, "distance", fmt::format("stop '{}' has no distance; give one", type));
+      if (!(*distance > 0)) reader.fail("distance", fmt::format("distance = {} cannot stop a run; a length above 0 is expected", to_text(*reader.find("distance"))));
+      SceneValue effective = SceneValue::table();
+      effective.put("type", SceneValue::of(type));
+      effective.put("distance", *reader.find("distance"));
+      SceneStop stop;
+      stop.rule = type == "escape" ? farther_than(*distance) : closer_than(*distance);
+      // An escape is seen late as well as early; a collision is found between two looks only if they are close.
+      stop.steps = type == "escape" ? 100 : 1;
+      if (reader.has("every") || reader.has("steps")) {
+        stop.steps = read_cadence(reader, false, effective).steps;
+      } else {
+        effective.put("steps", SceneValue::of(stop.steps));
+      }
+      list.push_back(std::move(effective));
+      scene_.stops.push_back(stop);
+    }
+    if (!list.empty()) scene_.effective.put("stop", SceneValue::of(std::move(list)));
+  }
+
+  void read_expectations(const SceneValue& value, const std::string& path) {
+    const auto* table = value.get<SceneValue::Table>();
+    if (table == nullptr) {
+      scene_.expect[path] = value;
+      return;
+    }
+    for (const auto& [key, entry] : *table) read_expectations(entry, path.empty() ? key : path + "." + key);
+  }
+
+  /// Puts the parts together once: what they refuse is told with its place in the scene.
+  void check(TableReader& top) {
+    TableReader hamiltonian(context_, *top.find("hamiltonian"), "[hamiltonian]", "hamiltonian");
+    TableReader integrator(context_, *top.find("integrator"), "[integrator]", "integrator");
+    std::optional<AnyHamiltonian<double>> made;
+    try {
+      made = hamiltonian_of(scene_);
+    } catch (const SceneError&) {
+      throw;
+    } catch (const Error& error) {
+      hamiltonian.fail("type", error.message());
+    }
+    try {
+      const Composition<AnyHamiltonian<double>> composition(*made, scheme_of(scene_.integrator));
+    } catch (const SchemeMismatch& error) {
+      integrator.fail("method", error.message());
+    }
+    check_start(hamiltonian, *made);
+    try {
+      assemble(scene_);
+    } catch (const SceneError&) {
+      throw;
+    } catch (const Error& error) {
+      top.fail(nullptr, "", error.message());
+    }
+  }
+
+  void check_start(const TableReader& hamiltonian, AnyHamiltonian<double>& made) {
+    ParticleSystem<double> s = scene_.particles;
+    s.clock() = Clock<double>::fixed(0, scene_.integrator.step);
+    try {
+      made.bind(s);
+    } catch (const Error& error) {
+      hamiltonian.fail("type", error.message());
+    }
+    const auto pair = coincident_bodies(s);
+    if (!pair) return;
+    VectorColumn<double> a(s.size());
+    made.accelerations(s, a);
+    const Vec3<double> one = a[pair->first], other = a[pair->second];
+    if (one.allFinite() && other.allFinite()) return;
+    const SceneValue* particles = root_.find("particles");
+    const SceneValue* bodies = particles->find("body");
+    int line = particles->line;
+    if (bodies != nullptr) line = std::get<SceneValue::Array>(bodies->data)[static_cast<std::size_t>(pair->second)].line;
+    throw scene_error(scene_.source, line, "particles", "",
+                      fmt::format("'{}' and '{}' stand in one place, where their attraction is infinite; move one, or "
+                                  "give gravity a softening",
+                                  s.name(pair->first), s.name(pair->second)));
+  }
+
+  const SceneValue& root_;
+  const Parts& parts_;
+  Scene& scene_;
+  SceneContext context_;
+};
+
+}  // namespace
+
+Scene read_scene(std::string_view text, const std::filesystem::path& file, const Parts& parts,
+                 const std::vector<std::string>& sets) {
+  Scene scene;
+  scene.file = file;
+  scene.source = {file.string(), sets};
+  SceneValue root = parse_toml(text, scene.source.file);
+  apply_sets(root, scene.source);
+  SceneReader(root, parts, scene).read();
+  return scene;
+}
+
+Scene load_scene(const std::filesystem::path& file, const Parts& parts, const std::vector<std::string>& sets) {
+  return read_scene(io::read_bytes(file), file, parts, sets);
+}
+
+}  // namespace noether

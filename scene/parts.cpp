@@ -1,0 +1,55 @@
+#include "scene/parts.hpp"
+
+#include "engine/monitors.hpp"
+#include "engine/orbital_monitors.hpp"
+#include "forces/external_fields.hpp"
+#include "forces/gravity.hpp"
+#include "forces/oblateness.hpp"
+#include "forces/sum.hpp"
+#include "integrators/kinetic_potential.hpp"
+#include "integrators/wisdom_holman.hpp"
+#include "io/checkpoint.hpp"
+#include "io/trajectory.hpp"
+
+namespace noether {
+
+Parts standard_parts() {
+  Parts parts;
+  parts.add_force<Gravity>();
+  parts.add_force<Oblateness>();
+  parts.add_force<UniformField>();
+  parts.add_force<OscillatingField>();
+  parts.add_force<HarmonicField>();
+  parts.add_force<LinearDrag>();
+  parts.add_monitor<Energy>();
+  parts.add_monitor<Momentum>();
+  parts.add_monitor<AngularMomentum>();
+  parts.add_monitor<CenterOfMass>();
+  parts.add_monitor<Elements>();
+  parts.add_monitor<ClosestApproach>();
+  return parts;
+}
+
+std::vector<PartInfo> writer_parts() { return {part_info<io::TrajectoryWriter>(), part_info<io::CheckpointWriter>()}; }
+
+std::vector<PartInfo> hamiltonian_parts() {
+  return {part_info<KineticPotential<ForceField<double>>>(), part_info<WisdomHolmanOptions>()};
+}
+
+namespace detail {
+
+SceneValue quantity_value(double value, std::string_view dimension, const UnitSystem& units) {
+  const Dimension parsed = parse_dimension(dimension);
+  if (units.is_reduced() || parsed == dimensions::none) {
+    if (dimension != "angle" || units.is_reduced()) return SceneValue::of(value);
+    return SceneValue::of(format_number(value) + " rad");
+  }
+  const std::string unit = unit_of(parsed, units);
+  // "0 1/day" is no quantity; "0/day" is.
+  const bool inverse = unit.starts_with("1/");
+  return SceneValue::of(format_number(value) + (inverse ? unit.substr(1) : " " + unit));
+}
+
+}  // namespace detail
+
+}  // namespace noether

@@ -1,0 +1,129 @@
+#pragma once
+/// The parts a scene may name: each is one type that describes itself.
+
+#include "engine/erasure.hpp"
+#include "engine/simulation.hpp"
+#include "forces/check_gradient.hpp"
+#include "forces/linear_drag.hpp"
+#include "scene/fields.hpp"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace noether {
+
+/// When a monitor looks: every so many steps, or every so many seconds of wall time.
+struct Cadence {
+  std::int64_t steps = 0;
+  double wall = 0;  ///< [s]; 0: by steps
+};
+
+/// A force as a scene asked for it.
+struct SceneForce {
+  std::string name;
+  SceneValue effective;                   ///< its table, defaults included
+  std::optional<AnyForce<double>> force;  ///< empty for drag, which becomes a letter
+  std::optional<LinearDrag> drag;
+  /// Difference between the force and the gradient of its energy (forces/check_gradient.hpp).
+  std::function<double(const ParticleSystem<double>&)> gradient_error;
+};
+
+/// A monitor as a scene asked for it.
+struct SceneMonitor {
+  std::string name;
+  SceneValue effective;
+  std::function<void(Simulation<double>&, const Cadence&)> attach;
+};
+
+namespace detail {
+template <class M> void attach(Simulation<double>& sim, const Cadence& cadence, const M& monitor) {
+  if (cadence.wall > 0) {
+    sim.every_wall(cadence.wall, monitor);
+  } else {
+    sim.every(cadence.steps, monitor);
+  }
+}
+}  // namespace detail
+
+/// Forces and monitors by name. A user's own part is one line:
+///
+///     Parts parts = standard_parts();
+///     parts.add_force<Oblateness>();
+class Parts {
+ public:
+  struct ForceKind {
+    PartInfo info;
+    std::function<SceneForce(TableReader&)> read;
+  };
+  struct MonitorKind {
+    PartInfo info;
+    std::function<SceneMonitor(TableReader&)> read;
+  };
+
+  /// Makes force `F` known by the name it describes itself with; a force of the same name is replaced.
+  template <class F> Parts& add_force() {
+    static_assert(Described<F>, "a force in a scene describes itself: static constexpr auto describe()");
+    put(forces_, ForceKind{part_info<F>(), [](TableReader& reader) { return read_force<F>(reader); }});
+    return *this;
+  }
+
+  /// Makes monitor `M` known by the name it describes itself with; one of the same name is replaced.
+  template <class M> Parts& add_monitor() {
+    static_assert(Described<M>, "a monitor in a scene describes itself: static constexpr auto describe()");
+    put(monitors_, MonitorKind{part_info<M>(), [](TableReader& reader) { return read_monitor<M>(reader); }});
+    return *this;
+  }
+
+  const std::vector<ForceKind>& forces() const { return forces_; }
+  const std::vector<MonitorKind>& monitors() const { return monitors_; }
+
+ private:
+  template <class F> static SceneForce read_force(TableReader& reader) {
+    F force{};
+    read_fields(reader, force);
+    SceneForce made{std::string(part_name<F>()), SceneValue::table(), {}, {}, {}};
+    put_fields(reader, force, made.effective);
+    if constexpr (std::is_same_v<F, LinearDrag>) {
+      made.drag = force;
+    } else {
+      made.force = AnyForce<double>(force);
+      made.gradient_error = [force](const ParticleSystem<double>& s) { return noether::gradient_error(force, s); };
+    }
+    return made;
+  }
+
+  template <class M> static SceneMonitor read_monitor(TableReader& reader) {
+    M monitor{};
+    read_fields(reader, monitor);
+    SceneMonitor made{std::string(part_name<M>()), SceneValue::table(), {}};
+    put_fields(reader, monitor, made.effective);
+    made.attach = [monitor](Simulation<double>& sim, const Cadence& cadence) { detail::attach(sim, cadence, monitor); };
+    return made;
+  }
+
+  template <class Kind> static void put(std::vector<Kind>& kinds, Kind kind) {
+    for (Kind& known : kinds) {
+      if (known.info.name != kind.info.name) continue;
+      known = std::move(kind);
+      return;
+    }
+    kinds.push_back(std::move(kind));
+  }
+
+  std::vector<ForceKind> forces_;
+  std::vector<MonitorKind> monitors_;
+};
+
+/// Every force and monitor of noether.
+Parts standard_parts();
+
+/// What the writers say of themselves: they stand in `[[every]]` like monitors.
+std::vector<PartInfo> writer_parts();
+/// What the Hamiltonians say of themselves.
+std::vector<PartInfo> hamiltonian_parts();
+
+}  // namespace noether

@@ -1,0 +1,23 @@
+#pragma once
+/// The table `[particles]` of a scene.
+
+#include "engine/particle_system.hpp"
+#include "scene/reader.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <utility>
+
+namespace noether {
+
+/// Reads the bodies of a scene, in the frame it asks for, and writes the effective table.
+/// @param folder  paths in the scene are relative to it
+/// @throws SceneError, FileError
+ParticleSystem<double> read_particles(const SceneContext& context, const SceneValue& table,
+                                      const std::filesystem::path& folder, SceneValue& effective);
+
+/// Two particles, one of them massive, in exactly one place; empty if there are none.
+/// @cost O(n log n)
+std::optional<std::pair<Index, Index>> coincident_bodies(const ParticleSystem<double>& s);
+
+}  // namespace noether

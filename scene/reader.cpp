@@ -1,0 +1,150 @@
+#include "scene/reader.hpp"
+
+#include "engine/suggest.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace noether {
+
+SceneError scene_error(const SceneSource& source, int line, std::string key, std::string value,
+                       const std::string& message) {
+  const auto set = static_cast<std::size_t>(-(line + 1));
+  if (line < 0 && set < source.sets.size()) {
+    return SceneError(message, {.file = "--set " + source.sets[set], .key = std::move(key), .value = std::move(value)});
+  }
+  return SceneError(message,
+                    {.file = source.file, .line = line, .key = std::move(key), .value = std::move(value)});
+}
+
+TableReader::TableReader(const SceneContext& context, const SceneValue& table, std::string what, std::string path)
+    : context_(context), table_(table), what_(std::move(what)), path_(std::move(path)) {
+  if (!table_.is_table()) {
+    throw scene_error(context_.source, table_.line, path_, to_text(table_),
+                      fmt::format("{} is {}; a table is expected", what_, kind_of(table_)));
+  }
+}
+
+const SceneValue* TableReader::find(std::string_view key) {
+  if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.emplace_back(key);
+  return table_.find(key);
+}
+
+std::string TableReader::path_of(std::string_view key) const {
+  return path_.empty() ? std::string(key) : path_ + "." + std::string(key);
+}
+
+void TableReader::fail(const SceneValue* at, std::string_view key, const std::string& message) const {
+  throw scene_error(context_.source, at != nullptr ? at->line : table_.line, path_of(key),
+                    at != nullptr ? to_text(*at) : "", message);
+}
+
+void TableReader::wrong_kind(const SceneValue& value, std::string_view key, std::string_view expected) const {
+  fail(&value, key, fmt::format("{} = {} is {}; {} is expected", key, to_text(value), kind_of(value), expected));
+}
+
+std::string TableReader::text(std::string_view key, std::string fallback) {
+  const SceneValue* value = find(key);
+  if (value == nullptr) return fallback;
+  const std::string* text = value->get<std::string>();
+  if (text == nullptr) wrong_kind(*value, key, "a text in quotes");
+  return *text;
+}
+
+bool TableReader::flag(std::string_view key, bool fallback) {
+  const SceneValue* value = find(key);
+  if (value == nullptr) return fallback;
+  const bool* flag = value->get<bool>();
+  if (flag == nullptr) wrong_kind(*value, key, "true or false");
+  return *flag;
+}
+
+std::optional<std::int64_t> TableReader::integer(std::string_view key) {
+  const SceneValue* value = find(key);
+  if (value == nullptr) return {};
+  const auto* integer = value->get<std::int64_t>();
+  const double* number = value->get<double>();
+  // 1e6 is a natural way to write a million.
+  if (number != nullptr && std::abs(*number) < 9e15 && *number == std::round(*number)) {
+    return static_cast<std::int64_t>(*number);
+  }
+  if (integer == nullptr) wrong_kind(*value, key, "a whole number");
+  return *integer;
+}
+
+double TableReader::number(const SceneValue& value, std::string_view key, std::string_view dimension) const {
+  const UnitSystem& units = *context_.units;
+  const Dimension expected = parse_dimension(dimension);
+  const auto* integer = value.get<std::int64_t>();
+  const double* number = value.get<double>();
+  const std::string* text = value.get<std::string>();
+  if (integer == nullptr && number == nullptr && text == nullptr) {
+    wrong_kind(value, key, expected == dimensions::none ? "a number" : "a quantity in quotes, such as \"1 day\"");
+  }
+  // Degrees or radians: a bare angle would be a guess, except where all numbers are bare.
+  const bool needs_unit = dimension == "angle" && !units.is_reduced();
+  const double bare = integer != nullptr ? static_cast<double>(*integer) : number != nullptr ? *number : 0;
+  if (text == nullptr && !std::isfinite(bare)) {
+    fail(&value, key, fmt::format("{} = {} is not finite; a finite number is expected", key, to_text(value)));
+  }
+  const bool may_be_bare = units.is_reduced() || expected == dimensions::none || key == "G";
+  if (text == nullptr && may_be_bare && !needs_unit) return bare;
+  const std::string written = text != nullptr ? *text : format_number(bare);
+  const auto ends_in_digit = [](const std::string& t) { return !t.empty() && t.find_first_not_of("0123456789.+-eE") == std::string::npos; };
+  if (needs_unit && ends_in_digit(written)) {
+    fail(&value, key, fmt::format("{}: '{}' has no unit; an angle is expected, such as '{} deg'", key, written, written));
+  }
+  try {
+    return parse_quantity(written, expected, units);
+  } catch (const Error& error) {
+    fail(&value, key, fmt::format("{}: {}", key, error.message()));
+  }
+}
+
+std::optional<double> TableReader::quantity(std::string_view key, std::string_view dimension) {
+  const SceneValue* value = find(key);
+  if (value == nullptr) return {};
+  return number(*value, key, dimension);
+}
+
+std::optional<std::array<double, 3>> TableReader::vector(std::string_view key, std::string_view dimension) {
+  const SceneValue* value = find(key);
+  if (value == nullptr) return {};
+  const auto* list = value->get<SceneValue::Array>();
+  if (list == nullptr || list->size() != 3) {
+    fail(value, key, fmt::format("{} = {} is no vector; a list of three is expected: [x, y, z]", key, to_text(*value)));
+  }
+  std::array<double, 3> result{};
+  for (std::size_t k = 0; k < 3; ++k) result[k] = number((*list)[k], key, dimension);
+  return result;
+}
+
+void TableReader::finish() const {
+  for (const auto& [key, value] : std::get<SceneValue::Table>(table_.data)) {
+    if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
+    const std::string in = what_.empty() ? "" : " in " + what_;
+    fail(&value, key, fmt::format("unknown key '{}'{}{}", key, in, did_you_mean(key, known_)));
+  }
+}
+
+std::vector<const SceneValue*> tables_of(TableReader& reader, std::string_view key) {
+  std::vector<const SceneValue*> tables;
+  const SceneValue* value = reader.find(key);
+  if (value == nullptr) return tables;
+  const auto* list = value->get<SceneValue::Array>();
+  const std::string name = reader.path_of(key);
+  if (list == nullptr) {
+    reader.fail(value, key, fmt::format("{} is {}; tables headed [[{}]] are expected", name, kind_of(*value), name));
+  }
+  for (const SceneValue& element : *list) {
+    if (!element.is_table()) {
+      reader.fail(&element, key, fmt::format("{} holds {}; tables headed [[{}]] are expected", name, kind_of(element), name));
+    }
+    tables.push_back(&element);
+  }
+  return tables;
+}
+
+}  // namespace noether

@@ -1,0 +1,89 @@
+#pragma once
+/// Reading one table of a scene: every key that nobody asks for is an error.
+
+#include "engine/error.hpp"
+#include "engine/quantity.hpp"
+#include "scene/value.hpp"
+
+#include <array>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace noether {
+
+/// Where a scene comes from: what errors point at.
+struct SceneSource {
+  std::string file;               ///< as the user typed it
+  std::vector<std::string> sets;  ///< the texts of `--set`, in order
+};
+
+/// What all tables of a scene share.
+struct SceneContext {
+  SceneSource source;
+  const UnitSystem* units = &unit_system("solar");
+  std::optional<SceneValue> G;  ///< `hamiltonian.G`: the default of every field of that name
+};
+
+/// Reads one table; remembers which keys were asked for.
+class TableReader {
+ public:
+  /// @param what  how messages call the table: "[integrator]", "force 'gravity'"
+  /// @param path  its dotted key: "integrator"
+  TableReader(const SceneContext& context, const SceneValue& table, std::string what, std::string path);
+
+  /// The value of a key, which is a known one from now on; null if it is not given.
+  const SceneValue* find(std::string_view key);
+  bool has(std::string_view key) { return find(key) != nullptr; }
+
+  /// Typed values; `fallback` where the key is not given. @throws SceneError for another type
+  std::string text(std::string_view key, std::string fallback = "");
+  bool flag(std::string_view key, bool fallback);
+  std::optional<std::int64_t> integer(std::string_view key);
+  /// A quantity in the units of the scene. @throws SceneError
+  std::optional<double> quantity(std::string_view key, std::string_view dimension);
+  std::optional<std::array<double, 3>> vector(std::string_view key, std::string_view dimension);
+
+  /// One number with a dimension, of this or another table.
+  double number(const SceneValue& value, std::string_view key, std::string_view dimension) const;
+
+  /// Knows these keys and no others, so that a misspelt key is told before a missing one. @throws SceneError
+  void expect_only(std::initializer_list<std::string_view> keys) {
+    for (const std::string_view key : keys) find(key);
+    finish();
+  }
+  /// @throws SceneError  naming the first key nobody has asked for, with a proposal
+  void finish() const;
+
+  /// Ends reading with a message at a value, or at the head of the table if there is none.
+  [[noreturn]] void fail(const SceneValue* at, std::string_view key, const std::string& message) const;
+  /// The same for a key.
+  [[noreturn]] void fail(std::string_view key, const std::string& message) const {
+    fail(table_.find(key), key, message);
+  }
+  /// A value of the wrong kind.
+  [[noreturn]] void wrong_kind(const SceneValue& value, std::string_view key, std::string_view expected) const;
+
+  const SceneContext& context() const { return context_; }
+  const SceneValue& table() const { return table_; }
+  const std::string& what() const { return what_; }
+  const std::string& path() const { return path_; }
+  std::string path_of(std::string_view key) const;
+
+ private:
+  const SceneContext& context_;
+  const SceneValue& table_;
+  std::string what_, path_;
+  std::vector<std::string> known_;
+};
+
+/// The exception for something at a line (negative: at a `--set`) of a scene.
+SceneError scene_error(const SceneSource& source, int line, std::string key, std::string value,
+                       const std::string& message);
+
+/// The elements of a list of tables, `[[every]]`; none if the key is absent. @throws SceneError for anything else
+std::vector<const SceneValue*> tables_of(TableReader& reader, std::string_view key);
+
+}  // namespace noether

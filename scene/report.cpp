@@ -1,0 +1,115 @@
+#include "scene/json.hpp"
+#include "scene/run.hpp"
+
+#include "engine/version.hpp"
+
+#include <fmt/format.h>
+
+namespace noether {
+
+namespace {
+
+/// What a monitor's missing figures have as reason, where a run is fine otherwise.
+std::string message_of(const RunReport& report) {
+  if (!report.outcome.message.empty()) return report.outcome.message;
+  for (const auto& [name, monitor] : report.monitors) {
+    if (!monitor.message.empty() && !monitor.worst) return name + ": " + monitor.message;
+  }
+  return "";
+}
+
+Json json_of(const MonitorReport& monitor) {
+  Json::Members members = {{"first", monitor.first},
+                           {"last", monitor.last},
+                           {"worst", monitor.worst},
+                           {"rms", monitor.rms},
+                           {"slope", monitor.slope},
+                           {"slope_error", monitor.slope_error},
+                           {"slope_unit", monitor.slope_unit.empty() ? Json() : Json(monitor.slope_unit)},
+                           {"scale", monitor.scale},
+                           {"samples", monitor.samples}};
+  if (!monitor.message.empty()) members.emplace_back("message", monitor.message);
+  return Json::object(members);
+}
+
+Json json_of(const std::filesystem::path& file) { return file.empty() ? Json() : Json(file.string()); }
+
+Json per_second(double amount, double seconds) { return seconds > 0 ? Json(amount / seconds) : Json(); }
+
+Json particle_of(const Outcome& outcome) {
+  if (!outcome.particle) return {};
+  return Json::object({{"index", outcome.particle->index}, {"id", outcome.particle->id}, {"name", outcome.particle->name}});
+}
+
+}  // namespace
+
+std::string to_json(const RunReport& r) {
+  Json::Members monitors;
+  for (const auto& [name, monitor] : r.monitors) monitors.emplace_back(name, json_of(monitor));
+  const auto steps = static_cast<double>(r.steps_made);
+  return Json::object({{"schema", "noether.run/1"},
+                       {"version", version()},
+                       {"commit", commit()},
+                       {"scene", r.scene},
+                       {"scene_sha256", r.scene_sha256},
+                       {"outcome", name(r.outcome.kind)},
+                       {"exit_code", r.exit_code()},
+                       {"message", message_of(r)},
+                       {"particle", particle_of(r.outcome)},
+                       {"quantity", r.outcome.quantity.empty() ? Json() : Json(r.outcome.quantity)},
+                       {"step", r.outcome.step},
+                       {"time", r.outcome.time},
+                       {"time_unit", r.time_unit},
+                       {"dt", r.dt},
+                       {"particles", std::int64_t{r.particles}},
+                       {"resumed_from_step", r.resumed_from_step},
+                       {"threads", r.threads},
+                       {"simd", r.simd},
+                       {"evaluations", Json::object({{"force", r.evaluations.force},
+                                                     {"kepler", r.evaluations.kepler},
+                                                     {"jacobian", r.evaluations.jacobian}})},
+                       {"wall_s", r.wall_s},
+                       {"steps_per_s", per_second(steps, r.wall_s)},
+                       {"particle_steps_per_s", per_second(steps * static_cast<double>(r.particles), r.wall_s)},
+                       {"digest", r.digest},
+                       {"monitors", Json::object(monitors)},
+                       {"files", Json::object({{"trajectory", json_of(r.trajectory)}, {"checkpoint", json_of(r.checkpoint)}})}})
+      .text();
+}
+
+namespace {
+
+std::string figures(const MonitorReport& m) {
+  std::string text;
+  const auto add = [&](const char* name, const std::optional<double>& value, const std::string& unit) {
+    if (value) text += fmt::format("{}{} {:.3g}{}{}", text.empty() ? "" : ", ", name, *value, unit.empty() ? "" : " ", unit);
+  };
+  add("worst", m.worst, "");
+  add("rms", m.rms, "");
+  add("slope", m.slope, m.slope_unit == "1/1" ? "" : m.slope_unit);
+  if (m.slope && m.slope_error) text += fmt::format(" +- {:.1g}", *m.slope_error);
+  if (!m.worst) add("last", m.last, "");
+  if (!m.message.empty()) text += fmt::format("{}{}", text.empty() ? "" : "; ", m.message);
+  return text.empty() ? "watched" : text;
+}
+
+}  // namespace
+
+std::string to_text(const RunReport& r) {
+  const std::string unit = r.time_unit == "1" ? "" : " " + r.time_unit;
+  std::string text = fmt::format("{}, time {:.9g}{}\n", to_text(r.outcome), r.outcome.time, unit);
+  if (r.resumed_from_step) text += fmt::format("resumed from step {}\n", *r.resumed_from_step);
+  for (const auto& [name, monitor] : r.monitors) {
+    text += fmt::format("{}: {} ({} samples)\n", name, figures(monitor), monitor.samples);
+  }
+  if (r.wall_s > 0 && r.steps_made > 0) {
+    text += fmt::format("{} steps of {} over {} in {:.3g} s: {:.3g} steps/s on {} {}\n", r.steps_made, r.method, r.hamiltonian,
+                        r.wall_s, static_cast<double>(r.steps_made) / r.wall_s, r.threads, r.threads == 1 ? "thread" : "threads");
+  }
+  for (const std::filesystem::path& file : {r.trajectory, r.checkpoint}) {
+    if (!file.empty()) text += fmt::format("wrote {}\n", file.string());
+  }
+  return text + r.digest + "\n";
+}
+
+}  // namespace noether

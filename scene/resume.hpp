@@ -1,0 +1,25 @@
+#pragma once
+/// May a checkpoint go on as this scene?
+
+#include "io/checkpoint.hpp"
+#include "scene/scene.hpp"
+
+namespace noether {
+
+/// Compares the scene in a checkpoint with this one, key by key.
+///
+/// Title, expectations and the end of the run may differ.
+/// @throws SceneError  naming the first other key that differs
+void check_same_scene(const io::Checkpoint& checkpoint, const Scene& scene);
+
+/// How a run ended, kept beside the state in its last checkpoint.
+struct Ending {
+  Outcome outcome;
+  double wall_s = 0;
+  std::int64_t steps_made = 0;
+};
+void save_ending(SavedRun& run, const Ending& ending);
+/// @throws Error  if the checkpoint has none
+Ending load_ending(const io::Checkpoint& checkpoint);
+
+}  // namespace noether

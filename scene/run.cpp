@@ -1,0 +1,222 @@
+#include "scene/run.hpp"
+
+#include "engine/monitors.hpp"
+#include "engine/parallel.hpp"
+#include "io/digest.hpp"
+#include "scene/resume.hpp"
+#include "scene/signals.hpp"
+
+#include <fmt/format.h>
+
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+
+namespace noether {
+
+namespace {
+
+std::filesystem::path default_folder(const Scene& scene) {
+  std::filesystem::path name = scene.file.filename();
+  if (name.extension() == ".toml") name.replace_extension();
+  return name.string() + ".out";
+}
+
+/// Whether this build can write HDF5 files.
+constexpr bool has_files = NOETHER_HDF5 != 0;
+
+SceneFiles files_of(const Scene& scene, const OutputFolder& folder, const RunOptions& options) {
+  SceneFiles files;
+  bool asks = false;
+  for (const SceneWatch& watch : scene.watches) asks = asks || watch.kind != SceneWatch::Kind::monitor;
+  // Without HDF5 a run can still be watched; a scene that asks for files is told that there are none.
+  if (!has_files && !asks) return files;
+  if (has_files ? !scene.watches.empty() : asks) files.trajectory = folder.trajectory();
+  files.checkpoint = folder.checkpoint();
+  if (has_files) files.checkpoint_wall = options.checkpoint_wall;
+  return files;
+}
+
+bool writes_trajectory(const Scene& scene) {
+  for (const SceneWatch& watch : scene.watches) {
+    if (watch.kind != SceneWatch::Kind::checkpoint) return true;
+  }
+  return false;
+}
+
+std::string duration_text(double seconds) {
+  if (seconds < 100) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 6000) return fmt::format("{:.0f} min", seconds / 60);
+  return fmt::format("{:.1f} h", seconds / 3600);
+}
+
+/// The line a terminal shows while the run goes on.
+class ProgressLine {
+ public:
+  explicit ProgressLine(bool wanted) : shows_(wanted && ::isatty(STDERR_FILENO) == 1) {}
+  ~ProgressLine() {
+    if (shown_) std::fputs("\r\033[K", stderr);
+  }
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  void attach(Simulation<double>& sim) {
+    if (!shows_) return;
+    Energy* energy = nullptr;
+    sim.for_each_monitor([&](const std::string&, AnyMonitor<double>& monitor) {
+      if (auto* found = monitor.get<Energy>()) energy = found;
+    });
+    const std::int64_t first = sim.step();
+    sim.on_progress([this, energy, first](const Progress& now) { show(now, first, energy); });
+  }
+
+ private:
+  void show(const Progress& now, std::int64_t first, const Energy* energy) {
+    shown_ = true;
+    const double made = static_cast<double>(now.step - first), left = static_cast<double>(now.end - now.step);
+    const double rate = now.seconds > 0 ? made / now.seconds : 0;
+    std::string line = fmt::format("{:5.1f} %  {:.3g} steps/s", 100 * static_cast<double>(now.step) / static_cast<double>(now.end), rate);
+    if (rate > 0) line += fmt::format("  {} left", duration_text(left / rate));
+    if (energy != nullptr && std::isfinite(energy->worst())) line += fmt::format("  energy error {:.1e}", energy->worst());
+    fmt::print(stderr, "\r\033[K{}", line);
+    std::fflush(stderr);
+  }
+
+  bool shows_, shown_ = false;
+};
+
+/// One run of one scene.
+class Runner {
+ public:
+  Runner(const Scene& scene, const RunOptions& options)
+      : scene_(scene),
+        options_(options),
+        folder_(options.out.empty() ? default_folder(scene) : options.out),
+        files_(files_of(scene, folder_, options)) {}
+
+  RunReport go() {
+    const std::optional<io::Checkpoint> checkpoint = folder_.prepare(options_.existing);
+    Simulation<double> sim = assemble(scene_, files_);
+    if (checkpoint) {
+      check_resume(*checkpoint);
+      sim.restore(checkpoint->run);
+      report_.resumed_from_step = checkpoint->step;
+      if (is_over(*checkpoint)) return finished(sim, *checkpoint);
+    }
+    const std::int64_t first = sim.step();
+    ending_.outcome = advance(sim);
+    ending_.wall_s = sim.seconds();
+    ending_.steps_made = sim.step() - first;
+    close(sim);
+    return report(sim);
+  }
+
+ private:
+  std::int64_t target() const { return *scene_.integrator.steps; }
+
+  void check_resume(const io::Checkpoint& checkpoint) const {
+    check_same_scene(checkpoint, scene_);
+    if (checkpoint.simd != report_.simd) {
+      throw SceneError(fmt::format("the run was made at SIMD level '{}', which this build does not have", checkpoint.simd),
+                       {.file = scene_.source.file});
+    }
+    if (target() < checkpoint.step) {
+      throw SceneError(fmt::format("the end at step {} lies before the checkpoint at step {}; give a later one, or --fresh",
+                                   target(), checkpoint.step),
+                       {.file = scene_.source.file, .key = "integrator.until"});
+    }
+  }
+
+  /// A completed run goes on if its end has been moved; one that has stopped or failed does not.
+  bool is_over(const io::Checkpoint& checkpoint) const {
+    if (checkpoint.outcome.empty()) return false;
+    return checkpoint.outcome != name(Outcome::Kind::completed) || target() == checkpoint.step;
+  }
+
+  RunReport finished(Simulation<double>& sim, const io::Checkpoint& checkpoint) {
+    ending_ = load_ending(checkpoint);
+    finish_monitors(sim);
+    return report(sim);
+  }
+
+  Outcome advance(Simulation<double>& sim) const {
+    std::optional<StopOnSignals> signals;
+    if (options_.handle_signals) sim.stop_on(signals.emplace().flag());
+    ProgressLine line(options_.progress);
+    line.attach(sim);
+    return sim.run(target() - sim.step());
+  }
+
+  /// Puts everything on disk: writers first, then the checkpoint that counts on them, then the mark of completeness.
+  void close(Simulation<double>& sim) {
+    sim.for_each_monitor([](const std::string&, AnyMonitor<double>& monitor) { monitor.flush(); });
+    if (has_files && !files_.checkpoint.empty()) {
+      io::Checkpoint checkpoint;
+      checkpoint.run = sim.save();
+      const bool over = ending_.outcome.kind != Outcome::Kind::interrupted;
+      if (over) save_ending(checkpoint.run, ending_);
+      if (over) checkpoint.outcome = name(ending_.outcome.kind);
+      checkpoint.scene_toml = scene_.effective_toml;
+      checkpoint.digest = io::digest(sim.particles());
+      checkpoint.simd = report_.simd;
+      checkpoint.step = sim.step();
+      checkpoint.time = sim.time();
+      io::write_checkpoint(files_.checkpoint, checkpoint);
+    }
+    finish_monitors(sim);
+  }
+
+  void finish_monitors(Simulation<double>& sim) const {
+    sim.for_each_monitor([&](const std::string&, AnyMonitor<double>& monitor) { monitor.finish(ending_.outcome); });
+  }
+
+  RunReport report(Simulation<double>& sim) {
+    RunReport r = report_;
+    const IntegratorClaims claims = sim.claims();
+    r.outcome = ending_.outcome;
+    r.scene = scene_.source.file;
+    r.scene_sha256 = io::sha256(scene_.effective_toml);
+    r.method = claims.method;
+    r.hamiltonian = claims.hamiltonian;
+    r.time_unit = scene_.units->time;
+    r.digest = io::digest(sim.particles());
+    r.dt = scene_.integrator.step;
+    r.particles = sim.particles().size();
+    r.threads = thread_count();
+    r.steps_made = ending_.steps_made;
+    r.wall_s = ending_.wall_s;
+    r.evaluations = sim.evaluations();
+    sim.for_each_monitor([&](const std::string& name, AnyMonitor<double>& monitor) {
+      if (auto one = monitor.report()) r.monitors.emplace_back(name, *one);
+    });
+    if (!files_.trajectory.empty() && writes_trajectory(scene_)) r.trajectory = files_.trajectory;
+    if (has_files) r.checkpoint = files_.checkpoint;
+    return r;
+  }
+
+  const Scene& scene_;
+  const RunOptions& options_;
+  OutputFolder folder_;
+  SceneFiles files_;
+  RunReport report_;
+  Ending ending_;
+};
+
+}  // namespace
+
+RunReport run(const Scene& scene, const RunOptions& options) {
+  if (!scene.integrator.steps) {
+    throw SceneError("the scene has no end; give until or steps in [integrator]",
+                     {.file = scene.source.file, .key = "integrator.until"});
+  }
+  return Runner(scene, options).go();
+}
+
+Outcome run(const Scene& scene) {
+  const RunReport report = run(scene, {.progress = true});
+  fmt::print("{}", to_text(report));
+  return report.outcome;
+}
+
+}  // namespace noether

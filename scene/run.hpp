@@ -1,0 +1,50 @@
+#pragma once
+/// A scene, run as the program runs it: output folder, checkpoints, resume, signals, report.
+
+#include "scene/output_folder.hpp"
+#include "scene/scene.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace noether {
+
+struct RunOptions {
+  std::filesystem::path out = {};      ///< empty: SCENE.out in the working folder
+  Existing existing = Existing::keep;
+  bool handle_signals = true;          ///< SIGINT and SIGTERM end the run after its step
+  bool progress = false;               ///< a line on stderr, if that is a terminal
+  double checkpoint_wall = 300;        ///< seconds between checkpoints
+};
+
+/// Everything a run has to say at its end.
+struct RunReport {
+  Outcome outcome;
+  std::string scene, scene_sha256;     ///< as typed; hash of the effective scene
+  std::string method, hamiltonian, time_unit, simd = "base", digest;
+  double dt = 0;
+  Index particles = 0;
+  int threads = 1;
+  std::optional<std::int64_t> resumed_from_step;
+  std::int64_t steps_made = 0;         ///< in `wall_s`
+  double wall_s = 0;                   ///< from the first step to the last
+  Evaluations evaluations;
+  std::vector<std::pair<std::string, MonitorReport>> monitors;
+  std::filesystem::path trajectory, checkpoint;  ///< empty if there is none
+
+  int exit_code() const { return noether::exit_code(outcome); }
+};
+
+/// The report as one line of JSON: the schema noether.run/1.
+std::string to_json(const RunReport& report);
+/// The report for people, several lines.
+std::string to_text(const RunReport& report);
+
+/// Runs a scene to its end, or goes on with an interrupted run.
+/// @throws SceneError for what cannot be done, FileError for what cannot be read or written
+RunReport run(const Scene& scene, const RunOptions& options);
+
+}  // namespace noether

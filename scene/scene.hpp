@@ -1,0 +1,103 @@
+#pragma once
+/// A scene: a whole run as a text file says it, read, checked, and ready to be assembled.
+
+#include "engine/simulation.hpp"
+#include "integrators/scheme.hpp"
+#include "integrators/wisdom_holman.hpp"
+#include "scene/parts.hpp"
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace noether {
+
+/// The Hamiltonian of a scene.
+struct SceneHamiltonian {
+  enum class Kind : std::uint8_t { kinetic_potential, wisdom_holman };
+  Kind kind = Kind::kinetic_potential;
+  WisdomHolmanOptions wisdom_holman;
+  std::optional<double> G;  ///< as the scene gives it [length^3/mass/time^2]
+  std::vector<SceneForce> forces;
+};
+
+/// The integrator of a scene.
+struct SceneIntegrator {
+  std::string method;  ///< name of the scheme, or a word
+  Scheme scheme;  ///< `scheme_of` gives it its name
+  double step = 0;                    ///< [time]
+  std::string step_text;              ///< as the scene writes it
+  std::optional<std::int64_t> steps;  ///< of the whole run; empty if the scene has no end
+  bool compensated = false;
+};
+
+/// One `[[every]]`.
+struct SceneWatch {
+  enum class Kind : std::uint8_t { monitor, trajectory, checkpoint };
+  Kind kind = Kind::monitor;
+  SceneMonitor monitor;
+  Cadence cadence;
+};
+
+/// One `[[stop]]`.
+struct SceneStop {
+  StopRule rule;
+  std::int64_t steps = 1;
+};
+
+/// A scene as plain data. Everything in it has been checked: `assemble` cannot fail for what the file says.
+struct Scene {
+  std::filesystem::path file;
+  std::string title;
+  const UnitSystem* units = &unit_system("solar");
+  ParticleSystem<double> particles;  ///< in the frame the scene asks for
+  SceneHamiltonian hamiltonian;
+  SceneIntegrator integrator;
+  std::vector<SceneWatch> watches;
+  std::vector<SceneStop> stops;
+  std::map<std::string, SceneValue> expect;  ///< dotted key below [expect]
+  SceneSource source;                        ///< where errors point
+  SceneValue effective;                      ///< the scene with every default, as a tree
+  std::string effective_toml;                ///< the same as text: what files store
+};
+
+/// Reads a scene and checks all that can be checked before the first step.
+/// @param sets  changes "key.path=value", applied in order
+/// @throws SceneError for what is wrong in it, FileError if it or its bodies cannot be read
+/// @cost one force evaluation where two bodies stand in one place
+Scene load_scene(const std::filesystem::path& file, const Parts& parts = standard_parts(),
+                 const std::vector<std::string>& sets = {});
+
+/// The same from text; paths in it are relative to the folder of `file`, which errors show.
+Scene read_scene(std::string_view text, const std::filesystem::path& file, const Parts& parts = standard_parts(),
+                 const std::vector<std::string>& sets = {});
+
+/// Where a run writes. An empty path leaves its writer out.
+struct SceneFiles {
+  std::filesystem::path trajectory, checkpoint;
+  double checkpoint_wall = 0;  ///< seconds between checkpoints beside those of the scene; 0: none
+};
+
+/// The scheme of a scene; its name lives as long as `integrator`.
+Scheme scheme_of(const SceneIntegrator& integrator);
+
+/// The Hamiltonian of a scene, drag included.
+AnyHamiltonian<double> hamiltonian_of(const Scene& scene);
+
+/// The run of a scene, at its first step.
+///
+/// Monitors carry the names of their types; without a trajectory file there are no writers and no checkpoints.
+Simulation<double> assemble(const Scene& scene, const SceneFiles& files = {});
+
+/// Runs a scene as `noether run SCENE` does: into `SCENE.out`, with checkpoints and a report on stdout.
+///
+///     return exit_code(run(load_scene("saturn.toml", parts)));
+///
+/// More is in scene/run.hpp.
+/// @throws SceneError, FileError
+Outcome run(const Scene& scene);
+
+}  // namespace noether

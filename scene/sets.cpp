@@ -1,0 +1,136 @@
+#include "scene/sets.hpp"
+
+#include "engine/suggest.hpp"
+#include "scene/toml.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+
+namespace noether {
+
+namespace {
+
+/// Tables and lists of tables a scene may have without having been written.
+constexpr std::array<std::string_view, 4> known_tables = {"particles", "hamiltonian", "integrator", "expect"};
+
+/// Keys of one table of which at most one is given.
+constexpr std::array<std::array<std::string_view, 3>, 2> alternatives = {{{"steps", "until", ""}, {"steps", "every", "wall"}}};
+
+std::vector<std::string> split(std::string_view path) {
+  std::vector<std::string> keys(1);
+  bool quoted = false;
+  for (const char c : path) {
+    if (c == '"') {
+      quoted = !quoted;
+    } else if (c == '.' && !quoted) {
+      keys.emplace_back();
+    } else {
+      keys.back() += c;
+    }
+  }
+  return keys;
+}
+
+std::string text_of(const SceneValue& table, std::string_view key) {
+  const SceneValue* value = table.find(key);
+  const std::string* text = value != nullptr ? value->get<std::string>() : nullptr;
+  return text != nullptr ? *text : "";
+}
+
+/// One `--set` at work.
+class Setter {
+ public:
+  Setter(const SceneSource& source, std::size_t index)
+      : source_(source), line_(-static_cast<int>(index) - 1), text_(source.sets[index]) {}
+
+  void apply(SceneValue& scene) {
+    const std::size_t equals = text_.find('=');
+    if (equals == std::string::npos || equals == 0) {
+      fail("expected key=value, such as integrator.step=\"50 day\"");
+    }
+    path_ = text_.substr(0, equals);
+    const std::string value = text_.substr(equals + 1);
+    const std::vector<std::string> keys = split(path_);
+    SceneValue* at = &scene;
+    for (std::size_t k = 0; k + 1 < keys.size(); ++k) at = &enter(*at, keys[k], k == 0);
+    if (!at->is_table()) fail(fmt::format("'{}' is not a key of a table", path_));
+    if (keys.size() == 1) check_top(*at, keys[0]);
+    drop_alternatives(*at, keys.back());
+    at->put(keys.back(), parse_toml_value(value, line_).value_or(SceneValue::of(value, line_)));
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& message) const {
+    throw scene_error(source_, line_, path_, "", message);
+  }
+
+  void check_top(const SceneValue& scene, const std::string& key) const {
+    const SceneValue* old = scene.find(key);
+    const bool is_table = old != nullptr && (old->is_table() || old->is_table_list());
+    if (is_table) fail(fmt::format("'{}' is a table; set one of its keys: {}.key=value", key, key));
+  }
+
+  SceneValue& enter(SceneValue& at, const std::string& key, bool top) {
+    if (SceneValue::Array* list = at.get<SceneValue::Array>()) return element(*list, key);
+    if (!at.is_table()) fail(fmt::format("there is nothing below the value {}", to_text(at)));
+    if (SceneValue* next = at.find(key)) return *next;
+    for (const std::string_view known : known_tables) {
+      if (top && key == known) return at.put(key, SceneValue::table(line_));
+    }
+    std::vector<std::string> keys;
+    for (const auto& [name, value] : *at.get<SceneValue::Table>()) {
+      if (value.is_table() || value.is_table_list()) keys.push_back(name);
+    }
+    if (top) keys.insert(keys.end(), known_tables.begin(), known_tables.end());
+    fail(fmt::format("there is no '{}' in the scene{}", key, did_you_mean(key, keys)));
+  }
+
+  SceneValue& element(SceneValue::Array& list, const std::string& key) {
+    std::size_t index = 0;
+    const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), index);
+    if (error == std::errc() && end == key.data() + key.size()) {
+      if (index >= list.size()) fail(fmt::format("there is no number {}; there are {}, counted from 0", index, list.size()));
+      return list[index];
+    }
+    std::vector<SceneValue*> found;
+    std::vector<std::string> names;
+    for (SceneValue& one : list) {
+      const std::string type = text_of(one, "type"), name = text_of(one, "name");
+      if (type == key || name == key) found.push_back(&one);
+      for (const std::string& known : {type, name}) {
+        if (!known.empty()) names.push_back(known);
+      }
+    }
+    if (found.empty()) fail(fmt::format("there is no '{}' in the scene{}", key, did_you_mean(key, names)));
+    if (found.size() > 1) {
+      fail(fmt::format("'{}' stands {} times in the scene; give its number, counted from 0", key, found.size()));
+    }
+    return *found.front();
+  }
+
+  static void drop_alternatives(SceneValue& table, const std::string& key) {
+    for (const auto& group : alternatives) {
+      bool member = false;
+      for (const std::string_view one : group) member = member || one == key;
+      if (!member) continue;
+      for (const std::string_view one : group) {
+        if (one != key) table.erase(one);
+      }
+    }
+  }
+
+  const SceneSource& source_;
+  int line_;
+  const std::string& text_;
+  std::string path_;
+};
+
+}  // namespace
+
+void apply_sets(SceneValue& scene, const SceneSource& source) {
+  for (std::size_t k = 0; k < source.sets.size(); ++k) Setter(source, k).apply(scene);
+}
+
+}  // namespace noether

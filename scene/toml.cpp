@@ -1,0 +1,185 @@
+#include "scene/toml.hpp"
+
+#include "engine/error.hpp"
+#include "engine/quantity.hpp"
+
+#include <fmt/format.h>
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+namespace noether {
+
+namespace {
+
+SceneValue converted(const toml::node& node, int line, const std::string& file);
+
+SceneValue converted_table(const toml::table& table, int line, const std::string& file) {
+  SceneValue result = SceneValue::table(line);
+  auto& entries = std::get<SceneValue::Table>(result.data);
+  for (const auto& [key, node] : table) {
+    const int at = static_cast<int>(key.source().begin.line);
+    entries.emplace_back(std::string(key.str()), converted(node, at == 0 ? line : at, file));
+  }
+  // The parser sorts by name; readers of messages expect the order of the file.
+  std::stable_sort(entries.begin(), entries.end(),
+                   [](const auto& a, const auto& b) { return a.second.line < b.second.line; });
+  return result;
+}
+
+SceneValue converted(const toml::node& node, int line, const std::string& file) {
+  if (const auto* table = node.as_table()) return converted_table(*table, line, file);
+  if (const auto* array = node.as_array()) {
+    SceneValue::Array list;
+    for (const toml::node& element : *array) {
+      const int at = static_cast<int>(element.source().begin.line);
+      list.push_back(converted(element, at == 0 ? line : at, file));
+    }
+    return SceneValue::of(std::move(list), line);
+  }
+  if (const auto* text = node.as_string()) return SceneValue::of(text->get(), line);
+  if (const auto* integer = node.as_integer()) return SceneValue::of(std::int64_t{integer->get()}, line);
+  if (const auto* number = node.as_floating_point()) return SceneValue::of(number->get(), line);
+  if (const auto* flag = node.as_boolean()) return SceneValue::of(flag->get(), line);
+  throw SceneError("dates and times of day have no place in a scene; write a time as text, such as \"100 day\"",
+                   {.file = file, .line = line});
+}
+
+/// "Error while parsing key-value pair: expected a comment ..." without the part that says nothing.
+std::string plain(std::string_view description) {
+  constexpr std::string_view lead = "Error while parsing ";
+  std::string text(description);
+  if (description.substr(0, lead.size()) == lead) {
+    const std::size_t colon = text.find(": ");
+    if (colon != std::string::npos) {
+      const std::string where = text.substr(lead.size(), colon - lead.size());
+      text = text.substr(colon + 2) + " (in a " + where + ")";
+    }
+  }
+  std::string line;
+  for (const char c : text) line += c == '\n' || c == '\r' ? ' ' : c;
+  if (!line.empty()) line[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(line[0])));
+  return line;
+}
+
+std::string quoted(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      out += '\\';
+      out += c;
+    } else if (c == '\n') {
+      out += "\\n";
+    } else if (c == '\t') {
+      out += "\\t";
+    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
+      out += fmt::format("\\u{:04x}", static_cast<unsigned char>(c));
+    } else {
+      out += c;
+    }
+  }
+  return out + "\"";
+}
+
+bool is_bare(std::string_view key) {
+  return !key.empty() && std::all_of(key.begin(), key.end(), [](unsigned char c) {
+    return (c < 0x80 && std::isalnum(c) != 0) || c == '_' || c == '-';
+  });
+}
+
+std::string key_text(std::string_view key) { return is_bare(key) ? std::string(key) : quoted(key); }
+
+void relabel(SceneValue& value, int line) {
+  value.line = line;
+  if (auto* list = value.get<SceneValue::Array>()) {
+    for (SceneValue& element : *list) relabel(element, line);
+  } else if (auto* table = value.get<SceneValue::Table>()) {
+    for (auto& [key, entry] : *table) relabel(entry, line);
+  }
+}
+
+/// A double that reads back as a double: "100" would become an integer.
+std::string number_text(double x) {
+  const std::string text = format_number(x);
+  const bool shows = text.find_first_of(".en") != std::string::npos;
+  return shows ? text : text + ".0";
+}
+
+void print_table(std::string& out, const SceneValue& table, const std::string& path) {
+  const auto& entries = std::get<SceneValue::Table>(table.data);
+  for (const auto& [key, value] : entries) {
+    if (value.is_table() || value.is_table_list()) continue;
+    out += fmt::format("{} = {}\n", key_text(key), to_text(value));
+  }
+  for (const auto& [key, value] : entries) {
+    const std::string name = path.empty() ? key_text(key) : path + "." + key_text(key);
+    if (value.is_table()) {
+      out += fmt::format("\n[{}]\n", name);
+      print_table(out, value, name);
+    } else if (value.is_table_list()) {
+      for (const SceneValue& element : std::get<SceneValue::Array>(value.data)) {
+        out += fmt::format("\n[[{}]]\n", name);
+        print_table(out, element, name);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+SceneValue parse_toml(std::string_view text, const std::string& file) {
+  try {
+    return converted_table(toml::parse(text), 1, file);
+  } catch (const toml::parse_error& error) {
+    throw SceneError("this is not TOML: " + plain(error.description()),
+                     {.file = file, .line = static_cast<int>(error.source().begin.line)});
+  }
+}
+
+std::optional<SceneValue> parse_toml_value(std::string_view text, int line) {
+  try {
+    const toml::table document = toml::parse("value = " + std::string(text));
+    const toml::node* node = document.get("value");
+    if (node == nullptr || document.size() != 1) return {};
+    const std::string none;
+    SceneValue value = converted(*node, line, none);
+    relabel(value, line);
+    return value;
+  } catch (const toml::parse_error&) {
+    return {};
+  } catch (const SceneError&) {  // a date
+    return {};
+  }
+}
+
+std::string print_toml(const SceneValue& table) {
+  std::string out;
+  print_table(out, table, "");
+  return out;
+}
+
+std::string_view kind_of(const SceneValue& value) {
+  constexpr std::string_view words[] = {"true or false", "a whole number", "a number", "a text", "a list", "a table"};
+  return words[value.data.index()];
+}
+
+std::string to_text(const SceneValue& value) {
+  if (const bool* flag = value.get<bool>()) return *flag ? "true" : "false";
+  if (const auto* integer = value.get<std::int64_t>()) return fmt::format("{}", *integer);
+  if (const double* number = value.get<double>()) return number_text(*number);
+  if (const std::string* text = value.get<std::string>()) return quoted(*text);
+  std::string out;
+  if (const auto* list = value.get<SceneValue::Array>()) {
+    for (const SceneValue& element : *list) out += (out.empty() ? "" : ", ") + to_text(element);
+    return "[" + out + "]";
+  }
+  for (const auto& [key, entry] : std::get<SceneValue::Table>(value.data)) {
+    out += (out.empty() ? "" : ", ") + key_text(key) + " = " + to_text(entry);
+  }
+  return "{" + out + "}";
+}
+
+}  // namespace noether

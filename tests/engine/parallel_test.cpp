@@ -1,0 +1,77 @@
+/// Loops in fixed blocks: every particle once, sums in block order, whatever the number of threads.
+
+#include "engine/parallel.hpp"
+
+#include "engine/error.hpp"
+#include "tests/support/catch.hpp"
+
+#include <vector>
+
+namespace noether {
+namespace {
+
+struct Threads {
+  explicit Threads(int n) : before(thread_count()) { set_thread_count(n); }
+  ~Threads() { set_thread_count(before); }
+  int before;
+};
+
+double harmonic(Index n) {
+  return reduce(n, 0.0, [](Index begin, Index end) {
+    double sum = 0;
+    for (Index i = begin; i < end; ++i) sum += 1.0 / static_cast<double>(i + 1);
+    return sum;
+  });
+}
+
+/// The same sum by hand: blocks of 64, added in order.
+double harmonic_in_blocks(Index n) {
+  double total = 0;
+  for (Index begin = 0; begin < n; begin += block_size) {
+    double sum = 0;
+    for (Index i = begin; i < std::min(n, begin + block_size); ++i) sum += 1.0 / static_cast<double>(i + 1);
+    total += sum;
+  }
+  return total;
+}
+
+}  // namespace
+
+TEST_CASE("every index is visited once, in blocks of a fixed size", "[parallel]") {
+  for (const int threads : {1, 2, 3, 8}) {
+    const Threads use(threads);
+    for (const Index n : {0, 1, 63, 64, 65, 255, 256, 1000}) {
+      CAPTURE(threads, n);
+      std::vector<int> visits(static_cast<std::size_t>(n), 0);
+      std::vector<int> whole(static_cast<std::size_t>(n), 1);
+      for_blocks(n, [&](Index begin, Index end) {
+        for (Index i = begin; i < end; ++i) visits[static_cast<std::size_t>(i)] += begin % block_size == 0 ? 1 : 100;
+      });
+      CHECK(visits == whole);
+    }
+  }
+}
+
+TEST_CASE("a sum is that of its blocks in order, for any number of threads", "[parallel]") {
+  for (const Index n : {0, 1, 64, 65, 300, 5000}) {
+    const double expected = harmonic_in_blocks(n);
+    for (const int threads : {1, 2, 3, 8}) {
+      const Threads use(threads);
+      CAPTURE(threads, n);
+      CHECK(harmonic(n) == expected);
+    }
+  }
+}
+
+TEST_CASE("a sum in another order has other bits, so the equality above means something", "[parallel]") {
+  double backwards = 0;
+  for (Index i = 5000; i > 0; --i) backwards += 1.0 / static_cast<double>(i);
+  CHECK(backwards != harmonic(5000));
+}
+
+TEST_CASE("fewer than one thread are refused", "[parallel]") {
+  CHECK_THROWS_WITH(set_thread_count(0), "0 threads were asked for; at least 1 is needed");
+  CHECK_THROWS_WITH(set_thread_count(-3), "-3 threads were asked for; at least 1 is needed");
+}
+
+}  // namespace noether

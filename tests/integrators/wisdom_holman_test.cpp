@@ -1,0 +1,364 @@
+/// The Wisdom-Holman splitting against closed forms and against other splittings of the same Hamiltonian.
+
+#include "integrators/wisdom_holman.hpp"
+
+#include "engine/simulation.hpp"
+#include "forces/external_fields.hpp"
+#include "forces/oblateness.hpp"
+#include "integrators/composition.hpp"
+#include "integrators/schemes.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/planets.hpp"
+
+namespace noether {
+namespace {
+
+constexpr double G = test::outer_G;
+constexpr Coordinates both[] = {Coordinates::jacobi, Coordinates::democratic};
+
+using Ranks = std::vector<std::int64_t>;
+
+template <class Real = double> WisdomHolman<Real> splitting(Coordinates coordinates = Coordinates::jacobi) {
+  return WisdomHolman<Real>({.G = G, .coordinates = coordinates});
+}
+
+/// Largest |x_a - x_b| / |x_a| and |v_a - v_b| / |v_a| over the particles that both have.
+template <class Real> double difference(const ParticleSystem<Real>& a, const ParticleSystem<Real>& b) {
+  double worst = 0;
+  for (Index i = 0; i < std::min(a.size(), b.size()); ++i) {
+    const Vec3<Real> dx = a.positions()[i] - b.positions()[i], dv = a.velocities()[i] - b.velocities()[i];
+    worst = std::max(worst, std::sqrt(static_cast<double>(norm2(dx) / norm2(a.positions()[i]))));
+    worst = std::max(worst, std::sqrt(static_cast<double>(norm2(dv) / norm2(a.velocities()[i]))));
+  }
+  return worst;
+}
+
+template <class Real, class H>
+ParticleSystem<Real> run(ParticleSystem<Real> particles, H hamiltonian, const Scheme& scheme, double dt,
+                         std::int64_t steps) {
+  Simulation<Real> simulation(std::move(particles), compose(std::move(hamiltonian), scheme), dt);
+  REQUIRE(simulation.run(steps).kind == Outcome::Kind::completed);
+  return simulation.particles();
+}
+
+/// The outer planets in the order Sun, Neptune, Jupiter, Uranus, Saturn.
+ParticleSystem<double> scrambled() {
+  const auto planets = test::outer_planets();
+  ParticleSystem<double> s(unit_system("solar"));
+  for (const Index i : {0, 4, 1, 3, 2}) {
+    s.add(planets.name(i), planets.masses()[i], planets.positions()[i], planets.velocities()[i]);
+  }
+  return s;
+}
+
+/// The outer planets with a comet that falls in from outside on a hyperbola, and a tracer on another one.
+ParticleSystem<Quad> with_visitors() {
+  auto s = test::outer_planets();
+  s.add("Visitor", 1e-6, {14, 6, 5}, {-0.011, 0.002, -0.003});
+  s.add("Dust", 0, {3, 0.5, -1}, {-0.001, 0.0105, 0.002});
+  s.add("Ice", 0, {-30, 20, 10}, {0.007, -0.004, -0.001});
+  return s.as<Quad>();
+}
+
+/// Logarithm to base 2 of how much nearer two methods of order 8 come to each other with half the step.
+template <class H1, class H2> double common_order(const ParticleSystem<Quad>& start, const H1& one, const H2& other) {
+  std::array<double, 2> errors{};
+  for (const int k : {0, 1}) {
+    const double dt = 40.0 / (1 << k);
+    const std::int64_t n = 16 << k;
+    errors[static_cast<std::size_t>(k)] =
+        difference(run(start, one, schemes::yoshida_8, dt, n), run(start, other, schemes::yoshida_8, dt, n));
+  }
+  CAPTURE(errors[0], errors[1]);
+  CHECK(errors[1] > 1e-28);
+  return std::log2(errors[0] / errors[1]);
+}
+
+/// Two bodies of 1 and 1/4 about their centre of mass, which moves; semi-major axis 2, eccentricity 0.7, at eccentric
+/// anomaly E.
+struct TwoBodies {
+  Quad a = 2, e = 0.7, total = 1.25, mu = Quad(G) * total;
+  Quad motion() const { return sqrt(mu / (a * a * a)); }
+  ParticleSystem<Quad> at(const Quad& E, const Quad& t) const {
+    const Quad root = sqrt(Quad(1) - e * e), rate = motion() / (Quad(1) - e * cos(E));
+    const Vec3<Quad> x(a * (cos(E) - e), a * root * sin(E), Quad(0)),
+        v(-a * rate * sin(E), a * rate * root * cos(E), Quad(0));
+    const Vec3<Quad> drift(Quad(0.001), Quad(-0.002), Quad(0.003));
+    const Quad light = Quad(0.25) / total, heavy = Quad(1) / total;
+    ParticleSystem<Quad> s;
+    s.add("heavy", 1, t * drift - light * x, drift - light * v);
+    s.add("light", 0.25, t * drift + heavy * x, drift + heavy * v);
+    return s;
+  }
+  /// Eccentric anomaly at time t since the pericentre, by Newton's method from above.
+  Quad anomaly(const Quad& t) const {
+    const Quad M = motion() * t;
+    Quad E = M + e;
+    for (int k = 0; k < 60; ++k) E -= (E - e * sin(E) - M) / (Quad(1) - e * cos(E));
+    return E;
+  }
+};
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("working coordinates lead back to the inertial ones, to rounding", "[wisdom_holman]", double, Quad) {
+  const auto start = test::planets_with_tracers(20).as<TestType>();
+  for (const Coordinates coordinates : both) {
+    auto hamiltonian = splitting<TestType>(coordinates);
+    auto s = start;
+    hamiltonian.bind(s);
+    hamiltonian.open(s);
+    CHECK(s.phase().coordinates == coordinates);
+    CHECK_FALSE(test::same_bits(s, start));
+    hamiltonian.close(s);
+    CHECK(s.phase().coordinates == Coordinates::inertial);
+    // The largest distances, 40 au and 0.02 au/day, are what additions round by.
+    const TestType unit = std::numeric_limits<TestType>::epsilon() / TestType(2);
+    for (Index i = 0; i < s.size(); ++i) {
+      const Vec3<TestType> dx = std::as_const(s).positions()[i] - start.positions()[i];
+      const Vec3<TestType> dv = std::as_const(s).velocities()[i] - start.velocities()[i];
+      CHECK(norm2(dx) <= TestType(64 * 1600) * unit * unit);
+      CHECK(norm2(dv) <= TestType(64 * 4e-4) * unit * unit);
+    }
+  }
+}
+
+TEST_CASE("the center of mass is row 0 of the working coordinates and moves straight", "[wisdom_holman]") {
+  for (const Coordinates coordinates : both) {
+    auto s = scrambled();
+    auto composition = compose(splitting(coordinates), schemes::verlet);
+    s.clock() = Clock<double>::fixed(0, 40);
+    composition.bind(s);
+    ParticleSystem<double> opened = s;
+    composition.hamiltonian().open(opened);
+    Vec3<Quad> x = Vec3<Quad>::Zero(), v = Vec3<Quad>::Zero();
+    Quad total = 0;
+    for (Index i = 0; i < s.size(); ++i) {
+      const Quad m = s.masses()[i];
+      for (int k = 0; k < 3; ++k) {
+        x[k] += m * Quad(std::as_const(s).positions()[i][k]);
+        v[k] += m * Quad(std::as_const(s).velocities()[i][k]);
+      }
+      total += m;
+    }
+    for (int k = 0; k < 3; ++k) {
+      CHECK(std::abs(std::as_const(opened).positions()[0][k] - static_cast<double>(x[k] / total)) < 0x1p-53);
+      CHECK(std::abs(std::as_const(opened).velocities()[0][k] - static_cast<double>(v[k] / total)) < 0x1p-60);
+    }
+    composition.advance(s, {.steps = 100});
+    CHECK(std::as_const(s).velocities()[0] == std::as_const(opened).velocities()[0]);
+  }
+}
+
+TEST_CASE("Jacobi coordinates take the bodies by semi-major axis, however they are given", "[wisdom_holman]") {
+  auto s = scrambled();
+  auto hamiltonian = splitting();
+  hamiltonian.bind(s);
+  CHECK(hamiltonian.order() == Ranks{0, 2, 4, 3, 1});
+
+  auto visited = with_visitors().as<double>();
+  hamiltonian.bind(visited);
+  // Unbound bodies after bound ones, tracers after massive bodies.
+  CHECK(hamiltonian.order() == Ranks{0, 1, 2, 3, 4, 5, 6, 7, 8});
+}
+
+TEST_CASE("in what order the bodies are given matters to rounding only", "[wisdom_holman]") {
+  auto ordered = test::outer_planets();
+  ordered.remove(5);
+  const auto a = run(ordered, splitting(), schemes::aba_10_6_4, 100.0, 200);
+  const auto b = run(scrambled(), splitting(), schemes::aba_10_6_4, 100.0, 200);
+  const Index place[] = {0, 2, 4, 3, 1};
+  for (Index i = 0; i < 5; ++i) {
+    const Vec3<double> d = a.positions()[i] - b.positions()[place[i]];
+    CHECK(std::sqrt(norm2(d) / norm2(a.positions()[i])) < 1e-12);
+  }
+}
+
+TEST_CASE("the order of Jacobi coordinates is state: it is saved and comes back", "[wisdom_holman]") {
+  auto s = scrambled();
+  auto first = splitting();
+  first.bind(s);
+  SavedState saved;
+  first.save(saved, "");
+  // The same particles later, Jupiter now outermost.
+  s.positions().set(2, {300, 0, 0});
+  s.velocities().set(2, {0, 0.0005, 0});
+  auto second = splitting();
+  second.bind(s);
+  CHECK(second.order() == Ranks{0, 4, 3, 1, 2});
+  second.load(saved, "");
+  CHECK(second.order() == Ranks{0, 2, 4, 3, 1});
+}
+
+TEST_CASE("massless primaries and tracers before massive bodies are refused", "[wisdom_holman]") {
+  auto massless = test::outer_planets();
+  massless.masses()[0] = 0;
+  CHECK_THROWS_WITH(Simulation(massless, compose(splitting(), schemes::verlet), 40.0),
+                    "'Sun' comes first, so it is the primary of wisdom_holman, but its mass is 0; put the most massive "
+                    "body first");
+  auto mixed = test::outer_planets();
+  mixed.masses()[2] = 0;
+  CHECK_THROWS_WITH(Simulation(mixed, compose(splitting(), schemes::verlet), 40.0),
+                    "'Uranus' has mass but stands after the tracer 'Saturn'; put tracers after all massive bodies");
+  auto tracers = test::outer_planets();
+  for (Index i = 1; i < tracers.size(); ++i) tracers.masses()[i] = 0;
+  CHECK(Simulation(tracers, compose(splitting(), schemes::verlet), 40.0).run(1).ok());
+}
+
+TEST_CASE("forces that depend on velocities are no part of a kick", "[wisdom_holman]") {
+  struct Headwind {
+    static ForceClaims claims() { return {.velocity_dependent = true}; }
+    void add_to(ForceSink<double>& out, const ParticleSystem<double>& s) const {
+      for (Index i = 0; i < s.size(); ++i) out.acceleration(i, -s.velocities()[i]);
+    }
+  };
+  CHECK_THROWS_WITH((WisdomHolman<double, Headwind>({.G = G}, Headwind{})),
+                    "a force depends on velocities, so kicks by it are no exact flow of wisdom_holman");
+}
+
+TEST_CASE("two bodies in Jacobi coordinates move on their exact orbit, whatever the step", "[wisdom_holman]") {
+  const TwoBodies two;
+  const double period = static_cast<double>(Quad(2) * 3.14159265358979323846264338327950288_q / two.motion());
+  for (const double dt : {0.01, 0.37, 1.0, 7.3, -0.6}) {
+    for (const char* name : {"verlet", "verlet_aba", "aba_10_6_4"}) {
+      const std::int64_t n = 12;
+      CAPTURE(dt, name);
+      const auto end = run(two.at(0, 0), WisdomHolman<Quad>({.G = G}), *schemes::find(name), dt * period, n);
+      const Quad t = Quad(n) * Quad(dt * period);
+      const auto exact = two.at(two.anomaly(t), t);
+      CHECK(difference(exact, end) < 1e-29);
+    }
+  }
+}
+
+TEST_CASE("a primary alone moves straight, and tracers about it on exact orbits", "[wisdom_holman]") {
+  ParticleSystem<double> alone;
+  alone.add("Sun", 1, {1, 2, 3}, {0.5, 0, -0.25});
+  const auto moved = run(alone, splitting(), schemes::verlet, 0.5, 8);
+  CHECK(moved.positions()[0] == Vec3<double>(3, 2, 2));
+
+  // A tracer is the second of two bodies whose mass has gone.
+  auto start = test::planets_with_tracers(1);
+  ParticleSystem<Quad> s;
+  s.add("Sun", 1, Vec3<Quad>::Zero(), Vec3<Quad>::Zero());
+  s.add("tracer", 0, {Quad(2), Quad(0), Quad(0)}, {Quad(0), sqrt(Quad(G) / Quad(2)), Quad(0)});
+  for (const Coordinates coordinates : both) {
+    const std::int64_t n = 10;
+    const double dt = 333;
+    const auto end = run(s, splitting<Quad>(coordinates), schemes::verlet, dt, n);
+    const Quad angle = sqrt(Quad(G) / Quad(8)) * Quad(n) * Quad(dt);
+    CHECK(abs(std::as_const(end).positions()[1][0] - Quad(2) * cos(angle)) < Quad(1e-29));
+    CHECK(abs(std::as_const(end).positions()[1][1] - Quad(2) * sin(angle)) < Quad(1e-29));
+  }
+}
+
+TEST_CASE("a tracer is the limit of a body whose mass goes to zero", "[wisdom_holman]") {
+  // Pluto is the outermost body, so that its place among the Jacobi coordinates does not change with its mass.
+  const auto final_state = [](Coordinates coordinates, double mass) {
+    auto s = test::outer_planets<Quad>();
+    s.masses()[5] = mass;
+    return run(s, splitting<Quad>(coordinates), schemes::verlet_aba, 100.0, 30);
+  };
+  for (const Coordinates coordinates : both) {
+    const auto tracer = final_state(coordinates, 0);
+    const double coarse = difference(tracer, final_state(coordinates, 1e-8));
+    const double fine = difference(tracer, final_state(coordinates, 1e-9));
+    CAPTURE(coarse, fine);
+    CHECK(fine > 1e-20);
+    CHECK(std::abs(std::log10(coarse / fine) - 1) < 1e-4);
+  }
+}
+
+TEST_CASE("tracers leave the massive bodies alone, bit for bit", "[wisdom_holman]") {
+  for (const Coordinates coordinates : both) {
+    const auto bare = run(test::outer_planets(), splitting(coordinates), schemes::verlet, 40.0, 50);
+    const auto followed = run(test::planets_with_tracers(20), splitting(coordinates), schemes::verlet, 40.0, 50);
+    for (Index i = 0; i < bare.size(); ++i) {
+      CHECK(bare.positions()[i] == followed.positions()[i]);
+      CHECK(bare.velocities()[i] == followed.velocities()[i]);
+    }
+  }
+}
+
+TEST_CASE("Jacobi, democratic and inertial splittings agree ever better, with the order of the scheme",
+          "[wisdom_holman]") {
+  // Planets, a massive visitor on a hyperbola, tracers bound and unbound.
+  const auto start = with_visitors();
+  const KineticPotential<Gravity, Quad> inertial(Gravity{.G = G});
+  CHECK(std::abs(common_order(start, splitting<Quad>(Coordinates::jacobi), inertial) - 8) < 0.4);
+  CHECK(std::abs(common_order(start, splitting<Quad>(Coordinates::democratic), inertial) - 8) < 0.4);
+  CHECK(std::abs(common_order(start, splitting<Quad>(), splitting<Quad>(Coordinates::democratic)) - 8) < 0.4);
+}
+
+TEST_CASE("other forces join the kicks in both coordinates, with the time of their stage", "[wisdom_holman]") {
+  const UniformField field{.acceleration = {2e-7, -1e-7, 3e-7}};
+  const OscillatingField tide{.acceleration = {1e-6, 2e-6, -1e-6}, .omega = 0.02};
+  const Oblateness flat{.J2 = 0.01, .J4 = -0.001, .radius = 0.5, .axis = {0.1, 0.3, 1}, .G = G};
+  const Sum forces(field, tide, flat);
+  using Forces = Sum<UniformField, OscillatingField, Oblateness>;
+  const auto start = with_visitors();
+  const KineticPotential<Sum<Gravity, Forces>, Quad> inertial(Sum(Gravity{.G = G}, forces));
+  for (const Coordinates coordinates : both) {
+    const WisdomHolman<Quad, Forces> split({.G = G, .coordinates = coordinates}, forces);
+    CHECK(std::abs(common_order(start, split, inertial) - 8) < 0.4);
+  }
+}
+
+TEST_CASE("a uniform field accelerates the center of mass as it does one body", "[wisdom_holman]") {
+  const double g = 1e-6, dt = 40;
+  const std::int64_t n = 50;
+  for (const Coordinates coordinates : both) {
+    const WisdomHolman<Quad, Sum<UniformField>> split({.G = G, .coordinates = coordinates},
+                                                      Sum(UniformField{.acceleration = {g, 0, 0}}));
+    const auto start = test::outer_planets<Quad>();
+    const auto end = run(start, split, schemes::verlet, dt, n);
+    Quad moved = 0, speed = 0, total = 0;
+    for (Index i = 0; i < end.size(); ++i) {
+      moved += end.masses()[i] * (end.positions()[i][0] - start.positions()[i][0]);
+      speed += start.masses()[i] * start.velocities()[i][0];
+      total += end.masses()[i];
+    }
+    const Quad t = Quad(n) * Quad(dt);
+    const Quad expected = t * speed / total + Quad(g) * t * t / Quad(2);
+    CHECK(abs(moved / total - expected) < Quad(1e-30));
+  }
+}
+
+TEST_CASE("energy and accelerations are those of inertial bodies", "[wisdom_holman]") {
+  const auto s = with_visitors();
+  KineticPotential<Gravity, Quad> inertial(Gravity{.G = G});
+  auto bound = s;
+  inertial.bind(bound);
+  VectorColumn<Quad> expected(s.size()), found(s.size());
+  inertial.accelerations(s, expected);
+  for (const Coordinates coordinates : both) {
+    auto split = splitting<Quad>(coordinates);
+    split.bind(bound);
+    CHECK(split.energy(s).total() == inertial.energy(s).total());
+    split.accelerations(s, found);
+    for (Index i = 0; i < s.size(); ++i) CHECK((std::as_const(found)[i] == std::as_const(expected)[i]));
+  }
+}
+
+TEST_CASE("a body in the primary ends the run by name", "[wisdom_holman]") {
+  auto s = test::outer_planets();
+  s.add("Sundiver", 0, s.positions()[0], s.velocities()[0]);
+  Simulation simulation(std::move(s), compose(splitting(Coordinates::democratic), schemes::verlet_aba), 40.0);
+  const Outcome outcome = simulation.run(10);
+  CHECK(to_text(outcome) == "solver_failure at step 1: the Kepler solver did not converge for Sundiver");
+  REQUIRE(outcome.particle.has_value());
+  CHECK(outcome.particle->name == "Sundiver");
+}
+
+TEST_CASE("claims of the splitting follow its coordinates and its forces", "[wisdom_holman]") {
+  const auto jacobi = splitting().claims(), democratic = splitting(Coordinates::democratic).claims();
+  CHECK(jacobi.inexact.empty());
+  CHECK(democratic.inexact == "B");
+  CHECK(jacobi.near_integrable);
+  CHECK(jacobi.keeps_momentum);
+  const WisdomHolman<double, Sum<OscillatingField>> driven({.G = G}, Sum(OscillatingField{}));
+  CHECK(driven.claims().time_dependent);
+  CHECK_FALSE(driven.claims().keeps_momentum);
+}
+
+}  // namespace noether

@@ -1,0 +1,169 @@
+// What stands in a file: summaries, checks, conversions.
+
+#include "io/inspect.hpp"
+
+#include "engine/quantity.hpp"
+#include "engine/version.hpp"
+#include "io/bodies.hpp"
+#include "io/digest.hpp"
+#include "tests/io/support.hpp"
+
+#include <sstream>
+
+using namespace noether;
+using test::error_of;
+using test::WritingRun;
+
+#if NOETHER_HDF5
+
+namespace {
+
+std::vector<std::string> lines_of(const std::filesystem::path& file) {
+  std::istringstream text(test::read_file(file));
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(text, line);) lines.push_back(line);
+  return lines;
+}
+
+}  // namespace
+
+TEST_CASE("info tells what a trajectory holds", "[inspect]") {
+  const test::TemporaryFolder folder;
+  WritingRun run(folder / "run.h5");
+  REQUIRE(run.simulation.run(33).ok());
+  run.writer->finish(Outcome{});
+  const io::FileInfo info = io::info(folder / "run.h5");
+  CHECK(info.kind == "trajectory");
+  CHECK(info.complete);
+  CHECK(info.last_step == 30);
+  CHECK(info.last_time == 30 * 40.0);
+  CHECK(info.time_unit == "day");
+  CHECK(info.particles == 6);
+  CHECK(info.frames == 7);
+  CHECK(info.version == version());
+  CHECK(info.commit == commit());
+  CHECK(info.simd == "base");
+  CHECK(info.units == "solar");
+  CHECK(info.scene_toml == "title = \"outer planets\"\n");
+  REQUIRE(info.monitors.size() == 2);
+  CHECK(info.monitors[1].name == "energy");
+  CHECK(info.monitors[1].samples == 12);
+  CHECK(info.monitors[1].quantities == std::vector<std::string>{"kinetic", "potential", "relative_error", "total"});
+}
+
+TEST_CASE("info tells what a checkpoint holds", "[inspect]") {
+  const test::TemporaryFolder folder;
+  WritingRun run(folder / "run.h5");
+  run.simulation.every(10, io::CheckpointWriter(folder / "checkpoint.h5", "title = \"x\"\n"));
+  REQUIRE(run.simulation.run(10).ok());
+  const io::FileInfo info = io::info(folder / "checkpoint.h5");
+  CHECK(info.kind == "checkpoint");
+  CHECK(info.complete);
+  CHECK(info.last_step == 10);
+  CHECK(info.last_time == 400);
+  CHECK(info.particles == 6);
+  CHECK(info.digest == io::digest(run.simulation.particles()));
+  CHECK(info.units == "solar");
+  CHECK(info.time_unit == "day");
+  CHECK(info.outcome.empty());
+  CHECK(info.version == version());
+}
+
+TEST_CASE("info refuses what is no file of noether", "[inspect][messages]") {
+  const test::TemporaryFolder folder;
+  const std::string file = (folder / "x.h5").string();
+  CHECK(error_of([&] { io::info(file); }) == file + ": there is no such file");
+  CHECK(error_of([&] { io::info(folder.path()); }) == folder.path().string() + ": this is no file");
+  test::write_file(file, "hello");
+  CHECK(error_of([&] { io::info(file); }).starts_with(file + ": cannot be opened as an HDF5 file"));
+  test::write_file(folder / "checkpoint.h5", "hello");
+  CHECK(error_of([&] { io::info(folder / "checkpoint.h5"); }) ==
+        (folder / "checkpoint.h5").string() +
+            ": damaged, or no checkpoint: the line 'sha256:...' at the end of its 5 bytes is missing");
+}
+
+TEST_CASE("verify finds nothing wrong with a good file, and names what is wrong with a bad one", "[inspect]") {
+  const test::TemporaryFolder folder;
+  {
+    WritingRun run(folder / "run.h5");
+    run.simulation.every(20, io::CheckpointWriter(folder / "checkpoint.h5"));
+    REQUIRE(run.simulation.run(60).ok());
+    run.writer->finish(Outcome{});
+  }
+  CHECK(io::verify(folder / "run.h5").damaged.empty());
+  CHECK(io::verify(folder / "checkpoint.h5").damaged.empty());
+  CHECK(io::verify(folder / "checkpoint.h5").kind == "checkpoint");
+  CHECK_THROWS_AS(io::verify(folder / "missing.h5"), FileError);
+
+  const std::string checkpoint = test::read_file(folder / "checkpoint.h5");
+  test::write_file(folder / "checkpoint.h5", checkpoint.substr(0, checkpoint.size() / 2));
+  CHECK(io::verify(folder / "checkpoint.h5").damaged.size() == 1);
+
+  const test::PythonResult damaged = test::run_python("damage.py", (folder / "run.h5").string());
+  if (damaged.status == 77) {
+    WARN("skipped: " << damaged.output);
+    return;
+  }
+  REQUIRE(damaged.status == 0);
+  CHECK(io::verify(folder / "run.h5").damaged ==
+        std::vector<std::string>{"'/particles/system/velocity/value' has 12 rows, others 11",
+                                 "'/particles/system/position/step' has 13 rows, others 11",
+                                 "'/particles/system/position/time' has 13 rows, others 11",
+                                 "frame 4 at step 20 is not finite", "frames: step 5 follows step 35",
+                                 "'/noether/monitors/energy/total' has 20 rows, its steps 21"});
+}
+
+TEST_CASE("a trajectory converts to extended XYZ and to CSV, and the numbers read back", "[inspect]") {
+  const test::TemporaryFolder folder;
+  WritingRun run(folder / "run.h5");
+  REQUIRE(run.simulation.run(10).ok());
+  run.writer->finish(Outcome{});
+  const ParticleSystem<double>& last = run.simulation.particles();
+
+  io::convert(folder / "run.h5", folder / "run.csv");
+  const std::vector<std::string> csv = lines_of(folder / "run.csv");
+  REQUIRE(csv.size() == 1 + 3 * 6);
+  CHECK(csv[0] == "step,time [day],id,name,x [au],y [au],z [au],vx [au/day],vy [au/day],vz [au/day]");
+  std::istringstream row(csv[14]);  // the last frame's Jupiter
+  std::vector<std::string> fields;
+  for (std::string field; std::getline(row, field, ',');) fields.push_back(field);
+  REQUIRE(fields.size() == 10);
+  CHECK(fields[0] == "10");
+  CHECK(std::stod(fields[1]) == 400);
+  CHECK(fields[2] == "1");
+  CHECK(fields[3] == "Jupiter");
+  for (std::size_t k = 0; k < 3; ++k) {
+    CHECK(std::stod(fields[4 + k]) == last.positions()[1][static_cast<Index>(k)]);
+    CHECK(std::stod(fields[7 + k]) == last.velocities()[1][static_cast<Index>(k)]);
+  }
+
+  io::convert(folder / "run.h5", folder / "run.xyz");
+  const std::vector<std::string> xyz = lines_of(folder / "run.xyz");
+  REQUIRE(xyz.size() == 3 * 8);
+  CHECK(xyz[8] == "6");
+  CHECK(xyz[9] == "Properties=species:S:1:pos:R:3:vel:R:3 Time=200 Step=5 pbc=\"F F F\"");
+  std::istringstream jupiter(xyz[16 + 3]);
+  std::string species;
+  double x = 0;
+  jupiter >> species >> x;
+  CHECK(species == "Jupiter");
+  CHECK(x == last.positions()[1][0]);
+}
+
+TEST_CASE("a conversion that cannot be is refused", "[inspect][messages]") {
+  const test::TemporaryFolder folder;
+  CHECK(error_of([&] { io::convert(folder / "run.h5", "out.xyzz"); }) ==
+        "cannot convert to 'out.xyzz': unknown extension '.xyzz'; did you mean '.xyz'?");
+  CHECK(error_of([&] { io::convert(folder / "run.h5", "out.pdb"); }) ==
+        "cannot convert to 'out.pdb': unknown extension '.pdb'; known are: .xyz, .csv");
+  CHECK(error_of([&] { io::convert(folder / "run.h5", folder / "out.csv"); }) ==
+        (folder / "run.h5").string() + ": there is no such file");
+  {
+    WritingRun run(folder / "run.h5");
+    REQUIRE(run.simulation.run(0).ok());
+  }
+  CHECK(error_of([&] { io::convert(folder / "run.h5", folder / "none/out.csv"); }) ==
+        (folder / "none/out.csv").string() + ": cannot be written; is the folder there, and the disk not full?");
+}
+
+#endif

@@ -1,0 +1,105 @@
+#pragma once
+/// What the tests of files share: a folder that goes away, text files, Python, a run that writes.
+
+#include "engine/monitors.hpp"
+#include "engine/simulation.hpp"
+#include "forces/gravity.hpp"
+#include "integrators/composition.hpp"
+#include "integrators/kinetic_potential.hpp"
+#include "integrators/schemes.hpp"
+#include "io/checkpoint.hpp"
+#include "io/trajectory.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/planets.hpp"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+namespace noether::test {
+
+/// A new folder for one test, removed with everything in it.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    static std::atomic<int> count{0};
+    path_ = std::filesystem::temp_directory_path() /
+            ("noether-io-" + std::to_string(::getpid()) + "-" + std::to_string(count++));
+    std::filesystem::create_directories(path_);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline void write_file(const std::filesystem::path& file, const std::string& content) {
+  std::ofstream(file, std::ios::binary) << content;
+}
+
+inline std::string read_file(const std::filesystem::path& file) {
+  std::ifstream source(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(source), {}};
+}
+
+/// What a call throws, in one line; "" if nothing.
+template <class Call> std::string error_of(const Call& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+struct PythonResult {
+  int status = -1;
+  std::string output;  ///< what the script printed
+};
+
+/// Runs a script of tests/io; its status is 77 where a module it needs is not installed.
+inline PythonResult run_python(const std::string& script, const std::string& arguments) {
+  PythonResult result;
+  const std::string python = NOETHER_PYTHON;
+  if (python.empty()) return {77, "there is no Python with h5py"};
+  const std::string command = python + " -B " + NOETHER_SOURCE_DIR + "/tests/io/" + script + " " + arguments + " 2>&1";
+  std::FILE* pipe = ::popen(command.c_str(), "r");
+  if (pipe == nullptr) return result;
+  std::array<char, 4096> buffer{};
+  for (std::size_t got; (got = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) {
+    result.output.append(buffer.data(), got);
+  }
+  const int status = ::pclose(pipe);
+  result.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return result;
+}
+
+/// The outer planets under Verlet, steps of 40 days, writing frames every 5 steps and the energy every 3.
+struct WritingRun {
+  explicit WritingRun(const std::filesystem::path& file, ParticleSystem<double> particles = outer_planets())
+      : simulation(std::move(particles), compose(KineticPotential(Gravity{.G = outer_G}), schemes::verlet), 40.0),
+        energy(&simulation.every(3, Energy{})),
+        angular(&simulation.every(10, AngularMomentum{})),
+        writer(&simulation.every(5, io::TrajectoryWriter(file, {.scene_toml = "title = \"outer planets\"\n"}))) {}
+
+  Simulation<double> simulation;
+  Energy* energy;
+  AngularMomentum* angular;
+  io::TrajectoryWriter* writer;
+};
+
+}  // namespace noether::test
