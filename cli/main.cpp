@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -56,9 +57,6 @@ std::vector<std::string> command_names(const CLI::App& app) {
 /// What the first argument nobody knows may have meant.
 std::string unknown_argument(const CLI::App& app, const std::string& argument) {
   const auto used = app.get_subcommands();
-  if (used.empty() && !argument.empty() && argument[0] != '-') {
-    return fmt::format("unknown command '{}'{}", argument, noether::did_you_mean(argument, command_names(app)));
-  }
   const CLI::App& command = used.empty() ? app : *used.front();
   const std::string of = used.empty() ? "" : " of '" + command.get_name() + "'";
   if (argument[0] != '-') return fmt::format("unexpected argument '{}'{}", argument, of);
@@ -71,6 +69,12 @@ std::string unknown_argument(const CLI::App& app, const std::string& argument) {
 }
 
 int parse(CLI::App& app, int argc, char** argv, int& exit_code, bool json) {
+  const std::string first = argc > 1 ? argv[1] : "";
+  const std::vector<std::string> commands = command_names(app);
+  if (!first.empty() && first[0] != '-' && std::find(commands.begin(), commands.end(), first) == commands.end()) {
+    const std::string message = fmt::format("unknown command '{}'{}", first, noether::did_you_mean(first, commands));
+    return complain({}, message, message, 2, json);
+  }
   try {
     app.parse(argc, argv);
     return exit_code;
@@ -96,6 +100,7 @@ int parse(CLI::App& app, int argc, char** argv, int& exit_code, bool json) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error of the write, and told as one
   const bool json = std::any_of(argv + 1, argv + argc, [](const char* one) { return std::string(one) == "--json"; });
   try {
     CLI::App app("Long, honest integrations of mechanical systems", "noether");

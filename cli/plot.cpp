@@ -5,8 +5,8 @@
 #include "cli/plot_script.hpp"
 #include "engine/error.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -75,7 +75,8 @@ void run_gnuplot(const std::filesystem::path& script, const std::filesystem::pat
   }
   if (failed != 0) throw Error(fmt::format("gnuplot could not be started: {}", std::strerror(failed)));
   int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {}
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
   if (status != 0) throw Error("gnuplot could not draw the picture: " + first_line(log));
 }
 
@@ -83,7 +84,8 @@ PictureFormat format_of(const std::filesystem::path& picture) {
   const std::string ending = picture.extension().string();
   if (ending == ".svg") return PictureFormat::svg;
   if (ending == ".png") return PictureFormat::png;
-  throw Error(fmt::format("a picture '{}' is of no known format; give a name that ends in .svg or .png", picture.string()));
+  throw Error(
+      fmt::format("a picture '{}' is of no known format; give a name that ends in .svg or .png", picture.string()));
 }
 
 void plot(const std::filesystem::path& file, std::filesystem::path picture) {

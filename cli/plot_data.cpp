@@ -18,8 +18,8 @@ namespace {
 
 constexpr std::size_t most_path_points = 20'000;
 constexpr std::size_t most_samples = 2'000;
-/// Frames are joined by lines where the path turns by less than this between two of them [rad].
-constexpr double smooth_turn = 0.5;
+/// Frames are joined where the path turns by less than this between two of them [rad].
+constexpr double smooth_turn = 0.4;
 /// Inner bodies get a picture of their own where they are this much smaller than the outermost.
 constexpr double scale_gap = 8;
 
@@ -59,29 +59,53 @@ std::string text_at(const SceneValue& scene, const std::vector<std::string_view>
   return text != nullptr ? *text : to_text(*value);
 }
 
-/// Positions of one body in all frames, relative to the primary if there is one.
-std::vector<PlotPoint> track(const io::Frames& all, std::size_t body, bool relative) {
-  std::vector<PlotPoint> points;
+/// What one body does in all frames, relative to the primary if there is one.
+struct Track {
+  std::vector<PlotPoint> x, v;
+  std::vector<double> time;
+};
+
+Track track_of(const io::Frames& all, std::size_t body, bool relative) {
+  Track track;
+  const auto in_plane = [&](const std::vector<double>& rows) {
+    return PlotPoint{rows[3 * body] - (relative ? rows[0] : 0), rows[3 * body + 1] - (relative ? rows[1] : 0)};
+  };
   for (const io::Frame& frame : all.frames) {
-    const double* x = frame.positions.data();
-    const double* origin = relative ? x : nullptr;
-    points.push_back({x[3 * body] - (origin ? origin[0] : 0), x[3 * body + 1] - (origin ? origin[1] : 0)});
+    track.x.push_back(in_plane(frame.positions));
+    track.v.push_back(in_plane(frame.velocities));
+    track.time.push_back(frame.time);
   }
-  return points;
+  return track;
 }
 
-/// Whether frames are so dense that straight lines between them look like the path.
-bool is_smooth(const std::vector<PlotPoint>& points) {
-  std::vector<double> turns;
-  for (std::size_t k = 2; k < points.size(); ++k) {
-    const double ax = points[k - 1].x - points[k - 2].x, ay = points[k - 1].y - points[k - 2].y;
-    const double bx = points[k].x - points[k - 1].x, by = points[k].y - points[k - 1].y;
-    turns.push_back(std::abs(std::atan2(ax * by - ay * bx, ax * bx + ay * by)));
+/// Whether frames are dense enough to join them: from one to the next the path turns little, and the body comes as far
+/// as its velocity says (a body seen once in many periods does not).
+bool is_dense(const Track& track) {
+  std::size_t rough = 0;
+  for (std::size_t k = 1; k < track.x.size(); ++k) {
+    const double time = track.time[k] - track.time[k - 1];
+    const double ax = track.v[k - 1].x * time, ay = track.v[k - 1].y * time;
+    const double bx = track.x[k].x - track.x[k - 1].x, by = track.x[k].y - track.x[k - 1].y;
+    const double turn = std::abs(std::atan2(ax * by - ay * bx, ax * bx + ay * by));
+    if (turn > smooth_turn || std::hypot(bx, by) < 0.7 * std::hypot(ax, ay)) ++rough;
   }
-  if (turns.empty()) return false;
-  const auto high = turns.begin() + static_cast<std::ptrdiff_t>(turns.size() * 9 / 10);
-  std::nth_element(turns.begin(), high, turns.end());
-  return *high < smooth_turn;
+  return track.x.size() > 2 && 10 * rough < track.x.size();
+}
+
+/// The path through all frames: between two of them the cubic that meets positions and velocities.
+std::vector<PlotPoint> path_through(const Track& track) {
+  const std::size_t frames = track.x.size(), pieces = std::clamp<std::size_t>(most_path_points / frames, 1, 12);
+  std::vector<PlotPoint> points = {track.x.front()};
+  for (std::size_t k = 1; k < frames; ++k) {
+    const double h = track.time[k] - track.time[k - 1];
+    const PlotPoint &a = track.x[k - 1], &b = track.x[k], &va = track.v[k - 1], &vb = track.v[k];
+    for (std::size_t j = 1; j <= pieces; ++j) {
+      const double u = static_cast<double>(j) / static_cast<double>(pieces), w = 1 - u;
+      const double fa = w * w * (1 + 2 * u), fb = u * u * (1 + 2 * w), ga = h * u * w * w, gb = -h * u * u * w;
+      points.push_back({fa * a.x + fb * b.x + ga * va.x + gb * vb.x, fa * a.y + fb * b.y + ga * va.y + gb * vb.y});
+    }
+  }
+  return points;
 }
 
 std::vector<PlotPoint> thinned(const std::vector<PlotPoint>& points, std::size_t most) {
@@ -117,32 +141,71 @@ double constant_of_gravitation(const io::Frames& all, const SceneValue& scene) {
   return unit_system(all.units).G;
 }
 
-/// Center and width of the square that holds every path.
-void frame_orbits(PlotOrbits& picture, bool centered) {
-  double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+/// The corners of the smallest picture that holds every path.
+void fit(PlotOrbits& picture) {
+  picture.low = {INFINITY, INFINITY}, picture.high = {-INFINITY, -INFINITY};
   for (const PlotOrbit& orbit : picture.orbits) {
     for (const auto* points : {&orbit.path, &orbit.samples}) {
       for (const PlotPoint& p : *points) {
-        low[0] = std::min(low[0], p.x), high[0] = std::max(high[0], p.x);
-        low[1] = std::min(low[1], p.y), high[1] = std::max(high[1], p.y);
+        picture.low = {std::min(picture.low.x, p.x), std::min(picture.low.y, p.y)};
+        picture.high = {std::max(picture.high.x, p.x), std::max(picture.high.y, p.y)};
       }
     }
   }
-  if (!(high[0] >= low[0])) return;
-  double half = std::max(high[0] - low[0], high[1] - low[1]) / 2;
-  picture.center = {(low[0] + high[0]) / 2, (low[1] + high[1]) / 2};
-  if (centered) {
-    picture.center = {};
-    half = std::max({-low[0], high[0], -low[1], high[1]});
+  if (!(picture.low.x <= picture.high.x)) picture.low = {-1, -1}, picture.high = {1, 1};
+}
+
+/// Makes the picture a square with some air; `centered` about the origin.
+void make_square(PlotOrbits& picture, bool centered) {
+  PlotPoint& low = picture.low;
+  PlotPoint& high = picture.high;
+  const PlotPoint center = centered ? PlotPoint{} : PlotPoint{(low.x + high.x) / 2, (low.y + high.y) / 2};
+  double half = 1.08 * std::max({high.x - center.x, center.x - low.x, high.y - center.y, center.y - low.y});
+  if (!(half > 0)) half = 1;
+  low = {center.x - half, center.y - half};
+  high = {center.x + half, center.y + half};
+}
+
+/// Where every body stays on one line: x against time.
+PlotOrbits against_time(const io::Frames& all, const TimeUnit& unit) {
+  PlotOrbits picture;
+  picture.title = "Positions";
+  picture.x_label = with_unit("time", unit.name);
+  picture.y_label = with_unit("x", all.length_unit);
+  for (std::size_t i = 0; i < all.masses.size(); ++i) {
+    Track track = track_of(all, i, false);
+    for (std::size_t k = 0; k < track.x.size(); ++k) {
+      track.x[k] = {track.time[k] / unit.length, track.x[k].x};
+      track.v[k] = {1 / unit.length, track.v[k].x};
+    }
+    PlotOrbit orbit{.name = all.names[i], .color = i};
+    orbit.end = track.x.back();
+    orbit.path = thinned(path_through(track), most_path_points);
+    picture.orbits.push_back(std::move(orbit));
   }
-  picture.half_width = half > 0 ? 1.08 * half : 1;
+  fit(picture);
+  const double air = 0.08 * std::max(picture.high.y - picture.low.y, 1e-9);
+  picture.low.y -= air;
+  picture.high.y += air;
+  return picture;
+}
+
+bool all_on_one_line(const io::Frames& all) {
+  double x = 0, y = 0;
+  for (const io::Frame& frame : all.frames) {
+    for (std::size_t k = 0; k + 2 < frame.positions.size(); k += 3) {
+      x = std::max(x, std::abs(frame.positions[k]));
+      y = std::max({y, std::abs(frame.positions[k + 1]), std::abs(frame.positions[k + 2])});
+    }
+  }
+  return x > 0 && y < 1e-9 * x;
 }
 
 /// Parts the inner bodies from the outer ones where the gap of scales is wide.
 std::vector<PlotOrbits> on_scales(PlotOrbits all, const std::string& unit) {
   std::vector<double> sizes;
   for (const PlotOrbit& orbit : all.orbits) {
-    if (!orbit.primary) sizes.push_back(orbit.size);
+    if (!orbit.primary) sizes.push_back(orbit.extent);
   }
   std::sort(sizes.begin(), sizes.end());
   if (sizes.size() < 4 || sizes[1] * scale_gap > sizes.back()) return {std::move(all)};
@@ -152,47 +215,61 @@ std::vector<PlotOrbits> on_scales(PlotOrbits all, const std::string& unit) {
     if (sizes[k] / sizes[k - 1] > sizes[first_outer] / sizes[first_outer - 1]) first_outer = k;
   }
   PlotOrbits inner = all;
-  std::erase_if(inner.orbits, [&](const PlotOrbit& o) { return !o.primary && o.size >= sizes[first_outer]; });
+  std::erase_if(inner.orbits, [&](const PlotOrbit& o) { return !o.primary && o.extent >= sizes[first_outer]; });
   if (inner.orbits.size() < 3) return {std::move(all)};
   inner.title = "Inner orbits";
   all.title = "All orbits";
   inner.x_label = with_unit("x", unit), inner.y_label = with_unit("y", unit);
-  frame_orbits(inner, true);
+  fit(inner);
+  make_square(inner, true);
   return {std::move(all), std::move(inner)};
 }
 
-std::vector<PlotOrbits> read_orbits(const io::Frames& all, const SceneValue& scene) {
+PlotOrbit orbit_of(const io::Frames& all, std::size_t body, bool relative, double G) {
+  PlotOrbit orbit{.name = all.names[body], .color = relative && body > 0 ? body - 1 : body};
+  const Track track = track_of(all, body, relative);
+  orbit.primary = relative && body == 0;
+  orbit.end = track.x.back();
+  for (const PlotPoint& p : track.x) orbit.extent = std::max(orbit.extent, std::hypot(p.x, p.y));
+  if (orbit.primary) return orbit;
+  if (is_dense(track)) {
+    orbit.path = thinned(path_through(track), most_path_points);
+  } else {
+    orbit.samples = thinned(track.x, most_samples);
+    if (relative) orbit.path = ellipse(all, all.frames.back(), body, G);
+  }
+  return orbit;
+}
+
+std::vector<PlotOrbits> read_orbits(const io::Frames& all, const SceneValue& scene, const TimeUnit& unit) {
   const std::size_t n = all.masses.size();
   if (all.frames.empty() || n == 0) return {};
+  if (all_on_one_line(all)) return {against_time(all, unit)};
   double others = 0;
   for (std::size_t i = 1; i < n; ++i) others += all.masses[i];
   const bool relative = n > 1 && all.masses[0] > 10 * others;
-  const double G = constant_of_gravitation(all, scene);
 
   PlotOrbits picture;
-  picture.title = "Orbits";
   const std::string about = relative ? " from " + all.names[0] : "";
   picture.x_label = with_unit("x" + about, all.length_unit);
   picture.y_label = with_unit("y" + about, all.length_unit);
-  for (std::size_t i = 0; i < n; ++i) {
-    PlotOrbit orbit{.name = all.names[i], .color = relative ? i - 1 : i};
-    const std::vector<PlotPoint> points = track(all, i, relative);
-    orbit.primary = relative && i == 0;
-    orbit.end = points.back();
-    if (orbit.primary) {
-      orbit.color = 0;
-    } else if (is_smooth(points)) {
-      orbit.path = thinned(points, most_path_points);
-    } else {
-      orbit.samples = thinned(points, most_samples);
-      if (relative) orbit.path = ellipse(all, all.frames.back(), i, G);
-    }
-    for (const PlotPoint& p : points) orbit.size = std::max(orbit.size, std::hypot(p.x, p.y));
-    picture.orbits.push_back(std::move(orbit));
-  }
-  frame_orbits(picture, relative);
+  const double G = constant_of_gravitation(all, scene);
+  for (std::size_t i = 0; i < n; ++i) picture.orbits.push_back(orbit_of(all, i, relative, G));
+  fit(picture);
+  make_square(picture, relative);
   if (!relative) return {std::move(picture)};
   return on_scales(std::move(picture), all.length_unit);
+}
+
+/// Whether the energy is meant to change: drag, or a force that depends on time.
+bool changes_energy(const SceneValue& scene) {
+  const SceneValue* forces = value_at(scene, {"hamiltonian", "force"});
+  if (forces == nullptr || !forces->is_table_list()) return false;
+  for (const SceneValue& force : *forces->get<SceneValue::Array>()) {
+    const std::string type = text_at(force, {"type"});
+    if (type == "linear_drag" || type == "oscillating_field") return true;
+  }
+  return false;
 }
 
 std::optional<PlotError> read_error(const io::MonitorSeries& monitor, double time_length) {
@@ -225,7 +302,8 @@ std::string method_line(const SceneValue& scene) {
 PlotData read_plot_data(const std::filesystem::path& file) {
   const io::FileInfo about = io::info(file);
   if (about.kind != "trajectory") {
-    throw Error(fmt::format("{} is a {}, which holds one moment; plot the run.h5 beside it", file.string(), about.kind));
+    throw Error(
+        fmt::format("{} is a {}, which holds one moment; plot the run.h5 beside it", file.string(), about.kind));
   }
   const SceneValue scene = parse_toml(about.scene_toml, "the scene stored in " + file.string());
   const io::Frames frames = io::read_frames(file);
@@ -242,20 +320,21 @@ PlotData read_plot_data(const std::filesystem::path& file) {
   data.subtitle = method_line(scene);
   data.time_label = with_unit("time", unit.name);
   data.end = end / unit.length;
-  data.orbits = read_orbits(frames, scene);
+  data.orbits = read_orbits(frames, scene, unit);
   for (const auto& [name, title] : {std::pair{"energy", "Energy"}, std::pair{"angular_momentum", "Angular momentum"}}) {
     const auto found = std::find_if(monitors.begin(), monitors.end(), [&](const auto& m) { return m.name == name; });
     if (found == monitors.end()) continue;
     auto error = read_error(*found, unit.length);
     if (!error) continue;
     error->title = title;
-    error->label = "relative error";
+    error->label = name == std::string_view("energy") && changes_energy(scene) ? "relative change" : "relative error";
     data.errors.push_back(std::move(*error));
   }
   if (data.orbits.empty() && data.errors.empty()) {
-    throw Error(fmt::format("{} has nothing to draw; it needs frames (a trajectory writer) or the monitors energy or "
-                            "angular_momentum",
-                            file.string()));
+    throw Error(
+        fmt::format("{} has nothing to draw; it needs frames (a trajectory writer) or the monitors energy or "
+                    "angular_momentum",
+                    file.string()));
   }
   return data;
 }

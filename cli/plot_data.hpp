@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,23 +12,22 @@ struct PlotPoint {
   double x = 0, y = 0;
 };
 
-/// One body in the plane of x and y.
+/// One body in the plane of x and y, or of time and x where all move along one line.
 struct PlotOrbit {
   std::string name;
-  std::size_t color = 0;           ///< number in the palette
-  bool primary = false;            ///< stands in the center
-  std::vector<PlotPoint> path;     ///< joined by a line
-  std::vector<PlotPoint> samples;  ///< where it was seen, single points
-  PlotPoint end;                   ///< at the last frame
-  double size = 0;                 ///< largest distance from the center of the picture
+  std::size_t color = 0;                ///< number in the palette
+  bool primary = false;                 ///< stands in the center
+  std::vector<PlotPoint> path = {};     ///< joined by a line
+  std::vector<PlotPoint> samples = {};  ///< where it was seen, single points
+  PlotPoint end = {};                   ///< at the last frame
+  double extent = 0;                    ///< largest distance from the center of the picture
 };
 
 /// Orbits that share one scale.
 struct PlotOrbits {
   std::string title, x_label, y_label;
   std::vector<PlotOrbit> orbits;
-  PlotPoint center;
-  double half_width = 1;
+  PlotPoint low = {-1, -1}, high = {1, 1};  ///< corners of the picture
 };
 
 /// The size of an error against time.

@@ -5,14 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 namespace noether {
 
 namespace {
 
 /// Sizes in points; a PNG has two pixels per point.
-constexpr double panel = 430, error_width = 470, title_height = 58, legend_row = 22, legend_width = 105;
-constexpr double left_margin = 62, right_margin = 20, bottom_margin = 46, gap = 66;
+constexpr double panel = 430, error_width = 470, title_height = 62, legend_row = 20;
+constexpr double left_margin = 74, right_margin = 20, bottom_margin = 58, gap = 74;
 
 /// Colors that people with any color vision tell apart (P. Tol, "vibrant" and "bright").
 constexpr std::array<const char*, 12> palette = {"#0077BB", "#EE7733", "#009988", "#CC3311", "#AA3377", "#33BBEE",
@@ -41,62 +42,84 @@ std::string block(const std::string& name, const std::vector<PlotPoint>& points)
 /// Where the panels stand: everything in points, origin at the lower left.
 class Layout {
  public:
-  explicit Layout(const PlotData& data) : orbit_panels_(static_cast<double>(data.orbits.size())) {
-    has_errors_ = !data.errors.empty();
-    if (!data.orbits.empty()) {
-      const double area = orbit_panels_ * (panel + gap);
-      const auto columns = std::max(1.0, std::floor(area / legend_width));
-      legend_rows_ = std::ceil(static_cast<double>(std::min<std::size_t>(data.orbits[0].orbits.size(), 12)) / columns);
+  explicit Layout(const PlotData& data) : orbit_panels_(data.orbits.size()), error_panels_(data.errors.size()) {
+    if (data.orbits.empty()) return;
+    double x = 0;
+    for (const PlotOrbit& orbit : data.orbits[0].orbits) {
+      if (legend_.size() == palette.size()) break;
+      const double wide = 40 + 7.2 * static_cast<double>(orbit.name.size());
+      if (x > 0 && x + wide > orbits_width()) x = 0, ++legend_rows_;
+      legend_.push_back({x, static_cast<double>(legend_rows_)});
+      x += wide;
     }
+    ++legend_rows_;
   }
   double width() const {
-    const double orbits = orbit_panels_ * panel + std::max(0.0, orbit_panels_ - 1) * gap;
-    const double between = orbit_panels_ > 0 && has_errors_ ? gap + 20 : 0;
-    return left_margin + orbits + between + (has_errors_ ? error_width : 0) + right_margin;
+    const double between = orbit_panels_ > 0 && error_panels_ > 0 ? gap + 12 : 0;
+    return left_margin + orbits_width() + between + (error_panels_ > 0 ? error_width : 0) + right_margin;
   }
   double height() const { return bottom() + panel + title_height; }
-  double bottom() const { return bottom_margin + legend_rows_ * legend_row; }
 
+  std::string orbit_margins(std::size_t k) const {
+    return margins(left_margin + static_cast<double>(k) * (panel + gap), bottom(), panel, panel);
+  }
+  std::string error_margins(std::size_t k) const {
+    constexpr double between = 78;
+    const auto rows = static_cast<double>(error_panels_);
+    const double high = (panel - (rows - 1) * between) / rows;
+    const double low = bottom() + (rows - 1 - static_cast<double>(k)) * (high + between);
+    return margins(width() - right_margin - error_width, low, error_width, high);
+  }
+  /// The legend under the orbits, a dot and a name for each body.
+  std::string legend(const PlotOrbits& picture) const {
+    std::string text;
+    for (std::size_t k = 0; k < legend_.size(); ++k) {
+      const double x = left_margin + 6 + legend_[k].x;
+      const double y = legend_row * (static_cast<double>(legend_rows_) - 0.4 - legend_[k].y);
+      text += fmt::format("set label {} {} at {} left noenhanced tc rgb '#202020'", 10 + k,
+                          quoted(picture.orbits[k].name), at(x, y));
+      text += fmt::format(" point pt 7 ps 0.9 lc rgb '{}' offset 0.9,-0.2\n", color_of(picture.orbits[k]));
+    }
+    return text;
+  }
+  std::string at(double x, double y) const {
+    return fmt::format("screen {:.5f}, screen {:.5f}", x / width(), y / height());
+  }
+
+ private:
+  double orbits_width() const {
+    const auto panels = static_cast<double>(orbit_panels_);
+    return panels * panel + std::max(0.0, panels - 1) * gap;
+  }
+  double bottom() const { return bottom_margin + static_cast<double>(legend_rows_) * legend_row; }
   std::string margins(double left, double low, double wide, double high) const {
     return fmt::format(
         "set lmargin at screen {:.5f}\nset rmargin at screen {:.5f}\nset bmargin at screen {:.5f}\n"
         "set tmargin at screen {:.5f}\n",
         left / width(), (left + wide) / width(), low / height(), (low + high) / height());
   }
-  std::string orbit_margins(std::size_t k) const {
-    return margins(left_margin + static_cast<double>(k) * (panel + gap), bottom(), panel, panel);
-  }
-  std::string error_margins(std::size_t k, std::size_t count) const {
-    const double between = 62, rows = static_cast<double>(count);
-    const double high = (panel - (rows - 1) * between) / rows;
-    const double low = bottom() + (rows - 1 - static_cast<double>(k)) * (high + between);
-    return margins(width() - right_margin - error_width, low, error_width, high);
-  }
-  /// Middle of the legend under the orbits.
-  std::string legend() const {
-    const double orbits = orbit_panels_ * panel + (orbit_panels_ - 1) * gap;
-    return fmt::format("screen {:.5f}, screen {:.5f} center bottom", (left_margin + orbits / 2) / width(), 6 / height());
-  }
 
- private:
-  double orbit_panels_ = 0, legend_rows_ = 0;
-  bool has_errors_ = false;
+  std::size_t orbit_panels_, error_panels_;
+  std::vector<PlotPoint> legend_;  ///< x, and the number of the row
+  int legend_rows_ = 0;
 };
 
 std::string opening(const PlotData& data, const Layout& layout, PictureFormat format, const std::string& picture) {
   const double scale = format == PictureFormat::png ? 2 : 1;
   std::string text = fmt::format(
-      "set encoding utf8\nset terminal {} size {:.0f},{:.0f} font 'sans,{:.0f}' linewidth {} background 'white' {}\n",
-      format == PictureFormat::png ? "pngcairo" : "svg", layout.width() * scale, layout.height() * scale, 11 * scale, scale,
-      format == PictureFormat::png ? fmt::format("enhanced pointscale {}", scale) : "enhanced");
+      "set encoding utf8\nset terminal {} enhanced size {:.0f},{:.0f} font 'sans,{:.0f}' linewidth {} "
+      "background 'white'",
+      format == PictureFormat::png ? "pngcairo" : "svg", layout.width() * scale, layout.height() * scale, 11 * scale,
+      scale);
+  text += format == PictureFormat::png ? fmt::format(" pointscale {}\n", scale) : "\n";
   text += "set output " + quoted(picture) + "\nset multiplot\n";
-  text += fmt::format("set label 1 {} at screen {:.5f}, screen {:.5f} left noenhanced font ',{:.0f}' tc rgb '#202020'\n",
-                      quoted(data.title), (left_margin - 40) / layout.width(), 1 - 20 / layout.height(), 15 * scale);
-  text += fmt::format("set label 2 {} at screen {:.5f}, screen {:.5f} right noenhanced font ',{:.0f}' tc rgb '#707070'\n",
-                      quoted(data.subtitle), 1 - right_margin / layout.width(), 1 - 20 / layout.height(), 10 * scale);
+  text += fmt::format("set label 1 {} at {} left noenhanced font ',{:.0f}' tc rgb '#202020'\n", quoted(data.title),
+                      layout.at(24, layout.height() - 20), 15 * scale);
+  text += fmt::format("set label 2 {} at {} right noenhanced font ',{:.0f}' tc rgb '#707070'\n", quoted(data.subtitle),
+                      layout.at(layout.width() - right_margin, layout.height() - 20), 10 * scale);
   return text +
          "set border 3 lw 0.8 lc rgb '#505050'\nset tics out nomirror scale 0.6 tc rgb '#303030'\n"
-         "set grid back lt 1 lw 0.5 lc rgb '#E4E4E4'\nset key noenhanced tc rgb '#202020' samplen 1.2\n";
+         "set grid back lt 1 lw 0.5 lc rgb '#E4E4E4'\nunset key\n";
 }
 
 std::string orbit_panel(const PlotOrbits& picture, std::size_t index, const Layout& layout) {
@@ -107,30 +130,28 @@ std::string orbit_panel(const PlotOrbits& picture, std::size_t index, const Layo
     const std::string name = fmt::format("o{}_{}", index, k), rgb = fmt::format("rgb '{}'", color_of(orbit));
     if (!orbit.samples.empty()) {
       data += block(name + "s", orbit.samples);
-      curve(fmt::format("${}s with points pt 7 ps 0.25 lc rgb '#90{}' notitle", name, color_of(orbit) + 1));
+      curve(fmt::format("${}s with points pt 7 ps 0.25 lc rgb '#90{}'", name, color_of(orbit) + 1));
     }
     if (!orbit.path.empty()) {
       data += block(name + "p", orbit.path);
-      curve(fmt::format("${}p with lines lw 1.3 lc {} notitle", name, rgb));
+      curve(fmt::format("${}p with lines lw 1.3 lc {}", name, rgb));
     }
   }
   for (std::size_t k = 0; k < picture.orbits.size(); ++k) {
     const PlotOrbit& orbit = picture.orbits[k];
     data += block(fmt::format("o{}_{}e", index, k), {orbit.end});
-    const std::string title = index == 0 && k < palette.size() ? "title " + quoted(orbit.name) : "notitle";
-    curve(fmt::format("$o{}_{}e with points pt 7 ps {} lc rgb '{}' {}", index, k, orbit.primary ? 1.1 : 0.9,
-                      color_of(orbit), title));
+    const double dot = orbit.primary ? 1.1 : 0.9;
+    curve(fmt::format("$o{}_{}e with points pt 7 ps {} lc rgb '{}'", index, k, dot, color_of(orbit)));
   }
-  const double half = picture.half_width;
   std::string text = data + layout.orbit_margins(index);
-  text += fmt::format("set xrange [{:.9g}:{:.9g}]\nset yrange [{:.9g}:{:.9g}]\n", picture.center.x - half,
-                      picture.center.x + half, picture.center.y - half, picture.center.y + half);
+  text += fmt::format("set xrange [{:.9g}:{:.9g}]\nset yrange [{:.9g}:{:.9g}]\n", picture.low.x, picture.high.x,
+                      picture.low.y, picture.high.y);
   text += "unset logscale\nset format '%g'\nset xtics autofreq\nset ytics autofreq\n";
   text += fmt::format("set title {} offset 0,-0.6 noenhanced tc rgb '#303030'\n", quoted(picture.title));
-  text += fmt::format("set xlabel {} offset 0,0.4 noenhanced\nset ylabel {} offset 0.8,0 noenhanced\n",
+  text += fmt::format("set xlabel {} offset 0,0.3 noenhanced\nset ylabel {} offset 0.8,0 noenhanced\n",
                       quoted(picture.x_label), quoted(picture.y_label));
-  text += index == 0 ? "set key at " + layout.legend() + " horizontal Left reverse\n" : "unset key\n";
-  return text + curves + "\nunset label 1\nunset label 2\n";
+  if (index == 0) text += layout.legend(picture);
+  return text + curves + "\nunset label\n";
 }
 
 std::string error_panel(const PlotData& all, std::size_t k, const Layout& layout) {
@@ -140,19 +161,19 @@ std::string error_panel(const PlotData& all, std::size_t k, const Layout& layout
   // Rare dips of an error that changes sign would stretch the axis: four decades below the worst are enough.
   const double top = error.points.empty() ? -14 : std::ceil(std::log10(high) + 0.1);
   const double bottom = error.points.empty() ? -17 : std::max(std::floor(std::log10(low)), top - 5);
-  std::string text = block(fmt::format("e{}", k), error.points) + layout.error_margins(k, all.errors.size());
-  text += fmt::format("set xrange [0:{:.9g}]\nset yrange [1e{:.0f}:1e{:.0f}]\nset logscale y\n", all.end > 0 ? all.end : 1,
-                      std::min(bottom, top - 2), top);
-  text += "set format x '%g'\nset format y '10^{%T}'\nset ytics autofreq\nunset key\n";
+  std::string text = block(fmt::format("e{}", k), error.points) + layout.error_margins(k);
+  text += fmt::format("set xrange [0:{:.9g}]\nset yrange [1e{:.0f}:1e{:.0f}]\nset logscale y\n",
+                      all.end > 0 ? all.end : 1, std::min(bottom, top - 2), top);
+  text += "set format x '%g'\nset format y '10^{%T}'\nset ytics autofreq\n";
   const std::string worst = error.points.empty() ? "exactly zero" : fmt::format("worst {:.1e}", error.worst);
   text += fmt::format("set title {} offset 0,-0.6 noenhanced tc rgb '#303030'\n",
                       quoted(error.title + ": " + error.label + ", " + worst));
-  text += fmt::format("set xlabel {} offset 0,0.4 noenhanced\nunset ylabel\n", quoted(all.time_label));
+  text += fmt::format("set xlabel {} offset 0,0.3 noenhanced\nunset ylabel\n", quoted(all.time_label));
   const bool dense = error.points.size() > 400;
   const std::string style = dense ? "with points pt 7 ps 0.2" : "with linespoints lw 1 pt 7 ps 0.35";
   // gnuplot refuses to draw nothing: an empty panel draws a point outside of it.
-  const std::string curve = error.points.empty() ? "NaN notitle" : fmt::format("$e{} {} lc rgb '{}' notitle", k, style, palette[k]);
-  return text + "plot " + curve + "\nunset label 1\nunset label 2\n";
+  const std::string curve = error.points.empty() ? "NaN" : fmt::format("$e{} {} lc rgb '{}'", k, style, palette[k]);
+  return text + "plot " + curve + "\nunset label\n";
 }
 
 }  // namespace

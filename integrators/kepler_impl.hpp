@@ -2,124 +2,21 @@
 /// How `kepler_arc` works; docs/theory/kepler.md has the formulae in order. Only for further number types.
 
 #include "integrators/kepler.hpp"
+#include "integrators/universal_functions.hpp"
 
-#include <array>
 #include <cmath>
-#include <cstddef>
-#include <limits>
-#include <type_traits>
 
 namespace noether::detail {
-
-// Number types without limits of their own (dual numbers, series) are taken to hold doubles.
-template <class Real>
-inline constexpr int kepler_digits = std::numeric_limits<Real>::digits > 0 ? std::numeric_limits<Real>::digits : 53;
-
-template <class Real>
-constexpr Real kepler_constant(Quad x) {
-  if constexpr (std::is_same_v<Real, Quad>) {
-    return x;
-  } else {
-    return Real(static_cast<double>(x));
-  }
-}
-
-constexpr Quad power_of_two(int n) {
-  Quad p(1);
-  for (int i = 0; i < (n < 0 ? -n : n); ++i) p *= n < 0 ? Quad(0.5) : Quad(2);
-  return p;
-}
-
-/// A type with more digits, to reduce many periods without loss; the type itself where there is none.
-template <class Real>
-struct WiderType {
-  using type = Real;
-};
-template <>
-struct WiderType<double> {
-  using type = Quad;
-};
-
-/// n! c_n(z) = sum of (-1)^k n! / (2 k + n)! z^k, terms enough for |z| up to 1.
-///
-/// A constant that is always rounded the same way would make the energy of a long run drift. So the first coefficient
-/// is exactly 1, and `low` is what rounding took from the next two, added where the sum is still small.
-template <class Real>
-struct StumpffSeries {
-  static constexpr std::size_t terms = kepler_digits<Real> <= 53 ? 10 : kepler_digits<Real> <= 113 ? 17 : 34;
-  std::array<Real, terms> high;
-  std::array<Real, 3> low;
-
-  explicit constexpr StumpffSeries(int n) : high{}, low{Real(0), Real(0), Real(0)} {
-    Quad term(1);
-    for (std::size_t k = 0; k < terms; ++k) {
-      high[k] = kepler_constant<Real>(term);
-      if constexpr (std::is_same_v<Real, double>) {
-        if (k < low.size()) low[k] = static_cast<double>(term - Quad(high[k]));
-      }
-      const int j = 2 * static_cast<int>(k) + n;
-      term /= -Quad(j + 1) * Quad(j + 2);
-    }
-  }
-
-  Real operator()(const Real& z) const {
-    Real sum = high[terms - 1];
-    for (std::size_t k = terms - 2; k >= 3; --k) sum = high[k] + z * sum;
-    return Real(1) + z * (high[1] + (low[1] + z * (high[2] + (low[2] + z * sum))));
-  }
-};
-
-template <class Real>
-inline constexpr StumpffSeries<Real> stumpff_2(2);
-template <class Real>
-inline constexpr StumpffSeries<Real> stumpff_3(3);
-
-/// G_n(s) = s^n c_n(beta s^2): cosine and sine of the universal variable and their integrals.
-template <class Real>
-struct UniversalFunctions {
-  Real g0, g1, g2, g3;
-
-  UniversalFunctions(const Real& beta, const Real& s) {
-    using std::abs;
-    constexpr int most_halvings = 15;  // beyond 2^15 radians the hyperbolic functions overflow in any type
-    int halvings = 0;
-    Real part = s, z = beta * s * s;
-    for (; !(abs(z) <= Real(1)) && halvings < most_halvings; ++halvings) {
-      part *= Real(0.5);
-      z *= Real(0.25);
-    }
-    const Real square = part * part;
-    g2 = square * stumpff_2<Real>(z) / Real(2);
-    g3 = part * square * stumpff_3<Real>(z) / Real(6);
-    g1 = part - beta * g3;
-    g0 = Real(1) - beta * g2;
-    for (; halvings > 0; --halvings) {
-      g3 = Real(2) * (g3 + g1 * g2);
-      g2 = Real(2) * g1 * g1;
-      g1 = Real(2) * g0 * g1;
-      g0 = Real(1) - beta * g2;
-    }
-  }
-
-  /// The same functions at s + d for small d, by the addition theorem. G_n(d) themselves: c1, c2, c3.
-  void shift(const Real& beta, const Real& d, const Real& c1, const Real& c2, const Real& c3) {
-    const Real g1_old = g1;
-    g3 += d * g2 + (g1 * c2 + g0 * c3);
-    g2 += g1 * c1 + g0 * c2;
-    g1 += g0 * c1 - beta * g1 * c2;
-    g0 -= beta * (g1_old * c1 + g0 * c2);
-  }
-};
 
 /// What an arc is asked for, time running forward: t(s) = r0 s + eta0 G2 + zeta0 G3 = h is to be solved.
 template <class Real>
 struct KeplerEquation {
-  Real mu, h;        // h > 0
-  Real r, r_inverse; // distance at the start
-  Real eta;          // x . v = dr/ds
-  Real zeta;         // d2r/ds2 = mu - beta r
-  Real beta;         // 2 mu / r - v^2, minus twice the energy
-  Real momentum2;    // |x cross v|^2
+  Real mu, h;         // h > 0
+  Real r, r_inverse;  // distance at the start
+  Real eta;           // x . v = dr/ds
+  Real zeta;          // d2r/ds2 = mu - beta r
+  Real beta;          // 2 mu / r - v^2, minus twice the energy
+  Real momentum2;     // |x cross v|^2
 };
 
 /// Where a trial s is on the arc, and by how much it misses.
@@ -305,6 +202,16 @@ KeplerRoot<Real> solve_by_bracket(const KeplerEquation<Real>& a) {
   }
 }
 
+/// A type with more digits, to reduce many periods without loss; the type itself where there is none.
+template <class Real>
+struct WiderType {
+  using type = Real;
+};
+template <>
+struct WiderType<double> {
+  using type = Quad;
+};
+
 /// Takes whole periods out of `h` so that at most half a period remains, and gives the s of those taken out.
 template <class Real>
 Real take_whole_periods(const Vec3<Real>& x, const Vec3<Real>& v, KeplerEquation<Real>& a) {
@@ -337,10 +244,10 @@ KeplerArc<Real> arc_at_root(const Vec3<Real>& x, const Vec3<Real>& v, const Kepl
   const Real c3 = d * d * d * (Real(20) - u) / Real(120);
   g.shift(a.beta, d, c1, c2, c3);
   Real r = root.trial.r + (root.trial.eta * c1 + root.trial.zeta * c2);
-  const Real fall = a.mu * g.g3;
-  // Two forms of g: the one with the smaller terms.
-  const bool near = abs(fall) <= a.r * abs(g.g1) + abs(a.eta) * g.g2;
-  const Real advance = sense * (near ? a.h - fall : a.r * g.g1 + a.eta * g.g2);
+  // Two forms of g: the one whose terms are smaller rounds less, on long arcs by a quarter.
+  const Real delay = a.mu * g.g3, along = a.r * g.g1, across = a.eta * g.g2;
+  const bool early = abs(delay) <= abs(along) + abs(across);
+  const Real advance = sense * (early ? a.h - delay : along + across);
   KeplerArc<Real> arc;
   arc.dx = -(a.mu * g.g2 * a.r_inverse) * x + advance * v;
   constexpr Real lost = kepler_constant<Real>(power_of_two(4 - kepler_digits<Real>));

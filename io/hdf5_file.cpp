@@ -144,13 +144,21 @@ Hdf5Handle linking(const Context& file) {
   return list;
 }
 
+/// How datasets are made: without the time of day, so that equal contents are equal bytes.
+Hdf5Handle dataset_layout(const Context& file) {
+  Hdf5Handle list = own(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, file, "cannot prepare a dataset");
+  H5Pset_obj_track_times(list, false);
+  return list;
+}
+
 /// Makes a fixed dataset and fills it.
 void write_fixed(const Hdf5Handle& file, const std::string& path, hid_t stored, hid_t memory,
                  const std::vector<Index>& shape, const void* data) {
   const Hdf5Handle space = space_of(shape, file.file());
   const Hdf5Handle links = linking(file.file());
-  const Hdf5Handle dataset = own(H5Dcreate2(file, path.c_str(), stored, space, links, H5P_DEFAULT, H5P_DEFAULT),
-                                 H5Dclose, file.file(), writing(path));
+  const Hdf5Handle layout = dataset_layout(file.file());
+  const Hdf5Handle dataset = own(H5Dcreate2(file, path.c_str(), stored, space, links, layout, H5P_DEFAULT), H5Dclose,
+                                 file.file(), writing(path));
   if (H5Sget_simple_extent_npoints(space) > 0) {
     check(H5Dwrite(dataset, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), file, writing(path));
   }
@@ -412,7 +420,7 @@ Hdf5Dataset Hdf5File::create_growing(const std::string& path, ElementType type, 
   }
   const Hdf5Handle space = space_of(shape, handle_->file(), true);
   const Hdf5Handle links = linking(handle_->file());
-  const Hdf5Handle layout = own(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, handle_->file(), writing(path));
+  const Hdf5Handle layout = dataset_layout(handle_->file());
   const std::vector<hsize_t> axes(piece.begin(), piece.end());
   check(H5Pset_chunk(layout, static_cast<int>(axes.size()), axes.data()), *handle_, writing(path));
   check(H5Pset_fill_time(layout, H5D_FILL_TIME_NEVER), *handle_, writing(path));

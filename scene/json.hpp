@@ -32,8 +32,8 @@ class Json {
 
   static Json list(const std::vector<Json>& values) {
     std::string inside;
-    for (const Json& value : values) inside += (inside.empty() ? "" : ",") + value.text_;
-    return raw("[" + inside + "]");
+    for (const Json& value : values) inside.append(inside.empty() ? "" : ",").append(value.text_);
+    return raw(enclosed('[', inside, ']'));
   }
   template <class T> static Json list_of(const T& values) {
     std::vector<Json> all;
@@ -44,9 +44,9 @@ class Json {
   static Json object(const Members& members) {
     std::string inside;
     for (const auto& [key, value] : members) {
-      inside += (inside.empty() ? "" : ",") + quoted(key) + ":" + value.text_;
+      inside.append(inside.empty() ? "" : ",").append(quoted(key)).append(":").append(value.text_);
     }
-    return raw("{" + inside + "}");
+    return raw(enclosed('{', inside, '}'));
   }
 
   const std::string& text() const { return text_; }
@@ -56,6 +56,10 @@ class Json {
     Json value;
     value.text_ = std::move(text);
     return value;
+  }
+  static std::string enclosed(char open, const std::string& inside, char close) {
+    std::string text(1, open);
+    return text.append(inside).append(1, close);
   }
   static std::string quoted(std::string_view x) {
     constexpr std::string_view digits = "0123456789abcdef";
@@ -70,7 +74,7 @@ class Json {
         out += c;
       }
     }
-    return out + "\"";
+    return out.append("\"");
   }
 
   std::string text_;

@@ -24,25 +24,20 @@ template <class Kinds> std::vector<std::string> names_of(const Kinds& kinds) {
   return names;
 }
 
-/// A duration as the scene wrote it, for messages.
-std::string written(const SceneValue& value) {
-  const std::string* text = value.get<std::string>();
-  return text != nullptr ? *text : to_text(value);
-}
-
 /// How many steps make a duration. @throws SceneError  unless it is a whole number, with the two nearest
 std::int64_t whole_steps(const TableReader& reader, std::string_view key, const SceneValue& value, const SceneIntegrator& integrator) {
   const double duration = reader.number(value, key, "time"), exact = duration / integrator.step, whole = std::round(exact);
   const auto fail = [&](const std::string& message) {
-    reader.fail(&value, key, fmt::format("{} = \"{}\" {}", key, written(value), message));
+    reader.fail(&value, key, fmt::format("{} = {} {}", key, to_text(value), message));
   };
   if (!(exact > 0)) fail(fmt::format("is no time ahead; steps are of {}", integrator.step_text));
   if (exact > 9e15) fail(fmt::format("is {:.3g} steps of {}, more than can be counted", exact, integrator.step_text));
   if (std::abs(exact - whole) > 1e-9 + 16 * std::numeric_limits<double>::epsilon() * exact) {
     const std::string unit = unit_of(dimensions::time, *reader.context().units);
     const auto nearest = [&](double steps) {
-      return fmt::format("\"{}{}\" ({} {})", format_number(steps * integrator.step), unit == "1" ? "" : " " + unit,
-                         format_number(steps), steps == 1 ? "step" : "steps");
+      const std::string number = format_number(steps * integrator.step);
+      return fmt::format("{} ({} {})", unit == "1" ? number : "\"" + number + " " + unit + "\"", format_number(steps),
+                         steps == 1 ? "step" : "steps");
     };
     fail(fmt::format("is {:.12g} steps of {}; the nearest whole numbers are {} and {}", exact, integrator.step_text,
                      nearest(std::floor(exact)), nearest(std::ceil(exact))));
@@ -190,7 +185,7 @@ class SceneReader {
     const SceneValue* step = reader.find("step");
     if (step == nullptr) reader.fail(nullptr, "step", "[integrator] has no step; give one, such as \"1 day\"");
     made.step = reader.number(*step, "step", "time");
-    made.step_text = written(*step);
+    made.step_text = to_text(*step);
     if (made.step == 0) reader.fail("step", fmt::format("a step of {} is no step; a time other than 0 is expected", made.step_text));
     effective.put("step", *step);
     const SceneValue* until = reader.find("until");

@@ -4,14 +4,6 @@
 
 namespace noether {
 
-std::string_view references_bib() noexcept {
-  return
-#if __has_include(<noether_references.inc>)
-#include <noether_references.inc>  // one raw string literal or several, made from docs/references.bib
-#endif
-      "";
-}
-
 std::string bibtex(std::string_view key) {
   const std::string_view all = references_bib();
   for (std::size_t at = all.find('@'); at != std::string_view::npos; at = all.find('@', at + 1)) {

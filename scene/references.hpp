@@ -6,9 +6,9 @@
 
 namespace noether {
 
-/// docs/references.bib as text; empty if the build left it out.
+/// docs/references.bib as text.
 /// @throws never
-std::string_view references_bib() noexcept;
+const char* references_bib() noexcept;
 
 /// One entry of it, from its @ to its closing brace; empty if there is none of that key.
 std::string bibtex(std::string_view key);

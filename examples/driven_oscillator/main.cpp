@@ -35,7 +35,8 @@ int main() {
   const double amplitude = push.acceleration[0] / std::hypot(stiff, drag), delta = std::atan2(drag, stiff);
   const double exact = amplitude * std::cos(push.omega * sim.time() - delta);
   fmt::print("{}: energy {:.6f}, not conserved: worst energy error {}\n", outcome, energy.total(), energy.worst());
-  fmt::print("{:.1e} from the steady state of amplitude {:.6f}\n", sim.particles().positions()[0][0] - exact, amplitude);
+  const double x = sim.particles().positions()[0][0];
+  fmt::print("{:.1e} from the steady state of amplitude {:.6f}\n", x - exact, amplitude);
   fmt::print("{}\n", io::digest(sim.particles()));
   return exit_code(outcome);
 }

@@ -20,8 +20,7 @@ struct Oblateness {
                             field<&Oblateness::mu>("mu", "length^3/time^2"));
   }
 
-  template <class Real>
-  void add_to(noether::ForceSink<Real>& out, const noether::ParticleSystem<Real>& s) const {
+  template <class Real> void add_to(noether::ForceSink<Real>& out, const noether::ParticleSystem<Real>& s) const {
     using namespace noether;
     using std::sqrt;
     for (Index i = 1; i < s.size(); ++i) {

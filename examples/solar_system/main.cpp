@@ -21,11 +21,13 @@ int main() {
 
   Simulation sim(std::move(planets), compose(WisdomHolman({}), schemes::aba_10_6_4), 5 * day);
   auto& energy = sim.every(73, Energy{});
+  auto& angular_momentum = sim.every(73, AngularMomentum{});
   auto& elements = sim.every(730, Elements{});
   sim.every(730, io::TrajectoryWriter{"run.h5"});
 
   const Outcome outcome = sim.run_until(1000 * year);
   fmt::print("{} at {:.4g} yr, worst energy error {:.1e}\n", outcome, sim.time() / year, energy.worst());
+  fmt::print("worst angular momentum error {:.1e}\n", angular_momentum.worst());
   for (Index i = 1; i < sim.particles().size(); ++i) {
     const OrbitalElements<double> o = elements.of(i);
     fmt::print("{:<10} a = {:9.5f} au, e = {:.5f}\n", sim.particles().name(i), o.a, o.e);

@@ -9,8 +9,7 @@ namespace noether {
 namespace {
 
 /// A point on a tilted ellipse with a third frequency: smooth, and no polynomial.
-template <class Real>
-Motion<Real> curve(const Real& t) {
+template <class Real> Motion<Real> curve(const Real& t) {
   using std::cos;
   using std::sin;
   const Real w(1.5);

@@ -19,8 +19,7 @@ namespace noether {
 namespace {
 
 /// Three bodies of different masses, off the origin and moving as a whole; nothing is symmetric.
-template <class Real>
-ParticleSystem<Real> three_bodies() {
+template <class Real> ParticleSystem<Real> three_bodies() {
   ParticleSystem<Real> s;
   const auto vector = [](double x, double y, double z) { return Vec3<Real>(Real(x), Real(y), Real(z)); };
   s.add("first", Real(1), vector(0.5, 0.25, 0), vector(0.125, 0, 0.5));
@@ -29,8 +28,7 @@ ParticleSystem<Real> three_bodies() {
   return s;
 }
 
-template <class Real>
-Simulation<Real> run_of(ParticleSystem<Real> s, double dt = 1.0 / 64) {
+template <class Real> Simulation<Real> run_of(ParticleSystem<Real> s, double dt = 1.0 / 64) {
   return Simulation<Real>(std::move(s), compose(KineticPotential<Gravity, Real>(Gravity{}), schemes::verlet), dt);
 }
 
@@ -184,8 +182,7 @@ TEST_CASE("a driven run has an energy but no error of it, and says why", "[monit
   Simulation sim(oscillator(), compose(KineticPotential(drive), schemes::verlet), 0.125);
   auto& energy = sim.every(1, Energy{});
   CHECK(sim.run(8).ok());
-  CHECK(energy.report().message ==
-        "a force depends on time: the energy changes by itself, so there is no error of it");
+  CHECK(energy.report().message == "a force depends on time: the energy changes by itself, so there is no error of it");
   CHECK(!energy.report().worst);
 }
 

@@ -9,8 +9,7 @@
 namespace noether {
 namespace {
 
-template <class Real>
-double relative(const Vec3<Real>& a, const Vec3<Real>& b) {
+template <class Real> double relative(const Vec3<Real>& a, const Vec3<Real>& b) {
   using std::sqrt;
   return static_cast<double>(sqrt(norm2(a - b) / norm2(b)) / std::numeric_limits<Real>::epsilon());
 }
@@ -21,8 +20,7 @@ double error_in_ulps(const Vec3<double>& rounded, const Vec3<Quad>& exact) {
 }
 
 /// Elements of a state and back: the larger relative change of x and v, in units of rounding.
-template <class Real>
-double there_and_back(const OrbitalElements<Real>& o, const Real& mu) {
+template <class Real> double there_and_back(const OrbitalElements<Real>& o, const Real& mu) {
   const auto [x, v] = state_from_elements(o, mu);
   const auto [y, w] = state_from_elements(elements_from_state<Real>(x, v, mu), mu);
   return std::max(relative(y, x), relative(w, v));

@@ -18,8 +18,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 
 /// A sun of mass 1 and a planet on the orbit of these elements, G = 1.
-template <class Real>
-ParticleSystem<Real> planet(const OrbitalElements<Real>& o, double mass = 0.25) {
+template <class Real> ParticleSystem<Real> planet(const OrbitalElements<Real>& o, double mass = 0.25) {
   ParticleSystem<Real> s;
   const auto [x, v] = state_from_elements<Real>(o, Real(1 + mass));
   s.add("sun", Real(1), Vec3<Real>::Zero(), Vec3<Real>::Zero());
@@ -27,8 +26,7 @@ ParticleSystem<Real> planet(const OrbitalElements<Real>& o, double mass = 0.25) 
   return s;
 }
 
-template <class Real>
-Simulation<Real> run_of(ParticleSystem<Real> s, double dt) {
+template <class Real> Simulation<Real> run_of(ParticleSystem<Real> s, double dt) {
   return Simulation<Real>(std::move(s), compose(KineticPotential<Gravity, Real>(Gravity{}), schemes::yoshida_8), dt);
 }
 

@@ -64,7 +64,7 @@ TEST_CASE("there is no slope of one sample and no error of a slope below twenty 
 TEST_CASE("the error of the slope covers what noise does to it", "[statistics]") {
   const auto line = line_with_noise(6400, 1e-3, 1).line();
   REQUIRE(line);
-  const double spread = 6400 * 0.5 / std::sqrt(12.0);               // of the times
+  const double spread = 6400 * 0.5 / std::sqrt(12.0);  // of the times
   const double expected = 1 / std::sqrt(12.0) / spread / std::sqrt(6400.0);
   CHECK(std::abs(line->slope - 1e-3) < 3 * line->error);
   CHECK(line->error > 0.6 * expected);

@@ -1,0 +1,244 @@
+// From text to parts: defaults, --set, units, a user's own part, the same bits as a program.
+
+#include "engine/monitors.hpp"
+#include "forces/gravity.hpp"
+#include "integrators/composition.hpp"
+#include "integrators/kinetic_potential.hpp"
+#include "integrators/schemes.hpp"
+#include "integrators/wisdom_holman.hpp"
+#include "io/digest.hpp"
+#include "scene/evaluate.hpp"
+#include "scene/scene.hpp"
+#include "tests/support/catch.hpp"
+
+#include <string>
+#include <vector>
+
+namespace noether::test {
+namespace {
+
+const std::string two_bodies = R"(
+units = "solar"
+[[particles.body]]
+name = "Sun"
+mass = "1 Msun"
+[[particles.body]]
+name = "Earth"
+mass = "3e-6 Msun"
+x = ["1 au", "0 au", "0 au"]
+v = ["0 au/day", "30 km/s", "0 au/day"]
+[hamiltonian]
+type = "kinetic_potential"
+[[hamiltonian.force]]
+type = "gravity"
+[integrator]
+method = "yoshida_4"
+step = "5 day"
+until = "1000 day"
+[[every]]
+type = "energy"
+every = "100 day"
+[[every]]
+type = "momentum"
+steps = 7
+)";
+
+Scene read(const std::string& text, const std::vector<std::string>& sets = {}) {
+  return read_scene(text, "scene.toml", standard_parts(), sets);
+}
+
+std::string refusal(const std::string& text, const std::vector<std::string>& sets = {}) {
+  try {
+    read(text, sets);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string digest_of(const Scene& scene) {
+  Simulation<double> sim = assemble(scene);
+  CHECK(sim.run(*scene.integrator.steps).kind == Outcome::Kind::completed);
+  return io::digest(sim.particles());
+}
+
+TEST_CASE("a scene and a program end in the same digest", "[scene][determinism]") {
+  using namespace noether::units::solar;
+  ParticleSystem<double> s(unit_system("solar"));
+  s.add("Sun", 1, {0, 0, 0}, {0, 0, 0});
+  s.add("Earth", 3e-6, {1 * au, 0, 0}, {0, 30 * km / second, 0});
+  Simulation sim(s, compose(KineticPotential(Gravity{}), schemes::yoshida_4), 5 * day);
+  REQUIRE(sim.run_until(1000 * day).ok());
+  CHECK(digest_of(read(two_bodies)) == io::digest(sim.particles()));
+
+  Simulation arcs(s, compose(WisdomHolman({.coordinates = Coordinates::democratic}), schemes::verlet_aba), 5 * day);
+  REQUIRE(arcs.run_until(1000 * day).ok());
+  std::string text = two_bodies;
+  text.replace(text.find("kinetic_potential\"\n[[hamiltonian.force]]\ntype = \"gravity\""), 57, "wisdom_holman\"");
+  CHECK(digest_of(read(text, {"hamiltonian.coordinates=democratic", "integrator.method=verlet_aba"})) ==
+        io::digest(arcs.particles()));
+}
+
+TEST_CASE("the effective scene holds every default", "[scene]") {
+  const std::string toml = read(two_bodies).effective_toml;
+  for (const char* line : {"title = \"\"", "frame = \"as_given\"", "softening = \"0 au\"", "compensated = false",
+                           "G = 0.000295912208284119", "method = \"yoshida_4\"", "until = \"1000 day\""}) {
+    INFO(line << "\n" << toml);
+    CHECK(toml.find(line) != std::string::npos);
+  }
+}
+
+TEST_CASE("an alias and its scheme are one method in the effective scene", "[scene]") {
+  CHECK(read(two_bodies, {"integrator.method=forest_ruth"}).effective_toml == read(two_bodies).effective_toml);
+}
+
+TEST_CASE("--set reaches keys by table, index, type and name", "[scene][set]") {
+  const Scene scene = read(two_bodies, {"title=A new title", "every.1.steps=3", "every.energy.steps=5",
+                                        "hamiltonian.force.gravity.softening=0.01 au", "particles.body.Earth.mass=\"6e24 kg\"",
+                                        "particles.body.0.name=Sol", "expect.energy.worst=1e-3", "hamiltonian.G=3e-4",
+                                        "particles.body.Earth.x=[\"2 au\", \"0 au\", \"0 au\"]"});
+  CHECK(scene.title == "A new title");
+  CHECK(scene.watches.at(1).cadence.steps == 3);
+  CHECK(scene.watches.at(0).cadence.steps == 5);
+  CHECK(scene.particles.masses()[1] == 6e24 * units::solar::kg);
+  CHECK(scene.particles.name(0) == "Sol");
+  CHECK(scene.particles.positions()[1][0] == 2.0);
+  CHECK(scene.hamiltonian.G == 3e-4);
+  CHECK(scene.effective_toml.find("softening = \"0.01 au\"") != std::string::npos);
+  CHECK(scene.expect.at("energy.worst").get<double>() != nullptr);
+}
+
+TEST_CASE("--set replaces the key that it excludes", "[scene][set]") {
+  CHECK(read(two_bodies, {"integrator.steps=11"}).integrator.steps == 11);
+  CHECK(read(two_bodies, {"integrator.steps=11", "integrator.until=50 day"}).integrator.steps == 10);
+  CHECK(read(two_bodies, {"every.0.steps=4"}).watches.at(0).cadence.steps == 4);
+  CHECK(read(two_bodies, {"every.1.every=50 day"}).watches.at(1).cadence.steps == 10);
+}
+
+TEST_CASE("a value of --set is TOML, or else a text", "[scene][set]") {
+  CHECK(read(two_bodies, {"integrator.compensated=true"}).integrator.compensated);
+  CHECK(read(two_bodies, {"integrator.step=10 day"}).integrator.step == 10);
+  CHECK(read(two_bodies, {"integrator.step=\"10 day\""}).integrator.step == 10);
+  CHECK(read(two_bodies, {"title=1979-05-27"}).title == "1979-05-27");
+  CHECK(refusal(two_bodies, {"title=3"}) == "--set title=3: title = 3 is a whole number; a text in quotes is expected");
+}
+
+TEST_CASE("G of the Hamiltonian is the G of its forces and of elements", "[scene]") {
+  using namespace noether::units::solar;
+  ParticleSystem<double> s(unit_system("solar"));
+  s.add("Sun", 1, {0, 0, 0}, {0, 0, 0});
+  s.add("Earth", 3e-6, {1 * au, 0, 0}, {0, 30 * km / second, 0});
+  Simulation sim(s, compose(KineticPotential(Gravity{.G = 2.9e-4}), schemes::yoshida_4), 5 * day);
+  REQUIRE(sim.run(200).ok());
+  const std::string digest = digest_of(read(two_bodies, {"hamiltonian.G=2.9e-4"}));
+  CHECK(digest == io::digest(sim.particles()));
+  CHECK(digest != digest_of(read(two_bodies)));
+  CHECK(digest == digest_of(read(two_bodies, {"hamiltonian.G=2.8e-4", "hamiltonian.force.gravity.G=2.9e-4"})));
+}
+
+TEST_CASE("until is a whole number of steps to 1e-9, and not to 1e-8", "[scene]") {
+  CHECK(read(two_bodies, {"integrator.until=\"1000.000000004 day\""}).integrator.steps == 200);
+  CHECK(refusal(two_bodies, {"integrator.until=\"1000.00000005 day\""}) ==
+        "--set integrator.until=\"1000.00000005 day\": until = \"1000.00000005 day\" is 200.00000001 steps of \"5 day\"; the "
+        "nearest whole numbers are \"1000 day\" (200 steps) and \"1005 day\" (201 steps)");
+}
+
+/// Twice a spring, and a choice, as a user writes it.
+struct Spring {
+  enum class Kind { soft, hard };
+  double k = 1;
+  Kind kind = Kind::soft;
+  std::vector<double> tail;
+  std::array<double, 3> center = {0, 0, 0};
+  bool twice = false;
+  int power = 1;
+  std::optional<double> cap;
+  std::string label = "none";
+
+  static constexpr auto describe();
+  template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+    const Real strength = Real(k) * (twice ? Real(2) : Real(1)) * (kind == Kind::hard ? Real(10) : Real(1));
+    for (Index i = 0; i < s.size(); ++i) {
+      const Vec3<Real> x = s.positions()[i];
+      out.force(i, -strength * x);
+      out.energy(strength * norm2(x) / Real(2));
+    }
+  }
+};
+
+}  // namespace
+}  // namespace noether::test
+
+template <> struct noether::EnumNames<noether::test::Spring::Kind> {
+  static constexpr std::array<std::pair<noether::test::Spring::Kind, std::string_view>, 2> values = {
+      {{noether::test::Spring::Kind::soft, "soft"}, {noether::test::Spring::Kind::hard, "hard"}}};
+};
+
+namespace noether::test {
+namespace {
+
+constexpr auto Spring::describe() {
+  return part<Spring>("spring", "a user's spring", field<&Spring::k>("k", "mass/time^2"), field<&Spring::kind>("kind", "1"),
+                      field<&Spring::tail>("tail", "length"), field<&Spring::center>("center", "length"),
+                      field<&Spring::twice>("twice", "1"), field<&Spring::power>("power", "1"),
+                      field<&Spring::cap>("cap", "length"), field<&Spring::label>("label", "1"));
+}
+
+TEST_CASE("a user's force is known after one line, with every kind of field", "[scene]") {
+  Parts parts = standard_parts();
+  parts.add_force<Spring>();
+  std::string text = two_bodies;
+  text.replace(text.find("type = \"gravity\""), 16,
+               "type = \"spring\"\nk = \"2 Msun/day^2\"\nkind = \"hard\"\ntail = [\"1 au\", \"2 au\"]\ntwice = true\npower = 3");
+  const Scene scene = read_scene(text, "scene.toml", parts, {"integrator.step=0.01 day", "integrator.steps=10"});
+  const Evaluation e = evaluate(scene, true);
+  CHECK(e.terms.size() == 1);
+  CHECK(e.terms.at(0).first == "spring");
+  CHECK(e.potential == 20.0);  // 2 x 10 x 2 / 2 at 1 au
+  CHECK(*e.gradient_error < 1e-20);
+  for (const char* line : {"k = \"2 Msun/day^2\"", "kind = \"hard\"", "tail = [\"1 au\", \"2 au\"]", "twice = true", "power = 3",
+                           "center = [\"0 au\", \"0 au\", \"0 au\"]", "label = \"none\""}) {
+    INFO(line << "\n" << scene.effective_toml);
+    CHECK(scene.effective_toml.find(line) != std::string::npos);
+  }
+  CHECK(scene.effective_toml.find("cap") == std::string::npos);
+  CHECK(refusal(text).find("unknown force 'spring'") != std::string::npos);
+  std::string message;
+  try {
+    read_scene(text, "scene.toml", parts, {"hamiltonian.force.spring.kind=herd"});
+  } catch (const SceneError& error) {
+    message = error.message();
+  }
+  CHECK(message == "unknown kind 'herd' in force 'spring'; did you mean 'hard'?");
+}
+
+TEST_CASE("a part in a scene is described field by field", "[scene]") {
+  const PartInfo info = part_info<Spring>();
+  REQUIRE(info.fields.size() == 8);
+  const std::vector<std::string> kinds = {"number", "choice", "list", "vector", "flag", "whole number", "number", "text"};
+  const std::vector<std::string> defaults = {"1.0", "\"soft\"", "[]", "[0.0, 0.0, 0.0]", "false", "1", "", "\"none\""};
+  for (std::size_t k = 0; k < kinds.size(); ++k) {
+    CHECK(info.fields[k].kind == kinds[k]);
+    CHECK(info.fields[k].default_value == defaults[k]);
+  }
+  CHECK(info.fields[1].choices == std::vector<std::string>{"soft", "hard"});
+}
+
+TEST_CASE("evaluate adds up the terms of a scene", "[scene]") {
+  const Scene scene = read(two_bodies);
+  const Evaluation e = evaluate(scene, true);
+  const double r = 1, m = 3e-6, v = 30 * units::solar::km / units::solar::second, G = units::solar::G;
+  CHECK(e.kinetic == m * (v * v) / 2);
+  CHECK(e.potential == -G * 1 * m / r);
+  CHECK(e.virial(0, 0) == -e.force_max);
+  CHECK(e.virial(1, 1) == 0);
+  CHECK(*e.gradient_error < 1e-15);
+  CHECK(e.forces[1][0] == -e.force_max);
+
+  std::string text = two_bodies;
+  text.replace(text.find("kinetic_potential\"\n[[hamiltonian.force]]\ntype = \"gravity\""), 57, "wisdom_holman\"");
+  CHECK(evaluate(read(text, {"integrator.method=verlet_aba"})).potential == e.potential);
+}
+
+}  // namespace
+}  // namespace noether::test

@@ -1,0 +1,125 @@
+// Scenes of tests/scenes: the good ones load and run, the bad ones are refused to the letter.
+
+#include "engine/error.hpp"
+#include "io/digest.hpp"
+#include "scene/scene.hpp"
+#include "scene/toml.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/process.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace noether::test {
+namespace {
+
+const std::filesystem::path scenes = std::filesystem::path(NOETHER_SOURCE_DIR) / "tests" / "scenes";
+
+std::vector<std::filesystem::path> scenes_in(const std::string& folder) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(scenes / folder)) {
+    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// What a bad scene says of itself: see tests/scenes/README.md.
+struct Expected {
+  std::vector<std::string> sets;
+  std::string message;
+  int line = 0;  ///< 0: the message stands for itself, file included
+  int exit_code = 2;
+  int messages = 0;
+};
+
+Expected expected_of(const std::filesystem::path& file) {
+  Expected expected;
+  std::istringstream text(read_text(file));
+  int number = 0;
+  for (std::string line; std::getline(text, line);) {
+    ++number;
+    if (line.starts_with("#!set ")) {
+      expected.sets.push_back(line.substr(6));
+    } else if (line.starts_with("#!exit ")) {
+      expected.exit_code = std::stoi(line.substr(7));
+    } else if (line.starts_with("#!! ")) {
+      expected.message = line.substr(4);
+      ++expected.messages;
+    } else if (const auto at = line.find("#! "); at != std::string::npos) {
+      expected.message = line.substr(at + 3);
+      expected.line = number;
+      ++expected.messages;
+    }
+  }
+  return expected;
+}
+
+/// The message of an error as the program shows it in the folder of the scene.
+std::string without_folder(std::string text, const std::filesystem::path& folder) {
+  const std::string prefix = folder.string() + "/";
+  for (auto at = text.find(prefix); at != std::string::npos; at = text.find(prefix)) text.erase(at, prefix.size());
+  return text;
+}
+
+TEST_CASE("every bad scene is refused with its message, at its line", "[scene]") {
+  const auto files = scenes_in("bad");
+  REQUIRE(files.size() >= 60);
+  for (const auto& file : files) {
+    const Expected expected = expected_of(file);
+    INFO(file.filename().string());
+    REQUIRE(expected.messages == 1);
+    try {
+      load_scene(file, standard_parts(), expected.sets);
+      FAIL_CHECK("the scene was taken");
+    } catch (const Error& error) {
+      CHECK(error.exit_code() == expected.exit_code);
+      if (expected.line > 0) {
+        CHECK(error.message() == expected.message);
+        CHECK(error.line() == expected.line);
+        CHECK(error.file() == file.string());
+      } else {
+        CHECK(without_folder(error.what(), file.parent_path()) == expected.message);
+      }
+    }
+  }
+}
+
+TEST_CASE("every good scene runs, and so does the scene that its files store", "[scene]") {
+  const auto files = scenes_in("good");
+  REQUIRE(files.size() >= 4);
+  for (const auto& file : files) {
+    INFO(file.filename().string());
+    const Scene scene = load_scene(file);
+    Simulation<double> sim = assemble(scene);
+    const Outcome outcome = sim.run(*scene.integrator.steps);
+    CHECK(outcome.kind == Outcome::Kind::completed);
+
+    const Scene again = read_scene(scene.effective_toml, file);
+    CHECK(again.effective_toml == scene.effective_toml);
+    Simulation<double> other = assemble(again);
+    CHECK(other.run(*again.integrator.steps).kind == Outcome::Kind::completed);
+    CHECK(io::digest(other.particles()) == io::digest(sim.particles()));
+  }
+}
+
+TEST_CASE("a body table that has changed since is refused by its hash", "[scene]") {
+  const std::filesystem::path file = scenes / "good" / "from_csv.toml";
+  std::string text = load_scene(file).effective_toml;
+  const auto at = text.find("bodies_sha256 = \"") + 17;
+  text[at] = text[at] == '0' ? '1' : '0';
+  try {
+    read_scene(text, file);
+    FAIL("the scene was taken");
+  } catch (const SceneError& error) {
+    CHECK(error.key() == "particles.bodies_sha256");
+    CHECK(error.message().find("is no longer the file this scene was run with") != std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace noether::test
