@@ -17,9 +17,7 @@ inline constexpr double few = 20;              // roundings
 inline constexpr Quad two_pi = 6.28318530717958647692528676655900576839_q;
 
 template <class Real>
-struct State {
-  Vec3<Real> x, v;
-};
+struct State { Vec3<Real> x, v; };
 using Doubles = State<double>;
 using Quads = State<Quad>;
 
@@ -79,7 +77,9 @@ inline Quads on_ellipse(const Turn& turn, Quad mu, Quad a, Quad e, Quad anomaly)
   const Quad speed = sqrt(mu / a) / ((Quad(1) - e) + e * fall);
   return turn(a * ((Quad(1) - e) - fall), a * b * s, -speed * s, speed * b * c);
 }
-inline Quad ellipse_time(Quad mu, Quad a, Quad e, Quad anomaly) { return sqrt(a * a * a / mu) * (anomaly - e * sin(anomaly)); }
+inline Quad ellipse_time(Quad mu, Quad a, Quad e, Quad anomaly) {
+  return sqrt(a * a * a / mu) * (anomaly - e * sin(anomaly));
+}
 
 /// Hyperbola with |a| and hyperbolic anomaly H.
 inline Quads on_hyperbola(const Turn& turn, Quad mu, Quad a, Quad e, Quad anomaly) {
@@ -98,7 +98,9 @@ inline Quads on_parabola(const Turn& turn, Quad mu, Quad q, Quad t) {
   const Quad speed = sqrt(Quad(2) * mu / q) / (Quad(1) + t * t);
   return turn(q * (Quad(1) - t * t), Quad(2) * q * t, -speed * t, speed);
 }
-inline Quad parabola_time(Quad mu, Quad q, Quad t) { return sqrt(Quad(2) * q * q * q / mu) * (t + t * t * t / Quad(3)); }
+inline Quad parabola_time(Quad mu, Quad q, Quad t) {
+  return sqrt(Quad(2) * q * q * q / mu) * (t + t * t * t / Quad(3));
+}
 
 /// How far relative changes of the inputs by one unit move the end, in units: x by r, v by v, mu and h by themselves.
 struct Condition {
