@@ -8,8 +8,8 @@
 #include "scene/parts.hpp"
 #include "scene/references.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <memory>
 #include <string>
@@ -70,7 +70,8 @@ void describe_part(const std::string& kind, const PartInfo& info, bool json) {
   for (const FieldInfo& f : info.fields) {
     const std::string value = f.default_value.empty() ? "" : ", default " + f.default_value;
     const std::string choices = f.choices.empty() ? "" : fmt::format(", one of {}", fmt::join(f.choices, ", "));
-    fmt::print("  {:<14} {} [{}]{}{}{}{}\n", f.name, f.kind, f.dimension, choices, value, f.help.empty() ? "" : ": ", f.help);
+    fmt::print("  {:<14} {} [{}]{}{}{}{}\n", f.name, f.kind, f.dimension, choices, value, f.help.empty() ? "" : ": ",
+               f.help);
   }
   const std::string entries = entries_of(info.source);
   if (!entries.empty()) fmt::print("\n{}", entries);
@@ -92,20 +93,21 @@ void describe_scheme(const Scheme& scheme, bool json) {
     for (const Stage& stage : scheme.word) {
       stages.push_back(Json::list({std::string(1, stage.letter), static_cast<double>(stage.weight)}));
     }
-    fmt::print("{}\n", Json::object({{"schema", "noether.describe/1"},
-                                     {"kind", "method"},
-                                     {"name", scheme.name},
-                                     {"help", scheme.summary},
-                                     {"aliases", Json::list_of(aliases)},
-                                     {"order", scheme.order.classical},
-                                     {"near_integrable_orders", Json::list_of(orders)},
-                                     {"kicks", scheme.evaluations()},
-                                     {"symmetric", scheme.is_symmetric()},
-                                     {"stability_limit", scheme.stability_limit > 0 ? Json(scheme.stability_limit) : Json()},
-                                     {"word", Json::list(stages)},
-                                     {"source", scheme.source},
-                                     {"bibtex", entries_of(scheme.source)}})
-                           .text());
+    fmt::print("{}\n",
+               Json::object({{"schema", "noether.describe/1"},
+                             {"kind", "method"},
+                             {"name", scheme.name},
+                             {"help", scheme.summary},
+                             {"aliases", Json::list_of(aliases)},
+                             {"order", scheme.order.classical},
+                             {"near_integrable_orders", Json::list_of(orders)},
+                             {"kicks", scheme.evaluations()},
+                             {"symmetric", scheme.is_symmetric()},
+                             {"stability_limit", scheme.stability_limit > 0 ? Json(scheme.stability_limit) : Json()},
+                             {"word", Json::list(stages)},
+                             {"source", scheme.source},
+                             {"bibtex", entries_of(scheme.source)}})
+                   .text());
     return;
   }
   fmt::print("{} (method): {}\n", scheme.name, scheme.summary);
@@ -117,14 +119,16 @@ void describe_scheme(const Scheme& scheme, bool json) {
     fmt::print("  a Nystroem splitting: for quadratic kinetic energies only\n");
   }
   if (!scheme.exact.empty()) fmt::print("  needs exact flows of {}\n", scheme.exact);
-  if (scheme.stability_limit > 0) fmt::print("  stable on the oscillator up to h omega = {:.6g}\n", scheme.stability_limit);
+  if (scheme.stability_limit > 0)
+    fmt::print("  stable on the oscillator up to h omega = {:.6g}\n", scheme.stability_limit);
   fmt::print("\n{}", word_text(scheme.word));
   const std::string entries = entries_of(scheme.source);
   if (!entries.empty()) fmt::print("\n{}", entries);
 }
 
 void describe_unit(const UnitRow& row, bool json) {
-  const Json::Members values = {{"solar", row.solar}, {"molecular", row.molecular}, {"si", row.si}, {"reduced", row.reduced}};
+  const Json::Members values = {
+      {"solar", row.solar}, {"molecular", row.molecular}, {"si", row.si}, {"reduced", row.reduced}};
   if (json) {
     fmt::print("{}\n", Json::object({{"schema", "noether.describe/1"},
                                      {"kind", "unit"},

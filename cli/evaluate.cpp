@@ -5,8 +5,8 @@
 #include "scene/evaluate.hpp"
 #include "scene/json.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <fstream>
 #include <memory>
@@ -28,7 +28,8 @@ void write_forces(const std::string& file, const Scene& scene, const Evaluation&
   out << "id,fx,fy,fz\n";
   for (Index i = 0; i < scene.particles.size(); ++i) {
     const Vec3<double> f = result.forces[i];
-    out << fmt::format("{},{:.17g},{:.17g},{:.17g}\n", scene.particles.ids()[static_cast<std::size_t>(i)], f[0], f[1], f[2]);
+    out << fmt::format("{},{:.17g},{:.17g},{:.17g}\n", scene.particles.ids()[static_cast<std::size_t>(i)], f[0], f[1],
+                       f[2]);
   }
   out.flush();
   if (!out) throw FileError("the forces could not be written", {.file = file});

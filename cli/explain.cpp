@@ -6,8 +6,8 @@
 #include "scene/json.hpp"
 #include "scene/scene.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -27,8 +27,8 @@ struct Explanation {
   std::vector<std::string> in, out, columns;
   std::size_t bytes_per_particle = 0;
   Index particles = 0;
-  std::map<char, int> flows;                 ///< stages of one step, by letter, the last joined to the next first
-  std::optional<double> recommended_step;    ///< [time]
+  std::map<char, int> flows;               ///< stages of one step, by letter, the last joined to the next first
+  std::optional<double> recommended_step;  ///< [time]
   std::string recommended_for;
 };
 
@@ -64,7 +64,9 @@ void sort_parts(const Scene& scene, Explanation& e) {
   for (const SceneForce& force : scene.hamiltonian.forces) e.in.push_back("force " + force.name);
   for (const SceneWatch& watch : scene.watches) {
     const bool monitor = watch.kind == SceneWatch::Kind::monitor;
-    const std::string name = monitor ? "monitor " + watch.monitor.name : watch.kind == SceneWatch::Kind::trajectory ? "writer trajectory" : "writer checkpoint";
+    const std::string name = monitor                                      ? "monitor " + watch.monitor.name
+                             : watch.kind == SceneWatch::Kind::trajectory ? "writer trajectory"
+                                                                          : "writer checkpoint";
     const std::string when = watch.cadence.wall > 0 ? fmt::format("every {} s of wall time", watch.cadence.wall)
                                                     : fmt::format("every {} steps", watch.cadence.steps);
     e.in.push_back(name + ", " + when);
@@ -74,7 +76,8 @@ void sort_parts(const Scene& scene, Explanation& e) {
     e.in.push_back(fmt::format("stop {}, every {} steps", escape ? "escape" : "collision", stop.steps));
   }
   const auto leave_out = [&](const std::string& what) {
-    const bool used = std::any_of(e.in.begin(), e.in.end(), [&](const std::string& one) { return one == what || one.starts_with(what + ","); });
+    const bool used = std::any_of(e.in.begin(), e.in.end(),
+                                  [&](const std::string& one) { return one == what || one.starts_with(what + ","); });
     if (!used) e.out.push_back(what);
   };
   for (const auto& kind : parts.forces()) leave_out("force " + kind.info.name);
@@ -113,7 +116,8 @@ std::string meaning(char letter, const Scene& scene) {
 }
 
 void print_text(const Scene& scene, const Explanation& e) {
-  fmt::print("{}{}{} over {}, {} particles\n", scene.title, scene.title.empty() ? "" : ": ", e.method, e.hamiltonian, e.particles);
+  fmt::print("{}{}{} over {}, {} particles\n", scene.title, scene.title.empty() ? "" : ": ", e.method, e.hamiltonian,
+             e.particles);
   fmt::print("in:\n");
   for (const std::string& one : e.in) fmt::print("  {}\n", one);
   fmt::print("left out:\n");
@@ -125,8 +129,9 @@ void print_text(const Scene& scene, const Explanation& e) {
   const std::string unit = scene.units->is_reduced() ? "" : " " + std::string(scene.units->time);
   fmt::print("step: {}", scene.integrator.step_text);
   if (e.recommended_step) {
-    fmt::print("; recommended for a method of order 2: {:.3g}{}, a twentieth of the time {} needs around its pericenter",
-               *e.recommended_step, unit, e.recommended_for);
+    fmt::print(
+        "; recommended for a method of order 2: {:.3g}{}, a twentieth of the time {} needs around its pericenter",
+        *e.recommended_step, unit, e.recommended_for);
   }
   fmt::print("\n");
 }

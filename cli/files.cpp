@@ -3,8 +3,8 @@
 #include "io/inspect.hpp"
 #include "scene/json.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <memory>
 #include <string>
@@ -19,9 +19,8 @@ Json text_or_null(const std::string& text) { return text.empty() ? Json() : Json
 Json json_of(const io::FileInfo& info) {
   std::vector<Json> monitors;
   for (const io::MonitorSummary& one : info.monitors) {
-    monitors.push_back(Json::object({{"name", one.name},
-                                     {"quantities", Json::list_of(one.quantities)},
-                                     {"samples", std::int64_t{one.samples}}}));
+    monitors.push_back(Json::object(
+        {{"name", one.name}, {"quantities", Json::list_of(one.quantities)}, {"samples", std::int64_t{one.samples}}}));
   }
   return Json::object({{"schema", "noether.info/1"},
                        {"kind", info.kind},
@@ -68,7 +67,8 @@ int verify_file(const std::string& file, bool json) {
                            .text());
     return ok ? 0 : 3;
   }
-  if (ok) fmt::print("{}: sound{}, last step {}\n", file, info.complete ? " and complete" : ", not complete", info.last_step);
+  if (ok)
+    fmt::print("{}: sound{}, last step {}\n", file, info.complete ? " and complete" : ", not complete", info.last_step);
   for (const std::string& line : info.damaged) fmt::print(stderr, "{}: {}\n", file, line);
   return ok ? 0 : 3;
 }
@@ -78,7 +78,8 @@ struct FileArguments {
   bool json = false;
 };
 
-CLI::App* file_command(CLI::App& app, const std::string& name, const std::string& help, const std::shared_ptr<FileArguments>& given) {
+CLI::App* file_command(CLI::App& app, const std::string& name, const std::string& help,
+                       const std::shared_ptr<FileArguments>& given) {
   CLI::App* command = app.add_subcommand(name, help);
   command->add_option("file", given->file, "run.h5 or a checkpoint")->required()->type_name("FILE");
   return command;

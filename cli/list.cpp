@@ -7,8 +7,8 @@
 #include "scene/json.hpp"
 #include "scene/parts.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <memory>
@@ -75,7 +75,8 @@ Listing units() {
   Listing list{{"unit", "constant", "dimension", "solar", "molecular", "si", "reduced"}, {}, {}};
   for (const UnitRow& row : list_units()) {
     const auto text = [](const std::optional<double>& x) { return x ? format_number(*x) : std::string("-"); };
-    list.add({row.symbol, row.constant, row.dimension, text(row.solar), text(row.molecular), text(row.si), text(row.reduced)},
+    list.add({row.symbol, row.constant, row.dimension, text(row.solar), text(row.molecular), text(row.si),
+              text(row.reduced)},
              {row.symbol, row.constant, row.dimension, row.solar, row.molecular, row.si, row.reduced});
   }
   return list;
@@ -129,8 +130,11 @@ void print_text(const std::string& what, const Listing& list) {
 void add_list_command(CLI::App& app, int& exit_code) {
   const auto what = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
-  CLI::App* command = app.add_subcommand("list", "what there is: methods, forces, constraints, monitors, builders, units");
-  command->add_option("what", *what, "methods, forces, constraints, monitors, builders or units")->required()->type_name("WHAT");
+  CLI::App* command =
+      app.add_subcommand("list", "what there is: methods, forces, constraints, monitors, builders, units");
+  command->add_option("what", *what, "methods, forces, constraints, monitors, builders or units")
+      ->required()
+      ->type_name("WHAT");
   command->add_flag("--json", *json, "as one line of JSON");
   command->callback([what, json, &exit_code] {
     const Listing list = listing_of(*what);

@@ -7,8 +7,8 @@
 #include "engine/version.hpp"
 #include "scene/json.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cctype>
@@ -24,7 +24,8 @@ namespace {
 using noether::Json;
 
 /// Says what went wrong: one line on stderr and, where reports are JSON, one on stdout.
-int complain(const noether::ErrorLocation& at, const std::string& message, const std::string& line, int code, bool json) {
+int complain(const noether::ErrorLocation& at, const std::string& message, const std::string& line, int code,
+             bool json) {
   fmt::print(stderr, "{}\n", line);
   if (json) {
     const auto text = [](const std::string& t) { return t.empty() ? Json() : Json(t); };

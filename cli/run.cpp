@@ -5,8 +5,8 @@
 #include "engine/suggest.hpp"
 #include "scene/run.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <memory>
 #include <string>

@@ -16,8 +16,7 @@ enum class KeplerStatus : std::uint8_t {
 };
 
 /// What one arc adds to position and velocity.
-template <class Real>
-struct KeplerArc {
+template <class Real> struct KeplerArc {
   Vec3<Real> dx = Vec3<Real>::Zero();  ///< x1 - x0 [length]
   Vec3<Real> dv = Vec3<Real>::Zero();  ///< v1 - v0 [length/time]
   Real s = Real(0);                    ///< integral of dt/r over the arc, whole periods included [time/length]
@@ -38,8 +37,7 @@ struct KeplerArc {
 /// @throws never
 /// @cost one evaluation of four universal functions on most planetary arcs, at most 400 on any; no allocation
 /// @source ReinTamayo2015, WisdomHernandez2015
-template <class Real>
-KeplerArc<Real> kepler_arc(const Vec3<Real>& x, const Vec3<Real>& v, Real mu, Real h);
+template <class Real> KeplerArc<Real> kepler_arc(const Vec3<Real>& x, const Vec3<Real>& v, Real mu, Real h);
 
 extern template KeplerArc<double> kepler_arc(const Vec3<double>&, const Vec3<double>&, double, double);
 extern template KeplerArc<Quad> kepler_arc(const Vec3<Quad>&, const Vec3<Quad>&, Quad, Quad);

@@ -9,8 +9,7 @@
 namespace noether::detail {
 
 /// What an arc is asked for, time running forward: t(s) = r0 s + eta0 G2 + zeta0 G3 = h is to be solved.
-template <class Real>
-struct KeplerEquation {
+template <class Real> struct KeplerEquation {
   Real mu, h;         // h > 0
   Real r, r_inverse;  // distance at the start
   Real eta;           // x . v = dr/ds
@@ -20,8 +19,7 @@ struct KeplerEquation {
 };
 
 /// Where a trial s is on the arc, and by how much it misses.
-template <class Real>
-struct KeplerTrial {
+template <class Real> struct KeplerTrial {
   UniversalFunctions<Real> g;
   Real r, eta, zeta;
   Real missing;  // h - t(s)
@@ -61,8 +59,7 @@ struct KeplerTrial {
 };
 
 /// Root of the Taylor polynomial of t at one point by reversion, order 5, and how far to trust it.
-template <class Real>
-struct KeplerCorrection {
+template <class Real> struct KeplerCorrection {
   Real step;
   Real size;  // squared ratio of the step to the radius within which the series is good
 
@@ -89,8 +86,7 @@ struct KeplerCorrection {
 /// The last step is then many roundings long and of either sign. Without this it would often be a fraction of one
 /// rounding, always to the same side, and rounding to nearest would drop it: a bias. Not where orbits turn so sharply
 /// that the last step must be short.
-template <class Real>
-Real next_trial(const Real& s, const KeplerCorrection<Real>& c) {
+template <class Real> Real next_trial(const Real& s, const KeplerCorrection<Real>& c) {
   constexpr int cut = (kepler_digits<Real> + 1) / 2;
   constexpr Real split = kepler_constant<Real>(power_of_two(cut) + Quad(1));
   constexpr Real sharp = kepler_constant<Real>(power_of_two(2 * cut - 20));
@@ -99,8 +95,7 @@ Real next_trial(const Real& s, const KeplerCorrection<Real>& c) {
 }
 
 /// A trial, and the step from it to the root.
-template <class Real>
-struct KeplerRoot {
+template <class Real> struct KeplerRoot {
   Real s, step;
   KeplerTrial<Real> trial;
   int iterations;
@@ -108,8 +103,7 @@ struct KeplerRoot {
 };
 
 /// The ordinary case: reversion at the start, then at each trial, as long as the series are good.
-template <class Real>
-KeplerRoot<Real> solve_by_series(const KeplerEquation<Real>& a) {
+template <class Real> KeplerRoot<Real> solve_by_series(const KeplerEquation<Real>& a) {
   constexpr int most_trials = 8;
   const KeplerCorrection<Real> start(a.h, a.r_inverse, a.eta, a.zeta, a.beta);
   Real s = next_trial(Real(0), start);
@@ -125,8 +119,7 @@ KeplerRoot<Real> solve_by_series(const KeplerEquation<Real>& a) {
 }
 
 /// The root between two trials, or above the lower one while none above is known.
-template <class Real>
-class KeplerBracket {
+template <class Real> class KeplerBracket {
  public:
   void narrow(const Real& s, const Real& missing) {
     if (missing > Real(0)) {
@@ -157,8 +150,7 @@ class KeplerBracket {
 };
 
 /// Laguerre's step for degree 5, which converges from nearly anywhere; not finite where it has no meaning.
-template <class Real>
-Real laguerre_step(const KeplerTrial<Real>& t) {
+template <class Real> Real laguerre_step(const KeplerTrial<Real>& t) {
   using std::abs;
   using std::sqrt;
   const Real root = sqrt(abs(Real(16) * t.r * t.r + Real(20) * t.missing * t.eta));
@@ -166,8 +158,7 @@ Real laguerre_step(const KeplerTrial<Real>& t) {
 }
 
 /// A first s of the right order: along the tangent, or from the center, whichever is shorter.
-template <class Real>
-Real crude_start(const KeplerEquation<Real>& a) {
+template <class Real> Real crude_start(const KeplerEquation<Real>& a) {
   using std::sqrt;
   Real s = a.h * a.r_inverse;
   if (a.mu > Real(0)) {
@@ -183,8 +174,7 @@ Real crude_start(const KeplerEquation<Real>& a) {
 }
 
 /// Any case: t(s) is monotone, so a bracket exists; Laguerre's step inside it, bisection where that stalls.
-template <class Real>
-KeplerRoot<Real> solve_by_bracket(const KeplerEquation<Real>& a) {
+template <class Real> KeplerRoot<Real> solve_by_bracket(const KeplerEquation<Real>& a) {
   constexpr int most_trials = 390;
   constexpr Real rounding = kepler_constant<Real>(power_of_two(-kepler_digits<Real>));
   using std::abs;
@@ -203,18 +193,11 @@ KeplerRoot<Real> solve_by_bracket(const KeplerEquation<Real>& a) {
 }
 
 /// A type with more digits, to reduce many periods without loss; the type itself where there is none.
-template <class Real>
-struct WiderType {
-  using type = Real;
-};
-template <>
-struct WiderType<double> {
-  using type = Quad;
-};
+template <class Real> struct WiderType { using type = Real; };
+template <> struct WiderType<double> { using type = Quad; };
 
 /// Takes whole periods out of `h` so that at most half a period remains, and gives the s of those taken out.
-template <class Real>
-Real take_whole_periods(const Vec3<Real>& x, const Vec3<Real>& v, KeplerEquation<Real>& a) {
+template <class Real> Real take_whole_periods(const Vec3<Real>& x, const Vec3<Real>& v, KeplerEquation<Real>& a) {
   using std::abs;
   using std::floor;
   using std::sqrt;
@@ -259,16 +242,14 @@ KeplerArc<Real> arc_at_root(const Vec3<Real>& x, const Vec3<Real>& v, const Kepl
   return arc;
 }
 
-template <class Real>
-bool all_finite(const KeplerArc<Real>& arc) {
+template <class Real> bool all_finite(const KeplerArc<Real>& arc) {
   // A number minus itself is zero unless it is infinite or not a number.
   const Real sum = arc.dx[0] * Real(0) + arc.dx[1] * Real(0) + arc.dx[2] * Real(0) + arc.dv[0] * Real(0) +
                    arc.dv[1] * Real(0) + arc.dv[2] * Real(0) + arc.s * Real(0);
   return sum == Real(0);
 }
 
-template <class Real>
-KeplerArc<Real> not_finite_arc(int iterations) {
+template <class Real> KeplerArc<Real> not_finite_arc(int iterations) {
   KeplerArc<Real> arc;
   arc.iterations = iterations;
   arc.status = KeplerStatus::not_finite;
@@ -310,8 +291,7 @@ KeplerArc<Real> ordinary_arc(const Vec3<Real>& x, const Vec3<Real>& v, const Rea
 }
 
 /// mu = 0: a straight line, and the integral of dt/r along it.
-template <class Real>
-KeplerArc<Real> free_arc(const Vec3<Real>& x, const Vec3<Real>& v, const Real& h) {
+template <class Real> KeplerArc<Real> free_arc(const Vec3<Real>& x, const Vec3<Real>& v, const Real& h) {
   using std::abs;
   using std::log1p;
   using std::sqrt;
@@ -332,8 +312,7 @@ KeplerArc<Real> arc_in_range(const Vec3<Real>& x, const Vec3<Real>& v, const Rea
 }
 
 /// The largest power of two up to a positive number.
-template <class Real>
-Real power_of_two_below(const Real& x) {
+template <class Real> Real power_of_two_below(const Real& x) {
   constexpr int stride = 32;
   const Real jump = kepler_constant<Real>(power_of_two(stride));
   Real p(1);
@@ -343,8 +322,7 @@ Real power_of_two_below(const Real& x) {
   return p;
 }
 
-template <class Real>
-Real largest_component(const Vec3<Real>& a) {
+template <class Real> Real largest_component(const Vec3<Real>& a) {
   using std::abs;
   Real most = abs(a[0]);
   if (abs(a[1]) > most) most = abs(a[1]);
@@ -382,8 +360,7 @@ KeplerArc<Real> scaled_arc(const Vec3<Real>& x, const Vec3<Real>& v, const Real&
 
 namespace noether {
 
-template <class Real>
-KeplerArc<Real> kepler_arc(const Vec3<Real>& x, const Vec3<Real>& v, Real mu, Real h) {
+template <class Real> KeplerArc<Real> kepler_arc(const Vec3<Real>& x, const Vec3<Real>& v, Real mu, Real h) {
   using std::abs;
   // Within these no product of the solution overflows or vanishes; a comparison with a NaN is false.
   const Real most(1e30), least(1e-30), longest(1e20), r2 = norm2(x);

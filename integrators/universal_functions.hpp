@@ -14,8 +14,7 @@ namespace noether::detail {
 template <class Real>
 inline constexpr int kepler_digits = std::numeric_limits<Real>::digits > 0 ? std::numeric_limits<Real>::digits : 53;
 
-template <class Real>
-constexpr Real kepler_constant(Quad x) {
+template <class Real> constexpr Real kepler_constant(Quad x) {
   if constexpr (std::is_same_v<Real, Quad>) {
     return x;
   } else {
@@ -33,8 +32,7 @@ constexpr Quad power_of_two(int n) {
 ///
 /// A constant that is always rounded the same way would make the energy of a long run drift. So the first coefficient
 /// is exactly 1, and `low` is what rounding took from the next two, added where the sum is still small.
-template <class Real>
-struct StumpffSeries {
+template <class Real> struct StumpffSeries {
   static constexpr std::size_t terms = kepler_digits<Real> <= 53 ? 10 : kepler_digits<Real> <= 113 ? 17 : 34;
   std::array<Real, terms> high;
   std::array<Real, 3> low;
@@ -58,14 +56,11 @@ struct StumpffSeries {
   }
 };
 
-template <class Real>
-inline constexpr StumpffSeries<Real> stumpff_2(2);
-template <class Real>
-inline constexpr StumpffSeries<Real> stumpff_3(3);
+template <class Real> inline constexpr StumpffSeries<Real> stumpff_2(2);
+template <class Real> inline constexpr StumpffSeries<Real> stumpff_3(3);
 
 /// G_n(s) = s^n c_n(beta s^2): cosine and sine of the universal variable and their integrals.
-template <class Real>
-struct UniversalFunctions {
+template <class Real> struct UniversalFunctions {
   Real g0, g1, g2, g3;
 
   UniversalFunctions(const Real& beta, const Real& s) {

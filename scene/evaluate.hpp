@@ -11,12 +11,12 @@
 namespace noether {
 
 struct Evaluation {
-  double kinetic = 0, potential = 0;                   ///< [energy]
-  std::vector<std::pair<std::string, double>> terms;   ///< potential energy of each force; equal names are numbered
-  Mat3<double> virial = Mat3<double>::Zero();          ///< sum of x (x) f [energy]
-  VectorColumn<double> forces;                         ///< m a, shape (n, 3); drag is not among them
-  double force_max = 0;                                ///< largest |m a|
-  std::optional<double> gradient_error;                ///< worst of all forces, where it was asked for
+  double kinetic = 0, potential = 0;                  ///< [energy]
+  std::vector<std::pair<std::string, double>> terms;  ///< potential energy of each force; equal names are numbered
+  Mat3<double> virial = Mat3<double>::Zero();         ///< sum of x (x) f [energy]
+  VectorColumn<double> forces;                        ///< m a, shape (n, 3); drag is not among them
+  double force_max = 0;                               ///< largest |m a|
+  std::optional<double> gradient_error;               ///< worst of all forces, where it was asked for
 };
 
 /// Evaluates every force of a scene at its start.

@@ -31,12 +31,8 @@ struct PartInfo {
 
 namespace detail {
 
-template <class T> struct optional_value {
-  using type = T;
-};
-template <class T> struct optional_value<std::optional<T>> {
-  using type = T;
-};
+template <class T> struct optional_value { using type = T; };
+template <class T> struct optional_value<std::optional<T>> { using type = T; };
 
 /// A default in the units of a scene, as text that reads back to the same bits.
 SceneValue quantity_value(double value, std::string_view dimension, const UnitSystem& units);
@@ -49,13 +45,20 @@ template <class E> std::vector<std::string> choice_names() {
 
 template <class V> std::string field_kind() {
   using T = typename optional_value<V>::type;
-  if constexpr (std::is_same_v<T, bool>) return "flag";
-  else if constexpr (std::is_integral_v<T>) return "whole number";
-  else if constexpr (std::is_floating_point_v<T>) return "number";
-  else if constexpr (std::is_enum_v<T>) return "choice";
-  else if constexpr (std::is_same_v<T, std::string>) return "text";
-  else if constexpr (std::is_same_v<T, std::array<double, 3>>) return "vector";
-  else return "list";
+  if constexpr (std::is_same_v<T, bool>)
+    return "flag";
+  else if constexpr (std::is_integral_v<T>)
+    return "whole number";
+  else if constexpr (std::is_floating_point_v<T>)
+    return "number";
+  else if constexpr (std::is_enum_v<T>)
+    return "choice";
+  else if constexpr (std::is_same_v<T, std::string>)
+    return "text";
+  else if constexpr (std::is_same_v<T, std::array<double, 3>>)
+    return "vector";
+  else
+    return "list";
 }
 
 /// A value of a field as a scene writes it.
@@ -80,7 +83,8 @@ template <class V> SceneValue field_value(const V& value, std::string_view dimen
   }
 }
 
-template <class V> V read_element(const TableReader& reader, const SceneValue& value, std::string_view key, std::string_view dimension) {
+template <class V>
+V read_element(const TableReader& reader, const SceneValue& value, std::string_view key, std::string_view dimension) {
   if constexpr (std::is_same_v<V, std::string>) {
     const std::string* text = value.get<std::string>();
     if (text == nullptr) reader.wrong_kind(value, key, "a list of texts");
@@ -95,7 +99,8 @@ template <class E> E read_choice(TableReader& reader, std::string_view key) {
   for (const auto& [value, name] : EnumNames<E>::values) {
     if (name == text) return value;
   }
-  reader.fail(key, fmt::format("unknown {} '{}' in {}{}", key, text, reader.what(), did_you_mean(text, choice_names<E>())));
+  reader.fail(key,
+              fmt::format("unknown {} '{}' in {}{}", key, text, reader.what(), did_you_mean(text, choice_names<E>())));
 }
 
 /// Reads one field where the scene gives it.
@@ -134,15 +139,22 @@ template <class V> void read_field(TableReader& reader, std::string_view key, st
 
 /// What part `T` says of itself.
 template <class T> PartInfo part_info() {
-  PartInfo info{std::string(T::describe().name), std::string(T::describe().help),
-                std::string(entry_text<T, Formula>()), std::string(entry_text<T, Source>()), {}};
+  PartInfo info{std::string(T::describe().name),
+                std::string(T::describe().help),
+                std::string(entry_text<T, Formula>()),
+                std::string(entry_text<T, Source>()),
+                {}};
   if constexpr (std::is_default_constructible_v<T>) {
     const T defaults{};
     for_each_field<T>([&](const auto& field) {
       using V = typename std::decay_t<decltype(field)>::value_type;
       using Plain = typename detail::optional_value<V>::type;
-      FieldInfo one{std::string(field.name), std::string(field.dimension), std::string(field.help),
-                    detail::field_kind<V>(), "", {}};
+      FieldInfo one{std::string(field.name),
+                    std::string(field.dimension),
+                    std::string(field.help),
+                    detail::field_kind<V>(),
+                    "",
+                    {}};
       const V& value = defaults.*(field.member);
       if constexpr (std::is_same_v<V, Plain>) {
         one.default_value = to_text(detail::field_value(value, "1", unit_system("reduced")));

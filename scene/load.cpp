@@ -25,8 +25,10 @@ template <class Kinds> std::vector<std::string> names_of(const Kinds& kinds) {
 }
 
 /// How many steps make a duration. @throws SceneError  unless it is a whole number, with the two nearest
-std::int64_t whole_steps(const TableReader& reader, std::string_view key, const SceneValue& value, const SceneIntegrator& integrator) {
-  const double duration = reader.number(value, key, "time"), exact = duration / integrator.step, whole = std::round(exact);
+std::int64_t whole_steps(const TableReader& reader, std::string_view key, const SceneValue& value,
+                         const SceneIntegrator& integrator) {
+  const double duration = reader.number(value, key, "time"), exact = duration / integrator.step,
+               whole = std::round(exact);
   const auto fail = [&](const std::string& message) {
     reader.fail(&value, key, fmt::format("{} = {} {}", key, to_text(value), message));
   };
@@ -87,7 +89,8 @@ class SceneReader {
   }
 
   void read_units(TableReader& top) {
-    if (!top.has("units")) top.fail(nullptr, "units", "units are missing; give units = \"solar\", \"molecular\", \"si\" or \"reduced\"");
+    if (!top.has("units"))
+      top.fail(nullptr, "units", "units are missing; give units = \"solar\", \"molecular\", \"si\" or \"reduced\"");
     try {
       scene_.units = context_.units = &unit_system(top.text("units"));
     } catch (const SceneError&) {
@@ -110,9 +113,11 @@ class SceneReader {
     TableReader reader(context_, table, "[hamiltonian]", "hamiltonian");
     SceneValue& effective = scene_.effective.put("hamiltonian", SceneValue::table());
     const std::string type = reader.text("type");
-    if (!reader.has("type")) reader.fail(nullptr, "type", "[hamiltonian] has no type; give \"kinetic_potential\" or \"wisdom_holman\"");
+    if (!reader.has("type"))
+      reader.fail(nullptr, "type", "[hamiltonian] has no type; give \"kinetic_potential\" or \"wisdom_holman\"");
     if (type != "kinetic_potential" && type != "wisdom_holman") {
-      reader.fail("type", fmt::format("unknown hamiltonian '{}'{}", type, did_you_mean(type, {"kinetic_potential", "wisdom_holman"})));
+      reader.fail("type", fmt::format("unknown hamiltonian '{}'{}", type,
+                                      did_you_mean(type, {"kinetic_potential", "wisdom_holman"})));
     }
     effective.put("type", SceneValue::of(type));
     const SceneValue* G = reader.find("G");
@@ -128,7 +133,8 @@ class SceneReader {
       reader.fail("coordinates", "wisdom_holman has jacobi or democratic coordinates");
     }
     if (type == "kinetic_potential" && forces.empty()) {
-      reader.fail("type", "kinetic_potential has no force, so nothing would move anything; add a [[hamiltonian.force]] table");
+      reader.fail("type",
+                  "kinetic_potential has no force, so nothing would move anything; add a [[hamiltonian.force]] table");
     }
     SceneValue::Array list;
     for (const SceneValue* force : forces) read_force(*force, list);
@@ -159,8 +165,9 @@ class SceneReader {
 
   /// Finds the kind a table names in its `type`.
   template <class Kind>
-  std::pair<const Kind*, std::string> kind_of_part(const SceneValue& table, const std::string& path, const std::string& what,
-                                                   const std::vector<Kind>& kinds, std::vector<std::string> others) {
+  std::pair<const Kind*, std::string> kind_of_part(const SceneValue& table, const std::string& path,
+                                                   const std::string& what, const std::vector<Kind>& kinds,
+                                                   std::vector<std::string> others) {
     TableReader reader(context_, table, fmt::format("[[{}]]", path.substr(0, path.rfind('.'))), path);
     const std::string type = reader.text("type");
     for (const Kind& kind : kinds) {
@@ -186,7 +193,8 @@ class SceneReader {
     if (step == nullptr) reader.fail(nullptr, "step", "[integrator] has no step; give one, such as \"1 day\"");
     made.step = reader.number(*step, "step", "time");
     made.step_text = to_text(*step);
-    if (made.step == 0) reader.fail("step", fmt::format("a step of {} is no step; a time other than 0 is expected", made.step_text));
+    if (made.step == 0)
+      reader.fail("step", fmt::format("a step of {} is no step; a time other than 0 is expected", made.step_text));
     effective.put("step", *step);
     const SceneValue* until = reader.find("until");
     if (until != nullptr && reader.has("steps")) {
@@ -195,7 +203,8 @@ class SceneReader {
     if (until != nullptr) made.steps = whole_steps(reader, "until", *until, made);
     if (until != nullptr) effective.put("until", *until);
     if (reader.has("steps")) made.steps = reader.integer("steps");
-    if (made.steps && *made.steps < 0) reader.fail("steps", fmt::format("steps = {} is negative; 0 or more is expected", *made.steps));
+    if (made.steps && *made.steps < 0)
+      reader.fail("steps", fmt::format("steps = {} is negative; 0 or more is expected", *made.steps));
     if (reader.has("steps")) effective.put("steps", SceneValue::of(*made.steps));
     made.compensated = reader.flag("compensated", false);
     effective.put("compensated", SceneValue::of(made.compensated));
@@ -234,7 +243,9 @@ class SceneReader {
     const int given = (every != nullptr) + (steps != nullptr) + (wall != nullptr);
     const std::string_view choices = may_be_wall ? "every, steps or wall" : "every or steps";
     if (given == 0) reader.fail(nullptr, "steps", fmt::format("{} does not say when; give {}", reader.what(), choices));
-    if (given > 1) reader.fail(every != nullptr ? every : wall, every != nullptr ? "every" : "wall", fmt::format("{} says twice when; give one of {}", reader.what(), choices));
+    if (given > 1)
+      reader.fail(every != nullptr ? every : wall, every != nullptr ? "every" : "wall",
+                  fmt::format("{} says twice when; give one of {}", reader.what(), choices));
     Cadence cadence;
     if (every != nullptr) cadence.steps = whole_steps(reader, "every", *every, scene_.integrator);
     if (steps != nullptr) cadence.steps = counted_steps(reader, "steps");
@@ -302,7 +313,9 @@ class SceneReader {
       }
       const auto distance = reader.quantity("distance", "length");
       if (!distance) reader.fail(nullptr, "distance", fmt::format("stop '{}' has no distance; give one", type));
-      if (!(*distance > 0)) reader.fail("distance", fmt::format("distance = {} cannot stop a run; a length above 0 is expected", to_text(*reader.find("distance"))));
+      if (!(*distance > 0))
+        reader.fail("distance", fmt::format("distance = {} cannot stop a run; a length above 0 is expected",
+                                            to_text(*reader.find("distance"))));
       SceneValue effective = SceneValue::table();
       effective.put("type", SceneValue::of(type));
       effective.put("distance", *reader.find("distance"));
@@ -374,7 +387,8 @@ class SceneReader {
     const SceneValue* particles = root_.find("particles");
     const SceneValue* bodies = particles->find("body");
     int line = particles->line;
-    if (bodies != nullptr) line = std::get<SceneValue::Array>(bodies->data)[static_cast<std::size_t>(pair->second)].line;
+    if (bodies != nullptr)
+      line = std::get<SceneValue::Array>(bodies->data)[static_cast<std::size_t>(pair->second)].line;
     throw scene_error(scene_.source, line, "particles", "",
                       fmt::format("'{}' and '{}' stand in one place, where their attraction is infinite; move one, or "
                                   "give gravity a softening",

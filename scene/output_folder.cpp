@@ -40,15 +40,18 @@ OutputFolder::OutputFolder(fs::path path) : path_(std::move(path)) {
   }
   lock_ = ::open((path_ / ".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (lock_ < 0) {
-    throw FileError(fmt::format("the output folder cannot be written: {}", std::strerror(errno)), {.file = path_.string()});
+    throw FileError(fmt::format("the output folder cannot be written: {}", std::strerror(errno)),
+                    {.file = path_.string()});
   }
   if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
     const int reason = errno;
     ::close(lock_);
     if (reason != EWOULDBLOCK) {
-      throw FileError(fmt::format("the output folder cannot be locked: {}", std::strerror(reason)), {.file = path_.string()});
+      throw FileError(fmt::format("the output folder cannot be locked: {}", std::strerror(reason)),
+                      {.file = path_.string()});
     }
-    throw SceneError("another run is writing here; wait for it, or give another folder with --out", {.file = path_.string()});
+    throw SceneError("another run is writing here; wait for it, or give another folder with --out",
+                     {.file = path_.string()});
   }
 }
 
@@ -67,7 +70,8 @@ void OutputFolder::discard() const {
   for (const char* name : run_files) {
     std::error_code error;
     fs::remove(path_ / name, error);
-    if (error) throw FileError(fmt::format("cannot be removed: {}", error.message()), {.file = (path_ / name).string()});
+    if (error)
+      throw FileError(fmt::format("cannot be removed: {}", error.message()), {.file = (path_ / name).string()});
   }
 }
 
@@ -79,7 +83,8 @@ void OutputFolder::move_away() const {
   fs::path target;
   for (int k = 1; target.empty() || fs::exists(target); ++k) target = base.string() + fmt::format(".{}", k);
   fs::create_directory(target, error);
-  if (error) throw FileError(fmt::format("a finished run cannot be moved here: {}", error.message()), {.file = target.string()});
+  if (error)
+    throw FileError(fmt::format("a finished run cannot be moved here: {}", error.message()), {.file = target.string()});
   for (const char* name : run_files) io::rename_if_there(path_ / name, target / name);
   io::sync_folder(target);
 }
@@ -91,7 +96,8 @@ std::optional<io::Checkpoint> OutputFolder::prepare(Existing existing) {
   if (existing == Existing::resume) {
     if (found.checkpoint) return std::move(found.checkpoint);
     if (!found.damaged.empty()) {
-      throw FileError(fmt::format("no valid checkpoint to resume from ({}); start over with --fresh", fmt::join(found.damaged, "; ")),
+      throw FileError(fmt::format("no valid checkpoint to resume from ({}); start over with --fresh",
+                                  fmt::join(found.damaged, "; ")),
                       {.file = path_.string()});
     }
     discard();
@@ -101,8 +107,9 @@ std::optional<io::Checkpoint> OutputFolder::prepare(Existing existing) {
     discard();
   } else {
     const std::string where = found.checkpoint ? fmt::format(" at step {}", found.checkpoint->step) : "";
-    throw SceneError(fmt::format("an unfinished run stands here{}; go on with --resume, or start over with --fresh", where),
-                     {.file = path_.string()});
+    throw SceneError(
+        fmt::format("an unfinished run stands here{}; go on with --resume, or start over with --fresh", where),
+        {.file = path_.string()});
   }
   return {};
 }

@@ -33,13 +33,15 @@ std::pair<Vec3<double>, Vec3<double>> from_elements(TableReader& body, const Par
   std::array<double, 6> numbers{};
   for (std::size_t k = 0; k < 6; ++k) numbers[k] = body.quantity(element_keys[k], element_dimensions[k]).value_or(0);
   if (s.size() == 0) {
-    body.fail("a", "the first body has no other to move about; give its x and v, or nothing to put it at rest in the origin");
+    body.fail(
+        "a", "the first body has no other to move about; give its x and v, or nothing to put it at rest in the origin");
   }
-  if (!body.has("a")) body.fail(nullptr, "a", fmt::format("the elements of {} have no semi-major axis; give a", body.what()));
+  if (!body.has("a"))
+    body.fail(nullptr, "a", fmt::format("the elements of {} have no semi-major axis; give a", body.what()));
   const double mu = gravitation(body) * (s.masses()[0] + mass);
   try {
-    auto state = state_from_elements<double>(
-        {numbers[0], numbers[1], numbers[2], numbers[3], numbers[4], numbers[5]}, mu);
+    auto state =
+        state_from_elements<double>({numbers[0], numbers[1], numbers[2], numbers[3], numbers[4], numbers[5]}, mu);
     state.first += s.positions()[0];
     state.second += s.velocities()[0];
     return state;
@@ -63,13 +65,15 @@ void add_body(TableReader& body, ParticleSystem<double>& s) {
   bool elements = false;
   for (const std::string_view key : element_keys) elements = body.has(key) || elements;
   if (elements && (x || v)) {
-    body.fail(x ? "x" : "v", fmt::format("{} has both elements and {}; give one or the other", body.what(), x ? "x" : "v"));
+    body.fail(x ? "x" : "v",
+              fmt::format("{} has both elements and {}; give one or the other", body.what(), x ? "x" : "v"));
   }
   if (elements) {
     const auto [position, velocity] = from_elements(body, s, *mass);
     s.add(name, *mass, position, velocity);
   } else if (!x != !v || (!x && s.size() > 0)) {
-    body.fail(nullptr, x ? "v" : "x", fmt::format("{} has no {}; give x and v, or elements about the first body", body.what(), x ? "v" : "x"));
+    body.fail(nullptr, x ? "v" : "x",
+              fmt::format("{} has no {}; give x and v, or elements about the first body", body.what(), x ? "v" : "x"));
   } else {
     s.add(name, *mass, column(x.value_or(std::array<double, 3>{})), column(v.value_or(std::array<double, 3>{})));
   }
@@ -85,23 +89,26 @@ ParticleSystem<double> from_file(TableReader& reader, const std::filesystem::pat
   const std::string hash = io::sha256(io::read_bytes(file));
   const std::string expected = reader.text("bodies_sha256", hash);
   if (expected != hash) {
-    reader.fail("bodies_sha256", fmt::format("'{}' is no longer the file this scene was run with: its hash is {}; take the "
-                                             "key out to use the new one",
-                                             name, hash));
+    reader.fail("bodies_sha256",
+                fmt::format("'{}' is no longer the file this scene was run with: its hash is {}; take the "
+                            "key out to use the new one",
+                            name, hash));
   }
   effective.put("bodies", SceneValue::of(name));
   effective.put("bodies_sha256", SceneValue::of(hash));
   return s;
 }
 
-ParticleSystem<double> from_tables(TableReader& reader, const std::vector<const SceneValue*>& bodies, SceneValue& effective) {
+ParticleSystem<double> from_tables(TableReader& reader, const std::vector<const SceneValue*>& bodies,
+                                   SceneValue& effective) {
   ParticleSystem<double> s(*reader.context().units);
   SceneValue::Array list;
   for (const SceneValue* table : bodies) {
     const SceneValue* name = table->find("name");
     const std::string* text = name != nullptr ? name->get<std::string>() : nullptr;
     const std::string called = text != nullptr ? *text : fmt::format("body_{}", s.size() + 1);
-    TableReader body(reader.context(), *table, fmt::format("body '{}'", called), fmt::format("particles.body.{}", list.size()));
+    TableReader body(reader.context(), *table, fmt::format("body '{}'", called),
+                     fmt::format("particles.body.{}", list.size()));
     add_body(body, s);
     SceneValue entry = *table;
     if (name == nullptr) entry.put("name", SceneValue::of(called));

@@ -15,8 +15,7 @@ SceneError scene_error(const SceneSource& source, int line, std::string key, std
   if (line < 0 && set < source.sets.size()) {
     return SceneError(message, {.file = "--set " + source.sets[set], .key = std::move(key), .value = std::move(value)});
   }
-  return SceneError(message,
-                    {.file = source.file, .line = line, .key = std::move(key), .value = std::move(value)});
+  return SceneError(message, {.file = source.file, .line = line, .key = std::move(key), .value = std::move(value)});
 }
 
 TableReader::TableReader(const SceneContext& context, const SceneValue& table, std::string what, std::string path)
@@ -92,9 +91,12 @@ double TableReader::number(const SceneValue& value, std::string_view key, std::s
   const bool may_be_bare = units.is_reduced() || expected == dimensions::none || key == "G";
   if (text == nullptr && may_be_bare && !needs_unit) return bare;
   const std::string written = text != nullptr ? *text : format_number(bare);
-  const auto ends_in_digit = [](const std::string& t) { return !t.empty() && t.find_first_not_of("0123456789.+-eE") == std::string::npos; };
+  const auto ends_in_digit = [](const std::string& t) {
+    return !t.empty() && t.find_first_not_of("0123456789.+-eE") == std::string::npos;
+  };
   if (needs_unit && ends_in_digit(written)) {
-    fail(&value, key, fmt::format("{}: '{}' has no unit; an angle is expected, such as '{} deg'", key, written, written));
+    fail(&value, key,
+         fmt::format("{}: '{}' has no unit; an angle is expected, such as '{} deg'", key, written, written));
   }
   try {
     return parse_quantity(written, expected, units);
@@ -140,7 +142,8 @@ std::vector<const SceneValue*> tables_of(TableReader& reader, std::string_view k
   }
   for (const SceneValue& element : *list) {
     if (!element.is_table()) {
-      reader.fail(&element, key, fmt::format("{} holds {}; tables headed [[{}]] are expected", name, kind_of(element), name));
+      reader.fail(&element, key,
+                  fmt::format("{} holds {}; tables headed [[{}]] are expected", name, kind_of(element), name));
     }
     tables.push_back(&element);
   }

@@ -38,7 +38,8 @@ Json per_second(double amount, double seconds) { return seconds > 0 ? Json(amoun
 
 Json particle_of(const Outcome& outcome) {
   if (!outcome.particle) return {};
-  return Json::object({{"index", outcome.particle->index}, {"id", outcome.particle->id}, {"name", outcome.particle->name}});
+  return Json::object(
+      {{"index", outcome.particle->index}, {"id", outcome.particle->id}, {"name", outcome.particle->name}});
 }
 
 }  // namespace
@@ -47,33 +48,34 @@ std::string to_json(const RunReport& r) {
   Json::Members monitors;
   for (const auto& [name, monitor] : r.monitors) monitors.emplace_back(name, json_of(monitor));
   const auto steps = static_cast<double>(r.steps_made);
-  return Json::object({{"schema", "noether.run/1"},
-                       {"version", version()},
-                       {"commit", commit()},
-                       {"scene", r.scene},
-                       {"scene_sha256", r.scene_sha256},
-                       {"outcome", name(r.outcome.kind)},
-                       {"exit_code", r.exit_code()},
-                       {"message", message_of(r)},
-                       {"particle", particle_of(r.outcome)},
-                       {"quantity", r.outcome.quantity.empty() ? Json() : Json(r.outcome.quantity)},
-                       {"step", r.outcome.step},
-                       {"time", r.outcome.time},
-                       {"time_unit", r.time_unit},
-                       {"dt", r.dt},
-                       {"particles", std::int64_t{r.particles}},
-                       {"resumed_from_step", r.resumed_from_step},
-                       {"threads", r.threads},
-                       {"simd", r.simd},
-                       {"evaluations", Json::object({{"force", r.evaluations.force},
-                                                     {"kepler", r.evaluations.kepler},
-                                                     {"jacobian", r.evaluations.jacobian}})},
-                       {"wall_s", r.wall_s},
-                       {"steps_per_s", per_second(steps, r.wall_s)},
-                       {"particle_steps_per_s", per_second(steps * static_cast<double>(r.particles), r.wall_s)},
-                       {"digest", r.digest},
-                       {"monitors", Json::object(monitors)},
-                       {"files", Json::object({{"trajectory", json_of(r.trajectory)}, {"checkpoint", json_of(r.checkpoint)}})}})
+  return Json::object(
+             {{"schema", "noether.run/1"},
+              {"version", version()},
+              {"commit", commit()},
+              {"scene", r.scene},
+              {"scene_sha256", r.scene_sha256},
+              {"outcome", name(r.outcome.kind)},
+              {"exit_code", r.exit_code()},
+              {"message", message_of(r)},
+              {"particle", particle_of(r.outcome)},
+              {"quantity", r.outcome.quantity.empty() ? Json() : Json(r.outcome.quantity)},
+              {"step", r.outcome.step},
+              {"time", r.outcome.time},
+              {"time_unit", r.time_unit},
+              {"dt", r.dt},
+              {"particles", std::int64_t{r.particles}},
+              {"resumed_from_step", r.resumed_from_step},
+              {"threads", r.threads},
+              {"simd", r.simd},
+              {"evaluations", Json::object({{"force", r.evaluations.force},
+                                            {"kepler", r.evaluations.kepler},
+                                            {"jacobian", r.evaluations.jacobian}})},
+              {"wall_s", r.wall_s},
+              {"steps_per_s", per_second(steps, r.wall_s)},
+              {"particle_steps_per_s", per_second(steps * static_cast<double>(r.particles), r.wall_s)},
+              {"digest", r.digest},
+              {"monitors", Json::object(monitors)},
+              {"files", Json::object({{"trajectory", json_of(r.trajectory)}, {"checkpoint", json_of(r.checkpoint)}})}})
       .text();
 }
 
@@ -82,7 +84,8 @@ namespace {
 std::string figures(const MonitorReport& m) {
   std::string text;
   const auto add = [&](const char* name, const std::optional<double>& value, const std::string& unit) {
-    if (value) text += fmt::format("{}{} {:.3g}{}{}", text.empty() ? "" : ", ", name, *value, unit.empty() ? "" : " ", unit);
+    if (value)
+      text += fmt::format("{}{} {:.3g}{}{}", text.empty() ? "" : ", ", name, *value, unit.empty() ? "" : " ", unit);
   };
   add("worst", m.worst, "");
   add("rms", m.rms, "");
@@ -103,8 +106,9 @@ std::string to_text(const RunReport& r) {
     text += fmt::format("{}: {} ({} samples)\n", name, figures(monitor), monitor.samples);
   }
   if (r.wall_s > 0 && r.steps_made > 0) {
-    text += fmt::format("{} steps of {} over {} in {:.3g} s: {:.3g} steps/s on {} {}\n", r.steps_made, r.method, r.hamiltonian,
-                        r.wall_s, static_cast<double>(r.steps_made) / r.wall_s, r.threads, r.threads == 1 ? "thread" : "threads");
+    text += fmt::format("{} steps of {} over {} in {:.3g} s: {:.3g} steps/s on {} {}\n", r.steps_made, r.method,
+                        r.hamiltonian, r.wall_s, static_cast<double>(r.steps_made) / r.wall_s, r.threads,
+                        r.threads == 1 ? "thread" : "threads");
   }
   for (const std::filesystem::path& file : {r.trajectory, r.checkpoint}) {
     if (!file.empty()) text += fmt::format("wrote {}\n", file.string());

@@ -26,15 +26,17 @@ void flatten(const SceneValue& value, const std::string& path, std::map<std::str
     for (const auto& [key, entry] : *table) flatten(entry, below(key), leaves);
   } else if (value.is_table_list()) {
     std::size_t k = 0;
-    for (const SceneValue& entry : std::get<SceneValue::Array>(value.data)) flatten(entry, below(std::to_string(k++)), leaves);
+    for (const SceneValue& entry : std::get<SceneValue::Array>(value.data))
+      flatten(entry, below(std::to_string(k++)), leaves);
   } else {
     leaves[path] = {to_text(value), value.line};
   }
 }
 
 [[noreturn]] void refuse(const Scene& scene, const std::string& key, const Leaf& leaf, const std::string& change) {
-  throw scene_error(scene.source, leaf.line, key, leaf.text,
-                    fmt::format("{} {}; a resumed run takes only a later end: undo this, or start over with --fresh", key, change));
+  throw scene_error(
+      scene.source, leaf.line, key, leaf.text,
+      fmt::format("{} {}; a resumed run takes only a later end: undo this, or start over with --fresh", key, change));
 }
 
 }  // namespace
@@ -46,7 +48,8 @@ void check_same_scene(const io::Checkpoint& checkpoint, const Scene& scene) {
   for (const auto& [key, leaf] : now) {
     const auto old = before.find(key);
     if (old == before.end()) refuse(scene, key, leaf, fmt::format("= {} is new", leaf.text));
-    if (old->second.text != leaf.text) refuse(scene, key, leaf, fmt::format("= {} was {}", leaf.text, old->second.text));
+    if (old->second.text != leaf.text)
+      refuse(scene, key, leaf, fmt::format("= {} was {}", leaf.text, old->second.text));
   }
   for (const auto& [key, leaf] : before) {
     if (now.find(key) == now.end()) refuse(scene, key, {leaf.text, 0}, fmt::format("= {} is gone", leaf.text));

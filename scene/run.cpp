@@ -76,9 +76,11 @@ class ProgressLine {
     shown_ = true;
     const double made = static_cast<double>(now.step - first), left = static_cast<double>(now.end - now.step);
     const double rate = now.seconds > 0 ? made / now.seconds : 0;
-    std::string line = fmt::format("{:5.1f} %  {:.3g} steps/s", 100 * static_cast<double>(now.step) / static_cast<double>(now.end), rate);
+    std::string line = fmt::format("{:5.1f} %  {:.3g} steps/s",
+                                   100 * static_cast<double>(now.step) / static_cast<double>(now.end), rate);
     if (rate > 0) line += fmt::format("  {} left", duration_text(left / rate));
-    if (energy != nullptr && std::isfinite(energy->worst())) line += fmt::format("  energy error {:.1e}", energy->worst());
+    if (energy != nullptr && std::isfinite(energy->worst()))
+      line += fmt::format("  energy error {:.1e}", energy->worst());
     fmt::print(stderr, "\r\033[K{}", line);
     std::fflush(stderr);
   }
@@ -118,13 +120,15 @@ class Runner {
   void check_resume(const io::Checkpoint& checkpoint) const {
     check_same_scene(checkpoint, scene_);
     if (checkpoint.simd != report_.simd) {
-      throw SceneError(fmt::format("the run was made at SIMD level '{}', which this build does not have", checkpoint.simd),
-                       {.file = scene_.source.file});
+      throw SceneError(
+          fmt::format("the run was made at SIMD level '{}', which this build does not have", checkpoint.simd),
+          {.file = scene_.source.file});
     }
     if (target() < checkpoint.step) {
-      throw SceneError(fmt::format("the end at step {} lies before the checkpoint at step {}; give a later one, or --fresh",
-                                   target(), checkpoint.step),
-                       {.file = scene_.source.file, .key = "integrator.until"});
+      throw SceneError(
+          fmt::format("the end at step {} lies before the checkpoint at step {}; give a later one, or --fresh",
+                      target(), checkpoint.step),
+          {.file = scene_.source.file, .key = "integrator.until"});
     }
   }
 

@@ -13,24 +13,24 @@
 namespace noether {
 
 struct RunOptions {
-  std::filesystem::path out = {};      ///< empty: SCENE.out in the working folder
+  std::filesystem::path out = {};  ///< empty: SCENE.out in the working folder
   Existing existing = Existing::keep;
-  bool handle_signals = true;          ///< SIGINT and SIGTERM end the run after its step
-  bool progress = false;               ///< a line on stderr, if that is a terminal
-  double checkpoint_wall = 300;        ///< seconds between checkpoints
+  bool handle_signals = true;    ///< SIGINT and SIGTERM end the run after its step
+  bool progress = false;         ///< a line on stderr, if that is a terminal
+  double checkpoint_wall = 300;  ///< seconds between checkpoints
 };
 
 /// Everything a run has to say at its end.
 struct RunReport {
   Outcome outcome;
-  std::string scene, scene_sha256;     ///< as typed; hash of the effective scene
+  std::string scene, scene_sha256;  ///< as typed; hash of the effective scene
   std::string method, hamiltonian, time_unit, simd = "base", digest;
   double dt = 0;
   Index particles = 0;
   int threads = 1;
   std::optional<std::int64_t> resumed_from_step;
-  std::int64_t steps_made = 0;         ///< in `wall_s`
-  double wall_s = 0;                   ///< from the first step to the last
+  std::int64_t steps_made = 0;  ///< in `wall_s`
+  double wall_s = 0;            ///< from the first step to the last
   Evaluations evaluations;
   std::vector<std::pair<std::string, MonitorReport>> monitors;
   std::filesystem::path trajectory, checkpoint;  ///< empty if there is none

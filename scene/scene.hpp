@@ -26,8 +26,8 @@ struct SceneHamiltonian {
 
 /// The integrator of a scene.
 struct SceneIntegrator {
-  std::string method;  ///< name of the scheme, or a word
-  Scheme scheme;  ///< `scheme_of` gives it its name
+  std::string method;                 ///< name of the scheme, or a word
+  Scheme scheme;                      ///< `scheme_of` gives it its name
   double step = 0;                    ///< [time]
   std::string step_text;              ///< as the scene writes it
   std::optional<std::int64_t> steps;  ///< of the whole run; empty if the scene has no end

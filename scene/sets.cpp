@@ -16,7 +16,8 @@ namespace {
 constexpr std::array<std::string_view, 4> known_tables = {"particles", "hamiltonian", "integrator", "expect"};
 
 /// Keys of one table of which at most one is given.
-constexpr std::array<std::array<std::string_view, 3>, 2> alternatives = {{{"steps", "until", ""}, {"steps", "every", "wall"}}};
+constexpr std::array<std::array<std::string_view, 3>, 2> alternatives = {
+    {{"steps", "until", ""}, {"steps", "every", "wall"}}};
 
 std::vector<std::string> split(std::string_view path) {
   std::vector<std::string> keys(1);
@@ -53,6 +54,7 @@ class Setter {
     path_ = text_.substr(0, equals);
     const std::string value = text_.substr(equals + 1);
     const std::vector<std::string> keys = split(path_);
+    in_expect_ = keys[0] == "expect";
     SceneValue* at = &scene;
     for (std::size_t k = 0; k + 1 < keys.size(); ++k) at = &enter(*at, keys[k], k == 0);
     if (!at->is_table()) fail(fmt::format("'{}' is not a key of a table", path_));
@@ -62,9 +64,7 @@ class Setter {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& message) const {
-    throw scene_error(source_, line_, path_, "", message);
-  }
+  [[noreturn]] void fail(const std::string& message) const { throw scene_error(source_, line_, path_, "", message); }
 
   void check_top(const SceneValue& scene, const std::string& key) const {
     const SceneValue* old = scene.find(key);
@@ -77,7 +77,7 @@ class Setter {
     if (!at.is_table()) fail(fmt::format("there is nothing below the value {}", to_text(at)));
     if (SceneValue* next = at.find(key)) return *next;
     for (const std::string_view known : known_tables) {
-      if (top && key == known) return at.put(key, SceneValue::table(line_));
+      if (in_expect_ || (top && key == known)) return at.put(key, SceneValue::table(line_));
     }
     std::vector<std::string> keys;
     for (const auto& [name, value] : *at.get<SceneValue::Table>()) {
@@ -91,7 +91,8 @@ class Setter {
     std::size_t index = 0;
     const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), index);
     if (error == std::errc() && end == key.data() + key.size()) {
-      if (index >= list.size()) fail(fmt::format("there is no number {}; there are {}, counted from 0", index, list.size()));
+      if (index >= list.size())
+        fail(fmt::format("there is no number {}; there are {}, counted from 0", index, list.size()));
       return list[index];
     }
     std::vector<SceneValue*> found;
@@ -125,6 +126,7 @@ class Setter {
   int line_;
   const std::string& text_;
   std::string path_;
+  bool in_expect_ = false;  ///< where tables need not have been written
 };
 
 }  // namespace

@@ -19,7 +19,7 @@ struct SceneValue {
   int line = 0;  ///< of its key in the file; -k for the k-th `--set`, 0 where nobody wrote it
 
   SceneValue() : data(false) {}
-  
+
   template <class T> static SceneValue of(T value, int line = 0) {
     SceneValue result;
     result.data = std::move(value);

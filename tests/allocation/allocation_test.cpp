@@ -93,5 +93,6 @@ TEST_CASE("nothing is allocated inside advance, nor by settling", "[allocation]"
 }
 
 TEST_CASE("a force that allocates is seen by the count", "[allocation]") {
-  CHECK(allocations_of(compose(KineticPotential(Careless{}), schemes::verlet)).first >= 19);  // settling shares one evaluation
+  CHECK(allocations_of(compose(KineticPotential(Careless{}), schemes::verlet)).first >=
+        19);  // settling shares one evaluation
 }

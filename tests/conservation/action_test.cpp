@@ -88,8 +88,7 @@ double action_defect(H& hamiltonian, const ParticleSystem<Quad>& start, const Ma
 }
 
 /// Every letter of a Hamiltonian, forwards and backwards, in its own coordinates.
-template <class H, class MassesOf>
-void check_actions(H hamiltonian, const MassesOf& masses_of) {
+template <class H, class MassesOf> void check_actions(H hamiltonian, const MassesOf& masses_of) {
   auto s = bodies();
   hamiltonian.bind(s);
   hamiltonian.open(s);

@@ -114,8 +114,7 @@ TEST_CASE("Kepler arcs with further forces are symplectic", "[conservation][symp
 
 /// No gradient: it has a curl of 1e-9.
 struct CurlingForce {
-  template <class Real>
-  void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+  template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     Gravity{}.add_to(out, s);
     const Vec3<Real> x = s.positions()[1];
     out.acceleration(1, Real(1e-9) * Vec3<Real>(-x[1], x[0], Real(0)));

@@ -1,5 +1,5 @@
-#include "engine/error.hpp"
 #include "engine/topology.hpp"
+#include "engine/error.hpp"
 #include "tests/support/catch.hpp"
 
 using noether::Topology;

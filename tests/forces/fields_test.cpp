@@ -22,16 +22,14 @@ VectorColumn<Real> accelerations(const F& force, const ParticleSystem<Real>& s, 
   return a;
 }
 
-template <class Real, class F>
-Real potential(const F& force, const ParticleSystem<Real>& s) {
+template <class Real, class F> Real potential(const F& force, const ParticleSystem<Real>& s) {
   VectorColumn<Real> a(s.size());
   ForceSink<Real> sink(a, s, {.energy = true});
   force.add_to(sink, s);
   return sink.potential();
 }
 
-template <class F>
-Mat3<Quad> virial(const F& force, const ParticleSystem<Quad>& s) {
+template <class F> Mat3<Quad> virial(const F& force, const ParticleSystem<Quad>& s) {
   VectorColumn<Quad> a(s.size());
   ForceSink<Quad> sink(a, s, {.virial = true});
   force.add_to(sink, s);
@@ -55,8 +53,7 @@ TEST_CASE("the fields are minus the gradients of their energies", "[fields]") {
 
 /// A spring without its minus.
 struct Repulsive {
-  template <class Real>
-  void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+  template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     HarmonicField{2.5}.add_to(out, s);
     for (Index i = 0; i < s.size(); ++i) out.force(i, Real(5) * s.positions()[i]);
   }

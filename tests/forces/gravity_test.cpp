@@ -64,8 +64,7 @@ Evaluation naive(const ParticleSystem<double>& s, double G, double softening) {
   return sum;
 }
 
-template <class Real, class F>
-Evaluation evaluate(const F& force, const ParticleSystem<Real>& s, Wanted wanted) {
+template <class Real, class F> Evaluation evaluate(const F& force, const ParticleSystem<Real>& s, Wanted wanted) {
   VectorColumn<Real> a(s.size());
   ForceSink<Real> sink(a, s, wanted);
   force.add_to(sink, s);
@@ -184,8 +183,7 @@ TEST_CASE("gravity is minus the gradient of its energy, softened or not", "[grav
 /// Gravity with its sign or its factor wrong.
 struct Wrong {
   double factor;
-  template <class Real>
-  void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+  template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     Gravity{.G = 1.0}.add_to(out, s);
     out.energy((Real(factor) - Real(1)) * out.potential());
   }

@@ -16,8 +16,7 @@ inline constexpr double quad_unit = 0x1p-113;  // and of a Quad
 inline constexpr double few = 20;              // roundings
 inline constexpr Quad two_pi = 6.28318530717958647692528676655900576839_q;
 
-template <class Real>
-struct State { Vec3<Real> x, v; };
+template <class Real> struct State { Vec3<Real> x, v; };
 using Doubles = State<double>;
 using Quads = State<Quad>;
 
@@ -31,15 +30,13 @@ inline Doubles narrow(const Quads& s) {
   return d;
 }
 
-template <class Real>
-Real length(const Vec3<Real>& a) {
+template <class Real> Real length(const Vec3<Real>& a) {
   using std::sqrt;
   return sqrt(norm2(a));
 }
 
 /// After one arc; fails the test unless it converged.
-template <class Real>
-State<Real> advanced(const State<Real>& s, Real mu, Real h) {
+template <class Real> State<Real> advanced(const State<Real>& s, Real mu, Real h) {
   const KeplerArc<Real> arc = kepler_arc(s.x, s.v, mu, h);
   REQUIRE(arc.status == KeplerStatus::converged);
   return {s.x + arc.dx, s.v + arc.dv};

@@ -19,7 +19,7 @@ MAY_SEE = {
     "cli": LIBRARIES | {"cli"},
     "examples": LIBRARIES | {"examples"},
     "bench": LIBRARIES | {"bench"},
-    "tests": LIBRARIES | {"tests"},
+    "tests": LIBRARIES | {"examples", "tests"},
 }
 # Header pattern, what it is, the only folder whose .cpp files may include it.
 GUARDED = [

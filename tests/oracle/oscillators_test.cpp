@@ -21,8 +21,7 @@ using namespace noether::testing;
 const HarmonicField spring{.k = 1};
 
 /// Walks an integrator over one particle on a line and shows (x, v) after every step.
-template <class I, class See>
-void walk(I integrator, double x, double v, double dt, long steps, const See& see) {
+template <class I, class See> void walk(I integrator, double x, double v, double dt, long steps, const See& see) {
   auto s = particle_in_plane(x, 0, v, 0);
   s.clock() = Clock<double>::fixed(0, dt);
   integrator.bind(s);
@@ -92,8 +91,7 @@ TEST_CASE("the damped oscillator has the known errors in the words D B A B D and
 
 /// q'' = -q - q^2.
 struct QuadraticSpring {
-  template <class Real>
-  void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+  template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     const Real q = s.positions()[0][0];
     out.acceleration(0, Vec3<Real>(-q - q * q, Real(0), Real(0)));
   }
@@ -114,9 +112,9 @@ TEST_CASE("Verlet's largest bounded amplitude on a nonlinear spring shrinks to n
     double h, amplitude, tolerance;
   };
   // Far from the resonance the edge of what is bounded is fractal: the figure depends on how finely one looks.
-  const std::vector<Row> table = {{1.0, 0.526, 0.06},   {1.2, 0.466, 0.06},   {1.414, 0.396, 0.06}, {1.6, 0.309, 0.06},
-                                  {1.70, 0.088, 0.002}, {1.72, 0.028, 0.002}, {1.732, 0, 0.002},
-                                  {1.74, 0.009, 0.002}, {1.78, 0.047, 0.002}, {1.9, 0.127, 0.002}};
+  const std::vector<Row> table = {
+      {1.0, 0.526, 0.06},   {1.2, 0.466, 0.06}, {1.414, 0.396, 0.06}, {1.6, 0.309, 0.06},   {1.70, 0.088, 0.002},
+      {1.72, 0.028, 0.002}, {1.732, 0, 0.002},  {1.74, 0.009, 0.002}, {1.78, 0.047, 0.002}, {1.9, 0.127, 0.002}};
   for (const auto& [h, amplitude, tolerance] : table) {
     const double found = largest_bounded(h);
     INFO("h " << h << " amplitude " << found << ", expected " << amplitude);
@@ -127,8 +125,7 @@ TEST_CASE("Verlet's largest bounded amplitude on a nonlinear spring shrinks to n
 /// Counts how often it is asked.
 struct CountingForce {
   std::shared_ptr<long> calls = std::make_shared<long>(0);
-  template <class Real>
-  void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+  template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     ++*calls;
     spring.add_to(out, s);
   }

@@ -13,8 +13,8 @@ namespace {
 
 using namespace noether::testing;
 
-constexpr double duration = 3;        // half a turn of the inner planet
-constexpr double mass_ratio = 1e-7;   // epsilon: masses of two planets are 1, 2, 3 times this
+constexpr double duration = 3;       // half a turn of the inner planet
+constexpr double mass_ratio = 1e-7;  // epsilon: masses of two planets are 1, 2, 3 times this
 
 /// Positions of the planets after the duration, shape (6).
 std::vector<Quad> outcome(const Scheme& scheme, double mass, long n, Coordinates coordinates) {
@@ -64,7 +64,8 @@ void check_orders(Coordinates coordinates, const std::array<std::vector<Quad>, 3
       if (claim == 0) continue;
       const auto used = finest(points[p], 1e-20, 0.1);
       INFO(scheme->name << " claims order " << claim << " in epsilon^" << p + 1 << ", measured " << fitted_slope(used)
-                        << "\n" << to_text(points[p]));
+                        << "\n"
+                        << to_text(points[p]));
       CHECK(used.size() == 3);
       CHECK(std::fabs(fitted_slope(used) - claim) < 0.2);
     }

@@ -107,8 +107,7 @@ TEST_CASE("one digit changed in a table is seen in the measured order", "[order]
 /// A drive that looks at the time of the whole step instead of the stage.
 struct SteppedField {
   OscillatingField drive;
-  template <class Real>
-  void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+  template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     using std::cos;
     const Real t = s.time() - s.clock().fraction() * Real(s.clock().dt());
     for (Index i = 0; i < s.size(); ++i) {

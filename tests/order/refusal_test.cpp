@@ -13,8 +13,7 @@ namespace {
 
 using namespace noether::testing;
 
-template <class H>
-std::string refusal(H hamiltonian, const Scheme& scheme) {
+template <class H> std::string refusal(H hamiltonian, const Scheme& scheme) {
   try {
     compose(std::move(hamiltonian), scheme);
   } catch (const SchemeMismatch& mismatch) {

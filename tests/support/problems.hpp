@@ -21,8 +21,7 @@ namespace noether::testing {
 ///     U = sum m [ (x^2 + y^2)/2 + x^2 y - y^3/3 ]
 struct HenonHeilesField {
   std::string name() const { return "henon_heiles"; }
-  template <class Real>
-  void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+  template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     for (Index i = 0; i < s.size(); ++i) {
       const Vec3<Real> q = s.positions()[i];
       const Real x = q[0], y = q[1];
@@ -42,19 +41,14 @@ inline ParticleSystem<double> particle_in_plane(double x, double y, double u, do
 }
 
 /// Position and velocity of one particle.
-template <class Real>
-struct Motion {
-  Vec3<Real> x, v;
-};
+template <class Real> struct Motion { Vec3<Real> x, v; };
 
-template <class Real>
-Motion<Real> motion_of(const ParticleSystem<Real>& s, Index i = 0) {
+template <class Real> Motion<Real> motion_of(const ParticleSystem<Real>& s, Index i = 0) {
   return {s.positions()[i], s.velocities()[i]};
 }
 
 /// Largest difference of a component.
-template <class Real>
-double distance(const Motion<Real>& a, const Motion<Real>& b) {
+template <class Real> double distance(const Motion<Real>& a, const Motion<Real>& b) {
   double worst = 0;
   for (int k = 0; k < 3; ++k) {
     worst = std::max(worst, std::fabs(static_cast<double>(a.x[k] - b.x[k])));
@@ -63,16 +57,14 @@ double distance(const Motion<Real>& a, const Motion<Real>& b) {
   return worst;
 }
 
-template <class Real>
-double distance(const ParticleSystem<Real>& a, const ParticleSystem<Real>& b) {
+template <class Real> double distance(const ParticleSystem<Real>& a, const ParticleSystem<Real>& b) {
   double worst = 0;
   for (Index i = 0; i < a.size(); ++i) worst = std::max(worst, distance(motion_of(a, i), motion_of(b, i)));
   return worst;
 }
 
 /// The flow of Henon and Heiles by its Taylor series, degree 40, in steps of 1/8: an error of some ulp per step.
-template <class Real>
-Motion<Real> henon_heiles_flow(Motion<Real> start, double duration) {
+template <class Real> Motion<Real> henon_heiles_flow(Motion<Real> start, double duration) {
   constexpr std::size_t degree = 40;
   const int steps = static_cast<int>(std::ceil(std::fabs(duration) * 8));
   const Real h = Real(duration) / Real(steps);
@@ -108,8 +100,7 @@ inline ParticleSystem<double> kepler_pair(double eccentricity, double anomaly = 
 }
 
 /// Relative motion of `kepler_pair` after a time, by Kepler's equation and f and g, from the very state it starts with.
-template <class Real>
-Motion<Real> kepler_motion(const ParticleSystem<Real>& start, const Real& time) {
+template <class Real> Motion<Real> kepler_motion(const ParticleSystem<Real>& start, const Real& time) {
   using std::abs, std::cos, std::sin, std::sqrt;
   const Vec3<Real> x0 = start.positions()[1] - start.positions()[0], v0 = start.velocities()[1] - start.velocities()[0];
   const Real mu = start.masses()[0] + start.masses()[1], r0 = sqrt(norm2(x0));
@@ -117,8 +108,8 @@ Motion<Real> kepler_motion(const ParticleSystem<Real>& start, const Real& time) 
   const Real e_cos = Real(1) - r0 / a, e_sin = dot(x0, v0) / sqrt(mu * a);
   Real d = n * time;  // what the eccentric anomaly gains
   for (int k = 0; k < 50; ++k) {
-    const Real correction = (d - e_cos * sin(d) + e_sin * (Real(1) - cos(d)) - n * time) /
-                            (Real(1) - e_cos * cos(d) + e_sin * sin(d));
+    const Real correction =
+        (d - e_cos * sin(d) + e_sin * (Real(1) - cos(d)) - n * time) / (Real(1) - e_cos * cos(d) + e_sin * sin(d));
     d -= correction;
     if (abs(correction) < Real(8) * std::numeric_limits<Real>::epsilon()) break;
   }
@@ -129,8 +120,7 @@ Motion<Real> kepler_motion(const ParticleSystem<Real>& start, const Real& time) 
 }
 
 /// Relative motion of particle 1 to particle 0.
-template <class Real>
-Motion<Real> relative_motion(const ParticleSystem<Real>& s) {
+template <class Real> Motion<Real> relative_motion(const ParticleSystem<Real>& s) {
   return {s.positions()[1] - s.positions()[0], s.velocities()[1] - s.velocities()[0]};
 }
 
