@@ -39,7 +39,17 @@ std::vector<std::pair<std::string, PartInfo>> all_parts() {
   for (const auto& kind : parts.forces()) all.emplace_back("force", kind.info);
   for (const auto& kind : parts.monitors()) all.emplace_back("monitor", kind.info);
   for (const PartInfo& info : writer_parts()) all.emplace_back("writer", info);
+  for (const PartInfo& info : stop_parts()) all.emplace_back("stop", info);
   return all;
+}
+
+/// Where in a scene parts of a kind stand, and when they look.
+std::string table_of(const std::string& kind) {
+  if (kind == "force") return "[[hamiltonian.force]]";
+  if (kind == "monitor") return "[[every]], with every = \"TIME\" or steps = N";
+  if (kind == "writer") return "[[every]], with every = \"TIME\" or steps = N (checkpoint also: wall = \"5 min\")";
+  if (kind == "stop") return "[[stop]]; every = \"TIME\" may stand instead of steps = N";
+  return "";
 }
 
 void describe_part(const std::string& kind, const PartInfo& info, bool json) {
@@ -49,6 +59,8 @@ void describe_part(const std::string& kind, const PartInfo& info, bool json) {
       fields.push_back(Json::object({{"name", f.name},
                                      {"kind", f.kind},
                                      {"dimension", f.dimension},
+                                     {"required", !f.example.empty()},
+                                     {"example", f.example.empty() ? Json() : Json(f.example)},
                                      {"default", f.default_value.empty() ? Json() : Json(f.default_value)},
                                      {"choices", Json::list_of(f.choices)},
                                      {"help", f.help}}));
@@ -58,6 +70,8 @@ void describe_part(const std::string& kind, const PartInfo& info, bool json) {
                                      {"name", info.name},
                                      {"help", info.help},
                                      {"formula", info.formula},
+                                     {"quantities", info.quantities},
+                                     {"table", table_of(kind)},
                                      {"fields", Json::list(fields)},
                                      {"source", info.source},
                                      {"bibtex", entries_of(info.source)}})
@@ -66,9 +80,12 @@ void describe_part(const std::string& kind, const PartInfo& info, bool json) {
   }
   fmt::print("{} ({}): {}\n", info.name, kind, info.help);
   if (!info.formula.empty()) fmt::print("\n    {}\n", info.formula);
+  if (!info.quantities.empty()) fmt::print("\n  quantities: {}\n", info.quantities);
+  if (const std::string table = table_of(kind); !table.empty()) fmt::print("\n  stands in {}\n", table);
   if (!info.fields.empty()) fmt::print("\n");
   for (const FieldInfo& f : info.fields) {
-    const std::string value = f.default_value.empty() ? "" : ", default " + f.default_value;
+    std::string value = f.default_value.empty() ? "" : ", default " + f.default_value;
+    if (!f.example.empty()) value = ", required, such as " + f.example;
     const std::string choices = f.choices.empty() ? "" : fmt::format(", one of {}", fmt::join(f.choices, ", "));
     fmt::print("  {:<14} {} [{}]{}{}{}{}\n", f.name, f.kind, f.dimension, choices, value, f.help.empty() ? "" : ": ",
                f.help);

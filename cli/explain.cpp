@@ -2,6 +2,7 @@
 
 #include "engine/orbital_elements.hpp"
 #include "engine/quantity.hpp"
+#include "engine/text.hpp"
 #include "integrators/composition.hpp"
 #include "scene/json.hpp"
 #include "scene/scene.hpp"
@@ -28,6 +29,7 @@ struct Explanation {
   std::size_t bytes_per_particle = 0;
   Index particles = 0;
   std::map<char, int> flows;               ///< stages of one step, by letter, the last joined to the next first
+  int evaluations = 0;                     ///< of the forces in one step: kicks between which something has moved
   std::optional<double> recommended_step;  ///< [time]
   std::string recommended_for;
 };
@@ -59,6 +61,23 @@ void count_flows(const Word& word, std::map<char, int>& flows) {
   if (word.size() > 1 && word.front().letter == word.back().letter) --flows[word.front().letter];
 }
 
+/// Kicks B of one step whose positions differ from those of the kick before: the others use its forces again. The
+/// steps before and after look alike, so the word is a ring; only D leaves positions where they are.
+int count_evaluations(const Word& word) {
+  int count = 0;
+  for (std::size_t k = 0; k < word.size(); ++k) {
+    if (word[k].letter != 'B') continue;
+    std::size_t back = 1;
+    while (back < word.size() && word[(k + word.size() - back) % word.size()].letter == 'D') ++back;
+    if (word[(k + word.size() - back) % word.size()].letter != 'B') ++count;
+  }
+  return count;
+}
+
+std::string length_text(double length, const UnitSystem& units) {
+  return format_number(length) + (units.is_reduced() ? "" : " " + std::string(units.length));
+}
+
 void sort_parts(const Scene& scene, Explanation& e) {
   const Parts parts = standard_parts();
   for (const SceneForce& force : scene.hamiltonian.forces) e.in.push_back("force " + force.name);
@@ -73,14 +92,19 @@ void sort_parts(const Scene& scene, Explanation& e) {
   }
   for (const SceneStop& stop : scene.stops) {
     const bool escape = stop.rule.kind == StopRule::Kind::escape;
-    e.in.push_back(fmt::format("stop {}, every {} steps", escape ? "escape" : "collision", stop.steps));
+    e.in.push_back(fmt::format("stop {}, {} {}, every {} {}", escape ? "escape" : "collision",
+                               escape ? "beyond" : "below", length_text(stop.rule.distance, *scene.units), stop.steps,
+                               stop.steps == 1 ? "step" : "steps"));
   }
   const auto leave_out = [&](const std::string& what) {
     const bool used = std::any_of(e.in.begin(), e.in.end(),
                                   [&](const std::string& one) { return one == what || one.starts_with(what + ","); });
     if (!used) e.out.push_back(what);
   };
-  for (const auto& kind : parts.forces()) leave_out("force " + kind.info.name);
+  const bool wisdom_holman = scene.hamiltonian.kind == SceneHamiltonian::Kind::wisdom_holman;
+  for (const auto& kind : parts.forces()) {
+    if (!wisdom_holman || kind.info.name != "gravity") leave_out("force " + kind.info.name);  // gravity is inside
+  }
   for (const auto& kind : parts.monitors()) leave_out("monitor " + kind.info.name);
   leave_out("writer trajectory");
   leave_out("stop escape");
@@ -103,35 +127,41 @@ Explanation explained(const Scene& scene) {
   if (s.low_words() != nullptr) e.columns.insert(e.columns.end(), {"low word of position", "low word of velocity"});
   for (const auto& [name, column] : s.extra_columns()) e.columns.push_back(name);
   e.bytes_per_particle = s.bytes_per_particle();
-  count_flows(fitted_word(scheme, hamiltonian.claims(), e.hamiltonian), e.flows);
+  const Word word = fitted_word(scheme, hamiltonian.claims(), e.hamiltonian);
+  count_flows(word, e.flows);
+  e.evaluations = count_evaluations(word);
   recommend(scene, e);
   return e;
 }
 
-std::string meaning(char letter, const Scene& scene) {
+std::string meaning(char letter, const Scene& scene, const Explanation& e) {
   const bool wisdom_holman = scene.hamiltonian.kind == SceneHamiltonian::Kind::wisdom_holman;
   if (letter == 'A') return wisdom_holman ? "Kepler arcs of every body" : "drifts";
-  if (letter == 'B') return wisdom_holman ? "kicks by the interaction" : "kicks, one force evaluation each";
+  if (letter == 'B' && wisdom_holman) return "kicks by the interaction";
+  if (letter == 'B' && e.evaluations == e.flows.at('B')) return "kicks, one force evaluation each";
+  if (letter == 'B') {
+    return fmt::format("kicks, {} force {}: a kick where nothing has moved uses the forces again", e.evaluations,
+                       e.evaluations == 1 ? "evaluation" : "evaluations");
+  }
   return letter == 'D' ? "flows of the drag" : "flows";
 }
 
 void print_text(const Scene& scene, const Explanation& e) {
-  fmt::print("{}{}{} over {}, {} particles\n", scene.title, scene.title.empty() ? "" : ": ", e.method, e.hamiltonian,
-             e.particles);
+  fmt::print("{}{}{} over {}, {} particles\n", plain_line(scene.title), scene.title.empty() ? "" : ": ", e.method,
+             e.hamiltonian, e.particles);
   fmt::print("in:\n");
   for (const std::string& one : e.in) fmt::print("  {}\n", one);
   fmt::print("left out:\n");
   for (const std::string& one : e.out) fmt::print("  {}\n", one);
   fmt::print("columns: {}; {} bytes per particle\n", fmt::join(e.columns, ", "), e.bytes_per_particle);
   fmt::print("each step:\n");
-  for (const auto& [letter, count] : e.flows) fmt::print("  {} x {}: {}\n", count, letter, meaning(letter, scene));
+  for (const auto& [letter, count] : e.flows) fmt::print("  {} x {}: {}\n", count, letter, meaning(letter, scene, e));
   fmt::print("SIMD level: base\n");
   const std::string unit = scene.units->is_reduced() ? "" : " " + std::string(scene.units->time);
   fmt::print("step: {}", scene.integrator.step_text);
   if (e.recommended_step) {
-    fmt::print(
-        "; recommended for a method of order 2: {:.3g}{}, a twentieth of the time {} needs around its pericenter",
-        *e.recommended_step, unit, e.recommended_for);
+    fmt::print("; at most {:.3g}{} is recommended, a twentieth of the time {} needs around its pericenter",
+               *e.recommended_step, unit, e.recommended_for);
   }
   fmt::print("\n");
 }
@@ -150,6 +180,7 @@ Json json_of(const Scene& scene, const Explanation& e) {
                        {"bytes_per_particle", static_cast<std::int64_t>(e.bytes_per_particle)},
                        {"particles", std::int64_t{e.particles}},
                        {"flows_per_step", Json::object(flows)},
+                       {"force_evaluations_per_step", e.evaluations},
                        {"simd", "base"},
                        {"step", scene.integrator.step},
                        {"recommended_step", e.recommended_step},

@@ -1,5 +1,6 @@
 #include "cli/commands.hpp"
 
+#include "engine/text.hpp"
 #include "io/inspect.hpp"
 #include "scene/json.hpp"
 
@@ -69,7 +70,7 @@ int verify_file(const std::string& file, bool json) {
   }
   if (ok)
     fmt::print("{}: sound{}, last step {}\n", file, info.complete ? " and complete" : ", not complete", info.last_step);
-  for (const std::string& line : info.damaged) fmt::print(stderr, "{}: {}\n", file, line);
+  for (const std::string& line : info.damaged) fmt::print(stderr, "{}\n", escaped(file + ": " + line));
   return ok ? 0 : 3;
 }
 
@@ -81,7 +82,10 @@ struct FileArguments {
 CLI::App* file_command(CLI::App& app, const std::string& name, const std::string& help,
                        const std::shared_ptr<FileArguments>& given) {
   CLI::App* command = app.add_subcommand(name, help);
-  command->add_option("file", given->file, "run.h5 or a checkpoint")->required()->type_name("FILE");
+  command->add_option("file", given->file, "run.h5 or a checkpoint")
+      ->required()
+      ->check([](const std::string& file) { return std::string(file.empty() ? "the name of the file is empty" : ""); })
+      ->type_name("FILE");
   return command;
 }
 
@@ -113,8 +117,14 @@ void add_convert_command(CLI::App& app, int& exit_code) {
   const auto given = std::make_shared<FileArguments>();
   CLI::App* command = file_command(app, "convert", "rewrite a trajectory as extended XYZ or CSV", given);
   command->add_option("out", given->out, "FILE.xyz or FILE.csv")->required()->type_name("OUT");
+  command->add_flag("--json", given->json, "report as one line of JSON");
   command->callback([given, &exit_code] {
-    io::convert(given->file, given->out);
+    const Index frames = io::convert(given->file, given->out);
+    if (given->json) {
+      fmt::print("{}\n",
+                 Json::object({{"schema", "noether.convert/1"}, {"frames", std::int64_t{frames}}, {"file", given->out}})
+                     .text());
+    }
     exit_code = 0;
   });
 }

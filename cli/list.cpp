@@ -88,9 +88,11 @@ Listing listing_of(const std::string& what) {
   if (what == "units") return units();
   if (what == "constraints" || what == "builders") return parts({});
   if (what == "monitors") {
-    std::vector<PartInfo> infos = infos_of(standard_parts().monitors());
-    for (const PartInfo& writer : writer_parts()) infos.push_back(writer);
-    return parts(infos);
+    Listing list{{"name", "kind", "help"}, {}, {}};
+    for (const PartInfo& info : infos_of(standard_parts().monitors())) list.add({info.name, "monitor", info.help});
+    for (const PartInfo& info : writer_parts()) list.add({info.name, "writer", info.help});
+    for (const PartInfo& info : stop_parts()) list.add({info.name, "stop", info.help});
+    return list;
   }
   const std::vector<std::string> known = {"methods", "forces", "constraints", "monitors", "builders", "units"};
   throw Error(fmt::format("there is no list of '{}'{}", what, did_you_mean(what, known)));

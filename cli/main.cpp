@@ -4,6 +4,7 @@
 
 #include "engine/error.hpp"
 #include "engine/suggest.hpp"
+#include "engine/text.hpp"
 #include "engine/version.hpp"
 #include "scene/json.hpp"
 
@@ -26,7 +27,7 @@ using noether::Json;
 /// Says what went wrong: one line on stderr and, where reports are JSON, one on stdout.
 int complain(const noether::ErrorLocation& at, const std::string& message, const std::string& line, int code,
              bool json) {
-  fmt::print(stderr, "{}\n", line);
+  fmt::print(stderr, "{}\n", noether::escaped(line));
   if (json) {
     const auto text = [](const std::string& t) { return t.empty() ? Json() : Json(t); };
     const Json report = Json::object({{"schema", "noether.error/1"},
@@ -69,19 +70,35 @@ std::string unknown_argument(const CLI::App& app, const std::string& argument) {
   return fmt::format("unknown option '{}'{}{}", name, of, noether::did_you_mean(name, known));
 }
 
+/// What is wrong with the first argument; "" if it is a command or an option of the program itself.
+std::string wrong_first_argument(const CLI::App& app, const std::string& first) {
+  if (first.empty()) return "no command is given; see `noether --help`";
+  const bool option = first[0] == '-';
+  std::vector<std::string> known = {"--help", "--version"};
+  if (!option) known = command_names(app);
+  if (first == "-h" || std::find(known.begin(), known.end(), first) != known.end()) return "";
+  return fmt::format("unknown {} '{}'{}{}", option ? "option" : "command", first, option ? " before a command" : "",
+                     noether::did_you_mean(first, known));
+}
+
+/// What the parser says, in our words.
+std::string parser_message(const CLI::ParseError& error) {
+  const std::string text = error.what();
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) == nullptr) return in_our_words(text);
+  const std::string option = text.substr(0, text.find_first_of(": "));
+  if (text.ends_with(" missing")) return option + " needs a value";
+  return text.ends_with("override") ? "--" + option + " takes no value" : option + " can be given only once";
+}
+
 int parse(CLI::App& app, int argc, char** argv, int& exit_code, bool json) {
-  const std::string first = argc > 1 ? argv[1] : "";
-  const std::vector<std::string> commands = command_names(app);
-  if (!first.empty() && first[0] != '-' && std::find(commands.begin(), commands.end(), first) == commands.end()) {
-    const std::string message = fmt::format("unknown command '{}'{}", first, noether::did_you_mean(first, commands));
-    return complain({}, message, message, 2, json);
-  }
+  const std::string wrong = wrong_first_argument(app, argc > 1 ? argv[1] : "");
+  if (!wrong.empty()) return complain({}, wrong, wrong, 2, json);
   try {
     app.parse(argc, argv);
     return exit_code;
   } catch (const CLI::CallForHelp&) {
     const auto used = app.get_subcommands();
-    fmt::print("{}", used.empty() ? app.help() : used.front()->help());
+    fmt::print("{}", used.empty() ? app.help() : used.front()->help(app.get_name()));
     return 0;
   } catch (const CLI::CallForVersion&) {
     fmt::print("noether {} ({})\n", noether::version(), noether::commit());
@@ -93,7 +110,7 @@ int parse(CLI::App& app, int argc, char** argv, int& exit_code, bool json) {
   } catch (const CLI::ParseError& error) {
     const auto used = app.get_subcommands();
     const std::string help = used.empty() ? "noether --help" : "noether " + used.front()->get_name() + " --help";
-    const std::string message = fmt::format("{}; see `{}`", in_our_words(error.what()), help);
+    const std::string message = fmt::format("{}; see `{}`", parser_message(error), help);
     return complain({}, message, message, 2, json);
   }
 }
@@ -107,6 +124,7 @@ int main(int argc, char** argv) {
     CLI::App app("Long, honest integrations of mechanical systems", "noether");
     app.set_version_flag("--version", "");
     app.require_subcommand(1);
+    app.option_defaults()->disable_flag_override();
     int exit_code = 0;
     for (const auto add : {noether::add_run_command, noether::add_evaluate_command, noether::add_explain_command,
                            noether::add_list_command, noether::add_describe_command, noether::add_info_command,

@@ -4,6 +4,7 @@
 #include "cli/plot_data.hpp"
 #include "cli/plot_script.hpp"
 #include "engine/error.hpp"
+#include "scene/json.hpp"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -88,7 +89,8 @@ PictureFormat format_of(const std::filesystem::path& picture) {
       fmt::format("a picture '{}' is of no known format; give a name that ends in .svg or .png", picture.string()));
 }
 
-void plot(const std::filesystem::path& file, std::filesystem::path picture) {
+/// @return the picture
+std::filesystem::path plot(const std::filesystem::path& file, std::filesystem::path picture) {
   if (picture.empty()) picture = std::filesystem::path(file).replace_extension(".svg");
   const PictureFormat format = format_of(picture);
   const PlotData data = read_plot_data(file);
@@ -102,7 +104,7 @@ void plot(const std::filesystem::path& file, std::filesystem::path picture) {
   out << in.rdbuf();
   out.close();
   if (!in || !out) throw FileError(fmt::format("{}: the picture could not be written", picture.string()));
-  fmt::print("{}\n", picture.string());
+  return picture;
 }
 
 }  // namespace
@@ -110,13 +112,22 @@ void plot(const std::filesystem::path& file, std::filesystem::path picture) {
 void add_plot_command(CLI::App& app, int& exit_code) {
   struct Options {
     std::string file, out;
+    bool json = false;
   };
   CLI::App* command = app.add_subcommand("plot", "draw the orbits and errors of a run (needs gnuplot)");
   const auto options = std::make_shared<Options>();
-  command->add_option("FILE", options->file, "a run.h5")->required();
+  command->add_option("FILE", options->file, "a run.h5")->required()->check([](const std::string& file) {
+    return std::string(file.empty() ? "the name of the file is empty" : "");
+  });
   command->add_option("--out", options->out, "the picture, .svg or .png; default: FILE with .svg");
+  command->add_flag("--json", options->json, "report as one line of JSON");
   command->callback([options, &exit_code] {
-    plot(options->file, options->out);
+    const std::string picture = plot(options->file, options->out).string();
+    if (options->json) {
+      fmt::print("{}\n", Json::object({{"schema", "noether.plot/1"}, {"file", picture}}).text());
+    } else {
+      fmt::print("{}\n", picture);
+    }
     exit_code = 0;
   });
 }

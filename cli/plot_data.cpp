@@ -322,7 +322,8 @@ PlotData read_plot_data(const std::filesystem::path& file) {
   data.end = end / unit.length;
   data.orbits = read_orbits(frames, scene, unit);
   for (const auto& [name, title] : {std::pair{"energy", "Energy"}, std::pair{"angular_momentum", "Angular momentum"}}) {
-    const auto found = std::find_if(monitors.begin(), monitors.end(), [&](const auto& m) { return m.name == name; });
+    const auto found =
+        std::find_if(monitors.begin(), monitors.end(), [wanted = name](const auto& m) { return m.name == wanted; });
     if (found == monitors.end()) continue;
     auto error = read_error(*found, unit.length);
     if (!error) continue;

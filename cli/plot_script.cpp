@@ -1,5 +1,7 @@
 #include "cli/plot_script.hpp"
 
+#include "engine/text.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,10 +24,7 @@ constexpr const char* primary_color = "#E0A800";
 
 std::string quoted(const std::string& text) {
   std::string result = "'";
-  for (const char c : text) {
-    if (c == '\n' || c == '\r') continue;
-    result += c == '\'' ? "''" : std::string(1, c);
-  }
+  for (const char c : plain_line(text)) result += c == '\'' ? "''" : std::string(1, c);
   return result + "'";
 }
 

@@ -3,12 +3,15 @@
 #include "engine/error.hpp"
 #include "engine/parallel.hpp"
 #include "engine/suggest.hpp"
+#include "engine/text.hpp"
 #include "scene/run.hpp"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <charconv>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +20,8 @@ namespace noether {
 namespace {
 
 struct RunArguments {
-  std::string scene, out, simd, until;
+  std::string scene, out, simd;
+  std::optional<std::string> until;
   std::vector<std::string> sets;
   int threads = 0;
   bool resume = false, fresh = false, quiet = false, json = false;
@@ -31,20 +35,30 @@ void check_simd(const std::string& level) {
   throw Error(fmt::format("unknown SIMD level '{}'{}", level, did_you_mean(level, {"base", "avx2", "avx512"})));
 }
 
-/// `--until T` is `--set integrator.until="T"`.
-std::string as_set(const std::string& until) { return "integrator.until=\"" + until + "\""; }
+/// `--until T` goes where `--set integrator.until=T` would.
+std::string as_set(const std::string& until) { return std::string(until_option) + until; }
+
+/// What is wrong with a number of threads; "" if nothing.
+std::string wrong_threads(const std::string& text) {
+  int threads = 0;
+  const char* end = text.data() + text.size();
+  const auto [read, error] = std::from_chars(text.data(), end, threads);
+  if (error == std::errc() && read == end && threads >= 1 && threads <= 65536) return "";
+  return fmt::format("'{}' is no number of threads; give one from 1 to 65536", text);
+}
 
 int run_scene(const RunArguments& given) {
   check_simd(given.simd);
   if (given.threads != 0) set_thread_count(given.threads);
   std::vector<std::string> sets = given.sets;
-  if (!given.until.empty()) sets.push_back(as_set(given.until));
+  if (given.until) sets.push_back(as_set(*given.until));
   const Scene scene = load_scene(given.scene, standard_parts(), sets);
   RunOptions options;
   options.out = given.out;
   options.existing = given.resume ? Existing::resume : given.fresh ? Existing::fresh : Existing::keep;
   options.progress = !given.quiet && !given.json;
   const RunReport report = run(scene, options);
+  if (report.exit_code() == 1) fmt::print(stderr, "{}\n", escaped(to_text(report.outcome)));
   if (given.json) {
     fmt::print("{}\n", to_json(report));
   } else if (!given.quiet) {
@@ -59,12 +73,19 @@ void add_run_command(CLI::App& app, int& exit_code) {
   const auto given = std::make_shared<RunArguments>();
   CLI::App* command = app.add_subcommand("run", "integrate a scene");
   command->add_option("scene", given->scene, "scene file")->required()->type_name("SCENE");
-  command->add_option("--out", given->out, "output folder; default: SCENE.out here")->type_name("DIR");
+  command->add_option("--out", given->out, "output folder; default: SCENE.out here")
+      ->check(
+          [](const std::string& name) { return std::string(name.empty() ? "the name of the folder is empty" : ""); })
+      ->type_name("DIR");
   command->add_option("--threads", given->threads, "threads to use; the bits do not depend on it")
-      ->check(CLI::Range(1, 65536))
+      ->check(wrong_threads)
       ->type_name("N");
   command->add_option("--simd", given->simd, "SIMD level: base")->type_name("LEVEL");
-  command->add_option("--until", given->until, "end of the run, such as \"1 Myr\"")->type_name("T");
+  command->add_option("--until", given->until, "end of the run, such as \"1 Myr\"")
+      ->check([](const std::string& time) {
+        return std::string(time.empty() ? "the time is empty; give one, such as \"1 Myr\"" : "");
+      })
+      ->type_name("T");
   command->add_option("--set", given->sets, "change a key of the scene: key.path=value")
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");

@@ -35,11 +35,10 @@ struct Failure {
 
 /// What a split Hamiltonian says of its parts; tests verify it, `Composition` refuses by it.
 struct HamiltonianClaims {
-  std::string_view alphabet;           ///< letters `flow` accepts
+  std::string alphabet;                ///< letters `flow` accepts
   std::string_view inexact = "";       ///< letters whose map is symmetric of order 2 instead of the exact flow
   std::string_view irreversible = "";  ///< letters that only run forward (drag, noise)
   bool quadratic_kinetic = true;       ///< {B,{B,{B,A}}} = 0: Runge-Kutta-Nystroem tables keep their order
-  bool near_integrable = false;        ///< B is small beside A
   bool energy = true;                  ///< every force reports its potential
   bool time_dependent = false;         ///< the energy is not conserved by the exact flow
   bool dissipative = false;
@@ -50,11 +49,14 @@ struct HamiltonianClaims {
 /// A Hamiltonian written as parts whose flows can be computed. Parts are letters.
 ///
 /// `flow` advances by one part's flow; `flow_with_action` does the same (bit for bit) and returns the action increment
-/// of the flow, the integral of p dq - H dt, for which dS = p1 dq1 - p0 dq0.
+/// of the flow, the integral of p dq - H dt, for which dS = p1 dq1 - p0 dq0. Between `observe(wanted)` and
+/// `observe({})` flows serve an observer on a copy: they sum what is wanted and leave no trace in `evaluations` (what
+/// the run itself needs) and `failure` (why the last flow could not be done).
 template <class H>
 concept SplitHamiltonian = requires(H& h, const H& c, ParticleSystem<typename H::real>& s,
                                     const ParticleSystem<typename H::real>& settled, char letter,
-                                    const typename H::real& tau, VectorColumn<typename H::real>& column) {
+                                    const typename H::real& tau, VectorColumn<typename H::real>& column,
+                                    std::optional<Wanted> wanted) {
   { c.claims() } -> std::convertible_to<HamiltonianClaims>;
   h.bind(s);
   h.open(s);
@@ -63,6 +65,9 @@ concept SplitHamiltonian = requires(H& h, const H& c, ParticleSystem<typename H:
   { h.flow_with_action(letter, s, tau) } -> std::convertible_to<typename H::real>;
   { h.energy(settled) } -> std::convertible_to<EnergyTerms<typename H::real>>;
   h.accelerations(settled, column);
+  h.observe(wanted);
+  { c.evaluations() } -> std::convertible_to<Evaluations>;
+  { c.failure() } -> std::convertible_to<const std::optional<Failure>&>;
 };
 
 /// What an integrator says of the runs it makes.

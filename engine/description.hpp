@@ -2,8 +2,12 @@
 /// A part describes itself once: name, help, fields with dimensions, state. Readers, writers, `noether list`,
 /// `noether describe`, docs and checkpoints are all driven by that one description.
 
+#include "engine/error.hpp"
 #include "engine/saved_state.hpp"
 
+#include <array>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <tuple>
 #include <type_traits>
@@ -24,6 +28,10 @@ template <auto Member> struct Field {
   using value_type = typename detail::member_of<decltype(Member)>::value;
   static constexpr auto member = Member;
   std::string_view name, dimension, help;
+  std::string_view example = "";  ///< what a scene may write; not empty: the field has no default and must be given
+
+  /// The same field, which a scene must give; `text` is an example as a scene writes it: "\"60330 km\"".
+  constexpr Field required(std::string_view text) const { return {name, dimension, help, text}; }
 };
 
 /// A member that changes while a run goes on: it goes into checkpoints and comes back from them.
@@ -41,18 +49,24 @@ struct Formula {
   std::string_view text;
 };
 
-/// Where a part comes from: a key of docs/references.bib.
+/// Where a part comes from: keys of docs/references.bib.
 struct Source {
-  std::string_view key;
+  std::string_view text;
+};
+
+/// What a monitor or writer tells or stores: "total [energy], relative_error [1]".
+struct Quantities {
+  std::string_view text;
 };
 
 template <auto Member>
 constexpr Field<Member> field(std::string_view name, std::string_view dimension, std::string_view help = "") {
-  return {name, dimension, help};
+  return {name, dimension, help, ""};
 }
 template <auto Member> constexpr State<Member> state(std::string_view name) { return {name}; }
 constexpr Formula formula(std::string_view text) { return {text}; }
-constexpr Source source(std::string_view key) { return {key}; }
+constexpr Source source(std::string_view keys) { return {keys}; }
+constexpr Quantities quantities(std::string_view text) { return {text}; }
 
 /// The description of a part.
 template <class T, class... Entries> struct Part {
@@ -102,22 +116,36 @@ template <class T, class Visit> constexpr void for_each_state(const Visit& visit
       T::describe().entries);
 }
 
-/// The entry of type `E` (Formula or Source) of a part; empty if it has none.
+/// The entry of type `E` (Formula, Source or Quantities) of a part; empty if it has none.
 template <class T, class E> constexpr std::string_view entry_text() {
   std::string_view found;
   std::apply(
       [&](const auto&... entry) {
         (([&](const auto& e) {
-           if constexpr (std::is_same_v<std::decay_t<decltype(e)>, E>) {
-             if constexpr (std::is_same_v<E, Formula>) found = e.text;
-             if constexpr (std::is_same_v<E, Source>) found = e.key;
-           }
+           if constexpr (std::is_same_v<std::decay_t<decltype(e)>, E>) found = e.text;
          }(entry)),
          ...);
       },
       T::describe().entries);
   return found;
 }
+
+/// Asks a part whether its fields make sense: its optional `void check() const` throws if they do not.
+/// @throws Error  see `refuse_field`
+template <class T> void check_part(const T& part) {
+  if constexpr (requires { part.check(); }) part.check();
+}
+
+/// Ends a part's `check`: "softening = -1 is negative; 0 or a length above is expected".
+///
+/// A scene shows its own text instead of `value`, and the line where it stands.
+/// @throws Error  always, with the key of the field
+[[noreturn]] void refuse_field(std::string_view key, const std::string& value, const std::string& why);
+[[noreturn]] void refuse_field(std::string_view key, double value, const std::string& why);
+[[noreturn]] void refuse_field(std::string_view key, const std::array<double, 3>& value, const std::string& why);
+
+/// Refuses a field G that is given and not above 0. @throws Error
+void check_constant_of_gravitation(const std::optional<double>& G);
 
 /// Name of a part: the one it describes itself with, else empty.
 template <class T> constexpr std::string_view part_name() {

@@ -5,8 +5,12 @@
 #include "engine/concepts.hpp"
 #include "engine/description.hpp"
 
+#include <fmt/format.h>
+
 #include <memory>
+#include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 namespace noether {
@@ -36,6 +40,46 @@ template <class T> std::string name_of(const T& value) {
   }
 }
 
+inline std::string value_text(double x) { return fmt::format("{}", x); }
+inline std::string value_text(const std::optional<double>& x) { return x ? value_text(*x) : "default"; }
+inline std::string value_text(const Vec3<double>& x) { return fmt::format("[{}, {}, {}]", x[0], x[1], x[2]); }
+template <class T> std::string value_text(const T& value) {
+  if constexpr (std::is_enum_v<T> || std::is_integral_v<T>) {
+    return fmt::format("{}", static_cast<std::int64_t>(value));
+  } else {
+    return "?";
+  }
+}
+
+/// A part and its parameters, "gravity(G = default, softening = 0)": two parts that differ in it make different runs.
+template <class T> std::string signature_of(const T& value) {
+  if constexpr (requires { std::string(value.signature()); }) {
+    return value.signature();
+  } else if constexpr (requires { T::describe(); }) {
+    std::string fields;
+    for_each_field<T>([&](const auto& field) {
+      fields += (fields.empty() ? "" : ", ") + fmt::format("{} = {}", field.name, value_text(value.*(field.member)));
+    });
+    return fmt::format("{}({})", part_name<T>(), fields);
+  } else {
+    return name_of(value);
+  }
+}
+
+/// Notes with what a part was made, so that a saved run is not continued by another.
+template <class T> void save_signature(SavedState& saved, const std::string& prefix, const T& value) {
+  save_value(saved, prefix + "signature", signature_of(value));
+}
+/// @throws Error  if the saved run was made with other parts or parameters
+template <class T> void check_signature(const SavedState& saved, const std::string& prefix, const T& value) {
+  std::string before;
+  load_value(saved, prefix + "signature", before);
+  const std::string now = signature_of(value);
+  if (before != now) {
+    throw Error(fmt::format("the saved run was made with {}, this one has {}", before, now));
+  }
+}
+
 /// Value semantics for a polymorphic `Base` with `clone`.
 template <class Base> class Erased {
  public:
@@ -59,6 +103,7 @@ template <class Real> struct ForceBase {
   virtual void add_to(ForceSink<Real>&, const ParticleSystem<Real>&) const = 0;
   virtual ForceClaims claims() const = 0;
   virtual std::string name() const = 0;
+  virtual std::string signature() const = 0;
 };
 template <class F, class Real> struct ForceModel final : ForceBase<Real> {
   explicit ForceModel(F f) : force(std::move(f)) {}
@@ -66,6 +111,7 @@ template <class F, class Real> struct ForceModel final : ForceBase<Real> {
   void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const override { force.add_to(out, s); }
   ForceClaims claims() const override { return claims_of(force); }
   std::string name() const override { return name_of(force); }
+  std::string signature() const override { return signature_of(force); }
   F force;
 };
 
@@ -81,10 +127,9 @@ template <class Real> struct HamiltonianBase {
   virtual Real flow_with_action(char, ParticleSystem<Real>&, const Real&) = 0;
   virtual EnergyTerms<Real> energy(const ParticleSystem<Real>&) = 0;
   virtual void accelerations(const ParticleSystem<Real>&, VectorColumn<Real>&) = 0;
-  virtual void want(Wanted) = 0;
+  virtual void observe(std::optional<Wanted>) = 0;
   virtual const std::optional<Failure>& failure() const = 0;
   virtual Evaluations evaluations() const = 0;
-  virtual void set_evaluations(const Evaluations&) = 0;
   virtual void save(SavedState&, const std::string&) const = 0;
   virtual void load(const SavedState&, const std::string&) = 0;
 };
@@ -105,10 +150,9 @@ template <class H> struct HamiltonianModel final : HamiltonianBase<typename H::r
   }
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) override { return hamiltonian.energy(s); }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) override { hamiltonian.accelerations(s, a); }
-  void want(Wanted wanted) override { hamiltonian.want(wanted); }
+  void observe(std::optional<Wanted> wanted) override { hamiltonian.observe(wanted); }
   const std::optional<Failure>& failure() const override { return hamiltonian.failure(); }
   Evaluations evaluations() const override { return hamiltonian.evaluations(); }
-  void set_evaluations(const Evaluations& e) override { hamiltonian.set_evaluations(e); }
   void save(SavedState& saved, const std::string& prefix) const override { save_any(saved, prefix, hamiltonian); }
   void load(const SavedState& saved, const std::string& prefix) override { load_any(saved, prefix, hamiltonian); }
   H hamiltonian;
@@ -159,6 +203,7 @@ template <class Real = double> class AnyForce : private detail::Erased<detail::F
   void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const { this->held_->add_to(out, s); }
   ForceClaims claims() const { return this->held_->claims(); }
   std::string name() const { return this->held_->name(); }
+  std::string signature() const { return this->held_->signature(); }
 };
 
 /// Any split Hamiltonian over one number type; one virtual call per stage.
@@ -181,10 +226,9 @@ template <class Real = double> class AnyHamiltonian : private detail::Erased<det
   }
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) { return this->held_->energy(s); }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) { this->held_->accelerations(s, a); }
-  void want(Wanted wanted) { this->held_->want(wanted); }
+  void observe(std::optional<Wanted> wanted) { this->held_->observe(wanted); }
   const std::optional<Failure>& failure() const { return this->held_->failure(); }
   Evaluations evaluations() const { return this->held_->evaluations(); }
-  void set_evaluations(const Evaluations& e) { this->held_->set_evaluations(e); }
   void save(SavedState& saved, const std::string& prefix) const { this->held_->save(saved, prefix); }
   void load(const SavedState& saved, const std::string& prefix) { this->held_->load(saved, prefix); }
 };

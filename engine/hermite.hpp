@@ -31,21 +31,25 @@ template <class Real> class Hermite {
     return c1_ + u * (Real(2) * c2_ + u * (Real(3) * c3_ + u * (Real(4) * c4_ + u * (Real(5) * c5_)))).eval();
   }
 
+  /// Whether some point of the interval can be this near the origin; false is certain.
+  bool may_come_within(const Real& distance) const {
+    using std::sqrt;
+    Real reach(0);
+    for (const Vec3<Real>* c : {&c1_, &c2_, &c3_, &c4_, &c5_}) reach += sqrt(norm2(*c));
+    return !(sqrt(norm2(c0_)) - reach > distance);
+  }
+
   /// Smallest distance from the origin on the interval, and where.
+  ///
+  /// `resolved`: without its accelerations the polynomial would have led to the same place within a tenth of that
+  /// distance. Where it would not, the interval is too long for the motion in it, and the distance means nothing.
   struct Nearest {
     Real distance2, at;
+    bool resolved;
   };
   Nearest nearest() const {
-    Nearest best{norm2(position(Real(0))), Real(0)};
-    constexpr int pieces = 16;
-    for (int k = 1; k <= pieces; ++k) {
-      const Real low = Real(k - 1) / Real(pieces), high = Real(k) / Real(pieces);
-      Real u = high;
-      if (dot(position(low), slope(low)) < Real(0) && dot(position(high), slope(high)) > Real(0)) {
-        u = bisect(low, high, [this](const Real& w) { return dot(position(w), slope(w)) > Real(0); });
-      }
-      if (const Real d2 = norm2(position(u)); d2 < best.distance2) best = {d2, u};
-    }
+    Nearest best = lowest();
+    best.resolved = norm2(position(best.at) - cubic(best.at)) <= Real(0.01) * best.distance2;
     return best;
   }
 
@@ -60,6 +64,26 @@ template <class Real> class Hermite {
   }
 
  private:
+  Nearest lowest() const {
+    Nearest best{norm2(position(Real(0))), Real(0), true};
+    constexpr int pieces = 16;
+    for (int k = 1; k <= pieces; ++k) {
+      const Real low = Real(k - 1) / Real(pieces), high = Real(k) / Real(pieces);
+      Real u = high;
+      if (dot(position(low), slope(low)) < Real(0) && dot(position(high), slope(high)) > Real(0)) {
+        u = bisect(low, high, [this](const Real& w) { return dot(position(w), slope(w)) > Real(0); });
+      }
+      if (const Real d2 = norm2(position(u)); d2 < best.distance2) best = {d2, u, true};
+    }
+    return best;
+  }
+
+  /// The polynomial of degree 3 that meets positions and velocities alone.
+  Vec3<Real> cubic(const Real& u) const {
+    const Vec3<Real> dx = position(Real(1)) - c0_, s0 = c1_, s1 = slope(Real(1));
+    return c0_ + u * (s0 + u * (Real(3) * dx - Real(2) * s0 - s1 + u * (s0 + s1 - Real(2) * dx))).eval();
+  }
+
   Vec3<Real> c0_, c1_, c2_, c3_, c4_, c5_;
 };
 

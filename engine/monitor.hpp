@@ -30,10 +30,12 @@ struct Sample {
   std::optional<double> scale;  ///< what relative errors are relative to
 };
 
-/// What a monitor has to say at the end. A number that makes no sense for it stays empty, with the reason in `message`.
+/// What a monitor has to say at the end. A number that makes no sense for it stays empty.
 struct MonitorReport {
   std::optional<double> first, last, worst, rms, slope, slope_error, scale;
-  std::string slope_unit, message;
+  std::string slope_unit;
+  std::string reason;  ///< why figures are empty that this monitor would have in another run
+  std::string note;    ///< what else there is to say
   std::int64_t samples = 0;
 };
 

@@ -14,6 +14,10 @@ template <class Real> Vec3<Quad> wide(const Vec3<Real>& v) { return Vec3<Quad>(w
 
 std::vector<double> list(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
+std::string per_time(std::string_view unit, const std::string& time_unit) {
+  return std::string(unit) + (time_unit == "1" ? "" : "/" + time_unit);
+}
+
 void fill_line(MonitorReport& report, const SeriesStatistics& series, const std::string& unit) {
   report.slope = series.slope();
   if (const auto line = series.line()) report.slope_error = line->error;
@@ -59,11 +63,11 @@ MonitorReport Energy::report() const {
   report.first = totals_.first();
   report.last = totals_.last();
   report.scale = scale_;
-  report.message = why_not_;
+  report.reason = why_not_;
   if (!why_not_.empty()) return report;
   report.worst = errors_.worst();
   report.rms = errors_.rms();
-  fill_line(report, errors_, "1/" + time_unit_);
+  fill_line(report, errors_, per_time("1", time_unit_));
   return report;
 }
 
@@ -105,7 +109,7 @@ MonitorReport VectorInvariant::report() const {
   report.worst = errors_.worst();
   report.rms = errors_.rms();
   report.scale = scale_;
-  fill_line(report, errors_, "1/" + time_unit_);
+  fill_line(report, errors_, per_time("1", time_unit_));
   return report;
 }
 
@@ -184,7 +188,7 @@ template <class Real> void CenterOfMass::observe(const Snapshot<Real>& now) {
     velocity_[k] = static_cast<double>(v[static_cast<Index>(k)]);
     departure[static_cast<Index>(k)] -= start_[k] + t * start_[k + 3];
   }
-  time_unit_ = std::string(now.units().time);
+  slope_unit_ = per_time(now.units().length, std::string(now.units().time));
   departures_.add(now.time(), static_cast<double>(sqrt(norm2(departure))));
 }
 
@@ -200,8 +204,8 @@ MonitorReport CenterOfMass::report() const {
   report.last = departures_.last();
   report.worst = departures_.worst();
   report.rms = departures_.rms();
-  report.message = "distance from the straight line of the start";
-  fill_line(report, departures_, time_unit_);
+  report.note = "distance from the straight line of the start";
+  fill_line(report, departures_, slope_unit_);
   return report;
 }
 

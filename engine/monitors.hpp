@@ -19,11 +19,12 @@ namespace noether {
 class Energy {
  public:
   static constexpr auto describe() {
-    return part<Energy>("energy", "total energy and its relative error", state<&Energy::begun_>("begun"),
-                        state<&Energy::reference_>("reference"), state<&Energy::scale_>("scale"),
-                        state<&Energy::now_>("now"), state<&Energy::totals_>("totals"),
-                        state<&Energy::errors_>("errors"), state<&Energy::why_not_>("why_not"),
-                        state<&Energy::time_unit_>("time_unit"));
+    return part<Energy>(
+        "energy", "total energy and its relative error", formula("(E - E0) / max(|E0|, 1e-3 (T0 + |U0|))"),
+        source("HairerLubichWanner2006"), quantities("total, kinetic, potential [energy], relative_error [1]"),
+        state<&Energy::begun_>("begun"), state<&Energy::reference_>("reference"), state<&Energy::scale_>("scale"),
+        state<&Energy::now_>("now"), state<&Energy::totals_>("totals"), state<&Energy::errors_>("errors"),
+        state<&Energy::why_not_>("why_not"), state<&Energy::time_unit_>("time_unit"));
   }
 
   static Wanted wanted() { return {.energy = true}; }
@@ -86,7 +87,10 @@ class Momentum : public VectorInvariant {
  public:
   Momentum() : VectorInvariant("mass length/time", false) {}
   static constexpr auto describe() {
-    return part<Momentum>("momentum", "linear momentum and its relative error", formula("P = sum m_i v_i"));
+    return part<Momentum>("momentum", "linear momentum and its relative error",
+                          formula("P = sum m_i v_i, error relative to sum m_i |v_i|"),
+                          quantities("value[3] [mass length/time], relative_error [1]"),
+                          source("HairerLubichWanner2006"));
   }
   template <class Real> void observe(const Snapshot<Real>& now);
   void save(SavedState& saved, const std::string& prefix) const { save_series(saved, prefix); }
@@ -99,7 +103,9 @@ class AngularMomentum : public VectorInvariant {
   AngularMomentum() : VectorInvariant("mass length^2/time", true) {}
   static constexpr auto describe() {
     return part<AngularMomentum>("angular_momentum", "angular momentum, its relative error and its direction",
-                                 formula("L = sum m_i x_i cross v_i"));
+                                 formula("L = sum m_i x_i cross v_i, error relative to sum m_i |x_i| |v_i|"),
+                                 quantities("value[3] [mass length^2/time], relative_error, direction_error [1]"),
+                                 source("HairerLubichWanner2006"));
   }
   template <class Real> void observe(const Snapshot<Real>& now);
   void save(SavedState& saved, const std::string& prefix) const { save_series(saved, prefix); }
@@ -110,11 +116,14 @@ class AngularMomentum : public VectorInvariant {
 class CenterOfMass {
  public:
   static constexpr auto describe() {
-    return part<CenterOfMass>(
-        "center_of_mass", "position and velocity of the centre of mass", state<&CenterOfMass::begun_>("begun"),
-        state<&CenterOfMass::start_>("start"), state<&CenterOfMass::start_time_>("start_time"),
-        state<&CenterOfMass::position_>("position"), state<&CenterOfMass::velocity_>("velocity"),
-        state<&CenterOfMass::departures_>("departures"), state<&CenterOfMass::time_unit_>("time_unit"));
+    return part<CenterOfMass>("center_of_mass", "position and velocity of the centre of mass",
+                              formula("X = sum m_i x_i / sum m_i;  worst: largest |X(t) - X(0) - t V(0)|"),
+                              quantities("position[3] [length], velocity[3] [length/time]"),
+                              source("HairerLubichWanner2006"), state<&CenterOfMass::begun_>("begun"),
+                              state<&CenterOfMass::start_>("start"), state<&CenterOfMass::start_time_>("start_time"),
+                              state<&CenterOfMass::position_>("position"), state<&CenterOfMass::velocity_>("velocity"),
+                              state<&CenterOfMass::departures_>("departures"),
+                              state<&CenterOfMass::slope_unit_>("slope_unit"));
   }
   template <class Real> void observe(const Snapshot<Real>& now);
   std::vector<Series> series() const;
@@ -127,7 +136,7 @@ class CenterOfMass {
   double start_time_ = 0;
   std::array<double, 3> position_{}, velocity_{};
   SeriesStatistics departures_;
-  std::string time_unit_;
+  std::string slope_unit_;
 };
 
 }  // namespace noether

@@ -118,18 +118,19 @@ template <class Real> Real hyperbolic_anomaly(const Real& M, const Real& e) {
   return M < Real(0) ? -H : H;
 }
 
+/// Tells which element makes these no orbit. Where a and e contradict each other, e is taken for wrong beside a
+/// positive a, and a beside the e of an ellipse.
+/// @throws Error  always, with the key and the value of that element
+[[noreturn]] void refuse_elements(const OrbitalElements<double>& o, double mu);
+
 template <class Real> void check_elements(const OrbitalElements<Real>& o, const Real& mu) {
-  const auto text = [](const Real& x) { return std::to_string(static_cast<double>(x)); };
-  if (!(mu > Real(0))) throw Error("an orbit about G m = " + text(mu) + " is impossible; a mass above 0 is expected");
-  for (const Real* x : {&o.a, &o.e, &o.inc, &o.Omega, &o.omega, &o.M}) {
-    if (!(*x - *x == Real(0))) throw Error("an orbital element is not finite; six finite numbers are expected");
-  }
+  bool fine = mu > Real(0);
+  for (const Real* x : {&o.a, &o.e, &o.inc, &o.Omega, &o.omega, &o.M}) fine = fine && *x - *x == Real(0);
   const bool ellipse = o.a > Real(0) && o.e >= Real(0) && o.e < Real(1);
   const bool hyperbola = o.a < Real(0) && o.e > Real(1);
-  if (!ellipse && !hyperbola) {
-    throw Error("a = " + text(o.a) + " with e = " + text(o.e) +
-                " is no orbit; an ellipse has a > 0 and 0 <= e < 1, a hyperbola a < 0 and e > 1");
-  }
+  if (fine && (ellipse || hyperbola)) return;
+  const auto plain = [](const Real& x) { return static_cast<double>(x); };
+  refuse_elements({plain(o.a), plain(o.e), plain(o.inc), plain(o.Omega), plain(o.omega), plain(o.M)}, plain(mu));
 }
 
 }  // namespace detail

@@ -51,7 +51,7 @@ std::vector<Series> Elements::series() const {
 MonitorReport Elements::report() const {
   MonitorReport report;
   report.samples = samples_;
-  report.message = "six numbers for each particle: see the trajectory file";
+  report.note = "six numbers for each particle: see the trajectory file";
   return report;
 }
 
@@ -77,12 +77,15 @@ template <class Real> void ClosestApproach::look_at_pairs(const Snapshot<Real>& 
       Real distance2 = norm2(s.positions()[i] - s.positions()[j]);
       double at = now.time();
       if (path_known) {
-        const Motion<Real> begin = motion_from<Real>(seen_, i) - motion_from<Real>(seen_, j);
-        const Motion<Real> end = motion_at(now, i) - motion_at(now, j);
-        const auto nearest = Hermite<Real>(begin, end, Real(h)).nearest();
-        if (nearest.distance2 < distance2) {
-          distance2 = nearest.distance2;
-          at = seen_time_ + static_cast<double>(nearest.at) * h;
+        const Hermite<Real> path(motion_from<Real>(seen_, i) - motion_from<Real>(seen_, j),
+                                 motion_at(now, i) - motion_at(now, j), Real(h));
+        if (path.may_come_within(Real(distance_))) {
+          const auto nearest = path.nearest();
+          if (!nearest.resolved) ++unresolved_;
+          if (nearest.resolved && nearest.distance2 < distance2) {
+            distance2 = nearest.distance2;
+            at = seen_time_ + static_cast<double>(nearest.at) * h;
+          }
         }
       }
       const double distance = static_cast<double>(sqrt(distance2));
@@ -120,7 +123,12 @@ MonitorReport ClosestApproach::report() const {
   if (pair_.empty()) return report;
   report.first = first_;
   report.last = distance_;
-  report.message = fmt::format("{} and {} at time {:.9g}", names_[0], names_[1], at_time_);
+  report.note = fmt::format("{} and {} at time {:.9g}", names_[0], names_[1], at_time_);
+  if (unresolved_ > 0) {
+    report.note +=
+        fmt::format("; {} times a pair may have been nearer between two looks, too far apart to tell: look more often",
+                    unresolved_);
+  }
   return report;
 }
 

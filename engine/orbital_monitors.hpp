@@ -27,10 +27,14 @@ class Elements {
 
   static constexpr auto describe() {
     return part<Elements>("elements", "osculating elements a, e, inc, Omega, omega, M relative to particle 0",
-                          source("MurrayDermott1999"),
+                          formula("x, v relative to particle 0;  mu = G (m_0 + m_i)"),
+                          quantities("value[n][6], columns a, e, inc, Omega, omega, M"), source("MurrayDermott1999"),
                           field<&Elements::G>("G", "length^3/mass/time^2", "default: the unit system's own"),
                           state<&Elements::samples_>("samples"));
   }
+
+  /// @throws Error  for a G that is not above 0
+  void check() const { check_constant_of_gravitation(G); }
 
   template <class Real> void observe(const Snapshot<Real>& now);
   std::vector<Series> series() const;
@@ -48,18 +52,21 @@ class Elements {
 /// Watches for the smallest distance of two particles, one of them massive, since the start.
 ///
 /// Between two looks the motion is the quintic Hermite polynomial of the two settled states, so an approach is found
-/// even if it was over at the second look.
+/// even if it was over at the second look. Where the looks are too far apart for that (`Hermite::nearest`), only the
+/// distances at the looks count, and the report says how often something may have been missed.
 /// @cost O(n m) with m massive bodies, and one force evaluation
 class ClosestApproach {
  public:
   static constexpr auto describe() {
     return part<ClosestApproach>(
         "closest_approach", "smallest distance of two particles so far, and when it was",
-        state<&ClosestApproach::distance_>("distance"), state<&ClosestApproach::at_time_>("at_time"),
-        state<&ClosestApproach::first_>("first"), state<&ClosestApproach::pair_>("pair"),
-        state<&ClosestApproach::names_>("names"), state<&ClosestApproach::samples_>("samples"),
-        state<&ClosestApproach::seen_time_>("seen_time"), state<&ClosestApproach::seen_ids_>("seen_ids"),
-        state<&ClosestApproach::seen_>("seen"));
+        formula("min |x_i - x_j| along quintic Hermite paths between two looks"),
+        quantities("distance [length], pair[2] (ids), at_time [time]"), state<&ClosestApproach::distance_>("distance"),
+        state<&ClosestApproach::at_time_>("at_time"), state<&ClosestApproach::first_>("first"),
+        state<&ClosestApproach::pair_>("pair"), state<&ClosestApproach::names_>("names"),
+        state<&ClosestApproach::samples_>("samples"), state<&ClosestApproach::seen_time_>("seen_time"),
+        state<&ClosestApproach::seen_ids_>("seen_ids"), state<&ClosestApproach::seen_>("seen"),
+        state<&ClosestApproach::unresolved_>("unresolved"));
   }
 
   template <class Real> void observe(const Snapshot<Real>& now);
@@ -72,6 +79,8 @@ class ClosestApproach {
   double at_time() const { return at_time_; }
   /// Ids of the two particles; empty where there is no pair.
   const std::vector<std::int64_t>& pair() const { return pair_; }
+  /// How often a pair may have been nearer between two looks that were too far apart to tell.
+  std::int64_t unresolved() const { return unresolved_; }
 
  private:
   template <class Real> void look_at_pairs(const Snapshot<Real>& now);
@@ -80,7 +89,7 @@ class ClosestApproach {
   double distance_ = std::numeric_limits<double>::infinity(), at_time_ = 0, first_ = 0;
   std::vector<std::int64_t> pair_;
   std::vector<std::string> names_;
-  std::int64_t samples_ = 0;
+  std::int64_t samples_ = 0, unresolved_ = 0;
   double seen_time_ = 0;                ///< of the last look
   std::vector<std::int64_t> seen_ids_;  ///< of the particles it saw
   std::vector<Quad> seen_;              ///< x, v, a of each, shape (n, 9)

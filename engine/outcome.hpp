@@ -34,7 +34,7 @@ struct [[nodiscard]] Outcome {
   };
 
   Kind kind = Kind::completed;
-  std::int64_t step = 0;                ///< last whole step
+  std::int64_t step = 0;                ///< last whole step: of a run that failed, the one before the failure
   double time = 0;                      ///< time of that step [time]
   std::optional<ParticleRef> particle;  ///< whom it happened to, where it was one particle
   std::string quantity;                 ///< what went wrong with it, such as "position"; may be empty

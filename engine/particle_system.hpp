@@ -227,8 +227,17 @@ template <class Real = double> class ParticleSystem {
     if (!extra_.empty() || !other.extra_.empty()) extra_ = other.extra_;
   }
 
+  /// Largest id: every whole number up to it is a double, as files and other programs may store ids.
+  static constexpr std::int64_t largest_id = std::int64_t{1} << 53U;
+
   /// Gives the particles the ids of a file or a copy, shape (n).
+  /// @throws Error  for one that is negative or above `largest_id`
   void restore_ids(const std::vector<std::int64_t>& ids) {
+    for (const std::int64_t id : ids) {
+      if (id >= 0 && id <= largest_id) continue;
+      throw Error("the id " + std::to_string(id) + " cannot be kept; 0 to " + std::to_string(largest_id) +
+                  " (2^53) is expected");
+    }
     ids_ = ids;
     for (const std::int64_t id : ids_) next_id_ = std::max(next_id_, id + 1);
   }

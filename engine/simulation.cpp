@@ -132,17 +132,19 @@ template <class Real> Outcome Simulation<Real>::run_until(double until) {
 }
 
 template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double limit) {
+  shown_at_.reset();
+  std::optional<Outcome> result = not_finite();
+  if (!result) result = observe_due();  // before the clock starts: writers open their files when they first look
+  if (result) return *result;
   const auto started = WallClock::now();
   const double before = seconds_;
   auto reported = started;
-  shown_at_.reset();
-  const bool free = raw_.clock().mode() == ClockMode::free;
-  std::optional<Outcome> result;
+  keep_good();
   while (true) {
     seconds_ = before + seconds_since(started);
-    if (!free && (result = not_finite())) break;
     if ((result = observe_due())) break;
     if (step() >= end) break;
+    if (step() - good_->particles.clock().step() >= longest_chunk) keep_good();
     if (stop_flag_ != nullptr && stop_flag_->load(std::memory_order_relaxed)) {
       result = outcome(Outcome::Kind::interrupted);
       break;
@@ -153,12 +155,10 @@ template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double 
     const double took = seconds_since(chunk_start);
     if (took < chunk_seconds / 2) chunk_ = std::min(longest_chunk, chunk_ * 2);
     if (took > chunk_seconds && chunk_ > 1) chunk_ /= 2;
-    if (done.failure) {
-      result = not_finite();
-      if (!result) result = failed(*done.failure);
+    if (done.failure || not_finite()) {
+      result = fall_back();
       break;
     }
-    if (free && (result = not_finite())) break;
     if (done.at_limit) {
       const double reached = next_time(limit);
       observe_times(reached);
@@ -172,8 +172,51 @@ template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double 
       progress_({step(), end, time(), before + seconds_since(started)});
     }
   }
+  if (!result) result = look_at_the_end();
   seconds_ = before + seconds_since(started);
+  good_.reset();
   return result ? *result : outcome(Outcome::Kind::completed);
+}
+
+template <class Real> void Simulation<Real>::keep_good() {
+  good_ = Good{raw_, {}};
+  integrator_.save(good_->integrator, "");
+}
+
+/// Goes again, step by step, from the last state kept to the step that failed: where a run ends must not depend on when
+/// somebody looked. The state is the last whole step before, the outcome tells what came after it.
+template <class Real> Outcome Simulation<Real>::fall_back() {
+  const std::int64_t failing = step();
+  const auto go_back = [&] {
+    raw_ = good_->particles;
+    integrator_.load(good_->integrator, "");
+  };
+  go_back();
+  while (true) {
+    const Advanced done = integrator_.advance(raw_, {.steps = 1});
+    std::optional<Outcome> reason = not_finite();
+    if (!reason && done.failure) reason = failed(*done.failure);
+    if (reason) {
+      go_back();
+      reason->step = step();
+      reason->time = time();
+      return *reason;
+    }
+    if (step() > failing) throw LogicError("a step that had failed went well when it was made again");
+    keep_good();
+  }
+}
+
+/// Stops that were not due at the last step look at it too, and forget what they saw: a run that goes on later is the
+/// run that was never cut.
+template <class Real> std::optional<Outcome> Simulation<Real>::look_at_the_end() {
+  const Snapshot<Real> moment = snapshot({});
+  for (const ScheduledStop& stop : stops_) {
+    if (step() % stop.steps == 0) continue;
+    StopCheck<Real> check = stop.check;
+    if (const auto reason = check.look(moment)) return stopped(*reason);
+  }
+  return {};
 }
 
 template <class Real> bool Simulation<Real>::due(const Scheduled& scheduled) const {
@@ -202,9 +245,7 @@ template <class Real> std::optional<Outcome> Simulation<Real>::observe_due() {
   for (ScheduledStop* stop : stops) {
     const auto reason = stop->check.look(moment);
     if (!reason || result) continue;
-    result = outcome(Outcome::Kind::stopped, reason->message);
-    result->particle = ParticleRef{reason->particle, raw_.ids()[static_cast<std::size_t>(reason->particle)],
-                                   raw_.name(reason->particle)};
+    result = stopped(*reason);
   }
   show(looking, moment);
   return result;
@@ -285,6 +326,13 @@ template <class Real> Outcome Simulation<Real>::outcome(Outcome::Kind kind, std:
   result.step = step();
   result.time = time();
   result.message = std::move(message);
+  return result;
+}
+
+template <class Real> Outcome Simulation<Real>::stopped(const StopReason& reason) const {
+  Outcome result = outcome(Outcome::Kind::stopped, reason.message);
+  result.particle =
+      ParticleRef{reason.particle, raw_.ids()[static_cast<std::size_t>(reason.particle)], raw_.name(reason.particle)};
   return result;
 }
 

@@ -62,6 +62,7 @@ template <class Real = double> class Simulation {
   std::int64_t steps_in(double duration) const;
 
   /// Goes on for `steps` steps. The result tells how it ended; physics never throws, a writer that cannot write does.
+  /// A step that fails (not finite, a solver without a solution) is undone: the state is the last whole step before it.
   Outcome run(std::int64_t steps);
   /// Goes on to time `until` [time]. @throws Error  if it has passed, or is no whole number of steps away
   Outcome run_until(double until);
@@ -147,12 +148,23 @@ template <class Real = double> class Simulation {
   double next_time(double end) const;
   std::optional<Outcome> not_finite();
   Outcome outcome(Outcome::Kind kind, std::string message = "") const;
+  Outcome stopped(const StopReason& reason) const;
   Outcome failed(const Failure& failure) const;
+  void keep_good();
+  Outcome fall_back();
+  std::optional<Outcome> look_at_the_end();
   Outcome run_to(std::int64_t end, double limit);
   void begin_edit();
   void end_edit();
 
+  /// A whole step to fall back to.
+  struct Good {
+    ParticleSystem<Real> particles;
+    SavedState integrator;
+  };
+
   ParticleSystem<Real> raw_, copy_, mapped_;
+  std::optional<Good> good_;  ///< while a run goes on: at most 1024 steps and a cut old
   AnyIntegrator<Real> integrator_;
   std::deque<Scheduled> monitors_;
   std::deque<ScheduledStop> stops_;

@@ -109,10 +109,13 @@ std::optional<typename StopCheck<Real>::Event> StopCheck<Real>::collision(const 
       if (moved_) {
         const Hermite<Real> path(difference(last_motion(i), last_motion(j)),
                                  difference(motion_of(now, i), motion_of(now, j)), h);
+        if (!path.may_come_within(Real(rule_.distance))) continue;
         const auto nearest = path.nearest();
-        event.distance2 = std::min(event.distance2, nearest.distance2);
-        event.at =
-            Hermite<Real>::bisect(Real(0), nearest.at, [&](const Real& u) { return norm2(path.position(u)) < limit2; });
+        if (nearest.resolved && nearest.distance2 < limit2) {
+          event.distance2 = nearest.distance2;
+          event.at = Hermite<Real>::bisect(Real(0), nearest.at,
+                                           [&](const Real& u) { return norm2(path.position(u)) < limit2; });
+        }
       }
       if (event.distance2 < limit2 && (!first || event.at < first->at)) first = event;
     }

@@ -33,8 +33,9 @@ struct StopReason {
 };
 
 /// One rule at work. Between two looks the motion is the quintic Hermite polynomial of the two settled states, so an
-/// approach is found even if it was over at the second look. Of several events between two looks the first is told,
-/// with its least distance and the time since when the distance was passed; the state stays at the last whole step.
+/// approach is found even if it was over at the second look (not if the looks were too far apart to tell). Of several
+/// events between two looks the first is told, with its least distance and the time since when the distance was passed;
+/// the state stays at the last whole step.
 template <class Real> class StopCheck {
  public:
   explicit StopCheck(const StopRule& rule);

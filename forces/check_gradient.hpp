@@ -1,6 +1,7 @@
 #pragma once
 /// Is a force the gradient of its energy? Asked by differences, in extended precision where the force allows it.
 
+#include "engine/description.hpp"
 #include "engine/force_sink.hpp"
 
 #include <fmt/format.h>
@@ -69,8 +70,9 @@ template <class F> double gradient_error(const F& force, const ParticleSystem<do
   }
 }
 
-/// @throws Error  if a force is not minus the gradient of the energy it reports
+/// @throws Error  if a force is not minus the gradient of the energy it reports, or its `check` refuses its fields
 template <class F> void check_gradient(const F& force, const ParticleSystem<double>& s) {
+  check_part(force);
   const double limit = Force<F, Quad> ? 1e-12 : 1e-6;
   const double error = gradient_error(force, s);
   if (!(error < limit)) {

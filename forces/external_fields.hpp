@@ -23,7 +23,8 @@ struct UniformField {
 
   static constexpr auto describe() {
     return part<UniformField>("uniform_field", "the same acceleration everywhere", formula("U = - sum_i m_i g . x_i"),
-                              field<&UniformField::acceleration>("acceleration", "length/time^2", "g = [x, y, z]"));
+                              field<&UniformField::acceleration>("acceleration", "length/time^2", "g = [x, y, z]")
+                                  .required("[\"0 m/s^2\", \"0 m/s^2\", \"-9.81 m/s^2\"]"));
   }
 
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
@@ -47,8 +48,9 @@ struct OscillatingField {
     return part<OscillatingField>(
         "oscillating_field", "a uniform acceleration that oscillates in time",
         formula("U = - sum_i m_i g . x_i cos(omega t + phase)"),
-        field<&OscillatingField::acceleration>("acceleration", "length/time^2", "amplitude g = [x, y, z]"),
-        field<&OscillatingField::omega>("omega", "1/time", "angular frequency"),
+        field<&OscillatingField::acceleration>("acceleration", "length/time^2", "amplitude g = [x, y, z]")
+            .required("[\"0 m/s^2\", \"0 m/s^2\", \"-9.81 m/s^2\"]"),
+        field<&OscillatingField::omega>("omega", "1/time", "angular frequency").required("\"0.1/day\""),
         field<&OscillatingField::phase>("phase", "angle"));
   }
   static ForceClaims claims() { return {.time_dependent = true}; }
@@ -70,8 +72,10 @@ struct HarmonicField {
   double k = 0.0;  ///< [mass/time^2]
 
   static constexpr auto describe() {
-    return part<HarmonicField>("harmonic_field", "a spring to the origin for every massive particle",
-                               formula("U = sum_i k |x_i|^2 / 2"), field<&HarmonicField::k>("k", "mass/time^2"));
+    return part<HarmonicField>(
+        "harmonic_field", "a spring to the origin for every massive particle", formula("U = sum_i k |x_i|^2 / 2"),
+        source("Hooke1678"),
+        field<&HarmonicField::k>("k", "mass/time^2", "stiffness of the spring").required("\"1 kg/s^2\""));
   }
 
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {

@@ -14,7 +14,12 @@ struct LinearDrag {
   static constexpr auto describe() {
     return part<LinearDrag>("linear_drag", "friction proportional to velocity: the dissipative letter D",
                             formula("a = - rate v;  flow D: v -> exp(-rate h) v"),
-                            field<&LinearDrag::rate>("rate", "1/time"));
+                            field<&LinearDrag::rate>("rate", "1/time").required("\"0.01/day\""));
+  }
+
+  /// @throws Error  for a negative rate
+  void check() const {
+    if (!(rate >= 0)) refuse_field("rate", rate, "drives instead of damping; 0 or more is expected");
   }
 };
 

@@ -25,13 +25,23 @@ struct Oblateness {
   std::optional<double> G = {};            ///< [length^3/mass/time^2]; default: the unit system's own
 
   static constexpr auto describe() {
-    return part<Oblateness>("oblateness", "zonal harmonics J2 and J4 of particle 0",
-                            formula("U = sum_i m_i (G m_0/r) [J2 (R/r)^2 P2(c) + J4 (R/r)^4 P4(c)]"),
-                            source("MurrayDermott1999"), field<&Oblateness::J2>("J2", "1"),
-                            field<&Oblateness::J4>("J4", "1"),
-                            field<&Oblateness::radius>("radius", "length", "equatorial radius of the primary"),
-                            field<&Oblateness::axis>("axis", "1", "direction of the axis of symmetry"),
-                            field<&Oblateness::G>("G", "length^3/mass/time^2", "default: the unit system's own"));
+    return part<Oblateness>(
+        "oblateness", "zonal harmonics J2 and J4 of particle 0",
+        formula("U = sum_i m_i (G m_0/r) [J2 (R/r)^2 P2(c) + J4 (R/r)^4 P4(c)]"), source("MurrayDermott1999"),
+        field<&Oblateness::J2>("J2", "1"), field<&Oblateness::J4>("J4", "1"),
+        field<&Oblateness::radius>("radius", "length", "equatorial radius of the primary").required("\"60330 km\""),
+        field<&Oblateness::axis>("axis", "1", "direction of the axis of symmetry"),
+        field<&Oblateness::G>("G", "length^3/mass/time^2", "default: the unit system's own"));
+  }
+
+  /// @throws Error  without J2 and J4, a radius above 0, or an axis that has a direction
+  void check() const {
+    check_constant_of_gravitation(G);
+    if (J2 == 0 && J4 == 0) throw Error("oblateness has neither J2 nor J4, so it would do nothing; give one");
+    if (!(radius > 0)) refuse_field("radius", radius, "is no radius; a length above 0 is expected");
+    if (axis[0] == 0 && axis[1] == 0 && axis[2] == 0) {
+      refuse_field("axis", axis, "has no direction; expected one such as [0, 0, 1]");
+    }
   }
 
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {

@@ -33,6 +33,12 @@ template <class... Fs> class Sum {
     return all;
   }
   std::string name() const { return "sum"; }
+  std::string signature() const {
+    std::string all;
+    std::apply([&](const auto&... force) { ((all += (all.empty() ? "" : " + ") + detail::signature_of(force)), ...); },
+               forces_);
+    return all;
+  }
 
  private:
   std::tuple<Fs...> forces_;
@@ -55,6 +61,11 @@ template <class Real = double> class ForceField {
     return all;
   }
   std::string name() const { return "force_field"; }
+  std::string signature() const {
+    std::string all;
+    for (const auto& term : terms_) all += (all.empty() ? "" : " + ") + term.signature();
+    return all;
+  }
   const std::vector<AnyForce<Real>>& terms() const { return terms_; }
 
  private:

@@ -29,7 +29,7 @@ void check_class(const Scheme& scheme, const HamiltonianClaims& claims, const st
     if (claims.inexact.find(letter) == std::string_view::npos) continue;
     throw SchemeMismatch(
         fmt::format("scheme '{}' needs exact flows, but part {} of '{}' is a symmetric map of order 2; "
-                    "use a composition of symmetric steps such as 'yoshida_6', or 'abah_10_6_4'",
+                    "use 'verlet', or a scheme made for it such as 'abah_8_6_4' or 'abah_10_6_4'",
                     scheme.name, letter, hamiltonian));
   }
   if (scheme.scheme_class == SchemeClass::rkn && !claims.quadratic_kinetic) {

@@ -94,14 +94,12 @@ template <SplitHamiltonian H> class Composition {
     NOETHER_EXPECTS(!at, "a composition stands at whole steps only");
     out.assign_state(raw);
     if (!raw.phase().opened) return;
-    const Evaluations counted = hamiltonian_.evaluations();
     const real dt(raw.clock().dt());
-    hamiltonian_.want(wanted);
+    hamiltonian_.observe(wanted);
     if (raw.phase().pending) hamiltonian_.flow(stages_.back().letter, out, stages_.back().weight * dt);
     if (corrected) walk(after_, out, dt);
     hamiltonian_.close(out);
-    hamiltonian_.want({});
-    hamiltonian_.set_evaluations(counted);
+    hamiltonian_.observe({});
     out.phase() = Phase{};
   }
 
@@ -113,14 +111,21 @@ template <SplitHamiltonian H> class Composition {
 
   void save(SavedState& saved, const std::string& prefix) const {
     save_value(saved, prefix + "method", name_);
+    save_value(saved, prefix + "compensated", options_.compensated);
     detail::save_any(saved, prefix + "hamiltonian/", hamiltonian_);
   }
-  /// @throws Error  if the saved run was made by another scheme
+  /// @throws Error  if the saved run was made by another scheme, or with other rounding
   void load(const SavedState& saved, const std::string& prefix) {
     std::string method;
     load_value(saved, prefix + "method", method);
     if (method != name_)
       throw Error("the saved run was made by method '" + method + "', this one uses '" + name_ + "'");
+    bool compensated = false;
+    load_value(saved, prefix + "compensated", compensated);
+    if (compensated != options_.compensated) {
+      throw Error(compensated ? "the saved run sums with compensation, this one without"
+                              : "the saved run sums without compensation, this one with it");
+    }
     detail::load_any(saved, prefix + "hamiltonian/", hamiltonian_);
   }
 

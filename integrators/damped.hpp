@@ -29,7 +29,7 @@ template <SplitHamiltonian H> class Damped {
   std::string name() const { return "damped"; }
   HamiltonianClaims claims() const {
     HamiltonianClaims claims = hamiltonian_.claims();
-    claims.alphabet = claims.alphabet == "AB" ? "ABD" : "ABCD";
+    claims.alphabet += 'D';
     claims.irreversible = "D";
     claims.dissipative = true;
     claims.keeps_momentum = claims.keeps_angular_momentum = false;
@@ -54,12 +54,17 @@ template <SplitHamiltonian H> class Damped {
     hamiltonian_.accelerations(s, a);
     for (Index i = 0; i < s.size(); ++i) a.add(i, -real(drag_.rate) * s.velocities()[i]);
   }
-  void want(Wanted wanted) { hamiltonian_.want(wanted); }
+  void observe(std::optional<Wanted> wanted) { hamiltonian_.observe(wanted); }
   const std::optional<Failure>& failure() const { return hamiltonian_.failure(); }
   Evaluations evaluations() const { return hamiltonian_.evaluations(); }
-  void set_evaluations(const Evaluations& e) { hamiltonian_.set_evaluations(e); }
-  void save(SavedState& saved, const std::string& prefix) const { detail::save_any(saved, prefix, hamiltonian_); }
-  void load(const SavedState& saved, const std::string& prefix) { detail::load_any(saved, prefix, hamiltonian_); }
+  void save(SavedState& saved, const std::string& prefix) const {
+    detail::save_signature(saved, prefix + "drag/", drag_);
+    detail::save_any(saved, prefix, hamiltonian_);
+  }
+  void load(const SavedState& saved, const std::string& prefix) {
+    detail::check_signature(saved, prefix + "drag/", drag_);
+    detail::load_any(saved, prefix, hamiltonian_);
+  }
 
  private:
   H hamiltonian_;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace noether {
 
@@ -59,6 +60,7 @@ template <class F, class Real = double> class KineticPotential {
   void bind(ParticleSystem<Real>& s) {
     acceleration_ = VectorColumn<Real>(s.size());
     known_.reset();
+    moved_ = true;
   }
   void open(ParticleSystem<Real>& /*inertial already*/) {}
   void close(ParticleSystem<Real>& /*inertial already*/) {}
@@ -66,11 +68,12 @@ template <class F, class Real = double> class KineticPotential {
   void flow(char letter, ParticleSystem<Real>& s, const Real& h) {
     if (letter == 'A') {
       s.advance_positions(h);
-    } else {
-      ++evaluations_.force;
-      evaluate(s, wanted_);
-      s.advance_velocities(h, acceleration_);
+      if (!observing_) moved_ = true;
+      return;
     }
+    evaluate(s, observing_.value_or(Wanted{}));
+    s.advance_velocities(h, acceleration_);
+    if (!observing_ && std::exchange(moved_, false)) ++evaluations_.force;
   }
 
   Real flow_with_action(char letter, ParticleSystem<Real>& s, const Real& h) {
@@ -92,16 +95,18 @@ template <class F, class Real = double> class KineticPotential {
     a = acceleration_;
   }
 
-  /// What the next evaluations are to sum as well.
-  void want(Wanted wanted) { wanted_ = wanted; }
+  void observe(std::optional<Wanted> wanted) { observing_ = wanted; }
   const std::optional<Failure>& failure() const { return failure_; }
   Evaluations evaluations() const { return evaluations_; }
-  void set_evaluations(const Evaluations& e) { evaluations_ = e; }
   void save(SavedState& saved, const std::string& prefix) const {
-    save_value(saved, prefix + "kicks", evaluations_.force);
+    detail::save_signature(saved, prefix, forces_);
+    save_value(saved, prefix + "evaluations", evaluations_.force);
+    save_value(saved, prefix + "moved", moved_);
   }
   void load(const SavedState& saved, const std::string& prefix) {
-    load_value(saved, prefix + "kicks", evaluations_.force);
+    detail::check_signature(saved, prefix, forces_);
+    load_value(saved, prefix + "evaluations", evaluations_.force);
+    load_value(saved, prefix + "moved", moved_);
     known_.reset();
   }
 
@@ -125,7 +130,8 @@ template <class F, class Real = double> class KineticPotential {
   VectorColumn<Real> acceleration_;
   Real potential_ = Real(0);
   std::optional<Known> known_;
-  Wanted wanted_;
+  std::optional<Wanted> observing_;
+  bool moved_ = true;               ///< since the last evaluation that was counted
   std::optional<Failure> failure_;  ///< kicks and drifts cannot fail
   Evaluations evaluations_;
 };

@@ -147,8 +147,9 @@ constexpr Scheme checked(const Scheme& scheme) {
 }  // namespace detail
 
 /// A symmetric composition of velocity Verlet (kick first): weights w_1, ..., w_m of its steps, of which the first half
-/// with the centre is given. Any symmetric step of order 2 may stand in for Verlet, so no part need be exact.
+/// with the centre is given. The kicks of neighbouring steps are joined, so of several steps B must be an exact flow.
 template <std::size_t n> constexpr Scheme symmetric_composition(Scheme scheme, const std::array<Quad, n>& half) {
+  if (n > 1) scheme.exact = "B";
   const auto weights = detail::solved(half, true);
   for (std::size_t k = 0; k < 2 * n - 1; ++k) {
     const Quad w = weights[k < n ? k : 2 * n - 2 - k];

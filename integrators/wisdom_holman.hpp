@@ -47,7 +47,8 @@ struct WisdomHolmanOptions {
 ///     democratic  A = P^2/2M + sum_i [p_i^2/2m_i - G m_0 m_i/Q_i],   Q_i = x_i - x_0, p_i = m_i (v_i - V)
 ///                 B = J/2 K J/2 with J = |sum p_i|^2/2m_0 and K = - sum_{0<i<j} G m_i m_j/Q_ij (+ other forces)
 ///
-/// Both parts are exact in Jacobi coordinates; the democratic B is a symmetric map of order 2. Other forces must depend
+/// Both parts are exact; only the democratic B becomes a symmetric map of order 2 where other forces join it, which J
+/// does not commute with. Other forces must depend
 /// on positions (and stage time) only. Action increments: Kepler arc h E + 2 mu s times the reduced mass (s the
 /// universal variable), free motion h T, jump h J, kick - h U.
 /// @cost one Kepler arc per body and A, one sum over pairs per B; no allocation after `bind`
@@ -77,19 +78,23 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
   }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) { newton(s, a, {}); }
 
-  void want(Wanted /*kicks never need the energy*/) {}
+  void observe(std::optional<Wanted> wanted) { observing_ = wanted.has_value(); }
   const std::optional<Failure>& failure() const { return failure_; }
   Evaluations evaluations() const { return evaluations_; }
-  void set_evaluations(const Evaluations& e) { evaluations_ = e; }
   void save(SavedState& saved, const std::string& prefix) const {
+    detail::save_signature(saved, prefix + "options/", options_);
+    detail::save_signature(saved, prefix + "forces/", forces_);
     save_value(saved, prefix + "order", order_);
     save_value(saved, prefix + "kicks", evaluations_.force);
     save_value(saved, prefix + "arcs", evaluations_.kepler);
   }
   void load(const SavedState& saved, const std::string& prefix) {
+    detail::check_signature(saved, prefix + "options/", options_);
+    detail::check_signature(saved, prefix + "forces/", forces_);
     load_value(saved, prefix + "order", order_);
     load_value(saved, prefix + "kicks", evaluations_.force);
     load_value(saved, prefix + "arcs", evaluations_.kepler);
+    failure_.reset();
     gather_masses();
   }
   /// Particles in the order of Jacobi coordinates, massive bodies first.
@@ -125,6 +130,7 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
   std::optional<ParticleSystem<Real>> inertial_;  ///< positions for other forces
   std::optional<Failure> failure_;
   Evaluations evaluations_;
+  bool observing_ = false;
 };
 
 extern template class WisdomHolman<double>;

@@ -1,5 +1,6 @@
 #include "io/bodies.hpp"
 
+#include "engine/text.hpp"
 #include "io/files.hpp"
 #include "io/text_table.hpp"
 
@@ -81,6 +82,7 @@ double mass_number_in(const TextFile& text, std::size_t line, std::string_view w
 
 void BodyList::add(std::size_t line, const std::string& name, double mass, const Vec3<double>& x,
                    const Vec3<double>& v) {
+  if (const std::string wrong = wrong_name(name); !wrong.empty()) text_.fail(line, wrong, name);
   for (const double number : {mass, x[0], x[1], x[2], v[0], v[1], v[2]}) {
     if (!std::isfinite(number)) text_.fail(line, fmt::format("the state of {} is not finite in these units", name));
   }

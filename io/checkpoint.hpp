@@ -59,7 +59,8 @@ class CheckpointWriter {
       : file_(std::move(file)), scene_toml_(std::move(scene_toml)), simd_(std::move(simd)) {}
 
   static constexpr auto describe() {
-    return part<CheckpointWriter>("checkpoint", "the whole run, so that it can be resumed");
+    return part<CheckpointWriter>("checkpoint", "the whole run, so that it can be resumed",
+                                  quantities("raw state of the particles, state of every part, the scene, a digest"));
   }
   /// Every other monitor has looked at this moment, and its files are flushed.
   static constexpr bool looks_last = true;

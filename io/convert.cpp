@@ -66,7 +66,7 @@ std::string csv_head(const Frames& shared) {
 
 }  // namespace
 
-void convert(const std::filesystem::path& file, const std::filesystem::path& out) {
+Index convert(const std::filesystem::path& file, const std::filesystem::path& out) {
   const std::string extension = out.extension().string();
   if (extension != ".xyz" && extension != ".csv") {
     throw Error(fmt::format("cannot convert to '{}': unknown extension '{}'{}", out.string(), extension,
@@ -91,6 +91,7 @@ void convert(const std::filesystem::path& file, const std::filesystem::path& out
   }
   target.close();
   check();
+  return reader.frames();
 }
 
 }  // namespace noether::io

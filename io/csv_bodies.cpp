@@ -2,6 +2,7 @@
 #include "engine/orbital_elements.hpp"
 #include "engine/quantity.hpp"
 #include "engine/suggest.hpp"
+#include "engine/text.hpp"
 #include "io/text_table.hpp"
 
 #include <fmt/format.h>
@@ -186,7 +187,8 @@ class CsvBodies {
     const Index row = bodies_.particles().size();
     std::string name = fmt::format("body_{}", row + 1);
     if (has("name")) name = fields[columns_.at("name").field];
-    if (name.empty()) text_.fail(line, "the name is empty");
+    const std::string wrong = wrong_name(name);
+    if (!wrong.empty()) text_.fail(line, wrong, name);
     read_id(line, fields);
     const double mass = number(line, fields, "mass");
     auto [x, v] = by_elements_ ? state_by_elements(line, fields, name, mass, row == 0) : state(line, fields);
@@ -198,8 +200,9 @@ class CsvBodies {
     const std::string& word = fields[columns_.at("id").field];
     std::int64_t id = -1;
     const auto [end, problem] = std::from_chars(word.data(), word.data() + word.size(), id);
-    if (problem != std::errc() || end != word.data() + word.size() || id < 0) {
-      text_.fail(line, fmt::format("column 'id' is '{}'; expected a whole number of at least 0", word), word);
+    constexpr std::int64_t largest = ParticleSystem<double>::largest_id;
+    if (problem != std::errc() || end != word.data() + word.size() || id < 0 || id > largest) {
+      text_.fail(line, fmt::format("column 'id' is '{}'; expected a whole number from 0 to {}", word, largest), word);
     }
     if (!known_ids_.insert(id).second) text_.fail(line, fmt::format("the id {} is taken; ids must differ", id), word);
     ids_.push_back(id);

@@ -246,24 +246,26 @@ void Hdf5Dataset::resize(Index rows) {
   check(H5Dset_extent(*handle_, extent.data()), *handle_, writing(path_));
 }
 
-void Hdf5Dataset::append_raw(const void* row, std::size_t values, ElementType type) {
+void Hdf5Dataset::append_raw(const void* rows, std::size_t values, ElementType type) {
   const std::vector<Index> axes = shape();
-  const Index expected = std::accumulate(axes.begin() + 1, axes.end(), Index{1}, std::multiplies<>());
-  NOETHER_EXPECTS(static_cast<Index>(values) == expected,
-                  fmt::format("a row of '{}' has {} values, {} were given", path_, expected, values));
+  const Index to_a_row = std::accumulate(axes.begin() + 1, axes.end(), Index{1}, std::multiplies<>());
+  NOETHER_EXPECTS(to_a_row > 0 && static_cast<Index>(values) % to_a_row == 0,
+                  fmt::format("a row of '{}' has {} values, {} were given", path_, to_a_row, values));
   std::vector<hsize_t> first(axes.size(), 0), count(axes.begin(), axes.end()), extent(count);
   first.at(0) = count[0];
-  extent[0] = count[0] + 1;
-  count[0] = 1;
+  count[0] = values / static_cast<hsize_t>(to_a_row);
+  extent[0] = first[0] + count[0];
   check(H5Dset_extent(*handle_, extent.data()), *handle_, writing(path_));
   const Hdf5Handle target = own(H5Dget_space(*handle_), H5Sclose, handle_->file(), writing(path_));
   H5Sselect_hyperslab(target, H5S_SELECT_SET, first.data(), nullptr, count.data(), nullptr);
   const Hdf5Handle source = space_of({count.begin(), count.end()}, handle_->file());
-  check(H5Dwrite(*handle_, in_memory(type), source, target, H5P_DEFAULT, row), *handle_, writing(path_));
+  check(H5Dwrite(*handle_, in_memory(type), source, target, H5P_DEFAULT, rows), *handle_, writing(path_));
 }
 
-void Hdf5Dataset::append(std::span<const double> row) { append_raw(row.data(), row.size(), ElementType::real); }
-void Hdf5Dataset::append(std::int64_t row) { append_raw(&row, 1, ElementType::integer); }
+void Hdf5Dataset::append(std::span<const double> rows) { append_raw(rows.data(), rows.size(), ElementType::real); }
+void Hdf5Dataset::append(std::span<const std::int64_t> rows) {
+  append_raw(rows.data(), rows.size(), ElementType::integer);
+}
 
 std::vector<double> Hdf5Dataset::read_reals() const { return read_reals(0, rows()); }
 
@@ -406,6 +408,7 @@ void Hdf5File::write(const std::string& path, const std::vector<std::string>& va
   write_fixed(*handle_, path, type, type, {static_cast<Index>(values.size())}, pointers(values).data());
 }
 void Hdf5File::write_text(const std::string& path, const std::string& text) const {
+  if (has(path)) check(H5Ldelete(*handle_, path.c_str(), H5P_DEFAULT), *handle_, writing(path));
   const Hdf5Handle type = text_type(handle_->file());
   const char* pointer = text.c_str();
   write_fixed(*handle_, path, type, type, {}, &pointer);

@@ -35,9 +35,9 @@ class Hdf5Dataset {
   std::vector<Index> shape() const;
   ElementType type() const;
 
-  /// Adds one row. @throws FileError if the disk refuses
-  void append(std::span<const double> row);
-  void append(std::int64_t row);
+  /// Adds rows, one after the other. @throws FileError if the disk refuses
+  void append(std::span<const double> rows);
+  void append(std::span<const std::int64_t> rows);
   /// Cuts the dataset to `rows` rows, or lengthens it.
   void resize(Index rows);
 
@@ -51,7 +51,7 @@ class Hdf5Dataset {
   friend class Hdf5File;
   Hdf5Dataset(std::shared_ptr<Hdf5Handle> handle, std::string path)
       : handle_(std::move(handle)), path_(std::move(path)) {}
-  void append_raw(const void* row, std::size_t values, ElementType type);
+  void append_raw(const void* rows, std::size_t values, ElementType type);
   void require(ElementType expected) const;
 
   std::shared_ptr<Hdf5Handle> handle_;
@@ -88,6 +88,7 @@ class Hdf5File {
   void write(const std::string& path, std::span<const double> values, const std::vector<Index>& shape) const;
   void write(const std::string& path, std::span<const std::int64_t> values, const std::vector<Index>& shape) const;
   void write(const std::string& path, const std::vector<std::string>& values) const;
+  /// One text, replaced where it exists.
   void write_text(const std::string& path, const std::string& text) const;
 
   /// A dataset that grows by rows: (unlimited, sample...), `chunk` rows to a piece on disk.

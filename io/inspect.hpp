@@ -73,8 +73,9 @@ FileInfo info(const std::filesystem::path& file);
 FileInfo verify(const std::filesystem::path& file);
 
 /// Rewrites a trajectory as extended XYZ (`.xyz`) or CSV (`.csv`: step, time, id, name, x ... vz, 17 digits).
+/// @return the number of frames
 /// @throws Error for another extension; FileError if a file cannot be read or written
-void convert(const std::filesystem::path& file, const std::filesystem::path& out);
+Index convert(const std::filesystem::path& file, const std::filesystem::path& out);
 
 /// The samples of all monitors, in the order of their names.
 /// @throws FileError

@@ -24,7 +24,7 @@ Index Hdf5Dataset::rows() const { unreachable(); }
 std::vector<Index> Hdf5Dataset::shape() const { unreachable(); }
 ElementType Hdf5Dataset::type() const { unreachable(); }
 void Hdf5Dataset::append(std::span<const double>) { unreachable(); }
-void Hdf5Dataset::append(std::int64_t) { unreachable(); }
+void Hdf5Dataset::append(std::span<const std::int64_t>) { unreachable(); }
 void Hdf5Dataset::resize(Index) { unreachable(); }
 std::vector<double> Hdf5Dataset::read_reals() const { unreachable(); }
 std::vector<double> Hdf5Dataset::read_reals(Index, Index) const { unreachable(); }

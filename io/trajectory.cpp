@@ -2,6 +2,7 @@
 
 #include "engine/quantity.hpp"
 #include "engine/version.hpp"
+#include "io/buffered_dataset.hpp"
 #include "io/digest.hpp"
 #include "io/hdf5_file.hpp"
 
@@ -65,9 +66,31 @@ struct KeptSample {
 
 /// The datasets of one monitor, open.
 struct MonitorDatasets {
-  Hdf5Dataset step, time;
-  std::map<std::string, Hdf5Dataset> quantities;
+  BufferedDataset<std::int64_t> step;
+  BufferedDataset<double> time;
+  std::vector<BufferedDataset<double>> quantities;  ///< in the order of the sample's series
   std::optional<double> scale;
+
+  void write_out() {
+    for (auto& quantity : quantities) quantity.write_out();
+    time.write_out();
+    step.write_out();
+  }
+};
+
+/// The datasets of the frames, open.
+struct FrameDatasets {
+  BufferedDataset<double> position, velocity;
+  BufferedDataset<std::int64_t> step;
+  BufferedDataset<double> time;
+
+  /// Position's values come last: a frame that has them has everything.
+  void write_out() {
+    velocity.write_out();
+    time.write_out();
+    step.write_out();
+    position.write_out();
+  }
 };
 
 }  // namespace
@@ -76,6 +99,16 @@ struct MonitorDatasets {
 class TrajectoryWriter::File {
  public:
   File(std::filesystem::path path, TrajectoryOptions options) : path_(std::move(path)), options_(std::move(options)) {}
+
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+  /// A run that has ended well has been flushed; of one that has not, what can be saved is saved.
+  ~File() {
+    try {
+      write_out();
+    } catch (const Error&) {
+    }
+  }
 
   const std::filesystem::path& path() const { return path_; }
 
@@ -99,6 +132,7 @@ class TrajectoryWriter::File {
   }
 
   void flush() {
+    write_out();
     if (hdf5_) hdf5_->flush();
     flushed_ = std::chrono::steady_clock::now();
   }
@@ -109,9 +143,10 @@ class TrajectoryWriter::File {
     flush();
   }
 
-  void save(SavedState& saved, const std::string& prefix) const {
+  void save(SavedState& saved, const std::string& prefix) {
     std::vector<std::string> paths;
     std::vector<std::int64_t> rows;
+    write_out();
     if (hdf5_) {
       for (const std::string& path : growing_paths()) {
         paths.push_back(path);
@@ -143,6 +178,11 @@ class TrajectoryWriter::File {
   }
 
  private:
+  void write_out() {
+    frame_.write_out();
+    for (auto& [name, monitor] : monitors_) monitor.write_out();
+  }
+
   void close() {
     frame_ = {};
     monitors_.clear();
@@ -207,10 +247,13 @@ class TrajectoryWriter::File {
     const std::string position = std::string(particles_path) + "/position";
     const std::string velocity = std::string(particles_path) + "/velocity";
     const Index rows = rows_per_chunk(3 * particles, frame_bytes), few = rows_per_chunk(1, sample_bytes);
-    frame_.position = hdf5_->create_growing(position + "/value", ElementType::real, {particles, 3}, rows);
-    frame_.velocity = hdf5_->create_growing(velocity + "/value", ElementType::real, {particles, 3}, rows);
-    frame_.step = hdf5_->create_growing(position + "/step", ElementType::integer, {}, few);
-    frame_.time = hdf5_->create_growing(position + "/time", ElementType::real, {}, few);
+    frame_.position =
+        BufferedDataset<double>(hdf5_->create_growing(position + "/value", ElementType::real, {particles, 3}, rows));
+    frame_.velocity =
+        BufferedDataset<double>(hdf5_->create_growing(velocity + "/value", ElementType::real, {particles, 3}, rows));
+    frame_.step =
+        BufferedDataset<std::int64_t>(hdf5_->create_growing(position + "/step", ElementType::integer, {}, few));
+    frame_.time = BufferedDataset<double>(hdf5_->create_growing(position + "/time", ElementType::real, {}, few));
     hdf5_->link(position + "/step", velocity + "/step");
     hdf5_->link(position + "/time", velocity + "/time");
     set_unit(position + "/value", std::string(units_->length), "nm");
@@ -225,9 +268,14 @@ class TrajectoryWriter::File {
     units_ = &unit_system(hdf5_->text_attribute("/noether", "units"));
     sorted_ids_ = hdf5_->open(root + "/id").read_integers();
     hdf5_->set_attribute("/noether", "complete", std::int64_t{0});
+    // The end may have been moved.
+    if (hdf5_->read_text("/noether/scene") != options_.scene_toml)
+      hdf5_->write_text("/noether/scene", options_.scene_toml);
     if (!options_.frames) return;
-    frame_ = {hdf5_->open(root + "/position/value"), hdf5_->open(root + "/velocity/value"),
-              hdf5_->open(root + "/position/step"), hdf5_->open(root + "/position/time")};
+    frame_.position = BufferedDataset<double>(hdf5_->open(root + "/position/value"));
+    frame_.velocity = BufferedDataset<double>(hdf5_->open(root + "/velocity/value"));
+    frame_.step = BufferedDataset<std::int64_t>(hdf5_->open(root + "/position/step"));
+    frame_.time = BufferedDataset<double>(hdf5_->open(root + "/position/time"));
   }
 
   /// Every dataset that grows, each once.
@@ -296,8 +344,7 @@ class TrajectoryWriter::File {
   void write_frame(const Snapshot<double>& now, const ParticleSystem<double>& state) {
     gather(state.velocities());
     frame_.velocity.append(row_);
-    const double time = now.time();
-    frame_.time.append(std::span(&time, 1));
+    frame_.time.append(now.time());
     frame_.step.append(now.step());
     gather(state.positions());
     frame_.position.append(row_);
@@ -305,8 +352,9 @@ class TrajectoryWriter::File {
 
   void write_sample(const Sample& sample) {
     MonitorDatasets& monitor = datasets_of(sample);
-    for (const Series& one : sample.series) monitor.quantities.at(one.name).append(one.values);
-    monitor.time.append(std::span(&sample.time, 1));
+    std::size_t k = 0;
+    for (const Series& one : sample.series) monitor.quantities.at(k++).append(one.values);
+    monitor.time.append(sample.time);
     monitor.step.append(sample.step);
     if (sample.scale && sample.scale != monitor.scale) {
       hdf5_->set_attribute(std::string(monitors_path) + "/" + std::string(sample.monitor), "scale", *sample.scale);
@@ -315,20 +363,21 @@ class TrajectoryWriter::File {
   }
 
   MonitorDatasets& datasets_of(const Sample& sample) {
-    const auto [place, is_new] = monitors_.try_emplace(std::string(sample.monitor));
-    MonitorDatasets& monitor = place->second;
-    if (!is_new) return monitor;
-    const std::string group = std::string(monitors_path) + "/" + place->first + "/";
+    const auto known = monitors_.find(sample.monitor);
+    if (known != monitors_.end()) return known->second;
+    MonitorDatasets& monitor = monitors_[std::string(sample.monitor)];
+    const std::string group = fmt::format("{}/{}/", monitors_path, sample.monitor);
     const bool there = hdf5_->has(group + "step");
     const auto dataset = [&](const std::string& name, ElementType type, const std::vector<Index>& shape) {
       if (there) return hdf5_->open(group + name);
       const Index values = std::accumulate(shape.begin(), shape.end(), Index{1}, std::multiplies<>());
       return hdf5_->create_growing(group + name, type, shape, rows_per_chunk(values, sample_bytes));
     };
-    monitor.step = dataset("step", ElementType::integer, {});
-    monitor.time = dataset("time", ElementType::real, {});
-    for (const Series& one : sample.series)
-      monitor.quantities[one.name] = dataset(one.name, ElementType::real, one.shape);
+    monitor.step = BufferedDataset<std::int64_t>(dataset("step", ElementType::integer, {}));
+    monitor.time = BufferedDataset<double>(dataset("time", ElementType::real, {}));
+    for (const Series& one : sample.series) {
+      monitor.quantities.emplace_back(dataset(one.name, ElementType::real, one.shape));
+    }
     if (!there) describe_monitor(group, sample);
     return monitor;
   }
@@ -346,16 +395,12 @@ class TrajectoryWriter::File {
     if (std::chrono::steady_clock::now() - flushed_ > std::chrono::seconds(1)) flush();
   }
 
-  struct FrameDatasets {
-    Hdf5Dataset position, velocity, step, time;
-  };
-
   std::filesystem::path path_;
   TrajectoryOptions options_;
   const UnitSystem* units_ = nullptr;
   std::optional<Hdf5File> hdf5_;
   FrameDatasets frame_;
-  std::map<std::string, MonitorDatasets> monitors_;
+  std::map<std::string, MonitorDatasets, std::less<>> monitors_;
   std::vector<KeptSample> waiting_;             ///< samples that came before the first look
   std::vector<std::int64_t> ids_, sorted_ids_;  ///< as the run has them, and as the file has them
   std::vector<Index> order_;

@@ -27,7 +27,10 @@ class TrajectoryWriter {
   explicit TrajectoryWriter(std::filesystem::path file, TrajectoryOptions options = {});
 
   static constexpr auto describe() {
-    return part<TrajectoryWriter>("trajectory", "frames and monitors' samples in an H5MD file");
+    return part<TrajectoryWriter>("trajectory", "frames and monitors' samples in an H5MD file",
+                                  quantities("position[n][3] [length], velocity[n][3] [length/time], id, mass, name; "
+                                             "every monitor's quantities below /noether/monitors"),
+                                  source("DeBuyl2014"));
   }
 
   /// Writes a frame. @throws FileError

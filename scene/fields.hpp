@@ -20,13 +20,14 @@ struct FieldInfo {
   std::string name, dimension, help;
   std::string kind;           ///< number, whole number, flag, text, vector, list, choice
   std::string default_value;  ///< as a scene writes it in the reduced system; empty: none
+  std::string example;        ///< not empty: a scene must give the field, such as this
   std::vector<std::string> choices;
 };
 
 /// A part as `noether list` and `noether describe` show it.
 struct PartInfo {
-  std::string name, help, formula, source;
-  std::vector<FieldInfo> fields;
+  std::string name, help, formula, source, quantities;
+  std::vector<FieldInfo> fields = {};
 };
 
 namespace detail {
@@ -139,11 +140,9 @@ template <class V> void read_field(TableReader& reader, std::string_view key, st
 
 /// What part `T` says of itself.
 template <class T> PartInfo part_info() {
-  PartInfo info{std::string(T::describe().name),
-                std::string(T::describe().help),
-                std::string(entry_text<T, Formula>()),
-                std::string(entry_text<T, Source>()),
-                {}};
+  PartInfo info{std::string(T::describe().name),          std::string(T::describe().help),
+                std::string(entry_text<T, Formula>()),    std::string(entry_text<T, Source>()),
+                std::string(entry_text<T, Quantities>()), {}};
   if constexpr (std::is_default_constructible_v<T>) {
     const T defaults{};
     for_each_field<T>([&](const auto& field) {
@@ -154,9 +153,12 @@ template <class T> PartInfo part_info() {
                     std::string(field.help),
                     detail::field_kind<V>(),
                     "",
+                    std::string(field.example),
                     {}};
       const V& value = defaults.*(field.member);
-      if constexpr (std::is_same_v<V, Plain>) {
+      if (!one.example.empty()) {
+        one.default_value = "";
+      } else if constexpr (std::is_same_v<V, Plain>) {
         one.default_value = to_text(detail::field_value(value, "1", unit_system("reduced")));
       } else if (value) {
         one.default_value = to_text(detail::field_value(*value, "1", unit_system("reduced")));
@@ -172,6 +174,29 @@ template <class T> PartInfo part_info() {
 template <class T> void read_fields(TableReader& reader, T& part) {
   for_each_field<T>(
       [&](const auto& field) { detail::read_field(reader, field.name, field.dimension, part.*(field.member)); });
+}
+
+/// Reads every field of a part, then refuses unknown keys, missing fields, and what the part itself refuses.
+///
+/// Keys of the table that are no fields of the part must have been asked for before.
+/// @throws SceneError  at the line of the key
+template <class T> void read_part(TableReader& reader, T& part) {
+  read_fields(reader, part);
+  reader.finish();
+  for_each_field<T>([&](const auto& field) {
+    if (field.example.empty() || reader.has(field.name)) return;
+    const bool bare = reader.context().units->is_reduced();
+    reader.fail(nullptr, field.name,
+                fmt::format("{} has no {}; give one{}{}", reader.what(), field.name, bare ? "" : ", such as ",
+                            bare ? "" : field.example));
+  });
+  try {
+    check_part(part);
+  } catch (const SceneError&) {
+    throw;
+  } catch (const Error& error) {
+    reader.refuse(error);
+  }
 }
 
 /// Appends every field of a part as it is: what the scene wrote, and defaults in the units of the scene.

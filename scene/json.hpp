@@ -2,6 +2,7 @@
 /// JSON on one line: what reports are written in.
 
 #include "engine/quantity.hpp"
+#include "engine/text.hpp"
 
 #include <cmath>
 #include <cstdint>
@@ -61,10 +62,11 @@ class Json {
     std::string text(1, open);
     return text.append(inside).append(1, close);
   }
+  /// A string of JSON is UTF-8: U+FFFD stands for each byte that is not.
   static std::string quoted(std::string_view x) {
     constexpr std::string_view digits = "0123456789abcdef";
     std::string out = "\"";
-    for (const char c : x) {
+    for (const char c : valid_utf8(x)) {
       const auto byte = static_cast<unsigned char>(c);
       if (c == '"' || c == '\\') {
         out += {'\\', c};

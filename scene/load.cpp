@@ -75,8 +75,11 @@ class SceneReader {
     read_integrator(table(top, "integrator"));
     read_watches(top);
     read_stops(top);
-    if (const SceneValue* expect = top.find("expect")) read_expectations(*expect, "");
-    if (const SceneValue* expect = top.find("expect")) scene_.effective.put("expect", *expect);
+    if (const SceneValue* expect = top.find("expect")) {
+      read_expectations(*expect, "");
+      for (const auto& [key, value] : scene_.expect) check_expectation(key, value);
+      scene_.effective.put("expect", *expect);
+    }
     check(top);
     scene_.effective_toml = print_toml(scene_.effective);
   }
@@ -105,6 +108,9 @@ class SceneReader {
     const SceneValue* G = reader.find("G");
     if (G == nullptr) return;
     scene_.hamiltonian.G = reader.number(*G, "G", "length^3/mass/time^2");
+    if (!(*scene_.hamiltonian.G > 0)) {
+      reader.fail("G", fmt::format("G = {} is no constant of gravitation; a number above 0 is expected", to_text(*G)));
+    }
     context_.G = *G;
   }
 
@@ -153,6 +159,9 @@ class SceneReader {
       reader.fail("type", "wisdom_holman has gravity in itself; take this force out, or use kinetic_potential");
     }
     for (const SceneForce& other : scene_.hamiltonian.forces) {
+      if (type == "gravity" && other.name == type) {
+        reader.fail("type", "gravity stands twice in the scene, so every pair would attract twice; take one out");
+      }
       if (force.drag && other.drag) reader.fail("type", "linear_drag stands twice in the scene; add the rates up");
     }
     SceneValue effective = SceneValue::table();
@@ -282,8 +291,8 @@ class SceneReader {
       SceneWatch watch;
       if (type == "trajectory") watch.kind = SceneWatch::Kind::trajectory;
       if (type == "checkpoint") watch.kind = SceneWatch::Kind::checkpoint;
-      if (kind != nullptr) watch.monitor = kind->read(reader);
       for (const char* key : {"every", "steps"}) reader.find(key);
+      if (kind != nullptr) watch.monitor = kind->read(reader);
       if (kind == nullptr && type == "checkpoint") reader.find("wall");
       reader.finish();
       for (const SceneWatch& other : scene_.watches) {
@@ -341,6 +350,45 @@ class SceneReader {
       return;
     }
     for (const auto& [key, entry] : *table) read_expectations(entry, path.empty() ? key : path + "." + key);
+  }
+
+  /// The monitors by the names the run gives them: equal ones are numbered.
+  std::vector<std::string> monitor_names() const {
+    std::vector<std::string> names;
+    for (const SceneWatch& watch : scene_.watches) {
+      if (watch.kind != SceneWatch::Kind::monitor) continue;
+      std::string name = watch.monitor.name;
+      for (int k = 2; std::find(names.begin(), names.end(), name) != names.end(); ++k) {
+        name = fmt::format("{}_{}", watch.monitor.name, k);
+      }
+      names.push_back(std::move(name));
+    }
+    return names;
+  }
+
+  /// Refuses an expectation that no run of this scene could be compared with.
+  void check_expectation(const std::string& path, const SceneValue& value) const {
+    const auto fail = [&](const std::string& message) {
+      throw scene_error(scene_.source, value.line, "expect." + path, to_text(value), message);
+    };
+    const std::size_t dot = path.rfind('.');
+    const std::string monitor = path.substr(0, dot), figure = dot == std::string::npos ? "" : path.substr(dot + 1);
+    const std::vector<std::string> names = monitor_names();
+    if (std::find(names.begin(), names.end(), monitor) == names.end()) {
+      fail(fmt::format("[expect] names '{}', which is no monitor of this scene{}", monitor,
+                       names.empty() ? "; it has none" : did_you_mean(monitor, names)));
+    }
+    if (figure.empty()) {
+      fail(fmt::format("[expect] names no figure of '{0}'; expected one, such as {0}.worst", monitor));
+    }
+    const std::vector<std::string> figures = {"first", "last", "worst", "rms", "slope", "slope_error"};
+    if (std::find(figures.begin(), figures.end(), figure) == figures.end()) {
+      fail(fmt::format("[expect] names '{}' of '{}', which is no figure{}", figure, monitor,
+                       did_you_mean(figure, figures)));
+    }
+    if (value.get<double>() == nullptr && value.get<std::int64_t>() == nullptr) {
+      fail(fmt::format("{} = {} is {}; a number is expected", path, to_text(value), kind_of(value)));
+    }
   }
 
   /// Puts the parts together once: what they refuse is told with its place in the scene.
@@ -415,6 +463,7 @@ Scene read_scene(std::string_view text, const std::filesystem::path& file, const
 }
 
 Scene load_scene(const std::filesystem::path& file, const Parts& parts, const std::vector<std::string>& sets) {
+  if (file.empty()) throw SceneError("the name of the scene file is empty; give one, such as scene.toml");
   return read_scene(io::read_bytes(file), file, parts, sets);
 }
 

@@ -32,8 +32,45 @@ Parts standard_parts() {
 
 std::vector<PartInfo> writer_parts() { return {part_info<io::TrajectoryWriter>(), part_info<io::CheckpointWriter>()}; }
 
+namespace {
+
+/// The tables `[[stop]]`, as `noether describe` shows them.
+struct Escape {
+  double distance = 0;
+  std::int64_t steps = 100;
+
+  static constexpr auto describe() {
+    return part<Escape>("escape", "ends the run when a particle is far from the centre of mass",
+                        formula("|x_i - X| > distance,  X = sum m_j x_j / sum m_j"),
+                        quantities("the particle and, by interpolation, since when"),
+                        field<&Escape::distance>("distance", "length").required("\"100 au\""),
+                        field<&Escape::steps>("steps", "1", "steps between two looks"));
+  }
+};
+
+struct Collision {
+  double distance = 0;
+  std::int64_t steps = 1;
+
+  static constexpr auto describe() {
+    return part<Collision>("collision", "ends the run when two particles, one of them massive, come near each other",
+                           formula("|x_i - x_j| < distance along quintic Hermite paths between two looks"),
+                           quantities("the pair, its least distance, since when"),
+                           field<&Collision::distance>("distance", "length").required("\"0.001 au\""),
+                           field<&Collision::steps>("steps", "1", "steps between two looks"));
+  }
+};
+
+}  // namespace
+
+std::vector<PartInfo> stop_parts() { return {part_info<Escape>(), part_info<Collision>()}; }
+
 std::vector<PartInfo> hamiltonian_parts() {
-  return {part_info<KineticPotential<ForceField<double>>>(), part_info<WisdomHolmanOptions>()};
+  return {
+      part_info<KineticPotential<ForceField<double>>>(),
+      part_info<WisdomHolmanOptions>(),
+      {"damped", "the name of any Hamiltonian with friction: a force linear_drag in the scene adds it as the letter D",
+       "D: v -> exp(-rate h) v", "", ""}};
 }
 
 namespace detail {

@@ -84,7 +84,7 @@ class Parts {
  private:
   template <class F> static SceneForce read_force(TableReader& reader) {
     F force{};
-    read_fields(reader, force);
+    read_part(reader, force);
     SceneForce made{std::string(part_name<F>()), SceneValue::table(), {}, {}, {}};
     put_fields(reader, force, made.effective);
     if constexpr (std::is_same_v<F, LinearDrag>) {
@@ -98,7 +98,7 @@ class Parts {
 
   template <class M> static SceneMonitor read_monitor(TableReader& reader) {
     M monitor{};
-    read_fields(reader, monitor);
+    read_part(reader, monitor);
     SceneMonitor made{std::string(part_name<M>()), SceneValue::table(), {}};
     put_fields(reader, monitor, made.effective);
     made.attach = [monitor](Simulation<double>& sim, const Cadence& cadence) { detail::attach(sim, cadence, monitor); };
@@ -123,6 +123,8 @@ Parts standard_parts();
 
 /// What the writers say of themselves: they stand in `[[every]]` like monitors.
 std::vector<PartInfo> writer_parts();
+/// What the conditions that end a run say of themselves: they stand in `[[stop]]`.
+std::vector<PartInfo> stop_parts();
 /// What the Hamiltonians say of themselves.
 std::vector<PartInfo> hamiltonian_parts();
 

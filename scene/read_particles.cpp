@@ -2,6 +2,7 @@
 
 #include "engine/orbital_elements.hpp"
 #include "engine/suggest.hpp"
+#include "engine/text.hpp"
 #include "io/bodies.hpp"
 #include "io/digest.hpp"
 #include "io/files.hpp"
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_set>
 
 namespace noether {
 
@@ -22,7 +24,8 @@ double gravitation(const TableReader& reader) {
 
 void check_mass(TableReader& reader, const std::string& name, double mass) {
   if (mass >= 0) return;
-  reader.fail("mass", fmt::format("the mass of '{}' is negative; 0 (a tracer) or more is expected", name));
+  reader.fail("mass", fmt::format("the mass of '{}' is {}; 0 (a tracer) or more is expected", name,
+                                  to_text(*reader.find("mass"))));
 }
 
 constexpr std::array<std::string_view, 6> element_keys = {"a", "e", "inc", "Omega", "omega", "M"};
@@ -46,19 +49,20 @@ std::pair<Vec3<double>, Vec3<double>> from_elements(TableReader& body, const Par
     state.second += s.velocities()[0];
     return state;
   } catch (const Error& error) {
-    body.fail("a", error.message());
+    body.refuse(error);
   }
 }
 
 Vec3<double> column(const std::array<double, 3>& v) { return Vec3<double>(v[0], v[1], v[2]); }
 
-void add_body(TableReader& body, ParticleSystem<double>& s) {
+void add_body(TableReader& body, ParticleSystem<double>& s, std::unordered_set<std::string>& names) {
   body.expect_only({"name", "mass", "x", "v", "a", "e", "inc", "Omega", "omega", "M"});
   const std::string name = body.text("name", fmt::format("body_{}", s.size() + 1));
+  if (const std::string wrong = wrong_name(name); !wrong.empty()) body.fail("name", wrong);
   const auto mass = body.quantity("mass", "mass");
   if (!mass) body.fail(nullptr, "mass", fmt::format("{} has no mass; 0 marks a tracer", body.what()));
   check_mass(body, name, *mass);
-  if (std::find(s.names().begin(), s.names().end(), name) != s.names().end()) {
+  if (!names.insert(name).second) {
     body.fail("name", fmt::format("two bodies are named '{}'; names must differ", name));
   }
   const auto x = body.vector("x", "length"), v = body.vector("v", "velocity");
@@ -81,6 +85,7 @@ void add_body(TableReader& body, ParticleSystem<double>& s) {
 
 ParticleSystem<double> from_file(TableReader& reader, const std::filesystem::path& folder, SceneValue& effective) {
   const std::string name = reader.text("bodies");
+  if (name.empty()) reader.fail("bodies", "bodies = \"\" names no file; give one, such as \"bodies.csv\"");
   std::filesystem::path file = folder / name;
   io::BodiesOptions options;
   options.units = reader.context().units;
@@ -102,6 +107,7 @@ ParticleSystem<double> from_file(TableReader& reader, const std::filesystem::pat
 ParticleSystem<double> from_tables(TableReader& reader, const std::vector<const SceneValue*>& bodies,
                                    SceneValue& effective) {
   ParticleSystem<double> s(*reader.context().units);
+  std::unordered_set<std::string> names;
   SceneValue::Array list;
   for (const SceneValue* table : bodies) {
     const SceneValue* name = table->find("name");
@@ -109,7 +115,7 @@ ParticleSystem<double> from_tables(TableReader& reader, const std::vector<const 
     const std::string called = text != nullptr ? *text : fmt::format("body_{}", s.size() + 1);
     TableReader body(reader.context(), *table, fmt::format("body '{}'", called),
                      fmt::format("particles.body.{}", list.size()));
-    add_body(body, s);
+    add_body(body, s, names);
     SceneValue entry = *table;
     if (name == nullptr) entry.put("name", SceneValue::of(called));
     list.push_back(std::move(entry));

@@ -1,6 +1,7 @@
 #include "scene/reader.hpp"
 
 #include "engine/suggest.hpp"
+#include "engine/text.hpp"
 
 #include <fmt/format.h>
 
@@ -9,11 +10,23 @@
 
 namespace noether {
 
+namespace {
+
+/// An option as it was typed; a very long one is cut.
+std::string option_text(const std::string& set) {
+  constexpr std::size_t most = 200;
+  const std::string text = set.starts_with(until_option) ? set : "--set " + set;
+  return text.size() <= most ? text : valid_utf8(std::string_view(text).substr(0, most)) + "...";
+}
+
+}  // namespace
+
 SceneError scene_error(const SceneSource& source, int line, std::string key, std::string value,
                        const std::string& message) {
   const auto set = static_cast<std::size_t>(-(line + 1));
   if (line < 0 && set < source.sets.size()) {
-    return SceneError(message, {.file = "--set " + source.sets[set], .key = std::move(key), .value = std::move(value)});
+    return SceneError(option_text(source.sets[set]) + ": " + message,
+                      {.key = std::move(key), .value = std::move(value)});
   }
   return SceneError(message, {.file = source.file, .line = line, .key = std::move(key), .value = std::move(value)});
 }
@@ -32,12 +45,23 @@ const SceneValue* TableReader::find(std::string_view key) {
 }
 
 std::string TableReader::path_of(std::string_view key) const {
+  if (key.empty()) return path_;
   return path_.empty() ? std::string(key) : path_ + "." + std::string(key);
 }
 
 void TableReader::fail(const SceneValue* at, std::string_view key, const std::string& message) const {
   throw scene_error(context_.source, at != nullptr ? at->line : table_.line, path_of(key),
                     at != nullptr ? to_text(*at) : "", message);
+}
+
+void TableReader::refuse(const Error& error) const {
+  const SceneValue* written = error.key().empty() ? nullptr : table_.find(error.key());
+  const std::string start = error.key() + " = " + error.value();
+  std::string message = error.message();
+  if (written != nullptr && message.starts_with(start)) {
+    message.replace(0, start.size(), error.key() + " = " + to_text(*written));
+  }
+  fail(written, error.key(), message);
 }
 
 void TableReader::wrong_kind(const SceneValue& value, std::string_view key, std::string_view expected) const {

@@ -14,10 +14,13 @@
 
 namespace noether {
 
+/// What a text of `SceneSource::sets` begins with when it is the option `--until`.
+inline constexpr std::string_view until_option = "--until ";
+
 /// Where a scene comes from: what errors point at.
 struct SceneSource {
   std::string file;               ///< as the user typed it
-  std::vector<std::string> sets;  ///< the texts of `--set`, in order
+  std::vector<std::string> sets;  ///< the texts of `--set`, in order; "--until T" stands for that option
 };
 
 /// What all tables of a scene share.
@@ -63,6 +66,8 @@ class TableReader {
   [[noreturn]] void fail(std::string_view key, const std::string& message) const {
     fail(table_.find(key), key, message);
   }
+  /// Ends reading with what a part says of a field: at the key the error names, and with the value as it was written.
+  [[noreturn]] void refuse(const Error& error) const;
   /// A value of the wrong kind.
   [[noreturn]] void wrong_kind(const SceneValue& value, std::string_view key, std::string_view expected) const;
 
@@ -79,7 +84,8 @@ class TableReader {
   std::vector<std::string> known_;
 };
 
-/// The exception for something at a line (negative: at a `--set`) of a scene.
+/// The exception for something at a line (negative: at a `--set`) of a scene. What stands on the command line has no
+/// file: the message begins with it.
 SceneError scene_error(const SceneSource& source, int line, std::string key, std::string value,
                        const std::string& message);
 

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace noether {
 
 namespace {
@@ -13,7 +15,7 @@ namespace {
 std::string message_of(const RunReport& report) {
   if (!report.outcome.message.empty()) return report.outcome.message;
   for (const auto& [name, monitor] : report.monitors) {
-    if (!monitor.message.empty() && !monitor.worst) return name + ": " + monitor.message;
+    if (!monitor.reason.empty()) return name + ": " + monitor.reason;
   }
   return "";
 }
@@ -28,7 +30,8 @@ Json json_of(const MonitorReport& monitor) {
                            {"slope_unit", monitor.slope_unit.empty() ? Json() : Json(monitor.slope_unit)},
                            {"scale", monitor.scale},
                            {"samples", monitor.samples}};
-  if (!monitor.message.empty()) members.emplace_back("message", monitor.message);
+  if (!monitor.reason.empty()) members.emplace_back("reason", monitor.reason);
+  if (!monitor.note.empty()) members.emplace_back("note", monitor.note);
   return Json::object(members);
 }
 
@@ -81,18 +84,31 @@ std::string to_json(const RunReport& r) {
 
 namespace {
 
+/// Whether there are figures, and none of them is a number.
+bool saw_only_nan(const MonitorReport& m) {
+  bool seen = false, number = false;
+  for (const auto& value : {m.first, m.last, m.worst, m.rms}) {
+    seen = seen || value;
+    number = number || (value && !std::isnan(*value));
+  }
+  return seen && !number;
+}
+
 std::string figures(const MonitorReport& m) {
   std::string text;
   const auto add = [&](const char* name, const std::optional<double>& value, const std::string& unit) {
-    if (value)
+    if (value && !std::isnan(*value))
       text += fmt::format("{}{} {:.3g}{}{}", text.empty() ? "" : ", ", name, *value, unit.empty() ? "" : " ", unit);
   };
   add("worst", m.worst, "");
   add("rms", m.rms, "");
-  add("slope", m.slope, m.slope_unit == "1/1" ? "" : m.slope_unit);
-  if (m.slope && m.slope_error) text += fmt::format(" +- {:.1g}", *m.slope_error);
+  add("slope", m.slope, m.slope_unit == "1" ? "" : m.slope_unit);
+  if (m.slope && m.slope_error && !std::isnan(*m.slope_error)) text += fmt::format(" +- {:.1g}", *m.slope_error);
   if (!m.worst) add("last", m.last, "");
-  if (!m.message.empty()) text += fmt::format("{}{}", text.empty() ? "" : "; ", m.message);
+  if (text.empty() && saw_only_nan(m)) text = "nothing finite was seen";
+  for (const std::string& words : {m.reason, m.note}) {
+    if (!words.empty()) text += fmt::format("{}{}", text.empty() ? "" : "; ", words);
+  }
   return text.empty() ? "watched" : text;
 }
 

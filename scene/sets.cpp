@@ -1,10 +1,12 @@
 #include "scene/sets.hpp"
 
 #include "engine/suggest.hpp"
+#include "engine/text.hpp"
 #include "scene/toml.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 
@@ -40,6 +42,10 @@ std::string text_of(const SceneValue& table, std::string_view key) {
   return text != nullptr ? *text : "";
 }
 
+void add_new(std::vector<std::string>& names, std::string_view name) {
+  if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) names.emplace_back(name);
+}
+
 /// One `--set` at work.
 class Setter {
  public:
@@ -47,23 +53,35 @@ class Setter {
       : source_(source), line_(-static_cast<int>(index) - 1), text_(source.sets[index]) {}
 
   void apply(SceneValue& scene) {
+    if (!is_utf8(text_)) fail("this is not UTF-8; give text in that encoding");
+    if (text_.starts_with(until_option)) {
+      path_ = "integrator.until";
+      return put(scene, SceneValue::of(text_.substr(until_option.size()), line_));
+    }
     const std::size_t equals = text_.find('=');
     if (equals == std::string::npos || equals == 0) {
       fail("expected key=value, such as integrator.step=\"50 day\"");
     }
     path_ = text_.substr(0, equals);
     const std::string value = text_.substr(equals + 1);
+    put(scene, parse_toml_value(value, line_).value_or(SceneValue::of(value, line_)));
+  }
+
+ private:
+  void put(SceneValue& scene, SceneValue value) {
     const std::vector<std::string> keys = split(path_);
+    if (keys.size() > static_cast<std::size_t>(deepest_table)) {
+      fail(fmt::format("the key has {} parts; at most {} are expected", keys.size(), deepest_table));
+    }
     in_expect_ = keys[0] == "expect";
     SceneValue* at = &scene;
     for (std::size_t k = 0; k + 1 < keys.size(); ++k) at = &enter(*at, keys[k], k == 0);
     if (!at->is_table()) fail(fmt::format("'{}' is not a key of a table", path_));
     if (keys.size() == 1) check_top(*at, keys[0]);
     drop_alternatives(*at, keys.back());
-    at->put(keys.back(), parse_toml_value(value, line_).value_or(SceneValue::of(value, line_)));
+    at->put(keys.back(), std::move(value));
   }
 
- private:
   [[noreturn]] void fail(const std::string& message) const { throw scene_error(source_, line_, path_, "", message); }
 
   void check_top(const SceneValue& scene, const std::string& key) const {
@@ -81,9 +99,11 @@ class Setter {
     }
     std::vector<std::string> keys;
     for (const auto& [name, value] : *at.get<SceneValue::Table>()) {
-      if (value.is_table() || value.is_table_list()) keys.push_back(name);
+      if (value.is_table() || value.is_table_list()) add_new(keys, name);
     }
-    if (top) keys.insert(keys.end(), known_tables.begin(), known_tables.end());
+    for (const std::string_view known : known_tables) {
+      if (top) add_new(keys, known);
+    }
     fail(fmt::format("there is no '{}' in the scene{}", key, did_you_mean(key, keys)));
   }
 
@@ -100,9 +120,7 @@ class Setter {
     for (SceneValue& one : list) {
       const std::string type = text_of(one, "type"), name = text_of(one, "name");
       if (type == key || name == key) found.push_back(&one);
-      for (const std::string& known : {type, name}) {
-        if (!known.empty()) names.push_back(known);
-      }
+      for (const std::string& known : {type, name}) add_new(names, known);
     }
     if (found.empty()) fail(fmt::format("there is no '{}' in the scene{}", key, did_you_mean(key, names)));
     if (found.size() > 1) {

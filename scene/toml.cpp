@@ -48,6 +48,68 @@ SceneValue converted(const toml::node& node, int line, const std::string& file) 
                    {.file = file, .line = line});
 }
 
+/// Walks over the text of a document and counts how deep tables and lists stand in one another, without recursion:
+/// dots of keys count like brackets. Strings and comments are skipped.
+class DepthScan {
+ public:
+  explicit DepthScan(std::string_view text) : text_(text) {}
+
+  /// The first line that is too deep; 0 if there is none.
+  int too_deep() {
+    for (; at_ < text_.size(); ++at_) {
+      const char c = text_[at_];
+      if (c == '"' || c == '\'') {
+        skip_string(c);
+      } else if (c == '#') {
+        at_ = std::min(text_.find('\n', at_), text_.size()) - 1;
+      } else {
+        count(c);
+      }
+      if (above_ + dots_ + static_cast<int>(open_.size()) > deepest_table) return line_;
+    }
+    return 0;
+  }
+
+ private:
+  void count(char c) {
+    if (c == '\n') ++line_;
+    if (c == '.') ++dots_;
+    if (c == '\n' || c == ',') dots_ = 0;
+    if (c == '[' || c == '{') {
+      open_.push_back(dots_);
+      above_ += dots_;
+      dots_ = 0;
+    }
+    if ((c == ']' || c == '}') && !open_.empty()) {
+      above_ -= open_.back();
+      dots_ = open_.back();
+      open_.pop_back();
+    }
+  }
+
+  void skip_string(char quote) {
+    const std::string three(3, quote);
+    const bool long_one = text_.substr(at_, 3) == three;
+    at_ += long_one ? 3 : 1;
+    for (; at_ < text_.size(); ++at_) {
+      const char c = text_[at_];
+      if (c == '\n') ++line_;
+      if (c == '\n' && !long_one) return;  // the parser will say that it does not end
+      if (c == '\\' && quote == '"') {
+        ++at_;
+      } else if (c == quote && (!long_one || text_.substr(at_, 3) == three)) {
+        if (long_one) at_ += 2;
+        return;
+      }
+    }
+  }
+
+  std::string_view text_;
+  std::size_t at_ = 0;
+  int line_ = 1, dots_ = 0, above_ = 0;
+  std::vector<int> open_;  ///< for each open bracket, the dots of the key before it
+};
+
 /// "Error while parsing key-value pair: expected a comment ..." without the part that says nothing.
 std::string plain(std::string_view description) {
   constexpr std::string_view lead = "Error while parsing ";
@@ -131,6 +193,11 @@ void print_table(std::string& out, const SceneValue& table, const std::string& p
 }  // namespace
 
 SceneValue parse_toml(std::string_view text, const std::string& file) {
+  if (const int line = DepthScan(text).too_deep(); line > 0) {
+    throw SceneError(
+        fmt::format("tables and lists stand more than {} deep in one another; a scene needs far fewer", deepest_table),
+        {.file = file, .line = line});
+  }
   try {
     return converted_table(toml::parse(text), 1, file);
   } catch (const toml::parse_error& error) {
@@ -140,6 +207,7 @@ SceneValue parse_toml(std::string_view text, const std::string& file) {
 }
 
 std::optional<SceneValue> parse_toml_value(std::string_view text, int line) {
+  if (DepthScan(text).too_deep() > 0) return {};
   try {
     const toml::table document = toml::parse("value = " + std::string(text));
     const toml::node* node = document.get("value");

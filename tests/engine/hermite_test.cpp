@@ -63,4 +63,22 @@ TEST_CASE("time may run backwards along the polynomial", "[hermite]") {
   CHECK(std::abs(nearest.at - 0.75) <= 4 * std::numeric_limits<double>::epsilon());
 }
 
+TEST_CASE("a passage in an interval too long for its motion is told to be unresolved", "[hermite]") {
+  // Most of a turn on a unit circle, seen from a point a little inside: what lies between is a guess.
+  const auto circle = [](double t) {
+    return Motion<double>{
+        {std::cos(t) - 0.9, std::sin(t), 0}, {-std::sin(t), std::cos(t), 0}, {-std::cos(t), -std::sin(t), 0}};
+  };
+  CHECK(Hermite<double>(circle(-0.1), circle(0.2), 0.3).nearest().resolved);
+  CHECK(!Hermite<double>(circle(-2.0), circle(2.5), 4.5).nearest().resolved);
+}
+
+TEST_CASE("what may not come within a distance never does", "[hermite]") {
+  const Hermite<double> path(passing(0), passing(8), 8);
+  CHECK(path.may_come_within(1.0));
+  CHECK(path.may_come_within(0.999));  // a bound, not the distance
+  CHECK(!Hermite<double>(passing(0), passing(1), 1).may_come_within(1.0));
+  CHECK(Hermite<double>(passing(0), passing(1), 1).may_come_within(3.2));
+}
+
 }  // namespace noether

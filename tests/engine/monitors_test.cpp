@@ -53,7 +53,8 @@ struct Counting {
 
 bool same(const MonitorReport& a, const MonitorReport& b) {
   return a.first == b.first && a.last == b.last && a.worst == b.worst && a.rms == b.rms && a.slope == b.slope &&
-         a.slope_error == b.slope_error && a.scale == b.scale && a.samples == b.samples && a.message == b.message;
+         a.slope_error == b.slope_error && a.scale == b.scale && a.samples == b.samples && a.reason == b.reason &&
+         a.note == b.note;
 }
 
 std::vector<std::string> names_of(const std::vector<Series>& all) {
@@ -173,7 +174,7 @@ TEST_CASE("a dissipative run has an energy but no error of it, and says why", "[
   CHECK(*report.last < *report.first);
   CHECK(report.samples == 81);
   CHECK((!report.worst && !report.rms && !report.slope && !report.slope_error));
-  CHECK(report.message == "the run is dissipative: its energy changes by itself, so there is no error of it");
+  CHECK(report.reason == "the run is dissipative: its energy changes by itself, so there is no error of it");
   CHECK(std::isnan(energy.worst()));
 }
 
@@ -182,7 +183,7 @@ TEST_CASE("a driven run has an energy but no error of it, and says why", "[monit
   Simulation sim(oscillator(), compose(KineticPotential(drive), schemes::verlet), 0.125);
   auto& energy = sim.every(1, Energy{});
   CHECK(sim.run(8).ok());
-  CHECK(energy.report().message == "a force depends on time: the energy changes by itself, so there is no error of it");
+  CHECK(energy.report().reason == "a force depends on time: the energy changes by itself, so there is no error of it");
   CHECK(!energy.report().worst);
 }
 

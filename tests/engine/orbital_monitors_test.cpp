@@ -98,11 +98,25 @@ TEST_CASE("the smallest distance is the smallest of the whole run, not the last"
   CHECK(*report.last == closest.distance());
   CHECK(*report.first > 0.5);
   CHECK(report.samples == 31);
-  CHECK(report.message.rfind("sun and planet at time 0.5", 0) == 0);
+  CHECK(report.note.rfind("sun and planet at time 0.5", 0) == 0);
   const std::vector<Series> series = closest.series();
   CHECK(series[0].name == "distance");
   CHECK(series[1].values == std::vector<double>{0, 1});
   CHECK(series[2].values[0] == closest.at_time());
+}
+
+TEST_CASE("looks too far apart for an approach say so, and count only what was seen", "[orbital_monitors]") {
+  auto seldom = run_of(planet<double>({1, 0.9, 0, 0, 0, -0.5}, 0), 0.001);
+  auto often = run_of(planet<double>({1, 0.9, 0, 0, 0, -0.5}, 0), 0.001);
+  auto& guess = seldom.every(1000, ClosestApproach{});
+  auto& known = often.every(1, ClosestApproach{});
+  CHECK(seldom.run(1000).ok());
+  CHECK(often.run(1000).ok());
+  CHECK(guess.distance() > 0.5);
+  CHECK(guess.unresolved() == 1);
+  CHECK(guess.report().note.find("; 1 times a pair may have been nearer between two looks") != std::string::npos);
+  CHECK(std::abs(known.distance() - 0.1) < 1e-5);
+  CHECK(known.unresolved() == 0);
 }
 
 TEST_CASE("tracers come near massive bodies, never near each other", "[orbital_monitors]") {
@@ -142,7 +156,7 @@ TEST_CASE("orbital monitors report the same after save and load as without", "[o
   CHECK(second.run(125).ok());
   CHECK(closest[2]->distance() == closest[0]->distance());
   CHECK(closest[2]->at_time() == closest[0]->at_time());
-  CHECK(closest[2]->report().message == closest[0]->report().message);
+  CHECK(closest[2]->report().note == closest[0]->report().note);
   CHECK(closest[2]->report().first == closest[0]->report().first);
   CHECK(elements[2]->report().samples == elements[0]->report().samples);
   CHECK(elements[2]->of(1).M == elements[0]->of(1).M);

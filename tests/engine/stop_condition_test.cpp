@@ -43,7 +43,7 @@ ParticleSystem<Quad> ellipse(const Quad& E) {
   return s;
 }
 
-/// The message number after `word`.
+/// The number in a message after `word`.
 double number_after(const std::string& text, const std::string& word) {
   return std::stod(text.substr(text.find(word) + word.size()));
 }
@@ -143,6 +143,20 @@ TEST_CASE("an escape is told with the time of the crossing", "[stop]") {
   CHECK(to_text(outcome) == "stopped at step 56: escape of probe, distance 54.0093 above 50 since time 26.663333");
   CHECK(outcome.time == 28);
   CHECK(std::abs(number_after(outcome.message, "since time ") - (10 + std::sqrt(2499.0) / 3)) < 1e-7);
+}
+
+TEST_CASE("the last step is looked at whatever the cadence, and a run that goes on does not notice", "[stop]") {
+  Simulation run(passing(), free_motion(), 0.5), whole(passing(), free_motion(), 0.5);
+  run.stop_when(farther_than(50), 1000);
+  const Outcome last = run.run(60);
+  CHECK(last.kind == Outcome::Kind::stopped);
+  CHECK(last.step == 60);
+  CHECK(last.message.find("escape of probe") == 0);
+
+  Simulation cut(passing(), free_motion(), 0.5);
+  for (Simulation<double>* one : {&cut, &whole}) one->stop_when(closer_than(1.5), 8);
+  CHECK(cut.run(10).kind == Outcome::Kind::completed);
+  CHECK(cut.run(30).message == whole.run(40).message);
 }
 
 TEST_CASE("a stopped run may go on", "[stop]") {

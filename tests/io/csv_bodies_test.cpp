@@ -133,7 +133,7 @@ TEST_CASE("a broken row is refused with its line", "[bodies][messages]") {
   CHECK(refusal("id," + bare_head + "1,1,0,0,0,0,0,0\n1,1,1,0,0,0,0,0\n", "reduced") ==
         "b.csv:3: the id 1 is taken; ids must differ");
   CHECK(refusal("id," + bare_head + "-1,1,0,0,0,0,0,0\n", "reduced") ==
-        "b.csv:2: column 'id' is '-1'; expected a whole number of at least 0");
+        "b.csv:2: column 'id' is '-1'; expected a whole number from 0 to 9007199254740992");
   CHECK(refusal(head + "\"Sun,1,0,0,0,0,0,0\n") == "b.csv:2: a double quote is not closed on this line");
   CHECK(refusal(head + "\"Sun\"s,1,0,0,0,0,0,0\n") ==
         "b.csv:2: 's' follows the double quote that ends a field; expected a comma");

@@ -152,6 +152,21 @@ TEST_CASE("every scheme costs the evaluations it declares, counted, and observer
   }
 }
 
+TEST_CASE("a kick at positions that have not moved costs no evaluation, and is not counted as one", "[oracle]") {
+  const CountingForce force;
+  auto s = particle_in_plane(0.1, 0, 0, 0);
+  s.clock() = Clock<double>::fixed(0, 0.05);
+  Composition integrator{Damped(KineticPotential(force), {.rate = 0.1}), schemes::verlet};  // D B A B D
+  integrator.bind(s);
+  auto settled = s;
+  for (int n = 0; n < 10; ++n) {
+    integrator.advance(s, {.steps = 1});
+    integrator.settle(s, settled, {.energy = true}, std::nullopt, true);
+  }
+  CHECK(integrator.evaluations().force == 11);
+  CHECK(*force.calls == 11);
+}
+
 TEST_CASE("stage counts are those of the literature", "[oracle]") {
   const auto counted = [](std::string_view name) { return schemes::find(name)->evaluations(); };
   CHECK(counted("leapfrog") == 1);

@@ -32,14 +32,21 @@ std::string refusal(const Scheme& scheme, const HamiltonianClaims& claims) {
 }
 
 const WisdomHolman<double> democratic({.coordinates = Coordinates::democratic});
+const WisdomHolman<double, Sum<HarmonicField>> democratic_in_field({.coordinates = Coordinates::democratic},
+                                                                   Sum(HarmonicField{.k = 0.3}));
 const Damped<KineticPotential<HarmonicField>> damped(KineticPotential(HarmonicField{.k = 1}), {.rate = 0.1});
 
-TEST_CASE("a scheme that needs exact kicks is refused on democratic coordinates and taken on Jacobi's", "[refusal]") {
-  CHECK(refusal(democratic, schemes::aba_10_6_4) ==
-        "scheme 'aba_10_6_4' needs exact flows, but part B of 'wisdom_holman' is a symmetric map of order 2; use a "
-        "composition of symmetric steps such as 'yoshida_6', or 'abah_10_6_4'");
-  CHECK(refusal(democratic, schemes::abah_10_6_4) == "");
-  CHECK(refusal(democratic, schemes::yoshida_6) == "");
+TEST_CASE("a scheme that needs exact kicks is refused where other forces join democratic coordinates", "[refusal]") {
+  for (const Scheme* scheme : {&schemes::aba_10_6_4, &schemes::yoshida_6}) {
+    CHECK(refusal(democratic_in_field, *scheme) ==
+          "scheme '" + std::string(scheme->name) +
+              "' needs exact flows, but part B of 'wisdom_holman' is a symmetric map of order 2; use 'verlet', or a "
+              "scheme made for it such as 'abah_8_6_4' or 'abah_10_6_4'");
+    CHECK(refusal(democratic, *scheme) == "");
+  }
+  for (const Scheme* scheme : {&schemes::abah_10_6_4, &schemes::abah_8_6_4, &schemes::verlet, &schemes::verlet_aba}) {
+    CHECK(refusal(democratic_in_field, *scheme) == "");
+  }
   CHECK(refusal(WisdomHolman<double>({}), schemes::aba_10_6_4) == "");
 }
 

@@ -213,7 +213,8 @@ TEST_CASE("a user's force is known after one line, with every kind of field", "[
   } catch (const SceneError& error) {
     message = error.message();
   }
-  CHECK(message == "unknown kind 'herd' in force 'spring'; did you mean 'hard'?");
+  CHECK(message ==
+        "--set hamiltonian.force.spring.kind=herd: unknown kind 'herd' in force 'spring'; did you mean 'hard'?");
 }
 
 TEST_CASE("a part in a scene is described field by field", "[scene]") {

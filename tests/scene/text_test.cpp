@@ -62,7 +62,9 @@ TEST_CASE("JSON numbers are the shortest that read back, and null where there is
 TEST_CASE("the literature is built in", "[scene]") {
   CHECK(bibtex("Newton1687").starts_with("@book{Newton1687,"));
   CHECK(bibtex("Newton1687").ends_with("}"));
-  CHECK(bibtex("Nobody" "1900").empty());
+  CHECK(bibtex("Nobody"
+               "1900")
+            .empty());
 }
 
 }  // namespace

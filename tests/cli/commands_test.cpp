@@ -1,0 +1,241 @@
+// Every command but `run`: what it prints and writes of a small scene and its files.
+
+#include "tests/cli/support.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace noether::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The output of a command that must succeed and say nothing on stderr.
+std::string output(const ScratchFolder& folder, const std::string& line) {
+  const ProcessResult result = noether(folder, line);
+  INFO(line << "\n" << result.out << result.err);
+  CHECK(result.exit_code == 0);
+  CHECK(result.err.empty());
+  return result.out;
+}
+
+std::string json_output(const ScratchFolder& folder, const std::string& line, const std::string& schema) {
+  const std::string json = output(folder, line + " --json");
+  INFO(json);
+  CHECK(is_json_line(json));
+  CHECK(json_member(json, "schema") == "\"noether." + schema + "/1\"");
+  return json;
+}
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream source(text);
+  for (std::string line; std::getline(source, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST_CASE("--version and --help succeed, for the program and each command", "[cli]") {
+  const ScratchFolder folder;
+  CHECK(output(folder, "--version").starts_with("noether "));
+  const std::string help = output(folder, "--help");
+  for (const char* name : {"run", "evaluate", "explain", "list", "describe", "info", "verify", "convert", "plot"}) {
+    CHECK(has(help, std::string("\n  ") + name + " "));
+    CHECK(has(output(folder, std::string(name) + " --help"), std::string("Usage: noether ") + name + " "));
+  }
+}
+
+TEST_CASE("evaluate tells energies, virial and forces of the initial state", "[cli][evaluate]") {
+  const SceneFolder folder;
+  const std::string json = json_output(folder, "evaluate scene.toml --check --forces forces.csv", "evaluate");
+  CHECK(json_block(json, "energy") ==
+        R"({"total":-5e-04,"kinetic":5e-04,"potential":-0.001,"terms":{"gravity":-0.001}})");
+  CHECK(json_block(json, "virial") == "[[-0.001,0,0],[0,0,0],[0,0,0]]");
+  CHECK(json_member(json, "pressure") == "null");
+  CHECK(json_member(json, "force_max") == "0.001");
+  CHECK(std::stod(json_member(json, "gradient_error")) < 1e-20);
+  CHECK(lines_of(read_text(folder / "forces.csv")) ==
+        std::vector<std::string>{"id,fx,fy,fz", "0,0.001,0,0", "1,-0.001,0,0"});
+  CHECK(json_member(json_output(folder, "evaluate scene.toml", "evaluate"), "gradient_error") == "null");
+  CHECK(output(folder, "evaluate scene.toml") ==
+        "total energy          -5e-04\n"
+        "  kinetic             5e-04\n"
+        "  potential           -0.001\n"
+        "    gravity           -0.001\n"
+        "trace of the virial   -0.001\n"
+        "largest force         0.001\n");
+  const std::string heavier = output(folder, "evaluate scene.toml --json --set particles.body.Sun.mass=2");
+  CHECK(json_member(heavier, "potential") == "-0.002");
+}
+
+TEST_CASE("forces are written with all their digits", "[cli][evaluate]") {
+  const SceneFolder folder;
+  output(folder, "evaluate scene.toml --forces forces.csv --set particles.body.Planet.mass=0.1");
+  CHECK(lines_of(read_text(folder / "forces.csv")).at(1) == "0,0.10000000000000001,0,0");
+}
+
+TEST_CASE("explain tells what is in and what is left out", "[cli][explain]") {
+  const SceneFolder folder;
+  const std::string text = output(folder, "explain scene.toml");
+  for (const char* line : {"Two bodies: yoshida_4 over kinetic_potential, 2 particles\n", "\n  force gravity\n",
+                           "\n  monitor energy, every 10 steps\n", "\n  writer trajectory, every 20 steps\n",
+                           "\n  writer checkpoint, every 40 steps\n", "\n  monitor momentum\n", "\n  stop escape\n",
+                           "\n  3 x B: kicks, one force evaluation each\n", "\nSIMD level: base\n"}) {
+    INFO(line << "\n" << text);
+    CHECK(has(text, line));
+  }
+  CHECK(text.find("\nleft out:\n") < text.find("\n  monitor momentum\n"));
+  CHECK(text.find("\n  monitor energy") < text.find("\nleft out:\n"));
+  const std::string json = json_output(folder, "explain scene.toml", "explain");
+  CHECK(json_block(json, "flows_per_step") == R"({"A":3,"B":3})");
+  CHECK(json_member(json, "bytes_per_particle") == "64");
+  // A twentieth of the time a circle through the pericenter would take at the speed there.
+  const double mu = 1.001, a = 1 / (2 - 1 / mu), q = 2 * a - 1;
+  const double step = 2 * M_PI * std::sqrt(q * q * q / (mu * (2 - q / a))) / 20;
+  CHECK(std::abs(std::stod(json_member(json, "recommended_step")) - step) < 1e-14);
+}
+
+TEST_CASE("list knows every kind of part", "[cli][list]") {
+  const ScratchFolder folder;
+  const std::string methods = output(folder, "list methods");
+  for (const char* name : {"verlet", "yoshida_4", "aba_10_6_4", "srkn14a", "symplectic_euler_a"}) {
+    CHECK(has(methods, std::string("\n") + name + " "));
+  }
+  CHECK(has(output(folder, "list forces"), "\ngravity "));
+  CHECK(has(output(folder, "list monitors"), "\nangular_momentum "));
+  CHECK(has(output(folder, "list monitors"), "\ntrajectory "));
+  CHECK(has(output(folder, "list units"), "\nau "));
+  for (const char* what : {"methods", "forces", "constraints", "monitors", "builders", "units"}) {
+    const std::string json = json_output(folder, std::string("list ") + what, "list");
+    CHECK(json_member(json, "list") == "\"" + std::string(what) + "\"");
+    CHECK(json_block(json, "items").front() == '[');
+    CHECK_FALSE(output(folder, std::string("list ") + what).empty());
+  }
+}
+
+TEST_CASE("describe tells formula, order, fields and source", "[cli][describe]") {
+  const ScratchFolder folder;
+  const std::string method = output(folder, "describe yoshida_4");
+  CHECK(has(method, "\n  order 4, 3 kicks per step, symmetric\n"));
+  CHECK(has(method, "\n@article{"));
+  const std::string json = json_output(folder, "describe aba_10_6_4", "describe");
+  CHECK(json_member(json, "kind") == "\"method\"");
+  CHECK(json_block(json, "near_integrable_orders") == "[10,6,4]");
+  CHECK(has(json, "\"bibtex\":\"@"));
+  CHECK(json_member(output(folder, "describe forest_ruth --json"), "name") == "\"yoshida_4\"");
+
+  const std::string force = output(folder, "describe gravity");
+  CHECK(has(force, "G m_i m_j / sqrt(r_ij^2 + softening^2)"));
+  CHECK(has(force, "\n  softening "));
+  CHECK(has(force, "\n@book{Newton1687,"));
+  CHECK(json_member(json_output(folder, "describe gravity", "describe"), "kind") == "\"force\"");
+  CHECK(output(folder, "describe energy").starts_with("energy (monitor): "));
+  CHECK(json_member(json_output(folder, "describe elements", "describe"), "kind") == "\"monitor\"");
+  CHECK(json_member(json_output(folder, "describe trajectory", "describe"), "kind") == "\"writer\"");
+  CHECK(json_member(json_output(folder, "describe wisdom_holman", "describe"), "kind") == "\"hamiltonian\"");
+  CHECK(has(json_output(folder, "describe kyr", "describe"), R"("solar":365250)"));
+}
+
+TEST_CASE("whatever is listed can be described", "[cli][describe][slow]") {
+  const ScratchFolder folder;
+  for (const char* what : {"methods", "forces", "monitors", "units"}) {
+    const std::vector<std::string> lines = lines_of(output(folder, std::string("list ") + what));
+    REQUIRE(lines.size() > 3);
+    for (std::size_t k = 1; k < lines.size(); ++k) {
+      const std::string name = lines[k].substr(0, lines[k].find("  "));
+      json_output(folder, "describe " + name, "describe");
+    }
+  }
+}
+
+#if NOETHER_HDF5
+
+TEST_CASE("info and verify read the files of a run", "[cli][info]") {
+  const SceneFolder folder;
+  const std::string run = output(folder, "run scene.toml --json");
+  for (const char* file : {"run.h5", "checkpoint.h5"}) {
+    INFO(file);
+    const std::string path = std::string("scene.out/") + file;
+    const std::string info = json_output(folder, "info " + path, "info");
+    CHECK(json_member(info, "digest") == json_member(run, "digest"));
+    CHECK(json_member(info, "last_step") == "100");
+    CHECK(json_member(info, "particles") == "2");
+    CHECK(has(output(folder, "info " + path), json_member(run, "digest").substr(1, 71)));
+    const std::string verified = json_output(folder, "verify " + path, "verify");
+    CHECK(json_member(verified, "ok") == "true");
+    CHECK(json_member(verified, "complete") == "true");
+    CHECK(json_block(verified, "damaged") == "[]");
+    CHECK(json_member(verified, "last_step") == "100");
+    CHECK(json_member(verified, "digest") == json_member(run, "digest"));
+  }
+  const std::string info = json_output(folder, "info scene.out/run.h5", "info");
+  CHECK(json_member(info, "kind") == "\"trajectory\"");
+  CHECK(json_member(info, "frames") == "6");
+  CHECK(has(info, R"({"name":"energy","quantities":["kinetic","potential","relative_error","total"],"samples":11})"));
+  CHECK(output(folder, "verify scene.out/run.h5") == "scene.out/run.h5: sound and complete, last step 100\n");
+  const std::string checkpoint = json_output(folder, "info scene.out/checkpoint.previous.h5", "info");
+  CHECK(json_member(checkpoint, "kind") == "\"checkpoint\"");
+  CHECK(json_member(checkpoint, "last_step") == "80");
+  CHECK(json_member(checkpoint, "outcome") == "null");
+}
+
+TEST_CASE("verify tells damage on stderr, or in its JSON", "[cli][verify]") {
+  const SceneFolder folder;
+  output(folder, "run scene.toml --quiet");
+  damage(folder / "scene.out/checkpoint.h5");
+  const ProcessResult text = noether(folder, "verify scene.out/checkpoint.h5");
+  CHECK(text.exit_code == 3);
+  CHECK(text.out.empty());
+  CHECK(text.err.starts_with("scene.out/checkpoint.h5: "));
+  const ProcessResult json = noether(folder, "verify scene.out/checkpoint.h5 --json");
+  CHECK(json.exit_code == 3);
+  CHECK(is_json_line(json.out));
+  CHECK(json_member(json.out, "ok") == "false");
+  CHECK(json_block(json.out, "damaged").size() > 4);
+}
+
+TEST_CASE("convert writes extended XYZ and CSV", "[cli][convert]") {
+  const SceneFolder folder;
+  output(folder, "run scene.toml --quiet");
+  CHECK(output(folder, "convert scene.out/run.h5 frames.xyz").empty());
+  const std::vector<std::string> xyz = lines_of(read_text(folder / "frames.xyz"));
+  REQUIRE(xyz.size() == 6 * 4);
+  CHECK(xyz[0] == "2");
+  CHECK(has(xyz[1], "Properties=species:S:1:pos:R:3:vel:R:3 "));
+  CHECK(xyz[3] == "Planet 1 0 0 0 1 0");
+  CHECK(has(xyz[21], "Time=1 "));
+  CHECK(output(folder, "convert scene.out/run.h5 frames.csv").empty());
+  const std::string json = json_output(folder, "convert scene.out/run.h5 again.csv", "convert");
+  CHECK(json_member(json, "frames") == "6");
+  CHECK(read_text(folder / "again.csv") == read_text(folder / "frames.csv"));
+  const std::vector<std::string> csv = lines_of(read_text(folder / "frames.csv"));
+  REQUIRE(csv.size() == 1 + 6 * 2);
+  CHECK(csv[0] == "step,time,id,name,x,y,z,vx,vy,vz");
+  CHECK(csv[2] == "0,0,1,Planet,1,0,0,0,1,0");
+  CHECK(csv[11].starts_with("100,1,0,Sun,"));
+}
+
+TEST_CASE("plot draws PNG and SVG", "[cli][plot][slow]") {
+  const SceneFolder folder;
+  if (run_process({"gnuplot", "--version"}, folder.path()).exit_code != 0) {
+    WARN("gnuplot is not installed: nothing is drawn");
+    return;
+  }
+  output(folder, "run scene.toml --quiet");
+  CHECK(output(folder, "plot scene.out/run.h5") == "scene.out/run.svg\n");
+  CHECK(has(read_text(folder / "scene.out/run.svg").substr(0, 300), "<svg"));
+  CHECK(output(folder, "plot scene.out/run.h5 --out picture.png") == "picture.png\n");
+  CHECK(json_member(json_output(folder, "plot scene.out/run.h5 --out b.svg", "plot"), "file") == "\"b.svg\"");
+  const std::string png = read_text(folder / "picture.png");
+  CHECK(png.size() > 5000);
+  CHECK(png.substr(1, 3) == "PNG");
+}
+
+#endif
+
+}  // namespace
+}  // namespace noether::test

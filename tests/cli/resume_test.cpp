@@ -1,0 +1,121 @@
+// `noether run --resume`: from which checkpoint, to which end, and what it refuses.
+
+#include "tests/cli/support.hpp"
+
+#include <filesystem>
+#include <string>
+
+#if NOETHER_HDF5
+
+namespace noether::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST_CASE("resuming a finished run prints its report again", "[cli][resume]") {
+  const SceneFolder folder;
+  const std::string first = noether(folder, "run scene.toml --json").out;
+  fs::copy_file(folder / "scene.out/run.h5", folder / "before.h5");
+  const ProcessResult again = noether(folder, "run scene.toml --json --resume");
+  CHECK(again.exit_code == 0);
+  CHECK(json_member(again.out, "resumed_from_step") == "100");
+  CHECK(json_member(again.out, "wall_s") == json_member(first, "wall_s"));
+  check_same_run(again.out, first);
+  CHECK(noether(folder, "run scene.toml --resume").out.starts_with("completed at step 100, time 1\n"));
+  check_same_content(folder / "scene.out/run.h5", folder / "before.h5");
+  CHECK_FALSE(fs::exists(folder / "scene.out.1"));
+}
+
+TEST_CASE("a finished run goes on to a later end as one long run", "[cli][resume]") {
+  const SceneFolder folder, other;
+  CHECK(noether(folder, "run scene.toml --quiet").exit_code == 0);
+  const ProcessResult longer = noether(folder, "run scene.toml --json --resume --until 3.33");
+  CHECK(longer.exit_code == 0);
+  CHECK(json_member(longer.out, "resumed_from_step") == "100");
+  check_same_run(longer.out, noether(other, "run scene.toml --json --until 3.33").out);
+  check_same_content(folder / "scene.out/run.h5", other / "scene.out/run.h5");
+}
+
+TEST_CASE("an end before the checkpoint is refused", "[cli][resume][messages]") {
+  const SceneFolder folder;
+  CHECK(noether(folder, "run scene.toml --quiet").exit_code == 0);
+  const ProcessResult result = noether(folder, "run scene.toml --resume --until 0.5");
+  CHECK(result.exit_code == 2);
+  CHECK(result.err ==
+        "scene.toml: the end at step 50 lies before the checkpoint at step 100; give a later one, or --fresh\n");
+}
+
+TEST_CASE("a changed key is named and refused", "[cli][resume][messages]") {
+  const SceneFolder folder;
+  CHECK(noether(folder, "run scene.toml --quiet").exit_code == 0);
+  make_unfinished(folder / "scene.out");
+  const std::string advice = "; a resumed run takes only a later end: undo this, or start over with --fresh\n";
+  const auto refusal = [&](const std::string& set) {
+    const ProcessResult result = noether(folder, "run scene.toml --resume " + set);
+    CHECK(result.exit_code == 2);
+    CHECK(result.out.empty());
+    REQUIRE(result.err.ends_with(advice));
+    return result.err.substr(0, result.err.size() - advice.size());
+  };
+  CHECK(refusal("--set integrator.step=0.02") == "--set integrator.step=0.02: integrator.step = 0.02 was 0.01");
+  CHECK(refusal("--set integrator.method=verlet") == "scene.toml: integrator.method = \"verlet\" was \"yoshida_4\"");
+  CHECK(refusal("--set every.trajectory.steps=10") == "scene.toml: every.2.steps = 10 was 20");
+  CHECK(refusal("--set hamiltonian.force.gravity.softening=0.1").find("hamiltonian.force.0.softening = 0.1 was 0.0") !=
+        std::string::npos);
+  std::string text = two_bodies;
+  text.replace(text.find("mass = 0.001"), 12, "mass = 0.002");
+  write_text(folder / "scene.toml", text);
+  CHECK(refusal("") == "scene.toml:10: particles.body.1.mass = 0.002 was 0.001");
+  write_text(folder / "scene.toml", two_bodies + "[[every]]\ntype = \"momentum\"\nsteps = 1\n");
+  CHECK(refusal("").find("every.4.") != std::string::npos);
+  write_text(folder / "scene.toml", two_bodies);
+  CHECK(noether(folder, "run scene.toml --quiet --resume --set 'title=Another name'").exit_code == 0);
+}
+
+TEST_CASE("without any checkpoint --resume starts afresh", "[cli][resume]") {
+  const SceneFolder folder;
+  const ProcessResult first = noether(folder, "run scene.toml --json --resume");
+  CHECK(first.exit_code == 0);
+  CHECK(json_member(first.out, "resumed_from_step") == "null");
+  fs::remove(folder / "scene.out/checkpoint.h5");
+  fs::remove(folder / "scene.out/checkpoint.previous.h5");
+  write_text(folder / "scene.out/run.h5", "killed before its first checkpoint");
+  const ProcessResult second = noether(folder, "run scene.toml --json --resume");
+  CHECK(second.exit_code == 0);
+  CHECK(json_member(second.out, "resumed_from_step") == "null");
+  check_same_run(second.out, first.out);
+}
+
+TEST_CASE("a damaged newest checkpoint gives way to the one before", "[cli][resume]") {
+  const SceneFolder folder, other;
+  const std::string first = noether(folder, "run scene.toml --json").out;
+  CHECK(noether(other, "run scene.toml --quiet").exit_code == 0);
+  damage(folder / "scene.out/checkpoint.h5");
+  const ProcessResult resumed = noether(folder, "run scene.toml --json --resume");
+  CHECK(resumed.exit_code == 0);
+  CHECK(json_member(resumed.out, "resumed_from_step") == "80");
+  check_same_run(resumed.out, first);
+  check_same_content(folder / "scene.out/run.h5", other / "scene.out/run.h5");
+}
+
+TEST_CASE("only damaged checkpoints exit 3, named, with the way out", "[cli][resume][messages]") {
+  const SceneFolder folder;
+  CHECK(noether(folder, "run scene.toml --quiet").exit_code == 0);
+  damage(folder / "scene.out/checkpoint.h5");
+  write_text(folder / "scene.out/checkpoint.previous.h5", "nothing of value");
+  const ProcessResult result = noether(folder, "run scene.toml --resume");
+  INFO(result.err);
+  CHECK(result.exit_code == 3);
+  CHECK(line_count(result.err) == 1);
+  CHECK(result.err.starts_with("scene.out: no valid checkpoint to resume from ("));
+  CHECK(result.err.find("scene.out/checkpoint.h5: ") != std::string::npos);
+  CHECK(result.err.find("scene.out/checkpoint.previous.h5: ") != std::string::npos);
+  CHECK(result.err.ends_with("; start over with --fresh\n"));
+  CHECK(noether(folder, "run scene.toml --quiet").exit_code == 2);
+  CHECK(noether(folder, "run scene.toml --quiet --fresh").exit_code == 0);
+}
+
+}  // namespace
+}  // namespace noether::test
+
+#endif

@@ -1,0 +1,192 @@
+// `noether run`: what it prints, and with which exit code.
+
+#include "tests/cli/support.hpp"
+
+#include <string>
+#include <vector>
+
+namespace noether::test {
+namespace {
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  const auto at = text.find(what);
+  REQUIRE(at != std::string::npos);
+  return text.replace(at, what.size(), by);
+}
+
+TEST_CASE("a run reports in text, and in a pipe shows no progress", "[cli][run]") {
+  const SceneFolder folder(unwritten);
+  const ProcessResult result = noether(folder, "run scene.toml");
+  CHECK(result.exit_code == 0);
+  CHECK(result.err.empty());
+  INFO(result.out);
+  CHECK(result.out.starts_with("completed at step 100, time 1\nenergy: worst "));
+  CHECK(result.out.find("\nangular_momentum: worst ") != std::string::npos);
+  CHECK(result.out.find("100 steps of yoshida_4 over kinetic_potential in ") != std::string::npos);
+  const auto last = result.out.rfind("\nsha256:");
+  REQUIRE(last != std::string::npos);
+  CHECK(result.out.size() == last + 1 + 7 + 64 + 1);
+}
+
+TEST_CASE("--json is one line with every key, in one order", "[cli][run][json]") {
+  const SceneFolder folder(unwritten);
+  const ProcessResult result = noether(folder, "run scene.toml --json");
+  CHECK(result.exit_code == 0);
+  CHECK(result.err.empty());
+  INFO(result.out);
+  REQUIRE(is_json_line(result.out));
+  std::size_t at = 0;
+  for (const char* key : {"schema",
+                          "version",
+                          "commit",
+                          "scene",
+                          "scene_sha256",
+                          "outcome",
+                          "exit_code",
+                          "message",
+                          "particle",
+                          "quantity",
+                          "step",
+                          "time",
+                          "time_unit",
+                          "dt",
+                          "particles",
+                          "resumed_from_step",
+                          "threads",
+                          "simd",
+                          "evaluations",
+                          "force",
+                          "kepler",
+                          "jacobian",
+                          "wall_s",
+                          "steps_per_s",
+                          "particle_steps_per_s",
+                          "digest",
+                          "monitors",
+                          "energy",
+                          "first",
+                          "last",
+                          "worst",
+                          "rms",
+                          "slope",
+                          "slope_error",
+                          "slope_unit",
+                          "scale",
+                          "samples",
+                          "angular_momentum",
+                          "files",
+                          "trajectory",
+                          "checkpoint"}) {
+    const auto found = result.out.find("\"" + std::string(key) + "\":", at);
+    INFO(key);
+    REQUIRE(found != std::string::npos);
+    at = found;
+  }
+  CHECK(json_member(result.out, "schema") == "\"noether.run/1\"");
+  CHECK(json_member(result.out, "scene") == "\"scene.toml\"");
+  CHECK(json_member(result.out, "outcome") == "\"completed\"");
+  CHECK(json_member(result.out, "exit_code") == "0");
+  CHECK(json_member(result.out, "step") == "100");
+  CHECK(json_member(result.out, "time") == "1");
+  CHECK(json_member(result.out, "dt") == "0.01");
+  CHECK(json_member(result.out, "particles") == "2");
+  CHECK(json_member(result.out, "particle") == "null");
+  CHECK(json_member(result.out, "quantity") == "null");
+  CHECK(json_member(result.out, "resumed_from_step") == "null");
+  CHECK(json_member(json_block(result.out, "evaluations"), "force") == "300");
+  CHECK(json_member(json_block(result.out, "energy"), "samples") == "11");
+  CHECK(json_member(json_block(result.out, "angular_momentum"), "samples") == "15");
+}
+
+TEST_CASE("--quiet prints nothing", "[cli][run]") {
+  const SceneFolder folder(unwritten);
+  const ProcessResult result = noether(folder, "run scene.toml --quiet");
+  CHECK(result.exit_code == 0);
+  CHECK((result.out + result.err).empty());
+}
+
+TEST_CASE("--until and --set change the scene of one run", "[cli][run]") {
+  const SceneFolder folder(unwritten);
+  CHECK(json_member(noether(folder, "run scene.toml --json --out a --until 0.25").out, "step") == "25");
+  const std::string whole = noether(folder, "run scene.toml --json --out b").out;
+  const std::string set = noether(folder,
+                                  "run scene.toml --json --out c --set integrator.method=verlet "
+                                  "--set 'particles.body.Planet.v=[0, 1.1, 0]' --set integrator.steps=50")
+                              .out;
+  CHECK(json_member(set, "step") == "50");
+  CHECK(json_member(set, "scene_sha256") != json_member(whole, "scene_sha256"));
+  write_text(folder / "scene.toml",
+             replaced(replaced(replaced(unwritten, "yoshida_4", "verlet"), "v = [0, 1, 0]", "v = [0, 1.1, 0]"),
+                      "steps = 100", "steps = 50"));
+  const std::string written = noether(folder, "run scene.toml --json --out d").out;
+  CHECK(json_member(written, "scene_sha256") == json_member(set, "scene_sha256"));
+  CHECK(json_member(written, "digest") == json_member(set, "digest"));
+}
+
+TEST_CASE("the number of threads does not change the bits", "[cli][run][determinism]") {
+  const SceneFolder folder(unwritten);
+  std::vector<std::string> digests;
+  for (const char* threads : {"1", "2", "3"}) {
+    const std::string json =
+        noether(folder, std::string("run scene.toml --json --out ") + threads + " --threads " + threads).out;
+    CHECK(json_member(json, "digest").size() == 2 + 7 + 64);
+    digests.push_back(json_member(json, "digest"));
+  }
+  CHECK(digests[1] == digests[0]);
+  CHECK(digests[2] == digests[0]);
+}
+
+TEST_CASE("a run that the scene stops exits 0 and says who did it", "[cli][run]") {
+  const SceneFolder folder(replaced(unwritten, "v = [0, 1, 0]", "v = [9, 0, 0]") +
+                           "[[stop]]\ntype = \"escape\"\ndistance = 2\nsteps = 5\n");
+  const ProcessResult result = noether(folder, "run scene.toml --json");
+  CHECK(result.exit_code == 0);
+  CHECK(json_member(result.out, "outcome") == "\"stopped\"");
+  CHECK(json_member(result.out, "step") == "15");
+  CHECK(json_member(result.out, "message").starts_with("\"escape of Planet, distance 2."));
+  CHECK(json_block(result.out, "particle") == R"({"index":1,"id":1,"name":"Planet"})");
+}
+
+TEST_CASE("a run whose numbers run away exits 1, with a whole report", "[cli][run]") {
+  const SceneFolder folder(exploding);
+  const ProcessResult result = noether(folder, "run scene.toml --json");
+  CHECK(result.exit_code == 1);
+  const std::string step = json_member(result.out, "step");
+  CHECK(result.err == "diverged at step " + step + ": position of ball is not finite\n");
+  CHECK(std::stoi(step) <= 160);  // 98^155 is beyond all numbers
+  INFO(result.out);
+  CHECK(is_json_line(result.out));
+  CHECK(json_member(result.out, "outcome") == "\"diverged\"");
+  CHECK(json_member(result.out, "exit_code") == "1");
+  CHECK(json_member(result.out, "message") == "\"position of ball is not finite\"");
+  CHECK(json_block(result.out, "particle") == R"({"index":0,"id":0,"name":"ball"})");
+  CHECK(json_member(result.out, "quantity") == "\"position\"");
+  CHECK(json_member(json_block(result.out, "energy"), "worst") == "null");
+  const ProcessResult text = noether(folder, "run scene.toml --out text");
+  CHECK(text.exit_code == 1);
+  CHECK(text.out.find("nan") == std::string::npos);
+}
+
+TEST_CASE("two bodies that fall into one point exit 1", "[cli][run]") {
+  // From rest at +-1/2, one step of length 1 brings both to the origin.
+  const SceneFolder folder(R"(units = "reduced"
+[particles]
+body = [{ name = "left", mass = 1, x = [-0.5, 0, 0], v = [0, 0, 0] },
+        { name = "right", mass = 1, x = [0.5, 0, 0], v = [0, 0, 0] }]
+[hamiltonian]
+type = "kinetic_potential"
+[[hamiltonian.force]]
+type = "gravity"
+[integrator]
+method = "verlet"
+step = 1
+steps = 10
+)");
+  const ProcessResult result = noether(folder, "run scene.toml --json");
+  CHECK(result.exit_code == 1);
+  CHECK(is_json_line(result.out));
+  CHECK(json_member(result.out, "outcome") == "\"diverged\"");
+}
+
+}  // namespace
+}  // namespace noether::test
