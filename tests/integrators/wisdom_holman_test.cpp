@@ -355,7 +355,8 @@ TEST_CASE("claims of the splitting follow its coordinates and its forces", "[wis
   CHECK(jacobi.inexact.empty());
   CHECK(democratic.inexact.empty());
   CHECK(!democratic.quadratic_kinetic);
-  const WisdomHolman<double, Sum<HarmonicField>> in_field({.coordinates = Coordinates::democratic}, {});
+  const WisdomHolman<double, Sum<HarmonicField>> in_field({.coordinates = Coordinates::democratic},
+                                                          Sum(HarmonicField{.k = 0.3}));
   CHECK(in_field.claims().inexact == "B");
   CHECK(jacobi.keeps_momentum);
   const WisdomHolman<double, Sum<OscillatingField>> driven({.G = G}, Sum(OscillatingField{}));
