@@ -133,18 +133,18 @@ template <class Real> Outcome Simulation<Real>::run_until(double until) {
 
 template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double limit) {
   shown_at_.reset();
-  std::optional<Outcome> result = not_finite();
+  std::optional<Outcome> result = fault(raw_);
+  if (!result) result = keep_good();
   if (!result) result = observe_due();  // before the clock starts: writers open their files when they first look
   if (result) return *result;
   const auto started = WallClock::now();
   const double before = seconds_;
   auto reported = started;
-  keep_good();
   while (true) {
     seconds_ = before + seconds_since(started);
     if ((result = observe_due())) break;
     if (step() >= end) break;
-    if (step() - good_->particles.clock().step() >= longest_chunk) keep_good();
+    if (step() - good_->particles.clock().step() >= longest_chunk && (result = keep_good())) break;
     if (stop_flag_ != nullptr && stop_flag_->load(std::memory_order_relaxed)) {
       result = outcome(Outcome::Kind::interrupted);
       break;
@@ -155,7 +155,7 @@ template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double 
     const double took = seconds_since(chunk_start);
     if (took < chunk_seconds / 2) chunk_ = std::min(longest_chunk, chunk_ * 2);
     if (took > chunk_seconds && chunk_ > 1) chunk_ /= 2;
-    if (done.failure || not_finite()) {
+    if (done.failure || fault(raw_)) {
       result = fall_back();
       break;
     }
@@ -172,15 +172,18 @@ template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double 
       progress_({step(), end, time(), before + seconds_since(started)});
     }
   }
+  if (!result && settled_fault()) result = fall_back();
   if (!result) result = look_at_the_end();
   seconds_ = before + seconds_since(started);
   good_.reset();
   return result ? *result : outcome(Outcome::Kind::completed);
 }
 
-template <class Real> void Simulation<Real>::keep_good() {
+template <class Real> std::optional<Outcome> Simulation<Real>::keep_good() {
+  if (const auto bad = settled_fault()) return good_ ? fall_back() : *bad;
   good_ = Good{raw_, {}};
   integrator_.save(good_->integrator, "");
+  return {};
 }
 
 /// Goes again, step by step, from the last state kept to the step that failed: where a run ends must not depend on when
@@ -194,8 +197,9 @@ template <class Real> Outcome Simulation<Real>::fall_back() {
   go_back();
   while (true) {
     const Advanced done = integrator_.advance(raw_, {.steps = 1});
-    std::optional<Outcome> reason = not_finite();
+    std::optional<Outcome> reason = fault(raw_);
     if (!reason && done.failure) reason = failed(*done.failure);
+    if (!reason) reason = settled_fault();
     if (reason) {
       go_back();
       reason->step = step();
@@ -203,7 +207,8 @@ template <class Real> Outcome Simulation<Real>::fall_back() {
       return *reason;
     }
     if (step() > failing) throw LogicError("a step that had failed went well when it was made again");
-    keep_good();
+    good_ = Good{raw_, {}};
+    integrator_.save(good_->integrator, "");
   }
 }
 
@@ -241,6 +246,7 @@ template <class Real> std::optional<Outcome> Simulation<Real>::observe_due() {
   }
   if (looking.empty() && stops.empty()) return {};
   const Snapshot<Real> moment = snapshot(wanted);
+  if (const auto bad = fault(moment.state())) return good_ ? fall_back() : *bad;
   std::optional<Outcome> result;
   for (ScheduledStop* stop : stops) {
     const auto reason = stop->check.look(moment);
@@ -305,9 +311,8 @@ template <class Real> double Simulation<Real>::next_time(double end) const {
   return next;
 }
 
-template <class Real> std::optional<Outcome> Simulation<Real>::not_finite() {
+template <class Real> std::optional<Outcome> Simulation<Real>::fault(const ParticleSystem<Real>& s) const {
   using std::isfinite;
-  const auto& s = std::as_const(raw_);
   for (Index i = 0; i < s.size(); ++i) {
     for (int k = 0; k < 3; ++k) {
       const bool position = !isfinite(s.positions().component(k)[i]);
@@ -318,6 +323,11 @@ template <class Real> std::optional<Outcome> Simulation<Real>::not_finite() {
     }
   }
   return {};
+}
+
+template <class Real> std::optional<Outcome> Simulation<Real>::settled_fault() {
+  integrator_.settle(raw_, copy_, {}, shown_at_, true);
+  return fault(copy_);
 }
 
 template <class Real> Outcome Simulation<Real>::outcome(Outcome::Kind kind, std::string message) const {

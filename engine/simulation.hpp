@@ -146,11 +146,13 @@ template <class Real = double> class Simulation {
   void show(const std::vector<Scheduled*>& due, const Snapshot<Real>& moment);
   std::int64_t next_cut(std::int64_t end) const;
   double next_time(double end) const;
-  std::optional<Outcome> not_finite();
+  /// What is wrong with a state, if it is not finite.
+  std::optional<Outcome> fault(const ParticleSystem<Real>& s) const;
+  std::optional<Outcome> settled_fault();
   Outcome outcome(Outcome::Kind kind, std::string message = "") const;
   Outcome stopped(const StopReason& reason) const;
   Outcome failed(const Failure& failure) const;
-  void keep_good();
+  std::optional<Outcome> keep_good();
   Outcome fall_back();
   std::optional<Outcome> look_at_the_end();
   Outcome run_to(std::int64_t end, double limit);

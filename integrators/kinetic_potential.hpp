@@ -2,7 +2,7 @@
 /// H = T(p) + U(q): free motion and kicks.
 
 #include "engine/concepts.hpp"
-#include "engine/description.hpp"
+#include "engine/erasure.hpp"
 #include "engine/parallel.hpp"
 
 #include <limits>

@@ -2,7 +2,7 @@
 /// H = Kepler + interaction: planets on Kepler arcs, kicked by each other.
 
 #include "engine/concepts.hpp"
-#include "engine/description.hpp"
+#include "engine/erasure.hpp"
 #include "engine/parallel.hpp"
 #include "forces/gravity.hpp"
 #include "forces/sum.hpp"

@@ -108,7 +108,7 @@ TEST_CASE("Kepler arcs with further forces are symplectic", "[conservation][symp
   for (const Coordinates coordinates : {Coordinates::jacobi, Coordinates::democratic}) {
     const WisdomHolman<Quad, ForceField<Quad>> hamiltonian({.coordinates = coordinates}, field);
     CHECK(defect(hamiltonian, schemes::verlet, start, 0.2, 2) < 1e-16);
-    CHECK(defect(hamiltonian, schemes::yoshida_4, start, 0.2, 1) < 1e-16);
+    CHECK(defect(hamiltonian, schemes::abah_8_6_4, start, 0.2, 1) < 1e-16);
   }
 }
 

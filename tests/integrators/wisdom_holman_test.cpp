@@ -61,13 +61,15 @@ ParticleSystem<Quad> with_visitors() {
 }
 
 /// Logarithm to base 2 of how much nearer two methods of order 8 come to each other with half the step.
-template <class H1, class H2> double common_order(const ParticleSystem<Quad>& start, const H1& one, const H2& other) {
+template <class H1, class H2>
+double common_order(const ParticleSystem<Quad>& start, const H1& one, const H2& other,
+                    const Scheme& scheme = schemes::yoshida_8) {
   std::array<double, 2> errors{};
   for (const int k : {0, 1}) {
     const double dt = 40.0 / (1 << k);
     const std::int64_t n = 16 << k;
     errors[static_cast<std::size_t>(k)] =
-        difference(run(start, one, schemes::yoshida_8, dt, n), run(start, other, schemes::yoshida_8, dt, n));
+        difference(run(start, one, scheme, dt, n), run(start, other, schemes::yoshida_8, dt, n));
   }
   CAPTURE(errors[0], errors[1]);
   CHECK(errors[1] > 1e-28);
@@ -300,7 +302,11 @@ TEST_CASE("other forces join the kicks in both coordinates, with the time of the
   const KineticPotential<Sum<Gravity, Forces>, Quad> inertial(Sum(Gravity{.G = G}, forces));
   for (const Coordinates coordinates : both) {
     const WisdomHolman<Quad, Forces> split({.G = G, .coordinates = coordinates}, forces);
-    CHECK(std::abs(common_order(start, split, inertial) - 8) < 0.4);
+    // In democratic coordinates J does not commute with them, so that kicks are exact to order 2 only; these forces
+    // are as weak as the interaction, so the error is that of abah_8_6_4 in the first power of it.
+    const bool exact = coordinates == Coordinates::jacobi;
+    const Scheme& scheme = exact ? schemes::yoshida_8 : schemes::abah_8_6_4;
+    CHECK(std::abs(common_order(start, split, inertial, scheme) - 8) < 0.4);
   }
 }
 

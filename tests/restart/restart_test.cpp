@@ -81,7 +81,8 @@ template <class Real> void check_all_hamiltonians(const Scheme& scheme, std::int
     if (scheme.scheme_class != SchemeClass::rkn) {
       check_restart<Real>(compose(democratic, scheme, {.compensated = compensated}), n);
     }
-    const Sum forces(HarmonicField{.k = 1e-9}, OscillatingField{.acceleration = {1e-7, 0, 2e-7}, .omega = 0.03});
+    const Sum forces(UniformField{.acceleration = {1e-8, 0, 2e-8}},
+                     OscillatingField{.acceleration = {1e-7, 0, 2e-7}, .omega = 0.03});
     const WisdomHolman<Real, std::decay_t<decltype(forces)>> driven({.G = test::outer_G}, forces);
     check_restart<Real>(compose(driven, scheme, {.compensated = compensated}), n);
     if (scheme.has_negative_steps()) continue;

@@ -108,7 +108,7 @@ const std::vector<Row> rows = {
 
 /// Magnitudes that the table of costs speaks of: the steps of a composition of Verlet are the weights of its drifts.
 std::vector<Quad> costly(const Scheme& scheme) {
-  const bool composition = scheme.is_symmetric() && scheme.word.front().letter == 'B' && scheme.exact.empty();
+  const bool composition = scheme.is_symmetric() && scheme.word.front().letter == 'B' && scheme.exact != "AB";
   return magnitudes(scheme.word, composition ? 'A' : 'B');
 }
 
