@@ -2,12 +2,14 @@
 
 #include "engine/quantity.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 
 namespace noether {
 
 void refuse_field(std::string_view key, const std::string& value, const std::string& why) {
-  throw Error(std::string(key) + " = " + value + " " + why, {.key = std::string(key), .value = value});
+  throw Error(fmt::format("{} = {} {}", key, value, why), {.key = std::string(key), .value = value});
 }
 
 void refuse_field(std::string_view key, double value, const std::string& why) {
@@ -16,7 +18,7 @@ void refuse_field(std::string_view key, double value, const std::string& why) {
 
 void refuse_field(std::string_view key, const std::array<double, 3>& value, const std::string& why) {
   refuse_field(
-      key, "[" + format_number(value[0]) + ", " + format_number(value[1]) + ", " + format_number(value[2]) + "]", why);
+      key, fmt::format("[{}, {}, {}]", format_number(value[0]), format_number(value[1]), format_number(value[2])), why);
 }
 
 void check_constant_of_gravitation(const std::optional<double>& G) {
