@@ -71,7 +71,7 @@ TEST_CASE("a run that the physics stops says so on stderr, also with --quiet", "
     CHECK(result.exit_code == 1);
     CHECK(line_count(result.err) == 1);
     CHECK(result.err.starts_with("diverged"));
-    CHECK(has(result.err, "position of ball is not finite"));
+    CHECK(has(result.err, "velocity of ball is not finite"));
   }
 }
 

@@ -152,15 +152,15 @@ TEST_CASE("a run whose numbers run away exits 1, with a whole report", "[cli][ru
   const ProcessResult result = noether(folder, "run scene.toml --json");
   CHECK(result.exit_code == 1);
   const std::string step = json_member(result.out, "step");
-  CHECK(result.err == "diverged at step " + step + ": position of ball is not finite\n");
+  CHECK(result.err == "diverged at step " + step + ": velocity of ball is not finite\n");
   CHECK(std::stoi(step) <= 160);  // 98^155 is beyond all numbers
   INFO(result.out);
   CHECK(is_json_line(result.out));
   CHECK(json_member(result.out, "outcome") == "\"diverged\"");
   CHECK(json_member(result.out, "exit_code") == "1");
-  CHECK(json_member(result.out, "message") == "\"position of ball is not finite\"");
+  CHECK(json_member(result.out, "message") == "\"velocity of ball is not finite\"");
   CHECK(json_block(result.out, "particle") == R"({"index":0,"id":0,"name":"ball"})");
-  CHECK(json_member(result.out, "quantity") == "\"position\"");
+  CHECK(json_member(result.out, "quantity") == "\"velocity\"");
   CHECK(json_member(json_block(result.out, "energy"), "worst") == "null");
   const ProcessResult text = noether(folder, "run scene.toml --out text");
   CHECK(text.exit_code == 1);
