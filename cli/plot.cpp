@@ -32,7 +32,7 @@ namespace {
 class ScratchFolder {
  public:
   ScratchFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "noether_plot_XXXXXX").string();
+    std::string name = (std::filesystem::temp_directory_path() / "noether_plot_").string() + std::string(6, 'X');
     if (mkdtemp(name.data()) == nullptr) {
       throw FileError(fmt::format("{}: no folder could be made for the script: {}", name, std::strerror(errno)));
     }

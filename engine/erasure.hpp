@@ -3,14 +3,10 @@
 /// own concept, so a scene is one more instantiation of the same templates.
 
 #include "engine/concepts.hpp"
-#include "engine/description.hpp"
-
-#include <fmt/format.h>
+#include "engine/signature.hpp"
 
 #include <memory>
-#include <optional>
 #include <string>
-#include <type_traits>
 #include <utility>
 
 namespace noether {
@@ -32,54 +28,6 @@ template <class T> void load_any(const SavedState& saved, const std::string& pre
     load_part(saved, prefix, value);
   }
 }
-template <class T> std::string name_of(const T& value) {
-  if constexpr (requires { std::string(value.name()); }) {
-    return std::string(value.name());
-  } else {
-    return std::string(part_name<T>());
-  }
-}
-
-inline std::string value_text(double x) { return fmt::format("{}", x); }
-inline std::string value_text(const std::optional<double>& x) { return x ? value_text(*x) : "default"; }
-inline std::string value_text(const Vec3<double>& x) { return fmt::format("[{}, {}, {}]", x[0], x[1], x[2]); }
-template <class T> std::string value_text(const T& value) {
-  if constexpr (std::is_enum_v<T> || std::is_integral_v<T>) {
-    return fmt::format("{}", static_cast<std::int64_t>(value));
-  } else {
-    return "?";
-  }
-}
-
-/// A part and its parameters, "gravity(G = default, softening = 0)": two parts that differ in it make different runs.
-template <class T> std::string signature_of(const T& value) {
-  if constexpr (requires { std::string(value.signature()); }) {
-    return value.signature();
-  } else if constexpr (requires { T::describe(); }) {
-    std::string fields;
-    for_each_field<T>([&](const auto& field) {
-      fields += (fields.empty() ? "" : ", ") + fmt::format("{} = {}", field.name, value_text(value.*(field.member)));
-    });
-    return fmt::format("{}({})", part_name<T>(), fields);
-  } else {
-    return name_of(value);
-  }
-}
-
-/// Notes with what a part was made, so that a saved run is not continued by another.
-template <class T> void save_signature(SavedState& saved, const std::string& prefix, const T& value) {
-  save_value(saved, prefix + "signature", signature_of(value));
-}
-/// @throws Error  if the saved run was made with other parts or parameters
-template <class T> void check_signature(const SavedState& saved, const std::string& prefix, const T& value) {
-  std::string before;
-  load_value(saved, prefix + "signature", before);
-  const std::string now = signature_of(value);
-  if (before != now) {
-    throw Error(fmt::format("the saved run was made with {}, this one has {}", before, now));
-  }
-}
-
 /// Value semantics for a polymorphic `Base` with `clone`.
 template <class Base> class Erased {
  public:

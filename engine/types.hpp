@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #ifdef __FAST_MATH__
-#error "noether keeps the same bits for every build: compile without -ffast-math"
+#error "noether keeps the same bits for every build: compile without fast math"
 #endif
 
 namespace noether {

@@ -2,8 +2,8 @@
 /// H = T(p) + U(q): free motion and kicks.
 
 #include "engine/concepts.hpp"
-#include "engine/erasure.hpp"
 #include "engine/parallel.hpp"
+#include "engine/signature.hpp"
 
 #include <limits>
 #include <optional>

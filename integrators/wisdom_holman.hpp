@@ -2,8 +2,8 @@
 /// H = Kepler + interaction: planets on Kepler arcs, kicked by each other.
 
 #include "engine/concepts.hpp"
-#include "engine/erasure.hpp"
 #include "engine/parallel.hpp"
+#include "engine/signature.hpp"
 #include "forces/gravity.hpp"
 #include "forces/sum.hpp"
 #include "integrators/kepler.hpp"

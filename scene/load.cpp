@@ -330,8 +330,7 @@ class SceneReader {
       effective.put("distance", *reader.find("distance"));
       SceneStop stop;
       stop.rule = type == "escape" ? farther_than(*distance) : closer_than(*distance);
-      // An escape is seen late as well as early; a collision is found between two looks only if they are close.
-      stop.steps = type == "escape" ? 100 : 1;
+      stop.steps = type == "escape" ? default_escape_steps : default_collision_steps;
       if (reader.has("every") || reader.has("steps")) {
         stop.steps = read_cadence(reader, false, effective).steps;
       } else {

@@ -37,7 +37,7 @@ namespace {
 /// The tables `[[stop]]`, as `noether describe` shows them.
 struct Escape {
   double distance = 0;
-  std::int64_t steps = 100;
+  std::int64_t steps = default_escape_steps;
 
   static constexpr auto describe() {
     return part<Escape>("escape", "ends the run when a particle is far from the centre of mass",
@@ -50,7 +50,7 @@ struct Escape {
 
 struct Collision {
   double distance = 0;
-  std::int64_t steps = 1;
+  std::int64_t steps = default_collision_steps;
 
   static constexpr auto describe() {
     return part<Collision>("collision", "ends the run when two particles, one of them massive, come near each other",

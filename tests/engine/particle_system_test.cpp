@@ -3,25 +3,13 @@
 #include "engine/particle_system.hpp"
 
 #include "tests/support/catch.hpp"
+#include "tests/support/columns.hpp"
 #include "tests/support/planets.hpp"
 
 #include <set>
 
 namespace noether {
 namespace {
-
-struct Charge {
-  static constexpr std::string_view name = "charge";
-  template <class Real> using type = ScalarColumn<Real>;
-};
-struct Kind {
-  static constexpr std::string_view name = "kind";
-  template <class Real> using type = ScalarColumn<std::int64_t>;
-};
-struct Spin {
-  static constexpr std::string_view name = "spin";
-  template <class Real> using type = VectorColumn<Real>;
-};
 
 ParticleSystem<double> three() {
   ParticleSystem<double> s;

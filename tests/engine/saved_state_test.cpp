@@ -5,6 +5,7 @@
 #include "engine/description.hpp"
 #include "engine/statistics.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/columns.hpp"
 #include "tests/support/planets.hpp"
 
 namespace noether {
@@ -20,19 +21,6 @@ template <class T> T round_trip(const T& value) {
 
 const Quad third = Quad(1) / Quad(3);
 const Vec3<Quad> vector(third, -third, Quad(0));
-
-struct Charge {
-  static constexpr std::string_view name = "charge";
-  template <class Real> using type = ScalarColumn<Real>;
-};
-struct Kind {
-  static constexpr std::string_view name = "kind";
-  template <class Real> using type = ScalarColumn<std::int64_t>;
-};
-struct Spin {
-  static constexpr std::string_view name = "spin";
-  template <class Real> using type = VectorColumn<Real>;
-};
 
 enum class Color : std::uint8_t { red, green };
 

@@ -5,6 +5,7 @@
 #include "io/digest.hpp"
 #include "scene/scene.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/process.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -26,22 +27,19 @@ constexpr bool programs_can_run = NOETHER_HDF5 != 0;
 class ExampleFolder {
  public:
   explicit ExampleFolder(const std::string& example) : before_(std::filesystem::current_path()) {
-    std::string name = (std::filesystem::temp_directory_path() / "noether_example_XXXXXX").string();
-    REQUIRE(mkdtemp(name.data()) != nullptr);
-    path_ = name;
-    std::filesystem::copy(std::filesystem::path(NOETHER_SOURCE_DIR) / "examples" / example, path_);
-    std::filesystem::current_path(path_);
+    std::filesystem::copy(std::filesystem::path(NOETHER_SOURCE_DIR) / "examples" / example, scratch_.path());
+    std::filesystem::current_path(scratch_.path());
   }
   ExampleFolder(const ExampleFolder&) = delete;
   ExampleFolder& operator=(const ExampleFolder&) = delete;
   ~ExampleFolder() {
     std::error_code ignored;
     std::filesystem::current_path(before_, ignored);
-    std::filesystem::remove_all(path_, ignored);
   }
 
  private:
-  std::filesystem::path before_, path_;
+  test::ScratchFolder scratch_;
+  std::filesystem::path before_;
 };
 
 /// What a program prints to stdout.

@@ -63,7 +63,7 @@ io::Checkpoint made_up() {
 }
 
 /// A run of 40 steps that leaves a checkpoint at step 30 and one before it.
-std::string checkpoint_of_a_run(const test::TemporaryFolder& folder) {
+std::string checkpoint_of_a_run(const test::ScratchFolder& folder) {
   test::WritingRun run(folder / "run.h5");
   run.simulation.every(15, io::CheckpointWriter(folder / "checkpoint.h5", "title = \"x\"\n"));
   REQUIRE(run.simulation.run(40).ok());
@@ -75,7 +75,7 @@ std::string checkpoint_of_a_run(const test::TemporaryFolder& folder) {
 }  // namespace
 
 TEST_CASE("a checkpoint gives back what was put in, bit for bit", "[checkpoint]") {
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   const io::Checkpoint a = made_up();
   io::write_checkpoint(folder / "checkpoint.h5", a);
   const io::Checkpoint b = io::read_checkpoint(folder / "checkpoint.h5");
@@ -91,16 +91,16 @@ TEST_CASE("a checkpoint gives back what was put in, bit for bit", "[checkpoint]"
 }
 
 TEST_CASE("equal checkpoints are equal files, byte for byte, whenever they are written", "[checkpoint][slow]") {
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   io::write_checkpoint(folder / "a.h5", made_up());
   std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // HDF5 counts whole seconds
   io::write_checkpoint(folder / "b.h5", made_up());
-  const bool equal = test::read_file(folder / "a.h5") == test::read_file(folder / "b.h5");
+  const bool equal = test::read_text(folder / "a.h5") == test::read_text(folder / "b.h5");
   CHECK(equal);
 }
 
 TEST_CASE("a run restored from a checkpoint ends where the uninterrupted one does", "[checkpoint][restart]") {
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   const std::string digest_at_30 = checkpoint_of_a_run(folder);
   const io::FoundCheckpoint found = io::newest_checkpoint(folder.path());
   REQUIRE(found.checkpoint);
@@ -121,7 +121,7 @@ TEST_CASE("a run restored from a checkpoint ends where the uninterrupted one doe
 }
 
 TEST_CASE("h5py opens a checkpoint, and hashlib finds its hash", "[checkpoint]") {
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   const std::string digest = checkpoint_of_a_run(folder);
   const test::PythonResult result =
       test::run_python("read_checkpoint.py", (folder / "checkpoint.h5").string() + " 30 " + digest);
@@ -134,10 +134,10 @@ TEST_CASE("h5py opens a checkpoint, and hashlib finds its hash", "[checkpoint]")
 }
 
 TEST_CASE("every flipped byte is noticed", "[checkpoint]") {
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   checkpoint_of_a_run(folder);
   const std::filesystem::path file = folder / "checkpoint.h5";
-  const std::string bytes = test::read_file(file);
+  const std::string bytes = test::read_text(file);
   // Every byte of the last line, and bytes all over the rest, by a stride that is prime to everything.
   std::vector<std::size_t> places;
   for (std::size_t k = 0; k < 73; ++k) places.push_back(bytes.size() - 1 - k);
@@ -146,32 +146,32 @@ TEST_CASE("every flipped byte is noticed", "[checkpoint]") {
   for (std::size_t k = 0; k < places.size(); ++k) {
     std::string damaged = bytes;
     damaged[places[k]] = static_cast<char>(damaged[places[k]] ^ (1 << (k % 8)));
-    test::write_file(file, damaged);
+    test::write_text(file, damaged);
     const std::string message = error_of([&] { io::read_checkpoint(file); });
     unnoticed += message.starts_with(file.string() + ": damaged") ? 0 : 1;
   }
   CHECK(unnoticed == 0);
-  test::write_file(file, bytes);
+  test::write_text(file, bytes);
   CHECK(error_of([&] { io::read_checkpoint(file); }).empty());
 }
 
 TEST_CASE("every truncation and every added byte is noticed", "[checkpoint]") {
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   checkpoint_of_a_run(folder);
   const std::filesystem::path file = folder / "checkpoint.h5";
-  const std::string bytes = test::read_file(file);
+  const std::string bytes = test::read_text(file);
   std::size_t unnoticed = 0;
   for (std::size_t k = 0; k < 300; ++k) {
-    test::write_file(file, bytes.substr(0, k < 100 ? k : bytes.size() - 1 - (k - 100) * (k - 100) % bytes.size()));
+    test::write_text(file, bytes.substr(0, k < 100 ? k : bytes.size() - 1 - (k - 100) * (k - 100) % bytes.size()));
     unnoticed += error_of([&] { io::read_checkpoint(file); }).starts_with(file.string() + ": damaged") ? 0 : 1;
   }
-  test::write_file(file, bytes + "\n");
+  test::write_text(file, bytes + "\n");
   unnoticed += error_of([&] { io::read_checkpoint(file); }).empty() ? 1 : 0;
   CHECK(unnoticed == 0);
 }
 
 TEST_CASE("a damaged checkpoint gives way to the one before, and only damaged ones are told", "[checkpoint]") {
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   CHECK_FALSE(io::newest_checkpoint(folder.path()).checkpoint);
   CHECK(io::newest_checkpoint(folder.path()).damaged.empty());
   CHECK_FALSE(io::newest_checkpoint(folder / "missing").checkpoint);
@@ -179,15 +179,15 @@ TEST_CASE("a damaged checkpoint gives way to the one before, and only damaged on
   checkpoint_of_a_run(folder);
   const std::string newest = (folder / "checkpoint.h5").string(), before = (folder / "checkpoint.previous.h5").string();
   CHECK(io::read_checkpoint(before).step == 15);
-  std::string bytes = test::read_file(newest);
+  std::string bytes = test::read_text(newest);
   bytes[bytes.size() / 2] ^= 1;
-  test::write_file(newest, bytes);
+  test::write_text(newest, bytes);
   io::FoundCheckpoint found = io::newest_checkpoint(folder.path());
   REQUIRE(found.checkpoint);
   CHECK(found.checkpoint->step == 15);
   CHECK(found.damaged == std::vector<std::string>{newest + ": damaged: its bytes do not fit the SHA-256 at its end"});
 
-  test::write_file(before, "");
+  test::write_text(before, "");
   found = io::newest_checkpoint(folder.path());
   CHECK_FALSE(found.checkpoint);
   REQUIRE(found.damaged.size() == 2);
@@ -196,23 +196,23 @@ TEST_CASE("a damaged checkpoint gives way to the one before, and only damaged on
 }
 
 TEST_CASE("a process killed between the two renames leaves a valid checkpoint", "[checkpoint]") {
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   checkpoint_of_a_run(folder);
   // The newest was damaged when it was renamed, and the one that replaces it has not got its name yet.
-  test::write_file(folder / "checkpoint.previous.h5", "damaged");
+  test::write_text(folder / "checkpoint.previous.h5", "damaged");
   std::filesystem::rename(folder / "checkpoint.h5", folder / "checkpoint.h5.new");
   const io::FoundCheckpoint found = io::newest_checkpoint(folder.path());
   REQUIRE(found.checkpoint);
   CHECK(found.checkpoint->step == 30);
   CHECK(found.damaged.size() == 1);
   // Half of a file beside is no damage.
-  test::write_file(folder / "checkpoint.h5.new", "half");
+  test::write_text(folder / "checkpoint.h5.new", "half");
   CHECK(io::newest_checkpoint(folder.path()).damaged.size() == 1);
 }
 
 TEST_CASE("a checkpoint that cannot be written is an error, and the old one stays", "[checkpoint][messages]") {
-  const test::TemporaryFolder folder;
-  test::write_file(folder / "file", "");
+  const test::ScratchFolder folder;
+  test::write_text(folder / "file", "");
   const std::string file = (folder / "file/checkpoint.h5").string();
   CHECK(error_of([&] { io::write_checkpoint(file, made_up()); }) == file + ".new: cannot be written: Not a directory");
   CHECK_THROWS_AS(io::read_checkpoint(folder / "none.h5"), FileError);
@@ -223,7 +223,7 @@ TEST_CASE("a checkpoint that cannot be written is an error, and the old one stay
 TEST_CASE("checkpoints of any name have a generation before", "[checkpoint]") {
   CHECK(io::previous_checkpoint("out/checkpoint.h5") == "out/checkpoint.previous.h5");
   CHECK(io::previous_checkpoint("state.h5") == "state.previous.h5");
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   io::write_checkpoint(folder / "state.h5", made_up());
   io::write_checkpoint(folder / "state.h5", made_up());
   CHECK(std::filesystem::exists(folder / "state.previous.h5"));
@@ -233,7 +233,7 @@ TEST_CASE("checkpoints of any name have a generation before", "[checkpoint]") {
 #else
 
 TEST_CASE("a build without HDF5 writes and reads no checkpoint, and says why", "[checkpoint][messages]") {
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   const std::string file = (folder / "checkpoint.h5").string();
   CHECK(error_of([&] { io::write_checkpoint(file, {}); }) ==
         file + ": this build has no HDF5: configure with -DNOETHER_HDF5=ON, or use the preset release");

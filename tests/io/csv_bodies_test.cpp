@@ -10,15 +10,15 @@ using test::error_of;
 namespace {
 
 ParticleSystem<double> read(const std::string& content, const char* units = "solar") {
-  const test::TemporaryFolder folder;
-  test::write_file(folder / "b.csv", content);
+  const test::ScratchFolder folder;
+  test::write_text(folder / "b.csv", content);
   return io::read_bodies(folder / "b.csv", {.units = &unit_system(units)});
 }
 
 /// The message about "b.csv", its folder cut away.
 std::string refusal(const std::string& content, const char* units = "solar") {
-  const test::TemporaryFolder folder;
-  test::write_file(folder / "b.csv", content);
+  const test::ScratchFolder folder;
+  test::write_text(folder / "b.csv", content);
   const std::string message = error_of([&] { io::read_bodies(folder / "b.csv", {.units = &unit_system(units)}); });
   const std::size_t name = message.find("b.csv");
   return name == std::string::npos ? message : message.substr(name);
@@ -62,8 +62,8 @@ TEST_CASE("a table without names numbers its bodies, and one in reduced units ta
 
 TEST_CASE("elements are about the first body, with the sum of both masses", "[bodies]") {
   const double degree = units::solar::degree;
-  const test::TemporaryFolder folder;
-  test::write_file(folder / "b.csv",
+  const test::ScratchFolder folder;
+  test::write_text(folder / "b.csv",
                    by_elements + "Sun,1,,,,,,\nEarth,3e-6,1,0.0167,0.1,20,30,40\ncomet,0,-5,1.5,100,0,0,-9\n");
   const auto s = io::read_bodies(folder / "b.csv", {.G = 3e-4});
   REQUIRE(s.size() == 3);
@@ -162,7 +162,7 @@ TEST_CASE("what is no table is a file error, in one line", "[bodies][messages]")
                             "ELF\0\0\1",
                             7)) ==
         "b.csv: this is no text: byte 4 is zero; expected CSV or a vector table of Horizons");
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   CHECK_THROWS_AS(io::read_bodies(folder / "missing.csv"), FileError);
   CHECK(error_of([&] { io::read_bodies(folder / "missing.csv"); }) ==
         (folder / "missing.csv").string() + ": cannot be read: No such file or directory");

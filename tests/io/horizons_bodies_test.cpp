@@ -9,12 +9,12 @@ using test::error_of;
 namespace {
 
 std::string table(const std::string& name) {
-  return test::read_file(std::filesystem::path(NOETHER_SOURCE_DIR) / "tests/data/horizons" / name);
+  return test::read_text(std::filesystem::path(NOETHER_SOURCE_DIR) / "tests/data/horizons" / name);
 }
 
 ParticleSystem<double> read(const std::string& content, const io::BodiesOptions& options = {}) {
-  const test::TemporaryFolder folder;
-  test::write_file(folder / "h.txt", content);
+  const test::ScratchFolder folder;
+  test::write_text(folder / "h.txt", content);
   return io::read_bodies(folder / "h.txt", options);
 }
 

@@ -19,7 +19,7 @@ using test::WritingRun;
 namespace {
 
 std::vector<std::string> lines_of(const std::filesystem::path& file) {
-  std::istringstream text(test::read_file(file));
+  std::istringstream text(test::read_text(file));
   std::vector<std::string> lines;
   for (std::string line; std::getline(text, line);) lines.push_back(line);
   return lines;
@@ -28,7 +28,7 @@ std::vector<std::string> lines_of(const std::filesystem::path& file) {
 }  // namespace
 
 TEST_CASE("info tells what a trajectory holds", "[inspect]") {
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   WritingRun run(folder / "run.h5");
   REQUIRE(run.simulation.run(33).ok());
   run.writer->finish(Outcome{});
@@ -52,7 +52,7 @@ TEST_CASE("info tells what a trajectory holds", "[inspect]") {
 }
 
 TEST_CASE("info tells what a checkpoint holds", "[inspect]") {
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   WritingRun run(folder / "run.h5");
   run.simulation.every(10, io::CheckpointWriter(folder / "checkpoint.h5", "title = \"x\"\n"));
   REQUIRE(run.simulation.run(10).ok());
@@ -70,20 +70,20 @@ TEST_CASE("info tells what a checkpoint holds", "[inspect]") {
 }
 
 TEST_CASE("info refuses what is no file of noether", "[inspect][messages]") {
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   const std::string file = (folder / "x.h5").string();
   CHECK(error_of([&] { io::info(file); }) == file + ": there is no such file");
   CHECK(error_of([&] { io::info(folder.path()); }) == folder.path().string() + ": this is no file");
-  test::write_file(file, "hello");
+  test::write_text(file, "hello");
   CHECK(error_of([&] { io::info(file); }).starts_with(file + ": cannot be opened as an HDF5 file"));
-  test::write_file(folder / "checkpoint.h5", "hello");
+  test::write_text(folder / "checkpoint.h5", "hello");
   CHECK(error_of([&] { io::info(folder / "checkpoint.h5"); }) ==
         (folder / "checkpoint.h5").string() +
             ": damaged, or no checkpoint: the line 'sha256:...' at the end of its 5 bytes is missing");
 }
 
 TEST_CASE("verify finds nothing wrong with a good file, and names what is wrong with a bad one", "[inspect]") {
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   {
     WritingRun run(folder / "run.h5");
     run.simulation.every(20, io::CheckpointWriter(folder / "checkpoint.h5"));
@@ -95,8 +95,8 @@ TEST_CASE("verify finds nothing wrong with a good file, and names what is wrong 
   CHECK(io::verify(folder / "checkpoint.h5").kind == "checkpoint");
   CHECK_THROWS_AS(io::verify(folder / "missing.h5"), FileError);
 
-  const std::string checkpoint = test::read_file(folder / "checkpoint.h5");
-  test::write_file(folder / "checkpoint.h5", checkpoint.substr(0, checkpoint.size() / 2));
+  const std::string checkpoint = test::read_text(folder / "checkpoint.h5");
+  test::write_text(folder / "checkpoint.h5", checkpoint.substr(0, checkpoint.size() / 2));
   CHECK(io::verify(folder / "checkpoint.h5").damaged.size() == 1);
 
   const test::PythonResult damaged = test::run_python("damage.py", (folder / "run.h5").string());
@@ -114,7 +114,7 @@ TEST_CASE("verify finds nothing wrong with a good file, and names what is wrong 
 }
 
 TEST_CASE("a trajectory converts to extended XYZ and to CSV, and the numbers read back", "[inspect]") {
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   WritingRun run(folder / "run.h5");
   REQUIRE(run.simulation.run(10).ok());
   run.writer->finish(Outcome{});
@@ -151,7 +151,7 @@ TEST_CASE("a trajectory converts to extended XYZ and to CSV, and the numbers rea
 }
 
 TEST_CASE("a conversion that cannot be is refused", "[inspect][messages]") {
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   CHECK(error_of([&] { io::convert(folder / "run.h5", "out.xyzz"); }) ==
         "cannot convert to 'out.xyzz': unknown extension '.xyzz'; did you mean '.xyz'?");
   CHECK(error_of([&] { io::convert(folder / "run.h5", "out.pdb"); }) ==

@@ -8,8 +8,8 @@ using namespace noether;
 namespace {
 
 std::string refusal(const std::string& content, const std::string& units = "reduced") {
-  const test::TemporaryFolder folder;
-  test::write_file(folder / "b.txt", content);
+  const test::ScratchFolder folder;
+  test::write_text(folder / "b.txt", content);
   const std::string message =
       test::error_of([&] { io::read_bodies(folder / "b.txt", {.units = &unit_system(units)}); });
   const std::size_t name = message.find("b.txt");
@@ -30,7 +30,7 @@ TEST_CASE("names with control characters or foreign bytes are refused at their l
   CHECK(refusal(head + "0,S\xC3\xB6l,1,0,0,0,0,0,0\n").empty());
 
   std::string horizons =
-      test::read_file(std::filesystem::path(NOETHER_SOURCE_DIR) / "tests/data/horizons" / "asteroid.txt");
+      test::read_text(std::filesystem::path(NOETHER_SOURCE_DIR) / "tests/data/horizons" / "asteroid.txt");
   REQUIRE(refusal(horizons, "solar").empty());
   horizons.replace(horizons.find("Ceres"), 5, "C\xE9r\x07s");
   CHECK(refusal(horizons, "solar") ==

@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of files share: a folder that goes away, text files, Python, a run that writes.
+/// What the tests of files share: errors in a line, Python, a run that writes.
 
 #include "engine/monitors.hpp"
 #include "engine/simulation.hpp"
@@ -11,50 +11,16 @@
 #include "io/trajectory.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/planets.hpp"
+#include "tests/support/process.hpp"
 
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <array>
-#include <atomic>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 
 namespace noether::test {
-
-/// A new folder for one test, removed with everything in it.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    static std::atomic<int> count{0};
-    path_ = std::filesystem::temp_directory_path() /
-            ("noether-io-" + std::to_string(::getpid()) + "-" + std::to_string(count++));
-    std::filesystem::create_directories(path_);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
-inline void write_file(const std::filesystem::path& file, const std::string& content) {
-  std::ofstream(file, std::ios::binary) << content;
-}
-
-inline std::string read_file(const std::filesystem::path& file) {
-  std::ifstream source(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(source), {}};
-}
 
 /// What a call throws, in one line; "" if nothing.
 template <class Call> std::string error_of(const Call& call) {

@@ -37,7 +37,7 @@ void check_equal_files(const std::filesystem::path& a, const std::filesystem::pa
 }  // namespace
 
 TEST_CASE("h5py finds the layout of H5MD, and Python's digest of the last frame is the run's", "[trajectory]") {
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   WritingRun run(folder / "run.h5");
   REQUIRE(run.simulation.run(100).ok());
   run.writer->flush();
@@ -48,7 +48,7 @@ TEST_CASE("h5py finds the layout of H5MD, and Python's digest of the last frame 
 
 TEST_CASE("MDAnalysis reads every frame, in solar, reduced and molecular units", "[trajectory][slow]") {
   for (const std::string units : {"solar", "reduced", "molecular"}) {
-    const test::TemporaryFolder folder;
+    const test::ScratchFolder folder;
     ParticleSystem<double> particles(unit_system(units));
     const ParticleSystem<double> planets = test::outer_planets();
     for (Index i = 0; i < planets.size(); ++i) {
@@ -64,7 +64,7 @@ TEST_CASE("MDAnalysis reads every frame, in solar, reduced and molecular units",
 }
 
 TEST_CASE("particles stand in id order in every frame, whatever their order in memory", "[trajectory]") {
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   ParticleSystem<double> shuffled(unit_system("solar"));
   const ParticleSystem<double> planets = test::outer_planets();
   const std::vector<Index> order = {3, 0, 5, 1, 4, 2};
@@ -88,7 +88,7 @@ TEST_CASE("particles stand in id order in every frame, whatever their order in m
 }
 
 TEST_CASE("monitors' samples stand in the file as they were, with unit, shape and scale", "[trajectory]") {
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   WritingRun run(folder / "run.h5");
   run.simulation.every(20, Elements{});
   REQUIRE(run.simulation.run(60).ok());
@@ -127,7 +127,7 @@ TEST_CASE("a series that names its columns has them in the file", "[trajectory]"
     }
     std::int64_t step = 0;
   };
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   WritingRun run(folder / "run.h5");
   run.simulation.every(1, Counter{});
   REQUIRE(run.simulation.run(4).ok());
@@ -142,7 +142,7 @@ TEST_CASE("a series that names its columns has them in the file", "[trajectory]"
 }
 
 TEST_CASE("a resumed run's file equals that of an uninterrupted one, value for value", "[trajectory][restart]") {
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   WritingRun whole(folder / "whole.h5");
   REQUIRE(whole.simulation.run(200).ok());
   whole.writer->finish(Outcome{});
@@ -173,7 +173,7 @@ TEST_CASE("a resumed run's file equals that of an uninterrupted one, value for v
 }
 
 TEST_CASE("a run may go back within one program, again and again", "[trajectory][restart]") {
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   WritingRun run(folder / "run.h5");
   REQUIRE(run.simulation.run(30).ok());
   const SavedRun saved = run.simulation.save();
@@ -190,7 +190,7 @@ TEST_CASE("a run may go back within one program, again and again", "[trajectory]
 }
 
 TEST_CASE("a run saved before its first step writes its file anew", "[trajectory][restart]") {
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   WritingRun run(folder / "run.h5"), whole(folder / "whole.h5");
   const SavedRun before_the_first_step = run.simulation.save();
   REQUIRE(run.simulation.run(20).ok());
@@ -203,7 +203,7 @@ TEST_CASE("a run saved before its first step writes its file anew", "[trajectory
 }
 
 TEST_CASE("complete is set by a run that ended as asked, and taken back when it goes on", "[trajectory]") {
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   WritingRun run(folder / "run.h5");
   REQUIRE(run.simulation.run(10).ok());
   run.writer->flush();
@@ -221,7 +221,7 @@ TEST_CASE("complete is set by a run that ended as asked, and taken back when it 
 }
 
 TEST_CASE("without frames the samples of monitors alone are written", "[trajectory]") {
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   Simulation simulation(test::outer_planets(), compose(KineticPotential(Gravity{.G = test::outer_G}), schemes::verlet),
                         40.0);
   simulation.every(2, Energy{});
@@ -237,7 +237,7 @@ TEST_CASE("without frames the samples of monitors alone are written", "[trajecto
 }
 
 TEST_CASE("a trajectory that cannot be gone on with is refused, in one line", "[trajectory][messages]") {
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   const std::string file = (folder / "run.h5").string();
   WritingRun run(folder / "run.h5");
   REQUIRE(run.simulation.run(10).ok());
@@ -252,15 +252,15 @@ TEST_CASE("a trajectory that cannot be gone on with is refused, in one line", "[
   std::filesystem::remove(file);
   CHECK(error_of([&] { WritingRun(file).simulation.restore(saved); }) ==
         file + ": the trajectory that the saved run counts on is missing; bring it back, or start afresh");
-  test::write_file(file, "no HDF5");
+  test::write_text(file, "no HDF5");
   CHECK(error_of([&] {
           WritingRun(file).simulation.restore(saved);
         }).starts_with(file + ": cannot be opened as an HDF5 file"));
 }
 
 TEST_CASE("a folder that cannot be written is told before the first step", "[trajectory][messages]") {
-  const test::TemporaryFolder folder;
-  test::write_file(folder / "file", "");
+  const test::ScratchFolder folder;
+  test::write_text(folder / "file", "");
   const std::string file = (folder / "file/run.h5").string();
   WritingRun run(file);
   CHECK(error_of([&] { static_cast<void>(run.simulation.run(10)); }) ==
@@ -269,7 +269,7 @@ TEST_CASE("a folder that cannot be written is told before the first step", "[tra
 }
 
 TEST_CASE("particles taken out of a run do not fit its trajectory any more", "[trajectory][messages]") {
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   WritingRun run(folder / "run.h5");
   REQUIRE(run.simulation.run(5).ok());
   run.simulation.edit([](ParticleSystem<double>& s) { s.remove(5); });
@@ -280,7 +280,7 @@ TEST_CASE("particles taken out of a run do not fit its trajectory any more", "[t
 }
 
 TEST_CASE("a full disk ends the run with the file's name, and the program still ends well", "[trajectory][messages]") {
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   const std::string file = (folder / "run.h5").string();
   std::fflush(nullptr);
   const pid_t child = ::fork();
@@ -308,7 +308,7 @@ TEST_CASE("a full disk ends the run with the file's name, and the program still 
 #else
 
 TEST_CASE("a build without HDF5 says so before the first step", "[trajectory][messages]") {
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   const std::string file = (folder / "run.h5").string();
   WritingRun run(file);
   CHECK(error_of([&] { static_cast<void>(run.simulation.run(10)); }) ==

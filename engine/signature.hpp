@@ -1,0 +1,65 @@
+#pragma once
+/// What a part was made with, in text: a saved run goes on with the same parts and parameters only.
+
+#include "engine/description.hpp"
+#include "engine/error.hpp"
+#include "engine/types.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <type_traits>
+
+namespace noether::detail {
+
+template <class T> std::string name_of(const T& value) {
+  if constexpr (requires { std::string(value.name()); }) {
+    return std::string(value.name());
+  } else {
+    return std::string(part_name<T>());
+  }
+}
+
+inline std::string value_text(double x) { return fmt::format("{}", x); }
+inline std::string value_text(const std::optional<double>& x) { return x ? value_text(*x) : "default"; }
+inline std::string value_text(const Vec3<double>& x) { return fmt::format("[{}, {}, {}]", x[0], x[1], x[2]); }
+template <class T> std::string value_text(const T& value) {
+  if constexpr (std::is_enum_v<T> || std::is_integral_v<T>) {
+    return fmt::format("{}", static_cast<std::int64_t>(value));
+  } else {
+    return "?";
+  }
+}
+
+/// A part and its parameters, "gravity(G = default, softening = 0)": two parts that differ in it make different runs.
+template <class T> std::string signature_of(const T& value) {
+  if constexpr (requires { std::string(value.signature()); }) {
+    return value.signature();
+  } else if constexpr (requires { T::describe(); }) {
+    std::string fields;
+    for_each_field<T>([&](const auto& field) {
+      fields += (fields.empty() ? "" : ", ") + fmt::format("{} = {}", field.name, value_text(value.*(field.member)));
+    });
+    return fmt::format("{}({})", part_name<T>(), fields);
+  } else {
+    return name_of(value);
+  }
+}
+
+/// Notes with what a part was made, so that a saved run is not continued by another.
+template <class T> void save_signature(SavedState& saved, const std::string& prefix, const T& value) {
+  save_value(saved, prefix + "signature", signature_of(value));
+}
+/// @throws Error  if the saved run was made with other parts or parameters
+template <class T> void check_signature(const SavedState& saved, const std::string& prefix, const T& value) {
+  std::string before;
+  load_value(saved, prefix + "signature", before);
+  const std::string now = signature_of(value);
+  if (before != now) {
+    throw Error(fmt::format("the saved run was made with {}, this one has {}", before, now));
+  }
+}
+
+}  // namespace noether::detail

@@ -1,0 +1,24 @@
+#pragma once
+/// Columns that parts may declare: of numbers, of whole numbers, of vectors.
+
+#include "engine/column.hpp"
+
+#include <cstdint>
+#include <string_view>
+
+namespace noether {
+
+struct Charge {
+  static constexpr std::string_view name = "charge";
+  template <class Real> using type = ScalarColumn<Real>;
+};
+struct Kind {
+  static constexpr std::string_view name = "kind";
+  template <class Real> using type = ScalarColumn<std::int64_t>;
+};
+struct Spin {
+  static constexpr std::string_view name = "spin";
+  template <class Real> using type = VectorColumn<Real>;
+};
+
+}  // namespace noether
