@@ -70,6 +70,10 @@ function(noether_warnings target)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
     target_compile_options(${target} PRIVATE -Wno-restrict -Wno-stringop-overflow)
   endif()
+  # Where sources are compiled several at a time, g++ takes each for a header.
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NOETHER_UNITY)
+    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
+  endif()
   # g++ must keep the name of the precompiled header in preprocessed text, or ccache cannot use it.
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(${target} PRIVATE -fpch-preprocess)

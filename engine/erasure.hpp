@@ -28,6 +28,7 @@ template <class T> void load_any(const SavedState& saved, const std::string& pre
     load_part(saved, prefix, value);
   }
 }
+
 /// Value semantics for a polymorphic `Base` with `clone`.
 template <class Base> class Erased {
  public:

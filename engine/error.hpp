@@ -4,7 +4,6 @@
 #include <cassert>
 #include <stdexcept>
 #include <string>
-#include <utility>
 
 namespace noether {
 
@@ -22,9 +21,8 @@ struct ErrorLocation {
 /// Messages are lower case and name the offending value, what was expected and what to do.
 class Error : public std::runtime_error {
  public:
-  explicit Error(const std::string& message) : Error(message, ErrorLocation{}) {}
-  Error(const std::string& message, ErrorLocation location)
-      : std::runtime_error(prefix(location) + message), message_(message), location_(std::move(location)) {}
+  explicit Error(const std::string& message);
+  Error(const std::string& message, ErrorLocation location);
 
   /// What the program returns to the shell: 2, the request is wrong.
   /// @throws never
@@ -38,11 +36,6 @@ class Error : public std::runtime_error {
   const std::string& value() const noexcept { return location_.value; }
 
  private:
-  static std::string prefix(const ErrorLocation& at) {
-    if (at.file.empty()) return at.line > 0 ? "line " + std::to_string(at.line) + ": " : "";
-    return at.line > 0 ? at.file + ":" + std::to_string(at.line) + ": " : at.file + ": ";
-  }
-
   std::string message_;
   ErrorLocation location_;
 };

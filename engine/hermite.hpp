@@ -1,12 +1,9 @@
 #pragma once
 /// The quintic Hermite polynomial between two settled states: where in a step an event happened.
 
-#include "engine/types.hpp"
+#include "engine/motion.hpp"
 
 namespace noether {
-
-/// Position, velocity and acceleration of a point.
-template <class Real> struct Motion { Vec3<Real> x, v, a; };
 
 /// The polynomial of degree 5 that meets position, velocity and acceleration at both ends of an interval.
 ///

@@ -209,13 +209,15 @@ MonitorReport CenterOfMass::report() const {
   return report;
 }
 
-#define NOETHER_OBSERVES(Type)                          \
+#define NOETHER_COMPILE(Type)                           \
   template void Type::observe(const Snapshot<double>&); \
-  template void Type::observe(const Snapshot<Quad>&)
-NOETHER_OBSERVES(Energy);
-NOETHER_OBSERVES(Momentum);
-NOETHER_OBSERVES(AngularMomentum);
-NOETHER_OBSERVES(CenterOfMass);
-#undef NOETHER_OBSERVES
+  template void Type::observe(const Snapshot<Quad>&);   \
+  template struct detail::MonitorModel<Type, double>;   \
+  template struct detail::MonitorModel<Type, Quad>
+NOETHER_COMPILE(Energy);
+NOETHER_COMPILE(Momentum);
+NOETHER_COMPILE(AngularMomentum);
+NOETHER_COMPILE(CenterOfMass);
+#undef NOETHER_COMPILE
 
 }  // namespace noether

@@ -139,4 +139,17 @@ class CenterOfMass {
   std::string slope_unit_;
 };
 
+namespace detail {  // compiled once, in monitors.cpp
+
+extern template struct MonitorModel<Energy, double>;
+extern template struct MonitorModel<Energy, Quad>;
+extern template struct MonitorModel<Momentum, double>;
+extern template struct MonitorModel<Momentum, Quad>;
+extern template struct MonitorModel<AngularMomentum, double>;
+extern template struct MonitorModel<AngularMomentum, Quad>;
+extern template struct MonitorModel<CenterOfMass, double>;
+extern template struct MonitorModel<CenterOfMass, Quad>;
+
+}  // namespace detail
+
 }  // namespace noether

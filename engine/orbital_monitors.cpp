@@ -14,19 +14,11 @@ namespace {
 constexpr std::size_t columns = 6;
 constexpr std::size_t motion_length = 9;
 
-template <class Real> Motion<Real> motion_at(const Snapshot<Real>& now, Index i) {
-  return {now.state().positions()[i], now.state().velocities()[i], now.accelerations()[i]};
-}
-
 /// The motion of particle `i` as it was seen before; what was a double is one again.
 template <class Real> Motion<Real> motion_from(const std::vector<Quad>& seen, Index i) {
   const std::size_t row = static_cast<std::size_t>(i) * motion_length;
   const auto at = [&](std::size_t k) { return static_cast<Real>(seen[row + k]); };
   return {{at(0), at(1), at(2)}, {at(3), at(4), at(5)}, {at(6), at(7), at(8)}};
-}
-
-template <class Real> Motion<Real> operator-(const Motion<Real>& a, const Motion<Real>& b) {
-  return {a.x - b.x, a.v - b.v, a.a - b.a};
 }
 
 }  // namespace
@@ -78,7 +70,7 @@ template <class Real> void ClosestApproach::look_at_pairs(const Snapshot<Real>& 
       double at = now.time();
       if (path_known) {
         const Hermite<Real> path(motion_from<Real>(seen_, i) - motion_from<Real>(seen_, j),
-                                 motion_at(now, i) - motion_at(now, j), Real(h));
+                                 now.motion(i) - now.motion(j), Real(h));
         if (path.may_come_within(Real(distance_))) {
           const auto nearest = path.nearest();
           if (!nearest.resolved) ++unresolved_;
@@ -102,7 +94,7 @@ template <class Real> void ClosestApproach::remember(const Snapshot<Real>& now) 
   const ParticleSystem<Real>& s = now.state();
   seen_.clear();
   for (Index i = 0; i < s.size(); ++i) {
-    const Motion<Real> motion = motion_at(now, i);
+    const Motion<Real> motion = now.motion(i);
     for (const Vec3<Real>& vector : {motion.x, motion.v, motion.a}) {
       for (int k = 0; k < 3; ++k) seen_.push_back(Quad(vector[k]));
     }
@@ -132,11 +124,13 @@ MonitorReport ClosestApproach::report() const {
   return report;
 }
 
-#define NOETHER_OBSERVES(Type)                          \
+#define NOETHER_COMPILE(Type)                           \
   template void Type::observe(const Snapshot<double>&); \
-  template void Type::observe(const Snapshot<Quad>&)
-NOETHER_OBSERVES(Elements);
-NOETHER_OBSERVES(ClosestApproach);
-#undef NOETHER_OBSERVES
+  template void Type::observe(const Snapshot<Quad>&);   \
+  template struct detail::MonitorModel<Type, double>;   \
+  template struct detail::MonitorModel<Type, Quad>
+NOETHER_COMPILE(Elements);
+NOETHER_COMPILE(ClosestApproach);
+#undef NOETHER_COMPILE
 
 }  // namespace noether

@@ -95,4 +95,13 @@ class ClosestApproach {
   std::vector<Quad> seen_;              ///< x, v, a of each, shape (n, 9)
 };
 
+namespace detail {  // compiled once, in orbital_monitors.cpp
+
+extern template struct MonitorModel<Elements, double>;
+extern template struct MonitorModel<Elements, Quad>;
+extern template struct MonitorModel<ClosestApproach, double>;
+extern template struct MonitorModel<ClosestApproach, Quad>;
+
+}  // namespace detail
+
 }  // namespace noether

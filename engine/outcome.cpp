@@ -58,3 +58,8 @@ std::string to_text(const Outcome& outcome) {
 }
 
 }  // namespace noether
+
+fmt::format_context::iterator fmt::formatter<noether::Outcome>::format(const noether::Outcome& outcome,
+                                                                       fmt::format_context& context) const {
+  return fmt::formatter<std::string_view>::format(noether::to_text(outcome), context);
+}

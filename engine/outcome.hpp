@@ -63,8 +63,5 @@ std::string to_text(const Outcome& outcome);
 
 /// Prints `to_text`, with the width and alignment of a string.
 template <> struct fmt::formatter<noether::Outcome> : fmt::formatter<std::string_view> {
-  template <class Context> auto format(const noether::Outcome& outcome, Context& context) const {
-    const std::string text = noether::to_text(outcome);
-    return fmt::formatter<std::string_view>::format(std::string_view(text), context);
-  }
+  fmt::format_context::iterator format(const noether::Outcome& outcome, fmt::format_context& context) const;
 };

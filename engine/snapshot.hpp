@@ -2,6 +2,7 @@
 /// What monitors see of a run: settled copies, read-only.
 
 #include "engine/erasure.hpp"
+#include "engine/motion.hpp"
 
 #include <functional>
 #include <optional>
@@ -50,6 +51,8 @@ template <class Real> class Snapshot {
     }
     return *accelerations_;
   }
+  /// Position, velocity and acceleration of particle `i` in `state()`.
+  Motion<Real> motion(Index i) const { return {state().positions()[i], state().velocities()[i], accelerations()[i]}; }
   std::int64_t step() const { return raw_.clock().step(); }
   /// Time of this moment [time].
   double time() const {

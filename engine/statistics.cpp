@@ -72,4 +72,8 @@ std::optional<SeriesStatistics::Line> SeriesStatistics::line() const {
   return Line{fit.slope, fit.spread > 0 ? std::sqrt(fit.residual / freedom / fit.spread) : 0};
 }
 
+void SeriesStatistics::save(SavedState& saved, const std::string& prefix) const { save_part(saved, prefix, *this); }
+
+void SeriesStatistics::load(const SavedState& saved, const std::string& prefix) { load_part(saved, prefix, *this); }
+
 }  // namespace noether

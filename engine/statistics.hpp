@@ -44,8 +44,8 @@ class SeriesStatistics {
         state<&SeriesStatistics::means_>("means"), state<&SeriesStatistics::open_>("open"),
         state<&SeriesStatistics::open_time_>("open_time"), state<&SeriesStatistics::open_sum_>("open_sum"));
   }
-  void save(SavedState& saved, const std::string& prefix) const { save_part(saved, prefix, *this); }
-  void load(const SavedState& saved, const std::string& prefix) { load_part(saved, prefix, *this); }
+  void save(SavedState& saved, const std::string& prefix) const;
+  void load(const SavedState& saved, const std::string& prefix);
 
  private:
   std::int64_t samples_ = 0;

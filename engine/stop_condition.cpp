@@ -11,14 +11,6 @@ namespace noether {
 
 namespace {
 
-template <class Real> Motion<Real> motion_of(const Snapshot<Real>& now, Index i) {
-  return {now.state().positions()[i], now.state().velocities()[i], now.accelerations()[i]};
-}
-
-template <class Real> Motion<Real> difference(const Motion<Real>& a, const Motion<Real>& b) {
-  return {a.x - b.x, a.v - b.v, a.a - b.a};
-}
-
 template <class Real> Motion<Real> center_of_mass(const ParticleSystem<Real>& s, const std::vector<Motion<Real>>& all) {
   Motion<Real> center{Vec3<Real>::Zero(), Vec3<Real>::Zero(), Vec3<Real>::Zero()};
   Real total(0);
@@ -76,18 +68,18 @@ std::optional<typename StopCheck<Real>::Event> StopCheck<Real>::escape(const Sna
   const Real limit2 = Real(rule_.distance) * Real(rule_.distance);
   std::vector<Motion<Real>> before, after;
   for (Index i = 0; i < s.size(); ++i) {
-    after.push_back(motion_of(now, i));
+    after.push_back(now.motion(i));
     if (moved_) before.push_back(last_motion(i));
   }
   const Motion<Real> center = center_of_mass(s, after);
   std::optional<Event> first;
   for (Index i = 0; i < s.size(); ++i) {
-    const Motion<Real> end = difference(after[static_cast<std::size_t>(i)], center);
+    const Motion<Real> end = after[static_cast<std::size_t>(i)] - center;
     const Real d2 = norm2(end.x);
     if (!(d2 > limit2)) continue;
     Real at(1);
     if (moved_) {
-      const Motion<Real> begin = difference(before[static_cast<std::size_t>(i)], center_of_mass(s, before));
+      const Motion<Real> begin = before[static_cast<std::size_t>(i)] - center_of_mass(s, before);
       const Hermite<Real> path(begin, end, Real(now.time()) - Real(last_time_));
       at = Hermite<Real>::bisect(Real(0), Real(1), [&](const Real& u) { return norm2(path.position(u)) > limit2; });
     }
@@ -107,8 +99,7 @@ std::optional<typename StopCheck<Real>::Event> StopCheck<Real>::collision(const 
       if (s.masses()[i] == Real(0) && s.masses()[j] == Real(0)) continue;
       Event event{i, j, norm2(s.positions()[i] - s.positions()[j]), Real(1)};
       if (moved_) {
-        const Hermite<Real> path(difference(last_motion(i), last_motion(j)),
-                                 difference(motion_of(now, i), motion_of(now, j)), h);
+        const Hermite<Real> path(last_motion(i) - last_motion(j), now.motion(i) - now.motion(j), h);
         if (!path.may_come_within(Real(rule_.distance))) continue;
         const auto nearest = path.nearest();
         if (nearest.resolved && nearest.distance2 < limit2) {
@@ -135,7 +126,7 @@ template <class Real> void StopCheck<Real>::remember(const Snapshot<Real>& now) 
   v_.resize(n);
   a_.resize(n);
   for (Index i = 0; i < s.size(); ++i) {
-    const Motion<Real> m = motion_of(now, i);
+    const Motion<Real> m = now.motion(i);
     const auto k = static_cast<std::size_t>(i);
     x_[k] = m.x;
     v_[k] = m.v;

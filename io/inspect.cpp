@@ -4,6 +4,7 @@
 #include "engine/units.hpp"
 #include "io/checkpoint.hpp"
 #include "io/digest.hpp"
+#include "io/trajectory_layout.hpp"
 #include "io/trajectory_reader.hpp"
 
 #include <fmt/format.h>
@@ -16,8 +17,6 @@
 namespace noether::io {
 
 namespace {
-
-constexpr const char* monitors_path = "/noether/monitors";
 
 FileInfo checkpoint_info(const std::filesystem::path& file) {
   const Checkpoint checkpoint = read_checkpoint(file);
@@ -48,7 +47,7 @@ std::vector<MonitorSummary> summaries(const Hdf5File& file) {
   std::vector<MonitorSummary> result;
   for (const std::string& name : file.children(monitors_path)) {
     MonitorSummary summary{name, {}, 0};
-    const std::string group = std::string(monitors_path) + "/" + name;
+    const std::string group = monitors_path + "/" + name;
     for (const std::string& quantity : file.children(group)) {
       if (quantity != "step" && quantity != "time") summary.quantities.push_back(quantity);
     }
@@ -62,7 +61,7 @@ std::vector<MonitorSummary> summaries(const Hdf5File& file) {
 void take_last_sample(const Hdf5File& file, FileInfo& info) {
   for (const MonitorSummary& monitor : info.monitors) {
     if (monitor.samples == 0) continue;
-    const std::string group = std::string(monitors_path) + "/" + monitor.name;
+    const std::string group = monitors_path + "/" + monitor.name;
     const std::int64_t step = file.open(group + "/step").read_integers().back();
     if (step < info.last_step) continue;
     info.last_step = step;
@@ -152,7 +151,7 @@ void check_frames(const TrajectoryReader& reader, std::vector<std::string>& dama
 
 void check_monitors(const Hdf5File& file, std::vector<std::string>& damaged) {
   for (const std::string& name : file.children(monitors_path)) {
-    const std::string group = std::string(monitors_path) + "/" + name;
+    const std::string group = monitors_path + "/" + name;
     const Index samples = file.open(group + "/step").rows();
     for (const std::string& quantity : file.children(group)) {
       const Hdf5Dataset dataset = file.open(group + "/" + quantity);
@@ -194,7 +193,7 @@ std::vector<MonitorSeries> read_monitors(const std::filesystem::path& path) {
   const Hdf5File file = Hdf5File::open_to_read(path);
   std::vector<MonitorSeries> result;
   for (const std::string& name : file.children(monitors_path)) {
-    const std::string group = std::string(monitors_path) + "/" + name;
+    const std::string group = monitors_path + "/" + name;
     MonitorSeries series;
     series.name = name;
     series.step = file.open(group + "/step").read_integers();

@@ -5,6 +5,7 @@
 #include "io/buffered_dataset.hpp"
 #include "io/digest.hpp"
 #include "io/hdf5_file.hpp"
+#include "io/trajectory_layout.hpp"
 
 #include <fmt/format.h>
 
@@ -18,9 +19,6 @@
 namespace noether::io {
 
 namespace {
-
-constexpr const char* particles_path = "/particles/system";
-constexpr const char* monitors_path = "/noether/monitors";
 
 /// Rows to a piece on disk: whole pages of 4096 bytes, at least `wanted` bytes, where that stays below 1 MiB.
 Index rows_per_chunk(Index numbers_per_row, Index wanted) {
@@ -244,8 +242,8 @@ class TrajectoryWriter::File {
 
   /// Position's values come first, step and time are shared by position and velocity.
   void create_frames(Index particles) {
-    const std::string position = std::string(particles_path) + "/position";
-    const std::string velocity = std::string(particles_path) + "/velocity";
+    const std::string position = particles_path + "/position";
+    const std::string velocity = particles_path + "/velocity";
     const Index rows = rows_per_chunk(3 * particles, frame_bytes), few = rows_per_chunk(1, sample_bytes);
     frame_.position =
         BufferedDataset<double>(hdf5_->create_growing(position + "/value", ElementType::real, {particles, 3}, rows));
@@ -286,7 +284,7 @@ class TrajectoryWriter::File {
       paths = {root + "/position/step", root + "/position/time", root + "/position/value", root + "/velocity/value"};
     }
     for (const std::string& monitor : hdf5_->children(monitors_path)) {
-      const std::string group = std::string(monitors_path) + "/" + monitor;
+      const std::string group = monitors_path + "/" + monitor;
       for (const std::string& name : hdf5_->children(group)) paths.push_back(group + "/" + name);
     }
     return paths;
@@ -357,7 +355,7 @@ class TrajectoryWriter::File {
     monitor.time.append(sample.time);
     monitor.step.append(sample.step);
     if (sample.scale && sample.scale != monitor.scale) {
-      hdf5_->set_attribute(std::string(monitors_path) + "/" + std::string(sample.monitor), "scale", *sample.scale);
+      hdf5_->set_attribute(monitors_path + "/" + std::string(sample.monitor), "scale", *sample.scale);
       monitor.scale = sample.scale;
     }
   }

@@ -1,6 +1,7 @@
 #include "io/trajectory_reader.hpp"
 
 #include "engine/error.hpp"
+#include "io/trajectory_layout.hpp"
 
 #include <fmt/format.h>
 
@@ -9,8 +10,6 @@
 namespace noether::io {
 
 namespace {
-
-const std::string root = "/particles/system";
 
 /// Molecular files say `unit`, others `noether_unit`.
 std::string unit_at(const Hdf5File& file, const std::string& path) {
@@ -23,21 +22,21 @@ std::string unit_at(const Hdf5File& file, const std::string& path) {
 }  // namespace
 
 TrajectoryReader::TrajectoryReader(const std::filesystem::path& path) : file_(Hdf5File::open_to_read(path)) {
-  if (!file_.has("/h5md") || !file_.has(root + "/id") || !file_.has("/noether")) {
+  if (!file_.has("/h5md") || !file_.has(particles_path + "/id") || !file_.has("/noether")) {
     throw FileError("this is no trajectory of noether: '/h5md', '/particles/system' and '/noether' are expected",
                     {.file = path.string()});
   }
   shared_.units = file_.text_attribute("/noether", "units");
-  shared_.ids = file_.open(root + "/id").read_integers();
-  shared_.names = file_.open(root + "/name").read_texts();
-  shared_.masses = file_.open(root + "/mass").read_reals();
+  shared_.ids = file_.open(particles_path + "/id").read_integers();
+  shared_.names = file_.open(particles_path + "/name").read_texts();
+  shared_.masses = file_.open(particles_path + "/mass").read_reals();
   const Index n = static_cast<Index>(shared_.ids.size());
   if (shared_.names.size() != shared_.ids.size() || shared_.masses.size() != shared_.ids.size()) {
     throw FileError("damaged: ids, names and masses differ in number", {.file = path.string()});
   }
-  if (!file_.has(root + "/position")) return;
-  position_ = file_.open(root + "/position/value");
-  velocity_ = file_.open(root + "/velocity/value");
+  if (!file_.has(particles_path + "/position")) return;
+  position_ = file_.open(particles_path + "/position/value");
+  velocity_ = file_.open(particles_path + "/velocity/value");
   for (const Hdf5Dataset* dataset : {&position_, &velocity_}) {
     const std::vector<Index> shape = dataset->shape();
     if (shape.size() != 3 || shape[1] != n || shape[2] != 3) {
@@ -46,11 +45,11 @@ TrajectoryReader::TrajectoryReader(const std::filesystem::path& path) : file_(Hd
           {.file = path.string()});
     }
   }
-  steps_ = file_.open(root + "/position/step").read_integers();
-  times_ = file_.open(root + "/position/time").read_reals();
-  shared_.length_unit = unit_at(file_, root + "/position/value");
-  shared_.velocity_unit = unit_at(file_, root + "/velocity/value");
-  shared_.time_unit = unit_at(file_, root + "/position/time");
+  steps_ = file_.open(particles_path + "/position/step").read_integers();
+  times_ = file_.open(particles_path + "/position/time").read_reals();
+  shared_.length_unit = unit_at(file_, particles_path + "/position/value");
+  shared_.velocity_unit = unit_at(file_, particles_path + "/velocity/value");
+  shared_.time_unit = unit_at(file_, particles_path + "/position/time");
   frames_ = std::min(
       {position_.rows(), velocity_.rows(), static_cast<Index>(steps_.size()), static_cast<Index>(times_.size())});
 }
@@ -61,11 +60,11 @@ Frame TrajectoryReader::frame(Index k) const {
 }
 
 std::vector<std::pair<std::string, Index>> TrajectoryReader::lengths() const {
-  if (!file_.has(root + "/position")) return {};
-  return {{root + "/position/value", position_.rows()},
-          {root + "/velocity/value", velocity_.rows()},
-          {root + "/position/step", static_cast<Index>(steps_.size())},
-          {root + "/position/time", static_cast<Index>(times_.size())}};
+  if (!file_.has(particles_path + "/position")) return {};
+  return {{particles_path + "/position/value", position_.rows()},
+          {particles_path + "/velocity/value", velocity_.rows()},
+          {particles_path + "/position/step", static_cast<Index>(steps_.size())},
+          {particles_path + "/position/time", static_cast<Index>(times_.size())}};
 }
 
 }  // namespace noether::io

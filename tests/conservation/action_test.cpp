@@ -11,7 +11,7 @@
 namespace noether {
 namespace {
 
-using namespace noether::testing;
+using namespace noether::test;
 
 using Masses = std::vector<Quad>;
 

@@ -10,7 +10,7 @@
 namespace noether {
 namespace {
 
-using namespace noether::testing;
+using namespace noether::test;
 
 Vec3<Quad> momentum(const ParticleSystem<double>& narrow) {
   const auto s = narrow.as<Quad>();

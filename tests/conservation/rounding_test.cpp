@@ -10,7 +10,7 @@
 namespace noether {
 namespace {
 
-using namespace noether::testing;
+using namespace noether::test;
 
 /// Energy of the pair in extended precision, with the low words where there are any.
 Quad energy(const ParticleSystem<double>& s) {

@@ -12,7 +12,7 @@
 namespace noether {
 namespace {
 
-using namespace noether::testing;
+using namespace noether::test;
 
 using Matrix = std::vector<std::vector<Quad>>;
 

@@ -69,7 +69,7 @@ double time_found(const StopRule& rule, double interval, const Quad& E) {
 
 /// Order at which the time found converges, in the worst of eight phases: the event falls anywhere between two looks.
 double measured_order(const StopRule& rule, double truth) {
-  std::vector<testing::ErrorPoint> points;
+  std::vector<test::ErrorPoint> points;
   for (const int looks : {32, 48, 64, 96, 128}) {
     const double interval = 2 * pi / looks;
     double worst = 0;
@@ -79,10 +79,10 @@ double measured_order(const StopRule& rule, double truth) {
     }
     points.push_back({interval, worst});
   }
-  CAPTURE(testing::to_text(points));
+  CAPTURE(test::to_text(points));
   CHECK(points.back().error > 1e-13);
   CHECK(points.back().error < 1e-6);
-  return testing::fitted_slope(points);
+  return test::fitted_slope(points);
 }
 
 }  // namespace

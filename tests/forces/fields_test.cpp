@@ -12,7 +12,7 @@
 namespace noether {
 namespace {
 
-using namespace noether::testing;
+using namespace noether::test;
 
 template <class Real, class F>
 VectorColumn<Real> accelerations(const F& force, const ParticleSystem<Real>& s, Wanted wanted = {}) {

@@ -1,8 +1,12 @@
-"""Headers: each has `#pragma once`; with --compiler, each also compiles alone."""
+"""Headers: each has `#pragma once`; with --compiler, each also compiles alone.
+
+A header that the source of its name includes first needs no compiler here: the preset minimal, which compiles every
+source by itself and without precompiled headers, has tried it."""
 
 import argparse
 import concurrent.futures
 import os
+import pathlib
 import subprocess
 
 import tree
@@ -18,6 +22,15 @@ def pragma_problems(root):
     return [f"{path}: no #pragma once" for path in headers(root) if "#pragma once\n" not in tree.read(root, path)]
 
 
+def has_twin(root, header):
+    """Whether the source of the same name begins with this header."""
+    source = header.with_suffix(".cpp")
+    if not (pathlib.Path(root) / source).exists():
+        return False
+    first = next((line for line in tree.read(root, source).splitlines() if line.startswith("#include")), "")
+    return first == f'#include "{header}"'
+
+
 def compile_alone(root, compiler, flags, header):
     """The first error of a file that includes nothing but this header, or None."""
     done = subprocess.run([compiler, *FLAGS, *flags, f"-I{root}", "-x", "c++", "-"], text=True, capture_output=True,
@@ -29,8 +42,9 @@ def compile_alone(root, compiler, flags, header):
 
 
 def compile_problems(root, compiler, flags):
+    alone = [header for header in headers(root) if not has_twin(root, header)]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        results = pool.map(lambda header: compile_alone(root, compiler, flags, header), headers(root))
+        results = pool.map(lambda header: compile_alone(root, compiler, flags, header), alone)
     return [result for result in results if result]
 
 

@@ -13,10 +13,10 @@
 namespace noether {
 namespace {
 
-using namespace noether::testing;
+using namespace noether::test;
 
-double distance_from(const Motion<Quad>& m, Quad x, Quad y, Quad u, Quad v) {
-  return distance(m, Motion<Quad>{Vec3<Quad>(x, y, Quad(0)), Vec3<Quad>(u, v, Quad(0))});
+double distance_from(const PhasePoint<Quad>& m, Quad x, Quad y, Quad u, Quad v) {
+  return distance(m, PhasePoint<Quad>{Vec3<Quad>(x, y, Quad(0)), Vec3<Quad>(u, v, Quad(0))});
 }
 
 ParticleSystem<Quad> henon_heiles(Quad x, Quad y, Quad u, Quad v) {
@@ -28,11 +28,11 @@ ParticleSystem<Quad> henon_heiles(Quad x, Quad y, Quad u, Quad v) {
 TEST_CASE("two orbits of Henon and Heiles end where the references end", "[oracle]") {
   const KineticPotential<HenonHeilesField, Quad> hamiltonian(HenonHeilesField{});
   const auto a = henon_heiles(0.18_q, 0.18_q, 0.18_q, 0.18_q), b = henon_heiles(0.1_q, 0_q, 0_q, 0.5_q);
-  const auto near_a = [](const Motion<Quad>& m) {
+  const auto near_a = [](const PhasePoint<Quad>& m) {
     return distance_from(m, 0.1199368952782719296202_q, 0.2809431280773217541052_q, 0.1506484736107446417959_q,
                          0.1675336702728667023031_q);
   };
-  const auto near_b = [](const Motion<Quad>& m) {
+  const auto near_b = [](const PhasePoint<Quad>& m) {
     return distance_from(m, -0.0401942378760688167944_q, 0.6790169217720216421347_q, 0.03845092895185983450203_q,
                          0.04859483155300364224311_q);
   };

@@ -16,7 +16,7 @@
 namespace noether {
 namespace {
 
-using namespace noether::testing;
+using namespace noether::test;
 
 const HarmonicField spring{.k = 1};
 
@@ -185,7 +185,7 @@ double cost(const Scheme& scheme) {
   const double h = 0.1;
   const auto start = particle_in_plane(0.1, 0.05, 0.3, 0.4).as<Quad>();
   const KineticPotential<HenonHeilesField, Quad> hamiltonian(HenonHeilesField{});
-  const Motion<Quad> exact = henon_heiles_flow(motion_of(start), h);
+  const PhasePoint<Quad> exact = henon_heiles_flow(motion_of(start), h);
   const double error = distance(motion_of(run(hamiltonian, scheme, start, h, 1)), exact);
   return scheme.evaluations() / (h * std::pow(1e-6 / (error / h), 1.0 / scheme.order.classical));
 }

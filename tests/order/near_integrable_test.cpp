@@ -11,7 +11,7 @@
 namespace noether {
 namespace {
 
-using namespace noether::testing;
+using namespace noether::test;
 
 constexpr double duration = 3;       // half a turn of the inner planet
 constexpr double mass_ratio = 1e-7;  // epsilon: masses of two planets are 1, 2, 3 times this

@@ -9,7 +9,7 @@
 namespace noether {
 namespace {
 
-using namespace noether::testing;
+using namespace noether::test;
 
 /// Errors below which the digits of a table may show: it violates the conditions of its order by its last digit times
 /// the step. Order 8 and more are printed with 19 digits at least, odd orders with 17, the others with 14.
@@ -48,7 +48,7 @@ void check_order(const Scheme& scheme, const std::vector<ErrorPoint>& points) {
 TEST_CASE("every scheme has its order on the potential of Henon and Heiles", "[order]") {
   const auto start = particle_in_plane(0.1, 0.05, 0.3, 0.4).as<Quad>();
   const double duration = 3;
-  const Motion<Quad> exact = henon_heiles_flow(motion_of(start), duration);
+  const PhasePoint<Quad> exact = henon_heiles_flow(motion_of(start), duration);
   for (const Scheme* scheme : schemes::all()) {
     check_order(*scheme, climb(*scheme, duration, 6000, [&](double dt, long n) {
       const KineticPotential<HenonHeilesField, Quad> hamiltonian(HenonHeilesField{});
@@ -60,7 +60,7 @@ TEST_CASE("every scheme has its order on the potential of Henon and Heiles", "[o
 TEST_CASE("every scheme has its order on a Kepler orbit of eccentricity 0.6", "[order][slow]") {
   const auto start = kepler_pair(0.6, 1.0).as<Quad>();
   const double duration = 3;
-  const Motion<Quad> exact = kepler_motion(start, Quad(duration));
+  const PhasePoint<Quad> exact = kepler_motion(start, Quad(duration));
   for (const Scheme* scheme : schemes::all()) {
     check_order(*scheme, climb(*scheme, duration, 6000, [&](double dt, long n) {
       const KineticPotential<Gravity, Quad> hamiltonian(Gravity{});
@@ -74,7 +74,7 @@ TEST_CASE("every scheme has its order on a driven oscillator: kicks see the time
   const HarmonicField spring{.k = 1};
   const OscillatingField drive{.acceleration = {0.7, 0, 0}, .omega = 2.25, .phase = 0.5};
   const double duration = 3;
-  const Motion<Quad> exact = driven_motion(motion_of(start), spring, drive, Quad(duration));
+  const PhasePoint<Quad> exact = driven_motion(motion_of(start), spring, drive, Quad(duration));
   for (const Scheme* scheme : schemes::all()) {
     check_order(*scheme, climb(*scheme, duration, 2000, [&](double dt, long n) {
       const KineticPotential<Sum<HarmonicField, OscillatingField>, Quad> hamiltonian(Sum(spring, drive));
@@ -86,7 +86,7 @@ TEST_CASE("every scheme has its order on a driven oscillator: kicks see the time
 TEST_CASE("one digit changed in a table is seen in the measured order", "[order]") {
   const auto start = particle_in_plane(0.1, 0.05, 0.3, 0.4).as<Quad>();
   const double duration = 3;
-  const Motion<Quad> exact = henon_heiles_flow(motion_of(start), duration);
+  const PhasePoint<Quad> exact = henon_heiles_flow(motion_of(start), duration);
   for (const Scheme* scheme : {&schemes::pefrl, &schemes::kahan_li_8_s17, &schemes::srkn14a}) {
     Scheme broken = *scheme;
     broken.word = Word{};
@@ -120,7 +120,7 @@ TEST_CASE("kicks that do not see the time of their stage are seen in the measure
   const auto start = particle_in_plane(0.4, 0, -0.3, 0).as<Quad>();
   const HarmonicField spring{.k = 1};
   const OscillatingField drive{.acceleration = {0.7, 0, 0}, .omega = 2.25};
-  const Motion<Quad> exact = driven_motion(motion_of(start), spring, drive, Quad(3));
+  const PhasePoint<Quad> exact = driven_motion(motion_of(start), spring, drive, Quad(3));
   const auto points = climb(schemes::yoshida_4, 3, 2000, [&](double dt, long n) {
     const KineticPotential<Sum<HarmonicField, SteppedField>, Quad> hamiltonian(Sum(spring, SteppedField{drive}));
     return distance(motion_of(run(hamiltonian, schemes::yoshida_4, start, dt, n)), exact);

@@ -11,7 +11,7 @@
 namespace noether {
 namespace {
 
-using namespace noether::testing;
+using namespace noether::test;
 
 template <class H> std::string refusal(H hamiltonian, const Scheme& scheme) {
   try {

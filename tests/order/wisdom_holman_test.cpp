@@ -11,7 +11,7 @@
 namespace noether {
 namespace {
 
-using namespace noether::testing;
+using namespace noether::test;
 
 constexpr double duration = 1.5;
 

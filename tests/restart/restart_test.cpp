@@ -31,7 +31,7 @@ template <class Real> struct Run {
   ClosestApproach* closest;
 };
 
-template <class Real, class I> Run<Real> make_run(const I& integrator) {
+template <class Real> Run<Real> make_run(const AnyIntegrator<Real>& integrator) {
   Simulation<Real> simulation(test::outer_planets<Real>(), integrator, 40.0);
   auto& energy = simulation.every(3, Energy{});
   auto& angular = simulation.every(5, AngularMomentum{});
@@ -50,7 +50,7 @@ std::string figures(const MonitorReport& report) {
 }
 
 /// Runs 2n steps at once and in two halves with everything rebuilt in between.
-template <class Real, class I> void check_restart(const I& integrator, std::int64_t n) {
+template <class Real> void check_restart(const AnyIntegrator<Real>& integrator, std::int64_t n) {
   auto whole = make_run<Real>(integrator);
   REQUIRE(whole.simulation.run(2 * n).ok());
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace noether::testing {
+namespace noether::test {
 
 /// One rung: a step [time] and the error made with it.
 struct ErrorPoint {
@@ -55,4 +55,4 @@ inline std::string to_text(const std::vector<ErrorPoint>& points) {
   return text;
 }
 
-}  // namespace noether::testing
+}  // namespace noether::test

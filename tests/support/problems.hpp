@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-namespace noether::testing {
+namespace noether::test {
 
 /// The force of Henon and Heiles on every particle, in the plane, as a user would write it.
 ///     U = sum m [ (x^2 + y^2)/2 + x^2 y - y^3/3 ]
@@ -41,14 +41,14 @@ inline ParticleSystem<double> particle_in_plane(double x, double y, double u, do
 }
 
 /// Position and velocity of one particle.
-template <class Real> struct Motion { Vec3<Real> x, v; };
+template <class Real> struct PhasePoint { Vec3<Real> x, v; };
 
-template <class Real> Motion<Real> motion_of(const ParticleSystem<Real>& s, Index i = 0) {
+template <class Real> PhasePoint<Real> motion_of(const ParticleSystem<Real>& s, Index i = 0) {
   return {s.positions()[i], s.velocities()[i]};
 }
 
 /// Largest difference of a component.
-template <class Real> double distance(const Motion<Real>& a, const Motion<Real>& b) {
+template <class Real> double distance(const PhasePoint<Real>& a, const PhasePoint<Real>& b) {
   double worst = 0;
   for (int k = 0; k < 3; ++k) {
     worst = std::max(worst, std::fabs(static_cast<double>(a.x[k] - b.x[k])));
@@ -64,7 +64,7 @@ template <class Real> double distance(const ParticleSystem<Real>& a, const Parti
 }
 
 /// The flow of Henon and Heiles by its Taylor series, degree 40, in steps of 1/8: an error of some ulp per step.
-template <class Real> Motion<Real> henon_heiles_flow(Motion<Real> start, double duration) {
+template <class Real> PhasePoint<Real> henon_heiles_flow(PhasePoint<Real> start, double duration) {
   constexpr std::size_t degree = 40;
   const int steps = static_cast<int>(std::ceil(std::fabs(duration) * 8));
   const Real h = Real(duration) / Real(steps);
@@ -100,7 +100,7 @@ inline ParticleSystem<double> kepler_pair(double eccentricity, double anomaly = 
 }
 
 /// Relative motion of `kepler_pair` after a time, by Kepler's equation and f and g, from the very state it starts with.
-template <class Real> Motion<Real> kepler_motion(const ParticleSystem<Real>& start, const Real& time) {
+template <class Real> PhasePoint<Real> kepler_motion(const ParticleSystem<Real>& start, const Real& time) {
   using std::abs, std::cos, std::sin, std::sqrt;
   const Vec3<Real> x0 = start.positions()[1] - start.positions()[0], v0 = start.velocities()[1] - start.velocities()[0];
   const Real mu = start.masses()[0] + start.masses()[1], r0 = sqrt(norm2(x0));
@@ -120,14 +120,14 @@ template <class Real> Motion<Real> kepler_motion(const ParticleSystem<Real>& sta
 }
 
 /// Relative motion of particle 1 to particle 0.
-template <class Real> Motion<Real> relative_motion(const ParticleSystem<Real>& s) {
+template <class Real> PhasePoint<Real> relative_motion(const ParticleSystem<Real>& s) {
   return {s.positions()[1] - s.positions()[0], s.velocities()[1] - s.velocities()[0]};
 }
 
 /// x'' = -k x + g cos(omega t + phase) in one dimension, omega^2 != k.
 template <class Real>
-Motion<Real> driven_motion(const Motion<Real>& start, const HarmonicField& spring, const OscillatingField& drive,
-                           const Real& time) {
+PhasePoint<Real> driven_motion(const PhasePoint<Real>& start, const HarmonicField& spring,
+                               const OscillatingField& drive, const Real& time) {
   using std::cos, std::sin, std::sqrt;
   const Real w0 = sqrt(Real(spring.k)), w = Real(drive.omega), phase = Real(drive.phase);
   const Real amplitude = Real(drive.acceleration[0]) / (w0 * w0 - w * w);
@@ -194,4 +194,4 @@ ParticleSystem<typename H::real> run(const H& hamiltonian, const Scheme& scheme,
   return run(integrator, s, dt, steps);
 }
 
-}  // namespace noether::testing
+}  // namespace noether::test

@@ -1,0 +1,201 @@
+/// Every example, as a program and as a scene: both end in the same bits, do what [expect] says, and print what the
+/// README prints.
+
+#include "tests/examples/programs.hpp"
+#include "tests/examples/readme.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/process.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+
+namespace examples {
+namespace {
+
+/// How long a whole run takes: below a second, below half a minute, more.
+enum class Length : std::uint8_t { quick, slow, nightly };
+
+struct Example {
+  std::string name;
+  int (*program)();
+  Length length;
+  Bits bits = Bits::everywhere;
+  std::int64_t few_steps = 1000;  ///< enough to tell program from scene
+};
+
+const std::vector<Example> all = {
+    {"driven_oscillator", driven_oscillator::program, Length::quick, Bits::of_this_machine},
+    {"figure_eight", figure_eight::program, Length::quick},
+    {"kepler", kepler::program, Length::quick},
+    {"oblate_saturn", oblate_saturn::program, Length::slow, Bits::of_this_machine},
+    {"outer_solar_system", outer_solar_system::program, Length::nightly, Bits::everywhere, 4000},
+    {"pythagorean", pythagorean::program, Length::nightly, Bits::everywhere, 20'000},
+    {"solar_system", solar_system::program, Length::slow},
+    {"template_project", template_project::program, Length::quick},
+};
+
+/// Programs write trajectories: without HDF5 they cannot run.
+constexpr bool programs_can_run = NOETHER_HDF5 != 0;
+
+bool has_scene(const std::string& example) { return std::filesystem::exists(folder / example / "scene.toml"); }
+
+noether::Scene scene_of(const std::string& example) {
+  noether::Parts parts = noether::standard_parts();
+  if (example == "oblate_saturn") parts.add_force<Oblateness>();
+  return noether::load_scene("scene.toml", parts);
+}
+
+/// Works in a copy of an example's folder, and goes back at the end.
+class ExampleFolder {
+ public:
+  explicit ExampleFolder(const std::string& example) : before_(std::filesystem::current_path()) {
+    std::filesystem::copy(folder / example, scratch_.path());
+    std::filesystem::current_path(scratch_.path());
+  }
+  ExampleFolder(const ExampleFolder&) = delete;
+  ExampleFolder& operator=(const ExampleFolder&) = delete;
+  ~ExampleFolder() {
+    std::error_code ignored;
+    std::filesystem::current_path(before_, ignored);
+  }
+
+ private:
+  noether::test::ScratchFolder scratch_;
+  std::filesystem::path before_;
+};
+
+/// What a program prints to stdout, after `steps` steps or at its end.
+std::string output_of(int (*program)(), std::optional<std::int64_t> steps = std::nullopt) {
+  std::fflush(stdout);
+  const int screen = dup(STDOUT_FILENO), file = open("stdout.txt", O_CREAT | O_WRONLY | O_TRUNC, 0600);
+  REQUIRE(screen >= 0);
+  REQUIRE(file >= 0);
+  dup2(file, STDOUT_FILENO);
+  close(file);
+  shortened = steps;
+  const int code = program();
+  shortened.reset();
+  std::fflush(stdout);
+  dup2(screen, STDOUT_FILENO);
+  close(screen);
+  CHECK(code == 0);
+  return noether::test::read_text("stdout.txt");
+}
+
+/// What [expect] says of a scene holds: `first` and `last` to 1e-12, all other figures as upper bounds.
+void check_expectations(const noether::Scene& scene, const noether::RunReport& report) {
+  std::map<std::string, std::optional<double>> figures;
+  for (const auto& [name, monitor] : report.monitors) {
+    figures[name + ".first"] = monitor.first;
+    figures[name + ".last"] = monitor.last;
+    figures[name + ".worst"] = monitor.worst;
+    figures[name + ".rms"] = monitor.rms;
+  }
+  CHECK(!scene.expect.empty());
+  for (const auto& [key, value] : scene.expect) {
+    CAPTURE(key);
+    const double* expected = value.get<double>();
+    REQUIRE(expected != nullptr);
+    REQUIRE(figures[key]);
+    const double figure = *figures[key];
+    const bool exact = key.ends_with(".first") || key.ends_with(".last");
+    if (exact) CHECK(std::abs(figure - *expected) <= 1e-12 * std::max(1.0, std::abs(*expected)));
+    if (!exact) CHECK(std::abs(figure) <= *expected);
+  }
+}
+
+/// Program and scene of an example, to their ends.
+void check_whole(const Example& example) {
+  CAPTURE(example.name);
+  const auto expected = outputs_in(readme_of(example.name));
+  const ExampleFolder copy(example.name);
+  REQUIRE(!expected.empty());
+  CHECK(physics(output_of(example.program), example.bits) == physics(expected[0], example.bits));
+  if (!has_scene(example.name)) return;
+  REQUIRE(expected.size() == 2);
+  const noether::Scene scene = scene_of(example.name);
+  const noether::RunReport report = run(scene, {.handle_signals = false});
+  CHECK(physics(to_text(report), example.bits) == physics(expected[1], example.bits));
+  check_expectations(scene, report);
+}
+
+void check_whole(Length length) {
+  if (!programs_can_run) return;
+  for (const Example& example : all) {
+    if (example.length == length) check_whole(example);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("every example is tested, and has a README that names its scene and shows what both print", "[examples]") {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.is_directory()) names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  REQUIRE(names.size() == all.size());
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const std::string& example = names[k];
+    CAPTURE(example);
+    CHECK(all[k].name == example);
+    const std::string readme = readme_of(example);
+    CHECK(readme.starts_with("# "));
+    if (has_scene(example)) CHECK(readme.find("./noether run examples/" + example + "/scene.toml") != readme.npos);
+    const auto outputs = outputs_in(readme);
+    CHECK(outputs.size() == (has_scene(example) ? 2 : 1));
+    for (const std::string& output : outputs) CHECK(digest_in(output) == digest_in(outputs[0]));
+  }
+}
+
+TEST_CASE("program and scene of every example end in the same digest", "[examples]") {
+  if (!programs_can_run) return;
+  for (const Example& example : all) {
+    if (!has_scene(example.name)) continue;
+    CAPTURE(example.name);
+    const ExampleFolder copy(example.name);
+    const std::string output = output_of(example.program, example.few_steps);
+    CAPTURE(output);
+    CHECK(output.find(fmt::format("completed at step {}", example.few_steps)) != output.npos);
+    noether::Simulation<double> sim = assemble(scene_of(example.name));
+    CHECK(sim.run(example.few_steps).ok());
+    CHECK(digest_in(output) == noether::io::digest(sim.particles()));
+  }
+}
+
+TEST_CASE("quick examples do what they expect and print what their READMEs print", "[examples]") {
+  check_whole(Length::quick);
+}
+TEST_CASE("slow examples do what they expect and print what their READMEs print", "[examples][slow]") {
+  check_whole(Length::slow);
+}
+TEST_CASE("long examples do what they expect and print what their READMEs print", "[examples][.][nightly]") {
+  check_whole(Length::nightly);
+}
+
+TEST_CASE("three lines of program run the user's force from the scene file", "[examples][slow]") {
+  if (!programs_can_run) return;
+  const ExampleFolder copy("oblate_saturn");
+  const std::string output = output_of(oblate_saturn_from_scene::program);
+  CHECK(physics(output, Bits::of_this_machine) ==
+        physics(outputs_in(readme_of("oblate_saturn")).at(1), Bits::of_this_machine));
+  CHECK(std::filesystem::exists("scene.out/run.h5"));
+}
+
+TEST_CASE("a stale figure in a README is seen, times of the machine are not", "[examples]") {
+  const auto outputs = outputs_in(readme_of("kepler"));
+  REQUIRE(outputs.size() == 2);
+  const auto changed = [&](const char* from, const char* to) {
+    return physics(std::regex_replace(outputs[1], std::regex(from), to), Bits::everywhere) !=
+           physics(outputs[1], Bits::everywhere);
+  };
+  CHECK(changed("sha256:.", "sha256:x"));
+  CHECK(changed("worst .", "worst x"));
+  CHECK_FALSE(changed("steps in [^:]*", "steps in 9 s"));
+}
+
+}  // namespace examples

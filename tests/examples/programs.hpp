@@ -1,0 +1,71 @@
+#pragma once
+/// The programs of examples/, as functions that a test calls: each main.cpp in a namespace of its own, its calls of
+/// `run` and `run_until` made as short as `shortened` says. One file includes this.
+
+#include "examples/oblate_saturn/oblateness.hpp"
+
+#include "engine/monitors.hpp"
+#include "engine/orbital_monitors.hpp"
+#include "engine/simulation.hpp"
+#include "engine/units.hpp"
+#include "forces/check_gradient.hpp"
+#include "forces/external_fields.hpp"
+#include "forces/gravity.hpp"
+#include "forces/linear_drag.hpp"
+#include "forces/sum.hpp"
+#include "integrators/composition.hpp"
+#include "integrators/damped.hpp"
+#include "integrators/kinetic_potential.hpp"
+#include "integrators/schemes.hpp"
+#include "integrators/wisdom_holman.hpp"
+#include "io/bodies.hpp"
+#include "io/digest.hpp"
+#include "io/trajectory.hpp"
+#include "scene/run.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+namespace examples {
+
+/// How many steps a program makes, if not all of them.
+inline std::optional<std::int64_t> shortened;
+
+}  // namespace examples
+
+#define main program
+namespace examples::oblate_saturn_from_scene {
+#include "examples/oblate_saturn/from_scene.cpp"
+}
+#define run(steps) run(examples::shortened.value_or(steps))
+#define run_until(end) run(sim.steps_in(end))
+namespace examples::driven_oscillator {
+#include "examples/driven_oscillator/main.cpp"
+}
+namespace examples::figure_eight {
+#include "examples/figure_eight/main.cpp"
+}
+namespace examples::kepler {
+#include "examples/kepler/main.cpp"
+}
+namespace examples::oblate_saturn {
+#include "examples/oblate_saturn/main.cpp"
+}
+namespace examples::outer_solar_system {
+#include "examples/outer_solar_system/main.cpp"
+}
+namespace examples::pythagorean {
+#include "examples/pythagorean/main.cpp"
+}
+namespace examples::solar_system {
+#include "examples/solar_system/main.cpp"
+}
+namespace examples::template_project {
+#include "examples/template_project/main.cpp"
+}
+#undef run_until
+#undef run
+#undef main
