@@ -70,8 +70,8 @@ TEST_CASE("a body on a line through the center bounces there", "[kepler]") {
     const Quad free = hyperbola_time(mu, a, one, last) - hyperbola_time(mu, a, one, first);
     check_closed_form(on_hyperbola(turn, mu, a, one, first), on_hyperbola(turn, mu, a, one, last), mu, free);
   }
-  const Vec3<double> x(1, 0, 0), rest(0, 0, 0);
-  const KeplerArc<double> fall = kepler_arc(x, rest, 1.0, 1.5);  // the collision is at pi / 2^1.5 = 1.11
+  const Vec3<double> x(1, 0, 0), at_rest(0, 0, 0);
+  const KeplerArc<double> fall = kepler_arc(x, at_rest, 1.0, 1.5);  // the collision is at pi / 2^1.5 = 1.11
   CHECK(fall.status == KeplerStatus::converged);
   CHECK(fall.dx[0] > -1);
   CHECK(fall.dv[0] > 0);
@@ -117,12 +117,12 @@ TEST_CASE("an arc backwards undoes it and two arcs make one", "[kepler]") {
   for (int n = 0; n < 300; ++n) {
     const Case c = random_case(random);
     const Quads s = widen(c.state);
-    const Quad mu(c.mu), h = Quad(c.h) * Quad(1e-3), rest = h * Quad(random(-2, 2));
+    const Quad mu(c.mu), h = Quad(c.h) * Quad(1e-3), more = h * Quad(random(-2, 2));
     const Quads there = advanced(s, mu, h), back = advanced(there, mu, -h);
     CAPTURE(n, c.e);
     CHECK(roundings(back, s, condition(there, mu, -h), quad_unit) < few);
-    const Quads twice = advanced(there, mu, rest), once = advanced(s, mu, h + rest);
-    const Condition second = condition(there, mu, rest), whole = condition(s, mu, h + rest);
+    const Quads twice = advanced(there, mu, more), once = advanced(s, mu, h + more);
+    const Condition second = condition(there, mu, more), whole = condition(s, mu, h + more);
     CHECK(roundings(twice, once, {second.x + whole.x, second.v + whole.v}, quad_unit) < few);
   }
 }
