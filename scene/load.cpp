@@ -67,7 +67,7 @@ class SceneReader {
     read_units(top);
     scene_.effective = SceneValue::table();
     scene_.effective.put("title", SceneValue::of(scene_.title));
-    scene_.effective.put("units", SceneValue::of(std::string(scene_.units->name)));
+    scene_.effective.put("units", SceneValue::of(std::string(scene_.units->name), top.line("units")));
     read_constant(table(top, "hamiltonian"));
     SceneValue& particles = scene_.effective.put("particles", SceneValue::table());
     scene_.particles = read_particles(context_, table(top, "particles"), scene_.file.parent_path(), particles);
@@ -125,14 +125,15 @@ class SceneReader {
       reader.fail("type", fmt::format("unknown hamiltonian '{}'{}", type,
                                       did_you_mean(type, {"kinetic_potential", "wisdom_holman"})));
     }
-    effective.put("type", SceneValue::of(type));
+    effective.put("type", SceneValue::of(type, reader.line("type")));
     const SceneValue* G = reader.find("G");
     effective.put("G", G != nullptr ? *G : SceneValue::of(scene_.units->G));
     const auto forces = tables_of(reader, "force");
     if (type == "wisdom_holman") {
       made.kind = SceneHamiltonian::Kind::wisdom_holman;
       read_fields(reader, made.wisdom_holman);
-      effective.put("coordinates", detail::field_value(made.wisdom_holman.coordinates, "1", *scene_.units));
+      effective.put("coordinates", detail::field_value(made.wisdom_holman.coordinates, "1", *scene_.units)).line =
+          reader.line("coordinates");
     }
     reader.finish();
     if (type == "wisdom_holman" && made.wisdom_holman.coordinates == Coordinates::inertial) {
@@ -165,7 +166,7 @@ class SceneReader {
       if (force.drag && other.drag) reader.fail("type", "linear_drag stands twice in the scene; add the rates up");
     }
     SceneValue effective = SceneValue::table();
-    effective.put("type", SceneValue::of(type));
+    effective.put("type", SceneValue::of(type, reader.line("type")));
     for (auto& [key, value] : *force.effective.get<SceneValue::Table>()) effective.put(key, value);
     list.push_back(effective);
     force.effective = std::move(effective);
@@ -197,7 +198,7 @@ class SceneReader {
     reader.expect_only({"method", "step", "until", "steps", "compensated"});
     SceneValue& effective = scene_.effective.put("integrator", SceneValue::table());
     read_method(reader);
-    effective.put("method", SceneValue::of(made.method));
+    effective.put("method", SceneValue::of(made.method, reader.line("method")));
     const SceneValue* step = reader.find("step");
     if (step == nullptr) reader.fail(nullptr, "step", "[integrator] has no step; give one, such as \"1 day\"");
     made.step = reader.number(*step, "step", "time");
@@ -216,7 +217,7 @@ class SceneReader {
       reader.fail("steps", fmt::format("steps = {} is negative; 0 or more is expected", *made.steps));
     if (reader.has("steps")) effective.put("steps", SceneValue::of(*made.steps));
     made.compensated = reader.flag("compensated", false);
-    effective.put("compensated", SceneValue::of(made.compensated));
+    effective.put("compensated", SceneValue::of(made.compensated, reader.line("compensated")));
   }
 
   void read_method(TableReader& reader) {
@@ -260,7 +261,7 @@ class SceneReader {
     if (steps != nullptr) cadence.steps = counted_steps(reader, "steps");
     if (wall != nullptr) cadence.wall = wall_seconds(reader, *wall);
     if (every != nullptr) effective.put("every", *every);
-    if (steps != nullptr) effective.put("steps", SceneValue::of(cadence.steps));
+    if (steps != nullptr) effective.put("steps", SceneValue::of(cadence.steps, reader.line("steps")));
     if (wall != nullptr) effective.put("wall", *wall);
     return cadence;
   }
@@ -287,7 +288,7 @@ class SceneReader {
       TableReader reader(context_, *table, fmt::format("monitor '{}'", type), path);
       reader.find("type");
       SceneValue effective = SceneValue::table();
-      effective.put("type", SceneValue::of(type));
+      effective.put("type", SceneValue::of(type, reader.line("type")));
       SceneWatch watch;
       if (type == "trajectory") watch.kind = SceneWatch::Kind::trajectory;
       if (type == "checkpoint") watch.kind = SceneWatch::Kind::checkpoint;
@@ -326,7 +327,7 @@ class SceneReader {
         reader.fail("distance", fmt::format("distance = {} cannot stop a run; a length above 0 is expected",
                                             to_text(*reader.find("distance"))));
       SceneValue effective = SceneValue::table();
-      effective.put("type", SceneValue::of(type));
+      effective.put("type", SceneValue::of(type, reader.line("type")));
       effective.put("distance", *reader.find("distance"));
       SceneStop stop;
       stop.rule = type == "escape" ? farther_than(*distance) : closer_than(*distance);

@@ -99,8 +99,8 @@ ParticleSystem<double> from_file(TableReader& reader, const std::filesystem::pat
                             "key out to use the new one",
                             name, hash));
   }
-  effective.put("bodies", SceneValue::of(name));
-  effective.put("bodies_sha256", SceneValue::of(hash));
+  effective.put("bodies", SceneValue::of(name, reader.line("bodies")));
+  effective.put("bodies_sha256", SceneValue::of(hash, reader.line("bodies")));
   return s;
 }
 
@@ -171,7 +171,7 @@ ParticleSystem<double> read_particles(const SceneContext& context, const SceneVa
       reader.fail("frame", error.message());
     }
   }
-  effective.put("frame", SceneValue::of(frame));
+  effective.put("frame", SceneValue::of(frame, reader.line("frame")));
   return s;
 }
 

@@ -40,6 +40,11 @@ class TableReader {
   /// The value of a key, which is a known one from now on; null if it is not given.
   const SceneValue* find(std::string_view key);
   bool has(std::string_view key) { return find(key) != nullptr; }
+  /// Where a key stands; 0 if it is not given.
+  int line(std::string_view key) const {
+    const SceneValue* value = table_.find(key);
+    return value != nullptr ? value->line : 0;
+  }
 
   /// Typed values; `fallback` where the key is not given. @throws SceneError for another type
   std::string text(std::string_view key, std::string fallback = "");
