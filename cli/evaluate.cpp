@@ -8,9 +8,11 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <vector>
 
 namespace noether {
@@ -33,6 +35,20 @@ void write_forces(const std::string& file, const Scene& scene, const Evaluation&
   }
   out.flush();
   if (!out) throw FileError("the forces could not be written", {.file = file});
+}
+
+/// The table of forces must not take the place of what was read.
+void check_forces_file(const std::filesystem::path& file, const Scene& scene) {
+  if (file.extension() != ".csv") {
+    throw Error(fmt::format("the table of forces '{}' must end in .csv", file.string()), {.value = file.string()});
+  }
+  const SceneValue* bodies = scene.effective.find("particles")->find("bodies");
+  if (bodies == nullptr) return;
+  std::error_code absent;
+  if (std::filesystem::equivalent(scene.file.parent_path() / *bodies->get<std::string>(), file, absent)) {
+    throw Error(fmt::format("'{}' holds the bodies of the scene; give another name", file.string()),
+                {.value = file.string()});
+  }
 }
 
 Json json_of(const Evaluation& e) {
@@ -68,6 +84,7 @@ void print_text(const Scene& scene, const Evaluation& e) {
 
 int evaluate_scene(const EvaluateArguments& given) {
   const Scene scene = load_scene(given.scene, standard_parts(), given.sets);
+  if (!given.forces.empty()) check_forces_file(given.forces, scene);
   const Evaluation result = evaluate(scene, given.check);
   if (!given.forces.empty()) write_forces(given.forces, scene, result);
   if (given.json) {

@@ -79,10 +79,10 @@ struct FileArguments {
   bool json = false;
 };
 
-CLI::App* file_command(CLI::App& app, const std::string& name, const std::string& help,
+CLI::App* file_command(CLI::App& app, const std::string& name, const std::string& help, const std::string& kinds,
                        const std::shared_ptr<FileArguments>& given) {
   CLI::App* command = app.add_subcommand(name, help);
-  command->add_option("file", given->file, "run.h5 or a checkpoint")
+  command->add_option("file", given->file, kinds)
       ->required()
       ->check([](const std::string& file) { return std::string(file.empty() ? "the name of the file is empty" : ""); })
       ->type_name("FILE");
@@ -93,7 +93,7 @@ CLI::App* file_command(CLI::App& app, const std::string& name, const std::string
 
 void add_info_command(CLI::App& app, int& exit_code) {
   const auto given = std::make_shared<FileArguments>();
-  CLI::App* command = file_command(app, "info", "what is in a file, and its digest", given);
+  CLI::App* command = file_command(app, "info", "what is in a file, and its digest", "run.h5 or a checkpoint", given);
   command->add_flag("--json", given->json, "as one line of JSON");
   command->callback([given, &exit_code] {
     const io::FileInfo info = io::info(given->file);
@@ -108,14 +108,15 @@ void add_info_command(CLI::App& app, int& exit_code) {
 
 void add_verify_command(CLI::App& app, int& exit_code) {
   const auto given = std::make_shared<FileArguments>();
-  CLI::App* command = file_command(app, "verify", "read everything in a file and say whether it is sound", given);
+  CLI::App* command = file_command(app, "verify", "read everything in a file and say whether it is sound",
+                                   "run.h5 or a checkpoint", given);
   command->add_flag("--json", given->json, "as one line of JSON");
   command->callback([given, &exit_code] { exit_code = verify_file(given->file, given->json); });
 }
 
 void add_convert_command(CLI::App& app, int& exit_code) {
   const auto given = std::make_shared<FileArguments>();
-  CLI::App* command = file_command(app, "convert", "rewrite a trajectory as extended XYZ or CSV", given);
+  CLI::App* command = file_command(app, "convert", "rewrite a trajectory as extended XYZ or CSV", "run.h5", given);
   command->add_option("out", given->out, "FILE.xyz or FILE.csv")->required()->type_name("OUT");
   command->add_flag("--json", given->json, "report as one line of JSON");
   command->callback([given, &exit_code] {

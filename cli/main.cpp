@@ -13,11 +13,15 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <string>
+#include <system_error>
 #include <vector>
 
 namespace {
@@ -27,7 +31,7 @@ using noether::Json;
 /// Says what went wrong: one line on stderr and, where reports are JSON, one on stdout.
 int complain(const noether::ErrorLocation& at, const std::string& message, const std::string& line, int code,
              bool json) {
-  fmt::print(stderr, "{}\n", noether::escaped(line));
+  std::fputs((noether::escaped(line) + "\n").c_str(), stderr);  // where that cannot be written, nothing can be said
   if (json) {
     const auto text = [](const std::string& t) { return t.empty() ? Json() : Json(t); };
     const Json report = Json::object({{"schema", "noether.error/1"},
@@ -37,7 +41,7 @@ int complain(const noether::ErrorLocation& at, const std::string& message, const
                                       {"key", text(at.key)},
                                       {"value", text(at.value)},
                                       {"message", message}});
-    fmt::print("{}\n", report.text());
+    std::fputs((report.text() + "\n").c_str(), stdout);
   }
   return code;
 }
@@ -46,7 +50,8 @@ int complain(const noether::ErrorLocation& at, const std::string& message, const
 std::string in_our_words(std::string text) {
   std::replace(text.begin(), text.end(), '\n', ' ');
   while (!text.empty() && (text.back() == ' ' || text.back() == '.')) text.pop_back();
-  if (!text.empty()) text[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[0])));
+  const bool word = text.size() > 1 && std::islower(static_cast<unsigned char>(text[1]));
+  if (word) text[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[0])));
   return text;
 }
 
@@ -108,6 +113,10 @@ int parse(CLI::App& app, int argc, char** argv, int& exit_code, bool json) {
     const std::string message = unknown_argument(app, rest.empty() ? std::string("?") : rest.front());
     return complain({}, message, message, 2, json);
   } catch (const CLI::ParseError& error) {
+    for (const std::string& rest : app.remaining(true)) {
+      const std::string unknown = unknown_argument(app, rest);
+      if (rest.starts_with('-')) return complain({}, unknown, unknown, 2, json);
+    }
     const auto used = app.get_subcommands();
     const std::string help = used.empty() ? "noether --help" : "noether " + used.front()->get_name() + " --help";
     const std::string message = fmt::format("{}; see `{}`", parser_message(error), help);
@@ -115,11 +124,7 @@ int parse(CLI::App& app, int argc, char** argv, int& exit_code, bool json) {
   }
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error of the write, and told as one
-  const bool json = std::any_of(argv + 1, argv + argc, [](const char* one) { return std::string(one) == "--json"; });
+int run_command(int argc, char** argv, bool json) {
   try {
     CLI::App app("Long, honest integrations of mechanical systems", "noether");
     app.set_version_flag("--version", "");
@@ -136,8 +141,25 @@ int main(int argc, char** argv) {
     return complain(error.location(), error.message(), error.what(), error.exit_code(), json);
   } catch (const std::bad_alloc&) {
     return complain({}, "out of memory", "out of memory", 4, json);
+  } catch (const std::filesystem::filesystem_error& error) {
+    const std::string file = error.path1().string(), message = in_our_words(error.code().message());
+    return complain({.file = file}, message, file + ": " + message, 3, json);
+  } catch (const std::system_error& error) {
+    if (std::ferror(stdout) != 0) return 3;  // told at the end
+    return complain({}, in_our_words(error.what()), in_our_words(error.what()), 3, json);
   } catch (const std::exception& error) {
     const std::string message = fmt::format("internal fault: {}; this is a bug of noether", in_our_words(error.what()));
     return complain({}, message, message, 4, json);
   }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error of the write, and told as one
+  const bool json = std::any_of(argv + 1, argv + argc, [](const char* one) { return std::string(one) == "--json"; });
+  const int code = run_command(argc, argv, json);
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  const std::string message = fmt::format("standard output: {}", in_our_words(std::strerror(errno)));
+  return complain({}, message, message, code == 0 ? 3 : code, false);
 }

@@ -20,7 +20,7 @@ namespace noether {
 namespace {
 
 struct RunArguments {
-  std::string scene, out, simd;
+  std::string scene, out, simd = "base";
   std::optional<std::string> until;
   std::vector<std::string> sets;
   int threads = 0;
@@ -28,7 +28,7 @@ struct RunArguments {
 };
 
 void check_simd(const std::string& level) {
-  if (level.empty() || level == "base") return;
+  if (level == "base") return;
   if (level == "avx2" || level == "avx512") {
     throw Error(fmt::format("SIMD level '{}' is not in this build; leave --simd out, or give base", level));
   }

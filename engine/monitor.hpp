@@ -15,7 +15,7 @@ namespace noether {
 /// One quantity of a monitor at one moment, as files store it.
 struct Series {
   std::string name;          ///< "relative_error"
-  std::string dimension;     ///< in words, "1" for none
+  std::string dimension;     ///< in words, "1" for none; where columns differ, one for each: "length, 1, angle"
   std::vector<Index> shape;  ///< of one sample; empty for a number
   std::vector<double> values;
   std::vector<std::string> columns = {};  ///< names along the last axis of the shape, where it has any

@@ -1,5 +1,7 @@
 #include "engine/monitors.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -82,16 +84,19 @@ void VectorInvariant::add(double time, const Vec3<Quad>& value, const Quad& scal
   for (int k = 0; k < 3; ++k) value_[static_cast<std::size_t>(k)] = static_cast<double>(value[k]);
   const Vec3<Quad> change = value - reference_;
   error_ = static_cast<double>(sqrt(norm2(change)) / Quad(scale_));
-  const Quad reference_length = sqrt(norm2(reference_));
-  const bool has_direction = with_direction_ && static_cast<double>(reference_length) > 1e-6 * scale_;
   direction_error_ = 0;
-  if (has_direction) {
+  if (has_direction()) {
+    const Quad reference_length = sqrt(norm2(reference_));
     const Quad sine = sqrt(norm2(cross(reference_, value))) / (reference_length * length);
     direction_error_ = static_cast<double>(atan2(sine, dot(reference_, value) / (reference_length * length)));
   }
   worst_direction_ = std::max(worst_direction_, direction_error_);
-  if (with_direction_ && !has_direction) direction_error_ = std::numeric_limits<double>::quiet_NaN();
+  if (with_direction_ && !has_direction()) direction_error_ = std::numeric_limits<double>::quiet_NaN();
   errors_.add(time, error_);
+}
+
+bool VectorInvariant::has_direction() const {
+  return with_direction_ && static_cast<double>(sqrt(norm2(reference_))) > 1e-6 * scale_;
 }
 
 std::vector<Series> VectorInvariant::series() const {
@@ -110,6 +115,7 @@ MonitorReport VectorInvariant::report() const {
   report.rms = errors_.rms();
   report.scale = scale_;
   fill_line(report, errors_, per_time("1", time_unit_));
+  if (has_direction()) report.note = fmt::format("direction within {:.2g} rad", worst_direction_);
   return report;
 }
 
@@ -172,10 +178,8 @@ template <class Real> void CenterOfMass::observe(const Snapshot<Real>& now) {
     v += m * wide(s.velocities()[i]);
     total += m;
   }
-  if (total > Quad(0)) {
-    x /= total;
-    v /= total;
-  }
+  x /= total;  // tracers alone have no center: 0/0
+  v /= total;
   if (!begun_) {
     begun_ = true;
     start_ = {x[0], x[1], x[2], v[0], v[1], v[2]};

@@ -73,6 +73,9 @@ class VectorInvariant {
   std::string time_unit_;
 
  private:
+  /// Whether the vector is long enough, beside its scale, to have a direction.
+  bool has_direction() const;
+
   std::string dimension_;
   bool with_direction_;
   bool begun_ = false;

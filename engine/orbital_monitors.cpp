@@ -37,7 +37,12 @@ template <class Real> void Elements::observe(const Snapshot<Real>& now) {
 }
 
 std::vector<Series> Elements::series() const {
-  return {{"value", "1", {static_cast<Index>(rows_.size() / columns), static_cast<Index>(columns)}, rows_}};
+  const Index rows = static_cast<Index>(rows_.size() / columns);
+  return {{.name = "value",
+           .dimension = "length, 1, angle, angle, angle, angle",
+           .shape = {rows, static_cast<Index>(columns)},
+           .values = rows_,
+           .columns = {"a", "e", "inc", "Omega", "omega", "M"}}};
 }
 
 MonitorReport Elements::report() const {

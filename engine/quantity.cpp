@@ -216,14 +216,24 @@ std::string with_article(const Dimension& dimension) {
   return (text[0] == 'a' || text[0] == 'e' ? "an " : "a ") + text;
 }
 
+/// What a text should be: a dimension, or an angle, which has none.
+struct Wanted {
+  Dimension dimension = dimensions::none;
+  bool angle = false;
+};
+
 /// "a time is expected, such as '100 day'".
-std::string expectation(const Dimension& expected, std::string_view number, const UnitSystem& system) {
-  const bool plain = system.is_reduced() || expected == dimensions::none;
-  const std::string unit = plain ? "" : unit_of(expected, system);
-  // "1 1/day" would puzzle; "1/day" reads as it is written.
-  const std::string_view join = plain || unit.starts_with("1/") ? "" : " ";
-  const std::string tail = unit.starts_with("1/") ? unit.substr(1) : unit;
-  return fmt::format("{} is expected, such as '{}{}{}'", with_article(expected), number, join, tail);
+std::string expectation(const Wanted& wanted, std::string_view number, const UnitSystem& system) {
+  if (wanted.angle) return fmt::format("an angle is expected, such as '{} deg'", number);
+  return fmt::format("{} is expected, such as '{}'", with_article(wanted.dimension),
+                     example_of(wanted.dimension, number, system));
+}
+
+bool is_angle(const Term& term) { return term.word == "deg" || term.word == "rad"; }
+
+/// What a quantity with a unit is, in words: "an angle", "a time", "a plain number".
+std::string kind_of(const std::vector<Term>& terms, const Dimension& dimension) {
+  return terms.size() == 1 && is_angle(terms[0]) ? "an angle" : with_article(dimension);
 }
 
 /// The number at the front of a text and how many characters it takes.
@@ -232,7 +242,7 @@ struct Number {
   std::size_t length = 0;
 };
 
-Number read_number(std::string_view text, const Dimension& expected, const UnitSystem& system) {
+Number read_number(std::string_view text, const Wanted& expected, const UnitSystem& system) {
   // std::from_chars reads no plus sign, and would read the minus of "+-1".
   const bool plus = text.starts_with('+') && !text.starts_with("+-");
   const char* const first = text.data() + (plus ? 1 : 0);
@@ -247,6 +257,28 @@ Number read_number(std::string_view text, const Dimension& expected, const UnitS
   if (error == std::errc::result_out_of_range) complain("is outside the range of numbers, about 1e-308 to 1e308");
   if (!std::isfinite(number.value)) complain("is not finite");
   return number;
+}
+
+double read_quantity(std::string_view text, const Wanted& wanted, const UnitSystem& system) {
+  const std::string_view whole = trimmed(text);
+  const Number number = read_number(whole, wanted, system);
+  const std::string_view digits = whole.substr(0, number.length);
+  if (number.length == whole.size()) {
+    if (system.is_reduced() || (wanted.dimension == dimensions::none && !wanted.angle)) return number.value;
+    fail(fmt::format("'{}' has no unit; {}", whole, expectation(wanted, digits, system)), whole);
+  }
+  const std::vector<Term> terms = TermReader(whole.substr(number.length), whole).read(true);
+  if (system.is_reduced() && !all_plain(terms)) {
+    fail(fmt::format("'{}' has a unit; the reduced system takes bare numbers, such as '{}'", whole, digits), whole);
+  }
+  const Unit unit = unit_from(terms, whole, system);
+  if (unit.dimension != wanted.dimension || (wanted.angle && !std::any_of(terms.begin(), terms.end(), is_angle))) {
+    fail(fmt::format("'{}' is {}; {}", whole, kind_of(terms, unit.dimension), expectation(wanted, digits, system)),
+         whole);
+  }
+  const double value = unit.times(number.value);
+  if (!std::isfinite(value)) fail(fmt::format("'{}' is too large for the {} system", whole, system.name), whole);
+  return value;
 }
 
 }  // namespace
@@ -272,26 +304,18 @@ Unit parse_unit(std::string_view text, const UnitSystem& system) {
 double unit_value(std::string_view unit, const UnitSystem& system) { return parse_unit(unit, system).times(1.0); }
 
 double parse_quantity(std::string_view text, const Dimension& expected, const UnitSystem& system) {
-  const std::string_view whole = trimmed(text);
-  const Number number = read_number(whole, expected, system);
-  const std::string_view digits = whole.substr(0, number.length);
-  if (number.length == whole.size()) {
-    if (system.is_reduced() || expected == dimensions::none) return number.value;
-    fail(fmt::format("'{}' has no unit; {}", whole, expectation(expected, digits, system)), whole);
-  }
-  const std::vector<Term> terms = TermReader(whole.substr(number.length), whole).read(true);
-  if (system.is_reduced() && !all_plain(terms)) {
-    fail(fmt::format("'{}' has a unit; the reduced system takes bare numbers, such as '{}'", whole, digits), whole);
-  }
-  const Unit unit = unit_from(terms, whole, system);
-  if (unit.dimension != expected) {
-    const bool is_angle = unit.dimension == dimensions::none && !unit.factors.empty();
-    const std::string found = is_angle ? "an angle" : with_article(unit.dimension);
-    fail(fmt::format("'{}' is {}; {}", whole, found, expectation(expected, digits, system)), whole);
-  }
-  const double value = unit.times(number.value);
-  if (!std::isfinite(value)) fail(fmt::format("'{}' is too large for the {} system", whole, system.name), whole);
-  return value;
+  return read_quantity(text, {.dimension = expected}, system);
+}
+
+double parse_angle(std::string_view text, const UnitSystem& system) {
+  return read_quantity(text, {.angle = true}, system);
+}
+
+std::string example_of(const Dimension& dimension, std::string_view number, const UnitSystem& system) {
+  const std::string unit = unit_of(dimension, system);
+  if (unit == "1") return std::string(number);
+  // "1 1/day" would puzzle; "1/day" reads as it is written.
+  return unit.starts_with("1/") ? std::string(number) + unit.substr(1) : fmt::format("{} {}", number, unit);
 }
 
 Dimension parse_dimension(std::string_view text) {

@@ -54,6 +54,15 @@ double unit_value(std::string_view unit, const UnitSystem& system);
 /// @throws Error for a missing, unknown or wrong unit, and for what is not a finite number
 double parse_quantity(std::string_view text, const Dimension& expected, const UnitSystem& system);
 
+/// The value of an angle [rad]. Degrees or radians: without a unit it would be a guess, except in the reduced system,
+/// where all numbers are bare.
+/// @throws Error as parse_quantity
+double parse_angle(std::string_view text, const UnitSystem& system);
+
+/// A quantity of a dimension as text that can be read: "1 day", "1/day", "1" in the reduced system.
+/// @throws std::bad_alloc
+std::string example_of(const Dimension& dimension, std::string_view number, const UnitSystem& system);
+
 /// Reads a dimension in words: 1, angle, length, time, mass, charge, temperature, velocity, acceleration, force,
 /// energy, frequency, density, pressure, and their products, quotients and powers.
 /// @throws Error for an unknown word (with a proposal)

@@ -267,7 +267,8 @@ class HorizonsBodies {
   void read_numbers(std::size_t line, Record& record, std::size_t& unlabeled) const {
     std::string label;
     for (const std::string& word : words_of(line)) {
-      if (std::isalpha(static_cast<unsigned char>(word.front())) != 0) {
+      const bool awaited = std::find(components.begin(), components.end(), label) != components.end();
+      if (std::isalpha(static_cast<unsigned char>(word.front())) != 0 && !awaited) {
         label = word;
         continue;
       }

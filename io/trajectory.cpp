@@ -30,8 +30,13 @@ Index rows_per_chunk(Index numbers_per_row, Index wanted) {
 }
 constexpr Index frame_bytes = 65536, sample_bytes = 4096;
 
-/// The unit of a dimension in words; words that are no dimension stand for themselves.
+/// The unit of a dimension in words, or those of a list of dimensions, one for each column; words that are no dimension
+/// stand for themselves.
 std::string unit_in_words(const std::string& dimension, const UnitSystem& units) {
+  if (const std::size_t comma = dimension.find(", "); comma != std::string::npos) {
+    return unit_in_words(dimension.substr(0, comma), units) + ", " + unit_in_words(dimension.substr(comma + 2), units);
+  }
+  if (dimension == "angle") return "rad";
   try {
     return unit_of(parse_dimension(dimension), units);
   } catch (const Error&) {
@@ -403,7 +408,7 @@ class TrajectoryWriter::File {
   std::vector<std::int64_t> ids_, sorted_ids_;  ///< as the run has them, and as the file has them
   std::vector<Index> order_;
   std::vector<double> row_;
-  std::chrono::steady_clock::time_point flushed_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::time_point flushed_{};  ///< long ago: the first sample or frame goes out at once
 };
 
 TrajectoryWriter::TrajectoryWriter(std::filesystem::path file, TrajectoryOptions options)

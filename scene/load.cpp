@@ -32,6 +32,10 @@ std::int64_t whole_steps(const TableReader& reader, std::string_view key, const 
   const auto fail = [&](const std::string& message) {
     reader.fail(&value, key, fmt::format("{} = {} {}", key, to_text(value), message));
   };
+  if (exact < 0) {
+    fail(fmt::format("lies the other way; steps are of {}, so give a time {} 0", integrator.step_text,
+                     integrator.step > 0 ? "above" : "below"));
+  }
   if (!(exact > 0)) fail(fmt::format("is no time ahead; steps are of {}", integrator.step_text));
   if (exact > 9e15) fail(fmt::format("is {:.3g} steps of {}, more than can be counted", exact, integrator.step_text));
   if (std::abs(exact - whole) > 1e-9 + 16 * std::numeric_limits<double>::epsilon() * exact) {
@@ -41,8 +45,10 @@ std::int64_t whole_steps(const TableReader& reader, std::string_view key, const 
       return fmt::format("{} ({} {})", unit == "1" ? number : "\"" + number + " " + unit + "\"", format_number(steps),
                          steps == 1 ? "step" : "steps");
     };
-    fail(fmt::format("is {:.12g} steps of {}; the nearest whole numbers are {} and {}", exact, integrator.step_text,
-                     nearest(std::floor(exact)), nearest(std::ceil(exact))));
+    const std::string is = fmt::format("is {:.12g} steps of {}", exact, integrator.step_text);
+    if (exact < 1) fail(fmt::format("{}; the shortest time is {}", is, nearest(1)));
+    fail(fmt::format("{}; the nearest whole numbers are {} and {}", is, nearest(std::floor(exact)),
+                     nearest(std::ceil(exact))));
   }
   return static_cast<std::int64_t>(whole);
 }

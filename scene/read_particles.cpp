@@ -83,6 +83,20 @@ void add_body(TableReader& body, ParticleSystem<double>& s, std::unordered_set<s
   }
 }
 
+/// Reads a table of bodies; if there is none to be read, the scene's line that asks for it is told too.
+ParticleSystem<double> bodies_in(const std::filesystem::path& file, const io::BodiesOptions& options,
+                                 const TableReader& reader) {
+  try {
+    return io::read_bodies(file, options);
+  } catch (const FileError& error) {
+    const int line = reader.line("bodies");
+    if (line <= 0) throw;
+    throw FileError(
+        error.what(),
+        {.file = reader.context().source.file, .line = line, .key = reader.path_of("bodies"), .value = file.string()});
+  }
+}
+
 ParticleSystem<double> from_file(TableReader& reader, const std::filesystem::path& folder, SceneValue& effective) {
   const std::string name = reader.text("bodies");
   if (name.empty()) reader.fail("bodies", "bodies = \"\" names no file; give one, such as \"bodies.csv\"");
@@ -90,7 +104,7 @@ ParticleSystem<double> from_file(TableReader& reader, const std::filesystem::pat
   io::BodiesOptions options;
   options.units = reader.context().units;
   if (reader.context().G) options.G = gravitation(reader);
-  ParticleSystem<double> s = io::read_bodies(file, options);
+  ParticleSystem<double> s = bodies_in(file, options, reader);
   const std::string hash = io::sha256(io::read_bytes(file));
   const std::string expected = reader.text("bodies_sha256", hash);
   if (expected != hash) {

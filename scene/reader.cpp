@@ -103,27 +103,22 @@ double TableReader::number(const SceneValue& value, std::string_view key, std::s
   const auto* integer = value.get<std::int64_t>();
   const double* number = value.get<double>();
   const std::string* text = value.get<std::string>();
+  const bool angle = dimension == "angle";
   if (integer == nullptr && number == nullptr && text == nullptr) {
-    wrong_kind(value, key, expected == dimensions::none ? "a number" : "a quantity in quotes, such as \"1 day\"");
+    const std::string example = angle ? "1 deg" : example_of(expected, "1", units);
+    const bool bare = units.is_reduced() || (expected == dimensions::none && !angle);
+    wrong_kind(value, key, bare ? "a number" : fmt::format("a quantity in quotes, such as \"{}\"", example));
   }
-  // Degrees or radians: a bare angle would be a guess, except where all numbers are bare.
-  const bool needs_unit = dimension == "angle" && !units.is_reduced();
-  const double bare = integer != nullptr ? static_cast<double>(*integer) : number != nullptr ? *number : 0;
-  if (text == nullptr && !std::isfinite(bare)) {
-    fail(&value, key, fmt::format("{} = {} is not finite; a finite number is expected", key, to_text(value)));
+  if (text == nullptr) {
+    const double bare = integer != nullptr ? static_cast<double>(*integer) : *number;
+    if (!std::isfinite(bare)) {
+      fail(&value, key, fmt::format("{} = {} is not finite; a finite number is expected", key, to_text(value)));
+    }
+    if (units.is_reduced() || (expected == dimensions::none && !angle) || key == "G") return bare;
   }
-  const bool may_be_bare = units.is_reduced() || expected == dimensions::none || key == "G";
-  if (text == nullptr && may_be_bare && !needs_unit) return bare;
-  const std::string written = text != nullptr ? *text : format_number(bare);
-  const auto ends_in_digit = [](const std::string& t) {
-    return !t.empty() && t.find_first_not_of("0123456789.+-eE") == std::string::npos;
-  };
-  if (needs_unit && ends_in_digit(written)) {
-    fail(&value, key,
-         fmt::format("{}: '{}' has no unit; an angle is expected, such as '{} deg'", key, written, written));
-  }
+  const std::string written = text != nullptr ? *text : to_text(value);
   try {
-    return parse_quantity(written, expected, units);
+    return angle ? parse_angle(written, units) : parse_quantity(written, expected, units);
   } catch (const Error& error) {
     fail(&value, key, fmt::format("{}: {}", key, error.message()));
   }

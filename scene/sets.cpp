@@ -76,18 +76,33 @@ class Setter {
     in_expect_ = keys[0] == "expect";
     SceneValue* at = &scene;
     for (std::size_t k = 0; k + 1 < keys.size(); ++k) at = &enter(*at, keys[k], k == 0);
+    if (SceneValue::Array* list = at->get<SceneValue::Array>())
+      return put_element(*list, keys.back(), std::move(value));
     if (!at->is_table()) fail(fmt::format("'{}' is not a key of a table", path_));
-    if (keys.size() == 1) check_top(*at, keys[0]);
+    if (keys.size() == 1) check_top(*at, keys[0], value);
     drop_alternatives(*at, keys.back());
     at->put(keys.back(), std::move(value));
   }
 
   [[noreturn]] void fail(const std::string& message) const { throw scene_error(source_, line_, path_, "", message); }
 
-  void check_top(const SceneValue& scene, const std::string& key) const {
+  /// One table of a list: `every.0={type="energy", steps=10}`; the number after the last adds one.
+  void put_element(SceneValue::Array& list, const std::string& key, SceneValue value) {
+    if (!value.is_table()) fail(fmt::format("'{}' is a table; set one of its keys: {}.key=value", path_, path_));
+    if (key == std::to_string(list.size())) {
+      list.push_back(std::move(value));
+    } else {
+      element(list, key) = std::move(value);
+    }
+  }
+
+  void check_top(const SceneValue& scene, const std::string& key, const SceneValue& value) const {
     const SceneValue* old = scene.find(key);
-    const bool is_table = old != nullptr && (old->is_table() || old->is_table_list());
-    if (is_table) fail(fmt::format("'{}' is a table; set one of its keys: {}.key=value", key, key));
+    if (old == nullptr) return;
+    if (old->is_table()) fail(fmt::format("'{}' is a table; set one of its keys: {}.key=value", key, key));
+    if (old->is_table_list() && value.get<SceneValue::Array>() == nullptr) {
+      fail(fmt::format("'{0}' is a list of tables; give a list, or set a key of one: {0}.0.key=value", key));
+    }
   }
 
   SceneValue& enter(SceneValue& at, const std::string& key, bool top) {

@@ -40,6 +40,13 @@ const std::vector<Wrong> wrong_lines = {
     {"run scene.toml --threads 1 --threads 2", 2, "--threads can be given only once; see `noether run --help`"},
     {"run scene.toml --out", 2, "--out needs a value; see `noether run --help`", false},
     {"run scene.toml --out ''", 2, "--out: the name of the folder is empty; see `noether run --help`"},
+    {"run --version", 2,
+     "unknown option '--version' of 'run'; known are: --help, --out, --threads, --simd, --until, --set, "
+     "--resume, --fresh, --quiet, --json"},
+    {"run --foo", 2,
+     "unknown option '--foo' of 'run'; known are: --help, --out, --threads, --simd, --until, --set, "
+     "--resume, --fresh, --quiet, --json"},
+    {"run scene.toml --simd ''", 2, "unknown SIMD level ''; known are: base, avx2, avx512"},
     {"run scene.toml --simd avx3", 2, "unknown SIMD level 'avx3'; did you mean 'avx2'?"},
     {"run scene.toml --set integrator.steps", 2,
      "--set integrator.steps: expected key=value, such as integrator.step=\"50 day\""},
@@ -64,6 +71,7 @@ const std::vector<Wrong> wrong_lines = {
      "--until 0.505: until = \"0.505\" is 50.5 steps of 0.01; the nearest whole numbers are "
      "0.5 (50 steps) and 0.51 (51 steps)"},
     {"evaluate scene.toml --forces nowhere/forces.csv", 3, "nowhere/forces.csv: the forces could not be written"},
+    {"evaluate scene.toml --forces scene.toml", 2, "the table of forces 'scene.toml' must end in .csv"},
     {"evaluate nothing.toml", 3, "nothing.toml: cannot be read: No such file or directory"},
     {"explain scene.toml --threads 2", 2, "unknown option '--threads' of 'explain'; known are: --help, --set, --json"},
     {"list", 2, "what is required; see `noether list --help`"},
@@ -83,6 +91,7 @@ const std::vector<Wrong> wrong_lines = {
     {"plot nothing.h5", 3, "nothing.h5: there is no such file"},
 #endif
     {"convert run.h5", 2, "out is required; see `noether convert --help`"},
+    {"plot ''", 2, "FILE: the name of the file is empty; see `noether plot --help`"},
     {"plot run.h5 --out a.jpg", 2, "a picture 'a.jpg' is of no known format; give a name that ends in .svg or .png"},
 };
 
@@ -94,6 +103,30 @@ std::string message_of(const std::string& json) {
   std::string text = json.substr(at + before.size(), json.size() - after.size() - at - before.size());
   std::erase(text, '\\');
   return text;
+}
+
+TEST_CASE("what cannot be written to the terminal is exit 3, and no crash", "[cli][messages]") {
+  const SceneFolder folder;
+  const auto shell = [&](const std::string& line) {
+    return run_process({"/bin/sh", "-c", std::string(NOETHER_PROGRAM) + " " + line}, folder.path());
+  };
+  for (const std::string command : {"list units", "run scene.toml", "run scene.toml --fresh --json", "--help"}) {
+    INFO(command);
+    const ProcessResult result = shell(command + " > /dev/full");
+    CHECK(result.exit_code == 3);
+    CHECK(result.err == "standard output: no space left on device\n");
+    std::filesystem::remove_all(folder / "scene.out");
+  }
+  CHECK(shell("run --foo 2> /dev/full").exit_code == 2);
+  CHECK(shell("run --foo 2>&-").exit_code == 2);
+}
+
+TEST_CASE("a name that no file can have is exit 3", "[cli][messages]") {
+  const SceneFolder folder;
+  const std::string name(300, 'n');
+  const ProcessResult result = noether(folder, "run scene.toml --out " + name);
+  CHECK(result.exit_code == 3);
+  CHECK(result.err == name + ": file name too long\n");
 }
 
 TEST_CASE("wrong command lines are told in one line", "[cli][messages]") {

@@ -163,6 +163,30 @@ TEST_CASE("a direction is told only where there is one", "[monitors]") {
   CHECK(std::isnan(angular.series()[2].values[0]));
   CHECK(angular.worst_direction() == 0);
   CHECK(angular.worst() == 0);
+  CHECK(angular.report().note.empty());
+}
+
+TEST_CASE("tracers alone have no center of mass, and that shows", "[monitors]") {
+  ParticleSystem<double> s;
+  s.add("dust", 0, {-1, 0, 0}, {0, 0, 0});
+  auto sim = run_of(std::move(s));
+  auto& center = sim.every(1, CenterOfMass{});
+  CHECK(sim.run(2).ok());
+  CHECK(std::isnan(center.worst()));
+  CHECK(std::isnan(center.series()[0].values[0]));
+}
+
+TEST_CASE("a direction that turns is told, as the closed form says", "[monitors]") {
+  // Thrown along y in a field along z: L = (g t^2 / 2, -g t, 1). Verlet is exact here.
+  ParticleSystem<double> s;
+  s.add("thrown", 1, {1, 0, 0}, {0, 1, 0});
+  Simulation sim(std::move(s), compose(KineticPotential(UniformField{.acceleration = {0, 0, 0.5}}), schemes::verlet),
+                 0.125);
+  auto& angular = sim.every(1, AngularMomentum{});
+  CHECK(sim.run(8).ok());
+  CHECK(angular.worst_direction() == Approx(std::atan(std::hypot(0.25, 0.5))).epsilon(1e-15));
+  CHECK(angular.worst() == Approx(std::hypot(0.25, 0.5)).epsilon(1e-15));
+  CHECK(angular.report().note == "direction within 0.51 rad");
 }
 
 TEST_CASE("a dissipative run has an energy but no error of it, and says why", "[monitors]") {

@@ -113,6 +113,17 @@ TEST_CASE("monitors' samples stand in the file as they were, with unit, shape an
   CHECK(angular.quantities.at("value").second.back() == run.angular->value()[2]);
   CHECK(elements.quantities.at("value").first.size() == 2);
   CHECK(elements.quantities.at("value").first.back() == 6);
+  CHECK(elements.units.at("value") == "au, 1, rad, rad, rad, rad");
+  CHECK(io::Hdf5File::open_to_read(folder / "run.h5").has_attribute("/noether/monitors/elements/value", "columns"));
+}
+
+TEST_CASE("a file can be read from its first frame on, whatever becomes of the run", "[trajectory]") {
+  const test::ScratchFolder folder;
+  WritingRun run(folder / "run.h5");
+  REQUIRE(run.simulation.run(0).ok());
+  const std::filesystem::path seen = folder / "seen.h5";  // what a killed run would leave
+  std::filesystem::copy_file(folder / "run.h5", seen);
+  CHECK(io::verify(seen).damaged.empty());
 }
 
 TEST_CASE("a series that names its columns has them in the file", "[trajectory]") {

@@ -10,7 +10,12 @@
 #include "scene/evaluate.hpp"
 #include "scene/scene.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/process.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -114,6 +119,33 @@ TEST_CASE("--set replaces the key that it excludes", "[scene][set]") {
   CHECK(read(two_bodies, {"integrator.steps=11", "integrator.until=50 day"}).integrator.steps == 10);
   CHECK(read(two_bodies, {"every.0.steps=4"}).watches.at(0).cadence.steps == 4);
   CHECK(read(two_bodies, {"every.1.every=50 day"}).watches.at(1).cadence.steps == 10);
+}
+
+TEST_CASE("--set replaces lists of tables, and one table, and adds one", "[scene][set]") {
+  const auto watched = [](const std::vector<std::string>& sets) {
+    std::string names;
+    for (const SceneWatch& watch : read(two_bodies, sets).watches) {
+      names += fmt::format("{} {}; ", watch.monitor.name, watch.cadence.steps);
+    }
+    return names;
+  };
+  const std::string momentum = "{type=\"momentum\", steps=7}";
+  CHECK(watched({"every=[" + momentum + "]"}) == "momentum 7; ");
+  CHECK(watched({"every=[]"}).empty());
+  const std::string before = watched({});
+  const auto tables = static_cast<std::size_t>(std::count(before.begin(), before.end(), ';'));
+  CHECK(watched({fmt::format("every.{}={}", tables, momentum)}) == before + "momentum 7; ");
+  CHECK(watched({"every.0=" + momentum}) == "momentum 7; " + before.substr(before.find("; ") + 2));
+  CHECK(watched({"every=[]", "every.0=" + momentum, "every.momentum.steps=8"}) == "momentum 8; ");
+}
+
+TEST_CASE("the scene of docs/scenes.md can be run", "[scene]") {
+  const std::filesystem::path page = std::filesystem::path(NOETHER_SOURCE_DIR) / "docs" / "scenes.md";
+  const std::string text = test::read_text(page), begin = "```toml\n";
+  const std::size_t from = text.find(begin) + begin.size();
+  const Scene scene = read_scene(text.substr(from, text.find("```", from) - from), page);
+  CHECK(scene.integrator.steps == 730'500);
+  CHECK(assemble(scene).run(100).ok());
 }
 
 TEST_CASE("a value of --set is TOML, or else a text", "[scene][set]") {
