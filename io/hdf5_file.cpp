@@ -1,11 +1,12 @@
 #include "io/hdf5_file.hpp"
 
 #include "engine/error.hpp"
+#include "io/ordered_file.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
+#include <cstring>
 #include <functional>
 #include <numeric>
 #include <utility>
@@ -23,17 +24,12 @@ namespace {
 /// What all handles of one file share.
 struct FileState {
   std::string name;
-  bool writing = false;
-  bool broken = false;  ///< a write failed
+  OrderedFile* ordered = nullptr;  ///< of a file that is written
 };
 using Context = std::shared_ptr<FileState>;
 
-/// Whether a broken file stays open to the end.
-bool left_open = false;
-
 }  // namespace
 
-/// HDF5 may crash when it closes a file that could not be written: such a file is left as it is on disk.
 class Hdf5Handle {
  public:
   using Close = herr_t (*)(hid_t);
@@ -43,12 +39,7 @@ class Hdf5Handle {
       : id_(std::exchange(other.id_, -1)), close_(other.close_), file_(std::move(other.file_)) {}
   Hdf5Handle& operator=(Hdf5Handle&&) = delete;
   ~Hdf5Handle() {
-    if (id_ < 0) return;
-    if (file_->broken) {
-      left_open = true;
-    } else {
-      close_(id_);
-    }
+    if (id_ >= 0) close_(id_);
   }
   operator hid_t() const { return id_; }  // NOLINT: stands wherever HDF5 wants an id
   const Context& file() const { return file_; }
@@ -79,7 +70,6 @@ herr_t keep_reason(unsigned /*depth*/, const H5E_error2_t* entry, void* kept) {
   std::string reason;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_reason, &reason);
   H5Eclear2(H5E_DEFAULT);
-  file->broken = file->broken || file->writing;
   throw FileError(reason.empty() ? what : fmt::format("{}: {}", what, reason), {.file = file->name});
 }
 
@@ -95,26 +85,19 @@ std::shared_ptr<Hdf5Handle> share(hid_t id, Hdf5Handle::Close close, const Conte
 void check(herr_t status, const Hdf5Handle& handle, const std::string& what) {
   if (status < 0) fail(handle.file(), what);
 }
+/// After a write that failed HDF5 goes on as if nothing were wrong: it must be able to close the file.
+void check_written(const Context& file) {
+  const int error = file->ordered != nullptr ? write_error(*file->ordered) : 0;
+  if (error != 0) throw FileError(fmt::format("cannot write the file: {}", std::strerror(error)), {.file = file->name});
+}
 
 std::string writing(const std::string& path) { return fmt::format("cannot write '{}'", path); }
 std::string reading(const std::string& path) { return fmt::format("cannot read '{}'", path); }
 
-/// HDF5 closes open files when the program ends, which is wrong where one is broken.
-void begin_hdf5() {
-  static const bool begun = [] {
-    H5dont_atexit();
-    return std::atexit([] {
-             if (!left_open) H5close();
-           }) == 0;
-  }();
-  static_cast<void>(begun);
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-}
-
 /// Old file format, and no locks: an open reader must not stop a run.
-Hdf5Handle access_list(const std::filesystem::path& name, bool writing) {
-  begin_hdf5();
-  const Context file = std::make_shared<FileState>(FileState{name.string(), writing, false});
+Hdf5Handle access_list(const std::filesystem::path& name) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  const Context file = std::make_shared<FileState>(FileState{.name = name.string()});
   Hdf5Handle list = own(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, file, "cannot prepare the file");
   check(H5Pset_file_locking(list, false, true), list, "cannot prepare the file");
   return list;
@@ -244,6 +227,7 @@ void Hdf5Dataset::resize(Index rows) {
   axes.at(0) = rows;
   const std::vector<hsize_t> extent(axes.begin(), axes.end());
   check(H5Dset_extent(*handle_, extent.data()), *handle_, writing(path_));
+  check_written(handle_->file());
 }
 
 void Hdf5Dataset::append_raw(const void* rows, std::size_t values, ElementType type) {
@@ -260,6 +244,7 @@ void Hdf5Dataset::append_raw(const void* rows, std::size_t values, ElementType t
   H5Sselect_hyperslab(target, H5S_SELECT_SET, first.data(), nullptr, count.data(), nullptr);
   const Hdf5Handle source = space_of({count.begin(), count.end()}, handle_->file());
   check(H5Dwrite(*handle_, in_memory(type), source, target, H5P_DEFAULT, rows), *handle_, writing(path_));
+  check_written(handle_->file());
 }
 
 void Hdf5Dataset::append(std::span<const double> rows) { append_raw(rows.data(), rows.size(), ElementType::real); }
@@ -311,20 +296,36 @@ std::vector<std::string> Hdf5Dataset::read_texts() const {
 
 // ---- files ---------------------------------------------------------------------------------------------------------
 
+namespace {
+std::shared_ptr<Hdf5Handle> with_order(std::shared_ptr<Hdf5Handle> handle) {
+  handle->file()->ordered = ordered_file(*handle);
+  return handle;
+}
+}  // namespace
+
 Hdf5File Hdf5File::create(const std::filesystem::path& file) {
-  const Hdf5Handle access = access_list(file, true);
-  return Hdf5File(share(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, access.file(),
-                        "cannot create the file"));
+  const Hdf5Handle access = access_list(file);
+  if (!use_ordered_driver(access)) fail(access.file(), "cannot prepare the file");
+  // The name is given to a file that can be opened, if only an empty one.
+  const std::string unnamed = file.string() + ".new";
+  Hdf5File made(with_order(share(H5Fcreate(unnamed.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose,
+                                 access.file(), "cannot create the file")));
+  made.flush();
+  std::error_code error;
+  std::filesystem::rename(unnamed, file, error);
+  if (error) throw FileError("cannot create the file: " + error.message(), {.file = file.string()});
+  return made;
 }
 
 namespace {
 std::shared_ptr<Hdf5Handle> open_file(const std::filesystem::path& file, bool writing) {
-  const Hdf5Handle access = access_list(file, writing);
+  const Hdf5Handle access = access_list(file);
+  if (writing && !use_ordered_driver(access)) fail(access.file(), "cannot prepare the file");
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) throw FileError("there is no such file", {.file = file.string()});
   if (!std::filesystem::is_regular_file(file, ignored)) throw FileError("this is no file", {.file = file.string()});
   const hid_t id = H5Fopen(file.c_str(), writing ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access);
-  return share(id, H5Fclose, access.file(), "cannot be opened as an HDF5 file");
+  return with_order(share(id, H5Fclose, access.file(), "cannot be opened as an HDF5 file"));
 }
 }  // namespace
 
@@ -337,14 +338,14 @@ std::string name_in_memory(const std::filesystem::path& name) { return (name / "
 }  // namespace
 
 Hdf5File Hdf5File::create_in_memory(const std::filesystem::path& name) {
-  const Hdf5Handle access = access_list(name, false);
+  const Hdf5Handle access = access_list(name);
   check(H5Pset_fapl_core(access, 1 << 20, false), access, "cannot prepare the file");
   return Hdf5File(share(H5Fcreate(name_in_memory(name).c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose,
                         access.file(), "cannot prepare the file"));
 }
 
 Hdf5File Hdf5File::open_bytes(const std::string& bytes, const std::filesystem::path& name) {
-  const Hdf5Handle access = access_list(name, false);
+  const Hdf5Handle access = access_list(name);
   check(H5Pset_fapl_core(access, 1 << 20, false), access, "cannot read the file");
   // HDF5 copies the image and does not change it.
   check(H5Pset_file_image(access, const_cast<char*>(bytes.data()), bytes.size()), access, "cannot read the file");
@@ -362,7 +363,14 @@ std::string Hdf5File::to_bytes() const {
   return bytes;
 }
 
-void Hdf5File::flush() const { check(H5Fflush(*handle_, H5F_SCOPE_LOCAL), *handle_, "cannot write the file"); }
+void Hdf5File::flush() const {
+  check(H5Fflush(*handle_, H5F_SCOPE_LOCAL), *handle_, "cannot write the file");
+  check_written(handle_->file());
+}
+
+void Hdf5File::begin_cut() const {
+  if (handle_->file()->ordered != nullptr) io::begin_cut(*handle_->file()->ordered);
+}
 
 void Hdf5File::make_group(const std::string& path) const {
   if (has(path)) return;

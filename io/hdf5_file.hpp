@@ -73,8 +73,11 @@ class Hdf5File {
 
   /// The bytes that a file of this content has.
   std::string to_bytes() const;
-  /// Hands everything to the operating system.
+  /// Hands everything to the operating system. What a kill or a full disk leaves is the file as of the last flush.
+  /// @throws FileError if the disk refuses, now or since
   void flush() const;
+  /// Says that datasets are about to become shorter; after the flush the file must be closed before it grows again.
+  void begin_cut() const;
 
   void make_group(const std::string& path) const;
   bool has(const std::string& path) const;

@@ -37,6 +37,7 @@ Hdf5File Hdf5File::open_to_append(const std::filesystem::path& file) { refuse(fi
 Hdf5File Hdf5File::create_in_memory(const std::filesystem::path& name) { refuse(name); }
 Hdf5File Hdf5File::open_bytes(const std::string&, const std::filesystem::path& name) { refuse(name); }
 std::string Hdf5File::to_bytes() const { unreachable(); }
+void Hdf5File::begin_cut() const { unreachable(); }
 void Hdf5File::flush() const { unreachable(); }
 void Hdf5File::make_group(const std::string&) const { unreachable(); }
 bool Hdf5File::has(const std::string&) const { unreachable(); }

@@ -298,6 +298,7 @@ class TrajectoryWriter::File {
   /// Cuts every dataset back to its saved length; those that came later become empty.
   void cut(const std::vector<std::string>& paths, const std::vector<std::int64_t>& rows) {
     hdf5_ = Hdf5File::open_to_append(path_);
+    hdf5_->begin_cut();
     for (const std::string& path : growing_paths()) {
       const auto found = std::find(paths.begin(), paths.end(), path);
       if (found == paths.end()) hdf5_->open(path).resize(0);
