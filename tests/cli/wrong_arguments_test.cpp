@@ -110,7 +110,9 @@ TEST_CASE("what cannot be written to the terminal is exit 3, and no crash", "[cl
   const auto shell = [&](const std::string& line) {
     return run_process({"/bin/sh", "-c", std::string(NOETHER_PROGRAM) + " " + line}, folder.path());
   };
-  for (const std::string command : {"list units", "run scene.toml", "run scene.toml --fresh --json", "--help"}) {
+  std::vector<std::string> commands = {"list units", "explain scene.toml", "evaluate scene.toml --json", "--help"};
+  if (NOETHER_HDF5 != 0) commands.insert(commands.end(), {"run scene.toml", "run scene.toml --fresh --json"});
+  for (const std::string& command : commands) {
     INFO(command);
     const ProcessResult result = shell(command + " > /dev/full");
     CHECK(result.exit_code == 3);
