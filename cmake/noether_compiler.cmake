@@ -70,14 +70,20 @@ function(noether_warnings target)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
     target_compile_options(${target} PRIVATE -Wno-restrict -Wno-stringop-overflow)
   endif()
-  # Where sources are compiled several at a time, g++ takes each for a header.
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NOETHER_UNITY)
-    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
-  endif()
   # g++ must keep the name of the precompiled header in preprocessed text, or ccache cannot use it.
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(${target} PRIVATE -fpch-preprocess)
   elseif(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
     target_compile_options(${target} PRIVATE "SHELL:-Xclang -fno-pch-timestamp")
+  endif()
+endfunction()
+
+# Compiles the sources of a target four at a time, so that headers and templates are met once for four.
+function(noether_unity target)
+  if(NOETHER_UNITY)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 4)
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+      target_compile_options(${target} PRIVATE -Wno-subobject-linkage)  # g++ takes each of the four for a header
+    endif()
   endif()
 endfunction()

@@ -296,20 +296,14 @@ std::vector<std::string> Hdf5Dataset::read_texts() const {
 
 // ---- files ---------------------------------------------------------------------------------------------------------
 
-namespace {
-std::shared_ptr<Hdf5Handle> with_order(std::shared_ptr<Hdf5Handle> handle) {
-  handle->file()->ordered = ordered_file(*handle);
-  return handle;
-}
-}  // namespace
-
 Hdf5File Hdf5File::create(const std::filesystem::path& file) {
   const Hdf5Handle access = access_list(file);
   if (!use_ordered_driver(access)) fail(access.file(), "cannot prepare the file");
   // The name is given to a file that can be opened, if only an empty one.
   const std::string unnamed = file.string() + ".new";
-  Hdf5File made(with_order(share(H5Fcreate(unnamed.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose,
-                                 access.file(), "cannot create the file")));
+  const Hdf5File made(share(H5Fcreate(unnamed.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, access.file(),
+                            "cannot create the file"));
+  access.file()->ordered = ordered_file(*made.handle_);
   made.flush();
   std::error_code error;
   std::filesystem::rename(unnamed, file, error);
@@ -325,7 +319,9 @@ std::shared_ptr<Hdf5Handle> open_file(const std::filesystem::path& file, bool wr
   if (!std::filesystem::exists(file, ignored)) throw FileError("there is no such file", {.file = file.string()});
   if (!std::filesystem::is_regular_file(file, ignored)) throw FileError("this is no file", {.file = file.string()});
   const hid_t id = H5Fopen(file.c_str(), writing ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access);
-  return with_order(share(id, H5Fclose, access.file(), "cannot be opened as an HDF5 file"));
+  auto handle = share(id, H5Fclose, access.file(), "cannot be opened as an HDF5 file");
+  if (writing) access.file()->ordered = ordered_file(id);
+  return handle;
 }
 }  // namespace
 

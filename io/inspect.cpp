@@ -129,12 +129,14 @@ void check_clock(const std::string& who, const std::vector<std::int64_t>& steps,
   }
 }
 
-/// A run that was killed while it wrote may have left rows in some datasets that others do not have yet.
+/// A run that was killed while it wrote may have left rows that the dataset written last does not have yet: positions
+/// of frames, steps of samples. Nothing is ever shorter than these.
 void check_frames(const TrajectoryReader& reader, bool complete, std::vector<std::string>& damaged) {
   std::vector<std::int64_t> steps;
   std::vector<double> times;
-  for (const auto& [path, rows] : reader.lengths()) {
-    if (complete && rows != reader.frames())
+  const auto lengths = reader.lengths();
+  for (const auto& [path, rows] : lengths) {
+    if (rows < lengths.front().second || (complete && rows != reader.frames()))
       damaged.push_back(fmt::format("'{}' has {} rows, others {}", path, rows, reader.frames()));
   }
   for (Index k = 0; k < reader.frames(); ++k) {
@@ -156,7 +158,7 @@ void check_monitors(const Hdf5File& file, bool complete, std::vector<std::string
     const Index samples = file.open(group + "/step").rows();
     for (const std::string& quantity : file.children(group)) {
       const Hdf5Dataset dataset = file.open(group + "/" + quantity);
-      if (complete && dataset.rows() != samples) {
+      if (dataset.rows() < samples || (complete && dataset.rows() != samples)) {
         damaged.push_back(fmt::format("'{}/{}' has {} rows, its steps {}", group, quantity, dataset.rows(), samples));
       }
       if (dataset.type() == ElementType::real) dataset.read_reals();

@@ -15,7 +15,7 @@ class OrderedFile;
 /// Chooses the driver, and what it counts on, in a list of file access. @return whether HDF5 took it
 bool use_ordered_driver(Hdf5Id access);
 
-/// The driver's side of an open file; null if the file has another driver.
+/// The driver's side of an open file; the file must have been opened with this driver.
 OrderedFile* ordered_file(Hdf5Id file);
 
 /// Why a write has failed (errno), or 0. From then on nothing is written any more: the file stays as of its last flush.

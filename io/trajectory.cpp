@@ -220,7 +220,6 @@ class TrajectoryWriter::File {
   }
 
   void describe_particles(const ParticleSystem<double>& state) {
-    const std::string root = particles_path;
     std::vector<double> masses;
     std::vector<std::string> names;
     match_order(state);
@@ -229,14 +228,14 @@ class TrajectoryWriter::File {
       names.push_back(state.name(i));
     }
     const std::vector<Index> shape{state.size()};
-    hdf5_->write(root + "/id", sorted_ids_, shape);
-    hdf5_->write(root + "/mass", masses, shape);
-    hdf5_->write(root + "/species", species_of(names), shape);
-    hdf5_->write(root + "/name", names);
-    set_unit(root + "/mass", std::string(units_->mass), "u");
-    hdf5_->make_group(root + "/box");
-    hdf5_->set_attribute(root + "/box", "dimension", std::int64_t{3});
-    hdf5_->set_attribute(root + "/box", "boundary", std::vector<std::string>(3, "none"));
+    hdf5_->write(particles_path + "/id", sorted_ids_, shape);
+    hdf5_->write(particles_path + "/mass", masses, shape);
+    hdf5_->write(particles_path + "/species", species_of(names), shape);
+    hdf5_->write(particles_path + "/name", names);
+    set_unit(particles_path + "/mass", std::string(units_->mass), "u");
+    hdf5_->make_group(particles_path + "/box");
+    hdf5_->set_attribute(particles_path + "/box", "dimension", std::int64_t{3});
+    hdf5_->set_attribute(particles_path + "/box", "boundary", std::vector<std::string>(3, "none"));
   }
 
   /// MDAnalysis takes only the units it knows, so an attribute `unit` stands in molecular files alone.
@@ -266,27 +265,26 @@ class TrajectoryWriter::File {
 
   /// Opens an existing file to go on with it.
   void open() {
-    const std::string root = particles_path;
     hdf5_ = Hdf5File::open_to_append(path_);
     units_ = &unit_system(hdf5_->text_attribute("/noether", "units"));
-    sorted_ids_ = hdf5_->open(root + "/id").read_integers();
+    sorted_ids_ = hdf5_->open(particles_path + "/id").read_integers();
     hdf5_->set_attribute("/noether", "complete", std::int64_t{0});
     // The end may have been moved.
     if (hdf5_->read_text("/noether/scene") != options_.scene_toml)
       hdf5_->write_text("/noether/scene", options_.scene_toml);
     if (!options_.frames) return;
-    frame_.position = BufferedDataset<double>(hdf5_->open(root + "/position/value"));
-    frame_.velocity = BufferedDataset<double>(hdf5_->open(root + "/velocity/value"));
-    frame_.step = BufferedDataset<std::int64_t>(hdf5_->open(root + "/position/step"));
-    frame_.time = BufferedDataset<double>(hdf5_->open(root + "/position/time"));
+    frame_.position = BufferedDataset<double>(hdf5_->open(particles_path + "/position/value"));
+    frame_.velocity = BufferedDataset<double>(hdf5_->open(particles_path + "/velocity/value"));
+    frame_.step = BufferedDataset<std::int64_t>(hdf5_->open(particles_path + "/position/step"));
+    frame_.time = BufferedDataset<double>(hdf5_->open(particles_path + "/position/time"));
   }
 
   /// Every dataset that grows, each once.
   std::vector<std::string> growing_paths() const {
-    const std::string root = particles_path;
     std::vector<std::string> paths;
-    if (hdf5_->has(root + "/position")) {
-      paths = {root + "/position/step", root + "/position/time", root + "/position/value", root + "/velocity/value"};
+    if (hdf5_->has(particles_path + "/position")) {
+      paths = {particles_path + "/position/step", particles_path + "/position/time", particles_path + "/position/value",
+               particles_path + "/velocity/value"};
     }
     for (const std::string& monitor : hdf5_->children(monitors_path)) {
       const std::string group = monitors_path + "/" + monitor;

@@ -129,6 +129,7 @@ std::vector<PartInfo> stop_parts();
 /// Steps between two looks unless a scene says otherwise: an escape is seen late as well as early, a collision is found
 /// between two looks only if they are close.
 inline constexpr std::int64_t default_escape_steps = 100, default_collision_steps = 1;
+
 /// What the Hamiltonians say of themselves.
 std::vector<PartInfo> hamiltonian_parts();
 

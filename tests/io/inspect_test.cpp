@@ -6,6 +6,7 @@
 #include "engine/version.hpp"
 #include "io/bodies.hpp"
 #include "io/digest.hpp"
+#include "io/hdf5_file.hpp"
 #include "tests/io/support.hpp"
 
 #include <sstream>
@@ -110,6 +111,12 @@ TEST_CASE("verify finds nothing wrong with a good file, and names what is wrong 
                                  "'/particles/system/position/step' has 13 rows, others 11",
                                  "'/particles/system/position/time' has 13 rows, others 11",
                                  "frame 4 at step 20 is not finite", "frames: step 5 follows step 35",
+                                 "'/noether/monitors/energy/total' has 20 rows, its steps 21"});
+
+  // Of a run that did not end well, only what is too short is damage.
+  io::Hdf5File::open_to_append(folder / "run.h5").set_attribute("/noether", "complete", std::int64_t{0});
+  CHECK(io::verify(folder / "run.h5").damaged ==
+        std::vector<std::string>{"frame 4 at step 20 is not finite", "frames: step 5 follows step 35",
                                  "'/noether/monitors/energy/total' has 20 rows, its steps 21"});
 }
 
