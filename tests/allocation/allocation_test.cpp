@@ -27,17 +27,20 @@ void* counted(std::size_t size, std::size_t alignment) {
   if (p == nullptr) throw std::bad_alloc();
   return p;
 }
+
+/// Not inlined: g++ would see std::free of what operator new returned, and warn.
+[[gnu::noinline]] void give_back(void* p) noexcept { std::free(p); }
 }  // namespace
 
 void* operator new(std::size_t size) { return counted(size, 0); }
 void* operator new[](std::size_t size) { return counted(size, 0); }
 void* operator new(std::size_t size, std::align_val_t a) { return counted(size, static_cast<std::size_t>(a)); }
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete[](void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t /*size*/) noexcept { std::free(p); }
-void operator delete[](void* p, std::size_t /*size*/) noexcept { std::free(p); }
-void operator delete(void* p, std::align_val_t /*alignment*/) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t /*size*/, std::align_val_t /*alignment*/) noexcept { std::free(p); }
+void operator delete(void* p) noexcept { give_back(p); }
+void operator delete[](void* p) noexcept { give_back(p); }
+void operator delete(void* p, std::size_t /*size*/) noexcept { give_back(p); }
+void operator delete[](void* p, std::size_t /*size*/) noexcept { give_back(p); }
+void operator delete(void* p, std::align_val_t /*alignment*/) noexcept { give_back(p); }
+void operator delete(void* p, std::size_t /*size*/, std::align_val_t /*alignment*/) noexcept { give_back(p); }
 
 using namespace noether;
 

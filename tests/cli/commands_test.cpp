@@ -13,15 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The output of a command that must succeed and say nothing on stderr.
-std::string output(const ScratchFolder& folder, const std::string& line) {
-  const ProcessResult result = noether(folder, line);
-  INFO(line << "\n" << result.out << result.err);
-  CHECK(result.exit_code == 0);
-  CHECK(result.err.empty());
-  return result.out;
-}
-
 std::string json_output(const ScratchFolder& folder, const std::string& line, const std::string& schema) {
   const std::string json = output(folder, line + " --json");
   INFO(json);
@@ -29,8 +20,6 @@ std::string json_output(const ScratchFolder& folder, const std::string& line, co
   CHECK(json_member(json, "schema") == "\"noether." + schema + "/1\"");
   return json;
 }
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;

@@ -9,15 +9,6 @@
 namespace noether::test {
 namespace {
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
-std::string output(const ScratchFolder& folder, const std::string& line) {
-  const ProcessResult result = noether(folder, line);
-  INFO(line << "\n" << result.out << result.err);
-  CHECK(result.exit_code == 0);
-  return result.out;
-}
-
 TEST_CASE("an error is one line, whatever stands in it", "[cli][messages]") {
   const SceneFolder folder;
   for (const std::string text :

@@ -46,6 +46,17 @@ inline ProcessResult noether(const ScratchFolder& folder, std::string_view line)
   return run_process(command(line), folder.path());
 }
 
+/// The output of a command that must succeed and say nothing on stderr.
+inline std::string output(const ScratchFolder& folder, const std::string& line) {
+  const ProcessResult result = noether(folder, line);
+  INFO(line << "\n" << result.out << result.err);
+  CHECK(result.exit_code == 0);
+  CHECK(result.err.empty());
+  return result.out;
+}
+
+inline bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
 inline std::size_t line_count(const std::string& text) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }

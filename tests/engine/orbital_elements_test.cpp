@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 namespace noether {
@@ -32,8 +33,6 @@ Quad kepler_residual(const Vec3<Quad>& x, const Quad& a, const Quad& e, const Qu
   const Quad E = acos(cosine);
   return E - e * sin(E) - M;
 }
-
-constexpr Quad pi = 3.14159265358979323846264338327950288419716939937511_q;
 
 }  // namespace
 
@@ -122,10 +121,10 @@ TEST_CASE("where an angle has no meaning it is 0 and the others carry the positi
   const auto circle = elements_from_state<double>(Vec3<double>(0, 1, 0), Vec3<double>(-1, 0, 0), 1);
   CHECK(circle.e == 0);
   CHECK(circle.omega == 0);
-  CHECK(circle.M == static_cast<double>(pi) / 2);
+  CHECK(circle.M == std::numbers::pi / 2);
 
   const auto backwards = elements_from_state<double>(Vec3<double>(1, 0, 0), Vec3<double>(0, -1.1, 0), 1);
-  CHECK(backwards.inc == static_cast<double>(pi));
+  CHECK(backwards.inc == std::numbers::pi);
   CHECK(backwards.Omega == 0);
 }
 

@@ -15,8 +15,6 @@
 namespace noether {
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
 /// A sun of mass 1 and a planet on the orbit of these elements, G = 1.
 template <class Real> ParticleSystem<Real> planet(const OrbitalElements<Real>& o, double mass = 0.25) {
   ParticleSystem<Real> s;
@@ -26,7 +24,7 @@ template <class Real> ParticleSystem<Real> planet(const OrbitalElements<Real>& o
   return s;
 }
 
-template <class Real> Simulation<Real> run_of(ParticleSystem<Real> s, double dt) {
+template <class Real> Simulation<Real> orbits_of(ParticleSystem<Real> s, double dt) {
   return Simulation<Real>(std::move(s), compose(KineticPotential<Gravity, Real>(Gravity{}), schemes::yoshida_8), dt);
 }
 
@@ -35,7 +33,7 @@ template <class Real> Simulation<Real> run_of(ParticleSystem<Real> s, double dt)
 TEMPLATE_TEST_CASE("elements refer to particle 0 and stay on a Kepler orbit", "[orbital_monitors]", double, Quad) {
   using Real = TestType;
   const OrbitalElements<Real> o{Real(1.25), Real(0.25), Real(0.5), Real(1), Real(2), Real(3)};
-  auto sim = run_of(planet<Real>(o), 0.01);
+  auto sim = orbits_of(planet<Real>(o), 0.01);
   auto& elements = sim.every(100, Elements{});
   CHECK(sim.run(1000).ok());
   const OrbitalElements<double> now = elements.of(1);
@@ -45,11 +43,11 @@ TEMPLATE_TEST_CASE("elements refer to particle 0 and stay on a Kepler orbit", "[
   CHECK(std::abs(now.inc - 0.5) < 1e-12);
   CHECK(std::abs(now.Omega - 1) < 1e-12);
   CHECK(std::abs(now.omega - 2) < 1e-11);
-  CHECK(std::abs(now.M - std::fmod(3 + 10 * motion, 2 * pi)) < 1e-11);
+  CHECK(std::abs(now.M - std::fmod(3 + 10 * motion, 2 * std::numbers::pi)) < 1e-11);
 }
 
 TEST_CASE("the series of elements has one row per particle and none for the primary", "[orbital_monitors]") {
-  auto sim = run_of(planet<double>({1, 0.5, 0, 0, 0, 0}), 0.01);
+  auto sim = orbits_of(planet<double>({1, 0.5, 0, 0, 0, 0}), 0.01);
   auto& elements = sim.every(1, Elements{});
   CHECK(sim.run(0).ok());
   const std::vector<Series> series = elements.series();
@@ -64,7 +62,7 @@ TEST_CASE("the series of elements has one row per particle and none for the prim
 }
 
 TEST_CASE("elements take a constant of gravitation of their own", "[orbital_monitors]") {
-  auto sim = run_of(planet<double>({1, 0.5, 0, 0, 0, pi}), 0.01);
+  auto sim = orbits_of(planet<double>({1, 0.5, 0, 0, 0, std::numbers::pi}), 0.01);
   auto& own = sim.every(1, Elements{4.0});
   CHECK(sim.run(0).ok());
   // At the apocenter r = 3/2, v^2 = mu (2/r - 1); with 4 mu the axis is 1 / (2/r - v^2/(4 mu)).
@@ -79,18 +77,18 @@ TEMPLATE_TEST_CASE("a pericenter between two looks is found, and when it was", "
   const double time_error[] = {1e-4, 1e-5};
   int refinement = 0;
   for (const int steps : {40, 20}) {
-    auto sim = run_of(planet<Real>(o, 0), 0.01);
+    auto sim = orbits_of(planet<Real>(o, 0), 0.01);
     auto& closest = sim.every(steps, ClosestApproach{});
     CHECK(sim.run(120).ok());
     CHECK(std::abs(closest.distance() - 0.75) < distance_error[refinement]);
-    CHECK(std::abs(closest.at_time() - (2 * pi - 5.5)) < time_error[refinement]);
+    CHECK(std::abs(closest.at_time() - (2 * std::numbers::pi - 5.5)) < time_error[refinement]);
     CHECK(closest.pair() == std::vector<std::int64_t>{0, 1});
     ++refinement;
   }
 }
 
 TEST_CASE("the smallest distance is the smallest of the whole run, not the last", "[orbital_monitors]") {
-  auto sim = run_of(planet<double>({1, 0.5, 0, 0, 0, -0.5}, 0), 0.01);
+  auto sim = orbits_of(planet<double>({1, 0.5, 0, 0, 0, -0.5}, 0), 0.01);
   auto& closest = sim.every(10, ClosestApproach{});
   CHECK(sim.run(300).ok());
   CHECK(std::abs(closest.distance() - 0.5) < 1e-6);
@@ -106,8 +104,8 @@ TEST_CASE("the smallest distance is the smallest of the whole run, not the last"
 }
 
 TEST_CASE("looks too far apart for an approach say so, and count only what was seen", "[orbital_monitors]") {
-  auto seldom = run_of(planet<double>({1, 0.9, 0, 0, 0, -0.5}, 0), 0.001);
-  auto often = run_of(planet<double>({1, 0.9, 0, 0, 0, -0.5}, 0), 0.001);
+  auto seldom = orbits_of(planet<double>({1, 0.9, 0, 0, 0, -0.5}, 0), 0.001);
+  auto often = orbits_of(planet<double>({1, 0.9, 0, 0, 0, -0.5}, 0), 0.001);
   auto& guess = seldom.every(1000, ClosestApproach{});
   auto& known = often.every(1, ClosestApproach{});
   CHECK(seldom.run(1000).ok());
@@ -124,7 +122,7 @@ TEST_CASE("tracers come near massive bodies, never near each other", "[orbital_m
   s.add("sun", 1, {0, 0, 0}, {0, 0, 0});
   s.add("dust", 0, {1, 0, 0}, {0, 1, 0});
   s.add("more dust", 0, {1.001, 0, 0}, {0, 1, 0});
-  auto sim = run_of(std::move(s), 0.01);
+  auto sim = orbits_of(std::move(s), 0.01);
   auto& closest = sim.every(1, ClosestApproach{});
   CHECK(sim.run(0).ok());
   CHECK(closest.distance() == 1);
@@ -133,7 +131,7 @@ TEST_CASE("tracers come near massive bodies, never near each other", "[orbital_m
 TEST_CASE("a single particle has no closest approach and reports none", "[orbital_monitors]") {
   ParticleSystem<double> s;
   s.add("alone", 1, {0, 0, 0}, {1, 0, 0});
-  auto sim = run_of(std::move(s), 0.5);
+  auto sim = orbits_of(std::move(s), 0.5);
   auto& closest = sim.every(1, ClosestApproach{});
   CHECK(sim.run(2).ok());
   CHECK(std::isinf(closest.distance()));
@@ -142,7 +140,7 @@ TEST_CASE("a single particle has no closest approach and reports none", "[orbita
 }
 
 TEST_CASE("orbital monitors report the same after save and load as without", "[orbital_monitors][restart]") {
-  const auto start = [] { return run_of(planet<double>({1, 0.5, 0.1, 0.2, 0.3, 5.5}), 0.01); };
+  const auto start = [] { return orbits_of(planet<double>({1, 0.5, 0.1, 0.2, 0.3, 5.5}), 0.01); };
   auto whole = start(), first = start(), second = start();
   std::vector<ClosestApproach*> closest;
   std::vector<Elements*> elements;

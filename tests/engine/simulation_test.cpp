@@ -30,9 +30,9 @@ auto wisdom_holman(const Scheme& scheme, CompositionOptions options = {}) {
 Simulation<double> planets(double dt = 40) { return Simulation(test::outer_planets(), verlet(), dt); }
 
 /// Keeps steps and times at which it has looked.
-struct Diary {
+struct Looks {
   Times* seen;
-  static constexpr auto describe() { return part<Diary>("diary", "keeps when it looked"); }
+  static constexpr auto describe() { return part<Looks>("diary", "keeps when it looked"); }
   template <class Real> void observe(const Snapshot<Real>& now) const { seen->emplace_back(now.step(), now.time()); }
 };
 
@@ -158,8 +158,8 @@ TEST_CASE("equal monitors are numbered in the order they come", "[simulation]") 
 TEST_CASE("monitors look at step 0 and at every multiple, with exact times", "[simulation]") {
   auto run = planets(0.1);
   Times threes, sevens;
-  run.every(3, Diary{&threes});
-  run.every_time(0.7, Diary{&sevens});
+  run.every(3, Looks{&threes});
+  run.every_time(0.7, Looks{&sevens});
   CHECK(run.run(5).ok());
   CHECK(run.run(5).ok());
   CHECK(threes == Times{{0, 0}, {3, 3 * 0.1}, {6, 6 * 0.1}, {9, 9 * 0.1}});
@@ -169,7 +169,7 @@ TEST_CASE("monitors look at step 0 and at every multiple, with exact times", "[s
 TEST_CASE("a monitor by wall time looks at whole steps only", "[simulation]") {
   auto run = planets(40);
   Times seen;
-  run.every_wall(1e-9, Diary{&seen});
+  run.every_wall(1e-9, Looks{&seen});
   CHECK(run.run(100).ok());
   REQUIRE(!seen.empty());
   for (const auto& [step, time] : seen) CHECK(time == static_cast<double>(step) * 40);

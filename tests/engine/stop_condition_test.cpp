@@ -13,10 +13,10 @@
 #include "tests/support/order_fit.hpp"
 #include "tests/support/planets.hpp"
 
+#include <numbers>
+
 namespace noether {
 namespace {
-
-const double pi = static_cast<double>(3.14159265358979323846264338327950288_q);
 
 /// A body and a tracer that pass each other on straight lines: nearest, at distance 1, when t = 10.
 ParticleSystem<double> passing() {
@@ -71,7 +71,7 @@ double time_found(const StopRule& rule, double interval, const Quad& E) {
 double measured_order(const StopRule& rule, double truth) {
   std::vector<test::ErrorPoint> points;
   for (const int looks : {32, 48, 64, 96, 128}) {
-    const double interval = 2 * pi / looks;
+    const double interval = 2 * std::numbers::pi / looks;
     double worst = 0;
     for (int k = 0; k < 8; ++k) {
       const Quad E = Quad(1) + Quad(k) * Quad(interval) / Quad(8);
@@ -217,7 +217,8 @@ TEST_CASE("the time of an escape converges at order 6 with the interval between 
 }
 
 TEST_CASE("the time of a collision converges at order 6 with the interval between looks", "[stop]") {
-  const double order = measured_order(closer_than(0.7), -static_cast<double>(time_at(acos(Quad(0.6)))) + 2 * pi);
+  const double order =
+      measured_order(closer_than(0.7), -static_cast<double>(time_at(acos(Quad(0.6)))) + 2 * std::numbers::pi);
   CHECK(std::abs(order - 6) < 0.4);
 }
 

@@ -15,9 +15,9 @@
 namespace noether {
 namespace {
 
-constexpr double G = test::outer_G;
+using test::outer_G;
 
-auto gravity() { return KineticPotential(Gravity{.G = G}); }
+auto gravity() { return KineticPotential(Gravity{.G = outer_G}); }
 
 template <class H> std::string refusal(const H& hamiltonian, const Scheme& scheme) {
   try {
@@ -240,9 +240,9 @@ TEST_CASE("a processed run saved and restored does not begin anew", "[compositio
 }
 
 TEST_CASE("schemes that do not fit a Hamiltonian are refused by name", "[composition]") {
-  const WisdomHolman democratic({.G = G, .coordinates = Coordinates::democratic});
+  const WisdomHolman democratic({.G = outer_G, .coordinates = Coordinates::democratic});
   CHECK(refusal(gravity(), word("BAOAB")) == "scheme 'BAOAB' uses the letter O, but 'kinetic_potential' has only AB");
-  const WisdomHolman<double, Sum<HarmonicField>> in_field({.G = G, .coordinates = Coordinates::democratic},
+  const WisdomHolman<double, Sum<HarmonicField>> in_field({.G = outer_G, .coordinates = Coordinates::democratic},
                                                           Sum(HarmonicField{.k = 1e-9}));
   CHECK(refusal(in_field, schemes::ruth_3) ==
         "scheme 'ruth_3' needs exact flows, but part B of 'wisdom_holman' is a symmetric map of order 2; "
@@ -256,11 +256,11 @@ TEST_CASE("schemes that do not fit a Hamiltonian are refused by name", "[composi
         "only, such as 'verlet' or 'mclachlan_2_s2'");
   CHECK(refusal(damped, schemes::verlet) == "accepted");
   CHECK(refusal(gravity(), schemes::srkn14a) == "accepted");
-  CHECK(refusal(WisdomHolman({.G = G}), schemes::srkn14a) == "accepted");
+  CHECK(refusal(WisdomHolman({.G = outer_G}), schemes::srkn14a) == "accepted");
 }
 
 TEST_CASE("the schemes that refusals propose are accepted where they are proposed", "[composition]") {
-  const WisdomHolman democratic({.G = G, .coordinates = Coordinates::democratic});
+  const WisdomHolman democratic({.G = outer_G, .coordinates = Coordinates::democratic});
   for (const char* name : {"yoshida_6", "abah_10_6_4"}) {
     CAPTURE(name);
     REQUIRE(schemes::find(name) != nullptr);
@@ -283,7 +283,7 @@ TEST_CASE("a Hamiltonian with quadratic kinetic energy only is demanded by Nystr
       return claims;
     }
   };
-  const Quartic quartic(Gravity{.G = G});
+  const Quartic quartic(Gravity{.G = outer_G});
   CHECK(refusal(quartic, schemes::srkn14a) ==
         "scheme 'srkn14a' is a Runge-Kutta-Nystroem splitting and keeps its order only where {B,{B,{B,A}}} = 0, which "
         "'quartic' does not grant; use a general scheme such as 'blanes_moan_s10'");

@@ -13,13 +13,13 @@
 namespace noether {
 namespace {
 
-constexpr double G = test::outer_G;
+using test::outer_G;
 constexpr Coordinates both[] = {Coordinates::jacobi, Coordinates::democratic};
 
 using Ranks = std::vector<std::int64_t>;
 
 template <class Real = double> WisdomHolman<Real> splitting(Coordinates coordinates = Coordinates::jacobi) {
-  return WisdomHolman<Real>({.G = G, .coordinates = coordinates});
+  return WisdomHolman<Real>({.G = outer_G, .coordinates = coordinates});
 }
 
 /// Largest |x_a - x_b| / |x_a| and |v_a - v_b| / |v_a| over the particles that both have.
@@ -79,7 +79,7 @@ double common_order(const ParticleSystem<Quad>& start, const H1& one, const H2& 
 /// Two bodies of 1 and 1/4 about their centre of mass, which moves; semi-major axis 2, eccentricity 0.7, at eccentric
 /// anomaly E.
 struct TwoBodies {
-  Quad a = 2, e = 0.7, total = 1.25, mu = Quad(G) * total;
+  Quad a = 2, e = 0.7, total = 1.25, mu = Quad(outer_G) * total;
   Quad motion() const { return sqrt(mu / (a * a * a)); }
   ParticleSystem<Quad> at(const Quad& E, const Quad& t) const {
     const Quad root = sqrt(Quad(1) - e * e), rate = motion() / (Quad(1) - e * cos(E));
@@ -214,7 +214,7 @@ TEST_CASE("forces that depend on velocities are no part of a kick", "[wisdom_hol
       for (Index i = 0; i < s.size(); ++i) out.acceleration(i, -s.velocities()[i]);
     }
   };
-  CHECK_THROWS_WITH((WisdomHolman<double, Headwind>({.G = G}, Headwind{})),
+  CHECK_THROWS_WITH((WisdomHolman<double, Headwind>({.G = outer_G}, Headwind{})),
                     "a force depends on velocities, so kicks by it are no exact flow of wisdom_holman");
 }
 
@@ -225,7 +225,7 @@ TEST_CASE("two bodies in Jacobi coordinates move on their exact orbit, whatever 
     for (const char* name : {"verlet", "verlet_aba", "aba_10_6_4"}) {
       const std::int64_t n = 12;
       CAPTURE(dt, name);
-      const auto end = run(two.at(0, 0), WisdomHolman<Quad>({.G = G}), *schemes::find(name), dt * period, n);
+      const auto end = run(two.at(0, 0), WisdomHolman<Quad>({.G = outer_G}), *schemes::find(name), dt * period, n);
       const Quad t = Quad(n) * Quad(dt * period);
       const auto exact = two.at(two.anomaly(t), t);
       CHECK(difference(exact, end) < 1e-29);
@@ -243,12 +243,12 @@ TEST_CASE("a primary alone moves straight, and tracers about it on exact orbits"
   auto start = test::planets_with_tracers(1);
   ParticleSystem<Quad> s;
   s.add("Sun", 1, Vec3<Quad>::Zero(), Vec3<Quad>::Zero());
-  s.add("tracer", 0, {Quad(2), Quad(0), Quad(0)}, {Quad(0), sqrt(Quad(G) / Quad(2)), Quad(0)});
+  s.add("tracer", 0, {Quad(2), Quad(0), Quad(0)}, {Quad(0), sqrt(Quad(outer_G) / Quad(2)), Quad(0)});
   for (const Coordinates coordinates : both) {
     const std::int64_t n = 10;
     const double dt = 333;
     const auto end = run(s, splitting<Quad>(coordinates), schemes::verlet, dt, n);
-    const Quad angle = sqrt(Quad(G) / Quad(8)) * Quad(n) * Quad(dt);
+    const Quad angle = sqrt(Quad(outer_G) / Quad(8)) * Quad(n) * Quad(dt);
     CHECK(abs(std::as_const(end).positions()[1][0] - Quad(2) * cos(angle)) < Quad(1e-29));
     CHECK(abs(std::as_const(end).positions()[1][1] - Quad(2) * sin(angle)) < Quad(1e-29));
   }
@@ -286,7 +286,7 @@ TEST_CASE("Jacobi, democratic and inertial splittings agree ever better, with th
           "[wisdom_holman]") {
   // Planets, a massive visitor on a hyperbola, tracers bound and unbound.
   const auto start = with_visitors();
-  const KineticPotential<Gravity, Quad> inertial(Gravity{.G = G});
+  const KineticPotential<Gravity, Quad> inertial(Gravity{.G = outer_G});
   CHECK(std::abs(common_order(start, splitting<Quad>(Coordinates::jacobi), inertial) - 8) < 0.4);
   CHECK(std::abs(common_order(start, splitting<Quad>(Coordinates::democratic), inertial) - 8) < 0.4);
   CHECK(std::abs(common_order(start, splitting<Quad>(), splitting<Quad>(Coordinates::democratic)) - 8) < 0.4);
@@ -295,13 +295,13 @@ TEST_CASE("Jacobi, democratic and inertial splittings agree ever better, with th
 TEST_CASE("other forces join the kicks in both coordinates, with the time of their stage", "[wisdom_holman]") {
   const UniformField field{.acceleration = {2e-7, -1e-7, 3e-7}};
   const OscillatingField tide{.acceleration = {1e-6, 2e-6, -1e-6}, .omega = 0.02};
-  const Oblateness flat{.J2 = 0.01, .J4 = -0.001, .radius = 0.5, .axis = {0.1, 0.3, 1}, .G = G};
+  const Oblateness flat{.J2 = 0.01, .J4 = -0.001, .radius = 0.5, .axis = {0.1, 0.3, 1}, .G = outer_G};
   const Sum forces(field, tide, flat);
   using Forces = Sum<UniformField, OscillatingField, Oblateness>;
   const auto start = with_visitors();
-  const KineticPotential<Sum<Gravity, Forces>, Quad> inertial(Sum(Gravity{.G = G}, forces));
+  const KineticPotential<Sum<Gravity, Forces>, Quad> inertial(Sum(Gravity{.G = outer_G}, forces));
   for (const Coordinates coordinates : both) {
-    const WisdomHolman<Quad, Forces> split({.G = G, .coordinates = coordinates}, forces);
+    const WisdomHolman<Quad, Forces> split({.G = outer_G, .coordinates = coordinates}, forces);
     // In democratic coordinates J does not commute with them, so that kicks are exact to order 2 only; these forces
     // are as weak as the interaction, so the error is that of abah_8_6_4 in the first power of it.
     const bool exact = coordinates == Coordinates::jacobi;
@@ -314,7 +314,7 @@ TEST_CASE("a uniform field accelerates the center of mass as it does one body", 
   const double g = 1e-6, dt = 40;
   const std::int64_t n = 50;
   for (const Coordinates coordinates : both) {
-    const WisdomHolman<Quad, Sum<UniformField>> split({.G = G, .coordinates = coordinates},
+    const WisdomHolman<Quad, Sum<UniformField>> split({.G = outer_G, .coordinates = coordinates},
                                                       Sum(UniformField{.acceleration = {g, 0, 0}}));
     const auto start = test::outer_planets<Quad>();
     const auto end = run(start, split, schemes::verlet, dt, n);
@@ -332,7 +332,7 @@ TEST_CASE("a uniform field accelerates the center of mass as it does one body", 
 
 TEST_CASE("energy and accelerations are those of inertial bodies", "[wisdom_holman]") {
   const auto s = with_visitors();
-  KineticPotential<Gravity, Quad> inertial(Gravity{.G = G});
+  KineticPotential<Gravity, Quad> inertial(Gravity{.G = outer_G});
   auto bound = s;
   inertial.bind(bound);
   VectorColumn<Quad> expected(s.size()), found(s.size());
@@ -365,7 +365,7 @@ TEST_CASE("claims of the splitting follow its coordinates and its forces", "[wis
                                                           Sum(HarmonicField{.k = 0.3}));
   CHECK(in_field.claims().inexact == "B");
   CHECK(jacobi.keeps_momentum);
-  const WisdomHolman<double, Sum<OscillatingField>> driven({.G = G}, Sum(OscillatingField{}));
+  const WisdomHolman<double, Sum<OscillatingField>> driven({.G = outer_G}, Sum(OscillatingField{}));
   CHECK(driven.claims().time_dependent);
   CHECK_FALSE(driven.claims().keeps_momentum);
 }

@@ -9,14 +9,14 @@ using test::error_of;
 
 namespace {
 
-ParticleSystem<double> read(const std::string& content, const char* units = "solar") {
+ParticleSystem<double> read_csv(const std::string& content, const char* units = "solar") {
   const test::ScratchFolder folder;
   test::write_text(folder / "b.csv", content);
   return io::read_bodies(folder / "b.csv", {.units = &unit_system(units)});
 }
 
 /// The message about "b.csv", its folder cut away.
-std::string refusal(const std::string& content, const char* units = "solar") {
+std::string csv_refusal(const std::string& content, const char* units = "solar") {
   const test::ScratchFolder folder;
   test::write_text(folder / "b.csv", content);
   const std::string message = error_of([&] { io::read_bodies(folder / "b.csv", {.units = &unit_system(units)}); });
@@ -31,7 +31,7 @@ const std::string by_elements = "name,mass [Msun],a [au],e,inc [deg],Omega [deg]
 }  // namespace
 
 TEST_CASE("a table of bodies gives the numbers it holds, in the units of the system", "[bodies]") {
-  const auto s = read(
+  const auto s = read_csv(
       "# masses and states\r\n"
       "\r\n"
       " name , mass [kg], vx [km/s],y [au],z [km],x [m],vy [au/day],vz [m/s], id\r\n"
@@ -52,7 +52,7 @@ TEST_CASE("a table of bodies gives the numbers it holds, in the units of the sys
 }
 
 TEST_CASE("a table without names numbers its bodies, and one in reduced units takes bare numbers", "[bodies]") {
-  const auto s = read("\xEF\xBB\xBFmass,x,y,z,vx,vy,vz [1]\n1,0,0,0,0,0,0.1\n2,1,0,0,0,0,0", "reduced");
+  const auto s = read_csv("\xEF\xBB\xBFmass,x,y,z,vx,vy,vz [1]\n1,0,0,0,0,0,0.1\n2,1,0,0,0,0,0", "reduced");
   REQUIRE(s.size() == 2);
   CHECK(s.name(0) == "body_1");
   CHECK(s.name(1) == "body_2");
@@ -79,88 +79,89 @@ TEST_CASE("elements are about the first body, with the sum of both masses", "[bo
 }
 
 TEST_CASE("elements of the reduced system are in radians, unless they say degrees", "[bodies]") {
-  const auto s = read("mass,a,e,inc,Omega [deg],omega [rad],M\n1,,,,,,\n0,1,0.1,0.5,90,0.25,0.75\n", "reduced");
+  const auto s = read_csv("mass,a,e,inc,Omega [deg],omega [rad],M\n1,,,,,,\n0,1,0.1,0.5,90,0.25,0.75\n", "reduced");
   const auto expected = state_from_elements<double>({1, 0.1, 0.5, 90 * units::solar::degree, 0.25, 0.75}, 1.0);
   CHECK(s.positions()[1] == expected.first);
   CHECK(s.velocities()[1] == expected.second);
 }
 
 TEST_CASE("a wrong heading is refused with what is wrong and what to write", "[bodies][messages]") {
-  CHECK(refusal("") ==
+  CHECK(csv_refusal("") ==
         "b.csv: the table is empty; expected a line of column names, such as 'name,mass [Msun],x [au],...'");
-  CHECK(refusal("# nothing\n\n") ==
+  CHECK(csv_refusal("# nothing\n\n") ==
         "b.csv: the table is empty; expected a line of column names, such as 'name,mass [Msun],x [au],...'");
-  CHECK(refusal("#\n" + head) == "b.csv:2: the table has column names, but no bodies");
+  CHECK(csv_refusal("#\n" + head) == "b.csv:2: the table has column names, but no bodies");
   // An unknown column comes before missing ones.
-  CHECK(refusal("name,mas [Msun],x [au]\nSun,1,0\n") == "b.csv:1: unknown column 'mas'; did you mean 'mass'?");
+  CHECK(csv_refusal("name,mas [Msun],x [au]\nSun,1,0\n") == "b.csv:1: unknown column 'mas'; did you mean 'mass'?");
   CHECK(
-      refusal("name,mass [Msun],position [au]\n") ==
+      csv_refusal("name,mass [Msun],position [au]\n") ==
       "b.csv:1: unknown column 'position'; known are: name, id, mass, x, y, z, vx, vy, vz, a, e, inc, Omega, omega, M");
-  CHECK(refusal("name,mass [Msun],\n") == "b.csv:1: column 3 has no name");
-  CHECK(refusal("mass [Msun],x [au],x [au]\n") == "b.csv:1: column 'x' stands twice");
-  CHECK(refusal("mass [Msun],x,y [au]\n") ==
+  CHECK(csv_refusal("name,mass [Msun],\n") == "b.csv:1: column 3 has no name");
+  CHECK(csv_refusal("mass [Msun],x [au],x [au]\n") == "b.csv:1: column 'x' stands twice");
+  CHECK(csv_refusal("mass [Msun],x,y [au]\n") ==
         "b.csv:1: column 'x' has no unit; write 'x [au]' or another unit of length");
-  CHECK(refusal("mass [Msun],vx\n") ==
+  CHECK(csv_refusal("mass [Msun],vx\n") ==
         "b.csv:1: column 'vx' has no unit; write 'vx [au/day]' or another unit of velocity");
-  CHECK(refusal("mass [Msun],a [au],e,inc\n") ==
+  CHECK(csv_refusal("mass [Msun],a [au],e,inc\n") ==
         "b.csv:1: column 'inc' has no unit; write 'inc [deg]' or another unit of angle");
-  CHECK(refusal("mass [Msun],x [day]\n") ==
+  CHECK(csv_refusal("mass [Msun],x [day]\n") ==
         "b.csv:1: column 'x' is in 'day', which is of dimension time; expected length");
-  CHECK(refusal("name [au]\n") == "b.csv:1: column 'name' takes no unit, not 'au'");
-  CHECK(refusal("mass [Msun],x [au],y [au],z [au],vx [au/day]\n") ==
+  CHECK(csv_refusal("name [au]\n") == "b.csv:1: column 'name' takes no unit, not 'au'");
+  CHECK(csv_refusal("mass [Msun],x [au],y [au],z [au],vx [au/day]\n") ==
         "b.csv:1: there is no column vy, vz; expected mass and x, y, z, vx, vy, vz, or the elements a, e, inc, Omega, "
         "omega, M");
-  CHECK(refusal("a [au],e,inc [deg],Omega [deg],omega [deg]\n") ==
+  CHECK(csv_refusal("a [au],e,inc [deg],Omega [deg],omega [deg]\n") ==
         "b.csv:1: there is no column mass, M; expected mass and a, e, inc, Omega, omega, M");
-  CHECK(refusal("mass [Msun],x [au],a [au]\n") ==
+  CHECK(csv_refusal("mass [Msun],x [au],a [au]\n") ==
         "b.csv:1: columns 'x' and 'a' are of two kinds; give positions and velocities, or elements");
-  CHECK(refusal("mass [Msun],x [parsec]\n").starts_with("b.csv:1: column 'x': unknown unit 'parsec'"));
+  CHECK(csv_refusal("mass [Msun],x [parsec]\n").starts_with("b.csv:1: column 'x': unknown unit 'parsec'"));
 }
 
 TEST_CASE("a broken row is refused with its line", "[bodies][messages]") {
   const std::string sun = "Sun,1,0,0,0,0,0,0\n";
-  CHECK(refusal("#\n" + head + sun + "\nEarth,1,2\n") == "b.csv:5: this row has 3 fields; expected 8, as line 2 names");
-  CHECK(refusal(head + "Sun,1,0,0,O,0,0,0\n") == "b.csv:2: column 'z' is 'O', which is no number");
-  CHECK(refusal(head + "Sun,1,0,0,1 2,0,0,0\n") == "b.csv:2: column 'z' is '1 2', which is no number");
-  CHECK(refusal(head + "Sun,1,0,0,,0,0,0\n") == "b.csv:2: column 'z' is empty; expected a number");
-  CHECK(refusal(head + "Sun,1,nan,0,0,0,0,0\n") == "b.csv:2: column 'x' is nan; expected a finite number");
-  CHECK(refusal(head + "Sun,inf,0,0,0,0,0,0\n") == "b.csv:2: column 'mass' is inf; expected a finite number");
-  CHECK(refusal(head + "Sun,1e999,0,0,0,0,0,0\n") == "b.csv:2: column 'mass' is 1e999, which no double can hold");
-  CHECK(refusal(head + "Sun,-1,0,0,0,0,0,0\n") == "b.csv:2: column 'mass' is -1; expected 0 or more");
-  CHECK(refusal(head + "Sun,++1,0,0,0,0,0,0\n") == "b.csv:2: column 'mass' is '++1', which is no number");
-  CHECK(refusal(head + sun + sun) == "b.csv:3: the name 'Sun' is taken; names must differ");
-  CHECK(refusal(head + ",1,0,0,0,0,0,0\n") == "b.csv:2: the name is empty");
-  CHECK(refusal("id," + bare_head + "1,1,0,0,0,0,0,0\n1,1,1,0,0,0,0,0\n", "reduced") ==
+  CHECK(csv_refusal("#\n" + head + sun + "\nEarth,1,2\n") ==
+        "b.csv:5: this row has 3 fields; expected 8, as line 2 names");
+  CHECK(csv_refusal(head + "Sun,1,0,0,O,0,0,0\n") == "b.csv:2: column 'z' is 'O', which is no number");
+  CHECK(csv_refusal(head + "Sun,1,0,0,1 2,0,0,0\n") == "b.csv:2: column 'z' is '1 2', which is no number");
+  CHECK(csv_refusal(head + "Sun,1,0,0,,0,0,0\n") == "b.csv:2: column 'z' is empty; expected a number");
+  CHECK(csv_refusal(head + "Sun,1,nan,0,0,0,0,0\n") == "b.csv:2: column 'x' is nan; expected a finite number");
+  CHECK(csv_refusal(head + "Sun,inf,0,0,0,0,0,0\n") == "b.csv:2: column 'mass' is inf; expected a finite number");
+  CHECK(csv_refusal(head + "Sun,1e999,0,0,0,0,0,0\n") == "b.csv:2: column 'mass' is 1e999, which no double can hold");
+  CHECK(csv_refusal(head + "Sun,-1,0,0,0,0,0,0\n") == "b.csv:2: column 'mass' is -1; expected 0 or more");
+  CHECK(csv_refusal(head + "Sun,++1,0,0,0,0,0,0\n") == "b.csv:2: column 'mass' is '++1', which is no number");
+  CHECK(csv_refusal(head + sun + sun) == "b.csv:3: the name 'Sun' is taken; names must differ");
+  CHECK(csv_refusal(head + ",1,0,0,0,0,0,0\n") == "b.csv:2: the name is empty");
+  CHECK(csv_refusal("id," + bare_head + "1,1,0,0,0,0,0,0\n1,1,1,0,0,0,0,0\n", "reduced") ==
         "b.csv:3: the id 1 is taken; ids must differ");
-  CHECK(refusal("id," + bare_head + "-1,1,0,0,0,0,0,0\n", "reduced") ==
+  CHECK(csv_refusal("id," + bare_head + "-1,1,0,0,0,0,0,0\n", "reduced") ==
         "b.csv:2: column 'id' is '-1'; expected a whole number from 0 to 9007199254740992");
-  CHECK(refusal(head + "\"Sun,1,0,0,0,0,0,0\n") == "b.csv:2: a double quote is not closed on this line");
-  CHECK(refusal(head + "\"Sun\"s,1,0,0,0,0,0,0\n") ==
+  CHECK(csv_refusal(head + "\"Sun,1,0,0,0,0,0,0\n") == "b.csv:2: a double quote is not closed on this line");
+  CHECK(csv_refusal(head + "\"Sun\"s,1,0,0,0,0,0,0\n") ==
         "b.csv:2: 's' follows the double quote that ends a field; expected a comma");
-  CHECK(refusal(head + "the \"Sun\",1,0,0,0,0,0,0\n") ==
+  CHECK(csv_refusal(head + "the \"Sun\",1,0,0,0,0,0,0\n") ==
         "b.csv:2: a double quote stands inside a field; quote the whole field, and write \"\" for a quote in it");
-  CHECK(refusal("name,mass [Msun],x [Gyr]\n").starts_with("b.csv:1: column 'x' is in 'Gyr'"));
-  CHECK(refusal("mass [kg],x [au],y [au],z [au],vx [au/fs],vy [au/day],vz [au/day]\n1,0,0,0,1e300,0,0\n") ==
+  CHECK(csv_refusal("name,mass [Msun],x [Gyr]\n").starts_with("b.csv:1: column 'x' is in 'Gyr'"));
+  CHECK(csv_refusal("mass [kg],x [au],y [au],z [au],vx [au/fs],vy [au/day],vz [au/day]\n1,0,0,0,1e300,0,0\n") ==
         "b.csv:2: the state of body_1 is not finite in these units");
 }
 
 TEST_CASE("elements that are no orbit are refused", "[bodies][messages]") {
   const std::string sun = "Sun,1,,,,,,\n";
-  CHECK(refusal(by_elements + "Sun,1,5,,,,,\n") ==
+  CHECK(csv_refusal(by_elements + "Sun,1,5,,,,,\n") ==
         "b.csv:2: column 'a' of the first body is '5'; the elements are about this body: leave them empty");
-  CHECK(refusal(by_elements + "Sun,0,,,,,,\n") == "b.csv:2: Sun has no mass; the elements are about this body");
-  CHECK(refusal(by_elements + sun + "Earth,0,1,1,0,0,0,0\n") ==
+  CHECK(csv_refusal(by_elements + "Sun,0,,,,,,\n") == "b.csv:2: Sun has no mass; the elements are about this body");
+  CHECK(csv_refusal(by_elements + sun + "Earth,0,1,1,0,0,0,0\n") ==
         "b.csv:3: a = 1 and e = 1 are no orbit; expected a > 0 and 0 <= e < 1, or a < 0 and e > 1");
-  CHECK(refusal(by_elements + sun + "Earth,0,-1,0.5,0,0,0,0\n") ==
+  CHECK(csv_refusal(by_elements + sun + "Earth,0,-1,0.5,0,0,0,0\n") ==
         "b.csv:3: a = -1 and e = 0.5 are no orbit; expected a > 0 and 0 <= e < 1, or a < 0 and e > 1");
-  CHECK(refusal(by_elements + sun + "Earth,0,,0.5,0,0,0,0\n") == "b.csv:3: column 'a' is empty; expected a number");
-  CHECK(refusal(by_elements + "Sun,1,0,0,0,0,0,0\n").empty());
+  CHECK(csv_refusal(by_elements + sun + "Earth,0,,0.5,0,0,0,0\n") == "b.csv:3: column 'a' is empty; expected a number");
+  CHECK(csv_refusal(by_elements + "Sun,1,0,0,0,0,0,0\n").empty());
 }
 
 TEST_CASE("what is no table is a file error, in one line", "[bodies][messages]") {
-  CHECK(refusal(std::string("\x7f"
-                            "ELF\0\0\1",
-                            7)) ==
+  CHECK(csv_refusal(std::string("\x7f"
+                                "ELF\0\0\1",
+                                7)) ==
         "b.csv: this is no text: byte 4 is zero; expected CSV or a vector table of Horizons");
   const test::ScratchFolder folder;
   CHECK_THROWS_AS(io::read_bodies(folder / "missing.csv"), FileError);
@@ -170,7 +171,7 @@ TEST_CASE("what is no table is a file error, in one line", "[bodies][messages]")
         folder.path().string() + ": cannot be read: Is a directory");
   for (const std::string& garbage :
        {std::string("\x01\x02\x03,\xff\n"), std::string("\x89PNG\r\n\x1a\n"), std::string(",")}) {
-    const std::string message = refusal(garbage);
+    const std::string message = csv_refusal(garbage);
     CHECK(message.starts_with("b.csv:1: "));
     CHECK(message.find('\n') == std::string::npos);
   }

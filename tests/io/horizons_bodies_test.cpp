@@ -12,14 +12,14 @@ std::string table(const std::string& name) {
   return test::read_text(std::filesystem::path(NOETHER_SOURCE_DIR) / "tests/data/horizons" / name);
 }
 
-ParticleSystem<double> read(const std::string& content, const io::BodiesOptions& options = {}) {
+ParticleSystem<double> read_horizons(const std::string& content, const io::BodiesOptions& options = {}) {
   const test::ScratchFolder folder;
   test::write_text(folder / "h.txt", content);
   return io::read_bodies(folder / "h.txt", options);
 }
 
-std::string refusal(const std::string& content, const io::BodiesOptions& options = {}) {
-  const std::string message = error_of([&] { read(content, options); });
+std::string horizons_refusal(const std::string& content, const io::BodiesOptions& options = {}) {
+  const std::string message = error_of([&] { read_horizons(content, options); });
   const std::size_t name = message.find("h.txt");
   return name == std::string::npos ? message : message.substr(name);
 }
@@ -34,7 +34,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 
 TEST_CASE("Horizons tables give names, states of the first record, and masses from DE440", "[bodies][horizons]") {
   using namespace units::solar;
-  const auto s = read(table("labels.txt") + table("commas.txt"));
+  const auto s = read_horizons(table("labels.txt") + table("commas.txt"));
   REQUIRE(s.size() == 3);
   CHECK(s.names() == std::vector<std::string>{"Sun", "Jupiter Barycenter", "Saturn Barycenter"});
   CHECK(s.positions()[0] == Vec3<double>(-7.1e-3, -2.8e-3, 2.1e-4));
@@ -51,64 +51,65 @@ TEST_CASE("Horizons tables give names, states of the first record, and masses fr
 
 TEST_CASE("Horizons tables without labels and in km/day are read, and G scales masses only", "[bodies][horizons]") {
   using namespace units::solar;
-  const auto s = read(table("plain.txt"));
-  const auto twice = read(table("plain.txt"), {.G = 2 * G});
+  const auto s = read_horizons(table("plain.txt"));
+  const auto twice = read_horizons(table("plain.txt"), {.G = 2 * G});
   CHECK(s.positions()[0] == Vec3<double>(5.968955040929999e8 * km, 4.084021870110000e8 * km, -1.495978707e7 * km));
   CHECK(s.velocities()[0] ==
         Vec3<double>(-6.881502052199999e5 * km / day, 9.5742637248e5 * km / day, 1.12198403025e4 * km / day));
   CHECK(twice.masses()[0] == s.masses()[0] / 2);
   CHECK(twice.positions()[0] == s.positions()[0]);
-  const auto si = read(table("plain.txt"), {.units = &unit_system("si")});
+  const auto si = read_horizons(table("plain.txt"), {.units = &unit_system("si")});
   CHECK(si.positions()[0][2] == -1.495978707e7 * units::si::km);
   CHECK(std::abs(si.masses()[0] / 1.8985e27 - 1) < 1e-4);
 }
 
 TEST_CASE("a mass that a user puts into a Horizons table is taken", "[bodies][horizons]") {
   using namespace units::solar;
-  const auto line = read(table("asteroid.txt"));
+  const auto line = read_horizons(table("asteroid.txt"));
   CHECK(line.name(0) == "1 Ceres (A801 AA)");
   CHECK(line.masses()[0] == 9.3839e20 * kg);
   const std::string with_column = replaced(replaced(table("commas.txt"), "VZ,\n", "VZ, mass [Msun],\n"),
                                            "1.818029678645833E-01,", "1.8E-01, 3e-4,");
-  CHECK(read(with_column).masses()[0] == 3e-4);
+  CHECK(read_horizons(with_column).masses()[0] == 3e-4);
 }
 
 TEST_CASE("Horizons tables that do not fit are refused with the line", "[bodies][horizons][messages]") {
   const std::string labels = table("labels.txt");
-  CHECK(refusal(labels + table("later.txt")) ==
+  CHECK(horizons_refusal(labels + table("later.txt")) ==
         "h.txt:155: the table of Saturn Barycenter begins at JD 2451546, that of Sun at JD 2451545; take one epoch for "
         "all");
-  CHECK(refusal(table("positions.txt")) ==
+  CHECK(horizons_refusal(table("positions.txt")) ==
         "h.txt:25: the table of Saturn Barycenter has no VX; ask Horizons for positions and velocities (vector table "
         "type "
         "2 or 3)");
-  CHECK(refusal(replaced(table("asteroid.txt"), "mass [kg] = 9.3839e20\n", "")) ==
+  CHECK(horizons_refusal(replaced(table("asteroid.txt"), "mass [kg] = 9.3839e20\n", "")) ==
         "h.txt:4: the mass of 1 Ceres (A801 AA) is not built in, and Horizons gives none; put a line 'mass [kg] = ...' "
         "(0 "
         "for a tracer) before '$$SOE'");
-  CHECK(refusal(replaced(table("asteroid.txt"), "9.3839e20", "-1")) == "h.txt:20: the mass is -1; expected 0 or more");
-  CHECK(refusal(replaced(table("asteroid.txt"), "[kg]", "[km]")) ==
+  CHECK(horizons_refusal(replaced(table("asteroid.txt"), "9.3839e20", "-1")) ==
+        "h.txt:20: the mass is -1; expected 0 or more");
+  CHECK(horizons_refusal(replaced(table("asteroid.txt"), "[kg]", "[km]")) ==
         "h.txt:20: the mass is in 'km'; expected a unit of mass, such as 'mass [kg]'");
-  CHECK(refusal(replaced(table("asteroid.txt"), "9.3839e20", "much")) ==
+  CHECK(horizons_refusal(replaced(table("asteroid.txt"), "9.3839e20", "much")) ==
         "h.txt:20: the mass is 'much', which is no number");
-  CHECK(refusal(replaced(table("plain.txt"), "$$EOE\n", "")) ==
+  CHECK(horizons_refusal(replaced(table("plain.txt"), "$$EOE\n", "")) ==
         "h.txt:25: the table that begins here has no end: '$$EOE' is missing");
-  CHECK(refusal("$$SOE\n$$EOE\n") == "h.txt:1: the head of this table has no line 'Target body name'");
-  CHECK(refusal(replaced(table("plain.txt"), "KM-D", "PC-D")) ==
+  CHECK(horizons_refusal("$$SOE\n$$EOE\n") == "h.txt:1: the head of this table has no line 'Target body name'");
+  CHECK(horizons_refusal(replaced(table("plain.txt"), "KM-D", "PC-D")) ==
         "h.txt:4: the output units of Jupiter Barycenter are 'PC-D'; expected AU-D, KM-S or KM-D");
-  CHECK(refusal(labels + labels) == "h.txt:144: the name 'Sun' is taken; names must differ");
+  CHECK(horizons_refusal(labels + labels) == "h.txt:144: the name 'Sun' is taken; names must differ");
   CHECK(
-      refusal(labels + replaced(table("commas.txt"), "Solar System Barycenter (0)", "Sun (10)")) ==
+      horizons_refusal(labels + replaced(table("commas.txt"), "Solar System Barycenter (0)", "Sun (10)")) ==
       "h.txt:132: the table of Saturn Barycenter is about 'Sun (10)', that of Sun about 'Solar System Barycenter (0)'; "
       "take one center for all");
-  CHECK(refusal(labels + replaced(table("commas.txt"), "Ecliptic of J2000.0", "ICRF")) ==
+  CHECK(horizons_refusal(labels + replaced(table("commas.txt"), "Ecliptic of J2000.0", "ICRF")) ==
         "h.txt:132: the table of Saturn Barycenter is in the frame 'ICRF', that of Sun in 'Ecliptic of J2000.0'; take "
         "one "
         "frame for all");
-  CHECK(refusal(replaced(table("plain.txt"), "cartesian states", "osculating elements")) ==
+  CHECK(horizons_refusal(replaced(table("plain.txt"), "cartesian states", "osculating elements")) ==
         "h.txt:17: this is a table of elements; ask Horizons for vectors (EPHEM_TYPE = VECTORS)");
-  CHECK(refusal(replaced(table("plain.txt"), "5.968955040929999E+08", "5.968955040929999F+08")) ==
+  CHECK(horizons_refusal(replaced(table("plain.txt"), "5.968955040929999E+08", "5.968955040929999F+08")) ==
         "h.txt:27: X is '5.968955040929999F+08', which is no number");
-  CHECK(refusal(table("plain.txt"), {.units = &unit_system("reduced")}) ==
+  CHECK(horizons_refusal(table("plain.txt"), {.units = &unit_system("reduced")}) ==
         "h.txt: a Horizons table has units; expected the unit system solar, si or molecular, not reduced");
 }

@@ -13,13 +13,13 @@ namespace {
 
 using namespace noether::test;
 
-constexpr double duration = 3;       // half a turn of the inner planet
+constexpr double half_turn = 3;      // of the inner planet
 constexpr double mass_ratio = 1e-7;  // epsilon: masses of two planets are 1, 2, 3 times this
 
-/// Positions of the planets after the duration, shape (6).
+/// Positions of the planets after half a turn, shape (6).
 std::vector<Quad> outcome(const Scheme& scheme, double mass, long n, Coordinates coordinates) {
   const WisdomHolman<Quad> hamiltonian({.coordinates = coordinates});
-  const auto end = run(hamiltonian, scheme, planets(mass, 2).as<Quad>(), duration / static_cast<double>(n), n);
+  const auto end = run(hamiltonian, scheme, planets(mass, 2).as<Quad>(), half_turn / static_cast<double>(n), n);
   std::vector<Quad> x;
   for (Index i = 1; i < end.size(); ++i) {
     for (int k = 0; k < 3; ++k) x.push_back(end.positions()[i][k]);
@@ -55,7 +55,7 @@ void check_orders(Coordinates coordinates, const std::array<std::vector<Quad>, 3
     std::array<std::vector<ErrorPoint>, 3> points;
     for (const long n : ladder(16, 48)) {
       const auto size = expansion(outcomes(*scheme, n, coordinates), exact);
-      for (std::size_t p = 0; p < 3; ++p) points[p].push_back({duration / static_cast<double>(n), size[p]});
+      for (std::size_t p = 0; p < 3; ++p) points[p].push_back({half_turn / static_cast<double>(n), size[p]});
     }
     for (std::size_t p = 0; p < 3; ++p) {
       const int claim = scheme->order.near_integrable[p];

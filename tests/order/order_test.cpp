@@ -13,7 +13,7 @@ using namespace noether::test;
 
 /// Errors below which the digits of a table may show: it violates the conditions of its order by its last digit times
 /// the step. Order 8 and more are printed with 19 digits at least, odd orders with 17, the others with 14.
-double table_floor(const Scheme& scheme) {
+double digits_floor(const Scheme& scheme) {
   const int order = scheme.order.classical;
   return order >= 8 ? 1e-17 : order % 2 == 1 ? 1e-15 : 1e-12;
 }
@@ -28,17 +28,17 @@ std::vector<ErrorPoint> climb(const Scheme& scheme, double duration, long budget
   std::vector<ErrorPoint> points;
   for (const long n : ladder(4, std::max(16L, budget / kicks(scheme)))) {
     points.push_back({duration / static_cast<double>(n), error(duration / static_cast<double>(n), n)});
-    if (points.back().error < table_floor(scheme)) break;
+    if (points.back().error < digits_floor(scheme)) break;
   }
   return points;
 }
 
 double measured_order(const Scheme& scheme, const std::vector<ErrorPoint>& points) {
-  return fitted_slope(finest(points, table_floor(scheme), 1e-2));
+  return fitted_slope(finest(points, digits_floor(scheme), 1e-2));
 }
 
 void check_order(const Scheme& scheme, const std::vector<ErrorPoint>& points) {
-  const auto used = finest(points, table_floor(scheme), 1e-2);
+  const auto used = finest(points, digits_floor(scheme), 1e-2);
   INFO(scheme.name << " claims order " << scheme.order.classical << ", measured " << fitted_slope(used) << "\n"
                    << to_text(points));
   CHECK(used.size() == 3);

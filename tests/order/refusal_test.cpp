@@ -31,21 +31,21 @@ std::string refusal(const Scheme& scheme, const HamiltonianClaims& claims) {
   return "";
 }
 
-const WisdomHolman<double> democratic({.coordinates = Coordinates::democratic});
-const WisdomHolman<double, Sum<HarmonicField>> democratic_in_field({.coordinates = Coordinates::democratic},
-                                                                   Sum(HarmonicField{.k = 0.3}));
+const WisdomHolman<double> democratic_arcs({.coordinates = Coordinates::democratic});
+const WisdomHolman<double, Sum<HarmonicField>> arcs_in_field({.coordinates = Coordinates::democratic},
+                                                             Sum(HarmonicField{.k = 0.3}));
 const Damped<KineticPotential<HarmonicField>> damped(KineticPotential(HarmonicField{.k = 1}), {.rate = 0.1});
 
 TEST_CASE("a scheme that needs exact kicks is refused where other forces join democratic coordinates", "[refusal]") {
   for (const Scheme* scheme : {&schemes::aba_10_6_4, &schemes::yoshida_6}) {
-    CHECK(refusal(democratic_in_field, *scheme) ==
+    CHECK(refusal(arcs_in_field, *scheme) ==
           "scheme '" + std::string(scheme->name) +
               "' needs exact flows, but part B of 'wisdom_holman' is a symmetric map of order 2; use 'verlet', or a "
               "scheme made for it such as 'abah_8_6_4' or 'abah_10_6_4'");
-    CHECK(refusal(democratic, *scheme) == "");
+    CHECK(refusal(democratic_arcs, *scheme) == "");
   }
   for (const Scheme* scheme : {&schemes::abah_10_6_4, &schemes::abah_8_6_4, &schemes::verlet, &schemes::verlet_aba}) {
-    CHECK(refusal(democratic_in_field, *scheme) == "");
+    CHECK(refusal(arcs_in_field, *scheme) == "");
   }
   CHECK(refusal(WisdomHolman<double>({}), schemes::aba_10_6_4) == "");
 }
@@ -59,7 +59,7 @@ TEST_CASE("every Nystroem scheme is refused where the kinetic energy is not quad
           "scheme '" + std::string(scheme->name) +
               "' is a Runge-Kutta-Nystroem splitting and keeps its order only where {B,{B,{B,A}}} = 0, which 'test' "
               "does not grant; use a general scheme such as 'blanes_moan_s10'");
-    CHECK(refusal(democratic, *scheme) != "");
+    CHECK(refusal(democratic_arcs, *scheme) != "");
     CHECK(refusal(WisdomHolman<double>({}), *scheme) == "");
     ++tested;
   }

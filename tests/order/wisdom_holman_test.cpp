@@ -13,7 +13,7 @@ namespace {
 
 using namespace noether::test;
 
-constexpr double duration = 1.5;
+constexpr double arcs_duration = 1.5;
 
 /// Errors below which the digits of a table may show: kernels of order 8 and more have 19, near-integrable ones 15.
 double table_floor(const Scheme& scheme) {
@@ -27,7 +27,7 @@ template <class H> void check_order(const Scheme& scheme, const H& hamiltonian, 
   const auto start = planets(0.2, 2).as<Quad>();
   std::vector<ErrorPoint> points;
   for (const long n : ladder(4, scheme.order.classical < 4 ? 256 : scheme.order.classical < 6 ? 128 : 48)) {
-    const double dt = duration / static_cast<double>(n);
+    const double dt = arcs_duration / static_cast<double>(n);
     points.push_back({dt, distance(run(hamiltonian, scheme, start, dt, n), exact)});
     if (points.back().error < table_floor(scheme)) break;
   }
@@ -40,7 +40,7 @@ template <class H> void check_order(const Scheme& scheme, const H& hamiltonian, 
 
 template <class F> ParticleSystem<Quad> reference(const F& forces) {
   const KineticPotential<F, Quad> hamiltonian(forces);
-  return run(hamiltonian, schemes::sofroniou_spaletta_10_s35, planets(0.2, 2).as<Quad>(), duration / 384, 384);
+  return run(hamiltonian, schemes::sofroniou_spaletta_10_s35, planets(0.2, 2).as<Quad>(), arcs_duration / 384, 384);
 }
 
 TEST_CASE("every scheme has its order over Kepler arcs in Jacobi coordinates", "[order][slow]") {
@@ -86,7 +86,7 @@ TEST_CASE("drag beside Kepler arcs leaves schemes with forward steps their order
     const Damped inertial(KineticPotential<Gravity, Quad>(Gravity{}), drag);
     std::vector<ErrorPoint> points;
     for (const long n : {32, 64, 128, 256}) {
-      const double dt = duration / static_cast<double>(n);
+      const double dt = arcs_duration / static_cast<double>(n);
       const auto start = planets(0.2, 2).as<Quad>();
       const auto fine = run(inertial, schemes::verlet, start, dt / 64, 64 * n);
       points.push_back({dt, distance(run(jacobi, *scheme, start, dt, n), fine)});
@@ -105,7 +105,7 @@ TEST_CASE("a symmetric composition would lose its order over kicks that are not 
   unaware.exact = "";
   std::vector<ErrorPoint> points;
   for (const long n : {64, 128}) {
-    const double dt = duration / static_cast<double>(n);
+    const double dt = arcs_duration / static_cast<double>(n);
     points.push_back({dt, distance(run(democratic, unaware, planets(0.2, 2).as<Quad>(), dt, n), exact)});
   }
   CHECK(std::fabs(fitted_slope(points) - 2) < 0.2);

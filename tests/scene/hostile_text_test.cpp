@@ -18,7 +18,7 @@ std::string repeated(const std::string& text, int times) {
   return all;
 }
 
-std::string refusal(const std::string& text) {
+std::string toml_refusal(const std::string& text) {
   try {
     parse_toml(text, "x.toml");
   } catch (const SceneError& error) {
@@ -30,24 +30,24 @@ std::string refusal(const std::string& text) {
 const std::string too_deep = "tables and lists stand more than 64 deep in one another; a scene needs far fewer";
 
 TEST_CASE("TOML that is nested too deeply is refused before it is parsed", "[scene][toml]") {
-  CHECK(refusal("x = 1\n" + repeated("a.", 20000) + "b = 1\n") == "x.toml:2: " + too_deep);
-  CHECK(refusal("[" + repeated("a.", 20000) + "b]\n") == "x.toml:1: " + too_deep);
-  CHECK(refusal("a = " + repeated("[", 20000) + repeated("]", 20000) + "\n") == "x.toml:1: " + too_deep);
-  CHECK(refusal("a = " + repeated("{b = ", 20000) + "1" + repeated("}", 20000) + "\n") == "x.toml:1: " + too_deep);
-  CHECK(refusal("a = " + repeated("{b.c.d = ", 30) + "1" + repeated("}", 30) + "\n") == "x.toml:1: " + too_deep);
-  CHECK(refusal(repeated("a.", 64) + "b = 1\n").empty());
-  CHECK(refusal(repeated("a.", 65) + "b = 1\n") == "x.toml:1: " + too_deep);
+  CHECK(toml_refusal("x = 1\n" + repeated("a.", 20000) + "b = 1\n") == "x.toml:2: " + too_deep);
+  CHECK(toml_refusal("[" + repeated("a.", 20000) + "b]\n") == "x.toml:1: " + too_deep);
+  CHECK(toml_refusal("a = " + repeated("[", 20000) + repeated("]", 20000) + "\n") == "x.toml:1: " + too_deep);
+  CHECK(toml_refusal("a = " + repeated("{b = ", 20000) + "1" + repeated("}", 20000) + "\n") == "x.toml:1: " + too_deep);
+  CHECK(toml_refusal("a = " + repeated("{b.c.d = ", 30) + "1" + repeated("}", 30) + "\n") == "x.toml:1: " + too_deep);
+  CHECK(toml_refusal(repeated("a.", 64) + "b = 1\n").empty());
+  CHECK(toml_refusal(repeated("a.", 65) + "b = 1\n") == "x.toml:1: " + too_deep);
   CHECK_FALSE(parse_toml_value(repeated("[", 20000), -1));
 }
 
 TEST_CASE("dots and brackets in strings, comments and lists of numbers are not depth", "[scene][toml]") {
   const std::string dots = repeated(".", 100), brackets = repeated("[{", 100), numbers = repeated("1.5, ", 200);
-  CHECK(refusal("a = \"" + dots + brackets + "\\\"" + dots + "\"\n").empty());
-  CHECK(refusal("a = '" + dots + brackets + "\\'\n").empty());
-  CHECK(refusal("a = \"\"\"\n" + dots + "\"\" \n" + brackets + "\"\"\"\nb = '''" + dots + "'''\n").empty());
-  CHECK(refusal("# " + dots + brackets + "\na = [" + numbers + "]\n# " + dots).empty());
-  CHECK(refusal("a = [" + repeated("[1.5, 2.5],\n", 200) + "]\n").empty());
-  CHECK(refusal("a = \"\"\"\n\n\"\"\"\n" + repeated("a.", 70) + "b = 1").starts_with("x.toml:4: "));
+  CHECK(toml_refusal("a = \"" + dots + brackets + "\\\"" + dots + "\"\n").empty());
+  CHECK(toml_refusal("a = '" + dots + brackets + "\\'\n").empty());
+  CHECK(toml_refusal("a = \"\"\"\n" + dots + "\"\" \n" + brackets + "\"\"\"\nb = '''" + dots + "'''\n").empty());
+  CHECK(toml_refusal("# " + dots + brackets + "\na = [" + numbers + "]\n# " + dots).empty());
+  CHECK(toml_refusal("a = [" + repeated("[1.5, 2.5],\n", 200) + "]\n").empty());
+  CHECK(toml_refusal("a = \"\"\"\n\n\"\"\"\n" + repeated("a.", 70) + "b = 1").starts_with("x.toml:4: "));
 }
 
 TEST_CASE("JSON is always UTF-8", "[scene][json]") {
