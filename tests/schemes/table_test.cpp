@@ -259,8 +259,13 @@ TEST_CASE("text that is no word is refused with the text", "[schemes]") {
   for (const std::string& text :
        {std::string(), std::string("BAb"), std::string("B A"), std::string("AA"), std::string("BOB"), too_long + "B"}) {
     CAPTURE(text);
-    CHECK_THROWS_AS(word(text), SchemeMismatch);
-    CHECK_THROWS_WITH(word(text), Catch::Contains("'" + text + "'"));
+    std::string message;
+    try {
+      word(text);
+    } catch (const SchemeMismatch& mismatch) {
+      message = mismatch.what();
+    }
+    CHECK(message.find("'" + text + "'") != message.npos);
   }
 }
 
