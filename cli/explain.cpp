@@ -2,6 +2,7 @@
 
 #include "engine/orbital_elements.hpp"
 #include "engine/quantity.hpp"
+#include "engine/simd.hpp"
 #include "engine/text.hpp"
 #include "integrators/composition.hpp"
 #include "scene/json.hpp"
@@ -156,7 +157,7 @@ void print_text(const Scene& scene, const Explanation& e) {
   fmt::print("columns: {}; {} bytes per particle\n", fmt::join(e.columns, ", "), e.bytes_per_particle);
   fmt::print("each step:\n");
   for (const auto& [letter, count] : e.flows) fmt::print("  {} x {}: {}\n", count, letter, meaning(letter, scene, e));
-  fmt::print("SIMD level: base\n");
+  fmt::print("SIMD level: {}\n", name(simd_level()));
   const std::string unit = scene.units->is_reduced() ? "" : " " + std::string(scene.units->time);
   fmt::print("step: {}", scene.integrator.step_text);
   if (e.recommended_step) {
@@ -181,7 +182,7 @@ Json json_of(const Scene& scene, const Explanation& e) {
                        {"particles", std::int64_t{e.particles}},
                        {"flows_per_step", Json::object(flows)},
                        {"force_evaluations_per_step", e.evaluations},
-                       {"simd", "base"},
+                       {"simd", std::string(name(simd_level()))},
                        {"step", scene.integrator.step},
                        {"recommended_step", e.recommended_step},
                        {"time_unit", scene.units->time}});

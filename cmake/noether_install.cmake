@@ -11,7 +11,8 @@ install(EXPORT noether-options NAMESPACE noether:: DESTINATION ${package_folder}
 foreach(room IN LISTS NOETHER_ROOMS)
   install(TARGETS noether_${room} EXPORT noether-${room} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(EXPORT noether-${room} NAMESPACE noether:: DESTINATION ${package_folder})
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/${room} DESTINATION include/noether FILES_MATCHING PATTERN "*.hpp")
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/${room} DESTINATION include/noether
+          FILES_MATCHING PATTERN "*.hpp" PATTERN "*_simd.hpp" EXCLUDE)
 endforeach()
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/noetherConfig.cmake.in

@@ -3,8 +3,10 @@
 #
 # The library noether::<folder> from <folder>/*.cpp (and one level of folders below) and SOURCES. A folder without sources is a
 # header-only library, a folder that does not exist is none at all, and ROOMS that do not exist are passed over.
+# <folder>/*_simd.cpp go through noether_simd.
 # Without PRECOMPILE a folder shares the precompiled header of the engine.
 
+set(NOETHER_SIMD_SOURCES "" CACHE INTERNAL "sources in lanes, of all libraries")
 set(NOETHER_ROOMS "" CACHE INTERNAL "folders that became libraries, lowest layer first")
 
 # Links the rooms that exist.
@@ -22,6 +24,9 @@ function(noether_library folder)
   file(GLOB sources CONFIGURE_DEPENDS ${root}/*.cpp ${root}/*/*.cpp)
   file(GLOB headers CONFIGURE_DEPENDS ${root}/*.hpp ${root}/*/*.hpp)
   list(APPEND sources ${library_SOURCES})
+  set(simd_sources ${sources})
+  list(FILTER simd_sources INCLUDE REGEX "_simd\\.cpp$")
+  list(FILTER sources EXCLUDE REGEX "_simd\\.cpp$")
   if(NOT sources AND NOT headers)
     return()
   endif()
@@ -39,6 +44,10 @@ function(noether_library folder)
     endif()
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
     noether_unity(${target})
+    if(simd_sources)
+      noether_simd(${target} SOURCES ${simd_sources})
+      set(NOETHER_SIMD_SOURCES ${NOETHER_SIMD_SOURCES} ${simd_sources} CACHE INTERNAL "")
+    endif()
   else()
     set(scope INTERFACE)
     add_library(${target} INTERFACE)

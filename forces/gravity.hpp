@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <optional>
+#include <type_traits>
 
 namespace noether {
 
@@ -14,9 +15,10 @@ namespace noether {
 ///
 ///     U = - sum_{i<j} G m_i m_j / sqrt(|x_i - x_j|^2 + softening^2)
 ///
-/// Tracers feel it and exert none. Up to 255 particles each pair is computed once; above, the owner of a particle sums
-/// its whole row, so that any number of threads gives the same bits.
-/// @cost O(n m) with m massive bodies, no allocation
+/// Tracers feel it and exert none. Below 16 particles each pair is computed once, by the same code at every SIMD level;
+/// above, the owner of a particle sums its whole row, doubles in lanes, so that any number of threads gives the same
+/// bits.
+/// @cost O(n m) with m massive bodies; the first call of a thread allocates 40 bytes per massive body
 /// @source Newton1687, Plummer1911
 struct Gravity {
   std::optional<double> G = {};  ///< [length^3/mass/time^2]; default: the unit system's own
@@ -39,14 +41,19 @@ struct Gravity {
   template <class Real> Real constant(const ParticleSystem<Real>& s) const { return Real(G ? *G : s.units().G); }
 
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
-    if (s.size() < parallel_threshold) {
+    if (s.size() < smallest_in_rows) {
       add_pairs(out, s);
+    } else if constexpr (std::is_same_v<Real, double>) {
+      add_lanes(out, s);
     } else {
       add_rows(out, s);
     }
   }
 
+  static constexpr Index smallest_in_rows = 16;
+
  private:
+  void add_lanes(ForceSink<double>& out, const ParticleSystem<double>& s) const;
   template <class Real> void add_pairs(ForceSink<Real>& out, const ParticleSystem<Real>& s) const;
   template <class Real> void add_rows(ForceSink<Real>& out, const ParticleSystem<Real>& s) const;
 };

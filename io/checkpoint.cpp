@@ -188,7 +188,6 @@ void CheckpointWriter::observe(const Snapshot<double>& now) {
   checkpoint.run = now.saved_run();
   checkpoint.scene_toml = scene_toml_;
   checkpoint.digest = digest(now.state());
-  checkpoint.simd = simd_;
   checkpoint.step = now.step();
   checkpoint.time = now.time();
   write_checkpoint(file_, checkpoint);

@@ -4,6 +4,7 @@
 #include "engine/description.hpp"
 #include "engine/monitor.hpp"
 #include "engine/saved_state.hpp"
+#include "engine/simd.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -16,10 +17,10 @@ namespace noether::io {
 /// What a checkpoint file holds.
 struct Checkpoint {
   SavedRun run;
-  std::string scene_toml;     ///< effective scene; empty if the run was made by a program
-  std::string digest;         ///< of the settled state, "sha256:<hex>"
-  std::string simd = "base";  ///< level of the lane kernels
-  std::string outcome;        ///< how the run ended; empty while it is unfinished
+  std::string scene_toml;                              ///< effective scene; empty if the run was made by a program
+  std::string digest;                                  ///< of the settled state, "sha256:<hex>"
+  std::string simd = std::string(name(simd_level()));  ///< level of the lane kernels
+  std::string outcome;                                 ///< how the run ended; empty while it is unfinished
   std::int64_t step = 0;
   double time = 0;  ///< [time]
 };
@@ -55,8 +56,8 @@ FoundCheckpoint newest_checkpoint(const std::filesystem::path& folder);
 /// Writes checkpoints of a run: `sim.every(1'000, io::CheckpointWriter{"checkpoint.h5"})`.
 class CheckpointWriter {
  public:
-  explicit CheckpointWriter(std::filesystem::path file, std::string scene_toml = {}, std::string simd = "base")
-      : file_(std::move(file)), scene_toml_(std::move(scene_toml)), simd_(std::move(simd)) {}
+  explicit CheckpointWriter(std::filesystem::path file, std::string scene_toml = {})
+      : file_(std::move(file)), scene_toml_(std::move(scene_toml)) {}
 
   static constexpr auto describe() {
     return part<CheckpointWriter>("checkpoint", "the whole run, so that it can be resumed",
@@ -69,7 +70,7 @@ class CheckpointWriter {
 
  private:
   std::filesystem::path file_;
-  std::string scene_toml_, simd_;
+  std::string scene_toml_;
 };
 
 }  // namespace noether::io

@@ -1,6 +1,7 @@
 #include "io/trajectory.hpp"
 
 #include "engine/quantity.hpp"
+#include "engine/simd.hpp"
 #include "engine/version.hpp"
 #include "io/buffered_dataset.hpp"
 #include "io/digest.hpp"
@@ -213,7 +214,7 @@ class TrajectoryWriter::File {
     hdf5_->make_group(monitors_path);
     hdf5_->set_attribute("/noether", "version", version());
     hdf5_->set_attribute("/noether", "commit", commit());
-    hdf5_->set_attribute("/noether", "simd", options_.simd);
+    hdf5_->set_attribute("/noether", "simd", std::string(name(simd_level())));
     hdf5_->set_attribute("/noether", "units", std::string(units_->name));
     hdf5_->set_attribute("/noether", "complete", std::int64_t{0});
     hdf5_->write_text("/noether/scene", options_.scene_toml);

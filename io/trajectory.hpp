@@ -12,9 +12,8 @@
 namespace noether::io {
 
 struct TrajectoryOptions {
-  bool frames = true;         ///< write positions and velocities; without, only the samples of monitors
-  std::string scene_toml{};   ///< effective scene, stored as /noether/scene
-  std::string simd = "base";  ///< level of the lane kernels, stored as an attribute
+  bool frames = true;        ///< write positions and velocities; without, only the samples of monitors
+  std::string scene_toml{};  ///< effective scene, stored as /noether/scene
 };
 
 /// Writes frames and samples to one HDF5 file: `sim.every(100, io::TrajectoryWriter{"run.h5"})`.

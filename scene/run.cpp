@@ -99,6 +99,7 @@ class Runner {
 
   RunReport go() {
     const std::optional<io::Checkpoint> checkpoint = folder_.prepare(options_.existing);
+    choose_simd(checkpoint);
     Simulation<double> sim = assemble(scene_, files_);
     if (checkpoint) {
       check_resume(*checkpoint);
@@ -117,13 +118,29 @@ class Runner {
  private:
   std::int64_t target() const { return *scene_.integrator.steps; }
 
+  /// A run goes on at the level it began with: another would round in other ways.
+  void choose_simd(const std::optional<io::Checkpoint>& checkpoint) {
+    if (options_.simd) set_simd_level(*options_.simd);
+    if (checkpoint && checkpoint->simd != name(simd_level())) {
+      const SimdLevel level = simd_level_named(checkpoint->simd);
+      if (options_.simd) {
+        throw SceneError(fmt::format("the run was made at SIMD level '{}', not '{}'; leave --simd out, or give --fresh",
+                                     name(level), name(*options_.simd)),
+                         {.file = scene_.source.file});
+      }
+      if (!has_simd_level(level)) {
+        throw SceneError(fmt::format("the run was made at SIMD level '{}', which this processor does not have; go on "
+                                     "where there is one, or give --fresh",
+                                     name(level)),
+                         {.file = scene_.source.file});
+      }
+      set_simd_level(level);
+    }
+    report_.simd = name(simd_level());
+  }
+
   void check_resume(const io::Checkpoint& checkpoint) const {
     check_same_scene(checkpoint, scene_);
-    if (checkpoint.simd != report_.simd) {
-      throw SceneError(
-          fmt::format("the run was made at SIMD level '{}', which this build does not have", checkpoint.simd),
-          {.file = scene_.source.file});
-    }
     if (target() < checkpoint.step) {
       throw SceneError(
           fmt::format("the end at step {} lies before the checkpoint at step {}; give a later one, or --fresh",

@@ -1,6 +1,7 @@
 #pragma once
 /// A scene, run as the program runs it: output folder, checkpoints, resume, signals, report.
 
+#include "engine/simd.hpp"
 #include "scene/output_folder.hpp"
 #include "scene/scene.hpp"
 
@@ -18,13 +19,15 @@ struct RunOptions {
   bool handle_signals = true;    ///< SIGINT and SIGTERM end the run after its step
   bool progress = false;         ///< a line on stderr, if that is a terminal
   double checkpoint_wall = 300;  ///< seconds between checkpoints
+  /// Level of the lane kernels, set for the whole process; default: that of a run gone on with, else the highest.
+  std::optional<SimdLevel> simd = {};
 };
 
 /// Everything a run has to say at its end.
 struct RunReport {
   Outcome outcome;
   std::string scene, scene_sha256;  ///< as typed; hash of the effective scene
-  std::string method, hamiltonian, time_unit, simd = "base", digest;
+  std::string method, hamiltonian, time_unit, simd, digest;
   double dt = 0;
   Index particles = 0;
   int threads = 1;

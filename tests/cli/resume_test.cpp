@@ -1,5 +1,6 @@
 // `noether run --resume`: from which checkpoint, to which end, and what it refuses.
 
+#include "engine/simd.hpp"
 #include "tests/cli/support.hpp"
 
 #include <filesystem>
@@ -114,6 +115,36 @@ TEST_CASE("only damaged checkpoints exit 3, named, with the way out", "[cli][res
   CHECK(result.err.ends_with("; start over with --fresh\n"));
   CHECK(noether(folder, "run scene.toml --quiet").exit_code == 2);
   CHECK(noether(folder, "run scene.toml --quiet --fresh").exit_code == 0);
+}
+
+TEST_CASE("a run goes on at the SIMD level it began with", "[cli][resume][messages]") {
+  const SceneFolder folder;
+  const ProcessResult base = noether(folder, "run scene.toml --json --simd base");
+  CHECK(base.exit_code == 0);
+  CHECK(json_member(base.out, "simd") == "\"base\"");
+  make_unfinished(folder / "scene.out");
+  if (has_simd_level(SimdLevel::avx2)) {
+    const ProcessResult other = noether(folder, "run scene.toml --resume --simd avx2");
+    CHECK(other.exit_code == 2);
+    CHECK(other.err ==
+          "scene.toml: the run was made at SIMD level 'base', not 'avx2'; leave --simd out, or give --fresh\n");
+  }
+  const ProcessResult resumed = noether(folder, "run scene.toml --resume --json");
+  CHECK(resumed.exit_code == 0);
+  CHECK(json_member(resumed.out, "simd") == "\"base\"");
+  CHECK(json_member(resumed.out, "digest") == json_member(base.out, "digest"));
+}
+
+TEST_CASE("a SIMD level that the processor lacks is refused", "[cli][run][messages]") {
+  if (has_simd_level(SimdLevel::avx512)) {
+    WARN("skipped: this processor has every level");
+    return;
+  }
+  const SceneFolder folder;
+  const ProcessResult result = noether(folder, "run scene.toml --simd avx512");
+  CHECK(result.exit_code == 2);
+  CHECK(result.err == "SIMD level 'avx512' is not to be had on this processor; its best is '" +
+                          std::string(name(simd_level())) + "'\n");
 }
 
 }  // namespace

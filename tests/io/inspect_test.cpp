@@ -43,7 +43,7 @@ TEST_CASE("info tells what a trajectory holds", "[inspect]") {
   CHECK(info.frames == 7);
   CHECK(info.version == version());
   CHECK(info.commit == commit());
-  CHECK(info.simd == "base");
+  CHECK(info.simd == name(simd_level()));
   CHECK(info.units == "solar");
   CHECK(info.scene_toml == "title = \"outer planets\"\n");
   REQUIRE(info.monitors.size() == 2);

@@ -1,4 +1,5 @@
-"""Layering: which folder may include which, and which files may see HDF5, TOML, CLI11 and OpenSSL."""
+"""Layering: which folder may include which, which files may see HDF5, TOML, CLI11, OpenSSL and Highway, and that code
+in lanes sees nothing else: an inline function that it shared with ordinary code would be linked with its instructions."""
 
 import pathlib
 import re
@@ -28,6 +29,8 @@ GUARDED = [
     (re.compile(r"^CLI/"), "CLI11", "cli"),
     (re.compile(r"^openssl/"), "OpenSSL", "io"),
 ]
+IN_LANES = re.compile(r"_simd\.[ch]pp$")
+FOR_LANES = re.compile(r"_simd\.hpp$|^engine/simd\.hpp$")
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.MULTILINE)
 
 
@@ -41,6 +44,10 @@ def problems(root):
             quoted, header = match.group(1) == '"', match.group(2)
             if quoted:
                 found += room_problems(root, path, where, header)
+            if header.startswith("hwy/") and not IN_LANES.search(path.name):
+                found.append(f"{where}: Highway header '{header}' may be included only in *_simd.cpp and *_simd.hpp")
+            if quoted and IN_LANES.search(path.name) and not FOR_LANES.search(header):
+                found.append(f"{where}: code in lanes may include only *_simd.hpp and engine/simd.hpp, not \"{header}\"")
             for pattern, name, room in GUARDED:
                 if pattern.search(header) and not (path.parts[0] == room and path.suffix == ".cpp"):
                     found.append(f"{where}: {name} header '{header}' may be included only in {room}/*.cpp")

@@ -7,6 +7,7 @@ import tempfile
 import headers
 import layering
 import messages
+import simd_symbols
 import sizes
 import sources
 import text
@@ -39,6 +40,9 @@ SAMPLES = [
     ("scene/a.hpp", "#include <toml++/toml.h>\n", layering.problems, "TOML header"),
     ("scene/a.cpp", "#include <CLI/CLI.hpp>\n", layering.problems, "CLI11 header"),
     ("scene/a.cpp", "  #  include <openssl/evp.h>\n", layering.problems, "OpenSSL header"),
+    ("forces/a.cpp", "#include <hwy/highway.h>\n", layering.problems, "Highway header"),
+    ("forces/a_simd.cpp", '#include "engine/clean.hpp"\n', layering.problems, "code in lanes may include only"),
+    ("forces/a_simd.cpp", "#include <hwy/highway.h>\n", layering.problems, ""),
     ("io/a.cpp", '#include <hdf5.h>\n// #include "forces/b.hpp"\n', layering.problems, ""),
     ("forces/a.cpp", '#include "engine/clean.hpp"\n', layering.problems, ""),
     ("engine/a.cpp", "int x;\n" * 601, sizes.problems, "601 lines"),
@@ -98,9 +102,22 @@ def compiler_failures(compiler):
             yield f"headers: planted a header that lacks <vector>, found {found}"
 
 
+def symbol_failures():
+    symbols = """0000000000000000 T noether::avx2::f()
+0000000000000010 W noether::avx2::g<int>()
+                 w __gmon_start__
+0000000000000020 W int const& std::max<int>(int const&, int const&)
+0000000000000030 V guard variable for noether::avx2::f()::x
+0000000000000040 W noether::base::h()
+"""
+    found = simd_symbols.problems_of(symbols, "avx2")
+    if [problem.split("'")[1] for problem in found] != ["__gmon_start__", "int const& std::max<int>(int const&, int const&)", "noether::base::h()"]:
+        yield f"simd_symbols: found {found}"
+
+
 if __name__ == "__main__":
     parser = argparse.ArgumentParser()
     parser.add_argument("--compiler", default="c++")
-    every_failure = [*failures(), *compiler_failures(parser.parse_args().compiler)]
-    print("\n".join(every_failure) or f"{len(SAMPLES) + 1} planted files, each found or passed as it should be")
+    every_failure = [*failures(), *symbol_failures(), *compiler_failures(parser.parse_args().compiler)]
+    print("\n".join(every_failure) or f"{len(SAMPLES) + 2} planted files, each found or passed as it should be")
     raise SystemExit(bool(every_failure))

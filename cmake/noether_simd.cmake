@@ -1,0 +1,36 @@
+# Code in lanes of SIMD registers: `*_simd.cpp` is compiled once per level of engine/simd.hpp, with that level's
+# instructions, in the namespace of that level; which one runs is chosen when the program starts.
+
+find_path(NOETHER_HIGHWAY_INCLUDE hwy/highway.h REQUIRED)
+
+set(NOETHER_SIMD_LEVELS base)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  list(APPEND NOETHER_SIMD_LEVELS avx2 avx512)
+endif()
+set(NOETHER_SIMD_FLAGS_base)
+# Highway takes a processor for x86-64-v3 or v4 only if it also has these two.
+set(NOETHER_SIMD_FLAGS_avx2 -march=x86-64-v3 -maes -mpclmul)
+set(NOETHER_SIMD_FLAGS_avx512 -march=x86-64-v4 -maes -mpclmul)
+
+# noether_simd(<target> [SUFFIX <text>] [OPTIONS <flag>...] SOURCES <file>...)
+#
+# Gives a target the objects of all levels; their namespaces are avx2<suffix> and so on.
+function(noether_simd target)
+  cmake_parse_arguments(PARSE_ARGV 1 simd "" "SUFFIX" "OPTIONS;SOURCES")
+  foreach(level IN LISTS NOETHER_SIMD_LEVELS)
+    set(objects ${target}_${level}${simd_SUFFIX})
+    add_library(${objects} OBJECT ${simd_SOURCES})
+    noether_warnings(${objects})
+    target_compile_features(${objects} PRIVATE cxx_std_20)
+    target_include_directories(${objects} PRIVATE ${PROJECT_SOURCE_DIR})
+    target_include_directories(${objects} SYSTEM PRIVATE ${NOETHER_HIGHWAY_INCLUDE})
+    # Highway's namespace is renamed too: what is not inlined must not stand in for the same function of another level.
+    target_compile_definitions(${objects} PRIVATE NOETHER_SIMD_LEVEL=${level}${simd_SUFFIX}
+                                                  hwy=hwy_${level}${simd_SUFFIX})
+    target_compile_options(${objects} PRIVATE -ffp-contract=off ${NOETHER_SIMD_FLAGS_${level}} ${simd_OPTIONS}
+      # Before registers are given out, g++ does not reorder on its own; several chains side by side want it to.
+      $<$<CXX_COMPILER_ID:GNU>:-fschedule-insns -fsched-pressure>)
+    set_target_properties(${objects} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    target_sources(${target} PRIVATE $<TARGET_OBJECTS:${objects}>)
+  endforeach()
+endfunction()
