@@ -93,6 +93,23 @@ template <class Real> class VectorColumn {
                                                                      Eigen::OuterStride<>(stride_));
   }
 
+  /// Adds `h` times another column of the same size: one loop over x, y, z and padding, which stays 0.
+  void add_scaled(const Real& h, const VectorColumn& other) {
+    Real* mine = values_.data();
+    const Real* theirs = other.values_.data();
+    for (Index k = 0; k < 3 * stride_; ++k) mine[k] += h * theirs[k];
+  }
+
+  /// Whether every number is finite: 0 times another is not 0.
+  bool is_finite() const {
+    Real sums[8] = {Real(0), Real(0), Real(0), Real(0), Real(0), Real(0), Real(0), Real(0)};
+    for (std::size_t k = 0; k < values_.size(); k += 8) {
+      for (std::size_t lane = 0; lane < 8; ++lane) sums[lane] += values_[k + lane] * Real(0);
+    }
+    const Real low = (sums[0] + sums[1]) + (sums[2] + sums[3]), high = (sums[4] + sums[5]) + (sums[6] + sums[7]);
+    return low + high == Real(0);
+  }
+
   void fill(const Real& value) { values_.assign(values_.size(), value); }
 
   void append(const Vec3<Real>& v) {

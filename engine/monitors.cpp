@@ -30,9 +30,9 @@ void fill_line(MonitorReport& report, const SeriesStatistics& series, const std:
 
 template <class Real> void Energy::observe(const Snapshot<Real>& now) {
   const EnergyTerms<Real>& energy = now.energy();
-  const Quad total = wide(energy.total());
   if (!begun_) {
     begun_ = true;
+    const Quad total = wide(energy.total());
     reference_ = total;
     const double t = static_cast<double>(energy.kinetic), u = static_cast<double>(energy.potential);
     scale_ = std::max(std::abs(static_cast<double>(total)), 1e-3 * (t + std::abs(u)));
@@ -43,10 +43,11 @@ template <class Real> void Energy::observe(const Snapshot<Real>& now) {
     } else if (claims.time_dependent) {
       why_not_ = "a force depends on time: the energy changes by itself, so there is no error of it";
     }
+    time_unit_ = std::string(now.units().time);
   }
-  time_unit_ = std::string(now.units().time);
-  now_ = {static_cast<double>(total), static_cast<double>(energy.kinetic), static_cast<double>(energy.potential),
-          static_cast<double>((total - reference_) / Quad(scale_))};
+  const Real change = energy.total() - static_cast<Real>(reference_);
+  now_ = {static_cast<double>(energy.total()), static_cast<double>(energy.kinetic),
+          static_cast<double>(energy.potential), static_cast<double>(change / Real(scale_))};
   totals_.add(now.time(), now_[0]);
   errors_.add(now.time(), now_[3]);
 }

@@ -126,7 +126,7 @@ template <class Real = double> class ParticleSystem {
     if (low_) {
       compensated_add(x_, low_->x, h, v_);
     } else {
-      x_.all() += h * v_.all();
+      x_.add_scaled(h, v_);
     }
   }
   /// v += h a for every particle [length/time].
@@ -134,7 +134,7 @@ template <class Real = double> class ParticleSystem {
     if (low_) {
       compensated_add(v_, low_->v, h, a);
     } else {
-      v_.all() += h * a.all();
+      v_.add_scaled(h, a);
     }
   }
   /// x_i += dx, v_i += dv.

@@ -139,9 +139,10 @@ template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double 
   if (result) return *result;
   const auto started = WallClock::now();
   const double before = seconds_;
+  looked_at_clock_ = started;
   auto reported = started;
+  std::int64_t unclocked = 0;  // steps since the last look at the wall clock, which costs as much as a short step
   while (true) {
-    seconds_ = before + seconds_since(started);
     if ((result = observe_due())) break;
     if (step() >= end) break;
     if (step() - good_->particles.clock().step() >= longest_chunk && (result = keep_good())) break;
@@ -149,13 +150,20 @@ template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double 
       result = outcome(Outcome::Kind::interrupted);
       break;
     }
-    const auto chunk_start = WallClock::now();
     const std::int64_t steps = next_cut(end) - step();
     const Advanced done = integrator_.advance(raw_, {steps, next_time(limit), stop_flag_});
-    const double took = seconds_since(chunk_start);
-    if (took < chunk_seconds / 2) chunk_ = std::min(longest_chunk, chunk_ * 2);
-    if (took > chunk_seconds && chunk_ > 1) chunk_ /= 2;
-    if (done.failure || fault(raw_)) {
+    unclocked += done.steps;
+    const bool chunk_is_full = unclocked >= chunk_ || done.at_limit || step() >= end;
+    if (chunk_is_full) {
+      const auto now = WallClock::now();
+      const double took = std::chrono::duration<double>(now - looked_at_clock_).count();
+      if (took < chunk_seconds / 2) chunk_ = std::min(longest_chunk, chunk_ * 2);
+      if (took > chunk_seconds && chunk_ > 1) chunk_ /= 2;
+      looked_at_clock_ = now;
+      seconds_ = before + std::chrono::duration<double>(now - started).count();
+      unclocked = 0;
+    }
+    if (done.failure || (chunk_is_full && fault(raw_))) {
       result = fall_back();
       break;
     }
@@ -167,8 +175,8 @@ template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double 
         break;
       }
     }
-    if (progress_ && seconds_since(reported) > 0.1) {
-      reported = WallClock::now();
+    if (progress_ && looked_at_clock_ - reported > std::chrono::milliseconds(100)) {
+      reported = looked_at_clock_;
       progress_({step(), end, time(), before + seconds_since(started)});
     }
   }
@@ -226,42 +234,43 @@ template <class Real> std::optional<Outcome> Simulation<Real>::look_at_the_end()
 
 template <class Real> bool Simulation<Real>::due(const Scheduled& scheduled) const {
   if (scheduled.schedule.steps > 0) return step() % scheduled.schedule.steps == 0;
-  return scheduled.schedule.wall > 0 && seconds_since(scheduled.last_wall) >= scheduled.schedule.wall;
+  if (scheduled.schedule.wall <= 0) return false;
+  return std::chrono::duration<double>(looked_at_clock_ - scheduled.last_wall).count() >= scheduled.schedule.wall;
 }
 
 template <class Real> std::optional<Outcome> Simulation<Real>::observe_due() {
-  if (observed_through_ == step()) return {};
+  if (observed_through_ == step()) return std::nullopt;
   observed_through_ = step();
-  std::vector<Scheduled*> looking;
+  looking_.clear();
   Wanted wanted;
   for (auto& scheduled : monitors_) {
     if (!due(scheduled)) continue;
-    looking.push_back(&scheduled);
-    scheduled.last_wall = WallClock::now();
+    looking_.push_back(&scheduled);
+    scheduled.last_wall = looked_at_clock_;
     wanted.energy = wanted.energy || scheduled.monitor.wanted().energy;
   }
-  std::vector<ScheduledStop*> stops;
-  for (auto& stop : stops_) {
-    if (step() % stop.steps == 0) stops.push_back(&stop);
-  }
-  if (looking.empty() && stops.empty()) return {};
+  const auto stop_due = [&](const ScheduledStop& stop) { return step() % stop.steps == 0; };
+  if (looking_.empty() && std::none_of(stops_.begin(), stops_.end(), stop_due)) return std::nullopt;
   const Snapshot<Real> moment = snapshot(wanted);
   if (const auto bad = fault(moment.state())) return good_ ? fall_back() : *bad;
-  std::optional<Outcome> result;
-  for (ScheduledStop* stop : stops) {
-    const auto reason = stop->check.look(moment);
-    if (!reason || result) continue;
-    result = stopped(*reason);
+  std::optional<StopReason> reason;
+  for (ScheduledStop& stop : stops_) {
+    if (!stop_due(stop)) continue;
+    const auto found = stop.check.look(moment);
+    if (found && !reason) reason = found;
   }
-  show(looking, moment);
-  return result;
+  show(moment);
+  if (reason) return stopped(*reason);
+  return std::nullopt;
 }
 
-template <class Real>
-void Simulation<Real>::show(const std::vector<Scheduled*>& looking, const Snapshot<Real>& moment) {
-  for (Scheduled* one : looking) {
+template <class Real> void Simulation<Real>::show(const Snapshot<Real>& moment) {
+  const bool recording =
+      std::any_of(monitors_.begin(), monitors_.end(), [](const Scheduled& s) { return s.monitor.records(); });
+  for (Scheduled* one : looking_) {
     if (one->monitor.looks_last()) continue;
     one->monitor.observe(moment);
+    if (!recording) continue;
     const std::vector<Series> series = one->monitor.series();
     if (series.empty()) continue;
     const Sample sample{one->name, moment.step(), moment.time(), series, one->monitor.scale()};
@@ -270,26 +279,26 @@ void Simulation<Real>::show(const std::vector<Scheduled*>& looking, const Snapsh
     }
   }
   const bool last =
-      std::any_of(looking.begin(), looking.end(), [](const Scheduled* s) { return s->monitor.looks_last(); });
+      std::any_of(looking_.begin(), looking_.end(), [](const Scheduled* s) { return s->monitor.looks_last(); });
   if (!last) return;
   for (auto& writer : monitors_) writer.monitor.flush();
-  for (Scheduled* one : looking) {
+  for (Scheduled* one : looking_) {
     if (one->monitor.looks_last()) one->monitor.observe(moment);
   }
 }
 
 template <class Real> void Simulation<Real>::observe_times(double until) {
-  std::vector<Scheduled*> looking;
+  looking_.clear();
   Wanted wanted;
   for (auto& scheduled : monitors_) {
     if (!by_time(scheduled)) continue;
     const double next = raw_.clock().start() + static_cast<double>(scheduled.observed) * scheduled.schedule.interval;
     if (next > until) continue;
     ++scheduled.observed;
-    looking.push_back(&scheduled);
+    looking_.push_back(&scheduled);
     wanted.energy = wanted.energy || scheduled.monitor.wanted().energy;
   }
-  if (!looking.empty()) show(looking, snapshot(wanted, until));
+  if (!looking_.empty()) show(snapshot(wanted, until));
 }
 
 template <class Real> std::int64_t Simulation<Real>::next_cut(std::int64_t end) const {
@@ -313,6 +322,7 @@ template <class Real> double Simulation<Real>::next_time(double end) const {
 
 template <class Real> std::optional<Outcome> Simulation<Real>::fault(const ParticleSystem<Real>& s) const {
   using std::isfinite;
+  if (s.positions().is_finite() && s.velocities().is_finite()) return std::nullopt;
   for (Index i = 0; i < s.size(); ++i) {
     for (int k = 0; k < 3; ++k) {
       const bool position = !isfinite(s.positions().component(k)[i]);
@@ -322,7 +332,7 @@ template <class Real> std::optional<Outcome> Simulation<Real>::fault(const Parti
       return failed(failure);
     }
   }
-  return {};
+  return std::nullopt;
 }
 
 template <class Real> std::optional<Outcome> Simulation<Real>::settled_fault() {

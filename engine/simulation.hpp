@@ -10,6 +10,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <vector>
 
 namespace noether {
 
@@ -143,7 +144,7 @@ template <class Real = double> class Simulation {
   std::optional<Outcome> observe_due();
   void observe_times(double until);
   bool due(const Scheduled& scheduled) const;
-  void show(const std::vector<Scheduled*>& due, const Snapshot<Real>& moment);
+  void show(const Snapshot<Real>& moment);
   std::int64_t next_cut(std::int64_t end) const;
   double next_time(double end) const;
   /// What is wrong with a state, if it is not finite.
@@ -172,7 +173,9 @@ template <class Real = double> class Simulation {
   std::deque<ScheduledStop> stops_;
   std::optional<double> shown_at_;      ///< free clock: where `run_until` has ended, beyond the last whole step
   std::int64_t observed_through_ = -1;  ///< last step whose due monitors have looked
-  std::int64_t chunk_ = 16;
+  std::vector<Scheduled*> looking_;     ///< at the present moment
+  std::int64_t chunk_ = 16;             ///< steps between looks at the wall clock
+  std::chrono::steady_clock::time_point looked_at_clock_;
   const std::atomic<bool>* stop_flag_ = nullptr;
   std::function<void(const Progress&)> progress_;
   double seconds_ = 0;

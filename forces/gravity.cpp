@@ -97,6 +97,8 @@ Mat3<double> virial_of(const Gathered& gathered, double g, double softening) {
 
 }  // namespace
 
+template void Gravity::add_pairs(ForceSink<double>&, const ParticleSystem<double>&) const;
+
 void Gravity::add_lanes(ForceSink<double>& out, const ParticleSystem<double>& s) const {
   thread_local Gathered gathered;
   gathered.assign(s);

@@ -60,37 +60,59 @@ struct Gravity {
 
 template <class Real> void Gravity::add_pairs(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
   using std::sqrt;
+  const Index n = s.size();
   const Real g = constant(s), soft2 = Real(softening) * Real(softening);
   const Real *x = s.positions().component(0), *y = s.positions().component(1), *z = s.positions().component(2);
   const Real* m = s.masses().data();
-  VectorColumn<Real>& a = out.accelerations();
-  Real *ax = a.component(0), *ay = a.component(1), *az = a.component(2);
-  Real sum(0);
-  Mat3<Real> virial = Mat3<Real>::Zero();
-  for (Index i = 1; i < s.size(); ++i) {
+  // Distances, then all roots and quotients side by side, which take longest, then the sums.
+  constexpr Index most = smallest_in_rows * (smallest_in_rows - 1) / 2;
+  Real dx[most], dy[most], dz[most], r2[most], r[most], k[most];
+  Index pairs = 0;
+  for (Index i = 1; i < n; pairs += i++) {
     for (Index j = 0; j < i; ++j) {
-      if (m[i] == Real(0) && m[j] == Real(0)) continue;
-      const Real dx = x[i] - x[j], dy = y[i] - y[j], dz = z[i] - z[j];
-      const Real r2 = dx * dx + dy * dy + dz * dz + soft2;
-      const Real r = sqrt(r2);
-      const Real k = g / (r2 * r);
-      const Real kj = k * m[j], ki = k * m[i];
-      ax[i] -= kj * dx;
-      ay[i] -= kj * dy;
-      az[i] -= kj * dz;
-      ax[j] += ki * dx;
-      ay[j] += ki * dy;
-      az[j] += ki * dz;
-      if (out.wants_energy()) sum -= g * m[i] * m[j] / r;
-      if (out.wants_virial()) {
-        const Vec3<Real> d(dx, dy, dz);
-        for (int row = 0; row < 3; ++row) {
-          for (int column = 0; column < 3; ++column) virial(row, column) -= m[i] * kj * d[row] * d[column];
-        }
-      }
+      const Index p = pairs + j;
+      dx[p] = x[i] - x[j];
+      dy[p] = y[i] - y[j];
+      dz[p] = z[i] - z[j];
+      r2[p] = dx[p] * dx[p] + dy[p] * dy[p] + dz[p] * dz[p] + soft2;
     }
   }
-  out.energy(sum);
+  for (Index p = 0; p < pairs; ++p) {
+    r[p] = sqrt(r2[p]);
+    k[p] = g / (r2[p] * r[p]);
+  }
+  VectorColumn<Real>& a = out.accelerations();
+  Real *ax = a.component(0), *ay = a.component(1), *az = a.component(2);
+  for (Index i = 1, p = 0; i < n; ++i) {
+    Real sum_x = ax[i], sum_y = ay[i], sum_z = az[i];
+    for (Index j = 0; j < i; ++j, ++p) {
+      if (m[i] == Real(0) && m[j] == Real(0)) continue;
+      const Real kj = k[p] * m[j], ki = k[p] * m[i];
+      sum_x -= kj * dx[p];
+      sum_y -= kj * dy[p];
+      sum_z -= kj * dz[p];
+      ax[j] += ki * dx[p];
+      ay[j] += ki * dy[p];
+      az[j] += ki * dz[p];
+    }
+    ax[i] = sum_x;
+    ay[i] = sum_y;
+    az[i] = sum_z;
+  }
+  if (!out.wants_energy() && !out.wants_virial()) return;
+  for (Index p = 0; p < pairs; ++p) r[p] = g / r[p];
+  Real energy(0);
+  Mat3<Real> virial = Mat3<Real>::Zero();
+  for (Index i = 1, p = 0; i < n; ++i) {
+    for (Index j = 0; j < i; ++j, ++p) {
+      if (m[i] == Real(0) || m[j] == Real(0)) continue;
+      energy -= m[i] * m[j] * r[p];
+      if (!out.wants_virial()) continue;
+      const Vec3<Real> d(dx[p], dy[p], dz[p]);
+      virial -= m[i] * (k[p] * m[j]) * d * d.transpose();
+    }
+  }
+  out.energy(energy);
   out.virial(virial);
 }
 
@@ -143,5 +165,7 @@ template <class Real> void Gravity::add_rows(ForceSink<Real>& out, const Particl
   out.energy(totals.energy);
   out.virial(totals.virial);
 }
+
+extern template void Gravity::add_pairs(ForceSink<double>&, const ParticleSystem<double>&) const;
 
 }  // namespace noether

@@ -83,9 +83,9 @@ template <SplitHamiltonian H> class Composition {
     for (std::int64_t n = 0; n < span.steps; ++n) {
       step(s, dt);
       if (hamiltonian_.failure()) return {n + 1, false, hamiltonian_.failure()};
-      if (span.stop != nullptr && span.stop->load(std::memory_order_relaxed)) return {n + 1, false, {}};
+      if (span.stop != nullptr && span.stop->load(std::memory_order_relaxed)) return {n + 1, false, std::nullopt};
     }
-    return {span.steps, false, {}};
+    return {span.steps, false, std::nullopt};
   }
 
   /// Completes a copy: pending stage, word after the run (if `corrected`), inertial coordinates.

@@ -179,43 +179,65 @@ TEST_CASE("two bodies in one place are not passed over silently", "[lanes]") {
   }
 }
 
+namespace {
+
+/// Accelerations, energy and virial in 113 bits, and for every particle the sum of |a_ij|, shape (n).
+struct Exact {
+  ParticleSystem<Quad> particles;
+  VectorColumn<Quad> a;
+  std::vector<Quad> absolute;
+  Quad energy;
+  Mat3<Quad> virial;
+
+  Exact(const ParticleSystem<double>& s, const Gravity& gravity) : particles(s.as<Quad>()), a(s.size()) {
+    ForceSink<Quad> sink(a, particles, {.energy = true, .virial = true});
+    gravity.add_to(sink, particles);
+    energy = sink.potential();
+    virial = sink.virial();
+    const auto& x = std::as_const(particles).positions();
+    for (Index i = 0; i < s.size(); ++i) {
+      absolute.emplace_back(0);
+      for (Index j = 0; j < s.size(); ++j) {
+        if (j == i) continue;
+        const Quad r2 = norm2(Vec3<Quad>(x[i] - x[j])) + Quad(gravity.softening) * Quad(gravity.softening);
+        absolute.back() += gravity.constant(particles) * std::as_const(particles).masses()[j] / r2;
+      }
+    }
+  }
+
+  /// Largest error of an acceleration, relative to the sum over j of |a_ij|.
+  double worst(const VectorColumn<double>& found) const {
+    double largest = 0;
+    for (Index i = 0; i < found.size(); ++i) {
+      const Vec3<double> mine = found[i];
+      const Vec3<Quad> error = Vec3<Quad>(Quad(mine[0]), Quad(mine[1]), Quad(mine[2])) - a[i];
+      largest = std::max(largest, static_cast<double>(sqrt(norm2(error)) / absolute[static_cast<std::size_t>(i)]));
+    }
+    return largest;
+  }
+};
+
+}  // namespace
+
 TEST_CASE("forces on many particles agree with 113 bits, tracers among them, for any number", "[lanes][gravity]") {
-  for (const Level& level : levels()) {
-    const AtLevel at(level.level);
-    for (const int n : {16, 17, 63, 64, 65, 130, 511, 512, 513, 700}) {
+  for (const int n : {16, 17, 63, 64, 65, 130, 513}) {
+    auto s = test::cloud(n);
+    for (Index i = 0; i < n; i += 3) s.masses()[i] = 0;
+    const Gravity gravity{.G = 1.5, .softening = n % 2 == 0 ? 0.0 : 0.05};
+    const Exact exact(s, gravity);
+    for (const Level& level : levels()) {
+      const AtLevel at(level.level);
       CAPTURE(name(level.level), n);
-      auto s = test::cloud(n);
-      for (Index i = 0; i < n; i += 3) s.masses()[i] = 0;
-      const Gravity gravity{.G = 1.5, .softening = n % 2 == 0 ? 0.0 : 0.05};
       VectorColumn<double> a(n), silent(n);
       ForceSink<double> sink(a, s, {.energy = true, .virial = true}), quiet(silent, s, {});
       gravity.add_to(sink, s);
       gravity.add_to(quiet, s);
-      CHECK(std::memcmp(a.component(0), silent.component(0),
-                        sizeof(double) * static_cast<std::size_t>(3 * a.stride())) == 0);
-
-      const auto wide = s.as<Quad>();
-      VectorColumn<Quad> exact(n);
-      ForceSink<Quad> wide_sink(exact, wide, {.energy = true, .virial = true});
-      gravity.add_to(wide_sink, wide);
-      double worst = 0;
-      for (Index i = 0; i < n; ++i) {
-        Quad absolute(0);
-        for (Index j = 0; j < n; ++j) {
-          if (j == i) continue;
-          const Quad r2 = norm2(Vec3<Quad>(wide.positions()[i] - wide.positions()[j])) +
-                          Quad(gravity.softening) * Quad(gravity.softening);
-          absolute += Quad(1.5) * wide.masses()[j] / r2;
-        }
-        const Vec3<double> mine = std::as_const(a)[i];
-        const Vec3<Quad> error = Vec3<Quad>(Quad(mine[0]), Quad(mine[1]), Quad(mine[2])) - std::as_const(exact)[i];
-        worst = std::max(worst, static_cast<double>(sqrt(norm2(error)) / absolute));
-      }
-      CHECK(worst < 1e-15);
-      CHECK(std::abs(static_cast<double>(Quad(sink.potential()) / wide_sink.potential() - Quad(1))) < 2e-15);
+      const auto bytes = sizeof(double) * static_cast<std::size_t>(3 * a.stride());
+      CHECK(std::memcmp(a.component(0), silent.component(0), bytes) == 0);
+      CHECK(exact.worst(a) < 1e-15);
+      CHECK(std::abs(static_cast<double>(Quad(sink.potential()) / exact.energy - Quad(1))) < 2e-15);
       for (int k = 0; k < 9; ++k) {
-        CHECK(std::abs(sink.virial()(k) - static_cast<double>(wide_sink.virial()(k))) <
-              2e-15 * std::abs(sink.potential()));
+        CHECK(std::abs(sink.virial()(k) - static_cast<double>(exact.virial(k))) < 2e-15 * std::abs(sink.potential()));
       }
     }
   }
