@@ -4,6 +4,7 @@
 #include "engine/real.hpp"
 #include "engine/types.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <new>
 #include <vector>
@@ -93,11 +94,16 @@ template <class Real> class VectorColumn {
                                                                      Eigen::OuterStride<>(stride_));
   }
 
-  /// Adds `h` times another column of the same size: one loop over x, y, z and padding, which stays 0.
+  /// Adds `h` times another column of the same size; with the same stride in one loop, padding, which stays 0,
+  /// included.
   void add_scaled(const Real& h, const VectorColumn& other) {
-    Real* mine = values_.data();
-    const Real* theirs = other.values_.data();
-    for (Index k = 0; k < 3 * stride_; ++k) mine[k] += h * theirs[k];
+    const bool alike = stride_ == other.stride_;
+    const Index length = alike ? 3 * stride_ : size_;
+    for (int k = 0; k < (alike ? 1 : 3); ++k) {
+      Real* mine = component(k);
+      const Real* theirs = other.component(k);
+      for (Index i = 0; i < length; ++i) mine[i] += h * theirs[i];
+    }
   }
 
   /// Whether every number is finite: 0 times another is not 0.
@@ -112,22 +118,28 @@ template <class Real> class VectorColumn {
 
   void fill(const Real& value) { values_.assign(values_.size(), value); }
 
+  /// @cost O(1) on the average: the stride grows by half and may stay above what the size needs
   void append(const Vec3<Real>& v) {
-    resize(size_ + 1);
-    set(size_ - 1, v);
+    if (size_ == stride_) lay_out(padded(size_ + size_ / 2 + 1));
+    set(size_++, v);
   }
   void erase(Index i) {
     for (Index j = i; j + 1 < size_; ++j) set(j, static_cast<const VectorColumn&>(*this)[j + 1]);
-    resize(size_ - 1);
+    set(--size_, Vec3<Real>::Zero());
+  }
+  /// Gives back what `append` has taken ahead.
+  void trim() {
+    if (stride_ != padded(size_)) lay_out(padded(size_));
   }
 
  private:
   static Index padded(Index n) { return (n + 7) / 8 * 8; }
 
-  void resize(Index n) {
-    VectorColumn other(n);
-    for (Index i = 0; i < std::min(n, size_); ++i) other.set(i, static_cast<const VectorColumn&>(*this)[i]);
-    *this = std::move(other);
+  void lay_out(Index stride) {
+    AlignedVector<Real> values(static_cast<std::size_t>(3 * stride), Real(0));
+    for (int k = 0; k < 3; ++k) std::copy_n(component(k), size_, values.data() + k * stride);
+    values_ = std::move(values);
+    stride_ = stride;
   }
 
   Index size_;

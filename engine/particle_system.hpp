@@ -84,6 +84,12 @@ template <class Real = double> class ParticleSystem {
     version_ = detail::fresh_version();
   }
 
+  /// Gives back memory that `add` has taken ahead. @cost O(n)
+  void trim() {
+    x_.trim();
+    v_.trim();
+  }
+
   Index size() const { return m_.size(); }
 
   /// Positions, shape (n, 3) [length]. The writing access makes known forces void.

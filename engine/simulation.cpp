@@ -33,6 +33,7 @@ Simulation<Real>::Simulation(ParticleSystem<Real> particles, AnyIntegrator<Real>
                                 ? "takes steps of one length; give the step after the integrator"
                                 : "chooses its steps itself; leave out the step after the integrator"));
   }
+  raw_.trim();
   raw_.clock() = clock;
   raw_.keep_low_words(false);  // those of another run belong to its working coordinates
   integrator_.bind(raw_);
@@ -381,6 +382,7 @@ template <class Real> void Simulation<Real>::begin_edit() {
 
 template <class Real> void Simulation<Real>::end_edit() {
   if (raw_.size() == 0) throw Error("the edit has left no particles; a run needs at least one");
+  raw_.trim();
   integrator_.bind(raw_);
   copy_ = raw_;
   mapped_ = raw_;

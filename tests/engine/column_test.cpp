@@ -63,7 +63,10 @@ TEST_CASE("appending and erasing keeps the other rows in order, across a change 
   REQUIRE(column.size() == 7);
   const int left[] = {1, 2, 3, 5, 6, 7, 8};
   for (Index i = 0; i < 7; ++i) CHECK(std::as_const(column)[i] == row<double>(left[i]));
+  CHECK(column.stride() == 16);
+  column.trim();
   CHECK(column.stride() == 8);
+  for (Index i = 0; i < 7; ++i) CHECK(std::as_const(column)[i] == row<double>(left[i]));
   CHECK(is_aligned(column.component(2)));
 }
 

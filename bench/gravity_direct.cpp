@@ -1,0 +1,125 @@
+/// Direct gravity: pair interactions per second (n^2 counting) by size, threads and SIMD level, the largest error of a
+/// force on a uniform sphere against 113 bits, and a leapfrog step of six bodies.
+///
+/// Protocol: one warm-up, then the median of 7 repeats of about 0.2 s each, levels and sizes in turn.
+
+#include "bench/support.hpp"
+
+#include "engine/simulation.hpp"
+#include "forces/gravity.hpp"
+#include "integrators/composition.hpp"
+#include "integrators/kinetic_potential.hpp"
+#include "integrators/schemes.hpp"
+
+#include <utility>
+
+using namespace noether;
+
+namespace {
+
+/// A uniform sphere of radius 1 and mass 1.
+ParticleSystem<double> sphere(Index n) {
+  ParticleSystem<double> s;
+  std::uint64_t state = 1;
+  const auto random = [&] {
+    state = state * 6364136223846793005U + 1442695040888963407U;
+    return static_cast<double>(static_cast<std::int64_t>(state)) / 9223372036854775808.0;
+  };
+  while (s.size() < n) {
+    const Vec3<double> x(random(), random(), random());
+    if (norm2(x) <= 1) s.add("", 1.0 / static_cast<double>(n), x, Vec3<double>::Zero());
+  }
+  return s;
+}
+
+double interactions_per_s(const ParticleSystem<double>& s, VectorColumn<double>& a) {
+  const double pairs = static_cast<double>(s.size()) * static_cast<double>(s.size());
+  const int calls = static_cast<int>(std::max(1.0, 1.5e8 / pairs));
+  const double seconds = bench::seconds_of([&] {
+    for (int k = 0; k < calls; ++k) {
+      ForceSink<double> sink(a, s, {});
+      Gravity{}.add_to(sink, s);
+    }
+  });
+  return calls * pairs / seconds;
+}
+
+/// Largest error of a force, relative to the sum over j of |f_ij|, over every 64th particle.
+double force_error(const ParticleSystem<double>& s) {
+  VectorColumn<double> a(s.size());
+  ForceSink<double> sink(a, s, {});
+  Gravity{}.add_to(sink, s);
+  double worst = 0;
+  for (Index i = 0; i < s.size(); i += 64) {
+    Vec3<Quad> exact = Vec3<Quad>::Zero();
+    Quad absolute(0);
+    const Vec3<double> at = s.positions()[i];
+    for (Index j = 0; j < s.size(); ++j) {
+      if (j == i) continue;
+      const Vec3<double> from = s.positions()[j];
+      const Vec3<Quad> d = from.cast<Quad>() - at.cast<Quad>();
+      const Quad r2 = norm2(d), pull = Quad(s.masses()[j]) / r2;
+      exact += pull / sqrt(r2) * d;
+      absolute += pull;
+    }
+    const Vec3<double> mine = std::as_const(a)[i];
+    const Vec3<Quad> error = mine.cast<Quad>() - exact;
+    worst = std::max(worst, static_cast<double>(sqrt(norm2(error)) / absolute));
+  }
+  return worst;
+}
+
+void measure_sizes(const bench::Rows& rows) {
+  for (const Index n : {2048, 16384, 131072}) {
+    const auto s = sphere(n);
+    VectorColumn<double> a(n);
+    interactions_per_s(s, a);
+    std::vector<double> rates;
+    for (int repeat = 0; repeat < (n > 100000 ? 3 : 7); ++repeat) rates.push_back(interactions_per_s(s, a));
+    rows.add("sphere", "interactions_per_s", bench::Measured(rates), "1/s", n);
+  }
+}
+
+/// The outer Solar System in round numbers: six bodies.
+ParticleSystem<double> six_bodies() {
+  ParticleSystem<double> s(unit_system("solar"));
+  s.add("Sun", 1, Vec3<double>::Zero(), Vec3<double>::Zero());
+  const double masses[] = {9.5e-4, 2.9e-4, 4.4e-5, 5.2e-5, 6.6e-9}, distances[] = {5.2, 9.5, 19.2, 30.1, 39.5};
+  for (int k = 0; k < 5; ++k) {
+    const double speed = std::sqrt(s.units().G / distances[k]), angle = 1.3 * k;
+    s.add("planet", masses[k], distances[k] * Vec3<double>(std::cos(angle), std::sin(angle), 0.02 * k),
+          speed * Vec3<double>(-std::sin(angle), std::cos(angle), 0));
+  }
+  return s;
+}
+
+void measure_leapfrog(const bench::Rows& rows) {
+  constexpr std::int64_t steps = 1'000'000;
+  std::vector<double> times;
+  for (int repeat = 0; repeat < 8; ++repeat) {
+    Simulation sim(six_bodies(), compose(KineticPotential(Gravity{}), schemes::verlet), 10.0);
+    const double seconds = bench::seconds_of([&] { static_cast<void>(sim.run(steps)); });
+    if (repeat > 0) times.push_back(1e9 * seconds / steps);
+  }
+  rows.add("leapfrog6", "step_ns", bench::Measured(times), "ns", 6);
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  const bench::Rows rows("gravity_direct", count, arguments);
+  const int threads = thread_count();
+  for (const SimdLevel level : {SimdLevel::base, SimdLevel::avx2, SimdLevel::avx512}) {
+    if (!has_simd_level(level)) continue;
+    set_simd_level(level);
+    set_thread_count(1);
+    measure_sizes(rows);
+    rows.add("sphere", "force_error_max", bench::Measured({force_error(sphere(16384))}), "1", 16384);
+    if (threads > 1) {
+      set_thread_count(threads);
+      measure_sizes(rows);
+    }
+  }
+  set_thread_count(1);
+  measure_leapfrog(rows);
+}

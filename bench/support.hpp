@@ -1,0 +1,95 @@
+#pragma once
+/// What the benchmarks share: timing by medians, and rows for people or, with --json, one object a line.
+
+#include "engine/parallel.hpp"
+#include "engine/simd.hpp"
+#include "engine/version.hpp"
+#include "scene/json.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace noether::bench {
+
+/// Median and median absolute deviation of repeated measurements.
+struct Measured {
+  double median = 0, mad = 0;
+  int repeats = 0;
+
+  explicit Measured(std::vector<double> values) : median(middle(values)), repeats(static_cast<int>(values.size())) {
+    for (double& value : values) value = std::abs(value - median);
+    mad = middle(values);
+  }
+
+ private:
+  static double middle(std::vector<double>& values) {
+    std::sort(values.begin(), values.end());
+    const std::size_t half = values.size() / 2;
+    return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
+  }
+};
+
+/// Seconds of one call.
+template <class Work> double seconds_of(const Work& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// The processor's name.
+inline std::string processor() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);) {
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+  }
+  return "unknown";
+}
+
+/// Prints the rows of one benchmark.
+class Rows {
+ public:
+  Rows(std::string bench, int count, char** arguments) : bench_(std::move(bench)) {
+    for (int k = 1; k < count; ++k) json_ = json_ || std::string_view(arguments[k]) == "--json";
+    if (!json_) fmt::print("{} on {}, SIMD level {}\n", bench_, processor(), name(simd_level()));
+  }
+
+  void add(const std::string& one_case, const std::string& metric, const Measured& value, const std::string& unit,
+           Index n) const {
+    if (json_) {
+      fmt::print("{}\n", Json::object({{"bench", bench_},
+                                       {"case", one_case},
+                                       {"metric", metric},
+                                       {"value", value.median},
+                                       {"unit", unit},
+                                       {"n", std::int64_t{n}},
+                                       {"threads", std::int64_t{thread_count()}},
+                                       {"simd", std::string(name(simd_level()))},
+                                       {"repeats", std::int64_t{value.repeats}},
+                                       {"mad", value.mad},
+                                       {"peer", std::optional<double>()},
+                                       {"peer_version", std::optional<double>()},
+                                       {"peer_value", std::optional<double>()},
+                                       {"ratio", std::optional<double>()},
+                                       {"commit", std::string(commit())},
+                                       {"cpu", processor()}})
+                             .text());
+    } else {
+      fmt::print("{:<24} {:<22} n {:>7}  {} threads  {:<7}{:>10.4g} {} (+- {:.1g}, {} repeats)\n", one_case, metric, n,
+                 thread_count(), name(simd_level()), value.median, unit, value.mad, value.repeats);
+    }
+  }
+
+ private:
+  std::string bench_;
+  bool json_ = false;
+};
+
+}  // namespace noether::bench
