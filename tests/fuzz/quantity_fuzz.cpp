@@ -1,0 +1,8 @@
+// Quantities, angles, units and dimensions.
+
+#include "tests/fuzz/targets.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  noether::test::take_quantity({reinterpret_cast<const char*>(data), size});
+  return 0;
+}

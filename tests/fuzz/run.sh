@@ -1,0 +1,46 @@
+#!/usr/bin/env bash
+# Builds and runs a fuzz target: tests/fuzz/run.sh TARGET [SECONDS] [OPTION OF LIBFUZZER]...
+# It begins with the seeds of the target in a scratch folder. Inputs that are findings are kept in build/fuzz/findings.
+set -eu
+target=${1:?the name of a target, such as scene}
+seconds=${2:-60}
+shift $(($# < 2 ? $# : 2))
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+
+if ! [ -f "tests/fuzz/${target}_fuzz.cpp" ]; then
+  echo "there is no target '$target'; known are:" tests/fuzz/*_fuzz.cpp >&2
+  exit 2
+fi
+if ! command -v clang++ >/dev/null ||
+  ! echo 'extern "C" int LLVMFuzzerTestOneInput(const char*, unsigned long) { return 0; }' |
+    clang++ -x c++ -fsanitize=fuzzer,address,undefined - -o /dev/null 2>/dev/null; then
+  echo "skipped: there is no clang++ with libFuzzer"
+  exit 77
+fi
+
+mkdir -p build/fuzz/findings
+{
+  flock 9
+  [ -f build/fuzz/build.ninja ] || cmake --preset fuzz >build/fuzz.log 2>&1 || { cat build/fuzz.log; exit 4; }
+  cmake --build build/fuzz -j 2 --target "${target}_fuzz" >build/fuzz.log 2>&1 || { tail -50 build/fuzz.log; exit 4; }
+} 9>build/fuzz.lock
+
+seeds=(tests/fuzz/seeds/"$target"/*)
+longest=4096
+case $target in
+  scene) seeds+=(tests/scenes/good/*.toml tests/scenes/bad/*.toml) ;;
+  csv_bodies) seeds+=(tests/scenes/good/*.csv tests/scenes/bad/*.csv) ;;
+  horizons) seeds+=(tests/data/horizons/*.txt) longest=8192 ;;
+  quantity) longest=64 ;;
+  checkpoint | checkpoint_content) longest=65536 ;;
+  checkpoint_state) longest=128 ;;
+esac
+
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+mkdir "$scratch/corpus" "$scratch/tmp"
+for seed in "${seeds[@]}"; do
+  [ ! -f "$seed" ] || cp "$seed" "$scratch/corpus/$(basename "$(dirname "$seed")")-$(basename "$seed")"
+done
+TMPDIR=$scratch/tmp "build/fuzz/tests/fuzz/${target}_fuzz" "$scratch/corpus" -max_total_time="$seconds" -timeout=5 \
+  -max_len=$longest -artifact_prefix="build/fuzz/findings/$target-" -print_final_stats=1 -verbosity=1 "$@"
