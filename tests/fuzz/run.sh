@@ -21,8 +21,8 @@ fi
 mkdir -p build/fuzz/findings
 {
   flock 9
-  [ -f build/fuzz/build.ninja ] || cmake --preset fuzz >build/fuzz.log 2>&1 || { cat build/fuzz.log; exit 4; }
-  cmake --build build/fuzz -j 2 --target "${target}_fuzz" >build/fuzz.log 2>&1 || { tail -50 build/fuzz.log; exit 4; }
+  [ -f build/fuzz/build.ninja ] || cmake --preset fuzz >build/fuzz.log 2>&1 9>&- || { cat build/fuzz.log; exit 4; }
+  cmake --build build/fuzz -j 2 --target "${target}_fuzz" >build/fuzz.log 2>&1 9>&- || { tail -50 build/fuzz.log; exit 4; }
 } 9>build/fuzz.lock
 
 seeds=(tests/fuzz/seeds/"$target"/*)
