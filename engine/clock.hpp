@@ -82,15 +82,15 @@ template <class Real> class Clock {
 
   /// Every number of the clock, for checkpoints.
   struct Raw {
-    int mode;
+    ClockMode mode;
     std::int64_t step;
     double start, dt, high, low;
     Real fraction;
   };
-  Raw raw() const { return {static_cast<int>(mode_), step_, start_, dt_, high_, low_, fraction_}; }
+  Raw raw() const { return {mode_, step_, start_, dt_, high_, low_, fraction_}; }
   static Clock from_raw(const Raw& r) {
     Clock clock;
-    clock.mode_ = static_cast<ClockMode>(r.mode);
+    clock.mode_ = r.mode;
     clock.step_ = r.step;
     clock.start_ = r.start;
     clock.dt_ = r.dt;

@@ -52,6 +52,9 @@ struct HamiltonianClaims {
 /// of the flow, the integral of p dq - H dt, for which dS = p1 dq1 - p0 dq0. Between `observe(wanted)` and
 /// `observe({})` flows serve an observer on a copy: they sum what is wanted and leave no trace in `evaluations` (what
 /// the run itself needs) and `failure` (why the last flow could not be done).
+///
+/// A Hamiltonian may offer `Advanced run(const TimedWord<Real>&, s, span)` (engine/word.hpp): a fused walk of whole
+/// steps, with the bits of the letters one by one.
 template <class H>
 concept SplitHamiltonian = requires(H& h, const H& c, ParticleSystem<typename H::real>& s,
                                     const ParticleSystem<typename H::real>& settled, char letter,
@@ -87,13 +90,15 @@ struct Span {
   std::int64_t steps = 0;
   double limit = std::numeric_limits<double>::infinity();
   const std::atomic<bool>* stop = nullptr;  ///< looked at after every step
+
+  bool asked_to_stop() const { return stop != nullptr && stop->load(std::memory_order_relaxed); }
 };
 
 /// How far it went.
 struct Advanced {
   std::int64_t steps = 0;
-  bool at_limit = false;  ///< free clock: the next whole step would pass `limit`
-  std::optional<Failure> failure;
+  bool at_limit = false;             ///< free clock: the next whole step would pass `limit`
+  const Failure* failure = nullptr;  ///< why the last step could not be done; the integrator's, until it is used again
 };
 
 /// A method that advances a system by whole steps. `settle` completes a copy for observers: the copy is inertial, and

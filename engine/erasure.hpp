@@ -4,6 +4,7 @@
 
 #include "engine/concepts.hpp"
 #include "engine/signature.hpp"
+#include "engine/word.hpp"
 
 #include <memory>
 #include <string>
@@ -74,6 +75,7 @@ template <class Real> struct HamiltonianBase {
   virtual void close(ParticleSystem<Real>&) = 0;
   virtual void flow(char, ParticleSystem<Real>&, const Real&) = 0;
   virtual Real flow_with_action(char, ParticleSystem<Real>&, const Real&) = 0;
+  virtual Advanced run(const TimedWord<Real>&, ParticleSystem<Real>&, const Span&) = 0;
   virtual EnergyTerms<Real> energy(const ParticleSystem<Real>&) = 0;
   virtual void accelerations(const ParticleSystem<Real>&, VectorColumn<Real>&) = 0;
   virtual void observe(std::optional<Wanted>) = 0;
@@ -96,6 +98,9 @@ template <class H> struct HamiltonianModel final : HamiltonianBase<typename H::r
   void flow(char letter, ParticleSystem<Real>& s, const Real& h) override { hamiltonian.flow(letter, s, h); }
   Real flow_with_action(char letter, ParticleSystem<Real>& s, const Real& h) override {
     return hamiltonian.flow_with_action(letter, s, h);
+  }
+  Advanced run(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span) override {
+    return walk(hamiltonian, word, s, span);
   }
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) override { return hamiltonian.energy(s); }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) override { hamiltonian.accelerations(s, a); }
@@ -155,7 +160,7 @@ template <class Real = double> class AnyForce : private detail::Erased<detail::F
   std::string signature() const { return this->held_->signature(); }
 };
 
-/// Any split Hamiltonian over one number type; one virtual call per stage.
+/// Any split Hamiltonian over one number type; one virtual call per cut of the run.
 template <class Real = double> class AnyHamiltonian : private detail::Erased<detail::HamiltonianBase<Real>> {
  public:
   using real = Real;
@@ -172,6 +177,9 @@ template <class Real = double> class AnyHamiltonian : private detail::Erased<det
   void flow(char letter, ParticleSystem<Real>& s, const Real& h) { this->held_->flow(letter, s, h); }
   Real flow_with_action(char letter, ParticleSystem<Real>& s, const Real& h) {
     return this->held_->flow_with_action(letter, s, h);
+  }
+  Advanced run(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span) {
+    return this->held_->run(word, s, span);
   }
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) { return this->held_->energy(s); }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) { this->held_->accelerations(s, a); }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace noether {
@@ -124,23 +125,23 @@ void VectorInvariant::save_series(SavedState& saved, const std::string& prefix) 
   save_value(saved, prefix + "/begun", begun_);
   save_value(saved, prefix + "/reference", reference_);
   save_value(saved, prefix + "/numbers",
-             std::vector<double>{scale_, error_, direction_error_, worst_direction_, value_[0], value_[1], value_[2]});
+             std::array{scale_, error_, direction_error_, worst_direction_, value_[0], value_[1], value_[2]});
   save_value(saved, prefix + "/errors", errors_);
   save_value(saved, prefix + "/time_unit", time_unit_);
 }
 
 void VectorInvariant::load_series(const SavedState& saved, const std::string& prefix) {
-  std::vector<double> n;
+  std::array<double, 7> n{};
   load_value(saved, prefix + "/begun", begun_);
   load_value(saved, prefix + "/reference", reference_);
   load_value(saved, prefix + "/numbers", n);
   load_value(saved, prefix + "/errors", errors_);
   load_value(saved, prefix + "/time_unit", time_unit_);
-  scale_ = n.at(0);
-  error_ = n.at(1);
-  direction_error_ = n.at(2);
-  worst_direction_ = n.at(3);
-  value_ = {n.at(4), n.at(5), n.at(6)};
+  scale_ = n[0];
+  error_ = n[1];
+  direction_error_ = n[2];
+  worst_direction_ = n[3];
+  value_ = {n[4], n[5], n[6]};
 }
 
 template <class Real> void Momentum::observe(const Snapshot<Real>& now) {

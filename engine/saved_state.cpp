@@ -53,10 +53,31 @@ template <class Real> void load_extra_columns(const SavedState& saved, ParticleS
     } else if (kind == "integer") {
       ScalarColumn<std::int64_t> column(s.size());
       const auto& integers = detail::array_of<std::int64_t>(saved, key);
-      for (Index i = 0; i < s.size(); ++i) column[i] = integers.at(static_cast<std::size_t>(i));
+      for (Index i = 0; i < s.size(); ++i) column[i] = detail::element(integers, static_cast<std::size_t>(i));
       s.restore_column(key.substr(slash + 1), std::move(column));
     }
   }
+}
+
+template <class Real> Clock<Real> load_clock(const SavedState& saved) {
+  const auto& counts = detail::array_of<std::int64_t>(saved, "clock/counts");
+  const auto& times = detail::array_of<double>(saved, "clock/times");
+  typename Clock<Real>::Raw raw{.mode = detail::enumerator(detail::element(counts, 0), ClockMode::free),
+                                .step = detail::element(counts, 1),
+                                .start = detail::element(times, 0),
+                                .dt = detail::element(times, 1),
+                                .high = detail::element(times, 2),
+                                .low = detail::element(times, 3),
+                                .fraction = Real(0)};
+  load_value(saved, "clock/fraction", raw.fraction);
+  return Clock<Real>::from_raw(raw);
+}
+
+Phase load_phase(const SavedState& saved) {
+  const auto& phase = detail::array_of<std::int64_t>(saved, "phase");
+  return {.coordinates = detail::enumerator(detail::element(phase, 0), Coordinates::democratic),
+          .opened = detail::element(phase, 1) != 0,
+          .pending = detail::element(phase, 2) != 0};
 }
 
 }  // namespace
@@ -75,7 +96,7 @@ template <class Real> SavedState save_particles(const ParticleSystem<Real>& s) {
     saved["velocity_low"] = flatten(s.low_words()->v);
   }
   const auto clock = s.clock().raw();
-  saved["clock/counts"] = std::vector<std::int64_t>{clock.mode, clock.step};
+  saved["clock/counts"] = std::vector<std::int64_t>{static_cast<std::int64_t>(clock.mode), clock.step};
   saved["clock/times"] = std::vector<double>{clock.start, clock.dt, clock.high, clock.low};
   save_value(saved, "clock/fraction", clock.fraction);
   saved["phase"] = std::vector<std::int64_t>{static_cast<int>(s.phase().coordinates), s.phase().opened ? 1 : 0,
@@ -87,7 +108,7 @@ template <class Real> SavedState save_particles(const ParticleSystem<Real>& s) {
 }
 
 template <class Real> ParticleSystem<Real> load_particles(const SavedState& saved) {
-  ParticleSystem<Real> s(unit_system(detail::array_of<std::string>(saved, "units").at(0)));
+  ParticleSystem<Real> s(unit_system(detail::element(detail::array_of<std::string>(saved, "units"), 0)));
   const auto& ids = detail::array_of<std::int64_t>(saved, "id");
   const auto& names = detail::array_of<std::string>(saved, "name");
   const auto& masses = detail::array_of<double>(saved, "mass");
@@ -95,10 +116,10 @@ template <class Real> ParticleSystem<Real> load_particles(const SavedState& save
   for (std::size_t i = 0; i < ids.size(); ++i) {
     Real m{};
     detail::take(masses, at, m);
-    s.add(names.at(i), m, Vec3<Real>::Zero(), Vec3<Real>::Zero());
+    s.add(detail::element(names, i), m, Vec3<Real>::Zero(), Vec3<Real>::Zero());
   }
   s.restore_ids(ids);
-  s.restore_next_id(detail::array_of<std::int64_t>(saved, "next_id").at(0));
+  s.restore_next_id(detail::element(detail::array_of<std::int64_t>(saved, "next_id"), 0));
   unflatten(saved, "position", s.positions());
   unflatten(saved, "velocity", s.velocities());
   if (saved.count("position_low") != 0) {
@@ -106,14 +127,8 @@ template <class Real> ParticleSystem<Real> load_particles(const SavedState& save
     unflatten(saved, "position_low", s.low_words()->x);
     unflatten(saved, "velocity_low", s.low_words()->v);
   }
-  const auto& counts = detail::array_of<std::int64_t>(saved, "clock/counts");
-  const auto& times = detail::array_of<double>(saved, "clock/times");
-  typename Clock<Real>::Raw clock{
-      static_cast<int>(counts.at(0)), counts.at(1), times.at(0), times.at(1), times.at(2), times.at(3), Real(0)};
-  load_value(saved, "clock/fraction", clock.fraction);
-  s.clock() = Clock<Real>::from_raw(clock);
-  const auto& phase = detail::array_of<std::int64_t>(saved, "phase");
-  s.phase() = Phase{static_cast<Coordinates>(phase.at(0)), phase.at(1) != 0, phase.at(2) != 0};
+  s.clock() = load_clock<Real>(saved);
+  s.phase() = load_phase(saved);
   load_extra_columns(saved, s);
   return s;
 }

@@ -44,13 +44,31 @@ template <class T> const std::vector<T>& array_of(const SavedState& saved, const
   return *array;
 }
 
+/// Element `at` of a saved array. @throws Error if the array is shorter
+template <class T> const T& element(const std::vector<T>& array, std::size_t at) {
+  if (at >= array.size()) {
+    throw Error("a saved array has " + std::to_string(array.size()) + " elements, at least " + std::to_string(at + 1) +
+                " are expected");
+  }
+  return array[at];
+}
+
+/// The enumerator of a saved number. @throws Error if it names none up to `last`
+template <class Enum> Enum enumerator(std::int64_t number, Enum last) {
+  if (number < 0 || number > static_cast<std::int64_t>(last)) {
+    throw Error("a saved choice is " + std::to_string(number) + "; 0 to " +
+                std::to_string(static_cast<std::int64_t>(last)) + " is expected");
+  }
+  return static_cast<Enum>(number);
+}
+
 inline void append(std::vector<double>& out, double x) { out.push_back(x); }
 inline void append(std::vector<double>& out, const Quad& x) {
   for (const double part : to_doubles(x)) out.push_back(part);
 }
-inline void take(const std::vector<double>& in, std::size_t& at, double& x) { x = in.at(at++); }
+inline void take(const std::vector<double>& in, std::size_t& at, double& x) { x = element(in, at++); }
 inline void take(const std::vector<double>& in, std::size_t& at, Quad& x) {
-  x = from_doubles({in.at(at), in.at(at + 1), in.at(at + 2)});
+  x = from_doubles({element(in, at), element(in, at + 1), element(in, at + 2)});
   at += 3;
 }
 template <class Real> void append(std::vector<double>& out, const Vec3<Real>& v) {
@@ -86,12 +104,12 @@ template <class T> void save_value(SavedState& saved, const std::string& name, c
   }
 }
 
-/// Reads back what `save_value` wrote. @throws Error if the array is missing or of another type
+/// Reads back what `save_value` wrote. @throws Error if the array is missing, of another type or too short
 template <class T> void load_value(const SavedState& saved, const std::string& name, T& value) {
   if constexpr (std::is_integral_v<T> || std::is_enum_v<T>) {
-    value = static_cast<T>(detail::array_of<std::int64_t>(saved, name).at(0));
+    value = static_cast<T>(detail::element(detail::array_of<std::int64_t>(saved, name), 0));
   } else if constexpr (std::is_same_v<T, std::string>) {
-    value = detail::array_of<std::string>(saved, name).at(0);
+    value = detail::element(detail::array_of<std::string>(saved, name), 0);
   } else if constexpr (std::is_same_v<T, std::vector<std::string>>) {
     value = detail::array_of<std::string>(saved, name);
   } else if constexpr (std::is_same_v<T, std::vector<std::int64_t>>) {

@@ -164,7 +164,7 @@ template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double 
       seconds_ = before + std::chrono::duration<double>(now - started).count();
       unclocked = 0;
     }
-    if (done.failure || (chunk_is_full && fault(raw_))) {
+    if (done.failure != nullptr || (chunk_is_full && fault(raw_))) {
       result = fall_back();
       break;
     }
@@ -207,7 +207,7 @@ template <class Real> Outcome Simulation<Real>::fall_back() {
   while (true) {
     const Advanced done = integrator_.advance(raw_, {.steps = 1});
     std::optional<Outcome> reason = fault(raw_);
-    if (!reason && done.failure) reason = failed(*done.failure);
+    if (!reason && done.failure != nullptr) reason = failed(*done.failure);
     if (!reason) reason = settled_fault();
     if (reason) {
       go_back();

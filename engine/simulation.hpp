@@ -139,7 +139,8 @@ template <class Real = double> class Simulation {
   /// Whether times, not steps, tell when to look: a fixed clock has turned them into steps.
   static bool by_time(const Scheduled& s) { return s.schedule.interval != 0 && s.schedule.steps == 0; }
   Snapshot<Real> snapshot(Wanted wanted, std::optional<double> at = std::nullopt) {
-    return Snapshot<Real>(integrator_, raw_, copy_, mapped_, wanted, at, [this] { return save(); });
+    const RunSource run{this, [](const void* self) { return static_cast<const Simulation*>(self)->save(); }};
+    return Snapshot<Real>(integrator_, raw_, copy_, mapped_, wanted, at, run);
   }
   std::optional<Outcome> observe_due();
   void observe_times(double until);

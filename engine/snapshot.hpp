@@ -4,10 +4,15 @@
 #include "engine/erasure.hpp"
 #include "engine/motion.hpp"
 
-#include <functional>
 #include <optional>
 
 namespace noether {
+
+/// Where a snapshot finds the whole run: two pointers, because most looks do not need it.
+struct RunSource {
+  const void* run;
+  SavedRun (*save)(const void* run);
+};
 
 /// One moment of a run. The settled copies and the energy are made when somebody asks, once for all monitors.
 ///
@@ -17,24 +22,25 @@ template <class Real> class Snapshot {
   /// @param copy, mapped  storage for the settled copies, reused from one moment to the next
   /// @param at  free clock: the time to be shown, not beyond the next whole step
   Snapshot(AnyIntegrator<Real>& integrator, const ParticleSystem<Real>& raw, ParticleSystem<Real>& copy,
-           ParticleSystem<Real>& mapped, Wanted wanted, std::optional<double> at, std::function<SavedRun()> save)
+           ParticleSystem<Real>& mapped, Wanted wanted, const std::optional<double>& at, const RunSource& run)
       : integrator_(integrator),
         raw_(raw),
         copy_(copy),
         mapped_(mapped),
         wanted_(wanted),
-        at_(at),
-        save_(std::move(save)) {}
+        between_(at.has_value()),
+        at_(at.value_or(0)),
+        run_(run) {}
 
   /// The settled, inertial particles.
   const ParticleSystem<Real>& state() const {
-    if (!have_state_) integrator_.settle(raw_, copy_, wanted_, at_, true);
+    if (!have_state_) integrator_.settle(raw_, copy_, wanted_, at(), true);
     have_state_ = true;
     return copy_;
   }
   /// The same without the corrector: the point the composed map itself reaches.
   const ParticleSystem<Real>& mapped() const {
-    if (!have_mapped_) integrator_.settle(raw_, mapped_, wanted_, at_, false);
+    if (!have_mapped_) integrator_.settle(raw_, mapped_, wanted_, at(), false);
     have_mapped_ = true;
     return mapped_;
   }
@@ -56,23 +62,26 @@ template <class Real> class Snapshot {
   std::int64_t step() const { return raw_.clock().step(); }
   /// Time of this moment [time].
   double time() const {
-    return at_                                       ? *at_
+    return between_                                  ? at_
            : raw_.clock().mode() == ClockMode::fixed ? raw_.clock().time_at(raw_.clock().step())
                                                      : raw_.clock().high();
   }
   IntegratorClaims claims() const { return integrator_.claims(); }
   const UnitSystem& units() const { return raw_.units(); }
   /// The whole run as it stands, unsettled: only checkpoints have any business here.
-  SavedRun saved_run() const { return save_(); }
+  SavedRun saved_run() const { return run_.save(run_.run); }
 
  private:
+  std::optional<double> at() const { return between_ ? std::optional(at_) : std::nullopt; }
+
   AnyIntegrator<Real>& integrator_;
   const ParticleSystem<Real>& raw_;
   ParticleSystem<Real>& copy_;
   ParticleSystem<Real>& mapped_;
   Wanted wanted_;
-  std::optional<double> at_;
-  std::function<SavedRun()> save_;
+  bool between_;  ///< free clock: at a time after the last whole step
+  double at_;     ///< that time [time]
+  RunSource run_;
   mutable bool have_state_ = false, have_mapped_ = false;
   mutable std::optional<EnergyTerms<Real>> energy_;
   mutable std::optional<VectorColumn<Real>> accelerations_;

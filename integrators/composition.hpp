@@ -3,6 +3,7 @@
 
 #include "engine/concepts.hpp"
 #include "engine/erasure.hpp"
+#include "engine/word.hpp"
 #include "integrators/scheme.hpp"
 
 #include <cstddef>
@@ -14,13 +15,6 @@ namespace noether {
 
 struct CompositionOptions {
   bool compensated = false;  ///< keep the rounding errors of x and v and add them back (Kahan, Neumaier)
-};
-
-/// One stage as the loop does it.
-template <class Real> struct TimedStage {
-  char letter;
-  Real weight;
-  Real fraction;  ///< part of the step that the drifts have covered when the stage begins
 };
 
 /// The word a scheme becomes over a Hamiltonian: irreversible letters added where the scheme has none.
@@ -44,19 +38,13 @@ template <SplitHamiltonian H> class Composition {
 
   /// @throws SchemeMismatch  see `fitted_word`
   Composition(H hamiltonian, const Scheme& scheme, CompositionOptions options = {})
-      : hamiltonian_(std::move(hamiltonian)), options_(options), name_(scheme.name), order_(scheme.order.classical) {
-    const HamiltonianClaims claims = hamiltonian_.claims();
-    const Word word = fitted_word(scheme, claims, detail::name_of(hamiltonian_));
-    const auto weights = rounded_weights<real>(word);
-    real fraction(0);
-    for (std::size_t k = 0; k < word.size(); ++k) {
-      stages_.push_back({word[k].letter, weights[k], fraction});
-      if (word[k].letter == 'A') fraction += weights[k];
-    }
+      : hamiltonian_(std::move(hamiltonian)),
+        options_(options),
+        name_(scheme.name),
+        order_(scheme.order.classical),
+        word_(timed(fitted_word(scheme, hamiltonian_.claims(), detail::name_of(hamiltonian_)))) {
     for (const Stage& stage : scheme.before) before_.push_back({stage.letter, real(stage.weight), real(0)});
     for (const Stage& stage : scheme.after) after_.push_back({stage.letter, real(stage.weight), real(0)});
-    merges_ = stages_.size() > 1 && stages_.front().letter == stages_.back().letter;
-    if (merges_) merged_ = stages_.back().weight + stages_.front().weight;
   }
 
   IntegratorClaims claims() const {
@@ -69,7 +57,7 @@ template <SplitHamiltonian H> class Composition {
             .dissipative = claims.dissipative,
             .time_dependent = claims.time_dependent};
   }
-  const std::vector<TimedStage<real>>& stages() const { return stages_; }
+  const std::vector<TimedStage<real>>& stages() const { return word_.stages(); }
   H& hamiltonian() { return hamiltonian_; }
 
   void bind(ParticleSystem<real>& s) {
@@ -78,14 +66,8 @@ template <SplitHamiltonian H> class Composition {
   }
 
   Advanced advance(ParticleSystem<real>& s, const Span& span) {
-    const real dt(s.clock().dt());
-    if (!s.phase().opened) open(s, dt);
-    for (std::int64_t n = 0; n < span.steps; ++n) {
-      step(s, dt);
-      if (hamiltonian_.failure()) return {n + 1, false, hamiltonian_.failure()};
-      if (span.stop != nullptr && span.stop->load(std::memory_order_relaxed)) return {n + 1, false, std::nullopt};
-    }
-    return {span.steps, false, std::nullopt};
+    if (!s.phase().opened) open(s, real(s.clock().dt()));
+    return walk(hamiltonian_, word_, s, span);
   }
 
   /// Completes a copy: pending stage, word after the run (if `corrected`), inertial coordinates.
@@ -96,8 +78,8 @@ template <SplitHamiltonian H> class Composition {
     if (!raw.phase().opened) return;
     const real dt(raw.clock().dt());
     hamiltonian_.observe(wanted);
-    if (raw.phase().pending) hamiltonian_.flow(stages_.back().letter, out, stages_.back().weight * dt);
-    if (corrected) walk(after_, out, dt);
+    if (raw.phase().pending) flow(stages().back(), out, dt);
+    if (corrected) flow_all(after_, out, dt);
     hamiltonian_.close(out);
     hamiltonian_.observe({});
     out.phase() = Phase{};
@@ -130,33 +112,35 @@ template <SplitHamiltonian H> class Composition {
   }
 
  private:
+  /// The word in the weights of `real`, each stage with the time at which it begins.
+  static TimedWord<real> timed(const Word& word) {
+    const auto weights = rounded_weights<real>(word);
+    std::vector<TimedStage<real>> stages;
+    real fraction(0);
+    for (std::size_t k = 0; k < word.size(); ++k) {
+      stages.push_back({word[k].letter, weights[k], fraction});
+      if (word[k].letter == 'A') fraction += weights[k];
+    }
+    return TimedWord<real>(std::move(stages));
+  }
   void open(ParticleSystem<real>& s, const real& dt) {
     hamiltonian_.open(s);
     s.phase().opened = true;
-    walk(before_, s, dt);
+    flow_all(before_, s, dt);
   }
-  void step(ParticleSystem<real>& s, const real& dt) {
-    const bool pending = s.phase().pending;
-    const std::size_t last = stages_.size() - (merges_ ? 1 : 0);
-    for (std::size_t k = 0; k < last; ++k) {
-      const TimedStage<real>& stage = stages_[k];
-      s.clock().set_fraction(stage.fraction);
-      hamiltonian_.flow(stage.letter, s, (k == 0 && pending ? merged_ : stage.weight) * dt);
-    }
-    s.phase().pending = merges_;
-    s.clock().tick(real(0));
+  void flow(const TimedStage<real>& stage, ParticleSystem<real>& s, const real& dt) {
+    hamiltonian_.flow(stage.letter, s, stage.weight * dt);
   }
-  void walk(const std::vector<TimedStage<real>>& stages, ParticleSystem<real>& s, const real& dt) {
-    for (const auto& stage : stages) hamiltonian_.flow(stage.letter, s, stage.weight * dt);
+  void flow_all(const std::vector<TimedStage<real>>& stages, ParticleSystem<real>& s, const real& dt) {
+    for (const TimedStage<real>& stage : stages) flow(stage, s, dt);
   }
 
   H hamiltonian_;
   CompositionOptions options_;
   std::string name_;
   int order_;
-  std::vector<TimedStage<real>> stages_, before_, after_;
-  bool merges_ = false;
-  real merged_ = real(0);
+  TimedWord<real> word_;
+  std::vector<TimedStage<real>> before_, after_;
 };
 
 /// The integrator of a Hamiltonian and a scheme: `compose(WisdomHolman({.G = G}), schemes::aba_10_6_4)`.

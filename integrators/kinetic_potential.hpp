@@ -4,6 +4,7 @@
 #include "engine/concepts.hpp"
 #include "engine/parallel.hpp"
 #include "engine/signature.hpp"
+#include "engine/word.hpp"
 
 #include <limits>
 #include <optional>
@@ -76,6 +77,31 @@ template <class F, class Real = double> class KineticPotential {
     if (!observing_ && std::exchange(moved_, false)) ++evaluations_.force;
   }
 
+  /// The fused walk: between the stages of whole steps nobody asks whether the forces are known.
+  Advanced run(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span) {
+    const Real dt(s.clock().dt());
+    Advanced done;
+    bool drifted = false;  // before that an observer may have evaluated what the first kick needs
+    while (done.steps < span.steps) {
+      word.step(s.phase(), [&](char letter, const Real& weight, const Real& fraction) {
+        s.clock().set_fraction(fraction);
+        if (letter == 'A') {
+          s.advance_positions(weight * dt);
+          drifted = moved_ = true;
+        } else {
+          drifted ? sum(s, {}) : evaluate(s, {});
+          s.advance_velocities(weight * dt, acceleration_);
+          if (std::exchange(moved_, false)) ++evaluations_.force;
+        }
+      });
+      s.clock().tick(Real(0));
+      ++done.steps;
+      if (span.asked_to_stop()) break;
+    }
+    if (drifted) known_.reset();
+    return done;
+  }
+
   Real flow_with_action(char letter, ParticleSystem<Real>& s, const Real& h) {
     if (letter == 'A') {
       flow(letter, s, h);
@@ -120,10 +146,13 @@ template <class F, class Real = double> class KineticPotential {
   void evaluate(const ParticleSystem<Real>& s, Wanted wanted) {
     const Real time = s.time();
     if (known_ && known_->version == s.version() && known_->time == time && (known_->energy || !wanted.energy)) return;
+    sum(s, wanted);
+    known_ = Known{s.version(), time, wanted.energy};
+  }
+  void sum(const ParticleSystem<Real>& s, Wanted wanted) {
     ForceSink<Real> sink(acceleration_, s, {.energy = wanted.energy});
     forces_.add_to(sink, s);
     if (wanted.energy) potential_ = sink.potential();
-    known_ = Known{s.version(), time, wanted.energy};
   }
 
   F forces_;

@@ -91,7 +91,7 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
   void load(const SavedState& saved, const std::string& prefix) {
     detail::check_signature(saved, prefix + "options/", options_);
     detail::check_signature(saved, prefix + "forces/", forces_);
-    load_value(saved, prefix + "order", order_);
+    load_order(saved, prefix);
     load_value(saved, prefix + "kicks", evaluations_.force);
     load_value(saved, prefix + "arcs", evaluations_.kepler);
     failure_.reset();
@@ -104,6 +104,7 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
   bool jacobi() const { return options_.coordinates == Coordinates::jacobi; }
   static constexpr bool has_forces = !std::is_same_v<F, Sum<>>;
   void gather_masses();
+  void load_order(const SavedState& saved, const std::string& prefix);
   std::size_t massive() const { return interior_.size(); }
   Index at(std::size_t k) const { return static_cast<Index>(order_[k]); }
 

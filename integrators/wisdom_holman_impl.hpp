@@ -73,6 +73,22 @@ template <class Real, class F> void WisdomHolman<Real, F>::gather_masses() {
   }
 }
 
+/// @throws Error if the saved order does not name each particle once, the primary first and tracers last
+template <class Real, class F>
+void WisdomHolman<Real, F>::load_order(const SavedState& saved, const std::string& prefix) {
+  std::vector<std::int64_t> order;
+  load_value(saved, prefix + "order", order);
+  const auto sorted = [](std::vector<std::int64_t> ranks) {
+    std::sort(ranks.begin(), ranks.end());
+    return ranks;
+  };
+  const auto massive = [&](std::int64_t i) { return masses_[static_cast<std::size_t>(i)] != Real(0); };
+  if (sorted(order) != sorted(order_) || order[0] != 0 || !std::is_partitioned(order.begin(), order.end(), massive)) {
+    throw Error("the saved order of Jacobi coordinates does not fit these particles");
+  }
+  order_ = std::move(order);
+}
+
 template <class Real, class F> void WisdomHolman<Real, F>::open(ParticleSystem<Real>& s) {
   if (jacobi()) {
     to_jacobi(s.positions());

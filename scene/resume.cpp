@@ -79,7 +79,9 @@ Ending load_ending(const io::Checkpoint& checkpoint) {
   Outcome& outcome = ending.outcome;
   outcome.step = checkpoint.step;
   outcome.time = checkpoint.time;
-  load_value(state, "kind", outcome.kind);
+  std::int64_t kind = 0;
+  load_value(state, "kind", kind);
+  outcome.kind = detail::enumerator(kind, Outcome::Kind::overstretch);
   load_value(state, "message", outcome.message);
   load_value(state, "quantity", outcome.quantity);
   bool has_particle = false;
@@ -89,8 +91,8 @@ Ending load_ending(const io::Checkpoint& checkpoint) {
     ParticleRef particle;
     load_value(state, "particle", numbers);
     load_value(state, "particle_name", particle.name);
-    particle.index = numbers.at(0);
-    particle.id = numbers.at(1);
+    particle.index = detail::element(numbers, 0);
+    particle.id = detail::element(numbers, 1);
     outcome.particle = particle;
   }
   load_value(state, "wall_s", ending.wall_s);

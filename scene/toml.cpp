@@ -5,6 +5,24 @@
 
 #include <fmt/format.h>
 
+// toml++ 3 ends in undefined behavior, or in an assertion, on some texts that are no TOML: `a = é`, `[.`, `a = [}`.
+// Its assertions are taken out, and its tables of Unicode answer no where they hold a character impossible; the parser
+// then refuses the character as it does any other.
+#define TOML_ASSERT(expr) static_assert(true)
+#if __has_include(<toml++/toml.hpp>)
+#define NOETHER_TOML_PART(name) <toml++/impl/name.hpp>
+#else
+#define NOETHER_TOML_PART(name) <toml++/impl/name.h>
+#endif
+#include NOETHER_TOML_PART(preprocessor)
+#undef TOML_ASSERT_ASSUME
+#define TOML_ASSERT_ASSUME(...) static_assert(true)
+#undef TOML_UNREACHABLE
+#define TOML_UNREACHABLE return false
+#include NOETHER_TOML_PART(forward_declarations)
+#include NOETHER_TOML_PART(unicode)
+#undef TOML_UNREACHABLE
+#define TOML_UNREACHABLE __builtin_unreachable()
 #include <toml++/toml.h>
 
 #include <algorithm>

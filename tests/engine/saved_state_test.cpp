@@ -3,7 +3,11 @@
 #include "engine/saved_state.hpp"
 
 #include "engine/description.hpp"
+#include "engine/simulation.hpp"
 #include "engine/statistics.hpp"
+#include "integrators/composition.hpp"
+#include "integrators/schemes.hpp"
+#include "integrators/wisdom_holman.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/columns.hpp"
 #include "tests/support/planets.hpp"
@@ -23,6 +27,12 @@ const Quad third = Quad(1) / Quad(3);
 const Vec3<Quad> vector(third, -third, Quad(0));
 
 enum class Color : std::uint8_t { red, green };
+
+SavedState save_planets() {
+  ParticleSystem<double> planets = test::outer_planets();
+  planets.keep_low_words(true);
+  return save_particles(planets);
+}
 
 }  // namespace
 
@@ -117,13 +127,39 @@ TEST_CASE("columns that parts have asked for come back with the particles", "[sa
   CHECK((again.column<Spin>()[0] == vector));
 }
 
-TEST_CASE("particles with an array too short are refused", "[saved]") {
-  const auto s = test::outer_planets();
-  SavedState saved = save_particles(s);
-  std::get<std::vector<double>>(saved.at("position")).pop_back();
-  CHECK_THROWS(load_particles<double>(saved));
-  saved.erase("position");
-  CHECK_THROWS_WITH(load_particles<double>(saved), "the saved state has no array 'position' of the expected type");
+TEST_CASE("particles of which an array is cut or gone are refused", "[saved]") {
+  const SavedState whole = save_planets();
+  REQUIRE_NOTHROW(load_particles<double>(whole));
+  for (const auto& [name, array] : whole) {
+    CAPTURE(name);
+    SavedState cut = whole;
+    std::visit([](auto& values) { values.pop_back(); }, cut[name]);
+    if (name != "id") CHECK_THROWS_AS(load_particles<double>(cut), Error);
+    cut.erase(name);
+    if (name != "position_low") CHECK_THROWS_AS(load_particles<double>(cut), Error);
+  }
+}
+
+TEST_CASE("a choice that there is not is refused", "[saved]") {
+  for (const char* name : {"phase", "clock/counts"}) {
+    for (const std::int64_t number : {-1, 17}) {
+      SavedState changed = save_planets();
+      std::get<std::vector<std::int64_t>>(changed[name])[0] = number;
+      CHECK_THROWS_AS(load_particles<double>(changed), Error);
+    }
+  }
+}
+
+TEST_CASE("an order that names no particle, or one twice, is refused", "[saved]") {
+  Simulation run(test::outer_planets(), compose(WisdomHolman({.G = test::outer_G}), schemes::verlet_aba), 50.0);
+  const SavedRun whole = run.save();
+  REQUIRE_NOTHROW(run.restore(whole));
+  for (const std::vector<std::int64_t>& order :
+       {std::vector<std::int64_t>{0, 1, 2, 3, 4, 6}, {0, 1, 2, 3, 4, 4}, {0, 1, 2, 3, 4}, {1, 0, 2, 3, 4, 5}, {}}) {
+    SavedRun changed = whole;
+    changed.parts.at("integrator").at("hamiltonian/order") = order;
+    CHECK_THROWS_WITH(run.restore(changed), "the saved order of Jacobi coordinates does not fit these particles");
+  }
 }
 
 }  // namespace noether

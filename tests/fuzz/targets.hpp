@@ -195,7 +195,9 @@ inline const SavedRun& saved_run() {
 inline void restore(const SavedRun& run) {
   accepted([&] { load_particles<double>(run.particles); });
   Simulation<double> simulation = checkpointed_run();
-  accepted([&] { simulation.restore(run); });
+  if (accepted([&] { simulation.restore(run); })) {
+    accepted([&] { static_cast<void>(simulation.run(2)); });  // however it ends
+  }
 }
 
 /// The bytes of a file as they stand.

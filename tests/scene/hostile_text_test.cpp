@@ -40,6 +40,20 @@ TEST_CASE("TOML that is nested too deeply is refused before it is parsed", "[sce
   CHECK_FALSE(parse_toml_value(repeated("[", 20000), -1));
 }
 
+TEST_CASE("characters beyond ASCII are refused outside strings and comments", "[scene][toml]") {
+  CHECK(toml_refusal("x = 1\naé = 1\n") == "x.toml:2: this is not TOML: expected '=', saw 'é' (in a key-value pair)");
+  CHECK(toml_refusal("a = é\n") == "x.toml:1: this is not TOML: could not determine value type (in a value)");
+  CHECK(toml_refusal("[aé]\n") == "x.toml:1: this is not TOML: expected ']', saw 'é' (in a table header)");
+  CHECK(toml_refusal("a = 1 # é\nb = \"é\"\n\"é\" = 'é'\nc = \"\"\"\\\n é\"\"\"\n").empty());
+}
+
+TEST_CASE("brackets that hold nothing are refused", "[scene][toml]") {
+  for (const char* text : {"[.", "[#", "[[,]]", "a = [}", "a = {]", "[[", "a = [", "="}) {
+    CAPTURE(text);
+    CHECK(toml_refusal(text).starts_with("x.toml:1: this is not TOML: "));
+  }
+}
+
 TEST_CASE("dots and brackets in strings, comments and lists of numbers are not depth", "[scene][toml]") {
   const std::string dots = repeated(".", 100), brackets = repeated("[{", 100), numbers = repeated("1.5, ", 200);
   CHECK(toml_refusal("a = \"" + dots + brackets + "\\\"" + dots + "\"\n").empty());

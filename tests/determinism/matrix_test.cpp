@@ -1,0 +1,190 @@
+/// Threads x cadence x program or scene x restart, for schemes, Hamiltonians and forces, at every SIMD level.
+
+#include "engine/monitors.hpp"
+#include "engine/parallel.hpp"
+#include "engine/simd.hpp"
+#include "engine/simulation.hpp"
+#include "forces/external_fields.hpp"
+#include "forces/gravity.hpp"
+#include "forces/linear_drag.hpp"
+#include "forces/oblateness.hpp"
+#include "forces/sum.hpp"
+#include "integrators/composition.hpp"
+#include "integrators/damped.hpp"
+#include "integrators/kinetic_potential.hpp"
+#include "integrators/schemes.hpp"
+#include "integrators/wisdom_holman.hpp"
+#include "io/digest.hpp"
+#include "scene/scene.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/planets.hpp"
+
+#include <fmt/format.h>
+
+#include <functional>
+#include <vector>
+
+namespace noether {
+namespace {
+
+constexpr std::int64_t steps = 5;
+
+/// One run, as a program makes it and as a scene does.
+struct Twin {
+  std::string name;
+  ParticleSystem<double> bodies;
+  AnyIntegrator<double> program;
+  double step;
+  std::string hamiltonian;  ///< of the scene
+  std::string method;
+};
+
+/// One way to make the run.
+struct Way {
+  int threads = 1;
+  std::int64_t cadence = 0;
+  bool from_scene = false;
+  bool restarted = false;
+};
+
+/// Puts back what a test has set for the whole process.
+struct Settings {
+  ~Settings() {
+    set_thread_count(threads);
+    set_simd_level(level);
+  }
+  int threads = thread_count();
+  SimdLevel level = simd_level();
+};
+
+Simulation<double> simulation_of(const Twin& twin, const Way& way) {
+  const std::string watch = way.cadence > 0 ? fmt::format("[[every]]\ntype='energy'\nsteps={0}\n", way.cadence) : "";
+  const auto from_scene = [&] {
+    Scene scene =
+        read_scene(fmt::format("units='reduced'\n[[particles.body]]\nname='replaced'\nmass=1\nx=[0,0,0]\nv=[0,0,0]\n"
+                               "{}[integrator]\nmethod='{}'\nstep={}\nsteps={}\n{}",
+                               twin.hamiltonian, twin.method, twin.step, steps, watch),
+                   "scene.toml");
+    scene.particles = twin.bodies;
+    return assemble(scene);
+  };
+  if (way.from_scene) return from_scene();
+  Simulation<double> simulation(twin.bodies, twin.program, twin.step);
+  if (way.cadence > 0) simulation.every(way.cadence, Energy{});
+  return simulation;
+}
+
+std::string digest_of(const Twin& twin, const Way& way) {
+  set_thread_count(way.threads);
+  Simulation<double> whole = simulation_of(twin, way);
+  if (!way.restarted) {
+    REQUIRE(whole.run(steps).ok());
+    return io::digest(whole.particles());
+  }
+  REQUIRE(whole.run(2).ok());
+  Simulation<double> again = simulation_of(twin, way);
+  again.restore(whole.save());
+  REQUIRE(again.run(steps - 2).ok());
+  return io::digest(again.particles());
+}
+
+/// Every way there is: 96.
+std::vector<Way> all_ways() {
+  std::vector<Way> ways;
+  for (int threads = 1; threads <= 8; ++threads) {
+    for (const std::int64_t cadence : {0, 1, 3}) {
+      for (const bool from_scene : {false, true}) {
+        for (const bool restarted : {false, true}) ways.push_back({threads, cadence, from_scene, restarted});
+      }
+    }
+  }
+  return ways;
+}
+
+/// Goes every so manieth way at every SIMD level; at one level all of them end in the same bits.
+void check_ways(const Twin& twin, std::size_t stride) {
+  const Settings before;
+  const std::vector<Way> ways = all_ways();
+  for (const SimdLevel level : {SimdLevel::base, SimdLevel::avx2, SimdLevel::avx512}) {
+    if (!has_simd_level(level)) continue;
+    set_simd_level(level);
+    const std::string expected = digest_of(twin, {});
+    for (std::size_t k = 0; k < ways.size(); k += stride) {
+      const Way& way = ways[k];
+      CAPTURE(twin.name, name(level), way.threads, way.cadence, way.from_scene, way.restarted);
+      CHECK(digest_of(twin, way) == expected);
+    }
+  }
+}
+
+const std::string soft_scene =
+    "[hamiltonian]\ntype='kinetic_potential'\nG=1\n[[hamiltonian.force]]\ntype='gravity'\nsoftening=0.05\n";
+
+template <class H>
+Twin cloud_twin(int bodies, const H& hamiltonian, const std::string& scene, const std::string& method) {
+  return {.name = fmt::format("{} of {} bodies", method, bodies),
+          .bodies = test::cloud(bodies),
+          .program = compose(hamiltonian, *schemes::find(method)),
+          .step = 0.01,
+          .hamiltonian = scene,
+          .method = method};
+}
+
+std::vector<Twin> gravity_twins() {
+  const KineticPotential gravity(Gravity{.G = 1, .softening = 0.05});
+  std::vector<Twin> twins;
+  for (const char* method : {"verlet", "verlet_aba", "blanes_moan_s6", "srkn11b", "yoshida_8"}) {
+    twins.push_back(cloud_twin(530, gravity, soft_scene, method));
+  }
+  // Around the number of bodies from which on there are lanes.
+  for (const int bodies : {7, 15, 16, 17}) twins.push_back(cloud_twin(bodies, gravity, soft_scene, "verlet"));
+  return twins;
+}
+
+std::vector<Twin> force_twins() {
+  const KineticPotential forces(Sum(Gravity{.G = 1, .softening = 0.05},
+                                    Oblateness{.J2 = 0.01, .J4 = -1e-4, .radius = 0.5, .axis = {0.1, 0, 1}, .G = 1},
+                                    UniformField{.acceleration = {1e-3, 2e-3, 0}},
+                                    OscillatingField{.acceleration = {0, 1e-3, 0}, .omega = 3}));
+  const std::string scene = soft_scene +
+                            "[[hamiltonian.force]]\ntype='oblateness'\nJ2=0.01\nJ4=-1e-4\nradius=0.5\naxis=[0.1,0,1]\n"
+                            "[[hamiltonian.force]]\ntype='uniform_field'\nacceleration=[1e-3,2e-3,0]\n"
+                            "[[hamiltonian.force]]\ntype='oscillating_field'\nacceleration=[0,1e-3,0]\nomega=3\n";
+  return {cloud_twin(200, forces, scene, "blanes_moan_s10"),
+          cloud_twin(200, Damped(forces, LinearDrag{.rate = 0.2}),
+                     scene + "[[hamiltonian.force]]\ntype='linear_drag'\nrate=0.2\n", "verlet")};
+}
+
+std::vector<Twin> wisdom_holman_twins(Coordinates coordinates) {
+  const bool jacobi = coordinates == Coordinates::jacobi;
+  const WisdomHolman hamiltonian({.G = test::outer_G, .coordinates = coordinates});
+  const std::string scene = fmt::format("[hamiltonian]\ntype='wisdom_holman'\nG={}\ncoordinates='{}'\n", test::outer_G,
+                                        jacobi ? "jacobi" : "democratic");
+  std::vector<Twin> twins;
+  for (const char* method : {"verlet_aba", "abah_8_6_4", jacobi ? "aba_10_6_4" : "abah_10_6_4"}) {
+    twins.push_back({.name = fmt::format("{} in {}", method, jacobi ? "jacobi" : "democratic"),
+                     .bodies = test::planets_with_tracers(300),
+                     .program = compose(hamiltonian, *schemes::find(method)),
+                     .step = 20,
+                     .hamiltonian = scene,
+                     .method = method});
+  }
+  return twins;
+}
+
+void check_all_twins(std::size_t stride) {
+  for (const auto& twins : {gravity_twins(), force_twins(), wisdom_holman_twins(Coordinates::jacobi),
+                            wisdom_holman_twins(Coordinates::democratic)}) {
+    for (const Twin& twin : twins) check_ways(twin, stride);
+  }
+}
+
+// 7 leads through all threads, and with each through other cadences, assemblies and restarts.
+TEST_CASE("bits depend on nothing but the run", "[determinism][matrix]") { check_all_twins(7); }
+
+TEST_CASE("bits depend on nothing but the run, whichever way it is made", "[determinism][matrix][nightly]") {
+  check_all_twins(1);
+}
+
+}  // namespace
+}  // namespace noether
