@@ -1,15 +1,10 @@
 /// Direct gravity: pair interactions per second (n^2 counting) by size, threads and SIMD level, the largest error of a
 /// force on a uniform sphere against 113 bits, and a leapfrog step of six bodies.
 ///
-/// Protocol: one warm-up, then the median of 7 repeats of about 0.2 s each, levels and sizes in turn.
+/// Protocol: one warm-up, then the median of 7 repeats of about 0.2 s each (wall time), levels and sizes in turn; a
+/// step is the median of 50 slices of 20 000 steps in processor time.
 
-#include "bench/support.hpp"
-
-#include "engine/simulation.hpp"
-#include "forces/gravity.hpp"
-#include "integrators/composition.hpp"
-#include "integrators/kinetic_potential.hpp"
-#include "integrators/schemes.hpp"
+#include "bench/planets.hpp"
 
 #include <utility>
 
@@ -80,26 +75,12 @@ void measure_sizes(const bench::Rows& rows) {
   }
 }
 
-/// The outer Solar System in round numbers: six bodies.
-ParticleSystem<double> six_bodies() {
-  ParticleSystem<double> s(unit_system("solar"));
-  s.add("Sun", 1, Vec3<double>::Zero(), Vec3<double>::Zero());
-  const double masses[] = {9.5e-4, 2.9e-4, 4.4e-5, 5.2e-5, 6.6e-9}, distances[] = {5.2, 9.5, 19.2, 30.1, 39.5};
-  for (int k = 0; k < 5; ++k) {
-    const double speed = std::sqrt(s.units().G / distances[k]), angle = 1.3 * k;
-    s.add("planet", masses[k], distances[k] * Vec3<double>(std::cos(angle), std::sin(angle), 0.02 * k),
-          speed * Vec3<double>(-std::sin(angle), std::cos(angle), 0));
-  }
-  return s;
-}
-
 void measure_leapfrog(const bench::Rows& rows) {
-  constexpr std::int64_t steps = 1'000'000;
+  Simulation<double> run = bench::leapfrog6();
   std::vector<double> times;
-  for (int repeat = 0; repeat < 8; ++repeat) {
-    Simulation sim(six_bodies(), compose(KineticPotential(Gravity{}), schemes::verlet), 10.0);
-    const double seconds = bench::seconds_of([&] { static_cast<void>(sim.run(steps)); });
-    if (repeat > 0) times.push_back(1e9 * seconds / steps);
+  for (int slice = 0; slice <= 50; ++slice) {
+    const double time = bench::step_ns(run, 20'000);
+    if (slice > 0) times.push_back(time);
   }
   rows.add("leapfrog6", "step_ns", bench::Measured(times), "ns", 6);
 }
