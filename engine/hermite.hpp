@@ -3,6 +3,8 @@
 
 #include "engine/motion.hpp"
 
+#include <algorithm>
+
 namespace noether {
 
 /// The polynomial of degree 5 that meets position, velocity and acceleration at both ends of an interval.
@@ -39,14 +41,17 @@ template <class Real> class Hermite {
   /// Smallest distance from the origin on the interval, and where.
   ///
   /// `resolved`: without its accelerations the polynomial would have led to the same place within a tenth of that
-  /// distance. Where it would not, the interval is too long for the motion in it, and the distance means nothing.
+  /// distance, or of the one that matters. Where it would not, the interval is too long for the motion in it, and the
+  /// distance means nothing.
   struct Nearest {
     Real distance2, at;
     bool resolved;
   };
-  Nearest nearest() const {
+  /// @param matters  a distance below which nothing is told apart
+  Nearest nearest(const Real& matters = Real(0)) const {
     Nearest best = lowest();
-    best.resolved = norm2(position(best.at) - cubic(best.at)) <= Real(0.01) * best.distance2;
+    const Real compared2 = std::max(best.distance2, Real(matters * matters));
+    best.resolved = norm2(position(best.at) - cubic(best.at)) <= Real(0.01) * compared2;
     return best;
   }
 

@@ -68,7 +68,8 @@ MonitorReport Energy::report() const {
   report.last = totals_.last();
   report.scale = scale_;
   report.reason = why_not_;
-  if (!why_not_.empty()) return report;
+  if (!std::isfinite(totals_.worst())) report.reason = "the energy is beyond the range of double precision";
+  if (!report.reason.empty()) return report;
   report.worst = errors_.worst();
   report.rms = errors_.rms();
   fill_line(report, errors_, per_time("1", time_unit_));
@@ -180,7 +181,7 @@ template <class Real> void CenterOfMass::observe(const Snapshot<Real>& now) {
     v += m * wide(s.velocities()[i]);
     total += m;
   }
-  x /= total;  // tracers alone have no center: 0/0
+  x /= total;  // tracers alone have no center: 0/0, which the report explains
   v /= total;
   if (!begun_) {
     begun_ = true;
@@ -206,6 +207,10 @@ MonitorReport CenterOfMass::report() const {
   MonitorReport report;
   report.samples = departures_.samples();
   if (report.samples == 0) return report;
+  if (std::isnan(departures_.first())) {
+    report.reason = "no particle has a mass, so there is no center of mass";
+    return report;
+  }
   report.first = departures_.first();
   report.last = departures_.last();
   report.worst = departures_.worst();

@@ -117,7 +117,8 @@ template <class Real> std::int64_t Simulation<Real>::steps_in(double duration) c
 
 template <class Real> Outcome Simulation<Real>::run(std::int64_t steps) {
   if (steps < 0) throw Error(fmt::format("{} steps cannot be made; a number of at least 0 is expected", steps));
-  return run_to(step() + steps, std::numeric_limits<double>::infinity());
+  const std::int64_t most = std::numeric_limits<std::int64_t>::max() - std::max(step(), std::int64_t{0});
+  return run_to(step() + std::min(steps, most), std::numeric_limits<double>::infinity());
 }
 
 template <class Real> Outcome Simulation<Real>::run_until(double until) {

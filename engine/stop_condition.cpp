@@ -101,7 +101,7 @@ std::optional<typename StopCheck<Real>::Event> StopCheck<Real>::collision(const 
       if (moved_) {
         const Hermite<Real> path(last_motion(i) - last_motion(j), now.motion(i) - now.motion(j), h);
         if (!path.may_come_within(Real(rule_.distance))) continue;
-        const auto nearest = path.nearest();
+        const auto nearest = path.nearest(Real(rule_.distance));
         if (nearest.resolved && nearest.distance2 < limit2) {
           event.distance2 = nearest.distance2;
           event.at = Hermite<Real>::bisect(Real(0), nearest.at,

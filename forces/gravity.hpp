@@ -64,6 +64,9 @@ template <class Real> void Gravity::add_pairs(ForceSink<Real>& out, const Partic
   const Real g = constant(s), soft2 = Real(softening) * Real(softening);
   const Real *x = s.positions().component(0), *y = s.positions().component(1), *z = s.positions().component(2);
   const Real* m = s.masses().data();
+  // G and the mass go together: G / r^3 alone would leave the range of doubles sooner.
+  Real mu[smallest_in_rows];
+  for (Index i = 0; i < n; ++i) mu[i] = g * m[i];
   // Distances, then all roots and quotients side by side, which take longest, then the sums.
   constexpr Index most = smallest_in_rows * (smallest_in_rows - 1) / 2;
   Real dx[most], dy[most], dz[most], r2[most], r[most], k[most];
@@ -79,7 +82,7 @@ template <class Real> void Gravity::add_pairs(ForceSink<Real>& out, const Partic
   }
   for (Index p = 0; p < pairs; ++p) {
     r[p] = sqrt(r2[p]);
-    k[p] = g / (r2[p] * r[p]);
+    k[p] = Real(1) / (r2[p] * r[p]);
   }
   VectorColumn<Real>& a = out.accelerations();
   Real *ax = a.component(0), *ay = a.component(1), *az = a.component(2);
@@ -87,7 +90,7 @@ template <class Real> void Gravity::add_pairs(ForceSink<Real>& out, const Partic
     Real sum_x = ax[i], sum_y = ay[i], sum_z = az[i];
     for (Index j = 0; j < i; ++j, ++p) {
       if (m[i] == Real(0) && m[j] == Real(0)) continue;
-      const Real kj = k[p] * m[j], ki = k[p] * m[i];
+      const Real kj = k[p] * mu[j], ki = k[p] * mu[i];
       sum_x -= kj * dx[p];
       sum_y -= kj * dy[p];
       sum_z -= kj * dz[p];
@@ -100,16 +103,16 @@ template <class Real> void Gravity::add_pairs(ForceSink<Real>& out, const Partic
     az[i] = sum_z;
   }
   if (!out.wants_energy() && !out.wants_virial()) return;
-  for (Index p = 0; p < pairs; ++p) r[p] = g / r[p];
+  for (Index p = 0; p < pairs; ++p) r[p] = Real(1) / r[p];
   Real energy(0);
   Mat3<Real> virial = Mat3<Real>::Zero();
   for (Index i = 1, p = 0; i < n; ++i) {
     for (Index j = 0; j < i; ++j, ++p) {
       if (m[i] == Real(0) || m[j] == Real(0)) continue;
-      energy -= m[i] * m[j] * r[p];
+      energy -= m[i] * mu[j] * r[p];
       if (!out.wants_virial()) continue;
       const Vec3<Real> d(dx[p], dy[p], dz[p]);
-      virial -= m[i] * (k[p] * m[j]) * d * d.transpose();
+      virial -= m[i] * (k[p] * mu[j]) * d * d.transpose();
     }
   }
   out.energy(energy);

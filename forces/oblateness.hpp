@@ -49,21 +49,21 @@ struct Oblateness {
     Vec3<Real> n{Real(axis[0]), Real(axis[1]), Real(axis[2])};
     n /= sqrt(norm2(n));
     const Real mu = Real(G ? *G : s.units().G) * s.masses()[0];
-    const Real R2 = Real(radius) * Real(radius);
     for (Index i = 1; i < s.size(); ++i) {
       const Vec3<Real> d = s.positions()[i] - s.positions()[0];
-      const Real r2 = norm2(d), u = dot(d, n), c2 = u * u / r2;
-      const Real r5 = r2 * r2 * sqrt(r2);
-      const Real k2 = mu * Real(J2) * R2 / (Real(2) * r5);
-      const Real k4 = mu * Real(J4) * R2 * R2 / (Real(8) * r5 * r2);
+      // Lengths enter as ratios: a power r^7 would leave the range of doubles at 1e44.
+      const Real r = sqrt(norm2(d)), ratio = Real(radius) / r, ratio2 = ratio * ratio;
+      const Vec3<Real> e = d / r;
+      const Real c = dot(e, n), c2 = c * c;
+      const Real k2 = mu / r * Real(J2) / Real(2) * ratio2, k4 = mu / r * Real(J4) / Real(8) * ratio2 * ratio2;
       const Vec3<Real> gradient =
-          Real(3) * k2 * (Real(2) * u * n + (Real(1) - Real(5) * c2) * d) +
-          Real(5) * k4 * ((Real(28) * c2 - Real(12)) * u * n + (Real(42) * c2 - Real(63) * c2 * c2 - Real(3)) * d);
+          Real(3) * k2 / r * (Real(2) * c * n + (Real(1) - Real(5) * c2) * e) +
+          Real(5) * k4 / r * ((Real(28) * c2 - Real(12)) * c * n + (Real(42) * c2 - Real(63) * c2 * c2 - Real(3)) * e);
       out.acceleration(i, -gradient);
       out.acceleration(0, s.masses()[i] / s.masses()[0] * gradient);
       if (out.wants_energy()) {
         out.energy(s.masses()[i] *
-                   (k2 * (Real(3) * c2 - Real(1)) * r2 + k4 * (Real(35) * c2 * c2 - Real(30) * c2 + Real(3)) * r2));
+                   (k2 * (Real(3) * c2 - Real(1)) + k4 * (Real(35) * c2 * c2 - Real(30) * c2 + Real(3))));
       }
     }
   }

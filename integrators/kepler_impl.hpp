@@ -317,7 +317,7 @@ template <class Real> Real power_of_two_below(const Real& x) {
   const Real jump = kepler_constant<Real>(power_of_two(stride));
   Real p(1);
   while (p * jump <= x) p *= jump;
-  while (p > x) p /= jump;
+  while (p > x) p /= p / jump > Real(0) ? jump : Real(2);  // below the normal numbers in small steps
   while (p * Real(2) <= x) p *= Real(2);
   return p;
 }

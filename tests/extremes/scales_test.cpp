@@ -132,7 +132,7 @@ TEST_CASE("gravity in lanes is right to rounding from 1e-100 to 1e100 at every S
   }
 }
 
-TEST_CASE("gravity is right to rounding at 1e100 with the constant of a unit system too", "[extremes][!shouldfail]") {
+TEST_CASE("gravity is right to rounding at 1e100 with the constant of a unit system too", "[extremes]") {
   // G = 6.7e-11 over r^3 = 1e300 is below the normal numbers, before a mass makes up for it.
   CHECK(worst_force_error(Gravity{.G = 6.6743e-11}, pair_at(1e100, 2e30)) < 10 * rounding);
 }
@@ -142,7 +142,7 @@ TEST_CASE("the oblateness of a body is right to rounding for radii from 1e-40 to
   CHECK(worst_oblateness(-40, 40, flat_unit.J4) < 200 * rounding);
 }
 
-TEST_CASE("the oblateness of a body is right to rounding for radii from 1e-98 to 1e98", "[extremes][!shouldfail]") {
+TEST_CASE("the oblateness of a body is right to rounding for radii from 1e-98 to 1e98", "[extremes]") {
   CHECK(worst_oblateness(-98, 98, 0) < 200 * rounding);
   CHECK(worst_oblateness(-98, 98, flat_unit.J4) < 200 * rounding);
 }
@@ -190,14 +190,14 @@ TEST_CASE("distances beyond the range of doubles end with a name and a finite st
   }
 }
 
-TEST_CASE("an energy beyond the range of doubles is told", "[extremes][!shouldfail]") {
+TEST_CASE("an energy beyond the range of doubles is told", "[extremes]") {
   Simulation simulation(fast_body(), compose(KineticPotential(Gravity{.G = 1.0}), schemes::verlet), 1.0);
   const auto& energy = simulation.every(1, Energy{});
   const Outcome outcome = simulation.run(3);
   CHECK((!outcome.ok() || explains_itself(energy.report())));
 }
 
-TEST_CASE("the program tells an energy beyond the range of doubles", "[extremes][!shouldfail]") {
+TEST_CASE("the program tells an energy beyond the range of doubles", "[extremes]") {
   ExtremeScene scene{.bodies = {body_text(fast_body(), 0)}, .steps = 3};
   const SceneFolder folder(scene.text());
   const ProcessResult result = noether(folder, "run scene.toml --json");
@@ -221,8 +221,7 @@ TEST_CASE("the program runs pairs from 1e-100 to 1e100 apart, and names what has
   CHECK(json_member(diverged.out, "step") == "0");
 }
 
-TEST_CASE("a body nearer to its star than the normal numbers reach does not hang the program",
-          "[extremes][slow][!shouldfail]") {
+TEST_CASE("a body nearer to its star than the normal numbers reach does not hang the program", "[extremes][slow]") {
   const SceneFolder folder(
       "units = \"reduced\"\n[particles]\nbody = [{ mass = 1 }, { mass = 0, x = [1e-320, 0, 0], "
       "v = [0, 1, 0] }]\n[hamiltonian]\ntype = \"wisdom_holman\"\n[integrator]\n"

@@ -143,9 +143,10 @@ TEST_CASE("a saved run goes on from step 1e9 and from 2^53 - 1000 with exact tim
   }
 }
 
-TEST_CASE("as many steps as can be asked for are made until something stops them, also behind the first",
-          "[extremes][slow][!shouldfail]") {
-  Simulation simulation(slow_body(), cheapest_integrator(), 1.0);
+TEST_CASE("as many steps as there are can be asked for behind the first too", "[extremes]") {
+  ParticleSystem<double> pair = slow_body();
+  pair.add("heavy", 1e30, {0, 0, 0}, {0, 0, 0});
+  Simulation simulation(std::move(pair), compose(KineticPotential(Sum<>()), schemes::verlet), 1.0);
   simulation.stop_when(farther_than(0x1p-10), 1);
   REQUIRE(simulation.run(10).step == 10);
   const Outcome outcome = simulation.run(std::numeric_limits<std::int64_t>::max());
