@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <system_error>
@@ -35,21 +36,24 @@ class Descriptor {
 
 }  // namespace
 
-std::string read_bytes(const std::filesystem::path& file) {
+std::string read_bytes(const std::filesystem::path& file, std::size_t most) {
+  std::error_code unknown;
+  if (std::filesystem::is_character_file(file, unknown)) {
+    throw FileError("is a device; a file is expected", {.file = file.string()});
+  }
   const Descriptor source(file, O_RDONLY);
   if (source < 0) fail(file, "cannot be read", errno);
   std::string bytes;
-  std::error_code unknown_size;
-  const auto size = std::filesystem::file_size(file, unknown_size);
+  const auto size = std::filesystem::file_size(file, unknown);
   std::size_t filled = 0;
-  bytes.resize(unknown_size ? 65536 : size + 1);
-  while (true) {
+  bytes.resize(std::min<std::size_t>(unknown ? 65536 : size + 1, most));
+  while (filled < most) {
     const ssize_t got = ::read(source, bytes.data() + filled, bytes.size() - filled);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) fail(file, "cannot be read", errno);
     if (got == 0) break;
     filled += static_cast<std::size_t>(got);
-    if (filled == bytes.size()) bytes.resize(2 * filled);
+    if (filled == bytes.size()) bytes.resize(std::min(2 * filled, most));
   }
   bytes.resize(filled);
   return bytes;

@@ -1,14 +1,17 @@
 #pragma once
 /// Plain files: whole contents in and out, flushed to disk, with errors that name the file.
 
+#include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <string_view>
 
 namespace noether::io {
 
-/// All bytes of a file. @throws FileError
-std::string read_bytes(const std::filesystem::path& file);
+/// The bytes of a file or a pipe, all of them or the first `most`.
+/// @throws FileError  if it cannot be read, or is a device: some of them never end
+std::string read_bytes(const std::filesystem::path& file, std::size_t most = std::numeric_limits<std::size_t>::max());
 
 /// Writes a file and waits until it is on disk. @throws FileError; what was written of it is removed
 void write_and_sync(const std::filesystem::path& file, std::string_view bytes);

@@ -470,7 +470,14 @@ Scene read_scene(std::string_view text, const std::filesystem::path& file, const
 
 Scene load_scene(const std::filesystem::path& file, const Parts& parts, const std::vector<std::string>& sets) {
   if (file.empty()) throw SceneError("the name of the scene file is empty; give one, such as scene.toml");
-  return read_scene(io::read_bytes(file), file, parts, sets);
+  constexpr std::size_t largest = 64U << 20U;
+  const std::string text = io::read_bytes(file, largest + 1);
+  if (text.size() > largest) {
+    throw SceneError(
+        "this is too large for a scene; at most 64 MB are expected: bodies go into a table, bodies = \"FILE.csv\"",
+        {.file = file.string()});
+  }
+  return read_scene(text, file, parts, sets);
 }
 
 }  // namespace noether

@@ -101,6 +101,12 @@ ParticleSystem<double> from_file(TableReader& reader, const std::filesystem::pat
   const std::string name = reader.text("bodies");
   if (name.empty()) reader.fail("bodies", "bodies = \"\" names no file; give one, such as \"bodies.csv\"");
   std::filesystem::path file = folder / name;
+  std::error_code none;
+  if (std::filesystem::equivalent(file, reader.context().source.file, none)) {
+    reader.fail("bodies", fmt::format("bodies = \"{}\" is this scene itself; give a table of bodies, such as "
+                                      "\"bodies.csv\"",
+                                      name));
+  }
   io::BodiesOptions options;
   options.units = reader.context().units;
   if (reader.context().G) options.G = gravitation(reader);

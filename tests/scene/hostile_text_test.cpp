@@ -6,7 +6,10 @@
 #include "scene/scene.hpp"
 #include "scene/toml.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/process.hpp"
 
+#include <cstdint>
+#include <filesystem>
 #include <string>
 
 namespace noether::test {
@@ -95,6 +98,55 @@ TEST_CASE("what is typed on the command line is no file", "[scene][set]") {
     CHECK(std::string(error.what()).size() < 400);
     CHECK(std::string(error.what()).ends_with("...: the key has 20001 parts; at most 64 are expected"));
   }
+}
+
+/// What loading a file says, without the name of its folder.
+std::string load_refusal(const std::filesystem::path& file) {
+  try {
+    load_scene(file);
+  } catch (const Error& error) {
+    const std::string text = error.what(), folder = file.parent_path().string() + "/";
+    return text.starts_with(folder) ? text.substr(folder.size()) : text;
+  }
+  return "";
+}
+
+TEST_CASE("a scene of a gigabyte is refused before it is read", "[scene][hostile]") {
+  const ScratchFolder folder;
+  const std::filesystem::path file = folder / "large.toml";
+  write_text(file, "units = \"reduced\"\n");
+  std::filesystem::resize_file(file, std::uintmax_t{1} << 30U);
+  CHECK(load_refusal(file) ==
+        "large.toml: this is too large for a scene; at most 64 MB are expected: bodies go into a table, "
+        "bodies = \"FILE.csv\"");
+}
+
+TEST_CASE("bytes that are no text are refused as a scene", "[scene][hostile]") {
+  const ScratchFolder folder;
+  for (const std::string& bytes :
+       {std::string(1000, '\0'),
+        std::string("\x7f"
+                    "ELF\x02\x01\x01"),
+        std::string("\xff\xfe[\0]\0", 6), std::string("\x89HDF\r\n\x1a\n"), repeated("\x80", 5000)}) {
+    write_text(folder / "x.toml", bytes);
+    CHECK(load_refusal(folder / "x.toml").starts_with("x.toml:1: this is not TOML: "));
+  }
+  std::uint32_t state = 1;
+  for (int repeat = 0; repeat < 200; ++repeat) {
+    std::string bytes;
+    for (int k = 0; k < 300; ++k) bytes += static_cast<char>((state = state * 1664525U + 1013904223U) >> 24U);
+    write_text(folder / "x.toml", bytes);
+    const std::string said = load_refusal(folder / "x.toml");
+    CHECK(said.starts_with("x.toml:"));
+    CHECK(said.find('\n') == std::string::npos);
+  }
+}
+
+TEST_CASE("a device is no scene, and no table of bodies", "[scene][hostile]") {
+  CHECK(load_refusal("/dev/zero").ends_with("zero: is a device; a file is expected"));
+  const ScratchFolder folder;
+  write_text(folder / "x.toml", "units = \"reduced\"\nhamiltonian.type = \"wisdom_holman\"\nparticles.bodies = \"/dev/zero\"\n");
+  CHECK(load_refusal(folder / "x.toml").ends_with("zero: is a device; a file is expected"));
 }
 
 }  // namespace
