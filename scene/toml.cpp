@@ -5,9 +5,9 @@
 
 #include <fmt/format.h>
 
-// toml++ 3 ends in undefined behavior, or in an assertion, on some texts that are no TOML: `a = é`, `[.`, `a = [}`.
-// Its assertions are taken out, and its tables of Unicode answer no where they hold a character impossible; the parser
-// then refuses the character as it does any other.
+// toml++ 3 ends in undefined behavior, or in an assertion, on some texts that are no TOML: `[.`, `a = [}`, letters
+// beyond ASCII outside quotes. Its assertions are taken out, and its tables of Unicode answer no where they hold a
+// character impossible; the parser then refuses the character as it does any other.
 #define TOML_ASSERT(expr) static_assert(true)
 #if __has_include(<toml++/toml.hpp>)
 #define NOETHER_TOML_PART(name) <toml++/impl/name.hpp>
