@@ -1,13 +1,18 @@
 #include "cli/commands.hpp"
 
+#include "engine/error.hpp"
 #include "engine/text.hpp"
 #include "io/inspect.hpp"
+#include "io/repair.hpp"
 #include "scene/json.hpp"
+#include "scene/output_folder.hpp"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,19 +60,34 @@ void print_text(const std::string& file, const io::FileInfo& info) {
   if (!info.digest.empty()) fmt::print("  {}\n", info.digest);
 }
 
-int verify_file(const std::string& file, bool json) {
-  const io::FileInfo info = io::verify(file);
+/// Mends a file in a folder that nobody else writes to.
+io::Repair repair_alone(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) throw FileError("there is no such file", {.file = file.string()});
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  std::optional<OutputFolder> locked;
+  try {
+    locked.emplace(folder);
+  } catch (const SceneError&) {
+    throw SceneError("a run is writing here; wait for it, then repair", {.file = folder.string()});
+  }
+  return io::repair(file);
+}
+
+int report_verified(const std::string& file, const io::Repair& found, bool json) {
+  const io::FileInfo& info = found.info;
   const bool ok = info.damaged.empty();
   if (json) {
     fmt::print("{}\n", Json::object({{"schema", "noether.verify/1"},
                                      {"ok", ok},
                                      {"complete", info.complete},
                                      {"damaged", Json::list_of(info.damaged)},
+                                     {"repaired", Json::list_of(found.repaired)},
                                      {"last_step", info.last_step},
                                      {"digest", text_or_null(info.digest)}})
                            .text());
     return ok ? 0 : 3;
   }
+  for (const std::string& line : found.repaired) fmt::print("{}: repaired: {}\n", file, escaped(line));
   if (ok)
     fmt::print("{}: sound{}, last step {}\n", file, info.complete ? " and complete" : ", not complete", info.last_step);
   for (const std::string& line : info.damaged) fmt::print(stderr, "{}\n", escaped(file + ": " + line));
@@ -76,7 +96,7 @@ int verify_file(const std::string& file, bool json) {
 
 struct FileArguments {
   std::string file, out;
-  bool json = false;
+  bool json = false, repair = false;
 };
 
 CLI::App* file_command(CLI::App& app, const std::string& name, const std::string& help, const std::string& kinds,
@@ -111,7 +131,11 @@ void add_verify_command(CLI::App& app, int& exit_code) {
   CLI::App* command = file_command(app, "verify", "read everything in a file and say whether it is sound",
                                    "run.h5 or a checkpoint", given);
   command->add_flag("--json", given->json, "as one line of JSON");
-  command->callback([given, &exit_code] { exit_code = verify_file(given->file, given->json); });
+  command->add_flag("--repair", given->repair, "cut run.h5 back to the last frame that is whole; nothing else is lost");
+  command->callback([given, &exit_code] {
+    const io::Repair found = given->repair ? repair_alone(given->file) : io::Repair{io::verify(given->file), {}};
+    exit_code = report_verified(given->file, found, given->json);
+  });
 }
 
 void add_convert_command(CLI::App& app, int& exit_code) {

@@ -297,6 +297,15 @@ std::string method_line(const SceneValue& scene) {
   return line;
 }
 
+/// The scene that a file was made from. @throws FileError if it is damaged
+SceneValue stored_scene(const std::string& toml, const std::filesystem::path& file) {
+  try {
+    return parse_toml(toml, "stored");
+  } catch (const Error& error) {
+    throw FileError(fmt::format("damaged: its scene cannot be read: {}", error.message()), {.file = file.string()});
+  }
+}
+
 }  // namespace
 
 PlotData read_plot_data(const std::filesystem::path& file) {
@@ -305,7 +314,7 @@ PlotData read_plot_data(const std::filesystem::path& file) {
     throw Error(
         fmt::format("{} is a {}, which holds one moment; plot the run.h5 beside it", file.string(), about.kind));
   }
-  const SceneValue scene = parse_toml(about.scene_toml, "the scene stored in " + file.string());
+  const SceneValue scene = stored_scene(about.scene_toml, file);
   const io::Frames frames = io::read_frames(file);
   const std::vector<io::MonitorSeries> monitors = io::read_monitors(file);
 

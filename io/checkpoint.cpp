@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <utility>
 
@@ -68,7 +69,12 @@ SavedArray read_array(const Hdf5Dataset& dataset) {
   }
 }
 
+/// @throws FileError for groups that are nested without end
 void read_state(const Hdf5File& file, const std::string& group, const std::string& below, SavedState& state) {
+  static constexpr int deepest = 64;
+  if (std::count(below.begin(), below.end(), '/') > deepest)
+    throw FileError(fmt::format("damaged: the groups below '{}' are nested more than {} deep", group, deepest),
+                    {.file = file.name()});
   for (const std::string& child : file.children(group + below)) {
     const std::string name = below + "/" + child;
     const std::string path = group + name;

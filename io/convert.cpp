@@ -3,6 +3,7 @@
 #include "engine/suggest.hpp"
 #include "io/inspect.hpp"
 #include "io/trajectory_reader.hpp"
+#include "io/trial.hpp"
 
 #include <fmt/format.h>
 
@@ -73,6 +74,10 @@ Index convert(const std::filesystem::path& file, const std::filesystem::path& ou
                             did_you_mean(extension, {".xyz", ".csv"})),
                 {.value = extension});
   }
+  try_in_child(file, [&] {
+    const TrajectoryReader reader(file);
+    for (Index k = 0; k < reader.frames(); ++k) reader.frame(k);
+  });
   const TrajectoryReader reader(file);
   if (reader.frames() == 0) throw FileError("there are no frames to convert", {.file = file.string()});
   std::ofstream target(out, std::ios::binary);

@@ -75,6 +75,11 @@ void write_and_sync(const std::filesystem::path& file, std::string_view bytes) {
   if (::fsync(target) != 0) give_up(errno);
 }
 
+void sync_file(const std::filesystem::path& file) {
+  const Descriptor opened(file, O_RDWR);
+  if (opened < 0 || ::fsync(opened) != 0) fail(file, "cannot be written", errno);
+}
+
 void rename_if_there(const std::filesystem::path& from, const std::filesystem::path& to) {
   if (::rename(from.c_str(), to.c_str()) != 0 && errno != ENOENT) fail(to, "cannot be written", errno);
 }

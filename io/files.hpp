@@ -16,6 +16,9 @@ std::string read_bytes(const std::filesystem::path& file, std::size_t most = std
 /// Writes a file and waits until it is on disk. @throws FileError; what was written of it is removed
 void write_and_sync(const std::filesystem::path& file, std::string_view bytes);
 
+/// Waits until the content of a file is on disk. @throws FileError
+void sync_file(const std::filesystem::path& file);
+
 /// Renames a file, replacing another; nothing happens where there is none. @throws FileError
 void rename_if_there(const std::filesystem::path& from, const std::filesystem::path& to);
 

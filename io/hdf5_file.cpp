@@ -1,11 +1,15 @@
 #include "io/hdf5_file.hpp"
 
 #include "engine/error.hpp"
+#include "io/files.hpp"
+#include "io/hdf5_error.hpp"
 #include "io/ordered_file.hpp"
+#include "io/padded_texts.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <functional>
 #include <numeric>
@@ -52,26 +56,13 @@ class Hdf5Handle {
 
 namespace {
 
-/// Keeps the innermost description of HDF5's error stack, or the system's own words where it quotes them.
-herr_t keep_reason(unsigned /*depth*/, const H5E_error2_t* entry, void* kept) {
-  static constexpr std::string_view quote = "error message = '";
-  auto& reason = *static_cast<std::string*>(kept);
-  const std::string_view text = entry->desc == nullptr ? "" : entry->desc;
-  if (const auto at = text.find(quote); at != std::string_view::npos) {
-    const std::string_view rest = text.substr(at + quote.size());
-    reason = rest.substr(0, rest.find('\''));
-    return 1;
-  }
-  if (reason.empty()) reason = text;
-  return 0;
-}
-
 [[noreturn]] void fail(const Context& file, const std::string& what) {
-  std::string reason;
-  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_reason, &reason);
-  H5Eclear2(H5E_DEFAULT);
+  const std::string reason = take_hdf5_error();
   throw FileError(reason.empty() ? what : fmt::format("{}: {}", what, reason), {.file = file->name});
 }
+
+/// What HDF5 is content with, but noether is not.
+[[noreturn]] void refuse(const Context& file, const std::string& what) { throw FileError(what, {.file = file->name}); }
 
 /// Takes an id that HDF5 returned; a negative one is an error.
 Hdf5Handle own(hid_t id, Hdf5Handle::Close close, const Context& file, const std::string& what) {
@@ -88,7 +79,7 @@ void check(herr_t status, const Hdf5Handle& handle, const std::string& what) {
 /// After a write that failed HDF5 goes on as if nothing were wrong: it must be able to close the file.
 void check_written(const Context& file) {
   const int error = file->ordered != nullptr ? write_error(*file->ordered) : 0;
-  if (error != 0) throw FileError(fmt::format("cannot write the file: {}", std::strerror(error)), {.file = file->name});
+  if (error != 0) refuse(file, fmt::format("cannot write the file: {}", std::strerror(error)));
 }
 
 std::string writing(const std::string& path) { return fmt::format("cannot write '{}'", path); }
@@ -103,9 +94,11 @@ Hdf5Handle access_list(const std::filesystem::path& name) {
   return list;
 }
 
-Hdf5Handle text_type(const Context& file) {
+/// Texts of one length, padded by zeros: those of variable length stand in a heap that HDF5 reads without a check.
+Hdf5Handle text_type(const Context& file, std::size_t size) {
   Hdf5Handle type = own(H5Tcopy(H5T_C_S1), H5Tclose, file, "cannot prepare a type");
-  H5Tset_size(type, H5T_VARIABLE);
+  H5Tset_size(type, std::max<std::size_t>(size, 1));
+  H5Tset_strpad(type, H5T_STR_NULLPAD);
   H5Tset_cset(type, H5T_CSET_UTF8);
   return type;
 }
@@ -128,18 +121,19 @@ Hdf5Handle linking(const Context& file) {
 }
 
 /// How datasets are made: without the time of day, so that equal contents are equal bytes.
-Hdf5Handle dataset_layout(const Context& file) {
+Hdf5Handle dataset_layout(const Context& file, H5D_layout_t layout = H5D_CONTIGUOUS) {
   Hdf5Handle list = own(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, file, "cannot prepare a dataset");
   H5Pset_obj_track_times(list, false);
+  H5Pset_layout(list, layout);
   return list;
 }
 
 /// Makes a fixed dataset and fills it.
 void write_fixed(const Hdf5Handle& file, const std::string& path, hid_t stored, hid_t memory,
-                 const std::vector<Index>& shape, const void* data) {
+                 const std::vector<Index>& shape, const void* data, H5D_layout_t kind = H5D_CONTIGUOUS) {
   const Hdf5Handle space = space_of(shape, file.file());
   const Hdf5Handle links = linking(file.file());
-  const Hdf5Handle layout = dataset_layout(file.file());
+  const Hdf5Handle layout = dataset_layout(file.file(), kind);
   const Hdf5Handle dataset = own(H5Dcreate2(file, path.c_str(), stored, space, links, layout, H5P_DEFAULT), H5Dclose,
                                  file.file(), writing(path));
   if (H5Sget_simple_extent_npoints(space) > 0) {
@@ -159,16 +153,59 @@ void write_attribute(const Hdf5Handle& file, const std::string& path, const std:
   check(H5Awrite(attribute, memory, data), file, what);
 }
 
-std::vector<const char*> pointers(const std::vector<std::string>& texts) {
-  std::vector<const char*> result;
-  for (const std::string& text : texts) result.push_back(text.c_str());
-  return result;
+/// Only what noether writes is known, so that HDF5 never converts what a damaged file calls a number.
+ElementType element_type(hid_t type) {
+  if (H5Tequal(type, H5T_IEEE_F64LE) > 0) return ElementType::real;
+  if (H5Tequal(type, H5T_STD_I64LE) > 0) return ElementType::integer;
+  const bool text = H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0;
+  return text ? ElementType::text : ElementType::other;
 }
 
-ElementType element_type(hid_t type) {
-  if (H5Tget_class(type) == H5T_FLOAT) return ElementType::real;
-  if (H5Tget_class(type) == H5T_INTEGER) return ElementType::integer;
-  return H5Tis_variable_str(type) > 0 ? ElementType::text : ElementType::other;
+/// All axes; none of a scalar.
+std::vector<hsize_t> axes_of(const Hdf5Handle& dataset, const std::string& path) {
+  const Hdf5Handle space = own(H5Dget_space(dataset), H5Sclose, dataset.file(), reading(path));
+  std::vector<hsize_t> axes(static_cast<std::size_t>(std::max(0, H5Sget_simple_extent_ndims(space))));
+  check(H5Sget_simple_extent_dims(space, axes.data(), nullptr), dataset, reading(path));
+  return axes;
+}
+
+/// The bytes of one element. @throws FileError also for 0
+std::size_t element_size(const Hdf5Handle& dataset, const std::string& path) {
+  const Hdf5Handle type = own(H5Dget_type(dataset), H5Tclose, dataset.file(), reading(path));
+  if (const std::size_t size = H5Tget_size(type); size > 0) return size;
+  fail(dataset.file(), reading(path));
+}
+
+/// A damaged shape must not ask for more than there can be: noether writes every element of every dataset.
+void check_size(const Hdf5Handle& file, const Hdf5Handle& dataset, const std::string& path) {
+  hsize_t size = 0;
+  check(H5Fget_filesize(file, &size), file, reading(path));
+  const std::vector<hsize_t> axes = axes_of(dataset, path);
+  hsize_t room = size / element_size(dataset, path);
+  for (const hsize_t axis : axes) {
+    if (axis == 0) return;
+    room /= axis;
+  }
+  const std::string shape = fmt::format("{}", fmt::join(axes, ", "));
+  if (room == 0)
+    refuse(file.file(), fmt::format("damaged: '{}' of shape ({}) would be larger than the file", path, shape));
+}
+
+/// Rows to a piece of a dataset on disk; 0 if the dataset is in one.
+hsize_t chunk_rows(const Hdf5Handle& dataset, const std::string& path) {
+  const Hdf5Handle layout = own(H5Dget_create_plist(dataset), H5Pclose, dataset.file(), reading(path));
+  if (H5Pget_layout(layout) != H5D_CHUNKED) return 0;
+  std::array<hsize_t, H5S_MAX_RANK> axes{};
+  if (H5Pget_chunk(layout, H5S_MAX_RANK, axes.data()) <= 0 || axes[0] == 0) fail(dataset.file(), reading(path));
+  return axes[0];
+}
+
+haddr_t chunk_address(const Hdf5Handle& dataset, const std::vector<hsize_t>& corner, const std::string& path) {
+  unsigned filters = 0;
+  haddr_t at = HADDR_UNDEF;
+  hsize_t size = 0;
+  check(H5Dget_chunk_info_by_coord(dataset, corner.data(), &filters, &at, &size), dataset, reading(path));
+  return at;
 }
 
 /// Whether every group on the way to `path`, and `path` itself, is there.
@@ -189,9 +226,8 @@ Hdf5Handle find_attribute(const Hdf5Handle& file, const std::string& path, const
   const Hdf5Handle type = own(H5Aget_type(attribute), H5Tclose, file.file(), reading(path));
   const Hdf5Handle space = own(H5Aget_space(attribute), H5Sclose, file.file(), reading(path));
   if (element_type(type) != expected || H5Sget_simple_extent_npoints(space) != 1) {
-    throw FileError(
-        fmt::format("attribute '{}' of '{}' has an unexpected type; was the file written by noether?", name, path),
-        {.file = file.file()->name});
+    refuse(file.file(),
+           fmt::format("attribute '{}' of '{}' has an unexpected type; was the file written by noether?", name, path));
   }
   return attribute;
 }
@@ -201,9 +237,7 @@ Hdf5Handle find_attribute(const Hdf5Handle& file, const std::string& path, const
 // ---- datasets ------------------------------------------------------------------------------------------------------
 
 std::vector<Index> Hdf5Dataset::shape() const {
-  const Hdf5Handle space = own(H5Dget_space(*handle_), H5Sclose, handle_->file(), reading(path_));
-  std::vector<hsize_t> axes(static_cast<std::size_t>(std::max(0, H5Sget_simple_extent_ndims(space))));
-  check(H5Sget_simple_extent_dims(space, axes.data(), nullptr), *handle_, reading(path_));
+  const std::vector<hsize_t> axes = axes_of(*handle_, path_);
   return {axes.begin(), axes.end()};
 }
 
@@ -212,26 +246,61 @@ Index Hdf5Dataset::rows() const {
   return axes.empty() ? 1 : axes.front();
 }
 
+Index Hdf5Dataset::rows_within(std::uint64_t bytes) const {
+  std::vector<hsize_t> axes = axes_of(*handle_, path_);
+  if (axes.empty()) axes = {1};
+  const hsize_t count = axes[0], at_once = chunk_rows(*handle_, path_);
+  if (at_once == 0) {
+    const haddr_t at = H5Dget_offset(*handle_);  // none: it stands in the header, which has been read
+    return static_cast<Index>(at == HADDR_UNDEF || at + H5Dget_storage_size(*handle_) <= bytes ? count : 0);
+  }
+  const hsize_t row = std::accumulate(axes.begin() + 1, axes.end(), element_size(*handle_, path_), std::multiplies<>());
+  std::vector<hsize_t> corner(axes.size(), 0);
+  for (hsize_t& first = corner[0]; first < count; first += at_once) {
+    const haddr_t at = chunk_address(*handle_, corner, path_);
+    const hsize_t wanted = std::min(at_once, count - first);
+    const hsize_t held = at < bytes && row > 0 ? std::min(wanted, (bytes - at) / row) : 0;
+    if (held < wanted) return static_cast<Index>(first + held);
+  }
+  return static_cast<Index>(count);
+}
+
 ElementType Hdf5Dataset::type() const {
   return element_type(own(H5Dget_type(*handle_), H5Tclose, handle_->file(), reading(path_)));
 }
 
 void Hdf5Dataset::require(ElementType expected) const {
-  if (type() == expected) return;
-  throw FileError(fmt::format("'{}' has an unexpected type; was the file written by noether?", path_),
-                  {.file = handle_->file()->name});
+  if (type() != expected)
+    refuse(handle_->file(), fmt::format("'{}' has an unexpected type; was the file written by noether?", path_));
+}
+
+std::vector<Index> Hdf5Dataset::growing_shape() const {
+  std::vector<Index> axes = shape();
+  if (axes.empty()) refuse(handle_->file(), fmt::format("damaged: '{}' has no rows", path_));
+  return axes;
 }
 
 void Hdf5Dataset::resize(Index rows) {
-  std::vector<Index> axes = shape();
-  axes.at(0) = rows;
+  std::vector<Index> axes = growing_shape();
+  axes[0] = rows;
   const std::vector<hsize_t> extent(axes.begin(), axes.end());
   check(H5Dset_extent(*handle_, extent.data()), *handle_, writing(path_));
   check_written(handle_->file());
 }
 
+void Hdf5Dataset::write_last() const {
+#if H5_VERSION_GE(1, 12, 0)
+  H5O_info1_t header{};
+#else
+  H5O_info_t header{};
+#endif
+  check(H5Oget_info1(*handle_, &header), *handle_, reading(path_));
+  if (handle_->file()->ordered != nullptr) io::write_last(*handle_->file()->ordered, header.addr);
+}
+
 void Hdf5Dataset::append_raw(const void* rows, std::size_t values, ElementType type) {
-  const std::vector<Index> axes = shape();
+  require(type);  // HDF5 would convert to whatever a damaged file calls a number
+  const std::vector<Index> axes = growing_shape();
   const Index to_a_row = std::accumulate(axes.begin() + 1, axes.end(), Index{1}, std::multiplies<>());
   NOETHER_EXPECTS(to_a_row > 0 && static_cast<Index>(values) % to_a_row == 0,
                   fmt::format("a row of '{}' has {} values, {} were given", path_, to_a_row, values));
@@ -284,14 +353,13 @@ std::vector<std::int64_t> Hdf5Dataset::read_integers() const {
 std::vector<std::string> Hdf5Dataset::read_texts() const {
   require(ElementType::text);
   const Hdf5Handle space = own(H5Dget_space(*handle_), H5Sclose, handle_->file(), reading(path_));
-  std::vector<char*> raw(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)), nullptr);
-  if (raw.empty()) return {};
-  const Hdf5Handle type = text_type(handle_->file());
-  check(H5Dread(*handle_, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, raw.data()), *handle_, reading(path_));
-  std::vector<std::string> texts;
-  for (const char* text : raw) texts.emplace_back(text == nullptr ? "" : text);
-  H5Dvlen_reclaim(type, space, H5P_DEFAULT, raw.data());
-  return texts;
+  const Hdf5Handle stored = own(H5Dget_type(*handle_), H5Tclose, handle_->file(), reading(path_));
+  PaddedTexts raw{H5Tget_size(stored), ""};
+  raw.bytes.resize(raw.size * static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
+  if (raw.bytes.empty()) return {};
+  const Hdf5Handle type = text_type(handle_->file(), raw.size);
+  check(H5Dread(*handle_, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, raw.bytes.data()), *handle_, reading(path_));
+  return unpad(raw);
 }
 
 // ---- files ---------------------------------------------------------------------------------------------------------
@@ -299,39 +367,44 @@ std::vector<std::string> Hdf5Dataset::read_texts() const {
 Hdf5File Hdf5File::create(const std::filesystem::path& file) {
   const Hdf5Handle access = access_list(file);
   if (!use_ordered_driver(access)) fail(access.file(), "cannot prepare the file");
-  // The name is given to a file that can be opened, if only an empty one.
   const std::string unnamed = file.string() + ".new";
   const Hdf5File made(share(H5Fcreate(unnamed.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, access.file(),
                             "cannot create the file"));
   access.file()->ordered = ordered_file(*made.handle_);
-  made.flush();
-  std::error_code error;
-  std::filesystem::rename(unnamed, file, error);
-  if (error) throw FileError("cannot create the file: " + error.message(), {.file = file.string()});
   return made;
 }
 
+void Hdf5File::take_name() const {
+  flush();
+  rename_if_there(name() + ".new", name());
+}
+
 namespace {
+
 std::shared_ptr<Hdf5Handle> open_file(const std::filesystem::path& file, bool writing) {
   const Hdf5Handle access = access_list(file);
   if (writing && !use_ordered_driver(access)) fail(access.file(), "cannot prepare the file");
   std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) throw FileError("there is no such file", {.file = file.string()});
-  if (!std::filesystem::is_regular_file(file, ignored)) throw FileError("this is no file", {.file = file.string()});
+  if (!std::filesystem::exists(file, ignored)) refuse(access.file(), "there is no such file");
+  if (!std::filesystem::is_regular_file(file, ignored)) refuse(access.file(), "this is no file");
   const hid_t id = H5Fopen(file.c_str(), writing ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access);
   auto handle = share(id, H5Fclose, access.file(), "cannot be opened as an HDF5 file");
   if (writing) access.file()->ordered = ordered_file(id);
   return handle;
 }
+
+/// A name for a file in memory: HDF5 refuses one that is on disk, and nothing lies below a file.
+std::string name_in_memory(const std::filesystem::path& name) { return (name / "in memory").string(); }
+
 }  // namespace
 
 Hdf5File Hdf5File::open_to_read(const std::filesystem::path& file) { return Hdf5File(open_file(file, false)); }
 Hdf5File Hdf5File::open_to_append(const std::filesystem::path& file) { return Hdf5File(open_file(file, true)); }
-
-namespace {
-/// A name for a file in memory: HDF5 refuses one that is on disk, and nothing lies below a file.
-std::string name_in_memory(const std::filesystem::path& name) { return (name / "in memory").string(); }
-}  // namespace
+Hdf5File Hdf5File::open_to_rehearse(const std::filesystem::path& file) {
+  Hdf5File opened = open_to_append(file);
+  keep_in_memory(*opened.handle_->file()->ordered);
+  return opened;
+}
 
 Hdf5File Hdf5File::create_in_memory(const std::filesystem::path& name) {
   const Hdf5Handle access = access_list(name);
@@ -348,6 +421,8 @@ Hdf5File Hdf5File::open_bytes(const std::string& bytes, const std::filesystem::p
   return Hdf5File(share(H5Fopen(name_in_memory(name).c_str(), H5F_ACC_RDONLY, access), H5Fclose, access.file(),
                         "cannot be opened as an HDF5 file"));
 }
+
+const std::string& Hdf5File::name() const { return handle_->file()->name; }
 
 std::string Hdf5File::to_bytes() const {
   flush();
@@ -408,14 +483,17 @@ void Hdf5File::write(const std::string& path, std::span<const std::int64_t> valu
   write_fixed(*handle_, path, H5T_STD_I64LE, H5T_NATIVE_INT64, shape, values.data());
 }
 void Hdf5File::write(const std::string& path, const std::vector<std::string>& values) const {
-  const Hdf5Handle type = text_type(handle_->file());
-  write_fixed(*handle_, path, type, type, {static_cast<Index>(values.size())}, pointers(values).data());
+  const PaddedTexts padded = pad(values);
+  const Hdf5Handle type = text_type(handle_->file(), padded.size);
+  write_fixed(*handle_, path, type, type, {static_cast<Index>(values.size())}, padded.bytes.data());
 }
 void Hdf5File::write_text(const std::string& path, const std::string& text) const {
   if (has(path)) check(H5Ldelete(*handle_, path.c_str(), H5P_DEFAULT), *handle_, writing(path));
-  const Hdf5Handle type = text_type(handle_->file());
-  const char* pointer = text.c_str();
-  write_fixed(*handle_, path, type, type, {}, &pointer);
+  const PaddedTexts padded = pad({text});
+  const Hdf5Handle type = text_type(handle_->file(), padded.size);
+  // Within the dataset's header, where it fits, a text reaches the disk in its turn, as a part of the file's metadata.
+  constexpr std::size_t fits = 60'000;
+  write_fixed(*handle_, path, type, type, {}, padded.bytes.data(), padded.size < fits ? H5D_COMPACT : H5D_CONTIGUOUS);
 }
 
 Hdf5Dataset Hdf5File::create_growing(const std::string& path, ElementType type, const std::vector<Index>& sample,
@@ -437,8 +515,10 @@ Hdf5Dataset Hdf5File::create_growing(const std::string& path, ElementType type, 
 }
 
 Hdf5Dataset Hdf5File::open(const std::string& path) const {
-  if (!has(path)) throw FileError(fmt::format("there is no '{}' in the file", path), {.file = handle_->file()->name});
-  return {share(H5Dopen2(*handle_, path.c_str(), H5P_DEFAULT), H5Dclose, handle_->file(), reading(path)), path};
+  if (!has(path)) refuse(handle_->file(), fmt::format("there is no '{}' in the file", path));
+  auto dataset = share(H5Dopen2(*handle_, path.c_str(), H5P_DEFAULT), H5Dclose, handle_->file(), reading(path));
+  check_size(*handle_, *dataset, path);
+  return {std::move(dataset), path};
 }
 
 std::string Hdf5File::read_text(const std::string& path) const {
@@ -453,7 +533,12 @@ bool Hdf5File::has_attribute(const std::string& path, const std::string& name) c
 }
 
 void Hdf5File::set_attribute(const std::string& path, const std::string& name, const std::string& text) const {
-  const Hdf5Handle type = text_type(handle_->file());
+  const PaddedTexts padded = pad({text});
+  const Hdf5Handle type = text_type(handle_->file(), padded.size);
+  write_attribute(*handle_, path, name, type, type, {}, padded.bytes.data());
+}
+void Hdf5File::set_variable_text(const std::string& path, const std::string& name, const std::string& text) const {
+  const Hdf5Handle type = text_type(handle_->file(), H5T_VARIABLE);
   const char* pointer = text.c_str();
   write_attribute(*handle_, path, name, type, type, {}, &pointer);
 }
@@ -470,19 +555,23 @@ void Hdf5File::set_attribute(const std::string& path, const std::string& name,
 }
 void Hdf5File::set_attribute(const std::string& path, const std::string& name,
                              const std::vector<std::string>& values) const {
-  const Hdf5Handle type = text_type(handle_->file());
-  write_attribute(*handle_, path, name, type, type, {static_cast<Index>(values.size())}, pointers(values).data());
+  const PaddedTexts padded = pad(values);
+  const Hdf5Handle type = text_type(handle_->file(), padded.size);
+  write_attribute(*handle_, path, name, type, type, {static_cast<Index>(values.size())}, padded.bytes.data());
 }
 
 std::string Hdf5File::text_attribute(const std::string& path, const std::string& name) const {
   const Hdf5Handle attribute = find_attribute(*handle_, path, name, ElementType::text);
   if (attribute < 0) return "";
-  const Hdf5Handle type = text_type(handle_->file());
-  char* raw = nullptr;
-  check(H5Aread(attribute, type, &raw), *handle_, reading(path));
-  std::string text = raw == nullptr ? "" : raw;
-  H5free_memory(raw);
-  return text;
+  const Hdf5Handle stored = own(H5Aget_type(attribute), H5Tclose, handle_->file(), reading(path));
+  PaddedTexts raw{H5Tget_size(stored), ""};
+  // Attributes stand in headers, which are short.
+  if (raw.size > 65536)
+    refuse(handle_->file(), fmt::format("damaged: the length of attribute '{}' of '{}'", name, path));
+  raw.bytes.resize(raw.size);
+  const Hdf5Handle type = text_type(handle_->file(), raw.size);
+  check(H5Aread(attribute, type, raw.bytes.data()), *handle_, reading(path));
+  return unpad(raw).at(0);
 }
 std::int64_t Hdf5File::integer_attribute(const std::string& path, const std::string& name) const {
   const Hdf5Handle attribute = find_attribute(*handle_, path, name, ElementType::integer);

@@ -33,13 +33,20 @@ class Hdf5Dataset {
   Index rows() const;
   /// All axes; empty for a scalar.
   std::vector<Index> shape() const;
+  /// All axes, of which there is at least one. @throws FileError
+  std::vector<Index> growing_shape() const;
   ElementType type() const;
+  /// Rows before the first of which not every byte is among the first `bytes` bytes of the file. @throws FileError
+  Index rows_within(std::uint64_t bytes) const;
 
   /// Adds rows, one after the other. @throws FileError if the disk refuses
   void append(std::span<const double> rows);
   void append(std::span<const std::int64_t> rows);
   /// Cuts the dataset to `rows` rows, or lengthens it.
   void resize(Index rows);
+
+  /// From now on, in each flush, its length grows on disk after those of all others, and shrinks before them.
+  void write_last() const;
 
   std::vector<double> read_reals() const;
   /// Rows [first, first + count).
@@ -61,21 +68,27 @@ class Hdf5Dataset {
 /// An open HDF5 file. Paths are absolute ("/noether/scene"); groups on the way are made as needed.
 class Hdf5File {
  public:
-  /// Makes a new file, replacing an old one. @throws FileError
+  /// Makes a new file; until take_name() it stands beside, as FILE.new. @throws FileError
   static Hdf5File create(const std::filesystem::path& file);
   /// @throws FileError if it is missing or no HDF5 file
   static Hdf5File open_to_read(const std::filesystem::path& file);
   static Hdf5File open_to_append(const std::filesystem::path& file);
+  /// As open_to_append(), but nothing that is written reaches the disk.
+  static Hdf5File open_to_rehearse(const std::filesystem::path& file);
   /// A file in memory only; `name` stands in messages.
   static Hdf5File create_in_memory(const std::filesystem::path& name);
   /// Reads a file that is in memory already.
   static Hdf5File open_bytes(const std::string& bytes, const std::filesystem::path& name);
 
+  /// As messages name it.
+  const std::string& name() const;
   /// The bytes that a file of this content has.
   std::string to_bytes() const;
   /// Hands everything to the operating system. What a kill or a full disk leaves is the file as of the last flush.
   /// @throws FileError if the disk refuses, now or since
   void flush() const;
+  /// Flushes a new file and gives it its name, replacing an old one. @throws FileError
+  void take_name() const;
   /// Says that datasets are about to become shorter; after the flush the file must be closed before it grows again.
   void begin_cut() const;
 
@@ -97,6 +110,7 @@ class Hdf5File {
   /// A dataset that grows by rows: (unlimited, sample...), `chunk` rows to a piece on disk.
   Hdf5Dataset create_growing(const std::string& path, ElementType type, const std::vector<Index>& sample,
                              Index chunk) const;
+  /// @throws FileError also if its shape is one that the file cannot hold
   Hdf5Dataset open(const std::string& path) const;
   std::string read_text(const std::string& path) const;
 
@@ -110,6 +124,9 @@ class Hdf5File {
   void set_attribute(const std::string& path, const std::string& name, double value) const;
   void set_attribute(const std::string& path, const std::string& name, const std::vector<std::int64_t>& values) const;
   void set_attribute(const std::string& path, const std::string& name, const std::vector<std::string>& values) const;
+  /// A text as MDAnalysis wants that of `unit`: of variable length. noether reads none, because damage to one can crash
+  /// HDF5.
+  void set_variable_text(const std::string& path, const std::string& name, const std::string& text) const;
   /// Empty text, or 0, where there is no such attribute.
   std::string text_attribute(const std::string& path, const std::string& name) const;
   std::int64_t integer_attribute(const std::string& path, const std::string& name) const;

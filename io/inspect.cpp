@@ -6,6 +6,7 @@
 #include "io/digest.hpp"
 #include "io/trajectory_layout.hpp"
 #include "io/trajectory_reader.hpp"
+#include "io/trial.hpp"
 
 #include <fmt/format.h>
 
@@ -161,38 +162,13 @@ void check_monitors(const Hdf5File& file, bool complete, std::vector<std::string
       if (dataset.rows() < samples || (complete && dataset.rows() != samples)) {
         damaged.push_back(fmt::format("'{}/{}' has {} rows, its steps {}", group, quantity, dataset.rows(), samples));
       }
-      if (dataset.type() == ElementType::real) dataset.read_reals();
     }
     check_clock("monitor " + name, file.open(group + "/step").read_integers(), file.open(group + "/time").read_reals(),
                 damaged);
   }
 }
 
-}  // namespace
-
-FileInfo info(const std::filesystem::path& file) {
-  return kind_of(file) == Kind::trajectory ? trajectory_info(file) : checkpoint_info(file);
-}
-
-FileInfo verify(const std::filesystem::path& file) {
-  FileInfo result;
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) Hdf5File::open_to_read(file);
-  try {
-    const Kind kind = kind_of(file);
-    result.kind = kind == Kind::trajectory ? "trajectory" : "checkpoint";
-    result = info(file);
-    if (kind == Kind::checkpoint) return result;
-    const TrajectoryReader reader(file);
-    check_frames(reader, result.complete, result.damaged);
-    check_monitors(reader.file(), result.complete, result.damaged);
-  } catch (const FileError& error) {
-    result.damaged.push_back(error.message());
-  }
-  return result;
-}
-
-std::vector<MonitorSeries> read_monitors(const std::filesystem::path& path) {
+std::vector<MonitorSeries> untried_monitors(const std::filesystem::path& path) {
   const Hdf5File file = Hdf5File::open_to_read(path);
   std::vector<MonitorSeries> result;
   for (const std::string& name : file.children(monitors_path)) {
@@ -207,8 +183,8 @@ std::vector<MonitorSeries> read_monitors(const std::filesystem::path& path) {
       series.units[quantity] = file.text_attribute(group + "/" + quantity, "noether_unit");
       if (quantity == "time") continue;
       const Hdf5Dataset dataset = file.open(group + "/" + quantity);
-      std::vector<Index> shape = dataset.shape();
-      samples = std::min(samples, static_cast<std::size_t>(shape.at(0)));
+      std::vector<Index> shape = dataset.growing_shape();
+      samples = std::min(samples, static_cast<std::size_t>(shape[0]));
       shape.erase(shape.begin());
       series.quantities[quantity] = {std::move(shape), dataset.read_reals()};
     }
@@ -226,11 +202,58 @@ std::vector<MonitorSeries> read_monitors(const std::filesystem::path& path) {
   return result;
 }
 
-Frames read_frames(const std::filesystem::path& file) {
+FileInfo untried_info(const std::filesystem::path& file) {
+  return kind_of(file) == Kind::trajectory ? trajectory_info(file) : checkpoint_info(file);
+}
+
+FileInfo untried_verify(const std::filesystem::path& file) {
+  FileInfo result;
+  try {
+    const Kind kind = kind_of(file);
+    result.kind = kind == Kind::trajectory ? "trajectory" : "checkpoint";
+    result = untried_info(file);
+    if (kind == Kind::checkpoint) return result;
+    const TrajectoryReader reader(file);
+    check_frames(reader, result.complete, result.damaged);
+    check_monitors(reader.file(), result.complete, result.damaged);
+    untried_monitors(file);
+  } catch (const FileError& error) {
+    result.damaged.push_back(error.message());
+  }
+  return result;
+}
+
+Frames untried_frames(const std::filesystem::path& file) {
   const TrajectoryReader reader(file);
   Frames result = reader.shared();
   for (Index k = 0; k < reader.frames(); ++k) result.frames.push_back(reader.frame(k));
   return result;
+}
+
+}  // namespace
+
+FileInfo info(const std::filesystem::path& file) {
+  return try_first(file, [&] { return untried_info(file); });
+}
+
+FileInfo verify(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) Hdf5File::open_to_read(file);
+  try {
+    return try_first(file, [&] { return untried_verify(file); });
+  } catch (const FileError& error) {
+    FileInfo result;
+    result.damaged.push_back(error.message());
+    return result;
+  }
+}
+
+std::vector<MonitorSeries> read_monitors(const std::filesystem::path& file) {
+  return try_first(file, [&] { return untried_monitors(file); });
+}
+
+Frames read_frames(const std::filesystem::path& file) {
+  return try_first(file, [&] { return untried_frames(file); });
 }
 
 }  // namespace noether::io

@@ -1,6 +1,7 @@
 // The same functions in a build without HDF5: opening a file throws, and nothing else can be reached.
 #include "engine/error.hpp"
 #include "io/hdf5_file.hpp"
+#include "io/ordered_file.hpp"
 
 #if !NOETHER_HDF5
 
@@ -9,6 +10,8 @@ namespace noether::io {
 bool has_hdf5() noexcept { return false; }
 
 class Hdf5Handle {};
+
+std::uint64_t expected_size(const std::filesystem::path&) { return 0; }
 
 namespace {
 
@@ -22,10 +25,13 @@ namespace {
 
 Index Hdf5Dataset::rows() const { unreachable(); }
 std::vector<Index> Hdf5Dataset::shape() const { unreachable(); }
+std::vector<Index> Hdf5Dataset::growing_shape() const { unreachable(); }
+Index Hdf5Dataset::rows_within(std::uint64_t) const { unreachable(); }
 ElementType Hdf5Dataset::type() const { unreachable(); }
 void Hdf5Dataset::append(std::span<const double>) { unreachable(); }
 void Hdf5Dataset::append(std::span<const std::int64_t>) { unreachable(); }
 void Hdf5Dataset::resize(Index) { unreachable(); }
+void Hdf5Dataset::write_last() const { unreachable(); }
 std::vector<double> Hdf5Dataset::read_reals() const { unreachable(); }
 std::vector<double> Hdf5Dataset::read_reals(Index, Index) const { unreachable(); }
 std::vector<std::int64_t> Hdf5Dataset::read_integers() const { unreachable(); }
@@ -34,11 +40,14 @@ std::vector<std::string> Hdf5Dataset::read_texts() const { unreachable(); }
 Hdf5File Hdf5File::create(const std::filesystem::path& file) { refuse(file); }
 Hdf5File Hdf5File::open_to_read(const std::filesystem::path& file) { refuse(file); }
 Hdf5File Hdf5File::open_to_append(const std::filesystem::path& file) { refuse(file); }
+Hdf5File Hdf5File::open_to_rehearse(const std::filesystem::path& file) { refuse(file); }
 Hdf5File Hdf5File::create_in_memory(const std::filesystem::path& name) { refuse(name); }
 Hdf5File Hdf5File::open_bytes(const std::string&, const std::filesystem::path& name) { refuse(name); }
+const std::string& Hdf5File::name() const { unreachable(); }
 std::string Hdf5File::to_bytes() const { unreachable(); }
 void Hdf5File::begin_cut() const { unreachable(); }
 void Hdf5File::flush() const { unreachable(); }
+void Hdf5File::take_name() const { unreachable(); }
 void Hdf5File::make_group(const std::string&) const { unreachable(); }
 bool Hdf5File::has(const std::string&) const { unreachable(); }
 bool Hdf5File::is_group(const std::string&) const { unreachable(); }
@@ -65,6 +74,7 @@ void Hdf5File::set_attribute(const std::string&, const std::string&, const std::
 void Hdf5File::set_attribute(const std::string&, const std::string&, const std::vector<std::string>&) const {
   unreachable();
 }
+void Hdf5File::set_variable_text(const std::string&, const std::string&, const std::string&) const { unreachable(); }
 std::string Hdf5File::text_attribute(const std::string&, const std::string&) const { unreachable(); }
 std::int64_t Hdf5File::integer_attribute(const std::string&, const std::string&) const { unreachable(); }
 double Hdf5File::real_attribute(const std::string&, const std::string&) const { unreachable(); }

@@ -14,6 +14,7 @@
 #include <iterator>
 #include <map>
 #include <memory>
+#include <set>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -39,9 +40,10 @@ struct Piece {
 ///
 /// Pieces in new space are seen by nobody yet. The superblock tells where the file ends. Names stand in heaps. Nodes of
 /// a tree above others may point at new ones, so these have been written before them as new space; among old ones the
-/// upper come first. Object headers hold the lengths of datasets, and so come last; the newest first. Where datasets
-/// become shorter all this is turned around, and HDF5 wipes what is cut off: then data wait too.
-std::array<std::uint64_t, 2> turn(haddr_t address, const Piece& piece, haddr_t committed) {
+/// upper come first. Object headers hold the lengths of datasets, and so come last, those by which readers go at the
+/// very end. Where datasets become shorter all this is turned around, and HDF5 wipes what is cut off: then data wait
+/// too.
+std::array<std::uint64_t, 2> turn(haddr_t address, const Piece& piece, haddr_t committed, bool last) {
   static constexpr std::string_view tree = "TREE";
   constexpr std::size_t level_at = 5;
   const bool is_tree = piece.bytes.size() > level_at && std::equal(tree.begin(), tree.end(), piece.bytes.begin());
@@ -51,11 +53,11 @@ std::array<std::uint64_t, 2> turn(haddr_t address, const Piece& piece, haddr_t c
   if (piece.kind == H5FD_MEM_LHEAP || piece.kind == H5FD_MEM_GHEAP) return {2, address};
   if (is_tree) return {3, std::uint64_t{255} - piece.bytes[level_at]};
   if (piece.kind == H5FD_MEM_BTREE) return {4, address};
-  return {5, ~std::uint64_t{address}};
+  return {last ? 6U : 5U, ~std::uint64_t{address}};
 }
 
 /// What a superblock says of the end of the file; `otherwise` if it is none.
-haddr_t end_in_superblock(std::span<const unsigned char> block, haddr_t otherwise) {
+std::uint64_t end_in_superblock(std::span<const unsigned char> block, std::uint64_t otherwise) {
   static constexpr std::string_view signature = "\x89HDF\r\n\x1a\n";
   constexpr std::size_t version_at = 8, old_end_at = 40, new_end_at = 28;
   if (block.size() < old_end_at + sizeof(haddr_t)) return otherwise;
@@ -68,6 +70,13 @@ haddr_t end_in_superblock(std::span<const unsigned char> block, haddr_t otherwis
   return end;
 }
 
+/// As above, of an open file that has `size` bytes.
+std::uint64_t read_end(int descriptor, std::uint64_t size) {
+  Bytes superblock(std::min<std::size_t>(size, 96));
+  const ssize_t read = ::pread(descriptor, superblock.data(), superblock.size(), 0);
+  return read == static_cast<ssize_t>(superblock.size()) ? end_in_superblock(superblock, size) : size;
+}
+
 }  // namespace
 
 /// Data that are new go to the disk at once, where nothing on disk points at them yet; all else waits for the flush.
@@ -76,10 +85,7 @@ class OrderedFile : public H5FD_t {
   OrderedFile(int descriptor, const struct stat& status)
       : H5FD_t{}, descriptor_(descriptor), identity_(status.st_dev, status.st_ino) {
     held_ = static_cast<haddr_t>(status.st_size);
-    Bytes superblock(std::min<std::size_t>(held_, 96));
-    const bool read =
-        ::pread(descriptor_, superblock.data(), superblock.size(), 0) == static_cast<ssize_t>(superblock.size());
-    committed_ = read ? end_in_superblock(superblock, held_) : held_;
+    committed_ = read_end(descriptor_, held_);
   }
   OrderedFile(const OrderedFile&) = delete;
   OrderedFile& operator=(const OrderedFile&) = delete;
@@ -88,6 +94,8 @@ class OrderedFile : public H5FD_t {
   const std::pair<dev_t, ino_t>& identity() const { return identity_; }
   int error() const { return error_; }
   void begin_cut() { cutting_ = true; }
+  void write_last(haddr_t header) { last_.insert(header); }
+  void keep_in_memory() { in_memory_ = true; }
 
   haddr_t allocated() const { return allocated_; }
   void allocate(haddr_t end) { allocated_ = end; }
@@ -118,7 +126,7 @@ class OrderedFile : public H5FD_t {
   void write(H5FD_mem_t kind, haddr_t address, std::span<const unsigned char> bytes) {
     if (error_ != 0) return;
     forget(address, bytes.size());
-    if (kind == H5FD_MEM_DRAW && !cutting_) {
+    if (kind == H5FD_MEM_DRAW && !cutting_ && !in_memory_) {
       put(address, bytes);
     } else {
       pieces_[address] = {kind, Bytes(bytes.begin(), bytes.end())};
@@ -127,7 +135,7 @@ class OrderedFile : public H5FD_t {
 
   /// Makes the file on disk what HDF5 believes it to be.
   void commit() {
-    if (error_ != 0 || (pieces_.empty() && allocated_ == committed_)) return;
+    if (error_ != 0 || in_memory_ || (pieces_.empty() && allocated_ == committed_)) return;
     if (allocated_ > held_) stretch(allocated_);
     for (const auto& [turn, address] : order()) {
       if (error_ == 0) put(address, pieces_.at(address).bytes);
@@ -166,7 +174,8 @@ class OrderedFile : public H5FD_t {
 
   std::vector<std::pair<std::array<std::uint64_t, 2>, haddr_t>> order() const {
     std::vector<std::pair<std::array<std::uint64_t, 2>, haddr_t>> all;
-    for (const auto& [address, piece] : pieces_) all.emplace_back(turn(address, piece, committed_), address);
+    for (const auto& [address, piece] : pieces_)
+      all.emplace_back(turn(address, piece, committed_, last_.count(address) > 0), address);
     std::sort(all.begin(), all.end());
     if (!cutting_) return all;
     const auto old = std::find_if(all.begin(), all.end(), [](const auto& one) { return one.first[0] != 0; });
@@ -198,11 +207,12 @@ class OrderedFile : public H5FD_t {
 
   int descriptor_;
   std::pair<dev_t, ino_t> identity_;
-  haddr_t allocated_ = 0;  ///< end of what HDF5 has allocated
-  haddr_t committed_ = 0;  ///< end of the file as of its last flush
-  haddr_t held_ = 0;       ///< size on disk
-  Pieces pieces_;          ///< by address; none overlaps another
-  bool cutting_ = false;
+  haddr_t allocated_ = 0;   ///< end of what HDF5 has allocated
+  haddr_t committed_ = 0;   ///< end of the file as of its last flush
+  haddr_t held_ = 0;        ///< size on disk
+  Pieces pieces_;           ///< by address; none overlaps another
+  std::set<haddr_t> last_;  ///< headers that are written after all others
+  bool cutting_ = false, in_memory_ = false;
   int error_ = 0;
 };
 
@@ -302,7 +312,20 @@ OrderedFile* ordered_file(Hdf5Id file) {
 }
 
 int write_error(const OrderedFile& file) noexcept { return file.error(); }
+void write_last(OrderedFile& file, std::uint64_t header) { file.write_last(header); }
 void begin_cut(OrderedFile& file) noexcept { file.begin_cut(); }
+
+std::uint64_t expected_size(const std::filesystem::path& file) {
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  struct stat status = {};
+  if (descriptor < 0) return 0;
+  const bool known = ::fstat(descriptor, &status) == 0;
+  const std::uint64_t end = known ? read_end(descriptor, static_cast<std::uint64_t>(status.st_size)) : 0;
+  ::close(descriptor);
+  return end;
+}
+
+void keep_in_memory(OrderedFile& file) noexcept { file.keep_in_memory(); }
 
 }  // namespace noether::io
 

@@ -7,6 +7,7 @@
 #include "io/digest.hpp"
 #include "io/hdf5_file.hpp"
 #include "io/trajectory_layout.hpp"
+#include "io/trial.hpp"
 
 #include <fmt/format.h>
 
@@ -42,6 +43,16 @@ std::string unit_in_words(const std::string& dimension, const UnitSystem& units)
     return unit_of(parse_dimension(dimension), units);
   } catch (const Error&) {
     return dimension;
+  }
+}
+
+/// The unit system a file names. @throws FileError if there is none of this name
+const UnitSystem& known_units(const Hdf5File& file, const std::filesystem::path& path) {
+  const std::string name = file.text_attribute("/noether", "units");
+  try {
+    return unit_system(name);
+  } catch (const Error&) {
+    throw FileError(fmt::format("damaged: its unit system '{}' is unknown", name), {.file = path.string()});
   }
 }
 
@@ -175,9 +186,12 @@ class TrajectoryWriter::File {
       throw FileError("the trajectory that the saved run counts on is missing; bring it back, or start afresh",
                       {.file = path_.string()});
     }
+    try_in_child(path_, [&] { File(path_, options_).rehearse(paths, rows); });
+    hdf5_ = Hdf5File::open_to_append(path_);
     cut(paths, rows);
     // Space that was freed by cutting is not reused before the file has been closed.
     close();
+    hdf5_ = Hdf5File::open_to_append(path_);
     open();
   }
 
@@ -202,6 +216,7 @@ class TrajectoryWriter::File {
     describe_particles(state);
     if (options_.frames) create_frames(state.size());
     for (const KeptSample& kept : std::exchange(waiting_, {})) write_sample(kept.sample());
+    hdf5_->take_name();
   }
 
   void describe_file() const {
@@ -241,8 +256,11 @@ class TrajectoryWriter::File {
 
   /// MDAnalysis takes only the units it knows, so an attribute `unit` stands in molecular files alone.
   void set_unit(const std::string& path, const std::string& unit, const std::string& molecular) const {
-    const bool known = units_->name == "molecular";
-    hdf5_->set_attribute(path, known ? "unit" : "noether_unit", known ? molecular : unit);
+    if (units_->name == "molecular") {
+      hdf5_->set_variable_text(path, "unit", molecular);
+    } else {
+      hdf5_->set_attribute(path, "noether_unit", unit);
+    }
   }
 
   /// Position's values come first, step and time are shared by position and velocity.
@@ -259,25 +277,37 @@ class TrajectoryWriter::File {
     frame_.time = BufferedDataset<double>(hdf5_->create_growing(position + "/time", ElementType::real, {}, few));
     hdf5_->link(position + "/step", velocity + "/step");
     hdf5_->link(position + "/time", velocity + "/time");
+    hdf5_->open(position + "/value").write_last();
     set_unit(position + "/value", std::string(units_->length), "nm");
     set_unit(velocity + "/value", unit_of(dimensions::velocity, *units_), "nm ps-1");
     set_unit(position + "/time", std::string(units_->time), "ps");
   }
 
-  /// Opens an existing file to go on with it.
+  /// Makes ready to go on with an existing file.
   void open() {
-    hdf5_ = Hdf5File::open_to_append(path_);
-    units_ = &unit_system(hdf5_->text_attribute("/noether", "units"));
+    units_ = &known_units(*hdf5_, path_);
     sorted_ids_ = hdf5_->open(particles_path + "/id").read_integers();
     hdf5_->set_attribute("/noether", "complete", std::int64_t{0});
     // The end may have been moved.
     if (hdf5_->read_text("/noether/scene") != options_.scene_toml)
       hdf5_->write_text("/noether/scene", options_.scene_toml);
     if (!options_.frames) return;
-    frame_.position = BufferedDataset<double>(hdf5_->open(particles_path + "/position/value"));
-    frame_.velocity = BufferedDataset<double>(hdf5_->open(particles_path + "/velocity/value"));
-    frame_.step = BufferedDataset<std::int64_t>(hdf5_->open(particles_path + "/position/step"));
-    frame_.time = BufferedDataset<double>(hdf5_->open(particles_path + "/position/time"));
+    const auto particles = static_cast<Index>(sorted_ids_.size());
+    frame_.position = BufferedDataset<double>(open(particles_path + "/position/value", {particles, 3}));
+    frame_.velocity = BufferedDataset<double>(open(particles_path + "/velocity/value", {particles, 3}));
+    frame_.step = BufferedDataset<std::int64_t>(open(particles_path + "/position/step", {}));
+    frame_.time = BufferedDataset<double>(open(particles_path + "/position/time", {}));
+  }
+
+  /// A dataset to go on with. @throws FileError if its rows are not what the run will add
+  Hdf5Dataset open(const std::string& path, const std::vector<Index>& row) const {
+    Hdf5Dataset dataset = hdf5_->open(path);
+    const std::vector<Index> shape = dataset.growing_shape();
+    if (is_leader(path)) dataset.write_last();
+    if (std::equal(shape.begin() + 1, shape.end(), row.begin(), row.end())) return dataset;
+    throw FileError(fmt::format("damaged: a row of '{}' has the shape ({}) where the run has ({})", path,
+                                fmt::join(shape.begin() + 1, shape.end(), ", "), fmt::join(row, ", ")),
+                    {.file = path_.string()});
   }
 
   /// Every dataset that grows, each once.
@@ -296,9 +326,9 @@ class TrajectoryWriter::File {
 
   /// Cuts every dataset back to its saved length; those that came later become empty.
   void cut(const std::vector<std::string>& paths, const std::vector<std::int64_t>& rows) {
-    hdf5_ = Hdf5File::open_to_append(path_);
     hdf5_->begin_cut();
     for (const std::string& path : growing_paths()) {
+      if (is_leader(path)) hdf5_->open(path).write_last();
       const auto found = std::find(paths.begin(), paths.end(), path);
       if (found == paths.end()) hdf5_->open(path).resize(0);
     }
@@ -315,6 +345,27 @@ class TrajectoryWriter::File {
       if (held > wanted) dataset.resize(wanted);
     }
     flush();
+  }
+
+  /// Goes on with the file, without leaving a trace in it: its damage may be such that HDF5 crashes.
+  void rehearse(const std::vector<std::string>& paths, const std::vector<std::int64_t>& rows) {
+    static constexpr Index some_chunks = 1 << 14;
+    hdf5_ = Hdf5File::open_to_rehearse(path_);
+    cut(paths, rows);
+    open();
+    for (const std::string& path : growing_paths()) {
+      Hdf5Dataset dataset = hdf5_->open(path);
+      const std::vector<Index> shape = dataset.growing_shape();
+      const Index row = std::accumulate(shape.begin() + 1, shape.end(), Index{1}, std::multiplies<>());
+      const auto numbers = static_cast<std::size_t>(row * std::max<Index>(some_chunks / std::max<Index>(row, 1), 1));
+      if (dataset.type() == ElementType::integer) {
+        dataset.append(std::vector<std::int64_t>(numbers));
+      } else {
+        dataset.append(std::vector<double>(numbers));
+      }
+    }
+    flush();
+    close();
   }
 
   void match_order(const ParticleSystem<double>& state) {
@@ -372,7 +423,7 @@ class TrajectoryWriter::File {
     const std::string group = fmt::format("{}/{}/", monitors_path, sample.monitor);
     const bool there = hdf5_->has(group + "step");
     const auto dataset = [&](const std::string& name, ElementType type, const std::vector<Index>& shape) {
-      if (there) return hdf5_->open(group + name);
+      if (there) return open(group + name, shape);
       const Index values = std::accumulate(shape.begin(), shape.end(), Index{1}, std::multiplies<>());
       return hdf5_->create_growing(group + name, type, shape, rows_per_chunk(values, sample_bytes));
     };
@@ -381,6 +432,7 @@ class TrajectoryWriter::File {
     for (const Series& one : sample.series) {
       monitor.quantities.emplace_back(dataset(one.name, ElementType::real, one.shape));
     }
+    hdf5_->open(group + "step").write_last();
     if (!there) describe_monitor(group, sample);
     return monitor;
   }

@@ -11,12 +11,10 @@ namespace noether::io {
 
 namespace {
 
-/// Molecular files say `unit`, others `noether_unit`.
-std::string unit_at(const Hdf5File& file, const std::string& path) {
-  const std::string unit = file.text_attribute(path, "noether_unit");
-  if (!unit.empty()) return unit;
-  const std::string molecular = file.text_attribute(path, "unit");
-  return molecular == "nm ps-1" ? "nm/ps" : molecular;
+/// What molecular files call `unit` is for others to read.
+std::string unit_at(const Hdf5File& file, const std::string& path, const std::string& molecular) {
+  const bool known = file.text_attribute("/noether", "units") == "molecular";
+  return known ? molecular : file.text_attribute(path, "noether_unit");
 }
 
 }  // namespace
@@ -47,9 +45,9 @@ TrajectoryReader::TrajectoryReader(const std::filesystem::path& path) : file_(Hd
   }
   steps_ = file_.open(particles_path + "/position/step").read_integers();
   times_ = file_.open(particles_path + "/position/time").read_reals();
-  shared_.length_unit = unit_at(file_, particles_path + "/position/value");
-  shared_.velocity_unit = unit_at(file_, particles_path + "/velocity/value");
-  shared_.time_unit = unit_at(file_, particles_path + "/position/time");
+  shared_.length_unit = unit_at(file_, particles_path + "/position/value", "nm");
+  shared_.velocity_unit = unit_at(file_, particles_path + "/velocity/value", "nm/ps");
+  shared_.time_unit = unit_at(file_, particles_path + "/position/time", "ps");
   frames_ = std::min(
       {position_.rows(), velocity_.rows(), static_cast<Index>(steps_.size()), static_cast<Index>(times_.size())});
 }

@@ -1,5 +1,7 @@
-// kill -9 while run.h5 is written: whatever was flushed is there, and the run goes on from it.
+// kill -9 while files are written: whatever was flushed is there, and the run goes on from it.
 
+#include "engine/parallel.hpp"
+#include "io/digest.hpp"
 #include "io/inspect.hpp"
 #include "tests/io/support.hpp"
 
@@ -13,21 +15,29 @@
 #include <functional>
 #include <random>
 #include <thread>
+#include <utility>
 
 #if NOETHER_HDF5
 
 namespace {
 
-/// The write at which this process is to kill itself, counted from now; 0: it lives.
-long fatal_write = 0;
-/// Whether that write is begun, and torn at the border of a page.
+/// The call to the system at which process `doomed` is to kill itself, counted from now; 0: it lives.
+long fatal_call = 0;
+pid_t doomed = 0;  // its children live
+/// Whether that call, if it writes, is begun, and torn at the border of a page.
 bool torn = false;
 
 template <class Function> Function* next(const char* name) {
   return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));
 }
 
-bool is_fatal() { return fatal_write > 0 && --fatal_write == 0; }
+bool is_fatal() { return fatal_call > 0 && doomed == ::getpid() && --fatal_call == 0; }
+
+void die_at(long call) {
+  fatal_call = call;
+  doomed = ::getpid();
+  torn = call % 3 == 0;
+}
 
 }  // namespace
 
@@ -39,6 +49,25 @@ extern "C" ssize_t pwrite(int file, const void* bytes, std::size_t size, off_t a
   if (torn) static_cast<void>(write(file, bytes, std::min(size / 2, page_end), at) < 0);
   ::raise(SIGKILL);
   return -1;
+}
+
+extern "C" ssize_t write(int file, const void* bytes, std::size_t size) {
+  static auto* const write_all = next<ssize_t(int, const void*, std::size_t)>("write");
+  if (!is_fatal()) return write_all(file, bytes, size);
+  if (torn) static_cast<void>(write_all(file, bytes, size / 2) < 0);
+  ::raise(SIGKILL);
+  return -1;
+}
+
+extern "C" int fsync(int /*file*/) {
+  if (is_fatal()) ::raise(SIGKILL);
+  return 0;  // what the system has been handed survives a process, and disks are slow
+}
+
+extern "C" int rename(const char* from, const char* to) noexcept {
+  static auto* const rename_now = next<int(const char*, const char*)>("rename");
+  if (is_fatal()) ::raise(SIGKILL);
+  return rename_now(from, to);
 }
 
 extern "C" int ftruncate(int file, off_t size) noexcept {
@@ -123,17 +152,23 @@ class Victim {
   pid_t child_ = -1;
 };
 
-/// What a killed run has left: frames of the reference, none missing that was flushed.
-void check_frames(const std::filesystem::path& file, const Reference& reference, std::int64_t flushed) {
-  CHECK(io::verify(file).damaged.empty());
+/// What a killed run has left: frames of a run that was never killed, and not fewer than so many.
+void check_frames(const std::filesystem::path& file, const io::Frames& whole, std::int64_t at_least) {
+  CHECK(io::verify(file).damaged == std::vector<std::string>{});
   const io::Frames left = io::read_frames(file);
-  REQUIRE(static_cast<std::int64_t>(left.frames.size()) >= flushed / 5 + 1);
+  REQUIRE(static_cast<std::int64_t>(left.frames.size()) >= at_least);
   for (std::size_t k = 0; k < left.frames.size(); ++k) {
-    const bool same = left.frames[k].step == reference.frames.frames[k].step &&
-                      left.frames[k].positions == reference.frames.frames[k].positions &&
-                      left.frames[k].velocities == reference.frames.frames[k].velocities;
+    const io::Frame &one = left.frames[k], &other = whole.frames.at(k);
+    const bool same = one.step == other.step && one.positions == other.positions && one.velocities == other.velocities;
     if (!same) FAIL_CHECK("frame " << k << " is not that of an uninterrupted run");
   }
+}
+
+/// Compares every value; that is done now and then, because Python is slow.
+void check_same_content(const std::filesystem::path& file, const std::filesystem::path& whole) {
+  const test::PythonResult equal = test::run_python("compare_files.py", whole.string() + " " + file.string());
+  INFO(equal.output);
+  CHECK((equal.status == 0 || equal.status == 77));
 }
 
 /// Lets one run die again and again until it is through, then begins anew, until there were so many deaths.
@@ -149,16 +184,12 @@ void die_often(int wanted,
     const auto [through, flushed] = next(file, reference, good).end();
     CAPTURE(deaths, good, flushed);
     good = std::max(good, flushed);
-    if (good > 0) check_frames(file, reference, good);
+    if (good > 0) check_frames(file, reference.frames, good / 5 + 1);
     if (!through) ++deaths;
     if (!through) continue;
-    const test::PythonResult equal =
-        test::run_python("compare_files.py", (folder / "whole.h5").string() + " " + file.string());
-    INFO(equal.output);
-    CHECK((equal.status == 0 || equal.status == 77));
+    if (ends++ % 5 == 0) check_same_content(file, folder / "whole.h5");
     std::filesystem::remove(file);
     good = 0;
-    ++ends;
   }
 }
 
@@ -168,10 +199,7 @@ void die_at_writes(int deaths) {
   std::uniform_int_distribution<long> writes(1, 200);
   die_often(deaths, [&](const std::filesystem::path& file, const Reference& reference, std::int64_t step) {
     const long fatal = writes(random);
-    return Victim(file, reference, step, [fatal] {
-      fatal_write = fatal;
-      torn = fatal % 3 == 0;
-    });
+    return Victim(file, reference, step, [fatal] { die_at(fatal); });
   });
 }
 
@@ -186,6 +214,91 @@ void die_at_moments(int deaths) {
   });
 }
 
+/// A run with checkpoints, from start to end.
+struct WholeRun {
+  std::function<ParticleSystem<double>()> particles;
+  std::int64_t steps, between_checkpoints;
+
+  /// Goes on from the newest checkpoint, or begins, as `noether run --resume` does.
+  void go_on(const std::filesystem::path& folder) const {
+    test::WritingRun run(folder / "run.h5", particles());
+    run.simulation.every(between_checkpoints, io::CheckpointWriter(folder / "checkpoint.h5"));
+    const io::FoundCheckpoint found = io::newest_checkpoint(folder);
+    if (found.checkpoint) run.simulation.restore(found.checkpoint->run);
+    const Outcome outcome = run.simulation.run(steps - run.simulation.step());
+    if (!outcome.ok()) throw FileError("the run fails");
+    run.writer->flush();
+    io::Checkpoint last;
+    last.run = run.simulation.save();
+    last.step = run.simulation.step();
+    last.digest = io::digest(run.simulation.particles());
+    io::write_checkpoint(folder / "checkpoint.h5", last);
+    run.writer->finish(outcome);
+  }
+};
+
+const WholeRun small{[] { return test::outer_planets(); }, 60, 7};
+const WholeRun large{[] { return test::planets_with_tracers(20'000); }, 12, 3};
+
+/// A process that dies at its call number `fatal` to the system, if it makes so many. @return whether it came through
+bool survives(const WholeRun& run, const std::filesystem::path& folder, long fatal) {
+  const pid_t child = ::fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    die_at(fatal);
+    try {
+      run.go_on(folder);
+      ::_exit(0);
+    } catch (const Error& error) {
+      std::fprintf(stderr, "%s\n", error.what());
+      ::_exit(1);
+    }
+  }
+  int status = -1;
+  ::waitpid(child, &status, 0);
+  if (WIFEXITED(status)) CHECK(WEXITSTATUS(status) == 0);
+  return WIFEXITED(status);
+}
+
+/// Every file that is there is sound, and run.h5 has all that the newest checkpoint counts on.
+/// @return the digest of the newest checkpoint
+std::string check_files(const std::filesystem::path& folder, const io::Frames& whole) {
+  const std::filesystem::path file = folder / "run.h5";
+  const io::FoundCheckpoint found = io::newest_checkpoint(folder);
+  CHECK(found.damaged.empty());
+  const std::int64_t frames = found.checkpoint ? found.checkpoint->step / 5 + 1 : 0;
+  if (frames > 0 || std::filesystem::exists(file)) check_frames(file, whole, frames);
+  return found.checkpoint ? found.checkpoint->digest : "";
+}
+
+/// Lets a run die from its first call to its last, again and again, until it is through; then begins anew, until there
+/// were so many deaths.
+void die_anywhere(const WholeRun& run, int wanted) {
+  const test::ScratchFolder reference, scratch;
+  constexpr long never = 1'000'000'000;
+  set_thread_count(1);  // a process that has threads cannot be copied with them
+  die_at(never);
+  run.go_on(reference.path());
+  const long calls = never - std::exchange(fatal_call, 0);
+  const io::Frames whole = io::read_frames(reference / "run.h5");
+  const std::string digest = check_files(reference.path(), whole);
+  std::mt19937 random(20261122);
+  std::uniform_int_distribution<long> any(1, calls);
+  int deaths = 0;
+  for (int chain = 0; deaths < wanted; ++chain) {
+    const std::filesystem::path folder = scratch / std::to_string(chain);
+    std::filesystem::create_directory(folder);
+    long fatal = any(random);
+    for (; !survives(run, folder, fatal); fatal = any(random)) {
+      CAPTURE(deaths++, fatal);
+      check_files(folder, whole);
+    }
+    CHECK(check_files(folder, whole) == digest);
+    if (chain % 5 == 0) check_same_content(folder / "run.h5", reference / "run.h5");
+    std::filesystem::remove_all(folder);
+  }
+}
+
 }  // namespace
 
 TEST_CASE("a run that dies before or within any write goes on, and its file is that of a run that never died",
@@ -195,9 +308,18 @@ TEST_CASE("a run that dies before or within any write goes on, and its file is t
 
 TEST_CASE("so does a run killed at any moment", "[trajectory][kill]") { die_at_moments(20); }
 
+TEST_CASE("a run that dies between its first call and its last, checkpoints among them, ends as one that never died",
+          "[trajectory][checkpoint][kill]") {
+  die_anywhere(small, 12);
+}
+
+TEST_CASE("so does a large one", "[trajectory][checkpoint][kill][slow]") { die_anywhere(large, 6); }
+
 TEST_CASE("the same for thousands of deaths", "[trajectory][kill][.][nightly]") {
   die_at_writes(2000);
   die_at_moments(500);
+  die_anywhere(small, 600);
+  die_anywhere(large, 150);
 }
 
 }  // namespace noether

@@ -1,0 +1,113 @@
+// kill -9 at any moment, from the first to the last of a run: --resume ends as a run that nobody has killed.
+
+#include "io/checkpoint.hpp"
+#include "io/inspect.hpp"
+#include "tests/cli/support.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+#include <random>
+#include <string>
+#include <thread>
+
+#if NOETHER_HDF5
+
+namespace noether::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Frames every 20 steps, checkpoints every 40.
+const std::string small_run = two_bodies.substr(0, two_bodies.find("steps = 100")) + "steps = 2000\n" +
+                              two_bodies.substr(two_bodies.find("[[every]]"));
+
+/// 20 000 tracers around two bodies; frames and checkpoints take longer than the steps between.
+const std::string large_run = R"(units = "reduced"
+[particles]
+bodies = "bodies.csv"
+[hamiltonian]
+type = "wisdom_holman"
+[integrator]
+method = "aba_10_6_4"
+step = 0.01
+steps = 12
+[[every]]
+type = "energy"
+steps = 2
+[[every]]
+type = "trajectory"
+steps = 2
+[[every]]
+type = "checkpoint"
+steps = 3
+)";
+
+std::string tracers() {
+  std::string bodies = "name,mass,x,y,z,vx,vy,vz\nstar,1,0,0,0,0,0,0\nplanet,0.001,1,0,0,0,1,0\n";
+  for (int k = 0; k < 20'000; ++k) {
+    const double r = 2 + k * 1e-4;
+    bodies += fmt::format("t{},0,{},0,0,0,{},0\n", k, r, 1 / std::sqrt(r));
+  }
+  return bodies;
+}
+
+/// What a killed run has left can be read, and has every frame that its newest checkpoint counts on.
+void check_left(const fs::path& out, std::int64_t steps_between_frames) {
+  const io::FoundCheckpoint found = io::newest_checkpoint(out);
+  CHECK(found.damaged.empty());
+  if (!found.checkpoint && !fs::exists(out / "run.h5")) return;
+  const io::FileInfo info = io::verify(out / "run.h5");
+  CHECK(info.damaged == std::vector<std::string>{});
+  if (found.checkpoint) CHECK(info.frames >= found.checkpoint->step / steps_between_frames + 1);
+}
+
+/// Kills a run again and again until it comes through, then begins anew, until there were so many deaths.
+void die_at_moments(const std::string& scene, std::int64_t steps_between_frames, int deaths) {
+  using Clock = std::chrono::steady_clock;
+  const SceneFolder whole(scene), folder(scene);
+  for (const SceneFolder* one : {&whole, &folder}) write_text(*one / "bodies.csv", tracers());
+  const Clock::time_point begin = Clock::now();
+  const std::string json = noether(whole, "run scene.toml --json --threads 1").out;
+  const auto takes = std::chrono::duration_cast<std::chrono::microseconds>(Clock::now() - begin).count();
+  std::mt19937 random(20261122);
+  std::uniform_int_distribution<std::int64_t> moment(0, takes + takes / 10);
+  for (int left = deaths, ends = 0; left > 0 || ends == 0;) {
+    CAPTURE(left);
+    Process process(command("run scene.toml --json --threads 1 --resume"), folder.path());
+    if (left > 0) {
+      std::this_thread::sleep_for(std::chrono::microseconds(moment(random)));
+      process.signal(SIGKILL);
+    }
+    const ProcessResult result = process.wait();
+    if (result.exit_code == 128 + SIGKILL) {
+      --left;
+      check_left(folder / "scene.out", steps_between_frames);
+      continue;
+    }
+    ++ends;
+    INFO(result.err);
+    CHECK(result.exit_code == 0);
+    check_same_run(result.out, json);
+    check_same_content(folder / "scene.out/run.h5", whole / "scene.out/run.h5");
+    fs::remove_all(folder / "scene.out");
+  }
+}
+
+TEST_CASE("a run killed at moments from start to end ends, resumed, as one never killed", "[cli][resume][kill][slow]") {
+  die_at_moments(small_run, 20, 12);
+  die_at_moments(large_run, 2, 6);
+}
+
+TEST_CASE("so they do for hundreds of deaths", "[cli][resume][kill][.][nightly]") {
+  die_at_moments(small_run, 20, 400);
+  die_at_moments(large_run, 2, 150);
+}
+
+}  // namespace
+}  // namespace noether::test
+
+#endif
