@@ -16,6 +16,12 @@ constexpr std::int64_t longest_chunk = 1024;
 /// Steps between looks at the wall clock are chosen to last about this long [s].
 constexpr double chunk_seconds = 0.05;
 
+// Monitors that look at every step should not wait for a division.
+bool is_multiple(std::int64_t step, std::int64_t cadence) { return cadence == 1 || step % cadence == 0; }
+std::int64_t next_multiple(std::int64_t step, std::int64_t cadence) {
+  return cadence == 1 ? step + 1 : (step / cadence + 1) * cadence;
+}
+
 double seconds_since(WallClock::time_point start) {
   return std::chrono::duration<double>(WallClock::now() - start).count();
 }
@@ -71,6 +77,8 @@ template <class Real> void Simulation<Real>::register_last() {
 template <class Real> void Simulation<Real>::schedule(Scheduled& added) {
   const std::string base = added.monitor.name().empty() ? "monitor" : added.monitor.name();
   added.name = base;
+  added.records = added.monitor.records();
+  added.looks_last = added.monitor.looks_last();
   for (int k = 2; std::any_of(monitors_.begin(), std::prev(monitors_.end()),
                               [&](const Scheduled& other) { return other.name == added.name; });
        ++k) {
@@ -227,7 +235,7 @@ template <class Real> Outcome Simulation<Real>::fall_back() {
 template <class Real> std::optional<Outcome> Simulation<Real>::look_at_the_end() {
   const Snapshot<Real> moment = snapshot({});
   for (const ScheduledStop& stop : stops_) {
-    if (step() % stop.steps == 0) continue;
+    if (is_multiple(step(), stop.steps)) continue;
     StopCheck<Real> check = stop.check;
     if (const auto reason = check.look(moment)) return stopped(*reason);
   }
@@ -235,7 +243,7 @@ template <class Real> std::optional<Outcome> Simulation<Real>::look_at_the_end()
 }
 
 template <class Real> bool Simulation<Real>::due(const Scheduled& scheduled) const {
-  if (scheduled.schedule.steps > 0) return step() % scheduled.schedule.steps == 0;
+  if (scheduled.schedule.steps > 0) return is_multiple(step(), scheduled.schedule.steps);
   if (scheduled.schedule.wall <= 0) return false;
   return std::chrono::duration<double>(looked_at_clock_ - scheduled.last_wall).count() >= scheduled.schedule.wall;
 }
@@ -244,16 +252,16 @@ template <class Real> std::optional<Outcome> Simulation<Real>::observe_due() {
   if (observed_through_ == step()) return std::nullopt;
   observed_through_ = step();
   looking_.clear();
-  Wanted wanted;
+  bool energy = false;
   for (auto& scheduled : monitors_) {
     if (!due(scheduled)) continue;
     looking_.push_back(&scheduled);
     scheduled.last_wall = looked_at_clock_;
-    wanted.energy = wanted.energy || scheduled.monitor.wanted().energy;
+    energy = energy || scheduled.monitor.wanted().energy;
   }
-  const auto stop_due = [&](const ScheduledStop& stop) { return step() % stop.steps == 0; };
+  const auto stop_due = [&](const ScheduledStop& stop) { return is_multiple(step(), stop.steps); };
   if (looking_.empty() && std::none_of(stops_.begin(), stops_.end(), stop_due)) return std::nullopt;
-  const Snapshot<Real> moment = snapshot(wanted);
+  const Snapshot<Real> moment = snapshot({.energy = energy});
   if (const auto bad = fault(moment.state())) return good_ ? fall_back() : *bad;
   std::optional<StopReason> reason;
   for (ScheduledStop& stop : stops_) {
@@ -267,25 +275,23 @@ template <class Real> std::optional<Outcome> Simulation<Real>::observe_due() {
 }
 
 template <class Real> void Simulation<Real>::show(const Snapshot<Real>& moment) {
-  const bool recording =
-      std::any_of(monitors_.begin(), monitors_.end(), [](const Scheduled& s) { return s.monitor.records(); });
+  const bool recording = std::any_of(monitors_.begin(), monitors_.end(), [](const Scheduled& s) { return s.records; });
   for (Scheduled* one : looking_) {
-    if (one->monitor.looks_last()) continue;
+    if (one->looks_last) continue;
     one->monitor.observe(moment);
     if (!recording) continue;
     const std::vector<Series> series = one->monitor.series();
     if (series.empty()) continue;
     const Sample sample{one->name, moment.step(), moment.time(), series, one->monitor.scale()};
     for (auto& other : monitors_) {
-      if (other.monitor.records()) other.monitor.record(sample);
+      if (other.records) other.monitor.record(sample);
     }
   }
-  const bool last =
-      std::any_of(looking_.begin(), looking_.end(), [](const Scheduled* s) { return s->monitor.looks_last(); });
+  const bool last = std::any_of(looking_.begin(), looking_.end(), [](const Scheduled* s) { return s->looks_last; });
   if (!last) return;
   for (auto& writer : monitors_) writer.monitor.flush();
   for (Scheduled* one : looking_) {
-    if (one->monitor.looks_last()) one->monitor.observe(moment);
+    if (one->looks_last) one->monitor.observe(moment);
   }
 }
 
@@ -306,7 +312,7 @@ template <class Real> void Simulation<Real>::observe_times(double until) {
 template <class Real> std::int64_t Simulation<Real>::next_cut(std::int64_t end) const {
   std::int64_t cut = std::min(end, step() + chunk_);
   const auto limit = [&](std::int64_t cadence) {
-    if (cadence > 0) cut = std::min(cut, (step() / cadence + 1) * cadence);
+    if (cadence > 0) cut = std::min(cut, next_multiple(step(), cadence));
   };
   for (const auto& scheduled : monitors_) limit(scheduled.schedule.steps);
   for (const auto& stop : stops_) limit(stop.steps);

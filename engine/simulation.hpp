@@ -118,7 +118,8 @@ template <class Real = double> class Simulation {
     Schedule schedule;
     AnyMonitor<Real> monitor;
     std::chrono::steady_clock::time_point last_wall;
-    std::int64_t observed = 0;  ///< by time: how many multiples have been seen
+    std::int64_t observed = 0;                 ///< by time: how many multiples have been seen
+    bool records = false, looks_last = false;  ///< as the monitor says
   };
   struct ScheduledStop {
     std::int64_t steps;
@@ -129,7 +130,7 @@ template <class Real = double> class Simulation {
   static std::int64_t positive(std::int64_t steps);
   static double positive(double seconds);
   template <class M> M& attach(Schedule schedule, M monitor) {
-    monitors_.push_back({"", schedule, AnyMonitor<Real>(std::move(monitor)), std::chrono::steady_clock::now(), 0});
+    monitors_.push_back({"", schedule, AnyMonitor<Real>(std::move(monitor)), std::chrono::steady_clock::now()});
     register_last();
     return *monitors_.back().monitor.template get<M>();
   }

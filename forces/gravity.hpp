@@ -103,17 +103,18 @@ template <class Real> void Gravity::add_pairs(ForceSink<Real>& out, const Partic
     az[i] = sum_z;
   }
   if (!out.wants_energy() && !out.wants_virial()) return;
-  for (Index p = 0; p < pairs; ++p) r[p] = Real(1) / r[p];
   Real energy(0);
   Mat3<Real> virial = Mat3<Real>::Zero();
   for (Index i = 1, p = 0; i < n; ++i) {
+    Real phi(0);  // a sum for each row: they do not wait for each other
     for (Index j = 0; j < i; ++j, ++p) {
       if (m[i] == Real(0) || m[j] == Real(0)) continue;
-      energy -= m[i] * mu[j] * r[p];
+      phi += mu[j] * (k[p] * r2[p]);
       if (!out.wants_virial()) continue;
       const Vec3<Real> d(dx[p], dy[p], dz[p]);
       virial -= m[i] * (k[p] * mu[j]) * d * d.transpose();
     }
+    energy -= m[i] * phi;
   }
   out.energy(energy);
   out.virial(virial);
