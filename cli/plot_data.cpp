@@ -135,10 +135,15 @@ std::vector<PlotPoint> ellipse(const io::Frames& all, const io::Frame& frame, st
   return points;
 }
 
-double constant_of_gravitation(const io::Frames& all, const SceneValue& scene) {
+/// @throws FileError if the scene gives none, and the file names no unit system
+double constant_of_gravitation(const io::Frames& all, const SceneValue& scene, const std::filesystem::path& file) {
   const SceneValue* given = value_at(scene, {"hamiltonian", "G"});
   if (given != nullptr && given->get<double>() != nullptr) return *given->get<double>();
-  return unit_system(all.units).G;
+  try {
+    return unit_system(all.units).G;
+  } catch (const Error& error) {
+    throw FileError(fmt::format("damaged: {}", error.message()), {.file = file.string()});
+  }
 }
 
 /// The corners of the smallest picture that holds every path.
@@ -241,7 +246,8 @@ PlotOrbit orbit_of(const io::Frames& all, std::size_t body, bool relative, doubl
   return orbit;
 }
 
-std::vector<PlotOrbits> read_orbits(const io::Frames& all, const SceneValue& scene, const TimeUnit& unit) {
+std::vector<PlotOrbits> read_orbits(const io::Frames& all, const SceneValue& scene, const TimeUnit& unit,
+                                    const std::filesystem::path& file) {
   const std::size_t n = all.masses.size();
   if (all.frames.empty() || n == 0) return {};
   if (all_on_one_line(all)) return {against_time(all, unit)};
@@ -253,7 +259,7 @@ std::vector<PlotOrbits> read_orbits(const io::Frames& all, const SceneValue& sce
   const std::string about = relative ? " from " + all.names[0] : "";
   picture.x_label = with_unit("x" + about, all.length_unit);
   picture.y_label = with_unit("y" + about, all.length_unit);
-  const double G = constant_of_gravitation(all, scene);
+  const double G = constant_of_gravitation(all, scene, file);
   for (std::size_t i = 0; i < n; ++i) picture.orbits.push_back(orbit_of(all, i, relative, G));
   fit(picture);
   make_square(picture, relative);
@@ -329,7 +335,7 @@ PlotData read_plot_data(const std::filesystem::path& file) {
   data.subtitle = method_line(scene);
   data.time_label = with_unit("time", unit.name);
   data.end = end / unit.length;
-  data.orbits = read_orbits(frames, scene, unit);
+  data.orbits = read_orbits(frames, scene, unit, file);
   for (const auto& [name, title] : {std::pair{"energy", "Energy"}, std::pair{"angular_momentum", "Angular momentum"}}) {
     const auto found =
         std::find_if(monitors.begin(), monitors.end(), [wanted = name](const auto& m) { return m.name == wanted; });

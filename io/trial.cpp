@@ -59,6 +59,13 @@ void prepare_to_crash(std::uintmax_t size) {
   if (const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC); nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
 }
 
+/// Closes what the child has from its parent, but for three and the pipe: the lock of the output folder lives as long
+/// as somebody has it open, and a child may live on where its parent is killed.
+void keep_only(int pipe) {
+  ::close_range(STDERR_FILENO + 1, static_cast<unsigned>(pipe) - 1, 0);
+  ::close_range(static_cast<unsigned>(pipe) + 1, ~0U, 0);
+}
+
 /// The child's report: a first byte says that it came back, what follows is the message of an error.
 void tell(int pipe, std::string_view message) {
   std::string report = "+";
@@ -68,6 +75,7 @@ void tell(int pipe, std::string_view message) {
 
 [[noreturn]] void be_child(int pipe, std::uintmax_t size, const std::function<void()>& work) {
   trying = true;
+  keep_only(pipe);
   prepare_to_crash(size);
   try {
     work();

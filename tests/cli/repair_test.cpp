@@ -124,6 +124,11 @@ TEST_CASE("every command takes a damaged run.h5, or refuses it in one line", "[c
   call_everything(1, 10);
 }
 
+TEST_CASE("damage that once was taken for a wrong request is an error of the file", "[cli][damage]") {
+  call_everything(1227, 1);  // the name of the unit system
+  call_everything(1360, 1);
+}
+
 TEST_CASE("so it does with hundreds", "[cli][damage][.][nightly]") { call_everything(1000, 400); }
 
 TEST_CASE("what a run is writing is not repaired, and what is not there cannot be", "[cli][repair][messages]") {

@@ -4,8 +4,13 @@
 
 #include "io/digest.hpp"
 #include "io/hdf5_file.hpp"
+#include "io/trial.hpp"
 #include "tests/io/support.hpp"
 #include "tests/support/damage.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <functional>
@@ -247,6 +252,20 @@ TEST_CASE("groups of a checkpoint that stand within themselves are an error of t
   CHECK(test::error_of([&] { io::read_checkpoint(file); }) ==
         file + ": damaged: the groups below '/state' are nested more than 64 deep");
   CHECK(io::verify(file).damaged.size() == 1);
+}
+
+TEST_CASE("a child that tries a file holds nothing of its parent's open: locks end with the parent", "[damage]") {
+  const test::ScratchFolder folder;
+  test::write_text(folder / "file", "bytes");
+  const int held = ::open((folder / "file").c_str(), O_RDONLY | O_CLOEXEC);
+  struct stat file {};
+  REQUIRE(::fstat(held, &file) == 0);
+  CHECK_NOTHROW(io::try_in_child(folder / "file", [&] {
+    struct stat now {};
+    if (::fstat(held, &now) == 0 && now.st_ino == file.st_ino) throw FileError("the child has it too");
+  }));
+  ::close(held);
+  CHECK_THROWS_AS(io::try_in_child(folder / "file", [] { throw FileError("told to the parent"); }), FileError);
 }
 
 TEST_CASE("whatever bytes of a trajectory are changed, nothing that reads it or goes on with it crashes",
