@@ -108,6 +108,14 @@ template <class Real> void ClosestApproach::remember(const Snapshot<Real>& now) 
   seen_time_ = now.time();
 }
 
+void ClosestApproach::load(const SavedState& saved, const std::string& prefix) {
+  load_part(saved, prefix, *this);
+  const bool has_pair = pair_.size() == 2 && names_.size() == 2;
+  if (seen_.size() != 9 * seen_ids_.size() || !(has_pair || (pair_.empty() && names_.empty()))) {
+    throw Error("what closest_approach saw last was saved in parts that do not fit");
+  }
+}
+
 std::vector<Series> ClosestApproach::series() const {
   std::vector<double> pair(2, -1);
   for (std::size_t k = 0; k < pair_.size(); ++k) pair[k] = static_cast<double>(pair_[k]);

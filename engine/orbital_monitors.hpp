@@ -73,6 +73,9 @@ class ClosestApproach {
   std::vector<Series> series() const;
   MonitorReport report() const;
 
+  /// @throws Error if parts of the saved state do not fit
+  void load(const SavedState& saved, const std::string& prefix);
+
   /// Smallest distance so far [length]; infinite where there is no pair.
   double distance() const { return distance_; }
   /// When it was [time].

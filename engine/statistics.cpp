@@ -74,6 +74,11 @@ std::optional<SeriesStatistics::Line> SeriesStatistics::line() const {
 
 void SeriesStatistics::save(SavedState& saved, const std::string& prefix) const { save_part(saved, prefix, *this); }
 
-void SeriesStatistics::load(const SavedState& saved, const std::string& prefix) { load_part(saved, prefix, *this); }
+void SeriesStatistics::load(const SavedState& saved, const std::string& prefix) {
+  load_part(saved, prefix, *this);
+  if (times_.size() != means_.size() || times_.size() >= most_blocks || block_ < 1) {
+    throw Error("the figures of a series were saved in parts that do not fit");
+  }
+}
 
 }  // namespace noether

@@ -147,6 +147,8 @@ template <class Real> void StopCheck<Real>::load(const SavedState& saved, const 
   load_value(saved, prefix + "/x", x_);
   load_value(saved, prefix + "/v", v_);
   load_value(saved, prefix + "/a", a_);
+  if (x_.size() != v_.size() || x_.size() != a_.size())
+    throw Error("what a stop saw last was saved in parts that do not fit");
 }
 
 template class StopCheck<double>;
