@@ -13,6 +13,7 @@
 #include <chrono>
 #include <csignal>
 #include <functional>
+#include <optional>
 #include <random>
 #include <thread>
 #include <utility>
@@ -203,12 +204,22 @@ void die_at_writes(int deaths) {
   });
 }
 
+/// Microseconds that a run from its first step takes here, and one that goes on from a file.
+long duration_of_runs(const std::filesystem::path& file, const Reference& reference) {
+  const auto begin = std::chrono::steady_clock::now();
+  for (const std::int64_t step : {std::int64_t{0}, steps_between_flushes}) Victim(file, reference, step, [] {}).end();
+  const auto took = std::chrono::steady_clock::now() - begin;
+  std::filesystem::remove(file);
+  return static_cast<long>(std::chrono::duration_cast<std::chrono::microseconds>(took).count());
+}
+
 void die_at_moments(int deaths) {
   std::mt19937 random(20261121);
-  std::uniform_int_distribution<int> microseconds(0, 60'000);  // a whole run takes about as long
+  std::optional<std::uniform_int_distribution<long>> moment;
   die_often(deaths, [&](const std::filesystem::path& file, const Reference& reference, std::int64_t step) {
+    if (!moment) moment.emplace(0, duration_of_runs(file, reference));
     Victim victim(file, reference, step, [] {});
-    std::this_thread::sleep_for(std::chrono::microseconds(microseconds(random)));
+    std::this_thread::sleep_for(std::chrono::microseconds((*moment)(random)));
     victim.kill();
     return victim;
   });
