@@ -42,4 +42,23 @@ inline double step_ns(Simulation<double>& simulation, std::int64_t steps) {
   return 1e9 * processor_seconds_of([&] { static_cast<void>(simulation.run(steps)); }) / static_cast<double>(steps);
 }
 
+/// Two runs that took turns, slice by slice.
+struct Turns {
+  std::vector<double> first;            ///< a step of the first run [ns]
+  std::vector<double> longer, as_long;  ///< a step of the second one: so much longer [ns], so many times as long
+};
+
+/// Lets two runs take turns: 50 slices of so many steps each, after one to warm up.
+inline Turns take_turns(Simulation<double>& first, Simulation<double>& second, std::int64_t steps) {
+  Turns turns;
+  for (int slice = 0; slice <= 50; ++slice) {
+    const double one = step_ns(first, steps), other = step_ns(second, steps);
+    if (slice == 0) continue;
+    turns.first.push_back(one);
+    turns.longer.push_back(other - one);
+    turns.as_long.push_back(other / one);
+  }
+  return turns;
+}
+
 }  // namespace noether::bench

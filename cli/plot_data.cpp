@@ -4,6 +4,7 @@
 #include "engine/orbital_elements.hpp"
 #include "engine/units.hpp"
 #include "io/inspect.hpp"
+#include "io/trajectory_layout.hpp"
 #include "scene/toml.hpp"
 
 #include <fmt/format.h>
@@ -139,11 +140,7 @@ std::vector<PlotPoint> ellipse(const io::Frames& all, const io::Frame& frame, st
 double constant_of_gravitation(const io::Frames& all, const SceneValue& scene, const std::filesystem::path& file) {
   const SceneValue* given = value_at(scene, {"hamiltonian", "G"});
   if (given != nullptr && given->get<double>() != nullptr) return *given->get<double>();
-  try {
-    return unit_system(all.units).G;
-  } catch (const Error& error) {
-    throw FileError(fmt::format("damaged: {}", error.message()), {.file = file.string()});
-  }
+  return io::known_units(all.units, file).G;
 }
 
 /// The corners of the smallest picture that holds every path.

@@ -35,11 +35,11 @@ FileInfo checkpoint_info(const std::filesystem::path& file) {
   info.commit = content.text_attribute("/noether", "commit");
   const auto& particles = checkpoint.run.particles;
   if (particles.count("id") != 0) {
-    info.particles = static_cast<Index>(std::get<std::vector<std::int64_t>>(particles.at("id")).size());
+    info.particles = static_cast<Index>(detail::array_of<std::int64_t>(particles, "id").size());
   }
   if (particles.count("units") != 0) {
-    info.units = std::get<std::vector<std::string>>(particles.at("units")).at(0);
-    info.time_unit = std::string(unit_system(info.units).time);
+    info.units = detail::element(detail::array_of<std::string>(particles, "units"), 0);
+    info.time_unit = std::string(known_units(info.units, file).time);
   }
   return info;
 }

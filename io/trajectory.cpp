@@ -46,16 +46,6 @@ std::string unit_in_words(const std::string& dimension, const UnitSystem& units)
   }
 }
 
-/// The unit system a file names. @throws FileError if there is none of this name
-const UnitSystem& known_units(const Hdf5File& file, const std::filesystem::path& path) {
-  const std::string name = file.text_attribute("/noether", "units");
-  try {
-    return unit_system(name);
-  } catch (const Error&) {
-    throw FileError(fmt::format("damaged: its unit system '{}' is unknown", name), {.file = path.string()});
-  }
-}
-
 /// Distinct names get distinct numbers, in the order of their first appearance.
 std::vector<std::int64_t> species_of(const std::vector<std::string>& names) {
   std::map<std::string, std::int64_t> numbers;
@@ -285,7 +275,7 @@ class TrajectoryWriter::File {
 
   /// Makes ready to go on with an existing file.
   void open() {
-    units_ = &known_units(*hdf5_, path_);
+    units_ = &known_units(hdf5_->text_attribute("/noether", "units"), path_);
     sorted_ids_ = hdf5_->open(particles_path + "/id").read_integers();
     hdf5_->set_attribute("/noether", "complete", std::int64_t{0});
     // The end may have been moved.

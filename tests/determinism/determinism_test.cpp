@@ -13,6 +13,7 @@
 #include "integrators/wisdom_holman.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/planets.hpp"
+#include "tests/support/settings.hpp"
 
 using namespace noether;
 
@@ -46,16 +47,10 @@ template <class I> void check_cadences(const I& integrator) {
   CHECK_FALSE(test::same_bits(bare, final_state(test::outer_planets(), integrator, 50.0, 209, 0)));
 }
 
-struct Threads {
-  explicit Threads(int n) : before(thread_count()) { set_thread_count(n); }
-  ~Threads() { set_thread_count(before); }
-  int before;
-};
-
 template <class Make> void check_threads(const Make& final_particles) {
   std::optional<ParticleSystem<double>> one;
   for (const int n : {1, 2, 3, 8}) {
-    const Threads threads(n);
+    const test::Threads threads(n);
     const auto result = final_particles();
     CAPTURE(n);
     if (!one) one = result;
@@ -94,7 +89,7 @@ TEST_CASE("any number of threads gives the same bits", "[determinism]") {
 TEST_CASE("the energy of many bodies has the same bits for any number of threads", "[determinism]") {
   std::optional<double> one;
   for (const int n : {1, 2, 3, 8}) {
-    const Threads threads(n);
+    const test::Threads threads(n);
     Simulation simulation(test::cloud(300),
                           compose(KineticPotential(Gravity{.G = 1, .softening = 0.05}), schemes::verlet), 0.01);
     auto& energy = simulation.every(1, Energy{});

@@ -1,7 +1,6 @@
 /// Threads x cadence x program or scene x restart, for schemes, Hamiltonians and forces, at every SIMD level.
 
 #include "engine/monitors.hpp"
-#include "engine/parallel.hpp"
 #include "engine/simd.hpp"
 #include "engine/simulation.hpp"
 #include "forces/external_fields.hpp"
@@ -18,6 +17,7 @@
 #include "scene/scene.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/planets.hpp"
+#include "tests/support/settings.hpp"
 
 #include <fmt/format.h>
 
@@ -47,16 +47,6 @@ struct Way {
   bool restarted = false;
 };
 
-/// Puts back what a test has set for the whole process.
-struct Settings {
-  ~Settings() {
-    set_thread_count(threads);
-    set_simd_level(level);
-  }
-  int threads = thread_count();
-  SimdLevel level = simd_level();
-};
-
 Simulation<double> simulation_of(const Twin& twin, const Way& way) {
   const std::string watch = way.cadence > 0 ? fmt::format("[[every]]\ntype='energy'\nsteps={0}\n", way.cadence) : "";
   const auto from_scene = [&] {
@@ -75,7 +65,7 @@ Simulation<double> simulation_of(const Twin& twin, const Way& way) {
 }
 
 std::string digest_of(const Twin& twin, const Way& way) {
-  set_thread_count(way.threads);
+  const test::Threads threads(way.threads);
   Simulation<double> whole = simulation_of(twin, way);
   if (!way.restarted) {
     REQUIRE(whole.run(steps).ok());
@@ -103,11 +93,10 @@ std::vector<Way> all_ways() {
 
 /// Goes every so manieth way at every SIMD level; at one level all of them end in the same bits.
 void check_ways(const Twin& twin, std::size_t stride) {
-  const Settings before;
   const std::vector<Way> ways = all_ways();
   for (const SimdLevel level : {SimdLevel::base, SimdLevel::avx2, SimdLevel::avx512}) {
     if (!has_simd_level(level)) continue;
-    set_simd_level(level);
+    const test::AtLevel at(level);
     const std::string expected = digest_of(twin, {});
     for (std::size_t k = 0; k < ways.size(); k += stride) {
       const Way& way = ways[k];

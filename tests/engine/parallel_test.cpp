@@ -4,17 +4,12 @@
 
 #include "engine/error.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/settings.hpp"
 
 #include <vector>
 
 namespace noether {
 namespace {
-
-struct Threads {
-  explicit Threads(int n) : before(thread_count()) { set_thread_count(n); }
-  ~Threads() { set_thread_count(before); }
-  int before;
-};
 
 double harmonic(Index n) {
   return reduce(n, 0.0, [](Index begin, Index end) {
@@ -39,7 +34,7 @@ double harmonic_in_blocks(Index n) {
 
 TEST_CASE("every index is visited once, in blocks of a fixed size", "[parallel]") {
   for (const int threads : {1, 2, 3, 8}) {
-    const Threads use(threads);
+    const test::Threads use(threads);
     for (const Index n : {0, 1, 63, 64, 65, 255, 256, 1000}) {
       CAPTURE(threads, n);
       std::vector<int> visits(static_cast<std::size_t>(n), 0);
@@ -56,7 +51,7 @@ TEST_CASE("a sum is that of its blocks in order, for any number of threads", "[p
   for (const Index n : {0, 1, 64, 65, 300, 5000}) {
     const double expected = harmonic_in_blocks(n);
     for (const int threads : {1, 2, 3, 8}) {
-      const Threads use(threads);
+      const test::Threads use(threads);
       CAPTURE(threads, n);
       CHECK(harmonic(n) == expected);
     }

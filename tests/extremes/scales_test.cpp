@@ -5,6 +5,7 @@
 #include "tests/extremes/support.hpp"
 #include "tests/support/planets.hpp"
 #include "tests/support/problems.hpp"
+#include "tests/support/settings.hpp"
 
 namespace noether::test {
 
@@ -48,12 +49,6 @@ ParticleSystem<double> shells(int first, int last) {
   }
   return s;
 }
-
-struct SimdLevelOf {
-  explicit SimdLevelOf(SimdLevel level) : before(simd_level()) { set_simd_level(level); }
-  ~SimdLevelOf() { set_simd_level(before); }
-  SimdLevel before;
-};
 
 /// The ellipse of `kepler_pair(0.3)` with lengths times 4^k: speeds times 2^-k, times times 8^k, all exact.
 ParticleSystem<double> scaled_pair(int k) {
@@ -125,7 +120,7 @@ TEST_CASE("gravity of a pair is right to rounding from 1e-100 to 1e100, softened
 TEST_CASE("gravity in lanes is right to rounding from 1e-100 to 1e100 at every SIMD level", "[extremes]") {
   for (const SimdLevel level : {SimdLevel::base, SimdLevel::avx2, SimdLevel::avx512}) {
     if (!has_simd_level(level)) continue;
-    const SimdLevelOf at(level);
+    const AtLevel at(level);
     CAPTURE(name(level));
     CHECK(worst_force_error(Gravity{.G = 1.0}, shells(-100, 100)) < 3e-15);  // what tests/forces holds lanes to
     CHECK(worst_force_error(Gravity{.G = 1.0, .softening = 1e-50}, shells(-50, 100)) < 3e-15);

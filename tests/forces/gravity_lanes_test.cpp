@@ -6,6 +6,7 @@
 #include "forces/gravity_simd.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/planets.hpp"
+#include "tests/support/settings.hpp"
 
 #include <cmath>
 #include <cstring>
@@ -46,13 +47,6 @@ std::vector<Level> levels() {
   }
   return here;
 }
-
-/// Sets a level, and puts the former back.
-struct AtLevel {
-  explicit AtLevel(SimdLevel level) : before(simd_level()) { set_simd_level(level); }
-  ~AtLevel() { set_simd_level(before); }
-  SimdLevel before;
-};
 
 /// Rows and bodies for a kernel: the rows are the first particles, of which every one is a body.
 struct LaneSample {
@@ -123,7 +117,7 @@ TEST_CASE("every level has the lanes it should have", "[lanes]") {
       CHECK(level.optimized->lanes == level.lanes);
     }
     CHECK(level.at_O0->lanes == level.optimized->lanes);
-    const AtLevel at(level.level);
+    const test::AtLevel at(level.level);
     CHECK(&gravity_kernels() == level.optimized);
   }
   if (!has_simd_level(SimdLevel::avx512)) WARN("skipped: this processor has no avx512");
@@ -226,7 +220,7 @@ TEST_CASE("forces on many particles agree with 113 bits, tracers among them, for
     const Gravity gravity{.G = 1.5, .softening = n % 2 == 0 ? 0.0 : 0.05};
     const Exact exact(s, gravity);
     for (const Level& level : levels()) {
-      const AtLevel at(level.level);
+      const test::AtLevel at(level.level);
       CAPTURE(name(level.level), n);
       VectorColumn<double> a(n), silent(n);
       ForceSink<double> sink(a, s, {.energy = true, .virial = true}), quiet(silent, s, {});

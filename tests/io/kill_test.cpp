@@ -4,6 +4,7 @@
 #include "io/digest.hpp"
 #include "io/inspect.hpp"
 #include "tests/io/support.hpp"
+#include "tests/support/settings.hpp"
 
 #include <dlfcn.h>
 #include <sys/wait.h>
@@ -287,7 +288,7 @@ std::string check_files(const std::filesystem::path& folder, const io::Frames& w
 void die_anywhere(const WholeRun& run, int wanted) {
   const test::ScratchFolder reference, scratch;
   constexpr long never = 1'000'000'000;
-  set_thread_count(1);  // a process that has threads cannot be copied with them
+  const test::Threads one(1);  // a process that has threads cannot be copied with them
   die_at(never);
   run.go_on(reference.path());
   const long calls = never - std::exchange(fatal_call, 0);
