@@ -1,8 +1,8 @@
 /// Direct gravity: pair interactions per second (n^2 counting) by size, threads and SIMD level, the largest error of a
 /// force on a uniform sphere against 113 bits, and a leapfrog step of six bodies.
 ///
-/// Protocol: one warm-up, then the median of 7 repeats of about 0.2 s each (wall time), levels and sizes in turn; a
-/// step is the median of 50 slices of 20 000 steps in processor time.
+/// Protocol: one warm-up, then medians of 7 repeats of about 0.2 s each (of the largest size 20 s) in wall time, sizes
+/// and numbers of threads in turn; a step is the median of 50 slices of 20 000 steps in processor time.
 
 #include "bench/planets.hpp"
 
@@ -64,15 +64,35 @@ double force_error(const ParticleSystem<double>& s) {
   return worst;
 }
 
-void measure_sizes(const bench::Rows& rows, const std::vector<Index>& sizes) {
-  for (const Index n : sizes) {
-    const auto s = sphere(n);
-    VectorColumn<double> a(n);
-    interactions_per_s(s, a);
-    std::vector<double> rates;
-    for (int repeat = 0; repeat < (n > 100000 ? 3 : 7); ++repeat) rates.push_back(interactions_per_s(s, a));
-    rows.add("sphere", "interactions_per_s", bench::Measured(rates), "1/s", n);
+/// Rates of all sizes, by one thread and by all, in turn: what disturbs the machine disturbs them alike.
+void measure_sizes(const bench::Rows& rows, const std::vector<Index>& sizes, int threads) {
+  constexpr int repeats = 7;
+  const auto rate = [](const ParticleSystem<double>& s, int by) {
+    set_thread_count(by);
+    VectorColumn<double> a(s.size());
+    return interactions_per_s(s, a);
+  };
+  std::vector<ParticleSystem<double>> spheres;
+  for (const Index n : sizes) spheres.push_back(sphere(n));
+  std::vector<std::vector<double>> alone(sizes.size()), together(sizes.size()), speedup(sizes.size());
+  for (int repeat = 0; repeat <= repeats; ++repeat) {
+    for (std::size_t k = 0; k < sizes.size(); ++k) {
+      const double one = rate(spheres[k], 1), all = threads > 1 ? rate(spheres[k], threads) : one;
+      if (repeat == 0) continue;  // warm-up
+      alone[k].push_back(one);
+      together[k].push_back(all);
+      speedup[k].push_back(all / one);
+    }
   }
+  for (std::size_t k = 0; k < sizes.size(); ++k) {
+    set_thread_count(1);
+    rows.add("sphere", "interactions_per_s", bench::Measured(alone[k]), "1/s", sizes[k]);
+    if (threads == 1) continue;
+    set_thread_count(threads);
+    rows.add("sphere", "interactions_per_s", bench::Measured(together[k]), "1/s", sizes[k]);
+    rows.add("sphere", "speedup", bench::Measured(speedup[k]), "1", sizes[k]);
+  }
+  set_thread_count(1);
 }
 
 void measure_leapfrog(const bench::Rows& rows) {
@@ -97,13 +117,8 @@ int main(int count, char** arguments) {
     // Lower levels are measured at one size: the largest takes them minutes.
     const std::vector<Index> sizes =
         level == highest ? std::vector<Index>{2048, 16384, 131072} : std::vector<Index>{16384};
-    set_thread_count(1);
-    measure_sizes(rows, sizes);
+    measure_sizes(rows, sizes, threads);
     rows.add("sphere", "force_error_max", bench::Measured({force_error(sphere(16384))}), "1", 16384);
-    if (threads > 1) {
-      set_thread_count(threads);
-      measure_sizes(rows, sizes);
-    }
   }
   set_thread_count(1);
   measure_leapfrog(rows);

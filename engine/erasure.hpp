@@ -118,7 +118,8 @@ template <class Real> struct IntegratorBase {
   virtual IntegratorClaims claims() const = 0;
   virtual void bind(ParticleSystem<Real>&) = 0;
   virtual Advanced advance(ParticleSystem<Real>&, const Span&) = 0;
-  virtual void settle(const ParticleSystem<Real>&, ParticleSystem<Real>&, Wanted, std::optional<double>, bool) = 0;
+  virtual void settle(const ParticleSystem<Real>&, ParticleSystem<Real>&, Wanted, const std::optional<double>&,
+                      bool) = 0;
   virtual EnergyTerms<Real> energy(const ParticleSystem<Real>&) = 0;
   virtual void accelerations(const ParticleSystem<Real>&, VectorColumn<Real>&) = 0;
   virtual Evaluations evaluations() const = 0;
@@ -132,8 +133,8 @@ template <class I> struct IntegratorModel final : IntegratorBase<typename I::rea
   IntegratorClaims claims() const override { return integrator.claims(); }
   void bind(ParticleSystem<Real>& s) override { integrator.bind(s); }
   Advanced advance(ParticleSystem<Real>& s, const Span& span) override { return integrator.advance(s, span); }
-  void settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Wanted wanted, std::optional<double> at,
-              bool corrected) override {
+  void settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Wanted wanted,
+              const std::optional<double>& at, bool corrected) override {
     integrator.settle(raw, out, wanted, at, corrected);
   }
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) override { return integrator.energy(s); }
@@ -202,8 +203,8 @@ template <class Real = double> class AnyIntegrator : private detail::Erased<deta
   IntegratorClaims claims() const { return this->held_->claims(); }
   void bind(ParticleSystem<Real>& s) { this->held_->bind(s); }
   Advanced advance(ParticleSystem<Real>& s, const Span& span) { return this->held_->advance(s, span); }
-  void settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Wanted wanted, std::optional<double> at,
-              bool corrected) {
+  void settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Wanted wanted,
+              const std::optional<double>& at, bool corrected) {
     this->held_->settle(raw, out, wanted, at, corrected);
   }
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) { return this->held_->energy(s); }

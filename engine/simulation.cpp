@@ -79,13 +79,14 @@ template <class Real> void Simulation<Real>::schedule(Scheduled& added) {
   added.name = base;
   added.records = added.monitor.records();
   added.looks_last = added.monitor.looks_last();
+  added.wants_energy = added.monitor.wanted().energy;
   for (int k = 2; std::any_of(monitors_.begin(), std::prev(monitors_.end()),
                               [&](const Scheduled& other) { return other.name == added.name; });
        ++k) {
     added.name = fmt::format("{}_{}", base, k);
   }
   if (added.schedule.steps == 0 && added.schedule.wall == 0) schedule_by_time(added);
-  if (added.monitor.wanted().energy && !integrator_.claims().energy) {
+  if (added.wants_energy && !integrator_.claims().energy) {
     throw Error(fmt::format("monitor '{}' needs the energy, but a force of this run reports none", added.name));
   }
 }
@@ -257,7 +258,7 @@ template <class Real> std::optional<Outcome> Simulation<Real>::observe_due() {
     if (!due(scheduled)) continue;
     looking_.push_back(&scheduled);
     scheduled.last_wall = looked_at_clock_;
-    energy = energy || scheduled.monitor.wanted().energy;
+    energy = energy || scheduled.wants_energy;
   }
   const auto stop_due = [&](const ScheduledStop& stop) { return is_multiple(step(), stop.steps); };
   if (looking_.empty() && std::none_of(stops_.begin(), stops_.end(), stop_due)) return std::nullopt;
@@ -276,7 +277,9 @@ template <class Real> std::optional<Outcome> Simulation<Real>::observe_due() {
 
 template <class Real> void Simulation<Real>::show(const Snapshot<Real>& moment) {
   const bool recording = std::any_of(monitors_.begin(), monitors_.end(), [](const Scheduled& s) { return s.records; });
+  bool last = false;
   for (Scheduled* one : looking_) {
+    last = last || one->looks_last;
     if (one->looks_last) continue;
     one->monitor.observe(moment);
     if (!recording) continue;
@@ -287,7 +290,6 @@ template <class Real> void Simulation<Real>::show(const Snapshot<Real>& moment) 
       if (other.records) other.monitor.record(sample);
     }
   }
-  const bool last = std::any_of(looking_.begin(), looking_.end(), [](const Scheduled* s) { return s->looks_last; });
   if (!last) return;
   for (auto& writer : monitors_) writer.monitor.flush();
   for (Scheduled* one : looking_) {
@@ -304,7 +306,7 @@ template <class Real> void Simulation<Real>::observe_times(double until) {
     if (next > until) continue;
     ++scheduled.observed;
     looking_.push_back(&scheduled);
-    wanted.energy = wanted.energy || scheduled.monitor.wanted().energy;
+    wanted.energy = wanted.energy || scheduled.wants_energy;
   }
   if (!looking_.empty()) show(snapshot(wanted, until));
 }
@@ -321,6 +323,7 @@ template <class Real> std::int64_t Simulation<Real>::next_cut(std::int64_t end) 
 
 template <class Real> double Simulation<Real>::next_time(double end) const {
   double next = end;
+  if (raw_.clock().mode() == ClockMode::fixed) return next;
   for (const auto& scheduled : monitors_) {
     if (!by_time(scheduled)) continue;
     next = std::min(next, raw_.clock().start() + static_cast<double>(scheduled.observed) * scheduled.schedule.interval);

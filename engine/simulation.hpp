@@ -6,7 +6,6 @@
 
 #include <chrono>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <map>
 #include <string>
@@ -118,8 +117,8 @@ template <class Real = double> class Simulation {
     Schedule schedule;
     AnyMonitor<Real> monitor;
     std::chrono::steady_clock::time_point last_wall;
-    std::int64_t observed = 0;                 ///< by time: how many multiples have been seen
-    bool records = false, looks_last = false;  ///< as the monitor says
+    std::int64_t observed = 0;                                       ///< by time: how many multiples have been seen
+    bool records = false, looks_last = false, wants_energy = false;  ///< as the monitor says
   };
   struct ScheduledStop {
     std::int64_t steps;
@@ -139,7 +138,7 @@ template <class Real = double> class Simulation {
   void schedule_by_time(Scheduled& added);
   /// Whether times, not steps, tell when to look: a fixed clock has turned them into steps.
   static bool by_time(const Scheduled& s) { return s.schedule.interval != 0 && s.schedule.steps == 0; }
-  Snapshot<Real> snapshot(Wanted wanted, std::optional<double> at = std::nullopt) {
+  Snapshot<Real> snapshot(Wanted wanted, const std::optional<double>& at = std::nullopt) {
     const RunSource run{this, [](const void* self) { return static_cast<const Simulation*>(self)->save(); }};
     return Snapshot<Real>(integrator_, raw_, copy_, mapped_, wanted, at, run);
   }
@@ -171,8 +170,8 @@ template <class Real = double> class Simulation {
   ParticleSystem<Real> raw_, copy_, mapped_;
   std::optional<Good> good_;  ///< while a run goes on: at most 1024 steps and a cut old
   AnyIntegrator<Real> integrator_;
-  std::deque<Scheduled> monitors_;
-  std::deque<ScheduledStop> stops_;
+  std::vector<Scheduled> monitors_;
+  std::vector<ScheduledStop> stops_;
   std::optional<double> shown_at_;      ///< free clock: where `run_until` has ended, beyond the last whole step
   std::int64_t observed_through_ = -1;  ///< last step whose due monitors have looked
   std::vector<Scheduled*> looking_;     ///< at the present moment

@@ -23,24 +23,17 @@ template <class Real> class Snapshot {
   /// @param at  free clock: the time to be shown, not beyond the next whole step
   Snapshot(AnyIntegrator<Real>& integrator, const ParticleSystem<Real>& raw, ParticleSystem<Real>& copy,
            ParticleSystem<Real>& mapped, Wanted wanted, const std::optional<double>& at, const RunSource& run)
-      : integrator_(integrator),
-        raw_(raw),
-        copy_(copy),
-        mapped_(mapped),
-        wanted_(wanted),
-        between_(at.has_value()),
-        at_(at.value_or(0)),
-        run_(run) {}
+      : integrator_(integrator), raw_(raw), copy_(copy), mapped_(mapped), wanted_(wanted), at_(at), run_(run) {}
 
   /// The settled, inertial particles.
   const ParticleSystem<Real>& state() const {
-    if (!have_state_) integrator_.settle(raw_, copy_, wanted_, at(), true);
+    if (!have_state_) integrator_.settle(raw_, copy_, wanted_, at_, true);
     have_state_ = true;
     return copy_;
   }
   /// The same without the corrector: the point the composed map itself reaches.
   const ParticleSystem<Real>& mapped() const {
-    if (!have_mapped_) integrator_.settle(raw_, mapped_, wanted_, at(), false);
+    if (!have_mapped_) integrator_.settle(raw_, mapped_, wanted_, at_, false);
     have_mapped_ = true;
     return mapped_;
   }
@@ -62,7 +55,7 @@ template <class Real> class Snapshot {
   std::int64_t step() const { return raw_.clock().step(); }
   /// Time of this moment [time].
   double time() const {
-    return between_                                  ? at_
+    return at_                                       ? *at_
            : raw_.clock().mode() == ClockMode::fixed ? raw_.clock().time_at(raw_.clock().step())
                                                      : raw_.clock().high();
   }
@@ -72,15 +65,12 @@ template <class Real> class Snapshot {
   SavedRun saved_run() const { return run_.save(run_.run); }
 
  private:
-  std::optional<double> at() const { return between_ ? std::optional(at_) : std::nullopt; }
-
   AnyIntegrator<Real>& integrator_;
   const ParticleSystem<Real>& raw_;
   ParticleSystem<Real>& copy_;
   ParticleSystem<Real>& mapped_;
   Wanted wanted_;
-  bool between_;  ///< free clock: at a time after the last whole step
-  double at_;     ///< that time [time]
+  std::optional<double> at_;  ///< free clock: a time after the last whole step [time]
   RunSource run_;
   mutable bool have_state_ = false, have_mapped_ = false;
   mutable std::optional<EnergyTerms<Real>> energy_;
