@@ -30,7 +30,9 @@ template <class Body> void for_blocks(Index n, const Body& body) {
   const Index blocks = (n + block_size - 1) / block_size;
 #ifdef _OPENMP
   if (n >= parallel_threshold && thread_count() > 1) {
-#pragma omp parallel for schedule(static) num_threads(thread_count())
+    // Threads come back for more until all is done: one on a busy core does not let the others wait.
+    const Index share = std::max(Index(1), blocks / (16 * thread_count()));
+#pragma omp parallel for schedule(dynamic, share) num_threads(thread_count())
     for (Index b = 0; b < blocks; ++b) body(b * block_size, std::min(n, (b + 1) * block_size));
     return;
   }
