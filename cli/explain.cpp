@@ -89,7 +89,8 @@ void sort_parts(const Scene& scene, Explanation& e) {
                                                                           : "writer checkpoint";
     const std::string when = watch.cadence.wall > 0 ? fmt::format("every {} s of wall time", watch.cadence.wall)
                                                     : fmt::format("every {} steps", watch.cadence.steps);
-    e.in.push_back(name + ", " + when);
+    const std::string cost = watch.monitor.cost ? watch.monitor.cost(scene.particles.size(), watch.cadence.steps) : "";
+    e.in.push_back(name + ", " + when + (cost.empty() ? "" : ": " + cost));
   }
   for (const SceneStop& stop : scene.stops) {
     const bool escape = stop.rule.kind == StopRule::Kind::escape;

@@ -104,6 +104,10 @@ struct Advanced {
 /// A method that advances a system by whole steps. `settle` completes a copy for observers: the copy is inertial, and
 /// with a free clock it is reached at time `at` by one shortened step, and its clock moved there without counting a
 /// step; the run itself never shortens a step. `bind` comes before `load` and may see working coordinates then.
+///
+/// A method whose steps are symplectic may offer `Advanced advance_with_action(s, span, action)`: the same bits as
+/// `advance`, and the action increments of its flows, the integral of p dq - H dt, added to `action`. Its `settle` then
+/// returns the action of the flows that complete the copy, correctors left out, where `wanted.action` asks for it.
 template <class I>
 concept Integrator = requires(I& i, const I& c, ParticleSystem<typename I::real>& s,
                               const ParticleSystem<typename I::real>& raw, const Span& span, Wanted wanted,

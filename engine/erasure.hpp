@@ -118,7 +118,9 @@ template <class Real> struct IntegratorBase {
   virtual IntegratorClaims claims() const = 0;
   virtual void bind(ParticleSystem<Real>&) = 0;
   virtual Advanced advance(ParticleSystem<Real>&, const Span&) = 0;
-  virtual void settle(const ParticleSystem<Real>&, ParticleSystem<Real>&, Wanted, const std::optional<double>&,
+  virtual bool has_action() const = 0;
+  virtual Advanced advance_with_action(ParticleSystem<Real>&, const Span&, Real&) = 0;
+  virtual Real settle(const ParticleSystem<Real>&, ParticleSystem<Real>&, Wanted, const std::optional<double>&,
                       bool) = 0;
   virtual EnergyTerms<Real> energy(const ParticleSystem<Real>&) = 0;
   virtual void accelerations(const ParticleSystem<Real>&, VectorColumn<Real>&) = 0;
@@ -133,9 +135,19 @@ template <class I> struct IntegratorModel final : IntegratorBase<typename I::rea
   IntegratorClaims claims() const override { return integrator.claims(); }
   void bind(ParticleSystem<Real>& s) override { integrator.bind(s); }
   Advanced advance(ParticleSystem<Real>& s, const Span& span) override { return integrator.advance(s, span); }
-  void settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Wanted wanted,
+  static constexpr bool gives_action = requires(I & i, ParticleSystem<Real>& s, const Span& span, Real& action) {
+    i.advance_with_action(s, span, action);
+  };
+  bool has_action() const override { return gives_action; }
+  Advanced advance_with_action(ParticleSystem<Real>& s, const Span& span, Real& action) override {
+    if constexpr (gives_action) return integrator.advance_with_action(s, span, action);
+    throw LogicError("a method that gives no action was asked for it");
+  }
+  Real settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Wanted wanted,
               const std::optional<double>& at, bool corrected) override {
+    if constexpr (gives_action) return integrator.settle(raw, out, wanted, at, corrected);
     integrator.settle(raw, out, wanted, at, corrected);
+    return Real(0);
   }
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) override { return integrator.energy(s); }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) override { integrator.accelerations(s, a); }
@@ -203,9 +215,16 @@ template <class Real = double> class AnyIntegrator : private detail::Erased<deta
   IntegratorClaims claims() const { return this->held_->claims(); }
   void bind(ParticleSystem<Real>& s) { this->held_->bind(s); }
   Advanced advance(ParticleSystem<Real>& s, const Span& span) { return this->held_->advance(s, span); }
-  void settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Wanted wanted,
+  /// Whether the method offers `advance_with_action`.
+  bool has_action() const { return this->held_->has_action(); }
+  /// @throws LogicError  if it does not
+  Advanced advance_with_action(ParticleSystem<Real>& s, const Span& span, Real& action) {
+    return this->held_->advance_with_action(s, span, action);
+  }
+  /// @return the action of the flows that complete the copy, if wanted; 0 for a method that gives none
+  Real settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Wanted wanted,
               const std::optional<double>& at, bool corrected) {
-    this->held_->settle(raw, out, wanted, at, corrected);
+    return this->held_->settle(raw, out, wanted, at, corrected);
   }
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) { return this->held_->energy(s); }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) { this->held_->accelerations(s, a); }

@@ -5,10 +5,11 @@
 
 namespace noether {
 
-/// What an evaluation is to sum beside the accelerations.
+/// What is to be summed beside the accelerations.
 struct Wanted {
   bool energy = false;
   bool virial = false;
+  bool action = false;  ///< of the flows: by integrators, not by forces
 };
 
 /// Collects what the forces of one evaluation give.

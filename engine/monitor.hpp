@@ -37,11 +37,16 @@ struct MonitorReport {
   std::string reason;  ///< why figures are empty that this monitor would have in another run
   std::string note;    ///< what else there is to say
   std::int64_t samples = 0;
+  std::vector<std::int64_t> orders;        ///< of a monitor that watches one quantity to several orders
+  std::vector<double> fluctuation;         ///< of each order: rms about the mean, relative to the scale
+  std::optional<std::int64_t> best_order;  ///< the one that fluctuates least
+  std::string verdict;                     ///< what the figures say about the run, in words
 };
 
 /// Watches settled states. Optional members: `wanted()` (energy?), `series()` and `scale()` (what files store),
-/// `report()`, `record(Sample)` (receives every monitor's samples: writers), `flush()`, `finish(Outcome)`, and a static
-/// `looks_last` for what must see a moment after all others: checkpoints.
+/// `report()`, `record(Sample)` (receives every monitor's samples: writers), `flush()`, `finish(Outcome)`,
+/// `steps_in_a_row()` (looks at so many steps from each multiple of its cadence on), `forget()` (somebody has edited
+/// the run), and a static `looks_last` for what must see a moment after all others: checkpoints.
 template <class M, class Real>
 concept Monitor = requires(M& m, const Snapshot<Real>& snapshot) {
   m.observe(snapshot);
@@ -61,6 +66,8 @@ template <class Real> struct MonitorBase {
   virtual std::optional<MonitorReport> report() const = 0;
   virtual void record(const Sample&) = 0;
   virtual void flush() = 0;
+  virtual std::int64_t steps_in_a_row() const = 0;
+  virtual void forget() = 0;
   virtual void finish(const Outcome&) = 0;
   virtual void save(SavedState&, const std::string&) const = 0;
   virtual void load(const SavedState&, const std::string&) = 0;
@@ -98,6 +105,13 @@ template <class M, class Real> struct MonitorModel final : MonitorBase<Real> {
   void flush() override {
     if constexpr (requires { monitor.flush(); }) monitor.flush();
   }
+  std::int64_t steps_in_a_row() const override {
+    if constexpr (requires { monitor.steps_in_a_row(); }) return monitor.steps_in_a_row();
+    return 1;
+  }
+  void forget() override {
+    if constexpr (requires { monitor.forget(); }) monitor.forget();
+  }
   void finish(const Outcome& outcome) override {
     if constexpr (requires { monitor.finish(outcome); }) monitor.finish(outcome);
   }
@@ -127,6 +141,8 @@ template <class Real = double> class AnyMonitor {
   void record(const Sample& sample) { held_->record(sample); }
   /// Writers hand what they have gathered to the file, before a checkpoint counts on it.
   void flush() { held_->flush(); }
+  std::int64_t steps_in_a_row() const { return held_->steps_in_a_row(); }
+  void forget() { held_->forget(); }
   void finish(const Outcome& outcome) { held_->finish(outcome); }
   void save(SavedState& saved, const std::string& prefix) const { held_->save(saved, prefix); }
   void load(const SavedState& saved, const std::string& prefix) { held_->load(saved, prefix); }

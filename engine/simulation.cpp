@@ -28,6 +28,15 @@ double seconds_since(WallClock::time_point start) {
 
 }  // namespace
 
+template <class Real> bool Simulation<Real>::Schedule::due(std::int64_t step) const {
+  return steps > 0 && (steps == 1 || step % steps < in_a_row);
+}
+
+template <class Real> std::int64_t Simulation<Real>::Schedule::next(std::int64_t step) const {
+  const std::int64_t next = next_multiple(step, steps);
+  return in_a_row > 1 && step % steps + 1 < in_a_row ? step + 1 : next;
+}
+
 template <class Real>
 Simulation<Real>::Simulation(ParticleSystem<Real> particles, AnyIntegrator<Real> integrator, Clock<Real> clock)
     : raw_(std::move(particles)), copy_(raw_), mapped_(raw_), integrator_(std::move(integrator)) {
@@ -79,16 +88,31 @@ template <class Real> void Simulation<Real>::schedule(Scheduled& added) {
   added.name = base;
   added.records = added.monitor.records();
   added.looks_last = added.monitor.looks_last();
-  added.wants_energy = added.monitor.wanted().energy;
+  added.wanted = added.monitor.wanted();
+  added.schedule.in_a_row = added.monitor.steps_in_a_row();
   for (int k = 2; std::any_of(monitors_.begin(), std::prev(monitors_.end()),
                               [&](const Scheduled& other) { return other.name == added.name; });
        ++k) {
     added.name = fmt::format("{}_{}", base, k);
   }
   if (added.schedule.steps == 0 && added.schedule.wall == 0) schedule_by_time(added);
-  if (added.wants_energy && !integrator_.claims().energy) {
+  check_wanted(added);
+}
+
+template <class Real> void Simulation<Real>::check_wanted(const Scheduled& added) const {
+  const IntegratorClaims claims = integrator_.claims();
+  if (added.wanted.energy && !claims.energy) {
     throw Error(fmt::format("monitor '{}' needs the energy, but a force of this run reports none", added.name));
   }
+  if (!added.wanted.action) return;
+  const auto refuse = [&](const std::string& why) {
+    throw Error(fmt::format("monitor '{}' needs the action of every step: {}", added.name, why));
+  };
+  if (claims.clock == ClockMode::free) refuse(fmt::format("method '{}' takes steps of varying length", claims.method));
+  if (claims.dissipative) refuse("a force of this run is dissipative, so no action tells its motion");
+  if (claims.time_dependent) refuse("a force of this run depends on time, so no energy is kept, the exact one neither");
+  if (!integrator_.has_action()) refuse(fmt::format("method '{}' gives none; it is not symplectic", claims.method));
+  if (added.schedule.steps == 0) refuse("attach it by steps, not by wall time");
 }
 
 template <class Real> void Simulation<Real>::schedule_by_time(Scheduled& added) {
@@ -162,7 +186,7 @@ template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double 
       break;
     }
     const std::int64_t steps = next_cut(end) - step();
-    const Advanced done = integrator_.advance(raw_, {steps, next_time(limit), stop_flag_});
+    const Advanced done = advance({steps, next_time(limit), stop_flag_});
     unclocked += done.steps;
     const bool chunk_is_full = unclocked >= chunk_ || done.at_limit || step() >= end;
     if (chunk_is_full) {
@@ -196,6 +220,18 @@ template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double 
   seconds_ = before + seconds_since(started);
   good_.reset();
   return result ? *result : outcome(Outcome::Kind::completed);
+}
+
+template <class Real> Advanced Simulation<Real>::advance(const Span& span) {
+  if (span.steps > 1 || !action_is_wanted()) return integrator_.advance(raw_, span);
+  action_ = Real(0);
+  return integrator_.advance_with_action(raw_, span, action_);
+}
+
+template <class Real> bool Simulation<Real>::action_is_wanted() const {
+  return std::any_of(monitors_.begin(), monitors_.end(), [&](const Scheduled& s) {
+    return s.wanted.action && s.schedule.due(step()) && s.schedule.due(step() + 1);
+  });
 }
 
 template <class Real> std::optional<Outcome> Simulation<Real>::keep_good() {
@@ -244,7 +280,7 @@ template <class Real> std::optional<Outcome> Simulation<Real>::look_at_the_end()
 }
 
 template <class Real> bool Simulation<Real>::due(const Scheduled& scheduled) const {
-  if (scheduled.schedule.steps > 0) return is_multiple(step(), scheduled.schedule.steps);
+  if (scheduled.schedule.steps > 0) return scheduled.schedule.due(step());
   if (scheduled.schedule.wall <= 0) return false;
   return std::chrono::duration<double>(looked_at_clock_ - scheduled.last_wall).count() >= scheduled.schedule.wall;
 }
@@ -253,16 +289,17 @@ template <class Real> std::optional<Outcome> Simulation<Real>::observe_due() {
   if (observed_through_ == step()) return std::nullopt;
   observed_through_ = step();
   looking_.clear();
-  bool energy = false;
+  Wanted wanted;
   for (auto& scheduled : monitors_) {
     if (!due(scheduled)) continue;
     looking_.push_back(&scheduled);
     scheduled.last_wall = looked_at_clock_;
-    energy = energy || scheduled.wants_energy;
+    wanted.energy = wanted.energy || scheduled.wanted.energy;
+    wanted.action = wanted.action || scheduled.wanted.action;
   }
   const auto stop_due = [&](const ScheduledStop& stop) { return is_multiple(step(), stop.steps); };
   if (looking_.empty() && std::none_of(stops_.begin(), stops_.end(), stop_due)) return std::nullopt;
-  const Snapshot<Real> moment = snapshot({.energy = energy});
+  const Snapshot<Real> moment = snapshot(wanted);
   if (const auto bad = fault(moment.state())) return good_ ? fall_back() : *bad;
   std::optional<StopReason> reason;
   for (ScheduledStop& stop : stops_) {
@@ -306,18 +343,17 @@ template <class Real> void Simulation<Real>::observe_times(double until) {
     if (next > until) continue;
     ++scheduled.observed;
     looking_.push_back(&scheduled);
-    wanted.energy = wanted.energy || scheduled.wants_energy;
+    wanted.energy = wanted.energy || scheduled.wanted.energy;
   }
   if (!looking_.empty()) show(snapshot(wanted, until));
 }
 
 template <class Real> std::int64_t Simulation<Real>::next_cut(std::int64_t end) const {
   std::int64_t cut = std::min(end, step() + chunk_);
-  const auto limit = [&](std::int64_t cadence) {
-    if (cadence > 0) cut = std::min(cut, next_multiple(step(), cadence));
-  };
-  for (const auto& scheduled : monitors_) limit(scheduled.schedule.steps);
-  for (const auto& stop : stops_) limit(stop.steps);
+  for (const auto& scheduled : monitors_) {
+    if (scheduled.schedule.steps > 0) cut = std::min(cut, scheduled.schedule.next(step()));
+  }
+  for (const auto& stop : stops_) cut = std::min(cut, next_multiple(step(), stop.steps));
   return cut;
 }
 
@@ -397,6 +433,7 @@ template <class Real> void Simulation<Real>::end_edit() {
   copy_ = raw_;
   mapped_ = raw_;
   for (auto& stop : stops_) stop.check.forget();
+  for (auto& scheduled : monitors_) scheduled.monitor.forget();
 }
 
 template <class Real> void Simulation<Real>::change_step(double dt) {

@@ -111,14 +111,19 @@ template <class Real = double> class Simulation {
   struct Schedule {
     std::int64_t steps = 0;
     double interval = 0, wall = 0;
+    std::int64_t in_a_row = 1;  ///< steps to look at, from each multiple on
+
+    bool due(std::int64_t step) const;
+    std::int64_t next(std::int64_t step) const;
   };
   struct Scheduled {
     std::string name;
     Schedule schedule;
     AnyMonitor<Real> monitor;
     std::chrono::steady_clock::time_point last_wall;
-    std::int64_t observed = 0;                                       ///< by time: how many multiples have been seen
-    bool records = false, looks_last = false, wants_energy = false;  ///< as the monitor says
+    std::int64_t observed = 0;                 ///< by time: how many multiples have been seen
+    bool records = false, looks_last = false;  ///< as the monitor says
+    Wanted wanted = {};
   };
   struct ScheduledStop {
     std::int64_t steps;
@@ -136,17 +141,22 @@ template <class Real = double> class Simulation {
   void register_last();
   void schedule(Scheduled& added);
   void schedule_by_time(Scheduled& added);
+  /// @throws Error  if this run has not what the monitor wants
+  void check_wanted(const Scheduled& added) const;
   /// Whether times, not steps, tell when to look: a fixed clock has turned them into steps.
   static bool by_time(const Scheduled& s) { return s.schedule.interval != 0 && s.schedule.steps == 0; }
   Snapshot<Real> snapshot(Wanted wanted, const std::optional<double>& at = std::nullopt) {
     const RunSource run{this, [](const void* self) { return static_cast<const Simulation*>(self)->save(); }};
-    return Snapshot<Real>(integrator_, raw_, copy_, mapped_, wanted, at, run);
+    return Snapshot<Real>(integrator_, raw_, copy_, mapped_, wanted, at, action_, run);
   }
   std::optional<Outcome> observe_due();
   void observe_times(double until);
   bool due(const Scheduled& scheduled) const;
   void show(const Snapshot<Real>& moment);
   std::int64_t next_cut(std::int64_t end) const;
+  /// Whether a monitor looks here and at the next step, and wants to know the action between.
+  bool action_is_wanted() const;
+  Advanced advance(const Span& span);
   double next_time(double end) const;
   /// What is wrong with a state, if it is not finite.
   std::optional<Outcome> fault(const ParticleSystem<Real>& s) const;
@@ -175,6 +185,7 @@ template <class Real = double> class Simulation {
   std::optional<double> shown_at_;      ///< free clock: where `run_until` has ended, beyond the last whole step
   std::int64_t observed_through_ = -1;  ///< last step whose due monitors have looked
   std::vector<Scheduled*> looking_;     ///< at the present moment
+  Real action_ = Real(0);               ///< of the last step, where it was wanted
   std::int64_t chunk_ = 16;             ///< steps between looks at the wall clock
   std::chrono::steady_clock::time_point looked_at_clock_;
   const std::atomic<bool>* stop_flag_ = nullptr;

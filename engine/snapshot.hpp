@@ -21,9 +21,18 @@ template <class Real> class Snapshot {
  public:
   /// @param copy, mapped  storage for the settled copies, reused from one moment to the next
   /// @param at  free clock: the time to be shown, not beyond the next whole step
+  /// @param action  of the run's flows in the step before this moment, where it was asked for
   Snapshot(AnyIntegrator<Real>& integrator, const ParticleSystem<Real>& raw, ParticleSystem<Real>& copy,
-           ParticleSystem<Real>& mapped, Wanted wanted, const std::optional<double>& at, const RunSource& run)
-      : integrator_(integrator), raw_(raw), copy_(copy), mapped_(mapped), wanted_(wanted), at_(at), run_(run) {}
+           ParticleSystem<Real>& mapped, Wanted wanted, const std::optional<double>& at, const Real& action,
+           const RunSource& run)
+      : integrator_(integrator),
+        raw_(raw),
+        copy_(copy),
+        mapped_(mapped),
+        wanted_(wanted),
+        at_(at),
+        action_(action),
+        run_(run) {}
 
   /// The settled, inertial particles.
   const ParticleSystem<Real>& state() const {
@@ -33,15 +42,25 @@ template <class Real> class Snapshot {
   }
   /// The same without the corrector: the point the composed map itself reaches.
   const ParticleSystem<Real>& mapped() const {
-    if (!have_mapped_) integrator_.settle(raw_, mapped_, wanted_, at_, false);
+    if (!have_mapped_) settling_action_ = integrator_.settle(raw_, mapped_, wanted_, at_, false);
     have_mapped_ = true;
     return mapped_;
+  }
+  /// Action of the flows of the run itself, from the unsettled state of the step before to this one [energy time]. It
+  /// is there for monitors that want it, at looks that follow a look at the step before.
+  const Real& action() const { return action_; }
+  /// Action of the flows that lead from the unsettled state to `mapped()` [energy time], for monitors that want it.
+  const Real& settling_action() const {
+    static_cast<void>(mapped());
+    return settling_action_;
   }
   /// Energy of `state()` [energy].
   const EnergyTerms<Real>& energy() const {
     if (!energy_) energy_ = integrator_.energy(state());
     return *energy_;
   }
+  /// Energy that the run's Hamiltonian has for other positions and velocities of its particles [energy].
+  EnergyTerms<Real> energy_of(const ParticleSystem<Real>& settled) const { return integrator_.energy(settled); }
   /// Accelerations at `state()`, shape (n, 3) [length/time^2].
   const VectorColumn<Real>& accelerations() const {
     if (!accelerations_) {
@@ -71,7 +90,9 @@ template <class Real> class Snapshot {
   ParticleSystem<Real>& mapped_;
   Wanted wanted_;
   std::optional<double> at_;  ///< free clock: a time after the last whole step [time]
+  Real action_;
   RunSource run_;
+  mutable Real settling_action_ = Real(0);
   mutable bool have_state_ = false, have_mapped_ = false;
   mutable std::optional<EnergyTerms<Real>> energy_;
   mutable std::optional<VectorColumn<Real>> accelerations_;

@@ -43,15 +43,17 @@ template <class Real> class TimedWord {
   Real merged_ = Real(0);
 };
 
-/// Advances by whole steps, letter by letter. Ends after a step that fails, or after which it is asked to stop.
-template <class H, class Real>
-Advanced walk_letters(H& hamiltonian, const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span) {
+/// Advances by whole steps: `flow(letter, duration)` for each letter. Ends after a step that fails, or after which it
+/// is asked to stop.
+template <class H, class Real, class Flow>
+Advanced walk_letters(const H& hamiltonian, const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span,
+                      const Flow& flow) {
   const Real dt(s.clock().dt());
   Advanced done;
   while (done.steps < span.steps) {
     word.step(s.phase(), [&](char letter, const Real& weight, const Real& fraction) {
       s.clock().set_fraction(fraction);
-      hamiltonian.flow(letter, s, weight * dt);
+      flow(letter, weight * dt);
     });
     s.clock().tick(Real(0));
     ++done.steps;
@@ -67,8 +69,17 @@ Advanced walk(H& hamiltonian, const TimedWord<Real>& word, ParticleSystem<Real>&
   if constexpr (requires { hamiltonian.run(word, s, span); }) {
     return hamiltonian.run(word, s, span);
   } else {
-    return walk_letters(hamiltonian, word, s, span);
+    return walk_letters(hamiltonian, word, s, span,
+                        [&](char letter, const Real& h) { hamiltonian.flow(letter, s, h); });
   }
+}
+
+/// The same, with the same bits; adds the action increments of the flows to `action`.
+template <class H, class Real>
+Advanced walk_with_action(H& hamiltonian, const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span,
+                          Real& action) {
+  return walk_letters(hamiltonian, word, s, span,
+                      [&](char letter, const Real& h) { action += hamiltonian.flow_with_action(letter, s, h); });
 }
 
 }  // namespace noether

@@ -69,20 +69,36 @@ template <SplitHamiltonian H> class Composition {
     if (!s.phase().opened) open(s, real(s.clock().dt()));
     return walk(hamiltonian_, word_, s, span);
   }
+  Advanced advance_with_action(ParticleSystem<real>& s, const Span& span, real& action) {
+    if (!s.phase().opened) open(s, real(s.clock().dt()));
+    return walk_with_action(hamiltonian_, word_, s, span, action);
+  }
 
-  /// Completes a copy: pending stage, word after the run (if `corrected`), inertial coordinates.
-  void settle(const ParticleSystem<real>& raw, ParticleSystem<real>& out, Wanted wanted, std::optional<double> at,
+  /// Completes a copy: pending stage, word after the run (if `corrected`), inertial coordinates. Not corrected, it
+  /// stands where the composed map stands, at the start too: behind the word before the run.
+  /// @return the action of the pending stage, if wanted
+  real settle(const ParticleSystem<real>& raw, ParticleSystem<real>& out, Wanted wanted, std::optional<double> at,
               bool corrected) {
     NOETHER_EXPECTS(!at, "a composition stands at whole steps only");
     out.assign_state(raw);
-    if (!raw.phase().opened) return;
+    real action(0);
+    if (!raw.phase().opened && (corrected || before_.empty())) return action;
     const real dt(raw.clock().dt());
     hamiltonian_.observe(wanted);
-    if (raw.phase().pending) flow(stages().back(), out, dt);
+    if (!raw.phase().opened) open(out, dt);
+    if (raw.phase().pending) {
+      const TimedStage<real>& last = stages().back();
+      if (wanted.action) {
+        action = hamiltonian_.flow_with_action(last.letter, out, last.weight * dt);
+      } else {
+        flow(last, out, dt);
+      }
+    }
     if (corrected) flow_all(after_, out, dt);
     hamiltonian_.close(out);
     hamiltonian_.observe({});
     out.phase() = Phase{};
+    return action;
   }
 
   EnergyTerms<real> energy(const ParticleSystem<real>& settled) { return hamiltonian_.energy(settled); }

@@ -90,6 +90,10 @@ V read_element(const TableReader& reader, const SceneValue& value, std::string_v
     const std::string* text = value.get<std::string>();
     if (text == nullptr) reader.wrong_kind(value, key, "a list of texts");
     return *text;
+  } else if constexpr (std::is_integral_v<V>) {
+    const std::int64_t* whole = value.get<std::int64_t>();
+    if (whole == nullptr) reader.wrong_kind(value, key, "a list of whole numbers");
+    return static_cast<V>(*whole);
   } else {
     return static_cast<V>(reader.number(value, key, dimension));
   }

@@ -420,7 +420,22 @@ class SceneReader {
     } catch (const SceneError&) {
       throw;
     } catch (const Error& error) {
+      refuse_monitor(top);
       top.fail(nullptr, "", error.message());
+    }
+  }
+
+  /// Ends at the table of the monitor that this run cannot serve, if one is the reason why it cannot be assembled.
+  void refuse_monitor(TableReader& top) const {
+    const auto tables = tables_of(top, "every");
+    for (std::size_t k = 0; k < scene_.watches.size(); ++k) {
+      Scene alone = scene_;
+      alone.watches = {scene_.watches[k]};
+      try {
+        assemble(alone);
+      } catch (const Error& error) {
+        TableReader(context_, *tables[k], "[[every]]", fmt::format("every.{}", k)).fail("type", error.message());
+      }
     }
   }
 

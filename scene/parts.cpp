@@ -2,6 +2,7 @@
 
 #include "engine/monitors.hpp"
 #include "engine/orbital_monitors.hpp"
+#include "engine/shadow_hamiltonian.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
 #include "forces/oblateness.hpp"
@@ -27,6 +28,7 @@ Parts standard_parts() {
   parts.add_monitor<CenterOfMass>();
   parts.add_monitor<Elements>();
   parts.add_monitor<ClosestApproach>();
+  parts.add_monitor<ShadowHamiltonian<double>>();
   return parts;
 }
 

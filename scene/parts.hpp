@@ -37,6 +37,8 @@ struct SceneMonitor {
   std::string name;
   SceneValue effective;
   std::function<void(Simulation<double>&, const Cadence&)> attach;
+  /// What it costs beside the run, in words, by particles and cadence [steps]; empty for what is not worth a word.
+  std::function<std::string(Index, std::int64_t)> cost;
 };
 
 namespace detail {
@@ -99,9 +101,12 @@ class Parts {
   template <class M> static SceneMonitor read_monitor(TableReader& reader) {
     M monitor{};
     read_part(reader, monitor);
-    SceneMonitor made{std::string(part_name<M>()), SceneValue::table(), {}};
+    SceneMonitor made{std::string(part_name<M>()), SceneValue::table(), {}, {}};
     put_fields(reader, monitor, made.effective);
     made.attach = [monitor](Simulation<double>& sim, const Cadence& cadence) { detail::attach(sim, cadence, monitor); };
+    if constexpr (requires { monitor.cost(Index(1), std::int64_t{1}); }) {
+      made.cost = [monitor](Index particles, std::int64_t cadence) { return monitor.cost(particles, cadence); };
+    }
     return made;
   }
 

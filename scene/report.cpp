@@ -30,6 +30,12 @@ Json json_of(const MonitorReport& monitor) {
                            {"slope_unit", monitor.slope_unit.empty() ? Json() : Json(monitor.slope_unit)},
                            {"scale", monitor.scale},
                            {"samples", monitor.samples}};
+  if (!monitor.orders.empty()) {
+    members.emplace_back("orders", Json::list_of(monitor.orders));
+    members.emplace_back("fluctuation", Json::list_of(monitor.fluctuation));
+    members.emplace_back("best_order", monitor.best_order);
+    members.emplace_back("verdict", monitor.verdict);
+  }
   if (!monitor.reason.empty()) members.emplace_back("reason", monitor.reason);
   if (!monitor.note.empty()) members.emplace_back("note", monitor.note);
   return Json::object(members);
@@ -105,6 +111,7 @@ std::string figures(const MonitorReport& m) {
   add("slope", m.slope, m.slope_unit == "1" ? "" : m.slope_unit);
   if (m.slope && m.slope_error && !std::isnan(*m.slope_error)) text += fmt::format(" +- {:.1g}", *m.slope_error);
   if (!m.worst) add("last", m.last, "");
+  if (!m.verdict.empty()) text += fmt::format("{}{}", text.empty() ? "" : "; ", m.verdict);
   if (text.empty() && saw_only_nan(m)) text = "nothing finite was seen";
   for (const std::string& words : {m.reason, m.note}) {
     if (!words.empty()) text += fmt::format("{}{}", text.empty() ? "" : "; ", words);

@@ -67,6 +67,19 @@ TEST_CASE("a run that the physics stops says so on stderr, also with --quiet", "
   }
 }
 
+TEST_CASE("the shadow Hamiltonian reports each order, the best and a verdict, and what it costs", "[cli][run][json]") {
+  const SceneFolder folder(unwritten + "[[every]]\ntype = \"shadow_hamiltonian\"\nsteps = 20\norders = [4, 8]\n");
+  const std::string json = output(folder, "run scene.toml --json");
+  CHECK(has(json, "\"shadow_hamiltonian\":{\"first\":"));
+  CHECK(has(json, "\"orders\":[4,8],\"fluctuation\":["));
+  CHECK(has(json, "\"best_order\":8,\"verdict\":\"kept"));
+  CHECK(has(output(folder, "run scene.toml --fresh"), "; kept"));
+  CHECK(has(
+      output(folder, "explain scene.toml"),
+      "\n  monitor shadow_hamiltonian, every 20 steps: 4 products of 6 numbers and the energies of the kicks at each "
+      "of 5 steps in 20; keeps 60 numbers\n"));
+}
+
 TEST_CASE("the message of a completed run holds no notes", "[cli][run][json]") {
   const SceneFolder folder(unwritten +
                            "[[every]]\ntype = \"elements\"\nsteps = 10\n[[every]]\ntype = "

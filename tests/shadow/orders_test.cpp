@@ -1,0 +1,94 @@
+/// Orders of the shadow Hamiltonian in 113 bits, where it is exact, and what it is at order h^2.
+
+#include "engine/monitors.hpp"
+#include "integrators/wisdom_holman.hpp"
+#include "tests/shadow/support.hpp"
+
+#include <cmath>
+
+using namespace noether;
+
+namespace {
+
+/// Slopes of log2 of the fluctuation from one step to half of it, for each order.
+template <class I>
+std::vector<double> slopes(const I& integrator, const ParticleSystem<double>& start, double h, std::int64_t steps) {
+  const std::vector<std::int64_t>& orders = test::shadow_orders;
+  const auto coarse = test::shadow_of(integrator, start, h, steps, orders);
+  const auto fine = test::shadow_of(integrator, start, h / 2, 2 * steps, orders);
+  std::vector<double> result;
+  for (std::size_t k = 0; k < orders.size(); ++k) {
+    result.push_back(std::log2(coarse.fluctuation(k) / fine.fluctuation(k)));
+    CAPTURE(integrator.claims().method, integrator.claims().hamiltonian, orders[k], coarse.fluctuation(k), result[k]);
+    CHECK(result[k] > 0);
+  }
+  return result;
+}
+
+/// Slopes 4 and 8, and on to at least 20 at order 24: they approach 2k as h goes to 0.
+void check_orders(const std::vector<double>& found) {
+  CHECK(found[0] == Approx(4).margin(0.2));
+  CHECK(found[1] == Approx(8).margin(0.2));
+  for (std::size_t k = 1; k < found.size(); ++k) CHECK(found[k] > found[k - 1] + 2);
+  CHECK(found.back() > 20);
+}
+
+}  // namespace
+
+TEST_CASE("the shadow Hamiltonian is flat to its order under compositions of drift and kick", "[shadow]") {
+  const KineticPotential<test::HenonHeilesField, Quad> field(test::HenonHeilesField{});
+  for (const Scheme& scheme : {schemes::verlet, schemes::verlet_aba, schemes::yoshida_4, schemes::blanes_moan_s6}) {
+    CAPTURE(scheme.name);
+    check_orders(slopes(compose(field, scheme), test::henon_heiles_start(), 0.15, 300));
+  }
+}
+
+TEST_CASE("the shadow Hamiltonian is flat to its order under Wisdom-Holman in both coordinates", "[shadow]") {
+  const auto start = test::planets(1e-3);
+  for (const Coordinates coordinates : {Coordinates::jacobi, Coordinates::democratic}) {
+    const WisdomHolman<Quad> planets(WisdomHolmanOptions{.G = 1, .coordinates = coordinates});
+    for (const Scheme& scheme : {schemes::verlet_aba, schemes::aba_10_6_4}) {
+      CAPTURE(scheme.name, static_cast<int>(coordinates));
+      check_orders(slopes(compose(planets, scheme), start, 0.15, 120));
+    }
+  }
+}
+
+TEST_CASE("a quadratic Hamiltonian has an exact shadow, to every order alike", "[shadow]") {
+  const auto start = test::particle_in_plane(1, 0.2, 0, 0.7);
+  const KineticPotential<HarmonicField, Quad> spring(HarmonicField{.k = 1});
+  const auto shadow = test::shadow_of(compose(spring, schemes::verlet), start, 0.9, 200, test::shadow_orders);
+  for (std::size_t k = 0; k < test::shadow_orders.size(); ++k) CHECK(shadow.fluctuation(k) < 1e-29);
+}
+
+TEST_CASE("Verlet's shadow is the Hamiltonian and the known terms of order h^2", "[shadow]") {
+  // H + h^2 (p U'' p / 12 - |grad U|^2 / 24) for kick, drift, kick, at the middle of the window.
+  const auto start = test::henon_heiles_start();
+  const KineticPotential<test::HenonHeilesField, Quad> field(test::HenonHeilesField{});
+  std::vector<double> errors;
+  for (const double h : {0.04, 0.02}) {
+    const auto to_middle = static_cast<std::int64_t>(std::round(0.8 / h));
+    const auto shadow = test::shadow_of(compose(field, schemes::verlet), start, h, to_middle + 6, {24});
+    const auto middle = test::run(field, schemes::verlet, start.as<Quad>(), h, to_middle);
+    const test::PhasePoint<Quad> at = test::motion_of(middle);
+    const Quad x = at.x[0], y = at.x[1], u = at.v[0], v = at.v[1];
+    const Quad energy = (u * u + v * v + x * x + y * y) / Quad(2) + x * x * y - y * y * y / Quad(3);
+    const Quad ux = x + Quad(2) * x * y, uy = y + x * x - y * y;
+    const Quad curvature = u * u * (Quad(1) + Quad(2) * y) + Quad(4) * u * v * x + v * v * (Quad(1) - Quad(2) * y);
+    const Quad expanded = energy + Quad(h * h) * (curvature / Quad(12) - (ux * ux + uy * uy) / Quad(24));
+    errors.push_back(std::fabs(static_cast<double>(shadow.values()[0] - expanded)));
+  }
+  CHECK(errors[0] < 1e-6);
+  CHECK(std::log2(errors[0] / errors[1]) == Approx(4).margin(0.05));
+}
+
+TEST_CASE("in doubles the shadow is five orders of magnitude flatter than the energy", "[shadow]") {
+  const KineticPotential field(test::HenonHeilesField{});
+  Simulation simulation(test::henon_heiles_start(), compose(field, schemes::verlet), 0.1);
+  auto& shadow = simulation.every(1, ShadowHamiltonian<>());
+  auto& energy = simulation.every(1, Energy{});
+  REQUIRE(simulation.run(10'000).ok());
+  CHECK(energy.rms() > 1e5 * shadow.fluctuation(shadow.best()));
+  CHECK(shadow.fluctuation(shadow.best()) < 1e-14);
+  CHECK_THAT(shadow.verdict(), Catch::Matchers::StartsWith("kept to rounding: order "));
+}
