@@ -19,6 +19,7 @@ struct Series {
   std::vector<Index> shape;  ///< of one sample; empty for a number
   std::vector<double> values;
   std::vector<std::string> columns = {};  ///< names along the last axis of the shape, where it has any
+  std::vector<std::int64_t> orders = {};  ///< or orders along it, of one quantity to several orders
 };
 
 /// All quantities of one monitor at one moment.

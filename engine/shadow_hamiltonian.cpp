@@ -226,14 +226,12 @@ template <class Real> double ShadowHamiltonian<Real>::fluctuation(std::size_t at
 template <class Real> std::vector<Series> ShadowHamiltonian<Real>::series() const {
   if (values_.empty()) return {};
   std::vector<double> now, flatness;
-  std::vector<std::string> columns;
   for (std::size_t k = 0; k < values_.size(); ++k) {
     now.push_back(static_cast<double>(values_[k]));
     flatness.push_back(fluctuation(k));
-    columns.push_back(std::to_string(orders[k]));
   }
   const std::vector<Index> shape = {static_cast<Index>(orders.size())};
-  return {{"value", "energy", shape, now, columns}, {"fluctuation", "1", shape, flatness, columns}};
+  return {{"value", "energy", shape, now, {}, orders}, {"fluctuation", "1", shape, flatness, {}, orders}};
 }
 
 template <class Real> MonitorReport ShadowHamiltonian<Real>::report() const {

@@ -432,6 +432,7 @@ class TrajectoryWriter::File {
     for (const Series& one : sample.series) {
       hdf5_->set_attribute(group + one.name, "noether_unit", unit_in_words(one.dimension, *units_));
       if (!one.columns.empty()) hdf5_->set_attribute(group + one.name, "columns", one.columns);
+      if (!one.orders.empty()) hdf5_->set_attribute(group + one.name, "orders", one.orders);
     }
   }
 

@@ -1,6 +1,7 @@
 // run.h5: its layout as others read it, and cutting back.
 
 #include "engine/orbital_monitors.hpp"
+#include "engine/shadow_hamiltonian.hpp"
 #include "io/digest.hpp"
 #include "io/hdf5_file.hpp"
 #include "io/inspect.hpp"
@@ -150,6 +151,21 @@ TEST_CASE("a series that names its columns has them in the file", "[trajectory]"
   CHECK_FALSE(file.has_attribute("/noether/monitors/energy/total", "columns"));
   CHECK(file.text_attribute(path, "noether_unit") == "various");
   CHECK(file.open(path).read_reals(3, 1) == std::vector<double>{3, -3, 3, -3});
+}
+
+TEST_CASE("the shadow Hamiltonian stands in the file with its orders, a row for each window", "[trajectory]") {
+  const test::ScratchFolder folder;
+  WritingRun run(folder / "run.h5");
+  run.simulation.every(1, ShadowHamiltonian<>({4, 8}));
+  REQUIRE(run.simulation.run(20).ok());
+  run.writer->flush();
+  const io::Hdf5File file = io::Hdf5File::open_to_read(folder / "run.h5");
+  const std::string group = "/noether/monitors/shadow_hamiltonian/";
+  CHECK(file.open(group + "value").shape() == std::vector<Index>{17, 2});
+  CHECK(file.open(group + "fluctuation").shape() == std::vector<Index>{17, 2});
+  CHECK(file.open(group + "step").read_integers().front() == 4);
+  for (const char* name : {"value", "fluctuation"}) CHECK(file.has_attribute(group + name, "orders"));
+  CHECK(file.has_attribute(group + "value", "noether_unit"));
 }
 
 TEST_CASE("a resumed run's file equals that of an uninterrupted one, value for value", "[trajectory][restart]") {
