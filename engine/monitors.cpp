@@ -15,6 +15,10 @@ Quad wide(const Quad& x) { return x; }
 
 template <class Real> Vec3<Quad> wide(const Vec3<Real>& v) { return Vec3<Quad>(wide(v[0]), wide(v[1]), wide(v[2])); }
 
+Vec3<double> narrow(const Vec3<Quad>& v) {
+  return Vec3<double>(static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2]));
+}
+
 std::vector<double> list(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
 std::string per_time(std::string_view unit, const std::string& time_unit) {
@@ -76,22 +80,23 @@ MonitorReport Energy::report() const {
   return report;
 }
 
-void VectorInvariant::add(double time, const Vec3<Quad>& value, const Quad& scale) {
-  const Quad length = sqrt(norm2(value));
-  if (!begun_) {
-    begun_ = true;
-    reference_ = value;
-    scale_ = static_cast<double>(scale);
-    if (!(scale_ > 0)) scale_ = 1;
-  }
+void VectorInvariant::begin(const Vec3<Quad>& value, const Quad& scale) {
+  begun_ = true;
+  reference_ = value;
+  scale_ = static_cast<double>(scale);
+  if (!(scale_ > 0)) scale_ = 1;
+}
+
+/// What has changed is small and exact: from here on doubles will do.
+void VectorInvariant::add(double time, const Vec3<Quad>& value) {
+  const Vec3<double> change = narrow(value - reference_), reference = narrow(reference_);
   for (int k = 0; k < 3; ++k) value_[static_cast<std::size_t>(k)] = static_cast<double>(value[k]);
-  const Vec3<Quad> change = value - reference_;
-  error_ = static_cast<double>(sqrt(norm2(change)) / Quad(scale_));
+  error_ = std::hypot(change[0], change[1], change[2]) / scale_;
   direction_error_ = 0;
   if (has_direction()) {
-    const Quad reference_length = sqrt(norm2(reference_));
-    const Quad sine = sqrt(norm2(cross(reference_, value))) / (reference_length * length);
-    direction_error_ = static_cast<double>(atan2(sine, dot(reference_, value) / (reference_length * length)));
+    const double length = std::hypot(reference[0], reference[1], reference[2]);
+    const Vec3<double> unit = reference / length, turn = change / length, across = cross(unit, turn);
+    direction_error_ = std::atan2(std::hypot(across[0], across[1], across[2]), 1 + dot(unit, turn));
   }
   worst_direction_ = std::max(worst_direction_, direction_error_);
   if (with_direction_ && !has_direction()) direction_error_ = std::numeric_limits<double>::quiet_NaN();
@@ -99,7 +104,9 @@ void VectorInvariant::add(double time, const Vec3<Quad>& value, const Quad& scal
 }
 
 bool VectorInvariant::has_direction() const {
-  return with_direction_ && static_cast<double>(sqrt(norm2(reference_))) > 1e-6 * scale_;
+  if (!with_direction_) return false;
+  const Vec3<double> reference = narrow(reference_);
+  return std::hypot(reference[0], reference[1], reference[2]) > 1e-6 * scale_;
 }
 
 std::vector<Series> VectorInvariant::series() const {
@@ -147,28 +154,33 @@ void VectorInvariant::load_series(const SavedState& saved, const std::string& pr
 
 template <class Real> void Momentum::observe(const Snapshot<Real>& now) {
   const ParticleSystem<Real>& s = now.state();
+  const auto of = [&](Index i) { return Vec3<Quad>(wide(s.masses()[i]) * wide(s.velocities()[i])); };
   Vec3<Quad> sum = Vec3<Quad>::Zero();
-  Quad scale = 0;
-  for (Index i = 0; i < s.size(); ++i) {
-    const Vec3<Quad> p = wide(s.masses()[i]) * wide(s.velocities()[i]);
-    sum += p;
-    scale += sqrt(norm2(p));
+  for (Index i = 0; i < s.size(); ++i) sum += of(i);
+  if (!begun()) {
+    Quad scale = 0;
+    for (Index i = 0; i < s.size(); ++i) scale += sqrt(norm2(of(i)));
+    begin(sum, scale);
+    time_unit_ = std::string(now.units().time);
   }
-  time_unit_ = std::string(now.units().time);
-  add(now.time(), sum, scale);
+  add(now.time(), sum);
 }
 
 template <class Real> void AngularMomentum::observe(const Snapshot<Real>& now) {
   const ParticleSystem<Real>& s = now.state();
   Vec3<Quad> sum = Vec3<Quad>::Zero();
-  Quad scale = 0;
   for (Index i = 0; i < s.size(); ++i) {
-    const Vec3<Quad> x = wide(s.positions()[i]), p = wide(s.masses()[i]) * wide(s.velocities()[i]);
-    sum += cross(x, p);
-    scale += sqrt(norm2(x) * norm2(p));
+    sum += wide(s.masses()[i]) * cross(wide(s.positions()[i]), wide(s.velocities()[i]));
   }
-  time_unit_ = std::string(now.units().time);
-  add(now.time(), sum, scale);
+  if (!begun()) {
+    Quad scale = 0;
+    for (Index i = 0; i < s.size(); ++i) {
+      scale += wide(s.masses()[i]) * sqrt(norm2(wide(s.positions()[i])) * norm2(wide(s.velocities()[i])));
+    }
+    begin(sum, scale);
+    time_unit_ = std::string(now.units().time);
+  }
+  add(now.time(), sum);
 }
 
 template <class Real> void CenterOfMass::observe(const Snapshot<Real>& now) {
@@ -196,7 +208,8 @@ template <class Real> void CenterOfMass::observe(const Snapshot<Real>& now) {
     departure[static_cast<Index>(k)] -= start_[k] + t * start_[k + 3];
   }
   slope_unit_ = per_time(now.units().length, std::string(now.units().time));
-  departures_.add(now.time(), static_cast<double>(sqrt(norm2(departure))));
+  const Vec3<double> away = narrow(departure);
+  departures_.add(now.time(), std::hypot(away[0], away[1], away[2]));
 }
 
 std::vector<Series> CenterOfMass::series() const {

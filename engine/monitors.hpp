@@ -66,8 +66,10 @@ class VectorInvariant {
  protected:
   VectorInvariant(std::string dimension, bool with_direction)
       : dimension_(std::move(dimension)), with_direction_(with_direction) {}
-  /// @param scale  what the error is relative to; only its first value counts
-  void add(double time, const Vec3<Quad>& value, const Quad& scale);
+  bool begun() const { return begun_; }
+  /// The first value. @param scale  what errors are relative to
+  void begin(const Vec3<Quad>& value, const Quad& scale);
+  void add(double time, const Vec3<Quad>& value);
   void save_series(SavedState& saved, const std::string& prefix) const;
   void load_series(const SavedState& saved, const std::string& prefix);
   std::string time_unit_;
