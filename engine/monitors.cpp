@@ -39,6 +39,7 @@ template <class Real> void Energy::observe(const Snapshot<Real>& now) {
     begun_ = true;
     const Quad total = wide(energy.total());
     reference_ = total;
+    first_ = static_cast<double>(total);
     const double t = static_cast<double>(energy.kinetic), u = static_cast<double>(energy.potential);
     scale_ = std::max(std::abs(static_cast<double>(total)), 1e-3 * (t + std::abs(u)));
     if (scale_ == 0) scale_ = 1;
@@ -50,10 +51,16 @@ template <class Real> void Energy::observe(const Snapshot<Real>& now) {
     }
     time_unit_ = std::string(now.units().time);
   }
-  const Real change = energy.total() - static_cast<Real>(reference_);
+  Real reference;
+  if constexpr (std::is_same_v<Real, double>) {
+    reference = first_;
+  } else {
+    reference = reference_;
+  }
+  const Real change = energy.total() - reference;
   now_ = {static_cast<double>(energy.total()), static_cast<double>(energy.kinetic),
           static_cast<double>(energy.potential), static_cast<double>(change / Real(scale_))};
-  totals_.add(now.time(), now_[0]);
+  finite_ = finite_ && std::isfinite(now_[0]);
   errors_.add(now.time(), now_[3]);
 }
 
@@ -66,13 +73,13 @@ std::vector<Series> Energy::series() const {
 
 MonitorReport Energy::report() const {
   MonitorReport report;
-  report.samples = totals_.samples();
+  report.samples = errors_.samples();
   if (report.samples == 0) return report;
-  report.first = totals_.first();
-  report.last = totals_.last();
+  report.first = first_;
+  report.last = now_[0];
   report.scale = scale_;
   report.reason = why_not_;
-  if (!std::isfinite(totals_.worst())) report.reason = "the energy is beyond the range of double precision";
+  if (!finite_) report.reason = "the energy is beyond the range of double precision";
   if (!report.reason.empty()) return report;
   report.worst = errors_.worst();
   report.rms = errors_.rms();

@@ -19,12 +19,13 @@ namespace noether {
 class Energy {
  public:
   static constexpr auto describe() {
-    return part<Energy>(
-        "energy", "total energy and its relative error", formula("(E - E0) / max(|E0|, 1e-3 (T0 + |U0|))"),
-        source("HairerLubichWanner2006"), quantities("total, kinetic, potential [energy], relative_error [1]"),
-        state<&Energy::begun_>("begun"), state<&Energy::reference_>("reference"), state<&Energy::scale_>("scale"),
-        state<&Energy::now_>("now"), state<&Energy::totals_>("totals"), state<&Energy::errors_>("errors"),
-        state<&Energy::why_not_>("why_not"), state<&Energy::time_unit_>("time_unit"));
+    return part<Energy>("energy", "total energy and its relative error",
+                        formula("(E - E0) / max(|E0|, 1e-3 (T0 + |U0|))"), source("HairerLubichWanner2006"),
+                        quantities("total, kinetic, potential [energy], relative_error [1]"),
+                        state<&Energy::begun_>("begun"), state<&Energy::reference_>("reference"),
+                        state<&Energy::scale_>("scale"), state<&Energy::first_>("first"), state<&Energy::now_>("now"),
+                        state<&Energy::finite_>("finite"), state<&Energy::errors_>("errors"),
+                        state<&Energy::why_not_>("why_not"), state<&Energy::time_unit_>("time_unit"));
   }
 
   static Wanted wanted() { return {.energy = true}; }
@@ -44,9 +45,10 @@ class Energy {
  private:
   bool begun_ = false;
   Quad reference_ = 0;
-  double scale_ = 0;
+  double scale_ = 0, first_ = 0;
   std::array<double, 4> now_{};  ///< total, kinetic, potential, relative error
-  SeriesStatistics totals_, errors_;
+  bool finite_ = true;           ///< every total so far
+  SeriesStatistics errors_;
   std::string why_not_, time_unit_;
 };
 
