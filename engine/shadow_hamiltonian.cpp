@@ -270,7 +270,9 @@ template <class Real> std::string ShadowHamiltonian<Real>::verdict() const {
     return fmt::format("force is no gradient: it differs from that of its energy by {:.1e} of its size",
                        gradient_error_);
   }
+  if (!std::isfinite(least)) return "step too large: the values left the range of double precision";
   if (least <= rounding()) return "kept to rounding: " + best_of;
+  if (least > 0.1) return fmt::format("step too large: no order fluctuates less than {:.1e}", least);
   // An asymptotic series that is used beyond its smallest term grows; what no series describes stays where it is.
   if (last > 1.2 * least) {
     return fmt::format("step too large: {}, and higher orders by more, not less ({:.1e} at {})", best_of, last,

@@ -5,6 +5,7 @@
 #include "engine/shadow_hamiltonian.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
+#include "forces/henon_heiles.hpp"
 #include "forces/oblateness.hpp"
 #include "forces/sum.hpp"
 #include "integrators/kinetic_potential.hpp"
@@ -21,6 +22,7 @@ Parts standard_parts() {
   parts.add_force<UniformField>();
   parts.add_force<OscillatingField>();
   parts.add_force<HarmonicField>();
+  parts.add_force<HenonHeiles>();
   parts.add_force<LinearDrag>();
   parts.add_monitor<Energy>();
   parts.add_monitor<Momentum>();

@@ -30,6 +30,7 @@ struct Example {
 const std::vector<Example> all = {
     {"driven_oscillator", driven_oscillator::program, Length::quick, Bits::of_this_machine},
     {"figure_eight", figure_eight::program, Length::quick},
+    {"henon_heiles", henon_heiles::program, Length::quick},
     {"kepler", kepler::program, Length::quick},
     {"oblate_saturn", oblate_saturn::program, Length::slow, Bits::of_this_machine},
     {"outer_solar_system", outer_solar_system::program, Length::nightly, Bits::everywhere, 4000},

@@ -6,11 +6,13 @@
 
 #include "engine/monitors.hpp"
 #include "engine/orbital_monitors.hpp"
+#include "engine/shadow_hamiltonian.hpp"
 #include "engine/simulation.hpp"
 #include "engine/units.hpp"
 #include "forces/check_gradient.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
+#include "forces/henon_heiles.hpp"
 #include "forces/linear_drag.hpp"
 #include "forces/sum.hpp"
 #include "integrators/composition.hpp"
@@ -47,6 +49,9 @@ namespace examples::driven_oscillator {
 }
 namespace examples::figure_eight {
 #include "examples/figure_eight/main.cpp"
+}
+namespace examples::henon_heiles {
+#include "examples/henon_heiles/main.cpp"
 }
 namespace examples::kepler {
 #include "examples/kepler/main.cpp"

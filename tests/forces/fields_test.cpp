@@ -1,5 +1,6 @@
 #include "forces/check_gradient.hpp"
 #include "forces/external_fields.hpp"
+#include "forces/henon_heiles.hpp"
 #include "forces/gravity.hpp"
 #include "forces/oblateness.hpp"
 #include "forces/sum.hpp"
@@ -44,6 +45,7 @@ TEST_CASE("the fields are minus the gradients of their energies", "[fields]") {
   auto s = four_bodies();
   s.clock() = Clock<double>::fixed(0.3, 0.1, 4);
   CHECK(gradient_error(UniformField{{0.1, -0.4, 2}}, s) < 1e-20);
+  CHECK(gradient_error(HenonHeiles{.omega = 0.7, .length = 3}, s) < 1e-20);
   CHECK(gradient_error(OscillatingField{{0.1, -0.4, 2}, 1.5, 0.2}, s) < 1e-20);
   CHECK(gradient_error(HarmonicField{2.5}, s) < 1e-20);
   CHECK(gradient_error(tilted, s) < 1e-20);

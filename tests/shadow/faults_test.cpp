@@ -65,6 +65,14 @@ TEST_CASE("a step too large is named: a plateau, then growth with the order", "[
   CHECK_THAT(shadow.verdict(), StartsWith("step too large: order "));
 }
 
+TEST_CASE("a run that leaves all bounds has no shadow, and the verdict does not praise it", "[shadow]") {
+  Simulation simulation(test::henon_heiles_start(),
+                        compose(KineticPotential(test::HenonHeilesField{}), schemes::verlet), 1.2);
+  auto& shadow = simulation.every(1, ShadowHamiltonian<>());
+  CHECK(simulation.run(1000).kind == Outcome::Kind::diverged);
+  CHECK_THAT(shadow.verdict(), StartsWith("step too large: "));
+}
+
 TEST_CASE("a wrong digit in a scheme leaves the shadow flat; its distance from the energy tells the order",
           "[shadow]") {
   // A composition with wrong weights is symplectic still, but its shadow differs from H at a lower order of h.
