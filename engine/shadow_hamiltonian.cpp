@@ -23,8 +23,12 @@ double binomial(std::int64_t n, std::int64_t k) {
   return result;
 }
 
+[[noreturn]] void refuse_saved() {
+  throw Error("the window of a shadow Hamiltonian was saved in parts that do not fit");
+}
+
 /// (q' - q) . (p' + p) of one particle without its mass, in differences.
-template <class Real> struct Pair {
+template <class Real> struct Difference {
   const VectorColumn<Real>&x_old, &v_old, &x_new, &v_new;
 
   Real at(Index i) const {
@@ -140,7 +144,8 @@ template <class Real> void ShadowHamiltonian<Real>::compare_force_and_energy(con
 /// Adds the present point to the window, with its products with all points before it.
 template <class Real> void ShadowHamiltonian<Real>::append(const Snapshot<Real>& now) {
   const ParticleSystem<Real>& s = now.mapped();
-  if (!points_.empty() && points_.back().step + 1 != now.step()) points_.clear();
+  const bool goes_on = !points_.empty() && points_.back().step + 1 == now.step() && points_.back().x.size() == s.size();
+  if (!goes_on) points_.clear();
   if (points_.size() == static_cast<std::size_t>(steps_in_a_row())) {
     std::rotate(points_.begin(), points_.begin() + 1, points_.end());  // the oldest one's memory serves the newest
   } else {
@@ -165,12 +170,12 @@ template <class Real> void ShadowHamiltonian<Real>::append(const Snapshot<Real>&
 template <class Real>
 Real ShadowHamiltonian<Real>::product(const Point& older, const Point& newer, const ScalarColumn<Real>& masses,
                                       const Real& action) const {
-  const Pair<Real> pair{older.x, older.v, newer.x, newer.v}, low{older.x_low, older.v, newer.x_low, newer.v};
+  const Difference<Real> high{older.x, older.v, newer.x, newer.v}, low{older.x_low, older.v, newer.x_low, newer.v};
   const bool compensated = newer.x_low.size() == masses.size() && older.x_low.size() == masses.size();
   const Real sum = reduce(masses.size(), Real(0), [&](Index begin, Index end) {
     Real part(0);
     for (Index i = begin; i < end; ++i) {
-      part += masses[i] * pair.at(i);
+      part += masses[i] * high.at(i);
       if (compensated) part += masses[i] * low.at(i);
     }
     return part;
@@ -328,10 +333,9 @@ template <class Real> void ShadowHamiltonian<Real>::load(const SavedState& saved
   noise_ = figures[1];
   wear_ = figures[2];
   gradient_error_ = figures[3];
-  const auto refuse = [] { throw Error("the window of a shadow Hamiltonian was saved in parts that do not fit"); };
   const std::size_t most = static_cast<std::size_t>(steps_in_a_row()), count = shape.size() / 3;
-  if (count > most || (samples_ > 0) != !numbers.empty()) refuse();
-  if (!numbers.empty() && numbers.size() != 3 * orders.size()) refuse();
+  if (shape.size() % 3 != 0 || count > most || (samples_ > 0) != !numbers.empty()) refuse_saved();
+  if (!numbers.empty() && numbers.size() != 3 * orders.size()) refuse_saved();
   figures_.assign(numbers.size() / 3, {});
   for (std::size_t k = 0; k < figures_.size(); ++k) {
     figures_[k].first = numbers[3 * k];
@@ -339,17 +343,25 @@ template <class Real> void ShadowHamiltonian<Real>::load(const SavedState& saved
     figures_[k].squares = numbers[3 * k + 2];
     figures_[k].errors.load(saved, name("errors_" + std::to_string(k)));
   }
+  load_points(shape, columns);
+  values_.clear();
+}
+
+/// The points of a window, from their shapes (step, particles, low words each) and all their numbers in a row.
+template <class Real>
+void ShadowHamiltonian<Real>::load_points(const std::vector<std::int64_t>& shape, const std::vector<Real>& numbers) {
   points_.clear();
   std::size_t at = 0;
   const auto next = [&] {
-    if (at >= columns.size()) refuse();
-    return columns[at++];
+    if (at >= numbers.size()) refuse_saved();
+    return numbers[at++];
   };
-  for (std::size_t p = 0; p < count; ++p) {
+  for (std::size_t p = 0; p < shape.size() / 3; ++p) {
     Point point;
     point.step = shape[3 * p];
     const std::int64_t n = shape[3 * p + 1], low = shape[3 * p + 2];
-    if (n < 0 || static_cast<std::size_t>(n) > columns.size() || (low != 0 && low != n)) refuse();
+    if (point.step != shape[0] + static_cast<std::int64_t>(p) || n != shape[1]) refuse_saved();
+    if (n < 0 || static_cast<std::size_t>(n) > numbers.size() || (low != 0 && low != n)) refuse_saved();
     point.x = VectorColumn<Real>(n);
     point.v = VectorColumn<Real>(n);
     point.x_low = VectorColumn<Real>(low);
@@ -360,7 +372,6 @@ template <class Real> void ShadowHamiltonian<Real>::load(const SavedState& saved
     for (std::size_t m = 0; m < p; ++m) point.products.push_back(next());
     points_.push_back(std::move(point));
   }
-  values_.clear();
 }
 
 template class ShadowHamiltonian<double>;

@@ -93,6 +93,7 @@ template <class Real = double> class ShadowHamiltonian {
   void lay_out_weights();
   Real value(std::size_t at, const Real& h) const;
   void take(double time);
+  void load_points(const std::vector<std::int64_t>& shape, const std::vector<Real>& numbers);
   void begin(const Snapshot<Real>& now);
   double rounding() const;
   void compare_force_and_energy(const Snapshot<Real>& now);

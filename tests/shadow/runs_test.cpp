@@ -63,6 +63,25 @@ TEST_CASE("a shadow that starts again in the middle of its window goes on with t
   }
 }
 
+TEST_CASE("saved windows whose parts do not fit are refused", "[shadow]") {
+  Simulation<double> simulation = field();
+  simulation.every(1, ShadowHamiltonian<>());
+  REQUIRE(simulation.run(20).ok());
+  const SavedRun good = simulation.save();
+  simulation.restore(good);
+  const auto damaged = [&](const std::string& key, const auto& damage) {
+    SavedRun bad = good;
+    damage(bad.parts.at("shadow_hamiltonian").at("state/" + key));
+    CHECK_THROWS_WITH(simulation.restore(bad), Contains("saved in parts that do not fit"));
+  };
+  damaged("columns", [](SavedArray& array) { std::get<std::vector<double>>(array).pop_back(); });
+  damaged("numbers", [](SavedArray& array) { std::get<std::vector<double>>(array).pop_back(); });
+  damaged("shape", [](SavedArray& array) { std::get<std::vector<std::int64_t>>(array)[1] = -1; });
+  damaged("shape", [](SavedArray& array) { std::get<std::vector<std::int64_t>>(array)[1] = 2; });
+  damaged("shape", [](SavedArray& array) { std::get<std::vector<std::int64_t>>(array)[2] = 7; });
+  damaged("shape", [](SavedArray& array) { std::get<std::vector<std::int64_t>>(array).resize(99, 1); });
+}
+
 TEST_CASE("a monitor may look at several steps in a row", "[shadow]") {
   for (const std::int64_t cadence : {1, 2, 3, 10}) {
     std::vector<std::int64_t> seen, expected;
