@@ -99,6 +99,6 @@ TEST_CASE("a wrong digit in a scheme leaves the shadow flat; its distance from t
     }
     return std::log2(distances[0] / distances[1]);
   };
-  CHECK(slope(schemes::blanes_moan_s6) == Approx(4).margin(0.3));
-  CHECK(slope(wrong) == Approx(2).margin(0.3));
+  CHECK(std::fabs(slope(schemes::blanes_moan_s6) - 4) < 0.3);
+  CHECK(std::fabs(slope(wrong) - 2) < 0.3);
 }

@@ -27,8 +27,8 @@ std::vector<double> slopes(const I& integrator, const ParticleSystem<double>& st
 
 /// Slopes 4 and 8, and on to at least 20 at order 24: they approach 2k as h goes to 0.
 void check_orders(const std::vector<double>& found) {
-  CHECK(found[0] == Approx(4).margin(0.2));
-  CHECK(found[1] == Approx(8).margin(0.2));
+  CHECK(std::fabs(found[0] - 4) < 0.2);
+  CHECK(std::fabs(found[1] - 8) < 0.2);
   for (std::size_t k = 1; k < found.size(); ++k) CHECK(found[k] > found[k - 1] + 2);
   CHECK(found.back() > 20);
 }
@@ -79,7 +79,7 @@ TEST_CASE("Verlet's shadow is the Hamiltonian and the known terms of order h^2",
     errors.push_back(std::fabs(static_cast<double>(shadow.values()[0] - expanded)));
   }
   CHECK(errors[0] < 1e-6);
-  CHECK(std::log2(errors[0] / errors[1]) == Approx(4).margin(0.05));
+  CHECK(std::fabs(std::log2(errors[0] / errors[1]) - 4) < 0.05);
 }
 
 TEST_CASE("in doubles the shadow is five orders of magnitude flatter than the energy", "[shadow]") {
