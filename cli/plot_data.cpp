@@ -275,16 +275,40 @@ bool changes_energy(const SceneValue& scene) {
   return false;
 }
 
-std::optional<PlotError> read_error(const io::MonitorSeries& monitor, double time_length) {
-  const auto found = monitor.quantities.find("relative_error");
-  if (found == monitor.quantities.end()) return {};
-  PlotError error;
-  const std::vector<double>& values = found->second.second;
-  for (std::size_t k = 0; k < values.size() && k < monitor.time.size(); ++k) {
-    const double size = std::abs(values[k]);
+/// Adds the sizes of `values[first]`, `values[first + stride]`, ... to an error.
+void add_curve(PlotError& error, const std::string& name, const std::vector<double>& time,
+               const std::vector<double>& values, std::size_t first, std::size_t stride) {
+  PlotCurve curve{name, {}};
+  error.worst = 0;
+  for (std::size_t k = 0; k < time.size() && first + k * stride < values.size(); ++k) {
+    const double size = std::abs(values[first + k * stride]);
     if (!(size > 0) || !std::isfinite(size)) continue;
-    error.points.push_back({monitor.time[k] / time_length, size});
+    curve.points.push_back({time[k], size});
     error.worst = std::max(error.worst, size);
+  }
+  error.curves.push_back(std::move(curve));
+}
+
+/// The relative error of a monitor; of a shadow Hamiltonian the change of each order since the start.
+std::optional<PlotError> read_error(const io::MonitorSeries& monitor, double time_length) {
+  std::vector<double> time = monitor.time;
+  for (double& t : time) t /= time_length;
+  PlotError error;
+  if (const auto found = monitor.quantities.find("relative_error"); found != monitor.quantities.end()) {
+    add_curve(error, "", time, found->second.second, 0, 1);
+    return error;
+  }
+  const auto found = monitor.quantities.find("value");
+  if (monitor.name != "shadow_hamiltonian" || found == monitor.quantities.end() || found->second.first.size() != 1) {
+    return {};
+  }
+  const auto orders = static_cast<std::size_t>(found->second.first[0]);
+  std::vector<double> change = found->second.second;
+  for (std::size_t k = change.size(); k-- > 0;)
+    change[k] = (change[k] - change[k % orders]) / monitor.scale.value_or(1);
+  for (std::size_t k = 0; k < orders; ++k) {
+    const bool known = k < monitor.orders.size();
+    add_curve(error, known ? fmt::format("order {}", monitor.orders[k]) : "", time, change, k, orders);
   }
   return error;
 }
@@ -333,20 +357,23 @@ PlotData read_plot_data(const std::filesystem::path& file) {
   data.time_label = with_unit("time", unit.name);
   data.end = end / unit.length;
   data.orbits = read_orbits(frames, scene, unit, file);
-  for (const auto& [name, title] : {std::pair{"energy", "Energy"}, std::pair{"angular_momentum", "Angular momentum"}}) {
+  for (const auto& [name, title] :
+       {std::pair{"energy", "Energy"}, std::pair{"shadow_hamiltonian", "Shadow Hamiltonian"},
+        std::pair{"momentum", "Momentum"}, std::pair{"angular_momentum", "Angular momentum"}}) {
     const auto found =
         std::find_if(monitors.begin(), monitors.end(), [wanted = name](const auto& m) { return m.name == wanted; });
     if (found == monitors.end()) continue;
     auto error = read_error(*found, unit.length);
     if (!error) continue;
     error->title = title;
-    error->label = name == std::string_view("energy") && changes_energy(scene) ? "relative change" : "relative error";
+    const bool changes = name == std::string_view("energy") && changes_energy(scene);
+    error->label = changes || error->curves.size() > 1 ? "relative change" : "relative error";
     data.errors.push_back(std::move(*error));
   }
   if (data.orbits.empty() && data.errors.empty()) {
     throw Error(
-        fmt::format("{} has nothing to draw; it needs frames (a trajectory writer) or the monitors energy or "
-                    "angular_momentum",
+        fmt::format("{} has nothing to draw; it needs frames (a trajectory writer) or a monitor of energy or "
+                    "momenta",
                     file.string()));
   }
   return data;

@@ -30,11 +30,16 @@ struct PlotOrbits {
   PlotPoint low = {-1, -1}, high = {1, 1};  ///< corners of the picture
 };
 
-/// The size of an error against time.
+struct PlotCurve {
+  std::string name;               ///< empty where it is alone in its panel
+  std::vector<PlotPoint> points;  ///< zeros left out: the axis is logarithmic
+};
+
+/// The size of an error against time, or of several that belong together.
 struct PlotError {
   std::string title, label;
-  std::vector<PlotPoint> points;  ///< zeros left out: the axis is logarithmic
-  double worst = 0;
+  std::vector<PlotCurve> curves;
+  double worst = 0;  ///< of the last curve
 };
 
 struct PlotData {

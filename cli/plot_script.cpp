@@ -15,6 +15,7 @@ namespace {
 
 /// Sizes in points; a PNG has two pixels per point.
 constexpr double panel = 430, error_width = 470, title_height = 62, legend_row = 20;
+constexpr double least_error_height = 176, between_errors = 78;
 constexpr double left_margin = 74, right_margin = 20, bottom_margin = 58, gap = 74;
 
 /// Colors that people with any color vision tell apart (P. Tol, "vibrant" and "bright").
@@ -57,16 +58,15 @@ class Layout {
     const double between = orbit_panels_ > 0 && error_panels_ > 0 ? gap + 12 : 0;
     return left_margin + orbits_width() + between + (error_panels_ > 0 ? error_width : 0) + right_margin;
   }
-  double height() const { return bottom() + panel + title_height; }
+  double height() const { return bottom() + tall() + title_height; }
 
   std::string orbit_margins(std::size_t k) const {
-    return margins(left_margin + static_cast<double>(k) * (panel + gap), bottom(), panel, panel);
+    return margins(left_margin + static_cast<double>(k) * (panel + gap), bottom() + tall() - panel, panel, panel);
   }
   std::string error_margins(std::size_t k) const {
-    constexpr double between = 78;
     const auto rows = static_cast<double>(error_panels_);
-    const double high = (panel - (rows - 1) * between) / rows;
-    const double low = bottom() + (rows - 1 - static_cast<double>(k)) * (high + between);
+    const double high = (tall() - (rows - 1) * between_errors) / rows;
+    const double low = bottom() + (rows - 1 - static_cast<double>(k)) * (high + between_errors);
     return margins(width() - right_margin - error_width, low, error_width, high);
   }
   /// The legend under the orbits, a dot and a name for each body.
@@ -74,7 +74,7 @@ class Layout {
     std::string text;
     for (std::size_t k = 0; k < legend_.size(); ++k) {
       const double x = left_margin + 6 + legend_[k].x;
-      const double y = legend_row * (static_cast<double>(legend_rows_) - 0.4 - legend_[k].y);
+      const double y = tall() - panel + legend_row * (static_cast<double>(legend_rows_) - 0.4 - legend_[k].y);
       text += fmt::format("set label {} {} at {} left noenhanced tc rgb '#202020'", 10 + k,
                           quoted(picture.orbits[k].name), at(x, y));
       text += fmt::format(" point pt 7 ps 0.9 lc rgb '{}' offset 0.9,-0.2\n", color_of(picture.orbits[k]));
@@ -89,6 +89,11 @@ class Layout {
   double orbits_width() const {
     const auto panels = static_cast<double>(orbit_panels_);
     return panels * panel + std::max(0.0, panels - 1) * gap;
+  }
+  /// Height of all panels: that of the orbits, or more where more than two errors stand one above the other.
+  double tall() const {
+    const auto rows = static_cast<double>(error_panels_);
+    return std::max(panel, rows * least_error_height + (rows - 1) * between_errors);
   }
   double bottom() const { return bottom_margin + static_cast<double>(legend_rows_) * legend_row; }
   std::string margins(double left, double low, double wide, double high) const {
@@ -153,26 +158,50 @@ std::string orbit_panel(const PlotOrbits& picture, std::size_t index, const Layo
   return text + curves + "\nunset label\n";
 }
 
+/// The curves of a panel, their names in a key where there are several.
+std::string error_curves(const PlotError& error, std::size_t panel_number) {
+  std::string data, plot;
+  for (std::size_t c = 0; c < error.curves.size(); ++c) {
+    const PlotCurve& curve = error.curves[c];
+    if (curve.points.empty()) continue;
+    const std::string name = fmt::format("e{}_{}", panel_number, c);
+    data += block(name, curve.points);
+    const std::string style =
+        curve.points.size() > 400 ? "with points pt 7 ps 0.2" : "with linespoints lw 1 pt 7 ps 0.35";
+    plot += fmt::format("{}${} {} lc rgb '{}'", plot.empty() ? "plot " : ", ", name, style,
+                        palette[(panel_number + c) % palette.size()]);
+    // In the key a dot that can be seen.
+    plot += curve.name.empty() ? " notitle"
+                               : fmt::format(" notitle, NaN with points pt 7 ps 0.8 lc rgb '{}' title {}",
+                                             palette[(panel_number + c) % palette.size()], quoted(curve.name));
+  }
+  // gnuplot refuses to draw nothing: an empty panel draws a point outside of it.
+  return data + (plot.empty() ? "plot NaN" : plot) + "\nunset label\n";
+}
+
 std::string error_panel(const PlotData& all, std::size_t k, const Layout& layout) {
   const PlotError& error = all.errors[k];
-  double low = error.worst, high = error.worst;
-  for (const PlotPoint& p : error.points) low = std::min(low, p.y);
-  // Rare dips of an error that changes sign would stretch the axis: four decades below the worst are enough.
-  const double top = error.points.empty() ? -14 : std::ceil(std::log10(high) + 0.1);
-  const double bottom = error.points.empty() ? -17 : std::max(std::floor(std::log10(low)), top - 5);
-  std::string text = block(fmt::format("e{}", k), error.points) + layout.error_margins(k);
+  double low = INFINITY, high = 0;
+  for (const PlotCurve& curve : error.curves) {
+    for (const PlotPoint& p : curve.points) low = std::min(low, p.y), high = std::max(high, p.y);
+  }
+  const bool empty = !(high > 0), several = error.curves.size() > 1;
+  // Rare dips of an error that changes sign would stretch the axis: few decades below the worst are enough.
+  const double most = empty ? -14 : std::ceil(std::log10(high) + 0.1);
+  const double bottom = empty ? -17 : std::max(std::floor(std::log10(low)), several ? -17.0 : most - 5);
+  const double top = several ? most + std::ceil((most - bottom) / 4) : most;  // room for the key
+  std::string text = layout.error_margins(k);
   text += fmt::format("set xrange [0:{:.9g}]\nset yrange [1e{:.0f}:1e{:.0f}]\nset logscale y\n",
                       all.end > 0 ? all.end : 1, std::min(bottom, top - 2), top);
-  text += "set format x '%g'\nset format y '10^{%T}'\nset ytics autofreq\n";
-  const std::string worst = error.points.empty() ? "exactly zero" : fmt::format("worst {:.1e}", error.worst);
+  text +=
+      fmt::format("set format x '%g'\nset format y '10^{{%T}}'\nset ytics {}\n", several ? "1e-18,1e3" : "autofreq");
+  const std::string worst = empty ? "exactly zero" : fmt::format("worst {:.1e}", error.worst);
+  const std::string whose = several ? " of " + error.curves.back().name : "";
   text += fmt::format("set title {} offset 0,-0.6 noenhanced tc rgb '#303030'\n",
-                      quoted(error.title + ": " + error.label + ", " + worst));
+                      quoted(error.title + ": " + error.label + ", " + worst + whose));
   text += fmt::format("set xlabel {} offset 0,0.3 noenhanced\nunset ylabel\n", quoted(all.time_label));
-  const bool dense = error.points.size() > 400;
-  const std::string style = dense ? "with points pt 7 ps 0.2" : "with linespoints lw 1 pt 7 ps 0.35";
-  // gnuplot refuses to draw nothing: an empty panel draws a point outside of it.
-  const std::string curve = error.points.empty() ? "NaN" : fmt::format("$e{} {} lc rgb '{}'", k, style, palette[k]);
-  return text + "plot " + curve + "\nunset label\n";
+  text += several ? "set key inside top right horizontal samplen 0.3 width -1\n" : "unset key\n";
+  return text + error_curves(error, k);
 }
 
 }  // namespace

@@ -217,15 +217,17 @@ bool exists(const Hdf5Handle& file, const std::string& path) {
   }
 }
 
-/// Opens an attribute if it is there and a scalar of the expected type; else the id is negative.
+/// Opens an attribute if it is there; else the id is negative. It must be of the expected type, and hold 1 to `most`
+/// values.
 Hdf5Handle find_attribute(const Hdf5Handle& file, const std::string& path, const std::string& name,
-                          ElementType expected) {
+                          ElementType expected, hssize_t most = 1) {
   const Hdf5Handle object(H5Oopen(file, path.c_str(), H5P_DEFAULT), H5Oclose, file.file());
   if (object < 0 || H5Aexists(object, name.c_str()) <= 0) return {-1, H5Aclose, file.file()};
   Hdf5Handle attribute = own(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose, file.file(), reading(path));
   const Hdf5Handle type = own(H5Aget_type(attribute), H5Tclose, file.file(), reading(path));
   const Hdf5Handle space = own(H5Aget_space(attribute), H5Sclose, file.file(), reading(path));
-  if (element_type(type) != expected || H5Sget_simple_extent_npoints(space) != 1) {
+  const hssize_t values = H5Sget_simple_extent_npoints(space);
+  if (element_type(type) != expected || values < 1 || values > most) {
     refuse(file.file(),
            fmt::format("attribute '{}' of '{}' has an unexpected type; was the file written by noether?", name, path));
   }
@@ -578,6 +580,15 @@ std::int64_t Hdf5File::integer_attribute(const std::string& path, const std::str
   std::int64_t value = 0;
   if (attribute >= 0) check(H5Aread(attribute, H5T_NATIVE_INT64, &value), *handle_, reading(path));
   return value;
+}
+std::vector<std::int64_t> Hdf5File::integers_attribute(const std::string& path, const std::string& name) const {
+  constexpr hssize_t most = 4096;  // attributes stand in headers, which are short
+  const Hdf5Handle attribute = find_attribute(*handle_, path, name, ElementType::integer, most);
+  if (attribute < 0) return {};
+  const Hdf5Handle space = own(H5Aget_space(attribute), H5Sclose, handle_->file(), reading(path));
+  std::vector<std::int64_t> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
+  check(H5Aread(attribute, H5T_NATIVE_INT64, values.data()), *handle_, reading(path));
+  return values;
 }
 double Hdf5File::real_attribute(const std::string& path, const std::string& name) const {
   const Hdf5Handle attribute = find_attribute(*handle_, path, name, ElementType::real);

@@ -127,9 +127,10 @@ class Hdf5File {
   /// A text as MDAnalysis wants that of `unit`: of variable length. noether reads none, because damage to one can crash
   /// HDF5.
   void set_variable_text(const std::string& path, const std::string& name, const std::string& text) const;
-  /// Empty text, or 0, where there is no such attribute.
+  /// Empty text, 0, or an empty list where there is no such attribute.
   std::string text_attribute(const std::string& path, const std::string& name) const;
   std::int64_t integer_attribute(const std::string& path, const std::string& name) const;
+  std::vector<std::int64_t> integers_attribute(const std::string& path, const std::string& name) const;
   double real_attribute(const std::string& path, const std::string& name) const;
 
  private:

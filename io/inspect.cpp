@@ -189,6 +189,7 @@ std::vector<MonitorSeries> untried_monitors(const std::filesystem::path& path) {
       series.quantities[quantity] = {std::move(shape), dataset.read_reals()};
     }
     if (file.has_attribute(group, "scale")) series.scale = file.real_attribute(group, "scale");
+    if (series.quantities.count("value") != 0) series.orders = file.integers_attribute(group + "/value", "orders");
     // A killed writer may have been a row ahead in some of the datasets.
     series.step.resize(samples);
     series.time.resize(samples);

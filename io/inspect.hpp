@@ -22,6 +22,7 @@ struct MonitorSeries {
   std::map<std::string, std::pair<std::vector<Index>, std::vector<double>>> quantities;
   std::map<std::string, std::string> units;  ///< by quantity, and of "time"; "1" for plain numbers
   std::optional<double> scale;               ///< what relative errors are relative to
+  std::vector<std::int64_t> orders;          ///< of a quantity that is known to several orders; else empty
 };
 
 /// How much of one monitor a file holds.

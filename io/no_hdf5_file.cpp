@@ -77,6 +77,7 @@ void Hdf5File::set_attribute(const std::string&, const std::string&, const std::
 void Hdf5File::set_variable_text(const std::string&, const std::string&, const std::string&) const { unreachable(); }
 std::string Hdf5File::text_attribute(const std::string&, const std::string&) const { unreachable(); }
 std::int64_t Hdf5File::integer_attribute(const std::string&, const std::string&) const { unreachable(); }
+std::vector<std::int64_t> Hdf5File::integers_attribute(const std::string&, const std::string&) const { unreachable(); }
 double Hdf5File::real_attribute(const std::string&, const std::string&) const { unreachable(); }
 
 }  // namespace noether::io

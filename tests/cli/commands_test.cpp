@@ -224,6 +224,25 @@ TEST_CASE("plot draws PNG and SVG", "[cli][plot][slow]") {
   CHECK(png.substr(1, 3) == "PNG");
 }
 
+TEST_CASE("plot shows energy, shadow energies by order and momenta on one page", "[cli][plot][slow]") {
+  const SceneFolder folder(two_bodies +
+                           "[[every]]\ntype = \"shadow_hamiltonian\"\nsteps = 1\norders = [4, 12]\n[[every]]\ntype = "
+                           "\"momentum\"\nsteps = 5\n");
+  if (run_process({"gnuplot", "--version"}, folder.path()).exit_code != 0) {
+    WARN("gnuplot is not installed: nothing is drawn");
+    return;
+  }
+  output(folder, "run scene.toml --quiet");
+  output(folder, "plot scene.out/run.h5");
+  const std::string picture = read_text(folder / "scene.out/run.svg");
+  for (const char* text :
+       {"Energy: relative error, worst ", "Shadow Hamiltonian: relative change, worst ", " of order 12", ">order 4<",
+        ">order 12<", "Momentum: relative error", "Angular momentum: relative error"}) {
+    CAPTURE(text);
+    CHECK(has(picture, text));
+  }
+}
+
 #endif
 
 }  // namespace
