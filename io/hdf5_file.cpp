@@ -2,7 +2,7 @@
 
 #include "engine/error.hpp"
 #include "io/files.hpp"
-#include "io/hdf5_error.hpp"
+#include "io/hdf5_handle.hpp"
 #include "io/ordered_file.hpp"
 #include "io/padded_texts.hpp"
 
@@ -23,67 +23,15 @@ namespace noether::io {
 
 bool has_hdf5() noexcept { return true; }
 
-namespace {
-
-/// What all handles of one file share.
-struct FileState {
-  std::string name;
-  OrderedFile* ordered = nullptr;  ///< of a file that is written
-};
-using Context = std::shared_ptr<FileState>;
-
-}  // namespace
-
-class Hdf5Handle {
- public:
-  using Close = herr_t (*)(hid_t);
-
-  Hdf5Handle(hid_t id, Close close, Context file) : id_(id), close_(close), file_(std::move(file)) {}
-  Hdf5Handle(Hdf5Handle&& other) noexcept
-      : id_(std::exchange(other.id_, -1)), close_(other.close_), file_(std::move(other.file_)) {}
-  Hdf5Handle& operator=(Hdf5Handle&&) = delete;
-  ~Hdf5Handle() {
-    if (id_ >= 0) close_(id_);
-  }
-  operator hid_t() const { return id_; }  // NOLINT: stands wherever HDF5 wants an id
-  const Context& file() const { return file_; }
-
- private:
-  hid_t id_;
-  Close close_;
-  Context file_;
-};
+using namespace hdf5;
 
 namespace {
 
-[[noreturn]] void fail(const Context& file, const std::string& what) {
-  const std::string reason = take_hdf5_error();
-  throw FileError(reason.empty() ? what : fmt::format("{}: {}", what, reason), {.file = file->name});
-}
-
-/// What HDF5 is content with, but noether is not.
-[[noreturn]] void refuse(const Context& file, const std::string& what) { throw FileError(what, {.file = file->name}); }
-
-/// Takes an id that HDF5 returned; a negative one is an error.
-Hdf5Handle own(hid_t id, Hdf5Handle::Close close, const Context& file, const std::string& what) {
-  if (id < 0) fail(file, what);
-  return {id, close, file};
-}
-std::shared_ptr<Hdf5Handle> share(hid_t id, Hdf5Handle::Close close, const Context& file, const std::string& what) {
-  if (id < 0) fail(file, what);
-  return std::make_shared<Hdf5Handle>(id, close, file);
-}
-void check(herr_t status, const Hdf5Handle& handle, const std::string& what) {
-  if (status < 0) fail(handle.file(), what);
-}
 /// After a write that failed HDF5 goes on as if nothing were wrong: it must be able to close the file.
 void check_written(const Context& file) {
   const int error = file->ordered != nullptr ? write_error(*file->ordered) : 0;
   if (error != 0) refuse(file, fmt::format("cannot write the file: {}", std::strerror(error)));
 }
-
-std::string writing(const std::string& path) { return fmt::format("cannot write '{}'", path); }
-std::string reading(const std::string& path) { return fmt::format("cannot read '{}'", path); }
 
 /// Old file format, and no locks: an open reader must not stop a run.
 Hdf5Handle access_list(const std::filesystem::path& name) {
@@ -94,25 +42,8 @@ Hdf5Handle access_list(const std::filesystem::path& name) {
   return list;
 }
 
-/// Texts of one length, padded by zeros: those of variable length stand in a heap that HDF5 reads without a check.
-Hdf5Handle text_type(const Context& file, std::size_t size) {
-  Hdf5Handle type = own(H5Tcopy(H5T_C_S1), H5Tclose, file, "cannot prepare a type");
-  H5Tset_size(type, std::max<std::size_t>(size, 1));
-  H5Tset_strpad(type, H5T_STR_NULLPAD);
-  H5Tset_cset(type, H5T_CSET_UTF8);
-  return type;
-}
-
 hid_t on_disk(ElementType type) { return type == ElementType::real ? H5T_IEEE_F64LE : H5T_STD_I64LE; }
 hid_t in_memory(ElementType type) { return type == ElementType::real ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64; }
-
-Hdf5Handle space_of(const std::vector<Index>& shape, const Context& file, bool growing = false) {
-  std::vector<hsize_t> now(shape.begin(), shape.end()), limit(now);
-  if (growing) limit.at(0) = H5S_UNLIMITED;
-  const hid_t id =
-      shape.empty() ? H5Screate(H5S_SCALAR) : H5Screate_simple(static_cast<int>(now.size()), now.data(), limit.data());
-  return own(id, H5Sclose, file, "cannot prepare a shape");
-}
 
 Hdf5Handle linking(const Context& file) {
   Hdf5Handle list = own(H5Pcreate(H5P_LINK_CREATE), H5Pclose, file, "cannot prepare a link");
@@ -139,26 +70,6 @@ void write_fixed(const Hdf5Handle& file, const std::string& path, hid_t stored, 
   if (H5Sget_simple_extent_npoints(space) > 0) {
     check(H5Dwrite(dataset, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), file, writing(path));
   }
-}
-
-/// Sets an attribute, replacing one of the same name.
-void write_attribute(const Hdf5Handle& file, const std::string& path, const std::string& name, hid_t stored,
-                     hid_t memory, const std::vector<Index>& shape, const void* data) {
-  const std::string what = fmt::format("cannot write attribute '{}' of '{}'", name, path);
-  const Hdf5Handle object = own(H5Oopen(file, path.c_str(), H5P_DEFAULT), H5Oclose, file.file(), what);
-  if (H5Aexists(object, name.c_str()) > 0) check(H5Adelete(object, name.c_str()), file, what);
-  const Hdf5Handle space = space_of(shape, file.file());
-  const Hdf5Handle attribute =
-      own(H5Acreate2(object, name.c_str(), stored, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, file.file(), what);
-  check(H5Awrite(attribute, memory, data), file, what);
-}
-
-/// Only what noether writes is known, so that HDF5 never converts what a damaged file calls a number.
-ElementType element_type(hid_t type) {
-  if (H5Tequal(type, H5T_IEEE_F64LE) > 0) return ElementType::real;
-  if (H5Tequal(type, H5T_STD_I64LE) > 0) return ElementType::integer;
-  const bool text = H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0;
-  return text ? ElementType::text : ElementType::other;
 }
 
 /// All axes; none of a scalar.
@@ -215,23 +126,6 @@ bool exists(const Hdf5Handle& file, const std::string& path) {
     if (part != "/" && H5Lexists(file, part.c_str(), H5P_DEFAULT) <= 0) return false;
     if (end == std::string::npos) return true;
   }
-}
-
-/// Opens an attribute if it is there; else the id is negative. It must be of the expected type, and hold 1 to `most`
-/// values.
-Hdf5Handle find_attribute(const Hdf5Handle& file, const std::string& path, const std::string& name,
-                          ElementType expected, hssize_t most = 1) {
-  const Hdf5Handle object(H5Oopen(file, path.c_str(), H5P_DEFAULT), H5Oclose, file.file());
-  if (object < 0 || H5Aexists(object, name.c_str()) <= 0) return {-1, H5Aclose, file.file()};
-  Hdf5Handle attribute = own(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose, file.file(), reading(path));
-  const Hdf5Handle type = own(H5Aget_type(attribute), H5Tclose, file.file(), reading(path));
-  const Hdf5Handle space = own(H5Aget_space(attribute), H5Sclose, file.file(), reading(path));
-  const hssize_t values = H5Sget_simple_extent_npoints(space);
-  if (element_type(type) != expected || values < 1 || values > most) {
-    refuse(file.file(),
-           fmt::format("attribute '{}' of '{}' has an unexpected type; was the file written by noether?", name, path));
-  }
-  return attribute;
 }
 
 }  // namespace
@@ -526,75 +420,6 @@ Hdf5Dataset Hdf5File::open(const std::string& path) const {
 std::string Hdf5File::read_text(const std::string& path) const {
   const std::vector<std::string> texts = open(path).read_texts();
   return texts.empty() ? "" : texts.front();
-}
-
-// ---- attributes ----------------------------------------------------------------------------------------------------
-
-bool Hdf5File::has_attribute(const std::string& path, const std::string& name) const {
-  return has(path) && H5Aexists_by_name(*handle_, path.c_str(), name.c_str(), H5P_DEFAULT) > 0;
-}
-
-void Hdf5File::set_attribute(const std::string& path, const std::string& name, const std::string& text) const {
-  const PaddedTexts padded = pad({text});
-  const Hdf5Handle type = text_type(handle_->file(), padded.size);
-  write_attribute(*handle_, path, name, type, type, {}, padded.bytes.data());
-}
-void Hdf5File::set_variable_text(const std::string& path, const std::string& name, const std::string& text) const {
-  const Hdf5Handle type = text_type(handle_->file(), H5T_VARIABLE);
-  const char* pointer = text.c_str();
-  write_attribute(*handle_, path, name, type, type, {}, &pointer);
-}
-void Hdf5File::set_attribute(const std::string& path, const std::string& name, std::int64_t value) const {
-  write_attribute(*handle_, path, name, H5T_STD_I64LE, H5T_NATIVE_INT64, {}, &value);
-}
-void Hdf5File::set_attribute(const std::string& path, const std::string& name, double value) const {
-  write_attribute(*handle_, path, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {}, &value);
-}
-void Hdf5File::set_attribute(const std::string& path, const std::string& name,
-                             const std::vector<std::int64_t>& values) const {
-  write_attribute(*handle_, path, name, H5T_STD_I64LE, H5T_NATIVE_INT64, {static_cast<Index>(values.size())},
-                  values.data());
-}
-void Hdf5File::set_attribute(const std::string& path, const std::string& name,
-                             const std::vector<std::string>& values) const {
-  const PaddedTexts padded = pad(values);
-  const Hdf5Handle type = text_type(handle_->file(), padded.size);
-  write_attribute(*handle_, path, name, type, type, {static_cast<Index>(values.size())}, padded.bytes.data());
-}
-
-std::string Hdf5File::text_attribute(const std::string& path, const std::string& name) const {
-  const Hdf5Handle attribute = find_attribute(*handle_, path, name, ElementType::text);
-  if (attribute < 0) return "";
-  const Hdf5Handle stored = own(H5Aget_type(attribute), H5Tclose, handle_->file(), reading(path));
-  PaddedTexts raw{H5Tget_size(stored), ""};
-  // Attributes stand in headers, which are short.
-  if (raw.size > 65536)
-    refuse(handle_->file(), fmt::format("damaged: the length of attribute '{}' of '{}'", name, path));
-  raw.bytes.resize(raw.size);
-  const Hdf5Handle type = text_type(handle_->file(), raw.size);
-  check(H5Aread(attribute, type, raw.bytes.data()), *handle_, reading(path));
-  return unpad(raw).at(0);
-}
-std::int64_t Hdf5File::integer_attribute(const std::string& path, const std::string& name) const {
-  const Hdf5Handle attribute = find_attribute(*handle_, path, name, ElementType::integer);
-  std::int64_t value = 0;
-  if (attribute >= 0) check(H5Aread(attribute, H5T_NATIVE_INT64, &value), *handle_, reading(path));
-  return value;
-}
-std::vector<std::int64_t> Hdf5File::integers_attribute(const std::string& path, const std::string& name) const {
-  constexpr hssize_t most = 4096;  // attributes stand in headers, which are short
-  const Hdf5Handle attribute = find_attribute(*handle_, path, name, ElementType::integer, most);
-  if (attribute < 0) return {};
-  const Hdf5Handle space = own(H5Aget_space(attribute), H5Sclose, handle_->file(), reading(path));
-  std::vector<std::int64_t> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
-  check(H5Aread(attribute, H5T_NATIVE_INT64, values.data()), *handle_, reading(path));
-  return values;
-}
-double Hdf5File::real_attribute(const std::string& path, const std::string& name) const {
-  const Hdf5Handle attribute = find_attribute(*handle_, path, name, ElementType::real);
-  double value = 0;
-  if (attribute >= 0) check(H5Aread(attribute, H5T_NATIVE_DOUBLE, &value), *handle_, reading(path));
-  return value;
 }
 
 }  // namespace noether::io
