@@ -23,6 +23,7 @@ template <class Real> struct EnergyTerms {
 /// Work done so far, counted where it is done.
 struct Evaluations {
   std::int64_t force = 0, kepler = 0, jacobian = 0;
+  std::int64_t constraint = 0;  ///< iterations or sweeps over all constraints
 };
 
 /// Why a step could not be done.
@@ -44,6 +45,8 @@ struct HamiltonianClaims {
   bool dissipative = false;
   bool keeps_momentum = true;
   bool keeps_angular_momentum = true;
+  Index constraints = 0;            ///< degrees of freedom they take
+  double constraint_tolerance = 0;  ///< relative violation that is left on purpose; 0: rounding
 };
 
 /// A Hamiltonian written as parts whose flows can be computed. Parts are letters.
@@ -83,6 +86,10 @@ struct IntegratorClaims {
   bool energy = true;  ///< an energy exists
   bool dissipative = false;
   bool time_dependent = false;
+  bool keeps_momentum = true;
+  bool keeps_angular_momentum = true;
+  Index constraints = 0;            ///< degrees of freedom they take
+  double constraint_tolerance = 0;  ///< relative violation that is left on purpose; 0: rounding
 };
 
 /// How far to go: so many steps, and with a free clock not past `limit` [time].

@@ -59,6 +59,12 @@ class SchemeMismatch : public Error {
   using Error::Error;
 };
 
+/// Constraints that no motion can keep, or that the particles do not keep at the start: exit code 2.
+class BadConstraints : public Error {
+ public:
+  using Error::Error;
+};
+
 /// A part needs a column that the particles do not have: exit code 2.
 class MissingColumn : public Error {
  public:

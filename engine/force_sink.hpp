@@ -84,9 +84,12 @@ struct ForceClaims {
   bool velocity_dependent = false;
   bool time_dependent = false;
   bool dissipative = false;
+  bool keeps_momentum = true;          ///< its sum over all particles is 0
+  bool keeps_angular_momentum = true;  ///< and so is that of its torques
 };
 
-/// The claims of a force type; a force that declares none is conservative and depends on positions only.
+/// The claims of a force type; a force that declares none is conservative, depends on positions only, and acts
+/// between particles.
 template <class F> ForceClaims claims_of(const F& force) {
   if constexpr (requires { force.claims(); }) {
     return force.claims();

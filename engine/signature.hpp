@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -25,6 +26,8 @@ template <class T> std::string name_of(const T& value) {
 inline std::string value_text(double x) { return fmt::format("{}", x); }
 inline std::string value_text(const std::optional<double>& x) { return x ? value_text(*x) : "default"; }
 inline std::string value_text(const Vec3<double>& x) { return fmt::format("[{}, {}, {}]", x[0], x[1], x[2]); }
+inline std::string value_text(const std::array<double, 3>& x) { return fmt::format("[{}, {}, {}]", x[0], x[1], x[2]); }
+inline std::string value_text(const std::optional<std::array<double, 3>>& x) { return x ? value_text(*x) : "default"; }
 template <class T> std::string value_text(const T& value) {
   if constexpr (std::is_enum_v<T> || std::is_integral_v<T>) {
     return fmt::format("{}", static_cast<std::int64_t>(value));

@@ -26,6 +26,7 @@ struct UniformField {
                               field<&UniformField::acceleration>("acceleration", "length/time^2", "g = [x, y, z]")
                                   .required("[\"0 m/s^2\", \"0 m/s^2\", \"-9.81 m/s^2\"]"));
   }
+  static ForceClaims claims() { return {.keeps_momentum = false, .keeps_angular_momentum = false}; }
 
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     const Vec3<Real> g = detail::widened<Real>(acceleration);
@@ -53,7 +54,9 @@ struct OscillatingField {
         field<&OscillatingField::omega>("omega", "1/time", "angular frequency").required("\"0.1/day\""),
         field<&OscillatingField::phase>("phase", "angle"));
   }
-  static ForceClaims claims() { return {.time_dependent = true}; }
+  static ForceClaims claims() {
+    return {.time_dependent = true, .keeps_momentum = false, .keeps_angular_momentum = false};
+  }
 
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     using std::cos;
@@ -77,6 +80,7 @@ struct HarmonicField {
         source("Hooke1678"),
         field<&HarmonicField::k>("k", "mass/time^2", "stiffness of the spring").required("\"1 kg/s^2\""));
   }
+  static ForceClaims claims() { return {.keeps_momentum = false}; }
 
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     for (Index i = 0; i < s.size(); ++i) {

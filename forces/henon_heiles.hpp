@@ -24,6 +24,8 @@ struct HenonHeiles {
                              field<&HenonHeiles::length>("length", "length", "from the well to each saddle"));
   }
 
+  static ForceClaims claims() { return {.keeps_momentum = false, .keeps_angular_momentum = false}; }
+
   /// @throws Error  for a length that is not above 0
   void check() const {
     if (!(length > 0)) refuse_field("length", length, "is no distance of the saddles; a length above 0 is expected");

@@ -16,6 +16,8 @@ inline void merge(ForceClaims& all, const ForceClaims& one) {
   all.velocity_dependent = all.velocity_dependent || one.velocity_dependent;
   all.time_dependent = all.time_dependent || one.time_dependent;
   all.dissipative = all.dissipative || one.dissipative;
+  all.keeps_momentum = all.keeps_momentum && one.keeps_momentum;
+  all.keeps_angular_momentum = all.keeps_angular_momentum && one.keeps_angular_momentum;
 }
 }  // namespace detail
 

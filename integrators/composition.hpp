@@ -55,7 +55,11 @@ template <SplitHamiltonian H> class Composition {
             .symplectic = !claims.dissipative,
             .energy = claims.energy,
             .dissipative = claims.dissipative,
-            .time_dependent = claims.time_dependent};
+            .time_dependent = claims.time_dependent,
+            .keeps_momentum = claims.keeps_momentum,
+            .keeps_angular_momentum = claims.keeps_angular_momentum,
+            .constraints = claims.constraints,
+            .constraint_tolerance = claims.constraint_tolerance};
   }
   const std::vector<TimedStage<real>>& stages() const { return word_.stages(); }
   H& hamiltonian() { return hamiltonian_; }

@@ -1,9 +1,10 @@
 #pragma once
-/// H = T(p) + U(q): free motion and kicks.
+/// H = T(p) + U(q): free motion and kicks, along constraints if there are any.
 
 #include "engine/concepts.hpp"
 #include "engine/parallel.hpp"
 #include "engine/signature.hpp"
+#include "engine/unconstrained.hpp"
 #include "engine/word.hpp"
 
 #include <limits>
@@ -29,14 +30,25 @@ template <class Real> Real kinetic_energy(const ParticleSystem<Real>& s) {
 ///
 /// `B A B` is velocity Verlet. Accelerations are kept until positions change: settling a step for an observer and the
 /// next kick share one evaluation.
+///
+/// With constraints g(q) = 0 both flows end on them, positions and velocities, and `B A B` is RATTLE:
+///
+///     A:  v -> v - M^-1 G(x0)^T lambda / h,  x -> x + h v  with  g(x) = 0,  v -> P(x) v   action increment  h T(v
+///     before P) B:  v -> P(x) (v + h a(x, t))                                                       action increment
+///     - h U
+///
+/// P(x) projects velocities along the constraints. The kick is still an exact flow; the drift is a symmetric map of
+/// order 2, so a scheme of higher order is to be a composition of whole steps of `verlet`.
 /// @cost one force evaluation per kick, no allocation after `bind`
-/// @source HairerLubichWanner2006
-template <class F, class Real = double> class KineticPotential {
+/// @source HairerLubichWanner2006, Andersen1983, LeimkuhlerSkeel1994
+template <class F, class Real = double, class C = Unconstrained> class KineticPotential {
  public:
   using real = Real;
+  static constexpr bool constrained = !C::trivial;
 
   /// @throws SchemeMismatch  if a force depends on velocities: its kick would be no exact flow
-  explicit KineticPotential(F forces) : forces_(std::move(forces)) {
+  explicit KineticPotential(F forces, C constraints = C())
+      : forces_(std::move(forces)), constraints_(std::move(constraints)) {
     if (claims_of(forces_).velocity_dependent) {
       throw SchemeMismatch(
           "a force depends on velocities, so kicks by it are no exact flow; "
@@ -51,10 +63,20 @@ template <class F, class Real = double> class KineticPotential {
 
   HamiltonianClaims claims() const {
     const ForceClaims forces = claims_of(forces_);
-    return {.alphabet = "AB",
-            .energy = forces.energy,
-            .time_dependent = forces.time_dependent,
-            .dissipative = forces.dissipative};
+    HamiltonianClaims claims{.alphabet = "AB",
+                             .energy = forces.energy,
+                             .time_dependent = forces.time_dependent,
+                             .dissipative = forces.dissipative,
+                             .keeps_momentum = forces.keeps_momentum,
+                             .keeps_angular_momentum = forces.keeps_angular_momentum};
+    if constexpr (constrained) {
+      claims.inexact = "A";
+      claims.constraints = constraints_.set().equations();
+      claims.constraint_tolerance = constraints_.set().tolerance();
+      claims.keeps_momentum = claims.keeps_momentum && constraints_.set().keeps_momentum();
+      claims.keeps_angular_momentum = claims.keeps_angular_momentum && constraints_.set().keeps_angular_momentum();
+    }
+    return claims;
   }
   const F& forces() const { return forces_; }
 
@@ -62,23 +84,25 @@ template <class F, class Real = double> class KineticPotential {
     acceleration_ = VectorColumn<Real>(s.size());
     known_.reset();
     moved_ = true;
+    if constexpr (constrained) constraints_.bind(s);
   }
   void open(ParticleSystem<Real>& /*inertial already*/) {}
   void close(ParticleSystem<Real>& /*inertial already*/) {}
 
   void flow(char letter, ParticleSystem<Real>& s, const Real& h) {
     if (letter == 'A') {
-      s.advance_positions(h);
-      if (!observing_) moved_ = true;
+      move(s, h);
+      project(s, h);
       return;
     }
     evaluate(s, observing_.value_or(Wanted{}));
     s.advance_velocities(h, acceleration_);
+    project(s, h);
     if (!observing_ && std::exchange(moved_, false)) ++evaluations_.force;
   }
 
   /// The fused walk: between the stages of whole steps nobody asks whether the forces are known.
-  Advanced run(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span) {
+  Advanced run(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span) requires(!constrained) {
     const Real dt(s.clock().dt());
     Advanced done;
     bool drifted = false;  // before that an observer may have evaluated what the first kick needs
@@ -104,8 +128,10 @@ template <class F, class Real = double> class KineticPotential {
 
   Real flow_with_action(char letter, ParticleSystem<Real>& s, const Real& h) {
     if (letter == 'A') {
-      flow(letter, s, h);
-      return h * kinetic_energy(s);
+      move(s, h);
+      const Real action = h * kinetic_energy(s);
+      project(s, h);
+      return action;
     }
     evaluate(s, {.energy = true});
     flow(letter, s, h);
@@ -119,21 +145,49 @@ template <class F, class Real = double> class KineticPotential {
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) {
     evaluate(s, {});
     a = acceleration_;
+    if constexpr (constrained) constraints_.constrain(s, a);
   }
 
-  void observe(std::optional<Wanted> wanted) { observing_ = wanted; }
-  const std::optional<Failure>& failure() const { return failure_; }
-  Evaluations evaluations() const { return evaluations_; }
+  void observe(std::optional<Wanted> wanted) {
+    observing_ = wanted;
+    if constexpr (constrained) {
+      if (wanted) {
+        evaluations_.constraint = constraints_.iterations();
+      } else {
+        constraints_.forget_failure();
+        constraints_.restore_iterations(evaluations_.constraint);
+      }
+    }
+  }
+  const std::optional<Failure>& failure() const {
+    if constexpr (constrained) return constraints_.failure();
+    return failure_;
+  }
+  Evaluations evaluations() const {
+    Evaluations evaluations = evaluations_;
+    if constexpr (constrained) evaluations.constraint = constraints_.iterations();
+    return evaluations;
+  }
   void save(SavedState& saved, const std::string& prefix) const {
     detail::save_signature(saved, prefix, forces_);
     save_value(saved, prefix + "evaluations", evaluations_.force);
     save_value(saved, prefix + "moved", moved_);
+    if constexpr (constrained) {
+      detail::save_signature(saved, prefix + "constraints/", constraints_.set());
+      save_value(saved, prefix + "constraints/iterations", constraints_.iterations());
+    }
   }
   void load(const SavedState& saved, const std::string& prefix) {
     detail::check_signature(saved, prefix, forces_);
     load_value(saved, prefix + "evaluations", evaluations_.force);
     load_value(saved, prefix + "moved", moved_);
     known_.reset();
+    if constexpr (constrained) {
+      detail::check_signature(saved, prefix + "constraints/", constraints_.set());
+      load_value(saved, prefix + "constraints/iterations", evaluations_.constraint);
+      constraints_.restore_iterations(evaluations_.constraint);
+      constraints_.forget_failure();
+    }
   }
 
  private:
@@ -143,6 +197,17 @@ template <class F, class Real = double> class KineticPotential {
     bool energy;
   };
 
+  void move(ParticleSystem<Real>& s, const Real& h) {
+    if constexpr (constrained) {
+      constraints_.advance_positions(s, h);
+    } else {
+      s.advance_positions(h);
+    }
+    if (!observing_) moved_ = true;
+  }
+  void project(ParticleSystem<Real>& s, const Real& h) {
+    if constexpr (constrained) constraints_.project_velocities(s, h);
+  }
   void evaluate(const ParticleSystem<Real>& s, Wanted wanted) {
     const Real time = s.time();
     if (known_ && known_->version == s.version() && known_->time == time && (known_->energy || !wanted.energy)) return;
@@ -156,6 +221,7 @@ template <class F, class Real = double> class KineticPotential {
   }
 
   F forces_;
+  typename C::template Solver<Real> constraints_;
   VectorColumn<Real> acceleration_;
   Real potential_ = Real(0);
   std::optional<Known> known_;
@@ -166,5 +232,6 @@ template <class F, class Real = double> class KineticPotential {
 };
 
 template <class F> KineticPotential(F) -> KineticPotential<F, double>;
+template <class F, class C> KineticPotential(F, C) -> KineticPotential<F, double, C>;
 
 }  // namespace noether

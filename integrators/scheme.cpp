@@ -37,6 +37,7 @@ Scheme word(std::string_view letters) {
     scheme.word.push_back({letter, Quad(1) / Quad(std::count(letters.begin(), letters.end(), letter))});
   }
   scheme.order = {scheme.is_symmetric() ? 2 : 1};
+  if (letters.front() == 'A' && letters.back() == 'A') scheme.exact = "A";  // neighbouring steps join their drifts
   return scheme;
 }
 

@@ -27,6 +27,7 @@ inline constexpr Scheme verlet = symmetric_composition(
 inline constexpr Scheme verlet_aba = palindrome(
     {.name = "verlet_aba", .aliases = "position_verlet leapfrog_aba",
      .summary = "order 2, one kick: position Verlet, drift first", .source = "Verlet1967", .order = {2},
+     .exact = "A",  // neighbouring steps join their drifts
      .stability_limit = 2.0}, 'A', list(rest), list(rest));
 
 inline constexpr Scheme ruth_3 = alternating(
