@@ -37,6 +37,7 @@ std::vector<std::pair<std::string, PartInfo>> all_parts() {
   for (const PartInfo& info : hamiltonian_parts()) all.emplace_back("hamiltonian", info);
   const Parts parts = standard_parts();
   for (const auto& kind : parts.forces()) all.emplace_back("force", kind.info);
+  for (const auto& kind : parts.constraints()) all.emplace_back("constraint", kind.info);
   for (const auto& kind : parts.monitors()) all.emplace_back("monitor", kind.info);
   for (const PartInfo& info : writer_parts()) all.emplace_back("writer", info);
   for (const PartInfo& info : stop_parts()) all.emplace_back("stop", info);
@@ -46,6 +47,10 @@ std::vector<std::pair<std::string, PartInfo>> all_parts() {
 /// Where in a scene parts of a kind stand, and when they look.
 std::string table_of(const std::string& kind) {
   if (kind == "force") return "[[hamiltonian.force]]";
+  if (kind == "constraint") {
+    return "[[hamiltonian.constraint]], with the particles: bodies, pairs or triples of names; solver = \"newton\" or "
+           "\"rattle\" (with tolerance, iterations)";
+  }
   if (kind == "monitor") return "[[every]], with every = \"TIME\" or steps = N";
   if (kind == "writer") return "[[every]], with every = \"TIME\" or steps = N (checkpoint also: wall = \"5 min\")";
   if (kind == "stop") return "[[stop]]; every = \"TIME\" may stand instead of steps = N";

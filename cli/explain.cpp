@@ -28,7 +28,7 @@ struct Explanation {
   std::string method, hamiltonian;
   std::vector<std::string> in, out, columns;
   std::size_t bytes_per_particle = 0;
-  Index particles = 0;
+  Index particles = 0, constraints = 0;
   std::map<char, int> flows;               ///< stages of one step, by letter, the last joined to the next first
   int evaluations = 0;                     ///< of the forces in one step: kicks between which something has moved
   std::optional<double> recommended_step;  ///< [time]
@@ -82,6 +82,9 @@ std::string length_text(double length, const UnitSystem& units) {
 void sort_parts(const Scene& scene, Explanation& e) {
   const Parts parts = standard_parts();
   for (const SceneForce& force : scene.hamiltonian.forces) e.in.push_back("force " + force.name);
+  for (const SceneConstraint& constraint : scene.hamiltonian.constraints) {
+    e.in.push_back(fmt::format("constraint {}, {} times", constraint.name, constraint.tied.size()));
+  }
   for (const SceneWatch& watch : scene.watches) {
     const bool monitor = watch.kind == SceneWatch::Kind::monitor;
     const std::string name = monitor                                      ? "monitor " + watch.monitor.name
@@ -107,6 +110,7 @@ void sort_parts(const Scene& scene, Explanation& e) {
   for (const auto& kind : parts.forces()) {
     if (!wisdom_holman || kind.info.name != "gravity") leave_out("force " + kind.info.name);  // gravity is inside
   }
+  for (const auto& kind : parts.constraints()) leave_out("constraint " + kind.info.name);
   for (const auto& kind : parts.monitors()) leave_out("monitor " + kind.info.name);
   leave_out("writer trajectory");
   leave_out("stop escape");
@@ -119,6 +123,7 @@ Explanation explained(const Scene& scene) {
   AnyHamiltonian<double> hamiltonian = hamiltonian_of(scene);
   e.method = scene.integrator.method;
   e.hamiltonian = hamiltonian.name();
+  e.constraints = hamiltonian.claims().constraints;
   sort_parts(scene, e);
   ParticleSystem<double> s = scene.particles;
   s.clock() = Clock<double>::fixed(0, scene.integrator.step);
@@ -138,6 +143,12 @@ Explanation explained(const Scene& scene) {
 
 std::string meaning(char letter, const Scene& scene, const Explanation& e) {
   const bool wisdom_holman = scene.hamiltonian.kind == SceneHamiltonian::Kind::wisdom_holman;
+  if (letter == 'A' && e.constraints > 0) {
+    return fmt::format(
+        "drifts, each with {} equations of constraints solved for positions and for velocities; {} "
+        "degrees of freedom are left",
+        e.constraints, 3 * e.particles - e.constraints);
+  }
   if (letter == 'A') return wisdom_holman ? "Kepler arcs of every body" : "drifts";
   if (letter == 'B' && wisdom_holman) return "kicks by the interaction";
   if (letter == 'B' && e.evaluations == e.flows.at('B')) return "kicks, one force evaluation each";
@@ -181,6 +192,7 @@ Json json_of(const Scene& scene, const Explanation& e) {
                        {"columns", Json::list_of(e.columns)},
                        {"bytes_per_particle", static_cast<std::int64_t>(e.bytes_per_particle)},
                        {"particles", std::int64_t{e.particles}},
+                       {"constraints", std::int64_t{e.constraints}},
                        {"flows_per_step", Json::object(flows)},
                        {"force_evaluations_per_step", e.evaluations},
                        {"simd", std::string(name(simd_level()))},

@@ -86,7 +86,8 @@ Listing listing_of(const std::string& what) {
   if (what == "methods") return methods();
   if (what == "forces") return parts(infos_of(standard_parts().forces()));
   if (what == "units") return units();
-  if (what == "constraints" || what == "builders") return parts({});
+  if (what == "constraints") return parts(infos_of(standard_parts().constraints()));
+  if (what == "builders") return parts({});
   if (what == "monitors") {
     Listing list{{"name", "kind", "help"}, {}, {}};
     for (const PartInfo& info : infos_of(standard_parts().monitors())) list.add({info.name, "monitor", info.help});

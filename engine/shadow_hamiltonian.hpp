@@ -108,6 +108,7 @@ template <class Real = double> class ShadowHamiltonian {
   double noise_ = 0;           ///< what rounding alone does to a value, relative to the scale
   double wear_ = 0;            ///< what rounding does to the run, relative to the scale, times the root of the steps
   double gradient_error_ = 0;  ///< largest difference seen between force and gradient of the energy, relative
+  double constraint_tolerance_ = 0;  ///< what a solver of constraints leaves on purpose, relative
   std::string time_unit_;
 };
 

@@ -1,5 +1,6 @@
 #include "scene/scene.hpp"
 
+#include "constraints/constraint_solver.hpp"
 #include "forces/sum.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/damped.hpp"
@@ -21,6 +22,9 @@ AnyHamiltonian<double> without_drag(const Scene& scene) {
   ForceField<double> forces;
   for (const SceneForce& force : scene.hamiltonian.forces) {
     if (force.force) forces.add(*force.force);
+  }
+  if (!scene.hamiltonian.constraints.empty()) {
+    return KineticPotential<ForceField<double>, double, ConstraintSet>(std::move(forces), constraints_of(scene));
   }
   if (scene.hamiltonian.kind == SceneHamiltonian::Kind::kinetic_potential) {
     return KineticPotential<ForceField<double>>(std::move(forces));
@@ -59,6 +63,15 @@ Scheme scheme_of(const SceneIntegrator& integrator) {
   return scheme;
 }
 
+ConstraintSet constraints_of(const Scene& scene, std::size_t tables) {
+  ConstraintSet set(scene.hamiltonian.constraint_options);
+  for (const SceneConstraint& constraint : scene.hamiltonian.constraints) {
+    if (tables-- == 0) break;
+    constraint.add_to(set, scene.particles);
+  }
+  return set;
+}
+
 AnyHamiltonian<double> hamiltonian_of(const Scene& scene) {
   for (const SceneForce& force : scene.hamiltonian.forces) {
     if (force.drag) return Damped<AnyHamiltonian<double>>(without_drag(scene), *force.drag);
@@ -70,8 +83,9 @@ Simulation<double> assemble(const Scene& scene, const SceneFiles& files) {
   Composition<AnyHamiltonian<double>> integrator(hamiltonian_of(scene), scheme_of(scene.integrator),
                                                  {.compensated = scene.integrator.compensated});
   Simulation<double> sim(scene.particles, std::move(integrator), scene.integrator.step);
+  const ConstraintSet constraints = constraints_of(scene);
   for (const SceneWatch& watch : scene.watches) {
-    if (watch.kind == SceneWatch::Kind::monitor) watch.monitor.attach(sim, watch.cadence);
+    if (watch.kind == SceneWatch::Kind::monitor) watch.monitor.attach(sim, watch.cadence, constraints);
   }
   attach_writers(sim, scene, files);
   for (const SceneStop& stop : scene.stops) sim.stop_when(stop.rule, stop.steps);

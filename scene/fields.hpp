@@ -7,10 +7,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace noether {
@@ -217,6 +219,33 @@ template <class T> void put_fields(TableReader& reader, const T& part, SceneValu
       effective.put(name, detail::field_value(*value, field.dimension, *reader.context().units));
     }
   });
+}
+
+template <class Kinds> std::vector<std::string> names_of(const Kinds& kinds) {
+  std::vector<std::string> names;
+  for (const auto& kind : kinds) names.push_back(kind.info.name);
+  return names;
+}
+
+/// The kind a table names in its `type`, and that type; no kind for one of the names in `others`.
+/// @throws SceneError  for a type that nobody knows
+template <class Kind>
+std::pair<const Kind*, std::string> kind_of_part(const SceneContext& context, const SceneValue& table,
+                                                 const std::string& path, const std::string& what,
+                                                 const std::vector<Kind>& kinds,
+                                                 const std::vector<std::string>& others) {
+  TableReader reader(context, table, fmt::format("[[{}]]", path.substr(0, path.rfind('.'))), path);
+  const std::string type = reader.text("type");
+  for (const Kind& kind : kinds) {
+    if (kind.info.name == type) return {&kind, type};
+  }
+  if (std::find(others.begin(), others.end(), type) != others.end()) return {nullptr, type};
+  std::vector<std::string> known = names_of(kinds);
+  known.insert(known.end(), others.begin(), others.end());
+  if (!reader.has("type")) {
+    reader.fail(nullptr, "type", fmt::format("this {} has no type; known are: {}", what, fmt::join(known, ", ")));
+  }
+  reader.fail("type", fmt::format("unknown {} '{}'{}", what, type, did_you_mean(type, known)));
 }
 
 }  // namespace noether

@@ -4,6 +4,7 @@
 #include "integrators/composition.hpp"
 #include "integrators/schemes.hpp"
 #include "io/files.hpp"
+#include "scene/read_constraints.hpp"
 #include "scene/read_particles.hpp"
 #include "scene/sets.hpp"
 #include "scene/toml.hpp"
@@ -17,12 +18,6 @@
 namespace noether {
 
 namespace {
-
-template <class Kinds> std::vector<std::string> names_of(const Kinds& kinds) {
-  std::vector<std::string> names;
-  for (const auto& kind : kinds) names.push_back(kind.info.name);
-  return names;
-}
 
 /// How many steps make a duration. @throws SceneError  unless it is a whole number, with the two nearest
 std::int64_t whole_steps(const TableReader& reader, std::string_view key, const SceneValue& value,
@@ -134,7 +129,7 @@ class SceneReader {
     effective.put("type", SceneValue::of(type, reader.line("type")));
     const SceneValue* G = reader.find("G");
     effective.put("G", G != nullptr ? *G : SceneValue::of(scene_.units->G));
-    const auto forces = tables_of(reader, "force");
+    const auto forces = tables_of(reader, "force"), constraints = tables_of(reader, "constraint");
     if (type == "wisdom_holman") {
       made.kind = SceneHamiltonian::Kind::wisdom_holman;
       read_fields(reader, made.wisdom_holman);
@@ -145,18 +140,24 @@ class SceneReader {
     if (type == "wisdom_holman" && made.wisdom_holman.coordinates == Coordinates::inertial) {
       reader.fail("coordinates", "wisdom_holman has jacobi or democratic coordinates");
     }
-    if (type == "kinetic_potential" && forces.empty()) {
+    if (type == "wisdom_holman" && !constraints.empty()) {
+      reader.fail(constraints.front(), "constraint",
+                  "wisdom_holman has no constraints: Kepler arcs know none; use kinetic_potential");
+    }
+    if (type == "kinetic_potential" && forces.empty() && constraints.empty()) {
       reader.fail("type",
                   "kinetic_potential has no force, so nothing would move anything; add a [[hamiltonian.force]] table");
     }
     SceneValue::Array list;
     for (const SceneValue* force : forces) read_force(*force, list);
     if (!list.empty()) effective.put("force", SceneValue::of(std::move(list)));
+    if (constraints.empty()) return;
+    effective.put("constraint", SceneValue::of(read_constraints(context_, constraints, parts_, scene_)));
   }
 
   void read_force(const SceneValue& table, SceneValue::Array& list) {
     const std::string path = fmt::format("hamiltonian.force.{}", list.size());
-    const auto [kind, type] = kind_of_part(table, path, "force", parts_.forces(), {});
+    const auto [kind, type] = kind_of_part(context_, table, path, "force", parts_.forces(), {});
     TableReader reader(context_, table, fmt::format("force '{}'", type), path);
     reader.find("type");
     SceneForce force = kind->read(reader);
@@ -177,25 +178,6 @@ class SceneReader {
     list.push_back(effective);
     force.effective = std::move(effective);
     scene_.hamiltonian.forces.push_back(std::move(force));
-  }
-
-  /// Finds the kind a table names in its `type`.
-  template <class Kind>
-  std::pair<const Kind*, std::string> kind_of_part(const SceneValue& table, const std::string& path,
-                                                   const std::string& what, const std::vector<Kind>& kinds,
-                                                   std::vector<std::string> others) {
-    TableReader reader(context_, table, fmt::format("[[{}]]", path.substr(0, path.rfind('.'))), path);
-    const std::string type = reader.text("type");
-    for (const Kind& kind : kinds) {
-      if (kind.info.name == type) return {&kind, type};
-    }
-    if (std::find(others.begin(), others.end(), type) != others.end()) return {nullptr, type};
-    std::vector<std::string> known = names_of(kinds);
-    known.insert(known.end(), others.begin(), others.end());
-    if (!reader.has("type")) {
-      reader.fail(nullptr, "type", fmt::format("this {} has no type; known are: {}", what, fmt::join(known, ", ")));
-    }
-    reader.fail("type", fmt::format("unknown {} '{}'{}", what, type, did_you_mean(type, known)));
   }
 
   void read_integrator(const SceneValue& table) {
@@ -290,7 +272,8 @@ class SceneReader {
     SceneValue::Array list;
     for (const SceneValue* table : tables) {
       const std::string path = fmt::format("every.{}", list.size());
-      const auto [kind, type] = kind_of_part(*table, path, "monitor", parts_.monitors(), {"trajectory", "checkpoint"});
+      const auto [kind, type] =
+          kind_of_part(context_, *table, path, "monitor", parts_.monitors(), {"trajectory", "checkpoint"});
       TableReader reader(context_, *table, fmt::format("monitor '{}'", type), path);
       reader.find("type");
       SceneValue effective = SceneValue::table();
@@ -400,6 +383,7 @@ class SceneReader {
   /// Puts the parts together once: what they refuse is told with its place in the scene.
   void check(TableReader& top) {
     TableReader hamiltonian(context_, *top.find("hamiltonian"), "[hamiltonian]", "hamiltonian");
+    refuse_constraints(context_, tables_of(hamiltonian, "constraint"), scene_);
     TableReader integrator(context_, *top.find("integrator"), "[integrator]", "integrator");
     std::optional<AnyHamiltonian<double>> made;
     try {

@@ -1,8 +1,13 @@
 #include "scene/parts.hpp"
 
+#include "constraints/angle.hpp"
+#include "constraints/constraint_residual.hpp"
+#include "constraints/distance.hpp"
+#include "constraints/surfaces.hpp"
 #include "engine/monitors.hpp"
 #include "engine/orbital_monitors.hpp"
 #include "engine/shadow_hamiltonian.hpp"
+#include "engine/temperature.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
 #include "forces/henon_heiles.hpp"
@@ -15,6 +20,24 @@
 
 namespace noether {
 
+namespace {
+
+/// Several constraints under one name.
+struct RigidBar {
+  static constexpr auto describe() {
+    return part<RigidBar>("rigid_bar",
+                          "particles on a rigid bar: its two ends, and others in their places between them",
+                          formula("|x_n - x_1| = d,  x_k = (1 - f_k) x_1 + f_k x_n, as at the start"),
+                          source("CiccottiFerrarioRyckaert1982"));
+  }
+  static SceneConstraint read(TableReader& reader) {
+    reader.finish();
+    return {"rigid_bar", SceneValue::table(), {}, add_rigid_bar};
+  }
+};
+
+}  // namespace
+
 Parts standard_parts() {
   Parts parts;
   parts.add_force<Gravity>();
@@ -24,12 +47,23 @@ Parts standard_parts() {
   parts.add_force<HarmonicField>();
   parts.add_force<HenonHeiles>();
   parts.add_force<LinearDrag>();
+  parts.add_constraint<Distance>();
+  parts.add_constraint({part_info<RigidBar>(), 0, RigidBar::read});
+  parts.add_constraint<Angle>();
+  parts.add_constraint<Fixed>();
+  parts.add_constraint<OnSphere>();
+  parts.add_constraint<OnPlane>();
+  parts.add_constraint<OnCylinder>();
+  parts.add_constraint<OnCircle>();
+  parts.add_constraint<OnLine>();
   parts.add_monitor<Energy>();
   parts.add_monitor<Momentum>();
   parts.add_monitor<AngularMomentum>();
   parts.add_monitor<CenterOfMass>();
   parts.add_monitor<Elements>();
   parts.add_monitor<ClosestApproach>();
+  parts.add_monitor<Temperature>();
+  parts.add_monitor<ConstraintResidual>();
   parts.add_monitor<ShadowHamiltonian<double>>();
   return parts;
 }

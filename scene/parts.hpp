@@ -1,12 +1,14 @@
 #pragma once
 /// The parts a scene may name: each is one type that describes itself.
 
+#include "constraints/constraint_set.hpp"
 #include "engine/erasure.hpp"
 #include "engine/simulation.hpp"
 #include "forces/check_gradient.hpp"
 #include "forces/linear_drag.hpp"
 #include "scene/fields.hpp"
 
+#include <algorithm>
 #include <functional>
 #include <optional>
 #include <string>
@@ -32,11 +34,26 @@ struct SceneForce {
   std::function<double(const ParticleSystem<double>&)> gradient_error;
 };
 
+/// Particles that constraints of one table tie: so many for each constraint.
+using TiedParticles = std::vector<std::vector<Index>>;
+
+/// The constraints of one table, as a scene asked for them.
+struct SceneConstraint {
+  std::string name;
+  SceneValue effective;
+  TiedParticles tied;
+  std::function<void(ConstraintSet&, const ParticleSystem<double>&, const std::vector<Index>&)> add;
+
+  void add_to(ConstraintSet& set, const ParticleSystem<double>& s) const {
+    for (const std::vector<Index>& particles : tied) add(set, s, particles);
+  }
+};
+
 /// A monitor as a scene asked for it.
 struct SceneMonitor {
   std::string name;
   SceneValue effective;
-  std::function<void(Simulation<double>&, const Cadence&)> attach;
+  std::function<void(Simulation<double>&, const Cadence&, const ConstraintSet&)> attach;
   /// What it costs beside the run, in words, by particles and cadence [steps]; empty for what is not worth a word.
   std::function<std::string(Index, std::int64_t)> cost;
 };
@@ -51,7 +68,7 @@ template <class M> void attach(Simulation<double>& sim, const Cadence& cadence, 
 }
 }  // namespace detail
 
-/// Forces and monitors by name. A user's own part is one line:
+/// Forces, constraints and monitors by name. A user's own part is one line:
 ///
 ///     Parts parts = standard_parts();
 ///     parts.add_force<Oblateness>();
@@ -60,6 +77,11 @@ class Parts {
   struct ForceKind {
     PartInfo info;
     std::function<SceneForce(TableReader&)> read;
+  };
+  struct ConstraintKind {
+    PartInfo info;
+    std::size_t particles;                              ///< of each constraint; 0: any number
+    std::function<SceneConstraint(TableReader&)> read;  ///< all but which particles
   };
   struct MonitorKind {
     PartInfo info;
@@ -73,6 +95,19 @@ class Parts {
     return *this;
   }
 
+  /// Makes constraint `C` known by the name it describes itself with; one of the same name is replaced.
+  template <Constraint C> Parts& add_constraint() {
+    static_assert(Described<C>, "a constraint in a scene describes itself: static constexpr auto describe()");
+    put(constraints_,
+        ConstraintKind{part_info<C>(), C::particles, [](TableReader& reader) { return read_constraint<C>(reader); }});
+    return *this;
+  }
+  /// The same for one that ties any number of particles, by several constraints.
+  Parts& add_constraint(ConstraintKind kind) {
+    put(constraints_, std::move(kind));
+    return *this;
+  }
+
   /// Makes monitor `M` known by the name it describes itself with; one of the same name is replaced.
   template <class M> Parts& add_monitor() {
     static_assert(Described<M>, "a monitor in a scene describes itself: static constexpr auto describe()");
@@ -81,6 +116,7 @@ class Parts {
   }
 
   const std::vector<ForceKind>& forces() const { return forces_; }
+  const std::vector<ConstraintKind>& constraints() const { return constraints_; }
   const std::vector<MonitorKind>& monitors() const { return monitors_; }
 
  private:
@@ -98,12 +134,29 @@ class Parts {
     return made;
   }
 
+  template <class C> static SceneConstraint read_constraint(TableReader& reader) {
+    C constraint{};
+    read_part(reader, constraint);
+    SceneConstraint made{std::string(part_name<C>()), SceneValue::table(), {}, {}};
+    put_fields(reader, constraint, made.effective);
+    made.add = [constraint](ConstraintSet& set, const ParticleSystem<double>& s, const std::vector<Index>& particles) {
+      std::array<Index, C::particles> tied{};
+      std::copy(particles.begin(), particles.end(), tied.begin());
+      set.add(s, constraint, tied);
+    };
+    return made;
+  }
+
   template <class M> static SceneMonitor read_monitor(TableReader& reader) {
     M monitor{};
     read_part(reader, monitor);
     SceneMonitor made{std::string(part_name<M>()), SceneValue::table(), {}, {}};
     put_fields(reader, monitor, made.effective);
-    made.attach = [monitor](Simulation<double>& sim, const Cadence& cadence) { detail::attach(sim, cadence, monitor); };
+    made.attach = [monitor](Simulation<double>& sim, const Cadence& cadence, const ConstraintSet& constraints) {
+      M attached = monitor;
+      if constexpr (requires { attached.watch(constraints); }) attached.watch(constraints);
+      detail::attach(sim, cadence, attached);
+    };
     if constexpr (requires { monitor.cost(Index(1), std::int64_t{1}); }) {
       made.cost = [monitor](Index particles, std::int64_t cadence) { return monitor.cost(particles, cadence); };
     }
@@ -120,10 +173,11 @@ class Parts {
   }
 
   std::vector<ForceKind> forces_;
+  std::vector<ConstraintKind> constraints_;
   std::vector<MonitorKind> monitors_;
 };
 
-/// Every force and monitor of noether.
+/// Every force, constraint and monitor of noether.
 Parts standard_parts();
 
 /// What the writers say of themselves: they stand in `[[every]]` like monitors.

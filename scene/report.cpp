@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace noether {
@@ -78,7 +79,8 @@ std::string to_json(const RunReport& r) {
               {"simd", r.simd},
               {"evaluations", Json::object({{"force", r.evaluations.force},
                                             {"kepler", r.evaluations.kepler},
-                                            {"jacobian", r.evaluations.jacobian}})},
+                                            {"jacobian", r.evaluations.jacobian},
+                                            {"constraint", r.evaluations.constraint}})},
               {"wall_s", r.wall_s},
               {"steps_per_s", per_second(steps, r.wall_s)},
               {"particle_steps_per_s", per_second(steps * static_cast<double>(r.particles), r.wall_s)},
@@ -132,6 +134,12 @@ std::string to_text(const RunReport& r) {
     text += fmt::format("{} steps of {} over {} in {:.3g} s: {:.3g} steps/s on {} {}\n", r.steps_made, r.method,
                         r.hamiltonian, r.wall_s, static_cast<double>(r.steps_made) / r.wall_s, r.threads,
                         r.threads == 1 ? "thread" : "threads");
+  }
+  if (r.evaluations.constraint > 0) {
+    text +=
+        fmt::format("constraints: {} iterations in all, {:.3g} for each force evaluation\n", r.evaluations.constraint,
+                    static_cast<double>(r.evaluations.constraint) /
+                        static_cast<double>(std::max<std::int64_t>(r.evaluations.force, 1)));
   }
   for (const std::filesystem::path& file : {r.trajectory, r.checkpoint}) {
     if (!file.empty()) text += fmt::format("wrote {}\n", file.string());

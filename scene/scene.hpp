@@ -7,6 +7,7 @@
 #include "scene/parts.hpp"
 
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -22,6 +23,8 @@ struct SceneHamiltonian {
   WisdomHolmanOptions wisdom_holman;
   std::optional<double> G;  ///< as the scene gives it [length^3/mass/time^2]
   std::vector<SceneForce> forces;
+  std::vector<SceneConstraint> constraints;
+  ConstraintOptions constraint_options;
 };
 
 /// The integrator of a scene.
@@ -83,6 +86,9 @@ struct SceneFiles {
 
 /// The scheme of a scene; its name lives as long as `integrator`.
 Scheme scheme_of(const SceneIntegrator& integrator);
+
+/// The constraints of a scene's first `tables` tables; all of them unless told.
+ConstraintSet constraints_of(const Scene& scene, std::size_t tables = std::numeric_limits<std::size_t>::max());
 
 /// The Hamiltonian of a scene, drag included.
 AnyHamiltonian<double> hamiltonian_of(const Scene& scene);

@@ -1,0 +1,56 @@
+#include "engine/temperature.hpp"
+
+#include "engine/parallel.hpp"
+
+#include <limits>
+
+namespace noether {
+
+template <class Real> void Temperature::observe(const Snapshot<Real>& now) {
+  const ParticleSystem<Real>& s = now.state();
+  const IntegratorClaims claims = now.claims();
+  Vec3<Real> drift = Vec3<Real>::Zero();
+  Real total(0);
+  Index massive = 0;
+  for (Index i = 0; i < s.size(); ++i) {
+    if (!(s.masses()[i] > Real(0))) continue;
+    ++massive;
+    total += s.masses()[i];
+    drift += s.masses()[i] * s.velocities()[i];
+  }
+  const bool about_center = claims.keeps_momentum && massive > 0;
+  drift = about_center ? Vec3<Real>(drift / total) : Vec3<Real>(Vec3<Real>::Zero());
+  const Real twice = reduce(s.size(), Real(0), [&](Index begin, Index end) {
+    Real sum(0);
+    for (Index i = begin; i < end; ++i) sum += s.masses()[i] * norm2(Vec3<Real>(s.velocities()[i] - drift));
+    return sum;
+  });
+  freedom_ = 3 * massive - claims.constraints - (about_center ? 3 : 0);
+  now_ = freedom_ > 0 ? static_cast<double>(twice) / (static_cast<double>(freedom_) * now.units().k_B)
+                      : std::numeric_limits<double>::quiet_NaN();
+  slope_unit_ = std::string(now.units().temperature) + "/" + std::string(now.units().time);
+  if (now.units().is_reduced()) slope_unit_ = "1";
+  values_.add(now.time(), now_);
+}
+template void Temperature::observe(const Snapshot<double>&);
+template void Temperature::observe(const Snapshot<Quad>&);
+
+MonitorReport Temperature::report() const {
+  MonitorReport report;
+  report.samples = values_.samples();
+  if (report.samples == 0) return report;
+  if (freedom_ <= 0) {
+    report.reason = "no degree of freedom is left to have a temperature";
+    return report;
+  }
+  report.first = values_.first();
+  report.last = values_.last();
+  report.rms = values_.rms();
+  report.slope = values_.slope();
+  if (const auto line = values_.line()) report.slope_error = line->error;
+  report.slope_unit = slope_unit_;
+  report.note = "of " + std::to_string(freedom_) + " degrees of freedom";
+  return report;
+}
+
+}  // namespace noether
