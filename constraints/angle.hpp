@@ -16,7 +16,7 @@ namespace noether {
 ///
 /// At 0 and 180 degrees the gradient vanishes, and no force can keep the angle: `rigid_bar` is for particles in line.
 struct Angle {
-  std::optional<double> theta;  ///< as at the start unless given [rad]
+  std::optional<double> theta = {};  ///< as at the start unless given [rad]
 
   static constexpr std::size_t particles = 3;
   static constexpr bool keeps_momentum = true, keeps_angular_momentum = true;

@@ -17,7 +17,9 @@ constexpr double largest_start_violation = 1e-6;
 constexpr double dependent_pivot = 1e-10;
 /// Chord steps that gain less than this give way to fresh matrices.
 constexpr double slow_contraction = 0.05;
-constexpr int most_iterations = 60;
+constexpr int most_iterations = 30;
+/// Parts of a step in which a solution is followed where it is hard to find.
+constexpr double shortest_stride = 1.0 / 256;
 
 template <class Real> constexpr double unit_roundoff() {
   return static_cast<double>(std::numeric_limits<Real>::epsilon()) / 2;
@@ -46,7 +48,7 @@ template <class Real> void ConstraintSolver<Real>::bind(ParticleSystem<Real>& s)
   if (!settled()) {
     old_ = here_;
     VectorColumn<Real> x = s.positions();
-    if (!solve_by_newton(s, x)) throw BadConstraints(failure_->message);
+    if (!solve_by_newton(s, x, Real(0))) throw BadConstraints(failure_->message);
     s.positions() = x;
     know(s);
   }
@@ -120,7 +122,7 @@ template <class Real> void ConstraintSolver<Real>::check_start(const ParticleSys
     const double residual = place.group->residual(place.constraint, static_cast<double>(g_[e]));
     // Positions far from where the constraint acts are known to fewer digits.
     const double allowed =
-        largest_start_violation * std::max(1.0, floors_[at(e)] / (8 * unit_roundoff<Real>() * scales_[at(e)]));
+        largest_start_violation * std::max(1.0, floors_[at(e)] / (4 * unit_roundoff<Real>() * scales_[at(e)]));
     if (residual <= allowed || residual <= worst_residual) continue;
     worst_equation = e;
     worst_residual = residual;
@@ -204,7 +206,7 @@ template <class Real> void ConstraintSolver<Real>::advance_positions(ParticleSys
   s.advance_positions(h);
   VectorColumn<Real>& x = s.positions();
   const bool newton = set_.options().solver == ConstraintMethod::newton;
-  if (newton ? solve_by_newton(s, x) : solve_by_sweeps(s, x)) {
+  if (newton ? solve_by_newton(s, x, h) : solve_by_sweeps(s, x)) {
     push(s.velocities(), old_, lambda_, Real(1) / h);
     gradients(s.positions(), here_);
     known_ = s.version();
@@ -232,30 +234,41 @@ template <class Real> bool ConstraintSolver<Real>::on_this_side(Index* equation)
 }
 
 template <class Real>
-bool ConstraintSolver<Real>::solve_by_newton(const ParticleSystem<Real>& s, VectorColumn<Real>& x) {
+bool ConstraintSolver<Real>::solve_by_newton(const ParticleSystem<Real>& s, VectorColumn<Real>& x, const Real& h) {
+  using std::abs;
   lambda_.setZero();
   find_floors(x);
+  values(x);
+  for (Index e = 0; e < layout_.equations(); ++e) {
+    unconstrained_[at(e)] = static_cast<double>(abs(g_[e])) / scales_[at(e)];
+  }
+  if (iterate(x, false)) return true;
+  double reached = 0;
+  if (h != Real(0) && follow(x, h, s.velocities(), &reached)) return true;
+  const auto stretched = std::max_element(unconstrained_.begin(), unconstrained_.end());
+  const std::string why =
+      *stretched > 0.5 ? "has no solution" : fmt::format("has none beyond {:.2g} of the step", reached);
+  fail(s, stretched - unconstrained_.begin(),
+       fmt::format("{}: free motion violates it by {:.3g}, so the step is too large", why, *stretched));
+  return false;
+}
+
+/// Chord steps with the factors at hand, then Newton's, from `x` on. @return whether they end at rounding
+template <class Real> bool ConstraintSolver<Real>::iterate(VectorColumn<Real>& x, bool fresh) {
   double previous = std::numeric_limits<double>::infinity();
-  bool fresh = false;
-  Index worst_equation = 0;
   for (int k = 0; k < most_iterations; ++k) {
     values(x);
     if (settled()) return true;
+    Index worst_equation = 0;
     const double violation = worst(&worst_equation);
-    if (k == 0) {
-      for (Index e = 0; e < layout_.equations(); ++e) {
-        using std::abs;
-        unconstrained_[at(e)] = static_cast<double>(abs(g_[e])) / scales_[at(e)];
-      }
-    }
-    if (!std::isfinite(violation)) break;
     const double floor = floors_[at(worst_equation)] / scales_[at(worst_equation)];
     if (violation < 64 * floor && violation > previous / 2) return true;  // rounding itself
+    if (!std::isfinite(violation) || (fresh && violation > 4 * previous)) return false;
     fresh = fresh || (k > 0 && violation > slow_contraction * previous && violation > 1000 * floor);
     previous = violation;
     if (fresh) {
       gradients(x, new_);
-      if (!matrix_.factorize_mixed(new_, old_)) break;
+      if (!matrix_.factorize_mixed(new_, old_)) return false;
       matrix_.solve_mixed(g_);
     } else {
       matrix_.solve(g_);
@@ -264,15 +277,30 @@ bool ConstraintSolver<Real>::solve_by_newton(const ParticleSystem<Real>& s, Vect
     lambda_ += g_;
     ++iterations_;
   }
-  const auto stretched = std::max_element(unconstrained_.begin(), unconstrained_.end());
-  if (*stretched > 0.5) {
-    fail(s, stretched - unconstrained_.begin(),
-         fmt::format("has no solution: free motion violates it by {:.3g}, so the step is too large", *stretched));
-  } else {
-    fail(s, worst_equation,
-         fmt::format("is not solved after {} iterations: violation {:.3g}", most_iterations, previous));
-  }
   return false;
+}
+
+/// Goes to the solution along those of shorter steps: where Newton's method loses its way, and to tell whether there is
+/// one at all that goes on from a step of 0.
+template <class Real>
+bool ConstraintSolver<Real>::follow(VectorColumn<Real>& x, const Real& h, const VectorColumn<Real>& v,
+                                    double* reached) {
+  Vector solved = Vector::Zero(layout_.equations());
+  for (double stride = 0.5; *reached < 1;) {
+    const double next = std::min(1.0, *reached + stride), growth = *reached > 0 ? next / *reached : 0;
+    lambda_ = Real(growth * growth) * solved;
+    x = start_;
+    x.add_scaled(Real(next) * h, v);
+    push(x, old_, lambda_, Real(1));
+    if (iterate(x, true)) {
+      solved = lambda_;
+      *reached = next;
+      stride *= 2;
+    } else if ((stride /= 2) < shortest_stride) {
+      return false;
+    }
+  }
+  return true;
 }
 
 template <class Real>
@@ -422,7 +450,7 @@ template <class Real> void ConstraintSolver<Real>::find_floors(const VectorColum
       const Vec3<Real> position = x[layout_.particle[at(a)]];
       for (Index k = 0; k < 3; ++k) sum += static_cast<double>(abs(g[at(a)][k] * position[k]));
     }
-    floors_[at(e)] = 2 * unit_roundoff<Real>() * sum;
+    floors_[at(e)] = unit_roundoff<Real>() * sum;
   }
 }
 

@@ -63,7 +63,9 @@ template <class Real> class ConstraintSolver {
   double worst(Index* equation) const;
   bool settled() const;
 
-  bool solve_by_newton(const ParticleSystem<Real>& s, VectorColumn<Real>& x);
+  bool solve_by_newton(const ParticleSystem<Real>& s, VectorColumn<Real>& x, const Real& h);
+  bool iterate(VectorColumn<Real>& x, bool fresh);
+  bool follow(VectorColumn<Real>& x, const Real& h, const VectorColumn<Real>& v, double* reached);
   bool solve_by_sweeps(const ParticleSystem<Real>& s, VectorColumn<Real>& x);
   void project_by_newton(ParticleSystem<Real>& s);
   bool project_by_sweeps(ParticleSystem<Real>& s, const Real& h);

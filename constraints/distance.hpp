@@ -16,7 +16,7 @@ namespace noether {
 /// The halved square has the gradient r, -r: no root, and no division, in the innermost loop.
 /// @source RyckaertCiccottiBerendsen1977
 struct Distance {
-  std::optional<double> length;  ///< d; as at the start unless given [length]
+  std::optional<double> length = {};  ///< d; as at the start unless given [length]
 
   static constexpr std::size_t particles = 2;
   static constexpr bool keeps_momentum = true, keeps_angular_momentum = true;

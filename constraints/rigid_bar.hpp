@@ -14,7 +14,7 @@ namespace noether {
 /// Distances and angles of particles in line have linearly dependent gradients; these do not.
 /// @source CiccottiFerrarioRyckaert1982
 struct OnBar {
-  std::optional<double> fraction;  ///< f, of the way from the first to the third; as at the start unless given
+  std::optional<double> fraction = {};  ///< f, of the way from the first to the third; as at the start unless given
 
   static constexpr std::size_t particles = 3;
   static constexpr bool keeps_momentum = true, keeps_angular_momentum = true;

@@ -31,7 +31,7 @@ template <class Real> Vec3<Real> across(const Vec3<Real>& x, const std::array<do
 ///
 ///     g = x - p
 struct Fixed {
-  std::optional<std::array<double, 3>> point;  ///< p; as at the start unless given [length]
+  std::optional<std::array<double, 3>> point = {};  ///< p; as at the start unless given [length]
 
   static constexpr std::size_t particles = 1;
   static constexpr auto describe() {
@@ -50,8 +50,8 @@ struct Fixed {
 ///
 ///     g = (|x - c|^2 - R^2) / 2
 struct OnSphere {
-  std::array<double, 3> center{};  ///< c [length]
-  std::optional<double> radius;    ///< R; as at the start unless given [length]
+  std::array<double, 3> center{};     ///< c [length]
+  std::optional<double> radius = {};  ///< R; as at the start unless given [length]
 
   static constexpr std::size_t particles = 1;
   static constexpr auto describe() {
@@ -76,8 +76,8 @@ struct OnSphere {
 ///
 ///     g = n . (x - p) / |n|
 struct OnPlane {
-  std::optional<std::array<double, 3>> point;  ///< p; where the particle starts unless given [length]
-  std::array<double, 3> normal{0, 0, 1};       ///< n
+  std::optional<std::array<double, 3>> point = {};  ///< p; where the particle starts unless given [length]
+  std::array<double, 3> normal{0, 0, 1};            ///< n
 
   static constexpr std::size_t particles = 1;
   static constexpr auto describe() {
@@ -103,7 +103,7 @@ struct OnPlane {
 struct OnCylinder {
   std::array<double, 3> point{};  ///< p, on the axis [length]
   std::array<double, 3> axis{0, 0, 1};
-  std::optional<double> radius;  ///< R; as at the start unless given [length]
+  std::optional<double> radius = {};  ///< R; as at the start unless given [length]
 
   static constexpr std::size_t particles = 1;
   static constexpr auto describe() {
@@ -135,7 +135,7 @@ struct OnCylinder {
 struct OnCircle {
   std::array<double, 3> center{};  ///< [length]
   std::array<double, 3> normal{0, 0, 1};
-  std::optional<double> radius;  ///< as at the start unless given [length]
+  std::optional<double> radius = {};  ///< as at the start unless given [length]
 
   static constexpr std::size_t particles = 1;
   static constexpr auto describe() {
@@ -163,7 +163,7 @@ struct OnCircle {
 ///
 ///     g = two components of x - p across the direction
 struct OnLine {
-  std::optional<std::array<double, 3>> point;  ///< p; where the particle starts unless given [length]
+  std::optional<std::array<double, 3>> point = {};  ///< p; where the particle starts unless given [length]
   std::array<double, 3> direction{0, 0, 1};
 
   static constexpr std::size_t particles = 1;
