@@ -205,6 +205,11 @@ class SceneReader {
       reader.fail("steps", fmt::format("steps = {} is negative; 0 or more is expected", *made.steps));
     if (reader.has("steps")) effective.put("steps", SceneValue::of(*made.steps));
     made.compensated = reader.flag("compensated", false);
+    if (made.compensated && !scene_.hamiltonian.constraints.empty()) {
+      reader.fail("compensated",
+                  "compensated = true does not go with constraints, which are solved to the rounding of "
+                  "plain sums");
+    }
     effective.put("compensated", SceneValue::of(made.compensated, reader.line("compensated")));
   }
 

@@ -70,7 +70,10 @@ class TiedReader {
     return particles < 2 ? "[" + tuple + "]" : "[[" + tuple + "]]";
   }
   [[noreturn]] void wrong(const SceneValue& value) const {
-    reader_.wrong_kind(value, key_, fmt::format("a list of names such as {}", example_of(particles_)));
+    const std::string tuples = particles_ < 2 ? "names" : key_ + " of names";
+    reader_.fail(&value, key_,
+                 fmt::format("{} = {} does not list {}; such as {} is expected", key_, to_text(value), tuples,
+                             example_of(particles_)));
   }
 
   std::vector<Index> names(const SceneValue& at, const SceneValue::Array& list) const {
