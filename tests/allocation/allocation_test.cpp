@@ -10,6 +10,7 @@
 #include "integrators/schemes.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/mechanisms.hpp"
 #include "tests/support/planets.hpp"
 
 #include <atomic>
@@ -93,6 +94,26 @@ TEST_CASE("nothing is allocated inside advance, nor by settling", "[allocation]"
   }
   check_none(compose(WisdomHolman({.G = G, .coordinates = Coordinates::democratic}), schemes::verlet_aba));
   check_none(compose(Damped(KineticPotential(Gravity{.G = G}), {.rate = 1e-6}), schemes::verlet));
+}
+
+TEST_CASE("constraints allocate nothing inside advance, solved all at once or by sweeps", "[allocation][constraints]") {
+  for (const ConstraintMethod solver : {ConstraintMethod::newton, ConstraintMethod::rattle}) {
+    const test::Mechanism chain = test::hanging_chain(40, {.solver = solver});
+    for (const Scheme* scheme : {&schemes::verlet, &schemes::yoshida_4}) {
+      CAPTURE(scheme->name, static_cast<int>(solver));
+      auto integrator = compose(test::hamiltonian_of(chain), *scheme);
+      ParticleSystem<double> s = chain.particles;
+      s.clock() = Clock<double>::fixed(0, 0.005);
+      integrator.bind(s);
+      integrator.advance(s, {.steps = 1});
+      ParticleSystem<double> copy = s;
+      integrator.settle(s, copy, {.energy = true}, std::nullopt, true);
+      const long start = allocations;
+      CHECK(integrator.advance(s, {.steps = 20}).steps == 20);
+      integrator.settle(s, copy, {.energy = true}, std::nullopt, true);
+      CHECK(allocations == start);
+    }
+  }
 }
 
 TEST_CASE("a force that allocates is seen by the count", "[allocation]") {
