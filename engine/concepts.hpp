@@ -83,7 +83,9 @@ struct IntegratorClaims {
   int order = 0;
   ClockMode clock = ClockMode::fixed;
   bool symplectic = false;
-  bool energy = true;  ///< an energy exists
+  bool reversible = false;    ///< backward steps undo forward ones
+  bool energy_exact = false;  ///< the energy is kept at any step; no symplectic method that keeps momenta can do that
+  bool energy = true;         ///< an energy exists
   bool dissipative = false;
   bool time_dependent = false;
   bool keeps_momentum = true;

@@ -42,6 +42,7 @@ template <SplitHamiltonian H> class Composition {
         options_(options),
         name_(scheme.name),
         order_(scheme.order.classical),
+        symmetric_(scheme.is_symmetric() && scheme.before.size() == 0),
         word_(timed(fitted_word(scheme, hamiltonian_.claims(), detail::name_of(hamiltonian_)))) {
     for (const Stage& stage : scheme.before) before_.push_back({stage.letter, real(stage.weight), real(0)});
     for (const Stage& stage : scheme.after) after_.push_back({stage.letter, real(stage.weight), real(0)});
@@ -53,6 +54,7 @@ template <SplitHamiltonian H> class Composition {
             .hamiltonian = detail::name_of(hamiltonian_),
             .order = order_,
             .symplectic = !claims.dissipative,
+            .reversible = symmetric_ && !claims.dissipative,
             .energy = claims.energy,
             .dissipative = claims.dissipative,
             .time_dependent = claims.time_dependent,
@@ -159,6 +161,7 @@ template <SplitHamiltonian H> class Composition {
   CompositionOptions options_;
   std::string name_;
   int order_;
+  bool symmetric_;
   TimedWord<real> word_;
   std::vector<TimedStage<real>> before_, after_;
 };
