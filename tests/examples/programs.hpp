@@ -4,6 +4,10 @@
 
 #include "examples/oblate_saturn/oblateness.hpp"
 
+#include "constraints/constraint_residual.hpp"
+#include "constraints/constraint_solver.hpp"
+#include "constraints/distance.hpp"
+#include "constraints/surfaces.hpp"
 #include "engine/monitors.hpp"
 #include "engine/orbital_monitors.hpp"
 #include "engine/shadow_hamiltonian.hpp"
@@ -27,8 +31,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <optional>
 
 namespace examples {
@@ -44,6 +50,12 @@ namespace examples::oblate_saturn_from_scene {
 }
 #define run(steps) run(examples::shortened.value_or(steps))
 #define run_until(end) run(sim.steps_in(end))
+namespace examples::chain {
+#include "examples/chain/main.cpp"
+}
+namespace examples::double_pendulum {
+#include "examples/double_pendulum/main.cpp"
+}
 namespace examples::driven_oscillator {
 #include "examples/driven_oscillator/main.cpp"
 }
@@ -62,11 +74,17 @@ namespace examples::oblate_saturn {
 namespace examples::outer_solar_system {
 #include "examples/outer_solar_system/main.cpp"
 }
+namespace examples::pendulum {
+#include "examples/pendulum/main.cpp"
+}
 namespace examples::pythagorean {
 #include "examples/pythagorean/main.cpp"
 }
 namespace examples::solar_system {
 #include "examples/solar_system/main.cpp"
+}
+namespace examples::spherical_pendulum {
+#include "examples/spherical_pendulum/main.cpp"
 }
 namespace examples::template_project {
 #include "examples/template_project/main.cpp"
