@@ -28,6 +28,8 @@ struct Example {
 };
 
 const std::vector<Example> all = {
+    {"bead_on_wire", bead_on_wire::program, Length::quick, Bits::of_this_machine, 100},
+    {"beads_on_sphere", beads_on_sphere::program, Length::quick, Bits::everywhere, 250},
     {"chain", chain::program, Length::quick},
     {"double_pendulum", double_pendulum::program, Length::quick},
     {"driven_oscillator", driven_oscillator::program, Length::quick, Bits::of_this_machine},
@@ -50,6 +52,8 @@ bool has_scene(const std::string& example) { return std::filesystem::exists(fold
 
 noether::Scene scene_of(const std::string& example) {
   noether::Parts parts = noether::standard_parts();
+  if (example == "bead_on_wire") parts.add_constraint<OnCycloid>();
+  if (example == "beads_on_sphere") parts.add_force<SphereAttraction>();
   if (example == "oblate_saturn") parts.add_force<Oblateness>();
   return noether::load_scene("scene.toml", parts);
 }
@@ -199,6 +203,10 @@ TEST_CASE("long examples do what they expect and print what their READMEs print"
   check_whole(Length::nightly);
 }
 
+TEST_CASE("three lines of program run the user's force or constraint from the scene file", "[examples]") {
+  check_from_scene("bead_on_wire", bead_on_wire_from_scene::program, Bits::of_this_machine);
+  check_from_scene("beads_on_sphere", beads_on_sphere_from_scene::program, Bits::everywhere);
+}
 TEST_CASE("three lines of program run the user's force on the moons of Saturn", "[examples][slow]") {
   check_from_scene("oblate_saturn", oblate_saturn_from_scene::program, Bits::of_this_machine);
 }

@@ -2,6 +2,8 @@
 /// The programs of examples/, as functions that a test calls: each main.cpp in a namespace of its own, its calls of
 /// `run` and `run_until` made as short as `shortened` says. One file includes this.
 
+#include "examples/bead_on_wire/cycloid.hpp"
+#include "examples/beads_on_sphere/sphere_attraction.hpp"
 #include "examples/oblate_saturn/oblateness.hpp"
 
 #include "constraints/constraint_residual.hpp"
@@ -45,11 +47,23 @@ inline std::optional<std::int64_t> shortened;
 }  // namespace examples
 
 #define main program
+namespace examples::bead_on_wire_from_scene {
+#include "examples/bead_on_wire/from_scene.cpp"
+}
+namespace examples::beads_on_sphere_from_scene {
+#include "examples/beads_on_sphere/from_scene.cpp"
+}
 namespace examples::oblate_saturn_from_scene {
 #include "examples/oblate_saturn/from_scene.cpp"
 }
 #define run(steps) run(examples::shortened.value_or(steps))
 #define run_until(end) run(sim.steps_in(end))
+namespace examples::bead_on_wire {
+#include "examples/bead_on_wire/main.cpp"
+}
+namespace examples::beads_on_sphere {
+#include "examples/beads_on_sphere/main.cpp"
+}
 namespace examples::chain {
 #include "examples/chain/main.cpp"
 }
