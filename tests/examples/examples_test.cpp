@@ -28,14 +28,20 @@ struct Example {
 };
 
 const std::vector<Example> all = {
+    {"bead_on_wire", bead_on_wire::program, Length::quick, Bits::of_this_machine, 100},
+    {"beads_on_sphere", beads_on_sphere::program, Length::quick, Bits::everywhere, 250},
+    {"chain", chain::program, Length::quick},
+    {"double_pendulum", double_pendulum::program, Length::quick},
     {"driven_oscillator", driven_oscillator::program, Length::quick, Bits::of_this_machine},
     {"figure_eight", figure_eight::program, Length::quick},
     {"henon_heiles", henon_heiles::program, Length::quick},
     {"kepler", kepler::program, Length::quick},
     {"oblate_saturn", oblate_saturn::program, Length::slow, Bits::of_this_machine},
     {"outer_solar_system", outer_solar_system::program, Length::nightly, Bits::everywhere, 4000},
+    {"pendulum", pendulum::program, Length::quick},
     {"pythagorean", pythagorean::program, Length::nightly, Bits::everywhere, 20'000},
     {"solar_system", solar_system::program, Length::slow},
+    {"spherical_pendulum", spherical_pendulum::program, Length::quick},
     {"template_project", template_project::program, Length::quick},
 };
 
@@ -46,6 +52,8 @@ bool has_scene(const std::string& example) { return std::filesystem::exists(fold
 
 noether::Scene scene_of(const std::string& example) {
   noether::Parts parts = noether::standard_parts();
+  if (example == "bead_on_wire") parts.add_constraint<OnCycloid>();
+  if (example == "beads_on_sphere") parts.add_force<SphereAttraction>();
   if (example == "oblate_saturn") parts.add_force<Oblateness>();
   return noether::load_scene("scene.toml", parts);
 }
@@ -133,6 +141,20 @@ void check_whole(Length length) {
   }
 }
 
+/// The program that reads an example's scene, beside the scene itself.
+void check_from_scene(const std::string& example, int (*program)(), Bits bits) {
+  if (!programs_can_run) return;
+  CAPTURE(example);
+  const ExampleFolder copy(example);
+  const std::string output = output_of(program);
+  CHECK(physics(output, bits) == physics(outputs_in(readme_of(example)).at(1), bits));
+  const noether::Scene scene = scene_of(example);
+  noether::Simulation<double> sim = assemble(scene);
+  CHECK(sim.run(*scene.integrator.steps).ok());
+  CHECK(digest_in(output) == noether::io::digest(sim.particles()));
+  CHECK(std::filesystem::exists("scene.out/run.h5"));
+}
+
 }  // namespace
 
 TEST_CASE("every example is tested, and has a README that names its scene and shows what both print", "[examples]") {
@@ -181,17 +203,12 @@ TEST_CASE("long examples do what they expect and print what their READMEs print"
   check_whole(Length::nightly);
 }
 
-TEST_CASE("three lines of program run the user's force from the scene file", "[examples][slow]") {
-  if (!programs_can_run) return;
-  const ExampleFolder copy("oblate_saturn");
-  const std::string output = output_of(oblate_saturn_from_scene::program);
-  CHECK(physics(output, Bits::of_this_machine) ==
-        physics(outputs_in(readme_of("oblate_saturn")).at(1), Bits::of_this_machine));
-  const noether::Scene scene = scene_of("oblate_saturn");
-  noether::Simulation<double> sim = assemble(scene);
-  CHECK(sim.run(*scene.integrator.steps).ok());
-  CHECK(digest_in(output) == noether::io::digest(sim.particles()));
-  CHECK(std::filesystem::exists("scene.out/run.h5"));
+TEST_CASE("three lines of program run the user's force or constraint from the scene file", "[examples]") {
+  check_from_scene("bead_on_wire", bead_on_wire_from_scene::program, Bits::of_this_machine);
+  check_from_scene("beads_on_sphere", beads_on_sphere_from_scene::program, Bits::everywhere);
+}
+TEST_CASE("three lines of program run the user's force on the moons of Saturn", "[examples][slow]") {
+  check_from_scene("oblate_saturn", oblate_saturn_from_scene::program, Bits::of_this_machine);
 }
 
 TEST_CASE("a stale figure in a README is seen, times of the machine are not", "[examples]") {

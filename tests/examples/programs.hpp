@@ -2,8 +2,14 @@
 /// The programs of examples/, as functions that a test calls: each main.cpp in a namespace of its own, its calls of
 /// `run` and `run_until` made as short as `shortened` says. One file includes this.
 
+#include "examples/bead_on_wire/cycloid.hpp"
+#include "examples/beads_on_sphere/sphere_attraction.hpp"
 #include "examples/oblate_saturn/oblateness.hpp"
 
+#include "constraints/constraint_residual.hpp"
+#include "constraints/constraint_solver.hpp"
+#include "constraints/distance.hpp"
+#include "constraints/surfaces.hpp"
 #include "engine/monitors.hpp"
 #include "engine/orbital_monitors.hpp"
 #include "engine/shadow_hamiltonian.hpp"
@@ -27,8 +33,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <optional>
 
 namespace examples {
@@ -39,11 +47,29 @@ inline std::optional<std::int64_t> shortened;
 }  // namespace examples
 
 #define main program
+namespace examples::bead_on_wire_from_scene {
+#include "examples/bead_on_wire/from_scene.cpp"
+}
+namespace examples::beads_on_sphere_from_scene {
+#include "examples/beads_on_sphere/from_scene.cpp"
+}
 namespace examples::oblate_saturn_from_scene {
 #include "examples/oblate_saturn/from_scene.cpp"
 }
 #define run(steps) run(examples::shortened.value_or(steps))
 #define run_until(end) run(sim.steps_in(end))
+namespace examples::bead_on_wire {
+#include "examples/bead_on_wire/main.cpp"
+}
+namespace examples::beads_on_sphere {
+#include "examples/beads_on_sphere/main.cpp"
+}
+namespace examples::chain {
+#include "examples/chain/main.cpp"
+}
+namespace examples::double_pendulum {
+#include "examples/double_pendulum/main.cpp"
+}
 namespace examples::driven_oscillator {
 #include "examples/driven_oscillator/main.cpp"
 }
@@ -62,11 +88,17 @@ namespace examples::oblate_saturn {
 namespace examples::outer_solar_system {
 #include "examples/outer_solar_system/main.cpp"
 }
+namespace examples::pendulum {
+#include "examples/pendulum/main.cpp"
+}
 namespace examples::pythagorean {
 #include "examples/pythagorean/main.cpp"
 }
 namespace examples::solar_system {
 #include "examples/solar_system/main.cpp"
+}
+namespace examples::spherical_pendulum {
+#include "examples/spherical_pendulum/main.cpp"
 }
 namespace examples::template_project {
 #include "examples/template_project/main.cpp"

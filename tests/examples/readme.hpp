@@ -38,14 +38,15 @@ inline std::vector<std::string> outputs_in(const std::string& readme) {
 }
 
 /// The lines that are physics: without times of the machine and names of files, and without what bits decide where
-/// these are of this machine only: the digest, and figures of 1e-12 and less.
+/// these are of this machine only: the digest, the iterations of a solver, and figures of 1e-12 and less.
 inline std::string physics(const std::string& output, Bits bits) {
-  static const std::regex machine("steps/s on|^wrote "), digest("^sha256:"), rounding("-?[0-9.]+e-(1[2-9]|[2-9][0-9])");
+  static const std::regex machine("steps/s on|^wrote "), decided("^sha256:|^constraints: "),
+      rounding("-?[0-9.]+e-(1[2-9]|[2-9][0-9])");
   std::string kept;
   std::istringstream lines(output);
   for (std::string line; std::getline(lines, line);) {
     if (std::regex_search(line, machine)) continue;
-    if (bits == Bits::of_this_machine && std::regex_search(line, digest)) continue;
+    if (bits == Bits::of_this_machine && std::regex_search(line, decided)) continue;
     if (bits == Bits::of_this_machine) line = std::regex_replace(line, rounding, "(rounding)");
     kept += line + "\n";
   }
