@@ -19,14 +19,17 @@ template <class Real, std::size_t n> using Points = std::array<Vec3<Real>, n>;
 ///     struct OnParabola {                                    // z = a x^2
 ///       static constexpr std::size_t particles = 1;
 ///       double a = 1;
-///       template <class Real> Real value(const Points<Real, 1>& x) const { return x[0][2] - Real(a) * x[0][0] *
-///       x[0][0]; } double scale() const { return 1 / a; }               // what |g| is small beside
+///       template <class Real> Real value(const Points<Real, 1>& x) const {
+///         return x[0][2] - Real(a) * x[0][0] * x[0][0];
+///       }
+///       double scale() const { return 1 / a; }               // above 0: what |g| is small beside
 ///     };
 ///
 /// Gradients come by dual numbers unless it offers `gradient(x)`, one array of `Points` for each equation. A constraint
 /// whose `residual(g)` differs from |g| / scale says so itself; one that takes what it was not told from the particles
 /// offers `at_start(x)`; one that makes no sense throws in `check()`. `keeps_momentum` and `keeps_angular_momentum`
-/// (false unless declared) say that its forces have no sum, and no torque.
+/// (false unless declared; the latter may be a function) say that its forces have no sum, and no torque about the
+/// origin.
 template <class C>
 concept Constraint = requires(const C& c, const Points<double, C::particles>& x) {
   { C::particles } -> std::convertible_to<std::size_t>;
@@ -121,9 +124,14 @@ template <class C> constexpr bool keeps_momentum() {
   if constexpr (requires { C::keeps_momentum; }) return C::keeps_momentum;
   return false;
 }
-template <class C> constexpr bool keeps_angular_momentum() {
-  if constexpr (requires { C::keeps_angular_momentum; }) return C::keeps_angular_momentum;
-  return false;
+template <class C> bool keeps_angular_momentum(const C& constraint) {
+  if constexpr (requires { constraint.keeps_angular_momentum(); }) {
+    return constraint.keeps_angular_momentum();
+  } else if constexpr (requires { C::keeps_angular_momentum; }) {
+    return C::keeps_angular_momentum;
+  } else {
+    return false;
+  }
 }
 
 }  // namespace detail

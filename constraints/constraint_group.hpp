@@ -5,6 +5,7 @@
 #include "engine/column.hpp"
 #include "engine/signature.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
@@ -77,7 +78,9 @@ template <Constraint C> class ConstraintsOf final : public ConstraintGroup {
   double residual(Index constraint, double g) const override { return detail::residual_of(at(constraint), g); }
   double scale(Index constraint) const override { return detail::scale_of(at(constraint)); }
   bool keeps_momentum() const override { return detail::keeps_momentum<C>(); }
-  bool keeps_angular_momentum() const override { return detail::keeps_angular_momentum<C>(); }
+  bool keeps_angular_momentum() const override {
+    return std::all_of(constraints_.begin(), constraints_.end(), detail::keeps_angular_momentum<C>);
+  }
 
   void values(const VectorColumn<double>& x, Index first, Index last, double* g) const override {
     write_values(x, first, last, g);

@@ -39,7 +39,7 @@ template <class Real> void ConstraintSolver<Real>::bind(ParticleSystem<Real>& s)
   failure_.reset();
   known_.reset();
   lay_out(s);
-  start_ = s.positions();
+  start_ = free_ = s.positions();
   if (s.phase().opened) return;  // a run that goes on stands where it stood
   check_start(s);
   check_independent(s);
@@ -92,6 +92,10 @@ template <class Real> void ConstraintSolver<Real>::lay_out(const ParticleSystem<
         }
         layout_.first.push_back(static_cast<Index>(layout_.particle.size()));
         scales_.push_back(group->scale(c));
+        if (!(scales_.back() > 0)) {
+          throw BadConstraints(fmt::format("the scale of {} is {}; a number above 0 is expected",
+                                           set_.words(static_cast<Index>(scales_.size()) - 1, s), scales_.back()));
+        }
       }
     }
   }
@@ -123,6 +127,9 @@ template <class Real> void ConstraintSolver<Real>::check_start(const ParticleSys
     // Positions far from where the constraint acts are known to fewer digits.
     const double allowed =
         largest_start_violation * std::max(1.0, floors_[at(e)] / (4 * unit_roundoff<Real>() * scales_[at(e)]));
+    if (!std::isfinite(residual)) {
+      throw BadConstraints(set_.words(e, s) + " has no finite value where its particles start");
+    }
     if (residual <= allowed || residual <= worst_residual) continue;
     worst_equation = e;
     worst_residual = residual;
@@ -171,11 +178,18 @@ std::string ConstraintSolver<Real>::dependent_words(const ParticleSystem<Real>& 
     std::vector<Index> order(at(n));
     for (Index e = 0; e < n; ++e) order[at(e)] = e;
     std::stable_sort(order.begin(), order.end(), [&](Index e, Index f) { return null[e] > null[f] + 1e-9; });
+    // One of each kind first: of a chain between two fixed ends the many links say less than the ends.
+    std::vector<std::string> kinds, others;
     for (const Index e : order) {
-      const std::string words = set_.words(e, s);
+      const std::string words = set_.words(e, s), kind = set_.place(e).group->name();
       if (null[e] < 0.01 * null.maxCoeff()) break;
-      if (std::find(named.begin(), named.end(), words) == named.end()) named.push_back(words);
+      if (std::find(named.begin(), named.end(), words) != named.end()) continue;
+      if (std::find(others.begin(), others.end(), words) != others.end()) continue;
+      const bool new_kind = std::find(kinds.begin(), kinds.end(), kind) == kinds.end();
+      if (new_kind) kinds.push_back(kind);
+      (new_kind ? named : others).push_back(words);
     }
+    named.insert(named.end(), others.begin(), others.end());
   }
   const bool more = named.size() > at(most_named);
   const std::size_t left_out = more ? named.size() - at(most_named) : 0;
@@ -237,6 +251,7 @@ template <class Real>
 bool ConstraintSolver<Real>::solve_by_newton(const ParticleSystem<Real>& s, VectorColumn<Real>& x, const Real& h) {
   using std::abs;
   lambda_.setZero();
+  free_ = x;
   find_floors(x);
   values(x);
   for (Index e = 0; e < layout_.equations(); ++e) {
@@ -273,11 +288,18 @@ template <class Real> bool ConstraintSolver<Real>::iterate(VectorColumn<Real>& x
     } else {
       matrix_.solve(g_);
     }
-    push(x, old_, g_, Real(1));
     lambda_ += g_;
+    place(x);
     ++iterations_;
   }
   return false;
+}
+
+/// Where the multipliers put the particles, rounded once: positions and velocities see the same multipliers, however
+/// small the last of their corrections were.
+template <class Real> void ConstraintSolver<Real>::place(VectorColumn<Real>& x) const {
+  x = free_;
+  push(x, old_, lambda_, Real(1));
 }
 
 /// Goes to the solution along those of shorter steps: where Newton's method loses its way, and to tell whether there is
@@ -289,9 +311,9 @@ bool ConstraintSolver<Real>::follow(VectorColumn<Real>& x, const Real& h, const 
   for (double stride = 0.5; *reached < 1;) {
     const double next = std::min(1.0, *reached + stride), growth = *reached > 0 ? next / *reached : 0;
     lambda_ = Real(growth * growth) * solved;
-    x = start_;
-    x.add_scaled(Real(next) * h, v);
-    push(x, old_, lambda_, Real(1));
+    free_ = start_;
+    free_.add_scaled(Real(next) * h, v);
+    place(x);
     if (iterate(x, true)) {
       solved = lambda_;
       *reached = next;

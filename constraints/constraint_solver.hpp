@@ -69,6 +69,7 @@ template <class Real> class ConstraintSolver {
   bool solve_by_sweeps(const ParticleSystem<Real>& s, VectorColumn<Real>& x);
   void project_by_newton(ParticleSystem<Real>& s);
   bool project_by_sweeps(ParticleSystem<Real>& s, const Real& h);
+  void place(VectorColumn<Real>& x) const;
   bool on_this_side(Index* equation) const;
   /// column -= factor M^-1 G^T multipliers.
   void push(VectorColumn<Real>& column, const ConstraintGradients<Real>& g, const Vector& multipliers,
@@ -85,8 +86,8 @@ template <class Real> class ConstraintSolver {
   std::optional<std::uint64_t> known_;  ///< version of the positions that `here_` and the factors belong to
   Vector g_, lambda_;
   std::vector<double> floors_, unconstrained_;  ///< of abs(g): what rounding leaves; relative, before it is solved
-  VectorColumn<Real> start_;
-  std::vector<Real> sweep_values_;  ///< of one constraint
+  VectorColumn<Real> start_, free_;             ///< before a position stage, and where free motion alone would end
+  std::vector<Real> sweep_values_;              ///< of one constraint
   std::vector<Vec3<Real>> sweep_gradients_;
   std::optional<Failure> failure_;
   std::int64_t iterations_ = 0;

@@ -70,6 +70,7 @@ struct OnSphere {
   }
   double scale() const { return *radius * *radius; }
   double residual(double g) const { return std::abs(std::sqrt(std::max(0.0, 1 + 2 * g / scale())) - 1); }
+  bool keeps_angular_momentum() const { return center == std::array<double, 3>{}; }
 };
 
 /// A particle stays in a plane.

@@ -87,8 +87,9 @@ MonitorReport Energy::report() const {
   return report;
 }
 
-void VectorInvariant::begin(const Vec3<Quad>& value, const Quad& scale) {
+void VectorInvariant::begin(const Vec3<Quad>& value, const Quad& scale, bool kept) {
   begun_ = true;
+  kept_ = kept;
   reference_ = value;
   scale_ = static_cast<double>(scale);
   if (!(scale_ > 0)) scale_ = 1;
@@ -133,11 +134,13 @@ MonitorReport VectorInvariant::report() const {
   report.scale = scale_;
   fill_line(report, errors_, per_time("1", time_unit_));
   if (has_direction()) report.note = fmt::format("direction within {:.2g} rad", worst_direction_);
+  if (!kept_) report.note += fmt::format("{}not kept by the forces of this run", report.note.empty() ? "" : "; ");
   return report;
 }
 
 void VectorInvariant::save_series(SavedState& saved, const std::string& prefix) const {
   save_value(saved, prefix + "/begun", begun_);
+  save_value(saved, prefix + "/kept", kept_);
   save_value(saved, prefix + "/reference", reference_);
   save_value(saved, prefix + "/numbers",
              std::array{scale_, error_, direction_error_, worst_direction_, value_[0], value_[1], value_[2]});
@@ -148,6 +151,7 @@ void VectorInvariant::save_series(SavedState& saved, const std::string& prefix) 
 void VectorInvariant::load_series(const SavedState& saved, const std::string& prefix) {
   std::array<double, 7> n{};
   load_value(saved, prefix + "/begun", begun_);
+  load_value(saved, prefix + "/kept", kept_);
   load_value(saved, prefix + "/reference", reference_);
   load_value(saved, prefix + "/numbers", n);
   load_value(saved, prefix + "/errors", errors_);
@@ -167,7 +171,7 @@ template <class Real> void Momentum::observe(const Snapshot<Real>& now) {
   if (!begun()) {
     Quad scale = 0;
     for (Index i = 0; i < s.size(); ++i) scale += sqrt(norm2(of(i)));
-    begin(sum, scale);
+    begin(sum, scale, now.claims().keeps_momentum);
     time_unit_ = std::string(now.units().time);
   }
   add(now.time(), sum);
@@ -184,7 +188,7 @@ template <class Real> void AngularMomentum::observe(const Snapshot<Real>& now) {
     for (Index i = 0; i < s.size(); ++i) {
       scale += wide(s.masses()[i]) * sqrt(norm2(wide(s.positions()[i])) * norm2(wide(s.velocities()[i])));
     }
-    begin(sum, scale);
+    begin(sum, scale, now.claims().keeps_angular_momentum);
     time_unit_ = std::string(now.units().time);
   }
   add(now.time(), sum);

@@ -69,8 +69,8 @@ class VectorInvariant {
   VectorInvariant(std::string dimension, bool with_direction)
       : dimension_(std::move(dimension)), with_direction_(with_direction) {}
   bool begun() const { return begun_; }
-  /// The first value. @param scale  what errors are relative to
-  void begin(const Vec3<Quad>& value, const Quad& scale);
+  /// The first value. @param scale  what errors are relative to; @param kept  by the equations of motion themselves
+  void begin(const Vec3<Quad>& value, const Quad& scale, bool kept);
   void add(double time, const Vec3<Quad>& value);
   void save_series(SavedState& saved, const std::string& prefix) const;
   void load_series(const SavedState& saved, const std::string& prefix);
@@ -82,7 +82,7 @@ class VectorInvariant {
 
   std::string dimension_;
   bool with_direction_;
-  bool begun_ = false;
+  bool begun_ = false, kept_ = true;
   Vec3<Quad> reference_ = Vec3<Quad>::Zero();
   double scale_ = 0, error_ = 0, direction_error_ = 0, worst_direction_ = 0;
   std::array<double, 3> value_{};

@@ -248,6 +248,7 @@ template <class Real> std::vector<Series> ShadowHamiltonian<Real>::series() cons
 template <class Real> MonitorReport ShadowHamiltonian<Real>::report() const {
   MonitorReport report;
   report.samples = samples_;
+  if (samples_ == 0) report.verdict = verdict();
   if (samples_ == 0) return report;
   const SeriesStatistics& errors = figures_[best()].errors;
   report.first = static_cast<double>(figures_[best()].first);
@@ -283,20 +284,20 @@ template <class Real> std::string ShadowHamiltonian<Real>::verdict() const {
   }
   if (!std::isfinite(least)) return "step too large: the values left the range of double precision";
   if (least <= rounding()) return "kept to rounding: " + best_of;
-  if (least > 0.1) return fmt::format("step too large: no order fluctuates less than {:.1e}", least);
-  // An asymptotic series that is used beyond its smallest term grows; what no series describes stays where it is.
-  if (last > 1.2 * least) {
+  const std::string no_order = fmt::format("no order fluctuates less than {:.1e}", least);
+  // An asymptotic series that is used beyond its smallest term grows, or stays where it is.
+  const std::size_t third_last = orders.size() < 3 ? 0 : orders.size() - 3;
+  const bool grows = last > 1.2 * least, stays = orders.size() > 1 && least > 0.8 * fluctuation(third_last);
+  if (stays && least < 100 * constraint_tolerance_) {
+    return fmt::format("constraints not converged: they are solved to {:.1e}, and {}", constraint_tolerance_, no_order);
+  }
+  if (grows) {
     return fmt::format("step too large: {}, and higher orders by more, not less ({:.1e} at {})", best_of, last,
                        orders.back());
   }
-  const std::size_t third_last = orders.size() < 3 ? 0 : orders.size() - 3;
-  if (orders.size() > 1 && least > 0.8 * fluctuation(third_last)) {
-    if (constraint_tolerance_ == 0) {
-      return fmt::format("not symplectic: no order fluctuates less than {:.1e}", least);
-    }
-    return fmt::format("constraints not converged: they are solved to {:.1e}, and no order fluctuates less than {:.1e}",
-                       constraint_tolerance_, least);
-  }
+  if (least > 0.01) return "step too large: " + no_order;
+  if (stays && fluctuation(0) > 1.2 * least) return fmt::format("step too large: {}, at however high order", no_order);
+  if (stays) return "not symplectic: " + no_order;  // what no series describes is the same at every order
   return "kept: " + best_of + ", less with every order";
 }
 

@@ -33,12 +33,12 @@ template <class Real> Real kinetic_energy(const ParticleSystem<Real>& s) {
 ///
 /// With constraints g(q) = 0 both flows end on them, positions and velocities, and `B A B` is RATTLE:
 ///
-///     A:  v -> v - M^-1 G(x0)^T lambda / h,  x -> x + h v  with  g(x) = 0,  v -> P(x) v   action increment  h T(v
-///     before P) B:  v -> P(x) (v + h a(x, t))                                                       action increment
-///     - h U
+///     A:  v -> v - M^-1 G(x0)^T lambda / h,  x -> x + h v so that g(x) = 0,  v -> P(x) v
+///     B:  v -> P(x) (v + h a(x, t))
 ///
-/// P(x) projects velocities along the constraints. The kick is still an exact flow; the drift is a symmetric map of
-/// order 2, so a scheme of higher order is to be a composition of whole steps of `verlet`.
+/// P(x) projects velocities along the constraints; the T of the drift's action increment is that before the projection.
+/// The kick is still an exact flow; the drift is a symmetric map of order 2, so a scheme of higher order is to be a
+/// composition of whole steps of `verlet`.
 /// @cost one force evaluation per kick, no allocation after `bind`
 /// @source HairerLubichWanner2006, Andersen1983, LeimkuhlerSkeel1994
 template <class F, class Real = double, class C = Unconstrained> class KineticPotential {

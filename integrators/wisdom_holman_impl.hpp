@@ -19,8 +19,8 @@ template <class Real, class F> HamiltonianClaims WisdomHolman<Real, F>::claims()
           .energy = forces.energy,
           .time_dependent = forces.time_dependent,
           .dissipative = forces.dissipative,
-          .keeps_momentum = !has_forces,
-          .keeps_angular_momentum = !has_forces};
+          .keeps_momentum = forces.keeps_momentum,
+          .keeps_angular_momentum = forces.keeps_angular_momentum};
 }
 
 template <class Real, class F> void WisdomHolman<Real, F>::bind(ParticleSystem<Real>& s) {

@@ -9,18 +9,13 @@ namespace {
 
 using namespace noether::test;
 
-/// The slope of the energy of ten links over so many steps of 0.002, in units of its own error.
-void check_slope(std::int64_t steps) {
-  Mechanism chain;
-  Vec3<double> x = Vec3<double>::Zero();
-  for (Index i = 0; i < 10; ++i) {
-    const double tilt = 0.4 + 0.2 * std::sin(2.0 * static_cast<double>(i)), turn = 0.3 * static_cast<double>(i);
-    x += Vec3<double>(std::sin(tilt) * std::cos(turn), std::sin(tilt) * std::sin(turn), -std::cos(tilt));
-    chain.particles.add(std::to_string(i), 1, x, {0, 0, 0});
-  }
-  chain.constraints.add(chain.particles, OnSphere{}, {0});
-  for (Index i = 0; i < 9; ++i) chain.constraints.add(chain.particles, Distance{}, {i, i + 1});
+TEST_CASE("the energy of ten links has no slope over ten million steps", "[constraints][nightly]") {
+  // After a million in which they forget their start: how the energy oscillates depends on where they are, and that
+  // takes its time to settle.
+  constexpr std::int64_t steps = 10'000'000;
+  const Mechanism chain = hanging_chain(10);
   Simulation<double> sim(chain.particles, compose(hamiltonian_of(chain), schemes::verlet), 0.002);
+  REQUIRE(sim.run(1'000'000).ok());
   auto& energy = sim.every(20, Energy{});
   REQUIRE(sim.run(steps).ok());
   const MonitorReport report = energy.report();
@@ -31,14 +26,6 @@ void check_slope(std::int64_t steps) {
   CHECK(std::fabs(*report.slope) < 3 * *report.slope_error);
   CHECK(*report.slope_error * static_cast<double>(steps) * 0.002 < 0.1 * *report.worst);
   CHECK(chain.constraints.worst(sim.particles()).residual < 16 * 0x1p-53 * 10);
-}
-
-TEST_CASE("the energy of ten links has no slope over a hundred thousand steps", "[constraints][slow]") {
-  check_slope(100'000);
-}
-
-TEST_CASE("the energy of ten links has no slope over ten million steps", "[constraints][nightly]") {
-  check_slope(10'000'000);
 }
 
 }  // namespace

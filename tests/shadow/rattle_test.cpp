@@ -77,6 +77,22 @@ TEST_CASE("constraints that are not converged are named, with what the shadow sh
   CHECK(shadow.fluctuation(5) < 1e-3 * before);
 }
 
+TEST_CASE("steps too large for a mechanism are named, not taken for a method that is not symplectic",
+          "[shadow][constraints]") {
+  const auto verdict_of = [](const test::Mechanism& mechanism, const Scheme& scheme, double h) {
+    return test::shadow_of(compose(test::hamiltonian_of(mechanism), scheme), mechanism.particles, h, 4000,
+                           test::shadow_orders)
+        .verdict();
+  };
+  for (const double h : {0.25, 0.3}) {
+    CHECK_THAT(verdict_of(test::spherical_pendulum(), schemes::verlet, h), StartsWith("step too large"));
+  }
+  for (const double h : {0.03, 0.05}) {
+    CHECK_THAT(verdict_of(test::double_pendulum(), schemes::verlet, h), StartsWith("step too large"));
+    CHECK_THAT(verdict_of(test::double_pendulum(), schemes::kahan_li_6_s9, h), StartsWith("step too large"));
+  }
+}
+
 namespace {
 /// Weight and a swirl that no potential has.
 struct SwirlingWeight {
