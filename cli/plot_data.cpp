@@ -289,13 +289,16 @@ void add_curve(PlotError& error, const std::string& name, const std::vector<doub
   error.curves.push_back(std::move(curve));
 }
 
-/// The relative error of a monitor; of a shadow Hamiltonian the change of each order since the start.
+/// The relative error of a monitor; of constraints the largest violation; of a shadow Hamiltonian the change of each
+/// order since the start.
 std::optional<PlotError> read_error(const io::MonitorSeries& monitor, double time_length) {
   std::vector<double> time = monitor.time;
   for (double& t : time) t /= time_length;
   PlotError error;
-  if (const auto found = monitor.quantities.find("relative_error"); found != monitor.quantities.end()) {
-    add_curve(error, "", time, found->second.second, 0, 1);
+  const bool residual = monitor.name == "constraint_residual";
+  const auto single = monitor.quantities.find(residual ? "worst" : "relative_error");
+  if (single != monitor.quantities.end()) {
+    add_curve(error, "", time, single->second.second, 0, 1);
     return error;
   }
   const auto found = monitor.quantities.find("value");
@@ -359,7 +362,8 @@ PlotData read_plot_data(const std::filesystem::path& file) {
   data.orbits = read_orbits(frames, scene, unit, file);
   for (const auto& [name, title] :
        {std::pair{"energy", "Energy"}, std::pair{"shadow_hamiltonian", "Shadow Hamiltonian"},
-        std::pair{"momentum", "Momentum"}, std::pair{"angular_momentum", "Angular momentum"}}) {
+        std::pair{"momentum", "Momentum"}, std::pair{"angular_momentum", "Angular momentum"},
+        std::pair{"constraint_residual", "Constraints"}}) {
     const auto found =
         std::find_if(monitors.begin(), monitors.end(), [wanted = name](const auto& m) { return m.name == wanted; });
     if (found == monitors.end()) continue;
@@ -367,13 +371,15 @@ PlotData read_plot_data(const std::filesystem::path& file) {
     if (!error) continue;
     error->title = title;
     const bool changes = name == std::string_view("energy") && changes_energy(scene);
-    error->label = changes || error->curves.size() > 1 ? "relative change" : "relative error";
+    error->label = changes || error->curves.size() > 1               ? "relative change"
+                   : name == std::string_view("constraint_residual") ? "violation"
+                                                                     : "relative error";
     data.errors.push_back(std::move(*error));
   }
   if (data.orbits.empty() && data.errors.empty()) {
     throw Error(
-        fmt::format("{} has nothing to draw; it needs frames (a trajectory writer) or a monitor of energy or "
-                    "momenta",
+        fmt::format("{} has nothing to draw; it needs frames (a trajectory writer) or a monitor of energy, "
+                    "momenta or constraints",
                     file.string()));
   }
   return data;
