@@ -51,6 +51,7 @@ template <class Real> void ConstraintSolver<Real>::bind(ParticleSystem<Real>& s)
     if (!solve_by_newton(s, x, Real(0))) throw BadConstraints(failure_->message);
     s.positions() = x;
     know(s);
+    check_independent(s);
   }
   // As often as it gains something: velocities that are along the constraints already must stay what they are.
   double before = std::numeric_limits<double>::infinity();

@@ -194,13 +194,20 @@ SceneValue::Array read_constraints(const SceneContext& context, const std::vecto
 }
 
 void refuse_constraints(const SceneContext& context, const std::vector<const SceneValue*>& tables, const Scene& scene) {
-  for (std::size_t k = 0; k < tables.size(); ++k) {
+  const auto refusal = [&](std::size_t count) -> std::string {
     ParticleSystem<double> s = scene.particles;
     try {
-      ConstraintSolver<double>(constraints_of(scene, k + 1)).bind(s);
+      ConstraintSolver<double>(constraints_of(scene, count)).bind(s);
     } catch (const BadConstraints& error) {
-      TableReader(context, *tables[k], "[[hamiltonian.constraint]]", path_of(k)).fail("type", error.message());
+      return error.message();
     }
+    return "";
+  };
+  if (tables.empty() || refusal(tables.size()).empty()) return;
+  for (std::size_t k = 0; k < tables.size(); ++k) {
+    const std::string message = refusal(k + 1);
+    if (message.empty()) continue;
+    TableReader(context, *tables[k], "[[hamiltonian.constraint]]", path_of(k)).fail("type", message);
   }
 }
 
