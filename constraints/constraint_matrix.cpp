@@ -10,14 +10,23 @@
 
 namespace noether {
 
-template <class Real> struct ConstraintMatrix<Real>::Factors {
+template <class Real> struct ConstraintMatrix<Real>::Sparse {
+  using Matrix = Eigen::SparseMatrix<Real>;
   /// Of a matrix whose upper half stands in the right order already: no copy of it is made.
-  struct Symmetric : Eigen::SimplicialLDLT<Sparse, Eigen::Upper, Eigen::NaturalOrdering<int>> {
-    void factorize_in_place(const Sparse& upper) { this->template factorize_preordered<true>(upper); }
+  struct Symmetric : Eigen::SimplicialLDLT<Matrix, Eigen::Upper, Eigen::NaturalOrdering<int>> {
+    void factorize_in_place(const Matrix& upper) { this->template factorize_preordered<true>(upper); }
     const Real& pivot(Index k) const { return this->m_diag[k]; }
   };
+
+  Sparse(Matrix upper_half, Eigen::SparseMatrix<double> both_halves)
+      : upper(std::move(upper_half)), full(std::move(both_halves)) {
+    symmetric.analyzePattern(upper);
+  }
+
+  Matrix upper;
+  Eigen::SparseMatrix<double> full;
   Symmetric symmetric;
-  Eigen::SparseLU<Sparse, Eigen::NaturalOrdering<int>> mixed;
+  Eigen::SparseLU<Eigen::SparseMatrix<double>, Eigen::NaturalOrdering<int>> mixed;
   bool mixed_is_analyzed = false;
 };
 
@@ -30,24 +39,18 @@ ConstraintMatrix<Real>::ConstraintMatrix(const ConstraintMatrix& other)
     : place_(other.place_),
       first_term_(other.first_term_),
       terms_(other.terms_),
-      upper_(other.upper_),
-      full_(other.full_),
       upper_element_(other.upper_element_),
       full_element_(other.full_element_),
       full_transposed_(other.full_transposed_),
       diagonal_(other.diagonal_),
       rhs_(other.rhs_),
-      solution_(other.solution_) {
-  if (other.factors_) analyze();
+      solution_(other.solution_),
+      mixed_rhs_(other.mixed_rhs_),
+      mixed_solution_(other.mixed_solution_) {
+  if (other.sparse_) sparse_ = std::make_unique<Sparse>(other.sparse_->upper, other.sparse_->full);
 }
 template <class Real> ConstraintMatrix<Real>& ConstraintMatrix<Real>::operator=(const ConstraintMatrix& other) {
   return *this = ConstraintMatrix(other);
-}
-
-template <class Real> void ConstraintMatrix<Real>::analyze() {
-  factors_ = std::make_unique<Factors>();
-  factors_->symmetric.analyzePattern(upper_);
-  has_factors_ = false;
 }
 
 template <class Real> void ConstraintMatrix<Real>::lay_out(const ConstraintLayout<Real>& layout) {
@@ -86,36 +89,40 @@ template <class Real> void ConstraintMatrix<Real>::lay_out(const ConstraintLayou
   terms_.clear();
   first_term_.assign(1, 0);
   upper_element_.clear();
-  std::vector<Eigen::Triplet<Real, int>> upper, full;
+  std::vector<Eigen::Triplet<Real, int>> upper;
+  std::vector<Eigen::Triplet<double, int>> full;
   for (const auto& [at, terms] : elements) {
     const auto [column, row] = at;
-    const Real element(static_cast<double>(first_term_.size() - 1));
+    const auto element = static_cast<double>(first_term_.size() - 1);
     terms_.insert(terms_.end(), terms.begin(), terms.end());
     first_term_.push_back(terms_.size());
-    upper.emplace_back(row, column, element);
+    upper.emplace_back(row, column, Real(element));
     full.emplace_back(row, column, element);
-    if (row != column) full.emplace_back(column, row, -element - Real(1));  // below 0: transposed
+    if (row != column) full.emplace_back(column, row, -element - 1);  // below 0: transposed
   }
-  upper_ = Sparse(n, n);
-  full_ = Sparse(n, n);
-  upper_.setFromTriplets(upper.begin(), upper.end());
-  full_.setFromTriplets(full.begin(), full.end());
+  typename Sparse::Matrix upper_half(n, n);
+  Eigen::SparseMatrix<double> both_halves(n, n);
+  upper_half.setFromTriplets(upper.begin(), upper.end());
+  both_halves.setFromTriplets(full.begin(), full.end());
   // The numbers that were put in tell where they have come to stand.
-  upper_element_.resize(static_cast<std::size_t>(upper_.nonZeros()));
+  upper_element_.resize(static_cast<std::size_t>(upper_half.nonZeros()));
   for (std::size_t k = 0; k < upper_element_.size(); ++k) {
-    upper_element_[k] = static_cast<std::size_t>(static_cast<double>(upper_.valuePtr()[k]));
+    upper_element_[k] = static_cast<std::size_t>(static_cast<double>(upper_half.valuePtr()[k]));
   }
-  full_element_.resize(static_cast<std::size_t>(full_.nonZeros()));
+  full_element_.resize(static_cast<std::size_t>(both_halves.nonZeros()));
   full_transposed_.resize(full_element_.size());
   for (std::size_t k = 0; k < full_element_.size(); ++k) {
-    const double mark = static_cast<double>(full_.valuePtr()[k]);
+    const double mark = both_halves.valuePtr()[k];
     full_transposed_[k] = mark < 0;
     full_element_[k] = static_cast<std::size_t>(mark < 0 ? -mark - 1 : mark);
   }
   diagonal_.resize(static_cast<std::size_t>(n));
-  analyze();
+  sparse_ = std::make_unique<Sparse>(std::move(upper_half), std::move(both_halves));
+  has_factors_ = false;
   rhs_.resize(n);
   solution_.resize(n);
+  mixed_rhs_.resize(n);
+  mixed_solution_.resize(n);
 }
 
 template <class Real>
@@ -133,15 +140,15 @@ Real ConstraintMatrix<Real>::element(std::size_t k, const ConstraintGradients<Re
 template <class Real>
 Index ConstraintMatrix<Real>::factorize(const ConstraintGradients<Real>& g, const Real& least_pivot) {
   for (std::size_t k = 0; k < upper_element_.size(); ++k)
-    upper_.valuePtr()[k] = element(upper_element_[k], g, g, false);
+    sparse_->upper.valuePtr()[k] = element(upper_element_[k], g, g, false);
   for (std::size_t c = 0; c < diagonal_.size(); ++c) {  // the last element of a column of the upper half
-    diagonal_[c] = upper_.valuePtr()[upper_.outerIndexPtr()[c + 1] - 1];
+    diagonal_[c] = sparse_->upper.valuePtr()[sparse_->upper.outerIndexPtr()[c + 1] - 1];
   }
-  factors_->symmetric.factorize_in_place(upper_);
+  sparse_->symmetric.factorize_in_place(sparse_->upper);
   has_factors_ = false;
   for (std::size_t e = 0; e < place_.size(); ++e) {
     const Index at = place_[e];
-    if (!(factors_->symmetric.pivot(at) > least_pivot * diagonal_[static_cast<std::size_t>(at)]))
+    if (!(sparse_->symmetric.pivot(at) > least_pivot * diagonal_[static_cast<std::size_t>(at)]))
       return static_cast<Index>(e);
   }
   has_factors_ = true;
@@ -157,23 +164,25 @@ template <class Real> void ConstraintMatrix<Real>::put_back(Vector& b) const {
 
 template <class Real> void ConstraintMatrix<Real>::solve(Vector& b) {
   permute(b);
-  solution_ = factors_->symmetric.solve(rhs_);
+  solution_ = sparse_->symmetric.solve(rhs_);
   put_back(b);
 }
 
 template <class Real>
 bool ConstraintMatrix<Real>::factorize_mixed(const ConstraintGradients<Real>& s, const ConstraintGradients<Real>& r) {
   for (std::size_t k = 0; k < full_element_.size(); ++k) {
-    full_.valuePtr()[k] = element(full_element_[k], s, r, full_transposed_[k]);
+    sparse_->full.valuePtr()[k] = static_cast<double>(element(full_element_[k], s, r, full_transposed_[k]));
   }
-  if (!std::exchange(factors_->mixed_is_analyzed, true)) factors_->mixed.analyzePattern(full_);
-  factors_->mixed.factorize(full_);
-  return factors_->mixed.info() == Eigen::Success;
+  if (!std::exchange(sparse_->mixed_is_analyzed, true)) sparse_->mixed.analyzePattern(sparse_->full);
+  sparse_->mixed.factorize(sparse_->full);
+  return sparse_->mixed.info() == Eigen::Success;
 }
 
 template <class Real> void ConstraintMatrix<Real>::solve_mixed(Vector& b) {
   permute(b);
-  solution_ = factors_->mixed.solve(rhs_);
+  for (Index k = 0; k < rhs_.size(); ++k) mixed_rhs_[k] = static_cast<double>(rhs_[k]);
+  mixed_solution_ = sparse_->mixed.solve(mixed_rhs_);
+  for (Index k = 0; k < rhs_.size(); ++k) solution_[k] = Real(mixed_solution_[k]);
   put_back(b);
 }
 

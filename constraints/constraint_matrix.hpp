@@ -4,8 +4,6 @@
 #include "engine/real.hpp"
 #include "engine/types.hpp"
 
-#include <Eigen/SparseCore>
-
 #include <memory>
 #include <vector>
 
@@ -52,14 +50,15 @@ template <class Real> class ConstraintMatrix {
   /// Solves with these factors, in place.
   void solve(Vector& b);
 
-  /// Factorizes S M^-1 R^T = L U. @return whether there are factors
+  /// Factorizes S M^-1 R^T = L U in double: Newton's method wants a direction, and each of its steps then gains 15
+  /// digits.
+  /// @return whether there are factors
   /// @cost allocates
   bool factorize_mixed(const ConstraintGradients<Real>& s, const ConstraintGradients<Real>& r);
   void solve_mixed(Vector& b);
 
  private:
-  using Sparse = Eigen::SparseMatrix<Real>;
-  struct Factors;  ///< Eigen's, which cannot be copied
+  struct Sparse;  ///< Eigen's matrices and factors
   /// One product of gradients in an element of the matrix.
   struct Term {
     std::size_t row_entry, column_entry;
@@ -71,19 +70,16 @@ template <class Real> class ConstraintMatrix {
   void permute(const Vector& b);
   void put_back(Vector& b) const;
 
-  /// Lets Eigen see the pattern.
-  void analyze();
-
   std::vector<int> place_;               ///< of each equation in the order of elimination
   std::vector<std::size_t> first_term_;  ///< of each element of the upper half
   std::vector<Term> terms_;
-  Sparse upper_, full_;
   std::vector<std::size_t> upper_element_, full_element_;  ///< behind each stored number; lower half: the other way
   std::vector<bool> full_transposed_;
   std::vector<Real> diagonal_;
-  std::unique_ptr<Factors> factors_;
+  std::unique_ptr<Sparse> sparse_;
   bool has_factors_ = false;
   Vector rhs_, solution_;
+  Eigen::VectorXd mixed_rhs_, mixed_solution_;
 };
 
 }  // namespace noether
