@@ -14,7 +14,7 @@ template <class Real> struct ConstraintMatrix<Real>::Sparse {
   using Matrix = Eigen::SparseMatrix<Real>;
   /// Of a matrix whose upper half stands in the right order already: no copy of it is made.
   struct Symmetric : Eigen::SimplicialLDLT<Matrix, Eigen::Upper, Eigen::NaturalOrdering<int>> {
-    void factorize_in_place(const Matrix& upper) { this->template factorize_preordered<true>(upper); }
+    void factorize_in_place(const Matrix& half) { this->template factorize_preordered<true>(half); }
     const Real& pivot(Index k) const { return this->m_diag[k]; }
   };
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace noether {
 
@@ -147,56 +148,66 @@ template <class Real> void ConstraintSolver<Real>::check_independent(const Parti
 
 /// Names the constraints whose gradients depend on each other: those in the null space of the matrix.
 template <class Real>
-std::string ConstraintSolver<Real>::dependent_words(const ParticleSystem<Real>& s, Index equation) {
-  constexpr Index most = 600, most_named = 4;
-  const Index n = layout_.equations();
+std::string ConstraintSolver<Real>::dependent_words(const ParticleSystem<Real>& s, Index equation) const {
+  constexpr Index most = 600;  // equations; of more the one that was found
+  constexpr std::size_t most_named = 4;
   std::vector<std::string> named = {set_.words(equation, s)};
-  if (n <= most) {
-    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
-    for (Index e = 0; e < n; ++e) {
-      for (Index f = 0; f < n; ++f) {
-        for (Index a = layout_.first[at(e)]; a < layout_.first[at(e) + 1]; ++a) {
-          for (Index b = layout_.first[at(f)]; b < layout_.first[at(f) + 1]; ++b) {
-            if (layout_.particle[at(a)] != layout_.particle[at(b)]) continue;
-            matrix(e, f) += static_cast<double>(layout_.inverse_mass[at(a)] * dot(here_[at(a)], here_[at(b)]));
-          }
+  if (layout_.equations() <= most) {
+    const Eigen::MatrixXd matrix = coupling();
+    for (Index e = 0; e < matrix.rows(); ++e) {
+      if (matrix(e, e) > 0) continue;
+      return set_.words(e, s) +
+             " has no direction to act in there: its gradient vanishes; particles in line on a "
+             "rigid_bar are held otherwise";
+    }
+    const Eigen::VectorXd scale = matrix.diagonal().cwiseSqrt().cwiseInverse();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(scale.asDiagonal() * matrix * scale.asDiagonal());
+    named = most_involved(s, modes.eigenvectors().col(0).cwiseAbs());
+  }
+  const std::size_t left_out = named.size() > most_named ? named.size() - most_named : 0;
+  named.resize(named.size() - left_out);
+  return fmt::format("constraints depend on each other: {}{}; take one out", fmt::join(named, ", "),
+                     left_out > 0 ? fmt::format(" and {} more", left_out) : "");
+}
+
+/// G M^-1 G^T at the known positions, every element.
+template <class Real> Eigen::MatrixXd ConstraintSolver<Real>::coupling() const {
+  const Index n = layout_.equations();
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
+  for (Index e = 0; e < n; ++e) {
+    for (Index f = 0; f < n; ++f) {
+      for (Index a = layout_.first[at(e)]; a < layout_.first[at(e) + 1]; ++a) {
+        for (Index b = layout_.first[at(f)]; b < layout_.first[at(f) + 1]; ++b) {
+          if (layout_.particle[at(a)] != layout_.particle[at(b)]) continue;
+          matrix(e, f) += static_cast<double>(layout_.inverse_mass[at(a)] * dot(here_[at(a)], here_[at(b)]));
         }
       }
     }
-    for (Index e = 0; e < n; ++e) {
-      const double size = std::sqrt(matrix(e, e));
-      if (!(size > 0)) {
-        return set_.words(e, s) +
-               " has no direction to act in there: its gradient vanishes; particles in line on a "
-               "rigid_bar are held otherwise";
-      }
-      matrix.row(e) /= size;
-      matrix.col(e) /= size;
-    }
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(matrix);
-    const Eigen::VectorXd null = modes.eigenvectors().col(0).cwiseAbs();
-    named.clear();
-    std::vector<Index> order(at(n));
-    for (Index e = 0; e < n; ++e) order[at(e)] = e;
-    std::stable_sort(order.begin(), order.end(), [&](Index e, Index f) { return null[e] > null[f] + 1e-9; });
-    // One of each kind first: of a chain between two fixed ends the many links say less than the ends.
-    std::vector<std::string> kinds, others;
-    for (const Index e : order) {
-      const std::string words = set_.words(e, s), kind = set_.place(e).group->name();
-      if (null[e] < 0.01 * null.maxCoeff()) break;
-      if (std::find(named.begin(), named.end(), words) != named.end()) continue;
-      if (std::find(others.begin(), others.end(), words) != others.end()) continue;
-      const bool new_kind = std::find(kinds.begin(), kinds.end(), kind) == kinds.end();
-      if (new_kind) kinds.push_back(kind);
-      (new_kind ? named : others).push_back(words);
-    }
-    named.insert(named.end(), others.begin(), others.end());
   }
-  const bool more = named.size() > at(most_named);
-  const std::size_t left_out = more ? named.size() - at(most_named) : 0;
-  if (more) named.resize(at(most_named));
-  return fmt::format("constraints depend on each other: {}{}; take one out", fmt::join(named, ", "),
-                     more ? fmt::format(" and {} more", left_out) : "");
+  return matrix;
+}
+
+/// Constraints with a share in a mode, the largest first; but one of each kind before all others: of a chain between
+/// two fixed ends the many links say less than the ends.
+template <class Real>
+std::vector<std::string> ConstraintSolver<Real>::most_involved(const ParticleSystem<Real>& s,
+                                                               const Eigen::VectorXd& share) const {
+  std::vector<Index> order(at(share.size()));
+  std::iota(order.begin(), order.end(), Index(0));
+  std::stable_sort(order.begin(), order.end(), [&](Index e, Index f) { return share[e] > share[f] + 1e-9; });
+  std::vector<std::string> named, kinds, others;
+  const auto has = [](const std::vector<std::string>& list, const std::string& text) {
+    return std::find(list.begin(), list.end(), text) != list.end();
+  };
+  for (const Index e : order) {
+    const std::string words = set_.words(e, s), kind = set_.place(e).group->name();
+    if (share[e] < 0.01 * share.maxCoeff()) break;
+    if (has(named, words) || has(others, words)) continue;
+    (has(kinds, kind) ? others : named).push_back(words);
+    kinds.push_back(kind);
+  }
+  named.insert(named.end(), others.begin(), others.end());
+  return named;
 }
 
 // ---- positions -----------------------------------------------------------------------------------------------------
@@ -263,7 +274,7 @@ bool ConstraintSolver<Real>::solve_by_newton(const ParticleSystem<Real>& s, Vect
   if (h != Real(0) && follow(x, h, s.velocities(), &reached)) return true;
   const auto stretched = std::max_element(unconstrained_.begin(), unconstrained_.end());
   const std::string why =
-      *stretched > 0.5 ? "has no solution" : fmt::format("has none beyond {:.2g} of the step", reached);
+      *stretched > 0.5 ? "has no solution" : fmt::format("has no solution beyond {:.2g} of the step", reached);
   fail(s, stretched - unconstrained_.begin(),
        fmt::format("{}: free motion violates it by {:.3g}, so the step is too large", why, *stretched));
   return false;
@@ -296,8 +307,8 @@ template <class Real> bool ConstraintSolver<Real>::iterate(VectorColumn<Real>& x
   return false;
 }
 
-/// Where the multipliers put the particles, rounded once: positions and velocities see the same multipliers, however
-/// small the last of their corrections were.
+/// Where all of the multipliers put the particles: added to positions one by one, corrections below half an ulp would
+/// be lost there, but not for the velocities.
 template <class Real> void ConstraintSolver<Real>::place(VectorColumn<Real>& x) const {
   x = free_;
   push(x, old_, lambda_, Real(1));

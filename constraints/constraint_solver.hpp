@@ -53,7 +53,9 @@ template <class Real> class ConstraintSolver {
   void lay_out(const ParticleSystem<Real>& s);
   void check_start(const ParticleSystem<Real>& s);
   void check_independent(const ParticleSystem<Real>& s);
-  std::string dependent_words(const ParticleSystem<Real>& s, Index equation);
+  std::string dependent_words(const ParticleSystem<Real>& s, Index equation) const;
+  Eigen::MatrixXd coupling() const;
+  std::vector<std::string> most_involved(const ParticleSystem<Real>& s, const Eigen::VectorXd& share) const;
 
   /// Gradients, and their factors, at the positions of `s`. @return whether there are factors
   bool know(const ParticleSystem<Real>& s);
