@@ -44,8 +44,6 @@ template <class Real> void ConstraintSolver<Real>::bind(ParticleSystem<Real>& s)
   if (s.phase().opened) return;  // a run that goes on stands where it stood
   check_start(s);
   check_independent(s);
-  find_floors(s.positions());
-  values(s.positions());
   if (!settled()) {
     old_ = here_;
     VectorColumn<Real> x = s.positions();
@@ -114,7 +112,6 @@ template <class Real> void ConstraintSolver<Real>::lay_out(const ParticleSystem<
   g_.setZero(static_cast<Index>(n));
   lambda_.setZero(static_cast<Index>(n));
   floors_.assign(n, 0);
-  unconstrained_.assign(n, 0);
 }
 
 template <class Real> void ConstraintSolver<Real>::check_start(const ParticleSystem<Real>& s) {
@@ -261,22 +258,20 @@ template <class Real> bool ConstraintSolver<Real>::on_this_side(Index* equation)
 
 template <class Real>
 bool ConstraintSolver<Real>::solve_by_newton(const ParticleSystem<Real>& s, VectorColumn<Real>& x, const Real& h) {
-  using std::abs;
   lambda_.setZero();
   free_ = x;
   find_floors(x);
-  values(x);
-  for (Index e = 0; e < layout_.equations(); ++e) {
-    unconstrained_[at(e)] = static_cast<double>(abs(g_[e])) / scales_[at(e)];
-  }
   if (iterate(x, false)) return true;
   double reached = 0;
   if (h != Real(0) && follow(x, h, s.velocities(), &reached)) return true;
-  const auto stretched = std::max_element(unconstrained_.begin(), unconstrained_.end());
+  free_ = start_;
+  free_.add_scaled(h, s.velocities());
+  values(free_);
+  Index equation = 0;
+  const double stretched = worst(&equation);
   const std::string why =
-      *stretched > 0.5 ? "has no solution" : fmt::format("has no solution beyond {:.2g} of the step", reached);
-  fail(s, stretched - unconstrained_.begin(),
-       fmt::format("{}: free motion violates it by {:.3g}, so the step is too large", why, *stretched));
+      stretched > 0.5 ? "has no solution" : fmt::format("has no solution beyond {:.2g} of the step", reached);
+  fail(s, equation, fmt::format("{}: free motion violates it by {:.3g}, so the step is too large", why, stretched));
   return false;
 }
 
@@ -341,6 +336,7 @@ template <class Real>
 bool ConstraintSolver<Real>::solve_by_sweeps(const ParticleSystem<Real>& s, VectorColumn<Real>& x) {
   using std::abs;
   lambda_.setZero();
+  free_ = x;
   const ConstraintOptions& options = set_.options();
   double violation = 0;
   Index worst_equation = 0;
@@ -356,7 +352,6 @@ bool ConstraintSolver<Real>::solve_by_sweeps(const ParticleSystem<Real>& s, Vect
           group->values(x, c, c + 1, value.data());
           const Real g = value[at(k)];
           const double relative = static_cast<double>(abs(g)) / scales_[at(e)];
-          if (sweep == 0) unconstrained_[at(e)] = relative;
           if (!(relative <= violation)) worst_equation = e;
           violation = relative <= violation ? violation : relative;
           if (relative <= options.tolerance) continue;
@@ -378,10 +373,11 @@ bool ConstraintSolver<Real>::solve_by_sweeps(const ParticleSystem<Real>& s, Vect
     ++iterations_;
     if (!std::isfinite(violation)) break;
   }
-  if (unconstrained_[at(worst_equation)] > 0.5) {
+  values(free_);
+  const double stretched = static_cast<double>(abs(g_[worst_equation])) / scales_[at(worst_equation)];
+  if (stretched > 0.5) {
     fail(s, worst_equation,
-         fmt::format("has no solution: free motion violates it by {:.3g}, so the step is too large",
-                     unconstrained_[at(worst_equation)]));
+         fmt::format("has no solution: free motion violates it by {:.3g}, so the step is too large", stretched));
   } else {
     fail(s, worst_equation,
          fmt::format("is not solved after {} sweeps: violation {:.3g}, {} asked", options.iterations, violation,

@@ -87,9 +87,9 @@ template <class Real> class ConstraintSolver {
       new_;                             ///< at the known positions; at the start and the end of a position stage
   std::optional<std::uint64_t> known_;  ///< version of the positions that `here_` and the factors belong to
   Vector g_, lambda_;
-  std::vector<double> floors_, unconstrained_;  ///< of abs(g): what rounding leaves; relative, before it is solved
-  VectorColumn<Real> start_, free_;             ///< before a position stage, and where free motion alone would end
-  std::vector<Real> sweep_values_;              ///< of one constraint
+  std::vector<double> floors_;       ///< what rounding leaves of abs(g)
+  VectorColumn<Real> start_, free_;  ///< before a position stage, and where free motion alone would end
+  std::vector<Real> sweep_values_;   ///< of one constraint
   std::vector<Vec3<Real>> sweep_gradients_;
   std::optional<Failure> failure_;
   std::int64_t iterations_ = 0;
