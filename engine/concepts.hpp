@@ -24,6 +24,7 @@ template <class Real> struct EnergyTerms {
 struct Evaluations {
   std::int64_t force = 0, kepler = 0, jacobian = 0;
   std::int64_t constraint = 0;  ///< iterations or sweeps over all constraints
+  std::int64_t rejected = 0;    ///< trial steps that an error controller threw away
 };
 
 /// Why a step could not be done.

@@ -108,6 +108,10 @@ template <class Real = double> class ParticleSystem {
     return m_;
   }
 
+  /// Variables y of a first-order system, y' = f(t, y); empty where particles carry all state.
+  const std::vector<Real>& variables() const { return variables_; }
+  std::vector<Real>& variables() { return variables_; }
+
   const std::vector<std::int64_t>& ids() const { return ids_; }
   const std::vector<std::string>& names() const { return names_; }
   const std::string& name(Index i) const { return names_[static_cast<std::size_t>(i)]; }
@@ -213,6 +217,7 @@ template <class Real = double> class ParticleSystem {
                 Vec3<Other>(static_cast<Other>(v[0]), static_cast<Other>(v[1]), static_cast<Other>(v[2])));
     }
     other.restore_ids(ids_);
+    for (const Real& y : variables_) other.variables().push_back(static_cast<Other>(y));
     return other;
   }
 
@@ -226,6 +231,7 @@ template <class Real = double> class ParticleSystem {
     x_ = other.x_;
     v_ = other.v_;
     m_ = other.m_;
+    variables_ = other.variables_;
     low_ = other.low_;
     clock_ = other.clock_;
     phase_ = other.phase_;
@@ -275,6 +281,7 @@ template <class Real = double> class ParticleSystem {
   std::vector<std::string> names_;
   VectorColumn<Real> x_, v_;
   ScalarColumn<Real> m_;
+  std::vector<Real> variables_;
   Clock<Real> clock_;
   Phase phase_;
   std::optional<LowWords> low_;

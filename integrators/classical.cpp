@@ -1,0 +1,149 @@
+#include "integrators/classical.hpp"
+
+#include <limits>
+
+namespace noether {
+
+template <class Real> IntegratorClaims Classical<Real>::claims() const {
+  const MethodClaims method = method_->claims();
+  const FieldClaims field = field_->claims();
+  return {.method = std::string(method.name),
+          .hamiltonian = field.name,
+          .order = method.order,
+          .clock = method.adaptive ? ClockMode::free : ClockMode::fixed,
+          .symplectic = method.symplectic && !method.adaptive && !field.dissipative,
+          .reversible = method.reversible && !method.adaptive && !field.dissipative,
+          .energy = field.energy,
+          .dissipative = field.dissipative,
+          .time_dependent = field.time_dependent,
+          .keeps_momentum = field.keeps_momentum,
+          .keeps_angular_momentum = field.keeps_angular_momentum && method.keeps_angular_momentum};
+}
+
+template <class Real> void Classical<Real>::bind(ParticleSystem<Real>& s) {
+  const MethodClaims method = method_->claims();
+  field_->bind(s);
+  const FieldClaims field = field_->claims();
+  if (method.second_order_only && !field.second_order) {
+    throw SchemeMismatch(
+        fmt::format("method '{}' serves q'' = a only; '{}' is a system of first order; use a method "
+                    "for y' = f, such as 'dormand_prince_5'",
+                    method.name, field.name));
+  }
+  if (method.positions_only && field.velocity_dependent) {
+    throw SchemeMismatch(
+        fmt::format("method '{}' serves q'' = a(t, q) only, but a force depends on velocities; use a "
+                    "method for y' = f, such as 'dop853' or 'gauss_8'",
+                    method.name));
+  }
+  method_->bind(*field_);
+  y_.resize(field_->size());
+  ahead_.reset();
+}
+
+template <class Real> Advanced Classical<Real>::advance(ParticleSystem<Real>& s, const Span& span) {
+  Advanced done;
+  const bool fixed = s.clock().mode() == ClockMode::fixed;
+  const double most = fixed ? s.clock().dt() : std::numeric_limits<double>::infinity();
+  field_->gather(s, y_);
+  while (done.steps < span.steps) {
+    const Real t = s.clock().time();
+    if (!fixed && s.clock().high() + method_->next_step(*field_, t, y_) > span.limit) {
+      done.at_limit = true;
+      break;
+    }
+    Stepped made = method_->step(*field_, t, y_, most);
+    field_->evaluations().rejected += made.rejected;
+    if (made.failure) {
+      failure_ = std::move(made.failure);
+      done.failure = &*failure_;
+      break;
+    }
+    if (fixed) {
+      s.clock().tick(Real(0));
+    } else {
+      s.clock().advance(made.h);
+    }
+    ++done.steps;
+    if (span.asked_to_stop()) break;
+  }
+  if (done.steps > 0) field_->scatter(y_, s);
+  return done;
+}
+
+template <class Real>
+void Classical<Real>::settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Wanted /*wanted*/,
+                             std::optional<double> at, bool /*corrected*/) {
+  out.assign_state(raw);
+  if (!at) return;
+  const Evaluations counted = field_->evaluations();
+  look_ahead(raw, *at);
+  field_->scatter(y_, out);
+  field_->evaluations() = counted;
+  out.clock().move_to(*at);
+}
+
+/// Leaves y at time `at` in `y_`, from the last whole step of the run.
+template <class Real> void Classical<Real>::look_ahead(const ParticleSystem<Real>& raw, double at) {
+  const bool dense = method_->dense();
+  const double begin = raw.clock().high();
+  const bool known = dense && ahead_ && ahead_->from == raw.clock().step() && ahead_->t <= at;
+  if (!known) {
+    ahead_ = Ahead{method_->clone(), raw.clock().step(), begin, 0, {}};
+    field_->gather(raw, ahead_->y);
+    y_ = ahead_->y;
+  }
+  // The first step begins at the double-double time of the run, later ones where the one before has ended.
+  while (ahead_->t + ahead_->h < at) {
+    ahead_->t += ahead_->h;
+    const Real t = ahead_->t == begin ? raw.clock().time() : Real(ahead_->t);
+    const double most = dense ? std::numeric_limits<double>::infinity() : at - ahead_->t;
+    const Stepped made = ahead_->method->step(*field_, t, ahead_->y, most);
+    // What fails here fails in the run as well, and is told there.
+    if (made.failure || !(made.h > 0)) return;
+    ahead_->h = made.h;
+    y_ = ahead_->y;
+  }
+  if (dense && ahead_->h > 0) {
+    ahead_->method->interpolate(*field_, (Real(at) - Real(ahead_->t)) / Real(ahead_->h), y_);
+  }
+}
+
+template <class Real> std::string Classical<Real>::signature() const {
+  const MethodOptions& o = choice_.options;
+  const auto text = [](const std::optional<double>& x) { return detail::value_text(x); };
+  return fmt::format("{}(rtol = {}, atol = {}, adaptive = {}, first = {}, beta = {}, gamma = {})", choice_.info->name,
+                     text(o.rtol), text(o.atol), choice_.info->is_adaptive(o), text(o.first), text(o.beta),
+                     text(o.gamma));
+}
+
+template <class Real> void Classical<Real>::save(SavedState& saved, const std::string& prefix) const {
+  save_value(saved, prefix + "method", signature());
+  save_value(saved, prefix + "field", field_->signature());
+  const Evaluations& counted = field_->evaluations();
+  save_value(saved, prefix + "evaluations",
+             std::vector<std::int64_t>{counted.force, counted.jacobian, counted.rejected});
+  method_->save(saved, prefix + "state/");
+}
+
+template <class Real> void Classical<Real>::load(const SavedState& saved, const std::string& prefix) {
+  const auto check = [&](const std::string& name, const std::string& now) {
+    std::string before;
+    load_value(saved, prefix + name, before);
+    if (before != now) throw Error(fmt::format("the saved run was made with {}, this one has {}", before, now));
+  };
+  check("method", signature());
+  check("field", field_->signature());
+  std::vector<std::int64_t> counted;
+  load_value(saved, prefix + "evaluations", counted);
+  field_->evaluations() = {.force = detail::element(counted, 0),
+                           .jacobian = detail::element(counted, 1),
+                           .rejected = detail::element(counted, 2)};
+  method_->load(saved, prefix + "state/");
+  ahead_.reset();
+}
+
+template class Classical<double>;
+template class Classical<Quad>;
+
+}  // namespace noether

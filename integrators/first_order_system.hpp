@@ -1,0 +1,81 @@
+#pragma once
+/// Systems of first order, y' = f(t, y): kinetics, circuits, heat. The classical methods step them.
+
+#include "engine/dual.hpp"
+#include "engine/signature.hpp"
+#include "integrators/classical.hpp"
+
+#include <concepts>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace noether {
+
+/// What a system of first order offers: how many variables it has, and their rates.
+///
+///     struct Decay {
+///       double rate = 1;
+///       Index size() const { return 1; }
+///       template <class Real> void rates(const Real& t, const Vector<Real>& y, Vector<Real>& dy) const {
+///         dy[0] = -rate * y[0];
+///       }
+///     };
+///
+/// It may also offer `Sparsity sparsity() const`, where its Jacobian can be other than 0, and
+/// `std::vector<double> start() const`, the values it begins with. Jacobians are found by dual numbers where `rates` is
+/// a template on the number type, else by differences.
+template <class S, class Real>
+concept FirstOrderSystem = requires(const S& system, const Real& t, const Vector<Real>& y, Vector<Real>& dy) {
+  { system.size() } -> std::convertible_to<Index>;
+  system.rates(t, y, dy);
+};
+
+/// A first-order system as the classical methods see it; its variables stand in `ParticleSystem::variables`.
+template <class S, class Real> class SystemMotion final : public VectorField<Real> {
+ public:
+  explicit SystemMotion(S system) : system_(std::move(system)) {}
+
+  std::unique_ptr<VectorField<Real>> clone() const override { return std::make_unique<SystemMotion>(*this); }
+  FieldClaims claims() const override { return {.name = detail::name_of(system_), .time_dependent = true}; }
+  std::string signature() const override { return detail::signature_of(system_); }
+
+  void bind(const ParticleSystem<Real>& s) override {
+    if (static_cast<Index>(s.variables().size()) == system_.size() && s.size() == 0) return;
+    throw Error(fmt::format("system '{}' has {} variables, but it was given {} and {} particles",
+                            detail::name_of(system_), system_.size(), s.variables().size(), s.size()));
+  }
+  Index size() const override { return system_.size(); }
+  void gather(const ParticleSystem<Real>& s, Vector<Real>& y) const override {
+    y.resize(size());
+    for (Index i = 0; i < size(); ++i) y[i] = s.variables()[static_cast<std::size_t>(i)];
+  }
+  void scatter(const Vector<Real>& y, ParticleSystem<Real>& s) const override {
+    for (Index i = 0; i < size(); ++i) s.variables()[static_cast<std::size_t>(i)] = y[i];
+  }
+  Sparsity sparsity() const override {
+    if constexpr (requires { system_.sparsity(); }) return system_.sparsity();
+    return {};
+  }
+
+  EnergyTerms<Real> energy(const ParticleSystem<Real>& /*s*/) override { return {}; }
+  void accelerations(const ParticleSystem<Real>& /*s*/, VectorColumn<Real>& /*a*/) override {}
+
+ protected:
+  void evaluate(const Real& t, const Vector<Real>& y, Vector<Real>& dy) override {
+    dy.resize(y.size());
+    system_.rates(t, y, dy);
+  }
+
+ private:
+  S system_;
+};
+
+/// A classical method over a system: `classical(Robertson{}, method("rodas_4"))`.
+template <class S>
+  requires FirstOrderSystem<S, double> Classical<double> classical(S system, const MethodChoice& choice) {
+    return Classical<double>(std::make_unique<SystemMotion<S, double>>(std::move(system)), choice);
+  }
+
+}  // namespace noether

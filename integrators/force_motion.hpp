@@ -1,0 +1,101 @@
+#pragma once
+/// Particles under forces as y' = f(t, y), y = (x, v).
+
+#include "engine/parallel.hpp"
+#include "engine/signature.hpp"
+#include "integrators/kinetic_potential.hpp"
+#include "integrators/vector_field.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace noether {
+
+/// x' = v, v' = a(t, x, v): what forces, the velocity-dependent ones among them, do to particles.
+///
+/// y holds all x, then all y, then all z, then the velocities likewise, shape (6 n).
+/// @cost one force evaluation and a copy of 12 n numbers
+template <class F, class Real> class ForceMotion final : public VectorField<Real> {
+ public:
+  /// @param name  of the Hamiltonian the forces come from, as reports show it
+  explicit ForceMotion(F forces, std::string name = "kinetic_potential")
+      : forces_(std::move(forces)), name_(std::move(name)) {}
+
+  std::unique_ptr<VectorField<Real>> clone() const override { return std::make_unique<ForceMotion>(*this); }
+  FieldClaims claims() const override {
+    const ForceClaims forces = claims_of(forces_);
+    return {.name = name_,
+            .second_order = true,
+            .velocity_dependent = forces.velocity_dependent,
+            .time_dependent = forces.time_dependent,
+            .energy = forces.energy,
+            .dissipative = forces.dissipative,
+            .keeps_momentum = forces.keeps_momentum,
+            .keeps_angular_momentum = forces.keeps_angular_momentum};
+  }
+  std::string signature() const override { return detail::signature_of(forces_); }
+
+  void bind(const ParticleSystem<Real>& s) override {
+    work_ = s;
+    work_.keep_low_words(false);
+    work_.clock() = Clock<Real>::free(0);
+    a_ = VectorColumn<Real>(s.size());
+  }
+  Index size() const override { return 6 * work_.size(); }
+  void gather(const ParticleSystem<Real>& s, Vector<Real>& y) const override {
+    y.resize(6 * s.size());
+    for (int k = 0; k < 3; ++k) {
+      std::copy_n(s.positions().component(k), s.size(), y.data() + k * s.size());
+      std::copy_n(s.velocities().component(k), s.size(), y.data() + (3 + k) * s.size());
+    }
+  }
+  void scatter(const Vector<Real>& y, ParticleSystem<Real>& s) const override {
+    VectorColumn<Real>&x = s.positions(), &v = s.velocities();
+    for (int k = 0; k < 3; ++k) {
+      std::copy_n(y.data() + k * s.size(), s.size(), x.component(k));
+      std::copy_n(y.data() + (3 + k) * s.size(), s.size(), v.component(k));
+    }
+  }
+
+  EnergyTerms<Real> energy(const ParticleSystem<Real>& s) override {
+    ForceSink<Real> sink(a_, s, {.energy = true});
+    forces_.add_to(sink, s);
+    return {kinetic_energy(s), sink.potential()};
+  }
+  void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) override {
+    ForceSink<Real> sink(a, s, {});
+    forces_.add_to(sink, s);
+  }
+
+ protected:
+  void evaluate(const Real& t, const Vector<Real>& y, Vector<Real>& dy) override {
+    const Index half = 3 * work_.size();
+    sum(t, y);
+    dy.resize(2 * half);
+    std::copy_n(y.data() + half, half, dy.data());
+    write(dy.data() + half);
+  }
+  void accelerate(const Real& t, const Vector<Real>& y, Vector<Real>& a) override {
+    sum(t, y);
+    a.resize(3 * work_.size());
+    write(a.data());
+  }
+
+ private:
+  void sum(const Real& t, const Vector<Real>& y) {
+    scatter(y, work_);
+    work_.clock().set_stage_offset(t);
+    ForceSink<Real> sink(a_, work_, {});
+    forces_.add_to(sink, work_);
+  }
+  void write(Real* out) const {
+    for (int k = 0; k < 3; ++k) std::copy_n(a_.component(k), work_.size(), out + k * work_.size());
+  }
+
+  F forces_;
+  std::string name_;
+  ParticleSystem<Real> work_;
+  VectorColumn<Real> a_;
+};
+
+}  // namespace noether

@@ -1,0 +1,108 @@
+#pragma once
+/// A classical method: how to get from y(t) to y(t + h) when y' = f(t, y).
+
+#include "engine/saved_state.hpp"
+#include "integrators/vector_field.hpp"
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace noether {
+
+/// What a user may set of a method; a method takes what it knows and refuses the rest.
+struct MethodOptions {
+  std::optional<double> rtol = {};    ///< relative tolerance of adaptive methods [1]
+  std::optional<double> atol = {};    ///< absolute tolerance, in the units of each variable
+  std::optional<bool> adaptive = {};  ///< for methods that can do both
+  std::optional<double> first = {};   ///< length of the first step of adaptive methods [time]; default: by the method
+  std::optional<double> beta = {}, gamma = {};  ///< of `newmark`
+
+  bool operator==(const MethodOptions&) const = default;
+};
+
+/// What a method says of itself; tests measure every word of it.
+struct MethodClaims {
+  std::string_view name;
+  int order = 0;
+  bool adaptive = false;
+  bool symplectic = false;              ///< its map is, with fixed steps, for Hamiltonian fields
+  bool reversible = false;              ///< a step of -h undoes a step of h
+  bool keeps_angular_momentum = false;  ///< and every quadratic invariant of the field; linear ones all methods keep
+  bool second_order_only = false;       ///< serves q'' = a only
+  bool positions_only = false;          ///< serves q'' = a(t, q) only, no velocity-dependent forces
+};
+
+/// A step that was made, or why none was.
+struct Stepped {
+  double h = 0;               ///< its length [time]
+  std::int64_t rejected = 0;  ///< trials before it that were thrown away
+  std::optional<Failure> failure = {};
+};
+
+/// One classical method over one number type.
+///
+/// A method of fixed steps makes exactly the step it is asked for; an adaptive one chooses its step, at most so long.
+/// What it keeps from step to step (history, predictors, error controllers, rounding errors) is state: `save` and
+/// `load` carry it bit for bit. `bind` forgets all of it.
+template <class Real> class Method {
+ public:
+  virtual ~Method() = default;
+  virtual std::unique_ptr<Method> clone() const = 0;
+  virtual MethodClaims claims() const = 0;
+  /// Sizes work arrays for `f` and forgets the past: `step` allocates nothing afterwards.
+  /// @throws SchemeMismatch  if the method cannot serve the field
+  virtual void bind(const VectorField<Real>& f) = 0;
+
+  /// Adaptive methods: length of the step that will be tried next [time].
+  virtual double next_step(VectorField<Real>& /*f*/, const Real& /*t*/, const Vector<Real>& /*y*/) {
+    throw LogicError("a method of fixed steps has no step of its own");
+  }
+  /// Goes from y(t) to y(t + h) in place. On failure y and the method's state are void.
+  virtual Stepped step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) = 0;
+
+  /// Whether `interpolate` knows the solution inside the last step as well as the method itself does.
+  virtual bool dense() const { return false; }
+  /// y at t + theta h of the last step, theta in [0, 1].
+  virtual void interpolate(VectorField<Real>& /*f*/, const Real& /*theta*/, Vector<Real>& /*y*/) {
+    throw LogicError("a method without dense output was asked for it");
+  }
+
+  virtual void save(SavedState& saved, const std::string& prefix) const = 0;
+  virtual void load(const SavedState& saved, const std::string& prefix) = 0;
+};
+
+/// A method as lists show it, and how to make one.
+struct MethodInfo {
+  std::string_view name;
+  std::string_view aliases = "";  ///< parted by blanks
+  std::string_view summary = "";
+  std::string_view source = "";   ///< keys of docs/references.bib
+  std::string_view family = "";   ///< "runge-kutta", "multistep", ...
+  std::string_view options = "";  ///< names of options it takes beside step, rtol and atol, parted by blanks
+  int order = 0;
+  bool fixed = true, adaptive = false;  ///< what it can do; adaptive wins where both are possible
+  double rtol = 1e-6, atol = 1e-9;      ///< defaults
+  double stability_limit = 0;           ///< first h omega on the oscillator that is unstable; 0: not tabulated
+  std::unique_ptr<Method<double>> (*make)(const MethodInfo&, const MethodOptions&) = nullptr;
+  std::unique_ptr<Method<Quad>> (*make_quad)(const MethodInfo&, const MethodOptions&) = nullptr;  ///< null: double only
+
+  /// Whether it runs with adaptive steps when asked like this.
+  bool is_adaptive(const MethodOptions& options_given) const {
+    return adaptive && options_given.adaptive.value_or(true);
+  }
+};
+
+/// Makes a method over `Real`. @throws Error  for options it does not take, tolerances out of range, or a number type
+/// it does not know
+template <class Real> std::unique_ptr<Method<Real>> make_method(const MethodInfo& info, const MethodOptions& options);
+
+/// A method and what was set of it: `method("dormand_prince_5", {.rtol = 1e-10})`.
+struct MethodChoice {
+  const MethodInfo* info = nullptr;
+  MethodOptions options = {};
+};
+
+}  // namespace noether

@@ -1,0 +1,101 @@
+#include "integrators/methods.hpp"
+
+#include "engine/suggest.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace noether {
+
+namespace methods {
+
+std::span<const MethodInfo* const> all() {
+  static const std::vector<const MethodInfo*> list = [] {
+    std::vector<const MethodInfo*> every;
+    for (const auto& family : {runge_kutta_list()}) {
+      for (const MethodInfo& info : family) every.push_back(&info);
+    }
+    return every;
+  }();
+  return list;
+}
+
+std::vector<std::string> aliases_of(const MethodInfo& info) {
+  std::istringstream text{std::string(info.aliases)};
+  std::vector<std::string> aliases;
+  for (std::string one; text >> one;) aliases.push_back(one);
+  return aliases;
+}
+
+const MethodInfo* find(std::string_view name) {
+  for (const MethodInfo* info : all()) {
+    if (info->name == name) return info;
+    const auto aliases = aliases_of(*info);
+    if (std::find(aliases.begin(), aliases.end(), name) != aliases.end()) return info;
+  }
+  return nullptr;
+}
+
+}  // namespace methods
+
+MethodChoice method(std::string_view name, const MethodOptions& options) {
+  if (const MethodInfo* info = methods::find(name)) return {info, options};
+  std::vector<std::string> known;
+  for (const MethodInfo* info : methods::all()) {
+    known.emplace_back(info->name);
+    for (const std::string& alias : methods::aliases_of(*info)) known.push_back(alias);
+  }
+  throw Error(fmt::format("unknown method '{}'{}", name, did_you_mean(std::string(name), known)));
+}
+
+namespace {
+
+void check(const MethodInfo& info, const MethodOptions& options) {
+  const auto refuse = [&](std::string_view what) {
+    throw Error(fmt::format("method '{}' takes no {}", info.name, what));
+  };
+  const auto takes = [&](std::string_view option) { return info.options.find(option) != std::string_view::npos; };
+  if (!info.is_adaptive(options)) {
+    if (options.rtol || options.atol) {
+      throw Error(
+          fmt::format("method '{}' takes steps of one length and no tolerance; give a step instead", info.name));
+    }
+    if (options.adaptive.value_or(false)) {
+      throw Error(fmt::format("method '{}' has no error estimate, so its steps cannot be adaptive", info.name));
+    }
+    if (!info.fixed) throw Error(fmt::format("method '{}' chooses its steps itself; they cannot be fixed", info.name));
+  }
+  if (options.beta && !takes("beta")) refuse("beta");
+  if (options.gamma && !takes("gamma")) refuse("gamma");
+  for (const auto& [value, name] : {std::pair(options.rtol, "rtol"), std::pair(options.atol, "atol")}) {
+    if (value && !(*value >= 0 && std::isfinite(*value))) {
+      throw Error(fmt::format("{} = {} is no tolerance; a number of at least 0 is expected", name, *value));
+    }
+  }
+  if (options.rtol.value_or(info.rtol) == 0 && options.atol.value_or(info.atol) == 0) {
+    throw Error("rtol and atol are both 0, so no step could pass; give one of them above 0");
+  }
+  if (options.first && !(*options.first > 0 && std::isfinite(*options.first))) {
+    throw Error(fmt::format("a first step of {} is no step; a finite time above 0 is expected", *options.first));
+  }
+}
+
+}  // namespace
+
+template <> std::unique_ptr<Method<double>> make_method(const MethodInfo& info, const MethodOptions& options) {
+  check(info, options);
+  return info.make(info, options);
+}
+
+template <> std::unique_ptr<Method<Quad>> make_method(const MethodInfo& info, const MethodOptions& options) {
+  check(info, options);
+  if (info.make_quad == nullptr) {
+    throw Error(fmt::format("method '{}' computes in double only, not in extended precision", info.name));
+  }
+  return info.make_quad(info, options);
+}
+
+}  // namespace noether

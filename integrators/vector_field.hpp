@@ -1,0 +1,83 @@
+#pragma once
+/// Motion as the classical methods see it: y' = f(t, y), one vector and one rate.
+
+#include "engine/concepts.hpp"
+#include "engine/description.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace noether {
+
+template <class Real> using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
+template <class Real> using Matrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
+
+/// Where df_i/dy_j can be other than 0: for each j, the rows i, in order.
+using Sparsity = std::vector<std::vector<Index>>;
+
+/// What a vector field says of itself.
+struct FieldClaims {
+  std::string name;                ///< of the Hamiltonian or the system
+  bool second_order = false;       ///< y = (q, v) and q' = v
+  bool velocity_dependent = true;  ///< for second order: v' depends on v
+  bool time_dependent = false;
+  bool energy = false;  ///< an energy exists
+  bool dissipative = false;
+  bool keeps_momentum = false;
+  bool keeps_angular_momentum = false;
+};
+
+/// The right-hand side of y' = f(t, y), erased: classical methods are compiled once for each number type.
+///
+/// It also knows how a ParticleSystem carries y: particles as y = (x, v), component by component, each of n values; a
+/// first-order system as the variables of an otherwise empty ParticleSystem.
+/// @cost one virtual call per evaluation
+template <class Real> class VectorField {
+ public:
+  virtual ~VectorField() = default;
+  virtual std::unique_ptr<VectorField> clone() const = 0;
+  virtual FieldClaims claims() const = 0;
+  /// What it was made with, for saved runs.
+  virtual std::string signature() const = 0;
+
+  /// Takes masses, units and sizes from a system. @throws Error  if it cannot serve it
+  virtual void bind(const ParticleSystem<Real>& s) = 0;
+  /// Length of y.
+  virtual Index size() const = 0;
+  virtual void gather(const ParticleSystem<Real>& s, Vector<Real>& y) const = 0;
+  virtual void scatter(const Vector<Real>& y, ParticleSystem<Real>& s) const = 0;
+
+  /// dy = f(t, y), counted.
+  void rate(const Real& t, const Vector<Real>& y, Vector<Real>& dy) {
+    ++evaluations_.force;
+    evaluate(t, y, dy);
+  }
+  /// a = v'(t, q, v) for y = (q, v), counted; shape (size / 2).
+  void acceleration(const Real& t, const Vector<Real>& y, Vector<Real>& a) {
+    ++evaluations_.force;
+    accelerate(t, y, a);
+  }
+  /// J = df/dy, shape (size, size), counted as one; false where it has to be found by differences.
+  virtual bool jacobian(const Real& /*t*/, const Vector<Real>& /*y*/, Matrix<Real>& /*J*/) { return false; }
+  /// Where J can be other than 0; empty: anywhere.
+  virtual Sparsity sparsity() const { return {}; }
+
+  virtual EnergyTerms<Real> energy(const ParticleSystem<Real>& s) = 0;
+  virtual void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) = 0;
+
+  Evaluations& evaluations() { return evaluations_; }
+  const Evaluations& evaluations() const { return evaluations_; }
+
+ protected:
+  virtual void evaluate(const Real& t, const Vector<Real>& y, Vector<Real>& dy) = 0;
+  virtual void accelerate(const Real& /*t*/, const Vector<Real>& /*y*/, Vector<Real>& /*a*/) {
+    throw LogicError("a system of first order has no acceleration");
+  }
+
+ private:
+  Evaluations evaluations_;
+};
+
+}  // namespace noether
