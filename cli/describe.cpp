@@ -3,6 +3,7 @@
 #include "engine/error.hpp"
 #include "engine/quantity.hpp"
 #include "engine/suggest.hpp"
+#include "integrators/methods.hpp"
 #include "integrators/schemes.hpp"
 #include "scene/json.hpp"
 #include "scene/parts.hpp"
@@ -148,6 +149,45 @@ void describe_scheme(const Scheme& scheme, bool json) {
   if (!entries.empty()) fmt::print("\n{}", entries);
 }
 
+/// How a classical method takes its steps.
+std::string steps_text(const MethodInfo& info) {
+  const std::string tolerances = fmt::format("rtol {:g} and atol {:g} unless told", info.rtol, info.atol);
+  if (info.adaptive && info.fixed) return "chooses its steps, " + tolerances + "; fixed ones with adaptive = false";
+  return info.adaptive ? "chooses its steps, " + tolerances : "takes steps of one length";
+}
+
+void describe_method(const MethodInfo& info, bool json) {
+  const std::vector<std::string> aliases = methods::aliases_of(info);
+  if (json) {
+    fmt::print("{}\n",
+               Json::object({{"schema", "noether.describe/1"},
+                             {"kind", "method"},
+                             {"name", info.name},
+                             {"help", info.summary},
+                             {"aliases", Json::list_of(aliases)},
+                             {"family", info.family},
+                             {"order", info.order},
+                             {"fixed", info.fixed},
+                             {"adaptive", info.adaptive},
+                             {"rtol", info.adaptive ? Json(info.rtol) : Json()},
+                             {"atol", info.adaptive ? Json(info.atol) : Json()},
+                             {"stability_limit", info.stability_limit > 0 ? Json(info.stability_limit) : Json()},
+                             {"source", info.source},
+                             {"bibtex", entries_of(info.source)}})
+                   .text());
+    return;
+  }
+  fmt::print("{} (method): {}\n", info.name, info.summary);
+  if (!aliases.empty()) fmt::print("also called {}\n", fmt::join(aliases, ", "));
+  fmt::print("\n  order {}, {}\n  for y' = f(t, y): it takes all forces together, velocity-dependent ones too\n",
+             info.order, steps_text(info));
+  if (info.stability_limit > 0) {
+    fmt::print("  stable on the oscillator up to h omega = {:.6g}\n", info.stability_limit);
+  }
+  const std::string entries = entries_of(info.source);
+  if (!entries.empty()) fmt::print("\n{}", entries);
+}
+
 void describe_unit(const UnitRow& row, bool json) {
   const Json::Members values = {
       {"solar", row.solar}, {"molecular", row.molecular}, {"si", row.si}, {"reduced", row.reduced}};
@@ -174,12 +214,17 @@ void describe(const std::string& name, bool json) {
     known.push_back(info.name);
   }
   if (const Scheme* scheme = schemes::find(name)) return describe_scheme(*scheme, json);
+  if (const MethodInfo* info = methods::find(name)) return describe_method(*info, json);
   for (const UnitRow& row : list_units()) {
     if (row.symbol == name) return describe_unit(row, json);
   }
   for (const Scheme* scheme : schemes::all()) {
     known.emplace_back(scheme->name);
     for (const std::string& alias : schemes::aliases_of(*scheme)) known.push_back(alias);
+  }
+  for (const MethodInfo* info : methods::all()) {
+    known.emplace_back(info->name);
+    for (const std::string& alias : methods::aliases_of(*info)) known.push_back(alias);
   }
   const std::string near = suggest(name, known);
   throw Error(fmt::format("there is nothing called '{}'; {}", name,

@@ -90,8 +90,9 @@ void sort_parts(const Scene& scene, Explanation& e) {
     const std::string name = monitor                                      ? "monitor " + watch.monitor.name
                              : watch.kind == SceneWatch::Kind::trajectory ? "writer trajectory"
                                                                           : "writer checkpoint";
-    const std::string when = watch.cadence.wall > 0 ? fmt::format("every {} s of wall time", watch.cadence.wall)
-                                                    : fmt::format("every {} steps", watch.cadence.steps);
+    const std::string when = watch.cadence.wall > 0       ? fmt::format("every {} s of wall time", watch.cadence.wall)
+                             : watch.cadence.interval > 0 ? fmt::format("every {} of time", watch.cadence.interval)
+                                                          : fmt::format("every {} steps", watch.cadence.steps);
     const std::string cost = watch.monitor.cost ? watch.monitor.cost(scene.particles.size(), watch.cadence.steps) : "";
     e.in.push_back(name + ", " + when + (cost.empty() ? "" : ": " + cost));
   }
@@ -117,26 +118,43 @@ void sort_parts(const Scene& scene, Explanation& e) {
   leave_out("stop collision");
 }
 
+/// What the stages of a scheme do, from its word.
+void explain_scheme(const Scene& scene, Explanation& e) {
+  const AnyHamiltonian<double> hamiltonian = hamiltonian_of(scene);
+  e.constraints = hamiltonian.claims().constraints;
+  const Word word = fitted_word(scheme_of(scene.integrator), hamiltonian.claims(), e.hamiltonian);
+  count_flows(word, e.flows);
+  e.evaluations = count_evaluations(word);
+}
+
+/// What a classical method does is counted, over its first steps.
+void explain_method(const Scene& scene, Explanation& e) {
+  constexpr std::int64_t steps = 64;
+  Scene bare = scene;
+  bare.watches.clear();
+  bare.stops.clear();
+  Simulation<double> sim = assemble(bare);
+  const std::int64_t made = sim.run(steps).step;
+  if (made == 0) return;
+  e.evaluations =
+      static_cast<int>(std::lround(static_cast<double>(sim.evaluations().force) / static_cast<double>(made)));
+}
+
 Explanation explained(const Scene& scene) {
   Explanation e;
-  const Scheme scheme = scheme_of(scene.integrator);
-  AnyHamiltonian<double> hamiltonian = hamiltonian_of(scene);
+  AnyIntegrator<double> integrator = integrator_of(scene);
   e.method = scene.integrator.method;
-  e.hamiltonian = hamiltonian.name();
-  e.constraints = hamiltonian.claims().constraints;
+  e.hamiltonian = integrator.claims().hamiltonian;
   sort_parts(scene, e);
   ParticleSystem<double> s = scene.particles;
   s.clock() = Clock<double>::fixed(0, scene.integrator.step);
-  Composition<AnyHamiltonian<double>> integrator(hamiltonian, scheme, {.compensated = scene.integrator.compensated});
   integrator.bind(s);
   e.particles = s.size();
   e.columns = {"id", "position", "velocity", "mass"};
   if (s.low_words() != nullptr) e.columns.insert(e.columns.end(), {"low word of position", "low word of velocity"});
   for (const auto& [name, column] : s.extra_columns()) e.columns.push_back(name);
   e.bytes_per_particle = s.bytes_per_particle();
-  const Word word = fitted_word(scheme, hamiltonian.claims(), e.hamiltonian);
-  count_flows(word, e.flows);
-  e.evaluations = count_evaluations(word);
+  scene.integrator.classical ? explain_method(scene, e) : explain_scheme(scene, e);
   recommend(scene, e);
   return e;
 }
@@ -169,9 +187,12 @@ void print_text(const Scene& scene, const Explanation& e) {
   fmt::print("columns: {}; {} bytes per particle\n", fmt::join(e.columns, ", "), e.bytes_per_particle);
   fmt::print("each step:\n");
   for (const auto& [letter, count] : e.flows) fmt::print("  {} x {}: {}\n", count, letter, meaning(letter, scene, e));
+  if (scene.integrator.classical) {
+    fmt::print("  {} evaluations of all forces together, on the average of the first steps\n", e.evaluations);
+  }
   fmt::print("SIMD level: {}\n", name(simd_level()));
   const std::string unit = scene.units->is_reduced() ? "" : " " + std::string(scene.units->time);
-  fmt::print("step: {}", scene.integrator.step_text);
+  fmt::print("step: {}", scene.integrator.adaptive() ? "of the method's own choice" : scene.integrator.step_text);
   if (e.recommended_step) {
     fmt::print("; at most {:.3g}{} is recommended, a twentieth of the time {} needs around its pericenter",
                *e.recommended_step, unit, e.recommended_for);

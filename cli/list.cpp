@@ -3,6 +3,7 @@
 #include "engine/error.hpp"
 #include "engine/quantity.hpp"
 #include "engine/suggest.hpp"
+#include "integrators/methods.hpp"
 #include "integrators/schemes.hpp"
 #include "scene/json.hpp"
 #include "scene/parts.hpp"
@@ -55,6 +56,13 @@ Listing methods() {
               fmt::format("{}", fmt::join(aliases, " "))},
              {scheme->name, scheme->order.classical, class_text(*scheme), scheme->evaluations(),
               limit > 0 ? Json(limit) : Json(), Json::list_of(aliases)});
+  }
+  for (const MethodInfo* info : methods::all()) {
+    const std::vector<std::string> aliases = methods::aliases_of(*info);
+    const double limit = info->stability_limit;
+    list.add({std::string(info->name), fmt::format("{}", info->order), std::string(info->family), "-",
+              limit > 0 ? fmt::format("{:.4g}", limit) : "-", fmt::format("{}", fmt::join(aliases, " "))},
+             {info->name, info->order, info->family, Json(), limit > 0 ? Json(limit) : Json(), Json::list_of(aliases)});
   }
   return list;
 }

@@ -212,7 +212,7 @@ template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double 
     }
     if (progress_ && looked_at_clock_ - reported > std::chrono::milliseconds(100)) {
       reported = looked_at_clock_;
-      progress_({step(), end, time(), before + seconds_since(started)});
+      progress_({step(), end, time(), before + seconds_since(started), limit});
     }
   }
   if (!result && settled_fault()) result = fall_back();

@@ -17,6 +17,7 @@ namespace noether {
 struct Progress {
   std::int64_t step = 0, end = 0;
   double time = 0, seconds = 0;
+  double until = std::numeric_limits<double>::infinity();  ///< the end, where the method chooses its steps [time]
 };
 
 /// Owns state, integrator and monitors.

@@ -2,6 +2,7 @@
 /// Linear drag: a part of its own, the letter `D` of a damped Hamiltonian (integrators/damped.hpp).
 
 #include "engine/description.hpp"
+#include "engine/force_sink.hpp"
 
 namespace noether {
 
@@ -20,6 +21,25 @@ struct LinearDrag {
   /// @throws Error  for a negative rate
   void check() const {
     if (!(rate >= 0)) refuse_field("rate", rate, "drives instead of damping; 0 or more is expected");
+  }
+};
+
+/// Linear drag as a force, for methods that take velocity-dependent forces.
+///
+///     a = - rate v
+struct DragForce {
+  LinearDrag drag;
+
+  std::string name() const { return "linear_drag"; }
+  std::string signature() const { return "linear_drag(rate = " + std::to_string(drag.rate) + ")"; }
+  ForceClaims claims() const {
+    return {.velocity_dependent = true,
+            .dissipative = true,
+            .keeps_momentum = drag.rate == 0,
+            .keeps_angular_momentum = drag.rate == 0};
+  }
+  template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+    for (Index i = 0; i < s.size(); ++i) out.acceleration(i, -Real(drag.rate) * s.velocities()[i]);
   }
 };
 

@@ -51,47 +51,45 @@ MethodChoice method(std::string_view name, const MethodOptions& options) {
   throw Error(fmt::format("unknown method '{}'{}", name, did_you_mean(std::string(name), known)));
 }
 
-namespace {
-
-void check(const MethodInfo& info, const MethodOptions& options) {
-  const auto refuse = [&](std::string_view what) {
-    throw Error(fmt::format("method '{}' takes no {}", info.name, what));
+void check_options(const MethodInfo& info, const MethodOptions& options) {
+  const auto fail = [](std::string_view key, const std::string& message) {
+    throw Error(message, {.key = std::string(key)});
   };
   const auto takes = [&](std::string_view option) { return info.options.find(option) != std::string_view::npos; };
-  if (!info.is_adaptive(options)) {
-    if (options.rtol || options.atol) {
-      throw Error(
-          fmt::format("method '{}' takes steps of one length and no tolerance; give a step instead", info.name));
-    }
-    if (options.adaptive.value_or(false)) {
-      throw Error(fmt::format("method '{}' has no error estimate, so its steps cannot be adaptive", info.name));
-    }
-    if (!info.fixed) throw Error(fmt::format("method '{}' chooses its steps itself; they cannot be fixed", info.name));
+  if (options.adaptive.value_or(false) && !info.adaptive) {
+    fail("adaptive", fmt::format("method '{}' has no error estimate, so its steps cannot be adaptive", info.name));
   }
-  if (options.beta && !takes("beta")) refuse("beta");
-  if (options.gamma && !takes("gamma")) refuse("gamma");
-  for (const auto& [value, name] : {std::pair(options.rtol, "rtol"), std::pair(options.atol, "atol")}) {
+  if (!options.adaptive.value_or(true) && !info.fixed) {
+    fail("adaptive", fmt::format("method '{}' chooses its steps itself; they cannot be fixed", info.name));
+  }
+  for (const auto& [value, key] : {std::pair(options.rtol, "rtol"), std::pair(options.atol, "atol")}) {
+    if (value && !info.is_adaptive(options)) {
+      fail(key, fmt::format("method '{}' takes steps of one length here, so {} means nothing to it; take it out",
+                            info.name, key));
+    }
     if (value && !(*value >= 0 && std::isfinite(*value))) {
-      throw Error(fmt::format("{} = {} is no tolerance; a number of at least 0 is expected", name, *value));
+      throw Error(fmt::format("{} = {} is no tolerance; a number of at least 0 is expected", key, *value),
+                  {.key = key, .value = fmt::format("{}", *value)});
     }
   }
-  if (options.rtol.value_or(info.rtol) == 0 && options.atol.value_or(info.atol) == 0) {
-    throw Error("rtol and atol are both 0, so no step could pass; give one of them above 0");
+  for (const auto& [value, key] : {std::pair(options.beta, "beta"), std::pair(options.gamma, "gamma")}) {
+    if (value && !takes(key)) fail(key, fmt::format("method '{}' has no {}; take it out", info.name, key));
+  }
+  if (info.is_adaptive(options) && options.rtol.value_or(info.rtol) == 0 && options.atol.value_or(info.atol) == 0) {
+    fail("rtol", "rtol and atol are both 0, so no step could pass; give one of them above 0");
   }
   if (options.first && !(*options.first > 0 && std::isfinite(*options.first))) {
-    throw Error(fmt::format("a first step of {} is no step; a finite time above 0 is expected", *options.first));
+    fail("step", fmt::format("a first step of {} is no step; a finite time above 0 is expected", *options.first));
   }
 }
 
-}  // namespace
-
 template <> std::unique_ptr<Method<double>> make_method(const MethodInfo& info, const MethodOptions& options) {
-  check(info, options);
+  check_options(info, options);
   return info.make(info, options);
 }
 
 template <> std::unique_ptr<Method<Quad>> make_method(const MethodInfo& info, const MethodOptions& options) {
-  check(info, options);
+  check_options(info, options);
   if (info.make_quad == nullptr) {
     throw Error(fmt::format("method '{}' computes in double only, not in extended precision", info.name));
   }

@@ -26,6 +26,9 @@ std::span<const MethodInfo> runge_kutta_list();
 
 }  // namespace methods
 
+/// @throws Error  for options that a method does not take, and tolerances out of range, naming the key
+void check_options(const MethodInfo& info, const MethodOptions& options);
+
 /// The classical method of a name or an alias, with options.
 /// @throws Error  for an unknown name, with a proposal
 MethodChoice method(std::string_view name, const MethodOptions& options = {});

@@ -1,7 +1,9 @@
 #include "scene/scene.hpp"
 
 #include "constraints/constraint_solver.hpp"
+#include "forces/gravity.hpp"
 #include "forces/sum.hpp"
+#include "integrators/classical.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/damped.hpp"
 #include "integrators/kinetic_potential.hpp"
@@ -39,7 +41,7 @@ void attach_writers(Simulation<double>& sim, const Scene& scene, const SceneFile
     samples = samples || watch.kind == SceneWatch::Kind::monitor;
     if (watch.kind != SceneWatch::Kind::trajectory || files.trajectory.empty()) continue;
     frames = true;
-    sim.every(watch.cadence.steps, io::TrajectoryWriter(files.trajectory, {.scene_toml = scene.effective_toml}));
+    detail::attach(sim, watch.cadence, io::TrajectoryWriter(files.trajectory, {.scene_toml = scene.effective_toml}));
   }
   if (!frames && samples && !files.trajectory.empty()) {
     sim.every(once, io::TrajectoryWriter(files.trajectory, {.frames = false, .scene_toml = scene.effective_toml}));
@@ -79,10 +81,38 @@ AnyHamiltonian<double> hamiltonian_of(const Scene& scene) {
   return without_drag(scene);
 }
 
+namespace {
+
+/// All forces of a scene as one field, for methods that do not split.
+ForceField<double> forces_of(const Scene& scene) {
+  ForceField<double> forces;
+  if (scene.hamiltonian.kind == SceneHamiltonian::Kind::wisdom_holman) {
+    forces.add(Gravity{.G = scene.hamiltonian.wisdom_holman.G});
+  }
+  for (const SceneForce& force : scene.hamiltonian.forces) {
+    if (force.force) forces.add(*force.force);
+    if (force.drag) forces.add(DragForce{*force.drag});
+  }
+  return forces;
+}
+
+}  // namespace
+
+AnyIntegrator<double> integrator_of(const Scene& scene) {
+  const SceneIntegrator& made = scene.integrator;
+  if (made.classical) {
+    const bool split = scene.hamiltonian.kind == SceneHamiltonian::Kind::wisdom_holman;
+    auto field = std::make_unique<ForceMotion<ForceField<double>, double>>(
+        forces_of(scene), split ? "wisdom_holman" : "kinetic_potential");
+    return Classical<double>(std::move(field), *made.classical);
+  }
+  return Composition<AnyHamiltonian<double>>(hamiltonian_of(scene), scheme_of(made), {.compensated = made.compensated});
+}
+
 Simulation<double> assemble(const Scene& scene, const SceneFiles& files) {
-  Composition<AnyHamiltonian<double>> integrator(hamiltonian_of(scene), scheme_of(scene.integrator),
-                                                 {.compensated = scene.integrator.compensated});
-  Simulation<double> sim(scene.particles, std::move(integrator), scene.integrator.step);
+  const Clock<double> clock =
+      scene.integrator.adaptive() ? Clock<double>::free(0) : Clock<double>::fixed(0, scene.integrator.step);
+  Simulation<double> sim(scene.particles, integrator_of(scene), clock);
   const ConstraintSet constraints = constraints_of(scene);
   for (const SceneWatch& watch : scene.watches) {
     if (watch.kind == SceneWatch::Kind::monitor) watch.monitor.attach(sim, watch.cadence, constraints);

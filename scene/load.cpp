@@ -5,6 +5,7 @@
 #include "integrators/schemes.hpp"
 #include "io/files.hpp"
 #include "scene/read_constraints.hpp"
+#include "scene/read_integrator.hpp"
 #include "scene/read_particles.hpp"
 #include "scene/sets.hpp"
 #include "scene/toml.hpp"
@@ -18,41 +19,6 @@
 namespace noether {
 
 namespace {
-
-/// How many steps make a duration. @throws SceneError  unless it is a whole number, with the two nearest
-std::int64_t whole_steps(const TableReader& reader, std::string_view key, const SceneValue& value,
-                         const SceneIntegrator& integrator) {
-  const double duration = reader.number(value, key, "time"), exact = duration / integrator.step,
-               whole = std::round(exact);
-  const auto fail = [&](const std::string& message) {
-    reader.fail(&value, key, fmt::format("{} = {} {}", key, to_text(value), message));
-  };
-  if (exact < 0) {
-    fail(fmt::format("lies the other way; steps are of {}, so give a time {} 0", integrator.step_text,
-                     integrator.step > 0 ? "above" : "below"));
-  }
-  if (!(exact > 0)) fail(fmt::format("is no time ahead; steps are of {}", integrator.step_text));
-  if (exact > 9e15) fail(fmt::format("is {:.3g} steps of {}, more than can be counted", exact, integrator.step_text));
-  if (std::abs(exact - whole) > 1e-9 + 16 * std::numeric_limits<double>::epsilon() * exact) {
-    const std::string unit = unit_of(dimensions::time, *reader.context().units);
-    const auto nearest = [&](double steps) {
-      const std::string number = format_number(steps * integrator.step);
-      return fmt::format("{} ({} {})", unit == "1" ? number : "\"" + number + " " + unit + "\"", format_number(steps),
-                         steps == 1 ? "step" : "steps");
-    };
-    const std::string is = fmt::format("is {:.12g} steps of {}", exact, integrator.step_text);
-    if (exact < 1) fail(fmt::format("{}; the shortest time is {}", is, nearest(1)));
-    fail(fmt::format("{}; the nearest whole numbers are {} and {}", is, nearest(std::floor(exact)),
-                     nearest(std::ceil(exact))));
-  }
-  return static_cast<std::int64_t>(whole);
-}
-
-std::int64_t counted_steps(TableReader& reader, std::string_view key) {
-  const std::int64_t steps = *reader.integer(key);
-  if (steps < 1) reader.fail(key, fmt::format("{} = {} is too few; at least 1 is expected", key, steps));
-  return steps;
-}
 
 /// Reads a scene, table by table.
 class SceneReader {
@@ -73,7 +39,8 @@ class SceneReader {
     SceneValue& particles = scene_.effective.put("particles", SceneValue::table());
     scene_.particles = read_particles(context_, table(top, "particles"), scene_.file.parent_path(), particles);
     read_hamiltonian(table(top, "hamiltonian"));
-    read_integrator(table(top, "integrator"));
+    scene_.integrator = read_integrator(context_, table(top, "integrator"), !scene_.hamiltonian.constraints.empty(),
+                                        scene_.effective.put("integrator", SceneValue::table()));
     read_watches(top);
     read_stops(top);
     if (const SceneValue* expect = top.find("expect")) {
@@ -180,98 +147,6 @@ class SceneReader {
     scene_.hamiltonian.forces.push_back(std::move(force));
   }
 
-  void read_integrator(const SceneValue& table) {
-    SceneIntegrator& made = scene_.integrator;
-    TableReader reader(context_, table, "[integrator]", "integrator");
-    reader.expect_only({"method", "step", "until", "steps", "compensated"});
-    SceneValue& effective = scene_.effective.put("integrator", SceneValue::table());
-    read_method(reader);
-    effective.put("method", SceneValue::of(made.method, reader.line("method")));
-    const SceneValue* step = reader.find("step");
-    if (step == nullptr) reader.fail(nullptr, "step", "[integrator] has no step; give one, such as \"1 day\"");
-    made.step = reader.number(*step, "step", "time");
-    made.step_text = to_text(*step);
-    if (made.step == 0)
-      reader.fail("step", fmt::format("a step of {} is no step; a time other than 0 is expected", made.step_text));
-    effective.put("step", *step);
-    const SceneValue* until = reader.find("until");
-    if (until != nullptr && reader.has("steps")) {
-      reader.fail(until, "until", "until and steps stand both in [integrator]; give one of them");
-    }
-    if (until != nullptr) made.steps = whole_steps(reader, "until", *until, made);
-    if (until != nullptr) effective.put("until", *until);
-    if (reader.has("steps")) made.steps = reader.integer("steps");
-    if (made.steps && *made.steps < 0)
-      reader.fail("steps", fmt::format("steps = {} is negative; 0 or more is expected", *made.steps));
-    if (reader.has("steps")) effective.put("steps", SceneValue::of(*made.steps));
-    made.compensated = reader.flag("compensated", false);
-    if (made.compensated && !scene_.hamiltonian.constraints.empty()) {
-      reader.fail("compensated",
-                  "compensated = true does not go with constraints, which are solved to the rounding of "
-                  "plain sums");
-    }
-    effective.put("compensated", SceneValue::of(made.compensated, reader.line("compensated")));
-  }
-
-  void read_method(TableReader& reader) {
-    SceneIntegrator& made = scene_.integrator;
-    const std::string name = reader.text("method");
-    if (!reader.has("method")) reader.fail(nullptr, "method", "[integrator] has no method; see `noether list methods`");
-    const bool letters = !name.empty() && name.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ") == std::string::npos;
-    if (const Scheme* scheme = schemes::find(name)) {
-      made.scheme = *scheme;
-      made.method = std::string(scheme->name);
-    } else if (letters) {
-      try {
-        made.scheme = word(name);
-      } catch (const Error& error) {
-        reader.fail("method", error.message());
-      }
-      made.method = name;
-    } else {
-      std::vector<std::string> known = schemes::names();
-      for (const Scheme* each : schemes::all()) {
-        for (const std::string& alias : schemes::aliases_of(*each)) known.push_back(alias);
-      }
-      const std::string near = suggest(name, known);
-      reader.fail("method", fmt::format("unknown method '{}'; {}", name,
-                                        near.empty() ? "see `noether list methods`" : "did you mean '" + near + "'?"));
-    }
-  }
-
-  /// The cadence of one `[[every]]`: its steps, and what the scene wrote of them.
-  Cadence read_cadence(TableReader& reader, bool may_be_wall, SceneValue& effective) {
-    const SceneValue *every = reader.find("every"), *steps = reader.find("steps");
-    const SceneValue* wall = may_be_wall ? reader.find("wall") : nullptr;
-    const int given = (every != nullptr) + (steps != nullptr) + (wall != nullptr);
-    const std::string_view choices = may_be_wall ? "every, steps or wall" : "every or steps";
-    if (given == 0) reader.fail(nullptr, "steps", fmt::format("{} does not say when; give {}", reader.what(), choices));
-    if (given > 1)
-      reader.fail(every != nullptr ? every : wall, every != nullptr ? "every" : "wall",
-                  fmt::format("{} says twice when; give one of {}", reader.what(), choices));
-    Cadence cadence;
-    if (every != nullptr) cadence.steps = whole_steps(reader, "every", *every, scene_.integrator);
-    if (steps != nullptr) cadence.steps = counted_steps(reader, "steps");
-    if (wall != nullptr) cadence.wall = wall_seconds(reader, *wall);
-    if (every != nullptr) effective.put("every", *every);
-    if (steps != nullptr) effective.put("steps", SceneValue::of(cadence.steps, reader.line("steps")));
-    if (wall != nullptr) effective.put("wall", *wall);
-    return cadence;
-  }
-
-  static double wall_seconds(const TableReader& reader, const SceneValue& wall) {
-    const std::string* text = wall.get<std::string>();
-    if (text == nullptr) reader.wrong_kind(wall, "wall", "a time in quotes, such as \"5 min\"");
-    double seconds = 0;
-    try {
-      seconds = parse_quantity(*text, dimensions::time, unit_system("si"));
-    } catch (const Error& error) {
-      reader.fail(&wall, "wall", fmt::format("wall: {}", error.message()));
-    }
-    if (!(seconds > 0)) reader.fail(&wall, "wall", fmt::format("wall = \"{}\" is no time ahead", *text));
-    return seconds;
-  }
-
   void read_watches(TableReader& top) {
     const auto tables = tables_of(top, "every");
     SceneValue::Array list;
@@ -295,7 +170,7 @@ class SceneReader {
           reader.fail("type", "trajectory stands twice in the scene; there is one run.h5, so give one cadence");
         }
       }
-      watch.cadence = read_cadence(reader, type == "checkpoint", effective);
+      watch.cadence = read_cadence(reader, type == "checkpoint", scene_.integrator, effective);
       if (kind != nullptr) {
         for (auto& [key, value] : *watch.monitor.effective.get<SceneValue::Table>()) effective.put(key, value);
       }
@@ -327,7 +202,11 @@ class SceneReader {
       stop.rule = type == "escape" ? farther_than(*distance) : closer_than(*distance);
       stop.steps = type == "escape" ? default_escape_steps : default_collision_steps;
       if (reader.has("every") || reader.has("steps")) {
-        stop.steps = read_cadence(reader, false, effective).steps;
+        stop.steps = read_cadence(reader, false, scene_.integrator, effective).steps;
+        if (stop.steps == 0) {
+          reader.fail("every", fmt::format("stop '{}' looks at whole steps, and method '{}' chooses them; give steps",
+                                           type, scene_.integrator.method));
+        }
       } else {
         effective.put("steps", SceneValue::of(stop.steps));
       }
@@ -390,20 +269,20 @@ class SceneReader {
     TableReader hamiltonian(context_, *top.find("hamiltonian"), "[hamiltonian]", "hamiltonian");
     refuse_constraints(context_, tables_of(hamiltonian, "constraint"), scene_);
     TableReader integrator(context_, *top.find("integrator"), "[integrator]", "integrator");
-    std::optional<AnyHamiltonian<double>> made;
     try {
-      made = hamiltonian_of(scene_);
+      if (!scene_.integrator.classical) hamiltonian_of(scene_);
     } catch (const SceneError&) {
       throw;
     } catch (const Error& error) {
       hamiltonian.fail("type", error.message());
     }
+    std::optional<AnyIntegrator<double>> made;
     try {
-      const Composition<AnyHamiltonian<double>> composition(*made, scheme_of(scene_.integrator));
+      made = integrator_of(scene_);
     } catch (const SchemeMismatch& error) {
       integrator.fail("method", error.message());
     }
-    check_start(hamiltonian, *made);
+    check_start(hamiltonian, integrator, *made);
     try {
       assemble(scene_);
     } catch (const SceneError&) {
@@ -428,11 +307,13 @@ class SceneReader {
     }
   }
 
-  void check_start(const TableReader& hamiltonian, AnyHamiltonian<double>& made) {
+  void check_start(const TableReader& hamiltonian, const TableReader& integrator, AnyIntegrator<double>& made) {
     ParticleSystem<double> s = scene_.particles;
     s.clock() = Clock<double>::fixed(0, scene_.integrator.step);
     try {
       made.bind(s);
+    } catch (const SchemeMismatch& error) {
+      integrator.fail("method", error.message());
     } catch (const Error& error) {
       hamiltonian.fail("type", error.message());
     }

@@ -18,10 +18,11 @@
 
 namespace noether {
 
-/// When a monitor looks: every so many steps, or every so many seconds of wall time.
+/// When a monitor looks: every so many steps, every so much time, or every so many seconds of wall time.
 struct Cadence {
   std::int64_t steps = 0;
-  double wall = 0;  ///< [s]; 0: by steps
+  double wall = 0;      ///< [s]; 0: not by wall time
+  double interval = 0;  ///< [time], where the method chooses the steps; 0: by steps
 };
 
 /// A force as a scene asked for it.
@@ -62,6 +63,8 @@ namespace detail {
 template <class M> void attach(Simulation<double>& sim, const Cadence& cadence, const M& monitor) {
   if (cadence.wall > 0) {
     sim.every_wall(cadence.wall, monitor);
+  } else if (cadence.interval > 0) {
+    sim.every_time(cadence.interval, monitor);
   } else {
     sim.every(cadence.steps, monitor);
   }

@@ -68,17 +68,21 @@ class ProgressLine {
       if (auto* found = monitor.get<Energy>()) energy = found;
     });
     const std::int64_t first = sim.step();
-    sim.on_progress([this, energy, first](const Progress& now) { show(now, first, energy); });
+    const double start = sim.time();
+    sim.on_progress([=, this](const Progress& now) { show(now, first, start, energy); });
   }
 
  private:
-  void show(const Progress& now, std::int64_t first, const Energy* energy) {
+  void show(const Progress& now, std::int64_t first, double start, const Energy* energy) {
     shown_ = true;
-    const double made = static_cast<double>(now.step - first), left = static_cast<double>(now.end - now.step);
+    const auto made = static_cast<double>(now.step - first);
+    const bool in_time = std::isfinite(now.until);
+    const double done = in_time ? now.time : static_cast<double>(now.step);
+    const double end = in_time ? now.until : static_cast<double>(now.end);
+    const double gone = in_time ? now.time - start : made;
     const double rate = now.seconds > 0 ? made / now.seconds : 0;
-    std::string line = fmt::format("{:5.1f} %  {:.3g} steps/s",
-                                   100 * static_cast<double>(now.step) / static_cast<double>(now.end), rate);
-    if (rate > 0) line += fmt::format("  {} left", duration_text(left / rate));
+    std::string line = fmt::format("{:5.1f} %  {:.3g} steps/s", 100 * done / end, rate);
+    if (gone > 0) line += fmt::format("  {} left", duration_text((end - done) / gone * now.seconds));
     if (energy != nullptr && std::isfinite(energy->worst()))
       line += fmt::format("  energy error {:.1e}", energy->worst());
     fmt::print(stderr, "\r\033[K{}", line);
@@ -116,6 +120,8 @@ class Runner {
   }
 
  private:
+  /// The end, in time where the method chooses its steps, else in steps.
+  bool ends_in_time() const { return scene_.integrator.until.has_value(); }
   std::int64_t target() const { return *scene_.integrator.steps; }
 
   /// A run goes on at the level it began with: another would round in other ways.
@@ -141,6 +147,13 @@ class Runner {
 
   void check_resume(const io::Checkpoint& checkpoint) const {
     check_same_scene(checkpoint, scene_);
+    if (ends_in_time()) {
+      if (*scene_.integrator.until >= checkpoint.time) return;
+      throw SceneError(
+          fmt::format("the end at time {} lies before the checkpoint at time {}; give a later one, or --fresh",
+                      *scene_.integrator.until, checkpoint.time),
+          {.file = scene_.source.file, .key = "integrator.until"});
+    }
     if (target() < checkpoint.step) {
       throw SceneError(
           fmt::format("the end at step {} lies before the checkpoint at step {}; give a later one, or --fresh",
@@ -152,7 +165,8 @@ class Runner {
   /// A completed run goes on if its end has been moved; one that has stopped or failed does not.
   bool is_over(const io::Checkpoint& checkpoint) const {
     if (checkpoint.outcome.empty()) return false;
-    return checkpoint.outcome != name(Outcome::Kind::completed) || target() == checkpoint.step;
+    if (checkpoint.outcome != name(Outcome::Kind::completed)) return true;
+    return ends_in_time() ? *scene_.integrator.until == checkpoint.time : target() == checkpoint.step;
   }
 
   RunReport finished(Simulation<double>& sim, const io::Checkpoint& checkpoint) {
@@ -166,7 +180,7 @@ class Runner {
     if (options_.handle_signals) sim.stop_on(signals.emplace().flag());
     ProgressLine line(options_.progress);
     line.attach(sim);
-    return sim.run(target() - sim.step());
+    return ends_in_time() ? sim.run_until(*scene_.integrator.until) : sim.run(target() - sim.step());
   }
 
   /// Puts everything on disk: writers first, then the checkpoint that counts on them, then the mark of completeness.
@@ -227,7 +241,7 @@ class Runner {
 }  // namespace
 
 RunReport run(const Scene& scene, const RunOptions& options) {
-  if (!scene.integrator.steps) {
+  if (!scene.integrator.steps && !scene.integrator.until) {
     throw SceneError("the scene has no end; give until or steps in [integrator]",
                      {.file = scene.source.file, .key = "integrator.until"});
   }

@@ -2,6 +2,7 @@
 /// A scene: a whole run as a text file says it, read, checked, and ready to be assembled.
 
 #include "engine/simulation.hpp"
+#include "integrators/methods.hpp"
 #include "integrators/scheme.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "scene/parts.hpp"
@@ -29,12 +30,17 @@ struct SceneHamiltonian {
 
 /// The integrator of a scene.
 struct SceneIntegrator {
-  std::string method;                 ///< name of the scheme, or a word
-  Scheme scheme;                      ///< `scheme_of` gives it its name
-  double step = 0;                    ///< [time]
-  std::string step_text;              ///< as the scene writes it
-  std::optional<std::int64_t> steps;  ///< of the whole run; empty if the scene has no end
+  std::string method;                     ///< name of the scheme, or a word
+  Scheme scheme;                          ///< `scheme_of` gives it its name
+  std::optional<MethodChoice> classical;  ///< a classical method instead of the scheme
+  double step = 0;                        ///< [time]; 0: the method chooses, and finds the first one itself
+  std::string step_text;                  ///< as the scene writes it
+  std::optional<std::int64_t> steps;      ///< of the whole run; empty if the scene has no end, or one in time
+  std::optional<double> until;            ///< [time]: the end, where the method chooses its steps
   bool compensated = false;
+
+  /// Whether the method chooses its steps.
+  bool adaptive() const { return classical && classical->info->is_adaptive(classical->options); }
 };
 
 /// One `[[every]]`.
@@ -92,6 +98,11 @@ ConstraintSet constraints_of(const Scene& scene, std::size_t tables = std::numer
 
 /// The Hamiltonian of a scene, drag included.
 AnyHamiltonian<double> hamiltonian_of(const Scene& scene);
+
+/// The integrator of a scene: its scheme over the parts of its Hamiltonian, or its classical method over all its
+/// forces.
+/// @throws SchemeMismatch
+AnyIntegrator<double> integrator_of(const Scene& scene);
 
 /// The run of a scene, at its first step.
 ///

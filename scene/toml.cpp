@@ -145,7 +145,7 @@ std::string plain(std::string_view description) {
   return line;
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') {
@@ -170,7 +170,7 @@ bool is_bare(std::string_view key) {
   });
 }
 
-std::string key_text(std::string_view key) { return is_bare(key) ? std::string(key) : quoted(key); }
+std::string key_text(std::string_view key) { return is_bare(key) ? std::string(key) : in_quotes(key); }
 
 void relabel(SceneValue& value, int line) {
   value.line = line;
@@ -256,7 +256,7 @@ std::string to_text(const SceneValue& value) {
   if (const bool* flag = value.get<bool>()) return *flag ? "true" : "false";
   if (const auto* integer = value.get<std::int64_t>()) return fmt::format("{}", *integer);
   if (const double* number = value.get<double>()) return number_text(*number);
-  if (const std::string* text = value.get<std::string>()) return quoted(*text);
+  if (const std::string* text = value.get<std::string>()) return in_quotes(*text);
   std::string out;
   if (const auto* list = value.get<SceneValue::Array>()) {
     for (const SceneValue& element : *list) out += (out.empty() ? "" : ", ") + to_text(element);

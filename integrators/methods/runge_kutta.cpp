@@ -279,7 +279,7 @@ std::span<const MethodInfo> runge_kutta_list() {
        .make_quad = plain<Quad>},
       {.name = "dop853",
        .aliases = "dormand_prince_8 dormand_prince_853",
-       .summary = "Dormand and Prince's 8(5,3): eleven evaluations a step and one at its end, dense output of order 7",
+       .summary = "Dormand and Prince's 8(5,3): twelve evaluations a step, dense output of order 7",
        .source = "HairerNoersettWanner1993",
        .family = "runge-kutta",
        .order = 8,

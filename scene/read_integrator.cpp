@@ -1,0 +1,235 @@
+#include "scene/read_integrator.hpp"
+
+#include "engine/suggest.hpp"
+#include "integrators/methods.hpp"
+#include "integrators/schemes.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+namespace noether {
+
+namespace {
+
+/// How many steps make a duration. @throws SceneError  unless it is a whole number, with the two nearest
+std::int64_t whole_steps(const TableReader& reader, std::string_view key, const SceneValue& value,
+                         const SceneIntegrator& integrator) {
+  const double duration = reader.number(value, key, "time"), exact = duration / integrator.step,
+               whole = std::round(exact);
+  const auto fail = [&](const std::string& message) {
+    reader.fail(&value, key, fmt::format("{} = {} {}", key, to_text(value), message));
+  };
+  if (exact < 0) {
+    fail(fmt::format("lies the other way; steps are of {}, so give a time {} 0", integrator.step_text,
+                     integrator.step > 0 ? "above" : "below"));
+  }
+  if (!(exact > 0)) fail(fmt::format("is no time ahead; steps are of {}", integrator.step_text));
+  if (exact > 9e15) fail(fmt::format("is {:.3g} steps of {}, more than can be counted", exact, integrator.step_text));
+  if (std::abs(exact - whole) > 1e-9 + 16 * std::numeric_limits<double>::epsilon() * exact) {
+    const std::string unit = unit_of(dimensions::time, *reader.context().units);
+    const auto nearest = [&](double steps) {
+      const std::string number = format_number(steps * integrator.step);
+      return fmt::format("{} ({} {})", unit == "1" ? number : "\"" + number + " " + unit + "\"", format_number(steps),
+                         steps == 1 ? "step" : "steps");
+    };
+    const std::string is = fmt::format("is {:.12g} steps of {}", exact, integrator.step_text);
+    if (exact < 1) fail(fmt::format("{}; the shortest time is {}", is, nearest(1)));
+    fail(fmt::format("{}; the nearest whole numbers are {} and {}", is, nearest(std::floor(exact)),
+                     nearest(std::ceil(exact))));
+  }
+  return static_cast<std::int64_t>(whole);
+}
+
+std::int64_t counted_steps(TableReader& reader, std::string_view key) {
+  const std::int64_t steps = *reader.integer(key);
+  if (steps < 1) reader.fail(key, fmt::format("{} = {} is too few; at least 1 is expected", key, steps));
+  return steps;
+}
+
+void unknown_method(TableReader& reader, const std::string& name) {
+  std::vector<std::string> known = schemes::names();
+  for (const Scheme* each : schemes::all()) {
+    for (const std::string& alias : schemes::aliases_of(*each)) known.push_back(alias);
+  }
+  for (const MethodInfo* each : methods::all()) {
+    known.emplace_back(each->name);
+    for (const std::string& alias : methods::aliases_of(*each)) known.push_back(alias);
+  }
+  const std::string near = suggest(name, known);
+  reader.fail("method", fmt::format("unknown method '{}'; {}", name,
+                                    near.empty() ? "see `noether list methods`" : "did you mean '" + near + "'?"));
+}
+
+void read_method(TableReader& reader, SceneIntegrator& made) {
+  const std::string name = reader.text("method");
+  if (!reader.has("method")) reader.fail(nullptr, "method", "[integrator] has no method; see `noether list methods`");
+  const bool letters = !name.empty() && name.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ") == std::string::npos;
+  if (const Scheme* scheme = schemes::find(name)) {
+    made.scheme = *scheme;
+    made.method = std::string(scheme->name);
+  } else if (const MethodInfo* info = methods::find(name)) {
+    made.classical = MethodChoice{info, {}};
+    made.method = std::string(info->name);
+  } else if (letters) {
+    try {
+      made.scheme = word(name);
+    } catch (const Error& error) {
+      reader.fail("method", error.message());
+    }
+    made.method = name;
+  } else {
+    unknown_method(reader, name);
+  }
+}
+
+/// What a splitting scheme takes beside its step.
+void read_scheme_options(TableReader& reader, SceneIntegrator& made, bool constrained, SceneValue& effective) {
+  for (const char* key : {"rtol", "atol", "adaptive", "beta", "gamma"}) {
+    if (reader.has(key)) {
+      reader.fail(key, fmt::format("method '{}' takes steps of one length, so {} means nothing to it; take it out, or "
+                                   "use a method such as 'dop853'",
+                                   made.method, key));
+    }
+  }
+  made.compensated = reader.flag("compensated", false);
+  if (made.compensated && constrained) {
+    reader.fail("compensated",
+                "compensated = true does not go with constraints, which are solved to the rounding of "
+                "plain sums");
+  }
+  effective.put("compensated", SceneValue::of(made.compensated, reader.line("compensated")));
+}
+
+/// What a classical method takes beside its step.
+void read_method_options(TableReader& reader, SceneIntegrator& made, bool constrained, SceneValue& effective) {
+  const MethodInfo& info = *made.classical->info;
+  MethodOptions& options = made.classical->options;
+  if (constrained) {
+    reader.fail("method", fmt::format("method '{}' knows no constraints; use 'verlet', which is RATTLE with them, or a "
+                                      "composition of it such as 'yoshida_4'",
+                                      made.method));
+  }
+  if (reader.flag("compensated", false)) {
+    reader.fail("compensated", fmt::format("method '{}' has sums of its own; compensated = true is for splitting "
+                                           "schemes such as 'verlet'",
+                                           made.method));
+  }
+  if (reader.has("adaptive")) options.adaptive = reader.flag("adaptive", true);
+  options.rtol = reader.quantity("rtol", "1");
+  options.atol = reader.quantity("atol", "1");
+  options.beta = reader.quantity("beta", "1");
+  options.gamma = reader.quantity("gamma", "1");
+  try {
+    check_options(info, options);
+  } catch (const Error& error) {
+    reader.refuse(error);
+  }
+  if (info.adaptive && info.fixed) effective.put("adaptive", SceneValue::of(made.adaptive(), reader.line("adaptive")));
+  if (made.adaptive()) {
+    effective.put("rtol", SceneValue::of(options.rtol.value_or(info.rtol), reader.line("rtol")));
+    effective.put("atol", SceneValue::of(options.atol.value_or(info.atol), reader.line("atol")));
+  }
+  for (const char* key : {"beta", "gamma"}) {
+    if (const SceneValue* value = reader.find(key)) effective.put(key, *value);
+  }
+}
+
+void read_step(TableReader& reader, SceneIntegrator& made, SceneValue& effective) {
+  const SceneValue* step = reader.find("step");
+  if (step == nullptr && made.adaptive()) return;
+  if (step == nullptr) reader.fail(nullptr, "step", "[integrator] has no step; give one, such as \"1 day\"");
+  made.step = reader.number(*step, "step", "time");
+  made.step_text = to_text(*step);
+  if (made.step == 0)
+    reader.fail("step", fmt::format("a step of {} is no step; a time other than 0 is expected", made.step_text));
+  if (made.adaptive() && made.step < 0) {
+    reader.fail("step",
+                fmt::format("a first step of {} leads backwards; adaptive methods go forward only", made.step_text));
+  }
+  if (made.adaptive()) made.classical->options.first = made.step;
+  effective.put("step", *step);
+}
+
+void read_end(TableReader& reader, SceneIntegrator& made, SceneValue& effective) {
+  const SceneValue* until = reader.find("until");
+  if (until != nullptr && reader.has("steps")) {
+    reader.fail(until, "until", "until and steps stand both in [integrator]; give one of them");
+  }
+  if (until != nullptr && made.adaptive()) {
+    made.until = reader.number(*until, "until", "time");
+    if (!(*made.until > 0)) {
+      reader.fail("until",
+                  fmt::format("until = {} is no time ahead; adaptive methods go forward only", to_text(*until)));
+    }
+  } else if (until != nullptr) {
+    made.steps = whole_steps(reader, "until", *until, made);
+  }
+  if (until != nullptr) effective.put("until", *until);
+  if (reader.has("steps")) made.steps = reader.integer("steps");
+  if (made.steps && *made.steps < 0)
+    reader.fail("steps", fmt::format("steps = {} is negative; 0 or more is expected", *made.steps));
+  if (reader.has("steps")) effective.put("steps", SceneValue::of(*made.steps));
+}
+
+double wall_seconds(const TableReader& reader, const SceneValue& wall) {
+  const std::string* text = wall.get<std::string>();
+  if (text == nullptr) reader.wrong_kind(wall, "wall", "a time in quotes, such as \"5 min\"");
+  double seconds = 0;
+  try {
+    seconds = parse_quantity(*text, dimensions::time, unit_system("si"));
+  } catch (const Error& error) {
+    reader.fail(&wall, "wall", fmt::format("wall: {}", error.message()));
+  }
+  if (!(seconds > 0)) reader.fail(&wall, "wall", fmt::format("wall = \"{}\" is no time ahead", *text));
+  return seconds;
+}
+
+}  // namespace
+
+SceneIntegrator read_integrator(const SceneContext& context, const SceneValue& table, bool constrained,
+                                SceneValue& effective) {
+  SceneIntegrator made;
+  TableReader reader(context, table, "[integrator]", "integrator");
+  reader.expect_only({"method", "step", "until", "steps", "compensated", "rtol", "atol", "adaptive", "beta", "gamma"});
+  read_method(reader, made);
+  effective.put("method", SceneValue::of(made.method, reader.line("method")));
+  SceneValue options = SceneValue::table();
+  if (made.classical) {
+    read_method_options(reader, made, constrained, options);
+  }
+  read_step(reader, made, effective);
+  read_end(reader, made, effective);
+  if (!made.classical) read_scheme_options(reader, made, constrained, options);
+  for (auto& [key, value] : *options.get<SceneValue::Table>()) effective.put(key, value);
+  return made;
+}
+
+Cadence read_cadence(TableReader& reader, bool may_be_wall, const SceneIntegrator& integrator, SceneValue& effective) {
+  const SceneValue *every = reader.find("every"), *steps = reader.find("steps");
+  const SceneValue* wall = may_be_wall ? reader.find("wall") : nullptr;
+  const int given = (every != nullptr) + (steps != nullptr) + (wall != nullptr);
+  const std::string_view choices = may_be_wall ? "every, steps or wall" : "every or steps";
+  if (given == 0) reader.fail(nullptr, "steps", fmt::format("{} does not say when; give {}", reader.what(), choices));
+  if (given > 1)
+    reader.fail(every != nullptr ? every : wall, every != nullptr ? "every" : "wall",
+                fmt::format("{} says twice when; give one of {}", reader.what(), choices));
+  Cadence cadence;
+  if (every != nullptr && integrator.adaptive()) {
+    cadence.interval = reader.number(*every, "every", "time");
+    if (!(cadence.interval > 0)) {
+      reader.fail("every", fmt::format("every = {} is no time ahead", to_text(*every)));
+    }
+  } else if (every != nullptr) {
+    cadence.steps = whole_steps(reader, "every", *every, integrator);
+  }
+  if (steps != nullptr) cadence.steps = counted_steps(reader, "steps");
+  if (wall != nullptr) cadence.wall = wall_seconds(reader, *wall);
+  if (every != nullptr) effective.put("every", *every);
+  if (steps != nullptr) effective.put("steps", SceneValue::of(cadence.steps, reader.line("steps")));
+  if (wall != nullptr) effective.put("wall", *wall);
+  return cadence;
+}
+
+}  // namespace noether

@@ -1,0 +1,20 @@
+#pragma once
+/// Reading `[integrator]`, and how often monitors look.
+
+#include "scene/scene.hpp"
+
+namespace noether {
+
+/// Reads the method, its step or tolerances, and the end of the run.
+/// @param constrained  whether the Hamiltonian has constraints
+/// @param effective  receives the table with every default
+/// @throws SceneError  at the line of the key
+SceneIntegrator read_integrator(const SceneContext& context, const SceneValue& table, bool constrained,
+                                SceneValue& effective);
+
+/// Reads the cadence of a monitor, a writer or a stop: `every`, `steps` or `wall`.
+/// @param effective  receives what the scene wrote
+/// @throws SceneError
+Cadence read_cadence(TableReader& reader, bool may_be_wall, const SceneIntegrator& integrator, SceneValue& effective);
+
+}  // namespace noether
