@@ -42,6 +42,7 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
     a_ = VectorColumn<Real>(s.size());
   }
   Index size() const override { return 6 * work_.size(); }
+  Index particles() const override { return work_.size(); }
   void gather(const ParticleSystem<Real>& s, Vector<Real>& y) const override {
     y.resize(6 * s.size());
     for (int k = 0; k < 3; ++k) {

@@ -15,7 +15,7 @@ namespace methods {
 std::span<const MethodInfo* const> all() {
   static const std::vector<const MethodInfo*> list = [] {
     std::vector<const MethodInfo*> every;
-    for (const auto& family : {runge_kutta_list()}) {
+    for (const auto& family : {runge_kutta_list(), collocation_list()}) {
       for (const MethodInfo& info : family) every.push_back(&info);
     }
     return every;

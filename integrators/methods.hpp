@@ -23,6 +23,7 @@ std::vector<std::string> aliases_of(const MethodInfo& info);
 
 // The families, each in a file of its own below integrators/methods/.
 std::span<const MethodInfo> runge_kutta_list();
+std::span<const MethodInfo> collocation_list();
 
 }  // namespace methods
 

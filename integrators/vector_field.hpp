@@ -17,6 +17,17 @@ template <class Real> using Matrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::
 /// Where df_i/dy_j can be other than 0: for each j, the rows i, in order.
 using Sparsity = std::vector<std::vector<Index>>;
 
+/// Lanes of an evaluation in lanes: the stages of an implicit step, side by side.
+inline constexpr int lane_count = 8;
+
+/// States at several stages: variable i of stage k stands at [8 i + k].
+template <class Real> struct StageStates {
+  const Real* t;            ///< shape (8)
+  const Real* q;            ///< y; for second order its first half, positions; shape (n, 8)
+  const Real* v = nullptr;  ///< velocities, where the field depends on them; shape (n, 8)
+  int stages = lane_count;  ///< that mean something; lanes beyond them hold harmless states
+};
+
 /// What a vector field says of itself.
 struct FieldClaims {
   std::string name;                ///< of the Hamiltonian or the system
@@ -46,6 +57,8 @@ template <class Real> class VectorField {
   virtual void bind(const ParticleSystem<Real>& s) = 0;
   /// Length of y.
   virtual Index size() const = 0;
+  /// How many particles q is made of, all x before all y before all z; 0: none.
+  virtual Index particles() const { return 0; }
   virtual void gather(const ParticleSystem<Real>& s, Vector<Real>& y) const = 0;
   virtual void scatter(const Vector<Real>& y, ParticleSystem<Real>& s) const = 0;
 
@@ -58,6 +71,11 @@ template <class Real> class VectorField {
   void acceleration(const Real& t, const Vector<Real>& y, Vector<Real>& a) {
     ++evaluations_.force;
     accelerate(t, y, a);
+  }
+  /// Rates (for second order: accelerations) at all stages, counted as so many, in the layout of the states.
+  void rates(const StageStates<Real>& states, Real* out) {
+    evaluations_.force += states.stages;
+    evaluate_stages(states, out);
   }
   /// J = df/dy, shape (size, size), counted as one; false where it has to be found by differences.
   virtual bool jacobian(const Real& /*t*/, const Vector<Real>& /*y*/, Matrix<Real>& /*J*/) { return false; }
@@ -75,9 +93,30 @@ template <class Real> class VectorField {
   virtual void accelerate(const Real& /*t*/, const Vector<Real>& /*y*/, Vector<Real>& /*a*/) {
     throw LogicError("a system of first order has no acceleration");
   }
+  /// One stage after the other, unless a field knows better.
+  virtual void evaluate_stages(const StageStates<Real>& states, Real* out);
 
  private:
   Evaluations evaluations_;
+  Vector<Real> stage_, stage_rate_;
 };
+
+template <class Real> void VectorField<Real>::evaluate_stages(const StageStates<Real>& states, Real* out) {
+  const bool second = claims().second_order;
+  const Index n = second ? size() / 2 : size();
+  stage_.resize(size());
+  for (int k = 0; k < states.stages; ++k) {
+    for (Index i = 0; i < n; ++i) {
+      stage_[i] = states.q[lane_count * i + k];
+      if (second) stage_[n + i] = states.v != nullptr ? states.v[lane_count * i + k] : Real(0);
+    }
+    if (second) {
+      accelerate(states.t[k], stage_, stage_rate_);
+    } else {
+      evaluate(states.t[k], stage_, stage_rate_);
+    }
+    for (Index i = 0; i < n; ++i) out[lane_count * i + k] = stage_rate_[i];
+  }
+}
 
 }  // namespace noether

@@ -1,0 +1,368 @@
+#include "integrators/methods/collocation.hpp"
+
+#include "integrators/methods.hpp"
+
+#include <utility>
+
+namespace noether {
+
+namespace {
+
+constexpr auto lanes = static_cast<Index>(lane_count);
+
+template <class Real> Real rounded(const Quad& x, Real& low) {
+  const Real high = static_cast<Real>(x);
+  low = static_cast<Real>(x - Quad(high));
+  return high;
+}
+
+/// value + low += high + small, where `high` may be as large as the value.
+template <class Real> void add_with_error(Real& value, Real& low, const Real& high, const Real& small) {
+  const Real sum = value + high, back = sum - value;
+  const Real rest = ((value - (sum - back)) + (high - back)) + (small + low);
+  value = sum + rest;
+  low = rest - (value - sum);
+}
+
+}  // namespace
+
+template <class Real> StageTable<Real>::StageTable(const CollocationTable& table) {
+  stages = static_cast<int>(table.stages());
+  const auto twice_all = table.twice();
+  const auto twice_last = table.twice_end(), legendre = table.last_coefficient();
+  for (std::size_t i = 0; i < table.stages(); ++i) {
+    c[i] = rounded(table.c[i], c_low[i]);
+    b[i] = rounded(table.b[i], b_low[i]);
+    end[i] = rounded(twice_last[i], end_low[i]);
+    last[i] = static_cast<Real>(legendre[i]);
+    Quad weight = 1;
+    for (std::size_t j = 0; j < table.stages(); ++j) {
+      a[j][i] = static_cast<Real>(table.a[i][j]);
+      twice[j][i] = static_cast<Real>(twice_all[i][j]);
+      if (j != i) weight /= table.c[i] - table.c[j];
+    }
+    barycentric[i] = static_cast<Real>(weight);
+  }
+  // What rounding has taken from a row goes to its own stage, where it is lost least.
+  for (std::size_t i = 0; i < table.stages(); ++i) {
+    Quad rest = table.c[i], rest_twice = table.c[i] * table.c[i] / Quad(2);
+    for (std::size_t j = 0; j < table.stages(); ++j) {
+      rest -= Quad(a[j][i]);
+      rest_twice -= Quad(twice[j][i]);
+    }
+    a[i][i] += static_cast<Real>(rest);
+    twice[i][i] += static_cast<Real>(rest_twice);
+  }
+}
+
+template <class Real>
+Collocation<Real>::Collocation(const MethodInfo& info, const MethodOptions& options, const CollocationTable& table,
+                               bool symplectic)
+    : name_(info.name),
+      table_(table),
+      order_(table.order),
+      adaptive_(info.is_adaptive(options)),
+      symplectic_(symplectic),
+      rtol_(options.rtol.value_or(info.rtol)),
+      first_(options.first.value_or(0)) {
+  // The last of s Legendre coefficients falls as h^(s-1), the error of a step as h^(2 s).
+  const double s = table_.stages;
+  const double floor = std::is_same_v<Real, double> ? 1e-16 : 1e-30;
+  target_ = 3e-3 * std::pow(std::max(rtol_, floor), (s - 1) / (2 * s));
+  settled_ = std::max(adaptive_ ? 1e-3 * rtol_ : 0.0, std::is_same_v<Real, double> ? 0x1p-54 : 1e-33);
+}
+
+template <class Real> MethodClaims Collocation<Real>::claims() const {
+  return {.name = name_,
+          .order = order_,
+          .adaptive = adaptive_,
+          .symplectic = symplectic_,
+          .reversible = symplectic_,
+          .keeps_angular_momentum = symplectic_};
+}
+
+template <class Real> void Collocation<Real>::bind(const VectorField<Real>& f) {
+  const FieldClaims claims = f.claims();
+  second_order_ = claims.second_order;
+  with_velocities_ = second_order_ && claims.velocity_dependent;
+  n_ = second_order_ ? f.size() / 2 : f.size();
+  particles_ = second_order_ ? f.particles() : 0;
+  for (auto* all : {&rates_, &previous_, &trial_, &q_, &v_}) all->assign(static_cast<std::size_t>(lanes * n_), Real(0));
+  low_.assign(static_cast<std::size_t>(f.size()), Real(0));
+  next_ = h_ = 0;
+}
+
+template <class Real> double Collocation<Real>::next_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y) {
+  if (next_ == 0) next_ = first_ > 0 ? first_ : first_step(f, t, y, order_, {std::max(rtol_, 1e-14), 1e-300});
+  return next_;
+}
+
+template <class Real> Stepped Collocation<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
+  Stepped made;
+  while (true) {
+    made.h = adaptive_ ? std::min(next_step(f, t, y), h) : h;
+    predict(f, t, y, made.h);
+    const bool converged = sweep(f, t, y, made.h) == Sweeps::converged;
+    if (!adaptive_) {
+      if (!converged) {
+        made.failure = Failure{Outcome::Kind::solver_failure, -1, "stages",
+                               fmt::format("the stages of '{}' do not converge with a step of {:.6g}; give a shorter "
+                                           "one{}",
+                                           name_, h, table_.stages > 1 ? ", or adaptive steps" : "")};
+        return made;
+      }
+      break;
+    }
+    // The last coefficient falls as h^(s-1): this factor brings it to its target.
+    const double rough = converged ? roughness() : std::numeric_limits<double>::infinity();
+    const double factor = std::pow(target_ / std::max(rough, 1e-300), 1.0 / std::max(table_.stages - 1, 1));
+    next_ = made.h * (converged ? std::clamp(factor, 0.2, 3.0) : 0.5);
+    if (converged && factor > 0.6) break;
+    ++made.rejected;
+    made.failure = underflow(static_cast<double>(t), next_);
+    if (made.failure) return made;
+  }
+  finish(y, made.h);
+  return made;
+}
+
+/// Stages begin where the polynomial of the last step leads; without one, with the rates at hand.
+template <class Real>
+void Collocation<Real>::predict(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h) {
+  using std::abs;
+  if (h_ == 0) {
+    for (Index i = 0; i < n_; ++i) {
+      for (Index k = 0; k < lanes; ++k) {
+        q_[static_cast<std::size_t>(lanes * i + k)] = y[i];
+        v_[static_cast<std::size_t>(lanes * i + k)] = second_order_ ? y[n_ + i] : Real(0);
+      }
+    }
+    const std::array<Real, lane_count> times = [&] {
+      std::array<Real, lane_count> all{};
+      all.fill(t);
+      return all;
+    }();
+    f.rates({times.data(), q_.data(), v_.data(), 1}, rates_.data());
+    for (Index i = 0; i < n_; ++i) {
+      Real* rate = rates_.data() + lanes * i;
+      for (Index k = 1; k < table_.stages; ++k) rate[k] = rate[0];
+    }
+    return;
+  }
+  // previous_ at x_i = 1 + c_i h / h_old by Lagrange's formula.
+  typename StageTable<Real>::Lanes weights[lane_count] = {};
+  const auto s = static_cast<std::size_t>(table_.stages);
+  for (std::size_t i = 0; i < s; ++i) {
+    const Real x = Real(1) + table_.c[i] * (Real(h) / Real(h_));
+    Real product(1);
+    for (std::size_t j = 0; j < s; ++j) product *= x - table_.c[j];
+    for (std::size_t j = 0; j < s; ++j) weights[j][i] = product * table_.barycentric[j] / (x - table_.c[j]);
+  }
+  for (Index m = 0; m < n_; ++m) {
+    const Real* old = previous_.data() + lanes * m;
+    Real sum[lane_count] = {};
+    for (std::size_t j = 0; j < s; ++j) {
+      for (std::size_t k = 0; k < lane_count; ++k) sum[k] += weights[j][k] * old[j];
+    }
+    for (Index k = 0; k < lanes; ++k) rates_[static_cast<std::size_t>(lanes * m + k)] = sum[k];
+  }
+}
+
+/// Positions (and velocities) of all stages from their rates.
+template <class Real> void Collocation<Real>::form_states(const Vector<Real>& y, double h) {
+  const Real step(h), step2 = step * step;
+  const auto s = static_cast<std::size_t>(table_.stages);
+  const auto& outer = second_order_ ? table_.twice : table_.a;
+  for (Index m = 0; m < n_; ++m) {
+    const Real* rate = rates_.data() + lanes * m;
+    Real sum[lane_count] = {};
+    for (std::size_t j = 0; j < s; ++j) {
+      for (std::size_t k = 0; k < lane_count; ++k) sum[k] += outer[j][k] * rate[j];
+    }
+    Real* q = q_.data() + lanes * m;
+    const Real low = low_[static_cast<std::size_t>(m)];
+    if (second_order_) {
+      const Real hv = step * y[n_ + m];
+      for (std::size_t k = 0; k < lane_count; ++k) {
+        q[k] = y[m] + (table_.c[k] * hv + (table_.c_low[k] * hv + step2 * sum[k] + low));
+      }
+    } else {
+      for (std::size_t k = 0; k < lane_count; ++k) q[k] = y[m] + (step * sum[k] + low);
+    }
+    if (!with_velocities_) continue;
+    Real slope[lane_count] = {};
+    for (std::size_t j = 0; j < s; ++j) {
+      for (std::size_t k = 0; k < lane_count; ++k) slope[k] += table_.a[j][k] * rate[j];
+    }
+    Real* v = v_.data() + lanes * m;
+    const Real low_v = low_[static_cast<std::size_t>(n_ + m)];
+    for (std::size_t k = 0; k < lane_count; ++k) v[k] = y[n_ + m] + (step * slope[k] + low_v);
+  }
+}
+
+/// Sweeps until the rates stand still: until what the next sweep would change is below rounding, or no less than what
+/// this one has.
+template <class Real>
+typename Collocation<Real>::Sweeps Collocation<Real>::sweep(VectorField<Real>& f, const Real& t, const Vector<Real>& y,
+                                                            double h) {
+  using std::abs, std::isfinite;
+  constexpr int most = 60;
+  std::array<Real, lane_count> times{};
+  for (std::size_t k = 0; k < lane_count; ++k) times[k] = t + table_.c[k] * Real(h);
+  double before = std::numeric_limits<double>::infinity();
+  for (int round = 1; round <= most; ++round) {
+    form_states(y, h);
+    f.rates({times.data(), q_.data(), with_velocities_ ? v_.data() : nullptr, table_.stages}, trial_.data());
+    Real change(0), size(0);
+    for (std::size_t k = 0; k < trial_.size(); ++k) {
+      const Real difference = abs(trial_[k] - rates_[k]), one = abs(trial_[k]);
+      change = difference > change ? difference : change;
+      size = one > size ? one : size;
+    }
+    std::swap(trial_, rates_);
+    const double relative = size > Real(0) ? static_cast<double>(change / size) : 0.0;
+    if (!isfinite(size + change)) return Sweeps::diverged;
+    const double shrinks = round == 1 ? 1.0 : relative / before;
+    if (relative <= settled_ || relative * std::min(shrinks, 1.0) * 0.5 < settled_) return Sweeps::converged;
+    if (round > 2 && shrinks >= 1) {
+      // At rounding level it no longer shrinks; above, it never will.
+      const double noise = std::is_same_v<Real, double> ? 1e-12 : 1e-28;
+      if (relative < noise) return Sweeps::converged;
+      if (round > 6) return Sweeps::diverged;
+    }
+    before = relative;
+  }
+  return Sweeps::diverged;
+}
+
+template <class Real> void Collocation<Real>::finish(Vector<Real>& y, double h) {
+  const Real step(h), step2 = step * step;
+  const auto s = static_cast<std::size_t>(table_.stages);
+  for (Index m = 0; m < n_; ++m) {
+    const Real* rate = rates_.data() + lanes * m;
+    Real slope(0), slope_low(0);
+    for (std::size_t j = 0; j < s; ++j) {
+      slope += table_.b[j] * rate[j];
+      slope_low += table_.b_low[j] * rate[j];
+    }
+    if (second_order_) {
+      Real bend(0), bend_low(0);
+      for (std::size_t j = 0; j < s; ++j) {
+        bend += table_.end[j] * rate[j];
+        bend_low += table_.end_low[j] * rate[j];
+      }
+      Real &v = y[n_ + m], &low_v = low_[static_cast<std::size_t>(n_ + m)];
+      const Real hv = step * v;
+      add_with_error(y[m], low_[static_cast<std::size_t>(m)], hv, step2 * bend + (step2 * bend_low + step * low_v));
+      add_with_error(v, low_v, step * slope, step * slope_low);
+    } else {
+      add_with_error(y[m], low_[static_cast<std::size_t>(m)], step * slope, step * slope_low);
+    }
+  }
+  std::swap(previous_, rates_);
+  h_ = h;
+}
+
+/// The largest last Legendre coefficient of a rate, relative to the rate; vectors of particles as wholes.
+template <class Real> double Collocation<Real>::roughness() const {
+  const auto s = static_cast<std::size_t>(table_.stages);
+  const Index groups = particles_ > 0 ? particles_ : n_, parts = particles_ > 0 ? 3 : 1;
+  double worst = 0;
+  for (Index g = 0; g < groups; ++g) {
+    double last2 = 0, size2 = 0;
+    for (Index part = 0; part < parts; ++part) {
+      const Real* rate = rates_.data() + lanes * (g + part * groups);
+      Real last(0);
+      double most = 0;
+      for (std::size_t j = 0; j < s; ++j) {
+        last += table_.last[j] * rate[j];
+        most = std::max(most, std::abs(static_cast<double>(rate[j])));
+      }
+      last2 += static_cast<double>(last) * static_cast<double>(last);
+      size2 += most * most;
+    }
+    if (size2 > 0) worst = std::max(worst, last2 / size2);
+  }
+  return std::sqrt(worst);
+}
+
+template <class Real> void Collocation<Real>::save(SavedState& saved, const std::string& prefix) const {
+  save_value(saved, prefix + "next", next_);
+  save_value(saved, prefix + "h", h_);
+  save_value(saved, prefix + "low", low_);
+  save_value(saved, prefix + "previous", previous_);
+}
+
+template <class Real> void Collocation<Real>::load(const SavedState& saved, const std::string& prefix) {
+  load_value(saved, prefix + "next", next_);
+  load_value(saved, prefix + "h", h_);
+  const auto load_all = [&](const std::string& name, std::vector<Real>& into) {
+    std::vector<Real> read;
+    load_value(saved, prefix + name, read);
+    for (std::size_t k = 0; k < into.size(); ++k) into[k] = detail::element(read, k);
+  };
+  load_all("low", low_);
+  load_all("previous", previous_);
+}
+
+template class Collocation<double>;
+template class Collocation<Quad>;
+
+namespace methods {
+
+namespace {
+
+int stages_of(std::string_view name) { return name == "implicit_midpoint" ? 1 : name.back() - '0'; }
+
+template <class Real> std::unique_ptr<Method<Real>> gauss(const MethodInfo& info, const MethodOptions& options) {
+  return std::make_unique<Collocation<Real>>(info, options, gauss_table(stages_of(info.name)), true);
+}
+template <class Real> std::unique_ptr<Method<Real>> radau(const MethodInfo& info, const MethodOptions& options) {
+  return std::make_unique<Collocation<Real>>(info, options, radau_left_table(8), false);
+}
+
+MethodInfo gauss_info(std::string_view name, std::string_view summary, int stages) {
+  return {.name = name,
+          .aliases = stages == 1 ? "gauss_1" : "",
+          .summary = summary,
+          .source = "Butcher1964, HairerLubichWanner2006",
+          .family = "collocation",
+          .order = 2 * stages,
+          .adaptive = stages > 1,
+          .rtol = 1e-16,
+          .atol = 0,
+          .make = gauss<double>,
+          .make_quad = gauss<Quad>};
+}
+
+}  // namespace
+
+std::span<const MethodInfo> collocation_list() {
+  static const MethodInfo list[] = {
+      gauss_info("implicit_midpoint", "the implicit midpoint rule: symplectic, symmetric, stable on every oscillator",
+                 1),
+      gauss_info("gauss_2", "Gauss and Legendre's collocation with 2 stages, to rounding", 2),
+      gauss_info("gauss_3", "Gauss and Legendre's collocation with 3 stages, to rounding", 3),
+      gauss_info("gauss_4", "Gauss and Legendre's collocation with 4 stages, to rounding", 4),
+      gauss_info("gauss_5", "Gauss and Legendre's collocation with 5 stages, to rounding", 5),
+      gauss_info("gauss_6", "Gauss and Legendre's collocation with 6 stages, to rounding", 6),
+      gauss_info("gauss_7", "Gauss and Legendre's collocation with 7 stages, to rounding", 7),
+      gauss_info("gauss_8", "Gauss and Legendre's collocation with 8 stages in lanes: the reference, to rounding", 8),
+      {.name = "gauss_radau_15",
+       .aliases = "ias15",
+       .summary = "Gauss-Radau collocation of order 15, the nodes of IAS15, to rounding",
+       .source = "Everhart1985, ReinSpiegel2015",
+       .family = "collocation",
+       .order = 15,
+       .adaptive = true,
+       .rtol = 1e-16,
+       .atol = 0,
+       .make = radau<double>,
+       .make_quad = radau<Quad>},
+  };
+  return list;
+}
+
+}  // namespace methods
+
+}  // namespace noether

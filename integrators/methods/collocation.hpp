@@ -1,0 +1,73 @@
+#pragma once
+/// Implicit collocation methods, solved by iteration to rounding: Gauss of any order to 16, and Gauss-Radau of
+/// order 15.
+
+#include "integrators/methods/collocation_table.hpp"
+#include "integrators/step_control.hpp"
+
+#include <array>
+
+namespace noether {
+
+/// Coefficients of a collocation method in the working type, its stages side by side in eight lanes.
+///
+/// Each list comes with what rounding has taken from its sum: with steps of one length an error of 1e-17 in it would
+/// be a drift.
+template <class Real> struct StageTable {
+  using Lanes = std::array<Real, lane_count>;
+  int stages = 0;
+  Lanes c{}, c_low{}, b{}, b_low{}, end{}, end_low{}, last{};
+  std::array<Lanes, lane_count> a{}, twice{};  ///< [j][i]: what stage i takes from stage j
+  Lanes barycentric{};
+
+  explicit StageTable(const CollocationTable& table);
+};
+
+/// Collocation over y' = f or q'' = a(t, q, v), by fixed-point sweeps over all stages at once.
+///
+///     F_i = f(t + c_i h, y + h sum a_ij F_j),   y1 = y + h sum b_j F_j
+///     q'' = a:  Q_i = q + c_i h v + h^2 sum (a a)_ij F_j,   q1 = q + h v + h^2 sum (b a)_j F_j
+///
+/// The stages begin where the polynomial of the last step leads, and are swept until they stand still. Sums are
+/// compensated. Adaptive steps follow the last Legendre coefficient of F: they keep its size, relative to F, at one
+/// value, each particle for itself; a step whose sweeps do not converge is halved.
+/// @cost 3 to 8 sweeps of s evaluations, in lanes where the field can
+/// @source HairerLubichWanner2006, ReinSpiegel2015
+template <class Real> class Collocation final : public Method<Real> {
+ public:
+  Collocation(const MethodInfo& info, const MethodOptions& options, const CollocationTable& table, bool symplectic);
+
+  std::unique_ptr<Method<Real>> clone() const override { return std::make_unique<Collocation>(*this); }
+  MethodClaims claims() const override;
+  void bind(const VectorField<Real>& f) override;
+  double next_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y) override;
+  Stepped step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
+  void save(SavedState& saved, const std::string& prefix) const override;
+  void load(const SavedState& saved, const std::string& prefix) override;
+
+ private:
+  enum class Sweeps : std::uint8_t { converged, diverged };
+
+  void predict(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h);
+  Sweeps sweep(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h);
+  void form_states(const Vector<Real>& y, double h);
+  void finish(Vector<Real>& y, double h);
+  double roughness() const;
+
+  std::string_view name_;
+  StageTable<Real> table_;
+  int order_;
+  bool adaptive_, symplectic_;
+  double rtol_, first_, target_, settled_;
+  bool second_order_ = false, with_velocities_ = false;
+  Index n_ = 0, particles_ = 0;  ///< variables that stages hold; particles among them
+
+  std::vector<Real> rates_, previous_, trial_, q_, v_;  ///< shape (n, 8)
+  std::vector<Real> low_;                               ///< rounding errors of y
+  double next_ = 0, h_ = 0;                             ///< to be tried; of `previous_`, 0 for none
+};
+
+extern template class Collocation<double>;
+extern template class Collocation<Quad>;
+
+}  // namespace noether

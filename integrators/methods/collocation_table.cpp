@@ -1,0 +1,130 @@
+#include "integrators/methods/collocation_table.hpp"
+
+#include <functional>
+#include <utility>
+
+namespace noether {
+
+namespace {
+
+/// The Legendre polynomial of degree n on [-1, 1] and its derivative.
+std::pair<Quad, Quad> legendre(int n, Quad x) {
+  Quad before = 1, here = x;
+  if (n == 0) return {Quad(1), Quad(0)};
+  for (int k = 1; k < n; ++k) {
+    const Quad next = (Quad(2 * k + 1) * x * here - Quad(k) * before) / Quad(k + 1);
+    before = std::exchange(here, next);
+  }
+  return {here, Quad(n) * (x * here - before) / (x * x - Quad(1))};
+}
+
+/// The zero of f between a and b, by bisection to the last bit.
+Quad zero(const std::function<Quad(Quad)>& f, Quad a, Quad b) {
+  const bool rising = f(a) < Quad(0);
+  for (int k = 0; k < 130; ++k) {
+    const Quad middle = (a + b) / Quad(2);
+    ((f(middle) < Quad(0)) == rising ? a : b) = middle;
+  }
+  return (a + b) / Quad(2);
+}
+
+/// All zeros of f in (-1, 1), found by changes of sign on a fine grid.
+std::vector<Quad> zeros(const std::function<Quad(Quad)>& f, int expected) {
+  std::vector<Quad> found;
+  const int pieces = 1000 * expected + 7;
+  for (int k = 0; k < pieces; ++k) {
+    const Quad a = Quad(-1) + Quad(2 * k) / Quad(pieces), b = Quad(-1) + Quad(2 * k + 2) / Quad(pieces);
+    if (k == 0 || k + 1 == pieces) continue;
+    if ((f(a) < Quad(0)) != (f(b) < Quad(0))) found.push_back(zero(f, a, b));
+  }
+  return found;
+}
+
+/// The coefficients of the Lagrange polynomial of node j, lowest power first.
+std::vector<Quad> lagrange(const std::vector<Quad>& c, std::size_t j) {
+  std::vector<Quad> p = {1};
+  Quad scale = 1;
+  for (std::size_t k = 0; k < c.size(); ++k) {
+    if (k == j) continue;
+    p.push_back(0);
+    for (std::size_t n = p.size(); n-- > 1;) p[n] = p[n - 1] - c[k] * p[n];
+    p[0] = -c[k] * p[0];
+    scale *= c[j] - c[k];
+  }
+  for (Quad& x : p) x /= scale;
+  return p;
+}
+
+Quad integral(const std::vector<Quad>& p, Quad to) {
+  Quad sum = 0;
+  for (std::size_t n = p.size(); n-- > 0;) sum = sum * to + p[n] / Quad(static_cast<double>(n + 1));
+  return sum * to;
+}
+
+CollocationTable table_of(std::vector<Quad> nodes, int order) {
+  CollocationTable table;
+  table.c = std::move(nodes);
+  table.order = order;
+  const std::size_t s = table.c.size();
+  table.a.assign(s, std::vector<Quad>(s));
+  for (std::size_t j = 0; j < s; ++j) {
+    const std::vector<Quad> p = lagrange(table.c, j);
+    table.b.push_back(integral(p, 1));
+    for (std::size_t i = 0; i < s; ++i) table.a[i][j] = integral(p, table.c[i]);
+  }
+  return table;
+}
+
+}  // namespace
+
+std::vector<std::vector<Quad>> CollocationTable::twice() const {
+  const std::size_t s = stages();
+  std::vector<std::vector<Quad>> product(s, std::vector<Quad>(s, Quad(0)));
+  for (std::size_t i = 0; i < s; ++i) {
+    for (std::size_t j = 0; j < s; ++j) {
+      for (std::size_t k = 0; k < s; ++k) product[i][j] += a[i][k] * a[k][j];
+    }
+  }
+  return product;
+}
+
+std::vector<Quad> CollocationTable::twice_end() const {
+  std::vector<Quad> product(stages(), Quad(0));
+  for (std::size_t j = 0; j < stages(); ++j) {
+    for (std::size_t k = 0; k < stages(); ++k) product[j] += b[k] * a[k][j];
+  }
+  return product;
+}
+
+std::vector<Quad> CollocationTable::last_coefficient() const {
+  const int n = static_cast<int>(stages()) - 1;
+  std::vector<Quad> weights;
+  for (std::size_t j = 0; j < stages(); ++j) {
+    weights.push_back(Quad(2 * n + 1) * b[j] * legendre(n, Quad(2) * c[j] - Quad(1)).first);
+  }
+  return weights;
+}
+
+CollocationTable gauss_table(int stages) {
+  std::vector<Quad> nodes;
+  if (stages == 1) {
+    nodes = {Quad(1) / Quad(2)};
+  } else {
+    for (const Quad& x : zeros([&](Quad at) { return legendre(stages, at).first; }, stages)) {
+      nodes.push_back((x + Quad(1)) / Quad(2));
+    }
+  }
+  return table_of(std::move(nodes), 2 * stages);
+}
+
+CollocationTable radau_left_table(int stages) {
+  // P_(s-1) + P_s vanishes at -1; the other zeros are those of the quotient by 1 + x.
+  const auto inner = [&](Quad x) {
+    return (legendre(stages - 1, x).first + legendre(stages, x).first) / (Quad(1) + x);
+  };
+  std::vector<Quad> nodes = {0};
+  for (const Quad& x : zeros(inner, stages)) nodes.push_back((x + Quad(1)) / Quad(2));
+  return table_of(std::move(nodes), 2 * stages - 1);
+}
+
+}  // namespace noether
