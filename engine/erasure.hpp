@@ -3,6 +3,7 @@
 /// own concept, so a scene is one more instantiation of the same templates.
 
 #include "engine/concepts.hpp"
+#include "engine/pack.hpp"
 #include "engine/signature.hpp"
 #include "engine/word.hpp"
 
@@ -11,6 +12,15 @@
 #include <utility>
 
 namespace noether {
+
+/// Whether a force can be evaluated in eight lanes: it is written over the number type.
+template <class F> bool has_lanes(const F& force) {
+  if constexpr (requires { force.has_lanes(); }) {
+    return force.has_lanes();
+  } else {
+    return Force<F, Pack>;
+  }
+}
 
 namespace detail {
 
@@ -51,6 +61,8 @@ template <class Real> struct ForceBase {
   virtual ~ForceBase() = default;
   virtual std::unique_ptr<ForceBase> clone() const = 0;
   virtual void add_to(ForceSink<Real>&, const ParticleSystem<Real>&) const = 0;
+  virtual bool has_lanes() const = 0;
+  virtual void add_to(ForceSink<Pack>&, const ParticleSystem<Pack>&) const = 0;
   virtual ForceClaims claims() const = 0;
   virtual std::string name() const = 0;
   virtual std::string signature() const = 0;
@@ -59,6 +71,11 @@ template <class F, class Real> struct ForceModel final : ForceBase<Real> {
   explicit ForceModel(F f) : force(std::move(f)) {}
   std::unique_ptr<ForceBase<Real>> clone() const override { return std::make_unique<ForceModel>(force); }
   void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const override { force.add_to(out, s); }
+  bool has_lanes() const override { return noether::has_lanes(force); }
+  void add_to(ForceSink<Pack>& out, const ParticleSystem<Pack>& s) const override {
+    if constexpr (Force<F, Pack>) return force.add_to(out, s);
+    throw LogicError("a force without lanes was asked for them");
+  }
   ForceClaims claims() const override { return claims_of(force); }
   std::string name() const override { return name_of(force); }
   std::string signature() const override { return signature_of(force); }
@@ -168,6 +185,10 @@ template <class Real = double> class AnyForce : private detail::Erased<detail::F
       : detail::Erased<detail::ForceBase<Real>>(std::make_unique<detail::ForceModel<F, Real>>(std::move(force))) {}
 
   void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const { this->held_->add_to(out, s); }
+  /// Whether it is a force over `Pack` too, so that eight stages cost little more than one.
+  bool has_lanes() const { return this->held_->has_lanes(); }
+  /// @throws LogicError  if it is not
+  void add_to(ForceSink<Pack>& out, const ParticleSystem<Pack>& s) const { this->held_->add_to(out, s); }
   ForceClaims claims() const { return this->held_->claims(); }
   std::string name() const { return this->held_->name(); }
   std::string signature() const { return this->held_->signature(); }

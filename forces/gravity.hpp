@@ -3,6 +3,7 @@
 
 #include "engine/description.hpp"
 #include "engine/force_sink.hpp"
+#include "engine/pack.hpp"
 #include "engine/parallel.hpp"
 
 #include <cmath>
@@ -41,6 +42,9 @@ struct Gravity {
   template <class Real> Real constant(const ParticleSystem<Real>& s) const { return Real(G ? *G : s.units().G); }
 
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+    if constexpr (std::is_same_v<Real, Pack>) {
+      if (!out.wants_energy() && !out.wants_virial()) return add_stages(out, s);
+    }
     if (s.size() < smallest_in_rows) {
       add_pairs(out, s);
     } else if constexpr (std::is_same_v<Real, double>) {
@@ -54,6 +58,7 @@ struct Gravity {
 
  private:
   void add_lanes(ForceSink<double>& out, const ParticleSystem<double>& s) const;
+  void add_stages(ForceSink<Pack>& out, const ParticleSystem<Pack>& s) const;
   template <class Real> void add_pairs(ForceSink<Real>& out, const ParticleSystem<Real>& s) const;
   template <class Real> void add_rows(ForceSink<Real>& out, const ParticleSystem<Real>& s) const;
 };

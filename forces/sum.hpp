@@ -3,6 +3,7 @@
 
 #include "engine/erasure.hpp"
 
+#include <algorithm>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -26,8 +27,13 @@ template <class... Fs> class Sum {
  public:
   explicit Sum(Fs... forces) : forces_(std::move(forces)...) {}
 
-  template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+  template <class Real>
+    requires(Force<Fs, Real>&&...)
+  void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     std::apply([&](const auto&... force) { (force.add_to(out, s), ...); }, forces_);
+  }
+  bool has_lanes() const {
+    return std::apply([](const auto&... force) { return (noether::has_lanes(force) && ...); }, forces_);
   }
   ForceClaims claims() const {
     ForceClaims all;
@@ -55,6 +61,12 @@ template <class Real = double> class ForceField {
   }
 
   void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+    for (const auto& term : terms_) term.add_to(out, s);
+  }
+  bool has_lanes() const {
+    return std::all_of(terms_.begin(), terms_.end(), [](const auto& term) { return term.has_lanes(); });
+  }
+  void add_to(ForceSink<Pack>& out, const ParticleSystem<Pack>& s) const {
     for (const auto& term : terms_) term.add_to(out, s);
   }
   ForceClaims claims() const {

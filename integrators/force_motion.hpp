@@ -7,6 +7,7 @@
 #include "integrators/vector_field.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <utility>
 
 namespace noether {
@@ -40,6 +41,8 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
     work_.keep_low_words(false);
     work_.clock() = Clock<Real>::free(0);
     a_ = VectorColumn<Real>(s.size());
+    in_lanes_ = std::is_same_v<Real, double> && has_lanes(forces_) && s.size() <= most_in_lanes;
+    if (in_lanes_) bind_lanes(s);
   }
   Index size() const override { return 6 * work_.size(); }
   Index particles() const override { return work_.size(); }
@@ -81,8 +84,41 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
     a.resize(3 * work_.size());
     write(a.data());
   }
+  void evaluate_stages(const StageStates<Real>& states, Real* out) override {
+    if constexpr (sees_packs) {
+      if (in_lanes_) return evaluate_lanes(states, out);
+    }
+    VectorField<Real>::evaluate_stages(states, out);
+  }
 
  private:
+  static constexpr bool sees_packs = std::is_same_v<Real, double> && Force<F, Pack>;
+  /// Above, the lanes are better filled with particles.
+  static constexpr Index most_in_lanes = 64;
+
+  void bind_lanes(const ParticleSystem<Real>& s) {
+    if constexpr (sees_packs) {
+      packs_ = s.template as<Pack>();
+      packs_.clock() = Clock<Pack>::free(0);
+      pack_a_ = VectorColumn<Pack>(s.size());
+    }
+  }
+  void evaluate_lanes(const StageStates<double>& states, double* out) {
+    const Index n = work_.size();
+    VectorColumn<Pack>&x = packs_.positions(), &v = packs_.velocities();
+    for (int k = 0; k < 3; ++k) {
+      std::memcpy(x.component(k), states.q + k * n * lane_count, static_cast<std::size_t>(n) * sizeof(Pack));
+      if (states.v == nullptr) continue;
+      std::memcpy(v.component(k), states.v + k * n * lane_count, static_cast<std::size_t>(n) * sizeof(Pack));
+    }
+    packs_.clock().set_stage_offset(Pack::load(states.t));
+    ForceSink<Pack> sink(pack_a_, packs_, {});
+    forces_.add_to(sink, packs_);
+    for (int k = 0; k < 3; ++k) {
+      std::memcpy(out + k * n * lane_count, pack_a_.component(k), static_cast<std::size_t>(n) * sizeof(Pack));
+    }
+  }
+
   void sum(const Real& t, const Vector<Real>& y) {
     scatter(y, work_);
     work_.clock().set_stage_offset(t);
@@ -97,6 +133,9 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
   std::string name_;
   ParticleSystem<Real> work_;
   VectorColumn<Real> a_;
+  bool in_lanes_ = false;
+  ParticleSystem<Pack> packs_;
+  VectorColumn<Pack> pack_a_;
 };
 
 }  // namespace noether

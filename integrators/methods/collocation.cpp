@@ -16,14 +16,6 @@ template <class Real> Real rounded(const Quad& x, Real& low) {
   return high;
 }
 
-/// value + low += high + small, where `high` may be as large as the value.
-template <class Real> void add_with_error(Real& value, Real& low, const Real& high, const Real& small) {
-  const Real sum = value + high, back = sum - value;
-  const Real rest = ((value - (sum - back)) + (high - back)) + (small + low);
-  value = sum + rest;
-  low = rest - (value - sum);
-}
-
 }  // namespace
 
 template <class Real> StageTable<Real>::StageTable(const CollocationTable& table) {
@@ -32,8 +24,8 @@ template <class Real> StageTable<Real>::StageTable(const CollocationTable& table
   const auto twice_last = table.twice_end(), legendre = table.last_coefficient();
   for (std::size_t i = 0; i < table.stages(); ++i) {
     c[i] = rounded(table.c[i], c_low[i]);
-    b[i] = rounded(table.b[i], b_low[i]);
-    end[i] = rounded(twice_last[i], end_low[i]);
+    ends[0][i] = rounded(table.b[i], ends[1][i]);
+    ends[2][i] = rounded(twice_last[i], ends[3][i]);
     last[i] = static_cast<Real>(legendre[i]);
     Quad weight = 1;
     for (std::size_t j = 0; j < table.stages(); ++j) {
@@ -89,6 +81,8 @@ template <class Real> void Collocation<Real>::bind(const VectorField<Real>& f) {
   particles_ = second_order_ ? f.particles() : 0;
   for (auto* all : {&rates_, &previous_, &trial_, &q_, &v_}) all->assign(static_cast<std::size_t>(lanes * n_), Real(0));
   low_.assign(static_cast<std::size_t>(f.size()), Real(0));
+  sums_ = {n_, table_.stages};
+  weights_h_ = weights_h_old_ = 0;
   next_ = h_ = 0;
 }
 
@@ -129,7 +123,6 @@ template <class Real> Stepped Collocation<Real>::step(VectorField<Real>& f, cons
 /// Stages begin where the polynomial of the last step leads; without one, with the rates at hand.
 template <class Real>
 void Collocation<Real>::predict(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h) {
-  using std::abs;
   if (h_ == 0) {
     for (Index i = 0; i < n_; ++i) {
       for (Index k = 0; k < lanes; ++k) {
@@ -149,55 +142,34 @@ void Collocation<Real>::predict(VectorField<Real>& f, const Real& t, const Vecto
     }
     return;
   }
-  // previous_ at x_i = 1 + c_i h / h_old by Lagrange's formula.
-  typename StageTable<Real>::Lanes weights[lane_count] = {};
-  const auto s = static_cast<std::size_t>(table_.stages);
-  for (std::size_t i = 0; i < s; ++i) {
-    const Real x = Real(1) + table_.c[i] * (Real(h) / Real(h_));
-    Real product(1);
-    for (std::size_t j = 0; j < s; ++j) product *= x - table_.c[j];
-    for (std::size_t j = 0; j < s; ++j) weights[j][i] = product * table_.barycentric[j] / (x - table_.c[j]);
-  }
-  for (Index m = 0; m < n_; ++m) {
-    const Real* old = previous_.data() + lanes * m;
-    Real sum[lane_count] = {};
-    for (std::size_t j = 0; j < s; ++j) {
-      for (std::size_t k = 0; k < lane_count; ++k) sum[k] += weights[j][k] * old[j];
+  extrapolate(h);
+}
+
+/// The polynomial of the last step at x_i = 1 + c_i h / h_old, by Lagrange's formula.
+template <class Real> void Collocation<Real>::extrapolate(double h) {
+  if (h != weights_h_ || h_ != weights_h_old_) {
+    const auto s = static_cast<std::size_t>(table_.stages);
+    for (std::size_t i = 0; i < s; ++i) {
+      const Real x = Real(1) + table_.c[i] * (Real(h) / Real(h_));
+      Real product(1);
+      for (std::size_t j = 0; j < s; ++j) product *= x - table_.c[j];
+      for (std::size_t j = 0; j < s; ++j) weights_[j][i] = product * table_.barycentric[j] / (x - table_.c[j]);
     }
-    for (Index k = 0; k < lanes; ++k) rates_[static_cast<std::size_t>(lanes * m + k)] = sum[k];
+    weights_h_ = h;
+    weights_h_old_ = h_;
   }
+  sums_.combine(previous_.data(), weights_, rates_.data());
 }
 
 /// Positions (and velocities) of all stages from their rates.
 template <class Real> void Collocation<Real>::form_states(const Vector<Real>& y, double h) {
-  const Real step(h), step2 = step * step;
-  const auto s = static_cast<std::size_t>(table_.stages);
-  const auto& outer = second_order_ ? table_.twice : table_.a;
-  for (Index m = 0; m < n_; ++m) {
-    const Real* rate = rates_.data() + lanes * m;
-    Real sum[lane_count] = {};
-    for (std::size_t j = 0; j < s; ++j) {
-      for (std::size_t k = 0; k < lane_count; ++k) sum[k] += outer[j][k] * rate[j];
-    }
-    Real* q = q_.data() + lanes * m;
-    const Real low = low_[static_cast<std::size_t>(m)];
-    if (second_order_) {
-      const Real hv = step * y[n_ + m];
-      for (std::size_t k = 0; k < lane_count; ++k) {
-        q[k] = y[m] + (table_.c[k] * hv + (table_.c_low[k] * hv + step2 * sum[k] + low));
-      }
-    } else {
-      for (std::size_t k = 0; k < lane_count; ++k) q[k] = y[m] + (step * sum[k] + low);
-    }
-    if (!with_velocities_) continue;
-    Real slope[lane_count] = {};
-    for (std::size_t j = 0; j < s; ++j) {
-      for (std::size_t k = 0; k < lane_count; ++k) slope[k] += table_.a[j][k] * rate[j];
-    }
-    Real* v = v_.data() + lanes * m;
-    const Real low_v = low_[static_cast<std::size_t>(n_ + m)];
-    for (std::size_t k = 0; k < lane_count; ++k) v[k] = y[n_ + m] + (step * slope[k] + low_v);
+  if (!second_order_) {
+    sums_.values(rates_.data(), table_.a, y.data(), low_.data(), h, q_.data());
+    return;
   }
+  sums_.positions(rates_.data(), table_.twice, table_.c, table_.c_low, y.data(), low_.data(), y.data() + n_, h,
+                  q_.data());
+  if (with_velocities_) sums_.values(rates_.data(), table_.a, y.data() + n_, low_.data() + n_, h, v_.data());
 }
 
 /// Sweeps until the rates stand still: until what the next sweep would change is below rounding, or no less than what
@@ -205,7 +177,7 @@ template <class Real> void Collocation<Real>::form_states(const Vector<Real>& y,
 template <class Real>
 typename Collocation<Real>::Sweeps Collocation<Real>::sweep(VectorField<Real>& f, const Real& t, const Vector<Real>& y,
                                                             double h) {
-  using std::abs, std::isfinite;
+  using std::isfinite;
   constexpr int most = 60;
   std::array<Real, lane_count> times{};
   for (std::size_t k = 0; k < lane_count; ++k) times[k] = t + table_.c[k] * Real(h);
@@ -213,12 +185,7 @@ typename Collocation<Real>::Sweeps Collocation<Real>::sweep(VectorField<Real>& f
   for (int round = 1; round <= most; ++round) {
     form_states(y, h);
     f.rates({times.data(), q_.data(), with_velocities_ ? v_.data() : nullptr, table_.stages}, trial_.data());
-    Real change(0), size(0);
-    for (std::size_t k = 0; k < trial_.size(); ++k) {
-      const Real difference = abs(trial_[k] - rates_[k]), one = abs(trial_[k]);
-      change = difference > change ? difference : change;
-      size = one > size ? one : size;
-    }
+    const auto [change, size] = sums_.difference(trial_.data(), rates_.data());
     std::swap(trial_, rates_);
     const double relative = size > Real(0) ? static_cast<double>(change / size) : 0.0;
     if (!isfinite(size + change)) return Sweeps::diverged;
@@ -236,29 +203,9 @@ typename Collocation<Real>::Sweeps Collocation<Real>::sweep(VectorField<Real>& f
 }
 
 template <class Real> void Collocation<Real>::finish(Vector<Real>& y, double h) {
-  const Real step(h), step2 = step * step;
-  const auto s = static_cast<std::size_t>(table_.stages);
-  for (Index m = 0; m < n_; ++m) {
-    const Real* rate = rates_.data() + lanes * m;
-    Real slope(0), slope_low(0);
-    for (std::size_t j = 0; j < s; ++j) {
-      slope += table_.b[j] * rate[j];
-      slope_low += table_.b_low[j] * rate[j];
-    }
-    if (second_order_) {
-      Real bend(0), bend_low(0);
-      for (std::size_t j = 0; j < s; ++j) {
-        bend += table_.end[j] * rate[j];
-        bend_low += table_.end_low[j] * rate[j];
-      }
-      Real &v = y[n_ + m], &low_v = low_[static_cast<std::size_t>(n_ + m)];
-      const Real hv = step * v;
-      add_with_error(y[m], low_[static_cast<std::size_t>(m)], hv, step2 * bend + (step2 * bend_low + step * low_v));
-      add_with_error(v, low_v, step * slope, step * slope_low);
-    } else {
-      add_with_error(y[m], low_[static_cast<std::size_t>(m)], step * slope, step * slope_low);
-    }
-  }
+  Real *q = second_order_ ? y.data() : nullptr, *q_low = second_order_ ? low_.data() : nullptr;
+  const Index v = second_order_ ? n_ : 0;
+  sums_.finish(rates_.data(), table_.ends, h, q, q_low, y.data() + v, low_.data() + v);
   std::swap(previous_, rates_);
   h_ = h;
 }
@@ -289,14 +236,14 @@ template <class Real> double Collocation<Real>::roughness() const {
 template <class Real> void Collocation<Real>::save(SavedState& saved, const std::string& prefix) const {
   save_value(saved, prefix + "next", next_);
   save_value(saved, prefix + "h", h_);
-  save_value(saved, prefix + "low", low_);
-  save_value(saved, prefix + "previous", previous_);
+  save_value(saved, prefix + "low", std::vector<Real>(low_.begin(), low_.end()));
+  save_value(saved, prefix + "previous", std::vector<Real>(previous_.begin(), previous_.end()));
 }
 
 template <class Real> void Collocation<Real>::load(const SavedState& saved, const std::string& prefix) {
   load_value(saved, prefix + "next", next_);
   load_value(saved, prefix + "h", h_);
-  const auto load_all = [&](const std::string& name, std::vector<Real>& into) {
+  const auto load_all = [&](const std::string& name, AlignedVector<Real>& into) {
     std::vector<Real> read;
     load_value(saved, prefix + name, read);
     for (std::size_t k = 0; k < into.size(); ++k) into[k] = detail::element(read, k);

@@ -3,6 +3,7 @@
 /// order 15.
 
 #include "integrators/methods/collocation_table.hpp"
+#include "integrators/methods/stage_arithmetic.hpp"
 #include "integrators/step_control.hpp"
 
 #include <array>
@@ -14,11 +15,10 @@ namespace noether {
 /// Each list comes with what rounding has taken from its sum: with steps of one length an error of 1e-17 in it would
 /// be a drift.
 template <class Real> struct StageTable {
-  using Lanes = std::array<Real, lane_count>;
   int stages = 0;
-  Lanes c{}, c_low{}, b{}, b_low{}, end{}, end_low{}, last{};
-  std::array<Lanes, lane_count> a{}, twice{};  ///< [j][i]: what stage i takes from stage j
-  Lanes barycentric{};
+  StageLanes<Real> c{}, c_low{}, last{}, barycentric{};
+  StageMatrix<Real> a{}, twice{};
+  std::array<StageLanes<Real>, 4> ends{};  ///< b, b a, each followed by what rounding has taken
 
   explicit StageTable(const CollocationTable& table);
 };
@@ -49,6 +49,7 @@ template <class Real> class Collocation final : public Method<Real> {
   enum class Sweeps : std::uint8_t { converged, diverged };
 
   void predict(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h);
+  void extrapolate(double h);
   Sweeps sweep(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h);
   void form_states(const Vector<Real>& y, double h);
   void finish(Vector<Real>& y, double h);
@@ -62,9 +63,12 @@ template <class Real> class Collocation final : public Method<Real> {
   bool second_order_ = false, with_velocities_ = false;
   Index n_ = 0, particles_ = 0;  ///< variables that stages hold; particles among them
 
-  std::vector<Real> rates_, previous_, trial_, q_, v_;  ///< shape (n, 8)
-  std::vector<Real> low_;                               ///< rounding errors of y
-  double next_ = 0, h_ = 0;                             ///< to be tried; of `previous_`, 0 for none
+  StageArithmetic<Real> sums_;
+  AlignedVector<Real> rates_, previous_, trial_, q_, v_;  ///< shape (n, 8)
+  AlignedVector<Real> low_;                               ///< rounding errors of y
+  StageMatrix<Real> weights_{};                           ///< of the extrapolation over a step h after one of h_old
+  double weights_h_ = 0, weights_h_old_ = 0;
+  double next_ = 0, h_ = 0;  ///< to be tried; of `previous_`, 0 for none
 };
 
 extern template class Collocation<double>;

@@ -1,0 +1,74 @@
+#include "forces/gravity_stages_simd.hpp"
+
+#include "engine/reciprocal_sqrt_simd.hpp"
+
+namespace noether::NOETHER_SIMD_LEVEL {
+
+namespace {
+
+using Lanes = hn::CappedTag<double, 8>;
+using Vector = hn::Vec<Lanes>;
+constexpr std::ptrdiff_t lanes = hn::MaxLanes(Lanes());
+constexpr std::ptrdiff_t stages = 8;
+
+/// Body i, and what it has felt so far, in the lanes of one register.
+struct Body {
+  Vector x, y, z, mu, ax, ay, az;
+};
+
+/// The pull between body i and n bodies from j on.
+template <int n>
+HWY_INLINE void attract(const BodiesInStages& b, Body& body, std::ptrdiff_t j, std::ptrdiff_t lane, Vector soft2) {
+  const Lanes d;
+  Vector dx[n], dy[n], dz[n], r2[n], u[n];
+  for (int k = 0; k < n; ++k) {
+    const std::ptrdiff_t at = (j + k) * stages + lane;
+    dx[k] = hn::Sub(hn::Load(d, b.x + at), body.x);
+    dy[k] = hn::Sub(hn::Load(d, b.y + at), body.y);
+    dz[k] = hn::Sub(hn::Load(d, b.z + at), body.z);
+    r2[k] = hn::MulAdd(dx[k], dx[k], hn::MulAdd(dy[k], dy[k], hn::MulAdd(dz[k], dz[k], soft2)));
+  }
+  reciprocal_sqrt(d, r2, u);
+  for (int k = 0; k < n; ++k) {
+    const std::ptrdiff_t at = (j + k) * stages + lane;
+    const Vector cube = hn::Mul(u[k], hn::Mul(u[k], u[k]));
+    const Vector pull = hn::Mul(hn::Set(d, b.mu[j + k]), cube), back = hn::Mul(body.mu, cube);
+    body.ax = hn::MulAdd(pull, dx[k], body.ax);
+    body.ay = hn::MulAdd(pull, dy[k], body.ay);
+    body.az = hn::MulAdd(pull, dz[k], body.az);
+    hn::Store(hn::NegMulAdd(back, dx[k], hn::Load(d, b.ax + at)), d, b.ax + at);
+    hn::Store(hn::NegMulAdd(back, dy[k], hn::Load(d, b.ay + at)), d, b.ay + at);
+    hn::Store(hn::NegMulAdd(back, dz[k], hn::Load(d, b.az + at)), d, b.az + at);
+  }
+}
+
+void attract_all(const BodiesInStages& bodies, double softening2) {
+  constexpr int together = 3;
+  const Lanes d;
+  const BodiesInStages b = bodies;
+  const Vector soft2 = hn::Set(d, softening2);
+  for (std::ptrdiff_t lane = 0; lane < stages; lane += lanes) {
+    for (std::ptrdiff_t i = 0; i + 1 < b.count; ++i) {
+      const std::ptrdiff_t at = i * stages + lane;
+      Body body{hn::Load(d, b.x + at),  hn::Load(d, b.y + at),  hn::Load(d, b.z + at), hn::Set(d, b.mu[i]),
+                hn::Load(d, b.ax + at), hn::Load(d, b.ay + at), hn::Load(d, b.az + at)};
+      std::ptrdiff_t j = i + 1;
+      if (b.mu[i] != 0) {
+        for (; j + together <= b.count; j += together) attract<together>(b, body, j, lane, soft2);
+      }
+      for (; j < b.count; ++j) {
+        if (b.mu[i] != 0 || b.mu[j] != 0) attract<1>(b, body, j, lane, soft2);  // tracers may stand in one place
+      }
+      hn::Store(body.ax, d, b.ax + at);
+      hn::Store(body.ay, d, b.ay + at);
+      hn::Store(body.az, d, b.az + at);
+    }
+  }
+}
+
+}  // namespace
+
+extern const AttractInStages attract_in_stages;
+const AttractInStages attract_in_stages = attract_all;
+
+}  // namespace noether::NOETHER_SIMD_LEVEL

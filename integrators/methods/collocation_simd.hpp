@@ -1,0 +1,65 @@
+#pragma once
+/// The arithmetic of collocation in lanes of doubles: the interface of `collocation_simd.cpp`.
+
+#include "engine/simd.hpp"
+
+#include <cstddef>
+
+namespace noether {
+
+/// n variables at eight stages: `rates`, `out` of shape (n, 8); values and rounding errors of the variables of shape
+/// (n).
+struct StageSums {
+  std::ptrdiff_t n;
+  int stages;           ///< of the method, at most 8
+  const double* rates;  ///< F
+  const double *y, *low;
+  double h;
+};
+
+/// What a step adds to n variables. `weights`, `weights_low`, `twice`, `twice_low`: shape (8).
+struct StepSums {
+  std::ptrdiff_t n;
+  const double* rates;
+  const double *weights, *weights_low, *twice, *twice_low;
+  double h;
+  double *q, *q_low;  ///< variables of first order: null
+  double *v, *v_low;  ///< velocities, or the variables of first order
+};
+
+struct CollocationKernels {
+  /// out_i = y + (h sum_j a_ji F_j + low), a of shape (8, 8)
+  void (*values)(const StageSums& sums, const double* a, double* out);
+  /// out_i = y + (c_i h v + (c_low_i h v + h^2 sum_j a_ji F_j + low))
+  void (*positions)(const StageSums& sums, const double* a, const double* c, const double* c_low, const double* v,
+                    double* out);
+  /// out_i = sum_j w_ji F_j
+  void (*combine)(const StageSums& sums, const double* w, double* out);
+  /// Largest |a - b| and largest |a| of `count` numbers, a multiple of 8; not a number if one of them is none.
+  void (*difference)(std::ptrdiff_t count, const double* a, const double* b, double* change, double* size);
+  /// q += h v + h^2 sum twice_j F_j, v += h sum weights_j F_j, with their rounding errors
+  void (*finish)(const StepSums& sums);
+};
+
+namespace base {
+extern const CollocationKernels collocation_kernels;
+}
+#if NOETHER_SIMD_LEVELS
+namespace avx2 {
+extern const CollocationKernels collocation_kernels;
+}
+namespace avx512 {
+extern const CollocationKernels collocation_kernels;
+}
+#endif
+
+/// The kernels of the level in use.
+inline const CollocationKernels& collocation_kernels() {
+#if NOETHER_SIMD_LEVELS
+  return at_simd_level(base::collocation_kernels, avx2::collocation_kernels, avx512::collocation_kernels);
+#else
+  return base::collocation_kernels;
+#endif
+}
+
+}  // namespace noether
