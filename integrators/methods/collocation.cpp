@@ -37,13 +37,13 @@ template <class Real> StageTable<Real>::StageTable(const CollocationTable& table
   }
   // What rounding has taken from a row goes to its own stage, where it is lost least.
   for (std::size_t i = 0; i < table.stages(); ++i) {
-    Quad rest = table.c[i], rest_twice = table.c[i] * table.c[i] / Quad(2);
+    Quad left = 0, left_twice = 0;
     for (std::size_t j = 0; j < table.stages(); ++j) {
-      rest -= Quad(a[j][i]);
-      rest_twice -= Quad(twice[j][i]);
+      left += table.a[i][j] - Quad(a[j][i]);
+      left_twice += twice_all[i][j] - Quad(twice[j][i]);
     }
-    a[i][i] += static_cast<Real>(rest);
-    twice[i][i] += static_cast<Real>(rest_twice);
+    a[i][i] += static_cast<Real>(left);
+    twice[i][i] += static_cast<Real>(left_twice);
   }
 }
 
@@ -60,7 +60,7 @@ Collocation<Real>::Collocation(const MethodInfo& info, const MethodOptions& opti
   // The last of s Legendre coefficients falls as h^(s-1), the error of a step as h^(2 s).
   const double s = table_.stages;
   const double floor = std::is_same_v<Real, double> ? 1e-16 : 1e-30;
-  target_ = 3e-3 * std::pow(std::max(rtol_, floor), (s - 1) / (2 * s));
+  target_ = 3e-2 * std::pow(std::max(rtol_, floor), (s - 1) / (2 * s));
   settled_ = std::max(adaptive_ ? 1e-3 * rtol_ : 0.0, std::is_same_v<Real, double> ? 0x1p-54 : 1e-33);
 }
 
@@ -149,11 +149,16 @@ void Collocation<Real>::predict(VectorField<Real>& f, const Real& t, const Vecto
 template <class Real> void Collocation<Real>::extrapolate(double h) {
   if (h != weights_h_ || h_ != weights_h_old_) {
     const auto s = static_cast<std::size_t>(table_.stages);
-    for (std::size_t i = 0; i < s; ++i) {
-      const Real x = Real(1) + table_.c[i] * (Real(h) / Real(h_));
-      Real product(1);
-      for (std::size_t j = 0; j < s; ++j) product *= x - table_.c[j];
-      for (std::size_t j = 0; j < s; ++j) weights_[j][i] = product * table_.barycentric[j] / (x - table_.c[j]);
+    StageLanes<Real> x, product;
+    for (std::size_t i = 0; i < lane_count; ++i) x[i] = Real(1) + table_.c[i] * (Real(h) / Real(h_));
+    product.fill(Real(1));
+    for (std::size_t j = 0; j < s; ++j) {
+      for (std::size_t i = 0; i < lane_count; ++i) product[i] *= x[i] - table_.c[j];
+    }
+    for (std::size_t j = 0; j < s; ++j) {
+      for (std::size_t i = 0; i < lane_count; ++i) {
+        weights_[j][i] = product[i] * table_.barycentric[j] / (x[i] - table_.c[j]);
+      }
     }
     weights_h_ = h;
     weights_h_old_ = h_;
@@ -194,12 +199,25 @@ typename Collocation<Real>::Sweeps Collocation<Real>::sweep(VectorField<Real>& f
     if (round > 2 && shrinks >= 1) {
       // At rounding level it no longer shrinks; above, it never will.
       const double noise = std::is_same_v<Real, double> ? 1e-12 : 1e-28;
-      if (relative < noise) return Sweeps::converged;
+      if (relative < noise || effect_on(y, h, static_cast<double>(change)) < 0.1 * noise) return Sweeps::converged;
       if (round > 6) return Sweeps::diverged;
     }
     before = relative;
   }
   return Sweeps::diverged;
+}
+
+/// What a change of all rates would change in y, relative to its largest values: where forces nearly vanish, their
+/// rounding is that of the positions they come from.
+template <class Real> double Collocation<Real>::effect_on(const Vector<Real>& y, double h, double change) const {
+  const auto largest = [&](Index begin, Index end) {
+    double most = 0;
+    for (Index i = begin; i < end; ++i) most = std::max(most, std::abs(static_cast<double>(y[i])));
+    return most;
+  };
+  const double step = std::abs(h);
+  if (!second_order_) return step * change / largest(0, n_);
+  return std::max(step * step * change / largest(0, n_), step * change / largest(n_, 2 * n_));
 }
 
 template <class Real> void Collocation<Real>::finish(Vector<Real>& y, double h) {
@@ -265,7 +283,7 @@ template <class Real> std::unique_ptr<Method<Real>> gauss(const MethodInfo& info
   return std::make_unique<Collocation<Real>>(info, options, gauss_table(stages_of(info.name)), true);
 }
 template <class Real> std::unique_ptr<Method<Real>> radau(const MethodInfo& info, const MethodOptions& options) {
-  return std::make_unique<Collocation<Real>>(info, options, radau_left_table(8), false);
+  return std::make_unique<Collocation<Real>>(info, options, radau_left_table(), false);
 }
 
 MethodInfo gauss_info(std::string_view name, std::string_view summary, int stages) {

@@ -60,11 +60,11 @@ void combine(const StageSums& s, const double* w, double* out) {
   }
 }
 
-void difference(std::ptrdiff_t count, const double* a, const double* b, double* change, double* size) {
+void difference(std::ptrdiff_t n, int stages, const double* a, const double* b, double* change, double* size) {
   const Lanes d;
   Vector most[registers], largest[registers], all[registers];
   for (int r = 0; r < registers; ++r) most[r] = largest[r] = all[r] = hn::Zero(d);
-  for (std::ptrdiff_t k = 0; k < count; k += 8) {
+  for (std::ptrdiff_t k = 0; k < 8 * n; k += 8) {
     for (int r = 0; r < registers; ++r) {
       const Vector x = hn::LoadU(d, a + k + r * lanes), y = hn::LoadU(d, b + k + r * lanes);
       most[r] = hn::Max(most[r], hn::Abs(hn::Sub(x, y)));
@@ -80,7 +80,7 @@ void difference(std::ptrdiff_t count, const double* a, const double* b, double* 
   }
   double sum = 0;
   *change = *size = 0;
-  for (int k = 0; k < 8; ++k) {
+  for (int k = 0; k < stages; ++k) {
     *change = greatest[k] > *change ? greatest[k] : *change;
     *size = widest[k] > *size ? widest[k] : *size;
     sum += sums[k];

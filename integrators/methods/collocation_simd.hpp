@@ -35,8 +35,8 @@ struct CollocationKernels {
                     double* out);
   /// out_i = sum_j w_ji F_j
   void (*combine)(const StageSums& sums, const double* w, double* out);
-  /// Largest |a - b| and largest |a| of `count` numbers, a multiple of 8; not a number if one of them is none.
-  void (*difference)(std::ptrdiff_t count, const double* a, const double* b, double* change, double* size);
+  /// Largest |a - b| and largest |a| over `n` variables at their first `stages` stages; not a number if one is none.
+  void (*difference)(std::ptrdiff_t n, int stages, const double* a, const double* b, double* change, double* size);
   /// q += h v + h^2 sum twice_j F_j, v += h sum weights_j F_j, with their rounding errors
   void (*finish)(const StepSums& sums);
 };

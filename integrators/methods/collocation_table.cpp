@@ -1,5 +1,8 @@
 #include "integrators/methods/collocation_table.hpp"
 
+#include "engine/error.hpp"
+
+#include <array>
 #include <functional>
 #include <utility>
 
@@ -31,11 +34,12 @@ Quad zero(const std::function<Quad(Quad)>& f, Quad a, Quad b) {
 /// All zeros of f in (-1, 1), found by changes of sign on a fine grid.
 std::vector<Quad> zeros(const std::function<Quad(Quad)>& f, int expected) {
   std::vector<Quad> found;
-  const int pieces = 1000 * expected + 7;
+  // Neighbours near the ends are about 3 / n^2 apart.
+  const int pieces = 8 * expected * expected + 7;
   for (int k = 0; k < pieces; ++k) {
-    const Quad a = Quad(-1) + Quad(2 * k) / Quad(pieces), b = Quad(-1) + Quad(2 * k + 2) / Quad(pieces);
-    if (k == 0 || k + 1 == pieces) continue;
-    if ((f(a) < Quad(0)) != (f(b) < Quad(0))) found.push_back(zero(f, a, b));
+    // The ends themselves are left out: the function may be none there.
+    const Quad a = Quad(-1) + Quad(2 * k + 0.5) / Quad(pieces), b = Quad(-1) + Quad(2 * k + 2.5) / Quad(pieces);
+    if (k + 1 < pieces && (f(a) < Quad(0)) != (f(b) < Quad(0))) found.push_back(zero(f, a, b));
   }
   return found;
 }
@@ -105,7 +109,9 @@ std::vector<Quad> CollocationTable::last_coefficient() const {
   return weights;
 }
 
-CollocationTable gauss_table(int stages) {
+namespace {
+
+CollocationTable make_gauss(int stages) {
   std::vector<Quad> nodes;
   if (stages == 1) {
     nodes = {Quad(1) / Quad(2)};
@@ -117,7 +123,7 @@ CollocationTable gauss_table(int stages) {
   return table_of(std::move(nodes), 2 * stages);
 }
 
-CollocationTable radau_left_table(int stages) {
+CollocationTable make_radau_left(int stages) {
   // P_(s-1) + P_s vanishes at -1; the other zeros are those of the quotient by 1 + x.
   const auto inner = [&](Quad x) {
     return (legendre(stages - 1, x).first + legendre(stages, x).first) / (Quad(1) + x);
@@ -125,6 +131,23 @@ CollocationTable radau_left_table(int stages) {
   std::vector<Quad> nodes = {0};
   for (const Quad& x : zeros(inner, stages)) nodes.push_back((x + Quad(1)) / Quad(2));
   return table_of(std::move(nodes), 2 * stages - 1);
+}
+
+}  // namespace
+
+const CollocationTable& gauss_table(int stages) {
+  static const auto all = [] {
+    std::array<CollocationTable, 8> tables;
+    for (int s = 1; s <= 8; ++s) tables[static_cast<std::size_t>(s - 1)] = make_gauss(s);
+    return tables;
+  }();
+  NOETHER_EXPECTS(stages >= 1 && stages <= 8, "Gauss methods have 1 to 8 stages");
+  return all[static_cast<std::size_t>(stages - 1)];
+}
+
+const CollocationTable& radau_left_table() {
+  static const CollocationTable table = make_radau_left(8);
+  return table;
 }
 
 }  // namespace noether

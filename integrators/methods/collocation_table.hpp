@@ -25,10 +25,10 @@ struct CollocationTable {
   std::vector<Quad> last_coefficient() const;
 };
 
-/// Nodes of Gauss and Legendre: order 2 s, symplectic, symmetric.
-CollocationTable gauss_table(int stages);
+/// Nodes of Gauss and Legendre, 1 to 8 of them: order 2 s, symplectic, symmetric.
+const CollocationTable& gauss_table(int stages);
 
-/// Nodes of Radau with the left end among them: order 2 s - 1; with eight of them those of IAS15.
-CollocationTable radau_left_table(int stages);
+/// The eight nodes of Radau with the left end among them, those of IAS15: order 15.
+const CollocationTable& radau_left_table();
 
 }  // namespace noether

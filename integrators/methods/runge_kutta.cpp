@@ -118,7 +118,7 @@ DormandPrince5<Real>::DormandPrince5(const MethodInfo& info, const MethodOptions
 /// The cubic through both ends with their slopes, and one term of degree 4.
 template <class Real>
 void DormandPrince5<Real>::interpolate(VectorField<Real>& /*f*/, const Real& theta, Vector<Real>& y) {
-  const Real h(this->h_), rest = Real(1) - theta;
+  const Real h(this->h_), left = Real(1) - theta;
   // After the step the stages at its ends have changed places.
   const auto stage = [&](std::size_t j) -> const Vector<Real>& { return this->k_[j == 0 ? 6 : j == 6 ? 0 : j]; };
   for (Index i = 0; i < y.size(); ++i) {
@@ -128,7 +128,7 @@ void DormandPrince5<Real>::interpolate(VectorField<Real>& /*f*/, const Real& the
     for (std::size_t j = 0; j < d_.size(); ++j) {
       if (d_[j] != Real(0)) last += d_[j] * stage(j)[i];
     }
-    y[i] = this->y0_[i] + theta * (change + rest * (bend + theta * (twist + rest * (h * last))));
+    y[i] = this->y0_[i] + theta * (change + left * (bend + theta * (twist + left * (h * last))));
   }
 }
 
@@ -191,14 +191,14 @@ template <class Real> void Dop853<Real>::interpolate(VectorField<Real>& f, const
     std::swap(k[0], k[12]);
     have_terms_ = true;
   }
-  const Real rest = Real(1) - theta;
+  const Real left = Real(1) - theta;
   for (Index i = 0; i < y.size(); ++i) {
     Real sum = terms_[6][i] * theta;
-    sum = (sum + terms_[5][i]) * rest;
+    sum = (sum + terms_[5][i]) * left;
     sum = (sum + terms_[4][i]) * theta;
-    sum = (sum + terms_[3][i]) * rest;
+    sum = (sum + terms_[3][i]) * left;
     sum = (sum + terms_[2][i]) * theta;
-    sum = (sum + terms_[1][i]) * rest;
+    sum = (sum + terms_[1][i]) * left;
     y[i] = this->y0_[i] + theta * (sum + terms_[0][i]);
   }
 }

@@ -61,14 +61,15 @@ template <class Real> struct StageArithmetic {
     }
   }
 
-  /// Largest |a - b|, and largest |a|.
+  /// Largest |a - b|, and largest |a|, at the stages of the method.
   std::array<Real, 2> difference(const Real* a, const Real* b) const {
     std::array<Real, 2> most{Real(0), Real(0)};
     if constexpr (std::is_same_v<Real, double>) {
-      collocation_kernels().difference(lane_count * n, a, b, &most[0], &most[1]);
+      collocation_kernels().difference(n, stages, a, b, &most[0], &most[1]);
     } else {
       using std::abs;
       for (Index k = 0; k < lane_count * n; ++k) {
+        if (k % lane_count >= stages) continue;
         const Real change = abs(a[k] - b[k]), size = abs(a[k]);
         if (!(change <= most[0])) most[0] = change;
         if (!(size <= most[1])) most[1] = size;
@@ -111,9 +112,9 @@ template <class Real> struct StageArithmetic {
   /// value + low += high + small, where `high` may be as large as the value.
   static void add_with_error(Real& value, Real& low, const Real& high, const Real& small) {
     const Real sum = value + high, back = sum - value;
-    const Real rest = ((value - (sum - back)) + (high - back)) + (small + low);
-    value = sum + rest;
-    low = rest - (value - sum);
+    const Real remainder = ((value - (sum - back)) + (high - back)) + (small + low);
+    value = sum + remainder;
+    low = remainder - (value - sum);
   }
 };
 

@@ -1,0 +1,234 @@
+/// Gauss and Gauss-Radau collocation: tables, orders, what they keep, and how they find their steps.
+
+#include "integrators/methods/collocation.hpp"
+
+#include "engine/monitors.hpp"
+#include "forces/gravity.hpp"
+#include "forces/linear_drag.hpp"
+#include "forces/sum.hpp"
+#include "integrators/classical.hpp"
+#include "integrators/composition.hpp"
+#include "integrators/schemes.hpp"
+#include "tests/methods/motions.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/order_fit.hpp"
+#include "tests/support/planets.hpp"
+
+#include <cmath>
+
+using namespace noether;
+
+namespace {
+
+const Gravity outer_gravity{.G = test::outer_G};
+
+std::string gauss_name(int stages) { return stages == 1 ? "implicit_midpoint" : "gauss_" + std::to_string(stages); }
+
+MethodOptions fixed_steps(const std::string& name) {
+  MethodOptions options;
+  if (methods::find(name)->adaptive) options.adaptive = false;
+  return options;
+}
+
+double worst_sum(const CollocationTable& t, const std::vector<Quad>& weights, int power, Quad expected) {
+  Quad sum = 0;
+  for (std::size_t j = 0; j < t.stages(); ++j) {
+    Quad x = weights[j];
+    for (int p = 0; p < power; ++p) x *= t.c[j];
+    sum += x;
+  }
+  return std::abs(static_cast<double>(sum - expected));
+}
+
+/// Relative state of a planet on an ellipse, from the pericenter, in any number of bodies.
+ParticleSystem<double> ellipse(double e) {
+  ParticleSystem<double> s;
+  s.add("sun", 1, {0, 0, 0}, {0, 0, 0});
+  s.add("planet", 0, {1 - e, 0, 0}, {0, std::sqrt((1 + e) / (1 - e)), 0});
+  return s;
+}
+
+double energy_of(const ParticleSystem<double>& s) {
+  const Vec3<double> x = s.positions()[1], v = s.velocities()[1];
+  return norm2(v) / 2 - 1 / std::sqrt(norm2(x));
+}
+
+}  // namespace
+
+TEST_CASE("tables of collocation are those in print, and integrate polynomials exactly", "[tables]") {
+  // integrators.md 2.6, 25 digits.
+  const CollocationTable& four = gauss_table(4);
+  CHECK(std::abs(static_cast<double>(four.c[0] - 0.06943184420297371238802676_q)) < 1e-25);
+  CHECK(std::abs(static_cast<double>(four.a[1][2] + 0.02788042860247089522415_q)) < 1e-22);
+  CHECK(std::abs(static_cast<double>(four.b[0] - 0.173927422568726928686532_q)) < 1e-23);
+  const CollocationTable& radau = radau_left_table();
+  CHECK(radau.c[0] == Quad(0));
+  CHECK(std::abs(static_cast<double>(radau.c[1] - 0.0562625605369221464656521910318_q)) < 1e-24);
+  // The last of these and the weight are from mpmath with 40 digits: digits in print, of IAS15 too, end at 1e-24.
+  CHECK(std::abs(static_cast<double>(radau.c[7] - 0.9775206135612875018911745004291549_q)) < 1e-30);
+  CHECK(std::abs(static_cast<double>(radau.b[4] * Quad(2) - 0.3915721674524935930824995340041291_q)) < 1e-30);
+  for (int s = 1; s <= 9; ++s) {
+    const CollocationTable& t = s == 9 ? radau : gauss_table(s);
+    const int stages = static_cast<int>(t.stages());
+    REQUIRE(stages == (s == 9 ? 8 : s));
+    for (int k = 1; k <= t.order; ++k) CHECK(worst_sum(t, t.b, k - 1, Quad(1) / Quad(k)) < 1e-30);
+    CHECK(worst_sum(t, t.b, t.order, Quad(1) / Quad(t.order + 1)) > 1e-12);
+    for (std::size_t i = 0; i < t.stages(); ++i) {
+      Quad power = t.c[i];
+      for (int k = 1; k <= stages; ++k) {
+        CHECK(worst_sum(t, t.a[i], k - 1, power / Quad(k)) < 1e-28);
+        power *= t.c[i];
+      }
+    }
+  }
+}
+
+TEST_CASE("every collocation method has its order", "[order]") {
+  for (int s = 1; s <= 9; ++s) {
+    const std::string name = s == 9 ? "gauss_radau_15" : gauss_name(s);
+    auto f = test::kepler<Quad>();
+    const auto method = test::make<Quad>(name.c_str(), fixed_steps(name));
+    const auto start = test::kepler_start<Quad>(Quad(0.25));
+    const auto reference = test::make<Quad>("gauss_8", {.adaptive = false});
+    const auto exact = test::walk(*reference, f, start, 1.0 / 128, 512);
+    std::vector<test::ErrorPoint> points;
+    for (const long n : {long{16}, long{32}, long{64}}) {  // powers of two: steps are doubles
+      const long steps = s <= 2 ? 8 * n : s <= 4 ? 2 * n : n;
+      const double h = 4.0 / static_cast<double>(steps);
+      points.push_back({h, test::distance(test::walk(*method, f, start, h, steps), exact)});
+    }
+    CAPTURE(name, test::to_text(points));
+    CHECK(std::abs(test::fitted_slope(points) - methods::find(name)->order) < 0.35);
+  }
+}
+
+TEST_CASE("velocity-dependent forces and systems of first order have the order too", "[order]") {
+  // A damped oscillator, told as q'' = a(q, v).
+  for (const char* name : {"implicit_midpoint", "gauss_2", "gauss_3", "gauss_radau_15"}) {
+    test::Motion<Quad> f(
+        1, [](const Quad&, const Vector<Quad>& y, Quad* a) { a[0] = -y[0] - Quad(0.5) * y[1] - y[0] * y[0] * y[1]; },
+        true);
+    const auto method = test::make<Quad>(name, fixed_steps(name));
+    const auto reference = test::make<Quad>("dop853", {.adaptive = false});
+    Vector<Quad> start(2);
+    start << Quad(1), Quad(0.25);
+    const auto exact = test::walk(*reference, f, start, 1.0 / 2048, 4096);
+    const int order = methods::find(name)->order;
+    std::vector<test::ErrorPoint> points;
+    for (const long n : {long{8}, long{16}, long{32}}) {
+      const long steps = order < 5 ? 4 * n : order > 9 ? n / 4 : n;
+      const double h = 2.0 / static_cast<double>(steps);
+      points.push_back({h, test::distance(test::walk(*method, f, start, h, steps), exact)});
+    }
+    CAPTURE(name, test::to_text(points));
+    CHECK(std::abs(test::fitted_slope(points) - order) < (order > 9 ? 1.0 : 0.3));
+  }
+}
+
+TEST_CASE("energy of the outer planets stays at rounding, with fixed steps and with the method's own", "[kept]") {
+  constexpr double century = 36525;
+  for (const char* name : {"gauss_8", "gauss_radau_15"}) {
+    CAPTURE(name);
+    Simulation adaptive(test::outer_planets(), classical(outer_gravity, method(name)));
+    auto& energy = adaptive.every(5, Energy{});
+    REQUIRE(adaptive.run_until(10 * century).ok());
+    CHECK(energy.worst() < 4e-15);
+    Simulation fixed(test::outer_planets(), classical(outer_gravity, method(name, {.adaptive = false})), 250.0);
+    auto& other = fixed.every(5, Energy{});
+    REQUIRE(fixed.run(1461).ok());
+    CHECK(other.worst() < 4e-15);
+    Vec3<double> far = fixed.particles().positions()[1] - adaptive.particles().positions()[1];
+    CHECK(std::sqrt(norm2(far)) < 1e-10);
+  }
+}
+
+TEST_CASE("the same bits whatever looks on, and after a restart in the middle", "[restart]") {
+  const auto make = [](bool adaptive) {
+    return classical(Sum(outer_gravity, DragForce{{.rate = 1e-9}}), method("gauss_8", {.adaptive = adaptive}));
+  };
+  Simulation whole(test::outer_planets(), make(true));
+  whole.every_time(321.0, Energy{});
+  REQUIRE(whole.run_until(40000).ok());
+  Simulation first(test::outer_planets(), make(true)), second(test::outer_planets(), make(true));
+  first.every_time(321.0, Energy{});
+  second.every_time(321.0, Energy{});
+  REQUIRE(first.run_until(17001).ok());
+  second.restore(first.save());
+  REQUIRE(second.run_until(40000).ok());
+  CHECK(test::same_bits(whole.particles(), second.particles()));
+  CHECK(whole.evaluations().force == second.evaluations().force);
+  Simulation bare(test::outer_planets(), make(true));
+  REQUIRE(bare.run_until(40000).ok());
+  CHECK(test::same_bits(whole.particles(), bare.particles()));
+}
+
+TEST_CASE("a nearly straight fall and back needs no hint", "[extreme]") {
+  for (const char* name : {"gauss_8", "gauss_radau_15"}) {
+    const double e = 0.999999;
+    const auto start = ellipse(e);
+    Simulation run(start, classical(Gravity{.G = 1}, method(name)));
+    REQUIRE(run.run_until(20 * 3.141592653589793).ok());
+    CAPTURE(name, run.step(), run.evaluations().rejected);
+    // Rounding of the start, where speeds are 1400, is 1e6 times that of the energy.
+    CHECK(std::abs(energy_of(run.particles()) / energy_of(start) - 1) < 1e-9);
+    CHECK(run.step() > 100);
+    CHECK(run.step() < 10000);
+  }
+}
+
+TEST_CASE("a step beyond the reach of sweeps is a named failure, and adaptive steps find their way", "[failure]") {
+  auto f = test::oscillator<double>(1000.0);
+  Vector<double> start(2);
+  start << 1, 0;
+  const auto fixed = test::make<double>("gauss_8", {.adaptive = false});
+  fixed->bind(f);
+  const Stepped failed = fixed->step(f, 0, start, 1.0);
+  REQUIRE(failed.failure);
+  CHECK(failed.failure->kind == Outcome::Kind::solver_failure);
+  CHECK(failed.failure->message ==
+        "the stages of 'gauss_8' do not converge with a step of 1; give a shorter one, or adaptive steps");
+  const auto adaptive = test::make<double>("gauss_8", {.first = 1.0});
+  Vector<double> again(2);
+  again << 1, 0;
+  const auto end = test::travel(*adaptive, f, again, 1.0);
+  CHECK(std::abs(end[0] - std::cos(1000.0)) < 1e-12);
+  CHECK(f.evaluations().rejected > 5);
+}
+
+TEST_CASE("a looser tolerance costs less", "[adaptive]") {
+  std::int64_t before = std::numeric_limits<std::int64_t>::max();
+  for (const double rtol : {1e-16, 1e-13, 1e-10, 1e-7}) {
+    const auto method = test::make<double>("gauss_6", {.rtol = rtol});
+    const test::Travelled done = test::once_around(*method);
+    CAPTURE(rtol, done.error);
+    CHECK(done.evaluations < before);
+    CHECK(done.error < std::max(1e-12, 100 * rtol));
+    before = done.evaluations;
+  }
+}
+
+TEST_CASE("implicit midpoint keeps angular momentum on a stiff spring where the energy suffers", "[kept]") {
+  // Claim C24: spring k (r - 1)^2 / 2, m = 1, q = (1.02, 0), v = (0, 1), k = 100, h = 0.05, 2000 steps.
+  test::Motion<double> f(2, [](const double&, const Vector<double>& y, double* a) {
+    const double r = std::sqrt(y[0] * y[0] + y[1] * y[1]), pull = -100 * (r - 1) / r;
+    a[0] = pull * y[0];
+    a[1] = pull * y[1];
+  });
+  const auto energy = [](const Vector<double>& y) {
+    const double r = std::sqrt(y[0] * y[0] + y[1] * y[1]);
+    return (y[2] * y[2] + y[3] * y[3]) / 2 + 50 * (r - 1) * (r - 1);
+  };
+  const auto method = test::make<double>("implicit_midpoint");
+  method->bind(f);
+  Vector<double> y(4);
+  y << 1.02, 0, 0, 1;
+  const double e0 = energy(y), l0 = y[0] * y[3] - y[1] * y[2];
+  double de = 0, dl = 0;
+  for (int n = 0; n < 2000; ++n) {
+    REQUIRE(!method->step(f, n * 0.05, y, 0.05).failure);
+    de = std::max(de, std::abs(energy(y) / e0 - 1));
+    dl = std::max(dl, std::abs((y[0] * y[3] - y[1] * y[2]) / l0 - 1));
+  }
+  CHECK(std::abs(de - 1.2e-3) < 0.05e-3);
+  CHECK(dl < 2e-13);
+}
