@@ -66,6 +66,12 @@ inline std::string processor() {
   return "unknown";
 }
 
+/// Another program, measured in the same run.
+struct Peer {
+  std::string name, version;
+  double value = 0;
+};
+
 /// Prints the rows of one benchmark.
 class Rows {
  public:
@@ -75,7 +81,7 @@ class Rows {
   }
 
   void add(const std::string& one_case, const std::string& metric, const Measured& value, const std::string& unit,
-           Index n) const {
+           Index n, const std::optional<Peer>& peer = {}) const {
     if (json_) {
       fmt::print("{}\n", Json::object({{"bench", bench_},
                                        {"case", one_case},
@@ -87,16 +93,21 @@ class Rows {
                                        {"simd", std::string(name(simd_level()))},
                                        {"repeats", std::int64_t{value.repeats}},
                                        {"mad", value.mad},
-                                       {"peer", std::optional<double>()},
-                                       {"peer_version", std::optional<double>()},
-                                       {"peer_value", std::optional<double>()},
-                                       {"ratio", std::optional<double>()},
+                                       {"peer", peer ? Json(peer->name) : Json()},
+                                       {"peer_version", peer ? Json(peer->version) : Json()},
+                                       {"peer_value", peer ? Json(peer->value) : Json()},
+                                       {"ratio", peer ? Json(peer->value / value.median) : Json()},
                                        {"commit", std::string(commit())},
                                        {"cpu", processor()}})
                              .text());
     } else {
-      fmt::print("{:<24} {:<22} n {:>7}  {} threads  {:<7}{:>10.4g} {} (+- {:.1g}, {} repeats)\n", one_case, metric, n,
+      fmt::print("{:<24} {:<22} n {:>7}  {} threads  {:<7}{:>10.4g} {} (+- {:.1g}, {} repeats)", one_case, metric, n,
                  thread_count(), name(simd_level()), value.median, unit, value.mad, value.repeats);
+      if (peer) {
+        fmt::print("; {} {}: {:.4g}, {:.3g} times as much", peer->name, peer->version, peer->value,
+                   peer->value / value.median);
+      }
+      fmt::print("\n");
     }
   }
 

@@ -1,0 +1,181 @@
+/// The reference methods, to rounding: seconds, largest energy error and position error at the end, beside IAS15 of
+/// `rebound` and the Taylor method of `heyoka` (high accuracy) where Python has them; each is left out where it is not.
+///
+/// Protocol: after one run to warm up, 5 rounds of every method and every peer in turn; medians of processor seconds of
+/// the run alone. Positions are compared with Gauss's 8 stages in 113 bits from the same doubles.
+
+#include "bench/support.hpp"
+
+#include "engine/monitors.hpp"
+#include "forces/gravity.hpp"
+#include "integrators/classical.hpp"
+#include "scene/scene.hpp"
+
+#include <filesystem>
+#include <map>
+#include <sstream>
+
+using namespace noether;
+
+namespace {
+
+struct Case {
+  std::string name;
+  ParticleSystem<double> bodies;
+  double G, end, first_step;
+  double fixed_step;  ///< of Gauss with steps of one length; 0: such steps are of no use here
+};
+
+ParticleSystem<double> ellipse(double e) {
+  ParticleSystem<double> s;
+  s.add("sun", 1, {0, 0, 0}, {0, 0, 0});
+  s.add("planet", 1e-3, {1 - e, 0, 0}, {0, std::sqrt((1 + e) / (1 - e) * 1.001), 0});
+  move_to_barycenter(s);
+  return s;
+}
+
+std::vector<Case> cases() {
+  const std::filesystem::path examples = std::filesystem::path(NOETHER_SOURCE_DIR) / "examples";
+  const Scene outer = load_scene(examples / "outer_solar_system" / "scene.toml");
+  constexpr double day = 1, year = 365.25 * day, turn = 6.283185307179586;
+  return {{"outer", outer.particles, *outer.hamiltonian.wisdom_holman.G, 1e4 * year, 10, 300},
+          {"kepler_0.9", ellipse(0.9), 1, 1000 * turn, 1e-3, 0},
+          {"kepler_0.9999", ellipse(0.9999), 1, 100 * turn, 1e-6, 0}};
+}
+
+/// Positions at the end, all relative to the first body.
+using Positions = std::vector<double>;
+
+template <class Real> Positions positions_of(const ParticleSystem<Real>& s) {
+  Positions flat;
+  for (Index i = 0; i < s.size(); ++i) {
+    const Vec3<Real> x = s.positions()[i] - s.positions()[0];
+    for (int k = 0; k < 3; ++k) flat.push_back(static_cast<double>(x[k]));
+  }
+  return flat;
+}
+
+Positions truth_of(const Case& one) {
+  auto field = std::make_unique<ForceMotion<Gravity, Quad>>(Gravity{.G = one.G});
+  Simulation run(one.bodies.as<Quad>(), Classical<Quad>(std::move(field), method("gauss_8", {.rtol = 1e-22})));
+  if (!run.run_until(one.end).ok()) throw Error("the truth of '" + one.name + "' failed");
+  return positions_of(run.particles());
+}
+
+double distance(const Positions& a, const Positions& b) {
+  double worst = 0;
+  for (std::size_t k = 0; k < a.size(); k += 3) {
+    worst = std::max(worst, std::hypot(a[k] - b[k], a[k + 1] - b[k + 1], a[k + 2] - b[k + 2]));
+  }
+  return worst;
+}
+
+/// A method of ours on a case.
+struct Entry {
+  std::string name;
+  MethodChoice choice;
+  double step;  ///< 0: of the method's choice
+};
+
+Simulation<double> start(const Case& one, const Entry& entry) {
+  auto integrator = classical(Gravity{.G = one.G}, entry.choice);
+  return entry.step > 0 ? Simulation(one.bodies, integrator, entry.step) : Simulation(one.bodies, integrator);
+}
+
+void go(Simulation<double>& run, const Case& one, const Entry& entry) {
+  const Outcome outcome =
+      entry.step > 0 ? run.run(static_cast<std::int64_t>(std::ceil(one.end / entry.step))) : run.run_until(one.end);
+  if (!outcome.ok()) throw Error(entry.name + ": " + to_text(outcome));
+}
+
+double energy_error(const Case& one, const Entry& entry) {
+  Simulation<double> run = start(one, entry);
+  auto& energy = run.every(10, Energy{});
+  go(run, one, entry);
+  return energy.worst();
+}
+
+/// What another program says of a case; nothing where Python does not have it.
+struct PeerRun {
+  std::string version;
+  double seconds = 0;
+  Positions positions;
+};
+
+std::optional<PeerRun> run_peer(const std::string& peer, const Case& one) {
+  std::vector<Json> bodies;
+  for (Index i = 0; i < one.bodies.size(); ++i) {
+    const Vec3<double> x = one.bodies.positions()[i], v = one.bodies.velocities()[i];
+    bodies.push_back(Json::list({one.bodies.masses()[i], x[0], x[1], x[2], v[0], v[1], v[2]}));
+  }
+  const std::string text =
+      Json::object({{"G", one.G}, {"end", one.end}, {"first_step", one.first_step}, {"bodies", Json::list(bodies)}})
+          .text();
+  const std::string command = fmt::format("echo '{}' | OMP_NUM_THREADS=1 python3 '{}/bench/peers/reference.py' {}",
+                                          text, NOETHER_SOURCE_DIR, peer);
+  std::string answer;
+  FILE* pipe = popen(command.c_str(), "r");
+  if (pipe == nullptr) return {};
+  char buffer[4096];
+  while (std::fgets(buffer, sizeof buffer, pipe) != nullptr) answer += buffer;
+  if (pclose(pipe) != 0 || answer.empty()) return {};
+  std::istringstream words(answer);
+  PeerRun run;
+  words >> run.version >> run.seconds;
+  for (double x = 0; words >> x;) run.positions.push_back(x);
+  for (std::size_t k = run.positions.size(); k-- > 3;) run.positions[k] -= run.positions[k % 3];
+  for (std::size_t k = 0; k < 3; ++k) run.positions[k] = 0;
+  return run;
+}
+
+void measure(const bench::Rows& rows, const Case& one) {
+  constexpr int rounds = 5;
+  std::vector<Entry> entries = {{"gauss_8", method("gauss_8"), 0}, {"gauss_radau_15", method("gauss_radau_15"), 0}};
+  if (one.fixed_step > 0) {
+    entries.push_back({"gauss_8_fixed", method("gauss_8", {.adaptive = false}), one.fixed_step});
+  }
+  std::map<std::string, std::vector<double>> seconds;
+  std::map<std::string, PeerRun> peers;
+  std::map<std::string, Positions> ends;
+  for (int round = 0; round <= rounds; ++round) {
+    for (const Entry& entry : entries) {
+      Simulation<double> run = start(one, entry);
+      const double took = bench::processor_seconds_of([&] { go(run, one, entry); });
+      if (round > 0) seconds[entry.name].push_back(took);
+      ends[entry.name] = positions_of(run.particles());
+    }
+    for (const std::string peer : {"ias15", "heyoka"}) {
+      if (round == 0) continue;
+      if (const auto run = run_peer(peer, one)) {
+        seconds[peer].push_back(run->seconds);
+        peers[peer] = *run;
+      }
+    }
+  }
+  const Positions truth = truth_of(one);
+  for (const Entry& entry : entries) {
+    const std::string name = one.name + "/" + entry.name;
+    const bench::Measured time(seconds[entry.name]);
+    if (peers.empty()) rows.add(name, "seconds", time, "s", one.bodies.size());
+    for (const auto& [peer, run] : peers) {
+      rows.add(name, "seconds", time, "s", one.bodies.size(),
+               bench::Peer{peer, run.version, bench::Measured(seconds[peer]).median});
+    }
+    rows.add(name, "energy_error_max", bench::Measured({energy_error(one, entry)}), "1", one.bodies.size());
+    if (entry.step > 0) continue;  // it ends at the last whole step
+    const bench::Measured error({distance(ends[entry.name], truth)});
+    if (peers.empty()) rows.add(name, "position_error_end", error, "length", one.bodies.size());
+    for (const auto& [peer, run] : peers) {
+      rows.add(name, "position_error_end", error, "length", one.bodies.size(),
+               bench::Peer{peer, run.version, distance(run.positions, truth)});
+    }
+  }
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  const bench::Rows rows("reference", count, arguments);
+  set_thread_count(1);
+  for (const Case& one : cases()) measure(rows, one);
+}

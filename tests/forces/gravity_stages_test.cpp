@@ -1,0 +1,154 @@
+/// Gravity at eight stages at once: against the plain pair loop, at every SIMD level, with and without optimization.
+
+#include "engine/pack.hpp"
+#include "engine/simd.hpp"
+#include "forces/gravity.hpp"
+#include "forces/gravity_stages_simd.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/planets.hpp"
+
+#include <cmath>
+#include <vector>
+
+namespace noether::base_at_O0 {
+extern const AttractInStages attract_in_stages;
+}
+#if NOETHER_SIMD_LEVELS
+namespace noether::avx2_at_O0 {
+extern const AttractInStages attract_in_stages;
+}
+namespace noether::avx512_at_O0 {
+extern const AttractInStages attract_in_stages;
+}
+#endif
+
+namespace noether {
+namespace {
+
+constexpr std::size_t stages = Pack::lanes;
+
+/// n bodies at eight stages, every third one a tracer, two of the tracers in one place.
+struct StageSample {
+  explicit StageSample(std::size_t n) : x(n * stages), y(n * stages), z(n * stages), mu(n) {
+    for (std::size_t i = 0; i < n; ++i) {
+      mu[i] = i % 3 == 2 ? 0.0 : 1.0 / static_cast<double>(i + 1);
+      for (std::size_t k = 0; k < stages; ++k) {
+        const double at = static_cast<double>(i == 5 ? 2 : i), t = 0.1 * static_cast<double>(k);
+        x[i * stages + k] = std::cos(2.4 * at + t) * (1 + at);
+        y[i * stages + k] = std::sin(2.4 * at + t) * (1 + at);
+        z[i * stages + k] = 0.1 * std::cos(5 * at - t);
+      }
+    }
+  }
+  AlignedVector<double> x, y, z, mu;
+
+  /// All accelerations, x before y before z.
+  AlignedVector<double> attracted(AttractInStages kernel, double softening2) const {
+    AlignedVector<double> a(3 * x.size(), 0.0);
+    kernel({x.data(), y.data(), z.data(), mu.data(), a.data(), a.data() + x.size(), a.data() + 2 * x.size(),
+            static_cast<std::ptrdiff_t>(mu.size())},
+           softening2);
+    return a;
+  }
+  /// Stage k as particles of their own.
+  ParticleSystem<double> particles(std::size_t k) const {
+    ParticleSystem<double> s;
+    for (std::size_t i = 0; i < mu.size(); ++i) {
+      s.add("", mu[i], {x[i * stages + k], y[i * stages + k], z[i * stages + k]}, {0, 0, 0});
+    }
+    return s;
+  }
+};
+
+struct StageLevel {
+  SimdLevel level;
+  AttractInStages optimized, at_O0;
+};
+
+std::vector<StageLevel> stage_levels() {
+  std::vector<StageLevel> all{{SimdLevel::base, base::attract_in_stages, base_at_O0::attract_in_stages}};
+#if NOETHER_SIMD_LEVELS
+  if (has_simd_level(SimdLevel::avx2)) {
+    all.push_back({SimdLevel::avx2, avx2::attract_in_stages, avx2_at_O0::attract_in_stages});
+  }
+  if (has_simd_level(SimdLevel::avx512)) {
+    all.push_back({SimdLevel::avx512, avx512::attract_in_stages, avx512_at_O0::attract_in_stages});
+  }
+#endif
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("eight stages in lanes feel what each feels alone, tracers in one place too", "[lanes]") {
+  for (const std::size_t n : {1U, 2U, 3U, 6U, 9U, 17U}) {
+    const StageSample sample(n);
+    for (const double softening : {0.0, 0.3}) {
+      for (const StageLevel& level : stage_levels()) {
+        const auto a = sample.attracted(level.optimized, softening * softening);
+        CHECK(a == sample.attracted(level.at_O0, softening * softening));
+        for (std::size_t k = 0; k < stages; ++k) {
+          const ParticleSystem<Quad> alone = sample.particles(k).as<Quad>();
+          VectorColumn<Quad> exact(alone.size());
+          ForceSink<Quad> sink(exact, alone, {});
+          Gravity{.G = 1, .softening = softening}.add_to(sink, alone);
+          for (std::size_t i = 0; i < n; ++i) {
+            CAPTURE(n, softening, static_cast<int>(level.level), k, i);
+            const Vec3<Quad> e = exact[static_cast<Index>(i)];
+            const double scale = std::sqrt(static_cast<double>(norm2(e)));
+            for (std::size_t c = 0; c < 3; ++c) {
+              const double got = a[c * n * stages + i * stages + k];
+              CHECK(std::abs(got - static_cast<double>(e[static_cast<Index>(c)])) <= 1e-14 * scale);
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("a force over Pack gives each lane the bits of that lane alone", "[lanes]") {
+  const StageSample sample(7);
+  ParticleSystem<Pack> packs = sample.particles(0).as<Pack>();
+  for (Index i = 0; i < packs.size(); ++i) {
+    const std::size_t at = static_cast<std::size_t>(i) * stages;
+    packs.positions().set(i, {Pack::load(&sample.x[at]), Pack::load(&sample.y[at]), Pack::load(&sample.z[at])});
+  }
+  const auto force = [](auto& out, const auto& s) {
+    using Real = std::decay_t<decltype(s.masses()[0])>;
+    using std::sqrt, std::exp, std::sin;
+    for (Index i = 0; i < s.size(); ++i) {
+      const Vec3<Real> x = s.positions()[i];
+      const Real r2 = norm2(x);
+      out.acceleration(i, Vec3<Real>(-x / (r2 * sqrt(r2)) + exp(-r2) * sin(x[0]) * x));
+    }
+  };
+  VectorColumn<Pack> a(packs.size());
+  ForceSink<Pack> sink(a, packs, {});
+  force(sink, packs);
+  for (std::size_t k = 0; k < stages; ++k) {
+    const ParticleSystem<double> alone = sample.particles(k);
+    VectorColumn<double> b(alone.size());
+    ForceSink<double> one(b, alone, {});
+    force(one, alone);
+    for (Index i = 0; i < alone.size(); ++i) {
+      for (int c = 0; c < 3; ++c) CHECK(a.component(c)[i].lane[k] == b.component(c)[i]);
+    }
+  }
+}
+
+TEST_CASE("comparisons of packs hold if they hold in every lane", "[lanes]") {
+  Pack a(1), b(2);
+  CHECK(a < b);
+  CHECK(b > a);
+  CHECK(a <= a);
+  b.lane[3] = 1;
+  CHECK(!(a < b));
+  CHECK(a <= b);
+  CHECK(!(a == b));
+  b.lane[5] = std::numeric_limits<double>::quiet_NaN();
+  CHECK(!isfinite(b));
+  CHECK(isfinite(a));
+}
+
+}  // namespace noether
