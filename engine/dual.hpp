@@ -127,6 +127,15 @@ template <class Real, std::size_t n> struct Dual {
   }
 };
 
+namespace detail {
+/// x + e dx.
+template <class Real> Dual<Real, 1> along(const Real& x, const Real& dx) {
+  Dual<Real, 1> moved(x);
+  moved.slope[0] = dx;
+  return moved;
+}
+}  // namespace detail
+
 }  // namespace noether
 
 namespace Eigen {

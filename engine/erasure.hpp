@@ -63,6 +63,8 @@ template <class Real> struct ForceBase {
   virtual void add_to(ForceSink<Real>&, const ParticleSystem<Real>&) const = 0;
   virtual bool has_lanes() const = 0;
   virtual void add_to(ForceSink<Pack>&, const ParticleSystem<Pack>&) const = 0;
+  virtual bool has_derivative() const = 0;
+  virtual void add_to(ForceSink<Dual<Real, 1>>&, const ParticleSystem<Dual<Real, 1>>&) const = 0;
   virtual ForceClaims claims() const = 0;
   virtual std::string name() const = 0;
   virtual std::string signature() const = 0;
@@ -75,6 +77,11 @@ template <class F, class Real> struct ForceModel final : ForceBase<Real> {
   void add_to(ForceSink<Pack>& out, const ParticleSystem<Pack>& s) const override {
     if constexpr (Force<F, Pack>) return force.add_to(out, s);
     throw LogicError("a force without lanes was asked for them");
+  }
+  bool has_derivative() const override { return noether::has_derivative<Real>(force); }
+  void add_to(ForceSink<Dual<Real, 1>>& out, const ParticleSystem<Dual<Real, 1>>& s) const override {
+    if constexpr (Force<F, Dual<Real, 1>>) return force.add_to(out, s);
+    throw LogicError("a force without derivatives was asked for them");
   }
   ForceClaims claims() const override { return claims_of(force); }
   std::string name() const override { return name_of(force); }
@@ -189,6 +196,12 @@ template <class Real = double> class AnyForce : private detail::Erased<detail::F
   bool has_lanes() const { return this->held_->has_lanes(); }
   /// @throws LogicError  if it is not
   void add_to(ForceSink<Pack>& out, const ParticleSystem<Pack>& s) const { this->held_->add_to(out, s); }
+  /// Whether it is a force over dual numbers too, so that its derivatives are exact.
+  bool has_derivative() const { return this->held_->has_derivative(); }
+  /// @throws LogicError  if it is not
+  void add_to(ForceSink<Dual<Real, 1>>& out, const ParticleSystem<Dual<Real, 1>>& s) const {
+    this->held_->add_to(out, s);
+  }
   ForceClaims claims() const { return this->held_->claims(); }
   std::string name() const { return this->held_->name(); }
   std::string signature() const { return this->held_->signature(); }

@@ -1,6 +1,7 @@
 #pragma once
 /// Where forces write: accelerations always, energy and virial only where somebody asked.
 
+#include "engine/dual.hpp"
 #include "engine/particle_system.hpp"
 
 namespace noether {
@@ -103,5 +104,18 @@ template <class F, class Real>
 concept Force = requires(const F& force, ForceSink<Real>& out, const ParticleSystem<Real>& system) {
   force.add_to(out, system);
 };
+
+/// Whether exact derivatives of a force can be had: by the same code over dual numbers.
+///
+/// A force written for one number type has none; an erased one or a sum says what its parts can do.
+template <class Real, class F> bool has_derivative(const F& force) {
+  if constexpr (!Force<F, Dual<Real, 1>>) {
+    return false;
+  } else if constexpr (requires { force.has_derivative(); }) {
+    return force.has_derivative();
+  } else {
+    return true;
+  }
+}
 
 }  // namespace noether

@@ -48,6 +48,20 @@ inline std::uint64_t fresh_version() {
   thread_local std::uint64_t version = next_thread.fetch_add(1) << 40U;
   return ++version;
 }
+/// A column in another number type; whole numbers stay what they are.
+template <class Other> ScalarColumn<std::int64_t> widened_to(const ScalarColumn<std::int64_t>& from) { return from; }
+template <class Other, class Real> ScalarColumn<Other> widened_to(const ScalarColumn<Real>& from) {
+  ScalarColumn<Other> to(from.size());
+  for (Index i = 0; i < from.size(); ++i) to[i] = static_cast<Other>(from[i]);
+  return to;
+}
+template <class Other, class Real> VectorColumn<Other> widened_to(const VectorColumn<Real>& from) {
+  VectorColumn<Other> to(from.size());
+  for (int k = 0; k < 3; ++k) {
+    for (Index i = 0; i < from.size(); ++i) to.component(k)[i] = static_cast<Other>(from.component(k)[i]);
+  }
+  return to;
+}
 }  // namespace detail
 
 /// Particles as a structure of arrays: id, name, x, v, m, the clock, the box and the phase.
@@ -217,6 +231,9 @@ template <class Real = double> class ParticleSystem {
                 Vec3<Other>(static_cast<Other>(v[0]), static_cast<Other>(v[1]), static_cast<Other>(v[2])));
     }
     other.restore_ids(ids_);
+    for (const auto& [name, column] : extra_) {
+      std::visit([&](const auto& values) { other.restore_column(name, detail::widened_to<Other>(values)); }, column);
+    }
     for (const Real& y : variables_) other.variables().push_back(static_cast<Other>(y));
     return other;
   }

@@ -35,6 +35,13 @@ template <class... Fs> class Sum {
   bool has_lanes() const {
     return std::apply([](const auto&... force) { return (noether::has_lanes(force) && ...); }, forces_);
   }
+  bool has_derivative() const {
+    const auto one = [](const auto& force) {
+      if constexpr (requires { force.has_derivative(); }) return force.has_derivative();
+      return true;
+    };
+    return std::apply([&](const auto&... force) { return (one(force) && ...); }, forces_);
+  }
   ForceClaims claims() const {
     ForceClaims all;
     std::apply([&](const auto&... force) { (detail::merge(all, claims_of(force)), ...); }, forces_);
@@ -67,6 +74,12 @@ template <class Real = double> class ForceField {
     return std::all_of(terms_.begin(), terms_.end(), [](const auto& term) { return term.has_lanes(); });
   }
   void add_to(ForceSink<Pack>& out, const ParticleSystem<Pack>& s) const {
+    for (const auto& term : terms_) term.add_to(out, s);
+  }
+  bool has_derivative() const {
+    return std::all_of(terms_.begin(), terms_.end(), [](const auto& term) { return term.has_derivative(); });
+  }
+  void add_to(ForceSink<Dual<Real, 1>>& out, const ParticleSystem<Dual<Real, 1>>& s) const {
     for (const auto& term : terms_) term.add_to(out, s);
   }
   ForceClaims claims() const {

@@ -59,6 +59,21 @@ template <class S, class Real> class SystemMotion final : public VectorField<Rea
     return {};
   }
 
+  bool has_derivative() const override { return FirstOrderSystem<S, Dual<Real, 1>>; }
+  void derivative(const Real& t, const Vector<Real>& y, const Real& dt, const Vector<Real>& dy,
+                  Vector<Real>& out) override {
+    if constexpr (FirstOrderSystem<S, Dual<Real, 1>>) {
+      const Index n = y.size();
+      for (auto* v : {&point_, &rates_}) v->resize(n);
+      for (Index i = 0; i < n; ++i) point_[i] = detail::along(y[i], dy[i]);
+      system_.rates(detail::along(t, dt), point_, rates_);
+      out.resize(n);
+      for (Index i = 0; i < n; ++i) out[i] = rates_[i].slope[0];
+    } else {
+      VectorField<Real>::derivative(t, y, dt, dy, out);
+    }
+  }
+
   EnergyTerms<Real> energy(const ParticleSystem<Real>& /*s*/) override { return {}; }
   void accelerations(const ParticleSystem<Real>& /*s*/, VectorColumn<Real>& /*a*/) override {}
 
@@ -70,6 +85,7 @@ template <class S, class Real> class SystemMotion final : public VectorField<Rea
 
  private:
   S system_;
+  Vector<Dual<Real, 1>> point_, rates_;  ///< work of `derivative`
 };
 
 /// A classical method over a system: `classical(Robertson{}, method("rodas_4"))`.

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 #include <utility>
 
 namespace noether {
@@ -43,6 +44,7 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
     a_ = VectorColumn<Real>(s.size());
     in_lanes_ = std::is_same_v<Real, double> && has_lanes(forces_) && s.size() <= most_in_lanes;
     if (in_lanes_) bind_lanes(s);
+    along_.reset();
   }
   Index size() const override { return 6 * work_.size(); }
   Index particles() const override { return work_.size(); }
@@ -69,6 +71,39 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) override {
     ForceSink<Real> sink(a, s, {});
     forces_.add_to(sink, s);
+  }
+
+  bool has_derivative() const override { return noether::has_derivative<Real>(forces_); }
+  void derivative(const Real& t, const Vector<Real>& y, const Real& dt, const Vector<Real>& dy,
+                  Vector<Real>& out) override {
+    if constexpr (Force<F, Dual<Real, 1>>) {
+      if (!along_) along_.emplace(work_);
+      along_->sum(forces_, t, y, dt, dy);
+      const Index n = work_.size(), half = 3 * n;
+      out.resize(2 * half);
+      std::copy_n(dy.data() + half, half, out.data());
+      for (int k = 0; k < 3; ++k) {
+        for (Index i = 0; i < n; ++i) out[half + k * n + i] = along_->a.component(k)[i].slope[0];
+      }
+    } else {
+      VectorField<Real>::derivative(t, y, dt, dy, out);
+    }
+  }
+
+  /// x' = v needs no evaluation, and v' none in directions it does not depend on.
+  bool jacobian(const Real& t, const Vector<Real>& y, Matrix<Real>& J) override {
+    if (!has_derivative()) return false;
+    const Index half = 3 * work_.size(), columns = claims_of(forces_).velocity_dependent ? 2 * half : half;
+    J.setZero(2 * half, 2 * half);
+    for (Index i = 0; i < half; ++i) J(i, half + i) = Real(1);
+    direction_.setZero(2 * half);
+    for (Index j = 0; j < columns; ++j) {
+      direction_[j] = Real(1);
+      derivative(t, y, Real(0), direction_, column_);
+      direction_[j] = Real(0);
+      for (Index i = half; i < 2 * half; ++i) J(i, j) = column_[i];
+    }
+    return true;
   }
 
  protected:
@@ -129,6 +164,29 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
     for (int k = 0; k < 3; ++k) std::copy_n(a_.component(k), work_.size(), out + k * work_.size());
   }
 
+  /// The particles on their way along a direction.
+  struct Along {
+    explicit Along(const ParticleSystem<Real>& s) : particles(s.template as<Dual<Real, 1>>()), a(s.size()) {
+      particles.clock() = Clock<Dual<Real, 1>>::free(0);
+    }
+    void sum(const F& forces, const Real& t, const Vector<Real>& y, const Real& dt, const Vector<Real>& dy) {
+      const Index n = a.size();
+      auto &x = particles.positions(), &v = particles.velocities();
+      for (int k = 0; k < 3; ++k) {
+        for (Index i = 0, at = k * n; i < n; ++i, ++at) {
+          x.component(k)[i] = detail::along(y[at], dy[at]);
+          v.component(k)[i] = detail::along(y[3 * n + at], dy[3 * n + at]);
+        }
+      }
+      particles.clock().set_stage_offset(detail::along(t, dt));
+      ForceSink<Dual<Real, 1>> sink(a, particles, {});
+      forces.add_to(sink, particles);
+    }
+
+    ParticleSystem<Dual<Real, 1>> particles;
+    VectorColumn<Dual<Real, 1>> a;
+  };
+
   F forces_;
   std::string name_;
   ParticleSystem<Real> work_;
@@ -136,6 +194,8 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
   bool in_lanes_ = false;
   ParticleSystem<Pack> packs_;
   VectorColumn<Pack> pack_a_;
+  std::optional<Along> along_;  ///< made by the first derivative
+  Vector<Real> direction_, column_;
 };
 
 }  // namespace noether

@@ -77,8 +77,16 @@ template <class Real> class VectorField {
     evaluations_.force += states.stages;
     evaluate_stages(states, out);
   }
-  /// J = df/dy, shape (size, size), counted as one; false where it has to be found by differences.
-  virtual bool jacobian(const Real& /*t*/, const Vector<Real>& /*y*/, Matrix<Real>& /*J*/) { return false; }
+  /// Whether f is known over dual numbers, so that `derivative` and `jacobian` are exact.
+  virtual bool has_derivative() const { return false; }
+  /// out = df/dt dt + df/dy dy, exact, not counted. @throws LogicError  where `has_derivative` is false
+  virtual void derivative(const Real& /*t*/, const Vector<Real>& /*y*/, const Real& /*dt*/, const Vector<Real>& /*dy*/,
+                          Vector<Real>& /*out*/) {
+    throw LogicError("a vector field without derivatives was asked for them");
+  }
+  /// J = df/dy, shape (size, size), not counted; false where it has to be found by differences.
+  /// @cost `derivative` for each column, unless a field knows better
+  virtual bool jacobian(const Real& t, const Vector<Real>& y, Matrix<Real>& J);
   /// Where J can be other than 0; empty: anywhere.
   virtual Sparsity sparsity() const { return {}; }
 
@@ -99,6 +107,7 @@ template <class Real> class VectorField {
  private:
   Evaluations evaluations_;
   Vector<Real> stage_, stage_rate_;
+  Vector<Real> direction_, column_;  ///< work of `jacobian`
 };
 
 template <class Real> void VectorField<Real>::evaluate_stages(const StageStates<Real>& states, Real* out) {
@@ -117,6 +126,20 @@ template <class Real> void VectorField<Real>::evaluate_stages(const StageStates<
     }
     for (Index i = 0; i < n; ++i) out[lane_count * i + k] = stage_rate_[i];
   }
+}
+
+template <class Real> bool VectorField<Real>::jacobian(const Real& t, const Vector<Real>& y, Matrix<Real>& J) {
+  if (!has_derivative()) return false;
+  const Index n = y.size();
+  J.resize(n, n);
+  direction_.setZero(n);
+  for (Index j = 0; j < n; ++j) {
+    direction_[j] = Real(1);
+    derivative(t, y, Real(0), direction_, column_);
+    direction_[j] = Real(0);
+    for (Index i = 0; i < n; ++i) J(i, j) = column_[i];
+  }
+  return true;
 }
 
 }  // namespace noether
