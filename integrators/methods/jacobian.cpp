@@ -1,0 +1,273 @@
+#include "integrators/methods/jacobian.hpp"
+
+#include "engine/saved_state.hpp"
+
+#include <Eigen/SparseLU>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace noether {
+
+template <class Real> struct SparseFactors<Real>::Solver {
+  Eigen::SparseLU<Eigen::SparseMatrix<Real>, Eigen::COLAMDOrdering<int>> lu;
+};
+
+template <class Real> SparseFactors<Real>::SparseFactors() = default;
+template <class Real> SparseFactors<Real>::SparseFactors(SparseFactors&&) noexcept = default;
+template <class Real> SparseFactors<Real>& SparseFactors<Real>::operator=(SparseFactors&&) noexcept = default;
+template <class Real> SparseFactors<Real>::~SparseFactors() = default;
+template <class Real> SparseFactors<Real>& SparseFactors<Real>::operator=(const SparseFactors& /*other*/) {
+  solver_.reset();
+  return *this;
+}
+
+template <class Real> bool SparseFactors<Real>::compute(const Eigen::SparseMatrix<Real>& matrix) {
+  if (!solver_) {
+    solver_ = std::make_unique<Solver>();
+    solver_->lu.analyzePattern(matrix);
+  }
+  solver_->lu.factorize(matrix);
+  return solver_->lu.info() == Eigen::Success;
+}
+
+template <class Real> void SparseFactors<Real>::solve(const Vector<Real>& right, Vector<Real>& x) const {
+  x = solver_->lu.solve(right);
+}
+
+namespace {
+
+/// Columns in groups, greedily: no two of a group have a row in common.
+std::vector<std::vector<Index>> grouped(const Sparsity& pattern) {
+  std::vector<std::vector<Index>> groups;
+  std::vector<std::vector<bool>> taken;
+  for (std::size_t j = 0; j < pattern.size(); ++j) {
+    const auto fits = [&](const std::vector<bool>& rows_taken) {
+      return std::none_of(pattern[j].begin(), pattern[j].end(),
+                          [&](Index i) { return rows_taken[static_cast<std::size_t>(i)]; });
+    };
+    const auto place = std::find_if(taken.begin(), taken.end(), fits) - taken.begin();
+    const auto at = static_cast<std::size_t>(place);
+    if (at == taken.size()) {
+      groups.emplace_back();
+      taken.emplace_back(pattern.size(), false);
+    }
+    groups[at].push_back(static_cast<Index>(j));
+    for (const Index i : pattern[j]) taken[at][static_cast<std::size_t>(i)] = true;
+  }
+  return groups;
+}
+
+}  // namespace
+
+template <class Real> void Jacobian<Real>::bind(const VectorField<Real>& f) {
+  const FieldClaims claims = f.claims();
+  size_ = f.size();
+  second_order_ = claims.second_order;
+  time_dependent_ = claims.time_dependent;
+  pattern_ = f.sparsity();
+  sparse_ = !pattern_.empty() && !second_order_;
+  groups_.clear();
+  factorized_ = ready_ = false;
+  for (Vector<Real>* v : {&up_, &down_, &direction_}) v->setZero(size_);
+  if (sparse_) return bind_sparse();
+  // Velocities move particles, and need not be found; nor do forces that do not feel them.
+  const Index columns = second_order_ && !claims.velocity_dependent ? size_ / 2 : size_;
+  for (Index j = 0; j < columns; ++j) groups_.push_back({j});
+  J_.setZero(size_, size_);
+  for (Index i = 0; second_order_ && i < size_ / 2; ++i) J_(i, size_ / 2 + i) = Real(1);
+  const Index n = second_order_ ? size_ / 2 : size_;
+  dense_.resize(n, n);
+  half_.resize(n);
+  factors_ = Eigen::PartialPivLU<Matrix<Real>>(n);
+}
+
+template <class Real> void Jacobian<Real>::bind_sparse() {
+  if (static_cast<Index>(pattern_.size()) != size_) {
+    throw Error(fmt::format("a sparsity of {} columns was given for {} variables", pattern_.size(), size_));
+  }
+  groups_ = grouped(pattern_);
+  std::vector<Eigen::Triplet<Real>> places;
+  for (Index j = 0; j < size_; ++j) {
+    for (const Index i : pattern_[static_cast<std::size_t>(j)]) places.emplace_back(i, j, Real(0));
+    places.emplace_back(j, j, Real(0));
+  }
+  entries_.resize(size_, size_);
+  entries_.setFromTriplets(places.begin(), places.end());
+  entries_.makeCompressed();
+  matrix_ = entries_;
+  sparse_factors_ = SparseFactors<Real>();
+  half_.resize(size_);
+}
+
+template <class Real> void Jacobian<Real>::evaluate(VectorField<Real>& f, const Real& t, const Vector<Real>& y) {
+  ++f.evaluations().jacobian;
+  factorized_ = ready_ = false;
+  if (!sparse_ && f.jacobian(t, y, J_)) return;
+  for (std::size_t group = 0; group < groups_.size(); ++group) {
+    if (!f.has_derivative()) {
+      differences(f, t, y, group);
+      continue;
+    }
+    for (const Index j : groups_[group]) direction_[j] = Real(1);
+    f.derivative(t, y, Real(0), direction_, up_);
+    for (const Index j : groups_[group]) direction_[j] = Real(0);
+    store(group, up_);
+  }
+}
+
+template <class Real> void Jacobian<Real>::store(std::size_t group, const Vector<Real>& column) {
+  for (const Index j : groups_[group]) {
+    if (sparse_) {
+      for (const Index i : pattern_[static_cast<std::size_t>(j)]) entries_.coeffRef(i, j) = column[i];
+    } else {
+      for (Index i = second_order_ ? size_ / 2 : 0; i < size_; ++i) J_(i, j) = column[i];
+    }
+  }
+}
+
+/// A length of y_j that central differences are taken over: the cube root of rounding, relative to y_j, or where that
+/// is small, to the others of its kind.
+template <class Real> double Jacobian<Real>::increment(const Vector<Real>& y, Index j) const {
+  const Index half = second_order_ ? size_ / 2 : size_, begin = j < half ? 0 : half;
+  double most = 0;
+  for (Index i = begin; i < begin + half && i < size_; ++i) most = std::max(most, std::abs(static_cast<double>(y[i])));
+  if (most == 0) most = 1;
+  const double size = std::max(std::abs(static_cast<double>(y[j])), (second_order_ ? 1e-2 : 1e-6) * most);
+  return std::cbrt(static_cast<double>(std::numeric_limits<Real>::epsilon())) * size;
+}
+
+template <class Real>
+void Jacobian<Real>::differences(VectorField<Real>& f, const Real& t, const Vector<Real>& y, std::size_t group) {
+  const std::vector<Index>& columns = groups_[group];
+  Vector<Real>& moved = direction_;
+  moved = y;
+  for (const Index j : columns) moved[j] = y[j] + Real(increment(y, j));
+  f.rate(t, moved, up_);
+  for (const Index j : columns) moved[j] = y[j] - Real(increment(y, j));
+  f.rate(t, moved, down_);
+  for (Index i = 0; i < size_; ++i) up_[i] = up_[i] - down_[i];
+  for (const Index j : columns) {
+    // The lengths as they came out, so that their own rounding does no harm.
+    const Real width = (y[j] + Real(increment(y, j))) - (y[j] - Real(increment(y, j)));
+    if (sparse_) {
+      for (const Index i : pattern_[static_cast<std::size_t>(j)]) entries_.coeffRef(i, j) = up_[i] / width;
+    } else {
+      for (Index i = second_order_ ? size_ / 2 : 0; i < size_; ++i) J_(i, j) = up_[i] / width;
+    }
+  }
+  moved.setZero();
+}
+
+template <class Real>
+void Jacobian<Real>::time_derivative(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h,
+                                     Vector<Real>& out) {
+  out.resize(size_);
+  if (!time_dependent_) {
+    out.setZero();
+  } else if (f.has_derivative()) {
+    f.derivative(t, y, Real(1), direction_, out);
+  } else {
+    const double rounding = static_cast<double>(std::numeric_limits<Real>::epsilon());
+    const Real step(std::max(std::sqrt(std::sqrt(rounding)) * h, 16 * rounding * std::abs(static_cast<double>(t))));
+    f.rate(t + step, y, up_);
+    f.rate(t - step, y, down_);
+    const Real width = (t + step) - (t - step);
+    for (Index i = 0; i < size_; ++i) out[i] = (up_[i] - down_[i]) / width;
+  }
+}
+
+template <class Real> bool Jacobian<Real>::factorize(const Real& a, const Real& b) {
+  a_ = a;
+  b_ = b;
+  weights_ = second_order_ ? std::array<Real, 3>{a * a, a * b, b * b} : std::array<Real, 3>{a, b, Real(0)};
+  return compute();
+}
+
+template <class Real> bool Jacobian<Real>::factorize_half(const Real& a, const Real& b, const Real& c) {
+  NOETHER_EXPECTS(second_order_, "a system of first order has no matrix of half the size");
+  weights_ = {a, b, c};
+  return compute();
+}
+
+template <class Real> bool Jacobian<Real>::compute() {
+  factorized_ = ready_ = true;
+  const auto& [p, q, r] = weights_;
+  if (sparse_) {
+    for (Index k = 0; k < entries_.nonZeros(); ++k) matrix_.valuePtr()[k] = -q * entries_.valuePtr()[k];
+    for (Index j = 0; j < size_; ++j) matrix_.coeffRef(j, j) += p;
+    return sparse_factors_.compute(matrix_);
+  }
+  const Index n = dense_.rows(), shift = second_order_ ? n : 0;
+  for (Index j = 0; j < n; ++j) {
+    for (Index i = 0; i < n; ++i) dense_(i, j) = -q * J_(shift + i, shift + j);
+    for (Index i = 0; second_order_ && i < n; ++i) dense_(i, j) -= r * J_(shift + i, j);
+    dense_(j, j) += p;
+  }
+  factors_.compute(dense_);
+  using std::isfinite;
+  bool regular = true;
+  for (Index i = 0; i < n; ++i) {
+    const Real& pivot = factors_.matrixLU()(i, i);
+    regular = regular && isfinite(pivot) && pivot != Real(0);
+  }
+  return regular;
+}
+
+/// x <- M^-1 x; a copy, and a run that goes on from a file, make their factors here, the same ones.
+template <class Real> void Jacobian<Real>::solve_half(Vector<Real>& x) {
+  NOETHER_EXPECTS(factorized_, "a system is solved before its matrix is factorized");
+  if (!ready_ || (sparse_ && !sparse_factors_.ready())) compute();
+  if (sparse_) {
+    sparse_factors_.solve(x, half_);
+  } else {
+    half_.noalias() = factors_.solve(x);
+  }
+  x.swap(half_);
+}
+
+template <class Real> void Jacobian<Real>::solve(Vector<Real>& x) {
+  if (!second_order_) return solve_half(x);
+  const Index n = size_ / 2;
+  down_.resize(n);
+  for (Index i = 0; i < n; ++i) down_[i] = a_ * x[n + i];
+  for (Index j = 0; j < n; ++j) {
+    for (Index i = 0; i < n; ++i) down_[i] += b_ * J_(n + i, j) * x[j];
+  }
+  solve_half(down_);
+  for (Index i = 0; i < n; ++i) {
+    x[i] = (x[i] + b_ * down_[i]) / a_;
+    x[n + i] = down_[i];
+  }
+}
+
+template <class Real> void Jacobian<Real>::save(SavedState& saved, const std::string& prefix) const {
+  const Real* values = sparse_ ? entries_.valuePtr() : J_.data();
+  const Index count = sparse_ ? entries_.nonZeros() : J_.size();
+  save_value(saved, prefix + "elements", std::vector<Real>(values, values + count));
+  save_value(saved, prefix + "weights", std::vector<Real>{a_, b_, weights_[0], weights_[1], weights_[2]});
+  save_value(saved, prefix + "factorized", factorized_);
+}
+
+template <class Real> void Jacobian<Real>::load(const SavedState& saved, const std::string& prefix) {
+  std::vector<Real> elements, weights;
+  load_value(saved, prefix + "elements", elements);
+  load_value(saved, prefix + "weights", weights);
+  load_value(saved, prefix + "factorized", factorized_);
+  Real* values = sparse_ ? entries_.valuePtr() : J_.data();
+  const Index count = sparse_ ? entries_.nonZeros() : J_.size();
+  for (Index k = 0; k < count; ++k) values[k] = detail::element(elements, static_cast<std::size_t>(k));
+  a_ = detail::element(weights, 0);
+  b_ = detail::element(weights, 1);
+  for (std::size_t k = 0; k < 3; ++k) weights_[k] = detail::element(weights, 2 + k);
+  ready_ = false;
+}
+
+template class SparseFactors<double>;
+template class SparseFactors<Quad>;
+template class Jacobian<double>;
+template class Jacobian<Quad>;
+
+}  // namespace noether
