@@ -1,0 +1,211 @@
+#include "integrators/methods/diagonally_implicit.hpp"
+
+#include "integrators/methods.hpp"
+#include "integrators/methods/newton.hpp"
+
+namespace noether {
+
+template <class Real>
+DiagonallyImplicit<Real>::DiagonallyImplicit(const MethodInfo& info, const Tableau& table, Keeps keeps)
+    : name_(info.name),
+      order_(table.order),
+      keeps_(keeps),
+      a_(as_real<Real>(table.a)),
+      b_(as_real<Real>(table.b)),
+      c_(as_real<Real>(table.c)),
+      diagonal_(a_.back().back()),
+      explicit_first_(a_.front().empty()),
+      ends_at_last_(table.a.back() == table.b) {}
+
+template <class Real> MethodClaims DiagonallyImplicit<Real>::claims() const {
+  return {.name = name_, .order = order_, .reversible = keeps_.reversible};
+}
+
+template <class Real> void DiagonallyImplicit<Real>::bind(const VectorField<Real>& f) {
+  jacobian_.bind(f);
+  second_order_ = f.claims().second_order;
+  k_.assign(b_.size(), Vector<Real>(f.size()));
+  for (Vector<Real>* v : {&base_, &z_, &stage_, &update_}) v->setZero(f.size());
+}
+
+template <class Real>
+void DiagonallyImplicit<Real>::combine(const std::vector<Real>& w, std::size_t count, double h, const Vector<Real>& y,
+                                       Vector<Real>& out) const {
+  for (Index i = 0; i < y.size(); ++i) {
+    Real sum(0);
+    for (std::size_t j = 0; j < count; ++j) sum += w[j] * k_[j][i];
+    out[i] = y[i] + Real(h) * sum;
+  }
+}
+
+/// Leaves z of the stage in `z_`, which holds a guess, and its point in `stage_`.
+template <class Real>
+std::optional<Failure> DiagonallyImplicit<Real>::solve_stage(VectorField<Real>& f, const Real& t, std::size_t stage,
+                                                             double h) {
+  const Real weight = Real(h) * diagonal_, time = t + c_[stage] * Real(h);
+  const Index n = base_.size();
+  const auto correct = [&] {
+    for (Index i = 0; i < n; ++i) stage_[i] = base_[i] + z_[i];
+    f.rate(time, stage_, update_);
+    for (Index i = 0; i < n; ++i) update_[i] = weight * update_[i] - z_[i];
+    jacobian_.solve(update_);
+    for (Index i = 0; i < n; ++i) z_[i] += update_[i];
+    for (Index i = 0; i < n; ++i) stage_[i] = base_[i] + z_[i];
+    return update_size(update_, stage_, second_order_);
+  };
+  const auto renew = [&] {
+    jacobian_.evaluate(f, time, stage_);
+    return jacobian_.factorize(Real(1), weight);
+  };
+  return newton_to_rounding<Real>(correct, renew);
+}
+
+template <class Real>
+Stepped DiagonallyImplicit<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
+  Stepped made{.h = h};
+  const Real weight = Real(h) * diagonal_;
+  jacobian_.evaluate(f, t, y);
+  if (!jacobian_.factorize(Real(1), weight)) {
+    made.failure = singular_matrix(h);
+    return made;
+  }
+  for (std::size_t s = 0; s < b_.size(); ++s) {
+    if (s == 0 && explicit_first_) {
+      f.rate(t, y, k_[0]);
+      continue;
+    }
+    combine(a_[s], s, h, y, base_);
+    for (Index i = 0; i < y.size(); ++i) z_[i] = s == 0 ? Real(0) : weight * k_[s - 1][i];
+    made.failure = solve_stage(f, t, s, h);
+    if (made.failure) return made;
+    // Not from f, which would multiply rounding errors of the stage by its stiffness.
+    for (Index i = 0; i < y.size(); ++i) k_[s][i] = z_[i] / weight;
+  }
+  if (ends_at_last_) {
+    y = stage_;
+  } else {
+    combine(b_, b_.size(), h, y, stage_);
+    y = stage_;
+  }
+  return made;
+}
+
+template class DiagonallyImplicit<double>;
+template class DiagonallyImplicit<Quad>;
+
+namespace {
+
+Tableau lower_triangular(std::vector<std::vector<Quad>> a, int order) {
+  Tableau table;
+  table.b = a.back();
+  table.c = row_sums(a);
+  table.a = std::move(a);
+  table.order = order;
+  return table;
+}
+
+/// Alexander's methods: g is the root that makes them L-stable; the last stage is the end of the step.
+const Tableau& sdirk_2() {
+  static const Tableau table = [] {
+    const Quad g = Quad(1) - Quad(1) / sqrt(Quad(2));
+    return lower_triangular({{g}, {Quad(1) - g, g}}, 2);
+  }();
+  return table;
+}
+
+const Tableau& sdirk_3() {
+  static const Tableau table = [] {
+    // The root of x^3 - 3 x^2 + 3 x / 2 - 1/6 between 1/6 and 1/2.
+    Quad g = 0.4358665215084589;
+    for (int k = 0; k < 4; ++k) {
+      g -= (((g - Quad(3)) * g + Quad(1.5)) * g - Quad(1) / Quad(6)) / ((Quad(3) * g - Quad(6)) * g + Quad(1.5));
+    }
+    const Quad g2 = Quad(6) * g * g;
+    return lower_triangular({{g},
+                             {(Quad(1) - g) / Quad(2), g},
+                             {(Quad(16) * g - g2 - Quad(1)) / Quad(4), (g2 - Quad(20) * g + Quad(5)) / Quad(4), g}},
+                            3);
+  }();
+  return table;
+}
+
+const Tableau& sdirk_4() {
+  static const Tableau table = lower_triangular(
+      rows({"1/4", "1/2 1/4", "17/50 -1/25 1/4", "371/1360 -137/2720 15/544 1/4", "25/24 -49/48 125/16 -85/12 1/4"}),
+      4);
+  return table;
+}
+
+const Tableau& backward_euler() {
+  static const Tableau table = lower_triangular(rows({"1"}), 1);
+  return table;
+}
+
+const Tableau& trapezoidal() {
+  static const Tableau table = lower_triangular(rows({"", "1/2 1/2"}), 2);
+  return table;
+}
+
+const Tableau& diagonally_implicit_table(std::string_view name) {
+  if (name == "backward_euler") return backward_euler();
+  if (name == "trapezoidal") return trapezoidal();
+  if (name == "sdirk_2") return sdirk_2();
+  return name == "sdirk_3" ? sdirk_3() : sdirk_4();
+}
+
+template <class Real>
+std::unique_ptr<Method<Real>> make_diagonally_implicit(const MethodInfo& info, const MethodOptions& /*options*/) {
+  return std::make_unique<DiagonallyImplicit<Real>>(
+      info, diagonally_implicit_table(info.name),
+      typename DiagonallyImplicit<Real>::Keeps{.reversible = info.name == "trapezoidal"});
+}
+
+}  // namespace
+
+std::span<const MethodInfo> methods::diagonally_implicit_list() {
+  static const MethodInfo list[] = {
+      {.name = "backward_euler",
+       .aliases = "implicit_euler bdf_1",
+       .summary = "backward Euler: L-stable, damps every oscillation by (1 + z^2)^(-1/2) a step",
+       .source = "HairerWanner1996",
+       .family = "implicit",
+       .order = 1,
+       .make = make_diagonally_implicit<double>,
+       .make_quad = make_diagonally_implicit<Quad>},
+      {.name = "trapezoidal",
+       .aliases = "crank_nicolson implicit_trapezoidal",
+       .summary = "trapezoidal rule: A-stable, reversible, R = -1 at infinity; conjugate to the implicit midpoint rule",
+       .source = "CrankNicolson1947",
+       .family = "implicit",
+       .order = 2,
+       .make = make_diagonally_implicit<double>,
+       .make_quad = make_diagonally_implicit<Quad>},
+      {.name = "sdirk_2",
+       .aliases = "alexander_2",
+       .summary = "singly diagonally implicit, 2 stages, L-stable",
+       .source = "Alexander1977",
+       .family = "implicit",
+       .order = 2,
+       .make = make_diagonally_implicit<double>,
+       .make_quad = make_diagonally_implicit<Quad>},
+      {.name = "sdirk_3",
+       .aliases = "alexander_3",
+       .summary = "singly diagonally implicit, 3 stages, L-stable",
+       .source = "Alexander1977",
+       .family = "implicit",
+       .order = 3,
+       .make = make_diagonally_implicit<double>,
+       .make_quad = make_diagonally_implicit<Quad>},
+      {.name = "sdirk_4",
+       .aliases = "hairer_wanner_sdirk_4",
+       .summary = "singly diagonally implicit, 5 stages, L-stable",
+       .source = "HairerWanner1996",
+       .family = "implicit",
+       .order = 4,
+       .make = make_diagonally_implicit<double>,
+       .make_quad = make_diagonally_implicit<Quad>},
+  };
+  return list;
+}
+
+}  // namespace noether

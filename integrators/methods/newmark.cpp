@@ -1,0 +1,118 @@
+#include "integrators/methods/newmark.hpp"
+
+#include "integrators/methods.hpp"
+#include "integrators/methods/newton.hpp"
+
+namespace noether {
+
+template <class Real>
+Newmark<Real>::Newmark(const MethodInfo& info, const MethodOptions& options)
+    : name_(info.name), beta_(options.beta.value_or(0.25)), gamma_(options.gamma.value_or(0.5)) {
+  if (!(beta_ >= 0 && std::isfinite(beta_))) {
+    throw Error(fmt::format("beta = {} is none of Newmark's method; 0 or more is expected, 0.25 by default", beta_));
+  }
+  if (!std::isfinite(gamma_)) {
+    throw Error(fmt::format("gamma = {} is none of Newmark's method; a number is expected, 0.5 by default", gamma_));
+  }
+}
+
+template <class Real> MethodClaims Newmark<Real>::claims() const {
+  const bool verlet = beta_ == 0 && gamma_ == 0.5;
+  return {.name = name_,
+          .order = gamma_ == 0.5 ? 2 : 1,
+          .symplectic = verlet,
+          .reversible = gamma_ == 0.5,
+          .keeps_angular_momentum = verlet,
+          .second_order_only = true};
+}
+
+template <class Real> void Newmark<Real>::bind(const VectorField<Real>& f) {
+  const FieldClaims field = f.claims();
+  if (!field.second_order) {
+    throw SchemeMismatch(
+        fmt::format("method '{}' serves q'' = a only; '{}' is a system of first order; use "
+                    "'trapezoidal' instead",
+                    name_, field.name));
+  }
+  explicit_ = beta_ == 0 && (gamma_ == 0 || !field.velocity_dependent);
+  if (!explicit_) jacobian_.bind(f);
+  y1_.resize(f.size());
+  for (Vector<Real>* v : {&a0_, &a1_, &update_}) v->resize(f.size() / 2);
+}
+
+/// q1 and v1 that belong to a1.
+template <class Real> void Newmark<Real>::place(const Vector<Real>& y, double h) {
+  const Index n = a1_.size();
+  const Real step(h), late_q = step * step * Real(beta_), early_q = step * step * (Real(0.5) - Real(beta_));
+  const Real late_v = step * Real(gamma_), early_v = step * (Real(1) - Real(gamma_));
+  for (Index i = 0; i < n; ++i) {
+    y1_[i] = y[i] + (step * y[n + i] + (early_q * a0_[i] + late_q * a1_[i]));
+    y1_[n + i] = y[n + i] + (early_v * a0_[i] + late_v * a1_[i]);
+  }
+}
+
+template <class Real>
+std::optional<Failure> Newmark<Real>::solve(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h) {
+  const Index n = a1_.size();
+  const Real end = t + Real(h);
+  const auto renew = [&] {
+    place(y, h);
+    jacobian_.evaluate(f, end, y1_);
+    return jacobian_.factorize_half(Real(1), Real(h) * Real(gamma_), Real(h) * Real(h) * Real(beta_));
+  };
+  const auto correct = [&] {
+    place(y, h);
+    f.acceleration(end, y1_, update_);
+    for (Index i = 0; i < n; ++i) update_[i] = update_[i] - a1_[i];
+    jacobian_.solve_half(update_);
+    for (Index i = 0; i < n; ++i) a1_[i] += update_[i];
+    // What the update does to positions and velocities counts.
+    const UpdateSize q = update_size(update_.data(), h * h * beta_, y1_.data(), n);
+    const UpdateSize v = update_size(update_.data(), h * gamma_, y1_.data() + n, n);
+    return UpdateSize{std::max(q.whole, v.whole), std::max(q.each, v.each)};
+  };
+  if (!renew()) return singular_matrix(h);
+  return newton_to_rounding<Real>(correct, renew);
+}
+
+template <class Real> Stepped Newmark<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
+  Stepped made{.h = h};
+  f.acceleration(t, y, a0_);
+  a1_ = a0_;
+  if (explicit_) {
+    place(y, h);
+    f.acceleration(t + Real(h), y1_, a1_);
+  } else {
+    made.failure = solve(f, t, y, h);
+  }
+  if (made.failure) return made;
+  place(y, h);
+  y = y1_;
+  return made;
+}
+
+template class Newmark<double>;
+template class Newmark<Quad>;
+
+namespace {
+template <class Real> std::unique_ptr<Method<Real>> make_newmark(const MethodInfo& info, const MethodOptions& options) {
+  return std::make_unique<Newmark<Real>>(info, options);
+}
+}  // namespace
+
+std::span<const MethodInfo> methods::newmark_list() {
+  static const MethodInfo list[] = {
+      {.name = "newmark",
+       .aliases = "newmark_beta",
+       .summary = "Newmark's method for q'' = a: average acceleration unless beta and gamma say otherwise",
+       .source = "Newmark1959",
+       .family = "implicit",
+       .options = "beta gamma",
+       .order = 2,
+       .make = make_newmark<double>,
+       .make_quad = make_newmark<Quad>},
+  };
+  return list;
+}
+
+}  // namespace noether

@@ -1,0 +1,45 @@
+#pragma once
+/// Newmark's method for q'' = a(t, q, v).
+
+#include "integrators/method.hpp"
+#include "integrators/methods/jacobian.hpp"
+
+namespace noether {
+
+/// Newmark's family with fixed steps.
+///
+///     q1 = q + h v + h^2 ((1/2 - beta) a + beta a1)
+///     v1 = v + h ((1 - gamma) a + gamma a1),           a1 = a(t + h, q1, v1)
+///
+/// beta = 1/4 and gamma = 1/2 (the default) is the trapezoidal rule for q and v, unconditionally stable for linear
+/// springs; beta = 0 and gamma = 1/2 is velocity Verlet. Order 2 where gamma = 1/2, else 1, with damping above 1/2.
+/// a1 is found by Newton's iteration to rounding, with I - h gamma da/dv - h^2 beta da/dq.
+/// @cost one Jacobian, one LU of half the size of y, and three to five evaluations
+/// @source Newmark1959, SimoTarnowWong1992
+template <class Real> class Newmark final : public Method<Real> {
+ public:
+  /// @throws Error  for a beta below 0, or a beta or gamma that is not finite
+  Newmark(const MethodInfo& info, const MethodOptions& options);
+
+  std::unique_ptr<Method<Real>> clone() const override { return std::make_unique<Newmark>(*this); }
+  MethodClaims claims() const override;
+  void bind(const VectorField<Real>& f) override;
+  Stepped step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
+  void save(SavedState& /*saved*/, const std::string& /*prefix*/) const override {}
+  void load(const SavedState& /*saved*/, const std::string& /*prefix*/) override {}
+
+ private:
+  std::optional<Failure> solve(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h);
+  void place(const Vector<Real>& y, double h);
+
+  std::string_view name_;
+  double beta_, gamma_;
+  bool explicit_ = false;  ///< a1 depends on nothing unknown
+  Jacobian<Real> jacobian_;
+  Vector<Real> a0_, a1_, y1_, update_;
+};
+
+extern template class Newmark<double>;
+extern template class Newmark<Quad>;
+
+}  // namespace noether

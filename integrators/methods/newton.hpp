@@ -1,0 +1,86 @@
+#pragma once
+/// Newton's iteration, carried down to rounding.
+
+#include "integrators/method.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace noether {
+
+/// How long an update is: its largest component relative to the largest of its kind, and relative to its own value.
+struct UpdateSize {
+  double whole = 0, each = 0;
+};
+
+/// Size of the update `d`, times `factor`, of `y`, component by component from `begin`, `count` of them.
+template <class Real> UpdateSize update_size(const Real* d, double factor, const Real* y, Index count) {
+  double longest = 0, largest = 0, each = 0;
+  for (Index i = 0; i < count; ++i) {
+    const double change = std::abs(factor * static_cast<double>(d[i])), value = std::abs(static_cast<double>(y[i]));
+    if (!std::isfinite(change)) return {change, change};
+    longest = std::max(longest, change);
+    largest = std::max(largest, value);
+    if (change > 0) each = std::max(each, value > 0 ? change / value : std::numeric_limits<double>::max());
+  }
+  if (longest == 0) return {0, 0};
+  return {largest > 0 ? longest / largest : std::numeric_limits<double>::max(), each};
+}
+
+/// The same for y = (q, v), where positions and velocities are of two kinds, or for y of one kind.
+template <class Real> UpdateSize update_size(const Vector<Real>& d, const Vector<Real>& y, bool second_order) {
+  if (!second_order) return update_size(d.data(), 1, y.data(), y.size());
+  const Index half = y.size() / 2;
+  const UpdateSize q = update_size(d.data(), 1, y.data(), half);
+  const UpdateSize v = update_size(d.data() + half, 1, y.data() + half, half);
+  return {std::max(q.whole, v.whole), std::max(q.each, v.each)};
+}
+
+/// Repeats `correct` until its updates have stopped to shrink at the level of rounding.
+///
+/// `correct()` makes one update and returns its size; `renew()` finds the matrix anew where the iteration stands,
+/// because updates shrink by less than half. Rounding of a badly conditioned right-hand side may lie above that of the
+/// numbers: an update that shrinks no more with a fresh matrix is taken for it below a millionth of all digits.
+/// @return nothing, or why it failed
+/// @cost two to four updates for smooth problems; one Jacobian for each renewal
+template <class Real, class Correct, class Renew>
+std::optional<Failure> newton_to_rounding(const Correct& correct, const Renew& renew) {
+  constexpr int most = 100, most_renewals = 30;
+  const double rounding = static_cast<double>(std::numeric_limits<Real>::epsilon());
+  const double smooth = 64 * rounding, rough = 1e6 * rounding;
+  UpdateSize before;
+  bool fresh = false;
+  int renewals = 0, iteration = 1;
+  for (; iteration <= most && renewals <= most_renewals; ++iteration) {
+    const UpdateSize now = correct();
+    if (now.whole == 0) return {};
+    const bool first = iteration == 1;
+    if (!first && now.whole <= smooth && !(now.each < 0.5 * before.each)) return {};
+    const bool slow = !first && !(now.whole < 0.5 * before.whole);
+    before = now;
+    if (!std::isfinite(now.whole)) break;
+    if (slow && fresh && now.whole <= rough) return {};
+    fresh = slow && now.whole > smooth;
+    if (!fresh) continue;
+    ++renewals;
+    if (!renew()) break;
+  }
+  return Failure{Outcome::Kind::solver_failure, -1, "step",
+                 fmt::format("Newton's iteration found no solution of the implicit step: its last update, number {}, "
+                             "was {:.3g} of the solution; take a smaller step",
+                             std::min(iteration, most), before.whole)};
+}
+
+/// What an implicit method says of a matrix without inverse.
+inline Failure singular_matrix(double h) {
+  return {Outcome::Kind::solver_failure, -1, "step",
+          fmt::format("the matrix of the implicit step of {:.9g} is singular or not finite, 0 iterations made; take a "
+                      "smaller step",
+                      h)};
+}
+
+}  // namespace noether
