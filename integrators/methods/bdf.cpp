@@ -331,7 +331,7 @@ std::optional<Failure> FixedBdf<Real>::solve(VectorField<Real>& f, const Real& t
       correction_[i] += update_[i];
       y1_[i] = predicted_[i] + correction_[i];
     }
-    return update_size(update_, y1_, second_order_);
+    return update_size(update_, predicted_, y1_, second_order_);
   };
   const auto renew = [&] {
     jacobian_.evaluate(f, end, y1_);

@@ -51,7 +51,7 @@ std::optional<Failure> DiagonallyImplicit<Real>::solve_stage(VectorField<Real>& 
     jacobian_.solve(update_);
     for (Index i = 0; i < n; ++i) z_[i] += update_[i];
     for (Index i = 0; i < n; ++i) stage_[i] = base_[i] + z_[i];
-    return update_size(update_, stage_, second_order_);
+    return update_size(update_, base_, stage_, second_order_);
   };
   const auto renew = [&] {
     jacobian_.evaluate(f, time, stage_);

@@ -67,8 +67,8 @@ std::optional<Failure> Newmark<Real>::solve(VectorField<Real>& f, const Real& t,
     jacobian_.solve_half(update_);
     for (Index i = 0; i < n; ++i) a1_[i] += update_[i];
     // What the update does to positions and velocities counts.
-    const UpdateSize q = update_size(update_.data(), h * h * beta_, y1_.data(), n);
-    const UpdateSize v = update_size(update_.data(), h * gamma_, y1_.data() + n, n);
+    const UpdateSize q = update_size(update_.data(), h * h * beta_, y.data(), y1_.data(), n);
+    const UpdateSize v = update_size(update_.data(), h * gamma_, y.data() + n, y1_.data() + n, n);
     return UpdateSize{std::max(q.whole, v.whole), std::max(q.each, v.each)};
   };
   if (!renew()) return singular_matrix(h);

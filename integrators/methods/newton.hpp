@@ -17,11 +17,14 @@ struct UpdateSize {
   double whole = 0, each = 0;
 };
 
-/// Size of the update `d`, times `factor`, of `y`, component by component from `begin`, `count` of them.
-template <class Real> UpdateSize update_size(const Real* d, double factor, const Real* y, Index count) {
+/// Size of the update `d` times `factor`, `count` components; a value is as large as `from`, which it was reached from
+/// by adding, or as `to`, where it is now: rounding errors are as large as the larger of them.
+template <class Real>
+UpdateSize update_size(const Real* d, double factor, const Real* from, const Real* to, Index count) {
   double longest = 0, largest = 0, each = 0;
   for (Index i = 0; i < count; ++i) {
-    const double change = std::abs(factor * static_cast<double>(d[i])), value = std::abs(static_cast<double>(y[i]));
+    const double change = std::abs(factor * static_cast<double>(d[i]));
+    const double value = std::max(std::abs(static_cast<double>(from[i])), std::abs(static_cast<double>(to[i])));
     if (!std::isfinite(change)) return {change, change};
     longest = std::max(longest, change);
     largest = std::max(largest, value);
@@ -32,11 +35,12 @@ template <class Real> UpdateSize update_size(const Real* d, double factor, const
 }
 
 /// The same for y = (q, v), where positions and velocities are of two kinds, or for y of one kind.
-template <class Real> UpdateSize update_size(const Vector<Real>& d, const Vector<Real>& y, bool second_order) {
-  if (!second_order) return update_size(d.data(), 1, y.data(), y.size());
-  const Index half = y.size() / 2;
-  const UpdateSize q = update_size(d.data(), 1, y.data(), half);
-  const UpdateSize v = update_size(d.data() + half, 1, y.data() + half, half);
+template <class Real>
+UpdateSize update_size(const Vector<Real>& d, const Vector<Real>& from, const Vector<Real>& to, bool second_order) {
+  if (!second_order) return update_size(d.data(), 1, from.data(), to.data(), to.size());
+  const Index half = to.size() / 2;
+  const UpdateSize q = update_size(d.data(), 1, from.data(), to.data(), half);
+  const UpdateSize v = update_size(d.data() + half, 1, from.data() + half, to.data() + half, half);
   return {std::max(q.whole, v.whole), std::max(q.each, v.each)};
 }
 
