@@ -333,13 +333,17 @@ std::optional<Failure> FixedBdf<Real>::solve(VectorField<Real>& f, const Real& t
     }
     return update_size(update_, predicted_, y1_, second_order_);
   };
+  const auto restart = [&] {
+    correction_.setZero();
+    y1_ = predicted_;
+  };
   const auto renew = [&] {
     jacobian_.evaluate(f, end, y1_);
     return jacobian_.factorize(Real(1), weight);
   };
   jacobian_.evaluate(f, t, y);
   if (!jacobian_.factorize(Real(1), weight)) return singular_matrix(h);
-  return newton_to_rounding<Real>(correct, renew);
+  return newton_to_rounding<Real>(correct, restart, renew);
 }
 
 template <class Real> Stepped FixedBdf<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {

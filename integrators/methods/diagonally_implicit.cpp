@@ -25,7 +25,7 @@ template <class Real> void DiagonallyImplicit<Real>::bind(const VectorField<Real
   jacobian_.bind(f);
   second_order_ = f.claims().second_order;
   k_.assign(b_.size(), Vector<Real>(f.size()));
-  for (Vector<Real>* v : {&base_, &z_, &stage_, &update_}) v->setZero(f.size());
+  for (Vector<Real>* v : {&base_, &z_, &guess_, &stage_, &update_}) v->setZero(f.size());
 }
 
 template <class Real>
@@ -53,11 +53,16 @@ std::optional<Failure> DiagonallyImplicit<Real>::solve_stage(VectorField<Real>& 
     for (Index i = 0; i < n; ++i) stage_[i] = base_[i] + z_[i];
     return update_size(update_, base_, stage_, second_order_);
   };
+  guess_ = z_;
+  const auto restart = [&] {
+    z_ = guess_;
+    for (Index i = 0; i < n; ++i) stage_[i] = base_[i] + z_[i];
+  };
   const auto renew = [&] {
     jacobian_.evaluate(f, time, stage_);
     return jacobian_.factorize(Real(1), weight);
   };
-  return newton_to_rounding<Real>(correct, renew);
+  return newton_to_rounding<Real>(correct, restart, renew);
 }
 
 template <class Real>

@@ -43,7 +43,7 @@ template <class Real> class DiagonallyImplicit final : public Method<Real> {
   bool second_order_ = false;
   Jacobian<Real> jacobian_;
   std::vector<Vector<Real>> k_;
-  Vector<Real> base_, z_, stage_, update_;
+  Vector<Real> base_, z_, guess_, stage_, update_;
 };
 
 extern template class DiagonallyImplicit<double>;

@@ -71,8 +71,9 @@ std::optional<Failure> Newmark<Real>::solve(VectorField<Real>& f, const Real& t,
     const UpdateSize v = update_size(update_.data(), h * gamma_, y.data() + n, y1_.data() + n, n);
     return UpdateSize{std::max(q.whole, v.whole), std::max(q.each, v.each)};
   };
+  const auto restart = [&] { a1_ = a0_; };
   if (!renew()) return singular_matrix(h);
-  return newton_to_rounding<Real>(correct, renew);
+  return newton_to_rounding<Real>(correct, restart, renew);
 }
 
 template <class Real> Stepped Newmark<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {

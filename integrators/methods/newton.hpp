@@ -46,32 +46,46 @@ UpdateSize update_size(const Vector<Real>& d, const Vector<Real>& from, const Ve
 
 /// Repeats `correct` until its updates have stopped to shrink at the level of rounding.
 ///
-/// `correct()` makes one update and returns its size; `renew()` finds the matrix anew where the iteration stands,
-/// because updates shrink by less than half. Rounding of a badly conditioned right-hand side may lie above that of the
-/// numbers: an update that shrinks no more with a fresh matrix is taken for it below a millionth of all digits.
+/// `correct()` makes one update, by the matrix there is, and returns its size. Where updates shrink by less than half,
+/// the iteration goes back to its guess (`restart`) and on with matrices from where it stands (`renew`): an old matrix
+/// may lead to another solution. Rounding of a badly conditioned right-hand side may lie above that of the numbers: an
+/// update that shrinks no more with a new matrix is taken for it below a millionth of all digits.
 /// @return nothing, or why it failed
-/// @cost two to four updates for smooth problems; one Jacobian for each renewal
-template <class Real, class Correct, class Renew>
-std::optional<Failure> newton_to_rounding(const Correct& correct, const Renew& renew) {
-  constexpr int most = 100, most_renewals = 30;
+/// @cost four to eight updates for smooth problems, without a new matrix
+template <class Real, class Correct, class Restart, class Renew>
+std::optional<Failure> newton_to_rounding(const Correct& correct, const Restart& restart, const Renew& renew) {
+  constexpr int most = 100, most_renewals = 40;
+  constexpr double unknown = std::numeric_limits<double>::infinity();
   const double rounding = static_cast<double>(std::numeric_limits<Real>::epsilon());
   const double smooth = 64 * rounding, rough = 1e6 * rounding;
-  UpdateSize before;
-  bool fresh = false;
+  UpdateSize before{unknown, unknown};
+  bool old_matrix = true, regular = true;
   int renewals = 0, iteration = 1;
-  for (; iteration <= most && renewals <= most_renewals; ++iteration) {
+  for (; regular && iteration <= most && renewals <= most_renewals; ++iteration) {
     const UpdateSize now = correct();
     if (now.whole == 0) return {};
-    const bool first = iteration == 1;
-    if (!first && now.whole <= smooth && !(now.each < 0.5 * before.each)) return {};
-    const bool slow = !first && !(now.whole < 0.5 * before.whole);
-    before = now;
-    if (!std::isfinite(now.whole)) break;
-    if (slow && fresh && now.whole <= rough) return {};
-    fresh = slow && now.whole > smooth;
-    if (!fresh) continue;
-    ++renewals;
-    if (!renew()) break;
+    // Another update would be lost in rounding, or is nothing but rounding.
+    const bool lost = now.each * (now.each / before.each) <= rounding / 4 && std::isfinite(before.each);
+    if (now.whole <= smooth && (lost || !(now.each < 0.5 * before.each))) return {};
+    const bool slow = !(now.whole < 0.5 * before.whole);
+    if (old_matrix && (!slow || now.whole <= smooth)) {
+      before = now;
+    } else if (old_matrix) {
+      const bool near = now.whole <= rough;
+      if (!near) restart();
+      before = near ? now : UpdateSize{unknown, unknown};
+      old_matrix = false;
+      ++renewals;
+      regular = renew();
+    } else {
+      if (slow && now.whole <= rough) return {};
+      if (!std::isfinite(now.whole)) break;
+      const bool quick = now.whole < 0.1 * before.whole && std::isfinite(before.whole);
+      before = now;
+      if (quick || now.whole <= smooth) continue;
+      ++renewals;
+      regular = renew();
+    }
   }
   return Failure{Outcome::Kind::solver_failure, -1, "step",
                  fmt::format("Newton's iteration found no solution of the implicit step: its last update, number {}, "
