@@ -232,7 +232,8 @@ template <class Real = double> class ParticleSystem {
     }
     other.restore_ids(ids_);
     for (const auto& [name, column] : extra_) {
-      std::visit([&](const auto& values) { other.restore_column(name, detail::widened_to<Other>(values)); }, column);
+      std::visit([&, &key = name](const auto& values) { other.restore_column(key, detail::widened_to<Other>(values)); },
+                 column);
     }
     for (const Real& y : variables_) other.variables().push_back(static_cast<Other>(y));
     return other;
