@@ -24,6 +24,9 @@ std::vector<std::string> aliases_of(const MethodInfo& info);
 // The families, each in a file of its own below integrators/methods/.
 std::span<const MethodInfo> runge_kutta_list();
 std::span<const MethodInfo> collocation_list();
+std::span<const MethodInfo> nystrom_list();
+std::span<const MethodInfo> extrapolation_list();
+std::span<const MethodInfo> multistep_list();
 std::span<const MethodInfo> diagonally_implicit_list();
 std::span<const MethodInfo> newmark_list();
 std::span<const MethodInfo> rosenbrock_list();

@@ -1,0 +1,102 @@
+/// The multistep methods as lists show them.
+
+#include "integrators/methods.hpp"
+#include "integrators/methods/adams.hpp"
+#include "integrators/methods/adams_pece.hpp"
+#include "integrators/methods/stormer_cowell.hpp"
+
+namespace noether::methods {
+
+namespace {
+
+template <AdamsKind kind, class Real>
+std::unique_ptr<Method<Real>> adams(const MethodInfo& info, const MethodOptions& /*options*/) {
+  return std::make_unique<Adams<Real>>(info.name, kind, info.order);
+}
+
+/// Variable steps and orders, or with fixed steps predictor and corrector of order 4.
+template <class Real> std::unique_ptr<Method<Real>> pece(const MethodInfo& info, const MethodOptions& options) {
+  if (info.is_adaptive(options)) return std::make_unique<AdamsPece<Real>>(info, options);
+  return std::make_unique<Adams<Real>>(info.name, AdamsKind::pece, 4);
+}
+
+template <class Real> std::unique_ptr<Method<Real>> stormer(const MethodInfo& info, const MethodOptions& /*options*/) {
+  return std::make_unique<StormerCowell<Real>>(info.name, info.order);
+}
+
+constexpr MethodInfo bashforth(std::string_view name, std::string_view alias, int order, std::string_view summary,
+                               double limit) {
+  return {.name = name,
+          .aliases = alias,
+          .summary = summary,
+          .source = "HairerNoersettWanner1993",
+          .family = "multistep",
+          .order = order,
+          .stability_limit = limit,
+          .make = adams<AdamsKind::bashforth, double>,
+          .make_quad = adams<AdamsKind::bashforth, Quad>};
+}
+
+constexpr MethodInfo moulton(std::string_view name, std::string_view alias, int order, std::string_view summary,
+                             double limit) {
+  return {.name = name,
+          .aliases = alias,
+          .summary = summary,
+          .source = "HairerNoersettWanner1993",
+          .family = "multistep",
+          .order = order,
+          .stability_limit = limit,
+          .make = adams<AdamsKind::moulton, double>,
+          .make_quad = adams<AdamsKind::moulton, Quad>};
+}
+
+constexpr MethodInfo stormer_cowell(std::string_view name, std::string_view alias, int order, double limit) {
+  return {.name = name,
+          .aliases = alias,
+          .summary =
+              "Stoermer's method in summed form, velocities by Adams's sums, for q'' = a(t, q); the number is "
+              "the order; one evaluation a step after the start",
+          .source = "HairerNoersettWanner1993",
+          .family = "multistep",
+          .order = order,
+          .stability_limit = limit,
+          .make = stormer<double>,
+          .make_quad = stormer<Quad>};
+}
+
+}  // namespace
+
+std::span<const MethodInfo> multistep_list() {
+  static const MethodInfo list[] = {
+      bashforth("adams_bashforth_1", "ab1", 1, "Adams-Bashforth, order 1, one step: explicit Euler", 0),
+      bashforth("adams_bashforth_2", "ab2", 2, "Adams-Bashforth, order 2, two steps: one evaluation a step", 0),
+      bashforth("adams_bashforth_3", "ab3", 3, "Adams-Bashforth, order 3, three steps: one evaluation a step", 0.7236),
+      bashforth("adams_bashforth_4", "ab4", 4, "Adams-Bashforth, order 4, four steps: one evaluation a step", 0.43),
+      bashforth("adams_bashforth_5", "ab5", 5, "Adams-Bashforth, order 5, five steps: one evaluation a step", 0),
+      bashforth("adams_bashforth_6", "ab6", 6, "Adams-Bashforth, order 6, six steps: one evaluation a step", 0),
+      moulton("adams_moulton_1", "am1", 1,
+              "Adams-Moulton, order 1: backward Euler by fixed-point iteration, for problems that are not stiff", 0),
+      moulton("adams_moulton_2", "am2", 2,
+              "Adams-Moulton, order 2, one step: the trapezoidal rule by fixed-point iteration", 0),
+      moulton("adams_moulton_3", "am3", 3, "Adams-Moulton, order 3, two steps, by fixed-point iteration", 0),
+      moulton("adams_moulton_4", "am4", 4, "Adams-Moulton, order 4, three steps, by fixed-point iteration", 0),
+      moulton("adams_moulton_5", "am5", 5, "Adams-Moulton, order 5, four steps, by fixed-point iteration", 0),
+      moulton("adams_moulton_6", "am6", 6, "Adams-Moulton, order 6, five steps, by fixed-point iteration", 0),
+      {.name = "adams_pece",
+       .aliases = "adams abm shampine_gordon",
+       .summary = "Adams predictor and corrector with steps and orders (1 to 12) of its own choice, two evaluations a "
+                  "step, dense output; with adaptive = false order 4 and fixed steps",
+       .source = "ShampineGordon1975 HairerNoersettWanner1993",
+       .family = "multistep",
+       .order = 12,
+       .adaptive = true,
+       .make = pece<double>,
+       .make_quad = pece<Quad>},
+      stormer_cowell("stormer_cowell_12", "stormer_12", 12, 0),
+      stormer_cowell("stormer_cowell_13", "stormer_13", 13, 0),
+      stormer_cowell("stormer_cowell_14", "stormer_14", 14, 0),
+  };
+  return list;
+}
+
+}  // namespace noether::methods
