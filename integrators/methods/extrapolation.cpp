@@ -240,10 +240,10 @@ std::span<const MethodInfo> extrapolation_list() {
       {.name = "gragg_bulirsch_stoer",
        .aliases = "gbs bulirsch_stoer odex",
        .summary = "extrapolated midpoint rule, or leapfrog where forces depend on positions only; steps and orders of "
-                  "its own choice, up to 20 in double and 40 in Quad",
+                  "its own choice, up to 16 in double and 24 in Quad",
        .source = "HairerNoersettWanner1993",
        .family = "extrapolation",
-       .order = 20,
+       .order = 16,
        .fixed = false,
        .adaptive = true,
        .make = extrapolation<double>,

@@ -70,9 +70,9 @@ template <class Real> struct CompensatedVector {
   /// value_i + low_i += x.
   void add(Index i, const Real& x) {
     const Real sum = value[i] + x, part = sum - value[i];
-    const Real rest = low[i] + ((value[i] - (sum - part)) + (x - part));
-    value[i] = sum + rest;
-    low[i] = rest - (value[i] - sum);
+    const Real error = low[i] + ((value[i] - (sum - part)) + (x - part));
+    value[i] = sum + error;
+    low[i] = error - (value[i] - sum);
   }
   void save(SavedState& saved, const std::string& prefix) const {
     save_vector(saved, prefix + "/value", value);

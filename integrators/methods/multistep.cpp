@@ -70,8 +70,8 @@ std::span<const MethodInfo> multistep_list() {
   static const MethodInfo list[] = {
       bashforth("adams_bashforth_1", "ab1", 1, "Adams-Bashforth, order 1, one step: explicit Euler", 0),
       bashforth("adams_bashforth_2", "ab2", 2, "Adams-Bashforth, order 2, two steps: one evaluation a step", 0),
-      bashforth("adams_bashforth_3", "ab3", 3, "Adams-Bashforth, order 3, three steps: one evaluation a step", 0.7236),
-      bashforth("adams_bashforth_4", "ab4", 4, "Adams-Bashforth, order 4, four steps: one evaluation a step", 0.43),
+      bashforth("adams_bashforth_3", "ab3", 3, "Adams-Bashforth, order 3, three steps: one evaluation a step", 0.72363),
+      bashforth("adams_bashforth_4", "ab4", 4, "Adams-Bashforth, order 4, four steps: one evaluation a step", 0.42999),
       bashforth("adams_bashforth_5", "ab5", 5, "Adams-Bashforth, order 5, five steps: one evaluation a step", 0),
       bashforth("adams_bashforth_6", "ab6", 6, "Adams-Bashforth, order 6, six steps: one evaluation a step", 0),
       moulton("adams_moulton_1", "am1", 1,
@@ -80,8 +80,8 @@ std::span<const MethodInfo> multistep_list() {
               "Adams-Moulton, order 2, one step: the trapezoidal rule by fixed-point iteration", 0),
       moulton("adams_moulton_3", "am3", 3, "Adams-Moulton, order 3, two steps, by fixed-point iteration", 0),
       moulton("adams_moulton_4", "am4", 4, "Adams-Moulton, order 4, three steps, by fixed-point iteration", 0),
-      moulton("adams_moulton_5", "am5", 5, "Adams-Moulton, order 5, four steps, by fixed-point iteration", 0),
-      moulton("adams_moulton_6", "am6", 6, "Adams-Moulton, order 6, five steps, by fixed-point iteration", 0),
+      moulton("adams_moulton_5", "am5", 5, "Adams-Moulton, order 5, four steps, by fixed-point iteration", 1.21193),
+      moulton("adams_moulton_6", "am6", 6, "Adams-Moulton, order 6, five steps, by fixed-point iteration", 1.37636),
       {.name = "adams_pece",
        .aliases = "adams abm shampine_gordon",
        .summary = "Adams predictor and corrector with steps and orders (1 to 12) of its own choice, two evaluations a "
@@ -92,9 +92,9 @@ std::span<const MethodInfo> multistep_list() {
        .adaptive = true,
        .make = pece<double>,
        .make_quad = pece<Quad>},
-      stormer_cowell("stormer_cowell_12", "stormer_12", 12, 0),
-      stormer_cowell("stormer_cowell_13", "stormer_13", 13, 0),
-      stormer_cowell("stormer_cowell_14", "stormer_14", 14, 0),
+      stormer_cowell("stormer_cowell_12", "stormer_12", 12, 0.12601),
+      stormer_cowell("stormer_cowell_13", "stormer_13", 13, 0.09055),
+      stormer_cowell("stormer_cowell_14", "stormer_14", 14, 0.06497),
   };
   return list;
 }

@@ -102,6 +102,7 @@ std::span<const MethodInfo> nystrom_list() {
        .family = "runge-kutta-nystroem",
        .order = 12,
        .adaptive = true,
+       .stability_limit = 8.3262,
        .make = nystrom<double>,
        .make_quad = nystrom<Quad>},
   };

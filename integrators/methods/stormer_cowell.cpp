@@ -30,6 +30,7 @@ template <class Real> void StormerCowell<Real>::bind(const VectorField<Real>& f)
   sums_.resize(half);
   y_.resize(f.size());
   a_.resize(half);
+  past_.resize(half);
   h_ = 0;
 }
 
@@ -59,37 +60,45 @@ Stepped StormerCowell<Real>::step(VectorField<Real>& f, const Real& t, Vector<Re
     if (pulls_.count() == needed) set_up_sums(h);
     return {.h = h};
   }
-  for (Index i = 0; i < half; ++i) y[i] = sums_.value[i] + (sums_.low[i] + past(next_position_, i));
+  past(next_position_);
+  for (Index i = 0; i < half; ++i) y[i] = sums_.value[i] + (sums_.low[i] + past_[i]);
   remember(t + step);
+  past(velocity_);
   for (Index i = 0; i < half; ++i) {
     sum_.add(i, pulls_[0][i]);
     sums_.add(i, sum_.value[i]);
     sums_.add(i, sum_.low[i]);
-    y[half + i] = (sum_.value[i] + (sum_.low[i] + past(velocity_, i))) / step;
+    y[half + i] = (sum_.value[i] + (sum_.low[i] + past_[i])) / step;
   }
   return {.h = h};
 }
 
-/// sum w_j h^2 a_(n-j), the oldest first: their weights are the least.
-template <class Real> Real StormerCowell<Real>::past(const std::vector<Real>& weights, Index i) const {
-  Real total(0);
-  for (std::size_t j = weights.size(); j-- > 0;) total += weights[j] * pulls_[j][i];
-  return total;
+/// past_ = sum w_j h^2 a_(n-j), the oldest first: their weights are the least.
+template <class Real> void StormerCowell<Real>::past(const std::vector<Real>& weights) {
+  const Index half = a_.size();
+  past_.setZero();
+  for (std::size_t j = weights.size(); j-- > 0;) {
+    const Real* pull = pulls_[j].data();
+    for (Index i = 0; i < half; ++i) past_[i] += weights[j] * pull[i];
+  }
 }
 
 /// D and S at the present point, from where the start has arrived.
 template <class Real> void StormerCowell<Real>::set_up_sums(double h) {
   const Index half = a_.size();
   const Real step(h);
+  // h v = D + ...,  q = S - D + ...
+  past(velocity_);
   for (Index i = 0; i < half; ++i) {
-    // h v = D + ...,  q = S - D + ...
-    const Real speed = step * y_.value[half + i];
-    sum_.value[i] = speed;
+    sum_.value[i] = step * y_.value[half + i];
     sum_.low[i] = step * y_.low[half + i];
-    sum_.add(i, -past(velocity_, i));
+    sum_.add(i, -past_[i]);
+  }
+  past(position_);
+  for (Index i = 0; i < half; ++i) {
     sums_.value[i] = y_.value[i];
     sums_.low[i] = y_.low[i];
-    sums_.add(i, -past(position_, i));
+    sums_.add(i, -past_[i]);
     sums_.add(i, sum_.value[i]);
     sums_.add(i, sum_.low[i]);
   }

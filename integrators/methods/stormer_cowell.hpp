@@ -34,7 +34,7 @@ template <class Real> class StormerCowell final : public Method<Real> {
 
  private:
   void set_up_sums(double h);
-  Real past(const std::vector<Real>& weights, Index i) const;
+  void past(const std::vector<Real>& weights);
 
   std::string_view name_;
   int order_;
@@ -43,7 +43,7 @@ template <class Real> class StormerCowell final : public Method<Real> {
   History<Real> pulls_;                 ///< h^2 a, the newest is a_n
   CompensatedVector<Real> sum_, sums_;  ///< D_n and S_n
   CompensatedVector<Real> y_;           ///< during the start
-  Vector<Real> a_;
+  Vector<Real> a_, past_;
   Real h2_ = Real(0);
   double h_ = 0;
 };
