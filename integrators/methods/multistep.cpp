@@ -86,7 +86,7 @@ std::span<const MethodInfo> multistep_list() {
        .aliases = "adams abm shampine_gordon",
        .summary = "Adams predictor and corrector with steps and orders (1 to 12) of its own choice, two evaluations a "
                   "step, dense output; with adaptive = false order 4 and fixed steps",
-       .source = "ShampineGordon1975 HairerNoersettWanner1993",
+       .source = "ShampineGordon1975",
        .family = "multistep",
        .order = 12,
        .adaptive = true,

@@ -97,6 +97,28 @@ TEST_CASE("a simulation with a multistep method goes on bit for bit and as if no
   }
 }
 
+TEST_CASE("a simulation with steps of the method's choice goes on bit for bit, watched or not", "[methods]") {
+  for (const char* name : {"adams_pece", "gragg_bulirsch_stoer", "dprkn_12"}) {
+    const auto make = [&](bool watched) {
+      Simulation<double> simulation(
+          test::outer_planets(), classical(Gravity{.G = test::outer_G}, method(name, {.rtol = 1e-11, .atol = 1e-13})));
+      if (watched) simulation.every_time(777, Energy{});
+      return simulation;
+    };
+    CAPTURE(name);
+    auto whole = make(false), watched = make(true), first = make(true), second = make(true);
+    REQUIRE(whole.run_until(40000).ok());
+    REQUIRE(watched.run_until(40000).ok());
+    CHECK(test::same_bits(whole.particles(), watched.particles()));
+    CHECK(whole.evaluations().force == watched.evaluations().force);
+    REQUIRE(first.run_until(17000).ok());
+    second.restore(first.save());
+    REQUIRE(second.run_until(40000).ok());
+    CHECK(test::same_bits(whole.particles(), second.particles()));
+    CHECK(whole.evaluations().force == second.evaluations().force);
+  }
+}
+
 TEST_CASE("a change of the step starts a multistep method again, and no error comes of it", "[methods]") {
   for (const RestartChoice& choice : restart_choices()) {
     if (choice.options.rtol) continue;
