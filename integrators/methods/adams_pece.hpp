@@ -12,8 +12,8 @@ namespace noether {
 ///
 /// The rates of the past stand as modified divided differences; with s = (t - t_n) / h in the step from t_n,
 ///
-///     f(t) = sum_(j < k) B_j(s) d*_j + B_k(s) d_k,    B_j(s) = prod_(i < j) (s h + t_n - t_(n-i)) / (h + t_n -
-///     t_(n-i)),
+///     f(t) = sum_(j < k) B_j(s) d*_j + B_k(s) d_k,
+///     B_j(s) = prod_(i < j) (s h + t_n - t_(n-i)) / (h + t_n - t_(n-i)),
 ///
 /// where d_k is that difference with the predicted rate at the end. The integral of this polynomial is the corrected
 /// step, and its dense output: the same at both ends of every step as the run itself. Step and order follow Shampine
