@@ -78,7 +78,7 @@ TEST_CASE("implicit methods have their orders on a nonlinear system of first ord
     INFO(name);
     CHECK(methods::find(name)->order == order);
     // Multistep methods and Rodas4 come to their slope late.
-    const double slope = slope_on_smooth(fixed_steps(name), 96);
+    const double slope = slope_on_smooth(with_fixed_steps(name), 96);
     CHECK(std::abs(slope - order) < (name == "rodas_4" || name == "bdf_3" ? 0.55 : 0.25));
   }
 }
@@ -86,7 +86,7 @@ TEST_CASE("implicit methods have their orders on a nonlinear system of first ord
 TEST_CASE("implicit methods have their orders on the nonlinear motion of a particle") {
   for (const auto& [name, order] : implicit_methods) {
     INFO(name);
-    CHECK(std::abs(slope_on_henon_heiles(fixed_steps(name), order > 4 ? 48 : 96) - order) < 0.15);
+    CHECK(std::abs(slope_on_henon_heiles(with_fixed_steps(name), order > 4 ? 48 : 96) - order) < 0.15);
   }
 }
 
@@ -96,7 +96,7 @@ TEST_CASE("orders hold in extended precision, where double has none left to show
     std::vector<ErrorPoint> points;
     for (const long n : {128, 256}) {
       const double h = 1.0 / static_cast<double>(n);
-      points.push_back({h, apart(march<Quad>(Smooth{}, fixed_steps(name), start, h, n).y, end)});
+      points.push_back({h, apart(march<Quad>(Smooth{}, with_fixed_steps(name), start, h, n).y, end)});
     }
     INFO(name << "\n" << to_text(points));
     CHECK(std::abs(fitted_slope(points) - order) < 0.12);
@@ -109,9 +109,9 @@ TEST_CASE("a particle and the same system of first order go the same way") {
   y << 0.18, 0.18, 0.18, 0.18;
   for (const auto& [name, order] : implicit_methods) {
     INFO(name);
-    auto integrator = classical(HenonHeilesField{}, fixed_steps(name));
+    auto integrator = classical(HenonHeilesField{}, with_fixed_steps(name));
     const auto motion = motion_of(run(integrator, start, 0.125, 40));
-    const auto reached = march<double>(HenonHeilesSystem{}, fixed_steps(name), y, 0.125, 40);
+    const auto reached = march<double>(HenonHeilesSystem{}, with_fixed_steps(name), y, 0.125, 40);
     Vector<double> same(4);
     same << motion.x[0], motion.x[1], motion.v[0], motion.v[1];
     CHECK(apart(same, reached.y) < 2e-14);
@@ -148,7 +148,7 @@ TEST_CASE("BDF climbs to its fifth order where the solution is smooth") {
 TEST_CASE("dense output is as good as the methods: order 3, 4 and that of the polynomial itself") {
   const auto error_inside = [](const std::string& name, double h) {
     const auto field = field_of(Smooth{}, Smooth::solution<double>(0));
-    const auto choice = fixed_steps(name);
+    const auto choice = with_fixed_steps(name);
     const auto made = make_method<double>(*choice.info, choice.options);
     made->bind(*field);
     Vector<double> y = Smooth::solution<double>(0.5), inside(2);
@@ -220,15 +220,15 @@ TEST_CASE("implicit methods go on from a saved run with the same bits") {
   for (const std::string name : {"rodas_4", "rodas_5p", "bdf"}) {
     INFO(name);
     const MethodChoice choice = method(name, {.rtol = 1e-5, .atol = 1e-10});
-    check(classical(Robertson{}, choice), kinetics);
+    check(classical(Kinetics{}, choice), kinetics);
     check(classical(heat, choice), line);
     check(classical(Gravity{.G = 1}, choice), four_bodies());
   }
   for (const auto& [name, order] : implicit_methods) {
     INFO(name);
-    check(classical(Robertson{}, fixed_steps(name)), kinetics);
-    check(classical(heat, fixed_steps(name)), line);
-    check(classical(Gravity{.G = 1}, fixed_steps(name)), four_bodies());
+    check(classical(Kinetics{}, with_fixed_steps(name)), kinetics);
+    check(classical(heat, with_fixed_steps(name)), line);
+    check(classical(Gravity{.G = 1}, with_fixed_steps(name)), four_bodies());
   }
 }
 

@@ -63,8 +63,8 @@ struct Rotation {
 
 /// Robertson's kinetics: three rates that are eleven decades apart.
 /// @source Robertson1966
-struct Robertson {
-  static std::string_view name() { return "robertson"; }
+struct Kinetics {
+  static std::string_view name() { return "kinetics"; }
   static Index size() { return 3; }
   template <class Real> void rates(const Real& /*t*/, const Vector<Real>& y, Vector<Real>& dy) const {
     const Real slow = Real(0.04) * y[0], middle = Real(1e4) * y[1] * y[2], fast = Real(3e7) * y[1] * y[1];
@@ -75,9 +75,9 @@ struct Robertson {
 };
 
 /// Prothero and Robinson's y' = lambda (y - phi) + phi', phi = sin(t + 1/4): the solution is phi, however stiff.
-struct ProtheroRobinson {
+struct StiffPull {
   double lambda = -1e6;
-  static std::string_view name() { return "prothero_robinson"; }
+  static std::string_view name() { return "stiff_pull"; }
   static Index size() { return 1; }
   template <class Real> void rates(const Real& t, const Vector<Real>& y, Vector<Real>& dy) const {
     using std::cos, std::sin;
@@ -121,7 +121,7 @@ struct Heat {
 };
 
 /// The method of a name, with steps of one length.
-inline MethodChoice fixed_steps(const std::string& name) {
+inline MethodChoice with_fixed_steps(const std::string& name) {
   const MethodInfo* info = methods::find(name);
   return method(name, {.adaptive = info != nullptr && info->adaptive ? std::optional(false) : std::nullopt});
 }

@@ -21,8 +21,8 @@ Vector<double> vector_of(std::initializer_list<double> list) {
 }
 
 /// y1 / y0 of one step on y' = lambda y, h = 1.
-double growth(const std::string& name, double lambda) {
-  return march<double>(Linear{.lambda = lambda}, fixed_steps(name), vector_of({1}), 1, 1).y[0];
+double gain_of_step(const std::string& name, double lambda) {
+  return march<double>(Linear{.lambda = lambda}, with_fixed_steps(name), vector_of({1}), 1, 1).y[0];
 }
 
 /// y' = lambda y with lambda = z (-cos(angle) + i sin(angle)).
@@ -42,8 +42,8 @@ struct Spiral {
 bool stable_at(const std::string& name, double angle) {
   for (double z = 0.05; z < 40; z *= 1.25) {
     const Spiral spiral{.z = z, .angle = angle * std::acos(-1.0) / 180};
-    const auto early = march<double>(spiral, fixed_steps(name), vector_of({1, 0}), 1, 60);
-    const auto late = march<double>(spiral, fixed_steps(name), vector_of({1, 0}), 1, 600);
+    const auto early = march<double>(spiral, with_fixed_steps(name), vector_of({1, 0}), 1, 60);
+    const auto late = march<double>(spiral, with_fixed_steps(name), vector_of({1, 0}), 1, 600);
     const double before = early.y.lpNorm<Eigen::Infinity>(), after = late.y.lpNorm<Eigen::Infinity>();
     if (!(after < 2 * before)) return false;
   }
@@ -91,14 +91,14 @@ TEST_CASE("the trapezoidal rule keeps an oscillation, whatever its step") {
 }
 
 TEST_CASE("far from the origin R is -1 for the trapezoidal rule, 0 for every L-stable method, as 1/z") {
-  CHECK(std::abs(growth("trapezoidal", -1e12) + 1) < 1e-11);
+  CHECK(std::abs(gain_of_step("trapezoidal", -1e12) + 1) < 1e-11);
   for (const std::string name : {"backward_euler", "sdirk_2", "sdirk_3", "sdirk_4", "rodas_4", "rodas_5p"}) {
     INFO(name);
-    const double far = std::abs(growth(name, -1e6)), farther = std::abs(growth(name, -1e8));
+    const double far = std::abs(gain_of_step(name, -1e6)), farther = std::abs(gain_of_step(name, -1e8));
     CHECK(far < 1e-4);
     CHECK(farther < 0.02 * far + 1e-9);
   }
-  CHECK(std::abs(growth("backward_euler", -1e6) * (1 + 1e6) - 1) < 1e-9);
+  CHECK(std::abs(gain_of_step("backward_euler", -1e6) * (1 + 1e6) - 1) < 1e-9);
 }
 
 TEST_CASE("BDF 1 and 2 are A-stable; 3 to 6 grow near the imaginary axis and are stable in the angles of the books") {
@@ -129,7 +129,7 @@ TEST_CASE("Robertson's kinetics go to t = 1e11 and end at the published values")
        std::vector<Run>{{"rodas_4", 3e-7, 1500}, {"rodas_5p", 3e-7, 1000}, {"bdf", 1e-4, 1500}}) {
     INFO(name);
     const auto choice = method(name, {.rtol = 1e-7, .atol = 1e-14});
-    const auto reached = march_to<double>(Robertson{}, choice, vector_of({1, 0, 0}), 1e11);
+    const auto reached = march_to<double>(Kinetics{}, choice, vector_of({1, 0, 0}), 1e11);
     REQUIRE_FALSE(reached.failure);
     for (Index i = 0; i < 3; ++i) CHECK(std::abs(reached.y[i] / published[i] - 1) < relative);
     CHECK(std::abs(reached.y[0] + reached.y[1] + reached.y[2] - 1) < 1e-10);  // the mass is a linear invariant
@@ -138,7 +138,7 @@ TEST_CASE("Robertson's kinetics go to t = 1e11 and end at the published values")
   }
   // BDF keeps its Jacobian and its factors.
   const auto bdf =
-      march_to<double>(Robertson{}, method("bdf", {.rtol = 1e-7, .atol = 1e-14}), vector_of({1, 0, 0}), 1e11);
+      march_to<double>(Kinetics{}, method("bdf", {.rtol = 1e-7, .atol = 1e-14}), vector_of({1, 0, 0}), 1e11);
   CHECK(bdf.evaluations.jacobian < bdf.steps / 20);
   CHECK(bdf.evaluations.force < 4 * bdf.steps);
 }
@@ -147,7 +147,7 @@ TEST_CASE("Newton's iteration finds the branch of Robertson's kinetics that is c
   // At y = (1, 0, 0) the matrix knows nothing of the fast reaction: the first update is off by a factor of 70.
   for (const std::string name : {"backward_euler", "sdirk_2", "sdirk_3"}) {
     INFO(name);
-    const auto reached = march<double>(Robertson{}, fixed_steps(name), vector_of({1, 0, 0}), 0.0625, 100);
+    const auto reached = march<double>(Kinetics{}, with_fixed_steps(name), vector_of({1, 0, 0}), 0.0625, 100);
     REQUIRE_FALSE(reached.failure);
     for (Index i = 0; i < 3; ++i) CHECK(reached.y[i] > 0);
     CHECK(std::abs(reached.y[0] + reached.y[1] + reached.y[2] - 1) < 1e-14);
@@ -160,7 +160,7 @@ TEST_CASE("errors on Robertson's kinetics fall with the tolerance, down to eleve
     std::vector<ErrorPoint> points;
     for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
       const auto choice = method(name, {.rtol = tolerance, .atol = 1e-6 * tolerance});
-      const auto reached = march_to<double>(Robertson{}, choice, vector_of({1, 0, 0}), 1e11);
+      const auto reached = march_to<double>(Kinetics{}, choice, vector_of({1, 0, 0}), 1e11);
       points.push_back({tolerance, std::abs(reached.y[0] / published - 1)});
     }
     INFO(name << "\n" << to_text(points));
@@ -172,13 +172,13 @@ TEST_CASE("two methods in extended precision agree on Robertson's kinetics at t 
   Vector<Quad> start(3);
   start << Quad(1), Quad(0), Quad(0);
   const auto by = [&](const std::string& name, double end) {
-    return march_to<Quad>(Robertson{}, method(name, {.rtol = 1e-12, .atol = 1e-22}), start, end).y;
+    return march_to<Quad>(Kinetics{}, method(name, {.rtol = 1e-12, .atol = 1e-22}), start, end).y;
   };
   for (const double end : {0.4, 4e10}) {
     const Vector<Quad> a = by("rodas_5p", end), b = by("bdf", end);
     for (Index i = 0; i < 3; ++i) CHECK(std::abs(static_cast<double>(a[i] / b[i] - Quad(1))) < 1e-8);
     const auto c =
-        march_to<double>(Robertson{}, method("rodas_5p", {.rtol = 1e-10, .atol = 1e-20}), vector_of({1, 0, 0}), end);
+        march_to<double>(Kinetics{}, method("rodas_5p", {.rtol = 1e-10, .atol = 1e-20}), vector_of({1, 0, 0}), end);
     for (Index i = 0; i < 3; ++i) CHECK(std::abs(c.y[i] / static_cast<double>(a[i]) - 1) < 1e-8);
   }
 }
@@ -198,7 +198,7 @@ TEST_CASE("order reduction on Prothero and Robinson's problem, lambda = -1e6: a 
     for (const long n : {16, 32, 64, 128}) {
       const double h = 2.0 / static_cast<double>(n);
       const auto reached = march<Quad>(
-          ProtheroRobinson{}, fixed_steps(name),
+          StiffPull{}, with_fixed_steps(name),
           [] {
             Vector<Quad> y(1);
             y[0] = sin(Quad(0.25));
