@@ -35,6 +35,7 @@ Json json_of(const io::FileInfo& info) {
                        {"last_time", info.last_time},
                        {"time_unit", info.time_unit},
                        {"particles", std::int64_t{info.particles}},
+                       {"variables", std::int64_t{info.variables}},
                        {"frames", std::int64_t{info.frames}},
                        {"digest", text_or_null(info.digest)},
                        {"outcome", text_or_null(info.outcome)},
@@ -50,7 +51,9 @@ void print_text(const std::string& file, const io::FileInfo& info) {
   std::string state = info.complete ? "complete" : "not complete";
   if (checkpoint) state = info.outcome.empty() ? "of an unfinished run" : "of a run that is " + info.outcome;
   fmt::print("{}: {}, {}\n", file, info.kind, state);
-  fmt::print("  {} particles, step {}, time {:.9g}{}\n", info.particles, info.last_step, info.last_time,
+  const bool of_system = info.variables > 0;
+  fmt::print("  {} {}, step {}, time {:.9g}{}\n", of_system ? info.variables : info.particles,
+             of_system ? "variables" : "particles", info.last_step, info.last_time,
              info.time_unit.empty() || info.time_unit == "1" ? "" : " " + info.time_unit);
   if (!checkpoint) fmt::print("  {} frames\n", info.frames);
   for (const io::MonitorSummary& one : info.monitors) {

@@ -192,6 +192,30 @@ PlotOrbits against_time(const io::Frames& all, const TimeUnit& unit) {
   return picture;
 }
 
+/// The variables of a system against time; of many, some at equal distances.
+PlotOrbits variables_against_time(const io::Frames& all, const TimeUnit& unit) {
+  static constexpr std::size_t most = 8;
+  PlotOrbits picture;
+  picture.title = "Variables";
+  picture.x_label = with_unit("time", unit.name);
+  picture.y_label = "y";
+  const std::size_t n = all.variable_names.size(), shown = std::min(n, most);
+  for (std::size_t k = 0; k < shown; ++k) {
+    const std::size_t i = shown < 2 ? 0 : k * (n - 1) / (shown - 1);
+    PlotOrbit curve{.name = all.variable_names[i], .color = k};
+    std::vector<PlotPoint> points;
+    for (const io::Frame& frame : all.frames) points.push_back({frame.time / unit.length, frame.variables[i]});
+    curve.end = points.back();
+    curve.path = thinned(points, most_path_points);
+    picture.orbits.push_back(std::move(curve));
+  }
+  fit(picture);
+  const double air = 0.08 * std::max(picture.high.y - picture.low.y, 1e-9);
+  picture.low.y -= air;
+  picture.high.y += air;
+  return picture;
+}
+
 bool all_on_one_line(const io::Frames& all) {
   double x = 0, y = 0;
   for (const io::Frame& frame : all.frames) {
@@ -246,6 +270,7 @@ PlotOrbit orbit_of(const io::Frames& all, std::size_t body, bool relative, doubl
 std::vector<PlotOrbits> read_orbits(const io::Frames& all, const SceneValue& scene, const TimeUnit& unit,
                                     const std::filesystem::path& file) {
   const std::size_t n = all.masses.size();
+  if (!all.frames.empty() && !all.variable_names.empty()) return {variables_against_time(all, unit)};
   if (all.frames.empty() || n == 0) return {};
   if (all_on_one_line(all)) return {against_time(all, unit)};
   double others = 0;
@@ -320,8 +345,8 @@ std::optional<PlotError> read_error(const io::MonitorSeries& monitor, double tim
 std::string method_line(const SceneValue& scene) {
   std::string line;
   const std::string step = text_at(scene, {"integrator", "step"});
-  for (const std::string& part : {text_at(scene, {"hamiltonian", "type"}), text_at(scene, {"integrator", "method"}),
-                                  step.empty() ? step : "step " + step}) {
+  for (const std::string& part : {text_at(scene, {"hamiltonian", "type"}), text_at(scene, {"system", "type"}),
+                                  text_at(scene, {"integrator", "method"}), step.empty() ? step : "step " + step}) {
     if (!part.empty()) line += (line.empty() ? "" : ", ") + part;
   }
   return line;

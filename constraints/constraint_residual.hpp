@@ -13,6 +13,8 @@ class ConstraintResidual {
  public:
   explicit ConstraintResidual(ConstraintSet set = ConstraintSet()) : set_(std::move(set)) {}
 
+  static constexpr bool needs_particles = true;
+
   static constexpr auto describe() {
     return part<ConstraintResidual>(
         "constraint_residual", "the largest violation of a constraint, and whose it is",

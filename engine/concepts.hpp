@@ -93,6 +93,7 @@ struct IntegratorClaims {
   bool keeps_angular_momentum = true;
   Index constraints = 0;            ///< degrees of freedom they take
   double constraint_tolerance = 0;  ///< relative violation that is left on purpose; 0: rounding
+  bool variables = false;           ///< it advances the variables of a first-order system, not particles
 };
 
 /// How far to go: so many steps, and with a free clock not past `limit` [time].

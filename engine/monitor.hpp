@@ -47,7 +47,8 @@ struct MonitorReport {
 /// Watches settled states. Optional members: `wanted()` (energy?), `series()` and `scale()` (what files store),
 /// `report()`, `record(Sample)` (receives every monitor's samples: writers), `flush()`, `finish(Outcome)`,
 /// `steps_in_a_row()` (looks at so many steps from each multiple of its cadence on), `forget()` (somebody has edited
-/// the run), and a static `looks_last` for what must see a moment after all others: checkpoints.
+/// the run), a static `looks_last` for what must see a moment after all others (checkpoints), and a static
+/// `needs_particles` for what makes no sense of a system that has variables instead.
 template <class M, class Real>
 concept Monitor = requires(M& m, const Snapshot<Real>& snapshot) {
   m.observe(snapshot);
@@ -60,6 +61,7 @@ template <class Real> struct MonitorBase {
   virtual std::string name() const = 0;
   virtual bool records() const = 0;
   virtual bool looks_last() const = 0;
+  virtual bool needs_particles() const = 0;
   virtual Wanted wanted() const = 0;
   virtual void observe(const Snapshot<Real>&) = 0;
   virtual std::vector<Series> series() const = 0;
@@ -82,6 +84,9 @@ template <class M, class Real> struct MonitorModel final : MonitorBase<Real> {
   }
   bool looks_last() const override {
     return requires { M::looks_last; };
+  }
+  bool needs_particles() const override {
+    return requires { M::needs_particles; };
   }
   Wanted wanted() const override {
     if constexpr (requires { monitor.wanted(); }) return monitor.wanted();
@@ -134,6 +139,7 @@ template <class Real = double> class AnyMonitor {
   std::string name() const { return held_->name(); }
   bool records() const { return held_->records(); }
   bool looks_last() const { return held_->looks_last(); }
+  bool needs_particles() const { return held_->needs_particles(); }
   Wanted wanted() const { return held_->wanted(); }
   void observe(const Snapshot<Real>& snapshot) { held_->observe(snapshot); }
   std::vector<Series> series() const { return held_->series(); }

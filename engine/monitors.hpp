@@ -93,6 +93,8 @@ class VectorInvariant {
 class Momentum : public VectorInvariant {
  public:
   Momentum() : VectorInvariant("mass length/time", false) {}
+  static constexpr bool needs_particles = true;
+
   static constexpr auto describe() {
     return part<Momentum>("momentum", "linear momentum and its relative error",
                           formula("P = sum m_i v_i, error relative to sum m_i |v_i|"),
@@ -108,6 +110,8 @@ class Momentum : public VectorInvariant {
 class AngularMomentum : public VectorInvariant {
  public:
   AngularMomentum() : VectorInvariant("mass length^2/time", true) {}
+  static constexpr bool needs_particles = true;
+
   static constexpr auto describe() {
     return part<AngularMomentum>("angular_momentum", "angular momentum, its relative error and its direction",
                                  formula("L = sum m_i x_i cross v_i, error relative to sum m_i |x_i| |v_i|"),
@@ -122,6 +126,8 @@ class AngularMomentum : public VectorInvariant {
 /// Position and velocity of the centre of mass; `worst()` is how far it has left its straight line [length].
 class CenterOfMass {
  public:
+  static constexpr bool needs_particles = true;
+
   static constexpr auto describe() {
     return part<CenterOfMass>("center_of_mass", "position and velocity of the centre of mass",
                               formula("X = sum m_i x_i / sum m_i;  worst: largest |X(t) - X(0) - t V(0)|"),

@@ -25,6 +25,8 @@ class Elements {
   Elements() = default;
   explicit Elements(double constant) : G(constant) {}
 
+  static constexpr bool needs_particles = true;
+
   static constexpr auto describe() {
     return part<Elements>("elements", "osculating elements a, e, inc, Omega, omega, M relative to particle 0",
                           formula("x, v relative to particle 0;  mu = G (m_0 + m_i)"),
@@ -57,6 +59,8 @@ class Elements {
 /// @cost O(n m) with m massive bodies, and one force evaluation
 class ClosestApproach {
  public:
+  static constexpr bool needs_particles = true;
+
   static constexpr auto describe() {
     return part<ClosestApproach>(
         "closest_approach", "smallest distance of two particles so far, and when it was",

@@ -1,5 +1,5 @@
 #pragma once
-/// All state of the particles, and nothing else.
+/// All state of the particles, or of a system without any, and nothing else.
 
 #include "engine/clock.hpp"
 #include "engine/column.hpp"
@@ -125,6 +125,19 @@ template <class Real = double> class ParticleSystem {
   /// Variables y of a first-order system, y' = f(t, y); empty where particles carry all state.
   const std::vector<Real>& variables() const { return variables_; }
   std::vector<Real>& variables() { return variables_; }
+  /// Names of the variables; empty where they have none.
+  const std::vector<std::string>& variable_names() const { return variable_names_; }
+  /// Gives variables and their names, or no names at all.
+  void set_variables(std::vector<Real> values, std::vector<std::string> names = {}) {
+    NOETHER_EXPECTS(names.empty() || names.size() == values.size(), "there is a name for each variable, or for none");
+    variables_ = std::move(values);
+    variable_names_ = std::move(names);
+  }
+  /// The name of variable `i`; "y[3]" where variables have none.
+  std::string variable_name(Index i) const {
+    if (variable_names_.empty()) return "y[" + std::to_string(i) + "]";
+    return variable_names_[static_cast<std::size_t>(i)];
+  }
 
   const std::vector<std::int64_t>& ids() const { return ids_; }
   const std::vector<std::string>& names() const { return names_; }
@@ -235,14 +248,16 @@ template <class Real = double> class ParticleSystem {
       std::visit([&, &key = name](const auto& values) { other.restore_column(key, detail::widened_to<Other>(values)); },
                  column);
     }
-    for (const Real& y : variables_) other.variables().push_back(static_cast<Other>(y));
+    std::vector<Other> variables;
+    for (const Real& y : variables_) variables.push_back(static_cast<Other>(y));
+    other.set_variables(std::move(variables), variable_names_);
     return other;
   }
 
   /// Becomes a copy of `other`; where the particles are the same ones, only their state is copied.
   /// @cost O(n); no allocation when sizes agree
   void assign_state(const ParticleSystem& other) {
-    if (ids_ != other.ids_) {
+    if (ids_ != other.ids_ || variables_.size() != other.variables_.size()) {
       *this = other;
       return;
     }
@@ -300,6 +315,7 @@ template <class Real = double> class ParticleSystem {
   VectorColumn<Real> x_, v_;
   ScalarColumn<Real> m_;
   std::vector<Real> variables_;
+  std::vector<std::string> variable_names_;
   Clock<Real> clock_;
   Phase phase_;
   std::optional<LowWords> low_;

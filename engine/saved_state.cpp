@@ -73,6 +73,19 @@ template <class Real> Clock<Real> load_clock(const SavedState& saved) {
   return Clock<Real>::from_raw(raw);
 }
 
+/// Variables of a first-order system; a run of particles has saved none.
+template <class Real> void load_variables(const SavedState& saved, ParticleSystem<Real>& s) {
+  std::vector<Real> values;
+  std::vector<std::string> names;
+  if (saved.count("variables") != 0) load_value(saved, "variables", values);
+  if (saved.count("variable_names") != 0) load_value(saved, "variable_names", names);
+  if (!names.empty() && names.size() != values.size()) {
+    throw Error("the saved state has " + std::to_string(values.size()) + " variables and names for " +
+                std::to_string(names.size()));
+  }
+  s.set_variables(std::move(values), std::move(names));
+}
+
 Phase load_phase(const SavedState& saved) {
   const auto& phase = detail::array_of<std::int64_t>(saved, "phase");
   return {.coordinates = detail::enumerator(detail::element(phase, 0), Coordinates::democratic),
@@ -103,6 +116,8 @@ template <class Real> SavedState save_particles(const ParticleSystem<Real>& s) {
                                              s.phase().pending ? 1 : 0};
   saved["units"] = std::vector<std::string>{std::string(s.units().name)};
   saved["next_id"] = std::vector<std::int64_t>{s.next_id()};
+  if (!s.variables().empty()) save_value(saved, "variables", s.variables());
+  if (!s.variable_names().empty()) saved["variable_names"] = s.variable_names();
   save_extra_columns(saved, s);
   return saved;
 }
@@ -129,6 +144,7 @@ template <class Real> ParticleSystem<Real> load_particles(const SavedState& save
   }
   s.clock() = load_clock<Real>(saved);
   s.phase() = load_phase(saved);
+  load_variables(saved, s);
   load_extra_columns(saved, s);
   return s;
 }

@@ -40,8 +40,8 @@ template <class Real> std::int64_t Simulation<Real>::Schedule::next(std::int64_t
 template <class Real>
 Simulation<Real>::Simulation(ParticleSystem<Real> particles, AnyIntegrator<Real> integrator, Clock<Real> clock)
     : raw_(std::move(particles)), copy_(raw_), mapped_(raw_), integrator_(std::move(integrator)) {
-  if (raw_.size() == 0) throw Error("there are no particles; a run needs at least one");
   const IntegratorClaims claims = integrator_.claims();
+  check_state(claims);
   if (claims.clock != clock.mode()) {
     throw Error(fmt::format("method '{}' {}", claims.method,
                             claims.clock == ClockMode::fixed
@@ -54,6 +54,20 @@ Simulation<Real>::Simulation(ParticleSystem<Real> particles, AnyIntegrator<Real>
   integrator_.bind(raw_);
   copy_ = raw_;
   mapped_ = raw_;
+}
+
+template <class Real> void Simulation<Real>::check_state(const IntegratorClaims& claims) const {
+  if (raw_.size() == 0 && raw_.variables().empty()) throw Error("there are no particles; a run needs at least one");
+  if (raw_.size() > 0 && !raw_.variables().empty()) {
+    throw Error("there are particles as well as variables; a run is of particles or of a first-order system");
+  }
+  if (claims.variables == raw_.variables().empty()) {
+    throw Error(claims.variables
+                    ? fmt::format("system '{}' has variables, but it was given particles", claims.hamiltonian)
+                    : fmt::format("method '{}' moves particles, but it was given the variables of a system of first "
+                                  "order; use a method for y' = f, such as 'dop853' or 'rodas_5p'",
+                                  claims.method));
+  }
 }
 
 template <class Real> double Simulation<Real>::checked(double dt) {
@@ -101,6 +115,10 @@ template <class Real> void Simulation<Real>::schedule(Scheduled& added) {
 
 template <class Real> void Simulation<Real>::check_wanted(const Scheduled& added) const {
   const IntegratorClaims claims = integrator_.claims();
+  if (claims.variables && (added.monitor.needs_particles() || added.wanted.energy || added.wanted.action)) {
+    throw Error(fmt::format("monitor '{}' watches particles, but system '{}' has variables and none of them",
+                            added.name, claims.hamiltonian));
+  }
   if (added.wanted.energy && !claims.energy) {
     throw Error(fmt::format("monitor '{}' needs the energy, but a force of this run reports none", added.name));
   }
@@ -129,6 +147,15 @@ template <class Real> void Simulation<Real>::schedule_by_time(Scheduled& added) 
                             raw_.clock().dt()));
   }
   added.schedule.steps = steps;
+}
+
+template <class Real> void Simulation<Real>::stop_when(const StopRule& rule, std::int64_t steps) {
+  const IntegratorClaims claims = integrator_.claims();
+  if (claims.variables) {
+    throw Error(fmt::format("stop '{}' watches distances of particles, but system '{}' has variables and no particles",
+                            rule.kind == StopRule::Kind::escape ? "escape" : "collision", claims.hamiltonian));
+  }
+  stops_.push_back({positive(steps), StopCheck<Real>(rule)});
 }
 
 template <class Real> std::int64_t Simulation<Real>::steps_in(double duration) const {
@@ -369,6 +396,9 @@ template <class Real> double Simulation<Real>::next_time(double end) const {
 
 template <class Real> std::optional<Outcome> Simulation<Real>::fault(const ParticleSystem<Real>& s) const {
   using std::isfinite;
+  for (std::size_t i = 0; i < s.variables().size(); ++i) {
+    if (!isfinite(s.variables()[i])) return variable_fault(s, static_cast<Index>(i));
+  }
   if (s.positions().is_finite() && s.velocities().is_finite()) return std::nullopt;
   for (Index i = 0; i < s.size(); ++i) {
     for (int k = 0; k < 3; ++k) {
@@ -380,6 +410,14 @@ template <class Real> std::optional<Outcome> Simulation<Real>::fault(const Parti
     }
   }
   return std::nullopt;
+}
+
+template <class Real> Outcome Simulation<Real>::variable_fault(const ParticleSystem<Real>& s, Index i) const {
+  const std::string place = fmt::format("y[{}]", i), name = s.variable_name(i);
+  Failure failure{Outcome::Kind::diverged, -1, place, ""};
+  failure.message =
+      fmt::format("variable {} is not finite", name == place ? place : fmt::format("'{}', {},", name, place));
+  return failed(failure);
 }
 
 template <class Real> std::optional<Outcome> Simulation<Real>::settled_fault() {
@@ -427,7 +465,10 @@ template <class Real> void Simulation<Real>::begin_edit() {
 }
 
 template <class Real> void Simulation<Real>::end_edit() {
-  if (raw_.size() == 0) throw Error("the edit has left no particles; a run needs at least one");
+  if (raw_.size() == 0 && raw_.variables().empty()) {
+    throw Error("the edit has left no particles; a run needs at least one");
+  }
+  check_state(integrator_.claims());
   raw_.trim();
   integrator_.bind(raw_);
   copy_ = raw_;
@@ -478,6 +519,10 @@ template <class Real> void Simulation<Real>::restore(const SavedRun& saved) {
   };
   ParticleSystem<Real> particles = load_particles<Real>(saved.particles);
   if (particles.ids() != raw_.ids()) throw Error("the saved run has other particles than this one");
+  if (particles.variables().size() != raw_.variables().size()) {
+    throw Error(fmt::format("the saved run has {} variables, this one {}", particles.variables().size(),
+                            raw_.variables().size()));
+  }
   if (particles.clock().dt() != raw_.clock().dt()) {
     throw Error(
         fmt::format("the saved run has a step of {}, this one of {}", particles.clock().dt(), raw_.clock().dt()));

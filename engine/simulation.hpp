@@ -54,9 +54,8 @@ template <class Real = double> class Simulation {
     return attach<M>({.wall = positive(seconds)}, std::move(monitor));
   }
   /// Stops the run when `rule` holds, looked at every `steps`: `sim.stop_when(farther_than(100 * au), 4'000)`.
-  void stop_when(const StopRule& rule, std::int64_t steps) {
-    stops_.push_back({positive(steps), StopCheck<Real>(rule)});
-  }
+  /// @throws Error  for a system without particles
+  void stop_when(const StopRule& rule, std::int64_t steps);
 
   /// How many steps make `duration` [time].
   /// @throws Error  unless it is a whole number (to 1e-9), with the two nearest durations
@@ -139,6 +138,8 @@ template <class Real = double> class Simulation {
     register_last();
     return *monitors_.back().monitor.template get<M>();
   }
+  /// @throws Error  unless there are particles, or the variables of a system, as the integrator wants them
+  void check_state(const IntegratorClaims& claims) const;
   void register_last();
   void schedule(Scheduled& added);
   void schedule_by_time(Scheduled& added);
@@ -161,6 +162,7 @@ template <class Real = double> class Simulation {
   double next_time(double end) const;
   /// What is wrong with a state, if it is not finite.
   std::optional<Outcome> fault(const ParticleSystem<Real>& s) const;
+  Outcome variable_fault(const ParticleSystem<Real>& s, Index i) const;
   std::optional<Outcome> settled_fault();
   Outcome outcome(Outcome::Kind kind, std::string message = "") const;
   Outcome stopped(const StopReason& reason) const;

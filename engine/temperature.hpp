@@ -18,6 +18,8 @@ namespace noether {
 /// @cost O(n), no force evaluation
 class Temperature {
  public:
+  static constexpr bool needs_particles = true;
+
   static constexpr auto describe() {
     return part<Temperature>(
         "temperature", "kinetic temperature of the degrees of freedom that are left",

@@ -17,7 +17,8 @@ template <class Real> IntegratorClaims Classical<Real>::claims() const {
           .dissipative = field.dissipative,
           .time_dependent = field.time_dependent,
           .keeps_momentum = field.keeps_momentum,
-          .keeps_angular_momentum = field.keeps_angular_momentum && method.keeps_angular_momentum};
+          .keeps_angular_momentum = field.keeps_angular_momentum && method.keeps_angular_momentum,
+          .variables = field.variables};
 }
 
 template <class Real> void Classical<Real>::bind(ParticleSystem<Real>& s) {

@@ -23,14 +23,40 @@ namespace noether {
 ///       }
 ///     };
 ///
-/// It may also offer `Sparsity sparsity() const`, where its Jacobian can be other than 0, and
-/// `std::vector<double> start() const`, the values it begins with. Jacobians are found by dual numbers where `rates` is
-/// a template on the number type, else by differences.
+/// It may also offer `Sparsity sparsity() const`, where its Jacobian can be other than 0,
+/// `std::vector<double> start() const`, the values it begins with, `std::vector<std::string> names() const` of its
+/// variables, and `std::vector<double> exact(double t) const`, the solution from `start()`. Jacobians are found by dual
+/// numbers where `rates` is a template on the number type, else by differences.
 template <class S, class Real>
 concept FirstOrderSystem = requires(const S& system, const Real& t, const Vector<Real>& y, Vector<Real>& dy) {
   { system.size() } -> std::convertible_to<Index>;
   system.rates(t, y, dy);
 };
+
+/// The state a system begins with: `Simulation run(initial_state(Lorenz{}), classical(Lorenz{}, method("dop853")))`.
+/// @throws Error  if the system refuses its fields, or has other numbers of values, names and variables
+template <class S>
+ParticleSystem<double> initial_state(const S& system, std::vector<double> values,
+                                     const UnitSystem& units = unit_system("reduced")) {
+  const auto check = [&](std::size_t given, const char* what) {
+    if (static_cast<Index>(given) == system.size()) return;
+    throw Error(fmt::format("system '{}' has {} variables, but there are {} {}", detail::name_of(system), system.size(),
+                            given, what));
+  };
+  check_part(system);
+  check(values.size(), "values to start from");
+  std::vector<std::string> names;
+  if constexpr (requires { system.names(); }) {
+    names = system.names();
+    check(names.size(), "names");
+  }
+  ParticleSystem<double> s(units);
+  s.set_variables(std::move(values), std::move(names));
+  return s;
+}
+template <class S>
+  requires requires(const S& system) { system.start(); }
+ParticleSystem<double> initial_state(const S& system) { return initial_state(system, system.start()); }
 
 /// A first-order system as the classical methods see it; its variables stand in `ParticleSystem::variables`.
 template <class S, class Real> class SystemMotion final : public VectorField<Real> {
@@ -38,7 +64,9 @@ template <class S, class Real> class SystemMotion final : public VectorField<Rea
   explicit SystemMotion(S system) : system_(std::move(system)) {}
 
   std::unique_ptr<VectorField<Real>> clone() const override { return std::make_unique<SystemMotion>(*this); }
-  FieldClaims claims() const override { return {.name = detail::name_of(system_), .time_dependent = true}; }
+  FieldClaims claims() const override {
+    return {.name = detail::name_of(system_), .variables = true, .time_dependent = true};
+  }
   std::string signature() const override { return detail::signature_of(system_); }
 
   void bind(const ParticleSystem<Real>& s) override {

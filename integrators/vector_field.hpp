@@ -31,6 +31,7 @@ template <class Real> struct StageStates {
 /// What a vector field says of itself.
 struct FieldClaims {
   std::string name;                ///< of the Hamiltonian or the system
+  bool variables = false;          ///< y stands in `ParticleSystem::variables`: a system of first order
   bool second_order = false;       ///< y = (q, v) and q' = v
   bool velocity_dependent = true;  ///< for second order: v' depends on v
   bool time_dependent = false;

@@ -55,8 +55,23 @@ void write_csv(const TrajectoryReader& reader, const Frame& frame, fmt::memory_b
   }
 }
 
+/// A row for each frame, a column for each variable.
+void write_system(const TrajectoryReader& /*reader*/, const Frame& frame, fmt::memory_buffer& out) {
+  fmt::format_to(std::back_inserter(out), "{},{:.17g}", frame.step, frame.time);
+  for (const double y : frame.variables) fmt::format_to(std::back_inserter(out), ",{:.17g}", y);
+  out.push_back('\n');
+}
+
+std::string system_head(const Frames& shared) {
+  const bool unit = !shared.time_unit.empty() && shared.time_unit != "1";
+  std::string head = unit ? fmt::format("step,time [{}]", shared.time_unit) : "step,time";
+  for (const std::string& name : shared.variable_names) head += fmt::format(",{}", quoted_field(name));
+  return head.append("\n");
+}
+
 /// Units stand in brackets; the reduced system has none.
 std::string csv_head(const Frames& shared) {
+  if (!shared.variable_names.empty()) return system_head(shared);
   const auto unit = [](const std::string& symbol) {
     return symbol.empty() || symbol == "1" ? "" : " [" + symbol + "]";
   };
@@ -80,6 +95,13 @@ Index convert(const std::filesystem::path& file, const std::filesystem::path& ou
   });
   const TrajectoryReader reader(file);
   if (reader.frames() == 0) throw FileError("there are no frames to convert", {.file = file.string()});
+  const bool of_system = !reader.shared().variable_names.empty();
+  if (of_system && extension == ".xyz") {
+    throw Error(fmt::format("cannot convert to '{}': a system of variables has no particles; give a name that ends in "
+                            ".csv",
+                            out.string()),
+                {.value = extension});
+  }
   std::ofstream target(out, std::ios::binary);
   const auto check = [&] {
     if (!target)
@@ -87,7 +109,7 @@ Index convert(const std::filesystem::path& file, const std::filesystem::path& ou
   };
   check();
   if (extension == ".csv") target << csv_head(reader.shared());
-  const Write write = extension == ".csv" ? write_csv : write_xyz;
+  const Write write = of_system ? write_system : extension == ".csv" ? write_csv : write_xyz;
   for (Index k = 0; k < reader.frames(); ++k) {
     fmt::memory_buffer text;
     write(reader, reader.frame(k), text);

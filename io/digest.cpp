@@ -72,8 +72,21 @@ std::string digest(std::int64_t step, double time, std::span<const std::int64_t>
   return "sha256:" + hash.hex();
 }
 
+std::string system_digest(std::int64_t step, double time, std::span<const double> variables) {
+  static constexpr std::string_view head = "noether-system-1\n";
+  Sha256 hash;
+  hash.add(head.data(), head.size());
+  hash.add(step);
+  hash.add(static_cast<std::int64_t>(variables.size()));
+  hash.add(time);
+  hash.add(variables.data(), variables.size_bytes());
+  return "sha256:" + hash.hex();
+}
+
 std::string digest(const ParticleSystem<double>& settled) {
   const auto& clock = settled.clock();
+  const double time = clock.mode() == ClockMode::fixed ? clock.time_at(clock.step()) : clock.high();
+  if (!settled.variables().empty()) return system_digest(clock.step(), time, settled.variables());
   std::vector<std::int64_t> ids;
   std::vector<double> x, v, m;
   for (const Index i : id_order(settled.ids())) {
@@ -83,7 +96,6 @@ std::string digest(const ParticleSystem<double>& settled) {
     v.insert(v.end(), velocity.begin(), velocity.end());
     m.push_back(settled.masses()[i]);
   }
-  const double time = clock.mode() == ClockMode::fixed ? clock.time_at(clock.step()) : clock.high();
   return digest(clock.step(), time, ids, x, v, m);
 }
 

@@ -37,6 +37,9 @@ FileInfo checkpoint_info(const std::filesystem::path& file) {
   if (particles.count("id") != 0) {
     info.particles = static_cast<Index>(detail::array_of<std::int64_t>(particles, "id").size());
   }
+  if (particles.count("variables") != 0) {
+    info.variables = static_cast<Index>(detail::array_of<double>(particles, "variables").size());
+  }
   if (particles.count("units") != 0) {
     info.units = detail::element(detail::array_of<std::string>(particles, "units"), 0);
     info.time_unit = std::string(known_units(info.units, file).time);
@@ -83,6 +86,7 @@ FileInfo trajectory_info(const std::filesystem::path& path) {
   if (file.has("/noether/scene")) info.scene_toml = file.read_text("/noether/scene");
   info.time_unit = reader.shared().time_unit;
   info.particles = static_cast<Index>(reader.shared().ids.size());
+  info.variables = static_cast<Index>(reader.shared().variable_names.size());
   info.frames = reader.frames();
   info.monitors = summaries(file);
   if (info.frames == 0) {
@@ -92,8 +96,9 @@ FileInfo trajectory_info(const std::filesystem::path& path) {
   const Frame last = reader.frame(info.frames - 1);
   info.last_step = last.step;
   info.last_time = last.time;
-  info.digest =
-      digest(last.step, last.time, reader.shared().ids, last.positions, last.velocities, reader.shared().masses);
+  info.digest = info.variables > 0 ? system_digest(last.step, last.time, last.variables)
+                                   : digest(last.step, last.time, reader.shared().ids, last.positions, last.velocities,
+                                            reader.shared().masses);
   return info;
 }
 
@@ -146,7 +151,8 @@ void check_frames(const TrajectoryReader& reader, bool complete, std::vector<std
     times.push_back(frame.time);
     const auto finite = [](double x) { return std::isfinite(x); };
     if (!std::all_of(frame.positions.begin(), frame.positions.end(), finite) ||
-        !std::all_of(frame.velocities.begin(), frame.velocities.end(), finite)) {
+        !std::all_of(frame.velocities.begin(), frame.velocities.end(), finite) ||
+        !std::all_of(frame.variables.begin(), frame.variables.end(), finite)) {
       damaged.push_back(fmt::format("frame {} at step {} is not finite", k, frame.step));
     }
   }

@@ -38,7 +38,7 @@ struct FileInfo {
   std::int64_t last_step = 0;
   double last_time = 0;  ///< [time]
   std::string time_unit;
-  Index particles = 0, frames = 0;
+  Index particles = 0, variables = 0, frames = 0;  ///< of a first-order system: variables and no particles
   std::string digest;  ///< trajectory: of the last frame, from its data; checkpoint: as stored; may be empty
   std::string version, commit, simd, units;
   std::string outcome;  ///< checkpoint: how the run ended; empty while it is unfinished
@@ -47,11 +47,12 @@ struct FileInfo {
   std::vector<std::string> damaged;  ///< what `verify` found wrong, one line each
 };
 
-/// One moment of a trajectory; particles stand in id order.
+/// One moment of a trajectory; particles stand in id order. Of a first-order system, variables and nothing else.
 struct Frame {
   std::int64_t step = 0;
   double time = 0;                            ///< [time]
   std::vector<double> positions, velocities;  ///< (n, 3), row by row [length], [length/time]
+  std::vector<double> variables = {};         ///< (n)
 };
 
 /// All frames of a trajectory and what they share.
@@ -60,6 +61,7 @@ struct Frames {
   std::vector<std::int64_t> ids;
   std::vector<std::string> names;
   std::vector<double> masses;
+  std::vector<std::string> variable_names;  ///< "y[0]", "y[1]", ... where the system gives none
   std::vector<Frame> frames;
 };
 
@@ -73,7 +75,8 @@ FileInfo info(const std::filesystem::path& file);
 /// @throws FileError if there is no such file
 FileInfo verify(const std::filesystem::path& file);
 
-/// Rewrites a trajectory as extended XYZ (`.xyz`) or CSV (`.csv`: step, time, id, name, x ... vz, 17 digits).
+/// Rewrites a trajectory as extended XYZ (`.xyz`) or CSV (`.csv`: step, time, id, name, x ... vz, 17 digits; of a
+/// first-order system, which has no XYZ: step, time, and a column for each variable).
 /// @return the number of frames
 /// @throws Error for another extension; FileError if a file cannot be read or written
 Index convert(const std::filesystem::path& file, const std::filesystem::path& out);

@@ -41,8 +41,12 @@ void count(const Hdf5File& file, const std::string& path, std::uint64_t size, To
 Plan plan(const fs::path& path, std::uint64_t size) {
   const TrajectoryReader reader(path);
   const Hdf5File& file = reader.file();
-  for (const std::string& fixed : {particles_path + "/id", particles_path + "/mass", particles_path + "/species",
-                                   particles_path + "/name", std::string("/noether/scene")}) {
+  std::vector<std::string> complete = {particles_path + "/id", particles_path + "/mass", particles_path + "/species",
+                                       particles_path + "/name"};
+  if (file.has(system_path)) complete.clear();
+  if (file.has(system_path + "/name")) complete.push_back(system_path + "/name");
+  complete.emplace_back("/noether/scene");
+  for (const std::string& fixed : complete) {
     const Hdf5Dataset dataset = file.open(fixed);
     if (dataset.rows_within(size) < dataset.rows())
       throw FileError(fmt::format("damaged: '{}' is missing", fixed), {.file = path.string()});

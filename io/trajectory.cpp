@@ -83,18 +83,19 @@ struct MonitorDatasets {
   }
 };
 
-/// The datasets of the frames, open.
+/// The datasets of the frames, open: of particles, or of the variables of a system.
 struct FrameDatasets {
-  BufferedDataset<double> position, velocity;
+  BufferedDataset<double> position, velocity, variables;
   BufferedDataset<std::int64_t> step;
   BufferedDataset<double> time;
 
-  /// Position's values come last: a frame that has them has everything.
+  /// The values that readers go by come last: a frame that has them has everything.
   void write_out() {
     velocity.write_out();
     time.write_out();
     step.write_out();
     position.write_out();
+    variables.write_out();
   }
 };
 
@@ -196,6 +197,7 @@ class TrajectoryWriter::File {
     monitors_.clear();
     waiting_.clear();
     ids_.clear();
+    variables_ = 0;
     hdf5_.reset();
   }
 
@@ -203,8 +205,13 @@ class TrajectoryWriter::File {
     units_ = &state.units();
     hdf5_ = Hdf5File::create(path_);
     describe_file();
-    describe_particles(state);
-    if (options_.frames) create_frames(state.size());
+    if (state.variables().empty()) {
+      describe_particles(state);
+      if (options_.frames) create_frames(state.size());
+    } else {
+      describe_system(state);
+      if (options_.frames) create_system_frames();
+    }
     for (const KeptSample& kept : std::exchange(waiting_, {})) write_sample(kept.sample());
     hdf5_->take_name();
   }
@@ -244,6 +251,13 @@ class TrajectoryWriter::File {
     hdf5_->set_attribute(particles_path + "/box", "boundary", std::vector<std::string>(3, "none"));
   }
 
+  void describe_system(const ParticleSystem<double>& state) {
+    variables_ = static_cast<Index>(state.variables().size());
+    hdf5_->make_group(system_path);
+    hdf5_->set_attribute(system_path, "variables", std::int64_t{variables_});
+    if (!state.variable_names().empty()) hdf5_->write(system_path + "/name", state.variable_names());
+  }
+
   /// MDAnalysis takes only the units it knows, so an attribute `unit` stands in molecular files alone.
   void set_unit(const std::string& path, const std::string& unit, const std::string& molecular) const {
     if (units_->name == "molecular") {
@@ -273,20 +287,45 @@ class TrajectoryWriter::File {
     set_unit(position + "/time", std::string(units_->time), "ps");
   }
 
+  void create_system_frames() {
+    const Index rows = rows_per_chunk(variables_, frame_bytes), few = rows_per_chunk(1, sample_bytes);
+    frame_.variables =
+        BufferedDataset<double>(hdf5_->create_growing(system_path + "/value", ElementType::real, {variables_}, rows));
+    frame_.step =
+        BufferedDataset<std::int64_t>(hdf5_->create_growing(system_path + "/step", ElementType::integer, {}, few));
+    frame_.time = BufferedDataset<double>(hdf5_->create_growing(system_path + "/time", ElementType::real, {}, few));
+    hdf5_->open(system_path + "/value").write_last();
+    set_unit(system_path + "/time", std::string(units_->time), "ps");
+  }
+
   /// Makes ready to go on with an existing file.
   void open() {
     units_ = &known_units(hdf5_->text_attribute("/noether", "units"), path_);
-    sorted_ids_ = hdf5_->open(particles_path + "/id").read_integers();
     hdf5_->set_attribute("/noether", "complete", std::int64_t{0});
     // The end may have been moved.
     if (hdf5_->read_text("/noether/scene") != options_.scene_toml)
       hdf5_->write_text("/noether/scene", options_.scene_toml);
-    if (!options_.frames) return;
+    if (hdf5_->has(system_path)) {
+      variables_ = hdf5_->integer_attribute(system_path, "variables");
+      if (options_.frames) open_system_frames();
+    } else {
+      sorted_ids_ = hdf5_->open(particles_path + "/id").read_integers();
+      if (options_.frames) open_frames();
+    }
+  }
+
+  void open_frames() {
     const auto particles = static_cast<Index>(sorted_ids_.size());
     frame_.position = BufferedDataset<double>(open(particles_path + "/position/value", {particles, 3}));
     frame_.velocity = BufferedDataset<double>(open(particles_path + "/velocity/value", {particles, 3}));
     frame_.step = BufferedDataset<std::int64_t>(open(particles_path + "/position/step", {}));
     frame_.time = BufferedDataset<double>(open(particles_path + "/position/time", {}));
+  }
+
+  void open_system_frames() {
+    frame_.variables = BufferedDataset<double>(open(system_path + "/value", {variables_}));
+    frame_.step = BufferedDataset<std::int64_t>(open(system_path + "/step", {}));
+    frame_.time = BufferedDataset<double>(open(system_path + "/time", {}));
   }
 
   /// A dataset to go on with. @throws FileError if its rows are not what the run will add
@@ -306,6 +345,9 @@ class TrajectoryWriter::File {
     if (hdf5_->has(particles_path + "/position")) {
       paths = {particles_path + "/position/step", particles_path + "/position/time", particles_path + "/position/value",
                particles_path + "/velocity/value"};
+    }
+    if (hdf5_->has(system_path + "/value")) {
+      paths = {system_path + "/step", system_path + "/time", system_path + "/value"};
     }
     for (const std::string& monitor : hdf5_->children(monitors_path)) {
       const std::string group = monitors_path + "/" + monitor;
@@ -365,8 +407,13 @@ class TrajectoryWriter::File {
     for (const Index i : order_) sorted_ids_.push_back(ids_[static_cast<std::size_t>(i)]);
   }
 
-  /// The particles must be those of the file, in any order.
+  /// The particles must be those of the file, in any order, or there are as many variables as in the file.
   void match(const ParticleSystem<double>& state) {
+    if (static_cast<Index>(state.variables().size()) != variables_) {
+      throw FileError(fmt::format("the file holds {} variables, the run now has {}: a trajectory is of one system",
+                                  variables_, state.variables().size()),
+                      {.file = path_.string()});
+    }
     if (state.ids() == ids_) return;
     const std::vector<std::int64_t> expected = sorted_ids_;
     match_order(state);
@@ -386,6 +433,12 @@ class TrajectoryWriter::File {
   }
 
   void write_frame(const Snapshot<double>& now, const ParticleSystem<double>& state) {
+    if (variables_ > 0) {
+      frame_.time.append(now.time());
+      frame_.step.append(now.step());
+      frame_.variables.append(state.variables());
+      return;
+    }
     gather(state.velocities());
     frame_.velocity.append(row_);
     frame_.time.append(now.time());
@@ -450,6 +503,7 @@ class TrajectoryWriter::File {
   std::vector<KeptSample> waiting_;             ///< samples that came before the first look
   std::vector<std::int64_t> ids_, sorted_ids_;  ///< as the run has them, and as the file has them
   std::vector<Index> order_;
+  Index variables_ = 0;  ///< of a system without particles
   std::vector<double> row_;
   std::chrono::steady_clock::time_point flushed_{};  ///< long ago: the first sample or frame goes out at once
 };

@@ -18,8 +18,8 @@ struct TrajectoryOptions {
 
 /// Writes frames and samples to one HDF5 file: `sim.every(100, io::TrajectoryWriter{"run.h5"})`.
 ///
-/// Particles stand in id order in every frame. The file is created (an old one is replaced) at the first look. Copies
-/// share one file.
+/// Particles stand in id order in every frame; a first-order system has its variables below /noether/system. The file
+/// is created (an old one is replaced) at the first look. Copies share one file.
 /// @cost O(n) per frame
 class TrajectoryWriter {
  public:
@@ -28,7 +28,8 @@ class TrajectoryWriter {
   static constexpr auto describe() {
     return part<TrajectoryWriter>("trajectory", "frames and monitors' samples in an H5MD file",
                                   quantities("position[n][3] [length], velocity[n][3] [length/time], id, mass, name; "
-                                             "every monitor's quantities below /noether/monitors"),
+                                             "every monitor's quantities below /noether/monitors; of a system, "
+                                             "value[n] below /noether/system"),
                                   source("DeBuyl2014"));
   }
 

@@ -10,12 +10,14 @@
 namespace noether::io {
 
 inline const std::string particles_path = "/particles/system";
+inline const std::string system_path = "/noether/system";
 inline const std::string monitors_path = "/noether/monitors";
 
 /// Whether a dataset is the one that readers go by: on disk nothing of its group is ever shorter. These are positions
-/// of frames and steps of samples.
+/// of frames, variables of a system and steps of samples.
 inline bool is_leader(const std::string& path) {
-  return path == particles_path + "/position/value" || (path.starts_with(monitors_path) && path.ends_with("/step"));
+  return path == particles_path + "/position/value" || path == system_path + "/value" ||
+         (path.starts_with(monitors_path) && path.ends_with("/step"));
 }
 
 /// The unit system that a file names. @throws FileError if there is none of this name

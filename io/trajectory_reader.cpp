@@ -20,11 +20,49 @@ std::string unit_at(const Hdf5File& file, const std::string& path, const std::st
 }  // namespace
 
 TrajectoryReader::TrajectoryReader(const std::filesystem::path& path) : file_(Hdf5File::open_to_read(path)) {
-  if (!file_.has("/h5md") || !file_.has(particles_path + "/id") || !file_.has("/noether")) {
+  of_system_ = file_.has(system_path);
+  if (!file_.has("/h5md") || !file_.has("/noether") || !(of_system_ || file_.has(particles_path + "/id"))) {
     throw FileError("this is no trajectory of noether: '/h5md', '/particles/system' and '/noether' are expected",
                     {.file = path.string()});
   }
   shared_.units = file_.text_attribute("/noether", "units");
+  if (of_system_) {
+    open_system(path);
+  } else {
+    open_particles(path);
+  }
+}
+
+void TrajectoryReader::open_system(const std::filesystem::path& path) {
+  const std::int64_t n = file_.integer_attribute(system_path, "variables");
+  static constexpr std::int64_t believable = std::int64_t{1} << 32U;
+  if (n < 1 || n > believable) {
+    throw FileError(fmt::format("damaged: a system of {} variables", n), {.file = path.string()});
+  }
+  if (file_.has(system_path + "/name")) {
+    shared_.variable_names = file_.open(system_path + "/name").read_texts();
+    if (static_cast<std::int64_t>(shared_.variable_names.size()) != n) {
+      throw FileError(fmt::format("damaged: {} variables have {} names", n, shared_.variable_names.size()),
+                      {.file = path.string()});
+    }
+  }
+  if (file_.has(system_path + "/value")) {
+    variables_ = file_.open(system_path + "/value");
+    if (variables_.shape().size() != 2 || variables_.shape()[1] != n) {
+      throw FileError(fmt::format("damaged: frames of {} variables do not have {} numbers each", n, n),
+                      {.file = path.string()});
+    }
+    steps_ = file_.open(system_path + "/step").read_integers();
+    times_ = file_.open(system_path + "/time").read_reals();
+    shared_.time_unit = unit_at(file_, system_path + "/time", "ps");
+    frames_ = std::min({variables_.rows(), static_cast<Index>(steps_.size()), static_cast<Index>(times_.size())});
+  }
+  for (std::int64_t i = static_cast<std::int64_t>(shared_.variable_names.size()); i < n; ++i) {
+    shared_.variable_names.push_back(fmt::format("y[{}]", i));
+  }
+}
+
+void TrajectoryReader::open_particles(const std::filesystem::path& path) {
   shared_.ids = file_.open(particles_path + "/id").read_integers();
   shared_.names = file_.open(particles_path + "/name").read_texts();
   shared_.masses = file_.open(particles_path + "/mass").read_reals();
@@ -54,10 +92,16 @@ TrajectoryReader::TrajectoryReader(const std::filesystem::path& path) : file_(Hd
 
 Frame TrajectoryReader::frame(Index k) const {
   const auto at = static_cast<std::size_t>(k);
-  return {steps_.at(at), times_.at(at), position_.read_reals(k, 1), velocity_.read_reals(k, 1)};
+  if (of_system_) return {steps_.at(at), times_.at(at), {}, {}, variables_.read_reals(k, 1)};
+  return {steps_.at(at), times_.at(at), position_.read_reals(k, 1), velocity_.read_reals(k, 1), {}};
 }
 
 std::vector<std::pair<std::string, Index>> TrajectoryReader::lengths() const {
+  if (file_.has(system_path + "/value")) {
+    return {{system_path + "/value", variables_.rows()},
+            {system_path + "/step", static_cast<Index>(steps_.size())},
+            {system_path + "/time", static_cast<Index>(times_.size())}};
+  }
   if (!file_.has(particles_path + "/position")) return {};
   return {{particles_path + "/position/value", position_.rows()},
           {particles_path + "/velocity/value", velocity_.rows()},

@@ -26,12 +26,16 @@ class TrajectoryReader {
   const Hdf5File& file() const { return file_; }
 
  private:
+  void open_particles(const std::filesystem::path& path);
+  void open_system(const std::filesystem::path& path);
+
   Hdf5File file_;
-  Hdf5Dataset position_, velocity_;
+  Hdf5Dataset position_, velocity_, variables_;
   std::vector<std::int64_t> steps_;
   std::vector<double> times_;
   Frames shared_;
   Index frames_ = 0;
+  bool of_system_ = false;  ///< variables instead of particles
 };
 
 }  // namespace noether::io

@@ -1,0 +1,102 @@
+#include "integrators/stiffness.hpp"
+
+#include <fmt/format.h>
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace noether {
+
+namespace {
+
+/// Where explicit methods become unstable on the negative real axis, |h lambda|: that of `rk4`.
+constexpr double explicit_limit = 2.785;
+constexpr double mild = 1e3, stiff = 1e5;
+/// A decay so much faster than what else goes on makes a run stiff.
+constexpr double apart = 100;
+
+Matrix<double> differences(VectorField<double>& f, double t, const Vector<double>& y) {
+  const Index n = y.size();
+  Matrix<double> J(n, n);
+  Vector<double> shifted = y, above(n), below(n);
+  double size = 0;
+  for (Index i = 0; i < n; ++i) size = std::max(size, std::abs(y[i]));
+  if (size == 0) size = 1;
+  for (Index j = 0; j < n; ++j) {
+    // A variable that is 0 has no size of its own: it takes the part of the others that a difference can tell.
+    const double step = 1e-5 * std::max(std::abs(y[j]), 1e-3 * size);
+    shifted[j] = y[j] + step;
+    f.rate(t, shifted, above);
+    const double up = shifted[j];
+    shifted[j] = y[j] - step;
+    f.rate(t, shifted, below);
+    const double width = up - shifted[j];
+    for (Index i = 0; i < n; ++i) J(i, j) = (above[i] - below[i]) / width;
+    shifted[j] = y[j];
+  }
+  return J;
+}
+
+}  // namespace
+
+std::vector<std::complex<double>> eigenvalues_of(VectorField<double>& f, double t, const Vector<double>& y) {
+  const Index n = y.size();
+  if (n > most_eigenvalues) {
+    throw Error(
+        fmt::format("{} variables are too many for their eigenvalues; at most {} are expected", n, most_eigenvalues));
+  }
+  Matrix<double> J;
+  if (!f.jacobian(t, y, J)) J = differences(f, t, y);
+  for (Index j = 0; j < n; ++j) {
+    for (Index i = 0; i < n; ++i) {
+      if (!std::isfinite(J(i, j))) throw Error(fmt::format("df[{}]/dy[{}] is not finite", i, j));
+    }
+  }
+  const Eigen::EigenSolver<Matrix<double>> solver(J, false);
+  if (solver.info() != Eigen::Success) throw Error("the eigenvalues of the Jacobian could not be found");
+  std::vector<std::complex<double>> all;
+  for (Index i = 0; i < n; ++i) all.push_back(solver.eigenvalues()[i]);
+  return all;
+}
+
+Stiffness stiffness_of(const std::vector<std::complex<double>>& eigenvalues, double length) {
+  Stiffness result;
+  double size = 0;
+  for (const auto& lambda : eigenvalues) size = std::max(size, std::abs(lambda));
+  for (const auto& lambda : eigenvalues) {
+    // What rounding leaves of an eigenvalue 0 is none.
+    const double real = std::abs(lambda.real()) > 1e-10 * size ? lambda.real() : 0;
+    result.fastest = std::max(result.fastest, std::abs(real));
+    result.growth = std::max(result.growth, real);
+    result.turning = std::max(result.turning, std::abs(lambda.imag()));
+    if (real != 0) result.slowest = result.slowest == 0 ? std::abs(real) : std::min(result.slowest, std::abs(real));
+  }
+  result.ratio = std::isfinite(length) ? result.fastest * std::abs(length) : std::numeric_limits<double>::quiet_NaN();
+  return result;
+}
+
+std::string Stiffness::verdict() const {
+  if (fastest == 0) return turning > 0 ? "not stiff: nothing decays, it oscillates" : "not stiff: nothing decays";
+  if (std::isnan(ratio)) {
+    return fmt::format("the fastest rate is {:.3g}; how stiff a run is depends on its length, which is not given",
+                       fastest);
+  }
+  const std::string s = fmt::format("S = {:.3g}", ratio);
+  if (fastest < apart * std::max(growth, turning)) {
+    return fmt::format("not stiff: {}, but what {} is about as fast, and asks for as many steps", s,
+                       growth > turning ? "grows" : "oscillates");
+  }
+  const double steps = ratio / explicit_limit;
+  if (ratio < mild) return fmt::format("not stiff: {}; an explicit method such as dop853 will do", s);
+  if (ratio < stiff) {
+    return fmt::format(
+        "mildly stiff: {}; an explicit method needs at least about {:.2g} steps; compare dop853 with "
+        "rodas_5p",
+        s, steps);
+  }
+  return fmt::format("stiff: {}; an explicit method needs about {:.2g} steps; use rodas_5p or bdf", s, steps);
+}
+
+}  // namespace noether

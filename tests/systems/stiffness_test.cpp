@@ -1,0 +1,103 @@
+// The stiffness ratio, against eigenvalues that are known.
+
+#include "integrators/stiffness.hpp"
+
+#include "integrators/first_order_system.hpp"
+#include "integrators/systems/forced_damped_oscillator.hpp"
+#include "integrators/systems/heat_line.hpp"
+#include "integrators/systems/lorenz.hpp"
+#include "integrators/systems/prothero_robinson.hpp"
+#include "integrators/systems/rc_ladder.hpp"
+#include "integrators/systems/robertson.hpp"
+#include "tests/support/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace noether;
+
+namespace {
+
+template <class S> std::vector<std::complex<double>> eigenvalues(const S& system, const std::vector<double>& at) {
+  SystemMotion<S, double> f(system);
+  Vector<double> y(system.size());
+  for (Index i = 0; i < y.size(); ++i) y[i] = at[static_cast<std::size_t>(i)];
+  return eigenvalues_of(f, 0, y);
+}
+template <class S> Stiffness stiffness(const S& system, double length) {
+  return stiffness_of(eigenvalues(system, system.start()), length);
+}
+
+}  // namespace
+
+TEST_CASE("eigenvalues of the heat equation on a line are its rates of decay", "[stiffness]") {
+  const HeatLine line{.points = 30, .length = 2, .diffusivity = 0.3};
+  auto all = eigenvalues(line, line.start());
+  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.real() > b.real(); });
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    CHECK(std::abs(all[k].real() / -line.rate_of(static_cast<std::int64_t>(k) + 1) - 1) < 1e-7);
+    CHECK(std::abs(all[k].imag()) < 1e-7);
+  }
+  const Stiffness found = stiffness(line, 10);
+  CHECK(std::abs(found.ratio / (10 * line.rate_of(30)) - 1) < 1e-8);
+  CHECK(std::abs(found.spread() / (line.rate_of(30) / line.rate_of(1)) - 1) < 1e-7);
+}
+
+TEST_CASE("S of the heat equation grows with the square of the points", "[stiffness]") {
+  const double some = stiffness(HeatLine{.points = 49}, 1).ratio, more = stiffness(HeatLine{.points = 99}, 1).ratio;
+  CHECK(std::abs(std::log2(more / some) - 2) < 2e-3);
+}
+
+TEST_CASE("eigenvalues of a driven oscillator and of Lorenz's origin are those on paper", "[stiffness]") {
+  const Stiffness oscillator = stiffness(ForcedDampedOscillator{.omega0 = 2, .gamma = 0.5}, 100);
+  CHECK(std::abs(oscillator.fastest - 0.5) < 1e-7);
+  CHECK(std::abs(oscillator.turning - std::sqrt(3.75)) < 1e-7);
+  const Lorenz lorenz;
+  const Stiffness origin = stiffness_of(eigenvalues(lorenz, {0, 0, 0}), 1);
+  const double root = std::sqrt(11.0 * 11 + 4 * 10 * 27);
+  CHECK(std::abs(origin.fastest - (11 + root) / 2) < 1e-6);
+  CHECK(std::abs(origin.growth - (root - 11) / 2) < 1e-6);
+  CHECK(std::abs(origin.slowest - 8.0 / 3) < 1e-6);
+}
+
+TEST_CASE("the time constants of a ladder are as far apart as its capacitors", "[stiffness]") {
+  const Stiffness two = stiffness(RcLadder{.stages = 2, .spread = 1e8}, 1);
+  // R C_1 = 1 and R C_2 = 1e-8: the fast stage relaxes at 1/(R C_2), the slow one is left with the source's resistor.
+  CHECK(std::abs(two.fastest / 1e8 - 1) < 1e-6);
+  CHECK(std::abs(two.slowest - 1) < 1e-6);
+  CHECK(stiffness(RcLadder{}, 1).spread() > 1e6);
+}
+
+TEST_CASE("Robertson's kinetics begin with one rate, and S counts the length of the run", "[stiffness]") {
+  const Stiffness found = stiffness(Robertson{}, 1e11);
+  CHECK(std::abs(found.ratio / 4e9 - 1) < 1e-8);
+  CHECK(found.spread() == 1);
+  // Later B is small and fast: -2 k2 B - k3 C at t = 40.
+  const Stiffness later =
+      stiffness_of(eigenvalues(Robertson{}, {0.71582706871940, 9.1855347645572e-6, 0.28416374574583}), 1);
+  CHECK(std::abs(later.fastest / (2 * 3e7 * 9.1855347645572e-6 + 1e4 * 0.28416374574583) - 1) < 0.01);
+}
+
+TEST_CASE("the verdict on stiffness is in plain words", "[stiffness]") {
+  CHECK(stiffness(Robertson{}, 1e11).verdict() ==
+        "stiff: S = 4e+09; an explicit method needs about 1.4e+09 steps; use rodas_5p or bdf");
+  CHECK(stiffness(ProtheroRobinson{.lambda = -1e3}, 10).verdict() ==
+        "mildly stiff: S = 1e+04; an explicit method needs at least about 3.6e+03 steps; compare dop853 with rodas_5p");
+  CHECK(stiffness(ProtheroRobinson{.lambda = -2}, 10).verdict() ==
+        "not stiff: S = 20; an explicit method such as dop853 will do");
+  CHECK(stiffness(ForcedDampedOscillator{.gamma = 0.1}, 1e7).verdict() ==
+        "not stiff: S = 1e+06, but what oscillates is about as fast, and asks for as many steps");
+  CHECK(stiffness_of(eigenvalues(Lorenz{}, {0, 0, 0}), 1e6).verdict() ==
+        "not stiff: S = 2.28e+07, but what grows is about as fast, and asks for as many steps");
+  CHECK(stiffness(ForcedDampedOscillator{.gamma = 0}, 1e7).verdict() == "not stiff: nothing decays, it oscillates");
+  CHECK(stiffness(Robertson{}, std::numeric_limits<double>::infinity()).verdict() ==
+        "the fastest rate is 0.04; how stiff a run is depends on its length, which is not given");
+}
+
+TEST_CASE("systems too large for their eigenvalues are refused, and Jacobians that are not finite", "[stiffness]") {
+  const HeatLine line{.points = 401};
+  CHECK_THROWS_WITH(eigenvalues(line, line.start()),
+                    "401 variables are too many for their eigenvalues; at most 400 are expected");
+  CHECK_THROWS_WITH(eigenvalues(Lorenz{}, {INFINITY, 0, 0}), "df[0]/dy[0] is not finite");
+}
