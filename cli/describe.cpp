@@ -39,6 +39,7 @@ std::vector<std::pair<std::string, PartInfo>> all_parts() {
   const Parts parts = standard_parts();
   for (const auto& kind : parts.forces()) all.emplace_back("force", kind.info);
   for (const auto& kind : parts.constraints()) all.emplace_back("constraint", kind.info);
+  for (const auto& kind : parts.systems()) all.emplace_back("system", kind.info);
   for (const auto& kind : parts.monitors()) all.emplace_back("monitor", kind.info);
   for (const PartInfo& info : writer_parts()) all.emplace_back("writer", info);
   for (const PartInfo& info : stop_parts()) all.emplace_back("stop", info);
@@ -52,6 +53,8 @@ std::string table_of(const std::string& kind) {
     return "[[hamiltonian.constraint]], with the particles: bodies, pairs or triples of names; solver = \"newton\" or "
            "\"rattle\" (with tolerance, iterations)";
   }
+  if (kind == "system")
+    return "[system], in the place of [particles] and [hamiltonian]; start = [...] begins elsewhere";
   if (kind == "monitor") return "[[every]], with every = \"TIME\" or steps = N";
   if (kind == "writer") return "[[every]], with every = \"TIME\" or steps = N (checkpoint also: wall = \"5 min\")";
   if (kind == "stop") return "[[stop]]; every = \"TIME\" may stand instead of steps = N";

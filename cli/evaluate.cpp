@@ -84,7 +84,7 @@ void print_text(const Scene& scene, const Evaluation& e) {
 
 int evaluate_scene(const EvaluateArguments& given) {
   const Scene scene = load_scene(given.scene, standard_parts(), given.sets);
-  if (!given.forces.empty()) check_forces_file(given.forces, scene);
+  if (!given.forces.empty() && !scene.system) check_forces_file(given.forces, scene);
   const Evaluation result = evaluate(scene, given.check);
   if (!given.forces.empty()) write_forces(given.forces, scene, result);
   if (given.json) {

@@ -5,6 +5,7 @@
 #include "engine/simd.hpp"
 #include "engine/text.hpp"
 #include "integrators/composition.hpp"
+#include "integrators/stiffness.hpp"
 #include "scene/json.hpp"
 #include "scene/scene.hpp"
 
@@ -13,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -33,6 +35,9 @@ struct Explanation {
   int evaluations = 0;                     ///< of the forces in one step: kicks between which something has moved
   std::optional<double> recommended_step;  ///< [time]
   std::string recommended_for;
+  Index variables = 0;                 ///< of a system without particles
+  std::optional<Stiffness> stiffness;  ///< at the start
+  std::string why_no_stiffness;
 };
 
 /// Shortest time a body needs to go round at the speed of its pericenter, over 20.
@@ -79,8 +84,31 @@ std::string length_text(double length, const UnitSystem& units) {
   return format_number(length) + (units.is_reduced() ? "" : " " + std::string(units.length));
 }
 
+/// Length of the whole run [time]; infinite where the scene gives none, or steps of the method's own choice.
+double length_of(const SceneIntegrator& made) {
+  if (made.until) return *made.until;
+  if (made.steps && !made.adaptive()) return static_cast<double>(*made.steps) * made.step;
+  return std::numeric_limits<double>::infinity();
+}
+
+/// What the Jacobian at the start says: of systems, and of few particles under a method for y' = f.
+void measure_stiffness(const Scene& scene, Explanation& e) {
+  static constexpr Index most_bodies = 50;
+  if (!scene.integrator.classical || scene.particles.size() > most_bodies) return;
+  try {
+    const std::unique_ptr<VectorField<double>> field = field_of(scene);
+    Vector<double> y;
+    field->bind(scene.particles);
+    field->gather(scene.particles, y);
+    e.stiffness = stiffness_of(eigenvalues_of(*field, 0, y), length_of(scene.integrator));
+  } catch (const Error& error) {
+    e.why_no_stiffness = error.message();
+  }
+}
+
 void sort_parts(const Scene& scene, Explanation& e) {
   const Parts parts = standard_parts();
+  if (scene.system) e.in.push_back("system " + scene.system->name);
   for (const SceneForce& force : scene.hamiltonian.forces) e.in.push_back("force " + force.name);
   for (const SceneConstraint& constraint : scene.hamiltonian.constraints) {
     e.in.push_back(fmt::format("constraint {}, {} times", constraint.name, constraint.tied.size()));
@@ -107,6 +135,7 @@ void sort_parts(const Scene& scene, Explanation& e) {
                                   [&](const std::string& one) { return one == what || one.starts_with(what + ","); });
     if (!used) e.out.push_back(what);
   };
+  if (scene.system) return leave_out("writer trajectory");  // nothing else could be in
   const bool wisdom_holman = scene.hamiltonian.kind == SceneHamiltonian::Kind::wisdom_holman;
   for (const auto& kind : parts.forces()) {
     if (!wisdom_holman || kind.info.name != "gravity") leave_out("force " + kind.info.name);  // gravity is inside
@@ -150,10 +179,12 @@ Explanation explained(const Scene& scene) {
   s.clock() = Clock<double>::fixed(0, scene.integrator.step);
   integrator.bind(s);
   e.particles = s.size();
-  e.columns = {"id", "position", "velocity", "mass"};
+  e.variables = static_cast<Index>(s.variables().size());
+  if (!scene.system) e.columns = {"id", "position", "velocity", "mass"};
   if (s.low_words() != nullptr) e.columns.insert(e.columns.end(), {"low word of position", "low word of velocity"});
   for (const auto& [name, column] : s.extra_columns()) e.columns.push_back(name);
-  e.bytes_per_particle = s.bytes_per_particle();
+  if (!scene.system) e.bytes_per_particle = s.bytes_per_particle();
+  measure_stiffness(scene, e);
   scene.integrator.classical ? explain_method(scene, e) : explain_scheme(scene, e);
   recommend(scene, e);
   return e;
@@ -178,18 +209,29 @@ std::string meaning(char letter, const Scene& scene, const Explanation& e) {
 }
 
 void print_text(const Scene& scene, const Explanation& e) {
-  fmt::print("{}{}{} over {}, {} particles\n", plain_line(scene.title), scene.title.empty() ? "" : ": ", e.method,
-             e.hamiltonian, e.particles);
+  fmt::print("{}{}{} over {}, {} {}\n", plain_line(scene.title), scene.title.empty() ? "" : ": ", e.method,
+             e.hamiltonian, scene.system ? e.variables : e.particles, scene.system ? "variables" : "particles");
   fmt::print("in:\n");
   for (const std::string& one : e.in) fmt::print("  {}\n", one);
-  fmt::print("left out:\n");
+  if (!e.out.empty()) fmt::print("left out:\n");
   for (const std::string& one : e.out) fmt::print("  {}\n", one);
-  fmt::print("columns: {}; {} bytes per particle\n", fmt::join(e.columns, ", "), e.bytes_per_particle);
+  if (!scene.system) {
+    fmt::print("columns: {}; {} bytes per particle\n", fmt::join(e.columns, ", "), e.bytes_per_particle);
+  }
   fmt::print("each step:\n");
   for (const auto& [letter, count] : e.flows) fmt::print("  {} x {}: {}\n", count, letter, meaning(letter, scene, e));
   if (scene.integrator.classical) {
-    fmt::print("  {} evaluations of all forces together, on the average of the first steps\n", e.evaluations);
+    fmt::print("  {} evaluations of {}, on the average of the first steps\n", e.evaluations,
+               scene.system ? "all rates" : "all forces together");
   }
+  if (e.stiffness) {
+    fmt::print("stiffness at the start: {}\n", e.stiffness->verdict());
+    if (e.stiffness->spread() > 1) {
+      fmt::print("  rates from {:.3g} to {:.3g}, {:.3g} times as fast\n", e.stiffness->slowest, e.stiffness->fastest,
+                 e.stiffness->spread());
+    }
+  }
+  if (!e.why_no_stiffness.empty()) fmt::print("stiffness: not known: {}\n", e.why_no_stiffness);
   fmt::print("SIMD level: {}\n", name(simd_level()));
   const std::string unit = scene.units->is_reduced() ? "" : " " + std::string(scene.units->time);
   fmt::print("step: {}", scene.integrator.adaptive() ? "of the method's own choice" : scene.integrator.step_text);
@@ -198,6 +240,15 @@ void print_text(const Scene& scene, const Explanation& e) {
                *e.recommended_step, unit, e.recommended_for);
   }
   fmt::print("\n");
+}
+
+Json json_of(const Stiffness& stiffness) {
+  return Json::object({{"S", stiffness.ratio},
+                       {"fastest", stiffness.fastest},
+                       {"slowest", stiffness.slowest},
+                       {"growth", stiffness.growth},
+                       {"turning", stiffness.turning},
+                       {"verdict", stiffness.verdict()}});
 }
 
 Json json_of(const Scene& scene, const Explanation& e) {
@@ -213,6 +264,8 @@ Json json_of(const Scene& scene, const Explanation& e) {
                        {"columns", Json::list_of(e.columns)},
                        {"bytes_per_particle", static_cast<std::int64_t>(e.bytes_per_particle)},
                        {"particles", std::int64_t{e.particles}},
+                       {"variables", std::int64_t{e.variables}},
+                       {"stiffness", e.stiffness ? json_of(*e.stiffness) : Json()},
                        {"constraints", std::int64_t{e.constraints}},
                        {"flows_per_step", Json::object(flows)},
                        {"force_evaluations_per_step", e.evaluations},

@@ -95,6 +95,7 @@ Listing listing_of(const std::string& what) {
   if (what == "forces") return parts(infos_of(standard_parts().forces()));
   if (what == "units") return units();
   if (what == "constraints") return parts(infos_of(standard_parts().constraints()));
+  if (what == "systems") return parts(infos_of(standard_parts().systems()));
   if (what == "builders") return parts({});
   if (what == "monitors") {
     Listing list{{"name", "kind", "help"}, {}, {}};
@@ -103,7 +104,8 @@ Listing listing_of(const std::string& what) {
     for (const PartInfo& info : stop_parts()) list.add({info.name, "stop", info.help});
     return list;
   }
-  const std::vector<std::string> known = {"methods", "forces", "constraints", "monitors", "builders", "units"};
+  const std::vector<std::string> known = {"methods",  "forces",   "constraints", "systems",
+                                          "monitors", "builders", "units"};
   throw Error(fmt::format("there is no list of '{}'{}", what, did_you_mean(what, known)));
 }
 
@@ -142,8 +144,8 @@ void add_list_command(CLI::App& app, int& exit_code) {
   const auto what = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
   CLI::App* command =
-      app.add_subcommand("list", "what there is: methods, forces, constraints, monitors, builders, units");
-  command->add_option("what", *what, "methods, forces, constraints, monitors, builders or units")
+      app.add_subcommand("list", "what there is: methods, forces, constraints, systems, monitors, builders, units");
+  command->add_option("what", *what, "methods, forces, constraints, systems, monitors, builders or units")
       ->required()
       ->type_name("WHAT");
   command->add_flag("--json", *json, "as one line of JSON");

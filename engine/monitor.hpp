@@ -47,8 +47,9 @@ struct MonitorReport {
 /// Watches settled states. Optional members: `wanted()` (energy?), `series()` and `scale()` (what files store),
 /// `report()`, `record(Sample)` (receives every monitor's samples: writers), `flush()`, `finish(Outcome)`,
 /// `steps_in_a_row()` (looks at so many steps from each multiple of its cadence on), `forget()` (somebody has edited
-/// the run), a static `looks_last` for what must see a moment after all others (checkpoints), and a static
-/// `needs_particles` for what makes no sense of a system that has variables instead.
+/// the run), `check(state)` (throws for a state that it cannot watch), a static `looks_last` for what must see a moment
+/// after all others (checkpoints), and a static `needs_particles` for what makes no sense of a system that has
+/// variables instead.
 template <class M, class Real>
 concept Monitor = requires(M& m, const Snapshot<Real>& snapshot) {
   m.observe(snapshot);
@@ -62,6 +63,7 @@ template <class Real> struct MonitorBase {
   virtual bool records() const = 0;
   virtual bool looks_last() const = 0;
   virtual bool needs_particles() const = 0;
+  virtual void check(const ParticleSystem<Real>&) const = 0;
   virtual Wanted wanted() const = 0;
   virtual void observe(const Snapshot<Real>&) = 0;
   virtual std::vector<Series> series() const = 0;
@@ -87,6 +89,9 @@ template <class M, class Real> struct MonitorModel final : MonitorBase<Real> {
   }
   bool needs_particles() const override {
     return requires { M::needs_particles; };
+  }
+  void check(const ParticleSystem<Real>& s) const override {
+    if constexpr (requires { monitor.check(s); }) monitor.check(s);
   }
   Wanted wanted() const override {
     if constexpr (requires { monitor.wanted(); }) return monitor.wanted();
@@ -140,6 +145,8 @@ template <class Real = double> class AnyMonitor {
   bool records() const { return held_->records(); }
   bool looks_last() const { return held_->looks_last(); }
   bool needs_particles() const { return held_->needs_particles(); }
+  /// @throws Error  if a monitor says that it cannot watch such a state
+  void check(const ParticleSystem<Real>& s) const { held_->check(s); }
   Wanted wanted() const { return held_->wanted(); }
   void observe(const Snapshot<Real>& snapshot) { held_->observe(snapshot); }
   std::vector<Series> series() const { return held_->series(); }

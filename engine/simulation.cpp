@@ -119,6 +119,7 @@ template <class Real> void Simulation<Real>::check_wanted(const Scheduled& added
     throw Error(fmt::format("monitor '{}' watches particles, but system '{}' has variables and none of them",
                             added.name, claims.hamiltonian));
   }
+  added.monitor.check(raw_);
   if (added.wanted.energy && !claims.energy) {
     throw Error(fmt::format("monitor '{}' needs the energy, but a force of this run reports none", added.name));
   }

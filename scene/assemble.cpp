@@ -98,14 +98,16 @@ ForceField<double> forces_of(const Scene& scene) {
 
 }  // namespace
 
+std::unique_ptr<VectorField<double>> field_of(const Scene& scene) {
+  if (scene.system) return scene.system->field();
+  const bool split = scene.hamiltonian.kind == SceneHamiltonian::Kind::wisdom_holman;
+  return std::make_unique<ForceMotion<ForceField<double>, double>>(forces_of(scene),
+                                                                   split ? "wisdom_holman" : "kinetic_potential");
+}
+
 AnyIntegrator<double> integrator_of(const Scene& scene) {
   const SceneIntegrator& made = scene.integrator;
-  if (made.classical) {
-    const bool split = scene.hamiltonian.kind == SceneHamiltonian::Kind::wisdom_holman;
-    auto field = std::make_unique<ForceMotion<ForceField<double>, double>>(
-        forces_of(scene), split ? "wisdom_holman" : "kinetic_potential");
-    return Classical<double>(std::move(field), *made.classical);
-  }
+  if (made.classical) return Classical<double>(field_of(scene), *made.classical);
   return Composition<AnyHamiltonian<double>>(hamiltonian_of(scene), scheme_of(made), {.compensated = made.compensated});
 }
 

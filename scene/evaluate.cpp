@@ -39,6 +39,12 @@ std::string numbered(const std::string& name, const std::vector<std::pair<std::s
 }  // namespace
 
 Evaluation evaluate(const Scene& scene, bool check) {
+  if (scene.system) {
+    throw SceneError(fmt::format("there is nothing to evaluate: system '{}' has neither energy nor forces; `noether "
+                                 "explain` tells how stiff it is",
+                                 scene.system->name),
+                     {.file = scene.source.file, .key = "system"});
+  }
   ParticleSystem<double> s = scene.particles;
   s.clock() = Clock<double>::fixed(0, scene.integrator.step);
   Evaluation result;

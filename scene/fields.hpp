@@ -234,7 +234,9 @@ std::pair<const Kind*, std::string> kind_of_part(const SceneContext& context, co
                                                  const std::string& path, const std::string& what,
                                                  const std::vector<Kind>& kinds,
                                                  const std::vector<std::string>& others) {
-  TableReader reader(context, table, fmt::format("[[{}]]", path.substr(0, path.rfind('.'))), path);
+  const std::size_t dot = path.rfind('.');  // the number of a table in its list
+  const std::string name = dot == std::string::npos ? "[" + path + "]" : "[[" + path.substr(0, dot) + "]]";
+  TableReader reader(context, table, name, path);
   const std::string type = reader.text("type");
   for (const Kind& kind : kinds) {
     if (kind.info.name == type) return {&kind, type};

@@ -29,16 +29,20 @@ class SceneReader {
 
   void read() {
     TableReader top(context_, root_, "", "");
-    top.expect_only({"title", "units", "particles", "hamiltonian", "integrator", "every", "stop", "expect"});
+    top.expect_only({"title", "units", "particles", "hamiltonian", "system", "integrator", "every", "stop", "expect"});
     scene_.title = top.text("title");
     read_units(top);
     scene_.effective = SceneValue::table();
     scene_.effective.put("title", SceneValue::of(scene_.title));
     scene_.effective.put("units", SceneValue::of(std::string(scene_.units->name), top.line("units")));
-    read_constant(table(top, "hamiltonian"));
-    SceneValue& particles = scene_.effective.put("particles", SceneValue::table());
-    scene_.particles = read_particles(context_, table(top, "particles"), scene_.file.parent_path(), particles);
-    read_hamiltonian(table(top, "hamiltonian"));
+    if (const SceneValue* system = top.find("system")) {
+      read_system(top, *system);
+    } else {
+      read_constant(table(top, "hamiltonian"));
+      SceneValue& particles = scene_.effective.put("particles", SceneValue::table());
+      scene_.particles = read_particles(context_, table(top, "particles"), scene_.file.parent_path(), particles);
+      read_hamiltonian(table(top, "hamiltonian"));
+    }
     scene_.integrator = read_integrator(context_, table(top, "integrator"), !scene_.hamiltonian.constraints.empty(),
                                         scene_.effective.put("integrator", SceneValue::table()));
     read_watches(top);
@@ -69,6 +73,36 @@ class SceneReader {
     } catch (const Error& error) {
       top.fail("units", error.message());
     }
+  }
+
+  void read_system(TableReader& top, const SceneValue& table) {
+    for (const char* other : {"particles", "hamiltonian"}) {
+      if (!top.has(other)) continue;
+      top.fail(other, fmt::format("[{}] stands beside [system]; a run is of particles under a Hamiltonian or of a "
+                                  "first-order system: take one out",
+                                  other));
+    }
+    const auto [kind, type] = kind_of_part(context_, table, "system", "system", parts_.systems(), {});
+    TableReader reader(context_, table, fmt::format("system '{}'", type), "system");
+    reader.find("type");
+    SceneSystem system = kind->read(reader);
+    SceneValue& effective = scene_.effective.put("system", SceneValue::table());
+    effective.put("type", SceneValue::of(type, reader.line("type")));
+    for (auto& [key, value] : *system.effective.get<SceneValue::Table>()) effective.put(key, value);
+    scene_.particles = system.start;
+    scene_.system = std::move(system);
+    refuse_scheme(SceneReader::table(top, "integrator"));
+  }
+
+  /// What a scheme takes or not is no matter where it cannot be used at all.
+  void refuse_scheme(const SceneValue& table) {
+    TableReader integrator(context_, table, "[integrator]", "integrator");
+    const std::string method = integrator.text("method");
+    const bool letters = !method.empty() && method.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ") == std::string::npos;
+    if (schemes::find(method) == nullptr && !letters) return;
+    integrator.fail("method", fmt::format("'{}' splits a Hamiltonian, and system '{}' has none; use a method for "
+                                          "y' = f, such as 'dop853', or 'rodas_5p' where it is stiff",
+                                          method, scene_.system->name));
   }
 
   void read_constant(const SceneValue& hamiltonian) {
@@ -183,6 +217,11 @@ class SceneReader {
   void read_stops(TableReader& top) {
     const auto tables = tables_of(top, "stop");
     SceneValue::Array list;
+    if (scene_.system && !tables.empty()) {
+      top.fail(tables.front(), "stop",
+               fmt::format("a stop watches distances of particles, and system '{}' has none; take it out",
+                           scene_.system->name));
+    }
     for (const SceneValue* table : tables) {
       TableReader reader(context_, *table, "[[stop]]", fmt::format("stop.{}", list.size()));
       reader.expect_only({"type", "distance", "steps", "every"});
@@ -266,6 +305,41 @@ class SceneReader {
 
   /// Puts the parts together once: what they refuse is told with its place in the scene.
   void check(TableReader& top) {
+    if (scene_.system) {
+      check_system(top);
+    } else {
+      check_hamiltonian(top);
+    }
+    try {
+      assemble(scene_);
+    } catch (const SceneError&) {
+      throw;
+    } catch (const Error& error) {
+      refuse_monitor(top);
+      top.fail(nullptr, "", error.message());
+    }
+  }
+
+  void check_system(TableReader& top) {
+    TableReader integrator(context_, *top.find("integrator"), "[integrator]", "integrator");
+    ParticleSystem<double> s = scene_.particles;
+    try {
+      integrator_of(scene_).bind(s);
+    } catch (const SchemeMismatch& error) {
+      integrator.fail("method", error.message());
+    }
+    const std::unique_ptr<VectorField<double>> field = scene_.system->field();
+    Vector<double> y, dy;
+    field->gather(s, y);
+    field->rate(0, y, dy);
+    for (Index i = 0; i < dy.size(); ++i) {
+      if (std::isfinite(dy[i])) continue;
+      TableReader(context_, *top.find("system"), "[system]", "system")
+          .fail(nullptr, "start", fmt::format("the rate of {} is not finite at the start", s.variable_name(i)));
+    }
+  }
+
+  void check_hamiltonian(TableReader& top) {
     TableReader hamiltonian(context_, *top.find("hamiltonian"), "[hamiltonian]", "hamiltonian");
     refuse_constraints(context_, tables_of(hamiltonian, "constraint"), scene_);
     TableReader integrator(context_, *top.find("integrator"), "[integrator]", "integrator");
@@ -283,14 +357,6 @@ class SceneReader {
       integrator.fail("method", error.message());
     }
     check_start(hamiltonian, integrator, *made);
-    try {
-      assemble(scene_);
-    } catch (const SceneError&) {
-      throw;
-    } catch (const Error& error) {
-      refuse_monitor(top);
-      top.fail(nullptr, "", error.message());
-    }
   }
 
   /// Ends at the table of the monitor that this run cannot serve, if one is the reason why it cannot be assembled.

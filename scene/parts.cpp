@@ -8,12 +8,19 @@
 #include "engine/orbital_monitors.hpp"
 #include "engine/shadow_hamiltonian.hpp"
 #include "engine/temperature.hpp"
+#include "engine/variables.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
 #include "forces/henon_heiles.hpp"
 #include "forces/oblateness.hpp"
 #include "forces/sum.hpp"
 #include "integrators/kinetic_potential.hpp"
+#include "integrators/systems/forced_damped_oscillator.hpp"
+#include "integrators/systems/heat_line.hpp"
+#include "integrators/systems/lorenz.hpp"
+#include "integrators/systems/prothero_robinson.hpp"
+#include "integrators/systems/rc_ladder.hpp"
+#include "integrators/systems/robertson.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "io/checkpoint.hpp"
 #include "io/trajectory.hpp"
@@ -56,6 +63,12 @@ Parts standard_parts() {
   parts.add_constraint<OnCylinder>();
   parts.add_constraint<OnCircle>();
   parts.add_constraint<OnLine>();
+  parts.add_system<Robertson>();
+  parts.add_system<RcLadder>();
+  parts.add_system<HeatLine>();
+  parts.add_system<Lorenz>();
+  parts.add_system<ProtheroRobinson>();
+  parts.add_system<ForcedDampedOscillator>();
   parts.add_monitor<Energy>();
   parts.add_monitor<Momentum>();
   parts.add_monitor<AngularMomentum>();
@@ -63,6 +76,7 @@ Parts standard_parts() {
   parts.add_monitor<Elements>();
   parts.add_monitor<ClosestApproach>();
   parts.add_monitor<Temperature>();
+  parts.add_monitor<Variables>();
   parts.add_monitor<ConstraintResidual>();
   parts.add_monitor<ShadowHamiltonian<double>>();
   return parts;
@@ -112,6 +126,22 @@ std::vector<PartInfo> hamiltonian_parts() {
 }
 
 namespace detail {
+
+std::vector<double> read_start(const TableReader& reader, const SceneValue& list, Index size,
+                               const std::vector<std::string>& names) {
+  const auto* elements = list.get<SceneValue::Array>();
+  if (elements == nullptr) reader.wrong_kind(list, "start", "a list of numbers");
+  if (static_cast<Index>(elements->size()) != size) {
+    const std::string which = names.empty() ? "" : fmt::format(": {}", fmt::join(names, ", "));
+    reader.fail(
+        &list, "start",
+        fmt::format("start has {} {}, but {} has {} {}{}", elements->size(), elements->size() == 1 ? "value" : "values",
+                    reader.what(), size, size == 1 ? "variable" : "variables", which));
+  }
+  std::vector<double> values;
+  for (const SceneValue& one : *elements) values.push_back(reader.number(one, "start", "1"));
+  return values;
+}
 
 SceneValue quantity_value(double value, std::string_view dimension, const UnitSystem& units) {
   const Dimension parsed = parse_dimension(dimension);

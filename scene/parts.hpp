@@ -6,6 +6,7 @@
 #include "engine/simulation.hpp"
 #include "forces/check_gradient.hpp"
 #include "forces/linear_drag.hpp"
+#include "integrators/first_order_system.hpp"
 #include "scene/fields.hpp"
 
 #include <algorithm>
@@ -59,7 +60,22 @@ struct SceneMonitor {
   std::function<std::string(Index, std::int64_t)> cost;
 };
 
+/// A first-order system as a scene asked for it.
+struct SceneSystem {
+  std::string name;
+  SceneValue effective;          ///< its table, defaults included
+  ParticleSystem<double> start;  ///< its variables and no particles
+  std::function<std::unique_ptr<VectorField<double>>()> field;
+  std::function<std::unique_ptr<VectorField<Quad>>()> wide_field;  ///< empty for a system that knows doubles only
+  /// The closed solution, by time; empty where there is none, or the scene starts elsewhere.
+  std::function<std::vector<double>(double)> exact;
+};
+
 namespace detail {
+/// The values of `start = [...]`. @throws SceneError  unless there are as many as the system has variables
+std::vector<double> read_start(const TableReader& reader, const SceneValue& list, Index size,
+                               const std::vector<std::string>& names);
+
 template <class M> void attach(Simulation<double>& sim, const Cadence& cadence, const M& monitor) {
   if (cadence.wall > 0) {
     sim.every_wall(cadence.wall, monitor);
@@ -71,7 +87,7 @@ template <class M> void attach(Simulation<double>& sim, const Cadence& cadence, 
 }
 }  // namespace detail
 
-/// Forces, constraints and monitors by name. A user's own part is one line:
+/// Forces, constraints, systems and monitors by name. A user's own part is one line:
 ///
 ///     Parts parts = standard_parts();
 ///     parts.add_force<Oblateness>();
@@ -85,6 +101,10 @@ class Parts {
     PartInfo info;
     std::size_t particles;                              ///< of each constraint; 0: any number
     std::function<SceneConstraint(TableReader&)> read;  ///< all but which particles
+  };
+  struct SystemKind {
+    PartInfo info;
+    std::function<SceneSystem(TableReader&)> read;
   };
   struct MonitorKind {
     PartInfo info;
@@ -111,6 +131,14 @@ class Parts {
     return *this;
   }
 
+  /// Makes first-order system `S` known by the name it describes itself with; one of the same name is replaced.
+  template <class S>
+  requires FirstOrderSystem<S, double> Parts& add_system() {
+    static_assert(Described<S>, "a system in a scene describes itself: static constexpr auto describe()");
+    put(systems_, SystemKind{part_info<S>(), [](TableReader& reader) { return read_system<S>(reader); }});
+    return *this;
+  }
+
   /// Makes monitor `M` known by the name it describes itself with; one of the same name is replaced.
   template <class M> Parts& add_monitor() {
     static_assert(Described<M>, "a monitor in a scene describes itself: static constexpr auto describe()");
@@ -120,6 +148,7 @@ class Parts {
 
   const std::vector<ForceKind>& forces() const { return forces_; }
   const std::vector<ConstraintKind>& constraints() const { return constraints_; }
+  const std::vector<SystemKind>& systems() const { return systems_; }
   const std::vector<MonitorKind>& monitors() const { return monitors_; }
 
  private:
@@ -150,6 +179,34 @@ class Parts {
     return made;
   }
 
+  template <class S> static SceneSystem read_system(TableReader& reader) {
+    const SceneValue* start = reader.find("start");
+    S system{};
+    read_part(reader, system);
+    SceneSystem made;
+    made.name = part_name<S>();
+    made.effective = SceneValue::table();
+    put_fields(reader, system, made.effective);
+    std::vector<std::string> names;
+    if constexpr (requires { system.names(); }) names = system.names();
+    std::vector<double> values;
+    if (start != nullptr) {
+      values = detail::read_start(reader, *start, system.size(), names);
+      made.effective.put("start", *start);
+    } else if constexpr (requires { system.start(); }) {
+      values = system.start();
+      if constexpr (requires { system.exact(0.0); }) made.exact = [system](double t) { return system.exact(t); };
+    } else {
+      reader.fail(nullptr, "start", fmt::format("{} does not say where to start; give start = [...]", reader.what()));
+    }
+    made.start = initial_state(system, std::move(values), *reader.context().units);
+    made.field = [system] { return std::make_unique<SystemMotion<S, double>>(system); };
+    if constexpr (FirstOrderSystem<S, Quad>) {
+      made.wide_field = [system] { return std::make_unique<SystemMotion<S, Quad>>(system); };
+    }
+    return made;
+  }
+
   template <class M> static SceneMonitor read_monitor(TableReader& reader) {
     M monitor{};
     read_part(reader, monitor);
@@ -177,10 +234,11 @@ class Parts {
 
   std::vector<ForceKind> forces_;
   std::vector<ConstraintKind> constraints_;
+  std::vector<SystemKind> systems_;
   std::vector<MonitorKind> monitors_;
 };
 
-/// Every force, constraint and monitor of noether.
+/// Every force, constraint, system and monitor of noether.
 Parts standard_parts();
 
 /// What the writers say of themselves: they stand in `[[every]]` like monitors.

@@ -62,7 +62,8 @@ struct Scene {
   std::filesystem::path file;
   std::string title;
   const UnitSystem* units = &unit_system("solar");
-  ParticleSystem<double> particles;  ///< in the frame the scene asks for
+  ParticleSystem<double> particles;   ///< in the frame the scene asks for; of a system, its variables
+  std::optional<SceneSystem> system;  ///< of first order, in the place of a Hamiltonian
   SceneHamiltonian hamiltonian;
   SceneIntegrator integrator;
   std::vector<SceneWatch> watches;
@@ -98,6 +99,9 @@ ConstraintSet constraints_of(const Scene& scene, std::size_t tables = std::numer
 
 /// The Hamiltonian of a scene, drag included.
 AnyHamiltonian<double> hamiltonian_of(const Scene& scene);
+
+/// All that moves a scene as y' = f(t, y): its system, or all its forces together (constraints left out).
+std::unique_ptr<VectorField<double>> field_of(const Scene& scene);
 
 /// The integrator of a scene: its scheme over the parts of its Hamiltonian, or its classical method over all its
 /// forces.

@@ -15,7 +15,7 @@ namespace noether {
 namespace {
 
 /// Tables and lists of tables a scene may have without having been written.
-constexpr std::array<std::string_view, 4> known_tables = {"particles", "hamiltonian", "integrator", "expect"};
+constexpr std::array<std::string_view, 5> known_tables = {"particles", "hamiltonian", "system", "integrator", "expect"};
 
 /// Keys of one table of which at most one is given.
 constexpr std::array<std::array<std::string_view, 3>, 2> alternatives = {

@@ -4,6 +4,8 @@
 #include "engine/description.hpp"
 #include "integrators/vector_field.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -41,6 +43,9 @@ struct HeatLine {
   }
   /// @throws Error  for what is no line
   void check() const {
+    if (points > most) {
+      refuse_field("points", static_cast<double>(points), fmt::format("is too many; at most {} are expected", most));
+    }
     if (points < 1) refuse_field("points", static_cast<double>(points), "leaves no point; 1 or more is expected");
     if (!(length > 0)) refuse_field("length", length, "is no length of a line; one above 0 is expected");
     if (!(diffusivity >= 0)) refuse_field("diffusivity", diffusivity, "is negative; 0 or more is expected");
@@ -48,6 +53,8 @@ struct HeatLine {
       refuse_field("mode", static_cast<double>(mode), "cannot be told by the points; 1 to points is expected");
     }
   }
+
+  static constexpr std::int64_t most = 1'000'000;  ///< of them, so that memory is not asked for in vain
 
   Index size() const { return static_cast<Index>(points); }
   std::vector<double> start() const { return exact(0); }

@@ -4,6 +4,8 @@
 #include "engine/description.hpp"
 #include "integrators/vector_field.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -39,11 +41,16 @@ struct RcLadder {
   }
   /// @throws Error  for what is no ladder
   void check() const {
+    if (stages > most) {
+      refuse_field("stages", static_cast<double>(stages), fmt::format("is too many; at most {} are expected", most));
+    }
     if (stages < 1) refuse_field("stages", static_cast<double>(stages), "is no ladder; 1 or more is expected");
     if (!(resistance > 0)) refuse_field("resistance", resistance, "is no resistance; a number above 0 is expected");
     if (!(capacitance > 0)) refuse_field("capacitance", capacitance, "is no capacitance; a time above 0 is expected");
     if (!(spread > 0)) refuse_field("spread", spread, "is no ratio of capacitances; a number above 0 is expected");
   }
+
+  static constexpr std::int64_t most = 1'000'000;  ///< of them, so that memory is not asked for in vain
 
   Index size() const { return static_cast<Index>(stages); }
   std::vector<double> start() const { return std::vector<double>(static_cast<std::size_t>(stages), 0.0); }

@@ -98,7 +98,7 @@ TEST_CASE("list knows every kind of part", "[cli][list]") {
   CHECK(has(output(folder, "list monitors"), "\nangular_momentum "));
   CHECK(has(output(folder, "list monitors"), "\ntrajectory "));
   CHECK(has(output(folder, "list units"), "\nau "));
-  for (const char* what : {"methods", "forces", "constraints", "monitors", "builders", "units"}) {
+  for (const char* what : {"methods", "forces", "constraints", "systems", "monitors", "builders", "units"}) {
     const std::string json = json_output(folder, std::string("list ") + what, "list");
     CHECK(json_member(json, "list") == "\"" + std::string(what) + "\"");
     CHECK(json_block(json, "items").front() == '[');

@@ -41,7 +41,7 @@ struct LorenzRun {
   io::TrajectoryWriter* writer;
 };
 
-void check_equal_files(const std::filesystem::path& a, const std::filesystem::path& b) {
+void check_equal_system_files(const std::filesystem::path& a, const std::filesystem::path& b) {
   const test::PythonResult result = test::run_python("compare_files.py", a.string() + " " + b.string());
   INFO(result.output);
   CHECK((result.status == 0 || result.status == 77));
@@ -92,7 +92,7 @@ TEST_CASE("a system's run that goes on writes the file of a run that was never c
   second.simulation.restore(saved);
   REQUIRE(second.simulation.run(123).ok());
   second.writer->finish(Outcome{});
-  check_equal_files(folder / "whole.h5", folder / "run.h5");
+  check_equal_system_files(folder / "whole.h5", folder / "run.h5");
   const io::Frames a = io::read_frames(folder / "whole.h5"), b = io::read_frames(folder / "run.h5");
   REQUIRE(a.frames.size() == 41);
   REQUIRE(b.frames.size() == 41);
