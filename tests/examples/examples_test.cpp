@@ -24,7 +24,7 @@ struct Example {
   int (*program)();
   Length length;
   Bits bits = Bits::everywhere;
-  std::int64_t few_steps = 1000;  ///< enough to tell program from scene
+  std::int64_t few_steps = 1000;  ///< enough to tell program from scene; 0: it chooses its steps, and is run whole
 };
 
 const std::vector<Example> all = {
@@ -34,12 +34,14 @@ const std::vector<Example> all = {
     {"double_pendulum", double_pendulum::program, Length::quick},
     {"driven_oscillator", driven_oscillator::program, Length::quick, Bits::of_this_machine},
     {"figure_eight", figure_eight::program, Length::quick},
+    {"heat_line", heat_line::program, Length::quick, Bits::of_this_machine, 0},
     {"henon_heiles", henon_heiles::program, Length::quick},
     {"kepler", kepler::program, Length::quick},
     {"oblate_saturn", oblate_saturn::program, Length::slow, Bits::of_this_machine},
     {"outer_solar_system", outer_solar_system::program, Length::nightly, Bits::everywhere, 4000},
     {"pendulum", pendulum::program, Length::quick},
     {"pythagorean", pythagorean::program, Length::nightly, Bits::everywhere, 20'000},
+    {"robertson", robertson::program, Length::quick, Bits::of_this_machine, 0},
     {"solar_system", solar_system::program, Length::slow},
     {"spherical_pendulum", spherical_pendulum::program, Length::quick},
     {"template_project", template_project::program, Length::quick},
@@ -55,6 +57,7 @@ noether::Scene scene_of(const std::string& example) {
   if (example == "bead_on_wire") parts.add_constraint<OnCycloid>();
   if (example == "beads_on_sphere") parts.add_force<SphereAttraction>();
   if (example == "oblate_saturn") parts.add_force<Oblateness>();
+  if (example == "robertson") parts.add_system<Kinetics>();
   return noether::load_scene("scene.toml", parts);
 }
 
@@ -150,7 +153,8 @@ void check_from_scene(const std::string& example, int (*program)(), Bits bits) {
   CHECK(physics(output, bits) == physics(outputs_in(readme_of(example)).at(1), bits));
   const noether::Scene scene = scene_of(example);
   noether::Simulation<double> sim = assemble(scene);
-  CHECK(sim.run(*scene.integrator.steps).ok());
+  const bool in_time = scene.integrator.until.has_value();
+  CHECK((in_time ? sim.run_until(*scene.integrator.until) : sim.run(*scene.integrator.steps)).ok());
   CHECK(digest_in(output) == noether::io::digest(sim.particles()));
   CHECK(std::filesystem::exists("scene.out/run.h5"));
 }
@@ -180,7 +184,7 @@ TEST_CASE("every example is tested, and has a README that names its scene and sh
 TEST_CASE("program and scene of every example end in the same digest", "[examples]") {
   if (!programs_can_run) return;
   for (const Example& example : all) {
-    if (!has_scene(example.name)) continue;
+    if (!has_scene(example.name) || example.few_steps == 0) continue;
     CAPTURE(example.name);
     const ExampleFolder copy(example.name);
     const std::string output = output_of(example.program, example.few_steps);
@@ -203,9 +207,10 @@ TEST_CASE("long examples do what they expect and print what their READMEs print"
   check_whole(Length::nightly);
 }
 
-TEST_CASE("three lines of program run the user's force or constraint from the scene file", "[examples]") {
+TEST_CASE("three lines of program run the user's force, constraint or system from the scene file", "[examples]") {
   check_from_scene("bead_on_wire", bead_on_wire_from_scene::program, Bits::of_this_machine);
   check_from_scene("beads_on_sphere", beads_on_sphere_from_scene::program, Bits::everywhere);
+  check_from_scene("robertson", robertson_from_scene::program, Bits::of_this_machine);
 }
 TEST_CASE("three lines of program run the user's force on the moons of Saturn", "[examples][slow]") {
   check_from_scene("oblate_saturn", oblate_saturn_from_scene::program, Bits::of_this_machine);

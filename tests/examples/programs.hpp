@@ -5,6 +5,7 @@
 #include "examples/bead_on_wire/cycloid.hpp"
 #include "examples/beads_on_sphere/sphere_attraction.hpp"
 #include "examples/oblate_saturn/oblateness.hpp"
+#include "examples/robertson/kinetics.hpp"
 
 #include "constraints/constraint_residual.hpp"
 #include "constraints/constraint_solver.hpp"
@@ -15,6 +16,7 @@
 #include "engine/shadow_hamiltonian.hpp"
 #include "engine/simulation.hpp"
 #include "engine/units.hpp"
+#include "engine/variables.hpp"
 #include "forces/check_gradient.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
@@ -25,6 +27,7 @@
 #include "integrators/damped.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/schemes.hpp"
+#include "integrators/systems/heat_line.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "io/bodies.hpp"
 #include "io/digest.hpp"
@@ -34,6 +37,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -55,6 +59,16 @@ namespace examples::beads_on_sphere_from_scene {
 }
 namespace examples::oblate_saturn_from_scene {
 #include "examples/oblate_saturn/from_scene.cpp"
+}
+namespace examples::robertson_from_scene {
+#include "examples/robertson/from_scene.cpp"
+}
+// Methods that choose their steps end in time: they are never shortened.
+namespace examples::heat_line {
+#include "examples/heat_line/main.cpp"
+}
+namespace examples::robertson {
+#include "examples/robertson/main.cpp"
 }
 #define run(steps) run(examples::shortened.value_or(steps))
 #define run_until(end) run(sim.steps_in(end))

@@ -1,0 +1,13 @@
+// The same struct, unchanged, in a scene file: three lines of program.
+#include "examples/robertson/kinetics.hpp"
+
+#include "scene/parts.hpp"
+#include "scene/scene.hpp"
+
+using namespace noether;
+
+int main() {
+  Parts parts = standard_parts();
+  parts.add_system<Kinetics>();
+  return exit_code(run(load_scene("scene.toml", parts)));
+}
