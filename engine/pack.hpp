@@ -19,7 +19,7 @@ namespace noether {
 /// @throws never
 struct Pack {
   static constexpr std::size_t lanes = 8;
-  alignas(64) std::array<double, lanes> lane;
+  std::array<double, lanes> lane;
 
   Pack() = default;
   template <class T>

@@ -141,7 +141,7 @@ const CollocationTable& gauss_table(int stages) {
     for (int s = 1; s <= 8; ++s) tables[static_cast<std::size_t>(s - 1)] = make_gauss(s);
     return tables;
   }();
-  NOETHER_EXPECTS(stages >= 1 && stages <= 8, "Gauss methods have 1 to 8 stages");
+  NOETHER_EXPECTS(stages >= 1 && stages <= 8, "a Gauss method has 1 to 8 stages");
   return all[static_cast<std::size_t>(stages - 1)];
 }
 
