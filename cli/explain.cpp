@@ -109,7 +109,10 @@ void measure_stiffness(const Scene& scene, Explanation& e) {
 void sort_parts(const Scene& scene, Explanation& e) {
   const Parts parts = standard_parts();
   if (scene.system) e.in.push_back("system " + scene.system->name);
-  for (const SceneForce& force : scene.hamiltonian.forces) e.in.push_back("force " + force.name);
+  for (const SceneForce& force : scene.hamiltonian.forces) {
+    const bool wide = !force.force || force.force->in_quad();
+    e.in.push_back("force " + force.name + (wide ? "" : ", for doubles only: compare has no truth for it"));
+  }
   for (const SceneConstraint& constraint : scene.hamiltonian.constraints) {
     e.in.push_back(fmt::format("constraint {}, {} times", constraint.name, constraint.tied.size()));
   }

@@ -8,6 +8,7 @@
 #include "engine/word.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -68,6 +69,7 @@ template <class Real> struct ForceBase {
   virtual ForceClaims claims() const = 0;
   virtual std::string name() const = 0;
   virtual std::string signature() const = 0;
+  virtual std::unique_ptr<ForceBase<Quad>> in_quad() const = 0;
 };
 template <class F, class Real> struct ForceModel final : ForceBase<Real> {
   explicit ForceModel(F f) : force(std::move(f)) {}
@@ -86,6 +88,10 @@ template <class F, class Real> struct ForceModel final : ForceBase<Real> {
   ForceClaims claims() const override { return claims_of(force); }
   std::string name() const override { return name_of(force); }
   std::string signature() const override { return signature_of(force); }
+  std::unique_ptr<ForceBase<Quad>> in_quad() const override {
+    if constexpr (Force<F, Quad>) return std::make_unique<ForceModel<F, Quad>>(force);
+    return nullptr;
+  }
   F force;
 };
 
@@ -190,6 +196,8 @@ template <class Real = double> class AnyForce : private detail::Erased<detail::F
     requires(!std::is_same_v<std::decay_t<F>, AnyForce> && Force<std::decay_t<F>, Real>)
   AnyForce(F force)  // NOLINT: erases on purpose
       : detail::Erased<detail::ForceBase<Real>>(std::make_unique<detail::ForceModel<F, Real>>(std::move(force))) {}
+  explicit AnyForce(std::unique_ptr<detail::ForceBase<Real>> held)
+      : detail::Erased<detail::ForceBase<Real>>(std::move(held)) {}
 
   void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const { this->held_->add_to(out, s); }
   /// Whether it is a force over `Pack` too, so that eight stages cost little more than one.
@@ -205,6 +213,12 @@ template <class Real = double> class AnyForce : private detail::Erased<detail::F
   ForceClaims claims() const { return this->held_->claims(); }
   std::string name() const { return this->held_->name(); }
   std::string signature() const { return this->held_->signature(); }
+  /// The same force in extended precision; empty for one that is written for doubles only.
+  std::optional<AnyForce<Quad>> in_quad() const {
+    auto wide = this->held_->in_quad();
+    if (wide == nullptr) return {};
+    return AnyForce<Quad>(std::move(wide));
+  }
 };
 
 /// Any split Hamiltonian over one number type; one virtual call per cut of the run.
