@@ -1,0 +1,29 @@
+#pragma once
+/// When the runs of a comparison are looked at: the same moments for every one of them.
+
+#include "engine/real.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace noether {
+
+/// `samples` moments at equal distances, the last one at the end; the start is moment 0.
+struct Sampling {
+  double interval = 0;  ///< [time]
+  int samples = 200;
+
+  double end() const { return interval * samples; }
+  /// Moment `j` as adaptive methods are shown it [time].
+  double time(int j) const { return interval * j; }
+  /// The same, exact.
+  Quad exact_time(int j) const { return Quad(interval) * Quad(j); }
+
+  /// How many steps of about `step` make one interval; at least 1.
+  std::int64_t steps_for(double step) const {
+    return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::llround(interval / std::abs(step))));
+  }
+};
+
+}  // namespace noether

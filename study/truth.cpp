@@ -1,0 +1,254 @@
+#include "study/truth.hpp"
+
+#include "forces/gravity.hpp"
+#include "forces/linear_drag.hpp"
+#include "forces/sum.hpp"
+#include "integrators/force_motion.hpp"
+#include "integrators/methods.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+namespace noether {
+
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+double since(std::chrono::steady_clock::time_point begin) {
+  return Seconds(std::chrono::steady_clock::now() - begin).count();
+}
+
+/// Largest |x| and largest |v| of a system; 0 where there is none.
+std::pair<double, double> sizes(const Vector<Quad>& y, bool second_order) {
+  const Index half = second_order ? y.size() / 2 : y.size();
+  double first = 0, second = 0;
+  for (Index i = 0; i < y.size(); ++i) {
+    double& size = i < half ? first : second;
+    size = std::max(size, std::abs(static_cast<double>(y[i])));
+  }
+  return {first, second};
+}
+
+/// One run in extended precision that stops at every moment of a sampling.
+struct WideRun {
+  std::vector<Vector<Quad>> y, rate;
+  std::string failure;  ///< empty: it came to the end
+};
+
+/// Where a wide run stands when its wall time is over, in words.
+std::string too_slow(double reached, double seconds, double budget) {
+  return fmt::format(
+      "extended precision would take about {:.0f} s, beyond its budget of {:.0f} s; give a shorter --until",
+      seconds / std::max(reached, 1e-6), budget);
+}
+
+WideRun run_wide(const WideScene& wide, const Sampling& sampling, const MethodChoice& choice, double budget) {
+  WideRun run;
+  const auto field = wide.field->clone();
+  const auto method = make_method<Quad>(*choice.info, choice.options);
+  Vector<Quad> y, rate;
+  field->bind(wide.start);
+  method->bind(*field);
+  field->gather(wide.start, y);
+  rate.resize(y.size());
+  // What is left to the moment is a rounding error of time in doubles: a line leads there.
+  const auto keep = [&](const Quad& t, const Quad& goal) {
+    field->rate(t, y, rate);
+    run.y.push_back(y);
+    for (Index i = 0; i < y.size(); ++i) run.y.back()[i] += (goal - t) * rate[i];
+    run.rate.push_back(rate);
+  };
+  const auto begin = std::chrono::steady_clock::now();
+  Quad t(0);
+  keep(t, t);
+  for (int j = 1; j <= sampling.samples; ++j) {
+    const Quad goal = sampling.exact_time(j);
+    while (true) {
+      const double left = static_cast<double>(goal - t);
+      if (!(left > 1e-12 * sampling.interval)) break;
+      const Stepped made = method->step(*field, t, y, left);
+      if (made.failure || !(made.h > 0)) {
+        run.failure = made.failure ? made.failure->message : "no step was made";
+        return run;
+      }
+      t += Quad(made.h);
+      const double reached = static_cast<double>(t) / sampling.end(), spent = since(begin);
+      if (spent > budget || (spent > 0.1 * budget && spent > 2 * reached * budget)) {
+        run.failure = too_slow(reached, spent, budget);
+        return run;
+      }
+    }
+    keep(t, goal);
+  }
+  return run;
+}
+
+/// Settings from coarse to fine, of the best method that there is in extended precision.
+std::vector<MethodChoice> settings_of(const WideScene& wide, const TruthOptions& options) {
+  for (const auto& [name, coarse] : {std::pair("gragg_bulirsch_stoer", 1e-20), std::pair("dop853", 1e-18)}) {
+    const MethodInfo* info = methods::find(name);
+    if (info == nullptr || info->make_quad == nullptr) continue;
+    Vector<Quad> y;
+    const auto field = wide.field->clone();
+    field->bind(wide.start);
+    field->gather(wide.start, y);
+    const auto [x, v] = sizes(y, field->claims().second_order);
+    const double scale = v > 0 && x > 0 ? std::min(x, v) : std::max(x, v);
+    const double first = options.rtol.value_or(coarse);
+    std::vector<MethodChoice> settings;
+    for (const double rtol : {first, first / 30, first / 1000}) {
+      settings.push_back({info, {.rtol = rtol, .atol = rtol * (scale > 0 ? 0.1 * scale : 1)}});
+    }
+    return settings;
+  }
+  return {};
+}
+
+/// Two settings that agree so well need no third.
+constexpr double agreement = 2e-16;
+
+constexpr std::string_view no_truth = "invariants";
+
+}  // namespace
+
+WideScene wide_scene(const Scene& scene) {
+  WideScene wide;
+  const SceneHamiltonian& h = scene.hamiltonian;
+  if (!h.constraints.empty()) {
+    wide.reason = "constraints are solved in double precision only";
+    return wide;
+  }
+  ForceField<Quad> forces;
+  if (h.kind == SceneHamiltonian::Kind::wisdom_holman) forces.add(Gravity{.G = h.wisdom_holman.G});
+  for (const SceneForce& force : h.forces) {
+    if (force.drag) {
+      forces.add(DragForce{*force.drag});
+    } else if (auto in_quad = force.force->in_quad()) {
+      forces.add(*in_quad);
+    } else {
+      wide.reason = fmt::format("force '{}' is written for doubles only", force.name);
+      return wide;
+    }
+  }
+  wide.start = scene.particles.as<Quad>();
+  wide.field = std::make_unique<ForceMotion<ForceField<Quad>, Quad>>(std::move(forces));
+  return wide;
+}
+
+bool about_center(const Scene& scene) {
+  if (scene.particles.size() < 2 || !scene.hamiltonian.constraints.empty()) return false;
+  for (const SceneForce& force : scene.hamiltonian.forces) {
+    if (!force.force || !force.force->claims().keeps_momentum) return false;
+  }
+  return true;
+}
+
+PositionError::PositionError(const ParticleSystem<double>& particles, bool about) : about_center_(about) {
+  double total = 0;
+  for (Index i = 0; i < particles.size(); ++i) {
+    masses_.emplace_back(particles.masses()[i]);
+    total += particles.masses()[i];
+  }
+  if (!(total > 0)) about_center_ = false;
+}
+
+std::vector<Quad> PositionError::positions(const Vector<Quad>& y) const {
+  const std::size_t n = masses_.size();
+  if (n == 0) return {y.data(), y.data() + y.size()};
+  std::vector<Quad> x(y.data(), y.data() + 3 * static_cast<Index>(n));
+  if (!about_center_) return x;
+  for (std::size_t k = 0; k < 3; ++k) {
+    Quad sum(0), total(0);
+    for (std::size_t i = 0; i < n; ++i) {
+      sum += masses_[i] * x[k * n + i];
+      total += masses_[i];
+    }
+    for (std::size_t i = 0; i < n; ++i) x[k * n + i] -= sum / total;
+  }
+  return x;
+}
+
+void PositionError::set_scale(const std::vector<Vector<Quad>>& y) {
+  scale_ = 0;
+  if (about_center_ || masses_.empty() || y.empty()) return;
+  double squares = 0;
+  for (const Vector<Quad>& one : y) {
+    for (const Quad& x : positions(one)) squares += static_cast<double>(x) * static_cast<double>(x);
+  }
+  scale_ = std::sqrt(squares / static_cast<double>(y.size()));
+}
+
+double PositionError::operator()(const Vector<Quad>& y, const Vector<Quad>& truth) const {
+  const std::vector<Quad> x = positions(y), exact = positions(truth);
+  Quad difference(0), size(0);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    difference += (x[i] - exact[i]) * (x[i] - exact[i]);
+    size += exact[i] * exact[i];
+  }
+  const double whole = scale_ > 0 ? scale_ : static_cast<double>(sqrt(size));
+  const double distance = static_cast<double>(sqrt(difference));
+  return whole > 0 ? distance / whole : distance;
+}
+
+Truth find_truth(const Scene& scene, const Sampling& sampling, const TruthOptions& options) {
+  Truth truth{.name = std::string(no_truth)};
+  const auto begin = std::chrono::steady_clock::now();
+  WideScene wide = wide_scene(scene);
+  if (wide.field == nullptr) {
+    truth.note = wide.reason;
+    return truth;
+  }
+  const std::vector<MethodChoice> settings = settings_of(wide, options);
+  if (settings.empty()) {
+    truth.note = "no method of high order is known in extended precision";
+    return truth;
+  }
+  PositionError error(scene.particles, about_center(scene));
+  std::vector<Vector<Quad>> rougher;
+  for (const MethodChoice& setting : settings) {
+    WideRun run = run_wide(wide, sampling, setting, options.budget - truth.seconds);
+    truth.seconds = since(begin);
+    if (!run.failure.empty()) {
+      if (!truth.error) truth.note = run.failure;
+      break;
+    }
+    rougher = std::exchange(truth.y, std::move(run.y));
+    truth.rate = std::move(run.rate);
+    truth.note = fmt::format("{} in extended precision, rtol {:.0e}", setting.info->name, *setting.options.rtol);
+    if (rougher.empty()) continue;
+    error.set_scale(truth.y);
+    double worst = 0;
+    for (std::size_t j = 0; j < truth.y.size(); ++j) worst = std::max(worst, error(rougher[j], truth.y[j]));
+    truth.error = worst;
+    if (worst < agreement) break;
+  }
+  if (!truth.error || !(*truth.error < 1e-3)) {
+    if (truth.error) {
+      truth.note = fmt::format(
+          "two settings in extended precision differ by {:.1e}: the motion is too irregular to have a truth over this "
+          "time",
+          *truth.error);
+    }
+    truth.error.reset();
+    truth.y.clear();
+    truth.rate.clear();
+    return truth;
+  }
+  truth.kind = TruthKind::quad;
+  truth.name = fmt::format("{} in quad", settings[0].info->name);
+  ParticleSystem<Quad> s = wide.start;
+  for (const Vector<Quad>& y : truth.y) {
+    if (s.size() == 0) break;
+    wide.field->bind(s);
+    wide.field->scatter(y, s);
+    truth.energy.push_back(static_cast<double>(wide.field->energy(s).total()));
+  }
+  return truth;
+}
+
+}  // namespace noether
