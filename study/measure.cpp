@@ -1,0 +1,239 @@
+#include "study/measure.hpp"
+
+#include "engine/monitors.hpp"
+#include "engine/shadow_hamiltonian.hpp"
+#include "io/digest.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+namespace noether {
+
+namespace {
+
+/// Keeps every state it sees.
+struct Recorder {
+  std::shared_ptr<Track> track;
+  bool energy = false;
+  double dt = 0;  ///< of a fixed clock [time]; 0: the time of the snapshot
+
+  static constexpr auto describe() { return part<Recorder>("recorder", "states for a comparison"); }
+  Wanted wanted() const { return {.energy = energy}; }
+  void observe(const Snapshot<double>& now) {
+    const ParticleSystem<double>& s = now.state();
+    track->times.push_back(dt != 0 ? Quad(dt) * Quad(now.step()) : Quad(now.time()));
+    const auto n = s.size();
+    Vector<double> y(n > 0 ? 6 * n : static_cast<Index>(s.variables().size()));
+    for (int k = 0; k < 3 && n > 0; ++k) {
+      std::copy_n(s.positions().component(k), n, y.data() + k * n);
+      std::copy_n(s.velocities().component(k), n, y.data() + (3 + k) * n);
+    }
+    if (n == 0) std::copy(s.variables().begin(), s.variables().end(), y.data());
+    track->y.push_back(std::move(y));
+    if (energy) track->energy.push_back(now.energy().total());
+    if (energy && track->energy_scale == 0) {
+      const EnergyTerms<double>& e = now.energy();
+      track->energy_scale = std::max(std::abs(e.total()), 1e-3 * (e.kinetic + std::abs(e.potential)));
+    }
+  }
+};
+
+/// Ends a run at the end of its budget.
+class Budget {
+ public:
+  Budget(Simulation<double>& sim, double seconds) {
+    sim.stop_on(&over_);
+    sim.on_progress([this, seconds](const Progress& now) {
+      if (now.seconds > seconds) over_ = true;
+    });
+  }
+  bool is_over() const { return over_; }
+
+ private:
+  std::atomic<bool> over_{false};
+};
+
+/// Whole steps between two moments; 0 for adaptive methods.
+std::int64_t steps_between(const Setting& setting, const Sampling& sampling) {
+  return setting.step > 0 ? sampling.steps_for(setting.step) : 0;
+}
+
+Outcome run_whole(Simulation<double>& sim, const Setting& setting, const Sampling& sampling) {
+  if (setting.step > 0) return sim.run(steps_between(setting, sampling) * sampling.samples);
+  return sim.run_until(sampling.end());
+}
+
+template <class M> M* watch(Simulation<double>& sim, const Setting& setting, const Sampling& sampling, M monitor) {
+  if (setting.step > 0) return &sim.every(steps_between(setting, sampling), std::move(monitor));
+  return &sim.every_time(sampling.interval, std::move(monitor));
+}
+
+/// Least fluctuation of the orders that were watched.
+std::optional<double> least_fluctuation(const ShadowHamiltonian<double>* monitor) {
+  if (monitor == nullptr) return {};
+  const MonitorReport report = monitor->report();
+  if (report.fluctuation.empty()) return {};
+  const double best = *std::min_element(report.fluctuation.begin(), report.fluctuation.end());
+  return std::isfinite(best) ? std::optional(best) : std::nullopt;
+}
+
+/// A monitor of the shadow, where the run can have one: it watches every sample's first steps.
+ShadowHamiltonian<double>* watch_shadow(Simulation<double>& sim, const Scene& alone, const Setting& setting,
+                                        const Sampling& sampling) {
+  const bool serves = setting.step > 0 && sim.claims().symplectic && sim.claims().energy;
+  const ShadowHamiltonian<double> monitor;
+  if (!serves || steps_between(setting, sampling) < monitor.steps_in_a_row()) return nullptr;
+  try {
+    Simulation<double> trial = assemble(alone);  // what refuses the monitor is no run any more
+    watch(trial, setting, sampling, monitor);
+  } catch (const Error&) {
+    return nullptr;
+  }
+  return watch(sim, setting, sampling, monitor);
+}
+
+/// The run as others are compared with it. @return whether it was within the budget
+bool watched_run(Row& row, const Scene& alone, const Sampling& sampling, const MeasureOptions& options) {
+  Simulation<double> sim = assemble(alone);
+  const IntegratorClaims claims = sim.claims();
+  const bool particles = alone.particles.size() > 0, energy = claims.energy && particles;
+  auto track = std::make_shared<Track>();
+  watch(sim, row.setting, sampling, Recorder{track, energy, row.setting.step});
+  const Energy* watched = energy ? watch(sim, row.setting, sampling, Energy()) : nullptr;
+  const Momentum* momentum =
+      particles && claims.keeps_momentum ? watch(sim, row.setting, sampling, Momentum()) : nullptr;
+  const AngularMomentum* spin = nullptr;
+  bool kept = particles;  // by the equations; whether the method keeps it is what is measured
+  for (const SceneForce& force : alone.hamiltonian.forces) {
+    kept = kept && force.force && force.force->claims().keeps_angular_momentum;
+  }
+  if (kept && alone.hamiltonian.constraints.empty()) spin = watch(sim, row.setting, sampling, AngularMomentum());
+  const ShadowHamiltonian<double>* fluctuation = watch_shadow(sim, alone, row.setting, sampling);
+  const Budget budget(sim, options.budget);
+  const Outcome outcome = run_whole(sim, row.setting, sampling);
+  row.outcome = budget.is_over() ? "over_budget" : std::string(name(outcome.kind));
+  row.message = budget.is_over() ? "" : outcome.message;
+  row.outcome_time = outcome.time;
+  row.steps = sim.step();
+  row.evaluations = sim.evaluations();
+  row.wall_s = sim.seconds();
+  row.digest = io::digest(sim.particles());
+  if (watched != nullptr) track->energy_report = watched->report();
+  if (momentum != nullptr) track->momentum = momentum->report();
+  if (spin != nullptr) track->angular_momentum = spin->report();
+  track->shadow_fluctuation = least_fluctuation(fluctuation);
+  row.track = std::move(*track);
+  return !budget.is_over();
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  return n % 2 == 1 ? values[n / 2] : (values[n / 2 - 1] + values[n / 2]) / 2;
+}
+
+/// Runs that are over sooner are repeated up to five times as often: one interruption must not decide their median [s].
+constexpr double soon_over = 0.05;
+
+/// The same run with nobody watching, as often as asked for or as the budget allows.
+void timed_runs(Row& row, const Scene& alone, const Sampling& sampling, const MeasureOptions& options) {
+  std::vector<double> seconds;
+  double spent = 0;
+  const auto again = [&](int done) {
+    if (done == 0) return true;
+    return spent < options.budget && (done < options.repeats || (spent < soon_over && done < 5 * options.repeats));
+  };
+  for (int k = 0; again(k); ++k) {
+    Simulation<double> sim = assemble(alone);
+    static_cast<void>(run_whole(sim, row.setting, sampling));
+    seconds.push_back(sim.seconds());
+    spent += seconds.back();
+  }
+  row.repeats = static_cast<int>(seconds.size());
+  row.wall_s = median(seconds);
+  for (double& one : seconds) one = std::abs(one - *row.wall_s);
+  row.wall_mad_s = median(seconds);
+}
+
+std::optional<double> finite(const std::optional<double>& x) { return x && std::isfinite(*x) ? x : std::nullopt; }
+
+std::optional<double> worst_of(const std::vector<double>& values) {
+  if (values.empty()) return {};
+  double worst = 0;
+  for (const double x : values) worst = std::isfinite(x) ? std::max(worst, std::abs(x)) : x;
+  return finite(worst);
+}
+
+std::optional<double> rms_of(const std::vector<double>& values) {
+  if (values.empty()) return {};
+  double squares = 0;
+  for (const double x : values) squares += x * x;
+  return finite(std::sqrt(squares / static_cast<double>(values.size())));
+}
+
+}  // namespace
+
+Row measure(const Scene& scene, const Opponent& who, const Setting& setting, const Sampling& sampling,
+            const MeasureOptions& options) {
+  Row row{.who = who, .setting = setting};
+  if (!who.adaptive) {
+    row.setting.step = sampling.interval / static_cast<double>(sampling.steps_for(setting.step));
+  }
+  const Scene alone = variant(scene, who, row.setting);
+  if (watched_run(row, alone, sampling, options)) {
+    timed_runs(row, alone, sampling, options);
+  } else {
+    row.repeats = 0;
+  }
+  return row;
+}
+
+Vector<Quad> truth_at(const Truth& truth, const Sampling& sampling, std::size_t j, const Quad& time) {
+  Vector<Quad> y = truth.y[j];
+  if (truth.rate.empty()) return y;
+  const Quad late = time - sampling.exact_time(static_cast<int>(j));
+  for (Index i = 0; i < y.size(); ++i) y[i] += late * truth.rate[j][i];
+  return y;
+}
+
+std::vector<double> energy_errors(const Track& track, const Truth& truth) {
+  std::vector<double> errors;
+  if (track.energy.empty() || track.energy_scale == 0) return errors;
+  const bool kept = track.energy_report.reason.empty();
+  if (!kept && truth.energy.empty()) return errors;
+  for (std::size_t j = 0; j < track.energy.size(); ++j) {
+    if (!kept && j >= truth.energy.size()) break;
+    errors.push_back((track.energy[j] - (kept ? track.energy[0] : truth.energy[j])) / track.energy_scale);
+  }
+  return errors;
+}
+
+void set_errors(Row& row, const Truth& truth, const Sampling& sampling, const PositionError& error) {
+  const Track& track = row.track;
+  row.truth = truth.name;
+  row.truth_error = truth.error;
+  std::vector<double> errors;
+  for (std::size_t j = 1; j < track.y.size() && j < truth.y.size(); ++j) {
+    errors.push_back(error(track.y[j].cast<Quad>(), truth_at(truth, sampling, j, track.times[j])));
+  }
+  row.position_errors = {0.0};
+  row.position_errors.insert(row.position_errors.end(), errors.begin(), errors.end());
+  row.position_error_max = worst_of(errors);
+  row.position_error_rms = rms_of(errors);
+  row.position_error_end = errors.empty() || !row.completed() ? std::nullopt : finite(errors.back());
+  const std::vector<double> energies = energy_errors(track, truth);
+  row.energy_error_max = worst_of(energies);
+  row.energy_error_rms = rms_of(energies);
+  row.energy_slope = finite(track.energy_report.slope);
+  row.energy_slope_error = finite(track.energy_report.slope_error);
+  row.momentum_error_max = finite(track.momentum.worst);
+  row.angular_momentum_error_max = finite(track.angular_momentum.worst);
+  row.shadow_fluctuation = track.shadow_fluctuation;
+}
+
+}  // namespace noether

@@ -1,0 +1,70 @@
+#pragma once
+/// One run of a comparison: what it costs, and where it was at the moments of the sampling.
+
+#include "study/opponent.hpp"
+#include "study/sampling.hpp"
+#include "study/truth.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace noether {
+
+/// States and invariants of a run at the moments of a sampling, the start among them.
+struct Track {
+  std::vector<Quad> times = {};        ///< of the states, exact products of the step
+  std::vector<Vector<double>> y = {};  ///< as in `Truth`
+  std::vector<double> energy = {};     ///< total [energy]; empty where no force tells it
+  double energy_scale = 0;             ///< what energy errors are relative to
+  MonitorReport energy_report = {}, momentum = {}, angular_momentum = {};
+  std::optional<double> shadow_fluctuation = {};
+};
+
+/// One row of a comparison: columns as in `compare.csv`. Empty: not measured.
+struct Row {
+  Opponent who = {};
+  Setting setting = {};
+  std::string outcome = {};  ///< of the run, or "over_budget"
+  std::string message = {};
+  double outcome_time = 0;  ///< [time]
+  std::int64_t steps = 0;
+  Evaluations evaluations = {};
+  std::optional<double> wall_s = {}, wall_mad_s = {};  ///< of the run alone, nobody watching
+  int repeats = 0;
+  std::optional<double> position_error_max = {}, position_error_rms = {}, position_error_end = {};
+  std::optional<double> energy_error_max = {}, energy_error_rms = {}, energy_slope = {}, energy_slope_error = {};
+  std::optional<double> momentum_error_max = {}, angular_momentum_error_max = {}, shadow_fluctuation = {};
+  std::optional<double> truth_error = {};  ///< of the reference this row was measured against
+  std::string truth = {};
+  bool pareto_time = false, pareto_evaluations = false;
+  std::string digest = {};
+  Track track = {};
+  std::vector<double> position_errors = {};  ///< at the moments of the track, the start among them
+
+  bool completed() const { return outcome == "completed"; }
+};
+
+struct MeasureOptions {
+  int repeats = 3;     ///< of the timed run; more for short ones, fewer where the budget does not allow them
+  double budget = 10;  ///< seconds of wall time for one run
+};
+
+/// Runs one opponent with one setting: once watched, then `repeats` times alone, for the time.
+///
+/// A run that fails is a row as any other. One beyond the budget ends there, outcome "over_budget".
+Row measure(const Scene& scene, const Opponent& who, const Setting& setting, const Sampling& sampling,
+            const MeasureOptions& options = {});
+
+/// Puts the errors of positions and energies into a row.
+///
+/// Energy is compared with that of the truth where the equations themselves do not keep it.
+void set_errors(Row& row, const Truth& truth, const Sampling& sampling, const PositionError& error);
+
+/// Relative errors of the energy at the moments of a track, signed.
+std::vector<double> energy_errors(const Track& track, const Truth& truth);
+
+/// The exact state at the moment of a track: the truth at moment `j`, moved to `time`.
+Vector<Quad> truth_at(const Truth& truth, const Sampling& sampling, std::size_t j, const Quad& time);
+
+}  // namespace noether

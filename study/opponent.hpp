@@ -1,0 +1,50 @@
+#pragma once
+/// Who is compared: a method over one of the Hamiltonians a scene can be written with.
+
+#include "scene/scene.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace noether {
+
+/// One method of a comparison.
+struct Opponent {
+  std::string label;   ///< in tables: the method, with "@kinetic_potential" where that is not the scene's Hamiltonian
+  std::string method;  ///< as `[integrator]` names it
+  SceneHamiltonian::Kind hamiltonian = SceneHamiltonian::Kind::kinetic_potential;
+  bool adaptive = false;  ///< it chooses its steps, by a tolerance
+
+  bool operator==(const Opponent&) const = default;
+};
+
+/// The step or the tolerance of one run.
+struct Setting {
+  double step = 0;       ///< [time]; 0 for adaptive methods
+  double tolerance = 0;  ///< relative; 0 for methods of fixed steps
+};
+
+/// The opponent of a name: a scheme, a word or a classical method, optionally "@kinetic_potential" or "@wisdom_holman".
+///
+/// Over a wisdom_holman scene a splitting scheme runs on that splitting; what cannot, and every classical method, runs
+/// on kinetic_potential with the same gravity.
+/// @throws Error  for a name that is not known, with a proposal, and for a method that cannot serve the scene
+Opponent opponent(const Scene& scene, std::string_view name);
+
+/// Methods worth comparing on a scene, its own first: those that can serve it.
+std::vector<Opponent> default_opponents(const Scene& scene);
+
+/// The scene run by an opponent, without monitors, writers and stops: the run alone.
+/// @throws Error  if the method cannot serve it
+Scene variant(const Scene& scene, const Opponent& who, const Setting& setting);
+
+/// The absolute tolerance that goes with a relative one: in the ratio of the scene's own, else a thousandth.
+double absolute_tolerance(const Scene& scene, double relative);
+
+/// Evaluations of forces that one step of about `step` takes, measured on a few; adaptive methods: 0.
+double evaluations_per_step(const Scene& scene, const Opponent& who, double step);
+
+}  // namespace noether
