@@ -1,0 +1,249 @@
+// Comparisons of small scenes: known slopes, failed rows, and what is written of them.
+
+#include "study/compare_files.hpp"
+#include "study/report.hpp"
+#include "tests/study/scenes.hpp"
+#include "tests/support/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace noether::test {
+namespace {
+
+const OrderFit& order_of(const Comparison& c, const std::string& label) {
+  const auto found =
+      std::find_if(c.orders.begin(), c.orders.end(), [&](const OrderFit& fit) { return fit.label == label; });
+  REQUIRE(found != c.orders.end());
+  return *found;
+}
+
+TEST_CASE("methods show their orders on a Kepler orbit, by fixed steps and by tolerances", "[compare]") {
+  const Scene scene = kepler(0.1, "method = \"verlet\"\nstep = 0.05\nsteps = 800");
+  CompareOptions options;
+  options.methods = {"verlet", "yoshida_4", "blanes_moan_s6", "kahan_li_8_s17", "rk4", "dop853"};
+  options.steps = {0.2, 0.1, 0.05, 0.025, 0.0125};
+  options.tolerances = {1e-5, 1e-7, 1e-9, 1e-11};
+  options.repeats = 1;
+  const Comparison c = compare(scene, options);
+  REQUIRE(c.position_measured);
+  CHECK(c.rows.size() == 5 * 5 + 4);
+  for (const auto& [label, order] :
+       {std::pair("verlet", 2), std::pair("yoshida_4", 4), std::pair("blanes_moan_s6", 4)}) {
+    INFO(label);
+    const OrderFit& fit = order_of(c, label);
+    REQUIRE(fit.order);
+    CHECK(fit.rows >= 3);
+    CHECK(std::abs(*fit.order - order) < 0.25);
+  }
+  CHECK(std::abs(order_of(c, "kahan_li_8_s17").order.value() - 8) < 0.6);
+  // What drifts with the energy falls by one order more, and comes to lead on long runs.
+  CHECK(order_of(c, "rk4").order.value() > 3.8);
+  CHECK(order_of(c, "rk4").order.value() < 5.2);
+  CHECK(order_of(c, "dop853").order.value() > 7.5);
+  for (const Row& row : c.rows) {
+    INFO(row.who.label << " " << row.setting.step << " " << row.setting.tolerance);
+    CHECK(row.completed());
+    CHECK(std::abs(row.outcome_time / c.end - 1) < 1e-9);
+    CHECK(row.track.y.size() == 201);
+    CHECK(row.position_error_max.value() >= row.position_error_rms.value());
+    CHECK(row.truth_error.value() < 1e-15);
+    CHECK(row.evaluations.force > 0);
+    CHECK(row.repeats >= 1);
+    CHECK(row.momentum_error_max.value() < 1e-13);
+  }
+}
+
+TEST_CASE("steps divide the time between two moments, and errors shrink with the steps", "[compare]") {
+  const Scene scene = kepler(0, "method = \"verlet\"\nstep = 0.01\nsteps = 2000");
+  const Sampling sampling = sampling_of(scene, {});
+  CHECK(sampling.interval == 0.1);
+  CompareOptions options;
+  options.steps = {0.013, 0.0249, 0.025, 0.1};
+  const auto settings = settings_of(scene, opponent(scene, "verlet"), sampling, options);
+  REQUIRE(settings.size() == 3);
+  CHECK(settings[0].step == 0.1);
+  CHECK(settings[1].step == 0.1 / 4);
+  CHECK(settings[2].step == 0.1 / 8);
+}
+
+TEST_CASE("by default a ladder of six steps costs as much for every method", "[compare]") {
+  const Scene scene = kepler(0, "method = \"verlet\"\nstep = 0.01\nsteps = 2000");
+  const Sampling sampling = sampling_of(scene, {});
+  const auto verlet = settings_of(scene, opponent(scene, "verlet"), sampling, {});
+  const auto rk4 = settings_of(scene, opponent(scene, "rk4"), sampling, {});
+  REQUIRE(verlet.size() == 6);
+  CHECK(std::abs(verlet.front().step / 0.04 - 1) < 0.3);
+  CHECK(std::abs(verlet.back().step / 0.00125 - 1) < 0.01);
+  REQUIRE(rk4.size() >= 5);
+  CHECK(std::abs(rk4.back().step / 0.005 - 1) < 0.01);
+  CHECK(settings_of(scene, opponent(scene, "dop853"), sampling, {}).size() == 6);
+}
+
+TEST_CASE("a run that diverges is a row, and so is one beyond its budget", "[compare]") {
+  const Scene scene = oscillator("method = \"verlet\"\nstep = 0.1\nsteps = 100000");
+  CompareOptions options;
+  options.until = 2000;
+  options.methods = {"verlet"};
+  options.steps = {2.5, 0.1};
+  options.repeats = 2;
+  const Comparison c = compare(scene, options);
+  REQUIRE(c.rows.size() == 2);
+  CHECK(c.rows[0].outcome == "diverged");
+  CHECK(c.rows[0].outcome_time < 2000);
+  CHECK_FALSE(c.rows[0].pareto_time);
+  CHECK(c.rows[1].completed());
+  CHECK(c.rows[1].repeats >= 2);
+  options.steps = {1e-5};
+  options.row_budget = 0.02;
+  const Comparison slow = compare(scene, options);
+  CHECK(slow.rows[0].outcome == "over_budget");
+  CHECK(slow.rows[0].outcome_time > 0);
+  CHECK(slow.rows[0].outcome_time < 2000);
+  CHECK(slow.rows[0].repeats == 0);
+}
+
+TEST_CASE("the run that is timed has the bits of the one that is watched", "[compare]") {
+  const Scene scene = kepler(0.3, "method = \"verlet\"\nstep = 0.01\nsteps = 200");
+  const Sampling sampling = sampling_of(scene, {});
+  const Opponent who = opponent(scene, "yoshida_4");
+  const Row row = measure(scene, who, {.step = 0.01, .tolerance = 0}, sampling, {.repeats = 1, .budget = 10});
+  Simulation<double> alone = assemble(variant(scene, who, row.setting));
+  REQUIRE(alone.run(row.steps).ok());
+  CHECK(row.evaluations.force == alone.evaluations().force);
+  CHECK(row.track.y.back()[1] == alone.particles().positions()[1][0]);
+}
+
+TEST_CASE("a wisdom_holman scene is compared with whole-gravity kicks too", "[compare]") {
+  const Scene scene = outer_solar_system();
+  CHECK(opponent(scene, "verlet").label == "verlet");
+  CHECK(opponent(scene, "verlet@kinetic_potential").label == "verlet@kinetic_potential");
+  CHECK(opponent(scene, "srkn14a").label == "srkn14a");
+  CHECK(opponent(scene, "rk4").label == "rk4");
+  const std::vector<Opponent> all = default_opponents(scene);
+  CHECK(all.size() >= 8);
+  CHECK(all.front().label == "aba_10_6_4");
+  CompareOptions options;
+  options.until = 40000;
+  options.methods = {"aba_10_6_4", "verlet@kinetic_potential"};
+  options.steps = {100};
+  options.repeats = 1;
+  const Comparison c = compare(scene, options);
+  REQUIRE(c.rows.size() == 2);
+  CHECK(c.rows[0].evaluations.kepler > 0);
+  CHECK(c.rows[1].evaluations.kepler == 0);
+  // Both go to the same place, and Kepler arcs are better at it by orders of magnitude.
+  CHECK(c.rows[1].position_error_max.value() < 1);
+  CHECK(c.rows[0].position_error_max.value() < 1e-4 * c.rows[1].position_error_max.value());
+  CHECK(c.scene_end.value() == 365250000);
+}
+
+TEST_CASE("where there is no truth, the finest run stands in for it, and says so", "[compare]") {
+  const Scene scene = kepler(0.3, "method = \"verlet\"\nstep = 0.05\nsteps = 400");
+  CompareOptions options;
+  options.methods = {"verlet", "kahan_li_8_s17"};
+  options.steps = {0.05, 0.025, 0.0125};
+  options.truth.budget = 1e-4;
+  options.repeats = 1;
+  const Comparison c = compare(scene, options);
+  REQUIRE(c.truth.kind == TruthKind::finest_run);
+  CHECK(c.rows[0].truth == "finest run");
+  REQUIRE(c.reference);
+  CHECK(c.rows[*c.reference].who.label == "kahan_li_8_s17");
+  CHECK_FALSE(c.rows[*c.reference].position_error_max);
+  CHECK(std::abs(order_of(c, "verlet").order.value() - 2) < 0.25);
+  // The error it claims is about the error it has.
+  options.truth.budget = 60;
+  const Comparison exact = compare(scene, options);
+  CHECK(exact.rows[*c.reference - 1].position_error_max.value() < 2 * *c.truth.error);
+  CHECK(exact.rows[*c.reference - 1].position_error_max.value() > 0.5 * *c.truth.error);
+}
+
+TEST_CASE("the energy of a damped run is compared with that of the truth", "[compare]") {
+  const Scene scene = oscillator("method = \"verlet\"\nstep = 0.05\nsteps = 400", 0.125);
+  CompareOptions options;
+  options.methods = {"verlet", "rk4"};
+  options.steps = {0.1, 0.05, 0.025};
+  options.repeats = 1;
+  const Comparison c = compare(scene, options);
+  for (const Row& row : c.rows) {
+    REQUIRE(row.energy_error_max);
+    CHECK(*row.energy_error_max < 1e-2);
+    CHECK_FALSE(row.energy_slope);
+  }
+  CHECK(std::abs(std::log2(*c.rows[0].energy_error_max / *c.rows[1].energy_error_max) - 2) < 0.2);
+  CHECK(std::abs(std::log2(*c.rows[3].energy_error_max / *c.rows[4].energy_error_max) - 4) < 0.3);
+}
+
+TEST_CASE("compare.csv has the columns that are promised, and one line for each row", "[compare][files]") {
+  const Scene scene = oscillator("method = \"verlet\"\nstep = 0.1\nsteps = 400");
+  CompareOptions options;
+  options.methods = {"verlet", "rk4"};
+  options.steps = {0.1, 0.05};
+  options.repeats = 1;
+  Comparison c = compare(scene, options);
+  c.scene = "a, \"quoted\" scene.toml";
+  const std::string csv = to_csv(c);
+  CHECK(csv.starts_with(
+      "scene,method,step,step_unit,tolerance,threads,simd,outcome,outcome_time,steps,rejected,force_evaluations,"
+      "kepler_evaluations,jacobian_evaluations,wall_s,wall_mad_s,repeats,position_error_max,position_error_rms,"
+      "position_error_end,energy_error_max,energy_error_rms,energy_slope,energy_slope_error,momentum_error_max,"
+      "angular_momentum_error_max,shadow_fluctuation,truth,truth_error,pareto_time,pareto_evaluations,digest\n"
+      "\"a, \"\"quoted\"\" scene.toml\",verlet,0.1,1,,"));
+  CHECK(std::count(csv.begin(), csv.end(), '\n') == 5);
+  const std::string json = to_json(c);
+  CHECK(json.starts_with("{\"schema\":\"noether.compare/1\""));
+  CHECK(json.find('\n') == std::string::npos);
+}
+
+TEST_CASE("the report stands alone: one file, nothing from elsewhere", "[compare][files]") {
+  const Scene scene = oscillator("method = \"verlet\"\nstep = 0.1\nsteps = 400", 0.1);
+  CompareOptions options;
+  options.methods = {"verlet", "rk4"};
+  options.steps = {0.1, 0.05, 0.025};
+  options.repeats = 1;
+  Comparison c = compare(scene, options);
+  c.title = "A <spring> & more";
+  const auto solution = solution_of(scene, c);
+  REQUIRE(solution);
+  CHECK(std::abs(solution->omega - 1) < 0.1);
+  CHECK(solution->dampings.size() == 5);
+  CHECK(solution->runs.size() == solution->methods.size() * solution->steps.size() * 5);
+  const std::string html = report_html(c, solution);
+  for (const char* foreign : {"http://", "https://", "src=", "@import", "url("})
+    CHECK(html.find(foreign) == std::string::npos);
+  CHECK(html.starts_with("<!DOCTYPE html>"));
+  CHECK(html.find("A &lt;spring&gt; &amp; more") != std::string::npos);
+  CHECK(html.find("A <spring>") == std::string::npos);
+  for (const char* part :
+       {"<svg class=\"plot\"", "id=\"solution-data\"", "id=\"damping\"", "Error against run time", "rk4"}) {
+    CHECK(html.find(part) != std::string::npos);
+  }
+}
+
+TEST_CASE("what cannot be compared is refused in words", "[compare]") {
+  const Scene scene = oscillator("method = \"verlet\"\nstep = 0.1\nsteps = 400");
+  const auto refusal = [&](const CompareOptions& options) {
+    try {
+      compare(scene, options);
+    } catch (const Error& error) {
+      return error.message();
+    }
+    return std::string();
+  };
+  CHECK(refusal({.methods = {"verlt"}}) == "unknown method 'verlt'; did you mean 'verlet'?");
+  CHECK(refusal({.methods = {"verlet@kinetic"}}) ==
+        "unknown hamiltonian 'kinetic'; known are: kinetic_potential, wisdom_holman");
+  CHECK(refusal({.methods = {"verlet@wisdom_holman"}}) ==
+        "'verlet@wisdom_holman': the scene has no splitting into Kepler arcs; leave '@wisdom_holman' out");
+  CHECK(refusal({.steps = {-1}}) == "a step of -1 is no step; a time above 0 is expected");
+  CHECK(refusal({.steps = {5}}) ==
+        "a step of 5 is longer than the 0.2 between two of the 200 moments at which runs are compared; give shorter "
+        "steps, or a longer --until");
+  CHECK(refusal({.tolerances = {2}}) == "2 is no tolerance; a number between 0 and 1 is expected");
+  CHECK(refusal({.repeats = 0}) == "0 repeats measure nothing; 1 or more is expected");
+}
+
+}  // namespace
+}  // namespace noether::test
