@@ -1,0 +1,302 @@
+#include "study/advise.hpp"
+
+#include "engine/quantity.hpp"
+#include "scene/json.hpp"
+#include "study/analysis.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+namespace noether {
+
+namespace {
+
+constexpr double margin = 0.7;      ///< of the error that was asked for: fits scatter
+constexpr double rounding = 1e-14;  ///< no fit is believed below
+
+double end_of(const Scene& scene) {
+  const SceneIntegrator& own = scene.integrator;
+  if (own.until) return *own.until;
+  if (own.steps && own.step != 0) return static_cast<double>(*own.steps) * own.step;
+  throw SceneError("the scene has no end, so nothing can be said of its whole run; give until or steps in [integrator]",
+                   {.file = scene.source.file, .key = "integrator.until"});
+}
+
+std::optional<double> error_of(const Row& row, Metric metric) {
+  if (!row.completed()) return {};
+  return metric == Metric::position ? row.position_error_max : row.energy_error_max;
+}
+
+/// Exponent of the growth of the largest error so far, over the last half of the logarithm of a trial.
+std::optional<double> measured_exponent(const Row& row, const Truth& truth, Metric metric) {
+  const std::vector<double> errors = metric == Metric::position ? row.position_errors : energy_errors(row.track, truth);
+  if (errors.size() < 41) return {};
+  const std::size_t last = errors.size() - 1, first = last / 8;
+  double early = 0, late = 0;
+  for (std::size_t j = 1; j <= last; ++j) {
+    if (j <= first) early = std::max(early, std::abs(errors[j]));
+    late = std::max(late, std::abs(errors[j]));
+  }
+  if (!(early > 0) || !(late < 0.1)) return {};
+  return std::log(late / early) / std::log(static_cast<double>(last) / static_cast<double>(first));
+}
+
+/// The trials of one opponent, and what they say about any step or tolerance.
+class Fit {
+ public:
+  Fit(const Scene& scene, const Comparison& trials, const Opponent& who, Metric metric) : who_(who) {
+    for (const Row& row : trials.rows) {
+      if (row.who == who && error_of(row, metric)) rows_.push_back(&row);
+    }
+    std::vector<std::pair<double, double>> errors, costs;
+    for (const Row* row : rows_) {
+      errors.emplace_back(x_of(*row), *error_of(*row, metric));
+    }
+    const double floor = std::max(rounding, 3 * (metric == Metric::position ? trials.truth.error.value_or(0) : 0));
+    law_ = asymptotic_fit(errors, floor, 0.5);
+    if (!rows_.empty()) growth_ = growth(scene, trials, metric);
+  }
+
+  /// What holds an error over the whole run; empty where nothing tried tells.
+  std::optional<Proposal> propose(double error, double trial_end, double end) const {
+    if (!law_) return {};
+    const double longer = std::pow(end / trial_end, growth_.exponent);
+    const double wanted = margin * error / longer;
+    if (wanted < rounding) return {};
+    double x = std::exp((std::log(wanted) - law_->log_factor) / law_->exponent);
+    double most = 0, least = std::numeric_limits<double>::infinity();
+    for (const Row* row : rows_) {
+      most = std::max(most, x_of(*row));
+      least = std::min(least, x_of(*row));
+    }
+    x = std::min(x, most);  // longer steps than any that was tried may be unstable
+    if (x < least / 4 || (who_.adaptive && x < 1e-15)) return {};
+    Proposal p{.who = who_, .growth = growth_};
+    (who_.adaptive ? p.setting.tolerance : p.setting.step) = x;
+    set_prediction(p, longer, trial_end, end);
+    return p;
+  }
+
+  /// Error and cost of a setting, over the whole run.
+  void set_prediction(Proposal& p, double longer, double trial_end, double end) const {
+    const double x = who_.adaptive ? p.setting.tolerance : p.setting.step;
+    p.predicted_error = (*law_)(x)*longer;
+    const Row* near = rows_.front();
+    for (const Row* row : rows_) {
+      if (std::abs(std::log(x_of(*row) / x)) < std::abs(std::log(x_of(*near) / x))) near = row;
+    }
+    const double evaluations = static_cast<double>(near->evaluations.force) * cost_ratio(x, x_of(*near));
+    p.predicted_evaluations = evaluations * end / trial_end;
+    p.predicted_wall_s = near->wall_s.value_or(0) * cost_ratio(x, x_of(*near)) * end / trial_end;
+  }
+
+ private:
+  double x_of(const Row& row) const { return who_.adaptive ? row.setting.tolerance : row.setting.step; }
+
+  /// How much more a setting costs than another one.
+  double cost_ratio(double x, double near) const {
+    if (!who_.adaptive) return near / x;
+    // Evaluations of an adaptive method are a power of its tolerance: the slope between the tolerances about x.
+    const Row *above = nullptr, *below = nullptr;
+    for (const Row* row : rows_) {
+      if (x_of(*row) >= x && (above == nullptr || x_of(*row) < x_of(*above))) above = row;
+      if (x_of(*row) < x && (below == nullptr || x_of(*row) > x_of(*below))) below = row;
+    }
+    if (above == nullptr || below == nullptr) {
+      above = rows_[0];
+      below = rows_.back();
+    }
+    if (above == below) return 1;
+    const double slope =
+        std::log(static_cast<double>(below->evaluations.force) / static_cast<double>(above->evaluations.force)) /
+        std::log(x_of(*below) / x_of(*above));
+    return std::pow(x / near, slope);
+  }
+
+  Growth growth(const Scene& scene, const Comparison& trials, Metric metric) const {
+    const IntegratorClaims claims = assemble(variant(scene, who_, rows_.back()->setting)).claims();
+    if (metric == Metric::energy && claims.symplectic)
+      return {0, "the energy error of a symplectic method stays bounded"};
+    std::vector<double> exponents;
+    for (const Row* row : rows_) {
+      if (*error_of(*row, metric) < 100 * rounding) continue;
+      if (const auto one = measured_exponent(*row, trials.truth, metric)) exponents.push_back(*one);
+    }
+    if (exponents.empty())
+      return {metric == Metric::energy ? 1.0 : 2.0, "no growth could be measured; the usual one is taken"};
+    std::sort(exponents.begin(), exponents.end());
+    const double exponent = exponents[exponents.size() / 2];
+    if (exponent < 1) return {1, fmt::format("errors grow at least linearly (measured: t^{:.2f})", exponent)};
+    return {exponent, fmt::format("errors go on growing as they did in the trials, t^{:.2f}", exponent)};
+  }
+
+  Opponent who_;
+  std::vector<const Row*> rows_;
+  std::optional<PowerLaw> law_;
+  Growth growth_;
+};
+
+/// Times that must be whole numbers of steps: the end, and what the scene asks for by time.
+std::vector<double> times_to_meet(const Scene& scene, double end) {
+  std::vector<double> times = {end};
+  const SceneValue* every = scene.effective.find("every");
+  const auto* tables = every == nullptr ? nullptr : every->get<SceneValue::Array>();
+  for (std::size_t k = 0; tables != nullptr && k < tables->size() && k < scene.watches.size(); ++k) {
+    if ((*tables)[k].find("every") == nullptr) continue;
+    times.push_back(static_cast<double>(scene.watches[k].cadence.steps) * scene.integrator.step);
+  }
+  return times;
+}
+
+/// The longest step, at most `step`, of which all times are whole numbers; `step` cut to the end where there is none.
+double fitted_step(const Scene& scene, double step, double end) {
+  const std::vector<double> times = times_to_meet(scene, end);
+  const double shortest = *std::min_element(times.begin(), times.end());
+  const auto first = static_cast<std::int64_t>(std::ceil(shortest / step * (1 - 1e-12)));
+  for (std::int64_t count = std::max<std::int64_t>(first, 1); count < first + 10'000; ++count) {
+    const double one = shortest / static_cast<double>(count);
+    const bool whole = std::all_of(times.begin(), times.end(), [&](double time) {
+      const double exact = time / one;
+      return std::abs(exact - std::round(exact)) < 1e-10 * exact;
+    });
+    if (whole) return one;
+  }
+  return end / std::ceil(end / step);
+}
+
+std::string time_text(double time, const UnitSystem& units) {
+  if (units.is_reduced()) return format_number(time);
+  return fmt::format("\"{} {}\"", format_number(time), units.time);
+}
+
+/// What `--set` must be given to run a scene like this.
+std::vector<std::string> sets_of(const Scene& scene, const Proposal& p, double end) {
+  std::vector<std::string> sets;
+  if (p.who.hamiltonian != scene.hamiltonian.kind) {
+    sets = {"hamiltonian.type=kinetic_potential", "hamiltonian.force=[{type = \"gravity\"}]"};
+  }
+  const bool counts_steps = scene.effective.find("integrator")->find("steps") != nullptr;
+  sets.push_back("integrator.method=" + p.who.method);
+  if (p.who.adaptive) {
+    sets.push_back("integrator.rtol=" + format_number(p.setting.tolerance));
+    sets.push_back("integrator.atol=" + format_number(absolute_tolerance(scene, p.setting.tolerance)));
+    if (counts_steps) sets.push_back("integrator.until=" + time_text(end, *scene.units));
+    return sets;
+  }
+  sets.push_back("integrator.step=" + time_text(p.setting.step, *scene.units));
+  if (scene.integrator.steps && counts_steps) {
+    sets.push_back(fmt::format("integrator.steps={}", std::llround(end / p.setting.step)));
+  }
+  return sets;
+}
+
+/// Whether the scene can be read with these changes.
+bool can_be_set(const Scene& scene, const std::vector<std::string>& sets) {
+  if (!std::filesystem::exists(scene.file)) return true;
+  std::vector<std::string> all = scene.source.sets;
+  all.insert(all.end(), sets.begin(), sets.end());
+  try {
+    load_scene(scene.file, standard_parts(), all);
+  } catch (const Error&) {
+    return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Advice advise(const Scene& scene, const AdviseOptions& options) {
+  if (!(options.error > 0 && options.error < 1)) {
+    throw Error(fmt::format("an error of {} cannot be held; a number between 0 and 1 is expected", options.error));
+  }
+  Advice advice;
+  advice.end = end_of(scene);
+  CompareOptions trials;
+  trials.methods = options.methods;
+  trials.row_budget = options.row_budget;
+  trials.truth = options.truth;
+  trials.progress = options.progress;
+  advice.trials = compare(scene, trials);
+  const Comparison& c = advice.trials;
+  advice.trial_end = c.end;
+  if (options.metric == Metric::position && !c.position_measured) {
+    throw Error(fmt::format("positions cannot be measured here: {}; try --metric energy", c.truth.note));
+  }
+  for (const Opponent& who : c.methods) {
+    const Fit fit(scene, c, who, options.metric);
+    auto proposal = fit.propose(options.error, advice.trial_end, advice.end);
+    if (!proposal) continue;
+    if (!who.adaptive) {
+      proposal->setting.step = fitted_step(scene, proposal->setting.step, advice.end);
+      fit.set_prediction(*proposal, std::pow(advice.end / advice.trial_end, proposal->growth.exponent),
+                         advice.trial_end, advice.end);
+    }
+    if (can_be_set(scene, sets_of(scene, *proposal, advice.end))) advice.proposals.push_back(*proposal);
+  }
+  std::stable_sort(advice.proposals.begin(), advice.proposals.end(),
+                   [](const Proposal& a, const Proposal& b) { return a.predicted_wall_s < b.predicted_wall_s; });
+  if (advice.proposals.empty()) {
+    advice.reason = fmt::format("none of the {} methods tried holds an error of {:g} over the whole run",
+                                c.methods.size(), options.error);
+  } else {
+    advice.sets = sets_of(scene, advice.proposals.front(), advice.end);
+  }
+  return advice;
+}
+
+std::string to_json(const Advice& a, const Scene& scene) {
+  const bool any = !a.proposals.empty();
+  const Proposal best = any ? a.proposals.front() : Proposal{};
+  const auto number = [&](double x) { return any && x > 0 ? Json(x) : Json(); };
+  std::vector<Json> others;
+  for (const Proposal& p : a.proposals) {
+    others.push_back(Json::object({{"method", p.who.label},
+                                   {"step", p.who.adaptive ? Json() : Json(p.setting.step)},
+                                   {"tolerance", p.who.adaptive ? Json(p.setting.tolerance) : Json()},
+                                   {"predicted_error", p.predicted_error},
+                                   {"predicted_wall_s", p.predicted_wall_s},
+                                   {"predicted_evaluations", p.predicted_evaluations},
+                                   {"growth_exponent", p.growth.exponent},
+                                   {"assumption", p.growth.assumption}}));
+  }
+  return Json::object({{"schema", "noether.advise/1"},
+                       {"scene", scene.source.file},
+                       {"method", any ? Json(best.who.method) : Json()},
+                       {"step", number(best.setting.step)},
+                       {"step_unit", scene.units->time},
+                       {"tolerance", number(best.setting.tolerance)},
+                       {"predicted_error", number(best.predicted_error)},
+                       {"predicted_wall_s", number(best.predicted_wall_s)},
+                       {"predicted_evaluations", number(best.predicted_evaluations)},
+                       {"assumption", any ? Json(best.growth.assumption) : Json()},
+                       {"set", Json::list_of(a.sets)},
+                       {"end", a.end},
+                       {"trial_end", a.trial_end},
+                       {"reason", a.reason.empty() ? Json() : Json(a.reason)},
+                       {"proposals", Json::list(others)}})
+      .text();
+}
+
+std::string to_text(const Advice& a, const Scene& scene) {
+  const std::string unit = scene.units->is_reduced() ? "" : " " + std::string(scene.units->time);
+  std::string out = fmt::format("tried {} methods, {} runs over {:.6g}{}; the whole run is {:.6g}{}\n",
+                                a.trials.methods.size(), a.trials.rows.size(), a.trial_end, unit, a.end, unit);
+  if (a.proposals.empty()) return out + a.reason + "\n";
+  out += fmt::format("{:<32} {:>12} {:>10} {:>12} {:>14}\n", "method", "step/rtol", "error", "time [s]", "evaluations");
+  for (const Proposal& p : a.proposals) {
+    out +=
+        fmt::format("{:<32} {:>12} {:>10.1e} {:>12.3g} {:>14.4g}\n", p.who.label,
+                    p.who.adaptive ? fmt::format("{:.1e}", p.setting.tolerance) : fmt::format("{:.5g}", p.setting.step),
+                    p.predicted_error, p.predicted_wall_s, p.predicted_evaluations);
+  }
+  const Proposal& best = a.proposals.front();
+  out += fmt::format("cheapest: {}; {}\n", best.who.label, best.growth.assumption);
+  for (const std::string& set : a.sets) out += fmt::format("--set '{}'\n", set);
+  return out;
+}
+
+}  // namespace noether

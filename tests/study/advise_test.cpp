@@ -1,0 +1,112 @@
+// Advice: what it proposes is run, and has to come true.
+
+#include "study/advise.hpp"
+#include "tests/study/scenes.hpp"
+#include "tests/support/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace noether::test {
+namespace {
+
+/// Runs what was proposed over the whole scene, and measures it.
+Row proposed(const Scene& scene, const Proposal& p, double end) {
+  CompareOptions options;
+  options.methods = {p.who.label};
+  options.until = end;
+  options.steps = {p.setting.step > 0 ? p.setting.step : end / 1000};
+  options.tolerances = {p.setting.tolerance > 0 ? p.setting.tolerance : 1e-6};
+  options.repeats = 1;
+  options.row_budget = 60;
+  options.truth.budget = 300;
+  return compare(scene, options).rows.at(0);
+}
+
+TEST_CASE("what advice predicts for a longer run comes true", "[advise][slow]") {
+  // Four times as long as the trials: 10000 steps of the scene.
+  const Scene scene = kepler(0.2, "method = \"verlet\"\nstep = 0.02\nsteps = 40000");
+  for (const Metric metric : {Metric::position, Metric::energy}) {
+    AdviseOptions options;
+    options.error = 1e-6;
+    options.metric = metric;
+    options.methods = {"verlet", "blanes_moan_s6", "kahan_li_8_s17", "rk4"};
+    const Advice advice = advise(scene, options);
+    REQUIRE(advice.proposals.size() >= 2);
+    CHECK(advice.end == 800);
+    CHECK(advice.trial_end == 200);
+    for (const Proposal& p : advice.proposals) {
+      const Row row = proposed(scene, p, advice.end);
+      const auto error = metric == Metric::position ? row.position_error_max : row.energy_error_max;
+      INFO(p.who.label << " step " << p.setting.step << ": predicted " << p.predicted_error << ", found " << *error);
+      CHECK(p.predicted_error <= options.error);
+      CHECK(*error < 2 * options.error);
+      CHECK(*error > p.predicted_error / 3);
+      CHECK(*error < p.predicted_error * 3);
+      CHECK(std::abs(static_cast<double>(row.evaluations.force) / p.predicted_evaluations - 1) < 0.02);
+    }
+  }
+}
+
+TEST_CASE("the cheapest proposal comes first, and its lines run the scene", "[advise]") {
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / "noether_advise_test.toml";
+  std::ofstream(file) << R"(units = "reduced"
+[particles]
+body = [{ name = "bob", mass = 1, x = [1, 0, 0], v = [0, 0, 0] }]
+[hamiltonian]
+type = "kinetic_potential"
+[[hamiltonian.force]]
+type = "harmonic_field"
+[[every]]
+type = "energy"
+every = 0.5
+[integrator]
+method = "verlet"
+step = 0.05
+until = 100
+)";
+  const Scene scene = load_scene(file, standard_parts(), {"hamiltonian.force.harmonic_field.k=1"});
+  AdviseOptions options;
+  options.error = 1e-7;
+  options.methods = {"verlet", "blanes_moan_s6", "rk4", "dormand_prince_5"};
+  const Advice advice = advise(scene, options);
+  INFO(to_text(advice, scene));
+  REQUIRE(advice.proposals.size() >= 2);
+  CHECK(std::is_sorted(advice.proposals.begin(), advice.proposals.end(),
+                       [](const Proposal& a, const Proposal& b) { return a.predicted_wall_s < b.predicted_wall_s; }));
+  std::vector<std::string> sets = {"hamiltonian.force.harmonic_field.k=1"};
+  sets.insert(sets.end(), advice.sets.begin(), advice.sets.end());
+  const Scene changed = load_scene(file, standard_parts(), sets);
+  CHECK(changed.integrator.method == advice.proposals.front().who.method);
+  if (!changed.integrator.adaptive()) CHECK(changed.integrator.step == advice.proposals.front().setting.step);
+  Simulation<double> sim = assemble(changed);
+  REQUIRE((changed.integrator.adaptive() ? sim.run_until(100) : sim.run(*changed.integrator.steps)).ok());
+  CHECK(std::abs(sim.time() - 100) < 1e-9);
+  CHECK(std::abs(sim.particles().positions()[0][0] - std::cos(100.0)) < 2e-7);
+  const std::string json = to_json(advice, scene);
+  CHECK(json.starts_with("{\"schema\":\"noether.advise/1\""));
+  for (const char* key : {"\"method\":", "\"step\":", "\"predicted_error\":", "\"predicted_wall_s\":", "\"set\":["}) {
+    CHECK(json.find(key) != std::string::npos);
+  }
+  std::filesystem::remove(file);
+}
+
+TEST_CASE("advice that cannot be given is refused, or says why there is none", "[advise]") {
+  const Scene scene = oscillator("method = \"verlet\"\nstep = 0.1\nsteps = 400");
+  CHECK_THROWS_WITH(advise(scene, {.error = 0}), "an error of 0 cannot be held; a number between 0 and 1 is expected");
+  CHECK_THROWS_WITH(advise(scene, {.error = -1e-3}),
+                    "an error of -0.001 cannot be held; a number between 0 and 1 is expected");
+  AdviseOptions options;
+  options.error = 1e-13;
+  options.methods = {"verlet"};
+  const Advice advice = advise(scene, options);
+  CHECK(advice.proposals.empty());
+  CHECK(advice.sets.empty());
+  CHECK(advice.reason == "none of the 1 methods tried holds an error of 1e-13 over the whole run");
+}
+
+}  // namespace
+}  // namespace noether::test
