@@ -1,0 +1,88 @@
+#include "cli/commands.hpp"
+
+#include "cli/lists.hpp"
+#include "engine/error.hpp"
+#include "engine/suggest.hpp"
+#include "scene/scene.hpp"
+#include "study/advise.hpp"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace noether {
+
+namespace {
+
+struct AdviseArguments {
+  std::string scene, error, metric = "position";
+  std::optional<std::string> methods;
+  std::vector<std::string> sets;
+  double budget = 2;
+  bool json = false;
+};
+
+void advise_scene(const AdviseArguments& given) {
+  AdviseOptions options;
+  options.error = numbers_in(given.error, "--error").front();
+  if (given.metric == "energy") options.metric = Metric::energy;
+  if (given.methods) options.methods = texts_in(*given.methods, "--methods");
+  options.row_budget = given.budget;
+  const Scene scene = load_scene(given.scene, standard_parts(), given.sets);
+  const bool shows = !given.json && ::isatty(STDERR_FILENO) == 1;
+  if (shows) {
+    options.progress = [](const std::string& what) {
+      fmt::print(stderr, "\r\033[K{}", what);
+      std::fflush(stderr);
+    };
+  }
+  const Advice advice = advise(scene, options);
+  if (shows) std::fputs("\r\033[K", stderr);
+  if (given.json) {
+    fmt::print("{}\n", to_json(advice, scene));
+  } else {
+    fmt::print("{}", to_text(advice, scene));
+  }
+}
+
+}  // namespace
+
+void add_advise_command(CLI::App& app, int& exit_code) {
+  const auto given = std::make_shared<AdviseArguments>();
+  CLI::App* command = app.add_subcommand("advise", "the cheapest method and step that hold an error");
+  command->add_option("scene", given->scene, "scene file")->required()->type_name("SCENE");
+  command->add_option("--error", given->error, "largest relative error over the whole run, such as 1e-9")
+      ->required()
+      ->check([](const std::string& text) {
+        return std::string(text.find(',') == std::string::npos ? "" : "'" + text + "' is no number; give one error");
+      })
+      ->type_name("E");
+  command->add_option("--metric", given->metric, "position or energy; default: position")
+      ->check([](const std::string& text) {
+        if (text == "position" || text == "energy") return std::string();
+        return fmt::format("unknown metric '{}'{}", text, did_you_mean(text, {"position", "energy"}));
+      })
+      ->type_name("METRIC");
+  command->add_option("--methods", given->methods, "methods to choose from; default: those worth it on this scene")
+      ->type_name("A,B,...");
+  command->add_option("--budget", given->budget, "seconds of wall time for one trial run")
+      ->check(wrong_seconds)
+      ->type_name("SECONDS");
+  command->add_option("--set", given->sets, "change a key of the scene: key.path=value")
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUE");
+  command->add_flag("--json", given->json, "as one line of JSON");
+  command->callback([given, &exit_code] {
+    advise_scene(*given);
+    exit_code = 0;
+  });
+}
+
+}  // namespace noether

@@ -1,0 +1,121 @@
+#include "cli/commands.hpp"
+
+#include "cli/lists.hpp"
+#include "engine/error.hpp"
+#include "scene/scene.hpp"
+#include "study/compare_files.hpp"
+#include "study/report.hpp"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace noether {
+
+namespace {
+
+struct CompareArguments {
+  std::string scene, out;
+  std::optional<std::string> methods, steps, tolerances, until;
+  std::vector<std::string> sets;
+  int repeat = 3;
+  double budget = 10, truth_budget = 120;
+  bool quiet = false, json = false;
+};
+
+/// The command as it can be typed again.
+std::string command_line(const CompareArguments& given) {
+  std::string line = "noether compare " + given.scene;
+  const auto add = [&](const char* option, const std::string& value) {
+    line += fmt::format(" {} '{}'", option, value);
+  };
+  if (given.methods) add("--methods", *given.methods);
+  if (given.steps) add("--steps", *given.steps);
+  if (given.tolerances) add("--tolerances", *given.tolerances);
+  if (given.until) add("--until", *given.until);
+  for (const std::string& set : given.sets) add("--set", set);
+  return line + fmt::format(" --repeat {} --budget {:g}", given.repeat, given.budget);
+}
+
+std::filesystem::path folder_of(const CompareArguments& given) {
+  if (!given.out.empty()) return given.out;
+  std::filesystem::path name = std::filesystem::path(given.scene).filename();
+  if (name.extension() == ".toml") name.replace_extension();
+  return name.string() + ".out";
+}
+
+void compare_scene(const CompareArguments& given) {
+  const Scene scene = load_scene(given.scene, standard_parts(), given.sets);
+  CompareOptions options;
+  if (given.methods) options.methods = texts_in(*given.methods, "--methods");
+  if (given.steps) options.steps = times_in(*given.steps, "--steps", *scene.units);
+  if (given.tolerances) options.tolerances = numbers_in(*given.tolerances, "--tolerances");
+  if (given.until) options.until = times_in(*given.until, "--until", *scene.units).front();
+  options.repeats = given.repeat;
+  options.row_budget = given.budget;
+  options.truth.budget = given.truth_budget;
+  const bool shows = !given.quiet && !given.json && ::isatty(STDERR_FILENO) == 1;
+  if (shows) {
+    options.progress = [](const std::string& what) {
+      fmt::print(stderr, "\r\033[K{}", what);
+      std::fflush(stderr);
+    };
+  }
+  Comparison comparison = compare(scene, options);
+  comparison.command = command_line(given);
+  const std::string report = report_html(comparison, solution_of(scene, comparison));
+  if (shows) std::fputs("\r\033[K", stderr);
+  const CompareFiles files = write_files(comparison, folder_of(given), report);
+  if (given.json) {
+    fmt::print("{}\n", to_json(comparison, files));
+  } else if (!given.quiet) {
+    fmt::print("{}wrote {}\nwrote {}\nwrote {}\n", to_text(comparison), files.csv.string(), files.json.string(),
+               files.report.string());
+  }
+}
+
+}  // namespace
+
+void add_compare_command(CLI::App& app, int& exit_code) {
+  const auto given = std::make_shared<CompareArguments>();
+  CLI::App* command = app.add_subcommand("compare", "error against run time, method by method");
+  command->add_option("scene", given->scene, "scene file")->required()->type_name("SCENE");
+  command->add_option("--methods", given->methods, "methods to compare; default: those worth it on this scene")
+      ->type_name("A,B,...");
+  command->add_option("--steps", given->steps, "steps of methods with fixed steps, such as \"50 day,100 day\"")
+      ->type_name("H,...");
+  command->add_option("--tolerances", given->tolerances, "relative tolerances of adaptive methods")->type_name("E,...");
+  command->add_option("--until", given->until, "how long each run is; default: the scene's end, or 10000 of its steps")
+      ->type_name("T");
+  command->add_option("--repeat", given->repeat, "timed runs of each row; their median counts")
+      ->check(wrong_count)
+      ->type_name("K");
+  command->add_option("--budget", given->budget, "seconds of wall time for one run; what is not done then is a row too")
+      ->check(wrong_seconds)
+      ->type_name("SECONDS");
+  command->add_option("--truth-budget", given->truth_budget, "seconds of wall time for the reference")
+      ->check(wrong_seconds)
+      ->type_name("SECONDS");
+  command->add_option("--out", given->out, "output folder; default: SCENE.out here")
+      ->check(wrong_folder)
+      ->type_name("DIR");
+  command->add_option("--set", given->sets, "change a key of the scene: key.path=value")
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUE");
+  CLI::Option* quiet = command->add_flag("--quiet", given->quiet, "print nothing");
+  command->add_flag("--json", given->json, "report as one line of JSON")->excludes(quiet);
+  command->callback([given, &exit_code] {
+    compare_scene(*given);
+    exit_code = 0;  // a row that has failed is a result
+  });
+}
+
+}  // namespace noether
