@@ -136,6 +136,11 @@ Scene variant(const Scene& scene, const Opponent& who, const Setting& setting) {
   integrator.step = who.adaptive ? 0 : setting.step;
   integrator.steps.reset();
   integrator.until.reset();
+  if (scene.particles.size() == 0 && methods::find(who.method) == nullptr) {
+    throw Error(fmt::format("'{}' splits a Hamiltonian, and a system of first order has none; use a method for y' = f, "
+                            "such as 'dop853' or 'rodas_5p'",
+                            who.method));
+  }
   if (const Scheme* scheme = schemes::find(who.method)) {
     integrator.scheme = *scheme;
   } else if (const MethodInfo* info = methods::find(who.method)) {
