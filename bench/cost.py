@@ -1,4 +1,4 @@
-"""Writes docs/cost.md: the front of five scenes, by `noether compare`. cost.py PROGRAM ROOT [SCENE...]"""
+"""Writes docs/cost.md: the front of each scene, by `noether compare`. cost.py PROGRAM ROOT [SCENE...]"""
 
 import json
 import pathlib
@@ -17,7 +17,7 @@ SCENES = [
 
 HEAD = """# What accuracy costs
 
-The cheapest runs of five scenes, found by `noether compare`: for each error the run that no other beats in both error and
+The cheapest runs of some scenes, found by `noether compare`: for each error the run that no other beats in both error and
 time, or in both error and evaluations. Written by `python3 bench/cost.py build/release/cli/noether .`; evaluations repeat to
 the last digit, times do not. Reports with all rows, plots and orders: `noether compare SCENE`.
 """

@@ -45,6 +45,12 @@ std::optional<double> measured_exponent(const Row& row, const Truth& truth, Metr
   return std::log(late / early) / std::log(static_cast<double>(last) / static_cast<double>(first));
 }
 
+/// The largest number of two digits that is not above x.
+double two_digits(double x) {
+  const double unit = std::pow(10, std::floor(std::log10(x)) - 1);
+  return std::stod(fmt::format("{:.1e}", std::floor(x / unit * (1 + 1e-12)) * unit));
+}
+
 /// The trials of one opponent, and what they say about any step or tolerance.
 class Fit {
  public:
@@ -75,6 +81,7 @@ class Fit {
     }
     x = std::min(x, most);  // longer steps than any that was tried may be unstable
     if (x < least / 4 || (who_.adaptive && x < 1e-15)) return {};
+    if (who_.adaptive) x = two_digits(x);
     Proposal p{.who = who_, .growth = growth_};
     (who_.adaptive ? p.setting.tolerance : p.setting.step) = x;
     set_prediction(p, longer, trial_end, end);

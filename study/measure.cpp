@@ -17,16 +17,26 @@ namespace noether {
 namespace {
 
 /// Keeps every state it sees.
-struct Recorder {
-  std::shared_ptr<Track> track;
-  bool energy = false;
-  double dt = 0;  ///< of a fixed clock [time]; 0: the time of the snapshot
+class Recorder {
+ public:
+  Recorder(std::shared_ptr<Track> kept, bool with_energy, double step)
+      : track_(std::move(kept)), energy_(with_energy), dt_(step) {}
 
   static constexpr auto describe() { return part<Recorder>("recorder", "states for a comparison"); }
-  Wanted wanted() const { return {.energy = energy}; }
+  Wanted wanted() const { return {.energy = energy_}; }
   void observe(const Snapshot<double>& now) {
     const ParticleSystem<double>& s = now.state();
-    track->times.push_back(dt != 0 ? Quad(dt) * Quad(now.step()) : Quad(now.time()));
+    track_->times.push_back(dt_ != 0 ? Quad(dt_) * Quad(now.step()) : Quad(now.time()));
+    if (s.size() <= most_bodies) keep(s);
+    if (energy_) track_->energy.push_back(now.energy().total());
+    if (energy_ && track_->energy_scale == 0) {
+      const EnergyTerms<double>& e = now.energy();
+      track_->energy_scale = std::max(std::abs(e.total()), 1e-3 * (e.kinetic + std::abs(e.potential)));
+    }
+  }
+
+ private:
+  void keep(const ParticleSystem<double>& s) const {
     const auto n = s.size();
     Vector<double> y(n > 0 ? 6 * n : static_cast<Index>(s.variables().size()));
     for (int k = 0; k < 3 && n > 0; ++k) {
@@ -34,13 +44,12 @@ struct Recorder {
       std::copy_n(s.velocities().component(k), n, y.data() + (3 + k) * n);
     }
     if (n == 0) std::copy(s.variables().begin(), s.variables().end(), y.data());
-    track->y.push_back(std::move(y));
-    if (energy) track->energy.push_back(now.energy().total());
-    if (energy && track->energy_scale == 0) {
-      const EnergyTerms<double>& e = now.energy();
-      track->energy_scale = std::max(std::abs(e.total()), 1e-3 * (e.kinetic + std::abs(e.potential)));
-    }
+    track_->y.push_back(std::move(y));
   }
+
+  std::shared_ptr<Track> track_;
+  bool energy_;
+  double dt_;  ///< of a fixed clock [time]; 0: the time of the snapshot
 };
 
 /// Ends a run at the end of its budget.
@@ -52,7 +61,6 @@ class Budget {
       if (now.seconds > seconds) over_ = true;
     });
   }
-  bool is_over() const { return over_; }
 
  private:
   std::atomic<bool> over_{false};
@@ -103,7 +111,7 @@ bool watched_run(Row& row, const Scene& alone, const Sampling& sampling, const M
   const IntegratorClaims claims = sim.claims();
   const bool particles = alone.particles.size() > 0, energy = claims.energy && particles;
   auto track = std::make_shared<Track>();
-  watch(sim, row.setting, sampling, Recorder{track, energy, row.setting.step});
+  watch(sim, row.setting, sampling, Recorder(track, energy, row.setting.step));
   const Energy* watched = energy ? watch(sim, row.setting, sampling, Energy()) : nullptr;
   const Momentum* momentum =
       particles && claims.keeps_momentum ? watch(sim, row.setting, sampling, Momentum()) : nullptr;
@@ -116,8 +124,9 @@ bool watched_run(Row& row, const Scene& alone, const Sampling& sampling, const M
   const ShadowHamiltonian<double>* fluctuation = watch_shadow(sim, alone, row.setting, sampling);
   const Budget budget(sim, options.budget);
   const Outcome outcome = run_whole(sim, row.setting, sampling);
-  row.outcome = budget.is_over() ? "over_budget" : std::string(name(outcome.kind));
-  row.message = budget.is_over() ? "" : outcome.message;
+  const bool over = outcome.kind == Outcome::Kind::interrupted;  // nothing else ends it early
+  row.outcome = over ? "over_budget" : std::string(name(outcome.kind));
+  row.message = over ? "" : outcome.message;
   row.outcome_time = outcome.time;
   row.steps = sim.step();
   row.evaluations = sim.evaluations();
@@ -128,7 +137,7 @@ bool watched_run(Row& row, const Scene& alone, const Sampling& sampling, const M
   if (spin != nullptr) track->angular_momentum = spin->report();
   track->shadow_fluctuation = least_fluctuation(fluctuation);
   row.track = std::move(*track);
-  return !budget.is_over();
+  return !over;
 }
 
 double median(std::vector<double> values) {

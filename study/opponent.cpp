@@ -137,9 +137,10 @@ Scene variant(const Scene& scene, const Opponent& who, const Setting& setting) {
   integrator.steps.reset();
   integrator.until.reset();
   if (scene.particles.size() == 0 && methods::find(who.method) == nullptr) {
-    throw Error(fmt::format("'{}' splits a Hamiltonian, and a system of first order has none; use a method for y' = f, "
-                            "such as 'dop853' or 'rodas_5p'",
-                            who.method));
+    throw Error(
+        fmt::format("'{}' splits a Hamiltonian, and a system of first order has none; use a method for y' = f, "
+                    "such as 'dop853' or 'rodas_5p'",
+                    who.method));
   }
   if (const Scheme* scheme = schemes::find(who.method)) {
     integrator.scheme = *scheme;

@@ -2,12 +2,16 @@
 /// When the runs of a comparison are looked at: the same moments for every one of them.
 
 #include "engine/real.hpp"
+#include "engine/types.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 
 namespace noether {
+
+/// States of larger systems are not kept: a comparison holds two hundred of them for every row.
+inline constexpr Index most_bodies = 300;
 
 /// `samples` moments at equal distances, the last one at the end; the start is moment 0.
 struct Sampling {

@@ -119,6 +119,10 @@ constexpr std::string_view no_truth = "invariants";
 WideScene wide_scene(const Scene& scene) {
   WideScene wide;
   const SceneHamiltonian& h = scene.hamiltonian;
+  if (scene.particles.size() > most_bodies) {
+    wide.reason = fmt::format("more than {} bodies are too many for a reference", most_bodies);
+    return wide;
+  }
   if (!h.constraints.empty()) {
     wide.reason = "constraints are solved in double precision only";
     return wide;
