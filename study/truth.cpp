@@ -88,25 +88,26 @@ WideRun run_wide(const WideScene& wide, const Sampling& sampling, const MethodCh
   return run;
 }
 
-/// Settings from coarse to fine, of the best method that there is in extended precision.
-std::vector<MethodChoice> settings_of(const WideScene& wide, const TruthOptions& options) {
+/// Settings from coarse to fine of each method that is worth trying, the best first.
+std::vector<std::vector<MethodChoice>> settings_of(const WideScene& wide, const TruthOptions& options) {
+  Vector<Quad> y;
+  const auto field = wide.field->clone();
+  field->bind(wide.start);
+  field->gather(wide.start, y);
+  const auto [x, v] = sizes(y, field->claims().second_order);
+  const double size = v > 0 && x > 0 ? std::min(x, v) : std::max(x, v), scale = size > 0 ? 0.1 * size : 1;
+  std::vector<std::vector<MethodChoice>> all;
   for (const auto& [name, coarse] : {std::pair("gragg_bulirsch_stoer", 1e-20), std::pair("dop853", 1e-18)}) {
     const MethodInfo* info = methods::find(name);
     if (info == nullptr || info->make_quad == nullptr) continue;
-    Vector<Quad> y;
-    const auto field = wide.field->clone();
-    field->bind(wide.start);
-    field->gather(wide.start, y);
-    const auto [x, v] = sizes(y, field->claims().second_order);
-    const double scale = v > 0 && x > 0 ? std::min(x, v) : std::max(x, v);
     const double first = options.rtol.value_or(coarse);
     std::vector<MethodChoice> settings;
     for (const double rtol : {first, first / 30, first / 1000}) {
-      settings.push_back({info, {.rtol = rtol, .atol = rtol * (scale > 0 ? 0.1 * scale : 1)}});
+      settings.push_back({info, {.rtol = rtol, .atol = rtol * scale}});
     }
-    return settings;
+    all.push_back(std::move(settings));
   }
-  return {};
+  return all;
 }
 
 /// Two settings that agree so well need no third.
@@ -199,29 +200,22 @@ double PositionError::operator()(const Vector<Quad>& y, const Vector<Quad>& trut
   return whole > 0 ? distance / whole : distance;
 }
 
-Truth find_truth(const Scene& scene, const Sampling& sampling, const TruthOptions& options) {
+namespace {
+
+/// States by the finest setting, with their distance from the next; without an error where two have not come to the
+/// end.
+Truth drive(const WideScene& wide, const std::vector<MethodChoice>& settings, const Sampling& sampling,
+            PositionError& error, double budget) {
   Truth truth{.name = std::string(no_truth)};
   const auto begin = std::chrono::steady_clock::now();
-  WideScene wide = wide_scene(scene);
-  if (wide.field == nullptr) {
-    truth.note = wide.reason;
-    return truth;
-  }
-  const std::vector<MethodChoice> settings = settings_of(wide, options);
-  if (settings.empty()) {
-    truth.note = "no method of high order is known in extended precision";
-    return truth;
-  }
-  PositionError error(scene.particles, about_center(scene));
-  std::vector<Vector<Quad>> rougher;
   for (const MethodChoice& setting : settings) {
-    WideRun run = run_wide(wide, sampling, setting, options.budget - truth.seconds);
+    WideRun run = run_wide(wide, sampling, setting, budget - truth.seconds);
     truth.seconds = since(begin);
     if (!run.failure.empty()) {
       if (!truth.error) truth.note = run.failure;
       break;
     }
-    rougher = std::exchange(truth.y, std::move(run.y));
+    const std::vector<Vector<Quad>> rougher = std::exchange(truth.y, std::move(run.y));
     truth.rate = std::move(run.rate);
     truth.note = fmt::format("{} in extended precision, rtol {:.0e}", setting.info->name, *setting.options.rtol);
     if (rougher.empty()) continue;
@@ -231,28 +225,45 @@ Truth find_truth(const Scene& scene, const Sampling& sampling, const TruthOption
     truth.error = worst;
     if (worst < agreement) break;
   }
-  if (!truth.error || !(*truth.error < 1e-3)) {
-    if (truth.error) {
-      truth.note = fmt::format(
-          "two settings in extended precision differ by {:.1e}: the motion is too irregular to have a truth over this "
-          "time",
-          *truth.error);
-    }
-    truth.error.reset();
-    truth.y.clear();
-    truth.rate.clear();
-    return truth;
-  }
-  truth.kind = TruthKind::quad;
-  truth.name = fmt::format("{} in quad", settings[0].info->name);
+  return truth;
+}
+
+void set_energies(Truth& truth, WideScene& wide) {
   ParticleSystem<Quad> s = wide.start;
+  if (s.size() == 0) return;
   for (const Vector<Quad>& y : truth.y) {
-    if (s.size() == 0) break;
     wide.field->bind(s);
     wide.field->scatter(y, s);
     truth.energy.push_back(static_cast<double>(wide.field->energy(s).total()));
   }
-  return truth;
+}
+
+}  // namespace
+
+Truth find_truth(const Scene& scene, const Sampling& sampling, const TruthOptions& options) {
+  Truth truth{.name = std::string(no_truth)};
+  WideScene wide = wide_scene(scene);
+  truth.note = wide.field == nullptr ? wide.reason : "no method of high order is known in extended precision";
+  if (wide.field == nullptr) return truth;
+  PositionError error(scene.particles, about_center(scene));
+  double spent = 0;
+  for (const auto& settings : settings_of(wide, options)) {
+    truth = drive(wide, settings, sampling, error, options.budget - spent);
+    truth.seconds = spent += truth.seconds;
+    if (truth.error) truth.kind = TruthKind::quad, truth.name = fmt::format("{} in quad", settings[0].info->name);
+    if (truth.error || spent > options.budget / 2) break;
+  }
+  if (truth.error && *truth.error < 1e-3) {
+    set_energies(truth, wide);
+    return truth;
+  }
+  if (truth.error) {
+    truth.note = fmt::format(
+        "two settings in extended precision differ by {:.1e}: the motion is too irregular to have a "
+        "truth over this time",
+        *truth.error);
+  }
+  return Truth{.name = std::string(no_truth), .note = truth.note, .seconds = truth.seconds};
 }
 
 }  // namespace noether
