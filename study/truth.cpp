@@ -128,6 +128,12 @@ WideScene wide_scene(const Scene& scene) {
     wide.reason = "constraints are solved in double precision only";
     return wide;
   }
+  if (scene.system) {
+    if (scene.system->wide_field) wide.field = scene.system->wide_field();
+    if (wide.field == nullptr) wide.reason = fmt::format("system '{}' is written for doubles only", scene.system->name);
+    wide.start = scene.particles.as<Quad>();
+    return wide;
+  }
   ForceField<Quad> forces;
   if (h.kind == SceneHamiltonian::Kind::wisdom_holman) forces.add(Gravity{.G = h.wisdom_holman.G});
   for (const SceneForce& force : h.forces) {
