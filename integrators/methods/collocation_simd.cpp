@@ -67,8 +67,10 @@ void difference(std::ptrdiff_t n, int stages, const double* a, const double* b, 
   for (std::ptrdiff_t k = 0; k < 8 * n; k += 8) {
     for (int r = 0; r < registers; ++r) {
       const Vector x = hn::LoadU(d, a + k + r * lanes), y = hn::LoadU(d, b + k + r * lanes);
-      most[r] = hn::Max(most[r], hn::Abs(hn::Sub(x, y)));
-      largest[r] = hn::Max(largest[r], hn::Abs(x));
+      // At the base level hn::Max would bring a function that objects of all levels share.
+      const Vector change_here = hn::Abs(hn::Sub(x, y)), size_here = hn::Abs(x);
+      most[r] = hn::IfThenElse(hn::Gt(change_here, most[r]), change_here, most[r]);
+      largest[r] = hn::IfThenElse(hn::Gt(size_here, largest[r]), size_here, largest[r]);
       all[r] = hn::Add(all[r], hn::Sub(x, x));  // a maximum may drop what is no number
     }
   }

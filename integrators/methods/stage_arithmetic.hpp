@@ -1,11 +1,9 @@
 #pragma once
 /// Sums over the stages of a collocation method: in lanes for double, in plain loops for other number types.
 
-#include "integrators/methods/collocation_simd.hpp"
 #include "integrators/vector_field.hpp"
 
 #include <array>
-#include <type_traits>
 
 namespace noether {
 
@@ -14,108 +12,28 @@ template <class Real> using StageLanes = std::array<Real, lane_count>;
 /// [j][i]: what stage i takes from stage j.
 template <class Real> using StageMatrix = std::array<StageLanes<Real>, lane_count>;
 
-/// The sums of a collocation step over n variables whose stages stand side by side; see `CollocationKernels`.
+/// The sums of a collocation step over n variables whose stages stand side by side.
 template <class Real> struct StageArithmetic {
   Index n = 0;
   int stages = 0;
 
-  void values(const Real* rates, const StageMatrix<Real>& a, const Real* y, const Real* low, double h,
-              Real* out) const {
-    if constexpr (std::is_same_v<Real, double>) {
-      collocation_kernels().values({n, stages, rates, y, low, h}, a[0].data(), out);
-    } else {
-      for (Index m = 0; m < n; ++m) {
-        const StageLanes<Real> sum = product(a, rates + lane_count * m);
-        for (std::size_t k = 0; k < lane_count; ++k) {
-          out[lane_count * m + static_cast<Index>(k)] = y[m] + (Real(h) * sum[k] + low[m]);
-        }
-      }
-    }
-  }
-
+  /// out_i = y + (h sum_j a_ji F_j + low)
+  void values(const Real* rates, const StageMatrix<Real>& a, const Real* y, const Real* low, double h, Real* out) const;
+  /// out_i = y + (c_i h v + (c_low_i h v + h^2 sum_j a_ji F_j + low))
   void positions(const Real* rates, const StageMatrix<Real>& a, const StageLanes<Real>& c,
                  const StageLanes<Real>& c_low, const Real* y, const Real* low, const Real* v, double h,
-                 Real* out) const {
-    if constexpr (std::is_same_v<Real, double>) {
-      collocation_kernels().positions({n, stages, rates, y, low, h}, a[0].data(), c.data(), c_low.data(), v, out);
-    } else {
-      for (Index m = 0; m < n; ++m) {
-        const StageLanes<Real> sum = product(a, rates + lane_count * m);
-        const Real hv = Real(h) * v[m];
-        for (std::size_t k = 0; k < lane_count; ++k) {
-          out[lane_count * m + static_cast<Index>(k)] =
-              y[m] + (c[k] * hv + (c_low[k] * hv + Real(h) * Real(h) * sum[k] + low[m]));
-        }
-      }
-    }
-  }
-
-  void combine(const Real* rates, const StageMatrix<Real>& w, Real* out) const {
-    if constexpr (std::is_same_v<Real, double>) {
-      collocation_kernels().combine({n, stages, rates, nullptr, nullptr, 0}, w[0].data(), out);
-    } else {
-      for (Index m = 0; m < n; ++m) {
-        const StageLanes<Real> sum = product(w, rates + lane_count * m);
-        for (std::size_t k = 0; k < lane_count; ++k) out[lane_count * m + static_cast<Index>(k)] = sum[k];
-      }
-    }
-  }
-
+                 Real* out) const;
+  /// out_i = sum_j w_ji F_j
+  void combine(const Real* rates, const StageMatrix<Real>& w, Real* out) const;
   /// Largest |a - b|, and largest |a|, at the stages of the method.
-  std::array<Real, 2> difference(const Real* a, const Real* b) const {
-    std::array<Real, 2> most{Real(0), Real(0)};
-    if constexpr (std::is_same_v<Real, double>) {
-      collocation_kernels().difference(n, stages, a, b, &most[0], &most[1]);
-    } else {
-      using std::abs;
-      for (Index k = 0; k < lane_count * n; ++k) {
-        if (k % lane_count >= stages) continue;
-        const Real change = abs(a[k] - b[k]), size = abs(a[k]);
-        if (!(change <= most[0])) most[0] = change;
-        if (!(size <= most[1])) most[1] = size;
-      }
-    }
-    return most;
-  }
-
-  /// Ends a step: velocities (or variables) from `weights`, positions, if there are any, from `twice`.
+  std::array<Real, 2> difference(const Real* a, const Real* b) const;
+  /// Ends a step: velocities (or variables) from weights 0 and 1 (what rounding took), positions, if there are any,
+  /// from 2 and 3.
   void finish(const Real* rates, const std::array<StageLanes<Real>, 4>& weights, double h, Real* q, Real* q_low,
-              Real* v, Real* v_low) const {
-    if constexpr (std::is_same_v<Real, double>) {
-      collocation_kernels().finish({n, rates, weights[0].data(), weights[1].data(), weights[2].data(),
-                                    weights[3].data(), h, q, q_low, v, v_low});
-    } else {
-      for (Index m = 0; m < n; ++m) {
-        std::array<Real, 4> sums{Real(0), Real(0), Real(0), Real(0)};
-        for (std::size_t which = 0; which < 4; ++which) {
-          for (std::size_t k = 0; k < lane_count; ++k) {
-            sums[which] += weights[which][k] * rates[lane_count * m + static_cast<Index>(k)];
-          }
-        }
-        const Real step(h), step2 = step * step;
-        if (q != nullptr) {
-          add_with_error(q[m], q_low[m], step * v[m], step2 * sums[2] + (step2 * sums[3] + step * v_low[m]));
-        }
-        add_with_error(v[m], v_low[m], step * sums[0], step * sums[1]);
-      }
-    }
-  }
-
- private:
-  StageLanes<Real> product(const StageMatrix<Real>& a, const Real* rates) const {
-    StageLanes<Real> sum{};
-    for (std::size_t j = 0; j < static_cast<std::size_t>(stages); ++j) {
-      for (std::size_t k = 0; k < lane_count; ++k) sum[k] += a[j][k] * rates[j];
-    }
-    return sum;
-  }
-  /// value + low += high + small, where `high` may be as large as the value.
-  static void add_with_error(Real& value, Real& low, const Real& high, const Real& small) {
-    const Real sum = value + high, back = sum - value;
-    const Real remainder = ((value - (sum - back)) + (high - back)) + (small + low);
-    value = sum + remainder;
-    low = remainder - (value - sum);
-  }
+              Real* v, Real* v_low) const;
 };
+
+extern template struct StageArithmetic<double>;
+extern template struct StageArithmetic<Quad>;
 
 }  // namespace noether
