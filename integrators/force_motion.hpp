@@ -1,6 +1,7 @@
 #pragma once
 /// Particles under forces as y' = f(t, y), y = (x, v).
 
+#include "engine/erasure.hpp"
 #include "engine/parallel.hpp"
 #include "engine/signature.hpp"
 #include "integrators/kinetic_potential.hpp"

@@ -43,6 +43,7 @@ PowerLaw line_through(const std::vector<std::pair<double, double>>& points, std:
   }
   PowerLaw law{.exponent = xy / xx, .points = static_cast<int>(count)};
   law.log_factor = mean_y - law.exponent * mean_x;
+  law.range = std::exp(points[begin].first - points[begin + count - 1].first);
   double squares = 0;
   for (std::size_t k = begin; k < begin + count; ++k) {
     const double off = points[k].second - law.log_factor - law.exponent * points[k].first;
@@ -94,7 +95,9 @@ std::optional<OrderFit> order_of(const Comparison& c, const Opponent& who) {
     points.emplace_back(x, *error);
   }
   const double floor = std::max(1e-13, 10 * c.truth.error.value_or(0));
-  if (const auto law = asymptotic_fit(points, floor)) {
+  // Work that hardly changes with the tolerance shows no order.
+  const auto law = asymptotic_fit(points, floor);
+  if (law && (law->range >= 2 || !who.adaptive)) {
     fit.rows = law->points;
     fit.order = law->exponent;
     if (law->points > 2) fit.error = law->exponent_error;

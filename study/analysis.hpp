@@ -21,6 +21,7 @@ std::vector<bool> pareto_front(const std::vector<std::optional<double>>& cost,
 struct PowerLaw {
   double exponent = 0, exponent_error = 0, log_factor = 0;  ///< y = exp(log_factor) x^exponent
   int points = 0;
+  double range = 1;  ///< of the largest x to the smallest
 
   double operator()(double x) const;
 };

@@ -4,6 +4,7 @@
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
 #include "forces/sum.hpp"
+#include "integrators/classical.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/damped.hpp"
 #include "integrators/kinetic_potential.hpp"
@@ -94,6 +95,26 @@ TEST_CASE("nothing is allocated inside advance, nor by settling", "[allocation]"
   }
   check_none(compose(WisdomHolman({.G = G, .coordinates = Coordinates::democratic}), schemes::verlet_aba));
   check_none(compose(Damped(KineticPotential(Gravity{.G = G}), {.rate = 1e-6}), schemes::verlet));
+}
+
+TEST_CASE("no classical method allocates inside advance", "[allocation]") {
+  for (const MethodInfo* info : methods::all()) {
+    for (const bool adaptive : {false, true}) {
+      if (adaptive ? !info->adaptive : !info->fixed) continue;
+      MethodOptions options;
+      if (info->adaptive && info->fixed) options.adaptive = adaptive;
+      auto integrator = classical(Gravity{.G = G}, method(info->name, options));
+      ParticleSystem<double> s = test::outer_planets();
+      s.clock() = adaptive ? Clock<double>::free(0) : Clock<double>::fixed(0, 20);
+      integrator.bind(s);
+      integrator.advance(s, {.steps = 20});  // the start of multistep methods among them
+      const long start = allocations;
+      const Advanced done = integrator.advance(s, {.steps = 20});
+      CAPTURE(info->name, adaptive);
+      CHECK(done.steps == 20);
+      CHECK(allocations == start);
+    }
+  }
 }
 
 TEST_CASE("constraints allocate nothing inside advance, solved all at once or by sweeps", "[allocation][constraints]") {

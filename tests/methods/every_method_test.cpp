@@ -1,0 +1,140 @@
+/// What classical methods claim, measured for every one of them: none can be added without.
+
+#include "engine/monitors.hpp"
+#include "engine/simulation.hpp"
+#include "forces/gravity.hpp"
+#include "integrators/classical.hpp"
+#include "tests/methods/motions.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/planets.hpp"
+
+#include <cmath>
+
+using namespace noether;
+
+namespace {
+
+/// A method as it can be run: with steps of one length, or of its own choice.
+struct Way {
+  const MethodInfo* info;
+  MethodOptions options;
+  bool adaptive;
+};
+
+std::vector<Way> every_way() {
+  std::vector<Way> ways;
+  for (const MethodInfo* info : methods::all()) {
+    MethodOptions options;
+    if (info->fixed && info->adaptive) options.adaptive = false;
+    if (info->fixed) ways.push_back({info, options, false});
+    if (!info->adaptive) continue;
+    options = {};
+    if (info->rtol > 1e-15) options.rtol = options.atol = 1e-8;
+    ways.push_back({info, options, true});
+  }
+  return ways;
+}
+
+/// A Kepler orbit of e = 0.3 in Quad after some steps of a fixed length, by a method bound for them.
+Vector<Quad> steps_on_ellipse(Method<Quad>& method, VectorField<Quad>& f, Vector<Quad> y, double h, int steps) {
+  method.bind(f);
+  Quad t(0);
+  for (int n = 0; n < steps; ++n) {
+    const Stepped made = method.step(f, t, y, h);
+    REQUIRE(!made.failure);
+    t += Quad(h);
+  }
+  return y;
+}
+
+double angular_momentum_change(Method<Quad>& method) {
+  auto f = test::kepler<Quad>();
+  const Vector<Quad> start = test::kepler_start<Quad>(Quad(0.25));
+  const Vector<Quad> end = steps_on_ellipse(method, f, start, 0x1p-5, 40);
+  const auto l = [](const Vector<Quad>& y) { return y[0] * y[3] - y[1] * y[2]; };
+  return std::abs(static_cast<double>(l(end) / l(start) - Quad(1)));
+}
+
+/// How far a step back ends from where a step forth began.
+double way_back(const MethodChoice& choice) {
+  auto f = test::kepler<Quad>();
+  const Vector<Quad> start = test::kepler_start<Quad>(Quad(0.25));
+  const auto forth = make_method<Quad>(*choice.info, choice.options),
+             back = make_method<Quad>(*choice.info, choice.options);
+  const Vector<Quad> there = steps_on_ellipse(*forth, f, start, 0x1p-5, 1);
+  return test::distance(steps_on_ellipse(*back, f, there, -0x1p-5, 1), start);
+}
+
+/// |det M - 1| of one step on a pendulum, q'' = -sin q, by central differences of width 1e-8 in 113 bits.
+double area_change(const MethodChoice& choice) {
+  test::Motion<Quad> f(1, [](const Quad&, const Vector<Quad>& y, Quad* a) { a[0] = -sin(y[0]); });
+  const Quad d = Quad(1e-8);
+  Matrix<Quad> m(2, 2);
+  for (Index k = 0; k < 2; ++k) {
+    Vector<Quad> ends[2];
+    for (int side = 0; side < 2; ++side) {
+      Vector<Quad> y(2);
+      y << Quad(0.75), Quad(0.5);
+      y[k] += side == 0 ? -d : d;
+      const auto method = make_method<Quad>(*choice.info, choice.options);
+      ends[side] = steps_on_ellipse(*method, f, y, 0.25, 1);
+    }
+    for (Index i = 0; i < 2; ++i) m(i, k) = (ends[1][i] - ends[0][i]) / (Quad(2) * d);
+  }
+  return std::abs(static_cast<double>(m(0, 0) * m(1, 1) - m(0, 1) * m(1, 0) - Quad(1)));
+}
+
+Simulation<double> planets(const Way& way) {
+  auto integrator = classical(Gravity{.G = test::outer_G}, method(way.info->name, way.options));
+  return way.adaptive ? Simulation(test::outer_planets(), integrator)
+                      : Simulation(test::outer_planets(), integrator, 20.0);
+}
+
+}  // namespace
+
+TEST_CASE("methods keep angular momentum, areas and the way back if they claim so, and only then", "[claims]") {
+  for (const Way& way : every_way()) {
+    if (way.adaptive || way.info->make_quad == nullptr) continue;
+    const MethodChoice choice{way.info, way.options};
+    const auto method = make_method<Quad>(*way.info, way.options);
+    const MethodClaims claims = method->claims();
+    CAPTURE(way.info->name);
+    CHECK(claims.name == way.info->name);
+    CHECK((angular_momentum_change(*method) < 1e-28) == claims.keeps_angular_momentum);
+    // Methods with a past take their first step by another method.
+    if (way.info->family == "multistep") continue;
+    CHECK((way_back(choice) < 1e-28) == claims.reversible);
+    CHECK((area_change(choice) < 1e-14) == claims.symplectic);
+  }
+}
+
+TEST_CASE("every method goes on bit for bit after a restart, whatever looked on", "[restart]") {
+  for (const Way& way : every_way()) {
+    CAPTURE(way.info->name, way.adaptive);
+    auto whole = planets(way), first = planets(way), second = planets(way);
+    first.every(3, Energy{});
+    second.every(3, Energy{});
+    if (way.adaptive) {
+      first.every_time(33.0, Momentum{});
+      second.every_time(33.0, Momentum{});
+    }
+    REQUIRE(whole.run(50).ok());
+    REQUIRE(first.run(23).ok());
+    second.restore(first.save());
+    REQUIRE(second.run(27).ok());
+    CHECK(test::same_bits(whole.particles(), second.particles()));
+    CHECK(whole.evaluations().force == second.evaluations().force);
+    CHECK(whole.evaluations().jacobian == second.evaluations().jacobian);
+  }
+}
+
+TEST_CASE("a saved run goes on by the same method with the same tolerances only", "[restart]") {
+  const Way way{methods::find("dop853"), {.rtol = 1e-8}, true}, other{methods::find("dop853"), {.rtol = 1e-9}, true};
+  auto run = planets(way), wrong = planets(other);
+  REQUIRE(run.run(3).ok());
+  CHECK_THROWS_WITH(
+      wrong.restore(run.save()),
+      "the saved run was made with dop853(rtol = 1e-08, atol = default, adaptive = true, first = default, "
+      "beta = default, gamma = default), this one has dop853(rtol = 1e-09, atol = default, adaptive = "
+      "true, first = default, beta = default, gamma = default)");
+}
