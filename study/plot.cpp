@@ -105,9 +105,9 @@ std::string marker(int style, bool hollow, double x, double y, double r) {
 
 class Plot {
  public:
-  Plot(const PlotAxes& axes, const std::vector<PlotCurve>& curves) : axes_(axes) {
+  Plot(const ChartAxes& axes, const std::vector<ChartCurve>& curves) : axes_(axes) {
     x_.log = axes.log_x;
-    for (PlotCurve curve : curves) {
+    for (ChartCurve curve : curves) {
       for (std::size_t k = curve.points.size(); k-- > 0;) {
         const auto [x, y] = curve.points[k];
         if (std::isfinite(x) && std::isfinite(y) && y > 0 && (x > 0 || !axes.log_x)) continue;
@@ -130,7 +130,7 @@ class Plot {
         fmt::format("<svg class=\"plot\" viewBox=\"0 0 {0} {1}\" role=\"img\" aria-label=\"{2} against {3}\">",
                     axes_.width, axes_.height, html_text(axes_.y), html_text(axes_.x));
     out += grid() + front();
-    for (const PlotCurve& curve : curves_) out += drawn(curve);
+    for (const ChartCurve& curve : curves_) out += drawn(curve);
     return out + labels() + "</svg>\n";
   }
 
@@ -163,7 +163,7 @@ class Plot {
   /// The front: a staircase behind the curves.
   std::string front() const {
     std::vector<std::pair<double, double>> points;
-    for (const PlotCurve& curve : curves_) {
+    for (const ChartCurve& curve : curves_) {
       for (std::size_t k = 0; k < curve.ringed.size(); ++k) {
         if (curve.ringed[k]) points.push_back(curve.points[k]);
       }
@@ -177,7 +177,7 @@ class Plot {
     return "<path class=\"front\" d=\"" + path + "\"/>";
   }
 
-  std::string drawn(const PlotCurve& curve) const {
+  std::string drawn(const ChartCurve& curve) const {
     const std::string colour = fmt::format("var(--c{})", curve.style % colours);
     std::string path;
     for (const auto& [x, y] : curve.points)
@@ -199,11 +199,11 @@ class Plot {
   /// Names in the right margin, each as near to the end of its curve as the others let it.
   std::string labels() const {
     struct Label {
-      const PlotCurve* curve;
+      const ChartCurve* curve;
       double x, y, place;
     };
     std::vector<Label> all;
-    for (const PlotCurve& curve : curves_) {
+    for (const ChartCurve& curve : curves_) {
       const auto last = *std::max_element(curve.points.begin(), curve.points.end());
       all.push_back({&curve, px(last.first), py(last.second), py(last.second)});
     }
@@ -228,14 +228,14 @@ class Plot {
     return out;
   }
 
-  PlotAxes axes_;
-  std::vector<PlotCurve> curves_;
+  ChartAxes axes_;
+  std::vector<ChartCurve> curves_;
   Range x_, y_;
 };
 
 }  // namespace
 
-std::string plot_svg(const PlotAxes& axes, const std::vector<PlotCurve>& curves) { return Plot(axes, curves).text(); }
+std::string plot_svg(const ChartAxes& axes, const std::vector<ChartCurve>& curves) { return Plot(axes, curves).text(); }
 
 std::string marker_svg(int style, bool hollow) {
   return "<svg class=\"swatch\" viewBox=\"0 0 14 14\">" + marker(style, hollow, 7, 7, 4) + "</svg>";

@@ -9,7 +9,7 @@
 namespace noether {
 
 /// One curve. Its style (colour, marker, dashes) follows from a number, so that a method looks alike in every plot.
-struct PlotCurve {
+struct ChartCurve {
   std::string label = {};
   int style = 0;
   bool dashed = false;
@@ -18,7 +18,7 @@ struct PlotCurve {
   std::vector<bool> ringed = {};  ///< points on the front
 };
 
-struct PlotAxes {
+struct ChartAxes {
   std::string x = {}, y = {};  ///< what stands along them, with units
   bool log_x = true;
   int width = 1000, height = 480;
@@ -26,7 +26,7 @@ struct PlotAxes {
 
 /// The plot, as an SVG element whose colours are CSS variables of the page. Points that are not finite, or not positive
 /// on a logarithmic axis, are left out.
-std::string plot_svg(const PlotAxes& axes, const std::vector<PlotCurve>& curves);
+std::string plot_svg(const ChartAxes& axes, const std::vector<ChartCurve>& curves);
 
 /// The marker of a style, as an SVG element of its own for tables.
 std::string marker_svg(int style, bool hollow);

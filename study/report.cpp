@@ -69,8 +69,8 @@ class Page {
     return out + "</p>\n";
   }
 
-  PlotCurve curve_of(const Opponent& who, bool by_time) const {
-    PlotCurve curve{.label = short_label(who), .style = style_of(who), .dashed = who.adaptive};
+  ChartCurve curve_of(const Opponent& who, bool by_time) const {
+    ChartCurve curve{.label = short_label(who), .style = style_of(who), .dashed = who.adaptive};
     for (const Row& row : c_.rows) {
       const auto error = c_.error_of(row);
       if (!(row.who == who) || !row.completed() || !error) continue;
@@ -84,7 +84,7 @@ class Page {
   std::string costs() const {
     std::string out;
     for (const bool by_time : {true, false}) {
-      std::vector<PlotCurve> curves;
+      std::vector<ChartCurve> curves;
       for (const Opponent& who : c_.methods) curves.push_back(curve_of(who, by_time));
       out += fmt::format("<h2>Error against {}</h2>\n", by_time ? "run time" : "evaluations of the forces");
       out += plot_svg(
@@ -148,11 +148,11 @@ class Page {
   }
 
   std::string over_time() const {
-    std::vector<PlotCurve> energies, positions;
+    std::vector<ChartCurve> energies, positions;
     for (const Opponent& who : c_.methods) {
       const Row* best = best_row(who);
       if (best == nullptr) continue;
-      PlotCurve curve{.label = short_label(who), .style = style_of(who), .dashed = who.adaptive, .markers = false};
+      ChartCurve curve{.label = short_label(who), .style = style_of(who), .dashed = who.adaptive, .markers = false};
       curve.points = envelope(best->track, energy_errors(best->track, c_.truth));
       if (!curve.points.empty()) energies.push_back(curve);
       curve.points = envelope(best->track, best->position_errors);
