@@ -221,14 +221,8 @@ void describe(const std::string& name, bool json) {
   for (const UnitRow& row : list_units()) {
     if (row.symbol == name) return describe_unit(row, json);
   }
-  for (const Scheme* scheme : schemes::all()) {
-    known.emplace_back(scheme->name);
-    for (const std::string& alias : schemes::aliases_of(*scheme)) known.push_back(alias);
-  }
-  for (const MethodInfo* info : methods::all()) {
-    known.emplace_back(info->name);
-    for (const std::string& alias : methods::aliases_of(*info)) known.push_back(alias);
-  }
+  const std::vector<std::string> methods_too = methods::known_names();
+  known.insert(known.end(), methods_too.begin(), methods_too.end());
   const std::string near = suggest(name, known);
   throw Error(fmt::format("there is nothing called '{}'; {}", name,
                           near.empty() ? "see `noether list`" : "did you mean '" + near + "'?"));

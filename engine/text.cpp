@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <sstream>
+
 #include <cstddef>
 #include <cstdint>
 
@@ -69,6 +71,13 @@ std::string wrong_name(std::string_view name) {
                                     escaped(name), escape_of(one));
   });
   return wrong;
+}
+
+std::vector<std::string> words_of(std::string_view text) {
+  std::istringstream stream{std::string(text)};
+  std::vector<std::string> words;
+  for (std::string one; stream >> one;) words.push_back(one);
+  return words;
 }
 
 bool is_utf8(std::string_view text) noexcept {

@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace noether {
 
@@ -11,6 +12,10 @@ namespace noether {
 /// A name is UTF-8, has at least one character, and none that controls a terminal or ends a line.
 /// @throws std::bad_alloc
 std::string wrong_name(std::string_view name);
+
+/// The words of a text, parted by blanks.
+/// @throws std::bad_alloc
+std::vector<std::string> words_of(std::string_view text);
 
 /// Whether all of a text is UTF-8: no stray bytes, no overlong forms, no surrogates.
 /// @throws never

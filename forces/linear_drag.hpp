@@ -3,6 +3,7 @@
 
 #include "engine/description.hpp"
 #include "engine/force_sink.hpp"
+#include "engine/signature.hpp"
 
 namespace noether {
 
@@ -31,7 +32,7 @@ struct DragForce {
   LinearDrag drag;
 
   std::string name() const { return "linear_drag"; }
-  std::string signature() const { return "linear_drag(rate = " + std::to_string(drag.rate) + ")"; }
+  std::string signature() const { return detail::signature_of(drag); }
   ForceClaims claims() const {
     return {.velocity_dependent = true,
             .dissipative = true,

@@ -1,12 +1,13 @@
 #include "integrators/methods.hpp"
 
 #include "engine/suggest.hpp"
+#include "engine/text.hpp"
+#include "integrators/schemes.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 namespace noether {
 
@@ -25,11 +26,17 @@ std::span<const MethodInfo* const> all() {
   return list;
 }
 
-std::vector<std::string> aliases_of(const MethodInfo& info) {
-  std::istringstream text{std::string(info.aliases)};
-  std::vector<std::string> aliases;
-  for (std::string one; text >> one;) aliases.push_back(one);
-  return aliases;
+std::vector<std::string> aliases_of(const MethodInfo& info) { return words_of(info.aliases); }
+
+std::vector<std::string> known_names() {
+  std::vector<std::string> known;
+  const auto add = [&](std::string_view name, const std::vector<std::string>& aliases) {
+    known.emplace_back(name);
+    known.insert(known.end(), aliases.begin(), aliases.end());
+  };
+  for (const Scheme* scheme : schemes::all()) add(scheme->name, schemes::aliases_of(*scheme));
+  for (const MethodInfo* info : all()) add(info->name, aliases_of(*info));
+  return known;
 }
 
 const MethodInfo* find(std::string_view name) {
@@ -45,12 +52,7 @@ const MethodInfo* find(std::string_view name) {
 
 MethodChoice method(std::string_view name, const MethodOptions& options) {
   if (const MethodInfo* info = methods::find(name)) return {info, options};
-  std::vector<std::string> known;
-  for (const MethodInfo* info : methods::all()) {
-    known.emplace_back(info->name);
-    for (const std::string& alias : methods::aliases_of(*info)) known.push_back(alias);
-  }
-  throw Error(fmt::format("unknown method '{}'{}", name, did_you_mean(std::string(name), known)));
+  throw Error(fmt::format("unknown method '{}'{}", name, did_you_mean(name, methods::known_names())));
 }
 
 void check_options(const MethodInfo& info, const MethodOptions& options) {

@@ -21,6 +21,9 @@ const MethodInfo* find(std::string_view name);
 /// Other names of a method, one by one.
 std::vector<std::string> aliases_of(const MethodInfo& info);
 
+/// Names and aliases of all schemes and classical methods: what a misspelt name may have meant.
+std::vector<std::string> known_names();
+
 // The families, each in a file of its own below integrators/methods/.
 std::span<const MethodInfo> runge_kutta_list();
 std::span<const MethodInfo> collocation_list();

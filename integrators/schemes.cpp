@@ -1,7 +1,8 @@
 #include "integrators/schemes.hpp"
 
+#include "engine/text.hpp"
+
 #include <algorithm>
-#include <sstream>
 
 namespace noether::schemes {
 
@@ -22,12 +23,7 @@ std::span<const Scheme* const> all() {
   return list;
 }
 
-std::vector<std::string> aliases_of(const Scheme& scheme) {
-  std::istringstream text{std::string(scheme.aliases)};
-  std::vector<std::string> aliases;
-  for (std::string one; text >> one;) aliases.push_back(one);
-  return aliases;
-}
+std::vector<std::string> aliases_of(const Scheme& scheme) { return words_of(scheme.aliases); }
 
 const Scheme* find(std::string_view name) {
   for (const Scheme* scheme : all()) {

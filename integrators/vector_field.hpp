@@ -22,10 +22,11 @@ inline constexpr int lane_count = 8;
 
 /// States at several stages: variable i of stage k stands at [8 i + k].
 template <class Real> struct StageStates {
-  const Real* t;            ///< shape (8)
-  const Real* q;            ///< y; for second order its first half, positions; shape (n, 8)
-  const Real* v = nullptr;  ///< velocities, where the field depends on them; shape (n, 8)
-  int stages = lane_count;  ///< that mean something; lanes beyond them hold harmless states
+  const Real* t;              ///< shape (8)
+  const Real* q;              ///< y; for second order its first half, positions; shape (n, 8)
+  const Real* v = nullptr;    ///< velocities, where the field depends on them; shape (n, 8)
+  int stages = lane_count;    ///< that mean something; lanes beyond them hold harmless states
+  bool second_order = false;  ///< q are positions
 };
 
 /// What a vector field says of itself.
@@ -112,7 +113,7 @@ template <class Real> class VectorField {
 };
 
 template <class Real> void VectorField<Real>::evaluate_stages(const StageStates<Real>& states, Real* out) {
-  const bool second = claims().second_order;
+  const bool second = states.second_order;
   const Index n = second ? size() / 2 : size();
   stage_.resize(size());
   for (int k = 0; k < states.stages; ++k) {

@@ -81,9 +81,6 @@ AnyHamiltonian<double> hamiltonian_of(const Scene& scene) {
   return without_drag(scene);
 }
 
-namespace {
-
-/// All forces of a scene as one field, for methods that do not split.
 ForceField<double> forces_of(const Scene& scene) {
   ForceField<double> forces;
   if (scene.hamiltonian.kind == SceneHamiltonian::Kind::wisdom_holman) {
@@ -95,8 +92,6 @@ ForceField<double> forces_of(const Scene& scene) {
   }
   return forces;
 }
-
-}  // namespace
 
 std::unique_ptr<VectorField<double>> field_of(const Scene& scene) {
   if (scene.system) return scene.system->field();

@@ -49,15 +49,7 @@ std::int64_t counted_steps(TableReader& reader, std::string_view key) {
 }
 
 void unknown_method(TableReader& reader, const std::string& name) {
-  std::vector<std::string> known = schemes::names();
-  for (const Scheme* each : schemes::all()) {
-    for (const std::string& alias : schemes::aliases_of(*each)) known.push_back(alias);
-  }
-  for (const MethodInfo* each : methods::all()) {
-    known.emplace_back(each->name);
-    for (const std::string& alias : methods::aliases_of(*each)) known.push_back(alias);
-  }
-  const std::string near = suggest(name, known);
+  const std::string near = suggest(name, methods::known_names());
   reader.fail("method", fmt::format("unknown method '{}'; {}", name,
                                     near.empty() ? "see `noether list methods`" : "did you mean '" + near + "'?"));
 }

@@ -2,6 +2,7 @@
 /// A scene: a whole run as a text file says it, read, checked, and ready to be assembled.
 
 #include "engine/simulation.hpp"
+#include "forces/sum.hpp"
 #include "integrators/methods.hpp"
 #include "integrators/scheme.hpp"
 #include "integrators/wisdom_holman.hpp"
@@ -99,6 +100,9 @@ ConstraintSet constraints_of(const Scene& scene, std::size_t tables = std::numer
 
 /// The Hamiltonian of a scene, drag included.
 AnyHamiltonian<double> hamiltonian_of(const Scene& scene);
+
+/// All forces of a scene together, for methods that do not split: gravity of a wisdom_holman scene and drag among them.
+ForceField<double> forces_of(const Scene& scene);
 
 /// All that moves a scene as y' = f(t, y): its system, or all its forces together (constraints left out).
 std::unique_ptr<VectorField<double>> field_of(const Scene& scene);

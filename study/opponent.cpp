@@ -23,18 +23,6 @@ bool is_word(std::string_view name) {
 
 std::string_view name_of(Kind kind) { return kind == Kind::wisdom_holman ? "wisdom_holman" : "kinetic_potential"; }
 
-std::vector<std::string> known_names() {
-  std::vector<std::string> known = schemes::names();
-  for (const Scheme* scheme : schemes::all()) {
-    for (const std::string& alias : schemes::aliases_of(*scheme)) known.push_back(alias);
-  }
-  for (const MethodInfo* info : methods::all()) {
-    known.emplace_back(info->name);
-    for (const std::string& alias : methods::aliases_of(*info)) known.push_back(alias);
-  }
-  return known;
-}
-
 /// The scene's Hamiltonian without its splitting: gravity becomes a force as any other.
 void join_parts(SceneHamiltonian& hamiltonian) {
   if (hamiltonian.kind == Kind::kinetic_potential) return;
@@ -76,7 +64,7 @@ Opponent opponent(const Scene& scene, std::string_view name) {
   const MethodInfo* info = methods::find(method);
   const Scheme* scheme = schemes::find(method);
   if (info == nullptr && scheme == nullptr && !is_word(method)) {
-    throw Error(fmt::format("unknown method '{}'{}", method, did_you_mean(method, known_names())));
+    throw Error(fmt::format("unknown method '{}'{}", method, did_you_mean(method, methods::known_names())));
   }
   if (info != nullptr && scheme == nullptr) {
     const bool own = info->name == scene.integrator.method;

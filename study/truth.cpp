@@ -135,16 +135,13 @@ WideScene wide_scene(const Scene& scene) {
     return wide;
   }
   ForceField<Quad> forces;
-  if (h.kind == SceneHamiltonian::Kind::wisdom_holman) forces.add(Gravity{.G = h.wisdom_holman.G});
-  for (const SceneForce& force : h.forces) {
-    if (force.drag) {
-      forces.add(DragForce{*force.drag});
-    } else if (auto in_quad = force.force->in_quad()) {
-      forces.add(*in_quad);
-    } else {
-      wide.reason = fmt::format("force '{}' is written for doubles only", force.name);
+  for (const AnyForce<double>& force : forces_of(scene).terms()) {
+    const auto in_quad = force.in_quad();
+    if (!in_quad) {
+      wide.reason = fmt::format("force '{}' is written for doubles only", force.name());
       return wide;
     }
+    forces.add(*in_quad);
   }
   wide.start = scene.particles.as<Quad>();
   wide.field = std::make_unique<ForceMotion<ForceField<Quad>, Quad>>(std::move(forces));

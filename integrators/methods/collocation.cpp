@@ -135,7 +135,7 @@ void Collocation<Real>::predict(VectorField<Real>& f, const Real& t, const Vecto
       all.fill(t);
       return all;
     }();
-    f.rates({times.data(), q_.data(), v_.data(), 1}, rates_.data());
+    f.rates({times.data(), q_.data(), v_.data(), 1, second_order_}, rates_.data());
     for (Index i = 0; i < n_; ++i) {
       Real* rate = rates_.data() + lanes * i;
       for (Index k = 1; k < table_.stages; ++k) rate[k] = rate[0];
@@ -189,7 +189,8 @@ typename Collocation<Real>::Sweeps Collocation<Real>::sweep(VectorField<Real>& f
   double before = std::numeric_limits<double>::infinity();
   for (int round = 1; round <= most; ++round) {
     form_states(y, h);
-    f.rates({times.data(), q_.data(), with_velocities_ ? v_.data() : nullptr, table_.stages}, trial_.data());
+    f.rates({times.data(), q_.data(), with_velocities_ ? v_.data() : nullptr, table_.stages, second_order_},
+            trial_.data());
     const auto [change, size] = sums_.difference(trial_.data(), rates_.data());
     std::swap(trial_, rates_);
     const double relative = size > Real(0) ? static_cast<double>(change / size) : 0.0;

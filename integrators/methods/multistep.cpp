@@ -24,8 +24,9 @@ template <class Real> std::unique_ptr<Method<Real>> stormer(const MethodInfo& in
   return std::make_unique<StormerCowell<Real>>(info.name, info.order);
 }
 
-constexpr MethodInfo bashforth(std::string_view name, std::string_view alias, int order, std::string_view summary,
-                               double limit) {
+template <AdamsKind kind>
+constexpr MethodInfo adams_info(std::string_view name, std::string_view alias, int order, std::string_view summary,
+                                double limit) {
   return {.name = name,
           .aliases = alias,
           .summary = summary,
@@ -33,21 +34,8 @@ constexpr MethodInfo bashforth(std::string_view name, std::string_view alias, in
           .family = "multistep",
           .order = order,
           .stability_limit = limit,
-          .make = adams<AdamsKind::bashforth, double>,
-          .make_quad = adams<AdamsKind::bashforth, Quad>};
-}
-
-constexpr MethodInfo moulton(std::string_view name, std::string_view alias, int order, std::string_view summary,
-                             double limit) {
-  return {.name = name,
-          .aliases = alias,
-          .summary = summary,
-          .source = "HairerNoersettWanner1993",
-          .family = "multistep",
-          .order = order,
-          .stability_limit = limit,
-          .make = adams<AdamsKind::moulton, double>,
-          .make_quad = adams<AdamsKind::moulton, Quad>};
+          .make = adams<kind, double>,
+          .make_quad = adams<kind, Quad>};
 }
 
 constexpr MethodInfo stormer_cowell(std::string_view name, std::string_view alias, int order, double limit) {
@@ -68,20 +56,32 @@ constexpr MethodInfo stormer_cowell(std::string_view name, std::string_view alia
 
 std::span<const MethodInfo> multistep_list() {
   static const MethodInfo list[] = {
-      bashforth("adams_bashforth_1", "ab1", 1, "Adams-Bashforth, order 1, one step: explicit Euler", 0),
-      bashforth("adams_bashforth_2", "ab2", 2, "Adams-Bashforth, order 2, two steps: one evaluation a step", 0),
-      bashforth("adams_bashforth_3", "ab3", 3, "Adams-Bashforth, order 3, three steps: one evaluation a step", 0.72363),
-      bashforth("adams_bashforth_4", "ab4", 4, "Adams-Bashforth, order 4, four steps: one evaluation a step", 0.42999),
-      bashforth("adams_bashforth_5", "ab5", 5, "Adams-Bashforth, order 5, five steps: one evaluation a step", 0),
-      bashforth("adams_bashforth_6", "ab6", 6, "Adams-Bashforth, order 6, six steps: one evaluation a step", 0),
-      moulton("adams_moulton_1", "am1", 1,
-              "Adams-Moulton, order 1: backward Euler by fixed-point iteration, for problems that are not stiff", 0),
-      moulton("adams_moulton_2", "am2", 2,
-              "Adams-Moulton, order 2, one step: the trapezoidal rule by fixed-point iteration", 0),
-      moulton("adams_moulton_3", "am3", 3, "Adams-Moulton, order 3, two steps, by fixed-point iteration", 0),
-      moulton("adams_moulton_4", "am4", 4, "Adams-Moulton, order 4, three steps, by fixed-point iteration", 0),
-      moulton("adams_moulton_5", "am5", 5, "Adams-Moulton, order 5, four steps, by fixed-point iteration", 1.21193),
-      moulton("adams_moulton_6", "am6", 6, "Adams-Moulton, order 6, five steps, by fixed-point iteration", 1.37636),
+      adams_info<AdamsKind::bashforth>("adams_bashforth_1", "ab1", 1,
+                                       "Adams-Bashforth, order 1, one step: explicit Euler", 0),
+      adams_info<AdamsKind::bashforth>("adams_bashforth_2", "ab2", 2,
+                                       "Adams-Bashforth, order 2, two steps: one evaluation a step", 0),
+      adams_info<AdamsKind::bashforth>("adams_bashforth_3", "ab3", 3,
+                                       "Adams-Bashforth, order 3, three steps: one evaluation a step", 0.72363),
+      adams_info<AdamsKind::bashforth>("adams_bashforth_4", "ab4", 4,
+                                       "Adams-Bashforth, order 4, four steps: one evaluation a step", 0.42999),
+      adams_info<AdamsKind::bashforth>("adams_bashforth_5", "ab5", 5,
+                                       "Adams-Bashforth, order 5, five steps: one evaluation a step", 0),
+      adams_info<AdamsKind::bashforth>("adams_bashforth_6", "ab6", 6,
+                                       "Adams-Bashforth, order 6, six steps: one evaluation a step", 0),
+      adams_info<AdamsKind::moulton>(
+          "adams_moulton_1", "am1", 1,
+          "Adams-Moulton, order 1: backward Euler by fixed-point iteration, for problems that are not stiff", 0),
+      adams_info<AdamsKind::moulton>("adams_moulton_2", "am2", 2,
+                                     "Adams-Moulton, order 2, one step: the trapezoidal rule by fixed-point iteration",
+                                     0),
+      adams_info<AdamsKind::moulton>("adams_moulton_3", "am3", 3,
+                                     "Adams-Moulton, order 3, two steps, by fixed-point iteration", 0),
+      adams_info<AdamsKind::moulton>("adams_moulton_4", "am4", 4,
+                                     "Adams-Moulton, order 4, three steps, by fixed-point iteration", 0),
+      adams_info<AdamsKind::moulton>("adams_moulton_5", "am5", 5,
+                                     "Adams-Moulton, order 5, four steps, by fixed-point iteration", 1.21193),
+      adams_info<AdamsKind::moulton>("adams_moulton_6", "am6", 6,
+                                     "Adams-Moulton, order 6, five steps, by fixed-point iteration", 1.37636),
       {.name = "adams_pece",
        .aliases = "adams abm shampine_gordon",
        .summary = "Adams predictor and corrector with steps and orders (1 to 12) of its own choice, two evaluations a "

@@ -3,6 +3,8 @@
 #include "engine/monitors.hpp"
 #include "engine/simulation.hpp"
 #include "forces/gravity.hpp"
+#include "forces/linear_drag.hpp"
+#include "forces/sum.hpp"
 #include "integrators/classical.hpp"
 #include "tests/methods/motions.hpp"
 #include "tests/support/catch.hpp"
@@ -140,4 +142,17 @@ TEST_CASE("a saved run goes on by the same method with the same tolerances only"
       "the saved run was made with dop853(rtol = 1e-08, atol = default, adaptive = true, first = default, "
       "beta = default, gamma = default), this one has dop853(rtol = 1e-09, atol = default, adaptive = "
       "true, first = default, beta = default, gamma = default)");
+}
+
+TEST_CASE("a saved run goes on under the same forces only, however small their difference", "[restart]") {
+  const auto dragged = [](double rate) {
+    return Simulation(
+        test::outer_planets(),
+        classical(Sum(Gravity{.G = test::outer_G}, DragForce{{.rate = rate}}), method("dop853", {.adaptive = false})),
+        20.0);
+  };
+  auto run = dragged(1e-9), same = dragged(1e-9), other = dragged(2e-9);
+  REQUIRE(run.run(3).ok());
+  CHECK_NOTHROW(same.restore(run.save()));
+  CHECK_THROWS(other.restore(run.save()));
 }
