@@ -28,8 +28,9 @@ function(noether_simd target)
     target_compile_definitions(${objects} PRIVATE NOETHER_SIMD_LEVEL=${level}${simd_SUFFIX}
                                                   hwy=hwy_${level}${simd_SUFFIX})
     target_compile_options(${objects} PRIVATE -ffp-contract=off ${NOETHER_SIMD_FLAGS_${level}} ${simd_OPTIONS}
-      # Before registers are given out, g++ does not reorder on its own; several chains side by side want it to.
-      $<$<CXX_COMPILER_ID:GNU>:-fschedule-insns -fsched-pressure>)
+      # Before registers are given out, g++ does not reorder on its own; several chains side by side want it to. Stores
+      # of whole registers stay such, not a memset that writes them in parts.
+      $<$<CXX_COMPILER_ID:GNU>:-fschedule-insns -fsched-pressure -fno-tree-loop-distribute-patterns>)
     set_target_properties(${objects} PROPERTIES POSITION_INDEPENDENT_CODE ON)
     target_sources(${target} PRIVATE $<TARGET_OBJECTS:${objects}>)
   endforeach()

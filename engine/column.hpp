@@ -26,6 +26,9 @@ template <class T> struct AlignedAllocator {
 
 template <class T> using AlignedVector = std::vector<T, AlignedAllocator<T>>;
 
+/// Sets numbers to 0; a number type may bring a quicker way of its own.
+template <class T> void set_to_zero(T* numbers, std::size_t count) { std::fill_n(numbers, count, T(0)); }
+
 /// One number per particle, shape (n).
 template <class T> class ScalarColumn {
  public:
@@ -116,7 +119,7 @@ template <class Real> class VectorColumn {
     return low + high == Real(0);
   }
 
-  void fill(const Real& value) { values_.assign(values_.size(), value); }
+  void set_zero() { set_to_zero(values_.data(), values_.size()); }
 
   /// @cost O(1) on the average: the stride grows by half and may stay above what the size needs
   void append(const Vec3<Real>& v) {

@@ -24,7 +24,7 @@ template <class Real> class ForceSink {
   /// @param accelerations  shape (n, 3), set to zero here [length/time^2]
   ForceSink(VectorColumn<Real>& accelerations, const ParticleSystem<Real>& system, Wanted wanted)
       : a_(accelerations), system_(system), wanted_(wanted) {
-    a_.fill(Real(0));
+    a_.set_zero();
   }
 
   /// Adds `a` to the acceleration of particle `i` [length/time^2].

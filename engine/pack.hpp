@@ -115,6 +115,12 @@ struct Pack {
   }
 };
 
+/// Copies packs by the widest registers there are: who reads a pack whole would wait for one that was written in parts.
+/// @throws never
+void copy_packs(const double* from, double* to, std::size_t packs);
+/// Sets packs to 0 likewise. @throws never
+void set_to_zero(Pack* packs, std::size_t count);
+
 }  // namespace noether
 
 namespace Eigen {

@@ -217,13 +217,13 @@ std::string with_article(const Dimension& dimension) {
 }
 
 /// What a text should be: a dimension, or an angle, which has none.
-struct Wanted {
+struct Expected {
   Dimension dimension = dimensions::none;
   bool angle = false;
 };
 
 /// "a time is expected, such as '100 day'".
-std::string expectation(const Wanted& wanted, std::string_view number, const UnitSystem& system) {
+std::string expectation(const Expected& wanted, std::string_view number, const UnitSystem& system) {
   if (wanted.angle) return fmt::format("an angle is expected, such as '{} deg'", number);
   return fmt::format("{} is expected, such as '{}'", with_article(wanted.dimension),
                      example_of(wanted.dimension, number, system));
@@ -242,7 +242,7 @@ struct Number {
   std::size_t length = 0;
 };
 
-Number read_number(std::string_view text, const Wanted& expected, const UnitSystem& system) {
+Number read_number(std::string_view text, const Expected& expected, const UnitSystem& system) {
   // std::from_chars reads no plus sign, and would read the minus of "+-1".
   const bool plus = text.starts_with('+') && !text.starts_with("+-");
   const char* const first = text.data() + (plus ? 1 : 0);
@@ -259,7 +259,7 @@ Number read_number(std::string_view text, const Wanted& expected, const UnitSyst
   return number;
 }
 
-double read_quantity(std::string_view text, const Wanted& wanted, const UnitSystem& system) {
+double read_quantity(std::string_view text, const Expected& wanted, const UnitSystem& system) {
   const std::string_view whole = trimmed(text);
   const Number number = read_number(whole, wanted, system);
   const std::string_view digits = whole.substr(0, number.length);

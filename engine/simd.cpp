@@ -23,12 +23,15 @@ SimdLevel best() {
   return found;
 }
 
-std::atomic<SimdLevel>& in_use() {
-  static std::atomic<SimdLevel> level{best()};
+}  // namespace
+
+constinit std::atomic<int> detail::level_in_use{-1};
+
+SimdLevel detail::use_highest_level() {
+  const SimdLevel level = best();
+  level_in_use.store(static_cast<int>(level), std::memory_order_relaxed);
   return level;
 }
-
-}  // namespace
 
 std::string_view name(SimdLevel level) {
   switch (level) {
@@ -67,14 +70,12 @@ bool has_simd_level(SimdLevel level) {
 #endif
 }
 
-SimdLevel simd_level() { return in_use().load(std::memory_order_relaxed); }
-
 void set_simd_level(SimdLevel level) {
   if (!has_simd_level(level)) {
     throw Error(
         fmt::format("SIMD level '{}' is not to be had on this processor; its best is '{}'", name(level), name(best())));
   }
-  in_use().store(level, std::memory_order_relaxed);
+  detail::level_in_use.store(static_cast<int>(level), std::memory_order_relaxed);
 }
 
 }  // namespace noether

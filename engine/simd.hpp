@@ -4,6 +4,7 @@
 /// Code in lanes stands in `*_simd.cpp` alone. Each is compiled once per level, in a namespace named for it, and offers
 /// plain functions on pointers in one table; `at_simd_level` picks the table of the level in use.
 
+#include <atomic>
 #include <cstdint>
 #include <string_view>
 
@@ -22,8 +23,17 @@ SimdLevel simd_level_named(std::string_view text);
 
 /// Whether this build and this processor have a level.
 bool has_simd_level(SimdLevel level);
+namespace detail {
+/// The level in use; -1 before it was asked for.
+extern constinit std::atomic<int> level_in_use;
+SimdLevel use_highest_level();
+}  // namespace detail
+
 /// The level in use: the highest there is, unless another was set.
-SimdLevel simd_level();
+inline SimdLevel simd_level() {
+  const int level = detail::level_in_use.load(std::memory_order_relaxed);
+  return level >= 0 ? static_cast<SimdLevel>(level) : detail::use_highest_level();
+}
 /// Sets it, for all runs of this process: bits are the same at one level, and may differ from level to level.
 /// @throws Error  if this build or this processor does not have it
 void set_simd_level(SimdLevel level);

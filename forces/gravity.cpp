@@ -101,16 +101,13 @@ Mat3<double> virial_of(const Gathered& gathered, double g, double softening) {
 template void Gravity::add_pairs(ForceSink<double>&, const ParticleSystem<double>&) const;
 
 void Gravity::add_stages(ForceSink<Pack>& out, const ParticleSystem<Pack>& s) const {
-  thread_local AlignedVector<double> mu;
-  const double g = constant(s).lane[0];
-  mu.clear();
-  for (const Pack& m : s.masses()) mu.push_back(g * m.lane[0]);
   const auto numbers = [](auto* packs) { return packs->lane.data(); };
   const VectorColumn<Pack>& x = s.positions();
   VectorColumn<Pack>& a = out.accelerations();
-  attract_in_stages()({numbers(x.component(0)), numbers(x.component(1)), numbers(x.component(2)), mu.data(),
-                       numbers(a.component(0)), numbers(a.component(1)), numbers(a.component(2)), s.size()},
-                      softening * softening);
+  attract_in_stages()({numbers(x.component(0)), numbers(x.component(1)), numbers(x.component(2)),
+                       numbers(s.masses().data()), numbers(a.component(0)), numbers(a.component(1)),
+                       numbers(a.component(2)), s.size()},
+                      constant(s).lane[0], softening * softening);
 }
 
 void Gravity::add_lanes(ForceSink<double>& out, const ParticleSystem<double>& s) const {

@@ -11,14 +11,14 @@ using Vector = hn::Vec<Lanes>;
 constexpr std::ptrdiff_t lanes = hn::MaxLanes(Lanes());
 constexpr std::ptrdiff_t stages = 8;
 
-/// Body i, and what it has felt so far, in the lanes of one register.
+/// Body i, its G m, and what it has felt so far, in the lanes of one register.
 struct Body {
   Vector x, y, z, mu, ax, ay, az;
 };
 
 /// The pull between body i and n bodies from j on.
 template <int n>
-HWY_INLINE void attract(const BodiesInStages& b, Body& body, std::ptrdiff_t j, std::ptrdiff_t lane, Vector soft2) {
+HWY_INLINE void attract(const BodiesInStages& b, Body& body, std::ptrdiff_t j, std::ptrdiff_t lane, Vector G, Vector soft2) {
   const Lanes d;
   Vector dx[n], dy[n], dz[n], r2[n], u[n];
   for (int k = 0; k < n; ++k) {
@@ -32,7 +32,7 @@ HWY_INLINE void attract(const BodiesInStages& b, Body& body, std::ptrdiff_t j, s
   for (int k = 0; k < n; ++k) {
     const std::ptrdiff_t at = (j + k) * stages + lane;
     const Vector cube = hn::Mul(u[k], hn::Mul(u[k], u[k]));
-    const Vector pull = hn::Mul(hn::Set(d, b.mu[j + k]), cube), back = hn::Mul(body.mu, cube);
+    const Vector pull = hn::Mul(hn::Mul(G, hn::Load(d, b.m + at)), cube), back = hn::Mul(body.mu, cube);
     body.ax = hn::MulAdd(pull, dx[k], body.ax);
     body.ay = hn::MulAdd(pull, dy[k], body.ay);
     body.az = hn::MulAdd(pull, dz[k], body.az);
@@ -42,22 +42,22 @@ HWY_INLINE void attract(const BodiesInStages& b, Body& body, std::ptrdiff_t j, s
   }
 }
 
-void attract_all(const BodiesInStages& bodies, double softening2) {
+void attract_all(const BodiesInStages& bodies, double constant, double softening2) {
   constexpr int together = 3;
   const Lanes d;
   const BodiesInStages b = bodies;
-  const Vector soft2 = hn::Set(d, softening2);
+  const Vector G = hn::Set(d, constant), soft2 = hn::Set(d, softening2);
   for (std::ptrdiff_t lane = 0; lane < stages; lane += lanes) {
     for (std::ptrdiff_t i = 0; i + 1 < b.count; ++i) {
       const std::ptrdiff_t at = i * stages + lane;
-      Body body{hn::Load(d, b.x + at),  hn::Load(d, b.y + at),  hn::Load(d, b.z + at), hn::Set(d, b.mu[i]),
+      Body body{hn::Load(d, b.x + at),  hn::Load(d, b.y + at),  hn::Load(d, b.z + at), hn::Mul(G, hn::Load(d, b.m + at)),
                 hn::Load(d, b.ax + at), hn::Load(d, b.ay + at), hn::Load(d, b.az + at)};
       std::ptrdiff_t j = i + 1;
-      if (b.mu[i] != 0) {
-        for (; j + together <= b.count; j += together) attract<together>(b, body, j, lane, soft2);
+      if (b.m[at] != 0) {
+        for (; j + together <= b.count; j += together) attract<together>(b, body, j, lane, G, soft2);
       }
       for (; j < b.count; ++j) {
-        if (b.mu[i] != 0 || b.mu[j] != 0) attract<1>(b, body, j, lane, soft2);  // tracers may stand in one place
+        if (b.m[at] != 0 || b.m[j * stages] != 0) attract<1>(b, body, j, lane, G, soft2);  // tracers may stand in one place
       }
       hn::Store(body.ax, d, b.ax + at);
       hn::Store(body.ay, d, b.ay + at);

@@ -7,15 +7,15 @@
 
 namespace noether {
 
-/// Coordinates of n bodies at eight stages, shape (n, 8) each, their G m, shape (n), and what they feel.
+/// Coordinates of n bodies at eight stages, their masses, and what they feel, shape (n, 8) each.
 struct BodiesInStages {
-  const double *x, *y, *z, *mu;
+  const double *x, *y, *z, *m;
   double *ax, *ay, *az;  ///< sums so far
   std::ptrdiff_t count;
 };
 
 /// Adds the pull of every pair, each pair once.
-using AttractInStages = void (*)(const BodiesInStages& bodies, double softening2);
+using AttractInStages = void (*)(const BodiesInStages& bodies, double G, double softening2);
 
 namespace base {
 extern const AttractInStages attract_in_stages;

@@ -2,13 +2,13 @@
 /// Particles under forces as y' = f(t, y), y = (x, v).
 
 #include "engine/erasure.hpp"
+#include "engine/pack.hpp"
 #include "engine/parallel.hpp"
 #include "engine/signature.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/vector_field.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <optional>
 #include <utility>
 
@@ -141,18 +141,16 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
   }
   void evaluate_lanes(const StageStates<double>& states, double* out) {
     const Index n = work_.size();
+    const auto rows = static_cast<std::size_t>(n);
     VectorColumn<Pack>&x = packs_.positions(), &v = packs_.velocities();
     for (int k = 0; k < 3; ++k) {
-      std::memcpy(x.component(k), states.q + k * n * lane_count, static_cast<std::size_t>(n) * sizeof(Pack));
-      if (states.v == nullptr) continue;
-      std::memcpy(v.component(k), states.v + k * n * lane_count, static_cast<std::size_t>(n) * sizeof(Pack));
+      copy_packs(states.q + k * n * lane_count, x.component(k)->lane.data(), rows);
+      if (states.v != nullptr) copy_packs(states.v + k * n * lane_count, v.component(k)->lane.data(), rows);
     }
     packs_.clock().set_stage_offset(Pack::load(states.t));
     ForceSink<Pack> sink(pack_a_, packs_, {});
     forces_.add_to(sink, packs_);
-    for (int k = 0; k < 3; ++k) {
-      std::memcpy(out + k * n * lane_count, pack_a_.component(k), static_cast<std::size_t>(n) * sizeof(Pack));
-    }
+    for (int k = 0; k < 3; ++k) copy_packs(pack_a_.component(k)->lane.data(), out + k * n * lane_count, rows);
   }
 
   void sum(const Real& t, const Vector<Real>& y) {

@@ -4,6 +4,7 @@
 #include "engine/concepts.hpp"
 #include "engine/description.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -25,7 +26,7 @@ template <class Real> struct StageStates {
   const Real* t;              ///< shape (8)
   const Real* q;              ///< y; for second order its first half, positions; shape (n, 8)
   const Real* v = nullptr;    ///< velocities, where the field depends on them; shape (n, 8)
-  int stages = lane_count;    ///< that mean something; lanes beyond them hold harmless states
+  int stages = lane_count;    ///< that count; lanes beyond them hold the state of one of them
   bool second_order = false;  ///< q are positions
 };
 
@@ -74,7 +75,8 @@ template <class Real> class VectorField {
     ++evaluations_.force;
     accelerate(t, y, a);
   }
-  /// Rates (for second order: accelerations) at all stages, counted as so many, in the layout of the states.
+  /// Rates (for second order: accelerations) at all stages, counted as so many, in the layout of the states; lanes
+  /// beyond the stages hold the rates of one of them.
   void rates(const StageStates<Real>& states, Real* out) {
     evaluations_.force += states.stages;
     evaluate_stages(states, out);
@@ -126,7 +128,8 @@ template <class Real> void VectorField<Real>::evaluate_stages(const StageStates<
     } else {
       evaluate(states.t[k], stage_, stage_rate_);
     }
-    for (Index i = 0; i < n; ++i) out[lane_count * i + k] = stage_rate_[i];
+    const int last = k + 1 == states.stages ? lane_count : k + 1;
+    for (Index i = 0; i < n; ++i) std::fill(out + lane_count * i + k, out + lane_count * i + last, stage_rate_[i]);
   }
 }
 

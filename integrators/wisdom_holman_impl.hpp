@@ -237,7 +237,7 @@ template <class Real, class F> Real WisdomHolman<Real, F>::arcs(ParticleSystem<R
 template <class Real, class F> Real WisdomHolman<Real, F>::kick(ParticleSystem<Real>& s, const Real& h, bool action) {
   const auto& c = std::as_const(s);
   if (!observing_) ++evaluations_.force;
-  acceleration_.fill(Real(0));
+  acceleration_.set_zero();
   Real potential(0);
   if (jacobi()) {
     from_jacobi(c.positions(), positions_, Vec3<Real>::Zero());

@@ -45,6 +45,14 @@ template <class Real> StageTable<Real>::StageTable(const CollocationTable& table
     a[i][i] += static_cast<Real>(left);
     twice[i][i] += static_cast<Real>(left_twice);
   }
+  for (std::size_t i = table.stages(); i < lane_count; ++i) {
+    c[i] = c[0];
+    c_low[i] = c_low[0];
+    for (std::size_t j = 0; j < table.stages(); ++j) {
+      a[j][i] = a[j][0];
+      twice[j][i] = twice[j][0];
+    }
+  }
 }
 
 template <class Real>
@@ -79,9 +87,11 @@ template <class Real> void Collocation<Real>::bind(const VectorField<Real>& f) {
   with_velocities_ = second_order_ && claims.velocity_dependent;
   n_ = second_order_ ? f.size() / 2 : f.size();
   particles_ = second_order_ ? f.particles() : 0;
-  for (auto* all : {&rates_, &previous_, &trial_, &q_, &v_}) all->assign(static_cast<std::size_t>(lanes * n_), Real(0));
+  const auto padded = static_cast<std::size_t>((n_ + 7) / 8 * 8);
+  for (auto* all : {&rates_, &previous_, &trial_, &q_, &v_}) all->assign(lane_count * padded, Real(0));
+  for (auto* all : {&last_, &largest_}) all->assign(padded, Real(0));
   low_.assign(static_cast<std::size_t>(f.size()), Real(0));
-  sums_ = {n_, table_.stages};
+  sums_ = {n_};
   weights_h_ = weights_h_old_ = 0;
   next_ = h_ = 0;
 }
@@ -136,10 +146,6 @@ void Collocation<Real>::predict(VectorField<Real>& f, const Real& t, const Vecto
       return all;
     }();
     f.rates({times.data(), q_.data(), v_.data(), 1, second_order_}, rates_.data());
-    for (Index i = 0; i < n_; ++i) {
-      Real* rate = rates_.data() + lanes * i;
-      for (Index k = 1; k < table_.stages; ++k) rate[k] = rate[0];
-    }
     return;
   }
   extrapolate(h);
@@ -149,15 +155,22 @@ void Collocation<Real>::predict(VectorField<Real>& f, const Real& t, const Vecto
 template <class Real> void Collocation<Real>::extrapolate(double h) {
   if (h != weights_h_ || h_ != weights_h_old_) {
     const auto s = static_cast<std::size_t>(table_.stages);
-    StageLanes<Real> x, product;
+    StageLanes<Real> x, before;
     for (std::size_t i = 0; i < lane_count; ++i) x[i] = Real(1) + table_.c[i] * (Real(h) / Real(h_));
-    product.fill(Real(1));
-    for (std::size_t j = 0; j < s; ++j) {
-      for (std::size_t i = 0; i < lane_count; ++i) product[i] *= x[i] - table_.c[j];
-    }
+    // Weight j is the product of x - c_m over all other m: those before j, and, on the way back, those behind it.
+    before.fill(Real(1));
     for (std::size_t j = 0; j < s; ++j) {
       for (std::size_t i = 0; i < lane_count; ++i) {
-        weights_[j][i] = product[i] * table_.barycentric[j] / (x[i] - table_.c[j]);
+        weights_[j][i] = table_.barycentric[j] * before[i];
+        before[i] *= x[i] - table_.c[j];
+      }
+    }
+    StageLanes<Real> behind;
+    behind.fill(Real(1));
+    for (std::size_t j = s; j-- > 0;) {
+      for (std::size_t i = 0; i < lane_count; ++i) {
+        weights_[j][i] *= behind[i];
+        behind[i] *= x[i] - table_.c[j];
       }
     }
     weights_h_ = h;
@@ -230,22 +243,16 @@ template <class Real> void Collocation<Real>::finish(Vector<Real>& y, double h) 
 }
 
 /// The largest last Legendre coefficient of a rate, relative to the rate; vectors of particles as wholes.
-template <class Real> double Collocation<Real>::roughness() const {
-  const auto s = static_cast<std::size_t>(table_.stages);
-  const Index groups = particles_ > 0 ? particles_ : n_, parts = particles_ > 0 ? 3 : 1;
+template <class Real> double Collocation<Real>::roughness() {
+  sums_.coefficient(rates_.data(), table_.last, last_.data(), largest_.data());
+  const Index groups = particles_ > 0 ? particles_ : n_;
   double worst = 0;
   for (Index g = 0; g < groups; ++g) {
     double last2 = 0, size2 = 0;
-    for (Index part = 0; part < parts; ++part) {
-      const Real* rate = rates_.data() + lanes * (g + part * groups);
-      Real last(0);
-      double most = 0;
-      for (std::size_t j = 0; j < s; ++j) {
-        last += table_.last[j] * rate[j];
-        most = std::max(most, std::abs(static_cast<double>(rate[j])));
-      }
-      last2 += static_cast<double>(last) * static_cast<double>(last);
-      size2 += most * most;
+    for (auto i = static_cast<std::size_t>(g); i < static_cast<std::size_t>(n_); i += static_cast<std::size_t>(groups)) {
+      const auto last = static_cast<double>(last_[i]), size = static_cast<double>(largest_[i]);
+      last2 += last * last;
+      size2 += size * size;
     }
     if (size2 > 0) worst = std::max(worst, last2 / size2);
   }

@@ -10,7 +10,8 @@
 
 namespace noether {
 
-/// Coefficients of a collocation method in the working type, its stages side by side in eight lanes.
+/// Coefficients of a collocation method in the working type, its stages side by side in eight lanes; lanes beyond the
+/// stages repeat the first, and nothing is taken from them.
 ///
 /// Each list comes with what rounding has taken from its sum: with steps of one length an error of 1e-17 in it would
 /// be a drift.
@@ -53,7 +54,7 @@ template <class Real> class Collocation final : public Method<Real> {
   Sweeps sweep(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h);
   void form_states(const Vector<Real>& y, double h);
   void finish(Vector<Real>& y, double h);
-  double roughness() const;
+  double roughness();
   double effect_on(const Vector<Real>& y, double h, double change) const;
 
   std::string_view name_;
@@ -67,6 +68,7 @@ template <class Real> class Collocation final : public Method<Real> {
   StageArithmetic<Real> sums_;
   AlignedVector<Real> rates_, previous_, trial_, q_, v_;  ///< shape (n, 8)
   AlignedVector<Real> low_;                               ///< rounding errors of y
+  AlignedVector<Real> last_, largest_;                    ///< last Legendre coefficients, and sizes, of the rates
   StageMatrix<Real> weights_{};                           ///< of the extrapolation over a step h after one of h_old
   double weights_h_ = 0, weights_h_old_ = 0;
   double next_ = 0, h_ = 0;  ///< to be tried; of `previous_`, 0 for none

@@ -2,6 +2,9 @@
 
 #include <hwy/highway.h>
 
+#include <bit>
+#include <cstdint>
+
 namespace noether::NOETHER_SIMD_LEVEL {
 
 namespace {
@@ -10,131 +13,241 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Lanes = hn::CappedTag<double, 8>;
 using Vector = hn::Vec<Lanes>;
-constexpr int lanes = static_cast<int>(hn::MaxLanes(Lanes()));
-constexpr int registers = 8 / lanes;  ///< that hold eight stages
+using BitLanes = hn::RebindToSigned<Lanes>;
+using Bits = hn::Vec<BitLanes>;
+constexpr std::ptrdiff_t stages = 8, lanes = hn::MaxLanes(Lanes());
 
-/// sum_j a_ji F_j of one variable.
-HWY_INLINE void product(const double* a, int stages, const double* rates, Vector (&sum)[registers]) {
-  const Lanes d;
-  for (int r = 0; r < registers; ++r) sum[r] = hn::Zero(d);
-  for (int j = 0; j < stages; ++j) {
-    const Vector rate = hn::Set(d, rates[j]);
-    for (int r = 0; r < registers; ++r) sum[r] = hn::MulAdd(hn::LoadU(d, a + 8 * j + r * lanes), rate, sum[r]);
+/// What `lanes` stages take from each stage: the coefficients stay in registers while the variables pass.
+class Rows {
+ public:
+  explicit HWY_INLINE Rows(const double* a) {
+    for (int j = 0; j < stages; ++j) row_[j] = hn::LoadU(Lanes(), a + stages * j);
   }
-}
+  /// sum_j a_ji F_j of one variable.
+  HWY_INLINE Vector sum(const double* rates) const {
+    const Lanes d;
+    Vector sum = hn::Mul(row_[0], hn::Set(d, rates[0]));
+    for (int j = 1; j < stages; ++j) sum = hn::MulAdd(row_[j], hn::Set(d, rates[j]), sum);
+    return sum;
+  }
 
-void values(const StageSums& s, const double* a, double* out) {
+ private:
+  Vector row_[stages];
+};
+
+void values(const StageSums& sums, const double* a, double* out) {
   const Lanes d;
+  const StageSums s = sums;
   const Vector h = hn::Set(d, s.h);
-  for (std::ptrdiff_t m = 0; m < s.n; ++m) {
-    Vector sum[registers];
-    product(a, s.stages, s.rates + 8 * m, sum);
-    const Vector y = hn::Set(d, s.y[m]), low = hn::Set(d, s.low[m]);
-    for (int r = 0; r < registers; ++r) {
-      hn::StoreU(hn::Add(y, hn::MulAdd(h, sum[r], low)), d, out + 8 * m + r * lanes);
+  for (std::ptrdiff_t i = 0; i < stages; i += lanes) {
+    const Rows rows(a + i);
+    for (std::ptrdiff_t m = 0; m < s.n; ++m) {
+      const Vector small = hn::MulAdd(h, rows.sum(s.rates + stages * m), hn::Set(d, s.low[m]));
+      hn::StoreU(hn::Add(hn::Set(d, s.y[m]), small), d, out + stages * m + i);
     }
   }
 }
 
-void positions(const StageSums& s, const double* a, const double* c, const double* c_low, const double* v,
+void positions(const StageSums& sums, const double* a, const double* c, const double* c_low, const double* v,
                double* out) {
   const Lanes d;
+  const StageSums s = sums;
   const Vector h2 = hn::Set(d, s.h * s.h);
-  for (std::ptrdiff_t m = 0; m < s.n; ++m) {
-    Vector sum[registers];
-    product(a, s.stages, s.rates + 8 * m, sum);
-    const Vector y = hn::Set(d, s.y[m]), low = hn::Set(d, s.low[m]), hv = hn::Set(d, s.h * v[m]);
-    for (int r = 0; r < registers; ++r) {
-      const Vector small = hn::MulAdd(hn::LoadU(d, c_low + r * lanes), hv, hn::MulAdd(h2, sum[r], low));
-      hn::StoreU(hn::Add(y, hn::MulAdd(hn::LoadU(d, c + r * lanes), hv, small)), d, out + 8 * m + r * lanes);
+  for (std::ptrdiff_t i = 0; i < stages; i += lanes) {
+    const Rows rows(a + i);
+    const Vector node = hn::LoadU(d, c + i), node_low = hn::LoadU(d, c_low + i);
+    for (std::ptrdiff_t m = 0; m < s.n; ++m) {
+      const Vector hv = hn::Set(d, s.h * v[m]);
+      const Vector bend = hn::MulAdd(h2, rows.sum(s.rates + stages * m), hn::Set(d, s.low[m]));
+      const Vector small = hn::MulAdd(node_low, hv, bend);
+      hn::StoreU(hn::Add(hn::Set(d, s.y[m]), hn::MulAdd(node, hv, small)), d, out + stages * m + i);
     }
   }
 }
 
-void combine(const StageSums& s, const double* w, double* out) {
+void combine(const StageSums& sums, const double* w, double* out) {
   const Lanes d;
-  for (std::ptrdiff_t m = 0; m < s.n; ++m) {
-    Vector sum[registers];
-    product(w, s.stages, s.rates + 8 * m, sum);
-    for (int r = 0; r < registers; ++r) hn::StoreU(sum[r], d, out + 8 * m + r * lanes);
+  const StageSums s = sums;
+  for (std::ptrdiff_t i = 0; i < stages; i += lanes) {
+    const Rows rows(w + i);
+    for (std::ptrdiff_t m = 0; m < s.n; ++m) hn::StoreU(rows.sum(s.rates + stages * m), d, out + stages * m + i);
   }
 }
 
-void difference(std::ptrdiff_t n, int stages, const double* a, const double* b, double* change, double* size) {
+/// Sizes compare as their bits do, and what is no number is larger than all.
+HWY_INLINE Bits size_of(Vector x) { return hn::BitCast(BitLanes(), hn::Abs(x)); }
+HWY_INLINE double largest_of(Bits sizes) {
+  return std::bit_cast<double>(static_cast<std::int64_t>(hn::GetLane(hn::MaxOfLanes(BitLanes(), sizes))));
+}
+
+void difference(std::ptrdiff_t n, const double* a, const double* b, double* change, double* size) {
   const Lanes d;
-  Vector most[registers], largest[registers], all[registers];
-  for (int r = 0; r < registers; ++r) most[r] = largest[r] = all[r] = hn::Zero(d);
-  for (std::ptrdiff_t k = 0; k < 8 * n; k += 8) {
-    for (int r = 0; r < registers; ++r) {
-      const Vector x = hn::LoadU(d, a + k + r * lanes), y = hn::LoadU(d, b + k + r * lanes);
-      // At the base level hn::Max would bring a function that objects of all levels share.
-      const Vector change_here = hn::Abs(hn::Sub(x, y)), size_here = hn::Abs(x);
-      most[r] = hn::IfThenElse(hn::Gt(change_here, most[r]), change_here, most[r]);
-      largest[r] = hn::IfThenElse(hn::Gt(size_here, largest[r]), size_here, largest[r]);
-      all[r] = hn::Add(all[r], hn::Sub(x, x));  // a maximum may drop what is no number
-    }
+  Bits most = hn::Zero(BitLanes()), largest = most;
+  for (std::ptrdiff_t k = 0; k < stages * n; k += lanes) {
+    const Vector x = hn::LoadU(d, a + k), y = hn::LoadU(d, b + k);
+    most = hn::Max(most, size_of(hn::Sub(x, y)));
+    largest = hn::Max(largest, size_of(x));
   }
-  double greatest[8], widest[8], sums[8];
-  for (int r = 0; r < registers; ++r) {
-    hn::StoreU(most[r], d, greatest + r * lanes);
-    hn::StoreU(largest[r], d, widest + r * lanes);
-    hn::StoreU(all[r], d, sums + r * lanes);
-  }
-  double sum = 0;
-  *change = *size = 0;
-  for (int k = 0; k < stages; ++k) {
-    *change = greatest[k] > *change ? greatest[k] : *change;
-    *size = widest[k] > *size ? widest[k] : *size;
-    sum += sums[k];
-  }
-  *change += sum;
+  *change = largest_of(most);
+  *size = largest_of(largest);
 }
 
-/// value + low += high + small, where `high` may be as large as the value.
-HWY_INLINE void add_with_error(double& value, double& low, double high, double small) {
-  const double sum = value + high, back = sum - value;
-  const double rest = ((value - (sum - back)) + (high - back)) + (small + low);
-  value = sum + rest;
-  low = rest - (value - sum);
-}
+#if HWY_TARGET == HWY_SCALAR
 
-/// What rounding takes from a product, where the processor can tell.
-HWY_INLINE double rounded_off([[maybe_unused]] double a, [[maybe_unused]] double b,
-                              [[maybe_unused]] double product_of_both) {
-#ifdef __FMA__
-  return __builtin_fma(a, b, -product_of_both);
+struct Weights {
+  const double* of;
+  explicit Weights(const double* w) : of(w) {}
+};
+
+/// The rates of one variable.
+class Variables {
+ public:
+  explicit Variables(const double* rates) : rates_(rates) {}
+  Vector sum(const Weights& w) const {
+    double total = w.of[0] * rates_[0];
+    for (int k = 1; k < stages; ++k) total += w.of[k] * rates_[k];
+    return hn::Set(Lanes(), total);
+  }
+  Vector largest() const {
+    const Lanes d;
+    Bits most = size_of(hn::Set(d, rates_[0]));
+    for (int k = 1; k < stages; ++k) most = hn::Max(most, size_of(hn::Set(d, rates_[k])));
+    return hn::BitCast(d, most);
+  }
+
+ private:
+  const double* rates_;
+};
+
 #else
-  return 0;
+
+/// Eight coefficients as `Variables` wants them: w_k and w_(k+4) by turns.
+struct Weights {
+  Vector of[4];
+  explicit HWY_INLINE Weights(const double* w) {
+    const Lanes d;
+    for (int k = 0; k < 4; ++k) of[k] = hn::InterleaveLower(d, hn::Set(d, w[k]), hn::Set(d, w[k + 4]));
+  }
+};
+
+/// The rates of `lanes` variables: of each half of them four vectors, where a variable has its stages k and k + 4 side
+/// by side in vector k.
+class Variables {
+ public:
+  explicit HWY_INLINE Variables(const double* rates) {
+    const Lanes d;
+    for (auto& [a, b, c, e] : half_) {
+      hn::LoadInterleaved4(d, rates, a, b, c, e);
+      rates += 4 * lanes;
+    }
+  }
+  /// sum_k w_k F_k, a variable in each lane.
+  HWY_INLINE Vector sum(const Weights& w) const {
+    Vector total[2];
+    for (int half = 0; half < 2; ++half) {
+      total[half] = hn::Mul(w.of[0], half_[half][0]);
+      for (int k = 1; k < 4; ++k) total[half] = hn::MulAdd(w.of[k], half_[half][k], total[half]);
+    }
+    const Lanes d;
+    return hn::Add(hn::ConcatEven(d, total[1], total[0]), hn::ConcatOdd(d, total[1], total[0]));
+  }
+  /// max_k |F_k| likewise.
+  HWY_INLINE Vector largest() const {
+    Vector most[2];
+    for (int half = 0; half < 2; ++half) {
+      Bits sizes = size_of(half_[half][0]);
+      for (int k = 1; k < 4; ++k) sizes = hn::Max(sizes, size_of(half_[half][k]));
+      most[half] = hn::BitCast(Lanes(), sizes);
+    }
+    const Lanes d;
+    const Vector even = hn::ConcatEven(d, most[1], most[0]), odd = hn::ConcatOdd(d, most[1], most[0]);
+    return hn::BitCast(d, hn::Max(size_of(even), size_of(odd)));
+  }
+
+ private:
+  Vector half_[2][4];
+};
+
+#endif
+
+void coefficient(std::ptrdiff_t n, const double* rates, const double* w, double* sum, double* largest) {
+  const Lanes d;
+  const Weights weights(w);
+  for (std::ptrdiff_t m = 0; m < n; m += lanes) {
+    const Variables variables(rates + stages * m);
+    hn::StoreU(variables.sum(weights), d, sum + m);
+    hn::StoreU(variables.largest(), d, largest + m);
+  }
+}
+
+/// The first `count` numbers, at most as many as there are lanes; the rest is 0.
+HWY_INLINE Vector load(const double* from, std::ptrdiff_t count) {
+  const Lanes d;
+  if (count == lanes) return hn::LoadU(d, from);
+#if HWY_TARGET <= HWY_AVX2
+  return hn::MaskedLoad(hn::FirstN(d, static_cast<std::size_t>(count)), d, from);
+#else
+  double padded[lanes] = {};
+  for (std::ptrdiff_t k = 0; k < count; ++k) padded[k] = from[k];
+  return hn::LoadU(d, padded);
+#endif
+}
+HWY_INLINE void store(Vector x, double* to, std::ptrdiff_t count) {
+  const Lanes d;
+  if (count == lanes) return hn::StoreU(x, d, to);
+#if HWY_TARGET <= HWY_AVX2
+  hn::BlendedStore(x, hn::FirstN(d, static_cast<std::size_t>(count)), d, to);
+#else
+  double padded[lanes];
+  hn::StoreU(x, d, padded);
+  for (std::ptrdiff_t k = 0; k < count; ++k) to[k] = padded[k];
 #endif
 }
 
-/// sum_k w_k F_k over eight stages, always in the same order.
-HWY_INLINE double dot(const double* w, const double* rates) {
-  const Lanes d;
-  Vector sum = hn::Mul(hn::LoadU(d, w), hn::LoadU(d, rates));
-  for (int r = 1; r < registers; ++r) {
-    sum = hn::MulAdd(hn::LoadU(d, w + r * lanes), hn::LoadU(d, rates + r * lanes), sum);
-  }
-  return hn::GetLane(hn::SumOfLanes(d, sum));
+/// value + low += high + small, where `high` may be as large as the value.
+HWY_INLINE void add_with_error(double* value, double* low, std::ptrdiff_t count, Vector high, Vector small) {
+  const Vector before = load(value, count);
+  const Vector sum = hn::Add(before, high), back = hn::Sub(sum, before);
+  const Vector lost = hn::Add(hn::Sub(before, hn::Sub(sum, back)), hn::Sub(high, back));
+  const Vector rest = hn::Add(lost, hn::Add(small, load(low, count)));
+  const Vector after = hn::Add(sum, rest);
+  store(after, value, count);
+  store(hn::Sub(rest, hn::Sub(after, sum)), low, count);
 }
 
-void finish(const StepSums& s) {
-  const double h = s.h, h2 = h * h;
-  for (std::ptrdiff_t m = 0; m < s.n; ++m) {
-    const double* rates = s.rates + 8 * m;
-    const double slope = dot(s.weights, rates), slope_low = dot(s.weights_low, rates);
+/// What rounding takes from a product, where the processor can tell.
+HWY_INLINE Vector rounded_off([[maybe_unused]] Vector a, [[maybe_unused]] Vector b, [[maybe_unused]] Vector product) {
+#if HWY_NATIVE_FMA
+  return hn::MulSub(a, b, product);
+#else
+  return hn::Zero(Lanes());
+#endif
+}
+
+/// A variable in each lane.
+void finish(const StepSums& sums) {
+  const Lanes d;
+  const StepSums s = sums;
+  const Vector h = hn::Set(d, s.h), h2 = hn::Set(d, s.h * s.h);
+  const Weights weights(s.weights), weights_low(s.weights_low), twice(s.twice), twice_low(s.twice_low);
+  for (std::ptrdiff_t m = 0; m < s.n; m += lanes) {
+    const std::ptrdiff_t count = s.n - m < lanes ? s.n - m : lanes;
+    const Variables variables(s.rates + stages * m);
     if (s.q != nullptr) {
-      const double bend = dot(s.twice, rates), bend_low = dot(s.twice_low, rates), v = s.v[m], hv = h * v;
-      add_with_error(s.q[m], s.q_low[m], hv, h2 * bend + (h2 * bend_low + (h * s.v_low[m] + rounded_off(h, v, hv))));
+      const Vector v = load(s.v + m, count), hv = hn::Mul(h, v);
+      const Vector lower = hn::MulAdd(h, load(s.v_low + m, count), rounded_off(h, v, hv));
+      const Vector bend = hn::MulAdd(h2, variables.sum(twice), hn::MulAdd(h2, variables.sum(twice_low), lower));
+      add_with_error(s.q + m, s.q_low + m, count, hv, bend);
     }
-    const double kick = h * slope;
-    add_with_error(s.v[m], s.v_low[m], kick, h * slope_low + rounded_off(h, slope, kick));
+    const Vector slope = variables.sum(weights), kick = hn::Mul(h, slope);
+    const Vector small = hn::MulAdd(h, variables.sum(weights_low), rounded_off(h, slope, kick));
+    add_with_error(s.v + m, s.v_low + m, count, kick, small);
   }
 }
 
 }  // namespace
 
 extern const CollocationKernels collocation_kernels;
-const CollocationKernels collocation_kernels{values, positions, combine, difference, finish};
+const CollocationKernels collocation_kernels{values, positions, combine, difference, coefficient, finish};
 
 }  // namespace noether::NOETHER_SIMD_LEVEL

@@ -11,7 +11,6 @@ namespace noether {
 /// (n).
 struct StageSums {
   std::ptrdiff_t n;
-  int stages;           ///< of the method, at most 8
   const double* rates;  ///< F
   const double *y, *low;
   double h;
@@ -20,7 +19,7 @@ struct StageSums {
 /// What a step adds to n variables. `weights`, `weights_low`, `twice`, `twice_low`: shape (8).
 struct StepSums {
   std::ptrdiff_t n;
-  const double* rates;
+  const double* rates;  ///< F, shape (n, 8), n rounded up to a multiple of eight
   const double *weights, *weights_low, *twice, *twice_low;
   double h;
   double *q, *q_low;  ///< variables of first order: null
@@ -35,8 +34,10 @@ struct CollocationKernels {
                     double* out);
   /// out_i = sum_j w_ji F_j
   void (*combine)(const StageSums& sums, const double* w, double* out);
-  /// Largest |a - b| and largest |a| over `n` variables at their first `stages` stages; not a number if one is none.
-  void (*difference)(std::ptrdiff_t n, int stages, const double* a, const double* b, double* change, double* size);
+  /// Largest |a - b| and largest |a| over `n` variables; not a number if one is none.
+  void (*difference)(std::ptrdiff_t n, const double* a, const double* b, double* change, double* size);
+  /// sum_j w_j F_j and max_j |F_j| of each variable, shape (n), all shapes rounded up to a multiple of eight.
+  void (*coefficient)(std::ptrdiff_t n, const double* rates, const double* w, double* sum, double* largest);
   /// q += h v + h^2 sum twice_j F_j, v += h sum weights_j F_j, with their rounding errors
   void (*finish)(const StepSums& sums);
 };

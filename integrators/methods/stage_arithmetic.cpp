@@ -9,9 +9,9 @@ namespace noether {
 
 namespace {
 
-template <class Real> StageLanes<Real> product(const StageMatrix<Real>& a, int stages, const Real* rates) {
+template <class Real> StageLanes<Real> product(const StageMatrix<Real>& a, const Real* rates) {
   StageLanes<Real> sum{};
-  for (std::size_t j = 0; j < static_cast<std::size_t>(stages); ++j) {
+  for (std::size_t j = 0; j < lane_count; ++j) {
     for (std::size_t k = 0; k < lane_count; ++k) sum[k] += a[j][k] * rates[j];
   }
   return sum;
@@ -31,10 +31,10 @@ template <class Real>
 void StageArithmetic<Real>::values(const Real* rates, const StageMatrix<Real>& a, const Real* y, const Real* low,
                                    double h, Real* out) const {
   if constexpr (std::is_same_v<Real, double>) {
-    collocation_kernels().values({n, stages, rates, y, low, h}, a[0].data(), out);
+    collocation_kernels().values({n, rates, y, low, h}, a[0].data(), out);
   } else {
     for (Index m = 0; m < n; ++m) {
-      const StageLanes<Real> sum = product(a, stages, rates + lane_count * m);
+      const StageLanes<Real> sum = product(a, rates + lane_count * m);
       for (std::size_t k = 0; k < lane_count; ++k) {
         out[lane_count * m + static_cast<Index>(k)] = y[m] + (Real(h) * sum[k] + low[m]);
       }
@@ -47,10 +47,10 @@ void StageArithmetic<Real>::positions(const Real* rates, const StageMatrix<Real>
                                       const StageLanes<Real>& c_low, const Real* y, const Real* low, const Real* v,
                                       double h, Real* out) const {
   if constexpr (std::is_same_v<Real, double>) {
-    collocation_kernels().positions({n, stages, rates, y, low, h}, a[0].data(), c.data(), c_low.data(), v, out);
+    collocation_kernels().positions({n, rates, y, low, h}, a[0].data(), c.data(), c_low.data(), v, out);
   } else {
     for (Index m = 0; m < n; ++m) {
-      const StageLanes<Real> sum = product(a, stages, rates + lane_count * m);
+      const StageLanes<Real> sum = product(a, rates + lane_count * m);
       const Real hv = Real(h) * v[m];
       for (std::size_t k = 0; k < lane_count; ++k) {
         out[lane_count * m + static_cast<Index>(k)] =
@@ -63,10 +63,10 @@ void StageArithmetic<Real>::positions(const Real* rates, const StageMatrix<Real>
 template <class Real>
 void StageArithmetic<Real>::combine(const Real* rates, const StageMatrix<Real>& w, Real* out) const {
   if constexpr (std::is_same_v<Real, double>) {
-    collocation_kernels().combine({n, stages, rates, nullptr, nullptr, 0}, w[0].data(), out);
+    collocation_kernels().combine({n, rates, nullptr, nullptr, 0}, w[0].data(), out);
   } else {
     for (Index m = 0; m < n; ++m) {
-      const StageLanes<Real> sum = product(w, stages, rates + lane_count * m);
+      const StageLanes<Real> sum = product(w, rates + lane_count * m);
       for (std::size_t k = 0; k < lane_count; ++k) out[lane_count * m + static_cast<Index>(k)] = sum[k];
     }
   }
@@ -75,17 +75,33 @@ void StageArithmetic<Real>::combine(const Real* rates, const StageMatrix<Real>& 
 template <class Real> std::array<Real, 2> StageArithmetic<Real>::difference(const Real* a, const Real* b) const {
   std::array<Real, 2> most{Real(0), Real(0)};
   if constexpr (std::is_same_v<Real, double>) {
-    collocation_kernels().difference(n, stages, a, b, &most[0], &most[1]);
+    collocation_kernels().difference(n, a, b, &most[0], &most[1]);
   } else {
     using std::abs;
     for (Index k = 0; k < lane_count * n; ++k) {
-      if (k % lane_count >= stages) continue;
       const Real change = abs(a[k] - b[k]), size = abs(a[k]);
       if (!(change <= most[0])) most[0] = change;
       if (!(size <= most[1])) most[1] = size;
     }
   }
   return most;
+}
+
+template <class Real>
+void StageArithmetic<Real>::coefficient(const Real* rates, const StageLanes<Real>& w, Real* sum, Real* largest) const {
+  if constexpr (std::is_same_v<Real, double>) {
+    collocation_kernels().coefficient(n, rates, w.data(), sum, largest);
+  } else {
+    using std::abs;
+    for (Index m = 0; m < n; ++m) {
+      const Real* rate = rates + lane_count * m;
+      sum[m] = largest[m] = Real(0);
+      for (std::size_t j = 0; j < lane_count; ++j) {
+        sum[m] += w[j] * rate[j];
+        if (!(abs(rate[j]) <= largest[m])) largest[m] = abs(rate[j]);
+      }
+    }
+  }
 }
 
 template <class Real>

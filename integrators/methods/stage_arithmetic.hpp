@@ -7,15 +7,16 @@
 
 namespace noether {
 
-/// One coefficient for each of eight lanes; lanes beyond the stages are 0.
+/// One coefficient for each of eight lanes.
 template <class Real> using StageLanes = std::array<Real, lane_count>;
 /// [j][i]: what stage i takes from stage j.
 template <class Real> using StageMatrix = std::array<StageLanes<Real>, lane_count>;
 
 /// The sums of a collocation step over n variables whose stages stand side by side.
+///
+/// Rates, and what is found for each variable, are padded to a multiple of eight variables.
 template <class Real> struct StageArithmetic {
   Index n = 0;
-  int stages = 0;
 
   /// out_i = y + (h sum_j a_ji F_j + low)
   void values(const Real* rates, const StageMatrix<Real>& a, const Real* y, const Real* low, double h, Real* out) const;
@@ -25,8 +26,10 @@ template <class Real> struct StageArithmetic {
                  Real* out) const;
   /// out_i = sum_j w_ji F_j
   void combine(const Real* rates, const StageMatrix<Real>& w, Real* out) const;
-  /// Largest |a - b|, and largest |a|, at the stages of the method.
+  /// Largest |a - b|, and largest |a|.
   std::array<Real, 2> difference(const Real* a, const Real* b) const;
+  /// sum_j w_j F_j, and largest |F_j|, of each variable.
+  void coefficient(const Real* rates, const StageLanes<Real>& w, Real* sum, Real* largest) const;
   /// Ends a step: velocities (or variables) from weights 0 and 1 (what rounding took), positions, if there are any,
   /// from 2 and 3.
   void finish(const Real* rates, const std::array<StageLanes<Real>, 4>& weights, double h, Real* q, Real* q_low,

@@ -29,32 +29,34 @@ constexpr std::size_t stages = Pack::lanes;
 
 /// n bodies at eight stages, every third one a tracer, two of the tracers in one place.
 struct StageSample {
-  explicit StageSample(std::size_t n) : x(n * stages), y(n * stages), z(n * stages), mu(n) {
+  explicit StageSample(std::size_t n) : x(n * stages), y(n * stages), z(n * stages), m(n * stages) {
     for (std::size_t i = 0; i < n; ++i) {
-      mu[i] = i % 3 == 2 ? 0.0 : 1.0 / static_cast<double>(i + 1);
       for (std::size_t k = 0; k < stages; ++k) {
         const double at = static_cast<double>(i == 5 ? 2 : i), t = 0.1 * static_cast<double>(k);
         x[i * stages + k] = std::cos(2.4 * at + t) * (1 + at);
         y[i * stages + k] = std::sin(2.4 * at + t) * (1 + at);
         z[i * stages + k] = 0.1 * std::cos(5 * at - t);
+        m[i * stages + k] = i % 3 == 2 ? 0.0 : 1.0 / static_cast<double>(i + 1);
       }
     }
   }
-  AlignedVector<double> x, y, z, mu;
+  AlignedVector<double> x, y, z, m;
+
+  std::size_t bodies() const { return m.size() / stages; }
 
   /// All accelerations, x before y before z.
   AlignedVector<double> attracted(AttractInStages kernel, double softening2) const {
     AlignedVector<double> a(3 * x.size(), 0.0);
-    kernel({x.data(), y.data(), z.data(), mu.data(), a.data(), a.data() + x.size(), a.data() + 2 * x.size(),
-            static_cast<std::ptrdiff_t>(mu.size())},
-           softening2);
+    kernel({x.data(), y.data(), z.data(), m.data(), a.data(), a.data() + x.size(), a.data() + 2 * x.size(),
+            static_cast<std::ptrdiff_t>(bodies())},
+           1, softening2);
     return a;
   }
   /// Stage k as particles of their own.
   ParticleSystem<double> particles(std::size_t k) const {
     ParticleSystem<double> s;
-    for (std::size_t i = 0; i < mu.size(); ++i) {
-      s.add("", mu[i], {x[i * stages + k], y[i * stages + k], z[i * stages + k]}, {0, 0, 0});
+    for (std::size_t i = 0; i < bodies(); ++i) {
+      s.add("", m[i * stages], {x[i * stages + k], y[i * stages + k], z[i * stages + k]}, {0, 0, 0});
     }
     return s;
   }
