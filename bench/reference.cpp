@@ -37,11 +37,30 @@ ParticleSystem<double> ellipse(double e) {
 std::vector<Case> cases() {
   const std::filesystem::path examples = std::filesystem::path(NOETHER_SOURCE_DIR) / "examples";
   const Scene outer = load_scene(examples / "outer_solar_system" / "scene.toml");
+  const Scene all = load_scene(examples / "solar_system" / "scene.toml");
   constexpr double day = 1, year = 365.25 * day, turn = 6.283185307179586;
   return {{"outer", outer.particles, *outer.hamiltonian.wisdom_holman.G, 1e4 * year, 10, 300},
+          {"solar_system", all.particles, all.particles.units().G, 200 * year, 1, 7},
           {"kepler_0.9", ellipse(0.9), 1, 1000 * turn, 1e-3, 0},
           {"kepler_0.9999", ellipse(0.9999), 1, 100 * turn, 1e-6, 0}};
 }
+
+/// Gravity as a user may write it: for doubles only, one pair after the other.
+struct ScalarGravity {
+  double G;
+
+  void add_to(ForceSink<double>& out, const ParticleSystem<double>& s) const {
+    for (Index i = 0; i < s.size(); ++i) {
+      for (Index j = 0; j < i; ++j) {
+        const Vec3<double> d = s.positions()[i] - s.positions()[j];
+        const double r2 = d.squaredNorm(), r = std::sqrt(r2), k = G / (r2 * r);
+        out.acceleration(i, -k * s.masses()[j] * d);
+        out.acceleration(j, k * s.masses()[i] * d);
+        out.energy(-G * s.masses()[i] * s.masses()[j] / r);
+      }
+    }
+  }
+};
 
 /// Positions at the end, all relative to the first body.
 using Positions = std::vector<double>;
@@ -75,10 +94,12 @@ struct Entry {
   std::string name;
   MethodChoice choice;
   double step;  ///< 0: of the method's choice
+  bool scalar = false;
 };
 
 Simulation<double> start(const Case& one, const Entry& entry) {
-  auto integrator = classical(Gravity{.G = one.G}, entry.choice);
+  const Classical<double> integrator =
+      entry.scalar ? classical(ScalarGravity{one.G}, entry.choice) : classical(Gravity{.G = one.G}, entry.choice);
   return entry.step > 0 ? Simulation(one.bodies, integrator, entry.step) : Simulation(one.bodies, integrator);
 }
 
@@ -131,6 +152,7 @@ std::optional<PeerRun> run_peer(const std::string& peer, const Case& one) {
 void measure(const bench::Rows& rows, const Case& one) {
   constexpr int rounds = 5;
   std::vector<Entry> entries = {{"gauss_8", method("gauss_8"), 0}, {"gauss_radau_15", method("gauss_radau_15"), 0}};
+  entries.push_back({"gauss_8_scalar_force", method("gauss_8"), 0, true});
   if (one.fixed_step > 0) {
     entries.push_back({"gauss_8_fixed", method("gauss_8", {.adaptive = false}), one.fixed_step});
   }

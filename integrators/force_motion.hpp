@@ -124,7 +124,7 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
     if constexpr (sees_packs) {
       if (in_lanes_) return evaluate_lanes(states, out);
     }
-    VectorField<Real>::evaluate_stages(states, out);
+    evaluate_in_turn(states, out);
   }
 
  private:
@@ -151,6 +151,29 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
     ForceSink<Pack> sink(pack_a_, packs_, {});
     forces_.add_to(sink, packs_);
     for (int k = 0; k < 3; ++k) copy_packs(pack_a_.component(k)->lane.data(), out + k * n * lane_count, rows);
+  }
+
+  /// One stage after the other, straight into the particles and out of them.
+  void evaluate_in_turn(const StageStates<Real>& states, Real* out) {
+    const Index n = work_.size();
+    VectorColumn<Real>&x = work_.positions(), &v = work_.velocities();
+    for (int stage = 0; stage < states.stages; ++stage) {
+      const auto take = [&](const Real* from, VectorColumn<Real>& to) {
+        for (int k = 0; k < 3; ++k) {
+          for (Index i = 0; i < n; ++i, from += lane_count) to.component(k)[i] = from[stage];
+        }
+      };
+      take(states.q, x);
+      if (states.v != nullptr) take(states.v, v);
+      work_.clock().set_stage_offset(states.t[stage]);
+      ForceSink<Real> sink(a_, work_, {});
+      forces_.add_to(sink, work_);
+      const int same = stage + 1 == states.stages ? lane_count - stage : 1;
+      Real* to = out + stage;
+      for (int k = 0; k < 3; ++k) {
+        for (Index i = 0; i < n; ++i, to += lane_count) std::fill_n(to, same, a_.component(k)[i]);
+      }
+    }
   }
 
   void sum(const Real& t, const Vector<Real>& y) {

@@ -154,25 +154,7 @@ void Collocation<Real>::predict(VectorField<Real>& f, const Real& t, const Vecto
 /// The polynomial of the last step at x_i = 1 + c_i h / h_old, by Lagrange's formula.
 template <class Real> void Collocation<Real>::extrapolate(double h) {
   if (h != weights_h_ || h_ != weights_h_old_) {
-    const auto s = static_cast<std::size_t>(table_.stages);
-    StageLanes<Real> x, before;
-    for (std::size_t i = 0; i < lane_count; ++i) x[i] = Real(1) + table_.c[i] * (Real(h) / Real(h_));
-    // Weight j is the product of x - c_m over all other m: those before j, and, on the way back, those behind it.
-    before.fill(Real(1));
-    for (std::size_t j = 0; j < s; ++j) {
-      for (std::size_t i = 0; i < lane_count; ++i) {
-        weights_[j][i] = table_.barycentric[j] * before[i];
-        before[i] *= x[i] - table_.c[j];
-      }
-    }
-    StageLanes<Real> behind;
-    behind.fill(Real(1));
-    for (std::size_t j = s; j-- > 0;) {
-      for (std::size_t i = 0; i < lane_count; ++i) {
-        weights_[j][i] *= behind[i];
-        behind[i] *= x[i] - table_.c[j];
-      }
-    }
+    sums_.extrapolation(table_.stages, table_.c, table_.barycentric, Real(h) / Real(h_), weights_);
     weights_h_ = h;
     weights_h_old_ = h_;
   }
@@ -249,7 +231,8 @@ template <class Real> double Collocation<Real>::roughness() {
   double worst = 0;
   for (Index g = 0; g < groups; ++g) {
     double last2 = 0, size2 = 0;
-    for (auto i = static_cast<std::size_t>(g); i < static_cast<std::size_t>(n_); i += static_cast<std::size_t>(groups)) {
+    for (auto i = static_cast<std::size_t>(g); i < static_cast<std::size_t>(n_);
+         i += static_cast<std::size_t>(groups)) {
       const auto last = static_cast<double>(last_[i]), size = static_cast<double>(largest_[i]);
       last2 += last * last;
       size2 += size * size;

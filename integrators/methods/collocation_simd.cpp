@@ -65,6 +65,25 @@ void positions(const StageSums& sums, const double* a, const double* c, const do
   }
 }
 
+void extrapolation(const double* c, const double* barycentric, double ratio, double* w) {
+  const Lanes d;
+  const Vector one = hn::Set(d, 1.0);
+  for (std::ptrdiff_t i = 0; i < stages; i += lanes) {
+    const Vector x = hn::MulAdd(hn::LoadU(d, c + i), hn::Set(d, ratio), one);
+    // Weight j is the product of x - c_m over all other m: those before j, and, on the way back, those behind it.
+    Vector before[stages], product = one;
+    for (int j = 0; j < stages; ++j) {
+      before[j] = hn::Mul(hn::Set(d, barycentric[j]), product);
+      product = hn::Mul(product, hn::Sub(x, hn::Set(d, c[j])));
+    }
+    product = one;
+    for (int j = stages - 1; j >= 0; --j) {
+      hn::StoreU(hn::Mul(before[j], product), d, w + stages * j + i);
+      product = hn::Mul(product, hn::Sub(x, hn::Set(d, c[j])));
+    }
+  }
+}
+
 void combine(const StageSums& sums, const double* w, double* out) {
   const Lanes d;
   const StageSums s = sums;
@@ -248,6 +267,7 @@ void finish(const StepSums& sums) {
 }  // namespace
 
 extern const CollocationKernels collocation_kernels;
-const CollocationKernels collocation_kernels{values, positions, combine, difference, coefficient, finish};
+const CollocationKernels collocation_kernels{values,     positions,   extrapolation, combine,
+                                             difference, coefficient, finish};
 
 }  // namespace noether::NOETHER_SIMD_LEVEL

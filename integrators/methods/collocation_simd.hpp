@@ -32,6 +32,9 @@ struct CollocationKernels {
   /// out_i = y + (c_i h v + (c_low_i h v + h^2 sum_j a_ji F_j + low))
   void (*positions)(const StageSums& sums, const double* a, const double* c, const double* c_low, const double* v,
                     double* out);
+  /// w of shape (8, 8): what the polynomial through the nodes c has at 1 + c_i ratio, from each node j, whose weight in
+  /// Lagrange's formula is `barycentric`
+  void (*extrapolation)(const double* c, const double* barycentric, double ratio, double* w);
   /// out_i = sum_j w_ji F_j
   void (*combine)(const StageSums& sums, const double* w, double* out);
   /// Largest |a - b| and largest |a| over `n` variables; not a number if one is none.

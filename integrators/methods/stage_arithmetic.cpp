@@ -61,6 +61,25 @@ void StageArithmetic<Real>::positions(const Real* rates, const StageMatrix<Real>
 }
 
 template <class Real>
+void StageArithmetic<Real>::extrapolation(int stages, const StageLanes<Real>& c, const StageLanes<Real>& barycentric,
+                                          const Real& ratio, StageMatrix<Real>& w) const {
+  if constexpr (std::is_same_v<Real, double>) {
+    if (stages == lane_count) {
+      return collocation_kernels().extrapolation(c.data(), barycentric.data(), ratio, w[0].data());
+    }
+  }
+  for (std::size_t i = 0; i < lane_count; ++i) {
+    const Real x = Real(1) + c[i] * ratio;
+    for (std::size_t j = 0; j < static_cast<std::size_t>(stages); ++j) {
+      w[j][i] = barycentric[j];
+      for (std::size_t m = 0; m < static_cast<std::size_t>(stages); ++m) {
+        if (m != j) w[j][i] *= x - c[m];
+      }
+    }
+  }
+}
+
+template <class Real>
 void StageArithmetic<Real>::combine(const Real* rates, const StageMatrix<Real>& w, Real* out) const {
   if constexpr (std::is_same_v<Real, double>) {
     collocation_kernels().combine({n, rates, nullptr, nullptr, 0}, w[0].data(), out);

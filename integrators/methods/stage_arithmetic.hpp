@@ -24,6 +24,9 @@ template <class Real> struct StageArithmetic {
   void positions(const Real* rates, const StageMatrix<Real>& a, const StageLanes<Real>& c,
                  const StageLanes<Real>& c_low, const Real* y, const Real* low, const Real* v, double h,
                  Real* out) const;
+  /// w_ji: what the polynomial through `stages` nodes c has at 1 + c_i ratio, from node j, by Lagrange's formula.
+  void extrapolation(int stages, const StageLanes<Real>& c, const StageLanes<Real>& barycentric, const Real& ratio,
+                     StageMatrix<Real>& w) const;
   /// out_i = sum_j w_ji F_j
   void combine(const Real* rates, const StageMatrix<Real>& w, Real* out) const;
   /// Largest |a - b|, and largest |a|.
