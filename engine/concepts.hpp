@@ -118,7 +118,8 @@ struct Advanced {
 ///
 /// A method whose steps are symplectic may offer `Advanced advance_with_action(s, span, action)`: the same bits as
 /// `advance`, and the action increments of its flows, the integral of p dq - H dt, added to `action`. Its `settle` then
-/// returns the action of the flows that complete the copy, correctors left out, where `wanted.action` asks for it.
+/// returns the action of the flows that complete the copy, correctors left out, where `wanted.action` asks for it. One
+/// that gives the action at times only says so by `has_action()`.
 template <class I>
 concept Integrator = requires(I& i, const I& c, ParticleSystem<typename I::real>& s,
                               const ParticleSystem<typename I::real>& raw, const Span& span, Wanted wanted,

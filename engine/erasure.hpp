@@ -168,7 +168,10 @@ template <class I> struct IntegratorModel final : IntegratorBase<typename I::rea
   static constexpr bool gives_action = requires(I & i, ParticleSystem<Real>& s, const Span& span, Real& action) {
     i.advance_with_action(s, span, action);
   };
-  bool has_action() const override { return gives_action; }
+  bool has_action() const override {
+    if constexpr (requires { integrator.has_action(); }) return integrator.has_action();
+    return gives_action;
+  }
   Advanced advance_with_action(ParticleSystem<Real>& s, const Span& span, Real& action) override {
     if constexpr (gives_action) return integrator.advance_with_action(s, span, action);
     throw LogicError("a method that gives no action was asked for it");

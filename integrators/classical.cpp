@@ -39,6 +39,7 @@ template <class Real> void Classical<Real>::bind(ParticleSystem<Real>& s) {
   }
   method_->bind(*field_);
   y_.resize(field_->size());
+  before_.resize(field_->size());
   ahead_.reset();
 }
 
@@ -73,15 +74,37 @@ template <class Real> Advanced Classical<Real>::advance(ParticleSystem<Real>& s,
 }
 
 template <class Real>
-void Classical<Real>::settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Wanted /*wanted*/,
+Advanced Classical<Real>::advance_with_action(ParticleSystem<Real>& s, const Span& span, Real& action) {
+  Advanced done;
+  Span step = span;
+  step.steps = 1;
+  while (done.steps < span.steps) {
+    field_->gather(s, before_);
+    const Real t = s.clock().time();
+    const Advanced made = advance(s, step);
+    if (made.steps == 0) {
+      done.at_limit = made.at_limit;
+      done.failure = made.failure;
+      break;
+    }
+    action += method_->action(*field_, t, before_);
+    ++done.steps;
+    if (span.asked_to_stop()) break;
+  }
+  return done;
+}
+
+template <class Real>
+Real Classical<Real>::settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Wanted /*wanted*/,
                              std::optional<double> at, bool /*corrected*/) {
   out.assign_state(raw);
-  if (!at) return;
+  if (!at) return Real(0);
   const Evaluations counted = field_->evaluations();
   look_ahead(raw, *at);
   field_->scatter(y_, out);
   field_->evaluations() = counted;
   out.clock().move_to(*at);
+  return Real(0);  // at whole steps nothing is left to do, and with steps of its own choice no action is told
 }
 
 /// Leaves y at time `at` in `y_`, from the last whole step of the run.

@@ -38,7 +38,9 @@ template <class Real> class Classical {
   /// @throws SchemeMismatch  if the method cannot serve the field
   void bind(ParticleSystem<Real>& s);
   Advanced advance(ParticleSystem<Real>& s, const Span& span);
-  void settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Wanted wanted, std::optional<double> at,
+  bool has_action() const { return method_->has_action() && field_->claims().energy; }
+  Advanced advance_with_action(ParticleSystem<Real>& s, const Span& span, Real& action);
+  Real settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Wanted wanted, std::optional<double> at,
               bool corrected);
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) { return field_->energy(s); }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) { field_->accelerations(s, a); }
@@ -63,7 +65,7 @@ template <class Real> class Classical {
   std::unique_ptr<VectorField<Real>> field_;
   std::unique_ptr<Method<Real>> method_;
   MethodChoice choice_;
-  Vector<Real> y_;
+  Vector<Real> y_, before_;  ///< now, and where the last step began if its action is wanted
   std::optional<Ahead> ahead_;
   std::optional<Failure> failure_;
 };

@@ -74,6 +74,14 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
     forces_.add_to(sink, s);
   }
 
+  Real lagrangian(const Real& t, const Vector<Real>& y) override {
+    scatter(y, work_);
+    work_.clock().set_stage_offset(t);
+    ForceSink<Real> sink(a_, work_, {.energy = true});
+    forces_.add_to(sink, work_);
+    return kinetic_energy(work_) - sink.potential();
+  }
+
   bool has_derivative() const override { return noether::has_derivative<Real>(forces_); }
   void derivative(const Real& t, const Vector<Real>& y, const Real& dt, const Vector<Real>& dy,
                   Vector<Real>& out) override {

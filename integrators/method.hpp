@@ -70,6 +70,14 @@ template <class Real> class Method {
     throw LogicError("a method without dense output was asked for it");
   }
 
+  /// Whether `action` knows what a step is the stationary point of: a symplectic method over particles may.
+  virtual bool has_action() const { return false; }
+  /// The integral of the Lagrangian over the last step, which began at y(t), as the method itself approximates it.
+  /// @cost as many evaluations, not counted, as the method has stages
+  virtual Real action(VectorField<Real>& /*f*/, const Real& /*t*/, const Vector<Real>& /*y*/) {
+    throw LogicError("a method that gives no action was asked for it");
+  }
+
   virtual void save(SavedState& saved, const std::string& prefix) const = 0;
   virtual void load(const SavedState& saved, const std::string& prefix) = 0;
 };

@@ -96,6 +96,10 @@ template <class Real> class VectorField {
 
   virtual EnergyTerms<Real> energy(const ParticleSystem<Real>& s) = 0;
   virtual void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) = 0;
+  /// Kinetic less potential energy at y = (q, v), not counted. @throws LogicError  for a system of first order
+  virtual Real lagrangian(const Real& /*t*/, const Vector<Real>& /*y*/) {
+    throw LogicError("a system of first order has no Lagrangian");
+  }
 
   Evaluations& evaluations() { return evaluations_; }
   const Evaluations& evaluations() const { return evaluations_; }

@@ -91,6 +91,7 @@ template <class Real> void Collocation<Real>::bind(const VectorField<Real>& f) {
   for (auto* all : {&rates_, &previous_, &trial_, &q_, &v_}) all->assign(lane_count * padded, Real(0));
   for (auto* all : {&last_, &largest_}) all->assign(padded, Real(0));
   low_.assign(static_cast<std::size_t>(f.size()), Real(0));
+  stage_.resize(f.size());
   sums_ = {n_};
   weights_h_ = weights_h_old_ = 0;
   next_ = h_ = 0;
@@ -161,15 +162,39 @@ template <class Real> void Collocation<Real>::extrapolate(double h) {
   sums_.combine(previous_.data(), weights_, rates_.data());
 }
 
+template <class Real> void Collocation<Real>::form_positions(const Real* rates, const Vector<Real>& y, double h) {
+  sums_.positions(rates, table_.twice, table_.c, table_.c_low, y.data(), low_.data(), y.data() + n_, h, q_.data());
+}
+
+template <class Real> void Collocation<Real>::form_velocities(const Real* rates, const Vector<Real>& y, double h) {
+  sums_.values(rates, table_.a, y.data() + n_, low_.data() + n_, h, v_.data());
+}
+
 /// Positions (and velocities) of all stages from their rates.
 template <class Real> void Collocation<Real>::form_states(const Vector<Real>& y, double h) {
   if (!second_order_) {
     sums_.values(rates_.data(), table_.a, y.data(), low_.data(), h, q_.data());
     return;
   }
-  sums_.positions(rates_.data(), table_.twice, table_.c, table_.c_low, y.data(), low_.data(), y.data() + n_, h,
-                  q_.data());
-  if (with_velocities_) sums_.values(rates_.data(), table_.a, y.data() + n_, low_.data() + n_, h, v_.data());
+  form_positions(rates_.data(), y, h);
+  if (with_velocities_) form_velocities(rates_.data(), y, h);
+}
+
+/// h sum_i b_i L(Q_i, V_i), which the step makes stationary.
+/// @source MarsdenWest2001
+template <class Real> Real Collocation<Real>::action(VectorField<Real>& f, const Real& t, const Vector<Real>& y) {
+  form_positions(previous_.data(), y, h_);
+  form_velocities(previous_.data(), y, h_);
+  Real sum(0);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(table_.stages); ++k) {
+    for (Index i = 0; i < n_; ++i) {
+      const std::size_t at = lane_count * static_cast<std::size_t>(i) + k;
+      stage_[i] = q_[at];
+      stage_[n_ + i] = v_[at];
+    }
+    sum += table_.ends[0][k] * f.lagrangian(t + table_.c[k] * Real(h_), stage_);
+  }
+  return Real(h_) * sum;
 }
 
 /// Sweeps until the rates stand still: until what the next sweep would change is below rounding, or no less than what

@@ -43,6 +43,8 @@ template <class Real> class Collocation final : public Method<Real> {
   void bind(const VectorField<Real>& f) override;
   double next_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y) override;
   Stepped step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
+  bool has_action() const override { return symplectic_ && !adaptive_ && second_order_; }
+  Real action(VectorField<Real>& f, const Real& t, const Vector<Real>& y) override;
   void save(SavedState& saved, const std::string& prefix) const override;
   void load(const SavedState& saved, const std::string& prefix) override;
 
@@ -52,6 +54,8 @@ template <class Real> class Collocation final : public Method<Real> {
   void predict(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h);
   void extrapolate(double h);
   Sweeps sweep(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h);
+  void form_positions(const Real* rates, const Vector<Real>& y, double h);
+  void form_velocities(const Real* rates, const Vector<Real>& y, double h);
   void form_states(const Vector<Real>& y, double h);
   void finish(Vector<Real>& y, double h);
   double roughness();
@@ -68,6 +72,7 @@ template <class Real> class Collocation final : public Method<Real> {
   StageArithmetic<Real> sums_;
   AlignedVector<Real> rates_, previous_, trial_, q_, v_;  ///< shape (n, 8)
   AlignedVector<Real> low_;                               ///< rounding errors of y
+  Vector<Real> stage_;                                    ///< one of the stages
   AlignedVector<Real> last_, largest_;                    ///< last Legendre coefficients, and sizes, of the rates
   StageMatrix<Real> weights_{};                           ///< of the extrapolation over a step h after one of h_old
   double weights_h_ = 0, weights_h_old_ = 0;
