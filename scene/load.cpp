@@ -8,6 +8,7 @@
 #include "scene/read_integrator.hpp"
 #include "scene/read_particles.hpp"
 #include "scene/read_tied.hpp"
+#include "scene/read_verdicts.hpp"
 #include "scene/sets.hpp"
 #include "scene/toml.hpp"
 
@@ -31,7 +32,7 @@ class SceneReader {
   void read() {
     TableReader top(context_, root_, "", "");
     top.expect_only(
-        {"title", "units", "particles", "hamiltonian", "system", "integrator", "every", "stop", "expect"});
+        {"title", "units", "particles", "hamiltonian", "system", "integrator", "every", "stop", "expect", "verdict"});
     scene_.title = top.text("title");
     read_units(top);
     scene_.effective = SceneValue::table();
@@ -54,6 +55,9 @@ class SceneReader {
       for (const auto& [key, value] : scene_.expect) check_expectation(key, value);
       scene_.effective.put("expect", *expect);
     }
+    const auto verdicts = tables_of(top, "verdict");
+    scene_.verdicts = read_verdicts(context_, verdicts);
+    if (!verdicts.empty()) scene_.effective.put("verdict", *top.find("verdict"));
     check(top);
     scene_.effective_toml = print_toml(scene_.effective);
   }
