@@ -132,9 +132,9 @@ int run_command(int argc, char** argv, bool json) {
     app.option_defaults()->disable_flag_override();
     int exit_code = 0;
     for (const auto add : {noether::add_run_command, noether::add_evaluate_command, noether::add_explain_command,
-                           noether::add_compare_command, noether::add_advise_command, noether::add_list_command,
-                           noether::add_describe_command, noether::add_info_command, noether::add_verify_command,
-                           noether::add_convert_command, noether::add_plot_command}) {
+                           noether::add_compare_command, noether::add_advise_command, noether::add_stability_command,
+                           noether::add_list_command, noether::add_describe_command, noether::add_info_command,
+                           noether::add_verify_command, noether::add_convert_command, noether::add_plot_command}) {
       add(app, exit_code);
     }
     return parse(app, argc, argv, exit_code, json);

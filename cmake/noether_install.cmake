@@ -15,6 +15,9 @@ foreach(room IN LISTS NOETHER_ROOMS)
           FILES_MATCHING PATTERN "*.hpp" PATTERN "*_simd.hpp" EXCLUDE)
 endforeach()
 
+# The scenes of `noether stability --suite`.
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/study/suite DESTINATION ${CMAKE_INSTALL_DATADIR}/noether COMPONENT program)
+
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/noetherConfig.cmake.in
                               ${PROJECT_BINARY_DIR}/noetherConfig.cmake INSTALL_DESTINATION ${package_folder})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/noetherConfigVersion.cmake COMPATIBILITY SameMinorVersion)

@@ -45,6 +45,11 @@ template <class T> std::string signature_of(const T& value) {
     for_each_field<T>([&](const auto& field) {
       fields += (fields.empty() ? "" : ", ") + fmt::format("{} = {}", field.name, value_text(value.*(field.member)));
     });
+    if constexpr (requires { value.tied.front()[0]; }) {
+      fields += fields.empty() ? "tied = [" : ", tied = [";
+      for (const auto& particles : value.tied) fields += fmt::format("[{}]", fmt::join(particles, " "));
+      fields += "]";
+    }
     return fmt::format("{}({})", part_name<T>(), fields);
   } else {
     return name_of(value);

@@ -7,6 +7,8 @@
 #include "scene/read_constraints.hpp"
 #include "scene/read_integrator.hpp"
 #include "scene/read_particles.hpp"
+#include "scene/read_tied.hpp"
+#include "scene/read_verdicts.hpp"
 #include "scene/sets.hpp"
 #include "scene/toml.hpp"
 
@@ -29,7 +31,8 @@ class SceneReader {
 
   void read() {
     TableReader top(context_, root_, "", "");
-    top.expect_only({"title", "units", "particles", "hamiltonian", "system", "integrator", "every", "stop", "expect"});
+    top.expect_only(
+        {"title", "units", "particles", "hamiltonian", "system", "integrator", "every", "stop", "expect", "verdict"});
     scene_.title = top.text("title");
     read_units(top);
     scene_.effective = SceneValue::table();
@@ -52,6 +55,9 @@ class SceneReader {
       for (const auto& [key, value] : scene_.expect) check_expectation(key, value);
       scene_.effective.put("expect", *expect);
     }
+    const auto verdicts = tables_of(top, "verdict");
+    scene_.verdicts = read_verdicts(context_, verdicts);
+    if (!verdicts.empty()) scene_.effective.put("verdict", *top.find("verdict"));
     check(top);
     scene_.effective_toml = print_toml(scene_.effective);
   }
@@ -161,7 +167,17 @@ class SceneReader {
     const auto [kind, type] = kind_of_part(context_, table, path, "force", parts_.forces(), {});
     TableReader reader(context_, table, fmt::format("force '{}'", type), path);
     reader.find("type");
-    SceneForce force = kind->read(reader);
+    SceneValue effective = SceneValue::table();
+    effective.put("type", SceneValue::of(type, reader.line("type")));
+    TiedParticles tied;
+    if (kind->particles > 0) tied = TiedReader(reader, kind->particles, scene_.particles).read(effective);
+    for (std::vector<Index> particles : tied) {
+      std::sort(particles.begin(), particles.end());
+      const auto twice = std::adjacent_find(particles.begin(), particles.end());
+      if (twice == particles.end()) continue;
+      reader.fail("pairs", fmt::format("force '{}' ties '{}' to itself", type, scene_.particles.name(*twice)));
+    }
+    SceneForce force = kind->read(reader, tied);
     reader.finish();
     const bool wisdom_holman = scene_.hamiltonian.kind == SceneHamiltonian::Kind::wisdom_holman;
     if (type == "gravity" && wisdom_holman) {
@@ -173,8 +189,6 @@ class SceneReader {
       }
       if (force.drag && other.drag) reader.fail("type", "linear_drag stands twice in the scene; add the rates up");
     }
-    SceneValue effective = SceneValue::table();
-    effective.put("type", SceneValue::of(type, reader.line("type")));
     for (auto& [key, value] : *force.effective.get<SceneValue::Table>()) effective.put(key, value);
     list.push_back(effective);
     force.effective = std::move(effective);

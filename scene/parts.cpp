@@ -10,9 +10,11 @@
 #include "engine/temperature.hpp"
 #include "engine/variables.hpp"
 #include "forces/external_fields.hpp"
+#include "forces/fermi_pasta_ulam.hpp"
 #include "forces/gravity.hpp"
 #include "forces/henon_heiles.hpp"
 #include "forces/oblateness.hpp"
+#include "forces/springs.hpp"
 #include "forces/sum.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/systems/forced_damped_oscillator.hpp"
@@ -53,6 +55,9 @@ Parts standard_parts() {
   parts.add_force<OscillatingField>();
   parts.add_force<HarmonicField>();
   parts.add_force<HenonHeiles>();
+  parts.add_force<FermiPastaUlam>();
+  parts.add_force<HarmonicBond>();
+  parts.add_force<Tether>();
   parts.add_force<LinearDrag>();
   parts.add_constraint<Distance>();
   parts.add_constraint({part_info<RigidBar>(), 0, RigidBar::read});

@@ -95,7 +95,8 @@ class Parts {
  public:
   struct ForceKind {
     PartInfo info;
-    std::function<SceneForce(TableReader&)> read;
+    std::function<SceneForce(TableReader&, const TiedParticles&)> read;
+    std::size_t particles = 0;  ///< of each tuple that the force ties; 0: it acts on all
   };
   struct ConstraintKind {
     PartInfo info;
@@ -112,9 +113,16 @@ class Parts {
   };
 
   /// Makes force `F` known by the name it describes itself with; a force of the same name is replaced.
+  ///
+  /// One that acts on some particles only has `static constexpr std::size_t particles`, how many each of its terms
+  /// ties, and a member `std::vector<std::array<Index, particles>> tied`: scenes then say which, as for constraints.
   template <class F> Parts& add_force() {
     static_assert(Described<F>, "a force in a scene describes itself: static constexpr auto describe()");
-    put(forces_, ForceKind{part_info<F>(), [](TableReader& reader) { return read_force<F>(reader); }});
+    std::size_t particles = 0;
+    if constexpr (requires { F{}.tied; }) particles = F::particles;
+    put(forces_, ForceKind{part_info<F>(),
+                           [](TableReader& reader, const TiedParticles& tied) { return read_force<F>(reader, tied); },
+                           particles});
     return *this;
   }
 
@@ -152,9 +160,14 @@ class Parts {
   const std::vector<MonitorKind>& monitors() const { return monitors_; }
 
  private:
-  template <class F> static SceneForce read_force(TableReader& reader) {
+  template <class F> static SceneForce read_force(TableReader& reader, const TiedParticles& tied) {
     F force{};
     read_part(reader, force);
+    if constexpr (requires { force.tied; }) {
+      for (const std::vector<Index>& particles : tied) {
+        std::copy(particles.begin(), particles.end(), force.tied.emplace_back().begin());
+      }
+    }
     SceneForce made{std::string(part_name<F>()), SceneValue::table(), {}, {}, {}};
     put_fields(reader, force, made.effective);
     if constexpr (std::is_same_v<F, LinearDrag>) {

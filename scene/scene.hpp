@@ -58,6 +58,18 @@ struct SceneStop {
   std::int64_t steps = 1;
 };
 
+/// One `[[verdict]]`: what runs of the scene show (study/suite.hpp). A run passes it over.
+struct SceneVerdict {
+  std::vector<std::string> methods = {};  ///< empty: the scene's own
+  bool every_method = false;              ///< every method of fixed steps that can serve the scene
+  std::vector<std::string> sets = {};     ///< changes "key.path=value" of the scene
+  std::string outcome = "bounded";        ///< bounded, unbounded, solver, or theory: what linear theory says
+  std::optional<double> energy_below = {}, energy_above = {};    ///< of the largest relative error of the energy
+  std::optional<double> sharing_below = {}, sharing_above = {};  ///< of the error of how particles share kinetic energy
+  bool nightly = false;                                          ///< too long to be run by the way
+  std::string why = {};                                          ///< in a line
+};
+
 /// A scene as plain data. Everything in it has been checked: `assemble` cannot fail for what the file says.
 struct Scene {
   std::filesystem::path file;
@@ -70,9 +82,10 @@ struct Scene {
   std::vector<SceneWatch> watches;
   std::vector<SceneStop> stops;
   std::map<std::string, SceneValue> expect;  ///< dotted key below [expect]
-  SceneSource source;                        ///< where errors point
-  SceneValue effective;                      ///< the scene with every default, as a tree
-  std::string effective_toml;                ///< the same as text: what files store
+  std::vector<SceneVerdict> verdicts;
+  SceneSource source;          ///< where errors point
+  SceneValue effective;        ///< the scene with every default, as a tree
+  std::string effective_toml;  ///< the same as text: what files store
 };
 
 /// Reads a scene and checks all that can be checked before the first step.

@@ -213,7 +213,8 @@ typename Collocation<Real>::Sweeps Collocation<Real>::sweep(VectorField<Real>& f
             trial_.data());
     const auto [change, size] = sums_.difference(trial_.data(), rates_.data());
     std::swap(trial_, rates_);
-    const double relative = size > Real(0) ? static_cast<double>(change / size) : 0.0;
+    // Rates may happen to vanish in one sweep, on the way to others.
+    const double relative = size > Real(0) ? static_cast<double>(change / size) : change > Real(0) ? 1.0 : 0.0;
     if (!isfinite(size + change)) return Sweeps::diverged;
     const double shrinks = round == 1 ? 1.0 : relative / before;
     if (relative <= settled_ || relative * std::min(shrinks, 1.0) * 0.5 < settled_) return Sweeps::converged;

@@ -26,9 +26,10 @@ UpdateSize update_size(const Real* d, double factor, const Real* from, const Rea
     const double change = std::abs(factor * static_cast<double>(d[i]));
     const double value = std::max(std::abs(static_cast<double>(from[i])), std::abs(static_cast<double>(to[i])));
     if (!std::isfinite(change)) return {change, change};
+    if (change < std::numeric_limits<double>::min()) continue;  // below the normal numbers nothing is relative any more
     longest = std::max(longest, change);
     largest = std::max(largest, value);
-    if (change > 0) each = std::max(each, value > 0 ? change / value : std::numeric_limits<double>::max());
+    each = std::max(each, value > 0 ? change / value : std::numeric_limits<double>::max());
   }
   if (longest == 0) return {0, 0};
   return {largest > 0 ? longest / largest : std::numeric_limits<double>::max(), each};

@@ -20,8 +20,8 @@ const std::vector<Wrong> wrong_lines = {
     {"", 2, "no command is given; see `noether --help`"},
     {"rnu scene.toml", 2, "unknown command 'rnu'; did you mean 'run'?"},
     {"integrate scene.toml", 2,
-     "unknown command 'integrate'; known are: run, evaluate, explain, compare, advise, list, describe, info, verify, "
-     "convert, plot"},
+     "unknown command 'integrate'; known are: run, evaluate, explain, compare, advise, stability, list, describe, "
+     "info, verify, convert, plot"},
     {"--vresion", 2, "unknown option '--vresion' before a command; did you mean '--version'?"},
     {"-x run scene.toml", 2, "unknown option '-x' before a command; known are: --help, --version"},
     {"run", 2, "scene is required; see `noether run --help`"},

@@ -3,6 +3,7 @@
 #include "integrators/methods/collocation.hpp"
 
 #include "engine/monitors.hpp"
+#include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
 #include "forces/linear_drag.hpp"
 #include "forces/sum.hpp"
@@ -205,6 +206,15 @@ TEST_CASE("a looser tolerance costs less", "[adaptive]") {
     CHECK(done.error < std::max(1e-12, 100 * rtol));
     before = done.evaluations;
   }
+}
+
+TEST_CASE("rates that vanish in one sweep are not taken for a solution", "[stages]") {
+  // From (1, 0) with h omega = 2 the first midpoint is 0, and so is the force there; the step itself is (0, -1).
+  ParticleSystem<double> s;
+  s.add("ball", 1, {1, 0, 0}, {0, 0, 0});
+  Simulation<double> run(s, classical(HarmonicField{1}, method("implicit_midpoint")), 2);
+  const Outcome outcome = run.run(1);
+  CHECK(outcome.kind == Outcome::Kind::solver_failure);
 }
 
 TEST_CASE("implicit midpoint keeps angular momentum on a stiff spring where the energy suffers", "[kept]") {

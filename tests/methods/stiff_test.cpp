@@ -83,6 +83,15 @@ TEST_CASE("backward Euler damps an oscillation by (1 + z^2)^(-1/2) a step, in an
   }
 }
 
+TEST_CASE("what has decayed to nothing goes on decaying: no solution is asked for below the normal numbers") {
+  for (const char* name : {"backward_euler", "sdirk_2", "sdirk_3", "sdirk_4"}) {
+    CAPTURE(name);
+    const auto end = march<double>(Spiral{.z = 2, .angle = 1.2}, with_fixed_steps(name), vector_of({1, 0.5}), 1, 30000);
+    CHECK_FALSE(end.failure);
+    CHECK(end.y.cwiseAbs().maxCoeff() < 1e-300);
+  }
+}
+
 TEST_CASE("the trapezoidal rule keeps an oscillation, whatever its step") {
   for (const double z : {0.1, 1.0, 10.0, 1e4}) {
     const auto reached = march<double>(Rotation{.omega = z}, method("trapezoidal"), vector_of({1, 0}), 1, 100);

@@ -1,0 +1,128 @@
+#include "cli/commands.hpp"
+
+#include "cli/lists.hpp"
+#include "engine/error.hpp"
+#include "scene/scene.hpp"
+#include "study/stability.hpp"
+#include "study/suite.hpp"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace noether {
+
+namespace {
+
+struct StabilityArguments {
+  std::string scene, out = "stability.out";
+  std::optional<std::string> methods;
+  std::vector<std::string> sets;
+  std::int64_t steps = 100'000;
+  std::optional<double> budget;
+  bool suite = false, nightly = false, json = false;
+};
+
+/// A line on a terminal that tells what is being done; nothing elsewhere.
+std::function<void(const std::string&)> progress_line(bool shows) {
+  if (!shows) return {};
+  return [](const std::string& what) {
+    fmt::print(stderr, "\r\033[K{}", what);
+    std::fflush(stderr);
+  };
+}
+
+void search_scene(const StabilityArguments& given) {
+  const Scene scene = load_scene(given.scene, standard_parts(), given.sets);
+  const bool shows = !given.json && ::isatty(STDERR_FILENO) == 1;
+  StabilityOptions options;
+  if (given.methods) options.methods = texts_in(*given.methods, "--methods");
+  options.confirm_steps = given.steps;
+  if (given.budget) options.row_budget = *given.budget;
+  options.progress = progress_line(shows);
+  const Stability found = find_stability(scene, options);
+  if (shows) std::fputs("\r\033[K", stderr);
+  fmt::print("{}", given.json ? to_json(found) + "\n" : to_text(found));
+}
+
+void write(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream out(file);
+  out << text;
+  if (!out.flush()) throw FileError("the file cannot be written", {.file = file.string()});
+}
+
+/// The verdicts of one scene, or of all that noether brings, into a report.
+void run_verdicts(const StabilityArguments& given) {
+  if (given.methods || !given.sets.empty()) {
+    throw Error("--suite runs the methods and changes of its verdicts; leave --methods and --set out");
+  }
+  std::vector<std::filesystem::path> files = {given.scene};
+  if (given.scene.empty()) files = suite_files(suite_folder());
+  const bool shows = !given.json && ::isatty(STDERR_FILENO) == 1;
+  SuiteOptions options;
+  options.nightly = given.nightly;
+  if (given.budget) options.row_budget = *given.budget;
+  options.progress = progress_line(shows);
+  const std::filesystem::path folder = given.out;
+  std::filesystem::create_directories(folder);
+  const Suite suite = run_suite(files, options);
+  if (shows) std::fputs("\r\033[K", stderr);
+  write(folder / "suite.json", to_json(suite) + "\n");
+  write(folder / "report.html", to_html(suite));
+  if (given.json) {
+    fmt::print("{}\n", to_json(suite));
+  } else {
+    fmt::print("{}wrote {}\nwrote {}\n", to_text(suite), (folder / "suite.json").string(),
+               (folder / "report.html").string());
+  }
+}
+
+void answer(const StabilityArguments& given) {
+  if (given.suite) return run_verdicts(given);
+  if (given.nightly) throw Error("--nightly belongs to --suite; give both, or leave it out");
+  if (given.scene.empty()) throw Error("no scene is given; give one, or --suite for those that noether brings");
+  search_scene(given);
+}
+
+}  // namespace
+
+void add_stability_command(CLI::App& app, int& exit_code) {
+  const auto given = std::make_shared<StabilityArguments>();
+  CLI::App* command = app.add_subcommand("stability", "the largest stable step, method by method, against theory");
+  command->add_option("scene", given->scene, "scene file")->type_name("SCENE");
+  command->add_option("--methods", given->methods, "methods to ask; default: those worth it on this scene")
+      ->type_name("A,B,...");
+  command->add_option("--steps", given->steps, "steps of the runs that settle a limit; default: 100000")
+      ->check(wrong_count)
+      ->type_name("N");
+  command
+      ->add_option("--budget", given->budget, "seconds of wall time for one method; what is not settled then says so")
+      ->check(wrong_seconds)
+      ->type_name("SECONDS");
+  command->add_option("--set", given->sets, "change a key of the scene: key.path=value")
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUE");
+  command->add_flag("--suite", given->suite,
+                    "run the verdicts of the scene, or of the stiff and extreme scenes noether brings");
+  command->add_flag("--nightly", given->nightly, "with --suite: the long runs too");
+  command->add_option("--out", given->out, "with --suite: folder of the report; default: stability.out")
+      ->check(wrong_folder)
+      ->type_name("DIR");
+  command->add_flag("--json", given->json, "as one line of JSON");
+  command->callback([given, &exit_code] {
+    answer(*given);
+    exit_code = 0;  // a row that could not be settled is a result
+  });
+}
+
+}  // namespace noether

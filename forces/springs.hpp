@@ -1,0 +1,111 @@
+#pragma once
+/// Springs with a rest length: between pairs of particles, and from a point to particles.
+
+#include "engine/description.hpp"
+#include "engine/force_sink.hpp"
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace noether {
+
+namespace detail {
+/// Force and energy of a spring along r; without rest length it has no kink at r = 0.
+template <class Real> struct Spring {
+  Vec3<Real> force;
+  Real energy;
+
+  Spring(const Vec3<Real>& r, const Real& k, const Real& length) {
+    using std::sqrt;
+    if (length == Real(0)) {
+      force = -k * r;
+      energy = k * norm2(r) / Real(2);
+      return;
+    }
+    const Real distance = sqrt(norm2(r)), stretch = distance - length;
+    force = (-k * stretch / distance) * r;
+    energy = k * stretch * stretch / Real(2);
+  }
+};
+
+inline void check_length(double length) {
+  if (!(length >= 0)) refuse_field("length", length, "is no rest length; 0 or a length above is expected");
+}
+}  // namespace detail
+
+/// Springs between pairs of particles: the bonds of a flexible molecule, links of a chain.
+///
+///     U = sum over pairs k (|x_i - x_j| - length)^2 / 2
+///
+/// Some force fields leave out the half: their k is half of this one. A bond that turns has a frequency of
+/// sqrt(k/mu) along itself, with 1/mu = 1/m_i + 1/m_j. Two particles of a pair in one place have no direction: unless
+/// the rest length is 0 the force is not finite there.
+/// @cost one square root per pair
+/// @source Hooke1678
+struct HarmonicBond {
+  double k = 0.0;                              ///< [mass/time^2]
+  double length = 0.0;                         ///< at rest [length]
+  std::vector<std::array<Index, 2>> tied{};    ///< pairs of particles, by their places; shape (bonds, 2)
+  static constexpr std::size_t particles = 2;  ///< that each bond ties
+
+  static constexpr auto describe() {
+    return part<HarmonicBond>(
+        "harmonic_bond", "springs between pairs of particles",
+        formula("U = sum over pairs k (|x_i - x_j| - length)^2 / 2"), source("Hooke1678"),
+        field<&HarmonicBond::k>("k", "mass/time^2", "stiffness of each spring").required("\"1 kg/s^2\""),
+        field<&HarmonicBond::length>("length", "length", "at rest"));
+  }
+
+  /// @throws Error  for a negative length
+  void check() const { detail::check_length(length); }
+
+  template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+    for (const auto& [i, j] : tied) {
+      const Vec3<Real> r = s.positions()[i] - s.positions()[j];
+      const detail::Spring<Real> spring(r, Real(k), Real(length));
+      out.pair(i, j, spring.force);
+      if (out.wants_energy()) out.energy(spring.energy);
+    }
+  }
+};
+
+/// Springs from a point that stands still to particles: the spring of an elastic pendulum, a restraint.
+///
+///     U = sum over tied particles k (|x_i - point| - length)^2 / 2
+///
+/// @cost one square root per particle
+/// @source Hooke1678
+struct Tether {
+  std::array<double, 3> point = {0, 0, 0};     ///< [length]
+  double k = 0.0;                              ///< [mass/time^2]
+  double length = 0.0;                         ///< at rest [length]
+  std::vector<std::array<Index, 1>> tied{};    ///< particles, by their places; shape (springs, 1)
+  static constexpr std::size_t particles = 1;  ///< that each spring ties
+
+  static constexpr auto describe() {
+    return part<Tether>("tether", "springs from a point that stands still to particles",
+                        formula("U = sum over bodies k (|x_i - point| - length)^2 / 2"), source("Hooke1678"),
+                        field<&Tether::point>("point", "length", "where the springs end"),
+                        field<&Tether::k>("k", "mass/time^2", "stiffness of each spring").required("\"1 kg/s^2\""),
+                        field<&Tether::length>("length", "length", "at rest"));
+  }
+  ForceClaims claims() const {
+    return {.keeps_momentum = false, .keeps_angular_momentum = point == std::array<double, 3>{}};
+  }
+
+  /// @throws Error  for a negative length
+  void check() const { detail::check_length(length); }
+
+  template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+    const Vec3<Real> end = {Real(point[0]), Real(point[1]), Real(point[2])};
+    for (const auto& [i] : tied) {
+      const Vec3<Real> r = s.positions()[i] - end;
+      const detail::Spring<Real> spring(r, Real(k), Real(length));
+      out.force(i, spring.force);
+      if (out.wants_energy() && s.masses()[i] != Real(0)) out.energy(spring.energy);
+    }
+  }
+};
+
+}  // namespace noether

@@ -1,0 +1,65 @@
+#include "scene/read_verdicts.hpp"
+
+#include "engine/suggest.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace noether {
+
+namespace {
+
+std::vector<std::string> texts(TableReader& reader, std::string_view key, std::string_view example) {
+  std::vector<std::string> all;
+  const SceneValue* value = reader.find(key);
+  if (value == nullptr) return all;
+  const auto* list = value->get<SceneValue::Array>();
+  if (list == nullptr) reader.wrong_kind(*value, key, fmt::format("a list of texts such as {}", example));
+  for (const SceneValue& one : *list) {
+    const std::string* text = one.get<std::string>();
+    if (text == nullptr) reader.wrong_kind(*value, key, fmt::format("a list of texts such as {}", example));
+    all.push_back(*text);
+  }
+  return all;
+}
+
+std::optional<double> figure(TableReader& reader, std::string_view key) {
+  const auto value = reader.quantity(key, "1");
+  if (value && !(*value > 0)) {
+    reader.fail(key, fmt::format("{} = {} is no bound of an error; a number above 0 is expected", key,
+                                 to_text(*reader.find(key))));
+  }
+  return value;
+}
+
+}  // namespace
+
+std::vector<SceneVerdict> read_verdicts(const SceneContext& context, const std::vector<const SceneValue*>& tables) {
+  const std::vector<std::string> outcomes = {"bounded", "unbounded", "solver", "theory"};
+  std::vector<SceneVerdict> all;
+  for (const SceneValue* table : tables) {
+    TableReader reader(context, *table, "[[verdict]]", fmt::format("verdict.{}", all.size()));
+    reader.expect_only({"methods", "set", "outcome", "energy_below", "energy_above", "sharing_below", "sharing_above",
+                        "nightly", "why"});
+    SceneVerdict one;
+    const SceneValue* methods = reader.find("methods");
+    one.every_method = methods != nullptr && methods->get<std::string>() != nullptr && reader.text("methods") == "all";
+    if (!one.every_method) one.methods = texts(reader, "methods", "[\"verlet\"], or \"all\"");
+    one.sets = texts(reader, "set", "[\"integrator.step=0.1\"]");
+    one.outcome = reader.text("outcome", "bounded");
+    if (std::find(outcomes.begin(), outcomes.end(), one.outcome) == outcomes.end()) {
+      reader.fail("outcome", fmt::format("unknown outcome '{}'{}", one.outcome, did_you_mean(one.outcome, outcomes)));
+    }
+    one.energy_below = figure(reader, "energy_below");
+    one.energy_above = figure(reader, "energy_above");
+    one.sharing_below = figure(reader, "sharing_below");
+    one.sharing_above = figure(reader, "sharing_above");
+    one.nightly = reader.flag("nightly", false);
+    one.why = reader.text("why");
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
+}  // namespace noether

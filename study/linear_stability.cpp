@@ -1,0 +1,256 @@
+#include "study/linear_stability.hpp"
+
+#include "forces/external_fields.hpp"
+#include "integrators/composition.hpp"
+#include "integrators/damped.hpp"
+#include "integrators/first_order_system.hpp"
+#include "integrators/methods.hpp"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <utility>
+
+namespace noether {
+
+namespace {
+
+using Matrix2 = Eigen::Matrix2d;
+
+constexpr double z_step = 2e-3;
+
+/// y' = lambda y in two real variables.
+struct LinearMode {
+  std::complex<double> lambda;
+
+  static constexpr auto describe() { return part<LinearMode>("linear_mode", "one mode of a linear system"); }
+  Index size() const { return 2; }
+  template <class Real> void rates(const Real& /*t*/, const Vector<Real>& y, Vector<Real>& dy) const {
+    const Real a(lambda.real()), b(lambda.imag());
+    dy[0] = a * y[0] - b * y[1];
+    dy[1] = b * y[0] + a * y[1];
+  }
+};
+
+/// The step of a scheme for omega = 1, drag included; columns are what (1, 0) and (0, 1) become.
+Matrix2 walk_word(const Word& word, double z, double drag) {
+  Matrix2 step = Matrix2::Identity();
+  for (const Stage& stage : word) {
+    const double w = static_cast<double>(stage.weight) * z;
+    if (stage.letter == 'A') step.row(0) += w * step.row(1);
+    if (stage.letter == 'B') step.row(1) -= w * step.row(0);
+    if (stage.letter == 'D') step.row(1) *= std::exp(-drag * w);
+  }
+  return step;
+}
+
+/// The step of a classical method from two unit vectors.
+class ClassicalStep {
+ public:
+  ClassicalStep(const MethodChoice& choice, std::unique_ptr<VectorField<double>> field, ParticleSystem<double> start)
+      : method_(make_method<double>(*choice.info, choice.options)), field_(std::move(field)) {
+    field_->bind(start);
+    second_ = field_->particles() > 0 ? 3 : 1;
+    y_.resize(field_->size());
+  }
+  ClassicalStep(const ClassicalStep& other)
+      : method_(other.method_->clone()), field_(other.field_->clone()), second_(other.second_), y_(other.y_) {}
+
+  /// Not finite where no step can be made.
+  Matrix2 operator()(double h) {
+    Matrix2 step;
+    for (int column = 0; column < 2; ++column) {
+      y_.setZero();
+      y_[column == 0 ? 0 : second_] = 1;
+      method_->bind(*field_);
+      if (method_->step(*field_, 0, y_, h).failure || !y_.allFinite()) return Matrix2::Constant(NAN);
+      step(0, column) = y_[0];
+      step(1, column) = y_[second_];
+    }
+    return step;
+  }
+
+ private:
+  std::unique_ptr<Method<double>> method_;
+  std::unique_ptr<VectorField<double>> field_;
+  Index second_ = 1;
+  Vector<double> y_;
+};
+
+bool remembers(const MethodInfo& info) { return info.family == "multistep" || info.name == "bdf"; }
+
+StepMatrix classical_step(const MethodChoice& choice, const Mode& mode) {
+  const double scale = mode.scale();
+  std::unique_ptr<VectorField<double>> field;
+  ParticleSystem<double> start(unit_system("reduced"));
+  if (mode.lambda) {
+    const LinearMode system{*mode.lambda / scale};
+    field = std::make_unique<SystemMotion<LinearMode, double>>(system);
+    start = initial_state(system, {1, 0});
+  } else {
+    ForceField<double> forces;
+    forces.add(HarmonicField{1});
+    if (mode.rate > 0) forces.add(DragForce{{mode.rate / scale}});
+    field = std::make_unique<ForceMotion<ForceField<double>, double>>(std::move(forces));
+    start.add("mode", 1, {1, 0, 0}, {0, 0, 0});
+  }
+  return [step = ClassicalStep(choice, std::move(field), std::move(start))](double z) mutable { return step(z); };
+}
+
+/// How far the eigenvalues of a step are beyond meeting on the unit circle, smoothly in z: above 0 they are real, and
+/// one is outside.
+double excess(const Matrix2& step) {
+  if (!step.allFinite()) return std::numeric_limits<double>::infinity();
+  return std::abs(step.trace()) - 1 - step.determinant();
+}
+
+/// The z between two others at which a function is largest.
+double peak_between(const std::function<double(double)>& f, double low, double high) {
+  const double golden = (std::sqrt(5.0) - 1) / 2;
+  double a = high - golden * (high - low), b = low + golden * (high - low), fa = f(a), fb = f(b);
+  for (int k = 0; k < 60; ++k) {
+    if (fa > fb) {
+      high = std::exchange(b, std::exchange(a, b - golden * (b - low)));
+      fb = std::exchange(fa, f(a));
+    } else {
+      low = std::exchange(a, std::exchange(b, a + golden * (high - a)));
+      fa = std::exchange(fb, f(b));
+    }
+    if (high - low < 1e-10) break;
+  }
+  return (low + high) / 2;
+}
+
+/// Where a condition that fails at `low` begins to hold, by halving.
+double first_true(const std::function<bool(double)>& holds, double low, double high) {
+  for (int k = 0; k < 50 && high - low > 1e-9; ++k) {
+    const double middle = (low + high) / 2;
+    (holds(middle) ? high : low) = middle;
+  }
+  return high;
+}
+
+/// Relative error of the mode's frequency and damping in one step.
+double mode_error(const Matrix2& step, const Mode& mode, double z) {
+  const std::complex<double> half = step.trace() / 2;
+  const std::complex<double> root = std::sqrt(half * half - step.determinant());
+  std::complex<double> exact = mode.lambda ? *mode.lambda / mode.scale() : std::complex<double>(0, 1);
+  if (!mode.lambda && mode.rate > 0) {
+    const double g = mode.rate / mode.omega / 2;
+    exact = std::complex<double>(-g, 0) + std::sqrt(std::complex<double>(g * g - 1, 0));
+  }
+  double least = 1e300;
+  for (const std::complex<double>& mu : {half + root, half - root}) {
+    least = std::min(least, std::abs(std::log(mu) / (exact * z) - 1.0));
+  }
+  return least;
+}
+
+/// Phases of a step at which it comes back after n of them.
+void find_resonances(const StepMatrix& step, double below, LinearTheory& found) {
+  const auto phase = [&](double z) {
+    const Matrix2 m = step(z);
+    return std::acos(std::clamp(m.trace() / 2 / std::sqrt(std::max(m.determinant(), 1e-300)), -1.0, 1.0));
+  };
+  for (int n = 3; n <= 6; ++n) {
+    const double angle = 2 * M_PI / n;
+    double z = z_step;
+    while (z < below && phase(z) < angle) z = next_z(z);
+    if (z >= below) continue;
+    found.resonances[n] = first_true([&](double at) { return phase(at) >= angle; }, z - z_step, z);
+  }
+}
+
+void search(const StepMatrix& step, LinearTheory& found) {
+  const auto unstable = [&](double z) { return growth_of(step(z)) > growth_threshold; };
+  const auto beyond = [&](double z) { return excess(step(z)); };
+  double before = 0, middle = 0, f0 = -1, f1 = -1;
+  for (double z = z_step; z < largest_z && !found.limit; z = next_z(z)) {
+    const double f2 = beyond(z);
+    if (!std::isfinite(f2)) {
+      found.solver = z;
+      return;
+    }
+    std::optional<double> inside;
+    if (unstable(z)) inside = z;
+    if (f1 > f0 && f1 >= f2 && f1 > -0.05) {  // a peak the search may have stepped over
+      const double peak = peak_between(beyond, before, z);
+      if (unstable(peak) && (!inside || peak < *inside)) inside = peak;
+    }
+    if (inside) {
+      double stable = *inside > middle && !unstable(middle) ? middle : before;
+      if (stable > 0 && unstable(stable)) stable = 0;
+      found.limit = first_true(unstable, stable, *inside);
+      double end = *inside;
+      while (end < largest_z && unstable(end)) end = next_z(end) - (z_step - 1e-4) * (end < 10 ? 1 : 0);
+      if (end < largest_z) found.gap_end = first_true([&](double at) { return !unstable(at); }, *inside, end);
+    }
+    before = std::exchange(middle, z);
+    f0 = std::exchange(f1, f2);
+  }
+}
+
+}  // namespace
+
+double next_z(double z) { return z < 10 ? z + z_step : 1.02 * z; }
+
+double growth_of(const Matrix2& step) {
+  const double half = step.trace() / 2, det = step.determinant(), square = half * half - det;
+  if (square <= 1e-12 * std::max(1.0, half * half)) return std::sqrt(std::max(det, 0.0)) - 1;
+  return std::abs(half) + std::sqrt(square) - 1;
+}
+
+int LinearTheory::resonance_at(double z) const {
+  int nearest = 0;
+  double closest = 0.1;
+  for (const auto& [n, at] : resonances) {
+    const double apart = std::abs(z / at - 1);
+    if (apart < closest) nearest = n;
+    closest = std::min(closest, apart);
+  }
+  return nearest;
+}
+
+std::optional<StepMatrix> step_matrix(const Scene& scene, const Opponent& who, const Mode& mode) {
+  if (!(mode.scale() > 0) || who.hamiltonian == SceneHamiltonian::Kind::wisdom_holman) return {};
+  const Scene made = variant(scene, who, {.step = 1, .tolerance = 0});
+  if (made.integrator.classical) {
+    const MethodChoice& choice = *made.integrator.classical;
+    if (remembers(*choice.info)) return {};
+    return classical_step(choice, mode);
+  }
+  HamiltonianClaims claims{.alphabet = "AB"};
+  if (mode.rate > 0) {
+    claims.alphabet = "ABD";
+    claims.irreversible = "D";
+    claims.dissipative = true;
+  }
+  const Word word = fitted_word(scheme_of(made.integrator), claims, "mode");
+  return [word, drag = mode.rate / mode.omega](double z) { return walk_word(word, z, drag); };
+}
+
+LinearTheory linear_theory(const Scene& scene, const Opponent& who, const Mode& mode) {
+  LinearTheory found;
+  const std::optional<StepMatrix> step = step_matrix(scene, who, mode);
+  if (!step) {
+    const MethodInfo* info = methods::find(who.method);
+    const bool table = info != nullptr && info->stability_limit > 0 && !mode.lambda && mode.rate == 0;
+    found.known = table && mode.omega > 0;
+    if (found.known) found.limit = info->stability_limit;
+    return found;
+  }
+  found.known = true;
+  search(*step, found);
+  const double below = std::min(found.limit.value_or(largest_z), found.solver.value_or(largest_z));
+  find_resonances(*step, below, found);
+  const double allowed = std::pow(M_PI / 10, 2) / 24 * (1 + 1e-3);
+  for (double z = z_step; z < std::min(below, 3.0) && mode_error((*step)(z), mode, z) <= allowed; z = next_z(z)) {
+    found.accurate = z;
+  }
+  return found;
+}
+
+}  // namespace noether

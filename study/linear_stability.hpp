@@ -1,0 +1,68 @@
+#pragma once
+/// What linear theory says of a method: its step on one mode as a matrix, where that grows, and where it resonates.
+
+#include "scene/scene.hpp"
+#include "study/opponent.hpp"
+
+#include <Eigen/Core>
+
+#include <complex>
+#include <functional>
+#include <map>
+#include <optional>
+
+namespace noether {
+
+/// Growth of an amplitude in one step from which a method counts as unstable, in theory and where it is measured on a
+/// linear problem. Symplectic methods have no growth below their limits; Runge-Kutta and multistep methods may grow by
+/// less from their first step on (Cash and Karp's by 1e-9 at h omega = 0.139), and limits are of a threshold.
+inline constexpr double growth_threshold = 1e-9;
+
+/// One mode of a linear problem: q'' = - omega^2 q - rate q', or y' = lambda y.
+struct Mode {
+  double omega = 0;                                 ///< of particles; 0: `lambda` counts [1/time]
+  double rate = 0;                                  ///< of linear drag [1/time]
+  std::optional<std::complex<double>> lambda = {};  ///< of a first-order system [1/time]
+
+  /// What steps are multiplied with: omega, or |lambda| [1/time].
+  double scale() const { return lambda ? std::abs(*lambda) : omega; }
+};
+
+/// One step of a method on a mode, as a real matrix of shape (2, 2), by z = h omega (or h |lambda|).
+///
+/// Of a scheme, the product of its letters' matrices; of a classical method, its own step from two unit vectors. A
+/// multistep method remembers more than a state: it has no such matrix.
+using StepMatrix = std::function<Eigen::Matrix2d(double z)>;
+/// @return empty for a multistep method, and for a splitting into Kepler arcs, which is exact on no such mode
+std::optional<StepMatrix> step_matrix(const Scene& scene, const Opponent& who, const Mode& mode);
+
+/// Largest modulus of an eigenvalue of a step, less 1: the growth in one step. Growth below 1e-6 is told from rounding
+/// only where eigenvalues are complex, as those of all methods are that are not symplectic.
+double growth_of(const Eigen::Matrix2d& step);
+
+/// What linear theory says.
+struct LinearTheory {
+  bool known = false;             ///< else nothing is said: no matrix, and no table
+  std::optional<double> limit;    ///< first z at which the growth is above the threshold; none: stable at any step
+  std::optional<double> gap_end;  ///< where it is stable again, if it is
+  double accurate = 0;            ///< largest z whose mode is as accurate as leapfrog's 20 steps a period; 0: unknown
+  std::optional<double> solver;   ///< z from which on the method's own solver finds no step on the mode
+  std::map<int, double> resonances;  ///< n = 3, 4, 5, 6: the z at which the phase of a step is 2 pi / n, if stable
+
+  /// The n of the resonance next to z, within a tenth of it; 0 if none is.
+  int resonance_at(double z) const;
+};
+
+/// Searches z upward by 2e-3, from 10 on by 2 %, up to 200; between, extremes of trace and determinant are sought, so
+/// that gaps narrower than that are found too. Of a multistep method, what its table says.
+///
+/// `accurate`: the largest z up to which |log(mu) / (lambda h) - 1| is below (pi/10)^2/24, the error of leapfrog with
+/// 20 steps a period, where mu is the eigenvalue of the step.
+/// @source HairerLubichWanner2006, MandziukSchlick1995
+LinearTheory linear_theory(const Scene& scene, const Opponent& who, const Mode& mode);
+
+/// Steps z of a search: upward by 2e-3, from 10 on by 2 %.
+double next_z(double z);
+inline constexpr double largest_z = 200;
+
+}  // namespace noether

@@ -1,0 +1,227 @@
+#include "study/spectrum.hpp"
+
+#include "engine/error.hpp"
+#include "integrators/stiffness.hpp"
+#include "study/opponent.hpp"
+
+#include <fmt/format.h>
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace noether {
+
+namespace {
+
+constexpr Index most_dense = 64;
+
+/// Numbers between -1 and 1 that are the same in every run.
+Vector<double> scattered(Index n, std::uint64_t seed) {
+  Vector<double> v(n);
+  for (Index i = 0; i < n; ++i) {
+    seed = seed * 6364136223846793005U + 1442695040888963407U;
+    v[i] = static_cast<double>(seed >> 11U) / 4503599627370496.0 - 1;
+  }
+  return v;
+}
+
+std::vector<double> masses_of(const ParticleSystem<double>& s) {
+  std::vector<double> masses;
+  for (Index i = 0; i < s.size(); ++i) masses.push_back(s.masses()[i]);
+  return masses;
+}
+
+/// out = da/dx in, shape (3 n): what a displacement does to the accelerations.
+void displace(VectorField<double>& f, double t, const Vector<double>& y, const Vector<double>& in,
+              Vector<double>& out) {
+  const Index half = y.size() / 2;
+  Vector<double> direction = Vector<double>::Zero(y.size()), above, below;
+  direction.head(half) = in;
+  if (f.has_derivative()) {
+    f.derivative(t, y, 0, direction, above);
+    out = above.tail(half);
+    return;
+  }
+  const double size = std::max(y.head(half).cwiseAbs().maxCoeff(), 1e-300), length = in.cwiseAbs().maxCoeff();
+  out.setZero(half);
+  if (length == 0) return;
+  const double step = 1e-5 * size / length;
+  Vector<double> shifted = y + step * direction;
+  f.acceleration(t, shifted, above);
+  shifted = y - step * direction;
+  f.acceleration(t, shifted, below);
+  out = (above - below) / (2 * step);
+}
+
+void check_finite(const Vector<double>& v) {
+  if (!v.allFinite()) throw Error("the forces are not finite in this state, so it has no frequencies");
+}
+
+/// Of few particles: every eigenvalue of - da/dx, tracers included.
+Spectrum dense(VectorField<double>& f, double t, const Vector<double>& y) {
+  const Index half = y.size() / 2;
+  Matrix<double> A(half, half);
+  Vector<double> unit = Vector<double>::Zero(half), column;
+  for (Index j = 0; j < half; ++j) {
+    unit[j] = 1;
+    displace(f, t, y, unit, column);
+    check_finite(column);
+    A.col(j) = -column;
+    unit[j] = 0;
+  }
+  const Eigen::EigenSolver<Matrix<double>> solver(A, false);
+  if (solver.info() != Eigen::Success) throw Error("the eigenvalues of the Hessian could not be found");
+  Spectrum found;
+  const auto& values = solver.eigenvalues();
+  const double size = values.cwiseAbs().maxCoeff();
+  for (Index i = 0; i < half; ++i) {
+    const double value = values[i].real();
+    if (value > 1e-12 * size) found.fastest = std::max(found.fastest, std::sqrt(value));
+    if (value < -1e-12 * size) found.steepest = std::max(found.steepest, std::sqrt(-value));
+  }
+  found.products = static_cast<int>(half);
+  return found;
+}
+
+Spectrum of_system(VectorField<double>& f, double t, const Vector<double>& y) {
+  Spectrum found;
+  found.products = static_cast<int>(y.size());
+  for (const std::complex<double>& value : eigenvalues_of(f, t, y)) {
+    if (std::abs(value) > std::abs(found.stiffest)) found.stiffest = {value.real(), std::abs(value.imag())};
+    if (std::abs(value.imag()) > 1e-9 * std::abs(value)) {
+      found.fastest = std::max(found.fastest, std::abs(value.imag()));
+    }
+    found.steepest = std::max(found.steepest, value.real());
+  }
+  return found;
+}
+
+Spectrum spectrum_of(VectorField<double>& f, const ParticleSystem<double>& s, double t) {
+  Vector<double> y;
+  f.gather(s, y);
+  if (f.particles() == 0) return of_system(f, t, y);
+  if (f.particles() <= most_dense) return dense(f, t, y);
+  const Extremes ends = lanczos(weighted_hessian(f, t, y, masses_of(s)), 3 * s.size());
+  Spectrum found;
+  found.fastest = ends.largest > 0 ? std::sqrt(ends.largest) : 0;
+  found.steepest = ends.least < 0 ? std::sqrt(-ends.least) : 0;
+  found.products = ends.products;
+  found.converged = ends.converged;
+  return found;
+}
+
+/// How far a run looks ahead for frequencies [time]; 0: not at all.
+double look_ahead(const Scene& scene) {
+  const SceneIntegrator& own = scene.integrator;
+  double end = own.until.value_or(0);
+  if (own.steps && own.step != 0) end = static_cast<double>(*own.steps) * own.step;
+  if (own.step != 0) end = std::min(end > 0 ? end : 1000 * own.step, 1000 * own.step);
+  return std::isfinite(end) && end > 0 ? end : 0;
+}
+
+}  // namespace
+
+double Spectrum::shortest_period() const { return fastest > 0 ? 2 * M_PI / fastest : 0; }
+
+Extremes lanczos(const Operator& A, Index n, double tolerance, int most) {
+  Extremes found;
+  const int longest = static_cast<int>(std::min<Index>(n, most));
+  std::vector<Vector<double>> basis;
+  std::vector<double> diagonal, beside;
+  Vector<double> v = scattered(n, 20240229), w(n);
+  v.normalize();
+  while (found.products < longest) {
+    basis.push_back(v);
+    A(v, w);
+    ++found.products;
+    check_finite(w);
+    diagonal.push_back(v.dot(w));
+    for (int again = 0; again < 2; ++again) {
+      for (const Vector<double>& one : basis) w -= one.dot(w) * one;
+    }
+    const double left = w.norm();
+    const auto k = static_cast<Index>(diagonal.size());
+    Eigen::SelfAdjointEigenSolver<Matrix<double>> solver;
+    solver.computeFromTridiagonal(Eigen::Map<const Vector<double>>(diagonal.data(), k),
+                                  Eigen::Map<const Vector<double>>(beside.data(), k - 1));
+    found.least = solver.eigenvalues()[0];
+    found.largest = solver.eigenvalues()[k - 1];
+    const double size = std::max(std::abs(found.least), std::abs(found.largest));
+    const auto residual = [&](Index j) { return left * std::abs(solver.eigenvectors()(k - 1, j)); };
+    found.converged = std::max(residual(0), residual(k - 1)) <= tolerance * size || k == n;
+    if (found.converged || left <= 1e-300) break;
+    beside.push_back(left);
+    v = w / left;
+  }
+  return found;
+}
+
+Operator weighted_hessian(VectorField<double>& f, double t, const Vector<double>& y,
+                          const std::vector<double>& masses) {
+  const auto n = static_cast<Index>(masses.size());
+  Vector<double> root(3 * n);
+  for (Index k = 0; k < 3; ++k) {
+    for (Index i = 0; i < n; ++i) root[k * n + i] = std::sqrt(masses[static_cast<std::size_t>(i)]);
+  }
+  return [&f, t, y, root](const Vector<double>& in, Vector<double>& out) {
+    Vector<double> displacement = in;
+    for (Index i = 0; i < root.size(); ++i) displacement[i] = root[i] > 0 ? in[i] / root[i] : 0;
+    displace(f, t, y, displacement, out);
+    out = -out.cwiseProduct(root);
+  };
+}
+
+Spectrum spectrum_at(const Scene& scene, const ParticleSystem<double>& s) {
+  const auto field = field_of(scene);
+  field->bind(s);
+  return spectrum_of(*field, s, 0);
+}
+
+bool is_linear(const Scene& scene) {
+  const auto field = field_of(scene);
+  field->bind(scene.particles);
+  Vector<double> y, start, one, two;
+  field->gather(scene.particles, y);
+  field->rate(0, y, start);
+  const double size = std::max(y.cwiseAbs().maxCoeff(), 1e-3);
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    const Vector<double> d = 0.7 * size * scattered(y.size(), seed);
+    field->rate(0, y + d, one);
+    field->rate(0, y + 2 * d, two);
+    const double change = (one - start).cwiseAbs().maxCoeff(), bend = (two - 2 * one + start).cwiseAbs().maxCoeff();
+    if (!(bend <= 1e-10 * (change + start.cwiseAbs().maxCoeff()))) return false;
+  }
+  return true;
+}
+
+Spectrum spectrum_along(const Scene& scene) {
+  const auto field = field_of(scene);
+  field->bind(scene.particles);
+  Spectrum found = spectrum_of(*field, scene.particles, 0);
+  const double end = look_ahead(scene);
+  if (end == 0 || is_linear(scene) || !scene.hamiltonian.constraints.empty() || scene.system) return found;
+  constexpr int looks = 64;
+  try {
+    Simulation<double> sim = assemble(variant(scene, opponent(scene, "dop853"), {.step = 0, .tolerance = 1e-8}));
+    std::atomic<bool> over{false};
+    sim.stop_on(&over);
+    sim.on_progress([&](const Progress& now) { over = now.seconds > 1; });
+    for (int k = 1; k <= looks; ++k) {
+      if (!sim.run_until(end * k / looks).ok()) break;
+      const Spectrum one = spectrum_of(*field, sim.particles(), sim.time());
+      found.fastest = std::max(found.fastest, one.fastest);
+      found.steepest = std::max(found.steepest, one.steepest);
+      found.products += one.products;
+      found.converged = found.converged && one.converged;
+    }
+  } catch (const Error&) {
+    return found;  // frequencies of the start are all there is
+  }
+  return found;
+}
+
+}  // namespace noether

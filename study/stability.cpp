@@ -1,0 +1,300 @@
+#include "study/stability.hpp"
+
+#include "integrators/methods.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace noether {
+
+namespace {
+
+/// The drag of a scene, if it has one [1/time].
+double drag_of(const Scene& scene) {
+  for (const SceneForce& force : scene.hamiltonian.forces) {
+    if (force.drag) return force.drag->rate;
+  }
+  return 0;
+}
+
+Mode mode_of(const Scene& scene, const Spectrum& spectrum) {
+  if (scene.system) return {.omega = 0, .rate = 0, .lambda = spectrum.stiffest};
+  return {.omega = spectrum.fastest, .rate = drag_of(scene), .lambda = {}};
+}
+
+/// One row on its way.
+class Search {
+ public:
+  Search(const Scene& scene, const Stability& all, const StabilityOptions& options, StabilityRow& row)
+      : scene_(scene), options_(options), row_(row), begin_(std::chrono::steady_clock::now()) {
+    scale_ = all.mode.scale();
+    // Where nothing oscillates, a hundredth of the scene's own step stands for one of the search.
+    if (!(scale_ > 0)) scale_ = 0.2 / std::abs(scene.integrator.step > 0 ? scene.integrator.step : 1);
+    bounds_ = {.frequency = scale_, .linear = all.linear};
+  }
+
+  void run() {
+    choose_scan_steps();
+    const auto found = scan();
+    if (found) settle(found->first, found->second);
+    row_.seconds = spent();
+  }
+
+ private:
+  double spent() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
+  double left() const { return options_.row_budget - spent(); }
+
+  Trial attempt(double z, std::int64_t steps) {
+    if (options_.progress) options_.progress(fmt::format("{}, h omega = {:.3f}", row_.who.label, z));
+    const Trial trial = try_step(scene_, row_.who, z / scale_, steps, bounds_, std::max(left(), 0.01));
+    row_.steps += trial.steps;
+    return trial;
+  }
+  /// Tries a point over many steps: bounded there, it becomes `stable`, else `unstable`.
+  /// @return false where the budget was over before anything was settled
+  bool narrow(double z, double& stable, double& unstable) {
+    const Trial trial = attempt(z, options_.confirm_steps);
+    if (trial.verdict == Bounded::unsettled) return false;
+    (trial.stable() ? stable : unstable) = z;
+    if (!trial.stable()) failed_ = trial;
+    return true;
+  }
+
+  /// Where the search ends without having found anything.
+  double end_of_scan() const {
+    if (row_.theory.limit) return std::min(1.2 * *row_.theory.limit + 0.5, largest_z);
+    return largest_z;
+  }
+
+  struct Point {
+    double z;
+    bool suspect;  ///< theory sees trouble here: many steps
+    bool operator<(const Point& other) const { return z < other.z; }
+  };
+
+  /// Points of the search up to `end`, those among them that theory asks for.
+  std::vector<Point> points(double begin, double end) const {
+    std::vector<Point> all;
+    for (double z = next_z(begin); z <= end; z = next_z(z)) all.push_back({z, false});
+    const LinearTheory& theory = row_.theory;
+    if (theory.limit && theory.gap_end) all.push_back({(*theory.limit + *theory.gap_end) / 2, true});
+    for (const auto& [n, z] : theory.resonances) all.push_back({z, true});
+    std::sort(all.begin(), all.end());
+    all.erase(all.begin(), std::upper_bound(all.begin(), all.end(), Point{begin, false}));
+    return all;
+  }
+
+  /// As many steps for each point as two seconds allow, or half the budget.
+  void choose_scan_steps() {
+    constexpr std::int64_t least = 300, most = 10'000;
+    const auto before = std::chrono::steady_clock::now();
+    const Trial trial = attempt(next_z(0), 2000);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+    const double a_step = seconds / static_cast<double>(std::max<std::int64_t>(trial.steps, 1));
+    const double count = static_cast<double>(points(0, end_of_scan()).size());
+    row_.scan_steps =
+        std::clamp(static_cast<std::int64_t>(std::min(options_.row_budget / 2, 2.0) / count / a_step), least, most);
+  }
+
+  /// Goes upward. @return the last stable point and the first unstable one
+  std::optional<std::pair<double, double>> scan() {
+    double stable = 0;
+    for (const auto& [z, suspect] : points(0, end_of_scan())) {
+      const Trial trial = attempt(z, suspect ? options_.confirm_steps : row_.scan_steps);
+      if (trial.verdict == Bounded::unsettled || left() <= 0) {
+        row_.settled = false;
+        row_.message = fmt::format("the budget was over at h omega = {:.4g}, bounded until there", stable);
+        return {};
+      }
+      failed_ = trial;
+      if (!trial.stable()) return std::pair(stable, z);
+      stable = z;
+    }
+    return {};
+  }
+
+  /// From a bounded point down to one that is bounded over the long run too, then up again.
+  void settle(double stable, double unstable) {
+    row_.settled = close_in(stable, unstable);
+    row_.limit_step = unstable / scale_;
+    row_.limit_h_omega = unstable;
+    row_.message = failed_.message;
+    if (!row_.settled) {
+      row_.message = fmt::format("the budget was over between h omega = {:.6g} and {:.6g}", stable, unstable);
+    }
+    explain(failed_, unstable);
+    if (row_.settled && failed_.verdict == Bounded::unbounded) find_gap_end(unstable);
+  }
+
+  /// @return whether the budget sufficed
+  bool close_in(double& stable, double& unstable) {
+    const double met = unstable;
+    for (double down = 0.002; stable > 0; down *= 2) {
+      double low = 0, high = 0;
+      if (!narrow(stable, low, high)) return false;
+      if (low > 0) break;
+      unstable = high;
+      stable = std::max(stable - down, 0.0);
+    }
+    if (unstable < met) {  // the first of what lies between
+      for (const auto& [z, suspect] : points(stable, unstable)) {
+        double high = 0;
+        if (z >= unstable) break;
+        if (!narrow(z, stable, high)) return false;
+        if (high > 0) unstable = high;
+      }
+    }
+    while (unstable - stable > 1e-5 * std::min(1.0, unstable)) {
+      if (!narrow((stable + unstable) / 2, stable, unstable)) return false;
+    }
+    return true;
+  }
+
+  void explain(const Trial& failed, double limit) {
+    const LinearTheory& theory = row_.theory;
+    row_.resonance = theory.resonance_at(limit);
+    const bool near = theory.limit && limit > *theory.limit - 0.01;
+    if (failed.verdict == Bounded::solver) {
+      row_.reason = "solver";
+    } else {
+      row_.reason = near || bounds_.linear ? "linear" : "resonance";
+    }
+    if (row_.reason != "resonance") row_.resonance = 0;
+  }
+
+  /// Upward from an unstable point to the next that is bounded, if one is near.
+  void find_gap_end(double limit) {
+    double unstable = limit, stable = 0;
+    double by = 2e-4;  // a gap may be much narrower than the steps of the search
+    for (double z = limit + by; z < limit + 1 && stable == 0; z += by) {
+      double low = 0;
+      if (attempt(z, row_.scan_steps).stable() && !narrow(z, low, unstable)) return;
+      if (left() <= 0) return;
+      stable = low;
+      if (low == 0) unstable = z;
+      by = std::min(2 * by, 2e-3);
+    }
+    if (stable == 0) return;
+    while (stable - unstable > 1e-5) {
+      if (!narrow((stable + unstable) / 2, stable, unstable)) return;
+    }
+    row_.gap_end = stable;
+  }
+
+  const Scene& scene_;
+  const StabilityOptions& options_;
+  StabilityRow& row_;
+  std::chrono::steady_clock::time_point begin_;
+  Trial failed_;  ///< the last run that was not bounded
+  double scale_ = 1;
+  Bounds bounds_;
+};
+
+/// A step that is accurate, and far from where the method fails.
+std::optional<double> recommended(const StabilityRow& row, double scale) {
+  const LinearTheory& theory = row.theory;
+  double z = theory.accurate > 0 ? theory.accurate : M_PI / 10;
+  for (const auto& limit : {row.limit_h_omega, theory.limit}) {
+    if (limit) z = std::min(z, *limit / 2);
+  }
+  if (!(z > 0)) return {};
+  return z / scale;
+}
+
+void check(const StabilityOptions& options) {
+  if (!(options.row_budget > 0))
+    throw Error(fmt::format("a budget of {} s is no time; a number above 0 is expected", options.row_budget));
+  if (options.confirm_steps < 1000)
+    throw Error(fmt::format("{} steps confirm nothing; 1000 or more are expected", options.confirm_steps));
+}
+
+/// @throws Error  for a scene in which nothing could grow
+void check_motion(const Scene& scene, double frequency) {
+  double size = 0;
+  const ParticleSystem<double>& s = scene.particles;
+  for (Index i = 0; i < s.size(); ++i) {
+    size += norm2(s.velocities()[i]) + frequency * frequency * norm2(s.positions()[i]);
+  }
+  for (const double y : s.variables()) size += y * y;
+  if (!(size > 0)) throw Error("everything rests at the origin, where no step is too long; start the scene elsewhere");
+}
+
+}  // namespace
+
+Opponent fixed_opponent(const Scene& scene, const std::string& name) {
+  Opponent who = opponent(scene, name);
+  const MethodInfo* info = methods::find(who.method);
+  if (info != nullptr && !info->fixed) {
+    throw Error(
+        fmt::format("method '{}' chooses its steps by a tolerance, so it has no largest step; ask for one of fixed "
+                    "steps, such as 'rk4'",
+                    who.method));
+  }
+  who.adaptive = false;
+  static_cast<void>(assemble(variant(scene, who, {.step = 1, .tolerance = 0})));
+  return who;
+}
+
+std::vector<std::string> default_stability_methods(const Scene& scene) {
+  std::vector<std::string> names = {scene.integrator.method};
+  if (scene.particles.size() == 0) {
+    names.insert(names.end(), {"euler", "rk4", "dormand_prince_5", "dop853", "adams_bashforth_3", "backward_euler",
+                               "trapezoidal", "sdirk_4", "rodas_4", "gauss_2"});
+  } else {
+    names.insert(names.end(), {"verlet", "yoshida_4", "blanes_moan_s6", "srkn11b", "kahan_li_8_s17", "rk4",
+                               "dormand_prince_5", "dop853", "adams_bashforth_3", "implicit_midpoint", "gauss_2"});
+  }
+  std::vector<Opponent> all;
+  std::vector<std::string> kept;
+  for (const std::string& one : names) {
+    try {
+      Opponent who = fixed_opponent(scene, one);
+      if (std::find(all.begin(), all.end(), who) != all.end()) continue;
+      all.push_back(std::move(who));
+      kept.push_back(one);
+    } catch (const Error&) {
+      continue;  // it cannot serve this scene
+    }
+  }
+  return kept;
+}
+
+Stability find_stability(const Scene& scene, const StabilityOptions& options) {
+  check(options);
+  Stability found;
+  found.scene = scene.source.file;
+  found.title = scene.title;
+  found.time_unit = scene.units->time;
+  std::vector<Opponent> methods;
+  for (const std::string& name : options.methods.empty() ? default_stability_methods(scene) : options.methods) {
+    Opponent who = fixed_opponent(scene, name);
+    if (std::find(methods.begin(), methods.end(), who) == methods.end()) methods.push_back(std::move(who));
+  }
+  found.spectrum = spectrum_along(scene);
+  const bool constrained = !scene.hamiltonian.constraints.empty();
+  if (constrained) found.spectrum = {};  // frequencies are not those of the free particles
+  found.linear = !constrained && is_linear(scene);
+  found.mode = mode_of(scene, found.spectrum);
+  check_motion(scene, found.spectrum.fastest > 0 ? found.spectrum.fastest : 1);
+  for (const Opponent& who : methods) {
+    StabilityRow row;
+    row.who = who;
+    row.theory = linear_theory(scene, who, found.mode);
+    Search(scene, found, options, row).run();
+    const double scale = found.mode.scale();
+    if (scale > 0) {
+      row.recommended_step = recommended(row, scale);
+    } else {
+      if (row.limit_step) row.recommended_step = *row.limit_step / 2;
+      row.limit_h_omega.reset();
+      row.gap_end.reset();
+    }
+    found.rows.push_back(std::move(row));
+  }
+  return found;
+}
+
+}  // namespace noether

@@ -1,0 +1,128 @@
+#pragma once
+/// `noether stability`: the largest step at which a method stays bounded on a scene, beside what linear theory says.
+
+#include "study/amplitude.hpp"
+#include "study/linear_stability.hpp"
+#include "study/opponent.hpp"
+#include "study/spectrum.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace noether {
+
+/// How one run of many steps ended.
+enum class Bounded : std::uint8_t {
+  bounded,
+  unbounded,
+  solver,    ///< an implicit step or a constraint could not be solved
+  unsettled  ///< the time was over before
+};
+std::string_view name(Bounded verdict);
+
+/// What a run of many steps at one step length showed.
+struct Trial {
+  Bounded verdict = Bounded::bounded;
+  std::int64_t steps = 0;  ///< made
+  double largest = 1;      ///< amplitude over that of the start
+  double growth = 0;       ///< of the amplitude in one step, by least squares through the largest of 20 blocks
+  double growth_error = 0;
+  std::string message = {};  ///< how it failed, in words
+
+  bool stable() const { return verdict == Bounded::bounded; }
+};
+
+/// Where amplitudes are lost.
+struct Bounds {
+  double frequency = 1;  ///< weighs positions against velocities [1/time]
+  bool linear = false;   ///< then growth by `growth_threshold` a step counts too, but for symplectic methods
+  double most = 1e3;     ///< times the amplitude of the start
+};
+
+/// How far a run goes: so many steps, or, where the method chooses them, so long [time].
+struct RunLength {
+  static constexpr int looks = 1000;  ///< at which the state is measured, evenly
+
+  std::int64_t steps = 0;
+  double until = 0;
+
+  std::int64_t between_looks() const { return std::max<std::int64_t>(1, steps / looks); }
+};
+
+/// Follows a run to its end, or until its amplitude has left all bounds: see `try_step`.
+/// @param look  called at every look
+Trial follow(Simulation<double>& sim, const RunLength& length, const Amplitude& amplitude, const Bounds& bounds,
+             double budget, const std::function<void(Simulation<double>&)>& look = {});
+
+/// Runs a scene by a method for so many steps, or until its amplitude has left all bounds.
+///
+/// With A as `Amplitude` tells it, a run is unbounded when it leaves the finite numbers, when A passes `most` times
+/// what it was, or, on a linear problem, when A grows by more than `growth_threshold` a step, surely (by three standard
+/// errors) and visibly (by 0.01 % over the run).
+/// @param budget  seconds of wall time
+Trial try_step(const Scene& scene, const Opponent& who, double step, std::int64_t steps, const Bounds& bounds,
+               double budget);
+
+/// How a search goes.
+struct StabilityOptions {
+  std::vector<std::string> methods = {};  ///< names as `opponent` reads them; empty: `default_stability_methods`
+  std::int64_t confirm_steps = 100'000;   ///< of the runs that settle a limit
+  double row_budget = 20;                 ///< seconds of wall time for one method
+  std::function<void(const std::string&)> progress = {};
+};
+
+/// One method.
+struct StabilityRow {
+  Opponent who = {};
+  std::optional<double> limit_step = {};  ///< first step that is not bounded [time]; none: bounded as far as searched
+  std::optional<double> limit_h_omega = {};  ///< the same times omega; none where nothing oscillates
+  LinearTheory theory = {};
+  std::string reason = "none";                  ///< linear, resonance, solver or none
+  int resonance = 0;                            ///< n of the n:1 resonance next to the limit; 0: none
+  std::optional<double> gap_end = {};           ///< h omega from which runs are bounded again, if they are
+  std::optional<double> recommended_step = {};  ///< [time]
+  bool settled = true;                          ///< else the budget was over, and `message` tells what is known
+  std::string message = {};
+  std::int64_t scan_steps = 0;  ///< of each run of the scan
+  std::int64_t steps = 0;       ///< in all runs together
+  double seconds = 0;
+};
+
+/// A finished search.
+struct Stability {
+  std::string scene = {}, title = {}, time_unit = {};
+  Spectrum spectrum = {};
+  Mode mode = {};
+  bool linear = false;
+  std::vector<StabilityRow> rows = {};
+};
+
+/// The largest stable step of every method.
+///
+/// Of each, h omega goes upward by 2e-3 (from 10 on by 2 %) in runs of 300 to 10000 steps, as many as the budget
+/// allows, and of linear theory's gaps and n:1 resonances each is looked at whether the search meets it or not. Below
+/// the first unstable point a run of `confirm_steps` must be bounded; if it is not, the search goes down, and up again
+/// in runs of that length. The limit is then found by halving, to 1e-5 of omega h, and so is the end of the gap.
+///
+/// Recommended: the step of the accuracy that leapfrog has with 20 steps in the shortest period (see `LinearTheory`),
+/// at most half the limit.
+/// @throws Error  for methods that are not known, cannot serve the scene, or have no fixed steps; for a scene at rest
+/// @cost a few seconds for each method on a few bodies
+Stability find_stability(const Scene& scene, const StabilityOptions& options = {});
+
+/// Methods worth asking on a scene, its own first: those that can serve it with fixed steps.
+std::vector<std::string> default_stability_methods(const Scene& scene);
+
+/// The opponent of a name, with fixed steps. @throws Error  as `opponent`, and for methods that choose their steps
+Opponent fixed_opponent(const Scene& scene, const std::string& name);
+
+/// As one line of JSON: the schema noether.stability/1.
+std::string to_json(const Stability& found);
+/// As a table.
+std::string to_text(const Stability& found);
+
+}  // namespace noether

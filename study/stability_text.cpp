@@ -1,0 +1,81 @@
+#include "scene/json.hpp"
+#include "study/stability.hpp"
+
+#include <fmt/format.h>
+
+namespace noether {
+
+namespace {
+
+std::string number(const std::optional<double>& x, int digits) { return x ? fmt::format("{:.{}g}", *x, digits) : "-"; }
+
+std::string why(const StabilityRow& row) {
+  std::string text = row.reason;
+  if (row.resonance > 0) text += fmt::format(" {}:1", row.resonance);
+  return row.settled ? text : text + ", not settled";
+}
+
+}  // namespace
+
+std::string to_json(const Stability& found) {
+  const auto time = [&](const std::optional<double>& x) { return Json(x); };
+  std::vector<Json> rows;
+  for (const StabilityRow& row : found.rows) {
+    std::vector<Json> resonances;
+    for (const auto& [n, z] : row.theory.resonances) {
+      resonances.push_back(Json::object({{"n", n}, {"h_omega", z}}));
+    }
+    rows.push_back(Json::object({{"method", row.who.label},
+                                 {"limit_step", time(row.limit_step)},
+                                 {"limit_h_omega", Json(row.limit_h_omega)},
+                                 {"theory", Json(row.theory.limit)},
+                                 {"theory_known", row.theory.known},
+                                 {"reason", row.reason},
+                                 {"gap_end", Json(row.gap_end)},
+                                 {"recommended_step", time(row.recommended_step)},
+                                 {"resonance", row.resonance > 0 ? Json(row.resonance) : Json()},
+                                 {"resonances", Json::list(resonances)},
+                                 {"settled", row.settled},
+                                 {"message", row.message.empty() ? Json() : Json(row.message)},
+                                 {"scan_steps", row.scan_steps},
+                                 {"steps", row.steps},
+                                 {"wall_s", row.seconds}}));
+  }
+  const auto positive = [](double x) { return x > 0 ? Json(x) : Json(); };
+  return Json::object({{"schema", "noether.stability/1"},
+                       {"scene", found.scene},
+                       {"time_unit", found.time_unit},
+                       {"omega", positive(found.spectrum.fastest)},
+                       {"shortest_period", positive(found.spectrum.shortest_period())},
+                       {"linear", found.linear},
+                       {"growth_threshold", growth_threshold},
+                       {"rows", Json::list(rows)}})
+      .text();
+}
+
+std::string to_text(const Stability& found) {
+  const bool reduced = found.time_unit == "1";
+  const std::string unit = reduced ? "" : " " + found.time_unit;
+  std::string out;
+  if (found.spectrum.fastest > 0) {
+    out += fmt::format("fastest oscillation: omega = {:.6g}{}, period {:.6g}{}{}\n", found.spectrum.fastest,
+                       reduced ? "" : " 1/" + found.time_unit, found.spectrum.shortest_period(), unit,
+                       found.linear ? ", linear" : "");
+  } else {
+    out += "no oscillation is known; steps alone are told\n";
+  }
+  out += fmt::format("{:<28} {:>12} {:>10} {:>10} {:<18} {:>10} {:>13} {:>7}\n", "method", "limit step", "h omega",
+                     "theory", "reason", "gap end", "recommended", "s");
+  for (const StabilityRow& row : found.rows) {
+    const std::string theory = row.theory.limit ? number(row.theory.limit, 6) : row.theory.known ? "none" : "-";
+    out += fmt::format("{:<28} {:>12} {:>10} {:>10} {:<18} {:>10} {:>13} {:>7.1f}\n", row.who.label,
+                       number(row.limit_step, 6), number(row.limit_h_omega, 6), theory, why(row),
+                       number(row.gap_end, 6), number(row.recommended_step, 4), row.seconds);
+  }
+  for (const StabilityRow& row : found.rows) {
+    if (!row.message.empty()) out += fmt::format("{}: {}\n", row.who.label, row.message);
+  }
+  return out;
+}
+
+}  // namespace noether

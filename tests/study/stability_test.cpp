@@ -1,0 +1,230 @@
+// Stability: spectra against closed forms, limits against tables, resonances against the literature.
+
+#include "study/stability.hpp"
+#include "integrators/methods.hpp"
+#include "integrators/schemes.hpp"
+#include "tests/study/scenes.hpp"
+#include "tests/support/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace noether::test {
+namespace {
+
+/// n equal balls on springs between two walls: omega_k = 2 sqrt(k/m) sin(pi k / (2 n + 2)).
+Scene chain(int n) {
+  std::string text = "units = \"reduced\"\n[particles]\nbody = [\n";
+  std::string names;
+  for (int i = 0; i < n; ++i) {
+    text += fmt::format("{{ name = \"b{}\", mass = 0.5, x = [{}, 0, 0], v = [0.1, 0, 0] }},\n", i, i + 1);
+  }
+  text += "]\n[hamiltonian]\ntype = \"kinetic_potential\"\n";
+  text += fmt::format("[[hamiltonian.force]]\ntype = \"harmonic_bond\"\nchain = [\"b0\", \"b{}\"]\nk = 3\n", n - 1);
+  for (const int end : {0, n - 1}) {
+    text += fmt::format("[[hamiltonian.force]]\ntype = \"tether\"\nbodies = [\"b{}\"]\nk = 3\npoint = [{}, 0, 0]\n",
+                        end, end == 0 ? 0 : n + 1);
+  }
+  return read_scene(text + "[integrator]\nmethod = \"verlet\"\nstep = 0.1\nsteps = 1000\n", "chain.toml");
+}
+
+/// q'' = - q - q^2, q = -y, at rest at q0.
+Scene quadratic_well(double q0, double h) {
+  return read_scene(fmt::format(R"(units = "reduced"
+[particles]
+body = [{{ name = "q", mass = 1, x = [0, {}, 0], v = [0, 0, 0] }}]
+[hamiltonian]
+type = "kinetic_potential"
+[[hamiltonian.force]]
+type = "henon_heiles"
+[integrator]
+method = "verlet"
+step = {}
+steps = 1500
+)",
+                                -q0, h),
+                    "well.toml");
+}
+
+/// A ball on a spring of frequency 1 that does not start at an edge of its motion.
+Scene ball(const std::string& integrator = "method = \"verlet\"\nstep = 0.1\nsteps = 1000") {
+  return read_scene(R"(units = "reduced"
+[particles]
+body = [{ name = "ball", mass = 1, x = [1, 0, 0], v = [0, 0.5, 0] }]
+[hamiltonian]
+type = "kinetic_potential"
+[[hamiltonian.force]]
+type = "harmonic_field"
+k = 1
+[integrator]
+)" + integrator,
+                    "ball.toml");
+}
+
+StabilityRow row_of(const Scene& scene, const std::string& method, double budget = 20) {
+  StabilityOptions options;
+  options.methods = {method};
+  options.row_budget = budget;
+  return find_stability(scene, options).rows.at(0);
+}
+
+TEST_CASE("spectra of chains are those of the closed form, dense and by Lanczos", "[stability]") {
+  for (const int n : {2, 7, 100}) {
+    const Scene scene = chain(n);
+    CAPTURE(n);
+    const double expected = 2 * std::sqrt(6.0) * std::sin(M_PI * n / (2 * n + 2));
+    const Spectrum found = spectrum_at(scene, scene.particles);
+    CHECK(found.converged);
+    CHECK(std::abs(found.fastest / expected - 1) < 1e-8);
+    CHECK(found.steepest == 0);
+    CHECK(is_linear(scene));
+    if (n == 100) CHECK(found.products <= 200);
+  }
+}
+
+TEST_CASE("Lanczos finds both ends of a spectrum, and of a small one exactly", "[stability]") {
+  const auto diagonal = [](const Vector<double>& in, Vector<double>& out) {
+    out.resize(in.size());
+    for (Index i = 0; i < in.size(); ++i) out[i] = (static_cast<double>(i) - 40) * in[i];
+  };
+  const Extremes ends = lanczos(diagonal, 300);
+  CHECK(ends.converged);
+  CHECK(std::abs(ends.least + 40) < 1e-6);
+  CHECK(std::abs(ends.largest - 259) < 1e-6);
+  const Extremes few = lanczos(diagonal, 3);
+  CHECK(std::abs(few.least + 40) < 1e-12);
+  CHECK(std::abs(few.largest + 38) < 1e-12);
+}
+
+TEST_CASE("the spectrum of a circular orbit has the orbit's frequency and the tide's rate", "[stability]") {
+  const Scene scene = kepler(0, "method = \"verlet\"\nstep = 0.01\nsteps = 1000");
+  const Spectrum found = spectrum_along(scene);
+  CHECK(std::abs(found.fastest - 1) < 1e-6);
+  CHECK(std::abs(found.steepest - std::sqrt(2.0)) < 1e-6);
+  CHECK_FALSE(is_linear(scene));
+}
+
+TEST_CASE("linear theory has the tabulated limits and the closed resonances", "[stability]") {
+  const Scene scene = ball();
+  const Mode mode{.omega = 1, .rate = 0, .lambda = {}};
+  const auto theory = [&](const std::string& name) { return linear_theory(scene, fixed_opponent(scene, name), mode); };
+  for (const Scheme* scheme : schemes::all()) {
+    if (scheme->stability_limit == 0) continue;
+    CAPTURE(std::string(scheme->name));
+    const LinearTheory found = theory(std::string(scheme->name));
+    REQUIRE(found.limit);
+    CHECK(std::abs(*found.limit - scheme->stability_limit) < 1e-4);
+  }
+  for (const char* name : {"rk4", "dormand_prince_5", "dop853"}) {
+    CAPTURE(name);
+    CHECK(std::abs(*theory(name).limit - methods::find(name)->stability_limit) < 1e-3);
+  }
+  for (const char* name : {"trapezoidal", "backward_euler", "sdirk_4"}) CHECK_FALSE(theory(name).limit);
+  const LinearTheory verlet = theory("verlet"), srkn = theory("srkn11b");
+  for (int n = 3; n <= 6; ++n) CHECK(std::abs(verlet.resonances.at(n) - 2 * std::sin(M_PI / n)) < 1e-8);
+  CHECK(verlet.resonance_at(1.74) == 3);
+  CHECK(verlet.resonance_at(0.3) == 0);
+  CHECK(std::abs(srkn.gap_end.value() - 3.14232) < 1e-5);
+  const LinearTheory rule = theory("trapezoidal");  // as of the midpoint rule
+  for (int n = 3; n <= 6; ++n) CHECK(std::abs(rule.resonances.at(n) - 2 * std::tan(M_PI / n)) < 1e-7);
+  CHECK(std::abs(verlet.accurate / (M_PI / 10) - 1) < 0.02);  // 20 steps a period
+}
+
+TEST_CASE("measured limits are within 1e-3 of the tabulated ones", "[stability][slow]") {
+  const Scene scene = ball();
+  for (const char* name : {"verlet", "yoshida_4", "rk4", "dormand_prince_5", "adams_bashforth_3"}) {
+    const Scheme* scheme = schemes::find(name);
+    const double table = scheme != nullptr ? scheme->stability_limit : methods::find(name)->stability_limit;
+    const StabilityRow row = row_of(scene, name);
+    CAPTURE(name, row.message, table);
+    CHECK(row.settled);
+    CHECK(row.reason == "linear");
+    CHECK(std::abs(row.limit_h_omega.value() - table) < 1e-3);
+    CHECK(row.recommended_step.value() <= table / 2);
+  }
+}
+
+TEST_CASE("gaps narrower than the search are found, with their ends", "[stability][slow]") {
+  const StabilityRow row = row_of(ball(), "srkn11b");
+  CHECK(std::abs(row.limit_h_omega.value() - 3.14143) < 1e-3);
+  CHECK(std::abs(row.gap_end.value() - 3.14232) < 1e-4);
+}
+
+TEST_CASE("a method that is stable at any step has no limit, and one that cannot solve its steps says so",
+          "[stability][slow]") {
+  const StabilityRow stable = row_of(ball(), "trapezoidal"), swept = row_of(ball(), "implicit_midpoint");
+  INFO(stable.message << swept.message);
+  CHECK(stable.reason == "none");
+  CHECK_FALSE(stable.limit_step);
+  CHECK(swept.reason == "solver");
+  CHECK(swept.limit_h_omega.value() <= 2);
+}
+
+TEST_CASE("the largest bounded start of q'' = -q - q^2 under leapfrog is that of the literature", "[stability]") {
+  // Table of the survey, rows 1.70 to 1.90, to 0.002; 1500 steps.
+  for (const auto& [h, largest] : {std::pair(1.70, 0.088), std::pair(1.72, 0.028), std::pair(std::sqrt(3.0), 0.0),
+                                   std::pair(1.74, 0.009), std::pair(1.78, 0.047), std::pair(1.9, 0.127)}) {
+    const auto bounded = [&, step = h](double q0) {
+      const Scene scene = quadratic_well(q0, step);
+      return try_step(scene, opponent(scene, "verlet"), step, 1500, {}, 10).stable();
+    };
+    CAPTURE(h, largest);
+    if (largest > 0.002) CHECK(bounded(largest - 0.002));
+    CHECK_FALSE(bounded(largest + 0.002));
+  }
+}
+
+TEST_CASE("below the linear limit a nonlinear problem fails at its resonance", "[stability][slow]") {
+  const StabilityRow row = row_of(quadratic_well(0.05, 0.1), "verlet");
+  INFO(row.message);
+  CHECK(row.reason == "resonance");
+  CHECK(row.resonance == 3);
+  CHECK(std::abs(row.limit_step.value() - 1.715) < 0.02);
+}
+
+TEST_CASE("a search whose budget is over says so", "[stability]") {
+  const StabilityRow row = row_of(ball(), "dop853", 0.05);
+  CHECK_FALSE(row.settled);
+  CHECK(row.message.find("budget") != std::string::npos);
+  CHECK(row.seconds < 2);
+}
+
+TEST_CASE("drag moves limits as the theory of its letter says", "[stability][slow]") {
+  const Scene scene = oscillator("method = \"euler\"\nstep = 0.1\nsteps = 1000", 0.2);
+  const StabilityRow row = row_of(scene, "euler");
+  CHECK(std::abs(row.limit_h_omega.value() - 0.2) < 1e-3);  // h < 2 gamma / omega^2, gamma = rate / 2
+  CHECK(std::abs(row.theory.limit.value() - 0.2) < 1e-6);
+}
+
+TEST_CASE("first-order systems have the limits of their eigenvalues", "[stability][slow]") {
+  // The explicit Euler method needs h |lambda| < 2 on the real axis, RK4 2.78529.
+  const Scene scene = read_scene(R"(units = "reduced"
+[system]
+type = "heat_line"
+points = 8
+mode = 1
+[integrator]
+method = "rk4"
+step = 1e-4
+steps = 2000
+)",
+                                 "heat.toml");
+  const StabilityRow euler = row_of(scene, "euler"), rk4 = row_of(scene, "rk4");
+  INFO(euler.message << rk4.message);
+  CHECK(std::abs(euler.theory.limit.value() - 2) < 1e-6);
+  CHECK(std::abs(rk4.theory.limit.value() - 2.78529) < 1e-4);
+}
+
+TEST_CASE("what cannot be asked is refused", "[stability]") {
+  const Scene scene = ball();
+  CHECK_THROWS_WITH(row_of(scene, "bdf"),
+                    "method 'bdf' chooses its steps by a tolerance, so it has no largest step; ask for one of fixed "
+                    "steps, such as 'rk4'");
+  CHECK_THROWS_WITH(row_of(scene, "verlt"), "unknown method 'verlt'; did you mean 'verlet'?");
+  CHECK_THROWS_WITH(row_of(scene, "verlet", 0), "a budget of 0 s is no time; a number above 0 is expected");
+}
+
+}  // namespace
+}  // namespace noether::test
