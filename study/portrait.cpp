@@ -14,7 +14,6 @@ namespace noether {
 
 namespace {
 
-using portrait::CubicWell;
 using portrait::Walk;
 
 using State = std::array<Quad, 4>;  ///< (x, y, u, v) of a particle in the plane
@@ -47,7 +46,7 @@ double distance(const State& a, const State& b) {
 
 /// Where a method is after some steps in the well; empty if it cannot make them.
 std::optional<State> walked(const Sitter& sitter, const State& from, double h, std::int64_t steps) {
-  Walk<Quad> walk(portrait::integrator_of<Quad>(sitter, CubicWell{}), particle_at(from), h);
+  Walk<Quad> walk(portrait::integrator_of<Quad>(sitter, HenonHeiles{}), particle_at(from), h);
   if (!walk.go(steps)) return std::nullopt;
   return state_of(walk.particles());
 }
@@ -57,7 +56,7 @@ constexpr double duration = 6;
 /// Where a method with steps of its own is at t = 6, and the forces it took.
 std::pair<State, double> travelled(const MethodInfo& info, const State& from, double tolerance) {
   const auto method = make_method<Quad>(info, {.rtol = tolerance, .atol = tolerance});
-  ForceMotion<CubicWell, Quad> f{CubicWell{}};
+  ForceMotion<HenonHeiles, Quad> f{HenonHeiles{}};
   ParticleSystem<Quad> s = particle_at(from);
   f.bind(s);
   method->bind(f);
@@ -144,7 +143,7 @@ double work_exponent(const MethodInfo& info) {
 std::optional<double> measured_evaluations(const Sitter& sitter) {
   std::optional<std::int64_t> each;
   for (const double h : {0.01, 0.25}) {
-    Walk<Quad> walk(portrait::integrator_of<Quad>(sitter, CubicWell{}), particle_at(start()), h);
+    Walk<Quad> walk(portrait::integrator_of<Quad>(sitter, HenonHeiles{}), particle_at(start()), h);
     if (!walk.go(some_steps)) return std::nullopt;
     for (int n = 0; n < 8; ++n) {
       const std::int64_t before = walk.evaluations();
@@ -220,7 +219,7 @@ std::pair<double, double> momenta_lost(const Sitter& sitter, double h) {
 
 /// Largest energy errors, relative, of the first and the last eighth of many periods. Not finite where it escapes.
 std::pair<double, double> energy_errors(const Sitter& sitter, double h) {
-  Walk<Quad> walk(portrait::integrator_of<Quad>(sitter, CubicWell{}), particle_at(start()), h);
+  Walk<Quad> walk(portrait::integrator_of<Quad>(sitter, HenonHeiles{}), particle_at(start()), h);
   const Quad before = walk.energy();
   const auto steps = static_cast<std::int64_t>(std::ceil(628 / h)), eighth = steps / 8, looks = std::int64_t{128};
   const std::pair<double, double> lost(0, std::numeric_limits<double>::infinity());
@@ -245,7 +244,7 @@ double long_step(int order, const std::optional<StabilityLimit>& limit) {
 /// Whether a method chooses its steps if it is let: lengths of its first ones, asked for ten units of time.
 bool chooses_steps(const MethodInfo& info) {
   const auto method = make_method<double>(info, {});
-  ForceMotion<CubicWell, double> f{CubicWell{}};
+  ForceMotion<HenonHeiles, double> f{HenonHeiles{}};
   ParticleSystem<double> s = portrait::one_particle(0.12, 0.1, 0.2, 0.15);
   f.bind(s);
   method->bind(f);
@@ -299,7 +298,7 @@ MethodTraits claimed_traits(const Sitter& sitter) {
 
 MethodTraits measured_traits(const Sitter& sitter) {
   MethodTraits traits;
-  const bool fixed = portrait::integrator_of<Quad>(sitter, CubicWell{}).claims().clock == ClockMode::fixed;
+  const bool fixed = portrait::integrator_of<Quad>(sitter, HenonHeiles{}).claims().clock == ClockMode::fixed;
   traits.fixed_steps = fixed;
   traits.own_steps = sitter.info != nullptr && chooses_steps(*sitter.info);
   traits.order = fixed ? measured_order(sitter) : work_exponent(*sitter.info);

@@ -4,6 +4,7 @@
 #include "engine/erasure.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
+#include "forces/henon_heiles.hpp"
 #include "integrators/classical.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
@@ -14,23 +15,6 @@
 #include <string>
 
 namespace noether::portrait {
-
-/// The force of Henon and Heiles in the plane.
-///     U = sum m [ (x^2 + y^2)/2 + x^2 y - y^3/3 ]
-struct CubicWell {
-  std::string name() const { return "cubic_well"; }
-  static ForceClaims claims() { return {.keeps_momentum = false, .keeps_angular_momentum = false}; }
-  template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
-    for (Index i = 0; i < s.size(); ++i) {
-      const Vec3<Real> q = s.positions()[i];
-      const Real x = q[0], y = q[1];
-      out.acceleration(i, Vec3<Real>(-x - Real(2) * x * y, -y - x * x + y * y, Real(0)));
-      if (out.wants_energy()) {
-        out.energy(s.masses()[i] * ((x * x + y * y) / Real(2) + x * x * y - y * y * y / Real(3)));
-      }
-    }
-  }
-};
 
 /// x'' = -x, and until `end` a rough force that no smooth start can follow: it wakes all that a method remembers.
 struct ShakenSpring {
