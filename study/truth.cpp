@@ -135,7 +135,8 @@ WideScene wide_scene(const Scene& scene) {
     return wide;
   }
   ForceField<Quad> forces;
-  for (const AnyForce<double>& force : forces_of(scene).terms()) {
+  const ForceField<double> narrow = forces_of(scene);
+  for (const AnyForce<double>& force : narrow.terms()) {
     const auto in_quad = force.in_quad();
     if (!in_quad) {
       wide.reason = fmt::format("force '{}' is written for doubles only", force.name());

@@ -56,7 +56,8 @@ void check_portrait(const Sitter& sitter) {
   CHECK(portrait.differences().empty());
   INFO("docs/methods.md is written by ./noether list methods --measured > docs/methods.md");
   const auto row = rows_of_the_page().find(portrait.name);
-  REQUIRE(row != rows_of_the_page().end());
+  CHECK((row != rows_of_the_page().end()));
+  if (row == rows_of_the_page().end()) return;
   const std::vector<std::string> cells = cells_of(portrait);
   REQUIRE(row->second.size() == cells.size());
   for (std::size_t k = 0; k < cells.size(); ++k) {
