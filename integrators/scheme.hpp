@@ -80,7 +80,7 @@ struct Scheme {
   std::string_view exact = "";  ///< letters whose maps must be exact flows
   /// First h omega on the harmonic oscillator that is unstable; NaN: it does not say.
   double stability_limit = std::numeric_limits<double>::quiet_NaN();
-  int printed_digits = 34;      ///< significant digits of the shortest coefficient in the source
+  int printed_digits = 34;  ///< significant digits of the shortest coefficient in the source
   Word word = {};
   Word before = {}, after = {};  ///< once before the run; on copies shown to users
 
