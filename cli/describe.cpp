@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
@@ -184,7 +185,9 @@ void describe_method(const MethodInfo& info, bool json) {
   if (!aliases.empty()) fmt::print("also called {}\n", fmt::join(aliases, ", "));
   fmt::print("\n  order {}, {}\n  for y' = f(t, y): it takes all forces together, velocity-dependent ones too\n",
              info.order, steps_text(info));
-  if (info.stability_limit > 0) {
+  if (std::isinf(info.stability_limit)) {
+    fmt::print("  stable on the oscillator at any step\n");
+  } else if (info.stability_limit > 0) {
     fmt::print("  stable on the oscillator up to h omega = {:.6g}\n", info.stability_limit);
   }
   const std::string entries = entries_of(info.source);

@@ -7,11 +7,13 @@
 #include "integrators/schemes.hpp"
 #include "scene/json.hpp"
 #include "scene/parts.hpp"
+#include "study/portrait.hpp"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -138,6 +140,42 @@ void print_text(const std::string& what, const Listing& list) {
   }
 }
 
+Json traits_json(const MethodTraits& traits) {
+  const double limit = traits.stability_limit.value_or(0);
+  const Json stable = !traits.stability_limit ? Json() : std::isinf(limit) ? Json("always") : Json(limit);
+  return Json::object({{"order", traits.order},
+                       {"evaluations", traits.evaluations},
+                       {"symplectic", traits.symplectic},
+                       {"reversible", traits.reversible},
+                       {"momentum", traits.momentum},
+                       {"angular_momentum", traits.angular_momentum},
+                       {"energy", text_of(traits.energy)},
+                       {"fixed_steps", traits.fixed_steps},
+                       {"own_steps", traits.own_steps},
+                       {"stability_limit", stable}});
+}
+
+/// docs/methods.md, or its cells for machines.
+void print_measured(bool json) {
+  std::vector<Portrait> portraits;
+  for (const Sitter& sitter : all_sitters()) portraits.push_back(portrait_of(sitter));
+  if (!json) {
+    fmt::print("{}", portraits_page(portraits));
+    return;
+  }
+  std::vector<Json> items;
+  for (const Portrait& portrait : portraits) {
+    items.push_back(Json::object({{"name", portrait.name},
+                                  {"family", portrait.family},
+                                  {"use", portrait.use},
+                                  {"measured", traits_json(portrait.measured)},
+                                  {"claimed", traits_json(portrait.claimed)},
+                                  {"differences", Json::list_of(portrait.differences())}}));
+  }
+  fmt::print("{}\n",
+             Json::object({{"schema", "noether.list/1"}, {"list", "methods"}, {"items", Json::list(items)}}).text());
+}
+
 }  // namespace
 
 void add_list_command(CLI::App& app, int& exit_code) {
@@ -149,14 +187,21 @@ void add_list_command(CLI::App& app, int& exit_code) {
       ->required()
       ->type_name("WHAT");
   command->add_flag("--json", *json, "as one line of JSON");
-  command->callback([what, json, &exit_code] {
+  const auto measured = std::make_shared<bool>(false);
+  command->add_flag("--measured", *measured, "methods: what each of them does when it is run, as docs/methods.md");
+  command->callback([what, json, measured, &exit_code] {
+    exit_code = 0;
+    if (*measured) {
+      if (*what != "methods")
+        throw Error(fmt::format("only methods are measured, not {}; leave --measured out", *what));
+      return print_measured(*json);
+    }
     const Listing list = listing_of(*what);
     if (*json) {
       print_json(*what, list);
     } else {
       print_text(*what, list);
     }
-    exit_code = 0;
   });
 }
 

@@ -4,6 +4,7 @@
 #include "engine/saved_state.hpp"
 #include "integrators/vector_field.hpp"
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -87,13 +88,18 @@ struct MethodInfo {
   std::string_view name;
   std::string_view aliases = "";  ///< parted by blanks
   std::string_view summary = "";
+  std::string_view use = "";      ///< what it is best for, in a few words
   std::string_view source = "";   ///< keys of docs/references.bib
   std::string_view family = "";   ///< "runge-kutta", "multistep", ...
   std::string_view options = "";  ///< names of options it takes beside step, rtol and atol, parted by blanks
   int order = 0;
+  int evaluations = 0;                  ///< forces a fixed step, after the start; 0: it iterates, so it depends
+  int printed_digits = 34;              ///< significant digits of the shortest coefficient in the source
   bool fixed = true, adaptive = false;  ///< what it can do; adaptive wins where both are possible
   double rtol = 1e-6, atol = 1e-9;      ///< defaults
-  double stability_limit = 0;           ///< first h omega on the oscillator that is unstable; 0: not tabulated
+  /// First h omega on the oscillator that is unstable with fixed steps; 0: every one is, infinity: none is, NaN: it
+  /// does not say.
+  double stability_limit = std::numeric_limits<double>::quiet_NaN();
   std::unique_ptr<Method<double>> (*make)(const MethodInfo&, const MethodOptions&) = nullptr;
   std::unique_ptr<Method<Quad>> (*make_quad)(const MethodInfo&, const MethodOptions&) = nullptr;  ///< null: double only
 

@@ -73,12 +73,14 @@ struct Scheme {
   std::string_view name;
   std::string_view aliases = "";  ///< other names, parted by blanks
   std::string_view summary = "";
+  std::string_view use = "";     ///< what it is best for, in a few words; empty: its family says so
   std::string_view source = "";  ///< key of docs/references.bib
   Order order = {};
   SchemeClass scheme_class = SchemeClass::general;
   std::string_view exact = "";  ///< letters whose maps must be exact flows
-  double stability_limit = 0;   ///< first h omega on the harmonic oscillator that is unstable; 0: not tabulated
-  int printed_digits = 34;      ///< significant digits of the shortest coefficient in the source
+  /// First h omega on the harmonic oscillator that is unstable; NaN: it does not say.
+  double stability_limit = std::numeric_limits<double>::quiet_NaN();
+  int printed_digits = 34;  ///< significant digits of the shortest coefficient in the source
   Word word = {};
   Word before = {}, after = {};  ///< once before the run; on copies shown to users
 

@@ -4,6 +4,7 @@
 #include "integrators/methods/newton.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace noether {
 
@@ -392,12 +393,14 @@ std::unique_ptr<Method<Real>> make_fixed_bdf(const MethodInfo& info, const Metho
   return std::make_unique<FixedBdf<Real>>(info);
 }
 
-MethodInfo fixed_bdf(std::string_view name, std::string_view summary, int order) {
+MethodInfo fixed_bdf(std::string_view name, std::string_view summary, std::string_view use, int order, double limit) {
   return {.name = name,
           .summary = summary,
+          .use = use,
           .source = "HairerWanner1996",
           .family = "multistep",
           .order = order,
+          .stability_limit = limit,
           .make = make_fixed_bdf<double>,
           .make_quad = make_fixed_bdf<Quad>};
 }
@@ -409,6 +412,7 @@ std::span<const MethodInfo> methods::bdf_list() {
       {.name = "bdf",
        .aliases = "bdf_variable gear",
        .summary = "backward differentiation of variable step and order 1 to 5, with kept Jacobians; dense output",
+       .use = "large stiff systems: Jacobians are kept, one solution a step",
        .source = "ShampineReichelt1997",
        .family = "multistep",
        .order = 5,
@@ -416,11 +420,17 @@ std::span<const MethodInfo> methods::bdf_list() {
        .adaptive = true,
        .make = make_bdf<double>,
        .make_quad = make_bdf<Quad>},
-      fixed_bdf("bdf_2", "backward differentiation, order 2, A-stable", 2),
-      fixed_bdf("bdf_3", "backward differentiation, order 3, A(86 degrees)", 3),
-      fixed_bdf("bdf_4", "backward differentiation, order 4, A(73 degrees)", 4),
-      fixed_bdf("bdf_5", "backward differentiation, order 5, A(51 degrees)", 5),
-      fixed_bdf("bdf_6", "backward differentiation, order 6, A(17 degrees)", 6),
+      fixed_bdf("bdf_2", "backward differentiation, order 2, A-stable",
+                "stiff systems with steps of one length; oscillations are damped", 2,
+                std::numeric_limits<double>::infinity()),
+      fixed_bdf("bdf_3", "backward differentiation, order 3, A(86 degrees)",
+                "stiff decay with steps of one length; slow oscillations grow", 3, 0),
+      fixed_bdf("bdf_4", "backward differentiation, order 4, A(73 degrees)",
+                "stiff decay with steps of one length; slow oscillations grow", 4, 0),
+      fixed_bdf("bdf_5", "backward differentiation, order 5, A(51 degrees)",
+                "stiff decay with steps of one length, away from oscillations", 5, 0.71081),
+      fixed_bdf("bdf_6", "backward differentiation, order 6, A(17 degrees)",
+                "comparison: stiff decay only, far from oscillations", 6, 0.84314),
   };
   return list;
 }

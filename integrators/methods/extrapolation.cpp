@@ -241,6 +241,7 @@ std::span<const MethodInfo> extrapolation_list() {
        .aliases = "gbs bulirsch_stoer odex",
        .summary = "extrapolated midpoint rule, or leapfrog where forces depend on positions only; steps and orders of "
                   "its own choice, up to 16 in double and 24 in Quad",
+       .use = "errors near rounding over short times, extended precision above all",
        .source = "HairerNoersettWanner1993",
        .family = "extrapolation",
        .order = 16,

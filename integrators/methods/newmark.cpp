@@ -3,6 +3,8 @@
 #include "integrators/methods.hpp"
 #include "integrators/methods/newton.hpp"
 
+#include <limits>
+
 namespace noether {
 
 template <class Real>
@@ -106,10 +108,12 @@ std::span<const MethodInfo> methods::newmark_list() {
       {.name = "newmark",
        .aliases = "newmark_beta",
        .summary = "Newmark's method for q'' = a: average acceleration unless beta and gamma say otherwise",
+       .use = "structures: stiff springs with steps set by what is to be seen",
        .source = "Newmark1959",
        .family = "implicit",
        .options = "beta gamma",
        .order = 2,
+       .stability_limit = std::numeric_limits<double>::infinity(),
        .make = make_newmark<double>,
        .make_quad = make_newmark<Quad>},
   };

@@ -98,9 +98,11 @@ std::span<const MethodInfo> nystrom_list() {
        .aliases = "dormand_prince_nystrom_12 rkn_12_10",
        .summary =
            "Runge-Kutta-Nystroem 12(10) of Dormand, El-Mikkawy and Prince for q'' = a(t, q): 17 evaluations a step",
+       .use = "forces of positions, errors near rounding over short times",
        .source = "DormandElMikkawyPrince1987",
        .family = "runge-kutta-nystroem",
        .order = 12,
+       .evaluations = 17,
        .adaptive = true,
        .stability_limit = 8.3262,
        .make = nystrom<double>,

@@ -12,26 +12,35 @@ namespace noether::schemes {
 
 inline constexpr Scheme symplectic_euler_a = alternating(
     {.name = "symplectic_euler_a", .aliases = "symplectic_euler", .summary = "order 1: kick, then drift",
+     .use = "teaching, and where one kick and one drift is all there may be",
      .source = "DeVogelaere1956", .order = {1}, .stability_limit = 2.0}, 'B', list(1_q), list(1_q));
 
 inline constexpr Scheme symplectic_euler_b = alternating(
-    {.name = "symplectic_euler_b", .summary = "order 1: drift, then kick", .source = "DeVogelaere1956", .order = {1},
+    {.name = "symplectic_euler_b", .summary = "order 1: drift, then kick",
+     .use = "teaching, and as the adjoint of symplectic_euler_a",
+     .source = "DeVogelaere1956", .order = {1},
      .stability_limit = 2.0}, 'A', list(1_q), list(1_q));
 
 inline constexpr Scheme verlet = symmetric_composition(
     {.name = "verlet", .aliases = "strang_verlet leapfrog velocity_verlet stormer strang",
-     .summary = "order 2, one kick: velocity Verlet, kick first", .source = "Verlet1967", .order = {2},
+     .summary = "order 2, one kick: velocity Verlet, kick first",
+     .use = "the first choice where stability, not accuracy, sets the step",
+     .source = "Verlet1967", .order = {2},
      .stability_limit = 2.0},
     list(rest));
 
 inline constexpr Scheme verlet_aba = palindrome(
     {.name = "verlet_aba", .aliases = "position_verlet leapfrog_aba",
-     .summary = "order 2, one kick: position Verlet, drift first", .source = "Verlet1967", .order = {2},
+     .summary = "order 2, one kick: position Verlet, drift first",
+     .use = "Wisdom-Holman as it was first printed; elsewhere as verlet",
+     .source = "Verlet1967", .order = {2},
      .exact = "A",  // neighbouring steps join their drifts
      .stability_limit = 2.0}, 'A', list(rest), list(rest));
 
 inline constexpr Scheme ruth_3 = alternating(
-    {.name = "ruth_3", .aliases = "ruth3", .summary = "order 3, 3 kicks, not symmetric", .source = "Ruth1983",
+    {.name = "ruth_3", .aliases = "ruth3", .summary = "order 3, 3 kicks, not symmetric",
+     .use = "history; pefrl costs one kick more and gains an order",
+     .source = "Ruth1983",
      .order = {3}, .exact = "AB", .stability_limit = 2.50748}, 'B',
     list(7_q / 24_q, 3_q / 4_q, -1_q / 24_q),
     list(2_q / 3_q, -2_q / 3_q, 1_q));

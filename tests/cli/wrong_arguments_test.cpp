@@ -76,6 +76,7 @@ const std::vector<Wrong> wrong_lines = {
     {"evaluate nothing.toml", 3, "nothing.toml: cannot be read: No such file or directory"},
     {"explain scene.toml --threads 2", 2, "unknown option '--threads' of 'explain'; known are: --help, --set, --json"},
     {"list", 2, "what is required; see `noether list --help`"},
+    {"list forces --measured", 2, "only methods are measured, not forces; leave --measured out"},
     {"list method", 2, "there is no list of 'method'; did you mean 'methods'?"},
     {"list everything", 2,
      "there is no list of 'everything'; known are: methods, forces, constraints, systems, monitors, builders, units"},

@@ -1,0 +1,152 @@
+/// Every method is held to what it claims, and to docs/methods.md.
+
+#include "study/portrait.hpp"
+#include "tests/support/catch.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+using namespace noether;
+
+namespace {
+
+constexpr std::size_t limit_column = 9;
+
+/// Rows of docs/methods.md by name; cells without the blanks around them.
+const std::map<std::string, std::vector<std::string>>& rows_of_the_page() {
+  static const auto rows = [] {
+    std::map<std::string, std::vector<std::string>> made;
+    std::ifstream page(NOETHER_SOURCE_DIR "/docs/methods.md");
+    for (std::string line; std::getline(page, line);) {
+      if (line.rfind("| ", 0) != 0) continue;
+      std::vector<std::string> cells;
+      std::istringstream parts(line.substr(1));
+      for (std::string cell; std::getline(parts, cell, '|');) {
+        const auto first = cell.find_first_not_of(' ');
+        cells.push_back(first == std::string::npos ? "" : cell.substr(first, cell.find_last_not_of(' ') - first + 1));
+      }
+      made.emplace(cells.front(), cells);
+    }
+    return made;
+  }();
+  return rows;
+}
+
+/// Whether two cells say the same: a number to 1e-3, or 5 % where it tells of rounding in a solver, with the same words
+/// after it, anything else letter by letter.
+bool same_limit(const std::string& a, const std::string& b) {
+  if (a == b) return true;
+  std::istringstream left(a), right(b);
+  double x = 0, y = 0;
+  if (!(left >> x) || !(right >> y)) return false;
+  std::string words, other;
+  std::getline(left, words);
+  std::getline(right, other);
+  return std::abs(x - y) < (words.empty() ? 1e-3 : 0.05 * x) && words == other;
+}
+
+void check_portrait(const Sitter& sitter) {
+  const Portrait portrait = portrait_of(sitter);
+  INFO(portrait.name << ": " << fmt::format("{}", fmt::join(portrait.differences(), "; ")));
+  CHECK(portrait.differences().empty());
+  INFO("docs/methods.md is written by ./noether list methods --measured > docs/methods.md");
+  const auto row = rows_of_the_page().find(portrait.name);
+  CHECK((row != rows_of_the_page().end()));
+  if (row == rows_of_the_page().end()) return;
+  const std::vector<std::string> cells = cells_of(portrait);
+  REQUIRE(row->second.size() == cells.size());
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    CAPTURE(k, cells[k], row->second[k]);
+    CHECK((k == limit_column ? same_limit(cells[k], row->second[k]) : cells[k] == row->second[k]));
+  }
+}
+
+/// Methods whose steps are dear where their stability is looked for by runs.
+bool is_dear(const Sitter& sitter) {
+  return sitter.info != nullptr && sitter.info->family == "multistep" && sitter.info->evaluations == 0 &&
+         sitter.info->fixed;
+}
+
+std::vector<std::string> differences(const Scheme& scheme) { return portrait_of({.scheme = &scheme}).differences(); }
+
+}  // namespace
+
+TEST_CASE("every scheme does what it claims, and what docs/methods.md says of it", "[methods][slow]") {
+  for (const Sitter& sitter : all_sitters()) {
+    if (sitter.scheme != nullptr) check_portrait(sitter);
+  }
+}
+
+TEST_CASE("every classical method does what it claims, and what docs/methods.md says of it", "[methods][slow]") {
+  for (const Sitter& sitter : all_sitters()) {
+    if (sitter.info != nullptr && !is_dear(sitter)) check_portrait(sitter);
+  }
+}
+
+TEST_CASE("multistep methods that iterate do what they claim, and what docs/methods.md says of them",
+          "[methods][slow]") {
+  for (const Sitter& sitter : all_sitters()) {
+    if (is_dear(sitter)) check_portrait(sitter);
+  }
+}
+
+TEST_CASE("docs/methods.md has a row for every method and for nothing else, and each says what it is for",
+          "[methods]") {
+  std::vector<std::string> names = {"method"};
+  for (const Sitter& sitter : all_sitters()) {
+    CAPTURE(std::string(sitter.name()));
+    names.emplace_back(sitter.name());
+    CHECK((sitter.scheme != nullptr ? !sitter.scheme->use.empty()
+                                    : !(sitter.info->use.empty() && sitter.info->summary.empty())));
+  }
+  std::sort(names.begin(), names.end());
+  std::vector<std::string> rows;
+  for (const auto& [name, cells] : rows_of_the_page()) rows.push_back(name);
+  CHECK(rows == names);
+}
+
+TEST_CASE("a wrong claim of a scheme is seen", "[methods]") {
+  Scheme wrong = schemes::verlet;
+  wrong.order.classical = 4;
+  wrong.stability_limit = 1.998;
+  CHECK(differences(wrong) ==
+        std::vector<std::string>{"order: claims 4, measured 2", "stability limit: claims 1.998, measured 2"});
+  wrong = schemes::verlet;
+  wrong.word = schemes::symplectic_euler_a.word;
+  REQUIRE(differences(wrong).size() == 1);
+  CHECK(differences(wrong).front().rfind("order: claims 2, measured 0.99", 0) == 0);
+  wrong = schemes::pefrl;
+  wrong.word = schemes::verlet.word;
+  CHECK(differences(wrong) ==
+        std::vector<std::string>{"order: claims 4, measured 2", "stability limit: claims 2.989, measured 2"});
+}
+
+TEST_CASE("a wrong claim of a classical method is seen", "[methods]") {
+  MethodInfo wrong = *methods::find("rk4");
+  wrong.evaluations = 5;
+  wrong.stability_limit = 3;
+  CHECK(portrait_of({.info = &wrong}).differences() ==
+        std::vector<std::string>{"evaluations: claims 5, measured 4", "stability limit: claims 3, measured 2.828"});
+  wrong = *methods::find("heun");
+  wrong.make = methods::find("trapezoidal")->make;
+  wrong.make_quad = methods::find("trapezoidal")->make_quad;
+  wrong.name = "trapezoidal";
+  CHECK(portrait_of({.info = &wrong}).differences() ==
+        std::vector<std::string>{"evaluations: claims 2, measured nothing", "stability limit: claims 0, measured inf"});
+}
+
+TEST_CASE("what a method keeps is measured, not taken from its claims", "[methods]") {
+  const MethodTraits midpoint = measured_traits({.info = methods::find("implicit_midpoint")}),
+                     trapezoidal = measured_traits({.info = methods::find("trapezoidal")}),
+                     rk4 = measured_traits({.info = methods::find("rk4")});
+  CHECK(midpoint.symplectic);
+  CHECK_FALSE(trapezoidal.symplectic);
+  CHECK((midpoint.reversible && trapezoidal.reversible && !rk4.reversible));
+  CHECK((midpoint.angular_momentum && !trapezoidal.angular_momentum && !rk4.angular_momentum));
+  CHECK((trapezoidal.energy == EnergyError::bounded && rk4.energy == EnergyError::drifts));
+}
