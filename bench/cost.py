@@ -11,7 +11,7 @@ SCENES = [
     ("Outer Solar System", "examples/outer_solar_system/scene.toml", ["--until", "1000 yr"]),
     ("Kepler orbit, e = 0.9", "examples/kepler/scene.toml", []),
     ("Henon-Heiles", "examples/henon_heiles/scene.toml", ["--until", "200"]),
-    ("Stiff spring pendulum", "examples/spring_pendulum/scene.toml", []),
+    ("Stiff spring pendulum", "study/suite/spring_pendulum.toml", ["--until", "50"]),
     ("Heat equation on a line", "examples/heat_line/scene.toml", []),
 ]
 

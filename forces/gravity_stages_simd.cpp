@@ -18,7 +18,8 @@ struct Body {
 
 /// The pull between body i and n bodies from j on.
 template <int n>
-HWY_INLINE void attract(const BodiesInStages& b, Body& body, std::ptrdiff_t j, std::ptrdiff_t lane, Vector G, Vector soft2) {
+HWY_INLINE void attract(const BodiesInStages& b, Body& body, std::ptrdiff_t j, std::ptrdiff_t lane, Vector G,
+                        Vector soft2) {
   const Lanes d;
   Vector dx[n], dy[n], dz[n], r2[n], u[n];
   for (int k = 0; k < n; ++k) {
@@ -50,14 +51,16 @@ void attract_all(const BodiesInStages& bodies, double constant, double softening
   for (std::ptrdiff_t lane = 0; lane < stages; lane += lanes) {
     for (std::ptrdiff_t i = 0; i + 1 < b.count; ++i) {
       const std::ptrdiff_t at = i * stages + lane;
-      Body body{hn::Load(d, b.x + at),  hn::Load(d, b.y + at),  hn::Load(d, b.z + at), hn::Mul(G, hn::Load(d, b.m + at)),
-                hn::Load(d, b.ax + at), hn::Load(d, b.ay + at), hn::Load(d, b.az + at)};
+      Body body{
+          hn::Load(d, b.x + at),  hn::Load(d, b.y + at),  hn::Load(d, b.z + at), hn::Mul(G, hn::Load(d, b.m + at)),
+          hn::Load(d, b.ax + at), hn::Load(d, b.ay + at), hn::Load(d, b.az + at)};
       std::ptrdiff_t j = i + 1;
       if (b.m[at] != 0) {
         for (; j + together <= b.count; j += together) attract<together>(b, body, j, lane, G, soft2);
       }
       for (; j < b.count; ++j) {
-        if (b.m[at] != 0 || b.m[j * stages] != 0) attract<1>(b, body, j, lane, G, soft2);  // tracers may stand in one place
+        if (b.m[at] != 0 || b.m[j * stages] != 0)
+          attract<1>(b, body, j, lane, G, soft2);  // tracers may stand in one place
       }
       hn::Store(body.ax, d, b.ax + at);
       hn::Store(body.ay, d, b.ay + at);

@@ -203,7 +203,7 @@ template <class Real>
 typename Collocation<Real>::Sweeps Collocation<Real>::sweep(VectorField<Real>& f, const Real& t, const Vector<Real>& y,
                                                             double h) {
   using std::isfinite;
-  constexpr int most = 60;
+  const int most = adaptive_ ? 60 : 300;  // steps of one length have no other way out
   std::array<Real, lane_count> times{};
   for (std::size_t k = 0; k < lane_count; ++k) times[k] = t + table_.c[k] * Real(h);
   double before = std::numeric_limits<double>::infinity();
@@ -221,7 +221,7 @@ typename Collocation<Real>::Sweeps Collocation<Real>::sweep(VectorField<Real>& f
     if (round > 2 && shrinks >= 1) {
       // At rounding level it no longer shrinks; above, it never will.
       const double noise = std::is_same_v<Real, double> ? 1e-12 : 1e-28;
-      if (relative < noise || effect_on(y, h, static_cast<double>(change)) < 0.1 * noise) return Sweeps::converged;
+      if (relative < noise || is_rounding(y, h, static_cast<double>(change))) return Sweeps::converged;
       if (round > 6) return Sweeps::diverged;
     }
     before = relative;
@@ -229,17 +229,20 @@ typename Collocation<Real>::Sweeps Collocation<Real>::sweep(VectorField<Real>& f
   return Sweeps::diverged;
 }
 
-/// What a change of all rates would change in y, relative to its largest values: where forces nearly vanish, their
-/// rounding is that of the positions they come from.
-template <class Real> double Collocation<Real>::effect_on(const Vector<Real>& y, double h, double change) const {
+/// Whether a change of all rates would change y by rounding alone, relative to its largest values: where forces nearly
+/// vanish, their rounding is that of the positions they come from, and at turning points velocities have no size
+/// either.
+template <class Real> bool Collocation<Real>::is_rounding(const Vector<Real>& y, double h, double change) const {
   const auto largest = [&](Index begin, Index end) {
     double most = 0;
     for (Index i = begin; i < end; ++i) most = std::max(most, std::abs(static_cast<double>(y[i])));
     return most;
   };
-  const double step = std::abs(h);
-  if (!second_order_) return step * change / largest(0, n_);
-  return std::max(step * step * change / largest(0, n_), step * change / largest(n_, 2 * n_));
+  const double kick = std::abs(h) * change, little = std::is_same_v<Real, double> ? 1e-13 : 1e-29;
+  if (!second_order_) return kick < little * largest(0, n_);
+  const double moved = std::abs(h) * kick, size = largest(0, n_);
+  constexpr double ulps = std::is_same_v<Real, double> ? 0x1p-48 : 0x1p-108;
+  return moved < ulps * size || (moved < little * size && kick < little * largest(n_, 2 * n_));
 }
 
 template <class Real> void Collocation<Real>::finish(Vector<Real>& y, double h) {
@@ -303,10 +306,11 @@ template <class Real> std::unique_ptr<Method<Real>> radau(const MethodInfo& info
   return std::make_unique<Collocation<Real>>(info, options, radau_left_table(), false);
 }
 
-MethodInfo gauss_info(std::string_view name, std::string_view summary, int stages) {
+MethodInfo gauss_info(std::string_view name, std::string_view summary, std::string_view use, int stages) {
   return {.name = name,
           .aliases = stages == 1 ? "gauss_1" : "",
           .summary = summary,
+          .use = use,
           .source = "Butcher1964",
           .family = "collocation",
           .order = 2 * stages,
@@ -321,18 +325,26 @@ MethodInfo gauss_info(std::string_view name, std::string_view summary, int stage
 
 std::span<const MethodInfo> collocation_list() {
   static const MethodInfo list[] = {
-      gauss_info("implicit_midpoint", "the implicit midpoint rule: symplectic, symmetric, stable on every oscillator",
-                 1),
-      gauss_info("gauss_2", "Gauss and Legendre's collocation with 2 stages, to rounding", 2),
-      gauss_info("gauss_3", "Gauss and Legendre's collocation with 3 stages, to rounding", 3),
-      gauss_info("gauss_4", "Gauss and Legendre's collocation with 4 stages, to rounding", 4),
-      gauss_info("gauss_5", "Gauss and Legendre's collocation with 5 stages, to rounding", 5),
-      gauss_info("gauss_6", "Gauss and Legendre's collocation with 6 stages, to rounding", 6),
-      gauss_info("gauss_7", "Gauss and Legendre's collocation with 7 stages, to rounding", 7),
-      gauss_info("gauss_8", "Gauss and Legendre's collocation with 8 stages in lanes: the reference, to rounding", 8),
+      gauss_info("implicit_midpoint", "the implicit midpoint rule: symplectic, symmetric, by iteration to rounding",
+                 "forces that depend on velocities, where a symmetric step of low order will do", 1),
+      gauss_info("gauss_2", "Gauss and Legendre's collocation with 2 stages, to rounding",
+                 "any forces at order 4, where a composition would have to split them", 2),
+      gauss_info("gauss_3", "Gauss and Legendre's collocation with 3 stages, to rounding",
+                 "any forces at order 6, where a composition would have to split them", 3),
+      gauss_info("gauss_4", "Gauss and Legendre's collocation with 4 stages, to rounding",
+                 "any forces at order 8, where a composition would have to split them", 4),
+      gauss_info("gauss_5", "Gauss and Legendre's collocation with 5 stages, to rounding",
+                 "any forces at order 10, where a composition would have to split them", 5),
+      gauss_info("gauss_6", "Gauss and Legendre's collocation with 6 stages, to rounding",
+                 "any forces at order 12, where a composition would have to split them", 6),
+      gauss_info("gauss_7", "Gauss and Legendre's collocation with 7 stages, to rounding",
+                 "any forces at order 14, where a composition would have to split them", 7),
+      gauss_info("gauss_8", "Gauss and Legendre's collocation with 8 stages in lanes: the reference, to rounding",
+                 "errors at rounding level, close encounters and eccentric orbits included", 8),
       {.name = "gauss_radau_15",
        .aliases = "ias15",
        .summary = "Gauss-Radau collocation of order 15, the nodes of IAS15, to rounding",
+       .use = "runs that are to be compared with IAS15; `gauss_8` does the same and is symplectic",
        .source = "ReinSpiegel2015",
        .family = "collocation",
        .order = 15,

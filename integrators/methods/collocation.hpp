@@ -59,7 +59,7 @@ template <class Real> class Collocation final : public Method<Real> {
   void form_states(const Vector<Real>& y, double h);
   void finish(Vector<Real>& y, double h);
   double roughness();
-  double effect_on(const Vector<Real>& y, double h, double change) const;
+  bool is_rounding(const Vector<Real>& y, double h, double change) const;
 
   std::string_view name_;
   StageTable<Real> table_;

@@ -2,9 +2,6 @@
 
 #include <hwy/highway.h>
 
-#include <bit>
-#include <cstdint>
-
 namespace noether::NOETHER_SIMD_LEVEL {
 
 namespace {
@@ -96,7 +93,7 @@ void combine(const StageSums& sums, const double* w, double* out) {
 /// Sizes compare as their bits do, and what is no number is larger than all.
 HWY_INLINE Bits size_of(Vector x) { return hn::BitCast(BitLanes(), hn::Abs(x)); }
 HWY_INLINE double largest_of(Bits sizes) {
-  return std::bit_cast<double>(static_cast<std::int64_t>(hn::GetLane(hn::MaxOfLanes(BitLanes(), sizes))));
+  return hn::GetLane(hn::BitCast(Lanes(), hn::MaxOfLanes(BitLanes(), sizes)));
 }
 
 void difference(std::ptrdiff_t n, const double* a, const double* b, double* change, double* size) {

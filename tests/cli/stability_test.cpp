@@ -103,5 +103,12 @@ TEST_CASE("stability --suite finds the scenes that noether brings", "[cli][stabi
   CHECK(std::stoi(json_member(json, "verdicts")) > 400);
 }
 
+TEST_CASE("stability --suite finds the long verdicts right too", "[cli][stability][nightly]") {
+  const SceneFolder folder(spring);
+  const std::string json = output(folder, "stability --suite --nightly --json");
+  CHECK(json_member(json, "verdicts") == json_member(json, "agreeing"));
+  CHECK(std::stoi(json_member(json, "verdicts")) > 403);
+}
+
 }  // namespace
 }  // namespace noether::test

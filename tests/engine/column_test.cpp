@@ -2,9 +2,13 @@
 
 #include "engine/column.hpp"
 
+#include "engine/pack.hpp"
+#include "engine/simd.hpp"
 #include "tests/support/catch.hpp"
 
+#include <cmath>
 #include <cstdint>
+#include <vector>
 
 namespace noether {
 namespace {
@@ -70,10 +74,32 @@ TEST_CASE("appending and erasing keeps the other rows in order, across a change 
   CHECK(is_aligned(column.component(2)));
 }
 
-TEST_CASE("filling sets every row", "[column]") {
+TEST_CASE("a column is set to zero, padding included, packs of eight numbers too", "[column]") {
   auto column = counted<double>(3);
-  column.fill(2.5);
-  for (Index i = 0; i < 3; ++i) CHECK(std::as_const(column)[i] == Vec3<double>::Constant(2.5));
+  column.set_zero();
+  for (Index i = 0; i < 3; ++i) CHECK(std::as_const(column)[i] == Vec3<double>::Zero());
+  const SimdLevel before = simd_level();
+  for (const SimdLevel level : {SimdLevel::base, SimdLevel::avx2, SimdLevel::avx512}) {
+    if (!has_simd_level(level)) continue;
+    set_simd_level(level);
+    CAPTURE(name(level));
+    std::vector<double> numbers(7 * Pack::lanes + 1), copy(numbers.size(), -1);
+    for (std::size_t k = 0; k < numbers.size(); ++k) numbers[k] = static_cast<double>(k + 1);
+    copy_packs(numbers.data(), copy.data(), 7);
+    CHECK(copy.back() == -1);
+    copy.back() = numbers.back();
+    CHECK(copy == numbers);
+    VectorColumn<Pack> packs(5);
+    for (int k = 0; k < 3; ++k) copy_packs(numbers.data(), packs.component(k)->lane.data(), 5);
+    CHECK(packs.component(2)[4].lane[7] == 40);
+    packs.set_zero();
+    double sum = 0;
+    for (Index i = 0; i < 3 * packs.stride(); ++i) {
+      for (const double x : packs.component(0)[i].lane) sum += std::abs(x);
+    }
+    CHECK(sum == 0);
+  }
+  set_simd_level(before);
 }
 
 TEST_CASE("a scalar column holds one number a particle", "[column]") {

@@ -6,6 +6,7 @@
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
 #include "forces/linear_drag.hpp"
+#include "forces/springs.hpp"
 #include "forces/sum.hpp"
 #include "integrators/classical.hpp"
 #include "integrators/composition.hpp"
@@ -140,6 +141,22 @@ TEST_CASE("energy of the outer planets stays at rounding, with fixed steps and w
     CHECK(other.worst() < 4e-15);
     Vec3<double> far = fixed.particles().positions()[1] - adaptive.particles().positions()[1];
     CHECK(std::sqrt(norm2(far)) < 1e-10);
+  }
+}
+
+TEST_CASE("stages are found on a stiff spring, at turning points too, where only rounding moves", "[stages]") {
+  // omega = 100, h omega = 1: forces cancel to 1e-4 of what their parts are.
+  ParticleSystem<double> s;
+  s.add("bob", 1, {1.001, 0, 0}, {0, 0, 0});
+  const Sum forces(Tether{.k = 1e4, .length = 1, .tied = {{0}}}, UniformField{.acceleration = {0, -1, 0}});
+  for (const char* name : {"implicit_midpoint", "gauss_2", "gauss_4"}) {
+    CAPTURE(name);
+    Simulation run(s, classical(forces, method(name, fixed_steps(name))), 0.01);
+    auto& energy = run.every(10, Energy{});
+    const Outcome outcome = run.run(100'000);
+    CAPTURE(to_text(outcome));
+    CHECK(outcome.ok());
+    CHECK(energy.worst() < 1);
   }
 }
 
