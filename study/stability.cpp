@@ -39,7 +39,14 @@ class Search {
   void run() {
     choose_scan_steps();
     const auto found = scan();
-    if (found) settle(found->first, found->second);
+    if (row_.settled) {
+      const auto missed = scan_long(found ? found->first : end_of_scan(), !found);
+      if (missed) {
+        settle(missed->first, missed->second, true);
+      } else if (found) {
+        settle(found->first, found->second, false);
+      }
+    }
     row_.seconds = spent();
   }
 
@@ -87,16 +94,15 @@ class Search {
     return all;
   }
 
-  /// As many steps for each point as two seconds allow, or half the budget.
+  /// As many steps for each point as half the budget allows.
   void choose_scan_steps() {
-    constexpr std::int64_t least = 300, most = 10'000;
+    constexpr std::int64_t least = 300, most = 1000;
     const auto before = std::chrono::steady_clock::now();
     const Trial trial = attempt(next_z(0), 2000);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
     const double a_step = seconds / static_cast<double>(std::max<std::int64_t>(trial.steps, 1));
     const double count = static_cast<double>(points(0, end_of_scan()).size());
-    row_.scan_steps =
-        std::clamp(static_cast<std::int64_t>(std::min(options_.row_budget / 2, 2.0) / count / a_step), least, most);
+    row_.scan_steps = std::clamp(static_cast<std::int64_t>(options_.row_budget / 2 / count / a_step), least, most);
   }
 
   /// Goes upward. @return the last stable point and the first unstable one
@@ -116,9 +122,33 @@ class Search {
     return {};
   }
 
+  /// Goes upward below `end` with larger gaps and many steps, for what is too weak for the short runs of `scan`.
+  /// @param all  whether a budget that ends here leaves the row unsettled; else half of what is left is enough
+  /// @return as `scan`
+  std::optional<std::pair<double, double>> scan_long(double end, bool all) {
+    constexpr double gap = 0.05;
+    const double reserve = all ? 0 : left() / 2;
+    double stable = 0;
+    for (int k = 1; k * gap < end; ++k) {
+      const Trial trial = attempt(k * gap, options_.confirm_steps);
+      if (trial.verdict == Bounded::unsettled || left() <= reserve) {
+        row_.settled = !all;
+        if (all) row_.message = fmt::format("the budget was over at h omega = {:.4g}, bounded until there", stable);
+        return {};
+      }
+      if (!trial.stable()) {
+        failed_ = trial;
+        return std::pair(stable, k * gap);
+      }
+      stable = k * gap;
+    }
+    return {};
+  }
+
   /// From a bounded point down to one that is bounded over the long run too, then up again.
-  void settle(double stable, double unstable) {
-    row_.settled = close_in(stable, unstable);
+  /// @param wide  whether other points of the search lie between the two
+  void settle(double stable, double unstable, bool wide) {
+    row_.settled = close_in(stable, unstable, wide);
     row_.limit_step = unstable / scale_;
     row_.limit_h_omega = unstable;
     row_.message = failed_.message;
@@ -130,7 +160,7 @@ class Search {
   }
 
   /// @return whether the budget sufficed
-  bool close_in(double& stable, double& unstable) {
+  bool close_in(double& stable, double& unstable, bool wide) {
     const double met = unstable;
     for (double down = 0.002; stable > 0; down *= 2) {
       double low = 0, high = 0;
@@ -139,7 +169,7 @@ class Search {
       unstable = high;
       stable = std::max(stable - down, 0.0);
     }
-    if (unstable < met) {  // the first of what lies between
+    if (wide || unstable < met) {  // the first of what lies between
       for (const auto& [z, suspect] : points(stable, unstable)) {
         double high = 0;
         if (z >= unstable) break;
