@@ -132,7 +132,7 @@ TEST_CASE("linear theory has the tabulated limits and the closed resonances", "[
   CHECK(std::abs(verlet.accurate / (M_PI / 10) - 1) < 0.02);  // 20 steps a period
 }
 
-TEST_CASE("measured limits are within 1e-3 of the tabulated ones", "[stability][slow]") {
+TEST_CASE("measured limits are within 1e-3 of the tabulated ones", "[stability][nightly]") {
   const Scene scene = ball();
   for (const char* name : {"verlet", "yoshida_4", "rk4", "dormand_prince_5", "adams_bashforth_3"}) {
     const Scheme* scheme = schemes::find(name);
@@ -153,7 +153,7 @@ TEST_CASE("gaps narrower than the search are found, with their ends", "[stabilit
 }
 
 TEST_CASE("a method that is stable at any step has no limit, and one that cannot solve its steps says so",
-          "[stability][slow]") {
+          "[stability][nightly]") {
   const StabilityRow stable = row_of(ball(), "trapezoidal"), swept = row_of(ball(), "implicit_midpoint");
   INFO(stable.message << swept.message);
   CHECK(stable.reason == "none");
@@ -198,7 +198,7 @@ TEST_CASE("drag moves limits as the theory of its letter says", "[stability][slo
   CHECK(std::abs(row.theory.limit.value() - 0.2) < 1e-6);
 }
 
-TEST_CASE("first-order systems have the limits of their eigenvalues", "[stability][slow]") {
+TEST_CASE("first-order systems have the limits of their eigenvalues", "[stability][nightly]") {
   // The explicit Euler method needs h |lambda| < 2 on the real axis, RK4 2.78529.
   const Scene scene = read_scene(R"(units = "reduced"
 [system]
