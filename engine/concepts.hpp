@@ -27,14 +27,6 @@ struct Evaluations {
   std::int64_t rejected = 0;    ///< trial steps that an error controller threw away
 };
 
-/// Why a step could not be done.
-struct Failure {
-  Outcome::Kind kind = Outcome::Kind::solver_failure;
-  Index particle = -1;  ///< -1: no particle in particular
-  std::string quantity;
-  std::string message;
-};
-
 /// What a split Hamiltonian says of its parts; tests verify it, `Composition` refuses by it.
 struct HamiltonianClaims {
   std::string alphabet;                ///< letters `flow` accepts

@@ -2,9 +2,16 @@
 /// Where forces write: accelerations always, energy and virial only where somebody asked.
 
 #include "engine/dual.hpp"
+#include "engine/outcome.hpp"
 #include "engine/particle_system.hpp"
 
+#include <limits>
+#include <optional>
+#include <utility>
+
 namespace noether {
+
+class NeighborList;
 
 /// What is to be summed beside the accelerations.
 struct Wanted {
@@ -22,8 +29,10 @@ struct Wanted {
 template <class Real> class ForceSink {
  public:
   /// @param accelerations  shape (n, 3), set to zero here [length/time^2]
-  ForceSink(VectorColumn<Real>& accelerations, const ParticleSystem<Real>& system, Wanted wanted)
-      : a_(accelerations), system_(system), wanted_(wanted) {
+  /// @param neighbors  of the system, for forces of short range to share; without, each finds its own
+  ForceSink(VectorColumn<Real>& accelerations, const ParticleSystem<Real>& system, Wanted wanted,
+            NeighborList* neighbors = nullptr)
+      : a_(accelerations), system_(system), wanted_(wanted), neighbors_(neighbors) {
     a_.set_zero();
   }
 
@@ -41,7 +50,8 @@ template <class Real> class ForceSink {
   void pair(Index i, Index j, const Vec3<Real>& f) {
     push(i, f);
     push(j, -f);
-    if (wanted_.virial) outer(system_.positions()[i] - system_.positions()[j], f);
+    if (wanted_.virial)
+      outer(system_.box().minimum_image(Vec3<Real>(system_.positions()[i] - system_.positions()[j])), f);
   }
   /// Adds to the potential energy [energy].
   void energy(const Real& u) {
@@ -56,6 +66,14 @@ template <class Real> class ForceSink {
   bool wants_virial() const { return wanted_.virial; }
   /// The column itself, for loops that own their rows; such a force adds to it, and reports its virial.
   VectorColumn<Real>& accelerations() { return a_; }
+
+  /// The neighbor list of the system; null where there is none to be shared.
+  NeighborList* neighbors() const { return neighbors_; }
+  /// Tells that the force cannot be computed; the first to say so is heard.
+  void fail(Failure failure) {
+    if (!failure_) failure_ = std::move(failure);
+  }
+  const std::optional<Failure>& failure() const { return failure_; }
 
   const Real& potential() const { return energy_; }
   const Mat3<Real>& virial() const { return virial_; }
@@ -76,6 +94,8 @@ template <class Real> class ForceSink {
   Wanted wanted_;
   Real energy_ = Real(0);
   Mat3<Real> virial_ = Mat3<Real>::Zero();
+  NeighborList* neighbors_;
+  std::optional<Failure> failure_;
 };
 
 /// What a force says of itself; a method states what it needs, and a refusal names what is missing.
@@ -87,6 +107,8 @@ struct ForceClaims {
   bool dissipative = false;
   bool keeps_momentum = true;          ///< its sum over all particles is 0
   bool keeps_angular_momentum = true;  ///< and so is that of its torques
+  bool periodic = false;               ///< it knows periodic boxes
+  double range = 0;                    ///< distance beyond which pairs do not feel each other [length]; 0: any distance
 };
 
 /// The claims of a force type; a force that declares none is conservative, depends on positions only, and acts

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -43,6 +44,14 @@ struct [[nodiscard]] Outcome {
   /// Whether the run ended as asked: completed or stopped.
   /// @throws never
   bool ok() const noexcept { return kind == Kind::completed || kind == Kind::stopped; }
+};
+
+/// Why a step could not be done.
+struct Failure {
+  Outcome::Kind kind = Outcome::Kind::solver_failure;
+  std::ptrdiff_t particle = -1;  ///< -1: no particle in particular
+  std::string quantity;
+  std::string message;
 };
 
 /// The kind as reports write it, such as "constraint_failure".

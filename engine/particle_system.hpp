@@ -1,9 +1,13 @@
 #pragma once
 /// All state of the particles, or of a system without any, and nothing else.
 
+#include "engine/box.hpp"
 #include "engine/clock.hpp"
 #include "engine/column.hpp"
 #include "engine/error.hpp"
+#include "engine/parallel.hpp"
+#include "engine/real.hpp"
+#include "engine/topology.hpp"
 #include "engine/units.hpp"
 
 #include <atomic>
@@ -32,13 +36,6 @@ struct Phase {
   bool pending = false;  ///< the last stage of the last step is still to be done
 
   bool operator==(const Phase&) const = default;
-};
-
-/// The space particles live in. Open space is the only one so far; a periodic cell will be another kind.
-class Box {
- public:
-  static Box open() { return {}; }
-  bool is_periodic() const { return false; }
 };
 
 namespace detail {
@@ -83,6 +80,10 @@ template <class Real = double> class ParticleSystem {
     m_.append(mass);
     x_.append(x);
     v_.append(v);
+    if (box_.is_periodic()) {
+      images_.append(Vec3<std::int32_t>::Zero());
+      wrap(size() - 1);
+    }
     version_ = detail::fresh_version();
     return size() - 1;
   }
@@ -90,11 +91,13 @@ template <class Real = double> class ParticleSystem {
   /// Takes particle `i` out; the others keep their ids.
   void remove(Index i) {
     NOETHER_EXPECTS(extra_.empty() && !low_, "particles are removed in Simulation::edit");
+    NOETHER_EXPECTS(!topology_, "who is bonded to whom is known by index: no particle is removed");
     ids_.erase(ids_.begin() + i);
     names_.erase(names_.begin() + i);
     m_.erase(i);
     x_.erase(i);
     v_.erase(i);
+    if (box_.is_periodic()) images_.erase(i);
     version_ = detail::fresh_version();
   }
 
@@ -102,6 +105,7 @@ template <class Real = double> class ParticleSystem {
   void trim() {
     x_.trim();
     v_.trim();
+    images_.trim();
   }
 
   Index size() const { return m_.size(); }
@@ -143,7 +147,42 @@ template <class Real = double> class ParticleSystem {
   const std::vector<std::string>& names() const { return names_; }
   const std::string& name(Index i) const { return names_[static_cast<std::size_t>(i)]; }
   const UnitSystem& units() const { return *units_; }
-  Box box() const { return {}; }
+
+  const Box& box() const { return box_; }
+  /// Puts the particles into a box, where their positions are wrapped.
+  /// @throws Error  for a periodic box where positions are summed with compensation: there they are on a grid
+  void set_box(const Box& box) {
+    NOETHER_EXPECTS(!box.is_periodic() || !low_, "positions in a periodic box are not compensated");
+    for (Index i = 0; i < size(); ++i) x_.set(i, unwrapped(i));
+    box_ = box;
+    images_ = VectorColumn<std::int32_t>(box.is_periodic() ? size() : 0);
+    wrap();
+  }
+  /// How often each particle has crossed the periodic box, shape (n, 3); empty in open space.
+  const VectorColumn<std::int32_t>& images() const { return images_; }
+  /// Position of particle `i` as if it had never been wrapped [length].
+  Vec3<Real> unwrapped(Index i) const {
+    Vec3<Real> x = x_[i];
+    if (!box_.is_periodic()) return x;
+    for (int k = 0; k < 3; ++k) x[k] += Real(images_.component(k)[i]) * Real(box_.edges()[k]);
+    return x;
+  }
+  /// Brings all positions back into the periodic box, doubles onto its grid, and counts the cells they have crossed.
+  void wrap() {
+    if (!box_.is_periodic()) return;
+    for (Index i = 0; i < size(); ++i) wrap(i);
+    version_ = detail::fresh_version();
+  }
+  /// Puts back the images of a file or a copy.
+  void restore_images(VectorColumn<std::int32_t> images) {
+    NOETHER_EXPECTS(images.size() == (box_.is_periodic() ? size() : 0), "there are images for all particles");
+    images_ = std::move(images);
+  }
+
+  /// Types and bonds of the particles; null where nobody gave any. Copies of the particles share it.
+  const Topology* topology() const { return topology_.get(); }
+  const std::shared_ptr<const Topology>& shared_topology() const { return topology_; }
+  void set_topology(std::shared_ptr<const Topology> topology) { topology_ = std::move(topology); }
 
   const Clock<Real>& clock() const { return clock_; }
   Clock<Real>& clock() { return clock_; }
@@ -160,7 +199,9 @@ template <class Real = double> class ParticleSystem {
   /// @cost O(n), no allocation
   void advance_positions(const Real& h) {
     version_ = detail::fresh_version();
-    if (low_) {
+    if (box_.is_periodic()) {
+      advance_in_box(h);
+    } else if (low_) {
       compensated_add(x_, low_->x, h, v_);
     } else {
       x_.add_scaled(h, v_);
@@ -180,7 +221,7 @@ template <class Real = double> class ParticleSystem {
       compensated_add(x_, low_->x, i, dx);
       compensated_add(v_, low_->v, i, dv);
     } else {
-      x_.add(i, dx);
+      move(i, dx);
       v_.add(i, dv);
     }
   }
@@ -199,6 +240,7 @@ template <class Real = double> class ParticleSystem {
   const LowWords* low_words() const { return low_ ? &*low_ : nullptr; }
   LowWords* low_words() { return low_ ? &*low_ : nullptr; }
   void keep_low_words(bool keep) {
+    NOETHER_EXPECTS(!keep || !box_.is_periodic(), "positions in a periodic box are not compensated");
     if (keep && !low_) low_ = LowWords{VectorColumn<Real>(size()), VectorColumn<Real>(size())};
     if (!keep) low_.reset();
   }
@@ -231,6 +273,7 @@ template <class Real = double> class ParticleSystem {
       reals += std::holds_alternative<ScalarColumn<Real>>(column) ? 1 : 0;
       bytes += std::holds_alternative<ScalarColumn<std::int64_t>>(column) ? sizeof(std::int64_t) : 0;
     }
+    if (box_.is_periodic()) bytes += 3 * sizeof(std::int32_t);
     return bytes + reals * sizeof(Real);
   }
 
@@ -244,6 +287,9 @@ template <class Real = double> class ParticleSystem {
                 Vec3<Other>(static_cast<Other>(v[0]), static_cast<Other>(v[1]), static_cast<Other>(v[2])));
     }
     other.restore_ids(ids_);
+    other.set_box(box_);
+    other.set_topology(topology_);
+    other.restore_images(images_);
     for (const auto& [name, column] : extra_) {
       std::visit([&, &key = name](const auto& values) { other.restore_column(key, detail::widened_to<Other>(values)); },
                  column);
@@ -264,6 +310,8 @@ template <class Real = double> class ParticleSystem {
     x_ = other.x_;
     v_ = other.v_;
     m_ = other.m_;
+    box_ = other.box_;
+    if (box_.is_periodic()) images_ = other.images_;
     variables_ = other.variables_;
     low_ = other.low_;
     clock_ = other.clock_;
@@ -290,6 +338,38 @@ template <class Real = double> class ParticleSystem {
   void restore_next_id(std::int64_t id) { next_id_ = id; }
 
  private:
+  void wrap(Index i) {
+    for (int k = 0; k < 3; ++k) {
+      Real& x = x_.component(k)[i];
+      if constexpr (std::is_same_v<Real, double>) x = box_.on_grid(k, x);
+      if constexpr (std::is_same_v<Real, double> || std::is_same_v<Real, Quad>) {
+        box_.wrap(k, x, images_.component(k)[i]);
+      }
+    }
+  }
+  void move(Index i, const Vec3<Real>& dx) {
+    if constexpr (std::is_same_v<Real, double>) {
+      if (box_.is_periodic()) {
+        for (int k = 0; k < 3; ++k) box_.shift(k, dx[k], x_.component(k)[i], images_.component(k)[i]);
+        return;
+      }
+    }
+    x_.add(i, dx);
+    if (box_.is_periodic()) wrap(i);
+  }
+  void advance_in_box(const Real& h) {
+    if constexpr (std::is_same_v<Real, double>) {
+      for (int k = 0; k < 3; ++k) {
+        for_blocks(size(), [&](Index begin, Index end) {
+          box_.advance(k, h, v_.component(k) + begin, x_.component(k) + begin, images_.component(k) + begin,
+                       end - begin);
+        });
+      }
+    } else {
+      x_.add_scaled(h, v_);
+      wrap();
+    }
+  }
   static void add_with_error(Real& value, Real& low, const Real& increment) {
     const Real d = increment + low;
     const Real sum = value + d;
@@ -314,6 +394,9 @@ template <class Real = double> class ParticleSystem {
   std::vector<std::string> names_;
   VectorColumn<Real> x_, v_;
   ScalarColumn<Real> m_;
+  std::shared_ptr<const Topology> topology_;
+  Box box_;
+  VectorColumn<std::int32_t> images_;
   std::vector<Real> variables_;
   std::vector<std::string> variable_names_;
   Clock<Real> clock_;

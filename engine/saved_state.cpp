@@ -59,6 +59,32 @@ template <class Real> void load_extra_columns(const SavedState& saved, ParticleS
   }
 }
 
+/// The periodic box and how often each particle has crossed it; a run in open space has saved none.
+template <class Real> void save_box(SavedState& saved, const ParticleSystem<Real>& s) {
+  if (!s.box().is_periodic()) return;
+  const Vec3<double>& edges = s.box().edges();
+  saved["box"] = std::vector<double>{edges[0], edges[1], edges[2]};
+  std::vector<std::int64_t> images;
+  for (Index i = 0; i < s.size(); ++i) {
+    for (int k = 0; k < 3; ++k) images.push_back(s.images().component(k)[i]);
+  }
+  saved["image"] = std::move(images);
+}
+
+template <class Real> void load_box(const SavedState& saved, ParticleSystem<Real>& s) {
+  if (saved.count("box") == 0) return;
+  const auto& edges = detail::array_of<double>(saved, "box");
+  s.set_box(Box::periodic({detail::element(edges, 0), detail::element(edges, 1), detail::element(edges, 2)}));
+  const auto& numbers = detail::array_of<std::int64_t>(saved, "image");
+  VectorColumn<std::int32_t> images(s.size());
+  for (Index i = 0, at = 0; i < s.size(); ++i) {
+    for (int k = 0; k < 3; ++k, ++at) {
+      images.component(k)[i] = static_cast<std::int32_t>(detail::element(numbers, static_cast<std::size_t>(at)));
+    }
+  }
+  s.restore_images(std::move(images));
+}
+
 template <class Real> Clock<Real> load_clock(const SavedState& saved) {
   const auto& counts = detail::array_of<std::int64_t>(saved, "clock/counts");
   const auto& times = detail::array_of<double>(saved, "clock/times");
@@ -118,6 +144,7 @@ template <class Real> SavedState save_particles(const ParticleSystem<Real>& s) {
   saved["next_id"] = std::vector<std::int64_t>{s.next_id()};
   if (!s.variables().empty()) save_value(saved, "variables", s.variables());
   if (!s.variable_names().empty()) saved["variable_names"] = s.variable_names();
+  save_box(saved, s);
   save_extra_columns(saved, s);
   return saved;
 }
@@ -135,6 +162,7 @@ template <class Real> ParticleSystem<Real> load_particles(const SavedState& save
   }
   s.restore_ids(ids);
   s.restore_next_id(detail::element(detail::array_of<std::int64_t>(saved, "next_id"), 0));
+  load_box(saved, s);
   unflatten(saved, "position", s.positions());
   unflatten(saved, "velocity", s.velocities());
   if (saved.count("position_low") != 0) {

@@ -521,6 +521,7 @@ template <class Real> void Simulation<Real>::restore(const SavedRun& saved) {
     return found->second;
   };
   ParticleSystem<Real> particles = load_particles<Real>(saved.particles);
+  particles.set_topology(raw_.shared_topology());
   if (particles.ids() != raw_.ids()) throw Error("the saved run has other particles than this one");
   if (particles.variables().size() != raw_.variables().size()) {
     throw Error(fmt::format("the saved run has {} variables, this one {}", particles.variables().size(),

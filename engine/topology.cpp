@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace noether {
 
@@ -48,18 +49,40 @@ std::vector<Topology::Separated> Topology::bond_separations(Index n, int most) c
   return found;
 }
 
-void Topology::exclude_by_bonds(Index n, int bonds_apart) {
-  NOETHER_EXPECTS(bonds_apart >= 0 && bonds_apart <= 3,
-                  fmt::format("pairs cannot be excluded up to {} bonds; 0 to 3 is expected", bonds_apart));
+void Topology::scale_by_bonds(Index n, const std::array<double, 3>& factors) {
   exclusions.clear();
-  pairs_14.clear();
+  scaled_pairs.clear();
   for (const Separated& one : bond_separations(n, 3)) {
-    if (one.bonds <= bonds_apart) {
+    const double factor = factors[static_cast<std::size_t>(one.bonds - 1)];
+    if (factor == 0) {
       exclusions.push_back(one.pair);
-    } else if (one.bonds == 3) {
-      pairs_14.push_back(one.pair);
+    } else if (factor != 1) {
+      scaled_pairs.push_back({one.pair, factor});
     }
   }
+}
+
+int Topology::type_count() const {
+  const auto largest = std::max_element(types.begin(), types.end());
+  const int used = largest == types.end() ? 1 : static_cast<int>(*largest) + 1;
+  return std::max({used, static_cast<int>(type_names.size()), static_cast<int>(pair_kinds.size())});
+}
+
+PairKind mix(Mixing rule, const PairKind& a, const PairKind& b) {
+  const double sigma = rule == Mixing::geometric ? std::sqrt(a.sigma * b.sigma) : (a.sigma + b.sigma) / 2;
+  return {std::sqrt(a.epsilon * b.epsilon), sigma};
+}
+
+PairKind Topology::pair_kind(int a, int b) const {
+  const auto found = explicit_pairs.find({std::min(a, b), std::max(a, b)});
+  if (found != explicit_pairs.end()) return found->second;
+  for (const int type : {a, b}) {
+    if (type < static_cast<int>(pair_kinds.size())) continue;
+    throw Error(
+        fmt::format("particles of type {} have no Lennard-Jones parameters; give epsilon and sigma for it", type));
+  }
+  const PairKind& one = pair_kinds[static_cast<std::size_t>(a)];
+  return a == b ? one : mix(mixing, one, pair_kinds[static_cast<std::size_t>(b)]);
 }
 
 }  // namespace noether

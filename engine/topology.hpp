@@ -6,19 +6,46 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace noether {
 
-/// One bonded term: its particles and the index of its type's parameters.
+/// One bonded term: its particles and the index of its kind.
 template <std::size_t n> struct BondedTerm {
   std::array<Index, n> particles{};
   int type = 0;
 
   bool operator==(const BondedTerm&) const = default;
 };
+
+/// A kind of bonded term: the name of its potential, and the parameters in the order in which that potential lists them
+/// (forces/bonded.hpp), in the units of the system.
+struct TermKind {
+  std::string potential;
+  std::vector<double> parameters;
+
+  bool operator==(const TermKind&) const = default;
+};
+
+/// Lennard-Jones parameters of a type, or of a pair of types.
+struct PairKind {
+  double epsilon = 0;  ///< [energy]
+  double sigma = 0;    ///< [length]
+
+  bool operator==(const PairKind&) const = default;
+};
+
+/// How the parameters of two types become those of a pair.
+enum class Mixing : std::uint8_t {
+  lorentz_berthelot,  ///< epsilon = sqrt(e_i e_j), sigma = (s_i + s_j) / 2
+  geometric,          ///< epsilon = sqrt(e_i e_j), sigma = sqrt(s_i s_j)
+};
+
+/// The parameters of a pair by a rule. @source Lorentz1881, Berthelot1898
+PairKind mix(Mixing rule, const PairKind& a, const PairKind& b);
 
 /// Types, molecules and bonded terms of a system, by particle index, and the pairs they take out of pair forces.
 ///
@@ -30,10 +57,29 @@ struct Topology {
   std::vector<BondedTerm<2>> bonds;
   std::vector<BondedTerm<3>> angles;  ///< the vertex in the middle
   std::vector<BondedTerm<4>> dihedrals, impropers;
+  std::vector<TermKind> bond_kinds, angle_kinds, dihedral_kinds, improper_kinds;  ///< by type of the term
+
+  std::vector<PairKind> pair_kinds;  ///< by type of the particle; empty where nothing was said of Lennard-Jones
+  Mixing mixing = Mixing::lorentz_berthelot;
+  std::map<std::pair<int, int>, PairKind> explicit_pairs;  ///< by types, the smaller first: instead of mixing
 
   using Pair = std::pair<Index, Index>;  ///< the smaller index first
   std::vector<Pair> exclusions;          ///< pairs without pair force, sorted
-  std::vector<Pair> pairs_14;            ///< pairs of scaled force, sorted
+  /// A pair whose pair force is scaled.
+  struct ScaledPair {
+    Pair pair;
+    double factor;
+    bool operator==(const ScaledPair&) const = default;
+  };
+  std::vector<ScaledPair> scaled_pairs;  ///< sorted
+
+  /// Type of particle `i`; 0 where no types were given.
+  int type(Index i) const { return types.empty() ? 0 : static_cast<int>(types[static_cast<std::size_t>(i)]); }
+  /// Number of types, 1 at least.
+  int type_count() const;
+  /// Lennard-Jones parameters of two types: explicit ones, or mixed.
+  /// @throws Error  if a type has none
+  PairKind pair_kind(int a, int b) const;
 
   /// Number of bonds on the shortest path between particles up to `most` apart, sorted by pair.
   /// @param n  number of particles; every bond lies in [0, n)
@@ -45,9 +91,10 @@ struct Topology {
   };
   std::vector<Separated> bond_separations(Index n, int most) const;
 
-  /// Excludes the pairs up to `bonds` bonds apart (3 at most) and lists pairs three bonds apart as 1-4 pairs if they
-  /// are not excluded.
-  void exclude_by_bonds(Index n, int bonds);
+  /// Scales pair forces by the number of bonds between the two: factors for pairs one, two and three bonds apart. 0
+  /// excludes a pair, 1 leaves it alone. The shortest path counts.
+  /// @param n  number of particles
+  void scale_by_bonds(Index n, const std::array<double, 3>& factors);
 };
 
 }  // namespace noether

@@ -19,6 +19,8 @@ inline void merge(ForceClaims& all, const ForceClaims& one) {
   all.dissipative = all.dissipative || one.dissipative;
   all.keeps_momentum = all.keeps_momentum && one.keeps_momentum;
   all.keeps_angular_momentum = all.keeps_angular_momentum && one.keeps_angular_momentum;
+  all.periodic = all.periodic && one.periodic;
+  all.range = std::max(all.range, one.range);
 }
 }  // namespace detail
 
@@ -43,7 +45,7 @@ template <class... Fs> class Sum {
     return std::apply([&](const auto&... force) { return (one(force) && ...); }, forces_);
   }
   ForceClaims claims() const {
-    ForceClaims all;
+    ForceClaims all{.periodic = true};
     std::apply([&](const auto&... force) { (detail::merge(all, claims_of(force)), ...); }, forces_);
     return all;
   }
@@ -83,7 +85,7 @@ template <class Real = double> class ForceField {
     for (const auto& term : terms_) term.add_to(out, s);
   }
   ForceClaims claims() const {
-    ForceClaims all;
+    ForceClaims all{.periodic = true};
     for (const auto& term : terms_) detail::merge(all, term.claims());
     return all;
   }

@@ -17,19 +17,22 @@ Topology chain_and_ring() {
 
 }  // namespace
 
-TEST_CASE("pairs up to two bonds apart are excluded and three bonds make a 1-4 pair", "[topology]") {
+TEST_CASE("pairs are excluded or scaled by the number of bonds between them", "[topology]") {
   Topology topology = chain_and_ring();
-  topology.exclude_by_bonds(8, 2);
+  topology.scale_by_bonds(8, {0, 0, 0.5});
   using Pairs = std::vector<Topology::Pair>;
   CHECK(topology.exclusions ==
         Pairs{{0, 1}, {0, 2}, {1, 2}, {1, 3}, {2, 3}, {4, 5}, {4, 6}, {4, 7}, {5, 6}, {5, 7}, {6, 7}});
-  CHECK(topology.pairs_14 == Pairs{{0, 3}});
+  CHECK(topology.scaled_pairs == std::vector<Topology::ScaledPair>{{{0, 3}, 0.5}});
 }
 
-TEST_CASE("with three bonds excluded no 1-4 pair is left", "[topology]") {
+TEST_CASE("a factor of 1 leaves a pair alone, a factor of 0 excludes it", "[topology]") {
   Topology topology = chain_and_ring();
-  topology.exclude_by_bonds(8, 3);
-  CHECK(topology.pairs_14.empty());
+  topology.scale_by_bonds(8, {0, 1, 1});
+  CHECK(topology.scaled_pairs.empty());
+  CHECK(topology.exclusions.size() == topology.bonds.size());
+  topology.scale_by_bonds(8, {0, 0, 0});
+  CHECK(topology.scaled_pairs.empty());
   CHECK(topology.exclusions.size() == 12);
 }
 
@@ -40,8 +43,22 @@ TEST_CASE("a ring takes the shorter way round", "[topology]") {
   }
 }
 
+TEST_CASE("parameters of a pair of types are mixed by the rule, unless they were given", "[topology]") {
+  Topology topology;
+  topology.pair_kinds = {{1, 2}, {4, 8}};
+  CHECK(topology.type_count() == 2);
+  CHECK(topology.pair_kind(0, 0) == noether::PairKind{1, 2});
+  CHECK(topology.pair_kind(1, 0) == noether::PairKind{2, 5});
+  topology.mixing = noether::Mixing::geometric;
+  CHECK(topology.pair_kind(0, 1) == noether::PairKind{2, 4});
+  topology.explicit_pairs[{0, 1}] = {3, 7};
+  CHECK(topology.pair_kind(1, 0) == noether::PairKind{3, 7});
+  CHECK_THROWS_WITH(topology.pair_kind(0, 2),
+                    "particles of type 2 have no Lennard-Jones parameters; give epsilon and sigma for it");
+}
+
 TEST_CASE("a bond to a particle that is not there is refused by name", "[topology]") {
   Topology topology;
   topology.bonds.push_back({{0, 9}, 0});
-  CHECK_THROWS_WITH(topology.exclude_by_bonds(2, 2), "a bond joins particles 0 and 9, but there are 2");
+  CHECK_THROWS_WITH(topology.scale_by_bonds(2, {0, 0, 1}), "a bond joins particles 0 and 9, but there are 2");
 }
