@@ -67,6 +67,7 @@ template <class Real> struct ForceBase {
   virtual bool has_derivative() const = 0;
   virtual void add_to(ForceSink<Dual<Real, 1>>&, const ParticleSystem<Dual<Real, 1>>&) const = 0;
   virtual ForceClaims claims() const = 0;
+  virtual void check(const ParticleSystem<Real>&) const = 0;
   virtual std::string name() const = 0;
   virtual std::string signature() const = 0;
   virtual std::unique_ptr<ForceBase<Quad>> in_quad() const = 0;
@@ -86,6 +87,7 @@ template <class F, class Real> struct ForceModel final : ForceBase<Real> {
     throw LogicError("a force without derivatives was asked for them");
   }
   ForceClaims claims() const override { return claims_of(force); }
+  void check(const ParticleSystem<Real>& s) const override { check_named(s); }
   std::string name() const override { return name_of(force); }
   std::string signature() const override { return signature_of(force); }
   std::unique_ptr<ForceBase<Quad>> in_quad() const override {
@@ -93,6 +95,14 @@ template <class F, class Real> struct ForceModel final : ForceBase<Real> {
     return nullptr;
   }
   F force;
+
+ private:
+  void check_named(const ParticleSystem<Real>& s) const {
+    if (s.box().is_periodic() && !claims_of(force).periodic) {
+      throw Error("the force '" + name_of(force) + "' knows open space only; take it out, or the periodic box");
+    }
+    check_force(force, s);
+  }
 };
 
 template <class Real> struct HamiltonianBase {
@@ -214,6 +224,8 @@ template <class Real = double> class AnyForce : private detail::Erased<detail::F
     this->held_->add_to(out, s);
   }
   ForceClaims claims() const { return this->held_->claims(); }
+  /// @throws Error  see `check_force`
+  void check(const ParticleSystem<Real>& s) const { this->held_->check(s); }
   std::string name() const { return this->held_->name(); }
   std::string signature() const { return this->held_->signature(); }
   /// The same force in extended precision; empty for one that is written for doubles only.

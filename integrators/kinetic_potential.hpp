@@ -2,6 +2,7 @@
 /// H = T(p) + U(q): free motion and kicks, along constraints if there are any.
 
 #include "engine/concepts.hpp"
+#include "engine/neighbor_list.hpp"
 #include "engine/parallel.hpp"
 #include "engine/signature.hpp"
 #include "engine/unconstrained.hpp"
@@ -68,7 +69,7 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
                              .time_dependent = forces.time_dependent,
                              .dissipative = forces.dissipative,
                              .keeps_momentum = forces.keeps_momentum,
-                             .keeps_angular_momentum = forces.keeps_angular_momentum};
+                             .keeps_angular_momentum = forces.keeps_angular_momentum && !periodic_};
     if constexpr (constrained) {
       claims.inexact = "A";
       claims.constraints = constraints_.set().equations();
@@ -81,11 +82,22 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
   const F& forces() const { return forces_; }
 
   void bind(ParticleSystem<Real>& s) {
+    check_force(forces_, s);
     acceleration_ = VectorColumn<Real>(s.size());
+    neighbors_ = NeighborList(claims_of(forces_).range, neighbor_options_);
+    periodic_ = s.box().is_periodic();
     known_.reset();
+    failure_.reset();
+    force_failure_.reset();
     moved_ = true;
-    if constexpr (constrained) constraints_.bind(s);
+    if constexpr (constrained) {
+      if (periodic_) throw Error("constraints know open space only; take them out, or the periodic box");
+      constraints_.bind(s);
+    }
   }
+  /// How neighbors are found; before the first step.
+  void set_neighbor_options(const NeighborOptions& options) { neighbor_options_ = options; }
+  const NeighborList& neighbors() const { return neighbors_; }
   void open(ParticleSystem<Real>& /*inertial already*/) {}
   void close(ParticleSystem<Real>& /*inertial already*/) {}
 
@@ -98,6 +110,7 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     evaluate(s, observing_.value_or(Wanted{}));
     s.advance_velocities(h, acceleration_);
     project(s, h);
+    if (!observing_ && force_failure_) failure_ = force_failure_;
     if (!observing_ && std::exchange(moved_, false)) ++evaluations_.force;
   }
 
@@ -115,12 +128,14 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
         } else {
           drifted ? sum(s, {}) : evaluate(s, {});
           s.advance_velocities(weight * dt, acceleration_);
+          if (force_failure_) failure_ = force_failure_;
           if (std::exchange(moved_, false)) ++evaluations_.force;
         }
       });
       s.clock().tick(Real(0));
       ++done.steps;
-      if (span.asked_to_stop()) break;
+      if (failure_) done.failure = &*failure_;
+      if (failure_ || span.asked_to_stop()) break;
     }
     if (drifted) known_.reset();
     return done;
@@ -160,7 +175,9 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     }
   }
   const std::optional<Failure>& failure() const {
-    if constexpr (constrained) return constraints_.failure();
+    if constexpr (constrained) {
+      if (constraints_.failure()) return constraints_.failure();
+    }
     return failure_;
   }
   Evaluations evaluations() const {
@@ -215,9 +232,10 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     known_ = Known{s.version(), time, wanted.energy};
   }
   void sum(const ParticleSystem<Real>& s, Wanted wanted) {
-    ForceSink<Real> sink(acceleration_, s, {.energy = wanted.energy});
+    ForceSink<Real> sink(acceleration_, s, {.energy = wanted.energy}, &neighbors_);
     forces_.add_to(sink, s);
     if (wanted.energy) potential_ = sink.potential();
+    force_failure_ = sink.failure();
   }
 
   F forces_;
@@ -226,8 +244,12 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
   Real potential_ = Real(0);
   std::optional<Known> known_;
   std::optional<Wanted> observing_;
-  bool moved_ = true;               ///< since the last evaluation that was counted
-  std::optional<Failure> failure_;  ///< kicks and drifts cannot fail
+  bool moved_ = true;                     ///< since the last evaluation that was counted
+  std::optional<Failure> failure_;        ///< why the last flow could not be done
+  std::optional<Failure> force_failure_;  ///< of the last evaluation, whoever asked for it
+  NeighborOptions neighbor_options_;
+  NeighborList neighbors_;
+  bool periodic_ = false;
   Evaluations evaluations_;
 };
 
