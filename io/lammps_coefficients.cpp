@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <map>
 #include <numbers>
 #include <optional>
 
@@ -226,25 +227,30 @@ class CoefficientReader {
     return {c[0] * units_.energy, c[1] * units_.length};
   }
 
+  /// Pairs of one type are parameters of that type, the others stand instead of mixing.
   void explicit_pairs(const LammpsSection& section, std::int64_t types, Topology& topology) {
+    std::map<std::pair<int, int>, PairKind> all;
     for (const std::size_t line : section.rows) {
       const auto [type, row] = split(section, line, types, 2);
       const std::pair<int, int> key = std::minmax(type[0], type[1]);
-      if (!topology.explicit_pairs.try_emplace(key, pair_of(row)).second) {
-        text_.fail(line, fmt::format("the pair of types {} {} stands twice", key.first + 1, key.second + 1));
-      }
+      if (all.try_emplace(key, pair_of(row)).second) continue;
+      text_.fail(line, fmt::format("the pair of types {} {} stands twice", key.first + 1, key.second + 1));
     }
-    if (!topology.pair_kinds.empty()) return;
+    const bool known = !topology.pair_kinds.empty();
+    topology.pair_kinds.resize(static_cast<std::size_t>(types));
     for (int type = 0; type < types; ++type) {
-      const auto own = topology.explicit_pairs.find({type, type});
-      if (own == topology.explicit_pairs.end()) {
+      const auto own = all.find({type, type});
+      if (own != all.end()) {
+        topology.pair_kinds[static_cast<std::size_t>(type)] = own->second;
+        all.erase(own);
+      } else if (!known) {
         text_.fail(section.line,
                    fmt::format("section 'PairIJ Coeffs' has no pair {0} {0}, and there is no section 'Pair "
                                "Coeffs'",
                                type + 1));
       }
-      topology.pair_kinds.push_back(own->second);
     }
+    topology.explicit_pairs = std::move(all);
   }
 
   const LammpsText& data_;
