@@ -5,6 +5,7 @@
 #include "tests/io/support.hpp"
 
 #include <cmath>
+#include <fstream>
 
 using namespace noether;
 using test::error_of;
@@ -69,6 +70,26 @@ TEST_CASE("momenta of extended XYZ are in sqrt(eV u)", "[structure]") {
   CHECK(s.masses()[0] == 4);
   CHECK(std::abs(s.velocities()[0][0] - 1.5 * std::sqrt(96.48533212331002)) < 1e-14 * 15);
   CHECK_FALSE(s.box().is_periodic());
+}
+
+TEST_CASE("what ASE writes has the velocities that ASE has", "[structure]") {
+  const auto folder = std::filesystem::path(NOETHER_SOURCE_DIR) / "tests" / "data" / "extended_xyz";
+  const auto s = io::read_structure(folder / "ions.extxyz");
+  REQUIRE(s.size() == 5);
+  CHECK(s.box() == Box::periodic({6 * 0.1, 8 * 0.1, 10 * 0.1}));
+  CHECK(s.column<Charge>()[4] == -1);
+  CHECK(s.unwrapped(3)[0] < 0);
+  std::ifstream expected(folder / "ions.velocities.txt");
+  std::string heading;
+  std::getline(expected, heading);
+  for (Index i = 0; i < s.size(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      double v = 0;
+      REQUIRE(expected >> v);
+      // ASE writes eight decimals of the momenta.
+      CHECK(std::abs(s.velocities()[i][k] - 100 * v) < 1e-6);
+    }
+  }
 }
 
 TEST_CASE("plain XYZ is read in open space, or in a box that is given", "[structure]") {
