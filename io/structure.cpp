@@ -55,6 +55,27 @@ Box box_of(const Box& of_file, const StructureOptions& options) {
   return *options.box;
 }
 
+/// Options with the units that LAMMPS writes into the first line of its data files, "..., units = real".
+StructureOptions with_units_of_file(const TextFile& text, StructureFormat format, StructureOptions options) {
+  static constexpr std::string_view mark = "units = ";
+  if (format != StructureFormat::lammps_data || text.lines().empty()) return options;
+  const std::string& line = text.lines()[0];
+  const std::size_t at = line.find(mark);
+  if (!line.starts_with("LAMMPS") || at == std::string::npos) return options;
+  const std::string units(trimmed(std::string_view(line).substr(at + mark.size())));
+  if (units != "lj" && units != "real" && units != "metal") {
+    text.fail(1, fmt::format("the file is in units {}; lj, real and metal are read", units), units);
+  }
+  if (!options.file_units.empty() && options.file_units != units) {
+    text.fail(
+        1,
+        fmt::format("the file says units = {}, file_units says '{}'; take file_units out", units, options.file_units),
+        units);
+  }
+  options.file_units = units;
+  return options;
+}
+
 /// Positions of particles that a file gives by cells of a box that is taken away.
 void unwrap(Structure& structure) {
   if (structure.images.empty()) return;
@@ -143,13 +164,13 @@ Box box_in(const TextFile& text, std::size_t line, const Vec3<double>& edges) {
 
 ParticleSystem<double> read_structure(const std::filesystem::path& file, const StructureOptions& options) {
   const StructureFormat format = format_of(file);
-  const FileUnits units = file_units_of(format, options);
   check_special(options.special);
   if (!options.atom_style.empty() && format != StructureFormat::lammps_data) {
     throw Error(fmt::format("atom_style = \"{}\" is for LAMMPS data files; leave it out", options.atom_style),
                 {.key = "atom_style", .value = options.atom_style});
   }
   const TextFile text(file, expected_of(format));
+  const FileUnits units = file_units_of(format, with_units_of_file(text, format, options));
   Structure structure = format == StructureFormat::lammps_data ? read_lammps_data(text, units, options)
                         : format == StructureFormat::gro       ? read_gro(text, units)
                                                                : read_extended_xyz(text, units);

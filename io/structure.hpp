@@ -16,8 +16,8 @@ namespace noether::io {
 /// What a structure file does not say itself.
 struct StructureOptions {
   const UnitSystem* units = &unit_system("molecular");  ///< the unit system of the particles
-  /// "lj" (in the reduced system), "real" or "metal" (in the molecular one): the units of a LAMMPS data file; a file
-  /// of extended XYZ may be in "lj" too. Empty: what the format says.
+  /// "lj" (in the reduced system), "real" or "metal" (in the molecular one): the units of a LAMMPS data file that does
+  /// not say them in its first line, as LAMMPS itself does; extended XYZ may be in "lj" too. Empty: what the file says.
   std::string file_units = {};
   std::string atom_style = {};  ///< of a LAMMPS data file without it: atomic, charge, bond, angle, molecular or full
   /// Factors of the pair forces of particles one, two and three bonds apart.

@@ -37,7 +37,7 @@ class UnitsCheck {
              fmt::format("a structure is read in units = \"molecular\" or \"reduced\", not \"{}\"", system_.name));
     }
     if (is_lammps() && said_.empty()) {
-      refuse("file_units", "a LAMMPS data file does not say its units; give file_units = \"real\" or \"metal\"");
+      refuse("file_units", "this LAMMPS data file does not say its units; give file_units = \"real\" or \"metal\"");
     }
   }
 

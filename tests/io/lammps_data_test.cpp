@@ -171,7 +171,7 @@ TEST_CASE("the box of a file can be taken away, and images are honored", "[struc
 TEST_CASE("units that do not fit are refused", "[structure][messages]") {
   const std::string content = two_atoms + pair_atoms;
   CHECK(data_refusal(content, {}) ==
-        "a LAMMPS data file does not say its units; give file_units = \"real\" or \"metal\"");
+        "this LAMMPS data file does not say its units; give file_units = \"real\" or \"metal\"");
   CHECK(data_refusal(content, {.file_units = "lj"}) ==
         "numbers in lj belong to units = \"reduced\", not \"molecular\"");
   CHECK(data_refusal(content, {.units = &reduced, .file_units = "real"}) ==
@@ -183,6 +183,19 @@ TEST_CASE("units that do not fit are refused", "[structure][messages]") {
         "special holds 2; factors from 0 to 1 are expected");
   CHECK(error_of([] { io::read_structure("m.pdb"); }) ==
         "'m.pdb' is of no kind that is read; a structure is a .data or .lmp file (LAMMPS), .xyz or .extxyz, or .gro");
+}
+
+TEST_CASE("the units that LAMMPS writes into its first line are taken", "[structure]") {
+  const auto said = [](const std::string& units) {
+    return "LAMMPS data file via write_data, version 22 Jul 2025, timestep = 0, units = " + units +
+           two_atoms.substr(9) + pair_atoms;
+  };
+  CHECK(read_data(said("metal"), {}).box().edges()[0] == 0.5);
+  CHECK(read_data(said("lj")).box().edges()[0] == 5);
+  CHECK(data_refusal(said("real")) == "a LAMMPS data file in real needs units = \"molecular\", not \"reduced\"");
+  CHECK(data_refusal(said("real"), {.file_units = "metal"}) ==
+        "m.data:1: the file says units = real, file_units says 'metal'; take file_units out");
+  CHECK(data_refusal(said("electron"), {}) == "m.data:1: the file is in units electron; lj, real and metal are read");
 }
 
 TEST_CASE("a header that is wrong is refused with its line", "[structure][messages]") {

@@ -122,10 +122,12 @@ TEST_CASE("bodies of a scene can have a box, types and charges", "[scene]") {
 }
 
 TEST_CASE("keys of structures that are wrong are refused at their lines", "[scene][structure][messages]") {
-  CHECK(refusal("structure = 'molecule.data'\n", "molecular") ==
-        "scene.toml:2: a LAMMPS data file does not say its units; give file_units = \"real\" or \"metal\"");
+  CHECK(refusal("structure = '../../scenes/bad/cut.data'\n", "molecular") ==
+        "scene.toml:2: this LAMMPS data file does not say its units; give file_units = \"real\" or \"metal\"");
+  CHECK(refusal("structure = 'molecule.data'\n") ==
+        "scene.toml:2: a LAMMPS data file in real needs units = \"molecular\", not \"reduced\"");
   CHECK(refusal("structure = 'molecule.data'\nfile_units = 'reel'\n", "molecular") ==
-        "scene.toml:4: unknown file_units 'reel'; did you mean 'real'?");
+        "molecule.data:1: the file says units = real, file_units says 'reel'; take file_units out");
   CHECK(refusal("structure = 'make.py'\n") ==
         "scene.toml:3: 'make.py' is of no kind that is read; a structure is a .data or .lmp file (LAMMPS), .xyz or "
         ".extxyz, or .gro");
