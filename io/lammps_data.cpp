@@ -199,11 +199,11 @@ class LammpsDataReader {
     const LammpsSection* section = data_.section(name, counted, true);
     if (section == nullptr) return;
     const std::int64_t types = data_.count(fmt::format("{} types", term));
+    const std::string what = fmt::format("the type of this {}", term);
     for (const std::size_t line : section->rows) {
       words_of_row(*section, line, n + 2);
       BondedTerm<n> one;
-      one.type = static_cast<int>(
-          whole_number_in(text_, line, words_[1], fmt::format("the type of {} {}", term, words_[0]), 1, types) - 1);
+      one.type = static_cast<int>(whole_number_in(text_, line, words_[1], what, 1, types) - 1);
       for (std::size_t k = 0; k < n; ++k) one.particles[k] = joined(line, term, words_[k + 2]);
       auto sorted = one.particles;
       std::sort(sorted.begin(), sorted.end());

@@ -144,7 +144,7 @@ void split_words(std::string_view line, std::vector<std::string_view>& words) {
   }
 }
 
-std::int64_t whole_number_in(const TextFile& text, std::size_t line, std::string_view word, const std::string& what,
+std::int64_t whole_number_in(const TextFile& text, std::size_t line, std::string_view word, std::string_view what,
                              std::int64_t least, std::int64_t most) {
   std::int64_t number = 0;
   const auto [end, problem] = std::from_chars(word.data(), word.data() + word.size(), number);

@@ -45,7 +45,7 @@ double standard_atomic_weight(std::string_view element);
 void split_words(std::string_view line, std::vector<std::string_view>& words);
 
 /// Reads a whole number from `least` to `most`; `what` names it in messages. @throws SceneError
-std::int64_t whole_number_in(const TextFile& text, std::size_t line, std::string_view word, const std::string& what,
+std::int64_t whole_number_in(const TextFile& text, std::size_t line, std::string_view word, std::string_view what,
                              std::int64_t least, std::int64_t most);
 
 /// The box of three edges as numbers of a file. @throws SceneError

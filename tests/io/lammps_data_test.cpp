@@ -269,7 +269,7 @@ TEST_CASE("terms that are wrong are refused with their line", "[structure][messa
   };
   CHECK(bond("1 1 1 9") == "m.data:23: bond 1 joins atom 9, which is not there");
   CHECK(bond("1 1 2 2") == "m.data:23: bond 1 joins an atom to itself");
-  CHECK(bond("1 2 1 2") == "m.data:23: the type of bond 1 is '2'; a whole number is expected, 1 to 1");
+  CHECK(bond("1 2 1 2") == "m.data:23: the type of this bond is '2'; a whole number is expected, 1 to 1");
   CHECK(bond("1 1 1") == "m.data:23: this row of section 'Bonds' has 3 words; expected 4");
   const std::string good = "1 1 1 2";
   CHECK(
