@@ -133,14 +133,16 @@ void check_positions(const ParticleSystem<double>& s, const std::filesystem::pat
 
 void split_words(std::string_view line, std::vector<std::string_view>& words) {
   words.clear();
-  line = line.substr(0, line.find('#'));
-  while (true) {
-    const std::size_t first = line.find_first_not_of(" \t");
-    if (first == std::string_view::npos) return;
-    line.remove_prefix(first);
-    const std::size_t end = std::min(line.find_first_of(" \t"), line.size());
-    words.push_back(line.substr(0, end));
-    line.remove_prefix(end);
+  const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
+  const std::size_t end = std::min(line.find('#'), line.size());
+  for (std::size_t at = 0; at < end;) {
+    if (is_blank(line[at])) {
+      ++at;
+      continue;
+    }
+    const std::size_t first = at;
+    while (at < end && !is_blank(line[at])) ++at;
+    words.push_back(line.substr(first, at - first));
   }
 }
 
