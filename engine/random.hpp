@@ -76,23 +76,24 @@ inline std::array<double, 2> normal_pair(const std::array<std::uint32_t, 4>& bit
   return {radius * cosine, radius * sine};
 }
 
-/// One stream of random numbers, taken in order or by their place; streams of a seed are independent.
+/// One stream of random numbers, taken in order or by their place; streams of a seed never meet.
 ///
-///     Philox random(42);                     // a sequence
+///     Philox random(42);                            // a sequence
 ///     const double u = random.uniform();
 ///     const auto bits = random.at(step, particle);  // or by place: no state, any order, any thread
 ///
-/// The key is the seed; the counter holds the stream and the place. State to be saved is `place()`.
+/// The key is the seed; the counter is, from its highest word down, the stream, 64 bits of the first number of a place
+/// and 32 of the second. Each purpose takes a stream of its own. State to be saved is `place()`.
 class Philox {
  public:
-  explicit Philox(std::uint64_t seed, std::uint64_t stream = 0) : seed_(seed), stream_(stream) {}
+  explicit Philox(std::uint64_t seed, std::uint32_t stream = 0) : seed_(seed), stream_(stream) {}
 
-  /// The 128 bits at a place of this stream.
-  std::array<std::uint32_t, 4> at(std::uint64_t place) const { return bits(seed_, stream_, place); }
-  /// 128 bits for a pair of numbers, such as step and particle: the stream is added to the first.
-  std::array<std::uint32_t, 4> at(std::uint64_t first, std::uint64_t second) const {
-    return bits(seed_, stream_ + first, second);
+  /// The 128 bits at a place, such as step and particle.
+  std::array<std::uint32_t, 4> at(std::uint64_t first, std::uint32_t second) const {
+    return philox({second, lower(first), lower(first >> 32U), stream_}, {lower(seed_), lower(seed_ >> 32U)});
   }
+  /// The 128 bits at a place of the sequence; its lower 32 bits are the second number.
+  std::array<std::uint32_t, 4> at(std::uint64_t place) const { return at(place >> 32U, lower(place)); }
 
   /// The next 128 bits.
   std::array<std::uint32_t, 4> next() { return at(place_++); }
@@ -109,12 +110,10 @@ class Philox {
   void set_place(std::uint64_t place) { place_ = place; }
 
  private:
-  static std::array<std::uint32_t, 4> bits(std::uint64_t seed, std::uint64_t high, std::uint64_t low) {
-    const auto lower = [](std::uint64_t x) { return static_cast<std::uint32_t>(x); };
-    return philox({lower(low), lower(low >> 32U), lower(high), lower(high >> 32U)}, {lower(seed), lower(seed >> 32U)});
-  }
+  static constexpr std::uint32_t lower(std::uint64_t x) { return static_cast<std::uint32_t>(x); }
 
-  std::uint64_t seed_, stream_, place_ = 0;
+  std::uint64_t seed_, place_ = 0;
+  std::uint32_t stream_;
 };
 
 }  // namespace noether

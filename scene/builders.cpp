@@ -13,7 +13,7 @@ namespace noether {
 namespace {
 
 /// Streams of a seed: what is drawn for one purpose does not depend on another.
-enum Stream : std::uint64_t { velocity_stream = 1, vacancy_stream, displacement_stream, walk_stream };
+enum Stream : std::uint32_t { velocity_stream = 1, vacancy_stream, displacement_stream, walk_stream };
 
 constexpr std::int64_t most_built = 100'000'000;
 
@@ -247,8 +247,9 @@ ParticleSystem<double> PolymerChains::build(const UnitSystem& units) const {
   const double edge = std::cbrt(static_cast<double>(chains * beads) * mass / density);
   std::vector<Site> positions;
   Topology topology = one_type(static_cast<Index>(chains * beads), epsilon, sigma);
+  Philox random(static_cast<std::uint64_t>(seed), walk_stream);
   for (std::int64_t chain = 0; chain < chains; ++chain) {
-    Philox random(static_cast<std::uint64_t>(seed), walk_stream + static_cast<std::uint64_t>(chain));
+    random.set_place(static_cast<std::uint64_t>(chain) << 32U);  // a chain does not depend on those before
     const double x = random.uniform(), y = random.uniform(), z = random.uniform();
     Site at = edge * Site(x, y, z);
     Vec3<double> before = Vec3<double>::Zero();

@@ -30,7 +30,8 @@ TEST_CASE("a stream is a function of seed, stream and place", "[random]") {
   CHECK(random.next() == third);
   CHECK(Philox(1, 0).at(0) != Philox(1, 1).at(0));
   CHECK(Philox(1, 0).at(0) != Philox(2, 0).at(0));
-  CHECK(Philox(1, 5).at(3, 4) == Philox(1, 8).at(4));
+  CHECK(Philox(1, 5).at(3, 4) == Philox(1, 5).at((std::uint64_t{3} << 32U) + 4));
+  CHECK(Philox(1, 5).at(std::uint64_t{7} << 32U | 6, 8) == philox({8, 6, 7, 5}, {1, 0}));
   CHECK(Philox(0x299f31d0'a4093822, 0).at(0) == philox({0, 0, 0, 0}, {0xa4093822, 0x299f31d0}));
 }
 
