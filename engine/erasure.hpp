@@ -41,6 +41,12 @@ template <class T> void load_any(const SavedState& saved, const std::string& pre
   }
 }
 
+/// The virial of what moves particles; empty for a type that knows none.
+template <class T, class Real> std::optional<Mat3<Real>> virial_of(T& moves, const ParticleSystem<Real>& s) {
+  if constexpr (requires { moves.virial(s); }) return moves.virial(s);
+  return {};
+}
+
 /// Value semantics for a polymorphic `Base` with `clone`.
 template <class Base> class Erased {
  public:
@@ -117,6 +123,7 @@ template <class Real> struct HamiltonianBase {
   virtual Real flow_with_action(char, ParticleSystem<Real>&, const Real&) = 0;
   virtual Advanced run(const TimedWord<Real>&, ParticleSystem<Real>&, const Span&) = 0;
   virtual EnergyTerms<Real> energy(const ParticleSystem<Real>&) = 0;
+  virtual std::optional<Mat3<Real>> virial(const ParticleSystem<Real>&) = 0;
   virtual void accelerations(const ParticleSystem<Real>&, VectorColumn<Real>&) = 0;
   virtual void observe(std::optional<Wanted>) = 0;
   virtual const std::optional<Failure>& failure() const = 0;
@@ -143,6 +150,7 @@ template <class H> struct HamiltonianModel final : HamiltonianBase<typename H::r
     return walk(hamiltonian, word, s, span);
   }
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) override { return hamiltonian.energy(s); }
+  std::optional<Mat3<Real>> virial(const ParticleSystem<Real>& s) override { return virial_of(hamiltonian, s); }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) override { hamiltonian.accelerations(s, a); }
   void observe(std::optional<Wanted> wanted) override { hamiltonian.observe(wanted); }
   const std::optional<Failure>& failure() const override { return hamiltonian.failure(); }
@@ -163,6 +171,7 @@ template <class Real> struct IntegratorBase {
   virtual Real settle(const ParticleSystem<Real>&, ParticleSystem<Real>&, Wanted, const std::optional<double>&,
                       bool) = 0;
   virtual EnergyTerms<Real> energy(const ParticleSystem<Real>&) = 0;
+  virtual std::optional<Mat3<Real>> virial(const ParticleSystem<Real>&) = 0;
   virtual void accelerations(const ParticleSystem<Real>&, VectorColumn<Real>&) = 0;
   virtual Evaluations evaluations() const = 0;
   virtual void save(SavedState&, const std::string&) const = 0;
@@ -193,6 +202,7 @@ template <class I> struct IntegratorModel final : IntegratorBase<typename I::rea
     return Real(0);
   }
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) override { return integrator.energy(s); }
+  std::optional<Mat3<Real>> virial(const ParticleSystem<Real>& s) override { return virial_of(integrator, s); }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) override { integrator.accelerations(s, a); }
   Evaluations evaluations() const override { return integrator.evaluations(); }
   void save(SavedState& saved, const std::string& prefix) const override { save_any(saved, prefix, integrator); }
@@ -258,6 +268,8 @@ template <class Real = double> class AnyHamiltonian : private detail::Erased<det
     return this->held_->run(word, s, span);
   }
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) { return this->held_->energy(s); }
+  /// The virial of the forces, sum x (x) f [energy]; empty where it is not known.
+  std::optional<Mat3<Real>> virial(const ParticleSystem<Real>& s) { return this->held_->virial(s); }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) { this->held_->accelerations(s, a); }
   void observe(std::optional<Wanted> wanted) { this->held_->observe(wanted); }
   const std::optional<Failure>& failure() const { return this->held_->failure(); }
@@ -290,6 +302,8 @@ template <class Real = double> class AnyIntegrator : private detail::Erased<deta
     return this->held_->settle(raw, out, wanted, at, corrected);
   }
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) { return this->held_->energy(s); }
+  /// The virial of the forces, sum x (x) f [energy]; empty where it is not known.
+  std::optional<Mat3<Real>> virial(const ParticleSystem<Real>& s) { return this->held_->virial(s); }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) { this->held_->accelerations(s, a); }
   Evaluations evaluations() const { return this->held_->evaluations(); }
   void save(SavedState& saved, const std::string& prefix) const { this->held_->save(saved, prefix); }

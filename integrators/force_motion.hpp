@@ -73,6 +73,12 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
     forces_.add_to(sink, s);
     return {kinetic_energy(s), sink.potential()};
   }
+  std::optional<Mat3<Real>> virial(const ParticleSystem<Real>& s) override {
+    if (!claims_of(forces_).virial) return {};
+    ForceSink<Real> sink(a_, s, {.virial = true}, &neighbors_);
+    forces_.add_to(sink, s);
+    return sink.virial();
+  }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) override {
     ForceSink<Real> sink(a, s, {}, &neighbors_);
     forces_.add_to(sink, s);

@@ -157,6 +157,14 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     evaluate(s, {.energy = true});
     return {kinetic_energy(s), potential_};
   }
+  /// Sum x (x) f [energy]; empty if a force does not tell it, or constraints add to it. Once asked for, it is summed
+  /// along with the energy.
+  std::optional<Mat3<Real>> virial(const ParticleSystem<Real>& s) {
+    if (constrained || !claims_of(forces_).virial) return {};
+    virial_wanted_ = true;
+    evaluate(s, {.energy = true, .virial = true});
+    return virial_;
+  }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) {
     evaluate(s, {});
     a = acceleration_;
@@ -211,7 +219,7 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
   struct Known {
     std::uint64_t version;
     Real time;
-    bool energy;
+    bool energy, virial;
   };
 
   void move(ParticleSystem<Real>& s, const Real& h) {
@@ -227,14 +235,17 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
   }
   void evaluate(const ParticleSystem<Real>& s, Wanted wanted) {
     const Real time = s.time();
-    if (known_ && known_->version == s.version() && known_->time == time && (known_->energy || !wanted.energy)) return;
+    const bool here = known_ && known_->version == s.version() && known_->time == time;
+    if (here && (known_->energy || !wanted.energy) && (known_->virial || !wanted.virial)) return;
+    wanted.virial = wanted.virial || (wanted.energy && virial_wanted_);
     sum(s, wanted);
-    known_ = Known{s.version(), time, wanted.energy};
+    known_ = Known{s.version(), time, wanted.energy, wanted.virial};
   }
   void sum(const ParticleSystem<Real>& s, Wanted wanted) {
-    ForceSink<Real> sink(acceleration_, s, {.energy = wanted.energy}, &neighbors_);
+    ForceSink<Real> sink(acceleration_, s, {.energy = wanted.energy, .virial = wanted.virial}, &neighbors_);
     forces_.add_to(sink, s);
     if (wanted.energy) potential_ = sink.potential();
+    if (wanted.virial) virial_ = sink.virial();
     force_failure_ = sink.failure();
   }
 
@@ -242,6 +253,8 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
   typename C::template Solver<Real> constraints_;
   VectorColumn<Real> acceleration_;
   Real potential_ = Real(0);
+  Mat3<Real> virial_ = Mat3<Real>::Zero();
+  bool virial_wanted_ = false;
   std::optional<Known> known_;
   std::optional<Wanted> observing_;
   bool moved_ = true;                     ///< since the last evaluation that was counted
