@@ -9,6 +9,7 @@
 #include "engine/shadow_hamiltonian.hpp"
 #include "engine/temperature.hpp"
 #include "engine/variables.hpp"
+#include "forces/bonded.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/fermi_pasta_ulam.hpp"
 #include "forces/gravity.hpp"
@@ -58,6 +59,7 @@ Parts standard_parts() {
   parts.add_force<FermiPastaUlam>();
   parts.add_force<HarmonicBond>();
   parts.add_force<Tether>();
+  parts.add_force<Bonded>();
   parts.add_force<LinearDrag>();
   parts.add_constraint<Distance>();
   parts.add_constraint({part_info<RigidBar>(), 0, RigidBar::read});
