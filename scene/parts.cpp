@@ -18,6 +18,8 @@
 #include "forces/springs.hpp"
 #include "forces/sum.hpp"
 #include "integrators/kinetic_potential.hpp"
+#include "integrators/langevin.hpp"
+#include "integrators/minimize.hpp"
 #include "integrators/systems/forced_damped_oscillator.hpp"
 #include "integrators/systems/heat_line.hpp"
 #include "integrators/systems/lorenz.hpp"
@@ -128,6 +130,8 @@ std::vector<PartInfo> hamiltonian_parts() {
   return {
       part_info<KineticPotential<ForceField<double>>>(),
       part_info<WisdomHolmanOptions>(),
+      part_info<LangevinOptions>(),
+      part_info<MinimizeOptions>(),
       {"damped", "the name of any Hamiltonian with friction: a force linear_drag in the scene adds it as the letter D",
        "D: v -> exp(-rate h) v", "", ""}};
 }
