@@ -113,6 +113,10 @@ void sort_parts(const Scene& scene, Explanation& e) {
     const bool wide = !force.force || force.force->in_quad();
     e.in.push_back("force " + force.name + (wide ? "" : ", for doubles only: compare has no truth for it"));
   }
+  if (const auto& bath = scene.hamiltonian.thermostat) {
+    e.in.push_back(fmt::format("thermostat langevin, friction {} 1/{}, seed {}", bath->friction,
+                               scene.units->is_reduced() ? "time" : scene.units->time, bath->seed));
+  }
   for (const SceneConstraint& constraint : scene.hamiltonian.constraints) {
     e.in.push_back(fmt::format("constraint {}, {} times", constraint.name, constraint.tied.size()));
   }
@@ -208,6 +212,7 @@ std::string meaning(char letter, const Scene& scene, const Explanation& e) {
     return fmt::format("kicks, {} force {}: a kick where nothing has moved uses the forces again", e.evaluations,
                        e.evaluations == 1 ? "evaluation" : "evaluations");
   }
+  if (letter == 'O') return "flows of the bath: friction and noise, exact";
   return letter == 'D' ? "flows of the drag" : "flows";
 }
 

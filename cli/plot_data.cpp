@@ -289,8 +289,9 @@ std::vector<PlotOrbits> read_orbits(const io::Frames& all, const SceneValue& sce
   return on_scales(std::move(picture), all.length_unit);
 }
 
-/// Whether the energy is meant to change: drag, or a force that depends on time.
+/// Whether the energy is meant to change: drag, a bath, or a force that depends on time.
 bool changes_energy(const SceneValue& scene) {
+  if (value_at(scene, {"hamiltonian", "thermostat"}) != nullptr) return true;
   const SceneValue* forces = value_at(scene, {"hamiltonian", "force"});
   if (forces == nullptr || !forces->is_table_list()) return false;
   for (const SceneValue& force : *forces->get<SceneValue::Array>()) {

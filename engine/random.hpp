@@ -76,6 +76,29 @@ inline std::array<double, 2> normal_pair(const std::array<std::uint32_t, 4>& bit
   return {radius * cosine, radius * sine};
 }
 
+/// The key of the noise of a seed, which no `Philox` of a seed of 0 or more has.
+/// @throws never
+constexpr std::array<std::uint32_t, 2> noise_key(std::int64_t seed) {
+  const auto bits = static_cast<std::uint64_t>(seed);
+  return {static_cast<std::uint32_t>(bits), static_cast<std::uint32_t>(bits >> 32U) ^ 0x80000000U};
+}
+
+/// Three normal deviates for particle `id` in stage `stage` of step `step`: noise without a state.
+/// @param id  0 to 2^53
+/// @param stage  0 to 127
+/// @throws never
+/// @cost two calls of `philox`
+inline std::array<double, 3> noise(const std::array<std::uint32_t, 2>& key, std::int64_t id, std::int64_t step,
+                                   std::uint32_t stage) {
+  const auto who = static_cast<std::uint64_t>(id), when = static_cast<std::uint64_t>(step);
+  std::array<std::uint32_t, 4> counter = {static_cast<std::uint32_t>(who),
+                                          static_cast<std::uint32_t>(who >> 32U) | stage << 22U,
+                                          static_cast<std::uint32_t>(when), static_cast<std::uint32_t>(when >> 32U)};
+  const auto one = normal_pair(philox(counter, key));
+  counter[1] |= 1U << 29U;
+  return {one[0], one[1], normal_pair(philox(counter, key))[0]};
+}
+
 /// One stream of random numbers, taken in order or by their place; streams of a seed never meet.
 ///
 ///     Philox random(42);                            // a sequence

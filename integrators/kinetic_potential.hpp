@@ -114,6 +114,9 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     if (!observing_ && std::exchange(moved_, false)) ++evaluations_.force;
   }
 
+  /// Brings velocities back along the constraints, for flows of other letters.
+  void project_velocities(ParticleSystem<Real>& s, const Real& h) { project(s, h); }
+
   /// The fused walk: between the stages of whole steps nobody asks whether the forces are known.
   Advanced run(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span) requires(!constrained) {
     const Real dt(s.clock().dt());

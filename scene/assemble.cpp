@@ -7,6 +7,7 @@
 #include "integrators/composition.hpp"
 #include "integrators/damped.hpp"
 #include "integrators/kinetic_potential.hpp"
+#include "integrators/langevin.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "io/checkpoint.hpp"
 #include "io/trajectory.hpp"
@@ -20,16 +21,23 @@ namespace {
 /// Larger than any run: a cadence of this many steps looks at step 0 only.
 constexpr std::int64_t once = std::int64_t{1} << 62;
 
+/// The Hamiltonian in the bath of the scene, if it has one.
+template <class H> AnyHamiltonian<double> in_bath(const Scene& scene, H hamiltonian) {
+  if (!scene.hamiltonian.thermostat) return hamiltonian;
+  return Langevin<H>(std::move(hamiltonian), *scene.hamiltonian.thermostat);
+}
+
 AnyHamiltonian<double> without_drag(const Scene& scene) {
   ForceField<double> forces;
   for (const SceneForce& force : scene.hamiltonian.forces) {
     if (force.force) forces.add(*force.force);
   }
   if (!scene.hamiltonian.constraints.empty()) {
-    return KineticPotential<ForceField<double>, double, ConstraintSet>(std::move(forces), constraints_of(scene));
+    return in_bath(
+        scene, KineticPotential<ForceField<double>, double, ConstraintSet>(std::move(forces), constraints_of(scene)));
   }
   if (scene.hamiltonian.kind == SceneHamiltonian::Kind::kinetic_potential) {
-    return KineticPotential<ForceField<double>>(std::move(forces));
+    return in_bath(scene, KineticPotential<ForceField<double>>(std::move(forces)));
   }
   if (forces.terms().empty()) return WisdomHolman<double>(scene.hamiltonian.wisdom_holman);
   return WisdomHolman<double, ForceField<double>>(scene.hamiltonian.wisdom_holman, std::move(forces));

@@ -4,9 +4,11 @@
 #include "integrators/composition.hpp"
 #include "integrators/schemes.hpp"
 #include "io/files.hpp"
+#include "scene/minimize.hpp"
 #include "scene/read_constraints.hpp"
 #include "scene/read_integrator.hpp"
 #include "scene/read_particles.hpp"
+#include "scene/read_thermostat.hpp"
 #include "scene/read_tied.hpp"
 #include "scene/read_verdicts.hpp"
 #include "scene/sets.hpp"
@@ -31,8 +33,8 @@ class SceneReader {
 
   void read() {
     TableReader top(context_, root_, "", "");
-    top.expect_only(
-        {"title", "units", "particles", "hamiltonian", "system", "integrator", "every", "stop", "expect", "verdict"});
+    top.expect_only({"title", "units", "particles", "hamiltonian", "system", "minimize", "integrator", "every", "stop",
+                     "expect", "verdict"});
     scene_.title = top.text("title");
     read_units(top);
     scene_.effective = SceneValue::table();
@@ -45,6 +47,9 @@ class SceneReader {
       SceneValue& particles = scene_.effective.put("particles", SceneValue::table());
       scene_.particles = read_particles(context_, table(top, "particles"), scene_.file.parent_path(), particles);
       read_hamiltonian(table(top, "hamiltonian"));
+      if (const SceneValue* start = top.find("minimize")) {
+        scene_.effective.put("minimize", read_minimize(context_, *start, scene_));
+      }
     }
     scene_.integrator = read_integrator(context_, table(top, "integrator"), !scene_.hamiltonian.constraints.empty(),
                                         scene_.effective.put("integrator", SceneValue::table()));
@@ -82,7 +87,7 @@ class SceneReader {
   }
 
   void read_system(TableReader& top, const SceneValue& table) {
-    for (const char* other : {"particles", "hamiltonian"}) {
+    for (const char* other : {"particles", "hamiltonian", "minimize"}) {
       if (!top.has(other)) continue;
       top.fail(other, fmt::format("[{}] stands beside [system]; a run is of particles under a Hamiltonian or of a "
                                   "first-order system: take one out",
@@ -143,6 +148,7 @@ class SceneReader {
       effective.put("coordinates", detail::field_value(made.wisdom_holman.coordinates, "1", *scene_.units)).line =
           reader.line("coordinates");
     }
+    const SceneValue* thermostat = reader.find("thermostat");
     reader.finish();
     if (type == "wisdom_holman" && made.wisdom_holman.coordinates == Coordinates::inertial) {
       reader.fail("coordinates", "wisdom_holman has jacobi or democratic coordinates");
@@ -158,6 +164,7 @@ class SceneReader {
     SceneValue::Array list;
     for (const SceneValue* force : forces) read_force(*force, list);
     if (!list.empty()) effective.put("force", SceneValue::of(std::move(list)));
+    if (thermostat != nullptr) effective.put("thermostat", read_thermostat(context_, *thermostat, scene_));
     if (constraints.empty()) return;
     effective.put("constraint", SceneValue::of(read_constraints(context_, constraints, parts_, scene_)));
   }
@@ -363,6 +370,11 @@ class SceneReader {
       throw;
     } catch (const Error& error) {
       hamiltonian.fail("type", error.message());
+    }
+    if (scene_.hamiltonian.thermostat && scene_.integrator.classical) {
+      integrator.fail("method", fmt::format("method '{}' knows no noise: a thermostat is the letter O of a word; use "
+                                            "\"BAOAB\", or a scheme such as 'verlet'",
+                                            scene_.integrator.method));
     }
     std::optional<AnyIntegrator<double>> made;
     try {

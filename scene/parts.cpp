@@ -9,6 +9,7 @@
 #include "engine/shadow_hamiltonian.hpp"
 #include "engine/temperature.hpp"
 #include "engine/variables.hpp"
+#include "forces/bonded.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/fermi_pasta_ulam.hpp"
 #include "forces/gravity.hpp"
@@ -17,6 +18,8 @@
 #include "forces/springs.hpp"
 #include "forces/sum.hpp"
 #include "integrators/kinetic_potential.hpp"
+#include "integrators/langevin.hpp"
+#include "integrators/minimize.hpp"
 #include "integrators/systems/forced_damped_oscillator.hpp"
 #include "integrators/systems/heat_line.hpp"
 #include "integrators/systems/lorenz.hpp"
@@ -58,6 +61,7 @@ Parts standard_parts() {
   parts.add_force<FermiPastaUlam>();
   parts.add_force<HarmonicBond>();
   parts.add_force<Tether>();
+  parts.add_force<Bonded>();
   parts.add_force<LinearDrag>();
   parts.add_constraint<Distance>();
   parts.add_constraint({part_info<RigidBar>(), 0, RigidBar::read});
@@ -126,6 +130,8 @@ std::vector<PartInfo> hamiltonian_parts() {
   return {
       part_info<KineticPotential<ForceField<double>>>(),
       part_info<WisdomHolmanOptions>(),
+      part_info<LangevinOptions>(),
+      part_info<MinimizeOptions>(),
       {"damped", "the name of any Hamiltonian with friction: a force linear_drag in the scene adds it as the letter D",
        "D: v -> exp(-rate h) v", "", ""}};
 }

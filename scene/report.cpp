@@ -58,37 +58,40 @@ std::string to_json(const RunReport& r) {
   Json::Members monitors;
   for (const auto& [name, monitor] : r.monitors) monitors.emplace_back(name, json_of(monitor));
   const auto steps = static_cast<double>(r.steps_made);
-  return Json::object(
-             {{"schema", "noether.run/1"},
-              {"version", version()},
-              {"commit", commit()},
-              {"scene", r.scene},
-              {"scene_sha256", r.scene_sha256},
-              {"outcome", name(r.outcome.kind)},
-              {"exit_code", r.exit_code()},
-              {"message", message_of(r)},
-              {"particle", particle_of(r.outcome)},
-              {"quantity", r.outcome.quantity.empty() ? Json() : Json(r.outcome.quantity)},
-              {"step", r.outcome.step},
-              {"time", r.outcome.time},
-              {"time_unit", r.time_unit},
-              {"dt", r.dt},
-              {"particles", std::int64_t{r.particles}},
-              {"resumed_from_step", r.resumed_from_step},
-              {"threads", r.threads},
-              {"simd", r.simd},
-              {"evaluations", Json::object({{"force", r.evaluations.force},
-                                            {"kepler", r.evaluations.kepler},
-                                            {"jacobian", r.evaluations.jacobian},
-                                            {"constraint", r.evaluations.constraint},
-                                            {"rejected", r.evaluations.rejected}})},
-              {"wall_s", r.wall_s},
-              {"steps_per_s", per_second(steps, r.wall_s)},
-              {"particle_steps_per_s", per_second(steps * static_cast<double>(r.particles), r.wall_s)},
-              {"digest", r.digest},
-              {"monitors", Json::object(monitors)},
-              {"files", Json::object({{"trajectory", json_of(r.trajectory)}, {"checkpoint", json_of(r.checkpoint)}})}})
-      .text();
+  Json::Members members = {
+      {"schema", "noether.run/1"},
+      {"version", version()},
+      {"commit", commit()},
+      {"scene", r.scene},
+      {"scene_sha256", r.scene_sha256},
+      {"outcome", name(r.outcome.kind)},
+      {"exit_code", r.exit_code()},
+      {"message", message_of(r)},
+      {"particle", particle_of(r.outcome)},
+      {"quantity", r.outcome.quantity.empty() ? Json() : Json(r.outcome.quantity)},
+      {"step", r.outcome.step},
+      {"time", r.outcome.time},
+      {"time_unit", r.time_unit},
+      {"dt", r.dt},
+      {"particles", std::int64_t{r.particles}},
+      {"resumed_from_step", r.resumed_from_step},
+      {"threads", r.threads},
+      {"simd", r.simd},
+      {"evaluations", Json::object({{"force", r.evaluations.force},
+                                    {"kepler", r.evaluations.kepler},
+                                    {"jacobian", r.evaluations.jacobian},
+                                    {"constraint", r.evaluations.constraint},
+                                    {"rejected", r.evaluations.rejected}})},
+      {"wall_s", r.wall_s},
+      {"steps_per_s", per_second(steps, r.wall_s)},
+      {"particle_steps_per_s", per_second(steps * static_cast<double>(r.particles), r.wall_s)},
+      {"digest", r.digest},
+      {"monitors", Json::object(monitors)},
+      {"files", Json::object({{"trajectory", json_of(r.trajectory)}, {"checkpoint", json_of(r.checkpoint)}})}};
+  if (r.minimized) {
+    members.emplace_back("minimized", Json::object({{"force", r.minimized->force}, {"steps", r.minimized->steps}}));
+  }
+  return Json::object(members).text();
 }
 
 namespace {
@@ -127,6 +130,10 @@ std::string figures(const MonitorReport& m) {
 std::string to_text(const RunReport& r) {
   const std::string unit = r.time_unit == "1" ? "" : " " + r.time_unit;
   std::string text = fmt::format("{}, time {:.9g}{}\n", to_text(r.outcome), r.outcome.time, unit);
+  if (r.minimized) {
+    text += fmt::format("minimized: largest force {:.3g}{}{} after {} force evaluations\n", r.minimized->force,
+                        r.force_unit == "1" ? "" : " ", r.force_unit == "1" ? "" : r.force_unit, r.minimized->steps);
+  }
   if (r.resumed_from_step) text += fmt::format("resumed from step {}\n", *r.resumed_from_step);
   for (const auto& [name, monitor] : r.monitors) {
     text += fmt::format("{}: {} ({} samples)\n", name, figures(monitor), monitor.samples);

@@ -2,7 +2,9 @@
 
 #include "engine/monitors.hpp"
 #include "engine/parallel.hpp"
+#include "engine/quantity.hpp"
 #include "io/digest.hpp"
+#include "scene/minimize.hpp"
 #include "scene/resume.hpp"
 #include "scene/signals.hpp"
 
@@ -104,7 +106,8 @@ class Runner {
   RunReport go() {
     const std::optional<io::Checkpoint> checkpoint = folder_.prepare(options_.existing);
     choose_simd(checkpoint);
-    Simulation<double> sim = assemble(scene_, files_);
+    if (scene_.minimize && !checkpoint) minimize();
+    Simulation<double> sim = assemble(start_ ? *start_ : scene_, files_);
     if (checkpoint) {
       check_resume(*checkpoint);
       sim.restore(checkpoint->run);
@@ -112,7 +115,7 @@ class Runner {
       if (is_over(*checkpoint)) return finished(sim, *checkpoint);
     }
     const std::int64_t first = sim.step();
-    ending_.outcome = advance(sim);
+    if (ending_.outcome.ok()) ending_.outcome = advance(sim);
     ending_.wall_s = sim.seconds();
     ending_.steps_made = sim.step() - first;
     close(sim);
@@ -120,6 +123,21 @@ class Runner {
   }
 
  private:
+  /// Finds the particles the run begins with; where there are none, the run is over before its first step.
+  void minimize() {
+    start_ = scene_;
+    report_.minimized = minimize_start(*start_);
+    report_.force_unit = unit_of(dimensions::force, *scene_.units);
+    const std::optional<Failure>& failure = report_.minimized->failure;
+    if (!failure) return;
+    ending_.outcome.kind = failure->kind;
+    ending_.outcome.quantity = failure->quantity;
+    ending_.outcome.message = failure->message;
+    if (failure->particle < 0) return;
+    const auto i = static_cast<std::size_t>(failure->particle);
+    ending_.outcome.particle = {failure->particle, start_->particles.ids()[i], start_->particles.names()[i]};
+  }
+
   /// The end, in time where the method chooses its steps, else in steps.
   bool ends_in_time() const { return scene_.integrator.until.has_value(); }
   std::int64_t target() const { return *scene_.integrator.steps; }
@@ -232,6 +250,7 @@ class Runner {
 
   const Scene& scene_;
   const RunOptions& options_;
+  std::optional<Scene> start_;  ///< the scene with other particles, if it asks for a minimum
   OutputFolder folder_;
   SceneFiles files_;
   RunReport report_;

@@ -32,6 +32,8 @@ struct RunReport {
   Index particles = 0;
   int threads = 1;
   std::optional<std::int64_t> resumed_from_step;
+  std::optional<Minimized> minimized;  ///< how the start was found, where the scene asks for it
+  std::string force_unit;
   std::int64_t steps_made = 0;  ///< in `wall_s`
   double wall_s = 0;            ///< from the first step to the last
   Evaluations evaluations;

@@ -3,7 +3,9 @@
 
 #include "engine/simulation.hpp"
 #include "forces/sum.hpp"
+#include "integrators/langevin.hpp"
 #include "integrators/methods.hpp"
+#include "integrators/minimize.hpp"
 #include "integrators/scheme.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "scene/parts.hpp"
@@ -27,6 +29,7 @@ struct SceneHamiltonian {
   std::vector<SceneForce> forces;
   std::vector<SceneConstraint> constraints;
   ConstraintOptions constraint_options;
+  std::optional<LangevinOptions> thermostat;
 };
 
 /// The integrator of a scene.
@@ -78,6 +81,7 @@ struct Scene {
   ParticleSystem<double> particles;   ///< in the frame the scene asks for; of a system, its variables
   std::optional<SceneSystem> system;  ///< of first order, in the place of a Hamiltonian
   SceneHamiltonian hamiltonian;
+  std::optional<MinimizeOptions> minimize;  ///< before the first step
   SceneIntegrator integrator;
   std::vector<SceneWatch> watches;
   std::vector<SceneStop> stops;
@@ -111,7 +115,7 @@ Scheme scheme_of(const SceneIntegrator& integrator);
 /// The constraints of a scene's first `tables` tables; all of them unless told.
 ConstraintSet constraints_of(const Scene& scene, std::size_t tables = std::numeric_limits<std::size_t>::max());
 
-/// The Hamiltonian of a scene, drag included.
+/// The Hamiltonian of a scene, drag or bath included.
 AnyHamiltonian<double> hamiltonian_of(const Scene& scene);
 
 /// All forces of a scene together, for methods that do not split: gravity of a wisdom_holman scene and drag among them.

@@ -217,6 +217,7 @@ bool can_be_set(const Scene& scene, const std::vector<std::string>& sets) {
 }  // namespace
 
 Advice advise(const Scene& scene, const AdviseOptions& options) {
+  refuse_noise(scene);
   if (!(options.error > 0 && options.error < 1)) {
     throw Error(fmt::format("an error of {} cannot be held; a number between 0 and 1 is expected", options.error));
   }

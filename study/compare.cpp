@@ -157,6 +157,7 @@ std::vector<Setting> settings_of(const Scene& scene, const Opponent& who, const 
 }
 
 Comparison compare(const Scene& scene, const CompareOptions& options) {
+  refuse_noise(scene);
   const Sampling sampling = sampling_of(scene, options.until);
   check(options, sampling);
   const auto tell = [&](const std::string& what) {

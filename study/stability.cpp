@@ -293,6 +293,7 @@ std::vector<std::string> default_stability_methods(const Scene& scene) {
 }
 
 Stability find_stability(const Scene& scene, const StabilityOptions& options) {
+  refuse_noise(scene);
   check(options);
   Stability found;
   found.scene = scene.source.file;

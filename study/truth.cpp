@@ -149,6 +149,14 @@ WideScene wide_scene(const Scene& scene) {
   return wide;
 }
 
+void refuse_noise(const Scene& scene) {
+  if (!scene.hamiltonian.thermostat) return;
+  throw SceneError(
+      "the scene has a thermostat, whose noise no reference shares, so errors and limits of steps cannot "
+      "be told; take [hamiltonian.thermostat] out",
+      {.file = scene.source.file, .key = "hamiltonian.thermostat"});
+}
+
 bool about_center(const Scene& scene) {
   if (scene.particles.size() < 2 || !scene.hamiltonian.constraints.empty()) return false;
   for (const SceneForce& force : scene.hamiltonian.forces) {

@@ -25,6 +25,10 @@ struct WideScene {
 /// @throws never  a scene that has none says why
 WideScene wide_scene(const Scene& scene);
 
+/// Ends a question that a scene with noise cannot answer.
+/// @throws SceneError  if the scene has a bath
+void refuse_noise(const Scene& scene);
+
 /// How the reference was made.
 enum class TruthKind : std::uint8_t {
   quad,        ///< in extended precision, by two settings that agree

@@ -1,6 +1,7 @@
 /// Nothing is allocated inside `advance`, nor by settling a copy once its storage is there.
 
 #include "engine/simulation.hpp"
+#include "forces/bonded.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
 #include "forces/sum.hpp"
@@ -95,6 +96,27 @@ TEST_CASE("nothing is allocated inside advance, nor by settling", "[allocation]"
   }
   check_none(compose(WisdomHolman({.G = G, .coordinates = Coordinates::democratic}), schemes::verlet_aba));
   check_none(compose(Damped(KineticPotential(Gravity{.G = G}), {.rate = 1e-6}), schemes::verlet));
+}
+
+TEST_CASE("bonded terms allocate nothing after their first evaluation", "[allocation]") {
+  auto topology = std::make_shared<Topology>();
+  topology->bond_kinds = {{"harmonic", {1e-9, 5}}};
+  topology->angle_kinds = {{"harmonic", {1e-9, 2}}};
+  topology->dihedral_kinds = {{"periodic", {1e-9, 3, 0}}};
+  topology->bonds = {{{0, 1}, 0}, {{1, 2}, 0}, {{2, 3}, 0}};
+  topology->angles = {{{0, 1, 2}, 0}};
+  topology->dihedrals = {{{0, 1, 2, 3}, 0}};
+  ParticleSystem<double> s = test::outer_planets();
+  s.set_topology(topology);
+  s.clock() = Clock<double>::fixed(0, 30);
+  auto integrator = compose(KineticPotential(Bonded{}), schemes::yoshida_4);
+  integrator.bind(s);
+  integrator.advance(s, {.steps = 1});
+  ParticleSystem<double> copy = s;
+  const long start = allocations;
+  CHECK(integrator.advance(s, {.steps = 20}).steps == 20);
+  integrator.settle(s, copy, {.energy = true}, std::nullopt, true);
+  CHECK(allocations == start);
 }
 
 TEST_CASE("no classical method allocates inside advance", "[allocation]") {

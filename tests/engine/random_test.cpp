@@ -3,12 +3,35 @@
 #include "engine/random.hpp"
 #include "tests/support/catch.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
 using namespace noether;
 
 using Block = std::array<std::uint32_t, 4>;
+
+namespace {
+
+/// Chi square of normal deviates in 64 bins that are equally likely.
+class NormalBins {
+ public:
+  void add(double x) {
+    const double probability = std::erfc(-x / std::sqrt(2.0)) / 2;
+    ++counts_[static_cast<std::size_t>(std::min(63.0, 64 * probability))];
+    ++total_;
+  }
+  double chi_square() const {
+    const double expected = static_cast<double>(total_) / 64;
+    double sum = 0;
+    for (const long count : counts_) sum += std::pow(static_cast<double>(count) - expected, 2) / expected;
+    return sum;
+  }
+
+ private:
+  std::array<long, 64> counts_{};
+
+}  // namespace
 
 TEST_CASE("Philox gives the vectors published with it", "[random]") {
   // The three lines "philox4x32 10" of kat_vectors, Random123 1.14.
@@ -89,4 +112,47 @@ TEST_CASE("normal deviates have the bits they had", "[random]") {
   const auto [a, b] = Philox(42).normal_pair();
   CHECK(a == -0x1.54ac03c1a033p-1);
   CHECK(b == 0x1.0938db380d75fp+0);
+}
+
+TEST_CASE("normal deviates are normal, by particles, by steps and by stages", "[random]") {
+  const auto key = noise_key(42);
+  NormalBins particles[3], steps[3], stages[3];
+  double sum = 0, products[3] = {0, 0, 0};
+  constexpr int count = 100000;
+  for (int k = 0; k < count; ++k) {
+    const auto v = noise(key, k, 3, 2);
+    const auto w = noise(key, 7, k, 2);
+    const auto u = noise(key, 7, k / 128, static_cast<std::uint32_t>(k % 128));
+    for (int c = 0; c < 3; ++c) {
+      const auto at = static_cast<std::size_t>(c), next = static_cast<std::size_t>((c + 1) % 3);
+      particles[c].add(v[at]);
+      steps[c].add(w[at]);
+      stages[c].add(u[at]);
+      products[c] += v[at] * v[next] + v[at] * w[at] + w[at] * u[at];
+    }
+    sum += v[0] + v[1] + v[2];
+  }
+  // Above 131.7 once in a million times, with 63 degrees of freedom; means within 5 standard deviations.
+  for (const auto* bins : {particles, steps, stages}) {
+    for (int c = 0; c < 3; ++c) CHECK(bins[c].chi_square() < 131.7);
+  }
+  CHECK(std::abs(sum) < 5 * std::sqrt(3.0 * count));
+  for (const double product : products) CHECK(std::abs(product) < 5 * std::sqrt(3.0 * count));
+}
+
+TEST_CASE("seed, particle, step and stage each give other numbers", "[random]") {
+  std::set<double> seen;
+  int asked = 0;
+  for (const std::int64_t seed : {std::int64_t{0}, std::int64_t{1}, std::int64_t{1} << 40, std::int64_t{-1}}) {
+    for (const std::int64_t id : {std::int64_t{0}, std::int64_t{1}, std::int64_t{1} << 33, std::int64_t{1} << 53}) {
+      for (const std::int64_t step : {std::int64_t{0}, std::int64_t{1}, std::int64_t{1} << 35}) {
+        for (const std::uint32_t stage : {0U, 1U, 127U}) {
+          const auto v = noise(noise_key(seed), id, step, stage);
+          for (const double x : {v[0], v[1], v[2]}) seen.insert(x);
+          asked += 3;
+        }
+      }
+    }
+  }
+  CHECK(static_cast<int>(seen.size()) == asked);
 }

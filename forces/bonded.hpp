@@ -1,0 +1,112 @@
+#pragma once
+/// Bonds, angles, dihedrals and impropers: the terms that a structure brings.
+
+#include "engine/description.hpp"
+#include "engine/force_sink.hpp"
+#include "engine/parallel.hpp"
+#include "forces/bonded_loop.hpp"
+#include "forces/bonded_terms.hpp"
+
+#include <memory>
+#include <vector>
+
+namespace noether {
+
+/// Every bonded term of the topology of the particles.
+///
+///     U = sum bonds U(r) + sum angles U(theta) + sum dihedrals U(phi) + sum impropers U(chi)
+///
+/// The potentials, with their parameters in the order of a `TermKind`:
+///
+///     bonds      harmonic            k, length                   k (r - length)^2 / 2
+///                morse               depth, a, length            depth (1 - exp(-a (r - length)))^2
+///                fene                k, longest, epsilon, sigma  -k longest^2/2 ln(1 - (r/longest)^2) + U_WCA(r)
+///     angles     harmonic            k, angle                    k (theta - angle)^2 / 2
+///                cosine              k                           k (1 + cos theta)
+///                cosine_squared      k, angle                    k (cos theta - cos angle)^2 / 2
+///     dihedrals  periodic            k, n, phase                 k (1 + cos(n phi - phase))
+///                ryckaert_bellemans  c0, c1, c2, c3, c4, c5      sum c_n cos^n(phi - 180 degrees)
+///     impropers  harmonic            k, angle                    k (chi - angle)^2 / 2,  chi = |phi|
+///                periodic            k, n, phase                 k (1 + cos(n phi - phase))
+///
+/// Bonded particles may lie on both sides of a periodic box: the nearest image counts. A dihedral of which three
+/// particles are exactly in line has no angle and exerts no force. A `fene` bond of its greatest length or more ends
+/// the run as `overstretch`. Terms are evaluated in blocks, then each particle sums its own in their order, so that any
+/// number of threads gives the same bits. One object serves one thread at a time; a copy is another object.
+/// @cost O(terms); the first call makes a list of 4 bytes for each particle of each term, and a thread keeps 24 for it
+/// @source Allen2017
+struct Bonded {
+  static constexpr auto describe() {
+    return part<Bonded>("bonded", "bonds, angles, dihedrals and impropers of the structure",
+                        formula("U = sum bonds U(r) + sum angles U(theta) + sum dihedrals U(phi) + sum impropers "
+                                "U(chi)"),
+                        source("Allen2017"));
+  }
+  ForceClaims claims() const { return {.periodic = true}; }
+
+  /// @throws Error  if the particles have no bonded terms, or terms of a potential or with parameters unknown to it
+  template <class Real> void check(const ParticleSystem<Real>& s) const { terms_of(s.shared_topology(), s.size()); }
+
+  /// @throws Error  as `check`, at the first call for a topology
+  template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const;
+
+ private:
+  const BondedTerms& terms_of(const std::shared_ptr<const Topology>& topology, Index n) const;
+
+  mutable std::shared_ptr<const BondedTerms> terms_;  ///< those of the last topology
+};
+
+namespace detail {
+
+/// The largest of the doubles that a number holds.
+template <class Real> double greatest(const Real& x) {
+  if constexpr (requires { x.lane; }) {
+    return *std::max_element(x.lane.begin(), x.lane.end());
+  } else if constexpr (requires { x.slope; }) {
+    return greatest(x.value);
+  } else if constexpr (requires { static_cast<double>(x); }) {
+    return static_cast<double>(x);
+  } else {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+/// Why a run cannot go on with this bond. @param length  [length]
+Failure overstretch(const BondedTerms& terms, Index bond, double length, const std::vector<std::string>& names);
+
+}  // namespace detail
+
+template <class Real> void Bonded::add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+  const BondedTerms& terms = terms_of(s.shared_topology(), s.size());
+  thread_local std::vector<Vec3<Real>> memory;
+  if (static_cast<Index>(memory.size()) < terms.slots()) memory.resize(static_cast<std::size_t>(terms.slots()));
+  Vec3<Real>* slots = memory.data();  // this thread's, written by all
+  detail::BondedLoop<Real> loop(terms, s, slots, out.wants_energy(), out.wants_virial());
+  if (out.wants_energy() || out.wants_virial()) {
+    const auto totals =
+        reduce(terms.terms(), detail::BondedTotals<Real>{}, [&](Index begin, Index end) { return loop(begin, end); });
+    out.energy(totals.energy);
+    out.virial(totals.virial);
+  } else {
+    for_blocks(terms.terms(), [&](Index begin, Index end) { loop(begin, end); });
+  }
+  VectorColumn<Real>& a = out.accelerations();
+  for_blocks(s.size(), [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i) {
+      const Real m = s.masses()[i];
+      if (m == Real(0)) continue;
+      Vec3<Real> force = Vec3<Real>::Zero();
+      terms.for_each_slot(i, [&](std::size_t slot) { force += slots[slot]; });
+      a.add(i, force / m);
+    }
+  });
+  if (const Index bond = loop.overstretched(); bond >= 0) {
+    const auto [i, j] = terms.topology().bonds[static_cast<std::size_t>(bond)].particles;
+    const Vec3<Real> d = s.box().minimum_image(Vec3<Real>(s.positions()[i] - s.positions()[j]));
+    out.fail(detail::overstretch(terms, bond, std::sqrt(detail::greatest(norm2(d))), s.names()));
+  }
+}
+
+extern template void Bonded::add_to(ForceSink<double>&, const ParticleSystem<double>&) const;
+
+}  // namespace noether

@@ -1,0 +1,228 @@
+#pragma once
+/// The loop over bonded terms: what each does to its particles.
+
+#include "engine/pack.hpp"
+#include "engine/particle_system.hpp"
+#include "forces/angle_potentials.hpp"
+#include "forces/bond_potentials.hpp"
+#include "forces/bonded_terms.hpp"
+#include "forces/dihedral_potentials.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <limits>
+#include <type_traits>
+
+namespace noether::detail {
+
+/// What one evaluation sums beside the forces.
+template <class Real> struct BondedTotals {
+  Real energy = Real(0);
+  Mat3<Real> virial = Mat3<Real>::Zero();
+
+  BondedTotals& operator+=(const BondedTotals& other) {
+    energy += other.energy;
+    virial += other.virial;
+    return *this;
+  }
+  void outer(const Vec3<Real>& x, const Vec3<Real>& f) {
+    for (int r = 0; r < 3; ++r) {
+      for (int c = 0; c < 3; ++c) virial(r, c) += x[r] * f[c];
+    }
+  }
+};
+
+/// Calls `body(potential)` with the potential of a kind.
+template <class Real, class Body> auto with_potential(const BondedKind<BondPotential>& kind, const Body& body) {
+  if (kind.potential == BondPotential::harmonic) return body(bond_potential::Harmonic<Real>(kind.parameters));
+  if (kind.potential == BondPotential::morse) return body(bond_potential::Morse<Real>(kind.parameters));
+  return body(bond_potential::Fene<Real>(kind.parameters));
+}
+template <class Real, class Body> auto with_potential(const BondedKind<AnglePotential>& kind, const Body& body) {
+  if (kind.potential == AnglePotential::harmonic) return body(angle_potential::Harmonic<Real>(kind.parameters));
+  if (kind.potential == AnglePotential::cosine) return body(angle_potential::Cosine<Real>(kind.parameters));
+  return body(angle_potential::CosineSquared<Real>(kind.parameters));
+}
+template <class Real, class Body> auto with_potential(const BondedKind<DihedralPotential>& kind, const Body& body) {
+  using namespace dihedral_potential;
+  if (kind.potential == DihedralPotential::periodic) return body(Periodic<Real>(kind.parameters));
+  if (kind.potential == DihedralPotential::ryckaert_bellemans) return body(RyckaertBellemans<Real>(kind.parameters));
+  return body(HarmonicImproper<Real>(kind.parameters));
+}
+
+/// The forces on the particles of a term, and its energy where it is wanted.
+template <class Real, std::size_t n> struct BondedResult {
+  std::array<Vec3<Real>, n> force;
+  Real energy = Real(0);
+  bool overstretched = false;
+};
+
+/// A bond along d = x_1 - x_2.
+template <class Real>
+BondedResult<Real, 2> bonded_forces(const BondedKind<BondPotential>& kind, const std::array<Vec3<Real>, 1>& d,
+                                    bool with_energy) {
+  return with_potential<Real>(kind, [&](const auto& potential) {
+    BondedResult<Real, 2> result;
+    const Real r2 = norm2(d[0]);
+    if constexpr (requires { potential.holds(r2); }) result.overstretched = !potential.holds(r2);
+    const Real none(std::numeric_limits<double>::quiet_NaN());
+    result.force[0] = (result.overstretched ? none : potential.force_over_r(r2)) * d[0];
+    result.force[1] = -result.force[0];
+    if (with_energy) result.energy = result.overstretched ? none : potential.energy(r2);
+    return result;
+  });
+}
+
+/// An angle between the arms d = {x_1 - x_2, x_3 - x_2}.
+template <class Real>
+BondedResult<Real, 3> bonded_forces(const BondedKind<AnglePotential>& kind, const std::array<Vec3<Real>, 2>& d,
+                                    bool with_energy) {
+  const angle_potential::Bend<Real> bend(d[0], d[1]);
+  return with_potential<Real>(kind, [&](const auto& potential) {
+    BondedResult<Real, 3> result;
+    const Real slope = potential.slope(bend) / bend.lengths;
+    result.force[0] = (slope / bend.a2) * cross(bend.a, bend.normal);
+    result.force[2] = (slope / bend.b2) * cross(bend.normal, bend.b);
+    result.force[1] = -(result.force[0] + result.force[2]);
+    if (with_energy) result.energy = potential.energy(bend);
+    return result;
+  });
+}
+
+/// A dihedral or improper with d = {x_1 - x_2, x_2 - x_3, x_4 - x_3}. @source BlondelKarplus1996
+template <class Real>
+BondedResult<Real, 4> bonded_forces(const BondedKind<DihedralPotential>& kind, const std::array<Vec3<Real>, 3>& d,
+                                    bool with_energy) {
+  const dihedral_potential::Twist<Real> twist(d[0], d[1], d[2]);
+  BondedResult<Real, 4> result;
+  if (!twist.is_defined()) {
+    result.force.fill(Vec3<Real>::Zero());
+    return result;
+  }
+  return with_potential<Real>(kind, [&](const auto& potential) {
+    const Real slope = potential.slope(twist);
+    const Vec3<Real> one = (slope / twist.A2) * twist.A, other = (slope / twist.B2) * twist.B;
+    const Vec3<Real> axis = (dot(twist.f, twist.g) * one - dot(twist.h, twist.g) * other) / twist.length;
+    result.force[0] = twist.length * one;
+    result.force[3] = -twist.length * other;
+    result.force[1] = -(result.force[0] + axis);
+    result.force[2] = axis - result.force[3];
+    if (with_energy) result.energy = potential.energy(twist);
+    return result;
+  });
+}
+
+/// The same in eight lanes, each with the bits of double.
+template <class Kind, std::size_t m>
+BondedResult<Pack, m + 1> bonded_forces_in_lanes(const Kind& kind, const std::array<Vec3<Pack>, m>& d,
+                                                 bool with_energy) {
+  BondedResult<Pack, m + 1> result;
+  for (std::size_t lane = 0; lane < Pack::lanes; ++lane) {
+    std::array<Vec3<double>, m> one;
+    for (std::size_t k = 0; k < m; ++k) {
+      for (int c = 0; c < 3; ++c) one[k][c] = d[k][c].lane[lane];
+    }
+    const BondedResult<double, m + 1> in_lane = bonded_forces<double>(kind, one, with_energy);
+    for (std::size_t k = 0; k <= m; ++k) {
+      for (int c = 0; c < 3; ++c) result.force[k][c].lane[lane] = in_lane.force[k][c];
+    }
+    result.energy.lane[lane] = in_lane.energy;
+    result.overstretched = result.overstretched || in_lane.overstretched;
+  }
+  return result;
+}
+
+/// Evaluates terms one after the other and puts their forces into slots.
+template <class Real> class BondedLoop {
+ public:
+  BondedLoop(const BondedTerms& terms, const ParticleSystem<Real>& s, Vec3<Real>* slots, bool energy, bool virial)
+      : terms_(terms), s_(s), slots_(slots), energy_(energy), virial_(virial) {}
+
+  /// Terms [begin, end) of all families in a row.
+  BondedTotals<Real> operator()(Index begin, Index end) {
+    BondedTotals<Real> totals;
+    const Topology& t = terms_.topology();
+    Index first = 0;
+    std::size_t slot = 0;
+    const auto family = [&](const auto& terms, const auto& kinds) {
+      const auto size = static_cast<Index>(terms.size());
+      for (Index k = std::max(begin, first); k < std::min(end, first + size); ++k) {
+        const auto& term = terms[static_cast<std::size_t>(k - first)];
+        evaluate(term, kinds[static_cast<std::size_t>(term.type)], k,
+                 slots_ + slot + static_cast<std::size_t>(k - first) * term.particles.size(), totals);
+      }
+      first += size;
+      slot += terms.size() * std::decay_t<decltype(terms[0])>{}.particles.size();
+    };
+    family(t.bonds, terms_.bonds);
+    family(t.angles, terms_.angles);
+    family(t.dihedrals, terms_.dihedrals);
+    family(t.impropers, terms_.impropers);
+    return totals;
+  }
+
+  /// The first bond that is too long; none: -1.
+  Index overstretched() const {
+    const Index bond = overstretched_.load();
+    return bond == none ? -1 : bond;
+  }
+
+ private:
+  static constexpr Index none = std::numeric_limits<Index>::max();
+
+  Vec3<Real> between(Index i, Index j) const {
+    return s_.box().minimum_image(Vec3<Real>(s_.positions()[i] - s_.positions()[j]));
+  }
+  std::array<Vec3<Real>, 1> differences(const std::array<Index, 2>& p) const { return {between(p[0], p[1])}; }
+  std::array<Vec3<Real>, 2> differences(const std::array<Index, 3>& p) const {
+    return {between(p[0], p[1]), between(p[2], p[1])};
+  }
+  std::array<Vec3<Real>, 3> differences(const std::array<Index, 4>& p) const {
+    return {between(p[0], p[1]), between(p[1], p[2]), between(p[3], p[2])};
+  }
+
+  template <std::size_t n, class Kind>
+  void evaluate(const BondedTerm<n>& term, const Kind& kind, Index k, Vec3<Real>* slots, BondedTotals<Real>& totals) {
+    const auto d = differences(term.particles);
+    const BondedResult<Real, n> result = [&] {
+      if constexpr (std::is_same_v<Real, Pack>) {
+        return bonded_forces_in_lanes(kind, d, energy_);
+      } else {
+        return bonded_forces<Real>(kind, d, energy_);
+      }
+    }();
+    std::copy(result.force.begin(), result.force.end(), slots);
+    if (result.overstretched) {
+      Index known = overstretched_.load();
+      while (k < known && !overstretched_.compare_exchange_weak(known, k)) {
+      }
+    }
+    if (energy_) totals.energy += result.energy;
+    if (virial_) add_virial(d, result.force, totals);
+  }
+  /// By the places of the particles about the second one.
+  static void add_virial(const std::array<Vec3<Real>, 1>& d, const std::array<Vec3<Real>, 2>& f,
+                         BondedTotals<Real>& totals) {
+    totals.outer(d[0], f[0]);
+  }
+  static void add_virial(const std::array<Vec3<Real>, 2>& d, const std::array<Vec3<Real>, 3>& f,
+                         BondedTotals<Real>& totals) {
+    totals.outer(d[0], f[0]);
+    totals.outer(d[1], f[2]);
+  }
+  static void add_virial(const std::array<Vec3<Real>, 3>& d, const std::array<Vec3<Real>, 4>& f,
+                         BondedTotals<Real>& totals) {
+    totals.outer(d[0], f[0]);
+    totals.outer(-d[1], f[2]);
+    totals.outer(d[2] - d[1], f[3]);
+  }
+
+  const BondedTerms& terms_;
+  const ParticleSystem<Real>& s_;
+  Vec3<Real>* slots_;
+  bool energy_, virial_;
+  std::atomic<Index> overstretched_ = none;
+};
+
+}  // namespace noether::detail

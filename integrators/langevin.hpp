@@ -1,0 +1,171 @@
+#pragma once
+/// A Hamiltonian in a bath: friction and noise as one more letter.
+
+#include "engine/description.hpp"
+#include "engine/erasure.hpp"
+#include "engine/parallel.hpp"
+#include "engine/random.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
+
+namespace noether {
+
+struct LangevinOptions {
+  double temperature = 0.0;  ///< of the bath [temperature]
+  double friction = 0.0;     ///< [1/time]
+  std::int64_t seed = 0;     ///< other seeds, other noise
+
+  static constexpr auto describe() {
+    return part<LangevinOptions>(
+        "langevin", "a bath of one temperature for every particle: the irreversible letter O",
+        formula("O: v -> c v + sqrt(k_B T/m (1 - c^2)) xi,  c = exp(-friction h)"), source("LeimkuhlerMatthews2013"),
+        field<&LangevinOptions::temperature>("temperature", "temperature", "of the bath").required("\"300 K\""),
+        field<&LangevinOptions::friction>("friction", "1/time", "how fast velocities are forgotten")
+            .required("\"1/ps\""),
+        field<&LangevinOptions::seed>("seed", "1", "of the noise: runs with another one are independent"));
+  }
+
+  /// @throws Error  for a negative temperature or friction
+  void check() const {
+    if (!(temperature >= 0 && std::isfinite(temperature)))
+      refuse_field("temperature", temperature, "is no temperature; 0 or more is expected");
+    if (!(friction >= 0 && std::isfinite(friction)))
+      refuse_field("friction", friction, "drives instead of damping; 0 or more is expected");
+  }
+};
+
+/// Adds the letter `O`, the exact Ornstein-Uhlenbeck flow of friction and noise, to a split Hamiltonian.
+///
+///     O:  v -> c v + sqrt(k_B T/m (1 - c^2)) xi,   c = exp(-friction h),   xi normal, three for each particle
+///
+/// `word("BAOAB")` keeps the distribution of positions of a harmonic oscillator exactly at every stable step, and to
+/// second order with a small error elsewhere; a word without an O, such as `verlet`, gets half an O at both ends
+/// (OBABO). It is irreversible: schemes with negative steps are refused. With constraints the velocities are projected
+/// along them after each O.
+///
+/// The noise has no state: it is a function of the seed, the id of the particle, the step, and the place of the O in
+/// the word. Where the last O of a step is joined with the first of the next both are done, one after the other, so
+/// that a copy completed for an observer has the noise of the run.
+/// @cost 12 random words, 2 logarithms and 4 sines or cosines for each particle and O
+/// @source LeimkuhlerMatthews2013, LeimkuhlerMatthews2016, Salmon2011
+template <SplitHamiltonian H> class Langevin {
+ public:
+  using real = typename H::real;
+
+  /// @throws Error  for a negative temperature or friction, or constraints that do not tell how to project velocities
+  Langevin(H hamiltonian, LangevinOptions options)
+      : hamiltonian_(std::move(hamiltonian)), options_(options), key_(noise_key(options.seed)) {
+    options_.check();
+    if (hamiltonian_.claims().constraints > 0 && !projects) {
+      throw Error("noise would push velocities off the constraints of '" + detail::name_of(hamiltonian_) +
+                  "', which does not offer project_velocities; put the bath around kinetic_potential itself");
+    }
+  }
+
+  std::string name() const { return "langevin"; }
+  HamiltonianClaims claims() const {
+    HamiltonianClaims claims = hamiltonian_.claims();
+    claims.alphabet += 'O';
+    claims.irreversible = claims.irreversible.empty() ? "O" : "DO";
+    claims.dissipative = true;
+    claims.keeps_momentum = claims.keeps_angular_momentum = false;
+    return claims;
+  }
+
+  /// @throws Error  for particles without mass, which no bath can warm, for steps backwards, and coordinates that are
+  /// not inertial
+  void bind(ParticleSystem<real>& s) {
+    for (Index i = 0; i < s.size(); ++i) {
+      if (s.masses()[i] != real(0)) continue;
+      throw Error("'" + s.name(i) + "' has no mass, so it has no temperature; give it one, or take the bath out");
+    }
+    if (s.clock().dt() < 0) throw Error("a bath knows no way back; a step above 0 is expected");
+    hamiltonian_.bind(s);
+    ParticleSystem<real> trial = s;
+    if (!s.phase().opened) hamiltonian_.open(trial);
+    if (trial.phase().coordinates != Coordinates::inertial) {
+      throw Error("'" + detail::name_of(hamiltonian_) +
+                  "' moves in coordinates of its own, where noise is not that of particles; put the bath around "
+                  "kinetic_potential");
+    }
+  }
+  void open(ParticleSystem<real>& s) { hamiltonian_.open(s); }
+  void close(ParticleSystem<real>& s) { hamiltonian_.close(s); }
+
+  /// Whole steps; only here the place of an O in the word is known.
+  Advanced run(const TimedWord<real>& word, ParticleSystem<real>& s, const Span& span) {
+    const real dt(s.clock().dt());
+    std::int64_t step = -1;
+    std::uint32_t place = 0;
+    return walk_letters(*this, word, s, span, [&](char letter, const real& h) {
+      const std::int64_t now = s.clock().step();
+      if (std::exchange(step, now) != now) place = 0;
+      const std::uint32_t stage = place++;
+      if (letter != 'O') return hamiltonian_.flow(letter, s, h);
+      if (stage != 0 || !s.phase().pending) return mix(s, h, now, stage);
+      mix(s, word.stages().back().weight * dt, now - 1, last_stage);
+      mix(s, word.stages().front().weight * dt, now, 0);
+    });
+  }
+  /// A letter by itself: of the O's the pending one, which completes the last step.
+  void flow(char letter, ParticleSystem<real>& s, const real& h) {
+    if (letter != 'O') return hamiltonian_.flow(letter, s, h);
+    NOETHER_EXPECTS(s.phase().pending, "noise is walked by whole steps: which O of its step this is, is not known");
+    mix(s, h, s.clock().step() - 1, last_stage);
+  }
+  /// @throws LogicError  for O: noise has no action
+  real flow_with_action(char letter, ParticleSystem<real>& s, const real& h) {
+    NOETHER_EXPECTS(letter != 'O', "the irreversible flow O has no action increment");
+    return hamiltonian_.flow_with_action(letter, s, h);
+  }
+  EnergyTerms<real> energy(const ParticleSystem<real>& s) { return hamiltonian_.energy(s); }
+  void accelerations(const ParticleSystem<real>& s, VectorColumn<real>& a) {
+    hamiltonian_.accelerations(s, a);
+    for (Index i = 0; i < s.size(); ++i) a.add(i, -real(options_.friction) * s.velocities()[i]);
+  }
+  void observe(std::optional<Wanted> wanted) { hamiltonian_.observe(wanted); }
+  const std::optional<Failure>& failure() const { return hamiltonian_.failure(); }
+  Evaluations evaluations() const { return hamiltonian_.evaluations(); }
+  void save(SavedState& saved, const std::string& prefix) const {
+    detail::save_signature(saved, prefix + "langevin/", options_);
+    detail::save_any(saved, prefix, hamiltonian_);
+  }
+  void load(const SavedState& saved, const std::string& prefix) {
+    detail::check_signature(saved, prefix + "langevin/", options_);
+    detail::load_any(saved, prefix, hamiltonian_);
+  }
+
+ private:
+  /// Place of an O that ends a step and is joined with the next; above that of any other.
+  static constexpr std::uint32_t last_stage = 127;
+  static constexpr bool projects = requires(H & h, ParticleSystem<real>& s, const real& tau) {
+    h.project_velocities(s, tau);
+  };
+
+  void mix(ParticleSystem<real>& s, const real& h, std::int64_t step, std::uint32_t stage) {
+    using std::exp, std::expm1, std::sqrt;
+    const real gamma(options_.friction), keep = exp(-gamma * h);
+    const real kT = real(s.units().k_B) * real(options_.temperature), warmth = -expm1(real(-2) * gamma * h) * kT;
+    s.scale_velocities(keep);
+    const std::vector<std::int64_t>& ids = s.ids();
+    VectorColumn<real>& v = s.velocities();
+    for_blocks(s.size(), [&](Index begin, Index end) {
+      for (Index i = begin; i < end; ++i) {
+        const std::array<double, 3> xi = noise(key_, ids[static_cast<std::size_t>(i)], step, stage);
+        const real sigma = sqrt(warmth / std::as_const(s).masses()[i]);
+        v.add(i, Vec3<real>(sigma * real(xi[0]), sigma * real(xi[1]), sigma * real(xi[2])));
+      }
+    });
+    if constexpr (projects) hamiltonian_.project_velocities(s, h);
+  }
+
+  H hamiltonian_;
+  LangevinOptions options_;
+  std::array<std::uint32_t, 2> key_;
+};
+
+}  // namespace noether

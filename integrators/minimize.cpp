@@ -1,0 +1,241 @@
+#include "integrators/minimize.hpp"
+
+#include "engine/parallel.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace noether {
+
+void MinimizeOptions::check() const {
+  if (!(max_force > 0 && std::isfinite(max_force)))
+    refuse_field("max_force", max_force, "is never reached; a force above 0 is expected");
+  if (steps < 1) refuse_field("steps", static_cast<double>(steps), "leaves nothing to do; 1 or more is expected");
+  if (!(max_displacement >= 0))
+    refuse_field("max_displacement", max_displacement, "is no length; 0 or more is expected");
+}
+
+namespace {
+
+/// Mixing and time step of the method, as its authors give them.
+constexpr double alpha_start = 0.25, alpha_factor = 0.99, longer = 1.1, shorter = 0.5;
+/// Steps downhill before the time step grows.
+constexpr int patience = 5;
+/// What is left of an old curvature after a step, and the largest time step times omega.
+constexpr double memory = 0.998, safe = 1.5;
+/// Displacements below this part of what is allowed are too short to tell a curvature from rounding.
+constexpr double resolved = 1e-8;
+/// Overlapping particles have parted if the largest force falls to so small a part of itself in one step.
+constexpr double dissolved = 1e-4;
+/// Steps taken back in a row before it is given up.
+constexpr int most_retreats = 60;
+
+double largest_norm(const VectorColumn<double>& column) {
+  struct Largest {
+    double value = 0;
+    Largest& operator+=(const Largest& other) {
+      value = std::isnan(other.value) ? other.value : std::max(value, other.value);
+      return *this;
+    }
+  };
+  return reduce(column.size(), Largest{},
+                [&](Index begin, Index end) {
+                  Largest largest;
+                  for (Index i = begin; i < end; ++i) {
+                    const Vec3<double> x = column[i];
+                    largest += Largest{std::hypot(x[0], x[1], x[2])};
+                  }
+                  return largest;
+                })
+      .value;
+}
+
+/// The sum of products of two columns, each divided by a number that keeps their squares in range.
+double product(const VectorColumn<double>& a, double a_scale, const VectorColumn<double>& b, double b_scale) {
+  return reduce(a.size(), 0.0, [&](Index begin, Index end) {
+    double sum = 0;
+    for (Index i = begin; i < end; ++i) sum += dot(Vec3<double>(a[i] / a_scale), Vec3<double>(b[i] / b_scale));
+    return sum;
+  });
+}
+
+/// A twentieth of the distance that particles have on the average in the space they take.
+double usual_displacement(const ParticleSystem<double>& s) {
+  double widest = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double* x = s.positions().component(k);
+    const auto [low, high] = std::minmax_element(x, x + s.size());
+    widest = std::max(widest, s.box().is_periodic() ? s.box().edges()[k] : *high - *low);
+  }
+  return widest > 0 ? 0.05 * widest / std::cbrt(static_cast<double>(s.size())) : 1;
+}
+
+/// One minimization on its way.
+class Descent {
+ public:
+  Descent(ParticleSystem<double>& s, const AnyForce<double>& forces, const MinimizeOptions& options)
+      : s_(s), forces_(forces), options_(options), f_(s.size()), v_(s.size()) {
+    reach_ = options.max_displacement > 0 ? options.max_displacement : usual_displacement(s);
+  }
+
+  Minimized run() {
+    if (!evaluate()) return ended(std::move(*failure_));
+    begin();
+    while (largest_ > options_.max_force) {
+      if (made_ == options_.steps) return ended(unfinished());
+      steer();
+      advance();
+      before_ = f_;
+      const double before = largest_;
+      if (evaluate()) {
+        retreats_ = 0;
+        largest_ < dissolved* before ? begin() : limit_step(largest_ / before);
+      } else if (++retreats_ > most_retreats || made_ == options_.steps || !retreat()) {
+        return ended(std::move(*failure_));
+      }
+    }
+    return {made_, largest_, {}};
+  }
+
+ private:
+  Minimized ended(Failure failure) const { return {made_, largest_, std::move(failure)}; }
+
+  Failure unfinished() const {
+    return {.quantity = "force",
+            .message = fmt::format("the largest force is {:.6g} after {} steps of the minimization, above max_force = "
+                                   "{:.6g}; give more steps, or a better start",
+                                   largest_, made_, options_.max_force)};
+  }
+
+  /// Forces at the present positions. @return whether they can be computed
+  bool evaluate() {
+    ForceSink<double> sink(f_, s_, {});
+    forces_.add_to(sink, s_);
+    ++made_;
+    failure_ = sink.failure();
+    if (failure_) return false;
+    for (Index i = 0; i < s_.size(); ++i) f_.set(i, std::as_const(s_).masses()[i] * std::as_const(f_)[i]);
+    const double largest = largest_norm(f_);
+    if (std::isfinite(largest)) {
+      largest_ = largest;
+      return true;
+    }
+    for (Index i = 0; i < s_.size() && !failure_; ++i) {
+      if (std::as_const(f_)[i].allFinite()) continue;
+      failure_ = Failure{
+          .particle = i,
+          .quantity = "force",
+          .message = fmt::format("the force on '{}' is not finite; move it away from its neighbors", s_.name(i))};
+    }
+    if (!failure_) failure_ = Failure{.quantity = "force", .message = "a force is beyond the range of numbers"};
+    return false;
+  }
+
+  /// From rest, with a time step by which a particle with the median force moves a tenth of what it may.
+  void begin() {
+    rest();
+    curvature_ = 0;
+    dt_ = first_step();
+  }
+  double first_step() const {
+    std::vector<double> sizes;
+    for (Index i = 0; i < f_.size(); ++i) {
+      const double size = std::sqrt(norm2(f_[i] / largest_)) * largest_;
+      if (size > 0) sizes.push_back(size);
+    }
+    if (sizes.empty()) return 1;
+    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+    std::nth_element(sizes.begin(), middle, sizes.end());
+    return std::sqrt(0.1 * reach_ / *middle);
+  }
+
+  /// Velocities and time step by the power of the forces.
+  void steer() {
+    const double fastest = largest_norm(v_);
+    if (fastest == 0 || product(f_, largest_, v_, fastest) > 0) {
+      if (++downhill_ > patience) {
+        dt_ *= longer;
+        alpha_ *= alpha_factor;
+      }
+    } else {
+      for (Index i = 0; i < v_.size(); ++i) shift(i, -dt_ / 2);
+      s_.moved();
+      rest();
+    }
+  }
+  void rest() {
+    v_.set_zero();
+    downhill_ = 0;
+    dt_ *= shorter;
+    alpha_ = alpha_start;
+  }
+
+  void advance() {
+    v_.add_scaled(dt_, f_);
+    const double fastest = largest_norm(v_);
+    const double speed = fastest * std::sqrt(product(v_, fastest, v_, fastest));
+    const double force = std::sqrt(product(f_, largest_, f_, largest_));
+    const double along = alpha_ * speed / force;
+    for_blocks(v_.size(), [&](Index begin, Index end) {
+      for (Index i = begin; i < end; ++i) {
+        v_.set(i, (1 - alpha_) * std::as_const(v_)[i] + along * (std::as_const(f_)[i] / largest_));
+      }
+    });
+    held_back_ = largest_norm(v_) * dt_ > reach_;
+    for (Index i = 0; i < v_.size(); ++i) {
+      const Vec3<double> v = std::as_const(v_)[i];
+      const double way = held_back_ ? std::hypot(v[0], v[1], v[2]) * dt_ : 0;
+      if (way > reach_) v_.set(i, v * (reach_ / way));
+      shift(i, dt_);
+    }
+    s_.moved();
+  }
+  /// Keeps the time step below the limit 2/omega of the stiffest motion that was seen of late, omega^2 being
+  /// |f - f_before| / |x - x_before|. Where a particle was held back the forces change too much to tell.
+  /// @param fallen  part of the largest force that is left
+  void limit_step(double fallen) {
+    if (fallen < 0.5) curvature_ *= fallen;
+    before_.add_scaled(-1, f_);
+    const double change = largest_norm(before_), fastest = largest_norm(v_);
+    if (held_back_ || change == 0 || fastest * dt_ < resolved * reach_) return;
+    const double ratio = std::sqrt(product(before_, change, before_, change) / product(v_, fastest, v_, fastest));
+    curvature_ = std::max(memory * curvature_, ratio * (change / fastest) / dt_);
+    dt_ = std::min(dt_, safe / std::sqrt(curvature_));
+  }
+  /// Takes the last step back. @return whether the forces are those from before
+  bool retreat() {
+    for (Index i = 0; i < v_.size(); ++i) shift(i, -dt_);
+    s_.moved();
+    rest();
+    return evaluate();
+  }
+  void shift(Index i, double h) { s_.shift(i, h * std::as_const(v_)[i], Vec3<double>::Zero()); }
+
+  ParticleSystem<double>& s_;
+  const AnyForce<double>& forces_;
+  const MinimizeOptions& options_;
+  VectorColumn<double> f_, v_, before_;
+  double reach_ = 0, dt_ = 0, alpha_ = alpha_start, largest_ = 0;
+  double curvature_ = 0;    ///< largest of late [mass/time^2]
+  bool held_back_ = false;  ///< whether a particle would have gone too far in the last step
+  int downhill_ = 0, retreats_ = 0;
+  std::int64_t made_ = 0;
+  std::optional<Failure> failure_;
+};
+
+}  // namespace
+
+Minimized minimize(ParticleSystem<double>& s, const AnyForce<double>& forces, const MinimizeOptions& options) {
+  options.check();
+  const ForceClaims claims = forces.claims();
+  if (claims.velocity_dependent || claims.time_dependent || claims.dissipative) {
+    throw Error("a force depends on velocities or time, so there is no minimum to go to; leave it out");
+  }
+  return Descent(s, forces, options).run();
+}
+
+}  // namespace noether

@@ -1,0 +1,43 @@
+#include "scene/minimize.hpp"
+
+#include "scene/fields.hpp"
+
+#include <fmt/format.h>
+
+namespace noether {
+
+SceneValue read_minimize(const SceneContext& context, const SceneValue& table, Scene& scene) {
+  TableReader reader(context, table, "[minimize]", "minimize");
+  if (table.get<SceneValue::Table>() == nullptr) reader.wrong_kind(table, "minimize", "a table");
+  MinimizeOptions options;
+  read_part(reader, options);
+  if (scene.hamiltonian.kind == SceneHamiltonian::Kind::wisdom_holman) {
+    reader.fail(nullptr, "", "planets of wisdom_holman have no minimum to go to; take [minimize] out");
+  }
+  if (!scene.hamiltonian.constraints.empty()) {
+    reader.fail(nullptr, "",
+                "the minimizer moves particles off their constraints; take [minimize] out, or minimize "
+                "with springs in their place");
+  }
+  for (const SceneForce& force : scene.hamiltonian.forces) {
+    if (!force.force || !force.force->claims().time_dependent) continue;
+    reader.fail(nullptr, "",
+                fmt::format("force '{}' depends on time, so there is no minimum to go to; take [minimize] "
+                            "out",
+                            force.name));
+  }
+  scene.minimize = options;
+  SceneValue effective = SceneValue::table();
+  put_fields(reader, options, effective);
+  return effective;
+}
+
+Minimized minimize_start(Scene& scene) {
+  ForceField<double> forces;
+  for (const SceneForce& force : scene.hamiltonian.forces) {
+    if (force.force) forces.add(*force.force);  // drag has no part in a minimum
+  }
+  return minimize(scene.particles, forces, *scene.minimize);
+}
+
+}  // namespace noether
