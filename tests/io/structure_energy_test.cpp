@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <sstream>
@@ -180,4 +181,24 @@ TEST_CASE("a crystal has the energies that LAMMPS computes", "[structure]") {
   const double electronvolt = 96.48533212331002;
   CHECK(agree(pair_energies(s, 0.5, false).first, electronvolt * expected["evdwl"], 1e-13));
   CHECK(agree(kinetic_energy(s), electronvolt * expected["ke"], 1e-6));  // LAMMPS rounds 1 u A^2/ps^2 in eV
+}
+
+TEST_CASE("a LAMMPS data file that is cut is refused, wherever it is cut", "[structure]") {
+  const test::ScratchFolder folder;
+  std::ifstream file(lammps_files / "chains.data");
+  std::string content((std::istreambuf_iterator<char>(file)), {});
+  while (content.ends_with('\n')) content.pop_back();
+  const std::size_t last_row = content.rfind('\n');
+  for (std::size_t size = 0; size < content.size(); size += 3) {
+    test::write_text(folder / "cut.data", content.substr(0, size));
+    std::string message;
+    try {
+      io::read_structure(folder / "cut.data", {.units = &unit_system("reduced")});
+    } catch (const SceneError& error) {
+      message = error.message();
+    }
+    INFO(size);
+    // Of the last row a part may stand that is whole by itself.
+    CHECK((!message.empty() || size > last_row));
+  }
 }
