@@ -155,10 +155,10 @@ inline void take_structure(std::string_view bytes) {
       {"structure.gro",
        {.types = {{.type = "OW", .mass = 16}, {.type = "HW1", .mass = 1}, {.type = "HW2", .mass = 1}}}},
   }};
-  for (const auto& [name, options] : readings) {
-    const std::filesystem::path file = as_file(name, bytes);
+  for (const auto& reading : readings) {
+    const std::filesystem::path file = as_file(reading.first, bytes);
     ParticleSystem<double> particles;
-    if (!accepted([&] { particles = io::read_structure(file, options); })) continue;
+    if (!accepted([&] { particles = io::read_structure(file, reading.second); })) continue;
     check_bodies(particles);
     check_topology(particles);
   }
