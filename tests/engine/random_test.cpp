@@ -30,6 +30,8 @@ class NormalBins {
 
  private:
   std::array<long, 64> counts_{};
+  long total_ = 0;
+};
 
 }  // namespace
 
