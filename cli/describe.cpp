@@ -7,6 +7,7 @@
 #include "integrators/schemes.hpp"
 #include "scene/json.hpp"
 #include "scene/parts.hpp"
+#include "scene/read_builder.hpp"
 #include "scene/references.hpp"
 
 #include <fmt/format.h>
@@ -37,6 +38,7 @@ std::string entries_of(std::string_view sources) {
 std::vector<std::pair<std::string, PartInfo>> all_parts() {
   std::vector<std::pair<std::string, PartInfo>> all;
   for (const PartInfo& info : hamiltonian_parts()) all.emplace_back("hamiltonian", info);
+  for (const BuilderKind& kind : builders()) all.emplace_back("builder", kind.info);
   const Parts parts = standard_parts();
   for (const auto& kind : parts.forces()) all.emplace_back("force", kind.info);
   for (const auto& kind : parts.constraints()) all.emplace_back("constraint", kind.info);
@@ -49,6 +51,7 @@ std::vector<std::pair<std::string, PartInfo>> all_parts() {
 
 /// Where in a scene parts of a kind stand, and when they look.
 std::string table_of(const std::string& kind) {
+  if (kind == "builder") return "[particles], as type = \"NAME\"";
   if (kind == "force") return "[[hamiltonian.force]]";
   if (kind == "constraint") {
     return "[[hamiltonian.constraint]], with the particles: bodies, pairs or triples of names; solver = \"newton\" or "

@@ -7,6 +7,7 @@
 #include "integrators/schemes.hpp"
 #include "scene/json.hpp"
 #include "scene/parts.hpp"
+#include "scene/read_builder.hpp"
 #include "study/portrait.hpp"
 
 #include <fmt/format.h>
@@ -98,7 +99,7 @@ Listing listing_of(const std::string& what) {
   if (what == "units") return units();
   if (what == "constraints") return parts(infos_of(standard_parts().constraints()));
   if (what == "systems") return parts(infos_of(standard_parts().systems()));
-  if (what == "builders") return parts({});
+  if (what == "builders") return parts(infos_of(builders()));
   if (what == "monitors") {
     Listing list{{"name", "kind", "help"}, {}, {}};
     for (const PartInfo& info : infos_of(standard_parts().monitors())) list.add({info.name, "monitor", info.help});

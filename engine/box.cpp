@@ -1,10 +1,9 @@
 #include "engine/box.hpp"
 
+#include "engine/box_simd.hpp"
 #include "engine/error.hpp"
 
 #include <fmt/format.h>
-
-#include <algorithm>
 
 namespace noether {
 
@@ -34,27 +33,10 @@ void Box::shift(int k, double d, double& x, std::int32_t& image) const {
 }
 
 void Box::advance(int k, double h, const double* v, double* x, std::int32_t* image, Index count) const {
-  const double edge = edges_[k], spacing = spacing_[k];
-  // Adding and subtracting `magic` rounds to the grid what is shorter than a quarter of the edge.
-  const double magic = std::ldexp(1.5, 52) * spacing, shortest_long = std::ldexp(1.0, 50) * spacing;
-  constexpr Index together = 64;
-  for (Index begin = 0; begin < count; begin += together) {
-    const Index end = std::min(count, begin + together);
-    double far = 0;
-    for (Index i = begin; i < end; ++i) far = std::max(far, std::abs(h * v[i]));
-    if (!(far < shortest_long)) {
-      for (Index i = begin; i < end; ++i) shift(k, h * v[i], x[i], image[i]);
-      continue;
-    }
-    for (Index i = begin; i < end; ++i) {
-      const double step = (h * v[i] + magic) - magic;
-      const bool above = step >= edge - x[i], below = step < -x[i];
-      // As in `shift`: first the sum that cannot leave the grid.
-      const double from = x[i] - (above ? edge : 0.0), by = step + (below ? edge : 0.0);
-      x[i] = from + by;
-      image[i] += static_cast<std::int32_t>(above) - static_cast<std::int32_t>(below);
-    }
-  }
+  // A sum that rounding could bring back into the cell is beyond the last point of the grid already.
+  const BoxAxis axis{edges_[k], std::ldexp(1.5, 52) * spacing_[k], std::ldexp(1.0, 50) * spacing_[k]};
+  const BoxKernels& kernels = box_kernels();
+  for (Index i = 0; (i = kernels.advance(axis, h, v, x, i, count)) < count; ++i) shift(k, h * v[i], x[i], image[i]);
 }
 
 }  // namespace noether

@@ -41,6 +41,12 @@ template <class T> void load_any(const SavedState& saved, const std::string& pre
   }
 }
 
+/// The virial of what moves particles; empty for a type that knows none.
+template <class T, class Real> std::optional<Mat3<Real>> virial_of(T& moves, const ParticleSystem<Real>& s) {
+  if constexpr (requires { moves.virial(s); }) return moves.virial(s);
+  return {};
+}
+
 /// Value semantics for a polymorphic `Base` with `clone`.
 template <class Base> class Erased {
  public:
@@ -67,6 +73,7 @@ template <class Real> struct ForceBase {
   virtual bool has_derivative() const = 0;
   virtual void add_to(ForceSink<Dual<Real, 1>>&, const ParticleSystem<Dual<Real, 1>>&) const = 0;
   virtual ForceClaims claims() const = 0;
+  virtual void check(const ParticleSystem<Real>&) const = 0;
   virtual std::string name() const = 0;
   virtual std::string signature() const = 0;
   virtual std::unique_ptr<ForceBase<Quad>> in_quad() const = 0;
@@ -86,6 +93,7 @@ template <class F, class Real> struct ForceModel final : ForceBase<Real> {
     throw LogicError("a force without derivatives was asked for them");
   }
   ForceClaims claims() const override { return claims_of(force); }
+  void check(const ParticleSystem<Real>& s) const override { check_named(s); }
   std::string name() const override { return name_of(force); }
   std::string signature() const override { return signature_of(force); }
   std::unique_ptr<ForceBase<Quad>> in_quad() const override {
@@ -93,6 +101,14 @@ template <class F, class Real> struct ForceModel final : ForceBase<Real> {
     return nullptr;
   }
   F force;
+
+ private:
+  void check_named(const ParticleSystem<Real>& s) const {
+    if (s.box().is_periodic() && !claims_of(force).periodic) {
+      throw Error("the force '" + name_of(force) + "' knows open space only; take it out, or the periodic box");
+    }
+    check_force(force, s);
+  }
 };
 
 template <class Real> struct HamiltonianBase {
@@ -107,6 +123,7 @@ template <class Real> struct HamiltonianBase {
   virtual Real flow_with_action(char, ParticleSystem<Real>&, const Real&) = 0;
   virtual Advanced run(const TimedWord<Real>&, ParticleSystem<Real>&, const Span&) = 0;
   virtual EnergyTerms<Real> energy(const ParticleSystem<Real>&) = 0;
+  virtual std::optional<Mat3<Real>> virial(const ParticleSystem<Real>&) = 0;
   virtual void accelerations(const ParticleSystem<Real>&, VectorColumn<Real>&) = 0;
   virtual void observe(std::optional<Wanted>) = 0;
   virtual const std::optional<Failure>& failure() const = 0;
@@ -133,6 +150,7 @@ template <class H> struct HamiltonianModel final : HamiltonianBase<typename H::r
     return walk(hamiltonian, word, s, span);
   }
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) override { return hamiltonian.energy(s); }
+  std::optional<Mat3<Real>> virial(const ParticleSystem<Real>& s) override { return virial_of(hamiltonian, s); }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) override { hamiltonian.accelerations(s, a); }
   void observe(std::optional<Wanted> wanted) override { hamiltonian.observe(wanted); }
   const std::optional<Failure>& failure() const override { return hamiltonian.failure(); }
@@ -153,6 +171,7 @@ template <class Real> struct IntegratorBase {
   virtual Real settle(const ParticleSystem<Real>&, ParticleSystem<Real>&, Wanted, const std::optional<double>&,
                       bool) = 0;
   virtual EnergyTerms<Real> energy(const ParticleSystem<Real>&) = 0;
+  virtual std::optional<Mat3<Real>> virial(const ParticleSystem<Real>&) = 0;
   virtual void accelerations(const ParticleSystem<Real>&, VectorColumn<Real>&) = 0;
   virtual Evaluations evaluations() const = 0;
   virtual void save(SavedState&, const std::string&) const = 0;
@@ -183,6 +202,7 @@ template <class I> struct IntegratorModel final : IntegratorBase<typename I::rea
     return Real(0);
   }
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) override { return integrator.energy(s); }
+  std::optional<Mat3<Real>> virial(const ParticleSystem<Real>& s) override { return virial_of(integrator, s); }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) override { integrator.accelerations(s, a); }
   Evaluations evaluations() const override { return integrator.evaluations(); }
   void save(SavedState& saved, const std::string& prefix) const override { save_any(saved, prefix, integrator); }
@@ -214,6 +234,8 @@ template <class Real = double> class AnyForce : private detail::Erased<detail::F
     this->held_->add_to(out, s);
   }
   ForceClaims claims() const { return this->held_->claims(); }
+  /// @throws Error  see `check_force`
+  void check(const ParticleSystem<Real>& s) const { this->held_->check(s); }
   std::string name() const { return this->held_->name(); }
   std::string signature() const { return this->held_->signature(); }
   /// The same force in extended precision; empty for one that is written for doubles only.
@@ -246,6 +268,8 @@ template <class Real = double> class AnyHamiltonian : private detail::Erased<det
     return this->held_->run(word, s, span);
   }
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) { return this->held_->energy(s); }
+  /// The virial of the forces, sum x (x) f [energy]; empty where it is not known.
+  std::optional<Mat3<Real>> virial(const ParticleSystem<Real>& s) { return this->held_->virial(s); }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) { this->held_->accelerations(s, a); }
   void observe(std::optional<Wanted> wanted) { this->held_->observe(wanted); }
   const std::optional<Failure>& failure() const { return this->held_->failure(); }
@@ -278,6 +302,8 @@ template <class Real = double> class AnyIntegrator : private detail::Erased<deta
     return this->held_->settle(raw, out, wanted, at, corrected);
   }
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) { return this->held_->energy(s); }
+  /// The virial of the forces, sum x (x) f [energy]; empty where it is not known.
+  std::optional<Mat3<Real>> virial(const ParticleSystem<Real>& s) { return this->held_->virial(s); }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) { this->held_->accelerations(s, a); }
   Evaluations evaluations() const { return this->held_->evaluations(); }
   void save(SavedState& saved, const std::string& prefix) const { this->held_->save(saved, prefix); }

@@ -121,6 +121,16 @@ template <class F> ForceClaims claims_of(const F& force) {
   }
 }
 
+/// Asks a force whether it can act on these particles, in their box: before the first step, so that nothing has to be
+/// asked later.
+/// @throws Error  naming what is missing
+template <class F, class Real> void check_force(const F& force, const ParticleSystem<Real>& s) {
+  if (s.box().is_periodic() && !claims_of(force).periodic) {
+    throw Error("a periodic box needs forces between nearest images; one of the forces knows open space only");
+  }
+  if constexpr (requires { force.check(s); }) force.check(s);
+}
+
 /// A term of the force: it adds to a sink what it does to the particles, at their stage time.
 template <class F, class Real>
 concept Force = requires(const F& force, ForceSink<Real>& out, const ParticleSystem<Real>& system) {

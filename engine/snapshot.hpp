@@ -59,6 +59,12 @@ template <class Real> class Snapshot {
     if (!energy_) energy_ = integrator_.energy(state());
     return *energy_;
   }
+  /// Virial of the forces at `state()`, sum x (x) f [energy]; empty where a force or a constraint does not tell.
+  const std::optional<Mat3<Real>>& virial() const {
+    if (!have_virial_) virial_ = integrator_.virial(state());
+    have_virial_ = true;
+    return virial_;
+  }
   /// Energy that the run's Hamiltonian has for other positions and velocities of its particles [energy].
   EnergyTerms<Real> energy_of(const ParticleSystem<Real>& settled) const { return integrator_.energy(settled); }
   /// Accelerations at `state()`, shape (n, 3) [length/time^2].
@@ -93,7 +99,8 @@ template <class Real> class Snapshot {
   Real action_;
   RunSource run_;
   mutable Real settling_action_ = Real(0);
-  mutable bool have_state_ = false, have_mapped_ = false;
+  mutable bool have_state_ = false, have_mapped_ = false, have_virial_ = false;
+  mutable std::optional<Mat3<Real>> virial_;
   mutable std::optional<EnergyTerms<Real>> energy_;
   mutable std::optional<VectorColumn<Real>> accelerations_;
 };

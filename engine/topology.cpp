@@ -62,6 +62,14 @@ void Topology::scale_by_bonds(Index n, const std::array<double, 3>& factors) {
   }
 }
 
+bool Topology::is_special(Index i, Index j) const {
+  const Pair pair(std::min(i, j), std::max(i, j));
+  if (std::binary_search(exclusions.begin(), exclusions.end(), pair)) return true;
+  const auto found = std::lower_bound(scaled_pairs.begin(), scaled_pairs.end(), pair,
+                                      [](const ScaledPair& one, const Pair& wanted) { return one.pair < wanted; });
+  return found != scaled_pairs.end() && found->pair == pair;
+}
+
 int Topology::type_count() const {
   const auto largest = std::max_element(types.begin(), types.end());
   const int used = largest == types.end() ? 1 : static_cast<int>(*largest) + 1;

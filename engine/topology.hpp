@@ -73,6 +73,8 @@ struct Topology {
   };
   std::vector<ScaledPair> scaled_pairs;  ///< sorted
 
+  /// Whether the pair force of two particles is excluded or scaled. @cost O(log pairs)
+  bool is_special(Index i, Index j) const;
   /// Type of particle `i`; 0 where no types were given.
   int type(Index i) const { return types.empty() ? 0 : static_cast<int>(types[static_cast<std::size_t>(i)]); }
   /// Number of types, 1 at least.

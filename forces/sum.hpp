@@ -49,6 +49,9 @@ template <class... Fs> class Sum {
     std::apply([&](const auto&... force) { (detail::merge(all, claims_of(force)), ...); }, forces_);
     return all;
   }
+  template <class Real> void check(const ParticleSystem<Real>& s) const {
+    std::apply([&](const auto&... force) { (check_force(force, s), ...); }, forces_);
+  }
   std::string name() const { return "sum"; }
   std::string signature() const {
     std::string all;
@@ -88,6 +91,9 @@ template <class Real = double> class ForceField {
     ForceClaims all{.periodic = true};
     for (const auto& term : terms_) detail::merge(all, term.claims());
     return all;
+  }
+  void check(const ParticleSystem<Real>& s) const {
+    for (const auto& term : terms_) term.check(s);
   }
   std::string name() const { return "force_field"; }
   std::string signature() const {

@@ -98,10 +98,14 @@ template <class Real>
 Real Classical<Real>::settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Wanted /*wanted*/,
                              std::optional<double> at, bool /*corrected*/) {
   out.assign_state(raw);
-  if (!at) return Real(0);
+  if (!at) {
+    out.wrap();
+    return Real(0);
+  }
   const Evaluations counted = field_->evaluations();
   look_ahead(raw, *at);
   field_->scatter(y_, out);
+  out.wrap();
   field_->evaluations() = counted;
   out.clock().move_to(*at);
   return Real(0);  // at whole steps nothing is left to do, and with steps of its own choice no action is told

@@ -43,6 +43,7 @@ template <class Real> class Classical {
   Real settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Wanted wanted, std::optional<double> at,
               bool corrected);
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) { return field_->energy(s); }
+  std::optional<Mat3<Real>> virial(const ParticleSystem<Real>& s) { return field_->virial(s); }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) { field_->accelerations(s, a); }
   Evaluations evaluations() const { return field_->evaluations(); }
 

@@ -108,6 +108,9 @@ template <SplitHamiltonian H> class Composition {
   }
 
   EnergyTerms<real> energy(const ParticleSystem<real>& settled) { return hamiltonian_.energy(settled); }
+  std::optional<Mat3<real>> virial(const ParticleSystem<real>& settled) {
+    return detail::virial_of(hamiltonian_, settled);
+  }
   void accelerations(const ParticleSystem<real>& settled, VectorColumn<real>& a) {
     hamiltonian_.accelerations(settled, a);
   }

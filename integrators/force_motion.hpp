@@ -2,6 +2,7 @@
 /// Particles under forces as y' = f(t, y), y = (x, v).
 
 #include "engine/erasure.hpp"
+#include "engine/neighbor_list.hpp"
 #include "engine/pack.hpp"
 #include "engine/parallel.hpp"
 #include "engine/signature.hpp"
@@ -9,6 +10,7 @@
 #include "integrators/vector_field.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -34,11 +36,13 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
             .energy = forces.energy,
             .dissipative = forces.dissipative,
             .keeps_momentum = forces.keeps_momentum,
-            .keeps_angular_momentum = forces.keeps_angular_momentum};
+            .keeps_angular_momentum = forces.keeps_angular_momentum && !work_.box().is_periodic()};
   }
   std::string signature() const override { return detail::signature_of(forces_); }
 
   void bind(const ParticleSystem<Real>& s) override {
+    check_force(forces_, s);
+    neighbors_ = NeighborList(claims_of(forces_).range);
     work_ = s;
     work_.keep_low_words(false);
     work_.clock() = Clock<Real>::free(0);
@@ -65,19 +69,26 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
   }
 
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) override {
-    ForceSink<Real> sink(a_, s, {.energy = true});
+    ForceSink<Real> sink(a_, s, {.energy = true}, &neighbors_);
     forces_.add_to(sink, s);
     return {kinetic_energy(s), sink.potential()};
   }
+  std::optional<Mat3<Real>> virial(const ParticleSystem<Real>& s) override {
+    if (!claims_of(forces_).virial) return {};
+    ForceSink<Real> sink(a_, s, {.virial = true}, &neighbors_);
+    forces_.add_to(sink, s);
+    return sink.virial();
+  }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) override {
-    ForceSink<Real> sink(a, s, {});
+    ForceSink<Real> sink(a, s, {}, &neighbors_);
     forces_.add_to(sink, s);
   }
 
   Real lagrangian(const Real& t, const Vector<Real>& y) override {
     scatter(y, work_);
     work_.clock().set_stage_offset(t);
-    ForceSink<Real> sink(a_, work_, {.energy = true});
+    work_.wrap();
+    ForceSink<Real> sink(a_, work_, {.energy = true}, &neighbors_);
     forces_.add_to(sink, work_);
     return kinetic_energy(work_) - sink.potential();
   }
@@ -174,8 +185,8 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
       take(states.q, x);
       if (states.v != nullptr) take(states.v, v);
       work_.clock().set_stage_offset(states.t[stage]);
-      ForceSink<Real> sink(a_, work_, {});
-      forces_.add_to(sink, work_);
+      work_.moved();
+      sum_forces();
       const int same = stage + 1 == states.stages ? lane_count - stage : 1;
       Real* to = out + stage;
       for (int k = 0; k < 3; ++k) {
@@ -187,8 +198,16 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
   void sum(const Real& t, const Vector<Real>& y) {
     scatter(y, work_);
     work_.clock().set_stage_offset(t);
-    ForceSink<Real> sink(a_, work_, {});
+    sum_forces();
+  }
+  /// Accelerations of the particles at work. Where a force cannot be computed they are no numbers: a shorter step may
+  /// help, or the run has diverged.
+  void sum_forces() {
+    work_.wrap();
+    ForceSink<Real> sink(a_, work_, {}, &neighbors_);
     forces_.add_to(sink, work_);
+    if (!sink.failure()) return;
+    for (int k = 0; k < 3; ++k) std::fill_n(a_.component(k), a_.size(), Real(std::numeric_limits<double>::quiet_NaN()));
   }
   void write(Real* out) const {
     for (int k = 0; k < 3; ++k) std::copy_n(a_.component(k), work_.size(), out + k * work_.size());
@@ -219,6 +238,7 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
 
   F forces_;
   std::string name_;
+  NeighborList neighbors_;
   ParticleSystem<Real> work_;
   VectorColumn<Real> a_;
   bool in_lanes_ = false;

@@ -2,6 +2,7 @@
 /// H = T(p) + U(q): free motion and kicks, along constraints if there are any.
 
 #include "engine/concepts.hpp"
+#include "engine/neighbor_list.hpp"
 #include "engine/parallel.hpp"
 #include "engine/signature.hpp"
 #include "engine/unconstrained.hpp"
@@ -68,7 +69,7 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
                              .time_dependent = forces.time_dependent,
                              .dissipative = forces.dissipative,
                              .keeps_momentum = forces.keeps_momentum,
-                             .keeps_angular_momentum = forces.keeps_angular_momentum};
+                             .keeps_angular_momentum = forces.keeps_angular_momentum && !periodic_};
     if constexpr (constrained) {
       claims.inexact = "A";
       claims.constraints = constraints_.set().equations();
@@ -81,11 +82,22 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
   const F& forces() const { return forces_; }
 
   void bind(ParticleSystem<Real>& s) {
+    check_force(forces_, s);
     acceleration_ = VectorColumn<Real>(s.size());
+    neighbors_ = NeighborList(claims_of(forces_).range, neighbor_options_);
+    periodic_ = s.box().is_periodic();
     known_.reset();
+    failure_.reset();
+    force_failure_.reset();
     moved_ = true;
-    if constexpr (constrained) constraints_.bind(s);
+    if constexpr (constrained) {
+      if (periodic_) throw Error("constraints know open space only; take them out, or the periodic box");
+      constraints_.bind(s);
+    }
   }
+  /// How neighbors are found; before the first step.
+  void set_neighbor_options(const NeighborOptions& options) { neighbor_options_ = options; }
+  const NeighborList& neighbors() const { return neighbors_; }
   void open(ParticleSystem<Real>& /*inertial already*/) {}
   void close(ParticleSystem<Real>& /*inertial already*/) {}
 
@@ -98,6 +110,7 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     evaluate(s, observing_.value_or(Wanted{}));
     s.advance_velocities(h, acceleration_);
     project(s, h);
+    if (!observing_ && force_failure_) failure_ = force_failure_;
     if (!observing_ && std::exchange(moved_, false)) ++evaluations_.force;
   }
 
@@ -118,12 +131,14 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
         } else {
           drifted ? sum(s, {}) : evaluate(s, {});
           s.advance_velocities(weight * dt, acceleration_);
+          if (force_failure_) failure_ = force_failure_;
           if (std::exchange(moved_, false)) ++evaluations_.force;
         }
       });
       s.clock().tick(Real(0));
       ++done.steps;
-      if (span.asked_to_stop()) break;
+      if (failure_) done.failure = &*failure_;
+      if (failure_ || span.asked_to_stop()) break;
     }
     if (drifted) known_.reset();
     return done;
@@ -145,6 +160,14 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     evaluate(s, {.energy = true});
     return {kinetic_energy(s), potential_};
   }
+  /// Sum x (x) f [energy]; empty if a force does not tell it, or constraints add to it. Once asked for, it is summed
+  /// along with the energy.
+  std::optional<Mat3<Real>> virial(const ParticleSystem<Real>& s) {
+    if (constrained || !claims_of(forces_).virial) return {};
+    virial_wanted_ = true;
+    evaluate(s, {.energy = true, .virial = true});
+    return virial_;
+  }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) {
     evaluate(s, {});
     a = acceleration_;
@@ -163,7 +186,9 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     }
   }
   const std::optional<Failure>& failure() const {
-    if constexpr (constrained) return constraints_.failure();
+    if constexpr (constrained) {
+      if (constraints_.failure()) return constraints_.failure();
+    }
     return failure_;
   }
   Evaluations evaluations() const {
@@ -197,7 +222,7 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
   struct Known {
     std::uint64_t version;
     Real time;
-    bool energy;
+    bool energy, virial;
   };
 
   void move(ParticleSystem<Real>& s, const Real& h) {
@@ -213,24 +238,34 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
   }
   void evaluate(const ParticleSystem<Real>& s, Wanted wanted) {
     const Real time = s.time();
-    if (known_ && known_->version == s.version() && known_->time == time && (known_->energy || !wanted.energy)) return;
+    const bool here = known_ && known_->version == s.version() && known_->time == time;
+    if (here && (known_->energy || !wanted.energy) && (known_->virial || !wanted.virial)) return;
+    wanted.virial = wanted.virial || (wanted.energy && virial_wanted_);
     sum(s, wanted);
-    known_ = Known{s.version(), time, wanted.energy};
+    known_ = Known{s.version(), time, wanted.energy, wanted.virial};
   }
   void sum(const ParticleSystem<Real>& s, Wanted wanted) {
-    ForceSink<Real> sink(acceleration_, s, {.energy = wanted.energy});
+    ForceSink<Real> sink(acceleration_, s, {.energy = wanted.energy, .virial = wanted.virial}, &neighbors_);
     forces_.add_to(sink, s);
     if (wanted.energy) potential_ = sink.potential();
+    if (wanted.virial) virial_ = sink.virial();
+    force_failure_ = sink.failure();
   }
 
   F forces_;
   typename C::template Solver<Real> constraints_;
   VectorColumn<Real> acceleration_;
   Real potential_ = Real(0);
+  Mat3<Real> virial_ = Mat3<Real>::Zero();
+  bool virial_wanted_ = false;
   std::optional<Known> known_;
   std::optional<Wanted> observing_;
-  bool moved_ = true;               ///< since the last evaluation that was counted
-  std::optional<Failure> failure_;  ///< kicks and drifts cannot fail
+  bool moved_ = true;                     ///< since the last evaluation that was counted
+  std::optional<Failure> failure_;        ///< why the last flow could not be done
+  std::optional<Failure> force_failure_;  ///< of the last evaluation, whoever asked for it
+  NeighborOptions neighbor_options_;
+  NeighborList neighbors_;
+  bool periodic_ = false;
   Evaluations evaluations_;
 };
 

@@ -6,6 +6,7 @@
 #include "engine/parallel.hpp"
 #include "engine/random.hpp"
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -50,14 +51,14 @@ struct LangevinOptions {
 /// the word. Where the last O of a step is joined with the first of the next both are done, one after the other, so
 /// that a copy completed for an observer has the noise of the run.
 /// @cost 12 random words, 2 logarithms and 4 sines or cosines for each particle and O
-/// @source LeimkuhlerMatthews2013, LeimkuhlerMatthews2016, SalmonEtAl2011
+/// @source LeimkuhlerMatthews2013, LeimkuhlerMatthews2016, Salmon2011
 template <SplitHamiltonian H> class Langevin {
  public:
   using real = typename H::real;
 
   /// @throws Error  for a negative temperature or friction, or constraints that do not tell how to project velocities
   Langevin(H hamiltonian, LangevinOptions options)
-      : hamiltonian_(std::move(hamiltonian)), options_(options), key_(random_key(options.seed)) {
+      : hamiltonian_(std::move(hamiltonian)), options_(options), key_(noise_key(options.seed)) {
     options_.check();
     if (hamiltonian_.claims().constraints > 0 && !projects) {
       throw Error("noise would push velocities off the constraints of '" + detail::name_of(hamiltonian_) +
@@ -148,15 +149,14 @@ template <SplitHamiltonian H> class Langevin {
   void mix(ParticleSystem<real>& s, const real& h, std::int64_t step, std::uint32_t stage) {
     using std::exp, std::expm1, std::sqrt;
     const real gamma(options_.friction), keep = exp(-gamma * h);
-    const real kT = real(s.units().k_B) * real(options_.temperature), noise = -expm1(real(-2) * gamma * h) * kT;
+    const real kT = real(s.units().k_B) * real(options_.temperature), warmth = -expm1(real(-2) * gamma * h) * kT;
     s.scale_velocities(keep);
     const std::vector<std::int64_t>& ids = s.ids();
     VectorColumn<real>& v = s.velocities();
     for_blocks(s.size(), [&](Index begin, Index end) {
       for (Index i = begin; i < end; ++i) {
-        const Vec3<double> xi =
-            normal_vector(key_, RandomPurpose::thermostat, ids[static_cast<std::size_t>(i)], step, stage);
-        const real sigma = sqrt(noise / std::as_const(s).masses()[i]);
+        const std::array<double, 3> xi = noise(key_, ids[static_cast<std::size_t>(i)], step, stage);
+        const real sigma = sqrt(warmth / std::as_const(s).masses()[i]);
         v.add(i, Vec3<real>(sigma * real(xi[0]), sigma * real(xi[1]), sigma * real(xi[2])));
       }
     });
@@ -165,7 +165,7 @@ template <SplitHamiltonian H> class Langevin {
 
   H hamiltonian_;
   LangevinOptions options_;
-  RandomKey key_;
+  std::array<std::uint32_t, 2> key_;
 };
 
 }  // namespace noether

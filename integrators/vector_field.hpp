@@ -95,6 +95,8 @@ template <class Real> class VectorField {
   virtual Sparsity sparsity() const { return {}; }
 
   virtual EnergyTerms<Real> energy(const ParticleSystem<Real>& s) = 0;
+  /// The virial of its forces [energy]; empty where it has none, or they do not tell.
+  virtual std::optional<Mat3<Real>> virial(const ParticleSystem<Real>& /*s*/) { return {}; }
   virtual void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) = 0;
   /// Kinetic less potential energy at y = (q, v), not counted. @throws LogicError  for a system of first order
   virtual Real lagrangian(const Real& /*t*/, const Vector<Real>& /*y*/) {

@@ -12,12 +12,12 @@
 
 namespace noether::io {
 
-TextFile::TextFile(std::filesystem::path file) : file_(std::move(file)) {
+TextFile::TextFile(std::filesystem::path file, std::string_view expected) : file_(std::move(file)) {
   static constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   const std::string bytes = read_bytes(file_);
   const std::size_t zero = bytes.find('\0');
   if (zero != std::string::npos) {
-    throw FileError(fmt::format("this is no text: byte {} is zero; expected CSV or a vector table of Horizons", zero),
+    throw FileError(fmt::format("this is no text: byte {} is zero; expected {}", zero, expected),
                     {.file = file_.string()});
   }
   std::string_view rest = bytes;

@@ -58,7 +58,8 @@ std::vector<Index> id_order(const std::vector<std::int64_t>& ids) {
 }
 
 std::string digest(std::int64_t step, double time, std::span<const std::int64_t> ids, std::span<const double> positions,
-                   std::span<const double> velocities, std::span<const double> masses) {
+                   std::span<const double> velocities, std::span<const double> masses,
+                   std::span<const std::int32_t> images) {
   static constexpr std::string_view head = "noether-state-1\n";
   Sha256 hash;
   hash.add(head.data(), head.size());
@@ -69,6 +70,7 @@ std::string digest(std::int64_t step, double time, std::span<const std::int64_t>
   hash.add(positions.data(), positions.size_bytes());
   hash.add(velocities.data(), velocities.size_bytes());
   hash.add(masses.data(), masses.size_bytes());
+  hash.add(images.data(), images.size_bytes());
   return "sha256:" + hash.hex();
 }
 
@@ -89,14 +91,16 @@ std::string digest(const ParticleSystem<double>& settled) {
   if (!settled.variables().empty()) return system_digest(clock.step(), time, settled.variables());
   std::vector<std::int64_t> ids;
   std::vector<double> x, v, m;
+  std::vector<std::int32_t> images;
   for (const Index i : id_order(settled.ids())) {
     ids.push_back(settled.ids()[static_cast<std::size_t>(i)]);
     const Vec3<double> position = settled.positions()[i], velocity = settled.velocities()[i];
     x.insert(x.end(), position.begin(), position.end());
     v.insert(v.end(), velocity.begin(), velocity.end());
     m.push_back(settled.masses()[i]);
+    for (int k = 0; k < 3 && settled.box().is_periodic(); ++k) images.push_back(settled.images().component(k)[i]);
   }
-  return digest(clock.step(), time, ids, x, v, m);
+  return digest(clock.step(), time, ids, x, v, m, images);
 }
 
 }  // namespace noether::io

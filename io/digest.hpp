@@ -19,14 +19,17 @@ std::string sha256(std::string_view bytes);
 /// The digest of a settled state, "sha256:<hex>".
 ///
 /// SHA-256, little-endian, of the ASCII "noether-state-1\n", int64 step, int64 n, float64 time (t0 + n dt; of a free
-/// clock its high word), then in id order int64 id[n], float64 x[n][3], v[n][3], m[n]. Of a first-order system: over
+/// clock its high word), then in id order int64 id[n], float64 x[n][3], v[n][3], m[n], and in a periodic box
+/// int32 image[n][3]. Of a first-order system: over
 /// "noether-system-1\n", int64 step, int64 n, float64 time, float64 y[n].
 /// @cost O(n log n)
 std::string digest(const ParticleSystem<double>& settled);
 
-/// The same from arrays that stand in id order: ids (n), positions (n, 3), velocities (n, 3), masses (n), row by row.
+/// The same from arrays that stand in id order: ids (n), positions (n, 3), velocities (n, 3), masses (n), row by row,
+/// and in a periodic box images (n, 3).
 std::string digest(std::int64_t step, double time, std::span<const std::int64_t> ids, std::span<const double> positions,
-                   std::span<const double> velocities, std::span<const double> masses);
+                   std::span<const double> velocities, std::span<const double> masses,
+                   std::span<const std::int32_t> images = {});
 
 /// The same of a first-order system, from its variables y (n).
 std::string system_digest(std::int64_t step, double time, std::span<const double> variables);

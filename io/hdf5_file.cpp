@@ -221,6 +221,17 @@ std::vector<double> Hdf5Dataset::read_reals() const { return read_reals(0, rows(
 
 std::vector<double> Hdf5Dataset::read_reals(Index first, Index count) const {
   require(ElementType::real);
+  return read_rows<double>(H5T_NATIVE_DOUBLE, first, count);
+}
+
+std::vector<std::int64_t> Hdf5Dataset::read_integers() const { return read_integers(0, rows()); }
+
+std::vector<std::int64_t> Hdf5Dataset::read_integers(Index first, Index count) const {
+  require(ElementType::integer);
+  return read_rows<std::int64_t>(H5T_NATIVE_INT64, first, count);
+}
+
+template <class Number> std::vector<Number> Hdf5Dataset::read_rows(std::int64_t type, Index first, Index count) const {
   const std::vector<Index> axes = shape();
   std::vector<hsize_t> start(axes.size(), 0), extent(axes.begin(), axes.end());
   const Hdf5Handle source = own(H5Dget_space(*handle_), H5Sclose, handle_->file(), reading(path_));
@@ -231,18 +242,9 @@ std::vector<double> Hdf5Dataset::read_reals(Index first, Index count) const {
           reading(path_));
   }
   const Hdf5Handle target = space_of({extent.begin(), extent.end()}, handle_->file());
-  std::vector<double> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(target)));
+  std::vector<Number> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(target)));
   if (values.empty()) return values;
-  check(H5Dread(*handle_, H5T_NATIVE_DOUBLE, target, source, H5P_DEFAULT, values.data()), *handle_, reading(path_));
-  return values;
-}
-
-std::vector<std::int64_t> Hdf5Dataset::read_integers() const {
-  require(ElementType::integer);
-  const Hdf5Handle space = own(H5Dget_space(*handle_), H5Sclose, handle_->file(), reading(path_));
-  std::vector<std::int64_t> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
-  if (values.empty()) return values;
-  check(H5Dread(*handle_, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), *handle_, reading(path_));
+  check(H5Dread(*handle_, type, target, source, H5P_DEFAULT, values.data()), *handle_, reading(path_));
   return values;
 }
 

@@ -52,9 +52,12 @@ class Hdf5Dataset {
   /// Rows [first, first + count).
   std::vector<double> read_reals(Index first, Index count) const;
   std::vector<std::int64_t> read_integers() const;
+  std::vector<std::int64_t> read_integers(Index first, Index count) const;
   std::vector<std::string> read_texts() const;
 
  private:
+  /// @param type  of HDF5, in memory
+  template <class Number> std::vector<Number> read_rows(std::int64_t type, Index first, Index count) const;
   friend class Hdf5File;
   Hdf5Dataset(std::shared_ptr<Hdf5Handle> handle, std::string path)
       : handle_(std::move(handle)), path_(std::move(path)) {}

@@ -98,7 +98,7 @@ FileInfo trajectory_info(const std::filesystem::path& path) {
   info.last_time = last.time;
   info.digest = info.variables > 0 ? system_digest(last.step, last.time, last.variables)
                                    : digest(last.step, last.time, reader.shared().ids, last.positions, last.velocities,
-                                            reader.shared().masses);
+                                            reader.shared().masses, last.images);
   return info;
 }
 

@@ -53,6 +53,7 @@ struct Frame {
   double time = 0;                            ///< [time]
   std::vector<double> positions, velocities;  ///< (n, 3), row by row [length], [length/time]
   std::vector<double> variables = {};         ///< (n)
+  std::vector<std::int32_t> images = {};  ///< (n, 3), how often each has crossed the periodic box; empty without one
 };
 
 /// All frames of a trajectory and what they share.

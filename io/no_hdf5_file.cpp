@@ -35,6 +35,7 @@ void Hdf5Dataset::write_last() const { unreachable(); }
 std::vector<double> Hdf5Dataset::read_reals() const { unreachable(); }
 std::vector<double> Hdf5Dataset::read_reals(Index, Index) const { unreachable(); }
 std::vector<std::int64_t> Hdf5Dataset::read_integers() const { unreachable(); }
+std::vector<std::int64_t> Hdf5Dataset::read_integers(Index, Index) const { unreachable(); }
 std::vector<std::string> Hdf5Dataset::read_texts() const { unreachable(); }
 
 Hdf5File Hdf5File::create(const std::filesystem::path& file) { refuse(file); }

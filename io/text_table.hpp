@@ -16,8 +16,9 @@ namespace noether::io {
 /// The lines of a text file, without line ends.
 class TextFile {
  public:
+  /// @param expected  what the file should be, for the message
   /// @throws FileError if it cannot be read or is no text
-  explicit TextFile(std::filesystem::path file);
+  explicit TextFile(std::filesystem::path file, std::string_view expected = "CSV or a vector table of Horizons");
 
   const std::vector<std::string>& lines() const { return lines_; }
   /// @param line  counted from 1; 0 for the file as a whole

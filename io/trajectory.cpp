@@ -85,13 +85,15 @@ struct MonitorDatasets {
 
 /// The datasets of the frames, open: of particles, or of the variables of a system.
 struct FrameDatasets {
-  BufferedDataset<double> position, velocity, variables;
-  BufferedDataset<std::int64_t> step;
+  BufferedDataset<double> position, velocity, variables, edges;
+  BufferedDataset<std::int64_t> step, image;
   BufferedDataset<double> time;
 
   /// The values that readers go by come last: a frame that has them has everything.
   void write_out() {
     velocity.write_out();
+    image.write_out();
+    edges.write_out();
     time.write_out();
     step.write_out();
     position.write_out();
@@ -198,6 +200,7 @@ class TrajectoryWriter::File {
     waiting_.clear();
     ids_.clear();
     variables_ = 0;
+    periodic_ = false;
     hdf5_.reset();
   }
 
@@ -248,7 +251,9 @@ class TrajectoryWriter::File {
     set_unit(particles_path + "/mass", std::string(units_->mass), "u");
     hdf5_->make_group(particles_path + "/box");
     hdf5_->set_attribute(particles_path + "/box", "dimension", std::int64_t{3});
-    hdf5_->set_attribute(particles_path + "/box", "boundary", std::vector<std::string>(3, "none"));
+    hdf5_->set_attribute(particles_path + "/box", "boundary",
+                         std::vector<std::string>(3, state.box().is_periodic() ? "periodic" : "none"));
+    periodic_ = state.box().is_periodic();
   }
 
   void describe_system(const ParticleSystem<double>& state) {
@@ -281,10 +286,23 @@ class TrajectoryWriter::File {
     frame_.time = BufferedDataset<double>(hdf5_->create_growing(position + "/time", ElementType::real, {}, few));
     hdf5_->link(position + "/step", velocity + "/step");
     hdf5_->link(position + "/time", velocity + "/time");
+    if (periodic_) create_box_frames(particles, rows, few);
     hdf5_->open(position + "/value").write_last();
     set_unit(position + "/value", std::string(units_->length), "nm");
     set_unit(velocity + "/value", unit_of(dimensions::velocity, *units_), "nm ps-1");
     set_unit(position + "/time", std::string(units_->time), "ps");
+  }
+
+  /// Edges of the box and images of the particles: a particle's unwrapped position is position + image * edges.
+  void create_box_frames(Index particles, Index rows, Index few) {
+    frame_.image = BufferedDataset<std::int64_t>(
+        hdf5_->create_growing(image_path + "/value", ElementType::integer, {particles, 3}, rows));
+    frame_.edges = BufferedDataset<double>(hdf5_->create_growing(edges_path + "/value", ElementType::real, {3}, few));
+    for (const std::string& group : {image_path, edges_path}) {
+      hdf5_->link(particles_path + "/position/step", group + "/step");
+      hdf5_->link(particles_path + "/position/time", group + "/time");
+    }
+    set_unit(edges_path + "/value", std::string(units_->length), "nm");
   }
 
   void create_system_frames() {
@@ -320,6 +338,10 @@ class TrajectoryWriter::File {
     frame_.velocity = BufferedDataset<double>(open(particles_path + "/velocity/value", {particles, 3}));
     frame_.step = BufferedDataset<std::int64_t>(open(particles_path + "/position/step", {}));
     frame_.time = BufferedDataset<double>(open(particles_path + "/position/time", {}));
+    periodic_ = hdf5_->has(image_path);
+    if (!periodic_) return;
+    frame_.image = BufferedDataset<std::int64_t>(open(image_path + "/value", {particles, 3}));
+    frame_.edges = BufferedDataset<double>(open(edges_path + "/value", {3}));
   }
 
   void open_system_frames() {
@@ -346,6 +368,7 @@ class TrajectoryWriter::File {
       paths = {particles_path + "/position/step", particles_path + "/position/time", particles_path + "/position/value",
                particles_path + "/velocity/value"};
     }
+    if (hdf5_->has(image_path)) paths.insert(paths.end(), {image_path + "/value", edges_path + "/value"});
     if (hdf5_->has(system_path + "/value")) {
       paths = {system_path + "/step", system_path + "/time", system_path + "/value"};
     }
@@ -439,12 +462,22 @@ class TrajectoryWriter::File {
       frame_.variables.append(state.variables());
       return;
     }
+    if (periodic_) write_box(state);
     gather(state.velocities());
     frame_.velocity.append(row_);
     frame_.time.append(now.time());
     frame_.step.append(now.step());
     gather(state.positions());
     frame_.position.append(row_);
+  }
+
+  void write_box(const ParticleSystem<double>& state) {
+    std::vector<std::int64_t> images;
+    for (const Index i : order_) {
+      for (int k = 0; k < 3; ++k) images.push_back(state.images().component(k)[i]);
+    }
+    frame_.image.append(images);
+    frame_.edges.append(std::span(state.box().edges().data(), 3));
   }
 
   void write_sample(const Sample& sample) {
@@ -503,7 +536,8 @@ class TrajectoryWriter::File {
   std::vector<KeptSample> waiting_;             ///< samples that came before the first look
   std::vector<std::int64_t> ids_, sorted_ids_;  ///< as the run has them, and as the file has them
   std::vector<Index> order_;
-  Index variables_ = 0;  ///< of a system without particles
+  Index variables_ = 0;    ///< of a system without particles
+  bool periodic_ = false;  ///< frames have a box, and images of the particles
   std::vector<double> row_;
   std::chrono::steady_clock::time_point flushed_{};  ///< long ago: the first sample or frame goes out at once
 };

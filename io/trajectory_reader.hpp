@@ -30,11 +30,12 @@ class TrajectoryReader {
   void open_system(const std::filesystem::path& path);
 
   Hdf5File file_;
-  Hdf5Dataset position_, velocity_, variables_;
+  Hdf5Dataset position_, velocity_, variables_, image_;
   std::vector<std::int64_t> steps_;
   std::vector<double> times_;
   Frames shared_;
   Index frames_ = 0;
+  bool periodic_ = false;
   bool of_system_ = false;  ///< variables instead of particles
 };
 

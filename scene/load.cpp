@@ -153,6 +153,13 @@ class SceneReader {
     if (type == "wisdom_holman" && made.wisdom_holman.coordinates == Coordinates::inertial) {
       reader.fail("coordinates", "wisdom_holman has jacobi or democratic coordinates");
     }
+    if (type == "wisdom_holman" && scene_.particles.box().is_periodic()) {
+      reader.fail("type", "wisdom_holman knows open space only: Kepler arcs have no images; take the box out");
+    }
+    if (!constraints.empty() && scene_.particles.box().is_periodic()) {
+      reader.fail(constraints.front(), "constraint",
+                  "constraints know open space only so far; take them out, or the periodic box");
+    }
     if (type == "wisdom_holman" && !constraints.empty()) {
       reader.fail(constraints.front(), "constraint",
                   "wisdom_holman has no constraints: Kepler arcs know none; use kinetic_potential");
@@ -195,6 +202,13 @@ class SceneReader {
         reader.fail("type", "gravity stands twice in the scene, so every pair would attract twice; take one out");
       }
       if (force.drag && other.drag) reader.fail("type", "linear_drag stands twice in the scene; add the rates up");
+    }
+    if (force.force) {
+      try {
+        force.force->check(scene_.particles);
+      } catch (const Error& error) {
+        reader.fail("type", error.message());
+      }
     }
     for (auto& [key, value] : *force.effective.get<SceneValue::Table>()) effective.put(key, value);
     list.push_back(effective);

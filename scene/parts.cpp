@@ -14,6 +14,7 @@
 #include "forces/fermi_pasta_ulam.hpp"
 #include "forces/gravity.hpp"
 #include "forces/henon_heiles.hpp"
+#include "forces/lennard_jones.hpp"
 #include "forces/oblateness.hpp"
 #include "forces/springs.hpp"
 #include "forces/sum.hpp"
@@ -59,6 +60,7 @@ Parts standard_parts() {
   parts.add_force<HarmonicField>();
   parts.add_force<HenonHeiles>();
   parts.add_force<FermiPastaUlam>();
+  parts.add_force<LennardJonesForce>();
   parts.add_force<HarmonicBond>();
   parts.add_force<Tether>();
   parts.add_force<Bonded>();

@@ -1,16 +1,19 @@
 #include "scene/read_particles.hpp"
 
+#include "engine/charge.hpp"
 #include "engine/orbital_elements.hpp"
 #include "engine/suggest.hpp"
 #include "engine/text.hpp"
 #include "io/bodies.hpp"
-#include "io/digest.hpp"
-#include "io/files.hpp"
+#include "scene/particle_keys.hpp"
+#include "scene/read_builder.hpp"
+#include "scene/read_structure.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <unordered_set>
 
 namespace noether {
@@ -55,13 +58,85 @@ std::pair<Vec3<double>, Vec3<double>> from_elements(TableReader& body, const Par
 
 Vec3<double> column(const std::array<double, 3>& v) { return Vec3<double>(v[0], v[1], v[2]); }
 
-void add_body(TableReader& body, ParticleSystem<double>& s, std::unordered_set<std::string>& names) {
-  body.expect_only({"name", "mass", "x", "v", "a", "e", "inc", "Omega", "omega", "M"});
+/// Types and charges of the bodies of `[[particles.body]]`.
+class TypedBodies {
+ public:
+  TypedBodies(TableReader& reader, SceneValue& effective)
+      : types_(read_types(reader, effective)), pairs_(read_pairs(reader, effective)) {
+    const auto mixing = read_mixing(reader, effective);
+    if (types_.empty() && (mixing || !pairs_.empty())) {
+      const char* key = mixing ? "mixing" : "pair";
+      reader.fail(key, fmt::format("{} is of types, and there are none; give [[particles.type]] tables", key));
+    }
+    topology_.mixing = mixing.value_or(Mixing::lorentz_berthelot);
+    for (const TypeParameters& type : types_) topology_.type_names.push_back(type.type);
+  }
+
+  /// Takes type and charge of one body; returns the mass of its type.
+  std::optional<double> add(TableReader& body) {
+    std::optional<double> charge = body.quantity("charge", "charge");
+    std::optional<double> mass;
+    if (!types_.empty()) {
+      const TypeParameters& type = types_[static_cast<std::size_t>(type_of(body))];
+      if (!charge) charge = type.charge;
+      mass = type.mass;
+    } else if (body.has("type")) {
+      body.fail("type", fmt::format("{} has a type, and there are none; give [[particles.type]] tables", body.what()));
+    }
+    charges_.push_back(charge);
+    return mass;
+  }
+
+  void give_to(ParticleSystem<double>& s, TableReader& reader) {
+    if (std::any_of(charges_.begin(), charges_.end(), [](const auto& charge) { return charge.has_value(); })) {
+      auto& column = s.add_column<Charge>();
+      for (std::size_t i = 0; i < charges_.size(); ++i) column[static_cast<Index>(i)] = charges_[i].value_or(0);
+    }
+    if (types_.empty()) return;
+    std::vector<TypeParameters> rest = types_;
+    for (TypeParameters& type : rest) type.charge.reset();
+    try {
+      // Checks masses as well; those that bodies give themselves are put back.
+      const ScalarColumn<double> masses = s.masses();
+      set_type_parameters(s, topology_, rest, pairs_);
+      s.masses() = masses;
+    } catch (const Error& error) {
+      refuse_particle_key(reader, error);
+    }
+    s.set_topology(std::make_shared<const Topology>(std::move(topology_)));
+  }
+
+ private:
+  int type_of(TableReader& body) {
+    const SceneValue* value = body.find("type");
+    if (value == nullptr && types_.size() > 1) {
+      body.fail(nullptr, "type", fmt::format("{} has no type, and there are {}; give one", body.what(), types_.size()));
+    }
+    const std::string name = value == nullptr ? types_[0].type : body.text("type");
+    try {
+      const int type = type_of_name(topology_, name);
+      topology_.types.push_back(type);
+      return type;
+    } catch (const Error& error) {
+      body.fail("type", error.message());
+    }
+  }
+
+  std::vector<TypeParameters> types_;
+  std::vector<PairParameters> pairs_;
+  std::vector<std::optional<double>> charges_;
+  Topology topology_;
+};
+
+void add_body(TableReader& body, ParticleSystem<double>& s, std::unordered_set<std::string>& names,
+              TypedBodies& typed) {
+  body.expect_only({"name", "mass", "x", "v", "a", "e", "inc", "Omega", "omega", "M", "type", "charge"});
   const std::string name = body.text("name", fmt::format("body_{}", s.size() + 1));
   if (const std::string wrong = wrong_name(name); !wrong.empty()) body.fail("name", wrong);
-  const auto mass = body.quantity("mass", "mass");
+  const std::optional<double> of_type = typed.add(body);
+  const auto given = body.quantity("mass", "mass"), mass = given ? given : of_type;
   if (!mass) body.fail(nullptr, "mass", fmt::format("{} has no mass; 0 marks a tracer", body.what()));
-  check_mass(body, name, *mass);
+  if (given) check_mass(body, name, *mass);
   if (!names.insert(name).second) {
     body.fail("name", fmt::format("two bodies are named '{}'; names must differ", name));
   }
@@ -83,50 +158,20 @@ void add_body(TableReader& body, ParticleSystem<double>& s, std::unordered_set<s
   }
 }
 
-/// Reads a table of bodies; if there is none to be read, the scene's line that asks for it is told too.
-ParticleSystem<double> bodies_in(const std::filesystem::path& file, const io::BodiesOptions& options,
-                                 const TableReader& reader) {
-  try {
-    return io::read_bodies(file, options);
-  } catch (const FileError& error) {
-    const int line = reader.line("bodies");
-    if (line <= 0) throw;
-    throw FileError(
-        error.what(),
-        {.file = reader.context().source.file, .line = line, .key = reader.path_of("bodies"), .value = file.string()});
-  }
-}
-
 ParticleSystem<double> from_file(TableReader& reader, const std::filesystem::path& folder, SceneValue& effective) {
-  const std::string name = reader.text("bodies");
-  if (name.empty()) reader.fail("bodies", "bodies = \"\" names no file; give one, such as \"bodies.csv\"");
-  std::filesystem::path file = folder / name;
-  std::error_code none;
-  if (std::filesystem::equivalent(file, reader.context().source.file, none)) {
-    reader.fail("bodies", fmt::format("bodies = \"{}\" is this scene itself; give a table of bodies, such as "
-                                      "\"bodies.csv\"",
-                                      name));
-  }
+  reader.expect_only({"bodies", "bodies_sha256", "frame", "box"});
   io::BodiesOptions options;
   options.units = reader.context().units;
   if (reader.context().G) options.G = gravitation(reader);
-  ParticleSystem<double> s = bodies_in(file, options, reader);
-  const std::string hash = io::sha256(io::read_bytes(file));
-  const std::string expected = reader.text("bodies_sha256", hash);
-  if (expected != hash) {
-    reader.fail("bodies_sha256",
-                fmt::format("'{}' is no longer the file this scene was run with: its hash is {}; take the "
-                            "key out to use the new one",
-                            name, hash));
-  }
-  effective.put("bodies", SceneValue::of(name, reader.line("bodies")));
-  effective.put("bodies_sha256", SceneValue::of(hash, reader.line("bodies")));
-  return s;
+  return particles_in_file(reader, "bodies", folder, "bodies.csv", "a table of bodies", effective,
+                           [&](const std::filesystem::path& file) { return io::read_bodies(file, options); });
 }
 
 ParticleSystem<double> from_tables(TableReader& reader, const std::vector<const SceneValue*>& bodies,
                                    SceneValue& effective) {
+  reader.expect_only({"body", "frame", "box", "type", "pair", "mixing"});
   ParticleSystem<double> s(*reader.context().units);
+  TypedBodies typed(reader, effective);
   std::unordered_set<std::string> names;
   SceneValue::Array list;
   for (const SceneValue* table : bodies) {
@@ -135,12 +180,13 @@ ParticleSystem<double> from_tables(TableReader& reader, const std::vector<const 
     const std::string called = text != nullptr ? *text : fmt::format("body_{}", s.size() + 1);
     TableReader body(reader.context(), *table, fmt::format("body '{}'", called),
                      fmt::format("particles.body.{}", list.size()));
-    add_body(body, s, names);
+    add_body(body, s, names, typed);
     SceneValue entry = *table;
     if (name == nullptr) entry.put("name", SceneValue::of(called));
     list.push_back(std::move(entry));
   }
   effective.put("body", SceneValue::of(std::move(list)));
+  typed.give_to(s, reader);
   return s;
 }
 
@@ -153,6 +199,49 @@ std::vector<Index> sorted_by_position(const ParticleSystem<double>& s) {
     return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
   });
   return order;
+}
+
+/// Whether `type` names a builder; it is a list of tables where types of particles are given.
+bool is_built(TableReader& reader) {
+  const SceneValue* type = reader.find("type");
+  return type != nullptr && type->get<SceneValue::Array>() == nullptr;
+}
+
+/// Particles come from one place. @throws SceneError
+void check_sources(TableReader& reader) {
+  const auto bodies = tables_of(reader, "body");
+  std::vector<std::pair<const char*, const char*>> found;
+  if (reader.has("bodies")) found.emplace_back("bodies", "from a file");
+  if (reader.has("structure")) found.emplace_back("structure", "from a structure");
+  if (is_built(reader)) found.emplace_back("type", "from a builder");
+  if (!bodies.empty()) found.emplace_back("body", "from [[particles.body]]");
+  if (found.size() > 1) {
+    reader.fail(found[0].first,
+                fmt::format("bodies come {} and {}; give one or the other", found[0].second, found[1].second));
+  }
+  if (found.empty()) {
+    reader.fail(nullptr, "bodies",
+                "there are no particles; give bodies = \"FILE.csv\", structure = \"FILE.data\", type = \"lattice\" or "
+                "another builder, or [[particles.body]] tables");
+  }
+}
+
+void read_frame(TableReader& reader, ParticleSystem<double>& s, SceneValue& effective) {
+  const std::string frame = reader.text("frame", "as_given");
+  if (frame != "as_given" && frame != "barycenter") {
+    reader.fail("frame", fmt::format("unknown frame '{}'{}", frame, did_you_mean(frame, {"barycenter", "as_given"})));
+  }
+  if (frame == "barycenter" && s.box().is_periodic()) {
+    reader.fail("frame", "a periodic box has no centre of mass; take frame = \"barycenter\" out");
+  }
+  if (frame == "barycenter") {
+    try {
+      move_to_barycenter(s);
+    } catch (const Error& error) {
+      reader.fail("frame", error.message());
+    }
+  }
+  effective.put("frame", SceneValue::of(frame, reader.line("frame")));
 }
 
 }  // namespace
@@ -170,28 +259,20 @@ std::optional<std::pair<Index, Index>> coincident_bodies(const ParticleSystem<do
 ParticleSystem<double> read_particles(const SceneContext& context, const SceneValue& table,
                                       const std::filesystem::path& folder, SceneValue& effective) {
   TableReader reader(context, table, "[particles]", "particles");
-  reader.expect_only({"bodies", "bodies_sha256", "body", "frame"});
-  const bool file = reader.has("bodies");
-  const auto bodies = tables_of(reader, "body");
-  if (file && !bodies.empty()) {
-    reader.fail("bodies", "bodies come from a file and from [[particles.body]]; give one or the other");
+  if (!is_built(reader)) {
+    reader.expect_only({"bodies", "bodies_sha256", "body", "structure", "structure_sha256", "type", "pair", "mixing",
+                        "box", "special", "file_units", "atom_style", "frame", "temperature", "seed"});
   }
-  if (!file && bodies.empty()) {
-    reader.fail(nullptr, "bodies", "there are no particles; give bodies = \"FILE.csv\", or [[particles.body]] tables");
+  check_sources(reader);
+  if (is_built(reader)) return build_particles(reader, effective);
+  TableReader own(context, table, "[particles]", "particles");
+  ParticleSystem<double> s = reader.has("structure") ? read_structure_particles(own, folder, effective)
+                             : reader.has("bodies")  ? from_file(own, folder, effective)
+                                                     : from_tables(own, tables_of(own, "body"), effective);
+  if (!reader.has("structure")) {
+    if (const auto box = read_box(own, effective)) s.set_box(*box);
   }
-  ParticleSystem<double> s = file ? from_file(reader, folder, effective) : from_tables(reader, bodies, effective);
-  const std::string frame = reader.text("frame", "as_given");
-  if (frame != "as_given" && frame != "barycenter") {
-    reader.fail("frame", fmt::format("unknown frame '{}'{}", frame, did_you_mean(frame, {"barycenter", "as_given"})));
-  }
-  if (frame == "barycenter") {
-    try {
-      move_to_barycenter(s);
-    } catch (const Error& error) {
-      reader.fail("frame", error.message());
-    }
-  }
-  effective.put("frame", SceneValue::of(frame, reader.line("frame")));
+  read_frame(own, s, effective);
   return s;
 }
 

@@ -18,8 +18,8 @@ namespace {
 constexpr std::array<std::string_view, 5> known_tables = {"particles", "hamiltonian", "system", "integrator", "expect"};
 
 /// Keys of one table of which at most one is given.
-constexpr std::array<std::array<std::string_view, 3>, 2> alternatives = {
-    {{"steps", "until", ""}, {"steps", "every", "wall"}}};
+constexpr std::array<std::array<std::string_view, 3>, 3> alternatives = {
+    {{"steps", "until", ""}, {"steps", "every", "wall"}, {"density", "constant", ""}}};
 
 std::vector<std::string> split(std::string_view path) {
   std::vector<std::string> keys(1);

@@ -30,6 +30,7 @@ longest=4096
 case $target in
   scene) seeds+=(tests/scenes/good/*.toml tests/scenes/bad/*.toml) ;;
   csv_bodies) seeds+=(tests/scenes/good/*.csv tests/scenes/bad/*.csv) ;;
+  structure) seeds+=(tests/data/lammps/*.data) ;;
   horizons) seeds+=(tests/data/horizons/*.txt) longest=8192 ;;
   quantity) longest=64 ;;
   checkpoint | checkpoint_content) longest=65536 ;;

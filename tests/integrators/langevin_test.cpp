@@ -72,7 +72,7 @@ Matrix kept_covariance(const Scheme& scheme, double dt, const std::vector<std::u
   constexpr Index n = 5;
   const auto [one, two] = two_steps(scheme, dt, kT, bodies<Quad>(n));
   const auto xi = [&](Index i, int c, std::size_t o) {
-    return Quad(normal_vector(random_key(7), RandomPurpose::thermostat, i, 1, places[o])[c]);
+    return Quad(noise(noise_key(7), i, 1, places[o])[static_cast<std::size_t>(c)]);
   };
   const auto rest = [&, &first = one, &second = two](Index i, int c) {
     return Pair(state_of(second, i, c) - M * state_of(first, i, c));

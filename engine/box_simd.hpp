@@ -1,0 +1,45 @@
+#pragma once
+/// Drifts in a periodic box in lanes: the interface of `box_simd.cpp`, compiled once per SIMD level.
+
+#include "engine/simd.hpp"
+
+#include <cstddef>
+
+namespace noether {
+
+/// One axis of a box.
+struct BoxAxis {
+  double edge;
+  double magic;    ///< 1.5 x 2^52 times the spacing of the grid: adding and subtracting it rounds to the grid
+  double longest;  ///< what it rounds right
+};
+
+struct BoxKernels {
+  /// x -> x + h v, rounded to the grid, for coordinates from `from` on, until it meets one that leaves [0, edge) or
+  /// goes further than the longest step. Returns which one, or `count`.
+  std::ptrdiff_t (*advance)(const BoxAxis& axis, double h, const double* v, double* x, std::ptrdiff_t from,
+                            std::ptrdiff_t count);
+};
+
+namespace base {
+extern const BoxKernels box_kernels;
+}
+#if NOETHER_SIMD_LEVELS
+namespace avx2 {
+extern const BoxKernels box_kernels;
+}
+namespace avx512 {
+extern const BoxKernels box_kernels;
+}
+#endif
+
+/// The kernels of the level in use.
+inline const BoxKernels& box_kernels() {
+#if NOETHER_SIMD_LEVELS
+  return at_simd_level(base::box_kernels, avx2::box_kernels, avx512::box_kernels);
+#else
+  return base::box_kernels;
+#endif
+}
+
+}  // namespace noether

@@ -1,0 +1,119 @@
+#include "engine/cell_grid.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace noether {
+
+namespace {
+
+/// More cells than this for each point are mostly empty, and cost more than they save.
+constexpr double most_cells_per_point = 8;
+/// Points that one cell holds where space is evenly filled; short along x, where runs are cut.
+constexpr double points_per_cell = 4;
+constexpr double width_to_length = 2.5;
+
+struct Interval {
+  double lower = std::numeric_limits<double>::infinity(), upper = -std::numeric_limits<double>::infinity();
+};
+
+Interval extent_of(const double* x, Index count) {
+  Interval all;
+  for (Index i = 0; i < count; ++i) {
+    if (!(std::abs(x[i]) < 1e300)) continue;
+    all.lower = std::min(all.lower, x[i]);
+    all.upper = std::max(all.upper, x[i]);
+  }
+  return all.lower <= all.upper ? all : Interval{0, 0};
+}
+
+}  // namespace
+
+Index CellGrid::Axis::cell(double x) const {
+  const double wanted = number(x);
+  if (occupied.empty()) {
+    return wanted >= static_cast<double>(size) ? size - 1 : wanted > 0 ? static_cast<Index>(wanted) : 0;
+  }
+  const auto found = std::lower_bound(occupied.begin(), occupied.end(), wanted);
+  return found == occupied.end() ? size - 1 : found - occupied.begin();
+}
+
+std::pair<Index, Index> CellGrid::Axis::cells(double from, double to) const {
+  const double first = number(from), last = number(to);
+  if (occupied.empty()) {
+    const double end = static_cast<double>(size);
+    return {static_cast<Index>(std::clamp(first, 0.0, end)), static_cast<Index>(std::clamp(last + 1, 0.0, end))};
+  }
+  return {std::lower_bound(occupied.begin(), occupied.end(), first) - occupied.begin(),
+          std::upper_bound(occupied.begin(), occupied.end(), last) - occupied.begin()};
+}
+
+void CellGrid::lay_axes(const std::array<const double*, 3>& coordinates, Index count, double range) {
+  std::array<double, 3> length{};
+  double volume = 1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Interval all = extent_of(coordinates[k], count);
+    length[k] = std::max(all.upper - all.lower, range);
+    volume *= length[k];
+    axes_[k] = Axis{all.lower, 1, 1, {}};
+  }
+  const double even =
+      std::cbrt(points_per_cell * width_to_length * volume / static_cast<double>(std::max<Index>(count, 1)));
+  const double width = std::clamp(even, range / 4, range);
+  double cells = 1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    Axis& axis = axes_[k];
+    axis.edge = k == 0 ? width / width_to_length : width;
+    cells *= std::floor(length[k] / axis.edge) + 1;
+  }
+  const bool empty = cells > most_cells_per_point * static_cast<double>(count) + 4096;
+  double left = 1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    Axis& axis = axes_[k];
+    if (empty) {
+      axis.occupied.resize(at(count));
+      for (Index i = 0; i < count; ++i) {
+        const double number = axis.number(coordinates[k][i]);
+        axis.occupied[at(i)] = std::isfinite(number) ? number : 0;
+      }
+      std::sort(axis.occupied.begin(), axis.occupied.end());
+      axis.occupied.erase(std::unique(axis.occupied.begin(), axis.occupied.end()), axis.occupied.end());
+      axis.size = static_cast<Index>(axis.occupied.size());
+    } else {
+      axis.size = static_cast<Index>(std::floor(length[k] / axis.edge)) + 1;
+    }
+    left *= static_cast<double>(axis.size);
+  }
+  if (!empty || left <= most_cells_per_point * static_cast<double>(count) + 4096) return;
+  // A thin gas all over: longer cells hold few points too.
+  const double longer = std::cbrt(cells / (static_cast<double>(count) + 4096)) * 1.01;
+  for (std::size_t k = 0; k < 3; ++k) {
+    Axis& axis = axes_[k];
+    axis.occupied.clear();
+    axis.edge = std::min(axis.edge * longer, length[k]);
+    axis.size = static_cast<Index>(std::floor(length[k] / axis.edge)) + 1;
+  }
+}
+
+void CellGrid::sort(const std::array<const double*, 3>& coordinates, Index count, double range) {
+  lay_axes(coordinates, count, range);
+  const Index total = axes_[0].size * axes_[1].size * axes_[2].size;
+  cells_.resize(at(count));
+  start_.assign(at(total + 1), 0);
+  order_.resize(at(count));
+  for (Index i = 0; i < count; ++i) {
+    const Index c =
+        cell(axes_[0].cell(coordinates[0][i]), axes_[1].cell(coordinates[1][i]), axes_[2].cell(coordinates[2][i]));
+    cells_[at(i)] = static_cast<std::int32_t>(c);
+    ++start_[at(c)];
+  }
+  std::int32_t sum = 0;
+  for (auto& start : start_) sum += std::exchange(start, sum);
+  // Each start moves on to the start of the next cell, and back.
+  for (Index i = 0; i < count; ++i) order_[at(start_[at(cells_[at(i)])]++)] = static_cast<std::int32_t>(i);
+  for (Index c = total; c > 0; --c) start_[at(c)] = start_[at(c - 1)];
+  start_[0] = 0;
+}
+
+}  // namespace noether

@@ -1,0 +1,84 @@
+#pragma once
+/// Points sorted into cells, so that those near a place are found without asking all.
+
+#include "engine/column.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace noether {
+
+/// Sorts points into cells and gives the runs of sorted points that can be near a box.
+///
+/// Cells follow each other along x, back and forth from row to row and from layer to layer, so that points which follow
+/// each other are near each other. Layers without a point are left out where space is mostly empty.
+/// @cost O(n) time and memory, however far the points are from each other
+class CellGrid {
+ public:
+  /// A box along the axes.
+  struct Bounds {
+    std::array<double, 3> lower, upper;
+  };
+
+  /// Sorts `count` points for searches up to `range`. Coordinates that are no numbers are somewhere.
+  void sort(const std::array<const double*, 3>& coordinates, Index count, double range);
+
+  /// Place k of the sorted points is held by point `order()[k]`.
+  const std::vector<std::int32_t>& order() const { return order_; }
+  /// Longest edge of the cells [length].
+  double edge() const { return std::max({axes_[0].edge, axes_[1].edge, axes_[2].edge}); }
+
+  /// Calls `run(begin, end)` for runs of sorted places that hold all points up to `range` from a box.
+  template <class Run> void near(const Bounds& box, double range, const Run& run) const {
+    const auto [from_z, to_z] = axes_[2].cells(box.lower[2] - range, box.upper[2] + range);
+    for (Index iz = from_z; iz < to_z; ++iz) {
+      const double dz = axes_[2].distance(iz, box.lower[2], box.upper[2]);
+      const double yz2 = range * range - dz * dz;
+      if (!(yz2 >= 0)) continue;
+      const double reach_y = std::sqrt(yz2);
+      const auto [from_y, to_y] = axes_[1].cells(box.lower[1] - reach_y, box.upper[1] + reach_y);
+      for (Index iy = from_y; iy < to_y; ++iy) {
+        const double dy = axes_[1].distance(iy, box.lower[1], box.upper[1]);
+        const double x2 = yz2 - dy * dy;
+        if (!(x2 >= 0)) continue;
+        const double reach_x = std::sqrt(x2);
+        const auto [from_x, to_x] = axes_[0].cells(box.lower[0] - reach_x, box.upper[0] + reach_x);
+        if (from_x >= to_x) continue;
+        const Index a = cell(from_x, iy, iz), b = cell(to_x - 1, iy, iz);
+        run(Index{start_[at(std::min(a, b))]}, Index{start_[at(std::max(a, b) + 1)]});
+      }
+    }
+  }
+
+ private:
+  /// The cells along one axis: of one length, or only those that hold points.
+  struct Axis {
+    double lower = 0, edge = 1;
+    Index size = 1;
+    std::vector<double> occupied;  ///< numbers of the cells that are there; empty: all are
+
+    double number(double x) const { return std::floor((x - lower) / edge); }
+    Index cell(double x) const;
+    std::pair<Index, Index> cells(double from, double to) const;
+    /// Least distance from an interval to a cell [length].
+    double distance(Index i, double from, double to) const {
+      const double begin = lower + edge * (occupied.empty() ? static_cast<double>(i) : occupied[at(i)]);
+      return std::max({0.0, begin - to, from - (begin + edge)});
+    }
+  };
+
+  static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+  Index cell(Index ix, Index iy, Index iz) const {
+    const Index y = iz % 2 == 0 ? iy : axes_[1].size - 1 - iy;
+    const Index row = iz * axes_[1].size + y;
+    return row * axes_[0].size + (row % 2 == 0 ? ix : axes_[0].size - 1 - ix);
+  }
+  void lay_axes(const std::array<const double*, 3>& coordinates, Index count, double range);
+
+  std::array<Axis, 3> axes_;
+  std::vector<std::int32_t> cells_, start_, order_;
+};
+
+}  // namespace noether

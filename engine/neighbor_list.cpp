@@ -1,0 +1,413 @@
+#include "engine/neighbor_list.hpp"
+
+#include "engine/neighbor_search_simd.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cstring>
+#include <limits>
+#include <set>
+
+namespace noether {
+
+namespace {
+
+/// The first skin, and the bounds of those chosen by cost, as parts of the range.
+constexpr double first_skin = 0.12, narrowest_skin = 0.02, widest_skin = 0.6;
+/// What a search costs, in force evaluations over the list.
+constexpr double search_cost = 2.5;
+constexpr Index most_images = 10'000;
+/// A record far from all others, whose squared distances are numbers.
+constexpr double nowhere = 1e140;
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+/// What one thread needs to find the neighbors of a group.
+struct NeighborList::Scratch {
+  AlignedVector<float> x, y, z;
+  AlignedVector<std::int32_t> number;
+  std::array<AlignedVector<std::int32_t>, group_size> found;
+  std::array<std::ptrdiff_t, group_size> count{};
+
+  void make_room(Index points) {
+    const std::size_t size = at(points + 32);
+    if (x.size() >= size) return;
+    for (auto* column : {&x, &y, &z}) column->resize(size + size / 2);
+    number.resize(size + size / 2);
+    for (auto& list : found) list.resize(size + size / 2);
+  }
+};
+
+void NeighborList::update(const ParticleSystem<double>& s) {
+  if (version_ == s.version()) return;  // another force has asked for the same positions
+  version_ = s.version();
+  ++statistics_.updates;
+  ++age_;
+  bool search_now = !is_fresh(s);
+  if (!search_now) {
+    const double moved2 = take_positions(s);
+    search_now = options_.renewal > 0 ? age_ > options_.renewal : !(2 * std::sqrt(moved2) <= skin_);
+  }
+  if (search_now) {
+    const auto begin = std::chrono::steady_clock::now();
+    search(s);
+    statistics_.search_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  }
+  if (options_.check) verify(s);
+}
+
+bool NeighborList::is_fresh(const ParticleSystem<double>& s) const {
+  return statistics_.searches > 0 && box_ == s.box() && topology_ == s.shared_topology() && ids_ == s.ids();
+}
+
+/// Moves all records, and returns the square of the longest way that a particle has gone since the search.
+double NeighborList::take_positions(const ParticleSystem<double>& s) {
+  const VectorColumn<double>& positions = s.positions();
+  const Vec3<double> edges = box_.edges(), half = edges / 2, middle = middle_;
+  const double *x = positions.component(0), *y = positions.component(1), *z = positions.component(2);
+  // A particle that has crossed the box since stays where its neighbors expect it.
+  const auto crossed = [](double d, double edge, double limit) { return d > limit ? edge : d < -limit ? -edge : 0.0; };
+  // Doubles that are not negative compare as their bits do; what is no number is above all others.
+  std::atomic<std::uint64_t> longest{0};
+  for_blocks(s.size(), [&](Index begin, Index end) {
+    double block = 0;
+    for (Index i = begin; i < end; ++i) {
+      double px = x[i] - middle[0], py = y[i] - middle[1], pz = z[i] - middle[2];
+      double dx = px - start_[0][at(i)], dy = py - start_[1][at(i)], dz = pz - start_[2][at(i)];
+      if (edges[0] > 0) {
+        const double cx = crossed(dx, edges[0], half[0]), cy = crossed(dy, edges[1], half[1]),
+                     cz = crossed(dz, edges[2], half[2]);
+        px -= cx, py -= cy, pz -= cz;
+        dx -= cx, dy -= cy, dz -= cz;
+      }
+      const double moved2 = dx * dx + dy * dy + dz * dz;
+      if (!(moved2 <= block)) block = moved2;
+      double* record = records_.data() + 4 * record_of_[at(i)];
+      record[0] = px;
+      record[1] = py;
+      record[2] = pz;
+    }
+    std::uint64_t bits = std::bit_cast<std::uint64_t>(block) & ~(std::uint64_t{1} << 63U), known = longest.load();
+    while (bits > known && !longest.compare_exchange_weak(known, bits)) {
+    }
+  });
+  for_blocks(static_cast<Index>(ghosts_.size()), [&](Index begin, Index end) {
+    for (Index k = begin; k < end; ++k) {
+      const Ghost& ghost = ghosts_[at(k)];
+      const Vec3<double>& shift = shifts_[at(ghost.shift)];
+      const double* from = records_.data() + 4 * ghost.of;
+      double* to = records_.data() + 4 * ghost.record;
+      for (int c = 0; c < 3; ++c) to[c] = from[c] + shift[c];
+    }
+  });
+  return std::bit_cast<double>(longest.load());
+}
+
+/// The skin that costs least if particles go on moving as fast: cost per update ~ (range + skin)^3 (1 + search_cost /
+/// life) with life ~ skin.
+void NeighborList::choose_skin() {
+  if (options_.skin > 0) {
+    skin_ = options_.skin;
+    return;
+  }
+  if (skin_ == 0 || age_ <= 1) {
+    skin_ = std::max(skin_, first_skin * range_);
+    return;
+  }
+  const double b = search_cost * skin_ / static_cast<double>(age_);
+  // 3 (1 + b/s) = (range + s) b / s^2
+  const double best = (-b + std::sqrt(b * b + 3 * b * range_)) / 3;
+  skin_ = std::clamp((skin_ + best) / 2, narrowest_skin * range_, widest_skin * range_);
+}
+
+void NeighborList::search(const ParticleSystem<double>& s) {
+  choose_skin();
+  const double reach = range_ + skin_;
+  box_ = s.box();
+  if (ids_ != s.ids()) ids_ = s.ids();
+  if (topology_ != s.shared_topology() || statistics_.searches == 0) {
+    topology_ = s.shared_topology();
+    take_exclusions(s);
+  }
+  place_points(s, reach);
+  grid_.sort({points_[0].data(), points_[1].data(), points_[2].data()}, static_cast<Index>(owner_.size()), reach);
+  lay_out(s);
+  form_groups();
+  while (!find_all(reach)) {
+  }
+  ++statistics_.searches;
+  statistics_.skin = skin_;
+  statistics_.pairs = s.size() > 0 ? static_cast<double>(*used_) / static_cast<double>(s.size()) : 0;
+  age_ = 0;
+}
+
+/// The particles, and their images up to `reach` from the box.
+void NeighborList::place_points(const ParticleSystem<double>& s, double reach) {
+  const Index n = s.size();
+  NOETHER_EXPECTS(n < std::numeric_limits<std::int32_t>::max() / 64, "a neighbor list is for less than 2^25 particles");
+  for (int k = 0; k < 3; ++k) {
+    if (box_.is_periodic())
+      middle_[k] = box_.on_grid(k, std::floor(box_.edges()[k] / box_.spacing(k) / 2) * box_.spacing(k));
+    auto& start = start_[at(k)];
+    start.resize(at(n));
+    const double* x = s.positions().component(k);
+    for (Index i = 0; i < n; ++i) start[at(i)] = x[i] - middle_[k];
+    points_[at(k)].assign(start.begin(), start.end());
+  }
+  owner_.resize(at(n));
+  for (Index i = 0; i < n; ++i) owner_[at(i)] = static_cast<std::int32_t>(i);
+  shift_.assign(at(n), 0);
+  shifts_.assign(1, Vec3<double>::Zero());
+  if (!box_.is_periodic()) return;
+  double images = 1;
+  for (int k = 0; k < 3; ++k) images *= 1 + 2 * std::ceil(reach / box_.edges()[k]);
+  if (images > static_cast<double>(most_images)) {
+    throw Error(
+        fmt::format("the box of {} x {} x {} is so small beside the range {} of the pair forces that each "
+                    "particle would see {:.3g} images; repeat the cell, or take a shorter cutoff",
+                    box_.edges()[0], box_.edges()[1], box_.edges()[2], range_, images));
+  }
+  // Images along x, then of all these along y, then along z: each particle is asked for few of them.
+  std::array<int, 3> most{};
+  for (int k = 0; k < 3; ++k) most[at(k)] = static_cast<int>(std::ceil(reach / box_.edges()[k]));
+  number_shifts(most);
+  std::int32_t stride = 1;
+  std::fill(shift_.begin(), shift_.end(), static_cast<std::int32_t>(shifts_.size() / 2));
+  for (int k = 0; k < 3; ++k) {
+    add_images(k, most[at(k)], stride, reach);
+    stride *= 2 * most[at(k)] + 1;
+  }
+}
+
+/// Shifts by whole edges, those along x first; the one by nothing in the middle.
+void NeighborList::number_shifts(const std::array<int, 3>& most) {
+  shifts_.clear();
+  const Vec3<double>& edges = box_.edges();
+  for (int c = -most[2]; c <= most[2]; ++c) {
+    for (int b = -most[1]; b <= most[1]; ++b) {
+      for (int a = -most[0]; a <= most[0]; ++a) shifts_.emplace_back(a * edges[0], b * edges[1], c * edges[2]);
+    }
+  }
+}
+
+void NeighborList::add_images(int k, int most, std::int32_t stride, double reach) {
+  const double lower = -middle_[k] - reach, upper = box_.edges()[k] - middle_[k] + reach;
+  const std::size_t count = owner_.size();
+  for (int a = -most; a <= most; ++a) {
+    if (a == 0) continue;
+    const double by = a * box_.edges()[k];
+    for (std::size_t p = 0; p < count; ++p) {
+      const double x = points_[at(k)][p] + by;
+      if (x < lower || x > upper) continue;
+      for (int c = 0; c < 3; ++c) points_[at(c)].push_back(c == k ? x : points_[at(c)][p]);
+      owner_.push_back(owner_[p]);
+      shift_.push_back(shift_[p] + a * stride);
+    }
+  }
+}
+
+void NeighborList::set_type(Index record, std::int64_t type) {
+  std::memcpy(&records_[at(4 * record + 3)], &type, sizeof type);
+}
+
+/// Records in the order of the cells; behind them one that is nowhere.
+void NeighborList::lay_out(const ParticleSystem<double>& s) {
+  const Index n = s.size();
+  const auto& order = grid_.order();
+  const auto count = static_cast<Index>(order.size());
+  const Topology* topology = s.topology();
+  records_.resize(at(4 * (count + 1)));
+  record_of_.resize(at(n));
+  source_.resize(at(count));
+  ghosts_.clear();
+  for (auto& column : sorted_) column.resize(at(count + 16));
+  for (Index r = 0; r < count; ++r) {
+    const std::int32_t point = order[at(r)], owner = owner_[at(point)];
+    for (int k = 0; k < 3; ++k) {
+      const double x = points_[at(k)][at(point)];
+      sorted_[at(k)][at(r)] = x;
+      records_[at(4 * r + k)] = x;
+    }
+    set_type(r, topology != nullptr ? topology->type(owner) : 0);
+    source_[at(r)] = owner;
+    if (point < n) {
+      record_of_[at(owner)] = static_cast<std::int32_t>(r);
+    } else {
+      ghosts_.push_back({static_cast<std::int32_t>(r), -1, shift_[at(point)]});
+    }
+  }
+  for (Ghost& ghost : ghosts_) ghost.of = record_of_[at(source_[at(ghost.record)])];
+  for (int k = 0; k < 3; ++k) records_[at(4 * count + k)] = nowhere;
+  set_type(count, 0);
+}
+
+/// Groups of particles that follow each other, cut where the next one is far away.
+void NeighborList::form_groups() {
+  particles_.clear();
+  lanes_.clear();
+  const auto count = static_cast<std::int32_t>(source_.size());
+  const double far = std::max(4 * grid_.edge(), 2 * range_);
+  std::int32_t first = 0;
+  const auto fill = [&] {  // a lane without a particle stands where the first one does, and has no neighbors
+    while (particles_.size() % group_size != 0) {
+      particles_.push_back(-1);
+      lanes_.push_back(4 * first);
+    }
+  };
+  for (std::int32_t r = 0; r < count; ++r) {
+    const std::int32_t i = source_[at(r)];
+    if (record_of_[at(i)] != r) continue;  // an image
+    if (particles_.size() % group_size != 0) {
+      bool near = true;
+      for (const auto& x : sorted_) near = near && std::abs(x[at(r)] - x[at(first)]) <= far;
+      if (!near) fill();
+    }
+    if (particles_.size() % group_size == 0) first = r;
+    particles_.push_back(i);
+    lanes_.push_back(4 * r);
+  }
+  fill();
+  row_begin_.assign(particles_.size() / group_size + 1, Rows{});
+}
+
+/// For each particle those whose pair force with it is excluded or scaled.
+void NeighborList::take_exclusions(const ParticleSystem<double>& s) {
+  excluded_begin_.clear();
+  excluded_.clear();
+  if (!topology_ || (topology_->exclusions.empty() && topology_->scaled_pairs.empty())) return;
+  std::vector<std::pair<std::int32_t, std::int32_t>> both;
+  const auto add = [&](const Topology::Pair& pair) {
+    both.emplace_back(pair.first, pair.second);
+    both.emplace_back(pair.second, pair.first);
+  };
+  for (const auto& pair : topology_->exclusions) add(pair);
+  for (const auto& scaled : topology_->scaled_pairs) add(scaled.pair);
+  std::sort(both.begin(), both.end());
+  excluded_begin_.assign(at(s.size() + 1), 0);
+  for (const auto& [i, j] : both) {
+    ++excluded_begin_[at(i + 1)];
+    excluded_.push_back(j);
+  }
+  for (Index i = 0; i < s.size(); ++i) excluded_begin_[at(i + 1)] += excluded_begin_[at(i)];
+}
+
+/// Room for so many entries, behind those of other threads; where they stand makes no difference.
+std::int64_t NeighborList::reserve(std::int64_t entries) {
+  return used_->fetch_add(entries, std::memory_order_relaxed);
+}
+
+/// False if there was not room for all; then there is.
+bool NeighborList::find_all(double reach) {
+  used_->store(0);
+  for_blocks(static_cast<Index>(particles_.size()), [&](Index begin, Index end) {
+    thread_local Scratch scratch;
+    for (Index g = begin / group_size; g < end / group_size; ++g) find(g, reach, scratch);
+  });
+  const std::size_t needed = at(used_->load());
+  if (needed <= entries_.size()) return true;
+  entries_ = {};
+  entries_.resize(needed + needed / 16 + 64);
+  return false;
+}
+
+void NeighborList::find(Index group, double reach, Scratch& scratch) {
+  const NeighborSearchKernels& kernels = neighbor_search_kernels();
+  std::array<std::int32_t, group_size> own{};  // their records
+  for (Index lane = 0; lane < group_size; ++lane) own[at(lane)] = lanes_[at(group_size * group + lane)] / 4;
+  const std::int32_t* particles = particles_.data() + group_size * group;
+  const auto nobody = static_cast<std::int32_t>(source_.size());
+  CellGrid::Bounds bounds;
+  SearchBox box{};
+  double extent = reach;
+  for (int k = 0; k < 3; ++k) {
+    double lower = std::numeric_limits<double>::infinity(), upper = -lower;
+    for (Index lane = 0; lane < group_size; ++lane) {
+      lower = std::min(lower, sorted_[at(k)][at(own[at(lane)])]);
+      upper = std::max(upper, sorted_[at(k)][at(own[at(lane)])]);
+    }
+    bounds.lower[at(k)] = lower;
+    bounds.upper[at(k)] = upper;
+    box.middle[k] = lower + (upper - lower) / 2;
+    box.half[k] = static_cast<float>((upper - lower) / 2 * (1 + 0x1p-20));
+    extent = std::max(extent, reach + (upper - lower));
+  }
+  // Distances are compared in single precision: relative to the group they are wrong by a few units of 2^-24.
+  const double limit = reach + 8 * 0x1p-24 * extent;
+  const auto limit2 = static_cast<float>(limit * limit * (1 + 0x1p-20));
+  scratch.make_room(0);
+  NearPoints points{scratch.x.data(), scratch.y.data(), scratch.z.data(), scratch.number.data(), 0};
+  grid_.near(bounds, reach * (1 + 1e-9), [&](Index from, Index to) {
+    if (from == to) return;
+    scratch.make_room(points.count + (to - from));
+    points = {scratch.x.data(), scratch.y.data(), scratch.z.data(), scratch.number.data(), points.count};
+    kernels.gather(sorted_[0].data(), sorted_[1].data(), sorted_[2].data(), from, to, box, limit2, points);
+  });
+  std::ptrdiff_t rows = 0;
+  for (Index lane = 0; lane < group_size; ++lane) {
+    scratch.count[at(lane)] = 0;
+    if (particles[lane] < 0) continue;
+    const auto relative = [&](int k) { return static_cast<float>(sorted_[at(k)][at(own[at(lane)])] - box.middle[k]); };
+    std::int32_t* found = scratch.found[at(lane)].data();
+    std::ptrdiff_t count = kernels.select(points, relative(0), relative(1), relative(2), limit2, own[at(lane)], found);
+    if (!excluded_.empty()) {
+      const std::int32_t i = source_[at(own[at(lane)])];
+      const auto from = excluded_.begin() + excluded_begin_[at(i)], to = excluded_.begin() + excluded_begin_[at(i + 1)];
+      count = std::remove_if(found, found + count,
+                             [&](std::int32_t r) { return std::find(from, to, source_[at(r)]) != to; }) -
+              found;
+    }
+    scratch.count[at(lane)] = count;
+    rows = std::max(rows, count);
+  }
+  const std::ptrdiff_t room = (rows + group_size - 1) / group_size * group_size;
+  Rows& place = row_begin_[at(group)];
+  place = {reserve(group_size * room), static_cast<std::int32_t>(rows)};
+  if (place.begin + group_size * room > static_cast<std::int64_t>(entries_.size())) return;
+  const std::int32_t* lists[group_size];
+  for (std::size_t lane = 0; lane < group_size; ++lane) {
+    std::int32_t* found = scratch.found[lane].data();
+    std::fill(found + scratch.count[lane], found + room, nobody);
+    lists[lane] = found;
+  }
+  kernels.turn(lists, rows, entries_.data() + place.begin);
+}
+
+void NeighborList::verify(const ParticleSystem<double>& s) const {
+  const auto count = static_cast<std::int32_t>(source_.size());
+  const auto distance2 = [&](std::int32_t a, std::int32_t b) {
+    double sum = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double d = records_[at(4 * a + k)] - records_[at(4 * b + k)];
+      sum += d * d;
+    }
+    return sum;
+  };
+  for (Index g = 0; g < groups(); ++g) {
+    const Group one = group(g);
+    for (Index lane = 0; lane < group_size; ++lane) {
+      const std::int32_t i = one.particles[lane], own = one.records[lane] / 4;
+      if (i < 0) continue;
+      std::multiset<std::int32_t> listed;
+      for (Index row = 0; row < one.rows; ++row) listed.insert(one.entries[group_size * row + lane] / 4);
+      for (std::int32_t other = 0; other < count; ++other) {
+        if (other == own || !(distance2(own, other) < range_ * range_)) continue;
+        const std::int32_t j = source_[at(other)];
+        const bool excluded = !excluded_.empty() && std::find(excluded_.begin() + excluded_begin_[at(i)],
+                                                              excluded_.begin() + excluded_begin_[at(i + 1)],
+                                                              j) != excluded_.begin() + excluded_begin_[at(i + 1)];
+        const std::size_t wanted = excluded ? 0 : 1;
+        if (listed.count(other) == wanted) continue;
+        throw LogicError(
+            fmt::format("the neighbor list holds the pair of particles {} and {}, {} apart, {} times instead of {}",
+                        s.ids()[at(i)], s.ids()[at(j)], std::sqrt(distance2(own, other)), listed.count(other), wanted));
+      }
+    }
+  }
+}
+
+}  // namespace noether

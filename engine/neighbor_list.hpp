@@ -1,0 +1,140 @@
+#pragma once
+/// Who is near whom: one list for all pair forces of a system.
+
+#include "engine/cell_grid.hpp"
+#include "engine/particle_system.hpp"
+
+#include <atomic>
+#include <memory>
+#include <vector>
+
+namespace noether {
+
+struct NeighborOptions {
+  double skin = 0;     ///< pairs this much further apart than the range are listed too [length]; 0: chosen by cost
+  Index renewal = 0;   ///< updates between two searches, whatever moved: pairs may be missed; 0: when somebody moved
+  bool check = false;  ///< compare with all pairs at every update, at a cost of O(n^2)
+};
+
+/// What a list has done so far.
+struct NeighborStatistics {
+  std::int64_t updates = 0, searches = 0;
+  double pairs = 0;           ///< listed for each particle, by the last search
+  double skin = 0;            ///< of the last search [length]
+  double search_seconds = 0;  ///< in all searches
+};
+
+/// For every particle all others up to a distance, found anew only when somebody has moved by half of the skin.
+///
+/// Particles that follow each other in space stand in groups of eight, one for each lane; a group has rows of eight
+/// entries, one neighbor for each of its particles. An entry tells where a *record* begins: x, y, z and the type, 32
+/// bytes. In a periodic box the images of particles near its faces, or of all particles again and again
+/// where the box is small, have records of their own, so that distances need no wrapping. Every pair stands in the
+/// lists of both.
+///
+/// Pairs that the topology excludes or scales are not listed. What is summed exactly over the entries depends neither
+/// on their order nor on when they were found, how the particles were sorted, or how wide the skin is.
+/// @cost O(n) for a search and for an update; about 450 bytes for each particle in a Lennard-Jones liquid
+/// @source Verlet1967, Allen2017
+class NeighborList {
+ public:
+  static constexpr Index group_size = 8;
+
+  explicit NeighborList(double range = 0, NeighborOptions options = {}) : range_(range), options_(options) {}
+  /// A copy looks for neighbors itself.
+  NeighborList(const NeighborList& other) : NeighborList(other.range_, other.options_) {}
+  NeighborList& operator=(const NeighborList& other) { return *this = NeighborList(other); }
+  NeighborList(NeighborList&&) = default;
+  NeighborList& operator=(NeighborList&&) = default;
+  ~NeighborList() = default;
+
+  double range() const { return range_; }
+
+  /// Takes the positions of the particles, which in a periodic box are wrapped; searches if somebody has moved too far.
+  /// @throws Error  if the box is so small that a particle would have more than 10 000 images
+  void update(const ParticleSystem<double>& s);
+
+  /// Eight particles and their neighbors. A lane without a particle has -1 in `particles`.
+  struct Group {
+    const std::int32_t* particles;  ///< their indices
+    const std::int32_t* records;    ///< where their own records begin, in doubles
+    const std::int32_t* entries;    ///< shape (rows, 8): the same of neighbors, or of nobody, who is far from all
+    Index rows;
+  };
+  Index groups() const { return static_cast<Index>(row_begin_.size()) - 1; }
+  Group group(Index g) const {
+    const auto from = static_cast<std::size_t>(g);
+    return {particles_.data() + group_size * g, lanes_.data() + group_size * g,
+            entries_.data() + row_begin_[from].begin, row_begin_[from].rows};
+  }
+  /// Records, shape (records, 4): x, y, z [length] relative to the middle of the box, and in the
+  /// place of a fourth number the type as std::int64_t.
+  const double* records() const { return records_.data(); }
+
+  const NeighborStatistics& statistics() const { return statistics_; }
+
+  /// Compares the list with all pairs.
+  /// @throws LogicError  naming the first pair in range that is missing, or that stands there twice
+  /// @cost O(n^2)
+  void verify(const ParticleSystem<double>& s) const;
+
+ private:
+  struct Rows {
+    std::int64_t begin = 0;
+    std::int32_t rows = 0;
+  };
+  struct Ghost {
+    std::int32_t record, of, shift;
+  };
+  struct Scratch;
+
+  bool is_fresh(const ParticleSystem<double>& s) const;
+  double take_positions(const ParticleSystem<double>& s);
+  void search(const ParticleSystem<double>& s);
+  void choose_skin();
+  void place_points(const ParticleSystem<double>& s, double reach);
+  void number_shifts(const std::array<int, 3>& most);
+  void add_images(int k, int most, std::int32_t stride, double reach);
+  void lay_out(const ParticleSystem<double>& s);
+  void set_type(Index record, std::int64_t type);
+  void form_groups();
+  void take_exclusions(const ParticleSystem<double>& s);
+  bool find_all(double reach);
+  void find(Index group, double reach, Scratch& scratch);
+  std::int64_t reserve(std::int64_t entries);
+
+  double range_;
+  NeighborOptions options_;
+  double skin_ = 0;
+  NeighborStatistics statistics_;
+  std::uint64_t version_ = 0;  ///< of the positions it was brought up to
+  std::int64_t age_ = 0;       ///< updates since the last search
+
+  // What the last search was made for.
+  Box box_;
+  Vec3<double> middle_ = Vec3<double>::Zero();  ///< of the box, on its grid
+  std::vector<std::int64_t> ids_;
+  std::shared_ptr<const Topology> topology_;
+  std::array<AlignedVector<double>, 3> start_;  ///< positions then, relative to the middle, by particle
+
+  // Records, and where they come from.
+  AlignedVector<double> records_;
+  std::vector<std::int32_t> record_of_;  ///< by particle
+  std::vector<Ghost> ghosts_;
+  std::vector<Vec3<double>> shifts_;
+
+  // Groups and their rows.
+  std::vector<std::int32_t> particles_, lanes_;
+  std::vector<Rows> row_begin_;
+  AlignedVector<std::int32_t> entries_;
+  std::unique_ptr<std::atomic<std::int64_t>> used_ = std::make_unique<std::atomic<std::int64_t>>(0);
+
+  // For the search alone.
+  CellGrid grid_;
+  std::array<AlignedVector<double>, 3> points_, sorted_;
+  std::vector<std::int32_t> owner_, shift_,
+      source_;  ///< of a point: its particle and its shift; of a record: its particle
+  std::vector<std::int32_t> excluded_begin_, excluded_;
+};
+
+}  // namespace noether

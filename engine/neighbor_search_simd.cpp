@@ -1,0 +1,114 @@
+#include "engine/neighbor_search_simd.hpp"
+
+#include <hwy/highway.h>
+
+namespace noether::NOETHER_SIMD_LEVEL {
+
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = hn::ScalableTag<float>;
+using Numbers = hn::Rebind<std::int32_t, Floats>;
+using HalfFloats = hn::Rebind<float, hn::ScalableTag<double>>;  // as many as there are doubles in a register
+using HalfNumbers = hn::Rebind<std::int32_t, HalfFloats>;
+constexpr std::ptrdiff_t lanes = hn::MaxLanes(Floats());
+constexpr std::ptrdiff_t half_lanes = hn::MaxLanes(HalfFloats());
+constexpr float far_away = 3e18F;  // its square is a number
+
+/// `points` of a column relative to the middle, and the squares of their distances from the box along it added to `r2`.
+HWY_INLINE hn::Vec<HalfFloats> relative(const double* x, double middle, float half, hn::Vec<HalfFloats>& r2) {
+  const hn::ScalableTag<double> d;
+  const HalfFloats f;
+  const auto at = hn::DemoteTo(f, hn::Sub(hn::LoadU(d, x), hn::Set(d, middle)));
+  const auto outside = hn::ZeroIfNegative(hn::Sub(hn::Abs(at), hn::Set(f, half)));
+  r2 = hn::MulAdd(outside, outside, r2);
+  return at;
+}
+
+void gather(const double* x, const double* y, const double* z, std::ptrdiff_t from, std::ptrdiff_t to,
+            const SearchBox& box, float limit, NearPoints& points) {
+  const HalfFloats f;
+  const HalfNumbers i;
+  const auto most = hn::Set(f, limit);
+  const auto end = hn::Set(i, static_cast<std::int32_t>(to));
+  std::ptrdiff_t count = points.count;
+  for (std::ptrdiff_t k = from; k < to; k += half_lanes) {
+    auto r2 = hn::Zero(f);
+    const auto px = relative(x + k, box.middle[0], box.half[0], r2);
+    const auto py = relative(y + k, box.middle[1], box.half[1], r2);
+    const auto pz = relative(z + k, box.middle[2], box.half[2], r2);
+    const auto number = hn::Iota(i, static_cast<std::int32_t>(k));
+    const auto near = hn::And(hn::RebindMask(i, hn::Le(r2, most)), hn::Lt(number, end));
+    const auto near_f = hn::RebindMask(f, near);
+    hn::StoreU(hn::Compress(px, near_f), f, points.x + count);
+    hn::StoreU(hn::Compress(py, near_f), f, points.y + count);
+    hn::StoreU(hn::Compress(pz, near_f), f, points.z + count);
+    hn::StoreU(hn::Compress(number, near), i, points.number + count);
+    count += static_cast<std::ptrdiff_t>(hn::CountTrue(i, near));
+  }
+  points.count = count;
+}
+
+std::ptrdiff_t select(const NearPoints& points, float x, float y, float z, float limit, std::int32_t self,
+                      std::int32_t* out) {
+  const Floats d;
+  const Numbers i;
+  const auto x0 = hn::Set(d, x), y0 = hn::Set(d, y), z0 = hn::Set(d, z), most = hn::Set(d, limit);
+  const auto own = hn::Set(i, self);
+  hn::StoreU(hn::Set(d, far_away), d, points.x + points.count);
+  std::int32_t* end = out;
+  for (std::ptrdiff_t k = 0; k < points.count; k += lanes) {
+    const auto dx = hn::Sub(hn::LoadU(d, points.x + k), x0);
+    const auto dy = hn::Sub(hn::LoadU(d, points.y + k), y0);
+    const auto dz = hn::Sub(hn::LoadU(d, points.z + k), z0);
+    const auto r2 = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
+    const auto number = hn::LoadU(i, points.number + k);
+    const auto near = hn::And(hn::RebindMask(i, hn::Le(r2, most)), hn::Ne(number, own));
+    hn::StoreU(hn::Compress(number, near), i, end);
+    end += hn::CountTrue(i, near);
+  }
+  return end - out;
+}
+
+void turn(const std::int32_t* const (&lists)[8], std::ptrdiff_t rows, std::int32_t* out) {
+  for (std::ptrdiff_t row = 0; row < rows; row += 8) {
+    std::int32_t* to = out + 8 * row;
+#if HWY_TARGET == HWY_SCALAR
+    for (int lane = 0; lane < 8; ++lane) {
+      for (int k = 0; k < 8; ++k) to[8 * k + lane] = 4 * lists[lane][row + k];
+    }
+#else
+    const hn::CappedTag<std::int32_t, 8> d;
+    const hn::Repartition<std::int64_t, decltype(d)> wide;
+    const auto load = [&](int lane) { return hn::ShiftLeft<2>(hn::LoadU(d, lists[lane] + row)); };
+    const auto wide_low = [&](auto a, auto b) {
+      return hn::BitCast(d, hn::InterleaveLower(wide, hn::BitCast(wide, a), hn::BitCast(wide, b)));
+    };
+    const auto wide_high = [&](auto a, auto b) {
+      return hn::BitCast(d, hn::InterleaveUpper(wide, hn::BitCast(wide, a), hn::BitCast(wide, b)));
+    };
+    hn::Vec<decltype(d)> four[2][4];  // rows k and k + 4 of four lists
+    for (int half = 0; half < 2; ++half) {
+      const auto a = load(4 * half), b = load(4 * half + 1), c = load(4 * half + 2), e = load(4 * half + 3);
+      const auto ab = hn::InterleaveLower(d, a, b), ce = hn::InterleaveLower(d, c, e);
+      const auto ab_high = hn::InterleaveUpper(d, a, b), ce_high = hn::InterleaveUpper(d, c, e);
+      four[half][0] = wide_low(ab, ce);
+      four[half][1] = wide_high(ab, ce);
+      four[half][2] = wide_low(ab_high, ce_high);
+      four[half][3] = wide_high(ab_high, ce_high);
+    }
+    for (int k = 0; k < 4; ++k) {
+      hn::StoreU(hn::ConcatLowerLower(d, four[1][k], four[0][k]), d, to + 8 * k);
+      hn::StoreU(hn::ConcatUpperUpper(d, four[1][k], four[0][k]), d, to + 8 * (k + 4));
+    }
+#endif
+  }
+}
+
+}  // namespace
+
+extern const NeighborSearchKernels neighbor_search_kernels;
+const NeighborSearchKernels neighbor_search_kernels{gather, select, turn};
+
+}  // namespace noether::NOETHER_SIMD_LEVEL

@@ -1,0 +1,231 @@
+#include "forces/lennard_jones.hpp"
+
+#include "engine/exact_sum.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <limits>
+#include <numbers>
+
+namespace noether {
+
+namespace {
+
+constexpr double default_switch = 0.9;  // parts of the cutoff
+/// Units below the scale of the strongest attraction, 24 epsilon / sigma.
+constexpr int unit_bits = 47;
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+double power_of_two_above(double x) { return x > 0 ? std::ldexp(1.0, std::ilogb(x) + 1) : 1.0; }
+
+LennardJonesStyle style_of(Cutoff cutoff) {
+  switch (cutoff) {
+    case Cutoff::shifted_force:
+      return LennardJonesStyle::shifted_force;
+    case Cutoff::switch_c2:
+      return LennardJonesStyle::switch_c2;
+    case Cutoff::switch_c4:
+      return LennardJonesStyle::switch_c4;
+    default:
+      return LennardJonesStyle::shifted;
+  }
+}
+
+/// The row of a pair of types.
+LennardJonesRow row_of(const PairKind& kind, double cutoff, Cutoff cutoff_style, double switch_from) {
+  const double s3 = kind.sigma * kind.sigma * kind.sigma, s6 = s3 * s3, s12 = s6 * s6;
+  LennardJonesRow row;
+  row.range2 = kind.epsilon == 0 ? 0 : cutoff * cutoff;
+  row.force12 = 48 * kind.epsilon * s12;
+  row.force6 = 24 * kind.epsilon * s6;
+  row.energy12 = 4 * kind.epsilon * s12;
+  row.energy6 = 4 * kind.epsilon * s6;
+  const double c2 = cutoff * cutoff;
+  if (cutoff_style == Cutoff::switch_c2 || cutoff_style == Cutoff::switch_c4) {
+    row.style = {switch_from * switch_from, 1 / (c2 - switch_from * switch_from)};
+    return row;
+  }
+  if (cutoff_style == Cutoff::plain) return row;
+  const auto end = detail::lennard_jones_terms(c2, row, LennardJonesStyle::shifted);
+  row.style[0] = end.energy;
+  if (cutoff_style == Cutoff::shifted_force) {
+    row.style[1] = end.force * cutoff;
+    row.style[0] += row.style[1] * cutoff;
+  }
+  return row;
+}
+
+/// Sums of a block that depend on no order.
+struct Totals {
+  ExactSum energy;
+  std::array<ExactSum, 6> virial;
+  Totals& operator+=(const Totals& other) {
+    energy += other.energy;
+    for (std::size_t k = 0; k < 6; ++k) virial[k] += other.virial[k];
+    return *this;
+  }
+};
+
+/// The lowest index that any thread names.
+class Lowest {
+ public:
+  void offer(Index i) {
+    Index known = lowest_.load();
+    while (i < known && !lowest_.compare_exchange_weak(known, i)) {
+    }
+  }
+  Index value() const { return lowest_.load(); }
+
+ private:
+  std::atomic<Index> lowest_ = std::numeric_limits<Index>::max();
+};
+
+std::string called(const ParticleSystem<double>& s, Index i) {
+  return s.name(i).empty() ? fmt::format("{}", s.ids()[at(i)]) : fmt::format("'{}'", s.name(i));
+}
+
+/// Names particle `i` and the one nearest to it. @cost O(n)
+Failure overlap_of(const ParticleSystem<double>& s, Index i) {
+  Index nearest = i;
+  double least = std::numeric_limits<double>::infinity();
+  for (Index j = 0; j < s.size(); ++j) {
+    if (j == i || (s.topology() != nullptr && s.topology()->is_special(i, j))) continue;
+    const double r2 = norm2(s.box().minimum_image(Vec3<double>(s.positions()[i] - s.positions()[j])));
+    if (r2 < least) least = r2, nearest = j;
+  }
+  return {.kind = Outcome::Kind::overlap,
+          .particle = i,
+          .quantity = "distance",
+          .message = fmt::format("particles {} and {} are {:.3g} apart, too close for their Lennard-Jones force",
+                                 called(s, i), called(s, nearest), std::sqrt(least))};
+}
+
+}  // namespace
+
+void LennardJonesForce::check() const {
+  if (!(cutoff > 0 && cutoff < 1e100)) refuse_field("cutoff", cutoff, "is no cutoff; a length above 0 is expected");
+  if (switch_from && !(*switch_from > 0 && *switch_from < cutoff))
+    refuse_field("switch_from", *switch_from, fmt::format("does not lie between 0 and the cutoff {}", cutoff));
+  if (epsilon.has_value() != sigma.has_value())
+    refuse_field(epsilon ? "epsilon" : "sigma", epsilon ? *epsilon : *sigma,
+                 "stands alone; give epsilon and sigma, or none");
+  if (epsilon && !(*epsilon >= 0)) refuse_field("epsilon", *epsilon, "is no depth; 0 or more is expected");
+  if (sigma && !(*sigma > 0)) refuse_field("sigma", *sigma, "is no length above 0");
+  if (tail && cutoff_style != Cutoff::plain)
+    refuse_field("tail", 1, "belongs to a plain cutoff; other ends change the energy within it too");
+}
+
+void LennardJonesForce::check_types(const Topology* topology, const Box& box) const {
+  check();
+  if (tail && !box.is_periodic())
+    throw Error("lennard_jones: a tail is the mean of an endless liquid; it needs a periodic box");
+  if (epsilon) return;
+  if (topology == nullptr || topology->pair_kinds.empty()) {
+    throw Error(
+        "lennard_jones: the particles have no Lennard-Jones parameters; give epsilon and sigma here, or types "
+        "that have them");
+  }
+  for (int a = 0; a < topology->type_count(); ++a) static_cast<void>(topology->pair_kind(a, a));
+}
+
+const detail::LennardJonesTable& LennardJonesForce::table_for(const std::shared_ptr<const Topology>& topology,
+                                                              Index n) const {
+  const std::array<double, 7> key = {cutoff,
+                                     static_cast<double>(cutoff_style),
+                                     switch_from.value_or(-1),
+                                     tail ? 1.0 : 0.0,
+                                     epsilon.value_or(-1),
+                                     sigma.value_or(-1),
+                                     static_cast<double>(n)};
+  if (table && table->key == key && table->topology == topology) return *table;
+  auto made = std::make_shared<detail::LennardJonesTable>();
+  made->key = key;
+  made->topology = topology;
+  made->style = style_of(cutoff_style);
+  made->types = topology ? topology->type_count() : 1;
+  std::vector<double> members(static_cast<std::size_t>(made->types), 0.0);
+  for (Index i = 0; i < n && tail; ++i) ++members[at(topology ? topology->type(i) : 0)];
+  double strongest = 0;
+  for (int a = 0; a < made->types; ++a) {
+    for (int b = 0; b < made->types; ++b) {
+      const PairKind kind = epsilon ? PairKind{*epsilon, *sigma} : topology->pair_kind(a, b);
+      made->rows.push_back(row_of(kind, cutoff, cutoff_style, switch_from.value_or(default_switch * cutoff)));
+      if (kind.epsilon > 0) strongest = std::max(strongest, 24 * kind.epsilon / kind.sigma);
+      // 2 pi N_a N_b / V times the integrals of r^2 U and r^3 F beyond the cutoff
+      const double s6 = std::pow(kind.sigma, 6), c3 = cutoff * cutoff * cutoff;
+      const double repulsion = 4 * kind.epsilon * s6 * s6 / (9 * c3 * c3 * c3),
+                   attraction = 4 * kind.epsilon * s6 / (3 * c3);
+      const double pairs = 2 * std::numbers::pi * members[at(a)] * members[at(b)];
+      made->tail_energy += pairs * (repulsion - attraction);
+      made->tail_virial += pairs * (12 * repulsion - 6 * attraction);
+    }
+  }
+  made->force_unit = std::ldexp(power_of_two_above(strongest), -unit_bits);
+  made->energy_unit = made->force_unit * power_of_two_above(cutoff);
+  for (LennardJonesRow& row : made->rows) {
+    row.close2 = std::pow(row.force12 / (0x1p49 * made->force_unit), 2.0 / 13.0);
+  }
+  table = made;
+  return *table;
+}
+
+void LennardJonesForce::add_lanes(ForceSink<double>& out, const ParticleSystem<double>& s) const {
+  const detail::LennardJonesTable& known = table_for(s.shared_topology(), s.size());
+  std::optional<NeighborList> own;
+  NeighborList& list = out.neighbors() != nullptr ? *out.neighbors() : own.emplace(cutoff);
+  list.update(s);
+  const bool sums = out.wants_energy() || out.wants_virial();
+  const LennardJonesKernels& kernels = lennard_jones_kernels();
+  const auto style = static_cast<std::size_t>(known.style), many = static_cast<std::size_t>(known.types > 1);
+  const SumPairs quick = kernels.quick[style][many][sums ? 1 : 0], careful = kernels.careful[style][many][sums ? 1 : 0];
+  const PairField field{list.records(), known.rows.data(), known.types, known.force_unit, known.energy_unit};
+  double* a[3] = {out.accelerations().component(0), out.accelerations().component(1), out.accelerations().component(2)};
+  const double* mass = s.masses().data();
+  Lowest overlap;
+  const auto block = [&](Index begin, Index end) {
+    Totals totals;
+    PairSums found;
+    for (Index g = begin / NeighborList::group_size; g < end / NeighborList::group_size; ++g) {
+      const NeighborList::Group one = list.group(g);
+      quick(field, {one.records, one.entries, one.rows}, found);
+      if (found.close) {
+        careful(field, {one.records, one.entries, one.rows}, found);
+        for (Index lane = 0; lane < NeighborList::group_size; ++lane) {
+          if (found.strong[lane]) overlap.offer(one.particles[lane]);
+        }
+      }
+      for (Index lane = 0; lane < NeighborList::group_size; ++lane) {
+        const std::int32_t i = one.particles[lane];
+        if (i < 0) continue;
+        if (mass[i] != 0) {
+          const double scale = known.force_unit / mass[i];
+          for (int k = 0; k < 3; ++k) a[k][i] += static_cast<double>(found.force[k][lane]) * scale;
+        }
+        if (!sums) continue;
+        totals.energy += found.energy[lane];
+        for (std::size_t k = 0; k < 6; ++k) totals.virial[k] += found.virial[k][lane];
+      }
+    }
+    return totals;
+  };
+  const Index lanes = list.groups() * NeighborList::group_size;
+  if (sums) {
+    const Totals totals = reduce(lanes, Totals{}, block);
+    out.energy(totals.energy.times(known.energy_unit) / 2);
+    Mat3<double> w;
+    const auto virial = [&](std::size_t k) { return totals.virial[k].times(known.energy_unit) / 2; };
+    w << virial(0), virial(3), virial(4), virial(3), virial(1), virial(5), virial(4), virial(5), virial(2);
+    out.virial(w);
+  } else {
+    for_blocks(lanes, [&](Index begin, Index end) { block(begin, end); });
+  }
+  if (overlap.value() < s.size()) out.fail(overlap_of(s, overlap.value()));
+  add_scaled(out, s);
+  add_tail(out, s);
+}
+
+}  // namespace noether

@@ -1,0 +1,130 @@
+#pragma once
+/// Eight particles and their neighbors in lanes of doubles: loading pairs, and summing what they do in whole units. For
+/// `*_simd.cpp` alone.
+
+#include <hwy/highway.h>
+
+#include <cmath>
+#include <cstdint>
+
+namespace noether::NOETHER_SIMD_LEVEL {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Lanes = hn::CappedTag<double, 8>;
+using Whole = hn::Rebind<std::int64_t, Lanes>;
+using Vector = hn::Vec<Lanes>;
+using WholeVector = hn::Vec<Whole>;
+constexpr std::ptrdiff_t lanes = hn::MaxLanes(Lanes());
+
+/// The lesser of two numbers.
+HWY_INLINE Vector lesser(Vector a, Vector b) {
+#if HWY_TARGET == HWY_SCALAR
+  return hn::IfThenElse(hn::Lt(b, a), b, a);  // hn::Min is a function of the standard library there
+#else
+  return hn::Min(a, b);
+#endif
+}
+
+/// x, y and z of as many records as there are lanes.
+struct Points {
+  Vector x, y, z;
+};
+
+/// Records are loaded whole, 32 bytes each, and turned: gathers of single numbers take longer.
+HWY_INLINE Points load_points(const double* records, const std::int32_t* offsets) {
+  const Lanes d;
+  const auto record = [&](int k) { return records + static_cast<std::ptrdiff_t>(offsets[k]); };
+#if HWY_TARGET == HWY_SCALAR
+  const double* one = record(0);
+  return {hn::Set(d, one[0]), hn::Set(d, one[1]), hn::Set(d, one[2])};
+#elif HWY_TARGET <= HWY_AVX3
+  const hn::Half<Lanes> half;
+  const auto two = [&](int k) {  // records k and k + 4
+    return hn::Combine(d, hn::LoadU(half, record(k + 4)), hn::LoadU(half, record(k)));
+  };
+  const Vector a = two(0), b = two(1), c = two(2), e = two(3);
+  const Vector xz_low = hn::InterleaveLower(d, a, b), xz_high = hn::InterleaveLower(d, c, e);
+  const Vector y_low = hn::InterleaveUpper(d, a, b), y_high = hn::InterleaveUpper(d, c, e);
+  return {hn::OddEvenBlocks(hn::SwapAdjacentBlocks(xz_high), xz_low),
+          hn::OddEvenBlocks(hn::SwapAdjacentBlocks(y_high), y_low),
+          hn::OddEvenBlocks(xz_high, hn::SwapAdjacentBlocks(xz_low))};
+#else
+  const Vector a = hn::LoadU(d, record(0)), b = hn::LoadU(d, record(1));
+  const Vector c = hn::LoadU(d, record(2)), e = hn::LoadU(d, record(3));
+  const Vector xz_low = hn::InterleaveLower(d, a, b), xz_high = hn::InterleaveLower(d, c, e);
+  const Vector y_low = hn::InterleaveUpper(d, a, b), y_high = hn::InterleaveUpper(d, c, e);
+  return {hn::ConcatLowerLower(d, xz_high, xz_low), hn::ConcatLowerLower(d, y_high, y_low),
+          hn::ConcatUpperUpper(d, xz_high, xz_low)};
+#endif
+}
+
+/// From the particles in the lanes to their neighbors.
+struct Distances {
+  Vector dx, dy, dz, r2;
+};
+
+HWY_INLINE Distances distances(const Points& own, const Points& other) {
+  const Vector dx = hn::Sub(own.x, other.x), dy = hn::Sub(own.y, other.y), dz = hn::Sub(own.z, other.z);
+  return {dx, dy, dz, hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)))};
+}
+
+/// Times a unit: the last bit of numbers near it is one unit.
+constexpr double magic_number = 6755399441055744.0;  // 1.5 x 2^52
+
+/// A sum in whole units of products, each rounded to a unit: added to `magic`, 1.5 x 2^52 units, the last bit of a
+/// double is one unit, and its bits are a whole number. Right for products below 2^51 units.
+struct QuickSum {
+  WholeVector bits = hn::Zero(Whole());
+
+  HWY_INLINE void add(Vector a, Vector b, Vector magic) {
+    bits = hn::Add(bits, hn::BitCast(Whole(), hn::MulAdd(a, b, magic)));
+  }
+  /// @param added  how many products there were
+  HWY_INLINE void store(double magic, std::ptrdiff_t added, std::int64_t* out) const {
+    const Whole i;
+    const auto offset = hn::BitCast(i, hn::Set(Lanes(), magic));
+    std::int64_t one[lanes];
+    hn::StoreU(offset, i, one);
+    const auto all = static_cast<std::int64_t>(static_cast<std::uint64_t>(one[0]) * static_cast<std::uint64_t>(added));
+    hn::StoreU(hn::Sub(bits, hn::Set(i, all)), i, out);
+  }
+};
+
+/// The same sum for products up to 2^61 units; a stronger one is noted, and only its direction counts.
+struct CarefulSum {
+  static constexpr std::int64_t strongest = std::int64_t{1} << 57U;
+
+  std::int64_t sum[lanes] = {};
+  bool strong[lanes] = {};  ///< lanes that had a stronger one
+
+  void add(Vector a, Vector b, Vector magic) {
+    const Lanes d;
+    const Whole i;
+    double product[lanes], offset[lanes];
+    std::int64_t bits[lanes], zero[lanes];
+    hn::StoreU(hn::Mul(a, b), d, product);
+    hn::StoreU(magic, d, offset);
+    hn::StoreU(hn::BitCast(i, hn::MulAdd(a, b, magic)), i, bits);
+    hn::StoreU(hn::BitCast(i, magic), i, zero);
+    for (std::ptrdiff_t k = 0; k < lanes; ++k) {
+      const double unit = offset[k] / magic_number;
+      const double size = product[k] < 0 ? -product[k] : product[k];
+      if (size < 0x1p50 * unit) {
+        sum[k] += bits[k] - zero[k];
+      } else if (size < 0x1p61 * unit) {
+        sum[k] += std::llrint(product[k] / unit);
+      } else {
+        strong[k] = true;
+        sum[k] += product[k] > 0 ? strongest : product[k] < 0 ? -strongest : 0;
+      }
+    }
+  }
+  void store(double /*magic*/, std::ptrdiff_t /*added*/, std::int64_t* out) const {
+    for (std::ptrdiff_t k = 0; k < lanes; ++k) out[k] = sum[k];
+  }
+};
+
+}  // namespace
+}  // namespace noether::NOETHER_SIMD_LEVEL

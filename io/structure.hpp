@@ -1,0 +1,53 @@
+#pragma once
+/// Structures: particles with their box, types and bonds, from LAMMPS data files, extended XYZ and GROMACS files.
+
+#include "engine/particle_system.hpp"
+#include "engine/type_parameters.hpp"
+#include "engine/units.hpp"
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace noether::io {
+
+/// What a structure file does not say itself.
+struct StructureOptions {
+  const UnitSystem* units = &unit_system("molecular");  ///< the unit system of the particles
+  /// "lj" (in the reduced system), "real" or "metal" (in the molecular one): the units of a LAMMPS data file that does
+  /// not say them in its first line, as LAMMPS itself does; extended XYZ may be in "lj" too. Empty: what the file says.
+  std::string file_units = {};
+  std::string atom_style = {};  ///< of a LAMMPS data file without it: atomic, charge, bond, angle, molecular or full
+  /// Factors of the pair forces of particles one, two and three bonds apart.
+  std::array<double, 3> special = {0, 0, 0};
+  std::optional<Mixing> mixing = {};       ///< default: geometric for LAMMPS data, as there, and else lorentz_berthelot
+  std::vector<TypeParameters> types = {};  ///< given in addition to those of the file, or instead
+  std::vector<PairParameters> pairs = {};
+  /// For a file that has none; `Box::open()` takes the box of a file away.
+  std::optional<Box> box = {};
+};
+
+/// Reads particles, and with them box, types, charges, molecules and bonds; the format follows from the extension.
+///
+/// `.data`, `.lmp`: LAMMPS data, orthogonal boxes. Sections Masses, Atoms, Velocities, Bonds, Angles, Dihedrals,
+/// Impropers and the Coeffs of these and of pairs (lj/cut and what is lj/cut with charges; bonds harmonic, morse, fene;
+/// angles harmonic, cosine; dihedrals charmm with weight 0, harmonic, multi/harmonic, opls; impropers harmonic, cvff).
+/// The style of a section stands behind its name, `Bond Coeffs # harmonic`. A cutoff behind epsilon and sigma of a pair
+/// is read and left aside: the cutoff is the force's; all of them must agree. Particles stand in the order of their ids
+/// and keep them; types are named "1", "2", ...; the lower corner of the box becomes the origin. Coefficients become
+/// those of noether's kinds (forces/bonded.hpp).
+///
+/// `.xyz`, `.extxyz`: one frame of XYZ, extended or plain; positions in angstrom, `velo` or `vel` in angstrom/fs,
+/// `momenta` in sqrt(eV u), as ASE writes them, `charge` or `initial_charges` in e, `mass` or `masses` in u; other
+/// properties are passed over. Types are the species; an element that is given no mass has its standard atomic weight.
+///
+/// `.gro`: one frame; types are atom names, molecules are residues; masses come from `types`.
+/// @throws FileError if it cannot be read or is no text; SceneError for what is wrong in it, with file and line; Error
+///   with a key for options that do not fit it
+/// @cost O(bytes)
+/// @source Codata2018, Meija2016
+ParticleSystem<double> read_structure(const std::filesystem::path& file, const StructureOptions& options = {});
+
+}  // namespace noether::io

@@ -1,0 +1,279 @@
+#include "scene/builders.hpp"
+
+#include "engine/random.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <numeric>
+
+namespace noether {
+
+namespace {
+
+/// Streams of a seed: what is drawn for one purpose does not depend on another.
+enum Stream : std::uint32_t { velocity_stream = 1, vacancy_stream, displacement_stream, walk_stream };
+
+constexpr std::int64_t most_built = 100'000'000;
+
+using Site = Vec3<double>;
+
+/// Sites of a cell, in its edges.
+std::vector<Site> sites_of(LatticeKind kind) {
+  if (kind == LatticeKind::simple_cubic) return {Site(0, 0, 0)};
+  if (kind == LatticeKind::body_centered) return {Site(0, 0, 0), Site(0.5, 0.5, 0.5)};
+  return {Site(0, 0, 0), Site(0, 0.5, 0.5), Site(0.5, 0, 0.5), Site(0.5, 0.5, 0)};
+}
+
+/// All sites, cell by cell, in edges of a cell.
+std::vector<Site> all_sites(LatticeKind kind, const std::vector<std::int64_t>& cells) {
+  const std::vector<Site> basis = sites_of(kind);
+  std::vector<Site> sites;
+  for (std::int64_t i = 0; i < cells[0]; ++i) {
+    for (std::int64_t j = 0; j < cells[1]; ++j) {
+      for (std::int64_t k = 0; k < cells[2]; ++k) {
+        const Site corner(static_cast<double>(i), static_cast<double>(j), static_cast<double>(k));
+        for (const Site& site : basis) sites.emplace_back(corner + site);
+      }
+    }
+  }
+  return sites;
+}
+
+void check_above_zero(std::string_view key, double value, const char* what) {
+  if (value > 0 && std::isfinite(value)) return;
+  refuse_field(key, value, fmt::format("is no {}; a number above 0 is expected", what));
+}
+
+void check_count(std::string_view key, std::int64_t value, std::int64_t least) {
+  if (value >= least && value <= most_built) return;
+  refuse_field(key, fmt::format("{}", value), fmt::format("is not from {} to {}", least, most_built));
+}
+
+void check_temperature(const std::optional<double>& temperature) {
+  if (temperature && !(*temperature >= 0)) {
+    refuse_field("temperature", *temperature, "is no temperature; 0 or more is expected");
+  }
+}
+
+void check_lennard_jones(const std::optional<double>& epsilon, const std::optional<double>& sigma) {
+  if (epsilon.has_value() != sigma.has_value()) {
+    const char *given = epsilon ? "epsilon" : "sigma", *missing = epsilon ? "sigma" : "epsilon";
+    refuse_field(given, epsilon ? *epsilon : *sigma, fmt::format("has no {} beside it; give both or none", missing));
+  }
+  if (epsilon && !(*epsilon >= 0)) refuse_field("epsilon", *epsilon, "is negative; 0 or more is expected");
+  if (sigma && !(*sigma >= 0)) refuse_field("sigma", *sigma, "is negative; 0 or more is expected");
+}
+
+/// Particles at rest; ids and names count from 1, as in files of structures.
+ParticleSystem<double> particles_at(const std::vector<Site>& positions, double mass, const Box& box,
+                                    const UnitSystem& units) {
+  ParticleSystem<double> s(units);
+  std::vector<std::int64_t> ids(positions.size());
+  std::iota(ids.begin(), ids.end(), 1);
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    s.add(fmt::format("atom_{}", ids[i]), mass, positions[i], Vec3<double>::Zero());
+  }
+  s.trim();
+  s.restore_ids(ids);
+  s.set_box(box);
+  return s;
+}
+
+Topology one_type(Index n, const std::optional<double>& epsilon, const std::optional<double>& sigma) {
+  Topology topology;
+  topology.type_names = {"1"};
+  topology.types.assign(static_cast<std::size_t>(n), 0);
+  if (epsilon) topology.pair_kinds = {{*epsilon, *sigma}};
+  return topology;
+}
+
+Box cube(double edge) { return Box::periodic(Vec3<double>(edge, edge, edge)); }
+
+/// A vector of length 1 in any direction.
+Vec3<double> direction(Philox& random) {
+  const auto bits = random.next();
+  const double z = 2 * open_uniform(bits[0], bits[1]) - 1, r = std::sqrt(1 - z * z);
+  const auto [cosine, sine] = detail::turn_by_series(open_uniform(bits[2], bits[3]));
+  return Vec3<double>(r * cosine, r * sine, z);
+}
+
+/// A whole number below `count` [count below 2^32].
+std::size_t lot(Philox& random, std::size_t count) {
+  return static_cast<std::size_t>((std::uint64_t{random.next()[0]} * count) >> 32U);
+}
+
+/// Moves the centre of mass to rest; returns twice the kinetic energy that is left.
+double take_off_drift(ParticleSystem<double>& s) {
+  Vec3<double> momentum = Vec3<double>::Zero();
+  double total = 0, twice = 0;
+  const auto& masses = std::as_const(s).masses();
+  for (Index i = 0; i < s.size(); ++i) {
+    total += masses[i];
+    momentum += masses[i] * std::as_const(s).velocities()[i];
+  }
+  const Vec3<double> drift = momentum / total;
+  for (Index i = 0; i < s.size(); ++i) {
+    if (!(masses[i] > 0)) continue;
+    const Vec3<double> v = std::as_const(s).velocities()[i] - drift;
+    s.velocities().set(i, v);
+    twice += masses[i] * v.squaredNorm();
+  }
+  return twice;
+}
+
+void warm(ParticleSystem<double>& s, const std::optional<double>& temperature, std::int64_t seed) {
+  if (temperature) set_temperature(s, *temperature, static_cast<std::uint64_t>(seed));
+}
+
+}  // namespace
+
+void set_temperature(ParticleSystem<double>& s, double temperature, std::uint64_t seed) {
+  check_temperature(temperature);
+  const Philox random(seed, velocity_stream);
+  const auto& masses = std::as_const(s).masses();
+  Index massive = 0;
+  for (Index i = 0; i < s.size(); ++i) {
+    const auto place = 2 * static_cast<std::uint64_t>(i);
+    const auto [a, b] = normal_pair(random.at(place));
+    const double c = normal_pair(random.at(place + 1))[0];
+    const bool heavy = masses[i] > 0;
+    massive += heavy ? 1 : 0;
+    s.velocities().set(
+        i, heavy ? Vec3<double>(Vec3<double>(a, b, c) / std::sqrt(masses[i])) : Vec3<double>(Vec3<double>::Zero()));
+  }
+  if (massive < 2) {
+    if (temperature > 0) refuse_field("temperature", temperature, "is for two particles with mass, or more");
+    s.velocities().set_zero();
+    return;
+  }
+  const double twice = take_off_drift(s);
+  s.scale_velocities(std::sqrt(static_cast<double>(3 * massive - 3) * s.units().k_B * temperature / twice));
+  take_off_drift(s);  // what scaling has left by rounding
+}
+
+void Lattice::check() const {
+  const std::string shown = fmt::format("[{}]", fmt::join(cells, ", "));
+  if (cells.size() != 3) refuse_field("cells", shown, "is no list of three; cells along x, y and z are expected");
+  double count = static_cast<double>(sites_of(lattice).size());
+  for (const std::int64_t n : cells) {
+    if (n < 1) refuse_field("cells", shown, "holds a number below 1");
+    count *= static_cast<double>(n);
+  }
+  if (count > static_cast<double>(most_built)) {
+    refuse_field("cells", shown, fmt::format("are {:.3g} particles; at most {} are expected", count, most_built));
+  }
+  if (density && constant) refuse_field("constant", *constant, "stands beside a density; give one of them");
+  if (!density && !constant) {
+    throw Error("there is neither a density nor a constant; give one of them", {.key = "density"});
+  }
+  if (density) check_above_zero("density", *density, "density");
+  if (constant) check_above_zero("constant", *constant, "length");
+  check_above_zero("mass", mass, "mass");
+  check_lennard_jones(epsilon, sigma);
+  check_temperature(temperature);
+}
+
+ParticleSystem<double> Lattice::build(const UnitSystem& units) const {
+  check();
+  const double edge = constant ? *constant : std::cbrt(static_cast<double>(sites_of(lattice).size()) * mass / *density);
+  std::vector<Site> sites = all_sites(lattice, cells);
+  for (Site& site : sites) site *= edge;
+  const Vec3<double> counts(static_cast<double>(cells[0]), static_cast<double>(cells[1]),
+                            static_cast<double>(cells[2]));
+  ParticleSystem<double> s = particles_at(sites, mass, Box::periodic(counts * edge), units);
+  s.set_topology(std::make_shared<const Topology>(one_type(s.size(), epsilon, sigma)));
+  warm(s, temperature, seed);
+  return s;
+}
+
+void Liquid::check() const {
+  check_count("particles", particles, 1);
+  check_above_zero("density", density, "density");
+  check_above_zero("mass", mass, "mass");
+  if (!(displacement >= 0 && displacement < 0.5)) {
+    refuse_field("displacement", displacement, "is not from 0 to below 0.5; particles could meet");
+  }
+  check_lennard_jones(epsilon, sigma);
+  check_temperature(temperature);
+}
+
+ParticleSystem<double> Liquid::build(const UnitSystem& units) const {
+  check();
+  const auto wanted = static_cast<std::size_t>(particles);
+  std::int64_t cells = 1;
+  while (4 * cells * cells * cells < particles) ++cells;
+  std::vector<Site> sites = all_sites(LatticeKind::face_centered, {cells, cells, cells});
+  Philox vacancies(static_cast<std::uint64_t>(seed), vacancy_stream);
+  while (sites.size() > wanted) {
+    sites[lot(vacancies, sites.size())] = sites.back();
+    sites.pop_back();
+  }
+  const double edge = std::cbrt(static_cast<double>(particles) * mass / density);
+  const double cell = edge / static_cast<double>(cells), radius = displacement * cell / std::sqrt(2.0);
+  Philox displacements(static_cast<std::uint64_t>(seed), displacement_stream);
+  for (Site& site : sites) {
+    const double distance = radius * std::cbrt(displacements.uniform());
+    site = site * cell + distance * direction(displacements);
+  }
+  ParticleSystem<double> s = particles_at(sites, mass, cube(edge), units);
+  s.set_topology(std::make_shared<const Topology>(one_type(s.size(), epsilon, sigma)));
+  warm(s, temperature, seed);
+  return s;
+}
+
+void PolymerChains::check() const {
+  check_count("chains", chains, 1);
+  check_count("beads", beads, 1);
+  if (chains > most_built / beads) {
+    refuse_field("chains", fmt::format("{}", chains),
+                 fmt::format("of {} beads are more than {} particles", beads, most_built));
+  }
+  check_above_zero("density", density, "density");
+  check_above_zero("mass", mass, "mass");
+  if (!(bond_length >= 0.6 && bond_length < 1.5)) {
+    refuse_field("bond_length", bond_length, "is not from 0.6 to below 1.5, where a bond of FENE breaks");
+  }
+  check_above_zero("epsilon", epsilon, "energy");
+  check_above_zero("sigma", sigma, "length");
+  if (!(bending >= 0)) refuse_field("bending", bending, "is negative; 0 or more is expected");
+  check_temperature(temperature);
+}
+
+ParticleSystem<double> PolymerChains::build(const UnitSystem& units) const {
+  check();
+  constexpr double least = 1.02;  // of a bead and the next but one [sigma]
+  const double edge = std::cbrt(static_cast<double>(chains * beads) * mass / density);
+  std::vector<Site> positions;
+  Topology topology = one_type(static_cast<Index>(chains * beads), epsilon, sigma);
+  Philox random(static_cast<std::uint64_t>(seed), walk_stream);
+  for (std::int64_t chain = 0; chain < chains; ++chain) {
+    random.set_place(static_cast<std::uint64_t>(chain) << 32U);  // a chain does not depend on those before
+    const double x = random.uniform(), y = random.uniform(), z = random.uniform();
+    Site at = edge * Site(x, y, z);
+    Vec3<double> before = Vec3<double>::Zero();
+    for (std::int64_t bead = 0; bead < beads; ++bead) {
+      const auto index = static_cast<Index>(positions.size());
+      if (bead > 0) {
+        Vec3<double> bond = bond_length * direction(random);
+        while (bead > 1 && (before + bond).squaredNorm() < least * least) bond = bond_length * direction(random);
+        at += sigma * bond;
+        before = bond;
+        topology.bonds.push_back({{index - 1, index}, 0});
+      }
+      if (bead > 1 && bending > 0) topology.angles.push_back({{index - 2, index - 1, index}, 0});
+      positions.push_back(at);
+      topology.molecules.push_back(chain + 1);
+    }
+  }
+  topology.bond_kinds = {{"fene", {30 * epsilon / (sigma * sigma), 1.5 * sigma, epsilon, sigma}}};
+  if (bending > 0) topology.angle_kinds = {{"cosine", {bending}}};
+  topology.scale_by_bonds(static_cast<Index>(positions.size()), {0, 1, 1});
+  ParticleSystem<double> s = particles_at(positions, mass, cube(edge), units);
+  s.set_topology(std::make_shared<const Topology>(std::move(topology)));
+  warm(s, temperature, seed);
+  return s;
+}
+
+}  // namespace noether

@@ -1,0 +1,168 @@
+#include "scene/particle_keys.hpp"
+
+#include "engine/suggest.hpp"
+#include "io/digest.hpp"
+#include "io/files.hpp"
+#include "scene/builders.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+namespace noether {
+
+namespace {
+
+/// Reads a file; if there is none to be read, the scene's line that asks for it is told too.
+ParticleSystem<double> told_of_line(const TableReader& reader, const std::string& key,
+                                    const std::filesystem::path& file,
+                                    const std::function<ParticleSystem<double>(const std::filesystem::path&)>& read) {
+  try {
+    return read(file);
+  } catch (const FileError& error) {
+    const int line = reader.line(key);
+    if (line <= 0) throw;
+    throw FileError(
+        error.what(),
+        {.file = reader.context().source.file, .line = line, .key = reader.path_of(key), .value = file.string()});
+  }
+}
+
+/// The name of a type: a text, or its number.
+std::string type_name(TableReader& table, std::string_view key, const SceneValue& value) {
+  if (const auto* number = value.get<std::int64_t>()) return fmt::format("{}", *number);
+  const std::string* text = value.get<std::string>();
+  if (text == nullptr) table.wrong_kind(value, key, "the name of a type");
+  return *text;
+}
+
+std::vector<const SceneValue*> tables_and_keep(TableReader& reader, const std::string& key, SceneValue& effective) {
+  const auto tables = tables_of(reader, key);
+  if (!tables.empty()) effective.put(key, *reader.find(key));
+  return tables;
+}
+
+}  // namespace
+
+ParticleSystem<double> particles_in_file(
+    TableReader& reader, const std::string& key, const std::filesystem::path& folder, const std::string& example,
+    const std::string& what, SceneValue& effective,
+    const std::function<ParticleSystem<double>(const std::filesystem::path&)>& read) {
+  const std::string name = reader.text(key), hash_key = key + "_sha256";
+  if (name.empty()) reader.fail(key, fmt::format("{} = \"\" names no file; give one, such as \"{}\"", key, example));
+  const std::filesystem::path file = folder / name;
+  std::error_code none;
+  if (std::filesystem::equivalent(file, reader.context().source.file, none)) {
+    reader.fail(key,
+                fmt::format("{} = \"{}\" is this scene itself; give {}, such as \"{}\"", key, name, what, example));
+  }
+  ParticleSystem<double> s = told_of_line(reader, key, file, read);
+  const std::string hash = io::sha256(io::read_bytes(file));
+  if (reader.text(hash_key, hash) != hash) {
+    reader.fail(hash_key, fmt::format("'{}' is no longer the file this scene was run with: its hash is {}; take the "
+                                      "key out to use the new one",
+                                      name, hash));
+  }
+  effective.put(key, SceneValue::of(name, reader.line(key)));
+  effective.put(hash_key, SceneValue::of(hash, reader.line(key)));
+  return s;
+}
+
+std::optional<Box> read_box(TableReader& reader, SceneValue& effective) {
+  const SceneValue* value = reader.find("box");
+  if (value == nullptr) return {};
+  effective.put("box", *value);
+  if (const std::string* text = value->get<std::string>()) {
+    if (*text == "open") return Box::open();
+    reader.fail("box", fmt::format("box = \"{}\" is not understood; three lengths are expected, or \"open\"", *text));
+  }
+  const auto edges = reader.vector("box", "length");
+  try {
+    return Box::periodic(Vec3<double>((*edges)[0], (*edges)[1], (*edges)[2]));
+  } catch (const Error& error) {
+    reader.fail("box", error.message());
+  }
+}
+
+std::optional<Mixing> read_mixing(TableReader& reader, SceneValue& effective) {
+  const SceneValue* value = reader.find("mixing");
+  if (value == nullptr) return {};
+  effective.put("mixing", *value);
+  const std::string text = reader.text("mixing");
+  if (text == "geometric") return Mixing::geometric;
+  if (text == "lorentz_berthelot") return Mixing::lorentz_berthelot;
+  reader.fail("mixing",
+              fmt::format("unknown mixing '{}'{}", text, did_you_mean(text, {"lorentz_berthelot", "geometric"})));
+}
+
+std::array<double, 3> read_special(TableReader& reader, SceneValue& effective) {
+  const auto special = reader.vector("special", "1").value_or(std::array<double, 3>{0, 0, 0});
+  SceneValue::Array list;
+  for (const double factor : special) list.push_back(SceneValue::of(factor));
+  effective.put("special", SceneValue::of(std::move(list), reader.line("special")));
+  return special;
+}
+
+std::vector<TypeParameters> read_types(TableReader& reader, SceneValue& effective) {
+  std::vector<TypeParameters> types;
+  for (const SceneValue* one : tables_and_keep(reader, "type", effective)) {
+    TableReader table(reader.context(), *one, "[[particles.type]]", fmt::format("particles.type.{}", types.size()));
+    table.expect_only({"name", "mass", "charge", "epsilon", "sigma"});
+    const SceneValue* name = table.find("name");
+    if (name == nullptr) table.fail(nullptr, "name", "this [[particles.type]] has no name; give that of a type");
+    TypeParameters type{.type = type_name(table, "name", *name)};
+    type.mass = table.quantity("mass", "mass");
+    type.charge = table.quantity("charge", "charge");
+    type.epsilon = table.quantity("epsilon", "energy");
+    type.sigma = table.quantity("sigma", "length");
+    types.push_back(std::move(type));
+  }
+  return types;
+}
+
+std::vector<PairParameters> read_pairs(TableReader& reader, SceneValue& effective) {
+  std::vector<PairParameters> pairs;
+  for (const SceneValue* one : tables_and_keep(reader, "pair", effective)) {
+    TableReader table(reader.context(), *one, "[[particles.pair]]", fmt::format("particles.pair.{}", pairs.size()));
+    table.expect_only({"types", "epsilon", "sigma"});
+    const SceneValue* types = table.find("types");
+    const auto* list = types != nullptr ? types->get<SceneValue::Array>() : nullptr;
+    if (list == nullptr || list->size() != 2) {
+      table.fail(types, "types", "a pair has two types; give them as types = [\"A\", \"B\"]");
+    }
+    const auto epsilon = table.quantity("epsilon", "energy"), sigma = table.quantity("sigma", "length");
+    for (const auto& [key, value] : {std::pair("epsilon", epsilon), std::pair("sigma", sigma)}) {
+      if (!value) table.fail(nullptr, key, fmt::format("this [[particles.pair]] has no {}; give one", key));
+    }
+    pairs.push_back({type_name(table, "types", (*list)[0]), type_name(table, "types", (*list)[1]), *epsilon, *sigma});
+  }
+  return pairs;
+}
+
+void refuse_particle_key(TableReader& reader, const Error& error) {
+  const std::string& key = error.key();
+  const std::size_t dot = key.find('.');
+  if (dot == std::string::npos) reader.fail(key, error.message());
+  std::size_t number = 0;
+  std::from_chars(key.data() + dot + 1, key.data() + key.size(), number);
+  const std::string list = key.substr(0, dot);
+  reader.fail(tables_of(reader, list).at(number), key, error.message());
+}
+
+void read_temperature(TableReader& reader, ParticleSystem<double>& s, SceneValue& effective) {
+  const auto temperature = reader.quantity("temperature", "temperature");
+  const std::int64_t seed = reader.integer("seed").value_or(1);
+  if (!temperature) {
+    if (reader.has("seed")) reader.fail("seed", "seed has nothing to be drawn; give a temperature too");
+    return;
+  }
+  try {
+    set_temperature(s, *temperature, static_cast<std::uint64_t>(seed));
+  } catch (const Error& error) {
+    reader.refuse(error);
+  }
+  effective.put("temperature", *reader.find("temperature"));
+  effective.put("seed", SceneValue::of(seed, reader.line("seed")));
+}
+
+}  // namespace noether

@@ -1,0 +1,47 @@
+#pragma once
+/// Keys of `[particles]` that several sources of particles share: files with their hash, box, types and pairs.
+
+#include "engine/particle_system.hpp"
+#include "engine/type_parameters.hpp"
+#include "scene/reader.hpp"
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace noether {
+
+/// Reads particles from the file that a key names, and keeps name and hash, `<key>_sha256`, in the effective table.
+/// @param example  a name for messages, such as "bodies.csv"
+/// @param what  how messages call it: "a table of bodies"
+/// @throws SceneError if the name is wrong or the file has changed; FileError, told of the scene's line
+ParticleSystem<double> particles_in_file(
+    TableReader& reader, const std::string& key, const std::filesystem::path& folder, const std::string& example,
+    const std::string& what, SceneValue& effective,
+    const std::function<ParticleSystem<double>(const std::filesystem::path&)>& read);
+
+/// `box = ["10 nm", "10 nm", "10 nm"]` or `"open"`; empty where the scene says nothing. @throws SceneError
+std::optional<Box> read_box(TableReader& reader, SceneValue& effective);
+
+/// `mixing`; empty where the scene says nothing. @throws SceneError
+std::optional<Mixing> read_mixing(TableReader& reader, SceneValue& effective);
+
+/// `special = [s12, s13, s14]`. @throws SceneError
+std::array<double, 3> read_special(TableReader& reader, SceneValue& effective);
+
+/// `[[particles.type]]` and `[[particles.pair]]`. @throws SceneError
+std::vector<TypeParameters> read_types(TableReader& reader, SceneValue& effective);
+std::vector<PairParameters> read_pairs(TableReader& reader, SceneValue& effective);
+
+/// Ends reading with what is wrong with a key, or with table k of `[[particles.type]]` or `[[particles.pair]]`: an
+/// error at key "special", "type.<k>", "pair.<k>".
+[[noreturn]] void refuse_particle_key(TableReader& reader, const Error& error);
+
+/// `temperature` and `seed`: velocities of the Maxwell-Boltzmann distribution where the scene asks for them.
+/// @throws SceneError
+void read_temperature(TableReader& reader, ParticleSystem<double>& s, SceneValue& effective);
+
+}  // namespace noether

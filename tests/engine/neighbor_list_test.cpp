@@ -1,0 +1,113 @@
+/// Neighbor lists against all pairs, wherever the particles are.
+
+#include "engine/neighbor_list.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/liquid.hpp"
+
+#include <random>
+
+namespace noether {
+namespace {
+
+/// Particles at random places in a box, or around some centres in it.
+ParticleSystem<double> random_particles(Index n, const Vec3<double>& edges, bool periodic, int clusters,
+                                        unsigned seed) {
+  std::mt19937_64 random(seed);
+  const auto uniform = [&] { return static_cast<double>(random() >> 11U) * 0x1p-53; };
+  std::vector<Vec3<double>> centres;
+  for (int k = 0; k < clusters; ++k) {
+    centres.emplace_back(uniform() * edges[0], uniform() * edges[1], uniform() * edges[2]);
+  }
+  ParticleSystem<double> s;
+  if (periodic) s.set_box(Box::periodic(edges));
+  for (Index i = 0; i < n; ++i) {
+    Vec3<double> x(uniform() * edges[0], uniform() * edges[1], uniform() * edges[2]);
+    if (clusters > 0) x = centres[static_cast<std::size_t>(i % clusters)] + x / edges.maxCoeff() * 2;
+    s.add("", 1, x, {uniform() - 0.5, uniform() - 0.5, uniform() - 0.5});
+  }
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("no pair in range is missing or listed twice", "[neighbors]") {
+  const bool periodic = GENERATE(true, false);
+  const int clusters = GENERATE(0, 5);
+  const Vec3<double> edges = GENERATE(
+      values<Vec3<double>>({{10, 10, 10}, {40, 2, 1}, {1e4, 1e4, 1e4}, {0.7, 0.9, 30}, {3, 3, 3}, {1e-3, 5, 5}}));
+  for (const Index n : {0, 1, 2, 9, 150}) {
+    auto s = random_particles(n, edges, periodic, clusters, 3);
+    NeighborList list(1.1, {.check = true});
+    const double images = 8 * (1 + 2.4 / edges[0]) * (1 + 2.4 / edges[1]) * (1 + 2.4 / edges[2]);
+    if (periodic && images > 2000) continue;
+    CHECK_NOTHROW(list.update(s));
+    for (int step = 0; step < 8; ++step) {
+      s.advance_positions(0.07);
+      CHECK_NOTHROW(list.update(s));
+    }
+  }
+}
+
+TEST_CASE("particles on borders and on a lattice have all their neighbors", "[neighbors]") {
+  ParticleSystem<double> s;
+  s.set_box(Box::periodic({4, 4, 4}));
+  for (const double x : {0.0, 1.0, 2.0, 3.0, std::nextafter(4.0, 0.0)}) {
+    for (const double y : {0.0, 2.0, std::nextafter(4.0, 0.0)}) s.add("", 1, {x, y, 0}, {0, 0, 0});
+  }
+  NeighborList list(1.0000001, {.skin = 0.3, .check = true});
+  CHECK_NOTHROW(list.update(s));
+}
+
+TEST_CASE("a particle a million box lengths away has the neighbors of its image", "[neighbors][extremes]") {
+  auto s = test::liquid(2, 0.8, 1);
+  const Vec3<double> far = s.positions()[0] + 1e6 * s.box().edges();
+  s.add("", 1, far + Vec3<double>(0.3, 0.2, 0.1), {0, 0, 0});
+  NeighborList list(1.5, {.check = true});
+  CHECK_NOTHROW(list.update(s));
+}
+
+TEST_CASE("a particle far away in open space costs the others nothing", "[neighbors][extremes]") {
+  auto s = random_particles(3000, Vec3<double>::Constant(12), false, 0, 5);
+  s.add("", 1, {1e9, -1e12, 3}, {0, 0, 0});
+  s.add("", 1, {1e300, 0, 0}, {0, 0, 0});
+  NeighborList list(1.2);
+  list.update(s);
+  CHECK(list.statistics().pairs < 100);
+  CHECK_NOTHROW(list.verify(s));
+}
+
+TEST_CASE("a list lasts until somebody has moved by half of the skin", "[neighbors]") {
+  ParticleSystem<double> s;
+  s.set_box(Box::periodic({8, 8, 8}));
+  s.add("", 1, {7.9, 1, 1}, {1, 0, 0});
+  s.add("", 1, {5, 1, 1}, {0, 0, 0});
+  NeighborList list(1.0, {.skin = 0.5, .check = true});
+  list.update(s);
+  CHECK(list.statistics().searches == 1);
+  s.advance_positions(0.24);  // across the face of the box
+  list.update(s);
+  CHECK(list.statistics().searches == 1);
+  s.advance_positions(0.02);
+  list.update(s);
+  CHECK(list.statistics().searches == 2);
+}
+
+TEST_CASE("a box too small for its range says what to do", "[neighbors]") {
+  ParticleSystem<double> s;
+  s.set_box(Box::periodic({0.05, 0.05, 0.05}));
+  s.add("", 1, {0, 0, 0}, {0, 0, 0});
+  NeighborList list(1.0);
+  CHECK_THROWS_WITH(list.update(s), Catch::Contains("repeat the cell, or take a shorter cutoff"));
+}
+
+TEST_CASE("what is no number has no neighbors and stops no search", "[neighbors][extremes]") {
+  auto s = random_particles(200, Vec3<double>::Constant(6), true, 0, 9);
+  s.positions().component(1)[17] = std::nan("");
+  NeighborList list(1.0);
+  list.update(s);
+  list.update(s);
+  CHECK_NOTHROW(list.verify(s));
+}
+
+}  // namespace noether

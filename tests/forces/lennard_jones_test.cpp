@@ -1,0 +1,268 @@
+/// Lennard-Jones pairs in lanes, at every SIMD level that this processor has: against 113 bits, and bits that depend on
+/// nothing but the state.
+
+#include "forces/lennard_jones.hpp"
+
+#include "engine/parallel.hpp"
+#include "engine/simd.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/liquid.hpp"
+#include "tests/support/settings.hpp"
+
+#include <fmt/format.h>
+
+namespace noether {
+namespace {
+
+using test::liquid;
+
+struct Evaluated {
+  VectorColumn<double> a;
+  double energy;
+  Mat3<double> virial;
+  std::optional<Failure> failure;
+};
+
+template <class Real>
+Evaluated evaluated(const LennardJonesForce& force, const ParticleSystem<double>& s, NeighborList* list = nullptr) {
+  const ParticleSystem<Real> particles = s.as<Real>();
+  VectorColumn<Real> a(s.size());
+  ForceSink<Real> sink(a, particles, {.energy = true, .virial = true}, list);
+  force.add_to(sink, particles);
+  Evaluated all{VectorColumn<double>(s.size()), static_cast<double>(sink.potential()), {}, sink.failure()};
+  for (Index i = 0; i < s.size(); ++i) {
+    for (int k = 0; k < 3; ++k) all.a.component(k)[i] = static_cast<double>(a.component(k)[i]);
+  }
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) all.virial(r, c) = static_cast<double>(sink.virial()(r, c));
+  }
+  return all;
+}
+
+double largest_difference(const VectorColumn<double>& a, const VectorColumn<double>& b) {
+  return (a.all() - b.all()).cwiseAbs().maxCoeff();
+}
+
+LennardJonesForce argon(Cutoff style, double cutoff = 2.5) {
+  return {.cutoff = cutoff, .cutoff_style = style, .epsilon = 1.0, .sigma = 1.0};
+}
+
+const Cutoff styles[] = {Cutoff::plain, Cutoff::shifted, Cutoff::shifted_force, Cutoff::switch_c2, Cutoff::switch_c4};
+
+/// Two kinds of atoms, some pairs left out and some at half their strength.
+ParticleSystem<double> mixture() {
+  ParticleSystem<double> s = liquid(3, 0.5, 1, 0.2);
+  auto topology = std::make_shared<Topology>();
+  for (Index i = 0; i < s.size(); ++i) topology->types.push_back(i % 3 == 0 ? 1 : 0);
+  topology->pair_kinds = {{1, 1}, {0.5, 1.2}};
+  topology->explicit_pairs[{0, 1}] = {0.8, 1.05};
+  topology->exclusions = {{0, 1}, {4, 9}};
+  topology->scaled_pairs = {{{0, 2}, 0.5}, {{0, 3}, 0.25}};
+  s.set_topology(topology);
+  return s;
+}
+
+/// Every SIMD level of this processor.
+std::vector<SimdLevel> all_levels() {
+  std::vector<SimdLevel> all;
+  for (const SimdLevel level : {SimdLevel::base, SimdLevel::avx2, SimdLevel::avx512}) {
+    if (has_simd_level(level)) all.push_back(level);
+  }
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("forces, energy and virial in lanes are those of 113 bits, for every end of the range", "[lennard_jones]") {
+  const Cutoff style = styles[GENERATE(range(0, 5))];
+  for (const SimdLevel level : all_levels()) {
+    const test::AtLevel at(level);
+    CAPTURE(name(level), static_cast<int>(style));
+    for (const auto& s : {liquid(3, 0.85, 1, 0.1), mixture(), liquid(1, 0.85, 1, 0.1)}) {
+      LennardJonesForce force = argon(style, 2.2);
+      if (s.topology() != nullptr) force.epsilon = force.sigma = std::nullopt;
+      const Evaluated lanes = evaluated<double>(force, s), exact = evaluated<Quad>(force, s);
+      REQUIRE_FALSE(lanes.failure);
+      // A unit of 2^-42 for each of about 60 neighbors; energies are summed in units four times as large.
+      CHECK(largest_difference(lanes.a, exact.a) < 60 * 0x1p-43);
+      CHECK(std::abs(lanes.energy - exact.energy) < 1e-12 * static_cast<double>(s.size()));
+      CHECK((lanes.virial - exact.virial).cwiseAbs().maxCoeff() < 1e-11 * static_cast<double>(s.size()));
+    }
+  }
+}
+
+TEST_CASE("pairs in open space are summed as in a box", "[lennard_jones]") {
+  ParticleSystem<double> s = liquid(2, 0.85, 1, 0.1);
+  s.set_box(Box::open());
+  const LennardJonesForce force = argon(Cutoff::shifted_force);
+  const Evaluated lanes = evaluated<double>(force, s), exact = evaluated<Quad>(force, s);
+  CHECK(largest_difference(lanes.a, exact.a) < 60 * 0x1p-43);
+  CHECK(std::abs(lanes.energy - exact.energy) < 1e-12 * 32);
+}
+
+TEST_CASE("the forces on all atoms add up to nothing, exactly", "[lennard_jones]") {
+  const ParticleSystem<double> s = liquid(4, 0.85, 1, 0.15);
+  const Evaluated all = evaluated<double>(argon(Cutoff::switch_c2), s);
+  for (int k = 0; k < 3; ++k) {
+    std::int64_t sum = 0;
+    for (Index i = 0; i < s.size(); ++i) sum += static_cast<std::int64_t>(all.a.component(k)[i] * 0x1p42);
+    CHECK(sum == 0);
+  }
+}
+
+TEST_CASE("bits of forces depend on no neighbor list, thread or monitor", "[lennard_jones][determinism]") {
+  const ParticleSystem<double> s = liquid(5, 0.85, 1, 0.15);
+  const LennardJonesForce force = argon(Cutoff::plain);
+  const Evaluated first = evaluated<double>(force, s);
+  for (const double skin : {0.01, 0.1, 0.3, 0.6}) {
+    for (const int threads : {1, 2, 3, 8}) {
+      const test::Threads now(threads);
+      NeighborList list(2.5, {.skin = skin, .check = threads == 1});
+      const Evaluated again = evaluated<double>(force, s, &list);
+      CHECK(again.a.all() == first.a.all());
+      CHECK(again.energy == first.energy);
+      CHECK(again.virial == first.virial);
+    }
+  }
+  VectorColumn<double> a(s.size());
+  ForceSink<double> forces_only(a, s, {});
+  force.add_to(forces_only, s);
+  CHECK(a.all() == first.a.all());
+}
+
+TEST_CASE("a list that is some steps old gives the bits of a new one", "[lennard_jones][determinism]") {
+  ParticleSystem<double> s = liquid(4, 0.85, 1.5, 0.1);
+  const LennardJonesForce force = argon(Cutoff::plain);
+  NeighborList list(2.5, {.skin = 0.4});
+  for (int n = 0; n < 40; ++n) {
+    s.advance_positions(0.01);
+    const Evaluated old = evaluated<double>(force, s, &list), fresh = evaluated<double>(force, s);
+    REQUIRE(old.a.all() == fresh.a.all());
+    REQUIRE(old.energy == fresh.energy);
+    REQUIRE(old.virial == fresh.virial);
+  }
+  CHECK(list.statistics().searches > 1);
+  CHECK(list.statistics().searches < 20);
+}
+
+TEST_CASE("pairs that are strong are summed to the same grid as all others", "[lennard_jones]") {
+  // From the range of the quick sums to beyond it: 24/r (2/r^12 - 1/r^6) is 2^9 at r = 0.824.
+  for (const double r : {0.9, 0.86, 0.83, 0.8, 0.7, 0.6, 0.5}) {
+    CAPTURE(r);
+    ParticleSystem<double> s;
+    s.add("a", 1, {0, 0, 0}, {0, 0, 0});
+    s.add("b", 1, {r * 0.6, r * 0.8, 0}, {0, 0, 0});
+    s.add("c", 1, {1.1, -0.4, 0.3}, {0, 0, 0});
+    const Evaluated lanes = evaluated<double>(argon(Cutoff::plain), s),
+                    exact = evaluated<Quad>(argon(Cutoff::plain), s);
+    REQUIRE_FALSE(lanes.failure);
+    const double strongest = exact.a.all().cwiseAbs().maxCoeff();
+    CHECK(largest_difference(lanes.a, exact.a) < 2 * 0x1p-42 + 4e-15 * strongest);
+    CHECK(std::abs(lanes.energy - exact.energy) < 1e-12 + 4e-15 * std::abs(exact.energy));
+  }
+}
+
+TEST_CASE("atoms on top of each other are named, and nothing becomes infinite", "[lennard_jones][extremes]") {
+  for (const double r : {0.0, 1e-100, 1e-30, 1e-3, 0.05}) {
+    ParticleSystem<double> s;
+    s.add("helium", 1, {0, 0, 0}, {0, 0, 0});
+    s.add("neon", 1, {r, 0, 0}, {0, 0, 0});
+    s.add("argon", 1, {5, 0, 0}, {0, 0, 0});
+    const Evaluated all = evaluated<double>(argon(Cutoff::shifted_force), s);
+    REQUIRE(all.failure);
+    CHECK(all.failure->kind == Outcome::Kind::overlap);
+    CHECK(all.failure->particle == 0);
+    CHECK(all.failure->message == fmt::format("particles 'helium' and 'neon' are {:.3g} apart, too close for their "
+                                              "Lennard-Jones force",
+                                              r));
+    CHECK(all.a.all().allFinite());
+  }
+}
+
+TEST_CASE("each end of the range has the derivatives that it promises", "[lennard_jones]") {
+  // Jumps at the cutoff and where the switch begins, of the energy and its first derivatives by differences in 113
+  // bits.
+  const auto row_of = [](Cutoff style) {
+    LennardJonesForce force = argon(style);
+    ParticleSystem<double> s = liquid(1, 0.5, 1);
+    static_cast<void>(evaluated<Quad>(force, s));
+    return std::pair(force.table->rows[0], force.table->style);
+  };
+  const auto jumps = [&](Cutoff style, double at) {
+    const auto [row, kind] = row_of(style);
+    const Quad h = Quad(1e-7);
+    const auto energy = [&, row = row, kind = kind](const Quad& r) {
+      return r < Quad(2.5) ? detail::lennard_jones_terms<Quad>(r * r, row, kind).energy : Quad(0);
+    };
+    // Derivatives from both sides by differences of first order.
+    int continuous = 0;
+    for (int n = 0; n <= 5; ++n) {
+      Quad right(0), left(0), binomial(1);
+      for (int k = 0; k <= n; ++k) {
+        const Quad sign((n - k) % 2 == 0 ? 1 : -1);
+        right += sign * binomial * energy(Quad(at) + Quad(k) * h);
+        left += sign * Quad(n % 2 == 0 ? 1 : -1) * binomial * energy(Quad(at) - Quad(1e-25) - Quad(k) * h);
+        binomial = binomial * Quad(n - k) / Quad(k + 1);
+      }
+      for (int k = 0; k < n; ++k) {
+        right /= h;
+        left /= h;
+      }
+      if (abs(right - left) > Quad(n < 4 ? 0.02 : 1.0)) break;
+      continuous = n + 1;
+    }
+    return continuous - 1;  // derivatives that do not jump; -1: the value itself does
+  };
+  CHECK(jumps(Cutoff::shifted, 2.5) == 0);
+  CHECK(jumps(Cutoff::shifted_force, 2.5) == 1);
+  CHECK(jumps(Cutoff::switch_c2, 2.5) == 2);
+  CHECK(jumps(Cutoff::switch_c2, 2.25) == 2);
+  CHECK(jumps(Cutoff::switch_c4, 2.5) == 4);
+  CHECK(jumps(Cutoff::switch_c4, 2.25) == 4);
+}
+
+TEST_CASE("LAMMPS's lattice of in.lj has LAMMPS's energy and pressure", "[lennard_jones][oracle]") {
+  // Printed by LAMMPS for bench/in.lj at step 0: E_pair -6.7733681, P -5.0197073 at T 1.44, N = 32000.
+  const ParticleSystem<double> s = liquid(20, 0.8442, 1.44);
+  const Evaluated all = evaluated<double>(argon(Cutoff::plain), s);
+  const auto n = static_cast<double>(s.size());
+  CHECK(fmt::format("{:.7f}", all.energy / n) == "-6.7733681");
+  const double pressure = 0.8442 * 1.44 * (n - 1) / n + all.virial.trace() / 3 / s.box().volume();
+  CHECK(fmt::format("{:.7f}", pressure) == "-5.0197073");
+}
+
+TEST_CASE("tail corrections are the integrals beyond the cutoff", "[lennard_jones]") {
+  // Per particle at density 0.8442: U -0.4520 and P -0.7621 for a cutoff of 2.5, -0.2618 and -0.4419 for 3.
+  for (const auto& [cutoff, energy, pressure] :
+       {std::tuple(2.5, -0.4520, -0.7621), std::tuple(3.0, -0.2618, -0.4419)}) {
+    const ParticleSystem<double> s = liquid(4, 0.8442, 1);
+    LennardJonesForce force = argon(Cutoff::plain, cutoff);
+    const Evaluated without = evaluated<double>(force, s);
+    force.tail = true;
+    const Evaluated with = evaluated<double>(force, s);
+    CHECK(std::abs((with.energy - without.energy) / static_cast<double>(s.size()) - energy) < 5e-5);
+    CHECK(std::abs((with.virial - without.virial).trace() / 3 / s.box().volume() - pressure) < 1e-4);
+    CHECK(largest_difference(with.a, without.a) == 0);
+  }
+}
+
+TEST_CASE("what a Lennard-Jones force cannot do is refused by name", "[lennard_jones]") {
+  const ParticleSystem<double> s = liquid(1, 0.5, 1);
+  const LennardJonesForce by_types{.cutoff = 2.5};
+  CHECK_THROWS_WITH(
+      by_types.check(s),
+      "lennard_jones: the particles have no Lennard-Jones parameters; give epsilon and sigma here, or types "
+      "that have them");
+  LennardJonesForce open_tail = argon(Cutoff::plain);
+  open_tail.tail = true;
+  ParticleSystem<double> open = s;
+  open.set_box(Box::open());
+  CHECK_THROWS_WITH(open_tail.check(open),
+                    "lennard_jones: a tail is the mean of an endless liquid; it needs a periodic box");
+  CHECK_THROWS_WITH((LennardJonesForce{.cutoff = 2.5, .epsilon = 1.0}.check()),
+                    Catch::Contains("stands alone; give epsilon and sigma, or none"));
+  CHECK_THROWS_WITH((LennardJonesForce{.cutoff = -1, .epsilon = 1.0, .sigma = 1.0}.check()),
+                    Catch::Contains("is no cutoff; a length above 0 is expected"));
+}
+
+}  // namespace noether

@@ -1,0 +1,185 @@
+// Scenes of structures, builders, types and boxes.
+
+#include "engine/charge.hpp"
+#include "engine/error.hpp"
+#include "io/digest.hpp"
+#include "scene/scene.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/process.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+namespace noether::test {
+namespace {
+
+const std::filesystem::path lammps_files = std::filesystem::path(NOETHER_SOURCE_DIR) / "tests" / "data" / "lammps";
+
+const std::string rest =
+    "\n[hamiltonian]\ntype = 'kinetic_potential'\n"
+    "[[hamiltonian.force]]\ntype = 'uniform_field'\nacceleration = [0, 0, 0]\n"
+    "[integrator]\nmethod = 'verlet'\nstep = 0.001\nsteps = 2\n";
+
+/// A scene whose `[particles]` begins at line 2.
+Scene scene_of(const std::string& particles, const std::string& units = "reduced") {
+  std::string end = rest;
+  if (units != "reduced") end.replace(end.find("[0, 0, 0]"), 9, "['0 nm/ps^2', '0 nm/ps^2', '0 nm/ps^2']");
+  if (units != "reduced") end.replace(end.find("0.001"), 5, "'1 fs'");
+  return read_scene("units = '" + units + "'\n[particles]\n" + particles + end, lammps_files / "scene.toml");
+}
+
+std::string refusal(const std::string& particles, const std::string& units = "reduced") {
+  try {
+    scene_of(particles, units);
+  } catch (const Error& error) {
+    const std::string text = error.what();
+    const auto folder = lammps_files.string() + "/";
+    std::string shown = text;
+    for (auto at = shown.find(folder); at != std::string::npos; at = shown.find(folder)) shown.erase(at, folder.size());
+    return shown;
+  }
+  return "";
+}
+
+/// The effective scene is the same scene, particle by particle.
+void check_effective(const Scene& scene) {
+  const Scene again = read_scene(scene.effective_toml, scene.file);
+  CHECK(again.effective_toml == scene.effective_toml);
+  CHECK(io::digest(again.particles) == io::digest(scene.particles));
+  CHECK(again.particles.topology()->pair_kinds == scene.particles.topology()->pair_kinds);
+  CHECK(again.particles.topology()->explicit_pairs == scene.particles.topology()->explicit_pairs);
+  CHECK(again.particles.topology()->mixing == scene.particles.topology()->mixing);
+  CHECK(again.particles.topology()->exclusions == scene.particles.topology()->exclusions);
+  CHECK(again.particles.has<Charge>() == scene.particles.has<Charge>());
+}
+
+TEST_CASE("a scene reads a structure with all the keys beside it", "[scene][structure]") {
+  const Scene scene = scene_of(
+      "structure = 'molecule.data'\nfile_units = 'real'\nspecial = [0, 0, 0.5]\nmixing = 'lorentz_berthelot'\n"
+      "temperature = '300 K'\nseed = 5\n"
+      "[[particles.type]]\nname = 1\nmass = '14 u'\nepsilon = '1 kJ/mol'\nsigma = '3 angstrom'\n"
+      "[[particles.pair]]\ntypes = ['2', 1]\nepsilon = '2 kJ/mol'\nsigma = '0.4 nm'\n",
+      "molecular");
+  const ParticleSystem<double>& s = scene.particles;
+  CHECK(s.size() == 7);
+  CHECK(s.box().is_periodic());
+  CHECK(s.masses()[0] == 14);
+  CHECK(s.topology()->pair_kind(0, 0).epsilon == 1);
+  CHECK(s.topology()->pair_kind(0, 1) == PairKind{2, 0.4});
+  CHECK(s.topology()->mixing == Mixing::lorentz_berthelot);
+  CHECK(s.topology()->scaled_pairs.size() + s.topology()->exclusions.size() > 0);
+  CHECK(s.column<Charge>()[0] == 0.25);
+  CHECK(std::abs(s.velocities()[0][0]) > 0);
+  CHECK(scene.effective_toml.find("structure_sha256 = ") != std::string::npos);
+  check_effective(scene);
+  check_effective(scene_of("structure = 'chains.data'\nspecial = [0, 1, 1]\n"));
+}
+
+TEST_CASE("a structure runs in its box, and has changed where its hash has", "[scene][structure]") {
+  const Scene scene = scene_of("structure = 'argon.data'\nfile_units = 'metal'\n", "molecular");
+  Simulation<double> sim = assemble(scene);
+  CHECK(sim.run(2).ok());
+  CHECK(sim.particles().box() == scene.particles.box());
+  CHECK(sim.particles().topology() == scene.particles.topology());
+  std::string text = scene.effective_toml;
+  const auto at = text.find("structure_sha256 = \"") + 20;
+  text[at] = text[at] == '0' ? '1' : '0';
+  CHECK_THROWS_WITH(read_scene(text, scene.file),
+                    Catch::Matchers::Contains("'argon.data' is no longer the file this scene was run with"));
+}
+
+TEST_CASE("a builder is asked for by its name, and its scene is the same again", "[scene][builders]") {
+  const Scene melt = scene_of("type = 'lattice'\ncells = [3, 3, 3]\ndensity = 0.8442\nmass = 1\ntemperature = 1.44\n");
+  CHECK(melt.particles.size() == 108);
+  CHECK(melt.effective_toml.find("lattice = \"fcc\"") != std::string::npos);
+  check_effective(melt);
+  check_effective(
+      scene_of("type = 'liquid'\nparticles = 100\ndensity = '1.374 g/cm^3'\nmass = '39.948 u'\nepsilon = "
+               "'0.996 kJ/mol'\nsigma = '3.4 angstrom'\ntemperature = '94 K'\n",
+               "molecular"));
+  const Scene chains = scene_of("type = 'polymer_chains'\nchains = 3\nbeads = 5\ndensity = 0.85\nmass = 1\nseed = 9\n");
+  CHECK(chains.particles.topology()->bonds.size() == 12);
+  check_effective(chains);
+}
+
+TEST_CASE("bodies of a scene can have a box, types and charges", "[scene]") {
+  const Scene scene = scene_of(
+      "box = [5, 6, 7]\nmixing = 'geometric'\n"
+      "body = [{name = 'a', type = 'A', x = [-1, 0, 0], v = [0, 0, 0]},"
+      " {name = 'b', type = 'B', mass = 3, charge = 2, x = [1, 0, 0], v = [0, 0, 0]}]\n"
+      "[[particles.type]]\nname = 'A'\nmass = 2\ncharge = -1\nepsilon = 1\nsigma = 4\n"
+      "[[particles.type]]\nname = 'B'\nepsilon = 4\nsigma = 9\n");
+  const ParticleSystem<double>& s = scene.particles;
+  CHECK(s.box() == Box::periodic({5, 6, 7}));
+  CHECK(s.positions()[0] == Vec3<double>(4, 0, 0));
+  CHECK(s.masses()[0] == 2);
+  CHECK(s.masses()[1] == 3);
+  CHECK(s.column<Charge>()[0] == -1);
+  CHECK(s.column<Charge>()[1] == 2);
+  CHECK(s.topology()->pair_kind(0, 1) == PairKind{2, 6});
+  check_effective(scene);
+}
+
+TEST_CASE("keys of structures that are wrong are refused at their lines", "[scene][structure][messages]") {
+  CHECK(refusal("structure = '../../scenes/bad/cut.data'\n", "molecular") ==
+        "scene.toml:2: this LAMMPS data file does not say its units; give file_units = \"real\" or \"metal\"");
+  CHECK(refusal("structure = 'molecule.data'\n") ==
+        "scene.toml:2: a LAMMPS data file in real needs units = \"molecular\", not \"reduced\"");
+  CHECK(refusal("structure = 'molecule.data'\nfile_units = 'reel'\n", "molecular") ==
+        "molecule.data:1: the file says units = real, file_units says 'reel'; take file_units out");
+  CHECK(refusal("structure = 'make.py'\n") ==
+        "scene.toml:3: 'make.py' is of no kind that is read; a structure is a .data or .lmp file (LAMMPS), .xyz or "
+        ".extxyz, or .gro");
+  CHECK(refusal("structure = 'none.data'\n").starts_with("scene.toml:3: none.data: "));
+  CHECK(refusal("structure = ''\n") ==
+        "scene.toml:3: structure = \"\" names no file; give one, such as \"water.data\"");
+  CHECK(refusal("structure = 'chains.data'\nspecial = [0, 2, 1]\n") ==
+        "scene.toml:4: special holds 2; factors from 0 to 1 are expected");
+  CHECK(refusal("structure = 'chains.data'\nspecial = [0, 1]\n") ==
+        "scene.toml:4: special = [0, 1] is no vector; a list of three is expected: [x, y, z]");
+  CHECK(refusal("structure = 'chains.data'\natom_style = 'full'\n") ==
+        "chains.data:32: the file says atom style 'molecular', the scene says 'full'; take atom_style out");
+  CHECK(
+      refusal("structure = 'chains.data'\nbox = [1, 2, 3]\n") ==
+      "scene.toml:4: the file has a box of its own, 5 x 6 x 7; leave box out, or give box = \"open\" to take it away");
+  CHECK(refusal("structure = 'chains.data'\nbox = 'closed'\n") ==
+        "scene.toml:4: box = \"closed\" is not understood; three lengths are expected, or \"open\"");
+  CHECK(refusal("structure = 'chains.data'\nframe = 'barycenter'\n") ==
+        "scene.toml:4: a periodic box has no centre of mass; take frame = \"barycenter\" out");
+  CHECK(refusal("structure = 'chains.data'\nmixing = 'arithmetic'\n") ==
+        "scene.toml:4: unknown mixing 'arithmetic'; known are: lorentz_berthelot, geometric");
+  CHECK(refusal("structure = 'chains.data'\nseed = 3\n") ==
+        "scene.toml:4: seed has nothing to be drawn; give a temperature too");
+  CHECK(refusal("structure = 'chains.data'\n[[particles.type]]\nname = '1'\n[[particles.type]]\nname = '3'\n") ==
+        "scene.toml:6: there is no type '3'; known are: 1, 2");
+  CHECK(refusal("structure = 'chains.data'\n[[particles.type]]\nmass = 1\n") ==
+        "scene.toml:4: this [[particles.type]] has no name; give that of a type");
+  CHECK(refusal("structure = 'chains.data'\n[[particles.pair]]\ntypes = ['1']\n") ==
+        "scene.toml:5: a pair has two types; give them as types = [\"A\", \"B\"]");
+  CHECK(refusal("structure = 'chains.data'\n[[particles.pair]]\ntypes = ['1', '2']\nsigma = 1\n") ==
+        "scene.toml:4: this [[particles.pair]] has no epsilon; give one");
+  CHECK(
+      refusal("structure = 'chains.data'\nmass = 1\n").starts_with("scene.toml:4: unknown key 'mass' in [particles]"));
+}
+
+TEST_CASE("particles come from one place, and its keys are the only ones", "[scene][messages]") {
+  CHECK(refusal("structure = 'chains.data'\ntype = 'lattice'\n") ==
+        "scene.toml:3: bodies come from a structure and from a builder; give one or the other");
+  CHECK(refusal("type = 'latice'\n") == "scene.toml:3: unknown builder 'latice'; did you mean 'lattice'?");
+  CHECK(
+      refusal("type = 'lattice'\nmass = 1\ndensity = 1\n").starts_with("scene.toml:2: builder 'lattice' has no cells"));
+  CHECK(refusal("type = 'lattice'\nmass = 1\ndensity = 1\ncells = [1, 2]\n") ==
+        "scene.toml:6: cells = [1, 2] is no list of three; cells along x, y and z are expected");
+  CHECK(refusal("type = 'liquid'\nmass = 1\ndensity = 1\nparticles = 9\ncells = 3\n")
+            .starts_with("scene.toml:7: unknown key 'cells' in builder 'liquid'"));
+  CHECK(refusal("body = [{type = 'A', mass = 1, x = [0, 0, 0], v = [0, 0, 0]}]\n") ==
+        "scene.toml:3: body 'body_1' has a type, and there are none; give [[particles.type]] tables");
+  CHECK(refusal("mixing = 'geometric'\nbody = [{mass = 1, x = [0, 0, 0], v = [0, 0, 0]}]\n") ==
+        "scene.toml:3: mixing is of types, and there are none; give [[particles.type]] tables");
+  CHECK(refusal("body = [{type = 'C', mass = 1, x = [0, 0, 0], v = [0, 0, 0]}]\n[[particles.type]]\nname = 'A'\n") ==
+        "scene.toml:3: there is no type 'C'; known are: A");
+}
+
+}  // namespace
+}  // namespace noether::test
