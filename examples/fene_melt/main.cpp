@@ -26,7 +26,6 @@ int main() {
   forces.add(Bonded{});
 
   const Minimized start = minimize(beads, AnyForce<double>(forces), {.max_force = 50});
-  fmt::print("largest force {:.1f} after {} steps downhill\n", start.force, start.steps);
 
   auto bath = Langevin(KineticPotential(forces), {.temperature = 1, .friction = 0.5, .seed = 7});
   Simulation sim(std::move(beads), compose(std::move(bath), word("BAOAB")), 0.01);
@@ -35,6 +34,7 @@ int main() {
 
   const Outcome outcome = sim.run(2'000);
   fmt::print("{}: temperature {:.3f}, energy {:.3f} a bead\n", outcome, temperature.value(), energy.total() / 1'000);
+  fmt::print("the start was found in {} steps downhill, to a largest force of {:.1f}\n", start.steps, start.force);
   fmt::print("{}\n", io::digest(sim.particles()));
   return exit_code(outcome);
 }

@@ -1,6 +1,7 @@
 /// Every example, as a program and as a scene: both end in the same bits, do what [expect] says, and print what the
 /// README prints.
 
+#include "scene/minimize.hpp"
 #include "tests/examples/programs.hpp"
 #include "tests/examples/readme.hpp"
 #include "tests/support/catch.hpp"
@@ -193,7 +194,9 @@ TEST_CASE("program and scene of every example end in the same digest", "[example
     CAPTURE(output);
     CHECK(output.starts_with(fmt::format("completed at step {}", example.few_steps)));
     CHECK(digest_in(output).size() == 7 + 64);
-    noether::Simulation<double> sim = assemble(scene_of(example.name));
+    noether::Scene scene = scene_of(example.name);
+    if (scene.minimize) CHECK(minimize_start(scene).converged());
+    noether::Simulation<double> sim = assemble(scene);
     CHECK(sim.run(example.few_steps).ok());
     CHECK(digest_in(output) == noether::io::digest(sim.particles()));
   }
