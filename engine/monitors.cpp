@@ -31,6 +31,21 @@ void fill_line(MonitorReport& report, const SeriesStatistics& series, const std:
   report.slope_unit = unit;
 }
 
+/// Particles with mass, and degrees of freedom.
+struct AtomCount {
+  std::int64_t atoms = 0, freedom = 0;
+};
+
+/// Of a run of molecules; zeros for stars and planets.
+template <class Real> AtomCount atoms_of(const ParticleSystem<Real>& s, const IntegratorClaims& claims) {
+  const bool reduced = s.units().is_reduced();
+  if (reduced ? !s.box().is_periodic() && s.topology() == nullptr : s.units().name != "molecular") return {};
+  AtomCount count;
+  for (Index i = 0; i < s.size(); ++i) count.atoms += s.masses()[i] > Real(0) ? 1 : 0;
+  if (!reduced) count.freedom = 3 * count.atoms - claims.constraints - (claims.keeps_momentum ? 3 : 0);
+  return count;
+}
+
 }  // namespace
 
 template <class Real> void Energy::observe(const Snapshot<Real>& now) {
@@ -50,6 +65,9 @@ template <class Real> void Energy::observe(const Snapshot<Real>& now) {
       why_not_ = "a force depends on time: the energy changes by itself, so there is no error of it";
     }
     time_unit_ = std::string(now.units().time);
+    const AtomCount count = atoms_of(now.state(), claims);
+    atoms_ = count.atoms;
+    freedom_ = count.freedom;
   }
   Real reference;
   if constexpr (std::is_same_v<Real, double>) {
@@ -61,6 +79,7 @@ template <class Real> void Energy::observe(const Snapshot<Real>& now) {
   now_ = {static_cast<double>(energy.total()), static_cast<double>(energy.kinetic),
           static_cast<double>(energy.potential), static_cast<double>(change / Real(scale_))};
   finite_ = finite_ && std::isfinite(now_[0]);
+  kinetic_sum_ += now_[1];
   errors_.add(now.time(), now_[3]);
 }
 
@@ -84,7 +103,23 @@ MonitorReport Energy::report() const {
   report.worst = errors_.worst();
   report.rms = errors_.rms();
   fill_line(report, errors_, per_time("1", time_unit_));
+  report.note = drift_per_atom();
   return report;
+}
+
+std::string Energy::drift_per_atom() const {
+  const std::optional<double> slope = errors_.slope();
+  if (!slope || atoms_ == 0) return "";
+  double unit = static_cast<double>(atoms_) / scale_;  // of the slope of the relative error
+  const bool by_kT = time_unit_ != "1";
+  if (by_kT) {
+    if (freedom_ <= 0 || !(kinetic_sum_ > 0)) return "";
+    const double kT = 2 * kinetic_sum_ / static_cast<double>(errors_.samples()) / static_cast<double>(freedom_);
+    unit *= kT / units::molecular::ns;
+  }
+  const auto line = errors_.line();
+  return fmt::format("drift {:.3g}{} {}", *slope / unit, line ? fmt::format(" +- {:.1g}", line->error / unit) : "",
+                     by_kT ? "kT/ns/atom" : "epsilon/tau/atom");
 }
 
 void VectorInvariant::begin(const Vec3<Quad>& value, const Quad& scale, bool kept) {

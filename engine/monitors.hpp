@@ -19,13 +19,14 @@ namespace noether {
 class Energy {
  public:
   static constexpr auto describe() {
-    return part<Energy>("energy", "total energy and its relative error",
-                        formula("(E - E0) / max(|E0|, 1e-3 (T0 + |U0|))"), source("HairerLubichWanner2006"),
-                        quantities("total, kinetic, potential [energy], relative_error [1]"),
-                        state<&Energy::begun_>("begun"), state<&Energy::reference_>("reference"),
-                        state<&Energy::scale_>("scale"), state<&Energy::first_>("first"), state<&Energy::now_>("now"),
-                        state<&Energy::finite_>("finite"), state<&Energy::errors_>("errors"),
-                        state<&Energy::why_not_>("why_not"), state<&Energy::time_unit_>("time_unit"));
+    return part<Energy>(
+        "energy", "total energy and its relative error", formula("(E - E0) / max(|E0|, 1e-3 (T0 + |U0|))"),
+        source("HairerLubichWanner2006"), quantities("total, kinetic, potential [energy], relative_error [1]"),
+        state<&Energy::begun_>("begun"), state<&Energy::reference_>("reference"), state<&Energy::scale_>("scale"),
+        state<&Energy::first_>("first"), state<&Energy::now_>("now"), state<&Energy::finite_>("finite"),
+        state<&Energy::errors_>("errors"), state<&Energy::why_not_>("why_not"), state<&Energy::time_unit_>("time_unit"),
+        state<&Energy::atoms_>("atoms"), state<&Energy::freedom_>("freedom"),
+        state<&Energy::kinetic_sum_>("kinetic_sum"));
   }
 
   static Wanted wanted() { return {.energy = true}; }
@@ -39,6 +40,8 @@ class Energy {
   double rms() const { return why_not_.empty() ? errors_.rms() : std::numeric_limits<double>::quiet_NaN(); }
   /// Drift of the relative error [1/time]; 0 before two samples.
   double slope() const { return errors_.slope().value_or(0); }
+  /// The drift in the terms of molecular dynamics, in words; empty for other runs, and before two samples.
+  std::string drift_per_atom() const;
   /// Total, kinetic and potential energy at the last look [energy].
   double total() const { return now_[0]; }
 
@@ -50,6 +53,9 @@ class Energy {
   bool finite_ = true;           ///< every total so far
   SeriesStatistics errors_;
   std::string why_not_, time_unit_;
+  std::int64_t atoms_ = 0;    ///< particles with mass in a run of molecules; else 0
+  std::int64_t freedom_ = 0;  ///< degrees of freedom; 0 in reduced units, where energies are told by themselves
+  double kinetic_sum_ = 0;    ///< over all looks [energy]
 };
 
 /// Watches a vector that the flow keeps: its value and the relative error |value - value0| / scale.

@@ -123,6 +123,13 @@ template <class Real> void Simulation<Real>::check_wanted(const Scheduled& added
   if (added.wanted.energy && !claims.energy) {
     throw Error(fmt::format("monitor '{}' needs the energy, but a force of this run reports none", added.name));
   }
+  // A copy is asked: the run itself must not know.
+  if (added.wanted.virial && !AnyIntegrator<Real>(integrator_).virial(raw_)) {
+    throw Error(fmt::format("monitor '{}' needs the virial, but {}", added.name,
+                            claims.constraints > 0
+                                ? "the constraints of this run do not tell theirs"
+                                : fmt::format("'{}' tells none, or one of its forces does not", claims.hamiltonian)));
+  }
   if (!added.wanted.action) return;
   const auto refuse = [&](const std::string& why) {
     throw Error(fmt::format("monitor '{}' needs the action of every step: {}", added.name, why));
@@ -325,6 +332,7 @@ template <class Real> std::optional<Outcome> Simulation<Real>::observe_due() {
     looking_.push_back(&scheduled);
     scheduled.last_wall = looked_at_clock_;
     wanted.energy = wanted.energy || scheduled.wanted.energy;
+    wanted.virial = wanted.virial || scheduled.wanted.virial;
     wanted.action = wanted.action || scheduled.wanted.action;
   }
   const auto stop_due = [&](const ScheduledStop& stop) { return is_multiple(step(), stop.steps); };

@@ -72,6 +72,21 @@ std::optional<SeriesStatistics::Line> SeriesStatistics::line() const {
   return Line{fit.slope, fit.spread > 0 ? std::sqrt(fit.residual / freedom / fit.spread) : 0};
 }
 
+double SeriesStatistics::mean() const {
+  double sum = open_sum_;
+  for (const double mean : means_) sum += mean * static_cast<double>(block_);
+  return samples_ > 0 ? sum / static_cast<double>(samples_) : 0;
+}
+
+std::optional<double> SeriesStatistics::mean_error() const {
+  if (means_.size() < fewest_for_error) return {};
+  const double n = static_cast<double>(means_.size());
+  double mean = 0, squares = 0;
+  for (const double one : means_) mean += one / n;
+  for (const double one : means_) squares += (one - mean) * (one - mean);
+  return std::sqrt(squares / (n - 1) / n);
+}
+
 void SeriesStatistics::save(SavedState& saved, const std::string& prefix) const { save_part(saved, prefix, *this); }
 
 void SeriesStatistics::load(const SavedState& saved, const std::string& prefix) {

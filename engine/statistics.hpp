@@ -26,6 +26,10 @@ class SeriesStatistics {
   double worst() const { return worst_; }
   /// Root of the mean square.
   double rms() const { return samples_ > 0 ? std::sqrt(squares_ / static_cast<double>(samples_)) : 0; }
+  /// Mean of all values; 0 without any.
+  double mean() const;
+  /// Standard deviation of the block means, over the root of their number; empty below 20 of them.
+  std::optional<double> mean_error() const;
 
   struct Line {
     double slope, error;

@@ -123,6 +123,7 @@ template <SplitHamiltonian H> class Langevin {
     return hamiltonian_.flow_with_action(letter, s, h);
   }
   EnergyTerms<real> energy(const ParticleSystem<real>& s) { return hamiltonian_.energy(s); }
+  std::optional<Mat3<real>> virial(const ParticleSystem<real>& s) { return detail::virial_of(hamiltonian_, s); }
   void accelerations(const ParticleSystem<real>& s, VectorColumn<real>& a) {
     hamiltonian_.accelerations(s, a);
     for (Index i = 0; i < s.size(); ++i) a.add(i, -real(options_.friction) * s.velocities()[i]);

@@ -2,6 +2,7 @@
 #include "engine/error.hpp"
 #include "engine/suggest.hpp"
 #include "io/inspect.hpp"
+#include "io/structure_parts.hpp"
 #include "io/trajectory_reader.hpp"
 #include "io/trial.hpp"
 
@@ -32,17 +33,58 @@ std::string quoted_field(const std::string& name) {
   return field + "\"";
 }
 
-/// The format of ASE and OVITO: a count, one line of keys, one line per particle.
-void write_xyz(const TrajectoryReader& reader, const Frame& frame, fmt::memory_buffer& out) {
+/// The element that a name begins with: "O" of "O_17", as structures name their atoms.
+std::string element_of(const std::string& name) {
+  const std::size_t mark = name.rfind('_');
+  if (mark == std::string::npos || mark == 0 || mark + 1 == name.size()) return word_of(name);
+  return name.find_first_not_of("0123456789", mark + 1) == std::string::npos ? word_of(name.substr(0, mark))
+                                                                             : word_of(name);
+}
+
+/// Lattice and pbc; `length` is the file's unit of length.
+std::string cell_of(const Frame& frame, double length) {
+  if (frame.edges.empty()) return "pbc=\"F F F\"";
+  return fmt::format("Lattice=\"{:.17g} 0 0 0 {:.17g} 0 0 0 {:.17g}\" pbc=\"T T T\"", frame.edges[0] / length,
+                     frame.edges[1] / length, frame.edges[2] / length);
+}
+
+/// A molecular run, in the units that `read_structure` expects of such a file: those of ASE.
+void write_molecular_xyz(const TrajectoryReader& reader, const Frame& frame, fmt::memory_buffer& out) {
+  const Frames& shared = reader.shared();
+  const FileUnits ase = file_units_of(StructureFormat::extended_xyz, {});
+  const auto into = std::back_inserter(out);
+  fmt::format_to(into,
+                 "{}\nProperties=species:S:1:pos:R:3:masses:R:1:momenta:R:3 Time={:.17g} Step={} {} time_unit=ps\n",
+                 shared.ids.size(), frame.time, frame.step, cell_of(frame, ase.length));
+  for (std::size_t i = 0; i < shared.ids.size(); ++i) {
+    const double *x = &frame.positions[3 * i], *v = &frame.velocities[3 * i], m = shared.masses[i];
+    const double p = m / ase.momentum_velocity;
+    fmt::format_to(into, "{} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n", element_of(shared.names[i]),
+                   x[0] / ase.length, x[1] / ase.length, x[2] / ase.length, m, p * v[0], p * v[1], p * v[2]);
+  }
+}
+
+/// Runs in other units keep them, and the comment says which they are.
+void write_own_xyz(const TrajectoryReader& reader, const Frame& frame, fmt::memory_buffer& out) {
   const Frames& shared = reader.shared();
   const auto into = std::back_inserter(out);
-  fmt::format_to(into, "{}\nProperties=species:S:1:pos:R:3:vel:R:3 Time={:.17g} Step={} pbc=\"F F F\"\n",
-                 shared.ids.size(), frame.time, frame.step);
+  fmt::format_to(into, "{}\nProperties=species:S:1:pos:R:3:vel:R:3 Time={:.17g} Step={} {} units={}", shared.ids.size(),
+                 frame.time, frame.step, cell_of(frame, 1), shared.units);
+  if (shared.units != "reduced") {
+    fmt::format_to(into, " length_unit={} velocity_unit={} time_unit={}", shared.length_unit, shared.velocity_unit,
+                   shared.time_unit);
+  }
+  out.push_back('\n');
   for (std::size_t i = 0; i < shared.ids.size(); ++i) {
     const double *x = &frame.positions[3 * i], *v = &frame.velocities[3 * i];
     fmt::format_to(into, "{} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n", word_of(shared.names[i]), x[0], x[1],
                    x[2], v[0], v[1], v[2]);
   }
+}
+
+/// Extended XYZ, the format of ASE and OVITO: a count, one line of keys, one line per particle.
+void write_xyz(const TrajectoryReader& reader, const Frame& frame, fmt::memory_buffer& out) {
+  (reader.shared().units == "molecular" ? write_molecular_xyz : write_own_xyz)(reader, frame, out);
 }
 
 void write_csv(const TrajectoryReader& reader, const Frame& frame, fmt::memory_buffer& out) {

@@ -54,6 +54,7 @@ struct Frame {
   std::vector<double> positions, velocities;  ///< (n, 3), row by row [length], [length/time]
   std::vector<double> variables = {};         ///< (n)
   std::vector<std::int32_t> images = {};  ///< (n, 3), how often each has crossed the periodic box; empty without one
+  std::vector<double> edges = {};         ///< (3), of the periodic box [length]; empty without one
 };
 
 /// All frames of a trajectory and what they share.
@@ -78,6 +79,10 @@ FileInfo verify(const std::filesystem::path& file);
 
 /// Rewrites a trajectory as extended XYZ (`.xyz`) or CSV (`.csv`: step, time, id, name, x ... vz, 17 digits; of a
 /// first-order system, which has no XYZ: step, time, and a column for each variable).
+///
+/// XYZ of a molecular run is as ASE reads it: the element as species (of a name such as "O_17" what stands before its
+/// number), positions in angstrom, masses in u, momenta in sqrt(eV u), Lattice and pbc of a periodic box, positions in
+/// it. Other runs keep their own units, which the comment of each frame tells.
 /// @return the number of frames
 /// @throws Error for another extension; FileError if a file cannot be read or written
 Index convert(const std::filesystem::path& file, const std::filesystem::path& out);

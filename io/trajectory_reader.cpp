@@ -74,7 +74,13 @@ void TrajectoryReader::open_particles(const std::filesystem::path& path) {
   position_ = file_.open(particles_path + "/position/value");
   velocity_ = file_.open(particles_path + "/velocity/value");
   periodic_ = file_.has(image_path + "/value");
-  if (periodic_) image_ = file_.open(image_path + "/value");
+  if (periodic_) {
+    image_ = file_.open(image_path + "/value");
+    edges_ = file_.open(edges_path + "/value");
+    if (edges_.shape().size() != 2 || edges_.shape()[1] != 3) {
+      throw FileError("damaged: the edges of the box are not 3 in each frame", {.file = path.string()});
+    }
+  }
   for (const Hdf5Dataset* dataset : {&position_, &velocity_, periodic_ ? &image_ : &position_}) {
     const std::vector<Index> shape = dataset->shape();
     if (shape.size() != 3 || shape[1] != n || shape[2] != 3) {
@@ -90,16 +96,17 @@ void TrajectoryReader::open_particles(const std::filesystem::path& path) {
   shared_.time_unit = unit_at(file_, particles_path + "/position/time", "ps");
   frames_ = std::min(
       {position_.rows(), velocity_.rows(), static_cast<Index>(steps_.size()), static_cast<Index>(times_.size())});
-  if (periodic_) frames_ = std::min(frames_, image_.rows());
+  if (periodic_) frames_ = std::min({frames_, image_.rows(), edges_.rows()});
 }
 
 Frame TrajectoryReader::frame(Index k) const {
   const auto at = static_cast<std::size_t>(k);
-  if (of_system_) return {steps_.at(at), times_.at(at), {}, {}, variables_.read_reals(k, 1), {}};
-  Frame frame{steps_.at(at), times_.at(at), position_.read_reals(k, 1), velocity_.read_reals(k, 1), {}, {}};
+  if (of_system_) return {steps_.at(at), times_.at(at), {}, {}, variables_.read_reals(k, 1), {}, {}};
+  Frame frame{steps_.at(at), times_.at(at), position_.read_reals(k, 1), velocity_.read_reals(k, 1), {}, {}, {}};
   if (periodic_) {
     for (const std::int64_t image : image_.read_integers(k, 1))
       frame.images.push_back(static_cast<std::int32_t>(image));
+    frame.edges = edges_.read_reals(k, 1);
   }
   return frame;
 }
@@ -118,7 +125,7 @@ std::vector<std::pair<std::string, Index>> TrajectoryReader::lengths() const {
       {particles_path + "/position/time", static_cast<Index>(times_.size())}};
   if (periodic_) {
     all.emplace_back(image_path + "/value", image_.rows());
-    all.emplace_back(edges_path + "/value", file_.open(edges_path + "/value").rows());
+    all.emplace_back(edges_path + "/value", edges_.rows());
   }
   return all;
 }

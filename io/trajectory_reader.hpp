@@ -30,7 +30,7 @@ class TrajectoryReader {
   void open_system(const std::filesystem::path& path);
 
   Hdf5File file_;
-  Hdf5Dataset position_, velocity_, variables_, image_;
+  Hdf5Dataset position_, velocity_, variables_, image_, edges_;
   std::vector<std::int64_t> steps_;
   std::vector<double> times_;
   Frames shared_;

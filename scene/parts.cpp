@@ -6,8 +6,11 @@
 #include "constraints/surfaces.hpp"
 #include "engine/monitors.hpp"
 #include "engine/orbital_monitors.hpp"
+#include "engine/pressure.hpp"
+#include "engine/radial_distribution.hpp"
 #include "engine/shadow_hamiltonian.hpp"
 #include "engine/temperature.hpp"
+#include "engine/time_correlation.hpp"
 #include "engine/variables.hpp"
 #include "forces/bonded.hpp"
 #include "forces/external_fields.hpp"
@@ -87,6 +90,10 @@ Parts standard_parts() {
   parts.add_monitor<Elements>();
   parts.add_monitor<ClosestApproach>();
   parts.add_monitor<Temperature>();
+  parts.add_monitor<Pressure>();
+  parts.add_monitor<RadialDistribution>();
+  parts.add_monitor<MeanSquareDisplacement>();
+  parts.add_monitor<VelocityAutocorrelation>();
   parts.add_monitor<Variables>();
   parts.add_monitor<ConstraintResidual>();
   parts.add_monitor<ShadowHamiltonian<double>>();

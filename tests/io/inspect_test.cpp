@@ -4,9 +4,15 @@
 
 #include "engine/quantity.hpp"
 #include "engine/version.hpp"
+#include "forces/sum.hpp"
+#include "integrators/composition.hpp"
+#include "integrators/kinetic_potential.hpp"
+#include "integrators/schemes.hpp"
 #include "io/bodies.hpp"
 #include "io/digest.hpp"
 #include "io/hdf5_file.hpp"
+#include "io/structure.hpp"
+#include "io/trajectory.hpp"
 #include "tests/io/support.hpp"
 
 #include <sstream>
@@ -148,13 +154,42 @@ TEST_CASE("a trajectory converts to extended XYZ and to CSV, and the numbers rea
   const std::vector<std::string> xyz = lines_of(folder / "run.xyz");
   REQUIRE(xyz.size() == 3 * 8);
   CHECK(xyz[8] == "6");
-  CHECK(xyz[9] == "Properties=species:S:1:pos:R:3:vel:R:3 Time=200 Step=5 pbc=\"F F F\"");
+  CHECK(xyz[9] ==
+        "Properties=species:S:1:pos:R:3:vel:R:3 Time=200 Step=5 pbc=\"F F F\" units=solar length_unit=au "
+        "velocity_unit=au/day time_unit=day");
   std::istringstream jupiter(xyz[16 + 3]);
   std::string species;
   double x = 0;
   jupiter >> species >> x;
   CHECK(species == "Jupiter");
   CHECK(x == last.positions()[1][0]);
+}
+
+TEST_CASE("the XYZ of a molecular run in a box reads back as its particles", "[inspect][structure]") {
+  const test::ScratchFolder folder;
+  ParticleSystem<double> water(unit_system("molecular"));
+  water.set_box(Box::periodic({1.5, 2, 2.5}));
+  water.add("O_1", 15.999, {0.1, 1.9, -0.3}, {0.5, -0.25, 3});
+  water.add("H_2", 1.008, {0.17, 1.85, 2.6}, {-2, 1, 0.125});
+  water.add("ion", 22.99, {0.7, 0.6, 0.5}, {0, 0, -1});
+  Simulation<double> run(water, compose(KineticPotential(Sum<>{}), schemes::verlet), 0.001);
+  auto& writer = run.every(1, io::TrajectoryWriter(folder / "run.h5"));
+  REQUIRE(run.run(0).ok());
+  writer.finish(Outcome{});
+  io::convert(folder / "run.h5", folder / "run.xyz");
+  CHECK(lines_of(folder / "run.xyz")[1] ==
+        "Properties=species:S:1:pos:R:3:masses:R:1:momenta:R:3 Time=0 Step=0 Lattice=\"15 0 0 0 20 0 0 0 25\" "
+        "pbc=\"T T T\" time_unit=ps");
+  const ParticleSystem<double> back = io::read_structure(folder / "run.xyz");
+  const ParticleSystem<double>& sent = run.particles();
+  REQUIRE(back.size() == 3);
+  CHECK((back.box().edges() - sent.box().edges()).norm() < 1e-15);
+  CHECK(back.names() == std::vector<std::string>{"O_1", "H_2", "ion_3"});
+  for (Index i = 0; i < 3; ++i) {
+    CHECK(back.masses()[i] == sent.masses()[i]);
+    CHECK((Vec3<double>(back.positions()[i]) - Vec3<double>(sent.positions()[i])).norm() < 1e-15);
+    CHECK((Vec3<double>(back.velocities()[i]) - Vec3<double>(sent.velocities()[i])).norm() < 1e-15);
+  }
 }
 
 TEST_CASE("a conversion that cannot be is refused", "[inspect][messages]") {
