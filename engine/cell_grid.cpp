@@ -56,7 +56,7 @@ void CellGrid::lay_axes(const std::array<const double*, 3>& coordinates, Index c
     const Interval all = extent_of(coordinates[k], count);
     length[k] = std::max(all.upper - all.lower, range);
     volume *= length[k];
-    axes_[k] = Axis{all.lower, 1, 1, {}};
+    axes_[k] = Axis{all.lower, 1, 1, 1, {}};
   }
   const double even =
       std::cbrt(points_per_cell * width_to_length * volume / static_cast<double>(std::max<Index>(count, 1)));
@@ -64,7 +64,7 @@ void CellGrid::lay_axes(const std::array<const double*, 3>& coordinates, Index c
   double cells = 1;
   for (std::size_t k = 0; k < 3; ++k) {
     Axis& axis = axes_[k];
-    axis.edge = k == 0 ? width / width_to_length : width;
+    axis.set_edge(k == 0 ? width / width_to_length : width);
     cells *= std::floor(length[k] / axis.edge) + 1;
   }
   const bool empty = cells > most_cells_per_point * static_cast<double>(count) + 4096;
@@ -91,7 +91,7 @@ void CellGrid::lay_axes(const std::array<const double*, 3>& coordinates, Index c
   for (std::size_t k = 0; k < 3; ++k) {
     Axis& axis = axes_[k];
     axis.occupied.clear();
-    axis.edge = std::min(axis.edge * longer, length[k]);
+    axis.set_edge(std::min(axis.edge * longer, length[k]));
     axis.size = static_cast<Index>(std::floor(length[k] / axis.edge)) + 1;
   }
 }

@@ -55,11 +55,16 @@ class CellGrid {
  private:
   /// The cells along one axis: of one length, or only those that hold points.
   struct Axis {
-    double lower = 0, edge = 1;
+    double lower = 0, edge = 1, inverse_edge = 1;
     Index size = 1;
     std::vector<double> occupied;  ///< numbers of the cells that are there; empty: all are
 
-    double number(double x) const { return std::floor((x - lower) / edge); }
+    /// Grows with x, so that what lies between two points lies between their cells.
+    double number(double x) const { return std::floor((x - lower) * inverse_edge); }
+    void set_edge(double length) {
+      edge = length;
+      inverse_edge = 1 / length;
+    }
     Index cell(double x) const;
     std::pair<Index, Index> cells(double from, double to) const;
     /// Least distance from an interval to a cell [length].

@@ -18,7 +18,7 @@ namespace {
 /// The first skin, and the bounds of those chosen by cost, as parts of the range.
 constexpr double first_skin = 0.12, narrowest_skin = 0.02, widest_skin = 0.6;
 /// What a search costs, in force evaluations over the list.
-constexpr double search_cost = 2.5;
+constexpr double search_cost = 3.5;
 constexpr Index most_images = 10'000;
 /// A record far from all others, whose squared distances are numbers.
 constexpr double nowhere = 1e140;
@@ -30,6 +30,7 @@ std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 /// What one thread needs to find the neighbors of a group.
 struct NeighborList::Scratch {
   AlignedVector<float> x, y, z;
+  std::array<AlignedVector<float>, 3> run;
   AlignedVector<std::int32_t> number;
   std::array<AlignedVector<std::int32_t>, group_size> found;
   std::array<std::ptrdiff_t, group_size> count{};
@@ -38,6 +39,7 @@ struct NeighborList::Scratch {
     const std::size_t size = at(points + 32);
     if (x.size() >= size) return;
     for (auto* column : {&x, &y, &z}) column->resize(size + size / 2);
+    for (auto& column : run) column.resize(size + size / 2);
     number.resize(size + size / 2);
     for (auto& list : found) list.resize(size + size / 2);
   }
@@ -225,12 +227,14 @@ void NeighborList::lay_out(const ParticleSystem<double>& s) {
   record_of_.resize(at(n));
   source_.resize(at(count));
   ghosts_.clear();
-  for (auto& column : sorted_) column.resize(at(count + 16));
+  for (auto& column : sorted_) column.resize(at(count));
+  for (auto& column : single_) column.resize(at(count + 16));
   for (Index r = 0; r < count; ++r) {
     const std::int32_t point = order[at(r)], owner = owner_[at(point)];
     for (int k = 0; k < 3; ++k) {
       const double x = points_[at(k)][at(point)];
       sorted_[at(k)][at(r)] = x;
+      single_[at(k)][at(r)] = static_cast<float>(x);
       records_[at(4 * r + k)] = x;
     }
     set_type(r, topology != nullptr ? topology->type(owner) : 0);
@@ -315,45 +319,80 @@ bool NeighborList::find_all(double reach) {
   return false;
 }
 
+/// Where neighbors of a group are looked for, in single precision.
+struct NeighborList::Surroundings {
+  CellGrid::Bounds bounds;
+  SearchBox box;
+  float limit2;  ///< square of the reach, and of what rounding may add to a distance
+  /// The group is so far out that single precision tells distances only relative to it.
+  bool far;
+  std::array<double, 3> origin;
+};
+
+NeighborList::Surroundings NeighborList::surroundings(const std::array<std::int32_t, group_size>& own,
+                                                      double reach) const {
+  constexpr double rounding = 8 * 0x1p-24, most = 0.02;
+  Surroundings around{};
+  double extent = reach, size = reach;
+  for (std::size_t k = 0; k < 3; ++k) {
+    double lower = std::numeric_limits<double>::infinity(), upper = -lower;
+    for (const std::int32_t record : own) {
+      lower = std::min(lower, sorted_[k][at(record)]);
+      upper = std::max(upper, sorted_[k][at(record)]);
+    }
+    around.bounds.lower[k] = lower;
+    around.bounds.upper[k] = upper;
+    extent = std::max(extent, reach + (upper - lower));
+    size = std::max({size, reach + std::abs(lower), reach + std::abs(upper)});
+  }
+  around.far = !(rounding * size <= most * reach);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double half = (around.bounds.upper[k] - around.bounds.lower[k]) / 2, middle = around.bounds.lower[k] + half;
+    around.origin[k] = around.far ? middle : 0;
+    around.box.middle[k] = static_cast<float>(middle - around.origin[k]);
+    around.box.half[k] = static_cast<float>(half);
+  }
+  const double limit = reach + rounding * (around.far ? extent : size);
+  around.limit2 = static_cast<float>(limit * limit * (1 + 0x1p-20));
+  return around;
+}
+
 void NeighborList::find(Index group, double reach, Scratch& scratch) {
   const NeighborSearchKernels& kernels = neighbor_search_kernels();
   std::array<std::int32_t, group_size> own{};  // their records
   for (Index lane = 0; lane < group_size; ++lane) own[at(lane)] = lanes_[at(group_size * group + lane)] / 4;
   const std::int32_t* particles = particles_.data() + group_size * group;
   const auto nobody = static_cast<std::int32_t>(source_.size());
-  CellGrid::Bounds bounds;
-  SearchBox box{};
-  double extent = reach;
-  for (int k = 0; k < 3; ++k) {
-    double lower = std::numeric_limits<double>::infinity(), upper = -lower;
-    for (Index lane = 0; lane < group_size; ++lane) {
-      lower = std::min(lower, sorted_[at(k)][at(own[at(lane)])]);
-      upper = std::max(upper, sorted_[at(k)][at(own[at(lane)])]);
-    }
-    bounds.lower[at(k)] = lower;
-    bounds.upper[at(k)] = upper;
-    box.middle[k] = lower + (upper - lower) / 2;
-    box.half[k] = static_cast<float>((upper - lower) / 2 * (1 + 0x1p-20));
-    extent = std::max(extent, reach + (upper - lower));
-  }
-  // Distances are compared in single precision: relative to the group they are wrong by a few units of 2^-24.
-  const double limit = reach + 8 * 0x1p-24 * extent;
-  const auto limit2 = static_cast<float>(limit * limit * (1 + 0x1p-20));
+  const Surroundings around = surroundings(own, reach);
   scratch.make_room(0);
   NearPoints points{scratch.x.data(), scratch.y.data(), scratch.z.data(), scratch.number.data(), 0};
-  grid_.near(bounds, reach * (1 + 1e-9), [&](Index from, Index to) {
+  grid_.near(around.bounds, reach * (1 + 1e-9), [&](Index from, Index to) {
     if (from == to) return;
     scratch.make_room(points.count + (to - from));
     points = {scratch.x.data(), scratch.y.data(), scratch.z.data(), scratch.number.data(), points.count};
-    kernels.gather(sorted_[0].data(), sorted_[1].data(), sorted_[2].data(), from, to, box, limit2, points);
+    const float* run[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      run[k] = single_[k].data() + from;
+      if (!around.far) continue;
+      for (Index r = from; r < to; ++r) {
+        scratch.run[k][at(r - from)] = static_cast<float>(sorted_[k][at(r)] - around.origin[k]);
+      }
+      run[k] = scratch.run[k].data();
+    }
+    kernels.gather(run[0], run[1], run[2], to - from, static_cast<std::int32_t>(from), around.box, around.limit2,
+                   points);
   });
   std::ptrdiff_t rows = 0;
   for (Index lane = 0; lane < group_size; ++lane) {
     scratch.count[at(lane)] = 0;
     if (particles[lane] < 0) continue;
-    const auto relative = [&](int k) { return static_cast<float>(sorted_[at(k)][at(own[at(lane)])] - box.middle[k]); };
+    const auto relative = [&](std::size_t k) {
+      const double x = sorted_[k][at(own[at(lane)])];
+      return static_cast<float>(x - around.origin[k]) - around.box.middle[k];
+    };
     std::int32_t* found = scratch.found[at(lane)].data();
-    std::ptrdiff_t count = kernels.select(points, relative(0), relative(1), relative(2), limit2, own[at(lane)], found);
+    std::ptrdiff_t count =
+        kernels.select(points, relative(0), relative(1), relative(2), around.limit2, own[at(lane)], found);
     if (!excluded_.empty()) {
       const std::int32_t i = source_[at(own[at(lane)])];
       const auto from = excluded_.begin() + excluded_begin_[at(i)], to = excluded_.begin() + excluded_begin_[at(i + 1)];

@@ -87,6 +87,7 @@ class NeighborList {
     std::int32_t record, of, shift;
   };
   struct Scratch;
+  struct Surroundings;
 
   bool is_fresh(const ParticleSystem<double>& s) const;
   double take_positions(const ParticleSystem<double>& s);
@@ -100,6 +101,7 @@ class NeighborList {
   void form_groups();
   void take_exclusions(const ParticleSystem<double>& s);
   bool find_all(double reach);
+  Surroundings surroundings(const std::array<std::int32_t, group_size>& own, double reach) const;
   void find(Index group, double reach, Scratch& scratch);
   std::int64_t reserve(std::int64_t entries);
 
@@ -132,6 +134,7 @@ class NeighborList {
   // For the search alone.
   CellGrid grid_;
   std::array<AlignedVector<double>, 3> points_, sorted_;
+  std::array<AlignedVector<float>, 3> single_;  ///< as `sorted_`
   std::vector<std::int32_t> owner_, shift_,
       source_;  ///< of a point: its particle and its shift; of a record: its particle
   std::vector<std::int32_t> excluded_begin_, excluded_;

@@ -10,44 +10,40 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Floats = hn::ScalableTag<float>;
 using Numbers = hn::Rebind<std::int32_t, Floats>;
-using HalfFloats = hn::Rebind<float, hn::ScalableTag<double>>;  // as many as there are doubles in a register
-using HalfNumbers = hn::Rebind<std::int32_t, HalfFloats>;
 constexpr std::ptrdiff_t lanes = hn::MaxLanes(Floats());
-constexpr std::ptrdiff_t half_lanes = hn::MaxLanes(HalfFloats());
 constexpr float far_away = 3e18F;  // its square is a number
 
-/// `points` of a column relative to the middle, and the squares of their distances from the box along it added to `r2`.
-HWY_INLINE hn::Vec<HalfFloats> relative(const double* x, double middle, float half, hn::Vec<HalfFloats>& r2) {
-  const hn::ScalableTag<double> d;
-  const HalfFloats f;
-  const auto at = hn::DemoteTo(f, hn::Sub(hn::LoadU(d, x), hn::Set(d, middle)));
-  const auto outside = hn::ZeroIfNegative(hn::Sub(hn::Abs(at), hn::Set(f, half)));
+/// Coordinates relative to the middle; the squares of their distances from the box along one axis are added to `r2`.
+HWY_INLINE hn::Vec<Floats> relative(const float* x, float middle, float half, hn::Vec<Floats>& r2) {
+  const Floats d;
+  const auto at = hn::Sub(hn::LoadU(d, x), hn::Set(d, middle));
+  const auto outside = hn::ZeroIfNegative(hn::Sub(hn::Abs(at), hn::Set(d, half)));
   r2 = hn::MulAdd(outside, outside, r2);
   return at;
 }
 
-void gather(const double* x, const double* y, const double* z, std::ptrdiff_t from, std::ptrdiff_t to,
+void gather(const float* x, const float* y, const float* z, std::ptrdiff_t count, std::int32_t first,
             const SearchBox& box, float limit, NearPoints& points) {
-  const HalfFloats f;
-  const HalfNumbers i;
-  const auto most = hn::Set(f, limit);
-  const auto end = hn::Set(i, static_cast<std::int32_t>(to));
-  std::ptrdiff_t count = points.count;
-  for (std::ptrdiff_t k = from; k < to; k += half_lanes) {
-    auto r2 = hn::Zero(f);
+  const Floats d;
+  const Numbers i;
+  const auto most = hn::Set(d, limit);
+  const auto end = hn::Set(i, first + static_cast<std::int32_t>(count));
+  std::ptrdiff_t found = points.count;
+  for (std::ptrdiff_t k = 0; k < count; k += lanes) {
+    auto r2 = hn::Zero(d);
     const auto px = relative(x + k, box.middle[0], box.half[0], r2);
     const auto py = relative(y + k, box.middle[1], box.half[1], r2);
     const auto pz = relative(z + k, box.middle[2], box.half[2], r2);
-    const auto number = hn::Iota(i, static_cast<std::int32_t>(k));
+    const auto number = hn::Iota(i, first + static_cast<std::int32_t>(k));
     const auto near = hn::And(hn::RebindMask(i, hn::Le(r2, most)), hn::Lt(number, end));
-    const auto near_f = hn::RebindMask(f, near);
-    hn::StoreU(hn::Compress(px, near_f), f, points.x + count);
-    hn::StoreU(hn::Compress(py, near_f), f, points.y + count);
-    hn::StoreU(hn::Compress(pz, near_f), f, points.z + count);
-    hn::StoreU(hn::Compress(number, near), i, points.number + count);
-    count += static_cast<std::ptrdiff_t>(hn::CountTrue(i, near));
+    const auto near_f = hn::RebindMask(d, near);
+    hn::StoreU(hn::Compress(px, near_f), d, points.x + found);
+    hn::StoreU(hn::Compress(py, near_f), d, points.y + found);
+    hn::StoreU(hn::Compress(pz, near_f), d, points.z + found);
+    hn::StoreU(hn::Compress(number, near), i, points.number + found);
+    found += static_cast<std::ptrdiff_t>(hn::CountTrue(i, near));
   }
-  points.count = count;
+  points.count = found;
 }
 
 std::ptrdiff_t select(const NearPoints& points, float x, float y, float z, float limit, std::int32_t self,

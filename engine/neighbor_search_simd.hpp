@@ -16,17 +16,15 @@ struct NearPoints {
   std::ptrdiff_t count;
 };
 
-/// A box along the axes: what coordinates are relative to, its middle, and half of its edges.
+/// A box along the axes: its middle and half of its edges.
 struct SearchBox {
-  double middle[3];
-  float half[3];
+  float middle[3], half[3];
 };
 
 struct NeighborSearchKernels {
-  /// Appends those of points `from` to `to` of x, y, z whose squared distance from a box is up to `limit`; `to` -
-  /// `from`
-  /// + 16 more have room.
-  void (*gather)(const double* x, const double* y, const double* z, std::ptrdiff_t from, std::ptrdiff_t to,
+  /// Appends those of `count` points x, y, z whose squared distance from a box is up to `limit`, relative to its
+  /// middle; the first has the number `first`. 16 more can be read, and have room.
+  void (*gather)(const float* x, const float* y, const float* z, std::ptrdiff_t count, std::int32_t first,
                  const SearchBox& box, float limit, NearPoints& points);
   /// Writes the numbers of all points but `self` whose squared distance from (x, y, z) is up to `limit`, in order, and
   /// returns how many there are; `out` has room for all and 16 more.

@@ -26,13 +26,13 @@ struct UniformField {
                               field<&UniformField::acceleration>("acceleration", "length/time^2", "g = [x, y, z]")
                                   .required("[\"0 m/s^2\", \"0 m/s^2\", \"-9.81 m/s^2\"]"));
   }
-  static ForceClaims claims() { return {.keeps_momentum = false, .keeps_angular_momentum = false}; }
+  static ForceClaims claims() { return {.keeps_momentum = false, .keeps_angular_momentum = false, .periodic = true}; }
 
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     const Vec3<Real> g = detail::widened<Real>(acceleration);
     for (Index i = 0; i < s.size(); ++i) {
       out.acceleration(i, g);
-      if (out.wants_energy()) out.energy(-s.masses()[i] * dot(g, s.positions()[i]));
+      if (out.wants_energy()) out.energy(-s.masses()[i] * dot(g, s.unwrapped(i)));
     }
   }
 };
@@ -55,7 +55,7 @@ struct OscillatingField {
         field<&OscillatingField::phase>("phase", "angle"));
   }
   static ForceClaims claims() {
-    return {.time_dependent = true, .keeps_momentum = false, .keeps_angular_momentum = false};
+    return {.time_dependent = true, .keeps_momentum = false, .keeps_angular_momentum = false, .periodic = true};
   }
 
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
@@ -63,7 +63,7 @@ struct OscillatingField {
     const Vec3<Real> g = cos(Real(omega) * s.time() + Real(phase)) * detail::widened<Real>(acceleration);
     for (Index i = 0; i < s.size(); ++i) {
       out.acceleration(i, g);
-      if (out.wants_energy()) out.energy(-s.masses()[i] * dot(g, s.positions()[i]));
+      if (out.wants_energy()) out.energy(-s.masses()[i] * dot(g, s.unwrapped(i)));
     }
   }
 };

@@ -46,7 +46,8 @@ LennardJonesRow row_of(const PairKind& kind, double cutoff, Cutoff cutoff_style,
   row.energy6 = 4 * kind.epsilon * s6;
   const double c2 = cutoff * cutoff;
   if (cutoff_style == Cutoff::switch_c2 || cutoff_style == Cutoff::switch_c4) {
-    row.style = {switch_from * switch_from, 1 / (c2 - switch_from * switch_from)};
+    row.style[0] = switch_from * switch_from;
+    row.style[1] = 1 / (c2 - switch_from * switch_from);
     return row;
   }
   if (cutoff_style == Cutoff::plain) return row;

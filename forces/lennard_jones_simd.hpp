@@ -3,7 +3,6 @@
 
 #include "engine/simd.hpp"
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -15,7 +14,7 @@ struct LennardJonesRow {
   double close2 = 0;                 ///< nearer pairs may be too strong for the grid of the sums [length^2]
   double force12 = 0, force6 = 0;    ///< F/r = (force12 / r^6 - force6) / r^8
   double energy12 = 0, energy6 = 0;  ///< U = (energy12 / r^6 - energy6) / r^6
-  std::array<double, 2> style{};     ///< see LennardJonesStyle
+  double style[2] = {0, 0};          ///< see LennardJonesStyle
 };
 
 /// What the end of the range does, and the numbers of a row that it needs.

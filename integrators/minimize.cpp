@@ -1,5 +1,6 @@
 #include "integrators/minimize.hpp"
 
+#include "engine/neighbor_list.hpp"
 #include "engine/parallel.hpp"
 
 #include <fmt/format.h>
@@ -78,7 +79,7 @@ double usual_displacement(const ParticleSystem<double>& s) {
 class Descent {
  public:
   Descent(ParticleSystem<double>& s, const AnyForce<double>& forces, const MinimizeOptions& options)
-      : s_(s), forces_(forces), options_(options), f_(s.size()), v_(s.size()) {
+      : s_(s), forces_(forces), options_(options), neighbors_(forces.claims().range), f_(s.size()), v_(s.size()) {
     reach_ = options.max_displacement > 0 ? options.max_displacement : usual_displacement(s);
   }
 
@@ -98,7 +99,7 @@ class Descent {
         return ended(std::move(*failure_));
       }
     }
-    return {made_, largest_, {}};
+    return {made_, largest_, overlap_};
   }
 
  private:
@@ -113,10 +114,12 @@ class Descent {
 
   /// Forces at the present positions. @return whether they can be computed
   bool evaluate() {
-    ForceSink<double> sink(f_, s_, {});
+    ForceSink<double> sink(f_, s_, {}, &neighbors_);
     forces_.add_to(sink, s_);
     ++made_;
-    failure_ = sink.failure();
+    failure_ = overlap_ = {};
+    // Forces of an overlap show the way out of it.
+    (sink.failure() && sink.failure()->kind == Outcome::Kind::overlap ? overlap_ : failure_) = sink.failure();
     if (failure_) return false;
     for (Index i = 0; i < s_.size(); ++i) f_.set(i, std::as_const(s_).masses()[i] * std::as_const(f_)[i]);
     const double largest = largest_norm(f_);
@@ -218,13 +221,14 @@ class Descent {
   ParticleSystem<double>& s_;
   const AnyForce<double>& forces_;
   const MinimizeOptions& options_;
+  NeighborList neighbors_;
   VectorColumn<double> f_, v_, before_;
   double reach_ = 0, dt_ = 0, alpha_ = alpha_start, largest_ = 0;
   double curvature_ = 0;    ///< largest of late [mass/time^2]
   bool held_back_ = false;  ///< whether a particle would have gone too far in the last step
   int downhill_ = 0, retreats_ = 0;
   std::int64_t made_ = 0;
-  std::optional<Failure> failure_;
+  std::optional<Failure> failure_, overlap_;
 };
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "integrators/composition.hpp"
 #include "integrators/damped.hpp"
 #include "integrators/kinetic_potential.hpp"
+#include "integrators/langevin.hpp"
 #include "integrators/schemes.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "tests/support/catch.hpp"
@@ -96,6 +97,8 @@ TEST_CASE("nothing is allocated inside advance, nor by settling", "[allocation]"
   }
   check_none(compose(WisdomHolman({.G = G, .coordinates = Coordinates::democratic}), schemes::verlet_aba));
   check_none(compose(Damped(KineticPotential(Gravity{.G = G}), {.rate = 1e-6}), schemes::verlet));
+  const Langevin bath(KineticPotential(Gravity{.G = G}), {.temperature = 300, .friction = 1e-6});
+  for (const char* letters : {"BAOAB", "OBABO"}) check_none(compose(bath, word(letters)));
 }
 
 TEST_CASE("bonded terms allocate nothing after their first evaluation", "[allocation]") {

@@ -1,6 +1,7 @@
 /// Every example, as a program and as a scene: both end in the same bits, do what [expect] says, and print what the
 /// README prints.
 
+#include "scene/minimize.hpp"
 #include "tests/examples/programs.hpp"
 #include "tests/examples/readme.hpp"
 #include "tests/support/catch.hpp"
@@ -33,10 +34,12 @@ const std::vector<Example> all = {
     {"chain", chain::program, Length::quick},
     {"double_pendulum", double_pendulum::program, Length::quick},
     {"driven_oscillator", driven_oscillator::program, Length::quick, Bits::of_this_machine},
+    {"fene_melt", fene_melt::program, Length::quick, Bits::of_this_machine, 100},
     {"figure_eight", figure_eight::program, Length::quick},
     {"heat_line", heat_line::program, Length::quick, Bits::of_this_machine, 0},
     {"henon_heiles", henon_heiles::program, Length::quick},
     {"kepler", kepler::program, Length::quick},
+    {"lj_melt", lj_melt::program, Length::slow, Bits::of_this_machine, 100},
     {"oblate_saturn", oblate_saturn::program, Length::slow, Bits::of_this_machine},
     {"outer_solar_system", outer_solar_system::program, Length::nightly, Bits::everywhere, 4000},
     {"pendulum", pendulum::program, Length::quick},
@@ -191,7 +194,9 @@ TEST_CASE("program and scene of every example end in the same digest", "[example
     CAPTURE(output);
     CHECK(output.starts_with(fmt::format("completed at step {}", example.few_steps)));
     CHECK(digest_in(output).size() == 7 + 64);
-    noether::Simulation<double> sim = assemble(scene_of(example.name));
+    noether::Scene scene = scene_of(example.name);
+    if (scene.minimize) CHECK(minimize_start(scene).converged());
+    noether::Simulation<double> sim = assemble(scene);
     CHECK(sim.run(example.few_steps).ok());
     CHECK(digest_in(output) == noether::io::digest(sim.particles()));
   }

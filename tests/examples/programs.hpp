@@ -15,23 +15,29 @@
 #include "engine/orbital_monitors.hpp"
 #include "engine/shadow_hamiltonian.hpp"
 #include "engine/simulation.hpp"
+#include "engine/temperature.hpp"
 #include "engine/units.hpp"
 #include "engine/variables.hpp"
+#include "forces/bonded.hpp"
 #include "forces/check_gradient.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
 #include "forces/henon_heiles.hpp"
+#include "forces/lennard_jones.hpp"
 #include "forces/linear_drag.hpp"
 #include "forces/sum.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/damped.hpp"
 #include "integrators/kinetic_potential.hpp"
+#include "integrators/langevin.hpp"
+#include "integrators/minimize.hpp"
 #include "integrators/schemes.hpp"
 #include "integrators/systems/heat_line.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "io/bodies.hpp"
 #include "io/digest.hpp"
 #include "io/trajectory.hpp"
+#include "scene/builders.hpp"
 #include "scene/run.hpp"
 
 #include <fmt/format.h>
@@ -87,6 +93,9 @@ namespace examples::double_pendulum {
 namespace examples::driven_oscillator {
 #include "examples/driven_oscillator/main.cpp"
 }
+namespace examples::fene_melt {
+#include "examples/fene_melt/main.cpp"
+}
 namespace examples::figure_eight {
 #include "examples/figure_eight/main.cpp"
 }
@@ -95,6 +104,9 @@ namespace examples::henon_heiles {
 }
 namespace examples::kepler {
 #include "examples/kepler/main.cpp"
+}
+namespace examples::lj_melt {
+#include "examples/lj_melt/main.cpp"
 }
 namespace examples::oblate_saturn {
 #include "examples/oblate_saturn/main.cpp"

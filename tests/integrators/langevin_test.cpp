@@ -17,6 +17,7 @@
 #include "tests/support/problems.hpp"
 #include "tests/support/settings.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>

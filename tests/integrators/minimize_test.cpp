@@ -7,7 +7,7 @@
 #include "forces/springs.hpp"
 #include "forces/sum.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/columns.hpp"
+#include "tests/support/planets.hpp"
 #include "tests/support/settings.hpp"
 
 #include <cmath>

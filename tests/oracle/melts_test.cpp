@@ -1,0 +1,139 @@
+/// Liquids beside another program, against the order of the method, and against themselves on other threads.
+
+#include "engine/monitors.hpp"
+#include "engine/simulation.hpp"
+#include "forces/lennard_jones.hpp"
+#include "integrators/composition.hpp"
+#include "integrators/kinetic_potential.hpp"
+#include "integrators/schemes.hpp"
+#include "io/digest.hpp"
+#include "io/structure.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/liquid.hpp"
+#include "tests/support/settings.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+namespace noether {
+namespace {
+
+using Liquid = KineticPotential<LennardJonesForce>;
+
+LennardJonesForce argon(Cutoff style) { return {.cutoff = 2.5, .cutoff_style = style, .epsilon = 1.0, .sigma = 1.0}; }
+
+/// Temperature, energies of a particle and pressure, as LAMMPS counts them.
+struct Thermo {
+  double temperature, potential, total, pressure;
+};
+
+template <class I> Thermo thermo_of(I& integrator, const ParticleSystem<double>& s) {
+  const auto n = static_cast<double>(s.size());
+  const EnergyTerms<double> energy = integrator.energy(s);
+  const double temperature = 2 * energy.kinetic / (3 * n - 3), volume = s.box().volume();
+  const double pressure = (n - 1) * temperature / volume + integrator.virial(s)->trace() / 3 / volume;
+  return {temperature, energy.potential / n, energy.total() / n, pressure};
+}
+
+/// Bits after 300 steps of a melting crystal.
+std::string melted(int threads, double skin) {
+  const test::Threads now(threads);
+  Liquid liquid(argon(Cutoff::plain));
+  liquid.set_neighbor_options({.skin = skin});
+  Simulation sim(test::liquid(5, 0.8442, 1.44), compose(std::move(liquid), schemes::verlet), 0.005);
+  REQUIRE(sim.run(300).ok());
+  return io::digest(sim.particles());
+}
+
+/// Rms of the relative energy error over a time of 2, after as much to begin with.
+double energy_error(double step) {
+  Simulation sim(test::liquid(4, 0.8442, 1.44), compose(Liquid(argon(Cutoff::switch_c4)), schemes::verlet), 0.004);
+  REQUIRE(sim.run(500).ok());
+  Simulation fine(sim.particles(), compose(Liquid(argon(Cutoff::switch_c4)), schemes::verlet), step);
+  auto& energy = fine.every(fine.steps_in(0.008), Energy{});
+  REQUIRE(fine.run_until(2.0).ok());
+  return energy.rms();
+}
+
+}  // namespace
+
+TEST_CASE("a melt has LAMMPS's temperature, energy and pressure at the start and after 100 steps", "[melts][oracle]") {
+  io::StructureOptions options;
+  options.units = &unit_system("reduced");
+  options.file_units = "lj";
+  const auto folder = std::filesystem::path(NOETHER_SOURCE_DIR) / "tests/data/lammps";
+  Simulation sim(io::read_structure(folder / "melt.data", options),
+                 compose(Liquid({.cutoff = 2.5, .cutoff_style = Cutoff::plain}), schemes::verlet), 0.005);
+  auto probe = compose(Liquid({.cutoff = 2.5, .cutoff_style = Cutoff::plain}), schemes::verlet);
+  // tests/data/lammps/melt.energies.txt, of which LAMMPS prints eight digits.
+  const Thermo expected[2] = {{1.44, -6.7733680533, -4.6158680533, -5.0210762701},
+                              {0.7520896052, -5.7514522632, -4.6246235665, 0.2222871157}};
+  for (const Thermo& one : expected) {
+    ParticleSystem<double> s = sim.particles();
+    probe.bind(s);
+    const Thermo found = thermo_of(probe, s);
+    CHECK(std::abs(found.temperature - one.temperature) < 1e-7);
+    CHECK(std::abs(found.potential - one.potential) < 1e-7);
+    CHECK(std::abs(found.total - one.total) < 1e-7);
+    CHECK(std::abs(found.pressure - one.pressure) < 1e-6);
+    REQUIRE(sim.run(100).ok());
+  }
+}
+
+TEST_CASE("the energy of a liquid fluctuates with the square of the step", "[melts][order]") {
+  const double coarse = energy_error(0.008), middle = energy_error(0.004), fine = energy_error(0.002);
+  CAPTURE(coarse, middle, fine);
+  CHECK(std::abs(std::log2(coarse / middle) - 2) < 0.25);
+  CHECK(std::abs(std::log2(middle / fine) - 2) < 0.15);
+}
+
+TEST_CASE("threads and skins do not change a bit of a melt", "[melts][determinism]") {
+  const std::string expected = melted(1, 0);
+  for (const int threads : {1, 2, 3, 8}) CHECK(melted(threads, 0.3) == expected);
+  for (const double skin : {0.1, 0.2, 0.45, 0.6}) CHECK(melted(2, skin) == expected);
+}
+
+TEST_CASE("a melt that was saved goes on with the same bits", "[melts][restart]") {
+  const auto make = [] {
+    return Simulation(test::liquid(4, 0.8442, 1.44), compose(Liquid(argon(Cutoff::shifted_force)), schemes::verlet),
+                      0.005);
+  };
+  auto whole = make(), first = make(), second = make();
+  REQUIRE(whole.run(120).ok());
+  REQUIRE(first.run(47).ok());
+  second.restore(first.save());
+  REQUIRE(second.run(73).ok());
+  CHECK(io::digest(second.particles()) == io::digest(whole.particles()));
+}
+
+TEST_CASE("a run in which two atoms collide head on ends as overlap, and names them", "[melts][extremes]") {
+  ParticleSystem<double> s;
+  s.set_box(Box::periodic({20, 20, 20}));
+  s.add("left", 1, {5, 5, 5}, {5000, 0, 0});
+  s.add("right", 1, {8, 5, 5}, {-5000, 0, 0});
+  Simulation sim(std::move(s), compose(Liquid(argon(Cutoff::shifted_force)), schemes::verlet), 1e-5);
+  const Outcome outcome = sim.run(1000);
+  CHECK(outcome.kind == Outcome::Kind::overlap);
+  CHECK(exit_code(outcome) == 1);
+  CHECK(outcome.message == "particles 'left' and 'right' are 0.4 apart, too close for their Lennard-Jones force");
+}
+
+TEST_CASE("no atoms, one atom and extreme densities run or stop with a name", "[melts][extremes]") {
+  for (const double density : {1e-3, 0.5, 1e3}) {
+    const double edge = std::cbrt(4 / density);
+    CAPTURE(density);
+    Simulation sim(test::liquid(edge < 1 ? 2 : 1, density, 1.0),
+                   compose(Liquid(argon(Cutoff::shifted_force)), schemes::verlet), 1e-4);
+    const Outcome outcome = sim.run(20);
+    CHECK(outcome.kind == (density > 100 ? Outcome::Kind::overlap : Outcome::Kind::completed));
+  }
+  ParticleSystem<double> s;
+  s.set_box(Box::periodic({3, 3, 3}));
+  const auto liquid = compose(Liquid(argon(Cutoff::shifted_force)), schemes::verlet);
+  CHECK_THROWS_WITH(Simulation(s, liquid, 0.01), Catch::Contains("there are no particles"));
+  s.add("alone", 1, {1, 1, 1}, {0.1, 0.2, 0.3});
+  CHECK(Simulation(s, liquid, 0.01).run(100).ok());
+}
+
+}  // namespace noether
