@@ -21,7 +21,8 @@ constexpr std::int64_t most_bins = 100'000;
 /// Which particles stand at the first and at the second place of the pairs.
 struct Places {
   std::vector<Index> first, second;
-  double pairs = 0;  ///< (i, j) with i != j
+  double pairs = 0;   ///< (i, j) with i != j
+  bool same = false;  ///< both places are for the same particles
 };
 
 Places places_of(const std::vector<std::string>& types, const Topology* topology, Index n) {
@@ -33,9 +34,9 @@ Places places_of(const std::vector<std::string>& types, const Topology* topology
     if (is(0)) places.first.push_back(i);
     if (is(1)) places.second.push_back(i);
   }
-  const bool same = types.empty() || types[0] == types[1];
+  places.same = types.empty() || types[0] == types[1];
   const auto a = static_cast<double>(places.first.size()), b = static_cast<double>(places.second.size());
-  places.pairs = a * (same ? b - 1 : b);
+  places.pairs = a * (places.same ? b - 1 : b);
   return places;
 }
 
@@ -56,12 +57,12 @@ class Neighborhood {
     owner_ = sorted(owner_);
   }
 
-  /// Calls `pair(r2)` for all others of particle `i` that may be in range of `x`.
-  template <class Pair> void around(Index i, const std::array<double, 3>& x, double range, const Pair& pair) const {
+  /// Calls `pair(r2)` for all particles behind `last` that may be in range of `x`.
+  template <class Pair> void around(const std::array<double, 3>& x, Index last, double range, const Pair& pair) const {
     grid_.near({x, x}, range, [&](Index begin, Index end) {
       for (Index p = begin; p < end; ++p) {
         const auto at = static_cast<std::size_t>(p);
-        if (owner_[at] == i) continue;
+        if (owner_[at] <= last) continue;
         const double dx = x[0] - x_[0][at], dy = x[1] - x_[1][at], dz = x[2] - x_[2][at];
         pair(dx * dx + dy * dy + dz * dz);
       }
@@ -161,14 +162,15 @@ void RadialDistribution::count(const Box& box, const Topology* topology, const s
     for (Index place = begin; place < end; ++place) {
       const Index i = places.first[static_cast<std::size_t>(place)];
       const auto at = static_cast<std::size_t>(i);
-      neighbors.around(i, {x[0][at], x[1][at], x[2][at]}, reach_, [&](double r2) {
+      neighbors.around({x[0][at], x[1][at], x[2][at]}, places.same ? i : -1, reach_, [&](double r2) {
         if (!(r2 < reach2)) return;
         ++seen[std::min(seen.size() - 1, static_cast<std::size_t>(std::sqrt(r2) / width))];
       });
     }
-    // Whole numbers have one sum in any order.
+    // Pairs of the same were found from one side. Whole numbers have one sum in any order.
     for (std::size_t k = 0; k < seen.size(); ++k) {
-      if (seen[k] != 0) std::atomic_ref<std::int64_t>(counts_[k]).fetch_add(seen[k], std::memory_order_relaxed);
+      const std::int64_t more = places.same ? 2 * seen[k] : seen[k];
+      if (more != 0) std::atomic_ref<std::int64_t>(counts_[k]).fetch_add(more, std::memory_order_relaxed);
     }
   });
   expected_ += places.pairs / box.volume();
