@@ -80,9 +80,8 @@ struct Case {
 
 int main(int count, char** arguments) {
   const bench::Rows rows("lj_melt", count, arguments);
-  if (const char* level = std::getenv("LEVEL")) set_simd_level(simd_level_named(level));
   const int threads = thread_count();
-  const int cells = std::getenv("CELLS") ? std::atoi(std::getenv("CELLS")) : 20, steps = 100;
+  const int cells = 20, steps = 100;
   std::vector<Case> cases;
   cases.emplace_back("fixed20", cells, NeighborOptions{.skin = 0.3, .renewal = 20});
   cases.emplace_back("safe", cells, NeighborOptions{});
