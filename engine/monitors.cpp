@@ -235,7 +235,7 @@ template <class Real> void CenterOfMass::observe(const Snapshot<Real>& now) {
   Quad total = 0;
   for (Index i = 0; i < s.size(); ++i) {
     const Quad m = wide(s.masses()[i]);
-    x += m * wide(s.positions()[i]);
+    x += m * wide(s.unwrapped(i));
     v += m * wide(s.velocities()[i]);
     total += m;
   }

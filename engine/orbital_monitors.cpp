@@ -66,12 +66,13 @@ template <class Real> void ClosestApproach::observe(const Snapshot<Real>& now) {
 template <class Real> void ClosestApproach::look_at_pairs(const Snapshot<Real>& now) {
   using std::sqrt;
   const ParticleSystem<Real>& s = now.state();
-  const bool path_known = samples_ > 0 && seen_ids_ == s.ids() && seen_time_ != now.time();
+  // In a periodic box the path between two looks leads across its faces: there pairs are seen at the looks alone.
+  const bool path_known = samples_ > 0 && seen_ids_ == s.ids() && seen_time_ != now.time() && !s.box().is_periodic();
   const double h = now.time() - seen_time_;
   for (Index i = 0; i < s.size(); ++i) {
     for (Index j = 0; j < i; ++j) {
       if (s.masses()[i] == Real(0) && s.masses()[j] == Real(0)) continue;
-      Real distance2 = norm2(s.positions()[i] - s.positions()[j]);
+      Real distance2 = norm2(s.box().minimum_image(Vec3<Real>(s.positions()[i] - s.positions()[j])));
       double at = now.time();
       if (path_known) {
         const Hermite<Real> path(motion_from<Real>(seen_, i) - motion_from<Real>(seen_, j),

@@ -160,6 +160,9 @@ template <class Real> void ShadowHamiltonian<Real>::append(const Snapshot<Real>&
   Point& point = points_.back();
   point.step = now.step();
   point.x = s.positions();
+  if (s.box().is_periodic()) {
+    for (Index i = 0; i < s.size(); ++i) point.x.set(i, s.unwrapped(i));
+  }
   point.v = s.velocities();
   if (s.low_words() != nullptr) point.x_low = s.low_words()->x;
   point.action = now.action() + (now.settling_action() - settling_);

@@ -1,6 +1,7 @@
 #include "forces/lennard_jones.hpp"
 
 #include "engine/exact_sum.hpp"
+#include "forces/lennard_jones_simd.hpp"
 
 #include <fmt/format.h>
 

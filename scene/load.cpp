@@ -257,6 +257,10 @@ class SceneReader {
                fmt::format("a stop watches distances of particles, and system '{}' has none; take it out",
                            scene_.system->name));
     }
+    if (scene_.particles.box().is_periodic() && !tables.empty()) {
+      top.fail(tables.front(), "stop",
+               "a stop follows the paths of particles through open space; in a periodic box take it out");
+    }
     for (const SceneValue* table : tables) {
       TableReader reader(context_, *table, "[[stop]]", fmt::format("stop.{}", list.size()));
       reader.expect_only({"type", "distance", "steps", "every"});

@@ -40,7 +40,7 @@ class Recorder {
     const auto n = s.size();
     Vector<double> y(n > 0 ? 6 * n : static_cast<Index>(s.variables().size()));
     for (int k = 0; k < 3 && n > 0; ++k) {
-      std::copy_n(s.positions().component(k), n, y.data() + k * n);
+      for (Index i = 0; i < n; ++i) y[k * n + i] = s.unwrapped(i)[k];
       std::copy_n(s.velocities().component(k), n, y.data() + (3 + k) * n);
     }
     if (n == 0) std::copy(s.variables().begin(), s.variables().end(), y.data());

@@ -1,6 +1,7 @@
 /// Liquids beside another program, against the order of the method, and against themselves on other threads.
 
 #include "engine/monitors.hpp"
+#include "engine/shadow_hamiltonian.hpp"
 #include "engine/simulation.hpp"
 #include "forces/lennard_jones.hpp"
 #include "integrators/composition.hpp"
@@ -92,6 +93,17 @@ TEST_CASE("threads and skins do not change a bit of a melt", "[melts][determinis
   const std::string expected = melted(1, 0);
   for (const int threads : {1, 2, 3, 8}) CHECK(melted(threads, 0.3) == expected);
   for (const double skin : {0.1, 0.2, 0.45, 0.6}) CHECK(melted(2, skin) == expected);
+}
+
+TEST_CASE("the shadow of a liquid's energy is flat across the faces of its box", "[melts][shadow]") {
+  Simulation sim(test::liquid(3, 0.8442, 1.44), compose(Liquid(argon(Cutoff::switch_c4)), schemes::verlet), 0.004);
+  auto& energy = sim.every(1, Energy{});
+  auto& shadow = sim.every(1, ShadowHamiltonian<double>{});
+  REQUIRE(sim.run(300).ok());
+  std::int64_t crossed = 0;
+  for (const std::int32_t image : sim.particles().images().all().reshaped()) crossed += image != 0 ? 1 : 0;
+  CHECK(crossed > 10);
+  CHECK(shadow.fluctuation(1) < 1e-2 * energy.rms());
 }
 
 TEST_CASE("a melt that was saved goes on with the same bits", "[melts][restart]") {
