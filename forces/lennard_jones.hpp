@@ -5,7 +5,7 @@
 #include "engine/force_sink.hpp"
 #include "engine/neighbor_list.hpp"
 #include "engine/pack.hpp"
-#include "forces/lennard_jones_table.hpp"
+#include "forces/lennard_jones_row.hpp"
 
 #include <algorithm>
 #include <array>

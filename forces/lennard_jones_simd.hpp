@@ -2,7 +2,7 @@
 /// Lennard-Jones pairs in lanes: the interface of `lennard_jones_simd.cpp`, compiled once per SIMD level.
 
 #include "engine/simd.hpp"
-#include "forces/lennard_jones_table.hpp"
+#include "forces/lennard_jones_row.hpp"
 
 #include <cstddef>
 #include <cstdint>

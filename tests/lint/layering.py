@@ -47,7 +47,7 @@ def problems(root):
             if header.startswith("hwy/") and not IN_LANES.search(path.name):
                 found.append(f"{where}: Highway header '{header}' may be included only in *_simd.cpp and *_simd.hpp")
             if quoted and IN_LANES.search(path.name) and not FOR_LANES.search(header):
-                found.append(f"{where}: code in lanes may include only *_simd.hpp and engine/simd.hpp, not \"{header}\"")
+                found.append(f"{where}: code in lanes may include only *_simd.hpp, *_row.hpp and engine/simd.hpp, not \"{header}\"")
             for pattern, name, room in GUARDED:
                 if pattern.search(header) and not (path.parts[0] == room and path.suffix == ".cpp"):
                     found.append(f"{where}: {name} header '{header}' may be included only in {room}/*.cpp")
