@@ -30,7 +30,7 @@ GUARDED = [
     (re.compile(r"^openssl/"), "OpenSSL", "io"),
 ]
 IN_LANES = re.compile(r"_simd\.[ch]pp$")
-FOR_LANES = re.compile(r"_simd\.hpp$|^engine/simd\.hpp$")
+FOR_LANES = re.compile(r"_simd\.hpp$|_row\.hpp$|^engine/simd\.hpp$")  # *_row.hpp: plain numbers, installed too
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.MULTILINE)
 
 
