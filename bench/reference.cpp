@@ -134,12 +134,8 @@ std::optional<PeerRun> run_peer(const std::string& peer, const Case& one) {
           .text();
   const std::string command = fmt::format("echo '{}' | OMP_NUM_THREADS=1 python3 '{}/bench/peers/reference.py' {}",
                                           text, NOETHER_SOURCE_DIR, peer);
-  std::string answer;
-  FILE* pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) return {};
-  char buffer[4096];
-  while (std::fgets(buffer, sizeof buffer, pipe) != nullptr) answer += buffer;
-  if (pclose(pipe) != 0 || answer.empty()) return {};
+  const std::string answer = bench::output_of(command);
+  if (answer.empty()) return {};
   std::istringstream words(answer);
   PeerRun run;
   words >> run.version >> run.seconds;

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <ctime>
 #include <fstream>
 #include <optional>
@@ -71,6 +72,16 @@ struct Peer {
   std::string name, version;
   double value = 0;
 };
+
+/// What a command writes; empty if it fails.
+inline std::string output_of(const std::string& command) {
+  FILE* pipe = popen(command.c_str(), "r");
+  if (pipe == nullptr) return {};
+  std::string answer;
+  char buffer[4096];
+  while (std::fgets(buffer, sizeof buffer, pipe) != nullptr) answer += buffer;
+  return pclose(pipe) == 0 ? answer : std::string();
+}
 
 /// Prints the rows of one benchmark.
 class Rows {
