@@ -10,6 +10,7 @@
 #include "integrators/schemes.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/liquid.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/support/settings.hpp"
 
 #include <cmath>
@@ -59,15 +60,6 @@ ParticleSystem<double> mixed_gas(Index n) {
   }
   s.set_topology(topology);
   return s;
-}
-
-template <class Make> std::string refusal_of_distribution(const Make& make) {
-  try {
-    make();
-  } catch (const Error& error) {
-    return error.message();
-  }
-  return "";
 }
 
 }  // namespace
@@ -164,7 +156,7 @@ TEST_CASE("g(r) depends on no number of threads", "[radial_distribution][determi
 TEST_CASE("g(r) is refused where it makes no sense", "[radial_distribution][messages]") {
   const ParticleSystem<double> s = mixed_gas(9);
   const auto refusal = [](const ParticleSystem<double>& particles, const RadialDistribution& asked) {
-    return refusal_of_distribution([&] { still(particles).every(1, asked); });
+    return test::refusal_of([&] { still(particles).every(1, asked); });
   };
   CHECK(refusal(s, RadialDistribution(200, 1.5)).empty());
   CHECK(refusal(s, RadialDistribution(200, 1.6)) ==

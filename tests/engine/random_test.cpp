@@ -2,6 +2,7 @@
 
 #include "engine/random.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/normal_bins.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,30 +11,6 @@
 using namespace noether;
 
 using Block = std::array<std::uint32_t, 4>;
-
-namespace {
-
-/// Chi square of normal deviates in 64 bins that are equally likely.
-class NormalBins {
- public:
-  void add(double x) {
-    const double probability = std::erfc(-x / std::sqrt(2.0)) / 2;
-    ++counts_[static_cast<std::size_t>(std::min(63.0, 64 * probability))];
-    ++total_;
-  }
-  double chi_square() const {
-    const double expected = static_cast<double>(total_) / 64;
-    double sum = 0;
-    for (const long count : counts_) sum += std::pow(static_cast<double>(count) - expected, 2) / expected;
-    return sum;
-  }
-
- private:
-  std::array<long, 64> counts_{};
-  long total_ = 0;
-};
-
-}  // namespace
 
 TEST_CASE("Philox gives the vectors published with it", "[random]") {
   // The three lines "philox4x32 10" of kat_vectors, Random123 1.14.
@@ -118,7 +95,7 @@ TEST_CASE("normal deviates have the bits they had", "[random]") {
 
 TEST_CASE("normal deviates are normal, by particles, by steps and by stages", "[random]") {
   const auto key = noise_key(42);
-  NormalBins particles[3], steps[3], stages[3];
+  test::NormalBins particles[3], steps[3], stages[3];
   double sum = 0, products[3] = {0, 0, 0};
   constexpr int count = 100000;
   for (int k = 0; k < count; ++k) {

@@ -10,6 +10,7 @@
 #include "integrators/langevin.hpp"
 #include "integrators/schemes.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/refusal.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -46,15 +47,6 @@ Simulation<double> brownian(Index n) {
       std::move(s),
       compose(Langevin(KineticPotential(Sum<>{}), {.temperature = 0.5, .friction = 4, .seed = 3}), word("BAOAB")),
       0.05);
-}
-
-template <class Make> std::string refusal_of_correlation(const Make& make) {
-  try {
-    make();
-  } catch (const Error& error) {
-    return error.message();
-  }
-  return "";
 }
 
 }  // namespace
@@ -201,7 +193,7 @@ TEST_CASE("what was saved of correlations must fit", "[time_correlation][restart
   detail::save_any(saved, "m", msd);
   const auto loads = [&](SavedState state) {
     MeanSquareDisplacement other = MeanSquareDisplacement(6, 4);
-    return refusal_of_correlation([&] { other.load(state, "m"); });
+    return test::refusal_of([&] { other.load(state, "m"); });
   };
   CHECK(loads(saved).empty());
   SavedState shorter = saved;
@@ -238,7 +230,7 @@ TEST_CASE("an edit of the particles begins anew", "[time_correlation]") {
 
 TEST_CASE("correlations of nobody, or to no lag, are refused", "[time_correlation][messages]") {
   const auto refusal = [](const MeanSquareDisplacement& asked) {
-    return refusal_of_correlation([&] { flying().every(1, asked); });
+    return test::refusal_of([&] { flying().every(1, asked); });
   };
   CHECK(refusal(MeanSquareDisplacement(1, 1)) == "length = 1 is no longest lag; 2 to 1000000 looks are expected");
   CHECK(refusal(MeanSquareDisplacement(5, 0)) ==

@@ -13,6 +13,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/columns.hpp"
 #include "tests/support/mechanisms.hpp"
+#include "tests/support/normal_bins.hpp"
 #include "tests/support/planets.hpp"
 #include "tests/support/problems.hpp"
 #include "tests/support/settings.hpp"
@@ -133,32 +134,10 @@ TEST_CASE("a word without an O gets half an O at both ends", "[langevin]") {
   }
 }
 
-/// Chi square of numbers in 64 bins that are equally likely under a normal distribution.
-class Bins {
- public:
-  explicit Bins(double variance) : deviation_(std::sqrt(variance)) {}
-  void add(double x) {
-    const double probability = std::erfc(-x / deviation_ / std::sqrt(2.0)) / 2;
-    ++counts_[static_cast<std::size_t>(std::min(63.0, 64 * probability))];
-    ++total_;
-  }
-  double chi_square() const {
-    const double expected = static_cast<double>(total_) / 64;
-    double sum = 0;
-    for (const long count : counts_) sum += std::pow(static_cast<double>(count) - expected, 2) / expected;
-    return sum;
-  }
-
- private:
-  double deviation_;
-  std::array<long, 64> counts_{};
-  long total_ = 0;
-};
-
 TEST_CASE("a bath brings velocities to Maxwell's and positions to Boltzmann's distribution", "[langevin]") {
   const double dt = 1.5, q = dt * dt * stiffness / mass / 4;  // near the limit: a wrong word would be far off
   const auto s = test::run(oscillators<double>(), word("BAOAB"), bodies<double>(5000), dt, 60);
-  Bins x(kT / stiffness), v(kT / mass * (1 - q)), wrong(kT / mass);
+  test::NormalBins x(kT / stiffness), v(kT / mass * (1 - q)), wrong(kT / mass);
   for (Index i = 0; i < s.size(); ++i) {
     for (int c = 0; c < 3; ++c) {
       x.add(s.positions().component(c)[i]);
