@@ -124,6 +124,7 @@ int main(int count, char** arguments) {
                one.atoms.size());
       rows.add(one.name, "steps_per_search", bench::Measured({static_cast<double>(list.updates) / searches}), "1",
                one.atoms.size());
+      rows.add(one.name, "listed_pairs", bench::Measured({list.pairs}), "1", one.atoms.size());
       rows.add(one.name, "skin", bench::Measured({list.skin}), "sigma", one.atoms.size());
     }
   }

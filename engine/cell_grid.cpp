@@ -31,22 +31,12 @@ Interval extent_of(const double* x, Index count) {
 }  // namespace
 
 Index CellGrid::Axis::cell(double x) const {
-  const double wanted = number(x);
   if (occupied.empty()) {
+    const double wanted = (x - lower) * inverse_edge;
     return wanted >= static_cast<double>(size) ? size - 1 : wanted > 0 ? static_cast<Index>(wanted) : 0;
   }
-  const auto found = std::lower_bound(occupied.begin(), occupied.end(), wanted);
+  const auto found = std::lower_bound(occupied.begin(), occupied.end(), number(x));
   return found == occupied.end() ? size - 1 : found - occupied.begin();
-}
-
-std::pair<Index, Index> CellGrid::Axis::cells(double from, double to) const {
-  const double first = number(from), last = number(to);
-  if (occupied.empty()) {
-    const double end = static_cast<double>(size);
-    return {static_cast<Index>(std::clamp(first, 0.0, end)), static_cast<Index>(std::clamp(last + 1, 0.0, end))};
-  }
-  return {std::lower_bound(occupied.begin(), occupied.end(), first) - occupied.begin(),
-          std::upper_bound(occupied.begin(), occupied.end(), last) - occupied.begin()};
 }
 
 void CellGrid::lay_axes(const std::array<const double*, 3>& coordinates, Index count, double range) {

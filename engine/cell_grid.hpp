@@ -3,9 +3,11 @@
 
 #include "engine/column.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace noether {
@@ -66,7 +68,21 @@ class CellGrid {
       inverse_edge = 1 / length;
     }
     Index cell(double x) const;
-    std::pair<Index, Index> cells(double from, double to) const;
+    /// The cells that an interval meets, up to one behind the last.
+    std::pair<Index, Index> cells(double from, double to) const {
+      if (!occupied.empty()) {
+        return {std::lower_bound(occupied.begin(), occupied.end(), number(from)) - occupied.begin(),
+                std::upper_bound(occupied.begin(), occupied.end(), number(to)) - occupied.begin()};
+      }
+      const double first = (from - lower) * inverse_edge, last = (to - lower) * inverse_edge;
+      const auto most = static_cast<double>(size);
+      return {first >= most ? size
+              : first > 0   ? static_cast<Index>(first)
+                            : 0,
+              last >= most ? size
+              : last >= 0  ? static_cast<Index>(last) + 1
+                           : 0};
+    }
     /// Least distance from an interval to a cell [length].
     double distance(Index i, double from, double to) const {
       const double begin = lower + edge * (occupied.empty() ? static_cast<double>(i) : occupied[at(i)]);

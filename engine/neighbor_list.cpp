@@ -19,6 +19,7 @@ namespace {
 constexpr double first_skin = 0.12, narrowest_skin = 0.02, widest_skin = 0.6;
 /// What a search costs, in force evaluations over the list.
 constexpr double search_cost = 3.5;
+static_assert(NeighborList::shells == neighbor_shells);
 constexpr Index most_images = 10'000;
 /// A record far from all others, whose squared distances are numbers.
 constexpr double nowhere = 1e140;
@@ -29,19 +30,24 @@ std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// What one thread needs to find the neighbors of a group.
 struct NeighborList::Scratch {
-  AlignedVector<float> x, y, z;
-  std::array<AlignedVector<float>, 3> run;
-  AlignedVector<std::int32_t> number;
-  std::array<AlignedVector<std::int32_t>, group_size> found;
-  std::array<std::ptrdiff_t, group_size> count{};
+  std::vector<PointRun> runs;
+  std::array<AlignedVector<float>, 3> points;  ///< of a group that is far out, relative to it
+  std::array<AlignedVector<float>, 3> near;    ///< points that any of the group can see
+  AlignedVector<std::int32_t> near_number;
+  std::array<AlignedVector<std::int32_t>, group_size> number, found;
+  std::array<AlignedVector<float>, group_size> r2;
 
-  void make_room(Index points) {
-    const std::size_t size = at(points + 32);
-    if (x.size() >= size) return;
-    for (auto* column : {&x, &y, &z}) column->resize(size + size / 2);
-    for (auto& column : run) column.resize(size + size / 2);
-    number.resize(size + size / 2);
-    for (auto& list : found) list.resize(size + size / 2);
+  void make_room(Index count) {
+    const std::size_t size = at(count + 32);
+    if (found[0].size() >= size) return;
+    for (auto* columns : {&points, &near}) {
+      for (auto& column : *columns) column.resize(size + size / 2);
+    }
+    near_number.resize(size + size / 2);
+    for (auto* lists : {&number, &found}) {
+      for (auto& list : *lists) list.resize(size + size / 2);
+    }
+    for (auto& list : r2) list.resize(size + size / 2);
   }
 };
 
@@ -52,8 +58,11 @@ void NeighborList::update(const ParticleSystem<double>& s) {
   ++age_;
   bool search_now = !is_fresh(s);
   if (!search_now) {
-    const double moved2 = take_positions(s);
-    search_now = options_.renewal > 0 ? age_ > options_.renewal : !(2 * std::sqrt(moved2) <= skin_);
+    const double approach = 2 * std::sqrt(take_positions(s));  // of two particles, at most
+    shell_ = 0;
+    while (shell_ < shells && !(approach <= shell_radius(shell_) - range_)) ++shell_;
+    search_now = options_.renewal > 0 ? age_ > options_.renewal : shell_ == shells;
+    shell_ = std::min(shell_, shells - 1);
   }
   if (search_now) {
     const auto begin = std::chrono::steady_clock::now();
@@ -140,8 +149,9 @@ void NeighborList::search(const ParticleSystem<double>& s) {
   grid_.sort({points_[0].data(), points_[1].data(), points_[2].data()}, static_cast<Index>(owner_.size()), reach);
   lay_out(s);
   form_groups();
-  while (!find_all(reach)) {
+  while (!find_all()) {
   }
+  shell_ = 0;
   ++statistics_.searches;
   statistics_.skin = skin_;
   statistics_.pairs = s.size() > 0 ? static_cast<double>(*used_) / static_cast<double>(s.size()) : 0;
@@ -306,11 +316,11 @@ std::int64_t NeighborList::reserve(std::int64_t entries) {
 }
 
 /// False if there was not room for all; then there is.
-bool NeighborList::find_all(double reach) {
+bool NeighborList::find_all() {
   used_->store(0);
   for_blocks(static_cast<Index>(particles_.size()), [&](Index begin, Index end) {
     thread_local Scratch scratch;
-    for (Index g = begin / group_size; g < end / group_size; ++g) find(g, reach, scratch);
+    for (Index g = begin / group_size; g < end / group_size; ++g) find(g, scratch);
   });
   const std::size_t needed = at(used_->load());
   if (needed <= entries_.size()) return true;
@@ -323,15 +333,15 @@ bool NeighborList::find_all(double reach) {
 struct NeighborList::Surroundings {
   CellGrid::Bounds bounds;
   SearchBox box;
-  float limit2;  ///< square of the reach, and of what rounding may add to a distance
+  float limits[shells];  ///< squares of the shells' radii, and of what rounding may add to a distance
   /// The group is so far out that single precision tells distances only relative to it.
   bool far;
   std::array<double, 3> origin;
 };
 
-NeighborList::Surroundings NeighborList::surroundings(const std::array<std::int32_t, group_size>& own,
-                                                      double reach) const {
+NeighborList::Surroundings NeighborList::surroundings(const std::array<std::int32_t, group_size>& own) const {
   constexpr double rounding = 8 * 0x1p-24, most = 0.02;
+  const double reach = shell_radius(shells - 1);
   Surroundings around{};
   double extent = reach, size = reach;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -352,68 +362,93 @@ NeighborList::Surroundings NeighborList::surroundings(const std::array<std::int3
     around.box.middle[k] = static_cast<float>(middle - around.origin[k]);
     around.box.half[k] = static_cast<float>(half);
   }
-  const double limit = reach + rounding * (around.far ? extent : size);
-  around.limit2 = static_cast<float>(limit * limit * (1 + 0x1p-20));
+  for (int shell = 0; shell < shells; ++shell) {
+    const double limit = shell_radius(shell) + rounding * (around.far ? extent : size);
+    around.limits[shell] = static_cast<float>(limit * limit * (1 + 0x1p-20));
+  }
   return around;
 }
 
-void NeighborList::find(Index group, double reach, Scratch& scratch) {
+/// Runs of records that can be near, and where they are in single precision.
+SearchPoints NeighborList::candidates(const Surroundings& around, Scratch& scratch) const {
+  Index count = 0;
+  scratch.runs.clear();
+  grid_.near(around.bounds, shell_radius(shells - 1) * (1 + 1e-9), [&](Index from, Index to) {
+    if (from == to) return;
+    const auto begin = static_cast<std::int32_t>(from);
+    scratch.runs.push_back({begin, static_cast<std::int32_t>(to - from), begin});
+    count += to - from;
+  });
+  scratch.make_room(count);
+  if (!around.far) return {single_[0].data(), single_[1].data(), single_[2].data()};
+  std::int32_t place = 0;
+  for (PointRun& run : scratch.runs) {
+    run.begin = place;
+    for (std::int32_t record = run.number; record < run.number + run.count; ++record, ++place) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        scratch.points[k][at(place)] = static_cast<float>(sorted_[k][at(record)] - around.origin[k]);
+      }
+    }
+  }
+  return {scratch.points[0].data(), scratch.points[1].data(), scratch.points[2].data()};
+}
+
+void NeighborList::find(Index group, Scratch& scratch) {
   const NeighborSearchKernels& kernels = neighbor_search_kernels();
   std::array<std::int32_t, group_size> own{};  // their records
   for (Index lane = 0; lane < group_size; ++lane) own[at(lane)] = lanes_[at(group_size * group + lane)] / 4;
   const std::int32_t* particles = particles_.data() + group_size * group;
-  const auto nobody = static_cast<std::int32_t>(source_.size());
-  const Surroundings around = surroundings(own, reach);
-  scratch.make_room(0);
-  NearPoints points{scratch.x.data(), scratch.y.data(), scratch.z.data(), scratch.number.data(), 0};
-  grid_.near(around.bounds, reach * (1 + 1e-9), [&](Index from, Index to) {
-    if (from == to) return;
-    scratch.make_room(points.count + (to - from));
-    points = {scratch.x.data(), scratch.y.data(), scratch.z.data(), scratch.number.data(), points.count};
-    const float* run[3];
-    for (std::size_t k = 0; k < 3; ++k) {
-      run[k] = single_[k].data() + from;
-      if (!around.far) continue;
-      for (Index r = from; r < to; ++r) {
-        scratch.run[k][at(r - from)] = static_cast<float>(sorted_[k][at(r)] - around.origin[k]);
-      }
-      run[k] = scratch.run[k].data();
-    }
-    kernels.gather(run[0], run[1], run[2], to - from, static_cast<std::int32_t>(from), around.box, around.limit2,
-                   points);
-  });
-  std::ptrdiff_t rows = 0;
-  for (Index lane = 0; lane < group_size; ++lane) {
-    scratch.count[at(lane)] = 0;
+  const Surroundings around = surroundings(own);
+  const SearchPoints points = candidates(around, scratch);
+  NearPoints near{scratch.near[0].data(), scratch.near[1].data(), scratch.near[2].data(), scratch.near_number.data(),
+                  0};
+  const float limit = around.limits[shells - 1];
+  kernels.gather(scratch.runs.data(), static_cast<std::ptrdiff_t>(scratch.runs.size()), points, around.box, limit,
+                 near);
+  std::array<std::ptrdiff_t, group_size> counts{};
+  for (std::size_t lane = 0; lane < group_size; ++lane) {
     if (particles[lane] < 0) continue;
     const auto relative = [&](std::size_t k) {
-      const double x = sorted_[k][at(own[at(lane)])];
-      return static_cast<float>(x - around.origin[k]) - around.box.middle[k];
+      return static_cast<float>(sorted_[k][at(own[lane])] - around.origin[k]) - around.box.middle[k];
     };
-    std::int32_t* found = scratch.found[at(lane)].data();
-    std::ptrdiff_t count =
-        kernels.select(points, relative(0), relative(1), relative(2), around.limit2, own[at(lane)], found);
-    if (!excluded_.empty()) {
-      const std::int32_t i = source_[at(own[at(lane)])];
-      const auto from = excluded_.begin() + excluded_begin_[at(i)], to = excluded_.begin() + excluded_begin_[at(i + 1)];
-      count = std::remove_if(found, found + count,
-                             [&](std::int32_t r) { return std::find(from, to, source_[at(r)]) != to; }) -
-              found;
-    }
-    scratch.count[at(lane)] = count;
-    rows = std::max(rows, count);
+    counts[lane] = kernels.select(near, relative(0), relative(1), relative(2), limit, scratch.number[lane].data(),
+                                  scratch.r2[lane].data());
   }
-  const std::ptrdiff_t room = (rows + group_size - 1) / group_size * group_size;
   Rows& place = row_begin_[at(group)];
-  place = {reserve(group_size * room), static_cast<std::int32_t>(rows)};
+  place.rows = {};
+  for (std::size_t lane = 0; lane < group_size; ++lane) {
+    if (particles[lane] < 0) continue;
+    std::int32_t* number = scratch.number[lane].data();
+    if (!excluded_.empty()) strike_excluded(own[lane], number, counts[lane]);
+    std::ptrdiff_t within[shells];
+    kernels.sort(number, scratch.r2[lane].data(), counts[lane], own[lane], around.limits, scratch.found[lane].data(),
+                 within);
+    for (std::size_t shell = 0; shell < shells; ++shell) {
+      place.rows[shell] = std::max(place.rows[shell], static_cast<std::int32_t>(within[shell]));
+    }
+    counts[lane] = within[shells - 1];
+  }
+  const std::ptrdiff_t rows = place.rows[shells - 1];
+  const std::ptrdiff_t room = (rows + group_size - 1) / group_size * group_size;
+  place.begin = reserve(group_size * room);
   if (place.begin + group_size * room > static_cast<std::int64_t>(entries_.size())) return;
   const std::int32_t* lists[group_size];
   for (std::size_t lane = 0; lane < group_size; ++lane) {
     std::int32_t* found = scratch.found[lane].data();
-    std::fill(found + scratch.count[lane], found + room, nobody);
+    std::fill(found + counts[lane], found + room, static_cast<std::int32_t>(source_.size()));  // nobody
     lists[lane] = found;
   }
   kernels.turn(lists, rows, entries_.data() + place.begin);
+}
+
+/// Gives those whose pair force with a particle is excluded the number of the particle itself.
+void NeighborList::strike_excluded(std::int32_t record, std::int32_t* numbers, std::ptrdiff_t count) const {
+  const std::int32_t i = source_[at(record)];
+  const auto from = excluded_.begin() + excluded_begin_[at(i)], to = excluded_.begin() + excluded_begin_[at(i + 1)];
+  if (from == to) return;
+  for (std::ptrdiff_t k = 0; k < count; ++k) {
+    if (std::find(from, to, source_[at(numbers[k])]) != to) numbers[k] = record;
+  }
 }
 
 void NeighborList::verify(const ParticleSystem<double>& s) const {

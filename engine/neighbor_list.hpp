@@ -10,6 +10,8 @@
 
 namespace noether {
 
+struct SearchPoints;
+
 struct NeighborOptions {
   double skin = 0;     ///< pairs this much further apart than the range are listed too [length]; 0: chosen by cost
   Index renewal = 0;   ///< updates between two searches, whatever moved: pairs may be missed; 0: when somebody moved
@@ -39,6 +41,8 @@ struct NeighborStatistics {
 class NeighborList {
  public:
   static constexpr Index group_size = 8;
+  /// Neighbors are sorted into shells by distance; those too far out to have come near since are not handed out.
+  static constexpr int shells = 4;
 
   explicit NeighborList(double range = 0, NeighborOptions options = {}) : range_(range), options_(options) {}
   /// A copy looks for neighbors itself.
@@ -65,7 +69,7 @@ class NeighborList {
   Group group(Index g) const {
     const auto from = static_cast<std::size_t>(g);
     return {particles_.data() + group_size * g, lanes_.data() + group_size * g,
-            entries_.data() + row_begin_[from].begin, row_begin_[from].rows};
+            entries_.data() + row_begin_[from].begin, row_begin_[from].rows[static_cast<std::size_t>(shell_)]};
   }
   /// Records, shape (records, 4): x, y, z [length] relative to the middle of the box, and in the
   /// place of a fourth number the type as std::int64_t.
@@ -81,7 +85,7 @@ class NeighborList {
  private:
   struct Rows {
     std::int64_t begin = 0;
-    std::int32_t rows = 0;
+    std::array<std::int32_t, shells> rows{};  ///< of a shell and those within it
   };
   struct Ghost {
     std::int32_t record, of, shift;
@@ -100,9 +104,13 @@ class NeighborList {
   void set_type(Index record, std::int64_t type);
   void form_groups();
   void take_exclusions(const ParticleSystem<double>& s);
-  bool find_all(double reach);
-  Surroundings surroundings(const std::array<std::int32_t, group_size>& own, double reach) const;
-  void find(Index group, double reach, Scratch& scratch);
+  /// Pairs up to this distance when they were found stand in the rows of a shell [length].
+  double shell_radius(int shell) const { return range_ + skin_ * (shell + 1) / shells; }
+  bool find_all();
+  Surroundings surroundings(const std::array<std::int32_t, group_size>& own) const;
+  SearchPoints candidates(const Surroundings& around, Scratch& scratch) const;
+  void find(Index group, Scratch& scratch);
+  void strike_excluded(std::int32_t record, std::int32_t* numbers, std::ptrdiff_t count) const;
   std::int64_t reserve(std::int64_t entries);
 
   double range_;
@@ -111,6 +119,7 @@ class NeighborList {
   NeighborStatistics statistics_;
   std::uint64_t version_ = 0;  ///< of the positions it was brought up to
   std::int64_t age_ = 0;       ///< updates since the last search
+  int shell_ = 0;              ///< the outermost that can have come into range since
 
   // What the last search was made for.
   Box box_;

@@ -22,49 +22,77 @@ HWY_INLINE hn::Vec<Floats> relative(const float* x, float middle, float half, hn
   return at;
 }
 
-void gather(const float* x, const float* y, const float* z, std::ptrdiff_t count, std::int32_t first,
-            const SearchBox& box, float limit, NearPoints& points) {
+void gather(const PointRun* runs, std::ptrdiff_t count, const SearchPoints& points, const SearchBox& box, float limit,
+            NearPoints& near) {
   const Floats d;
   const Numbers i;
+  const auto first = hn::Iota(i, 0);
   const auto most = hn::Set(d, limit);
-  const auto end = hn::Set(i, first + static_cast<std::int32_t>(count));
-  std::ptrdiff_t found = points.count;
-  for (std::ptrdiff_t k = 0; k < count; k += lanes) {
-    auto r2 = hn::Zero(d);
-    const auto px = relative(x + k, box.middle[0], box.half[0], r2);
-    const auto py = relative(y + k, box.middle[1], box.half[1], r2);
-    const auto pz = relative(z + k, box.middle[2], box.half[2], r2);
-    const auto number = hn::Iota(i, first + static_cast<std::int32_t>(k));
-    const auto near = hn::And(hn::RebindMask(i, hn::Le(r2, most)), hn::Lt(number, end));
-    const auto near_f = hn::RebindMask(d, near);
-    hn::StoreU(hn::Compress(px, near_f), d, points.x + found);
-    hn::StoreU(hn::Compress(py, near_f), d, points.y + found);
-    hn::StoreU(hn::Compress(pz, near_f), d, points.z + found);
-    hn::StoreU(hn::Compress(number, near), i, points.number + found);
-    found += static_cast<std::ptrdiff_t>(hn::CountTrue(i, near));
+  float *const near_x = near.x, *const near_y = near.y, *const near_z = near.z;
+  std::int32_t* const near_number = near.number;
+  std::ptrdiff_t found = 0;
+  for (const PointRun* run = runs; run < runs + count; ++run) {
+    const float *x = points.x + run->begin, *y = points.y + run->begin, *z = points.z + run->begin;
+    for (std::int32_t k = 0; k < run->count; k += lanes) {
+      auto r2 = hn::Zero(d);
+      const auto px = relative(x + k, box.middle[0], box.half[0], r2);
+      const auto py = relative(y + k, box.middle[1], box.half[1], r2);
+      const auto pz = relative(z + k, box.middle[2], box.half[2], r2);
+      const auto there = hn::Lt(first, hn::Set(i, run->count - k));
+      const auto wanted = hn::And(hn::RebindMask(i, hn::Le(r2, most)), there);
+      const auto number = hn::Add(first, hn::Set(i, run->number + k));
+      hn::StoreU(hn::Compress(px, hn::RebindMask(d, wanted)), d, near_x + found);
+      hn::StoreU(hn::Compress(py, hn::RebindMask(d, wanted)), d, near_y + found);
+      hn::StoreU(hn::Compress(pz, hn::RebindMask(d, wanted)), d, near_z + found);
+      hn::StoreU(hn::Compress(number, wanted), i, near_number + found);
+      found += static_cast<std::ptrdiff_t>(hn::CountTrue(i, wanted));
+    }
   }
-  points.count = found;
+  hn::StoreU(hn::Set(d, far_away), d, near_x + found);
+  near.count = found;
 }
 
-std::ptrdiff_t select(const NearPoints& points, float x, float y, float z, float limit, std::int32_t self,
-                      std::int32_t* out) {
+std::ptrdiff_t select(const NearPoints& near, float x, float y, float z, float limit, std::int32_t* number,
+                      float* distance) {
   const Floats d;
   const Numbers i;
   const auto x0 = hn::Set(d, x), y0 = hn::Set(d, y), z0 = hn::Set(d, z), most = hn::Set(d, limit);
-  const auto own = hn::Set(i, self);
-  hn::StoreU(hn::Set(d, far_away), d, points.x + points.count);
-  std::int32_t* end = out;
-  for (std::ptrdiff_t k = 0; k < points.count; k += lanes) {
-    const auto dx = hn::Sub(hn::LoadU(d, points.x + k), x0);
-    const auto dy = hn::Sub(hn::LoadU(d, points.y + k), y0);
-    const auto dz = hn::Sub(hn::LoadU(d, points.z + k), z0);
+  std::ptrdiff_t found = 0;
+  for (std::ptrdiff_t k = 0; k < near.count; k += lanes) {
+    const auto dx = hn::Sub(hn::LoadU(d, near.x + k), x0);
+    const auto dy = hn::Sub(hn::LoadU(d, near.y + k), y0);
+    const auto dz = hn::Sub(hn::LoadU(d, near.z + k), z0);
     const auto r2 = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
-    const auto number = hn::LoadU(i, points.number + k);
-    const auto near = hn::And(hn::RebindMask(i, hn::Le(r2, most)), hn::Ne(number, own));
-    hn::StoreU(hn::Compress(number, near), i, end);
-    end += hn::CountTrue(i, near);
+    const auto wanted = hn::Le(r2, most);
+    hn::StoreU(hn::Compress(hn::LoadU(i, near.number + k), hn::RebindMask(i, wanted)), i, number + found);
+    hn::StoreU(hn::Compress(r2, wanted), d, distance + found);
+    found += static_cast<std::ptrdiff_t>(hn::CountTrue(d, wanted));
   }
-  return end - out;
+  return found;
+}
+
+void sort(const std::int32_t* number, const float* r2, std::ptrdiff_t count, std::int32_t self,
+          const float (&limits)[neighbor_shells], std::int32_t* out, std::ptrdiff_t (&within)[neighbor_shells]) {
+  const Floats d;
+  const Numbers i;
+  const auto own = hn::Set(i, self), first = hn::Iota(i, 0);
+  auto inner = hn::Set(d, -1.0F);
+  std::int32_t* to = out;
+  for (int shell = 0; shell < neighbor_shells; ++shell) {
+    const auto outer = hn::Set(d, limits[shell]);
+    for (std::ptrdiff_t k = 0; k < count; k += lanes) {
+      const auto numbers = hn::LoadU(i, number + k);
+      const auto distance = hn::LoadU(d, r2 + k);
+      const auto others =
+          hn::And(hn::Ne(numbers, own), hn::Lt(first, hn::Set(i, static_cast<std::int32_t>(count - k))));
+      const auto in_shell = hn::And(hn::Gt(distance, inner), hn::Le(distance, outer));
+      const auto wanted = hn::And(others, hn::RebindMask(i, in_shell));
+      hn::StoreU(hn::Compress(numbers, wanted), i, to);
+      to += hn::CountTrue(i, wanted);
+    }
+    within[shell] = to - out;
+    inner = outer;
+  }
 }
 
 void turn(const std::int32_t* const (&lists)[8], std::ptrdiff_t rows, std::int32_t* out) {
@@ -105,6 +133,6 @@ void turn(const std::int32_t* const (&lists)[8], std::ptrdiff_t rows, std::int32
 }  // namespace
 
 extern const NeighborSearchKernels neighbor_search_kernels;
-const NeighborSearchKernels neighbor_search_kernels{gather, select, turn};
+const NeighborSearchKernels neighbor_search_kernels{gather, select, sort, turn};
 
 }  // namespace noether::NOETHER_SIMD_LEVEL

@@ -169,7 +169,7 @@ const detail::LennardJonesTable& LennardJonesForce::table_for(const std::shared_
   made->force_unit = std::ldexp(power_of_two_above(strongest), -unit_bits);
   made->energy_unit = made->force_unit * power_of_two_above(cutoff);
   for (LennardJonesRow& row : made->rows) {
-    row.close2 = std::pow(row.force12 / (0x1p49 * made->force_unit), 2.0 / 13.0);
+    row.close2 = std::pow(row.force12 / (0x1.8p50 * made->force_unit), 2.0 / 13.0);
   }
   table = made;
   return *table;
@@ -193,6 +193,14 @@ void LennardJonesForce::add_lanes(ForceSink<double>& out, const ParticleSystem<d
     PairSums found;
     for (Index g = begin / NeighborList::group_size; g < end / NeighborList::group_size; ++g) {
       const NeighborList::Group one = list.group(g);
+      if (g + 1 < end / NeighborList::group_size) {  // so that what the next eight need is there in time
+        const std::int32_t* next = one.particles + NeighborList::group_size;
+        for (Index lane = 0; lane < NeighborList::group_size; ++lane) {
+          const std::int32_t i = next[lane];
+          __builtin_prefetch(mass + i);
+          for (const double* column : a) __builtin_prefetch(column + i, 1);
+        }
+      }
       quick(field, {one.records, one.entries, one.rows}, found);
       if (found.close) {
         careful(field, {one.records, one.entries, one.rows}, found);

@@ -99,6 +99,9 @@ HWY_INLINE Terms terms_of(Vector r2, Vector inverse2, const Parameters& p) {
   }
 }
 
+/// Lists are longer than caches: entries are asked for as many rows before their turn, mostly those of later groups.
+constexpr std::ptrdiff_t rows_asked_ahead = 128;
+
 /// The sums of one register of particles.
 template <LennardJonesStyle style, bool sums, class Sum> struct Sums {
   Vector magic, energy_magic;
@@ -169,6 +172,7 @@ HWY_INLINE void sum_lanes(const PairField& field, const PairGroup& group, std::p
     const Vector pair_inverse2 = inverse2;
     divided = loaded;
     inverse2 = hn::Div(one, divided.r2);
+    __builtin_prefetch(entries + 8 * rows_asked_ahead);
     ahead = next(ahead);
     loaded = distances(own, load_points(field.records, ahead));
     if constexpr (many_types) {

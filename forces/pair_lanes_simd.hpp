@@ -111,7 +111,7 @@ struct CarefulSum {
     for (std::ptrdiff_t k = 0; k < lanes; ++k) {
       const double unit = offset[k] / magic_number;
       const double size = product[k] < 0 ? -product[k] : product[k];
-      if (size < 0x1p50 * unit) {
+      if (size < 0x1.fcp50 * unit) {
         sum[k] += bits[k] - zero[k];
       } else if (size < 0x1p61 * unit) {
         sum[k] += std::llrint(product[k] / unit);
