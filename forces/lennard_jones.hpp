@@ -6,6 +6,7 @@
 #include "engine/neighbor_list.hpp"
 #include "engine/pack.hpp"
 #include "forces/lennard_jones_row.hpp"
+#include "forces/pairs.hpp"
 
 #include <algorithm>
 #include <array>
@@ -20,50 +21,7 @@
 
 namespace noether {
 
-/// How pair forces end at the cutoff r_c.
-enum class Cutoff : std::uint8_t {
-  plain,          ///< cut: the energy jumps when a pair crosses r_c
-  shifted,        ///< U - U(r_c): the force jumps
-  shifted_force,  ///< U - U(r_c) - (r - r_c) U'(r_c): the force is continuous
-  switch_c2,      ///< times a polynomial in r^2 from `switch_from` on: two continuous derivatives
-  switch_c4,      ///< the same with four continuous derivatives, for shadow Hamiltonians and higher order
-};
-
-template <> struct EnumNames<Cutoff> {
-  static constexpr std::array<std::pair<Cutoff, std::string_view>, 5> values = {
-      {{Cutoff::plain, "plain"},
-       {Cutoff::shifted, "shifted"},
-       {Cutoff::shifted_force, "shifted_force"},
-       {Cutoff::switch_c2, "switch_c2"},
-       {Cutoff::switch_c4, "switch_c4"}}};
-};
-
 namespace detail {
-/// Energy and F/r of a pair, over any number type.
-template <class Real> struct PairTerms { Real energy, force; };
-
-/// Calls `act(d)` for the images of a pair that can be in range; of a particle with itself for those of its copies.
-template <class Real, class Act>
-void for_images(const ParticleSystem<Real>& s, Index i, Index j, double range, const Act& act) {
-  const Box& box = s.box();
-  const Vec3<Real> near = box.minimum_image(Vec3<Real>(s.positions()[i] - s.positions()[j]));
-  std::array<int, 3> most{};  // beyond the nearest image
-  for (int k = 0; k < 3 && box.is_periodic(); ++k) {
-    most[static_cast<std::size_t>(k)] = static_cast<int>(std::max(0.0, std::ceil(range / box.edges()[k] - 0.5)));
-  }
-  for (int c = -most[2]; c <= most[2]; ++c) {
-    for (int b = -most[1]; b <= most[1]; ++b) {
-      for (int a = -most[0]; a <= most[0]; ++a) {
-        if (i == j && a == 0 && b == 0 && c == 0) continue;
-        Vec3<Real> d = near;
-        if (a != 0) d[0] += Real(a * box.edges()[0]);
-        if (b != 0) d[1] += Real(b * box.edges()[1]);
-        if (c != 0) d[2] += Real(c * box.edges()[2]);
-        act(d);
-      }
-    }
-  }
-}
 
 /// What `lennard_jones_simd.cpp` does in lanes of doubles.
 template <class Real>
@@ -80,16 +38,8 @@ PairTerms<Real> lennard_jones_terms(const Real& r2, const LennardJonesRow& row, 
   }
   const Real t = (r2 - a) * b;
   if (!(t > Real(0))) return {energy, force};
-  const Real t2 = t * t, u = Real(1) - t, u2 = u * u;
-  Real s, slope;
-  if (style == LennardJonesStyle::switch_c2) {
-    s = Real(1) - t2 * t * (Real(10) + t * (Real(6) * t - Real(15)));
-    slope = Real(-30) * t2 * u2;
-  } else {
-    s = Real(1) - t2 * t2 * t * (Real(126) + t * (Real(-420) + t * (Real(540) + t * (Real(70) * t - Real(315)))));
-    slope = Real(-630) * t2 * t2 * u2 * u2;
-  }
-  return {energy * s, s * force - Real(2) * b * energy * slope};
+  const Switch<Real> end(style == LennardJonesStyle::switch_c2 ? Cutoff::switch_c2 : Cutoff::switch_c4, t);
+  return {energy * end.value, end.value * force - Real(2) * b * energy * end.slope};
 }
 
 /// The rows of all pairs of types, and what they were made for.
@@ -150,7 +100,9 @@ struct LennardJonesForce {
     if constexpr (std::is_same_v<Real, double>) {
       add_lanes(out, s);
     } else {
-      add_pairs(out, s);
+      detail::add_pairs_in_turn(out, s, cutoff, terms_of(s));
+      detail::add_scaled_pairs(out, s, terms_of(s));
+      add_tail(out, s);
     }
   }
 
@@ -158,52 +110,18 @@ struct LennardJonesForce {
   void check_types(const Topology* topology, const Box& box) const;
   const detail::LennardJonesTable& table_for(const std::shared_ptr<const Topology>& topology, Index n) const;
   void add_lanes(ForceSink<double>& out, const ParticleSystem<double>& s) const;
-  template <class Real> void add_pairs(ForceSink<Real>& out, const ParticleSystem<Real>& s) const;
-  template <class Real> void add_scaled(ForceSink<Real>& out, const ParticleSystem<Real>& s) const;
+  template <class Real> auto terms_of(const ParticleSystem<Real>& s) const;
   template <class Real> void add_tail(ForceSink<Real>& out, const ParticleSystem<Real>& s) const;
 };
 
-template <class Real> void LennardJonesForce::add_pairs(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
-  const detail::LennardJonesTable& known = table_for(s.shared_topology(), s.size());
-  const Topology* topology = s.topology();
-  const auto act = [&](Index i, Index j, const Vec3<Real>& d, const Real& part) {
-    const Real r2 = norm2(d);
+/// What a pair does, for the loops over pairs.
+template <class Real> auto LennardJonesForce::terms_of(const ParticleSystem<Real>& s) const {
+  return [&known = table_for(s.shared_topology(), s.size()), topology = s.topology()](Index i, Index j, const Real& r2,
+                                                                                      const auto& add) {
     const int a = topology != nullptr ? topology->type(i) : 0, b = topology != nullptr ? topology->type(j) : 0;
     const LennardJonesRow& row = known.rows[static_cast<std::size_t>(a * known.types + b)];
-    if (!(r2 < Real(row.range2))) return;
-    const detail::PairTerms<Real> terms = detail::lennard_jones_terms(r2, row, known.style);
-    const Vec3<Real> f = terms.force * d;
-    if (i != j && s.masses()[i] != Real(0)) out.accelerations().add(i, f / s.masses()[i]);
-    if (i != j && s.masses()[j] != Real(0)) out.accelerations().add(j, -f / s.masses()[j]);
-    out.energy(part * terms.energy);
-    out.virial(part * f * d.transpose());
+    if (r2 < Real(row.range2)) add(detail::lennard_jones_terms(r2, row, known.style));
   };
-  for (Index i = 0; i < s.size(); ++i) {
-    for (Index j = 0; j <= i; ++j) {
-      if (i != j && topology != nullptr && topology->is_special(i, j)) continue;
-      detail::for_images(s, i, j, cutoff,
-                         [&](const Vec3<Real>& d) { act(i, j, d, i == j ? Real(1) / Real(2) : Real(1)); });
-    }
-  }
-  add_scaled(out, s);
-  add_tail(out, s);
-}
-
-template <class Real> void LennardJonesForce::add_scaled(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
-  const Topology* topology = s.topology();
-  if (topology == nullptr) return;
-  const detail::LennardJonesTable& known = table_for(s.shared_topology(), s.size());
-  for (const Topology::ScaledPair& scaled : topology->scaled_pairs) {
-    const auto [i, j] = scaled.pair;
-    const Vec3<Real> d = s.box().minimum_image(Vec3<Real>(s.positions()[i] - s.positions()[j]));
-    const Real r2 = norm2(d);
-    const LennardJonesRow& row =
-        known.rows[static_cast<std::size_t>(topology->type(i) * known.types + topology->type(j))];
-    if (!(r2 < Real(row.range2))) continue;
-    const detail::PairTerms<Real> terms = detail::lennard_jones_terms(r2, row, known.style);
-    out.pair(i, j, Real(scaled.factor) * terms.force * d);
-    out.energy(Real(scaled.factor) * terms.energy);
-  }
 }
 
 template <class Real> void LennardJonesForce::add_tail(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {

@@ -210,6 +210,8 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     load_value(saved, prefix + "evaluations", evaluations_.force);
     load_value(saved, prefix + "moved", moved_);
     known_.reset();
+    failure_.reset();
+    force_failure_.reset();
     if constexpr (constrained) {
       detail::check_signature(saved, prefix + "constraints/", constraints_.set());
       load_value(saved, prefix + "constraints/iterations", evaluations_.constraint);

@@ -19,6 +19,7 @@
 #include "forces/henon_heiles.hpp"
 #include "forces/lennard_jones.hpp"
 #include "forces/oblateness.hpp"
+#include "forces/pair_potentials.hpp"
 #include "forces/springs.hpp"
 #include "forces/sum.hpp"
 #include "integrators/kinetic_potential.hpp"
@@ -64,6 +65,9 @@ Parts standard_parts() {
   parts.add_force<HenonHeiles>();
   parts.add_force<FermiPastaUlam>();
   parts.add_force<LennardJonesForce>();
+  parts.add_force<WcaForce>();
+  parts.add_force<MorseForce>();
+  parts.add_force<BuckinghamForce>();
   parts.add_force<HarmonicBond>();
   parts.add_force<Tether>();
   parts.add_force<Bonded>();

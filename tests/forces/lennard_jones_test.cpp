@@ -7,6 +7,7 @@
 #include "engine/simd.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/liquid.hpp"
+#include "tests/support/pair_forces.hpp"
 #include "tests/support/settings.hpp"
 
 #include <fmt/format.h>
@@ -16,32 +17,10 @@ namespace {
 
 using test::liquid;
 
-struct Evaluated {
-  VectorColumn<double> a;
-  double energy;
-  Mat3<double> virial;
-  std::optional<Failure> failure;
-};
-
-template <class Real>
-Evaluated evaluated(const LennardJonesForce& force, const ParticleSystem<double>& s, NeighborList* list = nullptr) {
-  const ParticleSystem<Real> particles = s.as<Real>();
-  VectorColumn<Real> a(s.size());
-  ForceSink<Real> sink(a, particles, {.energy = true, .virial = true}, list);
-  force.add_to(sink, particles);
-  Evaluated all{VectorColumn<double>(s.size()), static_cast<double>(sink.potential()), {}, sink.failure()};
-  for (Index i = 0; i < s.size(); ++i) {
-    for (int k = 0; k < 3; ++k) all.a.component(k)[i] = static_cast<double>(a.component(k)[i]);
-  }
-  for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 3; ++c) all.virial(r, c) = static_cast<double>(sink.virial()(r, c));
-  }
-  return all;
-}
-
-double largest_difference(const VectorColumn<double>& a, const VectorColumn<double>& b) {
-  return (a.all() - b.all()).cwiseAbs().maxCoeff();
-}
+using test::all_levels;
+using test::evaluated;
+using test::Evaluated;
+using test::largest_difference;
 
 LennardJonesForce argon(Cutoff style, double cutoff = 2.5) {
   return {.cutoff = cutoff, .cutoff_style = style, .epsilon = 1.0, .sigma = 1.0};
@@ -60,15 +39,6 @@ ParticleSystem<double> mixture() {
   topology->scaled_pairs = {{{0, 2}, 0.5}, {{0, 3}, 0.25}};
   s.set_topology(topology);
   return s;
-}
-
-/// Every SIMD level of this processor.
-std::vector<SimdLevel> all_levels() {
-  std::vector<SimdLevel> all;
-  for (const SimdLevel level : {SimdLevel::base, SimdLevel::avx2, SimdLevel::avx512}) {
-    if (has_simd_level(level)) all.push_back(level);
-  }
-  return all;
 }
 
 }  // namespace

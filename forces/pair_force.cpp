@@ -1,0 +1,75 @@
+#include "forces/pair_force.hpp"
+
+#include "forces/pair_chunk_simd.hpp"
+#include "forces/pair_groups.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace noether::detail {
+
+namespace {
+
+constexpr int bits_of_unit = 47;  // below the scale of a strong force
+
+int type_named(const Topology* topology, const std::string& name, std::string_view key) {
+  const std::vector<std::string>& names = topology != nullptr ? topology->type_names : std::vector<std::string>{};
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return static_cast<int>(found - names.begin());
+  throw Error(fmt::format("{} = \"{}\" names no type of the particles; {}", key, name,
+                          names.empty() ? "they have no types" : fmt::format("there are {}", fmt::join(names, ", "))));
+}
+
+}  // namespace
+
+std::array<int, 2> pair_types(const Topology* topology, const std::string& first, const std::string& second) {
+  if (first.empty() && second.empty()) return {-1, -1};
+  if (first.empty() || second.empty()) {
+    throw Error(fmt::format("{} = \"{}\" stands alone; give first and second, or neither",
+                            first.empty() ? "second" : "first", first.empty() ? second : first));
+  }
+  return {type_named(topology, first, "first"), type_named(topology, second, "second")};
+}
+
+void check_pair_cutoff(double cutoff, std::optional<double> switch_from, double scale) {
+  if (!(cutoff > 0 && cutoff < 1e100)) refuse_field("cutoff", cutoff, "is no cutoff; a length above 0 is expected");
+  if (switch_from && !(*switch_from > 0 && *switch_from < cutoff)) {
+    refuse_field("switch_from", *switch_from, fmt::format("does not lie between 0 and the cutoff {}", cutoff));
+  }
+  if (!(scale > 0 && scale < 1e150)) {
+    throw Error(
+        fmt::format("the parameters of a pair potential give it a strength of {}; a force above 0 is expected", scale));
+  }
+}
+
+void add_pairs_in_lanes(ForceSink<double>& out, const ParticleSystem<double>& s, const PairPlan& plan) {
+  std::optional<NeighborList> own;
+  NeighborList& list = out.neighbors() != nullptr ? *out.neighbors() : own.emplace(plan.cutoff);
+  list.update(s);
+  const PairChunkKernels& kernels = pair_chunk_kernels();
+  const bool all = out.wants_energy() || out.wants_virial();
+  const double force_unit = std::ldexp(1.0, std::ilogb(plan.scale) + 1 - bits_of_unit);
+  const double energy_unit = force_unit * std::ldexp(1.0, std::ilogb(plan.cutoff) + 1);
+  const PairFilter filter{list.records(),
+                          plan.cutoff * plan.cutoff,
+                          plan.nearest * plan.nearest,
+                          {plan.types[0], plan.types[1]},
+                          force_unit,
+                          energy_unit};
+  add_pair_groups(out, s, list, {force_unit, energy_unit}, plan.name,
+                  [&](const PairGroup& group, PairSums& found, bool care) {
+                    PairChunk chunk;
+                    std::memset(&found, 0, sizeof found);
+                    for (std::ptrdiff_t row = 0; row < group.rows; row += chunk.rows) {
+                      chunk.rows = std::min(PairChunk::most_rows, group.rows - row);
+                      kernels.load(filter, group, row, chunk);
+                      plan.loop(plan.potential, plan.end, chunk.r2, 8 * chunk.rows, chunk.energy, chunk.force);
+                      kernels.add[care ? 1 : 0](filter, chunk, all, found);
+                    }
+                  });
+}
+
+}  // namespace noether::detail

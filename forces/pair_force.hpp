@@ -1,0 +1,262 @@
+#pragma once
+/// A pair force from a potential of a few lines.
+
+#include "engine/pack.hpp"
+#include "engine/simd.hpp"
+#include "forces/pairs.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <type_traits>
+
+namespace noether {
+
+/// A potential between two particles: its parameters, and what it does at a distance.
+///
+///     struct Yukawa {
+///       double strength = 1, length = 1;
+///       double scale() const { return strength / (length * length); }
+///       template <class Real> PairTerms<Real> operator()(const Real& r2) const;  // energy and -U'(r)/r
+///     };
+///
+/// `scale` is a strong force of everyday: sums count whole units of 2^-47 of it or less. Where there is a `nearest()`,
+/// pairs nearer than that end the run. For doubles the function is called in loops that the compiler turns into lanes:
+/// best without branches, and with `pair_exp` for exp.
+template <class P>
+concept PairPotential = requires(const P& potential, double r2) {
+  { potential(r2) } -> std::convertible_to<PairTerms<double>>;
+  { potential.scale() } -> std::convertible_to<double>;
+};
+
+/// e^x, for potentials: of doubles without a branch or a call, so that loops of it go in lanes; 1 ulp.
+template <class Real> Real pair_exp(const Real& x) {
+  using std::exp;
+  return exp(x);
+}
+template <> inline double pair_exp(const double& x) {
+  const double inside = x < -700 ? -700 : x > 700 ? 700 : x;
+  constexpr double magic = 6755399441055744.0;  // 1.5 x 2^52: adding it rounds to a whole number
+  const double shifted = inside * 0x1.71547652b82fep0 + magic, n = shifted - magic;
+  const double r = (inside - n * 0x1.62e42fee00000p-1) - n * 0x1.a39ef35793c76p-33;
+  double p = 1.0 / 6227020800;
+  p = p * r + 1.0 / 479001600;
+  p = p * r + 1.0 / 39916800;
+  p = p * r + 1.0 / 3628800;
+  p = p * r + 1.0 / 362880;
+  p = p * r + 1.0 / 40320;
+  p = p * r + 1.0 / 5040;
+  p = p * r + 1.0 / 720;
+  p = p * r + 1.0 / 120;
+  p = p * r + 1.0 / 24;
+  p = p * r + 1.0 / 6;
+  p = p * r + 0.5;
+  p = 1 + (r + r * r * p);
+  const auto exponent = __builtin_bit_cast(std::int64_t, shifted) << 52U;
+  return __builtin_bit_cast(double, __builtin_bit_cast(std::int64_t, p) + exponent);
+}
+
+namespace detail {
+
+/// How a potential ends: energy less `energy`, less the force `force` times r; or times a switch of t = (r2 - from2)
+/// over what is left to the square of the cutoff.
+struct PairEnd {
+  Cutoff style = Cutoff::plain;
+  double energy = 0, force = 0;
+  double from2 = 0, inverse = 0;
+};
+
+template <class Real, class P> PairTerms<Real> ended(const P& potential, const PairEnd& end, const Real& r2) {
+  const PairTerms<Real> bare = potential(r2);
+  if (end.style == Cutoff::plain) return bare;
+  if (end.style == Cutoff::shifted) return {bare.energy - Real(end.energy), bare.force};
+  if (end.style == Cutoff::shifted_force) {
+    using std::sqrt;
+    const Real r = sqrt(r2);
+    return {bare.energy - Real(end.energy) + Real(end.force) * r, bare.force - Real(end.force) / r};
+  }
+  Real t = (r2 - Real(end.from2)) * Real(end.inverse);
+  t = t > Real(0) ? t : Real(0);
+  const Switch<Real> off(end.style, t);
+  return {bare.energy * off.value, off.value * bare.force - Real(2 * end.inverse) * bare.energy * off.slope};
+}
+
+/// Energies and forces of `count` pairs of doubles, a multiple of eight.
+using PairLoop = void (*)(const void* potential, const PairEnd& end, const double* r2, std::ptrdiff_t count,
+                          double* energy, double* force);
+
+template <class P, Cutoff style>
+[[gnu::always_inline]] inline void loop_over_pairs(const P& potential, const PairEnd& given, const double* r2,
+                                                   std::ptrdiff_t count, double* energy, double* force) {
+  PairEnd end = given;
+  end.style = style;
+  const P own = potential;  // nothing that is written can change it
+#pragma GCC ivdep
+  for (std::ptrdiff_t k = 0; k < count; ++k) {
+    const PairTerms<double> terms = ended<double>(own, end, r2[k]);
+    energy[k] = terms.energy;
+    force[k] = terms.force;
+  }
+}
+
+/// The loop over a potential, compiled for each SIMD level where it is used.
+template <class P, Cutoff style> struct PairLoops {
+  [[gnu::flatten]] static void base(const void* p, const PairEnd& end, const double* r2, std::ptrdiff_t n, double* u,
+                                    double* f) {
+    loop_over_pairs<P, style>(*static_cast<const P*>(p), end, r2, n, u, f);
+  }
+#if NOETHER_SIMD_LEVELS
+  [[gnu::flatten, gnu::target("avx2,fma")]] static void avx2(const void* p, const PairEnd& end, const double* r2,
+                                                             std::ptrdiff_t n, double* u, double* f) {
+    loop_over_pairs<P, style>(*static_cast<const P*>(p), end, r2, n, u, f);
+  }
+  [[gnu::flatten, gnu::target("avx512f,avx512dq,avx512vl,prefer-vector-width=512")]] static void avx512(
+      const void* p, const PairEnd& end, const double* r2, std::ptrdiff_t n, double* u, double* f) {
+    loop_over_pairs<P, style>(*static_cast<const P*>(p), end, r2, n, u, f);
+  }
+  static PairLoop in_use() { return at_simd_level<PairLoop>(base, avx2, avx512); }
+#else
+  static PairLoop in_use() { return base; }
+#endif
+};
+
+template <class P> PairLoop pair_loop(Cutoff style) {
+  switch (style) {
+    case Cutoff::plain:
+      return PairLoops<P, Cutoff::plain>::in_use();
+    case Cutoff::shifted:
+      return PairLoops<P, Cutoff::shifted>::in_use();
+    case Cutoff::shifted_force:
+      return PairLoops<P, Cutoff::shifted_force>::in_use();
+    case Cutoff::switch_c2:
+      return PairLoops<P, Cutoff::switch_c2>::in_use();
+    default:
+      return PairLoops<P, Cutoff::switch_c4>::in_use();
+  }
+}
+
+/// All that the loop over a neighbor list needs to know of a pair force.
+struct PairPlan {
+  const void* potential;
+  PairLoop loop;
+  PairEnd end;
+  double cutoff, nearest, scale;
+  std::array<int, 2> types;  ///< only pairs of these; -1: all
+  std::string_view name;
+};
+
+void add_pairs_in_lanes(ForceSink<double>& out, const ParticleSystem<double>& s, const PairPlan& plan);
+/// The indices of two types; -1 both for no names. @throws Error  for one name alone, or a name that no type has
+std::array<int, 2> pair_types(const Topology* topology, const std::string& first, const std::string& second);
+void check_pair_cutoff(double cutoff, std::optional<double> switch_from, double scale);
+
+}  // namespace detail
+
+/// A potential between all pairs up to a cutoff, or between the pairs of two types.
+///
+/// Ends at the cutoff, excluded and scaled pairs, small boxes and exact sums are those of LennardJonesForce. A pair
+/// that is nearer than `nearest()` of the potential, or too strong for the sums, ends the run as `overlap`.
+/// @cost doubles O(n); other number types O(n^2)
+/// @source Verlet1967
+template <PairPotential P> struct PairForce : P {
+  /// Whether the potential has a `range()` of its own, where energy and force are zero; then no cutoff is asked for.
+  static constexpr bool ends_by_itself = requires(const P& potential) { potential.range(); };
+
+  double cutoff = 0;                                                             ///< [length]
+  Cutoff cutoff_style = ends_by_itself ? Cutoff::plain : Cutoff::shifted_force;  ///<
+  std::optional<double> switch_from = {};  ///< where a switch begins [length]; default: 0.9 cutoff
+  std::string first = {}, second = {};     ///< names of two types; default: all pairs
+
+  static constexpr auto describe() requires requires { P::describe(); }
+  {
+    constexpr auto of_potential = P::describe();
+    constexpr auto types =
+        std::tuple(field<&PairForce::first>("first", "1", "a type: only its pairs with `second`; default: all"),
+                   field<&PairForce::second>("second", "1", "a type: only its pairs with `first`"));
+    const auto all = [&](auto... entry) { return part<PairForce>(of_potential.name, of_potential.help, entry...); };
+    if constexpr (ends_by_itself) {
+      return std::apply(all, std::tuple_cat(of_potential.entries, types));
+    } else {
+      constexpr auto ends = std::tuple(
+          field<&PairForce::cutoff>("cutoff", "length", "pairs feel each other up to here").required("\"1 nm\""),
+          field<&PairForce::cutoff_style>("cutoff_style", "1", "how pairs end at the cutoff"),
+          field<&PairForce::switch_from>("switch_from", "length", "of the switches; default: 0.9 cutoff"));
+      return std::apply(all, std::tuple_cat(of_potential.entries, ends, types));
+    }
+  }
+  ForceClaims claims() const { return {.periodic = true, .range = reach()}; }
+
+  /// @throws Error  for a cutoff that is no length, a switch that begins elsewhere, a force without strength
+  void check() const {
+    if constexpr (requires { P::check(); }) P::check();
+    detail::check_pair_cutoff(reach(), switch_from, P::scale());
+  }
+  /// @throws Error  also for names that no type has
+  template <class Real> void check(const ParticleSystem<Real>& s) const {
+    check();
+    detail::pair_types(s.topology(), first, second);
+  }
+
+  template <class Real>
+    requires(!std::is_same_v<Real, Pack>)  // lanes would have to agree on who is in range
+  void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+    const auto types = detail::pair_types(s.topology(), first, second);
+    const detail::PairEnd end = this->end();
+    const auto terms = [&](Index i, Index j, const Real& r2, const auto& add) {
+      if (types[0] >= 0) {
+        const std::array<int, 2> pair = {s.topology()->type(i), s.topology()->type(j)};
+        if (pair != types && pair != std::array<int, 2>{types[1], types[0]}) return;
+      }
+      if (r2 < Real(reach() * reach())) add(detail::ended<Real>(static_cast<const P&>(*this), end, r2));
+    };
+    if constexpr (std::is_same_v<Real, double>) {
+      const P& potential = *this;
+      detail::add_pairs_in_lanes(
+          out, s,
+          {&potential, detail::pair_loop<P>(cutoff_style), end, reach(), nearest_pair(), P::scale(), types, name()});
+    } else {
+      detail::add_pairs_in_turn(out, s, reach(), terms);
+    }
+    detail::add_scaled_pairs(out, s, terms);
+  }
+
+ private:
+  double reach() const {
+    if constexpr (ends_by_itself) {
+      return P::range();
+    } else {
+      return cutoff;
+    }
+  }
+  double nearest_pair() const {
+    if constexpr (requires { P::nearest(); }) {
+      return P::nearest();
+    } else {
+      return 0;
+    }
+  }
+  static constexpr std::string_view name() {
+    if constexpr (requires { P::describe(); }) {
+      return P::describe().name;
+    } else {
+      return "pair";
+    }
+  }
+  detail::PairEnd end() const {
+    detail::PairEnd end{.style = cutoff_style};
+    if (cutoff_style == Cutoff::plain) return end;
+    const PairTerms<double> last = (*this)(cutoff * cutoff);
+    const double from = switch_from.value_or(0.9 * cutoff);
+    end.energy = last.energy;
+    if (cutoff_style == Cutoff::shifted_force) {
+      end.force = last.force * cutoff;
+      end.energy += end.force * cutoff;
+    }
+    end.from2 = from * from;
+    end.inverse = 1 / (cutoff * cutoff - from * from);
+    return end;
+  }
+};
+
+}  // namespace noether

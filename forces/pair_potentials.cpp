@@ -1,0 +1,50 @@
+#include "forces/pair_potentials.hpp"
+
+#include <fmt/format.h>
+
+namespace noether {
+
+namespace {
+
+/// r^7 exp(-r / rho) is largest at 7 rho; U' = 0 where it is 6 C rho / A: below that once, and above it once.
+double excess(const Buckingham& b, double r) {
+  const double x = r / b.rho;
+  return b.A * std::pow(r, 7) * std::exp(-x) - 6 * b.C * b.rho;
+}
+
+}  // namespace
+
+void Wca::check() const {
+  if (!(epsilon > 0)) refuse_field("epsilon", epsilon, "is no strength; an energy above 0 is expected");
+  if (!(sigma > 0)) refuse_field("sigma", sigma, "is no length above 0");
+}
+
+void MorsePair::check() const {
+  if (!(depth > 0)) refuse_field("depth", depth, "is no depth of a well; an energy above 0 is expected");
+  if (!(a > 0)) refuse_field("a", a, "is no inverse width above 0");
+  if (!(length >= 0)) refuse_field("length", length, "is no length; 0 or more is expected");
+}
+
+void Buckingham::check() const {
+  if (!(A > 0)) refuse_field("A", A, "is no repulsion; an energy above 0 is expected");
+  if (!(rho > 0)) refuse_field("rho", rho, "is no length above 0");
+  if (!(C >= 0)) refuse_field("C", C, "is no dispersion; 0 or more is expected");
+  if (C > 0 && !(excess(*this, 7 * rho) > 0)) {
+    refuse_field(
+        "C", C,
+        fmt::format("is so strong that these pairs attract at every distance; less than {:.6g} leaves a barrier",
+                    A * std::pow(7 * rho, 7) * std::exp(-7.0) / (6 * rho)));
+  }
+}
+
+double Buckingham::nearest() const {
+  if (C == 0) return 0;
+  double inside = 0, outside = 7 * rho;  // of the barrier's top
+  while (true) {
+    const double middle = inside + (outside - inside) / 2;
+    if (!(middle > inside && middle < outside)) return outside;
+    (excess(*this, middle) > 0 ? outside : inside) = middle;
+  }
+}
+
+}  // namespace noether

@@ -1,0 +1,27 @@
+#include "forces/pairs.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+namespace noether::detail {
+
+Failure overlap(const ParticleSystem<double>& s, Index i, std::string_view force) {
+  const auto called = [&](Index k) {
+    return s.name(k).empty() ? fmt::format("{}", s.ids()[static_cast<std::size_t>(k)]) : fmt::format("'{}'", s.name(k));
+  };
+  Index nearest = i;
+  double least = std::numeric_limits<double>::infinity();
+  for (Index j = 0; j < s.size(); ++j) {
+    if (j == i || (s.topology() != nullptr && s.topology()->is_special(i, j))) continue;
+    const double r2 = norm2(s.box().minimum_image(Vec3<double>(s.positions()[i] - s.positions()[j])));
+    if (r2 < least) least = r2, nearest = j;
+  }
+  return {.kind = Outcome::Kind::overlap,
+          .particle = i,
+          .quantity = "distance",
+          .message = fmt::format("particles {} and {} are {:.3g} apart, too close for their {} force", called(i),
+                                 called(nearest), std::sqrt(least), force)};
+}
+
+}  // namespace noether::detail

@@ -1,0 +1,121 @@
+#pragma once
+/// What all pair forces of short range share: how they end at their cutoff, and the plain loop over pairs.
+
+#include "engine/description.hpp"
+#include "engine/force_sink.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace noether {
+
+/// How pair forces end at the cutoff r_c.
+enum class Cutoff : std::uint8_t {
+  plain,          ///< cut: the energy jumps when a pair crosses r_c
+  shifted,        ///< U - U(r_c): the force jumps
+  shifted_force,  ///< U - U(r_c) - (r - r_c) U'(r_c): the force is continuous
+  switch_c2,      ///< times a polynomial in r^2 from `switch_from` on: two continuous derivatives
+  switch_c4,      ///< the same with four continuous derivatives, for shadow Hamiltonians and higher order
+};
+
+template <> struct EnumNames<Cutoff> {
+  static constexpr std::array<std::pair<Cutoff, std::string_view>, 5> values = {
+      {{Cutoff::plain, "plain"},
+       {Cutoff::shifted, "shifted"},
+       {Cutoff::shifted_force, "shifted_force"},
+       {Cutoff::switch_c2, "switch_c2"},
+       {Cutoff::switch_c4, "switch_c4"}}};
+};
+
+/// Energy of a pair, and the force along its line of centres over their distance: -U'(r) / r.
+template <class Real> struct PairTerms { Real energy, force; };
+
+namespace detail {
+
+/// S and dS/dt of a switch that falls from 1 at t = 0 to 0 at t = 1.
+template <class Real> struct Switch {
+  Real value, slope;
+
+  Switch(Cutoff style, const Real& t) {
+    const Real t2 = t * t, u = Real(1) - t, u2 = u * u;
+    if (style == Cutoff::switch_c2) {
+      value = Real(1) - t2 * t * (Real(10) + t * (Real(6) * t - Real(15)));
+      slope = Real(-30) * t2 * u2;
+    } else {
+      value = Real(1) - t2 * t2 * t * (Real(126) + t * (Real(-420) + t * (Real(540) + t * (Real(70) * t - Real(315)))));
+      slope = Real(-630) * t2 * t2 * u2 * u2;
+    }
+  }
+};
+
+/// Calls `act(d)` for the images of a pair that can be in range; of a particle with itself for those of its copies.
+template <class Real, class Act>
+void for_images(const ParticleSystem<Real>& s, Index i, Index j, double range, const Act& act) {
+  const Box& box = s.box();
+  const Vec3<Real> near = box.minimum_image(Vec3<Real>(s.positions()[i] - s.positions()[j]));
+  std::array<int, 3> most{};  // beyond the nearest image
+  for (int k = 0; k < 3 && box.is_periodic(); ++k) {
+    most[static_cast<std::size_t>(k)] = static_cast<int>(std::max(0.0, std::ceil(range / box.edges()[k] - 0.5)));
+  }
+  for (int c = -most[2]; c <= most[2]; ++c) {
+    for (int b = -most[1]; b <= most[1]; ++b) {
+      for (int a = -most[0]; a <= most[0]; ++a) {
+        if (i == j && a == 0 && b == 0 && c == 0) continue;
+        Vec3<Real> d = near;
+        if (a != 0) d[0] += Real(a * box.edges()[0]);
+        if (b != 0) d[1] += Real(b * box.edges()[1]);
+        if (c != 0) d[2] += Real(c * box.edges()[2]);
+        act(d);
+      }
+    }
+  }
+}
+
+/// Adds all pairs in turn, each image in range, and the scaled ones; excluded pairs are left out.
+/// @param terms  (i, j, r2, add): calls `add(PairTerms)` if the pair acts
+/// @cost O(n^2)
+template <class Real, class Terms>
+void add_pairs_in_turn(ForceSink<Real>& out, const ParticleSystem<Real>& s, double range, const Terms& terms) {
+  const Topology* topology = s.topology();
+  for (Index i = 0; i < s.size(); ++i) {
+    for (Index j = 0; j <= i; ++j) {
+      if (i != j && topology != nullptr && topology->is_special(i, j)) continue;
+      const Real part = i == j ? Real(1) / Real(2) : Real(1);
+      for_images(s, i, j, range, [&](const Vec3<Real>& d) {
+        terms(i, j, norm2(d), [&](const PairTerms<Real>& found) {
+          const Vec3<Real> f = found.force * d;
+          if (i != j && s.masses()[i] != Real(0)) out.accelerations().add(i, f / s.masses()[i]);
+          if (i != j && s.masses()[j] != Real(0)) out.accelerations().add(j, -f / s.masses()[j]);
+          out.energy(part * found.energy);
+          out.virial(part * f * d.transpose());
+        });
+      });
+    }
+  }
+}
+
+/// Adds the pairs whose force the topology scales, at their nearest images. @param terms  as above
+template <class Real, class Terms>
+void add_scaled_pairs(ForceSink<Real>& out, const ParticleSystem<Real>& s, const Terms& terms) {
+  if (s.topology() == nullptr) return;
+  for (const Topology::ScaledPair& scaled : s.topology()->scaled_pairs) {
+    const auto [i, j] = scaled.pair;
+    const Vec3<Real> d = s.box().minimum_image(Vec3<Real>(s.positions()[i] - s.positions()[j]));
+    terms(i, j, norm2(d), [&, i = i, j = j](const PairTerms<Real>& found) {
+      out.pair(i, j, Real(scaled.factor) * found.force * d);
+      out.energy(Real(scaled.factor) * found.energy);
+    });
+  }
+}
+
+/// Names particle `i` and the one nearest to it. @param force  as a message calls it @cost O(n)
+Failure overlap(const ParticleSystem<double>& s, Index i, std::string_view force);
+
+}  // namespace detail
+
+}  // namespace noether

@@ -1,0 +1,196 @@
+/// Potentials of pairs in lanes: against 113 bits, against the Lennard-Jones kernels, and where they break.
+
+#include "forces/pair_force.hpp"
+
+#include "engine/monitors.hpp"
+#include "engine/simulation.hpp"
+#include "forces/check_gradient.hpp"
+#include "forces/lennard_jones.hpp"
+#include "forces/pair_potentials.hpp"
+#include "integrators/composition.hpp"
+#include "integrators/kinetic_potential.hpp"
+#include "integrators/schemes.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/liquid.hpp"
+#include "tests/support/pair_forces.hpp"
+#include "tests/support/refusal.hpp"
+#include "tests/support/settings.hpp"
+
+namespace noether {
+namespace {
+
+using test::evaluated;
+using test::Evaluated;
+using test::largest_difference;
+
+/// As a user would write it.
+struct TwelveSix {
+  double epsilon = 1, sigma = 1;
+  double scale() const { return 24 * epsilon / sigma; }
+  template <class Real> PairTerms<Real> operator()(const Real& r2) const {
+    const Real s2 = Real(sigma * sigma) / r2, s6 = s2 * s2 * s2;
+    return {Real(4 * epsilon) * s6 * (s6 - Real(1)), Real(24 * epsilon) * s6 * (Real(2) * s6 - Real(1)) / r2};
+  }
+};
+
+template <class P> PairForce<P> pair_force(const P& potential, double cutoff, Cutoff style) {
+  return {potential, cutoff, style};
+}
+
+ParticleSystem<double> two_types(ParticleSystem<double> s) {
+  auto topology = std::make_shared<Topology>();
+  topology->type_names = {"A", "B"};
+  for (Index i = 0; i < s.size(); ++i) topology->types.push_back(i % 3 == 0 ? 1 : 0);
+  topology->exclusions = {{0, 1}, {4, 9}};
+  topology->scaled_pairs = {{{0, 2}, 0.5}, {{0, 3}, 0.25}};
+  s.set_topology(topology);
+  return s;
+}
+
+/// Lanes against 113 bits. @param scale  of the sums' unit
+template <class F> void check_lanes(const F& force, const ParticleSystem<double>& s) {
+  const Evaluated lanes = evaluated<double>(force, s), exact = evaluated<Quad>(force, s);
+  REQUIRE_FALSE(lanes.failure);
+  const double largest = std::max(1.0, exact.a.all().cwiseAbs().maxCoeff());
+  CHECK(largest_difference(lanes.a, exact.a) < 3e-13 * largest + 60 * force.scale() * 0x1p-47);
+  CHECK(std::abs(lanes.energy - exact.energy) < 1e-12 * force.scale() * static_cast<double>(s.size()));
+  CHECK((lanes.virial - exact.virial).cwiseAbs().maxCoeff() < 1e-11 * force.scale() * static_cast<double>(s.size()));
+}
+
+}  // namespace
+
+TEST_CASE("pairs of any potential in lanes are those of 113 bits, for every end of the range", "[pair_force]") {
+  const Cutoff style =
+      GENERATE(Cutoff::plain, Cutoff::shifted, Cutoff::shifted_force, Cutoff::switch_c2, Cutoff::switch_c4);
+  for (const SimdLevel level : test::all_levels()) {
+    const test::AtLevel at(level);
+    CAPTURE(name(level), static_cast<int>(style));
+    for (const auto& s :
+         {test::liquid(3, 0.85, 1, 0.1), two_types(test::liquid(3, 0.6, 1, 0.1)), test::liquid(1, 0.85, 1, 0.1)}) {
+      check_lanes(pair_force(TwelveSix{}, 2.2, style), s);
+      check_lanes(pair_force(MorsePair{1.7, 4.5, 1.15}, 2.0, style), s);
+      check_lanes(pair_force(Buckingham{2500, 0.18, 3.1}, 2.1, style), s);
+      check_lanes(WcaForce{{1.3, 1.05}}, s);
+      if (s.topology() == nullptr) continue;
+      MorseForce some = pair_force(MorsePair{1.7, 4.5, 1.15}, 2.0, style);
+      some.first = "B";
+      some.second = "A";
+      check_lanes(some, s);
+    }
+  }
+}
+
+TEST_CASE("forces of pair potentials are the gradients of their energies", "[pair_force]") {
+  const ParticleSystem<double> s = test::liquid(1, 0.6, 1, 0.05);
+  for (const Cutoff style : {Cutoff::shifted, Cutoff::shifted_force, Cutoff::switch_c2, Cutoff::switch_c4}) {
+    CAPTURE(static_cast<int>(style));
+    CHECK(gradient_error(pair_force(MorsePair{1.7, 4.5, 1.15}, 2.0, style), s) < 1e-12);
+    CHECK(gradient_error(pair_force(Buckingham{2500, 0.18, 3.1}, 2.1, style), s) < 1e-12);
+  }
+  CHECK(gradient_error(WcaForce{{1.3, 1.3}}, s) < 1e-12);
+}
+
+TEST_CASE("twelve-six written by a user is Lennard-Jones", "[pair_force]") {
+  const ParticleSystem<double> s = test::liquid(4, 0.85, 1, 0.1);
+  for (const Cutoff style : {Cutoff::plain, Cutoff::shifted_force, Cutoff::switch_c4}) {
+    const Evaluated own = evaluated<double>(pair_force(TwelveSix{}, 2.5, style), s);
+    const Evaluated built_in =
+        evaluated<double>(LennardJonesForce{.cutoff = 2.5, .cutoff_style = style, .epsilon = 1.0, .sigma = 1.0}, s);
+    CHECK(largest_difference(own.a, built_in.a) < 1e-10);
+    CHECK(std::abs(own.energy - built_in.energy) < 1e-9);
+    CHECK((own.virial - built_in.virial).cwiseAbs().maxCoeff() < 1e-9);
+  }
+}
+
+TEST_CASE("bits of pair potentials depend on no neighbor list, thread or monitor", "[pair_force][determinism]") {
+  const ParticleSystem<double> s = test::liquid(5, 0.85, 1, 0.15);
+  const MorseForce force = pair_force(MorsePair{1.7, 4.5, 1.15}, 2.5, Cutoff::shifted_force);
+  const Evaluated first = evaluated<double>(force, s);
+  for (const double skin : {0.01, 0.3, 0.6}) {
+    for (const int threads : {1, 2, 3, 8}) {
+      const test::Threads now(threads);
+      NeighborList list(2.5, {.skin = skin});
+      const Evaluated again = evaluated<double>(force, s, &list);
+      CHECK(again.a.all() == first.a.all());
+      CHECK(again.energy == first.energy);
+      CHECK(again.virial == first.virial);
+    }
+  }
+  VectorColumn<double> a(s.size());
+  ForceSink<double> forces_only(a, s, {});
+  force.add_to(forces_only, s);
+  CHECK(a.all() == first.a.all());
+}
+
+TEST_CASE("strong pairs are summed with care, and the strongest end the run by name", "[pair_force][extremes]") {
+  ParticleSystem<double> s = test::liquid(2, 0.8, 1);
+  const Vec3<double> x = s.positions()[3];
+  s.add("", 1, x + Vec3<double>(0.5, 0, 0), {0, 0, 0});  // 2^14 times the scale
+  const auto force = pair_force(TwelveSix{}, 1.9, Cutoff::shifted_force);
+  const Evaluated lanes = evaluated<double>(force, s), exact = evaluated<Quad>(force, s);
+  CHECK_FALSE(lanes.failure);
+  CHECK(largest_difference(lanes.a, exact.a) < 1e-14 * exact.a.all().cwiseAbs().maxCoeff());
+  s.add("", 1, x + Vec3<double>(0, 1e-3, 0), {0, 0, 0});
+  const Evaluated strong = evaluated<double>(force, s);
+  REQUIRE(strong.failure);
+  CHECK(strong.failure->kind == Outcome::Kind::overlap);
+  CHECK(strong.failure->message == "particles 3 and 33 are 0.001 apart, too close for their pair force");
+  s.add("", 1, x, {0, 0, 0});
+  CHECK(evaluated<double>(force, s).failure);
+}
+
+TEST_CASE("Buckingham's catastrophe is caught at the top of its barrier", "[pair_force][extremes]") {
+  const Buckingham helium{2500, 0.18, 3.1};
+  const double top = helium.nearest();
+  CHECK(std::abs(helium(top * top).force) < 1e-9 * helium.scale());
+  CHECK(helium(0.99 * top * 0.99 * top).force < 0);  // falls in
+  CHECK(helium(1.01 * top * 1.01 * top).force > 0);
+  ParticleSystem<double> s;
+  s.set_box(Box::periodic({9, 9, 9}));
+  s.add("He", 1, {1, 1, 1}, {4, 0, 0});
+  s.add("other", 1, {3, 1, 1}, {0, 0, 0});
+  Simulation<double> slow(
+      s, Composition(KineticPotential(pair_force(helium, 2.1, Cutoff::shifted_force)), schemes::verlet), 1e-3);
+  CHECK(slow.run(5000).ok());
+  s.velocities().set(0, {400, 0, 0});
+  const auto fall = [&](bool watched) {
+    Simulation<double> fast(
+        s, Composition(KineticPotential(pair_force(helium, 2.1, Cutoff::shifted_force)), schemes::verlet), 1e-5);
+    if (watched) fast.every(1, Energy{});
+    return fast.run(5000);
+  };
+  const Outcome outcome = fall(false);
+  CHECK(outcome.kind == Outcome::Kind::overlap);
+  // 2 - top at a speed of 400 and 1e-5 a step, a little less as they slow down: the step does not depend on who looks.
+  CHECK(std::abs(static_cast<double>(outcome.step) - (2 - top) / 400e-5) < 3);
+  CHECK(fall(true).step == outcome.step);
+}
+
+TEST_CASE("the exponential of pair potentials is within an ulp", "[pair_force]") {
+  for (double x = -700; x < 700; x += 0.37) {
+    const double exact = std::exp(x);
+    CHECK(std::abs(pair_exp(x) - exact) <= 2 * (std::nextafter(exact, 1e308) - exact));
+  }
+}
+
+TEST_CASE("pair potentials that make no sense are refused", "[pair_force][messages]") {
+  const auto refusal = [](const auto& force, const ParticleSystem<double>& s = two_types(test::liquid(1, 0.5, 1))) {
+    return test::refusal_of([&] { check_force(force, s); });
+  };
+  MorseForce morse = pair_force(MorsePair{1, 2, 1}, 2.0, Cutoff::plain);
+  CHECK(refusal(morse).empty());
+  morse.first = "A";
+  CHECK(refusal(morse) == "first = \"A\" stands alone; give first and second, or neither");
+  morse.second = "C";
+  CHECK(refusal(morse) == "second = \"C\" names no type of the particles; there are A, B");
+  CHECK(refusal(morse, test::liquid(1, 0.5, 1)) == "first = \"A\" names no type of the particles; they have no types");
+  CHECK(refusal(pair_force(MorsePair{1, 2, 1}, 0, Cutoff::plain)) ==
+        "cutoff = 0 is no cutoff; a length above 0 is expected");
+  CHECK(refusal(pair_force(MorsePair{-1, 2, 1}, 2, Cutoff::plain)) ==
+        "depth = -1 is no depth of a well; an energy above 0 is expected");
+  CHECK(refusal(pair_force(Buckingham{100, 0.1, 5}, 2, Cutoff::plain)) ==
+        "C = 5 is so strong that these pairs attract at every distance; less than 0.0125162 leaves a barrier");
+  CHECK(refusal(WcaForce{{1, 0}}) == "sigma = 0 is no length above 0");
+}
+
+}  // namespace noether

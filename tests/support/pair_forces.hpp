@@ -1,0 +1,49 @@
+#pragma once
+/// What pair forces give, in any number type and at any SIMD level.
+
+#include "engine/force_sink.hpp"
+#include "engine/simd.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace noether::test {
+
+struct Evaluated {
+  VectorColumn<double> a;
+  double energy;
+  Mat3<double> virial;
+  std::optional<Failure> failure;
+};
+
+/// Everything that a force gives, computed in numbers of type `Real`.
+template <class Real, class F>
+Evaluated evaluated(const F& force, const ParticleSystem<double>& s, NeighborList* list = nullptr) {
+  const ParticleSystem<Real> particles = s.as<Real>();
+  VectorColumn<Real> a(s.size());
+  ForceSink<Real> sink(a, particles, {.energy = true, .virial = true}, list);
+  force.add_to(sink, particles);
+  Evaluated all{VectorColumn<double>(s.size()), static_cast<double>(sink.potential()), {}, sink.failure()};
+  for (Index i = 0; i < s.size(); ++i) {
+    for (int k = 0; k < 3; ++k) all.a.component(k)[i] = static_cast<double>(a.component(k)[i]);
+  }
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) all.virial(r, c) = static_cast<double>(sink.virial()(r, c));
+  }
+  return all;
+}
+
+inline double largest_difference(const VectorColumn<double>& a, const VectorColumn<double>& b) {
+  return (a.all() - b.all()).cwiseAbs().maxCoeff();
+}
+
+/// Every SIMD level of this processor.
+inline std::vector<SimdLevel> all_levels() {
+  std::vector<SimdLevel> all;
+  for (const SimdLevel level : {SimdLevel::base, SimdLevel::avx2, SimdLevel::avx512}) {
+    if (has_simd_level(level)) all.push_back(level);
+  }
+  return all;
+}
+
+}  // namespace noether::test
