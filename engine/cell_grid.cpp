@@ -1,6 +1,7 @@
 #include "engine/cell_grid.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 #include <utility>
 
@@ -29,6 +30,43 @@ Interval extent_of(const double* x, Index count) {
 }
 
 }  // namespace
+
+namespace {
+
+/// Place of (y, z) along Hilbert's curve through a square of `size` x `size` places, a power of two.
+std::uint64_t hilbert(std::uint64_t size, std::uint64_t y, std::uint64_t z) {
+  std::uint64_t place = 0;
+  for (std::uint64_t half = size / 2; half > 0; half /= 2) {
+    const bool right = (y & half) != 0, upper = (z & half) != 0;
+    place += half * half * (right ? (upper ? 2 : 3) : (upper ? 1 : 0));
+    if (upper) continue;
+    if (right) {
+      y = size - 1 - y;
+      z = size - 1 - z;
+    }
+    std::swap(y, z);
+  }
+  return place;
+}
+
+}  // namespace
+
+/// Numbers the rows along the curve.
+void CellGrid::order_rows() {
+  const Index along_y = axes_[1].size, along_z = axes_[2].size;
+  const auto size = std::bit_ceil(static_cast<std::uint64_t>(std::max(along_y, along_z)));
+  std::vector<std::pair<std::uint64_t, std::int32_t>> curve;
+  curve.reserve(at(along_y * along_z));
+  for (Index iz = 0; iz < along_z; ++iz) {
+    for (Index iy = 0; iy < along_y; ++iy) {
+      curve.emplace_back(hilbert(size, static_cast<std::uint64_t>(iy), static_cast<std::uint64_t>(iz)),
+                         static_cast<std::int32_t>(iz * along_y + iy));
+    }
+  }
+  std::sort(curve.begin(), curve.end());
+  rows_.resize(curve.size());
+  for (std::size_t k = 0; k < curve.size(); ++k) rows_[at(curve[k].second)] = static_cast<std::int32_t>(k);
+}
 
 Index CellGrid::Axis::cell(double x) const {
   if (occupied.empty()) {
@@ -88,6 +126,7 @@ void CellGrid::lay_axes(const std::array<const double*, 3>& coordinates, Index c
 
 void CellGrid::sort(const std::array<const double*, 3>& coordinates, Index count, double range) {
   lay_axes(coordinates, count, range);
+  order_rows();
   const Index total = axes_[0].size * axes_[1].size * axes_[2].size;
   cells_.resize(at(count));
   start_.assign(at(total + 1), 0);
