@@ -48,6 +48,7 @@
 #include <cstdint>
 #include <numbers>
 #include <optional>
+#include <string>
 
 namespace examples {
 
@@ -78,6 +79,9 @@ namespace examples::robertson {
 }
 #define run(steps) run(examples::shortened.value_or(steps))
 #define run_until(end) run(sim.steps_in(end))
+namespace examples::argon_crystal {
+#include "examples/argon_crystal/main.cpp"
+}
 namespace examples::bead_on_wire {
 #include "examples/bead_on_wire/main.cpp"
 }
