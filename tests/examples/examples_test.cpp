@@ -29,6 +29,7 @@ struct Example {
 };
 
 const std::vector<Example> all = {
+    {"alkane_liquid", alkane_liquid::program, Length::slow, Bits::of_this_machine, 100},
     {"argon_crystal", argon_crystal::program, Length::quick, Bits::of_this_machine, 250},
     {"bead_on_wire", bead_on_wire::program, Length::quick, Bits::of_this_machine, 100},
     {"beads_on_sphere", beads_on_sphere::program, Length::quick, Bits::everywhere, 250},
