@@ -50,6 +50,7 @@ const std::vector<Example> all = {
     {"solar_system", solar_system::program, Length::slow},
     {"spherical_pendulum", spherical_pendulum::program, Length::quick},
     {"template_project", template_project::program, Length::quick},
+    {"two_phase_slab", two_phase_slab::program, Length::slow, Bits::of_this_machine, 100},
 };
 
 /// Programs write trajectories: without HDF5 they cannot run.

@@ -16,6 +16,7 @@
 #include "engine/pressure.hpp"
 #include "engine/shadow_hamiltonian.hpp"
 #include "engine/simulation.hpp"
+#include "engine/statistics.hpp"
 #include "engine/temperature.hpp"
 #include "engine/time_correlation.hpp"
 #include "engine/units.hpp"
@@ -138,6 +139,9 @@ namespace examples::spherical_pendulum {
 }
 namespace examples::template_project {
 #include "examples/template_project/main.cpp"
+}
+namespace examples::two_phase_slab {
+#include "examples/two_phase_slab/main.cpp"
 }
 #undef run_until
 #undef run
