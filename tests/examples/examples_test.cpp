@@ -29,6 +29,8 @@ struct Example {
 };
 
 const std::vector<Example> all = {
+    {"alkane_liquid", alkane_liquid::program, Length::slow, Bits::of_this_machine, 100},
+    {"argon_crystal", argon_crystal::program, Length::quick, Bits::of_this_machine, 250},
     {"bead_on_wire", bead_on_wire::program, Length::quick, Bits::of_this_machine, 100},
     {"beads_on_sphere", beads_on_sphere::program, Length::quick, Bits::everywhere, 250},
     {"chain", chain::program, Length::quick},
@@ -48,6 +50,7 @@ const std::vector<Example> all = {
     {"solar_system", solar_system::program, Length::slow},
     {"spherical_pendulum", spherical_pendulum::program, Length::quick},
     {"template_project", template_project::program, Length::quick},
+    {"two_phase_slab", two_phase_slab::program, Length::slow, Bits::of_this_machine, 100},
 };
 
 /// Programs write trajectories: without HDF5 they cannot run.

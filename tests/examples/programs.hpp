@@ -13,9 +13,12 @@
 #include "constraints/surfaces.hpp"
 #include "engine/monitors.hpp"
 #include "engine/orbital_monitors.hpp"
+#include "engine/pressure.hpp"
 #include "engine/shadow_hamiltonian.hpp"
 #include "engine/simulation.hpp"
+#include "engine/statistics.hpp"
 #include "engine/temperature.hpp"
+#include "engine/time_correlation.hpp"
 #include "engine/units.hpp"
 #include "engine/variables.hpp"
 #include "forces/bonded.hpp"
@@ -36,6 +39,7 @@
 #include "integrators/wisdom_holman.hpp"
 #include "io/bodies.hpp"
 #include "io/digest.hpp"
+#include "io/structure.hpp"
 #include "io/trajectory.hpp"
 #include "scene/builders.hpp"
 #include "scene/run.hpp"
@@ -48,6 +52,7 @@
 #include <cstdint>
 #include <numbers>
 #include <optional>
+#include <string>
 
 namespace examples {
 
@@ -78,6 +83,12 @@ namespace examples::robertson {
 }
 #define run(steps) run(examples::shortened.value_or(steps))
 #define run_until(end) run(sim.steps_in(end))
+namespace examples::alkane_liquid {
+#include "examples/alkane_liquid/main.cpp"
+}
+namespace examples::argon_crystal {
+#include "examples/argon_crystal/main.cpp"
+}
 namespace examples::bead_on_wire {
 #include "examples/bead_on_wire/main.cpp"
 }
@@ -128,6 +139,9 @@ namespace examples::spherical_pendulum {
 }
 namespace examples::template_project {
 #include "examples/template_project/main.cpp"
+}
+namespace examples::two_phase_slab {
+#include "examples/two_phase_slab/main.cpp"
 }
 #undef run_until
 #undef run
