@@ -15,7 +15,8 @@ namespace noether {
 /// Sorts points into cells and gives the runs of sorted points that can be near a box.
 ///
 /// Cells follow each other along x, back and forth from row to row, and rows along Hilbert's curve in y and z: points
-/// which follow each other are near each other, and what one row needs is still in the cache for the next. Layers without a point are left out where space is mostly empty.
+/// which follow each other are near each other, and what one row needs is still in the cache for the next. Layers
+/// without a point are left out where space is mostly empty.
 /// @cost O(n) time and memory, however far the points are from each other
 /// @source Hilbert1891
 class CellGrid {
