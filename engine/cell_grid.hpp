@@ -31,6 +31,10 @@ class CellGrid {
 
   /// Place k of the sorted points is held by point `order()[k]`.
   const std::vector<std::int32_t>& order() const { return order_; }
+  /// Memory held. @cost O(1)
+  std::size_t bytes() const {
+    return sizeof(std::int32_t) * (rows_.capacity() + cells_.capacity() + start_.capacity() + order_.capacity());
+  }
   /// Longest edge of the cells [length].
   double edge() const { return std::max({axes_[0].edge, axes_[1].edge, axes_[2].edge}); }
 

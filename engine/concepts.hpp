@@ -2,6 +2,7 @@
 /// The seams of the engine as concepts: what a Hamiltonian, an integrator and a monitor must offer.
 
 #include "engine/force_sink.hpp"
+#include "engine/neighbor_options.hpp"
 #include "engine/outcome.hpp"
 
 #include <atomic>
@@ -23,8 +24,9 @@ template <class Real> struct EnergyTerms {
 /// Work done so far, counted where it is done.
 struct Evaluations {
   std::int64_t force = 0, kepler = 0, jacobian = 0;
-  std::int64_t constraint = 0;  ///< iterations or sweeps over all constraints
-  std::int64_t rejected = 0;    ///< trial steps that an error controller threw away
+  std::int64_t constraint = 0;                       ///< iterations or sweeps over all constraints
+  std::int64_t rejected = 0;                         ///< trial steps that an error controller threw away
+  std::optional<NeighborStatistics> neighbors = {};  ///< of this process, where some force has a range
 };
 
 /// What a split Hamiltonian says of its parts; tests verify it, `Composition` refuses by it.

@@ -69,7 +69,7 @@ void NeighborList::update(const ParticleSystem<double>& s) {
     search(s);
     statistics_.search_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   }
-  if (options_.check) verify(s);
+  if (options_.verify) verify(s);
 }
 
 bool NeighborList::is_fresh(const ParticleSystem<double>& s) const {
@@ -155,7 +155,18 @@ void NeighborList::search(const ParticleSystem<double>& s) {
   ++statistics_.searches;
   statistics_.skin = skin_;
   statistics_.pairs = s.size() > 0 ? static_cast<double>(*used_) / static_cast<double>(s.size()) : 0;
+  statistics_.bytes = bytes();
   age_ = 0;
+}
+
+std::size_t NeighborList::bytes() const {
+  const auto of = [](const auto&... vectors) {
+    return (std::size_t{0} + ... + (vectors.capacity() * sizeof(*vectors.data())));
+  };
+  std::size_t sum = grid_.bytes() + of(ids_, records_, record_of_, ghosts_, shifts_, particles_, lanes_, row_begin_,
+                                       entries_, owner_, shift_, source_, excluded_begin_, excluded_);
+  for (std::size_t k = 0; k < 3; ++k) sum += of(start_[k], points_[k], sorted_[k], single_[k]);
+  return sum;
 }
 
 /// The particles, and their images up to `reach` from the box.

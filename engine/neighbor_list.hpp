@@ -2,6 +2,7 @@
 /// Who is near whom: one list for all pair forces of a system.
 
 #include "engine/cell_grid.hpp"
+#include "engine/neighbor_options.hpp"
 #include "engine/particle_system.hpp"
 
 #include <atomic>
@@ -11,20 +12,6 @@
 namespace noether {
 
 struct SearchPoints;
-
-struct NeighborOptions {
-  double skin = 0;     ///< pairs this much further apart than the range are listed too [length]; 0: chosen by cost
-  Index renewal = 0;   ///< updates between two searches, whatever moved: pairs may be missed; 0: when somebody moved
-  bool check = false;  ///< compare with all pairs at every update, at a cost of O(n^2)
-};
-
-/// What a list has done so far.
-struct NeighborStatistics {
-  std::int64_t updates = 0, searches = 0;
-  double pairs = 0;           ///< listed for each particle, by the last search
-  double skin = 0;            ///< of the last search [length]
-  double search_seconds = 0;  ///< in all searches
-};
 
 /// For every particle all others up to a distance, found anew only when somebody has moved by half of the skin.
 ///
@@ -112,6 +99,7 @@ class NeighborList {
   void find(Index group, Scratch& scratch);
   void strike_excluded(std::int32_t record, std::int32_t* numbers, std::ptrdiff_t count) const;
   std::int64_t reserve(std::int64_t entries);
+  std::size_t bytes() const;
 
   double range_;
   NeighborOptions options_;

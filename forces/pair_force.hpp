@@ -92,13 +92,21 @@ template <class P, Cutoff style>
   PairEnd end = given;
   end.style = style;
   const P own = potential;  // nothing that is written can change it
+#if !defined(__clang__)
 #pragma GCC ivdep
+#endif
   for (std::ptrdiff_t k = 0; k < count; ++k) {
     const PairTerms<double> terms = ended<double>(own, end, r2[k]);
     energy[k] = terms.energy;
     force[k] = terms.force;
   }
 }
+
+#if defined(__clang__)
+#define NOETHER_AVX512_LOOPS "avx512f,avx512dq,avx512vl"
+#else
+#define NOETHER_AVX512_LOOPS "avx512f,avx512dq,avx512vl,prefer-vector-width=512"
+#endif
 
 /// The loop over a potential, compiled for each SIMD level where it is used.
 template <class P, Cutoff style> struct PairLoops {
@@ -111,8 +119,9 @@ template <class P, Cutoff style> struct PairLoops {
                                                              std::ptrdiff_t n, double* u, double* f) {
     loop_over_pairs<P, style>(*static_cast<const P*>(p), end, r2, n, u, f);
   }
-  [[gnu::flatten, gnu::target("avx512f,avx512dq,avx512vl,prefer-vector-width=512")]] static void avx512(
-      const void* p, const PairEnd& end, const double* r2, std::ptrdiff_t n, double* u, double* f) {
+  [[gnu::flatten, gnu::target(NOETHER_AVX512_LOOPS)]] static void avx512(const void* p, const PairEnd& end,
+                                                                         const double* r2, std::ptrdiff_t n, double* u,
+                                                                         double* f) {
     loop_over_pairs<P, style>(*static_cast<const P*>(p), end, r2, n, u, f);
   }
   static PairLoop in_use() { return at_simd_level<PairLoop>(base, avx2, avx512); }
@@ -120,6 +129,8 @@ template <class P, Cutoff style> struct PairLoops {
   static PairLoop in_use() { return base; }
 #endif
 };
+
+#undef NOETHER_AVX512_LOOPS
 
 template <class P> PairLoop pair_loop(Cutoff style) {
   switch (style) {

@@ -194,6 +194,7 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
   Evaluations evaluations() const {
     Evaluations evaluations = evaluations_;
     if constexpr (constrained) evaluations.constraint = constraints_.iterations();
+    if (neighbors_.statistics().searches > 0) evaluations.neighbors = neighbors_.statistics();
     return evaluations;
   }
   void save(SavedState& saved, const std::string& prefix) const {

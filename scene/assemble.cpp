@@ -21,8 +21,9 @@ namespace {
 /// Larger than any run: a cadence of this many steps looks at step 0 only.
 constexpr std::int64_t once = std::int64_t{1} << 62;
 
-/// The Hamiltonian in the bath of the scene, if it has one.
+/// The Hamiltonian as the scene looks for neighbors, in its bath if it has one.
 template <class H> AnyHamiltonian<double> in_bath(const Scene& scene, H hamiltonian) {
+  if (scene.hamiltonian.neighbors) hamiltonian.set_neighbor_options(*scene.hamiltonian.neighbors);
   if (!scene.hamiltonian.thermostat) return hamiltonian;
   return Langevin<H>(std::move(hamiltonian), *scene.hamiltonian.thermostat);
 }

@@ -148,7 +148,7 @@ class SceneReader {
       effective.put("coordinates", detail::field_value(made.wisdom_holman.coordinates, "1", *scene_.units)).line =
           reader.line("coordinates");
     }
-    const SceneValue* thermostat = reader.find("thermostat");
+    const SceneValue *thermostat = reader.find("thermostat"), *neighbors = reader.find("neighbors");
     reader.finish();
     if (type == "wisdom_holman" && made.wisdom_holman.coordinates == Coordinates::inertial) {
       reader.fail("coordinates", "wisdom_holman has jacobi or democratic coordinates");
@@ -172,8 +172,27 @@ class SceneReader {
     for (const SceneValue* force : forces) read_force(*force, list);
     if (!list.empty()) effective.put("force", SceneValue::of(std::move(list)));
     if (thermostat != nullptr) effective.put("thermostat", read_thermostat(context_, *thermostat, scene_));
+    if (neighbors != nullptr) effective.put("neighbors", read_neighbors(*neighbors));
     if (constraints.empty()) return;
     effective.put("constraint", SceneValue::of(read_constraints(context_, constraints, parts_, scene_)));
+  }
+
+  SceneValue read_neighbors(const SceneValue& table) {
+    TableReader reader(context_, table, "[hamiltonian.neighbors]", "hamiltonian.neighbors");
+    if (table.get<SceneValue::Table>() == nullptr) reader.wrong_kind(table, "neighbors", "a table");
+    NeighborOptions options;
+    read_part(reader, options);
+    const auto& forces = scene_.hamiltonian.forces;
+    const bool any = std::any_of(forces.begin(), forces.end(), [](const SceneForce& force) {
+      return force.force && force.force->claims().range > 0;
+    });
+    if (!any || scene_.hamiltonian.kind != SceneHamiltonian::Kind::kinetic_potential) {
+      reader.fail(nullptr, "neighbors", "no force of kinetic_potential has a range, so nobody looks for neighbors");
+    }
+    scene_.hamiltonian.neighbors = options;
+    SceneValue effective = SceneValue::table();
+    put_fields(reader, options, effective);
+    return effective;
   }
 
   void read_force(const SceneValue& table, SceneValue::Array& list) {
@@ -388,6 +407,12 @@ class SceneReader {
       throw;
     } catch (const Error& error) {
       hamiltonian.fail("type", error.message());
+    }
+    if (scene_.hamiltonian.neighbors && scene_.integrator.classical) {
+      integrator.fail("method",
+                      fmt::format("method '{}' keeps a neighbor list of its own; [hamiltonian.neighbors] is for "
+                                  "splittings",
+                                  scene_.integrator.method));
     }
     if (scene_.hamiltonian.thermostat && scene_.integrator.classical) {
       integrator.fail("method", fmt::format("method '{}' knows no noise: a thermostat is the letter O of a word; use "

@@ -88,6 +88,13 @@ std::string to_json(const RunReport& r) {
       {"digest", r.digest},
       {"monitors", Json::object(monitors)},
       {"files", Json::object({{"trajectory", json_of(r.trajectory)}, {"checkpoint", json_of(r.checkpoint)}})}};
+  if (const auto& list = r.evaluations.neighbors) {
+    members.emplace_back("neighbors", Json::object({{"updates", list->updates},
+                                                    {"searches", list->searches},
+                                                    {"search_seconds", list->search_seconds},
+                                                    {"pairs_per_particle", list->pairs},
+                                                    {"skin", list->skin}}));
+  }
   if (r.minimized) {
     members.emplace_back("minimized", Json::object({{"force", r.minimized->force}, {"steps", r.minimized->steps}}));
   }
@@ -148,6 +155,10 @@ std::string to_text(const RunReport& r) {
         fmt::format("constraints: {} iterations in all, {:.3g} for each force evaluation\n", r.evaluations.constraint,
                     static_cast<double>(r.evaluations.constraint) /
                         static_cast<double>(std::max<std::int64_t>(r.evaluations.force, 1)));
+  }
+  if (const auto& list = r.evaluations.neighbors) {
+    text += fmt::format("neighbors: {} {} in {} evaluations, {:.3g} listed for each particle\n", list->searches,
+                        list->searches == 1 ? "search" : "searches", list->updates, list->pairs);
   }
   for (const std::filesystem::path& file : {r.trajectory, r.checkpoint}) {
     if (!file.empty()) text += fmt::format("wrote {}\n", file.string());

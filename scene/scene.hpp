@@ -30,6 +30,7 @@ struct SceneHamiltonian {
   std::vector<SceneConstraint> constraints;
   ConstraintOptions constraint_options;
   std::optional<LangevinOptions> thermostat;
+  std::optional<NeighborOptions> neighbors;
 };
 
 /// The integrator of a scene.

@@ -38,7 +38,7 @@ TEST_CASE("no pair in range is missing or listed twice", "[neighbors]") {
       values<Vec3<double>>({{10, 10, 10}, {40, 2, 1}, {1e4, 1e4, 1e4}, {0.7, 0.9, 30}, {3, 3, 3}, {1e-3, 5, 5}}));
   for (const Index n : {0, 1, 2, 9, 150}) {
     auto s = random_particles(n, edges, periodic, clusters, 3);
-    NeighborList list(1.1, {.check = true});
+    NeighborList list(1.1, {.verify = true});
     const double images = 8 * (1 + 2.4 / edges[0]) * (1 + 2.4 / edges[1]) * (1 + 2.4 / edges[2]);
     if (periodic && images > 2000) continue;
     CHECK_NOTHROW(list.update(s));
@@ -55,7 +55,7 @@ TEST_CASE("particles on borders and on a lattice have all their neighbors", "[ne
   for (const double x : {0.0, 1.0, 2.0, 3.0, std::nextafter(4.0, 0.0)}) {
     for (const double y : {0.0, 2.0, std::nextafter(4.0, 0.0)}) s.add("", 1, {x, y, 0}, {0, 0, 0});
   }
-  NeighborList list(1.0000001, {.skin = 0.3, .check = true});
+  NeighborList list(1.0000001, {.skin = 0.3, .verify = true});
   CHECK_NOTHROW(list.update(s));
 }
 
@@ -63,7 +63,7 @@ TEST_CASE("a particle a million box lengths away has the neighbors of its image"
   auto s = test::liquid(2, 0.8, 1);
   const Vec3<double> far = s.positions()[0] + 1e6 * s.box().edges();
   s.add("", 1, far + Vec3<double>(0.3, 0.2, 0.1), {0, 0, 0});
-  NeighborList list(1.5, {.check = true});
+  NeighborList list(1.5, {.verify = true});
   CHECK_NOTHROW(list.update(s));
 }
 
@@ -82,7 +82,7 @@ TEST_CASE("a list lasts until somebody has moved by half of the skin", "[neighbo
   s.set_box(Box::periodic({8, 8, 8}));
   s.add("", 1, {7.9, 1, 1}, {1, 0, 0});
   s.add("", 1, {5, 1, 1}, {0, 0, 0});
-  NeighborList list(1.0, {.skin = 0.5, .check = true});
+  NeighborList list(1.0, {.skin = 0.5, .verify = true});
   list.update(s);
   CHECK(list.statistics().searches == 1);
   s.advance_positions(0.24);  // across the face of the box

@@ -87,7 +87,7 @@ TEST_CASE("bits of forces depend on no neighbor list, thread or monitor", "[lenn
   for (const double skin : {0.01, 0.1, 0.3, 0.6}) {
     for (const int threads : {1, 2, 3, 8}) {
       const test::Threads now(threads);
-      NeighborList list(2.5, {.skin = skin, .check = threads == 1});
+      NeighborList list(2.5, {.skin = skin, .verify = threads == 1});
       const Evaluated again = evaluated<double>(force, s, &list);
       CHECK(again.a.all() == first.a.all());
       CHECK(again.energy == first.energy);
