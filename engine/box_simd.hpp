@@ -1,7 +1,7 @@
 #pragma once
 /// Drifts in a periodic box in lanes: the interface of `box_simd.cpp`, compiled once per SIMD level.
 
-#include "engine/simd.hpp"
+#include "engine/kernels_simd.hpp"
 
 #include <cstddef>
 
@@ -21,25 +21,6 @@ struct BoxKernels {
                             std::ptrdiff_t count);
 };
 
-namespace base {
-extern const BoxKernels box_kernels;
-}
-#if NOETHER_SIMD_LEVELS
-namespace avx2 {
-extern const BoxKernels box_kernels;
-}
-namespace avx512 {
-extern const BoxKernels box_kernels;
-}
-#endif
-
-/// The kernels of the level in use.
-inline const BoxKernels& box_kernels() {
-#if NOETHER_SIMD_LEVELS
-  return at_simd_level(base::box_kernels, avx2::box_kernels, avx512::box_kernels);
-#else
-  return base::box_kernels;
-#endif
-}
+NOETHER_KERNELS(BoxKernels, box_kernels)
 
 }  // namespace noether

@@ -1,7 +1,7 @@
 #pragma once
 /// The search for neighbors in lanes: the interface of `neighbor_search_simd.cpp`, compiled once per SIMD level.
 
-#include "engine/simd.hpp"
+#include "engine/kernels_simd.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -51,25 +51,6 @@ struct NeighborSearchKernels {
   void (*turn)(const std::int32_t* const (&lists)[8], std::ptrdiff_t rows, std::int32_t* out);
 };
 
-namespace base {
-extern const NeighborSearchKernels neighbor_search_kernels;
-}
-#if NOETHER_SIMD_LEVELS
-namespace avx2 {
-extern const NeighborSearchKernels neighbor_search_kernels;
-}
-namespace avx512 {
-extern const NeighborSearchKernels neighbor_search_kernels;
-}
-#endif
-
-/// The kernels of the level in use.
-inline const NeighborSearchKernels& neighbor_search_kernels() {
-#if NOETHER_SIMD_LEVELS
-  return at_simd_level(base::neighbor_search_kernels, avx2::neighbor_search_kernels, avx512::neighbor_search_kernels);
-#else
-  return base::neighbor_search_kernels;
-#endif
-}
+NOETHER_KERNELS(NeighborSearchKernels, neighbor_search_kernels)
 
 }  // namespace noether

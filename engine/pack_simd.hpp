@@ -1,7 +1,7 @@
 #pragma once
 /// Whole packs, moved by the widest registers: the interface of `pack_simd.cpp`.
 
-#include "engine/simd.hpp"
+#include "engine/kernels_simd.hpp"
 
 #include <cstddef>
 
@@ -12,16 +12,6 @@ struct PackKernels {
   void (*clear)(double* to, std::size_t packs);
 };
 
-namespace base {
-extern const PackKernels pack_kernels;
-}
-#if NOETHER_SIMD_LEVELS
-namespace avx2 {
-extern const PackKernels pack_kernels;
-}
-namespace avx512 {
-extern const PackKernels pack_kernels;
-}
-#endif
+NOETHER_KERNELS(PackKernels, pack_kernels)
 
 }  // namespace noether

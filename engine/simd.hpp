@@ -2,7 +2,8 @@
 /// Which instruction set the lane kernels use.
 ///
 /// Code in lanes stands in `*_simd.cpp` alone. Each is compiled once per level, in a namespace named for it, and offers
-/// plain functions on pointers in one table; `at_simd_level` picks the table of the level in use.
+/// plain functions on pointers in one table; `NOETHER_KERNELS` (engine/kernels_simd.hpp) declares it for the others,
+/// and picks the one of the level in use.
 
 #include <atomic>
 #include <cstdint>

@@ -2,7 +2,7 @@
 /// Direct gravity in lanes: the interface of `gravity_simd.cpp`, which is compiled once per level of `engine/simd.hpp`.
 
 #include <cstddef>
-#include "engine/simd.hpp"
+#include "engine/kernels_simd.hpp"
 
 namespace noether {
 
@@ -31,25 +31,6 @@ struct GravityKernels {
   AttractRows among, among_with_phi;    ///< some are
 };
 
-namespace base {
-extern const GravityKernels gravity_kernels;
-}
-#if NOETHER_SIMD_LEVELS
-namespace avx2 {
-extern const GravityKernels gravity_kernels;
-}
-namespace avx512 {
-extern const GravityKernels gravity_kernels;
-}
-#endif
-
-/// The kernels of the level in use.
-inline const GravityKernels& gravity_kernels() {
-#if NOETHER_SIMD_LEVELS
-  return at_simd_level(base::gravity_kernels, avx2::gravity_kernels, avx512::gravity_kernels);
-#else
-  return base::gravity_kernels;
-#endif
-}
+NOETHER_KERNELS(GravityKernels, gravity_kernels)
 
 }  // namespace noether

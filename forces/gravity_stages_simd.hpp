@@ -1,7 +1,7 @@
 #pragma once
 /// Direct gravity of few bodies at eight stages at once: the interface of `gravity_stages_simd.cpp`.
 
-#include "engine/simd.hpp"
+#include "engine/kernels_simd.hpp"
 
 #include <cstddef>
 
@@ -17,25 +17,6 @@ struct BodiesInStages {
 /// Adds the pull of every pair, each pair once.
 using AttractInStages = void (*)(const BodiesInStages& bodies, double G, double softening2);
 
-namespace base {
-extern const AttractInStages attract_in_stages;
-}
-#if NOETHER_SIMD_LEVELS
-namespace avx2 {
-extern const AttractInStages attract_in_stages;
-}
-namespace avx512 {
-extern const AttractInStages attract_in_stages;
-}
-#endif
-
-/// The kernel of the level in use.
-inline AttractInStages attract_in_stages() {
-#if NOETHER_SIMD_LEVELS
-  return at_simd_level(base::attract_in_stages, avx2::attract_in_stages, avx512::attract_in_stages);
-#else
-  return base::attract_in_stages;
-#endif
-}
+NOETHER_KERNELS(AttractInStages, attract_in_stages)
 
 }  // namespace noether

@@ -59,37 +59,10 @@ LennardJonesRow row_of(const PairKind& kind, double cutoff, Cutoff cutoff_style,
   return row;
 }
 
-/// Sums of a block that depend on no order.
-struct Totals {
-  ExactSum energy;
-  std::array<ExactSum, 6> virial;
-  Totals& operator+=(const Totals& other) {
-    energy += other.energy;
-    for (std::size_t k = 0; k < 6; ++k) virial[k] += other.virial[k];
-    return *this;
-  }
-};
-
-/// The lowest index that any thread names.
-class Lowest {
- public:
-  void offer(Index i) {
-    Index known = lowest_.load();
-    while (i < known && !lowest_.compare_exchange_weak(known, i)) {
-    }
-  }
-  Index value() const { return lowest_.load(); }
-
- private:
-  std::atomic<Index> lowest_ = std::numeric_limits<Index>::max();
-};
-
 }  // namespace
 
 void LennardJonesForce::check() const {
-  if (!(cutoff > 0 && cutoff < 1e100)) refuse_field("cutoff", cutoff, "is no cutoff; a length above 0 is expected");
-  if (switch_from && !(*switch_from > 0 && *switch_from < cutoff))
-    refuse_field("switch_from", *switch_from, fmt::format("does not lie between 0 and the cutoff {}", cutoff));
+  detail::check_cutoff(cutoff, switch_from);
   if (epsilon.has_value() != sigma.has_value())
     refuse_field(epsilon ? "epsilon" : "sigma", epsilon ? *epsilon : *sigma,
                  "stands alone; give epsilon and sigma, or none");

@@ -99,60 +99,18 @@ HWY_INLINE Terms terms_of(Vector r2, Vector inverse2, const Parameters& p) {
   }
 }
 
-/// Lists are longer than caches: entries are asked for as many rows before their turn, mostly those of later groups.
-constexpr std::ptrdiff_t rows_asked_ahead = 128;
-
-/// The sums of one register of particles.
-template <LennardJonesStyle style, bool sums, class Sum> struct Sums {
-  Vector magic, energy_magic;
-  Sum force[3], energy, virial[6];
-
-  HWY_INLINE void add(const Parameters& p, const Distances& pair, Vector inverse2) {
-    const auto near = hn::Lt(pair.r2, p.range2);
-    const Terms terms = terms_of<style, sums>(pair.r2, inverse2, p);
-    const Vector k = hn::IfThenElseZero(near, terms.force);
-    force[0].add(k, pair.dx, magic);
-    force[1].add(k, pair.dy, magic);
-    force[2].add(k, pair.dz, magic);
-    if constexpr (sums) {
-      energy.add(hn::IfThenElseZero(near, terms.energy), hn::Set(Lanes(), 1.0), energy_magic);
-      const Vector kx = hn::Mul(k, pair.dx), ky = hn::Mul(k, pair.dy), kz = hn::Mul(k, pair.dz);
-      virial[0].add(kx, pair.dx, energy_magic);
-      virial[1].add(ky, pair.dy, energy_magic);
-      virial[2].add(kz, pair.dz, energy_magic);
-      virial[3].add(kx, pair.dy, energy_magic);
-      virial[4].add(kx, pair.dz, energy_magic);
-      virial[5].add(ky, pair.dz, energy_magic);
-    }
-  }
-  void note_strong(std::ptrdiff_t first, PairSums& out) const {
-    if constexpr (requires { energy.strong; }) {
-      for (std::ptrdiff_t k = 0; k < lanes; ++k) {
-        bool strong = energy.strong[k];
-        for (const Sum& sum : force) strong = strong || sum.strong[k];
-        for (const Sum& sum : virial) strong = strong || sum.strong[k];
-        out.strong[first + k] = strong;
-      }
-    }
-  }
-  void store(const PairField& field, std::ptrdiff_t added, std::ptrdiff_t first, PairSums& out) const {
-    for (int k = 0; k < 3; ++k) force[k].store(magic_number * field.force_unit, added, out.force[k] + first);
-    if constexpr (sums) {
-      const double zero = magic_number * field.energy_unit;
-      energy.store(zero, added, out.energy + first);
-      for (int k = 0; k < 6; ++k) virial[k].store(zero, added, out.virial[k] + first);
-    }
-  }
-};
+template <LennardJonesStyle style, bool sums, class Sum>
+HWY_INLINE void add(const Parameters& p, const Distances& pair, Vector inverse2, LaneSums<sums, Sum>& all) {
+  const Terms terms = terms_of<style, sums>(pair.r2, inverse2, p);
+  all.add(hn::Lt(pair.r2, p.range2), terms.energy, terms.force, pair.dx, pair.dy, pair.dz);
+}
 
 /// Forces of one register of particles and their neighbors. Three rows are under way at a time, one each being loaded,
 /// divided and summed: each waits for what it needs while the others compute.
 template <LennardJonesStyle style, bool many_types, bool sums, class Sum>
 HWY_INLINE void sum_lanes(const PairField& field, const PairGroup& group, std::ptrdiff_t first, PairSums& out) {
   const Lanes d;
-  Sums<style, sums, Sum> all;
-  all.magic = hn::Set(d, magic_number * field.force_unit);
-  all.energy_magic = hn::Set(d, magic_number * field.energy_unit);
+  LaneSums<sums, Sum> all(field.force_unit, field.energy_unit);
   const Points own = load_points(field.records, group.records + first);
   const LennardJonesRow* rows[lanes];
   for (std::ptrdiff_t k = 0; k < lanes && many_types; ++k) {
@@ -178,14 +136,13 @@ HWY_INLINE void sum_lanes(const PairField& field, const PairGroup& group, std::p
     if constexpr (many_types) {
       const Parameters p(rows, field.records, entries);
       nearest = lesser(nearest, hn::Sub(pair.r2, p.close2));
-      all.add(p, pair, pair_inverse2);
+      add<style>(p, pair, pair_inverse2, all);
     } else {
       nearest = lesser(nearest, pair.r2);
-      all.add(one_row, pair, pair_inverse2);
+      add<style>(one_row, pair, pair_inverse2, all);
     }
   }
-  all.store(field, group.rows, first, out);
-  all.note_strong(first, out);
+  all.store(group.rows, first, out);
   const auto close = hn::Lt(nearest, many_types ? hn::Zero(d) : one_row.close2);
   out.close = out.close || !hn::AllFalse(d, close);
 }

@@ -1,7 +1,7 @@
 #pragma once
 /// Lennard-Jones pairs in lanes: the interface of `lennard_jones_simd.cpp`, compiled once per SIMD level.
 
-#include "engine/simd.hpp"
+#include "engine/kernels_simd.hpp"
 #include "forces/lennard_jones_row.hpp"
 #include "forces/pair_row.hpp"
 
@@ -27,25 +27,6 @@ struct LennardJonesKernels {
   SumPairs careful[4][2][2];
 };
 
-namespace base {
-extern const LennardJonesKernels lennard_jones_kernels;
-}
-#if NOETHER_SIMD_LEVELS
-namespace avx2 {
-extern const LennardJonesKernels lennard_jones_kernels;
-}
-namespace avx512 {
-extern const LennardJonesKernels lennard_jones_kernels;
-}
-#endif
-
-/// The kernels of the level in use.
-inline const LennardJonesKernels& lennard_jones_kernels() {
-#if NOETHER_SIMD_LEVELS
-  return at_simd_level(base::lennard_jones_kernels, avx2::lennard_jones_kernels, avx512::lennard_jones_kernels);
-#else
-  return base::lennard_jones_kernels;
-#endif
-}
+NOETHER_KERNELS(LennardJonesKernels, lennard_jones_kernels)
 
 }  // namespace noether

@@ -1,7 +1,7 @@
 #pragma once
 /// Pairs of any potential in lanes: the interface of `pair_chunk_simd.cpp`, compiled once per SIMD level.
 
-#include "engine/simd.hpp"
+#include "engine/kernels_simd.hpp"
 #include "forces/pair_row.hpp"
 
 namespace noether {
@@ -27,29 +27,11 @@ struct PairFilter {
 struct PairChunkKernels {
   /// Loads rows `first` to `first + chunk.rows` of a group.
   void (*load)(const PairFilter& filter, const PairGroup& group, std::ptrdiff_t first, PairChunk& chunk);
-  /// Adds the pairs of a chunk to the sums: forces, or all; [1]: one by one, whatever their strength.
-  void (*add[2])(const PairFilter& filter, const PairChunk& chunk, bool all, PairSums& sums);
+  /// Adds the pairs of a chunk to the sums. [0]: quickly, [1]: one by one, whatever their strength; [][0]: forces,
+  /// [][1]: energies and virials too.
+  void (*add[2][2])(const PairFilter& filter, const PairChunk& chunk, PairSums& sums);
 };
 
-namespace base {
-extern const PairChunkKernels pair_chunk_kernels;
-}
-#if NOETHER_SIMD_LEVELS
-namespace avx2 {
-extern const PairChunkKernels pair_chunk_kernels;
-}
-namespace avx512 {
-extern const PairChunkKernels pair_chunk_kernels;
-}
-#endif
-
-/// The kernels of the level in use.
-inline const PairChunkKernels& pair_chunk_kernels() {
-#if NOETHER_SIMD_LEVELS
-  return at_simd_level(base::pair_chunk_kernels, avx2::pair_chunk_kernels, avx512::pair_chunk_kernels);
-#else
-  return base::pair_chunk_kernels;
-#endif
-}
+NOETHER_KERNELS(PairChunkKernels, pair_chunk_kernels)
 
 }  // namespace noether

@@ -34,11 +34,7 @@ std::array<int, 2> pair_types(const Topology* topology, const std::string& first
   return {type_named(topology, first, "first"), type_named(topology, second, "second")};
 }
 
-void check_pair_cutoff(double cutoff, std::optional<double> switch_from, double scale) {
-  if (!(cutoff > 0 && cutoff < 1e100)) refuse_field("cutoff", cutoff, "is no cutoff; a length above 0 is expected");
-  if (switch_from && !(*switch_from > 0 && *switch_from < cutoff)) {
-    refuse_field("switch_from", *switch_from, fmt::format("does not lie between 0 and the cutoff {}", cutoff));
-  }
+void check_pair_scale(double scale) {
   if (!(scale > 0 && scale < 1e150)) {
     throw Error(
         fmt::format("the parameters of a pair potential give it a strength of {}; a force above 0 is expected", scale));
@@ -50,7 +46,8 @@ void add_pairs_in_lanes(ForceSink<double>& out, const ParticleSystem<double>& s,
   NeighborList& list = out.neighbors() != nullptr ? *out.neighbors() : own.emplace(plan.cutoff);
   list.update(s);
   const PairChunkKernels& kernels = pair_chunk_kernels();
-  const bool all = out.wants_energy() || out.wants_virial();
+  const std::size_t all = out.wants_energy() || out.wants_virial() ? 1 : 0;
+  const auto quick = kernels.add[0][all], careful = kernels.add[1][all];
   const double force_unit = std::ldexp(1.0, std::ilogb(plan.scale) + 1 - bits_of_unit);
   const double energy_unit = force_unit * std::ldexp(1.0, std::ilogb(plan.cutoff) + 1);
   const PairFilter filter{list.records(),
@@ -67,7 +64,7 @@ void add_pairs_in_lanes(ForceSink<double>& out, const ParticleSystem<double>& s,
                       chunk.rows = std::min(PairChunk::most_rows, group.rows - row);
                       kernels.load(filter, group, row, chunk);
                       plan.loop(plan.potential, plan.end, chunk.r2, 8 * chunk.rows, chunk.energy, chunk.force);
-                      kernels.add[care ? 1 : 0](filter, chunk, all, found);
+                      (care ? careful : quick)(filter, chunk, found);
                     }
                   });
 }

@@ -160,7 +160,7 @@ struct PairPlan {
 void add_pairs_in_lanes(ForceSink<double>& out, const ParticleSystem<double>& s, const PairPlan& plan);
 /// The indices of two types; -1 both for no names. @throws Error  for one name alone, or a name that no type has
 std::array<int, 2> pair_types(const Topology* topology, const std::string& first, const std::string& second);
-void check_pair_cutoff(double cutoff, std::optional<double> switch_from, double scale);
+void check_pair_scale(double scale);
 
 }  // namespace detail
 
@@ -201,7 +201,8 @@ template <PairPotential P> struct PairForce : P {
   /// @throws Error  for a cutoff that is no length, a switch that begins elsewhere, a force without strength
   void check() const {
     if constexpr (requires { P::check(); }) P::check();
-    detail::check_pair_cutoff(reach(), switch_from, P::scale());
+    detail::check_cutoff(reach(), switch_from);
+    detail::check_pair_scale(P::scale());
   }
   /// @throws Error  also for names that no type has
   template <class Real> void check(const ParticleSystem<Real>& s) const {

@@ -2,6 +2,8 @@
 /// Eight particles and their neighbors in lanes of doubles: loading pairs, and summing what they do in whole units. For
 /// `*_simd.cpp` alone.
 
+#include "forces/pair_row.hpp"
+
 #include <hwy/highway.h>
 
 #include <cmath>
@@ -70,6 +72,9 @@ HWY_INLINE Distances distances(const Points& own, const Points& other) {
   return {dx, dy, dz, hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)))};
 }
 
+/// Lists are longer than caches: entries are asked for as many rows before their turn, mostly those of later groups.
+constexpr std::ptrdiff_t rows_asked_ahead = 128;
+
 /// Times a unit: the last bit of numbers near it is one unit.
 constexpr double magic_number = 6755399441055744.0;  // 1.5 x 2^52
 
@@ -123,6 +128,54 @@ struct CarefulSum {
   }
   void store(double /*magic*/, std::ptrdiff_t /*added*/, std::int64_t* out) const {
     for (std::ptrdiff_t k = 0; k < lanes; ++k) out[k] = sum[k];
+  }
+};
+
+/// What their neighbors do to the particles of one register: forces, or energies and virials too.
+template <bool everything, class Sum> struct LaneSums {
+  double force_zero, energy_zero;  ///< what the sums begin from
+  Vector magic, energy_magic;
+  Sum force[3], energy, virial[6];
+
+  HWY_INLINE LaneSums(double force_unit, double energy_unit)
+      : force_zero(magic_number * force_unit),
+        energy_zero(magic_number * energy_unit),
+        magic(hn::Set(Lanes(), force_zero)),
+        energy_magic(hn::Set(Lanes(), energy_zero)) {}
+
+  /// @param near  a mask: pairs that act @param terms_force  -U'(r) / r
+  template <class Mask>
+  HWY_INLINE void add(Mask near, Vector terms_energy, Vector terms_force, Vector dx, Vector dy, Vector dz) {
+    const Vector k = hn::IfThenElseZero(near, terms_force);
+    force[0].add(k, dx, magic);
+    force[1].add(k, dy, magic);
+    force[2].add(k, dz, magic);
+    if constexpr (everything) {
+      energy.add(hn::IfThenElseZero(near, terms_energy), hn::Set(Lanes(), 1.0), energy_magic);
+      const Vector kx = hn::Mul(k, dx), ky = hn::Mul(k, dy), kz = hn::Mul(k, dz);
+      virial[0].add(kx, dx, energy_magic);
+      virial[1].add(ky, dy, energy_magic);
+      virial[2].add(kz, dz, energy_magic);
+      virial[3].add(kx, dy, energy_magic);
+      virial[4].add(kx, dz, energy_magic);
+      virial[5].add(ky, dz, energy_magic);
+    }
+  }
+  /// Writes the sums of particles `first` and on. @param added  how many pairs each has
+  void store(std::ptrdiff_t added, std::ptrdiff_t first, PairSums& out) const {
+    for (int k = 0; k < 3; ++k) force[k].store(force_zero, added, out.force[k] + first);
+    if constexpr (everything) {
+      energy.store(energy_zero, added, out.energy + first);
+      for (int k = 0; k < 6; ++k) virial[k].store(energy_zero, added, out.virial[k] + first);
+    }
+    if constexpr (requires { energy.strong; }) {
+      for (std::ptrdiff_t k = 0; k < lanes; ++k) {
+        bool strong = energy.strong[k];
+        for (const Sum& sum : force) strong = strong || sum.strong[k];
+        for (const Sum& sum : virial) strong = strong || sum.strong[k];
+        out.strong[first + k] = strong;
+      }
+    }
   }
 };
 

@@ -6,6 +6,13 @@
 
 namespace noether::detail {
 
+void check_cutoff(double cutoff, std::optional<double> switch_from) {
+  if (!(cutoff > 0 && cutoff < 1e100)) refuse_field("cutoff", cutoff, "is no cutoff; a length above 0 is expected");
+  if (switch_from && !(*switch_from > 0 && *switch_from < cutoff)) {
+    refuse_field("switch_from", *switch_from, fmt::format("does not lie between 0 and the cutoff {}", cutoff));
+  }
+}
+
 Failure overlap(const ParticleSystem<double>& s, Index i, std::string_view force) {
   const auto called = [&](Index k) {
     return s.name(k).empty() ? fmt::format("{}", s.ids()[static_cast<std::size_t>(k)]) : fmt::format("'{}'", s.name(k));

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -112,6 +113,9 @@ void add_scaled_pairs(ForceSink<Real>& out, const ParticleSystem<Real>& s, const
     });
   }
 }
+
+/// @throws Error  for a cutoff that is no length, or a switch that begins outside it
+void check_cutoff(double cutoff, std::optional<double> switch_from);
 
 /// Names particle `i` and the one nearest to it. @param force  as a message calls it @cost O(n)
 Failure overlap(const ParticleSystem<double>& s, Index i, std::string_view force);

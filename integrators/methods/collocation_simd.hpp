@@ -1,7 +1,7 @@
 #pragma once
 /// The arithmetic of collocation in lanes of doubles: the interface of `collocation_simd.cpp`.
 
-#include "engine/simd.hpp"
+#include "engine/kernels_simd.hpp"
 
 #include <cstddef>
 
@@ -45,25 +45,6 @@ struct CollocationKernels {
   void (*finish)(const StepSums& sums);
 };
 
-namespace base {
-extern const CollocationKernels collocation_kernels;
-}
-#if NOETHER_SIMD_LEVELS
-namespace avx2 {
-extern const CollocationKernels collocation_kernels;
-}
-namespace avx512 {
-extern const CollocationKernels collocation_kernels;
-}
-#endif
-
-/// The kernels of the level in use.
-inline const CollocationKernels& collocation_kernels() {
-#if NOETHER_SIMD_LEVELS
-  return at_simd_level(base::collocation_kernels, avx2::collocation_kernels, avx512::collocation_kernels);
-#else
-  return base::collocation_kernels;
-#endif
-}
+NOETHER_KERNELS(CollocationKernels, collocation_kernels)
 
 }  // namespace noether

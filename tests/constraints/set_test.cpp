@@ -6,6 +6,7 @@
 #include "integrators/damped.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/mechanisms.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace noether {
 namespace {
@@ -25,15 +26,6 @@ std::string refusal(ParticleSystem<double> s, const ConstraintSet& set) {
   try {
     ConstraintSolver<double>(set).bind(s);
   } catch (const BadConstraints& error) {
-    return error.message();
-  }
-  return "";
-}
-
-template <class Add> std::string refusal_of(const Add& add) {
-  try {
-    add();
-  } catch (const Error& error) {
     return error.message();
   }
   return "";

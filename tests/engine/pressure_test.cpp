@@ -12,6 +12,7 @@
 #include "integrators/schemes.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/liquid.hpp"
+#include "tests/support/refusal.hpp"
 
 #include <fmt/format.h>
 
@@ -36,13 +37,10 @@ template <class F> Simulation<double> fluid_run(const ParticleSystem<double>& s,
 }
 
 template <class Make> std::string refusal_of_pressure(const Make& make) {
-  try {
+  return test::refusal_of([&] {
     auto sim = make();
     sim.every(1, Pressure{});
-  } catch (const Error& error) {
-    return error.message();
-  }
-  return "";
+  });
 }
 
 }  // namespace

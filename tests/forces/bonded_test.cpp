@@ -4,6 +4,7 @@
 #include "engine/erasure.hpp"
 #include "forces/check_gradient.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/support/settings.hpp"
 
 #include <cmath>
@@ -400,12 +401,7 @@ std::string refusal_of(const Topology& topology, Index n) {
   ParticleSystem<double> s;
   for (Index i = 0; i < n; ++i) s.add("p", 1, {static_cast<double>(i), 0, 0}, {0, 0, 0});
   s.set_topology(std::make_shared<Topology>(topology));
-  try {
-    Bonded{}.check(s);
-  } catch (const Error& error) {
-    return error.message();
-  }
-  return "";
+  return test::refusal_of([&] { Bonded{}.check(s); });
 }
 
 TEST_CASE("bonded terms of unknown kinds, wrong parameters or particles are refused by name", "[bonded]") {

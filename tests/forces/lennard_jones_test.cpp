@@ -81,23 +81,7 @@ TEST_CASE("the forces on all atoms add up to nothing, exactly", "[lennard_jones]
 }
 
 TEST_CASE("bits of forces depend on no neighbor list, thread or monitor", "[lennard_jones][determinism]") {
-  const ParticleSystem<double> s = liquid(5, 0.85, 1, 0.15);
-  const LennardJonesForce force = argon(Cutoff::plain);
-  const Evaluated first = evaluated<double>(force, s);
-  for (const double skin : {0.01, 0.1, 0.3, 0.6}) {
-    for (const int threads : {1, 2, 3, 8}) {
-      const test::Threads now(threads);
-      NeighborList list(2.5, {.skin = skin, .verify = threads == 1});
-      const Evaluated again = evaluated<double>(force, s, &list);
-      CHECK(again.a.all() == first.a.all());
-      CHECK(again.energy == first.energy);
-      CHECK(again.virial == first.virial);
-    }
-  }
-  VectorColumn<double> a(s.size());
-  ForceSink<double> forces_only(a, s, {});
-  force.add_to(forces_only, s);
-  CHECK(a.all() == first.a.all());
+  test::check_bits_of_lists(argon(Cutoff::plain), liquid(5, 0.85, 1, 0.15), 2.5);
 }
 
 TEST_CASE("a list that is some steps old gives the bits of a new one", "[lennard_jones][determinism]") {

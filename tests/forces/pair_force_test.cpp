@@ -103,23 +103,8 @@ TEST_CASE("twelve-six written by a user is Lennard-Jones", "[pair_force]") {
 }
 
 TEST_CASE("bits of pair potentials depend on no neighbor list, thread or monitor", "[pair_force][determinism]") {
-  const ParticleSystem<double> s = test::liquid(5, 0.85, 1, 0.15);
-  const MorseForce force = pair_force(MorsePair{1.7, 4.5, 1.15}, 2.5, Cutoff::shifted_force);
-  const Evaluated first = evaluated<double>(force, s);
-  for (const double skin : {0.01, 0.3, 0.6}) {
-    for (const int threads : {1, 2, 3, 8}) {
-      const test::Threads now(threads);
-      NeighborList list(2.5, {.skin = skin});
-      const Evaluated again = evaluated<double>(force, s, &list);
-      CHECK(again.a.all() == first.a.all());
-      CHECK(again.energy == first.energy);
-      CHECK(again.virial == first.virial);
-    }
-  }
-  VectorColumn<double> a(s.size());
-  ForceSink<double> forces_only(a, s, {});
-  force.add_to(forces_only, s);
-  CHECK(a.all() == first.a.all());
+  test::check_bits_of_lists(pair_force(MorsePair{1.7, 4.5, 1.15}, 2.5, Cutoff::shifted_force),
+                            test::liquid(5, 0.85, 1, 0.15), 2.5);
 }
 
 TEST_CASE("strong pairs are summed with care, and the strongest end the run by name", "[pair_force][extremes]") {

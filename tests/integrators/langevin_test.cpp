@@ -16,6 +16,7 @@
 #include "tests/support/normal_bins.hpp"
 #include "tests/support/planets.hpp"
 #include "tests/support/problems.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/support/settings.hpp"
 
 #include <algorithm>
@@ -273,36 +274,27 @@ TEST_CASE("constraints hold in a bath, and what is left of the velocities has it
   }
 }
 
-template <class Make> std::string refusal_of(const Make& make) {
-  try {
-    make();
-  } catch (const Error& error) {
-    return error.message();
-  }
-  return "";
-}
-
 TEST_CASE("baths that cannot be are refused by name", "[langevin]") {
   const KineticPotential field(HarmonicField{.k = 1});
-  CHECK(refusal_of([&] { Langevin(field, {.temperature = -1, .friction = 1}); }) ==
+  CHECK(test::refusal_of([&] { Langevin(field, {.temperature = -1, .friction = 1}); }) ==
         "temperature = -1 is no temperature; 0 or more is expected");
-  CHECK(refusal_of([&] { Langevin(field, {.temperature = 1, .friction = -2}); }) ==
+  CHECK(test::refusal_of([&] { Langevin(field, {.temperature = 1, .friction = -2}); }) ==
         "friction = -2 drives instead of damping; 0 or more is expected");
   const Langevin bath(field, {.temperature = 1, .friction = 1});
-  CHECK(refusal_of([&] { compose(bath, schemes::yoshida_4); }).find("part O of 'langevin' is irreversible") !=
+  CHECK(test::refusal_of([&] { compose(bath, schemes::yoshida_4); }).find("part O of 'langevin' is irreversible") !=
         std::string::npos);
   auto tracers = bodies<double>(2);
   tracers.add("dust", 0, {1, 0, 0}, {0, 0, 0});
-  CHECK(refusal_of([&] { Simulation<double>(tracers, compose(bath, word("BAOAB")), 0.1); }) ==
+  CHECK(test::refusal_of([&] { Simulation<double>(tracers, compose(bath, word("BAOAB")), 0.1); }) ==
         "'dust' has no mass, so it has no temperature; give it one, or take the bath out");
-  CHECK(refusal_of([&] { Simulation<double>(bodies<double>(2), compose(bath, word("BAOAB")), -0.1); }) ==
+  CHECK(test::refusal_of([&] { Simulation<double>(bodies<double>(2), compose(bath, word("BAOAB")), -0.1); }) ==
         "a bath knows no way back; a step above 0 is expected");
   const Langevin planets(WisdomHolman({.G = test::outer_G}), {.temperature = 1, .friction = 1});
-  CHECK(refusal_of([&] {
+  CHECK(test::refusal_of([&] {
           Simulation<double>(test::outer_planets(), compose(planets, schemes::verlet), 10);
         }).find("'wisdom_holman' moves in coordinates of its own") == 0);
   const AnyHamiltonian<double> chain(test::hamiltonian_of(test::hanging_chain(2)));
-  CHECK(refusal_of([&] {
+  CHECK(test::refusal_of([&] {
           Langevin(chain, {.temperature = 1, .friction = 1});
         }).find("noise would push velocities off") == 0);
 }

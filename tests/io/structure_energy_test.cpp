@@ -3,6 +3,7 @@
 #include "engine/charge.hpp"
 #include "io/structure.hpp"
 #include "tests/io/support.hpp"
+#include "tests/support/recorded.hpp"
 
 #include <Eigen/Geometry>
 
@@ -12,7 +13,6 @@
 #include <iterator>
 #include <map>
 #include <numbers>
-#include <sstream>
 
 using namespace noether;
 
@@ -20,18 +20,6 @@ namespace {
 
 const std::filesystem::path lammps_files = std::filesystem::path(NOETHER_SOURCE_DIR) / "tests" / "data" / "lammps";
 constexpr double kcal = 4.184;
-
-std::map<std::string, double> energies_of(const std::string& name) {
-  std::map<std::string, double> energies;
-  std::ifstream file(lammps_files / (name + ".energies.txt"));
-  for (std::string line; std::getline(file, line);) {
-    std::istringstream words(line);
-    std::string key;
-    double value = 0;
-    if (words >> key >> value) energies[key] = value;
-  }
-  return energies;
-}
 
 bool agree(double value, double expected, double tolerance) {
   INFO(value << " against " << expected);
@@ -147,7 +135,7 @@ double kinetic_energy(const ParticleSystem<double>& s) {
 
 TEST_CASE("every style of terms has the energy that LAMMPS computes", "[structure]") {
   const auto s = io::read_structure(lammps_files / "molecule.data", {.file_units = "real", .special = {0, 0, 0.5}});
-  auto expected = energies_of("molecule");
+  auto expected = test::lammps_energies("molecule");
   auto energy = Terms(s).energy;
   const double rounding = 1e-13;
   CHECK(agree(energy["bond.harmonic"], kcal * expected["bond.harmonic"], rounding));
@@ -168,7 +156,7 @@ TEST_CASE("every style of terms has the energy that LAMMPS computes", "[structur
 TEST_CASE("chains of beads have the energies that LAMMPS computes", "[structure]") {
   const auto s =
       io::read_structure(lammps_files / "chains.data", {.units = &unit_system("reduced"), .special = {0, 1, 1}});
-  auto expected = energies_of("chains");
+  auto expected = test::lammps_energies("chains");
   auto energy = Terms(s).energy;
   CHECK(agree(energy["bond.fene"], expected["ebond"], 1e-13));
   CHECK(agree(energy["angle.cosine"], expected["eangle"], 1e-12));
@@ -177,7 +165,7 @@ TEST_CASE("chains of beads have the energies that LAMMPS computes", "[structure]
 
 TEST_CASE("a crystal has the energies that LAMMPS computes", "[structure]") {
   const auto s = io::read_structure(lammps_files / "argon.data", {.file_units = "metal"});
-  auto expected = energies_of("argon");
+  auto expected = test::lammps_energies("argon");
   const double electronvolt = 96.48533212331002;
   CHECK(agree(pair_energies(s, 0.5, false).first, electronvolt * expected["evdwl"], 1e-13));
   CHECK(agree(kinetic_energy(s), electronvolt * expected["ke"], 1e-7));  // LAMMPS rounds 1 u A^2/ps^2 in eV

@@ -4,29 +4,16 @@
 #include "io/structure.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/pair_forces.hpp"
+#include "tests/support/recorded.hpp"
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <map>
-#include <sstream>
 
 namespace noether {
 namespace {
 
 const std::filesystem::path folder = std::filesystem::path(NOETHER_SOURCE_DIR) / "tests" / "data" / "lammps";
-
-std::map<std::string, double> recorded() {
-  std::map<std::string, double> values;
-  std::ifstream file(folder / "pairs.energies.txt");
-  for (std::string line; std::getline(file, line);) {
-    std::istringstream words(line);
-    std::string key;
-    double value = 0;
-    if (words >> key >> value) values[key] = value;
-  }
-  return values;
-}
 
 /// Energy, pressures of atoms at rest, and the force on atom 100.
 template <class F> void check_against_lammps(const std::string& name, const F& force) {
@@ -34,7 +21,7 @@ template <class F> void check_against_lammps(const std::string& name, const F& f
   options.units = &unit_system("reduced");
   options.file_units = "lj";
   const ParticleSystem<double> s = io::read_structure(folder / "pairs.data", options);
-  auto expected = recorded();
+  auto expected = test::lammps_energies("pairs");
   REQUIRE(expected.size() == 30);
   const test::Evaluated all = test::evaluated<double>(force, s);
   REQUIRE_FALSE(all.failure);

@@ -2,6 +2,7 @@
 
 #include "scene/builders.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/refusal.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -38,13 +39,8 @@ double temperature_of(const ParticleSystem<double>& s) {
   return twice / (3 * static_cast<double>(s.size()) - 3) / s.units().k_B;
 }
 
-template <class Builder> std::string refusal_of(const Builder& builder) {
-  try {
-    builder.build();
-  } catch (const Error& error) {
-    return error.message();
-  }
-  return "";
+template <class Builder> std::string refusal_to_build(const Builder& builder) {
+  return test::refusal_of([&] { builder.build(); });
 }
 
 TEST_CASE("lattices have the density and the neighbors of their kind", "[builders]") {
@@ -158,28 +154,30 @@ TEST_CASE("chains have the bonds of Kremer and Grest, and do not fold back", "[b
 }
 
 TEST_CASE("a builder refuses what cannot be built", "[builders]") {
-  CHECK(refusal_of(Lattice{.cells = {2, 2}, .density = 1, .mass = 1}) ==
+  CHECK(refusal_to_build(Lattice{.cells = {2, 2}, .density = 1, .mass = 1}) ==
         "cells = [2, 2] is no list of three; cells along x, y and z are expected");
-  CHECK(refusal_of(Lattice{.cells = {2, 0, 2}, .density = 1, .mass = 1}) == "cells = [2, 0, 2] holds a number below 1");
-  CHECK(refusal_of(Lattice{.cells = {1000, 1000, 1000}, .density = 1, .mass = 1}) ==
+  CHECK(refusal_to_build(Lattice{.cells = {2, 0, 2}, .density = 1, .mass = 1}) ==
+        "cells = [2, 0, 2] holds a number below 1");
+  CHECK(refusal_to_build(Lattice{.cells = {1000, 1000, 1000}, .density = 1, .mass = 1}) ==
         "cells = [1000, 1000, 1000] are 4e+09 particles; at most 100000000 are expected");
-  CHECK(refusal_of(Lattice{.cells = {2, 2, 2}, .mass = 1}) ==
+  CHECK(refusal_to_build(Lattice{.cells = {2, 2, 2}, .mass = 1}) ==
         "there is neither a density nor a constant; give one of them");
-  CHECK(refusal_of(Lattice{.cells = {2, 2, 2}, .density = 1, .constant = 2, .mass = 1}) ==
+  CHECK(refusal_to_build(Lattice{.cells = {2, 2, 2}, .density = 1, .constant = 2, .mass = 1}) ==
         "constant = 2 stands beside a density; give one of them");
-  CHECK(refusal_of(Lattice{.cells = {2, 2, 2}, .density = -1, .mass = 1}) ==
+  CHECK(refusal_to_build(Lattice{.cells = {2, 2, 2}, .density = -1, .mass = 1}) ==
         "density = -1 is no density; a number above 0 is expected");
-  CHECK(refusal_of(Lattice{.cells = {2, 2, 2}, .density = 1}) == "mass = 0 is no mass; a number above 0 is expected");
-  CHECK(refusal_of(Lattice{.cells = {2, 2, 2}, .density = 1, .mass = 1, .epsilon = 1}) ==
+  CHECK(refusal_to_build(Lattice{.cells = {2, 2, 2}, .density = 1}) ==
+        "mass = 0 is no mass; a number above 0 is expected");
+  CHECK(refusal_to_build(Lattice{.cells = {2, 2, 2}, .density = 1, .mass = 1, .epsilon = 1}) ==
         "epsilon = 1 has no sigma beside it; give both or none");
-  CHECK(refusal_of(Lattice{.cells = {2, 2, 2}, .density = 1, .mass = 1, .temperature = -3}) ==
+  CHECK(refusal_to_build(Lattice{.cells = {2, 2, 2}, .density = 1, .mass = 1, .temperature = -3}) ==
         "temperature = -3 is no temperature; 0 or more is expected");
-  CHECK(refusal_of(Liquid{.density = 1, .mass = 1}) == "particles = 0 is not from 1 to 100000000");
-  CHECK(refusal_of(Liquid{.particles = 9, .density = 1, .mass = 1, .displacement = 0.5}) ==
+  CHECK(refusal_to_build(Liquid{.density = 1, .mass = 1}) == "particles = 0 is not from 1 to 100000000");
+  CHECK(refusal_to_build(Liquid{.particles = 9, .density = 1, .mass = 1, .displacement = 0.5}) ==
         "displacement = 0.5 is not from 0 to below 0.5; particles could meet");
-  CHECK(refusal_of(PolymerChains{.chains = 2, .beads = 3, .density = 1, .mass = 1, .bond_length = 0.5}) ==
+  CHECK(refusal_to_build(PolymerChains{.chains = 2, .beads = 3, .density = 1, .mass = 1, .bond_length = 0.5}) ==
         "bond_length = 0.5 is not from 0.6 to below 1.5, where a bond of FENE breaks");
-  CHECK(refusal_of(PolymerChains{.chains = 20000, .beads = 30000, .density = 1, .mass = 1}) ==
+  CHECK(refusal_to_build(PolymerChains{.chains = 20000, .beads = 30000, .density = 1, .mass = 1}) ==
         "chains = 20000 of 30000 beads are more than 100000000 particles");
 }
 

@@ -8,6 +8,7 @@
 #include "forces/oblateness.hpp"
 #include "scene/references.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/refusal.hpp"
 
 #include <algorithm>
 #include <string>
@@ -17,12 +18,7 @@ namespace noether::test {
 namespace {
 
 template <class Part> std::string refusal(const Part& part) {
-  try {
-    check_part(part);
-  } catch (const Error& error) {
-    return error.message();
-  }
-  return "";
+  return refusal_of([&] { check_part(part); });
 }
 
 TEST_CASE("a part refuses fields that make no sense", "[parts]") {

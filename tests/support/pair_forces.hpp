@@ -2,7 +2,10 @@
 /// What pair forces give, in any number type and at any SIMD level.
 
 #include "engine/force_sink.hpp"
+#include "engine/neighbor_list.hpp"
 #include "engine/simd.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/settings.hpp"
 
 #include <optional>
 #include <vector>
@@ -44,6 +47,25 @@ inline std::vector<SimdLevel> all_levels() {
     if (has_simd_level(level)) all.push_back(level);
   }
   return all;
+}
+
+/// A pair force gives the same bits by any neighbor list, on any number of threads, and without energies.
+template <class F> void check_bits_of_lists(const F& force, const ParticleSystem<double>& s, double cutoff) {
+  const Evaluated first = evaluated<double>(force, s);
+  for (const double skin : {0.01, 0.1, 0.3, 0.6}) {
+    for (const int threads : {1, 2, 3, 8}) {
+      const Threads now(threads);
+      NeighborList list(cutoff, {.skin = skin, .verify = threads == 1});
+      const Evaluated again = evaluated<double>(force, s, &list);
+      CHECK(again.a.all() == first.a.all());
+      CHECK(again.energy == first.energy);
+      CHECK(again.virial == first.virial);
+    }
+  }
+  VectorColumn<double> a(s.size());
+  ForceSink<double> forces_only(a, s, {});
+  force.add_to(forces_only, s);
+  CHECK(a.all() == first.a.all());
 }
 
 }  // namespace noether::test
