@@ -13,11 +13,12 @@ namespace noether {
 
 class NeighborList;
 
-/// What is to be summed beside the accelerations.
+/// What is to be summed beside the accelerations. In one byte: three that are stored one by one and read as a word wait
+/// for each other, which a look at a step of six bodies feels.
 struct Wanted {
-  bool energy = false;
-  bool virial = false;
-  bool action = false;  ///< of the flows: by integrators, not by forces
+  bool energy : 1 = false;
+  bool virial : 1 = false;
+  bool action : 1 = false;  ///< of the flows: by integrators, not by forces
 };
 
 /// Collects what the forces of one evaluation give.

@@ -56,8 +56,9 @@ template <class Real> class Snapshot {
   }
   /// Energy of `state()` [energy].
   const EnergyTerms<Real>& energy() const {
-    if (!energy_) energy_ = integrator_.energy(state());
-    return *energy_;
+    if (!have_energy_) energy_ = integrator_.energy(state());
+    have_energy_ = true;
+    return energy_;
   }
   /// Virial of the forces at `state()`, sum x (x) f [energy]; empty where a force or a constraint does not tell.
   const std::optional<Mat3<Real>>& virial() const {
@@ -99,9 +100,9 @@ template <class Real> class Snapshot {
   Real action_;
   RunSource run_;
   mutable Real settling_action_ = Real(0);
-  mutable bool have_state_ = false, have_mapped_ = false, have_virial_ = false;
+  mutable bool have_state_ = false, have_mapped_ = false, have_energy_ = false, have_virial_ = false;
   mutable std::optional<Mat3<Real>> virial_;
-  mutable std::optional<EnergyTerms<Real>> energy_;
+  mutable EnergyTerms<Real> energy_{};
   mutable std::optional<VectorColumn<Real>> accelerations_;
 };
 
