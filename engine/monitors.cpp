@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <type_traits>
 
 namespace noether {
 
@@ -14,6 +15,39 @@ Quad wide(double x) { return Quad(x); }
 Quad wide(const Quad& x) { return x; }
 
 template <class Real> Vec3<Quad> wide(const Vec3<Real>& v) { return Vec3<Quad>(wide(v[0]), wide(v[1]), wide(v[2])); }
+
+/// What sums over particles are computed in, so that a monitor adds no rounding of its own.
+template <class Real> using Wide = std::conditional_t<std::is_same_v<Real, double>, DoubleDouble, Quad>;
+
+DoubleDouble wide_product(double a, double b) { return DoubleDouble::product(a, b); }
+Quad wide_product(const Quad& a, const Quad& b) { return a * b; }
+
+template <class T> Vec3<Quad> quad(const std::array<T, 3>& v) { return {Quad(v[0]), Quad(v[1]), Quad(v[2])}; }
+
+/// Sum of m_i times the columns of a vector.
+template <class Real>
+std::array<Wide<Real>, 3> weighted_sum(const ParticleSystem<Real>& s, const VectorColumn<Real>& of) {
+  std::array<Wide<Real>, 3> sum{};
+  for (int k = 0; k < 3; ++k) {
+    const Real* column = of.component(k);
+    for (Index i = 0; i < s.size(); ++i) sum[static_cast<std::size_t>(k)] += wide_product(s.masses()[i], column[i]);
+  }
+  return sum;
+}
+
+template <class Real> std::array<Wide<Real>, 3> angular_momentum(const ParticleSystem<Real>& s) {
+  std::array<Wide<Real>, 3> sum{};
+  for (Index i = 0; i < s.size(); ++i) {
+    const Vec3<Real> x = s.positions()[i], v = s.velocities()[i];
+    const auto add = [&](int k, int a, int b) {
+      sum[static_cast<std::size_t>(k)] += s.masses()[i] * (wide_product(x[a], v[b]) - wide_product(x[b], v[a]));
+    };
+    add(0, 1, 2);
+    add(1, 2, 0);
+    add(2, 0, 1);
+  }
+  return sum;
+}
 
 Vec3<double> narrow(const Vec3<Quad>& v) {
   return Vec3<double>(static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2]));
@@ -125,31 +159,39 @@ std::string Energy::drift_per_atom() const {
 void VectorInvariant::begin(const Vec3<Quad>& value, const Quad& scale, bool kept) {
   begun_ = true;
   kept_ = kept;
-  reference_ = value;
   scale_ = static_cast<double>(scale);
   if (!(scale_ > 0)) scale_ = 1;
+  refer_to(value);
+}
+
+void VectorInvariant::refer_to(const Vec3<Quad>& reference) {
+  reference_ = reference;
+  for (int k = 0; k < 3; ++k) near_reference_[static_cast<std::size_t>(k)] = DoubleDouble(reference[k]);
+  const Vec3<double> rounded = narrow(reference);
+  length_ = std::hypot(rounded[0], rounded[1], rounded[2]);
 }
 
 /// What has changed is small and exact: from here on doubles will do.
-void VectorInvariant::add(double time, const Vec3<Quad>& value) {
-  const Vec3<double> change = narrow(value - reference_), reference = narrow(reference_);
-  for (int k = 0; k < 3; ++k) value_[static_cast<std::size_t>(k)] = static_cast<double>(value[k]);
-  error_ = std::hypot(change[0], change[1], change[2]) / scale_;
+template <class Wide> void VectorInvariant::add(double time, const std::array<Wide, 3>& value) {
+  Vec3<double> change;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto axis = static_cast<Index>(k);
+    value_[k] = static_cast<double>(value[k]);
+    if constexpr (std::is_same_v<Wide, Quad>) {
+      change[axis] = static_cast<double>(value[k] - reference_[axis]);
+    } else {
+      change[axis] = static_cast<double>(value[k] - near_reference_[k]);
+    }
+  }
+  error_ = Vec3<double>(change / scale_).norm();
   direction_error_ = 0;
   if (has_direction()) {
-    const double length = std::hypot(reference[0], reference[1], reference[2]);
-    const Vec3<double> unit = reference / length, turn = change / length, across = cross(unit, turn);
-    direction_error_ = std::atan2(std::hypot(across[0], across[1], across[2]), 1 + dot(unit, turn));
+    const Vec3<double> unit = narrow(reference_) / length_, turn = change / length_, across = cross(unit, turn);
+    direction_error_ = std::atan2(across.norm(), 1 + dot(unit, turn));
   }
   worst_direction_ = std::max(worst_direction_, direction_error_);
   if (with_direction_ && !has_direction()) direction_error_ = std::numeric_limits<double>::quiet_NaN();
   errors_.add(time, error_);
-}
-
-bool VectorInvariant::has_direction() const {
-  if (!with_direction_) return false;
-  const Vec3<double> reference = narrow(reference_);
-  return std::hypot(reference[0], reference[1], reference[2]) > 1e-6 * scale_;
 }
 
 std::vector<Series> VectorInvariant::series() const {
@@ -187,7 +229,8 @@ void VectorInvariant::load_series(const SavedState& saved, const std::string& pr
   std::array<double, 7> n{};
   load_value(saved, prefix + "/begun", begun_);
   load_value(saved, prefix + "/kept", kept_);
-  load_value(saved, prefix + "/reference", reference_);
+  Vec3<Quad> reference;
+  load_value(saved, prefix + "/reference", reference);
   load_value(saved, prefix + "/numbers", n);
   load_value(saved, prefix + "/errors", errors_);
   load_value(saved, prefix + "/time_unit", time_unit_);
@@ -196,17 +239,16 @@ void VectorInvariant::load_series(const SavedState& saved, const std::string& pr
   direction_error_ = n[2];
   worst_direction_ = n[3];
   value_ = {n[4], n[5], n[6]};
+  refer_to(reference);
 }
 
 template <class Real> void Momentum::observe(const Snapshot<Real>& now) {
   const ParticleSystem<Real>& s = now.state();
-  const auto of = [&](Index i) { return Vec3<Quad>(wide(s.masses()[i]) * wide(s.velocities()[i])); };
-  Vec3<Quad> sum = Vec3<Quad>::Zero();
-  for (Index i = 0; i < s.size(); ++i) sum += of(i);
+  const auto sum = weighted_sum(s, s.velocities());
   if (!begun()) {
     Quad scale = 0;
-    for (Index i = 0; i < s.size(); ++i) scale += sqrt(norm2(of(i)));
-    begin(sum, scale, now.claims().keeps_momentum);
+    for (Index i = 0; i < s.size(); ++i) scale += wide(s.masses()[i]) * sqrt(norm2(wide(s.velocities()[i])));
+    begin(quad(sum), scale, now.claims().keeps_momentum);
     time_unit_ = std::string(now.units().time);
   }
   add(now.time(), sum);
@@ -214,16 +256,13 @@ template <class Real> void Momentum::observe(const Snapshot<Real>& now) {
 
 template <class Real> void AngularMomentum::observe(const Snapshot<Real>& now) {
   const ParticleSystem<Real>& s = now.state();
-  Vec3<Quad> sum = Vec3<Quad>::Zero();
-  for (Index i = 0; i < s.size(); ++i) {
-    sum += wide(s.masses()[i]) * cross(wide(s.positions()[i]), wide(s.velocities()[i]));
-  }
+  const auto sum = angular_momentum(s);
   if (!begun()) {
     Quad scale = 0;
     for (Index i = 0; i < s.size(); ++i) {
       scale += wide(s.masses()[i]) * sqrt(norm2(wide(s.positions()[i])) * norm2(wide(s.velocities()[i])));
     }
-    begin(sum, scale, now.claims().keeps_angular_momentum);
+    begin(quad(sum), scale, now.claims().keeps_angular_momentum);
     time_unit_ = std::string(now.units().time);
   }
   add(now.time(), sum);
@@ -231,16 +270,16 @@ template <class Real> void AngularMomentum::observe(const Snapshot<Real>& now) {
 
 template <class Real> void CenterOfMass::observe(const Snapshot<Real>& now) {
   const ParticleSystem<Real>& s = now.state();
-  Vec3<Quad> x = Vec3<Quad>::Zero(), v = Vec3<Quad>::Zero();
-  Quad total = 0;
-  for (Index i = 0; i < s.size(); ++i) {
-    const Quad m = wide(s.masses()[i]);
-    x += m * wide(s.unwrapped(i));
-    v += m * wide(s.velocities()[i]);
-    total += m;
-  }
-  x /= total;  // tracers alone have no center: 0/0, which the report explains
-  v /= total;
+  Wide<Real> mass{};
+  for (Index i = 0; i < s.size(); ++i) mass += Wide<Real>(s.masses()[i]);
+  const auto moments = [&] {
+    if (!s.box().is_periodic()) return weighted_sum(s, s.positions());
+    VectorColumn<Real> unwrapped(s.size());
+    for (Index i = 0; i < s.size(); ++i) unwrapped.set(i, s.unwrapped(i));
+    return weighted_sum(s, unwrapped);
+  };
+  const Quad total(mass);  // tracers alone have no center: 0/0, which the report explains
+  const Vec3<Quad> x = quad(moments()) / total, v = quad(weighted_sum(s, s.velocities())) / total;
   if (!begun_) {
     begun_ = true;
     start_ = {x[0], x[1], x[2], v[0], v[1], v[2]};

@@ -1,6 +1,7 @@
 #pragma once
 /// The monitors of conserved quantities: energy, momentum, angular momentum, centre of mass.
 
+#include "engine/double_double.hpp"
 #include "engine/monitor.hpp"
 #include "engine/statistics.hpp"
 
@@ -77,19 +78,23 @@ class VectorInvariant {
   bool begun() const { return begun_; }
   /// The first value. @param scale  what errors are relative to; @param kept  by the equations of motion themselves
   void begin(const Vec3<Quad>& value, const Quad& scale, bool kept);
-  void add(double time, const Vec3<Quad>& value);
+  /// @param value  in DoubleDouble or Quad
+  template <class Wide> void add(double time, const std::array<Wide, 3>& value);
   void save_series(SavedState& saved, const std::string& prefix) const;
   void load_series(const SavedState& saved, const std::string& prefix);
   std::string time_unit_;
 
  private:
+  void refer_to(const Vec3<Quad>& reference);
   /// Whether the vector is long enough, beside its scale, to have a direction.
-  bool has_direction() const;
+  bool has_direction() const { return with_direction_ && length_ > 1e-6 * scale_; }
 
   std::string dimension_;
   bool with_direction_;
   bool begun_ = false, kept_ = true;
   Vec3<Quad> reference_ = Vec3<Quad>::Zero();
+  std::array<DoubleDouble, 3> near_reference_{};  ///< the same, for runs in doubles
+  double length_ = 0;                             ///< of the reference
   double scale_ = 0, error_ = 0, direction_error_ = 0, worst_direction_ = 0;
   std::array<double, 3> value_{};
   SeriesStatistics errors_;

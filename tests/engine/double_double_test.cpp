@@ -1,0 +1,61 @@
+/// Sums and products of two doubles against 113 bits, which hold every product of two doubles exactly.
+
+#include "engine/double_double.hpp"
+
+#include "tests/support/catch.hpp"
+
+#include <cmath>
+
+namespace noether::test {
+namespace {
+
+/// Numbers of all sizes from 2^-30 to 2^30 and both signs.
+class Numbers {
+ public:
+  double next() {
+    state_ = state_ * 6364136223846793005U + 1442695040888963407U;
+    const double part = static_cast<double>(static_cast<std::int64_t>(state_) >> 11) * 0x1p-52;
+    return std::ldexp(part, static_cast<int>((state_ >> 5U) % 61) - 30);
+  }
+
+ private:
+  std::uint64_t state_ = 1;
+};
+
+TEST_CASE("a product of doubles loses nothing", "[double_double]") {
+  Numbers numbers;
+  for (int n = 0; n < 10000; ++n) {
+    const double a = numbers.next(), b = numbers.next();
+    const DoubleDouble p = DoubleDouble::product(a, b);
+    REQUIRE(p.high == a * b);
+    REQUIRE(Quad(p) == Quad(a) * Quad(b));
+  }
+}
+
+TEST_CASE("sums of two doubles are right to 2^-104 of the larger one, products with a double to 2^-104",
+          "[double_double]") {
+  Numbers numbers;
+  const auto one = [&] {
+    const double high = numbers.next();
+    return DoubleDouble::ordered_sum(high, high * numbers.next() * 0x1p-84);
+  };
+  for (int n = 0; n < 10000; ++n) {
+    const DoubleDouble a = one(), b = one();
+    const double c = numbers.next();
+    const Quad bound = Quad(0x1p-104);
+    REQUIRE(abs(Quad(a + b) - (Quad(a) + Quad(b))) <= bound * (abs(Quad(a)) + abs(Quad(b))));
+    REQUIRE(abs(Quad(a - b) - (Quad(a) - Quad(b))) <= bound * (abs(Quad(a)) + abs(Quad(b))));
+    REQUIRE(abs(Quad(c * a) - Quad(c) * Quad(a)) <= bound * abs(Quad(c) * Quad(a)));
+    REQUIRE(std::abs((a + b).low) <= 0x1p-53 * std::abs((a + b).high));
+  }
+}
+
+TEST_CASE("what two numbers have in common cancels to the last bit", "[double_double]") {
+  const DoubleDouble a(1, 0x1p-80), b(1, -0x1p-70);
+  CHECK(static_cast<double>(a - b) == 0x1p-80 + 0x1p-70);
+  CHECK(static_cast<double>(DoubleDouble(Quad(1) / Quad(3)) - DoubleDouble(1.0 / 3)) ==
+        static_cast<double>(Quad(1) / Quad(3) - Quad(1.0 / 3)));
+}
+
+}  // namespace
+}  // namespace noether::test
