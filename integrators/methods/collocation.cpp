@@ -9,6 +9,8 @@ namespace noether {
 namespace {
 
 constexpr auto lanes = static_cast<Index>(lane_count);
+/// A step is made again if the one that meets the tolerance is shorter by more than this factor.
+constexpr double accepted = 0.6;
 
 template <class Real> Real rounded(const Quad& x, Real& low) {
   const Real high = static_cast<Real>(x);
@@ -119,10 +121,10 @@ template <class Real> Stepped Collocation<Real>::step(VectorField<Real>& f, cons
       break;
     }
     // The last coefficient falls as h^(s-1): this factor brings it to its target.
-    const double rough = converged ? roughness() : std::numeric_limits<double>::infinity();
+    const double rough = converged ? roughness(y, made.h) : std::numeric_limits<double>::infinity();
     const double factor = std::pow(target_ / std::max(rough, 1e-300), 1.0 / std::max(table_.stages - 1, 1));
     next_ = made.h * (converged ? std::clamp(factor, 0.2, 3.0) : 0.5);
-    if (converged && factor > 0.6) break;
+    if (converged && factor > accepted) break;
     ++made.rejected;
     made.failure = underflow(static_cast<double>(t), next_);
     if (made.failure) return made;
@@ -253,8 +255,10 @@ template <class Real> void Collocation<Real>::finish(Vector<Real>& y, double h) 
   h_ = h;
 }
 
-/// The largest last Legendre coefficient of a rate, relative to the rate; vectors of particles as wholes.
-template <class Real> double Collocation<Real>::roughness() {
+/// The largest last Legendre coefficient of a rate, relative to the rate; vectors of particles as wholes. One that
+/// would reject the step does not count where it moves nothing: a force that fades away is rough to its end.
+template <class Real> double Collocation<Real>::roughness(const Vector<Real>& y, double h) {
+  const double limit = target_ / std::pow(accepted, std::max(table_.stages - 1, 1));
   sums_.coefficient(rates_.data(), table_.last, last_.data(), largest_.data());
   const Index groups = particles_ > 0 ? particles_ : n_;
   double worst = 0;
@@ -266,7 +270,9 @@ template <class Real> double Collocation<Real>::roughness() {
       last2 += last * last;
       size2 += size * size;
     }
-    if (size2 > 0) worst = std::max(worst, last2 / size2);
+    if (!(last2 > worst * size2)) continue;
+    if (last2 > limit * limit * size2 && is_rounding(y, h, std::sqrt(last2))) continue;
+    worst = last2 / size2;
   }
   return std::sqrt(worst);
 }

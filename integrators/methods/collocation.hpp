@@ -58,7 +58,7 @@ template <class Real> class Collocation final : public Method<Real> {
   void form_velocities(const Real* rates, const Vector<Real>& y, double h);
   void form_states(const Vector<Real>& y, double h);
   void finish(Vector<Real>& y, double h);
-  double roughness();
+  double roughness(const Vector<Real>& y, double h);
   bool is_rounding(const Vector<Real>& y, double h, double change) const;
 
   std::string_view name_;

@@ -5,6 +5,7 @@
 #include "engine/monitors.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
+#include "forces/lennard_jones.hpp"
 #include "forces/linear_drag.hpp"
 #include "forces/springs.hpp"
 #include "forces/sum.hpp"
@@ -211,6 +212,25 @@ TEST_CASE("a step beyond the reach of sweeps is a named failure, and adaptive st
   const auto end = test::travel(*adaptive, f, again, 1.0);
   CHECK(std::abs(end[0] - std::cos(1000.0)) < 1e-12);
   CHECK(f.evaluations().rejected > 5);
+}
+
+TEST_CASE("steps do not shrink without end where a force fades away and ends", "[adaptive]") {
+  // Two atoms on top of each other: thrown apart, beyond the cutoff they feel nothing, near it rounding of forces.
+  ParticleSystem<double> pair;
+  pair.add("left", 1, {-0.25, 0, 0}, {0, 0, 0});
+  pair.add("right", 1, {0.25, 0, 0}, {0, 0, 0});
+  const LennardJonesForce force{.cutoff = 2.5, .cutoff_style = Cutoff::shifted_force, .epsilon = 1.0, .sigma = 1.0};
+  for (const char* name : {"gauss_4", "gauss_8", "gauss_radau_15"}) {
+    MethodOptions options;
+    options.adaptive = true;
+    Simulation run(pair, classical(force, method(name, options)));
+    const Energy& energy = run.every_time(0.0001, Energy{});
+    REQUIRE(run.run_until(0.02).ok());
+    CAPTURE(name, run.step(), run.evaluations().rejected);
+    CHECK(energy.worst() < 1e-12);
+    CHECK(run.step() < 2000);
+    CHECK(run.evaluations().rejected < 100);
+  }
 }
 
 TEST_CASE("a looser tolerance costs less", "[adaptive]") {
