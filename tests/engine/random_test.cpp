@@ -3,10 +3,12 @@
 #include "engine/random.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/normal_bins.hpp"
+#include "tests/support/settings.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <vector>
 
 using namespace noether;
 
@@ -134,4 +136,30 @@ TEST_CASE("seed, particle, step and stage each give other numbers", "[random]") 
     }
   }
   CHECK(static_cast<int>(seen.size()) == asked);
+}
+
+TEST_CASE("noise in lanes is the noise of each particle, bit for bit", "[random]") {
+  std::vector<std::int64_t> ids;
+  for (std::int64_t k = 0; k < 4000; ++k) ids.push_back(k < 2000 ? k : (std::int64_t{1} << 53U) - k * k * k);
+  for (const SimdLevel level : test::all_levels()) {
+    const test::AtLevel at(level);
+    CAPTURE(name(level));
+    for (const std::int64_t step : {std::int64_t{0}, std::int64_t{77}, std::int64_t{1} << 40U}) {
+      for (const std::uint32_t stage : {0U, 3U, 127U}) {
+        for (const std::ptrdiff_t count : {0, 1, 7, 8, 13, 64, 4000}) {
+          const auto key = noise_key(step - 5);
+          std::vector<double> x(4001, -1), y(4001, -1), z(4001, -1);
+          noise(key, ids.data(), count, step, stage, x.data(), y.data(), z.data());
+          bool same = true;
+          for (std::ptrdiff_t k = 0; k < count; ++k) {
+            const auto i = static_cast<std::size_t>(k);
+            same = same && std::array{x[i], y[i], z[i]} == noise(key, ids[i], step, stage);
+          }
+          CHECK(same);
+          const auto after = static_cast<std::size_t>(count);
+          CHECK(std::array{x[after], y[after], z[after]} == std::array{-1.0, -1.0, -1.0});
+        }
+      }
+    }
+  }
 }

@@ -154,7 +154,7 @@ TEST_CASE("gaps narrower than the search are found, with their ends", "[stabilit
 
 TEST_CASE("a method that is stable at any step has no limit, and one that cannot solve its steps says so",
           "[stability][nightly]") {
-  const StabilityRow stable = row_of(ball(), "trapezoidal"), swept = row_of(ball(), "implicit_midpoint");
+  const StabilityRow stable = row_of(ball(), "trapezoidal", 300), swept = row_of(ball(), "implicit_midpoint", 300);
   INFO(stable.message << swept.message);
   CHECK(stable.reason == "none");
   CHECK_FALSE(stable.limit_step);

@@ -3,12 +3,10 @@
 
 #include "engine/force_sink.hpp"
 #include "engine/neighbor_list.hpp"
-#include "engine/simd.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/settings.hpp"
 
 #include <optional>
-#include <vector>
 
 namespace noether::test {
 
@@ -38,15 +36,6 @@ Evaluated evaluated(const F& force, const ParticleSystem<double>& s, NeighborLis
 
 inline double largest_difference(const VectorColumn<double>& a, const VectorColumn<double>& b) {
   return (a.all() - b.all()).cwiseAbs().maxCoeff();
-}
-
-/// Every SIMD level of this processor.
-inline std::vector<SimdLevel> all_levels() {
-  std::vector<SimdLevel> all;
-  for (const SimdLevel level : {SimdLevel::base, SimdLevel::avx2, SimdLevel::avx512}) {
-    if (has_simd_level(level)) all.push_back(level);
-  }
-  return all;
 }
 
 /// A pair force gives the same bits by any neighbor list, on any number of threads, and without energies.

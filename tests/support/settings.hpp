@@ -4,6 +4,8 @@
 #include "engine/parallel.hpp"
 #include "engine/simd.hpp"
 
+#include <vector>
+
 namespace noether::test {
 
 /// As many threads, while this lives.
@@ -29,5 +31,14 @@ class AtLevel {
  private:
   SimdLevel before_ = simd_level();
 };
+
+/// Every SIMD level of this processor.
+inline std::vector<SimdLevel> all_levels() {
+  std::vector<SimdLevel> all;
+  for (const SimdLevel level : {SimdLevel::base, SimdLevel::avx2, SimdLevel::avx512}) {
+    if (has_simd_level(level)) all.push_back(level);
+  }
+  return all;
+}
 
 }  // namespace noether::test

