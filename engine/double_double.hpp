@@ -3,11 +3,14 @@
 
 #include "engine/real.hpp"
 
+#include <bit>
+#include <cstdint>
+
 namespace noether {
 
 /// A number as the sum of two doubles, the second below the rounding of the first: about 106 bits.
 ///
-/// Products of doubles are exact, sums right to 2^-104 of the larger term; numbers beyond 2^996 overflow.
+/// Products of doubles are exact, sums right to 2^-104 of the larger term.
 /// @cost 17 operations of doubles for a product, 11 for a sum: a tenth of Quad
 /// @source Dekker1971
 struct DoubleDouble {
@@ -34,11 +37,12 @@ struct DoubleDouble {
   }
   /// a b, exactly.
   static constexpr DoubleDouble product(double a, double b) {
-    constexpr double half = 134217729.0;  // 2^27 + 1: splits 53 bits in two
-    const double ta = half * a, a1 = ta - (ta - a), a2 = a - a1;
-    const double tb = half * b, b1 = tb - (tb - b), b2 = b - b1;
-    const double p = a * b;
+    const double a1 = upper_half(a), a2 = a - a1, b1 = upper_half(b), b2 = b - b1, p = a * b;
     return {p, ((a1 * b1 - p) + a1 * b2 + a2 * b1) + a2 * b2};
+  }
+  /// The nearest number of 26 bits, what is left has 26 too; no size overflows on the way.
+  static constexpr double upper_half(double a) {
+    return std::bit_cast<double>((std::bit_cast<std::uint64_t>(a) + (1U << 26U)) & ~std::uint64_t{(1U << 27U) - 1});
   }
 
   constexpr DoubleDouble operator-() const { return {-high, -low}; }

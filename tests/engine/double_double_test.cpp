@@ -29,6 +29,8 @@ TEST_CASE("a product of doubles loses nothing", "[double_double]") {
     const DoubleDouble p = DoubleDouble::product(a, b);
     REQUIRE(p.high == a * b);
     REQUIRE(Quad(p) == Quad(a) * Quad(b));
+    const DoubleDouble large = DoubleDouble::product(a * 0x1p960, b);
+    REQUIRE(Quad(large) == Quad(a * 0x1p960) * Quad(b));
   }
 }
 
