@@ -25,7 +25,8 @@ function(noether_simd target)
     target_include_directories(${objects} PRIVATE ${PROJECT_SOURCE_DIR})
     target_include_directories(${objects} SYSTEM PRIVATE ${NOETHER_HIGHWAY_INCLUDE})
     # Highway's namespace is renamed too: what is not inlined must not stand in for the same function of another level.
-    target_compile_definitions(${objects} PRIVATE NOETHER_SIMD_LEVEL=${level}${simd_SUFFIX}
+    # Its assertions, which sanitizers switch on, would then call a function that no library has.
+    target_compile_definitions(${objects} PRIVATE NOETHER_SIMD_LEVEL=${level}${simd_SUFFIX} HWY_IS_DEBUG_BUILD=0
                                                   hwy=hwy_${level}${simd_SUFFIX})
     target_compile_options(${objects} PRIVATE -ffp-contract=off ${NOETHER_SIMD_FLAGS_${level}} ${simd_OPTIONS}
       # Before registers are given out, g++ does not reorder on its own; several chains side by side want it to. Stores
