@@ -90,13 +90,7 @@ int main(int count, char** arguments) {
   cases.push_back(bench::melt("nve", start, Field(forces()), schemes::verlet, 0.005));
   for (const int by : threads > 1 ? std::vector<int>{1, threads} : std::vector<int>{1}) {
     set_thread_count(by);
-    for (bench::Melt& one : cases) {
-      one.rates.clear();
-      one.run(200);
-    }
-    for (int repeat = 0; repeat < 7; ++repeat) {
-      for (bench::Melt& one : cases) one.rates.push_back(one.rate(steps));
-    }
+    bench::take_turns(cases, steps);
     for (bench::Melt& one : cases) {
       std::optional<bench::Peer> peer;
       if (by == 1) peer = bench::lammps("lammps", fmt::format("fene {} '{}'", one.name, data.string()), atoms);

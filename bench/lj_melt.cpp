@@ -82,13 +82,7 @@ int main(int count, char** arguments) {
   cases.push_back(melt("user", cells, PairForce<TwelveSix>{{}, 2.5, Cutoff::plain}, {}));
   for (const int by : threads > 1 ? std::vector<int>{1, threads} : std::vector<int>{1}) {
     set_thread_count(by);
-    for (bench::Melt& one : cases) {
-      one.rates.clear();
-      one.run(200);
-    }
-    for (int repeat = 0; repeat < 7; ++repeat) {
-      for (bench::Melt& one : cases) one.rates.push_back(one.rate(steps));
-    }
+    bench::take_turns(cases, steps);
     std::vector<std::optional<bench::Peer>> peers;
     if (by == 1)
       peers = {bench::lammps("lammps_plain", "lj plain", 32'000), bench::lammps("lammps_opt", "lj opt", 32'000)};

@@ -45,6 +45,17 @@ Melt melt(std::string name, ParticleSystem<double> atoms, H hamiltonian, const S
           state->atoms.size()};
 }
 
+/// Lets melts take turns: 200 steps each to settle, then 7 slices of so many.
+inline void take_turns(std::vector<Melt>& melts, int steps) {
+  for (Melt& one : melts) {
+    one.rates.clear();
+    one.run(200);
+  }
+  for (int repeat = 0; repeat < 7; ++repeat) {
+    for (Melt& one : melts) one.rates.push_back(one.rate(steps));
+  }
+}
+
 /// Rows of the search for neighbors of a melt.
 inline void add_search(const Rows& rows, const Melt& melt) {
   const NeighborStatistics list = melt.neighbors();
