@@ -98,7 +98,7 @@ void sort(const std::int32_t* number, const float* r2, std::ptrdiff_t count, std
 void turn(const std::int32_t* const (&lists)[8], std::ptrdiff_t rows, std::int32_t* out) {
   for (std::ptrdiff_t row = 0; row < rows; row += 8) {
     std::int32_t* to = out + 8 * row;
-#if HWY_TARGET == HWY_SCALAR
+#if HWY_MAX_BYTES < 32
     for (int lane = 0; lane < 8; ++lane) {
       for (int k = 0; k < 8; ++k) to[8 * k + lane] = 4 * lists[lane][row + k];
     }

@@ -41,7 +41,12 @@ HWY_INLINE Points load_points(const double* records, const std::int32_t* offsets
 #if HWY_TARGET == HWY_SCALAR
   const double* one = record(0);
   return {hn::Set(d, one[0]), hn::Set(d, one[1]), hn::Set(d, one[2])};
-#elif HWY_TARGET <= HWY_AVX3
+#elif HWY_MAX_BYTES == 16
+  const double *one = record(0), *two = record(1);
+  const Vector a = hn::LoadU(d, one), b = hn::LoadU(d, two);
+  return {hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b),
+          hn::InterleaveLower(d, hn::LoadU(d, one + 2), hn::LoadU(d, two + 2))};
+#elif HWY_MAX_BYTES >= 64
   const hn::Half<Lanes> half;
   const auto two = [&](int k) {  // records k and k + 4
     return hn::Combine(d, hn::LoadU(half, record(k + 4)), hn::LoadU(half, record(k)));
