@@ -53,7 +53,8 @@ template <class T> class ScalarColumn {
   AlignedVector<T> values_;
 };
 
-/// One vector per particle, shape (n, 3): all x, then all y, then all z, each run padded to a multiple of eight.
+/// One vector per particle, shape (n, 3): all x, then all y, then all z, each run padded to a multiple of eight; not of
+/// numbers that fill a cache line each.
 template <class Real> class VectorColumn {
  public:
   using Row = Eigen::Map<Vec3<Real>, Eigen::Unaligned, Eigen::InnerStride<>>;
@@ -112,8 +113,8 @@ template <class Real> class VectorColumn {
   /// Whether every number is finite: 0 times another is not 0.
   bool is_finite() const {
     Real sums[8] = {Real(0), Real(0), Real(0), Real(0), Real(0), Real(0), Real(0), Real(0)};
-    for (std::size_t k = 0; k < values_.size(); k += 8) {
-      for (std::size_t lane = 0; lane < 8; ++lane) sums[lane] += values_[k + lane] * Real(0);
+    for (std::size_t k = 0; k < values_.size(); k += padding) {
+      for (std::size_t lane = 0; lane < padding; ++lane) sums[lane] += values_[k + lane] * Real(0);
     }
     const Real low = (sums[0] + sums[1]) + (sums[2] + sums[3]), high = (sums[4] + sums[5]) + (sums[6] + sums[7]);
     return low + high == Real(0);
@@ -136,7 +137,8 @@ template <class Real> class VectorColumn {
   }
 
  private:
-  static Index padded(Index n) { return (n + 7) / 8 * 8; }
+  static constexpr Index padding = sizeof(Real) < 64 ? 8 : 1;
+  static Index padded(Index n) { return (n + padding - 1) / padding * padding; }
 
   void lay_out(Index stride) {
     AlignedVector<Real> values(static_cast<std::size_t>(3 * stride), Real(0));

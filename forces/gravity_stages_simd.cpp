@@ -43,8 +43,15 @@ HWY_INLINE void attract(const BodiesInStages& b, Body& body, std::ptrdiff_t j, s
   }
 }
 
+/// The same with all bodies from j on: by four, and what is left in one go.
+template <int n>
+HWY_INLINE void attract_from(const BodiesInStages& b, Body& body, std::ptrdiff_t j, std::ptrdiff_t lane, Vector G,
+                             Vector soft2) {
+  for (; j + n <= b.count; j += n) attract<n>(b, body, j, lane, G, soft2);
+  if constexpr (n > 1) attract_from<n - 1>(b, body, j, lane, G, soft2);
+}
+
 void attract_all(const BodiesInStages& bodies, double constant, double softening2) {
-  constexpr int together = 3;
   const Lanes d;
   const BodiesInStages b = bodies;
   const Vector G = hn::Set(d, constant), soft2 = hn::Set(d, softening2);
@@ -54,13 +61,12 @@ void attract_all(const BodiesInStages& bodies, double constant, double softening
       Body body{
           hn::Load(d, b.x + at),  hn::Load(d, b.y + at),  hn::Load(d, b.z + at), hn::Mul(G, hn::Load(d, b.m + at)),
           hn::Load(d, b.ax + at), hn::Load(d, b.ay + at), hn::Load(d, b.az + at)};
-      std::ptrdiff_t j = i + 1;
       if (b.m[at] != 0) {
-        for (; j + together <= b.count; j += together) attract<together>(b, body, j, lane, G, soft2);
-      }
-      for (; j < b.count; ++j) {
-        if (b.m[at] != 0 || b.m[j * stages] != 0)
-          attract<1>(b, body, j, lane, G, soft2);  // tracers may stand in one place
+        attract_from<4>(b, body, i + 1, lane, G, soft2);
+      } else {
+        for (std::ptrdiff_t j = i + 1; j < b.count; ++j) {
+          if (b.m[j * stages] != 0) attract<1>(b, body, j, lane, G, soft2);  // tracers may stand in one place
+        }
       }
       hn::Store(body.ax, d, b.ax + at);
       hn::Store(body.ay, d, b.ay + at);

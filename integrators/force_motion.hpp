@@ -126,6 +126,13 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
     return true;
   }
 
+  Real* place_of_stages() override {
+    if constexpr (sees_packs) {
+      if (in_lanes_) return numbers(packs_.positions());
+    }
+    return nullptr;
+  }
+
  protected:
   void evaluate(const Real& t, const Vector<Real>& y, Vector<Real>& dy) override {
     const Index half = 3 * work_.size();
@@ -139,11 +146,12 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
     a.resize(3 * work_.size());
     write(a.data());
   }
-  void evaluate_stages(const StageStates<Real>& states, Real* out) override {
+  const Real* evaluate_stages(const StageStates<Real>& states, Real* out) override {
     if constexpr (sees_packs) {
-      if (in_lanes_) return evaluate_lanes(states, out);
+      if (in_lanes_) return evaluate_lanes(states);
     }
     evaluate_in_turn(states, out);
+    return out;
   }
 
  private:
@@ -154,22 +162,21 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
   void bind_lanes(const ParticleSystem<Real>& s) {
     if constexpr (sees_packs) {
       packs_ = s.template as<Pack>();
+      packs_.trim();
       packs_.clock() = Clock<Pack>::free(0);
       pack_a_ = VectorColumn<Pack>(s.size());
     }
   }
-  void evaluate_lanes(const StageStates<double>& states, double* out) {
-    const Index n = work_.size();
-    const auto rows = static_cast<std::size_t>(n);
-    VectorColumn<Pack>&x = packs_.positions(), &v = packs_.velocities();
-    for (int k = 0; k < 3; ++k) {
-      copy_packs(states.q + k * n * lane_count, x.component(k)->lane.data(), rows);
-      if (states.v != nullptr) copy_packs(states.v + k * n * lane_count, v.component(k)->lane.data(), rows);
-    }
+  /// Packs are not padded: a column holds what the stages hold, in the same order.
+  static double* numbers(VectorColumn<Pack>& column) { return column.component(0)->lane.data(); }
+  const double* evaluate_lanes(const StageStates<double>& states) {
+    const auto all = static_cast<std::size_t>(3 * work_.size());
+    if (states.q != place_of_stages()) copy_packs(states.q, place_of_stages(), all);
+    if (states.v != nullptr) copy_packs(states.v, numbers(packs_.velocities()), all);
     packs_.clock().set_stage_offset(Pack::load(states.t));
     ForceSink<Pack> sink(pack_a_, packs_, {});
     forces_.add_to(sink, packs_);
-    for (int k = 0; k < 3; ++k) copy_packs(pack_a_.component(k)->lane.data(), out + k * n * lane_count, rows);
+    return numbers(pack_a_);
   }
 
   /// One stage after the other, straight into the particles and out of them.

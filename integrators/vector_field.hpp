@@ -77,10 +77,13 @@ template <class Real> class VectorField {
   }
   /// Rates (for second order: accelerations) at all stages, counted as so many, in the layout of the states; lanes
   /// beyond the stages hold the rates of one of them.
-  void rates(const StageStates<Real>& states, Real* out) {
+  /// @return where they are: in `out`, or in the field's own place until it is asked again
+  const Real* rates(const StageStates<Real>& states, Real* out) {
     evaluations_.force += states.stages;
-    evaluate_stages(states, out);
+    return evaluate_stages(states, out);
   }
+  /// Where the q of the states may be formed, so that nobody has to copy them; null where there is no such place.
+  virtual Real* place_of_stages() { return nullptr; }
   /// Whether f is known over dual numbers, so that `derivative` and `jacobian` are exact.
   virtual bool has_derivative() const { return false; }
   /// out = df/dt dt + df/dy dy, exact, not counted. @throws LogicError  where `has_derivative` is false
@@ -112,7 +115,7 @@ template <class Real> class VectorField {
     throw LogicError("a system of first order has no acceleration");
   }
   /// One stage after the other, unless a field knows better.
-  virtual void evaluate_stages(const StageStates<Real>& states, Real* out);
+  virtual const Real* evaluate_stages(const StageStates<Real>& states, Real* out);
 
  private:
   Evaluations evaluations_;
@@ -120,7 +123,7 @@ template <class Real> class VectorField {
   Vector<Real> direction_, column_;  ///< work of `jacobian`
 };
 
-template <class Real> void VectorField<Real>::evaluate_stages(const StageStates<Real>& states, Real* out) {
+template <class Real> const Real* VectorField<Real>::evaluate_stages(const StageStates<Real>& states, Real* out) {
   const bool second = states.second_order;
   const Index n = second ? size() / 2 : size();
   stage_.resize(size());
@@ -137,6 +140,7 @@ template <class Real> void VectorField<Real>::evaluate_stages(const StageStates<
     const int last = k + 1 == states.stages ? lane_count : k + 1;
     for (Index i = 0; i < n; ++i) std::fill(out + lane_count * i + k, out + lane_count * i + last, stage_rate_[i]);
   }
+  return out;
 }
 
 template <class Real> bool VectorField<Real>::jacobian(const Real& t, const Vector<Real>& y, Matrix<Real>& J) {

@@ -148,7 +148,7 @@ void Collocation<Real>::predict(VectorField<Real>& f, const Real& t, const Vecto
       all.fill(t);
       return all;
     }();
-    f.rates({times.data(), q_.data(), v_.data(), 1, second_order_}, rates_.data());
+    sums_.take(f.rates({times.data(), q_.data(), v_.data(), 1, second_order_}, trial_.data()), rates_.data());
     return;
   }
   extrapolate(h);
@@ -164,8 +164,9 @@ template <class Real> void Collocation<Real>::extrapolate(double h) {
   sums_.combine(previous_.data(), weights_, rates_.data());
 }
 
-template <class Real> void Collocation<Real>::form_positions(const Real* rates, const Vector<Real>& y, double h) {
-  sums_.positions(rates, table_.twice, table_.c, table_.c_low, y.data(), low_.data(), y.data() + n_, h, q_.data());
+template <class Real>
+void Collocation<Real>::form_positions(const Real* rates, const Vector<Real>& y, double h, Real* q) {
+  sums_.positions(rates, table_.twice, table_.c, table_.c_low, y.data(), low_.data(), y.data() + n_, h, q);
 }
 
 template <class Real> void Collocation<Real>::form_velocities(const Real* rates, const Vector<Real>& y, double h) {
@@ -173,19 +174,19 @@ template <class Real> void Collocation<Real>::form_velocities(const Real* rates,
 }
 
 /// Positions (and velocities) of all stages from their rates.
-template <class Real> void Collocation<Real>::form_states(const Vector<Real>& y, double h) {
+template <class Real> void Collocation<Real>::form_states(const Vector<Real>& y, double h, Real* q) {
   if (!second_order_) {
-    sums_.values(rates_.data(), table_.a, y.data(), low_.data(), h, q_.data());
+    sums_.values(rates_.data(), table_.a, y.data(), low_.data(), h, q);
     return;
   }
-  form_positions(rates_.data(), y, h);
+  form_positions(rates_.data(), y, h, q);
   if (with_velocities_) form_velocities(rates_.data(), y, h);
 }
 
 /// h sum_i b_i L(Q_i, V_i), which the step makes stationary.
 /// @source MarsdenWest2001
 template <class Real> Real Collocation<Real>::action(VectorField<Real>& f, const Real& t, const Vector<Real>& y) {
-  form_positions(previous_.data(), y, h_);
+  form_positions(previous_.data(), y, h_, q_.data());
   form_velocities(previous_.data(), y, h_);
   Real sum(0);
   for (std::size_t k = 0; k < static_cast<std::size_t>(table_.stages); ++k) {
@@ -208,13 +209,14 @@ typename Collocation<Real>::Sweeps Collocation<Real>::sweep(VectorField<Real>& f
   const int most = adaptive_ ? 60 : 300;  // steps of one length have no other way out
   std::array<Real, lane_count> times{};
   for (std::size_t k = 0; k < lane_count; ++k) times[k] = t + table_.c[k] * Real(h);
+  Real* const place = f.place_of_stages();
+  Real* const q = place != nullptr ? place : q_.data();
   double before = std::numeric_limits<double>::infinity();
   for (int round = 1; round <= most; ++round) {
-    form_states(y, h);
-    f.rates({times.data(), q_.data(), with_velocities_ ? v_.data() : nullptr, table_.stages, second_order_},
-            trial_.data());
-    const auto [change, size] = sums_.difference(trial_.data(), rates_.data());
-    std::swap(trial_, rates_);
+    form_states(y, h, q);
+    const Real* const fresh = f.rates(
+        {times.data(), q, with_velocities_ ? v_.data() : nullptr, table_.stages, second_order_}, trial_.data());
+    const auto [change, size] = sums_.take(fresh, rates_.data());
     // Rates may happen to vanish in one sweep, on the way to others.
     const double relative = size > Real(0) ? static_cast<double>(change / size) : change > Real(0) ? 1.0 : 0.0;
     if (!isfinite(size + change)) return Sweeps::diverged;

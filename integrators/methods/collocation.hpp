@@ -54,9 +54,9 @@ template <class Real> class Collocation final : public Method<Real> {
   void predict(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h);
   void extrapolate(double h);
   Sweeps sweep(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h);
-  void form_positions(const Real* rates, const Vector<Real>& y, double h);
+  void form_positions(const Real* rates, const Vector<Real>& y, double h, Real* q);
   void form_velocities(const Real* rates, const Vector<Real>& y, double h);
-  void form_states(const Vector<Real>& y, double h);
+  void form_states(const Vector<Real>& y, double h, Real* q);
   void finish(Vector<Real>& y, double h);
   double roughness(const Vector<Real>& y, double h);
   bool is_rounding(const Vector<Real>& y, double h, double change) const;

@@ -49,13 +49,14 @@ void positions(const StageSums& sums, const double* a, const double* c, const do
                double* out) {
   const Lanes d;
   const StageSums s = sums;
-  const Vector h2 = hn::Set(d, s.h * s.h);
+  const Vector h2 = hn::Set(d, s.h2), h2_low = hn::Set(d, s.h2_low);
   for (std::ptrdiff_t i = 0; i < stages; i += lanes) {
     const Rows rows(a + i);
     const Vector node = hn::LoadU(d, c + i), node_low = hn::LoadU(d, c_low + i);
     for (std::ptrdiff_t m = 0; m < s.n; ++m) {
       const Vector hv = hn::Set(d, s.h * v[m]);
-      const Vector bend = hn::MulAdd(h2, rows.sum(s.rates + stages * m), hn::Set(d, s.low[m]));
+      const Vector sum = rows.sum(s.rates + stages * m);
+      const Vector bend = hn::MulAdd(h2, sum, hn::MulAdd(h2_low, sum, hn::Set(d, s.low[m])));
       const Vector small = hn::MulAdd(node_low, hv, bend);
       hn::StoreU(hn::Add(hn::Set(d, s.y[m]), hn::MulAdd(node, hv, small)), d, out + stages * m + i);
     }
@@ -96,13 +97,14 @@ HWY_INLINE double largest_of(Bits sizes) {
   return hn::GetLane(hn::BitCast(Lanes(), hn::MaxOfLanes(BitLanes(), sizes)));
 }
 
-void difference(std::ptrdiff_t n, const double* a, const double* b, double* change, double* size) {
+void take(std::ptrdiff_t n, const double* fresh, double* rates, double* change, double* size) {
   const Lanes d;
   Bits most = hn::Zero(BitLanes()), largest = most;
   for (std::ptrdiff_t k = 0; k < stages * n; k += lanes) {
-    const Vector x = hn::LoadU(d, a + k), y = hn::LoadU(d, b + k);
-    most = hn::Max(most, size_of(hn::Sub(x, y)));
+    const Vector x = hn::LoadU(d, fresh + k);
+    most = hn::Max(most, size_of(hn::Sub(x, hn::LoadU(d, rates + k))));
     largest = hn::Max(largest, size_of(x));
+    hn::StoreU(x, d, rates + k);
   }
   *change = largest_of(most);
   *size = largest_of(largest);
@@ -244,7 +246,7 @@ HWY_INLINE Vector rounded_off([[maybe_unused]] Vector a, [[maybe_unused]] Vector
 void finish(const StepSums& sums) {
   const Lanes d;
   const StepSums s = sums;
-  const Vector h = hn::Set(d, s.h), h2 = hn::Set(d, s.h * s.h);
+  const Vector h = hn::Set(d, s.h), h2 = hn::Set(d, s.h2), h2_low = hn::Set(d, s.h2_low);
   const Weights weights(s.weights), weights_low(s.weights_low), twice(s.twice), twice_low(s.twice_low);
   for (std::ptrdiff_t m = 0; m < s.n; m += lanes) {
     const std::ptrdiff_t count = s.n - m < lanes ? s.n - m : lanes;
@@ -252,7 +254,8 @@ void finish(const StepSums& sums) {
     if (s.q != nullptr) {
       const Vector v = load(s.v + m, count), hv = hn::Mul(h, v);
       const Vector lower = hn::MulAdd(h, load(s.v_low + m, count), rounded_off(h, v, hv));
-      const Vector bend = hn::MulAdd(h2, variables.sum(twice), hn::MulAdd(h2, variables.sum(twice_low), lower));
+      const Vector sum = variables.sum(twice), small = hn::MulAdd(h2_low, sum, lower);
+      const Vector bend = hn::MulAdd(h2, sum, hn::MulAdd(h2, variables.sum(twice_low), small));
       add_with_error(s.q + m, s.q_low + m, count, hv, bend);
     }
     const Vector slope = variables.sum(weights), kick = hn::Mul(h, slope);
@@ -264,7 +267,6 @@ void finish(const StepSums& sums) {
 }  // namespace
 
 extern const CollocationKernels collocation_kernels;
-const CollocationKernels collocation_kernels{values,     positions,   extrapolation, combine,
-                                             difference, coefficient, finish};
+const CollocationKernels collocation_kernels{values, positions, extrapolation, combine, take, coefficient, finish};
 
 }  // namespace noether::NOETHER_SIMD_LEVEL

@@ -13,7 +13,7 @@ struct StageSums {
   std::ptrdiff_t n;
   const double* rates;  ///< F
   const double *y, *low;
-  double h;
+  double h, h2, h2_low;  ///< h^2, and what rounding takes from it: the same at every step, it would be a drift
 };
 
 /// What a step adds to n variables. `weights`, `weights_low`, `twice`, `twice_low`: shape (8).
@@ -21,7 +21,7 @@ struct StepSums {
   std::ptrdiff_t n;
   const double* rates;  ///< F, shape (n, 8), n rounded up to a multiple of eight
   const double *weights, *weights_low, *twice, *twice_low;
-  double h;
+  double h, h2, h2_low;
   double *q, *q_low;  ///< variables of first order: null
   double *v, *v_low;  ///< velocities, or the variables of first order
 };
@@ -37,8 +37,8 @@ struct CollocationKernels {
   void (*extrapolation)(const double* c, const double* barycentric, double ratio, double* w);
   /// out_i = sum_j w_ji F_j
   void (*combine)(const StageSums& sums, const double* w, double* out);
-  /// Largest |a - b| and largest |a| over `n` variables; not a number if one is none.
-  void (*difference)(std::ptrdiff_t n, const double* a, const double* b, double* change, double* size);
+  /// Rates of n variables become `fresh`; the largest change, and the largest |fresh|: not a number if one is none.
+  void (*take)(std::ptrdiff_t n, const double* fresh, double* rates, double* change, double* size);
   /// sum_j w_j F_j and max_j |F_j| of each variable, shape (n), all shapes rounded up to a multiple of eight.
   void (*coefficient)(std::ptrdiff_t n, const double* rates, const double* w, double* sum, double* largest);
   /// q += h v + h^2 sum twice_j F_j, v += h sum weights_j F_j, with their rounding errors

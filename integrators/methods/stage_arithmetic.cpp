@@ -1,5 +1,6 @@
 #include "integrators/methods/stage_arithmetic.hpp"
 
+#include "engine/double_double.hpp"
 #include "integrators/methods/collocation_simd.hpp"
 
 #include <cmath>
@@ -31,7 +32,7 @@ template <class Real>
 void StageArithmetic<Real>::values(const Real* rates, const StageMatrix<Real>& a, const Real* y, const Real* low,
                                    double h, Real* out) const {
   if constexpr (std::is_same_v<Real, double>) {
-    collocation_kernels().values({n, rates, y, low, h}, a[0].data(), out);
+    collocation_kernels().values({n, rates, y, low, h, 0, 0}, a[0].data(), out);
   } else {
     for (Index m = 0; m < n; ++m) {
       const StageLanes<Real> sum = product(a, rates + lane_count * m);
@@ -47,7 +48,8 @@ void StageArithmetic<Real>::positions(const Real* rates, const StageMatrix<Real>
                                       const StageLanes<Real>& c_low, const Real* y, const Real* low, const Real* v,
                                       double h, Real* out) const {
   if constexpr (std::is_same_v<Real, double>) {
-    collocation_kernels().positions({n, rates, y, low, h}, a[0].data(), c.data(), c_low.data(), v, out);
+    const DoubleDouble h2 = DoubleDouble::product(h, h);
+    collocation_kernels().positions({n, rates, y, low, h, h2.high, h2.low}, a[0].data(), c.data(), c_low.data(), v, out);
   } else {
     for (Index m = 0; m < n; ++m) {
       const StageLanes<Real> sum = product(a, rates + lane_count * m);
@@ -82,7 +84,7 @@ void StageArithmetic<Real>::extrapolation(int stages, const StageLanes<Real>& c,
 template <class Real>
 void StageArithmetic<Real>::combine(const Real* rates, const StageMatrix<Real>& w, Real* out) const {
   if constexpr (std::is_same_v<Real, double>) {
-    collocation_kernels().combine({n, rates, nullptr, nullptr, 0}, w[0].data(), out);
+    collocation_kernels().combine({n, rates, nullptr, nullptr, 0, 0, 0}, w[0].data(), out);
   } else {
     for (Index m = 0; m < n; ++m) {
       const StageLanes<Real> sum = product(w, rates + lane_count * m);
@@ -91,16 +93,17 @@ void StageArithmetic<Real>::combine(const Real* rates, const StageMatrix<Real>& 
   }
 }
 
-template <class Real> std::array<Real, 2> StageArithmetic<Real>::difference(const Real* a, const Real* b) const {
+template <class Real> std::array<Real, 2> StageArithmetic<Real>::take(const Real* fresh, Real* rates) const {
   std::array<Real, 2> most{Real(0), Real(0)};
   if constexpr (std::is_same_v<Real, double>) {
-    collocation_kernels().difference(n, a, b, &most[0], &most[1]);
+    collocation_kernels().take(n, fresh, rates, &most[0], &most[1]);
   } else {
     using std::abs;
     for (Index k = 0; k < lane_count * n; ++k) {
-      const Real change = abs(a[k] - b[k]), size = abs(a[k]);
+      const Real change = abs(fresh[k] - rates[k]), size = abs(fresh[k]);
       if (!(change <= most[0])) most[0] = change;
       if (!(size <= most[1])) most[1] = size;
+      rates[k] = fresh[k];
     }
   }
   return most;
@@ -127,8 +130,9 @@ template <class Real>
 void StageArithmetic<Real>::finish(const Real* rates, const std::array<StageLanes<Real>, 4>& weights, double h, Real* q,
                                    Real* q_low, Real* v, Real* v_low) const {
   if constexpr (std::is_same_v<Real, double>) {
-    collocation_kernels().finish(
-        {n, rates, weights[0].data(), weights[1].data(), weights[2].data(), weights[3].data(), h, q, q_low, v, v_low});
+    const DoubleDouble h2 = DoubleDouble::product(h, h);
+    collocation_kernels().finish({n, rates, weights[0].data(), weights[1].data(), weights[2].data(), weights[3].data(),
+                                  h, h2.high, h2.low, q, q_low, v, v_low});
   } else {
     for (Index m = 0; m < n; ++m) {
       std::array<Real, 4> sums{Real(0), Real(0), Real(0), Real(0)};

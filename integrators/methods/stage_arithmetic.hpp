@@ -29,8 +29,8 @@ template <class Real> struct StageArithmetic {
                      StageMatrix<Real>& w) const;
   /// out_i = sum_j w_ji F_j
   void combine(const Real* rates, const StageMatrix<Real>& w, Real* out) const;
-  /// Largest |a - b|, and largest |a|.
-  std::array<Real, 2> difference(const Real* a, const Real* b) const;
+  /// Rates become `fresh`; the largest change, and the largest |fresh|.
+  std::array<Real, 2> take(const Real* fresh, Real* rates) const;
   /// sum_j w_j F_j, and largest |F_j|, of each variable.
   void coefficient(const Real* rates, const StageLanes<Real>& w, Real* sum, Real* largest) const;
   /// Ends a step: velocities (or variables) from weights 0 and 1 (what rounding took), positions, if there are any,

@@ -60,11 +60,14 @@ template <std::size_t times> double exponent(const std::array<double, times>& sq
 }  // namespace
 
 TEST_CASE("the energy error of Gauss's method with steps of one length grows as the root of time", "[kept]") {
-  const auto squares = mean_squares<4>(12, 512, 300.0);
-  const double power = exponent(squares);
-  CAPTURE(squares, power);
-  CHECK(std::abs(power - 0.5) < 0.25);
-  CHECK(std::sqrt(squares[3]) < 1e-14);
+  // The square of the second step is no double: what rounding takes from it is the same at every step.
+  for (const double step : {300.0, 294.55645161290323}) {
+    const auto squares = mean_squares<4>(12, 512, step);
+    const double power = exponent(squares);
+    CAPTURE(step, squares, power);
+    CHECK(std::abs(power - 0.5) < 0.25);
+    CHECK(std::sqrt(squares[3]) < 1e-14);
+  }
 }
 
 TEST_CASE("and does so over a million years", "[kept][nightly]") {
