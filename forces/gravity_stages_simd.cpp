@@ -21,7 +21,7 @@ template <int n>
 HWY_INLINE void attract(const BodiesInStages& b, Body& body, std::ptrdiff_t j, std::ptrdiff_t lane, Vector G,
                         Vector soft2) {
   const Lanes d;
-  Vector dx[n], dy[n], dz[n], r2[n], u[n];
+  Vector dx[n], dy[n], dz[n], r2[n], cube[n];
   for (int k = 0; k < n; ++k) {
     const std::ptrdiff_t at = (j + k) * stages + lane;
     dx[k] = hn::Sub(hn::Load(d, b.x + at), body.x);
@@ -29,11 +29,10 @@ HWY_INLINE void attract(const BodiesInStages& b, Body& body, std::ptrdiff_t j, s
     dz[k] = hn::Sub(hn::Load(d, b.z + at), body.z);
     r2[k] = hn::MulAdd(dx[k], dx[k], hn::MulAdd(dy[k], dy[k], hn::MulAdd(dz[k], dz[k], soft2)));
   }
-  reciprocal_sqrt(d, r2, u);
+  reciprocal_cube(d, r2, cube);
   for (int k = 0; k < n; ++k) {
     const std::ptrdiff_t at = (j + k) * stages + lane;
-    const Vector cube = hn::Mul(u[k], hn::Mul(u[k], u[k]));
-    const Vector pull = hn::Mul(hn::Mul(G, hn::Load(d, b.m + at)), cube), back = hn::Mul(body.mu, cube);
+    const Vector pull = hn::Mul(hn::Mul(G, hn::Load(d, b.m + at)), cube[k]), back = hn::Mul(body.mu, cube[k]);
     body.ax = hn::MulAdd(pull, dx[k], body.ax);
     body.ay = hn::MulAdd(pull, dy[k], body.ay);
     body.az = hn::MulAdd(pull, dz[k], body.az);
