@@ -2,6 +2,8 @@
 
 #include "integrators/methods.hpp"
 
+#include <bit>
+#include <cstdint>
 #include <utility>
 
 namespace noether {
@@ -11,6 +13,17 @@ namespace {
 constexpr auto lanes = static_cast<Index>(lane_count);
 /// A step is made again if the one that meets the tolerance is shorter by more than this factor.
 constexpr double accepted = 0.6;
+
+/// x^(1/n) to a part in a thousand, which is all that the length of a step asks for, for normal x > 0: a straight line
+/// through the exponents, then a step of Halley's. It takes a third of the time of a power, and has the same bits
+/// whatever library that comes from.
+double near_root(double x, int n) {
+  const auto one = std::bit_cast<std::int64_t>(1.0);
+  const auto y = std::bit_cast<double>((std::bit_cast<std::int64_t>(x) - one) / n + one);
+  double power = 1;
+  for (int k = 0; k < n; ++k) power *= y;
+  return y * ((n - 1) * power + (n + 1) * x) / ((n + 1) * power + (n - 1) * x);
+}
 
 template <class Real> Real rounded(const Quad& x, Real& low) {
   const Real high = static_cast<Real>(x);
@@ -122,7 +135,8 @@ template <class Real> Stepped Collocation<Real>::step(VectorField<Real>& f, cons
     }
     // The last coefficient falls as h^(s-1): this factor brings it to its target.
     const double rough = converged ? roughness(y, made.h) : std::numeric_limits<double>::infinity();
-    const double factor = std::pow(target_ / std::max(rough, 1e-300), 1.0 / std::max(table_.stages - 1, 1));
+    const double room = std::clamp(target_ / rough, 1e-300, 1e300);
+    const double factor = near_root(room, std::max(table_.stages - 1, 1));
     next_ = made.h * (converged ? std::clamp(factor, 0.2, 3.0) : 0.5);
     if (converged && factor > accepted) break;
     ++made.rejected;
