@@ -49,7 +49,8 @@ void StageArithmetic<Real>::positions(const Real* rates, const StageMatrix<Real>
                                       double h, Real* out) const {
   if constexpr (std::is_same_v<Real, double>) {
     const DoubleDouble h2 = DoubleDouble::product(h, h);
-    collocation_kernels().positions({n, rates, y, low, h, h2.high, h2.low}, a[0].data(), c.data(), c_low.data(), v, out);
+    collocation_kernels().positions({n, rates, y, low, h, h2.high, h2.low}, a[0].data(), c.data(), c_low.data(), v,
+                                    out);
   } else {
     for (Index m = 0; m < n; ++m) {
       const StageLanes<Real> sum = product(a, rates + lane_count * m);
