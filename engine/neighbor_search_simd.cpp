@@ -2,6 +2,10 @@
 
 #include <hwy/highway.h>
 
+#include <array>
+#include <bit>
+#include <cstdint>
+
 namespace noether::NOETHER_SIMD_LEVEL {
 
 namespace {
@@ -12,6 +16,62 @@ using Floats = hn::ScalableTag<float>;
 using Numbers = hn::Rebind<std::int32_t, Floats>;
 constexpr std::ptrdiff_t lanes = hn::MaxLanes(Floats());
 constexpr float far_away = 3e18F;  // its square is a number
+
+#if HWY_TARGET == HWY_AVX2
+
+/// [mask]: the lanes in the mask, a byte each.
+constexpr std::array<std::uint64_t, 256> lanes_of_masks = [] {
+  std::array<std::uint64_t, 256> table{};
+  for (std::uint64_t mask = 0; mask < 256; ++mask) {
+    std::uint64_t found = 0;
+    for (std::uint64_t lane = 0; lane < 8; ++lane) {
+      if ((mask >> lane & 1U) != 0) table[mask] |= lane << (8 * found++);
+    }
+  }
+  return table;
+}();
+
+/// Moves lanes of a mask to the front. (What Highway 1.0 does here, g++ makes a copy of a table of 1 KiB each time.)
+class Front {
+ public:
+  explicit HWY_INLINE Front(hn::Mask<Numbers> wanted) {
+    const auto bits = static_cast<unsigned>(
+        _mm256_movemask_ps(_mm256_castsi256_ps(hn::VecFromMask(Numbers(), wanted).raw)));
+    count_ = std::popcount(bits);
+    lanes_ = {_mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<std::int64_t>(lanes_of_masks[bits])))};
+  }
+  std::ptrdiff_t count() const { return count_; }
+  HWY_INLINE hn::Vec<Numbers> operator()(hn::Vec<Numbers> v) const {
+    return hn::TableLookupLanes(v, hn::IndicesFromVec(Numbers(), lanes_));
+  }
+  HWY_INLINE hn::Vec<Floats> operator()(hn::Vec<Floats> v) const {
+    return hn::TableLookupLanes(v, hn::IndicesFromVec(Floats(), lanes_));
+  }
+
+ private:
+  std::ptrdiff_t count_;
+  hn::Vec<Numbers> lanes_;
+};
+
+#else
+
+/// Moves lanes of a mask to the front.
+class Front {
+ public:
+  explicit HWY_INLINE Front(hn::Mask<Numbers> wanted) : wanted_(wanted) {}
+  HWY_INLINE std::ptrdiff_t count() const {
+    return static_cast<std::ptrdiff_t>(hn::CountTrue(Numbers(), wanted_));
+  }
+  HWY_INLINE hn::Vec<Numbers> operator()(hn::Vec<Numbers> v) const { return hn::Compress(v, wanted_); }
+  HWY_INLINE hn::Vec<Floats> operator()(hn::Vec<Floats> v) const {
+    return hn::Compress(v, hn::RebindMask(Floats(), wanted_));
+  }
+
+ private:
+  hn::Mask<Numbers> wanted_;
+};
+
+#endif
 
 /// Coordinates relative to the middle; the squares of their distances from the box along one axis are added to `r2`.
 HWY_INLINE hn::Vec<Floats> relative(const float* x, float middle, float half, hn::Vec<Floats>& r2) {
@@ -39,13 +99,13 @@ void gather(const PointRun* runs, std::ptrdiff_t count, const SearchPoints& poin
       const auto py = relative(y + k, box.middle[1], box.half[1], r2);
       const auto pz = relative(z + k, box.middle[2], box.half[2], r2);
       const auto there = hn::Lt(first, hn::Set(i, run->count - k));
-      const auto wanted = hn::And(hn::RebindMask(i, hn::Le(r2, most)), there);
+      const Front front(hn::And(hn::RebindMask(i, hn::Le(r2, most)), there));
       const auto number = hn::Add(first, hn::Set(i, run->number + k));
-      hn::StoreU(hn::Compress(px, hn::RebindMask(d, wanted)), d, near_x + found);
-      hn::StoreU(hn::Compress(py, hn::RebindMask(d, wanted)), d, near_y + found);
-      hn::StoreU(hn::Compress(pz, hn::RebindMask(d, wanted)), d, near_z + found);
-      hn::StoreU(hn::Compress(number, wanted), i, near_number + found);
-      found += static_cast<std::ptrdiff_t>(hn::CountTrue(i, wanted));
+      hn::StoreU(front(px), d, near_x + found);
+      hn::StoreU(front(py), d, near_y + found);
+      hn::StoreU(front(pz), d, near_z + found);
+      hn::StoreU(front(number), i, near_number + found);
+      found += front.count();
     }
   }
   hn::StoreU(hn::Set(d, far_away), d, near_x + found);
@@ -63,10 +123,10 @@ std::ptrdiff_t select(const NearPoints& near, float x, float y, float z, float l
     const auto dy = hn::Sub(hn::LoadU(d, near.y + k), y0);
     const auto dz = hn::Sub(hn::LoadU(d, near.z + k), z0);
     const auto r2 = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
-    const auto wanted = hn::Le(r2, most);
-    hn::StoreU(hn::Compress(hn::LoadU(i, near.number + k), hn::RebindMask(i, wanted)), i, number + found);
-    hn::StoreU(hn::Compress(r2, wanted), d, distance + found);
-    found += static_cast<std::ptrdiff_t>(hn::CountTrue(d, wanted));
+    const Front front(hn::RebindMask(i, hn::Le(r2, most)));
+    hn::StoreU(front(hn::LoadU(i, near.number + k)), i, number + found);
+    hn::StoreU(front(r2), d, distance + found);
+    found += front.count();
   }
   return found;
 }
@@ -86,9 +146,9 @@ void sort(const std::int32_t* number, const float* r2, std::ptrdiff_t count, std
       const auto others =
           hn::And(hn::Ne(numbers, own), hn::Lt(first, hn::Set(i, static_cast<std::int32_t>(count - k))));
       const auto in_shell = hn::And(hn::Gt(distance, inner), hn::Le(distance, outer));
-      const auto wanted = hn::And(others, hn::RebindMask(i, in_shell));
-      hn::StoreU(hn::Compress(numbers, wanted), i, to);
-      to += hn::CountTrue(i, wanted);
+      const Front front(hn::And(others, hn::RebindMask(i, in_shell)));
+      hn::StoreU(front(numbers), i, to);
+      to += front.count();
     }
     within[shell] = to - out;
     inner = outer;
