@@ -257,24 +257,27 @@ void NeighborList::lay_out(const ParticleSystem<double>& s) {
   ghosts_.clear();
   for (auto& column : sorted_) column.resize(at(count));
   for (auto& column : single_) column.resize(at(count + 16));
+  for_blocks(count, [&](Index begin, Index end) {
+    for (Index r = begin; r < end; ++r) {
+      const std::int32_t point = order[at(r)], owner = owner_[at(point)];
+      for (int k = 0; k < 3; ++k) {
+        const double x = points_[at(k)][at(point)];
+        sorted_[at(k)][at(r)] = x;
+        single_[at(k)][at(r)] = static_cast<float>(x);
+        records_[at(4 * r + k)] = x;
+      }
+      set_type(r, topology != nullptr ? topology->type(owner) : 0);
+      source_[at(r)] = owner;
+      if (point < n) record_of_[at(owner)] = static_cast<std::int32_t>(r);
+    }
+  });
   for (Index r = 0; r < count; ++r) {
-    const std::int32_t point = order[at(r)], owner = owner_[at(point)];
-    for (int k = 0; k < 3; ++k) {
-      const double x = points_[at(k)][at(point)];
-      sorted_[at(k)][at(r)] = x;
-      single_[at(k)][at(r)] = static_cast<float>(x);
-      records_[at(4 * r + k)] = x;
-    }
-    set_type(r, topology != nullptr ? topology->type(owner) : 0);
-    source_[at(r)] = owner;
-    if (point < n) {
-      record_of_[at(owner)] = static_cast<std::int32_t>(r);
-    } else {
-      ghosts_.push_back({static_cast<std::int32_t>(r), -1, shift_[at(point)]});
-      if (!excluded_.empty()) has_images_[at(owner)] = 1;
-    }
+    const std::int32_t point = order[at(r)];
+    if (point < n) continue;
+    const std::int32_t owner = source_[at(r)];
+    ghosts_.push_back({static_cast<std::int32_t>(r), record_of_[at(owner)], shift_[at(point)]});
+    if (!excluded_.empty()) has_images_[at(owner)] = 1;
   }
-  for (Ghost& ghost : ghosts_) ghost.of = record_of_[at(source_[at(ghost.record)])];
   for (int k = 0; k < 3; ++k) records_[at(4 * count + k)] = nowhere;
   set_type(count, 0);
 }

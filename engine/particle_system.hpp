@@ -204,7 +204,7 @@ template <class Real = double> class ParticleSystem {
     } else if (low_) {
       compensated_add(x_, low_->x, h, v_);
     } else {
-      x_.add_scaled(h, v_);
+      add_scaled(x_, h, v_);
     }
   }
   /// v += h a for every particle [length/time].
@@ -212,7 +212,7 @@ template <class Real = double> class ParticleSystem {
     if (low_) {
       compensated_add(v_, low_->v, h, a);
     } else {
-      v_.add_scaled(h, a);
+      add_scaled(v_, h, a);
     }
   }
   /// x_i += dx, v_i += dv.
@@ -359,16 +359,27 @@ template <class Real = double> class ParticleSystem {
   }
   void advance_in_box(const Real& h) {
     if constexpr (std::is_same_v<Real, double>) {
-      for (int k = 0; k < 3; ++k) {
-        for_blocks(size(), [&](Index begin, Index end) {
+      for_blocks(size(), [&](Index begin, Index end) {
+        for (int k = 0; k < 3; ++k) {
           box_.advance(k, h, v_.component(k) + begin, x_.component(k) + begin, images_.component(k) + begin,
                        end - begin);
-        });
-      }
+        }
+      });
     } else {
       x_.add_scaled(h, v_);
       wrap();
     }
+  }
+  /// value += h rate, block by block where there are many.
+  static void add_scaled(VectorColumn<Real>& value, const Real& h, const VectorColumn<Real>& rate) {
+    if (value.size() < parallel_threshold) return value.add_scaled(h, rate);
+    for_blocks(value.size(), [&](Index begin, Index end) {
+      for (int k = 0; k < 3; ++k) {
+        Real* mine = value.component(k);
+        const Real* theirs = rate.component(k);
+        for (Index i = begin; i < end; ++i) mine[i] += h * theirs[i];
+      }
+    });
   }
   static void add_with_error(Real& value, Real& low, const Real& increment) {
     const Real d = increment + low;
