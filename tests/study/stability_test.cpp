@@ -63,7 +63,7 @@ k = 1
                     "ball.toml");
 }
 
-StabilityRow row_of(const Scene& scene, const std::string& method, double budget = 20) {
+StabilityRow row_of(const Scene& scene, const std::string& method, double budget = 300) {
   StabilityOptions options;
   options.methods = {method};
   options.row_budget = budget;
