@@ -347,7 +347,7 @@ bool NeighborList::find_all() {
   const std::size_t needed = at(used_->load());
   if (needed <= entries_.size()) return true;
   entries_ = {};
-  entries_.resize(needed + needed / 16 + 64);
+  entries_.resize(needed + needed / 32 + 64);
   return false;
 }
 
