@@ -2,8 +2,6 @@
 
 #include <hwy/highway.h>
 
-#include <array>
-#include <bit>
 #include <cstdint>
 
 namespace noether::NOETHER_SIMD_LEVEL {
@@ -20,16 +18,18 @@ constexpr float far_away = 3e18F;  // its square is a number
 #if HWY_TARGET == HWY_AVX2
 
 /// [mask]: the lanes in the mask, a byte each.
-constexpr std::array<std::uint64_t, 256> lanes_of_masks = [] {
-  std::array<std::uint64_t, 256> table{};
-  for (std::uint64_t mask = 0; mask < 256; ++mask) {
-    std::uint64_t found = 0;
-    for (std::uint64_t lane = 0; lane < 8; ++lane) {
-      if ((mask >> lane & 1U) != 0) table[mask] |= lane << (8 * found++);
+struct LanesOfMasks {
+  std::uint64_t of[256] = {};
+  constexpr LanesOfMasks() {
+    for (std::uint64_t mask = 0; mask < 256; ++mask) {
+      std::uint64_t found = 0;
+      for (std::uint64_t lane = 0; lane < 8; ++lane) {
+        if ((mask >> lane & 1U) != 0) of[mask] |= lane << (8 * found++);
+      }
     }
   }
-  return table;
-}();
+};
+constexpr LanesOfMasks lanes_of_masks;
 
 /// Moves lanes of a mask to the front. (What Highway 1.0 does here, g++ makes a copy of a table of 1 KiB each time.)
 class Front {
@@ -37,8 +37,8 @@ class Front {
   explicit HWY_INLINE Front(hn::Mask<Numbers> wanted) {
     const auto bits = static_cast<unsigned>(
         _mm256_movemask_ps(_mm256_castsi256_ps(hn::VecFromMask(Numbers(), wanted).raw)));
-    count_ = std::popcount(bits);
-    lanes_ = {_mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<std::int64_t>(lanes_of_masks[bits])))};
+    count_ = __builtin_popcount(bits);
+    lanes_ = {_mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<std::int64_t>(lanes_of_masks.of[bits])))};
   }
   std::ptrdiff_t count() const { return count_; }
   HWY_INLINE hn::Vec<Numbers> operator()(hn::Vec<Numbers> v) const {
