@@ -29,6 +29,19 @@ template <class T> using AlignedVector = std::vector<T, AlignedAllocator<T>>;
 /// Sets numbers to 0; a number type may bring a quicker way of its own.
 template <class T> void set_to_zero(T* numbers, std::size_t count) { std::fill_n(numbers, count, T(0)); }
 
+/// Makes numbers a copy of others; in place where there are as many.
+template <class T> void copy_numbers(const AlignedVector<T>& from, AlignedVector<T>& to) {
+  if (to.size() != from.size()) {
+    to = from;
+    return;
+  }
+  // Not by memmove, which for a few bodies reads wider words than those just written, and waits for them.
+  using Numbers = Eigen::Array<T, Eigen::Dynamic, 1>;
+  const auto count = static_cast<Index>(from.size());
+  Eigen::Map<Numbers, Eigen::Aligned64>(to.data(), count) =
+      Eigen::Map<const Numbers, Eigen::Aligned64>(from.data(), count);
+}
+
 /// One number per particle, shape (n).
 template <class T> class ScalarColumn {
  public:
@@ -46,6 +59,8 @@ template <class T> class ScalarColumn {
   auto all() const { return Eigen::Map<const Eigen::Matrix<T, Eigen::Dynamic, 1>>(values_.data(), size()); }
   auto all() { return Eigen::Map<Eigen::Matrix<T, Eigen::Dynamic, 1>>(values_.data(), size()); }
 
+  /// Becomes a copy of another. @cost no allocation where sizes agree
+  void assign(const ScalarColumn& other) { copy_numbers(other.values_, values_); }
   void append(const T& value) { values_.push_back(value); }
   void erase(Index i) { values_.erase(values_.begin() + i); }
 
@@ -101,23 +116,29 @@ template <class Real> class VectorColumn {
   /// Adds `h` times another column of the same size; with the same stride in one loop, padding, which stays 0,
   /// included.
   void add_scaled(const Real& h, const VectorColumn& other) {
-    const bool alike = stride_ == other.stride_;
-    const Index length = alike ? 3 * stride_ : size_;
-    for (int k = 0; k < (alike ? 1 : 3); ++k) {
+    if (stride_ != other.stride_) return add_scaled(h, other, 0, size_);
+    for (Index i = 0; i < 3 * stride_; ++i)
+      values_[static_cast<std::size_t>(i)] += h * other.values_[static_cast<std::size_t>(i)];
+  }
+  /// The same for the particles of [begin, end).
+  void add_scaled(const Real& h, const VectorColumn& other, Index begin, Index end) {
+    for (int k = 0; k < 3; ++k) {
       Real* mine = component(k);
       const Real* theirs = other.component(k);
-      for (Index i = 0; i < length; ++i) mine[i] += h * theirs[i];
+      for (Index i = begin; i < end; ++i) mine[i] += h * theirs[i];
     }
   }
 
   /// Whether every number is finite: 0 times another is not 0.
   bool is_finite() const {
-    Real sums[8] = {Real(0), Real(0), Real(0), Real(0), Real(0), Real(0), Real(0), Real(0)};
-    for (std::size_t k = 0; k < values_.size(); k += padding) {
-      for (std::size_t lane = 0; lane < padding; ++lane) sums[lane] += values_[k + lane] * Real(0);
-    }
-    const Real low = (sums[0] + sums[1]) + (sums[2] + sums[3]), high = (sums[4] + sums[5]) + (sums[6] + sums[7]);
-    return low + high == Real(0);
+    return (Eigen::Map<const Numbers, Eigen::Aligned64>(values_.data(), 3 * stride_) * Real(0)).sum() == Real(0);
+  }
+
+  /// Becomes a copy of another. @cost no allocation where sizes agree
+  void assign(const VectorColumn& other) {
+    copy_numbers(other.values_, values_);
+    size_ = other.size_;
+    stride_ = other.stride_;
   }
 
   void set_zero() { set_to_zero(values_.data(), values_.size()); }
@@ -137,6 +158,7 @@ template <class Real> class VectorColumn {
   }
 
  private:
+  using Numbers = Eigen::Array<Real, Eigen::Dynamic, 1>;
   static constexpr Index padding = sizeof(Real) < 64 ? 8 : 1;
   static Index padded(Index n) { return (n + padding - 1) / padding * padding; }
 

@@ -74,7 +74,7 @@ void NeighborList::update(const ParticleSystem<double>& s) {
 }
 
 bool NeighborList::is_fresh(const ParticleSystem<double>& s) const {
-  return statistics_.searches > 0 && box_ == s.box() && topology_ == s.shared_topology() && ids_ == s.ids();
+  return statistics_.searches > 0 && box_ == s.box() && topology_ == s.shared_topology() && members_ == s.members();
 }
 
 /// Moves all records, and returns the square of the longest way that a particle has gone since the search.
@@ -146,7 +146,7 @@ void NeighborList::search(const ParticleSystem<double>& s) {
   choose_skin();
   const double reach = range_ + skin_;
   box_ = s.box();
-  if (ids_ != s.ids()) ids_ = s.ids();
+  members_ = s.members();
   if (topology_ != s.shared_topology() || statistics_.searches == 0) {
     topology_ = s.shared_topology();
     take_exclusions(s);
@@ -169,8 +169,8 @@ std::size_t NeighborList::bytes() const {
   const auto of = [](const auto&... vectors) {
     return (std::size_t{0} + ... + (vectors.capacity() * sizeof(*vectors.data())));
   };
-  std::size_t sum = grid_.bytes() + of(ids_, records_, record_of_, ghosts_, shifts_, particles_, lanes_, row_begin_,
-                                       entries_, owner_, shift_, source_, excluded_begin_, excluded_, has_images_);
+  std::size_t sum = grid_.bytes() + of(records_, record_of_, ghosts_, shifts_, particles_, lanes_, row_begin_, entries_,
+                                       owner_, shift_, source_, excluded_begin_, excluded_, has_images_);
   for (std::size_t k = 0; k < 3; ++k) sum += of(start_[k], points_[k], sorted_[k], single_[k]);
   return sum;
 }

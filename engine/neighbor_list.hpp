@@ -112,7 +112,7 @@ class NeighborList {
   // What the last search was made for.
   Box box_;
   Vec3<double> middle_ = Vec3<double>::Zero();  ///< of the box, on its grid
-  std::vector<std::int64_t> ids_;
+  std::uint64_t members_ = 0;
   std::shared_ptr<const Topology> topology_;
   std::array<AlignedVector<double>, 3> start_;  ///< positions then, relative to the middle, by particle
 

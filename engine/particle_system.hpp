@@ -80,6 +80,7 @@ template <class Real = double> class ParticleSystem {
     m_.append(mass);
     x_.append(x);
     v_.append(v);
+    members_ = detail::fresh_version();
     if (box_.is_periodic()) {
       images_.append(Vec3<std::int32_t>::Zero());
       wrap(size() - 1);
@@ -98,7 +99,7 @@ template <class Real = double> class ParticleSystem {
     x_.erase(i);
     v_.erase(i);
     if (box_.is_periodic()) images_.erase(i);
-    version_ = detail::fresh_version();
+    members_ = version_ = detail::fresh_version();
   }
 
   /// Gives back memory that `add` has taken ahead. @cost O(n)
@@ -194,6 +195,8 @@ template <class Real = double> class ParticleSystem {
 
   /// Names the present positions and masses: equal versions of copies mean equal values.
   std::uint64_t version() const { return version_; }
+  /// Names who the particles are: equal numbers of copies mean equal ids, in the same order.
+  std::uint64_t members() const { return members_; }
 
   /// x += h v for every particle [length].
   /// @cost O(n), no allocation
@@ -303,17 +306,19 @@ template <class Real = double> class ParticleSystem {
   /// Becomes a copy of `other`; where the particles are the same ones, only their state is copied.
   /// @cost O(n); no allocation when sizes agree
   void assign_state(const ParticleSystem& other) {
-    if (ids_ != other.ids_ || variables_.size() != other.variables_.size()) {
+    if (members_ != other.members_ || variables_.size() != other.variables_.size()) {
       *this = other;
       return;
     }
-    x_ = other.x_;
-    v_ = other.v_;
-    m_ = other.m_;
-    box_ = other.box_;
-    if (box_.is_periodic()) images_ = other.images_;
-    variables_ = other.variables_;
-    low_ = other.low_;
+    x_.assign(other.x_);
+    v_.assign(other.v_);
+    m_.assign(other.m_);
+    if (box_.is_periodic() || other.box_.is_periodic()) {
+      box_ = other.box_;
+      images_ = other.images_;
+    }
+    if (!variables_.empty()) variables_ = other.variables_;
+    if (low_ || other.low_) low_ = other.low_;
     clock_ = other.clock_;
     phase_ = other.phase_;
     version_ = other.version_;
@@ -331,6 +336,7 @@ template <class Real = double> class ParticleSystem {
       throw Error("the id " + std::to_string(id) + " cannot be kept; 0 to " + std::to_string(largest_id) +
                   " (2^53) is expected");
     }
+    if (ids_ != ids) members_ = detail::fresh_version();
     ids_ = ids;
     for (const std::int64_t id : ids_) next_id_ = std::max(next_id_, id + 1);
   }
@@ -373,13 +379,7 @@ template <class Real = double> class ParticleSystem {
   /// value += h rate, block by block where there are many.
   static void add_scaled(VectorColumn<Real>& value, const Real& h, const VectorColumn<Real>& rate) {
     if (value.size() < parallel_threshold) return value.add_scaled(h, rate);
-    for_blocks(value.size(), [&](Index begin, Index end) {
-      for (int k = 0; k < 3; ++k) {
-        Real* mine = value.component(k);
-        const Real* theirs = rate.component(k);
-        for (Index i = begin; i < end; ++i) mine[i] += h * theirs[i];
-      }
-    });
+    for_blocks(value.size(), [&](Index begin, Index end) { value.add_scaled(h, rate, begin, end); });
   }
   static void add_with_error(Real& value, Real& low, const Real& increment) {
     const Real d = increment + low;
@@ -415,7 +415,7 @@ template <class Real = double> class ParticleSystem {
   std::optional<LowWords> low_;
   std::map<std::string, ExtraColumn> extra_;
   std::int64_t next_id_ = 0;
-  std::uint64_t version_ = detail::fresh_version();
+  std::uint64_t version_ = detail::fresh_version(), members_ = version_;
 };
 
 /// Shifts positions and velocities so that the centre of mass rests in the origin.
