@@ -129,9 +129,17 @@ template <class Real> class VectorColumn {
     }
   }
 
-  /// Whether every number is finite: 0 times another is not 0.
-  bool is_finite() const {
-    return (Eigen::Map<const Numbers, Eigen::Aligned64>(values_.data(), 3 * stride_) * Real(0)).sum() == Real(0);
+  /// Whether every number of both columns, alike in size, is finite: 0 times another is not 0.
+  static bool are_finite(const VectorColumn& a, const VectorColumn& b) {
+    constexpr std::size_t lanes = std::min(Index(4), padding);
+    Real sums[4] = {Real(0), Real(0), Real(0), Real(0)};
+    for (const VectorColumn* column : {&a, &b}) {
+      const Real* values = column->values_.data();
+      for (std::size_t k = 0; k < column->values_.size(); k += lanes) {
+        for (std::size_t lane = 0; lane < lanes; ++lane) sums[lane] += values[k + lane] * Real(0);
+      }
+    }
+    return (sums[0] + sums[1]) + (sums[2] + sums[3]) == Real(0);
   }
 
   /// Becomes a copy of another. @cost no allocation where sizes agree
@@ -158,7 +166,6 @@ template <class Real> class VectorColumn {
   }
 
  private:
-  using Numbers = Eigen::Array<Real, Eigen::Dynamic, 1>;
   static constexpr Index padding = sizeof(Real) < 64 ? 8 : 1;
   static Index padded(Index n) { return (n + padding - 1) / padding * padding; }
 

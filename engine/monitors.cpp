@@ -1,5 +1,7 @@
 #include "engine/monitors.hpp"
 
+#include "engine/moments_simd.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,35 +20,46 @@ template <class Real> Vec3<Quad> wide(const Vec3<Real>& v) { return Vec3<Quad>(w
 
 /// What sums over particles are computed in, so that a monitor adds no rounding of its own.
 template <class Real> using Wide = std::conditional_t<std::is_same_v<Real, double>, DoubleDouble, Quad>;
-
-DoubleDouble wide_product(double a, double b) { return DoubleDouble::product(a, b); }
-Quad wide_product(const Quad& a, const Quad& b) { return a * b; }
+template <class Real> using WideVector = std::array<Wide<Real>, 3>;
 
 template <class T> Vec3<Quad> quad(const std::array<T, 3>& v) { return {Quad(v[0]), Quad(v[1]), Quad(v[2])}; }
 
-/// Sum of m_i times the columns of a vector.
-template <class Real>
-std::array<Wide<Real>, 3> weighted_sum(const ParticleSystem<Real>& s, const VectorColumn<Real>& of) {
-  std::array<Wide<Real>, 3> sum{};
-  for (int k = 0; k < 3; ++k) {
-    const Real* column = of.component(k);
-    for (Index i = 0; i < s.size(); ++i) sum[static_cast<std::size_t>(k)] += wide_product(s.masses()[i], column[i]);
+WideVector<double> rounded(const WideSums& sums) {
+  const auto axis = [&](int k) { return DoubleDouble::sum(sums.high[k], sums.low[k]); };
+  return {axis(0), axis(1), axis(2)};
+}
+
+WeightedVectors weighted_vectors(const ParticleSystem<double>& s, const VectorColumn<double>& of) {
+  return {s.size(), s.masses().data(), {of.component(0), of.component(1), of.component(2)}};
+}
+
+/// Sum of m_i times the rows of a column.
+WideVector<double> weighted_sum(const ParticleSystem<double>& s, const VectorColumn<double>& of) {
+  WideSums sums{};
+  moment_kernels().weighted(weighted_vectors(s, of), sums);
+  return rounded(sums);
+}
+WideVector<Quad> weighted_sum(const ParticleSystem<Quad>& s, const VectorColumn<Quad>& of) {
+  WideVector<Quad> sum{};
+  for (Index i = 0; i < s.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) sum[k] += s.masses()[i] * of[i][static_cast<Index>(k)];
   }
   return sum;
 }
 
-template <class Real> std::array<Wide<Real>, 3> angular_momentum(const ParticleSystem<Real>& s) {
-  std::array<Wide<Real>, 3> sum{};
+/// Sum of x_i cross m_i v_i.
+WideVector<double> angular_momentum(const ParticleSystem<double>& s) {
+  const VectorColumn<double>& x = s.positions();
+  WideSums sums{};
+  moment_kernels().crossed(weighted_vectors(s, s.velocities()), {x.component(0), x.component(1), x.component(2)}, sums);
+  return rounded(sums);
+}
+WideVector<Quad> angular_momentum(const ParticleSystem<Quad>& s) {
+  Vec3<Quad> sum = Vec3<Quad>::Zero();
   for (Index i = 0; i < s.size(); ++i) {
-    const Vec3<Real> x = s.positions()[i], v = s.velocities()[i];
-    const auto add = [&](int k, int a, int b) {
-      sum[static_cast<std::size_t>(k)] += s.masses()[i] * (wide_product(x[a], v[b]) - wide_product(x[b], v[a]));
-    };
-    add(0, 1, 2);
-    add(1, 2, 0);
-    add(2, 0, 1);
+    sum += s.masses()[i] * cross(Vec3<Quad>(s.positions()[i]), Vec3<Quad>(s.velocities()[i]));
   }
-  return sum;
+  return {sum[0], sum[1], sum[2]};
 }
 
 Vec3<double> narrow(const Vec3<Quad>& v) {
@@ -167,8 +180,9 @@ void VectorInvariant::begin(const Vec3<Quad>& value, const Quad& scale, bool kep
 void VectorInvariant::refer_to(const Vec3<Quad>& reference) {
   reference_ = reference;
   for (int k = 0; k < 3; ++k) near_reference_[static_cast<std::size_t>(k)] = DoubleDouble(reference[k]);
-  const Vec3<double> rounded = narrow(reference);
-  length_ = std::hypot(rounded[0], rounded[1], rounded[2]);
+  const Vec3<double> near = narrow(reference);
+  length_ = std::hypot(near[0], near[1], near[2]);
+  unit_ = near / length_;
 }
 
 /// What has changed is small and exact: from here on doubles will do.
@@ -184,19 +198,28 @@ template <class Wide> void VectorInvariant::add(double time, const std::array<Wi
     }
   }
   error_ = Vec3<double>(change / scale_).norm();
-  direction_error_ = 0;
+  sine2_ = 0;
+  cosine_ = 1;
   if (has_direction()) {
-    const Vec3<double> unit = narrow(reference_) / length_, turn = change / length_, across = cross(unit, turn);
-    direction_error_ = std::atan2(across.norm(), 1 + dot(unit, turn));
+    const Vec3<double> turn = change / length_;
+    sine2_ = norm2(cross(unit_, turn));
+    cosine_ = 1 + dot(unit_, turn);
+    // Angles below a right one compare as their tangents; few looks see a new worst one.
+    if (!(cosine_ > 0 && sine2_ <= worst_tangent2_ * (cosine_ * cosine_))) {
+      worst_direction_ = std::max(worst_direction_, direction_error());
+      worst_tangent2_ = cosine_ > 0 ? sine2_ / (cosine_ * cosine_) : std::numeric_limits<double>::infinity();
+    }
   }
-  worst_direction_ = std::max(worst_direction_, direction_error_);
-  if (with_direction_ && !has_direction()) direction_error_ = std::numeric_limits<double>::quiet_NaN();
   errors_.add(time, error_);
+}
+
+double VectorInvariant::direction_error() const {
+  return has_direction() ? std::atan2(std::sqrt(sine2_), cosine_) : std::numeric_limits<double>::quiet_NaN();
 }
 
 std::vector<Series> VectorInvariant::series() const {
   std::vector<Series> all = {{"value", dimension_, {3}, list(value_)}, {"relative_error", "1", {}, {error_}}};
-  if (with_direction_) all.push_back({"direction_error", "1", {}, {direction_error_}});
+  if (with_direction_) all.push_back({"direction_error", "1", {}, {direction_error()}});
   return all;
 }
 
@@ -219,14 +242,15 @@ void VectorInvariant::save_series(SavedState& saved, const std::string& prefix) 
   save_value(saved, prefix + "/begun", begun_);
   save_value(saved, prefix + "/kept", kept_);
   save_value(saved, prefix + "/reference", reference_);
-  save_value(saved, prefix + "/numbers",
-             std::array{scale_, error_, direction_error_, worst_direction_, value_[0], value_[1], value_[2]});
+  save_value(
+      saved, prefix + "/numbers",
+      std::array{scale_, error_, sine2_, cosine_, worst_tangent2_, worst_direction_, value_[0], value_[1], value_[2]});
   save_value(saved, prefix + "/errors", errors_);
   save_value(saved, prefix + "/time_unit", time_unit_);
 }
 
 void VectorInvariant::load_series(const SavedState& saved, const std::string& prefix) {
-  std::array<double, 7> n{};
+  std::array<double, 9> n{};
   load_value(saved, prefix + "/begun", begun_);
   load_value(saved, prefix + "/kept", kept_);
   Vec3<Quad> reference;
@@ -236,9 +260,11 @@ void VectorInvariant::load_series(const SavedState& saved, const std::string& pr
   load_value(saved, prefix + "/time_unit", time_unit_);
   scale_ = n[0];
   error_ = n[1];
-  direction_error_ = n[2];
-  worst_direction_ = n[3];
-  value_ = {n[4], n[5], n[6]};
+  sine2_ = n[2];
+  cosine_ = n[3];
+  worst_tangent2_ = n[4];
+  worst_direction_ = n[5];
+  value_ = {n[6], n[7], n[8]};
   refer_to(reference);
 }
 
@@ -270,31 +296,61 @@ template <class Real> void AngularMomentum::observe(const Snapshot<Real>& now) {
 
 template <class Real> void CenterOfMass::observe(const Snapshot<Real>& now) {
   const ParticleSystem<Real>& s = now.state();
-  Wide<Real> mass{};
-  for (Index i = 0; i < s.size(); ++i) mass += Wide<Real>(s.masses()[i]);
   const auto moments = [&] {
     if (!s.box().is_periodic()) return weighted_sum(s, s.positions());
     VectorColumn<Real> unwrapped(s.size());
     for (Index i = 0; i < s.size(); ++i) unwrapped.set(i, s.unwrapped(i));
     return weighted_sum(s, unwrapped);
   };
-  const Quad total(mass);  // tracers alone have no center: 0/0, which the report explains
-  const Vec3<Quad> x = quad(moments()) / total, v = quad(weighted_sum(s, s.velocities())) / total;
+  const WideVector<Real> x = moments(), v = weighted_sum(s, s.velocities());
+  double mass = 0;  // 0 with tracers alone, who have no center: 0/0, which the report explains
+  for (Index i = 0; i < s.size(); ++i) mass += static_cast<double>(s.masses()[i]);
   if (!begun_) {
     begun_ = true;
-    start_ = {x[0], x[1], x[2], v[0], v[1], v[2]};
+    for (std::size_t k = 0; k < 3; ++k) start_[k] = Quad(x[k]), start_[k + 3] = Quad(v[k]);
     start_time_ = now.time();
+    refer_to_start();
+    slope_unit_ = per_time(now.units().length, std::string(now.units().time));
   }
-  const Quad t = Quad(now.time()) - Quad(start_time_);
-  Vec3<Quad> departure = x;
+  std::array<double, 3> away{};
   for (std::size_t k = 0; k < 3; ++k) {
-    position_[k] = static_cast<double>(x[static_cast<Index>(k)]);
-    velocity_[k] = static_cast<double>(v[static_cast<Index>(k)]);
-    departure[static_cast<Index>(k)] -= start_[k] + t * start_[k + 3];
+    position_[k] = static_cast<double>(x[k]) / mass;
+    velocity_[k] = static_cast<double>(v[k]) / mass;
+    if constexpr (std::is_same_v<Real, double>) {
+      const DoubleDouble t = DoubleDouble::sum(now.time(), -start_time_);
+      const DoubleDouble way = t.high * near_start_[k + 3] + DoubleDouble(t.low * near_start_[k + 3].high);
+      away[k] = static_cast<double>(x[k] - near_start_[k] - way) / mass;
+    } else {
+      const Quad t = Quad(now.time()) - Quad(start_time_);
+      away[k] = static_cast<double>(x[k] - start_[k] - t * start_[k + 3]) / mass;
+    }
   }
-  slope_unit_ = per_time(now.units().length, std::string(now.units().time));
-  const Vec3<double> away = narrow(departure);
   departures_.add(now.time(), std::hypot(away[0], away[1], away[2]));
+}
+
+void CenterOfMass::refer_to_start() {
+  std::transform(start_.begin(), start_.end(), near_start_.begin(), [](const Quad& x) { return DoubleDouble(x); });
+}
+
+void CenterOfMass::save(SavedState& saved, const std::string& prefix) const {
+  save_value(saved, prefix + "/begun", begun_);
+  save_value(saved, prefix + "/start_moments", start_);
+  save_value(saved, prefix + "/start_time", start_time_);
+  save_value(saved, prefix + "/position", position_);
+  save_value(saved, prefix + "/velocity", velocity_);
+  save_value(saved, prefix + "/departures", departures_);
+  save_value(saved, prefix + "/slope_unit", slope_unit_);
+}
+
+void CenterOfMass::load(const SavedState& saved, const std::string& prefix) {
+  load_value(saved, prefix + "/begun", begun_);
+  load_value(saved, prefix + "/start_moments", start_);
+  load_value(saved, prefix + "/start_time", start_time_);
+  load_value(saved, prefix + "/position", position_);
+  load_value(saved, prefix + "/velocity", velocity_);
+  load_value(saved, prefix + "/departures", departures_);
+  load_value(saved, prefix + "/slope_unit", slope_unit_);
+  refer_to_start();
 }
 
 std::vector<Series> CenterOfMass::series() const {

@@ -86,6 +86,8 @@ class VectorInvariant {
 
  private:
   void refer_to(const Vec3<Quad>& reference);
+  /// Angle between value and value0 [rad]; NaN where there is none.
+  double direction_error() const;
   /// Whether the vector is long enough, beside its scale, to have a direction.
   bool has_direction() const { return with_direction_ && length_ > 1e-6 * scale_; }
 
@@ -95,7 +97,10 @@ class VectorInvariant {
   Vec3<Quad> reference_ = Vec3<Quad>::Zero();
   std::array<DoubleDouble, 3> near_reference_{};  ///< the same, for runs in doubles
   double length_ = 0;                             ///< of the reference
-  double scale_ = 0, error_ = 0, direction_error_ = 0, worst_direction_ = 0;
+  Vec3<double> unit_ = Vec3<double>::Zero();      ///< its direction
+  double scale_ = 0, error_ = 0;
+  double sine2_ = 0, cosine_ = 1;  ///< of the angle between value and value0: the sine squared, and the cosine
+  double worst_tangent2_ = 0, worst_direction_ = 0;
   std::array<double, 3> value_{};
   SeriesStatistics errors_;
 };
@@ -143,20 +148,21 @@ class CenterOfMass {
     return part<CenterOfMass>("center_of_mass", "position and velocity of the centre of mass",
                               formula("X = sum m_i x_i / sum m_i;  worst: largest |X(t) - X(0) - t V(0)|"),
                               quantities("position[3] [length], velocity[3] [length/time]"),
-                              source("HairerLubichWanner2006"), state<&CenterOfMass::begun_>("begun"),
-                              state<&CenterOfMass::start_>("start"), state<&CenterOfMass::start_time_>("start_time"),
-                              state<&CenterOfMass::position_>("position"), state<&CenterOfMass::velocity_>("velocity"),
-                              state<&CenterOfMass::departures_>("departures"),
-                              state<&CenterOfMass::slope_unit_>("slope_unit"));
+                              source("HairerLubichWanner2006"));
   }
   template <class Real> void observe(const Snapshot<Real>& now);
   std::vector<Series> series() const;
   MonitorReport report() const;
   double worst() const { return departures_.worst(); }
+  void save(SavedState& saved, const std::string& prefix) const;
+  void load(const SavedState& saved, const std::string& prefix);
 
  private:
+  void refer_to_start();
+
   bool begun_ = false;
-  std::array<Quad, 6> start_{};
+  std::array<Quad, 6> start_{};               ///< sum m x, sum m v at the start [mass length, mass length/time]
+  std::array<DoubleDouble, 6> near_start_{};  ///< the same, for runs in doubles
   double start_time_ = 0;
   std::array<double, 3> position_{}, velocity_{};
   SeriesStatistics departures_;

@@ -123,7 +123,7 @@ template <class Real = double> class ParticleSystem {
   /// Masses, shape (n) [mass]; 0 marks a tracer.
   const ScalarColumn<Real>& masses() const { return m_; }
   ScalarColumn<Real>& masses() {
-    version_ = detail::fresh_version();
+    version_ = mass_version_ = detail::fresh_version();
     return m_;
   }
 
@@ -290,6 +290,7 @@ template <class Real = double> class ParticleSystem {
                 Vec3<Other>(static_cast<Other>(v[0]), static_cast<Other>(v[1]), static_cast<Other>(v[2])));
     }
     other.restore_ids(ids_);
+    other.members_ = members_;
     other.set_box(box_);
     other.set_topology(topology_);
     other.restore_images(images_);
@@ -312,7 +313,8 @@ template <class Real = double> class ParticleSystem {
     }
     x_.assign(other.x_);
     v_.assign(other.v_);
-    m_.assign(other.m_);
+    if (mass_version_ != other.mass_version_) m_.assign(other.m_);
+    mass_version_ = other.mass_version_;
     if (box_.is_periodic() || other.box_.is_periodic()) {
       box_ = other.box_;
       images_ = other.images_;
@@ -344,6 +346,8 @@ template <class Real = double> class ParticleSystem {
   void restore_next_id(std::int64_t id) { next_id_ = id; }
 
  private:
+  template <class Other> friend class ParticleSystem;
+
   void wrap(Index i) {
     for (int k = 0; k < 3; ++k) {
       Real& x = x_.component(k)[i];
@@ -415,7 +419,7 @@ template <class Real = double> class ParticleSystem {
   std::optional<LowWords> low_;
   std::map<std::string, ExtraColumn> extra_;
   std::int64_t next_id_ = 0;
-  std::uint64_t version_ = detail::fresh_version(), members_ = version_;
+  std::uint64_t version_ = detail::fresh_version(), members_ = version_, mass_version_ = version_;
 };
 
 /// Shifts positions and velocities so that the centre of mass rests in the origin.

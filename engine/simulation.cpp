@@ -410,7 +410,7 @@ template <class Real> std::optional<Outcome> Simulation<Real>::fault(const Parti
   for (std::size_t i = 0; i < s.variables().size(); ++i) {
     if (!isfinite(s.variables()[i])) return variable_fault(s, static_cast<Index>(i));
   }
-  if (s.positions().is_finite() && s.velocities().is_finite()) return std::nullopt;
+  if (VectorColumn<Real>::are_finite(s.positions(), s.velocities())) return std::nullopt;
   for (Index i = 0; i < s.size(); ++i) {
     for (int k = 0; k < 3; ++k) {
       const bool position = !isfinite(s.positions().component(k)[i]);

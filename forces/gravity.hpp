@@ -108,20 +108,24 @@ template <class Real> void Gravity::add_pairs(ForceSink<Real>& out, const Partic
     az[i] = sum_z;
   }
   if (!out.wants_energy() && !out.wants_virial()) return;
+  for (Index p = 0; p < pairs; ++p) r[p] = k[p] * r2[p];  // 1 / r
   Real energy(0);
-  Mat3<Real> virial = Mat3<Real>::Zero();
-  for (Index i = 1, p = 0; i < n; ++i) {
+  for (Index i = 1, p = 0; i < n; p += i++) {
+    if (m[i] == Real(0)) continue;
     Real phi(0);  // a sum for each row: they do not wait for each other
-    for (Index j = 0; j < i; ++j, ++p) {
-      if (m[i] == Real(0) || m[j] == Real(0)) continue;
-      phi += mu[j] * (k[p] * r2[p]);
-      if (!out.wants_virial()) continue;
-      const Vec3<Real> d(dx[p], dy[p], dz[p]);
-      virial -= m[i] * (k[p] * mu[j]) * d * d.transpose();
-    }
+    for (Index j = 0; j < i; ++j) phi += m[j] == Real(0) ? Real(0) : mu[j] * r[p + j];
     energy -= m[i] * phi;
   }
   out.energy(energy);
+  if (!out.wants_virial()) return;
+  Mat3<Real> virial = Mat3<Real>::Zero();
+  for (Index i = 1, p = 0; i < n; ++i) {
+    for (Index j = 0; j < i; ++j, ++p) {
+      if (m[i] == Real(0) || m[j] == Real(0)) continue;
+      const Vec3<Real> d(dx[p], dy[p], dz[p]);
+      virial -= m[i] * (k[p] * mu[j]) * d * d.transpose();
+    }
+  }
   out.virial(virial);
 }
 

@@ -1,0 +1,33 @@
+#pragma once
+/// Sums of products over particles to twice the digits of a double: the interface of `moments_simd.cpp`, compiled once
+/// per SIMD level.
+
+#include "engine/kernels_simd.hpp"
+
+#include <cstddef>
+
+namespace noether {
+
+/// Vectors of many particles, one array per axis, and their masses.
+struct WeightedVectors {
+  std::ptrdiff_t count;
+  const double* mass;
+  const double* x[3];
+};
+
+/// Three sums, each high + low; low is not rounded off against high.
+struct WideSums {
+  double high[3], low[3];
+};
+
+/// Products are exact; sums are right to count^2 2^-106 of the sum of all sizes.
+struct MomentKernels {
+  /// Sum of m_i x_i.
+  void (*weighted)(const WeightedVectors& vectors, WideSums& sums);
+  /// Sum of x_i cross m_i v_i.
+  void (*crossed)(const WeightedVectors& velocities, const double* const (&x)[3], WideSums& sums);
+};
+
+NOETHER_KERNELS(MomentKernels, moment_kernels)
+
+}  // namespace noether
