@@ -1,5 +1,7 @@
 #include "engine/cell_grid.hpp"
 
+#include "engine/parallel.hpp"
+
 #include <algorithm>
 #include <bit>
 #include <limits>
@@ -17,15 +19,23 @@ constexpr double width_to_length = 2.5;
 
 struct Interval {
   double lower = std::numeric_limits<double>::infinity(), upper = -std::numeric_limits<double>::infinity();
+
+  /// Grows to hold another one too.
+  Interval& operator+=(const Interval& other) {
+    lower = std::min(lower, other.lower);
+    upper = std::max(upper, other.upper);
+    return *this;
+  }
 };
 
 Interval extent_of(const double* x, Index count) {
-  Interval all;
-  for (Index i = 0; i < count; ++i) {
-    if (!(std::abs(x[i]) < 1e300)) continue;
-    all.lower = std::min(all.lower, x[i]);
-    all.upper = std::max(all.upper, x[i]);
-  }
+  const Interval all = reduce(count, Interval{}, [&](Index begin, Index end) {
+    Interval block;
+    for (Index i = begin; i < end; ++i) {
+      if (std::abs(x[i]) < 1e300) block += {x[i], x[i]};
+    }
+    return block;
+  });
   return all.lower <= all.upper ? all : Interval{0, 0};
 }
 
@@ -59,7 +69,7 @@ void CellGrid::order_rows() {
   curve.reserve(at(along_y * along_z));
   for (Index iz = 0; iz < along_z; ++iz) {
     for (Index iy = 0; iy < along_y; ++iy) {
-      curve.emplace_back(hilbert(size, static_cast<std::uint64_t>(iy), static_cast<std::uint64_t>(iz)),
+      curve.emplace_back(hilbert(size, static_cast<std::uint64_t>(iz), static_cast<std::uint64_t>(iy)),
                          static_cast<std::int32_t>(iz * along_y + iy));
     }
   }
@@ -131,12 +141,13 @@ void CellGrid::sort(const std::array<const double*, 3>& coordinates, Index count
   cells_.resize(at(count));
   start_.assign(at(total + 1), 0);
   order_.resize(at(count));
-  for (Index i = 0; i < count; ++i) {
-    const Index c =
-        cell(axes_[0].cell(coordinates[0][i]), axes_[1].cell(coordinates[1][i]), axes_[2].cell(coordinates[2][i]));
-    cells_[at(i)] = static_cast<std::int32_t>(c);
-    ++start_[at(c)];
-  }
+  for_blocks(count, [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i) {
+      const auto along = [&](std::size_t k) { return axes_[k].cell(coordinates[k][i]); };
+      cells_[at(i)] = static_cast<std::int32_t>(cell(along(0), along(1), along(2)));
+    }
+  });
+  for (const std::int32_t c : cells_) ++start_[at(c)];
   std::int32_t sum = 0;
   for (auto& start : start_) sum += std::exchange(start, sum);
   // Each start moves on to the start of the next cell, and back.

@@ -150,6 +150,10 @@ template <class Real> class VectorColumn {
   }
 
   void set_zero() { set_to_zero(values_.data(), values_.size()); }
+  /// The same for the particles of [begin, end).
+  void set_zero(Index begin, Index end) {
+    for (int k = 0; k < 3; ++k) set_to_zero(component(k) + begin, static_cast<std::size_t>(end - begin));
+  }
 
   /// @cost O(1) on the average: the stride grows by half and may stay above what the size needs
   void append(const Vec3<Real>& v) {

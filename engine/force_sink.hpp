@@ -34,7 +34,11 @@ template <class Real> class ForceSink {
   ForceSink(VectorColumn<Real>& accelerations, const ParticleSystem<Real>& system, Wanted wanted,
             NeighborList* neighbors = nullptr)
       : a_(accelerations), system_(system), wanted_(wanted), neighbors_(neighbors) {
-    a_.set_zero();
+    if (a_.size() < parallel_threshold) {
+      a_.set_zero();
+    } else {
+      for_blocks(a_.size(), [&](Index begin, Index end) { a_.set_zero(begin, end); });
+    }
     if (wanted.virial) virial_.setZero();
   }
 

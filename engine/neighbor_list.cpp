@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cstring>
 #include <limits>
+#include <numeric>
 #include <set>
 
 namespace noether {
@@ -182,15 +183,18 @@ void NeighborList::place_points(const ParticleSystem<double>& s, double reach) {
   for (int k = 0; k < 3; ++k) {
     if (box_.is_periodic())
       middle_[k] = box_.on_grid(k, std::floor(box_.edges()[k] / box_.spacing(k) / 2) * box_.spacing(k));
-    auto& start = start_[at(k)];
-    start.resize(at(n));
-    const double* x = s.positions().component(k);
-    for (Index i = 0; i < n; ++i) start[at(i)] = x[i] - middle_[k];
-    points_[at(k)].assign(start.begin(), start.end());
+    start_[at(k)].resize(at(n));
+    points_[at(k)].resize(at(n));
   }
   owner_.resize(at(n));
-  for (Index i = 0; i < n; ++i) owner_[at(i)] = static_cast<std::int32_t>(i);
   shift_.assign(at(n), 0);
+  for_blocks(n, [&](Index begin, Index end) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double* x = s.positions().component(static_cast<int>(k));
+      for (Index i = begin; i < end; ++i) points_[k][at(i)] = start_[k][at(i)] = x[i] - middle_[static_cast<Index>(k)];
+    }
+    for (Index i = begin; i < end; ++i) owner_[at(i)] = static_cast<std::int32_t>(i);
+  });
   shifts_.assign(1, Vec3<double>::Zero());
   if (!box_.is_periodic()) return;
   double images = 1;
@@ -224,19 +228,38 @@ void NeighborList::number_shifts(const std::array<int, 3>& most) {
   }
 }
 
+/// Images, shifted along one axis, of all points so far that lie up to `reach` from the box.
 void NeighborList::add_images(int k, int most, std::int32_t stride, double reach) {
   const double lower = -middle_[k] - reach, upper = box_.edges()[k] - middle_[k] + reach;
-  const std::size_t count = owner_.size();
+  const auto count = static_cast<Index>(owner_.size());
+  std::vector<std::size_t> places(at(count / block_size + 2));  // where the images of a block of points begin
   for (int a = -most; a <= most; ++a) {
     if (a == 0) continue;
     const double by = a * box_.edges()[k];
-    for (std::size_t p = 0; p < count; ++p) {
-      const double x = points_[at(k)][p] + by;
-      if (x < lower || x > upper) continue;
-      for (int c = 0; c < 3; ++c) points_[at(c)].push_back(c == k ? x : points_[at(c)][p]);
-      owner_.push_back(owner_[p]);
-      shift_.push_back(shift_[p] + a * stride);
-    }
+    const auto is_near = [&](Index p) {
+      const double x = points_[at(k)][at(p)] + by;
+      return x >= lower && x <= upper;
+    };
+    for_blocks(count, [&](Index begin, Index end) {
+      std::size_t images = 0;
+      for (Index p = begin; p < end; ++p) images += is_near(p) ? 1 : 0;
+      places[at(begin / block_size + 1)] = images;
+    });
+    places[0] = owner_.size();
+    std::partial_sum(places.begin(), places.end(), places.begin());
+    const std::size_t size = places[at((count + block_size - 1) / block_size)];
+    for (auto& column : points_) column.resize(size);
+    owner_.resize(size);
+    shift_.resize(size);
+    for_blocks(count, [&](Index begin, Index end) {
+      std::size_t place = places[at(begin / block_size)];
+      for (Index p = begin; p < end; ++p) {
+        if (!is_near(p)) continue;
+        for (int c = 0; c < 3; ++c) points_[at(c)][place] = points_[at(c)][at(p)] + (c == k ? by : 0);
+        owner_[place] = owner_[at(p)];
+        shift_[place++] = shift_[at(p)] + a * stride;
+      }
+    });
   }
 }
 
