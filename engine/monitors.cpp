@@ -16,16 +16,14 @@ namespace {
 Quad wide(double x) { return Quad(x); }
 Quad wide(const Quad& x) { return x; }
 
-template <class Real> Vec3<Quad> wide(const Vec3<Real>& v) { return Vec3<Quad>(wide(v[0]), wide(v[1]), wide(v[2])); }
+Vec3<Quad> wide(const Vec3<double>& v) { return Vec3<Quad>(wide(v[0]), wide(v[1]), wide(v[2])); }
+Vec3<Quad> wide(const Vec3<Quad>& v) { return v; }
 
 /// What sums over particles are computed in, so that a monitor adds no rounding of its own.
-template <class Real> using Wide = std::conditional_t<std::is_same_v<Real, double>, DoubleDouble, Quad>;
-template <class Real> using WideVector = std::array<Wide<Real>, 3>;
+template <class Real> using WideVector = std::conditional_t<std::is_same_v<Real, double>, WideSums, Vec3<Quad>>;
 
-template <class T> Vec3<Quad> quad(const std::array<T, 3>& v) { return {Quad(v[0]), Quad(v[1]), Quad(v[2])}; }
-
-WideVector<double> rounded(const WideSums& sums) {
-  const auto axis = [&](int k) { return DoubleDouble::sum(sums.high[k], sums.low[k]); };
+Vec3<Quad> wide(const WideSums& sums) {
+  const auto axis = [&](int k) { return Quad(sums.high[k]) + Quad(sums.low[k]); };
   return {axis(0), axis(1), axis(2)};
 }
 
@@ -34,32 +32,30 @@ WeightedVectors weighted_vectors(const ParticleSystem<double>& s, const VectorCo
 }
 
 /// Sum of m_i times the rows of a column.
-WideVector<double> weighted_sum(const ParticleSystem<double>& s, const VectorColumn<double>& of) {
+WideSums weighted_sum(const ParticleSystem<double>& s, const VectorColumn<double>& of) {
   WideSums sums{};
   moment_kernels().weighted(weighted_vectors(s, of), sums);
-  return rounded(sums);
+  return sums;
 }
-WideVector<Quad> weighted_sum(const ParticleSystem<Quad>& s, const VectorColumn<Quad>& of) {
-  WideVector<Quad> sum{};
-  for (Index i = 0; i < s.size(); ++i) {
-    for (std::size_t k = 0; k < 3; ++k) sum[k] += s.masses()[i] * of[i][static_cast<Index>(k)];
-  }
+Vec3<Quad> weighted_sum(const ParticleSystem<Quad>& s, const VectorColumn<Quad>& of) {
+  Vec3<Quad> sum = Vec3<Quad>::Zero();
+  for (Index i = 0; i < s.size(); ++i) sum += s.masses()[i] * of[i];
   return sum;
 }
 
 /// Sum of x_i cross m_i v_i.
-WideVector<double> angular_momentum(const ParticleSystem<double>& s) {
+WideSums angular_momentum(const ParticleSystem<double>& s) {
   const VectorColumn<double>& x = s.positions();
   WideSums sums{};
   moment_kernels().crossed(weighted_vectors(s, s.velocities()), {x.component(0), x.component(1), x.component(2)}, sums);
-  return rounded(sums);
+  return sums;
 }
-WideVector<Quad> angular_momentum(const ParticleSystem<Quad>& s) {
+Vec3<Quad> angular_momentum(const ParticleSystem<Quad>& s) {
   Vec3<Quad> sum = Vec3<Quad>::Zero();
   for (Index i = 0; i < s.size(); ++i) {
     sum += s.masses()[i] * cross(Vec3<Quad>(s.positions()[i]), Vec3<Quad>(s.velocities()[i]));
   }
-  return {sum[0], sum[1], sum[2]};
+  return sum;
 }
 
 Vec3<double> narrow(const Vec3<Quad>& v) {
@@ -185,19 +181,24 @@ void VectorInvariant::refer_to(const Vec3<Quad>& reference) {
   unit_ = near / length_;
 }
 
-/// What has changed is small and exact: from here on doubles will do.
-template <class Wide> void VectorInvariant::add(double time, const std::array<Wide, 3>& value) {
+/// Doubles near each other differ by a double, exactly; of others the difference need not be exact.
+void VectorInvariant::add(double time, const WideSums& value) {
   Vec3<double> change;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const auto axis = static_cast<Index>(k);
-    value_[k] = static_cast<double>(value[k]);
-    if constexpr (std::is_same_v<Wide, Quad>) {
-      change[axis] = static_cast<double>(value[k] - reference_[axis]);
-    } else {
-      change[axis] = static_cast<double>(value[k] - near_reference_[k]);
-    }
+  for (int k = 0; k < 3; ++k) {
+    const DoubleDouble& reference = near_reference_[static_cast<std::size_t>(k)];
+    value_[static_cast<std::size_t>(k)] = value.high[k] + value.low[k];
+    change[k] = (value.high[k] - reference.high) + (value.low[k] - reference.low);
   }
-  error_ = Vec3<double>(change / scale_).norm();
+  add_change(time, change);
+}
+
+void VectorInvariant::add(double time, const Vec3<Quad>& value) {
+  for (int k = 0; k < 3; ++k) value_[static_cast<std::size_t>(k)] = static_cast<double>(value[k]);
+  add_change(time, narrow(value - reference_));
+}
+
+void VectorInvariant::add_change(double time, const Vec3<double>& change) {
+  error_ = change.norm() / scale_;
   sine2_ = 0;
   cosine_ = 1;
   if (has_direction()) {
@@ -274,7 +275,7 @@ template <class Real> void Momentum::observe(const Snapshot<Real>& now) {
   if (!begun()) {
     Quad scale = 0;
     for (Index i = 0; i < s.size(); ++i) scale += wide(s.masses()[i]) * sqrt(norm2(wide(s.velocities()[i])));
-    begin(quad(sum), scale, now.claims().keeps_momentum);
+    begin(wide(sum), scale, now.claims().keeps_momentum);
     time_unit_ = std::string(now.units().time);
   }
   add(now.time(), sum);
@@ -288,7 +289,7 @@ template <class Real> void AngularMomentum::observe(const Snapshot<Real>& now) {
     for (Index i = 0; i < s.size(); ++i) {
       scale += wide(s.masses()[i]) * sqrt(norm2(wide(s.positions()[i])) * norm2(wide(s.velocities()[i])));
     }
-    begin(quad(sum), scale, now.claims().keeps_angular_momentum);
+    begin(wide(sum), scale, now.claims().keeps_angular_momentum);
     time_unit_ = std::string(now.units().time);
   }
   add(now.time(), sum);
@@ -307,22 +308,26 @@ template <class Real> void CenterOfMass::observe(const Snapshot<Real>& now) {
   for (Index i = 0; i < s.size(); ++i) mass += static_cast<double>(s.masses()[i]);
   if (!begun_) {
     begun_ = true;
-    for (std::size_t k = 0; k < 3; ++k) start_[k] = Quad(x[k]), start_[k + 3] = Quad(v[k]);
+    const Vec3<Quad> first = wide(x), speed = wide(v);
+    start_ = {first[0], first[1], first[2], speed[0], speed[1], speed[2]};
     start_time_ = now.time();
     refer_to_start();
     slope_unit_ = per_time(now.units().length, std::string(now.units().time));
   }
   std::array<double, 3> away{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    position_[k] = static_cast<double>(x[k]) / mass;
-    velocity_[k] = static_cast<double>(v[k]) / mass;
+  for (int k = 0; k < 3; ++k) {
+    const auto axis = static_cast<std::size_t>(k);
     if constexpr (std::is_same_v<Real, double>) {
-      const DoubleDouble t = DoubleDouble::sum(now.time(), -start_time_);
-      const DoubleDouble way = t.high * near_start_[k + 3] + DoubleDouble(t.low * near_start_[k + 3].high);
-      away[k] = static_cast<double>(x[k] - near_start_[k] - way) / mass;
+      const DoubleDouble t = DoubleDouble::sum(now.time(), -start_time_), &speed = near_start_[axis + 3];
+      const DoubleDouble way = t.high * speed + DoubleDouble(t.low * speed.high);
+      away[axis] = static_cast<double>(DoubleDouble::sum(x.high[k], x.low[k]) - near_start_[axis] - way) / mass;
+      position_[axis] = (x.high[k] + x.low[k]) / mass;
+      velocity_[axis] = (v.high[k] + v.low[k]) / mass;
     } else {
       const Quad t = Quad(now.time()) - Quad(start_time_);
-      away[k] = static_cast<double>(x[k] - start_[k] - t * start_[k + 3]) / mass;
+      away[axis] = static_cast<double>(x[k] - start_[axis] - t * start_[axis + 3]) / mass;
+      position_[axis] = static_cast<double>(x[k]) / mass;
+      velocity_[axis] = static_cast<double>(v[k]) / mass;
     }
   }
   departures_.add(now.time(), std::hypot(away[0], away[1], away[2]));

@@ -10,6 +10,8 @@
 
 namespace noether {
 
+struct WideSums;
+
 /// Watches the energy: total, kinetic, potential and the relative error
 ///
 ///     (E - E0) / max(|E0|, 1e-3 (T0 + |U0|))
@@ -78,14 +80,16 @@ class VectorInvariant {
   bool begun() const { return begun_; }
   /// The first value. @param scale  what errors are relative to; @param kept  by the equations of motion themselves
   void begin(const Vec3<Quad>& value, const Quad& scale, bool kept);
-  /// @param value  in DoubleDouble or Quad
-  template <class Wide> void add(double time, const std::array<Wide, 3>& value);
+  void add(double time, const WideSums& value);
+  void add(double time, const Vec3<Quad>& value);
   void save_series(SavedState& saved, const std::string& prefix) const;
   void load_series(const SavedState& saved, const std::string& prefix);
   std::string time_unit_;
 
  private:
   void refer_to(const Vec3<Quad>& reference);
+  /// @param change  of the value since the start
+  void add_change(double time, const Vec3<double>& change);
   /// Angle between value and value0 [rad]; NaN where there is none.
   double direction_error() const;
   /// Whether the vector is long enough, beside its scale, to have a direction.
