@@ -129,19 +129,6 @@ template <class Real> class VectorColumn {
     }
   }
 
-  /// Whether every number of both columns, alike in size, is finite: 0 times another is not 0.
-  static bool are_finite(const VectorColumn& a, const VectorColumn& b) {
-    constexpr std::size_t lanes = std::min(Index(4), padding);
-    Real sums[4] = {Real(0), Real(0), Real(0), Real(0)};
-    for (const VectorColumn* column : {&a, &b}) {
-      const Real* values = column->values_.data();
-      for (std::size_t k = 0; k < column->values_.size(); k += lanes) {
-        for (std::size_t lane = 0; lane < lanes; ++lane) sums[lane] += values[k + lane] * Real(0);
-      }
-    }
-    return (sums[0] + sums[1]) + (sums[2] + sums[3]) == Real(0);
-  }
-
   /// Becomes a copy of another. @cost no allocation where sizes agree
   void assign(const VectorColumn& other) {
     copy_numbers(other.values_, values_);

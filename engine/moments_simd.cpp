@@ -71,41 +71,46 @@ template <class D> HWY_INLINE void gather(D /*lanes*/, const Sum<D>& sum, double
 }
 #endif
 
+/// Sums along the three axes.
 struct Sums {
-  Sum<Lanes> axis[3] = {{hn::Zero(Lanes()), hn::Zero(Lanes())},
-                        {hn::Zero(Lanes()), hn::Zero(Lanes())},
-                        {hn::Zero(Lanes()), hn::Zero(Lanes())}};
+  Sum<Lanes> axis[3];
 
-  HWY_INLINE void store(WideSums& sums) const {
-    for (int k = 0; k < 3; ++k) gather(Lanes(), axis[k], sums.high[k], sums.low[k]);
+  HWY_INLINE void add(const Sums& other) {
+    for (int k = 0; k < 3; ++k) axis[k].add(other.axis[k].high, other.axis[k].low);
   }
 };
 
-/// Calls `add(load)` for every register of particles; `load` reads a column there, and zeros behind its end.
-template <class Add> HWY_INLINE void for_registers(std::ptrdiff_t count, const Add& add) {
+/// Sums what `terms(load)` gives for every register of particles, where `load` reads a column.
+template <class Terms> HWY_INLINE void sum_registers(std::ptrdiff_t count, const Terms& terms, WideSums& sums) {
   const Lanes d;
-  std::ptrdiff_t i = 0;
-  for (; i + lanes <= count; i += lanes) add([&](const double* column) HWY_ATTR { return hn::LoadU(d, column + i); });
-  if (i == count) return;
-  const auto left = hn::FirstN(d, static_cast<std::size_t>(count - i));
-  add([&](const double* column) HWY_ATTR { return hn::MaskedLoad(left, d, column + i); });
+  std::ptrdiff_t i = count % lanes;
+  const auto some = hn::FirstN(d, static_cast<std::size_t>(i));
+  Sums all = terms([&](const double* column) HWY_ATTR { return hn::MaskedLoad(some, d, column); });
+  for (; i < count; i += lanes) {
+    all.add(terms([&](const double* column) HWY_ATTR { return hn::LoadU(d, column + i); }));
+  }
+  for (int k = 0; k < 3; ++k) gather(d, all.axis[k], sums.high[k], sums.low[k]);
 }
 
 void weighted(const WeightedVectors& vectors, WideSums& sums) {
-  Sums all;
-  for_registers(vectors.count, [&](const auto& load) HWY_ATTR {
+  const auto terms = [&](const auto& load) HWY_ATTR {
     const Vector m = load(vectors.mass);
+    Sums all;
     for (int k = 0; k < 3; ++k) {
       const Wide p = product(m, load(vectors.x[k]));
-      all.axis[k].add(p.high, p.low);
+      all.axis[k] = {p.high, p.low};
     }
-  });
-  all.store(sums);
+    return all;
+  };
+  sum_registers(vectors.count, terms, sums);
 }
 
 void crossed(const WeightedVectors& velocities, const double* const (&x)[3], WideSums& sums) {
-  Sums all;
-  for_registers(velocities.count, [&](const auto& load) HWY_ATTR {
+  const auto moment = [](Vector distance, const Wide& momentum) HWY_ATTR {
+    const Wide q = product(distance, momentum.high);
+    return Wide{q.high, hn::Add(q.low, hn::Mul(distance, momentum.low))};
+  };
+  const auto terms = [&](const auto& load) HWY_ATTR {
     const Vector m = load(velocities.mass);
     Vector at[3];
     Wide p[3];
@@ -113,17 +118,16 @@ void crossed(const WeightedVectors& velocities, const double* const (&x)[3], Wid
       at[k] = load(x[k]);
       p[k] = product(m, load(velocities.x[k]));
     }
-    const auto add = [&](Sum<Lanes>& sum, Vector distance, const Wide& momentum) HWY_ATTR {
-      const Wide q = product(distance, momentum.high);
-      sum.add(q.high, hn::Add(q.low, hn::Mul(distance, momentum.low)));
-    };
+    Sums all;
     for (int k = 0; k < 3; ++k) {
       const int a = (k + 1) % 3, b = (k + 2) % 3;
-      add(all.axis[k], at[a], p[b]);
-      add(all.axis[k], hn::Neg(at[b]), p[a]);
+      const Wide one = moment(at[a], p[b]), other = moment(hn::Neg(at[b]), p[a]);
+      all.axis[k] = {one.high, one.low};
+      all.axis[k].add(other.high, other.low);
     }
-  });
-  all.store(sums);
+    return all;
+  };
+  sum_registers(velocities.count, terms, sums);
 }
 
 }  // namespace

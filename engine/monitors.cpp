@@ -178,6 +178,7 @@ void VectorInvariant::refer_to(const Vec3<Quad>& reference) {
   for (int k = 0; k < 3; ++k) near_reference_[static_cast<std::size_t>(k)] = DoubleDouble(reference[k]);
   const Vec3<double> near = narrow(reference);
   length_ = std::hypot(near[0], near[1], near[2]);
+  inverse_length_ = 1 / length_;
   unit_ = near / length_;
 }
 
@@ -202,7 +203,7 @@ void VectorInvariant::add_change(double time, const Vec3<double>& change) {
   sine2_ = 0;
   cosine_ = 1;
   if (has_direction()) {
-    const Vec3<double> turn = change / length_;
+    const Vec3<double> turn = change * inverse_length_;
     sine2_ = norm2(cross(unit_, turn));
     cosine_ = 1 + dot(unit_, turn);
     // Angles below a right one compare as their tangents; few looks see a new worst one.

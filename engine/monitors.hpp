@@ -100,7 +100,7 @@ class VectorInvariant {
   bool begun_ = false, kept_ = true;
   Vec3<Quad> reference_ = Vec3<Quad>::Zero();
   std::array<DoubleDouble, 3> near_reference_{};  ///< the same, for runs in doubles
-  double length_ = 0;                             ///< of the reference
+  double length_ = 0, inverse_length_ = 0;        ///< of the reference
   Vec3<double> unit_ = Vec3<double>::Zero();      ///< its direction
   double scale_ = 0, error_ = 0;
   double sine2_ = 0, cosine_ = 1;  ///< of the angle between value and value0: the sine squared, and the cosine

@@ -82,9 +82,12 @@ TEST_CASE("masses of any size leave no product of their halves beyond the double
 }
 
 TEST_CASE("nobody has no moments", "[moments]") {
-  WideSums sums{{1, 1, 1}, {1, 1, 1}};
-  moment_kernels().weighted({0, nullptr, {nullptr, nullptr, nullptr}}, sums);
-  for (int k = 0; k < 3; ++k) CHECK((sums.high[k] == 0 && sums.low[k] == 0));
+  for (const SimdLevel level : all_levels()) {
+    const AtLevel at(level);
+    WideSums sums{{1, 1, 1}, {1, 1, 1}};
+    moment_kernels().weighted({0, nullptr, {nullptr, nullptr, nullptr}}, sums);
+    for (int k = 0; k < 3; ++k) CHECK((sums.high[k] == 0 && sums.low[k] == 0));
+  }
 }
 
 }  // namespace

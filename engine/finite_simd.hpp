@@ -1,0 +1,17 @@
+#pragma once
+/// Whether numbers are finite, in lanes: the interface of `finite_simd.cpp`, compiled once per SIMD level.
+
+#include "engine/kernels_simd.hpp"
+
+#include <cstddef>
+
+namespace noether {
+
+struct FiniteKernels {
+  /// @param count  a multiple of 8
+  bool (*all)(const double* numbers, std::ptrdiff_t count);
+};
+
+NOETHER_KERNELS(FiniteKernels, finite_kernels)
+
+}  // namespace noether
