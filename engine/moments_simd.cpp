@@ -80,12 +80,23 @@ struct Sums {
   }
 };
 
+/// The first `count` numbers of a column, and zeros.
+HWY_INLINE Vector load_some(const double* column, std::ptrdiff_t count) {
+  const Lanes d;
+#if HWY_TARGET == HWY_AVX2 || HWY_TARGET <= HWY_AVX3
+  return hn::MaskedLoad(hn::FirstN(d, static_cast<std::size_t>(count)), d, column);
+#else  // others read all, and forget some
+  double some[lanes] = {};
+  for (std::ptrdiff_t k = 0; k < count; ++k) some[k] = column[k];
+  return hn::LoadU(d, some);
+#endif
+}
+
 /// Sums what `terms(load)` gives for every register of particles, where `load` reads a column.
 template <class Terms> HWY_INLINE void sum_registers(std::ptrdiff_t count, const Terms& terms, WideSums& sums) {
   const Lanes d;
   std::ptrdiff_t i = count % lanes;
-  const auto some = hn::FirstN(d, static_cast<std::size_t>(i));
-  Sums all = terms([&](const double* column) HWY_ATTR { return hn::MaskedLoad(some, d, column); });
+  Sums all = terms([&](const double* column) HWY_ATTR { return load_some(column, count % lanes); });
   for (; i < count; i += lanes) {
     all.add(terms([&](const double* column) HWY_ATTR { return hn::LoadU(d, column + i); }));
   }
