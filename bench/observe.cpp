@@ -29,6 +29,8 @@ int main(int count, char** arguments) {
   set_thread_count(1);
   measure(rows, "leapfrog6", bench::leapfrog6(), bench::leapfrog6(), Energy{});
   measure(rows, "leapfrog6/angular_momentum", bench::leapfrog6(), bench::leapfrog6(), AngularMomentum{});
+  measure(rows, "leapfrog6/momentum", bench::leapfrog6(), bench::leapfrog6(), Momentum{});
+  measure(rows, "leapfrog6/center_of_mass", bench::leapfrog6(), bench::leapfrog6(), CenterOfMass{});
   measure(rows, "leapfrog6/shadow", bench::leapfrog6(), bench::leapfrog6(), ShadowHamiltonian<>{});
   measure(rows, "wh6", bench::wh6(), bench::wh6(), Energy{});
 }
