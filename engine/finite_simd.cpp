@@ -12,12 +12,15 @@ using Lanes = hn::CappedTag<double, 8>;
 constexpr std::ptrdiff_t lanes = hn::MaxLanes(Lanes());
 
 /// 0 times a number is 0, unless it is not finite; and what is no number spoils the sum.
-bool all(const double* numbers, std::ptrdiff_t count) {
+bool all(const double* a, const double* b, std::ptrdiff_t count) {
   const Lanes d;
   const auto zero = hn::Zero(d);
-  auto sum = zero;
-  for (std::ptrdiff_t i = 0; i < count; i += lanes) sum = hn::MulAdd(hn::LoadU(d, numbers + i), zero, sum);
-  return hn::AllTrue(d, hn::Eq(sum, zero));
+  auto of_a = zero, of_b = zero;
+  for (std::ptrdiff_t i = 0; i < count; i += lanes) {
+    of_a = hn::MulAdd(hn::LoadU(d, a + i), zero, of_a);
+    of_b = hn::MulAdd(hn::LoadU(d, b + i), zero, of_b);
+  }
+  return hn::AllTrue(d, hn::Eq(hn::Add(of_a, of_b), zero));
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 namespace noether {
 
 struct FiniteKernels {
-  /// @param count  a multiple of 8
-  bool (*all)(const double* numbers, std::ptrdiff_t count);
+  /// All numbers of two columns. @param count  of each, a multiple of 8
+  bool (*all)(const double* a, const double* b, std::ptrdiff_t count);
 };
 
 NOETHER_KERNELS(FiniteKernels, finite_kernels)

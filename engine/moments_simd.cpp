@@ -44,10 +44,10 @@ HWY_INLINE Wide product(Vector a, Vector b) {
 #endif
 
 /// A sum that keeps what rounding leaves out of it beside itself.
-template <class D> struct Sum {
-  hn::Vec<D> high, low;
+struct Sum {
+  Vector high, low;
 
-  HWY_INLINE void add(hn::Vec<D> p, hn::Vec<D> p_low) {
+  HWY_INLINE void add(Vector p, Vector p_low) {
     const auto s = hn::Add(high, p), of_p = hn::Sub(s, high);
     const auto lost = hn::Add(hn::Sub(high, hn::Sub(s, of_p)), hn::Sub(p, of_p));
     low = hn::Add(low, hn::Add(lost, p_low));
@@ -55,30 +55,62 @@ template <class D> struct Sum {
   }
 };
 
-/// Adds the halves of the lanes until one is left.
-HWY_INLINE void gather(hn::CappedTag<double, 1> /*one*/, const Sum<hn::CappedTag<double, 1>>& sum, double& high,
-                       double& low) {
-  high = hn::GetLane(sum.high);
-  low = hn::GetLane(sum.low);
-}
-#if HWY_TARGET != HWY_SCALAR
-template <class D> HWY_INLINE void gather(D /*lanes*/, const Sum<D>& sum, double& high, double& low) {
-  using Half = hn::Half<D>;
-  const Half half;
-  Sum<Half> both{hn::LowerHalf(half, sum.high), hn::LowerHalf(half, sum.low)};
-  both.add(hn::UpperHalf(half, sum.high), hn::UpperHalf(half, sum.low));
-  gather(half, both, high, low);
-}
-#endif
-
 /// Sums along the three axes.
 struct Sums {
-  Sum<Lanes> axis[3];
+  Sum axis[3];
 
   HWY_INLINE void add(const Sums& other) {
     for (int k = 0; k < 3; ++k) axis[k].add(other.axis[k].high, other.axis[k].low);
   }
 };
+
+#if HWY_TARGET == HWY_SCALAR
+
+HWY_INLINE void store_totals(const Sums& all, WideSums& sums) {
+  for (int k = 0; k < 3; ++k) {
+    sums.high[k] = hn::GetLane(all.axis[k].high);
+    sums.low[k] = hn::GetLane(all.axis[k].low);
+  }
+}
+
+#else
+
+/// Neighbouring lanes added, those of `a` in the lower half of the register and those of `b` in the upper one.
+HWY_INLINE Sum pairs(const Sum& a, const Sum& b) {
+  const Lanes d;
+  Sum both{hn::ConcatEven(d, b.high, a.high), hn::ConcatEven(d, b.low, a.low)};
+  both.add(hn::ConcatOdd(d, b.high, a.high), hn::ConcatOdd(d, b.low, a.low));
+  return both;
+}
+
+/// Writes as many lanes as three sums have room for.
+template <class D> HWY_INLINE void store_row(D d, hn::Vec<D> row, double* to) {
+  if constexpr (hn::MaxLanes(D()) > 4) {
+    const hn::Half<D> half;
+    store_row(half, hn::LowerHalf(half, row), to);
+  } else {
+    hn::StoreU(row, d, to);
+  }
+}
+
+/// Adds the lanes of each axis; all axes share a register as soon as they fit in.
+HWY_INLINE void store_totals(const Sums& all, WideSums& sums) {
+  const auto store = [&](const Sum& totals, int axis) HWY_ATTR {
+    store_row(Lanes(), totals.high, sums.high + axis);
+    store_row(Lanes(), totals.low, sums.low + axis);
+  };
+  const Sum xy = pairs(all.axis[0], all.axis[1]), z = pairs(all.axis[2], all.axis[2]);
+  if constexpr (lanes == 2) {
+    store(xy, 0);
+    store(z, 2);
+  } else {
+    Sum xyz = pairs(xy, z);
+    for (std::ptrdiff_t joined = 4; joined < lanes; joined *= 2) xyz = pairs(xyz, xyz);
+    store(xyz, 0);
+  }
+}
+
+#endif
 
 /// The first `count` numbers of a column, and zeros.
 HWY_INLINE Vector load_some(const double* column, std::ptrdiff_t count) {
@@ -100,7 +132,7 @@ template <class Terms> HWY_INLINE void sum_registers(std::ptrdiff_t count, const
   for (; i < count; i += lanes) {
     all.add(terms([&](const double* column) HWY_ATTR { return hn::LoadU(d, column + i); }));
   }
-  for (int k = 0; k < 3; ++k) gather(d, all.axis[k], sums.high[k], sums.low[k]);
+  store_totals(all, sums);
 }
 
 void weighted(const WeightedVectors& vectors, WideSums& sums) {

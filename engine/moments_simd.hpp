@@ -15,9 +15,9 @@ struct WeightedVectors {
   const double* x[3];
 };
 
-/// Three sums, each high + low; low is not rounded off against high.
+/// Three sums, each high + low; low is not rounded off against high. The fourth place is room for a register.
 struct WideSums {
-  double high[3], low[3];
+  double high[4], low[4];
 };
 
 /// Products are exact; sums are right to count^2 2^-106 of the sum of all sizes.

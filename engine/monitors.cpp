@@ -58,6 +58,19 @@ Vec3<Quad> angular_momentum(const ParticleSystem<Quad>& s) {
   return sum;
 }
 
+/// x - start - t speed; the difference of the large parts is exact where x lies near that line.
+double departure(const DoubleDouble& x, const DoubleDouble& start, const DoubleDouble& t, const DoubleDouble& speed) {
+  const DoubleDouble way = DoubleDouble::product(t.high, speed.high), change = DoubleDouble::sum(x.high, -start.high);
+  const double rest = (x.low - start.low) - (t.high * speed.low + t.low * speed.high);
+  return (change.high - way.high) + ((change.low - way.low) + rest);
+}
+
+/// Of any size: where squares leave the range of doubles, by the slower way.
+double length(const std::array<double, 3>& v) {
+  const double squares = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+  return squares > 1e-280 && squares < 1e300 ? std::sqrt(squares) : std::hypot(v[0], v[1], v[2]);
+}
+
 Vec3<double> narrow(const Vec3<Quad>& v) {
   return Vec3<double>(static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2]));
 }
@@ -174,12 +187,30 @@ void VectorInvariant::begin(const Vec3<Quad>& value, const Quad& scale, bool kep
 }
 
 void VectorInvariant::refer_to(const Vec3<Quad>& reference) {
+  inverse_scale_ = std::min(1 / scale_, std::numeric_limits<double>::max());
   reference_ = reference;
   for (int k = 0; k < 3; ++k) near_reference_[static_cast<std::size_t>(k)] = DoubleDouble(reference[k]);
   const Vec3<double> near = narrow(reference);
   length_ = std::hypot(near[0], near[1], near[2]);
   inverse_length_ = 1 / length_;
   unit_ = near / length_;
+}
+
+inline void VectorInvariant::add_change(double time, const Vec3<double>& change) {
+  error_ = change.norm() * inverse_scale_;
+  sine2_ = 0;
+  cosine_ = 1;
+  if (has_direction()) {
+    const Vec3<double> turn = change * inverse_length_;
+    sine2_ = norm2(cross(unit_, turn));
+    cosine_ = 1 + dot(unit_, turn);
+    // Angles below a right one compare as their tangents; few looks see a new worst one.
+    if (!(cosine_ > 0 && sine2_ <= worst_tangent2_ * (cosine_ * cosine_))) {
+      worst_direction_ = std::max(worst_direction_, direction_error());
+      worst_tangent2_ = cosine_ > 0 ? sine2_ / (cosine_ * cosine_) : std::numeric_limits<double>::infinity();
+    }
+  }
+  errors_.add(time, error_);
 }
 
 /// Doubles near each other differ by a double, exactly; of others the difference need not be exact.
@@ -196,23 +227,6 @@ void VectorInvariant::add(double time, const WideSums& value) {
 void VectorInvariant::add(double time, const Vec3<Quad>& value) {
   for (int k = 0; k < 3; ++k) value_[static_cast<std::size_t>(k)] = static_cast<double>(value[k]);
   add_change(time, narrow(value - reference_));
-}
-
-void VectorInvariant::add_change(double time, const Vec3<double>& change) {
-  error_ = change.norm() / scale_;
-  sine2_ = 0;
-  cosine_ = 1;
-  if (has_direction()) {
-    const Vec3<double> turn = change * inverse_length_;
-    sine2_ = norm2(cross(unit_, turn));
-    cosine_ = 1 + dot(unit_, turn);
-    // Angles below a right one compare as their tangents; few looks see a new worst one.
-    if (!(cosine_ > 0 && sine2_ <= worst_tangent2_ * (cosine_ * cosine_))) {
-      worst_direction_ = std::max(worst_direction_, direction_error());
-      worst_tangent2_ = cosine_ > 0 ? sine2_ / (cosine_ * cosine_) : std::numeric_limits<double>::infinity();
-    }
-  }
-  errors_.add(time, error_);
 }
 
 double VectorInvariant::direction_error() const {
@@ -315,23 +329,22 @@ template <class Real> void CenterOfMass::observe(const Snapshot<Real>& now) {
     refer_to_start();
     slope_unit_ = per_time(now.units().length, std::string(now.units().time));
   }
+  mass_ = mass;
+  const DoubleDouble t = DoubleDouble::sum(now.time(), -start_time_);
   std::array<double, 3> away{};
   for (int k = 0; k < 3; ++k) {
     const auto axis = static_cast<std::size_t>(k);
     if constexpr (std::is_same_v<Real, double>) {
-      const DoubleDouble t = DoubleDouble::sum(now.time(), -start_time_), &speed = near_start_[axis + 3];
-      const DoubleDouble way = t.high * speed + DoubleDouble(t.low * speed.high);
-      away[axis] = static_cast<double>(DoubleDouble::sum(x.high[k], x.low[k]) - near_start_[axis] - way) / mass;
-      position_[axis] = (x.high[k] + x.low[k]) / mass;
-      velocity_[axis] = (v.high[k] + v.low[k]) / mass;
+      away[axis] = departure(DoubleDouble(x.high[k], x.low[k]), near_start_[axis], t, near_start_[axis + 3]);
+      moments_[axis] = x.high[k] + x.low[k];
+      moments_[axis + 3] = v.high[k] + v.low[k];
     } else {
-      const Quad t = Quad(now.time()) - Quad(start_time_);
-      away[axis] = static_cast<double>(x[k] - start_[axis] - t * start_[axis + 3]) / mass;
-      position_[axis] = static_cast<double>(x[k]) / mass;
-      velocity_[axis] = static_cast<double>(v[k]) / mass;
+      away[axis] = static_cast<double>(x[k] - start_[axis] - Quad(t) * start_[axis + 3]);
+      moments_[axis] = static_cast<double>(x[k]);
+      moments_[axis + 3] = static_cast<double>(v[k]);
     }
   }
-  departures_.add(now.time(), std::hypot(away[0], away[1], away[2]));
+  departures_.add(now.time(), length(away) / mass);
 }
 
 void CenterOfMass::refer_to_start() {
@@ -342,8 +355,8 @@ void CenterOfMass::save(SavedState& saved, const std::string& prefix) const {
   save_value(saved, prefix + "/begun", begun_);
   save_value(saved, prefix + "/start_moments", start_);
   save_value(saved, prefix + "/start_time", start_time_);
-  save_value(saved, prefix + "/position", position_);
-  save_value(saved, prefix + "/velocity", velocity_);
+  save_value(saved, prefix + "/moments", moments_);
+  save_value(saved, prefix + "/mass", mass_);
   save_value(saved, prefix + "/departures", departures_);
   save_value(saved, prefix + "/slope_unit", slope_unit_);
 }
@@ -352,15 +365,18 @@ void CenterOfMass::load(const SavedState& saved, const std::string& prefix) {
   load_value(saved, prefix + "/begun", begun_);
   load_value(saved, prefix + "/start_moments", start_);
   load_value(saved, prefix + "/start_time", start_time_);
-  load_value(saved, prefix + "/position", position_);
-  load_value(saved, prefix + "/velocity", velocity_);
+  load_value(saved, prefix + "/moments", moments_);
+  load_value(saved, prefix + "/mass", mass_);
   load_value(saved, prefix + "/departures", departures_);
   load_value(saved, prefix + "/slope_unit", slope_unit_);
   refer_to_start();
 }
 
 std::vector<Series> CenterOfMass::series() const {
-  return {{"position", "length", {3}, list(position_)}, {"velocity", "length/time", {3}, list(velocity_)}};
+  const auto mean = [&](std::size_t first) {
+    return std::vector{moments_[first] / mass_, moments_[first + 1] / mass_, moments_[first + 2] / mass_};
+  };
+  return {{"position", "length", {3}, mean(0)}, {"velocity", "length/time", {3}, mean(3)}};
 }
 
 MonitorReport CenterOfMass::report() const {

@@ -102,7 +102,7 @@ class VectorInvariant {
   std::array<DoubleDouble, 3> near_reference_{};  ///< the same, for runs in doubles
   double length_ = 0, inverse_length_ = 0;        ///< of the reference
   Vec3<double> unit_ = Vec3<double>::Zero();      ///< its direction
-  double scale_ = 0, error_ = 0;
+  double scale_ = 0, inverse_scale_ = 0, error_ = 0;
   double sine2_ = 0, cosine_ = 1;  ///< of the angle between value and value0: the sine squared, and the cosine
   double worst_tangent2_ = 0, worst_direction_ = 0;
   std::array<double, 3> value_{};
@@ -168,7 +168,8 @@ class CenterOfMass {
   std::array<Quad, 6> start_{};               ///< sum m x, sum m v at the start [mass length, mass length/time]
   std::array<DoubleDouble, 6> near_start_{};  ///< the same, for runs in doubles
   double start_time_ = 0;
-  std::array<double, 3> position_{}, velocity_{};
+  std::array<double, 6> moments_{};  ///< the same sums at the last look
+  double mass_ = 0;
   SeriesStatistics departures_;
   std::string slope_unit_;
 };

@@ -24,10 +24,12 @@ std::int64_t next_multiple(std::int64_t step, std::int64_t cadence) {
   return cadence == 1 ? step + 1 : (step / cadence + 1) * cadence;
 }
 
-bool all_finite(const VectorColumn<double>& column) {
-  return finite_kernels().all(column.component(0), 3 * column.stride());
+bool all_finite(const VectorColumn<double>& x, const VectorColumn<double>& v) {
+  return finite_kernels().all(x.component(0), v.component(0), 3 * x.stride());
 }
-bool all_finite(const VectorColumn<Quad>& column) { return column.all().allFinite(); }
+bool all_finite(const VectorColumn<Quad>& x, const VectorColumn<Quad>& v) {
+  return x.all().allFinite() && v.all().allFinite();
+}
 
 double seconds_since(WallClock::time_point start) {
   return std::chrono::duration<double>(WallClock::now() - start).count();
@@ -417,7 +419,7 @@ template <class Real> std::optional<Outcome> Simulation<Real>::fault(const Parti
   for (std::size_t i = 0; i < s.variables().size(); ++i) {
     if (!isfinite(s.variables()[i])) return variable_fault(s, static_cast<Index>(i));
   }
-  if (all_finite(s.positions()) && all_finite(s.velocities())) return std::nullopt;
+  if (all_finite(s.positions(), s.velocities())) return std::nullopt;
   for (Index i = 0; i < s.size(); ++i) {
     for (int k = 0; k < 3; ++k) {
       const bool position = !isfinite(s.positions().component(k)[i]);

@@ -18,11 +18,17 @@ TEST_CASE("a number that is not finite is found in every place", "[finite]") {
   for (const SimdLevel level : all_levels()) {
     const AtLevel at(level);
     CAPTURE(name(level));
-    CHECK(finite_kernels().all(nullptr, 0));
+    CHECK(finite_kernels().all(nullptr, nullptr, 0));
     for (const std::size_t count : {8U, 24U, 48U}) {
       std::vector<double> numbers(count, largest);
       for (std::size_t k = 0; k < count; k += 2) numbers[k] = -largest;
-      const auto all = [&] { return finite_kernels().all(numbers.data(), static_cast<std::ptrdiff_t>(count)); };
+      const std::vector<double> others = numbers;
+      const auto all = [&] {
+        const auto size = static_cast<std::ptrdiff_t>(count);
+        const bool first = finite_kernels().all(numbers.data(), others.data(), size);
+        CHECK(finite_kernels().all(others.data(), numbers.data(), size) == first);
+        return first;
+      };
       CHECK(all());
       for (std::size_t k = 0; k < count; ++k) {
         for (const double bad : {infinity, -infinity, std::numeric_limits<double>::quiet_NaN()}) {
