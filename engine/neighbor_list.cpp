@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <chrono>
 #include <cstring>
 #include <limits>
@@ -25,8 +24,8 @@ static_assert(NeighborList::shells == neighbor_shells);
 constexpr Index most_images = 10'000;
 /// A record far from all others, whose squared distances are numbers.
 constexpr double nowhere = 1e140;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+/// The same in whole numbers: the box and its images take up less than half of them, around 0.
+constexpr std::int32_t whole_nowhere = std::numeric_limits<std::int32_t>::min();
 
 }  // namespace
 
@@ -53,79 +52,51 @@ struct NeighborList::Scratch {
   }
 };
 
-void NeighborList::update(const ParticleSystem<double>& s) {
-  if (version_ == s.version()) return;  // another force has asked for the same positions
+void NeighborList::update(const ParticleSystem<double>& s, Numbers numbers) {
+  if (numbers == Numbers::whole && !keep_whole_) {
+    keep_whole_ = true;
+    version_ = members_ = 0;  // search anew
+  }
+  if (version_ != s.version()) {
+    move_or_search(s, numbers);
+  } else if (version_of(numbers) != version_) {  // another force has asked for the same positions in other numbers
+    static_cast<void>(take_positions(s, numbers));
+  }
+  version_of(numbers) = version_;
+  if (!options_.verify) return;
+  numbers == Numbers::doubles ? verify(s) : update(s);
+}
+
+void NeighborList::move_or_search(const ParticleSystem<double>& s, Numbers numbers) {
   version_ = s.version();
   ++statistics_.updates;
   ++age_;
   bool search_now = !is_fresh(s);
   if (!search_now) {
-    const double approach = 2 * std::sqrt(take_positions(s));  // of two particles, at most
+    const double approach = 2 * std::sqrt(take_positions(s, numbers));  // of two particles, at most
     shell_ = 0;
     while (shell_ < shells && !(approach <= shell_radius(shell_) - range_)) ++shell_;
     search_now = options_.renewal > 0 ? age_ > options_.renewal : shell_ == shells;
     shell_ = std::min(shell_, shells - 1);
   }
-  if (search_now) {
-    const auto begin = std::chrono::steady_clock::now();
-    search(s);
-    statistics_.search_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  }
-  if (options_.verify) verify(s);
+  if (!search_now) return;
+  const auto begin = std::chrono::steady_clock::now();
+  search(s);
+  version_of(Numbers::doubles) = version_;
+  if (numbers == Numbers::whole) static_cast<void>(take_positions(s, numbers));
+  statistics_.search_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
 bool NeighborList::is_fresh(const ParticleSystem<double>& s) const {
   return statistics_.searches > 0 && box_ == s.box() && topology_ == s.shared_topology() && members_ == s.members();
 }
 
-/// Moves all records, and returns the square of the longest way that a particle has gone since the search.
-double NeighborList::take_positions(const ParticleSystem<double>& s) {
-  const VectorColumn<double>& positions = s.positions();
-  const Vec3<double> edges = box_.edges(), half = edges / 2, middle = middle_;
-  const double *x = positions.component(0), *y = positions.component(1), *z = positions.component(2);
-  // A particle that has crossed the box since stays where its neighbors expect it.
-  const auto crossed = [](double d, double edge, double limit) { return d > limit ? edge : d < -limit ? -edge : 0.0; };
-  // Doubles that are not negative compare as their bits do; what is no number is above all others.
-  std::atomic<std::uint64_t> longest{0};
-  for_blocks(s.size(), [&](Index begin, Index end) {
-    double block = 0;
-    for (Index i = begin; i < end; ++i) {
-      double px = x[i] - middle[0], py = y[i] - middle[1], pz = z[i] - middle[2];
-      double dx = px - start_[0][at(i)], dy = py - start_[1][at(i)], dz = pz - start_[2][at(i)];
-      if (edges[0] > 0) {
-        const double cx = crossed(dx, edges[0], half[0]), cy = crossed(dy, edges[1], half[1]),
-                     cz = crossed(dz, edges[2], half[2]);
-        px -= cx, py -= cy, pz -= cz;
-        dx -= cx, dy -= cy, dz -= cz;
-      }
-      const double moved2 = dx * dx + dy * dy + dz * dz;
-      if (!(moved2 <= block)) block = moved2;
-      double* record = records_.data() + 4 * record_of_[at(i)];
-      record[0] = px;
-      record[1] = py;
-      record[2] = pz;
-    }
-    std::uint64_t bits = std::bit_cast<std::uint64_t>(block) & ~(std::uint64_t{1} << 63U), known = longest.load();
-    while (bits > known && !longest.compare_exchange_weak(known, bits)) {
-    }
-  });
-  for_blocks(static_cast<Index>(ghosts_.size()), [&](Index begin, Index end) {
-    for (Index k = begin; k < end; ++k) {
-      const Ghost& ghost = ghosts_[at(k)];
-      const Vec3<double>& shift = shifts_[at(ghost.shift)];
-      const double* from = records_.data() + 4 * ghost.of;
-      double* to = records_.data() + 4 * ghost.record;
-      for (int c = 0; c < 3; ++c) to[c] = from[c] + shift[c];
-    }
-  });
-  return std::bit_cast<double>(longest.load());
-}
-
 /// The skin that costs least if particles go on moving as fast: what an update costs is the pairs it goes through, and
 /// its part of a search.
 void NeighborList::choose_skin() {
   if (options_.skin > 0) {
-    skin_ = options_.skin;
+    // Whole numbers have room for images up to twice as far out.
+    skin_ = keep_whole_ ? std::min(options_.skin, range_ + box_.edges().maxCoeff() / 2) : options_.skin;
     return;
   }
   if (skin_ == 0 || age_ <= 1) {
@@ -144,9 +115,9 @@ void NeighborList::choose_skin() {
 }
 
 void NeighborList::search(const ParticleSystem<double>& s) {
+  box_ = s.box();
   choose_skin();
   const double reach = range_ + skin_;
-  box_ = s.box();
   members_ = s.members();
   if (topology_ != s.shared_topology() || statistics_.searches == 0) {
     topology_ = s.shared_topology();
@@ -170,8 +141,9 @@ std::size_t NeighborList::bytes() const {
   const auto of = [](const auto&... vectors) {
     return (std::size_t{0} + ... + (vectors.capacity() * sizeof(*vectors.data())));
   };
-  std::size_t sum = grid_.bytes() + of(records_, record_of_, ghosts_, shifts_, particles_, lanes_, row_begin_, entries_,
-                                       owner_, shift_, source_, excluded_begin_, excluded_, has_images_);
+  std::size_t sum =
+      grid_.bytes() + of(records_, whole_records_, record_of_, ghosts_, shifts_, particles_, lanes_, row_begin_,
+                         entries_, owner_, shift_, source_, excluded_begin_, excluded_, has_images_);
   for (std::size_t k = 0; k < 3; ++k) sum += of(start_[k], points_[k], sorted_[k], single_[k]);
   return sum;
 }
@@ -217,17 +189,6 @@ void NeighborList::place_points(const ParticleSystem<double>& s, double reach) {
   }
 }
 
-/// Shifts by whole edges, those along x first; the one by nothing in the middle.
-void NeighborList::number_shifts(const std::array<int, 3>& most) {
-  shifts_.clear();
-  const Vec3<double>& edges = box_.edges();
-  for (int c = -most[2]; c <= most[2]; ++c) {
-    for (int b = -most[1]; b <= most[1]; ++b) {
-      for (int a = -most[0]; a <= most[0]; ++a) shifts_.emplace_back(a * edges[0], b * edges[1], c * edges[2]);
-    }
-  }
-}
-
 /// Images, shifted along one axis, of all points so far that lie up to `reach` from the box.
 void NeighborList::add_images(int k, int most, std::int32_t stride, double reach) {
   const double lower = -middle_[k] - reach, upper = box_.edges()[k] - middle_[k] + reach;
@@ -265,6 +226,7 @@ void NeighborList::add_images(int k, int most, std::int32_t stride, double reach
 
 void NeighborList::set_type(Index record, std::int64_t type) {
   std::memcpy(&records_[at(4 * record + 3)], &type, sizeof type);
+  if (keep_whole_) whole_records_[at(4 * record + 3)] = static_cast<std::int32_t>(type);
 }
 
 /// Records in the order of the cells; behind them one that is nowhere.
@@ -274,6 +236,7 @@ void NeighborList::lay_out(const ParticleSystem<double>& s) {
   const auto count = static_cast<Index>(order.size());
   const Topology* topology = s.topology();
   records_.resize(at(4 * (count + 1)));
+  whole_records_.resize(keep_whole_ ? records_.size() : 0);
   record_of_.resize(at(n));
   source_.resize(at(count));
   has_images_.assign(excluded_.empty() ? 0 : at(n), 0);
@@ -302,6 +265,7 @@ void NeighborList::lay_out(const ParticleSystem<double>& s) {
     if (!excluded_.empty()) has_images_[at(owner)] = 1;
   }
   for (int k = 0; k < 3; ++k) records_[at(4 * count + k)] = nowhere;
+  for (int k = 0; k < 3 && keep_whole_; ++k) whole_records_[at(4 * count + k)] = whole_nowhere;
   set_type(count, 0);
 }
 

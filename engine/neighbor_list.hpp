@@ -41,9 +41,13 @@ class NeighborList {
 
   double range() const { return range_; }
 
-  /// Takes the positions of the particles, which in a periodic box are wrapped; searches if somebody has moved too far.
+  /// What records are kept in.
+  enum class Numbers : std::uint8_t { doubles, whole };
+
+  /// Takes the positions of the particles, which in a periodic box are wrapped, into records of these numbers; searches
+  /// if somebody has moved too far. Whole numbers are for a periodic box.
   /// @throws Error  if the box is so small that a particle would have more than 10 000 images
-  void update(const ParticleSystem<double>& s);
+  void update(const ParticleSystem<double>& s, Numbers numbers = Numbers::doubles);
 
   /// Eight particles and their neighbors. A lane without a particle has -1 in `particles`.
   struct Group {
@@ -62,6 +66,13 @@ class NeighborList {
   /// place of a fourth number the type as std::int64_t.
   const double* records() const { return records_.data(); }
 
+  /// Records of the same entries in whole numbers, shape (records, 4): x, y, z in whole numbers of `whole_spacing`,
+  /// whose differences are right modulo 2^32, and the type. They depend on the box and the range alone, not on when
+  /// neighbors were found.
+  const std::int32_t* whole_records() const { return whole_records_.data(); }
+  /// A power of two [length].
+  double whole_spacing() const;
+
   const NeighborStatistics& statistics() const { return statistics_; }
 
   /// Compares the list with all pairs.
@@ -79,9 +90,15 @@ class NeighborList {
   };
   struct Scratch;
   struct Surroundings;
+  class WholeNumbers;
 
+  static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   bool is_fresh(const ParticleSystem<double>& s) const;
-  double take_positions(const ParticleSystem<double>& s);
+  void move_or_search(const ParticleSystem<double>& s, Numbers numbers);
+  double take_positions(const ParticleSystem<double>& s, Numbers numbers);
+  template <class Put, class Shift>
+  double move_records(const ParticleSystem<double>& s, const Put& put, const Shift& shift);
+  std::uint64_t& version_of(Numbers numbers) { return versions_[static_cast<std::size_t>(numbers)]; }
   void search(const ParticleSystem<double>& s);
   void choose_skin();
   void place_points(const ParticleSystem<double>& s, double reach);
@@ -105,9 +122,10 @@ class NeighborList {
   NeighborOptions options_;
   double skin_ = 0;
   NeighborStatistics statistics_;
-  std::uint64_t version_ = 0;  ///< of the positions it was brought up to
-  std::int64_t age_ = 0;       ///< updates since the last search
-  int shell_ = 0;              ///< the outermost that can have come into range since
+  std::uint64_t version_ = 0;                ///< of the positions it was brought up to
+  std::array<std::uint64_t, 2> versions_{};  ///< and of those in the records of either numbers
+  std::int64_t age_ = 0;                     ///< updates since the last search
+  int shell_ = 0;                            ///< the outermost that can have come into range since
 
   // What the last search was made for.
   Box box_;
@@ -118,9 +136,12 @@ class NeighborList {
 
   // Records, and where they come from.
   AlignedVector<double> records_;
+  AlignedVector<std::int32_t> whole_records_;  ///< empty unless somebody has asked for them
+  bool keep_whole_ = false;
   std::vector<std::int32_t> record_of_;  ///< by particle
   std::vector<Ghost> ghosts_;
   std::vector<Vec3<double>> shifts_;
+  std::vector<std::array<std::int32_t, 3>> whole_shifts_;
 
   // Groups and their rows.
   std::vector<std::int32_t> particles_, lanes_;

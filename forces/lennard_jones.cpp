@@ -1,5 +1,6 @@
 #include "forces/lennard_jones.hpp"
 
+#include "forces/lennard_jones_mixed_simd.hpp"
 #include "forces/lennard_jones_simd.hpp"
 #include "forces/pair_groups.hpp"
 
@@ -15,7 +16,7 @@ namespace {
 
 constexpr double default_switch = 0.9;  // parts of the cutoff
 /// Units below the scale of the strongest attraction, 24 epsilon / sigma.
-constexpr int unit_bits = 47;
+constexpr int unit_bits = 47, mixed_unit_bits = 21;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
@@ -76,6 +77,8 @@ void LennardJonesForce::check_types(const Topology* topology, const Box& box) co
   check();
   if (tail && !box.is_periodic())
     throw Error("lennard_jones: a tail is the mean of an endless liquid; it needs a periodic box");
+  if (precision == PairPrecision::mixed && !box.is_periodic())
+    throw Error("lennard_jones: mixed precision measures places in parts of a periodic box; there is none");
   if (epsilon) return;
   if (topology == nullptr || topology->pair_kinds.empty()) {
     throw Error(
@@ -126,19 +129,66 @@ const detail::LennardJonesTable& LennardJonesForce::table_for(const std::shared_
   return *table;
 }
 
+const detail::LennardJonesMixedTable& LennardJonesForce::mixed_table_for(double spacing) const {
+  if (mixed_table && mixed_table->of == table && mixed_table->spacing == spacing) return *mixed_table;
+  auto made = std::make_shared<detail::LennardJonesMixedTable>();
+  made->of = table;
+  made->spacing = spacing;
+  made->force_unit = std::ldexp(table->force_unit, unit_bits - mixed_unit_bits);
+  const double unit = std::ldexp(1.0, std::ilogb(cutoff));  // so that no power of it leaves the range of floats
+  made->inverse2_unit = unit * unit / (spacing * spacing);
+  const double u2 = unit * unit, u6 = u2 * u2 * u2, s2 = spacing * spacing;
+  const double force = spacing / made->force_unit, energy = 1 / (spacing * made->force_unit);
+  for (const LennardJonesRow& row : table->rows) {
+    LennardJonesRow mixed;
+    mixed.range2 = row.range2 / s2;
+    mixed.close2 = std::pow(row.force12 / (0x1.8p27 * made->force_unit), 2.0 / 13.0) / s2;
+    mixed.force12 = row.force12 / (u6 * u6 * u2) * force;
+    mixed.force6 = row.force6 / (u6 * u2) * force;
+    mixed.energy12 = row.energy12 / (u6 * u6) * energy;
+    mixed.energy6 = row.energy6 / u6 * energy;
+    if (table->style == LennardJonesStyle::switch_c2 || table->style == LennardJonesStyle::switch_c4) {
+      mixed.style[0] = row.style[0] / s2;
+      mixed.style[1] = row.style[1] * s2;
+    } else {
+      mixed.style[1] = row.style[1] / unit * force;
+    }
+    made->rows.push_back(mixed);
+  }
+  mixed_table = made;
+  return *mixed_table;
+}
+
 void LennardJonesForce::add_lanes(ForceSink<double>& out, const ParticleSystem<double>& s) const {
   const detail::LennardJonesTable& known = table_for(s.shared_topology(), s.size());
   std::optional<NeighborList> own;
   NeighborList& list = out.neighbors() != nullptr ? *out.neighbors() : own.emplace(cutoff);
-  list.update(s);
+  const bool mixed = precision == PairPrecision::mixed, sums = out.wants_energy() || out.wants_virial();
+  if (mixed) list.update(s, NeighborList::Numbers::whole);
+  if (!mixed || sums) list.update(s);
   const LennardJonesKernels& kernels = lennard_jones_kernels();
-  const auto style = static_cast<std::size_t>(known.style), many = static_cast<std::size_t>(known.types > 1),
-             sums = static_cast<std::size_t>(out.wants_energy() || out.wants_virial());
-  const SumPairs quick = kernels.quick[style][many][sums], careful = kernels.careful[style][many][sums];
+  const auto style = static_cast<std::size_t>(known.style), many = static_cast<std::size_t>(known.types > 1);
+  const SumPairs quick = kernels.quick[style][many][sums ? 1 : 0], careful = kernels.careful[style][many][sums ? 1 : 0];
   const PairField field{list.records(), known.rows.data(), known.types, known.force_unit, known.energy_unit};
-  detail::add_pair_groups(
-      out, s, list, {known.force_unit, known.energy_unit}, "Lennard-Jones",
-      [&](const PairGroup& group, PairSums& found, bool care) { (care ? careful : quick)(field, group, found); });
+  const auto sum_doubles = [&](const PairGroup& group, PairSums& found, bool care) {
+    (care ? careful : quick)(field, group, found);
+  };
+  if (mixed) {
+    const detail::LennardJonesMixedTable& table_in_use = mixed_table_for(list.whole_spacing());
+    const LennardJonesMixedKernels& mixed_kernels = lennard_jones_mixed_kernels();
+    const SumMixedPairs mixed_quick = mixed_kernels.quick[style][many],
+                        mixed_careful = mixed_kernels.careful[style][many];
+    const MixedPairField whole{list.whole_records(), table_in_use.rows.data(), known.types, table_in_use.inverse2_unit};
+    detail::add_pair_groups(out, s, list, {table_in_use.force_unit, known.energy_unit}, "Lennard-Jones",
+                            [&](const PairGroup& group, PairSums& found, bool care) {
+                              if (sums) sum_doubles(group, found, care);  // for energies and virials
+                              const bool close = sums && found.close;
+                              (care ? mixed_careful : mixed_quick)(whole, group, found);
+                              found.close = found.close || close;
+                            });
+  } else {
+    detail::add_pair_groups(out, s, list, {known.force_unit, known.energy_unit}, "Lennard-Jones", sum_doubles);
+  }
   detail::add_scaled_pairs(out, s, terms_of(s));
   add_tail(out, s);
 }

@@ -21,6 +21,17 @@
 
 namespace noether {
 
+/// What forces of pairs are computed in.
+enum class PairPrecision : std::uint8_t {
+  full,   ///< doubles
+  mixed,  ///< forces between two particles in single precision, their sums in whole numbers; energies in doubles
+};
+
+template <> struct EnumNames<PairPrecision> {
+  static constexpr std::array<std::pair<PairPrecision, std::string_view>, 2> values = {
+      {{PairPrecision::full, "double"}, {PairPrecision::mixed, "mixed"}}};
+};
+
 namespace detail {
 
 /// What `lennard_jones_simd.cpp` does in lanes of doubles.
@@ -52,6 +63,14 @@ struct LennardJonesTable {
   std::array<double, 7> key{};
   std::shared_ptr<const Topology> topology;
 };
+
+/// The same rows for lengths in whole numbers of `spacing` and forces in whole numbers of `force_unit`.
+struct LennardJonesMixedTable {
+  std::vector<LennardJonesRow> rows;
+  double spacing = 0, force_unit = 1;
+  double inverse2_unit = 1;  ///< rows are for 1/r^2 times this number
+  std::shared_ptr<const LennardJonesTable> of;
+};
 }  // namespace detail
 
 /// Lennard-Jones pairs, cut off in one of five ways.
@@ -65,6 +84,10 @@ struct LennardJonesTable {
 /// Doubles are summed in whole units of 2^-47 of the strongest attraction's scale, so that a sum depends on no order:
 /// forces have the same bits for any neighbor list and any number of threads, and add up to nothing exactly. A pair
 /// stronger than 2^61 units ends the run as `overlap`.
+///
+/// In mixed precision distances are differences of whole numbers, 2^-29 of the box or finer, and the force of a pair is
+/// right to 1e-6 of itself and 2^-21 of the strongest attraction's scale; the sums are as exact as the others, so that
+/// all that is said of bits and of momentum holds. Energies and virials are those of doubles. Periodic boxes only.
 /// @cost doubles O(n); other number types O(n^2)
 /// @source LennardJones1931, Verlet1967
 struct LennardJonesForce {
@@ -73,7 +96,9 @@ struct LennardJonesForce {
   std::optional<double> switch_from = {};          ///< where a switch begins [length]; default: 0.9 cutoff
   bool tail = false;                               ///< add what pairs beyond the cutoff give on the average
   std::optional<double> epsilon = {}, sigma = {};  ///< of all pairs [energy], [length]; default: by types
+  PairPrecision precision = PairPrecision::full;   ///<
   mutable std::shared_ptr<const detail::LennardJonesTable> table = {};  ///< made from these and the particles' types
+  mutable std::shared_ptr<const detail::LennardJonesMixedTable> mixed_table = {};  ///< the same
 
   static constexpr auto describe() {
     return part<LennardJonesForce>(
@@ -85,7 +110,8 @@ struct LennardJonesForce {
         field<&LennardJonesForce::switch_from>("switch_from", "length", "of the switches; default: 0.9 cutoff"),
         field<&LennardJonesForce::tail>("tail", "1", "energy and pressure of pairs beyond the cutoff, g(r) = 1"),
         field<&LennardJonesForce::epsilon>("epsilon", "energy", "depth of all pairs; default: by types"),
-        field<&LennardJonesForce::sigma>("sigma", "length", "of all pairs; default: by types"));
+        field<&LennardJonesForce::sigma>("sigma", "length", "of all pairs; default: by types"),
+        field<&LennardJonesForce::precision>("precision", "1", "mixed: forces of pairs in single precision"));
   }
   ForceClaims claims() const { return {.periodic = true, .range = cutoff}; }
 
@@ -109,6 +135,7 @@ struct LennardJonesForce {
  private:
   void check_types(const Topology* topology, const Box& box) const;
   const detail::LennardJonesTable& table_for(const std::shared_ptr<const Topology>& topology, Index n) const;
+  const detail::LennardJonesMixedTable& mixed_table_for(double spacing) const;
   void add_lanes(ForceSink<double>& out, const ParticleSystem<double>& s) const;
   template <class Real> auto terms_of(const ParticleSystem<Real>& s) const;
   template <class Real> void add_tail(ForceSink<Real>& out, const ParticleSystem<Real>& s) const;

@@ -2,6 +2,7 @@
 /// Eight particles and their neighbors in lanes of doubles: loading pairs, and summing what they do in whole units. For
 /// `*_simd.cpp` alone.
 
+#include "forces/lesser_simd.hpp"
 #include "forces/pair_row.hpp"
 
 #include <hwy/highway.h>
@@ -19,15 +20,6 @@ using Whole = hn::Rebind<std::int64_t, Lanes>;
 using Vector = hn::Vec<Lanes>;
 using WholeVector = hn::Vec<Whole>;
 constexpr std::ptrdiff_t lanes = hn::MaxLanes(Lanes());
-
-/// The lesser of two numbers.
-HWY_INLINE Vector lesser(Vector a, Vector b) {
-#if HWY_TARGET == HWY_SCALAR
-  return hn::IfThenElse(hn::Lt(b, a), b, a);  // hn::Min is a function of the standard library there
-#else
-  return hn::Min(a, b);
-#endif
-}
 
 /// x, y and z of as many records as there are lanes.
 struct Points {

@@ -5,6 +5,7 @@
 #include "engine/simulation.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
+#include "forces/lennard_jones.hpp"
 #include "forces/linear_drag.hpp"
 #include "forces/oblateness.hpp"
 #include "forces/sum.hpp"
@@ -16,6 +17,7 @@
 #include "io/digest.hpp"
 #include "scene/scene.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/liquid.hpp"
 #include "tests/support/planets.hpp"
 #include "tests/support/settings.hpp"
 
@@ -37,6 +39,7 @@ struct Twin {
   double step;
   std::string hamiltonian;  ///< of the scene
   std::string method;
+  std::string place = {};  ///< where the scene's particles are, if not in open space
 };
 
 /// One way to make the run.
@@ -50,11 +53,10 @@ struct Way {
 Simulation<double> simulation_of(const Twin& twin, const Way& way) {
   const std::string watch = way.cadence > 0 ? fmt::format("[[every]]\ntype='energy'\nsteps={0}\n", way.cadence) : "";
   const auto from_scene = [&] {
-    Scene scene =
-        read_scene(fmt::format("units='reduced'\n[[particles.body]]\nname='replaced'\nmass=1\nx=[0,0,0]\nv=[0,0,0]\n"
-                               "{}[integrator]\nmethod='{}'\nstep={}\nsteps={}\n{}",
-                               twin.hamiltonian, twin.method, twin.step, steps, watch),
-                   "scene.toml");
+    Scene scene = read_scene(fmt::format("units='reduced'\n{}[[particles.body]]\nname='replaced'\nmass=1\nx=[0,0,0]\n"
+                                         "v=[0,0,0]\n{}[integrator]\nmethod='{}'\nstep={}\nsteps={}\n{}",
+                                         twin.place, twin.hamiltonian, twin.method, twin.step, steps, watch),
+                             "scene.toml");
     scene.particles = twin.bodies;
     return assemble(scene);
   };
@@ -161,8 +163,26 @@ std::vector<Twin> wisdom_holman_twins(Coordinates coordinates) {
   return twins;
 }
 
+std::vector<Twin> liquid_twins() {
+  std::vector<Twin> twins;
+  for (const PairPrecision precision : {PairPrecision::full, PairPrecision::mixed}) {
+    const LennardJonesForce argon{.cutoff = 2.2, .epsilon = 1.0, .sigma = 1.0, .precision = precision};
+    twins.push_back({.name = precision == PairPrecision::full ? "a liquid" : "a liquid in mixed precision",
+                     .bodies = test::liquid(5, 0.85, 1, 0.1),
+                     .program = compose(KineticPotential(argon), schemes::blanes_moan_s6),
+                     .step = 0.01,
+                     .hamiltonian = fmt::format("[hamiltonian]\ntype='kinetic_potential'\n[[hamiltonian.force]]\n"
+                                                "type='lennard_jones'\ncutoff=2.2\nepsilon=1\nsigma=1\n"
+                                                "precision='{}'\n",
+                                                precision == PairPrecision::full ? "double" : "mixed"),
+                     .method = "blanes_moan_s6",
+                     .place = "[particles]\nbox=[9,9,9]\n"});
+  }
+  return twins;
+}
+
 void check_all_twins(std::size_t stride) {
-  for (const auto& twins : {gravity_twins(), force_twins(), wisdom_holman_twins(Coordinates::jacobi),
+  for (const auto& twins : {gravity_twins(), force_twins(), liquid_twins(), wisdom_holman_twins(Coordinates::jacobi),
                             wisdom_holman_twins(Coordinates::democratic)}) {
     for (const Twin& twin : twins) check_ways(twin, stride);
   }

@@ -26,29 +26,15 @@ LennardJonesForce argon(Cutoff style, double cutoff = 2.5) {
   return {.cutoff = cutoff, .cutoff_style = style, .epsilon = 1.0, .sigma = 1.0};
 }
 
-const Cutoff styles[] = {Cutoff::plain, Cutoff::shifted, Cutoff::shifted_force, Cutoff::switch_c2, Cutoff::switch_c4};
-
-/// Two kinds of atoms, some pairs left out and some at half their strength.
-ParticleSystem<double> mixture() {
-  ParticleSystem<double> s = liquid(3, 0.5, 1, 0.2);
-  auto topology = std::make_shared<Topology>();
-  for (Index i = 0; i < s.size(); ++i) topology->types.push_back(i % 3 == 0 ? 1 : 0);
-  topology->pair_kinds = {{1, 1}, {0.5, 1.2}};
-  topology->explicit_pairs[{0, 1}] = {0.8, 1.05};
-  topology->exclusions = {{0, 1}, {4, 9}};
-  topology->scaled_pairs = {{{0, 2}, 0.5}, {{0, 3}, 0.25}};
-  s.set_topology(topology);
-  return s;
-}
-
 }  // namespace
 
 TEST_CASE("forces, energy and virial in lanes are those of 113 bits, for every end of the range", "[lennard_jones]") {
-  const Cutoff style = styles[GENERATE(range(0, 5))];
+  const Cutoff style = test::cutoff_styles[GENERATE(range(0, 5))];
   for (const SimdLevel level : all_levels()) {
     const test::AtLevel at(level);
     CAPTURE(name(level), static_cast<int>(style));
-    for (const auto& s : {liquid(3, 0.85, 1, 0.1), mixture(), liquid(1, 0.85, 1, 0.1)}) {
+    for (const auto& s :
+         {liquid(3, 0.85, 1, 0.1), test::with_two_types(liquid(3, 0.5, 1, 0.2)), liquid(1, 0.85, 1, 0.1)}) {
       LennardJonesForce force = argon(style, 2.2);
       if (s.topology() != nullptr) force.epsilon = force.sigma = std::nullopt;
       const Evaluated lanes = evaluated<double>(force, s), exact = evaluated<Quad>(force, s);

@@ -3,12 +3,29 @@
 
 #include "engine/force_sink.hpp"
 #include "engine/neighbor_list.hpp"
+#include "forces/pairs.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/settings.hpp"
 
+#include <memory>
 #include <optional>
 
 namespace noether::test {
+
+inline constexpr Cutoff cutoff_styles[] = {Cutoff::plain, Cutoff::shifted, Cutoff::shifted_force, Cutoff::switch_c2,
+                                           Cutoff::switch_c4};
+
+/// The same particles as two kinds of atoms, some pairs left out and some at half their strength.
+inline ParticleSystem<double> with_two_types(ParticleSystem<double> s) {
+  auto topology = std::make_shared<Topology>();
+  for (Index i = 0; i < s.size(); ++i) topology->types.push_back(i % 3 == 0 ? 1 : 0);
+  topology->pair_kinds = {{1, 1}, {0.5, 1.2}};
+  topology->explicit_pairs[{0, 1}] = {0.8, 1.05};
+  topology->exclusions = {{0, 1}, {4, 9}};
+  topology->scaled_pairs = {{{0, 2}, 0.5}, {{0, 3}, 0.25}};
+  s.set_topology(topology);
+  return s;
+}
 
 struct Evaluated {
   VectorColumn<double> a;

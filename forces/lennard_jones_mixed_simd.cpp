@@ -1,0 +1,244 @@
+#include "forces/lennard_jones_mixed_simd.hpp"
+
+#include "forces/lennard_jones_lanes_simd.hpp"
+#include "forces/lesser_simd.hpp"
+
+namespace noether::NOETHER_SIMD_LEVEL {
+
+namespace {
+
+using Lanes = hn::CappedTag<float, 16>;
+using Whole = hn::Rebind<std::int32_t, Lanes>;
+using Vector = hn::Vec<Lanes>;
+using WholeVector = hn::Vec<Whole>;
+constexpr std::ptrdiff_t lanes = hn::MaxLanes(Lanes());
+constexpr std::ptrdiff_t group_size = 8;
+/// Rows of neighbors that go through the lanes together, and how much of a row does.
+constexpr std::ptrdiff_t rows_at_once = lanes > group_size ? lanes / group_size : 1;
+constexpr std::ptrdiff_t lanes_of_group = lanes > group_size ? group_size : lanes;
+
+/// x, y and z of as many records as there are lanes.
+struct Points {
+  WholeVector x, y, z;
+};
+
+#if HWY_TARGET == HWY_SCALAR
+
+HWY_INLINE Points load_points(const std::int32_t* records, const std::int32_t* offsets) {
+  const std::int32_t* one = records + offsets[0];
+  return {hn::Set(Whole(), one[0]), hn::Set(Whole(), one[1]), hn::Set(Whole(), one[2])};
+}
+
+#else
+
+/// Records first, first + 4, ... side by side.
+template <class D> HWY_INLINE hn::Vec<D> every_fourth(D d, const std::int32_t* records, const std::int32_t* offsets) {
+  if constexpr (hn::MaxLanes(D()) > 4) {
+    const hn::Half<D> half;
+    return hn::Combine(d, every_fourth(half, records, offsets + hn::MaxLanes(half)),
+                       every_fourth(half, records, offsets));
+  } else {
+    return hn::LoadU(d, records + static_cast<std::ptrdiff_t>(offsets[0]));
+  }
+}
+
+/// Records are loaded whole, 16 bytes each, and turned.
+HWY_INLINE Points load_points(const std::int32_t* records, const std::int32_t* offsets) {
+  const Whole i;
+  const hn::Repartition<std::int64_t, Whole> pairs;
+  const auto a = every_fourth(i, records, offsets), b = every_fourth(i, records, offsets + 1),
+             c = every_fourth(i, records, offsets + 2), e = every_fourth(i, records, offsets + 3);
+  const auto xy_low = hn::BitCast(pairs, hn::InterleaveLower(i, a, b)),
+             xy_high = hn::BitCast(pairs, hn::InterleaveLower(i, c, e)),
+             z_low = hn::BitCast(pairs, hn::InterleaveUpper(i, a, b)),
+             z_high = hn::BitCast(pairs, hn::InterleaveUpper(i, c, e));
+  return {hn::BitCast(i, hn::InterleaveLower(pairs, xy_low, xy_high)),
+          hn::BitCast(i, hn::InterleaveUpper(pairs, xy_low, xy_high)),
+          hn::BitCast(i, hn::InterleaveLower(pairs, z_low, z_high))};
+}
+
+#endif
+
+/// From the particles in the lanes to their neighbors.
+struct Distances {
+  Vector dx, dy, dz, r2;
+};
+
+HWY_INLINE Distances distances(const Points& own, const Points& other) {
+  const Lanes d;
+  const Vector dx = hn::ConvertTo(d, hn::Sub(own.x, other.x)), dy = hn::ConvertTo(d, hn::Sub(own.y, other.y)),
+               dz = hn::ConvertTo(d, hn::Sub(own.z, other.z));
+  return {dx, dy, dz, hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)))};
+}
+
+/// The nearest whole numbers, of numbers below 2^31: hn::NearestInt asks for larger ones too, in four instructions.
+HWY_INLINE WholeVector nearest_whole(Vector x) {
+#if HWY_TARGET <= HWY_AVX3
+  return WholeVector{_mm512_cvtps_epi32(x.raw)};
+#elif HWY_TARGET == HWY_AVX2
+  return WholeVector{_mm256_cvtps_epi32(x.raw)};
+#elif HWY_TARGET == HWY_SCALAR
+  const double shifted = static_cast<double>(hn::GetLane(x)) + 6755399441055744.0;  // 1.5 x 2^52
+  std::int64_t bits = 0;
+  __builtin_memcpy(&bits, &shifted, sizeof bits);
+  return hn::Set(Whole(), static_cast<std::int32_t>(bits));
+#else
+  return hn::NearestInt(x);
+#endif
+}
+
+/// A sum of products below 2^28, each rounded to a whole number.
+struct QuickSum {
+  static constexpr std::ptrdiff_t most = 7;  ///< products that a lane of 32 bits has room for
+
+#if HWY_TARGET == HWY_SCALAR
+  std::int64_t sum = 0;
+  std::int32_t recent = 0;
+
+  HWY_INLINE void add(Vector a, Vector b) { recent += hn::GetLane(nearest_whole(hn::Mul(a, b))); }
+  HWY_INLINE void widen() {
+    sum += recent;
+    recent = 0;
+  }
+  HWY_INLINE void store(std::int64_t* out) const { out[0] = sum; }
+#else
+  using HalfWhole = hn::Half<Whole>;
+  using Wide = hn::Rebind<std::int64_t, HalfWhole>;
+  WholeVector recent = hn::Zero(Whole());
+  hn::Vec<Wide> lower = hn::Zero(Wide()), upper = hn::Zero(Wide());
+
+  HWY_INLINE void add(Vector a, Vector b) { recent = hn::Add(recent, nearest_whole(hn::Mul(a, b))); }
+  HWY_INLINE void widen() {
+    const Wide wide;
+    const HalfWhole half;
+    lower = hn::Add(lower, hn::PromoteTo(wide, hn::LowerHalf(half, recent)));
+    upper = hn::Add(upper, hn::PromoteTo(wide, hn::UpperHalf(half, recent)));
+    recent = hn::Zero(Whole());
+  }
+  HWY_INLINE void store(std::int64_t* out) const {
+    const Wide wide;
+    if constexpr (rows_at_once > 1) {
+      hn::StoreU(hn::Add(lower, upper), wide, out);
+    } else {
+      hn::StoreU(lower, wide, out);
+      hn::StoreU(upper, wide, out + lanes / 2);
+    }
+  }
+#endif
+};
+
+/// The same sum for products up to 2^35; a stronger one is noted, and only its direction counts.
+struct CarefulSum {
+  static constexpr std::ptrdiff_t most = 7;
+  static constexpr std::int64_t strongest = std::int64_t{1} << 31U;
+
+  std::int64_t sum[lanes_of_group] = {};
+  bool strong[lanes_of_group] = {};
+
+  void add(Vector a, Vector b) {
+    float product[lanes];
+    hn::StoreU(hn::Mul(a, b), Lanes(), product);
+    for (std::ptrdiff_t k = 0; k < lanes; ++k) {
+      const bool weak = product[k] < 0x1p35F && product[k] > -0x1p35F;
+      strong[k % lanes_of_group] = strong[k % lanes_of_group] || !weak;
+      sum[k % lanes_of_group] += weak             ? __builtin_llrintf(product[k])
+                                 : product[k] > 0 ? strongest
+                                 : product[k] < 0 ? -strongest
+                                                  : 0;
+    }
+  }
+  void widen() {}
+  void store(std::int64_t* out) const {
+    for (std::ptrdiff_t k = 0; k < lanes_of_group; ++k) out[k] = sum[k];
+  }
+};
+
+/// Forces of the particles of a group from `first` on.
+template <LennardJonesStyle style, bool many_types, class Sum>
+HWY_INLINE void sum_lanes(const MixedPairField& field, const PairGroup& group, std::ptrdiff_t first, PairSums& out) {
+  const Lanes d;
+  Sum force[3];
+  std::int32_t own_records[lanes];
+  for (std::ptrdiff_t k = 0; k < lanes; ++k) own_records[k] = group.records[first + k % lanes_of_group];
+  const Points own = load_points(field.records, own_records);
+  const LennardJonesRow* rows[lanes];
+  for (std::ptrdiff_t k = 0; k < lanes && many_types; ++k) {
+    rows[k] = field.rows + field.records[own_records[k] + 3] * field.types;
+  }
+  const Parameters<Lanes> one_row(field.rows[0]);
+  const Vector unit = hn::Set(d, static_cast<float>(field.inverse2_unit));
+  Vector nearest = hn::Set(d, 1e30F);  // of many types less the distance at which a pair is close
+  const std::ptrdiff_t turns = (group.rows + rows_at_once - 1) / rows_at_once;
+  constexpr std::ptrdiff_t stride = group_size * rows_at_once;
+  const std::int32_t* entries = group.entries + first;
+  for (std::ptrdiff_t turn = 0; turn < turns;) {
+    const std::ptrdiff_t until = turn + Sum::most < turns ? turn + Sum::most : turns;
+    for (; turn < until; ++turn, entries += stride) {
+      __builtin_prefetch(entries + 1024);
+      const Distances pair = distances(own, load_points(field.records, entries));
+      const Vector inverse2 = hn::Div(unit, pair.r2);
+      const auto sum = [&](const Parameters<Lanes>& p) HWY_ATTR {
+        const Vector strength = terms_of<style, false>(pair.r2, inverse2, p).force;
+        const Vector k = hn::IfThenElseZero(hn::Lt(pair.r2, p.range2), strength);
+        force[0].add(k, pair.dx);
+        force[1].add(k, pair.dy);
+        force[2].add(k, pair.dz);
+      };
+      if constexpr (many_types) {
+        const Parameters<Lanes> p([&](std::ptrdiff_t k) -> const auto& {
+          return rows[k][field.records[entries[k] + 3]];
+        });
+        nearest = lesser(nearest, hn::Sub(pair.r2, p.close2));
+        sum(p);
+      } else {
+        nearest = lesser(nearest, pair.r2);
+        sum(one_row);
+      }
+    }
+    for (Sum& one : force) one.widen();
+  }
+  for (int k = 0; k < 3; ++k) force[k].store(out.force[k] + first);
+  if constexpr (requires { force[0].strong; }) {
+    for (std::ptrdiff_t k = 0; k < lanes_of_group; ++k) {
+      out.strong[first + k] = force[0].strong[k] || force[1].strong[k] || force[2].strong[k];
+    }
+  }
+  const auto close = hn::Lt(nearest, many_types ? hn::Zero(d) : one_row.close2);
+  out.close = out.close || !hn::AllFalse(d, close);
+}
+
+template <LennardJonesStyle style, bool many_types, class Sum>
+void sum_pairs(const MixedPairField& field, const PairGroup& group, PairSums& out) {
+  out.close = false;
+  if (group.rows == 0) {
+    __builtin_memset(&out, 0, sizeof out);
+    return;
+  }
+  for (std::ptrdiff_t first = 0; first < group_size; first += lanes_of_group) {
+    sum_lanes<style, many_types, Sum>(field, group, first, out);
+  }
+}
+
+template <LennardJonesStyle style> constexpr void fill(LennardJonesMixedKernels& kernels, std::size_t place) {
+  kernels.quick[place][0] = sum_pairs<style, false, QuickSum>;
+  kernels.quick[place][1] = sum_pairs<style, true, QuickSum>;
+  kernels.careful[place][0] = sum_pairs<style, false, CarefulSum>;
+  kernels.careful[place][1] = sum_pairs<style, true, CarefulSum>;
+}
+
+constexpr LennardJonesMixedKernels all_kernels() {
+  using enum LennardJonesStyle;
+  LennardJonesMixedKernels kernels{};
+  fill<shifted>(kernels, 0);
+  fill<shifted_force>(kernels, 1);
+  fill<switch_c2>(kernels, 2);
+  fill<switch_c4>(kernels, 3);
+  return kernels;
+}
+
+}  // namespace
+
+extern const LennardJonesMixedKernels lennard_jones_mixed_kernels;
+constinit const LennardJonesMixedKernels lennard_jones_mixed_kernels = all_kernels();
+
+}  // namespace noether::NOETHER_SIMD_LEVEL
