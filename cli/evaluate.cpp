@@ -79,7 +79,10 @@ void print_text(const Scene& scene, const Evaluation& e) {
   for (const auto& [name, value] : e.terms) fmt::print("    {:<18}{}\n", name, energy(value));
   fmt::print("{:<22}{}\n", "trace of the virial", energy(e.virial.trace()));
   fmt::print("{:<22}{}\n", "largest force", with_unit(e.force_max, dimensions::force));
-  if (e.gradient_error) fmt::print("{:<22}{:.2g} of the largest force\n", "force against -grad U", *e.gradient_error);
+  if (!e.gradient_error) return;
+  const Index particles = scene.particles.size(), asked = e.gradient_asked;
+  fmt::print("{:<22}{:.2g} of the largest force{}\n", "force against -grad U", *e.gradient_error,
+             asked < particles ? fmt::format(", asked at {} of {} particles", asked, particles) : "");
 }
 
 int evaluate_scene(const EvaluateArguments& given) {

@@ -1,5 +1,6 @@
 #include "scene/evaluate.hpp"
 
+#include "forces/check_gradient.hpp"
 #include "forces/gravity.hpp"
 #include "integrators/kinetic_potential.hpp"
 
@@ -50,6 +51,7 @@ Evaluation evaluate(const Scene& scene, bool check) {
   Evaluation result;
   result.forces = VectorColumn<double>(s.size());
   result.kinetic = kinetic_energy(s);
+  result.gradient_asked = check ? particles_asked(s.size()) : 0;
   VectorColumn<double> a(s.size());
   for (const SceneForce& term : terms_of(scene)) {
     ForceSink<double> sink(a, s, {.energy = true, .virial = true});

@@ -17,6 +17,7 @@ struct Evaluation {
   VectorColumn<double> forces;                        ///< m a, shape (n, 3); drag is not among them
   double force_max = 0;                               ///< largest |m a|
   std::optional<double> gradient_error;               ///< worst of all forces, where it was asked for
+  Index gradient_asked = 0;                           ///< at how many particles
 };
 
 /// Evaluates every force of a scene at its start.

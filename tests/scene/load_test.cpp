@@ -262,6 +262,30 @@ TEST_CASE("a part in a scene is described field by field", "[scene]") {
   CHECK(info.fields[1].choices == std::vector<std::string>{"soft", "hard"});
 }
 
+TEST_CASE("a perfect crystal without forces is no reason to doubt them, nor are many particles", "[scene]") {
+  const auto crystal = [](int cells, const std::string& precision) {
+    return read(
+        fmt::format("units = 'reduced'\n[particles]\ntype = 'lattice'\ncells = [{0}, {0}, {0}]\ndensity = 0.85\n"
+                    "mass = 1\n[hamiltonian]\ntype = 'kinetic_potential'\n[[hamiltonian.force]]\n"
+                    "type = 'lennard_jones'\ncutoff = 2\nepsilon = 1\nsigma = 1\nprecision = '{1}'\n"
+                    "[integrator]\nmethod = 'verlet'\nstep = 0.01\nsteps = 1\n",
+                    cells, precision));
+  };
+  for (const int cells : {2, 5}) {
+    Scene scene = crystal(cells, "double");
+    CHECK(*evaluate(scene, true).gradient_error < 1e-9);
+    CHECK(evaluate(scene, true).gradient_asked == (cells == 2 ? 32 : 16));
+    for (Index i = 0; i < scene.particles.size(); i += 3) {
+      scene.particles.positions().component(0)[i] += 0.05 * std::sin(static_cast<double>(i));
+    }
+    CHECK(*evaluate(scene, true).gradient_error < 1e-6);
+    Scene mixed = crystal(cells, "mixed");
+    mixed.particles = scene.particles;
+    const double error = *evaluate(mixed, true).gradient_error;
+    CHECK((cells == 2 ? error < 1e-9 : error > 1e-9 && error < 1e-5));  // a few are asked in extended precision
+  }
+}
+
 TEST_CASE("evaluate adds up the terms of a scene", "[scene]") {
   const Scene scene = read(two_bodies);
   const Evaluation e = evaluate(scene, true);
