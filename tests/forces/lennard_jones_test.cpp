@@ -57,13 +57,7 @@ TEST_CASE("pairs in open space are summed as in a box", "[lennard_jones]") {
 }
 
 TEST_CASE("the forces on all atoms add up to nothing, exactly", "[lennard_jones]") {
-  const ParticleSystem<double> s = liquid(4, 0.85, 1, 0.15);
-  const Evaluated all = evaluated<double>(argon(Cutoff::switch_c2), s);
-  for (int k = 0; k < 3; ++k) {
-    std::int64_t sum = 0;
-    for (Index i = 0; i < s.size(); ++i) sum += static_cast<std::int64_t>(all.a.component(k)[i] * 0x1p42);
-    CHECK(sum == 0);
-  }
+  test::check_sum_is_zero(evaluated<double>(argon(Cutoff::switch_c2), liquid(4, 0.85, 1, 0.15)).a, 0x1p-42);
 }
 
 TEST_CASE("bits of forces depend on no neighbor list, thread or monitor", "[lennard_jones][determinism]") {
@@ -71,18 +65,7 @@ TEST_CASE("bits of forces depend on no neighbor list, thread or monitor", "[lenn
 }
 
 TEST_CASE("a list that is some steps old gives the bits of a new one", "[lennard_jones][determinism]") {
-  ParticleSystem<double> s = liquid(4, 0.85, 1.5, 0.1);
-  const LennardJonesForce force = argon(Cutoff::plain);
-  NeighborList list(2.5, {.skin = 0.4});
-  for (int n = 0; n < 40; ++n) {
-    s.advance_positions(0.01);
-    const Evaluated old = evaluated<double>(force, s, &list), fresh = evaluated<double>(force, s);
-    REQUIRE(old.a.all() == fresh.a.all());
-    REQUIRE(old.energy == fresh.energy);
-    REQUIRE(old.virial == fresh.virial);
-  }
-  CHECK(list.statistics().searches > 1);
-  CHECK(list.statistics().searches < 20);
+  test::check_old_lists(argon(Cutoff::plain), liquid(4, 0.85, 1.5, 0.1), 2.5);
 }
 
 TEST_CASE("pairs that are strong are summed to the same grid as all others", "[lennard_jones]") {

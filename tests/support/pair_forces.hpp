@@ -55,6 +55,29 @@ inline double largest_difference(const VectorColumn<double>& a, const VectorColu
   return (a.all() - b.all()).cwiseAbs().maxCoeff();
 }
 
+/// The forces on particles of mass 1, whole numbers of `unit`, add up to nothing, exactly.
+inline void check_sum_is_zero(const VectorColumn<double>& a, double unit) {
+  for (int k = 0; k < 3; ++k) {
+    std::int64_t sum = 0;
+    for (Index i = 0; i < a.size(); ++i) sum += static_cast<std::int64_t>(a.component(k)[i] / unit);
+    CHECK(sum == 0);
+  }
+}
+
+/// A list that is some steps old gives the bits of a new one, while particles move on and cross the box.
+template <class F> void check_old_lists(const F& force, ParticleSystem<double> s, double cutoff) {
+  NeighborList list(cutoff, {.skin = 0.4});
+  for (int n = 0; n < 40; ++n) {
+    s.advance_positions(0.01);
+    const Evaluated old = evaluated<double>(force, s, &list), fresh = evaluated<double>(force, s);
+    REQUIRE(old.a.all() == fresh.a.all());
+    REQUIRE(old.energy == fresh.energy);
+    REQUIRE(old.virial == fresh.virial);
+  }
+  CHECK(list.statistics().searches > 1);
+  CHECK(list.statistics().searches < 20);
+}
+
 /// A pair force gives the same bits by any neighbor list, on any number of threads, and without energies.
 template <class F> void check_bits_of_lists(const F& force, const ParticleSystem<double>& s, double cutoff) {
   const Evaluated first = evaluated<double>(force, s);
