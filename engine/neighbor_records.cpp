@@ -47,22 +47,21 @@ void NeighborList::number_shifts(const std::array<int, 3>& most) {
 /// Moves all records, and returns the square of the longest way that a particle has gone since the search.
 double NeighborList::take_positions(const ParticleSystem<double>& s, Numbers numbers) {
   if (numbers == Numbers::doubles) {
-    const auto put = [&](std::int32_t r, int k, double place, double edges) {
-      records_[at(4 * r + k)] = place - edges;
-    };
-    const auto shift = [&](const Ghost& ghost, int k) {
-      records_[at(4 * ghost.record + k)] = records_[at(4 * ghost.of + k)] + shifts_[at(ghost.shift)][k];
+    double* records = records_.data();
+    const auto put = [=](std::int32_t r, int k, double place, double edges) { records[4 * r + k] = place - edges; };
+    const auto shift = [=, shifts = shifts_.data()](const Ghost& ghost, int k) {
+      records[4 * ghost.record + k] = records[4 * ghost.of + k] + shifts[ghost.shift][k];
     };
     return move_records(s, put, shift);
   }
   const WholeNumbers whole(whole_spacing());
   const std::int32_t edge[3] = {whole(box_.edges()[0]), whole(box_.edges()[1]), whole(box_.edges()[2])};
-  const auto put = [&](std::int32_t r, int k, double place, double edges) {
-    whole_records_[at(4 * r + k)] = WholeNumbers::sum(whole(place), edges > 0 ? -edge[k] : edges < 0 ? edge[k] : 0);
+  std::int32_t* records = whole_records_.data();
+  const auto put = [&, records](std::int32_t r, int k, double place, double edges) {
+    records[4 * r + k] = WholeNumbers::sum(whole(place), edges > 0 ? -edge[k] : edges < 0 ? edge[k] : 0);
   };
-  const auto shift = [&](const Ghost& ghost, int k) {
-    whole_records_[at(4 * ghost.record + k)] =
-        WholeNumbers::sum(whole_records_[at(4 * ghost.of + k)], whole_shifts_[at(ghost.shift)][at(k)]);
+  const auto shift = [=, shifts = whole_shifts_.data()](const Ghost& ghost, int k) {
+    records[4 * ghost.record + k] = WholeNumbers::sum(records[4 * ghost.of + k], shifts[ghost.shift][at(k)]);
   };
   return move_records(s, put, shift);
 }
