@@ -85,9 +85,10 @@ struct LennardJonesMixedTable {
 /// forces have the same bits for any neighbor list and any number of threads, and add up to nothing exactly. A pair
 /// stronger than 2^61 units ends the run as `overlap`.
 ///
-/// In mixed precision distances are differences of whole numbers, 2^-29 of the box or finer, and the force of a pair is
-/// right to 1e-6 of itself and 2^-21 of the strongest attraction's scale; the sums are as exact as the others, so that
-/// all that is said of bits and of momentum holds. Energies and virials are those of doubles. Periodic boxes only.
+/// In mixed precision distances are differences of whole numbers, of 2^-28 of half the longest edge and two cutoffs or
+/// finer, and the force of a pair is right to 1e-6 of itself and 2^-21 of the strongest attraction's scale; the sums
+/// are as exact as the others, so that all that is said of bits and of momentum holds. Energies and virials are those
+/// of doubles. Periodic boxes only.
 /// @cost doubles O(n); other number types O(n^2)
 /// @source LennardJones1931, Verlet1967
 struct LennardJonesForce {

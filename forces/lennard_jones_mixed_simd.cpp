@@ -17,6 +17,9 @@ constexpr std::ptrdiff_t group_size = 8;
 constexpr std::ptrdiff_t rows_at_once = lanes > group_size ? lanes / group_size : 1;
 constexpr std::ptrdiff_t lanes_of_group = lanes > group_size ? group_size : lanes;
 
+/// Lists are longer than caches: entries are asked for as many rows before their turn.
+constexpr std::ptrdiff_t rows_asked_ahead = 128;
+
 /// x, y and z of as many records as there are lanes.
 struct Points {
   WholeVector x, y, z;
@@ -93,13 +96,9 @@ struct QuickSum {
 
 #if HWY_TARGET == HWY_SCALAR
   std::int64_t sum = 0;
-  std::int32_t recent = 0;
 
-  HWY_INLINE void add(Vector a, Vector b) { recent += hn::GetLane(nearest_whole(hn::Mul(a, b))); }
-  HWY_INLINE void widen() {
-    sum += recent;
-    recent = 0;
-  }
+  HWY_INLINE void add(Vector a, Vector b) { sum += hn::GetLane(nearest_whole(hn::Mul(a, b))); }
+  HWY_INLINE void widen() {}
   HWY_INLINE void store(std::int64_t* out) const { out[0] = sum; }
 #else
   using HalfWhole = hn::Half<Whole>;
@@ -174,7 +173,7 @@ HWY_INLINE void sum_lanes(const MixedPairField& field, const PairGroup& group, s
   for (std::ptrdiff_t turn = 0; turn < turns;) {
     const std::ptrdiff_t until = turn + Sum::most < turns ? turn + Sum::most : turns;
     for (; turn < until; ++turn, entries += stride) {
-      __builtin_prefetch(entries + 1024);
+      __builtin_prefetch(entries + group_size * rows_asked_ahead);
       const Distances pair = distances(own, load_points(field.records, entries));
       const Vector inverse2 = hn::Div(unit, pair.r2);
       const auto sum = [&](const Parameters<Lanes>& p) HWY_ATTR {

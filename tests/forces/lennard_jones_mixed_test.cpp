@@ -39,26 +39,20 @@ ParticleSystem<double> small(const ParticleSystem<double>& s) {
 }  // namespace
 
 TEST_CASE("forces of mixed precision are those of 113 bits to single precision", "[lennard_jones][mixed]") {
-  const Cutoff style = test::cutoff_styles[GENERATE(range(0, 5))];
-  for (const SimdLevel level : all_levels()) {
-    const test::AtLevel at(level);
-    CAPTURE(name(level), static_cast<int>(style));
-    for (const auto& s :
-         {liquid(3, 0.85, 1, 0.1), test::with_two_types(liquid(3, 0.5, 1, 0.2)), liquid(1, 0.85, 1, 0.1)}) {
-      LennardJonesForce force = mixed_argon(style, 2.2);
-      if (s.topology() != nullptr) force.epsilon = force.sigma = std::nullopt;
-      const Evaluated mixed = evaluated<double>(force, s), exact = evaluated<Quad>(force, s);
-      REQUIRE_FALSE(mixed.failure);
-      // Half a unit for each of about 60 neighbors, and a few roundings of 2^-24 of forces up to 100.
-      const double found = largest_difference(mixed.a, exact.a);
-      CHECK(found < 30 * force_unit + 8 * 0x1p-24 * 100);
-      CHECK(found > 1e-9);  // doubles would be nearer
-      force.precision = PairPrecision::full;
-      const Evaluated doubles = evaluated<double>(force, s);
-      CHECK(mixed.energy == doubles.energy);
-      CHECK(mixed.virial == doubles.virial);
-    }
-  }
+  const LennardJonesForce every = mixed_argon(test::cutoff_styles[GENERATE(range(0, 5))], 2.2);
+  test::for_liquids(every, [](const LennardJonesForce& force, const ParticleSystem<double>& s) {
+    const Evaluated mixed = evaluated<double>(force, s), exact = evaluated<Quad>(force, s);
+    REQUIRE_FALSE(mixed.failure);
+    // Half a unit for each of about 60 neighbors, and a few roundings of 2^-24 of forces up to 100.
+    const double found = largest_difference(mixed.a, exact.a);
+    CHECK(found < 30 * force_unit + 8 * 0x1p-24 * 100);
+    CHECK(found > 1e-9);  // doubles would be nearer
+    LennardJonesForce full = force;
+    full.precision = PairPrecision::full;
+    const Evaluated doubles = evaluated<double>(full, s);
+    CHECK(mixed.energy == doubles.energy);
+    CHECK(mixed.virial == doubles.virial);
+  });
 }
 
 TEST_CASE("mixed precision knows no scale: SI units leave single precision nowhere", "[lennard_jones][mixed]") {

@@ -29,22 +29,15 @@ LennardJonesForce argon(Cutoff style, double cutoff = 2.5) {
 }  // namespace
 
 TEST_CASE("forces, energy and virial in lanes are those of 113 bits, for every end of the range", "[lennard_jones]") {
-  const Cutoff style = test::cutoff_styles[GENERATE(range(0, 5))];
-  for (const SimdLevel level : all_levels()) {
-    const test::AtLevel at(level);
-    CAPTURE(name(level), static_cast<int>(style));
-    for (const auto& s :
-         {liquid(3, 0.85, 1, 0.1), test::with_two_types(liquid(3, 0.5, 1, 0.2)), liquid(1, 0.85, 1, 0.1)}) {
-      LennardJonesForce force = argon(style, 2.2);
-      if (s.topology() != nullptr) force.epsilon = force.sigma = std::nullopt;
-      const Evaluated lanes = evaluated<double>(force, s), exact = evaluated<Quad>(force, s);
-      REQUIRE_FALSE(lanes.failure);
-      // A unit of 2^-42 for each of about 60 neighbors; energies are summed in units four times as large.
-      CHECK(largest_difference(lanes.a, exact.a) < 60 * 0x1p-43);
-      CHECK(std::abs(lanes.energy - exact.energy) < 1e-12 * static_cast<double>(s.size()));
-      CHECK((lanes.virial - exact.virial).cwiseAbs().maxCoeff() < 1e-11 * static_cast<double>(s.size()));
-    }
-  }
+  const LennardJonesForce every = argon(test::cutoff_styles[GENERATE(range(0, 5))], 2.2);
+  test::for_liquids(every, [](const LennardJonesForce& force, const ParticleSystem<double>& s) {
+    const Evaluated lanes = evaluated<double>(force, s), exact = evaluated<Quad>(force, s);
+    REQUIRE_FALSE(lanes.failure);
+    // A unit of 2^-42 for each of about 60 neighbors; energies are summed in units four times as large.
+    CHECK(largest_difference(lanes.a, exact.a) < 60 * 0x1p-43);
+    CHECK(std::abs(lanes.energy - exact.energy) < 1e-12 * static_cast<double>(s.size()));
+    CHECK((lanes.virial - exact.virial).cwiseAbs().maxCoeff() < 1e-11 * static_cast<double>(s.size()));
+  });
 }
 
 TEST_CASE("pairs in open space are summed as in a box", "[lennard_jones]") {

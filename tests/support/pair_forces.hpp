@@ -3,8 +3,9 @@
 
 #include "engine/force_sink.hpp"
 #include "engine/neighbor_list.hpp"
-#include "forces/pairs.hpp"
+#include "forces/lennard_jones.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/liquid.hpp"
 #include "tests/support/settings.hpp"
 
 #include <memory>
@@ -25,6 +26,19 @@ inline ParticleSystem<double> with_two_types(ParticleSystem<double> s) {
   topology->scaled_pairs = {{{0, 2}, 0.5}, {{0, 3}, 0.25}};
   s.set_topology(topology);
   return s;
+}
+
+/// Calls `check(force, s)` at every SIMD level for a liquid, a mixture, and a box smaller than the range, of 2.2 sigma.
+template <class Check> void for_liquids(const LennardJonesForce& argon, const Check& check) {
+  LennardJonesForce by_types = argon;
+  by_types.epsilon = by_types.sigma = std::nullopt;
+  for (const SimdLevel level : all_levels()) {
+    const AtLevel at(level);
+    CAPTURE(name(level), static_cast<int>(argon.cutoff_style));
+    check(argon, liquid(3, 0.85, 1, 0.1));
+    check(by_types, with_two_types(liquid(3, 0.5, 1, 0.2)));
+    check(argon, liquid(1, 0.85, 1, 0.1));
+  }
 }
 
 struct Evaluated {
