@@ -1,8 +1,10 @@
 /// The reference methods, to rounding: seconds, largest energy error and position error at the end, beside IAS15 of
 /// `rebound` and the Taylor method of `heyoka` (high accuracy) where Python has them; each is left out where it is not.
 ///
-/// Protocol: after one run to warm up, 5 rounds of every method and every peer in turn; medians of processor seconds of
-/// the run alone. Positions are compared with Gauss's 8 stages in 113 bits from the same doubles.
+/// Protocol: 5 rounds of every method and every peer in turn, each over a hundredth of the case to warm up and then
+/// over all of it; medians of processor seconds of the run alone. Each round has its own start, 1e-9 aside of the one
+/// before, for an error at rounding level is one throw of dice: errors are medians over the rounds. Positions are
+/// compared with Gauss's 8 stages in 113 bits from the same doubles.
 
 #include "bench/support.hpp"
 
@@ -12,6 +14,7 @@
 #include "scene/scene.hpp"
 
 #include <filesystem>
+#include <future>
 #include <map>
 #include <sstream>
 
@@ -104,8 +107,9 @@ Simulation<double> start(const Case& one, const Entry& entry) {
                          : Simulation(one.bodies, integrator);
 }
 
-void go(Simulation<double>& run, const Case& one, const Entry& entry) {
-  const Outcome outcome = entry.steps > 0 ? run.run(entry.steps) : run.run_until(one.end);
+/// Runs over 1 / `part` of the case.
+void go(Simulation<double>& run, const Case& one, const Entry& entry, int part = 1) {
+  const Outcome outcome = entry.steps > 0 ? run.run(entry.steps / part) : run.run_until(one.end / part);
   if (!outcome.ok()) throw Error(entry.name + ": " + to_text(outcome));
 }
 
@@ -145,6 +149,23 @@ std::optional<PeerRun> run_peer(const std::string& peer, const Case& one) {
   return run;
 }
 
+/// Seconds of the rounds, and where they ended.
+struct Rounds {
+  std::string version;
+  std::vector<double> seconds;
+  std::vector<Positions> ends;
+
+  void add(double took, Positions end) {
+    seconds.push_back(took);
+    ends.push_back(std::move(end));
+  }
+  bench::Measured errors(const std::vector<Positions>& truths) const {
+    std::vector<double> all;
+    for (std::size_t k = 0; k < ends.size(); ++k) all.push_back(distance(ends[k], truths[k]));
+    return bench::Measured(all);
+  }
+};
+
 void measure(const bench::Rows& rows, const Case& one) {
   constexpr int rounds = 5;
   std::vector<Entry> entries = {{"gauss_8", method("gauss_8"), 0}, {"gauss_radau_15", method("gauss_radau_15"), 0}};
@@ -152,40 +173,44 @@ void measure(const bench::Rows& rows, const Case& one) {
   if (one.fixed_steps > 0) {
     entries.push_back({"gauss_8_fixed", method("gauss_8", {.adaptive = false}), one.fixed_steps});
   }
-  std::map<std::string, std::vector<double>> seconds;
-  std::map<std::string, PeerRun> peers;
-  std::map<std::string, Positions> ends;
-  for (int round = 0; round <= rounds; ++round) {
+  std::map<std::string, Rounds> ours, theirs;
+  std::vector<std::future<Positions>> wanted;
+  std::vector<Case> starts;
+  for (int round = 0; round < rounds; ++round) {
+    Case& aside = starts.emplace_back(one);
+    aside.bodies.positions().component(0)[1] *= 1 + 1e-9 * round;
     for (const Entry& entry : entries) {
-      Simulation<double> run = start(one, entry);
-      const double took = bench::processor_seconds_of([&] { go(run, one, entry); });
-      if (round > 0) seconds[entry.name].push_back(took);
-      ends[entry.name] = positions_of(run.particles());
+      Simulation<double> warm = start(aside, entry), run = start(aside, entry);
+      go(warm, aside, entry, 100);
+      const double took = bench::processor_seconds_of([&] { go(run, aside, entry); });
+      ours[entry.name].add(took, positions_of(run.particles()));
     }
     for (const std::string peer : {"ias15", "heyoka"}) {
-      if (round == 0) continue;
-      if (const auto run = run_peer(peer, one)) {
-        seconds[peer].push_back(run->seconds);
-        peers[peer] = *run;
+      if (const auto run = run_peer(peer, aside)) {
+        theirs[peer].version = run->version;
+        theirs[peer].add(run->seconds, run->positions);
       }
     }
   }
-  const Positions truth = truth_of(one);
+  for (const Case& aside : starts) {
+    wanted.push_back(std::async(std::launch::async, [&aside] { return truth_of(aside); }));
+  }
+  std::vector<Positions> truths;
+  for (auto& truth : wanted) truths.push_back(truth.get());
   for (const Entry& entry : entries) {
     const std::string name = one.name + "/" + entry.name;
-    const bench::Measured time(seconds[entry.name]);
-    if (peers.empty()) rows.add(name, "seconds", time, "s", one.bodies.size());
-    for (const auto& [peer, run] : peers) {
-      rows.add(name, "seconds", time, "s", one.bodies.size(),
-               bench::Peer{peer, run.version, bench::Measured(seconds[peer]).median});
-    }
+    const Rounds& run = ours[entry.name];
+    const auto add = [&](const std::string& what, const bench::Measured& here, const std::string& unit, auto of_peer) {
+      if (theirs.empty()) rows.add(name, what, here, unit, one.bodies.size());
+      for (const auto& [peer, there] : theirs) {
+        rows.add(name, what, here, unit, one.bodies.size(), bench::Peer{peer, there.version, of_peer(there)});
+      }
+    };
+    add("seconds", bench::Measured(run.seconds), "s",
+        [](const Rounds& there) { return bench::Measured(there.seconds).median; });
     rows.add(name, "energy_error_max", bench::Measured({energy_error(one, entry)}), "1", one.bodies.size());
-    const bench::Measured error({distance(ends[entry.name], truth)});
-    if (peers.empty()) rows.add(name, "position_error_end", error, "length", one.bodies.size());
-    for (const auto& [peer, run] : peers) {
-      rows.add(name, "position_error_end", error, "length", one.bodies.size(),
-               bench::Peer{peer, run.version, distance(run.positions, truth)});
-    }
+    add("position_error_end", run.errors(truths), "length",
+        [&](const Rounds& there) { return there.errors(truths).median; });
   }
 }
 

@@ -56,7 +56,7 @@ template <class Real> class Collocation final : public Method<Real> {
   Sweeps sweep(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h);
   void form_positions(const Real* rates, const Vector<Real>& y, double h, Real* q);
   void form_velocities(const Real* rates, const Vector<Real>& y, double h);
-  void form_states(const Vector<Real>& y, double h, Real* q);
+  void form_states(const Real* rates, const Vector<Real>& y, double h, Real* q);
   void finish(Vector<Real>& y, double h);
   double roughness(const Vector<Real>& y, double h);
   bool is_rounding(const Vector<Real>& y, double h, double change) const;
@@ -77,6 +77,7 @@ template <class Real> class Collocation final : public Method<Real> {
   StageMatrix<Real> weights_{};                           ///< of the extrapolation over a step h after one of h_old
   double weights_h_ = 0, weights_h_old_ = 0;
   double next_ = 0, h_ = 0;  ///< to be tried; of `previous_`, 0 for none
+  int swept_ = 0;            ///< sweeps of the last step
 };
 
 extern template class Collocation<double>;
