@@ -59,7 +59,7 @@ struct ScalarGravity {
         const double r2 = d.squaredNorm(), r = std::sqrt(r2), k = G / (r2 * r);
         out.acceleration(i, -k * s.masses()[j] * d);
         out.acceleration(j, k * s.masses()[i] * d);
-        out.energy(-G * s.masses()[i] * s.masses()[j] / r);
+        if (out.wants_energy()) out.energy(-G * s.masses()[i] * s.masses()[j] / r);
       }
     }
   }

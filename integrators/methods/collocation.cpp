@@ -217,7 +217,7 @@ template <class Real> Real Collocation<Real>::action(VectorField<Real>& f, const
 
 /// Sweeps until the rates stand still: until what the next sweep would change is below rounding, or no less than what
 /// this one has. Steps take about as many sweeps as the one before: only the last three of these are looked at, which
-/// saves a tenth of the time, and a step may end one sweep earlier than the last.
+/// saves a tenth of the time, and a step ends at most one sweep earlier than the last.
 template <class Real>
 typename Collocation<Real>::Sweeps Collocation<Real>::sweep(VectorField<Real>& f, const Real& t, const Vector<Real>& y,
                                                             double h) {
