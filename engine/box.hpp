@@ -51,7 +51,12 @@ class Box {
   /// `d` or the shortest of its periodic images; exact for positions in the cell [length].
   template <class Real> Vec3<Real> minimum_image(Vec3<Real> d) const {
     if (!is_periodic()) return d;
-    for (int k = 0; k < 3; ++k) d[k] -= Real(edges_[k]) * detail::nearest_whole(d[k] / Real(edges_[k]));
+    for (int k = 0; k < 3; ++k) {
+      if constexpr (std::is_same_v<Real, double>) {
+        if (std::abs(d[k]) <= 0.5 * edges_[k]) continue;  // nearly always, and a division costs more than the question
+      }
+      d[k] -= Real(edges_[k]) * detail::nearest_whole(d[k] / Real(edges_[k]));
+    }
     return d;
   }
 

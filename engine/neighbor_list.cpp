@@ -455,12 +455,12 @@ void NeighborList::strike_excluded(std::int32_t record, std::int32_t* numbers, s
   const std::int32_t i = source_[at(record)];
   const auto from = excluded_.begin() + excluded_begin_[at(i)], to = excluded_.begin() + excluded_begin_[at(i + 1)];
   for (auto j = from; j != to; ++j) {
+    // No branches: few are struck, and nobody can foretell which.
     if (has_images_[at(*j)] != 0) {
-      for (std::ptrdiff_t k = 0; k < count; ++k) {
-        if (source_[at(numbers[k])] == *j) numbers[k] = record;
-      }
+      for (std::ptrdiff_t k = 0; k < count; ++k) numbers[k] = source_[at(numbers[k])] == *j ? record : numbers[k];
     } else {
-      std::replace(numbers, numbers + count, record_of_[at(*j)], record);
+      const std::int32_t struck = record_of_[at(*j)];
+      for (std::ptrdiff_t k = 0; k < count; ++k) numbers[k] = numbers[k] == struck ? record : numbers[k];
     }
   }
 }

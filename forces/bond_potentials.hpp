@@ -82,21 +82,22 @@ template <class Real> struct Fene {
   bool holds(const Real& r2) const { return r2 < longest2; }
 
   Real force_over_r(const Real& r2) const {
-    const Real pull = -k / (Real(1) - r2 / longest2), s6 = sixth_power(r2);
+    const Real pull = k * longest2 / (r2 - longest2), inverse = Real(1) / r2, s6 = sixth_power(inverse);
     if (!(s6 > Real(0.5))) return pull;
-    return pull + Real(6) * four_epsilon * s6 * (Real(2) * s6 - Real(1)) / r2;
+    return pull + Real(6) * four_epsilon * s6 * (Real(2) * s6 - Real(1)) * inverse;
   }
   Real energy(const Real& r2) const {
     using std::log;
-    const Real spring = -k * longest2 / Real(2) * log(Real(1) - r2 / longest2), s6 = sixth_power(r2);
+    const Real spring = -k * longest2 / Real(2) * log(Real(1) - r2 / longest2);
+    const Real s6 = sixth_power(Real(1) / r2);
     if (!(s6 > Real(0.5))) return spring;
     return spring + four_epsilon * (s6 * (s6 - Real(1)) + Real(0.25));
   }
 
  private:
-  /// (sigma/r)^6; 1/2 where the repulsion ends.
-  Real sixth_power(const Real& r2) const {
-    const Real s2 = sigma2 / r2;
+  /// (sigma/r)^6 from 1/r^2; 1/2 where the repulsion ends.
+  Real sixth_power(const Real& inverse) const {
+    const Real s2 = sigma2 * inverse;
     return s2 * s2 * s2;
   }
 };

@@ -97,7 +97,7 @@ template <class Real> void Bonded::add_to(ForceSink<Real>& out, const ParticleSy
       if (m == Real(0)) continue;
       Vec3<Real> force = Vec3<Real>::Zero();
       terms.for_each_slot(i, [&](std::size_t slot) { force += slots[slot]; });
-      a.add(i, force / m);
+      a.add(i, (Real(1) / m) * force);
     }
   });
   if (const Index bond = loop.overstretched(); bond >= 0) {

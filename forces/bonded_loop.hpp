@@ -59,63 +59,54 @@ template <class Real, std::size_t n> struct BondedResult {
 };
 
 /// A bond along d = x_1 - x_2.
-template <class Real>
-BondedResult<Real, 2> bonded_forces(const BondedKind<BondPotential>& kind, const std::array<Vec3<Real>, 1>& d,
-                                    bool with_energy) {
-  return with_potential<Real>(kind, [&](const auto& potential) {
-    BondedResult<Real, 2> result;
-    const Real r2 = norm2(d[0]);
-    if constexpr (requires { potential.holds(r2); }) result.overstretched = !potential.holds(r2);
-    const Real none(std::numeric_limits<double>::quiet_NaN());
-    result.force[0] = (result.overstretched ? none : potential.force_over_r(r2)) * d[0];
-    result.force[1] = -result.force[0];
-    if (with_energy) result.energy = result.overstretched ? none : potential.energy(r2);
-    return result;
-  });
+template <class Real, class Potential>
+BondedResult<Real, 2> bonded_forces(const Potential& potential, const std::array<Vec3<Real>, 1>& d, bool with_energy) {
+  BondedResult<Real, 2> result;
+  const Real r2 = norm2(d[0]);
+  if constexpr (requires { potential.holds(r2); }) result.overstretched = !potential.holds(r2);
+  const Real none(std::numeric_limits<double>::quiet_NaN());
+  result.force[0] = (result.overstretched ? none : potential.force_over_r(r2)) * d[0];
+  result.force[1] = -result.force[0];
+  if (with_energy) result.energy = result.overstretched ? none : potential.energy(r2);
+  return result;
 }
 
 /// An angle between the arms d = {x_1 - x_2, x_3 - x_2}.
-template <class Real>
-BondedResult<Real, 3> bonded_forces(const BondedKind<AnglePotential>& kind, const std::array<Vec3<Real>, 2>& d,
-                                    bool with_energy) {
+template <class Real, class Potential>
+BondedResult<Real, 3> bonded_forces(const Potential& potential, const std::array<Vec3<Real>, 2>& d, bool with_energy) {
   const angle_potential::Bend<Real> bend(d[0], d[1]);
-  return with_potential<Real>(kind, [&](const auto& potential) {
-    BondedResult<Real, 3> result;
-    const Real slope = potential.slope(bend) / bend.lengths;
-    result.force[0] = (slope / bend.a2) * cross(bend.a, bend.normal);
-    result.force[2] = (slope / bend.b2) * cross(bend.normal, bend.b);
-    result.force[1] = -(result.force[0] + result.force[2]);
-    if (with_energy) result.energy = potential.energy(bend);
-    return result;
-  });
+  BondedResult<Real, 3> result;
+  const Real slope = potential.slope(bend) / bend.lengths;
+  result.force[0] = (slope / bend.a2) * cross(bend.a, bend.normal);
+  result.force[2] = (slope / bend.b2) * cross(bend.normal, bend.b);
+  result.force[1] = -(result.force[0] + result.force[2]);
+  if (with_energy) result.energy = potential.energy(bend);
+  return result;
 }
 
 /// A dihedral or improper with d = {x_1 - x_2, x_2 - x_3, x_4 - x_3}. @source BlondelKarplus1996
-template <class Real>
-BondedResult<Real, 4> bonded_forces(const BondedKind<DihedralPotential>& kind, const std::array<Vec3<Real>, 3>& d,
-                                    bool with_energy) {
+template <class Real, class Potential>
+BondedResult<Real, 4> bonded_forces(const Potential& potential, const std::array<Vec3<Real>, 3>& d, bool with_energy) {
   const dihedral_potential::Twist<Real> twist(d[0], d[1], d[2]);
   BondedResult<Real, 4> result;
   if (!twist.is_defined()) {
     result.force.fill(Vec3<Real>::Zero());
     return result;
   }
-  return with_potential<Real>(kind, [&](const auto& potential) {
-    const Real slope = potential.slope(twist);
-    const Vec3<Real> one = (slope / twist.A2) * twist.A, other = (slope / twist.B2) * twist.B;
-    const Vec3<Real> axis = (dot(twist.f, twist.g) * one - dot(twist.h, twist.g) * other) / twist.length;
-    result.force[0] = twist.length * one;
-    result.force[3] = -twist.length * other;
-    result.force[1] = -(result.force[0] + axis);
-    result.force[2] = axis - result.force[3];
-    if (with_energy) result.energy = potential.energy(twist);
-    return result;
-  });
+  const Real slope = potential.slope(twist);
+  const Vec3<Real> one = (slope / twist.A2) * twist.A, other = (slope / twist.B2) * twist.B;
+  const Vec3<Real> axis = (dot(twist.f, twist.g) * one - dot(twist.h, twist.g) * other) / twist.length;
+  result.force[0] = twist.length * one;
+  result.force[3] = -twist.length * other;
+  result.force[1] = -(result.force[0] + axis);
+  result.force[2] = axis - result.force[3];
+  if (with_energy) result.energy = potential.energy(twist);
+  return result;
 }
 
 /// The same in eight lanes, each with the bits of double.
-template <class Kind, std::size_t m>
-BondedResult<Pack, m + 1> bonded_forces_in_lanes(const Kind& kind, const std::array<Vec3<Pack>, m>& d,
+template <class Potential, std::size_t m>
+BondedResult<Pack, m + 1> bonded_forces_in_lanes(const Potential& potential, const std::array<Vec3<Pack>, m>& d,
                                                  bool with_energy) {
   BondedResult<Pack, m + 1> result;
   for (std::size_t lane = 0; lane < Pack::lanes; ++lane) {
@@ -123,7 +114,7 @@ BondedResult<Pack, m + 1> bonded_forces_in_lanes(const Kind& kind, const std::ar
     for (std::size_t k = 0; k < m; ++k) {
       for (int c = 0; c < 3; ++c) one[k][c] = d[k][c].lane[lane];
     }
-    const BondedResult<double, m + 1> in_lane = bonded_forces<double>(kind, one, with_energy);
+    const BondedResult<double, m + 1> in_lane = bonded_forces<double>(potential, one, with_energy);
     for (std::size_t k = 0; k <= m; ++k) {
       for (int c = 0; c < 3; ++c) result.force[k][c].lane[lane] = in_lane.force[k][c];
     }
@@ -147,10 +138,18 @@ template <class Real> class BondedLoop {
     std::size_t slot = 0;
     const auto family = [&](const auto& terms, const auto& kinds) {
       const auto size = static_cast<Index>(terms.size());
-      for (Index k = std::max(begin, first); k < std::min(end, first + size); ++k) {
-        const auto& term = terms[static_cast<std::size_t>(k - first)];
-        evaluate(term, kinds[static_cast<std::size_t>(term.type)], k,
-                 slots_ + slot + static_cast<std::size_t>(k - first) * term.particles.size(), totals);
+      const Index to = std::min(end, first + size);
+      for (Index k = std::max(begin, first); k < to;) {
+        // Terms of one kind stand side by side more often than not, and ask for their potential once.
+        const auto type = terms[static_cast<std::size_t>(k - first)].type;
+        with_potential<InLane>(kinds[static_cast<std::size_t>(type)], [&](const auto& potential) {
+          for (; k < to; ++k) {
+            const auto& term = terms[static_cast<std::size_t>(k - first)];
+            if (term.type != type) break;
+            evaluate(term, potential, k, slots_ + slot + static_cast<std::size_t>(k - first) * term.particles.size(),
+                     totals);
+          }
+        });
       }
       first += size;
       slot += terms.size() * std::decay_t<decltype(terms[0])>{}.particles.size();
@@ -170,6 +169,7 @@ template <class Real> class BondedLoop {
 
  private:
   static constexpr Index none = std::numeric_limits<Index>::max();
+  using InLane = std::conditional_t<std::is_same_v<Real, Pack>, double, Real>;
 
   Vec3<Real> between(Index i, Index j) const {
     return s_.box().minimum_image(Vec3<Real>(s_.positions()[i] - s_.positions()[j]));
@@ -182,14 +182,15 @@ template <class Real> class BondedLoop {
     return {between(p[0], p[1]), between(p[1], p[2]), between(p[3], p[2])};
   }
 
-  template <std::size_t n, class Kind>
-  void evaluate(const BondedTerm<n>& term, const Kind& kind, Index k, Vec3<Real>* slots, BondedTotals<Real>& totals) {
+  template <std::size_t n, class Potential>
+  void evaluate(const BondedTerm<n>& term, const Potential& potential, Index k, Vec3<Real>* slots,
+                BondedTotals<Real>& totals) {
     const auto d = differences(term.particles);
     const BondedResult<Real, n> result = [&] {
       if constexpr (std::is_same_v<Real, Pack>) {
-        return bonded_forces_in_lanes(kind, d, energy_);
+        return bonded_forces_in_lanes(potential, d, energy_);
       } else {
-        return bonded_forces<Real>(kind, d, energy_);
+        return bonded_forces<Real>(potential, d, energy_);
       }
     }();
     std::copy(result.force.begin(), result.force.end(), slots);
