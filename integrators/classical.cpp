@@ -140,9 +140,10 @@ template <class Real> void Classical<Real>::look_ahead(const ParticleSystem<Real
 template <class Real> std::string Classical<Real>::signature() const {
   const MethodOptions& o = choice_.options;
   const auto text = [](const std::optional<double>& x) { return detail::value_text(x); };
-  return fmt::format("{}(rtol = {}, atol = {}, adaptive = {}, first = {}, beta = {}, gamma = {})", choice_.info->name,
+  const std::string jacobian = o.jacobian ? fmt::format(", jacobian = {}", name_of(*o.jacobian)) : "";
+  return fmt::format("{}(rtol = {}, atol = {}, adaptive = {}, first = {}, beta = {}, gamma = {}{})", choice_.info->name,
                      text(o.rtol), text(o.atol), choice_.info->is_adaptive(o), text(o.first), text(o.beta),
-                     text(o.gamma));
+                     text(o.gamma), jacobian);
 }
 
 template <class Real> void Classical<Real>::save(SavedState& saved, const std::string& prefix) const {

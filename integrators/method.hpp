@@ -4,6 +4,8 @@
 #include "engine/saved_state.hpp"
 #include "integrators/vector_field.hpp"
 
+#include <array>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -13,6 +15,14 @@
 
 namespace noether {
 
+/// How an implicit method keeps J = df/dy and solves its linear systems: LU of all elements, LU of those that can be
+/// other than 0, or products J v only.
+enum class JacobianForm : std::uint8_t { dense, sparse, matrix_free };
+
+/// Their names, in that order.
+inline constexpr std::array<std::string_view, 3> jacobian_forms{"dense", "sparse", "matrix_free"};
+constexpr std::string_view name_of(JacobianForm form) { return jacobian_forms[static_cast<std::size_t>(form)]; }
+
 /// What a user may set of a method; a method takes what it knows and refuses the rest.
 struct MethodOptions {
   std::optional<double> rtol = {};    ///< relative tolerance of adaptive methods [1]
@@ -20,6 +30,8 @@ struct MethodOptions {
   std::optional<bool> adaptive = {};  ///< for methods that can do both
   std::optional<double> first = {};   ///< length of the first step of adaptive methods [time]; default: by the method
   std::optional<double> beta = {}, gamma = {};  ///< of `newmark`
+  /// Of methods that solve linear systems; default: sparse where the field has a `sparsity`, else dense.
+  std::optional<JacobianForm> jacobian = {};
 
   bool operator==(const MethodOptions&) const = default;
 };

@@ -79,6 +79,10 @@ void check_options(const MethodInfo& info, const MethodOptions& options) {
   for (const auto& [value, key] : {std::pair(options.beta, "beta"), std::pair(options.gamma, "gamma")}) {
     if (value && !takes(key)) fail(key, fmt::format("method '{}' has no {}; take it out", info.name, key));
   }
+  if (options.jacobian && !takes("jacobian")) {
+    fail("jacobian",
+         fmt::format("method '{}' solves no linear systems, so jacobian means nothing to it; take it out", info.name));
+  }
   if (info.is_adaptive(options) && options.rtol.value_or(info.rtol) == 0 && options.atol.value_or(info.atol) == 0) {
     fail("rtol", "rtol and atol are both 0, so no step could pass; give one of them above 0");
   }

@@ -103,6 +103,7 @@ template <class Real>
 Bdf<Real>::Bdf(const MethodInfo& info, const MethodOptions& options)
     : name_(info.name),
       tolerance_{options.rtol.value_or(info.rtol), options.atol.value_or(info.atol)},
+      form_(options.jacobian),
       first_(options.first.value_or(0)),
       newton_tolerance_(newton_tolerance(tolerance_, static_cast<double>(std::numeric_limits<Real>::epsilon()))) {
   for (std::size_t q = 1; q <= highest; ++q) {
@@ -111,7 +112,7 @@ Bdf<Real>::Bdf(const MethodInfo& info, const MethodOptions& options)
 }
 
 template <class Real> void Bdf<Real>::bind(const VectorField<Real>& f) {
-  jacobian_.bind(f);
+  jacobian_.bind(f, {.form = form_, .tolerance = tolerance_});
   d_.bind(f.size(), highest + 3);
   for (Vector<Real>* v : {&predicted_, &past_, &correction_, &y1_, &update_}) v->setZero(f.size());
   order_ = next_order_ = 1;
@@ -151,7 +152,7 @@ template <class Real> typename Bdf<Real>::Solved Bdf<Real>::iterate(VectorField<
     for (Index i = 0; i < y1_.size(); ++i) {
       update_[i] = weight * update_[i] - past_[i] / harmonic_[order_] - correction_[i];
     }
-    jacobian_.solve(update_);
+    if (!jacobian_.solve(f, update_)) return Solved::slowly;
     const double now = tolerance_.norm(update_, predicted_, y1_);
     if (!std::isfinite(now)) return Solved::slowly;
     for (Index i = 0; i < y1_.size(); ++i) {
@@ -289,12 +290,15 @@ template <class Real> void Bdf<Real>::load(const SavedState& saved, const std::s
 }
 
 template <class Real>
-FixedBdf<Real>::FixedBdf(const MethodInfo& info)
-    : name_(info.name), order_(static_cast<std::size_t>(info.order)), starter_(starting_rosenbrock<Real>()) {}
+FixedBdf<Real>::FixedBdf(const MethodInfo& info, const MethodOptions& options)
+    : name_(info.name),
+      order_(static_cast<std::size_t>(info.order)),
+      form_(options.jacobian),
+      starter_(starting_rosenbrock<Real>(form_)) {}
 
 template <class Real> void FixedBdf<Real>::bind(const VectorField<Real>& f) {
   starter_.bind(f);
-  jacobian_.bind(f);
+  jacobian_.bind(f, {.form = form_});
   d_.bind(f.size(), order_ + 1);
   second_order_ = f.claims().second_order;
   for (Vector<Real>* v : {&predicted_, &past_, &correction_, &y1_, &update_}) v->setZero(f.size());
@@ -324,10 +328,10 @@ std::optional<Failure> FixedBdf<Real>::solve(VectorField<Real>& f, const Real& t
   predict_from(d_, order_ - 1, predicted_, past_);
   correction_.setZero();
   y1_ = predicted_;
-  const auto correct = [&] {
+  const auto correct = [&]() -> std::optional<UpdateSize> {
     f.rate(end, y1_, update_);
     for (Index i = 0; i < y1_.size(); ++i) update_[i] = weight * update_[i] - past_[i] / harmonic - correction_[i];
-    jacobian_.solve(update_);
+    if (!jacobian_.solve(f, update_)) return {};
     for (Index i = 0; i < y1_.size(); ++i) {
       correction_[i] += update_[i];
       y1_[i] = predicted_[i] + correction_[i];
@@ -389,8 +393,8 @@ template <class Real> std::unique_ptr<Method<Real>> make_bdf(const MethodInfo& i
   return std::make_unique<Bdf<Real>>(info, options);
 }
 template <class Real>
-std::unique_ptr<Method<Real>> make_fixed_bdf(const MethodInfo& info, const MethodOptions& /*options*/) {
-  return std::make_unique<FixedBdf<Real>>(info);
+std::unique_ptr<Method<Real>> make_fixed_bdf(const MethodInfo& info, const MethodOptions& options) {
+  return std::make_unique<FixedBdf<Real>>(info, options);
 }
 
 MethodInfo fixed_bdf(std::string_view name, std::string_view summary, std::string_view use, int order, double limit) {
@@ -399,6 +403,7 @@ MethodInfo fixed_bdf(std::string_view name, std::string_view summary, std::strin
           .use = use,
           .source = "HairerWanner1996",
           .family = "multistep",
+          .options = "jacobian",
           .order = order,
           .stability_limit = limit,
           .make = make_fixed_bdf<double>,
@@ -415,6 +420,7 @@ std::span<const MethodInfo> methods::bdf_list() {
        .use = "large stiff systems: Jacobians are kept, one solution a step",
        .source = "ShampineReichelt1997",
        .family = "multistep",
+       .options = "jacobian",
        .order = 5,
        .fixed = false,
        .adaptive = true,

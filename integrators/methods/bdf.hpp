@@ -67,6 +67,7 @@ template <class Real> class Bdf final : public Method<Real> {
 
   std::string_view name_;
   Tolerance tolerance_;
+  std::optional<JacobianForm> form_;
   double first_, newton_tolerance_;
   std::array<Real, highest + 1> harmonic_{};  ///< 1 + 1/2 + ... + 1/q
   Jacobian<Real> jacobian_;
@@ -84,7 +85,7 @@ template <class Real> class Bdf final : public Method<Real> {
 /// @source HairerWanner1996
 template <class Real> class FixedBdf final : public Method<Real> {
  public:
-  explicit FixedBdf(const MethodInfo& info);
+  FixedBdf(const MethodInfo& info, const MethodOptions& options);
 
   std::unique_ptr<Method<Real>> clone() const override { return std::make_unique<FixedBdf>(*this); }
   MethodClaims claims() const override { return {.name = name_, .order = static_cast<int>(order_)}; }
@@ -99,6 +100,7 @@ template <class Real> class FixedBdf final : public Method<Real> {
 
   std::string_view name_;
   std::size_t order_;
+  std::optional<JacobianForm> form_;
   Rosenbrock<Real> starter_;
   Jacobian<Real> jacobian_;
   BackwardDifferences<Real> d_;

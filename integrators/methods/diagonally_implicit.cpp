@@ -9,10 +9,12 @@
 namespace noether {
 
 template <class Real>
-DiagonallyImplicit<Real>::DiagonallyImplicit(const MethodInfo& info, const Tableau& table, Keeps keeps)
+DiagonallyImplicit<Real>::DiagonallyImplicit(const MethodInfo& info, const MethodOptions& options, const Tableau& table,
+                                             Keeps keeps)
     : name_(info.name),
       order_(table.order),
       keeps_(keeps),
+      form_(options.jacobian),
       a_(as_real<Real>(table.a)),
       b_(as_real<Real>(table.b)),
       c_(as_real<Real>(table.c)),
@@ -25,7 +27,7 @@ template <class Real> MethodClaims DiagonallyImplicit<Real>::claims() const {
 }
 
 template <class Real> void DiagonallyImplicit<Real>::bind(const VectorField<Real>& f) {
-  jacobian_.bind(f);
+  jacobian_.bind(f, {.form = form_});
   second_order_ = f.claims().second_order;
   k_.assign(b_.size(), Vector<Real>(f.size()));
   for (Vector<Real>* v : {&base_, &z_, &guess_, &stage_, &update_}) v->setZero(f.size());
@@ -47,11 +49,11 @@ std::optional<Failure> DiagonallyImplicit<Real>::solve_stage(VectorField<Real>& 
                                                              double h) {
   const Real weight = Real(h) * diagonal_, time = t + c_[stage] * Real(h);
   const Index n = base_.size();
-  const auto correct = [&] {
+  const auto correct = [&]() -> std::optional<UpdateSize> {
     for (Index i = 0; i < n; ++i) stage_[i] = base_[i] + z_[i];
     f.rate(time, stage_, update_);
     for (Index i = 0; i < n; ++i) update_[i] = weight * update_[i] - z_[i];
-    jacobian_.solve(update_);
+    if (!jacobian_.solve(f, update_)) return {};
     for (Index i = 0; i < n; ++i) z_[i] += update_[i];
     for (Index i = 0; i < n; ++i) stage_[i] = base_[i] + z_[i];
     return update_size(update_, base_, stage_, second_order_);
@@ -111,9 +113,9 @@ const Tableau& diagonally_implicit_table(std::string_view name) {
 }
 
 template <class Real>
-std::unique_ptr<Method<Real>> make_diagonally_implicit(const MethodInfo& info, const MethodOptions& /*options*/) {
+std::unique_ptr<Method<Real>> make_diagonally_implicit(const MethodInfo& info, const MethodOptions& options) {
   return std::make_unique<DiagonallyImplicit<Real>>(
-      info, diagonally_implicit_table(info.name),
+      info, options, diagonally_implicit_table(info.name),
       typename DiagonallyImplicit<Real>::Keeps{.reversible = info.name == "trapezoidal"});
 }
 
@@ -127,6 +129,7 @@ std::span<const MethodInfo> methods::diagonally_implicit_list() {
        .use = "stiff decay to a rest state, at any step",
        .source = "HairerWanner1996",
        .family = "implicit",
+       .options = "jacobian",
        .order = 1,
        .stability_limit = std::numeric_limits<double>::infinity(),
        .make = make_diagonally_implicit<double>,
@@ -137,6 +140,7 @@ std::span<const MethodInfo> methods::diagonally_implicit_list() {
        .use = "heat and circuits at moderate accuracy; stiff modes ring",
        .source = "CrankNicolson1947",
        .family = "implicit",
+       .options = "jacobian",
        .order = 2,
        .stability_limit = std::numeric_limits<double>::infinity(),
        .make = make_diagonally_implicit<double>,
@@ -147,6 +151,7 @@ std::span<const MethodInfo> methods::diagonally_implicit_list() {
        .use = "stiff systems at low accuracy, steps of one length",
        .source = "Alexander1977",
        .family = "implicit",
+       .options = "jacobian",
        .order = 2,
        .stability_limit = std::numeric_limits<double>::infinity(),
        .make = make_diagonally_implicit<double>,
@@ -157,6 +162,7 @@ std::span<const MethodInfo> methods::diagonally_implicit_list() {
        .use = "stiff systems at moderate accuracy, steps of one length",
        .source = "Alexander1977",
        .family = "implicit",
+       .options = "jacobian",
        .order = 3,
        .stability_limit = std::numeric_limits<double>::infinity(),
        .make = make_diagonally_implicit<double>,
@@ -167,6 +173,7 @@ std::span<const MethodInfo> methods::diagonally_implicit_list() {
        .use = "stiff systems at moderate accuracy, steps of one length",
        .source = "HairerWanner1996",
        .family = "implicit",
+       .options = "jacobian",
        .order = 4,
        .stability_limit = std::numeric_limits<double>::infinity(),
        .make = make_diagonally_implicit<double>,

@@ -20,7 +20,7 @@ template <class Real> class DiagonallyImplicit final : public Method<Real> {
   struct Keeps {
     bool reversible = false;
   };
-  DiagonallyImplicit(const MethodInfo& info, const Tableau& table, Keeps keeps);
+  DiagonallyImplicit(const MethodInfo& info, const MethodOptions& options, const Tableau& table, Keeps keeps);
 
   std::unique_ptr<Method<Real>> clone() const override { return std::make_unique<DiagonallyImplicit>(*this); }
   MethodClaims claims() const override;
@@ -36,6 +36,7 @@ template <class Real> class DiagonallyImplicit final : public Method<Real> {
   std::string_view name_;
   int order_;
   Keeps keeps_;
+  std::optional<JacobianForm> form_;
   std::vector<std::vector<Real>> a_;
   std::vector<Real> b_, c_;
   Real diagonal_;

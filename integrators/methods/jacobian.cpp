@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 namespace noether {
@@ -39,6 +40,11 @@ template <class Real> void SparseFactors<Real>::solve(const Vector<Real>& right,
 
 namespace {
 
+/// Relative length that central differences are taken over: the cube root of rounding.
+template <class Real> double difference_length() {
+  return std::cbrt(static_cast<double>(std::numeric_limits<Real>::epsilon()));
+}
+
 /// Columns in groups, greedily: no two of a group have a row in common.
 std::vector<std::vector<Index>> grouped(const Sparsity& pattern) {
   std::vector<std::vector<Index>> groups;
@@ -62,17 +68,33 @@ std::vector<std::vector<Index>> grouped(const Sparsity& pattern) {
 
 }  // namespace
 
-template <class Real> void Jacobian<Real>::bind(const VectorField<Real>& f) {
+template <class Real> void Jacobian<Real>::bind(const VectorField<Real>& f, const JacobianUse& use) {
   const FieldClaims claims = f.claims();
   size_ = f.size();
   second_order_ = claims.second_order;
+  velocity_dependent_ = claims.velocity_dependent;
   time_dependent_ = claims.time_dependent;
   pattern_ = f.sparsity();
-  sparse_ = !pattern_.empty() && !second_order_;
+  const bool known = !pattern_.empty() && !second_order_;
+  form_ = use.form.value_or(known ? JacobianForm::sparse : JacobianForm::dense);
+  if (sparse() && !known) {
+    throw SchemeMismatch(fmt::format("'{}' does not say where its Jacobian can be other than 0, so it has no sparse "
+                                     "one; use jacobian = \"matrix_free\" or \"dense\"",
+                                     claims.name),
+                         {.key = "jacobian"});
+  }
+  residual_ = use.rounding ? 1e3 * static_cast<double>(std::numeric_limits<Real>::epsilon()) : 1e-8;
+  tolerance_ = use.tolerance;
   groups_.clear();
   factorized_ = ready_ = false;
   for (Vector<Real>* v : {&up_, &down_, &direction_}) v->setZero(size_);
-  if (sparse_) return bind_sparse();
+  if (sparse()) return bind_sparse();
+  if (!matrix_free()) return bind_dense(claims);
+  for (Vector<Real>* v : {&point_, &product_}) v->setZero(size_);
+  scale_.setOnes(size_);
+}
+
+template <class Real> void Jacobian<Real>::bind_dense(const FieldClaims& claims) {
   // Velocities move particles, and need not be found; nor do forces that do not feel them.
   const Index columns = second_order_ && !claims.velocity_dependent ? size_ / 2 : size_;
   for (Index j = 0; j < columns; ++j) groups_.push_back({j});
@@ -105,7 +127,13 @@ template <class Real> void Jacobian<Real>::bind_sparse() {
 template <class Real> void Jacobian<Real>::evaluate(VectorField<Real>& f, const Real& t, const Vector<Real>& y) {
   ++f.evaluations().jacobian;
   factorized_ = ready_ = false;
-  if (!sparse_ && f.jacobian(t, y, J_)) return;
+  if (matrix_free()) {
+    time_ = t;
+    point_ = y;
+    set_scale();
+    return;
+  }
+  if (!sparse() && f.jacobian(t, y, J_)) return;
   for (std::size_t group = 0; group < groups_.size(); ++group) {
     if (!f.has_derivative()) {
       differences(f, t, y, group);
@@ -120,7 +148,7 @@ template <class Real> void Jacobian<Real>::evaluate(VectorField<Real>& f, const 
 
 template <class Real> void Jacobian<Real>::store(std::size_t group, const Vector<Real>& column) {
   for (const Index j : groups_[group]) {
-    if (sparse_) {
+    if (sparse()) {
       for (const Index i : pattern_[static_cast<std::size_t>(j)]) entries_.coeffRef(i, j) = column[i];
     } else {
       for (Index i = second_order_ ? size_ / 2 : 0; i < size_; ++i) J_(i, j) = column[i];
@@ -136,7 +164,7 @@ template <class Real> double Jacobian<Real>::increment(const Vector<Real>& y, In
   for (Index i = begin; i < begin + half && i < size_; ++i) most = std::max(most, std::abs(static_cast<double>(y[i])));
   if (most == 0) most = 1;
   const double size = std::max(std::abs(static_cast<double>(y[j])), (second_order_ ? 1e-2 : 1e-6) * most);
-  return std::cbrt(static_cast<double>(std::numeric_limits<Real>::epsilon())) * size;
+  return difference_length<Real>() * size;
 }
 
 template <class Real>
@@ -152,7 +180,7 @@ void Jacobian<Real>::differences(VectorField<Real>& f, const Real& t, const Vect
   for (const Index j : columns) {
     // The lengths as they came out, so that their own rounding does no harm.
     const Real width = (y[j] + Real(increment(y, j))) - (y[j] - Real(increment(y, j)));
-    if (sparse_) {
+    if (sparse()) {
       for (const Index i : pattern_[static_cast<std::size_t>(j)]) entries_.coeffRef(i, j) = up_[i] / width;
     } else {
       for (Index i = second_order_ ? size_ / 2 : 0; i < size_; ++i) J_(i, j) = up_[i] / width;
@@ -194,8 +222,9 @@ template <class Real> bool Jacobian<Real>::factorize_half(const Real& a, const R
 
 template <class Real> bool Jacobian<Real>::compute() {
   factorized_ = ready_ = true;
+  if (matrix_free()) return true;
   const auto& [p, q, r] = weights_;
-  if (sparse_) {
+  if (sparse()) {
     for (Index k = 0; k < entries_.nonZeros(); ++k) matrix_.valuePtr()[k] = -q * entries_.valuePtr()[k];
     for (Index j = 0; j < size_; ++j) matrix_.coeffRef(j, j) += p;
     return sparse_factors_.compute(matrix_);
@@ -217,48 +246,130 @@ template <class Real> bool Jacobian<Real>::compute() {
 }
 
 /// x <- M^-1 x; a copy, and a run that goes on from a file, make their factors here, the same ones.
-template <class Real> void Jacobian<Real>::solve_half(Vector<Real>& x) {
+template <class Real> bool Jacobian<Real>::solve_half(VectorField<Real>& f, Vector<Real>& x) {
   NOETHER_EXPECTS(factorized_, "a system is solved before its matrix is factorized");
-  if (!ready_ || (sparse_ && !sparse_factors_.ready())) compute();
-  if (sparse_) {
+  if (matrix_free()) return solve_matrix_free(f, x);
+  if (!ready_ || (sparse() && !sparse_factors_.ready())) compute();
+  if (sparse()) {
     sparse_factors_.solve(x, half_);
   } else {
     half_.noalias() = factors_.solve(x);
   }
   x.swap(half_);
+  return true;
 }
 
-template <class Real> void Jacobian<Real>::solve(Vector<Real>& x) {
-  if (!second_order_) return solve_half(x);
+template <class Real> bool Jacobian<Real>::solve(VectorField<Real>& f, Vector<Real>& x) {
+  if (!second_order_) return solve_half(f, x);
   const Index n = size_ / 2;
-  down_.resize(n);
-  for (Index i = 0; i < n; ++i) down_[i] = a_ * x[n + i];
-  for (Index j = 0; j < n; ++j) {
-    for (Index i = 0; i < n; ++i) down_[i] += b_ * J_(n + i, j) * x[j];
+  Vector<Real>& v = velocities_;
+  v.resize(n);
+  for (Index i = 0; i < n; ++i) v[i] = a_ * x[n + i];
+  if (matrix_free()) {
+    for (Index i = 0; i < n; ++i) direction_[i] = b_ * x[i];
+    multiply(f, direction_, product_);
+    direction_.setZero();
+    for (Index i = 0; i < n; ++i) v[i] += product_[n + i];
+  } else {
+    for (Index j = 0; j < n; ++j) {
+      for (Index i = 0; i < n; ++i) v[i] += b_ * J_(n + i, j) * x[j];
+    }
   }
-  solve_half(down_);
+  if (!solve_half(f, v)) return false;
   for (Index i = 0; i < n; ++i) {
-    x[i] = (x[i] + b_ * down_[i]) / a_;
-    x[n + i] = down_[i];
+    x[i] = (x[i] + b_ * v[i]) / a_;
+    x[n + i] = v[i];
   }
+  return true;
+}
+
+/// out = J v at the point that is kept, exact or by central differences, one for each kind of variables: as far along v
+/// as moves none of them by more than the cube root of rounding of the largest.
+template <class Real> void Jacobian<Real>::multiply(VectorField<Real>& f, const Vector<Real>& v, Vector<Real>& out) {
+  if (f.has_derivative()) {
+    ++f.evaluations().force;
+    f.derivative(time_, point_, Real(0), v, out);
+    return;
+  }
+  const Index half = second_order_ ? size_ / 2 : size_;
+  out.setZero(size_);
+  for (Index begin = 0; begin < size_; begin += half) {
+    const Real move = v.segment(begin, half).cwiseAbs().maxCoeff();
+    if (!(move > Real(0))) continue;
+    const Real most = point_.segment(begin, half).cwiseAbs().maxCoeff();
+    const Real step = Real(difference_length<Real>()) * (most > Real(0) ? most : Real(1)) / move;
+    moved_ = point_;
+    moved_.segment(begin, half) += step * v.segment(begin, half);
+    f.rate(time_, moved_, up_);
+    moved_ = point_;
+    moved_.segment(begin, half) -= step * v.segment(begin, half);
+    f.rate(time_, moved_, down_);
+    out += (up_ - down_) / (step + step);
+  }
+}
+
+/// x <- M^-1 x with products: J (r v, q v) = (., B q v + A r v), in multiples of `scale_`.
+template <class Real> bool Jacobian<Real>::solve_matrix_free(VectorField<Real>& f, Vector<Real>& x) {
+  const auto& [p, q, r] = weights_;
+  const Index n = x.size();
+  const auto scale = scale_.tail(n).array();
+  const LinearMap<Real> map = [&](const Vector<Real>& v, Vector<Real>& out) {
+    late_ = scale * v.array();
+    if (second_order_) direction_.head(n) = r * late_;
+    if (velocity_dependent_ || !second_order_) direction_.tail(n) = q * late_;
+    multiply(f, direction_, product_);
+    out = p * v - (product_.tail(n).array() / scale).matrix();
+  };
+  const double rounding = f.has_derivative() ? 0 : std::pow(difference_length<Real>(), 2);
+  x.array() /= scale;
+  const bool found = solve_by_krylov(map, x, {.residual = residual_, .product = rounding}, half_);
+  direction_.setZero();
+  if (found) x = (half_.array() * scale).matrix();
+  return found;
+}
+
+/// What systems are solved in multiples of: errors that are equally tolerable.
+template <class Real> void Jacobian<Real>::set_scale() {
+  scale_.setOnes(size_);
+  if (!tolerance_) return;
+  for (Index i = 0; i < size_; ++i) {
+    scale_[i] = Real(tolerance_->atol + tolerance_->rtol * std::abs(static_cast<double>(point_[i])));
+  }
+  const Real least = scale_.maxCoeff() * Real(std::numeric_limits<double>::epsilon());
+  if (least > Real(0) && std::isfinite(static_cast<double>(least))) {
+    scale_ = scale_.cwiseMax(least);
+  } else {
+    scale_.setOnes();
+  }
+}
+
+/// What is saved of J: its elements, or the point where it is meant.
+template <class Real> template <class Self> auto Jacobian<Real>::kept(Self& self) {
+  if (self.matrix_free()) return std::span(self.point_.data(), static_cast<std::size_t>(self.point_.size()));
+  if (self.sparse()) return std::span(self.entries_.valuePtr(), static_cast<std::size_t>(self.entries_.nonZeros()));
+  return std::span(self.J_.data(), static_cast<std::size_t>(self.J_.size()));
 }
 
 template <class Real> void Jacobian<Real>::save(SavedState& saved, const std::string& prefix) const {
-  const Real* values = sparse_ ? entries_.valuePtr() : J_.data();
-  const Index count = sparse_ ? entries_.nonZeros() : J_.size();
-  save_value(saved, prefix + "elements", std::vector<Real>(values, values + count));
+  const auto values = kept(*this);
+  save_value(saved, prefix + (matrix_free() ? "point" : "elements"), std::vector<Real>(values.begin(), values.end()));
+  if (matrix_free()) save_value(saved, prefix + "time", std::vector<Real>{time_});
   save_value(saved, prefix + "weights", std::vector<Real>{a_, b_, weights_[0], weights_[1], weights_[2]});
   save_value(saved, prefix + "factorized", factorized_);
 }
 
 template <class Real> void Jacobian<Real>::load(const SavedState& saved, const std::string& prefix) {
-  std::vector<Real> elements, weights;
-  load_value(saved, prefix + "elements", elements);
+  std::vector<Real> elements, weights, time;
+  load_value(saved, prefix + (matrix_free() ? "point" : "elements"), elements);
+  if (matrix_free()) load_value(saved, prefix + "time", time);
   load_value(saved, prefix + "weights", weights);
   load_value(saved, prefix + "factorized", factorized_);
-  Real* values = sparse_ ? entries_.valuePtr() : J_.data();
-  const Index count = sparse_ ? entries_.nonZeros() : J_.size();
-  for (Index k = 0; k < count; ++k) values[k] = detail::element(elements, static_cast<std::size_t>(k));
+  std::size_t at = 0;
+  for (Real& value : kept(*this)) value = detail::element(elements, at++);
+  if (matrix_free()) {
+    time_ = detail::element(time, 0);
+    set_scale();
+  }
   a_ = detail::element(weights, 0);
   b_ = detail::element(weights, 1);
   for (std::size_t k = 0; k < 3; ++k) weights_[k] = detail::element(weights, 2 + k);

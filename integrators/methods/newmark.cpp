@@ -9,7 +9,10 @@ namespace noether {
 
 template <class Real>
 Newmark<Real>::Newmark(const MethodInfo& info, const MethodOptions& options)
-    : name_(info.name), beta_(options.beta.value_or(0.25)), gamma_(options.gamma.value_or(0.5)) {
+    : name_(info.name),
+      beta_(options.beta.value_or(0.25)),
+      gamma_(options.gamma.value_or(0.5)),
+      form_(options.jacobian) {
   if (!(beta_ >= 0 && std::isfinite(beta_))) {
     throw Error(fmt::format("beta = {} is none of Newmark's method; 0 or more is expected, 0.25 by default", beta_));
   }
@@ -37,7 +40,7 @@ template <class Real> void Newmark<Real>::bind(const VectorField<Real>& f) {
                     name_, field.name));
   }
   explicit_ = beta_ == 0 && (gamma_ == 0 || !field.velocity_dependent);
-  if (!explicit_) jacobian_.bind(f);
+  if (!explicit_) jacobian_.bind(f, {.form = form_});
   y1_.resize(f.size());
   for (Vector<Real>* v : {&a0_, &a1_, &update_}) v->resize(f.size() / 2);
 }
@@ -62,11 +65,11 @@ std::optional<Failure> Newmark<Real>::solve(VectorField<Real>& f, const Real& t,
     jacobian_.evaluate(f, end, y1_);
     return jacobian_.factorize_half(Real(1), Real(h) * Real(gamma_), Real(h) * Real(h) * Real(beta_));
   };
-  const auto correct = [&] {
+  const auto correct = [&]() -> std::optional<UpdateSize> {
     place(y, h);
     f.acceleration(end, y1_, update_);
     for (Index i = 0; i < n; ++i) update_[i] = update_[i] - a1_[i];
-    jacobian_.solve_half(update_);
+    if (!jacobian_.solve_half(f, update_)) return {};
     for (Index i = 0; i < n; ++i) a1_[i] += update_[i];
     // What the update does to positions and velocities counts.
     const UpdateSize q = update_size(update_.data(), h * h * beta_, y.data(), y1_.data(), n);
@@ -111,7 +114,7 @@ std::span<const MethodInfo> methods::newmark_list() {
        .use = "structures: stiff springs with steps set by what is to be seen",
        .source = "Newmark1959",
        .family = "implicit",
-       .options = "beta gamma",
+       .options = "beta gamma jacobian",
        .order = 2,
        .stability_limit = std::numeric_limits<double>::infinity(),
        .make = make_newmark<double>,

@@ -34,6 +34,7 @@ template <class Real> class Newmark final : public Method<Real> {
 
   std::string_view name_;
   double beta_, gamma_;
+  std::optional<JacobianForm> form_;
   bool explicit_ = false;  ///< a1 depends on nothing unknown
   Jacobian<Real> jacobian_;
   Vector<Real> a0_, a1_, y1_, update_;

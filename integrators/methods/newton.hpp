@@ -45,12 +45,20 @@ UpdateSize update_size(const Vector<Real>& d, const Vector<Real>& from, const Ve
   return {std::max(q.whole, v.whole), std::max(q.each, v.each)};
 }
 
+/// What an implicit method says of a linear system that products with its matrix did not solve.
+inline Failure unsolved_system() {
+  return {Outcome::Kind::solver_failure, -1, "step",
+          "GMRES and BiCGSTAB did not solve a linear system of the implicit step; take a smaller step, or "
+          "jacobian = \"sparse\" or \"dense\""};
+}
+
 /// Repeats `correct` until its updates have stopped to shrink at the level of rounding.
 ///
-/// `correct()` makes one update, by the matrix there is, and returns its size. Where updates shrink by less than half,
-/// the iteration goes back to its guess (`restart`) and on with matrices from where it stands (`renew`): an old matrix
-/// may lead to another solution. Rounding of a badly conditioned right-hand side may lie above that of the numbers: an
-/// update that shrinks no more with a new matrix is taken for it below a millionth of all digits.
+/// `correct()` makes one update, by the matrix there is, and returns its size, or nothing if its system was not solved.
+/// Where updates shrink by less than half, the iteration goes back to its guess (`restart`) and on with matrices from
+/// where it stands (`renew`): an old matrix may lead to another solution. Rounding of a badly conditioned right-hand
+/// side may lie above that of the numbers: an update that shrinks no more with a new matrix is taken for it below a
+/// millionth of all digits.
 /// @return nothing, or why it failed
 /// @cost four to eight updates for smooth problems, without a new matrix
 template <class Real, class Correct, class Restart, class Renew>
@@ -63,7 +71,9 @@ std::optional<Failure> newton_to_rounding(const Correct& correct, const Restart&
   bool old_matrix = true, regular = true;
   int renewals = 0, iteration = 1;
   for (; regular && iteration <= most && renewals <= most_renewals; ++iteration) {
-    const UpdateSize now = correct();
+    const std::optional<UpdateSize> made = correct();
+    if (!made) return unsolved_system();
+    const UpdateSize now = *made;
     if (now.whole == 0) return {};
     // Another update would be lost in rounding, or is nothing but rounding.
     const bool lost = now.each * (now.each / before.each) <= rounding / 4 && std::isfinite(before.each);

@@ -5,6 +5,7 @@
 #include "integrators/methods/tableau.hpp"
 
 #include <limits>
+#include <utility>
 
 namespace noether {
 
@@ -13,6 +14,7 @@ Rosenbrock<Real>::Rosenbrock(const MethodInfo& info, const MethodOptions& option
     : name_(info.name),
       order_(table.order),
       adaptive_(info.is_adaptive(options)),
+      form_(options.jacobian),
       tolerance_{options.rtol.value_or(info.rtol), options.atol.value_or(info.atol)},
       first_(options.first.value_or(0)),
       g_(table.g),
@@ -25,7 +27,8 @@ Rosenbrock<Real>::Rosenbrock(const MethodInfo& info, const MethodOptions& option
       control_(table.embedded_order + 1, 6) {}
 
 template <class Real> void Rosenbrock<Real>::bind(const VectorField<Real>& f) {
-  jacobian_.bind(f);
+  jacobian_.bind(f,
+                 {.form = form_, .tolerance = adaptive_ ? std::optional(tolerance_) : std::nullopt, .rounding = true});
   u_.assign(b_.size(), Vector<Real>(f.size()));
   for (Vector<Real>* v : {&f0_, &slope_, &stage_, &rate_, &y0_, &y1_}) v->setZero(f.size());
   control_.forget();
@@ -36,12 +39,12 @@ template <class Real> double Rosenbrock<Real>::next_step(VectorField<Real>& f, c
   return control_.next();
 }
 
-/// Leaves the stages of a step in `u_` and its end in `y1_`. @return whether the matrix is regular
+/// Leaves the stages of a step in `u_` and its end in `y1_`. @return nothing, or why it failed
 template <class Real>
-bool Rosenbrock<Real>::trial(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h) {
+std::optional<Failure> Rosenbrock<Real>::trial(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h) {
   const Index n = y.size();
   const Real step(h), weight = step * g_;
-  if (!jacobian_.factorize(Real(1), weight)) return false;
+  if (!jacobian_.factorize(Real(1), weight)) return singular_matrix(h);
   for (std::size_t s = 0; s < u_.size(); ++s) {
     Vector<Real>& u = u_[s];
     for (Index i = 0; i < n; ++i) {
@@ -55,14 +58,14 @@ bool Rosenbrock<Real>::trial(VectorField<Real>& f, const Real& t, const Vector<R
     const Vector<Real>& rate = s == 0 ? f0_ : rate_;
     const Real slope = s < d_.size() ? step * d_[s] : Real(0);
     for (Index i = 0; i < n; ++i) u[i] += weight * (rate[i] + slope * slope_[i]);
-    jacobian_.solve(u);
+    if (!jacobian_.solve(f, u)) return unsolved_system();
   }
   for (Index i = 0; i < n; ++i) {
     Real sum(0);
     for (std::size_t j = 0; j < u_.size(); ++j) sum += b_[j] * u_[j][i];
     y1_[i] = y[i] + sum;
   }
-  return true;
+  return {};
 }
 
 template <class Real> Stepped Rosenbrock<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
@@ -73,12 +76,12 @@ template <class Real> Stepped Rosenbrock<Real>::step(VectorField<Real>& f, const
   while (true) {
     if (adaptive_) made.failure = underflow(static_cast<double>(t), made.h);
     if (made.failure) return made;
-    const bool regular = trial(f, t, y, made.h);
+    std::optional<Failure> failure = trial(f, t, y, made.h);
     if (!adaptive_) {
-      if (!regular) made.failure = singular_matrix(made.h);
+      made.failure = std::move(failure);
       break;
     }
-    const double error = regular ? tolerance_.norm(u_.back(), y, y1_) : std::numeric_limits<double>::infinity();
+    const double error = failure ? std::numeric_limits<double>::infinity() : tolerance_.norm(u_.back(), y, y1_);
     if (control_.accept(made.h, error)) break;
     ++made.rejected;
     made.h = std::min(control_.next(), h);
@@ -177,11 +180,11 @@ std::unique_ptr<Method<Real>> make_rosenbrock(const MethodInfo& info, const Meth
 
 }  // namespace
 
-template <class Real> Rosenbrock<Real> starting_rosenbrock() {
-  return Rosenbrock<Real>(methods::rosenbrock_list()[1], {.adaptive = false}, rodas_5p());
+template <class Real> Rosenbrock<Real> starting_rosenbrock(std::optional<JacobianForm> form) {
+  return Rosenbrock<Real>(methods::rosenbrock_list()[1], {.adaptive = false, .jacobian = form}, rodas_5p());
 }
-template Rosenbrock<double> starting_rosenbrock();
-template Rosenbrock<Quad> starting_rosenbrock();
+template Rosenbrock<double> starting_rosenbrock(std::optional<JacobianForm> form);
+template Rosenbrock<Quad> starting_rosenbrock(std::optional<JacobianForm> form);
 
 std::span<const MethodInfo> methods::rosenbrock_list() {
   static const MethodInfo list[] = {
@@ -191,6 +194,7 @@ std::span<const MethodInfo> methods::rosenbrock_list() {
        .use = "stiff systems of some ten variables, relative errors of 1e-3 to 1e-6",
        .source = "HairerWanner1996",
        .family = "rosenbrock",
+       .options = "jacobian",
        .order = 4,
        .evaluations = 6,
        .printed_digits = 16,
@@ -204,6 +208,7 @@ std::span<const MethodInfo> methods::rosenbrock_list() {
        .use = "stiff systems of some ten variables, relative errors of 1e-4 to 1e-8; driven ones above all",
        .source = "Steinebach2023",
        .family = "rosenbrock",
+       .options = "jacobian",
        .order = 5,
        .evaluations = 8,
        .printed_digits = 16,

@@ -41,11 +41,12 @@ template <class Real> class Rosenbrock final : public Method<Real> {
   void load(const SavedState& saved, const std::string& prefix) override { control_.load(saved, prefix + "control/"); }
 
  private:
-  bool trial(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h);
+  std::optional<Failure> trial(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h);
 
   std::string_view name_;
   int order_;
   bool adaptive_;
+  std::optional<JacobianForm> form_;
   Tolerance tolerance_;
   double first_;
   Real g_;
@@ -62,6 +63,6 @@ extern template class Rosenbrock<double>;
 extern template class Rosenbrock<Quad>;
 
 /// Rodas5P with fixed steps, to start methods that need a past.
-template <class Real> Rosenbrock<Real> starting_rosenbrock();
+template <class Real> Rosenbrock<Real> starting_rosenbrock(std::optional<JacobianForm> form);
 
 }  // namespace noether

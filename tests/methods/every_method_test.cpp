@@ -26,13 +26,19 @@ struct Way {
 std::vector<Way> every_way() {
   std::vector<Way> ways;
   for (const MethodInfo* info : methods::all()) {
+    const auto add = [&](MethodOptions options, bool adaptive) {
+      ways.push_back({info, options, adaptive});
+      if (info->options.find("jacobian") == std::string_view::npos) return;
+      options.jacobian = JacobianForm::matrix_free;
+      ways.push_back({info, options, adaptive});
+    };
     MethodOptions options;
     if (info->fixed && info->adaptive) options.adaptive = false;
-    if (info->fixed) ways.push_back({info, options, false});
+    if (info->fixed) add(options, false);
     if (!info->adaptive) continue;
     options = {};
     if (info->rtol > 1e-15) options.rtol = options.atol = 1e-8;
-    ways.push_back({info, options, true});
+    add(options, true);
   }
   return ways;
 }

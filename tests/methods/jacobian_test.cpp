@@ -124,7 +124,7 @@ TEST_CASE("columns that share no row are found together") {
     Jacobian<double> jacobian;
     jacobian.bind(*field);
     jacobian.evaluate(*field, 0, y);
-    CHECK(jacobian.sparse());
+    CHECK(jacobian.form() == JacobianForm::sparse);
     CHECK(field->evaluations().force == 6);  // three groups of a tridiagonal matrix, up and down
     CHECK(field->evaluations().jacobian == 1);
     const auto exact = field_of(Heat{.n = n}, y);
@@ -140,22 +140,22 @@ TEST_CASE("a dense Jacobian and a sparse one are the same and solve the same") {
   Jacobian<double> first, second;
   first.bind(*a);
   second.bind(*b);
-  CHECK(first.sparse());
-  CHECK_FALSE(second.sparse());
+  CHECK(first.form() == JacobianForm::sparse);
+  CHECK(second.form() == JacobianForm::dense);
   first.evaluate(*a, 0, y);
   second.evaluate(*b, 0, y);
   REQUIRE(first.factorize(1, 0.01));
   REQUIRE(second.factorize(1, 0.01));
   Vector<double> u = y, w = y;
-  first.solve(u);
-  second.solve(w);
+  first.solve(*a, u);
+  second.solve(*b, w);
   CHECK(apart(u, w) < 1e-15);
   // The modes of the start are eigenvectors, so one of them is solved in closed form.
   const double pi = std::acos(-1.0), mode = 41.0 * 41.0 * 2 * (std::cos(pi / 41) - 1);
   Vector<double> sine(40);
   for (Index i = 0; i < 40; ++i) sine[i] = std::sin(pi * static_cast<double>(i + 1) / 41);
   w = sine;
-  first.solve(w);
+  first.solve(*a, w);
   for (Index i = 0; i < 40; ++i) CHECK(std::abs(w[i] - sine[i] / (1 - 0.01 * mode)) < 1e-14);
 }
 
@@ -168,7 +168,7 @@ TEST_CASE("particles are solved by systems of half the size") {
   jacobian.evaluate(*field, 0.3, y);
   REQUIRE(jacobian.factorize(3, 0.2));
   Vector<double> x = y;
-  jacobian.solve(x);
+  jacobian.solve(*field, x);
   for (Index i = 0; i < y.size(); ++i) {
     double residual = 3 * x[i] - y[i];
     for (Index j = 0; j < y.size(); ++j) residual -= 0.2 * jacobian(i, j) * x[j];
@@ -190,9 +190,9 @@ TEST_CASE("a copy of a Jacobian solves with factors of its own, to the same bits
   loaded.bind(*field);
   loaded.load(saved, "");
   Vector<double> a = y, b = y, c = y;
-  jacobian.solve(a);
-  copy.solve(b);
-  loaded.solve(c);
+  jacobian.solve(*field, a);
+  copy.solve(*field, b);
+  loaded.solve(*field, c);
   CHECK(a == b);
   CHECK(a == c);
 }
