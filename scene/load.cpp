@@ -384,7 +384,7 @@ class SceneReader {
     try {
       integrator_of(scene_).bind(s);
     } catch (const SchemeMismatch& error) {
-      integrator.fail("method", error.message());
+      integrator.fail(error.key().empty() ? "method" : error.key(), error.message());
     }
     const std::unique_ptr<VectorField<double>> field = scene_.system->field();
     Vector<double> y, dy;
@@ -423,7 +423,7 @@ class SceneReader {
     try {
       made = integrator_of(scene_);
     } catch (const SchemeMismatch& error) {
-      integrator.fail("method", error.message());
+      integrator.fail(error.key().empty() ? "method" : error.key(), error.message());
     }
     check_start(hamiltonian, integrator, *made);
   }
@@ -448,7 +448,7 @@ class SceneReader {
     try {
       made.bind(s);
     } catch (const SchemeMismatch& error) {
-      integrator.fail("method", error.message());
+      integrator.fail(error.key().empty() ? "method" : error.key(), error.message());
     } catch (const Error& error) {
       hamiltonian.fail("type", error.message());
     }

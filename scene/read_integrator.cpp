@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -78,7 +79,7 @@ void read_method(TableReader& reader, SceneIntegrator& made) {
 
 /// What a splitting scheme takes beside its step.
 void read_scheme_options(TableReader& reader, SceneIntegrator& made, bool constrained, SceneValue& effective) {
-  for (const char* key : {"rtol", "atol", "adaptive", "beta", "gamma"}) {
+  for (const char* key : {"rtol", "atol", "adaptive", "beta", "gamma", "jacobian"}) {
     if (reader.has(key)) {
       reader.fail(key, fmt::format("method '{}' takes steps of one length, so {} means nothing to it; take it out, or "
                                    "use a method such as 'dop853'",
@@ -92,6 +93,17 @@ void read_scheme_options(TableReader& reader, SceneIntegrator& made, bool constr
                 "plain sums");
   }
   effective.put("compensated", SceneValue::of(made.compensated, reader.line("compensated")));
+}
+
+std::optional<JacobianForm> read_jacobian(TableReader& reader) {
+  if (!reader.has("jacobian")) return {};
+  const std::string name = reader.text("jacobian");
+  const auto* at = std::find(jacobian_forms.begin(), jacobian_forms.end(), name);
+  if (at == jacobian_forms.end()) {
+    reader.fail("jacobian", fmt::format("unknown jacobian '{}'{}", name,
+                                        did_you_mean(name, {jacobian_forms.begin(), jacobian_forms.end()})));
+  }
+  return static_cast<JacobianForm>(at - jacobian_forms.begin());
 }
 
 /// What a classical method takes beside its step.
@@ -113,6 +125,7 @@ void read_method_options(TableReader& reader, SceneIntegrator& made, bool constr
   options.atol = reader.quantity("atol", "1");
   options.beta = reader.quantity("beta", "1");
   options.gamma = reader.quantity("gamma", "1");
+  options.jacobian = read_jacobian(reader);
   try {
     check_options(info, options);
   } catch (const Error& error) {
@@ -123,7 +136,7 @@ void read_method_options(TableReader& reader, SceneIntegrator& made, bool constr
     effective.put("rtol", SceneValue::of(options.rtol.value_or(info.rtol), reader.line("rtol")));
     effective.put("atol", SceneValue::of(options.atol.value_or(info.atol), reader.line("atol")));
   }
-  for (const char* key : {"beta", "gamma"}) {
+  for (const char* key : {"beta", "gamma", "jacobian"}) {
     if (const SceneValue* value = reader.find(key)) effective.put(key, *value);
   }
 }
@@ -184,7 +197,8 @@ SceneIntegrator read_integrator(const SceneContext& context, const SceneValue& t
                                 SceneValue& effective) {
   SceneIntegrator made;
   TableReader reader(context, table, "[integrator]", "integrator");
-  reader.expect_only({"method", "step", "until", "steps", "compensated", "rtol", "atol", "adaptive", "beta", "gamma"});
+  reader.expect_only(
+      {"method", "step", "until", "steps", "compensated", "rtol", "atol", "adaptive", "beta", "gamma", "jacobian"});
   read_method(reader, made);
   effective.put("method", SceneValue::of(made.method, reader.line("method")));
   SceneValue options = SceneValue::table();

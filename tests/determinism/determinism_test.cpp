@@ -7,6 +7,7 @@
 #include "forces/gravity.hpp"
 #include "forces/oblateness.hpp"
 #include "forces/sum.hpp"
+#include "integrators/classical.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/schemes.hpp"
@@ -82,6 +83,17 @@ TEST_CASE("any number of threads gives the same bits", "[determinism]") {
     check_threads([&] {
       return final_state(test::planets_with_tracers(400),
                          compose(WisdomHolman({.G = G, .coordinates = coordinates}), schemes::verlet_aba), 20.0, 12, 5);
+    });
+  }
+}
+
+TEST_CASE("matrix-free implicit steps have the same bits for any number of threads", "[determinism]") {
+  for (const char* name : {"newmark", "bdf_2"}) {
+    check_threads([&] {
+      return final_state(
+          test::cloud(300),
+          classical(Gravity{.G = 1, .softening = 0.05}, method(name, {.jacobian = JacobianForm::matrix_free})), 0.01, 4,
+          0);
     });
   }
 }
