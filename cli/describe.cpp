@@ -3,6 +3,7 @@
 #include "engine/error.hpp"
 #include "engine/quantity.hpp"
 #include "engine/suggest.hpp"
+#include "engine/text.hpp"
 #include "integrators/methods.hpp"
 #include "integrators/schemes.hpp"
 #include "scene/json.hpp"
@@ -176,6 +177,7 @@ void describe_method(const MethodInfo& info, bool json) {
                              {"order", info.order},
                              {"fixed", info.fixed},
                              {"adaptive", info.adaptive},
+                             {"options", Json::list_of(words_of(info.options))},
                              {"rtol", info.adaptive ? Json(info.rtol) : Json()},
                              {"atol", info.adaptive ? Json(info.atol) : Json()},
                              {"stability_limit", info.stability_limit > 0 ? Json(info.stability_limit) : Json()},
@@ -188,6 +190,7 @@ void describe_method(const MethodInfo& info, bool json) {
   if (!aliases.empty()) fmt::print("also called {}\n", fmt::join(aliases, ", "));
   fmt::print("\n  order {}, {}\n  for y' = f(t, y): it takes all forces together, velocity-dependent ones too\n",
              info.order, steps_text(info));
+  if (!info.options.empty()) fmt::print("  takes {} too\n", fmt::join(words_of(info.options), ", "));
   if (std::isinf(info.stability_limit)) {
     fmt::print("  stable on the oscillator at any step\n");
   } else if (info.stability_limit > 0) {

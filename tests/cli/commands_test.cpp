@@ -122,6 +122,7 @@ TEST_CASE("describe tells formula, order, fields and source", "[cli][describe]")
   CHECK(has(force, "\n  softening "));
   CHECK(has(force, "\n@book{Newton1687,"));
   CHECK(json_member(json_output(folder, "describe gravity", "describe"), "kind") == "\"force\"");
+  CHECK(output(folder, "describe newmark").find("takes beta, gamma, jacobian too") != std::string::npos);
   CHECK(output(folder, "describe energy").starts_with("energy (monitor): "));
   CHECK(json_member(json_output(folder, "describe elements", "describe"), "kind") == "\"monitor\"");
   CHECK(json_member(json_output(folder, "describe trajectory", "describe"), "kind") == "\"writer\"");
