@@ -53,7 +53,7 @@ struct JacobianUse {
 ///     (a^2 I - a b B - b^2 A) v = a s + b A r,   x = (r + b v) / a        from a x - b v = r, a v - b (A x + B v) = s
 ///
 /// Matrix-free, no element is found: the point is kept, and systems are solved with products J v, each of them one
-/// derivative, counted as an evaluation, or two evaluations.
+/// derivative, counted as an evaluation, or two evaluations for each kind of variables.
 /// @cost one derivative, or two evaluations, for each column, or for each group of columns; LU: n^3 / 3, n that of the
 ///       smaller system; of a tridiagonal matrix O(n). Matrix-free: memory O(n), see `solve_by_krylov`
 /// @source CurtisPowellReid1974
