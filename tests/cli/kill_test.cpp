@@ -46,6 +46,46 @@ type = "checkpoint"
 steps = 3
 )";
 
+/// Lorenz's system, which magnifies any other bit; frames every 20 steps.
+const std::string chaotic_system = R"(units = "reduced"
+[system]
+type = "lorenz"
+[integrator]
+method = "rk4"
+step = 0.01
+steps = 4000
+[[every]]
+type = "variables"
+variable = "z"
+steps = 7
+[[every]]
+type = "trajectory"
+steps = 20
+[[every]]
+type = "checkpoint"
+steps = 40
+)";
+
+/// Stiff kinetics by a method with a past and steps of its own; a frame every 0.5.
+const std::string stiff_system = R"(units = "reduced"
+[system]
+type = "robertson"
+[integrator]
+method = "bdf"
+rtol = 1e-8
+until = 100
+[[every]]
+type = "variables"
+variable = "B"
+every = 0.25
+[[every]]
+type = "trajectory"
+every = 0.5
+[[every]]
+type = "checkpoint"
+steps = 20
+)";
+
 std::string tracers() {
   std::string bodies = "name,mass,x,y,z,vx,vy,vz\nstar,1,0,0,0,0,0,0\nplanet,0.001,1,0,0,0,1,0\n";
   for (int k = 0; k < 20'000; ++k) {
@@ -55,17 +95,27 @@ std::string tracers() {
   return bodies;
 }
 
+/// Frames that a checkpoint counts on: due at the steps before it, or, of a cadence in time, those it has seen.
+std::int64_t frames_counted_on(const io::Checkpoint& checkpoint, std::int64_t steps_between_frames) {
+  if (steps_between_frames > 0) return checkpoint.step / steps_between_frames + 1;
+  std::int64_t seen = 0;
+  load_value(checkpoint.run.parts.at("trajectory"), "observed", seen);
+  return seen;
+}
+
 /// What a killed run has left can be read, and has every frame that its newest checkpoint counts on.
 void check_left(const fs::path& out, std::int64_t steps_between_frames) {
   const io::FoundCheckpoint found = io::newest_checkpoint(out);
   CHECK(found.damaged.empty());
-  if (!found.checkpoint && !fs::exists(out / "run.h5")) return;
+  const std::int64_t least = found.checkpoint ? frames_counted_on(*found.checkpoint, steps_between_frames) : 0;
+  if (least == 0 && !fs::exists(out / "run.h5")) return;
   const io::FileInfo info = io::verify(out / "run.h5");
   CHECK(info.damaged == std::vector<std::string>{});
-  if (found.checkpoint) CHECK(info.frames >= found.checkpoint->step / steps_between_frames + 1);
+  CHECK(info.frames >= least);
 }
 
 /// Kills a run again and again until it comes through, then begins anew, until there were so many deaths.
+/// @param steps_between_frames  0 where they come by time
 void die_at_moments(const std::string& scene, std::int64_t steps_between_frames, int deaths) {
   using Clock = std::chrono::steady_clock;
   const SceneFolder whole(scene), folder(scene);
@@ -102,9 +152,17 @@ TEST_CASE("a run killed at moments from start to end ends, resumed, as one never
   die_at_moments(large_run, 2, 6);
 }
 
+TEST_CASE("a system's run killed at moments from start to end ends, resumed, as one never killed",
+          "[cli][resume][kill][system][slow]") {
+  die_at_moments(chaotic_system, 20, 12);
+  die_at_moments(stiff_system, 0, 12);
+}
+
 TEST_CASE("so they do for hundreds of deaths", "[cli][resume][kill][.][nightly]") {
   die_at_moments(small_run, 20, 400);
   die_at_moments(large_run, 2, 150);
+  die_at_moments(chaotic_system, 20, 200);
+  die_at_moments(stiff_system, 0, 200);
 }
 
 }  // namespace

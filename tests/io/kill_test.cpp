@@ -161,7 +161,8 @@ void check_frames(const std::filesystem::path& file, const io::Frames& whole, st
   REQUIRE(static_cast<std::int64_t>(left.frames.size()) >= at_least);
   for (std::size_t k = 0; k < left.frames.size(); ++k) {
     const io::Frame &one = left.frames[k], &other = whole.frames.at(k);
-    const bool same = one.step == other.step && one.positions == other.positions && one.velocities == other.velocities;
+    const bool same = one.step == other.step && one.positions == other.positions &&
+                      one.velocities == other.velocities && one.variables == other.variables;
     if (!same) FAIL_CHECK("frame " << k << " is not that of an uninterrupted run");
   }
 }
@@ -226,31 +227,31 @@ void die_at_moments(int deaths) {
   });
 }
 
-/// A run with checkpoints, from start to end.
-struct WholeRun {
-  std::function<ParticleSystem<double>()> particles;
-  std::int64_t steps, between_checkpoints;
+/// Goes on from the newest checkpoint of a folder to the end, or begins, as `noether run --resume` does.
+template <class Run>
+void go_on(Run&& run, const std::filesystem::path& folder, std::int64_t end, std::int64_t between_checkpoints) {
+  run.simulation.every(between_checkpoints, io::CheckpointWriter(folder / "checkpoint.h5"));
+  const io::FoundCheckpoint found = io::newest_checkpoint(folder);
+  if (found.checkpoint) run.simulation.restore(found.checkpoint->run);
+  const Outcome outcome = run.simulation.run(end - run.simulation.step());
+  if (!outcome.ok()) throw FileError("the run fails");
+  run.writer->flush();
+  io::Checkpoint last;
+  last.run = run.simulation.save();
+  last.step = run.simulation.step();
+  last.digest = io::digest(run.simulation.particles());
+  io::write_checkpoint(folder / "checkpoint.h5", last);
+  run.writer->finish(outcome);
+}
 
-  /// Goes on from the newest checkpoint, or begins, as `noether run --resume` does.
-  void go_on(const std::filesystem::path& folder) const {
-    test::WritingRun run(folder / "run.h5", particles());
-    run.simulation.every(between_checkpoints, io::CheckpointWriter(folder / "checkpoint.h5"));
-    const io::FoundCheckpoint found = io::newest_checkpoint(folder);
-    if (found.checkpoint) run.simulation.restore(found.checkpoint->run);
-    const Outcome outcome = run.simulation.run(steps - run.simulation.step());
-    if (!outcome.ok()) throw FileError("the run fails");
-    run.writer->flush();
-    io::Checkpoint last;
-    last.run = run.simulation.save();
-    last.step = run.simulation.step();
-    last.digest = io::digest(run.simulation.particles());
-    io::write_checkpoint(folder / "checkpoint.h5", last);
-    run.writer->finish(outcome);
-  }
+/// A run with checkpoints into a folder, from wherever it was; frames every 5 steps.
+using WholeRun = std::function<void(const std::filesystem::path& folder)>;
+
+const WholeRun small = [](const auto& folder) { go_on(test::WritingRun(folder / "run.h5"), folder, 60, 7); };
+const WholeRun large = [](const auto& folder) {
+  go_on(test::WritingRun(folder / "run.h5", test::planets_with_tracers(20'000)), folder, 12, 3);
 };
-
-const WholeRun small{[] { return test::outer_planets(); }, 60, 7};
-const WholeRun large{[] { return test::planets_with_tracers(20'000); }, 12, 3};
+const WholeRun of_system = [](const auto& folder) { go_on(test::LorenzRun(folder / "run.h5"), folder, 60, 7); };
 
 /// A process that dies at its call number `fatal` to the system, if it makes so many. @return whether it came through
 bool survives(const WholeRun& run, const std::filesystem::path& folder, long fatal) {
@@ -259,7 +260,7 @@ bool survives(const WholeRun& run, const std::filesystem::path& folder, long fat
   if (child == 0) {
     die_at(fatal);
     try {
-      run.go_on(folder);
+      run(folder);
       ::_exit(0);
     } catch (const Error& error) {
       std::fprintf(stderr, "%s\n", error.what());
@@ -290,7 +291,7 @@ void die_anywhere(const WholeRun& run, int wanted) {
   constexpr long never = 1'000'000'000;
   const test::Threads one(1);  // a process that has threads cannot be copied with them
   die_at(never);
-  run.go_on(reference.path());
+  run(reference.path());
   const long calls = never - std::exchange(fatal_call, 0);
   const io::Frames whole = io::read_frames(reference / "run.h5");
   const std::string digest = check_files(reference.path(), whole);
@@ -325,12 +326,15 @@ TEST_CASE("a run that dies between its first call and its last, checkpoints amon
   die_anywhere(small, 12);
 }
 
+TEST_CASE("so does a run of a system", "[trajectory][checkpoint][kill][system]") { die_anywhere(of_system, 12); }
+
 TEST_CASE("so does a large one", "[trajectory][checkpoint][kill][slow]") { die_anywhere(large, 6); }
 
 TEST_CASE("the same for thousands of deaths", "[trajectory][kill][.][nightly]") {
   die_at_writes(2000);
   die_at_moments(500);
   die_anywhere(small, 600);
+  die_anywhere(of_system, 600);
   die_anywhere(large, 150);
 }
 

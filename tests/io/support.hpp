@@ -5,8 +5,10 @@
 #include "engine/simulation.hpp"
 #include "forces/gravity.hpp"
 #include "integrators/composition.hpp"
+#include "integrators/first_order_system.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/schemes.hpp"
+#include "integrators/systems/lorenz.hpp"
 #include "io/checkpoint.hpp"
 #include "io/trajectory.hpp"
 #include "tests/support/catch.hpp"
@@ -19,6 +21,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <string>
+#include <utility>
 
 namespace noether::test {
 
@@ -65,6 +68,17 @@ struct WritingRun {
   Simulation<double> simulation;
   Energy* energy;
   AngularMomentum* angular;
+  io::TrajectoryWriter* writer;
+};
+
+/// Lorenz's system under RK4, frames every 5 steps.
+struct LorenzRun {
+  explicit LorenzRun(const std::filesystem::path& file,
+                     io::TrajectoryOptions options = {.scene_toml = "title = \"l\"\n"})
+      : simulation(initial_state(Lorenz{}), classical(Lorenz{}, method("rk4")), 0.25e-2),
+        writer(&simulation.every(5, io::TrajectoryWriter(file, std::move(options)))) {}
+
+  Simulation<double> simulation;
   io::TrajectoryWriter* writer;
 };
 

@@ -1,8 +1,6 @@
 // Files of first-order systems: frames, digests, checkpoints, cutting back.
 
-#include "integrators/first_order_system.hpp"
 #include "integrators/systems/heat_line.hpp"
-#include "integrators/systems/lorenz.hpp"
 #include "io/digest.hpp"
 #include "io/hdf5_file.hpp"
 #include "io/inspect.hpp"
@@ -14,6 +12,7 @@
 
 using namespace noether;
 using test::error_of;
+using test::LorenzRun;
 
 TEST_CASE("the digest of a system is what Python's hashlib computes from the same numbers", "[digest]") {
   // import hashlib, struct; hashlib.sha256(b'noether-system-1\n' + struct.pack('<qqd', 3, 4, 0.5 + 3 * 0.1) +
@@ -29,17 +28,6 @@ TEST_CASE("the digest of a system is what Python's hashlib computes from the sam
 #if NOETHER_HDF5
 
 namespace {
-
-/// Lorenz's system under RK4, frames every 5 steps.
-struct LorenzRun {
-  explicit LorenzRun(const std::filesystem::path& file,
-                     io::TrajectoryOptions options = {.scene_toml = "title = \"l\"\n"})
-      : simulation(initial_state(Lorenz{}), classical(Lorenz{}, method("rk4")), 0.25e-2),
-        writer(&simulation.every(5, io::TrajectoryWriter(file, std::move(options)))) {}
-
-  Simulation<double> simulation;
-  io::TrajectoryWriter* writer;
-};
 
 void check_equal_system_files(const std::filesystem::path& a, const std::filesystem::path& b) {
   const test::PythonResult result = test::run_python("compare_files.py", a.string() + " " + b.string());
