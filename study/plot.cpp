@@ -1,107 +1,17 @@
 #include "study/plot.hpp"
 
-#include "engine/text.hpp"
+#include "study/svg.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 
 namespace noether {
 
 namespace {
 
 constexpr int left = 74, right = 220, top = 14, bottom = 50;
-constexpr int colours = 7;
-
-struct Range {
-  double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
-  bool log = true;
-
-  void take(double x) {
-    low = std::min(low, x);
-    high = std::max(high, x);
-  }
-  /// Some room beyond the ends: of a logarithmic axis up to the next third of a decade.
-  void widen() {
-    if (!(low <= high)) {
-      low = log ? 1e-3 : 0;
-      high = 1;
-    }
-    if (log) {
-      low = std::pow(10, std::floor(3 * std::log10(low) - 0.3) / 3);
-      high = std::pow(10, std::ceil(3 * std::log10(high) + 0.3) / 3);
-    } else if (low == high) {
-      high = low + 1;
-    }
-  }
-  /// Where a value lies between the ends, 0 to 1.
-  double at(double x) const { return log ? std::log(x / low) / std::log(high / low) : (x - low) / (high - low); }
-};
-
-/// 10 to a whole power, in characters.
-std::string power_of_ten(int n) {
-  static constexpr std::array<const char*, 10> digits = {"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074",
-                                                         "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
-  if (n >= -1 && n <= 2) return fmt::format("{:g}", std::pow(10, n));
-  std::string text = n < 0 ? "10\u207b" : "10";
-  for (const char c : std::to_string(std::abs(n))) text += digits[static_cast<std::size_t>(c - '0')];
-  return text;
-}
-
-std::vector<double> ticks_of(const Range& range, int most) {
-  std::vector<double> ticks;
-  if (range.log) {
-    const int first = static_cast<int>(std::ceil(std::log10(range.low) - 1e-9));
-    const int last = static_cast<int>(std::floor(std::log10(range.high) + 1e-9));
-    const int stride = std::max(1, (last - first + most - 1) / most);
-    for (int n = first; n <= last; n += stride) ticks.push_back(std::pow(10, n));
-    return ticks;
-  }
-  const double rough = (range.high - range.low) / most, unit = std::pow(10, std::floor(std::log10(rough)));
-  double stride = unit;
-  for (const double factor : {1.0, 2.0, 5.0, 10.0}) {
-    stride = factor * unit;
-    if (stride >= rough) break;
-  }
-  for (double x = std::ceil(range.low / stride) * stride; x <= range.high * (1 + 1e-12); x += stride) {
-    ticks.push_back(std::abs(x) < 1e-9 * stride ? 0 : x);
-  }
-  return ticks;
-}
-
-std::string tick_text(const Range& range, double value) {
-  return range.log ? power_of_ten(static_cast<int>(std::lround(std::log10(value)))) : fmt::format("{:g}", value);
-}
-
-/// One of seven shapes about a point.
-std::string shape(int style, double x, double y, double r, const std::string& attributes) {
-  const auto polygon = [&](const std::vector<std::pair<double, double>>& corners) {
-    std::string points;
-    for (const auto& [dx, dy] : corners) points += fmt::format("{:.1f},{:.1f} ", x + r * dx, y + r * dy);
-    return fmt::format("<polygon points=\"{}\" {}/>", points, attributes);
-  };
-  switch (style % 5) {
-    case 0:
-      return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\" {}/>", x, y, r, attributes);
-    case 1:
-      return polygon({{-0.9, -0.9}, {0.9, -0.9}, {0.9, 0.9}, {-0.9, 0.9}});
-    case 2:
-      return polygon({{0, -1.2}, {1.1, 0.8}, {-1.1, 0.8}});
-    case 3:
-      return polygon({{0, -1.3}, {1.3, 0}, {0, 1.3}, {-1.3, 0}});
-    default:
-      return polygon({{0, 1.2}, {1.1, -0.8}, {-1.1, -0.8}});
-  }
-}
-
-std::string marker(int style, bool hollow, double x, double y, double r) {
-  const std::string colour = fmt::format("var(--c{})", style % colours);
-  return shape(style, x, y, r,
-               fmt::format("fill=\"{}\" stroke=\"{}\" stroke-width=\"1.4\"", hollow ? "var(--page)" : colour, colour));
-}
 
 class Plot {
  public:
@@ -178,7 +88,7 @@ class Plot {
   }
 
   std::string drawn(const ChartCurve& curve) const {
-    const std::string colour = fmt::format("var(--c{})", curve.style % colours);
+    const std::string colour = style_colour(curve.style);
     std::string path;
     for (const auto& [x, y] : curve.points)
       path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", px(x), py(y));
@@ -191,7 +101,7 @@ class Plot {
       if (k < curve.ringed.size() && curve.ringed[k]) {
         out += fmt::format("<circle class=\"ring\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"8\"/>", x, y);
       }
-      out += marker(curve.style, curve.dashed, x, y, 4);
+      out += style_mark(curve.style, curve.dashed, x, y, 4);
     }
     return out + "</g>";
   }
@@ -219,9 +129,9 @@ class Plot {
     for (const Label& one : all) {
       const int style = one.curve->style;
       out += fmt::format("<g class=\"label\" data-name=\"{}\">", html_text(one.curve->label));
-      out += fmt::format("<path class=\"leader\" d=\"M{:.1f} {:.1f}L{} {:.1f}\" stroke=\"var(--c{})\"/>", one.x + 6,
-                         one.y, x - 2, one.place, style % colours);
-      out += marker(style, one.curve->dashed, x + 5, one.place, 4);
+      out += fmt::format("<path class=\"leader\" d=\"M{:.1f} {:.1f}L{} {:.1f}\" stroke=\"{}\"/>", one.x + 6, one.y,
+                         x - 2, one.place, style_colour(style));
+      out += style_mark(style, one.curve->dashed, x + 5, one.place, 4);
       out += fmt::format("<text class=\"series\" x=\"{}\" y=\"{:.1f}\">{}</text></g>", x + 14, one.place + 4,
                          html_text(one.curve->label));
     }
@@ -230,38 +140,11 @@ class Plot {
 
   ChartAxes axes_;
   std::vector<ChartCurve> curves_;
-  Range x_, y_;
+  AxisRange x_, y_;
 };
 
 }  // namespace
 
 std::string plot_svg(const ChartAxes& axes, const std::vector<ChartCurve>& curves) { return Plot(axes, curves).text(); }
-
-std::string marker_svg(int style, bool hollow) {
-  return "<svg class=\"swatch\" viewBox=\"0 0 14 14\">" + marker(style, hollow, 7, 7, 4) + "</svg>";
-}
-
-std::string html_text(std::string_view text) {
-  std::string out;
-  for (const char c : plain_line(text)) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
 
 }  // namespace noether

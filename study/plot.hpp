@@ -2,7 +2,6 @@
 /// Curves as SVG, for the report: axes, markers, names beside the curves.
 
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -27,11 +26,5 @@ struct ChartAxes {
 /// The plot, as an SVG element whose colours are CSS variables of the page. Points that are not finite, or not positive
 /// on a logarithmic axis, are left out.
 std::string plot_svg(const ChartAxes& axes, const std::vector<ChartCurve>& curves);
-
-/// The marker of a style, as an SVG element of its own for tables.
-std::string marker_svg(int style, bool hollow);
-
-/// A text with the characters of markup replaced: nothing in it can end an element.
-std::string html_text(std::string_view text);
 
 }  // namespace noether

@@ -3,6 +3,7 @@
 #include "engine/quantity.hpp"
 #include "scene/json.hpp"
 #include "study/plot.hpp"
+#include "study/svg.hpp"
 
 #include <fmt/format.h>
 
@@ -33,13 +34,8 @@ class Page {
 
   std::string text() const {
     const std::string title = c_.title.empty() ? c_.scene : c_.title;
-    std::string out = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
-    out += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
-    out += fmt::format("<title>What accuracy costs: {}</title>\n<style>{}</style>\n</head>\n<body>\n", html_text(title),
-                       report_style());
-    out += fmt::format("<h1>What accuracy costs: {}</h1>\n", html_text(title)) + lead();
-    out += costs() + orders() + over_time() + solution() + rows() + colophon();
-    return out + fmt::format("<script>{}</script>\n</body>\n</html>\n", report_script());
+    return html_page("What accuracy costs: " + title,
+                     lead() + costs() + orders() + over_time() + solution() + rows() + colophon());
   }
 
  private:

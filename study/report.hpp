@@ -13,8 +13,7 @@ namespace noether {
 /// all rows, and how it was made. It asks no network for anything.
 std::string report_html(const Comparison& comparison, const std::optional<Solution>& solution = {});
 
-/// What the page looks like, and what it does when it is touched.
-std::string_view report_style();
-std::string_view report_script();
+/// A report's page: its title as the heading, then the body, with the style and the script of all reports.
+std::string html_page(std::string_view title, std::string_view body);
 
 }  // namespace noether

@@ -1,6 +1,11 @@
 #include "study/report.hpp"
+#include "study/svg.hpp"
+
+#include <fmt/format.h>
 
 namespace noether {
+
+namespace {
 
 // Colours are those of Paul Tol's bright scheme, told apart by the colour-blind; markers and dashes tell them apart in
 // grey.
@@ -32,7 +37,11 @@ p { margin: .4rem 0; max-width: 46rem }
 .plot .front { stroke: var(--front); stroke-width: 9; fill: none; stroke-linejoin: round; stroke-linecap: round }
 .plot .ring { fill: none; stroke: var(--ink); stroke-width: 1.3 }
 .plot .leader { fill: none; stroke-width: .8; stroke-dasharray: 1 3; opacity: .8 }
-.plot .curve, .plot .label { transition: opacity .12s }
+.plot .curve, .plot .label, .plot .row { transition: opacity .12s }
+.plot .row .note { fill: var(--soft) }
+.plot .row.alarm > .series, .plot .row.alarm > .note { fill: var(--c1); font-weight: 600 }
+.key { font: 13px system-ui, "Helvetica Neue", Arial, sans-serif; color: var(--soft); max-width: none }
+.key span { margin-right: 1.2rem; white-space: nowrap }
 .plot .label { cursor: default }
 .away { opacity: .12 }
 .swatch { width: 14px; height: 14px; vertical-align: -2px; margin-right: .35rem }
@@ -42,6 +51,8 @@ th { text-align: right; font-weight: 600; border-bottom: 1px solid var(--soft); 
   white-space: nowrap }
 td { text-align: right; padding: .12rem .7rem; font-variant-numeric: tabular-nums; white-space: nowrap }
 th:first-child, td:first-child { text-align: left }
+table.words th, table.words td { text-align: left; vertical-align: top }
+table.words td:last-child { white-space: normal; min-width: 14rem }
 tr.group td { border-top: 1px solid var(--faint) }
 tr.front td { font-weight: 600 }
 td.bad { color: var(--c1) }
@@ -131,6 +142,17 @@ if (holder) {
   draw();
 }
 )js";
+}
+
+}  // namespace
+
+std::string html_page(std::string_view title, std::string_view body) {
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n{2}<script>{3}</script>\n</body>\n"
+      "</html>\n",
+      html_text(title), report_style(), body, report_script());
 }
 
 }  // namespace noether

@@ -108,6 +108,12 @@ bool within(const std::optional<double>& error, const std::optional<double>& bel
   return !(above && error && *error <= *above);  // what is not a number is above
 }
 
+/// Whether an error stays within the bound that a verdict names: the upper one, or the lower one if it is alone.
+bool is_accurate(const std::optional<double>& error, const std::optional<double>& below,
+                 const std::optional<double>& above) {
+  return below ? within(error, below, {}) : !above || within(error, above, {});
+}
+
 /// One verdict on one scene, method by method.
 class Judge {
  public:
@@ -124,9 +130,10 @@ class Judge {
       row.scene = scene_.source.file;
       row.title = scene_.title;
       row.method = who.label;
-      row.sets = fmt::format("{}", fmt::join(verdict_.sets, " "));
+      row.sets = verdict_.sets;
       row.why = verdict_.why;
-      if (options_.progress) options_.progress(fmt::format("{}, {} {}", row.title, row.method, row.sets));
+      if (options_.progress)
+        options_.progress(fmt::format("{}, {} {}", row.title, row.method, fmt::join(row.sets, " ")));
       std::string outcome = verdict_.outcome;
       if (outcome == "theory") outcome = expected_by_theory(scene_, who, scene_.integrator.step);
       if (outcome.empty()) continue;  // theory says nothing of it
@@ -158,6 +165,8 @@ class Judge {
     if (verdict_.sharing_below || verdict_.sharing_above) row.sharing_error = shared.apart_from(reference());
     row.agrees = row.found == outcome && within(row.energy_error, verdict_.energy_below, verdict_.energy_above) &&
                  within(row.sharing_error, verdict_.sharing_below, verdict_.sharing_above);
+    row.accurate = is_accurate(row.energy_error, verdict_.energy_below, verdict_.energy_above) &&
+                   is_accurate(row.sharing_error, verdict_.sharing_below, verdict_.sharing_above);
     row.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   }
 

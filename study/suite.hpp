@@ -13,12 +13,14 @@ namespace noether {
 
 /// One run of one verdict.
 struct SuiteRow {
-  std::string scene = {}, title = {}, method = {}, sets = {}, why = {};
+  std::string scene = {}, title = {}, method = {}, why = {};
+  std::vector<std::string> sets = {};        ///< changes of the scene, "key=value"
   std::string expected = {};                 ///< bounded, unbounded or solver, and bounds of errors
   std::string found = {};                    ///< the same, or unsettled
   std::optional<double> h_omega = {};        ///< of fixed steps, at the start
   std::optional<double> energy_error = {};   ///< largest relative error over the run
   std::optional<double> sharing_error = {};  ///< see `Suite`
+  bool accurate = true;                      ///< no error is beyond a bound of the verdict
   bool agrees = false;
   std::string message = {};  ///< how the run ended, or why it could not begin
   std::int64_t steps = 0;
