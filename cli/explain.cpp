@@ -1,6 +1,5 @@
 #include "cli/commands.hpp"
 
-#include "engine/orbital_elements.hpp"
 #include "engine/quantity.hpp"
 #include "engine/simd.hpp"
 #include "engine/text.hpp"
@@ -8,6 +7,7 @@
 #include "integrators/stiffness.hpp"
 #include "scene/json.hpp"
 #include "scene/scene.hpp"
+#include "study/kepler_steps.hpp"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -31,37 +31,14 @@ struct Explanation {
   std::vector<std::string> in, out, columns;
   std::size_t bytes_per_particle = 0;
   Index particles = 0, constraints = 0;
-  std::map<char, int> flows;               ///< stages of one step, by letter, the last joined to the next first
-  int evaluations = 0;                     ///< of the forces in one step: kicks between which something has moved
-  std::optional<double> recommended_step;  ///< [time]
-  std::string recommended_for;
+  std::map<char, int> flows;                    ///< stages of one step, by letter, the last joined to the next first
+  int evaluations = 0;                          ///< of the forces in one step: kicks between which something has moved
+  std::optional<KeplerSteps> kepler;            ///< of gravity
   Index variables = 0;                          ///< of a system without particles
   std::optional<NeighborStatistics> neighbors;  ///< of the first step
   std::optional<Stiffness> stiffness;           ///< at the start
   std::string why_no_stiffness;
 };
-
-/// Shortest time a body needs to go round at the speed of its pericenter, over 20.
-///
-///     P_f = 2 pi sqrt(q^3 / (mu (1 + e)))
-void recommend(const Scene& scene, Explanation& e) {
-  bool gravity = scene.hamiltonian.kind == SceneHamiltonian::Kind::wisdom_holman;
-  for (const SceneForce& force : scene.hamiltonian.forces) gravity = gravity || force.name == "gravity";
-  if (!gravity) return;
-  const ParticleSystem<double>& s = scene.particles;
-  const double G = scene.hamiltonian.G.value_or(scene.units->G);
-  for (Index i = 1; i < s.size(); ++i) {
-    const double mu = G * (s.masses()[0] + s.masses()[i]);
-    if (!(mu > 0)) continue;
-    const Vec3<double> x = s.positions()[i] - s.positions()[0], v = s.velocities()[i] - s.velocities()[0];
-    const auto orbit = elements_from_state<double>(x, v, mu);
-    const double q = orbit.a * (1 - orbit.e);
-    const double step = 2 * M_PI * std::sqrt(q * q * q / (mu * (1 + orbit.e))) / 20;
-    if (!std::isfinite(step) || !(step > 0) || (e.recommended_step && *e.recommended_step <= step)) continue;
-    e.recommended_step = step;
-    e.recommended_for = s.name(i);
-  }
-}
 
 void count_flows(const Word& word, std::map<char, int>& flows) {
   for (const Stage& stage : word) ++flows[stage.letter];
@@ -199,7 +176,7 @@ Explanation explained(const Scene& scene) {
   if (!scene.system) e.bytes_per_particle = s.bytes_per_particle();
   measure_stiffness(scene, e);
   scene.integrator.classical ? explain_method(scene, e) : explain_scheme(scene, e);
-  recommend(scene, e);
+  e.kepler = kepler_steps(scene);
   measure_neighbors(integrator, s, e);
   return e;
 }
@@ -255,9 +232,9 @@ void print_text(const Scene& scene, const Explanation& e) {
   fmt::print("SIMD level: {}\n", name(simd_level()));
   const std::string unit = scene.units->is_reduced() ? "" : " " + std::string(scene.units->time);
   fmt::print("step: {}", scene.integrator.adaptive() ? "of the method's own choice" : scene.integrator.step_text);
-  if (e.recommended_step) {
+  if (e.kepler) {
     fmt::print("; at most {:.3g}{} is recommended, a twentieth of the time {} needs around its pericenter",
-               *e.recommended_step, unit, e.recommended_for);
+               e.kepler->recommended(), unit, e.kepler->passage_of);
   }
   fmt::print("\n");
 }
@@ -296,7 +273,7 @@ Json json_of(const Scene& scene, const Explanation& e) {
        {"force_evaluations_per_step", e.evaluations},
        {"simd", std::string(name(simd_level()))},
        {"step", scene.integrator.step},
-       {"recommended_step", e.recommended_step},
+       {"recommended_step", e.kepler ? Json(e.kepler->recommended()) : Json()},
        {"time_unit", scene.units->time}});
 }
 

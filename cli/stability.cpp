@@ -25,8 +25,8 @@ namespace noether {
 namespace {
 
 struct StabilityArguments {
-  std::string scene, out = "stability.out";
-  std::optional<std::string> methods;
+  std::string scene;
+  std::optional<std::string> methods, out;
   std::vector<std::string> sets;
   std::int64_t steps = 100'000;
   std::optional<double> budget;
@@ -42,6 +42,21 @@ std::function<void(const std::string&)> progress_line(bool shows) {
   };
 }
 
+void write(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream out(file);
+  out << text;
+  if (!out.flush()) throw FileError("the file cannot be written", {.file = file.string()});
+}
+
+/// Writes a result into a folder, for machines and for people. @return what was written, a line each
+std::string write_report(const std::filesystem::path& folder, const char* json_name, const std::string& json,
+                         const std::string& html) {
+  std::filesystem::create_directories(folder);
+  write(folder / json_name, json + "\n");
+  write(folder / "report.html", html);
+  return fmt::format("wrote {}\nwrote {}\n", (folder / json_name).string(), (folder / "report.html").string());
+}
+
 void search_scene(const StabilityArguments& given) {
   const Scene scene = load_scene(given.scene, standard_parts(), given.sets);
   const bool shows = !given.json && ::isatty(STDERR_FILENO) == 1;
@@ -50,15 +65,12 @@ void search_scene(const StabilityArguments& given) {
   options.confirm_steps = given.steps;
   if (given.budget) options.row_budget = *given.budget;
   options.progress = progress_line(shows);
+  if (given.out) std::filesystem::create_directories(*given.out);
   const Stability found = find_stability(scene, options);
   if (shows) std::fputs("\r\033[K", stderr);
-  fmt::print("{}", given.json ? to_json(found) + "\n" : to_text(found));
-}
-
-void write(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream out(file);
-  out << text;
-  if (!out.flush()) throw FileError("the file cannot be written", {.file = file.string()});
+  std::string written;
+  if (given.out) written = write_report(*given.out, "stability.json", to_json(found), to_html(found));
+  fmt::print("{}", given.json ? to_json(found) + "\n" : to_text(found) + written);
 }
 
 /// The verdicts of one scene, or of all that noether brings, into a report.
@@ -73,18 +85,12 @@ void run_verdicts(const StabilityArguments& given) {
   options.nightly = given.nightly;
   if (given.budget) options.row_budget = *given.budget;
   options.progress = progress_line(shows);
-  const std::filesystem::path folder = given.out;
+  const std::filesystem::path folder = given.out.value_or("stability.out");
   std::filesystem::create_directories(folder);
   const Suite suite = run_suite(files, options);
   if (shows) std::fputs("\r\033[K", stderr);
-  write(folder / "suite.json", to_json(suite) + "\n");
-  write(folder / "report.html", to_html(suite));
-  if (given.json) {
-    fmt::print("{}\n", to_json(suite));
-  } else {
-    fmt::print("{}wrote {}\nwrote {}\n", to_text(suite), (folder / "suite.json").string(),
-               (folder / "report.html").string());
-  }
+  const std::string written = write_report(folder, "suite.json", to_json(suite), to_html(suite));
+  fmt::print("{}", given.json ? to_json(suite) + "\n" : to_text(suite) + written);
 }
 
 void answer(const StabilityArguments& given) {
@@ -115,7 +121,9 @@ void add_stability_command(CLI::App& app, int& exit_code) {
   command->add_flag("--suite", given->suite,
                     "run the verdicts of the scene, or of the stiff and extreme scenes noether brings");
   command->add_flag("--nightly", given->nightly, "with --suite: the long runs too");
-  command->add_option("--out", given->out, "with --suite: folder of the report; default: stability.out")
+  command
+      ->add_option("--out", given->out,
+                   "folder of a report in HTML and JSON; default: none, with --suite stability.out")
       ->check(wrong_folder)
       ->type_name("DIR");
   command->add_flag("--json", given->json, "as one line of JSON");

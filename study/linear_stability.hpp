@@ -47,7 +47,8 @@ struct LinearTheory {
   std::optional<double> gap_end;  ///< where it is stable again, if it is
   double accurate = 0;            ///< largest z whose mode is as accurate as leapfrog's 20 steps a period; 0: unknown
   std::optional<double> solver;   ///< z from which on the method's own solver finds no step on the mode
-  std::map<int, double> resonances;  ///< n = 3, 4, 5, 6: the z at which the phase of a step is 2 pi / n, if stable
+  /// By n = 3, 4, 5, 6, along Kepler arcs from 1 on: the z at which the phase of a step is 2 pi / n, if stable.
+  std::map<int, double> resonances;
 
   /// The n of the resonance next to z, within a tenth of it; 0 if none is.
   int resonance_at(double z) const;

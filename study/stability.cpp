@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 
 namespace noether {
 
@@ -70,6 +71,13 @@ class Search {
     return true;
   }
 
+  /// The budget is over before a limit is found.
+  void stop_at(double bounded_until) {
+    row_.settled = false;
+    row_.bounded_until = bounded_until;
+    row_.message = fmt::format("the budget was over at h omega = {:.4g}, bounded until there", bounded_until);
+  }
+
   /// Where the search ends without having found anything.
   double end_of_scan() const {
     if (row_.theory.limit) return std::min(1.2 * *row_.theory.limit + 0.5, largest_z);
@@ -111,8 +119,7 @@ class Search {
     for (const auto& [z, suspect] : points(0, end_of_scan())) {
       const Trial trial = attempt(z, suspect ? options_.confirm_steps : row_.scan_steps);
       if (trial.verdict == Bounded::unsettled || left() <= 0) {
-        row_.settled = false;
-        row_.message = fmt::format("the budget was over at h omega = {:.4g}, bounded until there", stable);
+        stop_at(stable);
         return {};
       }
       failed_ = trial;
@@ -132,8 +139,7 @@ class Search {
     for (int k = 1; k * gap < end; ++k) {
       const Trial trial = attempt(k * gap, options_.confirm_steps);
       if (trial.verdict == Bounded::unsettled || left() <= reserve) {
-        row_.settled = !all;
-        if (all) row_.message = fmt::format("the budget was over at h omega = {:.4g}, bounded until there", stable);
+        if (all) stop_at(stable);
         return {};
       }
       if (!trial.stable()) {
@@ -223,10 +229,19 @@ class Search {
   Bounds bounds_;
 };
 
+/// By n, the h omega at which steps along Kepler arcs go n times into the shortest period.
+std::map<int, double> resonances_of(const KeplerSteps& kepler, double scale) {
+  std::map<int, double> found;
+  for (int n = 1; kepler.period > 0 && n <= KeplerSteps::resonances; ++n) found[n] = kepler.resonance(n) * scale;
+  return found;
+}
+
 /// A step that is accurate, and far from where the method fails.
-std::optional<double> recommended(const StabilityRow& row, double scale) {
+/// @param kepler  of a method along Kepler arcs
+std::optional<double> recommended(const StabilityRow& row, double scale, const std::optional<KeplerSteps>& kepler) {
   const LinearTheory& theory = row.theory;
   double z = theory.accurate > 0 ? theory.accurate : M_PI / 10;
+  if (kepler) z = kepler->recommended() * scale;
   for (const auto& limit : {row.limit_h_omega, theory.limit}) {
     if (limit) z = std::min(z, *limit / 2);
   }
@@ -314,14 +329,19 @@ Stability find_stability(const Scene& scene, const StabilityOptions& options) {
     StabilityRow row;
     row.who = who;
     row.theory = linear_theory(scene, who, found.mode);
+    const bool along_arcs = who.hamiltonian == SceneHamiltonian::Kind::wisdom_holman;
+    if (along_arcs && !found.kepler) found.kepler = kepler_steps(scene);
+    const std::optional<KeplerSteps> kepler = along_arcs ? found.kepler : std::nullopt;
+    if (kepler) row.theory.resonances = resonances_of(*kepler, found.mode.scale());
     Search(scene, found, options, row).run();
     const double scale = found.mode.scale();
     if (scale > 0) {
-      row.recommended_step = recommended(row, scale);
+      row.recommended_step = recommended(row, scale, kepler);
     } else {
       if (row.limit_step) row.recommended_step = *row.limit_step / 2;
       row.limit_h_omega.reset();
       row.gap_end.reset();
+      row.bounded_until.reset();
     }
     found.rows.push_back(std::move(row));
   }

@@ -2,6 +2,7 @@
 /// `noether stability`: the largest step at which a method stays bounded on a scene, beside what linear theory says.
 
 #include "study/amplitude.hpp"
+#include "study/kepler_steps.hpp"
 #include "study/linear_stability.hpp"
 #include "study/opponent.hpp"
 #include "study/spectrum.hpp"
@@ -84,6 +85,7 @@ struct StabilityRow {
   std::string reason = "none";                  ///< linear, resonance, solver or none
   int resonance = 0;                            ///< n of the n:1 resonance next to the limit; 0: none
   std::optional<double> gap_end = {};           ///< h omega from which runs are bounded again, if they are
+  std::optional<double> bounded_until = {};     ///< h omega at which the budget was over before a limit was found
   std::optional<double> recommended_step = {};  ///< [time]
   bool settled = true;                          ///< else the budget was over, and `message` tells what is known
   std::string message = {};
@@ -98,6 +100,7 @@ struct Stability {
   Spectrum spectrum = {};
   Mode mode = {};
   bool linear = false;
+  std::optional<KeplerSteps> kepler = {};  ///< where a method steps along Kepler arcs
   std::vector<StabilityRow> rows = {};
 };
 
@@ -109,7 +112,8 @@ struct Stability {
 /// in runs of that length. The limit is then found by halving, to 1e-5 of omega h, and so is the end of the gap.
 ///
 /// Recommended: the step of the accuracy that leapfrog has with 20 steps in the shortest period (see `LinearTheory`),
-/// at most half the limit.
+/// at most half the limit; along Kepler arcs, that of `KeplerSteps` instead. Of those, linear theory knows no limit:
+/// the unperturbed step is exact. Their resonances are with the shortest period, n = 1 to 6.
 /// @throws Error  for methods that are not known, cannot serve the scene, or have no fixed steps; for a scene at rest
 /// @cost a few seconds for each method on a few bodies
 Stability find_stability(const Scene& scene, const StabilityOptions& options = {});
@@ -124,5 +128,14 @@ Opponent fixed_opponent(const Scene& scene, const std::string& name);
 std::string to_json(const Stability& found);
 /// As a table.
 std::string to_text(const Stability& found);
+/// As a page of HTML that stands alone: limits beside theory as a picture, and in figures.
+std::string to_html(const Stability& found);
+
+/// What is known of Kepler arcs, in sentences; none where no method steps along them.
+std::vector<std::string> kepler_lines(const Stability& found);
+
+/// Whether a settled limit is off the linear one, or that of the method's solver, by more than 1 %, or only one of the
+/// two is there.
+bool differs_from_theory(const StabilityRow& row);
 
 }  // namespace noether

@@ -1,3 +1,4 @@
+#include "engine/text.hpp"
 #include "scene/json.hpp"
 #include "study/stability.hpp"
 
@@ -15,7 +16,38 @@ std::string why(const StabilityRow& row) {
   return row.settled ? text : text + ", not settled";
 }
 
+Json json_of(const KeplerSteps& kepler) {
+  std::vector<Json> resonances;
+  for (int n = 1; kepler.period > 0 && n <= KeplerSteps::resonances; ++n) {
+    resonances.push_back(Json::object({{"n", n}, {"step", kepler.resonance(n)}}));
+  }
+  return Json::object({{"shortest_period", kepler.period > 0 ? Json(kepler.period) : Json()},
+                       {"shortest_period_of", kepler.period > 0 ? Json(kepler.period_of) : Json()},
+                       {"pericenter_passage", kepler.passage},
+                       {"pericenter_passage_of", kepler.passage_of},
+                       {"step_resonances", Json::list(resonances)},
+                       {"rule_longest_step", kepler.longest()}});
+}
+
 }  // namespace
+
+std::vector<std::string> kepler_lines(const Stability& found) {
+  if (!found.kepler) return {};
+  const KeplerSteps& kepler = *found.kepler;
+  const std::string unit = found.time_unit == "1" ? "" : " " + found.time_unit;
+  std::vector<std::string> lines;
+  if (kepler.period > 0) {
+    std::string steps;
+    for (int n = 1; n <= KeplerSteps::resonances; ++n)
+      steps += fmt::format("{}{:.5g}", n > 1 ? ", " : "", kepler.resonance(n));
+    lines.push_back(fmt::format("Kepler arcs resonate with the shortest period, {:.6g}{} of {}, at steps of {}{}",
+                                kepler.period, unit, kepler.period_of, steps, unit));
+  }
+  lines.push_back(
+      fmt::format("rule, no limit: 16 steps in the fastest passage of a pericenter, {:.6g}{} of {}: at most {:.4g}{}",
+                  kepler.passage, unit, kepler.passage_of, kepler.longest(), unit));
+  return lines;
+}
 
 std::string to_json(const Stability& found) {
   const auto time = [&](const std::optional<double>& x) { return Json(x); };
@@ -32,6 +64,7 @@ std::string to_json(const Stability& found) {
                                  {"theory_known", row.theory.known},
                                  {"reason", row.reason},
                                  {"gap_end", Json(row.gap_end)},
+                                 {"bounded_until", Json(row.bounded_until)},
                                  {"recommended_step", time(row.recommended_step)},
                                  {"resonance", row.resonance > 0 ? Json(row.resonance) : Json()},
                                  {"resonances", Json::list(resonances)},
@@ -49,6 +82,7 @@ std::string to_json(const Stability& found) {
                        {"shortest_period", positive(found.spectrum.shortest_period())},
                        {"linear", found.linear},
                        {"growth_threshold", growth_threshold},
+                       {"kepler", found.kepler ? json_of(*found.kepler) : Json()},
                        {"rows", Json::list(rows)}})
       .text();
 }
@@ -64,6 +98,7 @@ std::string to_text(const Stability& found) {
   } else {
     out += "no oscillation is known; steps alone are told\n";
   }
+  for (const std::string& line : kepler_lines(found)) out += plain_line(line) + "\n";
   out += fmt::format("{:<28} {:>12} {:>10} {:>10} {:<18} {:>10} {:>13} {:>7}\n", "method", "limit step", "h omega",
                      "theory", "reason", "gap end", "recommended", "s");
   for (const StabilityRow& row : found.rows) {

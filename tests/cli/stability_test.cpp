@@ -56,6 +56,20 @@ TEST_CASE("stability tells the limit of a method beside theory, as a table or in
   CHECK(has(text, "2.82843"));
 }
 
+TEST_CASE("stability writes a report where it is told, and nothing else", "[cli][stability]") {
+  const SceneFolder folder(spring);
+  output(folder, "stability scene.toml --methods verlet --steps 20000");
+  CHECK_FALSE(std::filesystem::exists(folder / "stability.out"));
+  const std::string text = output(folder, "stability scene.toml --methods verlet,rk4 --steps 20000 --out limits");
+  CHECK(text.ends_with("wrote limits/stability.json\nwrote limits/report.html\n"));
+  CHECK(is_json_line(read_text(folder / "limits/stability.json")));
+  const std::string page = read_text(folder / "limits/report.html");
+  for (const char* part : {"<h1>Largest stable steps: A spring</h1>", "data-name=\"verlet\"", "data-name=\"rk4\""}) {
+    CHECK(has(page, part));
+  }
+  CHECK_FALSE(has(page, "class=\"row alarm\""));  // both limits are the linear ones
+}
+
 TEST_CASE("stability --suite runs the verdicts of a scene into a report", "[cli][stability]") {
   const SceneFolder folder(verdicts);
   const std::string text = output(folder, "stability --suite scene.toml");
