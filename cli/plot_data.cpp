@@ -23,6 +23,8 @@ constexpr std::size_t most_samples = 2'000;
 constexpr double smooth_turn = 0.4;
 /// Inner bodies get a picture of their own where they are this much smaller than the outermost.
 constexpr double scale_gap = 8;
+/// Variables of a system do where they are this much smaller than the largest.
+constexpr double small_gap = 100;
 
 /// A time axis people read: the unit and its length in the unit of the file.
 struct TimeUnit {
@@ -168,6 +170,16 @@ void make_square(PlotOrbits& picture, bool centered) {
   high = {center.x + half, center.y + half};
 }
 
+/// Corners about all paths, with some air above and below.
+void fit_with_air(PlotOrbits& picture) {
+  fit(picture);
+  double air = 0.08 * (picture.high.y - picture.low.y);
+  air = std::max(air, 1e-9 * std::max(std::abs(picture.low.y), std::abs(picture.high.y)));
+  if (!(air > 0)) air = 1;
+  picture.low.y -= air;
+  picture.high.y += air;
+}
+
 /// Where every body stays on one line: x against time.
 PlotOrbits against_time(const io::Frames& all, const TimeUnit& unit) {
   PlotOrbits picture;
@@ -185,35 +197,40 @@ PlotOrbits against_time(const io::Frames& all, const TimeUnit& unit) {
     orbit.path = thinned(path_through(track), most_path_points);
     picture.orbits.push_back(std::move(orbit));
   }
-  fit(picture);
-  const double air = 0.08 * std::max(picture.high.y - picture.low.y, 1e-9);
-  picture.low.y -= air;
-  picture.high.y += air;
+  fit_with_air(picture);
   return picture;
 }
 
-/// The variables of a system against time; of many, some at equal distances.
-PlotOrbits variables_against_time(const io::Frames& all, const TimeUnit& unit) {
+/// The variables of a system against time; of many, some at equal distances. Those that could not be seen beside the
+/// largest have a picture of their own too.
+std::vector<PlotOrbits> variables_against_time(const io::Frames& all, const TimeUnit& unit) {
   static constexpr std::size_t most = 8;
   PlotOrbits picture;
   picture.title = "Variables";
   picture.x_label = with_unit("time", unit.name);
   picture.y_label = "y";
   const std::size_t n = all.variable_names.size(), shown = std::min(n, most);
+  double largest = 0;
   for (std::size_t k = 0; k < shown; ++k) {
     const std::size_t i = shown < 2 ? 0 : k * (n - 1) / (shown - 1);
     PlotOrbit curve{.name = all.variable_names[i], .color = k};
     std::vector<PlotPoint> points;
-    for (const io::Frame& frame : all.frames) points.push_back({frame.time / unit.length, frame.variables[i]});
+    for (const io::Frame& frame : all.frames) {
+      points.push_back({frame.time / unit.length, frame.variables[i]});
+      curve.extent = std::max(curve.extent, std::abs(frame.variables[i]));
+    }
+    largest = std::max(largest, curve.extent);
     curve.end = points.back();
     curve.path = thinned(points, most_path_points);
     picture.orbits.push_back(std::move(curve));
   }
-  fit(picture);
-  const double air = 0.08 * std::max(picture.high.y - picture.low.y, 1e-9);
-  picture.low.y -= air;
-  picture.high.y += air;
-  return picture;
+  PlotOrbits small = picture;
+  small.title = "Small variables";
+  std::erase_if(small.orbits, [&](const PlotOrbit& o) { return o.extent == 0 || o.extent * small_gap > largest; });
+  fit_with_air(picture);
+  if (small.orbits.empty()) return {std::move(picture)};
+  fit_with_air(small);
+  return {std::move(picture), std::move(small)};
 }
 
 bool all_on_one_line(const io::Frames& all) {
@@ -270,7 +287,7 @@ PlotOrbit orbit_of(const io::Frames& all, std::size_t body, bool relative, doubl
 std::vector<PlotOrbits> read_orbits(const io::Frames& all, const SceneValue& scene, const TimeUnit& unit,
                                     const std::filesystem::path& file) {
   const std::size_t n = all.masses.size();
-  if (!all.frames.empty() && !all.variable_names.empty()) return {variables_against_time(all, unit)};
+  if (!all.frames.empty() && !all.variable_names.empty()) return variables_against_time(all, unit);
   if (all.frames.empty() || n == 0) return {};
   if (all_on_one_line(all)) return {against_time(all, unit)};
   double others = 0;
@@ -403,10 +420,10 @@ PlotData read_plot_data(const std::filesystem::path& file) {
     data.errors.push_back(std::move(*error));
   }
   if (data.orbits.empty() && data.errors.empty()) {
+    const char* monitors_too =
+        value_at(scene, {"system"}) != nullptr ? "" : " or a monitor of energy, momenta or constraints";
     throw Error(
-        fmt::format("{} has nothing to draw; it needs frames (a trajectory writer) or a monitor of energy, "
-                    "momenta or constraints",
-                    file.string()));
+        fmt::format("{} has nothing to draw; it needs frames (a trajectory writer){}", file.string(), monitors_too));
   }
   return data;
 }

@@ -12,7 +12,7 @@ struct PlotPoint {
   double x = 0, y = 0;
 };
 
-/// One body in the plane of x and y, or of time and x where all move along one line.
+/// One body in the plane of x and y, or of time and x where all move along one line; or a variable against time.
 struct PlotOrbit {
   std::string name;
   std::size_t color = 0;                ///< number in the palette
@@ -20,7 +20,7 @@ struct PlotOrbit {
   std::vector<PlotPoint> path = {};     ///< joined by a line
   std::vector<PlotPoint> samples = {};  ///< where it was seen, single points
   PlotPoint end = {};                   ///< at the last frame
-  double extent = 0;                    ///< largest distance from the center of the picture
+  double extent = 0;                    ///< largest distance from the center of the picture, or size of a variable
 };
 
 /// Orbits that share one scale.
@@ -44,7 +44,7 @@ struct PlotError {
 
 struct PlotData {
   std::string title, subtitle, time_label;
-  std::vector<PlotOrbits> orbits;  ///< one, or two where inner bodies need a scale of their own
+  std::vector<PlotOrbits> orbits;  ///< one, or two where the small need a scale of their own
   std::vector<PlotError> errors;
   double end = 0;  ///< of the time axis
 };
