@@ -407,6 +407,15 @@ void NeighborList::find(Index group, Scratch& scratch) {
   std::array<std::int32_t, group_size> own{};  // their records
   for (Index lane = 0; lane < group_size; ++lane) own[at(lane)] = lanes_[at(group_size * group + lane)] / 4;
   const std::int32_t* particles = particles_.data() + group_size * group;
+  if (!excluded_.empty()) {  // so that what `strike_excluded` asks for is there in time
+    for (const std::int32_t record : own) {
+      const auto i = at(source_[at(record)]);
+      for (std::int32_t k = excluded_begin_[i]; k < excluded_begin_[i + 1]; ++k) {
+        __builtin_prefetch(&record_of_[at(excluded_[at(k)])]);
+        __builtin_prefetch(&has_images_[at(excluded_[at(k)])]);
+      }
+    }
+  }
   const Surroundings around = surroundings(own);
   const SearchPoints points = candidates(around, scratch);
   NearPoints near{scratch.near[0].data(), scratch.near[1].data(), scratch.near[2].data(), scratch.near_number.data(),
