@@ -35,7 +35,10 @@ constexpr double dissolved = 1e-4;
 /// Steps taken back in a row before it is given up.
 constexpr int most_retreats = 60;
 
-double largest_norm(const VectorColumn<double>& column) {
+/// Squares between these are neither lost nor infinite.
+constexpr double least_square = 1e-280, most_square = 1e280;
+
+template <class Size> double largest(Index count, const Size& size_of) {
   struct Largest {
     double value = 0;
     Largest& operator+=(const Largest& other) {
@@ -43,25 +46,38 @@ double largest_norm(const VectorColumn<double>& column) {
       return *this;
     }
   };
-  return reduce(column.size(), Largest{},
+  return reduce(count, Largest{},
                 [&](Index begin, Index end) {
-                  Largest largest;
-                  for (Index i = begin; i < end; ++i) {
-                    const Vec3<double> x = column[i];
-                    largest += Largest{std::hypot(x[0], x[1], x[2])};
-                  }
-                  return largest;
+                  Largest most;
+                  for (Index i = begin; i < end; ++i) most += Largest{size_of(i)};
+                  return most;
                 })
       .value;
 }
 
+double largest_norm(const VectorColumn<double>& column) {
+  const double square = largest(column.size(), [&](Index i) { return norm2(column[i]); });
+  if (square > least_square && square < most_square) return std::sqrt(square);
+  return largest(column.size(), [&](Index i) {
+    const Vec3<double> x = column[i];
+    return std::hypot(x[0], x[1], x[2]);
+  });
+}
+
 /// The sum of products of two columns, each divided by a number that keeps their squares in range.
 double product(const VectorColumn<double>& a, double a_scale, const VectorColumn<double>& b, double b_scale) {
-  return reduce(a.size(), 0.0, [&](Index begin, Index end) {
-    double sum = 0;
-    for (Index i = begin; i < end; ++i) sum += dot(Vec3<double>(a[i] / a_scale), Vec3<double>(b[i] / b_scale));
-    return sum;
+  const double scale = a_scale * b_scale;
+  const bool divides_last = scale > least_square && scale < most_square;
+  const double sum = reduce(a.size(), 0.0, [&](Index begin, Index end) {
+    double part = 0;
+    if (divides_last) {
+      for (Index i = begin; i < end; ++i) part += dot(a[i], b[i]);
+    } else {
+      for (Index i = begin; i < end; ++i) part += dot(Vec3<double>(a[i] / a_scale), Vec3<double>(b[i] / b_scale));
+    }
+    return part;
   });
+  return divides_last ? sum / scale : sum;
 }
 
 /// A twentieth of the distance that particles have on the average in the space they take.
@@ -165,8 +181,7 @@ class Descent {
         alpha_ *= alpha_factor;
       }
     } else {
-      for (Index i = 0; i < v_.size(); ++i) shift(i, -dt_ / 2);
-      s_.moved();
+      shift(-dt_ / 2);
       rest();
     }
   }
@@ -189,13 +204,12 @@ class Descent {
       }
     });
     held_back_ = largest_norm(v_) * dt_ > reach_;
-    for (Index i = 0; i < v_.size(); ++i) {
+    for (Index i = 0; held_back_ && i < v_.size(); ++i) {
       const Vec3<double> v = std::as_const(v_)[i];
-      const double way = held_back_ ? std::hypot(v[0], v[1], v[2]) * dt_ : 0;
+      const double way = std::hypot(v[0], v[1], v[2]) * dt_;
       if (way > reach_) v_.set(i, v * (reach_ / way));
-      shift(i, dt_);
     }
-    s_.moved();
+    shift(dt_);
   }
   /// Keeps the time step below the limit 2/omega of the stiffest motion that was seen of late, omega^2 being
   /// |f - f_before| / |x - x_before|. Where a particle was held back the forces change too much to tell.
@@ -211,12 +225,16 @@ class Descent {
   }
   /// Takes the last step back. @return whether the forces are those from before
   bool retreat() {
-    for (Index i = 0; i < v_.size(); ++i) shift(i, -dt_);
-    s_.moved();
+    shift(-dt_);
     rest();
     return evaluate();
   }
-  void shift(Index i, double h) { s_.shift(i, h * std::as_const(v_)[i], Vec3<double>::Zero()); }
+  /// x += h v
+  void shift(double h) {
+    std::swap(s_.velocities(), v_);
+    s_.advance_positions(h);
+    std::swap(s_.velocities(), v_);
+  }
 
   ParticleSystem<double>& s_;
   const AnyForce<double>& forces_;
