@@ -139,7 +139,8 @@ template <class Real> class BondedLoop {
     const auto family = [&](const auto& terms, const auto& kinds) {
       const auto size = static_cast<Index>(terms.size());
       const Index to = std::min(end, first + size);
-      for (Index k = std::max(begin, first); k < to;) {
+      Index k = std::max(begin, first);
+      while (k < to) {
         // Terms of one kind stand side by side more often than not, and ask for their potential once.
         const auto type = terms[static_cast<std::size_t>(k - first)].type;
         with_potential<InLane>(kinds[static_cast<std::size_t>(type)], [&](const auto& potential) {

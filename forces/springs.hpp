@@ -40,7 +40,8 @@ inline void check_length(double length) {
 ///
 /// Some force fields leave out the half: their k is half of this one. A bond that turns has a frequency of
 /// sqrt(k/mu) along itself, with 1/mu = 1/m_i + 1/m_j. Two particles of a pair in one place have no direction: unless
-/// the rest length is 0 the force is not finite there.
+/// the rest length is 0 the force is not finite there. In a periodic box the nearest image counts: springs are to stay
+/// shorter than half of it.
 /// @cost one square root per pair
 /// @source Hooke1678
 struct HarmonicBond {
@@ -56,13 +57,14 @@ struct HarmonicBond {
         field<&HarmonicBond::k>("k", "mass/time^2", "stiffness of each spring").required("\"1 kg/s^2\""),
         field<&HarmonicBond::length>("length", "length", "at rest"));
   }
+  static ForceClaims claims() { return {.periodic = true}; }
 
   /// @throws Error  for a negative length
   void check() const { detail::check_length(length); }
 
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     for (const auto& [i, j] : tied) {
-      const Vec3<Real> r = s.positions()[i] - s.positions()[j];
+      const Vec3<Real> r = s.box().minimum_image(Vec3<Real>(s.positions()[i] - s.positions()[j]));
       const detail::Spring<Real> spring(r, Real(k), Real(length));
       out.pair(i, j, spring.force);
       if (out.wants_energy()) out.energy(spring.energy);
@@ -74,6 +76,8 @@ struct HarmonicBond {
 ///
 ///     U = sum over tied particles k (|x_i - point| - length)^2 / 2
 ///
+/// In a periodic box every image of the point holds what is nearest to it. Walls and restraints are no part of the
+/// pressure: there is no virial.
 /// @cost one square root per particle
 /// @source Hooke1678
 struct Tether {
@@ -91,7 +95,10 @@ struct Tether {
                         field<&Tether::length>("length", "length", "at rest"));
   }
   ForceClaims claims() const {
-    return {.keeps_momentum = false, .keeps_angular_momentum = point == std::array<double, 3>{}};
+    return {.virial = false,
+            .keeps_momentum = false,
+            .keeps_angular_momentum = point == std::array<double, 3>{},
+            .periodic = true};
   }
 
   /// @throws Error  for a negative length
@@ -100,7 +107,7 @@ struct Tether {
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     const Vec3<Real> end = {Real(point[0]), Real(point[1]), Real(point[2])};
     for (const auto& [i] : tied) {
-      const Vec3<Real> r = s.positions()[i] - end;
+      const Vec3<Real> r = s.box().minimum_image(Vec3<Real>(s.positions()[i] - end));
       const detail::Spring<Real> spring(r, Real(k), Real(length));
       out.force(i, spring.force);
       if (out.wants_energy() && s.masses()[i] != Real(0)) out.energy(spring.energy);

@@ -3,9 +3,11 @@
 #include "forces/springs.hpp"
 #include "forces/check_gradient.hpp"
 #include "forces/fermi_pasta_ulam.hpp"
+#include "forces/sum.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/problems.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -51,6 +53,40 @@ TEST_CASE("bonds keep momentum and angular momentum, and reach the particles the
   CHECK_FALSE(tethers.claims().keeps_momentum);
   CHECK_FALSE(tethers.claims().keeps_angular_momentum);
   CHECK(Tether{.k = 1}.claims().keeps_angular_momentum);
+}
+
+TEST_CASE("springs in a periodic box hold the nearest images, wherever the box is cut", "[springs]") {
+  // The same particles, the box cut at many places: forces and energies are those of open space.
+  const auto open = four_bodies();
+  const auto [low, high] = std::minmax_element(open.positions().component(0), open.positions().component(0) + 4);
+  double reach = *high - *low;
+  for (int k = 0; k < 3; ++k) {
+    for (Index i = 0; i < 4; ++i) reach = std::max(reach, std::abs(open.positions()[i][k] - tethers.point[k]));
+  }
+  const auto edges = Vec3<double>(5 * reach, 4 * reach, 6 * reach);
+  const Sum springs(bonds, tethers);
+  VectorColumn<double> expected(4), felt(4);
+  ForceSink<double> sink(expected, open, {.energy = true});
+  springs.add_to(sink, open);
+  for (int cut = 0; cut < 20; ++cut) {
+    const Vec3<double> aside = 0.05 * cut * edges;
+    ParticleSystem<double> s = open;
+    Tether there = tethers;
+    for (int k = 0; k < 3; ++k) {
+      there.point[k] += aside[k];
+      for (Index i = 0; i < 4; ++i) s.positions().component(k)[i] += aside[k];
+    }
+    s.set_box(Box::periodic(edges));
+    ForceSink<double> here(felt, s, {.energy = true});
+    Sum(bonds, there).add_to(here, s);
+    CHECK(std::abs(here.potential() / sink.potential() - 1) < 1e-12);
+    for (Index i = 0; i < 4; ++i) {
+      CHECK(norm2(Vec3<double>(std::as_const(felt)[i] - std::as_const(expected)[i])) <
+            1e-24 * norm2(std::as_const(expected)[i]));
+    }
+  }
+  CHECK_FALSE(claims_of(springs).virial);
+  CHECK(claims_of(bonds).virial);
 }
 
 TEST_CASE("a bond without rest length is finite where its particles meet", "[springs]") {
