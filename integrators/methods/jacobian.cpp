@@ -310,7 +310,7 @@ template <class Real> void Jacobian<Real>::multiply(VectorField<Real>& f, const 
 
 /// x <- M^-1 x with products: J (r v, q v) = (., B q v + A r v), in multiples of `scale_`.
 template <class Real> bool Jacobian<Real>::solve_matrix_free(VectorField<Real>& f, Vector<Real>& x) {
-  const auto& [p, q, r] = weights_;
+  const Real p = weights_[0], q = weights_[1], r = weights_[2];
   const Index n = x.size();
   const auto scale = scale_.tail(n).array();
   const LinearMap<Real> map = [&](const Vector<Real>& v, Vector<Real>& out) {

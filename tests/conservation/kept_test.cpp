@@ -29,6 +29,10 @@ Vec3<Quad> angular_momentum_of(const ParticleSystem<Quad>& s) {
   return sum;
 }
 
+double change_between(const Vec3<Quad>& a, const Vec3<Quad>& b) {
+  return std::sqrt(static_cast<double>(norm2(Vec3<Quad>(a - b))));
+}
+
 /// Twenty steps forth, and back again.
 template <class I> Kept measured(const I& integrator, const ParticleSystem<double>& start, double dt) {
   Simulation<Quad> sim(start.as<Quad>(), integrator, dt);
@@ -45,8 +49,8 @@ template <class I> Kept measured(const I& integrator, const ParticleSystem<doubl
   I other = integrator;
   other.bind(there);
   Kept kept{};
-  kept.momentum = length(momentum_of(after) - momentum_of(before));
-  kept.angular_momentum = length(angular_momentum_of(after) - angular_momentum_of(before));
+  kept.momentum = change_between(momentum_of(after), momentum_of(before));
+  kept.angular_momentum = change_between(angular_momentum_of(after), angular_momentum_of(before));
   kept.energy = std::fabs(static_cast<double>(other.energy(there).total() - energy));
   sim.change_step(-dt);
   REQUIRE(sim.run(20).ok());
