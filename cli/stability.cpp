@@ -2,6 +2,7 @@
 
 #include "cli/lists.hpp"
 #include "engine/error.hpp"
+#include "io/files.hpp"
 #include "scene/scene.hpp"
 #include "study/stability.hpp"
 #include "study/suite.hpp"
@@ -13,7 +14,6 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -42,18 +42,11 @@ std::function<void(const std::string&)> progress_line(bool shows) {
   };
 }
 
-void write(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream out(file);
-  out << text;
-  if (!out.flush()) throw FileError("the file cannot be written", {.file = file.string()});
-}
-
-/// Writes a result into a folder, for machines and for people. @return what was written, a line each
+/// Writes a result into a folder that is there, for machines and for people. @return what was written, a line each
 std::string write_report(const std::filesystem::path& folder, const char* json_name, const std::string& json,
                          const std::string& html) {
-  std::filesystem::create_directories(folder);
-  write(folder / json_name, json + "\n");
-  write(folder / "report.html", html);
+  io::write_and_sync(folder / json_name, json + "\n");
+  io::write_and_sync(folder / "report.html", html);
   return fmt::format("wrote {}\nwrote {}\n", (folder / json_name).string(), (folder / "report.html").string());
 }
 
@@ -65,7 +58,7 @@ void search_scene(const StabilityArguments& given) {
   options.confirm_steps = given.steps;
   if (given.budget) options.row_budget = *given.budget;
   options.progress = progress_line(shows);
-  if (given.out) std::filesystem::create_directories(*given.out);
+  if (given.out) io::make_folder(*given.out);
   const Stability found = find_stability(scene, options);
   if (shows) std::fputs("\r\033[K", stderr);
   std::string written;
@@ -86,7 +79,7 @@ void run_verdicts(const StabilityArguments& given) {
   if (given.budget) options.row_budget = *given.budget;
   options.progress = progress_line(shows);
   const std::filesystem::path folder = given.out.value_or("stability.out");
-  std::filesystem::create_directories(folder);
+  io::make_folder(folder);
   const Suite suite = run_suite(files, options);
   if (shows) std::fputs("\r\033[K", stderr);
   const std::string written = write_report(folder, "suite.json", to_json(suite), to_html(suite));

@@ -75,6 +75,12 @@ void write_and_sync(const std::filesystem::path& file, std::string_view bytes) {
   if (::fsync(target) != 0) give_up(errno);
 }
 
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) fail(folder, "cannot be made", error.value());
+}
+
 void sync_file(const std::filesystem::path& file) {
   const Descriptor opened(file, O_RDWR);
   if (opened < 0 || ::fsync(opened) != 0) fail(file, "cannot be written", errno);

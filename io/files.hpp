@@ -16,6 +16,9 @@ std::string read_bytes(const std::filesystem::path& file, std::size_t most = std
 /// Writes a file and waits until it is on disk. @throws FileError; what was written of it is removed
 void write_and_sync(const std::filesystem::path& file, std::string_view bytes);
 
+/// Makes a folder, and those it lies in, where they are not there yet. @throws FileError
+void make_folder(const std::filesystem::path& folder);
+
 /// Waits until the content of a file is on disk. @throws FileError
 void sync_file(const std::filesystem::path& file);
 

@@ -163,9 +163,7 @@ std::string to_text(const Comparison& c) {
 }
 
 CompareFiles write_files(const Comparison& c, const std::filesystem::path& folder, const std::string& report) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw FileError(fmt::format("cannot be made: {}", error.message()), {.file = folder.string()});
+  io::make_folder(folder);
   const CompareFiles files{folder / "compare.csv", folder / "compare.json", folder / "report.html"};
   io::write_and_sync(files.csv, to_csv(c));
   io::write_and_sync(files.json, to_json(c, files) + "\n");

@@ -3,6 +3,7 @@
 #include "engine/simulation.hpp"
 #include "integrators/classical.hpp"
 #include "integrators/methods/diagonally_implicit_tableaus.hpp"
+#include "tests/methods/restarts.hpp"
 #include "tests/methods/stiff_problems.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/order_fit.hpp"
@@ -189,28 +190,8 @@ TEST_CASE("dense output is as good as the methods: order 3, 4 and that of the po
 }
 
 TEST_CASE("implicit methods go on from a saved run with the same bits") {
-  const auto check = [](const Classical<double>& method_used, const ParticleSystem<double>& start) {
-    const bool adaptive = method_used.claims().clock == ClockMode::free;
-    for (const std::int64_t n : {1, 4, 23}) {
-      auto whole = method_used, first = method_used, second = method_used;
-      ParticleSystem<double> s = start;
-      s.clock() = adaptive ? Clock<double>::free(0) : Clock<double>::fixed(0, 0.03125);
-      ParticleSystem<double> half = s;
-      whole.bind(s);
-      REQUIRE(whole.advance(s, {.steps = 2 * n}).steps == 2 * n);
-      first.bind(half);
-      REQUIRE(first.advance(half, {.steps = n}).steps == n);
-      SavedState saved;
-      first.save(saved, "");
-      second.bind(half);
-      second.load(saved, "");
-      REQUIRE(second.advance(half, {.steps = n}).steps == n);
-      CHECK(s.time() == half.time());
-      CHECK(same_bits(s, half));
-      CHECK(s.variables() == half.variables());
-      CHECK(whole.evaluations().force == second.evaluations().force);
-      CHECK(whole.evaluations().jacobian == second.evaluations().jacobian);
-    }
+  const auto check = [](const Classical<double>& used, const ParticleSystem<double>& start) {
+    for (const std::int64_t n : {1, 4, 23}) check_goes_on(used, start, n, 0.03125);
   };
   ParticleSystem<double> kinetics, line;
   kinetics.variables() = {0.9851721, 3.3863953e-5, 0.0147940};  // at t = 0.4

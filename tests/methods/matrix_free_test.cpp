@@ -2,6 +2,7 @@
 
 #include "integrators/force_motion.hpp"
 #include "integrators/methods/jacobian.hpp"
+#include "tests/methods/restarts.hpp"
 #include "tests/methods/stiff_problems.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/order_fit.hpp"
@@ -287,27 +288,8 @@ TEST_CASE("on a line of heat the three forms take the same steps to the same end
 
 TEST_CASE("matrix-free methods go on from a saved run with the same bits") {
   const Heat heat{.n = 60};
-  const auto check = [](const Classical<double>& method_used, const ParticleSystem<double>& start) {
-    const bool adaptive = method_used.claims().clock == ClockMode::free;
-    for (const std::int64_t n : {1, 9}) {
-      auto whole = method_used, first = method_used, second = method_used;
-      ParticleSystem<double> s = start;
-      s.clock() = adaptive ? Clock<double>::free(0) : Clock<double>::fixed(0, 0.001);
-      ParticleSystem<double> half = s;
-      whole.bind(s);
-      REQUIRE(whole.advance(s, {.steps = 2 * n}).steps == 2 * n);
-      first.bind(half);
-      REQUIRE(first.advance(half, {.steps = n}).steps == n);
-      SavedState saved;
-      first.save(saved, "");
-      second.bind(half);
-      second.load(saved, "");
-      REQUIRE(second.advance(half, {.steps = n}).steps == n);
-      CHECK(s.time() == half.time());
-      CHECK(same_bits(s, half));
-      CHECK(s.variables() == half.variables());
-      CHECK(whole.evaluations().force == second.evaluations().force);
-    }
+  const auto check = [](const Classical<double>& used, const ParticleSystem<double>& start) {
+    for (const std::int64_t n : {1, 9}) check_goes_on(used, start, n, 0.001);
   };
   ParticleSystem<double> line;
   for (int i = 0; i < 60; ++i) line.variables().push_back(i % 20 < 10 ? 1 : 0);
