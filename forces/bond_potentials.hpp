@@ -83,8 +83,8 @@ template <class Real> struct Fene {
 
   Real force_over_r(const Real& r2) const {
     const Real pull = k * longest2 / (r2 - longest2), inverse = Real(1) / r2, s6 = sixth_power(inverse);
-    if (!(s6 > Real(0.5))) return pull;
-    return pull + Real(6) * four_epsilon * s6 * (Real(2) * s6 - Real(1)) * inverse;
+    const Real push = Real(6) * four_epsilon * s6 * (Real(2) * s6 - Real(1)) * inverse;
+    return pull + (s6 > Real(0.5) ? push : Real(0));  // no branch: nobody can foretell it
   }
   Real energy(const Real& r2) const {
     using std::log;

@@ -1,6 +1,7 @@
 #include "forces/bonded.hpp"
 
 #include "engine/error.hpp"
+#include "engine/simd_loop.hpp"
 
 #include <fmt/format.h>
 
@@ -18,6 +19,28 @@ const BondedTerms& Bonded::terms_of(const std::shared_ptr<const Topology>& topol
   }
   terms_ = std::make_shared<const BondedTerms>(topology, n);
   return *terms_;
+}
+
+namespace {
+
+template <class Potential>
+[[gnu::always_inline]] inline bool forces_of(const std::array<double, 6>& parameters, const double* r2, Index count,
+                                             double* force_over_r) {
+  const Potential potential(parameters);
+  int broken = 0;
+  for (Index k = 0; k < count; ++k) {
+    if constexpr (requires { potential.holds(r2[k]); }) broken |= potential.holds(r2[k]) ? 0 : 1;
+    force_over_r[k] = potential.force_over_r(r2[k]);
+  }
+  return broken == 0;
+}
+
+}  // namespace
+
+bool detail::bond_forces(const BondedKind<BondPotential>& kind, const double* r2, Index count, double* force_over_r) {
+  return with_potential<double>(kind, [&](const auto& potential) {
+    return simd_loop<forces_of<std::decay_t<decltype(potential)>>>()(kind.parameters, r2, count, force_over_r);
+  });
 }
 
 Failure detail::overstretch(const BondedTerms& terms, Index bond, double length,

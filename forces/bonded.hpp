@@ -33,7 +33,8 @@ namespace noether {
 /// particles are exactly in line has no angle and exerts no force. A `fene` bond of its greatest length or more ends
 /// the run as `overstretch`. Terms are evaluated in blocks, then each particle sums its own in their order, so that any
 /// number of threads gives the same bits. One object serves one thread at a time; a copy is another object.
-/// @cost O(terms); the first call makes a list of 4 bytes for each particle of each term, and a thread keeps 24 for it
+/// @cost O(terms); the first call makes a list of 4 bytes for each particle of each term, and a thread keeps 24 for
+/// each bond and each particle of other terms
 /// @source Allen2017
 struct Bonded {
   static constexpr auto describe() {
@@ -96,7 +97,7 @@ template <class Real> void Bonded::add_to(ForceSink<Real>& out, const ParticleSy
       const Real m = s.masses()[i];
       if (m == Real(0)) continue;
       Vec3<Real> force = Vec3<Real>::Zero();
-      terms.for_each_slot(i, [&](std::size_t slot) { force += slots[slot]; });
+      terms.for_each_slot(i, [&](std::size_t slot, double sign) { force += Real(sign) * slots[slot]; });
       a.add(i, (Real(1) / m) * force);
     }
   });

@@ -58,6 +58,10 @@ template <class Real, std::size_t n> struct BondedResult {
   bool overstretched = false;
 };
 
+/// -U'(r) / r of bonds of doubles from the squares of their lengths, in lanes and with the bits of `force_over_r`.
+/// @return  whether all of them hold; the forces of those that do not mean nothing
+bool bond_forces(const BondedKind<BondPotential>& kind, const double* r2, Index count, double* force_over_r);
+
 /// A bond along d = x_1 - x_2.
 template <class Real, class Potential>
 BondedResult<Real, 2> bonded_forces(const Potential& potential, const std::array<Vec3<Real>, 1>& d, bool with_energy) {
@@ -143,17 +147,15 @@ template <class Real> class BondedLoop {
       while (k < to) {
         // Terms of one kind stand side by side more often than not, and ask for their potential once.
         const auto type = terms[static_cast<std::size_t>(k - first)].type;
-        with_potential<InLane>(kinds[static_cast<std::size_t>(type)], [&](const auto& potential) {
-          for (; k < to; ++k) {
-            const auto& term = terms[static_cast<std::size_t>(k - first)];
-            if (term.type != type) break;
-            evaluate(term, potential, k, slots_ + slot + static_cast<std::size_t>(k - first) * term.particles.size(),
-                     totals);
-          }
-        });
+        Index next = k + 1;
+        while (next < to && terms[static_cast<std::size_t>(next - first)].type == type) ++next;
+        const auto* const run = &terms[static_cast<std::size_t>(k - first)];
+        Vec3<Real>* const slots = slots_ + slot + static_cast<std::size_t>(k - first) * slots_of(*run);
+        evaluate_run(run, next - k, kinds[static_cast<std::size_t>(type)], k, slots, totals);
+        k = next;
       }
       first += size;
-      slot += terms.size() * std::decay_t<decltype(terms[0])>{}.particles.size();
+      slot += terms.size() * slots_of(std::decay_t<decltype(terms[0])>{});
     };
     family(t.bonds, terms_.bonds);
     family(t.angles, terms_.angles);
@@ -183,6 +185,39 @@ template <class Real> class BondedLoop {
     return {between(p[0], p[1]), between(p[1], p[2]), between(p[3], p[2])};
   }
 
+  template <std::size_t n> static std::size_t slots_of(const BondedTerm<n>&) { return n == 2 ? 1 : n; }
+
+  /// `count` terms of one kind, the first of which is term `k`.
+  template <std::size_t n, class Kind>
+  void evaluate_run(const BondedTerm<n>* terms, Index count, const Kind& kind, Index k, Vec3<Real>* slots,
+                    BondedTotals<Real>& totals) {
+    with_potential<InLane>(kind, [&](const auto& potential) {
+      for (Index i = 0; i < count; ++i) {
+        evaluate(terms[i], potential, k + i, slots + static_cast<std::size_t>(i) * slots_of(terms[i]), totals);
+      }
+    });
+  }
+
+  /// Of bonds of doubles the forces alone, many at a time.
+  void evaluate_run(const BondedTerm<2>* bonds, Index count, const BondedKind<BondPotential>& kind, Index k,
+                    Vec3<Real>* slots, BondedTotals<Real>& totals) requires std::is_same_v<Real, double> {
+    constexpr Index most = 64;
+    for (Index begin = 0; begin < count; begin += most) {
+      const Index size = std::min(most, count - begin);
+      alignas(64) double r2[most], force[most];
+      for (Index i = 0; i < size; ++i) {
+        const auto& [one, other] = bonds[begin + i].particles;
+        slots[begin + i] = between(one, other);
+        r2[i] = norm2(slots[begin + i]);
+      }
+      if (energy_ || virial_ || !bond_forces(kind, r2, size, force)) {
+        evaluate_run<2, BondedKind<BondPotential>>(bonds + begin, size, kind, k + begin, slots + begin, totals);
+        continue;
+      }
+      for (Index i = 0; i < size; ++i) slots[begin + i] *= force[i];
+    }
+  }
+
   template <std::size_t n, class Potential>
   void evaluate(const BondedTerm<n>& term, const Potential& potential, Index k, Vec3<Real>* slots,
                 BondedTotals<Real>& totals) {
@@ -194,7 +229,7 @@ template <class Real> class BondedLoop {
         return bonded_forces<Real>(potential, d, energy_);
       }
     }();
-    std::copy(result.force.begin(), result.force.end(), slots);
+    std::copy_n(result.force.begin(), slots_of(term), slots);
     if (result.overstretched) {
       Index known = overstretched_.load();
       while (k < known && !overstretched_.compare_exchange_weak(known, k)) {

@@ -137,26 +137,39 @@ BondedTerms::BondedTerms(std::shared_ptr<const Topology> topology, Index n)
   check_terms(topology_->angles, angles.size(), n, "an angle");
   check_terms(topology_->dihedrals, dihedrals.size(), n, "a dihedral");
   check_terms(topology_->impropers, impropers.size(), n, "an improper");
-  std::vector<Index> owner;
+  struct Place {
+    Index owner;
+    std::uint64_t slot;  // and the sign
+  };
+  std::vector<Place> places;
+  std::uint64_t slots = 0;
   const auto add = [&](const auto& terms) {
-    for (const auto& term : terms) owner.insert(owner.end(), term.particles.begin(), term.particles.end());
+    for (const auto& term : terms) {
+      const bool is_bond = term.particles.size() == 2;
+      for (const Index i : term.particles) {
+        const bool opposite = is_bond && i == term.particles[1];
+        places.push_back({i, opposite ? 2 * slots - 1 : 2 * slots});
+        if (!opposite) ++slots;
+      }
+    }
     terms_ += static_cast<Index>(terms.size());
   };
   add(topology_->bonds);
   add(topology_->angles);
   add(topology_->dihedrals);
   add(topology_->impropers);
-  if (owner.size() > std::numeric_limits<std::uint32_t>::max()) {
-    throw Error(fmt::format("{} bonded terms are too many; less than 2^30 are expected", terms_));
+  if (slots > std::numeric_limits<std::uint32_t>::max() / 2) {
+    throw Error(fmt::format("{} bonded terms are too many; less than 2^29 are expected", terms_));
   }
+  slots_ = static_cast<Index>(slots);
   // Counted, then dealt out in the order of the slots.
   first_.assign(static_cast<std::size_t>(n) + 1, 0);
-  for (const Index i : owner) ++first_[static_cast<std::size_t>(i) + 1];
+  for (const Place& place : places) ++first_[static_cast<std::size_t>(place.owner) + 1];
   for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) first_[i + 1] += first_[i];
-  slot_.resize(owner.size());
+  slot_.resize(places.size());
   std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-  for (std::size_t k = 0; k < owner.size(); ++k) {
-    slot_[next[static_cast<std::size_t>(owner[k])]++] = static_cast<std::uint32_t>(k);
+  for (const Place& place : places) {
+    slot_[next[static_cast<std::size_t>(place.owner)]++] = static_cast<std::uint32_t>(place.slot);
   }
   for (auto& kind : angles) kind.parameters[5] = std::cos(kind.parameters[1]);
 }

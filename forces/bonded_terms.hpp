@@ -24,7 +24,8 @@ template <class Potential> struct BondedKind {
 /// The kinds of a topology, and for each particle its places among the forces of the terms.
 ///
 /// Every particle of every term has a slot: bonds first, then angles, dihedrals and impropers, in the order of the
-/// topology. The force on a particle is the sum of its slots in that order.
+/// topology; the two of a bond share one, that of the first, since the other feels the opposite. The force on a
+/// particle is the sum of its slots in that order.
 class BondedTerms {
  public:
   /// @param n  number of particles
@@ -43,18 +44,23 @@ class BondedTerms {
   /// Number of terms of the four families together.
   Index terms() const { return terms_; }
   /// Number of slots.
-  Index slots() const { return static_cast<Index>(slot_.size()); }
-  /// Calls `body(slot)` for the slots of particle `i`, in order.
+  Index slots() const { return slots_; }
+  /// Calls `body(slot, sign)` for the slots of particle `i`, in order; sign is -1 where it feels the opposite, else 1.
   template <class Body> void for_each_slot(Index i, const Body& body) const {
     const auto at = static_cast<std::size_t>(i);
-    for (std::size_t k = first_[at]; k < first_[at + 1]; ++k) body(static_cast<std::size_t>(slot_[k]));
+    for (std::size_t k = first_[at]; k < first_[at + 1]; ++k) {
+      body(static_cast<std::size_t>(slot_[k] / 2), signs[slot_[k] % 2]);
+    }
   }
 
  private:
+  static constexpr double signs[2] = {1, -1};
+
   std::shared_ptr<const Topology> topology_;
-  Index terms_ = 0;
+  Index terms_ = 0, slots_ = 0;
   std::vector<std::size_t> first_;   ///< by particle, shape (n + 1)
-  std::vector<std::uint32_t> slot_;  ///< those of particle i from first_[i] to first_[i + 1]
+  std::vector<std::uint32_t> slot_;  ///< those of particle i from first_[i] to first_[i + 1]: 2 slot, or with the
+                                     ///< opposite sign 2 slot + 1
 };
 
 }  // namespace noether

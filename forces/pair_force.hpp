@@ -2,7 +2,7 @@
 /// A pair force from a potential of a few lines.
 
 #include "engine/pack.hpp"
-#include "engine/simd.hpp"
+#include "engine/simd_loop.hpp"
 #include "forces/pairs.hpp"
 
 #include <cstddef>
@@ -87,11 +87,11 @@ using PairLoop = void (*)(const void* potential, const PairEnd& end, const doubl
                           double* energy, double* force);
 
 template <class P, Cutoff style>
-[[gnu::always_inline]] inline void loop_over_pairs(const P& potential, const PairEnd& given, const double* r2,
+[[gnu::always_inline]] inline void loop_over_pairs(const void* potential, const PairEnd& given, const double* r2,
                                                    std::ptrdiff_t count, double* energy, double* force) {
   PairEnd end = given;
   end.style = style;
-  const P own = potential;  // nothing that is written can change it
+  const P own = *static_cast<const P*>(potential);  // nothing that is written can change it
 #if !defined(__clang__)
 #pragma GCC ivdep
 #endif
@@ -102,48 +102,18 @@ template <class P, Cutoff style>
   }
 }
 
-#if defined(__clang__)
-#define NOETHER_AVX512_LOOPS "avx512f,avx512dq,avx512vl"
-#else
-#define NOETHER_AVX512_LOOPS "avx512f,avx512dq,avx512vl,prefer-vector-width=512"
-#endif
-
-/// The loop over a potential, compiled for each SIMD level where it is used.
-template <class P, Cutoff style> struct PairLoops {
-  [[gnu::flatten]] static void base(const void* p, const PairEnd& end, const double* r2, std::ptrdiff_t n, double* u,
-                                    double* f) {
-    loop_over_pairs<P, style>(*static_cast<const P*>(p), end, r2, n, u, f);
-  }
-#if NOETHER_SIMD_LEVELS
-  [[gnu::flatten, gnu::target("avx2,fma")]] static void avx2(const void* p, const PairEnd& end, const double* r2,
-                                                             std::ptrdiff_t n, double* u, double* f) {
-    loop_over_pairs<P, style>(*static_cast<const P*>(p), end, r2, n, u, f);
-  }
-  [[gnu::flatten, gnu::target(NOETHER_AVX512_LOOPS)]] static void avx512(const void* p, const PairEnd& end,
-                                                                         const double* r2, std::ptrdiff_t n, double* u,
-                                                                         double* f) {
-    loop_over_pairs<P, style>(*static_cast<const P*>(p), end, r2, n, u, f);
-  }
-  static PairLoop in_use() { return at_simd_level<PairLoop>(base, avx2, avx512); }
-#else
-  static PairLoop in_use() { return base; }
-#endif
-};
-
-#undef NOETHER_AVX512_LOOPS
-
 template <class P> PairLoop pair_loop(Cutoff style) {
   switch (style) {
     case Cutoff::plain:
-      return PairLoops<P, Cutoff::plain>::in_use();
+      return simd_loop<loop_over_pairs<P, Cutoff::plain>>();
     case Cutoff::shifted:
-      return PairLoops<P, Cutoff::shifted>::in_use();
+      return simd_loop<loop_over_pairs<P, Cutoff::shifted>>();
     case Cutoff::shifted_force:
-      return PairLoops<P, Cutoff::shifted_force>::in_use();
+      return simd_loop<loop_over_pairs<P, Cutoff::shifted_force>>();
     case Cutoff::switch_c2:
-      return PairLoops<P, Cutoff::switch_c2>::in_use();
+      return simd_loop<loop_over_pairs<P, Cutoff::switch_c2>>();
     default:
-      return PairLoops<P, Cutoff::switch_c4>::in_use();
+      return simd_loop<loop_over_pairs<P, Cutoff::switch_c4>>();
   }
 }
 

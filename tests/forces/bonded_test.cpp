@@ -7,6 +7,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/support/settings.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -355,6 +356,25 @@ TEST_CASE("bonded forces have the same bits on any number of threads, with and w
   }
 }
 
+TEST_CASE("bonds many at a time have the bits of bonds one by one, at every SIMD level", "[bonded]") {
+  for (const SimdLevel level : test::all_levels()) {
+    const test::AtLevel here(level);
+    for (const Index n : {2, 9, 64, 65, 200}) {
+      auto s = crooked(n, 8);
+      auto topology = std::make_shared<Topology>(*chain(n, {bond_kinds, {}, {}, {}}));
+      for (int order = 0; order < 2; ++order) {
+        s.set_topology(std::make_shared<const Topology>(*topology));
+        const auto one_by_one = evaluate(Bonded{}, s, {.energy = true}), many = evaluate(Bonded{}, s, {});
+        CHECK(largest(many.force) > 0);
+        CHECK(difference(many.force, one_by_one.force) == 0);
+        // Kinds in turn: runs of one bond each.
+        std::stable_sort(topology->bonds.begin(), topology->bonds.end(),
+                         [](const auto& a, const auto& b) { return a.particles < b.particles; });
+      }
+    }
+  }
+}
+
 TEST_CASE("each lane of a pack has the bits of double", "[bonded]") {
   std::vector<ParticleSystem<double>> systems;
   for (std::uint64_t seed = 0; seed < Pack::lanes; ++seed) systems.push_back(crooked(7, 40 + seed));
@@ -395,6 +415,16 @@ TEST_CASE("a fene bond of its greatest length is overstretched, and its particle
             "the bond of 'two' and particle 2 is 1.5 long, and a fene bond is shorter than 1.5") == 0);
   s.positions().set(2, {2.499, 0, 0});
   CHECK_FALSE(evaluate(Bonded{}, s).failure.has_value());
+
+  auto many = crooked(100, 9);  // where forces alone are asked for, and bonds go many at a time
+  many.set_topology(chain(100, {{{"fene", {30, 2.5, 1, 1}}}, {}, {}, {}}));
+  CHECK_FALSE(evaluate(Bonded{}, many, {}).failure.has_value());
+  many.positions().set(70, many.positions()[69] + Vec3<double>(0, 3, 0));
+  many.positions().set(40, many.positions()[39] + Vec3<double>(0, 3, 0));
+  const auto two = evaluate(Bonded{}, many, {});
+  REQUIRE(two.failure.has_value());
+  CHECK(two.failure->particle == 39);
+  CHECK(std::isnan(two.force.component(1)[70]));
 }
 
 std::string refusal_of(const Topology& topology, Index n) {
