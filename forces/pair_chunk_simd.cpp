@@ -47,26 +47,26 @@ template <bool everything, class Sum> void add(const PairFilter& filter, const P
   PairSums found;
   for (std::ptrdiff_t half = 0; half < 8; half += lanes) {
     LaneSums<everything, Sum> all(filter.force_unit, filter.energy_unit);
-    Vector nearest = range2, strongest2 = hn::Zero(d);
+    Vector nearest = range2, strength2 = hn::Zero(d);  // a sum, which keeps what is no number
     for (std::ptrdiff_t row = 0; row < chunk.rows; ++row) {
       const std::ptrdiff_t from = 8 * row + half;
       const Vector r2 = hn::Load(d, chunk.r2 + from), force = hn::Load(d, chunk.force + from);
       const auto near = hn::Lt(r2, range2);
-      const Vector k = hn::IfThenElseZero(near, force), k2 = hn::Mul(hn::Mul(k, k), r2);
-      strongest2 = hn::IfThenElse(hn::Le(k2, strongest2), strongest2, k2);  // keeps what is no number
+      const Vector k = hn::IfThenElseZero(near, force);
+      strength2 = hn::Add(strength2, hn::Mul(hn::Mul(k, k), r2));
       nearest = lesser(nearest, r2);
       all.add(near, hn::Load(d, chunk.energy + from), force, hn::Load(d, chunk.dx + from), hn::Load(d, chunk.dy + from),
               hn::Load(d, chunk.dz + from));
     }
     all.store(chunk.rows, half, found);
-    const auto weak = hn::And(hn::Le(strongest2, limit2), hn::Ge(nearest, nearest2));
+    const auto weak = hn::And(hn::Le(strength2, limit2), hn::Ge(nearest, nearest2));
     sums.close = sums.close || !hn::AllTrue(d, weak);
     if constexpr (requires { all.energy.strong; }) {
-      double least[lanes], most[lanes];
+      double least[lanes], strength[lanes];
       hn::StoreU(nearest, d, least);
-      hn::StoreU(strongest2, d, most);
+      hn::StoreU(strength2, d, strength);
       for (std::ptrdiff_t k = 0; k < lanes; ++k) {
-        const bool strong = found.strong[half + k] || least[k] < filter.nearest2 || !(most[k] < 1e300);
+        const bool strong = found.strong[half + k] || least[k] < filter.nearest2 || !(strength[k] < 1e300);
         sums.strong[half + k] = sums.strong[half + k] || strong;
       }
     }

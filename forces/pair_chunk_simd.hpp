@@ -10,7 +10,8 @@ namespace noether {
 struct alignas(64) PairChunk {
   static constexpr std::ptrdiff_t most_rows = 16, size = 8 * most_rows;
   double dx[size], dy[size], dz[size];
-  double r2[size];  ///< the square of the cutoff for pairs that do not act
+  double r2[size];       ///< the square of the cutoff for pairs that do not act
+  double product[size];  ///< of the charges of a pair, where somebody asks for it [energy length]
   double energy[size], force[size];
   std::ptrdiff_t rows;
 };

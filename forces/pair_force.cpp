@@ -23,6 +23,29 @@ int type_named(const Topology* topology, const std::string& name, std::string_vi
                           names.empty() ? "they have no types" : fmt::format("there are {}", fmt::join(names, ", "))));
 }
 
+/// Charges in the order of the records; of nobody 0. Kept until this thread asks again.
+const double* charges_of_records(const ParticleSystem<double>& s, const NeighborList& list) {
+  thread_local std::vector<double> charges;
+  const std::vector<std::int32_t>& particles = list.particles_of_records();
+  charges.resize(particles.size() + 1);
+  double* const to = charges.data();
+  const double* const q = s.column<Charge>().data();
+  for_blocks(static_cast<Index>(particles.size()), [&](Index begin, Index end) {
+    for (Index r = begin; r < end; ++r) to[r] = q[particles[static_cast<std::size_t>(r)]];
+  });
+  to[particles.size()] = 0;
+  return to;
+}
+
+/// What the charges of rows `first` to `first + chunk.rows` multiply to.
+void multiply_charges(const double* charges, double constant, const PairGroup& group, std::ptrdiff_t first,
+                      PairChunk& chunk) {
+  double own[8];
+  for (int lane = 0; lane < 8; ++lane) own[lane] = constant * charges[group.records[lane] / 4];
+  const std::int32_t* const entries = group.entries + 8 * first;
+  for (std::ptrdiff_t k = 0; k < 8 * chunk.rows; ++k) chunk.product[k] = own[k % 8] * charges[entries[k] / 4];
+}
+
 }  // namespace
 
 std::array<int, 2> pair_types(const Topology* topology, const std::string& first, const std::string& second) {
@@ -41,6 +64,21 @@ void check_pair_scale(double scale) {
   }
 }
 
+void check_charges(bool there, std::string_view name) {
+  if (there) return;
+  throw Error(
+      fmt::format("force '{}' acts between charges, and the particles have none; give charges, or take the "
+                  "force out",
+                  name));
+}
+
+double strongest_product(const ParticleSystem<double>& s) {
+  double most = 0;
+  const auto& q = s.column<Charge>();
+  for (Index i = 0; i < s.size(); ++i) most = std::max(most, std::abs(q[i]));
+  return s.units().coulomb_constant * (most > 0 ? most * most : 1);
+}
+
 void add_pairs_in_lanes(ForceSink<double>& out, const ParticleSystem<double>& s, const PairPlan& plan) {
   std::optional<NeighborList> own;
   NeighborList& list = out.neighbors() != nullptr ? *out.neighbors() : own.emplace(plan.cutoff);
@@ -50,23 +88,25 @@ void add_pairs_in_lanes(ForceSink<double>& out, const ParticleSystem<double>& s,
   const auto quick = kernels.add[0][all], careful = kernels.add[1][all];
   const double force_unit = std::ldexp(1.0, std::ilogb(plan.scale) + 1 - bits_of_unit);
   const double energy_unit = force_unit * std::ldexp(1.0, std::ilogb(plan.cutoff) + 1);
+  const double* const charges = plan.coulomb_constant != 0 ? charges_of_records(s, list) : nullptr;
   const PairFilter filter{list.records(),
                           plan.cutoff * plan.cutoff,
                           plan.nearest * plan.nearest,
                           {plan.types[0], plan.types[1]},
                           force_unit,
                           energy_unit};
-  add_pair_groups(out, s, list, {force_unit, energy_unit}, plan.name,
-                  [&](const PairGroup& group, PairSums& found, bool care) {
-                    PairChunk chunk;
-                    std::memset(&found, 0, sizeof found);
-                    for (std::ptrdiff_t row = 0; row < group.rows; row += chunk.rows) {
-                      chunk.rows = std::min(PairChunk::most_rows, group.rows - row);
-                      kernels.load(filter, group, row, chunk);
-                      plan.loop(plan.potential, plan.end, chunk.r2, 8 * chunk.rows, chunk.energy, chunk.force);
-                      (care ? careful : quick)(filter, chunk, found);
-                    }
-                  });
+  add_pair_groups(
+      out, s, list, {force_unit, energy_unit}, plan.name, [&](const PairGroup& group, PairSums& found, bool care) {
+        PairChunk chunk;
+        std::memset(&found, 0, sizeof found);
+        for (std::ptrdiff_t row = 0; row < group.rows; row += chunk.rows) {
+          chunk.rows = std::min(PairChunk::most_rows, group.rows - row);
+          kernels.load(filter, group, row, chunk);
+          if (charges != nullptr) multiply_charges(charges, plan.coulomb_constant, group, row, chunk);
+          plan.loop(plan.potential, plan.end, {chunk.r2, chunk.product, 8 * chunk.rows}, chunk.energy, chunk.force);
+          (care ? careful : quick)(filter, chunk, found);
+        }
+      });
 }
 
 }  // namespace noether::detail

@@ -1,6 +1,7 @@
 #pragma once
 /// A pair force from a potential of a few lines.
 
+#include "engine/charge.hpp"
 #include "engine/pack.hpp"
 #include "engine/simd_loop.hpp"
 #include "forces/pairs.hpp"
@@ -25,10 +26,30 @@ namespace noether {
 /// pairs nearer than that end the run. For doubles the function is called in loops that the compiler turns into lanes:
 /// best without branches, and with `pair_exp` for exp.
 template <class P>
-concept PairPotential = requires(const P& potential, double r2) {
+concept NeutralPairPotential = requires(const P& potential, double r2) {
   { potential(r2) } -> std::convertible_to<PairTerms<double>>;
   { potential.scale() } -> std::convertible_to<double>;
 };
+
+/// A potential between two charges: of the square of the distance and of C q_i q_j [energy length], C being the factor
+/// of Coulomb's law. Energy and force are that product times a function of the distance, and another function.
+///
+///     double scale(double product) const;  // of charges as strong as that
+///     template <class Real> PairTerms<Real> operator()(const Real& r2, const Real& product) const;
+template <class P>
+concept ChargedPairPotential = requires(const P& potential, double r2, double product) {
+  { potential(r2, product) } -> std::convertible_to<PairTerms<double>>;
+  { potential.scale(product) } -> std::convertible_to<double>;
+};
+
+/// A potential that is zero, and so is its force, from a distance of its own on.
+template <class P>
+concept EndsByItself = requires(const P& potential) {
+  { potential.range() } -> std::convertible_to<double>;
+};
+
+template <class P>
+concept PairPotential = NeutralPairPotential<P> || ChargedPairPotential<P>;
 
 /// e^x, for potentials: of doubles without a branch or a call, so that loops of it go in lanes; 1 ulp.
 template <class Real> Real pair_exp(const Real& x) {
@@ -59,22 +80,46 @@ template <> inline double pair_exp(const double& x) {
 
 namespace detail {
 
-/// How a potential ends: energy less `energy`, less the force `force` times r; or times a switch of t = (r2 - from2)
-/// over what is left to the square of the cutoff.
+template <class Real, class P> PairTerms<Real> bare_terms(const P& potential, const Real& r2, const Real& product) {
+  if constexpr (ChargedPairPotential<P>) {
+    return potential(r2, product);
+  } else {
+    static_cast<void>(product);
+    return potential(r2);
+  }
+}
+
+template <class P> double scale_of(const P& potential, double product) {
+  if constexpr (ChargedPairPotential<P>) {
+    return potential.scale(product);
+  } else {
+    static_cast<void>(product);
+    return potential.scale();
+  }
+}
+
+/// How a potential ends: energy less that of `last`, less its force times r; or times a switch of t = (r2 - from2) over
+/// what is left to the square of the cutoff. What charges add to `last` is `charged` times their product.
 struct PairEnd {
   Cutoff style = Cutoff::plain;
-  double energy = 0, force = 0;
+  PairTerms<double> last{}, charged{};
   double from2 = 0, inverse = 0;
 };
 
-template <class Real, class P> PairTerms<Real> ended(const P& potential, const PairEnd& end, const Real& r2) {
-  const PairTerms<Real> bare = potential(r2);
+template <class Real, class P>
+PairTerms<Real> ended(const P& potential, const PairEnd& end, const Real& r2, const Real& product) {
+  const PairTerms<Real> bare = bare_terms(potential, r2, product);
   if (end.style == Cutoff::plain) return bare;
-  if (end.style == Cutoff::shifted) return {bare.energy - Real(end.energy), bare.force};
+  Real last_energy(end.last.energy), last_force(end.last.force);
+  if constexpr (ChargedPairPotential<P>) {
+    last_energy += product * Real(end.charged.energy);
+    last_force += product * Real(end.charged.force);
+  }
+  if (end.style == Cutoff::shifted) return {bare.energy - last_energy, bare.force};
   if (end.style == Cutoff::shifted_force) {
     using std::sqrt;
     const Real r = sqrt(r2);
-    return {bare.energy - Real(end.energy) + Real(end.force) * r, bare.force - Real(end.force) / r};
+    return {bare.energy - last_energy + last_force * r, bare.force - last_force / r};
   }
   Real t = (r2 - Real(end.from2)) * Real(end.inverse);
   t = t > Real(0) ? t : Real(0);
@@ -82,21 +127,28 @@ template <class Real, class P> PairTerms<Real> ended(const P& potential, const P
   return {bare.energy * off.value, off.value * bare.force - Real(2 * end.inverse) * bare.energy * off.slope};
 }
 
-/// Energies and forces of `count` pairs of doubles, a multiple of eight.
-using PairLoop = void (*)(const void* potential, const PairEnd& end, const double* r2, std::ptrdiff_t count,
-                          double* energy, double* force);
+/// Distances of pairs, and what their charges multiply to, shape (count), a multiple of eight.
+struct PairRun {
+  const double *r2, *product;
+  std::ptrdiff_t count;
+};
+
+/// Energies and forces of pairs of doubles.
+using PairLoop = void (*)(const void* potential, const PairEnd& end, const PairRun& pairs, double* energy,
+                          double* force);
 
 template <class P, Cutoff style>
-[[gnu::always_inline]] inline void loop_over_pairs(const void* potential, const PairEnd& given, const double* r2,
-                                                   std::ptrdiff_t count, double* energy, double* force) {
+[[gnu::always_inline]] inline void loop_over_pairs(const void* potential, const PairEnd& given, const PairRun& pairs,
+                                                   double* energy, double* force) {
   PairEnd end = given;
   end.style = style;
   const P own = *static_cast<const P*>(potential);  // nothing that is written can change it
+  const PairRun run = pairs;
 #if !defined(__clang__)
 #pragma GCC ivdep
 #endif
-  for (std::ptrdiff_t k = 0; k < count; ++k) {
-    const PairTerms<double> terms = ended<double>(own, end, r2[k]);
+  for (std::ptrdiff_t k = 0; k < run.count; ++k) {
+    const PairTerms<double> terms = ended<double>(own, end, run.r2[k], ChargedPairPotential<P> ? run.product[k] : 0.0);
     energy[k] = terms.energy;
     force[k] = terms.force;
   }
@@ -123,6 +175,7 @@ struct PairPlan {
   PairLoop loop;
   PairEnd end;
   double cutoff, nearest, scale;
+  double coulomb_constant;   ///< times the charges of a pair [energy length/charge^2]; 0: charges are not asked for
   std::array<int, 2> types;  ///< only pairs of these; -1: all
   std::string_view name;
 };
@@ -131,6 +184,10 @@ void add_pairs_in_lanes(ForceSink<double>& out, const ParticleSystem<double>& s,
 /// The indices of two types; -1 both for no names. @throws Error  for one name alone, or a name that no type has
 std::array<int, 2> pair_types(const Topology* topology, const std::string& first, const std::string& second);
 void check_pair_scale(double scale);
+/// @throws Error  if the particles have no charges
+void check_charges(bool there, std::string_view name);
+/// C q^2 of the strongest charge; of a unit charge where there is none [energy length].
+double strongest_product(const ParticleSystem<double>& s);
 
 }  // namespace detail
 
@@ -141,8 +198,10 @@ void check_pair_scale(double scale);
 /// @cost doubles O(n); other number types O(n^2)
 /// @source Verlet1967
 template <PairPotential P> struct PairForce : P {
-  /// Whether the potential has a `range()` of its own, where energy and force are zero; then no cutoff is asked for.
-  static constexpr bool ends_by_itself = requires(const P& potential) { potential.range(); };
+  /// Whether the potential asks for charges.
+  static constexpr bool charged = ChargedPairPotential<P>;
+  /// Whether the potential has a `range()` of its own; then no cutoff is asked for.
+  static constexpr bool ends_by_itself = EndsByItself<P>;
 
   double cutoff = 0;                                                             ///< [length]
   Cutoff cutoff_style = ends_by_itself ? Cutoff::plain : Cutoff::shifted_force;  ///<
@@ -172,12 +231,13 @@ template <PairPotential P> struct PairForce : P {
   void check() const {
     if constexpr (requires { P::check(); }) P::check();
     detail::check_cutoff(reach(), switch_from);
-    detail::check_pair_scale(P::scale());
+    detail::check_pair_scale(detail::scale_of<P>(*this, 1));
   }
-  /// @throws Error  also for names that no type has
+  /// @throws Error  also for names that no type has, and where charges are asked for that the particles do not have
   template <class Real> void check(const ParticleSystem<Real>& s) const {
     check();
     detail::pair_types(s.topology(), first, second);
+    if constexpr (charged) detail::check_charges(s.template has<Charge>(), name());
   }
 
   template <class Real>
@@ -185,18 +245,24 @@ template <PairPotential P> struct PairForce : P {
   void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     const auto types = detail::pair_types(s.topology(), first, second);
     const detail::PairEnd end = this->end();
+    const Real* charges = nullptr;
+    if constexpr (charged) charges = s.template column<Charge>().data();
+    const Real constant(s.units().coulomb_constant);
     const auto terms = [&](Index i, Index j, const Real& r2, const auto& add) {
       if (types[0] >= 0) {
         const std::array<int, 2> pair = {s.topology()->type(i), s.topology()->type(j)};
         if (pair != types && pair != std::array<int, 2>{types[1], types[0]}) return;
       }
-      if (r2 < Real(reach() * reach())) add(detail::ended<Real>(static_cast<const P&>(*this), end, r2));
+      if (!(r2 < Real(reach() * reach()))) return;
+      const Real product = charged ? constant * charges[i] * charges[j] : Real(0);
+      add(detail::ended<Real>(static_cast<const P&>(*this), end, r2, product));
     };
     if constexpr (std::is_same_v<Real, double>) {
       const P& potential = *this;
-      detail::add_pairs_in_lanes(
-          out, s,
-          {&potential, detail::pair_loop<P>(cutoff_style), end, reach(), nearest_pair(), P::scale(), types, name()});
+      const double scale = detail::scale_of(potential, charged ? detail::strongest_product(s) : 0);
+      detail::add_pairs_in_lanes(out, s,
+                                 {&potential, detail::pair_loop<P>(cutoff_style), end, reach(), nearest_pair(), scale,
+                                  charged ? constant : 0, types, name()});
     } else {
       detail::add_pairs_in_turn(out, s, reach(), terms);
     }
@@ -228,16 +294,21 @@ template <PairPotential P> struct PairForce : P {
   detail::PairEnd end() const {
     detail::PairEnd end{.style = cutoff_style};
     if (cutoff_style == Cutoff::plain) return end;
-    const PairTerms<double> last = (*this)(cutoff * cutoff);
     const double from = switch_from.value_or(0.9 * cutoff);
-    end.energy = last.energy;
-    if (cutoff_style == Cutoff::shifted_force) {
-      end.force = last.force * cutoff;
-      end.energy += end.force * cutoff;
-    }
+    end.last = last(0);
+    end.charged = last(1);
+    end.charged = {end.charged.energy - end.last.energy, end.charged.force - end.last.force};
     end.from2 = from * from;
     end.inverse = 1 / (cutoff * cutoff - from * from);
     return end;
+  }
+  /// What is taken off at the cutoff from charges of this product.
+  PairTerms<double> last(double product) const {
+    PairTerms<double> last = detail::bare_terms<double, P>(*this, cutoff * cutoff, product);
+    if (cutoff_style != Cutoff::shifted_force) return last;
+    last.force *= cutoff;
+    last.energy += last.force * cutoff;
+    return last;
   }
 };
 

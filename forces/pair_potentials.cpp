@@ -14,6 +14,18 @@ double excess(const Buckingham& b, double r) {
 
 }  // namespace
 
+void LennardJonesPair::check() const {
+  if (!(epsilon > 0)) refuse_field("epsilon", epsilon, "is no strength; an energy above 0 is expected");
+  if (!(sigma > 0)) refuse_field("sigma", sigma, "is no length above 0");
+}
+
+void ReactionField::check() const {
+  if (!(radius > 0)) refuse_field("cutoff", radius, "is no length above 0");
+  if (dielectric && !(*dielectric >= 1)) {
+    refuse_field("dielectric", *dielectric, "is no relative permittivity; 1 or more is expected");
+  }
+}
+
 void Wca::check() const {
   if (!(epsilon > 0)) refuse_field("epsilon", epsilon, "is no strength; an energy above 0 is expected");
   if (!(sigma > 0)) refuse_field("sigma", sigma, "is no length above 0");

@@ -4,6 +4,7 @@
 #include "forces/pair_force.hpp"
 
 #include <cmath>
+#include <optional>
 
 namespace noether {
 
@@ -90,8 +91,66 @@ struct Buckingham {
   }
 };
 
+/// Lennard-Jones of one kind of pair, to be fused with others (forces/fused_pair.hpp): alone, LennardJonesForce is
+/// quicker and knows types.
+///
+///     U = 4 epsilon ((sigma/r)^12 - (sigma/r)^6)
+///
+/// @source LennardJones1931
+struct LennardJonesPair {
+  double epsilon = 0;  ///< [energy]
+  double sigma = 0;    ///< [length]
+
+  void check() const;
+  double scale() const { return 24 * epsilon / sigma; }
+  template <class Real> PairTerms<Real> operator()(const Real& r2) const {
+    const Real inverse2 = Real(1) / r2, s2 = Real(sigma * sigma) * inverse2, s6 = s2 * s2 * s2;
+    return {Real(4 * epsilon) * s6 * (s6 - Real(1)), Real(24 * epsilon) * s6 * (Real(2) * s6 - Real(1)) * inverse2};
+  }
+};
+
+/// Charges in a cavity within a dielectric, which answers to them.
+///
+///     U = C q_i q_j (1/r + k r^2 - 1/radius - k radius^2)  for r < radius, 0 above
+///     k radius^3 = (dielectric - 1) / (2 dielectric + 1)
+///
+/// C is the factor of Coulomb's law in the units of the particles. Within a conductor forces are continuous at the
+/// radius; else they jump there. Excluded pairs feel neither their charges nor what the dielectric
+/// answers; scaled pairs both, scaled.
+/// @source Tironi1995
+struct ReactionField {
+  double radius = 0;                      ///< of the cavity [length]
+  std::optional<double> dielectric = {};  ///< relative permittivity outside; default: a conductor, where it is infinite
+
+  static constexpr auto describe() {
+    return part<ReactionField>(
+        "reaction_field", "charges in a cavity within a dielectric",
+        formula("U = C q_i q_j (1/r + k r^2 - 1/cutoff - k cutoff^2), k cutoff^3 = (dielectric - 1) / (2 dielectric + "
+                "1), r < cutoff"),
+        source("Tironi1995"), field<&ReactionField::radius>("cutoff", "length", "radius of the cavity").required("1"),
+        field<&ReactionField::dielectric>("dielectric", "1", "relative permittivity outside; default: a conductor"));
+  }
+  void check() const;
+  double range() const { return radius; }
+  double scale(double product) const { return 100 * product / (radius * radius); }  // at a tenth of the radius
+  template <class Real> PairTerms<Real> operator()(const Real& r2, const Real& product) const {
+    using std::sqrt;
+    const double k = answer(), last = 1 / radius + k * radius * radius;
+    const Real inverse = Real(1) / sqrt(r2);
+    return {product * (inverse + Real(k) * r2 - Real(last)), product * (inverse * inverse * inverse - Real(2 * k))};
+  }
+
+ private:
+  /// k [1/length^3].
+  double answer() const {
+    const double inverse = dielectric ? 1 / *dielectric : 0;
+    return (1 - inverse) / (2 + inverse) / (radius * radius * radius);
+  }
+};
+
 using WcaForce = PairForce<Wca>;
 using MorseForce = PairForce<MorsePair>;
 using BuckinghamForce = PairForce<Buckingham>;
+using ReactionFieldForce = PairForce<ReactionField>;
 
 }  // namespace noether

@@ -122,6 +122,15 @@ TEST_CASE("strong pairs are summed with care, and the strongest end the run by n
   CHECK(strong.failure->message == "particles 3 and 33 are 0.001 apart, too close for their pair force");
   s.add("", 1, x, {0, 0, 0});
   CHECK(evaluated<double>(force, s).failure);
+
+  // Exactly on top of each other, whoever comes after them in the list.
+  for (Index i = 1; i < 32; ++i) {
+    ParticleSystem<double> two = test::liquid(2, 0.8, 1);
+    two.positions().set(i, two.positions()[0]);
+    const auto failure = evaluated<double>(force, two).failure;
+    REQUIRE(failure);
+    CHECK(failure->kind == Outcome::Kind::overlap);
+  }
 }
 
 TEST_CASE("Buckingham's catastrophe is caught at the top of its barrier", "[pair_force][extremes]") {
