@@ -4,6 +4,7 @@
 #include "engine/real.hpp"
 
 #include <cstdint>
+#include <limits>
 
 namespace noether {
 
@@ -12,10 +13,15 @@ enum class ClockMode : std::uint8_t {
   free,   ///< integer n and t as a double-double, for methods that choose their steps
 };
 
+/// Which way time goes.
+enum class Direction : std::uint8_t { forward, backward };
+
 /// The clock of a run, and the stage time within a step that time-dependent forces see.
 ///
 ///     t = t0 + (n + c) dt        fixed; c is the fraction of the step that the drifts have covered so far
 ///     t = t_high + t_low         free
+///
+/// It alone knows which way the run goes: the sign of dt says so, or the direction of a free clock.
 template <class Real> class Clock {
  public:
   /// A fixed clock of step `dt` [time] that stands at step `step`.
@@ -28,9 +34,10 @@ template <class Real> class Clock {
   }
 
   /// A free clock standing at `start` [time].
-  static Clock free(double start) {
+  static Clock free(double start, Direction direction = Direction::forward) {
     Clock clock;
     clock.mode_ = ClockMode::free;
+    clock.direction_ = direction;
     clock.start_ = start;
     clock.high_ = start;
     return clock;
@@ -40,6 +47,22 @@ template <class Real> class Clock {
   std::int64_t step() const { return step_; }
   double start() const { return start_; }
   double dt() const { return dt_; }
+
+  Direction direction() const {
+    if (mode_ == ClockMode::free) return direction_;
+    return dt_ < 0 ? Direction::backward : Direction::forward;
+  }
+  /// 1 where time rises, -1 where it falls.
+  double sign() const { return direction() == Direction::forward ? 1 : -1; }
+  /// A time that this clock does not come to.
+  double never() const { return sign() * std::numeric_limits<double>::infinity(); }
+  /// Whether this clock comes to time `a` later than to time `b`.
+  bool is_later(double a, double b) const { return direction() == Direction::forward ? a > b : a < b; }
+  /// Turns a free clock round; where it stands is its start from now on.
+  void turn() {
+    direction_ = direction_ == Direction::forward ? Direction::backward : Direction::forward;
+    start_ = high_;
+  }
 
   /// Time of the current stage; between steps, of the last whole step [time].
   Real time() const {
@@ -59,7 +82,7 @@ template <class Real> class Clock {
     fraction_ = c;
   }
 
-  /// Ends a step of length `h` [time] of the free clock, in double-double.
+  /// Ends a step of `h` [time], signed as the clock is, of the free clock, in double-double.
   void advance(double h) {
     const double sum = high_ + h;
     const double back = sum - high_;
@@ -86,8 +109,9 @@ template <class Real> class Clock {
     std::int64_t step;
     double start, dt, high, low;
     Real fraction;
+    Direction direction = Direction::forward;  ///< of a free clock
   };
-  Raw raw() const { return {mode_, step_, start_, dt_, high_, low_, fraction_}; }
+  Raw raw() const { return {mode_, step_, start_, dt_, high_, low_, fraction_, direction_}; }
   static Clock from_raw(const Raw& r) {
     Clock clock;
     clock.mode_ = r.mode;
@@ -97,11 +121,13 @@ template <class Real> class Clock {
     clock.high_ = r.high;
     clock.low_ = r.low;
     clock.fraction_ = r.fraction;
+    clock.direction_ = r.direction;
     return clock;
   }
 
  private:
   ClockMode mode_ = ClockMode::fixed;
+  Direction direction_ = Direction::forward;
   std::int64_t step_ = 0;
   double start_ = 0, dt_ = 0;
   double high_ = 0, low_ = 0;

@@ -79,6 +79,7 @@ struct IntegratorClaims {
   ClockMode clock = ClockMode::fixed;
   bool symplectic = false;
   bool reversible = false;    ///< backward steps undo forward ones
+  bool backward = false;      ///< free clock: it also goes the way of a clock whose time falls
   bool energy_exact = false;  ///< the energy is kept at any step; no symplectic method that keeps momenta can do that
   bool energy = true;         ///< an energy exists
   bool dissipative = false;
@@ -90,7 +91,7 @@ struct IntegratorClaims {
   bool variables = false;           ///< it advances the variables of a first-order system, not particles
 };
 
-/// How far to go: so many steps, and with a free clock not past `limit` [time].
+/// How far to go: so many steps, and with a free clock not past `limit` [time], which lies on the way of that clock.
 struct Span {
   std::int64_t steps = 0;
   double limit = std::numeric_limits<double>::infinity();

@@ -94,7 +94,8 @@ template <class Real> Clock<Real> load_clock(const SavedState& saved) {
                                 .dt = detail::element(times, 1),
                                 .high = detail::element(times, 2),
                                 .low = detail::element(times, 3),
-                                .fraction = Real(0)};
+                                .fraction = Real(0),
+                                .direction = detail::enumerator(detail::element(counts, 2), Direction::backward)};
   load_value(saved, "clock/fraction", raw.fraction);
   return Clock<Real>::from_raw(raw);
 }
@@ -135,7 +136,8 @@ template <class Real> SavedState save_particles(const ParticleSystem<Real>& s) {
     saved["velocity_low"] = flatten(s.low_words()->v);
   }
   const auto clock = s.clock().raw();
-  saved["clock/counts"] = std::vector<std::int64_t>{static_cast<std::int64_t>(clock.mode), clock.step};
+  saved["clock/counts"] = std::vector<std::int64_t>{static_cast<std::int64_t>(clock.mode), clock.step,
+                                                    static_cast<std::int64_t>(clock.direction)};
   saved["clock/times"] = std::vector<double>{clock.start, clock.dt, clock.high, clock.low};
   save_value(saved, "clock/fraction", clock.fraction);
   saved["phase"] = std::vector<std::int64_t>{static_cast<int>(s.phase().coordinates), s.phase().opened ? 1 : 0,

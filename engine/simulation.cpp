@@ -57,6 +57,9 @@ Simulation<Real>::Simulation(ParticleSystem<Real> particles, AnyIntegrator<Real>
                                 ? "takes steps of one length; give the step after the integrator"
                                 : "chooses its steps itself; leave out the step after the integrator"));
   }
+  if (clock.mode() == ClockMode::free && clock.direction() == Direction::backward && !claims.backward) {
+    throw Error(fmt::format("method '{}' knows no way back; give it a clock that goes forward", claims.method));
+  }
   raw_.trim();
   raw_.clock() = clock;
   raw_.keep_low_words(false);  // those of another run belong to its working coordinates
@@ -154,7 +157,7 @@ template <class Real> void Simulation<Real>::check_wanted(const Scheduled& added
 
 template <class Real> void Simulation<Real>::schedule_by_time(Scheduled& added) {
   const double interval = added.schedule.interval;
-  const bool forward = raw_.clock().mode() == ClockMode::free || raw_.clock().dt() > 0;
+  const bool forward = raw_.clock().direction() == Direction::forward;
   if (!std::isfinite(interval) || interval == 0 || (interval > 0) != forward) {
     throw Error(fmt::format("monitor '{}' cannot look every {} of time; a finite time {} 0 is expected", added.name,
                             interval, forward ? "above" : "below"));
@@ -197,19 +200,35 @@ template <class Real> std::int64_t Simulation<Real>::steps_in(double duration) c
 template <class Real> Outcome Simulation<Real>::run(std::int64_t steps) {
   if (steps < 0) throw Error(fmt::format("{} steps cannot be made; a number of at least 0 is expected", steps));
   const std::int64_t most = std::numeric_limits<std::int64_t>::max() - std::max(step(), std::int64_t{0});
-  return run_to(step() + std::min(steps, most), std::numeric_limits<double>::infinity());
+  return run_to(step() + std::min(steps, most), raw_.clock().never());
 }
 
 template <class Real> Outcome Simulation<Real>::run_until(double until) {
   if (std::isnan(until)) throw Error("time nan is no end of a run; a finite time is expected");
-  const bool forward = raw_.clock().mode() == ClockMode::free || raw_.clock().dt() > 0;
+  const Clock<Real>& clock = raw_.clock();
+  const bool free = clock.mode() == ClockMode::free;
   // Half a step of grace: a time that has been reached may be rounded differently.
-  const double grace = std::abs(raw_.clock().dt()) / 2;
-  if (forward ? until < time() - grace : until > time() + grace) {
-    throw Error(fmt::format("time {} has passed: the run stands at {}", until, time()));
+  const bool passed = clock.is_later(time() - clock.dt() / 2, until);
+  if (free && passed) turn_back(until);
+  if (free) return run_to(std::numeric_limits<std::int64_t>::max(), until);
+  if (passed) throw Error(fmt::format("time {} has passed: the run stands at {}", until, time()));
+  return run_to(steps_in(until - clock.start()), clock.never());
+}
+
+template <class Real> void Simulation<Real>::turn_back(double until) {
+  const auto refuse = [&](const std::string& why) {
+    throw Error(fmt::format("time {} has passed: the run stands at {}, and {}", until, time(), why));
+  };
+  const IntegratorClaims claims = integrator_.claims();
+  if (!claims.backward) refuse(fmt::format("method '{}' knows no way back", claims.method));
+  for (const auto& scheduled : monitors_) {
+    if (!by_time(scheduled)) continue;
+    refuse(fmt::format("monitor '{}' looks every {} of time, so it cannot turn; attach it by steps", scheduled.name,
+                       scheduled.schedule.interval));
   }
-  if (raw_.clock().mode() == ClockMode::free) return run_to(std::numeric_limits<std::int64_t>::max(), until);
-  return run_to(steps_in(until - raw_.clock().start()), std::numeric_limits<double>::infinity());
+  begin_edit(shown_at_);
+  raw_.clock().turn();
+  end_edit();
 }
 
 template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double limit) {
@@ -251,7 +270,7 @@ template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double 
     if (done.at_limit) {
       const double reached = next_time(limit);
       observe_times(reached);
-      if (reached >= limit) {
+      if (!raw_.clock().is_later(limit, reached)) {
         shown_at_ = limit;
         break;
       }
@@ -297,7 +316,7 @@ template <class Real> Outcome Simulation<Real>::fall_back() {
   };
   go_back();
   while (true) {
-    const Advanced done = integrator_.advance(raw_, {.steps = 1});
+    const Advanced done = integrator_.advance(raw_, {.steps = 1, .limit = raw_.clock().never()});
     std::optional<Outcome> reason = fault(raw_);
     if (!reason && done.failure != nullptr) reason = failed(*done.failure);
     if (!reason) reason = settled_fault();
@@ -387,7 +406,7 @@ template <class Real> void Simulation<Real>::observe_times(double until) {
   for (auto& scheduled : monitors_) {
     if (!by_time(scheduled)) continue;
     const double next = raw_.clock().start() + static_cast<double>(scheduled.observed) * scheduled.schedule.interval;
-    if (next > until) continue;
+    if (raw_.clock().is_later(next, until)) continue;
     ++scheduled.observed;
     looking_.push_back(&scheduled);
     wanted.energy = wanted.energy || scheduled.wanted.energy;
@@ -409,7 +428,8 @@ template <class Real> double Simulation<Real>::next_time(double end) const {
   if (raw_.clock().mode() == ClockMode::fixed) return next;
   for (const auto& scheduled : monitors_) {
     if (!by_time(scheduled)) continue;
-    next = std::min(next, raw_.clock().start() + static_cast<double>(scheduled.observed) * scheduled.schedule.interval);
+    const double look = raw_.clock().start() + static_cast<double>(scheduled.observed) * scheduled.schedule.interval;
+    if (raw_.clock().is_later(next, look)) next = look;
   }
   return next;
 }
@@ -476,9 +496,9 @@ template <class Real> const ParticleSystem<Real>& Simulation<Real>::particles() 
   return copy_;
 }
 
-template <class Real> void Simulation<Real>::begin_edit() {
+template <class Real> void Simulation<Real>::begin_edit(std::optional<double> at) {
+  integrator_.settle(raw_, copy_, {}, at, true);
   shown_at_.reset();
-  integrator_.settle(raw_, copy_, {}, std::nullopt, true);
   raw_ = copy_;
   raw_.phase() = Phase{};
   raw_.keep_low_words(false);
@@ -547,6 +567,11 @@ template <class Real> void Simulation<Real>::restore(const SavedRun& saved) {
   if (particles.clock().dt() != raw_.clock().dt()) {
     throw Error(
         fmt::format("the saved run has a step of {}, this one of {}", particles.clock().dt(), raw_.clock().dt()));
+  }
+  if (particles.clock().direction() != raw_.clock().direction()) {
+    const bool back = raw_.clock().direction() == Direction::backward;
+    throw Error(fmt::format("the saved run goes {} in time, this one {}", back ? "forward" : "back",
+                            back ? "back" : "forward"));
   }
   integrator_.bind(particles);  // the masses may have been edited
   integrator_.load(part("integrator"), "");

@@ -17,7 +17,8 @@ namespace noether {
 struct Progress {
   std::int64_t step = 0, end = 0;
   double time = 0, seconds = 0;
-  double until = std::numeric_limits<double>::infinity();  ///< the end, where the method chooses its steps [time]
+  double until =
+      std::numeric_limits<double>::infinity();  ///< the end, if there is one, where the method chooses its steps [time]
 };
 
 /// Owns state, integrator and monitors.
@@ -33,11 +34,13 @@ template <class Real = double> class Simulation {
       : Simulation(std::move(particles), AnyIntegrator<Real>(std::move(integrator)),
                    Clock<Real>::fixed(0, checked(dt))) {}
 
-  /// A run of an integrator that chooses its own steps, from time 0.
+  /// A run of an integrator that chooses its own steps, from time 0 forward.
   template <Integrator I>
   Simulation(ParticleSystem<Real> particles, I integrator)
       : Simulation(std::move(particles), AnyIntegrator<Real>(std::move(integrator)), Clock<Real>::free(0)) {}
 
+  /// A run from where `clock` stands, the way it goes.
+  /// @throws Error  if the integrator wants another clock, or cannot serve these particles
   Simulation(ParticleSystem<Real> particles, AnyIntegrator<Real> integrator, Clock<Real> clock);
 
   /// Attaches a monitor or writer that looks at step 0 and at every multiple of `steps`.
@@ -45,7 +48,7 @@ template <class Real = double> class Simulation {
   template <class M> M& every(std::int64_t steps, M monitor) {
     return attach<M>({.steps = positive(steps)}, std::move(monitor));
   }
-  /// The same by time, for integrators that choose their steps [time].
+  /// The same by time [time], below 0 where time falls.
   template <class M> M& every_time(double interval, M monitor) {
     return attach<M>({.interval = interval}, std::move(monitor));
   }
@@ -64,7 +67,11 @@ template <class Real = double> class Simulation {
   /// Goes on for `steps` steps. The result tells how it ended; physics never throws, a writer that cannot write does.
   /// A step that fails (not finite, a solver without a solution) is undone: the state is the last whole step before it.
   Outcome run(std::int64_t steps);
-  /// Goes on to time `until` [time]. @throws Error  if it has passed, or is no whole number of steps away
+  /// Goes on to time `until` [time]. Where the integrator chooses its steps, a time that has passed turns the run: it
+  /// goes back from where `particles()` stand, as after an `edit`.
+  /// @throws Error  if it has passed and steps are of one length or monitors look by time, or if it is no whole number
+  /// of
+  ///                steps away
   Outcome run_until(double until);
 
   std::int64_t step() const { return raw_.clock().step(); }
@@ -171,7 +178,9 @@ template <class Real = double> class Simulation {
   Outcome fall_back();
   std::optional<Outcome> look_at_the_end();
   Outcome run_to(std::int64_t end, double limit);
-  void begin_edit();
+  void turn_back(double until);
+  /// @param at  free clock: the time to settle at, beyond the last whole step
+  void begin_edit(std::optional<double> at = std::nullopt);
   void end_edit();
 
   /// A whole step to fall back to.

@@ -1,6 +1,6 @@
 #include "integrators/classical.hpp"
 
-#include <limits>
+#include <cmath>
 
 namespace noether {
 
@@ -13,6 +13,7 @@ template <class Real> IntegratorClaims Classical<Real>::claims() const {
           .clock = method.adaptive ? ClockMode::free : ClockMode::fixed,
           .symplectic = method.symplectic && !method.adaptive && !field.dissipative,
           .reversible = method.reversible && !method.adaptive && !field.dissipative,
+          .backward = true,
           .energy = field.energy,
           .dissipative = field.dissipative,
           .time_dependent = field.time_dependent,
@@ -46,11 +47,11 @@ template <class Real> void Classical<Real>::bind(ParticleSystem<Real>& s) {
 template <class Real> Advanced Classical<Real>::advance(ParticleSystem<Real>& s, const Span& span) {
   Advanced done;
   const bool fixed = s.clock().mode() == ClockMode::fixed;
-  const double most = fixed ? s.clock().dt() : std::numeric_limits<double>::infinity();
+  const double most = fixed ? s.clock().dt() : s.clock().never();
   field_->gather(s, y_);
   while (done.steps < span.steps) {
     const Real t = s.clock().time();
-    if (!fixed && s.clock().high() + method_->next_step(*field_, t, y_) > span.limit) {
+    if (!fixed && s.clock().is_later(s.clock().high() + method_->next_step(*field_, t, y_, most), span.limit)) {
       done.at_limit = true;
       break;
     }
@@ -114,25 +115,26 @@ Real Classical<Real>::settle(const ParticleSystem<Real>& raw, ParticleSystem<Rea
 /// Leaves y at time `at` in `y_`, from the last whole step of the run.
 template <class Real> void Classical<Real>::look_ahead(const ParticleSystem<Real>& raw, double at) {
   const bool dense = method_->dense();
-  const double begin = raw.clock().high();
-  const bool known = dense && ahead_ && ahead_->from == raw.clock().step() && ahead_->t <= at;
+  const Clock<Real>& clock = raw.clock();
+  const double begin = clock.high();
+  const bool known = dense && ahead_ && ahead_->from == clock.step() && !clock.is_later(ahead_->t, at);
   if (!known) {
-    ahead_ = Ahead{method_->clone(), raw.clock().step(), begin, 0, {}};
+    ahead_ = Ahead{method_->clone(), clock.step(), begin, 0, {}};
     field_->gather(raw, ahead_->y);
     y_ = ahead_->y;
   }
   // The first step begins at the double-double time of the run, later ones where the one before has ended.
-  while (ahead_->t + ahead_->h < at) {
+  while (clock.is_later(at, ahead_->t + ahead_->h)) {
     ahead_->t += ahead_->h;
-    const Real t = ahead_->t == begin ? raw.clock().time() : Real(ahead_->t);
-    const double most = dense ? std::numeric_limits<double>::infinity() : at - ahead_->t;
+    const Real t = ahead_->t == begin ? clock.time() : Real(ahead_->t);
+    const double most = dense ? clock.never() : at - ahead_->t;
     const Stepped made = ahead_->method->step(*field_, t, ahead_->y, most);
     // What fails here fails in the run as well, and is told there.
-    if (made.failure || !(made.h > 0)) return;
+    if (made.failure || !(std::abs(made.h) > 0)) return;
     ahead_->h = made.h;
     y_ = ahead_->y;
   }
-  if (dense && ahead_->h > 0) {
+  if (dense && ahead_->h != 0) {
     ahead_->method->interpolate(*field_, (Real(at) - Real(ahead_->t)) / Real(ahead_->h), y_);
   }
 }

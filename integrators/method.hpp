@@ -50,16 +50,17 @@ struct MethodClaims {
 
 /// A step that was made, or why none was.
 struct Stepped {
-  double h = 0;               ///< its length [time]
+  double h = 0;               ///< how far it went [time]
   std::int64_t rejected = 0;  ///< trials before it that were thrown away
   std::optional<Failure> failure = {};
 };
 
 /// One classical method over one number type.
 ///
-/// A method of fixed steps makes exactly the step it is asked for; an adaptive one chooses its step, at most so long.
-/// What it keeps from step to step (history, predictors, error controllers, rounding errors) is state: `save` and
-/// `load` carry it bit for bit. `bind` forgets all of it.
+/// A method of fixed steps makes exactly the step it is asked for; an adaptive one chooses its step, at most so long
+/// and of the same sign: below 0 it goes back in time. The sign stays from `bind` to `bind`. What it keeps from step to
+/// step (history, predictors, error controllers, rounding errors) is state: `save` and `load` carry it bit for bit.
+/// `bind` forgets all of it.
 template <class Real> class Method {
  public:
   virtual ~Method() = default;
@@ -69,8 +70,8 @@ template <class Real> class Method {
   /// @throws SchemeMismatch  if the method cannot serve the field
   virtual void bind(const VectorField<Real>& f) = 0;
 
-  /// Adaptive methods: length of the step that will be tried next [time].
-  virtual double next_step(VectorField<Real>& /*f*/, const Real& /*t*/, const Vector<Real>& /*y*/) {
+  /// Adaptive methods: the step that `step` will try next if it is asked for `h` [time].
+  virtual double next_step(VectorField<Real>& /*f*/, const Real& /*t*/, const Vector<Real>& /*y*/, double /*h*/) {
     throw LogicError("a method of fixed steps has no step of its own");
   }
   /// Goes from y(t) to y(t + h) in place. On failure y and the method's state are void.

@@ -40,7 +40,7 @@ class StepController {
   explicit StepController(int k = 5, double most = 10, bool integral = true)
       : k_(k), most_(most), b_(integral ? 0.4 / k : 0) {}
 
-  /// Length to be tried next [time]; 0: nothing is known yet.
+  /// Step to be tried next [time], signed as the steps before; 0: nothing is known yet.
   double next() const { return next_; }
   void start(double h) { next_ = h; }
   void forget() {
@@ -48,7 +48,7 @@ class StepController {
     old_ = 1e-4;
     rejected_ = false;
   }
-  /// Tells how a step of length `h` went: error norm `error`. @return whether it passes
+  /// Tells how a step of `h` went: error norm `error`. @return whether it passes
   bool accept(double h, double error) {
     if (!(error <= 1)) {
       const double factor = std::isfinite(error) ? std::max(0.2, 0.9 * std::pow(error, -1.0 / k_)) : 0.1;
@@ -83,23 +83,29 @@ class StepController {
   bool rejected_ = false;
 };
 
-/// A first step, from the sizes of y, y' and y'': algorithm of Hairer, Noersett and Wanner, II.4.
+/// The shorter of two steps of one sign.
+inline double shorter(double h, double most) { return std::abs(most) < std::abs(h) ? most : h; }
+
+/// A first step with the sign of `towards`, from the sizes of y, y' and y'': algorithm of Hairer, Noersett and Wanner,
+/// II.4.
 /// @cost two evaluations
 template <class Real>
-double first_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y, int order, const Tolerance& tolerance) {
+double first_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y, int order, const Tolerance& tolerance,
+                  double towards) {
   Vector<Real> f0(y.size()), y1(y.size()), f1(y.size());
   f.rate(t, y, f0);
   const double d0 = tolerance.norm(y, y, y), d1 = tolerance.norm(f0, y, y);
   double h0 = d0 < 1e-5 || d1 < 1e-5 ? 1e-6 : 0.01 * d0 / d1;
   if (!std::isfinite(h0)) h0 = 1e-6;
-  for (Index i = 0; i < y.size(); ++i) y1[i] = y[i] + Real(h0) * f0[i];
-  f.rate(t + Real(h0), y1, f1);
+  const Real probe(std::copysign(h0, towards));
+  for (Index i = 0; i < y.size(); ++i) y1[i] = y[i] + probe * f0[i];
+  f.rate(t + probe, y1, f1);
   for (Index i = 0; i < y.size(); ++i) f1[i] = f1[i] - f0[i];
   const double d2 = tolerance.norm(f1, y, y) / h0;
   const double worst = std::max(d1, d2);
   const double h1 = worst <= 1e-15 ? std::max(1e-6, h0 * 1e-3) : std::pow(0.01 / worst, 1.0 / (order + 1));
   const double h = std::min(100 * h0, h1);
-  return std::isfinite(h) && h > 0 ? h : 1e-6;
+  return std::copysign(std::isfinite(h) && h > 0 ? h : 1e-6, towards);
 }
 
 /// What an adaptive method says when its step has become shorter than time can tell.

@@ -27,9 +27,10 @@ template <class Real> void AdamsPece<Real>::bind(const VectorField<Real>& f) {
   failed_ = 0;
 }
 
-template <class Real> double AdamsPece<Real>::next_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y) {
-  if (next_ == 0) next_ = first_ > 0 ? first_ : first_step(f, t, y, 1, tolerance_);
-  return next_;
+template <class Real>
+double AdamsPece<Real>::next_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h) {
+  if (next_ == 0) next_ = first_ > 0 ? std::copysign(first_, h) : first_step(f, t, y, 1, tolerance_, h);
+  return shorter(next_, h);
 }
 
 template <class Real> Stepped AdamsPece<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
@@ -41,7 +42,7 @@ template <class Real> Stepped AdamsPece<Real>::step(VectorField<Real>& f, const 
   y0_ = y;
   failed_ = 0;
   while (true) {
-    made.h = std::min(next_step(f, t, y), h);
+    made.h = next_step(f, t, y, h);
     made.failure = underflow(static_cast<double>(t), made.h);
     if (made.failure) return made;
     prepare(made.h);
@@ -49,7 +50,7 @@ template <class Real> Stepped AdamsPece<Real>::step(VectorField<Real>& f, const 
     f.rate(t + Real(made.h), y1_, trial_[0]);
     differences(k_);
     const Errors errors = estimate(made.h);
-    const double error = made.h * std::abs(static_cast<double>(g_[k_] - g_[k_ - 1])) * norm(trial_[k_]);
+    const double error = std::abs(made.h * static_cast<double>(g_[k_] - g_[k_ - 1])) * norm(trial_[k_]);
     if (error <= 1) {
       accept(f, t, y, made.h, errors);
       return made;
@@ -110,7 +111,7 @@ template <class Real> typename AdamsPece<Real>::Errors AdamsPece<Real>::estimate
   const auto error = [&](std::size_t j) {
     double equal = 1;
     for (std::size_t i = 1; i <= j; ++i) equal *= static_cast<double>(i) * h / static_cast<double>(since_[i - 1]);
-    return h * moulton_[j] * equal * norm(trial_[j]);
+    return std::abs(h) * moulton_[j] * equal * norm(trial_[j]);
   };
   return {error(k_), k_ > 1 ? error(k_ - 1) : 0, k_ > 2 ? error(k_ - 2) : 0};
 }
@@ -166,7 +167,7 @@ template <class Real> void AdamsPece<Real>::choose(double h, Errors errors) {
     --k_;
     errors.here = errors.below;
   } else if (k_ < most_order && constant_ > k_ && known_ > k_ + 1) {
-    const double above = h * moulton_[k_ + 1] * norm(trial_[k_ + 1]);
+    const double above = std::abs(h) * moulton_[k_ + 1] * norm(trial_[k_ + 1]);
     if (k_ > 1 && errors.below <= std::min(errors.here, above)) {
       --k_;
       errors.here = errors.below;

@@ -121,9 +121,10 @@ template <class Real> void Bdf<Real>::bind(const VectorField<Real>& f) {
   started_ = have_jacobian_ = false;
 }
 
-template <class Real> double Bdf<Real>::next_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y) {
-  if (next_h_ == 0) next_h_ = first_ > 0 ? first_ : first_step(f, t, y, 1, tolerance_);
-  return next_h_;
+template <class Real>
+double Bdf<Real>::next_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h) {
+  if (next_h_ == 0) next_h_ = first_ > 0 ? std::copysign(first_, h) : first_step(f, t, y, 1, tolerance_, h);
+  return shorter(next_h_, h);
 }
 
 /// Puts the differences at distances `h`.
@@ -188,7 +189,7 @@ template <class Real> double Bdf<Real>::error(std::size_t order, const Vector<Re
 
 template <class Real> Stepped Bdf<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
   Stepped made;
-  next_step(f, t, y);
+  const double tried = next_step(f, t, y, h);
   if (!started_) {
     h_ = next_h_;
     f.rate(t, y, d_[1]);
@@ -198,7 +199,7 @@ template <class Real> Stepped Bdf<Real>::step(VectorField<Real>& f, const Real& 
   d_[0] = y;
   if (order_ != next_order_) equal_ = 0;
   order_ = next_order_;
-  space(std::min(next_h_, h));
+  space(tried);
   double norm = 0;
   for (int failed = 0;; ++made.rejected) {
     made.h = h_;

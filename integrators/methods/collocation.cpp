@@ -113,15 +113,17 @@ template <class Real> void Collocation<Real>::bind(const VectorField<Real>& f) {
   swept_ = 0;
 }
 
-template <class Real> double Collocation<Real>::next_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y) {
-  if (next_ == 0) next_ = first_ > 0 ? first_ : first_step(f, t, y, order_, {std::max(rtol_, 1e-14), 1e-300});
-  return next_;
+template <class Real>
+double Collocation<Real>::next_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h) {
+  if (next_ == 0)
+    next_ = first_ > 0 ? std::copysign(first_, h) : first_step(f, t, y, order_, {std::max(rtol_, 1e-14), 1e-300}, h);
+  return shorter(next_, h);
 }
 
 template <class Real> Stepped Collocation<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
   Stepped made;
   while (true) {
-    made.h = adaptive_ ? std::min(next_step(f, t, y), h) : h;
+    made.h = adaptive_ ? next_step(f, t, y, h) : h;
     predict(f, t, y, made.h);
     const bool converged = sweep(f, t, y, made.h) == Sweeps::converged;
     if (!adaptive_) {

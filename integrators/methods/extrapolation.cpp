@@ -33,9 +33,11 @@ template <class Real> void Extrapolation<Real>::bind(const VectorField<Real>& f)
 }
 
 template <class Real>
-double Extrapolation<Real>::next_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y) {
-  if (next_ == 0) next_ = first_ > 0 ? first_ : first_step(f, t, y, 2 * static_cast<int>(target_) - 2, tolerance_);
-  return next_;
+double Extrapolation<Real>::next_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h) {
+  if (next_ == 0)
+    next_ =
+        first_ > 0 ? std::copysign(first_, h) : first_step(f, t, y, 2 * static_cast<int>(target_) - 2, tolerance_, h);
+  return shorter(next_, h);
 }
 
 template <class Real>
@@ -47,7 +49,7 @@ Stepped Extrapolation<Real>::step(VectorField<Real>& f, const Real& t, Vector<Re
     f.rate(t, y, f0_);
   }
   while (true) {
-    made.h = std::min(next_step(f, t, y), h);
+    made.h = next_step(f, t, y, h);
     made.failure = underflow(static_cast<double>(t), made.h);
     if (made.failure) return made;
     const Verdict verdict = trial(f, t, y, made.h);
@@ -119,7 +121,7 @@ double Extrapolation<Real>::add_row(VectorField<Real>& f, const Real& t, const V
   const double power = 1.0 / static_cast<double>(2 * row - 1), least = std::pow(0.02, power);
   const double factor = std::clamp(0.94 * std::pow(0.65 / error, power), least / 4, 1 / least);
   length_[row] = h * factor;
-  per_time_[row] = work_[row] / length_[row];
+  per_time_[row] = work_[row] / std::abs(length_[row]);
   return error;
 }
 
@@ -192,7 +194,7 @@ template <class Real> void Extrapolation<Real>::after_success() {
   if (rejected_) {
     // No rise right after a rejected trial.
     best = std::min(best, row);
-    next_ = std::min(next_, length_[best]);
+    next_ = shorter(next_, length_[best]);
   }
   target_ = best;
   begun_ = true;

@@ -199,7 +199,8 @@ void Jacobian<Real>::time_derivative(VectorField<Real>& f, const Real& t, const 
     f.derivative(t, y, Real(1), direction_, out);
   } else {
     const double rounding = static_cast<double>(std::numeric_limits<Real>::epsilon());
-    const Real step(std::max(std::sqrt(std::sqrt(rounding)) * h, 16 * rounding * std::abs(static_cast<double>(t))));
+    const Real step(
+        std::max(std::sqrt(std::sqrt(rounding)) * std::abs(h), 16 * rounding * std::abs(static_cast<double>(t))));
     f.rate(t + step, y, up_);
     f.rate(t - step, y, down_);
     const Real width = (t + step) - (t - step);

@@ -24,16 +24,18 @@ template <class Real> void NystromPair<Real>::bind(const VectorField<Real>& f) {
   control_.forget();
 }
 
-template <class Real> double NystromPair<Real>::next_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y) {
-  if (control_.next() == 0) control_.start(first_ > 0 ? first_ : first_step(f, t, y, order, tolerance_));
-  return control_.next();
+template <class Real>
+double NystromPair<Real>::next_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h) {
+  if (control_.next() == 0)
+    control_.start(first_ > 0 ? std::copysign(first_, h) : first_step(f, t, y, order, tolerance_, h));
+  return shorter(control_.next(), h);
 }
 
 template <class Real> Stepped NystromPair<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
   Stepped made;
   f.acceleration(t, y, k_[0]);
   while (true) {
-    made.h = adaptive_ ? std::min(next_step(f, t, y), h) : h;
+    made.h = adaptive_ ? next_step(f, t, y, h) : h;
     if (adaptive_) {
       made.failure = underflow(static_cast<double>(t), made.h);
       if (made.failure) return made;

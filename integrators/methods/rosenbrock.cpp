@@ -34,9 +34,11 @@ template <class Real> void Rosenbrock<Real>::bind(const VectorField<Real>& f) {
   control_.forget();
 }
 
-template <class Real> double Rosenbrock<Real>::next_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y) {
-  if (control_.next() == 0) control_.start(first_ > 0 ? first_ : first_step(f, t, y, order_, tolerance_));
-  return control_.next();
+template <class Real>
+double Rosenbrock<Real>::next_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h) {
+  if (control_.next() == 0)
+    control_.start(first_ > 0 ? std::copysign(first_, h) : first_step(f, t, y, order_, tolerance_, h));
+  return shorter(control_.next(), h);
 }
 
 /// Leaves the stages of a step in `u_` and its end in `y1_`. @return nothing, or why it failed
@@ -69,7 +71,7 @@ std::optional<Failure> Rosenbrock<Real>::trial(VectorField<Real>& f, const Real&
 }
 
 template <class Real> Stepped Rosenbrock<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
-  Stepped made{.h = adaptive_ ? std::min(next_step(f, t, y), h) : h};
+  Stepped made{.h = adaptive_ ? next_step(f, t, y, h) : h};
   f.rate(t, y, f0_);
   jacobian_.evaluate(f, t, y);
   jacobian_.time_derivative(f, t, y, made.h, slope_);
@@ -84,7 +86,7 @@ template <class Real> Stepped Rosenbrock<Real>::step(VectorField<Real>& f, const
     const double error = failure ? std::numeric_limits<double>::infinity() : tolerance_.norm(u_.back(), y, y1_);
     if (control_.accept(made.h, error)) break;
     ++made.rejected;
-    made.h = std::min(control_.next(), h);
+    made.h = shorter(control_.next(), h);
   }
   y0_ = y;
   y = y1_;

@@ -32,9 +32,11 @@ template <class Real> void RungeKutta<Real>::bind(const VectorField<Real>& f) {
   control_.forget();
 }
 
-template <class Real> double RungeKutta<Real>::next_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y) {
-  if (control_.next() == 0) control_.start(first_ > 0 ? first_ : first_step(f, t, y, order_, tolerance_));
-  return control_.next();
+template <class Real>
+double RungeKutta<Real>::next_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h) {
+  if (control_.next() == 0)
+    control_.start(first_ > 0 ? std::copysign(first_, h) : first_step(f, t, y, order_, tolerance_, h));
+  return shorter(control_.next(), h);
 }
 
 template <class Real>
@@ -60,7 +62,7 @@ template <class Real> Stepped RungeKutta<Real>::step(VectorField<Real>& f, const
   Stepped made;
   if (!have_first_) f.rate(t, y, k_[0]);
   while (true) {
-    made.h = adaptive_ ? std::min(next_step(f, t, y), h) : h;
+    made.h = adaptive_ ? next_step(f, t, y, h) : h;
     if (adaptive_) {
       made.failure = underflow(static_cast<double>(t), made.h);
       if (made.failure) return made;

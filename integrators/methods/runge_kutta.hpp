@@ -19,7 +19,7 @@ template <class Real> class RungeKutta : public Method<Real> {
   std::unique_ptr<Method<Real>> clone() const override { return std::make_unique<RungeKutta>(*this); }
   MethodClaims claims() const override;
   void bind(const VectorField<Real>& f) override;
-  double next_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y) override;
+  double next_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h) override;
   Stepped step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
   void save(SavedState& saved, const std::string& prefix) const override;
   void load(const SavedState& saved, const std::string& prefix) override;

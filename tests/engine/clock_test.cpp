@@ -104,6 +104,42 @@ TEST_CASE("a clock comes back from its raw numbers", "[clock]") {
   CHECK(free_again.start() == 1e9);
   CHECK(free_again.step() == 100);
   CHECK(free.low() != 0);
+  CHECK(free_again.direction() == Direction::forward);
+  CHECK(Clock<double>::from_raw(Clock<double>::free(0, Direction::backward).raw()).direction() == Direction::backward);
+}
+
+TEST_CASE("a clock knows which way it goes", "[clock]") {
+  for (const auto& forward : {Clock<double>::fixed(3, 0.5), Clock<double>::free(3)}) {
+    CHECK(forward.direction() == Direction::forward);
+    CHECK(forward.sign() == 1);
+    CHECK(forward.is_later(2, 1));
+    CHECK(!forward.is_later(1, 1));
+    CHECK(forward.is_later(forward.never(), 1e300));
+  }
+  for (const auto& back : {Clock<double>::fixed(3, -0.5), Clock<double>::free(3, Direction::backward)}) {
+    CHECK(back.direction() == Direction::backward);
+    CHECK(back.sign() == -1);
+    CHECK(back.is_later(1, 2));
+    CHECK(!back.is_later(1, 1));
+    CHECK(back.is_later(back.never(), -1e300));
+  }
+}
+
+TEST_CASE("a free clock that turns starts where it stands, and keeps all its digits", "[clock]") {
+  auto clock = Clock<double>::free(1);
+  for (int n = 0; n < 100; ++n) clock.advance(0.1);
+  const double high = clock.high(), low = clock.low();
+  CHECK(low != 0);
+  clock.turn();
+  CHECK(clock.direction() == Direction::backward);
+  CHECK(clock.start() == high);
+  CHECK(clock.step() == 100);
+  for (int n = 0; n < 100; ++n) clock.advance(-0.1);
+  CHECK(clock.high() == 1);
+  CHECK(clock.low() == 0);
+  CHECK(low != clock.low());
+  clock.turn();
+  CHECK(clock.direction() == Direction::forward);
 }
 
 }  // namespace noether

@@ -249,7 +249,8 @@ TEST_CASE("the end that was asked for is shown on a copy; the run stands at the 
   CHECK(std::sqrt(norm2(Vec3<double>(saved.positions()[1] - reference(3.25)))) > 1e-3);
 
   CHECK(run.run_until(3.25).ok());
-  CHECK_THROWS_WITH(run.run_until(3), "time 3 has passed: the run stands at 3.25");
+  CHECK_THROWS_WITH(run.run_until(3),
+                    "time 3 has passed: the run stands at 3.25, and method 'adaptive_test' knows no way back");
   CHECK_THROWS(run.run_until(std::numeric_limits<double>::quiet_NaN()));
 }
 
@@ -331,6 +332,9 @@ TEST_CASE("a free run that loses its numbers ends as diverged", "[free clock]") 
 TEST_CASE("steps of a free clock can be neither given nor changed", "[free clock]") {
   CHECK_THROWS_WITH(Simulation(ellipse(), AdaptiveTest(Gravity{.G = 1}, 0.01), 0.5),
                     "method 'adaptive_test' chooses its steps itself; leave out the step after the integrator");
+  CHECK_THROWS_WITH(
+      Simulation<double>(ellipse(), AdaptiveTest(Gravity{.G = 1}, 0.01), Clock<double>::free(0, Direction::backward)),
+      "method 'adaptive_test' knows no way back; give it a clock that goes forward");
   auto run = make_run();
   CHECK_THROWS_WITH(run.change_step(0.5), "method 'adaptive_test' chooses its steps itself; they cannot be set");
   CHECK_THROWS_WITH(run.every_time(-1, Energy{}),

@@ -102,11 +102,11 @@ Vector<Real> walk(Method<Real>& method, VectorField<Real>& f, Vector<Real> y, do
   return y;
 }
 
-/// y at `end`, by steps of the method's choice; the last one is cut. The method is bound here.
+/// y at `end`, which may be below 0, by steps of the method's choice; the last one is cut. The method is bound here.
 template <class Real> Vector<Real> travel(Method<Real>& method, VectorField<Real>& f, Vector<Real> y, const Real& end) {
   method.bind(f);
   Real t(0);
-  while (static_cast<double>(end - t) > 1e-14 * static_cast<double>(end)) {
+  while (std::abs(static_cast<double>(end - t)) > 1e-14 * std::abs(static_cast<double>(end))) {
     const Stepped made = method.step(f, t, y, static_cast<double>(end - t));
     if (made.failure) throw Error(made.failure->message);
     f.evaluations().rejected += made.rejected;
