@@ -125,7 +125,8 @@ void TimeCorrelation::look(double time, const std::vector<double>& now, Kind kin
   if (looks_ % origins == 0) begin_origin(time, now);
   for (std::size_t origin = 0; origin < begun_.size(); ++origin) {
     const std::int64_t lag = looks_ - begun_[origin];
-    const double value = average(now, held_.data() + origin * now.size(), kind), t = time - begun_at_[origin];
+    const double value = average(now, held_.data() + origin * now.size(), kind);
+    const double t = std::abs(time - begun_at_[origin]);  // time may fall
     const auto at = static_cast<std::size_t>(lag);
     sums_[at] += value;
     times_[at] += t;

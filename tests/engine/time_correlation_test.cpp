@@ -75,6 +75,16 @@ TEMPLATE_TEST_CASE("in free flight the mean square displacement is v^2 t^2, acro
   CHECK(report.note.find(" from slope / 6 of 15 origins") != std::string::npos);
 }
 
+TEST_CASE("lags are as long where time falls", "[time_correlation]") {
+  auto sim = flying(-0.125);
+  auto& msd = sim.every(2, MeanSquareDisplacement(8, 3));
+  auto& vacf = sim.every(2, VelocityAutocorrelation(8, 3));
+  REQUIRE(sim.run(100).ok());
+  for (std::size_t k = 0; k < 9; ++k) CHECK(std::abs(msd.lags()[k] - 0.25 * static_cast<double>(k)) < 1e-14);
+  CHECK(std::abs(*msd.diffusion_coefficient() - 39 / 6.0) < 1e-12);
+  CHECK(std::abs(*vacf.diffusion_coefficient() - 13 * 2 / 3.0) < 1e-12);  // C(t) = 13 to t = 2
+}
+
 TEST_CASE("displacements are averaged over the types that are asked for", "[time_correlation]") {
   auto sim = flying();
   auto& slow = sim.every(1, MeanSquareDisplacement(4, 1, {"slow"}));
