@@ -78,7 +78,11 @@ void measure_stiffness(const Scene& scene, Explanation& e) {
     Vector<double> y;
     field->bind(scene.particles);
     field->gather(scene.particles, y);
-    e.stiffness = stiffness_of(eigenvalues_of(*field, 0, y), length_of(scene.integrator));
+    std::vector<std::complex<double>> eigenvalues = eigenvalues_of(*field, 0, y);
+    if (scene.integrator.direction() == Direction::backward) {
+      for (auto& one : eigenvalues) one = -one;  // back in time what decays grows
+    }
+    e.stiffness = stiffness_of(eigenvalues, std::abs(length_of(scene.integrator)));
   } catch (const Error& error) {
     e.why_no_stiffness = error.message();
   }
@@ -103,9 +107,9 @@ void sort_parts(const Scene& scene, Explanation& e) {
     const std::string name = monitor                                      ? "monitor " + watch.monitor.name
                              : watch.kind == SceneWatch::Kind::trajectory ? "writer trajectory"
                                                                           : "writer checkpoint";
-    const std::string when = watch.cadence.wall > 0       ? fmt::format("every {} s of wall time", watch.cadence.wall)
-                             : watch.cadence.interval > 0 ? fmt::format("every {} of time", watch.cadence.interval)
-                                                          : fmt::format("every {} steps", watch.cadence.steps);
+    const std::string when = watch.cadence.wall > 0        ? fmt::format("every {} s of wall time", watch.cadence.wall)
+                             : watch.cadence.interval != 0 ? fmt::format("every {} of time", watch.cadence.interval)
+                                                           : fmt::format("every {} steps", watch.cadence.steps);
     const std::string cost = watch.monitor.cost ? watch.monitor.cost(scene.particles.size(), watch.cadence.steps) : "";
     e.in.push_back(name + ", " + when + (cost.empty() ? "" : ": " + cost));
   }

@@ -116,8 +116,8 @@ AnyIntegrator<double> integrator_of(const Scene& scene) {
 }
 
 Simulation<double> assemble(const Scene& scene, const SceneFiles& files) {
-  const Clock<double> clock =
-      scene.integrator.adaptive() ? Clock<double>::free(0) : Clock<double>::fixed(0, scene.integrator.step);
+  const SceneIntegrator& own = scene.integrator;
+  const auto clock = own.adaptive() ? Clock<double>::free(0, own.direction()) : Clock<double>::fixed(0, own.step);
   Simulation<double> sim(scene.particles, integrator_of(scene), clock);
   const ConstraintSet constraints = constraints_of(scene);
   for (const SceneWatch& watch : scene.watches) {

@@ -79,7 +79,7 @@ std::vector<double> read_start(const TableReader& reader, const SceneValue& list
 template <class M> void attach(Simulation<double>& sim, const Cadence& cadence, const M& monitor) {
   if (cadence.wall > 0) {
     sim.every_wall(cadence.wall, monitor);
-  } else if (cadence.interval > 0) {
+  } else if (cadence.interval != 0) {
     sim.every_time(cadence.interval, monitor);
   } else {
     sim.every(cadence.steps, monitor);

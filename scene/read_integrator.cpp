@@ -149,11 +149,7 @@ void read_step(TableReader& reader, SceneIntegrator& made, SceneValue& effective
   made.step_text = to_text(*step);
   if (made.step == 0)
     reader.fail("step", fmt::format("a step of {} is no step; a time other than 0 is expected", made.step_text));
-  if (made.adaptive() && made.step < 0) {
-    reader.fail("step",
-                fmt::format("a first step of {} leads backwards; adaptive methods go forward only", made.step_text));
-  }
-  if (made.adaptive()) made.classical->options.first = made.step;
+  if (made.adaptive()) made.classical->options.first = std::abs(made.step);
   effective.put("step", *step);
 }
 
@@ -164,9 +160,15 @@ void read_end(TableReader& reader, SceneIntegrator& made, SceneValue& effective)
   }
   if (until != nullptr && made.adaptive()) {
     made.until = reader.number(*until, "until", "time");
-    if (!(*made.until > 0)) {
-      reader.fail("until",
-                  fmt::format("until = {} is no time ahead; adaptive methods go forward only", to_text(*until)));
+    if (*made.until == 0) {
+      reader.fail("until", fmt::format("until = {} is no time ahead; give a time above 0, or one below 0 to go back",
+                                       to_text(*until)));
+    }
+    if (made.step != 0 && (*made.until > 0) != (made.step > 0)) {
+      const std::string_view side = made.step > 0 ? "above" : "below", other = made.step > 0 ? "below" : "above";
+      reader.fail("until", fmt::format("until = {} lies the other way; the first step is {}, so give a time {} 0, or a "
+                                       "first step {} 0",
+                                       to_text(*until), made.step_text, side, other));
     }
   } else if (until != nullptr) {
     made.steps = whole_steps(reader, "until", *until, made);
@@ -224,8 +226,11 @@ Cadence read_cadence(TableReader& reader, bool may_be_wall, const SceneIntegrato
   Cadence cadence;
   if (every != nullptr && integrator.adaptive()) {
     cadence.interval = reader.number(*every, "every", "time");
-    if (!(cadence.interval > 0)) {
-      reader.fail("every", fmt::format("every = {} is no time ahead", to_text(*every)));
+    const bool forward = integrator.direction() == Direction::forward;
+    if (cadence.interval == 0) reader.fail("every", fmt::format("every = {} is no time ahead", to_text(*every)));
+    if ((cadence.interval > 0) != forward) {
+      reader.fail("every", fmt::format("every = {} lies the other way; the run goes {} in time, so give a time {} 0",
+                                       to_text(*every), forward ? "forward" : "back", forward ? "above" : "below"));
     }
   } else if (every != nullptr) {
     cadence.steps = whole_steps(reader, "every", *every, integrator);

@@ -84,7 +84,7 @@ class ProgressLine {
     const double gone = in_time ? now.time - start : made;
     const double rate = now.seconds > 0 ? made / now.seconds : 0;
     std::string line = fmt::format("{:5.1f} %  {:.3g} steps/s", 100 * done / end, rate);
-    if (gone > 0) line += fmt::format("  {} left", duration_text((end - done) / gone * now.seconds));
+    if (gone != 0) line += fmt::format("  {} left", duration_text((end - done) / gone * now.seconds));
     if (energy != nullptr && std::isfinite(energy->worst()))
       line += fmt::format("  energy error {:.1e}", energy->worst());
     fmt::print(stderr, "\r\033[K{}", line);
@@ -166,10 +166,18 @@ class Runner {
   void check_resume(const io::Checkpoint& checkpoint) const {
     check_same_scene(checkpoint, scene_);
     if (ends_in_time()) {
-      if (*scene_.integrator.until >= checkpoint.time) return;
+      const double end = *scene_.integrator.until;
+      const auto clock = Clock<double>::free(0, scene_.integrator.direction());
+      if (clock.is_later(0, checkpoint.time)) {
+        throw SceneError(fmt::format("the end at time {} lies the other way: the checkpoint stands at time {}; give a "
+                                     "time {} 0, or --fresh",
+                                     end, checkpoint.time, end > 0 ? "below" : "above"),
+                         {.file = scene_.source.file, .key = "integrator.until"});
+      }
+      if (!clock.is_later(checkpoint.time, end)) return;
       throw SceneError(
-          fmt::format("the end at time {} lies before the checkpoint at time {}; give a later one, or --fresh",
-                      *scene_.integrator.until, checkpoint.time),
+          fmt::format("the end at time {} lies before the checkpoint at time {}; give a later one, or --fresh", end,
+                      checkpoint.time),
           {.file = scene_.source.file, .key = "integrator.until"});
     }
     if (target() < checkpoint.step) {

@@ -38,7 +38,7 @@ struct SceneIntegrator {
   std::string method;                     ///< name of the scheme, or a word
   Scheme scheme;                          ///< `scheme_of` gives it its name
   std::optional<MethodChoice> classical;  ///< a classical method instead of the scheme
-  double step = 0;                        ///< [time]; 0: the method chooses, and finds the first one itself
+  double step = 0;                        ///< [time], signed; 0: the method chooses, and finds the first one itself
   std::string step_text;                  ///< as the scene writes it
   std::optional<std::int64_t> steps;      ///< of the whole run; empty if the scene has no end, or one in time
   std::optional<double> until;            ///< [time]: the end, where the method chooses its steps
@@ -46,6 +46,8 @@ struct SceneIntegrator {
 
   /// Whether the method chooses its steps.
   bool adaptive() const { return classical && classical->info->is_adaptive(classical->options); }
+  /// Which way the run goes: the end says it where there is one in time, else the step.
+  Direction direction() const { return until.value_or(step) < 0 ? Direction::backward : Direction::forward; }
 };
 
 /// One `[[every]]`.

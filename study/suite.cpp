@@ -47,6 +47,9 @@ RunLength length_of(const Scene& scene, const Opponent& who) {
   const SceneIntegrator& own = scene.integrator;
   if (who.adaptive) {
     if (!own.until) throw Error("a method that chooses its steps needs until in [integrator]");
+    if (*own.until < 0) {
+      throw Error(fmt::format("a verdict is of a run that goes forward; this one would end at {}", *own.until));
+    }
     return {.steps = 0, .until = *own.until};
   }
   if (!own.steps || *own.steps < RunLength::looks) {
