@@ -48,7 +48,8 @@ RunLength length_of(const Scene& scene, const Opponent& who) {
   if (who.adaptive) {
     if (!own.until) throw Error("a method that chooses its steps needs until in [integrator]");
     if (*own.until < 0) {
-      throw Error(fmt::format("a verdict is of a run that goes forward; this one would end at {}", *own.until));
+      throw SceneError(fmt::format("a verdict is of a run that goes forward; this one would end at {}", *own.until),
+                       {.file = scene.source.file, .key = "integrator.until"});
     }
     return {.steps = 0, .until = *own.until};
   }

@@ -35,7 +35,7 @@ TEST_CASE("a scene goes back in time to the bits of a simulation", "[cli][backwa
   CHECK(has(told.out, "every -0.5 of time"));
 }
 
-TEST_CASE("comparisons and advice go forward, and say so", "[cli][backward][messages]") {
+TEST_CASE("comparisons, advice and verdicts go forward, and say so", "[cli][backward][messages]") {
   const SceneFolder folder(bodies_back);
   for (const char* command : {"compare scene.toml", "advise scene.toml --error 1e-6"}) {
     CAPTURE(command);
@@ -43,6 +43,10 @@ TEST_CASE("comparisons and advice go forward, and say so", "[cli][backward][mess
     CHECK(result.exit_code == 2);
     CHECK(result.err == "scene.toml: a comparison goes forward, over a time above 0; this one would end at -10\n");
   }
+  const SceneFolder judged(bodies_back + "\n[[verdict]]\nmethods = [\"dop853\"]\noutcome = \"bounded\"\n");
+  const ProcessResult result = noether(judged, "stability scene.toml --suite");
+  CHECK(result.exit_code == 2);
+  CHECK(result.err == "scene.toml: a verdict is of a run that goes forward; this one would end at -10\n");
   CHECK(noether(folder, "compare scene.toml --until 1 --methods verlet,dop853 --repeat 1").exit_code == 0);
 }
 
