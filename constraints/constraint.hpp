@@ -30,6 +30,10 @@ template <class Real, std::size_t n> using Points = std::array<Vec3<Real>, n>;
 /// offers `at_start(x)`; one that makes no sense throws in `check()`. `keeps_momentum` and `keeps_angular_momentum`
 /// (false unless declared; the latter may be a function) say that its forces have no sum, and no torque about the
 /// origin.
+///
+/// In a periodic box each particle stands at its image nearest to the one before. One that keeps momentum sees nothing
+/// but differences; any other holds particles where they would be had they never been wrapped. One whose `reach()` says
+/// how far apart it holds its particles is refused where that is no nearest image: from half of an edge on.
 template <class C>
 concept Constraint = requires(const C& c, const Points<double, C::particles>& x) {
   { C::particles } -> std::convertible_to<std::size_t>;
@@ -108,6 +112,15 @@ template <class C> double scale_of(const C& constraint) {
     return constraint.scale();
   } else {
     return 1;
+  }
+}
+
+/// How far apart a constraint holds its particles [length]; 0 where it does not tell.
+template <class C> double reach_of(const C& constraint) {
+  if constexpr (requires { constraint.reach(); }) {
+    return constraint.reach();
+  } else {
+    return 0;
   }
 }
 

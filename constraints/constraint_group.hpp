@@ -2,7 +2,7 @@
 /// Constraints of one type, side by side: types are erased per group, never per constraint.
 
 #include "constraints/constraint.hpp"
-#include "engine/column.hpp"
+#include "engine/particle_system.hpp"
 #include "engine/signature.hpp"
 
 #include <algorithm>
@@ -12,6 +12,46 @@
 #include <vector>
 
 namespace noether {
+
+/// Where constraints find their particles: in a column of positions, or in a periodic box at the nearest images.
+///
+/// In a box nothing but differences of positions in the cell, which are exact, and what particles have `moved` since
+/// is summed: nothing depends on where the cell is cut.
+template <class Real> class ConstraintPositions {
+ public:
+  /// Positions in open space.
+  explicit ConstraintPositions(const VectorColumn<Real>& x) : x_(&x) {}
+  /// Where particles are. @param moved  in a periodic box: how far each has gone from there [length]
+  explicit ConstraintPositions(const ParticleSystem<Real>& s, const VectorColumn<Real>* moved = nullptr)
+      : x_(&s.positions()), cell_(s.box().is_periodic() ? &s : nullptr), moved_(moved) {}
+
+  /// The particles of a constraint. In a box the first one is the origin of those that know differences only, and
+  /// stands where it would if it had never been wrapped for all others; each is at its image nearest to the one before.
+  template <std::size_t n> Points<Real, n> of(const std::array<Index, n>& particles, bool differences_only) const {
+    Points<Real, n> points;
+    if (cell_ == nullptr) {
+      for (std::size_t k = 0; k < n; ++k) points[k] = (*x_)[particles[k]];
+      return points;
+    }
+    points[0] = Vec3<Real>::Zero();
+    if (!differences_only) {
+      points[0] = cell_->unwrapped(particles[0]);
+      if (moved_ != nullptr) points[0] += (*moved_)[particles[0]];
+    }
+    for (std::size_t k = 1; k < n; ++k) {
+      const Index i = particles[k - 1], j = particles[k];
+      Vec3<Real> apart = cell_->box().minimum_image(Vec3<Real>((*x_)[j] - (*x_)[i]));
+      if (moved_ != nullptr) apart += (*moved_)[j] - (*moved_)[i];
+      points[k] = points[k - 1] + apart;
+    }
+    return points;
+  }
+
+ private:
+  const VectorColumn<Real>* x_;
+  const ParticleSystem<Real>* cell_ = nullptr;  ///< null in open space
+  const VectorColumn<Real>* moved_ = nullptr;
+};
 
 /// Some constraints of one type and the particles they tie. Equations are numbered constraint by constraint; gradients
 /// stand equation by equation, and in each of them particle by particle.
@@ -32,17 +72,23 @@ class ConstraintGroup {
   /// How far an equation's value is from 0, relative to the scale of its constraint [1].
   virtual double residual(Index constraint, double g) const = 0;
   virtual double scale(Index constraint) const = 0;
+  /// How far apart a constraint holds its particles [length]; 0 where it does not tell.
+  virtual double reach(Index constraint) const = 0;
   virtual bool keeps_momentum() const = 0;
   virtual bool keeps_angular_momentum() const = 0;
 
   /// Of constraints [first, last), one after the other; gradients shape (equations, particles of each).
-  virtual void values(const VectorColumn<double>& x, Index first, Index last, double* g) const = 0;
-  virtual void values(const VectorColumn<Quad>& x, Index first, Index last, Quad* g) const = 0;
-  virtual void gradients(const VectorColumn<double>& x, Index first, Index last, Vec3<double>* gradients) const = 0;
-  virtual void gradients(const VectorColumn<Quad>& x, Index first, Index last, Vec3<Quad>* gradients) const = 0;
+  virtual void values(const ConstraintPositions<double>& x, Index first, Index last, double* g) const = 0;
+  virtual void values(const ConstraintPositions<Quad>& x, Index first, Index last, Quad* g) const = 0;
+  virtual void gradients(const ConstraintPositions<double>& x, Index first, Index last,
+                         Vec3<double>* gradients) const = 0;
+  virtual void gradients(const ConstraintPositions<Quad>& x, Index first, Index last, Vec3<Quad>* gradients) const = 0;
+  /// Positions of the particles, shape (particles of each).
+  virtual void points(const ConstraintPositions<double>& x, Vec3<double>* out) const = 0;
+  virtual void points(const ConstraintPositions<Quad>& x, Vec3<Quad>* out) const = 0;
   /// v . g_qq v.
-  virtual void curvatures(const VectorColumn<double>& x, const VectorColumn<double>& v, double* out) const = 0;
-  virtual void curvatures(const VectorColumn<Quad>& x, const VectorColumn<Quad>& v, Quad* out) const = 0;
+  virtual void curvatures(const ConstraintPositions<double>& x, const VectorColumn<double>& v, double* out) const = 0;
+  virtual void curvatures(const ConstraintPositions<Quad>& x, const VectorColumn<Quad>& v, Quad* out) const = 0;
 };
 
 /// The same for a known type.
@@ -77,55 +123,63 @@ template <Constraint C> class ConstraintsOf final : public ConstraintGroup {
   }
   double residual(Index constraint, double g) const override { return detail::residual_of(at(constraint), g); }
   double scale(Index constraint) const override { return detail::scale_of(at(constraint)); }
+  double reach(Index constraint) const override { return detail::reach_of(at(constraint)); }
   bool keeps_momentum() const override { return detail::keeps_momentum<C>(); }
   bool keeps_angular_momentum() const override {
     return std::all_of(constraints_.begin(), constraints_.end(), detail::keeps_angular_momentum<C>);
   }
 
-  void values(const VectorColumn<double>& x, Index first, Index last, double* g) const override {
+  void values(const ConstraintPositions<double>& x, Index first, Index last, double* g) const override {
     write_values(x, first, last, g);
   }
-  void values(const VectorColumn<Quad>& x, Index first, Index last, Quad* g) const override {
+  void values(const ConstraintPositions<Quad>& x, Index first, Index last, Quad* g) const override {
     write_values(x, first, last, g);
   }
-  void gradients(const VectorColumn<double>& x, Index first, Index last, Vec3<double>* out) const override {
+  void gradients(const ConstraintPositions<double>& x, Index first, Index last, Vec3<double>* out) const override {
     write_gradients(x, first, last, out);
   }
-  void gradients(const VectorColumn<Quad>& x, Index first, Index last, Vec3<Quad>* out) const override {
+  void gradients(const ConstraintPositions<Quad>& x, Index first, Index last, Vec3<Quad>* out) const override {
     write_gradients(x, first, last, out);
   }
-  void curvatures(const VectorColumn<double>& x, const VectorColumn<double>& v, double* out) const override {
+  void points(const ConstraintPositions<double>& x, Vec3<double>* out) const override { write_points(x, out); }
+  void points(const ConstraintPositions<Quad>& x, Vec3<Quad>* out) const override { write_points(x, out); }
+  void curvatures(const ConstraintPositions<double>& x, const VectorColumn<double>& v, double* out) const override {
     write_curvatures(x, v, out);
   }
-  void curvatures(const VectorColumn<Quad>& x, const VectorColumn<Quad>& v, Quad* out) const override {
+  void curvatures(const ConstraintPositions<Quad>& x, const VectorColumn<Quad>& v, Quad* out) const override {
     write_curvatures(x, v, out);
   }
 
  private:
   const C& at(Index constraint) const { return constraints_[static_cast<std::size_t>(constraint)]; }
 
-  template <class Real> Points<Real, tied> gathered(const VectorColumn<Real>& column, Index constraint) const {
-    Points<Real, tied> points;
-    for (std::size_t k = 0; k < tied; ++k) points[k] = column[particles_[static_cast<std::size_t>(constraint)][k]];
-    return points;
+  template <class Real> Points<Real, tied> gathered(const ConstraintPositions<Real>& x, Index constraint) const {
+    return x.of(particles_[static_cast<std::size_t>(constraint)], detail::keeps_momentum<C>());
   }
-  template <class Real> void write_values(const VectorColumn<Real>& x, Index first, Index last, Real* g) const {
+  template <class Real> void write_values(const ConstraintPositions<Real>& x, Index first, Index last, Real* g) const {
     for (Index c = first; c < last; ++c) {
       for (const Real& value : detail::values_of<C, Real>(at(c), gathered(x, c))) *g++ = value;
     }
   }
   template <class Real>
-  void write_gradients(const VectorColumn<Real>& x, Index first, Index last, Vec3<Real>* out) const {
+  void write_gradients(const ConstraintPositions<Real>& x, Index first, Index last, Vec3<Real>* out) const {
     for (Index c = first; c < last; ++c) {
       for (const auto& equation : detail::gradients_of<C, Real>(at(c), gathered(x, c))) {
         for (const Vec3<Real>& gradient : equation) *out++ = gradient;
       }
     }
   }
-  template <class Real>
-  void write_curvatures(const VectorColumn<Real>& x, const VectorColumn<Real>& v, Real* out) const {
+  template <class Real> void write_points(const ConstraintPositions<Real>& x, Vec3<Real>* out) const {
     for (Index c = 0; c < size(); ++c) {
-      for (const Real& value : detail::curvatures_of<C, Real>(at(c), gathered(x, c), gathered(v, c))) *out++ = value;
+      for (const Vec3<Real>& point : gathered(x, c)) *out++ = point;
+    }
+  }
+  template <class Real>
+  void write_curvatures(const ConstraintPositions<Real>& x, const VectorColumn<Real>& v, Real* out) const {
+    for (Index c = 0; c < size(); ++c) {
+      Points<Real, tied> rates;
+      for (std::size_t k = 0; k < tied; ++k) rates[k] = v[particles_[static_cast<std::size_t>(c)][k]];
+      for (const Real& value : detail::curvatures_of<C, Real>(at(c), gathered(x, c), rates)) *out++ = value;
     }
   }
 

@@ -55,7 +55,7 @@ template <class Real> ConstraintSet::Worst ConstraintSet::worst(const ParticleSy
   for (const auto& group : groups_) {
     values.resize(static_cast<std::size_t>(group->equations()));
     for (Index c = 0; c < group->size(); ++c) {
-      group->values(s.positions(), c, c + 1, values.data());
+      group->values(ConstraintPositions<Real>(s), c, c + 1, values.data());
       for (const Real& value : values) {
         const double residual = group->residual(c, static_cast<double>(value));
         if (worst.equation < 0 || residual > worst.residual) worst = {residual, equation};

@@ -74,9 +74,7 @@ class ConstraintSet {
     check_particles(s, detail::name_of(constraint), particles.data(), particles.size());
     check_part(constraint);
     if constexpr (requires { constraint.at_start(Points<double, C::particles>{}); }) {
-      Points<double, C::particles> x;
-      for (std::size_t k = 0; k < x.size(); ++k) x[k] = s.positions()[particles[k]];
-      constraint = constraint.at_start(x);
+      constraint = constraint.at_start(ConstraintPositions<double>(s).of(particles, detail::keeps_momentum<C>()));
       check_part(constraint);
     }
     group_of<C>().add(std::move(constraint), particles);

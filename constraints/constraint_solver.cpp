@@ -1,12 +1,11 @@
 #include "constraints/constraint_solver.hpp"
+#include "constraints/dependent_constraints.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace noether {
 
@@ -28,6 +27,19 @@ template <class Real> constexpr double unit_roundoff() {
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
+/// What the rounding of a particle's coordinates is relative to [length].
+template <class Real> Vec3<Real> size_of_position(const ParticleSystem<Real>& s, Index i, bool differences_only) {
+  using std::abs;
+  const Vec3<double>& edges = s.box().edges();
+  const Vec3<Real> x = s.unwrapped(i);
+  Vec3<Real> size;
+  for (Index k = 0; k < 3; ++k) {
+    const Real edge(edges[k]), far = abs(x[k]);
+    size[k] = edge > far || (s.box().is_periodic() && differences_only) ? edge : far;
+  }
+  return size;
+}
+
 }  // namespace
 
 // ---- setting up ----------------------------------------------------------------------------------------------------
@@ -40,15 +52,16 @@ template <class Real> void ConstraintSolver<Real>::bind(ParticleSystem<Real>& s)
   failure_.reset();
   known_.reset();
   lay_out(s);
-  start_ = free_ = s.positions();
+  check_reach(s);
+  start_ = free_ = moved_ = start_of(s);
   if (s.phase().opened) return;  // a run that goes on stands where it stood
   check_start(s);
   check_independent(s);
   if (!settled()) {
     old_ = here_;
-    VectorColumn<Real> x = s.positions();
+    VectorColumn<Real> x = start_;
     if (!solve_by_newton(s, x, Real(0))) throw BadConstraints(failure_->message);
-    s.positions() = x;
+    move_to(s, x);
     know(s);
     check_independent(s);
   }
@@ -114,10 +127,26 @@ template <class Real> void ConstraintSolver<Real>::lay_out(const ParticleSystem<
   floors_.assign(n, 0);
 }
 
+/// From half of an edge on another image may be as near as the one that is meant.
+template <class Real> void ConstraintSolver<Real>::check_reach(const ParticleSystem<Real>& s) const {
+  if (!s.box().is_periodic()) return;
+  const double half = s.box().edges().minCoeff() / 2;
+  Index equation = 0;
+  for (const auto& group : set_.groups()) {
+    for (Index c = 0; c < group->size(); ++c, equation += group->equations()) {
+      if (group->reach(c) < half) continue;
+      throw BadConstraints(fmt::format(
+          "{}, {:.6g} apart, reaches half of an edge of the periodic box, {:.6g}: nearest images are no longer those "
+          "that are tied; enlarge the box",
+          set_.words(equation, s), group->reach(c), half));
+    }
+  }
+}
+
 template <class Real> void ConstraintSolver<Real>::check_start(const ParticleSystem<Real>& s) {
   know(s);
-  find_floors(s.positions());
-  values(s.positions());
+  find_floors(s);
+  values(Positions(s));
   Index worst_equation = -1;
   double worst_residual = 0;
   for (Index e = 0; e < layout_.equations(); ++e) {
@@ -140,78 +169,14 @@ template <class Real> void ConstraintSolver<Real>::check_start(const ParticleSys
 
 template <class Real> void ConstraintSolver<Real>::check_independent(const ParticleSystem<Real>& s) {
   const Index dependent = matrix_.factorize(here_, Real(dependent_pivot));
-  if (dependent >= 0) throw BadConstraints(dependent_words(s, dependent));
-}
-
-/// Names the constraints whose gradients depend on each other: those in the null space of the matrix.
-template <class Real>
-std::string ConstraintSolver<Real>::dependent_words(const ParticleSystem<Real>& s, Index equation) const {
-  constexpr Index most = 600;  // equations; of more the one that was found
-  constexpr std::size_t most_named = 4;
-  std::vector<std::string> named = {set_.words(equation, s)};
-  if (layout_.equations() <= most) {
-    const Eigen::MatrixXd matrix = coupling();
-    for (Index e = 0; e < matrix.rows(); ++e) {
-      if (matrix(e, e) > 0) continue;
-      return set_.words(e, s) +
-             " has no direction to act in there: its gradient vanishes; particles in line on a "
-             "rigid_bar are held otherwise";
-    }
-    const Eigen::VectorXd scale = matrix.diagonal().cwiseSqrt().cwiseInverse();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(scale.asDiagonal() * matrix * scale.asDiagonal());
-    named = most_involved(s, modes.eigenvectors().col(0).cwiseAbs());
-  }
-  const std::size_t left_out = named.size() > most_named ? named.size() - most_named : 0;
-  named.resize(named.size() - left_out);
-  return fmt::format("constraints depend on each other: {}{}; take one out", fmt::join(named, ", "),
-                     left_out > 0 ? fmt::format(" and {} more", left_out) : "");
-}
-
-/// G M^-1 G^T at the known positions, every element.
-template <class Real> Eigen::MatrixXd ConstraintSolver<Real>::coupling() const {
-  const Index n = layout_.equations();
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
-  for (Index e = 0; e < n; ++e) {
-    for (Index f = 0; f < n; ++f) {
-      for (Index a = layout_.first[at(e)]; a < layout_.first[at(e) + 1]; ++a) {
-        for (Index b = layout_.first[at(f)]; b < layout_.first[at(f) + 1]; ++b) {
-          if (layout_.particle[at(a)] != layout_.particle[at(b)]) continue;
-          matrix(e, f) += static_cast<double>(layout_.inverse_mass[at(a)] * dot(here_[at(a)], here_[at(b)]));
-        }
-      }
-    }
-  }
-  return matrix;
-}
-
-/// Constraints with a share in a mode, the largest first; but one of each kind before all others: of a chain between
-/// two fixed ends the many links say less than the ends.
-template <class Real>
-std::vector<std::string> ConstraintSolver<Real>::most_involved(const ParticleSystem<Real>& s,
-                                                               const Eigen::VectorXd& share) const {
-  std::vector<Index> order(at(share.size()));
-  std::iota(order.begin(), order.end(), Index(0));
-  std::stable_sort(order.begin(), order.end(), [&](Index e, Index f) { return share[e] > share[f] + 1e-9; });
-  std::vector<std::string> named, kinds, others;
-  const auto has = [](const std::vector<std::string>& list, const std::string& text) {
-    return std::find(list.begin(), list.end(), text) != list.end();
-  };
-  for (const Index e : order) {
-    const std::string words = set_.words(e, s), kind = set_.place(e).group->name();
-    if (share[e] < 0.01 * share.maxCoeff()) break;
-    if (has(named, words) || has(others, words)) continue;
-    (has(kinds, kind) ? others : named).push_back(words);
-    kinds.push_back(kind);
-  }
-  named.insert(named.end(), others.begin(), others.end());
-  return named;
+  if (dependent >= 0) throw BadConstraints(dependent_words(set_, s, layout_, here_, dependent));
 }
 
 // ---- positions -----------------------------------------------------------------------------------------------------
 
 template <class Real> bool ConstraintSolver<Real>::know(const ParticleSystem<Real>& s) {
   if (!known_ || *known_ != s.version()) {
-    gradients(s.positions(), here_);
+    gradients(Positions(s), here_);
     known_ = s.version();
     matrix_.forget_factors();
   }
@@ -225,21 +190,53 @@ template <class Real> void ConstraintSolver<Real>::advance_positions(ParticleSys
   if (failure_ || !know(s)) return;
   std::swap(old_, here_);
   known_.reset();
-  start_ = s.positions();
-  s.advance_positions(h);
-  VectorColumn<Real>& x = s.positions();
-  const bool newton = set_.options().solver == ConstraintMethod::newton;
+  const bool in_box = s.box().is_periodic(), newton = set_.options().solver == ConstraintMethod::newton;
+  if (in_box) {
+    moved_ = start_;
+    moved_.add_scaled(h, s.velocities());
+  } else {
+    start_ = s.positions();
+    s.advance_positions(h);
+  }
+  VectorColumn<Real>& x = in_box ? moved_ : s.positions();
   if (newton ? solve_by_newton(s, x, h) : solve_by_sweeps(s, x)) {
+    if (in_box) move_to(s, x);
     push(s.velocities(), old_, lambda_, Real(1) / h);
-    gradients(s.positions(), here_);
+    gradients(Positions(s), here_);
     known_ = s.version();
     matrix_.forget_factors();
     Index turned = -1;
     if (on_this_side(&turned)) return;
     fail(s, turned, "would turn over: the step is too large");
   }
-  s.positions() = start_;
+  if (!in_box) s.positions() = start_;
   known_.reset();
+}
+
+template <class Real> VectorColumn<Real> ConstraintSolver<Real>::start_of(const ParticleSystem<Real>& s) const {
+  return s.box().is_periodic() ? VectorColumn<Real>(s.size()) : s.positions();
+}
+template <class Real>
+ConstraintPositions<Real> ConstraintSolver<Real>::seen(const ParticleSystem<Real>& s,
+                                                       const VectorColumn<Real>& x) const {
+  return s.box().is_periodic() ? Positions(s, &x) : Positions(x);
+}
+template <class Real> void ConstraintSolver<Real>::move_to(ParticleSystem<Real>& s, const VectorColumn<Real>& x) const {
+  if (!s.box().is_periodic()) {
+    s.positions() = x;
+    return;
+  }
+  for (Index i = 0; i < s.size(); ++i) s.shift(i, x[i], Vec3<Real>::Zero());
+  s.moved();
+}
+/// What is solved for is what will be stored.
+template <class Real> void ConstraintSolver<Real>::round_to_grid(const Box& box, VectorColumn<Real>& x) const {
+  if constexpr (std::is_same_v<Real, double>) {
+    if (!box.is_periodic()) return;
+    for (const Index i : layout_.particle) {
+      for (int k = 0; k < 3; ++k) x.component(k)[i] = box.on_grid(k, x.component(k)[i]);
+    }
+  }
 }
 
 /// The solution that goes on from a step of 0 has G(x) M^-1 G(x0)^T > 0 for each constraint by itself.
@@ -260,13 +257,14 @@ template <class Real>
 bool ConstraintSolver<Real>::solve_by_newton(const ParticleSystem<Real>& s, VectorColumn<Real>& x, const Real& h) {
   lambda_.setZero();
   free_ = x;
-  find_floors(x);
-  if (iterate(x, false)) return true;
+  round_to_grid(s.box(), x);
+  find_floors(s);
+  if (iterate(s, x, false)) return true;
   double reached = 0;
-  if (h != Real(0) && follow(x, h, s.velocities(), &reached)) return true;
+  if (h != Real(0) && follow(s, x, h, &reached)) return true;
   free_ = start_;
   free_.add_scaled(h, s.velocities());
-  values(free_);
+  values(seen(s, free_));
   Index equation = 0;
   const double stretched = worst(&equation);
   const std::string why =
@@ -276,10 +274,11 @@ bool ConstraintSolver<Real>::solve_by_newton(const ParticleSystem<Real>& s, Vect
 }
 
 /// Chord steps with the factors at hand, then Newton's, from `x` on. @return whether they end at rounding
-template <class Real> bool ConstraintSolver<Real>::iterate(VectorColumn<Real>& x, bool fresh) {
+template <class Real>
+bool ConstraintSolver<Real>::iterate(const ParticleSystem<Real>& s, VectorColumn<Real>& x, bool fresh) {
   double previous = std::numeric_limits<double>::infinity();
   for (int k = 0; k < most_iterations; ++k) {
-    values(x);
+    values(seen(s, x));
     if (settled()) return true;
     Index worst_equation = 0;
     const double violation = worst(&worst_equation);
@@ -289,14 +288,14 @@ template <class Real> bool ConstraintSolver<Real>::iterate(VectorColumn<Real>& x
     fresh = fresh || (k > 0 && violation > slow_contraction * previous && violation > 1000 * floor);
     previous = violation;
     if (fresh) {
-      gradients(x, new_);
+      gradients(seen(s, x), new_);
       if (!matrix_.factorize_mixed(new_, old_)) return false;
       matrix_.solve_mixed(g_);
     } else {
       matrix_.solve(g_);
     }
     lambda_ += g_;
-    place(x);
+    place(s.box(), x);
     ++iterations_;
   }
   return false;
@@ -304,24 +303,25 @@ template <class Real> bool ConstraintSolver<Real>::iterate(VectorColumn<Real>& x
 
 /// Where all of the multipliers put the particles: added to positions one by one, corrections below half an ulp would
 /// be lost there, but not for the velocities.
-template <class Real> void ConstraintSolver<Real>::place(VectorColumn<Real>& x) const {
+template <class Real> void ConstraintSolver<Real>::place(const Box& box, VectorColumn<Real>& x) const {
   x = free_;
   push(x, old_, lambda_, Real(1));
+  round_to_grid(box, x);
 }
 
 /// Goes to the solution along those of shorter steps: where Newton's method loses its way, and to tell whether there is
 /// one at all that goes on from a step of 0.
 template <class Real>
-bool ConstraintSolver<Real>::follow(VectorColumn<Real>& x, const Real& h, const VectorColumn<Real>& v,
+bool ConstraintSolver<Real>::follow(const ParticleSystem<Real>& s, VectorColumn<Real>& x, const Real& h,
                                     double* reached) {
   Vector solved = Vector::Zero(layout_.equations());
   for (double stride = 0.5; *reached < 1;) {
     const double next = std::min(1.0, *reached + stride), growth = *reached > 0 ? next / *reached : 0;
     lambda_ = Real(growth * growth) * solved;
     free_ = start_;
-    free_.add_scaled(Real(next) * h, v);
-    place(x);
-    if (iterate(x, true)) {
+    free_.add_scaled(Real(next) * h, s.velocities());
+    place(s.box(), x);
+    if (iterate(s, x, true)) {
       solved = lambda_;
       *reached = next;
       stride *= 2;
@@ -349,13 +349,13 @@ bool ConstraintSolver<Real>::solve_by_sweeps(const ParticleSystem<Real>& s, Vect
       const Index each = group->equations(), tied = group->particles();
       for (Index c = 0; c < group->size(); ++c) {
         for (Index k = 0; k < each; ++k, ++e) {
-          group->values(x, c, c + 1, value.data());
+          group->values(seen(s, x), c, c + 1, value.data());
           const Real g = value[at(k)];
           const double relative = static_cast<double>(abs(g)) / scales_[at(e)];
           if (!(relative <= violation)) worst_equation = e;
           violation = relative <= violation ? violation : relative;
           if (relative <= options.tolerance) continue;
-          group->gradients(x, c, c + 1, gradient.data());
+          group->gradients(seen(s, x), c, c + 1, gradient.data());
           Real slope(0);
           const std::size_t first = at(layout_.first[at(e)]);
           for (std::size_t a = 0; a < at(tied); ++a) {
@@ -373,7 +373,7 @@ bool ConstraintSolver<Real>::solve_by_sweeps(const ParticleSystem<Real>& s, Vect
     ++iterations_;
     if (!std::isfinite(violation)) break;
   }
-  values(free_);
+  values(seen(s, free_));
   const double stretched = static_cast<double>(abs(g_[worst_equation])) / scales_[at(worst_equation)];
   if (stretched > 0.5) {
     fail(s, worst_equation,
@@ -436,24 +436,51 @@ template <class Real> bool ConstraintSolver<Real>::project_by_sweeps(ParticleSys
   return false;
 }
 
-template <class Real> void ConstraintSolver<Real>::constrain(const ParticleSystem<Real>& s, VectorColumn<Real>& a) {
-  if (!know(s)) return;
-  if (!matrix_.has_factors() && matrix_.factorize(here_, Real(0)) >= 0) return;
+template <class Real>
+std::optional<typename ConstraintSolver<Real>::Vector> ConstraintSolver<Real>::holding(const ParticleSystem<Real>& s,
+                                                                                       const VectorColumn<Real>& a) {
+  if (!know(s)) return {};
+  if (!matrix_.has_factors() && matrix_.factorize(here_, Real(0)) >= 0) return {};
   Vector rhs(layout_.equations());
   Index e = 0;
   for (const auto& group : set_.groups()) {
-    group->curvatures(s.positions(), s.velocities(), rhs.data() + e);
+    group->curvatures(Positions(s), s.velocities(), rhs.data() + e);
     e += group->size() * group->equations();
   }
   for (e = 0; e < layout_.equations(); ++e) rhs[e] += along(e, a, here_);
   matrix_.solve(rhs);
-  push(a, here_, rhs, Real(1));
+  return rhs;
+}
+
+template <class Real> void ConstraintSolver<Real>::constrain(const ParticleSystem<Real>& s, VectorColumn<Real>& a) {
+  if (const auto multipliers = holding(s, a)) push(a, here_, *multipliers, Real(1));
+}
+
+template <class Real>
+Mat3<Real> ConstraintSolver<Real>::virial(const ParticleSystem<Real>& s, const VectorColumn<Real>& a) {
+  const auto multipliers = holding(s, a);
+  if (!multipliers) return Mat3<Real>::Constant(std::numeric_limits<Real>::quiet_NaN());
+  Mat3<Real> virial = Mat3<Real>::Zero();
+  std::vector<Vec3<Real>> points;
+  Index e = 0;
+  for (const auto& group : set_.groups()) {
+    points.resize(at(group->size() * group->particles()));
+    group->points(Positions(s), points.data());
+    for (Index c = 0; c < group->size(); ++c) {
+      for (Index k = 0; k < group->equations(); ++k, ++e) {
+        for (Index p = 0; p < group->particles(); ++p) {
+          const Vec3<Real> force = -(*multipliers)[e] * here_[at(layout_.first[at(e)] + p)];
+          virial += points[at(c * group->particles() + p)] * force.transpose();
+        }
+      }
+    }
+  }
+  return virial;
 }
 
 // ---- pieces --------------------------------------------------------------------------------------------------------
 
-template <class Real>
-void ConstraintSolver<Real>::gradients(const VectorColumn<Real>& x, ConstraintGradients<Real>& out) const {
+template <class Real> void ConstraintSolver<Real>::gradients(const Positions& x, ConstraintGradients<Real>& out) const {
   Vec3<Real>* next = out.data();
   for (const auto& group : set_.groups()) {
     group->gradients(x, 0, group->size(), next);
@@ -461,7 +488,7 @@ void ConstraintSolver<Real>::gradients(const VectorColumn<Real>& x, ConstraintGr
   }
 }
 
-template <class Real> void ConstraintSolver<Real>::values(const VectorColumn<Real>& x) {
+template <class Real> void ConstraintSolver<Real>::values(const Positions& x) {
   Real* next = g_.data();
   for (const auto& group : set_.groups()) {
     group->values(x, 0, group->size(), next);
@@ -469,18 +496,20 @@ template <class Real> void ConstraintSolver<Real>::values(const VectorColumn<Rea
   }
 }
 
-/// What rounding leaves of g: positions are stored to half an ulp, and g itself is a difference of numbers of its
-/// scale.
-template <class Real> void ConstraintSolver<Real>::find_floors(const VectorColumn<Real>& x) {
+/// What rounding leaves of g: positions are stored to half an ulp, in a periodic box to that of its edge, and g itself
+/// is a difference of numbers of its scale.
+template <class Real> void ConstraintSolver<Real>::find_floors(const ParticleSystem<Real>& s) {
   using std::abs;
   const ConstraintGradients<Real>& g = known_ ? here_ : old_;
-  for (Index e = 0; e < layout_.equations(); ++e) {
-    double sum = 2 * scales_[at(e)];
-    for (Index a = layout_.first[at(e)]; a < layout_.first[at(e) + 1]; ++a) {
-      const Vec3<Real> position = x[layout_.particle[at(a)]];
-      for (Index k = 0; k < 3; ++k) sum += static_cast<double>(abs(g[at(a)][k] * position[k]));
+  for (Index e = 0; const auto& group : set_.groups()) {
+    for (const Index end = e + group->size() * group->equations(); e < end; ++e) {
+      double sum = 2 * scales_[at(e)];
+      for (Index a = layout_.first[at(e)]; a < layout_.first[at(e) + 1]; ++a) {
+        const Vec3<Real> size = size_of_position(s, layout_.particle[at(a)], group->keeps_momentum());
+        for (Index k = 0; k < 3; ++k) sum += static_cast<double>(abs(g[at(a)][k] * size[k]));
+      }
+      floors_[at(e)] = unit_roundoff<Real>() * sum;
     }
-    floors_[at(e)] = unit_roundoff<Real>() * sum;
   }
 }
 

@@ -43,6 +43,7 @@ struct Distance {
     return {{{r, -r}}};
   }
   double scale() const { return *length * *length; }
+  double reach() const { return *length; }
   /// | |r| - d | / d.
   double residual(double g) const { return std::abs(std::sqrt(std::max(0.0, 1 + 2 * g / scale())) - 1); }
 };

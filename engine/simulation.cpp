@@ -139,7 +139,8 @@ template <class Real> void Simulation<Real>::check_wanted(const Scheduled& added
   if (added.wanted.virial && !AnyIntegrator<Real>(integrator_).virial(raw_)) {
     throw Error(fmt::format("monitor '{}' needs the virial, but {}", added.name,
                             claims.constraints > 0
-                                ? "the constraints of this run do not tell theirs"
+                                ? "a force or a constraint of this run tells none: what holds particles in place "
+                                  "has no part in a pressure"
                                 : fmt::format("'{}' tells none, or one of its forces does not", claims.hamiltonian)));
   }
   if (!added.wanted.action) return;

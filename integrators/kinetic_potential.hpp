@@ -90,10 +90,7 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     failure_.reset();
     force_failure_.reset();
     moved_ = true;
-    if constexpr (constrained) {
-      if (periodic_) throw Error("constraints know open space only; take them out, or the periodic box");
-      constraints_.bind(s);
-    }
+    if constexpr (constrained) constraints_.bind(s);
   }
   /// How neighbors are found; before the first step.
   void set_neighbor_options(const NeighborOptions& options) { neighbor_options_ = options; }
@@ -160,12 +157,16 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     evaluate(s, {.energy = true});
     return {kinetic_energy(s), potential_};
   }
-  /// Sum x (x) f [energy]; empty if a force does not tell it, or constraints add to it. Once asked for, it is summed
-  /// along with the energy.
+  /// Sum x (x) f, the forces of constraints too [energy]; empty if a force does not tell it, or a constraint holds
+  /// particles in place. Once asked for, it is summed along with the energy.
   std::optional<Mat3<Real>> virial(const ParticleSystem<Real>& s) {
-    if (constrained || !claims_of(forces_).virial) return {};
+    if (!claims_of(forces_).virial) return {};
+    if constexpr (constrained) {
+      if (!constraints_.set().keeps_momentum()) return {};
+    }
     virial_wanted_ = true;
     evaluate(s, {.energy = true, .virial = true});
+    if constexpr (constrained) return Mat3<Real>(virial_ + constraints_.virial(s, acceleration_));
     return virial_;
   }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) {

@@ -156,10 +156,6 @@ class SceneReader {
     if (type == "wisdom_holman" && scene_.particles.box().is_periodic()) {
       reader.fail("type", "wisdom_holman knows open space only: Kepler arcs have no images; take the box out");
     }
-    if (!constraints.empty() && scene_.particles.box().is_periodic()) {
-      reader.fail(constraints.front(), "constraint",
-                  "constraints know open space only so far; take them out, or the periodic box");
-    }
     if (type == "wisdom_holman" && !constraints.empty()) {
       reader.fail(constraints.front(), "constraint",
                   "wisdom_holman has no constraints: Kepler arcs know none; use kinetic_potential");

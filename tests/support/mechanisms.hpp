@@ -113,7 +113,7 @@ template <class Real> double velocity_across(const ConstraintSet& set, const Par
   for (const auto& group : set.groups()) {
     std::vector<Vec3<Real>> gradients(
         static_cast<std::size_t>(group->size() * group->equations() * group->particles()));
-    group->gradients(s.positions(), 0, group->size(), gradients.data());
+    group->gradients(ConstraintPositions<Real>(s), 0, group->size(), gradients.data());
     const Vec3<Real>* next = gradients.data();
     for (Index c = 0; c < group->size(); ++c) {
       for (Index e = 0; e < group->equations(); ++e) {
