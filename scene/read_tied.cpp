@@ -48,6 +48,7 @@ TiedParticles TiedReader::read(SceneValue& effective) {
   }
   effective.put(key_, *value);
   if (particles_ == 1 && value->get<std::string>() != nullptr && *value->get<std::string>() == "all") return all();
+  if (value->get<std::string>() != nullptr && (particles_ == 2 || particles_ == 3)) return of_structure(*value);
   const auto* list = value->get<SceneValue::Array>();
   if (list == nullptr || list->empty()) wrong(*value);
   TiedParticles tied;
@@ -90,6 +91,31 @@ Index TiedReader::particle(const SceneValue& at, const SceneValue& name) const {
 TiedParticles TiedReader::all() const {
   TiedParticles tied;
   for (Index i = 0; i < s_.size(); ++i) tied.push_back({i});
+  return tied;
+}
+
+/// All bonds, or all angles, that a structure has brought.
+TiedParticles TiedReader::of_structure(const SceneValue& value) const {
+  const std::string terms = particles_ == 2 ? "bonds" : "angles";
+  if (*value.get<std::string>() != terms) {
+    reader_.fail(&value, key_,
+                 fmt::format("{} = {} is not understood; {} of names are expected, or \"{}\" for all of a structure",
+                             key_, to_text(value), key_, terms));
+  }
+  TiedParticles tied;
+  const Topology none, &topology = s_.topology() != nullptr ? *s_.topology() : none;
+  for (const BondedTerm<2>& bond : topology.bonds) {
+    if (particles_ == 2) tied.emplace_back(bond.particles.begin(), bond.particles.end());
+  }
+  for (const BondedTerm<3>& angle : topology.angles) {
+    if (particles_ == 3) tied.emplace_back(angle.particles.begin(), angle.particles.end());
+  }
+  if (tied.empty()) {
+    reader_.fail(&value, key_,
+                 fmt::format("{} = \"{}\" ties nobody: the particles have no {}, which a structure or a builder would "
+                             "bring; name the particles",
+                             key_, terms, terms));
+  }
   return tied;
 }
 

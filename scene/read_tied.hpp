@@ -9,7 +9,8 @@
 
 namespace noether {
 
-/// Reads which particles a table ties: names, tuples of names, or a `chain` of pairs.
+/// Reads which particles a table ties: names, tuples of names, a `chain` of pairs, all "bonds" or "angles" of a
+/// structure.
 class TiedReader {
  public:
   /// @param particles  of each tuple: 1 `bodies`, 2 `pairs` (or `chain`), 3 `triples`; 0 any number, in one tuple
@@ -24,6 +25,7 @@ class TiedReader {
   std::vector<Index> names(const SceneValue& at, const SceneValue::Array& list) const;
   Index particle(const SceneValue& at, const SceneValue& name) const;
   TiedParticles all() const;
+  TiedParticles of_structure(const SceneValue& value) const;
   TiedParticles links(const SceneValue& chain) const;
 
   TableReader& reader_;

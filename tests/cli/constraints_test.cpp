@@ -32,6 +32,25 @@ TEST_CASE("a constrained run that was interrupted ends as one that was not", "[c
   CHECK(has(straight.out, ",\"constraint\":"));
 }
 
+TEST_CASE("a run of molecules across the faces of a box that was interrupted ends as one that was not",
+          "[cli][resume][constraints]") {
+  const ScratchFolder whole, cut;
+  const fs::path tests = fs::path(NOETHER_SOURCE_DIR) / "tests";
+  for (const ScratchFolder* folder : {&whole, &cut}) {
+    fs::copy(tests / "scenes" / "good" / "rigid_molecules.toml", folder->path() / "scene.toml");
+    fs::copy(tests / "data" / "molecules" / "wrapped.data", folder->path());
+  }
+  const std::string here = " --set particles.structure=wrapped.data";
+  const ProcessResult straight = noether(whole, "run scene.toml --json" + here);
+  CHECK(straight.exit_code == 0);
+  CHECK(noether(cut, "run scene.toml --quiet --until 0.37" + here).exit_code == 0);
+  const ProcessResult resumed = noether(cut, "run scene.toml --json --resume" + here);
+  CHECK(resumed.exit_code == 0);
+  CHECK(json_member(resumed.out, "resumed_from_step") == "185");
+  check_same_run(resumed.out, straight.out);
+  check_same_content(cut / "scene.out/run.h5", whole / "scene.out/run.h5");
+}
+
 TEST_CASE("a step too large ends the run by name, at a state that is written and whole", "[cli][constraints]") {
   const PendulumFolder folder;
   const ProcessResult result = noether(folder, "run scene.toml --json --set integrator.step='0.5 s' --until '50 s'");

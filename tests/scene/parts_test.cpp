@@ -17,21 +17,21 @@
 namespace noether::test {
 namespace {
 
-template <class Part> std::string refusal(const Part& part) {
+template <class Part> std::string part_refusal(const Part& part) {
   return refusal_of([&] { check_part(part); });
 }
 
 TEST_CASE("a part refuses fields that make no sense", "[parts]") {
-  CHECK(refusal(Gravity{}).empty());
-  CHECK(refusal(Gravity{.softening = -1}) == "softening = -1 is no length; 0 (point masses) or more is expected");
-  CHECK(refusal(Gravity{.G = 0.0}) == "G = 0 is no constant of gravitation; a number above 0 is expected");
-  CHECK(refusal(LinearDrag{.rate = -0.5}) == "rate = -0.5 drives instead of damping; 0 or more is expected");
-  CHECK(refusal(Oblateness{.J2 = 0.1, .radius = 1}).empty());
-  CHECK(refusal(Oblateness{.radius = 1}) == "oblateness has neither J2 nor J4, so it would do nothing; give one");
-  CHECK(refusal(Oblateness{.J4 = 0.1}) == "radius = 0 is no radius; a length above 0 is expected");
-  CHECK(refusal(Oblateness{.J4 = 0.1, .radius = 1, .axis = {0, 0, 0}}) ==
+  CHECK(part_refusal(Gravity{}).empty());
+  CHECK(part_refusal(Gravity{.softening = -1}) == "softening = -1 is no length; 0 (point masses) or more is expected");
+  CHECK(part_refusal(Gravity{.G = 0.0}) == "G = 0 is no constant of gravitation; a number above 0 is expected");
+  CHECK(part_refusal(LinearDrag{.rate = -0.5}) == "rate = -0.5 drives instead of damping; 0 or more is expected");
+  CHECK(part_refusal(Oblateness{.J2 = 0.1, .radius = 1}).empty());
+  CHECK(part_refusal(Oblateness{.radius = 1}) == "oblateness has neither J2 nor J4, so it would do nothing; give one");
+  CHECK(part_refusal(Oblateness{.J4 = 0.1}) == "radius = 0 is no radius; a length above 0 is expected");
+  CHECK(part_refusal(Oblateness{.J4 = 0.1, .radius = 1, .axis = {0, 0, 0}}) ==
         "axis = [0, 0, 0] has no direction; expected one such as [0, 0, 1]");
-  CHECK(refusal(UniformField{}).empty());  // it has no check of its own
+  CHECK(part_refusal(UniformField{}).empty());  // it has no check of its own
 }
 
 TEST_CASE("check_gradient asks the force for its fields first", "[parts]") {

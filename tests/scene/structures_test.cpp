@@ -29,7 +29,7 @@ Scene scene_of(const std::string& particles, const std::string& units = "reduced
   return read_scene("units = '" + units + "'\n[particles]\n" + particles + end, lammps_files / "scene.toml");
 }
 
-std::string refusal(const std::string& particles, const std::string& units = "reduced") {
+std::string structure_refusal(const std::string& particles, const std::string& units = "reduced") {
   try {
     scene_of(particles, units);
   } catch (const Error& error) {
@@ -122,62 +122,64 @@ TEST_CASE("bodies of a scene can have a box, types and charges", "[scene]") {
 }
 
 TEST_CASE("keys of structures that are wrong are refused at their lines", "[scene][structure][messages]") {
-  CHECK(refusal("structure = '../../scenes/bad/cut.data'\n", "molecular") ==
+  CHECK(structure_refusal("structure = '../../scenes/bad/cut.data'\n", "molecular") ==
         "scene.toml:2: this LAMMPS data file does not say its units; give file_units = \"real\" or \"metal\"");
-  CHECK(refusal("structure = 'molecule.data'\n") ==
+  CHECK(structure_refusal("structure = 'molecule.data'\n") ==
         "scene.toml:2: a LAMMPS data file in real needs units = \"molecular\", not \"reduced\"");
-  CHECK(refusal("structure = 'molecule.data'\nfile_units = 'reel'\n", "molecular") ==
+  CHECK(structure_refusal("structure = 'molecule.data'\nfile_units = 'reel'\n", "molecular") ==
         "molecule.data:1: the file says units = real, file_units says 'reel'; take file_units out");
-  CHECK(refusal("structure = 'make.py'\n") ==
+  CHECK(structure_refusal("structure = 'make.py'\n") ==
         "scene.toml:3: 'make.py' is of no kind that is read; a structure is a .data or .lmp file (LAMMPS), .xyz or "
         ".extxyz, or .gro");
-  CHECK(refusal("structure = 'none.data'\n").starts_with("scene.toml:3: none.data: "));
-  CHECK(refusal("structure = ''\n") ==
+  CHECK(structure_refusal("structure = 'none.data'\n").starts_with("scene.toml:3: none.data: "));
+  CHECK(structure_refusal("structure = ''\n") ==
         "scene.toml:3: structure = \"\" names no file; give one, such as \"water.data\"");
-  CHECK(refusal("structure = 'chains.data'\nspecial = [0, 2, 1]\n") ==
+  CHECK(structure_refusal("structure = 'chains.data'\nspecial = [0, 2, 1]\n") ==
         "scene.toml:4: special holds 2; factors from 0 to 1 are expected");
-  CHECK(refusal("structure = 'chains.data'\nspecial = [0, 1]\n") ==
+  CHECK(structure_refusal("structure = 'chains.data'\nspecial = [0, 1]\n") ==
         "scene.toml:4: special = [0, 1] is no vector; a list of three is expected: [x, y, z]");
-  CHECK(refusal("structure = 'chains.data'\natom_style = 'full'\n") ==
+  CHECK(structure_refusal("structure = 'chains.data'\natom_style = 'full'\n") ==
         "chains.data:32: the file says atom style 'molecular', the scene says 'full'; take atom_style out");
   CHECK(
-      refusal("structure = 'chains.data'\nbox = [1, 2, 3]\n") ==
+      structure_refusal("structure = 'chains.data'\nbox = [1, 2, 3]\n") ==
       "scene.toml:4: the file has a box of its own, 5 x 6 x 7; leave box out, or give box = \"open\" to take it away");
-  CHECK(refusal("structure = 'chains.data'\nbox = 'closed'\n") ==
+  CHECK(structure_refusal("structure = 'chains.data'\nbox = 'closed'\n") ==
         "scene.toml:4: box = \"closed\" is not understood; three lengths are expected, or \"open\"");
-  CHECK(refusal("structure = 'chains.data'\nframe = 'barycenter'\n") ==
+  CHECK(structure_refusal("structure = 'chains.data'\nframe = 'barycenter'\n") ==
         "scene.toml:4: a periodic box has no centre of mass; take frame = \"barycenter\" out");
-  CHECK(refusal("structure = 'chains.data'\nmixing = 'arithmetic'\n") ==
+  CHECK(structure_refusal("structure = 'chains.data'\nmixing = 'arithmetic'\n") ==
         "scene.toml:4: unknown mixing 'arithmetic'; known are: lorentz_berthelot, geometric");
-  CHECK(refusal("structure = 'chains.data'\nseed = 3\n") ==
+  CHECK(structure_refusal("structure = 'chains.data'\nseed = 3\n") ==
         "scene.toml:4: seed has nothing to be drawn; give a temperature too");
-  CHECK(refusal("structure = 'chains.data'\n[[particles.type]]\nname = '1'\n[[particles.type]]\nname = '3'\n") ==
+  CHECK(structure_refusal(
+            "structure = 'chains.data'\n[[particles.type]]\nname = '1'\n[[particles.type]]\nname = '3'\n") ==
         "scene.toml:6: there is no type '3'; known are: 1, 2");
-  CHECK(refusal("structure = 'chains.data'\n[[particles.type]]\nmass = 1\n") ==
+  CHECK(structure_refusal("structure = 'chains.data'\n[[particles.type]]\nmass = 1\n") ==
         "scene.toml:4: this [[particles.type]] has no name; give that of a type");
-  CHECK(refusal("structure = 'chains.data'\n[[particles.pair]]\ntypes = ['1']\n") ==
+  CHECK(structure_refusal("structure = 'chains.data'\n[[particles.pair]]\ntypes = ['1']\n") ==
         "scene.toml:5: a pair has two types; give them as types = [\"A\", \"B\"]");
-  CHECK(refusal("structure = 'chains.data'\n[[particles.pair]]\ntypes = ['1', '2']\nsigma = 1\n") ==
+  CHECK(structure_refusal("structure = 'chains.data'\n[[particles.pair]]\ntypes = ['1', '2']\nsigma = 1\n") ==
         "scene.toml:4: this [[particles.pair]] has no epsilon; give one");
-  CHECK(
-      refusal("structure = 'chains.data'\nmass = 1\n").starts_with("scene.toml:4: unknown key 'mass' in [particles]"));
+  CHECK(structure_refusal("structure = 'chains.data'\nmass = 1\n")
+            .starts_with("scene.toml:4: unknown key 'mass' in [particles]"));
 }
 
 TEST_CASE("particles come from one place, and its keys are the only ones", "[scene][messages]") {
-  CHECK(refusal("structure = 'chains.data'\ntype = 'lattice'\n") ==
+  CHECK(structure_refusal("structure = 'chains.data'\ntype = 'lattice'\n") ==
         "scene.toml:3: bodies come from a structure and from a builder; give one or the other");
-  CHECK(refusal("type = 'latice'\n") == "scene.toml:3: unknown builder 'latice'; did you mean 'lattice'?");
-  CHECK(
-      refusal("type = 'lattice'\nmass = 1\ndensity = 1\n").starts_with("scene.toml:2: builder 'lattice' has no cells"));
-  CHECK(refusal("type = 'lattice'\nmass = 1\ndensity = 1\ncells = [1, 2]\n") ==
+  CHECK(structure_refusal("type = 'latice'\n") == "scene.toml:3: unknown builder 'latice'; did you mean 'lattice'?");
+  CHECK(structure_refusal("type = 'lattice'\nmass = 1\ndensity = 1\n")
+            .starts_with("scene.toml:2: builder 'lattice' has no cells"));
+  CHECK(structure_refusal("type = 'lattice'\nmass = 1\ndensity = 1\ncells = [1, 2]\n") ==
         "scene.toml:6: cells = [1, 2] is no list of three; cells along x, y and z are expected");
-  CHECK(refusal("type = 'liquid'\nmass = 1\ndensity = 1\nparticles = 9\ncells = 3\n")
+  CHECK(structure_refusal("type = 'liquid'\nmass = 1\ndensity = 1\nparticles = 9\ncells = 3\n")
             .starts_with("scene.toml:7: unknown key 'cells' in builder 'liquid'"));
-  CHECK(refusal("body = [{type = 'A', mass = 1, x = [0, 0, 0], v = [0, 0, 0]}]\n") ==
+  CHECK(structure_refusal("body = [{type = 'A', mass = 1, x = [0, 0, 0], v = [0, 0, 0]}]\n") ==
         "scene.toml:3: body 'body_1' has a type, and there are none; give [[particles.type]] tables");
-  CHECK(refusal("mixing = 'geometric'\nbody = [{mass = 1, x = [0, 0, 0], v = [0, 0, 0]}]\n") ==
+  CHECK(structure_refusal("mixing = 'geometric'\nbody = [{mass = 1, x = [0, 0, 0], v = [0, 0, 0]}]\n") ==
         "scene.toml:3: mixing is of types, and there are none; give [[particles.type]] tables");
-  CHECK(refusal("body = [{type = 'C', mass = 1, x = [0, 0, 0], v = [0, 0, 0]}]\n[[particles.type]]\nname = 'A'\n") ==
+  CHECK(structure_refusal(
+            "body = [{type = 'C', mass = 1, x = [0, 0, 0], v = [0, 0, 0]}]\n[[particles.type]]\nname = 'A'\n") ==
         "scene.toml:3: there is no type 'C'; known are: A");
 }
 

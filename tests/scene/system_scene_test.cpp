@@ -37,7 +37,7 @@ struct Hunt {
   }
 };
 
-std::string refusal(const std::string& text, const Parts& parts, const std::vector<std::string>& sets = {}) {
+std::string system_refusal(const std::string& text, const Parts& parts, const std::vector<std::string>& sets = {}) {
   try {
     read_scene(text, "scene.toml", parts, sets);
   } catch (const SceneError& error) {
@@ -96,8 +96,10 @@ steps = 8
   CHECK(!scene.system->wide_field);
   CHECK(!scene.system->exact);
   const std::string without = text.substr(0, text.find("start")) + text.substr(text.find("[integrator]"));
-  CHECK(refusal(without, parts) == "scene.toml:2: system 'hunt' does not say where to start; give start = [...]");
-  CHECK(refusal(text, standard_parts()).starts_with("scene.toml:3: unknown system 'hunt'; known are: robertson, "));
+  CHECK(system_refusal(without, parts) ==
+        "scene.toml:2: system 'hunt' does not say where to start; give start = [...]");
+  CHECK(system_refusal(text, standard_parts())
+            .starts_with("scene.toml:3: unknown system 'hunt'; known are: robertson, "));
 }
 
 TEST_CASE("a start of the scene's own takes the place of the system's, and of its closed solution", "[scene]") {
