@@ -14,8 +14,9 @@ namespace noether {
 ///
 ///     P_ab = (sum_i m_i v_ia v_ib + W_ab) / V,   W = sum x (x) f,   P = (P_xx + P_yy + P_zz) / 3
 ///
-/// Velocities are taken as they are, as LAMMPS takes them: where the centre of mass is at rest, sum m v^2 is
-/// (3 N - 3) k_B T with the temperature of 3 N - 3 degrees of freedom; where it moves, its motion counts.
+/// W has the forces of constraints too: for rigid molecules P is that of their centres. Velocities are taken as they
+/// are, as LAMMPS takes them: where the centre of mass is at rest, sum m v^2 is (3 N - 3) k_B T with the temperature of
+/// 3 N - 3 degrees of freedom; where it moves, its motion counts.
 /// @throws Error  when attached to a run without a periodic box, or with a force or a constraint that tells no virial
 /// @cost O(n) and one force evaluation, shared with the next kick
 /// @source Allen2017

@@ -14,6 +14,7 @@
 #include "integrators/wisdom_holman.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/mechanisms.hpp"
+#include "tests/support/molecules.hpp"
 #include "tests/support/planets.hpp"
 
 #include <atomic>
@@ -144,21 +145,24 @@ TEST_CASE("no classical method allocates inside advance", "[allocation]") {
 }
 
 TEST_CASE("constraints allocate nothing inside advance, solved all at once or by sweeps", "[allocation][constraints]") {
+  const auto check = [](const test::Mechanism& mechanism, const Scheme& scheme) {
+    CAPTURE(scheme.name, static_cast<int>(mechanism.constraints.options().solver));
+    auto integrator = compose(test::hamiltonian_of(mechanism), scheme);
+    ParticleSystem<double> s = mechanism.particles;
+    s.clock() = Clock<double>::fixed(0, 0.005);
+    integrator.bind(s);
+    integrator.advance(s, {.steps = 1});
+    ParticleSystem<double> copy = s;
+    integrator.settle(s, copy, {.energy = true}, std::nullopt, true);
+    const long start = allocations;
+    CHECK(integrator.advance(s, {.steps = 20}).steps == 20);
+    integrator.settle(s, copy, {.energy = true}, std::nullopt, true);
+    CHECK(allocations == start);
+  };
   for (const ConstraintMethod solver : {ConstraintMethod::newton, ConstraintMethod::rattle}) {
-    const test::Mechanism chain = test::hanging_chain(40, {.solver = solver});
     for (const Scheme* scheme : {&schemes::verlet, &schemes::yoshida_4}) {
-      CAPTURE(scheme->name, static_cast<int>(solver));
-      auto integrator = compose(test::hamiltonian_of(chain), *scheme);
-      ParticleSystem<double> s = chain.particles;
-      s.clock() = Clock<double>::fixed(0, 0.005);
-      integrator.bind(s);
-      integrator.advance(s, {.steps = 1});
-      ParticleSystem<double> copy = s;
-      integrator.settle(s, copy, {.energy = true}, std::nullopt, true);
-      const long start = allocations;
-      CHECK(integrator.advance(s, {.steps = 20}).steps == 20);
-      integrator.settle(s, copy, {.energy = true}, std::nullopt, true);
-      CHECK(allocations == start);
+      check(test::hanging_chain(40, {.solver = solver}), *scheme);
+      check(test::molecular_liquid(2, 4.0, {.solver = solver}), *scheme);
     }
   }
 }

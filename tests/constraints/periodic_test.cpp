@@ -41,6 +41,9 @@ TEST_CASE("molecules across the faces of a box are held wherever it is cut: the 
     // Atoms wrapped one by one, as files without images have them.
     CHECK(difference(flow(without_images(liquid), *scheme, 0.004, 60), straight, Vec3<double>::Zero()) == 0);
   }
+  const MolecularLiquid swept = molecular_liquid(3, edge, {.solver = ConstraintMethod::rattle, .tolerance = 1e-4});
+  CHECK(difference(flow(cut_elsewhere(swept, shifts[1]), schemes::verlet, 0.004, 60),
+                   flow(swept, schemes::verlet, 0.004, 60), shifts[1]) == 0);
   // Elsewhere than on the grid: to rounding.
   const Vec3<double> aside(0.3, 1.7, 4.1);
   CHECK(difference(flow(cut_elsewhere(liquid, aside), schemes::verlet, 0.004, 60),
