@@ -108,6 +108,20 @@ TEST_CASE("in a box positions and velocities are on the constraints to rounding"
   check_stages<Quad>(molecular_liquid(2, edge), 3);
 }
 
+TEST_CASE("in a box doubles go where 113 bits go", "[constraints][periodic]") {
+  const MolecularLiquid liquid = molecular_liquid(2, edge);
+  const auto exact = run<Quad>(liquid, schemes::verlet, 0.004, 30, sites);
+  const auto found = flow(liquid, schemes::verlet, 0.004, 30);
+  double worst = 0;
+  for (Index i = 0; i < found.size(); ++i) {
+    const Vec3<Quad> x = exact.unwrapped(i);
+    const Vec3<double> y = found.unwrapped(i);
+    for (Index k = 0; k < 3; ++k) worst = std::max(worst, std::abs(static_cast<double>(x[k] - Quad(y[k]))));
+  }
+  CHECK(worst < 1e-13);
+  CHECK(worst > 0);
+}
+
 TEST_CASE("bits of molecules in a box do not depend on threads, skins, who looks, or a save in between",
           "[constraints][periodic][restart]") {
   for (const ConstraintMethod solver : {ConstraintMethod::newton, ConstraintMethod::rattle}) {
