@@ -55,8 +55,8 @@ std::string table_of(const std::string& kind) {
   if (kind == "builder") return "[particles], as type = \"NAME\"";
   if (kind == "force") return "[[hamiltonian.force]]";
   if (kind == "constraint") {
-    return "[[hamiltonian.constraint]], with the particles: bodies, pairs or triples of names; solver = \"newton\" or "
-           "\"rattle\" (with tolerance, iterations)";
+    return "[[hamiltonian.constraint]], with the particles: bodies, pairs or triples of names, or \"bonds\", "
+           "\"angles\" of a structure; solver = \"newton\" or \"rattle\" (with tolerance, iterations)";
   }
   if (kind == "system")
     return "[system], in the place of [particles] and [hamiltonian]; start = [...] begins elsewhere";
