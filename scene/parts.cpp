@@ -66,9 +66,9 @@ Parts standard_parts() {
   parts.add_force<FermiPastaUlam>();
   parts.add_force<LennardJonesForce>();
   parts.add_force<WcaForce>();
-  parts.add_force<ReactionFieldForce>();
   parts.add_force<MorseForce>();
   parts.add_force<BuckinghamForce>();
+  parts.add_force<ReactionFieldForce>();
   parts.add_force<HarmonicBond>();
   parts.add_force<Tether>();
   parts.add_force<Bonded>();
