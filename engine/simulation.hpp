@@ -17,8 +17,7 @@ namespace noether {
 struct Progress {
   std::int64_t step = 0, end = 0;
   double time = 0, seconds = 0;
-  double until =
-      std::numeric_limits<double>::infinity();  ///< the end, if there is one, where the method chooses its steps [time]
+  double until = std::numeric_limits<double>::infinity();  ///< the end, where the method chooses its steps [time]
 };
 
 /// Owns state, integrator and monitors.
@@ -69,9 +68,8 @@ template <class Real = double> class Simulation {
   Outcome run(std::int64_t steps);
   /// Goes on to time `until` [time]. Where the integrator chooses its steps, a time that has passed turns the run: it
   /// goes back from where `particles()` stand, as after an `edit`.
-  /// @throws Error  if it has passed and steps are of one length or monitors look by time, or if it is no whole number
-  /// of
-  ///                steps away
+  /// @throws Error  if it has passed and steps are of one length, or monitors look by time; if steps of one length do
+  ///                not end there
   Outcome run_until(double until);
 
   std::int64_t step() const { return raw_.clock().step(); }
