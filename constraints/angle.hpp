@@ -2,6 +2,7 @@
 /// A fixed angle of three particles.
 
 #include "constraints/constraint.hpp"
+#include "constraints/constraint_group.hpp"
 #include "engine/description.hpp"
 
 #include <cmath>
@@ -44,5 +45,7 @@ struct Angle {
     return dot(a, b) / sqrt(norm2(a) * norm2(b)) - cos(Real(*theta));
   }
 };
+
+extern template class ConstraintsOf<Angle>;  // compiled once, in angle.cpp
 
 }  // namespace noether

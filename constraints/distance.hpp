@@ -2,6 +2,7 @@
 /// A fixed distance of two particles.
 
 #include "constraints/constraint.hpp"
+#include "constraints/constraint_group.hpp"
 #include "engine/description.hpp"
 
 #include <cmath>
@@ -47,5 +48,7 @@ struct Distance {
   /// | |r| - d | / d.
   double residual(double g) const { return std::abs(std::sqrt(std::max(0.0, 1 + 2 * g / scale())) - 1); }
 };
+
+extern template class ConstraintsOf<Distance>;  // compiled once, in distance.cpp
 
 }  // namespace noether

@@ -2,6 +2,7 @@
 /// Particles on surfaces and curves that stand still.
 
 #include "constraints/constraint.hpp"
+#include "constraints/constraint_group.hpp"
 #include "engine/description.hpp"
 
 #include <array>
@@ -197,5 +198,12 @@ struct OnLine {
     return {{{u[0], u[1], u[2]}, {w[0], w[1], w[2]}}};
   }
 };
+
+extern template class ConstraintsOf<Fixed>;  // compiled once, in surfaces.cpp
+extern template class ConstraintsOf<OnSphere>;  // compiled once, in surfaces.cpp
+extern template class ConstraintsOf<OnPlane>;  // compiled once, in surfaces.cpp
+extern template class ConstraintsOf<OnCylinder>;  // compiled once, in surfaces.cpp
+extern template class ConstraintsOf<OnCircle>;  // compiled once, in surfaces.cpp
+extern template class ConstraintsOf<OnLine>;  // compiled once, in surfaces.cpp
 
 }  // namespace noether

@@ -1,10 +1,9 @@
 #pragma once
-/// The erased seams: AnyForce, AnyHamiltonian, AnyIntegrator. (AnyMonitor is in engine/monitor.hpp.) Each satisfies its
-/// own concept, so a scene is one more instantiation of the same templates.
+/// The erased seams AnyHamiltonian and AnyIntegrator. (AnyForce is in engine/any_force.hpp, AnyMonitor in
+/// engine/monitor.hpp.) Each satisfies its own concept, so a scene is one more instantiation of the same templates.
 
+#include "engine/any_force.hpp"
 #include "engine/concepts.hpp"
-#include "engine/pack.hpp"
-#include "engine/signature.hpp"
 #include "engine/word.hpp"
 
 #include <memory>
@@ -13,15 +12,6 @@
 #include <utility>
 
 namespace noether {
-
-/// Whether a force can be evaluated in eight lanes: it is written over the number type.
-template <class F> bool has_lanes(const F& force) {
-  if constexpr (requires { force.has_lanes(); }) {
-    return force.has_lanes();
-  } else {
-    return Force<F, Pack>;
-  }
-}
 
 namespace detail {
 
@@ -46,70 +36,6 @@ template <class T, class Real> std::optional<Mat3<Real>> virial_of(T& moves, con
   if constexpr (requires { moves.virial(s); }) return moves.virial(s);
   return {};
 }
-
-/// Value semantics for a polymorphic `Base` with `clone`.
-template <class Base> class Erased {
- public:
-  explicit Erased(std::unique_ptr<Base> held) : held_(std::move(held)) {}
-  Erased(const Erased& other) : held_(other.held_->clone()) {}
-  Erased(Erased&&) noexcept = default;
-  Erased& operator=(const Erased& other) {
-    held_ = other.held_->clone();
-    return *this;
-  }
-  Erased& operator=(Erased&&) noexcept = default;
-  ~Erased() = default;
-
- protected:
-  std::unique_ptr<Base> held_;
-};
-
-template <class Real> struct ForceBase {
-  virtual ~ForceBase() = default;
-  virtual std::unique_ptr<ForceBase> clone() const = 0;
-  virtual void add_to(ForceSink<Real>&, const ParticleSystem<Real>&) const = 0;
-  virtual bool has_lanes() const = 0;
-  virtual void add_to(ForceSink<Pack>&, const ParticleSystem<Pack>&) const = 0;
-  virtual bool has_derivative() const = 0;
-  virtual void add_to(ForceSink<Dual<Real, 1>>&, const ParticleSystem<Dual<Real, 1>>&) const = 0;
-  virtual ForceClaims claims() const = 0;
-  virtual void check(const ParticleSystem<Real>&) const = 0;
-  virtual std::string name() const = 0;
-  virtual std::string signature() const = 0;
-  virtual std::unique_ptr<ForceBase<Quad>> in_quad() const = 0;
-};
-template <class F, class Real> struct ForceModel final : ForceBase<Real> {
-  explicit ForceModel(F f) : force(std::move(f)) {}
-  std::unique_ptr<ForceBase<Real>> clone() const override { return std::make_unique<ForceModel>(force); }
-  void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const override { force.add_to(out, s); }
-  bool has_lanes() const override { return noether::has_lanes(force); }
-  void add_to(ForceSink<Pack>& out, const ParticleSystem<Pack>& s) const override {
-    if constexpr (Force<F, Pack>) return force.add_to(out, s);
-    throw LogicError("a force without lanes was asked for them");
-  }
-  bool has_derivative() const override { return noether::has_derivative<Real>(force); }
-  void add_to(ForceSink<Dual<Real, 1>>& out, const ParticleSystem<Dual<Real, 1>>& s) const override {
-    if constexpr (Force<F, Dual<Real, 1>>) return force.add_to(out, s);
-    throw LogicError("a force without derivatives was asked for them");
-  }
-  ForceClaims claims() const override { return claims_of(force); }
-  void check(const ParticleSystem<Real>& s) const override { check_named(s); }
-  std::string name() const override { return name_of(force); }
-  std::string signature() const override { return signature_of(force); }
-  std::unique_ptr<ForceBase<Quad>> in_quad() const override {
-    if constexpr (Force<F, Quad>) return std::make_unique<ForceModel<F, Quad>>(force);
-    return nullptr;
-  }
-  F force;
-
- private:
-  void check_named(const ParticleSystem<Real>& s) const {
-    if (s.box().is_periodic() && !claims_of(force).periodic) {
-      throw Error("the force '" + name_of(force) + "' knows open space only; take it out, or the periodic box");
-    }
-    check_force(force, s);
-  }
-};
 
 template <class Real> struct HamiltonianBase {
   virtual ~HamiltonianBase() = default;
@@ -211,40 +137,6 @@ template <class I> struct IntegratorModel final : IntegratorBase<typename I::rea
 };
 
 }  // namespace detail
-
-/// Any force over one number type; one virtual call per evaluation.
-template <class Real = double> class AnyForce : private detail::Erased<detail::ForceBase<Real>> {
- public:
-  template <class F>
-    requires(!std::is_same_v<std::decay_t<F>, AnyForce> && Force<std::decay_t<F>, Real>)
-  AnyForce(F force)  // NOLINT: erases on purpose
-      : detail::Erased<detail::ForceBase<Real>>(std::make_unique<detail::ForceModel<F, Real>>(std::move(force))) {}
-  explicit AnyForce(std::unique_ptr<detail::ForceBase<Real>> held)
-      : detail::Erased<detail::ForceBase<Real>>(std::move(held)) {}
-
-  void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const { this->held_->add_to(out, s); }
-  /// Whether it is a force over `Pack` too, so that eight stages cost little more than one.
-  bool has_lanes() const { return this->held_->has_lanes(); }
-  /// @throws LogicError  if it is not
-  void add_to(ForceSink<Pack>& out, const ParticleSystem<Pack>& s) const { this->held_->add_to(out, s); }
-  /// Whether it is a force over dual numbers too, so that its derivatives are exact.
-  bool has_derivative() const { return this->held_->has_derivative(); }
-  /// @throws LogicError  if it is not
-  void add_to(ForceSink<Dual<Real, 1>>& out, const ParticleSystem<Dual<Real, 1>>& s) const {
-    this->held_->add_to(out, s);
-  }
-  ForceClaims claims() const { return this->held_->claims(); }
-  /// @throws Error  see `check_force`
-  void check(const ParticleSystem<Real>& s) const { this->held_->check(s); }
-  std::string name() const { return this->held_->name(); }
-  std::string signature() const { return this->held_->signature(); }
-  /// The same force in extended precision; empty for one that is written for doubles only.
-  std::optional<AnyForce<Quad>> in_quad() const {
-    auto wide = this->held_->in_quad();
-    if (wide == nullptr) return {};
-    return AnyForce<Quad>(std::move(wide));
-  }
-};
 
 /// Any split Hamiltonian over one number type; one virtual call per cut of the run.
 template <class Real = double> class AnyHamiltonian : private detail::Erased<detail::HamiltonianBase<Real>> {

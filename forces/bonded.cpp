@@ -7,8 +7,6 @@
 
 namespace noether {
 
-template void Bonded::add_to(ForceSink<double>&, const ParticleSystem<double>&) const;
-
 const BondedTerms& Bonded::terms_of(const std::shared_ptr<const Topology>& topology, Index n) const {
   if (terms_ != nullptr && terms_->belong_to(topology.get(), n)) return *terms_;
   if (topology == nullptr ||
@@ -58,5 +56,9 @@ Failure detail::overstretch(const BondedTerms& terms, Index bond, double length,
                                  "smaller step, or begin with shorter bonds",
                                  told(term.particles[0]), told(term.particles[1]), length, longest)};
 }
+
+template void Bonded::add_to(ForceSink<double>&, const ParticleSystem<double>&) const;
+template struct detail::ForceModel<Bonded, double>;
+template struct detail::ForceModel<Bonded, Quad>;
 
 }  // namespace noether

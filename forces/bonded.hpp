@@ -1,6 +1,7 @@
 #pragma once
 /// Bonds, angles, dihedrals and impropers: the terms that a structure brings.
 
+#include "engine/any_force.hpp"
 #include "engine/description.hpp"
 #include "engine/force_sink.hpp"
 #include "engine/parallel.hpp"
@@ -109,5 +110,12 @@ template <class Real> void Bonded::add_to(ForceSink<Real>& out, const ParticleSy
 }
 
 extern template void Bonded::add_to(ForceSink<double>&, const ParticleSystem<double>&) const;
+
+namespace detail {  // compiled once, in bonded.cpp
+
+extern template struct ForceModel<Bonded, double>;
+extern template struct ForceModel<Bonded, Quad>;
+
+}  // namespace detail
 
 }  // namespace noether

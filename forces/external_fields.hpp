@@ -1,6 +1,7 @@
 #pragma once
 /// Fields that do not come from particles: uniform, oscillating, harmonic.
 
+#include "engine/any_force.hpp"
 #include "engine/description.hpp"
 #include "engine/force_sink.hpp"
 
@@ -90,5 +91,16 @@ struct HarmonicField {
     }
   }
 };
+
+namespace detail {  // compiled once, in external_fields.cpp
+
+extern template struct ForceModel<UniformField, double>;
+extern template struct ForceModel<UniformField, Quad>;
+extern template struct ForceModel<OscillatingField, double>;
+extern template struct ForceModel<OscillatingField, Quad>;
+extern template struct ForceModel<HarmonicField, double>;
+extern template struct ForceModel<HarmonicField, Quad>;
+
+}  // namespace detail
 
 }  // namespace noether

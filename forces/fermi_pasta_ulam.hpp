@@ -1,6 +1,7 @@
 #pragma once
 /// The chain of Fermi, Pasta and Ulam with stiff and soft springs in turn: fast oscillators that trade energy slowly.
 
+#include "engine/any_force.hpp"
 #include "engine/description.hpp"
 #include "engine/force_sink.hpp"
 
@@ -43,5 +44,12 @@ struct FermiPastaUlam {
     }
   }
 };
+
+namespace detail {  // compiled once, in fermi_pasta_ulam.cpp
+
+extern template struct ForceModel<FermiPastaUlam, double>;
+extern template struct ForceModel<FermiPastaUlam, Quad>;
+
+}  // namespace detail
 
 }  // namespace noether

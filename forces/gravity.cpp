@@ -98,8 +98,6 @@ Mat3<double> virial_of(const Gathered& gathered, double g, double softening) {
 
 }  // namespace
 
-template void Gravity::add_pairs(ForceSink<double>&, const ParticleSystem<double>&) const;
-
 void Gravity::add_stages(ForceSink<Pack>& out, const ParticleSystem<Pack>& s) const {
   const auto numbers = [](auto* packs) { return packs->lane.data(); };
   const VectorColumn<Pack>& x = s.positions();
@@ -134,5 +132,9 @@ void Gravity::add_lanes(ForceSink<double>& out, const ParticleSystem<double>& s)
   }
   if (out.wants_virial()) out.virial(virial_of(massive, g, softening));
 }
+
+template void Gravity::add_pairs(ForceSink<double>&, const ParticleSystem<double>&) const;
+template struct detail::ForceModel<Gravity, double>;
+template struct detail::ForceModel<Gravity, Quad>;
 
 }  // namespace noether

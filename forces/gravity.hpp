@@ -1,6 +1,7 @@
 #pragma once
 /// Newtonian gravity by direct summation.
 
+#include "engine/any_force.hpp"
 #include "engine/description.hpp"
 #include "engine/force_sink.hpp"
 #include "engine/pack.hpp"
@@ -180,5 +181,12 @@ template <class Real> void Gravity::add_rows(ForceSink<Real>& out, const Particl
 }
 
 extern template void Gravity::add_pairs(ForceSink<double>&, const ParticleSystem<double>&) const;
+
+namespace detail {  // compiled once, in gravity.cpp
+
+extern template struct ForceModel<Gravity, double>;
+extern template struct ForceModel<Gravity, Quad>;
+
+}  // namespace detail
 
 }  // namespace noether

@@ -1,6 +1,7 @@
 #pragma once
 /// The potential of Henon and Heiles: the smallest problem with regular and irregular motion side by side.
 
+#include "engine/any_force.hpp"
 #include "engine/description.hpp"
 #include "engine/force_sink.hpp"
 
@@ -42,5 +43,12 @@ struct HenonHeiles {
     }
   }
 };
+
+namespace detail {  // compiled once, in henon_heiles.cpp
+
+extern template struct ForceModel<HenonHeiles, double>;
+extern template struct ForceModel<HenonHeiles, Quad>;
+
+}  // namespace detail
 
 }  // namespace noether

@@ -193,4 +193,7 @@ void LennardJonesForce::add_lanes(ForceSink<double>& out, const ParticleSystem<d
   add_tail(out, s);
 }
 
+template struct detail::ForceModel<LennardJonesForce, double>;
+template struct detail::ForceModel<LennardJonesForce, Quad>;
+
 }  // namespace noether

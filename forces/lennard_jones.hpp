@@ -1,6 +1,7 @@
 #pragma once
 /// The Lennard-Jones potential between all pairs up to a cutoff.
 
+#include "engine/any_force.hpp"
 #include "engine/description.hpp"
 #include "engine/force_sink.hpp"
 #include "engine/neighbor_list.hpp"
@@ -159,5 +160,12 @@ template <class Real> void LennardJonesForce::add_tail(ForceSink<Real>& out, con
   out.energy(Real(known.tail_energy) / volume);
   out.virial(Mat3<Real>::Identity() * (Real(known.tail_virial) / volume / Real(3)));
 }
+
+namespace detail {  // compiled once, in lennard_jones.cpp
+
+extern template struct ForceModel<LennardJonesForce, double>;
+extern template struct ForceModel<LennardJonesForce, Quad>;
+
+}  // namespace detail
 
 }  // namespace noether

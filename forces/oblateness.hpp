@@ -1,6 +1,7 @@
 #pragma once
 /// The zonal harmonics J2 and J4 of an oblate primary.
 
+#include "engine/any_force.hpp"
 #include "engine/description.hpp"
 #include "engine/force_sink.hpp"
 
@@ -70,5 +71,12 @@ struct Oblateness {
     }
   }
 };
+
+namespace detail {  // compiled once, in oblateness.cpp
+
+extern template struct ForceModel<Oblateness, double>;
+extern template struct ForceModel<Oblateness, Quad>;
+
+}  // namespace detail
 
 }  // namespace noether

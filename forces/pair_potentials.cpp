@@ -59,4 +59,13 @@ double Buckingham::nearest() const {
   }
 }
 
+template struct detail::ForceModel<WcaForce, double>;
+template struct detail::ForceModel<WcaForce, Quad>;
+template struct detail::ForceModel<MorseForce, double>;
+template struct detail::ForceModel<MorseForce, Quad>;
+template struct detail::ForceModel<BuckinghamForce, double>;
+template struct detail::ForceModel<BuckinghamForce, Quad>;
+template struct detail::ForceModel<ReactionFieldForce, double>;
+template struct detail::ForceModel<ReactionFieldForce, Quad>;
+
 }  // namespace noether

@@ -1,6 +1,7 @@
 #pragma once
 /// Potentials between pairs that are not bonded: each a short struct for PairForce.
 
+#include "engine/any_force.hpp"
 #include "forces/pair_force.hpp"
 
 #include <cmath>
@@ -152,5 +153,18 @@ using WcaForce = PairForce<Wca>;
 using MorseForce = PairForce<MorsePair>;
 using BuckinghamForce = PairForce<Buckingham>;
 using ReactionFieldForce = PairForce<ReactionField>;
+
+namespace detail {  // compiled once, in pair_potentials.cpp
+
+extern template struct ForceModel<WcaForce, double>;
+extern template struct ForceModel<WcaForce, Quad>;
+extern template struct ForceModel<MorseForce, double>;
+extern template struct ForceModel<MorseForce, Quad>;
+extern template struct ForceModel<BuckinghamForce, double>;
+extern template struct ForceModel<BuckinghamForce, Quad>;
+extern template struct ForceModel<ReactionFieldForce, double>;
+extern template struct ForceModel<ReactionFieldForce, Quad>;
+
+}  // namespace detail
 
 }  // namespace noether

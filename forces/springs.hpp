@@ -1,6 +1,7 @@
 #pragma once
 /// Springs with a rest length: between pairs of particles, and from a point to particles.
 
+#include "engine/any_force.hpp"
 #include "engine/description.hpp"
 #include "engine/force_sink.hpp"
 
@@ -114,5 +115,14 @@ struct Tether {
     }
   }
 };
+
+namespace detail {  // compiled once, in springs.cpp
+
+extern template struct ForceModel<HarmonicBond, double>;
+extern template struct ForceModel<HarmonicBond, Quad>;
+extern template struct ForceModel<Tether, double>;
+extern template struct ForceModel<Tether, Quad>;
+
+}  // namespace detail
 
 }  // namespace noether

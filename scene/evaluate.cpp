@@ -17,10 +17,7 @@ namespace {
 std::vector<SceneForce> terms_of(const Scene& scene) {
   std::vector<SceneForce> terms;
   if (scene.hamiltonian.kind == SceneHamiltonian::Kind::wisdom_holman) {
-    const Gravity gravity{.G = scene.hamiltonian.G};
-    terms.push_back({"gravity", {}, AnyForce<double>(gravity), {}, [gravity](const ParticleSystem<double>& s) {
-                       return gradient_error(gravity, s);
-                     }});
+    terms.push_back({"gravity", {}, AnyForce<double>(Gravity{.G = scene.hamiltonian.G}), {}});
   }
   for (const SceneForce& force : scene.hamiltonian.forces) {
     if (force.force) terms.push_back(force);
@@ -60,7 +57,7 @@ Evaluation evaluate(const Scene& scene, bool check) {
     result.potential += sink.potential();
     result.virial += sink.virial();
     for (Index i = 0; i < s.size(); ++i) result.forces.add(i, std::as_const(s).masses()[i] * a[i]);
-    if (check) result.gradient_error = std::max(result.gradient_error.value_or(0), term.gradient_error(s));
+    if (check) result.gradient_error = std::max(result.gradient_error.value_or(0), gradient_error(*term.force, s));
   }
   for (Index i = 0; i < s.size(); ++i) {
     result.force_max = std::max(result.force_max, std::sqrt(norm2(std::as_const(result.forces)[i])));

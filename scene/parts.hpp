@@ -2,9 +2,8 @@
 /// The parts a scene may name: each is one type that describes itself.
 
 #include "constraints/constraint_set.hpp"
-#include "engine/erasure.hpp"
+#include "engine/any_force.hpp"
 #include "engine/simulation.hpp"
-#include "forces/check_gradient.hpp"
 #include "forces/linear_drag.hpp"
 #include "integrators/first_order_system.hpp"
 #include "scene/fields.hpp"
@@ -32,8 +31,6 @@ struct SceneForce {
   SceneValue effective;                   ///< its table, defaults included
   std::optional<AnyForce<double>> force;  ///< empty for drag, which becomes a letter
   std::optional<LinearDrag> drag;
-  /// Difference between the force and the gradient of its energy (forces/check_gradient.hpp).
-  std::function<double(const ParticleSystem<double>&)> gradient_error;
 };
 
 /// Particles that constraints of one table tie: so many for each constraint.
@@ -168,13 +165,12 @@ class Parts {
         std::copy(particles.begin(), particles.end(), force.tied.emplace_back().begin());
       }
     }
-    SceneForce made{std::string(part_name<F>()), SceneValue::table(), {}, {}, {}};
+    SceneForce made{std::string(part_name<F>()), SceneValue::table(), {}, {}};
     put_fields(reader, force, made.effective);
     if constexpr (std::is_same_v<F, LinearDrag>) {
       made.drag = force;
     } else {
       made.force = AnyForce<double>(force);
-      made.gradient_error = [force](const ParticleSystem<double>& s) { return noether::gradient_error(force, s); };
     }
     return made;
   }

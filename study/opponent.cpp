@@ -26,7 +26,7 @@ std::string_view name_of(Kind kind) { return kind == Kind::wisdom_holman ? "wisd
 /// The scene's Hamiltonian without its splitting: gravity becomes a force as any other.
 void join_parts(SceneHamiltonian& hamiltonian) {
   if (hamiltonian.kind == Kind::kinetic_potential) return;
-  SceneForce gravity{"gravity", SceneValue::table(), {}, {}, {}};
+  SceneForce gravity{"gravity", SceneValue::table(), {}, {}};
   gravity.force = AnyForce<double>(Gravity{.G = hamiltonian.wisdom_holman.G});
   hamiltonian.forces.insert(hamiltonian.forces.begin(), std::move(gravity));
   hamiltonian.kind = Kind::kinetic_potential;

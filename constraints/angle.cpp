@@ -1,0 +1,7 @@
+#include "constraints/angle.hpp"
+
+namespace noether {
+
+template class ConstraintsOf<Angle>;
+
+}  // namespace noether

@@ -1,0 +1,7 @@
+#include "constraints/distance.hpp"
+
+namespace noether {
+
+template class ConstraintsOf<Distance>;
+
+}  // namespace noether
