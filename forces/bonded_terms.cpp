@@ -145,12 +145,11 @@ BondedTerms::BondedTerms(std::shared_ptr<const Topology> topology, Index n)
   std::uint64_t slots = 0;
   const auto add = [&](const auto& terms) {
     for (const auto& term : terms) {
-      const bool is_bond = term.particles.size() == 2;
-      for (const Index i : term.particles) {
-        const bool opposite = is_bond && i == term.particles[1];
-        places.push_back({i, opposite ? 2 * slots - 1 : 2 * slots});
-        if (!opposite) ++slots;
+      const std::size_t own = slots_of(term);
+      for (std::size_t k = 0; k < term.particles.size(); ++k) {
+        places.push_back({term.particles[k], k < own ? 2 * (slots + k) : 2 * slots + 1});
       }
+      slots += own;
     }
     terms_ += static_cast<Index>(terms.size());
   };

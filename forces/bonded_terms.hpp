@@ -43,8 +43,11 @@ class BondedTerms {
   Index particles() const { return static_cast<Index>(first_.size()) - 1; }
   /// Number of terms of the four families together.
   Index terms() const { return terms_; }
-  /// Number of slots.
+  /// Number of slots, of all terms and of one.
   Index slots() const { return slots_; }
+  template <std::size_t n> static constexpr std::size_t slots_of(const BondedTerm<n>& /*term*/) {
+    return n == 2 ? 1 : n;
+  }
   /// Calls `body(slot, sign)` for the slots of particle `i`, in order; sign is -1 where it feels the opposite, else 1.
   template <class Body> void for_each_slot(Index i, const Body& body) const {
     const auto at = static_cast<std::size_t>(i);

@@ -13,6 +13,23 @@ bool acts(const PairFilter& filter, std::int32_t own, std::int32_t other) {
   return (a == filter.type[0] && b == filter.type[1]) || (a == filter.type[1] && b == filter.type[0]);
 }
 
+/// The charges of as many records as there are lanes.
+HWY_INLINE Vector load_charges(const double* charges, const std::int32_t* offsets) {
+  const auto record = hn::ShiftRight<2>(hn::PromoteTo(Whole(), hn::LoadU(hn::Rebind<std::int32_t, Lanes>(), offsets)));
+  return hn::GatherIndex(Lanes(), charges, record);
+}
+
+void multiply_charges(const PairFilter& filter, const PairGroup& group, std::ptrdiff_t first, PairChunk& chunk) {
+  const Lanes d;
+  for (std::ptrdiff_t half = 0; half < 8; half += lanes) {
+    const Vector own = hn::Mul(hn::Set(d, filter.coulomb_constant), load_charges(filter.charges, group.records + half));
+    for (std::ptrdiff_t row = 0; row < chunk.rows; ++row) {
+      const Vector other = load_charges(filter.charges, group.entries + 8 * (first + row) + half);
+      hn::Store(hn::Mul(own, other), d, chunk.product + 8 * row + half);
+    }
+  }
+}
+
 void load(const PairFilter& filter, const PairGroup& group, std::ptrdiff_t first, PairChunk& chunk) {
   const Lanes d;
   const Vector range2 = hn::Set(d, filter.range2);
@@ -29,6 +46,7 @@ void load(const PairFilter& filter, const PairGroup& group, std::ptrdiff_t first
       hn::Store(lesser(range2, pair.r2), d, chunk.r2 + to);
     }
   }
+  if (filter.charges != nullptr) multiply_charges(filter, group, first, chunk);
   if (filter.type[0] < 0) return;
   for (std::ptrdiff_t k = 0; k < 8 * chunk.rows; ++k) {
     if (!acts(filter, group.records[k % 8], group.entries[8 * first + k])) chunk.r2[k] = filter.range2;

@@ -16,17 +16,19 @@ struct alignas(64) PairChunk {
   std::ptrdiff_t rows;
 };
 
-/// Which pairs act.
+/// Which pairs act, and with what charges.
 struct PairFilter {
   const double* records;           ///< shape (records, 4): x, y, z, type as std::int64_t
   double range2;                   ///< square of the cutoff [length^2]
   double nearest2;                 ///< nearer pairs are too close [length^2]
   std::int64_t type[2];            ///< only pairs of these; -1: all
   double force_unit, energy_unit;  ///< what the sums count, powers of two
+  const double* charges;           ///< of the records, shape (records); null: nobody asks for them [charge]
+  double coulomb_constant;         ///< times the charges of a pair [energy length/charge^2]
 };
 
 struct PairChunkKernels {
-  /// Loads rows `first` to `first + chunk.rows` of a group.
+  /// Loads rows `first` to `first + chunk.rows` of a group: distances, and what charges multiply to.
   void (*load)(const PairFilter& filter, const PairGroup& group, std::ptrdiff_t first, PairChunk& chunk);
   /// Adds the pairs of a chunk to the sums. [0]: quickly, [1]: one by one, whatever their strength; [][0]: forces,
   /// [][1]: energies and virials too.

@@ -37,15 +37,6 @@ const double* charges_of_records(const ParticleSystem<double>& s, const Neighbor
   return to;
 }
 
-/// What the charges of rows `first` to `first + chunk.rows` multiply to.
-void multiply_charges(const double* charges, double constant, const PairGroup& group, std::ptrdiff_t first,
-                      PairChunk& chunk) {
-  double own[8];
-  for (int lane = 0; lane < 8; ++lane) own[lane] = constant * charges[group.records[lane] / 4];
-  const std::int32_t* const entries = group.entries + 8 * first;
-  for (std::ptrdiff_t k = 0; k < 8 * chunk.rows; ++k) chunk.product[k] = own[k % 8] * charges[entries[k] / 4];
-}
-
 }  // namespace
 
 std::array<int, 2> pair_types(const Topology* topology, const std::string& first, const std::string& second) {
@@ -88,13 +79,14 @@ void add_pairs_in_lanes(ForceSink<double>& out, const ParticleSystem<double>& s,
   const auto quick = kernels.add[0][all], careful = kernels.add[1][all];
   const double force_unit = std::ldexp(1.0, std::ilogb(plan.scale) + 1 - bits_of_unit);
   const double energy_unit = force_unit * std::ldexp(1.0, std::ilogb(plan.cutoff) + 1);
-  const double* const charges = plan.coulomb_constant != 0 ? charges_of_records(s, list) : nullptr;
   const PairFilter filter{list.records(),
                           plan.cutoff * plan.cutoff,
                           plan.nearest * plan.nearest,
                           {plan.types[0], plan.types[1]},
                           force_unit,
-                          energy_unit};
+                          energy_unit,
+                          plan.coulomb_constant != 0 ? charges_of_records(s, list) : nullptr,
+                          plan.coulomb_constant};
   add_pair_groups(
       out, s, list, {force_unit, energy_unit}, plan.name, [&](const PairGroup& group, PairSums& found, bool care) {
         PairChunk chunk;
@@ -102,7 +94,6 @@ void add_pairs_in_lanes(ForceSink<double>& out, const ParticleSystem<double>& s,
         for (std::ptrdiff_t row = 0; row < group.rows; row += chunk.rows) {
           chunk.rows = std::min(PairChunk::most_rows, group.rows - row);
           kernels.load(filter, group, row, chunk);
-          if (charges != nullptr) multiply_charges(charges, plan.coulomb_constant, group, row, chunk);
           plan.loop(plan.potential, plan.end, {chunk.r2, chunk.product, 8 * chunk.rows}, chunk.energy, chunk.force);
           (care ? careful : quick)(filter, chunk, found);
         }

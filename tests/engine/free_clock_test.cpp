@@ -191,6 +191,27 @@ TEST_CASE("monitors by time look at exact times that the steps of the run do not
   }
 }
 
+TEST_CASE("a monitor by time that comes late looks from the present on, at the multiples it would have had",
+          "[free clock]") {
+  for (const double comes : {3.0, 2.8, 2.8000001}) {
+    auto run = make_run();
+    CHECK(run.run_until(comes).ok());
+    std::vector<Moment> early, timed;
+    run.every_time(0.7, Diary{&timed});
+    CHECK(run.run_until(5).ok());
+    auto whole = make_run();
+    whole.every_time(0.7, Diary{&early});
+    CHECK(whole.run_until(5).ok());
+    std::erase_if(early, [&](const Moment& m) { return m.time < comes; });
+    REQUIRE(timed.size() == (comes == 2.8 ? 4u : 3u));
+    REQUIRE(timed.size() == early.size());
+    for (std::size_t k = 0; k < timed.size(); ++k) {
+      CHECK(timed[k].time == early[k].time);
+      CHECK(timed[k].x == early[k].x);
+    }
+  }
+}
+
 TEST_CASE("what is shown between two steps is as accurate as the steps", "[free clock]") {
   auto run = make_run();
   std::vector<Moment> timed, stepped;
