@@ -25,4 +25,12 @@ void check_constant_of_gravitation(const std::optional<double>& G) {
   if (G && !(*G > 0)) refuse_field("G", *G, "is no constant of gravitation; a number above 0 is expected");
 }
 
+namespace detail {
+
+std::string key_below(const std::string& prefix, std::string_view name) {
+  return prefix.empty() ? std::string(name) : fmt::format("{}/{}", prefix, name);
+}
+
+}  // namespace detail
+
 }  // namespace noether

@@ -86,6 +86,9 @@ concept Described = requires {
 };
 
 namespace detail {
+/// The description of `T`, once for all who read it.
+template <class T> inline constexpr auto description_of = T::describe();
+
 template <class E> struct is_field : std::false_type {};
 template <auto M> struct is_field<Field<M>> : std::true_type {};
 template <class E> struct is_state : std::false_type {};
@@ -101,7 +104,7 @@ template <class T, class Visit> constexpr void for_each_field(const Visit& visit
          }(entry)),
          ...);
       },
-      T::describe().entries);
+      detail::description_of<T>.entries);
 }
 
 /// Calls `visit(state)` for every state entry of a part.
@@ -113,7 +116,7 @@ template <class T, class Visit> constexpr void for_each_state(const Visit& visit
          }(entry)),
          ...);
       },
-      T::describe().entries);
+      detail::description_of<T>.entries);
 }
 
 /// The entry of type `E` (Formula, Source or Quantities) of a part; empty if it has none.
@@ -126,7 +129,7 @@ template <class T, class E> constexpr std::string_view entry_text() {
          }(entry)),
          ...);
       },
-      T::describe().entries);
+      detail::description_of<T>.entries);
   return found;
 }
 
@@ -156,21 +159,22 @@ template <class T> constexpr std::string_view part_name() {
   }
 }
 
+namespace detail {
+/// The key of a state: "prefix/name", or the name alone.
+std::string key_below(const std::string& prefix, std::string_view name);
+}  // namespace detail
+
 /// Writes every declared state of `value` below `prefix`.
 template <class T> void save_part(SavedState& saved, const std::string& prefix, const T& value) {
   if constexpr (Described<T>) {
-    for_each_state<T>([&](const auto& e) {
-      save_value(saved, prefix.empty() ? std::string(e.name) : prefix + "/" + std::string(e.name), value.*(e.member));
-    });
+    for_each_state<T>([&](const auto& e) { save_value(saved, detail::key_below(prefix, e.name), value.*(e.member)); });
   }
 }
 
 /// Reads every declared state of `value` from below `prefix`. @throws Error if one is missing
 template <class T> void load_part(const SavedState& saved, const std::string& prefix, T& value) {
   if constexpr (Described<T>) {
-    for_each_state<T>([&](const auto& e) {
-      load_value(saved, prefix.empty() ? std::string(e.name) : prefix + "/" + std::string(e.name), value.*(e.member));
-    });
+    for_each_state<T>([&](const auto& e) { load_value(saved, detail::key_below(prefix, e.name), value.*(e.member)); });
   }
 }
 

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <type_traits>
 
 namespace noether::detail {
@@ -23,18 +24,22 @@ template <class T> std::string name_of(const T& value) {
   }
 }
 
-inline std::string value_text(double x) { return fmt::format("{}", x); }
-inline std::string value_text(const std::optional<double>& x) { return x ? value_text(*x) : "default"; }
-inline std::string value_text(const Vec3<double>& x) { return fmt::format("[{}, {}, {}]", x[0], x[1], x[2]); }
-inline std::string value_text(const std::array<double, 3>& x) { return fmt::format("[{}, {}, {}]", x[0], x[1], x[2]); }
-inline std::string value_text(const std::optional<std::array<double, 3>>& x) { return x ? value_text(*x) : "default"; }
+std::string value_text(double x);
+std::string value_text(std::int64_t x);
+std::string value_text(const std::optional<double>& x);
+std::string value_text(const Vec3<double>& x);
+std::string value_text(const std::array<double, 3>& x);
+std::string value_text(const std::optional<std::array<double, 3>>& x);
 template <class T> std::string value_text(const T& value) {
   if constexpr (std::is_enum_v<T> || std::is_integral_v<T>) {
-    return fmt::format("{}", static_cast<std::int64_t>(value));
+    return value_text(static_cast<std::int64_t>(value));
   } else {
     return "?";
   }
 }
+
+/// Appends ", name = value"; the first without the comma.
+void add_field_text(std::string& fields, std::string_view name, const std::string& value);
 
 /// A part and its parameters, "gravity(G = default, softening = 0)": two parts that differ in it make different runs.
 template <class T> std::string signature_of(const T& value) {
@@ -42,9 +47,8 @@ template <class T> std::string signature_of(const T& value) {
     return value.signature();
   } else if constexpr (requires { T::describe(); }) {
     std::string fields;
-    for_each_field<T>([&](const auto& field) {
-      fields += (fields.empty() ? "" : ", ") + fmt::format("{} = {}", field.name, value_text(value.*(field.member)));
-    });
+    for_each_field<T>(
+        [&](const auto& field) { add_field_text(fields, field.name, value_text(value.*(field.member))); });
     if constexpr (requires { value.tied.front()[0]; }) {
       fields += fields.empty() ? "tied = [" : ", tied = [";
       for (const auto& particles : value.tied) fields += fmt::format("[{}]", fmt::join(particles, " "));

@@ -46,7 +46,7 @@ template <class E> std::vector<std::string> choice_names() {
   return names;
 }
 
-template <class V> std::string field_kind() {
+template <class V> constexpr std::string_view field_kind() {
   using T = typename optional_value<V>::type;
   if constexpr (std::is_same_v<T, bool>)
     return "flag";
@@ -144,34 +144,65 @@ template <class V> void read_field(TableReader& reader, std::string_view key, st
 
 }  // namespace detail
 
+namespace detail {
+
+PartInfo part_texts(std::string_view name, std::string_view help, std::string_view formula, std::string_view source,
+                    std::string_view quantities);
+
+/// Texts of a field, whatever its type.
+struct FieldTexts {
+  std::string_view name, dimension, help, example;
+
+  template <class F> static FieldTexts of(const F& field) {
+    return {field.name, field.dimension, field.help, field.example};
+  }
+};
+
+/// Appends what is known of a field. @param value  its default; null: none
+void add_field(PartInfo& info, const FieldTexts& texts, std::string_view kind, const SceneValue* value,
+               std::vector<std::string> choices);
+/// Refuses a table without a field that has no default. @throws SceneError
+void require_field(TableReader& reader, const FieldTexts& texts);
+
+/// The same for a field of type `V`: compiled for each type once, not for each field.
+template <class V> void add_field(PartInfo& info, const FieldTexts& texts, const V& value) {
+  using Plain = typename optional_value<V>::type;
+  std::vector<std::string> choices;
+  if constexpr (std::is_enum_v<Plain>) choices = choice_names<Plain>();
+  std::optional<SceneValue> known;
+  if constexpr (std::is_same_v<V, Plain>) {
+    known = field_value(value, "1", unit_system("reduced"));
+  } else if (value) {
+    known = field_value(*value, "1", unit_system("reduced"));
+  }
+  add_field(info, texts, field_kind<V>(), known ? &*known : nullptr, std::move(choices));
+}
+
+/// Appends a field as it is: what the scene wrote, or the value in the units of the scene.
+template <class V>
+void put_field(TableReader& reader, std::string_view name, std::string_view dimension, const V& value,
+               SceneValue& effective) {
+  if (const SceneValue* written = reader.find(name)) {
+    effective.put(std::string(name), *written);
+  } else if constexpr (std::is_same_v<V, typename optional_value<V>::type>) {
+    effective.put(std::string(name), field_value(value, dimension, *reader.context().units));
+  } else if (value && name != "G") {
+    effective.put(std::string(name), field_value(*value, dimension, *reader.context().units));
+  }
+}
+
+}  // namespace detail
+
 /// What part `T` says of itself.
 template <class T> PartInfo part_info() {
-  PartInfo info{std::string(T::describe().name),          std::string(T::describe().help),
-                std::string(entry_text<T, Formula>()),    std::string(entry_text<T, Source>()),
-                std::string(entry_text<T, Quantities>()), {}};
+  constexpr std::string_view formula = entry_text<T, Formula>(), source = entry_text<T, Source>(),
+                             quantities = entry_text<T, Quantities>();
+  constexpr auto& description = detail::description_of<T>;
+  PartInfo info = detail::part_texts(description.name, description.help, formula, source, quantities);
   if constexpr (std::is_default_constructible_v<T>) {
     const T defaults{};
-    for_each_field<T>([&](const auto& field) {
-      using V = typename std::decay_t<decltype(field)>::value_type;
-      using Plain = typename detail::optional_value<V>::type;
-      FieldInfo one{std::string(field.name),
-                    std::string(field.dimension),
-                    std::string(field.help),
-                    detail::field_kind<V>(),
-                    "",
-                    std::string(field.example),
-                    {}};
-      const V& value = defaults.*(field.member);
-      if (!one.example.empty()) {
-        one.default_value = "";
-      } else if constexpr (std::is_same_v<V, Plain>) {
-        one.default_value = to_text(detail::field_value(value, "1", unit_system("reduced")));
-      } else if (value) {
-        one.default_value = to_text(detail::field_value(*value, "1", unit_system("reduced")));
-      }
-      if constexpr (std::is_enum_v<Plain>) one.choices = detail::choice_names<Plain>();
-      info.fields.push_back(std::move(one));
-    });
+    for_each_field<T>(
+        [&](const auto& field) { detail::add_field(info, detail::FieldTexts::of(field), defaults.*(field.member)); });
   }
   return info;
 }
@@ -189,13 +220,7 @@ template <class T> void read_fields(TableReader& reader, T& part) {
 template <class T> void read_part(TableReader& reader, T& part) {
   read_fields(reader, part);
   reader.finish();
-  for_each_field<T>([&](const auto& field) {
-    if (field.example.empty() || reader.has(field.name)) return;
-    const bool bare = reader.context().units->is_reduced();
-    reader.fail(nullptr, field.name,
-                fmt::format("{} has no {}; give one{}{}", reader.what(), field.name, bare ? "" : ", such as ",
-                            bare ? "" : field.example));
-  });
+  for_each_field<T>([&](const auto& field) { detail::require_field(reader, detail::FieldTexts::of(field)); });
   try {
     check_part(part);
   } catch (const SceneError&) {
@@ -208,16 +233,7 @@ template <class T> void read_part(TableReader& reader, T& part) {
 /// Appends every field of a part as it is: what the scene wrote, and defaults in the units of the scene.
 template <class T> void put_fields(TableReader& reader, const T& part, SceneValue& effective) {
   for_each_field<T>([&](const auto& field) {
-    using V = typename std::decay_t<decltype(field)>::value_type;
-    const std::string name(field.name);
-    const auto& value = part.*(field.member);
-    if (const SceneValue* written = reader.find(name)) {
-      effective.put(name, *written);
-    } else if constexpr (std::is_same_v<V, typename detail::optional_value<V>::type>) {
-      effective.put(name, detail::field_value(value, field.dimension, *reader.context().units));
-    } else if (value && name != "G") {
-      effective.put(name, detail::field_value(*value, field.dimension, *reader.context().units));
-    }
+    detail::put_field(reader, field.name, field.dimension, part.*(field.member), effective);
   });
 }
 

@@ -168,18 +168,6 @@ std::vector<double> read_start(const TableReader& reader, const SceneValue& list
   return values;
 }
 
-SceneValue quantity_value(double value, std::string_view dimension, const UnitSystem& units) {
-  const Dimension parsed = parse_dimension(dimension);
-  if (units.is_reduced() || parsed == dimensions::none) {
-    if (dimension != "angle" || units.is_reduced()) return SceneValue::of(value);
-    return SceneValue::of(format_number(value) + " rad");
-  }
-  const std::string unit = unit_of(parsed, units);
-  // "0 1/day" is no quantity; "0/day" is.
-  const bool inverse = unit.starts_with("1/");
-  return SceneValue::of(format_number(value) + (inverse ? unit.substr(1) : " " + unit));
-}
-
 }  // namespace detail
 
 }  // namespace noether
