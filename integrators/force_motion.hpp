@@ -126,6 +126,7 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
     return true;
   }
 
+  bool stages_in_turn() const override { return !in_lanes_; }
   Real* place_of_stages() override {
     if constexpr (sees_packs) {
       if (in_lanes_) return numbers(packs_.positions());
@@ -184,9 +185,11 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
     const Index n = work_.size();
     VectorColumn<Real>&x = work_.positions(), &v = work_.velocities();
     for (int stage = 0; stage < states.stages; ++stage) {
+      if (!states.wants(stage)) continue;
       const auto take = [&](const Real* from, VectorColumn<Real>& to) {
         for (int k = 0; k < 3; ++k) {
-          for (Index i = 0; i < n; ++i, from += lane_count) to.component(k)[i] = from[stage];
+          Real* const component = to.component(k);
+          for (Index i = 0; i < n; ++i, from += lane_count) component[i] = from[stage];
         }
       };
       take(states.q, x);
@@ -194,11 +197,15 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
       work_.clock().set_stage_offset(states.t[stage]);
       work_.moved();
       sum_forces();
-      const int same = stage + 1 == states.stages ? lane_count - stage : 1;
       Real* to = out + stage;
       for (int k = 0; k < 3; ++k) {
-        for (Index i = 0; i < n; ++i, to += lane_count) std::fill_n(to, same, a_.component(k)[i]);
+        const Real* const component = a_.component(k);
+        for (Index i = 0; i < n; ++i, to += lane_count) *to = component[i];
       }
+    }
+    if (states.stages == lane_count) return;
+    for (Real* of = out; of < out + lane_count * 3 * n; of += lane_count) {
+      std::fill(of + states.stages, of + lane_count, of[states.stages - 1]);
     }
   }
 

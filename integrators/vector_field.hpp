@@ -5,6 +5,7 @@
 #include "engine/description.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -28,6 +29,9 @@ template <class Real> struct StageStates {
   const Real* v = nullptr;    ///< velocities, where the field depends on them; shape (n, 8)
   int stages = lane_count;    ///< that count; lanes beyond them hold the state of one of them
   bool second_order = false;  ///< q are positions
+  std::uint8_t wanted = 0xff;  ///< a bit for each stage; of the others `out` holds the rates from the call before
+
+  bool wants(int stage) const { return (wanted >> static_cast<unsigned>(stage) & 1U) != 0; }
 };
 
 /// What a vector field says of itself.
@@ -75,13 +79,15 @@ template <class Real> class VectorField {
     ++evaluations_.force;
     accelerate(t, y, a);
   }
-  /// Rates (for second order: accelerations) at all stages, counted as so many, in the layout of the states; lanes
-  /// beyond the stages hold the rates of one of them.
+  /// Rates (for second order: accelerations) at all stages, in the layout of the states, those that are wanted counted;
+  /// lanes beyond the stages hold the rates of one of them.
   /// @return where they are: in `out`, or in the field's own place until it is asked again
   const Real* rates(const StageStates<Real>& states, Real* out) {
-    evaluations_.force += states.stages;
+    evaluations_.force += std::popcount(states.wanted & ((1U << static_cast<unsigned>(states.stages)) - 1));
     return evaluate_stages(states, out);
   }
+  /// Whether stages are evaluated one after the other, so that it saves something not to want them all.
+  virtual bool stages_in_turn() const { return true; }
   /// Where the q of the states may be formed, so that nobody has to copy them; null where there is no such place.
   virtual Real* place_of_stages() { return nullptr; }
   /// Whether f is known over dual numbers, so that `derivative` and `jacobian` are exact.
@@ -128,6 +134,7 @@ template <class Real> const Real* VectorField<Real>::evaluate_stages(const Stage
   const Index n = second ? size() / 2 : size();
   stage_.resize(size());
   for (int k = 0; k < states.stages; ++k) {
+    if (!states.wants(k)) continue;
     for (Index i = 0; i < n; ++i) {
       stage_[i] = states.q[lane_count * i + k];
       if (second) stage_[n + i] = states.v != nullptr ? states.v[lane_count * i + k] : Real(0);

@@ -105,6 +105,8 @@ template <class Real> void Collocation<Real>::bind(const VectorField<Real>& f) {
   const auto padded = static_cast<std::size_t>((n_ + 7) / 8 * 8);
   for (auto* all : {&rates_, &previous_, &trial_, &q_, &v_}) all->assign(lane_count * padded, Real(0));
   for (auto* all : {&last_, &largest_}) all->assign(padded, Real(0));
+  in_turn_ = f.stages_in_turn();
+  for (auto* all : {&known_q_, &known_v_}) all->assign(in_turn_ ? lane_count * padded : 0, Real(0));
   low_.assign(static_cast<std::size_t>(f.size()), Real(0));
   stage_.resize(f.size());
   sums_ = {n_};
@@ -217,6 +219,21 @@ template <class Real> Real Collocation<Real>::action(VectorField<Real>& f, const
   return Real(h_) * sum;
 }
 
+/// Those that have moved since they were evaluated: the first ones come to rest a sweep or two before the last.
+template <class Real> std::uint8_t Collocation<Real>::stages_to_evaluate(int round, const Real* q) {
+  constexpr std::uint8_t all = 0xff;
+  if (!in_turn_) return all;
+  if (round == 1) {
+    std::copy_n(q, known_q_.size(), known_q_.data());
+    if (with_velocities_) std::copy_n(v_.data(), known_v_.size(), known_v_.data());
+    return all;
+  }
+  const Index groups = particles_ > 0 ? particles_ : n_;
+  std::uint8_t moved = sums_.moved(q, groups, known_q_.data());
+  if (with_velocities_) moved |= sums_.moved(v_.data(), groups, known_v_.data());
+  return moved;
+}
+
 /// Sweeps until the rates stand still: until what the next sweep would change is below rounding, or no less than what
 /// this one has. Steps take about as many sweeps as the one before: only the last three of these are looked at, which
 /// saves a tenth of the time, and a step ends at most one sweep earlier than the last.
@@ -234,8 +251,10 @@ typename Collocation<Real>::Sweeps Collocation<Real>::sweep(VectorField<Real>& f
   double before = std::numeric_limits<double>::infinity();
   for (int round = 1; round <= most; ++round) {
     form_states(rates, y, h, q);
+    const std::uint8_t wanted = stages_to_evaluate(round, q);
     const Real* const fresh =
-        f.rates({times.data(), q, with_velocities_ ? v_.data() : nullptr, table_.stages, second_order_}, trial_.data());
+        f.rates({times.data(), q, with_velocities_ ? v_.data() : nullptr, table_.stages, second_order_, wanted},
+                trial_.data());
     rates = round < unseen ? fresh : rates_.data();
     if (round < unseen) continue;
     swept_ = round;

@@ -57,6 +57,7 @@ template <class Real> class Collocation final : public Method<Real> {
   void form_positions(const Real* rates, const Vector<Real>& y, double h, Real* q);
   void form_velocities(const Real* rates, const Vector<Real>& y, double h);
   void form_states(const Real* rates, const Vector<Real>& y, double h, Real* q);
+  std::uint8_t stages_to_evaluate(int round, const Real* q);
   void finish(Vector<Real>& y, double h);
   double roughness(const Vector<Real>& y, double h);
   bool is_rounding(const Vector<Real>& y, double h, double change) const;
@@ -66,11 +67,12 @@ template <class Real> class Collocation final : public Method<Real> {
   int order_;
   bool adaptive_, symplectic_;
   double rtol_, first_, target_, settled_;
-  bool second_order_ = false, with_velocities_ = false;
+  bool second_order_ = false, with_velocities_ = false, in_turn_ = false;
   Index n_ = 0, particles_ = 0;  ///< variables that stages hold; particles among them
 
   StageArithmetic<Real> sums_;
   AlignedVector<Real> rates_, previous_, trial_, q_, v_;  ///< shape (n, 8)
+  AlignedVector<Real> known_q_, known_v_;                 ///< where stages were evaluated, of fields in turn
   AlignedVector<Real> low_;                               ///< rounding errors of y
   Vector<Real> stage_;                                    ///< one of the stages
   AlignedVector<Real> last_, largest_;                    ///< last Legendre coefficients, and sizes, of the rates

@@ -3,12 +3,16 @@
 #include "engine/double_double.hpp"
 #include "integrators/methods/collocation_simd.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <type_traits>
 
 namespace noether {
 
 namespace {
+
+/// Half of the last bit of a number of 113 bits, relative to it.
+constexpr double half_a_bit = 0x1p-114;
 
 template <class Real> StageLanes<Real> product(const StageMatrix<Real>& a, const Real* rates) {
   StageLanes<Real> sum{};
@@ -91,6 +95,30 @@ void StageArithmetic<Real>::combine(const Real* rates, const StageMatrix<Real>& 
       const StageLanes<Real> sum = product(w, rates + lane_count * m);
       for (std::size_t k = 0; k < lane_count; ++k) out[lane_count * m + static_cast<Index>(k)] = sum[k];
     }
+  }
+}
+
+template <class Real> std::uint8_t StageArithmetic<Real>::moved(const Real* q, Index groups, Real* known) const {
+  if constexpr (std::is_same_v<Real, double>) {
+    return collocation_kernels().moved(n, groups, q, known);
+  } else {
+    using std::abs;
+    std::uint8_t stages = 0;
+    for (std::size_t k = 0; k < lane_count; ++k) {
+      bool still = true;
+      for (Index g = 0; g < groups && still; ++g) {
+        Real change(0), size(0);
+        for (Index at = lane_count * g + static_cast<Index>(k); at < lane_count * n; at += lane_count * groups) {
+          change = std::max(change, Real(abs(q[at] - known[at])));
+          size = std::max(size, Real(abs(q[at])));
+        }
+        still = change <= Real(half_a_bit) * size;
+      }
+      if (still) continue;
+      stages = static_cast<std::uint8_t>(stages | 1U << k);
+      for (Index at = static_cast<Index>(k); at < lane_count * n; at += lane_count) known[at] = q[at];
+    }
+    return stages;
   }
 }
 
