@@ -10,6 +10,8 @@
 #include <limits>
 #include <numeric>
 #include <set>
+#include <utility>
+#include <span>
 
 namespace noether {
 
@@ -37,6 +39,8 @@ struct NeighborList::Scratch {
   AlignedVector<std::int32_t> near_number;
   std::array<AlignedVector<std::int32_t>, group_size> number, found;
   std::array<AlignedVector<float>, group_size> r2;
+  /// Of the particles of a block, one after the other, the records that are not to be listed, and where they begin.
+  std::vector<std::int32_t> struck, struck_begin;
 
   void make_room(Index count) {
     const std::size_t size = at(count + 32);
@@ -143,7 +147,7 @@ std::size_t NeighborList::bytes() const {
   };
   std::size_t sum =
       grid_.bytes() + of(records_, whole_records_, record_of_, ghosts_, shifts_, particles_, lanes_, row_begin_,
-                         entries_, owner_, shift_, source_, excluded_begin_, excluded_, has_images_);
+                         entries_, owner_, shift_, source_, excluded_begin_, excluded_, image_of_, next_image_);
   for (std::size_t k = 0; k < 3; ++k) sum += of(start_[k], points_[k], sorted_[k], single_[k]);
   return sum;
 }
@@ -239,7 +243,8 @@ void NeighborList::lay_out(const ParticleSystem<double>& s) {
   whole_records_.resize(keep_whole_ ? records_.size() : 0);
   record_of_.resize(at(n));
   source_.resize(at(count));
-  has_images_.assign(excluded_.empty() ? 0 : at(n), 0);
+  image_of_.assign(excluded_.empty() ? 0 : at(n), -1);
+  next_image_.resize(excluded_.empty() ? 0 : at(count));
   ghosts_.clear();
   for (auto& column : sorted_) column.resize(at(count));
   for (auto& column : single_) column.resize(at(count + 16));
@@ -262,7 +267,7 @@ void NeighborList::lay_out(const ParticleSystem<double>& s) {
     if (point < n) continue;
     const std::int32_t owner = source_[at(r)];
     ghosts_.push_back({static_cast<std::int32_t>(r), record_of_[at(owner)], shift_[at(point)]});
-    if (!excluded_.empty()) has_images_[at(owner)] = 1;
+    if (!excluded_.empty()) next_image_[at(r)] = std::exchange(image_of_[at(owner)], static_cast<std::int32_t>(r));
   }
   for (int k = 0; k < 3; ++k) records_[at(4 * count + k)] = nowhere;
   for (int k = 0; k < 3 && keep_whole_; ++k) whole_records_[at(4 * count + k)] = whole_nowhere;
@@ -329,7 +334,8 @@ bool NeighborList::find_all() {
   used_->store(0);
   for_blocks(static_cast<Index>(particles_.size()), [&](Index begin, Index end) {
     thread_local Scratch scratch;
-    for (Index g = begin / group_size; g < end / group_size; ++g) find(g, scratch);
+    take_struck(begin, end, scratch);
+    for (Index g = begin / group_size; g < end / group_size; ++g) find(g, begin, scratch);
   });
   const std::size_t needed = at(used_->load());
   if (needed <= entries_.size()) return true;
@@ -402,20 +408,33 @@ SearchPoints NeighborList::candidates(const Surroundings& around, Scratch& scrat
   return {scratch.points[0].data(), scratch.points[1].data(), scratch.points[2].data()};
 }
 
-void NeighborList::find(Index group, Scratch& scratch) {
+/// Looks up for a block of particles whom each is not to have in its list, itself first: all at once, for they stand
+/// far apart in memory, and one look-up need not wait for the other.
+void NeighborList::take_struck(Index begin, Index end, Scratch& scratch) const {
+  scratch.struck.clear();
+  scratch.struck_begin.clear();
+  for (Index place = begin; place < end; ++place) {
+    scratch.struck_begin.push_back(static_cast<std::int32_t>(scratch.struck.size()));
+    scratch.struck.push_back(lanes_[at(place)] / 4);
+    const std::int32_t i = particles_[at(place)];
+    if (i < 0 || excluded_.empty()) continue;
+    for (std::int32_t k = excluded_begin_[at(i)]; k < excluded_begin_[at(i + 1)]; ++k) {
+      const std::int32_t j = excluded_[at(k)];
+      scratch.struck.push_back(record_of_[at(j)]);
+      for (std::int32_t image = image_of_[at(j)]; image >= 0; image = next_image_[at(image)]) {
+        scratch.struck.push_back(image);
+      }
+    }
+  }
+  scratch.struck_begin.push_back(static_cast<std::int32_t>(scratch.struck.size()));
+}
+
+/// @param block  the first particle of the block of the group
+void NeighborList::find(Index group, Index block, Scratch& scratch) {
   const NeighborSearchKernels& kernels = neighbor_search_kernels();
   std::array<std::int32_t, group_size> own{};  // their records
   for (Index lane = 0; lane < group_size; ++lane) own[at(lane)] = lanes_[at(group_size * group + lane)] / 4;
   const std::int32_t* particles = particles_.data() + group_size * group;
-  if (!excluded_.empty()) {  // so that what `strike_excluded` asks for is there in time
-    for (const std::int32_t record : own) {
-      const auto i = at(source_[at(record)]);
-      for (std::int32_t k = excluded_begin_[i]; k < excluded_begin_[i + 1]; ++k) {
-        __builtin_prefetch(&record_of_[at(excluded_[at(k)])]);
-        __builtin_prefetch(&has_images_[at(excluded_[at(k)])]);
-      }
-    }
-  }
   const Surroundings around = surroundings(own);
   const SearchPoints points = candidates(around, scratch);
   NearPoints near{scratch.near[0].data(), scratch.near[1].data(), scratch.near[2].data(), scratch.near_number.data(),
@@ -433,19 +452,15 @@ void NeighborList::find(Index group, Scratch& scratch) {
                                   scratch.r2[lane].data());
   }
   Rows& place = row_begin_[at(group)];
-  place.rows = {};
+  std::int32_t within[shells] = {};
   for (std::size_t lane = 0; lane < group_size; ++lane) {
     if (particles[lane] < 0) continue;
-    std::int32_t* number = scratch.number[lane].data();
-    if (!excluded_.empty()) strike_excluded(own[lane], number, counts[lane]);
-    std::ptrdiff_t within[shells];
-    kernels.sort(number, scratch.r2[lane].data(), counts[lane], own[lane], around.limits, scratch.found[lane].data(),
-                 within);
-    for (std::size_t shell = 0; shell < shells; ++shell) {
-      place.rows[shell] = std::max(place.rows[shell], static_cast<std::int32_t>(within[shell]));
-    }
-    counts[lane] = within[shells - 1];
+    const std::int32_t* number = scratch.number[lane].data();
+    const std::int32_t* out = scratch.struck_begin.data() + (group_size * group + static_cast<Index>(lane) - block);
+    counts[lane] = kernels.sort(number, scratch.r2[lane].data(), counts[lane], scratch.struck.data() + out[0],
+                                out[1] - out[0], around.limits, scratch.found[lane].data(), within);
   }
+  std::copy_n(within, shells, place.rows.begin());
   const std::ptrdiff_t rows = place.rows[shells - 1];
   const std::ptrdiff_t room = (rows + group_size - 1) / group_size * group_size;
   place.begin = reserve(group_size * room);
@@ -457,21 +472,6 @@ void NeighborList::find(Index group, Scratch& scratch) {
     lists[lane] = found;
   }
   kernels.turn(lists, rows, entries_.data() + place.begin);
-}
-
-/// Gives those whose pair force with a particle is excluded the number of the particle itself.
-void NeighborList::strike_excluded(std::int32_t record, std::int32_t* numbers, std::ptrdiff_t count) const {
-  const std::int32_t i = source_[at(record)];
-  const auto from = excluded_.begin() + excluded_begin_[at(i)], to = excluded_.begin() + excluded_begin_[at(i + 1)];
-  for (auto j = from; j != to; ++j) {
-    // No branches: few are struck, and nobody can foretell which.
-    if (has_images_[at(*j)] != 0) {
-      for (std::ptrdiff_t k = 0; k < count; ++k) numbers[k] = source_[at(numbers[k])] == *j ? record : numbers[k];
-    } else {
-      const std::int32_t struck = record_of_[at(*j)];
-      for (std::ptrdiff_t k = 0; k < count; ++k) numbers[k] = numbers[k] == struck ? record : numbers[k];
-    }
-  }
 }
 
 void NeighborList::verify(const ParticleSystem<double>& s) const {

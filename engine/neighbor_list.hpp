@@ -115,8 +115,8 @@ class NeighborList {
   bool find_all();
   Surroundings surroundings(const std::array<std::int32_t, group_size>& own) const;
   SearchPoints candidates(const Surroundings& around, Scratch& scratch) const;
-  void find(Index group, Scratch& scratch);
-  void strike_excluded(std::int32_t record, std::int32_t* numbers, std::ptrdiff_t count) const;
+  void take_struck(Index begin, Index end, Scratch& scratch) const;
+  void find(Index group, Index block, Scratch& scratch);
   std::int64_t reserve(std::int64_t entries);
   std::size_t bytes() const;
 
@@ -158,7 +158,7 @@ class NeighborList {
   std::vector<std::int32_t> owner_, shift_,
       source_;  ///< of a point: its particle and its shift; of a record: its particle
   std::vector<std::int32_t> excluded_begin_, excluded_;
-  std::vector<std::uint8_t> has_images_;  ///< by particle, where pairs are excluded
+  std::vector<std::int32_t> image_of_, next_image_;  ///< records of images, by particle and by the one before: -1, none
 };
 
 }  // namespace noether

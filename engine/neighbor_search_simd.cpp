@@ -131,28 +131,36 @@ std::ptrdiff_t select(const NearPoints& near, float x, float y, float z, float l
   return found;
 }
 
-void sort(const std::int32_t* number, const float* r2, std::ptrdiff_t count, std::int32_t self,
-          const float (&limits)[neighbor_shells], std::int32_t* out, std::ptrdiff_t (&within)[neighbor_shells]) {
+std::ptrdiff_t sort(const std::int32_t* number, float* r2, std::ptrdiff_t count, const std::int32_t* struck,
+                    std::ptrdiff_t struck_count, const float (&limits)[neighbor_shells], std::int32_t* out,
+                    std::int32_t (&rows)[neighbor_shells]) {
   const Floats d;
   const Numbers i;
-  const auto own = hn::Set(i, self), first = hn::Iota(i, 0);
+  const auto first = hn::Iota(i, 0);
+  const auto nowhere = hn::Set(d, far_away);
+  for (std::ptrdiff_t k = 0; k < count; k += lanes) {
+    const auto numbers = hn::LoadU(i, number + k);
+    auto out_of_it = hn::Gt(first, hn::Set(i, static_cast<std::int32_t>(count - k - 1)));
+    for (std::ptrdiff_t s = 0; s < struck_count; ++s) {
+      out_of_it = hn::Or(out_of_it, hn::Eq(numbers, hn::Set(i, struck[s])));
+    }
+    hn::StoreU(hn::IfThenElse(hn::RebindMask(d, out_of_it), nowhere, hn::LoadU(d, r2 + k)), d, r2 + k);
+  }
   auto inner = hn::Set(d, -1.0F);
   std::int32_t* to = out;
   for (int shell = 0; shell < neighbor_shells; ++shell) {
     const auto outer = hn::Set(d, limits[shell]);
     for (std::ptrdiff_t k = 0; k < count; k += lanes) {
-      const auto numbers = hn::LoadU(i, number + k);
       const auto distance = hn::LoadU(d, r2 + k);
-      const auto others =
-          hn::And(hn::Ne(numbers, own), hn::Lt(first, hn::Set(i, static_cast<std::int32_t>(count - k))));
-      const auto in_shell = hn::And(hn::Gt(distance, inner), hn::Le(distance, outer));
-      const Front front(hn::And(others, hn::RebindMask(i, in_shell)));
-      hn::StoreU(front(numbers), i, to);
+      const Front front(hn::RebindMask(i, hn::And(hn::Gt(distance, inner), hn::Le(distance, outer))));
+      hn::StoreU(front(hn::LoadU(i, number + k)), i, to);
       to += front.count();
     }
-    within[shell] = to - out;
+    const auto within = static_cast<std::int32_t>(to - out);
+    rows[shell] = rows[shell] > within ? rows[shell] : within;
     inner = outer;
   }
+  return to - out;
 }
 
 void turn(const std::int32_t* const (&lists)[8], std::ptrdiff_t rows, std::int32_t* out) {

@@ -42,10 +42,12 @@ struct NeighborSearchKernels {
   /// there are. 16 more can be read behind the points, and have room.
   std::ptrdiff_t (*select)(const NearPoints& near, float x, float y, float z, float limit, std::int32_t* number,
                            float* r2);
-  /// Writes the numbers of all but `self` by shells, those with r2 up to limits[0] first, and how many each shell and
-  /// those within it hold. 16 more can be read, and have room.
-  void (*sort)(const std::int32_t* number, const float* r2, std::ptrdiff_t count, std::int32_t self,
-               const float (&limits)[neighbor_shells], std::int32_t* out, std::ptrdiff_t (&within)[neighbor_shells]);
+  /// Writes the numbers of all but those that are struck by shells, those with r2 up to limits[0] first, and returns how
+  /// many these are; `rows` grows to what each shell and those within it hold. 16 more can be read and written, and have
+  /// room.
+  std::ptrdiff_t (*sort)(const std::int32_t* number, float* r2, std::ptrdiff_t count, const std::int32_t* struck,
+                         std::ptrdiff_t struck_count, const float (&limits)[neighbor_shells], std::int32_t* out,
+                         std::int32_t (&rows)[neighbor_shells]);
   /// Turns eight lists into rows of eight, each number times four; lists have room up to the next multiple of eight
   /// rows, as has `out`.
   void (*turn)(const std::int32_t* const (&lists)[8], std::ptrdiff_t rows, std::int32_t* out);

@@ -84,6 +84,7 @@ Collocation<Real>::Collocation(const MethodInfo& info, const MethodOptions& opti
   const double s = table_.stages;
   const double floor = std::is_same_v<Real, double> ? 1e-16 : 1e-30;
   target_ = 3e-2 * std::pow(std::max(rtol_, floor), (s - 1) / (2 * s));
+  rejecting_ = target_ / std::pow(accepted, std::max(table_.stages - 1, 1));
   settled_ = std::max(adaptive_ ? 1e-3 * rtol_ : 0.0, std::is_same_v<Real, double> ? 0x1p-54 : 1e-33);
 }
 
@@ -303,7 +304,6 @@ template <class Real> void Collocation<Real>::finish(Vector<Real>& y, double h) 
 /// The largest last Legendre coefficient of a rate, relative to the rate; vectors of particles as wholes. One that
 /// would reject the step does not count where it moves nothing: a force that fades away is rough to its end.
 template <class Real> double Collocation<Real>::roughness(const Vector<Real>& y, double h) {
-  const double limit = target_ / std::pow(accepted, std::max(table_.stages - 1, 1));
   sums_.coefficient(rates_.data(), table_.last, last_.data(), largest_.data());
   const Index groups = particles_ > 0 ? particles_ : n_;
   double worst = 0;
@@ -316,7 +316,7 @@ template <class Real> double Collocation<Real>::roughness(const Vector<Real>& y,
       size2 += size * size;
     }
     if (!(last2 > worst * size2)) continue;
-    if (last2 > limit * limit * size2 && is_rounding(y, h, std::sqrt(last2))) continue;
+    if (last2 > rejecting_ * rejecting_ * size2 && is_rounding(y, h, std::sqrt(last2))) continue;
     worst = last2 / size2;
   }
   return std::sqrt(worst);
