@@ -42,6 +42,11 @@ template <class Real> class ForceSink {
     if (wanted.virial) virial_.setZero();
   }
 
+  /// For one force alone, which `sets` the accelerations: they hold anything.
+  static ForceSink unset(VectorColumn<Real>& accelerations, const ParticleSystem<Real>& system) {
+    return ForceSink(accelerations, system);
+  }
+
   /// Adds `a` to the acceleration of particle `i` [length/time^2].
   void acceleration(Index i, const Vec3<Real>& a) {
     a_.add(i, a);
@@ -73,6 +78,9 @@ template <class Real> class ForceSink {
   /// The column itself, for loops that own their rows; such a force adds to it, and reports its virial.
   VectorColumn<Real>& accelerations() { return a_; }
 
+  /// Whether they hold sums so far; else a force writes them all.
+  bool has_sums() const { return has_sums_; }
+
   /// The neighbor list of the system; null where there is none to be shared.
   NeighborList* neighbors() const { return neighbors_; }
   /// Tells that the force cannot be computed; the first to say so is heard.
@@ -85,6 +93,9 @@ template <class Real> class ForceSink {
   Mat3<Real> virial() const { return wanted_.virial ? virial_ : Mat3<Real>(Mat3<Real>::Zero()); }
 
  private:
+  ForceSink(VectorColumn<Real>& accelerations, const ParticleSystem<Real>& system)
+      : a_(accelerations), system_(system), wanted_{}, neighbors_(nullptr), has_sums_(false) {}
+
   void push(Index i, const Vec3<Real>& f) {
     const Real m = system_.masses()[i];
     if (m != Real(0)) a_.add(i, f / m);
@@ -101,6 +112,7 @@ template <class Real> class ForceSink {
   Real energy_ = Real(0);
   Mat3<Real> virial_;  ///< set where it is wanted: nine numbers in lanes take as long as a few forces
   NeighborList* neighbors_;
+  bool has_sums_ = true;
   std::optional<Failure> failure_;
 };
 
@@ -114,6 +126,7 @@ struct ForceClaims {
   bool keeps_momentum = true;          ///< its sum over all particles is 0
   bool keeps_angular_momentum = true;  ///< and so is that of its torques
   bool periodic = false;               ///< it knows periodic boxes
+  bool sets = false;                   ///< alone, in lanes, it can write accelerations instead of adding to them
   double range = 0;                    ///< distance beyond which pairs do not feel each other [length]; 0: any distance
 };
 

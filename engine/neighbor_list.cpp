@@ -10,8 +10,8 @@
 #include <limits>
 #include <numeric>
 #include <set>
-#include <utility>
 #include <span>
+#include <utility>
 
 namespace noether {
 

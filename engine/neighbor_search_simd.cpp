@@ -35,8 +35,8 @@ constexpr LanesOfMasks lanes_of_masks;
 class Front {
  public:
   explicit HWY_INLINE Front(hn::Mask<Numbers> wanted) {
-    const auto bits = static_cast<unsigned>(
-        _mm256_movemask_ps(_mm256_castsi256_ps(hn::VecFromMask(Numbers(), wanted).raw)));
+    const auto bits =
+        static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(hn::VecFromMask(Numbers(), wanted).raw)));
     count_ = __builtin_popcount(bits);
     lanes_ = {_mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<std::int64_t>(lanes_of_masks.of[bits])))};
   }
@@ -59,9 +59,7 @@ class Front {
 class Front {
  public:
   explicit HWY_INLINE Front(hn::Mask<Numbers> wanted) : wanted_(wanted) {}
-  HWY_INLINE std::ptrdiff_t count() const {
-    return static_cast<std::ptrdiff_t>(hn::CountTrue(Numbers(), wanted_));
-  }
+  HWY_INLINE std::ptrdiff_t count() const { return static_cast<std::ptrdiff_t>(hn::CountTrue(Numbers(), wanted_)); }
   HWY_INLINE hn::Vec<Numbers> operator()(hn::Vec<Numbers> v) const { return hn::Compress(v, wanted_); }
   HWY_INLINE hn::Vec<Floats> operator()(hn::Vec<Floats> v) const {
     return hn::Compress(v, hn::RebindMask(Floats(), wanted_));

@@ -42,9 +42,9 @@ struct NeighborSearchKernels {
   /// there are. 16 more can be read behind the points, and have room.
   std::ptrdiff_t (*select)(const NearPoints& near, float x, float y, float z, float limit, std::int32_t* number,
                            float* r2);
-  /// Writes the numbers of all but those that are struck by shells, those with r2 up to limits[0] first, and returns how
-  /// many these are; `rows` grows to what each shell and those within it hold. 16 more can be read and written, and have
-  /// room.
+  /// Writes the numbers of all but those that are struck by shells, those with r2 up to limits[0] first, and returns
+  /// how many these are; `rows` grows to what each shell and those within it hold. 16 more can be read and written, and
+  /// have room.
   std::ptrdiff_t (*sort)(const std::int32_t* number, float* r2, std::ptrdiff_t count, const std::int32_t* struck,
                          std::ptrdiff_t struck_count, const float (&limits)[neighbor_shells], std::int32_t* out,
                          std::int32_t (&rows)[neighbor_shells]);

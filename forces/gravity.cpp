@@ -102,10 +102,10 @@ void Gravity::add_stages(ForceSink<Pack>& out, const ParticleSystem<Pack>& s) co
   const auto numbers = [](auto* packs) { return packs->lane.data(); };
   const VectorColumn<Pack>& x = s.positions();
   VectorColumn<Pack>& a = out.accelerations();
-  attract_in_stages()({numbers(x.component(0)), numbers(x.component(1)), numbers(x.component(2)),
-                       numbers(s.masses().data()), numbers(a.component(0)), numbers(a.component(1)),
-                       numbers(a.component(2)), s.size()},
-                      constant(s).lane[0], softening * softening);
+  attract_in_stages()(
+      {numbers(x.component(0)), numbers(x.component(1)), numbers(x.component(2)), numbers(s.masses().data()),
+       numbers(a.component(0)), numbers(a.component(1)), numbers(a.component(2)), s.size(), out.has_sums()},
+      constant(s).lane[0], softening * softening);
 }
 
 void Gravity::add_lanes(ForceSink<double>& out, const ParticleSystem<double>& s) const {

@@ -40,6 +40,8 @@ struct Gravity {
     if (!(softening >= 0)) refuse_field("softening", softening, "is no length; 0 (point masses) or more is expected");
   }
 
+  static ForceClaims claims() { return {.sets = true}; }
+
   template <class Real> Real constant(const ParticleSystem<Real>& s) const { return Real(G ? *G : s.units().G); }
 
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {

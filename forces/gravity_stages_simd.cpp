@@ -16,8 +16,8 @@ struct Body {
   Vector x, y, z, mu, ax, ay, az;
 };
 
-/// The pull between body i and n bodies from j on.
-template <int n>
+/// The pull between body i and n bodies from j on, which have felt something before, or not.
+template <int n, bool felt>
 HWY_INLINE void attract(const BodiesInStages& b, Body& body, std::ptrdiff_t j, std::ptrdiff_t lane, Vector G,
                         Vector soft2) {
   const Lanes d;
@@ -36,35 +36,52 @@ HWY_INLINE void attract(const BodiesInStages& b, Body& body, std::ptrdiff_t j, s
     body.ax = hn::MulAdd(pull, dx[k], body.ax);
     body.ay = hn::MulAdd(pull, dy[k], body.ay);
     body.az = hn::MulAdd(pull, dz[k], body.az);
-    hn::Store(hn::NegMulAdd(back, dx[k], hn::Load(d, b.ax + at)), d, b.ax + at);
-    hn::Store(hn::NegMulAdd(back, dy[k], hn::Load(d, b.ay + at)), d, b.ay + at);
-    hn::Store(hn::NegMulAdd(back, dz[k], hn::Load(d, b.az + at)), d, b.az + at);
+    const auto push = [&](double* a, Vector dr) HWY_ATTR {
+      hn::Store(felt ? hn::NegMulAdd(back, dr, hn::Load(d, a + at)) : hn::Neg(hn::Mul(back, dr)), d, a + at);
+    };
+    push(b.ax, dx[k]);
+    push(b.ay, dy[k]);
+    push(b.az, dz[k]);
   }
 }
 
 /// The same with all bodies from j on: by four, and what is left in one go.
-template <int n>
+template <int n, bool felt>
 HWY_INLINE void attract_from(const BodiesInStages& b, Body& body, std::ptrdiff_t j, std::ptrdiff_t lane, Vector G,
                              Vector soft2) {
-  for (; j + n <= b.count; j += n) attract<n>(b, body, j, lane, G, soft2);
-  if constexpr (n > 1) attract_from<n - 1>(b, body, j, lane, G, soft2);
+  for (; j + n <= b.count; j += n) attract<n, felt>(b, body, j, lane, G, soft2);
+  if constexpr (n > 1) attract_from<n - 1, felt>(b, body, j, lane, G, soft2);
+}
+
+/// Nobody has felt anything yet.
+HWY_INLINE void begin(const BodiesInStages& b, std::ptrdiff_t lane) {
+  const Lanes d;
+  for (std::ptrdiff_t at = lane; at < b.count * stages; at += stages) {
+    for (double* a : {b.ax, b.ay, b.az}) hn::Store(hn::Zero(d), d, a + at);
+  }
 }
 
 void attract_all(const BodiesInStages& bodies, double constant, double softening2) {
   const Lanes d;
   const BodiesInStages b = bodies;
   const Vector G = hn::Set(d, constant), soft2 = hn::Set(d, softening2);
+  // A massive first body is felt by all others, who then have no other sums to begin with.
+  const bool first_begins = !b.has_sums && b.count > 1 && b.m[0] != 0;
   for (std::ptrdiff_t lane = 0; lane < stages; lane += lanes) {
+    if (!b.has_sums && !first_begins) begin(b, lane);
     for (std::ptrdiff_t i = 0; i + 1 < b.count; ++i) {
       const std::ptrdiff_t at = i * stages + lane;
-      Body body{
-          hn::Load(d, b.x + at),  hn::Load(d, b.y + at),  hn::Load(d, b.z + at), hn::Mul(G, hn::Load(d, b.m + at)),
-          hn::Load(d, b.ax + at), hn::Load(d, b.ay + at), hn::Load(d, b.az + at)};
-      if (b.m[at] != 0) {
-        attract_from<4>(b, body, i + 1, lane, G, soft2);
+      const bool begins = first_begins && i == 0;
+      const auto sum_of = [&](const double* a) HWY_ATTR { return begins ? hn::Zero(d) : hn::Load(d, a + at); };
+      Body body{hn::Load(d, b.x + at), hn::Load(d, b.y + at), hn::Load(d, b.z + at), hn::Mul(G, hn::Load(d, b.m + at)),
+                sum_of(b.ax),          sum_of(b.ay),          sum_of(b.az)};
+      if (begins) {
+        attract_from<4, false>(b, body, i + 1, lane, G, soft2);
+      } else if (b.m[at] != 0) {
+        attract_from<4, true>(b, body, i + 1, lane, G, soft2);
       } else {
         for (std::ptrdiff_t j = i + 1; j < b.count; ++j) {
-          if (b.m[j * stages] != 0) attract<1>(b, body, j, lane, G, soft2);  // tracers may stand in one place
+          if (b.m[j * stages] != 0) attract<1, true>(b, body, j, lane, G, soft2);  // tracers may stand in one place
         }
       }
       hn::Store(body.ax, d, b.ax + at);

@@ -10,8 +10,9 @@ namespace noether {
 /// Coordinates of n bodies at eight stages, their masses, and what they feel, shape (n, 8) each.
 struct BodiesInStages {
   const double *x, *y, *z, *m;
-  double *ax, *ay, *az;  ///< sums so far
+  double *ax, *ay, *az;  ///< sums so far, if there are any
   std::ptrdiff_t count;
+  bool has_sums = true;
 };
 
 /// Adds the pull of every pair, each pair once.

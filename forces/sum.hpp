@@ -20,6 +20,7 @@ inline void merge(ForceClaims& all, const ForceClaims& one) {
   all.keeps_momentum = all.keeps_momentum && one.keeps_momentum;
   all.keeps_angular_momentum = all.keeps_angular_momentum && one.keeps_angular_momentum;
   all.periodic = all.periodic && one.periodic;
+  all.sets = all.sets && one.sets;
   all.range = std::max(all.range, one.range);
 }
 }  // namespace detail
@@ -45,7 +46,7 @@ template <class... Fs> class Sum {
     return std::apply([&](const auto&... force) { return (one(force) && ...); }, forces_);
   }
   ForceClaims claims() const {
-    ForceClaims all{.periodic = true};
+    ForceClaims all{.periodic = true, .sets = sizeof...(Fs) == 1};
     std::apply([&](const auto&... force) { (detail::merge(all, claims_of(force)), ...); }, forces_);
     return all;
   }
@@ -88,7 +89,7 @@ template <class Real = double> class ForceField {
     for (const auto& term : terms_) term.add_to(out, s);
   }
   ForceClaims claims() const {
-    ForceClaims all{.periodic = true};
+    ForceClaims all{.periodic = true, .sets = terms_.size() == 1};
     for (const auto& term : terms_) detail::merge(all, term.claims());
     return all;
   }

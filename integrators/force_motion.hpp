@@ -166,6 +166,7 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
       packs_.trim();
       packs_.clock() = Clock<Pack>::free(0);
       pack_a_ = VectorColumn<Pack>(s.size());
+      sets_ = claims_of(forces_).sets;
     }
   }
   /// Packs are not padded: a column holds what the stages hold, in the same order.
@@ -175,7 +176,7 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
     if (states.q != place_of_stages()) copy_packs(states.q, place_of_stages(), all);
     if (states.v != nullptr) copy_packs(states.v, numbers(packs_.velocities()), all);
     packs_.clock().set_stage_offset(Pack::load(states.t));
-    ForceSink<Pack> sink(pack_a_, packs_, {});
+    ForceSink<Pack> sink = sets_ ? ForceSink<Pack>::unset(pack_a_, packs_) : ForceSink<Pack>(pack_a_, packs_, {});
     forces_.add_to(sink, packs_);
     return numbers(pack_a_);
   }
@@ -203,10 +204,7 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
         for (Index i = 0; i < n; ++i, to += lane_count) *to = component[i];
       }
     }
-    if (states.stages == lane_count) return;
-    for (Real* of = out; of < out + lane_count * 3 * n; of += lane_count) {
-      std::fill(of + states.stages, of + lane_count, of[states.stages - 1]);
-    }
+    states.fill_lanes(3 * n, out);
   }
 
   void sum(const Real& t, const Vector<Real>& y) {
@@ -255,7 +253,7 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
   NeighborList neighbors_;
   ParticleSystem<Real> work_;
   VectorColumn<Real> a_;
-  bool in_lanes_ = false;
+  bool in_lanes_ = false, sets_ = false;
   ParticleSystem<Pack> packs_;
   VectorColumn<Pack> pack_a_;
   std::optional<Along> along_;  ///< made by the first derivative

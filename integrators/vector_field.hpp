@@ -24,13 +24,19 @@ inline constexpr int lane_count = 8;
 
 /// States at several stages: variable i of stage k stands at [8 i + k].
 template <class Real> struct StageStates {
-  const Real* t;              ///< shape (8)
-  const Real* q;              ///< y; for second order its first half, positions; shape (n, 8)
-  const Real* v = nullptr;    ///< velocities, where the field depends on them; shape (n, 8)
-  int stages = lane_count;    ///< that count; lanes beyond them hold the state of one of them
-  bool second_order = false;  ///< q are positions
+  const Real* t;               ///< shape (8)
+  const Real* q;               ///< y; for second order its first half, positions; shape (n, 8)
+  const Real* v = nullptr;     ///< velocities, where the field depends on them; shape (n, 8)
+  int stages = lane_count;     ///< that count; lanes beyond them hold the state of the first
+  bool second_order = false;   ///< q are positions
   std::uint8_t wanted = 0xff;  ///< a bit for each stage; of the others `out` holds the rates from the call before
 
+  /// Gives n variables in lanes beyond the stages the rates of the first stage, whose state these hold.
+  void fill_lanes(Index n, Real* rates) const {
+    if (stages == lane_count) return;
+    for (Real* of = rates; of < rates + lane_count * n; of += lane_count)
+      std::fill(of + stages, of + lane_count, of[0]);
+  }
   bool wants(int stage) const { return (wanted >> static_cast<unsigned>(stage) & 1U) != 0; }
 };
 
@@ -80,7 +86,7 @@ template <class Real> class VectorField {
     accelerate(t, y, a);
   }
   /// Rates (for second order: accelerations) at all stages, in the layout of the states, those that are wanted counted;
-  /// lanes beyond the stages hold the rates of one of them.
+  /// lanes beyond the stages hold the rates of the first.
   /// @return where they are: in `out`, or in the field's own place until it is asked again
   const Real* rates(const StageStates<Real>& states, Real* out) {
     evaluations_.force += std::popcount(states.wanted & ((1U << static_cast<unsigned>(states.stages)) - 1));
@@ -144,9 +150,9 @@ template <class Real> const Real* VectorField<Real>::evaluate_stages(const Stage
     } else {
       evaluate(states.t[k], stage_, stage_rate_);
     }
-    const int last = k + 1 == states.stages ? lane_count : k + 1;
-    for (Index i = 0; i < n; ++i) std::fill(out + lane_count * i + k, out + lane_count * i + last, stage_rate_[i]);
+    for (Index i = 0; i < n; ++i) out[lane_count * i + k] = stage_rate_[i];
   }
+  states.fill_lanes(n, out);
   return out;
 }
 

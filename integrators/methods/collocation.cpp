@@ -176,17 +176,27 @@ void Collocation<Real>::predict(VectorField<Real>& f, const Real& t, const Vecto
 
 /// The polynomial of the last step at x_i = 1 + c_i h / h_old, by Lagrange's formula.
 template <class Real> void Collocation<Real>::extrapolate(double h) {
-  if (h != weights_h_ || h_ != weights_h_old_) {
-    sums_.extrapolation(table_.stages, table_.c, table_.barycentric, Real(h) / Real(h_), weights_);
-    weights_h_ = h;
-    weights_h_old_ = h_;
-  }
-  sums_.combine(previous_.data(), weights_, rates_.data());
+  const bool known = h == weights_h_ && h_ == weights_h_old_;
+  if (!known) sums_.extrapolation(table_.stages, table_.c, table_.barycentric, Real(h) / Real(h_), weights_);
+  weights_h_ = h;
+  weights_h_old_ = h_;
+  has_twice_ahead_ = has_twice_ahead_ && known;
+  if (!is_straight()) return sums_.combine(previous_.data(), weights_, rates_.data());
+  if (!has_twice_ahead_)
+    StageArithmetic<Real>{lane_count}.combine(weights_[0].data(), table_.twice, twice_ahead_[0].data());
+  has_twice_ahead_ = true;
+}
+
+/// Whether the first positions of a step come straight from the rates of the last one: nobody asks for the rates
+/// between them, and the product of both matrices costs less than going through it with every variable.
+template <class Real> bool Collocation<Real>::is_straight() const {
+  return second_order_ && !with_velocities_ && (!adaptive_ || n_ > 2 * lanes) && unseen_sweeps() > 0;
 }
 
 template <class Real>
-void Collocation<Real>::form_positions(const Real* rates, const Vector<Real>& y, double h, Real* q) {
-  sums_.positions(rates, table_.twice, table_.c, table_.c_low, y.data(), low_.data(), y.data() + n_, h, q);
+void Collocation<Real>::form_positions(const Real* rates, const StageMatrix<Real>& twice, const Vector<Real>& y,
+                                       double h, Real* q) {
+  sums_.positions(rates, twice, table_.c, table_.c_low, y.data(), low_.data(), y.data() + n_, h, q);
 }
 
 template <class Real> void Collocation<Real>::form_velocities(const Real* rates, const Vector<Real>& y, double h) {
@@ -199,14 +209,14 @@ template <class Real> void Collocation<Real>::form_states(const Real* rates, con
     sums_.values(rates, table_.a, y.data(), low_.data(), h, q);
     return;
   }
-  form_positions(rates, y, h, q);
+  form_positions(rates, table_.twice, y, h, q);
   if (with_velocities_) form_velocities(rates, y, h);
 }
 
 /// h sum_i b_i L(Q_i, V_i), which the step makes stationary.
 /// @source MarsdenWest2001
 template <class Real> Real Collocation<Real>::action(VectorField<Real>& f, const Real& t, const Vector<Real>& y) {
-  form_positions(previous_.data(), y, h_, q_.data());
+  form_positions(previous_.data(), table_.twice, y, h_, q_.data());
   form_velocities(previous_.data(), y, h_);
   Real sum(0);
   for (std::size_t k = 0; k < static_cast<std::size_t>(table_.stages); ++k) {
@@ -220,19 +230,15 @@ template <class Real> Real Collocation<Real>::action(VectorField<Real>& f, const
   return Real(h_) * sum;
 }
 
-/// Those that have moved since they were evaluated: the first ones come to rest a sweep or two before the last.
+/// Those that are no longer, to the last bit, where they were evaluated: the first ones come to rest a sweep or two
+/// before the last. (To leave out others that have moved by less than a bit would be an error of one sign, and a
+/// drift.)
 template <class Real> std::uint8_t Collocation<Real>::stages_to_evaluate(int round, const Real* q) {
   constexpr std::uint8_t all = 0xff;
   if (!in_turn_) return all;
-  if (round == 1) {
-    std::copy_n(q, known_q_.size(), known_q_.data());
-    if (with_velocities_) std::copy_n(v_.data(), known_v_.size(), known_v_.data());
-    return all;
-  }
-  const Index groups = particles_ > 0 ? particles_ : n_;
-  std::uint8_t moved = sums_.moved(q, groups, known_q_.data());
-  if (with_velocities_) moved |= sums_.moved(v_.data(), groups, known_v_.data());
-  return moved;
+  std::uint8_t moved = sums_.moved(q, known_q_.data());
+  if (with_velocities_) moved |= sums_.moved(v_.data(), known_v_.data());
+  return round == 1 ? all : moved;
 }
 
 /// Sweeps until the rates stand still: until what the next sweep would change is below rounding, or no less than what
@@ -243,7 +249,8 @@ typename Collocation<Real>::Sweeps Collocation<Real>::sweep(VectorField<Real>& f
                                                             double h) {
   using std::isfinite;
   const int most = adaptive_ ? 60 : 300;  // steps of one length have no other way out
-  const int unseen = std::max(0, swept_ - 3);
+  const int unseen = unseen_sweeps();
+  const bool straight = h_ != 0 && is_straight();
   std::array<Real, lane_count> times{};
   for (std::size_t k = 0; k < lane_count; ++k) times[k] = t + table_.c[k] * Real(h);
   Real* const place = f.place_of_stages();
@@ -251,11 +258,14 @@ typename Collocation<Real>::Sweeps Collocation<Real>::sweep(VectorField<Real>& f
   const Real* rates = rates_.data();
   double before = std::numeric_limits<double>::infinity();
   for (int round = 1; round <= most; ++round) {
-    form_states(rates, y, h, q);
+    if (straight && round == 1) {
+      form_positions(previous_.data(), twice_ahead_, y, h, q);
+    } else {
+      form_states(rates, y, h, q);
+    }
     const std::uint8_t wanted = stages_to_evaluate(round, q);
-    const Real* const fresh =
-        f.rates({times.data(), q, with_velocities_ ? v_.data() : nullptr, table_.stages, second_order_, wanted},
-                trial_.data());
+    const Real* const fresh = f.rates(
+        {times.data(), q, with_velocities_ ? v_.data() : nullptr, table_.stages, second_order_, wanted}, trial_.data());
     rates = round < unseen ? fresh : rates_.data();
     if (round < unseen) continue;
     swept_ = round;

@@ -54,7 +54,9 @@ template <class Real> class Collocation final : public Method<Real> {
   void predict(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h);
   void extrapolate(double h);
   Sweeps sweep(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h);
-  void form_positions(const Real* rates, const Vector<Real>& y, double h, Real* q);
+  bool is_straight() const;
+  int unseen_sweeps() const { return std::max(0, swept_ - 3); }
+  void form_positions(const Real* rates, const StageMatrix<Real>& twice, const Vector<Real>& y, double h, Real* q);
   void form_velocities(const Real* rates, const Vector<Real>& y, double h);
   void form_states(const Real* rates, const Vector<Real>& y, double h, Real* q);
   std::uint8_t stages_to_evaluate(int round, const Real* q);
@@ -77,6 +79,8 @@ template <class Real> class Collocation final : public Method<Real> {
   Vector<Real> stage_;                                    ///< one of the stages
   AlignedVector<Real> last_, largest_;                    ///< last Legendre coefficients, and sizes, of the rates
   StageMatrix<Real> weights_{};                           ///< of the extrapolation over a step h after one of h_old
+  StageMatrix<Real> twice_ahead_{};                       ///< and from there to positions, if
+  bool has_twice_ahead_ = false;
   double weights_h_ = 0, weights_h_old_ = 0;
   double next_ = 0, h_ = 0;  ///< to be tried; of `previous_`, 0 for none
   int swept_ = 0;            ///< sweeps of the last step

@@ -23,9 +23,12 @@ class Rows {
   /// sum_j a_ji F_j of one variable.
   HWY_INLINE Vector sum(const double* rates) const {
     const Lanes d;
-    Vector sum = hn::Mul(row_[0], hn::Set(d, rates[0]));
-    for (int j = 1; j < stages; ++j) sum = hn::MulAdd(row_[j], hn::Set(d, rates[j]), sum);
-    return sum;
+    Vector even = hn::Mul(row_[0], hn::Set(d, rates[0])), odd = hn::Mul(row_[1], hn::Set(d, rates[1]));
+    for (int j = 2; j < stages; j += 2) {  // two chains: each addition waits for the one before
+      even = hn::MulAdd(row_[j], hn::Set(d, rates[j]), even);
+      odd = hn::MulAdd(row_[j + 1], hn::Set(d, rates[j + 1]), odd);
+    }
+    return hn::Add(even, odd);
   }
 
  private:
@@ -97,27 +100,19 @@ HWY_INLINE double largest_of(Bits sizes) {
   return hn::GetLane(hn::BitCast(Lanes(), hn::MaxOfLanes(BitLanes(), sizes)));
 }
 
-std::uint8_t moved(std::ptrdiff_t n, std::ptrdiff_t groups, const double* q, double* known) {
+std::uint8_t moved(std::ptrdiff_t n, const double* q, double* known) {
   const Lanes d;
-  const Vector half_a_bit = hn::Set(d, 0x1p-54);
   unsigned all = 0;
   for (std::ptrdiff_t lane = 0; lane < stages; lane += lanes) {
-    auto still = hn::Eq(hn::Zero(d), hn::Zero(d));
-    for (std::ptrdiff_t g = 0; g < groups; ++g) {
-      Vector change = hn::Zero(d), size = change;
-      for (std::ptrdiff_t at = stages * g + lane; at < stages * n; at += stages * groups) {
-        const Vector x = hn::LoadU(d, q + at);
-        change = hn::Add(change, hn::Abs(hn::Sub(x, hn::LoadU(d, known + at))));
-        size = hn::Max(size, hn::Abs(x));
-      }
-      still = hn::And(still, hn::Le(change, hn::Mul(half_a_bit, size)));  // never of what is no number
-    }
+    auto same = hn::Eq(hn::Zero(d), hn::Zero(d));
     for (std::ptrdiff_t at = lane; at < stages * n; at += stages) {
-      hn::StoreU(hn::IfThenElse(still, hn::LoadU(d, known + at), hn::LoadU(d, q + at)), d, known + at);
+      const Vector x = hn::LoadU(d, q + at);
+      same = hn::And(same, hn::Eq(x, hn::LoadU(d, known + at)));  // never of what is no number
+      hn::StoreU(x, d, known + at);
     }
     std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(d, hn::Not(still), bits);
-    all |= static_cast<unsigned>(bits[0] & ((1U << lanes) - 1)) << lane;
+    hn::StoreMaskBits(d, hn::Not(same), bits);
+    all |= (bits[0] & ((1U << lanes) - 1)) << lane;
   }
   return static_cast<std::uint8_t>(all);
 }
@@ -292,7 +287,7 @@ void finish(const StepSums& sums) {
 }  // namespace
 
 extern const CollocationKernels collocation_kernels;
-const CollocationKernels collocation_kernels{values, positions, extrapolation, combine, moved,
-                                                take,   coefficient, finish};
+const CollocationKernels collocation_kernels{values, positions, extrapolation, combine,
+                                             moved,  take,      coefficient,   finish};
 
 }  // namespace noether::NOETHER_SIMD_LEVEL

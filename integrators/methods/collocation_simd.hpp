@@ -38,9 +38,8 @@ struct CollocationKernels {
   void (*extrapolation)(const double* c, const double* barycentric, double ratio, double* w);
   /// out_i = sum_j w_ji F_j
   void (*combine)(const StageSums& sums, const double* w, double* out);
-  /// The stages, a bit each, that have moved from `known` by more than half of the last bit, and become known anew; a
-  /// change counts against the vector of the variables that are `groups` apart.
-  std::uint8_t (*moved)(std::ptrdiff_t n, std::ptrdiff_t groups, const double* q, double* known);
+  /// The stages, a bit each, where any of n variables is another than `known`, which becomes q.
+  std::uint8_t (*moved)(std::ptrdiff_t n, const double* q, double* known);
   /// Rates of n variables become `fresh`; the largest change, and the largest |fresh|: not a number if one is none.
   void (*take)(std::ptrdiff_t n, const double* fresh, double* rates, double* change, double* size);
   /// sum_j w_j F_j and max_j |F_j| of each variable, shape (n), all shapes rounded up to a multiple of eight.

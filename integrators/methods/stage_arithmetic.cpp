@@ -3,16 +3,12 @@
 #include "engine/double_double.hpp"
 #include "integrators/methods/collocation_simd.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <type_traits>
 
 namespace noether {
 
 namespace {
-
-/// Half of the last bit of a number of 113 bits, relative to it.
-constexpr double half_a_bit = 0x1p-114;
 
 template <class Real> StageLanes<Real> product(const StageMatrix<Real>& a, const Real* rates) {
   StageLanes<Real> sum{};
@@ -98,27 +94,16 @@ void StageArithmetic<Real>::combine(const Real* rates, const StageMatrix<Real>& 
   }
 }
 
-template <class Real> std::uint8_t StageArithmetic<Real>::moved(const Real* q, Index groups, Real* known) const {
+template <class Real> std::uint8_t StageArithmetic<Real>::moved(const Real* q, Real* known) const {
   if constexpr (std::is_same_v<Real, double>) {
-    return collocation_kernels().moved(n, groups, q, known);
+    return collocation_kernels().moved(n, q, known);
   } else {
-    using std::abs;
-    std::uint8_t stages = 0;
-    for (std::size_t k = 0; k < lane_count; ++k) {
-      bool still = true;
-      for (Index g = 0; g < groups && still; ++g) {
-        Real change(0), size(0);
-        for (Index at = lane_count * g + static_cast<Index>(k); at < lane_count * n; at += lane_count * groups) {
-          change = std::max(change, Real(abs(q[at] - known[at])));
-          size = std::max(size, Real(abs(q[at])));
-        }
-        still = change <= Real(half_a_bit) * size;
-      }
-      if (still) continue;
-      stages = static_cast<std::uint8_t>(stages | 1U << k);
-      for (Index at = static_cast<Index>(k); at < lane_count * n; at += lane_count) known[at] = q[at];
+    unsigned stages = 0;
+    for (Index at = 0; at < lane_count * n; ++at) {
+      if (!(q[at] == known[at])) stages |= 1U << static_cast<unsigned>(at % lane_count);
+      known[at] = q[at];
     }
-    return stages;
+    return static_cast<std::uint8_t>(stages);
   }
 }
 

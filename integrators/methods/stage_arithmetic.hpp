@@ -29,9 +29,8 @@ template <class Real> struct StageArithmetic {
                      StageMatrix<Real>& w) const;
   /// out_i = sum_j w_ji F_j
   void combine(const Real* rates, const StageMatrix<Real>& w, Real* out) const;
-  /// The stages, a bit each, that have moved from where they are known by more than half of the last bit of a variable,
-  /// and become known anew. Variables `groups` apart are components of one vector.
-  std::uint8_t moved(const Real* q, Index groups, Real* known) const;
+  /// The stages, a bit each, where any variable is another than `known`, which becomes q.
+  std::uint8_t moved(const Real* q, Real* known) const;
   /// Rates become `fresh`; the largest change, and the largest |fresh|.
   std::array<Real, 2> take(const Real* fresh, Real* rates) const;
   /// sum_j w_j F_j, and largest |F_j|, of each variable.

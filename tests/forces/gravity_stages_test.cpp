@@ -7,7 +7,9 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/planets.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace noether::base_at_O0 {
@@ -47,10 +49,25 @@ struct StageSample {
   /// All accelerations, x before y before z.
   AlignedVector<double> attracted(AttractInStages kernel, double softening2) const {
     AlignedVector<double> a(3 * x.size(), 0.0);
-    kernel({x.data(), y.data(), z.data(), m.data(), a.data(), a.data() + x.size(), a.data() + 2 * x.size(),
-            static_cast<std::ptrdiff_t>(bodies())},
-           1, softening2);
+    attract(kernel, softening2, a, true);
     return a;
+  }
+  /// The same, where accelerations hold anything.
+  AlignedVector<double> attracted_anew(AttractInStages kernel, double softening2) const {
+    AlignedVector<double> a(3 * x.size(), std::numeric_limits<double>::quiet_NaN());
+    attract(kernel, softening2, a, false);
+    return a;
+  }
+  void attract(AttractInStages kernel, double softening2, AlignedVector<double>& a, bool has_sums) const {
+    kernel({x.data(), y.data(), z.data(), m.data(), a.data(), a.data() + x.size(), a.data() + 2 * x.size(),
+            static_cast<std::ptrdiff_t>(bodies()), has_sums},
+           1, softening2);
+  }
+  /// The same bodies, the first as heavy as this.
+  StageSample with_first(double mass) const {
+    StageSample other = *this;
+    std::fill_n(other.m.begin(), stages, mass);
+    return other;
   }
   /// Stage k as particles of their own.
   ParticleSystem<double> particles(std::size_t k) const {
@@ -104,6 +121,18 @@ TEST_CASE("eight stages in lanes feel what each feels alone, tracers in one plac
             }
           }
         }
+      }
+    }
+  }
+}
+
+TEST_CASE("pulls are the same whether they are added or written, whoever comes first", "[lanes]") {
+  for (const std::size_t n : {1U, 2U, 3U, 6U, 9U}) {
+    for (const StageSample& sample : {StageSample(n), StageSample(n).with_first(0)}) {
+      for (const StageLevel& level : stage_levels()) {
+        CAPTURE(n, static_cast<int>(level.level));
+        CHECK(sample.attracted_anew(level.optimized, 0.09) == sample.attracted(level.optimized, 0.09));
+        CHECK(sample.attracted_anew(level.at_O0, 0.09) == sample.attracted(level.at_O0, 0.09));
       }
     }
   }
