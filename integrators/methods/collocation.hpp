@@ -68,7 +68,7 @@ template <class Real> class Collocation final : public Method<Real> {
   StageTable<Real> table_;
   int order_;
   bool adaptive_, symplectic_;
-  double rtol_, first_, target_, rejecting_, settled_;
+  double rtol_, first_, target_, rejecting_, settled_, foreseen_;
   bool second_order_ = false, with_velocities_ = false, in_turn_ = false;
   Index n_ = 0, particles_ = 0;  ///< variables that stages hold; particles among them
 

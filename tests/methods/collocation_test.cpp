@@ -177,6 +177,21 @@ TEST_CASE("stages at rest are not evaluated again where each is evaluated by its
   }
 }
 
+TEST_CASE("an oscillator keeps its energy to rounding with any number of stages", "[stages]") {
+  test::Motion<double> f(1, [](const double&, const Vector<double>& y, double* a) { a[0] = -y[0]; });
+  for (const char* name : {"gauss_2", "gauss_3", "gauss_4", "gauss_5", "gauss_6", "gauss_7", "gauss_8"}) {
+    const auto method = test::make<double>(name, fixed_steps(name));
+    for (const double h : {0.025, 0.05, 0.1, 0.2, 0.4}) {
+      Vector<double> y(2);
+      y << 1, 0.5;
+      const double before = y.squaredNorm();
+      y = test::walk(*method, f, y, h, 10'000);
+      CAPTURE(name, h, y.squaredNorm() / before - 1);
+      CHECK(std::abs(y.squaredNorm() / before - 1) < 3e-14);
+    }
+  }
+}
+
 TEST_CASE("stages are found on a stiff spring, at turning points too, where only rounding moves", "[stages]") {
   // omega = 100, h omega = 1: forces cancel to 1e-4 of what their parts are.
   ParticleSystem<double> s;
