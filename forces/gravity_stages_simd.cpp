@@ -57,7 +57,9 @@ HWY_INLINE void attract_from(const BodiesInStages& b, Body& body, std::ptrdiff_t
 HWY_INLINE void begin(const BodiesInStages& b, std::ptrdiff_t lane) {
   const Lanes d;
   for (std::ptrdiff_t at = lane; at < b.count * stages; at += stages) {
-    for (double* a : {b.ax, b.ay, b.az}) hn::Store(hn::Zero(d), d, a + at);
+    hn::Store(hn::Zero(d), d, b.ax + at);
+    hn::Store(hn::Zero(d), d, b.ay + at);
+    hn::Store(hn::Zero(d), d, b.az + at);
   }
 }
 
