@@ -10,7 +10,6 @@
 #include <limits>
 #include <numeric>
 #include <set>
-#include <span>
 #include <utility>
 
 namespace noether {
