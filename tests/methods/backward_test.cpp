@@ -9,6 +9,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/planets.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -130,20 +131,24 @@ TEST_CASE("a run that turns comes back to its start within its errors", "[backwa
   for (const double tolerance : {1e-6, 1e-9}) {
     for (const MethodChoice& choice : adaptive_methods(tolerance)) {
       CAPTURE(name_of(choice), tolerance);
-      auto run = planets(choice, Direction::forward);
-      REQUIRE(run.run_until(4000).ok());
-      const Outcome outcome = run.run_until(0);
-      CHECK(outcome.kind == Outcome::Kind::completed);
-      CHECK(outcome.time == 0);
-      CHECK(run.time() == 0);
-      CHECK(run.particles().time() == 0);
+      // At rounding level one way is one throw of dice; methods of low order take too long for many.
+      const int ways = choice.options.rtol || choice.info->order < 12 ? 1 : 25;
+      std::vector<double> left;
+      for (int way = 0; way < ways; ++way) {
+        ParticleSystem<double> start = test::outer_planets();
+        start.positions().component(0)[1] *= 1 + 1e-9 * way;
+        auto run = planets(choice, Direction::forward, start);
+        REQUIRE(run.run_until(4000).ok());
+        const Outcome outcome = run.run_until(0);
+        CHECK(outcome.kind == Outcome::Kind::completed);
+        CHECK(outcome.time == 0);
+        CHECK(run.time() == 0);
+        CHECK(run.particles().time() == 0);
+        left.push_back(apart(run.particles(), start));
+      }
+      std::nth_element(left.begin(), left.begin() + left.size() / 2, left.end());
       // Variable orders are the farthest away: 3900 tolerances after a year of Jupiter's, there and back.
-      // Those that go to rounding: four last bits of the farthest planet.
-      const ParticleSystem<double> start = test::outer_planets();
-      double farthest = 0;
-      for (Index i = 0; i < start.size(); ++i) farthest = std::max(farthest, std::sqrt(norm2(start.positions()[i])));
-      const double left = apart(run.particles(), start);
-      CHECK(left < (choice.options.rtol ? 5000 * tolerance : 4 * 0x1p-52 * farthest));
+      CHECK(left[left.size() / 2] < (choice.options.rtol ? 5000 * tolerance : 1e-14));
     }
   }
 }
