@@ -79,8 +79,8 @@ template <class Real> class Collocation final : public Method<Real> {
   Vector<Real> stage_;                                    ///< one of the stages
   AlignedVector<Real> last_, largest_;                    ///< last Legendre coefficients, and sizes, of the rates
   StageMatrix<Real> weights_{};                           ///< of the extrapolation over a step h after one of h_old
-  StageMatrix<Real> twice_ahead_{};                       ///< and from there to positions, if
-  bool has_twice_ahead_ = false;
+  StageMatrix<Real> twice_ahead_{};                       ///< and from there to positions
+  bool has_twice_ahead_ = false;                          ///< of the weights at hand
   double weights_h_ = 0, weights_h_old_ = 0;
   double next_ = 0, h_ = 0;  ///< to be tried; of `previous_`, 0 for none
   int swept_ = 0;            ///< sweeps of the last step
