@@ -9,7 +9,6 @@
 #include <cstring>
 #include <limits>
 #include <numeric>
-#include <set>
 #include <utility>
 
 namespace noether {
@@ -23,6 +22,9 @@ constexpr double first_skin = 0.12, widest_skin = 0.64;
 constexpr double search_cost = 220, search_cost_of_pair = 5;
 static_assert(NeighborList::shells == neighbor_shells);
 constexpr Index most_images = 10'000;
+/// What everybody may go, in skins, before particles are sorted into cells again: cells are searched so much further,
+/// and images laid out.
+constexpr double slack = 1.65;
 /// A record far from all others, whose squared distances are numbers.
 constexpr double nowhere = 1e140;
 /// The same in whole numbers: the box and its images take up less than half of them, around 0.
@@ -38,8 +40,6 @@ struct NeighborList::Scratch {
   AlignedVector<std::int32_t> near_number;
   std::array<AlignedVector<std::int32_t>, group_size> number, found;
   std::array<AlignedVector<float>, group_size> r2;
-  /// Of the particles of a block, one after the other, the records that are not to be listed, and where they begin.
-  std::vector<std::int32_t> struck, struck_begin;
 
   void make_room(Index count) {
     const std::size_t size = at(count + 32);
@@ -74,9 +74,11 @@ void NeighborList::move_or_search(const ParticleSystem<double>& s, Numbers numbe
   version_ = s.version();
   ++statistics_.updates;
   ++age_;
+  double moved = std::numeric_limits<double>::infinity();  // by any particle since the last search
   bool search_now = !is_fresh(s);
   if (!search_now) {
-    const double approach = 2 * std::sqrt(take_positions(s, numbers));  // of two particles, at most
+    moved = std::sqrt(take_positions(s, numbers));
+    const double approach = 2 * moved;  // of two particles, at most
     shell_ = 0;
     while (shell_ < shells && !(approach <= shell_radius(shell_) - range_)) ++shell_;
     search_now = options_.renewal > 0 ? age_ > options_.renewal : shell_ == shells;
@@ -84,7 +86,7 @@ void NeighborList::move_or_search(const ParticleSystem<double>& s, Numbers numbe
   }
   if (!search_now) return;
   const auto begin = std::chrono::steady_clock::now();
-  search(s);
+  search(s, moved, numbers);
   version_of(Numbers::doubles) = version_;
   if (numbers == Numbers::whole) static_cast<void>(take_positions(s, numbers));
   statistics_.search_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -117,19 +119,17 @@ void NeighborList::choose_skin() {
   skin_ = (skin_ + best) / 2;
 }
 
-void NeighborList::search(const ParticleSystem<double>& s) {
+/// @param moved  what a particle has gone at most since the last search [length]
+void NeighborList::search(const ParticleSystem<double>& s, double moved, Numbers numbers) {
   box_ = s.box();
   choose_skin();
-  const double reach = range_ + skin_;
-  members_ = s.members();
-  if (topology_ != s.shared_topology() || statistics_.searches == 0) {
-    topology_ = s.shared_topology();
-    take_exclusions(s);
+  drift_ += moved;
+  if (!(range_ + skin_ + drift_ <= laid_for_)) {
+    sort_into_cells(s);
+  } else if (numbers != Numbers::doubles) {
+    static_cast<void>(take_positions(s, Numbers::doubles));
   }
-  place_points(s, reach);
-  grid_.sort({points_[0].data(), points_[1].data(), points_[2].data()}, static_cast<Index>(owner_.size()), reach);
-  lay_out(s);
-  form_groups();
+  start_here();
   while (!find_all()) {
   }
   shell_ = 0;
@@ -140,6 +140,26 @@ void NeighborList::search(const ParticleSystem<double>& s) {
   age_ = 0;
 }
 
+/// Sorts particles and images into cells and lays out their records, for this search and for those that follow before
+/// somebody has gone so far that images or cells are not to be relied on.
+void NeighborList::sort_into_cells(const ParticleSystem<double>& s) {
+  const double reach = range_ + skin_, further = reach + slack * skin_;
+  const bool small = box_.is_periodic() && box_.edges().minCoeff() < 2 * further;  // and more images would be many
+  laid_for_ = small ? reach : further;
+  drift_ = 0;
+  ++statistics_.sorts;
+  members_ = s.members();
+  if (topology_ != s.shared_topology() || statistics_.searches == 0) {
+    topology_ = s.shared_topology();
+    take_exclusions(s);
+  }
+  place_points(s, laid_for_);
+  grid_.sort({points_[0].data(), points_[1].data(), points_[2].data()}, static_cast<Index>(owner_.size()), reach);
+  lay_out(s);
+  form_groups();
+  take_struck();
+}
+
 std::size_t NeighborList::bytes() const {
   const auto of = [](const auto&... vectors) {
     return (std::size_t{0} + ... + (vectors.capacity() * sizeof(*vectors.data())));
@@ -147,7 +167,9 @@ std::size_t NeighborList::bytes() const {
   std::size_t sum =
       grid_.bytes() + of(records_, whole_records_, record_of_, ghosts_, shifts_, particles_, lanes_, row_begin_,
                          entries_, owner_, shift_, source_, excluded_begin_, excluded_, image_of_, next_image_);
-  for (std::size_t k = 0; k < 3; ++k) sum += of(start_[k], points_[k], sorted_[k], single_[k]);
+  for (std::size_t k = 0; k < 3; ++k) sum += of(start_[k], points_[k], single_[k]);
+  sum += struck_.capacity() * sizeof(Struck);
+  for (const Struck& block : struck_) sum += of(block.records);
   return sum;
 }
 
@@ -158,7 +180,6 @@ void NeighborList::place_points(const ParticleSystem<double>& s, double reach) {
   for (int k = 0; k < 3; ++k) {
     if (box_.is_periodic())
       middle_[k] = box_.on_grid(k, std::floor(box_.edges()[k] / box_.spacing(k) / 2) * box_.spacing(k));
-    start_[at(k)].resize(at(n));
     points_[at(k)].resize(at(n));
   }
   owner_.resize(at(n));
@@ -166,7 +187,7 @@ void NeighborList::place_points(const ParticleSystem<double>& s, double reach) {
   for_blocks(n, [&](Index begin, Index end) {
     for (std::size_t k = 0; k < 3; ++k) {
       const double* x = s.positions().component(static_cast<int>(k));
-      for (Index i = begin; i < end; ++i) points_[k][at(i)] = start_[k][at(i)] = x[i] - middle_[static_cast<Index>(k)];
+      for (Index i = begin; i < end; ++i) points_[k][at(i)] = x[i] - middle_[static_cast<Index>(k)];
     }
     for (Index i = begin; i < end; ++i) owner_[at(i)] = static_cast<std::int32_t>(i);
   });
@@ -245,17 +266,10 @@ void NeighborList::lay_out(const ParticleSystem<double>& s) {
   image_of_.assign(excluded_.empty() ? 0 : at(n), -1);
   next_image_.resize(excluded_.empty() ? 0 : at(count));
   ghosts_.clear();
-  for (auto& column : sorted_) column.resize(at(count));
-  for (auto& column : single_) column.resize(at(count + 16));
   for_blocks(count, [&](Index begin, Index end) {
     for (Index r = begin; r < end; ++r) {
       const std::int32_t point = order[at(r)], owner = owner_[at(point)];
-      for (int k = 0; k < 3; ++k) {
-        const double x = points_[at(k)][at(point)];
-        sorted_[at(k)][at(r)] = x;
-        single_[at(k)][at(r)] = static_cast<float>(x);
-        records_[at(4 * r + k)] = x;
-      }
+      for (int k = 0; k < 3; ++k) records_[at(4 * r + k)] = points_[at(k)][at(point)];
       set_type(r, topology != nullptr ? topology->type(owner) : 0);
       source_[at(r)] = owner;
       if (point < n) record_of_[at(owner)] = static_cast<std::int32_t>(r);
@@ -271,6 +285,25 @@ void NeighborList::lay_out(const ParticleSystem<double>& s) {
   for (int k = 0; k < 3; ++k) records_[at(4 * count + k)] = nowhere;
   for (int k = 0; k < 3 && keep_whole_; ++k) whole_records_[at(4 * count + k)] = whole_nowhere;
   set_type(count, 0);
+}
+
+/// Takes where everybody is for where the search finds him.
+void NeighborList::start_here() {
+  const auto records = static_cast<Index>(source_.size()), n = static_cast<Index>(record_of_.size());
+  for (std::size_t k = 0; k < 3; ++k) {
+    single_[k].resize(at(records + 16));
+    start_[k].resize(at(n));
+  }
+  for_blocks(records, [&](Index begin, Index end) {
+    for (Index r = begin; r < end; ++r) {
+      for (std::size_t k = 0; k < 3; ++k) single_[k][at(r)] = static_cast<float>(coordinate(r, k));
+    }
+  });
+  for_blocks(n, [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) start_[k][at(i)] = coordinate(record_of_[at(i)], k);
+    }
+  });
 }
 
 /// Groups of particles that follow each other, cut where the next one is far away.
@@ -291,7 +324,7 @@ void NeighborList::form_groups() {
     if (record_of_[at(i)] != r) continue;  // an image
     if (particles_.size() % group_size != 0) {
       bool near = true;
-      for (const auto& x : sorted_) near = near && std::abs(x[at(r)] - x[at(first)]) <= far;
+      for (std::size_t k = 0; k < 3; ++k) near = near && std::abs(coordinate(r, k) - coordinate(first, k)) <= far;
       if (!near) fill();
     }
     if (particles_.size() % group_size == 0) first = r;
@@ -333,8 +366,7 @@ bool NeighborList::find_all() {
   used_->store(0);
   for_blocks(static_cast<Index>(particles_.size()), [&](Index begin, Index end) {
     thread_local Scratch scratch;
-    take_struck(begin, end, scratch);
-    for (Index g = begin / group_size; g < end / group_size; ++g) find(g, begin, scratch);
+    for (Index g = begin / group_size; g < end / group_size; ++g) find(g, scratch);
   });
   const std::size_t needed = at(used_->load());
   if (needed <= entries_.size()) return true;
@@ -361,8 +393,8 @@ NeighborList::Surroundings NeighborList::surroundings(const std::array<std::int3
   for (std::size_t k = 0; k < 3; ++k) {
     double lower = std::numeric_limits<double>::infinity(), upper = -lower;
     for (const std::int32_t record : own) {
-      lower = std::min(lower, sorted_[k][at(record)]);
-      upper = std::max(upper, sorted_[k][at(record)]);
+      lower = std::min(lower, coordinate(record, k));
+      upper = std::max(upper, coordinate(record, k));
     }
     around.bounds.lower[k] = lower;
     around.bounds.upper[k] = upper;
@@ -387,7 +419,7 @@ NeighborList::Surroundings NeighborList::surroundings(const std::array<std::int3
 SearchPoints NeighborList::candidates(const Surroundings& around, Scratch& scratch) const {
   Index count = 0;
   scratch.runs.clear();
-  grid_.near(around.bounds, shell_radius(shells - 1) * (1 + 1e-9), [&](Index from, Index to) {
+  grid_.near(around.bounds, shell_radius(shells - 1) * (1 + 1e-9) + drift_, [&](Index from, Index to) {
     if (from == to) return;
     const auto begin = static_cast<std::int32_t>(from);
     scratch.runs.push_back({begin, static_cast<std::int32_t>(to - from), begin});
@@ -400,36 +432,41 @@ SearchPoints NeighborList::candidates(const Surroundings& around, Scratch& scrat
     run.begin = place;
     for (std::int32_t record = run.number; record < run.number + run.count; ++record, ++place) {
       for (std::size_t k = 0; k < 3; ++k) {
-        scratch.points[k][at(place)] = static_cast<float>(sorted_[k][at(record)] - around.origin[k]);
+        scratch.points[k][at(place)] = static_cast<float>(coordinate(record, k) - around.origin[k]);
       }
     }
   }
   return {scratch.points[0].data(), scratch.points[1].data(), scratch.points[2].data()};
 }
 
-/// Looks up for a block of particles whom each is not to have in its list, itself first: all at once, for they stand
-/// far apart in memory, and one look-up need not wait for the other.
-void NeighborList::take_struck(Index begin, Index end, Scratch& scratch) const {
-  scratch.struck.clear();
-  scratch.struck_begin.clear();
-  for (Index place = begin; place < end; ++place) {
-    scratch.struck_begin.push_back(static_cast<std::int32_t>(scratch.struck.size()));
-    scratch.struck.push_back(lanes_[at(place)] / 4);
-    const std::int32_t i = particles_[at(place)];
-    if (i < 0 || excluded_.empty()) continue;
-    for (std::int32_t k = excluded_begin_[at(i)]; k < excluded_begin_[at(i + 1)]; ++k) {
-      const std::int32_t j = excluded_[at(k)];
-      scratch.struck.push_back(record_of_[at(j)]);
-      for (std::int32_t image = image_of_[at(j)]; image >= 0; image = next_image_[at(image)]) {
-        scratch.struck.push_back(image);
+/// Looks up for blocks of particles whom each is not to have in its list: all of a block at once, for they stand far
+/// apart in memory, and one look-up need not wait for the other.
+void NeighborList::take_struck() {
+  struck_.clear();
+  if (excluded_.empty()) return;
+  const auto count = static_cast<Index>(particles_.size());
+  struck_.resize(at((count + block_size - 1) / block_size));
+  for_blocks(count, [&](Index begin, Index end) {
+    Struck& struck = struck_[at(begin / block_size)];
+    struck.records.clear();
+    for (Index place = begin; place < end; ++place) {
+      struck.begin[at(place - begin)] = static_cast<std::int32_t>(struck.records.size());
+      struck.records.push_back(lanes_[at(place)] / 4);
+      const std::int32_t i = particles_[at(place)];
+      if (i < 0) continue;
+      for (std::int32_t k = excluded_begin_[at(i)]; k < excluded_begin_[at(i + 1)]; ++k) {
+        const std::int32_t j = excluded_[at(k)];
+        struck.records.push_back(record_of_[at(j)]);
+        for (std::int32_t image = image_of_[at(j)]; image >= 0; image = next_image_[at(image)]) {
+          struck.records.push_back(image);
+        }
       }
     }
-  }
-  scratch.struck_begin.push_back(static_cast<std::int32_t>(scratch.struck.size()));
+    struck.begin[at(end - begin)] = static_cast<std::int32_t>(struck.records.size());
+  });
 }
 
-/// @param block  the first particle of the block of the group
-void NeighborList::find(Index group, Index block, Scratch& scratch) {
+void NeighborList::find(Index group, Scratch& scratch) {
   const NeighborSearchKernels& kernels = neighbor_search_kernels();
   std::array<std::int32_t, group_size> own{};  // their records
   for (Index lane = 0; lane < group_size; ++lane) own[at(lane)] = lanes_[at(group_size * group + lane)] / 4;
@@ -445,19 +482,25 @@ void NeighborList::find(Index group, Index block, Scratch& scratch) {
   for (std::size_t lane = 0; lane < group_size; ++lane) {
     if (particles[lane] < 0) continue;
     const auto relative = [&](std::size_t k) {
-      return static_cast<float>(sorted_[k][at(own[lane])] - around.origin[k]) - around.box.middle[k];
+      return static_cast<float>(coordinate(own[lane], k) - around.origin[k]) - around.box.middle[k];
     };
     counts[lane] = kernels.select(near, relative(0), relative(1), relative(2), limit, scratch.number[lane].data(),
                                   scratch.r2[lane].data());
   }
   Rows& place = row_begin_[at(group)];
   std::int32_t within[shells] = {};
+  const auto struck = [&](std::size_t lane) -> std::pair<const std::int32_t*, std::ptrdiff_t> {
+    if (struck_.empty()) return {&own[lane], 1};
+    const Struck& block = struck_[at(group_size * group / block_size)];
+    const std::int32_t* begin = block.begin.data() + group_size * group % block_size + static_cast<Index>(lane);
+    return {block.records.data() + begin[0], begin[1] - begin[0]};
+  };
   for (std::size_t lane = 0; lane < group_size; ++lane) {
     if (particles[lane] < 0) continue;
     const std::int32_t* number = scratch.number[lane].data();
-    const std::int32_t* out = scratch.struck_begin.data() + (group_size * group + static_cast<Index>(lane) - block);
-    counts[lane] = kernels.sort(number, scratch.r2[lane].data(), counts[lane], scratch.struck.data() + out[0],
-                                out[1] - out[0], around.limits, scratch.found[lane].data(), within);
+    const auto [out, out_count] = struck(lane);
+    counts[lane] = kernels.sort(number, scratch.r2[lane].data(), counts[lane], out, out_count, around.limits,
+                                scratch.found[lane].data(), within);
   }
   std::copy_n(within, shells, place.rows.begin());
   const std::ptrdiff_t rows = place.rows[shells - 1];
@@ -473,37 +516,59 @@ void NeighborList::find(Index group, Index block, Scratch& scratch) {
   kernels.turn(lists, rows, entries_.data() + place.begin);
 }
 
+/// By the positions of the particles alone: how often an image of each stands near each, and how often it is listed.
 void NeighborList::verify(const ParticleSystem<double>& s) const {
-  const auto count = static_cast<std::int32_t>(source_.size());
-  const auto distance2 = [&](std::int32_t a, std::int32_t b) {
-    double sum = 0;
-    for (int k = 0; k < 3; ++k) {
-      const double d = records_[at(4 * a + k)] - records_[at(4 * b + k)];
-      sum += d * d;
+  const bool found_now = age_ == 0;  // then rows hold all that they are ever to hold
+  const double reach = found_now ? shell_radius(shells - 1) : range_;
+  const auto is_near = [&](double x, double y, double z) { return x * x + y * y + z * z < reach * reach; };
+  const auto images_near = [&](const Vec3<double>& d) {
+    double from[3] = {0, 0, 0}, to[3] = {0, 0, 0};
+    for (int k = 0; k < 3 && box_.is_periodic(); ++k) {
+      from[k] = std::ceil((-reach - d[k]) / box_.edges()[k]);
+      to[k] = std::floor((reach - d[k]) / box_.edges()[k]);
     }
-    return sum;
+    int count = 0;
+    for (double a = from[0]; a <= to[0]; ++a) {
+      for (double b = from[1]; b <= to[1]; ++b) {
+        for (double c = from[2]; c <= to[2]; ++c) {
+          const Vec3<double>& edges = box_.edges();
+          count += is_near(d[0] + a * edges[0], d[1] + b * edges[1], d[2] + c * edges[2]) ? 1 : 0;
+        }
+      }
+    }
+    return count;
   };
+  Index seen = 0;
+  std::vector<int> listed(at(s.size()));
   for (Index g = 0; g < groups(); ++g) {
-    const Group one = group(g);
+    Group one = group(g);
+    if (found_now) one.rows = row_begin_[at(g)].rows[shells - 1];
     for (Index lane = 0; lane < group_size; ++lane) {
       const std::int32_t i = one.particles[lane], own = one.records[lane] / 4;
       if (i < 0) continue;
-      std::multiset<std::int32_t> listed;
-      for (Index row = 0; row < one.rows; ++row) listed.insert(one.entries[group_size * row + lane] / 4);
-      for (std::int32_t other = 0; other < count; ++other) {
-        if (other == own || !(distance2(own, other) < range_ * range_)) continue;
-        const std::int32_t j = source_[at(other)];
+      ++seen;
+      std::fill(listed.begin(), listed.end(), 0);
+      for (Index row = 0; row < one.rows; ++row) {
+        const Index other = one.entries[group_size * row + lane] / 4;
+        if (other == static_cast<Index>(source_.size())) continue;  // nobody
+        const auto along = [&](std::size_t k) { return coordinate(own, k) - coordinate(other, k); };
+        if (is_near(along(0), along(1), along(2))) ++listed[at(source_[at(other)])];
+      }
+      for (Index j = 0; j < s.size(); ++j) {
+        const Vec3<double> d = s.positions()[i] - s.positions()[j];
         const bool excluded = !excluded_.empty() && std::find(excluded_.begin() + excluded_begin_[at(i)],
                                                               excluded_.begin() + excluded_begin_[at(i + 1)],
                                                               j) != excluded_.begin() + excluded_begin_[at(i + 1)];
-        const std::size_t wanted = excluded ? 0 : 1;
-        if (listed.count(other) == wanted) continue;
+        const int wanted = excluded ? 0 : images_near(d) - (i == j && is_near(d[0], d[1], d[2]) ? 1 : 0);
+        if (listed[at(j)] == wanted) continue;
         throw LogicError(
-            fmt::format("the neighbor list holds the pair of particles {} and {}, {} apart, {} times instead of {}",
-                        s.ids()[at(i)], s.ids()[at(j)], std::sqrt(distance2(own, other)), listed.count(other), wanted));
+            fmt::format("the neighbor list holds particle {} or images of it {} times up to {} from "
+                        "particle {}, instead of {} times",
+                        s.ids()[at(j)], listed[at(j)], reach, s.ids()[at(i)], wanted));
       }
     }
   }
+  if (seen != s.size()) throw LogicError(fmt::format("the neighbor list holds {} of {} particles", seen, s.size()));
 }
 
 }  // namespace noether

@@ -3,6 +3,7 @@
 
 #include "engine/cell_grid.hpp"
 #include "engine/neighbor_options.hpp"
+#include "engine/parallel.hpp"
 #include "engine/particle_system.hpp"
 
 #include <atomic>
@@ -20,6 +21,9 @@ struct SearchPoints;
 /// bytes. In a periodic box the images of particles near its faces, or of all particles again and again
 /// where the box is small, have records of their own, so that distances need no wrapping. Every pair stands in the
 /// lists of both.
+///
+/// A search sorts particles into cells and lays out records only where somebody has gone far; before that, it looks
+/// into the cells of the last one, so much further as anybody can have gone since.
 ///
 /// Pairs that the topology excludes or scales are not listed. What is summed exactly over the entries depends neither
 /// on their order nor on when they were found, how the particles were sorted, or how wide the skin is.
@@ -77,8 +81,9 @@ class NeighborList {
 
   const NeighborStatistics& statistics() const { return statistics_; }
 
-  /// Compares the list with all pairs.
-  /// @throws LogicError  naming the first pair in range that is missing, or that stands there twice
+  /// Compares the list with all pairs of particles and their images, whose distances are taken anew: those in range,
+  /// and just after a search those up to the skin.
+  /// @throws LogicError  naming the first pair that is missing, or that stands there too often
   /// @cost O(n^2)
   void verify(const ParticleSystem<double>& s) const;
 
@@ -94,14 +99,22 @@ class NeighborList {
   struct Surroundings;
   class WholeNumbers;
 
+  /// Of the particles in a block of groups, one after the other, the records that are not to be listed, itself first.
+  struct Struck {
+    std::vector<std::int32_t> records;
+    std::array<std::int32_t, block_size + 1> begin{};
+  };
+
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+  double coordinate(Index record, std::size_t axis) const { return records_[at(4 * record) + axis]; }
   bool is_fresh(const ParticleSystem<double>& s) const;
   void move_or_search(const ParticleSystem<double>& s, Numbers numbers);
   double take_positions(const ParticleSystem<double>& s, Numbers numbers);
   template <class Put, class Shift>
   double move_records(const ParticleSystem<double>& s, const Put& put, const Shift& shift);
   std::uint64_t& version_of(Numbers numbers) { return versions_[static_cast<std::size_t>(numbers)]; }
-  void search(const ParticleSystem<double>& s);
+  void search(const ParticleSystem<double>& s, double moved, Numbers numbers);
+  void sort_into_cells(const ParticleSystem<double>& s);
   void choose_skin();
   void place_points(const ParticleSystem<double>& s, double reach);
   void number_shifts(const std::array<int, 3>& most);
@@ -109,14 +122,15 @@ class NeighborList {
   void lay_out(const ParticleSystem<double>& s);
   void set_type(Index record, std::int64_t type);
   void form_groups();
+  void start_here();
   void take_exclusions(const ParticleSystem<double>& s);
   /// Pairs up to this distance when they were found stand in the rows of a shell [length].
   double shell_radius(int shell) const { return range_ + skin_ * (shell + 1) / shells; }
   bool find_all();
   Surroundings surroundings(const std::array<std::int32_t, group_size>& own) const;
   SearchPoints candidates(const Surroundings& around, Scratch& scratch) const;
-  void take_struck(Index begin, Index end, Scratch& scratch) const;
-  void find(Index group, Index block, Scratch& scratch);
+  void take_struck();
+  void find(Index group, Scratch& scratch);
   std::int64_t reserve(std::int64_t entries);
   std::size_t bytes() const;
 
@@ -153,11 +167,14 @@ class NeighborList {
 
   // For the search alone.
   CellGrid grid_;
-  std::array<AlignedVector<double>, 3> points_, sorted_;
-  std::array<AlignedVector<float>, 3> single_;  ///< as `sorted_`
+  double laid_for_ = 0;  ///< how far from the box images have records, and cells are known [length]
+  double drift_ = 0;     ///< what a particle has gone at most since it was sorted into its cell [length]
+  std::array<AlignedVector<double>, 3> points_;
+  std::array<AlignedVector<float>, 3> single_;  ///< of records, at the last search
   std::vector<std::int32_t> owner_, shift_,
       source_;  ///< of a point: its particle and its shift; of a record: its particle
   std::vector<std::int32_t> excluded_begin_, excluded_;
+  std::vector<Struck> struck_;                       ///< by block of groups
   std::vector<std::int32_t> image_of_, next_image_;  ///< records of images, by particle and by the one before: -1, none
 };
 

@@ -32,6 +32,7 @@ struct NeighborOptions {
 /// What a list has done so far.
 struct NeighborStatistics {
   std::int64_t updates = 0, searches = 0;
+  std::int64_t sorts = 0;     ///< searches that sorted particles into cells anew
   double pairs = 0;           ///< listed for each particle, by the last search
   double skin = 0;            ///< of the last search [length]
   double search_seconds = 0;  ///< in all searches

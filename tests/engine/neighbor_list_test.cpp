@@ -93,6 +93,25 @@ TEST_CASE("a list lasts until somebody has moved by half of the skin", "[neighbo
   CHECK(list.statistics().searches == 2);
 }
 
+TEST_CASE("searches between two sorts find everybody", "[neighbors]") {
+  const bool periodic = GENERATE(true, false);
+  const int clusters = GENERATE(0, 7);
+  const Vec3<double> edges = GENERATE(values<Vec3<double>>({{9, 9, 9}, {30, 6, 7}}));
+  auto s = random_particles(400, edges, periodic, clusters, 11);
+  NeighborList list(1.1, {.skin = 0.3, .verify = true});
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  for (int step = 0; step < 120; ++step) {  // walks, across the faces of the box too
+    for (Index i = 0; i < s.size(); ++i) s.velocities().set(i, {normal(random), normal(random), normal(random)});
+    s.advance_positions(0.03);
+    REQUIRE_NOTHROW(list.update(s));
+  }
+  const NeighborStatistics& known = list.statistics();
+  CAPTURE(known.searches, known.sorts);
+  CHECK(known.sorts > 5);
+  CHECK(known.searches > 2.5 * static_cast<double>(known.sorts));
+}
+
 TEST_CASE("a box too small for its range says what to do", "[neighbors]") {
   ParticleSystem<double> s;
   s.set_box(Box::periodic({0.05, 0.05, 0.05}));
