@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <limits>
+
 namespace noether {
 
 const BondedTerms& Bonded::terms_of(const std::shared_ptr<const Topology>& topology, Index n) const {
@@ -22,22 +24,49 @@ const BondedTerms& Bonded::terms_of(const std::shared_ptr<const Topology>& topol
 namespace {
 
 template <class Potential>
-[[gnu::always_inline]] inline bool forces_of(const std::array<double, 6>& parameters, const double* r2, Index count,
-                                             double* force_over_r) {
+[[gnu::always_inline]] inline bool forces_of(const std::array<double, 6>& parameters, const BondedTerm<2>* bonds,
+                                             const std::uint8_t* in_step, Index count, const Vec3<double>& edges,
+                                             const std::array<const double*, 3>& positions,
+                                             const std::array<double*, 3>& force) {
+  alignas(64) double d[3][block_size];
+  for (Index i = 0; i < count;) {
+    const auto [one, other] = bonds[i].particles;
+    const Index together = std::min<Index>(in_step[i], count - i);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double *const from = positions[c] + other, *const to = positions[c] + one;
+      for (Index k = 0; k < together; ++k) d[c][i + k] = to[k] - from[k];
+    }
+    i += together;
+  }
   const Potential potential(parameters);
+  double edge[3], half[3];
+  for (int c = 0; c < 3; ++c) {
+    edge[c] = edges[c];
+    half[c] = edge[c] > 0 ? edge[c] / 2 : std::numeric_limits<double>::infinity();
+  }
+  // As Box::minimum_image for particles in the cell, without a branch.
+  const auto nearest = [&](int c, double x) { return x - (x > half[c] ? edge[c] : x < -half[c] ? -edge[c] : 0.0); };
   int broken = 0;
-  for (Index k = 0; k < count; ++k) {
-    if constexpr (requires { potential.holds(r2[k]); }) broken |= potential.holds(r2[k]) ? 0 : 1;
-    force_over_r[k] = potential.force_over_r(r2[k]);
+  for (Index i = 0; i < count; ++i) {
+    const double x = nearest(0, d[0][i]), y = nearest(1, d[1][i]), z = nearest(2, d[2][i]);
+    const double r2 = x * x + y * y + z * z;
+    if constexpr (requires { potential.holds(r2); }) broken |= potential.holds(r2) ? 0 : 1;
+    const double force_over_r = potential.force_over_r(r2);
+    force[0][i] = force_over_r * x;
+    force[1][i] = force_over_r * y;
+    force[2][i] = force_over_r * z;
   }
   return broken == 0;
 }
 
 }  // namespace
 
-bool detail::bond_forces(const BondedKind<BondPotential>& kind, const double* r2, Index count, double* force_over_r) {
+bool detail::bond_forces(const BondedKind<BondPotential>& kind, const BondedTerm<2>* bonds, const std::uint8_t* in_step,
+                         Index count, const Vec3<double>& edges, const std::array<const double*, 3>& positions,
+                         const std::array<double*, 3>& force) {
   return with_potential<double>(kind, [&](const auto& potential) {
-    return simd_loop<forces_of<std::decay_t<decltype(potential)>>>()(kind.parameters, r2, count, force_over_r);
+    return simd_loop<forces_of<std::decay_t<decltype(potential)>>>()(kind.parameters, bonds, in_step, count, edges,
+                                                                     positions, force);
   });
 }
 

@@ -58,9 +58,55 @@ template <class Real, std::size_t n> struct BondedResult {
   bool overstretched = false;
 };
 
-/// -U'(r) / r of bonds of doubles from the squares of their lengths, in lanes and with the bits of `force_over_r`.
+/// Forces on the first particles of up to `block_size` bonds of doubles, in lanes and with the bits that they have one
+/// by one.
+/// @param in_step  as `BondedTerms` has it  @param edges  of the box, 0 in open space  @param force  where they go
 /// @return  whether all of them hold; the forces of those that do not mean nothing
-bool bond_forces(const BondedKind<BondPotential>& kind, const double* r2, Index count, double* force_over_r);
+bool bond_forces(const BondedKind<BondPotential>& kind, const BondedTerm<2>* bonds, const std::uint8_t* in_step,
+                 Index count, const Vec3<double>& edges, const std::array<const double*, 3>& positions,
+                 const std::array<double*, 3>& force);
+
+/// Adds to the accelerations of the particles of a block what stands in their slots, in the order of these.
+template <class Real>
+inline void add_slots(const BondedTerms::Places& places, const std::array<const Real*, 3>& slots, const Real* mass,
+                      Index begin, Index end, const std::array<Real*, 3>& acceleration) {
+  constexpr double signs[2] = {1, -1};
+  Real force[3][block_size], inverse[block_size];
+  for (Index i = begin; i < end;) {
+    const Index count = std::min<Index>(places.in_step[i], end - i);
+    if (count == 1) {  // by itself, without loops over lanes
+      Real x(0), y(0), z(0);
+      for (std::uint32_t k = places.first[i]; k < places.first[i + 1]; ++k) {
+        const std::uint32_t at = places.slot[k] / 2;
+        const Real sign(signs[places.slot[k] % 2]);
+        x += sign * slots[0][at];
+        y += sign * slots[1][at];
+        z += sign * slots[2][at];
+      }
+      force[0][i - begin] = x;
+      force[1][i - begin] = y;
+      force[2][i - begin] = z;
+    } else {
+      for (auto& column : force) std::fill_n(column + (i - begin), count, Real(0));
+      for (std::uint32_t k = places.first[i]; k < places.first[i + 1]; ++k) {
+        const Real sign(signs[places.slot[k] % 2]);
+        for (std::size_t c = 0; c < 3; ++c) {
+          const Real* const from = slots[c] + places.slot[k] / 2;
+          Real* const to = force[c] + (i - begin);
+          for (Index j = 0; j < count; ++j) to[j] += sign * from[j];
+        }
+      }
+    }
+    i += count;
+  }
+  for (Index i = begin; i < end; ++i) inverse[i - begin] = Real(1) / mass[i];
+  for (std::size_t c = 0; c < 3; ++c) {
+    Real* const a = acceleration[c];
+    for (Index i = begin; i < end; ++i) {
+      a[i] = mass[i] == Real(0) ? a[i] : Real(a[i] + inverse[i - begin] * force[c][i - begin]);
+    }
+  }
+}
 
 /// A bond along d = x_1 - x_2.
 template <class Real, class Potential>
@@ -131,7 +177,8 @@ BondedResult<Pack, m + 1> bonded_forces_in_lanes(const Potential& potential, con
 /// Evaluates terms one after the other and puts their forces into slots.
 template <class Real> class BondedLoop {
  public:
-  BondedLoop(const BondedTerms& terms, const ParticleSystem<Real>& s, Vec3<Real>* slots, bool energy, bool virial)
+  BondedLoop(const BondedTerms& terms, const ParticleSystem<Real>& s, VectorColumn<Real>& slots, bool energy,
+             bool virial)
       : terms_(terms), s_(s), slots_(slots), energy_(energy), virial_(virial) {}
 
   /// Terms [begin, end) of all families in a row.
@@ -139,7 +186,7 @@ template <class Real> class BondedLoop {
     BondedTotals<Real> totals;
     const Topology& t = terms_.topology();
     Index first = 0;
-    std::size_t slot = 0;
+    Index slot = 0;
     const auto family = [&](const auto& terms, const auto& kinds) {
       const auto size = static_cast<Index>(terms.size());
       const Index to = std::min(end, first + size);
@@ -150,12 +197,12 @@ template <class Real> class BondedLoop {
         Index next = k + 1;
         while (next < to && terms[static_cast<std::size_t>(next - first)].type == type) ++next;
         const auto* const run = &terms[static_cast<std::size_t>(k - first)];
-        Vec3<Real>* const slots = slots_ + slot + static_cast<std::size_t>(k - first) * BondedTerms::slots_of(*run);
-        evaluate_run(run, next - k, kinds[static_cast<std::size_t>(type)], k, slots, totals);
+        evaluate_run(run, next - k, kinds[static_cast<std::size_t>(type)], k,
+                     slot + (k - first) * BondedTerms::slots_of(*run), totals);
         k = next;
       }
       first += size;
-      slot += terms.size() * BondedTerms::slots_of(std::decay_t<decltype(terms[0])>{});
+      slot += size * BondedTerms::slots_of(std::decay_t<decltype(terms[0])>{});
     };
     family(t.bonds, terms_.bonds);
     family(t.angles, terms_.angles);
@@ -185,44 +232,40 @@ template <class Real> class BondedLoop {
     return {between(p[0], p[1]), between(p[1], p[2]), between(p[3], p[2])};
   }
 
-  /// `count` terms of one kind, the first of which is term `k`.
+  /// `count` terms of one kind, the first of which is term `k` and has its forces from `slot` on.
   template <std::size_t n, class Kind>
-  void evaluate_run(const BondedTerm<n>* terms, Index count, const Kind& kind, Index k, Vec3<Real>* slots,
+  void evaluate_run(const BondedTerm<n>* terms, Index count, const Kind& kind, Index k, Index slot,
                     BondedTotals<Real>& totals) {
     with_potential<InLane>(kind, [&](const auto& potential) {
       for (Index i = 0; i < count; ++i) {
-        evaluate(terms[i], potential, k + i, slots + static_cast<std::size_t>(i) * BondedTerms::slots_of(terms[i]),
-                 totals);
+        evaluate(terms[i], potential, k + i, slot + i * BondedTerms::slots_of(terms[i]), totals);
       }
     });
   }
 
   /// Of bonds of doubles the forces alone, many at a time.
-  void evaluate_run(const BondedTerm<2>* bonds, Index count, const BondedKind<BondPotential>& kind, Index k,
-                    Vec3<Real>* slots, BondedTotals<Real>& totals) requires std::is_same_v<Real, double> {
+  void evaluate_run(const BondedTerm<2>* bonds, Index count, const BondedKind<BondPotential>& kind, Index k, Index slot,
+                    BondedTotals<Real>& totals) requires std::is_same_v<Real, double> {
     const auto one_by_one = [&](Index begin, Index size) {
-      evaluate_run<2, BondedKind<BondPotential>>(bonds + begin, size, kind, k + begin, slots + begin, totals);
+      evaluate_run<2, BondedKind<BondPotential>>(bonds + begin, size, kind, k + begin, slot + begin, totals);
     };
     if (energy_ || virial_) return one_by_one(0, count);
-    constexpr Index most = 64;
-    for (Index begin = 0; begin < count; begin += most) {
-      const Index size = std::min(most, count - begin);
-      alignas(64) double r2[most], force[most];
-      for (Index i = 0; i < size; ++i) {
-        const auto& [one, other] = bonds[begin + i].particles;
-        slots[begin + i] = between(one, other);
-        r2[i] = norm2(slots[begin + i]);
+    for (Index begin = 0; begin < count; begin += block_size) {
+      const Index size = std::min(block_size, count - begin);
+      std::array<const double*, 3> positions;
+      std::array<double*, 3> force;
+      for (int c = 0; c < 3; ++c) {
+        positions[static_cast<std::size_t>(c)] = s_.positions().component(c);
+        force[static_cast<std::size_t>(c)] = slots_.component(c) + slot + begin;
       }
-      if (!bond_forces(kind, r2, size, force)) {
-        one_by_one(begin, size);
-        continue;
-      }
-      for (Index i = 0; i < size; ++i) slots[begin + i] *= force[i];
+      const bool hold =
+          bond_forces(kind, bonds + begin, terms_.in_step(k + begin), size, s_.box().edges(), positions, force);
+      if (!hold) one_by_one(begin, size);
     }
   }
 
   template <std::size_t n, class Potential>
-  void evaluate(const BondedTerm<n>& term, const Potential& potential, Index k, Vec3<Real>* slots,
+  void evaluate(const BondedTerm<n>& term, const Potential& potential, Index k, Index slot,
                 BondedTotals<Real>& totals) {
     const auto d = differences(term.particles);
     const BondedResult<Real, n> result = [&] {
@@ -232,7 +275,9 @@ template <class Real> class BondedLoop {
         return bonded_forces<Real>(potential, d, energy_);
       }
     }();
-    std::copy_n(result.force.begin(), BondedTerms::slots_of(term), slots);
+    for (Index i = 0; i < BondedTerms::slots_of(term); ++i) {
+      slots_.set(slot + i, result.force[static_cast<std::size_t>(i)]);
+    }
     if (result.overstretched) {
       Index known = overstretched_.load();
       while (k < known && !overstretched_.compare_exchange_weak(known, k)) {
@@ -260,7 +305,7 @@ template <class Real> class BondedLoop {
 
   const BondedTerms& terms_;
   const ParticleSystem<Real>& s_;
-  Vec3<Real>* slots_;
+  VectorColumn<Real>& slots_;
   bool energy_, virial_;
   std::atomic<Index> overstretched_ = none;
 };

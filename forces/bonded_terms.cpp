@@ -108,6 +108,16 @@ std::vector<BondedKind<Potential>> kinds_of(const std::vector<TermKind>& kinds, 
   return found;
 }
 
+/// For each of `count` things how many follow in step, it included. @param next_too  (k): whether k + 1 does
+template <class NextToo> std::vector<std::uint8_t> steps_together(std::size_t count, const NextToo& next_too) {
+  constexpr std::uint8_t most = std::numeric_limits<std::uint8_t>::max();
+  std::vector<std::uint8_t> steps(count, 1);
+  for (std::size_t k = count; k-- > 1;) {
+    if (next_too(k - 1)) steps[k - 1] = static_cast<std::uint8_t>(std::min<int>(steps[k] + 1, most));
+  }
+  return steps;
+}
+
 /// Every particle there is and none twice; every kind there is.
 template <std::size_t size>
 void check_terms(const std::vector<BondedTerm<size>>& terms, std::size_t kinds, Index n, const char* one) {
@@ -145,7 +155,7 @@ BondedTerms::BondedTerms(std::shared_ptr<const Topology> topology, Index n)
   std::uint64_t slots = 0;
   const auto add = [&](const auto& terms) {
     for (const auto& term : terms) {
-      const std::size_t own = slots_of(term);
+      const auto own = static_cast<std::size_t>(slots_of(term));
       for (std::size_t k = 0; k < term.particles.size(); ++k) {
         places.push_back({term.particles[k], k < own ? 2 * (slots + k) : 2 * slots + 1});
       }
@@ -166,10 +176,21 @@ BondedTerms::BondedTerms(std::shared_ptr<const Topology> topology, Index n)
   for (const Place& place : places) ++first_[static_cast<std::size_t>(place.owner) + 1];
   for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) first_[i + 1] += first_[i];
   slot_.resize(places.size());
-  std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+  std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
   for (const Place& place : places) {
     slot_[next[static_cast<std::size_t>(place.owner)]++] = static_cast<std::uint32_t>(place.slot);
   }
+  particles_in_step_ = steps_together(static_cast<std::size_t>(n), [&](std::size_t i) {
+    const std::uint32_t from = first_[i], size = first_[i + 1] - from;
+    bool next_too = first_[i + 2] - first_[i + 1] == size;
+    for (std::uint32_t k = from; k < from + size && next_too; ++k) next_too = slot_[k + size] == slot_[k] + 2;
+    return next_too;
+  });
+  const auto& bonds_of = topology_->bonds;
+  bonds_in_step_ = steps_together(bonds_of.size(), [&](std::size_t k) {
+    const auto &one = bonds_of[k].particles, &next_one = bonds_of[k + 1].particles;
+    return next_one[0] == one[0] + 1 && next_one[1] == one[1] + 1;
+  });
   for (auto& kind : angles) kind.parameters[5] = std::cos(kind.parameters[1]);
 }
 

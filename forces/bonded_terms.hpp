@@ -45,25 +45,24 @@ class BondedTerms {
   Index terms() const { return terms_; }
   /// Number of slots, of all terms and of one.
   Index slots() const { return slots_; }
-  template <std::size_t n> static constexpr std::size_t slots_of(const BondedTerm<n>& /*term*/) {
-    return n == 2 ? 1 : n;
+  template <std::size_t n> static constexpr Index slots_of(const BondedTerm<n>& /*term*/) {
+    return n == 2 ? 1 : static_cast<Index>(n);
   }
-  /// Calls `body(slot, sign)` for the slots of particle `i`, in order; sign is -1 where it feels the opposite, else 1.
-  template <class Body> void for_each_slot(Index i, const Body& body) const {
-    const auto at = static_cast<std::size_t>(i);
-    for (std::size_t k = first_[at]; k < first_[at + 1]; ++k) {
-      body(static_cast<std::size_t>(slot_[k] / 2), signs[slot_[k] % 2]);
-    }
-  }
+  /// Where the forces of a particle stand.
+  struct Places {
+    const std::uint32_t* first;   ///< those of particle i in `slot` from first[i] to first[i + 1]
+    const std::uint32_t* slot;    ///< 2 slot, or 2 slot + 1 where it feels the opposite
+    const std::uint8_t* in_step;  ///< so many particles, this one included, have one slot further each
+  };
+  Places places() const { return {first_.data(), slot_.data(), particles_in_step_.data()}; }
+  /// So many bonds, that one included, join one particle further each.
+  const std::uint8_t* in_step(Index bond) const { return bonds_in_step_.data() + bond; }
 
  private:
-  static constexpr double signs[2] = {1, -1};
-
   std::shared_ptr<const Topology> topology_;
   Index terms_ = 0, slots_ = 0;
-  std::vector<std::size_t> first_;   ///< by particle, shape (n + 1)
-  std::vector<std::uint32_t> slot_;  ///< those of particle i from first_[i] to first_[i + 1]: 2 slot, or with the
-                                     ///< opposite sign 2 slot + 1
+  std::vector<std::uint32_t> first_, slot_;  ///< as `Places` has them
+  std::vector<std::uint8_t> particles_in_step_, bonds_in_step_;
 };
 
 }  // namespace noether

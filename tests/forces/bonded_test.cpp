@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <numeric>
+#include <random>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -371,6 +373,40 @@ TEST_CASE("bonds many at a time have the bits of bonds one by one, at every SIMD
         std::stable_sort(topology->bonds.begin(), topology->bonds.end(),
                          [](const auto& a, const auto& b) { return a.particles < b.particles; });
       }
+    }
+  }
+}
+
+TEST_CASE("bonds in step along a chain have the bits that they have in any numbering of the particles", "[bonded]") {
+  const Index n = 600;
+  for (const bool periodic : {false, true}) {
+    auto s = crooked(n, 8);
+    for (Index i = 0; i < n; ++i) s.masses()[i] = 1;
+    if (periodic) s.set_box(Box::periodic({9, 7, 8}));
+    auto topology = std::make_shared<Topology>(*chain(n, {bond_kinds, {}, {}, {}}));
+    std::erase_if(topology->bonds, [](const auto& bond) { return bond.particles[0] % 150 == 149; });  // four chains
+    std::vector<Index> number(static_cast<std::size_t>(n));
+    std::iota(number.begin(), number.end(), Index{0});
+    std::shuffle(number.begin(), number.end(), std::mt19937(3));
+    ParticleSystem<double> other = s;
+    auto shuffled = std::make_shared<Topology>(*topology);
+    for (Index i = 0; i < n; ++i) {
+      other.positions().set(number[static_cast<std::size_t>(i)], std::as_const(s).positions()[i]);
+    }
+    for (auto& bond : shuffled->bonds) {
+      for (Index& i : bond.particles) i = number[static_cast<std::size_t>(i)];
+    }
+    s.set_topology(topology);
+    other.set_topology(shuffled);
+    for (const SimdLevel level : test::all_levels()) {
+      const test::AtLevel here(level);
+      const auto in_step = evaluate(Bonded{}, s, {}), mixed = evaluate(Bonded{}, other, {});
+      CHECK(largest(in_step.force) > 0);
+      bool same = true;
+      for (Index i = 0; i < n; ++i) {
+        same = same && in_step.force[i] == mixed.force[number[static_cast<std::size_t>(i)]];
+      }
+      CHECK(same);
     }
   }
 }
