@@ -151,16 +151,23 @@ template <SplitHamiltonian H> class Langevin {
     using std::exp, std::expm1, std::sqrt;
     const real gamma(options_.friction), keep = exp(-gamma * h);
     const real kT = real(s.units().k_B) * real(options_.temperature), warmth = -expm1(real(-2) * gamma * h) * kT;
-    s.scale_velocities(keep);
     const std::vector<std::int64_t>& ids = s.ids();
+    const real* masses = std::as_const(s).masses().data();
     VectorColumn<real>& v = s.velocities();
+    auto* low = s.low_words();
     for_blocks(s.size(), [&](Index begin, Index end) {
       double xi[3][block_size];
+      real sigma[block_size];
       noise(key_, ids.data() + begin, end - begin, step, stage, xi[0], xi[1], xi[2]);
-      for (Index i = begin; i < end; ++i) {
-        const real sigma = sqrt(warmth / std::as_const(s).masses()[i]);
-        const Index k = i - begin;
-        v.add(i, sigma * Vec3<real>(real(xi[0][k]), real(xi[1][k]), real(xi[2][k])));
+      for (Index i = begin; i < end; ++i) {  // neighbors of one mass, the most of all, share a root
+        const bool same = i > begin && masses[i] == masses[i - 1];
+        sigma[i - begin] = same ? sigma[i - 1 - begin] : real(sqrt(warmth / masses[i]));
+      }
+      for (int c = 0; c < 3; ++c) {
+        real* const along = v.component(c);
+        for (Index i = begin; i < end; ++i) along[i] = along[i] * keep + sigma[i - begin] * real(xi[c][i - begin]);
+        if (low == nullptr) continue;
+        for (Index i = begin; i < end; ++i) low->v.component(c)[i] *= keep;
       }
     });
     if constexpr (projects) hamiltonian_.project_velocities(s, h);
