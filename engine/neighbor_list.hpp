@@ -27,7 +27,7 @@ struct SearchPoints;
 ///
 /// Pairs that the topology excludes or scales are not listed. What is summed exactly over the entries depends neither
 /// on their order nor on when they were found, how the particles were sorted, or how wide the skin is.
-/// @cost O(n) for a search and for an update; about 450 bytes for each particle in a Lennard-Jones liquid
+/// @cost O(n) for a search and for an update; about 650 bytes for each particle in a Lennard-Jones liquid
 /// @source Verlet1967, Allen2017
 class NeighborList {
  public:
