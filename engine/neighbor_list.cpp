@@ -442,8 +442,7 @@ SearchPoints NeighborList::candidates(const Surroundings& around, Scratch& scrat
 /// Looks up for blocks of particles whom each is not to have in its list: all of a block at once, for they stand far
 /// apart in memory, and one look-up need not wait for the other.
 void NeighborList::take_struck() {
-  struck_.clear();
-  if (excluded_.empty()) return;
+  if (excluded_.empty()) return struck_.clear();
   const auto count = static_cast<Index>(particles_.size());
   struck_.resize(at((count + block_size - 1) / block_size));
   for_blocks(count, [&](Index begin, Index end) {
@@ -540,6 +539,7 @@ void NeighborList::verify(const ParticleSystem<double>& s) const {
   };
   Index seen = 0;
   std::vector<int> listed(at(s.size()));
+  std::vector<Index> last(source_.size(), -1);  // whose list a record was seen in
   for (Index g = 0; g < groups(); ++g) {
     Group one = group(g);
     if (found_now) one.rows = row_begin_[at(g)].rows[shells - 1];
@@ -552,7 +552,12 @@ void NeighborList::verify(const ParticleSystem<double>& s) const {
         const Index other = one.entries[group_size * row + lane] / 4;
         if (other == static_cast<Index>(source_.size())) continue;  // nobody
         const auto along = [&](std::size_t k) { return coordinate(own, k) - coordinate(other, k); };
-        if (is_near(along(0), along(1), along(2))) ++listed[at(source_[at(other)])];
+        if (!is_near(along(0), along(1), along(2))) continue;
+        if (std::exchange(last[at(other)], i) == i) {
+          throw LogicError(fmt::format("the neighbor list of particle {} holds particle {} or one image of it twice",
+                                       s.ids()[at(i)], s.ids()[at(source_[at(other)])]));
+        }
+        ++listed[at(source_[at(other)])];
       }
       for (Index j = 0; j < s.size(); ++j) {
         const Vec3<double> d = s.positions()[i] - s.positions()[j];

@@ -83,7 +83,7 @@ class NeighborList {
 
   /// Compares the list with all pairs of particles and their images, whose distances are taken anew: those in range,
   /// and just after a search those up to the skin.
-  /// @throws LogicError  naming the first pair that is missing, or that stands there too often
+  /// @throws LogicError  naming the first pair that is missing, or that stands there twice
   /// @cost O(n^2)
   void verify(const ParticleSystem<double>& s) const;
 
