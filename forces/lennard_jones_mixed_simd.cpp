@@ -36,6 +36,17 @@ HWY_INLINE Points load_points(const std::int32_t* records, const std::int32_t* o
 
 /// Records first, first + 4, ... side by side.
 template <class D> HWY_INLINE hn::Vec<D> every_fourth(D d, const std::int32_t* records, const std::int32_t* offsets) {
+#if HWY_TARGET <= HWY_AVX3
+  const auto record = [&](int k) {
+    return _mm_loadu_si128(reinterpret_cast<const __m128i*>(records + static_cast<std::ptrdiff_t>(offsets[k])));
+  };
+  if constexpr (hn::MaxLanes(D()) == 16) {  // inserting would take the ports of the turning below
+    __m512i all = _mm512_castsi128_si512(record(0));
+    all = _mm512_mask_broadcast_i32x4(all, 0x00f0, record(4));
+    all = _mm512_mask_broadcast_i32x4(all, 0x0f00, record(8));
+    return hn::Vec<D>{_mm512_mask_broadcast_i32x4(all, 0xf000, record(12))};
+  }
+#endif
   if constexpr (hn::MaxLanes(D()) > 4) {
     const hn::Half<D> half;
     return hn::Combine(d, every_fourth(half, records, offsets + hn::MaxLanes(half)),

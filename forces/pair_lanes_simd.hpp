@@ -39,16 +39,15 @@ HWY_INLINE Points load_points(const double* records, const std::int32_t* offsets
   return {hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b),
           hn::InterleaveLower(d, hn::LoadU(d, one + 2), hn::LoadU(d, two + 2))};
 #elif HWY_MAX_BYTES >= 64
-  const hn::Half<Lanes> half;
-  const auto two = [&](int k) {  // records k and k + 4
-    return hn::Combine(d, hn::LoadU(half, record(k + 4)), hn::LoadU(half, record(k)));
+  const auto two = [&](int k) {  // records k and k + 2
+    return _mm512_mask_broadcast_f64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(record(k))), 0xf0,
+                                       _mm256_loadu_pd(record(k + 2)));
   };
-  const Vector a = two(0), b = two(1), c = two(2), e = two(3);
-  const Vector xz_low = hn::InterleaveLower(d, a, b), xz_high = hn::InterleaveLower(d, c, e);
-  const Vector y_low = hn::InterleaveUpper(d, a, b), y_high = hn::InterleaveUpper(d, c, e);
-  return {hn::OddEvenBlocks(hn::SwapAdjacentBlocks(xz_high), xz_low),
-          hn::OddEvenBlocks(hn::SwapAdjacentBlocks(y_high), y_low),
-          hn::OddEvenBlocks(xz_high, hn::SwapAdjacentBlocks(xz_low))};
+  const __m512d a = two(0), b = two(1), c = two(4), e = two(5);
+  const __m512d xz_low = _mm512_unpacklo_pd(a, b), xz_high = _mm512_unpacklo_pd(c, e);
+  const __m512d y_low = _mm512_unpackhi_pd(a, b), y_high = _mm512_unpackhi_pd(c, e);
+  return {Vector{_mm512_shuffle_f64x2(xz_low, xz_high, 0x88)}, Vector{_mm512_shuffle_f64x2(y_low, y_high, 0x88)},
+          Vector{_mm512_shuffle_f64x2(xz_low, xz_high, 0xdd)}};
 #else
   const Vector a = hn::LoadU(d, record(0)), b = hn::LoadU(d, record(1));
   const Vector c = hn::LoadU(d, record(2)), e = hn::LoadU(d, record(3));
