@@ -11,16 +11,21 @@
 #include "io/structure.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/liquid.hpp"
+#include "tests/support/recorded.hpp"
 #include "tests/support/settings.hpp"
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
+#include <fstream>
 
 namespace noether {
 namespace {
 
 using Liquid = KineticPotential<LennardJonesForce>;
+
+const std::filesystem::path lammps_files = std::filesystem::path(NOETHER_SOURCE_DIR) / "tests" / "data" / "lammps";
 
 LennardJonesForce argon(Cutoff style) { return {.cutoff = 2.5, .cutoff_style = style, .epsilon = 1.0, .sigma = 1.0}; }
 
@@ -57,29 +62,50 @@ double energy_error(double step) {
   return energy.rms();
 }
 
+/// At the start and after 100 steps: LAMMPS prints eight digits; all are to agree, but the last.
+void check_against_lammps(const std::string& name, const ParticleSystem<double>& start,
+                          const LennardJonesForce& force) {
+  Simulation sim(start, compose(Liquid(force), schemes::verlet), 0.005);
+  auto probe = compose(Liquid(force), schemes::verlet);
+  auto expected = test::lammps_energies(name);
+  for (const std::string step : {"0.", "100."}) {
+    const auto agree = [&](const char* key, double found) {
+      const double of_lammps = expected.at(step + key);
+      CAPTURE(step, key, of_lammps, found);
+      CHECK(std::abs(found - of_lammps) < 1e-7);
+    };
+    ParticleSystem<double> s = sim.particles();
+    probe.bind(s);
+    const Thermo found = thermo_of(probe, s);
+    agree("temp", found.temperature);
+    agree("pe", found.potential);
+    agree("etotal", found.total);
+    agree("press", found.pressure);
+    REQUIRE(sim.run(100).ok());
+  }
+}
+
 }  // namespace
 
 TEST_CASE("a melt has LAMMPS's temperature, energy and pressure at the start and after 100 steps", "[melts][oracle]") {
   io::StructureOptions options;
   options.units = &unit_system("reduced");
   options.file_units = "lj";
-  const auto folder = std::filesystem::path(NOETHER_SOURCE_DIR) / "tests/data/lammps";
-  Simulation sim(io::read_structure(folder / "melt.data", options),
-                 compose(Liquid({.cutoff = 2.5, .cutoff_style = Cutoff::plain}), schemes::verlet), 0.005);
-  auto probe = compose(Liquid({.cutoff = 2.5, .cutoff_style = Cutoff::plain}), schemes::verlet);
-  // tests/data/lammps/melt.energies.txt, of which LAMMPS prints eight digits.
-  const Thermo expected[2] = {{1.44, -6.7733680533, -4.6158680533, -5.0210762701},
-                              {0.7520896052, -5.7514522632, -4.6246235665, 0.2222871157}};
-  for (const Thermo& one : expected) {
-    ParticleSystem<double> s = sim.particles();
-    probe.bind(s);
-    const Thermo found = thermo_of(probe, s);
-    CHECK(std::abs(found.temperature - one.temperature) < 1e-7);
-    CHECK(std::abs(found.potential - one.potential) < 1e-7);
-    CHECK(std::abs(found.total - one.total) < 1e-7);
-    CHECK(std::abs(found.pressure - one.pressure) < 1e-6);
-    REQUIRE(sim.run(100).ok());
+  check_against_lammps("melt", io::read_structure(lammps_files / "melt.data", options),
+                       {.cutoff = 2.5, .cutoff_style = Cutoff::plain});
+}
+
+TEST_CASE("LAMMPS's whole in.lj, 32 000 atoms, is where LAMMPS has it after 100 steps", "[melts][oracle]") {
+  ParticleSystem<double> s = test::liquid(20, 0.8442, 1.44);
+  std::ifstream file(lammps_files / "in_lj.velocities", std::ios::binary);
+  for (Index i = 0; i < s.size(); ++i) {
+    double v[3];
+    file.read(reinterpret_cast<char*>(v), sizeof v);  // NOLINT: as make.py has written them
+    s.velocities().set(i, {v[0], v[1], v[2]});
   }
+  REQUIRE(file.good());
+  REQUIRE(file.peek() == std::ifstream::traits_type::eof());
+  check_against_lammps("in_lj", s, argon(Cutoff::plain));
 }
 
 TEST_CASE("the energy of a liquid fluctuates with the square of the step", "[melts][order]") {

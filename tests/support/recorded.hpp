@@ -9,11 +9,10 @@
 
 namespace noether::test {
 
-/// The lines `key value` of tests/data/lammps/NAME.energies.txt.
-inline std::map<std::string, double> lammps_energies(const std::string& name) {
+/// The lines `key value` of a file below tests/data.
+inline std::map<std::string, double> recorded(const std::string& path) {
   std::map<std::string, double> values;
-  std::ifstream file(std::filesystem::path(NOETHER_SOURCE_DIR) / "tests" / "data" / "lammps" /
-                     (name + ".energies.txt"));
+  std::ifstream file(std::filesystem::path(NOETHER_SOURCE_DIR) / "tests" / "data" / path);
   for (std::string line; std::getline(file, line);) {
     std::istringstream words(line);
     std::string key;
@@ -21,6 +20,11 @@ inline std::map<std::string, double> lammps_energies(const std::string& name) {
     if (words >> key >> value) values[key] = value;
   }
   return values;
+}
+
+/// Those of tests/data/lammps/NAME.energies.txt.
+inline std::map<std::string, double> lammps_energies(const std::string& name) {
+  return recorded("lammps/" + name + ".energies.txt");
 }
 
 }  // namespace noether::test

@@ -3,6 +3,7 @@
 import pathlib
 import sys
 
+import numpy
 from lammps import lammps
 
 HERE = pathlib.Path(__file__).parent
@@ -45,6 +46,12 @@ def number(value):
 def record(lmp, name, quantities):
     lines = [f"{key} {number(value)}\n" for key, value in quantities.items()]
     (HERE / f"{name}.energies.txt").write_text("# name, energy in the units of the file\n" + "".join(lines))
+
+
+def by_atom(lmp, name):
+    """A column in the order of the atoms' ids."""
+    own = lmp.extract_global("nlocal")
+    return lmp.numpy.extract_atom(name)[:own][numpy.argsort(lmp.numpy.extract_atom("id")[:own])]
 
 
 def per_style(lmp, identifier, styles):
@@ -231,35 +238,37 @@ thermo_modify norm no
 run 0
 """)
     lmp.command(f"write_data {HERE}/pairs.data")
-    quantities = {}
-    for name, style, coefficients in (
-        ("morse", "morse 2.3", "1.7 4.5 1.15"),
-        ("buckingham", "buck 2.4", "2500.0 0.18 3.1"),
-        ("wca", "lj/cut 1.122462048309373", "1.3 1.0"),
+    quantities, forces = {}, []
+    for name, style, coefficients, shift in (
+        ("morse", "morse 2.3", "1.7 4.5 1.15", "no"),
+        ("buckingham", "buck 2.4", "2500.0 0.18 3.1", "no"),
+        ("wca", "lj/cut 1.122462048309373", "1.3 1.0", "yes"),
+        ("plain", "lj/cut 2.5", "1.0 1.0", "no"),
+        ("shifted", "lj/cut 2.5", "1.0 1.0", "yes"),
+        ("shifted_force", "lj/smooth/linear 2.5", "1.0 1.0", "no"),
     ):
         lmp.commands_string(f"""
 pair_style {style}
 pair_coeff 1 1 {coefficients}
-pair_modify shift {"yes" if name == "wca" else "no"}
+pair_modify shift {shift}
 run 0
 """)
         for key in ("evdwl", "pxx", "pyy", "pzz", "pxy", "pxz", "pyz"):
             quantities[f"{name}.{key}"] = lmp.get_thermo(key)
-        force = lmp.numpy.extract_atom("f")[list(lmp.numpy.extract_atom("id")).index(100)]
-        for axis in range(3):
-            quantities[f"{name}.f100.{'xyz'[axis]}"] = force[axis]
+        forces += [f"{name} {' '.join(number(f) for f in force)}\n" for force in by_atom(lmp, "f")]
     record(lmp, "pairs", quantities)
+    (HERE / "pairs.forces.txt").write_text("# potential, force on each atom\n" + "".join(forces))
     lmp.close()
 
 
-def melt():
-    """LAMMPS's bench/in.lj with 864 atoms, neighbors looked at in every step: start, and 100 steps."""
+def in_lj(cells):
+    """LAMMPS's bench/in.lj with so many cells along each edge, neighbors looked at in every step."""
     lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
-    lmp.commands_string("""
+    lmp.commands_string(f"""
 units lj
 atom_style atomic
 lattice fcc 0.8442
-region box block 0 6 0 6 0 6
+region box block 0 {cells} 0 {cells} 0 {cells}
 create_box 1 box
 create_atoms 1 box
 mass 1 1.0
@@ -271,12 +280,36 @@ neigh_modify every 1 delay 0 check yes
 fix 1 all nve
 run 0
 """)
-    lmp.command(f"write_data {HERE}/melt.data")
+    return lmp
+
+
+def record_melt(lmp, name):
+    """Start, and 100 steps."""
     quantities = {f"0.{key}": lmp.get_thermo(key) for key in ("temp", "pe", "etotal", "press")}
     lmp.command("run 100")
     quantities.update({f"100.{key}": lmp.get_thermo(key) for key in ("temp", "pe", "etotal", "press")})
-    record(lmp, "melt", quantities)
+    record(lmp, name, quantities)
     lmp.close()
+
+
+def melt():
+    """864 atoms."""
+    lmp = in_lj(6)
+    lmp.command(f"write_data {HERE}/melt.data")
+    record_melt(lmp, "melt")
+
+
+def whole_melt():
+    """32 000 atoms as in bench/in.lj: its velocities; its positions are a lattice, atom by atom."""
+    lmp = in_lj(20)
+    edge = (4 / 0.8442) ** (1 / 3)
+    z, y, x = numpy.meshgrid(*[numpy.arange(20)] * 3, indexing="ij")
+    corners = numpy.stack([x, y, z], axis=-1).reshape(-1, 1, 3)
+    lattice = edge * (corners + numpy.array([(0, 0, 0), (0.5, 0.5, 0), (0.5, 0, 0.5), (0, 0.5, 0.5)])).reshape(-1, 3)
+    if numpy.abs(by_atom(lmp, "x") - lattice).max() > 1e-13:
+        sys.exit("LAMMPS numbers the places of a lattice in another way")
+    (HERE / "in_lj.velocities").write_bytes(by_atom(lmp, "v").astype("<f8").tobytes())
+    record_melt(lmp, "in_lj")
 
 
 if __name__ == "__main__":
@@ -284,5 +317,6 @@ if __name__ == "__main__":
     chains()
     argon()
     melt()
+    whole_melt()
     pairs()
     sys.exit(0)
