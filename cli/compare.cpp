@@ -26,8 +26,7 @@ struct CompareArguments {
   std::string scene, out;
   std::optional<std::string> methods, steps, tolerances, until;
   std::vector<std::string> sets;
-  int repeat = 3;
-  double budget = 10, truth_budget = 120;
+  double repeat = 3, budget = 10, truth_budget = 120;
   bool quiet = false, json = false;
 };
 
@@ -42,7 +41,7 @@ std::string command_line(const CompareArguments& given) {
   if (given.tolerances) add("--tolerances", *given.tolerances);
   if (given.until) add("--until", *given.until);
   for (const std::string& set : given.sets) add("--set", set);
-  return line + fmt::format(" --repeat {} --budget {:g}", given.repeat, given.budget);
+  return line + fmt::format(" --repeat {:.0f} --budget {:g}", given.repeat, given.budget);
 }
 
 std::filesystem::path folder_of(const CompareArguments& given) {
@@ -59,7 +58,7 @@ void compare_scene(const CompareArguments& given) {
   if (given.steps) options.steps = times_in(*given.steps, "--steps", *scene.units);
   if (given.tolerances) options.tolerances = numbers_in(*given.tolerances, "--tolerances");
   if (given.until) options.until = times_in(*given.until, "--until", *scene.units).front();
-  options.repeats = given.repeat;
+  options.repeats = static_cast<int>(given.repeat);
   options.row_budget = given.budget;
   options.truth.budget = given.truth_budget;
   const bool shows = !given.quiet && !given.json && ::isatty(STDERR_FILENO) == 1;

@@ -65,8 +65,10 @@ std::vector<double> numbers_in(const std::string& list, const std::string& optio
 
 std::string wrong_count(const std::string& text) {
   const auto number = number_in(text);
-  if (number && *number >= 1 && *number <= 1e6 && *number == std::floor(*number)) return "";
-  return fmt::format("'{}' is no whole number above 0", text);
+  if (!number || *number < 1 || *number != std::floor(*number)) {
+    return fmt::format("'{}' is no whole number above 0", text);
+  }
+  return *number > 1e6 ? fmt::format("'{}' is more than 1000000", text) : "";
 }
 
 std::string wrong_seconds(const std::string& text) {

@@ -15,7 +15,8 @@ std::vector<double> times_in(const std::string& list, const std::string& option,
 /// Numbers of a list such as "1e-6,1e-9". @throws Error
 std::vector<double> numbers_in(const std::string& list, const std::string& option);
 
-// What is wrong with the text of a number, for the argument parser; "" if nothing.
+// What is wrong with the text of a number, for the argument parser; "" if nothing. A count may be written as 1e4: it is
+// read as a double.
 std::string wrong_count(const std::string& text);
 std::string wrong_seconds(const std::string& text);
 std::string wrong_folder(const std::string& text);

@@ -119,7 +119,8 @@ int parse(CLI::App& app, int argc, char** argv, int& exit_code, bool json) {
     }
     const auto used = app.get_subcommands();
     const std::string help = used.empty() ? "noether --help" : "noether " + used.front()->get_name() + " --help";
-    const std::string message = fmt::format("{}; see `{}`", parser_message(error), help);
+    std::string message = parser_message(error);
+    if (!message.ends_with('?')) message += fmt::format("; see `{}`", help);
     return complain({}, message, message, 2, json);
   }
 }

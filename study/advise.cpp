@@ -147,6 +147,19 @@ class Fit {
   Growth growth_;
 };
 
+/// @throws Error  where the trials tell no error of the metric
+void check_measured(const Comparison& c, Metric metric) {
+  if (metric == Metric::position && !c.position_measured) {
+    throw Error(fmt::format("positions cannot be measured here: {}; try --metric energy", c.truth.note));
+  }
+  if (metric == Metric::position) return;
+  const auto done = [](const Row& row) { return row.completed(); };
+  const auto told = [](const Row& row) { return row.completed() && row.energy_error_max; };
+  if (std::any_of(c.rows.begin(), c.rows.end(), done) && std::none_of(c.rows.begin(), c.rows.end(), told)) {
+    throw Error("the energy cannot be measured here: not every force tells its own; try --metric position");
+  }
+}
+
 /// Times that must be whole numbers of steps: the end, and what the scene asks for by time.
 std::vector<double> times_to_meet(const Scene& scene, double end) {
   std::vector<double> times = {end};
@@ -221,6 +234,10 @@ Advice advise(const Scene& scene, const AdviseOptions& options) {
   if (!(options.error > 0 && options.error < 1)) {
     throw Error(fmt::format("an error of {} cannot be held; a number between 0 and 1 is expected", options.error));
   }
+  if (options.metric == Metric::energy && scene.system) {
+    throw Error(fmt::format("the energy cannot be measured here: system '{}' has none; try --metric position",
+                            scene.system->name));
+  }
   Advice advice;
   advice.end = end_of(scene);
   CompareOptions trials;
@@ -231,9 +248,7 @@ Advice advise(const Scene& scene, const AdviseOptions& options) {
   advice.trials = compare(scene, trials);
   const Comparison& c = advice.trials;
   advice.trial_end = c.end;
-  if (options.metric == Metric::position && !c.position_measured) {
-    throw Error(fmt::format("positions cannot be measured here: {}; try --metric energy", c.truth.note));
-  }
+  check_measured(c, options.metric);
   for (const Opponent& who : c.methods) {
     const Fit fit(scene, c, who, options.metric);
     auto proposal = fit.propose(options.error, advice.trial_end, advice.end);
@@ -248,8 +263,10 @@ Advice advise(const Scene& scene, const AdviseOptions& options) {
   std::stable_sort(advice.proposals.begin(), advice.proposals.end(),
                    [](const Proposal& a, const Proposal& b) { return a.predicted_wall_s < b.predicted_wall_s; });
   if (advice.proposals.empty()) {
-    advice.reason = fmt::format("none of the {} methods tried holds an error of {:g} over the whole run",
-                                c.methods.size(), options.error);
+    const std::string tried = c.methods.size() == 1
+                                  ? "the one method tried does not hold"
+                                  : fmt::format("none of the {} methods tried holds", c.methods.size());
+    advice.reason = fmt::format("{} an error of {:g} over the whole run", tried, options.error);
   } else {
     advice.sets = sets_of(scene, advice.proposals.front(), advice.end);
   }
@@ -291,8 +308,9 @@ std::string to_json(const Advice& a, const Scene& scene) {
 
 std::string to_text(const Advice& a, const Scene& scene) {
   const std::string unit = scene.units->is_reduced() ? "" : " " + std::string(scene.units->time);
-  std::string out = fmt::format("tried {} methods, {} runs over {:.6g}{}; the whole run is {:.6g}{}\n",
-                                a.trials.methods.size(), a.trials.rows.size(), a.trial_end, unit, a.end, unit);
+  std::string out =
+      fmt::format("tried {}, {} over {:.6g}{}; the whole run is {:.6g}{}\n", counted(a.trials.methods.size(), "method"),
+                  counted(a.trials.rows.size(), "run"), a.trial_end, unit, a.end, unit);
   if (a.proposals.empty()) return out + a.reason + "\n";
   out += fmt::format("{:<32} {:>12} {:>10} {:>12} {:>14}\n", "method", "step/rtol", "error", "time [s]", "evaluations");
   for (const Proposal& p : a.proposals) {

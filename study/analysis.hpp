@@ -40,4 +40,7 @@ void analyse(Comparison& comparison);
 /// agree best. Stays as it is where they differ by more than 1e-3.
 void use_finest_run(Comparison& comparison, const PositionError& error);
 
+/// "1 run", "2 runs".
+std::string counted(std::size_t n, std::string_view what);
+
 }  // namespace noether

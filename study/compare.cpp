@@ -67,6 +67,7 @@ void check(const CompareOptions& options, const Sampling& sampling) {
                       "compared; give shorter steps, or a longer --until",
                       step, sampling.interval, sampling.samples));
     }
+    static_cast<void>(sampling.steps_for(step));
   }
   for (const double tolerance : options.tolerances) {
     if (!(tolerance > 0 && tolerance < 1)) {
@@ -77,6 +78,21 @@ void check(const CompareOptions& options, const Sampling& sampling) {
     throw Error(fmt::format("{} repeats measure nothing; 1 or more is expected", options.repeats));
   if (!(options.row_budget > 0)) {
     throw Error(fmt::format("a budget of {} s is no time; a number above 0 is expected", options.row_budget));
+  }
+}
+
+/// @throws Error  for steps or tolerances that no method takes
+void check_use(const std::vector<Opponent>& methods, const CompareOptions& options) {
+  const auto adaptive = [](const Opponent& who) { return who.adaptive; };
+  if (!options.steps.empty() && std::all_of(methods.begin(), methods.end(), adaptive)) {
+    throw Error(
+        "--steps is for methods of fixed steps, and all of those compared choose theirs by a tolerance; leave "
+        "it out, or add such a method, as 'rk4'");
+  }
+  if (!options.tolerances.empty() && std::none_of(methods.begin(), methods.end(), adaptive)) {
+    throw Error(
+        "--tolerances is for methods that choose their steps, and all of those compared take fixed ones; leave "
+        "it out, or add such a method, as 'dop853'");
   }
 }
 
@@ -165,10 +181,14 @@ Comparison compare(const Scene& scene, const CompareOptions& options) {
   };
   Comparison c = headed(scene, sampling);
   c.methods = opponents_of(scene, options);
+  check_use(c.methods, options);
+  std::vector<std::vector<Setting>> settings;  // all before anything runs: one that cannot be is told at once
+  for (const Opponent& who : c.methods) settings.push_back(settings_of(scene, who, sampling, options));
   tell("reference in extended precision");
   c.truth = find_truth(scene, sampling, options.truth);
-  for (const Opponent& who : c.methods) {
-    for (const Setting& setting : settings_of(scene, who, sampling, options)) {
+  for (std::size_t i = 0; i < c.methods.size(); ++i) {
+    const Opponent& who = c.methods[i];
+    for (const Setting& setting : settings[i]) {
       const std::string with =
           who.adaptive ? fmt::format("rtol {:.0e}", setting.tolerance) : fmt::format("step {:.4g}", setting.step);
       tell(fmt::format("{}, {}", who.label, with));

@@ -56,7 +56,8 @@ struct Comparison {
 };
 
 /// Runs every method with every step or tolerance.
-/// @throws Error  for methods that are not known or cannot serve the scene, and for steps and tolerances that are none
+/// @throws Error  for methods that are not known or cannot serve the scene, and for steps and tolerances that are none,
+/// or that no method takes
 Comparison compare(const Scene& scene, const CompareOptions& options = {});
 
 /// The moments a scene is compared at. @throws Error  for a scene without an end, or one that runs backwards

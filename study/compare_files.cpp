@@ -3,6 +3,7 @@
 #include "engine/quantity.hpp"
 #include "io/files.hpp"
 #include "scene/json.hpp"
+#include "study/analysis.hpp"
 
 #include <fmt/format.h>
 
@@ -139,7 +140,8 @@ std::string to_json(const Comparison& c, const CompareFiles& files) {
 
 std::string to_text(const Comparison& c) {
   const std::string unit = c.time_unit == "1" ? "" : " " + c.time_unit;
-  std::string out = fmt::format("{} methods, {} runs over {:.6g}{}", c.methods.size(), c.rows.size(), c.end, unit);
+  std::string out = fmt::format("{}, {} over {:.6g}{}", counted(c.methods.size(), "method"),
+                                counted(c.rows.size(), "run"), c.end, unit);
   if (c.scene_end)
     out += fmt::format(" (the scene itself: {:.6g}{}; --until compares another time)", *c.scene_end, unit);
   out += fmt::format("\ntruth: {}", c.truth.name);

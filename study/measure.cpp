@@ -164,9 +164,9 @@ void timed_runs(Row& row, const Scene& alone, const Sampling& sampling, const Me
     spent += seconds.back();
   }
   row.repeats = static_cast<int>(seconds.size());
-  row.wall_s = median(seconds);
-  for (double& one : seconds) one = std::abs(one - *row.wall_s);
-  row.wall_mad_s = median(seconds);
+  const Spread spread = spread_of(seconds);
+  row.wall_s = spread.median;
+  row.wall_mad_s = spread.mad;
 }
 
 std::optional<double> finite(const std::optional<double>& x) { return x && std::isfinite(*x) ? x : std::nullopt; }
@@ -185,7 +185,33 @@ std::optional<double> rms_of(const std::vector<double>& values) {
   return finite(std::sqrt(squares / static_cast<double>(values.size())));
 }
 
+/// Calls a run that has grown out of all proportion what it is, though its numbers have stayed finite.
+void mark_diverged(Row& row, const Truth& truth, const PositionError& error) {
+  const Track& track = row.track;
+  if (!row.completed() || track.y.empty()) return;
+  double scale = truth.has_states() ? 0 : error.size(track.y[0].cast<Quad>());
+  for (const Vector<Quad>& y : truth.y) scale = std::max(scale, error.size(y));
+  if (!(scale > 0)) return;
+  const double most = truth.has_states() ? lost_beyond_truth : lost_beyond_start;
+  for (std::size_t j = 0; j < track.y.size(); ++j) {
+    const double times = error.size(track.y[j].cast<Quad>()) / scale;
+    if (times <= most) continue;
+    row.outcome = name(Outcome::Kind::diverged);
+    row.outcome_time = static_cast<double>(track.times[j]);
+    row.message = fmt::format("{:.2g} times as large as {} at t = {:.6g}", times,
+                              truth.has_states() ? "the truth ever is" : "at the start", row.outcome_time);
+    return;
+  }
+}
+
 }  // namespace
+
+Spread spread_of(std::vector<double> values) {
+  Spread spread{.median = median(values)};
+  for (double& one : values) one = std::abs(one - spread.median);
+  spread.mad = median(std::move(values));
+  return spread;
+}
 
 Row measure(const Scene& scene, const Opponent& who, const Setting& setting, const Sampling& sampling,
             const MeasureOptions& options) {
@@ -224,6 +250,7 @@ std::vector<double> energy_errors(const Track& track, const Truth& truth) {
 
 void set_errors(Row& row, const Truth& truth, const Sampling& sampling, const PositionError& error) {
   const Track& track = row.track;
+  mark_diverged(row, truth, error);
   row.truth = truth.name;
   row.truth_error = truth.error;
   std::vector<double> errors;

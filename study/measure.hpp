@@ -45,6 +45,14 @@ struct Row {
   bool completed() const { return outcome == "completed"; }
 };
 
+/// What is told of repeated measurements.
+struct Spread {
+  double median = 0;
+  double mad = 0;  ///< median of the distances from the median
+};
+/// @param values  at least one
+Spread spread_of(std::vector<double> values);
+
 struct MeasureOptions {
   int repeats = 3;     ///< of the timed run; more for short ones, fewer where the budget does not allow them
   double budget = 10;  ///< seconds of wall time for one run
@@ -52,13 +60,20 @@ struct MeasureOptions {
 
 /// Runs one opponent with one setting: once watched, then `repeats` times alone, for the time.
 ///
-/// A run that fails is a row as any other. One beyond the budget ends there, outcome "over_budget".
+/// A run that fails is a row as any other. One beyond the budget ends there, outcome "over_budget". One that comes to
+/// its end, but has left the motion behind, is told by `set_errors`.
 Row measure(const Scene& scene, const Opponent& who, const Setting& setting, const Sampling& sampling,
             const MeasureOptions& options = {});
 
+/// A run whose positions (or variables) come to so many times the largest of the truth has diverged, finite or not.
+inline constexpr double lost_beyond_truth = 1e10;
+/// The same where there is no truth: of what they were at the start.
+inline constexpr double lost_beyond_start = 1e100;
+
 /// Puts the errors of positions and energies into a row.
 ///
-/// Energy is compared with that of the truth where the equations themselves do not keep it.
+/// Energy is compared with that of the truth where the equations themselves do not keep it. A run that was completed
+/// beyond `lost_beyond_truth`, without a truth beyond `lost_beyond_start`, becomes one that has diverged.
 void set_errors(Row& row, const Truth& truth, const Sampling& sampling, const PositionError& error);
 
 /// Relative errors of the energy at the moments of a track, signed.

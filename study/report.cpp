@@ -2,6 +2,7 @@
 
 #include "engine/quantity.hpp"
 #include "scene/json.hpp"
+#include "study/analysis.hpp"
 #include "study/plot.hpp"
 #include "study/svg.hpp"
 
@@ -48,8 +49,10 @@ class Page {
   }
 
   std::string lead() const {
-    std::string out = fmt::format("<p class=\"lead\">{} particles, {} methods, {} runs over {:.6g}{}", c_.particles,
-                                  c_.methods.size(), c_.rows.size(), c_.end, html_text(unit_));
+    const auto particles = static_cast<std::size_t>(c_.particles);
+    std::string out =
+        fmt::format("<p class=\"lead\">{}, {}, {} over {:.6g}{}", counted(particles, "particle"),
+                    counted(c_.methods.size(), "method"), counted(c_.rows.size(), "run"), c_.end, html_text(unit_));
     if (c_.scene_end) out += fmt::format(", the first part of the scene's {:.6g}{}", *c_.scene_end, html_text(unit_));
     out += fmt::format(". Every run is compared at the same {} moments.</p>\n<p>", c_.sampling.samples);
     if (c_.truth.kind == TruthKind::quad) {
@@ -276,6 +279,10 @@ class Page {
     line("energy",
          "(E - E0)/max(|E0|, 1e-3 (T0 + |U0|)); where the equations change the energy themselves, E* of the reference "
          "stands for E0");
+    line("diverged",
+         fmt::format("not finite, or {:.0e} times as large as the truth ever is; {:.0e} times as large as at "
+                     "the start where there is no truth",
+                     lost_beyond_truth, lost_beyond_start));
     line("tolerances",
          "rtol as given, atol in the scene's own ratio to it, else a thousandth, in the units of the scene");
     return out + "</dl>\n";

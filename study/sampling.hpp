@@ -1,8 +1,11 @@
 #pragma once
 /// When the runs of a comparison are looked at: the same moments for every one of them.
 
+#include "engine/error.hpp"
 #include "engine/real.hpp"
 #include "engine/types.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -25,8 +28,14 @@ struct Sampling {
   Quad exact_time(int j) const { return Quad(interval) * Quad(j); }
 
   /// How many steps of about `step` make one interval; at least 1.
+  /// @throws Error  for a step of which the whole run has more than can be counted
   std::int64_t steps_for(double step) const {
-    return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::llround(interval / std::abs(step))));
+    constexpr double most = 9e15;  // a double counts no further
+    if (!(end() / std::abs(step) <= most)) {
+      throw Error(fmt::format("a run of {:.6g} has more steps of {} than can be counted; give steps of at least {:.2g}",
+                              end(), step, 1.1 * end() / most));
+    }
+    return std::max<std::int64_t>(1, std::llround(interval / std::abs(step)));
   }
 };
 

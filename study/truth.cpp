@@ -200,6 +200,12 @@ void PositionError::set_scale(const std::vector<Vector<Quad>>& y) {
   scale_ = std::sqrt(squares / static_cast<double>(y.size()));
 }
 
+double PositionError::size(const Vector<Quad>& y) const {
+  Quad squares(0);
+  for (const Quad& x : positions(y)) squares += x * x;
+  return static_cast<double>(sqrt(squares));
+}
+
 double PositionError::operator()(const Vector<Quad>& y, const Vector<Quad>& truth) const {
   const std::vector<Quad> x = positions(y), exact = positions(truth);
   Quad difference(0), size(0);

@@ -66,6 +66,8 @@ class PositionError {
   void set_scale(const std::vector<Vector<Quad>>& y);
   /// norm(x - x*) / norm(x*). @param y, truth  shape (size of the state)
   double operator()(const Vector<Quad>& y, const Vector<Quad>& truth) const;
+  /// norm(x), of what is compared.
+  double size(const Vector<Quad>& y) const;
 
  private:
   std::vector<Quad> positions(const Vector<Quad>& y) const;

@@ -28,6 +28,7 @@ TEST_CASE("compare writes a table, its JSON and a report, and ends with 0 though
   const std::string line = "compare scene.toml --methods verlet,rk4 --steps 3,0.1 --until 2000 --repeat 1";
   const std::string text = output(folder, line);
   CHECK(text.find("diverged") != std::string::npos);
+  CHECK(text.starts_with("2 methods, 4 runs over 2000 "));
   CHECK(text.ends_with("wrote scene.out/compare.csv\nwrote scene.out/compare.json\nwrote scene.out/report.html\n"));
   CHECK(line_count(read_text(folder / "scene.out/compare.csv")) == 5);
   CHECK(is_json_line(read_text(folder / "scene.out/compare.json")));
@@ -38,6 +39,8 @@ TEST_CASE("compare writes a table, its JSON and a report, and ends with 0 though
   CHECK(has(json, "\"csv\":\"elsewhere/compare.csv\""));
   CHECK(has(json, "\"outcome\":\"diverged\""));
   CHECK(output(folder, line + " --quiet").empty());
+  const std::string one = output(folder, "compare scene.toml --methods verlet --steps 0.1 --repeat 1e0");
+  CHECK(one.starts_with("1 method, 1 run over "));
 }
 
 TEST_CASE("advise prints lines ready to paste", "[cli][advise]") {
@@ -67,8 +70,18 @@ TEST_CASE("wrong requests to compare and advise are told in one line", "[cli][co
   wrong("compare scene.toml --steps soon",
         "--steps: 'soon' does not begin with a number; a time is expected, such as '1'");
   wrong("compare scene.toml --steps 0.1,-1", "--steps '-1' is no time above 0");
+  wrong("compare scene.toml --methods verlet --steps 1e-200",
+        "a run of 20 has more steps of 1e-200 than can be counted; give steps of at least 2.4e-15");
   wrong("compare scene.toml --tolerances 1e-6,x", "--tolerances: 'x' is no number");
   wrong("compare scene.toml --tolerances 0", "0 is no tolerance; a number between 0 and 1 is expected");
+  wrong("compare scene.toml --methods dop853,gauss_8 --steps 0.1",
+        "--steps is for methods of fixed steps, and all of those compared choose theirs by a tolerance; leave it out, "
+        "or add such a method, as 'rk4'");
+  wrong("compare scene.toml --methods verlet,rk4 --tolerances 1e-6",
+        "--tolerances is for methods that choose their steps, and all of those compared take fixed ones; leave it out, "
+        "or add such a method, as 'dop853'");
+  wrong("compare scene.toml --repeat 2000000", "--repeat: '2000000' is more than 1000000" + see);
+  wrong("compare scene.toml --repeat 1.5", "--repeat: '1.5' is no whole number above 0" + see);
   wrong("compare scene.toml --repeat 0", "--repeat: '0' is no whole number above 0" + see);
   wrong("compare scene.toml --budget -1", "--budget: '-1' is no number of seconds above 0" + see);
   wrong("compare scene.toml --until 0", "--until '0' is no time above 0");
@@ -77,8 +90,7 @@ TEST_CASE("wrong requests to compare and advise are told in one line", "[cli][co
   wrong("advise scene.toml --error 0", "an error of 0 cannot be held; a number between 0 and 1 is expected");
   wrong("advise scene.toml --error -1e-3", "an error of -0.001 cannot be held; a number between 0 and 1 is expected");
   wrong("advise scene.toml --error small", "--error: 'small' is no number");
-  wrong("advise scene.toml --error 1e-3 --metric engery",
-        "--metric: unknown metric 'engery'; did you mean 'energy'?; see `noether advise --help`");
+  wrong("advise scene.toml --error 1e-3 --metric engery", "--metric: unknown metric 'engery'; did you mean 'energy'?");
 }
 
 TEST_CASE("a folder that cannot be made is exit 3", "[cli][compare]") {

@@ -18,8 +18,8 @@ Row proposed(const Scene& scene, const Proposal& p, double end) {
   CompareOptions options;
   options.methods = {p.who.label};
   options.until = end;
-  options.steps = {p.setting.step > 0 ? p.setting.step : end / 1000};
-  options.tolerances = {p.setting.tolerance > 0 ? p.setting.tolerance : 1e-6};
+  if (p.who.adaptive) options.tolerances = {p.setting.tolerance};
+  if (!p.who.adaptive) options.steps = {p.setting.step};
   options.repeats = 1;
   options.row_budget = 60;
   options.truth.budget = 300;
@@ -107,9 +107,55 @@ TEST_CASE("advice that cannot be given is refused, or says why there is none", "
   options.error = 1e-13;
   options.methods = {"verlet"};
   const Advice advice = advise(scene, options);
+  CHECK(to_text(advice, scene).starts_with("tried 1 method, 5 runs over 40; "));
   CHECK(advice.proposals.empty());
   CHECK(advice.sets.empty());
-  CHECK(advice.reason == "none of the 1 methods tried holds an error of 1e-13 over the whole run");
+  CHECK(advice.reason == "the one method tried does not hold an error of 1e-13 over the whole run");
+}
+
+/// A spring that tells no energy.
+struct MuteSpring {
+  static constexpr auto describe() { return part<MuteSpring>("mute_spring", "a spring without an energy"); }
+  static constexpr auto claims() { return ForceClaims{.energy = false}; }
+  template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+    for (Index i = 0; i < s.size(); ++i) out.acceleration(i, -Vec3<Real>(s.positions()[i]));
+  }
+};
+
+TEST_CASE("a metric that the scene cannot be measured by is refused by name", "[advise]") {
+  const Scene heat = read_scene(R"(units = "reduced"
+[system]
+type = "heat_line"
+points = 8
+[integrator]
+method = "rk4"
+step = 1e-3
+steps = 100
+)",
+                                "heat.toml");
+  AdviseOptions options;
+  options.error = 1e-6;
+  options.metric = Metric::energy;
+  CHECK_THROWS_WITH(advise(heat, options),
+                    "the energy cannot be measured here: system 'heat_line' has none; try --metric position");
+  Parts parts = standard_parts();
+  parts.add_force<MuteSpring>();
+  const Scene mute = read_scene(R"(units = "reduced"
+[particles]
+body = [{ name = "bob", mass = 1, x = [1, 0, 0], v = [0, 0, 0] }]
+[hamiltonian]
+type = "kinetic_potential"
+[[hamiltonian.force]]
+type = "mute_spring"
+[integrator]
+method = "verlet"
+step = 0.01
+steps = 100
+)",
+                                "mute.toml", parts);
+  options.methods = {"verlet"};
+  CHECK_THROWS_WITH(advise(mute, options),
+                    "the energy cannot be measured here: not every force tells its own; try --metric position");
 }
 
 }  // namespace

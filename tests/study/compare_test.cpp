@@ -104,6 +104,50 @@ TEST_CASE("a run that diverges is a row, and so is one beyond its budget", "[com
   CHECK(slow.rows[0].repeats == 0);
 }
 
+/// The heat equation on a line of 16 points, whose fastest rate is about 1150; explicit Euler needs steps below 2/1150.
+Scene heat_line() {
+  return read_scene(R"(units = "reduced"
+[system]
+type = "heat_line"
+points = 16
+[integrator]
+method = "euler"
+step = 1e-3
+until = 2
+)",
+                    "heat.toml");
+}
+
+TEST_CASE("a run far beyond its limit has diverged, though its numbers are still finite", "[compare]") {
+  CompareOptions options;
+  options.methods = {"euler"};
+  options.steps = {0.01, 1e-3};
+  options.repeats = 1;
+  const Comparison c = compare(heat_line(), options);
+  REQUIRE(c.truth.kind == TruthKind::quad);
+  REQUIRE(c.rows.size() == 2);
+  CHECK(c.rows[1].completed());
+  const Row& lost = c.rows[0];
+  INFO(lost.message);
+  CHECK(lost.steps == 200);
+  CHECK(std::isfinite(lost.track.y.back()[0]));
+  CHECK(std::abs(lost.track.y.back()[0]) > 1e100);
+  CHECK(lost.outcome == "diverged");
+  CHECK(lost.outcome_time < 0.5);
+  CHECK(lost.message.find(" times as large as the truth ever is at t = ") != std::string::npos);
+  CHECK_FALSE(lost.position_error_end);
+  CHECK_FALSE(lost.pareto_time);
+  CHECK_FALSE(lost.pareto_evaluations);
+  // Without a truth the start is the measure, and the factor far larger.
+  options.truth.budget = 1e-9;
+  const Comparison alone = compare(heat_line(), options);
+  REQUIRE_FALSE(alone.truth.has_states());
+  CHECK(alone.rows[0].outcome == "diverged");
+  CHECK(alone.rows[0].message.find(" times as large as at the start at t = ") != std::string::npos);
+  CHECK(alone.rows[0].outcome_time > 2 * lost.outcome_time);
+  CHECK(alone.rows[1].completed());
+}
+
 TEST_CASE("the run that is timed has the bits of the one that is watched", "[compare]") {
   const Scene scene = kepler(0.3, "method = \"verlet\"\nstep = 0.01\nsteps = 200");
   const Sampling sampling = sampling_of(scene, {});
@@ -241,6 +285,12 @@ TEST_CASE("what cannot be compared is refused in words", "[compare]") {
   CHECK(refusal({.steps = {5}}) ==
         "a step of 5 is longer than the 0.2 between two of the 200 moments at which runs are compared; give shorter "
         "steps, or a longer --until");
+  for (const double step : {1e-200, 1e-320, 4.4e-15}) {
+    CHECK(refusal({.steps = {0.1, step}}) ==
+          fmt::format("a run of 40 has more steps of {} than can be counted; give steps of at least 4.9e-15", step));
+  }
+  CHECK(refusal({.methods = {"verlet"}, .until = 1e300}) ==
+        "a run of 1e+300 has more steps of 0.4 than can be counted; give steps of at least 1.2e+284");
   CHECK(refusal({.tolerances = {2}}) == "2 is no tolerance; a number between 0 and 1 is expected");
   CHECK(refusal({.repeats = 0}) == "0 repeats measure nothing; 1 or more is expected");
 }
