@@ -1,5 +1,6 @@
 // Comparisons of small scenes: known slopes, failed rows, and what is written of them.
 
+#include "engine/shadow_hamiltonian.hpp"
 #include "study/compare_files.hpp"
 #include "study/report.hpp"
 #include "tests/study/scenes.hpp"
@@ -157,6 +158,53 @@ TEST_CASE("the run that is timed has the bits of the one that is watched", "[com
   REQUIRE(alone.run(row.steps).ok());
   CHECK(row.evaluations.force == alone.evaluations().force);
   CHECK(row.track.y.back()[1] == alone.particles().positions()[1][0]);
+}
+
+TEST_CASE("of repeated runs the median is told, and the median distance from it", "[compare]") {
+  const auto check = [](const std::vector<double>& values, double median, double mad) {
+    const Spread spread = spread_of(values);
+    CHECK(spread.median == median);
+    CHECK(spread.mad == mad);
+  };
+  check({3}, 3, 0);
+  check({5, 1, 2}, 2, 1);
+  check({1, 4, 2, 8}, 3, 1.5);
+  check({1, 1, 1, 1000}, 1, 0);  // one interruption decides nothing
+  check({9, 1, 1, 5, 2}, 2, 1);
+  const Scene scene = kepler(0.3, "method = \"verlet\"\nstep = 0.01\nsteps = 200");
+  const Row row = measure(scene, opponent(scene, "verlet"), {.step = 0.01, .tolerance = 0}, sampling_of(scene, {}),
+                          {.repeats = 3, .budget = 10});
+  CHECK(row.repeats > 3);  // it is soon over
+  CHECK(row.repeats <= 15);
+  CHECK(row.wall_s.value() > 0);
+  CHECK(row.wall_mad_s.value() < row.wall_s.value());
+}
+
+TEST_CASE("a row tells how far the shadow of its run fluctuates, where it can have one", "[compare]") {
+  const Scene scene = kepler(0.1, "method = \"verlet\"\nstep = 0.05\nsteps = 1600");
+  CompareOptions options;
+  options.methods = {"verlet", "rk4", "dop853"};
+  options.steps = {0.4, 0.01};
+  options.tolerances = {1e-6};
+  options.repeats = 1;
+  Comparison c = compare(scene, options);
+  REQUIRE(c.rows.size() == 5);
+  CHECK_FALSE(c.rows[0].shadow_fluctuation);  // one step between two moments
+  CHECK_FALSE(c.rows[2].shadow_fluctuation);  // not symplectic
+  CHECK_FALSE(c.rows[3].shadow_fluctuation);
+  CHECK_FALSE(c.rows[4].shadow_fluctuation);
+  const Row row = c.rows[1];
+  REQUIRE(row.shadow_fluctuation);
+  CHECK(*row.shadow_fluctuation < 1e-6 * row.energy_error_rms.value());
+  // The least of those of all orders, as a monitor of its own finds it.
+  Simulation<double> alone = assemble(variant(scene, row.who, row.setting));
+  const auto& monitor = alone.every(40, ShadowHamiltonian<double>());
+  REQUIRE(alone.run(8000).ok());
+  const std::vector<double> all = monitor.report().fluctuation;
+  CHECK(*row.shadow_fluctuation == *std::min_element(all.begin(), all.end()));
+  c.rows = {row};
+  const std::string csv = to_csv(c);
+  CHECK(csv.find(fmt::format(",{},{},", *row.shadow_fluctuation, row.truth)) != std::string::npos);
 }
 
 TEST_CASE("a wisdom_holman scene is compared with whole-gravity kicks too", "[compare]") {

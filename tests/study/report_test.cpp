@@ -10,6 +10,7 @@
 #include "tests/support/process.hpp"
 #include "tests/support/xml.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -220,6 +221,60 @@ TEST_CASE("the pictures of a comparison are well-formed", "[report][compare]") {
   options.steps = {0.1, 0.05};
   options.repeats = 1;
   CHECK(pictures(report_html(compare(scene, options))).size() >= 3);
+}
+
+TEST_CASE("the report of a comparison has its fronts, its orders and its errors over time", "[report][compare]") {
+  const Scene scene = kepler(0.1, "method = \"verlet\"\nstep = 0.05\nsteps = 400");
+  CompareOptions options;
+  options.methods = {"verlet", "yoshida_4", "dop853"};
+  options.steps = {0.1, 0.05, 0.025};
+  options.tolerances = {1e-5, 1e-8};
+  options.repeats = 1;
+  const Comparison c = compare(scene, options);
+  const std::string page = report_html(c);
+  const std::vector<std::string> found = pictures(page);
+  REQUIRE(found.size() == 4);
+  // Rings, and a broad line through them, in the pictures against time and against evaluations.
+  for (const bool by_time : {true, false}) {
+    const std::string& svg = found[by_time ? 0 : 1];
+    const auto on_front = std::count_if(c.rows.begin(), c.rows.end(), [&](const Row& row) {
+      return by_time ? row.pareto_time : row.pareto_evaluations;
+    });
+    CAPTURE(by_time, on_front);
+    REQUIRE(on_front >= 2);
+    CHECK(static_cast<std::ptrdiff_t>(count(svg, "<circle class=\"ring\"")) == on_front);
+    REQUIRE(count(svg, "<path class=\"front\"") == 1);
+    const std::size_t line = svg.find("<path class=\"front\"");
+    const std::string front = svg.substr(line, svg.find("/>", line) - line);
+    CHECK(static_cast<std::ptrdiff_t>(count(front, "H")) == on_front - 1);
+    for (const Opponent& who : c.methods) {
+      CHECK(count(svg, "<g class=\"curve\" data-name=\"" + who.label + "\">") == 1);
+    }
+  }
+  // The table of orders has a row for each method, with its fit.
+  const std::size_t begin = page.find("<h2>Orders</h2>"), end = page.find("</table>", begin);
+  REQUIRE(begin != std::string::npos);
+  const std::string orders = page.substr(begin, end - begin);
+  REQUIRE(c.orders.size() == 3);
+  CHECK(count(orders, "<tr data-name=") == 3);
+  for (const OrderFit& fit : c.orders) {
+    CAPTURE(fit.label);
+    const std::string row = elements(orders, "<tr data-name=\"" + fit.label + "\"", "tr")[0];
+    CHECK(count(row, fit.order ? fmt::format("<td>{:.2f}</td>", *fit.order) : "<td></td>") >= 1);
+    CHECK(count(row, fmt::format("<td>{}</td>", fit.rows)) >= 1);
+  }
+  CHECK(std::abs(c.orders[0].order.value() - 2) < 0.25);
+  // Then a curve of each method over time, of energies and of positions.
+  const std::size_t energies = page.find("<h2>Energy error over time</h2>"),
+                    positions = page.find("<h2>Position error over time</h2>");
+  REQUIRE(energies != std::string::npos);
+  REQUIRE(positions != std::string::npos);
+  CHECK(page.find(found[2]) > energies);
+  CHECK(page.find(found[2]) < positions);
+  CHECK(page.find(found[3]) > positions);
+  CHECK(count(found[2], "aria-label=\"relative error of the energy against time\"") == 1);
+  CHECK(count(found[2], "<g class=\"curve\"") == 3);
+  CHECK(count(found[3], "<g class=\"curve\"") == 3);
 }
 
 }  // namespace
