@@ -1,6 +1,9 @@
 #include "study/solution.hpp"
 
+#include "engine/quantity.hpp"
 #include "integrators/methods.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -18,19 +21,20 @@ struct Shape {
   double omega = 0;
 };
 
-std::optional<Shape> shape_of(const Truth& truth) {
+/// @param axes  how many coordinates stand before the velocities
+std::optional<Shape> shape_of(const Truth& truth, std::size_t axes) {
   std::array<double, 3> mean{}, spread{}, force_mean{}, force{};
   const auto n = static_cast<double>(truth.y.size());
   for (std::size_t j = 0; j < truth.y.size(); ++j) {
-    for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < axes; ++k) {
       mean[k] += static_cast<double>(truth.y[j][static_cast<Index>(k)]) / n;
-      force_mean[k] += static_cast<double>(truth.rate[j][static_cast<Index>(k) + 3]) / n;
+      force_mean[k] += static_cast<double>(truth.rate[j][static_cast<Index>(k + axes)]) / n;
     }
   }
   for (std::size_t j = 0; j < truth.y.size(); ++j) {
-    for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < axes; ++k) {
       spread[k] += std::pow(static_cast<double>(truth.y[j][static_cast<Index>(k)]) - mean[k], 2);
-      force[k] += std::pow(static_cast<double>(truth.rate[j][static_cast<Index>(k) + 3]) - force_mean[k], 2);
+      force[k] += std::pow(static_cast<double>(truth.rate[j][static_cast<Index>(k + axes)]) - force_mean[k], 2);
     }
   }
   const auto most = static_cast<std::size_t>(std::max_element(spread.begin(), spread.end()) - spread.begin());
@@ -57,7 +61,38 @@ std::vector<Opponent> displayed(const Scene& scene, const Comparison& c) {
   return all;
 }
 
+/// Whether a system is one coordinate and its velocity, x' = v.
+bool is_oscillator(const Scene& scene, const Truth& truth) {
+  if (!scene.system || truth.y.empty() || truth.y[0].size() != 2) return false;
+  double size = 0;
+  for (const Vector<Quad>& y : truth.y) size = std::max(size, std::abs(static_cast<double>(y[1])));
+  for (std::size_t j = 0; j < truth.y.size(); ++j) {
+    // The state of a moment is led there along its rate, by a rounding error of time.
+    if (std::abs(static_cast<double>(truth.rate[j][0] - truth.y[j][1])) > 1e-9 * size) return false;
+  }
+  return true;
+}
+
+/// The rate of the drag a = -rate v [1/time]; 0 where there is none.
+double drag_of(const Scene& scene) {
+  double rate = 0;
+  for (const SceneForce& force : scene.hamiltonian.forces) rate = force.drag ? force.drag->rate : rate;
+  if (!scene.system) return rate;
+  const auto field = scene.system->field();
+  Vector<double> y = Vector<double>::Zero(2), still(2), moving(2);
+  field->rate(0, y, still);
+  y[1] = 1;
+  field->rate(0, y, moving);
+  return still[1] - moving[1];
+}
+
 Scene damped(const Scene& scene, double rate) {
+  if (scene.system) {
+    if (scene.system->effective.find("gamma") == nullptr) return scene;
+    const std::string unit = scene.units->is_reduced() ? "" : fmt::format(" 1/{}", scene.units->time);
+    const std::string gamma = unit.empty() ? format_number(rate / 2) : fmt::format("\"{}{}\"", rate / 2, unit);
+    return read_scene(scene.effective_toml, scene.file, standard_parts(), {"system.gamma=" + gamma});
+  }
   Scene made = scene;
   for (SceneForce& force : made.hamiltonian.forces) {
     if (force.drag) force.drag->rate = rate;
@@ -90,18 +125,20 @@ DisplayedRun display(const Scene& scene, const Opponent& who, double step, doubl
 }  // namespace
 
 std::optional<Solution> solution_of(const Scene& scene, const Comparison& c) {
-  if (scene.particles.size() != 1 || c.truth.kind != TruthKind::quad) return {};
-  const auto shape = shape_of(c.truth);
+  if (c.truth.kind != TruthKind::quad) return {};
+  const bool system = is_oscillator(scene, c.truth);
+  if (scene.particles.size() != 1 && !system) return {};
+  const auto shape = shape_of(c.truth, system ? 1 : 3);
   if (!shape) return {};
   Solution s;
   s.omega = shape->omega;
   s.coordinate = "xyz"[shape->axis];
   const double end = std::min(c.end, periods * 2 * M_PI / s.omega), spacing = end / moments;
   for (const int m : {1, 2, 4, 8, 12, 13, 16}) s.steps.push_back(spacing * m);
-  double rate = 0;
-  for (const SceneForce& force : scene.hamiltonian.forces) rate = force.drag ? force.drag->rate : rate;
+  const double rate = drag_of(scene);
   s.dampings = {0};
   if (rate > 0) s.dampings = {0, rate / 4, rate, 4 * rate, 16 * rate};
+  if (system && scene.system->effective.find("gamma") == nullptr) s.dampings = {rate};
   const std::vector<Opponent> methods = displayed(scene, c);
   for (const Opponent& who : methods) s.methods.push_back(who.label);
   for (std::size_t d = 0; d < s.dampings.size(); ++d) {

@@ -1,5 +1,6 @@
 #pragma once
-/// The solution itself, of a single body: exact and by methods, steps and dampings to choose from.
+/// The solution itself, of a single body or an oscillator of first order: exact and by methods, steps and dampings to
+/// choose from.
 
 #include "study/compare.hpp"
 
@@ -33,7 +34,8 @@ struct Solution {
   std::vector<DisplayedRun> runs = {};
 };
 
-/// The display of a scene with one body; empty where it has more, or no truth.
+/// The display of a scene with one body, or with a system of two variables x' = v, v' = a(t, x, v); empty where it has
+/// more, or no truth.
 /// @cost about 300 short runs
 std::optional<Solution> solution_of(const Scene& scene, const Comparison& comparison);
 

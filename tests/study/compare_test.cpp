@@ -1,6 +1,7 @@
 // Comparisons of small scenes: known slopes, failed rows, and what is written of them.
 
 #include "engine/shadow_hamiltonian.hpp"
+#include "integrators/systems/forced_damped_oscillator.hpp"
 #include "study/compare_files.hpp"
 #include "study/report.hpp"
 #include "tests/study/scenes.hpp"
@@ -312,6 +313,57 @@ TEST_CASE("the report stands alone: one file, nothing from elsewhere", "[compare
        {"<svg class=\"plot\"", "id=\"solution-data\"", "id=\"damping\"", "Error against run time", "rk4"}) {
     CHECK(html.find(part) != std::string::npos);
   }
+}
+
+TEST_CASE("the solution of an oscillator of first order is shown too, by dampings", "[compare][files]") {
+  const std::string text = R"(units = "reduced"
+[system]
+type = "forced_damped_oscillator"
+omega0 = 2
+gamma = 0.1
+amplitude = 0.5
+omega = 1.5
+[integrator]
+method = "rk4"
+step = 0.05
+steps = 400
+)";
+  const Scene scene = read_scene(text, "driven.toml");
+  CompareOptions options;
+  options.methods = {"rk4"};
+  options.steps = {0.1, 0.05};
+  options.repeats = 1;
+  const Comparison c = compare(scene, options);
+  const auto solution = solution_of(scene, c);
+  REQUIRE(solution);
+  CHECK(solution->dampings == std::vector<double>{0, 0.05, 0.2, 0.8, 3.2});  // 2 gamma is the rate
+  CHECK(solution->coordinate == 'x');
+  CHECK(solution->omega > 1.5);
+  CHECK(solution->omega < 2);
+  CHECK(solution->methods == std::vector<std::string>{"rk4", "euler", "implicit_midpoint", "backward_euler"});
+  for (std::size_t d = 0; d < solution->dampings.size(); ++d) {
+    const ForcedDampedOscillator exact{.omega0 = 2, .gamma = solution->dampings[d] / 2, .amplitude = 0.5, .omega = 1.5};
+    const ExactMotion& shown = solution->exact[d];
+    REQUIRE(shown.q.size() == 321);
+    for (std::size_t j = 0; j < shown.q.size(); j += 20)
+      CHECK(std::abs(shown.q[j] - exact.exact(shown.t[j])[0]) < 1e-13);
+  }
+  CHECK(solution->runs.size() == 4 * solution->steps.size() * 5);
+  CHECK(report_html(c, solution).find("<h2>The solution itself</h2>") != std::string::npos);
+  // Two variables alone are no oscillator.
+  const Scene ladder = read_scene(R"(units = "reduced"
+[system]
+type = "rc_ladder"
+stages = 2
+spread = 10
+[integrator]
+method = "rk4"
+step = 0.01
+steps = 400
+)",
+                                  "ladder.toml");
+  options.steps = {0.01};
+  CHECK_FALSE(solution_of(ladder, compare(ladder, options)));
 }
 
 TEST_CASE("what cannot be compared is refused in words", "[compare]") {
