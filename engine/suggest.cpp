@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <limits>
+#include <tuple>
 #include <utility>
 
 namespace noether {
@@ -35,17 +38,30 @@ std::string lower_case(std::string_view word) {
   return lower;
 }
 
+/// How far apart the numbers are that two words end in, where all before them is the same; else as far as can be.
+long number_distance(std::string_view a, std::string_view b) {
+  constexpr long far = std::numeric_limits<long>::max();
+  const auto number_at = [](std::string_view word) { return word.find_last_not_of("0123456789") + 1; };
+  const std::size_t begin = number_at(a);
+  const auto number = [&](std::string_view word) {
+    return std::strtol(std::string(word.substr(begin)).c_str(), nullptr, 10);
+  };
+  const bool numbered = begin == number_at(b) && begin < std::min(a.size(), b.size());
+  if (!numbered || a.substr(0, begin) != b.substr(0, begin) || std::max(a.size(), b.size()) > begin + 9) return far;
+  return std::abs(number(a) - number(b));
+}
+
 }  // namespace
 
 std::string suggest(std::string_view word, const std::vector<std::string>& known) {
   const std::string lower = lower_case(word);
   const std::size_t near = std::max<std::size_t>(2, word.size() / 3);
   std::string best;
-  std::pair<std::size_t, std::size_t> best_distance{near + 1, 0};
+  std::tuple<std::size_t, std::size_t, long> best_distance{near + 1, 0, 0};
   for (const std::string& candidate : known) {
     const std::size_t distance = edit_distance(lower, lower_case(candidate));
     if (distance > near || distance >= std::max(word.size(), candidate.size())) continue;
-    const std::pair measured{distance, edit_distance(word, candidate)};
+    const std::tuple measured{distance, edit_distance(word, candidate), number_distance(lower, lower_case(candidate))};
     if (measured < best_distance) {
       best_distance = measured;
       best = candidate;

@@ -17,7 +17,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b);
 /// The nearest known word, or nothing where none is near.
 ///
 /// Near is at most max(2, length / 3) edits, case aside, and fewer than the longer word has letters. Among equals the
-/// one that agrees better in case wins, then the first.
+/// one that agrees better in case wins, then the one whose number at the end is nearer, then the first.
 /// @throws std::bad_alloc
 std::string suggest(std::string_view word, const std::vector<std::string>& known);
 

@@ -39,7 +39,11 @@ TEST_CASE("short words need a letter in common, long ones may differ by a third"
   CHECK(suggest("wisdomhol", {"wisdom_holman"}) == "");                // 4 edits in 9 letters
 }
 
-TEST_CASE("among equally near words the case decides, then the order", "[suggest]") {
+TEST_CASE("among equally near words the case decides, then the number at the end, then the order", "[suggest]") {
+  CHECK(suggest("rk5", {"rk2", "rk4", "rk45"}) == "rk4");
+  CHECK(suggest("gauss_9", {"gauss_1", "gauss_2", "gauss_8"}) == "gauss_8");
+  CHECK(suggest("stormer_11", {"stormer_14", "stormer_12"}) == "stormer_12");
+  CHECK(suggest("rk99999999999999999999", {"rk99999999999999999998"}) == "rk99999999999999999998");
   CHECK(suggest("MYR", {"kyr", "myr", "Myr"}) == "Myr");
   CHECK(suggest("xyr", {"kyr", "myr"}) == "kyr");
 }
