@@ -28,7 +28,7 @@ struct StabilityArguments {
   std::string scene;
   std::optional<std::string> methods, out;
   std::vector<std::string> sets;
-  std::int64_t steps = 100'000;
+  double steps = 100'000;
   std::optional<double> budget;
   bool suite = false, nightly = false, json = false;
 };
@@ -55,7 +55,7 @@ void search_scene(const StabilityArguments& given) {
   const bool shows = !given.json && ::isatty(STDERR_FILENO) == 1;
   StabilityOptions options;
   if (given.methods) options.methods = texts_in(*given.methods, "--methods");
-  options.confirm_steps = given.steps;
+  options.confirm_steps = static_cast<std::int64_t>(given.steps);
   if (given.budget) options.row_budget = *given.budget;
   options.progress = progress_line(shows);
   if (given.out) io::make_folder(*given.out);

@@ -239,7 +239,7 @@ LinearTheory linear_theory(const Scene& scene, const Opponent& who, const Mode& 
     const MethodInfo* info = methods::find(who.method);
     const bool table = info != nullptr && info->stability_limit > 0 && !mode.lambda && mode.rate == 0;
     found.known = table && mode.omega > 0;
-    if (found.known) found.limit = info->stability_limit;
+    if (found.known && std::isfinite(info->stability_limit)) found.limit = info->stability_limit;
     return found;
   }
   found.known = true;

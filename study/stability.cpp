@@ -32,8 +32,9 @@ class Search {
   Search(const Scene& scene, const Stability& all, const StabilityOptions& options, StabilityRow& row)
       : scene_(scene), options_(options), row_(row), begin_(std::chrono::steady_clock::now()) {
     scale_ = all.mode.scale();
+    oscillates_ = scale_ > 0;
     // Where nothing oscillates, a hundredth of the scene's own step stands for one of the search.
-    if (!(scale_ > 0)) scale_ = 0.2 / std::abs(scene.integrator.step > 0 ? scene.integrator.step : 1);
+    if (!oscillates_) scale_ = 0.2 / std::abs(scene.integrator.step > 0 ? scene.integrator.step : 1);
     bounds_ = {.frequency = scale_, .linear = all.linear};
   }
 
@@ -71,11 +72,18 @@ class Search {
     return true;
   }
 
+  /// A point of the search, as rows tell it.
+  std::string told(double z) const {
+    return oscillates_ ? fmt::format("h omega = {:.6g}", z) : fmt::format("a step of {:.6g}", z / scale_);
+  }
+
   /// The budget is over before a limit is found.
   void stop_at(double bounded_until) {
     row_.settled = false;
+    row_.reason = "not_settled";
     row_.bounded_until = bounded_until;
-    row_.message = fmt::format("the budget was over at h omega = {:.4g}, bounded until there", bounded_until);
+    row_.bounded_step = bounded_until / scale_;
+    row_.message = fmt::format("the budget was over at {}, bounded until there", told(bounded_until));
   }
 
   /// Where the search ends without having found anything.
@@ -159,7 +167,7 @@ class Search {
     row_.limit_h_omega = unstable;
     row_.message = failed_.message;
     if (!row_.settled) {
-      row_.message = fmt::format("the budget was over between h omega = {:.6g} and {:.6g}", stable, unstable);
+      row_.message = fmt::format("the budget was over between {} and {}", told(stable), told(unstable));
     }
     explain(failed_, unstable);
     if (row_.settled && failed_.verdict == Bounded::unbounded) find_gap_end(unstable);
@@ -226,6 +234,7 @@ class Search {
   std::chrono::steady_clock::time_point begin_;
   Trial failed_;  ///< the last run that was not bounded
   double scale_ = 1;
+  bool oscillates_ = true;
   Bounds bounds_;
 };
 

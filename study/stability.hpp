@@ -82,10 +82,11 @@ struct StabilityRow {
   std::optional<double> limit_step = {};  ///< first step that is not bounded [time]; none: bounded as far as searched
   std::optional<double> limit_h_omega = {};  ///< the same times omega; none where nothing oscillates
   LinearTheory theory = {};
-  std::string reason = "none";                  ///< linear, resonance, solver or none
+  std::string reason = "none";                  ///< linear, resonance, solver, none, or not_settled before any limit
   int resonance = 0;                            ///< n of the n:1 resonance next to the limit; 0: none
   std::optional<double> gap_end = {};           ///< h omega from which runs are bounded again, if they are
   std::optional<double> bounded_until = {};     ///< h omega at which the budget was over before a limit was found
+  std::optional<double> bounded_step = {};      ///< the same as a step, which a limit lies above [time]
   std::optional<double> recommended_step = {};  ///< [time]
   bool settled = true;                          ///< else the budget was over, and `message` tells what is known
   std::string message = {};
@@ -133,6 +134,11 @@ std::string to_html(const Stability& found);
 
 /// What is known of Kepler arcs, in sentences; none where no method steps along them.
 std::vector<std::string> kepler_lines(const Stability& found);
+
+/// Why a row has its limit, in words: "linear", "resonance 3:1", "solver, not settled", "not settled".
+std::string reason_text(const StabilityRow& row);
+/// The limit of a row as a step, "> 1.8" where only a bound below it is known; `none` where there is neither.
+std::string limit_step_text(const StabilityRow& row, int digits, std::string_view none);
 
 /// Whether a settled limit is off the linear one, or that of the method's solver, by more than 1 %, or only one of the
 /// two is there.

@@ -30,7 +30,7 @@ std::string limit_note(const StabilityRow& row, const std::optional<double>& lim
                                    : "bounded to " + digits(row.bounded_until, "?");
   if (!row.settled) text += ", not settled";
   if (differs_from_theory(row) || !row.theory.known) text += ", theory " + theory_text(row);
-  if (row.reason != "linear" && row.reason != "none") text += ", " + row.reason;
+  if (row.reason == "resonance" || row.reason == "solver") text += ", " + row.reason;
   if (row.resonance > 0) text += fmt::format(" {}:1", row.resonance);
   return text;
 }
@@ -64,11 +64,10 @@ std::string figures_of(const Stability& found, const std::string& unit) {
       html_text(unit));
   for (const StabilityRow& row : found.rows) {
     out += fmt::format(
-        "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td{}>{}{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-        html_text(row.who.label), digits(row.limit_step), digits(row.limit_h_omega), theory_text(row),
-        differs_from_theory(row) ? " class=\"bad\"" : "", row.reason,
-        row.resonance > 0 ? fmt::format(" {}:1", row.resonance) : "", digits(row.gap_end), digits(row.recommended_step),
-        row.steps);
+        "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td{}>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+        html_text(row.who.label), html_text(limit_step_text(row, 5, "")), digits(row.limit_h_omega), theory_text(row),
+        differs_from_theory(row) ? " class=\"bad\"" : "", reason_text(row), digits(row.gap_end),
+        digits(row.recommended_step), row.steps);
   }
   return out + "</table></div>\n";
 }

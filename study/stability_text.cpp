@@ -10,12 +10,6 @@ namespace {
 
 std::string number(const std::optional<double>& x, int digits) { return x ? fmt::format("{:.{}g}", *x, digits) : "-"; }
 
-std::string why(const StabilityRow& row) {
-  std::string text = row.reason;
-  if (row.resonance > 0) text += fmt::format(" {}:1", row.resonance);
-  return row.settled ? text : text + ", not settled";
-}
-
 Json json_of(const KeplerSteps& kepler) {
   std::vector<Json> resonances;
   for (int n = 1; kepler.period > 0 && n <= KeplerSteps::resonances; ++n) {
@@ -30,6 +24,18 @@ Json json_of(const KeplerSteps& kepler) {
 }
 
 }  // namespace
+
+std::string reason_text(const StabilityRow& row) {
+  if (row.reason == "not_settled") return "not settled";
+  std::string text = row.reason;
+  if (row.resonance > 0) text += fmt::format(" {}:1", row.resonance);
+  return row.settled ? text : text + ", not settled";
+}
+
+std::string limit_step_text(const StabilityRow& row, int digits, std::string_view none) {
+  if (row.limit_step) return number(row.limit_step, digits);
+  return row.bounded_step ? "> " + number(row.bounded_step, digits) : std::string(none);
+}
 
 std::vector<std::string> kepler_lines(const Stability& found) {
   if (!found.kepler) return {};
@@ -65,6 +71,7 @@ std::string to_json(const Stability& found) {
                                  {"reason", row.reason},
                                  {"gap_end", Json(row.gap_end)},
                                  {"bounded_until", Json(row.bounded_until)},
+                                 {"bounded_step", time(row.bounded_step)},
                                  {"recommended_step", time(row.recommended_step)},
                                  {"resonance", row.resonance > 0 ? Json(row.resonance) : Json()},
                                  {"resonances", Json::list(resonances)},
@@ -104,7 +111,7 @@ std::string to_text(const Stability& found) {
   for (const StabilityRow& row : found.rows) {
     const std::string theory = row.theory.limit ? number(row.theory.limit, 6) : row.theory.known ? "none" : "-";
     out += fmt::format("{:<28} {:>12} {:>10} {:>10} {:<18} {:>10} {:>13} {:>7.1f}\n", row.who.label,
-                       number(row.limit_step, 6), number(row.limit_h_omega, 6), theory, why(row),
+                       limit_step_text(row, 6, "-"), number(row.limit_h_omega, 6), theory, reason_text(row),
                        number(row.gap_end, 6), number(row.recommended_step, 4), row.seconds);
   }
   for (const StabilityRow& row : found.rows) {

@@ -51,7 +51,7 @@ TEST_CASE("stability tells the limit of a method beside theory, as a table or in
   CHECK(std::abs(std::stod(json_member(json, "limit_h_omega")) - 2) < 1e-3);
   CHECK(std::abs(std::stod(json_member(json, "theory")) - 2) < 1e-6);
   CHECK(json_member(json, "reason") == "\"linear\"");
-  const std::string text = output(folder, "stability scene.toml --methods rk4 --steps 20000");
+  const std::string text = output(folder, "stability scene.toml --methods rk4 --steps 2e4");
   CHECK(text.starts_with("fastest oscillation: omega = 2, period 3.14159, linear\n"));
   CHECK(has(text, "2.82843"));
 }
@@ -104,6 +104,8 @@ TEST_CASE("wrong requests to stability are told in one line", "[cli][stability][
         "'rk4'");
   wrong("stability scene.toml --methods ''", "--methods '': a part of the list is empty");
   wrong("stability scene.toml --budget 0", "--budget: '0' is no number of seconds above 0" + see);
+  wrong("stability scene.toml --steps 1e4.5", "--steps: '1e4.5' is no whole number above 0" + see);
+  wrong("stability scene.toml --steps 1e4 --methods rk5", "unknown method 'rk5'; did you mean 'rk4'?");
   wrong("stability scene.toml --steps 10", "10 steps confirm nothing; 1000 or more are expected");
   wrong("stability --suite scene.toml --out ''", "--out: the name of the folder is empty" + see);
   CHECK(noether(folder, "stability --suite nowhere.toml").exit_code == 3);

@@ -193,6 +193,33 @@ TEST_CASE("a search whose budget is over says so", "[stability]") {
   CHECK(row.seconds < 2);
 }
 
+TEST_CASE("a limit that is not settled is no missing limit: the bound below it is told", "[stability]") {
+  for (const bool oscillates : {true, false}) {
+    const Scene scene = oscillates ? ball() : load_scene(NOETHER_SOURCE_DIR "/examples/pendulum/scene.toml");
+    StabilityOptions options;
+    options.methods = {"verlet"};
+    options.row_budget = 0.1;
+    const Stability found = find_stability(scene, options);
+    const StabilityRow& row = found.rows.at(0);
+    INFO(to_text(found));
+    REQUIRE_FALSE(row.settled);
+    CHECK(row.reason == "not_settled");
+    REQUIRE(row.bounded_step);
+    CHECK(row.bounded_until.has_value() == oscillates);
+    if (oscillates) CHECK(*row.bounded_step == *row.bounded_until / found.mode.scale());
+    CHECK(to_json(found).find("\"limit_step\":null") != std::string::npos);
+    CHECK(to_json(found).find("\"reason\":\"not_settled\"") != std::string::npos);
+    CHECK(to_json(found).find(fmt::format("\"bounded_step\":{}", *row.bounded_step)) != std::string::npos);
+    const std::string text = to_text(found), bound = fmt::format("> {:.6g} ", *row.bounded_step);
+    CHECK(text.find(bound) != std::string::npos);
+    CHECK(text.find(" not settled ") != std::string::npos);
+    CHECK(text.find("none, not settled") == std::string::npos);
+    CHECK((row.message.find("h omega") != std::string::npos) == oscillates);
+    CHECK(to_html(found).find(fmt::format("<td>&gt; {:.5g}</td>", *row.bounded_step)) != std::string::npos);
+    CHECK(to_html(found).find("<td>not settled</td>") != std::string::npos);
+  }
+}
+
 TEST_CASE("drag moves limits as the theory of its letter says", "[stability][slow]") {
   const Scene scene = oscillator("method = \"euler\"\nstep = 0.1\nsteps = 1000", 0.2);
   const StabilityRow row = row_of(scene, "euler");
