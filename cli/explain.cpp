@@ -37,6 +37,7 @@ struct Explanation {
   Index variables = 0;                          ///< of a system without particles
   std::optional<NeighborStatistics> neighbors;  ///< of the first step
   std::optional<Stiffness> stiffness;           ///< at the start
+  std::optional<StiffnessAlong> along;          ///< of a system whose run has an end
   std::string why_no_stiffness;
 };
 
@@ -69,7 +70,7 @@ double length_of(const SceneIntegrator& made) {
   return std::numeric_limits<double>::infinity();
 }
 
-/// What the Jacobian at the start says: of systems, and of few particles under a method for y' = f.
+/// What the Jacobian says: of systems along their run, and of few particles under a method for y' = f at its start.
 void measure_stiffness(const Scene& scene, Explanation& e) {
   static constexpr Index most_bodies = 50;
   if (!scene.integrator.classical || scene.particles.size() > most_bodies) return;
@@ -82,7 +83,9 @@ void measure_stiffness(const Scene& scene, Explanation& e) {
     if (scene.integrator.direction() == Direction::backward) {
       for (auto& one : eigenvalues) one = -one;  // back in time what decays grows
     }
-    e.stiffness = stiffness_of(eigenvalues, std::abs(length_of(scene.integrator)));
+    const double length = length_of(scene.integrator);
+    e.stiffness = stiffness_of(eigenvalues, std::abs(length));
+    if (scene.system && std::isfinite(length) && length != 0) e.along = stiffness_along(*field, y, length);
   } catch (const Error& error) {
     e.why_no_stiffness = error.message();
   }
@@ -204,6 +207,25 @@ std::string meaning(char letter, const Scene& scene, const Explanation& e) {
   return letter == 'D' ? "flows of the drag" : "flows";
 }
 
+void print_stiffness(const Scene& scene, const Explanation& e) {
+  const Stiffness& start = *e.stiffness;
+  if (!e.along) {
+    fmt::print("stiffness at the start: {}\n", start.verdict());
+  } else {
+    const StiffnessAlong& along = *e.along;
+    fmt::print("stiffness: {}\n", along.mean.verdict());
+    const double length = length_of(scene.integrator);
+    const bool whole = std::abs(along.reached / length - 1) < 1e-9;
+    fmt::print("  seen at {} {} of a rough run to t = {:.3g}{}\n", along.places, along.places == 1 ? "place" : "places",
+               along.reached, whole ? "" : fmt::format(" of {:.3g}; what comes later is not known", length));
+    fmt::print("  fastest rate {:.3g}, at t = {:.3g}; at the start {:.3g}\n", along.fastest, along.at, start.fastest);
+  }
+  if (start.spread() > 1) {
+    fmt::print("  rates{} from {:.3g} to {:.3g}, {:.3g} times as fast\n", e.along ? " at the start" : "", start.slowest,
+               start.fastest, start.spread());
+  }
+}
+
 void print_text(const Scene& scene, const Explanation& e) {
   fmt::print("{}{}{} over {}, {} {}\n", plain_line(scene.title), scene.title.empty() ? "" : ": ", e.method,
              e.hamiltonian, scene.system ? e.variables : e.particles, scene.system ? "variables" : "particles");
@@ -225,13 +247,7 @@ void print_text(const Scene& scene, const Explanation& e) {
                e.neighbors->pairs, e.neighbors->skin,
                static_cast<double>(e.neighbors->bytes) / static_cast<double>(e.particles));
   }
-  if (e.stiffness) {
-    fmt::print("stiffness at the start: {}\n", e.stiffness->verdict());
-    if (e.stiffness->spread() > 1) {
-      fmt::print("  rates from {:.3g} to {:.3g}, {:.3g} times as fast\n", e.stiffness->slowest, e.stiffness->fastest,
-                 e.stiffness->spread());
-    }
-  }
+  if (e.stiffness) print_stiffness(scene, e);
   if (!e.why_no_stiffness.empty()) fmt::print("stiffness: not known: {}\n", e.why_no_stiffness);
   fmt::print("SIMD level: {}\n", name(simd_level()));
   const std::string unit = scene.units->is_reduced() ? "" : " " + std::string(scene.units->time);
@@ -243,13 +259,27 @@ void print_text(const Scene& scene, const Explanation& e) {
   fmt::print("\n");
 }
 
-Json json_of(const Stiffness& stiffness) {
-  return Json::object({{"S", stiffness.ratio},
-                       {"fastest", stiffness.fastest},
-                       {"slowest", stiffness.slowest},
-                       {"growth", stiffness.growth},
-                       {"turning", stiffness.turning},
-                       {"verdict", stiffness.verdict()}});
+Json::Members members_of(const Stiffness& stiffness) {
+  return {{"S", stiffness.ratio},       {"fastest", stiffness.fastest}, {"slowest", stiffness.slowest},
+          {"growth", stiffness.growth}, {"turning", stiffness.turning}, {"verdict", stiffness.verdict()}};
+}
+
+/// At the start, and of the run from there, where it was looked at.
+Json stiffness_json(const Explanation& e) {
+  if (!e.stiffness) return {};
+  Json along;
+  if (e.along) {
+    Json::Members members = members_of(e.along->mean);
+    members.emplace_back("largest", e.along->fastest);
+    members.emplace_back("largest_at", e.along->at);
+    members.emplace_back("reached", e.along->reached);
+    members.emplace_back("places", e.along->places);
+    along = Json::object(members);
+  }
+  Json::Members members = members_of(*e.stiffness);
+  if (e.along) members.back().second = Json(e.along->mean.verdict());
+  members.emplace_back("along", along);
+  return Json::object(members);
 }
 
 Json json_of(const Scene& scene, const Explanation& e) {
@@ -271,7 +301,7 @@ Json json_of(const Scene& scene, const Explanation& e) {
                                                  {"skin", e.neighbors->skin},
                                                  {"bytes", static_cast<std::int64_t>(e.neighbors->bytes)}})
                                  : Json()},
-       {"stiffness", e.stiffness ? json_of(*e.stiffness) : Json()},
+       {"stiffness", stiffness_json(e)},
        {"constraints", std::int64_t{e.constraints}},
        {"flows_per_step", Json::object(flows)},
        {"force_evaluations_per_step", e.evaluations},

@@ -1,5 +1,7 @@
 #include "integrators/stiffness.hpp"
 
+#include "integrators/methods.hpp"
+
 #include <fmt/format.h>
 #include <Eigen/Eigenvalues>
 
@@ -75,6 +77,75 @@ Stiffness stiffness_of(const std::vector<std::complex<double>>& eigenvalues, dou
   }
   result.ratio = std::isfinite(length) ? result.fastest * std::abs(length) : std::numeric_limits<double>::quiet_NaN();
   return result;
+}
+
+namespace {
+
+/// Where a run comes by.
+struct Place {
+  double t;
+  Vector<double> y;
+};
+
+/// The steps of a run, the start among them, as far as so many steps lead.
+std::vector<Place> steps_of(VectorField<double>& f, const Vector<double>& start, double length, std::int64_t most) {
+  double size = 0;
+  for (Index i = 0; i < start.size(); ++i) size = std::max(size, std::abs(start[i]));
+  const MethodChoice choice = method("rodas_5p", {.rtol = 1e-4, .atol = 1e-9 * (size > 0 ? size : 1)});
+  const auto stepper = make_method<double>(*choice.info, choice.options);
+  stepper->bind(f);
+  std::vector<Place> places = {{0, start}};
+  Vector<double> y = start;
+  double t = 0;
+  while (std::abs(length - t) > 1e-12 * std::abs(length) && static_cast<std::int64_t>(places.size()) <= most) {
+    const Stepped made = stepper->step(f, t, y, length - t);
+    if (made.failure || !(std::abs(made.h) > 0)) break;
+    t += made.h;
+    places.push_back({t, y});
+  }
+  return places;
+}
+
+}  // namespace
+
+StiffnessAlong stiffness_along(VectorField<double>& f, const Vector<double>& start, double length) {
+  const double cube = std::pow(static_cast<double>(start.size()), 3);
+  const auto most_steps = static_cast<std::int64_t>(std::clamp(3e9 / cube, 40.0, 2000.0));
+  const auto most_places = static_cast<std::size_t>(std::clamp(2e8 / cube, 3.0, 64.0));
+  const std::vector<Place> all = steps_of(f, start, length, most_steps);
+  const std::size_t last = all.size() - 1, parts = std::min(most_places - 1, last);
+  StiffnessAlong found;
+  Stiffness before, sums;
+  double t = 0;
+  for (std::size_t k = 0; k <= parts; ++k) {
+    const Place& place = all[parts > 0 ? k * last / parts : 0];
+    std::vector<std::complex<double>> eigenvalues = eigenvalues_of(f, place.t, place.y);
+    if (length < 0) {
+      for (auto& one : eigenvalues) one = -one;  // back in time what decays grows
+    }
+    const Stiffness now = stiffness_of(eigenvalues, std::abs(length));
+    const double half = std::abs(place.t - t) / 2;  // trapezoids
+    sums.fastest += half * (before.fastest + now.fastest);
+    sums.growth += half * (before.growth + now.growth);
+    sums.turning += half * (before.turning + now.turning);
+    if (now.slowest > 0) sums.slowest = sums.slowest > 0 ? std::min(sums.slowest, now.slowest) : now.slowest;
+    if (k == 0 || now.fastest > found.fastest) {
+      found.fastest = now.fastest;
+      found.at = place.t;
+    }
+    before = now;
+    t = place.t;
+    ++found.places;
+  }
+  found.reached = t;
+  const double seen = std::abs(t);
+  found.mean = seen > 0 ? Stiffness{.fastest = sums.fastest / seen,
+                                    .slowest = sums.slowest,
+                                    .growth = sums.growth / seen,
+                                    .turning = sums.turning / seen}
+                        : before;
+  found.mean.ratio = found.mean.fastest * std::abs(length);
+  return found;
 }
 
 std::string Stiffness::verdict() const {

@@ -14,7 +14,7 @@ namespace noether {
 ///     S = max |Re lambda| T
 ///
 /// An explicit method has to take about S / 3 steps, whatever its tolerance. Eigenvalues belong to one point: kinetics
-/// may become stiffer on their way.
+/// may become stiffer on their way, which `stiffness_along` sees.
 /// @source HairerWanner1996
 struct Stiffness {
   double ratio = 0;    ///< S [1]; NaN where the run has no end
@@ -39,5 +39,22 @@ inline constexpr Index most_eigenvalues = 400;
 /// @throws Error  for a system of more than `most_eigenvalues` variables, or a Jacobian that is not finite
 /// @cost 2 n evaluations and O(n^3)
 std::vector<std::complex<double>> eigenvalues_of(VectorField<double>& f, double t, const Vector<double>& y);
+
+/// How stiff a run is, from eigenvalues at several places of it.
+struct StiffnessAlong {
+  /// Rates are means over the time that was seen, `slowest` the least; S is the integral of max |Re lambda|, taken on
+  /// to the end where only a part was seen.
+  Stiffness mean = {};
+  double fastest = 0;  ///< largest |Re lambda| on the way [1/time]
+  double at = 0;       ///< where it was [time]
+  double reached = 0;  ///< how far eigenvalues were looked at [time]
+  int places = 0;      ///< at which they were
+};
+
+/// Follows a run from y(0) over `length` [time], below 0 backward, by `rodas_5p` with rtol 1e-4 and takes eigenvalues
+/// at up to 64 places, fewer of large systems. A run of too many steps, or that fails, is seen in part.
+/// @throws Error  as `eigenvalues_of`
+/// @cost at most some 2000 steps, for large systems O(n^3) 50 times
+StiffnessAlong stiffness_along(VectorField<double>& f, const Vector<double>& start, double length);
 
 }  // namespace noether

@@ -79,6 +79,54 @@ TEST_CASE("Robertson's kinetics begin with one rate, and S counts the length of 
   CHECK(std::abs(later.fastest / (2 * 3e7 * 9.1855347645572e-6 + 1e4 * 0.28416374574583) - 1) < 0.01);
 }
 
+TEST_CASE("along its run Robertson's kinetics reach S = 1e15, far more than their start tells", "[stiffness]") {
+  // In the end C = 1 and the rate is k3 = 1e4.
+  const auto along = [](double length) {
+    SystemMotion<Robertson, double> f{Robertson{}};
+    const std::vector<double> values = Robertson{}.start();
+    Vector<double> y(3);
+    std::copy(values.begin(), values.end(), y.data());
+    return stiffness_along(f, y, length);
+  };
+  const StiffnessAlong whole = along(1e11);
+  CHECK(whole.reached == 1e11);
+  CHECK(whole.places > 20);
+  CHECK(std::abs(whole.mean.ratio / 1e15 - 1) < 0.05);
+  CHECK(std::abs(whole.fastest / 1e4 - 1) < 0.05);
+  CHECK(whole.mean.verdict() == "stiff: S = 1e+15; an explicit method needs about 3.6e+14 steps; use rodas_5p or bdf");
+  // At t = 40 the rate is known: see above. It grows little by little, so the mean is below it.
+  const StiffnessAlong early = along(40);
+  CHECK(std::abs(early.fastest / (2 * 3e7 * 9.1855347645572e-6 + 1e4 * 0.28416374574583) - 1) < 0.01);
+  CHECK(early.mean.fastest < early.fastest);
+  CHECK(early.mean.fastest > early.fastest / 2);
+}
+
+TEST_CASE("where rates stay the same the run is as stiff as its start, forward and backward", "[stiffness]") {
+  const HeatLine line{.points = 20};
+  SystemMotion<HeatLine, double> f{line};
+  const std::vector<double> values = line.start();
+  Vector<double> y(static_cast<Index>(values.size()));
+  std::copy(values.begin(), values.end(), y.data());
+  const StiffnessAlong forward = stiffness_along(f, y, 0.5), backward = stiffness_along(f, y, -1e-3);
+  CHECK(forward.reached == 0.5);
+  CHECK(std::abs(forward.mean.ratio / (0.5 * line.rate_of(20)) - 1) < 1e-7);
+  CHECK(std::abs(forward.mean.slowest / line.rate_of(1) - 1) < 1e-7);
+  CHECK(forward.mean.growth == 0);
+  CHECK(std::abs(backward.mean.growth / line.rate_of(20) - 1) < 1e-7);
+}
+
+TEST_CASE("a run of too many steps is seen in part, and the rest taken to be like it", "[stiffness]") {
+  SystemMotion<ForcedDampedOscillator, double> f{ForcedDampedOscillator{.gamma = 0.1}};
+  Vector<double> y(2);
+  y << 1, 0;
+  const StiffnessAlong found = stiffness_along(f, y, 1e7);
+  CHECK(found.reached < 1e5);
+  CHECK(found.reached > 100);
+  CHECK(std::abs(found.mean.ratio / 1e6 - 1) < 1e-6);
+  CHECK(found.mean.verdict() ==
+        "not stiff: S = 1e+06, but what oscillates is about as fast, and asks for as many steps");
+}
+
 TEST_CASE("the verdict on stiffness is in plain words", "[stiffness]") {
   CHECK(stiffness(Robertson{}, 1e11).verdict() ==
         "stiff: S = 4e+09; an explicit method needs about 1.4e+09 steps; use rodas_5p or bdf");
