@@ -1,5 +1,6 @@
 #include "cli/commands.hpp"
 
+#include "cli/method_text.hpp"
 #include "engine/error.hpp"
 #include "engine/quantity.hpp"
 #include "engine/suggest.hpp"
@@ -164,35 +165,63 @@ std::string steps_text(const MethodInfo& info) {
   return info.adaptive ? "chooses its steps, " + tolerances : "takes steps of one length";
 }
 
+/// What a classical method can step, as it says itself.
+struct Served {
+  std::string_view equation, in_words;
+};
+
+Served served_by(const MethodClaims& claims) {
+  if (claims.positions_only) {
+    return {"q'' = a(t, q)",
+            "it takes all forces together, but none that depends on velocities, and no system of first "
+            "order"};
+  }
+  if (claims.second_order_only) {
+    return {"q'' = a(t, q, q')",
+            "it takes all forces together, velocity-dependent ones too, but no system of first "
+            "order"};
+  }
+  return {"y' = f(t, y)", "it takes all forces together, velocity-dependent ones too"};
+}
+
 void describe_method(const MethodInfo& info, bool json) {
+  const Served served = served_by(info.make(info, {})->claims());
   const std::vector<std::string> aliases = methods::aliases_of(info);
   if (json) {
-    fmt::print("{}\n",
-               Json::object({{"schema", "noether.describe/1"},
-                             {"kind", "method"},
-                             {"name", info.name},
-                             {"help", info.summary},
-                             {"aliases", Json::list_of(aliases)},
-                             {"family", info.family},
-                             {"order", info.order},
-                             {"fixed", info.fixed},
-                             {"adaptive", info.adaptive},
-                             {"options", Json::list_of(words_of(info.options))},
-                             {"rtol", info.adaptive ? Json(info.rtol) : Json()},
-                             {"atol", info.adaptive ? Json(info.atol) : Json()},
-                             {"stability_limit", info.stability_limit > 0 ? Json(info.stability_limit) : Json()},
-                             {"source", info.source},
-                             {"bibtex", entries_of(info.source)}})
-                   .text());
+    fmt::print("{}\n", Json::object({{"schema", "noether.describe/1"},
+                                     {"kind", "method"},
+                                     {"name", info.name},
+                                     {"help", info.summary},
+                                     {"aliases", Json::list_of(aliases)},
+                                     {"family", info.family},
+                                     {"order", info.order},
+                                     {"order_in_quad", order_in_quad(info)},
+                                     {"serves", served.equation},
+                                     {"evaluations", info.evaluations > 0 ? Json(info.evaluations) : Json()},
+                                     {"fixed", info.fixed},
+                                     {"adaptive", info.adaptive},
+                                     {"options", Json::list_of(words_of(info.options))},
+                                     {"rtol", info.adaptive ? Json(info.rtol) : Json()},
+                                     {"atol", info.adaptive ? Json(info.atol) : Json()},
+                                     {"stability_limit", limit_json(info.stability_limit)},
+                                     {"source", info.source},
+                                     {"bibtex", entries_of(info.source)}})
+                           .text());
     return;
   }
   fmt::print("{} (method): {}\n", info.name, info.summary);
   if (!aliases.empty()) fmt::print("also called {}\n", fmt::join(aliases, ", "));
-  fmt::print("\n  order {}, {}\n  for y' = f(t, y): it takes all forces together, velocity-dependent ones too\n",
-             info.order, steps_text(info));
+  fmt::print("\n  order {}, {}\n  for {}: {}\n", order_text(info), steps_text(info), served.equation, served.in_words);
+  if (info.evaluations > 0) {
+    fmt::print("  {} {} a step of given length\n", info.evaluations,
+               info.evaluations == 1 ? "evaluation" : "evaluations");
+  }
   if (!info.options.empty()) fmt::print("  takes {} too\n", fmt::join(words_of(info.options), ", "));
   if (std::isinf(info.stability_limit)) {
-    fmt::print("  stable on the oscillator at any step\n");
+    fmt::print("  stable on the oscillator at any step{}\n",
+               info.family == "collocation" ? " that its iteration can solve" : "");
+  } else if (info.stability_limit == 0) {
+    fmt::print("  on the oscillator it grows at every step\n");
   } else if (info.stability_limit > 0) {
     fmt::print("  stable on the oscillator up to h omega = {:.6g}\n", info.stability_limit);
   }

@@ -1,5 +1,6 @@
 #include "cli/commands.hpp"
 
+#include "cli/method_text.hpp"
 #include "engine/error.hpp"
 #include "engine/quantity.hpp"
 #include "engine/suggest.hpp"
@@ -23,7 +24,7 @@ namespace noether {
 
 namespace {
 
-/// A list: names of the columns, and rows of text for people or values for machines.
+/// A list: names of the columns, and rows of text for people or values for machines, which may have more columns.
 struct Listing {
   std::vector<std::string_view> columns;
   std::vector<std::vector<Json>> values;
@@ -50,22 +51,21 @@ std::string order_text(const Order& order) {
 }
 
 Listing methods() {
-  Listing list{{"name", "order", "class", "kicks", "stability_limit", "aliases"}, {}, {}};
+  Listing list{{"name", "order", "class", "evaluations", "stability_limit", "aliases", "kicks"}, {}, {}};
   for (const Scheme* scheme : schemes::all()) {
     const std::vector<std::string> aliases = schemes::aliases_of(*scheme);
-    const double limit = scheme->stability_limit;
     list.add({std::string(scheme->name), order_text(scheme->order), class_text(*scheme),
-              fmt::format("{}", scheme->evaluations()), limit > 0 ? fmt::format("{:.4g}", limit) : "-",
+              fmt::format("{}", scheme->evaluations()), limit_text(scheme->stability_limit),
               fmt::format("{}", fmt::join(aliases, " "))},
              {scheme->name, scheme->order.classical, class_text(*scheme), scheme->evaluations(),
-              limit > 0 ? Json(limit) : Json(), Json::list_of(aliases)});
+              limit_json(scheme->stability_limit), Json::list_of(aliases), scheme->evaluations()});
   }
   for (const MethodInfo* info : methods::all()) {
     const std::vector<std::string> aliases = methods::aliases_of(*info);
-    const double limit = info->stability_limit;
-    list.add({std::string(info->name), fmt::format("{}", info->order), std::string(info->family), "-",
-              limit > 0 ? fmt::format("{:.4g}", limit) : "-", fmt::format("{}", fmt::join(aliases, " "))},
-             {info->name, info->order, info->family, Json(), limit > 0 ? Json(limit) : Json(), Json::list_of(aliases)});
+    list.add({std::string(info->name), order_text(*info), std::string(info->family), evaluations_text(*info),
+              limit_text(info->stability_limit), fmt::format("{}", fmt::join(aliases, " "))},
+             {info->name, info->order, info->family, info->evaluations > 0 ? Json(info->evaluations) : Json(),
+              limit_json(info->stability_limit), Json::list_of(aliases), Json()});
   }
   return list;
 }
@@ -128,7 +128,8 @@ void print_text(const std::string& what, const Listing& list) {
     return;
   }
   std::vector<std::vector<std::string>> rows = list.rows;
-  rows.insert(rows.begin(), std::vector<std::string>(list.columns.begin(), list.columns.end()));
+  const auto shown = static_cast<std::ptrdiff_t>(list.rows[0].size());
+  rows.insert(rows.begin(), std::vector<std::string>(list.columns.begin(), list.columns.begin() + shown));
   std::vector<std::size_t> widths(list.columns.size(), 0);
   for (const auto& row : rows) {
     for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], row[k].size());

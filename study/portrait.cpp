@@ -356,7 +356,9 @@ std::vector<std::string> Portrait::differences() const {
   check(c.energy == m.energy, "energy", std::string(text_of(c.energy)), std::string(text_of(m.energy)));
   flag(c.fixed_steps, m.fixed_steps, "steps of one length");
   flag(c.own_steps, m.own_steps, "steps of its own");
+  // Claims are those of the map; what its iteration cannot solve is measured only.
   const bool same_limit = !c.stability_limit || c.stability_limit == m.stability_limit ||
+                          (std::isinf(*c.stability_limit) && m.limit_of_iteration) ||
                           (m.stability_limit && std::abs(*c.stability_limit - *m.stability_limit) < 5e-4);
   check(same_limit, "stability limit", text_of(c.stability_limit), text_of(m.stability_limit));
   return found;

@@ -385,6 +385,7 @@ MethodInfo gauss_info(std::string_view name, std::string_view summary, std::stri
           .adaptive = stages > 1,
           .rtol = 1e-16,
           .atol = 0,
+          .stability_limit = std::numeric_limits<double>::infinity(),
           .make = gauss<double>,
           .make_quad = gauss<Quad>};
 }
@@ -419,6 +420,7 @@ std::span<const MethodInfo> collocation_list() {
        .adaptive = true,
        .rtol = 1e-16,
        .atol = 0,
+       .stability_limit = 1.3613,
        .make = radau<double>,
        .make_quad = radau<Quad>},
   };

@@ -130,6 +130,56 @@ TEST_CASE("describe tells formula, order, fields and source", "[cli][describe]")
   CHECK(has(json_output(folder, "describe kyr", "describe"), R"("solar":365250)"));
 }
 
+TEST_CASE("describe says of a method what it serves, as it claims itself", "[cli][describe]") {
+  const ScratchFolder folder;
+  const auto says = [&](const std::string& name, const std::string& line, const std::string& equation) {
+    INFO(name);
+    CHECK(has(output(folder, "describe " + name),
+              "\n  for " + equation + ": it takes all forces together" + line + "\n"));
+    CHECK(json_member(json_output(folder, "describe " + name, "describe"), "serves") == "\"" + equation + "\"");
+  };
+  for (const char* name : {"rk4", "gauss_8", "adams_bashforth_3", "rodas_5p"}) {
+    says(name, ", velocity-dependent ones too", "y' = f(t, y)");
+  }
+  for (const char* name : {"stormer_cowell_12", "stormer_cowell_13", "stormer_cowell_14", "dprkn_12"}) {
+    says(name, ", but none that depends on velocities, and no system of first order", "q'' = a(t, q)");
+  }
+  says("newmark", ", velocity-dependent ones too, but no system of first order", "q'' = a(t, q, q')");
+}
+
+TEST_CASE("list and describe tell orders, evaluations and limits as docs/methods.md does", "[cli][list][describe]") {
+  const ScratchFolder folder;
+  const std::string list = output(folder, "list methods"), json = output(folder, "list methods --json");
+  // The columns of the list, a blank between them.
+  const auto row = [&](const std::string& name) {
+    const std::size_t begin = list.find("\n" + name + " ") + 1;
+    std::string cells;
+    for (const char c : list.substr(begin, list.find('\n', begin) - begin)) {
+      if (c != ' ' || cells.back() != ' ') cells += c;
+    }
+    return cells;
+  };
+  CHECK(list.starts_with("name "));
+  CHECK(row("rk4").starts_with("rk4 4 runge-kutta 4 2.828 "));
+  CHECK(row("euler").starts_with("euler 1 runge-kutta 1 never "));
+  CHECK(row("gauss_8") == "gauss_8 16 collocation iterates always");
+  CHECK(row("gauss_radau_15").starts_with("gauss_radau_15 15 collocation iterates 1.361 "));
+  CHECK(
+      row("gragg_bulirsch_stoer").starts_with("gragg_bulirsch_stoer varies, to 16, in Quad to 24 extrapolation - - "));
+  CHECK(row("adams_pece").starts_with("adams_pece 4, to 12 multistep 2 never "));
+  CHECK(row("bdf").starts_with("bdf varies, to 5 multistep - - "));
+  CHECK(row("trapezoidal").starts_with("trapezoidal 2 implicit iterates always "));
+  CHECK(has(json, R"({"name":"rk4","order":4,"class":"runge-kutta","evaluations":4,"stability_limit":2.8284)"));
+  CHECK(has(json, R"("class":"collocation","evaluations":null,"stability_limit":"always",)"));
+  CHECK(has(json, R"({"name":"verlet","order":2,"class":"general","evaluations":1,"stability_limit":2,)"));
+  const std::string gbs = output(folder, "describe gragg_bulirsch_stoer");
+  CHECK(has(gbs, "\n  order varies, to 16, in Quad to 24, chooses its steps, "));
+  CHECK(json_member(json_output(folder, "describe gbs", "describe"), "order_in_quad") == "24");
+  CHECK(has(read_text(std::filesystem::path(NOETHER_SOURCE_DIR) / "docs/methods.md"),
+            "\n| gragg_bulirsch_stoer | varies, to 16, in Quad to 24 ("));
+  CHECK(has(output(folder, "describe rk4"), "\n  4 evaluations a step of given length\n"));
+}
+
 TEST_CASE("whatever is listed can be described", "[cli][describe][slow]") {
   const ScratchFolder folder;
   for (const char* what : {"methods", "forces", "monitors", "units"}) {

@@ -1,0 +1,39 @@
+#include "cli/method_text.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace noether {
+
+int order_in_quad(const MethodInfo& info) {
+  return info.make_quad == nullptr ? info.order : info.make_quad(info, {})->claims().order;
+}
+
+std::string order_text(const MethodInfo& info) {
+  const int wide = order_in_quad(info);
+  const std::string in_quad = wide == info.order ? "" : fmt::format(", in Quad to {}", wide);
+  if (!info.fixed) return fmt::format("varies, to {}{}", info.order, in_quad);
+  MethodOptions fixed;
+  if (info.adaptive) fixed.adaptive = false;
+  const int order = info.make(info, fixed)->claims().order;
+  return order == info.order ? fmt::format("{}", order) : fmt::format("{}, to {}{}", order, info.order, in_quad);
+}
+
+std::string evaluations_text(const MethodInfo& info) {
+  if (info.evaluations > 0) return fmt::format("{}", info.evaluations);
+  return info.fixed ? "iterates" : "-";
+}
+
+std::string limit_text(double limit) {
+  if (std::isnan(limit)) return "-";
+  if (limit == 0) return "never";
+  return std::isinf(limit) ? "always" : fmt::format("{:.4g}", limit);
+}
+
+Json limit_json(double limit) {
+  if (std::isnan(limit)) return {};
+  return std::isinf(limit) ? Json("always") : Json(limit);
+}
+
+}  // namespace noether

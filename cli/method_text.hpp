@@ -1,0 +1,25 @@
+#pragma once
+/// Orders, evaluations and limits of methods, as lists and descriptions show them.
+
+#include "integrators/method.hpp"
+#include "scene/json.hpp"
+
+#include <string>
+
+namespace noether {
+
+/// "4", "4, to 12" where steps of its own vary it, "varies, to 16, in Quad to 24" where there are no others: as in
+/// docs/methods.md.
+std::string order_text(const MethodInfo& info);
+/// The highest order in extended precision; that in double where there is none.
+int order_in_quad(const MethodInfo& info);
+
+/// Evaluations of the forces a fixed step: "4", "iterates", or "-" where there are no fixed steps.
+std::string evaluations_text(const MethodInfo& info);
+
+/// The first h omega that is unstable: "2.828", "never" stable, "always", or "-" where it is not known.
+std::string limit_text(double limit);
+/// The same for machines: a number (0: never stable), "always", or null.
+Json limit_json(double limit);
+
+}  // namespace noether
