@@ -2,8 +2,10 @@
 
 #include "integrators/methods.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <limits>
 #include <utility>
 
 namespace noether {
@@ -60,6 +62,14 @@ template <class Real> StageTable<Real>::StageTable(const CollocationTable& table
     a[i][i] += static_cast<Real>(left);
     twice[i][i] += static_cast<Real>(left_twice);
   }
+  Matrix<Quad> all(stages, stages);
+  for (Index i = 0; i < stages; ++i) {
+    for (Index j = 0; j < stages; ++j) all(i, j) = table.a[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
+  }
+  if (table.c[0] > Quad(0)) {
+    const Vector<Quad> rest = all.partialPivLu().solve(Vector<Quad>::Ones(stages));
+    for (Index i = 0; i < stages; ++i) resting[static_cast<std::size_t>(i)] = static_cast<Real>(rest[i]);
+  }
   for (std::size_t i = table.stages(); i < lane_count; ++i) {
     c[i] = c[0];
     c_low[i] = c_low[0];
@@ -79,7 +89,8 @@ Collocation<Real>::Collocation(const MethodInfo& info, const MethodOptions& opti
       adaptive_(info.is_adaptive(options)),
       symplectic_(symplectic),
       rtol_(options.rtol.value_or(info.rtol)),
-      first_(options.first.value_or(0)) {
+      first_(options.first.value_or(0)),
+      form_(options.jacobian) {
   // The last of s Legendre coefficients falls as h^(s-1), the error of a step as h^(2 s).
   const double s = table_.stages;
   const double floor = std::is_same_v<Real, double> ? 1e-16 : 1e-30;
@@ -117,6 +128,7 @@ template <class Real> void Collocation<Real>::bind(const VectorField<Real>& f) {
   weights_h_ = weights_h_old_ = 0;
   next_ = h_ = 0;
   swept_ = 0;
+  system_.reset();
 }
 
 template <class Real>
@@ -133,7 +145,7 @@ template <class Real> Stepped Collocation<Real>::step(VectorField<Real>& f, cons
     predict(f, t, y, made.h);
     const bool converged = sweep(f, t, y, made.h) == Sweeps::converged;
     if (!adaptive_) {
-      if (!converged) {
+      if (!converged && !iterate(f, t, y, h)) {
         made.failure = Failure{Outcome::Kind::solver_failure, -1, "stages",
                                fmt::format("the stages of '{}' do not converge with a step of {:.6g}; give a shorter "
                                            "one{}",
@@ -223,11 +235,7 @@ template <class Real> Real Collocation<Real>::action(VectorField<Real>& f, const
   form_velocities(previous_.data(), y, h_);
   Real sum(0);
   for (std::size_t k = 0; k < static_cast<std::size_t>(table_.stages); ++k) {
-    for (Index i = 0; i < n_; ++i) {
-      const std::size_t at = lane_count * static_cast<std::size_t>(i) + k;
-      stage_[i] = q_[at];
-      stage_[n_ + i] = v_[at];
-    }
+    take_stage(k);
     sum += table_.ends[0][k] * f.lagrangian(t + table_.c[k] * Real(h_), stage_);
   }
   return Real(h_) * sum;
@@ -251,7 +259,9 @@ template <class Real>
 typename Collocation<Real>::Sweeps Collocation<Real>::sweep(VectorField<Real>& f, const Real& t, const Vector<Real>& y,
                                                             double h) {
   using std::isfinite;
-  const int most = adaptive_ ? 60 : 300;  // steps of one length have no other way out
+  const int most = adaptive_ ? 60 : 300;  // steps of one length have only a dear way out
+  const int patience =
+      swept_ == 0 && h_ != 0 ? 2 : 6;  // where the last step has not converged, this one may not either
   const int unseen = unseen_sweeps();
   const bool straight = h_ != 0 && is_straight();
   std::array<Real, lane_count> times{};
@@ -283,11 +293,104 @@ typename Collocation<Real>::Sweeps Collocation<Real>::sweep(VectorField<Real>& f
       // At rounding level it no longer shrinks; above, it never will.
       const double noise = std::is_same_v<Real, double> ? 1e-12 : 1e-28;
       if (relative < noise || is_rounding(y, h, static_cast<double>(change))) return Sweeps::converged;
-      if (round > 6) return Sweeps::diverged;
+      if (round > patience) return Sweeps::diverged;
     }
     before = relative;
   }
   return Sweeps::diverged;
+}
+
+/// Rates of all stages by Newton's iteration. All of them begin where the step begins, and at rest: the first update
+/// then leads to the stages of the linear problem, and on stiff springs from there to the nearest solution; stages that
+/// begin where velocities lead end far away.
+/// @return whether they were found
+template <class Real>
+bool Collocation<Real>::iterate(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h) {
+  const auto stages = static_cast<std::size_t>(table_.stages);
+  if (!system_) system_.emplace(f, table_.stages, table_.a, table_.twice, form_);
+  update_.resize(table_.stages * n_);
+  std::array<Real, lane_count> times{};
+  for (std::size_t k = 0; k < lane_count; ++k) times[k] = t + table_.c[k] * Real(h);
+  const auto restart = [&] {
+    std::fill(rates_.begin(), rates_.end(), Real(0));
+    update_.setZero();
+    for (std::size_t k = 0; second_order_ && k < stages; ++k) {
+      update_.segment(static_cast<Index>(k) * n_, n_) = -table_.resting[k] / Real(h) * y.tail(n_);
+    }
+    add_update(y, h);
+  };
+  const auto correct = [&]() -> std::optional<UpdateSize> {
+    const Real* const fresh = f.rates(
+        {times.data(), q_.data(), second_order_ ? v_.data() : nullptr, table_.stages, second_order_}, trial_.data());
+    for (std::size_t k = 0; k < stages; ++k) {
+      for (Index i = 0; i < n_; ++i) {
+        const std::size_t at = lane_count * static_cast<std::size_t>(i) + k;
+        update_[static_cast<Index>(k) * n_ + i] = fresh[at] - rates_[at];
+      }
+    }
+    if (!system_->solve(f, update_)) return {};
+    add_update(y, h);
+    return size_of_update(y, h);
+  };
+  const auto renew = [&] {
+    for (std::size_t k = 0; k < stages; ++k) {
+      take_stage(k);
+      system_->evaluate_at(f, static_cast<int>(k), times[k], stage_);
+    }
+    return system_->factorize(h);
+  };
+  swept_ = 0;
+  restart();
+  system_->evaluate(f, t, y);
+  return system_->factorize(h) && !newton_to_rounding<Real>(correct, restart, renew);
+}
+
+/// Adds the update to the rates, and takes positions and velocities of all stages from them.
+template <class Real> void Collocation<Real>::add_update(const Vector<Real>& y, double h) {
+  for (int k = 0; k < table_.stages; ++k) {
+    for (Index i = 0; i < n_; ++i) rates_[static_cast<std::size_t>(lanes * i + k)] += update_[k * n_ + i];
+  }
+  StageStates<Real>{nullptr, nullptr, nullptr, table_.stages}.fill_lanes(n_, rates_.data());
+  form_states(rates_.data(), y, h, q_.data());
+  if (second_order_) form_velocities(rates_.data(), y, h);
+}
+
+/// One stage as a field sees it.
+template <class Real> void Collocation<Real>::take_stage(std::size_t k) {
+  for (Index i = 0; i < n_; ++i) {
+    const std::size_t at = lane_count * static_cast<std::size_t>(i) + k;
+    stage_[i] = q_[at];
+    if (second_order_) stage_[n_ + i] = v_[at];
+  }
+}
+
+/// What the update has done to positions and velocities, of the stage where that is most.
+template <class Real> UpdateSize Collocation<Real>::size_of_update(const Vector<Real>& y, double h) {
+  UpdateSize worst;
+  moved_.resize(n_);
+  from_.resize(n_);
+  const auto add = [&](const StageMatrix<Real>& weights, std::size_t k, double factor, Index begin) {
+    moved_.setZero();
+    for (int j = 0; j < table_.stages; ++j) {
+      moved_ += weights[static_cast<std::size_t>(j)][k] * update_.segment(j * n_, n_);
+    }
+    const UpdateSize size = update_size(moved_.data(), factor, from_.data(), stage_.data() + begin, n_);
+    // What is no number is larger than any.
+    if (!(size.whole <= worst.whole)) worst.whole = size.whole;
+    if (!(size.each <= worst.each)) worst.each = size.each;
+  };
+  for (std::size_t k = 0; k < static_cast<std::size_t>(table_.stages); ++k) {
+    take_stage(k);
+    from_ = y.head(n_);
+    if (second_order_) {
+      // Positions are a sum with h v, which may be far larger than what is left.
+      from_ = from_.cwiseAbs() + Real(std::abs(h)) * y.tail(n_).cwiseAbs();
+      add(table_.twice, k, h * h, 0);
+      from_ = y.tail(n_);
+    }
+    add(table_.a, k, h, second_order_ ? n_ : 0);
+  }
+  return worst;
 }
 
 /// Whether a change of all rates would change y by rounding alone, relative to its largest values: where forces nearly
@@ -381,6 +484,7 @@ MethodInfo gauss_info(std::string_view name, std::string_view summary, std::stri
           .use = use,
           .source = "Butcher1964",
           .family = "collocation",
+          .options = "jacobian",
           .order = 2 * stages,
           .adaptive = stages > 1,
           .rtol = 1e-16,
@@ -395,7 +499,7 @@ MethodInfo gauss_info(std::string_view name, std::string_view summary, std::stri
 std::span<const MethodInfo> collocation_list() {
   static const MethodInfo list[] = {
       gauss_info("implicit_midpoint", "the implicit midpoint rule: symplectic, symmetric, by iteration to rounding",
-                 "forces that depend on velocities, where a symmetric step of low order will do", 1),
+                 "forces that depend on velocities and stiff springs, where a symmetric step of low order will do", 1),
       gauss_info("gauss_2", "Gauss and Legendre's collocation with 2 stages, to rounding",
                  "any forces at order 4, where a composition would have to split them", 2),
       gauss_info("gauss_3", "Gauss and Legendre's collocation with 3 stages, to rounding",
@@ -416,6 +520,7 @@ std::span<const MethodInfo> collocation_list() {
        .use = "runs that are to be compared with IAS15; `gauss_8` does the same and is symplectic",
        .source = "ReinSpiegel2015",
        .family = "collocation",
+       .options = "jacobian",
        .order = 15,
        .adaptive = true,
        .rtol = 1e-16,

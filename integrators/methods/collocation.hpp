@@ -3,10 +3,13 @@
 /// order 15.
 
 #include "integrators/methods/collocation_table.hpp"
+#include "integrators/methods/newton.hpp"
 #include "integrators/methods/stage_arithmetic.hpp"
+#include "integrators/methods/stage_system.hpp"
 #include "integrators/step_control.hpp"
 
 #include <array>
+#include <optional>
 
 namespace noether {
 
@@ -18,6 +21,7 @@ namespace noether {
 template <class Real> struct StageTable {
   int stages = 0;
   StageLanes<Real> c{}, c_low{}, last{}, barycentric{};
+  StageLanes<Real> resting{};  ///< x of a x = 1: rates of -x v / h leave all stages at rest; 0 for a singular a
   StageMatrix<Real> a{}, twice{};
   std::array<StageLanes<Real>, 4> ends{};  ///< b, b a, each followed by what rounding has taken
 
@@ -32,7 +36,13 @@ template <class Real> struct StageTable {
 /// The stages begin where the polynomial of the last step leads, and are swept until they stand still. Sums are
 /// compensated. Adaptive steps follow the last Legendre coefficient of F: they keep its size, relative to F, at one
 /// value, each particle for itself; a step whose sweeps do not converge is halved.
-/// @cost 3 to 8 sweeps of s evaluations, in lanes where the field can
+///
+/// Steps of one length cannot be: where sweeps do not converge, as on oscillations with h omega above 2 or so, the
+/// rates are found by Newton's iteration over all stages at once, to rounding too. It begins anew in every step, with
+/// stages and J at the beginning of the step, and nothing of it is state; the first such step allocates.
+/// @cost 3 to 8 sweeps of s evaluations, in lanes where the field can; by Newton's iteration 3 sweeps in vain, one
+///       Jacobian, one factorization (`StageSystem`) and three to six times s evaluations, more where the matrix has
+///       to be renewed, with a Jacobian for each stage
 /// @source HairerLubichWanner2006, ReinSpiegel2015
 template <class Real> class Collocation final : public Method<Real> {
  public:
@@ -54,6 +64,10 @@ template <class Real> class Collocation final : public Method<Real> {
   void predict(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h);
   void extrapolate(double h);
   Sweeps sweep(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h);
+  bool iterate(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h);
+  void add_update(const Vector<Real>& y, double h);
+  void take_stage(std::size_t k);
+  UpdateSize size_of_update(const Vector<Real>& y, double h);
   bool is_straight() const;
   int unseen_sweeps() const { return std::max(0, swept_ - 3); }
   void form_positions(const Real* rates, const StageMatrix<Real>& twice, const Vector<Real>& y, double h, Real* q);
@@ -69,6 +83,7 @@ template <class Real> class Collocation final : public Method<Real> {
   int order_;
   bool adaptive_, symplectic_;
   double rtol_, first_, target_, rejecting_, settled_, foreseen_;
+  std::optional<JacobianForm> form_;
   bool second_order_ = false, with_velocities_ = false, in_turn_ = false;
   Index n_ = 0, particles_ = 0;  ///< variables that stages hold; particles among them
 
@@ -83,7 +98,10 @@ template <class Real> class Collocation final : public Method<Real> {
   bool has_twice_ahead_ = false;                          ///< of the weights at hand
   double weights_h_ = 0, weights_h_old_ = 0;
   double next_ = 0, h_ = 0;  ///< to be tried; of `previous_`, 0 for none
-  int swept_ = 0;            ///< sweeps of the last step
+  int swept_ = 0;            ///< sweeps of the last step; 0: it was made by Newton's iteration, or there is none
+
+  std::optional<StageSystem<Real>> system_;  ///< once a step has asked for it
+  Vector<Real> update_, moved_, from_;       ///< of rates; of positions or velocities of a stage, and where from
 };
 
 extern template class Collocation<double>;

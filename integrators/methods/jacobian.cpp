@@ -309,6 +309,10 @@ template <class Real> void Jacobian<Real>::multiply(VectorField<Real>& f, const 
   }
 }
 
+template <class Real> double Jacobian<Real>::product_error(const VectorField<Real>& f) {
+  return f.has_derivative() ? 0 : std::pow(difference_length<Real>(), 2);
+}
+
 /// x <- M^-1 x with products: J (r v, q v) = (., B q v + A r v), in multiples of `scale_`.
 template <class Real> bool Jacobian<Real>::solve_matrix_free(VectorField<Real>& f, Vector<Real>& x) {
   const Real p = weights_[0], q = weights_[1], r = weights_[2];
@@ -321,9 +325,8 @@ template <class Real> bool Jacobian<Real>::solve_matrix_free(VectorField<Real>& 
     multiply(f, direction_, product_);
     out = p * v - (product_.tail(n).array() / scale).matrix();
   };
-  const double rounding = f.has_derivative() ? 0 : std::pow(difference_length<Real>(), 2);
   x.array() /= scale;
-  const bool found = solve_by_krylov(map, x, {.residual = residual_, .product = rounding}, half_);
+  const bool found = solve_by_krylov(map, x, {.residual = residual_, .product = product_error(f)}, half_);
   direction_.setZero();
   if (found) x = (half_.array() * scale).matrix();
   return found;

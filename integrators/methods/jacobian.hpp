@@ -76,6 +76,11 @@ template <class Real> class Jacobian {
   /// x <- (a I - b B - c A)^-1 x, shape (size / 2). @return as `solve`
   bool solve_half(VectorField<Real>& f, Vector<Real>& x);
 
+  /// Matrix-free: out = J v at the point that is kept; v and out may not be the same.
+  void multiply(VectorField<Real>& f, const Vector<Real>& v, Vector<Real>& out);
+  /// Error of such a product, relative to |J| |v|, beside rounding.
+  static double product_error(const VectorField<Real>& f);
+
   JacobianForm form() const { return form_; }
   /// Element of J, if it is not matrix-free.
   Real operator()(Index i, Index j) const {
@@ -95,7 +100,6 @@ template <class Real> class Jacobian {
   double increment(const Vector<Real>& y, Index j) const;
   void differences(VectorField<Real>& f, const Real& t, const Vector<Real>& y, std::size_t group);
   bool compute();
-  void multiply(VectorField<Real>& f, const Vector<Real>& direction, Vector<Real>& out);
   void set_scale();
   bool solve_matrix_free(VectorField<Real>& f, Vector<Real>& x);
   template <class Self> static auto kept(Self& self);

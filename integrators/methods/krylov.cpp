@@ -57,7 +57,8 @@ template <class Real>
 bool solve_by_krylov(const LinearMap<Real>& map, const Vector<Real>& b, const KrylovAccuracy& accuracy,
                      Vector<Real>& x) {
   using Matrix = detail::MatrixFree<Real>;
-  constexpr Index cycle = 30, most = 20000;
+  constexpr Index most = 20000;
+  const Index cycle = accuracy.cycle;
   const Index n = b.size();
   // Squares of what is small must not be lost.
   const Real scale = n > 0 ? b.cwiseAbs().maxCoeff() : Real(0);

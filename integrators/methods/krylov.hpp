@@ -14,6 +14,7 @@ template <class Real> using LinearMap = std::function<void(const Vector<Real>& v
 struct KrylovAccuracy {
   double residual = 1e-12;  ///< |b - M x| / |b| that is asked for
   double product = 0;       ///< error of M v, relative to |M| |v|
+  Index cycle = 30;         ///< directions of a cycle of GMRES
 };
 
 /// x with |b - M x| <= residual |b|, or as near as errors of the products let it come.
@@ -22,7 +23,7 @@ struct KrylovAccuracy {
 /// short recurrences, goes on from there, and so on in turn. The residual is that of x itself, not of the recurrences.
 /// No preconditioner: the number of products grows as the square root of the condition number, at best.
 /// @return whether x was found, in at most some 20000 products
-/// @cost memory of some 45 vectors, allocated by each call
+/// @cost memory of a cycle of vectors and some 15 more, allocated by each call
 /// @source SaadSchultz1986, Vorst1992
 template <class Real>
 bool solve_by_krylov(const LinearMap<Real>& map, const Vector<Real>& b, const KrylovAccuracy& accuracy,

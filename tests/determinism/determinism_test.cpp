@@ -98,6 +98,26 @@ TEST_CASE("matrix-free implicit steps have the same bits for any number of threa
   }
 }
 
+TEST_CASE("steps too stiff for sweeps have the same bits for any number of threads", "[determinism]") {
+  struct Way {
+    const char* name;
+    Index n;
+    JacobianForm form;
+  };
+  for (const Way& way : {Way{"implicit_midpoint", 260, JacobianForm::matrix_free},
+                         Way{"implicit_midpoint", 70, JacobianForm::dense}, Way{"gauss_4", 20, JacobianForm::dense}}) {
+    CAPTURE(way.name, way.n);
+    check_threads([&] {
+      MethodOptions options{.jacobian = way.form};
+      if (methods::find(way.name)->adaptive) options.adaptive = false;
+      Simulation simulation(test::cloud(way.n), classical(HarmonicField{1e4}, method(way.name, options)), 0.1);
+      REQUIRE(simulation.run(4).ok());
+      REQUIRE(simulation.evaluations().jacobian >= 3);
+      return simulation.particles();
+    });
+  }
+}
+
 TEST_CASE("the energy of many bodies has the same bits for any number of threads", "[determinism]") {
   std::optional<double> one;
   for (const int n : {1, 2, 3, 8}) {
