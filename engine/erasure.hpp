@@ -37,12 +37,18 @@ template <class T, class Real> std::optional<Mat3<Real>> virial_of(T& moves, con
   return {};
 }
 
+/// Tells what moves particles how long the longest kick of a step is [time], if it wants to know.
+template <class T> void expect_kicks(T& moves, double longest) {
+  if constexpr (requires { moves.expect_kicks(longest); }) moves.expect_kicks(longest);
+}
+
 template <class Real> struct HamiltonianBase {
   virtual ~HamiltonianBase() = default;
   virtual std::unique_ptr<HamiltonianBase> clone() const = 0;
   virtual HamiltonianClaims claims() const = 0;
   virtual std::string name() const = 0;
   virtual void bind(ParticleSystem<Real>&) = 0;
+  virtual void expect_kicks(double) = 0;
   virtual void open(ParticleSystem<Real>&) = 0;
   virtual void close(ParticleSystem<Real>&) = 0;
   virtual void flow(char, ParticleSystem<Real>&, const Real&) = 0;
@@ -66,6 +72,7 @@ template <class H> struct HamiltonianModel final : HamiltonianBase<typename H::r
   HamiltonianClaims claims() const override { return hamiltonian.claims(); }
   std::string name() const override { return name_of(hamiltonian); }
   void bind(ParticleSystem<Real>& s) override { hamiltonian.bind(s); }
+  void expect_kicks(double longest) override { detail::expect_kicks(hamiltonian, longest); }
   void open(ParticleSystem<Real>& s) override { hamiltonian.open(s); }
   void close(ParticleSystem<Real>& s) override { hamiltonian.close(s); }
   void flow(char letter, ParticleSystem<Real>& s, const Real& h) override { hamiltonian.flow(letter, s, h); }
@@ -150,6 +157,7 @@ template <class Real = double> class AnyHamiltonian : private detail::Erased<det
   HamiltonianClaims claims() const { return this->held_->claims(); }
   std::string name() const { return this->held_->name(); }
   void bind(ParticleSystem<Real>& s) { this->held_->bind(s); }
+  void expect_kicks(double longest) { this->held_->expect_kicks(longest); }
   void open(ParticleSystem<Real>& s) { this->held_->open(s); }
   void close(ParticleSystem<Real>& s) { this->held_->close(s); }
   void flow(char letter, ParticleSystem<Real>& s, const Real& h) { this->held_->flow(letter, s, h); }

@@ -31,9 +31,10 @@ template <class Real> class ForceSink {
  public:
   /// @param accelerations  shape (n, 3), set to zero here [length/time^2]
   /// @param neighbors  of the system, for forces of short range to share; without, each finds its own
+  /// @param kick  the longest for which velocities are to change by these accelerations [time]; 0: not known
   ForceSink(VectorColumn<Real>& accelerations, const ParticleSystem<Real>& system, Wanted wanted,
-            NeighborList* neighbors = nullptr)
-      : a_(accelerations), system_(system), wanted_(wanted), neighbors_(neighbors) {
+            NeighborList* neighbors = nullptr, double kick = 0)
+      : a_(accelerations), system_(system), wanted_(wanted), neighbors_(neighbors), kick_(kick) {
     if (a_.size() < parallel_threshold) {
       a_.set_zero();
     } else {
@@ -83,6 +84,8 @@ template <class Real> class ForceSink {
 
   /// The neighbor list of the system; null where there is none to be shared.
   NeighborList* neighbors() const { return neighbors_; }
+  /// The longest kick by these accelerations [time]; 0 where it is not known.
+  double kick() const { return kick_; }
   /// Tells that the force cannot be computed; the first to say so is heard.
   void fail(Failure failure) {
     if (!failure_) failure_ = std::move(failure);
@@ -112,6 +115,7 @@ template <class Real> class ForceSink {
   Real energy_ = Real(0);
   Mat3<Real> virial_;  ///< set where it is wanted: nine numbers in lanes take as long as a few forces
   NeighborList* neighbors_;
+  double kick_ = 0;
   bool has_sums_ = true;
   std::optional<Failure> failure_;
 };

@@ -1,5 +1,6 @@
 #include "engine/neighbor_list.hpp"
 
+#include "engine/neighbor_images.hpp"
 #include "engine/neighbor_search_simd.hpp"
 
 #include <fmt/format.h>
@@ -21,7 +22,6 @@ constexpr double first_skin = 0.12, widest_skin = 0.64;
 /// melts with cutoffs of 1.12 and 2.5 sigma at skins of 0.2 to 0.9 sigma (bench fene_melt, lj_melt).
 constexpr double search_cost = 220, search_cost_of_pair = 5;
 static_assert(NeighborList::shells == neighbor_shells);
-constexpr Index most_images = 10'000;
 /// What everybody may go, in skins, before particles are sorted into cells again: cells are searched so much further,
 /// and images laid out.
 constexpr double slack = 1.65;
@@ -66,7 +66,7 @@ void NeighborList::update(const ParticleSystem<double>& s, Numbers numbers) {
     static_cast<void>(take_positions(s, numbers));
   }
   version_of(numbers) = version_;
-  if (!options_.verify) return;
+  if (!options_.verify || crowded_ >= 0) return;
   numbers == Numbers::doubles ? verify(s) : update(s);
 }
 
@@ -93,7 +93,8 @@ void NeighborList::move_or_search(const ParticleSystem<double>& s, Numbers numbe
 }
 
 bool NeighborList::is_fresh(const ParticleSystem<double>& s) const {
-  return statistics_.searches > 0 && box_ == s.box() && topology_ == s.shared_topology() && members_ == s.members();
+  return statistics_.searches > 0 && crowded_ < 0 && box_ == s.box() && topology_ == s.shared_topology() &&
+         members_ == s.members();
 }
 
 /// The skin that costs least if particles go on moving as fast: what an update costs is the pairs it goes through, and
@@ -144,6 +145,7 @@ void NeighborList::search(const ParticleSystem<double>& s, double moved, Numbers
 /// somebody has gone so far that images or cells are not to be relied on.
 void NeighborList::sort_into_cells(const ParticleSystem<double>& s) {
   const double reach = range_ + skin_, further = reach + slack * skin_;
+  const auto begin = std::chrono::steady_clock::now();
   const bool small = box_.is_periodic() && box_.edges().minCoeff() < 2 * further;  // and more images would be many
   laid_for_ = small ? reach : further;
   drift_ = 0;
@@ -158,6 +160,7 @@ void NeighborList::sort_into_cells(const ParticleSystem<double>& s) {
   lay_out(s);
   form_groups();
   take_struck();
+  statistics_.sort_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
 std::size_t NeighborList::bytes() const {
@@ -193,14 +196,7 @@ void NeighborList::place_points(const ParticleSystem<double>& s, double reach) {
   });
   shifts_.assign(1, Vec3<double>::Zero());
   if (!box_.is_periodic()) return;
-  double images = 1;
-  for (int k = 0; k < 3; ++k) images *= 1 + 2 * std::ceil(reach / box_.edges()[k]);
-  if (images > static_cast<double>(most_images)) {
-    throw Error(
-        fmt::format("the box of {} x {} x {} is so small beside the range {} of the pair forces that each "
-                    "particle would see {:.3g} images; repeat the cell, or take a shorter cutoff",
-                    box_.edges()[0], box_.edges()[1], box_.edges()[2], range_, images));
-  }
+  check_images(box_, range_, skin_);
   // Images along x, then of all these along y, then along z: each particle is asked for few of them.
   std::array<int, 3> most{};
   for (int k = 0; k < 3; ++k) most[at(k)] = static_cast<int>(std::ceil(reach / box_.edges()[k]));
@@ -361,13 +357,29 @@ std::int64_t NeighborList::reserve(std::int64_t entries) {
   return used_->fetch_add(entries, std::memory_order_relaxed);
 }
 
-/// False if there was not room for all; then there is.
+/// False if there was not room for all; then there is. Where somebody is crowded, groups behind his are left out.
 bool NeighborList::find_all() {
   used_->store(0);
-  for_blocks(static_cast<Index>(particles_.size()), [&](Index begin, Index end) {
+  const auto places = static_cast<Index>(particles_.size());
+  std::atomic<Index> crowded{places};  // the first such place
+  for_blocks(places, [&](Index begin, Index end) {
     thread_local Scratch scratch;
-    for (Index g = begin / group_size; g < end / group_size; ++g) find(g, scratch);
+    for (Index g = begin / group_size; g < end / group_size; ++g) {
+      Index known = crowded.load();
+      if (group_size * g > known) return;
+      const Index lane = find(g, scratch);
+      if (lane < 0) continue;
+      const Index place = group_size * g + lane;
+      while (place < known && !crowded.compare_exchange_weak(known, place)) {
+      }
+    }
   });
+  crowded_ = crowded.load() < places ? particles_[at(crowded.load())] : -1;
+  if (crowded_ >= 0) {
+    row_begin_.assign(row_begin_.size(), Rows{});
+    used_->store(0);
+    return true;
+  }
   const std::size_t needed = at(used_->load());
   if (needed <= entries_.size()) return true;
   entries_ = {};
@@ -465,7 +477,8 @@ void NeighborList::take_struck() {
   });
 }
 
-void NeighborList::find(Index group, Scratch& scratch) {
+/// Lists the neighbors of a group, if there is room; returns the lane of one that has too many, else -1.
+Index NeighborList::find(Index group, Scratch& scratch) {
   const NeighborSearchKernels& kernels = neighbor_search_kernels();
   std::array<std::int32_t, group_size> own{};  // their records
   for (Index lane = 0; lane < group_size; ++lane) own[at(lane)] = lanes_[at(group_size * group + lane)] / 4;
@@ -485,6 +498,12 @@ void NeighborList::find(Index group, Scratch& scratch) {
     };
     counts[lane] = kernels.select(near, relative(0), relative(1), relative(2), limit, scratch.number[lane].data(),
                                   scratch.r2[lane].data());
+    if (counts[lane] <= most_neighbors) continue;
+    const auto range2 = static_cast<float>(range_ * range_);  // whatever the skin is
+    const float* r2 = scratch.r2[lane].data();
+    if (std::count_if(r2, r2 + counts[lane], [&](float one) { return one < range2; }) > most_neighbors) {
+      return static_cast<Index>(lane);
+    }
   }
   Rows& place = row_begin_[at(group)];
   std::int32_t within[shells] = {};
@@ -505,7 +524,7 @@ void NeighborList::find(Index group, Scratch& scratch) {
   const std::ptrdiff_t rows = place.rows[shells - 1];
   const std::ptrdiff_t room = (rows + group_size - 1) / group_size * group_size;
   place.begin = reserve(group_size * room);
-  if (place.begin + group_size * room > static_cast<std::int64_t>(entries_.size())) return;
+  if (place.begin + group_size * room > static_cast<std::int64_t>(entries_.size())) return -1;
   const std::int32_t* lists[group_size];
   for (std::size_t lane = 0; lane < group_size; ++lane) {
     std::int32_t* found = scratch.found[lane].data();
@@ -513,6 +532,7 @@ void NeighborList::find(Index group, Scratch& scratch) {
     lists[lane] = found;
   }
   kernels.turn(lists, rows, entries_.data() + place.begin);
+  return -1;
 }
 
 /// By the positions of the particles alone: how often an image of each stands near each, and how often it is listed.

@@ -44,6 +44,10 @@ class NeighborList {
   ~NeighborList() = default;
 
   double range() const { return range_; }
+  /// More particles and images than this in the range of one are not listed: nobody could hold such a list.
+  static constexpr Index most_neighbors = 32768;
+  /// A particle that has more, found by the last search, which has listed nobody then; -1: none.
+  Index crowded() const { return crowded_; }
 
   /// What records are kept in.
   enum class Numbers : std::uint8_t { doubles, whole };
@@ -130,7 +134,7 @@ class NeighborList {
   Surroundings surroundings(const std::array<std::int32_t, group_size>& own) const;
   SearchPoints candidates(const Surroundings& around, Scratch& scratch) const;
   void take_struck();
-  void find(Index group, Scratch& scratch);
+  Index find(Index group, Scratch& scratch);
   std::int64_t reserve(std::int64_t entries);
   std::size_t bytes() const;
 
@@ -141,6 +145,7 @@ class NeighborList {
   std::uint64_t version_ = 0;                ///< of the positions it was brought up to
   std::array<std::uint64_t, 2> versions_{};  ///< and of those in the records of either numbers
   std::int64_t age_ = 0;                     ///< updates since the last search
+  Index crowded_ = -1;                       ///< see `crowded`
   int shell_ = 0;                            ///< the outermost that can have come into range since
 
   // What the last search was made for.

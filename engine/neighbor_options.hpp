@@ -36,6 +36,7 @@ struct NeighborStatistics {
   double pairs = 0;           ///< listed for each particle, by the last search
   double skin = 0;            ///< of the last search [length]
   double search_seconds = 0;  ///< in all searches
+  double sort_seconds = 0;    ///< of these, in sorting particles and laying out their records
   std::size_t bytes = 0;      ///< of the list, its records and the search's own, after the last one
 };
 

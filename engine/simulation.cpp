@@ -31,6 +31,12 @@ bool all_finite(const VectorColumn<Quad>& x, const VectorColumn<Quad>& v) {
   return x.all().allFinite() && v.all().allFinite();
 }
 
+/// What a force has named says more than what came of it.
+bool tells_more(const Failure* failure, const std::optional<Outcome>& fault) {
+  using Kind = Outcome::Kind;
+  return failure != nullptr && (!fault || failure->kind == Kind::overlap || failure->kind == Kind::overstretch);
+}
+
 double seconds_since(WallClock::time_point start) {
   return std::chrono::duration<double>(WallClock::now() - start).count();
 }
@@ -323,10 +329,14 @@ template <class Real> Outcome Simulation<Real>::fall_back() {
   };
   go_back();
   while (true) {
-    const Advanced done = integrator_.advance(raw_, {.steps = 1, .limit = raw_.clock().never()});
+    const Span one{.steps = 1, .limit = raw_.clock().never()};
+    const Failure* failure = integrator_.advance(raw_, one).failure;
     std::optional<Outcome> reason = fault(raw_);
-    if (!reason && done.failure != nullptr) reason = failed(*done.failure);
-    if (!reason) reason = settled_fault();
+    if (tells_more(failure, reason)) reason = failed(*failure);
+    if (!reason && (reason = settled_fault())) {
+      failure = integrator_.advance(raw_, one).failure;  // begins with what was to complete this one
+      if (tells_more(failure, reason)) reason = failed(*failure);
+    }
     if (reason) {
       go_back();
       reason->step = step();
@@ -460,10 +470,8 @@ template <class Real> std::optional<Outcome> Simulation<Real>::fault(const Parti
 
 template <class Real> Outcome Simulation<Real>::variable_fault(const ParticleSystem<Real>& s, Index i) const {
   const std::string place = fmt::format("y[{}]", i), name = s.variable_name(i);
-  Failure failure{Outcome::Kind::diverged, -1, place, ""};
-  failure.message =
-      fmt::format("variable {} is not finite", name == place ? place : fmt::format("'{}', {},", name, place));
-  return failed(failure);
+  const std::string called = name == place ? place : fmt::format("'{}', {},", name, place);
+  return failed({Outcome::Kind::diverged, -1, place, fmt::format("variable {} is not finite", called)});
 }
 
 template <class Real> std::optional<Outcome> Simulation<Real>::settled_fault() {
@@ -472,12 +480,7 @@ template <class Real> std::optional<Outcome> Simulation<Real>::settled_fault() {
 }
 
 template <class Real> Outcome Simulation<Real>::outcome(Outcome::Kind kind, std::string message) const {
-  Outcome result;
-  result.kind = kind;
-  result.step = step();
-  result.time = time();
-  result.message = std::move(message);
-  return result;
+  return {.kind = kind, .step = step(), .time = time(), .message = std::move(message)};
 }
 
 template <class Real> Outcome Simulation<Real>::stopped(const StopReason& reason) const {

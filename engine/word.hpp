@@ -28,6 +28,20 @@ template <class Real> class TimedWord {
   const std::vector<TimedStage<Real>>& stages() const { return stages_; }
   bool merges() const { return merges_; }
 
+  /// The longest stage of a letter, as a part of a step; what is joined with the next step counts as one stage.
+  Real longest(char letter) const {
+    Real most(0);
+    const auto compare = [&](const Real& weight) {
+      const Real length = weight < Real(0) ? Real(-weight) : weight;
+      if (length > most) most = length;
+    };
+    for (std::size_t k = merges_ ? 1 : 0; k + (merges_ ? 1 : 0) < stages_.size(); ++k) {
+      if (stages_[k].letter == letter) compare(stages_[k].weight);
+    }
+    if (merges_ && stages_.front().letter == letter) compare(merged_);
+    return most;
+  }
+
   /// Does one step: calls `flow(letter, weight, fraction)` for each of its stages.
   template <class Flow> void step(Phase& phase, const Flow& flow) const {
     const TimedStage<Real>& first = stages_.front();

@@ -7,9 +7,13 @@
 #include "forces/pair_row.hpp"
 #include "forces/pairs.hpp"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 namespace noether::detail {
 
@@ -44,17 +48,42 @@ class Lowest {
   std::atomic<Index> lowest_ = std::numeric_limits<Index>::max();
 };
 
+/// What a kick may move a particle by, as parts of the distance to its neighbor and of the range. An r^-12 wall shakes
+/// two particles of one mass with (h omega)^2 = 27 of the first part; beyond 4 no step follows, and nobody is to begin
+/// there, but a hot melt bears it for moments. Kicks below the part of the range are never asked.
+inline constexpr double thrown_at_start = 0.19, thrown_later = 0.5, thrown_of_range = 0.05;
+
+/// Whether a particle of a group has a neighbor so near that a kick moves it by more than their distance bears.
+/// @param way2  square of what it is moved by, a h^2 [length^2]
+inline bool is_thrown(const ParticleSystem<double>& s, const NeighborList& list, const NeighborList::Group& group,
+                      Index lane, double way2) {
+  const std::vector<std::int32_t>& particles = list.particles_of_records();
+  const Index i = group.particles[lane];
+  double least2 = std::numeric_limits<double>::infinity();
+  for (Index row = 0; row < group.rows; ++row) {
+    const auto record = static_cast<std::size_t>(group.entries[NeighborList::group_size * row + lane] / 4);
+    if (record >= particles.size() || particles[record] == i) continue;  // nobody, or an image of itself
+    const Vec3<double> d = s.positions()[i] - s.positions()[particles[record]];
+    least2 = std::min(least2, norm2(s.box().minimum_image(d)));
+  }
+  const double part = s.clock().step() == 0 ? thrown_at_start : thrown_later;
+  return way2 > part * part * least2;
+}
+
 /// Adds what the neighbors of each particle do to it.
 /// @param kernel  (group, sums, careful): fills PairSums of a group; asked again with care if a pair is `close`
 /// @param force  as messages call it
 template <class Kernel>
 void add_pair_groups(ForceSink<double>& out, const ParticleSystem<double>& s, const NeighborList& list,
                      const PairUnits& units, std::string_view force, const Kernel& kernel) {
+  if (list.crowded() >= 0) return out.fail(detail::crowded(s, list.crowded(), list.range()));
   constexpr Index size = NeighborList::group_size;
   const bool sums = out.wants_energy() || out.wants_virial();
   double* a[3] = {out.accelerations().component(0), out.accelerations().component(1), out.accelerations().component(2)};
   const double* mass = s.masses().data();
-  Lowest overlapping;
+  // Accelerations that move a particle so far in a kick that somebody is to look closer.
+  const double kick2 = out.kick() * out.kick(), far = thrown_of_range * list.range() / kick2, far2 = far * far;
+  Lowest overlapping, thrown;
   const auto block = [&](Index begin, Index end) {
     PairTotals totals;
     PairSums found;
@@ -81,7 +110,13 @@ void add_pair_groups(ForceSink<double>& out, const ParticleSystem<double>& s, co
         if (i < 0) continue;
         if (mass[i] != 0) {
           const double scale = units.force / mass[i];
-          for (int k = 0; k < 3; ++k) a[k][i] += static_cast<double>(found.force[k][lane]) * scale;
+          double square = 0;
+          for (int k = 0; k < 3; ++k) {
+            const double by = static_cast<double>(found.force[k][lane]) * scale;
+            a[k][i] += by;
+            square += by * by;
+          }
+          if (square > far2 && is_thrown(s, list, one, lane, square * kick2 * kick2)) thrown.offer(i);
         }
         if (!sums) continue;
         totals.energy += found.energy[lane];
@@ -102,6 +137,11 @@ void add_pair_groups(ForceSink<double>& out, const ParticleSystem<double>& s, co
     for_blocks(lanes, [&](Index begin, Index end) { block(begin, end); });
   }
   if (overlapping.value() < s.size()) out.fail(overlap(s, overlapping.value(), force));
+  if (thrown.value() < s.size()) {
+    const Index i = thrown.value();
+    const double way = std::sqrt(norm2(std::as_const(out.accelerations())[i])) * kick2;
+    out.fail(detail::thrown(s, i, force, way));
+  }
 }
 
 }  // namespace noether::detail

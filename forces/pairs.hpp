@@ -119,6 +119,10 @@ void check_cutoff(double cutoff, std::optional<double> switch_from);
 
 /// Names particle `i` and the one nearest to it. @param force  as a message calls it @cost O(n)
 Failure overlap(const ParticleSystem<double>& s, Index i, std::string_view force);
+/// The same of a pair whose force moves particle `i` by `way` in one kick [length].
+Failure thrown(const ParticleSystem<double>& s, Index i, std::string_view force, double way);
+/// The same where so many are near particle `i` that no list can hold them.
+Failure crowded(const ParticleSystem<double>& s, Index i, double range);
 
 }  // namespace detail
 

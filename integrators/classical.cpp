@@ -55,8 +55,11 @@ template <class Real> Advanced Classical<Real>::advance(ParticleSystem<Real>& s,
       done.at_limit = true;
       break;
     }
+    field_->forget_failure();
     Stepped made = method_->step(*field_, t, y_, most);
     field_->evaluations().rejected += made.rejected;
+    // A step of free length can go round what a force cannot do; one that is given cannot.
+    if (fixed && field_->failure() && (made.failure || !y_.allFinite())) made.failure = field_->failure();
     if (made.failure) {
       failure_ = std::move(made.failure);
       done.failure = &*failure_;

@@ -6,8 +6,10 @@
 #include "engine/word.hpp"
 #include "integrators/scheme.hpp"
 
+#include <cmath>
 #include <cstddef>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -69,6 +71,9 @@ template <SplitHamiltonian H> class Composition {
   void bind(ParticleSystem<real>& s) {
     s.keep_low_words(options_.compensated);
     hamiltonian_.bind(s);
+    if constexpr (std::is_same_v<real, double>) {
+      detail::expect_kicks(hamiltonian_, word_.longest('B') * std::abs(s.clock().dt()));
+    }
   }
 
   Advanced advance(ParticleSystem<real>& s, const Span& span) {

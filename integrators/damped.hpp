@@ -37,6 +37,7 @@ template <SplitHamiltonian H> class Damped {
   }
 
   void bind(ParticleSystem<real>& s) { hamiltonian_.bind(s); }
+  void expect_kicks(double longest) { detail::expect_kicks(hamiltonian_, longest); }
   void open(ParticleSystem<real>& s) { hamiltonian_.open(s); }
   void close(ParticleSystem<real>& s) { hamiltonian_.close(s); }
   void flow(char letter, ParticleSystem<real>& s, const real& h) {

@@ -178,6 +178,7 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
     packs_.clock().set_stage_offset(Pack::load(states.t));
     ForceSink<Pack> sink = sets_ ? ForceSink<Pack>::unset(pack_a_, packs_) : ForceSink<Pack>(pack_a_, packs_, {});
     forces_.add_to(sink, packs_);
+    this->note(sink.failure());
     return numbers(pack_a_);
   }
 
@@ -219,6 +220,7 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
     ForceSink<Real> sink(a_, work_, {}, &neighbors_);
     forces_.add_to(sink, work_);
     if (!sink.failure()) return;
+    this->note(sink.failure());
     for (int k = 0; k < 3; ++k) std::fill_n(a_.component(k), a_.size(), Real(std::numeric_limits<double>::quiet_NaN()));
   }
   void write(Real* out) const {

@@ -92,6 +92,8 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     moved_ = true;
     if constexpr (constrained) constraints_.bind(s);
   }
+  /// How long the longest kick is: pair forces tell where a step cannot follow them.
+  void expect_kicks(double longest) { kick_ = longest; }
   /// How neighbors are found; before the first step.
   void set_neighbor_options(const NeighborOptions& options) { neighbor_options_ = options; }
   const NeighborList& neighbors() const { return neighbors_; }
@@ -107,7 +109,7 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     evaluate(s, observing_.value_or(Wanted{}));
     s.advance_velocities(h, acceleration_);
     project(s, h);
-    if (!observing_ && force_failure_) failure_ = force_failure_;
+    if (!observing_) note_failure();
     if (!observing_ && std::exchange(moved_, false)) ++evaluations_.force;
   }
 
@@ -128,7 +130,7 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
         } else {
           drifted ? sum(s, {}) : evaluate(s, {});
           s.advance_velocities(weight * dt, acceleration_);
-          if (force_failure_) failure_ = force_failure_;
+          note_failure();
           if (std::exchange(moved_, false)) ++evaluations_.force;
         }
       });
@@ -240,6 +242,10 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
   void project(ParticleSystem<Real>& s, const Real& h) {
     if constexpr (constrained) constraints_.project_velocities(s, h);
   }
+  /// The first of a step is told: what follows from it, positions that are no numbers, may be worse.
+  void note_failure() {
+    if (force_failure_ && !failure_) failure_ = force_failure_;
+  }
   void evaluate(const ParticleSystem<Real>& s, Wanted wanted) {
     const Real time = s.time();
     const bool here = known_ && known_->version == s.version() && known_->time == time;
@@ -249,7 +255,7 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     known_ = Known{s.version(), time, wanted.energy, wanted.virial};
   }
   void sum(const ParticleSystem<Real>& s, Wanted wanted) {
-    ForceSink<Real> sink(acceleration_, s, {.energy = wanted.energy, .virial = wanted.virial}, &neighbors_);
+    ForceSink<Real> sink(acceleration_, s, {.energy = wanted.energy, .virial = wanted.virial}, &neighbors_, kick_);
     forces_.add_to(sink, s);
     if (wanted.energy) potential_ = sink.potential();
     if (wanted.virial) virial_ = sink.virial();
@@ -270,6 +276,7 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
   NeighborOptions neighbor_options_;
   NeighborList neighbors_;
   bool periodic_ = false;
+  double kick_ = 0;  ///< the longest of a step [time]; 0: nobody has told
   Evaluations evaluations_;
 };
 

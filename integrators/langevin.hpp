@@ -93,6 +93,7 @@ template <SplitHamiltonian H> class Langevin {
                   "kinetic_potential");
     }
   }
+  void expect_kicks(double longest) { detail::expect_kicks(hamiltonian_, longest); }
   void open(ParticleSystem<real>& s) { hamiltonian_.open(s); }
   void close(ParticleSystem<real>& s) { hamiltonian_.close(s); }
 

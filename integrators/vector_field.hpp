@@ -8,6 +8,7 @@
 #include <bit>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -118,6 +119,10 @@ template <class Real> class VectorField {
     throw LogicError("a system of first order has no Lagrangian");
   }
 
+  /// Why forces could not be computed, the first time since this was forgotten; their rates were no numbers.
+  const std::optional<Failure>& failure() const { return failure_; }
+  void forget_failure() { failure_.reset(); }
+
   Evaluations& evaluations() { return evaluations_; }
   const Evaluations& evaluations() const { return evaluations_; }
 
@@ -128,9 +133,13 @@ template <class Real> class VectorField {
   }
   /// One stage after the other, unless a field knows better.
   virtual const Real* evaluate_stages(const StageStates<Real>& states, Real* out);
+  void note(const std::optional<Failure>& failure) {
+    if (failure && !failure_) failure_ = failure;
+  }
 
  private:
   Evaluations evaluations_;
+  std::optional<Failure> failure_;
   Vector<Real> stage_, stage_rate_;
   Vector<Real> direction_, column_;  ///< work of `jacobian`
 };

@@ -215,6 +215,31 @@ TEST_CASE("long examples do what they expect and print what their READMEs print"
   check_whole(Length::nightly);
 }
 
+TEST_CASE("what READMEs say ends by name does", "[examples]") {
+  const std::regex row(R"(\n\| `(--set [^|]*)` \| [^\n]*`(overlap|overstretch|diverged)`)");
+  const std::regex set(R"(--set ('[^']*'|[^ "`]*"[^"]*"|[^ `]+))");
+  int rows = 0;
+  for (const Example& example : all) {
+    if (!has_scene(example.name)) continue;
+    const std::string readme = readme_of(example.name);
+    const ExampleFolder copy(example.name);
+    for (std::sregex_iterator at(readme.begin(), readme.end(), row), end; at != end; ++at, ++rows) {
+      const std::string line = (*at)[1].str();
+      CAPTURE(example.name, line);
+      std::vector<std::string> sets;
+      for (std::sregex_iterator one(line.begin(), line.end(), set); one != end; ++one) {
+        const std::string written = (*one)[1].str();  // as for a shell
+        sets.push_back(std::regex_replace(written, std::regex(written.starts_with("'") ? "'" : "\""), ""));
+      }
+      const noether::Scene scene = noether::load_scene("scene.toml", noether::standard_parts(), sets);
+      const noether::RunReport report = run(scene, {.existing = noether::Existing::fresh, .handle_signals = false});
+      CHECK(noether::name(report.outcome.kind) == (*at)[2].str());
+      CHECK(report.exit_code() == 1);
+    }
+  }
+  CHECK(rows >= 3);
+}
+
 TEST_CASE("three lines of program run the user's force, constraint or system from the scene file", "[examples]") {
   check_from_scene("bead_on_wire", bead_on_wire_from_scene::program, Bits::of_this_machine);
   check_from_scene("beads_on_sphere", beads_on_sphere_from_scene::program, Bits::everywhere);
