@@ -7,6 +7,7 @@
 #include "integrators/stiffness.hpp"
 #include "scene/json.hpp"
 #include "scene/scene.hpp"
+#include "scene/warnings.hpp"
 #include "study/kepler_steps.hpp"
 
 #include <fmt/format.h>
@@ -36,6 +37,7 @@ struct Explanation {
   std::optional<KeplerSteps> kepler;            ///< of gravity
   Index variables = 0;                          ///< of a system without particles
   std::optional<NeighborStatistics> neighbors;  ///< of the first step
+  std::string small_box;                        ///< what is done where it is smaller than twice the range
   std::optional<Stiffness> stiffness;           ///< at the start
   std::optional<StiffnessAlong> along;          ///< of a system whose run has an end
   std::string why_no_stiffness;
@@ -166,6 +168,20 @@ void measure_neighbors(AnyIntegrator<double>& integrator, ParticleSystem<double>
   if (integrator.advance(s, {.steps = 1}).failure == nullptr) e.neighbors = integrator.evaluations().neighbors;
 }
 
+/// What a box smaller than twice the range of the pair forces means.
+std::string small_box_of(const Scene& scene) {
+  double range = 0;
+  for (const SceneForce& force : scene.hamiltonian.forces) {
+    if (force.force) range = std::max(range, force.force->claims().range);
+  }
+  const Box& box = scene.particles.box();
+  if (!box.is_periodic() || range == 0 || box.edges().minCoeff() >= 2 * range) return "";
+  return fmt::format(
+      "box: an edge of {:.6g} is smaller than twice the range {:.6g} of the pair forces; all images in "
+      "range count, also of a particle itself",
+      box.edges().minCoeff(), range);
+}
+
 Explanation explained(const Scene& scene) {
   Explanation e;
   AnyIntegrator<double> integrator = integrator_of(scene);
@@ -184,6 +200,7 @@ Explanation explained(const Scene& scene) {
   measure_stiffness(scene, e);
   scene.integrator.classical ? explain_method(scene, e) : explain_scheme(scene, e);
   e.kepler = kepler_steps(scene);
+  e.small_box = small_box_of(scene);
   measure_neighbors(integrator, s, e);
   return e;
 }
@@ -247,6 +264,8 @@ void print_text(const Scene& scene, const Explanation& e) {
                e.neighbors->pairs, e.neighbors->skin,
                static_cast<double>(e.neighbors->bytes) / static_cast<double>(e.particles));
   }
+  if (!e.small_box.empty()) fmt::print("{}\n", e.small_box);
+  for (const std::string& warning : warnings_of(scene)) fmt::print("warning: {}\n", warning);
   if (e.stiffness) print_stiffness(scene, e);
   if (!e.why_no_stiffness.empty()) fmt::print("stiffness: not known: {}\n", e.why_no_stiffness);
   fmt::print("SIMD level: {}\n", name(simd_level()));

@@ -122,6 +122,12 @@ template <class NextToo> std::vector<std::uint8_t> steps_together(std::size_t co
 template <std::size_t size>
 void check_terms(const std::vector<BondedTerm<size>>& terms, std::size_t kinds, Index n, const char* one) {
   for (const BondedTerm<size>& term : terms) {
+    if (kinds == 0) {
+      throw Error(
+          fmt::format("there is {} and no parameters of any; give those of its kind, as a section of "
+                      "coefficients of the structure",
+                      one));
+    }
     if (term.type < 0 || static_cast<std::size_t>(term.type) >= kinds) {
       throw Error(fmt::format("{} is of kind {}, but there are {} kinds", one, term.type, kinds));
     }

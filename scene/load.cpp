@@ -1,5 +1,6 @@
 #include "scene/scene.hpp"
 
+#include "engine/neighbor_images.hpp"
 #include "engine/suggest.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/schemes.hpp"
@@ -394,6 +395,7 @@ class SceneReader {
   }
 
   void check_hamiltonian(TableReader& top) {
+    check_range(top);
     TableReader hamiltonian(context_, *top.find("hamiltonian"), "[hamiltonian]", "hamiltonian");
     refuse_constraints(context_, tables_of(hamiltonian, "constraint"), scene_);
     TableReader integrator(context_, *top.find("integrator"), "[integrator]", "integrator");
@@ -435,6 +437,25 @@ class SceneReader {
       } catch (const Error& error) {
         TableReader(context_, *tables[k], "[[every]]", fmt::format("every.{}", k)).fail("type", error.message());
       }
+    }
+  }
+
+  /// Refuses a box that is too small for the range of the forces before somebody looks for neighbors there.
+  void check_range(TableReader& top) const {
+    double range = 0;
+    for (const SceneForce& force : scene_.hamiltonian.forces) {
+      if (force.force) range = std::max(range, force.force->claims().range);
+    }
+    try {
+      check_images(scene_.particles.box(), range, scene_.hamiltonian.neighbors.value_or(NeighborOptions{}).skin);
+    } catch (const Error& error) {
+      if (error.key() == "skin") {
+        TableReader hamiltonian(context_, *top.find("hamiltonian"), "[hamiltonian]", "hamiltonian");
+        TableReader(context_, *hamiltonian.find("neighbors"), "[hamiltonian.neighbors]", "hamiltonian.neighbors")
+            .fail("skin", error.message());
+      }
+      TableReader particles(context_, *top.find("particles"), "[particles]", "particles");
+      particles.fail(particles.find("box"), "box", error.message());
     }
   }
 

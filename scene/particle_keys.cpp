@@ -96,6 +96,15 @@ std::optional<Mixing> read_mixing(TableReader& reader, SceneValue& effective) {
 }
 
 std::array<double, 3> read_special(TableReader& reader, SceneValue& effective) {
+  if (const SceneValue* value = reader.find("special")) {
+    const auto* factors = value->get<SceneValue::Array>();
+    if (factors == nullptr || factors->size() != 3) {
+      reader.fail("special",
+                  fmt::format("special = {} is no list of three; what is left of the forces of pairs one, two "
+                              "and three bonds apart is expected: [s12, s13, s14]",
+                              to_text(*value)));
+    }
+  }
   const auto special = reader.vector("special", "1").value_or(std::array<double, 3>{0, 0, 0});
   SceneValue::Array list;
   for (const double factor : special) list.push_back(SceneValue::of(factor));

@@ -92,12 +92,15 @@ std::string to_json(const RunReport& r) {
     members.emplace_back("neighbors", Json::object({{"updates", list->updates},
                                                     {"searches", list->searches},
                                                     {"search_seconds", list->search_seconds},
+                                                    {"sorts", list->sorts},
+                                                    {"sort_seconds", list->sort_seconds},
                                                     {"pairs_per_particle", list->pairs},
                                                     {"skin", list->skin}}));
   }
   if (r.minimized) {
     members.emplace_back("minimized", Json::object({{"force", r.minimized->force}, {"steps", r.minimized->steps}}));
   }
+  if (!r.warnings.empty()) members.emplace_back("warnings", Json::list_of(r.warnings));
   return Json::object(members).text();
 }
 
@@ -141,14 +144,20 @@ std::string to_text(const RunReport& r) {
     text += fmt::format("minimized: largest force {:.3g}{}{} after {} force evaluations\n", r.minimized->force,
                         r.force_unit == "1" ? "" : " ", r.force_unit == "1" ? "" : r.force_unit, r.minimized->steps);
   }
+  for (const std::string& warning : r.warnings) text += fmt::format("warning: {}\n", warning);
   if (r.resumed_from_step) text += fmt::format("resumed from step {}\n", *r.resumed_from_step);
   for (const auto& [name, monitor] : r.monitors) {
     text += fmt::format("{}: {} ({} samples)\n", name, figures(monitor), monitor.samples);
   }
   if (r.wall_s > 0 && r.steps_made > 0) {
-    text += fmt::format("{} steps of {} over {} in {:.3g} s: {:.3g} steps/s on {} {}\n", r.steps_made, r.method,
+    text += fmt::format("{} steps of {} over {} in {:.3g} s: {:.3g} steps/s on {} {}", r.steps_made, r.method,
                         r.hamiltonian, r.wall_s, static_cast<double>(r.steps_made) / r.wall_s, r.threads,
                         r.threads == 1 ? "thread" : "threads");
+    if (const auto& list = r.evaluations.neighbors) {
+      text += fmt::format(", {:.2g} s of it in searches for neighbors, with {} {} into cells in {:.2g} s",
+                          list->search_seconds, list->sorts, list->sorts == 1 ? "sort" : "sorts", list->sort_seconds);
+    }
+    text += "\n";
   }
   if (r.evaluations.constraint > 0) {
     text +=

@@ -7,6 +7,7 @@
 #include "scene/minimize.hpp"
 #include "scene/resume.hpp"
 #include "scene/signals.hpp"
+#include "scene/warnings.hpp"
 
 #include <fmt/format.h>
 
@@ -127,7 +128,8 @@ class Runner {
   void minimize() {
     start_ = scene_;
     report_.minimized = minimize_start(*start_);
-    report_.force_unit = unit_of(dimensions::force, *scene_.units);
+    const UnitSystem& units = *scene_.units;
+    report_.force_unit = units.is_reduced() ? "1" : fmt::format("{}/{}", units.energy, units.length);
     const std::optional<Failure>& failure = report_.minimized->failure;
     if (!failure) return;
     ending_.outcome.kind = failure->kind;
@@ -236,6 +238,7 @@ class Runner {
     RunReport r = report_;
     const IntegratorClaims claims = sim.claims();
     r.outcome = ending_.outcome;
+    r.warnings = warnings_of(scene_);
     r.scene = scene_.source.file;
     r.scene_sha256 = io::sha256(scene_.effective_toml);
     r.method = claims.method;

@@ -34,8 +34,9 @@ struct RunReport {
   std::optional<std::int64_t> resumed_from_step;
   std::optional<Minimized> minimized;  ///< how the start was found, where the scene asks for it
   std::string force_unit;
-  std::int64_t steps_made = 0;  ///< in `wall_s`
-  double wall_s = 0;            ///< from the first step to the last
+  std::vector<std::string> warnings;  ///< what the scene brings and nothing looks at
+  std::int64_t steps_made = 0;        ///< in `wall_s`
+  double wall_s = 0;                  ///< from the first step to the last
   Evaluations evaluations;
   std::vector<std::pair<std::string, MonitorReport>> monitors;
   std::filesystem::path trajectory, checkpoint;  ///< empty if there is none

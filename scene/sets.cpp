@@ -16,6 +16,8 @@ namespace {
 
 /// Tables and lists of tables a scene may have without having been written.
 constexpr std::array<std::string_view, 5> known_tables = {"particles", "hamiltonian", "system", "integrator", "expect"};
+/// The same of tables in [hamiltonian].
+constexpr std::array<std::string_view, 2> known_of_hamiltonian = {"neighbors", "thermostat"};
 
 /// Keys of one table of which at most one is given.
 constexpr std::array<std::array<std::string_view, 3>, 3> alternatives = {
@@ -75,7 +77,8 @@ class Setter {
     }
     in_expect_ = keys[0] == "expect";
     SceneValue* at = &scene;
-    for (std::size_t k = 0; k + 1 < keys.size(); ++k) at = &enter(*at, keys[k], k == 0);
+    for (std::size_t k = 0; k + 1 < keys.size(); ++k)
+      at = &enter(*at, keys[k], k == 0, k == 1 && keys[0] == "hamiltonian");
     if (SceneValue::Array* list = at->get<SceneValue::Array>())
       return put_element(*list, keys.back(), std::move(value));
     if (!at->is_table()) fail(fmt::format("'{}' is not a key of a table", path_));
@@ -105,12 +108,16 @@ class Setter {
     }
   }
 
-  SceneValue& enter(SceneValue& at, const std::string& key, bool top) {
+  /// @param top  whether this is the scene itself  @param hamiltonian  whether it is its [hamiltonian]
+  SceneValue& enter(SceneValue& at, const std::string& key, bool top, bool hamiltonian) {
     if (SceneValue::Array* list = at.get<SceneValue::Array>()) return element(*list, key);
     if (!at.is_table()) fail(fmt::format("there is nothing below the value {}", to_text(at)));
     if (SceneValue* next = at.find(key)) return *next;
     for (const std::string_view known : known_tables) {
       if (in_expect_ || (top && key == known)) return at.put(key, SceneValue::table(line_));
+    }
+    for (const std::string_view known : known_of_hamiltonian) {
+      if (hamiltonian && key == known) return at.put(key, SceneValue::table(line_));
     }
     std::vector<std::string> keys;
     for (const auto& [name, value] : *at.get<SceneValue::Table>()) {
@@ -118,6 +125,9 @@ class Setter {
     }
     for (const std::string_view known : known_tables) {
       if (top) add_new(keys, known);
+    }
+    for (const std::string_view known : known_of_hamiltonian) {
+      if (hamiltonian) add_new(keys, known);
     }
     fail(fmt::format("there is no '{}' in the scene{}", key, did_you_mean(key, keys)));
   }

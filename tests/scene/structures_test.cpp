@@ -137,7 +137,8 @@ TEST_CASE("keys of structures that are wrong are refused at their lines", "[scen
   CHECK(structure_refusal("structure = 'chains.data'\nspecial = [0, 2, 1]\n") ==
         "scene.toml:4: special holds 2; factors from 0 to 1 are expected");
   CHECK(structure_refusal("structure = 'chains.data'\nspecial = [0, 1]\n") ==
-        "scene.toml:4: special = [0, 1] is no vector; a list of three is expected: [x, y, z]");
+        "scene.toml:4: special = [0, 1] is no list of three; what is left of the forces of pairs one, two and three "
+        "bonds apart is expected: [s12, s13, s14]");
   CHECK(structure_refusal("structure = 'chains.data'\natom_style = 'full'\n") ==
         "chains.data:32: the file says atom style 'molecular', the scene says 'full'; take atom_style out");
   CHECK(
