@@ -7,6 +7,9 @@ class App;
 
 namespace noether {
 
+/// Adds the option `--threads` to a command.
+void add_threads_option(CLI::App& command, int& threads);
+
 void add_run_command(CLI::App& app, int& exit_code);
 void add_evaluate_command(CLI::App& app, int& exit_code);
 void add_explain_command(CLI::App& app, int& exit_code);

@@ -1,13 +1,16 @@
 #include "cli/commands.hpp"
 
 #include "engine/error.hpp"
+#include "engine/parallel.hpp"
 #include "engine/quantity.hpp"
+#include "engine/text.hpp"
 #include "scene/evaluate.hpp"
 #include "scene/json.hpp"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -22,6 +25,7 @@ namespace {
 struct EvaluateArguments {
   std::string scene, forces;
   std::vector<std::string> sets;
+  int threads = 0;
   bool check = false, json = false;
 };
 
@@ -57,12 +61,14 @@ Json json_of(const Evaluation& e) {
   std::vector<Json> rows;
   for (int r = 0; r < 3; ++r) rows.push_back(Json::list({e.virial(r, 0), e.virial(r, 1), e.virial(r, 2)}));
   return Json::object({{"schema", "noether.evaluate/1"},
+                       {"outcome", name(e.outcome.kind)},
+                       {"message", e.outcome.message},
                        {"energy", Json::object({{"total", e.kinetic + e.potential},
                                                 {"kinetic", e.kinetic},
                                                 {"potential", e.potential},
                                                 {"terms", Json::object(terms)}})},
                        {"virial", Json::list(rows)},
-                       {"pressure", Json()},
+                       {"pressure", e.pressure},
                        {"force_max", e.force_max},
                        {"gradient_error", e.gradient_error}});
 }
@@ -70,7 +76,7 @@ Json json_of(const Evaluation& e) {
 void print_text(const Scene& scene, const Evaluation& e) {
   const auto with_unit = [&](double value, const Dimension& dimension) {
     const std::string unit = unit_of(dimension, *scene.units);
-    return format_number(value) + (unit == "1" ? "" : " " + unit);
+    return std::isnan(value) ? "unknown" : format_number(value) + (unit == "1" ? "" : " " + unit);
   };
   const auto energy = [&](double value) { return with_unit(value, dimensions::energy); };
   fmt::print("{:<22}{}\n", "total energy", energy(e.kinetic + e.potential));
@@ -78,6 +84,11 @@ void print_text(const Scene& scene, const Evaluation& e) {
   fmt::print("{:<22}{}\n", "  potential", energy(e.potential));
   for (const auto& [name, value] : e.terms) fmt::print("    {:<18}{}\n", name, energy(value));
   fmt::print("{:<22}{}\n", "trace of the virial", energy(e.virial.trace()));
+  if (e.pressure) {
+    const UnitSystem& units = *scene.units;
+    fmt::print("{:<22}{}{}\n", "pressure", format_number(*e.pressure),
+               units.is_reduced() ? "" : fmt::format(" {}/{}^3", units.energy, units.length));
+  }
   fmt::print("{:<22}{}\n", "largest force", with_unit(e.force_max, dimensions::force));
   if (!e.gradient_error) return;
   const Index particles = scene.particles.size(), asked = e.gradient_asked;
@@ -86,16 +97,19 @@ void print_text(const Scene& scene, const Evaluation& e) {
 }
 
 int evaluate_scene(const EvaluateArguments& given) {
+  if (given.threads != 0) set_thread_count(given.threads);
   const Scene scene = load_scene(given.scene, standard_parts(), given.sets);
   if (!given.forces.empty() && !scene.system) check_forces_file(given.forces, scene);
   const Evaluation result = evaluate(scene, given.check);
-  if (!given.forces.empty()) write_forces(given.forces, scene, result);
+  const bool failed = !result.outcome.ok();
+  if (failed) fmt::print(stderr, "{}\n", escaped(to_text(result.outcome)));
+  if (!given.forces.empty() && !failed) write_forces(given.forces, scene, result);
   if (given.json) {
     fmt::print("{}\n", json_of(result).text());
   } else {
     print_text(scene, result);
   }
-  return 0;
+  return exit_code(result.outcome);
 }
 
 }  // namespace
@@ -105,6 +119,7 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("evaluate", "energy by term, virial and forces of the initial state");
   command->add_option("scene", given->scene, "scene file")->required()->type_name("SCENE");
   command->add_option("--forces", given->forces, "write id,fx,fy,fz with 17 digits")->type_name("FILE.csv");
+  add_threads_option(*command, given->threads);
   command->add_option("--set", given->sets, "change a key of the scene: key.path=value")
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");

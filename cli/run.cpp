@@ -60,6 +60,12 @@ int run_scene(const RunArguments& given) {
 
 }  // namespace
 
+void add_threads_option(CLI::App& command, int& threads) {
+  command.add_option("--threads", threads, "threads to use; the bits do not depend on it")
+      ->check(wrong_threads)
+      ->type_name("N");
+}
+
 void add_run_command(CLI::App& app, int& exit_code) {
   const auto given = std::make_shared<RunArguments>();
   CLI::App* command = app.add_subcommand("run", "integrate a scene");
@@ -68,9 +74,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
       ->check(
           [](const std::string& name) { return std::string(name.empty() ? "the name of the folder is empty" : ""); })
       ->type_name("DIR");
-  command->add_option("--threads", given->threads, "threads to use; the bits do not depend on it")
-      ->check(wrong_threads)
-      ->type_name("N");
+  add_threads_option(*command, given->threads);
   command
       ->add_option("--simd", given->simd, "SIMD level: base, avx2 or avx512; default: the highest this processor has")
       ->type_name("LEVEL");

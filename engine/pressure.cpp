@@ -28,6 +28,10 @@ double bars_in(const UnitSystem& units) {
 
 }  // namespace
 
+template <class Real> Mat3<Real> pressure_tensor(const ParticleSystem<Real>& s, const Mat3<Real>& virial) {
+  return (momentum_flux(s) + virial) / Real(s.box().volume());
+}
+
 void Pressure::check_box(const Box& box) {
   if (box.is_periodic()) return;
   throw Error("monitor 'pressure' needs a periodic box, whose volume it divides by; give the particles a box");
@@ -37,7 +41,7 @@ template <class Real> void Pressure::observe(const Snapshot<Real>& now) {
   const ParticleSystem<Real>& s = now.state();
   const std::optional<Mat3<Real>>& virial = now.virial();
   NOETHER_EXPECTS(virial.has_value(), "the virial was there when the monitor was attached");
-  const Mat3<Real> tensor = (momentum_flux(s) + *virial) / Real(s.box().volume());
+  const Mat3<Real> tensor = pressure_tensor(s, *virial);
   for (int a = 0; a < 3; ++a) {
     for (int b = 0; b < 3; ++b) now_[static_cast<std::size_t>(3 * a + b)] = static_cast<double>(tensor(a, b));
   }
@@ -69,6 +73,8 @@ MonitorReport Pressure::report() const {
   if (in_bar_ != 0) report.note += fmt::format(", which is {:.6g} bar", values_.mean() * in_bar_);
   return report;
 }
+
+template Mat3<double> pressure_tensor(const ParticleSystem<double>&, const Mat3<double>&);
 
 #define NOETHER_COMPILE(Type)                           \
   template void Type::observe(const Snapshot<double>&); \

@@ -10,6 +10,9 @@
 
 namespace noether {
 
+/// The pressure tensor of a periodic box from velocities and the virial, sum x (x) f [pressure].
+template <class Real> Mat3<Real> pressure_tensor(const ParticleSystem<Real>& s, const Mat3<Real>& virial);
+
 /// Watches the pressure of a periodic box and its tensor,
 ///
 ///     P_ab = (sum_i m_i v_ia v_ib + W_ab) / V,   W = sum x (x) f,   P = (P_xx + P_yy + P_zz) / 3

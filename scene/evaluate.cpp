@@ -1,5 +1,6 @@
 #include "scene/evaluate.hpp"
 
+#include "engine/pressure.hpp"
 #include "forces/check_gradient.hpp"
 #include "forces/gravity.hpp"
 #include "integrators/kinetic_potential.hpp"
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace noether {
 
@@ -34,6 +36,20 @@ std::string numbered(const std::string& name, const std::vector<std::pair<std::s
   return result;
 }
 
+Outcome outcome_of(const Failure& failure, const ParticleSystem<double>& s) {
+  Outcome outcome;
+  outcome.kind = failure.kind;
+  outcome.quantity = failure.quantity;
+  outcome.message = failure.message;
+  if (failure.particle >= 0) {
+    outcome.particle =
+        ParticleRef{failure.particle, s.ids()[static_cast<std::size_t>(failure.particle)], s.name(failure.particle)};
+  }
+  return outcome;
+}
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
 }  // namespace
 
 Evaluation evaluate(const Scene& scene, bool check) {
@@ -50,17 +66,29 @@ Evaluation evaluate(const Scene& scene, bool check) {
   result.kinetic = kinetic_energy(s);
   result.gradient_asked = check ? particles_asked(s.size()) : 0;
   VectorColumn<double> a(s.size());
+  // Constraints have a part in the virial, which is not looked at here.
+  bool has_pressure = s.box().is_periodic() && scene.hamiltonian.constraints.empty();
   for (const SceneForce& term : terms_of(scene)) {
     ForceSink<double> sink(a, s, {.energy = true, .virial = true});
     term.force->add_to(sink, s);
-    result.terms.emplace_back(numbered(term.name, result.terms), sink.potential());
-    result.potential += sink.potential();
-    result.virial += sink.virial();
+    const bool failed = sink.failure().has_value();
+    if (failed && result.outcome.ok()) result.outcome = outcome_of(*sink.failure(), s);
+    const double potential = failed ? nan : sink.potential();
+    result.terms.emplace_back(numbered(term.name, result.terms), potential);
+    result.potential += potential;
+    result.virial += failed ? Mat3<double>(Mat3<double>::Constant(nan)) : sink.virial();
+    has_pressure = has_pressure && term.force->claims().virial && !failed;
     for (Index i = 0; i < s.size(); ++i) result.forces.add(i, std::as_const(s).masses()[i] * a[i]);
-    if (check) result.gradient_error = std::max(result.gradient_error.value_or(0), gradient_error(*term.force, s));
+    if (check && !failed)
+      result.gradient_error = std::max(result.gradient_error.value_or(0), gradient_error(*term.force, s));
   }
+  if (has_pressure) result.pressure = pressure_tensor(s, result.virial).trace() / 3;
   for (Index i = 0; i < s.size(); ++i) {
     result.force_max = std::max(result.force_max, std::sqrt(norm2(std::as_const(result.forces)[i])));
+  }
+  if (!result.outcome.ok()) {
+    result.force_max = nan;
+    result.gradient_error.reset();
   }
   return result;
 }

@@ -14,10 +14,12 @@ struct Evaluation {
   double kinetic = 0, potential = 0;                  ///< [energy]
   std::vector<std::pair<std::string, double>> terms;  ///< potential energy of each force; equal names are numbered
   Mat3<double> virial = Mat3<double>::Zero();         ///< sum of x (x) f [energy]
+  std::optional<double> pressure;                     ///< of a periodic box, where every force tells its virial
   VectorColumn<double> forces;                        ///< m a, shape (n, 3); drag is not among them
   double force_max = 0;                               ///< largest |m a|
   std::optional<double> gradient_error;               ///< worst of all forces, where it was asked for
   Index gradient_asked = 0;                           ///< at how many particles
+  Outcome outcome;  ///< `completed`, or why a force cannot be computed: what it has a part in is no number then
 };
 
 /// Evaluates every force of a scene at its start.

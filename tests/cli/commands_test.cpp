@@ -61,6 +61,141 @@ TEST_CASE("evaluate tells energies, virial and forces of the initial state", "[c
   CHECK(json_member(heavier, "potential") == "-0.002");
 }
 
+/// Three atoms in a box of 3, the first two 0.65 apart.
+const std::string close_pair = R"(units = "reduced"
+[particles]
+box = [3, 3, 3]
+body = [{ name = "a", mass = 1, x = [1, 1, 1], v = [0, 0, 0] },
+        { name = "b", mass = 1, x = [1.65, 1, 1], v = [0, 0, 0] },
+        { name = "c", mass = 1, x = [2, 2.4, 2], v = [0, 0, 0] }]
+[hamiltonian]
+type = "kinetic_potential"
+[[hamiltonian.force]]
+type = "lennard_jones"
+cutoff = 2.5
+epsilon = 1
+sigma = 1
+[integrator]
+method = "verlet"
+step = 0.005
+steps = 200
+)";
+
+/// A chain of three in LAMMPS's words; the second bond is longer than any fene bond.
+const std::string broken_chain = R"(a chain
+
+3 atoms
+2 bonds
+1 atom types
+1 bond types
+
+0 9 xlo xhi
+0 9 ylo yhi
+0 9 zlo zhi
+
+Masses
+
+1 1
+
+Bond Coeffs # fene
+
+1 30 1.5 1 1
+
+Atoms # bond
+
+1 1 1 1 1 1
+2 1 1 2 1 1
+3 1 1 3.6 1 1
+
+Bonds
+
+1 1 1 2
+2 1 2 3
+)";
+
+const std::string chain_scene = R"(units = "reduced"
+[particles]
+structure = "chain.data"
+file_units = "lj"
+[hamiltonian]
+type = "kinetic_potential"
+[[hamiltonian.force]]
+type = "bonded"
+[integrator]
+method = "verlet"
+step = 0.005
+steps = 200
+)";
+
+TEST_CASE("a force that cannot be computed is named by run and evaluate, with exit code 1", "[cli][evaluate]") {
+  const SceneFolder pair(close_pair), chain(chain_scene);
+  write_text(chain / "chain.data", broken_chain);
+  const std::string close = "particles 'a' and 'b' are ", broken = "the bond of 'atom_2' and 'atom_3' is 1.6 long";
+  const auto check = [](const ScratchFolder& folder, const std::string& line, const std::string& name,
+                        const std::string& message) {
+    const ProcessResult text = noether(folder, line), json = noether(folder, line + " --json");
+    INFO(line << "\n" << text.out << text.err << json.out);
+    for (const ProcessResult& result : {text, json}) {
+      CHECK(result.exit_code == 1);
+      CHECK(result.err.starts_with(name + " at step 0: " + message));
+      CHECK(line_count(result.err) == 1);
+    }
+    CHECK(is_json_line(json.out));
+    CHECK(json_member(json.out, "outcome") == "\"" + name + "\"");
+    return json.out;
+  };
+  for (const char* x : {"[1,1,1]", "[1.3,1,1]"}) {
+    for (const char* more : {"", " --check", " --threads 2"}) {
+      const std::string set = std::string(" --set particles.body.b.x=") + x;
+      const std::string json = check(pair, "evaluate scene.toml" + set + more, "overlap", close);
+      for (const char* key : {"potential", "total", "pressure", "force_max", "gradient_error"}) {
+        CHECK(json_member(json, key) == "null");
+      }
+    }
+  }
+  check(pair, "run scene.toml --fresh", "overlap", close + "0.65 apart");
+  CHECK(noether(pair, "run scene.toml --fresh --set integrator.step=0.0001").exit_code == 0);
+  CHECK(std::stod(json_member(output(pair, "evaluate scene.toml --json"), "potential")) > 650);  // as it is
+  check(chain, "evaluate scene.toml --check", "overstretch", broken);
+  check(chain, "run scene.toml --fresh", "overstretch", broken);
+  check(chain, "run scene.toml --fresh --threads 2 --set integrator.method=yoshida_4", "overstretch", broken);
+}
+
+TEST_CASE("evaluate tells LAMMPS's pressure, and none where there is none", "[cli][evaluate][oracle]") {
+  const SceneFolder folder(chain_scene);
+  const std::string melt = std::string(NOETHER_SOURCE_DIR) + "/tests/data/lammps/melt.data";
+  const std::string liquid = " --set particles.structure=" + melt +
+                             " --set 'hamiltonian.force=[{type=\"lennard_jones\", cutoff=2.5, "
+                             "cutoff_style=\"plain\"}]'";
+  const std::string json = json_output(folder, "evaluate scene.toml" + liquid, "evaluate");
+  CHECK(std::abs(std::stod(json_member(json, "pressure")) + 5.0210762700856) < 1e-10);
+  CHECK(has(output(folder, "evaluate scene.toml" + liquid), "\npressure              -5.02107627008"));
+  const SceneFolder open;
+  CHECK_FALSE(has(output(open, "evaluate scene.toml"), "pressure"));
+}
+
+TEST_CASE("small boxes, bonds and neighbors are spoken of", "[cli][messages]") {
+  const SceneFolder pair(close_pair), chain(chain_scene);
+  write_text(chain / "chain.data", broken_chain);
+  CHECK(has(output(pair, "explain scene.toml"),
+            "\nbox: an edge of 3 is smaller than twice the range 2.5 of the pair forces; all images in range count"));
+  const std::string forces = " --set 'hamiltonian.force=[{type=\"lennard_jones\", cutoff=2.5, epsilon=1, sigma=1}]'";
+  const std::string text = output(chain, "run scene.toml --fresh" + forces);
+  CHECK(has(text, "\nwarning: the structure has 2 bonded terms that nothing acts on: there is no force 'bonded'\n"));
+  CHECK(has(text, " s of it in searches for neighbors, with 1 sort into cells in "));
+  const std::string json = output(chain, "run scene.toml --fresh --json" + forces);
+  CHECK(json_member(json_block(json, "neighbors"), "sorts") == "1");
+  CHECK(std::stod(json_member(json_block(json, "neighbors"), "sort_seconds")) > 0);
+  CHECK(has(json, "\"warnings\":[\"the structure has 2 bonded terms"));
+  const auto refused = [&](const std::string& set) {
+    const ProcessResult result = noether(pair, "run scene.toml --fresh " + set);
+    CHECK(result.exit_code == 2);
+    return result.err;
+  };
+  CHECK(has(refused("--set hamiltonian.neighbors.skin=1e99"), "skin=1e99: skin = 1e+99 reaches so far beyond the box"));
+  CHECK(has(refused("--set hamiltonian.force.0.cutoff=250"), "scene.toml:3: the box of 3 x 3 x 3 is so small beside"));
+}
+
 TEST_CASE("forces are written with all their digits", "[cli][evaluate]") {
   const SceneFolder folder;
   output(folder, "evaluate scene.toml --forces forces.csv --set particles.body.Planet.mass=0.1");
