@@ -7,6 +7,7 @@ import tempfile
 import headers
 import layering
 import messages
+import named_tests
 import simd_symbols
 import sizes
 import sources
@@ -68,6 +69,9 @@ SAMPLES = [
     ("integrators/a.hpp", 'x = {"name", "Nobody1999", 4};\n', sources.problems, "'Nobody1999' is not in"),
     ("integrators/a.hpp", 'x = {.source = "somebody"};\n', sources.problems, "'somebody' is not in"),
     ("docs/references.bib", "@book{A2001,}\n@book{A2001,}\n", sources.problems, "stands there 2 times"),
+    ("docs/claims.md", "| `tests/a_test.cpp` |\n", named_tests.problems, "there is no tests/a_test.cpp"),
+    ("docs/claims.md", '| `tests/lint/b_test.cpp` "one", "two" |\n', named_tests.problems, "has no case 'two'"),
+    ("docs/promises.md", '| "two" | `tests/lint/b_test.cpp`, `tests/lint`: "one", "a\\|b" |\n', named_tests.problems, ""),
     ("engine/a.cpp", "// caf\u00e9\n", text.problems, "not ASCII"),
     ("engine/a.cpp", "//" + "x" * 119 + "\n", text.problems, "121 columns"),
     ("engine/a.cpp", "\tint x;\n", text.problems, "a tab"),
@@ -80,7 +84,8 @@ def planted(name, content):
     """A small clean tree with one file planted in it."""
     folder = tempfile.TemporaryDirectory()
     root = pathlib.Path(folder.name)
-    tree = {"engine/clean.hpp": CLEAN_HEADER, "docs/references.bib": "@article{Author2001,\n}\n", name: content}
+    tree = {"engine/clean.hpp": CLEAN_HEADER, "docs/references.bib": "@article{Author2001,\n}\n",
+            "tests/lint/b_test.cpp": 'TEST_CASE("o" "ne") {}\nTEST_CASE("a|b",\n "[x]") {}\n', name: content}
     for path, text_of_file in tree.items():
         (root / path).parent.mkdir(parents=True, exist_ok=True)
         (root / path).write_text(text_of_file)
