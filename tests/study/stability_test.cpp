@@ -252,6 +252,8 @@ steps = 2000
   INFO(euler.message << rk4.message);
   CHECK(std::abs(euler.theory.limit.value() - 2) < 1e-6);
   CHECK(std::abs(rk4.theory.limit.value() - 2.78529) < 1e-4);
+  CHECK(std::abs(euler.limit_h_omega.value() - 2) < 1e-3);
+  CHECK(std::abs(rk4.limit_h_omega.value() - 2.78529) < 1e-3);
 }
 
 /// A star with a planet on a circle of radius 1 and a comet, both massless, at their pericenters.
