@@ -43,19 +43,20 @@ constexpr MethodInfo adams_info(std::string_view name, std::string_view alias, i
 }
 
 constexpr MethodInfo stormer_cowell(std::string_view name, std::string_view alias, int order, double limit) {
-  return {.name = name,
-          .aliases = alias,
-          .summary =
-              "Stoermer's method in summed form, velocities by Adams's sums, for q'' = a(t, q); the number is "
-              "the order; one evaluation a step after the start",
-          .use = "planets on nearly circular orbits, errors at rounding, short steps of one length",
-          .source = "HairerNoersettWanner1993",
-          .family = "multistep",
-          .order = order,
-          .evaluations = 1,
-          .stability_limit = limit,
-          .make = stormer<double>,
-          .make_quad = stormer<Quad>};
+  return {
+      .name = name,
+      .aliases = alias,
+      .summary =
+          "Stoermer's explicit predictor in summed form, Cowell's corrector in the start only, velocities by Adams's "
+          "sums, for q'' = a(t, q); the number is the order; one evaluation a step after the start",
+      .use = "planets on nearly circular orbits, errors at rounding, short steps of one length",
+      .source = "HairerNoersettWanner1993",
+      .family = "multistep",
+      .order = order,
+      .evaluations = 1,
+      .stability_limit = limit,
+      .make = stormer<double>,
+      .make_quad = stormer<Quad>};
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 /// Two bodies that fall straight into each other.
 
+#include "integrators/classical.hpp"
 #include "tests/extremes/support.hpp"
 #include "tests/support/problems.hpp"
 
@@ -35,6 +36,12 @@ double softened_fall(const Scheme& scheme, std::int64_t steps) {
   CHECK(outcome.kind == Outcome::Kind::completed);
   CHECK(is_mirrored(run.simulation.particles()));
   return run.energy.worst();
+}
+
+MethodOptions adaptive() {
+  MethodOptions options;
+  options.adaptive = true;
+  return options;
 }
 
 /// Straight lines at a speed of 1: a step of 0.03 is six times the distance that counts as a collision.
@@ -139,6 +146,49 @@ TEST_CASE("bodies that pass within the distance of a collision between two steps
 
 TEST_CASE("bodies that meet exactly head-on between two steps stop the run too", "[extremes]") {
   CHECK(meeting(0, compose(KineticPotential(Gravity{.G = 1.0}), schemes::verlet)).kind == Outcome::Kind::stopped);
+}
+
+TEST_CASE("the high-order methods stop at collisions that their own steps find, without a hint", "[extremes]") {
+  for (const char* name : {"gauss_8", "gauss_radau_15"}) {
+    CAPTURE(name);
+    // Two equal masses at rest, point masses: stopped within the distance, with the energy at rounding until then.
+    for (const double near : {0.1, 1e-3}) {
+      Simulation<double> fall(head_on(1, 0), classical(Gravity{.G = 1.0}, method(name, adaptive())));
+      const Energy& energy = fall.every(1, Energy{});
+      fall.stop_when(closer_than(near), 1);
+      const Outcome outcome = fall.run_until(fall_period);
+      INFO(to_text(outcome));
+      CHECK(outcome.kind == Outcome::Kind::stopped);
+      CHECK(has(outcome.message, "collision of left and right"));
+      CHECK(is_finite(fall.particles()));
+      CHECK(relative_motion(fall.particles()).x.norm() < 2 * near);
+      CHECK(std::abs(outcome.time - fall_period / 2) < 0.1);
+      CHECK(energy.worst() < 1e-10);
+    }
+    // A tracer that falls on a star, and one that passes it by.
+    for (const double aside : {0.0, 0.3}) {
+      ParticleSystem<double> s;
+      s.add("star", 1, {0, 0, 0}, {0, 0, 0});
+      s.add("tracer", 0, {1, 0, 0}, {0, aside, 0});
+      Simulation<double> run(s, classical(Gravity{.G = 1.0}, method(name, adaptive())));
+      run.stop_when(closer_than(0.01), 1);
+      const Outcome outcome = run.run_until(10);
+      INFO(to_text(outcome));
+      CHECK(outcome.kind == (aside == 0 ? Outcome::Kind::stopped : Outcome::Kind::completed));
+      CHECK(has(outcome.message, aside == 0 ? "collision of star and tracer" : ""));
+    }
+  }
+}
+
+TEST_CASE("point masses that fall head-on by the high-order methods end with a name", "[extremes]") {
+  for (const char* name : {"gauss_8", "gauss_radau_15"}) {
+    CAPTURE(name);
+    Simulation<double> run(head_on(1, 0), classical(Gravity{.G = 1.0}, method(name, adaptive())));
+    const Outcome outcome = run.run_until(fall_period);
+    INFO(to_text(outcome));
+    CHECK(is_finite(run.particles()));
+    CHECK((outcome.ok() || !outcome.message.empty()));
+  }
 }
 
 TEST_CASE("a slow fall head-on is stopped by a collision wherever a step ends within its distance", "[extremes]") {

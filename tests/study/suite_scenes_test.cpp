@@ -1,0 +1,72 @@
+// Scenes of the suite: what their verdicts, bounds of energies, do not ask.
+
+#include "study/opponent.hpp"
+#include "study/suite.hpp"
+#include "tests/study/scenes.hpp"
+#include "tests/support/catch.hpp"
+
+#include <cmath>
+#include <string>
+
+namespace noether::test {
+namespace {
+
+Scene suite_scene(const std::string& name, const std::vector<std::string>& sets = {}) {
+  return load_scene(std::string(NOETHER_SOURCE_DIR) + "/study/suite/" + name, standard_parts(), sets);
+}
+
+/// Energy of two bodies about each other, over their reduced mass.
+double pair_energy(const ParticleSystem<double>& s, Index i, Index j) {
+  const Vec3<double> x = s.positions()[j] - s.positions()[i], v = s.velocities()[j] - s.velocities()[i];
+  return norm2(v) / 2 - (s.masses()[i] + s.masses()[j]) / std::sqrt(norm2(x));
+}
+
+TEST_CASE("of the Pythagorean three bodies the lightest leaves a pair of the others", "[suite]") {
+  for (const char* name : {"gauss_radau_15", "gauss_8"}) {
+    Simulation<double> run = assemble(suite_scene("pythagorean.toml", {std::string("integrator.method=") + name}));
+    REQUIRE(run.run_until(70).ok());
+    const ParticleSystem<double>& s = run.particles();
+    const auto apart = [&](Index i, Index j) {
+      return std::sqrt(norm2(Vec3<double>(s.positions()[j] - s.positions()[i])));
+    };
+    CAPTURE(name, apart(0, 1), apart(0, 2), apart(1, 2));
+    CHECK(pair_energy(s, 1, 2) < 0);
+    CHECK(apart(1, 2) < 2);
+    CHECK(apart(0, 1) > 10 * apart(1, 2));
+    // The lightest against the centre of the pair: faster than its escape speed, and away.
+    const Vec3<double> x = s.positions()[0] - (4 * s.positions()[1] + 5 * s.positions()[2]) / 9,
+                       v = s.velocities()[0] - (4 * s.velocities()[1] + 5 * s.velocities()[2]) / 9;
+    CHECK(norm2(v) / 2 - 12 / std::sqrt(norm2(x)) > 0);
+    CHECK(dot(x, v) > 0);
+  }
+}
+
+/// How far the bodies are, after a third of a period, from where the ones before them were, or the ones behind them.
+double change_of_places(Simulation<double>& run) {
+  const ParticleSystem<double> before = run.particles();
+  REQUIRE(run.run_until(run.time() + 6.325913978 / 3).ok());
+  double best = 1;
+  for (const Index shift : {1, 2}) {
+    double worst = 0;
+    for (Index i = 0; i < 3; ++i) {
+      const Vec3<double> off = run.particles().positions()[i] - before.positions()[(i + shift) % 3];
+      worst = std::max(worst, std::sqrt(norm2(off)));
+    }
+    best = std::min(best, worst);
+  }
+  return best;
+}
+
+TEST_CASE("after 1000 periods the three bodies still follow each other on the figure-eight", "[suite]") {
+  for (const char* name : {"blanes_moan_s6", "srkn14a"}) {
+    Simulation<double> run = assemble(suite_scene(
+        "figure_eight.toml", {std::string("integrator.method=") + name, "integrator.step=0.02108637992666667"}));
+    REQUIRE(run.run_until(6325.913978).ok());
+    const double off = change_of_places(run);
+    CAPTURE(name, off);
+    CHECK(off < 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace noether::test
