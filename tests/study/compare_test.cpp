@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <string>
 
 namespace noether::test {
@@ -230,6 +232,49 @@ TEST_CASE("a wisdom_holman scene is compared with whole-gravity kicks too", "[co
   CHECK(c.rows[1].position_error_max.value() < 1);
   CHECK(c.rows[0].position_error_max.value() < 1e-4 * c.rows[1].position_error_max.value());
   CHECK(c.scene_end.value() == 365250000);
+}
+
+/// Fewest force evaluations of a method's rows whose energy error stays below a bound.
+std::int64_t evaluations_below(const Comparison& c, const std::string& label, double bound) {
+  std::int64_t fewest = std::numeric_limits<std::int64_t>::max();
+  for (const Row& row : c.rows) {
+    if (row.who.label == label && row.completed() && row.energy_error_max.value_or(1) < bound) {
+      fewest = std::min(fewest, row.evaluations.force);
+    }
+  }
+  return fewest;
+}
+
+TEST_CASE("the outer Solar System has its known picture: arcs ahead at 1e-9, Gauss at rounding", "[compare][slow]") {
+  CompareOptions options;
+  options.until = 80000;
+  options.methods = {"verlet", "aba_10_6_4", "verlet@kinetic_potential",
+                     "rk4",    "heun",       "dormand_prince_5",
+                     "dop853", "gauss_8",    "gauss_radau_15"};
+  options.steps = {400, 200, 10, 5, 2, 0.2, 0.1};
+  options.truth.budget = 1e-4;
+  options.repeats = 1;
+  const Comparison c = compare(outer_solar_system(), options);
+  const auto cost = [&](const char* label) { return evaluations_below(c, label, 1e-9); };
+  const std::int64_t arcs = cost("verlet"), best = cost("aba_10_6_4");
+  CAPTURE(arcs, best, cost("verlet@kinetic_potential"), cost("rk4"), cost("dormand_prince_5"), cost("dop853"));
+  CHECK(best <= 1600);
+  CHECK(10 * arcs < cost("verlet@kinetic_potential"));
+  CHECK(100 * best < cost("verlet@kinetic_potential"));
+  CHECK(arcs < cost("rk4"));  // RK4 drifts: its error grows with the length of the run, that of arcs does not
+  CHECK(arcs < cost("heun") / 10);
+  CHECK(20 * best < cost("rk4"));
+  CHECK(10 * best < cost("dormand_prince_5"));
+  CHECK(3 * best < cost("dop853"));
+  // At rounding: below the 1e-14 that others come to by steps a hundred times as short, or never.
+  for (const char* gauss : {"gauss_8", "gauss_radau_15"}) {
+    CAPTURE(gauss, evaluations_below(c, gauss, 1e-14));
+    CHECK(evaluations_below(c, gauss, 1e-14) < 12000);
+  }
+  for (const char* other : {"verlet", "verlet@kinetic_potential", "rk4", "heun"}) {
+    CAPTURE(other);
+    CHECK(evaluations_below(c, other, 1e-14) > 100000);
+  }
 }
 
 TEST_CASE("where there is no truth, the finest run stands in for it, and says so", "[compare]") {
