@@ -1,11 +1,36 @@
 """One reference run by another program: reference.py PEER < case.json prints one line of JSON, or nothing without it.
 
 The case: {"G": ..., "end": ..., "bodies": [[m, x, y, z, vx, vy, vz], ...]}. The answer: version, processor seconds of the
-run alone, and positions at the end, which is the one asked for. Peers are never needed: the benchmark goes on without."""
+run alone, the largest relative energy error of a second run that is looked at every ten of its own steps, and positions
+at the end, which is the one asked for. Peers are never needed: the benchmark goes on without."""
 
 import json
 import sys
 import time
+
+import numpy
+
+
+class EnergyError:
+    """The largest change of the energy, relative to that at the start, worked out in more digits than the states have."""
+
+    def __init__(self, case):
+        self.G = numpy.longdouble(case["G"])
+        self.m = numpy.array([body[0] for body in case["bodies"]], dtype=numpy.longdouble)
+        self.pairs = numpy.triu_indices(len(self.m), 1)
+        self.first = None
+        self.worst = 0.0
+
+    def look(self, states):
+        """states: x, y, z, vx, vy, vz of each body."""
+        states = numpy.asarray(states, dtype=numpy.longdouble)
+        i, j = self.pairs
+        kinetic = (self.m * (states[:, 3:] ** 2).sum(axis=1)).sum() / 2
+        r = numpy.sqrt(((states[i, :3] - states[j, :3]) ** 2).sum(axis=1))
+        energy = kinetic - (self.G * self.m[i] * self.m[j] / r).sum()
+        if self.first is None:
+            self.first = energy
+        self.worst = max(self.worst, float(abs((energy - self.first) / self.first)))
 
 
 def rebound_ias15(case):
@@ -25,7 +50,18 @@ def rebound_ias15(case):
     begin = time.process_time()
     sim.integrate(case["end"])
     seconds = time.process_time() - begin
-    return rebound.__version__, seconds, [[p.x, p.y, p.z] for p in sim.particles]
+    watched, error = start(), EnergyError(case)
+    states = numpy.zeros((len(case["bodies"]), 6))
+
+    def look():
+        watched.serialize_particle_data(xyzvxvyvz=states)
+        error.look(states)
+
+    look()
+    while watched.t < case["end"]:
+        watched.steps(10)
+        look()
+    return rebound.__version__, seconds, error.worst, [[p.x, p.y, p.z] for p in sim.particles]
 
 
 def heyoka_taylor(case):
@@ -42,15 +78,25 @@ def heyoka_taylor(case):
     begin = time.process_time()
     compiled.propagate_until(case["end"])
     seconds = time.process_time() - begin
-    return heyoka.__version__, seconds, compiled.state.reshape(-1, 6)[:, :3].tolist()
+    positions = compiled.state.reshape(-1, 6)[:, :3].tolist()
+    compiled.state[:] = start
+    compiled.time = 0.0
+    error = EnergyError(case)
+    steps = 0
+    while compiled.time < case["end"]:
+        if steps % 10 == 0:
+            error.look(compiled.state.reshape(-1, 6))
+        compiled.step()
+        steps += 1
+    return heyoka.__version__, seconds, error.worst, positions
 
 
 PEERS = {"ias15": rebound_ias15, "heyoka": heyoka_taylor}
 
 if __name__ == "__main__":
     try:
-        version, seconds, positions = PEERS[sys.argv[1]](json.load(sys.stdin))
+        version, seconds, energy_error, positions = PEERS[sys.argv[1]](json.load(sys.stdin))
     except ImportError:
         sys.exit(0)
     flat = " ".join(repr(x) for position in positions for x in position)
-    print(version, repr(seconds), flat)
+    print(version, repr(seconds), repr(energy_error), flat)
