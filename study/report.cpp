@@ -57,7 +57,7 @@ class Page {
     out += fmt::format(". Every run is compared at the same {} moments.</p>\n<p>", c_.sampling.samples);
     if (c_.truth.kind == TruthKind::quad) {
       out += fmt::format(
-          "The reference is computed in extended precision (113 bits) by two settings that agree to {:.1e}: {}.",
+          "The reference is computed in extended precision (113 bits) by two runs that agree to {:.1e}: {}.",
           c_.truth.error.value_or(0), html_text(c_.truth.note));
     } else if (c_.truth.kind == TruthKind::finest_run) {
       out += fmt::format("There is no reference in extended precision: {}.", html_text(c_.truth.note));

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace noether {
@@ -37,6 +38,7 @@ std::pair<double, double> sizes(const Vector<Quad>& y, bool second_order) {
 /// One run in extended precision that stops at every moment of a sampling.
 struct WideRun {
   std::vector<Vector<Quad>> y, rate;
+  std::int64_t evaluations = 0;
   std::string failure;  ///< empty: it came to the end
 };
 
@@ -47,7 +49,9 @@ std::string too_slow(double reached, double seconds, double budget) {
       seconds / std::max(reached, 1e-6), budget);
 }
 
-WideRun run_wide(const WideScene& wide, const Sampling& sampling, const MethodChoice& choice, double budget) {
+/// @param most  evaluations, beyond which it is no use
+WideRun run_wide(const WideScene& wide, const Sampling& sampling, const MethodChoice& choice, double budget,
+                 std::int64_t most = std::numeric_limits<std::int64_t>::max()) {
   WideRun run;
   const auto field = wide.field->clone();
   const auto method = make_method<Quad>(*choice.info, choice.options);
@@ -77,6 +81,11 @@ WideRun run_wide(const WideScene& wide, const Sampling& sampling, const MethodCh
         return run;
       }
       t += Quad(made.h);
+      run.evaluations = field->evaluations().force;
+      if (run.evaluations > most) {
+        run.failure = "it takes too many evaluations";
+        return run;
+      }
       const double reached = static_cast<double>(t) / sampling.end(), spent = since(begin);
       if (spent > budget || (spent > 0.1 * budget && spent > 2 * reached * budget)) {
         run.failure = too_slow(reached, spent, budget);
@@ -88,30 +97,39 @@ WideRun run_wide(const WideScene& wide, const Sampling& sampling, const MethodCh
   return run;
 }
 
-/// Settings from coarse to fine of each method that is worth trying, the best first.
-std::vector<std::vector<MethodChoice>> settings_of(const WideScene& wide, const TruthOptions& options) {
+/// A method that a truth is found by: the run itself, and what stands beside it.
+struct Way {
+  MethodChoice finest, rougher, finer;  ///< the run; the same method rougher and finer, where no other one can be had
+  std::vector<MethodChoice> others;     ///< of another family, the finer last
+};
+
+/// The ways that are worth trying, the best first.
+std::vector<Way> ways_of(const WideScene& wide, const TruthOptions& options) {
   Vector<Quad> y;
   const auto field = wide.field->clone();
   field->bind(wide.start);
   field->gather(wide.start, y);
   const auto [x, v] = sizes(y, field->claims().second_order);
   const double size = v > 0 && x > 0 ? std::min(x, v) : std::max(x, v), scale = size > 0 ? 0.1 * size : 1;
-  std::vector<std::vector<MethodChoice>> all;
+  const auto choice = [&](std::string_view name, double rtol) {
+    return MethodChoice{methods::find(name), {.rtol = rtol, .atol = rtol * scale}};
+  };
+  std::vector<Way> all;
   for (const auto& [name, coarse] : {std::pair("gragg_bulirsch_stoer", 1e-20), std::pair("dop853", 1e-18)}) {
-    const MethodInfo* info = methods::find(name);
-    if (info == nullptr || info->make_quad == nullptr) continue;
     const double first = options.rtol.value_or(coarse);
-    std::vector<MethodChoice> settings;
-    for (const double rtol : {first, first / 30, first / 1000}) {
-      settings.push_back({info, {.rtol = rtol, .atol = rtol * scale}});
-    }
-    all.push_back(std::move(settings));
+    all.push_back({.finest = choice(name, first / 30),
+                   .rougher = choice(name, first),
+                   .finer = choice(name, first / 1000),
+                   .others = {choice("gauss_8", 1e-18), choice("gauss_8", 1e-21)}});
   }
   return all;
 }
 
-/// Two settings that agree so well need no third.
+/// Two runs that agree so well need no third.
 constexpr double agreement = 2e-16;
+/// A method of another family may take so many times the evaluations of the first: where it takes more it iterates in
+/// vain, as on stiff systems.
+constexpr std::int64_t patience = 4;
 
 constexpr std::string_view no_truth = "invariants";
 
@@ -220,29 +238,54 @@ double PositionError::operator()(const Vector<Quad>& y, const Vector<Quad>& trut
 
 namespace {
 
-/// States by the finest setting, with their distance from the next; without an error where two have not come to the
-/// end.
-Truth drive(const WideScene& wide, const std::vector<MethodChoice>& settings, const Sampling& sampling,
-            PositionError& error, double budget) {
+double distance(const WideRun& a, const WideRun& b, PositionError& error) {
+  error.set_scale(a.y);
+  double worst = 0;
+  for (std::size_t j = 0; j < a.y.size(); ++j) worst = std::max(worst, error(b.y[j], a.y[j]));
+  return worst;
+}
+
+/// States by one way, with their distance from what another method finds, or, where that does not come to the end, the
+/// same at another tolerance; without an error where two runs have not come to the end.
+Truth drive(const WideScene& wide, const Way& way, const Sampling& sampling, PositionError& error, double budget) {
   Truth truth{.name = std::string(no_truth)};
   const auto begin = std::chrono::steady_clock::now();
-  for (const MethodChoice& setting : settings) {
-    WideRun run = run_wide(wide, sampling, setting, budget - truth.seconds);
+  const auto run = [&](const MethodChoice& choice, std::int64_t most = std::numeric_limits<std::int64_t>::max()) {
+    WideRun made = run_wide(wide, sampling, choice, budget - since(begin), most);
     truth.seconds = since(begin);
-    if (!run.failure.empty()) {
-      if (!truth.error) truth.note = run.failure;
-      break;
-    }
-    const std::vector<Vector<Quad>> rougher = std::exchange(truth.y, std::move(run.y));
-    truth.rate = std::move(run.rate);
-    truth.note = fmt::format("{} in extended precision, rtol {:.0e}", setting.info->name, *setting.options.rtol);
-    if (rougher.empty()) continue;
-    error.set_scale(truth.y);
-    double worst = 0;
-    for (std::size_t j = 0; j < truth.y.size(); ++j) worst = std::max(worst, error(rougher[j], truth.y[j]));
-    truth.error = worst;
-    if (worst < agreement) break;
+    if (!made.failure.empty() && !truth.error) truth.note = made.failure;
+    return made;
+  };
+  const auto told = [&](const MethodChoice& finest, const MethodChoice& beside) {
+    truth.note = fmt::format("{} in extended precision, rtol {:.0e}, beside {} at {:.0e}", finest.info->name,
+                             *finest.options.rtol, beside.info == finest.info ? "itself" : beside.info->name,
+                             *beside.options.rtol);
+  };
+  WideRun finest = run(way.finest);
+  if (!finest.failure.empty()) return truth;
+  for (const MethodChoice& other : way.others) {
+    const WideRun beside = run(other, patience * finest.evaluations);
+    if (!beside.failure.empty()) break;
+    truth.error = distance(finest, beside, error);
+    told(way.finest, other);
+    if (*truth.error < agreement) break;
   }
+  if (!truth.error) {
+    const WideRun rougher = run(way.rougher);
+    if (!rougher.failure.empty()) return truth;
+    truth.error = distance(finest, rougher, error);
+    told(way.finest, way.rougher);
+    if (*truth.error >= agreement) {
+      WideRun finer = run(way.finer);
+      if (finer.failure.empty()) {
+        truth.error = distance(finer, finest, error);
+        told(way.finer, way.finest);
+        finest = std::move(finer);
+      }
+    }
+  }
+  truth.y = std::move(finest.y);
+  truth.rate = std::move(finest.rate);
   return truth;
 }
 
@@ -265,10 +308,10 @@ Truth find_truth(const Scene& scene, const Sampling& sampling, const TruthOption
   if (wide.field == nullptr) return truth;
   PositionError error(scene.particles, about_center(scene));
   double spent = 0;
-  for (const auto& settings : settings_of(wide, options)) {
-    truth = drive(wide, settings, sampling, error, options.budget - spent);
+  for (const Way& way : ways_of(wide, options)) {
+    truth = drive(wide, way, sampling, error, options.budget - spent);
     truth.seconds = spent += truth.seconds;
-    if (truth.error) truth.kind = TruthKind::quad, truth.name = fmt::format("{} in quad", settings[0].info->name);
+    if (truth.error) truth.kind = TruthKind::quad, truth.name = fmt::format("{} in quad", way.finest.info->name);
     if (truth.error || spent > options.budget / 2) break;
   }
   if (truth.error && *truth.error < 1e-3) {
@@ -277,7 +320,7 @@ Truth find_truth(const Scene& scene, const Sampling& sampling, const TruthOption
   }
   if (truth.error) {
     truth.note = fmt::format(
-        "two settings in extended precision differ by {:.1e}: the motion is too irregular to have a "
+        "two runs in extended precision differ by {:.1e}: the motion is too irregular to have a "
         "truth over this time",
         *truth.error);
   }

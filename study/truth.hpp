@@ -31,7 +31,7 @@ void refuse_noise(const Scene& scene);
 
 /// How the reference was made.
 enum class TruthKind : std::uint8_t {
-  quad,        ///< in extended precision, by two settings that agree
+  quad,        ///< in extended precision, by two runs that agree
   finest_run,  ///< the finest of the runs compared; its error is its distance from the next
   invariants,  ///< none: only what the equations keep tells errors
 };
@@ -52,7 +52,7 @@ struct Truth {
 /// How far a truth is driven.
 struct TruthOptions {
   double budget = 120;              ///< seconds of wall time for all settings together
-  std::optional<double> rtol = {};  ///< of the coarsest setting; default: by the method
+  std::optional<double> rtol = {};  ///< of the coarsest run of the first method; default: by the method
 };
 
 /// How positions (or the variables of a first-order system) are compared: over all bodies about the centre of mass,
@@ -82,10 +82,11 @@ bool about_center(const Scene& scene);
 
 /// The reference of a scene in extended precision, at the moments of a sampling.
 ///
-/// The method of highest order that is known in extended precision, with two tolerances, or three where the first two
-/// differ by more than rounding in double precision; the difference of the finest two is the truth's own error bar:
-/// that of the rougher one, above that of the finer. Where this cannot be had (a force written for doubles only,
-/// constraints, a cost beyond the budget, chaos), the kind is `invariants`, and the note says why.
+/// The method of highest order that is known in extended precision, extrapolation, beside one of another family,
+/// Gauss's 8 stages, which is run finer where the two differ by more than rounding in double precision; their
+/// difference is the truth's own error bar. Where Gauss's iteration does not get on, as on stiff systems, extrapolation
+/// stands beside itself at other tolerances, and the note says so. Where this cannot be had (a force written for
+/// doubles only, constraints, a cost beyond the budget, chaos), the kind is `invariants`, and the note says why.
 Truth find_truth(const Scene& scene, const Sampling& sampling, const TruthOptions& options = {});
 
 }  // namespace noether

@@ -126,6 +126,9 @@ TEST_CASE("linear theory has the tabulated limits and the closed resonances", "[
     CHECK_FALSE(theory(name).limit);
     CHECK_FALSE(theory(name).solver);
   }
+  const LinearTheory damping = theory("bdf_2");  // told by its table: at no step, which is no limit of infinity
+  CHECK(damping.known);
+  CHECK_FALSE(damping.limit);
   const LinearTheory verlet = theory("verlet"), srkn = theory("srkn11b");
   for (int n = 3; n <= 6; ++n) CHECK(std::abs(verlet.resonances.at(n) - 2 * std::sin(M_PI / n)) < 1e-8);
   CHECK(verlet.resonance_at(1.74) == 3);

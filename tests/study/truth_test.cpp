@@ -74,6 +74,14 @@ TEST_CASE("the truth of a damped oscillator is the closed form", "[truth]") {
   }
 }
 
+TEST_CASE("a truth stands beside that of a method of another family, and says so", "[truth]") {
+  const Scene orbit = kepler(0.6, "method = \"verlet\"\nstep = 0.01\nsteps = 100");
+  const Truth two = find_truth(orbit, {0.0625, 200});
+  CHECK(two.note == "gragg_bulirsch_stoer in extended precision, rtol 3e-22, beside gauss_8 at 1e-18");
+  CHECK(two.error.value() > 0);
+  CHECK(two.error.value() < 1e-18);
+}
+
 struct DoubleOnly {
   static constexpr auto describe() { return part<DoubleOnly>("double_only", "a spring, in doubles"); }
   void add_to(ForceSink<double>& out, const ParticleSystem<double>& s) const {
