@@ -218,8 +218,7 @@ void describe_method(const MethodInfo& info, bool json) {
   }
   if (!info.options.empty()) fmt::print("  takes {} too\n", fmt::join(words_of(info.options), ", "));
   if (std::isinf(info.stability_limit)) {
-    fmt::print("  stable on the oscillator at any step{}\n",
-               info.family == "collocation" ? " that its iteration can solve" : "");
+    fmt::print("  stable on the oscillator at any step\n");
   } else if (info.stability_limit == 0) {
     fmt::print("  on the oscillator it grows at every step\n");
   } else if (info.stability_limit > 0) {

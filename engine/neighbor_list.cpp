@@ -81,7 +81,7 @@ void NeighborList::move_or_search(const ParticleSystem<double>& s, Numbers numbe
     const double approach = 2 * moved;  // of two particles, at most
     shell_ = 0;
     while (shell_ < shells && !(approach <= shell_radius(shell_) - range_)) ++shell_;
-    search_now = options_.renewal > 0 ? age_ > options_.renewal : shell_ == shells;
+    search_now = options_.renewal > 0 ? age_ >= options_.renewal : shell_ == shells;
     shell_ = std::min(shell_, shells - 1);
   }
   if (!search_now) return;

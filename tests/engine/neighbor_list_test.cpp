@@ -93,6 +93,28 @@ TEST_CASE("a list lasts until somebody has moved by half of the skin", "[neighbo
   CHECK(list.statistics().searches == 2);
 }
 
+TEST_CASE("a list of a fixed schedule is searched by it alone, and misses who has come from afar", "[neighbors]") {
+  ParticleSystem<double> s;
+  s.set_box(Box::periodic({8, 8, 8}));
+  s.add("", 1, {1, 1, 1}, {1, 0, 0});
+  s.add("", 1, {4, 1, 1}, {0, 0, 0});
+  NeighborList fixed(1.0, {.skin = 0.5, .renewal = 6}), safe(1.0, {.skin = 0.5});
+  for (int update = 0; update < 13; ++update) {
+    CAPTURE(update);
+    fixed.update(s);
+    safe.update(s);
+    CHECK(fixed.statistics().searches == 1 + update / 6);
+    CHECK_NOTHROW(safe.verify(s));
+    // In range from the fifth step on; those found at the sixth stay near.
+    if (update == 5) CHECK_THROWS_WITH(fixed.verify(s), Catch::Contains("0 times up to 1 from particle"));
+    if (update != 5) CHECK_NOTHROW(fixed.verify(s));
+    if (update < 5) s.advance_positions(0.45);
+    if (update > 5) s.advance_positions(0.01);
+    if (update == 5) s.advance_positions(0.01);
+  }
+  CHECK_THROWS_WITH((NeighborOptions{.renewal = -1}.check()), Catch::Contains("is no number of steps"));
+}
+
 TEST_CASE("searches between two sorts find everybody", "[neighbors]") {
   const bool periodic = GENERATE(true, false);
   const int clusters = GENERATE(0, 7);

