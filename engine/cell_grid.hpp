@@ -31,6 +31,11 @@ class CellGrid {
 
   /// Place k of the sorted points is held by point `order()[k]`.
   const std::vector<std::int32_t>& order() const { return order_; }
+  /// Gives back the memory of `order`, which `near` does without.
+  void forget_order() {
+    cells_ = std::vector<std::int32_t>();
+    order_ = std::vector<std::int32_t>();
+  }
   /// Memory held. @cost O(1)
   std::size_t bytes() const {
     return sizeof(std::int32_t) * (rows_.capacity() + cells_.capacity() + start_.capacity() + order_.capacity());

@@ -28,12 +28,13 @@ struct Points {
 
 /// Records are loaded whole, 32 bytes each, and turned: gathers of single numbers take longer.
 HWY_INLINE Points load_points(const double* records, const std::int32_t* offsets) {
-  const Lanes d;
   const auto record = [&](int k) { return records + static_cast<std::ptrdiff_t>(offsets[k]); };
 #if HWY_TARGET == HWY_SCALAR
+  const Lanes d;
   const double* one = record(0);
   return {hn::Set(d, one[0]), hn::Set(d, one[1]), hn::Set(d, one[2])};
 #elif HWY_MAX_BYTES == 16
+  const Lanes d;
   const double *one = record(0), *two = record(1);
   const Vector a = hn::LoadU(d, one), b = hn::LoadU(d, two);
   return {hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b),
@@ -49,6 +50,7 @@ HWY_INLINE Points load_points(const double* records, const std::int32_t* offsets
   return {Vector{_mm512_shuffle_f64x2(xz_low, xz_high, 0x88)}, Vector{_mm512_shuffle_f64x2(y_low, y_high, 0x88)},
           Vector{_mm512_shuffle_f64x2(xz_low, xz_high, 0xdd)}};
 #else
+  const Lanes d;
   const Vector a = hn::LoadU(d, record(0)), b = hn::LoadU(d, record(1));
   const Vector c = hn::LoadU(d, record(2)), e = hn::LoadU(d, record(3));
   const Vector xz_low = hn::InterleaveLower(d, a, b), xz_high = hn::InterleaveLower(d, c, e);
