@@ -480,7 +480,7 @@ template <class Real> std::optional<Outcome> Simulation<Real>::settled_fault() {
 }
 
 template <class Real> Outcome Simulation<Real>::outcome(Outcome::Kind kind, std::string message) const {
-  return {.kind = kind, .step = step(), .time = time(), .message = std::move(message)};
+  return {kind, step(), time(), {}, {}, std::move(message)};
 }
 
 template <class Real> Outcome Simulation<Real>::stopped(const StopReason& reason) const {
