@@ -110,7 +110,7 @@ template <class Real> void Rosenbrock<Real>::interpolate(VectorField<Real>& /*f*
 template class Rosenbrock<double>;
 template class Rosenbrock<Quad>;
 
-namespace {
+namespace tableaus {
 
 const RosenbrockTable& rodas_4() {
   static const RosenbrockTable table = [] {
@@ -175,15 +175,20 @@ const RosenbrockTable& rodas_5p() {
   return table;
 }
 
+}  // namespace tableaus
+
+namespace {
+
 template <class Real>
 std::unique_ptr<Method<Real>> make_rosenbrock(const MethodInfo& info, const MethodOptions& options) {
-  return std::make_unique<Rosenbrock<Real>>(info, options, info.name == "rodas_4" ? rodas_4() : rodas_5p());
+  return std::make_unique<Rosenbrock<Real>>(info, options,
+                                            info.name == "rodas_4" ? tableaus::rodas_4() : tableaus::rodas_5p());
 }
 
 }  // namespace
 
 template <class Real> Rosenbrock<Real> starting_rosenbrock(std::optional<JacobianForm> form) {
-  return Rosenbrock<Real>(methods::rosenbrock_list()[1], {.adaptive = false, .jacobian = form}, rodas_5p());
+  return Rosenbrock<Real>(methods::rosenbrock_list()[1], {.adaptive = false, .jacobian = form}, tableaus::rodas_5p());
 }
 template Rosenbrock<double> starting_rosenbrock(std::optional<JacobianForm> form);
 template Rosenbrock<Quad> starting_rosenbrock(std::optional<JacobianForm> form);

@@ -21,6 +21,13 @@ struct RosenbrockTable {
   int order = 0, embedded_order = 0;
 };
 
+namespace tableaus {
+/// @source HairerWanner1996
+const RosenbrockTable& rodas_4();
+/// @source Steinebach2023
+const RosenbrockTable& rodas_5p();
+}  // namespace tableaus
+
 /// Rodas4 and Rodas5P, with steps of their own choice, or fixed.
 ///
 /// Both are L-stable and stiffly accurate. J and df/dt are found once a step; a rejected trial keeps them.

@@ -2,7 +2,6 @@
 
 #include "engine/simulation.hpp"
 #include "integrators/classical.hpp"
-#include "integrators/methods/diagonally_implicit_tableaus.hpp"
 #include "tests/methods/restarts.hpp"
 #include "tests/methods/stiff_problems.hpp"
 #include "tests/support/catch.hpp"
@@ -254,46 +253,4 @@ TEST_CASE("the trapezoidal rule is reversible, backward Euler is not") {
   CHECK(there_and_back("trapezoidal") < 1e-14);
   CHECK(there_and_back("backward_euler") > 1e-2);
   CHECK(there_and_back("sdirk_3") > 1e-6);
-}
-
-TEST_CASE("tableaus of diagonally implicit methods fulfil the conditions of all rooted trees of their order") {
-  using Weights = std::vector<Quad>;
-  const auto times = [](const Weights& x, const Weights& y) {
-    Weights z = x;
-    for (std::size_t i = 0; i < z.size(); ++i) z[i] *= y[i];
-    return z;
-  };
-  for (const Tableau& table : {tableaus::backward_euler(), tableaus::trapezoidal(), tableaus::sdirk_2(),
-                               tableaus::sdirk_3(), tableaus::sdirk_4()}) {
-    const auto sum = [&](const Weights& x) {
-      Quad all = 0;
-      for (std::size_t i = 0; i < x.size(); ++i) all += table.b[i] * x[i];
-      return all;
-    };
-    const auto apply = [&](const Weights& x) {
-      Weights z(x.size());
-      for (std::size_t i = 0; i < x.size(); ++i) {
-        for (std::size_t j = 0; j < table.a[i].size(); ++j) z[i] += table.a[i][j] * x[j];
-      }
-      return z;
-    };
-    const Weights one(table.b.size(), Quad(1));
-    const Weights c = apply(one), c2 = times(c, c), ac = apply(c);
-    struct Condition {
-      int order;
-      Quad sum;
-      double density;
-    };
-    const std::vector<Condition> trees = {{1, sum(one), 1},          {2, sum(c), 2},
-                                          {3, sum(c2), 3},           {3, sum(ac), 6},
-                                          {4, sum(times(c2, c)), 4}, {4, sum(times(c, ac)), 8},
-                                          {4, sum(apply(c2)), 12},   {4, sum(apply(ac)), 24}};
-    bool beyond = table.order == 4;  // the trees of order 5 are not asked
-    for (const auto& [order, value, density] : trees) {
-      const double violation = static_cast<double>(abs(value - Quad(1) / Quad(density)));
-      if (order <= table.order) CHECK(violation < 1e-31);
-      if (order == table.order + 1) beyond = beyond || violation > 1e-3;
-    }
-    CHECK(beyond);
-  }
 }

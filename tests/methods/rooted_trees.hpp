@@ -1,9 +1,10 @@
 #pragma once
-/// Rooted trees and the order conditions of Runge-Kutta methods.
+/// Rooted trees and the order conditions of Runge-Kutta and Rosenbrock methods.
 
 #include "engine/real.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -46,32 +47,49 @@ inline std::vector<RootedTree> rooted_trees(int most) {
   return trees;
 }
 
-/// How much a method violates the conditions of each order: [p] is the worst of order p, from 1 to that of the last
-/// tree.
+/// How much a Rosenbrock method violates the conditions of each order: [p] is the worst of order p, from 1 to that of
+/// the last tree.
 ///
-///     sum_i b_i phi_i(tree) = 1 / density,   phi_i(tree) = prod over branches of sum_j a_ij phi_j(branch)
-/// @param a  rows of the tableau, shape (s, s) or shorter rows: what is missing is 0
-inline std::vector<double> violations(const std::vector<RootedTree>& trees, const std::vector<std::vector<Quad>>& a,
-                                      const std::vector<Quad>& b) {
+///     sum_i b_i phi_i(tree) = theta^nodes / density
+///     phi_i(tree) = sum_j beta_ij phi_j(branch) where there is one branch, else prod over them of sum_j alpha_ij phi_j
+///
+/// beta = alpha + gamma with its diagonal: in k = h f(y0 + alpha k) + h J gamma k the Jacobian matrix joins where f is
+/// differentiated once, and nowhere else.
+/// @param alpha, beta  shape (s, s) or shorter rows: what is missing is 0
+/// @param theta  where the weights tell the solution, in steps; 1: at the end
+/// @source HairerWanner1996, IV.7
+inline std::vector<double> violations(const std::vector<RootedTree>& trees, const std::vector<std::vector<Quad>>& alpha,
+                                      const std::vector<std::vector<Quad>>& beta, const std::vector<Quad>& b,
+                                      const Quad& theta = Quad(1)) {
   const std::size_t s = b.size();
   std::vector<double> worst(static_cast<std::size_t>(trees.back().order) + 1, 0);
-  std::vector<std::vector<Quad>> inner;  // sum_j a_ij phi_j of each tree
+  std::vector<std::vector<Quad>> phis;
   for (const RootedTree& tree : trees) {
-    std::vector<Quad> phi(s, Quad(1)), sums(s, Quad(0));
+    const auto& a = tree.branches.size() == 1 ? beta : alpha;
+    std::vector<Quad> phi(s, Quad(1));
     for (const std::size_t branch : tree.branches) {
-      for (std::size_t i = 0; i < s; ++i) phi[i] *= inner[branch][i];
+      for (std::size_t i = 0; i < s; ++i) {
+        Quad sum = 0;
+        for (std::size_t j = 0; i < a.size() && j < std::min(a[i].size(), s); ++j) sum += a[i][j] * phis[branch][j];
+        phi[i] *= sum;
+      }
     }
-    Quad weight = 0;
-    for (std::size_t i = 0; i < s; ++i) {
-      weight += b[i] * phi[i];
-      if (i >= a.size()) continue;
-      for (std::size_t j = 0; j < std::min(a[i].size(), s); ++j) sums[i] += a[i][j] * phi[j];
-    }
-    inner.push_back(std::move(sums));
+    Quad weight = 0, expected = Quad(1) / Quad(tree.density);
+    for (std::size_t i = 0; i < s; ++i) weight += b[i] * phi[i];
+    for (int k = 0; k < tree.order; ++k) expected *= theta;
+    phis.push_back(std::move(phi));
     double& present = worst[static_cast<std::size_t>(tree.order)];
-    present = std::max(present, static_cast<double>(abs(weight - Quad(1) / Quad(tree.density))));
+    present = std::max(present, static_cast<double>(abs(weight - expected)));
   }
   return worst;
+}
+
+/// The same of a Runge-Kutta method:
+///
+///     sum_i b_i phi_i(tree) = 1 / density,   phi_i(tree) = prod over branches of sum_j a_ij phi_j(branch)
+inline std::vector<double> violations(const std::vector<RootedTree>& trees, const std::vector<std::vector<Quad>>& a,
+                                      const std::vector<Quad>& b) {
+  return violations(trees, a, a, b);
 }
 
 /// The order of a method whose coefficients are printed to about `digits`: conditions beyond it are violated.
@@ -81,6 +99,12 @@ inline int order_of(const std::vector<double>& violated, double digits) {
     ++order;
   }
   return order;
+}
+
+/// x with its tenth digit changed by one.
+inline Quad slip(const Quad& x) {
+  const double size = std::floor(std::log10(std::abs(static_cast<double>(x))));
+  return x + Quad(std::pow(10.0, size - 9));
 }
 
 }  // namespace noether::test
