@@ -82,6 +82,43 @@ TEST_CASE("a truth stands beside that of a method of another family, and says so
   CHECK(two.error.value() < 1e-18);
 }
 
+TEST_CASE("where Gauss's iteration does not get on, extrapolation stands beside itself, and finds the closed form",
+          "[truth]") {
+  constexpr int points = 100;
+  const Scene scene = read_scene(R"(units = "reduced"
+[system]
+type = "heat_line"
+points = 100
+mode = 1
+[integrator]
+method = "rodas_5p"
+until = 0.01
+)",
+                                 "heat.toml");
+  const Sampling sampling{0.0005, 20};
+  const Truth truth = find_truth(scene, sampling);
+  INFO(truth.note);
+  REQUIRE(truth.kind == TruthKind::quad);
+  CHECK(truth.note == "gragg_bulirsch_stoer in extended precision, rtol 3e-22, beside itself at 1e-20");
+  REQUIRE(truth.error);
+  CHECK(*truth.error > 0);
+  CHECK(*truth.error < 1e-17);
+  REQUIRE(truth.y.size() == 21);
+  // The sine's share of a state decays at its rate, 4 (n + 1)^2 sin^2(pi / (2 (n + 1))), whatever else rounding began.
+  const Quad part = acos(Quad(-1)) / Quad(points + 1), half = Quad(points + 1) * sin(part / Quad(2));
+  const auto share = [&](const Vector<Quad>& y) {
+    Quad sum(0);
+    for (Index i = 0; i < points; ++i) sum += y[i] * sin(part * Quad(static_cast<double>(i + 1)));
+    return sum;
+  };
+  const Quad first = share(truth.y.front());
+  for (int j = 1; j <= 20; ++j) {
+    const Quad expected = exp(-Quad(4) * half * half * sampling.exact_time(j));
+    const Quad found = share(truth.y[static_cast<std::size_t>(j)]) / first;
+    CHECK(static_cast<double>(abs(found / expected - Quad(1))) < 1e-17);
+  }
+}
+
 struct DoubleOnly {
   static constexpr auto describe() { return part<DoubleOnly>("double_only", "a spring, in doubles"); }
   void add_to(ForceSink<double>& out, const ParticleSystem<double>& s) const {
