@@ -33,11 +33,14 @@ HWY_INLINE void attract(const BodiesInStages& b, Body& body, std::ptrdiff_t j, s
   for (int k = 0; k < n; ++k) {
     const std::ptrdiff_t at = (j + k) * stages + lane;
     const Vector pull = hn::Mul(hn::Mul(G, hn::Load(d, b.m + at)), cube[k]), back = hn::Mul(body.mu, cube[k]);
-    body.ax = hn::MulAdd(pull, dx[k], body.ax);
-    body.ay = hn::MulAdd(pull, dy[k], body.ay);
-    body.az = hn::MulAdd(pull, dz[k], body.az);
+    // Products are rounded before they are added, so that pulls of bodies that mirror each other cancel to the last
+    // bit: it costs nothing that can be measured, and keeps motions that are unstable off their plane or axis of
+    // symmetry.
+    body.ax = hn::Add(body.ax, hn::Mul(pull, dx[k]));
+    body.ay = hn::Add(body.ay, hn::Mul(pull, dy[k]));
+    body.az = hn::Add(body.az, hn::Mul(pull, dz[k]));
     const auto push = [&](double* a, Vector dr) HWY_ATTR {
-      hn::Store(felt ? hn::NegMulAdd(back, dr, hn::Load(d, a + at)) : hn::Neg(hn::Mul(back, dr)), d, a + at);
+      hn::Store(felt ? hn::Sub(hn::Load(d, a + at), hn::Mul(back, dr)) : hn::Neg(hn::Mul(back, dr)), d, a + at);
     };
     push(b.ax, dx[k]);
     push(b.ay, dy[k]);

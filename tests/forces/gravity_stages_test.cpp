@@ -126,6 +126,36 @@ TEST_CASE("eight stages in lanes feel what each feels alone, tracers in one plac
   }
 }
 
+TEST_CASE("a body on an axis of symmetry feels nothing off it, to the last bit", "[lanes]") {
+  // Pairs on either side of the z axis, and a body on it, heavy or a tracer, before them or after them.
+  for (const bool before : {false, true}) {
+    for (const double mass : {0.0, 0.7}) {
+      StageSample sample(7);
+      const std::size_t own = before ? 0 : 6, first = before ? 1 : 0;
+      for (std::size_t k = 0; k < stages; ++k) {
+        sample.x[own * stages + k] = sample.y[own * stages + k] = 0;
+        sample.m[own * stages + k] = mass;
+        for (std::size_t i = first; i < first + 6; i += 2) {
+          const std::size_t one = i * stages + k, other = one + stages;
+          sample.x[other] = -sample.x[one];
+          sample.y[other] = -sample.y[one];
+          sample.z[other] = sample.z[one];
+          sample.m[one] = sample.m[other] = 0.3 + 0.1 * static_cast<double>(i);
+        }
+      }
+      for (const StageLevel& level : stage_levels()) {
+        const auto a = sample.attracted(level.optimized, 0);
+        for (std::size_t k = 0; k < stages; ++k) {
+          CAPTURE(before, mass, static_cast<int>(level.level), k);
+          CHECK(a[own * stages + k] == 0);
+          CHECK(a[(7 + own) * stages + k] == 0);
+          CHECK(a[(14 + own) * stages + k] != 0);
+        }
+      }
+    }
+  }
+}
+
 TEST_CASE("pulls are the same whether they are added or written, whoever comes first", "[lanes]") {
   for (const std::size_t n : {1U, 2U, 3U, 6U, 9U}) {
     for (const StageSample& sample : {StageSample(n), StageSample(n).with_first(0)}) {

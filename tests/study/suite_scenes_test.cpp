@@ -41,6 +41,28 @@ TEST_CASE("of the Pythagorean three bodies the lightest leaves a pair of the oth
   }
 }
 
+/// Distance of the tracer of Sitnikov's problem from the axis, v = 1.9, on a circle.
+double off_axis(const std::string& method, double x, double until) {
+  Simulation<double> run = assemble(suite_scene(
+      "sitnikov.toml", {"integrator.method=" + method, "integrator.rtol=1e-13", "integrator.atol=1e-13",
+                        "particles.body.tracer.v=[0, 0, 1.9]", fmt::format("particles.body.tracer.x=[{}, 0, 0]", x)}));
+  REQUIRE(run.run_until(until).ok());
+  const Vec3<double> at = run.particles().positions()[2];
+  return std::hypot(at[0], at[1]);
+}
+
+TEST_CASE("a tracer on Sitnikov's axis stays on it to the last bit, and off it leaves by Floquet's multiplier",
+          "[suite]") {
+  // By the variational equations, solved by an independent script: in half a period distances grow 2.9946-fold.
+  constexpr double half_period = 26.218341426, multiplier = 2.994588848;
+  for (const char* method : {"gauss_8", "gauss_radau_15", "dop853"}) {
+    CAPTURE(method);
+    CHECK(off_axis(method, 0, 6283.2) == 0);
+    const double first = off_axis(method, 1e-12, 8 * half_period), last = off_axis(method, 1e-12, 14 * half_period);
+    CHECK(std::abs(std::pow(last / first, 1.0 / 6) / multiplier - 1) < 2e-3);
+  }
+}
+
 /// How far the bodies are, after a third of a period, from where the ones before them were, or the ones behind them.
 double change_of_places(Simulation<double>& run) {
   const ParticleSystem<double> before = run.particles();
