@@ -1,13 +1,20 @@
 /// The Lennard-Jones melt of LAMMPS's bench/in.lj: density 0.8442, cutoff 2.5 (plain), step 0.005, from a face-centred
-/// lattice at temperature 1.44; whole steps with the search for neighbors.
+/// lattice at temperature 1.44. Parts, of which arguments may name some:
 ///
-/// Cases: `safe` finds neighbors when somebody has moved too far, as runs do; `fixed20` every 20 steps with a skin of
-/// 0.3 as in.lj does, which misses pairs; `user` is `safe` with a potential written for PairForce; `mixed` and
-/// `mixed_fixed20` have forces of pairs in single precision; `charged_fused` and `charged_apart` have charges in a
-/// reaction field beside it, in one loop and as a second force. Beside them LAMMPS, plain and OPT, where python3 has
-/// it, and GROMACS in double and mixed precision. Protocol: 200 steps to melt, then the median of 7 slices of 100 steps
-/// each, cases in turn; processor time of one thread, wall time of more. Then the lower levels of SIMD on one thread,
-/// and `safe` with fewer and with more atoms: what one costs, and its memory. At last what mixed precision costs: the
+/// `steps`: whole steps with the search for neighbors. `safe` finds them when somebody has moved too far, as runs do;
+/// `fixed20` every 20 steps with a skin of 0.3 as in.lj does, which misses pairs; `mixed` and `mixed_fixed20` have
+/// forces of pairs in single precision. Beside them LAMMPS, plain and OPT, where python3 has it, and GROMACS in double
+/// and mixed precision, on one thread. Then the lower levels of SIMD.
+///
+/// `pairs`: what a potential costs. All on the same molten atoms, with the same cutoff and list (skin 0.3), in steps so
+/// short that nobody moves and no list is made; each beside the built-in `lennard_jones`. `c4` is that with a switch;
+/// `user` is a struct of this file under PairForce, `user_c4` with that switch; `charged_fused` and `charged_apart`
+/// have charges in a reaction field beside `user`, in one loop and as a second force.
+///
+/// Protocol of both: slices of 100 steps, at the base level of SIMD of 20, ours and others in turn; two to settle, then
+/// the medians of 7; processor time of one thread, wall time of more.
+///
+/// `sizes`: what an atom costs among fewer and among more, and its memory. `drift`: what mixed precision costs, the
 /// drift of the energy of 4000 atoms with a C4 switch over 50 000 steps of 0.002, from the slope through block means,
 /// with its error, beside that of doubles.
 
@@ -24,8 +31,6 @@
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/schemes.hpp"
-
-#include <optional>
 
 using namespace noether;
 
@@ -73,22 +78,127 @@ struct TwelveSix {
   }
 };
 
-/// The same with charges of both signs, weak enough to leave the melt what it is.
-ParticleSystem<double> charged_lattice(int cells) {
-  ParticleSystem<double> s = lattice(cells);
-  auto& charges = s.add_column<Charge>();
-  for (Index i = 0; i < s.size(); ++i) charges[i] = i % 2 == 0 ? 0.1 : -0.1;
-  return s;
+const LennardJonesForce argon{.cutoff = 2.5, .cutoff_style = Cutoff::plain, .epsilon = 1.0, .sigma = 1.0};
+
+LennardJonesForce mixed(LennardJonesForce force) {
+  force.precision = PairPrecision::mixed;
+  return force;
+}
+LennardJonesForce switched(LennardJonesForce force) {
+  force.cutoff_style = Cutoff::switch_c4;
+  return force;
 }
 
 template <class F>
-bench::Melt melt(std::string name, ParticleSystem<double> atoms, const F& force, const NeighborOptions& options) {
+bench::Melt melt(std::string name, ParticleSystem<double> atoms, const F& force, const NeighborOptions& options,
+                 double step = 0.005) {
   KineticPotential<F> hamiltonian(force);
   hamiltonian.set_neighbor_options(options);
-  return bench::melt(std::move(name), std::move(atoms), std::move(hamiltonian), schemes::verlet, 0.005);
+  return bench::melt(std::move(name), std::move(atoms), std::move(hamiltonian), schemes::verlet, step);
 }
-template <class F> bench::Melt melt(std::string name, int cells, const F& force, const NeighborOptions& options) {
-  return melt(std::move(name), lattice(cells), force, options);
+
+std::vector<bench::Melt> whole_steps(int cells) {
+  const ParticleSystem<double> atoms = lattice(cells);
+  const NeighborOptions safe, fixed20{.skin = 0.3, .renewal = 20};
+  return {melt("fixed20", atoms, argon, fixed20), melt("safe", atoms, argon, safe),
+          melt("mixed_fixed20", atoms, mixed(argon), fixed20), melt("mixed", atoms, mixed(argon), safe)};
+}
+
+/// What runs on one core beside `whole_steps(20)`.
+std::vector<bench::Melt> other_programs() {
+  std::vector<bench::Melt> peers;
+  bench::add_peer(peers, "lammps_plain", "lammps_melt.py lj plain", 32'000);
+  bench::add_peer(peers, "lammps_opt", "lammps_melt.py lj opt", 32'000);
+  bench::add_peer(peers, "gmx_d", "gromacs_melt.py gmx_d", 32'000);
+  bench::add_peer(peers, "gmx", "gromacs_melt.py gmx", 32'000);
+  return peers;
+}
+
+/// Atoms after 300 steps, with charges of both signs, which most potentials leave alone.
+ParticleSystem<double> molten(int cells) {
+  Simulation run(lattice(cells), compose(KineticPotential(argon), schemes::verlet), 0.005);
+  static_cast<void>(run.run(300));
+  ParticleSystem<double> atoms = run.particles();
+  atoms.phase() = Phase{};
+  auto& charges = atoms.add_column<Charge>();
+  for (Index i = 0; i < atoms.size(); ++i) charges[i] = i % 2 == 0 ? 0.1 : -0.1;
+  return atoms;
+}
+
+/// The first is the yardstick. Wells are as deep and as wide as its own, or nearly so.
+std::vector<bench::Melt> pair_loops(int cells) {
+  constexpr double cutoff = 2.5;
+  constexpr Cutoff plain = Cutoff::plain;
+  const ParticleSystem<double> atoms = molten(cells);
+  const auto row = [&](const char* name, const auto& force) { return melt(name, atoms, force, {.skin = 0.3}, 1e-9); };
+  const PairForce<TwelveSix> user{{}, cutoff, plain};
+  const ReactionField field{cutoff};
+  return {row("lennard_jones", argon),
+          row("c4", switched(argon)),
+          row("user", user),
+          row("user_c4", PairForce<TwelveSix>{{}, cutoff, Cutoff::switch_c4}),
+          row("morse", MorseForce{{1, 5.35, 1.1225}, cutoff, plain}),
+          row("buckingham", BuckinghamForce{{900'000, 0.08, 3.5}, cutoff, plain}),
+          row("charged_fused", PairForce<Pair<TwelveSix, ReactionField>>{{TwelveSix{}, field}, cutoff, plain}),
+          row("charged_apart", Sum(user, ReactionFieldForce{field}))};
+}
+
+/// Rows of pair loops beside the first of them.
+void add_pair_loops(const bench::Rows& rows, std::vector<bench::Melt>& loops, int steps) {
+  bench::take_turns(loops, steps);
+  const bench::Peer yardstick{loops[0].name, loops[0].version, loops[0].time_by_atom().median};
+  for (const bench::Melt& one : loops) {
+    rows.add(one.name, "ns_per_atom_step", one.time_by_atom(), "ns", one.size, yardstick);
+  }
+}
+
+/// Repeats something at the levels of SIMD below the one in use.
+template <class Work> void at_lower_levels(const Work& work) {
+  const SimdLevel best = simd_level();
+  for (const SimdLevel level : {SimdLevel::base, SimdLevel::avx2}) {
+    if (level >= best) break;
+    set_simd_level(level);
+    work(level == SimdLevel::base ? 20 : 100);
+  }
+  set_simd_level(best);
+}
+
+void measure_steps(const bench::Rows& rows, int threads) {
+  std::vector<bench::Melt> ours = whole_steps(20);
+  for (const int by : threads > 1 ? std::vector<int>{1, threads} : std::vector<int>{1}) {
+    set_thread_count(by);
+    std::vector<bench::Melt> peers;
+    if (by == 1) peers = other_programs();
+    bench::take_turns(ours, peers, 100);
+    for (const bench::Melt& one : ours) {
+      bench::add_rate(rows, one, peers);
+      bench::add_search(rows, one);
+    }
+  }
+  set_thread_count(1);
+  at_lower_levels([&](int steps) {
+    bench::take_turns(ours, steps);
+    for (const bench::Melt& one : ours) bench::add_rate(rows, one);
+  });
+}
+
+void measure_pairs(const bench::Rows& rows) {
+  std::vector<bench::Melt> loops = pair_loops(20);
+  add_pair_loops(rows, loops, 100);
+  at_lower_levels([&](int steps) { add_pair_loops(rows, loops, steps); });
+}
+
+void measure_sizes(const bench::Rows& rows) {
+  for (const int cells : {10, 20, 50, 100}) {
+    const double before = bench::resident_bytes();
+    bench::Melt one = melt("size", lattice(cells), argon, {});
+    one.seconds(cells > 50 ? 20 : 100);
+    for (int repeat = 0; repeat < 3; ++repeat) one.take_turn(cells > 50 ? 14 : 50);
+    bench::add_rate(rows, one);
+    if (cells <= 20) continue;  // memory of the cases before is used again
+    const double bytes = (bench::resident_bytes() - before) / static_cast<double>(one.size);
+    rows.add(one.name, "bytes_per_atom", bench::Measured({bytes}), "B", one.size);
+  }
 }
 
 /// Adds the drift of the energy, and its error.
@@ -110,67 +220,14 @@ void add_drift(const bench::Rows& rows, const std::string& name, const LennardJo
 }  // namespace
 
 int main(int count, char** arguments) {
-  const bench::Rows rows("lj_melt", count, arguments);
+  const bench::Rows rows("lj_melt", count, arguments, {"steps", "pairs", "sizes", "drift"});
   const int threads = thread_count();
-  const int cells = 20, steps = 100;
-  std::vector<bench::Melt> cases;
-  const LennardJonesForce argon{.cutoff = 2.5, .cutoff_style = Cutoff::plain, .epsilon = 1.0, .sigma = 1.0};
-  LennardJonesForce mixed = argon;
-  mixed.precision = PairPrecision::mixed;
-  cases.push_back(melt("fixed20", cells, argon, {.skin = 0.3, .renewal = 20}));
-  cases.push_back(melt("safe", cells, argon, {}));
-  cases.push_back(melt("mixed_fixed20", cells, mixed, {.skin = 0.3, .renewal = 20}));
-  cases.push_back(melt("mixed", cells, mixed, {}));
-  cases.push_back(melt("user", cells, PairForce<TwelveSix>{{}, 2.5, Cutoff::plain}, {}));
-  const ReactionField field{2.5};
-  const PairForce<Pair<TwelveSix, ReactionField>> fused{{TwelveSix{}, field}, 2.5, Cutoff::plain};
-  cases.push_back(melt("charged_fused", charged_lattice(cells), fused, {}));
-  cases.push_back(melt("charged_apart", charged_lattice(cells),
-                       Sum(PairForce<TwelveSix>{{}, 2.5, Cutoff::plain}, ReactionFieldForce{field}), {}));
-  for (const int by : threads > 1 ? std::vector<int>{1, threads} : std::vector<int>{1}) {
-    set_thread_count(by);
-    bench::take_turns(cases, steps);
-    std::vector<std::optional<bench::Peer>> peers;
-    if (by == 1) {
-      peers = {bench::lammps("lammps_plain", "lj plain", 32'000), bench::lammps("lammps_opt", "lj opt", 32'000),
-               bench::gromacs("gmx_d", 32'000), bench::gromacs("gmx", 32'000)};
-      if (!peers[0]) fmt::print(stderr, "lj_melt: python3 has no lammps to compare with\n");
-      if (!peers[2]) fmt::print(stderr, "lj_melt: there is no GROMACS in double (gmx_d) to compare with\n");
-      std::erase(peers, std::nullopt);
-    }
-    if (peers.empty()) peers = {std::nullopt};
-    for (bench::Melt& one : cases) {
-      for (const auto& peer : peers) {
-        rows.add(one.name, "atom_steps_per_s", bench::Measured(one.rates), "1/s", one.size, peer);
-      }
-      bench::add_search(rows, one);
-    }
-  }
+  if (rows.wants("steps")) measure_steps(rows, threads);
   set_thread_count(1);
-  const SimdLevel best = simd_level();
-  for (const SimdLevel level : {SimdLevel::base, SimdLevel::avx2}) {
-    if (level >= best) break;
-    set_simd_level(level);
-    bench::take_turns(cases, level == SimdLevel::base ? 20 : steps);
-    for (const bench::Melt& one : cases) {
-      rows.add(one.name, "atom_steps_per_s", bench::Measured(one.rates), "1/s", one.size);
-    }
+  if (rows.wants("pairs")) measure_pairs(rows);
+  if (rows.wants("sizes")) measure_sizes(rows);
+  if (rows.wants("drift")) {
+    add_drift(rows, "double", switched(argon));
+    add_drift(rows, "mixed", mixed(switched(argon)));
   }
-  set_simd_level(best);
-  cases.clear();
-  for (const int size : {10, 20, 50, 100}) {
-    const double before = bench::resident_bytes();
-    bench::Melt one = melt("size", size, argon, {});
-    one.run(size > 50 ? 20 : 100);
-    for (int repeat = 0; repeat < 3; ++repeat) one.rates.push_back(one.rate(size > 50 ? 14 : 50));
-    rows.add(one.name, "atom_steps_per_s", bench::Measured(one.rates), "1/s", one.size);
-    if (size <= 20) continue;  // memory of the cases before is used again
-    rows.add(one.name, "bytes_per_atom",
-             bench::Measured({(bench::resident_bytes() - before) / static_cast<double>(one.size)}), "B", one.size);
-  }
-  LennardJonesForce switched = argon;
-  switched.cutoff_style = Cutoff::switch_c4;
-  add_drift(rows, "double", switched);
-  switched.precision = PairPrecision::mixed;
-  add_drift(rows, "mixed", switched);
 }

@@ -1,15 +1,15 @@
 #pragma once
-/// Melts that benchmarks drive by themselves, and LAMMPS on the same.
+/// Melts that take turns: ours, and those of other programs.
 
+#include "bench/peer_program.hpp"
 #include "bench/support.hpp"
+#include "engine/error.hpp"
 #include "engine/neighbor_options.hpp"
 #include "engine/particle_system.hpp"
 #include "integrators/composition.hpp"
 
 #include <functional>
 #include <memory>
-#include <optional>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,18 +18,23 @@ namespace noether::bench {
 
 struct Melt {
   std::string name;
-  std::function<void(int)> run;  ///< so many steps
-  std::function<NeighborStatistics()> neighbors;
   Index size = 0;
-  std::vector<double> rates = {};  ///< [1/s]
+  std::function<double(int)> seconds;                  ///< that so many steps take
+  std::function<NeighborStatistics()> neighbors = {};  ///< of ours
+  std::string version = noether::version();            ///< of the program
+  std::vector<double> rates = {};                      ///< atoms times steps in a second, turn by turn [1/s]
 
-  /// Atoms times steps in a second: of processor time on one thread, of wall time on more.
-  double rate(int steps) {
-    const auto work = [&] { run(steps); };
-    return static_cast<double>(size) * steps / (thread_count() == 1 ? processor_seconds_of(work) : seconds_of(work));
+  void take_turn(int steps) { rates.push_back(static_cast<double>(size) * steps / seconds(steps)); }
+  Measured rate() const { return Measured(rates); }
+  /// [ns]
+  Measured time_by_atom() const {
+    std::vector<double> times;
+    for (const double rate : rates) times.push_back(1e9 / rate);
+    return Measured(times);
   }
 };
 
+/// One of ours, in processor time on one thread and in wall time on more.
 template <class H>
 Melt melt(std::string name, ParticleSystem<double> atoms, H hamiltonian, const Scheme& scheme, double step) {
   struct State {
@@ -39,20 +44,55 @@ Melt melt(std::string name, ParticleSystem<double> atoms, H hamiltonian, const S
   const auto state = std::make_shared<State>(State{std::move(atoms), Composition<H>(std::move(hamiltonian), scheme)});
   state->atoms.clock() = Clock<double>::fixed(0, step);
   state->integrator.bind(state->atoms);
-  return {std::move(name),
-          [state](int steps) { static_cast<void>(state->integrator.advance(state->atoms, {.steps = steps})); },
-          [state] { return state->integrator.evaluations().neighbors.value_or(NeighborStatistics{}); },
-          state->atoms.size()};
+  const auto seconds = [state](int steps) {
+    const auto work = [&] { static_cast<void>(state->integrator.advance(state->atoms, {.steps = steps})); };
+    return thread_count() == 1 ? processor_seconds_of(work) : seconds_of(work);
+  };
+  const auto neighbors = [state] { return state->integrator.evaluations().neighbors.value_or(NeighborStatistics{}); };
+  return {std::move(name), state->atoms.size(), seconds, neighbors};
 }
 
-/// Lets melts take turns: 200 steps each to settle, then 7 slices of so many.
-inline void take_turns(std::vector<Melt>& melts, int steps) {
-  for (Melt& one : melts) {
-    one.rates.clear();
-    one.run(200);
+/// Adds the melt of another program, on one core, if it is here, and says so if it is not.
+/// @param command  a script of bench/peers: it is sent numbers of steps, and answers with their seconds
+inline void add_peer(std::vector<Melt>& peers, const std::string& name, const std::string& command, Index size) {
+  const auto program = std::make_shared<PeerProgram>(command);
+  if (!program->version()) {
+    fmt::print(stderr, "{} is not here: nothing stands beside it\n", name);
+    return;
   }
-  for (int repeat = 0; repeat < 7; ++repeat) {
-    for (Melt& one : melts) one.rates.push_back(one.rate(steps));
+  const auto seconds = [program, name](int steps) {
+    const auto answer = program->ask(std::to_string(steps));
+    if (!answer) throw Error(name + " has ended before its time");
+    return std::stod(*answer);
+  };
+  peers.push_back({name, size, seconds, {}, *program->version()});
+}
+
+/// Lets melts and those of other programs take turns: two slices of so many steps each to settle, then 7 that count.
+inline void take_turns(std::vector<Melt>& ours, std::vector<Melt>& peers, int steps) {
+  const auto each = [&](const auto& body) {
+    for (Melt& one : ours) body(one);
+    for (Melt& one : peers) body(one);
+  };
+  each([steps](Melt& one) {
+    one.rates.clear();
+    one.seconds(2 * steps);
+  });
+  for (int turn = 0; turn < 7; ++turn) {
+    each([steps](Melt& one) { one.take_turn(steps); });
+  }
+}
+inline void take_turns(std::vector<Melt>& ours, int steps) {
+  std::vector<Melt> nobody;
+  take_turns(ours, nobody, steps);
+}
+
+/// Rows of the rate of a melt, one beside each of the others.
+inline void add_rate(const Rows& rows, const Melt& melt, const std::vector<Melt>& peers = {}) {
+  constexpr auto metric = "atom_steps_per_s", unit = "1/s";
+  if (peers.empty()) rows.add(melt.name, metric, melt.rate(), unit, melt.size);
+  for (const Melt& peer : peers) {
+    rows.add(melt.name, metric, melt.rate(), unit, melt.size, Peer{peer.name, peer.version, peer.rate().median});
   }
 }
 
@@ -67,26 +107,6 @@ inline void add_search(const Rows& rows, const Melt& melt) {
   add("steps_per_search", static_cast<double>(list.updates) / searches, "1");
   add("listed_pairs", list.pairs, "1");
   add("skin", list.skin, "sigma");
-}
-
-/// What a peer's script of bench/peers prints: version, and seconds of 100 steps; nothing where the peer is absent.
-inline std::optional<Peer> peer(const std::string& name, const std::string& script, Index atoms) {
-  std::istringstream words(
-      output_of(fmt::format("OMP_NUM_THREADS=1 python3 '{}/bench/peers/{}", NOETHER_SOURCE_DIR, script)));
-  std::string version;
-  double seconds = 0;
-  if (!(words >> version >> seconds)) return {};
-  return Peer{name, version, static_cast<double>(atoms) * 100 / seconds};
-}
-
-/// LAMMPS in processor time of one core. @param melt  arguments of bench/peers/lammps_melt.py
-inline std::optional<Peer> lammps(const std::string& name, const std::string& melt, Index atoms) {
-  return peer(name, "lammps_melt.py' " + melt, atoms);
-}
-
-/// GROMACS in wall time of one core. @param program  gmx_d, or gmx for mixed precision
-inline std::optional<Peer> gromacs(const std::string& program, Index atoms) {
-  return peer(program, "gromacs_melt.py' " + program, atoms);
 }
 
 }  // namespace noether::bench

@@ -1,8 +1,8 @@
 /// The reference methods, to rounding: seconds, largest energy error and position error at the end, beside IAS15 of
 /// `rebound` and the Taylor method of `heyoka` (high accuracy) where Python has them; each is left out where it is not.
 ///
-/// Cases: the outer planets over 10 000 years, the Solar System of the example over 200 years, two bodies of e = 0.9
-/// over 1000 turns and of e = 0.9999 over 100.
+/// Cases, of which arguments may name some: `outer`, the outer planets over 10 000 years; `solar_system`, that of the
+/// example over 200 years; `kepler_0.9` and `kepler_0.9999`, two bodies of that e over 1000 turns and over 100.
 ///
 /// Protocol: 5 rounds of every method and every peer in turn, each over a hundredth of the case to warm up and then
 /// over all of it; medians of processor seconds of the run alone. Each round has its own start, 1e-9 aside of the one
@@ -10,6 +10,7 @@
 /// compared with Gauss's 8 stages in 113 bits from the same doubles. Energies are looked at every 10 steps of each
 /// program's own, in a run beside the one that is timed.
 
+#include "bench/peer_program.hpp"
 #include "bench/support.hpp"
 
 #include "engine/monitors.hpp"
@@ -155,29 +156,25 @@ double energy_error(const Case& one, const Entry& entry) {
   return energy.worst();
 }
 
-/// What another program says of a case; nothing where Python does not have it.
+/// What another program says of a case.
 struct PeerRun {
-  std::string version;
   double seconds = 0, energy_error = 0;
   Positions positions;
 };
 
-std::optional<PeerRun> run_peer(const std::string& peer, const Case& one) {
+PeerRun run_peer(bench::PeerProgram& peer, const Case& one) {
   std::vector<Json> bodies;
   for (Index i = 0; i < one.bodies.size(); ++i) {
     const Vec3<double> x = one.bodies.positions()[i], v = one.bodies.velocities()[i];
     bodies.push_back(Json::list({one.bodies.masses()[i], x[0], x[1], x[2], v[0], v[1], v[2]}));
   }
-  const std::string text =
+  const auto answer = peer.ask(
       Json::object({{"G", one.G}, {"end", one.end}, {"first_step", one.first_step}, {"bodies", Json::list(bodies)}})
-          .text();
-  const std::string command = fmt::format("echo '{}' | OMP_NUM_THREADS=1 python3 '{}/bench/peers/reference.py' {}",
-                                          text, NOETHER_SOURCE_DIR, peer);
-  const std::string answer = bench::output_of(command);
-  if (answer.empty()) return {};
-  std::istringstream words(answer);
+          .text());
+  if (!answer) throw Error("another program failed on '" + one.name + "'");
+  std::istringstream words(*answer);
   PeerRun run;
-  words >> run.version >> run.seconds >> run.energy_error;
+  words >> run.seconds >> run.energy_error;
   for (double x = 0; words >> x;) run.positions.push_back(x);
   for (std::size_t k = run.positions.size(); k-- > 3;) run.positions[k] -= run.positions[k % 3];
   for (std::size_t k = 0; k < 3; ++k) run.positions[k] = 0;
@@ -186,7 +183,6 @@ std::optional<PeerRun> run_peer(const std::string& peer, const Case& one) {
 
 /// Seconds of the rounds, and where they ended.
 struct Rounds {
-  std::string version;
   std::vector<double> seconds, energies;
   std::vector<Positions> ends;
 
@@ -202,7 +198,9 @@ struct Rounds {
   }
 };
 
-void measure(const bench::Rows& rows, const Case& one) {
+using Peers = std::map<std::string, bench::PeerProgram>;
+
+void measure(const bench::Rows& rows, const Case& one, Peers& peers) {
   constexpr int rounds = 5;
   std::vector<Entry> entries = {{"gauss_8", method("gauss_8"), 0}, {"gauss_radau_15", method("gauss_radau_15"), 0}};
   entries.push_back({"gauss_8_scalar_force", method("gauss_8"), 0, true});
@@ -221,11 +219,9 @@ void measure(const bench::Rows& rows, const Case& one) {
       const double took = bench::processor_seconds_of([&] { go(run, aside, entry); });
       ours[entry.name].add(took, energy_error(aside, entry), positions_of(run.particles()));
     }
-    for (const std::string peer : {"ias15", "heyoka"}) {
-      if (const auto run = run_peer(peer, aside)) {
-        theirs[peer].version = run->version;
-        theirs[peer].add(run->seconds, run->energy_error, run->positions);
-      }
+    for (auto& [peer, program] : peers) {
+      const PeerRun run = run_peer(program, aside);
+      theirs[peer].add(run.seconds, run.energy_error, run.positions);
     }
   }
   for (const Case& aside : starts) {
@@ -239,7 +235,8 @@ void measure(const bench::Rows& rows, const Case& one) {
     const auto add = [&](const std::string& what, const bench::Measured& here, const std::string& unit, auto of_peer) {
       if (theirs.empty()) rows.add(name, what, here, unit, one.bodies.size());
       for (const auto& [peer, there] : theirs) {
-        rows.add(name, what, here, unit, one.bodies.size(), bench::Peer{peer, there.version, of_peer(there)});
+        rows.add(name, what, here, unit, one.bodies.size(),
+                 bench::Peer{peer, *peers.at(peer).version(), of_peer(there)});
       }
     };
     add("seconds", bench::Measured(run.seconds), "s",
@@ -254,7 +251,18 @@ void measure(const bench::Rows& rows, const Case& one) {
 }  // namespace
 
 int main(int count, char** arguments) {
-  const bench::Rows rows("reference", count, arguments);
+  const bench::Rows rows("reference", count, arguments, {"outer", "solar_system", "kepler_0.9", "kepler_0.9999"});
   set_thread_count(1);
-  for (const Case& one : cases()) measure(rows, one);
+  Peers peers;
+  for (const std::string peer : {"ias15", "heyoka"}) {
+    bench::PeerProgram program("reference.py " + peer);
+    if (program.version()) {
+      peers.emplace(peer, std::move(program));
+    } else {
+      fmt::print(stderr, "{} is not here: nothing stands beside it\n", peer);
+    }
+  }
+  for (const Case& one : cases()) {
+    if (rows.wants(one.name)) measure(rows, one, peers);
+  }
 }

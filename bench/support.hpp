@@ -12,6 +12,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <ctime>
 #include <fstream>
 #include <optional>
@@ -83,22 +84,28 @@ struct Peer {
   double value = 0;
 };
 
-/// What a command writes; empty if it fails.
-inline std::string output_of(const std::string& command) {
-  FILE* pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) return {};
-  std::string answer;
-  char buffer[4096];
-  while (std::fgets(buffer, sizeof buffer, pipe) != nullptr) answer += buffer;
-  return pclose(pipe) == 0 ? answer : std::string();
-}
-
 /// Prints the rows of one benchmark.
 class Rows {
  public:
-  Rows(std::string bench, int count, char** arguments) : bench_(std::move(bench)) {
-    for (int k = 1; k < count; ++k) json_ = json_ || std::string_view(arguments[k]) == "--json";
+  /// @param parts  of which arguments may name some; another argument ends the program
+  Rows(std::string bench, int count, char** arguments, const std::vector<std::string>& parts = {})
+      : bench_(std::move(bench)) {
+    for (const std::string argument : std::vector<const char*>(arguments + 1, arguments + count)) {
+      if (argument == "--json") {
+        json_ = true;
+      } else if (std::find(parts.begin(), parts.end(), argument) != parts.end()) {
+        wanted_.push_back(argument);
+      } else {
+        fmt::print(stderr, "{} has no part '{}'; it has: {}\n", bench_, argument, fmt::join(parts, ", "));
+        std::exit(2);
+      }
+    }
     if (!json_) fmt::print("{} on {}, SIMD level {}\n", bench_, processor(), name(simd_level()));
+  }
+
+  /// Whether a part of the benchmark is to run: all are, unless arguments name some.
+  bool wants(std::string_view part) const {
+    return wanted_.empty() || std::find(wanted_.begin(), wanted_.end(), part) != wanted_.end();
   }
 
   void add(const std::string& one_case, const std::string& metric, const Measured& value, const std::string& unit,
@@ -135,6 +142,7 @@ class Rows {
  private:
   std::string bench_;
   bool json_ = false;
+  std::vector<std::string> wanted_;
 };
 
 }  // namespace noether::bench

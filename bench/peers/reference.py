@@ -1,9 +1,11 @@
-"""One reference run by another program: reference.py PEER < case.json prints one line of JSON, or nothing without it.
+"""Reference runs by another program: reference.py PEER. Greets with its version, then answers each case, one a line, with
+one line; ends at once where the program is absent. Peers are never needed: the benchmark goes on without.
 
-The case: {"G": ..., "end": ..., "bodies": [[m, x, y, z, vx, vy, vz], ...]}. The answer: version, processor seconds of the
-run alone, the largest relative energy error of a second run that is looked at every ten of its own steps, and positions
-at the end, which is the one asked for. Peers are never needed: the benchmark goes on without."""
+A case: {"G": ..., "end": ..., "first_step": ..., "bodies": [[m, x, y, z, vx, vy, vz], ...]}. The answer: processor seconds of
+the run alone, the largest relative energy error of a second run that is looked at every ten of its own steps, and positions
+at the end, which is the one asked for."""
 
+import importlib
 import json
 import sys
 import time
@@ -33,9 +35,7 @@ class EnergyError:
         self.worst = max(self.worst, float(abs((energy - self.first) / self.first)))
 
 
-def rebound_ias15(case):
-    import rebound
-
+def rebound_ias15(case, rebound):
     def start():
         sim = rebound.Simulation()
         sim.G = case["G"]
@@ -61,12 +61,10 @@ def rebound_ias15(case):
     while watched.t < case["end"]:
         watched.steps(10)
         look()
-    return rebound.__version__, seconds, error.worst, [[p.x, p.y, p.z] for p in sim.particles]
+    return seconds, error.worst, [[p.x, p.y, p.z] for p in sim.particles]
 
 
-def heyoka_taylor(case):
-    import heyoka
-
+def heyoka_taylor(case, heyoka):
     masses = [body[0] for body in case["bodies"]]
     system = heyoka.model.nbody(len(masses), masses=masses, Gconst=case["G"])
     state = [value for body in case["bodies"] for value in body[1:]]
@@ -88,15 +86,24 @@ def heyoka_taylor(case):
             error.look(compiled.state.reshape(-1, 6))
         compiled.step()
         steps += 1
-    return heyoka.__version__, seconds, error.worst, positions
+    return seconds, error.worst, positions
 
 
-PEERS = {"ias15": rebound_ias15, "heyoka": heyoka_taylor}
+PEERS = {"ias15": ("rebound", rebound_ias15), "heyoka": ("heyoka", heyoka_taylor)}
+
+
+def main(peer):
+    module, run = PEERS[peer]
+    try:
+        program = importlib.import_module(module)
+    except ImportError as error:
+        print(f"{module}: {error}", file=sys.stderr)
+        return
+    print(program.__version__, flush=True)
+    for line in sys.stdin:
+        seconds, energy_error, positions = run(json.loads(line), program)
+        print(repr(seconds), repr(energy_error), *(repr(x) for position in positions for x in position), flush=True)
+
 
 if __name__ == "__main__":
-    try:
-        version, seconds, energy_error, positions = PEERS[sys.argv[1]](json.load(sys.stdin))
-    except ImportError:
-        sys.exit(0)
-    flat = " ".join(repr(x) for position in positions for x in position)
-    print(version, repr(seconds), repr(energy_error), flat)
+    main(sys.argv[1])
