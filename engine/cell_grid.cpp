@@ -96,7 +96,7 @@ void CellGrid::lay_axes(const std::array<const double*, 3>& coordinates, Index c
     const Interval all = extent_of(coordinates[k], count);
     length[k] = std::max(all.upper - all.lower, range);
     volume *= length[k];
-    axes_[k] = Axis{all.lower, 1, 1, 1, {}};
+    axes_[k] = Axis{all.lower, 1, 1, 1, {}, 0x1p-49 * (std::abs(all.lower) + length[k])};
   }
   const double even =
       std::cbrt(points_per_cell * width_to_length * volume / static_cast<double>(std::max<Index>(count, 1)));
@@ -107,11 +107,19 @@ void CellGrid::lay_axes(const std::array<const double*, 3>& coordinates, Index c
     axis.set_edge(k == 0 ? width / width_to_length : width);
     cells *= std::floor(length[k] / axis.edge) + 1;
   }
-  const bool empty = cells > most_cells_per_point * static_cast<double>(count) + 4096;
-  double left = 1;
-  for (std::size_t k = 0; k < 3; ++k) {
-    Axis& axis = axes_[k];
-    if (empty) {
+  const double most = most_cells_per_point * static_cast<double>(count) + 4096;
+  const auto fill = [&](Axis& axis, double along) {
+    axis.occupied.clear();
+    axis.size = static_cast<Index>(std::floor(along / axis.edge)) + 1;
+  };
+  const auto fill_all = [&] {
+    for (std::size_t k = 0; k < 3; ++k) fill(axes_[k], length[k]);
+  };
+  // Only layers of cells that hold points; how many cells they cross in.
+  const auto occupy_all = [&] {
+    double crossings = 1;
+    for (std::size_t k = 0; k < 3; ++k) {
+      Axis& axis = axes_[k];
       axis.occupied.resize(at(count));
       for (Index i = 0; i < count; ++i) {
         const double number = axis.number(coordinates[k][i]);
@@ -120,20 +128,26 @@ void CellGrid::lay_axes(const std::array<const double*, 3>& coordinates, Index c
       std::sort(axis.occupied.begin(), axis.occupied.end());
       axis.occupied.erase(std::unique(axis.occupied.begin(), axis.occupied.end()), axis.occupied.end());
       axis.size = static_cast<Index>(axis.occupied.size());
-    } else {
-      axis.size = static_cast<Index>(std::floor(length[k] / axis.edge)) + 1;
+      crossings *= static_cast<double>(axis.size);
     }
-    left *= static_cast<double>(axis.size);
-  }
-  if (!empty || left <= most_cells_per_point * static_cast<double>(count) + 4096) return;
+    return crossings;
+  };
+  if (cells <= most) return fill_all();
+  if (occupy_all() <= most) return;
   // A thin gas all over: longer cells hold few points too.
   const double longer = std::cbrt(cells / (static_cast<double>(count) + 4096)) * 1.01;
+  const std::array<double, 3> edges = {axes_[0].edge, axes_[1].edge, axes_[2].edge};
+  cells = 1;
   for (std::size_t k = 0; k < 3; ++k) {
-    Axis& axis = axes_[k];
-    axis.occupied.clear();
-    axis.set_edge(std::min(axis.edge * longer, length[k]));
-    axis.size = static_cast<Index>(std::floor(length[k] / axis.edge)) + 1;
+    axes_[k].set_edge(std::min(edges[k] * longer, length[k]));
+    cells *= std::floor(length[k] / axes_[k].edge) + 1;
   }
+  if (cells <= most && std::isfinite(longer)) return fill_all();
+  // And somebody far away from it.
+  for (std::size_t k = 0; k < 3; ++k) axes_[k].set_edge(edges[k]);
+  do {
+    for (Axis& axis : axes_) axis.set_edge(1.5 * axis.edge);
+  } while (occupy_all() > most);
 }
 
 void CellGrid::sort(const std::array<const double*, 3>& coordinates, Index count, double range) {

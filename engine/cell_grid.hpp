@@ -71,6 +71,7 @@ class CellGrid {
     double lower = 0, edge = 1, inverse_edge = 1;
     Index size = 1;
     std::vector<double> occupied;  ///< numbers of the cells that are there; empty: all are
+    double rounding = 0;           ///< a point may lie so far outside of its cell [length]
 
     /// Grows with x, so that what lies between two points lies between their cells.
     double number(double x) const { return std::floor((x - lower) * inverse_edge); }
@@ -94,10 +95,10 @@ class CellGrid {
               : last >= 0  ? static_cast<Index>(last) + 1
                            : 0};
     }
-    /// Least distance from an interval to a cell [length].
+    /// Least distance from an interval to a point of a cell, or less [length].
     double distance(Index i, double from, double to) const {
       const double begin = lower + edge * (occupied.empty() ? static_cast<double>(i) : occupied[at(i)]);
-      return std::max({0.0, begin - to, from - (begin + edge)});
+      return std::max({0.0, begin - to - rounding, from - (begin + edge) - rounding});
     }
   };
 

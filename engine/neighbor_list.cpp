@@ -3,7 +3,6 @@
 #include "engine/neighbor_images.hpp"
 #include "engine/neighbor_search_simd.hpp"
 
-
 #include <algorithm>
 #include <chrono>
 #include <cstring>
@@ -21,9 +20,14 @@ constexpr double first_skin = 0.12, widest_skin = 0.64;
 /// melts with cutoffs of 1.12 and 2.5 sigma at skins of 0.2 to 0.9 sigma (bench fene_melt, lj_melt).
 constexpr double search_cost = 220, search_cost_of_pair = 5;
 static_assert(NeighborList::shells == neighbor_shells);
-/// What everybody may go, in skins, before particles are sorted into cells again: cells are searched so much further,
-/// and images laid out.
-constexpr double slack = 1.65;
+/// What two particles may come nearer to each other, in skins, before particles are sorted into cells again: images are
+/// laid out so much further, for who has left the box looks for one that has come towards him. (In melts two searches
+/// follow a sort then; more would cost memory.)
+constexpr double slack = 2.2;
+/// What rounding may take from a distance in doubles, many times over.
+constexpr double rounding_of_doubles = 1e-9;
+/// Whether images three edges away can come into range.
+bool reaches_far(double range, double edge) { return range > 0.75 * edge; }
 /// A record far from all others, whose squared distances are numbers.
 constexpr double nowhere = 1e140;
 /// The same in whole numbers: the box and its images take up less than half of them, around 0.
@@ -99,13 +103,22 @@ bool NeighborList::is_fresh(const ParticleSystem<double>& s) const {
 /// The skin that costs least if particles go on moving as fast: what an update costs is the pairs it goes through, and
 /// its part of a search.
 void NeighborList::choose_skin() {
+  double widest = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3 && box_.is_periodic(); ++k) {
+    // Those in range of a particle that has left the box by half of the skin are no further out than is exact, nor are
+    // the shifts that put them there: two edges always are.
+    const double edge = box_.edges()[k], exact = std::ldexp(spacing_[k], 53);
+    widest = std::min(widest, 2 * (exact - edge / 2 - range_));
+    widest = std::min(widest, reaches_far(range_, edge) ? exact - edge - range_ : 2 * edge - range_);
+  }
+  // Whole numbers have room for images up to twice as far out.
+  if (keep_whole_) widest = std::min(widest, range_ + box_.edges().maxCoeff() / 2);
   if (options_.skin > 0) {
-    // Whole numbers have room for images up to twice as far out.
-    skin_ = keep_whole_ ? std::min(options_.skin, range_ + box_.edges().maxCoeff() / 2) : options_.skin;
+    skin_ = std::min(options_.skin, widest);
     return;
   }
   if (skin_ == 0 || age_ <= 1) {
-    skin_ = std::max(skin_, first_skin * range_);
+    skin_ = std::min(std::max(skin_, first_skin * range_), widest);
     return;
   }
   const double speed = skin_ / static_cast<double>(age_);
@@ -116,15 +129,30 @@ void NeighborList::choose_skin() {
     const double cost = pairs + (search_cost + search_cost_of_pair * pairs) * speed / skin;
     if (cost < least) least = cost, best = skin;
   }
-  skin_ = (skin_ + best) / 2;
+  skin_ = std::min((skin_ + best) / 2, widest);
+}
+
+/// Powers of two that depend on box and range alone: images that particles in the box see, as far as the range and
+/// more, and the shifts that put them there lie within 2^53 of them, where sums and differences of whole numbers are
+/// exact.
+void NeighborList::choose_spacing() {
+  if (!box_.is_periodic()) return;
+  for (int k = 0; k < 3; ++k) {
+    const double edge = box_.edges()[k];
+    spacing_[k] = box_.spacing(k);
+    const double furthest = reaches_far(range_, edge) ? edge + 1.5 * range_ : edge / 2 + 1.25 * range_;
+    while (std::ldexp(spacing_[k], 53) < furthest + spacing_[k]) spacing_[k] *= 2;
+    record_edges_[k] = on_spacing(k, edge);
+  }
 }
 
 /// @param moved  what a particle has gone at most since the last search [length]
 void NeighborList::search(const ParticleSystem<double>& s, double moved, Numbers numbers) {
   box_ = s.box();
+  choose_spacing();
   choose_skin();
   drift_ += moved;
-  if (!(range_ + skin_ + drift_ <= laid_for_)) {
+  if (!(range_ + skin_ + 2 * drift_ <= laid_for_)) {
     sort_into_cells(s);
   } else if (numbers != Numbers::doubles) {
     static_cast<void>(take_positions(s, Numbers::doubles));
@@ -154,7 +182,7 @@ void NeighborList::sort_into_cells(const ParticleSystem<double>& s) {
     topology_ = s.shared_topology();
     take_exclusions(s);
   }
-  place_points(s, laid_for_);
+  place_points(s, laid_for_ * (1 + rounding_of_doubles));
   grid_.sort({points_[0].data(), points_[1].data(), points_[2].data()}, static_cast<Index>(owner_.size()), reach);
   lay_out(s);
   form_groups();
@@ -197,8 +225,11 @@ void NeighborList::place_points(const ParticleSystem<double>& s, double reach) {
   shift_.assign(at(n), 0);
   for_blocks(n, [&](Index begin, Index end) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const double* x = s.positions().component(static_cast<int>(k));
-      for (Index i = begin; i < end; ++i) points_[k][at(i)] = x[i] - middle_[static_cast<Index>(k)];
+      const int axis = static_cast<int>(k);
+      const double* x = s.positions().component(axis);
+      for (Index i = begin; i < end; ++i) points_[k][at(i)] = x[i] - middle_[axis];
+      if (!has_coarse_spacing(axis)) continue;
+      for (Index i = begin; i < end; ++i) points_[k][at(i)] = on_spacing(axis, points_[k][at(i)]);
     }
     for (Index i = begin; i < end; ++i) owner_[at(i)] = static_cast<std::int32_t>(i);
   });
@@ -224,7 +255,7 @@ void NeighborList::add_images(int k, int most, std::int32_t stride, double reach
   std::vector<std::size_t> places(at(count / block_size + 2));  // where the images of a block of points begin
   for (int a = -most; a <= most; ++a) {
     if (a == 0) continue;
-    const double by = a * box_.edges()[k];
+    const double by = a * record_edges_[k];
     const auto is_near = [&](Index p) {
       const double x = points_[at(k)][at(p)] + by;
       return x >= lower && x <= upper;
@@ -399,11 +430,18 @@ bool NeighborList::find_all() {
 struct NeighborList::Surroundings {
   CellGrid::Bounds bounds;
   SearchBox box;
-  float limits[shells];  ///< squares of the shells' radii, and of what rounding may add to a distance
+  float limits[shells];  ///< squares of the shells' radii and of what rounding may add to a distance
   /// The group is so far out that single precision tells distances only relative to it.
   bool far;
   std::array<double, 3> origin;
 };
+
+/// What distances of whole numbers in single precision may be shorter than true ones: each place is rounded, and so are
+/// the edges between two; the rest is that of single precision. [length]
+double NeighborList::reading_error() const {
+  if (!keep_whole_) return 0;
+  return whole_spacing() * (5 + shell_radius(shells - 1) / box_.edges().minCoeff()) + 0x1p-22 * range_;
+}
 
 NeighborList::Surroundings NeighborList::surroundings(const std::array<std::int32_t, group_size>& own) const {
   constexpr double rounding = 8 * 0x1p-24, most = 0.02;
@@ -429,7 +467,7 @@ NeighborList::Surroundings NeighborList::surroundings(const std::array<std::int3
     around.box.half[k] = static_cast<float>(half);
   }
   for (int shell = 0; shell < shells; ++shell) {
-    const double limit = shell_radius(shell) + rounding * (around.far ? extent : size);
+    const double limit = shell_radius(shell) + rounding * (around.far ? extent : size) + reading_error();
     around.limits[shell] = static_cast<float>(limit * limit * (1 + 0x1p-20));
   }
   return around;
@@ -439,7 +477,7 @@ NeighborList::Surroundings NeighborList::surroundings(const std::array<std::int3
 SearchPoints NeighborList::candidates(const Surroundings& around, Scratch& scratch) const {
   Index count = 0;
   scratch.runs.clear();
-  grid_.near(around.bounds, shell_radius(shells - 1) * (1 + 1e-9) + drift_, [&](Index from, Index to) {
+  grid_.near(around.bounds, shell_radius(shells - 1) * (1 + rounding_of_doubles) + drift_, [&](Index from, Index to) {
     if (from == to) return;
     const auto begin = static_cast<std::int32_t>(from);
     scratch.runs.push_back({begin, static_cast<std::int32_t>(to - from), begin});

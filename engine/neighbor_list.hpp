@@ -113,6 +113,9 @@ class NeighborList {
   double coordinate(Index record, std::size_t axis) const { return records_[at(4 * record) + axis]; }
   bool is_fresh(const ParticleSystem<double>& s) const;
   void move_or_search(const ParticleSystem<double>& s, Numbers numbers);
+  void choose_spacing();
+  bool has_coarse_spacing(int k) const { return box_.is_periodic() && spacing_[k] > box_.spacing(k); }
+  double on_spacing(int k, double x) const { return std::nearbyint(x / spacing_[k]) * spacing_[k]; }
   double take_positions(const ParticleSystem<double>& s, Numbers numbers);
   template <class Put, class Shift>
   double move_records(const ParticleSystem<double>& s, const Put& put, const Shift& shift);
@@ -131,6 +134,7 @@ class NeighborList {
   void take_exclusions(const ParticleSystem<double>& s);
   /// Pairs up to this distance when they were found stand in the rows of a shell [length].
   double shell_radius(int shell) const { return range_ + skin_ * (shell + 1) / shells; }
+  double reading_error() const;
   bool find_all();
   Surroundings surroundings(const std::array<std::int32_t, group_size>& own) const;
   SearchPoints candidates(const Surroundings& around, Scratch& scratch) const;
@@ -152,6 +156,9 @@ class NeighborList {
   // What the last search was made for.
   Box box_;
   Vec3<double> middle_ = Vec3<double>::Zero();  ///< of the box, on its grid
+  /// What places in records are whole numbers of: the grid of the box, or a coarser one where images reach so far out
+  /// that doubles would round them there. Beside it the edges in whole numbers of it; both in periodic boxes alone.
+  Vec3<double> spacing_ = Vec3<double>::Zero(), record_edges_ = Vec3<double>::Zero();
   std::uint64_t members_ = 0;
   std::shared_ptr<const Topology> topology_;
   std::array<AlignedVector<double>, 3> start_;  ///< positions then, relative to the middle, by particle

@@ -31,13 +31,13 @@ class NeighborList::WholeNumbers {
 void NeighborList::number_shifts(const std::array<int, 3>& most) {
   shifts_.clear();
   whole_shifts_.clear();
-  const Vec3<double>& edges = box_.edges();
+  const Vec3<double>&edges = box_.edges(), &steps = record_edges_;
   const WholeNumbers whole(keep_whole_ ? whole_spacing() : 1);
   const std::array<std::int32_t, 3> whole_edges = {whole(edges[0]), whole(edges[1]), whole(edges[2])};
   for (int c = -most[2]; c <= most[2]; ++c) {
     for (int b = -most[1]; b <= most[1]; ++b) {
       for (int a = -most[0]; a <= most[0]; ++a) {
-        shifts_.emplace_back(a * edges[0], b * edges[1], c * edges[2]);
+        shifts_.emplace_back(a * steps[0], b * steps[1], c * steps[2]);
         if (keep_whole_) whole_shifts_.push_back({a * whole_edges[0], b * whole_edges[1], c * whole_edges[2]});
       }
     }
@@ -48,10 +48,16 @@ void NeighborList::number_shifts(const std::array<int, 3>& most) {
 double NeighborList::take_positions(const ParticleSystem<double>& s, Numbers numbers) {
   if (numbers == Numbers::doubles) {
     double* records = records_.data();
-    const auto put = [=](std::int32_t r, int k, double place, double edges) { records[4 * r + k] = place - edges; };
     const auto shift = [=, shifts = shifts_.data()](const Ghost& ghost, int k) {
       records[4 * ghost.record + k] = records[4 * ghost.of + k] + shifts[ghost.shift][k];
     };
+    if (has_coarse_spacing(0) || has_coarse_spacing(1) || has_coarse_spacing(2)) {
+      const auto put = [=, this](std::int32_t r, int k, double place, double edges) {
+        records[4 * r + k] = on_spacing(k, place) - (edges > 0 ? record_edges_[k] : edges < 0 ? -record_edges_[k] : 0);
+      };
+      return move_records(s, put, shift);
+    }
+    const auto put = [=](std::int32_t r, int k, double place, double edges) { records[4 * r + k] = place - edges; };
     return move_records(s, put, shift);
   }
   const WholeNumbers whole(whole_spacing());
@@ -88,7 +94,7 @@ double NeighborList::move_records(const ParticleSystem<double>& s, const Put& pu
         dx -= cx, dy -= cy, dz -= cz;
       }
       const double moved2 = dx * dx + dy * dy + dz * dz;
-      if (!(moved2 <= block)) block = moved2;
+      if (!(moved2 <= block) && block == block) block = moved2;  // what is no number stays
       const std::int32_t r = record_of_[at(i)];
       put(r, 0, px, cx);
       put(r, 1, py, cy);

@@ -62,6 +62,26 @@ TEST_CASE("a list that is some steps old gives the bits of a new one", "[lennard
   test::check_old_lists(argon(Cutoff::plain), liquid(4, 0.85, 1.5, 0.1), 2.5);
 }
 
+TEST_CASE("in a box smaller than the range bits depend on no list either, and forces add up to nothing",
+          "[lennard_jones][determinism]") {
+  // Edges short of a power of two: images lie where doubles have coarser steps than in the box.
+  const double edge = GENERATE(3.9, 1.95, 1.3), reaches = GENERATE(0.48, 0.9, 1.2, 1.9);
+  const LennardJonesForce force{.cutoff = reaches * edge, .epsilon = 1.0, .sigma = edge / 1.6};
+  for (unsigned seed = 1; seed <= 25; ++seed) {
+    ParticleSystem<double> s = liquid(1, 4 / std::pow(edge, 3), 1, 0.05 * edge, seed);
+    NeighborList old(force.cutoff, {.skin = 0.09 * edge});
+    static_cast<void>(evaluated<double>(force, s, &old));
+    s.scale_velocities(0.03 * edge / s.velocities().all().cwiseAbs().maxCoeff());
+    s.advance_positions(0.8);  // across faces, and less far than the list lasts
+    const Evaluated by_old = evaluated<double>(force, s, &old), by_new = evaluated<double>(force, s);
+    REQUIRE_FALSE(by_new.failure);
+    REQUIRE(old.statistics().searches == 1);
+    REQUIRE(by_old.a.all() == by_new.a.all());
+    REQUIRE(by_old.energy == by_new.energy);
+    test::check_sum_is_zero(by_new.a, std::exp2(std::ceil(std::log2(24 / *force.sigma)) - 47));
+  }
+}
+
 TEST_CASE("pairs that are strong are summed to the same grid as all others", "[lennard_jones]") {
   // From the range of the quick sums to beyond it: 24/r (2/r^12 - 1/r^6) is 2^9 at r = 0.824.
   for (const double r : {0.9, 0.86, 0.83, 0.8, 0.7, 0.6, 0.5}) {
