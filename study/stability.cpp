@@ -1,6 +1,7 @@
 #include "study/stability.hpp"
 
 #include "integrators/methods.hpp"
+#include "study/growth.hpp"
 
 #include <fmt/format.h>
 
@@ -14,7 +15,7 @@ namespace noether {
 namespace {
 
 /// The drag of a scene, if it has one [1/time].
-double drag_of(const Scene& scene) {
+double drag_in(const Scene& scene) {
   for (const SceneForce& force : scene.hamiltonian.forces) {
     if (force.drag) return force.drag->rate;
   }
@@ -23,18 +24,23 @@ double drag_of(const Scene& scene) {
 
 Mode mode_of(const Scene& scene, const Spectrum& spectrum) {
   if (scene.system) return {.omega = 0, .rate = 0, .lambda = spectrum.stiffest};
-  return {.omega = spectrum.fastest, .rate = drag_of(scene), .lambda = {}};
+  return {.omega = spectrum.fastest, .rate = drag_in(scene), .lambda = {}};
+}
+
+/// What h is multiplied by in the search [1/time]: the scale of the mode; where nothing oscillates, a hundredth of the
+/// scene's own step stands for one of the search.
+double scale_of(const Scene& scene, const Mode& mode) {
+  if (mode.scale() > 0) return mode.scale();
+  return 0.2 / std::abs(scene.integrator.step > 0 ? scene.integrator.step : 1);
 }
 
 /// One row on its way.
 class Search {
  public:
-  Search(const Scene& scene, const Stability& all, const StabilityOptions& options, StabilityRow& row)
-      : scene_(scene), options_(options), row_(row), begin_(std::chrono::steady_clock::now()) {
-    scale_ = all.mode.scale();
-    oscillates_ = scale_ > 0;
-    // Where nothing oscillates, a hundredth of the scene's own step stands for one of the search.
-    if (!oscillates_) scale_ = 0.2 / std::abs(scene.integrator.step > 0 ? scene.integrator.step : 1);
+  Search(const Scene& scene, const Stability& all, const StabilityOptions& options, Growth& growth, StabilityRow& row)
+      : scene_(scene), options_(options), growth_(growth), row_(row), begin_(std::chrono::steady_clock::now()) {
+    scale_ = scale_of(scene, all.mode);
+    oscillates_ = all.mode.scale() > 0;
     bounds_ = {.frequency = scale_, .linear = all.linear};
   }
 
@@ -58,7 +64,11 @@ class Search {
 
   Trial attempt(double z, std::int64_t steps) {
     if (options_.progress) options_.progress(fmt::format("{}, h omega = {:.3f}", row_.who.label, z));
-    const Trial trial = try_step(scene_, row_.who, z / scale_, steps, bounds_, std::max(left(), 0.01));
+    const double step = z / scale_;
+    Trial trial = try_step(scene_, row_.who, step, steps, bounds_, std::max(left(), 0.01));
+    row_.steps += trial.steps;
+    if (!growth_.explains(trial, step * static_cast<double>(trial.steps), left() / 4, bounds_)) return trial;
+    trial = try_step(scene_, row_.who, step, steps, bounds_, std::max(left(), 0.01));
     row_.steps += trial.steps;
     return trial;
   }
@@ -230,6 +240,7 @@ class Search {
 
   const Scene& scene_;
   const StabilityOptions& options_;
+  Growth& growth_;
   StabilityRow& row_;
   std::chrono::steady_clock::time_point begin_;
   Trial failed_;  ///< the last run that was not bounded
@@ -334,6 +345,7 @@ Stability find_stability(const Scene& scene, const StabilityOptions& options) {
   found.linear = !constrained && is_linear(scene);
   found.mode = mode_of(scene, found.spectrum);
   check_motion(scene, found.spectrum.fastest > 0 ? found.spectrum.fastest : 1);
+  Growth growth(scene, scale_of(scene, found.mode));
   for (const Opponent& who : methods) {
     StabilityRow row;
     row.who = who;
@@ -342,7 +354,8 @@ Stability find_stability(const Scene& scene, const StabilityOptions& options) {
     if (along_arcs && !found.kepler) found.kepler = kepler_steps(scene);
     const std::optional<KeplerSteps> kepler = along_arcs ? found.kepler : std::nullopt;
     if (kepler) row.theory.resonances = resonances_of(*kepler, found.mode.scale());
-    Search(scene, found, options, row).run();
+    Search(scene, found, options, growth, row).run();
+    found.solution_leaves = growth.leaves();
     const double scale = found.mode.scale();
     if (scale > 0) {
       row.recommended_step = recommended(row, scale, kepler);

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,6 +43,8 @@ struct Bounds {
   double frequency = 1;  ///< weighs positions against velocities [1/time]
   bool linear = false;   ///< then growth by `growth_threshold` a step counts too, but for symplectic methods
   double most = 1e3;     ///< times the amplitude of the start
+  /// Runs of fixed steps are judged up to here, where the solution itself begins to leave all bounds [time].
+  double until = std::numeric_limits<double>::infinity();
 };
 
 /// How far a run goes: so many steps, or, where the method chooses them, so long [time].
@@ -101,7 +104,8 @@ struct Stability {
   Spectrum spectrum = {};
   Mode mode = {};
   bool linear = false;
-  std::optional<KeplerSteps> kepler = {};  ///< where a method steps along Kepler arcs
+  std::optional<double> solution_leaves = {};  ///< when the solution itself is 100 times as large [time]: see `Growth`
+  std::optional<KeplerSteps> kepler = {};      ///< where a method steps along Kepler arcs
   std::vector<StabilityRow> rows = {};
 };
 
@@ -111,6 +115,8 @@ struct Stability {
 /// allows, and of linear theory's gaps and n:1 resonances each is looked at whether the search meets it or not. Below
 /// the first unstable point a run of `confirm_steps` must be bounded; if it is not, the search goes down, and up again
 /// in runs of that length. The limit is then found by halving, to 1e-5 of omega h, and so is the end of the gap.
+///
+/// Where the solution itself leaves all bounds, as a body that falls or escapes, runs are judged up to when it does.
 ///
 /// Recommended: the step of the accuracy that leapfrog has with 20 steps in the shortest period (see `LinearTheory`),
 /// at most half the limit; along Kepler arcs, that of `KeplerSteps` instead. Of those, linear theory knows no limit:
@@ -134,6 +140,9 @@ std::string to_html(const Stability& found);
 
 /// What is known of Kepler arcs, in sentences; none where no method steps along them.
 std::vector<std::string> kepler_lines(const Stability& found);
+
+/// That the solution itself leaves all bounds, in a sentence; none where it does not.
+std::vector<std::string> growth_lines(const Stability& found);
 
 /// Why a row has its limit, in words: "linear", "resonance 3:1", "solver, not settled", "not settled".
 std::string reason_text(const StabilityRow& row);

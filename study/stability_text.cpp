@@ -55,6 +55,14 @@ std::vector<std::string> kepler_lines(const Stability& found) {
   return lines;
 }
 
+std::vector<std::string> growth_lines(const Stability& found) {
+  if (!found.solution_leaves) return {};
+  const std::string unit = found.time_unit == "1" ? "" : " " + found.time_unit;
+  return {fmt::format(
+      "the solution itself is 100 times as large as at the start after {:.5g}{}: runs are judged up to there",
+      *found.solution_leaves, unit)};
+}
+
 std::string to_json(const Stability& found) {
   const auto time = [&](const std::optional<double>& x) { return Json(x); };
   std::vector<Json> rows;
@@ -88,6 +96,7 @@ std::string to_json(const Stability& found) {
                        {"omega", positive(found.spectrum.fastest)},
                        {"shortest_period", positive(found.spectrum.shortest_period())},
                        {"linear", found.linear},
+                       {"solution_leaves", Json(found.solution_leaves)},
                        {"growth_threshold", growth_threshold},
                        {"kepler", found.kepler ? json_of(*found.kepler) : Json()},
                        {"rows", Json::list(rows)}})
@@ -106,6 +115,7 @@ std::string to_text(const Stability& found) {
     out += "no oscillation is known; steps alone are told\n";
   }
   for (const std::string& line : kepler_lines(found)) out += plain_line(line) + "\n";
+  for (const std::string& line : growth_lines(found)) out += line + "\n";
   out += fmt::format("{:<28} {:>12} {:>10} {:>10} {:<18} {:>10} {:>13} {:>7}\n", "method", "limit step", "h omega",
                      "theory", "reason", "gap end", "recommended", "s");
   for (const StabilityRow& row : found.rows) {

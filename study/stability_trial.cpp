@@ -110,6 +110,10 @@ Trial follow(Simulation<double>& sim, const RunLength& length, const Amplitude& 
 
 Trial try_step(const Scene& scene, const Opponent& who, double step, std::int64_t steps, const Bounds& bounds,
                double budget) {
+  if (bounds.until < static_cast<double>(steps) * std::abs(step)) {
+    steps = static_cast<std::int64_t>(bounds.until / std::abs(step));
+    if (steps < 1) return {};  // nothing is left to be judged
+  }
   Simulation<double> sim = assemble(variant(scene, who, {.step = step, .tolerance = 0}));
   return follow(sim, {.steps = steps, .until = 0}, Amplitude(scene, bounds.frequency), bounds, budget);
 }

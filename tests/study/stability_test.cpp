@@ -231,6 +231,80 @@ TEST_CASE("a limit that is not settled is no missing limit: the bound below it i
   }
 }
 
+/// What moves freely in a field of constant acceleration g along -y.
+Scene falling(const std::string& bodies, const std::string& forces, double g, double step) {
+  return read_scene(fmt::format(R"(units = "reduced"
+[particles]
+body = [{}]
+[hamiltonian]
+type = "kinetic_potential"
+{}
+[[hamiltonian.force]]
+type = "uniform_field"
+acceleration = [0, {}, 0]
+[integrator]
+method = "verlet"
+step = {}
+steps = 1000
+)",
+                                bodies, forces, -g, step),
+                    "falling.toml");
+}
+
+TEST_CASE("a ball that falls is no fault of a step: the solution itself leaves, and the report says so",
+          "[stability]") {
+  const Scene scene = falling(R"({ name = "ball", mass = 1, x = [0, 0, 0], v = [1, 0, 0] })", "", 1, 0.1);
+  StabilityOptions options;
+  options.methods = {"verlet", "rk4", "implicit_midpoint"};
+  const Stability found = find_stability(scene, options);
+  INFO(to_text(found));
+  // Positions weigh twice as much as velocities: A^2 = 1 + t^2 + 4 (t^2 + t^4 / 4) is 10^4 at t = 9.8755.
+  REQUIRE(found.solution_leaves);
+  CHECK(*found.solution_leaves >= 9.8755);
+  CHECK(*found.solution_leaves < 9.92);
+  for (const StabilityRow& row : found.rows) {
+    CAPTURE(row.who.label);
+    CHECK(row.reason == "none");
+    CHECK(row.settled);
+    CHECK_FALSE(row.limit_step);
+  }
+  const std::string said = "the solution itself is 100 times as large as at the start after 9.8";
+  CHECK(to_text(found).find("\n" + said) != std::string::npos);
+  CHECK(to_html(found).find(">" + said) != std::string::npos);
+  CHECK(to_json(found).find("\"solution_leaves\":9.8") != std::string::npos);
+}
+
+TEST_CASE("a pair on a spring that falls has the limit of the spring", "[stability][slow]") {
+  const Scene scene = falling(R"({ name = "a", mass = 1, x = [0, 0, 0], v = [0, 0, 0] },
+{ name = "b", mass = 1, x = [0.1, 0, 0], v = [0, 0, 0] })",
+                              R"([[hamiltonian.force]]
+type = "harmonic_bond"
+pairs = [["a", "b"]]
+k = 50)",
+                              1e-3, 0.01);
+  StabilityOptions options;
+  options.methods = {"verlet"};
+  options.row_budget = 100;
+  const Stability found = find_stability(scene, options);
+  INFO(to_text(found));
+  REQUIRE(found.solution_leaves);  // A = 1 at the start, omega = 10: 10 sqrt(2) g t^2 / 2 is 100 at t = 118.9
+  CHECK(std::abs(*found.solution_leaves - 118.9) < 0.5);
+  const StabilityRow& row = found.rows.at(0);
+  CHECK(row.settled);
+  CHECK(row.reason == "linear");
+  CHECK(std::abs(row.limit_h_omega.value() - 2) < 1e-3);
+}
+
+TEST_CASE("what stays has no time at which the solution leaves", "[stability]") {
+  StabilityOptions options;
+  options.methods = {"euler"};
+  options.row_budget = 1;
+  const Stability found = find_stability(ball(), options);
+  CHECK_FALSE(found.solution_leaves);
+  CHECK(growth_lines(found).empty());
+  CHECK(to_json(found).find("\"solution_leaves\":null") != std::string::npos);
+}
+
 TEST_CASE("drag moves limits as the theory of its letter says", "[stability][slow]") {
   const Scene scene = oscillator("method = \"euler\"\nstep = 0.1\nsteps = 1000", 0.2);
   const StabilityRow row = row_of(scene, "euler");

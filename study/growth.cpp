@@ -1,0 +1,40 @@
+#include "study/growth.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace noether {
+
+void Growth::look(double time, double budget, const Bounds& bounds) {
+  if (leaves_ || !(time > known_)) return;
+  known_ = time;  // asked once: what takes too long, or has no reference, explains nothing
+  try {
+    const Opponent who = opponent(scene_, "dop853");
+    Simulation<double> sim = assemble(variant(scene_, who, {.step = 0, .tolerance = 1e-12}));
+    const double most = bounds.most / 10;
+    const Trial trial = follow(sim, {.steps = 0, .until = time}, Amplitude(scene_, frequency_),
+                               {.frequency = frequency_, .linear = false, .most = most}, budget);
+    largest_ = std::max(largest_, trial.largest);
+    if (trial.verdict == Bounded::unbounded && trial.largest > most) leaves_ = sim.time();
+  } catch (const Error&) {
+    return;
+  }
+}
+
+bool Growth::explains(const Trial& run, double time, double budget, Bounds& bounds) {
+  if (run.verdict != Bounded::unbounded) return false;
+  look(time, budget, bounds);
+  bool changed = false;
+  if (leaves_ && *leaves_ < bounds.until) {
+    bounds.until = *leaves_;
+    changed = true;
+  }
+  const double grown = run.growth * static_cast<double>(run.steps);  // of the logarithm; 0: it left at once
+  if (bounds.linear && grown > 0 && largest_ > 1.01 && std::log(largest_) > grown / 2) {
+    bounds.linear = false;
+    changed = true;
+  }
+  return changed;
+}
+
+}  // namespace noether
