@@ -62,6 +62,15 @@ void Topology::scale_by_bonds(Index n, const std::array<double, 3>& factors) {
   }
 }
 
+void Topology::exclude(const std::vector<Pair>& pairs) {
+  for (const Pair& pair : pairs) exclusions.emplace_back(std::minmax(pair.first, pair.second));
+  std::sort(exclusions.begin(), exclusions.end());
+  exclusions.erase(std::unique(exclusions.begin(), exclusions.end()), exclusions.end());
+  std::erase_if(scaled_pairs, [&](const ScaledPair& scaled) {
+    return std::binary_search(exclusions.begin(), exclusions.end(), scaled.pair);
+  });
+}
+
 bool Topology::is_special(Index i, Index j) const {
   const Pair pair(std::min(i, j), std::max(i, j));
   if (std::binary_search(exclusions.begin(), exclusions.end(), pair)) return true;

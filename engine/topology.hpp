@@ -97,6 +97,8 @@ struct Topology {
   /// excludes a pair, 1 leaves it alone. The shortest path counts.
   /// @param n  number of particles
   void scale_by_bonds(Index n, const std::array<double, 3>& factors);
+  /// Takes away the pair forces of these pairs too, whatever their bonds have left of them.
+  void exclude(const std::vector<Pair>& pairs);
 };
 
 }  // namespace noether

@@ -8,6 +8,10 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <memory>
+#include <set>
+#include <unordered_map>
+#include <utility>
 
 namespace noether {
 
@@ -110,6 +114,41 @@ std::array<double, 3> read_special(TableReader& reader, SceneValue& effective) {
   for (const double factor : special) list.push_back(SceneValue::of(factor));
   effective.put("special", SceneValue::of(std::move(list), reader.line("special")));
   return special;
+}
+
+void read_exclusions(TableReader& reader, ParticleSystem<double>& s, SceneValue& effective) {
+  const SceneValue* value = reader.find("exclusions");
+  if (value == nullptr) return;
+  const auto* list = value->get<SceneValue::Array>();
+  if (list == nullptr) {
+    reader.fail("exclusions", fmt::format("exclusions = {} lists no pairs; ids of particles are expected, such as "
+                                          "[[1, 5], [2, 7]]",
+                                          to_text(*value)));
+  }
+  std::unordered_map<std::int64_t, Index> index;
+  for (Index i = 0; i < s.size(); ++i) index.emplace(s.ids()[static_cast<std::size_t>(i)], i);
+  std::set<Topology::Pair> pairs;
+  for (const SceneValue& one : *list) {
+    const auto refuse = [&](const std::string& why) {
+      reader.fail(one.line != 0 ? &one : value, "exclusions", fmt::format("exclusions holds {}{}", to_text(one), why));
+    };
+    const auto* ids = one.get<SceneValue::Array>();
+    if (ids == nullptr || ids->size() != 2) refuse("; two ids are expected, such as [1, 5]");
+    std::array<Index, 2> pair{};
+    for (std::size_t k = 0; k < 2; ++k) {
+      const auto* id = (*ids)[k].get<std::int64_t>();
+      if (id == nullptr) refuse("; two ids are expected, such as [1, 5]");
+      const auto found = index.find(*id);
+      if (found == index.end()) refuse(fmt::format(", but there is no particle with id {}", *id));
+      pair[k] = found->second;
+    }
+    if (pair[0] == pair[1]) refuse(", a particle beside itself; ids of two are expected");
+    if (!pairs.insert(std::minmax(pair[0], pair[1])).second) refuse(", a pair that stands there already; take one out");
+  }
+  Topology topology = s.topology() != nullptr ? *s.topology() : Topology{};
+  topology.exclude({pairs.begin(), pairs.end()});
+  s.set_topology(std::make_shared<const Topology>(std::move(topology)));
+  effective.put("exclusions", *value);
 }
 
 std::vector<TypeParameters> read_types(TableReader& reader, SceneValue& effective) {

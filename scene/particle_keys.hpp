@@ -32,6 +32,9 @@ std::optional<Mixing> read_mixing(TableReader& reader, SceneValue& effective);
 /// `special = [s12, s13, s14]`. @throws SceneError
 std::array<double, 3> read_special(TableReader& reader, SceneValue& effective);
 
+/// `exclusions = [[1, 5], [2, 7]]`: takes away the pair forces of particles of these ids. @throws SceneError
+void read_exclusions(TableReader& reader, ParticleSystem<double>& s, SceneValue& effective);
+
 /// `[[particles.type]]` and `[[particles.pair]]`. @throws SceneError
 std::vector<TypeParameters> read_types(TableReader& reader, SceneValue& effective);
 std::vector<PairParameters> read_pairs(TableReader& reader, SceneValue& effective);

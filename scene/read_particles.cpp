@@ -159,7 +159,7 @@ void add_body(TableReader& body, ParticleSystem<double>& s, std::unordered_set<s
 }
 
 ParticleSystem<double> from_file(TableReader& reader, const std::filesystem::path& folder, SceneValue& effective) {
-  reader.expect_only({"bodies", "bodies_sha256", "frame", "box"});
+  reader.expect_only({"bodies", "bodies_sha256", "frame", "box", "exclusions"});
   io::BodiesOptions options;
   options.units = reader.context().units;
   if (reader.context().G) options.G = gravitation(reader);
@@ -169,7 +169,7 @@ ParticleSystem<double> from_file(TableReader& reader, const std::filesystem::pat
 
 ParticleSystem<double> from_tables(TableReader& reader, const std::vector<const SceneValue*>& bodies,
                                    SceneValue& effective) {
-  reader.expect_only({"body", "frame", "box", "type", "pair", "mixing"});
+  reader.expect_only({"body", "frame", "box", "type", "pair", "mixing", "exclusions"});
   ParticleSystem<double> s(*reader.context().units);
   TypedBodies typed(reader, effective);
   std::unordered_set<std::string> names;
@@ -261,7 +261,7 @@ ParticleSystem<double> read_particles(const SceneContext& context, const SceneVa
   TableReader reader(context, table, "[particles]", "particles");
   if (!is_built(reader)) {
     reader.expect_only({"bodies", "bodies_sha256", "body", "structure", "structure_sha256", "type", "pair", "mixing",
-                        "box", "special", "file_units", "atom_style", "frame", "temperature", "seed"});
+                        "box", "special", "exclusions", "file_units", "atom_style", "frame", "temperature", "seed"});
   }
   check_sources(reader);
   if (is_built(reader)) return build_particles(reader, effective);
@@ -272,6 +272,7 @@ ParticleSystem<double> read_particles(const SceneContext& context, const SceneVa
   if (!reader.has("structure")) {
     if (const auto box = read_box(own, effective)) s.set_box(*box);
   }
+  read_exclusions(own, s, effective);
   read_frame(own, s, effective);
   return s;
 }

@@ -19,8 +19,8 @@ std::string kept_text(TableReader& reader, std::string_view key, SceneValue& eff
 
 ParticleSystem<double> read_structure_particles(TableReader& reader, const std::filesystem::path& folder,
                                                 SceneValue& effective) {
-  reader.expect_only({"structure", "structure_sha256", "file_units", "special", "atom_style", "mixing", "box", "type",
-                      "pair", "temperature", "seed", "frame"});
+  reader.expect_only({"structure", "structure_sha256", "file_units", "special", "exclusions", "atom_style", "mixing",
+                      "box", "type", "pair", "temperature", "seed", "frame"});
   io::StructureOptions options;
   options.units = reader.context().units;
   const auto read = [&](const std::filesystem::path& file) {

@@ -2,9 +2,14 @@
 #include "engine/error.hpp"
 #include "tests/support/catch.hpp"
 
+#include <algorithm>
+
 using noether::Topology;
+using Pairs = std::vector<Topology::Pair>;
 
 namespace {
+
+using Pairs = std::vector<Topology::Pair>;
 
 /// Butane's carbons in a row, and a ring of four beside it.
 Topology chain_and_ring() {
@@ -20,7 +25,6 @@ Topology chain_and_ring() {
 TEST_CASE("pairs are excluded or scaled by the number of bonds between them", "[topology]") {
   Topology topology = chain_and_ring();
   topology.scale_by_bonds(8, {0, 0, 0.5});
-  using Pairs = std::vector<Topology::Pair>;
   CHECK(topology.exclusions ==
         Pairs{{0, 1}, {0, 2}, {1, 2}, {1, 3}, {2, 3}, {4, 5}, {4, 6}, {4, 7}, {5, 6}, {5, 7}, {6, 7}});
   CHECK(topology.scaled_pairs == std::vector<Topology::ScaledPair>{{{0, 3}, 0.5}});
@@ -34,6 +38,19 @@ TEST_CASE("a factor of 1 leaves a pair alone, a factor of 0 excludes it", "[topo
   topology.scale_by_bonds(8, {0, 0, 0});
   CHECK(topology.scaled_pairs.empty());
   CHECK(topology.exclusions.size() == 12);
+}
+
+TEST_CASE("pairs that are excluded by themselves add to those by bonds, and are scaled no more", "[topology]") {
+  Topology topology = chain_and_ring();
+  topology.scale_by_bonds(8, {0, 0, 0.5});
+  const Pairs by_bonds = topology.exclusions;
+  topology.exclude({{6, 1}, {3, 0}, {1, 0}});
+  Pairs all = by_bonds;
+  all.insert(all.end(), {{0, 3}, {1, 6}});
+  std::sort(all.begin(), all.end());
+  CHECK(topology.exclusions == all);
+  CHECK(topology.scaled_pairs.empty());
+  CHECK(topology.is_special(6, 1));
 }
 
 TEST_CASE("a ring takes the shorter way round", "[topology]") {

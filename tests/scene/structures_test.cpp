@@ -7,8 +7,10 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/process.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <string>
 
 namespace noether::test {
@@ -74,6 +76,41 @@ TEST_CASE("a scene reads a structure with all the keys beside it", "[scene][stru
   CHECK(scene.effective_toml.find("structure_sha256 = ") != std::string::npos);
   check_effective(scene);
   check_effective(scene_of("structure = 'chains.data'\nspecial = [0, 1, 1]\n"));
+}
+
+TEST_CASE("exclusions by id have the bits of those that a program names by index", "[scene][structure]") {
+  const std::string liquid =
+      "\n[hamiltonian]\ntype = 'kinetic_potential'\n"
+      "[[hamiltonian.force]]\ntype = 'lennard_jones'\ncutoff = 1.5\ncutoff_style = 'shifted_force'\n"
+      "[integrator]\nmethod = 'verlet'\nstep = 0.002\nsteps = 40\n";
+  const auto scene_with = [&](const std::string& particles) {
+    return read_scene("units = 'reduced'\n[particles]\nstructure = 'chains.data'\n" + particles +
+                          "[[particles.type]]\nname = 1\nepsilon = 1\nsigma = 0.8\n"
+                          "[[particles.type]]\nname = 2\nepsilon = 0.5\nsigma = 0.9\n" +
+                          liquid,
+                      lammps_files / "scene.toml");
+  };
+  const auto end_of = [](const Scene& scene) {
+    Simulation<double> sim = assemble(scene);
+    REQUIRE(sim.run(40).ok());
+    return io::digest(sim.particles());
+  };
+  const Scene plain = scene_with("special = [0, 1, 0.5]\n");
+  // 1 and 4 are the ends of a chain, and half of their force would be left; 2 and 5, 3 and 12 are of two chains.
+  const Scene named = scene_with("special = [0, 1, 0.5]\nexclusions = [[5, 2],\n [4, 1], [3, 12]]\n");
+  Scene by_hand = plain;
+  auto topology = std::make_shared<Topology>(*plain.particles.topology());
+  REQUIRE(topology->scaled_pairs.front() == Topology::ScaledPair{{0, 3}, 0.5});
+  topology->scaled_pairs.erase(topology->scaled_pairs.begin());
+  topology->exclusions.insert(topology->exclusions.end(), {{0, 3}, {1, 4}, {2, 11}});
+  std::sort(topology->exclusions.begin(), topology->exclusions.end());
+  by_hand.particles.set_topology(topology);
+  CHECK(named.particles.topology()->exclusions == topology->exclusions);
+  CHECK(end_of(named) == end_of(by_hand));
+  CHECK(end_of(named) != end_of(plain));
+  check_effective(named);
+  CHECK(structure_refusal("structure = 'chains.data'\nexclusions = [[1, 2],\n [3, 99]]\n") ==
+        "scene.toml:5: exclusions holds [3, 99], but there is no particle with id 99");
 }
 
 TEST_CASE("a structure runs in its box, and has changed where its hash has", "[scene][structure]") {
