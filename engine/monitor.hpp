@@ -35,6 +35,8 @@ struct Sample {
 struct MonitorReport {
   std::optional<double> first, last, worst, rms, slope, slope_error, scale;
   std::string slope_unit;
+  std::optional<double> drift, drift_error;  ///< of molecules: the slope by atom, in the field's own unit
+  std::string drift_unit;
   std::string reason;  ///< why figures are empty that this monitor would have in another run
   std::string note;    ///< what else there is to say
   std::int64_t samples = 0;

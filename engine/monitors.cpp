@@ -159,23 +159,26 @@ MonitorReport Energy::report() const {
   report.worst = errors_.worst();
   report.rms = errors_.rms();
   fill_line(report, errors_, per_time("1", time_unit_));
-  report.note = drift_per_atom();
+  fill_drift(report);
   return report;
 }
 
-std::string Energy::drift_per_atom() const {
+void Energy::fill_drift(MonitorReport& report) const {
   const std::optional<double> slope = errors_.slope();
-  if (!slope || atoms_ == 0) return "";
+  if (!slope || atoms_ == 0) return;
   double unit = static_cast<double>(atoms_) / scale_;  // of the slope of the relative error
   const bool by_kT = time_unit_ != "1";
   if (by_kT) {
-    if (freedom_ <= 0 || !(kinetic_sum_ > 0)) return "";
+    if (freedom_ <= 0 || !(kinetic_sum_ > 0)) return;
     const double kT = 2 * kinetic_sum_ / static_cast<double>(errors_.samples()) / static_cast<double>(freedom_);
     unit *= kT / units::molecular::ns;
   }
-  const auto line = errors_.line();
-  return fmt::format("drift {:.3g}{} {}", *slope / unit, line ? fmt::format(" +- {:.1g}", line->error / unit) : "",
-                     by_kT ? "kT/ns/atom" : "epsilon/tau/atom");
+  report.drift = *slope / unit;
+  if (const auto line = errors_.line()) report.drift_error = line->error / unit;
+  report.drift_unit = by_kT ? "kT/ns/atom" : "epsilon/tau/atom";
+  report.note =
+      fmt::format("drift {:.3g}{} {}", *report.drift,
+                  report.drift_error ? fmt::format(" +- {:.1g}", *report.drift_error) : "", report.drift_unit);
 }
 
 void VectorInvariant::begin(const Vec3<Quad>& value, const Quad& scale, bool kept) {

@@ -43,12 +43,14 @@ class Energy {
   double rms() const { return why_not_.empty() ? errors_.rms() : std::numeric_limits<double>::quiet_NaN(); }
   /// Drift of the relative error [1/time]; 0 before two samples.
   double slope() const { return errors_.slope().value_or(0); }
-  /// The drift in the terms of molecular dynamics, in words; empty for other runs, and before two samples.
-  std::string drift_per_atom() const;
   /// Total, kinetic and potential energy at the last look [energy].
   double total() const { return now_[0]; }
 
  private:
+  /// The drift in the terms of molecular dynamics, with its error from 20 blocks on; not of other runs, nor before two
+  /// samples.
+  void fill_drift(MonitorReport& report) const;
+
   bool begun_ = false;
   Quad reference_ = 0;
   double scale_ = 0, first_ = 0;

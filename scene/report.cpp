@@ -37,6 +37,11 @@ Json json_of(const MonitorReport& monitor) {
     members.emplace_back("best_order", monitor.best_order);
     members.emplace_back("verdict", monitor.verdict);
   }
+  if (monitor.drift) {
+    members.emplace_back("drift", monitor.drift);
+    members.emplace_back("drift_error", monitor.drift_error);
+    members.emplace_back("drift_unit", monitor.drift_unit);
+  }
   if (!monitor.reason.empty()) members.emplace_back("reason", monitor.reason);
   if (!monitor.note.empty()) members.emplace_back("note", monitor.note);
   return Json::object(members);

@@ -13,6 +13,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <string>
 
 namespace noether {
@@ -34,6 +35,9 @@ std::string drift_in_words(const SeriesStatistics& total, double unit, const cha
   return fmt::format("drift {:.3g} +- {:.1g} {}", line->slope / unit, line->error / unit, name);
 }
 
+/// Both are sums over the same looks, in another order.
+bool is_near(double found, double expected) { return std::abs(found - expected) < 1e-6 * std::abs(expected); }
+
 ParticleSystem<double> springs_in_molecular_units() {
   ParticleSystem<double> s(unit_system("molecular"));
   s.add("a", 40, {0.1, 0, 0}, {0, 0.2, 0});
@@ -52,14 +56,22 @@ TEST_CASE("in molecular units the drift is told in kT/ns/atom", "[energy]") {
   REQUIRE(sim.run(333).ok());
   // A field keeps no momentum: two atoms with mass have six degrees of freedom.
   const double kT = 2 * diary.kinetic.mean() / 6;
-  CHECK(energy.report().note == drift_in_words(diary.total, 2 * kT / 1000, "kT/ns/atom"));
+  const MonitorReport report = energy.report();
+  CHECK(report.note == drift_in_words(diary.total, 2 * kT / 1000, "kT/ns/atom"));
+  // The same as a number: energy by time is kJ/mol/ps, of two atoms.
+  const SeriesStatistics::Line line = diary.total.line().value();
+  CHECK(report.drift_unit == "kT/ns/atom");
+  CHECK(is_near(report.drift.value(), line.slope / (2 * kT / 1000)));
+  CHECK(is_near(report.drift_error.value(), line.error / (2 * kT / 1000)));
   // It goes on with the run.
   Simulation<double> again(springs_in_molecular_units(),
                            compose(KineticPotential(HarmonicField{.k = 4000}), schemes::verlet), 0.03);
   auto& restored = again.every(1, Energy{});
   again.every(1, EnergyDiary{});
   again.restore(sim.save());
-  CHECK(restored.report().note == energy.report().note);
+  CHECK(restored.report().note == report.note);
+  CHECK(restored.report().drift == report.drift);
+  CHECK(restored.report().drift_error == report.drift_error);
 }
 
 TEST_CASE("in a box in reduced units the drift is told in epsilon/tau/atom", "[energy]") {
@@ -70,6 +82,8 @@ TEST_CASE("in a box in reduced units the drift is told in epsilon/tau/atom", "[e
   auto& diary = sim.every(1, EnergyDiary{});
   REQUIRE(sim.run(100).ok());
   CHECK(energy.report().note == drift_in_words(diary.total, 32, "epsilon/tau/atom"));
+  CHECK(energy.report().drift_unit == "epsilon/tau/atom");
+  CHECK(is_near(energy.report().drift.value(), diary.total.line()->slope / 32));
 }
 
 TEST_CASE("orbits, baths and a single look have no drift by atom", "[energy]") {
@@ -80,11 +94,13 @@ TEST_CASE("orbits, baths and a single look have no drift by atom", "[energy]") {
   auto& of_orbit = orbit.every(1, Energy{});
   REQUIRE(orbit.run(50).ok());
   CHECK(of_orbit.report().note.empty());
+  CHECK_FALSE(of_orbit.report().drift);
   Simulation<double> one_look(springs_in_molecular_units(),
                               compose(KineticPotential(HarmonicField{.k = 4000}), schemes::verlet), 0.03);
   auto& seen_once = one_look.every(1, Energy{});
   REQUIRE(one_look.run(0).ok());
   CHECK(seen_once.report().note.empty());
+  CHECK_FALSE(seen_once.report().drift);
 }
 
 TEST_CASE("means of a series have the error of their blocks", "[statistics]") {

@@ -35,6 +35,18 @@ TEST_CASE("a note is no message of the run, a reason is", "[scene][report]") {
   CHECK(has(to_text(reasoned), "energy: the run is dissipative; six numbers for each particle (3 samples)\n"));
 }
 
+TEST_CASE("a drift stands in JSON as a number with its error and unit, where there is one", "[scene][report]") {
+  MonitorReport monitor;
+  monitor.samples = 3;
+  CHECK_FALSE(has(to_json(report_with("energy", monitor)), "drift"));
+  monitor.drift = -0.125;
+  monitor.drift_unit = "kT/ns/atom";
+  CHECK(has(to_json(report_with("energy", monitor)),
+            R"("samples":3,"drift":-0.125,"drift_error":null,"drift_unit":"kT/ns/atom"})"));
+  monitor.drift_error = 0.5;
+  CHECK(has(to_json(report_with("energy", monitor)), R"("drift":-0.125,"drift_error":0.5,"drift_unit":"kT/ns/atom")"));
+}
+
 TEST_CASE("a monitor that saw nothing finite says so", "[scene][report]") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   MonitorReport monitor;
