@@ -149,7 +149,7 @@ template <class Real> Stepped Collocation<Real>::step(VectorField<Real>& f, cons
         made.failure = Failure{Outcome::Kind::solver_failure, -1, "stages",
                                fmt::format("the stages of '{}' do not converge with a step of {:.6g}; give a shorter "
                                            "one{}",
-                                           name_, h, table_.stages > 1 ? ", or adaptive steps" : "")};
+                                           name_, h, table_.stages > 2 ? ", or adaptive steps" : "")};
         return made;
       }
       break;
@@ -486,7 +486,7 @@ MethodInfo gauss_info(std::string_view name, std::string_view summary, std::stri
           .family = "collocation",
           .options = "jacobian",
           .order = 2 * stages,
-          .adaptive = stages > 1,
+          .adaptive = stages > 2,
           .rtol = 1e-16,
           .atol = 0,
           .stability_limit = std::numeric_limits<double>::infinity(),

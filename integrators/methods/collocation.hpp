@@ -35,7 +35,8 @@ template <class Real> struct StageTable {
 ///
 /// The stages begin where the polynomial of the last step leads, and are swept until they stand still. Sums are
 /// compensated. Adaptive steps follow the last Legendre coefficient of F: they keep its size, relative to F, at one
-/// value, each particle for itself; a step whose sweeps do not converge is halved.
+/// value, each particle for itself; a step whose sweeps do not converge is halved. Of two stages it is the change of F
+/// itself, as large as F where F vanishes, however short the step: they have steps of one length only.
 ///
 /// Steps of one length cannot be: where sweeps do not converge, as on oscillations with h omega above 2 or so, the
 /// rates are found by Newton's iteration over all stages at once, to rounding too. It begins anew in every step, with
