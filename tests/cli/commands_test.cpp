@@ -196,6 +196,40 @@ TEST_CASE("small boxes, bonds and neighbors are spoken of", "[cli][messages]") {
   CHECK(has(refused("--set hamiltonian.force.0.cutoff=250"), "scene.toml:3: the box of 3 x 3 x 3 is so small beside"));
 }
 
+TEST_CASE("what a LAMMPS data file leaves out is asked for, at the force that wants it", "[cli][messages]") {
+  const SceneFolder folder(chain_scene);
+  const std::string coefficients = "Bond Coeffs # fene\n\n1 30 1.5 1 1\n";
+  std::string without = broken_chain;
+  write_text(folder / "chain.data", without.erase(without.find(coefficients), coefficients.size()));
+  const auto refused = [&](const std::string& line) {
+    const ProcessResult result = noether(folder, line);
+    CHECK(result.exit_code == 2);
+    return result.err;
+  };
+  for (const char* command : {"run", "evaluate", "explain"}) {
+    CHECK(refused(command + std::string(" scene.toml")) ==
+          "scene.toml:8: there is a bond and no parameters of any; give those of its kind, as a section of "
+          "coefficients of the structure\n");
+  }
+  const std::string liquid = " --set 'hamiltonian.force=[{type=\"lennard_jones\", cutoff=2.5}]'";
+  CHECK(has(refused("run scene.toml" + liquid),
+            "lennard_jones: the particles have no Lennard-Jones parameters; give epsilon and sigma here, or types "
+            "that have them"));
+  CHECK(noether(folder, "evaluate scene.toml" + liquid + " --set 'particles.type=[{name=1, epsilon=1, sigma=1}]'")
+            .exit_code == 0);
+}
+
+TEST_CASE("charges that no force looks at are warned of", "[cli][messages]") {
+  const SceneFolder pair(close_pair);
+  const std::string run = "run scene.toml --fresh --set integrator.step=0.0001 --set particles.body.a.charge=";
+  const std::string warning = "\nwarning: the particles have charges that no force looks at\n";
+  const std::string field = " --set 'hamiltonian.force.1={type=\"reaction_field\", cutoff=1}'";
+  CHECK(has(output(pair, run + "0.5"), warning));
+  CHECK(has(output(pair, run + "0.5 --json"), R"("warnings":["the particles have charges that no force looks at"])"));
+  CHECK_FALSE(has(output(pair, run + "0"), "warning"));
+  CHECK_FALSE(has(output(pair, run + "0.5" + field), "warning"));
+}
+
 TEST_CASE("forces are written with all their digits", "[cli][evaluate]") {
   const SceneFolder folder;
   output(folder, "evaluate scene.toml --forces forces.csv --set particles.body.Planet.mass=0.1");

@@ -2,6 +2,10 @@
 
 #include "tests/cli/support.hpp"
 
+#include <fmt/format.h>
+
+#include <array>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -121,6 +125,44 @@ TEST_CASE("--until and --set change the scene of one run", "[cli][run]") {
   const std::string written = noether(folder, "run scene.toml --json --out d").out;
   CHECK(json_member(written, "scene_sha256") == json_member(set, "scene_sha256"));
   CHECK(json_member(written, "digest") == json_member(set, "digest"));
+}
+
+TEST_CASE("a thermostat is reached by --set, one that is written and one that is not", "[cli][run]") {
+  const std::string bath = read_text(std::filesystem::path(NOETHER_SOURCE_DIR) / "tests/scenes/good/bath.toml");
+  const SceneFolder folder(bath);
+  int number = 0;
+  const auto run = [&](const std::string& more) {
+    const ProcessResult result = noether(folder, fmt::format("run scene.toml --json --out {}{}", ++number, more));
+    CHECK(result.err.empty());
+    return json_member(result.out, "scene_sha256") + json_member(result.out, "digest");
+  };
+  const std::string as_written = run("");
+  std::vector<std::string> found;
+  for (const auto& [key, old, now] : std::vector<std::array<std::string, 3>>{
+           {"temperature", "\"300 K\"", "\"310 K\""}, {"friction", "\"1/ps\"", "\"2/ps\""}, {"seed", "7", "8"}}) {
+    CAPTURE(key);
+    found.push_back(run(" --set 'hamiltonian.thermostat." + key + "=" + now + "'"));
+    CHECK(found.back() != as_written);
+    write_text(folder / "scene.toml", replaced(bath, key + " = " + old, key + " = " + now));
+    CHECK(run("") == found.back());
+    write_text(folder / "scene.toml", bath);
+  }
+  const std::string table = bath.substr(bath.find("[hamiltonian.thermostat]"),
+                                        bath.find("[integrator]") - bath.find("[hamiltonian.thermostat]"));
+  write_text(folder / "scene.toml", replaced(bath, table, ""));
+  CHECK(run(" --set hamiltonian.thermostat.type=langevin --set 'hamiltonian.thermostat.temperature=\"300 K\"'"
+            " --set 'hamiltonian.thermostat.friction=\"1/ps\"' --set hamiltonian.thermostat.seed=7") == as_written);
+  write_text(folder / "scene.toml", bath);
+  const auto refused = [&](const std::string& set) {
+    const ProcessResult result = noether(folder, "run scene.toml --out none --set " + set);
+    CHECK(result.exit_code == 2);
+    return result.err;
+  };
+  CHECK(refused("hamiltonian.thermostat.temprature=3") ==
+        "--set hamiltonian.thermostat.temprature=3: unknown key 'temprature' in thermostat 'langevin'; did you mean "
+        "'temperature'?\n");
+  CHECK(has(refused("hamiltonian.thermostat.temperature=-3"), "--set hamiltonian.thermostat.temperature=-3: "));
+  CHECK(has(refused("'hamiltonian.thermostat.friction=\"2 ps\"'"), "friction"));
 }
 
 TEST_CASE("the number of threads does not change the bits", "[cli][run][determinism]") {
