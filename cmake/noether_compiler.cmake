@@ -54,6 +54,9 @@ add_library(noether::options ALIAS noether_options)
 set_target_properties(noether_options PROPERTIES EXPORT_NAME options)
 target_compile_features(noether_options INTERFACE cxx_std_20)
 target_compile_options(noether_options INTERFACE -ffp-contract=off)
+# Changes no value: nobody asks for the processor's floating point exceptions, and g++ turns loops with choices into lanes
+# only where it need not keep them. Pair potentials of users are such loops.
+target_compile_options(noether_options INTERFACE -fno-trapping-math)
 # Eigen's alignment is part of the binary interface; without these it would follow the consumer's -march.
 target_compile_definitions(noether_options INTERFACE EIGEN_MAX_ALIGN_BYTES=64 EIGEN_MAX_STATIC_ALIGN_BYTES=16)
 # HDF5's own list of libraries brings curl and others along; only what is used is loaded.

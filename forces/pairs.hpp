@@ -42,7 +42,7 @@ namespace detail {
 template <class Real> struct Switch {
   Real value, slope;
 
-  Switch(Cutoff style, const Real& t) {
+  [[gnu::always_inline]] Switch(Cutoff style, const Real& t) {
     const Real t2 = t * t, u = Real(1) - t, u2 = u * u;
     if (style == Cutoff::switch_c2) {
       value = Real(1) - t2 * t * (Real(10) + t * (Real(6) * t - Real(15)));
