@@ -1,7 +1,7 @@
 #include "study/stability.hpp"
 
 #include "integrators/methods.hpp"
-#include "study/growth.hpp"
+#include "study/solution_growth.hpp"
 
 #include <fmt/format.h>
 
@@ -37,7 +37,8 @@ double scale_of(const Scene& scene, const Mode& mode) {
 /// One row on its way.
 class Search {
  public:
-  Search(const Scene& scene, const Stability& all, const StabilityOptions& options, Growth& growth, StabilityRow& row)
+  Search(const Scene& scene, const Stability& all, const StabilityOptions& options, SolutionGrowth& growth,
+         StabilityRow& row)
       : scene_(scene), options_(options), growth_(growth), row_(row), begin_(std::chrono::steady_clock::now()) {
     scale_ = scale_of(scene, all.mode);
     oscillates_ = all.mode.scale() > 0;
@@ -240,7 +241,7 @@ class Search {
 
   const Scene& scene_;
   const StabilityOptions& options_;
-  Growth& growth_;
+  SolutionGrowth& growth_;
   StabilityRow& row_;
   std::chrono::steady_clock::time_point begin_;
   Trial failed_;  ///< the last run that was not bounded
@@ -345,7 +346,7 @@ Stability find_stability(const Scene& scene, const StabilityOptions& options) {
   found.linear = !constrained && is_linear(scene);
   found.mode = mode_of(scene, found.spectrum);
   check_motion(scene, found.spectrum.fastest > 0 ? found.spectrum.fastest : 1);
-  Growth growth(scene, scale_of(scene, found.mode));
+  SolutionGrowth growth(scene, scale_of(scene, found.mode));
   for (const Opponent& who : methods) {
     StabilityRow row;
     row.who = who;

@@ -104,8 +104,9 @@ struct Stability {
   Spectrum spectrum = {};
   Mode mode = {};
   bool linear = false;
-  std::optional<double> solution_leaves = {};  ///< when the solution itself is 100 times as large [time]: see `Growth`
-  std::optional<KeplerSteps> kepler = {};      ///< where a method steps along Kepler arcs
+  std::optional<double> solution_leaves =
+      {};  ///< when the solution itself is 100 times as large [time]: see `SolutionGrowth`
+  std::optional<KeplerSteps> kepler = {};  ///< where a method steps along Kepler arcs
   std::vector<StabilityRow> rows = {};
 };
 

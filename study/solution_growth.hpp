@@ -8,9 +8,9 @@
 namespace noether {
 
 /// How far the solution of a scene grows, by `dop853` with rtol = 1e-12, asked only where a run was found unbounded.
-class Growth {
+class SolutionGrowth {
  public:
-  Growth(const Scene& scene, double frequency) : scene_(scene), frequency_(frequency) {}
+  SolutionGrowth(const Scene& scene, double frequency) : scene_(scene), frequency_(frequency) {}
 
   /// Looks whether the solution explains a run that was not bounded, and lets the bounds know: they end where the
   /// solution is a tenth of `most` times as large as at the start, and growth on a linear problem counts no more where

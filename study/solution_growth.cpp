@@ -1,11 +1,11 @@
-#include "study/growth.hpp"
+#include "study/solution_growth.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace noether {
 
-void Growth::look(double time, double budget, const Bounds& bounds) {
+void SolutionGrowth::look(double time, double budget, const Bounds& bounds) {
   if (leaves_ || !(time > known_)) return;
   known_ = time;  // asked once: what takes too long, or has no reference, explains nothing
   try {
@@ -21,7 +21,7 @@ void Growth::look(double time, double budget, const Bounds& bounds) {
   }
 }
 
-bool Growth::explains(const Trial& run, double time, double budget, Bounds& bounds) {
+bool SolutionGrowth::explains(const Trial& run, double time, double budget, Bounds& bounds) {
   if (run.verdict != Bounded::unbounded) return false;
   look(time, budget, bounds);
   bool changed = false;
