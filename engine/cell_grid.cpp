@@ -108,12 +108,11 @@ void CellGrid::lay_axes(const std::array<const double*, 3>& coordinates, Index c
     cells *= std::floor(length[k] / axis.edge) + 1;
   }
   const double most = most_cells_per_point * static_cast<double>(count) + 4096;
-  const auto fill = [&](Axis& axis, double along) {
-    axis.occupied.clear();
-    axis.size = static_cast<Index>(std::floor(along / axis.edge)) + 1;
-  };
   const auto fill_all = [&] {
-    for (std::size_t k = 0; k < 3; ++k) fill(axes_[k], length[k]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      axes_[k].occupied.clear();
+      axes_[k].size = static_cast<Index>(std::floor(length[k] / axes_[k].edge)) + 1;
+    }
   };
   // Only layers of cells that hold points; how many cells they cross in.
   const auto occupy_all = [&] {

@@ -466,8 +466,9 @@ NeighborList::Surroundings NeighborList::surroundings(const std::array<std::int3
     around.box.middle[k] = static_cast<float>(middle - around.origin[k]);
     around.box.half[k] = static_cast<float>(half);
   }
+  const double lost = rounding * (around.far ? extent : size) + reading_error();
   for (int shell = 0; shell < shells; ++shell) {
-    const double limit = shell_radius(shell) + rounding * (around.far ? extent : size) + reading_error();
+    const double limit = shell_radius(shell) + lost;
     around.limits[shell] = static_cast<float>(limit * limit * (1 + 0x1p-20));
   }
   return around;

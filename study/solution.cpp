@@ -2,6 +2,7 @@
 
 #include "engine/quantity.hpp"
 #include "integrators/methods.hpp"
+#include "study/spectrum.hpp"
 
 #include <fmt/format.h>
 
@@ -73,11 +74,9 @@ bool is_oscillator(const Scene& scene, const Truth& truth) {
   return true;
 }
 
-/// The rate of the drag a = -rate v [1/time]; 0 where there is none.
-double drag_of(const Scene& scene) {
-  double rate = 0;
-  for (const SceneForce& force : scene.hamiltonian.forces) rate = force.drag ? force.drag->rate : rate;
-  if (!scene.system) return rate;
+/// The rate of the drag a = -rate v, that of a system from its own rates [1/time]; 0 where there is none.
+double damping_of(const Scene& scene) {
+  if (!scene.system) return drag_of(scene);
   const auto field = scene.system->field();
   Vector<double> y = Vector<double>::Zero(2), still(2), moving(2);
   field->rate(0, y, still);
@@ -135,7 +134,7 @@ std::optional<Solution> solution_of(const Scene& scene, const Comparison& c) {
   s.coordinate = "xyz"[shape->axis];
   const double end = std::min(c.end, periods * 2 * M_PI / s.omega), spacing = end / moments;
   for (const int m : {1, 2, 4, 8, 12, 13, 16}) s.steps.push_back(spacing * m);
-  const double rate = drag_of(scene);
+  const double rate = damping_of(scene);
   s.dampings = {0};
   if (rate > 0) s.dampings = {0, rate / 4, rate, 4 * rate, 16 * rate};
   if (system && scene.system->effective.find("gamma") == nullptr) s.dampings = {rate};

@@ -181,6 +181,13 @@ Spectrum spectrum_at(const Scene& scene, const ParticleSystem<double>& s) {
   return spectrum_of(*field, s, 0);
 }
 
+double drag_of(const Scene& scene) {
+  for (const SceneForce& force : scene.hamiltonian.forces) {
+    if (force.drag) return force.drag->rate;
+  }
+  return 0;
+}
+
 bool is_linear(const Scene& scene) {
   const auto field = field_of(scene);
   field->bind(scene.particles);

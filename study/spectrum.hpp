@@ -54,6 +54,9 @@ Spectrum spectrum_at(const Scene& scene, const ParticleSystem<double>& s);
 /// @cost one second of wall time at most, and 64 spectra
 Spectrum spectrum_along(const Scene& scene);
 
+/// The rate of the drag a = -rate v among the forces of a scene [1/time]; 0 where there is none.
+double drag_of(const Scene& scene);
+
 /// Whether accelerations (or rates) change linearly with the state: then every growth is that of a mode.
 bool is_linear(const Scene& scene);
 

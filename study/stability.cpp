@@ -14,17 +14,9 @@ namespace noether {
 
 namespace {
 
-/// The drag of a scene, if it has one [1/time].
-double drag_in(const Scene& scene) {
-  for (const SceneForce& force : scene.hamiltonian.forces) {
-    if (force.drag) return force.drag->rate;
-  }
-  return 0;
-}
-
 Mode mode_of(const Scene& scene, const Spectrum& spectrum) {
   if (scene.system) return {.omega = 0, .rate = 0, .lambda = spectrum.stiffest};
-  return {.omega = spectrum.fastest, .rate = drag_in(scene), .lambda = {}};
+  return {.omega = spectrum.fastest, .rate = drag_of(scene), .lambda = {}};
 }
 
 /// What h is multiplied by in the search [1/time]: the scale of the mode; where nothing oscillates, a hundredth of the

@@ -104,8 +104,8 @@ struct Stability {
   Spectrum spectrum = {};
   Mode mode = {};
   bool linear = false;
-  std::optional<double> solution_leaves =
-      {};  ///< when the solution itself is 100 times as large [time]: see `SolutionGrowth`
+  /// When the solution itself is 100 times as large as at the start [time]: see `SolutionGrowth`.
+  std::optional<double> solution_leaves = {};
   std::optional<KeplerSteps> kepler = {};  ///< where a method steps along Kepler arcs
   std::vector<StabilityRow> rows = {};
 };

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 using noether::Topology;
-using Pairs = std::vector<Topology::Pair>;
 
 namespace {
 
