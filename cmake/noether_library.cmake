@@ -6,7 +6,6 @@
 # <folder>/*_simd.cpp go through noether_simd.
 # Without PRECOMPILE a folder shares the precompiled header of the engine.
 
-set(NOETHER_SIMD_SOURCES "" CACHE INTERNAL "sources in lanes, of all libraries")
 set(NOETHER_ROOMS "" CACHE INTERNAL "folders that became libraries, lowest layer first")
 
 # Links the rooms that exist.
@@ -46,7 +45,6 @@ function(noether_library folder)
     noether_unity(${target})
     if(simd_sources)
       noether_simd(${target} SOURCES ${simd_sources})
-      set(NOETHER_SIMD_SOURCES ${NOETHER_SIMD_SOURCES} ${simd_sources} CACHE INTERNAL "")
     endif()
   else()
     set(scope INTERFACE)

@@ -1,7 +1,8 @@
-"""Headers: each has `#pragma once`; with --compiler, each also compiles alone.
+"""Headers: each has `#pragma once`; with --compiler, each header and each source also compiles alone.
 
-A header that the source of its name includes first needs no compiler here: the preset minimal, which compiles every
-source by itself and without precompiled headers, has tried it."""
+Builds compile sources four at a time and behind a precompiled header, which hides what one of them forgot to include.
+Tests are never compiled in another way, and lanes stand alone in every build. A header that the source of its name
+includes first is tried with that source."""
 
 import argparse
 import concurrent.futures
@@ -31,20 +32,25 @@ def has_twin(root, header):
     return first == f'#include "{header}"'
 
 
-def compile_alone(root, compiler, flags, header):
-    """The first error of a file that includes nothing but this header, or None."""
+def compile_alone(root, compiler, flags, path):
+    """The first error of a file that includes nothing but this one, a header twice, or None."""
     done = subprocess.run([compiler, *FLAGS, *flags, f"-I{root}", "-x", "c++", "-"], text=True, capture_output=True,
-                          input=f'#include "{header}"\n#include "{header}"\n')
+                          input=f'#include "{path}"\n' * (2 if path.suffix == ".hpp" else 1))
     if done.returncode == 0:
         return None
     errors = [line for line in done.stderr.splitlines() if "error" in line]
-    return f"{header}: does not compile alone: {(errors or [done.stderr])[0]}"
+    return f"{path}: does not compile alone: {(errors or [done.stderr])[0]}"
+
+
+def sources(root):
+    return [path for path in tree.cpp_files(root) if path.suffix == ".cpp" and path.parts[0] != "tests"
+            and not path.stem.endswith("_simd")]
 
 
 def compile_problems(root, compiler, flags):
-    alone = [header for header in headers(root) if not has_twin(root, header)]
+    alone = [header for header in headers(root) if not has_twin(root, header)] + sources(root)
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        results = pool.map(lambda header: compile_alone(root, compiler, flags, header), alone)
+        results = pool.map(lambda path: compile_alone(root, compiler, flags, path), alone)
     return [result for result in results if result]
 
 

@@ -101,10 +101,11 @@ def failures():
 
 
 def compiler_failures(compiler):
-    with planted("engine/bad.hpp", "#pragma once\ninline std::vector<int> f() { return {}; }\n") as root:
-        found = headers.compile_problems(root, compiler, [])
-        if len(found) != 1 or "engine/bad.hpp: does not compile alone" not in found[0]:
-            yield f"headers: planted a header that lacks <vector>, found {found}"
+    for name in ("engine/bad.hpp", "engine/bad.cpp"):
+        with planted(name, "#pragma once\ninline std::vector<int> f() { return {}; }\n") as root:
+            found = headers.compile_problems(root, compiler, [])
+            if len(found) != 1 or f"{name}: does not compile alone" not in found[0]:
+                yield f"headers: planted {name}, which lacks <vector>, found {found}"
 
 
 def symbol_failures():
