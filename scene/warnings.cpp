@@ -16,6 +16,15 @@ namespace {
 constexpr std::array<std::string_view, 7> without_charges = {"lennard_jones", "wca",    "morse",        "buckingham",
                                                              "bonded",        "tether", "harmonic_bond"};
 
+/// Forces between pairs that leave excluded ones out.
+constexpr std::array<std::string_view, 5> with_exclusions = {"lennard_jones", "wca", "morse", "buckingham",
+                                                             "reaction_field"};
+/// Forces that are known to act on excluded pairs too, or on no pairs.
+constexpr std::array<std::string_view, 10> without_exclusions = {
+    "gravity",        "oblateness",   "uniform_field",    "oscillating_field",
+    "harmonic_field", "henon_heiles", "fermi_pasta_ulam", "harmonic_bond",
+    "tether",         "bonded"};
+
 bool has_charges(const ParticleSystem<double>& s) {
   if (!s.has<Charge>()) return false;
   const auto& q = s.column<Charge>();
@@ -45,6 +54,14 @@ std::vector<std::string> warnings_of(const Scene& scene) {
   });
   if (!forces.empty() && nobody_asks && has_charges(scene.particles)) {
     warnings.emplace_back("the particles have charges that no force looks at");
+  }
+  const bool nobody_excludes = std::all_of(forces.begin(), forces.end(), [](const SceneForce& force) {
+    return std::find(without_exclusions.begin(), without_exclusions.end(), force.name) != without_exclusions.end();
+  });
+  const SceneValue* particles = scene.effective.find("particles");
+  if (nobody_excludes && particles != nullptr && particles->find("exclusions") != nullptr) {
+    warnings.push_back(fmt::format("exclusions change nothing: no force leaves pairs out; those that do are {}",
+                                   fmt::join(with_exclusions, ", ")));
   }
   return warnings;
 }

@@ -230,6 +230,17 @@ TEST_CASE("charges that no force looks at are warned of", "[cli][messages]") {
   CHECK_FALSE(has(output(pair, run + "0.5" + field), "warning"));
 }
 
+TEST_CASE("exclusions that no force leaves out are warned of", "[cli][messages]") {
+  const SceneFolder pair(close_pair);
+  const std::string run = "run scene.toml --fresh --set integrator.step=0.0001 --set 'particles.exclusions=[[0, 1]]'";
+  const std::string springs =
+      " --set 'hamiltonian.force=[{type=\"harmonic_bond\", pairs=[[\"a\",\"c\"]], k=1, length=1}]'";
+  CHECK(has(output(pair, run + springs),
+            "\nwarning: exclusions change nothing: no force leaves pairs out; those that do are lennard_jones, wca, "
+            "morse, buckingham, reaction_field\n"));
+  CHECK_FALSE(has(output(pair, run), "warning"));
+}
+
 TEST_CASE("forces are written with all their digits", "[cli][evaluate]") {
   const SceneFolder folder;
   output(folder, "evaluate scene.toml --forces forces.csv --set particles.body.Planet.mass=0.1");
