@@ -66,12 +66,38 @@ class Setter {
     }
     path_ = text_.substr(0, equals);
     const std::string value = text_.substr(equals + 1);
+    if (value.empty()) return take_out(scene);
     put(scene, parse_toml_value(value, line_).value_or(SceneValue::of(value, line_)));
   }
 
  private:
   void put(SceneValue& scene, SceneValue value) {
     const std::vector<std::string> keys = split(path_);
+    SceneValue& at = holder_of(scene, keys);
+    if (SceneValue::Array* list = at.get<SceneValue::Array>()) return put_element(*list, keys.back(), std::move(value));
+    if (keys.size() == 1) check_top(at, keys[0], value);
+    drop_alternatives(at, keys.back());
+    at.put(keys.back(), std::move(value));
+  }
+
+  void take_out(SceneValue& scene) {
+    const std::vector<std::string> keys = split(path_);
+    SceneValue& at = holder_of(scene, keys);
+    const std::string& key = keys.back();
+    if (SceneValue::Array* list = at.get<SceneValue::Array>()) {
+      list->erase(list->begin() + (&element(*list, key) - list->data()));
+      return;
+    }
+    if (at.find(key) == nullptr) {
+      std::vector<std::string> written;
+      for (const auto& [name, value] : *at.get<SceneValue::Table>()) add_new(written, name);
+      fail(fmt::format("there is no '{}' to take out of the scene{}", key, did_you_mean(key, written)));
+    }
+    at.erase(key);
+  }
+
+  /// The table or the list of tables in which the last of the keys stands.
+  SceneValue& holder_of(SceneValue& scene, const std::vector<std::string>& keys) {
     if (keys.size() > static_cast<std::size_t>(deepest_table)) {
       fail(fmt::format("the key has {} parts; at most {} are expected", keys.size(), deepest_table));
     }
@@ -79,12 +105,9 @@ class Setter {
     SceneValue* at = &scene;
     for (std::size_t k = 0; k + 1 < keys.size(); ++k)
       at = &enter(*at, keys[k], k == 0, k == 1 && keys[0] == "hamiltonian");
-    if (SceneValue::Array* list = at->get<SceneValue::Array>())
-      return put_element(*list, keys.back(), std::move(value));
-    if (!at->is_table()) fail(fmt::format("'{}' is not a key of a table", path_));
-    if (keys.size() == 1) check_top(*at, keys[0], value);
-    drop_alternatives(*at, keys.back());
-    at->put(keys.back(), std::move(value));
+    if (!at->is_table() && at->get<SceneValue::Array>() == nullptr)
+      fail(fmt::format("'{}' is not a key of a table", path_));
+    return *at;
   }
 
   [[noreturn]] void fail(const std::string& message) const { throw scene_error(source_, line_, path_, "", message); }

@@ -3,12 +3,12 @@
 #include "engine/quantity.hpp"
 #include "scene/json.hpp"
 #include "study/analysis.hpp"
+#include "study/set_lines.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 
 namespace noether {
@@ -188,45 +188,6 @@ double fitted_step(const Scene& scene, double step, double end) {
   return end / std::ceil(end / step);
 }
 
-std::string time_text(double time, const UnitSystem& units) {
-  if (units.is_reduced()) return format_number(time);
-  return fmt::format("\"{} {}\"", format_number(time), units.time);
-}
-
-/// What `--set` must be given to run a scene like this.
-std::vector<std::string> sets_of(const Scene& scene, const Proposal& p, double end) {
-  std::vector<std::string> sets;
-  if (p.who.hamiltonian != scene.hamiltonian.kind) {
-    sets = {"hamiltonian.type=kinetic_potential", "hamiltonian.force=[{type = \"gravity\"}]"};
-  }
-  const bool counts_steps = scene.effective.find("integrator")->find("steps") != nullptr;
-  sets.push_back("integrator.method=" + p.who.method);
-  if (p.who.adaptive) {
-    sets.push_back("integrator.rtol=" + format_number(p.setting.tolerance));
-    sets.push_back("integrator.atol=" + format_number(absolute_tolerance(scene, p.setting.tolerance)));
-    if (counts_steps) sets.push_back("integrator.until=" + time_text(end, *scene.units));
-    return sets;
-  }
-  sets.push_back("integrator.step=" + time_text(p.setting.step, *scene.units));
-  if (scene.integrator.steps && counts_steps) {
-    sets.push_back(fmt::format("integrator.steps={}", std::llround(end / p.setting.step)));
-  }
-  return sets;
-}
-
-/// Whether the scene can be read with these changes.
-bool can_be_set(const Scene& scene, const std::vector<std::string>& sets) {
-  if (!std::filesystem::exists(scene.file)) return true;
-  std::vector<std::string> all = scene.source.sets;
-  all.insert(all.end(), sets.begin(), sets.end());
-  try {
-    load_scene(scene.file, standard_parts(), all);
-  } catch (const Error&) {
-    return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 Advice advise(const Scene& scene, const AdviseOptions& options) {
@@ -258,17 +219,26 @@ Advice advise(const Scene& scene, const AdviseOptions& options) {
       fit.set_prediction(*proposal, std::pow(advice.end / advice.trial_end, proposal->growth.exponent),
                          advice.trial_end, advice.end);
     }
-    if (can_be_set(scene, sets_of(scene, *proposal, advice.end))) advice.proposals.push_back(*proposal);
+    SetLines lines = set_lines(scene, who, proposal->setting, advice.end);
+    if (lines.refusal.empty()) {
+      proposal->sets = std::move(lines.lines);
+      advice.proposals.push_back(std::move(*proposal));
+    } else {
+      advice.left_out.push_back(
+          fmt::format("{} holds it, but the scene refuses its lines: {}", who.label, lines.refusal));
+    }
   }
   std::stable_sort(advice.proposals.begin(), advice.proposals.end(),
                    [](const Proposal& a, const Proposal& b) { return a.predicted_wall_s < b.predicted_wall_s; });
-  if (advice.proposals.empty()) {
+  if (!advice.proposals.empty()) {
+    advice.sets = advice.proposals.front().sets;
+  } else if (!advice.left_out.empty()) {
+    advice.reason = advice.left_out.front();
+  } else {
     const std::string tried = c.methods.size() == 1
                                   ? "the one method tried does not hold"
                                   : fmt::format("none of the {} methods tried holds", c.methods.size());
     advice.reason = fmt::format("{} an error of {:g} over the whole run", tried, options.error);
-  } else {
-    advice.sets = sets_of(scene, advice.proposals.front(), advice.end);
   }
   return advice;
 }
@@ -302,6 +272,7 @@ std::string to_json(const Advice& a, const Scene& scene) {
                        {"end", a.end},
                        {"trial_end", a.trial_end},
                        {"reason", a.reason.empty() ? Json() : Json(a.reason)},
+                       {"left_out", Json::list_of(a.left_out)},
                        {"proposals", Json::list(others)}})
       .text();
 }
@@ -321,6 +292,7 @@ std::string to_text(const Advice& a, const Scene& scene) {
   }
   const Proposal& best = a.proposals.front();
   out += fmt::format("cheapest: {}; {}\n", best.who.label, best.growth.assumption);
+  for (const std::string& one : a.left_out) out += one + "\n";
   for (const std::string& set : a.sets) out += fmt::format("--set '{}'\n", set);
   return out;
 }

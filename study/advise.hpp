@@ -36,13 +36,15 @@ struct Proposal {
   double predicted_wall_s = 0;
   double predicted_evaluations = 0;
   Growth growth = {};
+  std::vector<std::string> sets = {};  ///< "integrator.method=..." lines for `--set`
 };
 
 struct Advice {
-  std::vector<Proposal> proposals = {};  ///< the cheapest first
-  std::vector<std::string> sets = {};    ///< "integrator.method=..." lines of the cheapest one, for `--set`
-  std::string reason = {};               ///< why there is none
-  double end = 0, trial_end = 0;         ///< of the full run and of the trials [time]
+  std::vector<Proposal> proposals = {};    ///< the cheapest first
+  std::vector<std::string> sets = {};      ///< those of the cheapest one
+  std::vector<std::string> left_out = {};  ///< methods that hold the error and that no lines can set, and why
+  std::string reason = {};                 ///< why there is no proposal
+  double end = 0, trial_end = 0;           ///< of the full run and of the trials [time]
   Comparison trials = {};
 };
 

@@ -139,6 +139,22 @@ TEST_CASE("--set replaces lists of tables, and one table, and adds one", "[scene
   CHECK(watched({"every=[]", "every.0=" + momentum, "every.momentum.steps=8"}) == "momentum 8; ");
 }
 
+TEST_CASE("--set with nothing behind the sign takes a key out, or a table of a list", "[scene][set]") {
+  const std::vector<std::string> adaptive = {"integrator.method=dop853", "integrator.rtol=1e-9", "integrator.step="};
+  CHECK(read(two_bodies, adaptive).effective_toml.find("rtol = 1e-09\n") != std::string::npos);
+  std::vector<std::string> without = adaptive;
+  without.emplace_back("integrator.rtol=");
+  CHECK(read(two_bodies, without).effective_toml.find("rtol = 1e-06\n") != std::string::npos);  // the default
+  const auto watches = read(two_bodies).watches.size();
+  CHECK(read(two_bodies, {"every.energy="}).watches.size() == watches - 1);
+  CHECK(read(two_bodies, {"every.0=", "every.0="}).watches.size() == watches - 2);
+  CHECK(read(two_bodies, {"every="}).watches.empty());
+  CHECK(refusal(two_bodies, {"integrator.stp="}) ==
+        "--set integrator.stp=: there is no 'stp' to take out of the scene; did you mean 'step'?");
+  CHECK(refusal(two_bodies, {"every.9="}) == "--set every.9=: there is no number 9; there are 2, counted from 0");
+  CHECK(refusal(two_bodies, {"integrator.method="}).find("method") != std::string::npos);
+}
+
 TEST_CASE("the scene of docs/scenes.md can be run", "[scene]") {
   const std::filesystem::path page = std::filesystem::path(NOETHER_SOURCE_DIR) / "docs" / "scenes.md";
   const std::string text = test::read_text(page), begin = "```toml\n";

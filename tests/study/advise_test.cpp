@@ -1,6 +1,8 @@
 // Advice: what it proposes is run, and has to come true.
 
 #include "study/advise.hpp"
+#include "scene/evaluate.hpp"
+#include "study/set_lines.hpp"
 #include "tests/study/scenes.hpp"
 #include "tests/support/catch.hpp"
 
@@ -96,6 +98,76 @@ until = 100
     CHECK(json.find(key) != std::string::npos);
   }
   std::filesystem::remove(file);
+}
+
+/// A scene in a file, which lines of advice are read with.
+struct SceneFile {
+  std::filesystem::path path = std::filesystem::temp_directory_path() / "noether_set_lines_test.toml";
+  explicit SceneFile(const std::string& text) { std::ofstream(path) << text; }
+  ~SceneFile() { std::filesystem::remove(path); }
+  SceneFile(const SceneFile&) = delete;
+  SceneFile& operator=(const SceneFile&) = delete;
+  Scene load(const std::vector<std::string>& sets = {}) const { return load_scene(path, standard_parts(), sets); }
+};
+
+TEST_CASE("lines of advice that leave a splitting keep every force", "[advise]") {
+  const SceneFile file(R"(units = "reduced"
+[particles]
+body = [{ name = "star", mass = 1, x = [0, 0, 0], v = [0, 0, 0] },
+        { name = "planet", mass = 1e-3, x = [1, 0, 0.1], v = [0, 1, 0] }]
+[hamiltonian]
+type = "wisdom_holman"
+coordinates = "democratic"
+G = 1.5
+[[hamiltonian.force]]
+type = "oblateness"
+J2 = 0.01
+radius = 0.5
+[integrator]
+method = "verlet"
+step = 0.05
+until = 20
+)");
+  const Scene scene = file.load();
+  const Opponent who = opponent(scene, "blanes_moan_s6@kinetic_potential");
+  const SetLines lines = set_lines(scene, who, {.step = 0.1}, 20);
+  REQUIRE(lines.refusal.empty());
+  CHECK(lines.lines.front() == "hamiltonian.coordinates=");
+  const Scene changed = file.load(lines.lines);
+  CHECK(changed.hamiltonian.kind == SceneHamiltonian::Kind::kinetic_potential);
+  const double expected = evaluate(scene).potential;
+  CHECK(std::abs(evaluate(changed).potential / expected - 1) < 1e-15);
+  // Gravity alone is another number: -1.5e-3 / sqrt(1.01).
+  CHECK(std::abs(-1.5e-3 / std::sqrt(1.01) / expected - 1) > 1e-4);
+}
+
+TEST_CASE("lines of advice take out what means nothing to the method", "[advise]") {
+  const std::string spring = R"(units = "reduced"
+[particles]
+body = [{ name = "bob", mass = 1, x = [1, 0, 0], v = [0, 0, 0] }]
+[hamiltonian]
+type = "kinetic_potential"
+[[hamiltonian.force]]
+type = "harmonic_field"
+k = 1
+)";
+  const SceneFile adaptive(spring + "[integrator]\nmethod = \"dop853\"\nrtol = 1e-9\natol = 1e-12\nuntil = 50\n");
+  AdviseOptions options;
+  options.error = 1e-6;
+  options.methods = {"verlet", "blanes_moan_s6"};
+  const Advice advice = advise(adaptive.load(), options);
+  REQUIRE(advice.proposals.size() == 2);
+  CHECK(advice.left_out.empty());
+  for (const Proposal& p : advice.proposals) CHECK(adaptive.load(p.sets).integrator.method == p.who.method);
+
+  const SceneFile watched(spring +
+                          "[[every]]\ntype = \"shadow_hamiltonian\"\nsteps = 10\n[integrator]\nmethod = \"verlet\"\n"
+                          "step = 0.1\nuntil = 50\n");
+  options.methods = {"rk4"};
+  const Advice refused = advise(watched.load(), options);
+  CHECK(refused.proposals.empty());
+  CHECK(refused.reason.starts_with("rk4 holds it, but the scene refuses its lines: "));
+  CHECK(refused.left_out == std::vector<std::string>{refused.reason});
 }
 
 TEST_CASE("advice that cannot be given is refused, or says why there is none", "[advise]") {
