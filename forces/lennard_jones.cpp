@@ -63,7 +63,7 @@ LennardJonesRow row_of(const PairKind& kind, double cutoff, Cutoff cutoff_style,
 }  // namespace
 
 void LennardJonesForce::check() const {
-  detail::check_cutoff(cutoff, switch_from);
+  detail::check_cutoff(cutoff, cutoff_style, switch_from);
   if (epsilon.has_value() != sigma.has_value())
     refuse_field(epsilon ? "epsilon" : "sigma", epsilon ? *epsilon : *sigma,
                  "stands alone; give epsilon and sigma, or none");
@@ -170,6 +170,7 @@ void LennardJonesForce::add_lanes(ForceSink<double>& out, const ParticleSystem<d
   const auto style = static_cast<std::size_t>(known.style), many = static_cast<std::size_t>(known.types > 1);
   const SumPairs quick = kernels.quick[style][many][sums ? 1 : 0], careful = kernels.careful[style][many][sums ? 1 : 0];
   const PairField field{list.records(), known.rows.data(), known.types, known.force_unit, known.energy_unit};
+  const detail::PairLimits limits{cutoff, 0, detail::strongest_pair * known.force_unit, "Lennard-Jones"};
   const auto sum_doubles = [&](const PairGroup& group, PairSums& found, bool care) {
     (care ? careful : quick)(field, group, found);
   };
@@ -179,7 +180,7 @@ void LennardJonesForce::add_lanes(ForceSink<double>& out, const ParticleSystem<d
     const SumMixedPairs mixed_quick = mixed_kernels.quick[style][many],
                         mixed_careful = mixed_kernels.careful[style][many];
     const MixedPairField whole{list.whole_records(), table_in_use.rows.data(), known.types, table_in_use.inverse2_unit};
-    detail::add_pair_groups(out, s, list, {table_in_use.force_unit, known.energy_unit}, "Lennard-Jones",
+    detail::add_pair_groups(out, s, list, {table_in_use.force_unit, known.energy_unit}, limits,
                             [&](const PairGroup& group, PairSums& found, bool care) {
                               if (sums) sum_doubles(group, found, care);  // for energies and virials
                               const bool close = sums && found.close;
@@ -187,9 +188,9 @@ void LennardJonesForce::add_lanes(ForceSink<double>& out, const ParticleSystem<d
                               found.close = found.close || close;
                             });
   } else {
-    detail::add_pair_groups(out, s, list, {known.force_unit, known.energy_unit}, "Lennard-Jones", sum_doubles);
+    detail::add_pair_groups(out, s, list, {known.force_unit, known.energy_unit}, limits, sum_doubles);
   }
-  detail::add_scaled_pairs(out, s, terms_of(s));
+  detail::add_scaled_pairs(out, s, terms_of(s), limits);
   add_tail(out, s);
 }
 

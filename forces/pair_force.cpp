@@ -15,6 +15,8 @@ namespace {
 
 constexpr int bits_of_unit = 47;  // below the scale of a strong force
 
+double force_unit_of(double scale) { return std::ldexp(1.0, std::ilogb(scale) + 1 - bits_of_unit); }
+
 int type_named(const Topology* topology, const std::string& name, std::string_view key) {
   const std::vector<std::string>& names = topology != nullptr ? topology->type_names : std::vector<std::string>{};
   const auto found = std::find(names.begin(), names.end(), name);
@@ -70,6 +72,10 @@ double strongest_product(const ParticleSystem<double>& s) {
   return s.units().coulomb_constant * (most > 0 ? most * most : 1);
 }
 
+PairLimits limits_of(const PairPlan& plan) {
+  return {plan.cutoff, plan.nearest, strongest_pair * force_unit_of(plan.scale), plan.name};
+}
+
 void add_pairs_in_lanes(ForceSink<double>& out, const ParticleSystem<double>& s, const PairPlan& plan) {
   std::optional<NeighborList> own;
   NeighborList& list = out.neighbors() != nullptr ? *out.neighbors() : own.emplace(plan.cutoff);
@@ -77,7 +83,7 @@ void add_pairs_in_lanes(ForceSink<double>& out, const ParticleSystem<double>& s,
   const PairChunkKernels& kernels = pair_chunk_kernels();
   const std::size_t all = out.wants_energy() || out.wants_virial() ? 1 : 0;
   const auto quick = kernels.add[0][all], careful = kernels.add[1][all];
-  const double force_unit = std::ldexp(1.0, std::ilogb(plan.scale) + 1 - bits_of_unit);
+  const double force_unit = force_unit_of(plan.scale);
   const double energy_unit = force_unit * std::ldexp(1.0, std::ilogb(plan.cutoff) + 1);
   const PairFilter filter{list.records(),
                           plan.cutoff * plan.cutoff,
@@ -88,7 +94,8 @@ void add_pairs_in_lanes(ForceSink<double>& out, const ParticleSystem<double>& s,
                           plan.coulomb_constant != 0 ? charges_of_records(s, list) : nullptr,
                           plan.coulomb_constant};
   add_pair_groups(
-      out, s, list, {force_unit, energy_unit}, plan.name, [&](const PairGroup& group, PairSums& found, bool care) {
+      out, s, list, {force_unit, energy_unit}, limits_of(plan),
+      [&](const PairGroup& group, PairSums& found, bool care) {
         PairChunk chunk;
         std::memset(&found, 0, sizeof found);
         for (std::ptrdiff_t row = 0; row < group.rows; row += chunk.rows) {

@@ -180,6 +180,8 @@ struct PairPlan {
   std::string_view name;
 };
 
+/// Those of a plan, for scaled pairs.
+PairLimits limits_of(const PairPlan& plan);
 void add_pairs_in_lanes(ForceSink<double>& out, const ParticleSystem<double>& s, const PairPlan& plan);
 /// The indices of two types; -1 both for no names. @throws Error  for one name alone, or a name that no type has
 std::array<int, 2> pair_types(const Topology* topology, const std::string& first, const std::string& second);
@@ -230,7 +232,7 @@ template <PairPotential P> struct PairForce : P {
   /// @throws Error  for a cutoff that is no length, a switch that begins elsewhere, a force without strength
   void check() const {
     if constexpr (requires { P::check(); }) P::check();
-    detail::check_cutoff(reach(), switch_from);
+    detail::check_cutoff(reach(), cutoff_style, switch_from);
     detail::check_pair_scale(detail::scale_of<P>(*this, 1));
   }
   /// @throws Error  also for names that no type has, and where charges are asked for that the particles do not have
@@ -260,13 +262,21 @@ template <PairPotential P> struct PairForce : P {
     if constexpr (std::is_same_v<Real, double>) {
       const P& potential = *this;
       const double scale = detail::scale_of(potential, charged ? detail::strongest_product(s) : 0);
-      detail::add_pairs_in_lanes(out, s,
-                                 {&potential, detail::pair_loop<P>(cutoff_style), end, reach(), nearest_pair(), scale,
-                                  charged ? constant : 0, types, name()});
+      const detail::PairPlan plan{&potential,
+                                  detail::pair_loop<P>(cutoff_style),
+                                  end,
+                                  reach(),
+                                  nearest_pair(),
+                                  scale,
+                                  charged ? constant : 0,
+                                  types,
+                                  name()};
+      detail::add_pairs_in_lanes(out, s, plan);
+      detail::add_scaled_pairs(out, s, terms, detail::limits_of(plan));
     } else {
       detail::add_pairs_in_turn(out, s, reach(), terms);
+      detail::add_scaled_pairs(out, s, terms);
     }
-    detail::add_scaled_pairs(out, s, terms);
   }
 
  private:

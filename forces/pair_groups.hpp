@@ -22,6 +22,9 @@ struct PairUnits {
   double force, energy;  ///< [mass length/time^2], [energy]; the virial counts the same as the energy
 };
 
+/// A stronger pair is more than sums take, of whole units.
+inline constexpr double strongest_pair = 0x1p61;
+
 /// Sums of a block that depend on no order.
 struct PairTotals {
   ExactSum energy;
@@ -48,11 +51,6 @@ class Lowest {
   std::atomic<Index> lowest_ = std::numeric_limits<Index>::max();
 };
 
-/// What a kick may move a particle by, as parts of the distance to its neighbor and of the range. An r^-12 wall shakes
-/// two particles of one mass with (h omega)^2 = 27 of the first part; beyond 4 no step follows, and nobody is to begin
-/// there, but a hot melt bears it for moments. Kicks below the part of the range are never asked.
-inline constexpr double thrown_at_start = 0.19, thrown_later = 0.5, thrown_of_range = 0.05;
-
 /// Whether a particle of a group has a neighbor so near that a kick moves it by more than their distance bears.
 /// @param way2  square of what it is moved by, a h^2 [length^2]
 inline bool is_thrown(const ParticleSystem<double>& s, const NeighborList& list, const NeighborList::Group& group,
@@ -72,10 +70,10 @@ inline bool is_thrown(const ParticleSystem<double>& s, const NeighborList& list,
 
 /// Adds what the neighbors of each particle do to it.
 /// @param kernel  (group, sums, careful): fills PairSums of a group; asked again with care if a pair is `close`
-/// @param force  as messages call it
+/// @param limits  those that `kernel` knows, and what messages call the force
 template <class Kernel>
 void add_pair_groups(ForceSink<double>& out, const ParticleSystem<double>& s, const NeighborList& list,
-                     const PairUnits& units, std::string_view force, const Kernel& kernel) {
+                     const PairUnits& units, const PairLimits& limits, const Kernel& kernel) {
   if (list.crowded() >= 0) return out.fail(detail::crowded(s, list.crowded(), list.range()));
   constexpr Index size = NeighborList::group_size;
   const bool sums = out.wants_energy() || out.wants_virial();
@@ -136,11 +134,13 @@ void add_pair_groups(ForceSink<double>& out, const ParticleSystem<double>& s, co
   } else {
     for_blocks(lanes, [&](Index begin, Index end) { block(begin, end); });
   }
-  if (overlapping.value() < s.size()) out.fail(overlap(s, overlapping.value(), force));
+  if (overlapping.value() < s.size()) {
+    out.fail(overlap(s, overlapping.value(), limits.force, help_of_close_pairs(out.kick(), limits.nearest)));
+  }
   if (thrown.value() < s.size()) {
     const Index i = thrown.value();
     const double way = std::sqrt(norm2(std::as_const(out.accelerations())[i])) * kick2;
-    out.fail(detail::thrown(s, i, force, way));
+    out.fail(detail::thrown(s, i, limits.force, way));
   }
 }
 

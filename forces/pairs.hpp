@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 namespace noether {
@@ -100,25 +101,70 @@ void add_pairs_in_turn(ForceSink<Real>& out, const ParticleSystem<Real>& s, doub
   }
 }
 
-/// Adds the pairs whose force the topology scales, at their nearest images. @param terms  as above
+/// What a kick may move a particle by, as parts of the distance to its neighbor and of the range. An r^-12 wall shakes
+/// two particles of one mass with (h omega)^2 = 27 of the first part; beyond 4 no step follows, and nobody is to begin
+/// there, but a hot melt bears it for moments. Kicks below the part of the range are never asked.
+inline constexpr double thrown_at_start = 0.19, thrown_later = 0.5, thrown_of_range = 0.05;
+
+/// What pairs of doubles outside the neighbor list keep to, as those within it do.
+struct PairLimits {
+  double range = 0;             ///< of the force [length]
+  double nearest = 0;           ///< pairs nearer than that are none of the potential's [length]
+  double strongest = 0;         ///< what exact sums take of a pair [mass length/time^2]
+  std::string_view force = {};  ///< as messages call it
+};
+
+/// Two particles, and the force on the first of them.
+struct PairForceOn {
+  Index i, j;
+  double r2;
+  Vec3<double> force;
+};
+
+/// Tells `out` of a pair that is too close, or that no step follows. @return whether its force is a number
+bool look_closer(ForceSink<double>& out, const ParticleSystem<double>& s, const PairForceOn& pair,
+                 const PairLimits& limits);
+
+/// The same, of pairs that are nearly all well. @return whether the force can be added
+inline bool can_add(ForceSink<double>& out, const ParticleSystem<double>& s, const PairForceOn& pair,
+                    const PairLimits& limits) {
+  const double size = std::abs(pair.force[0]) + std::abs(pair.force[1]) + std::abs(pair.force[2]);
+  const double lightest = std::min(s.masses()[pair.i], s.masses()[pair.j]);
+  const bool weak = size * out.kick() * out.kick() <= thrown_of_range * limits.range * lightest;
+  const bool well = size < limits.strongest && pair.r2 >= limits.nearest * limits.nearest;
+  return (well && (weak || out.kick() == 0)) || look_closer(out, s, pair, limits);
+}
+
+/// Adds the pairs whose force the topology scales, at their nearest images; doubles within their limits, or the run
+/// ends. @param terms  as above
 template <class Real, class Terms>
-void add_scaled_pairs(ForceSink<Real>& out, const ParticleSystem<Real>& s, const Terms& terms) {
+void add_scaled_pairs(ForceSink<Real>& out, const ParticleSystem<Real>& s, const Terms& terms,
+                      [[maybe_unused]] const PairLimits& limits = {}) {
   if (s.topology() == nullptr) return;
   for (const Topology::ScaledPair& scaled : s.topology()->scaled_pairs) {
     const auto [i, j] = scaled.pair;
     const Vec3<Real> d = s.box().minimum_image(Vec3<Real>(s.positions()[i] - s.positions()[j]));
-    terms(i, j, norm2(d), [&, i = i, j = j](const PairTerms<Real>& found) {
-      out.pair(i, j, Real(scaled.factor) * found.force * d);
+    const Real r2 = norm2(d);
+    terms(i, j, r2, [&, i = i, j = j](const PairTerms<Real>& found) {
+      const Vec3<Real> f = Real(scaled.factor) * found.force * d;
+      if constexpr (std::is_same_v<Real, double>) {
+        if (!can_add(out, s, {i, j, r2, f}, limits)) return;
+      }
+      out.pair(i, j, f);
       out.energy(Real(scaled.factor) * found.energy);
     });
   }
 }
 
-/// @throws Error  for a cutoff that is no length, or a switch that begins outside it
-void check_cutoff(double cutoff, std::optional<double> switch_from);
+/// @throws Error  for a cutoff that is no length, or a switch that begins outside it or that there is none of
+void check_cutoff(double cutoff, Cutoff style, std::optional<double> switch_from);
+
+/// What helps a run whose step came upon such a pair, as its message ends; nothing helps where nearer pairs attract.
+/// @param kick  of the step; 0: there is none @param nearest  see PairLimits
+std::string_view help_of_close_pairs(double kick, double nearest);
 
 /// Names particle `i` and the one nearest to it. @param force  as a message calls it @cost O(n)
-Failure overlap(const ParticleSystem<double>& s, Index i, std::string_view force);
+Failure overlap(const ParticleSystem<double>& s, Index i, std::string_view force, std::string_view help);
 /// The same of a pair whose force moves particle `i` by `way` in one kick [length].
 Failure thrown(const ParticleSystem<double>& s, Index i, std::string_view force, double way);
 /// The same where so many are near particle `i` that no list can hold them.

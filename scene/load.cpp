@@ -223,7 +223,9 @@ class SceneReader {
       try {
         force.force->check(scene_.particles);
       } catch (const Error& error) {
-        reader.fail("type", error.message());
+        const SceneValue* file = root_.find("particles")->find("structure");
+        const bool of_file = error.key() == "structure" && file != nullptr;
+        reader.fail("type", error.message() + (of_file ? " " + to_text(*file) : ""));
       }
     }
     for (auto& [key, value] : *force.effective.get<SceneValue::Table>()) effective.put(key, value);
@@ -417,11 +419,17 @@ class SceneReader {
                                             "\"BAOAB\", or a scheme such as 'verlet'",
                                             scene_.integrator.method));
     }
+    if (scene_.hamiltonian.thermostat && scene_.integrator.step < 0) {
+      integrator.fail("step",
+                      fmt::format("step = {} leads backwards, and a thermostat knows no way back; a step above 0 "
+                                  "is expected",
+                                  scene_.integrator.step_text));
+    }
     std::optional<AnyIntegrator<double>> made;
     try {
       made = integrator_of(scene_);
     } catch (const SchemeMismatch& error) {
-      integrator.fail(error.key().empty() ? "method" : error.key(), error.message());
+      integrator.fail(error.key().empty() ? "method" : error.key(), error.message() + std::string(who_has_noise()));
     }
     check_start(hamiltonian, integrator, *made);
   }
@@ -480,10 +488,27 @@ class SceneReader {
     int line = particles->line;
     if (bodies != nullptr)
       line = std::get<SceneValue::Array>(bodies->data)[static_cast<std::size_t>(pair->second)].line;
-    throw scene_error(scene_.source, line, "particles", "",
-                      fmt::format("'{}' and '{}' stand in one place, where their attraction is infinite; move one, or "
-                                  "give gravity a softening",
-                                  s.name(pair->first), s.name(pair->second)));
+    throw scene_error(
+        scene_.source, line, "particles", "",
+        fmt::format("'{}' and '{}' stand in one place, where {}", s.name(pair->first), s.name(pair->second),
+                    is_under_gravity() ? "their attraction is infinite; move one, or give gravity a "
+                                         "softening"
+                                       : "a force between them is no number; move one"));
+  }
+
+  bool is_under_gravity() const {
+    const SceneHamiltonian& hamiltonian = scene_.hamiltonian;
+    return hamiltonian.kind == SceneHamiltonian::Kind::wisdom_holman ||
+           std::any_of(hamiltonian.forces.begin(), hamiltonian.forces.end(),
+                       [](const SceneForce& force) { return force.name == "gravity"; });
+  }
+
+  /// Ends the refusal of a word with noise where there is none.
+  std::string_view who_has_noise() const {
+    if (scene_.hamiltonian.thermostat || scene_.hamiltonian.kind == SceneHamiltonian::Kind::wisdom_holman) return "";
+    const Word& word = scene_.integrator.scheme.word;
+    const bool noisy = std::any_of(word.begin(), word.end(), [](const Stage& stage) { return stage.letter == 'O'; });
+    return noisy ? "; O is the letter of a thermostat: add [hamiltonian.thermostat]" : "";
   }
 
   const SceneValue& root_;

@@ -2,6 +2,7 @@
 
 #include "forces/bonded.hpp"
 #include "forces/lennard_jones.hpp"
+#include "forces/pair_potentials.hpp"
 #include "forces/sum.hpp"
 #include "integrators/classical.hpp"
 #include "integrators/langevin.hpp"
@@ -60,6 +61,36 @@ ParticleSystem<double> liquid_with_pair(double distance) {
   s.wrap();
   return s;
 }
+
+/// Four beads in a row, bonded, and two far off; the ends of the row, 'a' and 'd', are scaled, and so far apart.
+ParticleSystem<double> row_with_ends(double apart, double factor) {
+  ParticleSystem<double> s;
+  s.set_box(Box::periodic({9, 9, 9}));
+  s.add("a", 1, {1, 1, 1}, {0, 0, 0});
+  s.add("b", 1, {1, 2, 1}, {0, 0, 0});
+  s.add("c", 1, {2, 1.9, 1}, {0, 0, 0});
+  s.add("d", 1, {1 + apart, 1, 1}, {0, 0, 0});
+  s.add("e", 1, {5, 5, 5}, {0, 0, 0});
+  s.add("f", 1, {6.2, 5, 5}, {0, 0, 0});
+  auto topology = std::make_shared<Topology>();
+  topology->bond_kinds = {{"harmonic", {100, 1}}};
+  for (Index i = 0; i < 3; ++i) topology->bonds.push_back({{i, i + 1}, 0});
+  topology->exclusions = {{0, 1}, {0, 2}, {1, 2}, {1, 3}, {2, 3}};
+  if (factor != 1) topology->scaled_pairs = {{{0, 3}, factor}};
+  s.set_topology(topology);
+  return s;
+}
+
+/// How a row ends that is under a pair force.
+template <class Force>
+Outcome end_of_row(const ParticleSystem<double>& s, const Force& force, double step, std::int64_t steps) {
+  Simulation sim(s, compose(KineticPotential<Sum<Force, Bonded>>(Sum(force, Bonded{})), schemes::verlet), step);
+  return sim.run(steps);
+}
+
+const Buckingham helium{2500, 0.18, 3.1};
+
+BuckinghamForce helium_pairs() { return {helium, 2.1, Cutoff::shifted_force}; }
 
 }  // namespace
 
@@ -146,6 +177,104 @@ TEST_CASE("two atoms too close for the step are named at the start, before they 
       CHECK(outcome.message.find(fmt::format("particles 'a' and 'b' are {:.3g} apart", distance)) == 0);
     }
     CHECK(Simulation(s, melt(), 1e-4).run(1000).ok());  // a step that can follow them
+  }
+}
+
+TEST_CASE("a scaled pair too close ends the run as an unscaled one does, and both are named", "[extremes][overlap]") {
+  for (const double apart : {0.0, 1e-9, 1e-4, 0.1, 0.3, 0.45}) {
+    for (const double factor : {1.0, 0.5}) {
+      CAPTURE(apart, factor);
+      const Outcome outcome = end_of_row(row_with_ends(apart, factor), argon(), 0.005, 1000);
+      CHECK(outcome.kind == Outcome::Kind::overlap);
+      CHECK(outcome.step == 0);
+      CHECK(outcome.message ==
+            fmt::format("particles 'a' and 'd' are {:.3g} apart, too close for their Lennard-Jones force; begin with "
+                        "[minimize], or take a smaller step",
+                        apart));
+      REQUIRE(outcome.particle);
+      CHECK(outcome.particle->name == "a");
+    }
+  }
+}
+
+TEST_CASE("a scaled pair too close for the step is named with the way it would go", "[extremes][overlap]") {
+  const double apart = 0.6, step = 0.005;
+  const double r6 = std::pow(apart, -6), force = 24 * r6 * (2 * r6 - 1) / apart;
+  // The end of a shifted force takes less than a thousandth, as does a digit less.
+  const std::string way = fmt::format("{:.3g}", 0.5 * force * step * step);
+  const Outcome outcome = end_of_row(row_with_ends(apart, 0.5), argon(), step, 1000);
+  CHECK(outcome.kind == Outcome::Kind::overlap);
+  CHECK(outcome.step == 0);
+  CHECK(outcome.message == fmt::format("particles 'a' and 'd' are 0.6 apart: their Lennard-Jones force would move 'a' "
+                                       "by {} in one step, further than a step can follow; begin with [minimize], or "
+                                       "take a smaller step",
+                                       way));
+  CHECK(end_of_row(row_with_ends(apart, 0.5), argon(), 1e-4, 1000).ok());  // a step that can follow them
+  CHECK(end_of_row(row_with_ends(apart, 1e-3), argon(), step, 100).ok());  // a force that it can follow
+  ParticleSystem<double> s = row_with_ends(0.72, 0.5);
+  CHECK(end_of_row(s, argon(), step, 100).ok());
+  s.masses()[3] = 0.05;  // the one that is moved too far is the light one
+  CHECK(end_of_row(s, argon(), step, 100).message.find("would move 'd' by") != std::string::npos);
+}
+
+TEST_CASE("a scaled pair within Buckingham's barrier ends the run, and one outside does not", "[extremes][overlap]") {
+  const double top = helium.nearest();
+  for (const double apart : {1e-3, 0.5 * top, 0.99 * top}) {
+    for (const double factor : {1.0, 0.5}) {
+      CAPTURE(apart, factor);
+      const Outcome outcome = end_of_row(row_with_ends(apart, factor), helium_pairs(), 1e-5, 100);
+      CHECK(outcome.kind == Outcome::Kind::overlap);
+      CHECK(outcome.step == 0);  // nothing is proposed: within the barrier they attract
+      CHECK(outcome.message ==
+            fmt::format("particles 'a' and 'd' are {:.3g} apart, too close for their buckingham force", apart));
+    }
+  }
+  CHECK(end_of_row(row_with_ends(1.01 * top, 0.5), helium_pairs(), 1e-5, 10).ok());
+}
+
+TEST_CASE("a scaled pair that comes too close in a liquid is named, on any number of threads and with any skin",
+          "[extremes][overlap]") {
+  std::optional<std::string> text;
+  for (const int threads : {1, 2, 3}) {
+    const Threads now(threads);
+    for (const double skin : {0.0, 0.3}) {
+      ParticleSystem<double> s = liquid_with_pair(0.9);
+      auto topology = std::make_shared<Topology>();
+      topology->scaled_pairs = {{{13, 271}, 0.5}, {{20, 40}, 0.5}};
+      s.set_topology(topology);
+      s.velocities().set(271, {-300, 0, 0});
+      Simulation sim(s, melt(schemes::verlet, skin), 1e-4);
+      const Outcome outcome = sim.run(1000);
+      CAPTURE(threads, skin);
+      CHECK(outcome.kind == Outcome::Kind::overlap);
+      CHECK(outcome.step > 0);
+      CHECK(outcome.message.find("particles 13 and 271 are ") == 0);
+      CHECK(is_finite(sim.particles()));
+      CHECK(to_text(outcome) == text.value_or(to_text(outcome)));
+      text = to_text(outcome);
+    }
+  }
+}
+
+TEST_CASE("scaled atoms in one place are named by the program, which speaks of no gravity", "[extremes][overlap]") {
+  const SceneFolder folder(
+      "units = \"reduced\"\n[particles]\nstructure = \"row.data\"\nfile_units = \"lj\"\nspecial = [0, 0, 0.5]\n"
+      "[hamiltonian]\ntype = \"kinetic_potential\"\nforce = [{ type = \"lennard_jones\", cutoff = 2.5, epsilon = 1, "
+      "sigma "
+      "= 1 }, { type = \"bonded\" }]\n[integrator]\nmethod = \"verlet\"\nstep = 0.005\nsteps = 100\n");
+  for (const char* last : {"1 1 1", "1.3 1 1"}) {
+    write_text(
+        folder / "row.data",
+        fmt::format("row\n\n4 atoms\n3 bonds\n1 atom types\n1 bond types\n\n0 9 xlo xhi\n0 9 ylo yhi\n0 9 zlo "
+                    "zhi\n\nMasses\n\n1 1\n\nBond Coeffs # harmonic\n\n1 100 1\n\nAtoms # bond\n\n1 1 1 1 1 1\n2 1 "
+                    "1 1 2 1\n3 1 1 2 2 1\n4 1 1 {}\n\nBonds\n\n1 1 1 2\n2 1 2 3\n3 1 3 4\n",
+                    last));
+    const ProcessResult result = noether(folder, "run scene.toml --fresh");
+    INFO(result.out << result.err);
+    CHECK(result.exit_code == 1);
+    CHECK(has(result.err, "overlap at step 0: particles 'atom_1' and 'atom_4' are "));
+    CHECK(has(result.err, "too close for their Lennard-Jones force"));
+    CHECK_FALSE(has(result.err, "gravity"));
   }
 }
 
