@@ -120,13 +120,14 @@ template <class NextToo> std::vector<std::uint8_t> steps_together(std::size_t co
 
 /// Every particle there is and none twice; every kind there is.
 template <std::size_t size>
-void check_terms(const std::vector<BondedTerm<size>>& terms, std::size_t kinds, Index n, const char* one) {
+void check_terms(const std::vector<BondedTerm<size>>& terms, std::size_t kinds, Index n, const char* one,
+                 const char* section) {
   for (const BondedTerm<size>& term : terms) {
     if (kinds == 0) {
       throw Error(
-          fmt::format("there is {} and no parameters of any; give those of its kind, as a section of "
-                      "coefficients of the structure",
-                      one));
+          fmt::format("there is {} and no parameters of any; give those of each kind in section '{}' of the structure",
+                      one, section),
+          {.key = "structure"});
     }
     if (term.type < 0 || static_cast<std::size_t>(term.type) >= kinds) {
       throw Error(fmt::format("{} is of kind {}, but there are {} kinds", one, term.type, kinds));
@@ -149,10 +150,10 @@ BondedTerms::BondedTerms(std::shared_ptr<const Topology> topology, Index n)
       dihedrals(kinds_of(topology->dihedral_kinds, known_dihedrals(), "dihedrals")),
       impropers(kinds_of(topology->improper_kinds, known_impropers(), "impropers")),
       topology_(std::move(topology)) {
-  check_terms(topology_->bonds, bonds.size(), n, "a bond");
-  check_terms(topology_->angles, angles.size(), n, "an angle");
-  check_terms(topology_->dihedrals, dihedrals.size(), n, "a dihedral");
-  check_terms(topology_->impropers, impropers.size(), n, "an improper");
+  check_terms(topology_->bonds, bonds.size(), n, "a bond", "Bond Coeffs");
+  check_terms(topology_->angles, angles.size(), n, "an angle", "Angle Coeffs");
+  check_terms(topology_->dihedrals, dihedrals.size(), n, "a dihedral", "Dihedral Coeffs");
+  check_terms(topology_->impropers, impropers.size(), n, "an improper", "Improper Coeffs");
   struct Place {
     Index owner;
     std::uint64_t slot;  // and the sign

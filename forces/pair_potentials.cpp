@@ -44,8 +44,9 @@ void Buckingham::check() const {
   if (C > 0 && !(excess(*this, 7 * rho) > 0)) {
     refuse_field(
         "C", C,
-        fmt::format("is so strong that these pairs attract at every distance; less than {:.6g} leaves a barrier",
-                    A * std::pow(7 * rho, 7) * std::exp(-7.0) / (6 * rho)));
+        fmt::format(
+            "is so strong that these pairs attract at every distance; less than {:.6g} A rho^6 leaves a barrier",
+            std::pow(7.0, 7) * std::exp(-7.0) / 6));
   }
 }
 

@@ -162,8 +162,9 @@ TEST_CASE("Buckingham's catastrophe is caught at the top of its barrier", "[pair
 
 TEST_CASE("the exponential of pair potentials is within an ulp", "[pair_force]") {
   for (double x = -700; x < 700; x += 0.37) {
-    const double exact = std::exp(x);
-    CHECK(std::abs(pair_exp(x) - exact) <= 2 * (std::nextafter(exact, 1e308) - exact));
+    const Quad exact = exp(Quad(x));
+    const auto rounded = static_cast<double>(exact);
+    CHECK(abs(Quad(pair_exp(x)) - exact) <= Quad(std::nextafter(rounded, 1e308) - rounded));
   }
 }
 
@@ -183,7 +184,17 @@ TEST_CASE("pair potentials that make no sense are refused", "[pair_force][messag
   CHECK(refusal(pair_force(MorsePair{-1, 2, 1}, 2, Cutoff::plain)) ==
         "depth = -1 is no depth of a well; an energy above 0 is expected");
   CHECK(refusal(pair_force(Buckingham{100, 0.1, 5}, 2, Cutoff::plain)) ==
-        "C = 5 is so strong that these pairs attract at every distance; less than 0.0125162 leaves a barrier");
+        "C = 5 is so strong that these pairs attract at every distance; less than 125.162 A rho^6 leaves a barrier");
+  CHECK(refusal(pair_force(Buckingham{100, 0.1, 125.17e-4}, 2, Cutoff::plain)).find("C = 0.012517 is so") == 0);
+  CHECK(refusal(pair_force(Buckingham{100, 0.1, 125.16e-4}, 2, Cutoff::plain)).empty());
+  for (const Cutoff style : {Cutoff::plain, Cutoff::shifted, Cutoff::shifted_force}) {
+    morse = pair_force(MorsePair{1, 2, 1}, 2.0, style);
+    morse.switch_from = 1.5;
+    CHECK(refusal(morse) ==
+          "switch_from = 1.5 belongs to a switch; take it out, or add cutoff_style = \"switch_c2\" or \"switch_c4\"");
+  }
+  morse.cutoff_style = Cutoff::switch_c2;
+  CHECK(refusal(morse).empty());
   CHECK(refusal(WcaForce{{1, 0}}) == "sigma = 0 is no length above 0");
 }
 
