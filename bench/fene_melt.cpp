@@ -2,9 +2,10 @@
 /// Lennard-Jones pairs, at temperature 1; whole steps with the search for neighbors.
 ///
 /// Cases: `langevin` in a bath of friction 0.1 by BAOAB with steps of 0.012 as in.chain, and `nve` by Verlet with steps
-/// of 0.005. Beside them LAMMPS from the same beads, where python3 has it. Protocol: walks of chains are led downhill
-/// and 500 steps of 0.005 in a strong bath; then 200 steps to settle, and the medians of 7 slices of 100 steps each,
-/// ours and LAMMPS's in turn; processor time of one thread, wall time of more.
+/// of 0.005. Beside them LAMMPS from the same beads, plain and OPT, where python3 has it (OPT has a variant of the pair
+/// style, none of the bonds or of the bath). Protocol: walks of chains are led downhill and 500 steps of 0.005 in a
+/// strong bath; then 200 steps to settle, and the medians of 7 slices of 100 steps each, ours and LAMMPS's in turn;
+/// processor time of one thread, wall time of more.
 
 #include "bench/melt.hpp"
 #include "engine/simulation.hpp"
@@ -91,8 +92,10 @@ int main(int count, char** arguments) {
     set_thread_count(by);
     for (bench::Melt& one : cases) {
       std::vector<bench::Melt> ours = {one}, peers;
-      if (by == 1)
-        bench::add_peer(peers, "lammps", fmt::format("lammps_melt.py fene {} '{}'", one.name, data.string()), atoms);
+      for (const std::string package : by == 1 ? std::vector{"plain", "opt"} : std::vector<const char*>{}) {
+        bench::add_peer(peers, "lammps_" + package,
+                        fmt::format("lammps_melt.py fene {} {} '{}'", package, one.name, data.string()), atoms);
+      }
       bench::take_turns(ours, peers, steps);
       bench::add_rate(rows, ours[0], peers);
       bench::add_search(rows, ours[0]);

