@@ -57,7 +57,64 @@ template <class F> void check_lanes(const F& force, const ParticleSystem<double>
   CHECK((lanes.virial - exact.virial).cwiseAbs().maxCoeff() < 1e-11 * force.scale() * static_cast<double>(s.size()));
 }
 
+/// Twelve-six at the distance r, times a switch: its energy and the force that drives the pair apart.
+struct SwitchedPair {
+  long double energy, force;
+};
+
+/// From the polynomials as docs/structures.md writes them, term by term, and their derivatives.
+SwitchedPair written_out(Cutoff style, long double r, long double from, long double to) {
+  const auto power = [](long double x, int n) {
+    long double product = 1;
+    for (int k = 0; k < n; ++k) product *= x;
+    return product;
+  };
+  const long double width = to * to - from * from, t = (r * r - from * from) / width;
+  const long double energy = 4 / power(r, 12) - 4 / power(r, 6), force = 48 / power(r, 13) - 24 / power(r, 7);
+  long double S = 1 - 10 * power(t, 3) + 15 * power(t, 4) - 6 * power(t, 5);
+  long double slope = -30 * power(t, 2) + 60 * power(t, 3) - 30 * power(t, 4);
+  if (style == Cutoff::switch_c4) {
+    S = 1 - 126 * power(t, 5) + 420 * power(t, 6) - 540 * power(t, 7) + 315 * power(t, 8) - 70 * power(t, 9);
+    slope = -630 * power(t, 4) + 2520 * power(t, 5) - 3780 * power(t, 6) + 2520 * power(t, 7) - 630 * power(t, 8);
+  }
+  return {energy * S, force * S - energy * slope * 2 * r / width};
+}
+
+/// A pair on the x axis in 113 bits, and in lanes, which sum whole units of 2^-47 of the scale, 24, and of energies
+/// four times as large, by the power of two above the cutoff.
+template <class F> void check_written_out(const F& force, Cutoff style, double r) {
+  ParticleSystem<double> s;
+  s.set_box(Box::periodic({16, 16, 16}));
+  s.add("", 1, {1, 1, 1}, {0, 0, 0});
+  s.add("", 1, {1 + r, 1, 1}, {0, 0, 0});
+  const SwitchedPair truth = written_out(style, r, 1.5L, 2.5L);
+  const auto error = [](double found, long double right) { return std::abs(static_cast<double>(found - right)); };
+  const auto size = [](long double right) { return std::abs(static_cast<double>(right)); };
+  const Evaluated exact = evaluated<Quad>(force, s);
+  CHECK(error(exact.energy, truth.energy) < 1e-14 * size(truth.energy));
+  CHECK(error(exact.a.component(0)[1], truth.force) < 1e-14 * size(truth.force));
+  for (const SimdLevel level : test::all_levels()) {
+    const test::AtLevel at(level);
+    const Evaluated lanes = evaluated<double>(force, s);
+    CHECK(error(lanes.energy, truth.energy) < 24 * 0x1p-45 + 1e-14 * size(truth.energy));
+    CHECK(error(lanes.a.component(0)[1], truth.force) < 24 * 0x1p-47 + 1e-14 * size(truth.force));
+  }
+}
+
 }  // namespace
+
+TEST_CASE("switches are the polynomials in r^2 that are written down, in energy and force", "[pair_force]") {
+  for (const Cutoff style : {Cutoff::switch_c2, Cutoff::switch_c4}) {
+    for (int k = 1; k <= 10; ++k) {
+      const double r = 1.5 + k * 93 / 1024.0;  // exact, and so is its place on the grid of the box
+      CAPTURE(static_cast<int>(style), r);
+      const LennardJonesForce built_in{
+          .cutoff = 2.5, .cutoff_style = style, .switch_from = 1.5, .epsilon = 1.0, .sigma = 1.0};
+      check_written_out(built_in, style, r);
+      check_written_out(PairForce<TwelveSix>{TwelveSix{}, 2.5, style, 1.5}, style, r);
+    }
+  }
+}
 
 TEST_CASE("pairs of any potential in lanes are those of 113 bits, for every end of the range", "[pair_force]") {
   const Cutoff style =
