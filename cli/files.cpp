@@ -99,7 +99,7 @@ int report_verified(const std::string& file, const io::Repair& found, bool json)
 
 struct FileArguments {
   std::string file, out;
-  bool json = false, repair = false;
+  bool json = false, repair = false, unwrapped = false;
 };
 
 CLI::App* file_command(CLI::App& app, const std::string& name, const std::string& help, const std::string& kinds,
@@ -145,9 +145,10 @@ void add_convert_command(CLI::App& app, int& exit_code) {
   const auto given = std::make_shared<FileArguments>();
   CLI::App* command = file_command(app, "convert", "rewrite a trajectory as extended XYZ or CSV", "run.h5", given);
   command->add_option("out", given->out, "FILE.xyz or FILE.csv")->required()->type_name("OUT");
+  command->add_flag("--unwrapped", given->unwrapped, "positions as if a periodic box had never taken them in");
   command->add_flag("--json", given->json, "report as one line of JSON");
   command->callback([given, &exit_code] {
-    const Index frames = io::convert(given->file, given->out);
+    const Index frames = io::convert(given->file, given->out, {.unwrapped = given->unwrapped});
     if (given->json) {
       fmt::print("{}\n",
                  Json::object({{"schema", "noether.convert/1"}, {"frames", std::int64_t{frames}}, {"file", given->out}})

@@ -104,6 +104,12 @@ void write_system(const TrajectoryReader& /*reader*/, const Frame& frame, fmt::m
   out.push_back('\n');
 }
 
+/// The frame with its particles where they would be if the box had never taken them in.
+Frame unwrapped(Frame frame) {
+  for (std::size_t k = 0; k < frame.positions.size(); ++k) frame.positions[k] += frame.images[k] * frame.edges[k % 3];
+  return frame;
+}
+
 std::string system_head(const Frames& shared) {
   const bool unit = !shared.time_unit.empty() && shared.time_unit != "1";
   std::string head = unit ? fmt::format("step,time [{}]", shared.time_unit) : "step,time";
@@ -124,7 +130,7 @@ std::string csv_head(const Frames& shared) {
 
 }  // namespace
 
-Index convert(const std::filesystem::path& file, const std::filesystem::path& out) {
+Index convert(const std::filesystem::path& file, const std::filesystem::path& out, const ConvertOptions& options) {
   const std::string extension = out.extension().string();
   if (extension != ".xyz" && extension != ".csv") {
     throw Error(fmt::format("cannot convert to '{}': unknown extension '{}'{}", out.string(), extension,
@@ -144,6 +150,12 @@ Index convert(const std::filesystem::path& file, const std::filesystem::path& ou
                             out.string()),
                 {.value = extension});
   }
+  if (options.unwrapped && reader.frame(0).images.empty()) {
+    throw Error(
+        fmt::format("cannot unwrap the positions of '{}': its frames have no images, because there is no "
+                    "periodic box; convert it as it is",
+                    file.string()));
+  }
   std::ofstream target(out, std::ios::binary);
   const auto check = [&] {
     if (!target)
@@ -154,7 +166,8 @@ Index convert(const std::filesystem::path& file, const std::filesystem::path& ou
   const Write write = of_system ? write_system : extension == ".csv" ? write_csv : write_xyz;
   for (Index k = 0; k < reader.frames(); ++k) {
     fmt::memory_buffer text;
-    write(reader, reader.frame(k), text);
+    const Frame frame = reader.frame(k);
+    write(reader, options.unwrapped ? unwrapped(frame) : frame, text);
     target.write(text.data(), static_cast<std::streamsize>(text.size()));
     check();
   }

@@ -77,6 +77,10 @@ FileInfo info(const std::filesystem::path& file);
 /// @throws FileError if there is no such file
 FileInfo verify(const std::filesystem::path& file);
 
+struct ConvertOptions {
+  bool unwrapped = false;  ///< positions as if never wrapped: x + image edges, of particles in a periodic box
+};
+
 /// Rewrites a trajectory as extended XYZ (`.xyz`) or CSV (`.csv`: step, time, id, name, x ... vz, 17 digits; of a
 /// first-order system, which has no XYZ: step, time, and a column for each variable).
 ///
@@ -84,8 +88,8 @@ FileInfo verify(const std::filesystem::path& file);
 /// number), positions in angstrom, masses in u, momenta in sqrt(eV u), Lattice and pbc of a periodic box, positions in
 /// it. Other runs keep their own units, which the comment of each frame tells.
 /// @return the number of frames
-/// @throws Error for another extension; FileError if a file cannot be read or written
-Index convert(const std::filesystem::path& file, const std::filesystem::path& out);
+/// @throws Error for another extension, or images that are not there; FileError if a file cannot be read or written
+Index convert(const std::filesystem::path& file, const std::filesystem::path& out, const ConvertOptions& options = {});
 
 /// The samples of all monitors, in the order of their names.
 /// @throws FileError

@@ -429,6 +429,9 @@ TEST_CASE("convert writes extended XYZ and CSV", "[cli][convert]") {
   CHECK(xyz[3] == "Planet 1 0 0 0 1 0");
   CHECK(has(xyz[21], "Time=1 "));
   CHECK(output(folder, "convert scene.out/run.h5 frames.csv").empty());
+  const ProcessResult open = noether(folder, "convert scene.out/run.h5 unwrapped.csv --unwrapped");
+  CHECK(open.exit_code == 2);
+  CHECK(has(open.err, "cannot unwrap the positions of 'scene.out/run.h5': its frames have no images"));
   const std::string json = json_output(folder, "convert scene.out/run.h5 again.csv", "convert");
   CHECK(json_member(json, "frames") == "6");
   CHECK(read_text(folder / "again.csv") == read_text(folder / "frames.csv"));

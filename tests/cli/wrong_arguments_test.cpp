@@ -90,6 +90,8 @@ const std::vector<Wrong> wrong_lines = {
     {"convert scene.toml frames.xyz", 3, "scene.toml: cannot be opened as an HDF5 file: file signature not found"},
     {"convert scene.toml frames.pdb", 2,
      "cannot convert to 'frames.pdb': unknown extension '.pdb'; known are: .xyz, .csv"},
+    {"convert scene.toml frames.xyz --unwraped", 2,
+     "unknown option '--unwraped' of 'convert'; did you mean '--unwrapped'?"},
     {"plot nothing.h5", 3, "nothing.h5: there is no such file"},
 #endif
     {"convert run.h5", 2, "out is required; see `noether convert --help`"},

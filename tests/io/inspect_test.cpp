@@ -192,6 +192,38 @@ TEST_CASE("the XYZ of a molecular run in a box reads back as its particles", "[i
   }
 }
 
+TEST_CASE("positions of particles that cross the box are converted unwrapped where that is asked for", "[inspect]") {
+  const test::ScratchFolder folder;
+  ParticleSystem<double> gas(unit_system("molecular"));
+  gas.set_box(Box::periodic({1.5, 2, 2.5}));
+  gas.add("up", 1, {1.25, 1, 1}, {0.5, 0, 0});      // to 3.75: over one edge and then the next
+  gas.add("down", 1, {1, 0.25, 2}, {0, -0.25, 1});  // to y = -1, z = 7
+  Simulation<double> run(gas, compose(KineticPotential(Sum<>{}), schemes::verlet), 0.5);
+  auto& writer = run.every(1, io::TrajectoryWriter(folder / "run.h5"));
+  REQUIRE(run.run(10).ok());
+  writer.finish(Outcome{});
+
+  const auto position = [&](const std::string& file, std::size_t line, char separator, std::size_t first) {
+    std::istringstream row(lines_of(folder / file).at(line));
+    std::vector<std::string> fields;
+    for (std::string field; std::getline(row, field, separator);) fields.push_back(field);
+    return Vec3<double>(std::stod(fields.at(first)), std::stod(fields.at(first + 1)), std::stod(fields.at(first + 2)));
+  };
+  CHECK(io::convert(folder / "run.h5", folder / "run.csv", {.unwrapped = true}) == 11);
+  io::convert(folder / "run.h5", folder / "wrapped.csv");
+  io::convert(folder / "run.h5", folder / "run.xyz", {.unwrapped = true});
+  for (std::size_t k = 0; k <= 10; ++k) {  // free flight: every number is exact
+    const double t = 0.5 * static_cast<double>(k);
+    const Vec3<double> up(1.25 + 0.5 * t, 1, 1), down(1, 0.25 - 0.25 * t, 2 + t);
+    CHECK(position("run.csv", 1 + 2 * k, ',', 4) == up);
+    CHECK(position("run.csv", 2 + 2 * k, ',', 4) == down);
+    CHECK((position("run.xyz", 2 + 4 * k, ' ', 1) - 10 * up).norm() < 1e-14);
+    CHECK((position("run.xyz", 3 + 4 * k, ' ', 1) - 10 * down).norm() < 1e-14);
+  }
+  CHECK(position("wrapped.csv", 21, ',', 4) == Vec3<double>(0.75, 1, 1));
+  CHECK(position("wrapped.csv", 22, ',', 4) == Vec3<double>(1, 1, 2));
+}
+
 TEST_CASE("a conversion that cannot be is refused", "[inspect][messages]") {
   const test::ScratchFolder folder;
   CHECK(error_of([&] { io::convert(folder / "run.h5", "out.xyzz"); }) ==
@@ -204,6 +236,10 @@ TEST_CASE("a conversion that cannot be is refused", "[inspect][messages]") {
     WritingRun run(folder / "run.h5");
     REQUIRE(run.simulation.run(0).ok());
   }
+  CHECK(error_of([&] { io::convert(folder / "run.h5", folder / "out.csv", {.unwrapped = true}); }) ==
+        "cannot unwrap the positions of '" + (folder / "run.h5").string() +
+            "': its frames have no images, because there is no periodic box; convert it as it is");
+  CHECK_FALSE(std::filesystem::exists(folder / "out.csv"));
   CHECK(error_of([&] { io::convert(folder / "run.h5", folder / "none/out.csv"); }) ==
         (folder / "none/out.csv").string() + ": cannot be written; is the folder there, and the disk not full?");
 }

@@ -135,6 +135,9 @@ TEST_CASE("frames of a system convert to CSV, and are refused as XYZ", "[system_
   CHECK(text_of(folder / "run.csv") ==
         fmt::format("step,time,x,y,z\n0,0,1,1,1\n5,{:.17g},{:.17g},{:.17g},{:.17g}\n", 5 * 0.25e-2, y[0], y[1], y[2]));
   const std::string xyz = (folder / "run.xyz").string();
+  CHECK(error_of([&] { io::convert(folder / "run.h5", folder / "run.csv", {.unwrapped = true}); }) ==
+        "cannot unwrap the positions of '" + (folder / "run.h5").string() +
+            "': its frames have no images, because there is no periodic box; convert it as it is");
   CHECK(error_of([&] { io::convert(folder / "run.h5", xyz); }) ==
         "cannot convert to '" + xyz + "': a system of variables has no particles; give a name that ends in .csv");
 }
