@@ -5,6 +5,7 @@
 #include "integrators/damped.hpp"
 #include "integrators/first_order_system.hpp"
 #include "integrators/methods.hpp"
+#include "study/multistep_roots.hpp"
 
 #include <Eigen/LU>
 
@@ -193,6 +194,26 @@ void search(const StepMatrix& step, LinearTheory& found) {
   }
 }
 
+/// Relative error of leapfrog's frequency with 20 steps a period.
+double accuracy_of_twenty_steps() { return std::pow(M_PI / 10, 2) / 24 * (1 + 1e-3); }
+
+/// The same for a multistep method: upward, with the end of the first gap.
+LinearTheory theory_of(const MultistepRoots& roots) {
+  LinearTheory found{.known = true, .limit = {}, .gap_end = {}, .accurate = 0, .solver = {}, .resonances = {}};
+  if (roots.solver && *roots.solver < largest_z) found.solver = roots.solver;
+  const double end = found.solver.value_or(largest_z), allowed = accuracy_of_twenty_steps();
+  const auto unstable = [&](double z) { return roots.growth(z) > growth_threshold; };
+  bool accurate = true;
+  for (double before = 0, z = z_step; z < end && !found.gap_end; before = z, z = next_z(z)) {
+    const bool grows = unstable(z);
+    if (grows && !found.limit) found.limit = first_true(unstable, before, z);
+    if (!grows && found.limit) found.gap_end = first_true([&](double at) { return !unstable(at); }, before, z);
+    accurate = accurate && !grows && z < 3 && roots.error(z) <= allowed;
+    if (accurate) found.accurate = z;
+  }
+  return found;
+}
+
 }  // namespace
 
 double next_z(double z) { return z < 10 ? z + z_step : 1.02 * z; }
@@ -236,17 +257,16 @@ LinearTheory linear_theory(const Scene& scene, const Opponent& who, const Mode& 
   LinearTheory found;
   const std::optional<StepMatrix> step = step_matrix(scene, who, mode);
   if (!step) {
-    const MethodInfo* info = methods::find(who.method);
-    const bool table = info != nullptr && info->stability_limit > 0 && !mode.lambda && mode.rate == 0;
-    found.known = table && mode.omega > 0;
-    if (found.known && std::isfinite(info->stability_limit)) found.limit = info->stability_limit;
-    return found;
+    const Scene made = variant(scene, who, {.step = 1, .tolerance = 0});
+    if (!made.integrator.classical || !(mode.scale() > 0)) return found;
+    const auto roots = multistep_roots(*made.integrator.classical, mode);
+    return roots ? theory_of(*roots) : found;
   }
   found.known = true;
   search(*step, found);
   const double below = std::min(found.limit.value_or(largest_z), found.solver.value_or(largest_z));
   find_resonances(*step, below, found);
-  const double allowed = std::pow(M_PI / 10, 2) / 24 * (1 + 1e-3);
+  const double allowed = accuracy_of_twenty_steps();
   for (double z = z_step; z < std::min(below, 3.0) && mode_error((*step)(z), mode, z) <= allowed; z = next_z(z)) {
     found.accurate = z;
   }

@@ -42,7 +42,7 @@ double growth_of(const Eigen::Matrix2d& step);
 
 /// What linear theory says.
 struct LinearTheory {
-  bool known = false;             ///< else nothing is said: no matrix, and no table
+  bool known = false;             ///< else nothing is said: no matrix, and no polynomial
   std::optional<double> limit;    ///< first z at which the growth is above the threshold; none: stable at any step
   std::optional<double> gap_end;  ///< where it is stable again, if it is
   double accurate = 0;            ///< largest z whose mode is as accurate as leapfrog's 20 steps a period; 0: unknown
@@ -55,7 +55,8 @@ struct LinearTheory {
 };
 
 /// Searches z upward by 2e-3, from 10 on by 2 %, up to 200; between, extremes of trace and determinant are sought, so
-/// that gaps narrower than that are found too. Of a multistep method, what its table says.
+/// that gaps narrower than that are found too. Of a multistep method, where the roots of its characteristic polynomial
+/// leave the unit circle (study/multistep_roots.hpp).
 ///
 /// `accurate`: the largest z up to which |log(mu) / (lambda h) - 1| is below (pi/10)^2/24, the error of leapfrog with
 /// 20 steps a period, where mu is the eigenvalue of the step.

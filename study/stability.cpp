@@ -336,6 +336,7 @@ Stability find_stability(const Scene& scene, const StabilityOptions& options) {
   const bool constrained = !scene.hamiltonian.constraints.empty();
   if (constrained) found.spectrum = {};  // frequencies are not those of the free particles
   found.linear = !constrained && is_linear(scene);
+  found.growth_told = told_growth(options.confirm_steps);
   found.mode = mode_of(scene, found.spectrum);
   check_motion(scene, found.spectrum.fastest > 0 ? found.spectrum.fastest : 1);
   SolutionGrowth growth(scene, scale_of(scene, found.mode));

@@ -62,11 +62,15 @@ struct RunLength {
 Trial follow(Simulation<double>& sim, const RunLength& length, const Amplitude& amplitude, const Bounds& bounds,
              double budget, const std::function<void(Simulation<double>&)>& look = {});
 
+/// The growth in one step that a run of so many steps on a linear problem can tell: 0.01 % of the energy over the run,
+/// and no less than `growth_threshold`.
+inline double told_growth(std::int64_t steps) { return std::max(growth_threshold, 5e-5 / static_cast<double>(steps)); }
+
 /// Runs a scene by a method for so many steps, or until its amplitude has left all bounds.
 ///
 /// With A as `Amplitude` tells it, a run is unbounded when it leaves the finite numbers, when A passes `most` times
-/// what it was, or, on a linear problem, when A grows by more than `growth_threshold` a step, surely (by three standard
-/// errors) and visibly (by 0.01 % over the run).
+/// what it was, or, on a linear problem, when A surely (by three standard errors) grows by more than `growth_threshold`
+/// a step, and by more than `told_growth`.
 /// @param budget  seconds of wall time
 Trial try_step(const Scene& scene, const Opponent& who, double step, std::int64_t steps, const Bounds& bounds,
                double budget);
@@ -104,6 +108,7 @@ struct Stability {
   Spectrum spectrum = {};
   Mode mode = {};
   bool linear = false;
+  double growth_told = growth_threshold;  ///< in one step, where a run of a linear problem counts as unbounded
   /// When the solution itself is 100 times as large as at the start [time]: see `SolutionGrowth`.
   std::optional<double> solution_leaves = {};
   std::optional<KeplerSteps> kepler = {};  ///< where a method steps along Kepler arcs

@@ -97,7 +97,8 @@ std::string to_json(const Stability& found) {
                        {"shortest_period", positive(found.spectrum.shortest_period())},
                        {"linear", found.linear},
                        {"solution_leaves", Json(found.solution_leaves)},
-                       {"growth_threshold", growth_threshold},
+                       {"growth_threshold", found.growth_told},
+                       {"theory_growth_threshold", growth_threshold},
                        {"kepler", found.kepler ? json_of(*found.kepler) : Json()},
                        {"rows", Json::list(rows)}})
       .text();
@@ -123,6 +124,12 @@ std::string to_text(const Stability& found) {
     out += fmt::format("{:<28} {:>12} {:>10} {:>10} {:<18} {:>10} {:>13} {:>7.1f}\n", row.who.label,
                        limit_step_text(row, 6, "-"), number(row.limit_h_omega, 6), theory, reason_text(row),
                        number(row.gap_end, 6), number(row.recommended_step, 4), row.seconds);
+  }
+  if (found.linear && found.spectrum.fastest > 0) {
+    out += fmt::format(
+        "limits: from {:.2g} a step on growth counts, in theory from {:.2g}; symplectic methods grow by none below "
+        "theirs\n",
+        found.growth_told, growth_threshold);
   }
   for (const StabilityRow& row : found.rows) {
     if (!row.message.empty()) out += fmt::format("{}: {}\n", row.who.label, row.message);

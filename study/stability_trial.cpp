@@ -100,8 +100,7 @@ Trial follow(Simulation<double>& sim, const RunLength& length, const Amplitude& 
   }
   if (!creeps || largest.size() < 10) return trial;
   fit_growth(largest, static_cast<double>(cut * looks_a_block), trial);
-  if (trial.growth - 3 * trial.growth_error > growth_threshold &&
-      trial.growth * static_cast<double>(trial.steps) > 5e-5) {
+  if (trial.growth - 3 * trial.growth_error > growth_threshold && trial.growth > told_growth(trial.steps)) {
     trial.verdict = Bounded::unbounded;
     trial.message = fmt::format("grows by {:.2g} a step", trial.growth);
   }

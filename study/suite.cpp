@@ -4,6 +4,7 @@
 #include "engine/monitors.hpp"
 #include "integrators/methods.hpp"
 #include "integrators/schemes.hpp"
+#include "study/multistep_roots.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/LU>
@@ -140,7 +141,11 @@ class Judge {
         options_.progress(fmt::format("{}, {} {}", row.title, row.method, fmt::join(row.sets, " ")));
       std::string outcome = verdict_.outcome;
       if (outcome == "theory") outcome = expected_by_theory(scene_, who, scene_.integrator.step);
-      if (outcome.empty()) continue;  // theory says nothing of it
+      if (outcome.empty()) {
+        throw SceneError(
+            fmt::format("theory says nothing of '{}' here; give bounded, unbounded or solver for it", row.method),
+            {.file = scene_.source.file, .key = "verdict.outcome", .value = "theory"});
+      }
       row.expected = expectation(verdict_, outcome);
       judge(row, who, outcome);
       rows.push_back(std::move(row));
@@ -209,9 +214,12 @@ std::string expected_by_theory(const Scene& scene, const Opponent& who, double s
   const double z = step * mode.scale();
   const auto matrix = step_matrix(scene, who, mode);
   if (!matrix) {
-    const LinearTheory theory = linear_theory(scene, who, mode);
-    if (!theory.known || !theory.limit) return "";
-    return z > *theory.limit ? "unbounded" : "bounded";
+    const Scene made = variant(scene, who, {.step = step, .tolerance = 0});
+    if (!made.integrator.classical || !(mode.scale() > 0)) return "";
+    const auto roots = multistep_roots(*made.integrator.classical, mode);
+    if (!roots) return "";
+    if (roots->solver && z >= *roots->solver) return "solver";
+    return roots->growth(z) > growth_threshold ? "unbounded" : "bounded";
   }
   const Eigen::Matrix2d M = (*matrix)(z);
   if (!M.allFinite()) return "solver";

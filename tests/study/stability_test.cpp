@@ -127,9 +127,6 @@ TEST_CASE("linear theory has the tabulated limits and the closed resonances", "[
     CHECK_FALSE(theory(name).limit);
     CHECK_FALSE(theory(name).solver);
   }
-  const LinearTheory damping = theory("bdf_2");  // told by its table: at no step, which is no limit of infinity
-  CHECK(damping.known);
-  CHECK_FALSE(damping.limit);
   const LinearTheory verlet = theory("verlet"), srkn = theory("srkn11b");
   for (int n = 3; n <= 6; ++n) CHECK(std::abs(verlet.resonances.at(n) - 2 * std::sin(M_PI / n)) < 1e-8);
   CHECK(verlet.resonance_at(1.74) == 3);
@@ -138,6 +135,45 @@ TEST_CASE("linear theory has the tabulated limits and the closed resonances", "[
   const LinearTheory rule = theory("trapezoidal");  // as of the midpoint rule
   for (int n = 3; n <= 6; ++n) CHECK(std::abs(rule.resonances.at(n) - 2 * std::tan(M_PI / n)) < 1e-7);
   CHECK(std::abs(verlet.accurate / (M_PI / 10) - 1) < 0.02);  // 20 steps a period
+}
+
+TEST_CASE("theory of multistep methods is that of their characteristic roots", "[stability]") {
+  const Scene scene = ball();
+  const auto theory = [&](const std::string& name, const Mode& mode) {
+    return linear_theory(scene, fixed_opponent(scene, name), mode);
+  };
+  const Mode undamped{.omega = 1, .rate = 0, .lambda = {}};
+  for (const char* name : {"adams_bashforth_3", "adams_bashforth_4", "adams_moulton_5", "adams_moulton_6", "bdf_5",
+                           "stormer_cowell_12", "stormer_cowell_13", "stormer_cowell_14"}) {
+    CAPTURE(name);
+    CHECK(std::abs(*theory(name, undamped).limit - methods::find(name)->stability_limit) < 1e-4);
+  }
+  CHECK(theory("bdf_2", undamped).known);
+  CHECK_FALSE(theory("bdf_2", undamped).limit);
+  // Roots of sum (1 - 1/x)^j / j = i z in 40 digits, where they grow by 1e-9, and where they no longer do.
+  struct Gap {
+    const char* name;
+    double limit, end;
+  };
+  for (const auto& [name, limit, end] :
+       {Gap{"bdf_3", 0.0079528121, std::sqrt(15.0) / 2}, Gap{"bdf_4", 0.03798264, 10 * std::sqrt(2.0) / 3},
+        Gap{"bdf_5", 0.71080768, 9.3920195}}) {
+    CAPTURE(name);
+    const LinearTheory found = theory(name, undamped);
+    CHECK(std::abs(*found.limit - limit) < 1e-6);
+    CHECK(std::abs(*found.gap_end - end) < 1e-6);
+  }
+  // Fixed points are no longer found: 2 eps^(1/200) for the trapezoidal rule.
+  CHECK(std::abs(*theory("adams_moulton_2", undamped).solver - 2 * std::exp(-36.0436533891171561 / 200)) < 1e-12);
+  // A decay: explicit Euler to z = 2, Adams-Bashforth 2 to z = 1; backward differences at any step.
+  const Mode decay{.omega = 0, .rate = 0, .lambda = std::complex<double>(-3, 0)};
+  CHECK(std::abs(*theory("adams_bashforth_1", decay).limit - 2) < 1e-6);
+  CHECK(std::abs(*theory("adams_bashforth_2", decay).limit - 1) < 1e-6);
+  CHECK_FALSE(theory("bdf_4", decay).limit);
+  // With friction of twice the critical: rates (2 +- sqrt 3) omega, the faster one decides.
+  const Mode creeping{.omega = 1, .rate = 4, .lambda = {}};
+  CHECK(std::abs(*theory("adams_bashforth_2", creeping).limit - 1 / (2 + std::sqrt(3.0))) < 1e-6);
+  CHECK(theory("adams_bashforth_4", undamped).accurate > 0.05);
 }
 
 TEST_CASE("measured limits are within 1e-3 of the tabulated ones", "[stability][nightly]") {

@@ -135,5 +135,27 @@ TEST_CASE("every method that can run the chain of Fermi, Pasta and Ulam has a ve
   CHECK(serving > 90);
 }
 
+TEST_CASE("theory has a verdict for every method on the oscillator, at three steps", "[suite]") {
+  const Scene scene = suite_scene("oscillator.toml");
+  std::set<std::string> steps;
+  for (const SceneVerdict& verdict : scene.verdicts) {
+    if (verdict.every_method && verdict.outcome == "theory") steps.insert(step_of(verdict));
+  }
+  CHECK(steps == std::set<std::string>{"", "2.0", "2.1"});  // the scene's own is 1.9
+  CHECK(scene.integrator.step == 1.9);
+  std::vector<std::string> names;
+  for (const Scheme* scheme : schemes::all()) names.emplace_back(scheme->name);
+  for (const MethodInfo* info : methods::all()) {
+    if (info->fixed) names.emplace_back(info->name);
+  }
+  CHECK(names.size() > 90);
+  for (const std::string& name : names) {
+    CAPTURE(name);
+    for (const double step : {1.9, 2.0, 2.1}) {
+      CHECK_FALSE(expected_by_theory(scene, fixed_opponent(scene, name), step).empty());
+    }
+  }
+}
+
 }  // namespace
 }  // namespace noether::test

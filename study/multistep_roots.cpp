@@ -1,0 +1,142 @@
+#include "study/multistep_roots.hpp"
+
+#include "integrators/methods/adams.hpp"
+#include "integrators/methods/stormer_cowell.hpp"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace noether {
+
+namespace {
+
+using Complex = std::complex<double>;
+using Polynomial = std::vector<Complex>;  // c_0 x^n + ... + c_n
+
+/// Eigenvalues of the companion matrix, written in real numbers: those of the polynomial and of its conjugate.
+std::vector<Complex> roots_of(const Polynomial& c) {
+  const Index n = static_cast<Index>(c.size()) - 1;
+  Matrix<double> companion = Matrix<double>::Zero(2 * n, 2 * n);
+  for (Index j = 0; j < n; ++j) {
+    const Complex first = -c[static_cast<std::size_t>(j) + 1] / c[0];
+    companion(0, j) = companion(n, n + j) = first.real();
+    companion(n, j) = first.imag();
+    companion(0, n + j) = -first.imag();
+  }
+  for (Index j = 1; j < n; ++j) companion(j, j - 1) = companion(n + j, n + j - 1) = 1;
+  const Eigen::EigenSolver<Matrix<double>> solver(companion, false);
+  std::vector<Complex> roots;
+  for (Index j = 0; j < 2 * n; ++j) roots.push_back(solver.eigenvalues()[j]);
+  return roots;
+}
+
+/// y_1 = y_0 + mu (sum of weights and rates), explicit, implicit, or the second with the first's rate as the new one.
+Polynomial adams(AdamsKind kind, const std::vector<double>& ahead, const std::vector<double>& corrected, Complex mu) {
+  Polynomial c(std::max<std::size_t>(ahead.size() + 1, corrected.size()), Complex(0));
+  c[0] += 1;
+  c[1] -= 1;
+  if (kind == AdamsKind::bashforth) {
+    for (std::size_t j = 0; j < ahead.size(); ++j) c[j + 1] -= mu * ahead[j];
+    return c;
+  }
+  for (std::size_t j = 1; j < corrected.size(); ++j) c[j] -= mu * corrected[j];
+  if (kind == AdamsKind::moulton) {
+    c[0] -= mu * corrected[0];
+    return c;
+  }
+  c[1] -= mu * corrected[0];
+  for (std::size_t j = 0; j < ahead.size(); ++j) c[j + 1] -= mu * mu * corrected[0] * ahead[j];
+  return c;
+}
+
+/// sum_(j = 1..k) (1 - 1/x)^j / j = mu.
+Polynomial backward_differences(int order, Complex mu) {
+  Polynomial c(static_cast<std::size_t>(order) + 1, Complex(0));
+  std::vector<double> power = {1};  // (1 - 1/x)^j
+  for (int j = 1; j <= order; ++j) {
+    power.push_back(0);
+    for (std::size_t i = power.size() - 1; i > 0; --i) power[i] -= power[i - 1];
+    for (std::size_t i = 0; i < power.size(); ++i) c[i] += power[i] / j;
+  }
+  c[0] -= mu;
+  return c;
+}
+
+/// (1 - 1/x)^2 [x q_n - sum g_i A_(n-i)] = A_n with A = mu^2 q.
+Polynomial stoermer(const std::vector<double>& weights, Complex mu) {
+  Polynomial q = {1.0};
+  for (const double g : weights) q.push_back(-mu * mu * g);
+  Polynomial c(q.size() + 2, Complex(0));
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    c[i] += q[i];
+    c[i + 1] -= 2.0 * q[i];
+    c[i + 2] += q[i];
+  }
+  c[1] -= mu * mu;
+  return c;
+}
+
+std::vector<Complex> directions_of(const Mode& mode) {
+  if (mode.lambda) return {*mode.lambda / mode.scale()};
+  if (mode.rate == 0) return {Complex(0, 1)};
+  const double g = mode.rate / mode.omega / 2;
+  const Complex root = std::sqrt(Complex(g * g - 1, 0));
+  return {-g + root, -g - root};
+}
+
+}  // namespace
+
+double MultistepRoots::growth(double z) const {
+  double largest = 0;
+  for (std::size_t k = 0; k < exact.size(); ++k) {
+    for (const Complex& root : roots(k, z)) largest = std::max(largest, std::abs(root));
+  }
+  return largest - 1;
+}
+
+double MultistepRoots::error(double z) const {
+  double worst = 0;
+  for (std::size_t k = 0; k < exact.size(); ++k) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Complex& root : roots(k, z)) {
+      least = std::min(least, std::abs(std::log(root) / (exact[k] * z) - 1.0));
+    }
+    worst = std::max(worst, least);
+  }
+  return worst;
+}
+
+std::optional<MultistepRoots> multistep_roots(const MethodChoice& choice, const Mode& mode) {
+  const std::string_view name = choice.info->name;
+  MultistepRoots found{.exact = directions_of(mode), .roots = {}, .solver = {}};
+  const auto polynomial = [&](std::function<Polynomial(Complex mu)> of) {
+    found.roots = [of = std::move(of), exact = found.exact](std::size_t k, double z) {
+      return roots_of(of(exact[k] * z));
+    };
+    return found;
+  };
+  const auto by_adams = [&](AdamsKind kind, int order) {
+    const Adams<double> method(name, kind, order);
+    const auto &ahead = method.explicit_weights(), &corrected = method.implicit_weights();
+    if (kind == AdamsKind::moulton) {
+      const double contraction = std::pow(std::numeric_limits<double>::epsilon(), 1.0 / 200);
+      found.solver = contraction / corrected[0];
+    }
+    return polynomial([=](Complex mu) { return adams(kind, ahead, corrected, mu); });
+  };
+  const int order = choice.info->order;
+  if (name.starts_with("adams_bashforth_")) return by_adams(AdamsKind::bashforth, order);
+  if (name.starts_with("adams_moulton_")) return by_adams(AdamsKind::moulton, order);
+  if (name == "adams_pece") return by_adams(AdamsKind::pece, 4);  // as with steps of one length
+  if (name.starts_with("bdf_")) return polynomial([=](Complex mu) { return backward_differences(order, mu); });
+  if (name.starts_with("stormer_cowell_") && !mode.lambda && mode.rate == 0) {
+    const StormerCowell<double> method(name, order);
+    return polynomial([g = method.position_weights()](Complex mu) { return stoermer(g, mu); });
+  }
+  return {};
+}
+
+}  // namespace noether

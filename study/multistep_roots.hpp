@@ -1,0 +1,34 @@
+#pragma once
+/// Multistep methods on one mode: the roots of their characteristic polynomials.
+
+#include "integrators/method.hpp"
+#include "study/linear_stability.hpp"
+
+#include <complex>
+#include <functional>
+#include <optional>
+#include <vector>
+
+namespace noether {
+
+/// What one step multiplies the solutions of a multistep method by, on each of the mode's own directions, by z.
+struct MultistepRoots {
+  using Roots = std::vector<std::complex<double>>;
+
+  std::vector<std::complex<double>> exact;  ///< lambda / scale of each direction
+  std::function<Roots(std::size_t direction, double z)> roots;
+  /// The z from which on fixed-point iteration does not solve a step within its 200 sweeps: it contracts by z w_0 a
+  /// sweep, where w_0 is the weight of the new rate.
+  std::optional<double> solver;
+
+  /// Largest modulus of a root, less 1.
+  double growth(double z) const;
+  /// Relative error of frequency and damping of the roots nearest to the mode's own, the worst direction's.
+  double error(double z) const;
+};
+
+/// @return empty for methods of one step, and where no polynomial is known: Stoermer and Cowell's with drag
+/// @source HairerNoersettWanner1993 III.3, HairerWanner1996 V.1
+std::optional<MultistepRoots> multistep_roots(const MethodChoice& choice, const Mode& mode);
+
+}  // namespace noether
