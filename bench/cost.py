@@ -20,6 +20,9 @@ HEAD = """# What accuracy costs
 The cheapest runs of some scenes, found by `noether compare`: for each error the run that no other beats in both error and
 time, or in both error and evaluations. Written by `python3 bench/cost.py build/release/cli/noether .`; evaluations repeat to
 the last digit, times do not. Reports with all rows, plots and orders: `noether compare SCENE`.
+
+Splittings into Kepler arcs are ahead in evaluations, by orders of magnitude over Runge-Kutta methods and leapfrog at small
+errors; in seconds, on few bodies, eight stages in lanes are ahead of everything, for an arc costs more than six bodies' gravity.
 """
 
 

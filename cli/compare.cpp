@@ -32,16 +32,22 @@ struct CompareArguments {
 
 /// The command as it can be typed again.
 std::string command_line(const CompareArguments& given) {
-  std::string line = "noether compare " + given.scene;
+  const auto quoted = [](const std::string& value) {
+    const bool plain = value.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-") ==
+                       std::string::npos;
+    return plain ? value : "'" + value + "'";
+  };
+  std::string line = "noether compare " + quoted(given.scene);
   const auto add = [&](const char* option, const std::string& value) {
-    line += fmt::format(" {} '{}'", option, value);
+    line += fmt::format(" {} {}", option, quoted(value));
   };
   if (given.methods) add("--methods", *given.methods);
   if (given.steps) add("--steps", *given.steps);
   if (given.tolerances) add("--tolerances", *given.tolerances);
   if (given.until) add("--until", *given.until);
   for (const std::string& set : given.sets) add("--set", set);
-  return line + fmt::format(" --repeat {:.0f} --budget {:g}", given.repeat, given.budget);
+  return line + fmt::format(" --repeat {:.0f} --budget {:g} --truth-budget {:g}", given.repeat, given.budget,
+                            given.truth_budget);
 }
 
 std::filesystem::path folder_of(const CompareArguments& given) {

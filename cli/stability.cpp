@@ -73,6 +73,7 @@ void run_verdicts(const StabilityArguments& given) {
   }
   std::vector<std::filesystem::path> files = {given.scene};
   if (given.scene.empty()) files = suite_files(suite_folder());
+  if (std::filesystem::is_directory(given.scene)) files = suite_files(given.scene);
   const bool shows = !given.json && ::isatty(STDERR_FILENO) == 1;
   SuiteOptions options;
   options.nightly = given.nightly;

@@ -123,6 +123,13 @@ void read_method_options(TableReader& reader, SceneIntegrator& made, bool constr
   if (reader.has("adaptive")) options.adaptive = reader.flag("adaptive", true);
   options.rtol = reader.quantity("rtol", "1");
   options.atol = reader.quantity("atol", "1");
+  // The references take 1e-16 for "to rounding"; others would shorten their steps without end.
+  constexpr double least = 4 * std::numeric_limits<double>::epsilon();
+  if (options.rtol && *options.rtol > 0 && *options.rtol < least && info.rtol > 1e-15) {
+    reader.fail("rtol", fmt::format("rtol = {} is more than doubles can tell; at least {:.1g} is expected, or a method "
+                                    "that goes to rounding, such as 'gauss_8'",
+                                    to_text(*reader.find("rtol")), least));
+  }
   options.beta = reader.quantity("beta", "1");
   options.gamma = reader.quantity("gamma", "1");
   options.jacobian = read_jacobian(reader);

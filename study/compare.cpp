@@ -141,6 +141,11 @@ Sampling sampling_of(const Scene& scene, const std::optional<double>& until) {
     }
     end = static_cast<double>(std::min(*own.steps, longest_steps)) * own.step;
   }
+  if (!until && !own.until && !(end > 0)) {
+    throw SceneError(
+        fmt::format("a step of {} leads back; methods are compared forward, so a step above 0 is expected", own.step),
+        {.file = scene.source.file, .key = "integrator.step", .value = fmt::format("{}", own.step)});
+  }
   if (!(end > 0) || !std::isfinite(end)) {
     throw SceneError(fmt::format("a comparison goes forward, over a time above 0; this one would end at {}", end),
                      {.file = scene.source.file, .key = "integrator.until"});

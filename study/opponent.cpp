@@ -64,7 +64,10 @@ Opponent opponent(const Scene& scene, std::string_view name) {
   const MethodInfo* info = methods::find(method);
   const Scheme* scheme = schemes::find(method);
   if (info == nullptr && scheme == nullptr && !is_word(method)) {
-    throw Error(fmt::format("unknown method '{}'{}", method, did_you_mean(method, methods::known_names())));
+    const std::string near = suggest(method, methods::known_names());
+    throw Error(fmt::format("unknown method '{}'; {}", method,
+                            near.empty() ? "see `noether list methods`" : "did you mean '" + near + "'?"),
+                {.value = method});
   }
   if (info != nullptr && scheme == nullptr) {
     const bool own = info->name == scene.integrator.method;

@@ -517,7 +517,7 @@ std::span<const MethodInfo> collocation_list() {
       {.name = "gauss_radau_15",
        .aliases = "ias15",
        .summary = "Gauss-Radau collocation of order 15, the nodes of IAS15, to rounding",
-       .use = "runs that are to be compared with IAS15; `gauss_8` does the same and is symplectic",
+       .use = "runs that are to be compared with IAS15, planets for some 1e5 years; `gauss_8` is symplectic",
        .source = "ReinSpiegel2015",
        .family = "collocation",
        .options = "jacobian",

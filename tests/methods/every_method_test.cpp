@@ -9,6 +9,7 @@
 #include "tests/methods/motions.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/planets.hpp"
+#include "tests/support/problems.hpp"
 
 #include <cmath>
 
@@ -136,6 +137,49 @@ TEST_CASE("every method goes on bit for bit after a restart, whatever looked on"
     CHECK(test::same_bits(whole.particles(), second.particles()));
     CHECK(whole.evaluations().force == second.evaluations().force);
     CHECK(whole.evaluations().jacobian == second.evaluations().jacobian);
+  }
+}
+
+/// Where the second body of a pair is, at whatever moments are asked for.
+struct Diary {
+  std::vector<std::pair<double, Vec3<double>>>* seen;
+  void observe(const Snapshot<double>& now) const {
+    seen->emplace_back(now.time(), test::relative_motion(now.state()).x);
+  }
+};
+
+TEST_CASE("every method that chooses its steps tells states between them, and when a distance is passed",
+          "[dense output]") {
+  const double e = 0.3, distance = 1.1;  // of the pair; the lighter body is 3/4 of it from the centre of mass
+  const ParticleSystem<double> start = test::kepler_pair(e);
+  const double anomaly = std::acos((1 - distance) / e);  // r = 1 - e cos E
+  const double passed = anomaly - e * std::sin(anomaly);
+  for (const Way& way : every_way()) {
+    if (!way.adaptive) continue;
+    std::vector<std::pair<double, Vec3<double>>> seen;
+    Simulation run(start, classical(Gravity{}, method(way.info->name, way.options)));
+    run.every_time(0.0625, Diary{&seen});
+    REQUIRE(run.run_until(6).ok());
+    REQUIRE(seen.size() == 97);
+    const auto off = [&](double time, const Vec3<double>& x) {
+      return std::sqrt(norm2(Vec3<double>(x - test::kepler_motion(start, time).x)));
+    };
+    double worst = 0;
+    for (const auto& [time, x] : seen) worst = std::max(worst, off(time, x));
+    const bool reference = way.info->rtol < 1e-15;
+    CAPTURE(way.info->name, worst);
+    CHECK(worst < (reference ? 1e-13 : 2e-5));
+
+    Simulation watched(start, classical(Gravity{}, method(way.info->name, way.options)));
+    watched.stop_when(farther_than(0.75 * distance), 1);
+    const Outcome outcome = watched.run_until(6);
+    CAPTURE(outcome.message, passed);
+    REQUIRE(outcome.kind == Outcome::Kind::stopped);
+    const std::string words = " since time ";
+    const auto at = outcome.message.rfind(words);
+    REQUIRE(at != std::string::npos);
+    // Between two steps the motion is a quintic polynomial, however long they are.
+    CHECK(std::abs(std::stod(outcome.message.substr(at + words.size())) - passed) < 1e-4);
   }
 }
 

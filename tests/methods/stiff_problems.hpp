@@ -123,7 +123,10 @@ struct Heat {
 /// The method of a name, with steps of one length.
 inline MethodChoice with_fixed_steps(const std::string& name) {
   const MethodInfo* info = methods::find(name);
-  return method(name, {.adaptive = info != nullptr && info->adaptive ? std::optional(false) : std::nullopt});
+  MethodOptions options;
+  if (info != nullptr && info->adaptive) options.adaptive = false;
+  if (info != nullptr && info->family == "collocation") options.jacobian = JacobianForm::dense;  // sweeps do not get on
+  return method(name, options);
 }
 
 /// Where a method got to, and what it took.

@@ -3,9 +3,12 @@
 #include "tests/methods/stiff_problems.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/order_fit.hpp"
+#include "tests/support/process.hpp"
+#include "tests/support/settings.hpp"
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -197,10 +200,13 @@ TEST_CASE("order reduction on Prothero and Robinson's problem, lambda = -1e6: a 
     std::string name;
     double slope;
   };
-  // Stage order 1 leaves one power of h, over lambda; Rodas5P was made to keep three; BDF keeps its order.
+  // Stage order 1 leaves one power of h, over lambda; Rodas5P was made to keep three; BDF keeps its order; Gauss's with
+  // s stages keep s, s + 1 if s is odd.
   const std::vector<Row> table = {{"backward_euler", 1}, {"trapezoidal", 2}, {"sdirk_2", 1},  {"sdirk_3", 1},
-                                  {"sdirk_4", 1},        {"rodas_4", 1},     {"rodas_5p", 3}, {"bdf_2", 2},
-                                  {"bdf_3", 3},          {"bdf_4", 4},       {"bdf_5", 5}};
+                                  {"sdirk_4", 1},        {"rodas_4", 1},     {"rodas_5p", 3}, {"gauss_2", 2},
+                                  {"gauss_3", 4},        {"bdf_2", 2},       {"bdf_3", 3},    {"bdf_4", 4},
+                                  {"bdf_5", 5}};
+  const std::string page = test::read_text(std::filesystem::path(NOETHER_SOURCE_DIR) / "docs" / "theory" / "stiff.md");
   std::string printed;
   for (const auto& [name, slope] : table) {
     std::vector<ErrorPoint> points;
@@ -217,13 +223,27 @@ TEST_CASE("order reduction on Prothero and Robinson's problem, lambda = -1e6: a 
       points.push_back({h, std::abs(static_cast<double>(reached.y[0] - sin(Quad(2.25))))});
     }
     const double measured = fitted_slope({points.end() - 2, points.end()});
-    printed += fmt::format("{:15} order {}  slope {:.2f}  error at h = 1/64: {:.2e}\n", name,
-                           methods::find(name)->order, measured, points.back().error);
+    const std::string row = fmt::format("| `{}` | {} | {:.1f} | {:.1e} |\n", name, methods::find(name)->order, measured,
+                                        points.back().error);
+    printed += row;
     INFO(name << "\n" << to_text(points));
     CHECK(std::abs(measured - slope) < 0.2);
+    CHECK(page.find(row) != std::string::npos);
   }
-  INFO(printed);
-  CHECK(printed.size() > 0);
+  INFO("docs/theory/stiff.md should have\n" << printed);
+  CHECK(page.find(printed) != std::string::npos);
+}
+
+TEST_CASE("heat on a line: what an explicit method costs grows as the stiffness ratio") {
+  std::vector<ErrorPoint> points;  // evaluations by S
+  for (const Index n : {20, 40, 80}) {
+    const double dx = 1 / static_cast<double>(n + 1), half = std::acos(-1.0) * dx / 2;
+    const double ratio = std::pow(std::cos(half) / std::sin(half), 2);  // of the fastest and the slowest rate
+    points.push_back({ratio, static_cast<double>(heat_by("dormand_prince_5", n).evaluations.force)});
+  }
+  INFO(to_text(points));
+  CHECK(std::abs(fitted_slope({points.end() - 2, points.end()}) - 1) < 0.05);
+  CHECK(points.back().error / static_cast<double>(heat_by("rodas_4", 80).evaluations.force) > 10);
 }
 
 TEST_CASE("heat on a line: the limit of explicit methods falls as dx^2") {
