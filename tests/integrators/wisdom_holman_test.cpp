@@ -256,9 +256,9 @@ TEST_CASE("a primary alone moves straight, and tracers about it on exact orbits"
 
 TEST_CASE("a tracer is the limit of a body whose mass goes to zero", "[wisdom_holman]") {
   // Pluto is the outermost body, so that its place among the Jacobi coordinates does not change with its mass.
-  const auto final_state = [](Coordinates coordinates, double mass) {
+  const auto final_state = [](Coordinates coordinates, double of_pluto) {
     auto s = test::outer_planets<Quad>();
-    s.masses()[5] = mass;
+    s.masses()[5] = of_pluto;
     return run(s, splitting<Quad>(coordinates), schemes::verlet_aba, 100.0, 30);
   };
   for (const Coordinates coordinates : both) {

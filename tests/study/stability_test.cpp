@@ -199,12 +199,12 @@ TEST_CASE("gaps narrower than the search are found, with their ends", "[stabilit
 TEST_CASE("a method that is stable at any step has no limit, and one that cannot solve its steps says so",
           "[stability][nightly]") {
   for (const char* name : {"trapezoidal", "implicit_midpoint", "gauss_4"}) {
-    const StabilityRow stable = row_of(ball(), name, 300);
+    const StabilityRow stable = row_of(ball(), name, 3000);
     CAPTURE(name, stable.message);
     CHECK(stable.reason == "none");
     CHECK_FALSE(stable.limit_step);
   }
-  const StabilityRow swept = row_of(ball(), "adams_moulton_2", 300);
+  const StabilityRow swept = row_of(ball(), "adams_moulton_2", 3000);
   INFO(swept.message);
   CHECK(swept.reason == "solver");
   CHECK(swept.limit_h_omega.value() <= 2);
