@@ -33,9 +33,11 @@ struct CompareArguments {
 /// The command as it can be typed again.
 std::string command_line(const CompareArguments& given) {
   const auto quoted = [](const std::string& value) {
-    const bool plain = value.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-") ==
-                       std::string::npos;
-    return plain ? value : "'" + value + "'";
+    constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-";
+    if (value.find_first_not_of(plain) == std::string::npos) return value;
+    std::string text;
+    for (const char c : value) text += c == '\'' ? "'\\''" : std::string(1, c);
+    return "'" + text + "'";
   };
   std::string line = "noether compare " + quoted(given.scene);
   const auto add = [&](const char* option, const std::string& value) {

@@ -49,17 +49,16 @@ std::vector<std::string> warnings_of(const Scene& scene) {
                                      terms, terms == 1 ? "term" : "terms"));
     }
   }
-  const bool nobody_asks = std::all_of(forces.begin(), forces.end(), [](const SceneForce& force) {
-    return std::find(without_charges.begin(), without_charges.end(), force.name) != without_charges.end();
-  });
-  if (!forces.empty() && nobody_asks && has_charges(scene.particles)) {
+  const auto all_among = [&](const auto& names) {
+    return std::all_of(forces.begin(), forces.end(), [&](const SceneForce& force) {
+      return std::find(names.begin(), names.end(), force.name) != names.end();
+    });
+  };
+  if (!forces.empty() && all_among(without_charges) && has_charges(scene.particles)) {
     warnings.emplace_back("the particles have charges that no force looks at");
   }
-  const bool nobody_excludes = std::all_of(forces.begin(), forces.end(), [](const SceneForce& force) {
-    return std::find(without_exclusions.begin(), without_exclusions.end(), force.name) != without_exclusions.end();
-  });
   const SceneValue* particles = scene.effective.find("particles");
-  if (nobody_excludes && particles != nullptr && particles->find("exclusions") != nullptr) {
+  if (all_among(without_exclusions) && particles != nullptr && particles->find("exclusions") != nullptr) {
     warnings.push_back(fmt::format("exclusions change nothing: no force leaves pairs out; those that do are {}",
                                    fmt::join(with_exclusions, ", ")));
   }

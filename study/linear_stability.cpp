@@ -216,6 +216,11 @@ LinearTheory theory_of(const MultistepRoots& roots) {
 
 }  // namespace
 
+Mode mode_of(const Scene& scene, const Spectrum& spectrum) {
+  if (scene.system) return {.omega = 0, .rate = 0, .lambda = spectrum.stiffest};
+  return {.omega = spectrum.fastest, .rate = drag_of(scene), .lambda = {}};
+}
+
 double next_z(double z) { return z < 10 ? z + z_step : 1.02 * z; }
 
 double growth_of(const Matrix2& step) {
@@ -257,9 +262,7 @@ LinearTheory linear_theory(const Scene& scene, const Opponent& who, const Mode& 
   LinearTheory found;
   const std::optional<StepMatrix> step = step_matrix(scene, who, mode);
   if (!step) {
-    const Scene made = variant(scene, who, {.step = 1, .tolerance = 0});
-    if (!made.integrator.classical || !(mode.scale() > 0)) return found;
-    const auto roots = multistep_roots(*made.integrator.classical, mode);
+    const auto roots = multistep_roots(scene, who, mode);
     return roots ? theory_of(*roots) : found;
   }
   found.known = true;

@@ -3,6 +3,7 @@
 
 #include "scene/scene.hpp"
 #include "study/opponent.hpp"
+#include "study/spectrum.hpp"
 
 #include <Eigen/Core>
 
@@ -27,6 +28,9 @@ struct Mode {
   /// What steps are multiplied with: omega, or |lambda| [1/time].
   double scale() const { return lambda ? std::abs(*lambda) : omega; }
 };
+
+/// The mode that bounds the steps of a scene: its fastest oscillation, or its stiffest rate.
+Mode mode_of(const Scene& scene, const Spectrum& spectrum);
 
 /// One step of a method on a mode, as a real matrix of shape (2, 2), by z = h omega (or h |lambda|).
 ///

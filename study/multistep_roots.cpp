@@ -1,6 +1,5 @@
 #include "study/multistep_roots.hpp"
 
-#include "integrators/methods/adams.hpp"
 #include "integrators/methods/stormer_cowell.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -87,6 +86,14 @@ std::vector<Complex> directions_of(const Mode& mode) {
   return {-g + root, -g - root};
 }
 
+MultistepRoots with_polynomial(const Mode& mode, std::function<Polynomial(Complex mu)> of) {
+  MultistepRoots found{.exact = directions_of(mode), .roots = {}, .solver = {}};
+  found.roots = [of = std::move(of), exact = found.exact](std::size_t k, double z) {
+    return roots_of(of(exact[k] * z));
+  };
+  return found;
+}
+
 }  // namespace
 
 double MultistepRoots::growth(double z) const {
@@ -109,33 +116,34 @@ double MultistepRoots::error(double z) const {
   return worst;
 }
 
-std::optional<MultistepRoots> multistep_roots(const MethodChoice& choice, const Mode& mode) {
-  const std::string_view name = choice.info->name;
-  MultistepRoots found{.exact = directions_of(mode), .roots = {}, .solver = {}};
-  const auto polynomial = [&](std::function<Polynomial(Complex mu)> of) {
-    found.roots = [of = std::move(of), exact = found.exact](std::size_t k, double z) {
-      return roots_of(of(exact[k] * z));
-    };
-    return found;
-  };
-  const auto by_adams = [&](AdamsKind kind, int order) {
-    const Adams<double> method(name, kind, order);
-    const auto &ahead = method.explicit_weights(), &corrected = method.implicit_weights();
-    if (kind == AdamsKind::moulton) {
-      const double contraction = std::pow(std::numeric_limits<double>::epsilon(), 1.0 / 200);
-      found.solver = contraction / corrected[0];
-    }
-    return polynomial([=](Complex mu) { return adams(kind, ahead, corrected, mu); });
-  };
-  const int order = choice.info->order;
-  if (name.starts_with("adams_bashforth_")) return by_adams(AdamsKind::bashforth, order);
-  if (name.starts_with("adams_moulton_")) return by_adams(AdamsKind::moulton, order);
-  if (name == "adams_pece") return by_adams(AdamsKind::pece, 4);  // as with steps of one length
-  if (name.starts_with("bdf_")) return polynomial([=](Complex mu) { return backward_differences(order, mu); });
-  if (name.starts_with("stormer_cowell_") && !mode.lambda && mode.rate == 0) {
-    const StormerCowell<double> method(name, order);
-    return polynomial([g = method.position_weights()](Complex mu) { return stoermer(g, mu); });
+MultistepRoots adams_roots(AdamsKind kind, int order, const Mode& mode) {
+  const Adams<double> method("adams", kind, order);
+  const auto &ahead = method.explicit_weights(), &corrected = method.implicit_weights();
+  MultistepRoots found = with_polynomial(mode, [=](Complex mu) { return adams(kind, ahead, corrected, mu); });
+  if (kind == AdamsKind::moulton) {
+    found.solver = std::pow(std::numeric_limits<double>::epsilon(), 1.0 / adams_iterations) / corrected[0];
   }
+  return found;
+}
+
+MultistepRoots stoermer_roots(int order) {
+  const StormerCowell<double> method("stormer", order);
+  return with_polynomial({.omega = 1, .rate = 0, .lambda = {}},
+                         [g = method.position_weights()](Complex mu) { return stoermer(g, mu); });
+}
+
+std::optional<MultistepRoots> multistep_roots(const Scene& scene, const Opponent& who, const Mode& mode) {
+  const Scene made = variant(scene, who, {.step = 1, .tolerance = 0});
+  if (!made.integrator.classical || !(mode.scale() > 0)) return {};
+  const std::string_view name = made.integrator.classical->info->name;
+  const int order = made.integrator.classical->info->order;
+  if (name.starts_with("adams_bashforth_")) return adams_roots(AdamsKind::bashforth, order, mode);
+  if (name.starts_with("adams_moulton_")) return adams_roots(AdamsKind::moulton, order, mode);
+  if (name == "adams_pece") return adams_roots(AdamsKind::pece, 4, mode);  // as with steps of one length
+  if (name.starts_with("bdf_")) {
+    return with_polynomial(mode, [=](Complex mu) { return backward_differences(order, mu); });
+  }
+  if (name.starts_with("stormer_cowell_") && !mode.lambda && mode.rate == 0) return stoermer_roots(order);
   return {};
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 /// Multistep methods on one mode: the roots of their characteristic polynomials.
 
-#include "integrators/method.hpp"
+#include "integrators/methods/adams.hpp"
 #include "study/linear_stability.hpp"
 
 #include <complex>
@@ -17,8 +17,8 @@ struct MultistepRoots {
 
   std::vector<std::complex<double>> exact;  ///< lambda / scale of each direction
   std::function<Roots(std::size_t direction, double z)> roots;
-  /// The z from which on fixed-point iteration does not solve a step within its 200 sweeps: it contracts by z w_0 a
-  /// sweep, where w_0 is the weight of the new rate.
+  /// The z from which on fixed-point iteration does not solve a step in `adams_iterations`: each contracts by z w_0,
+  /// where w_0 is the weight of the new rate.
   std::optional<double> solver;
 
   /// Largest modulus of a root, less 1.
@@ -27,8 +27,14 @@ struct MultistepRoots {
   double error(double z) const;
 };
 
+/// Those of a formula of Adams, and of Stoermer's in summed form, on q'' = - omega^2 q.
+/// @source HairerNoersettWanner1993 III.1, III.10
+MultistepRoots adams_roots(AdamsKind kind, int order, const Mode& mode);
+MultistepRoots stoermer_roots(int order);
+
+/// Those of an opponent with steps of one length.
 /// @return empty for methods of one step, and where no polynomial is known: Stoermer and Cowell's with drag
 /// @source HairerNoersettWanner1993 III.3, HairerWanner1996 V.1
-std::optional<MultistepRoots> multistep_roots(const MethodChoice& choice, const Mode& mode);
+std::optional<MultistepRoots> multistep_roots(const Scene& scene, const Opponent& who, const Mode& mode);
 
 }  // namespace noether

@@ -14,11 +14,6 @@ namespace noether {
 
 namespace {
 
-Mode mode_of(const Scene& scene, const Spectrum& spectrum) {
-  if (scene.system) return {.omega = 0, .rate = 0, .lambda = spectrum.stiffest};
-  return {.omega = spectrum.fastest, .rate = drag_of(scene), .lambda = {}};
-}
-
 /// What h is multiplied by in the search [1/time]: the scale of the mode; where nothing oscillates, a hundredth of the
 /// scene's own step stands for one of the search.
 double scale_of(const Scene& scene, const Mode& mode) {

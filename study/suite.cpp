@@ -205,18 +205,11 @@ std::size_t Suite::agreeing() const {
 }
 
 std::string expected_by_theory(const Scene& scene, const Opponent& who, double step) {
-  const Spectrum spectrum = spectrum_at(scene, scene.particles);
-  Mode mode{.omega = spectrum.fastest, .rate = 0, .lambda = {}};
-  if (scene.system) mode = {.omega = 0, .rate = 0, .lambda = spectrum.stiffest};
-  for (const SceneForce& force : scene.hamiltonian.forces) {
-    if (force.drag) mode.rate = force.drag->rate;
-  }
+  const Mode mode = mode_of(scene, spectrum_at(scene, scene.particles));
   const double z = step * mode.scale();
   const auto matrix = step_matrix(scene, who, mode);
   if (!matrix) {
-    const Scene made = variant(scene, who, {.step = step, .tolerance = 0});
-    if (!made.integrator.classical || !(mode.scale() > 0)) return "";
-    const auto roots = multistep_roots(*made.integrator.classical, mode);
+    const auto roots = multistep_roots(scene, who, mode);
     if (!roots) return "";
     if (roots->solver && z >= *roots->solver) return "solver";
     return roots->growth(z) > growth_threshold ? "unbounded" : "bounded";

@@ -12,7 +12,6 @@ namespace noether {
 namespace {
 
 /// Iterations after which the implicit formula counts as not solved.
-constexpr int most_iterations = 200;
 
 /// Order of the explicit formula: the implicit one predicts from the rates it keeps anyway.
 int explicit_order(AdamsKind kind, int order) { return kind == AdamsKind::moulton ? std::max(order - 1, 1) : order; }
@@ -108,7 +107,7 @@ std::optional<Failure> Adams<Real>::iterate(VectorField<Real>& f, const Real& t,
     // Rounding errors of the rates may keep it moving by some ulp for ever.
     if (change <= 2 * ulp || (change <= 1000 * ulp && n > 1 && change >= before / 2)) break;
     if (n > 1 && before > 0) rate = change / before;
-    if (n == most_iterations || !std::isfinite(change)) {
+    if (n == adams_iterations || !std::isfinite(change)) {
       return not_solved(static_cast<double>(t) - h, h, change, n, rate);
     }
     before = change;

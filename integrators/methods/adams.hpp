@@ -12,6 +12,9 @@ enum class AdamsKind {
   pece        ///< predict by Bashforth, evaluate, correct by Moulton, evaluate, both of order k
 };
 
+/// Iterations after which the step of an implicit one counts as not solved.
+inline constexpr int adams_iterations = 200;
+
 /// Adams methods of order k, 1 to 12, with fixed steps.
 ///
 ///     Bashforth  y_1 = y_0 + h sum_(j<k) w_j f_-j,    Moulton  y_1 = y_0 + h sum_(j<k) w_j f_(1-j)

@@ -2,7 +2,8 @@
 
 #include "integrators/methods/adams.hpp"
 #include "integrators/methods/difference_formulas.hpp"
-#include "tests/methods/linear_stability.hpp"
+#include "study/multistep_roots.hpp"
+#include "tests/methods/first_unstable.hpp"
 #include "tests/methods/motions.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/order_fit.hpp"
@@ -43,11 +44,9 @@ double error_on_oscillator(const char* name, double h) {
   return std::abs(test::walk(*method, f, y, h, std::lround(10 / h))[0] - std::cos(10.0));
 }
 
-std::vector<double> adams_roots(AdamsKind kind, int order, double z) {
-  const Adams<double> method("adams", kind, order);
-  return test::adams_moduli(kind, method.explicit_weights(), method.implicit_weights(), z);
+double adams_growth(AdamsKind kind, int order, double z) {
+  return adams_roots(kind, order, {.omega = 1, .rate = 0, .lambda = {}}).growth(z);
 }
-double adams_growth(AdamsKind kind, int order, double z) { return adams_roots(kind, order, z).front() - 1; }
 
 /// ln of how much the oscillator grew in `steps` steps of h omega = z, after as many to settle.
 double growth_in_a_run(AdamsKind kind, int order, double z, long steps) {

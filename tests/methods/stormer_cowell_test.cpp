@@ -3,7 +3,8 @@
 #include "integrators/methods/stormer_cowell.hpp"
 #include "forces/gravity.hpp"
 #include "integrators/classical.hpp"
-#include "tests/methods/linear_stability.hpp"
+#include "study/multistep_roots.hpp"
+#include "tests/methods/first_unstable.hpp"
 #include "tests/methods/motions.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/order_fit.hpp"
@@ -14,21 +15,6 @@ using namespace noether;
 namespace {
 
 constexpr int stormer_orders[] = {12, 13, 14};
-
-/// (1 - 1/x)^2 [x q_n - sum g_i A_(n-i)] = A_n with A = -z^2 q.
-double stormer_growth(int order, double z) {
-  const StormerCowell<double> method("stormer", order);
-  std::vector<test::Complex> q{1.0};
-  for (const double g : method.position_weights()) q.emplace_back(z * z * g);
-  std::vector<test::Complex> c(q.size() + 2, 0.0);
-  for (std::size_t i = 0; i < q.size(); ++i) {
-    c[i] += q[i];
-    c[i + 1] -= 2.0 * q[i];
-    c[i + 2] += q[i];
-  }
-  c[1] += z * z;
-  return test::moduli_of_roots(c).front() - 1;
-}
 
 /// Largest |q| of the oscillator over `steps` steps of h omega = z.
 double largest(int order, double z, long steps) {
@@ -86,7 +72,8 @@ TEST_CASE("Stoermer-Cowell has the order of its number, positions and velocities
 TEST_CASE("Stoermer-Cowell is stable on the oscillator up to the limit its table tells", "[methods]") {
   for (const int order : stormer_orders) {
     const double limit = methods::find("stormer_cowell_" + std::to_string(order))->stability_limit;
-    const double z = test::first_unstable([&](double at) { return stormer_growth(order, at); }, 1e-9, 0.5);
+    const double z =
+        test::first_unstable([roots = stoermer_roots(order)](double at) { return roots.growth(at); }, 1e-9, 0.5);
     CAPTURE(order, z, limit);
     CHECK(std::abs(z - limit) < 2e-5);
     CHECK(largest(order, limit - 1e-3, 20000) < 1.001);

@@ -38,9 +38,8 @@ type = "gravity"
                     "kepler.toml", standard_parts(), sets);
 }
 
-/// One body on a spring, x'' = -x, perhaps with drag.
-inline Scene oscillator(const std::string& integrator, double rate = 0) {
-  std::string text = R"(title = "A spring"
+/// One body on a spring, x'' = -x; [integrator] is still to come.
+inline const std::string spring = R"(title = "A spring"
 units = "reduced"
 [particles]
 body = [{ name = "bob", mass = 1, x = [1, 0, 0], v = [0, 0, 0] }]
@@ -50,6 +49,10 @@ type = "kinetic_potential"
 type = "harmonic_field"
 k = 1
 )";
+
+/// The same, perhaps with drag.
+inline Scene oscillator(const std::string& integrator, double rate = 0) {
+  std::string text = spring;
   if (rate > 0) text += fmt::format("[[hamiltonian.force]]\ntype = \"linear_drag\"\nrate = {}\n", rate);
   return read_scene(text + "[integrator]\n" + integrator + "\n", "spring.toml");
 }
