@@ -3,6 +3,8 @@
 
 #include "engine/description.hpp"
 
+#include <fmt/format.h>
+
 #include <cstddef>
 #include <cstdint>
 
@@ -21,11 +23,17 @@ struct NeighborOptions {
         field<&NeighborOptions::renewal>("renewal", "1", "steps between searches, even if pairs are missed; 0: safe"),
         field<&NeighborOptions::verify>("verify", "1", "compare with all pairs at every step, slowly"));
   }
-  /// @throws Error  for what is negative
+  /// @throws Error  for what is negative, and for a comparison of lists that may miss pairs
   void check() const {
     if (!(skin >= 0 && skin < 1e100)) refuse_field("skin", skin, "is no width; 0 or more is expected");
     if (renewal < 0)
       refuse_field("renewal", static_cast<double>(renewal), "is no number of steps; 0 or more is expected");
+    if (verify && renewal > 1) {
+      refuse_field(
+          "verify", "true",
+          fmt::format("ends the run where a pair is missing, and renewal = {} may miss some; take one of them out",
+                      renewal));
+    }
   }
 };
 

@@ -62,6 +62,7 @@ struct Topology {
   std::vector<PairKind> pair_kinds;  ///< by type of the particle; empty where nothing was said of Lennard-Jones
   Mixing mixing = Mixing::lorentz_berthelot;
   std::map<std::pair<int, int>, PairKind> explicit_pairs;  ///< by types, the smaller first: instead of mixing
+  double stated_cutoff = 0;  ///< that a file names beside them [length]; forces have cutoffs of their own; 0: none
 
   using Pair = std::pair<Index, Index>;  ///< the smaller index first
   std::vector<Pair> exclusions;          ///< pairs without pair force, sorted

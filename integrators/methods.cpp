@@ -55,7 +55,7 @@ MethodChoice method(std::string_view name, const MethodOptions& options) {
   throw Error(fmt::format("unknown method '{}'{}", name, did_you_mean(name, methods::known_names())));
 }
 
-void check_options(const MethodInfo& info, const MethodOptions& options) {
+void check_options(const MethodInfo& info, const MethodOptions& options, double rounding) {
   const auto fail = [](std::string_view key, const std::string& message) {
     throw Error(message, {.key = std::string(key)});
   };
@@ -75,6 +75,13 @@ void check_options(const MethodInfo& info, const MethodOptions& options) {
       throw Error(fmt::format("{} = {} is no tolerance; a number of at least 0 is expected", key, *value),
                   {.key = key, .value = fmt::format("{}", *value)});
     }
+  }
+  // The references take 1e-16 for "to rounding"; others would shorten their steps without end.
+  if (options.rtol && *options.rtol > 0 && *options.rtol < 4 * rounding && info.rtol > 1e-15) {
+    throw Error(fmt::format("rtol = {} is more than {} can tell; at least {:.1g} is expected, or a method that goes to "
+                            "rounding, such as 'gauss_8'",
+                            *options.rtol, rounding < 1e-20 ? "extended precision" : "doubles", 4 * rounding),
+                {.key = "rtol", .value = fmt::format("{}", *options.rtol)});
   }
   for (const auto& [value, key] : {std::pair(options.beta, "beta"), std::pair(options.gamma, "gamma")}) {
     if (value && !takes(key)) fail(key, fmt::format("method '{}' has no {}; take it out", info.name, key));
@@ -97,7 +104,7 @@ template <> std::unique_ptr<Method<double>> make_method(const MethodInfo& info, 
 }
 
 template <> std::unique_ptr<Method<Quad>> make_method(const MethodInfo& info, const MethodOptions& options) {
-  check_options(info, options);
+  check_options(info, options, static_cast<double>(std::numeric_limits<Quad>::epsilon()));
   if (info.make_quad == nullptr) {
     throw Error(fmt::format("method '{}' computes in double only, not in extended precision", info.name));
   }

@@ -37,8 +37,10 @@ std::span<const MethodInfo> bdf_list();
 
 }  // namespace methods
 
+/// @param rounding  of the numbers it is to run with; only methods that go to rounding take relative tolerances below
+///   four times as much
 /// @throws Error  for options that a method does not take, and tolerances out of range, naming the key
-void check_options(const MethodInfo& info, const MethodOptions& options);
+void check_options(const MethodInfo& info, const MethodOptions& options, double rounding = 0x1p-52);
 
 /// The classical method of a name or an alias, with options.
 /// @throws Error  for an unknown name, with a proposal

@@ -120,6 +120,7 @@ class CoefficientReader {
       for (const auto& kind : kinds) topology.pair_kinds.push_back(*kind);
     }
     if (const LammpsSection* found = data_.find("PairIJ Coeffs")) explicit_pairs(*found, types, topology);
+    topology.stated_cutoff = cutoff_ * units_.length;
   }
 
  private:

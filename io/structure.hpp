@@ -35,9 +35,9 @@ struct StructureOptions {
 /// Impropers and the Coeffs of these and of pairs (lj/cut and what is lj/cut with charges; bonds harmonic, morse, fene;
 /// angles harmonic, cosine; dihedrals charmm with weight 0, harmonic, multi/harmonic, opls; impropers harmonic, cvff).
 /// The style of a section stands behind its name, `Bond Coeffs # harmonic`. A cutoff behind epsilon and sigma of a pair
-/// is read and left aside: the cutoff is the force's; all of them must agree. Particles stand in the order of their ids
-/// and keep them; types are named "1", "2", ...; the lower corner of the box becomes the origin. Coefficients become
-/// those of noether's kinds (forces/bonded.hpp).
+/// is `Topology::stated_cutoff`, and moves nothing: the cutoff is the force's; all of them must agree. Particles stand
+/// in the order of their ids and keep them; types are named "1", "2", ...; the lower corner of the box becomes the
+/// origin. Coefficients become those of noether's kinds (forces/bonded.hpp).
 ///
 /// `.xyz`, `.extxyz`: one frame of XYZ, extended or plain; positions in angstrom, `velo` or `vel` in angstrom/fs,
 /// `momenta` in sqrt(eV u), as ASE writes them, `charge` or `initial_charges` in e, `mass` or `masses` in u; other

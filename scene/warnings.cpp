@@ -6,7 +6,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <set>
+#include <span>
 #include <string_view>
+#include <utility>
 
 namespace noether {
 
@@ -34,34 +38,132 @@ bool has_charges(const ParticleSystem<double>& s) {
   return false;
 }
 
+const SceneForce* find_force(const Scene& scene, std::string_view name) {
+  const auto& forces = scene.hamiltonian.forces;
+  const auto found = std::find_if(forces.begin(), forces.end(), [&](const SceneForce& f) { return f.name == name; });
+  return found == forces.end() ? nullptr : &*found;
+}
+
+bool all_among(const std::vector<SceneForce>& forces, std::span<const std::string_view> names) {
+  return std::all_of(forces.begin(), forces.end(), [&](const SceneForce& force) {
+    return std::find(names.begin(), names.end(), force.name) != names.end();
+  });
+}
+
+/// Trace of one step of a word of drifts and kicks on an oscillator with h omega = z, halved; other letters rest. Above
+/// 1 in size its powers grow.
+double half_trace(const Word& word, double z) {
+  std::array<double, 2> first = {1, 0}, second = {0, 1};  // columns: position, velocity
+  for (const Stage& stage : word) {
+    const double w = static_cast<double>(stage.weight) * z;
+    for (auto* column : {&first, &second}) {
+      if (stage.letter == 'A') (*column)[0] += w * (*column)[1];
+      if (stage.letter == 'B') (*column)[1] -= w * (*column)[0];
+    }
+  }
+  return (first[0] + second[1]) / 2;
+}
+
+/// Whether an oscillator with h omega = z grows without bounds under the method of a scene, as far as its tables or its
+/// word tell.
+bool grows(const SceneIntegrator& integrator, double z) {
+  if (integrator.adaptive()) return false;
+  const double limit =
+      integrator.classical ? integrator.classical->info->stability_limit : integrator.scheme.stability_limit;
+  if (!std::isnan(limit)) return z > limit;
+  return !integrator.classical && std::abs(half_trace(integrator.scheme.word, z)) > 1;
+}
+
+/// U'' of a bond at its rest length [energy/length^2]; 0 for kinds that end a run themselves where they are too stiff.
+double stiffness(const TermKind& kind) {
+  if (kind.potential == "harmonic") return kind.parameters[0];
+  if (kind.potential == "morse") return 2 * kind.parameters[0] * kind.parameters[1] * kind.parameters[1];
+  return 0;
+}
+
+/// The bond that swings fastest, of those that no constraint holds.
+struct FastestBond {
+  double omega = 0;  ///< [1/time]
+  Index first = 0, second = 0;
+};
+
+FastestBond fastest_bond(const Scene& scene) {
+  FastestBond fastest;
+  const Topology* topology = scene.particles.topology();
+  if (topology == nullptr || find_force(scene, "bonded") == nullptr) return fastest;
+  std::set<std::pair<Index, Index>> held;
+  for (const SceneConstraint& constraint : scene.hamiltonian.constraints) {
+    for (const std::vector<Index>& tied : constraint.tied) {
+      if (tied.size() == 2) held.insert(std::minmax(tied[0], tied[1]));
+    }
+  }
+  const auto& masses = scene.particles.masses();
+  for (const BondedTerm<2>& bond : topology->bonds) {
+    const auto [i, j] = bond.particles;
+    const double k = stiffness(topology->bond_kinds[static_cast<std::size_t>(bond.type)]);
+    const double omega = std::sqrt(k * (1 / masses[i] + 1 / masses[j]));
+    if (omega > fastest.omega && !held.contains(std::minmax(i, j))) fastest = {omega, i, j};
+  }
+  return fastest;
+}
+
+/// A bond that no step of this length can follow; empty if there is none.
+std::string too_stiff(const Scene& scene) {
+  const FastestBond bond = fastest_bond(scene);
+  const double step = std::abs(scene.integrator.step), z = step * bond.omega;
+  if (!std::isfinite(z) || !grows(scene.integrator, z)) return "";
+  double bearable = z;
+  while (bearable > 0.01 && grows(scene.integrator, bearable)) bearable -= 0.01;
+  const std::string unit = scene.units->time == "1" ? "" : fmt::format(" {}", scene.units->time);
+  const std::string remedy = bearable > 0.01 ? fmt::format("take a step below {:.2g}{}", bearable / bond.omega, unit)
+                                             : "take another method, such as 'verlet'";
+  return fmt::format(
+      "the bond of '{}' and '{}' swings with h omega = {:.3g}, where no motion by '{}' stays bounded; {}{}",
+      scene.particles.name(bond.first), scene.particles.name(bond.second), z, scene.integrator.method, remedy,
+      scene.hamiltonian.thermostat ? "" : ", or constraints");
+}
+
+/// A file that names another cutoff than the force has; empty if it does not.
+std::string other_cutoff(const Scene& scene) {
+  const Topology* topology = scene.particles.topology();
+  const SceneForce* pairs = find_force(scene, "lennard_jones");
+  if (topology == nullptr || topology->stated_cutoff == 0 || pairs == nullptr || !pairs->force) return "";
+  const double stated = topology->stated_cutoff, cutoff = pairs->force->claims().range;
+  if (std::abs(stated - cutoff) <= 1e-9 * stated) return "";
+  const std::string unit = scene.units->length == "1" ? "" : fmt::format(" {}", scene.units->length);
+  return fmt::format(
+      "the structure's pairs have a cutoff of {:.6g}{}, the force lennard_jones one of {:.6g}{}, which is "
+      "taken",
+      stated, unit, cutoff, unit);
+}
+
 }  // namespace
 
 std::vector<std::string> warnings_of(const Scene& scene) {
   std::vector<std::string> warnings;
+  const auto add = [&](std::string warning) {
+    if (!warning.empty()) warnings.push_back(std::move(warning));
+  };
   const std::vector<SceneForce>& forces = scene.hamiltonian.forces;
-  const auto is_bonded = [](const SceneForce& force) { return force.name == "bonded"; };
   // Constraints may stand in the place of bonds.
   if (const Topology* t = scene.particles.topology();
-      t != nullptr && scene.hamiltonian.constraints.empty() && std::none_of(forces.begin(), forces.end(), is_bonded)) {
+      t != nullptr && scene.hamiltonian.constraints.empty() && find_force(scene, "bonded") == nullptr) {
     const std::size_t terms = t->bonds.size() + t->angles.size() + t->dihedrals.size() + t->impropers.size();
     if (terms > 0) {
-      warnings.push_back(fmt::format("the structure has {} bonded {} that nothing acts on: there is no force 'bonded'",
-                                     terms, terms == 1 ? "term" : "terms"));
+      add(fmt::format("the structure has {} bonded {} that nothing acts on: there is no force 'bonded'", terms,
+                      terms == 1 ? "term" : "terms"));
     }
   }
-  const auto all_among = [&](const auto& names) {
-    return std::all_of(forces.begin(), forces.end(), [&](const SceneForce& force) {
-      return std::find(names.begin(), names.end(), force.name) != names.end();
-    });
-  };
-  if (!forces.empty() && all_among(without_charges) && has_charges(scene.particles)) {
-    warnings.emplace_back("the particles have charges that no force looks at");
+  if (!forces.empty() && all_among(forces, without_charges) && has_charges(scene.particles)) {
+    add("the particles have charges that no force looks at");
   }
   const SceneValue* particles = scene.effective.find("particles");
-  if (all_among(without_exclusions) && particles != nullptr && particles->find("exclusions") != nullptr) {
-    warnings.push_back(fmt::format("exclusions change nothing: no force leaves pairs out; those that do are {}",
-                                   fmt::join(with_exclusions, ", ")));
+  if (all_among(forces, without_exclusions) && particles != nullptr && particles->find("exclusions") != nullptr) {
+    add(fmt::format("exclusions change nothing: no force leaves pairs out; those that do are {}",
+                    fmt::join(with_exclusions, ", ")));
   }
+  add(other_cutoff(scene));
+  add(too_stiff(scene));
   return warnings;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What a scene brings and none of its forces looks at.
+/// What can be run, but is hardly meant.
 
 #include "scene/scene.hpp"
 
@@ -8,7 +8,9 @@
 
 namespace noether {
 
-/// One line for each kind of thing that is in the scene and does nothing: it can be run, but is hardly meant.
+/// One line for each kind of thing that is in the scene and does nothing, that contradicts another, or that no step of
+/// this length can follow: bonds of a structure that shake their particles apart.
+/// @cost O(bonds)
 std::vector<std::string> warnings_of(const Scene& scene);
 
 }  // namespace noether

@@ -94,6 +94,10 @@ void check_use(const std::vector<Opponent>& methods, const CompareOptions& optio
         "--tolerances is for methods that choose their steps, and all of those compared take fixed ones; leave "
         "it out, or add such a method, as 'dop853'");
   }
+  for (const Opponent& who : methods) {
+    if (!who.adaptive) continue;
+    for (const double tolerance : options.tolerances) check_options(*methods::find(who.method), {.rtol = tolerance});
+  }
 }
 
 std::vector<Opponent> opponents_of(const Scene& scene, const CompareOptions& options) {

@@ -65,6 +65,10 @@ class Page {
       out += fmt::format("There is no reference: {}. Methods are compared by the energy they keep.",
                          html_text(c_.truth.note));
     }
+    if (c_.particles == 0) {
+      out +=
+          " The error of a system is the root mean square over its variables, each relative to the largest it ever is.";
+    }
     return out + "</p>\n";
   }
 

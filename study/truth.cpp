@@ -210,7 +210,19 @@ std::vector<Quad> PositionError::positions(const Vector<Quad>& y) const {
 
 void PositionError::set_scale(const std::vector<Vector<Quad>>& y) {
   scale_ = 0;
-  if (about_center_ || masses_.empty() || y.empty()) return;
+  sizes_.clear();
+  if (about_center_ || y.empty()) return;
+  if (masses_.empty()) {
+    sizes_.assign(static_cast<std::size_t>(y[0].size()), 0);
+    for (const Vector<Quad>& one : y) {
+      for (std::size_t i = 0; i < sizes_.size(); ++i) {
+        sizes_[i] = std::max(sizes_[i], std::abs(static_cast<double>(one[static_cast<Index>(i)])));
+      }
+    }
+    const double largest = *std::max_element(sizes_.begin(), sizes_.end());
+    std::replace(sizes_.begin(), sizes_.end(), 0.0, largest);  // what is 0 all the time is measured by the others
+    return;
+  }
   double squares = 0;
   for (const Vector<Quad>& one : y) {
     for (const Quad& x : positions(one)) squares += static_cast<double>(x) * static_cast<double>(x);
@@ -226,6 +238,14 @@ double PositionError::size(const Vector<Quad>& y) const {
 
 double PositionError::operator()(const Vector<Quad>& y, const Vector<Quad>& truth) const {
   const std::vector<Quad> x = positions(y), exact = positions(truth);
+  if (!sizes_.empty() && sizes_[0] > 0) {
+    double squares = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const double error = static_cast<double>(x[i] - exact[i]) / sizes_[i];
+      squares += error * error;
+    }
+    return std::sqrt(squares / static_cast<double>(x.size()));
+  }
   Quad difference(0), size(0);
   for (std::size_t i = 0; i < x.size(); ++i) {
     difference += (x[i] - exact[i]) * (x[i] - exact[i]);

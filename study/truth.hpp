@@ -64,7 +64,10 @@ class PositionError {
 
   /// Takes the sizes of all truth states. @param y  as in `Truth`
   void set_scale(const std::vector<Vector<Quad>>& y);
-  /// norm(x - x*) / norm(x*). @param y, truth  shape (size of the state)
+  /// norm(x - x*) / norm(x*); of a first-order system, once it knows their sizes, the root mean square over the
+  /// variables of each one's error, relative to the largest it ever is: a trace of 1e-5 counts as much as what is
+  /// whole.
+  /// @param y, truth  shape (size of the state)
   double operator()(const Vector<Quad>& y, const Vector<Quad>& truth) const;
   /// norm(x), of what is compared.
   double size(const Vector<Quad>& y) const;
@@ -74,7 +77,8 @@ class PositionError {
 
   std::vector<Quad> masses_;
   bool about_center_ = false;
-  double scale_ = 0;  ///< 0: relative to |x*| of the moment
+  double scale_ = 0;           ///< 0: relative to |x*| of the moment
+  std::vector<double> sizes_;  ///< of the variables of a first-order system: largest |y*|
 };
 
 /// Whether positions of a scene are compared about the centre of mass.

@@ -73,6 +73,10 @@ TEST_CASE("wrong requests to compare and advise are told in one line", "[cli][co
   wrong("compare scene.toml --methods verlet --steps 1e-200",
         "a run of 20 has more steps of 1e-200 than can be counted; give steps of at least 2.4e-15");
   wrong("compare scene.toml --tolerances 1e-6,x", "--tolerances: 'x' is no number");
+  wrong(
+      "compare scene.toml --methods dop853 --tolerances 1e-8,1e-20",
+      "rtol = 1e-20 is more than doubles can tell; at least 9e-16 is expected, or a method that goes to rounding, such "
+      "as 'gauss_8'");
   wrong("compare scene.toml --tolerances 0", "0 is no tolerance; a number between 0 and 1 is expected");
   wrong("compare scene.toml --methods dop853,gauss_8 --steps 0.1",
         "--steps is for methods of fixed steps, and all of those compared choose theirs by a tolerance; leave it out, "

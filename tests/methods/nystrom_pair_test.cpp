@@ -1,7 +1,8 @@
-/// The Runge-Kutta-Nystroem pair 12(10): its table, its orders, its tolerance.
+/// The Runge-Kutta-Nystroem pair 12(10): its orders on real motions, its tolerance. Its table: nystrom_trees_test.cpp.
 
 #include "integrators/methods/nystrom_pair.hpp"
 #include "tests/methods/motions.hpp"
+#include "tests/methods/rooted_trees.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/order_fit.hpp"
 
@@ -34,11 +35,6 @@ Vector<Quad> nystrom_step(const NystromTableau& t, const std::vector<Quad>& b_q,
   return end;
 }
 
-std::vector<Quad> minus(std::vector<Quad> a, const std::vector<Quad>& b) {
-  for (std::size_t i = 0; i < a.size(); ++i) a[i] -= b[i];
-  return a;
-}
-
 Vector<Quad> truth_at(VectorField<Quad>& f, const Vector<Quad>& start, Quad end) {
   const auto exact = test::make<Quad>("gragg_bulirsch_stoer", {.rtol = 1e-32, .atol = 1e-32});
   return test::travel<Quad>(*exact, f, start, end);
@@ -59,42 +55,6 @@ void nystrom_ladder(VectorField<Quad>& f, const Vector<Quad>& start, const std::
 }
 
 }  // namespace
-
-TEST_CASE("the table of the Nystroem pair satisfies the conditions one can write down, to all its digits",
-          "[methods]") {
-  const NystromTableau& t = tableaus::dprkn_12();
-  REQUIRE(t.stages() == 17);
-  const auto near = [](Quad x, Quad y) { return static_cast<double>(abs(x - y)) < 1e-30; };
-  // q at the stages is right to order 2, and beyond the fourth to order 3: sum a_ij = c^2 / 2, sum a_ij c_j = c^3 / 6.
-  for (std::size_t i = 0; i < 17; ++i) {
-    Quad sum = 0, moment = 0;
-    for (std::size_t j = 0; j < t.a[i].size(); ++j) {
-      sum += t.a[i][j];
-      moment += t.a[i][j] * t.c[j];
-    }
-    CAPTURE(i);
-    CHECK(near(sum, t.c[i] * t.c[i] / Quad(2)));
-    if (i > 1) CHECK(near(moment, t.c[i] * t.c[i] * t.c[i] / Quad(6)));
-  }
-  // Quadrature: sum b_v c^k = 1 / (k + 1), sum b_q c^k = 1 / ((k + 1) (k + 2)), to order 12, embedded to order 10.
-  const auto moments = [&](const std::vector<Quad>& w, int k) {
-    Quad sum = 0;
-    for (std::size_t i = 0; i < 17; ++i) {
-      Quad power = w[i];
-      for (int n = 0; n < k; ++n) power *= t.c[i];
-      sum += power;
-    }
-    return sum;
-  };
-  const auto lower_v = minus(t.b_v, t.e_v), lower_q = minus(t.b_q, t.e_q);
-  for (int k = 0; k <= 12; ++k) {
-    CAPTURE(k);
-    CHECK(near(moments(t.b_v, k), Quad(1) / Quad(k + 1)) == (k < 12));
-    CHECK(near(moments(t.b_q, k), Quad(1) / Quad((k + 1) * (k + 2))) == (k < 11));
-    CHECK(near(moments(lower_v, k), Quad(1) / Quad(k + 1)) == (k < 10));
-    CHECK(near(moments(lower_q, k), Quad(1) / Quad((k + 1) * (k + 2))) == (k < 9));
-  }
-}
 
 TEST_CASE("the Nystroem pair is of order 12 in positions and velocities, on Henon and Heiles and on Kepler",
           "[methods]") {
@@ -121,57 +81,12 @@ TEST_CASE("the embedded formula of the Nystroem pair is of order 10", "[methods]
   for (const double h : {0.125, 0.09375, 0.0625}) {
     const Vector<Quad> truth = truth_at(f, start, h);
     upper.push_back({h, test::distance(truth, nystrom_step(t, t.b_q, t.b_v, f, start, h))});
-    lower.push_back({h, test::distance(truth, nystrom_step(t, minus(t.b_q, t.e_q), minus(t.b_v, t.e_v), f, start, h))});
+    lower.push_back({h, test::distance(truth, nystrom_step(t, test::without(t.b_q, t.e_q), test::without(t.b_v, t.e_v),
+                                                           f, start, h))});
   }
   CAPTURE(test::to_text(upper), test::to_text(lower));
   CHECK(std::abs(test::fitted_slope(upper) - 13) < 0.4);
   CHECK(std::abs(test::fitted_slope(lower) - 11) < 0.4);
-}
-
-TEST_CASE("one digit changed in any coefficient of the Nystroem pair shows in its rows or in one step", "[methods]") {
-  const NystromTableau& t = tableaus::dprkn_12();
-  auto f = test::kepler<Quad>();
-  Vector<Quad> start(4);
-  start << 0.7, 0.4, -0.5, 0.9;
-  const Quad h(0.0625);
-  const Vector<Quad> truth = truth_at(f, start, h);
-  const double error = test::distance(truth, nystrom_step(t, t.b_q, t.b_v, f, start, h));
-  CAPTURE(error);
-  CHECK(error < 1e-22);
-  const auto slip = [](Quad x) {
-    return x + Quad(std::pow(10.0, std::floor(std::log10(std::abs(static_cast<double>(x)))) - 9));
-  };
-  // Stages 2 to 5 hardly matter by themselves, but the sums of their rows tell.
-  const auto found = [&](const NystromTableau& changed) {
-    for (std::size_t i = 0; i < 17; ++i) {
-      Quad sum = 0;
-      for (const Quad& x : changed.a[i]) sum += x;
-      if (static_cast<double>(abs(sum - changed.c[i] * changed.c[i] / Quad(2))) > 1e-30) return true;
-    }
-    return test::distance(truth, nystrom_step(changed, changed.b_q, changed.b_v, f, start, h)) > 1e6 * error;
-  };
-  CHECK(!found(t));
-  for (std::size_t i = 0; i < 17; ++i) {
-    for (std::size_t j = 0; j < t.a[i].size(); ++j) {
-      if (t.a[i][j] == Quad(0)) continue;
-      NystromTableau changed = t;
-      changed.a[i][j] = slip(changed.a[i][j]);
-      CAPTURE(i, j);
-      CHECK(found(changed));
-    }
-    NystromTableau nodes = t, velocities = t, positions = t;
-    CAPTURE(i);
-    if (t.c[i] != Quad(0)) {
-      nodes.c[i] = slip(nodes.c[i]);
-      CHECK(found(nodes));
-    }
-    if (t.b_v[i] == Quad(0)) continue;
-    velocities.b_v[i] = slip(velocities.b_v[i]);
-    CHECK(found(velocities));
-    if (t.b_q[i] == Quad(0)) continue;
-    positions.b_q[i] = slip(positions.b_q[i]);
-    CHECK(found(positions));
-  }
 }
 
 TEST_CASE("the error of the Nystroem pair follows its tolerance, 17 evaluations a step", "[methods]") {

@@ -101,6 +101,12 @@ inline int order_of(const std::vector<double>& violated, double digits) {
   return order;
 }
 
+/// Weights without others: those of an embedded formula, which tables give by their difference.
+inline std::vector<Quad> without(std::vector<Quad> a, const std::vector<Quad>& b) {
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] -= b[i];
+  return a;
+}
+
 /// x with its tenth digit changed by one.
 inline Quad slip(const Quad& x) {
   const double size = std::floor(std::log10(std::abs(static_cast<double>(x))));

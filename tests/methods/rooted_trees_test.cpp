@@ -12,14 +12,9 @@ using test::order_of;
 using test::rooted_trees;
 using test::slip;
 using test::violations;
+using test::without;
 
 namespace {
-
-std::vector<Quad> without(const std::vector<Quad>& a, const std::vector<Quad>& b) {
-  std::vector<Quad> c;
-  for (std::size_t i = 0; i < a.size(); ++i) c.push_back(a[i] - b[i]);
-  return c;
-}
 
 /// One line for each set of weights: what it is, the order it claims, and to what its coefficients are printed.
 struct WeightsCase {

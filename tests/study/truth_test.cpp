@@ -183,5 +183,21 @@ TEST_CASE("position errors are about the centre of mass where the forces keep it
   CHECK(std::abs(spring(away, zero) - std::sqrt(2.0)) < 1e-12);
 }
 
+TEST_CASE("errors of a first-order system are relative to each variable's largest value", "[truth]") {
+  PositionError error(ParticleSystem<double>(), false);
+  const auto state = [](double a, double b, double c) {
+    Vector<Quad> y(3);
+    y << Quad(a), Quad(b), Quad(c);
+    return y;
+  };
+  error.set_scale({state(1, 0, 0), state(0.5, -2e-5, 0), state(0.25, 1e-5, 0)});
+  // A quarter of the trace's largest value, though it is 5e-6 of what is whole; a variable that rests is measured by 1.
+  const Vector<Quad> truth = state(0.5, 1e-5, 0);
+  CHECK(std::abs(error(state(0.5, 1.5e-5, 0), truth) - 0.25 / std::sqrt(3.0)) < 1e-12);
+  CHECK(std::abs(error(state(0.75, 1e-5, 0), truth) - 0.25 / std::sqrt(3.0)) < 1e-12);
+  CHECK(std::abs(error(state(0.5, 1e-5, 0.25), truth) - 0.25 / std::sqrt(3.0)) < 1e-12);
+  CHECK(std::abs(error(state(0.75, 1.5e-5, 0.25), truth) - 0.25) < 1e-12);
+}
+
 }  // namespace
 }  // namespace noether::test

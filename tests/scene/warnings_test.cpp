@@ -1,0 +1,87 @@
+// What a scene is warned of before it runs: bonds that no step follows, cutoffs that a file means otherwise.
+
+#include "scene/warnings.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/process.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+
+namespace noether::test {
+namespace {
+
+/// Two atoms of mass 1 and a bond of stiffness 2 `k`, in LAMMPS's convention k (r - r_0)^2.
+std::string diatomic(const std::string& bond, const std::string& pair) {
+  return fmt::format(
+      "two\n\n2 atoms\n1 atom types\n1 bonds\n1 bond types\n0 20 xlo xhi\n0 20 ylo yhi\n0 20 zlo zhi\n\nMasses\n\n1 "
+      "1\n\n"
+      "Pair Coeffs # lj/cut\n\n1 {}\n\nBond Coeffs # {}\n\nAtoms # bond\n\n1 1 1 5 5 5\n2 1 1 6.1 5 5\n\nBonds\n\n1 1 "
+      "1 2\n",
+      pair, bond);
+}
+
+/// Warnings of the pair by a method with step 0.01, so that h omega = 0.01 sqrt(2 U'').
+std::vector<std::string> warnings(const std::string& bond, const std::string& integrator, const std::string& more = "",
+                                  const std::string& pair = "1 1") {
+  const ScratchFolder folder;
+  write_text(folder / "two.data", diatomic(bond, pair));
+  return warnings_of(read_scene(
+      "units = 'reduced'\n[particles]\nstructure = 'two.data'\n[hamiltonian]\ntype = 'kinetic_potential'\n"
+      "[[hamiltonian.force]]\ntype = 'bonded'\n[[hamiltonian.force]]\ntype = 'lennard_jones'\ncutoff = 2.5\n" +
+          more + "[integrator]\nsteps = 10\n" + integrator,
+      folder / "scene.toml"));
+}
+
+/// k in LAMMPS's convention with which step 0.01 has a given h omega.
+std::string harmonic(double z) { return fmt::format("harmonic\n\n1 {:.17g} 1.1", z * z / 0.01 / 0.01 / 4); }
+
+const std::string verlet = "method = 'verlet'\nstep = 0.01\n";
+
+TEST_CASE("a bond that the step cannot follow is warned of, from the limit of the method on", "[scene][warnings]") {
+  CHECK(warnings(harmonic(1.99), verlet).empty());
+  const auto told = warnings(harmonic(2.01), verlet);
+  REQUIRE(told.size() == 1);
+  CHECK(
+      told[0] ==
+      "the bond of 'atom_1' and 'atom_2' swings with h omega = 2.01, where no motion by 'verlet' stays bounded; take a "
+      "step below 0.01, or constraints");
+  struct Case {
+    std::string method;
+    double limit;
+  };
+  // Words have no table: the limit of BAB is 2, that of ABABA, with drifts of a third, the square root of 6.
+  for (const Case& one : {Case{"yoshida_4", 1.573}, Case{"mclachlan_s4", 3.03}, Case{"rk4", 2.8284}, Case{"BAB", 2},
+                          Case{"ABABA", 2.4495}, Case{"heun", 0}}) {
+    const std::string integrator = "method = '" + one.method + "'\nstep = 0.01\n";
+    CAPTURE(one.method);
+    CHECK(warnings(harmonic(one.limit + 0.02), integrator).size() == 1);
+    if (one.limit > 0) CHECK(warnings(harmonic(one.limit - 0.02), integrator).empty());
+  }
+  // Nothing is said where nothing is unstable, and where the method chooses its steps.
+  CHECK(warnings(harmonic(50), "method = 'backward_euler'\nstep = 0.01\n").empty());
+  CHECK(warnings(harmonic(50), "method = 'dop853'\n").empty());
+}
+
+TEST_CASE("breaking bonds are as stiff as at rest, baths take nothing away, constraints do", "[scene][warnings]") {
+  // depth a^2 = 1e4 is U'' = 2e4: h omega = 2.
+  const auto morse = [](double depth) { return fmt::format("morse\n\n1 {:.17g} 4 1.1", depth / 16); };
+  CHECK(warnings(morse(0.98e4), verlet).empty());
+  CHECK(warnings(morse(1.02e4), verlet).size() == 1);
+  const std::string bath = "[hamiltonian.thermostat]\ntype = 'langevin'\ntemperature = 1\nfriction = 1\n";
+  CHECK(warnings(harmonic(2.01), "method = 'BAOAB'\nstep = 0.01\n", bath).size() == 1);
+  CHECK(warnings(harmonic(1.99), "method = 'BAOAB'\nstep = 0.01\n", bath).empty());
+  const std::string rods = "[[hamiltonian.constraint]]\ntype = 'distance'\npairs = 'bonds'\n";
+  CHECK(warnings(harmonic(5), verlet, rods).empty());
+}
+
+TEST_CASE("a cutoff in the structure that is not that of the force is warned of", "[scene][warnings]") {
+  CHECK(warnings(harmonic(0.1), verlet, "", "1 1 2.5").empty());
+  const auto told = warnings(harmonic(0.1), verlet, "", "1 1 3");
+  REQUIRE(told.size() == 1);
+  CHECK(told[0] == "the structure's pairs have a cutoff of 3, the force lennard_jones one of 2.5, which is taken");
+}
+
+}  // namespace
+}  // namespace noether::test
