@@ -14,9 +14,9 @@
 /// Protocol of both: slices of 100 steps, at the base level of SIMD of 20, ours and others in turn; two to settle, then
 /// the medians of 7; processor time of one thread, wall time of more.
 ///
-/// `sizes`: what an atom costs among fewer and among more, beside LAMMPS OPT, and its memory. `drift`: what mixed precision costs, the
-/// drift of the energy of 4000 atoms with a C4 switch over 50 000 steps of 0.002, from the slope through block means,
-/// with its error, beside that of doubles.
+/// `sizes`: what an atom costs among fewer and among more, beside LAMMPS OPT, and its memory. `drift`: what mixed
+/// precision costs, the drift of the energy of 4000 atoms with a C4 switch over 50 000 steps of 0.002, from the slope
+/// through block means, with its error, beside that of doubles.
 
 #include "bench/melt.hpp"
 #include "engine/charge.hpp"
