@@ -190,7 +190,7 @@ class Page {
     };
     out += slider("method", s.methods.size(), 0) +
            slider("step", s.steps.size(), std::min<std::size_t>(3, s.steps.size() - 1));
-    if (s.dampings.size() > 1) out += slider("damping", s.dampings.size(), 2);
+    if (s.dampings.size() > 1) out += slider("damping", s.dampings.size(), s.own_damping);
     out +=
         "<svg class=\"plot\" id=\"solution\" viewBox=\"0 0 1000 524\" role=\"img\" aria-label=\"the "
         "solution\"></svg>\n</div>\n";

@@ -131,6 +131,10 @@ if (holder) {
     const most = e.length ? Math.max(1e-17, Math.min(10, Math.max(...e.map(Math.abs)))) : 1;
     const E = (x) => (low + bottom) / 2 - Math.max(-1, Math.min(1, x / (1.1 * most))) * (bottom - low) / 2;
     out += frame(low, bottom, X, E, xs, e.length ? [-most, 0, most] : [], "energy error");
+    if (!run.t.length) {
+      const words = data.methods[m] + " takes no friction";
+      out += `<text x="${width / 2}" y="${(top + middle) / 2}" text-anchor="middle">${words}</text>`;
+    }
     if (e.length) out += line(run.t.slice(0, e.length), e, E, 'stroke="var(--c0)" stroke-width="1.4"');
     else out += `<text x="${width / 2}" y="${(low + bottom) / 2}" text-anchor="middle">no energy is known here</text>`;
     const under = (kind, x, y, text) => `<text class="${kind}" x="${x}" y="${y}" text-anchor="middle">${text}</text>`;

@@ -94,9 +94,27 @@ Scene damped(const Scene& scene, double rate) {
   }
   Scene made = scene;
   for (SceneForce& force : made.hamiltonian.forces) {
-    if (force.drag) force.drag->rate = rate;
+    if (!force.drag) continue;
+    force.drag->rate = rate;
+    return made;
   }
+  if (rate > 0) made.hamiltonian.forces.push_back({"linear_drag", SceneValue::table(), {}, LinearDrag{rate}});
   return made;
+}
+
+/// From no damping to far beyond the critical one, that of the scene among them.
+void choose_dampings(Solution& s, const Scene& scene) {
+  const double rate = damping_of(scene);
+  if (scene.system && scene.system->effective.find("gamma") == nullptr) {
+    s.dampings = {rate};
+  } else if (rate > 0) {
+    s.dampings = {0, rate / 4, rate, 4 * rate, 16 * rate};
+    s.own_damping = 2;
+  } else if (scene.system || is_linear(scene)) {
+    s.dampings = {0, s.omega / 20, s.omega / 4, 2 * s.omega, 8 * s.omega};  // the fourth is critical
+  } else {
+    s.dampings = {0};
+  }
 }
 
 DisplayedRun display(const Scene& scene, const Opponent& who, double step, double end, const Shape& shape,
@@ -105,7 +123,12 @@ DisplayedRun display(const Scene& scene, const Opponent& who, double step, doubl
   const double spacing = end / moments;
   const auto every = std::max<std::int64_t>(1, std::llround(step / spacing));
   const Sampling own{spacing * static_cast<double>(every), static_cast<int>(moments / every)};
-  const Row row = measure(scene, who, {.step = step, .tolerance = 0}, own, {.repeats = 1, .budget = 1});
+  Row row;
+  try {
+    row = measure(scene, who, {.step = step, .tolerance = 0}, own, {.repeats = 1, .budget = 1});
+  } catch (const Error& error) {
+    return {.outcome = error.message()};  // it serves the scene, but not with this damping
+  }
   DisplayedRun run{.outcome = row.outcome};
   const Track& track = row.track;
   const bool kept = track.energy_report.reason.empty();
@@ -134,10 +157,7 @@ std::optional<Solution> solution_of(const Scene& scene, const Comparison& c) {
   s.coordinate = "xyz"[shape->axis];
   const double end = std::min(c.end, periods * 2 * M_PI / s.omega), spacing = end / moments;
   for (const int m : {1, 2, 4, 8, 12, 13, 16}) s.steps.push_back(spacing * m);
-  const double rate = damping_of(scene);
-  s.dampings = {0};
-  if (rate > 0) s.dampings = {0, rate / 4, rate, 4 * rate, 16 * rate};
-  if (system && scene.system->effective.find("gamma") == nullptr) s.dampings = {rate};
+  choose_dampings(s, scene);
   const std::vector<Opponent> methods = displayed(scene, c);
   for (const Opponent& who : methods) s.methods.push_back(who.label);
   for (std::size_t d = 0; d < s.dampings.size(); ++d) {

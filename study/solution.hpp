@@ -14,7 +14,7 @@ namespace noether {
 struct DisplayedRun {
   std::size_t method = 0, step = 0, damping = 0;  ///< positions in the lists of `Solution`
   std::string outcome = {};
-  std::vector<double> t = {}, q = {};     ///< [time], [length]
+  std::vector<double> t = {}, q = {};     ///< [time], [length]; empty where the method takes no such damping
   std::vector<double> energy_error = {};  ///< relative, signed; empty where there is none
 };
 
@@ -27,7 +27,8 @@ struct ExactMotion {
 struct Solution {
   std::vector<std::string> methods = {};
   std::vector<double> steps = {};     ///< [time]
-  std::vector<double> dampings = {};  ///< [1/time]; one, 0, where the scene has no drag
+  std::vector<double> dampings = {};  ///< [1/time]; one, 0, where nothing says that the motion is an oscillator's
+  std::size_t own_damping = 0;        ///< that of the scene, a position in `dampings`
   double omega = 0;                   ///< of the motion, rms acceleration over rms displacement, square root [1/time]
   char coordinate = 'x';
   std::vector<ExactMotion> exact = {};  ///< by damping

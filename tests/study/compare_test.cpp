@@ -360,6 +360,41 @@ TEST_CASE("the report stands alone: one file, nothing from elsewhere", "[compare
   }
 }
 
+TEST_CASE("an oscillator without friction is shown with friction too, by methods that take it", "[compare][files]") {
+  const Scene scene = oscillator("method = \"verlet\"\nstep = 0.1\nsteps = 400");
+  CompareOptions options;
+  options.methods = {"verlet", "blanes_moan_srkn14a"};
+  options.steps = {0.1};
+  options.repeats = 1;
+  const Comparison c = compare(scene, options);
+  const auto solution = solution_of(scene, c);
+  REQUIRE(solution);
+  CHECK(solution->own_damping == 0);
+  REQUIRE(solution->dampings.size() == 5);
+  const double x0 = scene.particles.positions()[0][0], v0 = scene.particles.velocities()[0][0];
+  for (std::size_t d = 0; d < 3; ++d) {  // underdamped, with omega = 1
+    const double rate = solution->dampings[d] / 2, omega = std::sqrt(1 - rate * rate);
+    const ExactMotion& shown = solution->exact[d];
+    REQUIRE(shown.q.size() == 321);
+    for (std::size_t j = 0; j < shown.q.size(); j += 20) {
+      const double t = shown.t[j], exact = x0 * std::cos(omega * t) + (v0 + rate * x0) / omega * std::sin(omega * t);
+      CAPTURE(d, t);
+      CHECK(std::abs(shown.q[j] - std::exp(-rate * t) * exact) < 1e-13);
+    }
+  }
+  int refused = 0;
+  for (const DisplayedRun& run : solution->runs) {
+    if (!run.t.empty()) continue;
+    ++refused;
+    CAPTURE(solution->methods[run.method], run.outcome);
+    CHECK(run.damping > 0);
+    CHECK(run.outcome.find("irreversible") != std::string::npos);
+  }
+  CHECK(refused > 0);
+  const std::string html = report_html(c, solution);
+  CHECK(html.find("id=\"damping\" min=\"0\" max=\"4\" value=\"0\"") != std::string::npos);
+}
+
 TEST_CASE("the solution of an oscillator of first order is shown too, by dampings", "[compare][files]") {
   const std::string text = R"(units = "reduced"
 [system]
