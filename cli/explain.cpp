@@ -264,6 +264,14 @@ void print_text(const Scene& scene, const Explanation& e) {
                e.neighbors->pairs, e.neighbors->skin,
                static_cast<double>(e.neighbors->bytes) / static_cast<double>(e.particles));
   }
+  for (const SceneForce& force : scene.hamiltonian.forces) {
+    const SceneValue* precision = force.effective.find("precision");
+    if (precision == nullptr || to_text(*precision) != "\"mixed\"") continue;
+    fmt::print(
+        "precision: {}'s forces of pairs are single, right to about 1e-6 of the strongest attraction; their sums are "
+        "exact, energies are doubles\n",
+        force.name);
+  }
   if (!e.small_box.empty()) fmt::print("{}\n", e.small_box);
   for (const std::string& warning : warnings_of(scene)) fmt::print("warning: {}\n", warning);
   if (e.stiffness) print_stiffness(scene, e);

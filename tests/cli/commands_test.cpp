@@ -174,6 +174,15 @@ TEST_CASE("evaluate tells LAMMPS's pressure, and none where there is none", "[cl
   CHECK_FALSE(has(output(open, "evaluate scene.toml"), "pressure"));
 }
 
+TEST_CASE("explain says where numbers are single", "[cli][messages]") {
+  const SceneFolder pair(close_pair);
+  const std::string line =
+      "\nprecision: lennard_jones's forces of pairs are single, right to about 1e-6 of the strongest";
+  CHECK(has(output(pair, "explain scene.toml --set hamiltonian.force.0.precision=mixed"), line));
+  CHECK_FALSE(has(output(pair, "explain scene.toml --set hamiltonian.force.0.precision=double"), line));
+  CHECK_FALSE(has(output(pair, "explain scene.toml"), line));
+}
+
 TEST_CASE("small boxes, bonds and neighbors are spoken of", "[cli][messages]") {
   const SceneFolder pair(close_pair), chain(chain_scene);
   write_text(chain / "chain.data", broken_chain);
