@@ -9,7 +9,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -68,16 +67,39 @@ constexpr Formula formula(std::string_view text) { return {text}; }
 constexpr Source source(std::string_view keys) { return {keys}; }
 constexpr Quantities quantities(std::string_view text) { return {text}; }
 
+namespace detail {
+template <std::size_t place, class E> struct Entry { E entry; };
+template <class Places, class... Es> struct EntryList;
+/// Entries of any types in their order: a std::tuple that costs the compiler little.
+template <std::size_t... places, class... Es>
+struct EntryList<std::index_sequence<places...>, Es...> : Entry<places, Es>... {
+  /// Calls `visit` for each of them.
+  template <class Visit> constexpr void each(const Visit& visit) const {
+    (visit(static_cast<const Entry<places, Es>&>(*this).entry), ...);
+  }
+  /// Calls `use` once, for all of them.
+  template <class Use> constexpr auto all(const Use& use) const {
+    return use(static_cast<const Entry<places, Es>&>(*this).entry...);
+  }
+};
+}  // namespace detail
+
 /// The description of a part.
 template <class T, class... Entries> struct Part {
   std::string_view name, help;
-  std::tuple<Entries...> entries;
+  detail::EntryList<std::index_sequence_for<Entries...>, Entries...> entries;
 };
 
 /// Makes the description of part `T`: call it from `static constexpr auto describe()`.
 template <class T, class... Entries>
 constexpr Part<T, Entries...> part(std::string_view name, std::string_view help, Entries... entries) {
-  return {name, help, std::tuple<Entries...>(entries...)};
+  return {name, help, {{entries}...}};
+}
+/// The description of `T` that begins as that of its base, and goes on with entries of its own.
+template <class T, class Base, class... Inherited, class... Entries>
+constexpr Part<T, Inherited..., Entries...> part(const Part<Base, Inherited...>& base, Entries... entries) {
+  return base.entries.all(
+      [&](const auto&... inherited) { return part<T>(base.name, base.help, inherited..., entries...); });
 }
 
 template <class T>
@@ -97,39 +119,24 @@ template <auto M> struct is_state<State<M>> : std::true_type {};
 
 /// Calls `visit(field)` for every field of a part, in the order of its description.
 template <class T, class Visit> constexpr void for_each_field(const Visit& visit) {
-  std::apply(
-      [&](const auto&... entry) {
-        (([&](const auto& e) {
-           if constexpr (detail::is_field<std::decay_t<decltype(e)>>::value) visit(e);
-         }(entry)),
-         ...);
-      },
-      detail::description_of<T>.entries);
+  detail::description_of<T>.entries.each([&]<class E>(const E& entry) {
+    if constexpr (detail::is_field<E>::value) visit(entry);
+  });
 }
 
 /// Calls `visit(state)` for every state entry of a part.
 template <class T, class Visit> constexpr void for_each_state(const Visit& visit) {
-  std::apply(
-      [&](const auto&... entry) {
-        (([&](const auto& e) {
-           if constexpr (detail::is_state<std::decay_t<decltype(e)>>::value) visit(e);
-         }(entry)),
-         ...);
-      },
-      detail::description_of<T>.entries);
+  detail::description_of<T>.entries.each([&]<class E>(const E& entry) {
+    if constexpr (detail::is_state<E>::value) visit(entry);
+  });
 }
 
 /// The entry of type `E` (Formula, Source or Quantities) of a part; empty if it has none.
 template <class T, class E> constexpr std::string_view entry_text() {
   std::string_view found;
-  std::apply(
-      [&](const auto&... entry) {
-        (([&](const auto& e) {
-           if constexpr (std::is_same_v<std::decay_t<decltype(e)>, E>) found = e.text;
-         }(entry)),
-         ...);
-      },
-      detail::description_of<T>.entries);
+  detail::description_of<T>.entries.each([&]<class Other>(const Other& entry) {
+    if constexpr (std::is_same_v<Other, E>) found = entry.text;
+  });
   return found;
 }
 

@@ -212,19 +212,19 @@ template <PairPotential P> struct PairForce : P {
 
   static constexpr auto describe() requires requires { P::describe(); }
   {
-    constexpr auto of_potential = P::describe();
-    constexpr auto types =
-        std::tuple(field<&PairForce::first>("first", "1", "a type: only its pairs with `second`; default: all"),
-                   field<&PairForce::second>("second", "1", "a type: only its pairs with `first`"));
-    const auto all = [&](auto... entry) { return part<PairForce>(of_potential.name, of_potential.help, entry...); };
+    constexpr auto potential = P::describe();
+    constexpr auto first_type =
+        field<&PairForce::first>("first", "1", "a type: only its pairs with `second`; default: all");
+    constexpr auto second_type = field<&PairForce::second>("second", "1", "a type: only its pairs with `first`");
     if constexpr (ends_by_itself) {
-      return std::apply(all, std::tuple_cat(of_potential.entries, types));
+      return part<PairForce>(potential, first_type, second_type);
     } else {
-      constexpr auto ends = std::tuple(
+      return part<PairForce>(
+          potential,
           field<&PairForce::cutoff>("cutoff", "length", "pairs feel each other up to here").required("\"1 nm\""),
           field<&PairForce::cutoff_style>("cutoff_style", "1", "how pairs end at the cutoff"),
-          field<&PairForce::switch_from>("switch_from", "length", "of the switches; default: 0.9 cutoff"));
-      return std::apply(all, std::tuple_cat(of_potential.entries, ends, types));
+          field<&PairForce::switch_from>("switch_from", "length", "of the switches; default: 0.9 cutoff"), first_type,
+          second_type);
     }
   }
   ForceClaims claims() const { return {.periodic = true, .range = reach()}; }
