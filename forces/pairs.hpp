@@ -3,6 +3,7 @@
 
 #include "engine/description.hpp"
 #include "engine/force_sink.hpp"
+#include "engine/parallel.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,6 +14,7 @@
 #include <string_view>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 namespace noether {
 
@@ -135,24 +137,47 @@ inline bool can_add(ForceSink<double>& out, const ParticleSystem<double>& s, con
   return (well && (weak || out.kick() == 0)) || look_closer(out, s, pair, limits);
 }
 
+/// A scaled pair as it was found.
+template <class Real> struct ScaledPairFound {
+  Real r2, energy;
+  Vec3<Real> force;  ///< on the first of the two
+  bool acts;
+};
+
 /// Adds the pairs whose force the topology scales, at their nearest images; doubles within their limits, or the run
-/// ends. @param terms  as above
+/// ends. All threads find the forces, one adds them, in the order of the pairs.
+/// @param terms  as above
 template <class Real, class Terms>
 void add_scaled_pairs(ForceSink<Real>& out, const ParticleSystem<Real>& s, const Terms& terms,
                       [[maybe_unused]] const PairLimits& limits = {}) {
   if (s.topology() == nullptr) return;
-  for (const Topology::ScaledPair& scaled : s.topology()->scaled_pairs) {
-    const auto [i, j] = scaled.pair;
-    const Vec3<Real> d = s.box().minimum_image(Vec3<Real>(s.positions()[i] - s.positions()[j]));
-    const Real r2 = norm2(d);
-    terms(i, j, r2, [&, i = i, j = j](const PairTerms<Real>& found) {
-      const Vec3<Real> f = Real(scaled.factor) * found.force * d;
-      if constexpr (std::is_same_v<Real, double>) {
-        if (!can_add(out, s, {i, j, r2, f}, limits)) return;
-      }
-      out.pair(i, j, f);
-      out.energy(Real(scaled.factor) * found.energy);
-    });
+  const std::vector<Topology::ScaledPair>& pairs = s.topology()->scaled_pairs;
+  thread_local std::vector<ScaledPairFound<Real>> memory;
+  if (memory.size() < pairs.size()) memory.resize(pairs.size());
+  std::vector<ScaledPairFound<Real>>& all = memory;  // this thread's, written by all
+  for_blocks(static_cast<Index>(pairs.size()), [&](Index begin, Index end) {
+    for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
+      const auto [i, j] = pairs[k].pair;
+      const Vec3<Real> d = s.box().minimum_image(Vec3<Real>(s.positions()[i] - s.positions()[j]));
+      ScaledPairFound<Real>& found = all[k];
+      found.r2 = norm2(d);
+      found.acts = false;
+      terms(i, j, found.r2, [&](const PairTerms<Real>& one) {
+        found.acts = true;
+        found.force = Real(pairs[k].factor) * one.force * d;
+        found.energy = Real(pairs[k].factor) * one.energy;
+      });
+    }
+  });
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const auto [i, j] = pairs[k].pair;
+    const ScaledPairFound<Real>& found = all[k];
+    if (!found.acts) continue;
+    if constexpr (std::is_same_v<Real, double>) {
+      if (!can_add(out, s, {i, j, found.r2, found.force}, limits)) continue;
+    }
+    out.pair(i, j, found.force);
+    out.energy(found.energy);
   }
 }
 

@@ -16,6 +16,9 @@
 #include "tests/support/refusal.hpp"
 #include "tests/support/settings.hpp"
 
+#include <memory>
+#include <optional>
+
 namespace noether {
 namespace {
 
@@ -102,6 +105,38 @@ template <class F> void check_written_out(const F& force, Cutoff style, double r
 }
 
 }  // namespace
+
+TEST_CASE("scaled pairs are found by all threads, and add up to the same bits", "[pair_force]") {
+  ParticleSystem<double> s = test::liquid(6, 0.85, 1, 0.05);
+  auto topology = std::make_shared<Topology>();
+  for (Index i = 0; i + 2 < s.size(); ++i) {
+    topology->scaled_pairs.push_back({{i, i + 1}, 0.5});
+    topology->scaled_pairs.push_back({{i, i + 2}, 0.25});
+  }
+  s.set_topology(topology);
+  const auto check = [&](const auto& force) {
+    std::optional<Evaluated> one;
+    for (const int threads : {1, 2, 3, 8}) {
+      const test::Threads now(threads);
+      CAPTURE(threads);
+      const Evaluated found = evaluated<double>(force, s);
+      REQUIRE_FALSE(found.failure);
+      if (!one) one = found;
+      CHECK(largest_difference(found.a, one->a) == 0);
+      CHECK(found.energy == one->energy);
+      CHECK(found.virial == one->virial);
+    }
+    check_lanes(force, s);
+  };
+  check(pair_force(TwelveSix{}, 2.5, Cutoff::shifted_force));
+  struct WithScale : LennardJonesForce {
+    double scale() const { return 24; }
+  };
+  WithScale argon;
+  argon.cutoff = 2.5;
+  argon.epsilon = argon.sigma = 1.0;
+  check(argon);
+}
 
 TEST_CASE("switches are the polynomials in r^2 that are written down, in energy and force", "[pair_force]") {
   for (const Cutoff style : {Cutoff::switch_c2, Cutoff::switch_c4}) {
