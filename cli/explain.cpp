@@ -266,7 +266,8 @@ void print_text(const Scene& scene, const Explanation& e) {
   }
   for (const SceneForce& force : scene.hamiltonian.forces) {
     const SceneValue* precision = force.effective.find("precision");
-    if (precision == nullptr || to_text(*precision) != "\"mixed\"") continue;
+    const std::string* chosen = precision != nullptr ? precision->get<std::string>() : nullptr;
+    if (chosen == nullptr || *chosen != "mixed") continue;
     fmt::print(
         "precision: {}'s forces of pairs are single, right to about 1e-6 of the strongest attraction; their sums are "
         "exact, energies are doubles\n",

@@ -214,6 +214,7 @@ class Page {
       runs.push_back(Json::object({{"m", static_cast<std::int64_t>(run.method)},
                                    {"h", static_cast<std::int64_t>(run.step)},
                                    {"d", static_cast<std::int64_t>(run.damping)},
+                                   {"refused", run.refused},
                                    {"t", digits(run.t)},
                                    {"q", digits(run.q)},
                                    {"e", digits(run.energy_error)}}));

@@ -131,7 +131,7 @@ if (holder) {
     const most = e.length ? Math.max(1e-17, Math.min(10, Math.max(...e.map(Math.abs)))) : 1;
     const E = (x) => (low + bottom) / 2 - Math.max(-1, Math.min(1, x / (1.1 * most))) * (bottom - low) / 2;
     out += frame(low, bottom, X, E, xs, e.length ? [-most, 0, most] : [], "energy error");
-    if (!run.t.length) {
+    if (run.refused) {
       const words = data.methods[m] + " takes no friction";
       out += `<text x="${width / 2}" y="${(top + middle) / 2}" text-anchor="middle">${words}</text>`;
     }

@@ -127,14 +127,16 @@ DisplayedRun display(const Scene& scene, const Opponent& who, double step, doubl
   try {
     row = measure(scene, who, {.step = step, .tolerance = 0}, own, {.repeats = 1, .budget = 1});
   } catch (const Error& error) {
-    return {.outcome = error.message()};  // it serves the scene, but not with this damping
+    return {.outcome = error.message(), .refused = true};  // it serves the scene, but not with this damping
   }
   DisplayedRun run{.outcome = row.outcome};
   const Track& track = row.track;
   const bool kept = track.energy_report.reason.empty();
+  double largest = 0;
+  for (const Vector<Quad>& y : truth.y) largest = std::max(largest, std::abs(static_cast<double>(y[shape.axis])));
   for (std::size_t j = 0; j < track.y.size(); ++j) {
     const double q = track.y[j][shape.axis];
-    if (!(std::abs(q) < 1e6)) break;
+    if (!(std::abs(q) < 1e6 * largest)) break;
     run.t.push_back(static_cast<double>(track.times[j]));
     run.q.push_back(q);
     const std::size_t at = j * static_cast<std::size_t>(every);

@@ -14,7 +14,8 @@ namespace noether {
 struct DisplayedRun {
   std::size_t method = 0, step = 0, damping = 0;  ///< positions in the lists of `Solution`
   std::string outcome = {};
-  std::vector<double> t = {}, q = {};     ///< [time], [length]; empty where the method takes no such damping
+  bool refused = false;                   ///< the method takes no such damping; `outcome` says why
+  std::vector<double> t = {}, q = {};     ///< [time], [length]
   std::vector<double> energy_error = {};  ///< relative, signed; empty where there is none
 };
 
