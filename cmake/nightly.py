@@ -1,4 +1,9 @@
-"""Prints docs/nightly.md from ctest's JUnit file: nightly.py REPORT ROOT."""
+"""docs/nightly.md, from ctest's JUnit file.
+
+nightly.py write REPORT ROOT         prints the page of these tests
+nightly.py again REPORT ROOT         prints the page of ROOT with these tests anew
+nightly.py failed ROOT               prints a regular expression of the tests that did not pass, by the page; nothing if all did
+"""
 
 import datetime
 import pathlib
@@ -20,26 +25,39 @@ def commit(root):
     return subprocess.run(command, capture_output=True, text=True, check=False).stdout.strip() or "unknown"
 
 
-def rows(report):
-    """(name, result, seconds) of every test, in the order of their names."""
-    for case in sorted(ElementTree.parse(report).iter("testcase"), key=lambda case: case.get("name")):
-        result = {"run": "passed", "fail": "FAILED"}.get(case.get("status"), case.get("status"))
-        yield case.get("name"), result, float(case.get("time"))
+def ran(report, root):
+    """{name: cells} of the tests that ran: result, seconds, commit, date."""
+    names = {"run": "passed", "fail": "FAILED"}
+    cases = ElementTree.parse(report).iter("testcase") if pathlib.Path(report).exists() else []
+    return {case.get("name"): [names.get(case.get("status"), case.get("status")), f"{float(case.get('time')):.1f}",
+                               commit(root), datetime.date.today().isoformat()] for case in cases}
 
 
-def main(report, root):
-    cases = list(rows(report)) if pathlib.Path(report).exists() else []
-    failed = sum(result != "passed" for _, result, _ in cases)
+def told(root):
+    """The same of the tests that the page tells of."""
+    page = pathlib.Path(root) / "docs" / "nightly.md"
+    lines = page.read_text().splitlines() if page.exists() else []
+    cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines if line.startswith("| ")]
+    return {name: rest for name, *rest in cells if name != "test"}
+
+
+def print_page(tests):
+    passed = sum(cells[0] == "passed" for cells in tests.values())
     print("# Nightly tests\n")
-    print("Written by `./noether test --nightly`.\n")
-    print(f"- date: {datetime.date.today().isoformat()}")
-    print(f"- commit: {commit(root)}")
+    print("Written by `./noether test --nightly`; rows of other commits by `./noether test --nightly --failed` after it.\n")
     print(f"- cpu: {cpu()}")
-    print(f"- result: {len(cases) - failed} of {len(cases)} passed\n")
-    print("| test | result | seconds |\n|---|---|---|")
-    for name, result, seconds in cases:
-        print(f"| {name} | {result} | {seconds:.1f} |")
+    print(f"- result: {passed} of {len(tests)} passed\n")
+    print("| test | result | seconds | commit | date |\n|---|---|---|---|---|")
+    for name, cells in sorted(tests.items()):
+        print(f"| {' | '.join([name, *cells])} |")
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:3])
+    what, *arguments = sys.argv[1:]
+    if what == "write":
+        print_page(ran(*arguments))
+    elif what == "again":
+        print_page(told(arguments[1]) | ran(*arguments))
+    else:
+        failed = [re.escape(name) for name, cells in told(*arguments).items() if cells[0] != "passed"]
+        print(f"^({'|'.join(failed)})$" if failed else "")

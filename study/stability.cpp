@@ -135,24 +135,31 @@ class Search {
     return {};
   }
 
+  /// Points for many steps below `end`: every 0.05, from 10 on every 10 %.
+  static std::vector<double> long_points(double end) {
+    std::vector<double> all;
+    for (int k = 1; k <= 200 && 0.05 * k < end; ++k) all.push_back(0.05 * k);
+    for (double z = 11; z < end; z *= 1.1) all.push_back(z);
+    return all;
+  }
+
   /// Goes upward below `end` with larger gaps and many steps, for what is too weak for the short runs of `scan`.
   /// @param all  whether a budget that ends here leaves the row unsettled; else half of what is left is enough
   /// @return as `scan`
   std::optional<std::pair<double, double>> scan_long(double end, bool all) {
-    constexpr double gap = 0.05;
     const double reserve = all ? 0 : left() / 2;
     double stable = 0;
-    for (int k = 1; k * gap < end; ++k) {
-      const Trial trial = attempt(k * gap, options_.confirm_steps);
+    for (const double z : long_points(end)) {
+      const Trial trial = attempt(z, options_.confirm_steps);
       if (trial.verdict == Bounded::unsettled || left() <= reserve) {
         if (all) stop_at(stable);
         return {};
       }
       if (!trial.stable()) {
         failed_ = trial;
-        return std::pair(stable, k * gap);
+        return std::pair(stable, z);
       }
-      stable = k * gap;
+      stable = z;
     }
     return {};
   }

@@ -117,10 +117,11 @@ struct Stability {
 
 /// The largest stable step of every method.
 ///
-/// Of each, h omega goes upward by 2e-3 (from 10 on by 2 %) in runs of 300 to 10000 steps, as many as the budget
-/// allows, and of linear theory's gaps and n:1 resonances each is looked at whether the search meets it or not. Below
-/// the first unstable point a run of `confirm_steps` must be bounded; if it is not, the search goes down, and up again
-/// in runs of that length. The limit is then found by halving, to 1e-5 of omega h, and so is the end of the gap.
+/// Of each, h omega goes upward by 2e-3 (from 10 on by 2 %) in runs of 300 to 1000 steps, as many as the budget
+/// allows, then by 0.05 (from 10 on by 10 %) in runs of `confirm_steps`, and of linear theory's gaps and n:1 resonances
+/// each is looked at whether the search meets it or not. Below the first unstable point a run of `confirm_steps` must
+/// be bounded; if it is not, the search goes down, and up again in runs of that length. The limit is then found by
+/// halving, to 1e-5 of omega h, and so is the end of the gap.
 ///
 /// Where the solution itself leaves all bounds, as a body that falls or escapes, runs are judged up to when it does.
 ///
