@@ -33,9 +33,10 @@ def has_twin(root, header):
 
 
 def compile_alone(root, compiler, flags, path):
-    """The first error of a file that includes nothing but this one, a header twice, or None."""
-    done = subprocess.run([compiler, *FLAGS, *flags, f"-I{root}", "-x", "c++", "-"], text=True, capture_output=True,
-                          input=f'#include "{path}"\n' * (2 if path.suffix == ".hpp" else 1))
+    """The first error of a source, or of a file that includes nothing but this header, twice; or None."""
+    file, text = ("-", f'#include "{path}"\n' * 2) if path.suffix == ".hpp" else (pathlib.Path(root) / path, None)
+    done = subprocess.run([compiler, *FLAGS, *flags, f"-I{root}", "-x", "c++", file], text=True, capture_output=True,
+                          input=text)
     if done.returncode == 0:
         return None
     errors = [line for line in done.stderr.splitlines() if "error" in line]
