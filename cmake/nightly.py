@@ -2,7 +2,7 @@
 
 nightly.py write REPORT ROOT         prints the page of these tests
 nightly.py again REPORT ROOT         prints the page of ROOT with these tests anew
-nightly.py failed ROOT               prints a regular expression of the tests that did not pass, by the page; nothing if all did
+nightly.py failed ROOT               prints a regular expression of those that the page has as not passed; nothing if all did
 """
 
 import datetime
@@ -21,8 +21,11 @@ def cpu():
 
 
 def commit(root):
-    command = ["git", "-C", root, "describe", "--always", "--dirty", "--abbrev=12", "--exclude", "*"]
-    return subprocess.run(command, capture_output=True, text=True, check=False).stdout.strip() or "unknown"
+    """What is checked out, and whether anything but the page is not committed."""
+    def git(*words):
+        return subprocess.run(["git", "-C", root, *words], capture_output=True, text=True, check=False).stdout.strip()
+    changed = git("status", "--porcelain", "--untracked-files=no", "--", ".", ":!docs/nightly.md")
+    return (git("rev-parse", "--short=12", "HEAD") or "unknown") + ("-dirty" if changed else "")
 
 
 def ran(report, root):
