@@ -2,7 +2,7 @@
 
 nightly.py write REPORT ROOT         prints the page of these tests
 nightly.py again REPORT ROOT         prints the page of ROOT with these tests anew
-nightly.py failed ROOT               prints a regular expression of those that the page has as not passed; nothing if all did
+nightly.py failed ROOT               prints a regular expression of those not passed by the page; nothing if all did
 """
 
 import datetime
@@ -47,7 +47,7 @@ def told(root):
 def print_page(tests):
     passed = sum(cells[0] == "passed" for cells in tests.values())
     print("# Nightly tests\n")
-    print("Written by `./noether test --nightly`; rows of other commits by `./noether test --nightly --failed` after it.\n")
+    print("Written by `./noether test --nightly`; rows of later commits by `./noether test --nightly --failed`.\n")
     print(f"- cpu: {cpu()}")
     print(f"- result: {passed} of {len(tests)} passed\n")
     print("| test | result | seconds | commit | date |\n|---|---|---|---|---|")
