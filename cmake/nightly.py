@@ -30,10 +30,11 @@ def commit(root):
 
 def ran(report, root):
     """{name: cells} of the tests that ran: result, seconds, commit, date."""
-    names = {"run": "passed", "fail": "FAILED"}
+    results = {"run": "passed", "fail": "FAILED"}
     cases = ElementTree.parse(report).iter("testcase") if pathlib.Path(report).exists() else []
-    return {case.get("name"): [names.get(case.get("status"), case.get("status")), f"{float(case.get('time')):.1f}",
-                               commit(root), datetime.date.today().isoformat()] for case in cases}
+    when = [commit(root), datetime.date.today().isoformat()]
+    return {case.get("name"): [results.get(case.get("status"), case.get("status")),
+                               f"{float(case.get('time')):.1f}", *when] for case in cases}
 
 
 def told(root):
