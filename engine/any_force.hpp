@@ -3,6 +3,7 @@
 /// same templates.
 
 #include "engine/concepts.hpp"
+#include "engine/lane_by_lane.hpp"
 #include "engine/pack.hpp"
 #include "engine/signature.hpp"
 
@@ -62,7 +63,7 @@ template <class F, class Real> struct ForceModel final : ForceBase<Real> {
   void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const override { force.add_to(out, s); }
   bool has_lanes() const override { return noether::has_lanes(force); }
   void add_to(ForceSink<Pack>& out, const ParticleSystem<Pack>& s) const override {
-    if constexpr (Force<F, Pack>) return force.add_to(out, s);
+    if constexpr (Force<F, Pack>) return add_in_lanes(force, out, s);
     throw LogicError("a force without lanes was asked for them");
   }
   bool has_derivative() const override { return noether::has_derivative<Real>(force); }

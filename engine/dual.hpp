@@ -47,11 +47,12 @@ template <class Real, std::size_t n> struct Dual {
     const Real quotient = a.value / b.value;
     return join(quotient, a, Real(1) / b.value, b, -quotient / b.value);
   }
-  friend bool operator==(const Dual& a, const Dual& b) { return a.value == b.value; }
-  friend bool operator<(const Dual& a, const Dual& b) { return a.value < b.value; }
-  friend bool operator>(const Dual& a, const Dual& b) { return b < a; }
-  friend bool operator<=(const Dual& a, const Dual& b) { return !(b < a); }
-  friend bool operator>=(const Dual& a, const Dual& b) { return !(a < b); }
+  friend auto operator==(const Dual& a, const Dual& b) { return a.value == b.value; }
+  friend auto operator!=(const Dual& a, const Dual& b) { return a.value != b.value; }
+  friend auto operator<(const Dual& a, const Dual& b) { return a.value < b.value; }
+  friend auto operator>(const Dual& a, const Dual& b) { return b.value < a.value; }
+  friend auto operator<=(const Dual& a, const Dual& b) { return a.value <= b.value; }
+  friend auto operator>=(const Dual& a, const Dual& b) { return b.value <= a.value; }
 
   friend Dual sqrt(const Dual& a) {
     using std::sqrt;
@@ -97,15 +98,99 @@ template <class Real, std::size_t n> struct Dual {
     using std::sinh, std::cosh;
     return a.chain(cosh(a.value), sinh(a.value));
   }
+  friend Dual cbrt(const Dual& a) {
+    using std::cbrt;
+    const Real root = cbrt(a.value);
+    return a.chain(root, Real(1) / (Real(3) * root * root));
+  }
+  friend Dual asin(const Dual& a) {
+    using std::asin, std::sqrt;
+    return a.chain(asin(a.value), Real(1) / sqrt(Real(1) - a.value * a.value));
+  }
+  friend Dual atan(const Dual& a) {
+    using std::atan;
+    return a.chain(atan(a.value), Real(1) / (Real(1) + a.value * a.value));
+  }
+  friend Dual tanh(const Dual& a) {
+    using std::tanh;
+    const Real t = tanh(a.value);
+    return a.chain(t, Real(1) - t * t);
+  }
+  friend Dual asinh(const Dual& a) {
+    using std::asinh, std::sqrt;
+    return a.chain(asinh(a.value), Real(1) / sqrt(a.value * a.value + Real(1)));
+  }
+  friend Dual acosh(const Dual& a) {
+    using std::acosh, std::sqrt;
+    return a.chain(acosh(a.value), Real(1) / sqrt(a.value * a.value - Real(1)));
+  }
+  friend Dual atanh(const Dual& a) {
+    using std::atanh;
+    return a.chain(atanh(a.value), Real(1) / (Real(1) - a.value * a.value));
+  }
+  friend Dual expm1(const Dual& a) {
+    using std::expm1, std::exp;
+    return a.chain(expm1(a.value), exp(a.value));
+  }
+  friend Dual log1p(const Dual& a) {
+    using std::log1p;
+    return a.chain(log1p(a.value), Real(1) / (Real(1) + a.value));
+  }
+  friend Dual erf(const Dual& a) {
+    using std::erf;
+    return a.chain(erf(a.value), bell(a.value));
+  }
+  friend Dual erfc(const Dual& a) {
+    using std::erfc;
+    return a.chain(erfc(a.value), -bell(a.value));
+  }
+  friend Dual hypot(const Dual& a, const Dual& b) {
+    using std::hypot;
+    const Real length = hypot(a.value, b.value);
+    return join(length, a, a.value / length, b, b.value / length);
+  }
+  /// Whole numbers have no slope.
+  friend Dual floor(const Dual& a) {
+    using std::floor;
+    return Dual(floor(a.value));
+  }
+  friend Dual ceil(const Dual& a) {
+    using std::ceil;
+    return Dual(ceil(a.value));
+  }
+  friend Dual round(const Dual& a) {
+    using std::round;
+    return Dual(round(a.value));
+  }
+  friend Dual fmod(const Dual& a, const Dual& b) {
+    using std::fmod;
+    const Real rest = fmod(a.value, b.value);
+    return join(rest, a, Real(1), b, (rest - a.value) / b.value);
+  }
+  friend Dual pow(const Dual& a, const Dual& p) {
+    using std::pow, std::log;
+    const Real power = pow(a.value, p.value);
+    return join(power, a, p.value * pow(a.value, p.value - Real(1)), p, power * log(a.value));
+  }
   /// a^p with a constant exponent.
   friend Dual pow(const Dual& a, const Real& p) {
     using std::pow;
     return a.chain(pow(a.value, p), p * pow(a.value, p - Real(1)));
   }
-  friend Dual abs(const Dual& a) { return a.value < Real(0) ? -a : a; }
-  friend bool isfinite(const Dual& a) {
+  template <class T>
+    requires std::is_arithmetic_v<T>
+  friend Dual pow(const Dual& a, T p) { return pow(a, Real(p)); }
+  friend Dual abs(const Dual& a) { return select(a.value < Real(0), -a, a); }
+  friend Dual fabs(const Dual& a) { return abs(a); }
+  friend Dual min(const Dual& a, const Dual& b) { return select(b < a, b, a); }
+  friend Dual max(const Dual& a, const Dual& b) { return select(a < b, b, a); }
+  friend auto isfinite(const Dual& a) {
     using std::isfinite;
     return isfinite(a.value);
+  }
+  friend auto isnan(const Dual& a) {
+    using std::isnan;
+    return isnan(a.value);
   }
 
  private:
@@ -113,6 +198,11 @@ template <class Real, std::size_t n> struct Dual {
     std::array<Real, n> zero{};
     zero.fill(Real(0));
     return zero;
+  }
+  /// The derivative of erf, 2 exp(-x^2) / sqrt(pi).
+  static Real bell(const Real& x) {
+    using std::exp, std::sqrt, std::atan;
+    return exp(-x * x) / sqrt(atan(Real(1)));
   }
   /// The value of a function here, and its derivative times the slopes.
   Dual chain(const Real& at, const Real& derivative) const {
@@ -126,6 +216,15 @@ template <class Real, std::size_t n> struct Dual {
     return result;
   }
 };
+
+/// In lanes the value and every slope are chosen lane by lane.
+template <class Condition, class Real, std::size_t n>
+  requires(!std::is_same_v<Condition, bool>)
+Dual<Real, n> select(const Condition& condition, const Dual<Real, n>& a, const Dual<Real, n>& b) {
+  Dual<Real, n> result(select(condition, a.value, b.value));
+  for (std::size_t k = 0; k < n; ++k) result.slope[k] = select(condition, a.slope[k], b.slope[k]);
+  return result;
+}
 
 namespace detail {
 /// x + e dx.

@@ -12,6 +12,7 @@
 namespace noether {
 
 class NeighborList;
+class LaneByLane;
 
 /// What is to be summed beside the accelerations. In one byte: three that are stored one by one and read as a word wait
 /// for each other, which a look at a step of six bodies feels.
@@ -86,6 +87,9 @@ template <class Real> class ForceSink {
   NeighborList* neighbors() const { return neighbors_; }
   /// The longest kick by these accelerations [time]; 0 where it is not known.
   double kick() const { return kick_; }
+  /// Where lanes that differ are evaluated one by one (engine/lane_by_lane.hpp); null: nobody has seen them differ.
+  LaneByLane* lane_by_lane() const { return lane_by_lane_; }
+  void set_lane_by_lane(LaneByLane* place) { lane_by_lane_ = place; }
   /// Tells that the force cannot be computed; the first to say so is heard.
   void fail(Failure failure) {
     if (!failure_) failure_ = std::move(failure);
@@ -96,6 +100,7 @@ template <class Real> class ForceSink {
   Mat3<Real> virial() const { return wanted_.virial ? virial_ : Mat3<Real>(Mat3<Real>::Zero()); }
 
  private:
+  friend class LaneByLane;
   ForceSink(VectorColumn<Real>& accelerations, const ParticleSystem<Real>& system)
       : a_(accelerations), system_(system), wanted_{}, neighbors_(nullptr), has_sums_(false) {}
 
@@ -117,6 +122,7 @@ template <class Real> class ForceSink {
   NeighborList* neighbors_;
   double kick_ = 0;
   bool has_sums_ = true;
+  LaneByLane* lane_by_lane_ = nullptr;
   std::optional<Failure> failure_;
 };
 

@@ -22,6 +22,15 @@ __float128 expq(__float128);
 __float128 expm1q(__float128);
 __float128 logq(__float128);
 __float128 log1pq(__float128);
+__float128 asinq(__float128);
+__float128 atanq(__float128);
+__float128 tanhq(__float128);
+__float128 atanhq(__float128);
+__float128 erfq(__float128);
+__float128 erfcq(__float128);
+__float128 ceilq(__float128);
+__float128 hypotq(__float128, __float128);
+__float128 fmodq(__float128, __float128);
 __float128 powq(__float128, __float128);
 __float128 floorq(__float128);
 __float128 roundq(__float128);
@@ -52,6 +61,15 @@ Quad log(Quad x) { return Quad::from(NOETHER_QUAD(log)(x.value)); }
 Quad log1p(Quad x) { return Quad::from(NOETHER_QUAD(log1p)(x.value)); }
 Quad pow(Quad x, Quad y) { return Quad::from(NOETHER_QUAD(pow)(x.value, y.value)); }
 Quad floor(Quad x) { return Quad::from(NOETHER_QUAD(floor)(x.value)); }
+Quad asin(Quad x) { return Quad::from(NOETHER_QUAD(asin)(x.value)); }
+Quad atan(Quad x) { return Quad::from(NOETHER_QUAD(atan)(x.value)); }
+Quad tanh(Quad x) { return Quad::from(NOETHER_QUAD(tanh)(x.value)); }
+Quad atanh(Quad x) { return Quad::from(NOETHER_QUAD(atanh)(x.value)); }
+Quad erf(Quad x) { return Quad::from(NOETHER_QUAD(erf)(x.value)); }
+Quad erfc(Quad x) { return Quad::from(NOETHER_QUAD(erfc)(x.value)); }
+Quad ceil(Quad x) { return Quad::from(NOETHER_QUAD(ceil)(x.value)); }
+Quad hypot(Quad x, Quad y) { return Quad::from(NOETHER_QUAD(hypot)(x.value, y.value)); }
+Quad fmod(Quad x, Quad y) { return Quad::from(NOETHER_QUAD(fmod)(x.value, y.value)); }
 Quad round(Quad x) { return Quad::from(NOETHER_QUAD(round)(x.value)); }
 
 std::string to_string(Quad x) {

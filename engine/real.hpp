@@ -1,6 +1,8 @@
 #pragma once
 /// The number types that state, direct gravity, Kepler arcs and compositions are written over: `double` and `Quad`.
 
+#include "engine/select.hpp"
+
 #include <Eigen/Core>
 
 #include <array>
@@ -77,10 +79,21 @@ Quad expm1(Quad x);
 Quad log(Quad x);
 Quad log1p(Quad x);
 Quad pow(Quad x, Quad y);
+Quad asin(Quad x);
+Quad atan(Quad x);
+Quad tanh(Quad x);
+Quad atanh(Quad x);
+Quad erf(Quad x);
+Quad erfc(Quad x);
+Quad ceil(Quad x);
+Quad hypot(Quad x, Quad y);
+Quad fmod(Quad x, Quad y);
 Quad floor(Quad x);
 Quad round(Quad x);
 constexpr Quad abs(Quad x) { return x.value < 0 ? -x : x; }
 constexpr Quad fabs(Quad x) { return abs(x); }
+constexpr Quad min(Quad a, Quad b) { return b < a ? b : a; }
+constexpr Quad max(Quad a, Quad b) { return a < b ? b : a; }
 constexpr bool isfinite(Quad x) { return x.value - x.value == 0; }
 constexpr bool isnan(Quad x) { return x.value != x.value; }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <string>
 #include <tuple>
+#include <type_traits>
 #include <vector>
 
 namespace noether {
@@ -33,7 +34,14 @@ template <class... Fs> class Sum {
   template <class Real>
     requires(Force<Fs, Real>&&...)
   void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
-    std::apply([&](const auto&... force) { (force.add_to(out, s), ...); }, forces_);
+    const auto add = [&](const auto& force) {
+      if constexpr (std::is_same_v<Real, Pack>) {
+        add_in_lanes(force, out, s);
+      } else {
+        force.add_to(out, s);
+      }
+    };
+    std::apply([&](const auto&... force) { (add(force), ...); }, forces_);
   }
   bool has_lanes() const {
     return std::apply([](const auto&... force) { return (noether::has_lanes(force) && ...); }, forces_);

@@ -2,6 +2,7 @@
 /// Particles under forces as y' = f(t, y), y = (x, v).
 
 #include "engine/erasure.hpp"
+#include "engine/lane_by_lane.hpp"
 #include "engine/neighbor_list.hpp"
 #include "engine/pack.hpp"
 #include "engine/parallel.hpp"
@@ -165,7 +166,7 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
       packs_ = s.template as<Pack>();
       packs_.trim();
       packs_.clock() = Clock<Pack>::free(0);
-      pack_a_ = VectorColumn<Pack>(s.size());
+      pack_a_ = before_ = VectorColumn<Pack>(s.size());
       sets_ = claims_of(forces_).sets;
     }
   }
@@ -176,10 +177,27 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
     if (states.q != place_of_stages()) copy_packs(states.q, place_of_stages(), all);
     if (states.v != nullptr) copy_packs(states.v, numbers(packs_.velocities()), all);
     packs_.clock().set_stage_offset(Pack::load(states.t));
-    ForceSink<Pack> sink = sets_ ? ForceSink<Pack>::unset(pack_a_, packs_) : ForceSink<Pack>(pack_a_, packs_, {});
-    forces_.add_to(sink, packs_);
-    this->note(sink.failure());
+    sum_in_lanes();
     return numbers(pack_a_);
+  }
+  /// Where the lanes of a force take different branches, the sum starts again with a place to go lane by lane, and
+  /// keeps it for a while: each way has the same bits, but giving up costs more than a copy of the sums.
+  void sum_in_lanes() {
+    if (careful_ == 0) {
+      try {
+        ForceSink<Pack> sink = sets_ ? ForceSink<Pack>::unset(pack_a_, packs_) : ForceSink<Pack>(pack_a_, packs_, {});
+        forces_.add_to(sink, packs_);
+        return this->note(sink.failure());
+      } catch (const LanesDiffer&) {
+        careful_ = 100;
+      }
+    }
+    --careful_;
+    LaneByLane place(work_, a_, before_);
+    ForceSink<Pack> sink(pack_a_, packs_, {});
+    sink.set_lane_by_lane(&place);
+    add_in_lanes(forces_, sink, packs_);
+    this->note(sink.failure());
   }
 
   /// One stage after the other, straight into the particles and out of them.
@@ -257,7 +275,8 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
   VectorColumn<Real> a_;
   bool in_lanes_ = false, sets_ = false;
   ParticleSystem<Pack> packs_;
-  VectorColumn<Pack> pack_a_;
+  VectorColumn<Pack> pack_a_, before_;
+  int careful_ = 0;             ///< evaluations to come that are ready for lanes that differ
   std::optional<Along> along_;  ///< made by the first derivative
   Vector<Real> direction_, column_;
 };

@@ -1,0 +1,78 @@
+#pragma once
+/// Forces in eight lanes whose branches differ: evaluated again, one lane after the other, with the bits of double.
+
+#include "engine/concepts.hpp"
+#include "engine/pack.hpp"
+
+namespace noether {
+
+/// The particles of one lane, and the sums that a force found before it began.
+///
+/// Nobody pays for it before lanes differ: the first evaluation has no such place and is given up; it is done again
+/// with one, from the start.
+class LaneByLane {
+ public:
+  /// @param particles, accelerations  of the same system in doubles; their state is overwritten
+  /// @param before  a column of its size, to keep sums in
+  LaneByLane(ParticleSystem<double>& particles, VectorColumn<double>& accelerations, VectorColumn<Pack>& before)
+      : particles_(particles), accelerations_(accelerations), before_(before) {}
+
+  /// Adds a force to sums in lanes: at once where its branches agree, else lane by lane.
+  template <class F> void add(const F& force, ForceSink<Pack>& out, const ParticleSystem<Pack>& s) {
+    before_.assign(out.a_);
+    const Pack energy = out.energy_;
+    const Mat3<Pack> virial = out.virial();
+    const std::optional<Failure> failure = out.failure_;
+    try {
+      force.add_to(out, s);
+    } catch (const LanesDiffer&) {
+      out.failure_ = failure;
+      for (std::size_t lane = 0; lane < Pack::lanes; ++lane) add_one(lane, force, out, s, energy, virial);
+    }
+  }
+
+ private:
+  template <class F>
+  void add_one(std::size_t lane, const F& force, ForceSink<Pack>& out, const ParticleSystem<Pack>& s,
+               const Pack& energy, const Mat3<Pack>& virial) {
+    take(lane, s.positions(), particles_.positions());
+    take(lane, s.velocities(), particles_.velocities());
+    particles_.clock().set_stage_offset(s.time().lane[lane]);
+    ForceSink<double> one(accelerations_, particles_, out.wanted_);
+    take(lane, before_, accelerations_);
+    one.energy_ = energy.lane[lane];
+    one.virial_ = lane_of(lane, virial);
+    force.add_to(one, particles_);
+    for (int k = 0; k < 3; ++k) {
+      for (Index i = 0; i < before_.size(); ++i) out.a_.component(k)[i].lane[lane] = accelerations_.component(k)[i];
+    }
+    out.energy_.lane[lane] = one.energy_;
+    for (int k = 0; k < 9; ++k) out.virial_(k / 3, k % 3).lane[lane] = one.virial_(k / 3, k % 3);
+    if (one.failure_) out.fail(*one.failure_);
+  }
+  static void take(std::size_t lane, const VectorColumn<Pack>& from, VectorColumn<double>& to) {
+    for (int k = 0; k < 3; ++k) {
+      for (Index i = 0; i < to.size(); ++i) to.component(k)[i] = from.component(k)[i].lane[lane];
+    }
+  }
+  static Mat3<double> lane_of(std::size_t lane, const Mat3<Pack>& from) {
+    Mat3<double> one;
+    for (int k = 0; k < 9; ++k) one(k / 3, k % 3) = from(k / 3, k % 3).lane[lane];
+    return one;
+  }
+
+  ParticleSystem<double>& particles_;
+  VectorColumn<double>& accelerations_;
+  VectorColumn<Pack>& before_;
+};
+
+/// Adds a force to sums in lanes, as every sum of forces does with each of its terms.
+/// @throws LanesDiffer  where its branches differ and the sink has no place to go lane by lane
+template <class F> void add_in_lanes(const F& force, ForceSink<Pack>& out, const ParticleSystem<Pack>& s) {
+  if constexpr (Force<F, double>) {
+    if (out.lane_by_lane() != nullptr) return out.lane_by_lane()->add(force, out, s);
+  }
+  force.add_to(out, s);
+}
+
+}  // namespace noether
