@@ -29,13 +29,13 @@ struct AdviseArguments {
   bool json = false;
 };
 
-void advise_scene(const AdviseArguments& given) {
+void advise_scene(const AdviseArguments& given, const Parts& parts) {
   AdviseOptions options;
   options.error = numbers_in(given.error, "--error").front();
   if (given.metric == "energy") options.metric = Metric::energy;
   if (given.methods) options.methods = texts_in(*given.methods, "--methods");
   options.row_budget = given.budget;
-  const Scene scene = load_scene(given.scene, standard_parts(), given.sets);
+  const Scene scene = load_scene(given.scene, parts, given.sets);
   const bool shows = !given.json && ::isatty(STDERR_FILENO) == 1;
   if (shows) {
     options.progress = [](const std::string& what) {
@@ -54,7 +54,7 @@ void advise_scene(const AdviseArguments& given) {
 
 }  // namespace
 
-void add_advise_command(CLI::App& app, int& exit_code) {
+void add_advise_command(CLI::App& app, const Parts& parts, int& exit_code) {
   const auto given = std::make_shared<AdviseArguments>();
   CLI::App* command = app.add_subcommand("advise", "the cheapest method and step that hold an error");
   command->add_option("scene", given->scene, "scene file")->required()->type_name("SCENE");
@@ -79,8 +79,8 @@ void add_advise_command(CLI::App& app, int& exit_code) {
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
   command->add_flag("--json", given->json, "as one line of JSON");
-  command->callback([given, &exit_code] {
-    advise_scene(*given);
+  command->callback([given, &parts, &exit_code] {
+    advise_scene(*given, parts);
     exit_code = 0;
   });
 }

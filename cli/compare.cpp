@@ -59,8 +59,8 @@ std::filesystem::path folder_of(const CompareArguments& given) {
   return name.string() + ".out";
 }
 
-void compare_scene(const CompareArguments& given) {
-  const Scene scene = load_scene(given.scene, standard_parts(), given.sets);
+void compare_scene(const CompareArguments& given, const Parts& parts) {
+  const Scene scene = load_scene(given.scene, parts, given.sets);
   CompareOptions options;
   if (given.methods) options.methods = texts_in(*given.methods, "--methods");
   if (given.steps) options.steps = times_in(*given.steps, "--steps", *scene.units);
@@ -91,7 +91,7 @@ void compare_scene(const CompareArguments& given) {
 
 }  // namespace
 
-void add_compare_command(CLI::App& app, int& exit_code) {
+void add_compare_command(CLI::App& app, const Parts& parts, int& exit_code) {
   const auto given = std::make_shared<CompareArguments>();
   CLI::App* command = app.add_subcommand("compare", "error against run time, method by method");
   command->add_option("scene", given->scene, "scene file")->required()->type_name("SCENE");
@@ -119,8 +119,8 @@ void add_compare_command(CLI::App& app, int& exit_code) {
       ->type_name("KEY=VALUE");
   CLI::Option* quiet = command->add_flag("--quiet", given->quiet, "print nothing");
   command->add_flag("--json", given->json, "report as one line of JSON")->excludes(quiet);
-  command->callback([given, &exit_code] {
-    compare_scene(*given);
+  command->callback([given, &parts, &exit_code] {
+    compare_scene(*given, parts);
     exit_code = 0;  // a row that has failed is a result
   });
 }

@@ -37,11 +37,11 @@ std::string entries_of(std::string_view sources) {
   return all;
 }
 
-std::vector<std::pair<std::string, PartInfo>> all_parts() {
+std::vector<std::pair<std::string, PartInfo>> all_parts(const Parts& parts) {
   std::vector<std::pair<std::string, PartInfo>> all;
-  for (const PartInfo& info : hamiltonian_parts()) all.emplace_back("hamiltonian", info);
+  for (const auto& kind : parts.hamiltonians()) all.emplace_back("hamiltonian", kind.info);
+  for (const PartInfo& info : other_parts(parts)) all.emplace_back("hamiltonian", info);
   for (const BuilderKind& kind : builders()) all.emplace_back("builder", kind.info);
-  const Parts parts = standard_parts();
   for (const auto& kind : parts.forces()) all.emplace_back("force", kind.info);
   for (const auto& kind : parts.constraints()) all.emplace_back("constraint", kind.info);
   for (const auto& kind : parts.systems()) all.emplace_back("system", kind.info);
@@ -247,9 +247,9 @@ void describe_unit(const UnitRow& row, bool json) {
   }
 }
 
-void describe(const std::string& name, bool json) {
+void describe(const std::string& name, const Parts& parts, bool json) {
   std::vector<std::string> known;
-  for (const auto& [kind, info] : all_parts()) {
+  for (const auto& [kind, info] : all_parts(parts)) {
     if (info.name == name) return describe_part(kind, info, json);
     known.push_back(info.name);
   }
@@ -267,14 +267,14 @@ void describe(const std::string& name, bool json) {
 
 }  // namespace
 
-void add_describe_command(CLI::App& app, int& exit_code) {
+void add_describe_command(CLI::App& app, const Parts& parts, int& exit_code) {
   const auto name = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
   CLI::App* command = app.add_subcommand("describe", "formula, order, fields and source of a part or method");
   command->add_option("name", *name, "as `noether list` shows it")->required()->type_name("NAME");
   command->add_flag("--json", *json, "as one line of JSON");
-  command->callback([name, json, &exit_code] {
-    describe(*name, *json);
+  command->callback([name, json, &parts, &exit_code] {
+    describe(*name, parts, *json);
     exit_code = 0;
   });
 }

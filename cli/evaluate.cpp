@@ -96,9 +96,9 @@ void print_text(const Scene& scene, const Evaluation& e) {
              asked < particles ? fmt::format(", asked at {} of {} particles", asked, particles) : "");
 }
 
-int evaluate_scene(const EvaluateArguments& given) {
+int evaluate_scene(const EvaluateArguments& given, const Parts& parts) {
   if (given.threads != 0) set_thread_count(given.threads);
-  const Scene scene = load_scene(given.scene, standard_parts(), given.sets);
+  const Scene scene = load_scene(given.scene, parts, given.sets);
   if (!given.forces.empty() && !scene.system) check_forces_file(given.forces, scene);
   const Evaluation result = evaluate(scene, given.check);
   const bool failed = !result.outcome.ok();
@@ -114,7 +114,7 @@ int evaluate_scene(const EvaluateArguments& given) {
 
 }  // namespace
 
-void add_evaluate_command(CLI::App& app, int& exit_code) {
+void add_evaluate_command(CLI::App& app, const Parts& parts, int& exit_code) {
   const auto given = std::make_shared<EvaluateArguments>();
   CLI::App* command = app.add_subcommand("evaluate", "energy by term, virial and forces of the initial state");
   command->add_option("scene", given->scene, "scene file")->required()->type_name("SCENE");
@@ -125,7 +125,7 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
       ->type_name("KEY=VALUE");
   command->add_flag("--check", given->check, "compare every force with differences of its energy");
   command->add_flag("--json", given->json, "report as one line of JSON");
-  command->callback([given, &exit_code] { exit_code = evaluate_scene(*given); });
+  command->callback([given, &parts, &exit_code] { exit_code = evaluate_scene(*given, parts); });
 }
 
 }  // namespace noether

@@ -33,6 +33,7 @@ struct Explanation {
   std::size_t bytes_per_particle = 0;
   Index particles = 0, constraints = 0;
   std::map<char, int> flows;                    ///< stages of one step, by letter, the last joined to the next first
+  std::string kicks, inexact;                   ///< letters that evaluate forces, and those that are no exact flows
   int evaluations = 0;                          ///< of the forces in one step: kicks between which something has moved
   std::optional<KeplerSteps> kepler;            ///< of gravity
   Index variables = 0;                          ///< of a system without particles
@@ -43,22 +44,16 @@ struct Explanation {
   std::string why_no_stiffness;
 };
 
-void count_flows(const Word& word, std::map<char, int>& flows) {
-  for (const Stage& stage : word) ++flows[stage.letter];
-  if (word.size() > 1 && word.front().letter == word.back().letter) --flows[word.front().letter];
+void count_flows(const FittedWord& word, std::map<char, int>& flows) {
+  const std::vector<Stage>& stages = word.stages;
+  for (const Stage& stage : stages) ++flows[stage.letter];
+  if (word.joins && stages.size() > 1 && stages.front().letter == stages.back().letter) --flows[stages.front().letter];
 }
 
-/// Kicks B of one step whose positions differ from those of the kick before: the others use its forces again. The
-/// steps before and after look alike, so the word is a ring; only D leaves positions where they are.
-int count_evaluations(const Word& word) {
-  int count = 0;
-  for (std::size_t k = 0; k < word.size(); ++k) {
-    if (word[k].letter != 'B') continue;
-    std::size_t back = 1;
-    while (back < word.size() && word[(k + word.size() - back) % word.size()].letter == 'D') ++back;
-    if (word[(k + word.size() - back) % word.size()].letter != 'B') ++count;
-  }
-  return count;
+/// A value as a sentence has it: texts without their quotes.
+std::string plain_text(const SceneValue& value) {
+  const std::string* text = value.get<std::string>();
+  return text != nullptr ? *text : to_text(value);
 }
 
 std::string length_text(double length, const UnitSystem& units) {
@@ -94,15 +89,18 @@ void measure_stiffness(const Scene& scene, Explanation& e) {
 }
 
 void sort_parts(const Scene& scene, Explanation& e) {
-  const Parts parts = standard_parts();
+  const Parts& parts = *scene.parts;
   if (scene.system) e.in.push_back("system " + scene.system->name);
   for (const SceneForce& force : scene.hamiltonian.forces) {
-    const bool wide = !force.force || force.force->in_quad();
+    const bool wide = force.force.in_quad().has_value();
     e.in.push_back("force " + force.name + (wide ? "" : ", for doubles only: compare has no truth for it"));
   }
   if (const auto& bath = scene.hamiltonian.thermostat) {
-    e.in.push_back(fmt::format("thermostat langevin, friction {} 1/{}, seed {}", bath->friction,
-                               scene.units->is_reduced() ? "time" : scene.units->time, bath->seed));
+    std::string text = "thermostat " + bath->name;
+    for (const auto& [key, value] : *bath->effective.get<SceneValue::Table>()) {
+      text += fmt::format(", {} {}", key, plain_text(value));
+    }
+    e.in.push_back(std::move(text));
   }
   for (const SceneConstraint& constraint : scene.hamiltonian.constraints) {
     e.in.push_back(fmt::format("constraint {}, {} times", constraint.name, constraint.tied.size()));
@@ -130,9 +128,10 @@ void sort_parts(const Scene& scene, Explanation& e) {
     if (!used) e.out.push_back(what);
   };
   if (scene.system) return leave_out("writer trajectory");  // nothing else could be in
-  const bool wisdom_holman = scene.hamiltonian.kind == SceneHamiltonian::Kind::wisdom_holman;
+  const std::vector<SceneForce>& inside = scene.hamiltonian.splitting.own;
   for (const auto& kind : parts.forces()) {
-    if (!wisdom_holman || kind.info.name != "gravity") leave_out("force " + kind.info.name);  // gravity is inside
+    const bool own = std::any_of(inside.begin(), inside.end(), [&](const auto& f) { return f.name == kind.info.name; });
+    if (!own) leave_out("force " + kind.info.name);
   }
   for (const auto& kind : parts.constraints()) leave_out("constraint " + kind.info.name);
   for (const auto& kind : parts.monitors()) leave_out("monitor " + kind.info.name);
@@ -145,14 +144,14 @@ void sort_parts(const Scene& scene, Explanation& e) {
 void explain_scheme(const Scene& scene, Explanation& e) {
   const AnyHamiltonian<double> hamiltonian = hamiltonian_of(scene);
   e.constraints = hamiltonian.claims().constraints;
-  const Word word = fitted_word(scheme_of(scene.integrator), hamiltonian.claims(), e.hamiltonian);
-  count_flows(word, e.flows);
-  e.evaluations = count_evaluations(word);
+  count_flows(fitted_word(scheme_of(scene.integrator), hamiltonian.claims(), e.hamiltonian), e.flows);
+  e.kicks = hamiltonian.claims().kicks;
+  e.inexact = hamiltonian.claims().inexact;
 }
 
-/// What a classical method does is counted, over its first steps.
-void explain_method(const Scene& scene, Explanation& e) {
-  constexpr std::int64_t steps = 64;
+/// How often forces are evaluated is counted, over the first steps.
+void count_evaluations(const Scene& scene, Explanation& e) {
+  const std::int64_t steps = scene.integrator.classical ? 64 : 4;
   Scene bare = scene;
   bare.watches.clear();
   bare.stops.clear();
@@ -172,7 +171,7 @@ void measure_neighbors(AnyIntegrator<double>& integrator, ParticleSystem<double>
 std::string small_box_of(const Scene& scene) {
   double range = 0;
   for (const SceneForce& force : scene.hamiltonian.forces) {
-    if (force.force) range = std::max(range, force.force->claims().range);
+    range = std::max(range, force.force.claims().range);
   }
   const Box& box = scene.particles.box();
   if (!box.is_periodic() || range == 0 || box.edges().minCoeff() >= 2 * range) return "";
@@ -198,30 +197,51 @@ Explanation explained(const Scene& scene) {
   for (const auto& [name, column] : s.extra_columns()) e.columns.push_back(name);
   if (!scene.system) e.bytes_per_particle = s.bytes_per_particle();
   measure_stiffness(scene, e);
-  scene.integrator.classical ? explain_method(scene, e) : explain_scheme(scene, e);
+  if (!scene.integrator.classical) explain_scheme(scene, e);
+  count_evaluations(scene, e);
   e.kepler = kepler_steps(scene);
   e.small_box = small_box_of(scene);
   measure_neighbors(integrator, s, e);
   return e;
 }
 
+/// What the part that gives a letter calls its flow.
+std::string flow_of(char letter, const Scene& scene) {
+  const auto meaning_in = [&](const auto& kinds, const auto& is_used) {
+    std::string found;
+    for (const auto& kind : kinds) {
+      if (found.empty() && is_used(kind.info.name)) found = kind.info.meaning(letter);
+    }
+    return found;
+  };
+  const SceneHamiltonian& h = scene.hamiltonian;
+  std::string found =
+      meaning_in(scene.parts->hamiltonians(), [&](const auto& name) { return name == h.splitting.name; });
+  if (found.empty() && h.thermostat) {
+    found = meaning_in(scene.parts->thermostats(), [&](const auto& name) { return name == h.thermostat->name; });
+  }
+  if (found.empty()) {
+    found = meaning_in(scene.parts->forces(), [&](const auto& name) {
+      return std::any_of(h.forces.begin(), h.forces.end(), [&](const auto& f) { return f.name == name; });
+    });
+  }
+  return found.empty() ? "flows" : found;
+}
+
 std::string meaning(char letter, const Scene& scene, const Explanation& e) {
-  const bool wisdom_holman = scene.hamiltonian.kind == SceneHamiltonian::Kind::wisdom_holman;
-  if (letter == 'A' && e.constraints > 0) {
+  const std::string flow = flow_of(letter, scene);
+  if (e.constraints > 0 && e.inexact.find(letter) != std::string::npos) {
     return fmt::format(
-        "drifts, each with {} equations of constraints solved for positions and for velocities; {} "
+        "{}, each with {} equations of constraints solved for positions and for velocities; {} "
         "degrees of freedom are left",
-        e.constraints, 3 * e.particles - e.constraints);
+        flow, e.constraints, 3 * e.particles - e.constraints);
   }
-  if (letter == 'A') return wisdom_holman ? "Kepler arcs of every body" : "drifts";
-  if (letter == 'B' && wisdom_holman) return "kicks by the interaction";
-  if (letter == 'B' && e.evaluations == e.flows.at('B')) return "kicks, one force evaluation each";
-  if (letter == 'B') {
-    return fmt::format("kicks, {} force {}: a kick where nothing has moved uses the forces again", e.evaluations,
-                       e.evaluations == 1 ? "evaluation" : "evaluations");
-  }
-  if (letter == 'O') return "flows of the bath: friction and noise, exact";
-  return letter == 'D' ? "flows of the drag" : "flows";
+  if (e.kicks.find(letter) == std::string::npos) return flow;
+  int kicks = 0;
+  for (const char one : e.kicks) kicks += e.flows.contains(one) ? e.flows.at(one) : 0;
+  if (e.evaluations == kicks) return flow + ", one force evaluation each";
+  return fmt::format("{}, {} force {}: a kick where nothing has moved uses the forces again", flow, e.evaluations,
+                     e.evaluations == 1 ? "evaluation" : "evaluations");
 }
 
 void print_stiffness(const Scene& scene, const Explanation& e) {
@@ -341,7 +361,7 @@ Json json_of(const Scene& scene, const Explanation& e) {
 
 }  // namespace
 
-void add_explain_command(CLI::App& app, int& exit_code) {
+void add_explain_command(CLI::App& app, const Parts& parts, int& exit_code) {
   struct Arguments {
     std::string scene;
     std::vector<std::string> sets;
@@ -354,8 +374,8 @@ void add_explain_command(CLI::App& app, int& exit_code) {
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
   command->add_flag("--json", given->json, "as one line of JSON");
-  command->callback([given, &exit_code] {
-    const Scene scene = load_scene(given->scene, standard_parts(), given->sets);
+  command->callback([given, &parts, &exit_code] {
+    const Scene scene = load_scene(given->scene, parts, given->sets);
     const Explanation e = explained(scene);
     if (given->json) {
       fmt::print("{}\n", json_of(scene, e).text());

@@ -114,7 +114,7 @@ CLI::App* file_command(CLI::App& app, const std::string& name, const std::string
 
 }  // namespace
 
-void add_info_command(CLI::App& app, int& exit_code) {
+void add_info_command(CLI::App& app, const Parts& /*parts*/, int& exit_code) {
   const auto given = std::make_shared<FileArguments>();
   CLI::App* command = file_command(app, "info", "what is in a file, and its digest", "run.h5 or a checkpoint", given);
   command->add_flag("--json", given->json, "as one line of JSON");
@@ -129,7 +129,7 @@ void add_info_command(CLI::App& app, int& exit_code) {
   });
 }
 
-void add_verify_command(CLI::App& app, int& exit_code) {
+void add_verify_command(CLI::App& app, const Parts& /*parts*/, int& exit_code) {
   const auto given = std::make_shared<FileArguments>();
   CLI::App* command = file_command(app, "verify", "read everything in a file and say whether it is sound",
                                    "run.h5 or a checkpoint", given);
@@ -141,7 +141,7 @@ void add_verify_command(CLI::App& app, int& exit_code) {
   });
 }
 
-void add_convert_command(CLI::App& app, int& exit_code) {
+void add_convert_command(CLI::App& app, const Parts& /*parts*/, int& exit_code) {
   const auto given = std::make_shared<FileArguments>();
   CLI::App* command = file_command(app, "convert", "rewrite a trajectory as extended XYZ or CSV", "run.h5", given);
   command->add_option("out", given->out, "FILE.xyz or FILE.csv")->required()->type_name("OUT");

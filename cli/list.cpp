@@ -70,7 +70,7 @@ Listing methods() {
   return list;
 }
 
-Listing parts(const std::vector<PartInfo>& infos) {
+Listing listing_of_parts(const std::vector<PartInfo>& infos) {
   Listing list{{"name", "help"}, {}, {}};
   for (const PartInfo& info : infos) list.add({info.name, info.help});
   return list;
@@ -93,22 +93,23 @@ Listing units() {
   return list;
 }
 
-Listing listing_of(const std::string& what) {
+Listing listing_of(const std::string& what, const Parts& parts) {
   if (what == "methods") return methods();
-  if (what == "forces") return parts(infos_of(standard_parts().forces()));
+  if (what == "hamiltonians") return listing_of_parts(infos_of(parts.hamiltonians()));
+  if (what == "forces") return listing_of_parts(infos_of(parts.forces()));
   if (what == "units") return units();
-  if (what == "constraints") return parts(infos_of(standard_parts().constraints()));
-  if (what == "systems") return parts(infos_of(standard_parts().systems()));
-  if (what == "builders") return parts(infos_of(builders()));
+  if (what == "constraints") return listing_of_parts(infos_of(parts.constraints()));
+  if (what == "systems") return listing_of_parts(infos_of(parts.systems()));
+  if (what == "builders") return listing_of_parts(infos_of(builders()));
   if (what == "monitors") {
     Listing list{{"name", "kind", "help"}, {}, {}};
-    for (const PartInfo& info : infos_of(standard_parts().monitors())) list.add({info.name, "monitor", info.help});
+    for (const PartInfo& info : infos_of(parts.monitors())) list.add({info.name, "monitor", info.help});
     for (const PartInfo& info : writer_parts()) list.add({info.name, "writer", info.help});
     for (const PartInfo& info : stop_parts()) list.add({info.name, "stop", info.help});
     return list;
   }
-  const std::vector<std::string> known = {"methods",  "forces",   "constraints", "systems",
-                                          "monitors", "builders", "units"};
+  const std::vector<std::string> known = {"methods", "hamiltonians", "forces",   "constraints",
+                                          "systems", "monitors",     "builders", "units"};
   throw Error(fmt::format("there is no list of '{}'{}", what, did_you_mean(what, known)));
 }
 
@@ -180,25 +181,25 @@ void print_measured(bool json) {
 
 }  // namespace
 
-void add_list_command(CLI::App& app, int& exit_code) {
+void add_list_command(CLI::App& app, const Parts& parts, int& exit_code) {
   const auto what = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
   CLI::App* command =
-      app.add_subcommand("list", "what there is: methods, forces, constraints, systems, monitors, builders, units");
-  command->add_option("what", *what, "methods, forces, constraints, systems, monitors, builders or units")
+      app.add_subcommand("list", "what there is: methods, hamiltonians, forces, constraints, systems, monitors, builders, units");
+  command->add_option("what", *what, "methods, hamiltonians, forces, constraints, systems, monitors, builders or units")
       ->required()
       ->type_name("WHAT");
   command->add_flag("--json", *json, "as one line of JSON");
   const auto measured = std::make_shared<bool>(false);
   command->add_flag("--measured", *measured, "methods: what each of them does when it is run, as docs/methods.md");
-  command->callback([what, json, measured, &exit_code] {
+  command->callback([what, json, measured, &parts, &exit_code] {
     exit_code = 0;
     if (*measured) {
       if (*what != "methods")
         throw Error(fmt::format("only methods are measured, not {}; leave --measured out", *what));
       return print_measured(*json);
     }
-    const Listing list = listing_of(*what);
+    const Listing list = listing_of(*what, parts);
     if (*json) {
       print_json(*what, list);
     } else {

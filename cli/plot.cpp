@@ -90,10 +90,10 @@ PictureFormat format_of(const std::filesystem::path& picture) {
 }
 
 /// @return the picture
-std::filesystem::path plot(const std::filesystem::path& file, std::filesystem::path picture) {
+std::filesystem::path plot(const std::filesystem::path& file, std::filesystem::path picture, const Parts& parts) {
   if (picture.empty()) picture = std::filesystem::path(file).replace_extension(".svg");
   const PictureFormat format = format_of(picture);
-  const PlotData data = read_plot_data(file);
+  const PlotData data = read_plot_data(file, parts);
   const ScratchFolder scratch;
   const std::filesystem::path script = scratch / "script.gp", drawn = scratch / "picture";
   std::ofstream(script) << plot_script(data, format, drawn.string());
@@ -109,7 +109,7 @@ std::filesystem::path plot(const std::filesystem::path& file, std::filesystem::p
 
 }  // namespace
 
-void add_plot_command(CLI::App& app, int& exit_code) {
+void add_plot_command(CLI::App& app, const Parts& parts, int& exit_code) {
   struct Options {
     std::string file, out;
     bool json = false;
@@ -121,8 +121,8 @@ void add_plot_command(CLI::App& app, int& exit_code) {
   });
   command->add_option("--out", options->out, "the picture, .svg or .png; default: FILE with .svg");
   command->add_flag("--json", options->json, "report as one line of JSON");
-  command->callback([options, &exit_code] {
-    const std::string picture = plot(options->file, options->out).string();
+  command->callback([options, &parts, &exit_code] {
+    const std::string picture = plot(options->file, options->out, parts).string();
     if (options->json) {
       fmt::print("{}\n", Json::object({{"schema", "noether.plot/1"}, {"file", picture}}).text());
     } else {

@@ -5,6 +5,7 @@
 #include "engine/units.hpp"
 #include "io/inspect.hpp"
 #include "io/trajectory_layout.hpp"
+#include "scene/parts.hpp"
 #include "scene/toml.hpp"
 
 #include <fmt/format.h>
@@ -307,15 +308,17 @@ std::vector<PlotOrbits> read_orbits(const io::Frames& all, const SceneValue& sce
 }
 
 /// Whether the energy is meant to change: drag, a bath, or a force that depends on time.
-bool changes_energy(const SceneValue& scene) {
+bool changes_energy(const SceneValue& scene, const Parts& parts) {
   if (value_at(scene, {"hamiltonian", "thermostat"}) != nullptr) return true;
   const SceneValue* forces = value_at(scene, {"hamiltonian", "force"});
   if (forces == nullptr || !forces->is_table_list()) return false;
-  for (const SceneValue& force : *forces->get<SceneValue::Array>()) {
+  const auto changes = [&](const SceneValue& force) {
     const std::string type = text_at(force, {"type"});
-    if (type == "linear_drag" || type == "oscillating_field") return true;
-  }
-  return false;
+    return std::any_of(parts.forces().begin(), parts.forces().end(), [&](const Parts::ForceKind& kind) {
+      return kind.info.name == type && (kind.claims.dissipative || kind.claims.time_dependent);
+    });
+  };
+  return std::any_of(forces->get<SceneValue::Array>()->begin(), forces->get<SceneValue::Array>()->end(), changes);
 }
 
 /// Adds the sizes of `values[first]`, `values[first + stride]`, ... to an error.
@@ -381,7 +384,7 @@ SceneValue stored_scene(const std::string& toml, const std::filesystem::path& fi
 
 }  // namespace
 
-PlotData read_plot_data(const std::filesystem::path& file) {
+PlotData read_plot_data(const std::filesystem::path& file, const Parts& parts) {
   const io::FileInfo about = io::info(file);
   if (about.kind != "trajectory") {
     throw Error(
@@ -413,7 +416,7 @@ PlotData read_plot_data(const std::filesystem::path& file) {
     auto error = read_error(*found, unit.length);
     if (!error) continue;
     error->title = title;
-    const bool changes = name == std::string_view("energy") && changes_energy(scene);
+    const bool changes = name == std::string_view("energy") && changes_energy(scene, parts);
     error->label = changes || error->curves.size() > 1               ? "relative change"
                    : name == std::string_view("constraint_residual") ? "violation"
                                                                      : "relative error";

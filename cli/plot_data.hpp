@@ -8,6 +8,8 @@
 
 namespace noether {
 
+class Parts;
+
 struct PlotPoint {
   double x = 0, y = 0;
 };
@@ -49,8 +51,8 @@ struct PlotData {
   double end = 0;  ///< of the time axis
 };
 
-/// Gathers what a trajectory file holds.
+/// Gathers what a trajectory file holds. @param parts  those that its scene may name
 /// @throws FileError if it cannot be read; Error if there is nothing in it to draw
-PlotData read_plot_data(const std::filesystem::path& file);
+PlotData read_plot_data(const std::filesystem::path& file, const Parts& parts);
 
 }  // namespace noether

@@ -38,11 +38,11 @@ std::string wrong_threads(const std::string& text) {
   return fmt::format("'{}' is no number of threads; give one from 1 to 65536", text);
 }
 
-int run_scene(const RunArguments& given) {
+int run_scene(const RunArguments& given, const Parts& parts) {
   if (given.threads != 0) set_thread_count(given.threads);
   std::vector<std::string> sets = given.sets;
   if (given.until) sets.push_back(as_set(*given.until));
-  const Scene scene = load_scene(given.scene, standard_parts(), sets);
+  const Scene scene = load_scene(given.scene, parts, sets);
   RunOptions options;
   options.out = given.out;
   options.existing = given.resume ? Existing::resume : given.fresh ? Existing::fresh : Existing::keep;
@@ -66,7 +66,7 @@ void add_threads_option(CLI::App& command, int& threads) {
       ->type_name("N");
 }
 
-void add_run_command(CLI::App& app, int& exit_code) {
+void add_run_command(CLI::App& app, const Parts& parts, int& exit_code) {
   const auto given = std::make_shared<RunArguments>();
   CLI::App* command = app.add_subcommand("run", "integrate a scene");
   command->add_option("scene", given->scene, "scene file")->required()->type_name("SCENE");
@@ -90,7 +90,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_flag("--fresh", given->fresh, "discard an unfinished run in the output folder")->excludes(resume);
   CLI::Option* quiet = command->add_flag("--quiet", given->quiet, "print nothing");
   command->add_flag("--json", given->json, "report as one line of JSON")->excludes(quiet);
-  command->callback([given, &exit_code] { exit_code = run_scene(*given); });
+  command->callback([given, &parts, &exit_code] { exit_code = run_scene(*given, parts); });
 }
 
 }  // namespace noether

@@ -50,8 +50,8 @@ std::string write_report(const std::filesystem::path& folder, const char* json_n
   return fmt::format("wrote {}\nwrote {}\n", (folder / json_name).string(), (folder / "report.html").string());
 }
 
-void search_scene(const StabilityArguments& given) {
-  const Scene scene = load_scene(given.scene, standard_parts(), given.sets);
+void search_scene(const StabilityArguments& given, const Parts& parts) {
+  const Scene scene = load_scene(given.scene, parts, given.sets);
   const bool shows = !given.json && ::isatty(STDERR_FILENO) == 1;
   StabilityOptions options;
   if (given.methods) options.methods = texts_in(*given.methods, "--methods");
@@ -67,7 +67,7 @@ void search_scene(const StabilityArguments& given) {
 }
 
 /// The verdicts of one scene, or of all that noether brings, into a report.
-void run_verdicts(const StabilityArguments& given) {
+void run_verdicts(const StabilityArguments& given, const Parts& parts) {
   if (given.methods || !given.sets.empty()) {
     throw Error("--suite runs the methods and changes of its verdicts; leave --methods and --set out");
   }
@@ -81,22 +81,22 @@ void run_verdicts(const StabilityArguments& given) {
   options.progress = progress_line(shows);
   const std::filesystem::path folder = given.out.value_or("stability.out");
   io::make_folder(folder);
-  const Suite suite = run_suite(files, options);
+  const Suite suite = run_suite(files, options, parts);
   if (shows) std::fputs("\r\033[K", stderr);
   const std::string written = write_report(folder, "suite.json", to_json(suite), to_html(suite));
   fmt::print("{}", given.json ? to_json(suite) + "\n" : to_text(suite) + written);
 }
 
-void answer(const StabilityArguments& given) {
-  if (given.suite) return run_verdicts(given);
+void answer(const StabilityArguments& given, const Parts& parts) {
+  if (given.suite) return run_verdicts(given, parts);
   if (given.nightly) throw Error("--nightly belongs to --suite; give both, or leave it out");
   if (given.scene.empty()) throw Error("no scene is given; give one, or --suite for those that noether brings");
-  search_scene(given);
+  search_scene(given, parts);
 }
 
 }  // namespace
 
-void add_stability_command(CLI::App& app, int& exit_code) {
+void add_stability_command(CLI::App& app, const Parts& parts, int& exit_code) {
   const auto given = std::make_shared<StabilityArguments>();
   CLI::App* command = app.add_subcommand("stability", "the largest stable step, method by method, against theory");
   command->add_option("scene", given->scene, "scene file")->type_name("SCENE");
@@ -121,8 +121,8 @@ void add_stability_command(CLI::App& app, int& exit_code) {
       ->check(wrong_folder)
       ->type_name("DIR");
   command->add_flag("--json", given->json, "as one line of JSON");
-  command->callback([given, &exit_code] {
-    answer(*given);
+  command->callback([given, &parts, &exit_code] {
+    answer(*given, parts);
     exit_code = 0;  // a row that could not be settled is a result
   });
 }

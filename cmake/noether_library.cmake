@@ -1,9 +1,9 @@
 # noether_library(<folder> [SOURCES <file>...] [ROOMS <folder>...] [LINK <target>...] [LINK_PRIVATE <target>...]
-#                 [PRECOMPILE <header>...])
+#                 [EXCEPT <file>] [PRECOMPILE <header>...])
 #
 # The library noether::<folder> from <folder>/*.cpp (and one level of folders below) and SOURCES. A folder without sources is a
 # header-only library, a folder that does not exist is none at all, and ROOMS that do not exist are passed over.
-# <folder>/*_simd.cpp go through noether_simd.
+# <folder>/*_simd.cpp go through noether_simd, EXCEPT names a source that is no part of it.
 # Without PRECOMPILE a folder shares the precompiled header of the engine.
 
 set(NOETHER_ROOMS "" CACHE INTERNAL "folders that became libraries, lowest layer first")
@@ -18,10 +18,13 @@ function(noether_link_rooms target scope)
 endfunction()
 
 function(noether_library folder)
-  cmake_parse_arguments(PARSE_ARGV 1 library "" "" "SOURCES;ROOMS;LINK;LINK_PRIVATE;PRECOMPILE")
+  cmake_parse_arguments(PARSE_ARGV 1 library "" "EXCEPT" "SOURCES;ROOMS;LINK;LINK_PRIVATE;PRECOMPILE")
   set(root ${PROJECT_SOURCE_DIR}/${folder})
   file(GLOB sources CONFIGURE_DEPENDS ${root}/*.cpp ${root}/*/*.cpp)
   file(GLOB headers CONFIGURE_DEPENDS ${root}/*.hpp ${root}/*/*.hpp)
+  if(library_EXCEPT)
+    list(REMOVE_ITEM sources ${root}/${library_EXCEPT})
+  endif()
   list(APPEND sources ${library_SOURCES})
   set(simd_sources ${sources})
   list(FILTER simd_sources INCLUDE REGEX "_simd\\.cpp$")

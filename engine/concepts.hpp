@@ -31,13 +31,22 @@ struct Evaluations {
 
 /// What a split Hamiltonian says of its parts; tests verify it, `Composition` refuses by it.
 struct HamiltonianClaims {
-  std::string alphabet;                ///< letters `flow` accepts
-  std::string_view inexact = "";       ///< letters whose map is symmetric of order 2 instead of the exact flow
-  std::string_view irreversible = "";  ///< letters that only run forward (drag, noise)
-  bool quadratic_kinetic = true;       ///< {B,{B,{B,A}}} = 0: Runge-Kutta-Nystroem tables keep their order
-  bool energy = true;                  ///< every force reports its potential
-  bool time_dependent = false;         ///< the energy is not conserved by the exact flow
+  std::string alphabet;            ///< letters `flow` accepts
+  std::string_view inexact = "";   ///< letters whose map is symmetric of order 2 instead of the exact flow
+  std::string irreversible = "";   ///< letters that only run forward (drag, noise)
+  std::string_view timed = "A";    ///< letters that carry time: stages see what these have covered of a step
+  std::string_view basic = "BAB";  ///< palindrome of order 2 that symmetric compositions are made of
+  std::string_view kicks = "B";    ///< letters that evaluate the forces
+  bool quadratic_kinetic = true;   ///< {B,{B,{B,A}}} = 0: Runge-Kutta-Nystroem tables keep their order
+  bool symplectic = true;          ///< every flow is
+  bool energy = true;              ///< every force reports its potential
+  bool time_dependent = false;     ///< the energy is not conserved by the exact flow
   bool dissipative = false;
+  std::string_view no_action = "";  ///< why no action tells the motion; empty: the flows give theirs
+  bool inertial = true;             ///< flows meet x and v as users see them, so that letters of velocities may join
+  bool kepler = false;              ///< two bodies alone are followed exactly, along Kepler arcs
+  bool periodic = false;            ///< it knows periodic boxes
+  bool neighbors = false;           ///< it looks for neighbors as `NeighborOptions` say
   bool keeps_momentum = true;
   bool keeps_angular_momentum = true;
   Index constraints = 0;            ///< degrees of freedom they take
@@ -78,8 +87,9 @@ struct IntegratorClaims {
   int order = 0;
   ClockMode clock = ClockMode::fixed;
   bool symplectic = false;
-  bool reversible = false;    ///< backward steps undo forward ones
-  bool backward = false;      ///< free clock: it also goes the way of a clock whose time falls
+  std::string_view no_action = "";  ///< why no action tells the motion, where a part of it says so
+  bool reversible = false;          ///< backward steps undo forward ones
+  bool backward = false;            ///< free clock: it also goes the way of a clock whose time falls
   bool energy_exact = false;  ///< the energy is kept at any step; no symplectic method that keeps momenta can do that
   bool energy = true;         ///< an energy exists
   bool dissipative = false;

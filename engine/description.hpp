@@ -58,6 +58,13 @@ struct Quantities {
   std::string_view text;
 };
 
+/// A letter that a part gives to words, and what its flow is, in words: "drifts".
+struct Letter {
+  char letter = 0;
+  std::string_view text;
+};
+
+constexpr Letter letter(char name, std::string_view text) { return {name, text}; }
 template <auto Member>
 constexpr Field<Member> field(std::string_view name, std::string_view dimension, std::string_view help = "") {
   return {name, dimension, help, ""};
@@ -128,6 +135,13 @@ template <class T, class Visit> constexpr void for_each_field(const Visit& visit
 template <class T, class Visit> constexpr void for_each_state(const Visit& visit) {
   detail::description_of<T>.entries.each([&]<class E>(const E& entry) {
     if constexpr (detail::is_state<E>::value) visit(entry);
+  });
+}
+
+/// Calls `visit(letter)` for every letter of a part.
+template <class T, class Visit> constexpr void for_each_letter(const Visit& visit) {
+  detail::description_of<T>.entries.each([&]<class E>(const E& entry) {
+    if constexpr (std::is_same_v<E, Letter>) visit(entry);
   });
 }
 

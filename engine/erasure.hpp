@@ -37,6 +37,29 @@ template <class T, class Real> std::optional<Mat3<Real>> virial_of(T& moves, con
   return {};
 }
 
+/// Asks a Hamiltonian to look for neighbors in its own way. @return whether it does
+template <class H> bool set_neighbor_options(H& hamiltonian, const NeighborOptions& options) {
+  if constexpr (requires { hamiltonian.set_neighbor_options(options); }) {
+    using Result = decltype(hamiltonian.set_neighbor_options(options));
+    if constexpr (std::is_same_v<Result, bool>) return hamiltonian.set_neighbor_options(options);
+    hamiltonian.set_neighbor_options(options);
+    return true;
+  }
+  return false;
+}
+
+/// Whether flows of other letters may have their velocities brought back along its constraints.
+template <class H> bool can_project(const H& hamiltonian) {
+  if constexpr (requires { hamiltonian.can_project(); }) return hamiltonian.can_project();
+  return requires(H & h, ParticleSystem<typename H::real> & s, const typename H::real& tau) {
+    h.project_velocities(s, tau);
+  };
+}
+/// Brings velocities back along the constraints; nothing where there are none.
+template <class H, class Real> void project_velocities(H& hamiltonian, ParticleSystem<Real>& s, const Real& h) {
+  if constexpr (requires { hamiltonian.project_velocities(s, h); }) hamiltonian.project_velocities(s, h);
+}
+
 /// Tells what moves particles how long the longest kick of a step is [time], if it wants to know.
 template <class T> void expect_kicks(T& moves, double longest) {
   if constexpr (requires { moves.expect_kicks(longest); }) moves.expect_kicks(longest);
@@ -49,6 +72,9 @@ template <class Real> struct HamiltonianBase {
   virtual std::string name() const = 0;
   virtual void bind(ParticleSystem<Real>&) = 0;
   virtual void expect_kicks(double) = 0;
+  virtual bool set_neighbor_options(const NeighborOptions&) = 0;
+  virtual bool can_project() const = 0;
+  virtual void project_velocities(ParticleSystem<Real>&, const Real&) = 0;
   virtual void open(ParticleSystem<Real>&) = 0;
   virtual void close(ParticleSystem<Real>&) = 0;
   virtual void flow(char, ParticleSystem<Real>&, const Real&) = 0;
@@ -73,6 +99,11 @@ template <class H> struct HamiltonianModel final : HamiltonianBase<typename H::r
   std::string name() const override { return name_of(hamiltonian); }
   void bind(ParticleSystem<Real>& s) override { hamiltonian.bind(s); }
   void expect_kicks(double longest) override { detail::expect_kicks(hamiltonian, longest); }
+  bool set_neighbor_options(const NeighborOptions& o) override { return detail::set_neighbor_options(hamiltonian, o); }
+  bool can_project() const override { return detail::can_project(hamiltonian); }
+  void project_velocities(ParticleSystem<Real>& s, const Real& h) override {
+    detail::project_velocities(hamiltonian, s, h);
+  }
   void open(ParticleSystem<Real>& s) override { hamiltonian.open(s); }
   void close(ParticleSystem<Real>& s) override { hamiltonian.close(s); }
   void flow(char letter, ParticleSystem<Real>& s, const Real& h) override { hamiltonian.flow(letter, s, h); }
@@ -158,6 +189,10 @@ template <class Real = double> class AnyHamiltonian : private detail::Erased<det
   std::string name() const { return this->held_->name(); }
   void bind(ParticleSystem<Real>& s) { this->held_->bind(s); }
   void expect_kicks(double longest) { this->held_->expect_kicks(longest); }
+  /// How neighbors are found; before the first step. @return whether it looks for any
+  bool set_neighbor_options(const NeighborOptions& options) { return this->held_->set_neighbor_options(options); }
+  bool can_project() const { return this->held_->can_project(); }
+  void project_velocities(ParticleSystem<Real>& s, const Real& h) { this->held_->project_velocities(s, h); }
   void open(ParticleSystem<Real>& s) { this->held_->open(s); }
   void close(ParticleSystem<Real>& s) { this->held_->close(s); }
   void flow(char letter, ParticleSystem<Real>& s, const Real& h) { this->held_->flow(letter, s, h); }

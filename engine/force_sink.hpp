@@ -133,11 +133,17 @@ struct ForceClaims {
   bool velocity_dependent = false;
   bool time_dependent = false;
   bool dissipative = false;
-  bool keeps_momentum = true;          ///< its sum over all particles is 0
-  bool keeps_angular_momentum = true;  ///< and so is that of its torques
-  bool periodic = false;               ///< it knows periodic boxes
-  bool sets = false;                   ///< alone, in lanes, it can write accelerations instead of adding to them
-  double range = 0;                    ///< distance beyond which pairs do not feel each other [length]; 0: any distance
+  bool keeps_momentum = true;           ///< its sum over all particles is 0
+  bool keeps_angular_momentum = true;   ///< and so is that of its torques
+  bool periodic = false;                ///< it knows periodic boxes
+  bool sets = false;                    ///< alone, in lanes, it can write accelerations instead of adding to them
+  bool kepler = false;                  ///< two bodies under it alone move on Kepler orbits
+  bool bonded = false;                  ///< it acts on the bonds, angles and dihedrals of the structure
+  bool pair_coefficients = false;       ///< it takes the coefficients that a structure has for pairs of types
+  std::optional<bool> charges = {};     ///< it looks at charges; empty: it does not say
+  std::optional<bool> exclusions = {};  ///< it leaves excluded pairs out; empty: it does not say
+  double drag = 0;                      ///< v' = - drag v, the same for all particles [1/time]
+  double range = 0;  ///< distance beyond which pairs do not feel each other [length]; 0: any distance
 };
 
 /// The claims of a force type; a force that declares none is conservative, depends on positions only, and acts

@@ -22,16 +22,9 @@
 
 namespace noether {
 
-/// What the position and velocity columns hold.
-enum class Coordinates : std::uint8_t {
-  inertial,    ///< what users see
-  jacobi,      ///< row 0: centre of mass; others relative to the centre of mass of all bodies further in
-  democratic,  ///< row 0: centre of mass; positions relative to particle 0, velocities to the centre of mass
-};
-
 /// Where in the word of its integrator a system stands.
 struct Phase {
-  Coordinates coordinates = Coordinates::inertial;
+  std::uint8_t coordinates = 0;  ///< of the position and velocity columns: 0 inertial; else a Hamiltonian's own
   bool opened = false;   ///< working coordinates and the word before the run are in effect
   bool pending = false;  ///< the last stage of the last step is still to be done
 

@@ -115,7 +115,8 @@ template <class Real> void load_variables(const SavedState& saved, ParticleSyste
 
 Phase load_phase(const SavedState& saved) {
   const auto& phase = detail::array_of<std::int64_t>(saved, "phase");
-  return {.coordinates = detail::enumerator(detail::element(phase, 0), Coordinates::democratic),
+  // Which coordinates there are only the Hamiltonian knows.
+  return {.coordinates = detail::enumerator(detail::element(phase, 0), std::uint8_t{255}),
           .opened = detail::element(phase, 1) != 0,
           .pending = detail::element(phase, 2) != 0};
 }
@@ -140,7 +141,7 @@ template <class Real> SavedState save_particles(const ParticleSystem<Real>& s) {
                                                     static_cast<std::int64_t>(clock.direction)};
   saved["clock/times"] = std::vector<double>{clock.start, clock.dt, clock.high, clock.low};
   save_value(saved, "clock/fraction", clock.fraction);
-  saved["phase"] = std::vector<std::int64_t>{static_cast<int>(s.phase().coordinates), s.phase().opened ? 1 : 0,
+  saved["phase"] = std::vector<std::int64_t>{s.phase().coordinates, s.phase().opened ? 1 : 0,
                                              s.phase().pending ? 1 : 0};
   saved["units"] = std::vector<std::string>{std::string(s.units().name)};
   saved["next_id"] = std::vector<std::int64_t>{s.next_id()};

@@ -154,7 +154,7 @@ template <class Real> void Simulation<Real>::check_wanted(const Scheduled& added
     throw Error(fmt::format("monitor '{}' needs the action of every step: {}", added.name, why));
   };
   if (claims.clock == ClockMode::free) refuse(fmt::format("method '{}' takes steps of varying length", claims.method));
-  if (claims.hamiltonian == "langevin") refuse("a thermostat gives and takes energy, so no action tells the motion");
+  if (!claims.no_action.empty()) refuse(std::string(claims.no_action));
   if (claims.dissipative) refuse("a force of this run is dissipative, so no action tells its motion");
   if (claims.time_dependent) refuse("a force of this run depends on time, so no energy is kept, the exact one neither");
   if (!integrator_.has_action())

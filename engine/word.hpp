@@ -20,8 +20,9 @@ template <class Real> struct TimedStage {
 /// together with the first of the next step.
 template <class Real> class TimedWord {
  public:
-  explicit TimedWord(std::vector<TimedStage<Real>> stages) : stages_(std::move(stages)) {
-    merges_ = stages_.size() > 1 && stages_.front().letter == stages_.back().letter;
+  /// @param joins  whether a last and a first stage of one letter make one
+  explicit TimedWord(std::vector<TimedStage<Real>> stages, bool joins = true) : stages_(std::move(stages)) {
+    merges_ = joins && stages_.size() > 1 && stages_.front().letter == stages_.back().letter;
     if (merges_) merged_ = stages_.back().weight + stages_.front().weight;
   }
 

@@ -48,7 +48,7 @@ struct Bonded {
                                 "U(chi)"),
                         source("Allen2017"));
   }
-  ForceClaims claims() const { return {.periodic = true}; }
+  ForceClaims claims() const { return {.periodic = true, .bonded = true, .charges = false, .exclusions = false}; }
 
   /// @throws Error  if the particles have no bonded terms, or terms of a potential or with parameters unknown to it
   template <class Real> void check(const ParticleSystem<Real>& s) const { terms_of(s.shared_topology(), s.size()); }

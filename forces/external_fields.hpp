@@ -27,7 +27,13 @@ struct UniformField {
                               field<&UniformField::acceleration>("acceleration", "length/time^2", "g = [x, y, z]")
                                   .required("[\"0 m/s^2\", \"0 m/s^2\", \"-9.81 m/s^2\"]"));
   }
-  static ForceClaims claims() { return {.keeps_momentum = false, .keeps_angular_momentum = false, .periodic = true}; }
+  static ForceClaims claims() {
+    return {.keeps_momentum = false,
+            .keeps_angular_momentum = false,
+            .periodic = true,
+            .charges = false,
+            .exclusions = false};
+  }
 
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     const Vec3<Real> g = detail::widened<Real>(acceleration);
@@ -56,7 +62,12 @@ struct OscillatingField {
         field<&OscillatingField::phase>("phase", "angle"));
   }
   static ForceClaims claims() {
-    return {.time_dependent = true, .keeps_momentum = false, .keeps_angular_momentum = false, .periodic = true};
+    return {.time_dependent = true,
+            .keeps_momentum = false,
+            .keeps_angular_momentum = false,
+            .periodic = true,
+            .charges = false,
+            .exclusions = false};
   }
 
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
@@ -81,7 +92,7 @@ struct HarmonicField {
         source("Hooke1678"),
         field<&HarmonicField::k>("k", "mass/time^2", "stiffness of the spring").required("\"1 kg/s^2\""));
   }
-  static ForceClaims claims() { return {.keeps_momentum = false}; }
+  static ForceClaims claims() { return {.keeps_momentum = false, .charges = false, .exclusions = false}; }
 
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     for (Index i = 0; i < s.size(); ++i) {

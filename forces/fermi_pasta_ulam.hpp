@@ -29,7 +29,9 @@ struct FermiPastaUlam {
         field<&FermiPastaUlam::k>("k", "mass/time^2", "of the stiff springs").required("\"1 kg/s^2\""),
         field<&FermiPastaUlam::quartic>("quartic", "mass/length^2/time^2", "of the soft springs"));
   }
-  static ForceClaims claims() { return {.keeps_momentum = false, .keeps_angular_momentum = false}; }
+  static ForceClaims claims() {
+    return {.keeps_momentum = false, .keeps_angular_momentum = false, .charges = false, .exclusions = false};
+  }
 
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     const Index n = s.size();

@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <optional>
+#include <string_view>
 #include <type_traits>
 
 namespace noether {
@@ -40,7 +41,9 @@ struct Gravity {
     if (!(softening >= 0)) refuse_field("softening", softening, "is no length; 0 (point masses) or more is expected");
   }
 
-  static ForceClaims claims() { return {.sets = true}; }
+  /// Why it does not stand twice in a scene.
+  static constexpr std::string_view only_once = "so every pair would attract twice; take one out";
+  static ForceClaims claims() { return {.sets = true, .kepler = true, .charges = false, .exclusions = false}; }
 
   template <class Real> Real constant(const ParticleSystem<Real>& s) const { return Real(G ? *G : s.units().G); }
 

@@ -25,7 +25,9 @@ struct HenonHeiles {
                              field<&HenonHeiles::length>("length", "length", "from the well to each saddle"));
   }
 
-  static ForceClaims claims() { return {.keeps_momentum = false, .keeps_angular_momentum = false}; }
+  static ForceClaims claims() {
+    return {.keeps_momentum = false, .keeps_angular_momentum = false, .charges = false, .exclusions = false};
+  }
 
   /// @throws Error  for a length that is not above 0
   void check() const {

@@ -115,7 +115,9 @@ struct LennardJonesForce {
         field<&LennardJonesForce::sigma>("sigma", "length", "of all pairs; default: by types"),
         field<&LennardJonesForce::precision>("precision", "1", "mixed: forces of pairs in single precision"));
   }
-  ForceClaims claims() const { return {.periodic = true, .range = cutoff}; }
+  ForceClaims claims() const {
+    return {.periodic = true, .pair_coefficients = true, .charges = false, .exclusions = true, .range = cutoff};
+  }
 
   /// @throws Error  for a cutoff that is no length, a switch that begins elsewhere, one of epsilon and sigma alone
   void check() const;

@@ -5,6 +5,8 @@
 #include "engine/force_sink.hpp"
 #include "engine/signature.hpp"
 
+#include <string_view>
+
 namespace noether {
 
 /// Friction proportional to velocity; its flow v -> exp(-rate h) v is exact and dissipative.
@@ -15,9 +17,11 @@ struct LinearDrag {
 
   static constexpr auto describe() {
     return part<LinearDrag>("linear_drag", "friction proportional to velocity: the dissipative letter D",
-                            formula("a = - rate v;  flow D: v -> exp(-rate h) v"),
+                            formula("a = - rate v;  flow D: v -> exp(-rate h) v"), letter('D', "flows of the drag"),
                             field<&LinearDrag::rate>("rate", "1/time").required("\"0.01/day\""));
   }
+  /// Why it does not stand twice in a scene.
+  static constexpr std::string_view only_once = "add the rates up";
 
   /// @throws Error  for a negative rate
   void check() const {
@@ -37,11 +41,18 @@ struct DragForce {
     return {.velocity_dependent = true,
             .dissipative = true,
             .keeps_momentum = drag.rate == 0,
-            .keeps_angular_momentum = drag.rate == 0};
+            .keeps_angular_momentum = drag.rate == 0,
+            .periodic = true,
+            .charges = false,
+            .exclusions = false,
+            .drag = drag.rate};
   }
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     for (Index i = 0; i < s.size(); ++i) out.acceleration(i, -Real(drag.rate) * s.velocities()[i]);
   }
 };
+
+/// What methods that do not split take instead of the letter.
+inline DragForce as_force(const LinearDrag& drag) { return {drag}; }
 
 }  // namespace noether

@@ -35,7 +35,7 @@ struct Oblateness {
         field<&Oblateness::G>("G", "length^3/mass/time^2", "default: the unit system's own"));
   }
 
-  static ForceClaims claims() { return {.keeps_angular_momentum = false}; }
+  static ForceClaims claims() { return {.keeps_angular_momentum = false, .charges = false, .exclusions = false}; }
 
   /// @throws Error  without J2 and J4, a radius above 0, or an axis that has a direction
   void check() const {

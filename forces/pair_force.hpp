@@ -227,7 +227,7 @@ template <PairPotential P> struct PairForce : P {
           second_type);
     }
   }
-  ForceClaims claims() const { return {.periodic = true, .range = reach()}; }
+  ForceClaims claims() const { return {.periodic = true, .charges = charged, .exclusions = true, .range = reach()}; }
 
   /// @throws Error  for a cutoff that is no length, a switch that begins elsewhere, a force without strength
   void check() const {

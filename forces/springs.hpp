@@ -58,7 +58,7 @@ struct HarmonicBond {
         field<&HarmonicBond::k>("k", "mass/time^2", "stiffness of each spring").required("\"1 kg/s^2\""),
         field<&HarmonicBond::length>("length", "length", "at rest"));
   }
-  static ForceClaims claims() { return {.periodic = true}; }
+  static ForceClaims claims() { return {.periodic = true, .charges = false, .exclusions = false}; }
 
   /// @throws Error  for a negative length
   void check() const { detail::check_length(length); }
@@ -99,7 +99,9 @@ struct Tether {
     return {.virial = false,
             .keeps_momentum = false,
             .keeps_angular_momentum = point == std::array<double, 3>{},
-            .periodic = true};
+            .periodic = true,
+            .charges = false,
+            .exclusions = false};
   }
 
   /// @throws Error  for a negative length

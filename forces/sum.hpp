@@ -4,6 +4,7 @@
 #include "engine/erasure.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <type_traits>
@@ -12,6 +13,10 @@
 namespace noether {
 
 namespace detail {
+inline std::optional<bool> one_says_so(std::optional<bool> a, std::optional<bool> b) {
+  if (a.value_or(false) || b.value_or(false)) return true;
+  return a && b ? std::optional<bool>(false) : std::nullopt;
+}
 inline void merge(ForceClaims& all, const ForceClaims& one) {
   all.energy = all.energy && one.energy;
   all.virial = all.virial && one.virial;
@@ -22,6 +27,12 @@ inline void merge(ForceClaims& all, const ForceClaims& one) {
   all.keeps_angular_momentum = all.keeps_angular_momentum && one.keeps_angular_momentum;
   all.periodic = all.periodic && one.periodic;
   all.sets = all.sets && one.sets;
+  all.kepler = all.kepler || one.kepler;
+  all.bonded = all.bonded || one.bonded;
+  all.pair_coefficients = all.pair_coefficients || one.pair_coefficients;
+  all.charges = one_says_so(all.charges, one.charges);
+  all.exclusions = one_says_so(all.exclusions, one.exclusions);
+  all.drag += one.drag;
   all.range = std::max(all.range, one.range);
 }
 }  // namespace detail
@@ -54,7 +65,7 @@ template <class... Fs> class Sum {
     return std::apply([&](const auto&... force) { return (one(force) && ...); }, forces_);
   }
   ForceClaims claims() const {
-    ForceClaims all{.periodic = true, .sets = sizeof...(Fs) == 1};
+    ForceClaims all{.periodic = true, .sets = sizeof...(Fs) == 1, .charges = false, .exclusions = false};
     std::apply([&](const auto&... force) { (detail::merge(all, claims_of(force)), ...); }, forces_);
     return all;
   }
@@ -97,7 +108,7 @@ template <class Real = double> class ForceField {
     for (const auto& term : terms_) term.add_to(out, s);
   }
   ForceClaims claims() const {
-    ForceClaims all{.periodic = true, .sets = terms_.size() == 1};
+    ForceClaims all{.periodic = true, .sets = terms_.size() == 1, .charges = false, .exclusions = false};
     for (const auto& term : terms_) detail::merge(all, term.claims());
     return all;
   }

@@ -5,22 +5,33 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
+#include <vector>
 
 namespace noether {
 
 namespace {
 
-bool uses(const Word& word, char letter) {
+bool uses(const std::vector<Stage>& word, char letter) {
   return std::any_of(word.begin(), word.end(), [&](const Stage& stage) { return stage.letter == letter; });
 }
 
-void check_letters(const Scheme& scheme, const HamiltonianClaims& claims, const std::string& hamiltonian) {
-  for (const Word* word : {&scheme.word, &scheme.before, &scheme.after}) {
-    for (const Stage& stage : *word) {
-      if (claims.alphabet.find(stage.letter) != std::string_view::npos) continue;
-      throw SchemeMismatch(fmt::format("scheme '{}' uses the letter {}, but '{}' has only {}", scheme.name,
-                                       stage.letter, hamiltonian, claims.alphabet));
-    }
+void check_letters(const Scheme& scheme, const std::vector<Stage>& stages, const HamiltonianClaims& claims,
+                   const std::string& hamiltonian) {
+  const auto check = [&](const Stage& stage) {
+    if (claims.alphabet.find(stage.letter) != std::string::npos) return;
+    throw SchemeMismatch(fmt::format("scheme '{}' uses the letter {}, but '{}' has only {}", scheme.name, stage.letter,
+                                     hamiltonian, claims.alphabet));
+  };
+  std::for_each(stages.begin(), stages.end(), check);
+  std::for_each(scheme.before.begin(), scheme.before.end(), check);
+  std::for_each(scheme.after.begin(), scheme.after.end(), check);
+  for (const char letter : claims.basic) {
+    if (uses(stages, letter)) continue;
+    throw SchemeMismatch(
+        fmt::format("scheme '{}' has no letter {}, which is a part of '{}'; use a composition of its steps {}, such as "
+                    "'yoshida_4', or a word with all of its letters",
+                    scheme.name, letter, hamiltonian, claims.basic));
   }
 }
 
@@ -43,27 +54,47 @@ void check_class(const Scheme& scheme, const HamiltonianClaims& claims, const st
   }
 }
 
-/// Half a D at both ends; between the two stages of a symplectic Euler, one D.
-Word with_letter(const Word& word, char letter) {
-  Word result;
-  if (word.size() == 2) {
-    result.push_back(word[0]);
-    result.push_back({letter, Quad(1)});
-    result.push_back(word[1]);
-    return result;
+/// Appends a stage; one of the letter before it is joined with that, if it may be.
+void append(std::vector<Stage>& word, const Stage& stage, bool joined) {
+  if (joined && !word.empty() && word.back().letter == stage.letter) {
+    word.back().weight += stage.weight;
+  } else {
+    word.push_back(stage);
   }
-  result.push_back({letter, Quad(1) / Quad(2)});
-  for (const Stage& stage : word) result.push_back(stage);
+}
+
+/// A composition over the basic word of a Hamiltonian, which is a palindrome: of each letter the weights are equal.
+std::vector<Stage> composed(const Scheme& scheme, std::string_view basic, bool joined) {
+  std::vector<Stage> word;
+  for (std::size_t k = 0; k < scheme.substep_count; ++k) {
+    for (const char letter : basic) {
+      const auto times = static_cast<double>(std::count(basic.begin(), basic.end(), letter));
+      append(word, {letter, scheme.substeps[k] / Quad(times)}, joined);
+    }
+  }
+  return word;
+}
+
+/// Half a D at both ends; between the two stages of a symplectic Euler, one D.
+std::vector<Stage> with_letter(const std::vector<Stage>& word, char letter) {
+  if (word.size() == 2) return {word[0], {letter, Quad(1)}, word[1]};
+  std::vector<Stage> result = {{letter, Quad(1) / Quad(2)}};
+  result.insert(result.end(), word.begin(), word.end());
   result.push_back({letter, Quad(1) / Quad(2)});
   return result;
 }
 
 }  // namespace
 
-Word fitted_word(const Scheme& scheme, const HamiltonianClaims& claims, const std::string& hamiltonian) {
-  check_letters(scheme, claims, hamiltonian);
+FittedWord fitted_word(const Scheme& scheme, const HamiltonianClaims& claims, const std::string& hamiltonian) {
+  FittedWord word{{scheme.word.begin(), scheme.word.end()}};
+  if (scheme.is_composition()) {
+    const bool exact = claims.inexact.find(claims.basic.front()) == std::string_view::npos;
+    word.stages = composed(scheme, claims.basic, exact);
+    word.joins = exact || scheme.substep_count == 1;
+  }
+  check_letters(scheme, word.stages, claims, hamiltonian);
   check_class(scheme, claims, hamiltonian);
-  Word word = scheme.word;
   for (const char letter : claims.irreversible) {
     if (scheme.has_negative_steps()) {
       throw SchemeMismatch(
@@ -71,7 +102,7 @@ Word fitted_word(const Scheme& scheme, const HamiltonianClaims& claims, const st
                       "forward steps only, such as 'verlet' or 'mclachlan_2_s2'",
                       scheme.name, letter, hamiltonian));
     }
-    if (!uses(word, letter)) word = with_letter(word, letter);
+    if (!uses(word.stages, letter)) word.stages = with_letter(word.stages, letter);
   }
   return word;
 }

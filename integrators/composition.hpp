@@ -6,9 +6,11 @@
 #include "engine/word.hpp"
 #include "integrators/scheme.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -19,12 +21,21 @@ struct CompositionOptions {
   bool compensated = false;  ///< keep the rounding errors of x and v and add them back (Kahan, Neumaier)
 };
 
-/// The word a scheme becomes over a Hamiltonian: irreversible letters added where the scheme has none.
+/// The stages of one step as a scheme has them over a Hamiltonian.
+struct FittedWord {
+  std::vector<Stage> stages;
+  bool joins = true;  ///< the last stage is one with the first of the next step where their letters agree
+};
+
+/// What a scheme becomes over a Hamiltonian: the sub-steps of a composition as steps of its basic word, and
+/// irreversible letters added where the scheme has none.
 ///
-/// A word without a D gets half a D at both ends; a word of two stages (`symplectic_euler_a`, `_b`) one D between them.
+/// Where sub-steps meet, their outer letters are joined if these are exact flows, and never if they are not: of a map
+/// of order 2 two halves are no whole. A word without a D gets half a D at both ends; a word of two stages
+/// (`symplectic_euler_a`, `_b`) one D between them.
 /// @throws SchemeMismatch  naming the scheme and what it lacks: a letter, an exact part, quadratic kinetic energy,
 ///         forward steps
-Word fitted_word(const Scheme& scheme, const HamiltonianClaims& claims, const std::string& hamiltonian);
+FittedWord fitted_word(const Scheme& scheme, const HamiltonianClaims& claims, const std::string& hamiltonian);
 
 /// Advances a split Hamiltonian along a scheme.
 ///
@@ -45,7 +56,8 @@ template <SplitHamiltonian H> class Composition {
         name_(scheme.name),
         order_(scheme.order.classical),
         symmetric_(scheme.is_symmetric() && scheme.before.size() == 0),
-        word_(timed(fitted_word(scheme, hamiltonian_.claims(), detail::name_of(hamiltonian_)))) {
+        word_(timed(fitted_word(scheme, hamiltonian_.claims(), detail::name_of(hamiltonian_)),
+                    hamiltonian_.claims().timed)) {
     for (const Stage& stage : scheme.before) before_.push_back({stage.letter, real(stage.weight), real(0)});
     for (const Stage& stage : scheme.after) after_.push_back({stage.letter, real(stage.weight), real(0)});
   }
@@ -55,7 +67,8 @@ template <SplitHamiltonian H> class Composition {
     return {.method = name_,
             .hamiltonian = detail::name_of(hamiltonian_),
             .order = order_,
-            .symplectic = !claims.dissipative,
+            .symplectic = claims.symplectic && !claims.dissipative,
+            .no_action = claims.no_action,
             .reversible = symmetric_ && !claims.dissipative,
             .energy = claims.energy,
             .dissipative = claims.dissipative,
@@ -72,7 +85,9 @@ template <SplitHamiltonian H> class Composition {
     s.keep_low_words(options_.compensated);
     hamiltonian_.bind(s);
     if constexpr (std::is_same_v<real, double>) {
-      detail::expect_kicks(hamiltonian_, word_.longest('B') * std::abs(s.clock().dt()));
+      double longest = 0;
+      for (const char letter : hamiltonian_.claims().kicks) longest = std::max(longest, word_.longest(letter));
+      detail::expect_kicks(hamiltonian_, longest * std::abs(s.clock().dt()));
     }
   }
 
@@ -143,15 +158,16 @@ template <SplitHamiltonian H> class Composition {
 
  private:
   /// The word in the weights of `real`, each stage with the time at which it begins.
-  static TimedWord<real> timed(const Word& word) {
+  static TimedWord<real> timed(const FittedWord& fitted, std::string_view with_time) {
+    const std::vector<Stage>& word = fitted.stages;
     const auto weights = rounded_weights<real>(word);
     std::vector<TimedStage<real>> stages;
     real fraction(0);
     for (std::size_t k = 0; k < word.size(); ++k) {
       stages.push_back({word[k].letter, weights[k], fraction});
-      if (word[k].letter == 'A') fraction += weights[k];
+      if (with_time.find(word[k].letter) != std::string_view::npos) fraction += weights[k];
     }
-    return TimedWord<real>(std::move(stages));
+    return TimedWord<real>(std::move(stages), fitted.joins);
   }
   void open(ParticleSystem<real>& s, const real& dt) {
     hamiltonian_.open(s);

@@ -30,14 +30,20 @@ template <SplitHamiltonian H> class Damped {
   HamiltonianClaims claims() const {
     HamiltonianClaims claims = hamiltonian_.claims();
     claims.alphabet += 'D';
-    claims.irreversible = "D";
+    claims.irreversible.insert(claims.irreversible.begin(), 'D');
     claims.dissipative = true;
+    claims.symplectic = false;
     claims.keeps_momentum = claims.keeps_angular_momentum = false;
     return claims;
   }
 
   void bind(ParticleSystem<real>& s) { hamiltonian_.bind(s); }
   void expect_kicks(double longest) { detail::expect_kicks(hamiltonian_, longest); }
+  bool set_neighbor_options(const NeighborOptions& options) {
+    return detail::set_neighbor_options(hamiltonian_, options);
+  }
+  bool can_project() const { return detail::can_project(hamiltonian_); }
+  void project_velocities(ParticleSystem<real>& s, const real& h) { detail::project_velocities(hamiltonian_, s, h); }
   void open(ParticleSystem<real>& s) { hamiltonian_.open(s); }
   void close(ParticleSystem<real>& s) { hamiltonian_.close(s); }
   void flow(char letter, ParticleSystem<real>& s, const real& h) {
@@ -72,5 +78,10 @@ template <SplitHamiltonian H> class Damped {
   H hamiltonian_;
   LinearDrag drag_;
 };
+
+/// Drag as a letter, for scenes: what `[[hamiltonian.force]] type = "linear_drag"` adds to a splitting.
+template <SplitHamiltonian H> Damped<H> with_letter(const LinearDrag& drag, H hamiltonian) {
+  return Damped<H>(std::move(hamiltonian), drag);
+}
 
 }  // namespace noether

@@ -2,6 +2,7 @@
 /// H = T(p) + U(q): free motion and kicks, along constraints if there are any.
 
 #include "engine/concepts.hpp"
+#include "engine/erasure.hpp"
 #include "engine/neighbor_list.hpp"
 #include "engine/parallel.hpp"
 #include "engine/signature.hpp"
@@ -11,6 +12,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 
 namespace noether {
@@ -57,10 +59,7 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     }
   }
 
-  static constexpr auto describe() {
-    return part<KineticPotential>("kinetic_potential", "free motion A and kicks B by a sum of forces",
-                                  formula("H = sum p_i^2 / 2 m_i + U(q, t)"), source("HairerLubichWanner2006"));
-  }
+  std::string name() const { return "kinetic_potential"; }
 
   HamiltonianClaims claims() const {
     const ForceClaims forces = claims_of(forces_);
@@ -68,6 +67,8 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
                              .energy = forces.energy,
                              .time_dependent = forces.time_dependent,
                              .dissipative = forces.dissipative,
+                             .periodic = true,
+                             .neighbors = true,
                              .keeps_momentum = forces.keeps_momentum,
                              .keeps_angular_momentum = forces.keeps_angular_momentum && !periodic_};
     if constexpr (constrained) {
@@ -95,7 +96,10 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
   /// How long the longest kick is: pair forces tell where a step cannot follow them.
   void expect_kicks(double longest) { kick_ = longest; }
   /// How neighbors are found; before the first step.
-  void set_neighbor_options(const NeighborOptions& options) { neighbor_options_ = options; }
+  bool set_neighbor_options(const NeighborOptions& options) {
+    neighbor_options_ = options;
+    return true;
+  }
   const NeighborList& neighbors() const { return neighbors_; }
   void open(ParticleSystem<Real>& /*inertial already*/) {}
   void close(ParticleSystem<Real>& /*inertial already*/) {}
@@ -113,7 +117,7 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     if (!observing_ && std::exchange(moved_, false)) ++evaluations_.force;
   }
 
-  /// Brings velocities back along the constraints, for flows of other letters.
+  /// Brings velocities back along the constraints, for flows of other letters; nothing where there are none.
   void project_velocities(ParticleSystem<Real>& s, const Real& h) { project(s, h); }
 
   /// The fused walk: between the stages of whole steps nobody asks whether the forces are known.
@@ -278,6 +282,25 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
   bool periodic_ = false;
   double kick_ = 0;  ///< the longest of a step [time]; 0: nobody has told
   Evaluations evaluations_;
+};
+
+/// The Hamiltonian of forces alone, as a part of scenes; it has no parameters of its own.
+struct KineticPotentialOptions {
+  static constexpr auto describe() {
+    return part<KineticPotentialOptions>("kinetic_potential", "free motion A and kicks B by a sum of forces",
+                                         formula("H = sum p_i^2 / 2 m_i + U(q, t)"), source("HairerLubichWanner2006"),
+                                         letter('A', "drifts"), letter('B', "kicks"));
+  }
+
+  /// Nothing in itself but the motion p^2/2m: methods that do not split serve it too.
+  std::tuple<> forces() const { return {}; }
+  template <class Real, template <class> class Field> AnyHamiltonian<Real> split(Field<Real> forces) const {
+    return KineticPotential<Field<Real>, Real>(std::move(forces));
+  }
+  template <class Real, template <class> class Field, class C>
+  AnyHamiltonian<Real> split(Field<Real> forces, C constraints) const {
+    return KineticPotential<Field<Real>, Real, C>(std::move(forces), std::move(constraints));
+  }
 };
 
 template <class F> KineticPotential(F) -> KineticPotential<F, double>;

@@ -23,6 +23,7 @@ struct LangevinOptions {
     return part<LangevinOptions>(
         "langevin", "a bath of one temperature for every particle: the irreversible letter O",
         formula("O: v -> c v + sqrt(k_B T/m (1 - c^2)) xi,  c = exp(-friction h)"), source("LeimkuhlerMatthews2013"),
+        letter('O', "flows of the bath: friction and noise, exact"),
         field<&LangevinOptions::temperature>("temperature", "temperature", "of the bath").required("\"300 K\""),
         field<&LangevinOptions::friction>("friction", "1/time", "how fast velocities are forgotten")
             .required("\"1/ps\""),
@@ -60,7 +61,7 @@ template <SplitHamiltonian H> class Langevin {
   Langevin(H hamiltonian, LangevinOptions options)
       : hamiltonian_(std::move(hamiltonian)), options_(options), key_(noise_key(options.seed)) {
     options_.check();
-    if (hamiltonian_.claims().constraints > 0 && !projects) {
+    if (hamiltonian_.claims().constraints > 0 && !detail::can_project(hamiltonian_)) {
       throw Error("noise would push velocities off the constraints of '" + detail::name_of(hamiltonian_) +
                   "', which does not offer project_velocities; put the bath around kinetic_potential itself");
     }
@@ -70,8 +71,10 @@ template <SplitHamiltonian H> class Langevin {
   HamiltonianClaims claims() const {
     HamiltonianClaims claims = hamiltonian_.claims();
     claims.alphabet += 'O';
-    claims.irreversible = claims.irreversible.empty() ? "O" : "DO";
+    claims.irreversible += 'O';
     claims.dissipative = true;
+    claims.symplectic = false;
+    claims.no_action = "a thermostat gives and takes energy, so no action tells the motion";
     claims.keeps_momentum = claims.keeps_angular_momentum = false;
     return claims;
   }
@@ -85,15 +88,18 @@ template <SplitHamiltonian H> class Langevin {
     }
     if (s.clock().dt() < 0) throw Error("a bath knows no way back; a step above 0 is expected");
     hamiltonian_.bind(s);
-    ParticleSystem<real> trial = s;
-    if (!s.phase().opened) hamiltonian_.open(trial);
-    if (trial.phase().coordinates != Coordinates::inertial) {
+    if (!hamiltonian_.claims().inertial) {
       throw Error("'" + detail::name_of(hamiltonian_) +
                   "' moves in coordinates of its own, where noise is not that of particles; put the bath around "
                   "kinetic_potential");
     }
   }
   void expect_kicks(double longest) { detail::expect_kicks(hamiltonian_, longest); }
+  bool set_neighbor_options(const NeighborOptions& options) {
+    return detail::set_neighbor_options(hamiltonian_, options);
+  }
+  bool can_project() const { return detail::can_project(hamiltonian_); }
+  void project_velocities(ParticleSystem<real>& s, const real& h) { detail::project_velocities(hamiltonian_, s, h); }
   void open(ParticleSystem<real>& s) { hamiltonian_.open(s); }
   void close(ParticleSystem<real>& s) { hamiltonian_.close(s); }
 
@@ -144,9 +150,6 @@ template <SplitHamiltonian H> class Langevin {
  private:
   /// Place of an O that ends a step and is joined with the next; above that of any other.
   static constexpr std::uint32_t last_stage = 127;
-  static constexpr bool projects = requires(H & h, ParticleSystem<real>& s, const real& tau) {
-    h.project_velocities(s, tau);
-  };
 
   void mix(ParticleSystem<real>& s, const real& h, std::int64_t step, std::uint32_t stage) {
     using std::exp, std::expm1, std::sqrt;
@@ -171,12 +174,17 @@ template <SplitHamiltonian H> class Langevin {
         for (Index i = begin; i < end; ++i) low->v.component(c)[i] *= keep;
       }
     });
-    if constexpr (projects) hamiltonian_.project_velocities(s, h);
+    detail::project_velocities(hamiltonian_, s, h);
   }
 
   H hamiltonian_;
   LangevinOptions options_;
   std::array<std::uint32_t, 2> key_;
 };
+
+/// The bath as a letter, for scenes: what `[hamiltonian.thermostat] type = "langevin"` adds to a splitting.
+template <SplitHamiltonian H> Langevin<H> with_letter(const LangevinOptions& options, H hamiltonian) {
+  return Langevin<H>(std::move(hamiltonian), options);
+}
 
 }  // namespace noether

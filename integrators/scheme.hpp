@@ -70,6 +70,8 @@ struct Order {
 
 /// One splitting method, as data.
 struct Scheme {
+  static constexpr std::size_t most_substeps = 36;
+
   std::string_view name;
   std::string_view aliases = "";  ///< other names, parted by blanks
   std::string_view summary = "";
@@ -83,7 +85,12 @@ struct Scheme {
   int printed_digits = 34;  ///< significant digits of the shortest coefficient in the source
   Word word = {};
   Word before = {}, after = {};  ///< once before the run; on copies shown to users
+  /// Of a symmetric composition: the lengths of its sub-steps, each a step of the Hamiltonian's basic word; `word` is
+  /// what becomes of them over drifts and kicks. Empty for a scheme that is a word of its own.
+  std::array<Quad, most_substeps> substeps = {};
+  std::size_t substep_count = 0;
 
+  constexpr bool is_composition() const { return substep_count > 0; }
   constexpr bool has_negative_steps() const {
     for (const Stage& stage : word) {
       if (stage.weight < Quad(0)) return true;
@@ -148,13 +155,15 @@ constexpr Scheme checked(const Scheme& scheme) {
 
 }  // namespace detail
 
-/// A symmetric composition of velocity Verlet (kick first): weights w_1, ..., w_m of its steps, of which the first half
-/// with the centre is given. The kicks of neighbouring steps are joined, so of several steps B must be an exact flow.
+/// A symmetric composition of steps of order 2: weights w_1, ..., w_m of its steps, of which the first half with the
+/// centre is given. Over drifts and kicks each is a step of velocity Verlet, kick first, and the kicks of neighbouring
+/// steps are joined.
 template <std::size_t n> constexpr Scheme symmetric_composition(Scheme scheme, const std::array<Quad, n>& half) {
-  if (n > 1) scheme.exact = "B";
+  static_assert(2 * n - 1 <= Scheme::most_substeps);
   const auto weights = detail::solved(half, true);
   for (std::size_t k = 0; k < 2 * n - 1; ++k) {
     const Quad w = weights[k < n ? k : 2 * n - 2 - k];
+    scheme.substeps[scheme.substep_count++] = w;
     scheme.word.push_back({'B', w / Quad(2)});
     scheme.word.push_back({'A', w});
     scheme.word.push_back({'B', w / Quad(2)});
@@ -203,7 +212,7 @@ Scheme word(std::string_view letters);
 /// In double each weight is rounded, and then the middle one (or pair) of each letter is solved again, so that the
 /// exact sum of the rounded weights is that of the word to an ulp of the middle: a sum off by 1e-16 would be a
 /// clock that is wrong by as much.
-template <class Real> std::vector<Real> rounded_weights(const Word& word) {
+template <class Real, class Stages> std::vector<Real> rounded_weights(const Stages& word) {
   std::vector<Real> weights;
   for (const Stage& stage : word) weights.push_back(static_cast<Real>(stage.weight));
   if constexpr (!std::is_same_v<Real, double>) return weights;

@@ -11,12 +11,20 @@
 
 #include <array>
 #include <atomic>
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 namespace noether {
+
+/// What the position and velocity columns hold while the splitting runs; 0 is inertial, as everywhere.
+enum class Coordinates : std::uint8_t {
+  jacobi = 1,  ///< row 0: centre of mass; others relative to the centre of mass of all bodies further in
+  democratic,  ///< row 0: centre of mass; positions relative to particle 0, velocities to the centre of mass
+};
 
 template <> struct EnumNames<Coordinates> {
   static constexpr std::array<std::pair<Coordinates, std::string_view>, 2> values = {
@@ -32,9 +40,15 @@ struct WisdomHolmanOptions {
     return part<WisdomHolmanOptions>(
         "wisdom_holman", "Kepler arcs A about particle 0 and kicks B by the interaction",
         formula("H = sum [p'^2/2m' - G m' M/r'] + [sum G m' M/r' - sum G m_i m_j/r_ij]"), source("WisdomHolman1991"),
+        letter('A', "Kepler arcs of every body"), letter('B', "kicks by the interaction"),
         field<&WisdomHolmanOptions::G>("G", "length^3/mass/time^2", "default: the unit system's own"),
         field<&WisdomHolmanOptions::coordinates>("coordinates", "1", "jacobi or democratic (heliocentric)"));
   }
+
+  /// What it has in itself, beside the motion p^2/2m: methods that do not split take it as a force.
+  std::tuple<Gravity> forces() const { return {Gravity{.G = G}}; }
+  /// The splitting with other forces beside, for scenes.
+  template <class Real> AnyHamiltonian<Real> split(ForceField<Real> others) const;
 };
 
 /// The Wisdom-Holman splitting in Jacobi or democratic heliocentric coordinates.
@@ -133,6 +147,11 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
   Evaluations evaluations_;
   bool observing_ = false;
 };
+
+template <class Real> AnyHamiltonian<Real> WisdomHolmanOptions::split(ForceField<Real> others) const {
+  if (others.terms().empty()) return WisdomHolman<Real>(*this);
+  return WisdomHolman<Real, ForceField<Real>>(*this, std::move(others));
+}
 
 extern template class WisdomHolman<double>;
 extern template class WisdomHolman<Quad>;

@@ -19,6 +19,8 @@ template <class Real, class F> HamiltonianClaims WisdomHolman<Real, F>::claims()
           .energy = forces.energy,
           .time_dependent = forces.time_dependent,
           .dissipative = forces.dissipative,
+          .inertial = false,
+          .kepler = true,
           .keeps_momentum = forces.keeps_momentum,
           .keeps_angular_momentum = forces.keeps_angular_momentum};
 }
@@ -96,7 +98,7 @@ template <class Real, class F> void WisdomHolman<Real, F>::open(ParticleSystem<R
   } else {
     to_democratic(s);
   }
-  s.phase().coordinates = options_.coordinates;
+  s.phase().coordinates = static_cast<std::uint8_t>(options_.coordinates);
 }
 
 template <class Real, class F> void WisdomHolman<Real, F>::close(ParticleSystem<Real>& s) {
@@ -106,7 +108,7 @@ template <class Real, class F> void WisdomHolman<Real, F>::close(ParticleSystem<
   } else {
     from_democratic(s);
   }
-  s.phase().coordinates = Coordinates::inertial;
+  s.phase().coordinates = 0;
 }
 
 /// x'_k = x_k - X_{k-1},  X_k = X_{k-1} + (m_k/M_k) x'_k;  row 0 becomes X of all.

@@ -1,16 +1,15 @@
 #include "scene/scene.hpp"
 
-#include "constraints/constraint_solver.hpp"
-#include "forces/gravity.hpp"
 #include "forces/sum.hpp"
 #include "integrators/classical.hpp"
 #include "integrators/composition.hpp"
-#include "integrators/damped.hpp"
-#include "integrators/kinetic_potential.hpp"
-#include "integrators/langevin.hpp"
-#include "integrators/wisdom_holman.hpp"
 #include "io/checkpoint.hpp"
 #include "io/trajectory.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
 
 namespace noether {
 
@@ -20,29 +19,6 @@ namespace {
 
 /// Larger than any run: a cadence of this many steps looks at step 0 only.
 constexpr std::int64_t once = std::int64_t{1} << 62;
-
-/// The Hamiltonian as the scene looks for neighbors, in its bath if it has one.
-template <class H> AnyHamiltonian<double> in_bath(const Scene& scene, H hamiltonian) {
-  if (scene.hamiltonian.neighbors) hamiltonian.set_neighbor_options(*scene.hamiltonian.neighbors);
-  if (!scene.hamiltonian.thermostat) return hamiltonian;
-  return Langevin<H>(std::move(hamiltonian), *scene.hamiltonian.thermostat);
-}
-
-AnyHamiltonian<double> without_drag(const Scene& scene) {
-  ForceField<double> forces;
-  for (const SceneForce& force : scene.hamiltonian.forces) {
-    if (force.force) forces.add(*force.force);
-  }
-  if (!scene.hamiltonian.constraints.empty()) {
-    return in_bath(
-        scene, KineticPotential<ForceField<double>, double, ConstraintSet>(std::move(forces), constraints_of(scene)));
-  }
-  if (scene.hamiltonian.kind == SceneHamiltonian::Kind::kinetic_potential) {
-    return in_bath(scene, KineticPotential<ForceField<double>>(std::move(forces)));
-  }
-  if (forces.terms().empty()) return WisdomHolman<double>(scene.hamiltonian.wisdom_holman);
-  return WisdomHolman<double, ForceField<double>>(scene.hamiltonian.wisdom_holman, std::move(forces));
-}
 
 void attach_writers(Simulation<double>& sim, const Scene& scene, const SceneFiles& files) {
   bool frames = false, samples = false;
@@ -83,30 +59,52 @@ ConstraintSet constraints_of(const Scene& scene, std::size_t tables) {
   return set;
 }
 
+std::vector<SceneForce> SceneHamiltonian::terms() const {
+  std::vector<SceneForce> all = splitting.own;
+  std::copy_if(forces.begin(), forces.end(), std::back_inserter(all), [](const SceneForce& f) { return !f.letter; });
+  return all;
+}
+
+bool SceneHamiltonian::is_keplerian() const {
+  const std::vector<SceneForce> all = terms();
+  return std::any_of(all.begin(), all.end(), [](const SceneForce& f) { return f.force.claims().kepler; });
+}
+
 AnyHamiltonian<double> hamiltonian_of(const Scene& scene) {
-  for (const SceneForce& force : scene.hamiltonian.forces) {
-    if (force.drag) return Damped<AnyHamiltonian<double>>(without_drag(scene), *force.drag);
+  const SceneHamiltonian& made = scene.hamiltonian;
+  ForceField<double> forces;
+  for (const SceneForce& force : made.forces) {
+    if (!force.letter) forces.add(force.force);
   }
-  return without_drag(scene);
+  AnyHamiltonian<double> hamiltonian = made.constraints.empty()
+                                           ? made.splitting.make(std::move(forces))
+                                           : made.splitting.make_constrained(std::move(forces), constraints_of(scene));
+  if (made.neighbors) hamiltonian.set_neighbor_options(*made.neighbors);
+  if (made.thermostat) hamiltonian = made.thermostat->letter(std::move(hamiltonian));
+  for (const SceneForce& force : made.forces) {
+    if (force.letter) hamiltonian = force.letter(std::move(hamiltonian));
+  }
+  return hamiltonian;
 }
 
 ForceField<double> forces_of(const Scene& scene) {
   ForceField<double> forces;
-  if (scene.hamiltonian.kind == SceneHamiltonian::Kind::wisdom_holman) {
-    forces.add(Gravity{.G = scene.hamiltonian.wisdom_holman.G});
-  }
-  for (const SceneForce& force : scene.hamiltonian.forces) {
-    if (force.force) forces.add(*force.force);
-    if (force.drag) forces.add(DragForce{*force.drag});
+  for (const std::vector<SceneForce>* list : {&scene.hamiltonian.splitting.own, &scene.hamiltonian.forces}) {
+    for (const SceneForce& force : *list) forces.add(force.force);
   }
   return forces;
 }
 
 std::unique_ptr<VectorField<double>> field_of(const Scene& scene) {
   if (scene.system) return scene.system->field();
-  const bool split = scene.hamiltonian.kind == SceneHamiltonian::Kind::wisdom_holman;
-  return std::make_unique<ForceMotion<ForceField<double>, double>>(forces_of(scene),
-                                                                   split ? "wisdom_holman" : "kinetic_potential");
+  const SceneSplitting& splitting = scene.hamiltonian.splitting;
+  if (!splitting.only_forces) {
+    throw SchemeMismatch(
+        fmt::format("'{}' has parts that are no forces, so it is no y' = f for method '{}'; use a "
+                    "splitting scheme, such as 'verlet' or 'yoshida_4'",
+                    splitting.name, scene.integrator.method));
+  }
+  return std::make_unique<ForceMotion<ForceField<double>, double>>(forces_of(scene), splitting.name);
 }
 
 AnyIntegrator<double> integrator_of(const Scene& scene) {

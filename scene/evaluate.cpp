@@ -2,7 +2,6 @@
 
 #include "engine/pressure.hpp"
 #include "forces/check_gradient.hpp"
-#include "forces/gravity.hpp"
 #include "integrators/kinetic_potential.hpp"
 
 #include <fmt/format.h>
@@ -14,18 +13,6 @@
 namespace noether {
 
 namespace {
-
-/// Every term that pulls: the forces of the scene, and gravity where the Hamiltonian has it in itself.
-std::vector<SceneForce> terms_of(const Scene& scene) {
-  std::vector<SceneForce> terms;
-  if (scene.hamiltonian.kind == SceneHamiltonian::Kind::wisdom_holman) {
-    terms.push_back({"gravity", {}, AnyForce<double>(Gravity{.G = scene.hamiltonian.G}), {}});
-  }
-  for (const SceneForce& force : scene.hamiltonian.forces) {
-    if (force.force) terms.push_back(force);
-  }
-  return terms;
-}
 
 std::string numbered(const std::string& name, const std::vector<std::pair<std::string, double>>& taken) {
   std::string result = name;
@@ -68,19 +55,19 @@ Evaluation evaluate(const Scene& scene, bool check) {
   VectorColumn<double> a(s.size());
   // Constraints have a part in the virial, which is not looked at here.
   bool has_pressure = s.box().is_periodic() && scene.hamiltonian.constraints.empty();
-  for (const SceneForce& term : terms_of(scene)) {
+  for (const SceneForce& term : scene.hamiltonian.terms()) {
     ForceSink<double> sink(a, s, {.energy = true, .virial = true});
-    term.force->add_to(sink, s);
+    term.force.add_to(sink, s);
     const bool failed = sink.failure().has_value();
     if (failed && result.outcome.ok()) result.outcome = outcome_of(*sink.failure(), s);
     const double potential = failed ? nan : sink.potential();
     result.terms.emplace_back(numbered(term.name, result.terms), potential);
     result.potential += potential;
     result.virial += failed ? Mat3<double>(Mat3<double>::Constant(nan)) : sink.virial();
-    has_pressure = has_pressure && term.force->claims().virial && !failed;
+    has_pressure = has_pressure && term.force.claims().virial && !failed;
     for (Index i = 0; i < s.size(); ++i) result.forces.add(i, std::as_const(s).masses()[i] * a[i]);
     if (check && !failed)
-      result.gradient_error = std::max(result.gradient_error.value_or(0), gradient_error(*term.force, s));
+      result.gradient_error = std::max(result.gradient_error.value_or(0), gradient_error(term.force, s));
   }
   if (has_pressure) result.pressure = pressure_tensor(s, result.virial).trace() / 3;
   for (Index i = 0; i < s.size(); ++i) {

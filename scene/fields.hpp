@@ -30,6 +30,15 @@ struct FieldInfo {
 struct PartInfo {
   std::string name, help, formula, source, quantities;
   std::vector<FieldInfo> fields = {};
+  std::vector<std::pair<char, std::string>> letters = {};  ///< what it gives to words, and what their flows are
+
+  /// What the flow of a letter is, in words; empty: it has no such letter.
+  std::string meaning(char letter) const {
+    for (const auto& [name, text] : letters) {
+      if (name == letter) return text;
+    }
+    return "";
+  }
 };
 
 namespace detail {
@@ -204,6 +213,7 @@ template <class T> PartInfo part_info() {
     for_each_field<T>(
         [&](const auto& field) { detail::add_field(info, detail::FieldTexts::of(field), defaults.*(field.member)); });
   }
+  for_each_letter<T>([&](const Letter& one) { info.letters.emplace_back(one.letter, std::string(one.text)); });
   return info;
 }
 
@@ -213,14 +223,10 @@ template <class T> void read_fields(TableReader& reader, T& part) {
       [&](const auto& field) { detail::read_field(reader, field.name, field.dimension, part.*(field.member)); });
 }
 
-/// Reads every field of a part, then refuses unknown keys, missing fields, and what the part itself refuses.
-///
-/// Keys of the table that are no fields of the part must have been asked for before.
-/// @throws SceneError  at the line of the key
-template <class T> void read_part(TableReader& reader, T& part) {
-  read_fields(reader, part);
-  reader.finish();
-  for_each_field<T>([&](const auto& field) { detail::require_field(reader, detail::FieldTexts::of(field)); });
+namespace detail {
+/// Refuses missing fields, and what the part itself refuses. @throws SceneError  at the line of the key
+template <class T> void check_fields(TableReader& reader, const T& part) {
+  for_each_field<T>([&](const auto& field) { require_field(reader, FieldTexts::of(field)); });
   try {
     check_part(part);
   } catch (const SceneError&) {
@@ -228,6 +234,17 @@ template <class T> void read_part(TableReader& reader, T& part) {
   } catch (const Error& error) {
     reader.refuse(error);
   }
+}
+}  // namespace detail
+
+/// Reads every field of a part, then refuses unknown keys, missing fields, and what the part itself refuses.
+///
+/// Keys of the table that are no fields of the part must have been asked for before.
+/// @throws SceneError  at the line of the key
+template <class T> void read_part(TableReader& reader, T& part) {
+  read_fields(reader, part);
+  reader.finish();
+  detail::check_fields(reader, part);
 }
 
 /// Appends every field of a part as it is: what the scene wrote, and defaults in the units of the scene.

@@ -130,61 +130,59 @@ class SceneReader {
 
   void read_hamiltonian(const SceneValue& table) {
     SceneHamiltonian& made = scene_.hamiltonian;
+    const auto [kind, type] = kind_of_part(context_, table, "hamiltonian", "hamiltonian", parts_.hamiltonians(), {});
     TableReader reader(context_, table, "[hamiltonian]", "hamiltonian");
     SceneValue& effective = scene_.effective.put("hamiltonian", SceneValue::table());
-    const std::string type = reader.text("type");
-    if (!reader.has("type"))
-      reader.fail(nullptr, "type", "[hamiltonian] has no type; give \"kinetic_potential\" or \"wisdom_holman\"");
-    if (type != "kinetic_potential" && type != "wisdom_holman") {
-      reader.fail("type", fmt::format("unknown hamiltonian '{}'{}", type,
-                                      did_you_mean(type, {"kinetic_potential", "wisdom_holman"})));
-    }
     effective.put("type", SceneValue::of(type, reader.line("type")));
     const SceneValue* G = reader.find("G");
     effective.put("G", G != nullptr ? *G : SceneValue::of(scene_.units->G));
     const auto forces = tables_of(reader, "force"), constraints = tables_of(reader, "constraint");
-    if (type == "wisdom_holman") {
-      made.kind = SceneHamiltonian::Kind::wisdom_holman;
-      read_fields(reader, made.wisdom_holman);
-      effective.put("coordinates", detail::field_value(made.wisdom_holman.coordinates, "1", *scene_.units)).line =
-          reader.line("coordinates");
-    }
     const SceneValue *thermostat = reader.find("thermostat"), *neighbors = reader.find("neighbors");
+    for (const char* key : {"type", "G", "force", "constraint"}) reader.find(key);
+    made.splitting = kind->read(reader);
     reader.finish();
-    if (type == "wisdom_holman" && made.wisdom_holman.coordinates == Coordinates::inertial) {
-      reader.fail("coordinates", "wisdom_holman has jacobi or democratic coordinates");
+    for (const auto& [key, value] : *made.splitting.effective.get<SceneValue::Table>()) {
+      if (key != "G") effective.put(key, value).line = reader.line(key);
     }
-    if (type == "wisdom_holman" && scene_.particles.box().is_periodic()) {
-      reader.fail("type", "wisdom_holman knows open space only: Kepler arcs have no images; take the box out");
-    }
-    if (type == "wisdom_holman" && !constraints.empty()) {
-      reader.fail(constraints.front(), "constraint",
-                  "wisdom_holman has no constraints: Kepler arcs know none; use kinetic_potential");
-    }
-    if (type == "kinetic_potential" && forces.empty() && constraints.empty()) {
-      reader.fail("type",
-                  "kinetic_potential has no force, so nothing would move anything; add a [[hamiltonian.force]] table");
+    check_splitting(reader, constraints);
+    if (kind->needs_forces && forces.empty() && constraints.empty()) {
+      reader.fail("type", fmt::format("{} has no force, so nothing would move anything; add a [[hamiltonian.force]] "
+                                      "table",
+                                      type));
     }
     SceneValue::Array list;
     for (const SceneValue* force : forces) read_force(*force, list);
     if (!list.empty()) effective.put("force", SceneValue::of(std::move(list)));
-    if (thermostat != nullptr) effective.put("thermostat", read_thermostat(context_, *thermostat, scene_));
+    if (thermostat != nullptr) effective.put("thermostat", read_thermostat(context_, *thermostat, parts_, scene_));
     if (neighbors != nullptr) effective.put("neighbors", read_neighbors(*neighbors));
     if (constraints.empty()) return;
     effective.put("constraint", SceneValue::of(read_constraints(context_, constraints, parts_, scene_)));
   }
+
+  /// Refuses a box or constraints that the splitting does not know.
+  void check_splitting(const TableReader& reader, const std::vector<const SceneValue*>& constraints) const {
+    const SceneSplitting& splitting = scene_.hamiltonian.splitting;
+    if (!splitting.claims.periodic && scene_.particles.box().is_periodic()) {
+      reader.fail("type", fmt::format("{} knows open space only; take the box out", splitting.name));
+    }
+    if (!splitting.make_constrained && !constraints.empty()) {
+      reader.fail(constraints.front(), "constraint",
+                  fmt::format("{} has no constraints; use {}", splitting.name, plain_hamiltonian()));
+    }
+  }
+  const std::string& plain_hamiltonian() const { return parts_.hamiltonians().front().info.name; }
 
   SceneValue read_neighbors(const SceneValue& table) {
     TableReader reader(context_, table, "[hamiltonian.neighbors]", "hamiltonian.neighbors");
     if (table.get<SceneValue::Table>() == nullptr) reader.wrong_kind(table, "neighbors", "a table");
     NeighborOptions options;
     read_part(reader, options);
-    const auto& forces = scene_.hamiltonian.forces;
-    const bool any = std::any_of(forces.begin(), forces.end(), [](const SceneForce& force) {
-      return force.force && force.force->claims().range > 0;
-    });
-    if (!any || scene_.hamiltonian.kind != SceneHamiltonian::Kind::kinetic_potential) {
-      reader.fail(nullptr, "neighbors", "no force of kinetic_potential has a range, so nobody looks for neighbors");
+    const SceneHamiltonian& made = scene_.hamiltonian;
+    const bool any = std::any_of(made.forces.begin(), made.forces.end(),
+                                 [](const SceneForce& force) { return force.force.claims().range > 0; });
+    if (!any || !made.splitting.claims.neighbors) {
+      reader.fail(nullptr, "neighbors",
+                  fmt::format("no force of {} has a range, so nobody looks for neighbors", plain_hamiltonian()));
     }
     scene_.hamiltonian.neighbors = options;
     SceneValue effective = SceneValue::table();
@@ -209,19 +207,10 @@ class SceneReader {
     }
     SceneForce force = kind->read(reader, tied);
     reader.finish();
-    const bool wisdom_holman = scene_.hamiltonian.kind == SceneHamiltonian::Kind::wisdom_holman;
-    if (type == "gravity" && wisdom_holman) {
-      reader.fail("type", "wisdom_holman has gravity in itself; take this force out, or use kinetic_potential");
-    }
-    for (const SceneForce& other : scene_.hamiltonian.forces) {
-      if (type == "gravity" && other.name == type) {
-        reader.fail("type", "gravity stands twice in the scene, so every pair would attract twice; take one out");
-      }
-      if (force.drag && other.drag) reader.fail("type", "linear_drag stands twice in the scene; add the rates up");
-    }
-    if (force.force) {
+    check_force_beside(reader, *kind);
+    if (!force.letter) {
       try {
-        force.force->check(scene_.particles);
+        force.force.check(scene_.particles);
       } catch (const Error& error) {
         const SceneValue* file = root_.find("particles")->find("structure");
         const bool of_file = error.key() == "structure" && file != nullptr;
@@ -232,6 +221,20 @@ class SceneReader {
     list.push_back(effective);
     force.effective = std::move(effective);
     scene_.hamiltonian.forces.push_back(std::move(force));
+  }
+
+  /// Refuses a force that the splitting has in itself, and one that stands twice where it must not.
+  void check_force_beside(const TableReader& reader, const Parts::ForceKind& kind) const {
+    const SceneHamiltonian& made = scene_.hamiltonian;
+    const auto is_it = [&](const SceneForce& other) { return other.name == kind.info.name; };
+    if (std::any_of(made.splitting.own.begin(), made.splitting.own.end(), is_it)) {
+      reader.fail("type", fmt::format("{} has {} in itself; take this force out, or use {}", made.splitting.name,
+                                      kind.info.name, plain_hamiltonian()));
+    }
+    if (!kind.only_once.empty() && std::any_of(made.forces.begin(), made.forces.end(), is_it)) {
+      const std::string_view mark = kind.only_once.starts_with("so ") ? "," : ";";
+      reader.fail("type", fmt::format("{} stands twice in the scene{} {}", kind.info.name, mark, kind.only_once));
+    }
   }
 
   void read_watches(TableReader& top) {
@@ -452,7 +455,7 @@ class SceneReader {
   void check_range(TableReader& top) const {
     double range = 0;
     for (const SceneForce& force : scene_.hamiltonian.forces) {
-      if (force.force) range = std::max(range, force.force->claims().range);
+      range = std::max(range, force.force.claims().range);
     }
     try {
       check_images(scene_.particles.box(), range, scene_.hamiltonian.neighbors.value_or(NeighborOptions{}).skin);
@@ -491,23 +494,19 @@ class SceneReader {
     throw scene_error(
         scene_.source, line, "particles", "",
         fmt::format("'{}' and '{}' stand in one place, where {}", s.name(pair->first), s.name(pair->second),
-                    is_under_gravity() ? "their attraction is infinite; move one, or give gravity a "
-                                         "softening"
-                                       : "a force between them is no number; move one"));
-  }
-
-  bool is_under_gravity() const {
-    const SceneHamiltonian& hamiltonian = scene_.hamiltonian;
-    return hamiltonian.kind == SceneHamiltonian::Kind::wisdom_holman ||
-           std::any_of(hamiltonian.forces.begin(), hamiltonian.forces.end(),
-                       [](const SceneForce& force) { return force.name == "gravity"; });
+                    scene_.hamiltonian.is_keplerian() ? "their attraction is infinite; move one, or give gravity a "
+                                                        "softening"
+                                                      : "a force between them is no number; move one"));
   }
 
   /// Ends the refusal of a word with noise where there is none.
   std::string_view who_has_noise() const {
-    if (scene_.hamiltonian.thermostat || scene_.hamiltonian.kind == SceneHamiltonian::Kind::wisdom_holman) return "";
+    if (scene_.hamiltonian.thermostat || !scene_.hamiltonian.splitting.claims.inertial) return "";
     const Word& word = scene_.integrator.scheme.word;
-    const bool noisy = std::any_of(word.begin(), word.end(), [](const Stage& stage) { return stage.letter == 'O'; });
+    const bool noisy = std::any_of(word.begin(), word.end(), [&](const Stage& stage) {
+      return std::any_of(parts_.thermostats().begin(), parts_.thermostats().end(),
+                         [&](const auto& kind) { return !kind.info.meaning(stage.letter).empty(); });
+    });
     return noisy ? "; O is the letter of a thermostat: add [hamiltonian.thermostat]" : "";
   }
 
@@ -523,10 +522,11 @@ Scene read_scene(std::string_view text, const std::filesystem::path& file, const
                  const std::vector<std::string>& sets) {
   Scene scene;
   scene.file = file;
+  scene.parts = std::make_shared<const Parts>(parts);
   scene.source = {file.string(), sets};
   SceneValue root = parse_toml(text, scene.source.file);
   apply_sets(root, scene.source);
-  SceneReader(root, parts, scene).read();
+  SceneReader(root, *scene.parts, scene).read();
   return scene;
 }
 

@@ -11,8 +11,10 @@ SceneValue read_minimize(const SceneContext& context, const SceneValue& table, S
   if (table.get<SceneValue::Table>() == nullptr) reader.wrong_kind(table, "minimize", "a table");
   MinimizeOptions options;
   read_part(reader, options);
-  if (scene.hamiltonian.kind == SceneHamiltonian::Kind::wisdom_holman) {
-    reader.fail(nullptr, "", "planets of wisdom_holman have no minimum to go to; take [minimize] out");
+  if (!scene.hamiltonian.splitting.claims.inertial) {
+    reader.fail(nullptr, "",
+                fmt::format("planets of {} have no minimum to go to; take [minimize] out",
+                            scene.hamiltonian.splitting.name));
   }
   if (!scene.hamiltonian.constraints.empty()) {
     reader.fail(nullptr, "",
@@ -20,7 +22,7 @@ SceneValue read_minimize(const SceneContext& context, const SceneValue& table, S
                 "with springs in their place");
   }
   for (const SceneForce& force : scene.hamiltonian.forces) {
-    if (!force.force || !force.force->claims().time_dependent) continue;
+    if (!force.force.claims().time_dependent) continue;
     reader.fail(nullptr, "",
                 fmt::format("force '{}' depends on time, so there is no minimum to go to; take [minimize] "
                             "out",
@@ -35,7 +37,7 @@ SceneValue read_minimize(const SceneContext& context, const SceneValue& table, S
 Minimized minimize_start(Scene& scene) {
   ForceField<double> forces;
   for (const SceneForce& force : scene.hamiltonian.forces) {
-    if (force.force) forces.add(*force.force);  // drag has no part in a minimum
+    if (!force.letter) forces.add(force.force);  // drag has no part in a minimum
   }
   return minimize(scene.particles, forces, *scene.minimize);
 }

@@ -2,6 +2,7 @@
 
 #include "constraints/angle.hpp"
 #include "constraints/constraint_residual.hpp"
+#include "constraints/constraint_solver.hpp"
 #include "constraints/distance.hpp"
 #include "constraints/surfaces.hpp"
 #include "engine/monitors.hpp"
@@ -22,6 +23,7 @@
 #include "forces/pair_potentials.hpp"
 #include "forces/springs.hpp"
 #include "forces/sum.hpp"
+#include "integrators/damped.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/langevin.hpp"
 #include "integrators/minimize.hpp"
@@ -57,6 +59,9 @@ struct RigidBar {
 
 Parts standard_parts() {
   Parts parts;
+  parts.add_hamiltonian<KineticPotentialOptions>();
+  parts.add_hamiltonian<WisdomHolmanOptions>();
+  parts.add_thermostat<LangevinOptions>();
   parts.add_force<Gravity>();
   parts.add_force<Oblateness>();
   parts.add_force<UniformField>();
@@ -140,14 +145,14 @@ struct Collision {
 
 std::vector<PartInfo> stop_parts() { return {part_info<Escape>(), part_info<Collision>()}; }
 
-std::vector<PartInfo> hamiltonian_parts() {
-  return {
-      part_info<KineticPotential<ForceField<double>>>(),
-      part_info<WisdomHolmanOptions>(),
-      part_info<LangevinOptions>(),
-      part_info<MinimizeOptions>(),
+std::vector<PartInfo> other_parts(const Parts& parts) {
+  std::vector<PartInfo> all;
+  for (const Parts::ThermostatKind& kind : parts.thermostats()) all.push_back(kind.info);
+  all.push_back(part_info<MinimizeOptions>());
+  all.push_back(
       {"damped", "the name of any Hamiltonian with friction: a force linear_drag in the scene adds it as the letter D",
-       "D: v -> exp(-rate h) v", "", ""}};
+       "D: v -> exp(-rate h) v", "", ""});
+  return all;
 }
 
 namespace detail {

@@ -4,7 +4,7 @@
 #include "constraints/constraint_set.hpp"
 #include "engine/any_force.hpp"
 #include "engine/simulation.hpp"
-#include "forces/linear_drag.hpp"
+#include "forces/sum.hpp"
 #include "integrators/first_order_system.hpp"
 #include "scene/fields.hpp"
 
@@ -12,6 +12,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -25,12 +26,34 @@ struct Cadence {
   double interval = 0;  ///< [time], where the method chooses the steps; 0: by steps
 };
 
+/// What a part adds to a splitting as a letter of its own.
+using SceneLetter = std::function<AnyHamiltonian<double>(AnyHamiltonian<double>)>;
+
 /// A force as a scene asked for it.
 struct SceneForce {
   std::string name;
-  SceneValue effective;                   ///< its table, defaults included
-  std::optional<AnyForce<double>> force;  ///< empty for drag, which becomes a letter
-  std::optional<LinearDrag> drag;
+  SceneValue effective;    ///< its table, defaults included
+  AnyForce<double> force;  ///< what methods that do not split take
+  SceneLetter letter;  ///< of one that splittings take as a letter, such as drag; empty: they take it in their kicks
+};
+
+/// A thermostat as a scene asked for it: a letter with noise.
+struct SceneThermostat {
+  std::string name;
+  SceneValue effective;
+  SceneLetter letter;
+};
+
+/// What is split, as a scene asked for it: the Hamiltonian without the forces, constraints and letters of the scene.
+struct SceneSplitting {
+  std::string name;
+  SceneValue effective;         ///< its own keys, defaults included
+  HamiltonianClaims claims;     ///< without forces
+  bool only_forces = false;     ///< p^2/2m and forces are all of it: methods for y' = f serve it too
+  std::vector<SceneForce> own;  ///< those it has in itself, as such methods take them
+  std::function<AnyHamiltonian<double>(ForceField<double>)> make;
+  std::function<AnyHamiltonian<double>(ForceField<double>, ConstraintSet)> make_constrained;  ///< empty: it knows none
+  std::function<AnyHamiltonian<Quad>(ForceField<Quad>)> make_wide;  ///< empty: it knows doubles only
 };
 
 /// Particles that constraints of one table tie: so many for each constraint.
@@ -84,16 +107,46 @@ template <class M> void attach(Simulation<double>& sim, const Cadence& cadence, 
 }
 }  // namespace detail
 
-/// Forces, constraints, systems and monitors by name. A user's own part is one line:
+/// What a force part is to methods that do not split: itself, unless `as_force` (found by its argument) makes one of
+/// it.
+template <class F> auto force_of(const F& part) {
+  if constexpr (requires { as_force(part); }) {
+    return as_force(part);
+  } else {
+    return part;
+  }
+}
+
+/// A force as a scene would have asked for it, with its own defaults.
+template <class F> SceneForce scene_force(const F& part, SceneValue effective = SceneValue::table()) {
+  SceneForce made{std::string(part_name<F>()), std::move(effective), AnyForce<double>(force_of(part)), {}};
+  if constexpr (requires(AnyHamiltonian<double> h) { with_letter(part, h); }) {
+    made.letter = [part](AnyHamiltonian<double> h) { return AnyHamiltonian<double>(with_letter(part, std::move(h))); };
+  }
+  return made;
+}
+
+/// Hamiltonians, forces, constraints, thermostats, systems and monitors by name. A user's own part is one line:
 ///
 ///     Parts parts = standard_parts();
 ///     parts.add_force<Oblateness>();
 class Parts {
  public:
+  struct HamiltonianKind {
+    PartInfo info;
+    std::function<SceneSplitting(TableReader&)> read;  ///< its own keys, among those that all Hamiltonians have
+    bool needs_forces = false;                         ///< without forces or constraints nothing would move
+  };
+  struct ThermostatKind {
+    PartInfo info;
+    std::function<SceneThermostat(TableReader&)> read;
+  };
   struct ForceKind {
     PartInfo info;
     std::function<SceneForce(TableReader&, const TiedParticles&)> read;
-    std::size_t particles = 0;  ///< of each tuple that the force ties; 0: it acts on all
+    std::size_t particles = 0;   ///< of each tuple that the force ties; 0: it acts on all
+    ForceClaims claims = {};     ///< of the force with its defaults
+    std::string only_once = {};  ///< why it does not stand twice in a scene; empty: it may
   };
   struct ConstraintKind {
     PartInfo info;
@@ -109,17 +162,46 @@ class Parts {
     std::function<SceneMonitor(TableReader&)> read;
   };
 
+  /// Makes Hamiltonian `H` known by the name it describes itself with; one of the same name is replaced. The first is
+  /// the plain one, of p^2/2m and forces alone.
+  ///
+  /// `H` is a struct of parameters with `describe()`, its letters in it, and a member template that makes the splitting
+  /// over any number type, with the forces of the scene in its kicks:
+  ///
+  ///     template <class Real> auto split(ForceField<Real> forces) const;                      // a SplitHamiltonian
+  ///     template <class Real, class C> auto split(ForceField<Real>, C constraints) const;     // where it knows them
+  ///     std::tuple<Gravity> forces() const;  // where p^2/2m, these and the scene's forces are all of it
+  template <class H> Parts& add_hamiltonian() {
+    static_assert(Described<H>, "a Hamiltonian in a scene describes itself: static constexpr auto describe()");
+    HamiltonianKind kind{part_info<H>(), [](TableReader& reader) { return read_splitting<H>(reader); }};
+    if constexpr (requires { H{}.forces(); }) kind.needs_forces = std::tuple_size_v<decltype(H{}.forces())> == 0;
+    put(hamiltonians_, std::move(kind));
+    return *this;
+  }
+
+  /// Makes thermostat `T` known by the name it describes itself with: a struct for which `with_letter(part, H)` makes a
+  /// Hamiltonian with one more, irreversible letter.
+  template <class T> Parts& add_thermostat() {
+    static_assert(Described<T>, "a thermostat in a scene describes itself: static constexpr auto describe()");
+    put(thermostats_, ThermostatKind{part_info<T>(), [](TableReader& reader) { return read_thermostat<T>(reader); }});
+    return *this;
+  }
+
   /// Makes force `F` known by the name it describes itself with; a force of the same name is replaced.
   ///
   /// One that acts on some particles only has `static constexpr std::size_t particles`, how many each of its terms
   /// ties, and a member `std::vector<std::array<Index, particles>> tied`: scenes then say which, as for constraints.
+  /// One that is a letter of its own (drag) has `with_letter(part, H)`, and `as_force(part)` for methods that do not
+  /// split.
   template <class F> Parts& add_force() {
     static_assert(Described<F>, "a force in a scene describes itself: static constexpr auto describe()");
     std::size_t particles = 0;
     if constexpr (requires { F{}.tied; }) particles = F::particles;
-    put(forces_, ForceKind{part_info<F>(),
-                           [](TableReader& reader, const TiedParticles& tied) { return read_force<F>(reader, tied); },
-                           particles});
+    ForceKind kind{part_info<F>(),
+                   [](TableReader& reader, const TiedParticles& tied) { return read_force<F>(reader, tied); },
+                   particles, claims_of(force_of(F{}))};
+    if constexpr (requires { F::only_once; }) kind.only_once = F::only_once;
+    put(forces_, std::move(kind));
     return *this;
   }
 
@@ -151,12 +233,52 @@ class Parts {
     return *this;
   }
 
+  const std::vector<HamiltonianKind>& hamiltonians() const { return hamiltonians_; }
+  const std::vector<ThermostatKind>& thermostats() const { return thermostats_; }
   const std::vector<ForceKind>& forces() const { return forces_; }
   const std::vector<ConstraintKind>& constraints() const { return constraints_; }
   const std::vector<SystemKind>& systems() const { return systems_; }
   const std::vector<MonitorKind>& monitors() const { return monitors_; }
 
  private:
+  template <class H> static SceneSplitting read_splitting(TableReader& reader) {
+    H part{};
+    read_fields(reader, part);
+    SceneSplitting made;
+    made.name = part_name<H>();
+    made.effective = SceneValue::table();
+    put_fields(reader, part, made.effective);
+    made.make = [part](ForceField<double> forces) {
+      return AnyHamiltonian<double>(part.template split<double>(std::move(forces)));
+    };
+    if constexpr (requires(ForceField<double> f, ConstraintSet c) { part.template split<double>(f, c); }) {
+      made.make_constrained = [part](ForceField<double> forces, ConstraintSet constraints) {
+        return AnyHamiltonian<double>(part.template split<double>(std::move(forces), std::move(constraints)));
+      };
+    }
+    if constexpr (requires(ForceField<Quad> f) { part.template split<Quad>(f); }) {
+      made.make_wide = [part](ForceField<Quad> forces) {
+        return AnyHamiltonian<Quad>(part.template split<Quad>(std::move(forces)));
+      };
+    }
+    if constexpr (requires { part.forces(); }) {
+      made.only_forces = true;
+      std::apply([&](const auto&... own) { (made.own.push_back(scene_force(own)), ...); }, part.forces());
+    }
+    detail::check_fields(reader, part);
+    made.claims = made.make({}).claims();
+    return made;
+  }
+
+  template <class T> static SceneThermostat read_thermostat(TableReader& reader) {
+    T part{};
+    read_part(reader, part);
+    SceneThermostat made{std::string(part_name<T>()), SceneValue::table(), {}};
+    put_fields(reader, part, made.effective);
+    made.letter = [part](AnyHamiltonian<double> h) { return AnyHamiltonian<double>(with_letter(part, std::move(h))); };
+    return made;
+  }
+
   template <class F> static SceneForce read_force(TableReader& reader, const TiedParticles& tied) {
     F force{};
     read_part(reader, force);
@@ -165,14 +287,9 @@ class Parts {
         std::copy(particles.begin(), particles.end(), force.tied.emplace_back().begin());
       }
     }
-    SceneForce made{std::string(part_name<F>()), SceneValue::table(), {}, {}};
-    put_fields(reader, force, made.effective);
-    if constexpr (std::is_same_v<F, LinearDrag>) {
-      made.drag = force;
-    } else {
-      made.force = AnyForce<double>(force);
-    }
-    return made;
+    SceneValue effective = SceneValue::table();
+    put_fields(reader, force, effective);
+    return scene_force(force, std::move(effective));
   }
 
   template <class C> static SceneConstraint read_constraint(TableReader& reader) {
@@ -241,13 +358,15 @@ class Parts {
     kinds.push_back(std::move(kind));
   }
 
+  std::vector<HamiltonianKind> hamiltonians_;
+  std::vector<ThermostatKind> thermostats_;
   std::vector<ForceKind> forces_;
   std::vector<ConstraintKind> constraints_;
   std::vector<SystemKind> systems_;
   std::vector<MonitorKind> monitors_;
 };
 
-/// Every force, constraint, system and monitor of noether.
+/// Every Hamiltonian, force, constraint, thermostat, system and monitor of noether.
 Parts standard_parts();
 
 /// What the writers say of themselves: they stand in `[[every]]` like monitors.
@@ -259,7 +378,7 @@ std::vector<PartInfo> stop_parts();
 /// between two looks only if they are close.
 inline constexpr std::int64_t default_escape_steps = 100, default_collision_steps = 1;
 
-/// What the Hamiltonians say of themselves.
-std::vector<PartInfo> hamiltonian_parts();
+/// What else stands in `[hamiltonian]` and beside it: thermostats, and the start at a minimum.
+std::vector<PartInfo> other_parts(const Parts& parts);
 
 }  // namespace noether

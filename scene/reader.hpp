@@ -27,7 +27,7 @@ struct SceneSource {
 struct SceneContext {
   SceneSource source;
   const UnitSystem* units = &unit_system("solar");
-  std::optional<SceneValue> G;  ///< `hamiltonian.G`: the default of every field of that name
+  std::optional<SceneValue> G = {};  ///< `hamiltonian.G`: the default of every field of that name
 };
 
 /// Reads one table; remembers which keys were asked for.

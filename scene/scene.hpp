@@ -3,11 +3,9 @@
 
 #include "engine/simulation.hpp"
 #include "forces/sum.hpp"
-#include "integrators/langevin.hpp"
 #include "integrators/methods.hpp"
 #include "integrators/minimize.hpp"
 #include "integrators/scheme.hpp"
-#include "integrators/wisdom_holman.hpp"
 #include "scene/parts.hpp"
 
 #include <filesystem>
@@ -22,15 +20,18 @@ namespace noether {
 
 /// The Hamiltonian of a scene.
 struct SceneHamiltonian {
-  enum class Kind : std::uint8_t { kinetic_potential, wisdom_holman };
-  Kind kind = Kind::kinetic_potential;
-  WisdomHolmanOptions wisdom_holman;
+  SceneSplitting splitting;
   std::optional<double> G;  ///< as the scene gives it [length^3/mass/time^2]
   std::vector<SceneForce> forces;
   std::vector<SceneConstraint> constraints;
   ConstraintOptions constraint_options;
-  std::optional<LangevinOptions> thermostat;
+  std::optional<SceneThermostat> thermostat;
   std::optional<NeighborOptions> neighbors;
+
+  /// Every term that pulls: what the splitting has in itself, and the scene's forces that are no letters.
+  std::vector<SceneForce> terms() const;
+  /// Whether a force moves pairs on Kepler orbits, one in the splitting or beside it.
+  bool is_keplerian() const;
 };
 
 /// The integrator of a scene.
@@ -79,6 +80,7 @@ struct SceneVerdict {
 /// A scene as plain data. Everything in it has been checked: `assemble` cannot fail for what the file says.
 struct Scene {
   std::filesystem::path file;
+  std::shared_ptr<const Parts> parts;  ///< those it was read with
   std::string title;
   const UnitSystem* units = &unit_system("solar");
   ParticleSystem<double> particles;   ///< in the frame the scene asks for; of a system, its variables

@@ -7,27 +7,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <set>
-#include <span>
-#include <string_view>
 #include <utility>
 
 namespace noether {
 
 namespace {
-
-/// Forces of short range that are known to ask for no charges; what others ask for nobody knows.
-constexpr std::array<std::string_view, 7> without_charges = {"lennard_jones", "wca",    "morse",        "buckingham",
-                                                             "bonded",        "tether", "harmonic_bond"};
-
-/// Forces between pairs that leave excluded ones out.
-constexpr std::array<std::string_view, 5> with_exclusions = {"lennard_jones", "wca", "morse", "buckingham",
-                                                             "reaction_field"};
-/// Forces that are known to act on excluded pairs too, or on no pairs.
-constexpr std::array<std::string_view, 10> without_exclusions = {
-    "gravity",        "oblateness",   "uniform_field",    "oscillating_field",
-    "harmonic_field", "henon_heiles", "fermi_pasta_ulam", "harmonic_bond",
-    "tether",         "bonded"};
 
 bool has_charges(const ParticleSystem<double>& s) {
   if (!s.has<Charge>()) return false;
@@ -38,16 +24,25 @@ bool has_charges(const ParticleSystem<double>& s) {
   return false;
 }
 
-const SceneForce* find_force(const Scene& scene, std::string_view name) {
+bool some(const Scene& scene, bool ForceClaims::*says) {
   const auto& forces = scene.hamiltonian.forces;
-  const auto found = std::find_if(forces.begin(), forces.end(), [&](const SceneForce& f) { return f.name == name; });
-  return found == forces.end() ? nullptr : &*found;
+  return std::any_of(forces.begin(), forces.end(), [&](const SceneForce& f) { return f.force.claims().*says; });
 }
 
-bool all_among(const std::vector<SceneForce>& forces, std::span<const std::string_view> names) {
-  return std::all_of(forces.begin(), forces.end(), [&](const SceneForce& force) {
-    return std::find(names.begin(), names.end(), force.name) != names.end();
-  });
+/// Whether every force says that it does not do something; of one that says nothing nobody knows.
+bool none_does(const Scene& scene, std::optional<bool> ForceClaims::*says) {
+  const auto& forces = scene.hamiltonian.forces;
+  return std::all_of(forces.begin(), forces.end(),
+                     [&](const SceneForce& f) { return !(f.force.claims().*says).value_or(true); });
+}
+
+/// Names of the forces that leave excluded pairs out.
+std::vector<std::string> with_exclusions(const Parts& parts) {
+  std::vector<std::string> names;
+  for (const Parts::ForceKind& kind : parts.forces()) {
+    if (kind.claims.exclusions.value_or(false)) names.push_back(kind.info.name);
+  }
+  return names;
 }
 
 /// Trace of one step of a word of drifts and kicks on an oscillator with h omega = z, halved; other letters rest. Above
@@ -90,7 +85,7 @@ struct FastestBond {
 FastestBond fastest_bond(const Scene& scene) {
   FastestBond fastest;
   const Topology* topology = scene.particles.topology();
-  if (topology == nullptr || find_force(scene, "bonded") == nullptr) return fastest;
+  if (topology == nullptr || !some(scene, &ForceClaims::bonded)) return fastest;
   std::set<std::pair<Index, Index>> held;
   for (const SceneConstraint& constraint : scene.hamiltonian.constraints) {
     for (const std::vector<Index>& tied : constraint.tied) {
@@ -126,15 +121,18 @@ std::string too_stiff(const Scene& scene) {
 /// A file that names another cutoff than the force has; empty if it does not.
 std::string other_cutoff(const Scene& scene) {
   const Topology* topology = scene.particles.topology();
-  const SceneForce* pairs = find_force(scene, "lennard_jones");
-  if (topology == nullptr || topology->stated_cutoff == 0 || pairs == nullptr || !pairs->force) return "";
-  const double stated = topology->stated_cutoff, cutoff = pairs->force->claims().range;
-  if (std::abs(stated - cutoff) <= 1e-9 * stated) return "";
-  const std::string unit = scene.units->length == "1" ? "" : fmt::format(" {}", scene.units->length);
-  return fmt::format(
-      "the structure's pairs have a cutoff of {:.6g}{}, the force lennard_jones one of {:.6g}{}, which is "
-      "taken",
-      stated, unit, cutoff, unit);
+  if (topology == nullptr || topology->stated_cutoff == 0) return "";
+  const double stated = topology->stated_cutoff;
+  for (const SceneForce& force : scene.hamiltonian.forces) {
+    const ForceClaims claims = force.force.claims();
+    if (!claims.pair_coefficients || std::abs(stated - claims.range) <= 1e-9 * stated) continue;
+    const std::string unit = scene.units->length == "1" ? "" : fmt::format(" {}", scene.units->length);
+    return fmt::format(
+        "the structure's pairs have a cutoff of {:.6g}{}, the force {} one of {:.6g}{}, which is "
+        "taken",
+        stated, unit, force.name, claims.range, unit);
+  }
+  return "";
 }
 
 }  // namespace
@@ -147,20 +145,20 @@ std::vector<std::string> warnings_of(const Scene& scene) {
   const std::vector<SceneForce>& forces = scene.hamiltonian.forces;
   // Constraints may stand in the place of bonds.
   if (const Topology* t = scene.particles.topology();
-      t != nullptr && scene.hamiltonian.constraints.empty() && find_force(scene, "bonded") == nullptr) {
+      t != nullptr && scene.hamiltonian.constraints.empty() && !some(scene, &ForceClaims::bonded)) {
     const std::size_t terms = t->bonds.size() + t->angles.size() + t->dihedrals.size() + t->impropers.size();
     if (terms > 0) {
       add(fmt::format("the structure has {} bonded {} that nothing acts on: there is no force 'bonded'", terms,
                       terms == 1 ? "term" : "terms"));
     }
   }
-  if (!forces.empty() && all_among(forces, without_charges) && has_charges(scene.particles)) {
+  if (!forces.empty() && none_does(scene, &ForceClaims::charges) && has_charges(scene.particles)) {
     add("the particles have charges that no force looks at");
   }
   const SceneValue* particles = scene.effective.find("particles");
-  if (all_among(forces, without_exclusions) && particles != nullptr && particles->find("exclusions") != nullptr) {
+  if (none_does(scene, &ForceClaims::exclusions) && particles != nullptr && particles->find("exclusions") != nullptr) {
     add(fmt::format("exclusions change nothing: no force leaves pairs out; those that do are {}",
-                    fmt::join(with_exclusions, ", ")));
+                    fmt::join(with_exclusions(*scene.parts), ", ")));
   }
   add(other_cutoff(scene));
   add(too_stiff(scene));

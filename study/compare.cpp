@@ -44,7 +44,7 @@ std::vector<double> ladder(const Scene& scene, const Opponent& who, const Sampli
   const double measured_at = std::min(own, sampling.interval);
   double factor = 1;
   if (!scene.integrator.adaptive()) {
-    const Opponent self{scene.integrator.method, scene.integrator.method, scene.hamiltonian.kind, false};
+    const Opponent self{scene.integrator.method, scene.integrator.method, false, false};
     const double mine = evaluations_per_step(scene, self, measured_at);
     const double other = evaluations_per_step(scene, who, measured_at);
     if (mine > 0 && other > 0) factor = other / mine;
@@ -115,8 +115,7 @@ Comparison headed(const Scene& scene, const Sampling& sampling) {
   c.scene = scene.source.file;
   c.title = scene.title;
   c.time_unit = scene.units->time;
-  c.hamiltonian =
-      scene.hamiltonian.kind == SceneHamiltonian::Kind::wisdom_holman ? "wisdom_holman" : "kinetic_potential";
+  c.hamiltonian = scene.system ? scene.system->name : scene.hamiltonian.splitting.name;
   c.machine = processor();
   c.simd = name(simd_level());
   c.version = version();

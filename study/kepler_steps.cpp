@@ -2,7 +2,6 @@
 
 #include "engine/orbital_elements.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace noether {
@@ -18,10 +17,7 @@ void keep_shorter(double time, std::string_view name, double& shortest, std::str
 }  // namespace
 
 std::optional<KeplerSteps> kepler_steps(const Scene& scene) {
-  const auto& forces = scene.hamiltonian.forces;
-  const bool gravity = scene.hamiltonian.kind == SceneHamiltonian::Kind::wisdom_holman ||
-                       std::any_of(forces.begin(), forces.end(), [](const auto& f) { return f.name == "gravity"; });
-  if (!gravity) return {};
+  if (!scene.hamiltonian.is_keplerian()) return {};
   KeplerSteps found;
   const ParticleSystem<double>& s = scene.particles;
   const double G = scene.hamiltonian.G.value_or(scene.units->G);

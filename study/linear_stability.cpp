@@ -37,7 +37,7 @@ struct LinearMode {
 };
 
 /// The step of a scheme for omega = 1, drag included; columns are what (1, 0) and (0, 1) become.
-Matrix2 walk_word(const Word& word, double z, double drag) {
+Matrix2 walk_word(const std::vector<Stage>& word, double z, double drag) {
   Matrix2 step = Matrix2::Identity();
   for (const Stage& stage : word) {
     const double w = static_cast<double>(stage.weight) * z;
@@ -241,7 +241,10 @@ int LinearTheory::resonance_at(double z) const {
 }
 
 std::optional<StepMatrix> step_matrix(const Scene& scene, const Opponent& who, const Mode& mode) {
-  if (!(mode.scale() > 0) || who.hamiltonian == SceneHamiltonian::Kind::wisdom_holman) return {};
+  // Of a splitting of its own nobody knows what it makes of a mode.
+  const SceneSplitting& splitting = scene.hamiltonian.splitting;
+  const bool drifts = scene.system || who.joined || (splitting.only_forces && splitting.own.empty());
+  if (!(mode.scale() > 0) || !drifts) return {};
   const Scene made = variant(scene, who, {.step = 1, .tolerance = 0});
   if (made.integrator.classical) {
     const MethodChoice& choice = *made.integrator.classical;
@@ -254,7 +257,7 @@ std::optional<StepMatrix> step_matrix(const Scene& scene, const Opponent& who, c
     claims.irreversible = "D";
     claims.dissipative = true;
   }
-  const Word word = fitted_word(scheme_of(made.integrator), claims, "mode");
+  const std::vector<Stage> word = fitted_word(scheme_of(made.integrator), claims, "mode").stages;
   return [word, drag = mode.rate / mode.omega](double z) { return walk_word(word, z, drag); };
 }
 

@@ -118,7 +118,7 @@ bool watched_run(Row& row, const Scene& alone, const Sampling& sampling, const M
   const AngularMomentum* spin = nullptr;
   bool kept = particles;  // by the equations; whether the method keeps it is what is measured
   for (const SceneForce& force : alone.hamiltonian.forces) {
-    kept = kept && force.force && force.force->claims().keeps_angular_momentum;
+    kept = kept && force.force.claims().keeps_angular_momentum;
   }
   if (kept && alone.hamiltonian.constraints.empty()) spin = watch(sim, row.setting, sampling, AngularMomentum());
   const ShadowHamiltonian<double>* fluctuation = watch_shadow(sim, alone, row.setting, sampling);

@@ -1,9 +1,9 @@
 #include "study/opponent.hpp"
 
 #include "engine/suggest.hpp"
-#include "forces/gravity.hpp"
 #include "integrators/methods.hpp"
 #include "integrators/schemes.hpp"
+#include "scene/fields.hpp"
 
 #include <fmt/format.h>
 
@@ -15,21 +15,24 @@ namespace noether {
 
 namespace {
 
-using Kind = SceneHamiltonian::Kind;
-
 bool is_word(std::string_view name) {
   return !name.empty() && name.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ") == std::string_view::npos;
 }
 
-std::string_view name_of(Kind kind) { return kind == Kind::wisdom_holman ? "wisdom_holman" : "kinetic_potential"; }
+const Parts::HamiltonianKind& plain(const Scene& scene) { return scene.parts->hamiltonians().front(); }
+bool is_plain(const Scene& scene) { return scene.hamiltonian.splitting.name == plain(scene).info.name; }
+/// Whether all of its Hamiltonian can be written as forces over the plain one.
+bool may_be_joined(const Scene& scene) { return scene.hamiltonian.splitting.only_forces && !is_plain(scene); }
 
-/// The scene's Hamiltonian without its splitting: gravity becomes a force as any other.
-void join_parts(SceneHamiltonian& hamiltonian) {
-  if (hamiltonian.kind == Kind::kinetic_potential) return;
-  SceneForce gravity{"gravity", SceneValue::table(), {}, {}};
-  gravity.force = AnyForce<double>(Gravity{.G = hamiltonian.wisdom_holman.G});
-  hamiltonian.forces.insert(hamiltonian.forces.begin(), std::move(gravity));
-  hamiltonian.kind = Kind::kinetic_potential;
+/// The scene's Hamiltonian without its splitting: what that has in itself becomes forces as all others.
+void join_parts(Scene& scene) {
+  SceneHamiltonian& hamiltonian = scene.hamiltonian;
+  hamiltonian.forces.insert(hamiltonian.forces.begin(), hamiltonian.splitting.own.begin(),
+                            hamiltonian.splitting.own.end());
+  const SceneContext context{.source = scene.source, .units = scene.units};
+  const SceneValue empty = SceneValue::table();
+  TableReader reader(context, empty, "[hamiltonian]", "hamiltonian");
+  hamiltonian.splitting = plain(scene).read(reader);
 }
 
 /// Whether the scene can be put together with a method. @return why not; empty if it can
@@ -43,9 +46,9 @@ std::string refusal(const Scene& scene, const Opponent& who) {
   return "";
 }
 
-Opponent make(const Scene& scene, const std::string& method, Kind kind, bool adaptive) {
-  Opponent who{method, method, kind, adaptive};
-  if (kind != scene.hamiltonian.kind) who.label = fmt::format("{}@{}", method, name_of(kind));
+Opponent make(const Scene& scene, const std::string& method, bool joined, bool adaptive) {
+  Opponent who{method, method, joined, adaptive};
+  if (joined) who.label = fmt::format("{}@{}", method, plain(scene).info.name);
   return who;
 }
 
@@ -54,12 +57,16 @@ Opponent make(const Scene& scene, const std::string& method, Kind kind, bool ada
 Opponent opponent(const Scene& scene, std::string_view name) {
   const std::size_t at = name.find('@');
   const std::string method(name.substr(0, at)), over(at == std::string_view::npos ? "" : name.substr(at + 1));
-  if (!over.empty() && over != name_of(Kind::kinetic_potential) && over != name_of(Kind::wisdom_holman)) {
-    throw Error(
-        fmt::format("unknown hamiltonian '{}'{}", over, did_you_mean(over, {"kinetic_potential", "wisdom_holman"})));
+  const std::string &own_name = scene.hamiltonian.splitting.name, &plain_name = plain(scene).info.name;
+  if (const auto known = names_of(scene.parts->hamiltonians());
+      !over.empty() && std::find(known.begin(), known.end(), over) == known.end()) {
+    throw Error(fmt::format("unknown hamiltonian '{}'{}", over, did_you_mean(over, known)));
   }
-  if (over == name_of(Kind::wisdom_holman) && scene.hamiltonian.kind != Kind::wisdom_holman) {
-    throw Error(fmt::format("'{}': the scene has no splitting into Kepler arcs; leave '@wisdom_holman' out", name));
+  if (!over.empty() && over != own_name && over != plain_name) {
+    throw Error(fmt::format("'{}': the scene has no splitting '{}'; leave '@{}' out", name, over, over));
+  }
+  if (over == plain_name && !is_plain(scene) && !may_be_joined(scene)) {
+    throw Error(fmt::format("'{}': '{}' has parts that are no forces; leave '@{}' out", name, own_name, over));
   }
   const MethodInfo* info = methods::find(method);
   const Scheme* scheme = schemes::find(method);
@@ -72,17 +79,16 @@ Opponent opponent(const Scene& scene, std::string_view name) {
   if (info != nullptr && scheme == nullptr) {
     const bool own = info->name == scene.integrator.method;
     const bool adaptive = own ? scene.integrator.adaptive() : info->adaptive;
-    const Opponent who = make(scene, std::string(info->name), scene.hamiltonian.kind, adaptive);
+    const Opponent who = make(scene, std::string(info->name), false, adaptive);
     if (const std::string why = refusal(scene, who); !why.empty()) throw Error(why);
     return who;
   }
   const std::string full = scheme != nullptr ? std::string(scheme->name) : method;
-  std::vector<Kind> kinds = {scene.hamiltonian.kind};
-  if (over.empty() && scene.hamiltonian.kind == Kind::wisdom_holman) kinds.push_back(Kind::kinetic_potential);
-  if (over == name_of(Kind::kinetic_potential)) kinds = {Kind::kinetic_potential};
+  std::vector<bool> ways = {over == plain_name && may_be_joined(scene)};
+  if (over.empty() && may_be_joined(scene)) ways.push_back(true);
   std::string why;
-  for (const Kind kind : kinds) {
-    const Opponent who = make(scene, full, kind, false);
+  for (const bool joined : ways) {
+    const Opponent who = make(scene, full, joined, false);
     const std::string refused = refusal(scene, who);
     if (refused.empty()) return who;
     if (why.empty()) why = refused;
@@ -92,16 +98,17 @@ Opponent opponent(const Scene& scene, std::string_view name) {
 
 std::vector<Opponent> default_opponents(const Scene& scene) {
   std::vector<std::string> names = {scene.integrator.method};
-  const bool split = scene.hamiltonian.kind == Kind::wisdom_holman;
+  const bool split = may_be_joined(scene);
   if (scene.particles.size() == 0) {
     names.insert(names.end(), {"rk4", "dormand_prince_5", "dop853", "gauss_8", "gauss_radau_15", "adams_pece",
                                "trapezoidal", "sdirk_4", "rodas_4", "rodas_5p", "bdf"});
   } else {
-    if (split) names.insert(names.end(), {"aba_10_6_4", "verlet_aba", "verlet@kinetic_potential"});
+    if (split) names.insert(names.end(), {"aba_10_6_4", "verlet_aba", "verlet@" + plain(scene).info.name});
     if (!split) names.insert(names.end(), {"verlet", "yoshida_4"});
-    names.insert(names.end(), {"blanes_moan_s6@kinetic_potential", "srkn14a@kinetic_potential",
-                               "kahan_li_8_s17@kinetic_potential", "rk4", "dormand_prince_5", "dop853", "gauss_8",
-                               "gauss_radau_15", "gragg_bulirsch_stoer", "stormer_cowell_13"});
+    const std::string plainly = scene.hamiltonian.splitting.only_forces ? "@" + plain(scene).info.name : "";
+    for (const char* name : {"blanes_moan_s6", "srkn14a", "kahan_li_8_s17"}) names.push_back(name + plainly);
+    names.insert(names.end(), {"rk4", "dormand_prince_5", "dop853", "gauss_8", "gauss_radau_15", "gragg_bulirsch_stoer",
+                               "stormer_cowell_13"});
   }
   std::vector<Opponent> all;
   for (const std::string& name : names) {
@@ -119,7 +126,7 @@ Scene variant(const Scene& scene, const Opponent& who, const Setting& setting) {
   Scene made = scene;
   made.watches.clear();
   made.stops.clear();
-  if (who.hamiltonian != scene.hamiltonian.kind) join_parts(made.hamiltonian);
+  if (who.joined) join_parts(made);
   SceneIntegrator& integrator = made.integrator;
   const bool own = who.method == scene.integrator.method;
   const std::optional<MethodChoice> before = std::exchange(integrator.classical, std::nullopt);

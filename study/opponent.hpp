@@ -13,9 +13,9 @@ namespace noether {
 
 /// One method of a comparison.
 struct Opponent {
-  std::string label;   ///< in tables: the method, with "@kinetic_potential" where that is not the scene's Hamiltonian
-  std::string method;  ///< as `[integrator]` names it
-  SceneHamiltonian::Kind hamiltonian = SceneHamiltonian::Kind::kinetic_potential;
+  std::string label;    ///< in tables: the method, with "@kinetic_potential" where that is not the scene's Hamiltonian
+  std::string method;   ///< as `[integrator]` names it
+  bool joined = false;  ///< over the plain Hamiltonian with all forces, instead of the scene's own splitting
   bool adaptive = false;  ///< it chooses its steps, by a tolerance
 
   bool operator==(const Opponent&) const = default;
@@ -27,10 +27,11 @@ struct Setting {
   double tolerance = 0;  ///< relative; 0 for methods of fixed steps
 };
 
-/// The opponent of a name: a scheme, a word or a classical method, optionally "@kinetic_potential" or "@wisdom_holman".
+/// The opponent of a name: a scheme, a word or a classical method, optionally "@" and the name of the scene's
+/// Hamiltonian, or of the plain one.
 ///
-/// Over a wisdom_holman scene a splitting scheme runs on that splitting; what cannot, and every classical method, runs
-/// on kinetic_potential with the same gravity.
+/// A splitting scheme runs on the scene's own splitting; what cannot runs on the plain Hamiltonian, kinetic_potential,
+/// where all that the splitting has in itself can stand beside it as forces.
 /// @throws Error  for a name that is not known, with a proposal, and for a method that cannot serve the scene
 Opponent opponent(const Scene& scene, std::string_view name);
 

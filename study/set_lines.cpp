@@ -17,12 +17,17 @@ std::string time_text(double time, const UnitSystem& units) {
   return fmt::format("\"{} {}\"", format_number(time), units.time);
 }
 
-/// The scene's forces with gravity in front, as a list of tables.
-std::string forces_with_gravity(const SceneValue& hamiltonian) {
-  SceneValue gravity = SceneValue::table();
-  gravity.put("type", SceneValue::of(std::string("gravity")));
-  if (const SceneValue* G = hamiltonian.find("G")) gravity.put("G", *G);
-  SceneValue::Array all = {std::move(gravity)};
+/// The scene's forces with those of its splitting in front, as a list of tables.
+std::string all_forces(const Scene& scene, const SceneValue& hamiltonian) {
+  SceneValue::Array all;
+  for (const SceneForce& force : scene.hamiltonian.splitting.own) {
+    SceneValue table = SceneValue::table();
+    table.put("type", SceneValue::of(force.name));
+    for (const auto& [key, value] : *force.effective.get<SceneValue::Table>()) table.put(key, value);
+    const SceneValue* G = hamiltonian.find("G");
+    if (G != nullptr && force.force.claims().kepler) table.put("G", *G);
+    all.push_back(std::move(table));
+  }
   const SceneValue* forces = hamiltonian.find("force");
   if (const auto* list = forces != nullptr ? forces->get<SceneValue::Array>() : nullptr) {
     all.insert(all.end(), list->begin(), list->end());
@@ -32,9 +37,9 @@ std::string forces_with_gravity(const SceneValue& hamiltonian) {
 
 std::vector<std::string> wanted(const Scene& scene, const Opponent& who, const Setting& setting, double end) {
   std::vector<std::string> lines;
-  if (who.hamiltonian != scene.hamiltonian.kind) {
-    lines = {"hamiltonian.type=kinetic_potential",
-             "hamiltonian.force=" + forces_with_gravity(*scene.effective.find("hamiltonian"))};
+  if (who.joined) {
+    lines = {"hamiltonian.type=" + scene.parts->hamiltonians().front().info.name,
+             "hamiltonian.force=" + all_forces(scene, *scene.effective.find("hamiltonian"))};
   }
   const bool counts_steps = scene.effective.find("integrator")->find("steps") != nullptr;
   lines.push_back("integrator.method=" + who.method);
@@ -52,8 +57,10 @@ std::vector<std::string> wanted(const Scene& scene, const Opponent& who, const S
 }
 
 /// Whether a key is one that lines may take out.
-bool may_go(const std::string& key, const std::vector<std::string>& lines) {
-  if (!key.starts_with("integrator.") && key != "hamiltonian.coordinates") return false;
+bool may_go(const Scene& scene, const std::string& key, const std::vector<std::string>& lines) {
+  const bool of_splitting = key.starts_with("hamiltonian.") &&
+                            scene.hamiltonian.splitting.effective.find(key.substr(key.find('.') + 1)) != nullptr;
+  if (!key.starts_with("integrator.") && !of_splitting) return false;
   return std::none_of(lines.begin(), lines.end(), [&](const std::string& line) { return line.starts_with(key + "="); });
 }
 
@@ -66,10 +73,10 @@ SetLines set_lines(const Scene& scene, const Opponent& who, const Setting& setti
     std::vector<std::string> all = scene.source.sets;
     all.insert(all.end(), result.lines.begin(), result.lines.end());
     try {
-      load_scene(scene.file, standard_parts(), all);
+      load_scene(scene.file, *scene.parts, all);
       return result;
     } catch (const Error& error) {
-      if (!may_go(error.key(), result.lines)) {
+      if (!may_go(scene, error.key(), result.lines)) {
         result.refusal = error.message();
         return result;
       }

@@ -1,6 +1,7 @@
 #include "study/solution.hpp"
 
 #include "engine/quantity.hpp"
+#include "integrators/damped.hpp"
 #include "integrators/methods.hpp"
 #include "study/spectrum.hpp"
 
@@ -90,15 +91,12 @@ Scene damped(const Scene& scene, double rate) {
     if (scene.system->effective.find("gamma") == nullptr) return scene;
     const std::string unit = scene.units->is_reduced() ? "" : fmt::format(" 1/{}", scene.units->time);
     const std::string gamma = unit.empty() ? format_number(rate / 2) : fmt::format("\"{}{}\"", rate / 2, unit);
-    return read_scene(scene.effective_toml, scene.file, standard_parts(), {"system.gamma=" + gamma});
+    return read_scene(scene.effective_toml, scene.file, *scene.parts, {"system.gamma=" + gamma});
   }
   Scene made = scene;
-  for (SceneForce& force : made.hamiltonian.forces) {
-    if (!force.drag) continue;
-    force.drag->rate = rate;
-    return made;
-  }
-  if (rate > 0) made.hamiltonian.forces.push_back({"linear_drag", SceneValue::table(), {}, LinearDrag{rate}});
+  std::vector<SceneForce>& forces = made.hamiltonian.forces;
+  const bool had = std::erase_if(forces, [](const SceneForce& force) { return force.force.claims().drag > 0; }) > 0;
+  if (rate > 0 || had) forces.push_back(scene_force(LinearDrag{rate}));
   return made;
 }
 

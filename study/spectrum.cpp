@@ -183,7 +183,7 @@ Spectrum spectrum_at(const Scene& scene, const ParticleSystem<double>& s) {
 
 double drag_of(const Scene& scene) {
   for (const SceneForce& force : scene.hamiltonian.forces) {
-    if (force.drag) return force.drag->rate;
+    if (const double rate = force.force.claims().drag; rate != 0) return rate;
   }
   return 0;
 }

@@ -246,16 +246,16 @@ std::vector<std::filesystem::path> suite_files(const std::filesystem::path& fold
   return files;
 }
 
-Suite run_suite(const std::vector<std::filesystem::path>& scenes, const SuiteOptions& options) {
+Suite run_suite(const std::vector<std::filesystem::path>& scenes, const SuiteOptions& options, const Parts& parts) {
   Suite suite;
   for (const std::filesystem::path& file : scenes) {
-    const Scene scene = load_scene(file);
+    const Scene scene = load_scene(file, parts);
     if (scene.verdicts.empty()) {
       throw SceneError("the scene has no verdict; give [[verdict]] tables", {.file = file.string(), .key = "verdict"});
     }
     for (const SceneVerdict& verdict : scene.verdicts) {
       if (verdict.nightly && !options.nightly) continue;
-      const Scene changed = verdict.sets.empty() ? scene : load_scene(file, standard_parts(), verdict.sets);
+      const Scene changed = verdict.sets.empty() ? scene : load_scene(file, *scene.parts, verdict.sets);
       Judge(changed, verdict, options).run(suite.rows);
     }
   }

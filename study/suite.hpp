@@ -53,7 +53,8 @@ std::filesystem::path suite_folder();
 std::vector<std::filesystem::path> suite_files(const std::filesystem::path& folder);
 
 /// Runs every verdict of the scenes. @throws Error  for a scene without verdicts, and for what cannot be read
-Suite run_suite(const std::vector<std::filesystem::path>& scenes, const SuiteOptions& options = {});
+Suite run_suite(const std::vector<std::filesystem::path>& scenes, const SuiteOptions& options = {},
+                const Parts& parts = standard_parts());
 
 /// What linear theory expects of a step on the fastest mode of a scene: bounded or unbounded; solver where the method
 /// cannot solve its own step on the mode; empty where theory says nothing.

@@ -178,7 +178,7 @@ void refuse_noise(const Scene& scene) {
 bool about_center(const Scene& scene) {
   if (scene.particles.size() < 2 || !scene.hamiltonian.constraints.empty()) return false;
   for (const SceneForce& force : scene.hamiltonian.forces) {
-    if (!force.force || !force.force->claims().keeps_momentum) return false;
+    if (!force.force.claims().keeps_momentum) return false;
   }
   return true;
 }

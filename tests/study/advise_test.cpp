@@ -122,7 +122,7 @@ until = 20
   REQUIRE(lines.refusal.empty());
   CHECK(lines.lines.front() == "hamiltonian.coordinates=");
   const Scene changed = file.load(lines.lines);
-  CHECK(changed.hamiltonian.kind == SceneHamiltonian::Kind::kinetic_potential);
+  CHECK(changed.hamiltonian.splitting.name == "kinetic_potential");
   const double expected = evaluate(scene).potential;
   CHECK(std::abs(evaluate(changed).potential / expected - 1) < 1e-15);
   // Gravity alone is another number: -1.5e-3 / sqrt(1.01).
