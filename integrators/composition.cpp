@@ -76,4 +76,9 @@ Word fitted_word(const Scheme& scheme, const HamiltonianClaims& claims, const st
   return word;
 }
 
+template class Composition<AnyHamiltonian<double>>;
+template class Composition<AnyHamiltonian<Quad>>;
+template struct detail::IntegratorModel<Composition<AnyHamiltonian<double>>>;
+template struct detail::IntegratorModel<Composition<AnyHamiltonian<Quad>>>;
+
 }  // namespace noether

@@ -73,4 +73,7 @@ template <SplitHamiltonian H> class Damped {
   LinearDrag drag_;
 };
 
+extern template class Damped<AnyHamiltonian<double>>;
+extern template struct detail::HamiltonianModel<Damped<AnyHamiltonian<double>>>;
+
 }  // namespace noether

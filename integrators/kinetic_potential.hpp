@@ -2,11 +2,13 @@
 /// H = T(p) + U(q): free motion and kicks, along constraints if there are any.
 
 #include "engine/concepts.hpp"
+#include "engine/erasure.hpp"
 #include "engine/neighbor_list.hpp"
 #include "engine/parallel.hpp"
 #include "engine/signature.hpp"
 #include "engine/unconstrained.hpp"
 #include "engine/word.hpp"
+#include "forces/sum.hpp"
 
 #include <limits>
 #include <optional>
@@ -282,5 +284,11 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
 
 template <class F> KineticPotential(F) -> KineticPotential<F, double>;
 template <class F, class C> KineticPotential(F, C) -> KineticPotential<F, double, C>;
+
+// The Hamiltonian of a scene, compiled once.
+extern template class KineticPotential<ForceField<double>>;
+extern template class KineticPotential<ForceField<Quad>, Quad>;
+extern template struct detail::HamiltonianModel<KineticPotential<ForceField<double>>>;
+extern template struct detail::HamiltonianModel<KineticPotential<ForceField<Quad>, Quad>>;
 
 }  // namespace noether

@@ -5,6 +5,7 @@
 #include "engine/erasure.hpp"
 #include "engine/parallel.hpp"
 #include "engine/random.hpp"
+#include "integrators/kinetic_potential.hpp"
 
 #include <array>
 #include <cmath>
@@ -178,5 +179,8 @@ template <SplitHamiltonian H> class Langevin {
   LangevinOptions options_;
   std::array<std::uint32_t, 2> key_;
 };
+
+extern template class Langevin<KineticPotential<ForceField<double>>>;
+extern template struct detail::HamiltonianModel<Langevin<KineticPotential<ForceField<double>>>>;
 
 }  // namespace noether

@@ -4,5 +4,8 @@ namespace noether {
 
 template class WisdomHolman<double>;
 template class WisdomHolman<Quad>;
+template class WisdomHolman<double, ForceField<double>>;
+template struct detail::HamiltonianModel<WisdomHolman<double>>;
+template struct detail::HamiltonianModel<WisdomHolman<double, ForceField<double>>>;
 
 }  // namespace noether

@@ -136,6 +136,9 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
 
 extern template class WisdomHolman<double>;
 extern template class WisdomHolman<Quad>;
+extern template class WisdomHolman<double, ForceField<double>>;
+extern template struct detail::HamiltonianModel<WisdomHolman<double>>;
+extern template struct detail::HamiltonianModel<WisdomHolman<double, ForceField<double>>>;
 
 }  // namespace noether
 

@@ -1,20 +1,16 @@
 #include "scene/scene.hpp"
 
-#include "constraints/constraint_solver.hpp"
 #include "forces/gravity.hpp"
 #include "forces/sum.hpp"
 #include "integrators/classical.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/damped.hpp"
-#include "integrators/kinetic_potential.hpp"
-#include "integrators/langevin.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "io/checkpoint.hpp"
 #include "io/trajectory.hpp"
+#include "scene/constrained.hpp"
 
 namespace noether {
-
-template class Composition<AnyHamiltonian<double>>;
 
 namespace {
 
@@ -34,8 +30,7 @@ AnyHamiltonian<double> without_drag(const Scene& scene) {
     if (force.force) forces.add(*force.force);
   }
   if (!scene.hamiltonian.constraints.empty()) {
-    return in_bath(
-        scene, KineticPotential<ForceField<double>, double, ConstraintSet>(std::move(forces), constraints_of(scene)));
+    return in_bath(scene, Constrained(std::move(forces), constraints_of(scene)));
   }
   if (scene.hamiltonian.kind == SceneHamiltonian::Kind::kinetic_potential) {
     return in_bath(scene, KineticPotential<ForceField<double>>(std::move(forces)));
