@@ -14,6 +14,15 @@ if(PROJECT_IS_TOP_LEVEL)
   endif()
 endif()
 
+# lld links in a third of the time.
+if(PROJECT_IS_TOP_LEVEL)
+  include(CheckLinkerFlag)
+  check_linker_flag(CXX -fuse-ld=lld NOETHER_LLD)
+  if(NOETHER_LLD)
+    add_link_options(-fuse-ld=lld)
+  endif()
+endif()
+
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(fmt 9 REQUIRED)
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)
@@ -81,12 +90,13 @@ function(noether_warnings target)
   endif()
 endfunction()
 
-# Compiles the sources of a target four at a time, so that headers and templates are met once for four.
+# Compiles the sources of a target several at a time, so that headers and templates are met once for all of them.
 function(noether_unity target)
   if(NOETHER_UNITY)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 4)
+    string(REPLACE ROOM 0 batch ${NOETHER_UNITY})  # to CMake 0 is all
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${batch})
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-      target_compile_options(${target} PRIVATE -Wno-subobject-linkage)  # g++ takes each of the four for a header
+      target_compile_options(${target} PRIVATE -Wno-subobject-linkage)  # g++ takes each of them for a header
     endif()
   endif()
 endfunction()

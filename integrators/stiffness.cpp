@@ -1,9 +1,9 @@
 #include "integrators/stiffness.hpp"
 
+#include "integrators/eigenvalues.hpp"
 #include "integrators/methods.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -56,11 +56,9 @@ std::vector<std::complex<double>> eigenvalues_of(VectorField<double>& f, double 
       if (!std::isfinite(J(i, j))) throw Error(fmt::format("df[{}]/dy[{}] is not finite", i, j));
     }
   }
-  const Eigen::EigenSolver<Matrix<double>> solver(J, false);
-  if (solver.info() != Eigen::Success) throw Error("the eigenvalues of the Jacobian could not be found");
-  std::vector<std::complex<double>> all;
-  for (Index i = 0; i < n; ++i) all.push_back(solver.eigenvalues()[i]);
-  return all;
+  const auto all = eigenvalues_of(J);
+  if (!all) throw Error("the eigenvalues of the Jacobian could not be found");
+  return *all;
 }
 
 Stiffness stiffness_of(const std::vector<std::complex<double>>& eigenvalues, double length) {
