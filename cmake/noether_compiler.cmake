@@ -93,7 +93,12 @@ endfunction()
 # Compiles the sources of a target several at a time, so that headers and templates are met once for all of them.
 function(noether_unity target)
   if(NOETHER_UNITY)
-    string(REPLACE ROOM 0 batch ${NOETHER_UNITY})  # to CMake 0 is all
+    set(batch ${NOETHER_UNITY})
+    if(batch STREQUAL "ROOM")
+      set(batch 0)  # to CMake that is all
+    elseif(NOT batch MATCHES "^[1-9][0-9]*$")
+      message(FATAL_ERROR "NOETHER_UNITY is ${NOETHER_UNITY}; a number of sources is expected, ROOM or OFF")
+    endif()
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${batch})
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
       target_compile_options(${target} PRIVATE -Wno-subobject-linkage)  # g++ takes each of them for a header
