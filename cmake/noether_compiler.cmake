@@ -102,6 +102,9 @@ function(noether_unity target)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${batch})
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
       target_compile_options(${target} PRIVATE -Wno-subobject-linkage)  # g++ takes each of them for a header
+      if(CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)  # the same two bugs, met where more is inlined
+        target_compile_options(${target} PRIVATE -Wno-array-bounds)
+      endif()
     endif()
   endif()
 endfunction()

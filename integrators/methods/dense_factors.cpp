@@ -6,9 +6,7 @@
 
 namespace noether {
 
-template <class Real> struct DenseFactors<Real>::Solver {
-  Eigen::PartialPivLU<Matrix<Real>> lu;
-};
+template <class Real> struct DenseFactors<Real>::Solver { Eigen::PartialPivLU<Matrix<Real>> lu; };
 
 template <class Real> DenseFactors<Real>::DenseFactors() = default;
 template <class Real>
