@@ -14,6 +14,15 @@ if(PROJECT_IS_TOP_LEVEL)
   endif()
 endif()
 
+# lld links in a third of the time.
+if(PROJECT_IS_TOP_LEVEL)
+  include(CheckLinkerFlag)
+  check_linker_flag(CXX -fuse-ld=lld NOETHER_LLD)
+  if(NOETHER_LLD)
+    add_link_options(-fuse-ld=lld)
+  endif()
+endif()
+
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(fmt 9 REQUIRED)
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)
@@ -81,12 +90,21 @@ function(noether_warnings target)
   endif()
 endfunction()
 
-# Compiles the sources of a target four at a time, so that headers and templates are met once for four.
+# Compiles the sources of a target several at a time, so that headers and templates are met once for all of them.
 function(noether_unity target)
   if(NOETHER_UNITY)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 4)
+    set(batch ${NOETHER_UNITY})
+    if(batch STREQUAL "ROOM")
+      set(batch 0)  # to CMake that is all
+    elseif(NOT batch MATCHES "^[1-9][0-9]*$")
+      message(FATAL_ERROR "NOETHER_UNITY is ${NOETHER_UNITY}; a number of sources is expected, ROOM or OFF")
+    endif()
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${batch})
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-      target_compile_options(${target} PRIVATE -Wno-subobject-linkage)  # g++ takes each of the four for a header
+      target_compile_options(${target} PRIVATE -Wno-subobject-linkage)  # g++ takes each of them for a header
+      if(CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)  # the same two bugs, met where more is inlined
+        target_compile_options(${target} PRIVATE -Wno-array-bounds)
+      endif()
     endif()
   endif()
 endfunction()

@@ -1,10 +1,10 @@
 # noether_library(<folder> [SOURCES <file>...] [ROOMS <folder>...] [LINK <target>...] [LINK_PRIVATE <target>...]
-#                 [EXCEPT <file>] [PRECOMPILE <header>...])
+#                 [EXCEPT <file>] [PRECOMPILE <header>... | PRECOMPILED_BY <folder>])
 #
 # The library noether::<folder> from <folder>/*.cpp (and one level of folders below) and SOURCES. A folder without sources is a
 # header-only library, a folder that does not exist is none at all, and ROOMS that do not exist are passed over.
 # <folder>/*_simd.cpp go through noether_simd, EXCEPT names a source that is no part of it.
-# Without PRECOMPILE a folder shares the precompiled header of the engine.
+# Without PRECOMPILE a folder shares the precompiled header of another one, by default that of the engine.
 
 set(NOETHER_ROOMS "" CACHE INTERNAL "folders that became libraries, lowest layer first")
 
@@ -18,7 +18,7 @@ function(noether_link_rooms target scope)
 endfunction()
 
 function(noether_library folder)
-  cmake_parse_arguments(PARSE_ARGV 1 library "" "EXCEPT" "SOURCES;ROOMS;LINK;LINK_PRIVATE;PRECOMPILE")
+  cmake_parse_arguments(PARSE_ARGV 1 library "" "EXCEPT;PRECOMPILED_BY" "SOURCES;ROOMS;LINK;LINK_PRIVATE;PRECOMPILE")
   set(root ${PROJECT_SOURCE_DIR}/${folder})
   file(GLOB sources CONFIGURE_DEPENDS ${root}/*.cpp ${root}/*/*.cpp)
   file(GLOB headers CONFIGURE_DEPENDS ${root}/*.hpp ${root}/*/*.hpp)
@@ -42,7 +42,10 @@ function(noether_library folder)
     if(NOETHER_PCH AND library_PRECOMPILE)
       target_precompile_headers(${target} PRIVATE ${library_PRECOMPILE})
     elseif(NOETHER_PCH)
-      target_precompile_headers(${target} REUSE_FROM noether_engine)
+      if(NOT library_PRECOMPILED_BY)
+        set(library_PRECOMPILED_BY engine)
+      endif()
+      target_precompile_headers(${target} REUSE_FROM noether_${library_PRECOMPILED_BY})
     endif()
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
     noether_unity(${target})

@@ -127,4 +127,7 @@ template <class Real = double> class ForceField {
   std::vector<AnyForce<Real>> terms_;
 };
 
+extern template class ForceField<double>;
+extern template class ForceField<Quad>;
+
 }  // namespace noether

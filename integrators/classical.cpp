@@ -179,5 +179,7 @@ template <class Real> void Classical<Real>::load(const SavedState& saved, const 
 
 template class Classical<double>;
 template class Classical<Quad>;
+template struct detail::IntegratorModel<Classical<double>>;
+template struct detail::IntegratorModel<Classical<Quad>>;
 
 }  // namespace noether

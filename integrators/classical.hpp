@@ -73,6 +73,8 @@ template <class Real> class Classical {
 
 extern template class Classical<double>;
 extern template class Classical<Quad>;
+extern template struct detail::IntegratorModel<Classical<double>>;
+extern template struct detail::IntegratorModel<Classical<Quad>>;
 
 /// A classical method over forces: `classical(Gravity{}, method("rk4"))`. Velocity-dependent forces are welcome.
 template <class F>

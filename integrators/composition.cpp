@@ -107,4 +107,9 @@ FittedWord fitted_word(const Scheme& scheme, const HamiltonianClaims& claims, co
   return word;
 }
 
+template class Composition<AnyHamiltonian<double>>;
+template class Composition<AnyHamiltonian<Quad>>;
+template struct detail::IntegratorModel<Composition<AnyHamiltonian<double>>>;
+template struct detail::IntegratorModel<Composition<AnyHamiltonian<Quad>>>;
+
 }  // namespace noether

@@ -197,4 +197,10 @@ Composition<H> compose(H hamiltonian, const Scheme& scheme, CompositionOptions o
   return Composition<H>(std::move(hamiltonian), scheme, options);
 }
 
+// Any Hamiltonian along a scheme, compiled once.
+extern template class Composition<AnyHamiltonian<double>>;
+extern template class Composition<AnyHamiltonian<Quad>>;
+extern template struct detail::IntegratorModel<Composition<AnyHamiltonian<double>>>;
+extern template struct detail::IntegratorModel<Composition<AnyHamiltonian<Quad>>>;
+
 }  // namespace noether

@@ -84,4 +84,7 @@ template <SplitHamiltonian H> Damped<H> with_letter(const LinearDrag& drag, H ha
   return Damped<H>(std::move(hamiltonian), drag);
 }
 
+extern template class Damped<AnyHamiltonian<double>>;
+extern template struct detail::HamiltonianModel<Damped<AnyHamiltonian<double>>>;
+
 }  // namespace noether

@@ -172,7 +172,7 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
   }
   /// Packs are not padded: a column holds what the stages hold, in the same order.
   static double* numbers(VectorColumn<Pack>& column) { return column.component(0)->lane.data(); }
-  const double* evaluate_lanes(const StageStates<double>& states) {
+  const double* evaluate_lanes(const StageStates<double>& states) requires sees_packs {
     const auto all = static_cast<std::size_t>(3 * work_.size());
     if (states.q != place_of_stages()) copy_packs(states.q, place_of_stages(), all);
     if (states.v != nullptr) copy_packs(states.v, numbers(packs_.velocities()), all);
@@ -280,5 +280,8 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
   std::optional<Along> along_;  ///< made by the first derivative
   Vector<Real> direction_, column_;
 };
+
+extern template class ForceMotion<ForceField<double>, double>;
+extern template class ForceMotion<ForceField<Quad>, Quad>;
 
 }  // namespace noether

@@ -8,6 +8,7 @@
 #include "engine/signature.hpp"
 #include "engine/unconstrained.hpp"
 #include "engine/word.hpp"
+#include "forces/sum.hpp"
 
 #include <limits>
 #include <optional>
@@ -305,5 +306,11 @@ struct KineticPotentialOptions {
 
 template <class F> KineticPotential(F) -> KineticPotential<F, double>;
 template <class F, class C> KineticPotential(F, C) -> KineticPotential<F, double, C>;
+
+// The Hamiltonian of a scene, compiled once.
+extern template class KineticPotential<ForceField<double>>;
+extern template class KineticPotential<ForceField<Quad>, Quad>;
+extern template struct detail::HamiltonianModel<KineticPotential<ForceField<double>>>;
+extern template struct detail::HamiltonianModel<KineticPotential<ForceField<Quad>, Quad>>;
 
 }  // namespace noether

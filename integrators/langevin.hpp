@@ -5,6 +5,7 @@
 #include "engine/erasure.hpp"
 #include "engine/parallel.hpp"
 #include "engine/random.hpp"
+#include "integrators/kinetic_potential.hpp"
 
 #include <array>
 #include <cmath>
@@ -186,5 +187,8 @@ template <SplitHamiltonian H> class Langevin {
 template <SplitHamiltonian H> Langevin<H> with_letter(const LangevinOptions& options, H hamiltonian) {
   return Langevin<H>(std::move(hamiltonian), options);
 }
+
+extern template class Langevin<AnyHamiltonian<double>>;
+extern template struct detail::HamiltonianModel<Langevin<AnyHamiltonian<double>>>;
 
 }  // namespace noether

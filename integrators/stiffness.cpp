@@ -1,9 +1,9 @@
 #include "integrators/stiffness.hpp"
 
+#include "integrators/eigenvalues.hpp"
 #include "integrators/methods.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@ constexpr double mild = 1e3, stiff = 1e5;
 /// A decay so much faster than what else goes on makes a run stiff.
 constexpr double apart = 100;
 
-Matrix<double> differences(VectorField<double>& f, double t, const Vector<double>& y) {
+Matrix<double> jacobian_by_differences(VectorField<double>& f, double t, const Vector<double>& y) {
   const Index n = y.size();
   Matrix<double> J(n, n);
   Vector<double> shifted = y, above(n), below(n);
@@ -50,17 +50,15 @@ std::vector<std::complex<double>> eigenvalues_of(VectorField<double>& f, double 
         fmt::format("{} variables are too many for their eigenvalues; at most {} are expected", n, most_eigenvalues));
   }
   Matrix<double> J;
-  if (!f.jacobian(t, y, J)) J = differences(f, t, y);
+  if (!f.jacobian(t, y, J)) J = jacobian_by_differences(f, t, y);
   for (Index j = 0; j < n; ++j) {
     for (Index i = 0; i < n; ++i) {
       if (!std::isfinite(J(i, j))) throw Error(fmt::format("df[{}]/dy[{}] is not finite", i, j));
     }
   }
-  const Eigen::EigenSolver<Matrix<double>> solver(J, false);
-  if (solver.info() != Eigen::Success) throw Error("the eigenvalues of the Jacobian could not be found");
-  std::vector<std::complex<double>> all;
-  for (Index i = 0; i < n; ++i) all.push_back(solver.eigenvalues()[i]);
-  return all;
+  const auto all = eigenvalues_of(J);
+  if (!all) throw Error("the eigenvalues of the Jacobian could not be found");
+  return *all;
 }
 
 Stiffness stiffness_of(const std::vector<std::complex<double>>& eigenvalues, double length) {

@@ -155,6 +155,12 @@ template <class Real> AnyHamiltonian<Real> WisdomHolmanOptions::split(ForceField
 
 extern template class WisdomHolman<double>;
 extern template class WisdomHolman<Quad>;
+extern template class WisdomHolman<double, ForceField<double>>;
+extern template class WisdomHolman<Quad, ForceField<Quad>>;
+extern template struct detail::HamiltonianModel<WisdomHolman<double>>;
+extern template struct detail::HamiltonianModel<WisdomHolman<double, ForceField<double>>>;
+extern template struct detail::HamiltonianModel<WisdomHolman<Quad>>;
+extern template struct detail::HamiltonianModel<WisdomHolman<Quad, ForceField<Quad>>>;
 
 }  // namespace noether
 

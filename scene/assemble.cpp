@@ -13,8 +13,6 @@
 
 namespace noether {
 
-template class Composition<AnyHamiltonian<double>>;
-
 namespace {
 
 /// Larger than any run: a cadence of this many steps looks at step 0 only.

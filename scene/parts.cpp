@@ -2,7 +2,6 @@
 
 #include "constraints/angle.hpp"
 #include "constraints/constraint_residual.hpp"
-#include "constraints/constraint_solver.hpp"
 #include "constraints/distance.hpp"
 #include "constraints/surfaces.hpp"
 #include "engine/monitors.hpp"
@@ -36,6 +35,7 @@
 #include "integrators/wisdom_holman.hpp"
 #include "io/checkpoint.hpp"
 #include "io/trajectory.hpp"
+#include "scene/constrained.hpp"
 
 namespace noether {
 

@@ -1,8 +1,7 @@
 #include "study/multistep_roots.hpp"
 
+#include "integrators/eigenvalues.hpp"
 #include "integrators/methods/stormer_cowell.hpp"
-
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -26,10 +25,8 @@ std::vector<Complex> roots_of(const Polynomial& c) {
     companion(0, n + j) = -first.imag();
   }
   for (Index j = 1; j < n; ++j) companion(j, j - 1) = companion(n + j, n + j - 1) = 1;
-  const Eigen::EigenSolver<Matrix<double>> solver(companion, false);
-  std::vector<Complex> roots;
-  for (Index j = 0; j < 2 * n; ++j) roots.push_back(solver.eigenvalues()[j]);
-  return roots;
+  const auto roots = eigenvalues_of(companion);
+  return roots ? *roots : std::vector<Complex>();
 }
 
 /// y_1 = y_0 + mu (sum of weights and rates), explicit, implicit, or the second with the first's rate as the new one.

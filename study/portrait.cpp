@@ -56,7 +56,7 @@ constexpr double duration = 6;
 /// Where a method with steps of its own is at t = 6, and the forces it took.
 std::pair<State, double> travelled(const MethodInfo& info, const State& from, double tolerance) {
   const auto method = make_method<Quad>(info, {.rtol = tolerance, .atol = tolerance});
-  ForceMotion<HenonHeiles, Quad> f{HenonHeiles{}};
+  ForceMotion<ForceField<Quad>, Quad> f(portrait::field_of<Quad>(HenonHeiles{}));
   ParticleSystem<Quad> s = particle_at(from);
   f.bind(s);
   method->bind(f);
@@ -244,7 +244,7 @@ double long_step(int order, const std::optional<StabilityLimit>& limit) {
 /// Whether a method chooses its steps if it is let: lengths of its first ones, asked for ten units of time.
 bool chooses_steps(const MethodInfo& info) {
   const auto method = make_method<double>(info, {});
-  ForceMotion<HenonHeiles, double> f{HenonHeiles{}};
+  ForceMotion<ForceField<double>, double> f(portrait::field_of<double>(HenonHeiles{}));
   ParticleSystem<double> s = portrait::one_particle(0.12, 0.1, 0.2, 0.15);
   f.bind(s);
   method->bind(f);

@@ -50,12 +50,23 @@ inline ParticleSystem<double> three_bodies() {
   return s;
 }
 
-/// A method over a force, with steps of one length where it has them.
-template <class Real, class F> AnyIntegrator<Real> integrator_of(const Sitter& sitter, const F& force) {
-  if (sitter.scheme != nullptr) return compose(KineticPotential<F, Real>(force), *sitter.scheme);
+template <class Real, class F> ForceField<Real> field_of(F force) {
+  return std::move(ForceField<Real>().add(std::move(force)));
+}
+
+/// A method over forces, with steps of one length where it has them. All of them are in force fields, whose assemblies
+/// the libraries have compiled.
+template <class Real> AnyIntegrator<Real> integrator_over(const Sitter& sitter, ForceField<Real> forces) {
+  if (sitter.scheme != nullptr) {
+    return compose(AnyHamiltonian<Real>(KineticPotential<ForceField<Real>, Real>(std::move(forces))), *sitter.scheme);
+  }
   MethodOptions options;
   if (sitter.info->fixed && sitter.info->adaptive) options.adaptive = false;
-  return Classical<Real>(std::make_unique<ForceMotion<F, Real>>(force), {sitter.info, options});
+  return Classical<Real>(std::make_unique<ForceMotion<ForceField<Real>, Real>>(std::move(forces)),
+                         {sitter.info, options});
+}
+template <class Real, class F> AnyIntegrator<Real> integrator_of(const Sitter& sitter, const F& force) {
+  return integrator_over<Real>(sitter, field_of<Real>(force));
 }
 
 /// A run without the machinery of a simulation: no monitors, no files.

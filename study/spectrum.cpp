@@ -1,6 +1,7 @@
 #include "study/spectrum.hpp"
 
 #include "engine/error.hpp"
+#include "integrators/eigenvalues.hpp"
 #include "integrators/stiffness.hpp"
 #include "study/opponent.hpp"
 
@@ -73,13 +74,13 @@ Spectrum dense(VectorField<double>& f, double t, const Vector<double>& y) {
     A.col(j) = -column;
     unit[j] = 0;
   }
-  const Eigen::EigenSolver<Matrix<double>> solver(A, false);
-  if (solver.info() != Eigen::Success) throw Error("the eigenvalues of the Hessian could not be found");
+  const auto values = eigenvalues_of(A);
+  if (!values) throw Error("the eigenvalues of the Hessian could not be found");
   Spectrum found;
-  const auto& values = solver.eigenvalues();
-  const double size = values.cwiseAbs().maxCoeff();
-  for (Index i = 0; i < half; ++i) {
-    const double value = values[i].real();
+  double size = 0;
+  for (const std::complex<double>& lambda : *values) size = std::max(size, std::abs(lambda));
+  for (const std::complex<double>& lambda : *values) {
+    const double value = lambda.real();
     if (value > 1e-12 * size) found.fastest = std::max(found.fastest, std::sqrt(value));
     if (value < -1e-12 * size) found.steepest = std::max(found.steepest, std::sqrt(-value));
   }

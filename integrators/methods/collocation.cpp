@@ -67,8 +67,8 @@ template <class Real> StageTable<Real>::StageTable(const CollocationTable& table
     for (Index j = 0; j < stages; ++j) all(i, j) = table.a[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
   }
   if (table.c[0] > Quad(0)) {
-    const Vector<Quad> rest = all.partialPivLu().solve(Vector<Quad>::Ones(stages));
-    for (Index i = 0; i < stages; ++i) resting[static_cast<std::size_t>(i)] = static_cast<Real>(rest[i]);
+    const Vector<Quad> in_rest = all.partialPivLu().solve(Vector<Quad>::Ones(stages));
+    for (Index i = 0; i < stages; ++i) resting[static_cast<std::size_t>(i)] = static_cast<Real>(in_rest[i]);
   }
   for (std::size_t i = table.stages(); i < lane_count; ++i) {
     c[i] = c[0];

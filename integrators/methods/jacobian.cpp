@@ -2,8 +2,6 @@
 
 #include "engine/saved_state.hpp"
 
-#include <Eigen/SparseLU>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,32 +9,6 @@
 #include <utility>
 
 namespace noether {
-
-template <class Real> struct SparseFactors<Real>::Solver {
-  Eigen::SparseLU<Eigen::SparseMatrix<Real>, Eigen::COLAMDOrdering<int>> lu;
-};
-
-template <class Real> SparseFactors<Real>::SparseFactors() = default;
-template <class Real> SparseFactors<Real>::SparseFactors(SparseFactors&&) noexcept = default;
-template <class Real> SparseFactors<Real>& SparseFactors<Real>::operator=(SparseFactors&&) noexcept = default;
-template <class Real> SparseFactors<Real>::~SparseFactors() = default;
-template <class Real> SparseFactors<Real>& SparseFactors<Real>::operator=(const SparseFactors& /*other*/) {
-  solver_.reset();
-  return *this;
-}
-
-template <class Real> bool SparseFactors<Real>::compute(const Eigen::SparseMatrix<Real>& matrix) {
-  if (!solver_) {
-    solver_ = std::make_unique<Solver>();
-    solver_->lu.analyzePattern(matrix);
-  }
-  solver_->lu.factorize(matrix);
-  return solver_->lu.info() == Eigen::Success;
-}
-
-template <class Real> void SparseFactors<Real>::solve(const Vector<Real>& right, Vector<Real>& x) const {
-  x = solver_->lu.solve(right);
-}
 
 namespace {
 
@@ -103,7 +75,7 @@ template <class Real> void Jacobian<Real>::bind_dense(const FieldClaims& claims)
   const Index n = second_order_ ? size_ / 2 : size_;
   dense_.resize(n, n);
   half_.resize(n);
-  factors_ = Eigen::PartialPivLU<Matrix<Real>>(n);
+  factors_.resize(n);
 }
 
 template <class Real> void Jacobian<Real>::bind_sparse() {
@@ -236,14 +208,7 @@ template <class Real> bool Jacobian<Real>::compute() {
     for (Index i = 0; second_order_ && i < n; ++i) dense_(i, j) -= r * J_(shift + i, j);
     dense_(j, j) += p;
   }
-  factors_.compute(dense_);
-  using std::isfinite;
-  bool regular = true;
-  for (Index i = 0; i < n; ++i) {
-    const Real& pivot = factors_.matrixLU()(i, i);
-    regular = regular && isfinite(pivot) && pivot != Real(0);
-  }
-  return regular;
+  return factors_.compute(dense_);
 }
 
 /// x <- M^-1 x; a copy, and a run that goes on from a file, make their factors here, the same ones.
@@ -254,7 +219,7 @@ template <class Real> bool Jacobian<Real>::solve_half(VectorField<Real>& f, Vect
   if (sparse()) {
     sparse_factors_.solve(x, half_);
   } else {
-    half_.noalias() = factors_.solve(x);
+    factors_.solve(x, half_);
   }
   x.swap(half_);
   return true;
@@ -380,8 +345,6 @@ template <class Real> void Jacobian<Real>::load(const SavedState& saved, const s
   ready_ = false;
 }
 
-template class SparseFactors<double>;
-template class SparseFactors<Quad>;
 template class Jacobian<double>;
 template class Jacobian<Quad>;
 

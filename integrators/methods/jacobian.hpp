@@ -3,39 +3,17 @@
 
 #include "engine/saved_state.hpp"
 #include "integrators/method.hpp"
+#include "integrators/methods/dense_factors.hpp"
 #include "integrators/methods/krylov.hpp"
+#include "integrators/methods/sparse_factors.hpp"
 #include "integrators/step_control.hpp"
 
-#include <Eigen/LU>
-#include <Eigen/SparseCore>
-
 #include <array>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace noether {
-
-/// The sparse factors of one matrix; a copy has none and makes its own.
-template <class Real> class SparseFactors {
- public:
-  SparseFactors();
-  SparseFactors(const SparseFactors& /*other*/) : SparseFactors() {}
-  SparseFactors& operator=(const SparseFactors& other);
-  SparseFactors(SparseFactors&&) noexcept;
-  SparseFactors& operator=(SparseFactors&&) noexcept;
-  ~SparseFactors();
-
-  /// @return whether the matrix is regular
-  bool compute(const Eigen::SparseMatrix<Real>& matrix);
-  bool ready() const { return solver_ != nullptr; }
-  void solve(const Vector<Real>& right, Vector<Real>& x) const;
-
- private:
-  struct Solver;
-  std::unique_ptr<Solver> solver_;
-};
 
 /// What a method wants of its Jacobian.
 struct JacobianUse {
@@ -117,7 +95,7 @@ template <class Real> class Jacobian {
   std::optional<Tolerance> tolerance_;
   Vector<Real> scale_;  ///< of errors that are equally tolerable
   Matrix<Real> dense_;
-  Eigen::PartialPivLU<Matrix<Real>> factors_;
+  DenseFactors<Real> factors_;
   SparseFactors<Real> sparse_factors_;
   Real a_ = Real(0), b_ = Real(0);           ///< of the present factors
   std::array<Real, 3> weights_{};            ///< of I, J or B, and A in the matrix they are factors of
@@ -125,8 +103,6 @@ template <class Real> class Jacobian {
   Vector<Real> up_, down_, direction_, half_, velocities_, late_, moved_, product_;
 };
 
-extern template class SparseFactors<double>;
-extern template class SparseFactors<Quad>;
 extern template class Jacobian<double>;
 extern template class Jacobian<Quad>;
 

@@ -95,7 +95,7 @@ template <class Real> Stepped Rosenbrock<Real>::step(VectorField<Real>& f, const
 
 /// y(t + theta h) = (1 - theta) y0 + theta (y1 + (1 - theta) (w_1 + theta (w_2 + ...))), w by rows of the table.
 template <class Real> void Rosenbrock<Real>::interpolate(VectorField<Real>& /*f*/, const Real& theta, Vector<Real>& y) {
-  const Real rest = Real(1) - theta;
+  const Real remaining = Real(1) - theta;
   for (Index i = 0; i < y.size(); ++i) {
     Real sum(0);
     for (std::size_t r = dense_.size(); r-- > 0;) {
@@ -103,7 +103,7 @@ template <class Real> void Rosenbrock<Real>::interpolate(VectorField<Real>& /*f*
       for (std::size_t j = 0; j < dense_[r].size(); ++j) w += dense_[r][j] * u_[j][i];
       sum = sum * theta + w;
     }
-    y[i] = rest * y0_[i] + theta * (y1_[i] + rest * sum);
+    y[i] = remaining * y0_[i] + theta * (y1_[i] + remaining * sum);
   }
 }
 

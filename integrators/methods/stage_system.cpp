@@ -63,13 +63,7 @@ template <class Real> bool StageSystem<Real>::factorize_dense() {
       }
     }
   }
-  factors_.compute(matrix);
-  using std::isfinite;
-  for (Index i = 0; i < size; ++i) {
-    const Real& pivot = factors_.matrixLU()(i, i);
-    if (!isfinite(pivot) || pivot == Real(0)) return false;
-  }
-  return true;
+  return factors_.compute(matrix);
 }
 
 template <class Real> bool StageSystem<Real>::factorize_sparse() {
@@ -123,7 +117,7 @@ template <class Real> bool StageSystem<Real>::solve(VectorField<Real>& f, Vector
   } else if (sparse()) {
     sparse_factors_.solve(x, solution_);
   } else {
-    solution_ = factors_.solve(x);
+    factors_.solve(x, solution_);
   }
   x.swap(solution_);
   return found;

@@ -4,8 +4,6 @@
 #include "integrators/methods/jacobian.hpp"
 #include "integrators/methods/stage_arithmetic.hpp"
 
-#include <Eigen/LU>
-
 #include <optional>
 #include <vector>
 
@@ -56,7 +54,7 @@ template <class Real> class StageSystem {
   bool shared_ = true;                     ///< one J serves all stages
   std::vector<Jacobian<Real>> jacobians_;  ///< of each stage
   std::optional<Sparsity> pattern_;
-  Eigen::PartialPivLU<Matrix<Real>> factors_;
+  DenseFactors<Real> factors_;
   SparseFactors<Real> sparse_factors_;
   Vector<Real> direction_, product_, solution_;
 };

@@ -1,6 +1,6 @@
 """Headers: each has `#pragma once`; with --compiler, each header and each source also compiles alone.
 
-Builds compile sources four at a time and behind a precompiled header, which hides what one of them forgot to include.
+Builds compile several sources at a time and behind a precompiled header, which hides what one of them forgot to include.
 Tests are never compiled in another way, and lanes stand alone in every build. A header that the source of its name
 includes first is tried with that source."""
 
