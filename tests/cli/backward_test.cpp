@@ -6,6 +6,7 @@
 #include "io/inspect.hpp"
 #include "scene/scene.hpp"
 #include "tests/cli/support.hpp"
+#include "tests/support/drivers.hpp"
 
 #include <string>
 
@@ -27,7 +28,7 @@ TEST_CASE("a scene goes back in time to the bits of a simulation", "[cli][backwa
   CHECK(json_member(result.out, "time") == "-10");
   CHECK(json_member(result.out, "samples") == "21");
   const Scene scene = load_scene(folder / "scene.toml");
-  Simulation<double> run(scene.particles, classical(Gravity{.G = 1}, method("dop853")));
+  Simulation<double> run(scene.particles, classical_over(Gravity{.G = 1}, method("dop853")));
   REQUIRE(run.run_until(-10).ok());
   CHECK(json_member(result.out, "digest") == "\"" + io::digest(run.particles()) + "\"");
   const ProcessResult told = noether(folder, "explain scene.toml");

@@ -112,24 +112,24 @@ ForceField<Quad> further_forces() {
 }
 
 TEST_CASE("the actions of drift and kick are those of their flows", "[conservation][action]") {
-  check_actions(KineticPotential<Gravity, Quad>(Gravity{.G = 1.0, .softening = 0.1}), inertial);
-  check_actions(KineticPotential<OscillatingField, Quad>(OscillatingField{{0.1, 0.2, -0.1}, 2.0, 0.4}), inertial);
-  check_actions(KineticPotential<ForceField<Quad>, Quad>(further_forces().add(Gravity{.G = 1.0})), inertial);
+  check_actions(kinetic_potential<Quad>(Gravity{.G = 1.0, .softening = 0.1}), inertial);
+  check_actions(kinetic_potential<Quad>(OscillatingField{{0.1, 0.2, -0.1}, 2.0, 0.4}), inertial);
+  check_actions(kinetic_potential_over(further_forces().add(Gravity{.G = 1.0})), inertial);
 }
 
 TEST_CASE("the actions of Kepler arcs and interaction kicks are those of their flows in Jacobi coordinates",
           "[conservation][action]") {
   check_actions(WisdomHolman<Quad>({}), jacobi);
   check_actions(WisdomHolman<Quad, ForceField<Quad>>({}, further_forces()), jacobi);
-  check_actions(WisdomHolman<Quad, Sum<HarmonicField>>({}, Sum(HarmonicField{0.3})), jacobi);
+  check_actions(WisdomHolman<Quad, ForceField<Quad>>({}, field_of<Quad>(HarmonicField{0.3})), jacobi);
 }
 
 TEST_CASE("the actions of Kepler arcs and interaction kicks are those of their flows in democratic coordinates",
           "[conservation][action]") {
   const WisdomHolmanOptions options{.coordinates = Coordinates::democratic};
-  check_actions(WisdomHolman<Quad>(options), democratic);
-  check_actions(WisdomHolman<Quad, ForceField<Quad>>(options, further_forces()), democratic);
-  check_actions(WisdomHolman<Quad, Sum<HarmonicField>>(options, Sum(HarmonicField{0.3})), democratic);
+  check_actions(wisdom_holman<Quad>(options), democratic);
+  check_actions(wisdom_holman_over(options, further_forces()), democratic);
+  check_actions(wisdom_holman<Quad>(options, HarmonicField{0.3}), democratic);
 }
 
 TEST_CASE("erased Hamiltonians give the same actions and the same bits", "[conservation][action]") {
@@ -147,7 +147,7 @@ TEST_CASE("erased Hamiltonians give the same actions and the same bits", "[conse
 }
 
 TEST_CASE("drag has no action, the letters beside it keep theirs", "[conservation][action]") {
-  Damped<KineticPotential<Gravity, Quad>> damped(KineticPotential<Gravity, Quad>(Gravity{.G = 1.0}), {.rate = 0.1});
+  auto damped = test::damped(kinetic_potential<Quad>(Gravity{.G = 1.0}), {.rate = 0.1});
   auto s = bodies();
   damped.bind(s);
   CHECK_THROWS_AS(damped.flow_with_action('D', s, Quad(0.1)), LogicError);
@@ -156,11 +156,11 @@ TEST_CASE("drag has no action, the letters beside it keep theirs", "[conservatio
 }
 
 /// Reports the action of a kick with the opposite sign.
-class WrongSign : public KineticPotential<Gravity, Quad> {
+class WrongSign : public KineticPotential<ForceField<Quad>, Quad> {
  public:
-  WrongSign() : KineticPotential<Gravity, Quad>(Gravity{.G = 1.0}) {}
+  WrongSign() : KineticPotential(field_of<Quad>(Gravity{.G = 1.0})) {}
   Quad flow_with_action(char letter, ParticleSystem<Quad>& s, const Quad& h) {
-    return -KineticPotential<Gravity, Quad>::flow_with_action(letter, s, h);
+    return -KineticPotential::flow_with_action(letter, s, h);
   }
 };
 

@@ -23,7 +23,7 @@ Quad energy(const ParticleSystem<double>& s) {
       }
     }
   }
-  KineticPotential<Gravity, Quad> hamiltonian(Gravity{});
+  auto hamiltonian = kinetic_potential<Quad>(Gravity{});
   hamiltonian.bind(wide);
   return hamiltonian.energy(wide).total();
 }
@@ -36,7 +36,7 @@ std::vector<ErrorPoint> rounding_errors(CompositionOptions options) {
   for (int orbit = 0; orbit < orbits; ++orbit) {
     auto s = kepler_pair(0.2 + 0.003 * orbit, 0.1 * orbit);
     s.clock() = Clock<double>::fixed(0, 0.0628);
-    Composition integrator(KineticPotential(Gravity{}), schemes::sofroniou_spaletta_10_s35, options);
+    Composition integrator(kinetic_potential(Gravity{}), schemes::sofroniou_spaletta_10_s35, options);
     integrator.bind(s);
     auto settled = s;
     const Quad start = energy(s);

@@ -86,7 +86,7 @@ TEST_CASE("every scheme over kinetic and potential energy is symplectic", "[cons
   const auto start = planets(0.1, 1).as<Quad>();
   for (const Scheme* scheme : schemes::all()) {
     INFO(scheme->name);
-    CHECK(defect(KineticPotential<Gravity, Quad>(Gravity{}), *scheme, start, 0.2, 2) < 1e-16);
+    CHECK(defect(kinetic_potential<Quad>(Gravity{}), *scheme, start, 0.2, 2) < 1e-16);
   }
 }
 
@@ -95,9 +95,9 @@ TEST_CASE("every scheme over Kepler arcs is symplectic in the inertial momenta, 
   const auto start = planets(0.1, 2).as<Quad>();
   for (const Scheme* scheme : schemes::all()) {
     INFO(scheme->name);
-    CHECK(defect(WisdomHolman<Quad>({.coordinates = Coordinates::jacobi}), *scheme, start, 0.2, 1) < 1e-16);
+    CHECK(defect(wisdom_holman<Quad>({.coordinates = Coordinates::jacobi}), *scheme, start, 0.2, 1) < 1e-16);
     if (!takes_inexact_kicks(*scheme)) continue;
-    CHECK(defect(WisdomHolman<Quad>({.coordinates = Coordinates::democratic}), *scheme, start, 0.2, 1) < 1e-16);
+    CHECK(defect(wisdom_holman<Quad>({.coordinates = Coordinates::democratic}), *scheme, start, 0.2, 1) < 1e-16);
   }
 }
 
@@ -106,7 +106,7 @@ TEST_CASE("Kepler arcs with further forces are symplectic", "[conservation][symp
   ForceField<Quad> field;
   field.add(HarmonicField{0.3}).add(OscillatingField{{0.1, 0.2, -0.1}, 2.0, 0.4});
   for (const Coordinates coordinates : {Coordinates::jacobi, Coordinates::democratic}) {
-    const WisdomHolman<Quad, ForceField<Quad>> hamiltonian({.coordinates = coordinates}, field);
+    const auto hamiltonian = wisdom_holman_over({.coordinates = coordinates}, field);
     CHECK(defect(hamiltonian, schemes::verlet, start, 0.2, 2) < 1e-16);
     CHECK(defect(hamiltonian, schemes::abah_8_6_4, start, 0.2, 1) < 1e-16);
   }
@@ -124,9 +124,9 @@ struct CurlingForce {
 TEST_CASE("what is not symplectic is found: a force with a curl, and drag by exactly its factor",
           "[conservation][symplectic]") {
   const auto start = planets(0.1, 1).as<Quad>();
-  CHECK(defect(KineticPotential<CurlingForce, Quad>(CurlingForce{}), schemes::verlet, start, 0.2, 2) > 1e-12);
+  CHECK(defect(kinetic_potential<Quad>(CurlingForce{}), schemes::verlet, start, 0.2, 2) > 1e-12);
   const double rate = 0.05, dt = 0.2;
-  const Damped<KineticPotential<Gravity, Quad>> damped(KineticPotential<Gravity, Quad>(Gravity{}), {.rate = rate});
+  const auto damped = test::damped(kinetic_potential<Quad>(Gravity{}), {.rate = rate});
   const Matrix m = derivative(damped, schemes::verlet, start, dt, 2);
   CHECK(defect(m, start) > 1e-3);
   CHECK(defect(m, start, exp(Quad(-2 * rate) * Quad(dt))) < 1e-16);

@@ -88,7 +88,7 @@ TEST_CASE("free molecules move in a box as they do in open space", "[constraints
 }
 
 template <class Real> void check_stages(const MolecularLiquid& liquid, int steps) {
-  KineticPotential<LennardJonesForce, Real, ConstraintSet> hamiltonian(sites, liquid.constraints);
+  auto hamiltonian = hamiltonian_of<Real>(liquid, sites);
   ParticleSystem<Real> s = liquid.particles.as<Real>();
   s.clock() = Clock<Real>::fixed(0, 0.004);
   hamiltonian.bind(s);
@@ -132,8 +132,8 @@ TEST_CASE("bits of molecules in a box do not depend on threads, skins, who looks
       CHECK(same_bits(flow(liquid, schemes::verlet, 0.004, 40), straight));
     }
     for (const double skin : {0.05, 0.3, 1.5}) {
-      auto hamiltonian = hamiltonian_of(liquid, sites);
-      hamiltonian.set_neighbor_options({.skin = skin});
+      const auto hamiltonian =
+          kinetic_potential_over(field_of(sites), liquid.constraints, NeighborOptions{.skin = skin});
       Simulation<double> sim(liquid.particles, compose(hamiltonian, schemes::verlet), 0.004);
       REQUIRE(sim.run(40).ok());
       CHECK(same_bits(sim.particles(), straight));

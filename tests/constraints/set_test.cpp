@@ -133,7 +133,7 @@ TEST_CASE("a rigid bar holds particles in line, which distances cannot", "[const
   ConstraintSet bar;
   add_rigid_bar(bar, s, {0, 1, 2});
   CHECK(bar.equations() == 4);
-  Simulation<double> sim(s, compose(KineticPotential(Gravity{.G = 0.2}, bar), schemes::verlet), 0.05);
+  Simulation<double> sim(s, compose(kinetic_potential_over(field_of(Gravity{.G = 0.2}), bar), schemes::verlet), 0.05);
   REQUIRE(sim.run(2000).ok());
   CHECK(bar.worst(sim.particles()).residual < 16 * 0x1p-53);
   const Vec3<double> a = sim.particles().positions()[0], b = sim.particles().positions()[1],
@@ -201,8 +201,8 @@ TEST_CASE("temperature counts the degrees of freedom that are left", "[constrain
     return std::pair{temperature.degrees_of_freedom(), temperature.report().first.value()};
   };
   // 5 particles, 4 bars, and no external force: 15 - 4 - 3.
-  const auto [free, T] =
-      temperature_of(compose(KineticPotential(Gravity{}, chain.constraints), schemes::verlet), chain.particles);
+  const auto [free, T] = temperature_of(
+      compose(kinetic_potential_over(field_of(Gravity{}), chain.constraints), schemes::verlet), chain.particles);
   CHECK(free == 8);
   auto s = chain.particles;
   ConstraintSolver<double>(chain.constraints).bind(s);
@@ -217,8 +217,9 @@ TEST_CASE("temperature counts the degrees of freedom that are left", "[constrain
   // Under its weight momentum is not kept, and its motion counts; so does a tracer's not.
   auto with_dust = chain.particles;
   with_dust.add("dust", 0, {9, 9, 9}, {5, 5, 5});
-  CHECK(temperature_of(compose(KineticPotential(weight, chain.constraints), schemes::verlet), with_dust).first == 11);
-  CHECK(temperature_of(compose(KineticPotential(Gravity{}), schemes::verlet), with_dust).first == 12);
+  CHECK(temperature_of(compose(kinetic_potential_over(field_of(weight), chain.constraints), schemes::verlet), with_dust)
+            .first == 11);
+  CHECK(temperature_of(compose(kinetic_potential(Gravity{}), schemes::verlet), with_dust).first == 12);
   CHECK(
       temperature_of(compose(hamiltonian_of(double_pendulum()), schemes::verlet), double_pendulum().particles).first ==
       4);

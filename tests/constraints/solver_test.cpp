@@ -152,7 +152,7 @@ TEST_CASE("momentum and angular momentum are kept to rounding where the constrai
   for (const ConstraintOptions& options :
        {ConstraintOptions{}, ConstraintOptions{.solver = ConstraintMethod::rattle, .tolerance = 1e-4}}) {
     const Mechanism chain = free_chain(12, options);
-    const KineticPotential hamiltonian(Gravity{.G = 0.1, .softening = 0.5}, chain.constraints);
+    const auto hamiltonian = kinetic_potential_over(field_of(Gravity{.G = 0.1, .softening = 0.5}), chain.constraints);
     CHECK(hamiltonian.claims().keeps_momentum);
     CHECK(hamiltonian.claims().keeps_angular_momentum);
     Simulation<double> sim(chain.particles, compose(hamiltonian, schemes::verlet), 0.02);
@@ -166,11 +166,11 @@ TEST_CASE("momentum and angular momentum are kept to rounding where the constrai
     CHECK(angular.worst() < bound);
   }
   CHECK_FALSE(hamiltonian_of(hanging_chain(3)).claims().keeps_momentum);
-  CHECK_FALSE(KineticPotential(Gravity{}, hanging_chain(3).constraints).claims().keeps_momentum);
-  CHECK(KineticPotential(Gravity{}, hanging_chain(3).constraints).claims().keeps_angular_momentum);
+  CHECK_FALSE(kinetic_potential_over(field_of(Gravity{}), hanging_chain(3).constraints).claims().keeps_momentum);
+  CHECK(kinetic_potential_over(field_of(Gravity{}), hanging_chain(3).constraints).claims().keeps_angular_momentum);
   ConstraintSet aside;
   aside.add(hanging_chain(3).particles, OnSphere{{0, 0, 0.1}}, {0});
-  CHECK_FALSE(KineticPotential(Gravity{}, aside).claims().keeps_angular_momentum);
+  CHECK_FALSE(kinetic_potential_over(field_of(Gravity{}), aside).claims().keeps_angular_momentum);
 }
 
 TEST_CASE("accelerations are those of the motion along the constraints", "[constraints]") {
@@ -267,8 +267,8 @@ TEST_CASE("a run saved, rebuilt and restored goes on bit for bit, for every sche
 
 TEST_CASE("what is edited in a run is moved onto the constraints again", "[constraints]") {
   const Mechanism chain = free_chain(4);
-  Simulation<double> sim(chain.particles, compose(KineticPotential(Gravity{}, chain.constraints), schemes::verlet),
-                         0.01);
+  Simulation<double> sim(
+      chain.particles, compose(kinetic_potential_over(field_of(Gravity{}), chain.constraints), schemes::verlet), 0.01);
   REQUIRE(sim.run(5).ok());
   sim.edit([](ParticleSystem<double>& s) { s.velocities().add(1, {0.5, 0.5, 0.5}); });
   CHECK(velocity_across(chain.constraints, sim.particles()) < 8 * 0x1p-53);

@@ -13,6 +13,7 @@
 #include "integrators/schemes.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/drivers.hpp"
 #include "tests/support/planets.hpp"
 #include "tests/support/settings.hpp"
 
@@ -64,25 +65,27 @@ template <class Make> void check_threads(const Make& final_particles) {
 TEST_CASE("outputs do not change the trajectory, nor does dividing a run", "[determinism]") {
   for (const char* name : {"verlet", "verlet_aba", "symplectic_euler_b", "blanes_moan_s6", "yoshida_8", "srkn14a"}) {
     CAPTURE(name);
-    check_cadences(compose(KineticPotential(Gravity{.G = G}), *schemes::find(name)));
-    check_cadences(compose(KineticPotential(Gravity{.G = G}), *schemes::find(name), {.compensated = true}));
+    check_cadences(compose(test::kinetic_potential(Gravity{.G = G}), *schemes::find(name)));
+    check_cadences(compose(test::kinetic_potential(Gravity{.G = G}), *schemes::find(name), {.compensated = true}));
   }
   for (const char* name : {"verlet", "verlet_aba", "saba_3", "aba_10_6_4", "abah_8_4_4"}) {
     CAPTURE(name);
-    check_cadences(compose(WisdomHolman({.G = G}), *schemes::find(name)));
+    check_cadences(compose(test::wisdom_holman({.G = G}), *schemes::find(name)));
   }
-  check_cadences(compose(WisdomHolman({.G = G, .coordinates = Coordinates::democratic}), schemes::abah_8_6_4));
+  check_cadences(compose(test::wisdom_holman({.G = G, .coordinates = Coordinates::democratic}), schemes::abah_8_6_4));
 }
 
 TEST_CASE("any number of threads gives the same bits", "[determinism]") {
   check_threads([] {
-    return final_state(test::cloud(300), compose(KineticPotential(Gravity{.G = 1, .softening = 0.05}), schemes::verlet),
-                       0.01, 12, 5);
+    return final_state(test::cloud(300),
+                       compose(test::kinetic_potential(Gravity{.G = 1, .softening = 0.05}), schemes::verlet), 0.01, 12,
+                       5);
   });
   for (const Coordinates coordinates : {Coordinates::jacobi, Coordinates::democratic}) {
     check_threads([&] {
       return final_state(test::planets_with_tracers(400),
-                         compose(WisdomHolman({.G = G, .coordinates = coordinates}), schemes::verlet_aba), 20.0, 12, 5);
+                         compose(test::wisdom_holman({.G = G, .coordinates = coordinates}), schemes::verlet_aba), 20.0,
+                         12, 5);
     });
   }
 }
@@ -90,10 +93,10 @@ TEST_CASE("any number of threads gives the same bits", "[determinism]") {
 TEST_CASE("matrix-free implicit steps have the same bits for any number of threads", "[determinism]") {
   for (const char* name : {"newmark", "bdf_2"}) {
     check_threads([&] {
-      return final_state(
-          test::cloud(300),
-          classical(Gravity{.G = 1, .softening = 0.05}, method(name, {.jacobian = JacobianForm::matrix_free})), 0.01, 4,
-          0);
+      return final_state(test::cloud(300),
+                         test::classical_over(Gravity{.G = 1, .softening = 0.05},
+                                              method(name, {.jacobian = JacobianForm::matrix_free})),
+                         0.01, 4, 0);
     });
   }
 }
@@ -110,7 +113,8 @@ TEST_CASE("steps too stiff for sweeps have the same bits for any number of threa
     check_threads([&] {
       MethodOptions options{.jacobian = way.form};
       if (methods::find(way.name)->adaptive) options.adaptive = false;
-      Simulation simulation(test::cloud(way.n), classical(HarmonicField{1e4}, method(way.name, options)), 0.1);
+      Simulation simulation(test::cloud(way.n), test::classical_over(HarmonicField{1e4}, method(way.name, options)),
+                            0.1);
       REQUIRE(simulation.run(4).ok());
       REQUIRE(simulation.evaluations().jacobian >= 3);
       return simulation.particles();
@@ -123,7 +127,7 @@ TEST_CASE("the energy of many bodies has the same bits for any number of threads
   for (const int n : {1, 2, 3, 8}) {
     const test::Threads threads(n);
     Simulation simulation(test::cloud(300),
-                          compose(KineticPotential(Gravity{.G = 1, .softening = 0.05}), schemes::verlet), 0.01);
+                          compose(test::kinetic_potential(Gravity{.G = 1, .softening = 0.05}), schemes::verlet), 0.01);
     auto& energy = simulation.every(1, Energy{});
     REQUIRE(simulation.run(3).ok());
     if (!one) one = energy.total();

@@ -17,6 +17,7 @@
 #include "io/digest.hpp"
 #include "scene/scene.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/drivers.hpp"
 #include "tests/support/liquid.hpp"
 #include "tests/support/planets.hpp"
 #include "tests/support/settings.hpp"
@@ -122,7 +123,7 @@ Twin cloud_twin(int bodies, const H& hamiltonian, const std::string& scene, cons
 }
 
 std::vector<Twin> gravity_twins() {
-  const KineticPotential gravity(Gravity{.G = 1, .softening = 0.05});
+  const auto gravity = test::kinetic_potential(Gravity{.G = 1, .softening = 0.05});
   std::vector<Twin> twins;
   for (const char* method : {"verlet", "verlet_aba", "blanes_moan_s6", "srkn11b", "yoshida_8"}) {
     twins.push_back(cloud_twin(530, gravity, soft_scene, method));
@@ -133,22 +134,22 @@ std::vector<Twin> gravity_twins() {
 }
 
 std::vector<Twin> force_twins() {
-  const KineticPotential forces(Sum(Gravity{.G = 1, .softening = 0.05},
-                                    Oblateness{.J2 = 0.01, .J4 = -1e-4, .radius = 0.5, .axis = {0.1, 0, 1}, .G = 1},
-                                    UniformField{.acceleration = {1e-3, 2e-3, 0}},
-                                    OscillatingField{.acceleration = {0, 1e-3, 0}, .omega = 3}));
+  const auto forces = test::kinetic_potential(
+      Gravity{.G = 1, .softening = 0.05},
+      Oblateness{.J2 = 0.01, .J4 = -1e-4, .radius = 0.5, .axis = {0.1, 0, 1}, .G = 1},
+      UniformField{.acceleration = {1e-3, 2e-3, 0}}, OscillatingField{.acceleration = {0, 1e-3, 0}, .omega = 3});
   const std::string scene = soft_scene +
                             "[[hamiltonian.force]]\ntype='oblateness'\nJ2=0.01\nJ4=-1e-4\nradius=0.5\naxis=[0.1,0,1]\n"
                             "[[hamiltonian.force]]\ntype='uniform_field'\nacceleration=[1e-3,2e-3,0]\n"
                             "[[hamiltonian.force]]\ntype='oscillating_field'\nacceleration=[0,1e-3,0]\nomega=3\n";
   return {cloud_twin(200, forces, scene, "blanes_moan_s10"),
-          cloud_twin(200, Damped(forces, LinearDrag{.rate = 0.2}),
+          cloud_twin(200, test::damped(forces, LinearDrag{.rate = 0.2}),
                      scene + "[[hamiltonian.force]]\ntype='linear_drag'\nrate=0.2\n", "verlet")};
 }
 
 std::vector<Twin> wisdom_holman_twins(Coordinates coordinates) {
   const bool jacobi = coordinates == Coordinates::jacobi;
-  const WisdomHolman hamiltonian({.G = test::outer_G, .coordinates = coordinates});
+  const auto hamiltonian = test::wisdom_holman({.G = test::outer_G, .coordinates = coordinates});
   const std::string scene = fmt::format("[hamiltonian]\ntype='wisdom_holman'\nG={}\ncoordinates='{}'\n", test::outer_G,
                                         jacobi ? "jacobi" : "democratic");
   std::vector<Twin> twins;
@@ -169,7 +170,7 @@ std::vector<Twin> liquid_twins() {
     const LennardJonesForce argon{.cutoff = 2.2, .epsilon = 1.0, .sigma = 1.0, .precision = precision};
     twins.push_back({.name = precision == PairPrecision::full ? "a liquid" : "a liquid in mixed precision",
                      .bodies = test::liquid(5, 0.85, 1, 0.1),
-                     .program = compose(KineticPotential(argon), schemes::blanes_moan_s6),
+                     .program = compose(test::kinetic_potential(argon), schemes::blanes_moan_s6),
                      .step = 0.01,
                      .hamiltonian = fmt::format("[hamiltonian]\ntype='kinetic_potential'\n[[hamiltonian.force]]\n"
                                                 "type='lennard_jones'\ncutoff=2.2\nepsilon=1\nsigma=1\n"

@@ -9,6 +9,7 @@
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/schemes.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/drivers.hpp"
 #include "tests/support/liquid.hpp"
 
 #include <fmt/format.h>
@@ -50,7 +51,7 @@ ParticleSystem<double> springs_in_molecular_units() {
 
 TEST_CASE("in molecular units the drift is told in kT/ns/atom", "[energy]") {
   Simulation<double> sim(springs_in_molecular_units(),
-                         compose(KineticPotential(HarmonicField{.k = 4000}), schemes::verlet), 0.03);
+                         compose(test::kinetic_potential(HarmonicField{.k = 4000}), schemes::verlet), 0.03);
   auto& energy = sim.every(1, Energy{});
   auto& diary = sim.every(1, EnergyDiary{});
   REQUIRE(sim.run(333).ok());
@@ -65,7 +66,7 @@ TEST_CASE("in molecular units the drift is told in kT/ns/atom", "[energy]") {
   CHECK(is_near(report.drift_error.value(), line.error / (2 * kT / 1000)));
   // It goes on with the run.
   Simulation<double> again(springs_in_molecular_units(),
-                           compose(KineticPotential(HarmonicField{.k = 4000}), schemes::verlet), 0.03);
+                           compose(test::kinetic_potential(HarmonicField{.k = 4000}), schemes::verlet), 0.03);
   auto& restored = again.every(1, Energy{});
   again.every(1, EnergyDiary{});
   again.restore(sim.save());
@@ -77,7 +78,8 @@ TEST_CASE("in molecular units the drift is told in kT/ns/atom", "[energy]") {
 TEST_CASE("in a box in reduced units the drift is told in epsilon/tau/atom", "[energy]") {
   Simulation<double> sim(
       test::liquid(2, 0.8442, 1.44),
-      compose(KineticPotential(LennardJonesForce{.cutoff = 1.4, .epsilon = 1.0, .sigma = 1.0}), schemes::verlet), 0.01);
+      compose(test::kinetic_potential(LennardJonesForce{.cutoff = 1.4, .epsilon = 1.0, .sigma = 1.0}), schemes::verlet),
+      0.01);
   auto& energy = sim.every(1, Energy{});
   auto& diary = sim.every(1, EnergyDiary{});
   REQUIRE(sim.run(100).ok());
@@ -90,13 +92,13 @@ TEST_CASE("orbits, baths and a single look have no drift by atom", "[energy]") {
   ParticleSystem<double> pair;
   pair.add("sun", 1, {0, 0, 0}, {0, 0, 0});
   pair.add("planet", 0.001, {1, 0, 0}, {0, 1, 0});
-  Simulation<double> orbit(pair, compose(KineticPotential(Gravity{}), schemes::verlet), 0.01);
+  Simulation<double> orbit(pair, compose(test::kinetic_potential(Gravity{}), schemes::verlet), 0.01);
   auto& of_orbit = orbit.every(1, Energy{});
   REQUIRE(orbit.run(50).ok());
   CHECK(of_orbit.report().note.empty());
   CHECK_FALSE(of_orbit.report().drift);
   Simulation<double> one_look(springs_in_molecular_units(),
-                              compose(KineticPotential(HarmonicField{.k = 4000}), schemes::verlet), 0.03);
+                              compose(test::kinetic_potential(HarmonicField{.k = 4000}), schemes::verlet), 0.03);
   auto& seen_once = one_look.every(1, Energy{});
   REQUIRE(one_look.run(0).ok());
   CHECK(seen_once.report().note.empty());

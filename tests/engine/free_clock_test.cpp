@@ -8,6 +8,7 @@
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/schemes.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/drivers.hpp"
 #include "tests/support/planets.hpp"
 
 #include <algorithm>
@@ -164,7 +165,7 @@ std::vector<double> steps_of(const std::vector<Moment>& every_step) {
 /// Where the light body is at time t, by many small steps of order 6.
 Vec3<double> reference(double t) {
   const std::int64_t n = 20000;
-  Simulation run(ellipse(), compose(KineticPotential(Gravity{.G = 1}), schemes::blanes_moan_s10),
+  Simulation run(ellipse(), compose(test::kinetic_potential(Gravity{.G = 1}), schemes::blanes_moan_s10),
                  t / static_cast<double>(n));
   CHECK(run.run(n).ok());
   return run.particles().positions()[1];

@@ -9,6 +9,7 @@
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/schemes.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/drivers.hpp"
 
 #include <cmath>
 #include <memory>
@@ -29,7 +30,7 @@ template <class Real> ParticleSystem<Real> three_bodies() {
 }
 
 template <class Real> Simulation<Real> run_of(ParticleSystem<Real> s, double dt = 1.0 / 64) {
-  return Simulation<Real>(std::move(s), compose(KineticPotential<Gravity, Real>(Gravity{}), schemes::verlet), dt);
+  return Simulation<Real>(std::move(s), compose(test::kinetic_potential<Real>(Gravity{}), schemes::verlet), dt);
 }
 
 /// A particle on a spring.
@@ -119,7 +120,7 @@ TEMPLATE_TEST_CASE("gravity keeps momentum and angular momentum to rounding", "[
 
 TEST_CASE("a field from outside is seen as a change of momentum", "[monitors]") {
   const UniformField field{.acceleration = {0, 0.5, 0}};
-  Simulation sim(oscillator(), compose(KineticPotential(field), schemes::verlet), 0.25);
+  Simulation sim(oscillator(), compose(test::kinetic_potential(field), schemes::verlet), 0.25);
   auto& momentum = sim.every(4, Momentum{});
   CHECK(sim.run(8).ok());
   CHECK(momentum.value() == std::array<double, 3>{0, 1, 0});
@@ -180,8 +181,8 @@ TEST_CASE("a direction that turns is told, as the closed form says", "[monitors]
   // Thrown along y in a field along z: L = (g t^2 / 2, -g t, 1). Verlet is exact here.
   ParticleSystem<double> s;
   s.add("thrown", 1, {1, 0, 0}, {0, 1, 0});
-  Simulation sim(std::move(s), compose(KineticPotential(UniformField{.acceleration = {0, 0, 0.5}}), schemes::verlet),
-                 0.125);
+  Simulation sim(std::move(s),
+                 compose(test::kinetic_potential(UniformField{.acceleration = {0, 0, 0.5}}), schemes::verlet), 0.125);
   auto& angular = sim.every(1, AngularMomentum{});
   CHECK(sim.run(8).ok());
   const Quad change = sqrt(Quad(0.3125));  // of (1/4, -1/2, 0); every number before it is a double
@@ -191,7 +192,7 @@ TEST_CASE("a direction that turns is told, as the closed form says", "[monitors]
 }
 
 TEST_CASE("a dissipative run has an energy but no error of it, and says why", "[monitors]") {
-  const Damped damped(KineticPotential(HarmonicField{.k = 1}), LinearDrag{.rate = 0.125});
+  const auto damped = test::damped(test::kinetic_potential(HarmonicField{.k = 1}), LinearDrag{.rate = 0.125});
   Simulation sim(oscillator(), compose(damped, schemes::verlet), 0.125);
   auto& energy = sim.every(1, Energy{});
   CHECK(sim.run(80).ok());
@@ -205,7 +206,7 @@ TEST_CASE("a dissipative run has an energy but no error of it, and says why", "[
 
 TEST_CASE("a driven run has an energy but no error of it, and says why", "[monitors]") {
   const OscillatingField drive{.acceleration = {1, 0, 0}, .omega = 2};
-  Simulation sim(oscillator(), compose(KineticPotential(drive), schemes::verlet), 0.125);
+  Simulation sim(oscillator(), compose(test::kinetic_potential(drive), schemes::verlet), 0.125);
   auto& energy = sim.every(1, Energy{});
   CHECK(sim.run(8).ok());
   CHECK(energy.report().reason == "a force depends on time: the energy changes by itself, so there is no error of it");
@@ -214,12 +215,12 @@ TEST_CASE("a driven run has an energy but no error of it, and says why", "[monit
 
 TEST_CASE("a monitor that is not attached costs nothing", "[monitors]") {
   Counting bare, watched;
-  Simulation without(oscillator(), compose(KineticPotential(bare), schemes::verlet), 0.125);
+  Simulation without(oscillator(), compose(test::kinetic_potential(bare), schemes::verlet), 0.125);
   CHECK(without.run(100).ok());
   CHECK(bare.counts->energy == 0);
   CHECK(bare.counts->all == 101);  // a kick each step, and one to settle the end, which is looked at for finite values
 
-  Simulation with(oscillator(), compose(KineticPotential(watched), schemes::verlet), 0.125);
+  Simulation with(oscillator(), compose(test::kinetic_potential(watched), schemes::verlet), 0.125);
   with.every(10, Energy{});
   CHECK(with.run(100).ok());
   CHECK(watched.counts->energy == 11);

@@ -6,6 +6,7 @@
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/schemes.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/drivers.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -25,7 +26,7 @@ template <class Real> ParticleSystem<Real> planet(const OrbitalElements<Real>& o
 }
 
 template <class Real> Simulation<Real> orbits_of(ParticleSystem<Real> s, double dt) {
-  return Simulation<Real>(std::move(s), compose(KineticPotential<Gravity, Real>(Gravity{}), schemes::yoshida_8), dt);
+  return Simulation<Real>(std::move(s), compose(test::kinetic_potential<Real>(Gravity{}), schemes::yoshida_8), dt);
 }
 
 }  // namespace

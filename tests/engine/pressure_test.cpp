@@ -11,6 +11,7 @@
 #include "integrators/langevin.hpp"
 #include "integrators/schemes.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/drivers.hpp"
 #include "tests/support/liquid.hpp"
 #include "tests/support/refusal.hpp"
 
@@ -33,7 +34,7 @@ LennardJonesForce pair_force(Cutoff style) {
 }
 
 template <class F> Simulation<double> fluid_run(const ParticleSystem<double>& s, const F& force) {
-  return Simulation<double>(s, compose(KineticPotential(force), schemes::verlet), 0.005);
+  return Simulation<double>(s, compose(test::kinetic_potential(force), schemes::verlet), 0.005);
 }
 
 template <class Make> std::string refusal_of_pressure(const Make& make) {
@@ -52,7 +53,7 @@ TEMPLATE_TEST_CASE("an ideal gas has the pressure of its momenta alone", "[press
   gas.add("a", 2, {0.5, 0.5, 0.5}, {1, 0, -2});
   gas.add("b", 1, {1.5, 3.5, 7.5}, {3, 4, 0});
   gas.add("dust", 0, {1, 1, 1}, {9, 9, 9});
-  Simulation<Real> sim(gas.as<Real>(), compose(KineticPotential<Sum<>, Real>(Sum<>{}), schemes::verlet), 0.25);
+  Simulation<Real> sim(gas.as<Real>(), compose(test::kinetic_potential<Real>(), schemes::verlet), 0.25);
   auto& pressure = sim.every(1, Pressure{});
   REQUIRE(sim.run(30).ok());
   // m v v^T summed: xx = 2 + 9, xy = 12, xz = -4, yy = 16, zz = 8; over a volume of 64.
@@ -111,7 +112,7 @@ TEST_CASE("a pressure of molecules is told in bar too, and under a bath", "[pres
   ParticleSystem<double> gas(unit_system("molecular"));
   gas.set_box(Box::periodic({1, 1, 1}));
   gas.add("Ar", 3, {0.5, 0.5, 0.5}, {1, 1, 1});
-  const Langevin bath(KineticPotential(Sum<>{}), {.temperature = 300, .friction = 1e-9});
+  const auto bath = test::in_bath({}, {.temperature = 300, .friction = 1e-9});
   Simulation<double> sim(gas, compose(bath, word("BAOAB")), 0.001);
   auto& pressure = sim.every(1, Pressure{});
   REQUIRE(sim.run(0).ok());

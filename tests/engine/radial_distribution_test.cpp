@@ -9,6 +9,7 @@
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/schemes.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/drivers.hpp"
 #include "tests/support/liquid.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/settings.hpp"
@@ -21,7 +22,7 @@ namespace noether {
 namespace {
 
 Simulation<double> still(const ParticleSystem<double>& s) {
-  return Simulation<double>(s, compose(KineticPotential(Sum<>{}), schemes::verlet), 0.005);
+  return Simulation<double>(s, compose(test::kinetic_potential(), schemes::verlet), 0.005);
 }
 
 RadialDistribution observed(const ParticleSystem<double>& s, const RadialDistribution& asked) {
@@ -120,7 +121,8 @@ TEST_CASE("g(r) is averaged over the looks, and goes on from a saved run bit for
   const auto make = [] {
     return Simulation<double>(
         test::liquid(3, 0.8442, 1.44),
-        compose(KineticPotential(LennardJonesForce{.cutoff = 1.5, .epsilon = 1.0, .sigma = 1.0}), schemes::verlet),
+        compose(test::kinetic_potential(LennardJonesForce{.cutoff = 1.5, .epsilon = 1.0, .sigma = 1.0}),
+                schemes::verlet),
         0.005);
   };
   const RadialDistribution asked(30);

@@ -10,6 +10,7 @@
 #include "integrators/wisdom_holman.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/columns.hpp"
+#include "tests/support/drivers.hpp"
 #include "tests/support/planets.hpp"
 
 namespace noether {
@@ -151,7 +152,7 @@ TEST_CASE("a choice that there is not is refused", "[saved]") {
 }
 
 TEST_CASE("an order that names no particle, or one twice, is refused", "[saved]") {
-  Simulation run(test::outer_planets(), compose(WisdomHolman({.G = test::outer_G}), schemes::verlet_aba), 50.0);
+  Simulation run(test::outer_planets(), compose(test::wisdom_holman({.G = test::outer_G}), schemes::verlet_aba), 50.0);
   const SavedRun whole = run.save();
   REQUIRE_NOTHROW(run.restore(whole));
   for (const std::vector<std::int64_t>& order :

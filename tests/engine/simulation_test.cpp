@@ -11,6 +11,7 @@
 #include "integrators/schemes.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/drivers.hpp"
 #include "tests/support/planets.hpp"
 
 #include <thread>
@@ -21,10 +22,10 @@ namespace {
 constexpr double G = test::outer_G;
 using Times = std::vector<std::pair<std::int64_t, double>>;
 
-auto verlet() { return compose(KineticPotential(Gravity{.G = G}), schemes::verlet); }
+auto verlet() { return compose(test::kinetic_potential(Gravity{.G = G}), schemes::verlet); }
 
 auto wisdom_holman(const Scheme& scheme, CompositionOptions options = {}) {
-  return compose(WisdomHolman({.G = G}), scheme, options);
+  return compose(test::wisdom_holman({.G = G}), scheme, options);
 }
 
 Simulation<double> planets(double dt = 40) { return Simulation(test::outer_planets(), verlet(), dt); }
@@ -138,7 +139,7 @@ TEST_CASE("impossible cadences are refused, and leave no monitor behind", "[simu
 }
 
 TEST_CASE("a monitor of the energy is refused where a force reports none", "[simulation]") {
-  Simulation run(test::outer_planets(), compose(KineticPotential(Push{}), schemes::verlet), 1.0);
+  Simulation run(test::outer_planets(), compose(test::kinetic_potential(Push{}), schemes::verlet), 1.0);
   CHECK_THROWS_WITH(run.every(1, Energy{}), "monitor 'energy' needs the energy, but a force of this run reports none");
   run.every(1, Momentum{});
   CHECK(run.run(1).ok());
@@ -244,7 +245,7 @@ TEST_CASE("the step changes, time and step count go on", "[simulation]") {
 
 TEST_CASE("a collision that the forces cannot bear ends the run by name", "[simulation]") {
   // An attraction too weak to be felt on the way: the two meet in one point at step 8, where the kick is 0/0.
-  Simulation run(head_on(), compose(KineticPotential(Gravity{.G = 0x1p-60}), schemes::verlet), 0x1p-3);
+  Simulation run(head_on(), compose(test::kinetic_potential(Gravity{.G = 0x1p-60}), schemes::verlet), 0x1p-3);
   const Outcome outcome = run.run(1000);
   CHECK(outcome.kind == Outcome::Kind::diverged);
   CHECK_FALSE(outcome.ok());
@@ -265,7 +266,7 @@ TEST_CASE("where a run fails does not depend on who looks, and what is left is t
   for (const std::int64_t cadence : {0, 1, 7, 100}) {
     ParticleSystem<double> s;
     s.add("bob", 1, {1, 0, 0}, {0, 0, 0});
-    Simulation run(std::move(s), compose(KineticPotential(HarmonicField{.k = 1}), schemes::verlet), 3.0);
+    Simulation run(std::move(s), compose(test::kinetic_potential(HarmonicField{.k = 1}), schemes::verlet), 3.0);
     if (cadence > 0) run.every(cadence, CenterOfMass{});
     const Outcome outcome = run.run(5000);
     CAPTURE(cadence);
@@ -284,8 +285,8 @@ TEST_CASE("where a run fails does not depend on who looks, and what is left is t
 TEST_CASE("a state that is not finite is called so by every Hamiltonian", "[simulation]") {
   auto s = test::outer_planets();
   s.add("Twin", 1e-9, s.positions()[3], s.velocities()[3]);
-  Simulation run(std::move(s), compose(WisdomHolman({.G = G, .coordinates = Coordinates::democratic}), schemes::verlet),
-                 40.0);
+  Simulation run(std::move(s),
+                 compose(test::wisdom_holman({.G = G, .coordinates = Coordinates::democratic}), schemes::verlet), 40.0);
   const Outcome outcome = run.run(10);
   CHECK(outcome.kind == Outcome::Kind::diverged);
   CHECK(outcome.message.find("is not finite") != std::string::npos);

@@ -10,6 +10,7 @@
 #include "integrators/schemes.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/drivers.hpp"
 #include "tests/support/order_fit.hpp"
 #include "tests/support/planets.hpp"
 
@@ -26,7 +27,7 @@ ParticleSystem<double> passing() {
   return s;
 }
 
-auto free_motion() { return compose(KineticPotential(Gravity{.G = 1e-30}), schemes::verlet); }
+auto free_motion() { return compose(test::kinetic_potential(Gravity{.G = 1e-30}), schemes::verlet); }
 
 /// Time on the ellipse below since its pericentre, at eccentric anomaly E.
 Quad time_at(const Quad& E) { return E - sin(E) / Quad(2); }
@@ -59,7 +60,7 @@ double time_found(const StopRule& rule, double interval, const Quad& E) {
       if (reason && !*found) *found = reason->time;
     }
   };
-  Simulation<Quad> run(ellipse(E), compose(WisdomHolman<Quad>({.G = 1.0}), schemes::verlet_aba), interval);
+  Simulation<Quad> run(ellipse(E), compose(test::wisdom_holman<Quad>({.G = 1.0}), schemes::verlet_aba), interval);
   StopCheck<Quad> check(rule);
   std::optional<double> found;
   run.every(1, Look{&check, &found});
@@ -171,7 +172,7 @@ TEST_CASE("a stopped run may go on", "[stop]") {
 
 TEST_CASE("looking for events does not change the trajectory", "[stop]") {
   const auto final_state = [](std::int64_t cadence) {
-    Simulation run(test::outer_planets(), compose(WisdomHolman({.G = test::outer_G}), schemes::verlet), 50.0);
+    Simulation run(test::outer_planets(), compose(test::wisdom_holman({.G = test::outer_G}), schemes::verlet), 50.0);
     if (cadence > 0) {
       run.stop_when(farther_than(1000), cadence);
       run.stop_when(closer_than(1e-6), cadence + 1);

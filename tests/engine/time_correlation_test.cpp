@@ -10,6 +10,7 @@
 #include "integrators/langevin.hpp"
 #include "integrators/schemes.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/drivers.hpp"
 #include "tests/support/refusal.hpp"
 
 #include <cmath>
@@ -36,7 +37,7 @@ ParticleSystem<double> flight() {
 }
 
 template <class Real = double> Simulation<Real> flying(double dt = 0.125) {
-  return Simulation<Real>(flight().as<Real>(), compose(KineticPotential<Sum<>, Real>(Sum<>{}), schemes::verlet), dt);
+  return Simulation<Real>(flight().as<Real>(), compose(test::kinetic_potential<Real>(), schemes::verlet), dt);
 }
 
 /// Free particles in a bath at kT = 0.5: D = kT / (m friction), C(t) = 3 kT / m exp(-friction t).
@@ -45,8 +46,7 @@ Simulation<double> brownian(Index n) {
   for (Index i = 0; i < n; ++i) s.add("", 2, {0, 0, 0}, {0, 0, 0});
   return Simulation<double>(
       std::move(s),
-      compose(Langevin(KineticPotential(Sum<>{}), {.temperature = 0.5, .friction = 4, .seed = 3}), word("BAOAB")),
-      0.05);
+      compose(test::in_bath(test::field_of(), {.temperature = 0.5, .friction = 4, .seed = 3}), word("BAOAB")), 0.05);
 }
 
 }  // namespace
@@ -100,7 +100,7 @@ TEST_CASE("the velocity autocorrelation of oscillators is their cosine, and its 
   ParticleSystem<double> s;
   s.add("", 1, {0, 0, 0}, {3, 0, 4});
   s.add("", 1, {0, 0, 0}, {-3, 0, -4});
-  Simulation<double> sim(s, compose(KineticPotential(HarmonicField{.k = 4}), schemes::yoshida_8), 0.01);
+  Simulation<double> sim(s, compose(test::kinetic_potential(HarmonicField{.k = 4}), schemes::yoshida_8), 0.01);
   auto& vacf = sim.every(1, VelocityAutocorrelation(100, 1000));
   REQUIRE(sim.run(150).ok());
   const std::vector<double> C = vacf.values();

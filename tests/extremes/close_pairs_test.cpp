@@ -8,6 +8,7 @@
 #include "integrators/langevin.hpp"
 #include "integrators/methods.hpp"
 #include "tests/extremes/support.hpp"
+#include "tests/support/drivers.hpp"
 #include "tests/support/liquid.hpp"
 #include "tests/support/settings.hpp"
 
@@ -22,10 +23,8 @@ LennardJonesForce argon() {
   return {.cutoff = 2.5, .cutoff_style = Cutoff::shifted_force, .epsilon = 1.0, .sigma = 1.0};
 }
 
-Composition<KineticPotential<LennardJonesForce>> melt(const Scheme& scheme = schemes::verlet, double skin = 0) {
-  KineticPotential<LennardJonesForce> hamiltonian(argon());
-  hamiltonian.set_neighbor_options({.skin = skin});
-  return compose(std::move(hamiltonian), scheme);
+Composition<AnyHamiltonian<double>> melt(const Scheme& scheme = schemes::verlet, double skin = 0) {
+  return compose(kinetic_potential_over(field_of(argon()), NeighborOptions{.skin = skin}), scheme);
 }
 
 /// Beads of a ring of three, and a fourth one far from them, in a box; the bond of 'c' and 'a' is this much stretched.
@@ -43,13 +42,10 @@ ParticleSystem<double> ring(double stretched, double speed = 0) {
   return s;
 }
 
-using Ring = KineticPotential<Sum<LennardJonesForce, Bonded>>;
-
 /// How a ring with a bond that is too long, or becomes so, ends.
 Outcome end_of_ring(double stretched, double speed, const Scheme& scheme, std::int64_t cadence, double skin = 0) {
-  Ring hamiltonian(Sum(argon(), Bonded{}));
-  hamiltonian.set_neighbor_options({.skin = skin});
-  Simulation sim(ring(stretched, speed), compose(std::move(hamiltonian), scheme), 0.01);
+  const auto hamiltonian = kinetic_potential_over(field_of(argon(), Bonded{}), NeighborOptions{.skin = skin});
+  Simulation sim(ring(stretched, speed), compose(hamiltonian, scheme), 0.01);
   if (cadence > 0) sim.every(cadence, Energy{});
   return sim.run(100);
 }
@@ -84,7 +80,7 @@ ParticleSystem<double> row_with_ends(double apart, double factor) {
 /// How a row ends that is under a pair force.
 template <class Force>
 Outcome end_of_row(const ParticleSystem<double>& s, const Force& force, double step, std::int64_t steps) {
-  Simulation sim(s, compose(KineticPotential<Sum<Force, Bonded>>(Sum(force, Bonded{})), schemes::verlet), step);
+  Simulation sim(s, compose(kinetic_potential(force, Bonded{}), schemes::verlet), step);
   return sim.run(steps);
 }
 
@@ -116,7 +112,7 @@ TEST_CASE("a bond that breaks ends the run as overstretch, whoever looks and wha
     }
     for (const std::int64_t cadence : {0, 1}) {
       Simulation sim(ring(stretched, speed),
-                     compose(Langevin(Ring(Sum(argon(), Bonded{})), {.temperature = 1, .friction = 0.1}), baoab), 0.01);
+                     compose(in_bath(field_of(argon(), Bonded{}), {.temperature = 1, .friction = 0.1}), baoab), 0.01);
       if (cadence > 0) sim.every(cadence, Energy{});
       CHECK(sim.run(100).kind == Outcome::Kind::overstretch);
     }
@@ -139,7 +135,7 @@ TEST_CASE("a broken bond is named at every SIMD level, on any number of threads"
         if (i > 0) topology->bonds.push_back({{i - 1, i}, 0});
       }
       s.set_topology(topology);
-      Simulation sim(std::move(s), compose(KineticPotential(Bonded{}), schemes::verlet), 0.01);
+      Simulation sim(std::move(s), compose(kinetic_potential(Bonded{}), schemes::verlet), 0.01);
       const Outcome outcome = sim.run(100);
       CHECK(outcome.kind == Outcome::Kind::overstretch);
       REQUIRE(outcome.particle);
@@ -154,7 +150,7 @@ TEST_CASE("a broken bond is named at every SIMD level, on any number of threads"
 TEST_CASE("methods of fixed steps name a force that fails too", "[extremes][bonded]") {
   for (const char* name : {"rk4", "heun", "gauss_1"}) {
     CAPTURE(name);
-    Simulation sim(ring(1.6), classical(Sum(argon(), Bonded{}), method(name)), 0.01);
+    Simulation sim(ring(1.6), classical_over(field_of(argon(), Bonded{}), method(name)), 0.01);
     CHECK(sim.run(10).kind == Outcome::Kind::overstretch);
   }
 }
@@ -311,8 +307,8 @@ TEST_CASE("a box far too full is refused by name before neighbors are listed", "
     for (const int threads : {1, 2}) {
       const Threads now(threads);
       const ParticleSystem<double> s = liquid(cells, 1e3, 1.0);
-      auto integrator = melt();
-      KineticPotential<LennardJonesForce>& hamiltonian = integrator.hamiltonian();
+      Composition integrator(KineticPotential(field_of(argon())), schemes::verlet);
+      const auto& hamiltonian = integrator.hamiltonian();
       ParticleSystem<double> first = s;
       first.clock() = Clock<double>::fixed(0, 1e-4);
       integrator.bind(first);

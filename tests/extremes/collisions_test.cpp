@@ -30,7 +30,7 @@ bool is_mirrored(const ParticleSystem<double>& s) {
 /// A softened fall through each other: worst error of the energy.
 double softened_fall(const Scheme& scheme, std::int64_t steps) {
   const double dt = 12.0 / static_cast<double>(steps);
-  WatchedRun run(head_on(1, 0), compose(KineticPotential(Gravity{.G = 1.0, .softening = 0.3}), scheme), dt);
+  WatchedRun run(head_on(1, 0), compose(kinetic_potential(Gravity{.G = 1.0, .softening = 0.3}), scheme), dt);
   const Outcome outcome = run.simulation.run(steps);
   check_named_end(run.simulation, outcome, dt);
   CHECK(outcome.kind == Outcome::Kind::completed);
@@ -60,7 +60,7 @@ TEST_CASE("bodies that fall head-on bounce back over arcs after the period of Ke
   for (const auto& [scheme, steps] : {std::pair{&schemes::verlet, 7}, {&schemes::verlet_aba, 6}}) {
     const double dt = fall_period / steps;
     CAPTURE(scheme->name);
-    WatchedRun run(head_on(1, 0), compose(WisdomHolman({.G = 1.0}), *scheme), dt, steps);
+    WatchedRun run(head_on(1, 0), compose(wisdom_holman({.G = 1.0}), *scheme), dt, steps);
     const Outcome outcome = run.simulation.run(steps);
     check_named_end(run.simulation, outcome, dt);
     CHECK(outcome.kind == Outcome::Kind::completed);
@@ -78,7 +78,7 @@ TEST_CASE("an arc that ends in the collision itself has a finite end or a named 
     for (const int halves : {1, 2, 3, 4}) {
       const double dt = fall_period / (2 * halves);
       CAPTURE(scheme->name, halves);
-      Simulation simulation(head_on(1, 0), compose(WisdomHolman({.G = 1.0}), *scheme), dt);
+      Simulation simulation(head_on(1, 0), compose(wisdom_holman({.G = 1.0}), *scheme), dt);
       const Outcome outcome = simulation.run(10 * halves);
       check_named_end(simulation, outcome, dt);
       CHECK((outcome.ok() || outcome.kind == Outcome::Kind::diverged || outcome.kind == Outcome::Kind::solver_failure));
@@ -90,7 +90,7 @@ TEST_CASE("point masses that fall head-on under kicks end with a name, as mirror
   for (const char* name : {"symplectic_euler_b", "verlet", "verlet_aba", "yoshida_8", "srkn14a"}) {
     for (const double dt : {0.1, 0.01, 0.001}) {
       CAPTURE(name, dt);
-      WatchedRun run(head_on(1, 0), compose(KineticPotential(Gravity{.G = 1.0}), *schemes::find(name)), dt);
+      WatchedRun run(head_on(1, 0), compose(kinetic_potential(Gravity{.G = 1.0}), *schemes::find(name)), dt);
       const Outcome outcome = run.simulation.run(5000);
       check_named_end(run.simulation, outcome, dt);
       CHECK((outcome.kind == Outcome::Kind::completed || outcome.kind == Outcome::Kind::diverged));
@@ -113,7 +113,7 @@ TEST_CASE("bodies that stand in one place after a step end the run with a name, 
           "[extremes]") {
   const auto start = head_on(0x1p-100, 1);  // too light to be turned aside: 4 steps of 0.25 are exact
   for (const double softening : {0.0, 0.001}) {
-    WatchedRun run(start, compose(KineticPotential(Gravity{.G = 1.0, .softening = softening}), schemes::verlet), 0.25);
+    WatchedRun run(start, compose(kinetic_potential(Gravity{.G = 1.0, .softening = softening}), schemes::verlet), 0.25);
     const Outcome outcome = run.simulation.run(8);
     check_named_end(run.simulation, outcome, 0.25);
     if (softening > 0) {
@@ -133,19 +133,19 @@ TEST_CASE("bodies that pass within the distance of a collision between two steps
   for (const double aside : {1e-5, 1e-3, 0.005}) {
     CAPTURE(aside);
     for (const bool arcs : {false, true}) {
-      const Outcome outcome = arcs ? meeting(aside, compose(WisdomHolman({.G = 1.0}), schemes::verlet))
-                                   : meeting(aside, compose(KineticPotential(Gravity{.G = 1.0}), schemes::verlet));
+      const Outcome outcome = arcs ? meeting(aside, compose(wisdom_holman({.G = 1.0}), schemes::verlet))
+                                   : meeting(aside, compose(kinetic_potential(Gravity{.G = 1.0}), schemes::verlet));
       CHECK(outcome.kind == Outcome::Kind::stopped);
       CHECK(outcome.step == 34);
       CHECK(has(outcome.message, "collision of left and right"));
     }
-    CHECK(meeting(0.02, compose(KineticPotential(Gravity{.G = 1.0}), schemes::verlet)).kind ==
+    CHECK(meeting(0.02, compose(kinetic_potential(Gravity{.G = 1.0}), schemes::verlet)).kind ==
           Outcome::Kind::completed);
   }
 }
 
 TEST_CASE("bodies that meet exactly head-on between two steps stop the run too", "[extremes]") {
-  CHECK(meeting(0, compose(KineticPotential(Gravity{.G = 1.0}), schemes::verlet)).kind == Outcome::Kind::stopped);
+  CHECK(meeting(0, compose(kinetic_potential(Gravity{.G = 1.0}), schemes::verlet)).kind == Outcome::Kind::stopped);
 }
 
 TEST_CASE("the high-order methods stop at collisions that their own steps find, without a hint", "[extremes]") {
@@ -153,7 +153,7 @@ TEST_CASE("the high-order methods stop at collisions that their own steps find, 
     CAPTURE(name);
     // Two equal masses at rest, point masses: stopped within the distance, with the energy at rounding until then.
     for (const double near : {0.1, 1e-3}) {
-      Simulation<double> fall(head_on(1, 0), classical(Gravity{.G = 1.0}, method(name, adaptive())));
+      Simulation<double> fall(head_on(1, 0), classical_over(Gravity{.G = 1.0}, method(name, adaptive())));
       const Energy& energy = fall.every(1, Energy{});
       fall.stop_when(closer_than(near), 1);
       const Outcome outcome = fall.run_until(fall_period);
@@ -170,7 +170,7 @@ TEST_CASE("the high-order methods stop at collisions that their own steps find, 
       ParticleSystem<double> s;
       s.add("star", 1, {0, 0, 0}, {0, 0, 0});
       s.add("tracer", 0, {1, 0, 0}, {0, aside, 0});
-      Simulation<double> run(s, classical(Gravity{.G = 1.0}, method(name, adaptive())));
+      Simulation<double> run(s, classical_over(Gravity{.G = 1.0}, method(name, adaptive())));
       run.stop_when(closer_than(0.01), 1);
       const Outcome outcome = run.run_until(10);
       INFO(to_text(outcome));
@@ -183,7 +183,7 @@ TEST_CASE("the high-order methods stop at collisions that their own steps find, 
 TEST_CASE("point masses that fall head-on by the high-order methods end with a name", "[extremes]") {
   for (const char* name : {"gauss_8", "gauss_radau_15"}) {
     CAPTURE(name);
-    Simulation<double> run(head_on(1, 0), classical(Gravity{.G = 1.0}, method(name, adaptive())));
+    Simulation<double> run(head_on(1, 0), classical_over(Gravity{.G = 1.0}, method(name, adaptive())));
     const Outcome outcome = run.run_until(fall_period);
     INFO(to_text(outcome));
     CHECK(is_finite(run.particles()));
@@ -195,7 +195,7 @@ TEST_CASE("a slow fall head-on is stopped by a collision wherever a step ends wi
   for (const double softening : {0.0, 0.3}) {
     const double dt = 1e-3;
     Simulation simulation(head_on(1, 0),
-                          compose(KineticPotential(Gravity{.G = 1.0, .softening = softening}), schemes::verlet), dt);
+                          compose(kinetic_potential(Gravity{.G = 1.0, .softening = softening}), schemes::verlet), dt);
     simulation.stop_when(closer_than(0.1), 1);
     const Outcome outcome = simulation.run(10000);
     check_named_end(simulation, outcome, dt);

@@ -77,10 +77,10 @@ double rounding_of_ellipse(double flows, double time) { return 8 * rounding * fl
 TEST_CASE("one body alone goes straight on under every scheme and both Hamiltonians, whatever its mass", "[extremes]") {
   for (const Scheme* scheme : schemes::all()) {
     for (const double mass : {0x1p-1000, 1.0, 0x1p1000}) {
-      check_lone_body(KineticPotential(Gravity{}), *scheme, mass);
-      check_lone_body(WisdomHolman({}), *scheme, mass);
+      check_lone_body(kinetic_potential(Gravity{}), *scheme, mass);
+      check_lone_body(wisdom_holman({}), *scheme, mass);
       if (scheme->scheme_class == SchemeClass::rkn) continue;
-      check_lone_body(WisdomHolman({.coordinates = Coordinates::democratic}), *scheme, mass);
+      check_lone_body(wisdom_holman({.coordinates = Coordinates::democratic}), *scheme, mass);
     }
   }
 }
@@ -91,7 +91,7 @@ TEST_CASE("tracers alone go straight on, also all in one place", "[extremes]") {
       for (const Scheme* scheme : {&schemes::verlet, &schemes::symplectic_euler_a, &schemes::yoshida_8}) {
         CAPTURE(n, apart, scheme->name);
         const auto start = tracers_alone(n, apart);
-        WatchedRun run(start, compose(KineticPotential(Gravity{}), *scheme), lone_dt);
+        WatchedRun run(start, compose(kinetic_potential(Gravity{}), *scheme), lone_dt);
         run.simulation.stop_when(closer_than(1), 1);  // tracers do not collide with tracers
         run.simulation.stop_when(farther_than(1e6), 1);
         const Outcome outcome = run.simulation.run(lone_steps);
@@ -110,14 +110,14 @@ TEST_CASE("tracers alone go straight on, also all in one place", "[extremes]") {
 TEST_CASE("tracers alone are refused where something must lie in the middle", "[extremes]") {
   const auto tracers = tracers_alone(3, true);
   CHECK_THROWS_WITH(
-      Simulation(tracers, compose(WisdomHolman({}), schemes::verlet), 1.0),
+      Simulation(tracers, compose(wisdom_holman({}), schemes::verlet), 1.0),
       Catch::Contains("'tracer 0' comes first, so it is the primary of wisdom_holman, but its mass is 0"));
   auto moved = tracers;
   CHECK_THROWS_WITH(move_to_barycenter(moved), Catch::Contains("every particle is a tracer of mass 0"));
 }
 
 TEST_CASE("the centre of mass of tracers alone is no number without a reason", "[extremes]") {
-  Simulation simulation(tracers_alone(3, true), compose(KineticPotential(Gravity{}), schemes::verlet), lone_dt);
+  Simulation simulation(tracers_alone(3, true), compose(kinetic_potential(Gravity{}), schemes::verlet), lone_dt);
   const auto& center = simulation.every(1, CenterOfMass{});
   REQUIRE(simulation.run(3).ok());
   CHECK(explains_itself(center.report()));
@@ -128,7 +128,7 @@ TEST_CASE("masses in any ratio from 1e-15 to 1e15 move alike about each other un
   constexpr std::int64_t steps = 200;
   for (const Scheme* scheme : {&schemes::verlet, &schemes::verlet_aba, &schemes::yoshida_4, &schemes::srkn14a}) {
     const double flows = static_cast<double>(scheme->word.size()) * steps;
-    const KineticPotential hamiltonian(Gravity{.G = 1.0});
+    const auto hamiltonian = kinetic_potential(Gravity{.G = 1.0});
     const auto even = relative_motion(run(hamiltonian, *scheme, unequal_pair(1), dt, steps));
     for (const double ratio : mass_ratios) {
       CAPTURE(scheme->name, ratio);
@@ -152,7 +152,7 @@ TEST_CASE("masses in any ratio from 1e-15 to 1e15 follow Kepler to rounding over
     for (const double ratio : mass_ratios) {
       CAPTURE(scheme->name, ratio);
       const auto start = unequal_pair(ratio);
-      WatchedRun watched(start, compose(WisdomHolman({.G = 1.0}), *scheme), dt);
+      WatchedRun watched(start, compose(wisdom_holman({.G = 1.0}), *scheme), dt);
       const Outcome outcome = watched.simulation.run(steps);
       check_named_end(watched.simulation, outcome, dt);
       CHECK(outcome.kind == Outcome::Kind::completed);
@@ -170,7 +170,7 @@ TEST_CASE("masses in any ratio end with a name in democratic coordinates", "[ext
     for (const Scheme* scheme : {&schemes::verlet, &schemes::aba_10_6_4}) {
       CAPTURE(ratio, scheme->name);
       WatchedRun watched(unequal_pair(ratio),
-                         compose(WisdomHolman({.G = 1.0, .coordinates = Coordinates::democratic}), *scheme), 0.05);
+                         compose(wisdom_holman({.G = 1.0, .coordinates = Coordinates::democratic}), *scheme), 0.05);
       const Outcome outcome = watched.simulation.run(200);
       check_named_end(watched.simulation, outcome, 0.05);
       CHECK(std::isfinite(watched.energy.worst()));

@@ -2,6 +2,7 @@
 
 #include "forces/external_fields.hpp"
 #include "tests/extremes/support.hpp"
+#include "tests/support/drivers.hpp"
 
 #if defined(__GLIBC__)
 #include <malloc.h>
@@ -64,9 +65,9 @@ TEST_CASE("a million tracers go round a star over arcs to rounding, and under ki
   constexpr double dt = 0.01;
   constexpr std::int64_t steps = 4;
   // Eight roundings per arc; a circle whose speed is rounded is another one, three times as far astray by the radian.
-  CHECK(disk_error(WisdomHolman({.G = 1.0}), dt, steps) < 8 * rounding * steps * 2);
+  CHECK(disk_error(wisdom_holman({.G = 1.0}), dt, steps) < 8 * rounding * steps * 2);
   // The energy that verlet keeps differs by (w h)^2 terms: (w t)^3 is an upper bound of what t = 0.04 makes of them.
-  CHECK(disk_error(KineticPotential(Gravity{.G = 1.0}), dt, steps) < 0.04 * 0.04 * 0.04);
+  CHECK(disk_error(kinetic_potential(Gravity{.G = 1.0}), dt, steps) < 0.04 * 0.04 * 0.04);
 }
 
 TEST_CASE("a box of a million bodies on springs swings as one would, and keeps its energy", "[extremes][slow]") {
@@ -79,7 +80,7 @@ TEST_CASE("a box of a million bodies on springs swings as one would, and keeps i
   constexpr double dt = 0.01;
   constexpr std::int64_t steps = 4;
   const auto start = box;
-  WatchedRun run(std::move(box), compose(KineticPotential(HarmonicField{.k = 1}), schemes::verlet), dt, steps);
+  WatchedRun run(std::move(box), compose(kinetic_potential(HarmonicField{.k = 1}), schemes::verlet), dt, steps);
   const Outcome outcome = run.simulation.run(steps);
   check_named_end(run.simulation, outcome, dt);
   CHECK(outcome.kind == Outcome::Kind::completed);

@@ -54,7 +54,7 @@ template <class H> void check_one_period(const H& hamiltonian, const ParticleSys
 /// Error of the relative position after four of its own times past the pericenter of a thin ellipse, in its distance.
 double passage_error(const Scheme& scheme, std::int64_t steps) {
   const double q = 1 - thin, duration = 4 * std::sqrt(q * q * q / (1 + thin));
-  const auto start = kepler_pair(thin), wide = run(KineticPotential(Gravity{.G = 1.0}), scheme, start,
+  const auto start = kepler_pair(thin), wide = run(kinetic_potential(Gravity{.G = 1.0}), scheme, start,
                                                    duration / static_cast<double>(steps), steps);
   const double time = static_cast<double>(steps) * (duration / static_cast<double>(steps));
   const Vec3<Quad> x = kepler_motion(start.as<Quad>(), Quad(time)).x;
@@ -110,9 +110,9 @@ std::pair<double, double> fly_by_errors(const FlyBy& orbit, const ParticleSystem
 }  // namespace
 
 TEST_CASE("an ellipse of eccentricity 0.999999 closes to rounding over arcs, in both coordinates", "[extremes]") {
-  check_one_period(WisdomHolman({.G = 1.0}), kepler_pair(thin, pi));
-  check_one_period(WisdomHolman({.G = 1.0}), tracer_on_ellipse(thin, pi));
-  check_one_period(WisdomHolman({.G = 1.0, .coordinates = Coordinates::democratic}), tracer_on_ellipse(thin, pi));
+  check_one_period(wisdom_holman({.G = 1.0}), kepler_pair(thin, pi));
+  check_one_period(wisdom_holman({.G = 1.0}), tracer_on_ellipse(thin, pi));
+  check_one_period(wisdom_holman({.G = 1.0, .coordinates = Coordinates::democratic}), tracer_on_ellipse(thin, pi));
 }
 
 TEST_CASE("kicks pass the pericenter of an ellipse of eccentricity 0.999999 with their order, where steps are short",
@@ -132,7 +132,7 @@ TEST_CASE("kicks too coarse for an ellipse of eccentricity 0.999999 end with a n
     for (const double anomaly : {0.0, pi}) {
       CAPTURE(name, anomaly);
       const Scheme& scheme = *schemes::find(name);
-      WatchedRun run(kepler_pair(thin, anomaly), compose(KineticPotential(Gravity{.G = 1.0}), scheme), dt);
+      WatchedRun run(kepler_pair(thin, anomaly), compose(kinetic_potential(Gravity{.G = 1.0}), scheme), dt);
       const auto& scale = run.simulation.every(1, LargestScale{});
       const Outcome outcome = run.simulation.run(500);
       check_named_end(run.simulation, outcome, dt);
@@ -154,7 +154,7 @@ TEST_CASE("a hyperbolic fly-by deflects by its closed form over arcs, in one ste
         const FlyBy orbit{e, H};
         const double dt = orbit.duration() / static_cast<double>(steps);
         CAPTURE(e, H, steps);
-        WatchedRun run(orbit.start(), compose(WisdomHolman({.G = 1.0}), schemes::verlet), dt, steps);
+        WatchedRun run(orbit.start(), compose(wisdom_holman({.G = 1.0}), schemes::verlet), dt, steps);
         const Outcome outcome = run.simulation.run(steps);
         check_named_end(run.simulation, outcome, dt);
         CHECK(outcome.kind == Outcome::Kind::completed);
@@ -176,7 +176,7 @@ TEST_CASE("a hyperbolic fly-by under kicks has the order of its scheme", "[extre
   for (const Scheme* scheme : {&schemes::verlet, &schemes::verlet_aba, &schemes::yoshida_4}) {
     std::array<double, 2> error{};
     for (const std::int64_t steps : {1500, 3000}) {
-      const auto end = run(KineticPotential(Gravity{.G = 1.0}), *scheme, orbit.start(),
+      const auto end = run(kinetic_potential(Gravity{.G = 1.0}), *scheme, orbit.start(),
                            orbit.duration() / static_cast<double>(steps), steps);
       error[steps == 3000 ? 1 : 0] = fly_by_errors(orbit, end).first;
     }

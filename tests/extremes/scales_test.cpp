@@ -144,7 +144,7 @@ TEST_CASE("the oblateness of a body is right to rounding for radii from 1e-98 to
 
 TEST_CASE("an ellipse under kicks has the same bits at every scale from 4^-165 to 4^165", "[extremes]") {
   for (const Scheme* scheme : {&schemes::verlet, &schemes::yoshida_4}) {
-    const auto integrator = compose(KineticPotential(Gravity{.G = 1.0}), *scheme);
+    const auto integrator = compose(kinetic_potential(Gravity{.G = 1.0}), *scheme);
     const auto unit = unscaled_end(0, integrator);
     for (const int k : {-165, -100, -30, -1, 1, 30, 100, 165}) {
       CAPTURE(scheme->name, k);
@@ -155,7 +155,7 @@ TEST_CASE("an ellipse under kicks has the same bits at every scale from 4^-165 t
 
 TEST_CASE("an ellipse of arcs is the same to rounding at every scale from 4^-165 to 4^165", "[extremes]") {
   for (const Coordinates coordinates : {Coordinates::jacobi, Coordinates::democratic}) {
-    const auto integrator = compose(WisdomHolman({.G = 1.0, .coordinates = coordinates}), schemes::verlet);
+    const auto integrator = compose(wisdom_holman({.G = 1.0, .coordinates = coordinates}), schemes::verlet);
     const auto unit = unscaled_end(0, integrator);
     for (const int k : {-165, -100, -30, -1, 1, 30, 100, 165}) {
       CAPTURE(k);
@@ -170,15 +170,15 @@ TEST_CASE("distances beyond the range of doubles end with a name and a finite st
     for (const double dt : {1.0, 1e-150, 1e150}) {
       for (const Scheme* scheme : {&schemes::verlet, &schemes::verlet_aba}) {
         CAPTURE(r, dt, scheme->name);
-        Simulation kicks(pair_at(r), compose(KineticPotential(Gravity{.G = 1.0}), *scheme), dt);
+        Simulation kicks(pair_at(r), compose(kinetic_potential(Gravity{.G = 1.0}), *scheme), dt);
         check_named_end(kicks, kicks.run(20), dt);
-        Simulation arcs(pair_at(r), compose(WisdomHolman({.G = 1.0}), *scheme), dt);
+        Simulation arcs(pair_at(r), compose(wisdom_holman({.G = 1.0}), *scheme), dt);
         check_named_end(arcs, arcs.run(20), dt);
       }
     }
   }
   for (const Scheme* scheme : {&schemes::verlet, &schemes::verlet_aba}) {
-    Simulation flat(pair_at(1e-100), compose(KineticPotential(flat_unit), *scheme), 1.0);
+    Simulation flat(pair_at(1e-100), compose(kinetic_potential(flat_unit), *scheme), 1.0);
     const Outcome outcome = flat.run(20);
     check_named_end(flat, outcome, 1.0);
     CHECK(outcome.kind == Outcome::Kind::diverged);
@@ -186,7 +186,7 @@ TEST_CASE("distances beyond the range of doubles end with a name and a finite st
 }
 
 TEST_CASE("an energy beyond the range of doubles is told", "[extremes]") {
-  Simulation simulation(fast_body(), compose(KineticPotential(Gravity{.G = 1.0}), schemes::verlet), 1.0);
+  Simulation simulation(fast_body(), compose(kinetic_potential(Gravity{.G = 1.0}), schemes::verlet), 1.0);
   const auto& energy = simulation.every(1, Energy{});
   const Outcome outcome = simulation.run(3);
   CHECK((!outcome.ok() || explains_itself(energy.report())));

@@ -34,7 +34,7 @@ ParticleSystem<double> slow_body() {
 }
 
 /// One particle between no others: the cheapest step there is.
-auto cheapest_integrator() { return compose(KineticPotential(Gravity{.G = 1.0}), schemes::symplectic_euler_a); }
+auto cheapest_integrator() { return compose(kinetic_potential(Gravity{.G = 1.0}), schemes::symplectic_euler_a); }
 
 /// The same particles with all velocities turned round.
 ParticleSystem<double> turned(ParticleSystem<double> s) {
@@ -76,18 +76,18 @@ TEST_CASE("steps backwards return to the start, at time 0", "[extremes]") {
     CAPTURE(scheme->name);
     // Each flow rounds once or twice, and along the orbits with 3/2 of the time; largest is 3.8.
     const double bound = 2.0 * static_cast<double>(2 * steps * scheme->word.size()) * (1 + 1.5 * 0.1 * steps);
-    CHECK(left_after_return(KineticPotential(Gravity{.G = 1.0}), *scheme, steps) < bound);
-    CHECK(left_after_return(WisdomHolman({.G = 1.0}), *scheme, steps) < bound);
+    CHECK(left_after_return(kinetic_potential(Gravity{.G = 1.0}), *scheme, steps) < bound);
+    CHECK(left_after_return(wisdom_holman({.G = 1.0}), *scheme, steps) < bound);
   }
-  CHECK(left_after_return(KineticPotential(Gravity{.G = 1.0}), schemes::symplectic_euler_a, steps) > 1e9);
+  CHECK(left_after_return(kinetic_potential(Gravity{.G = 1.0}), schemes::symplectic_euler_a, steps) > 1e9);
 }
 
 TEST_CASE("backwards in time is forwards with velocities turned round, bit for bit", "[extremes]") {
   for (const Scheme* scheme : schemes::all()) {
-    check_mirrored_time(KineticPotential(Gravity{.G = 1.0}), *scheme);
-    check_mirrored_time(WisdomHolman({.G = 1.0}), *scheme);
+    check_mirrored_time(kinetic_potential(Gravity{.G = 1.0}), *scheme);
+    check_mirrored_time(wisdom_holman({.G = 1.0}), *scheme);
     if (scheme->scheme_class == SchemeClass::rkn) continue;
-    check_mirrored_time(WisdomHolman({.G = 1.0, .coordinates = Coordinates::democratic}), *scheme);
+    check_mirrored_time(wisdom_holman({.G = 1.0, .coordinates = Coordinates::democratic}), *scheme);
   }
 }
 
@@ -95,8 +95,8 @@ TEST_CASE("a run of no steps looks once and changes nothing", "[extremes]") {
   for (const bool arcs : {false, true}) {
     const auto start = planets(1e-3);
     const AnyIntegrator<double> integrator =
-        arcs ? AnyIntegrator<double>(compose(WisdomHolman({.G = 1.0}), schemes::aba_10_6_4))
-             : AnyIntegrator<double>(compose(KineticPotential(Gravity{.G = 1.0}), schemes::verlet));
+        arcs ? AnyIntegrator<double>(compose(wisdom_holman({.G = 1.0}), schemes::aba_10_6_4))
+             : AnyIntegrator<double>(compose(kinetic_potential(Gravity{.G = 1.0}), schemes::verlet));
     WatchedRun run(start, integrator, 0.1);
     for (int k = 0; k < 3; ++k) {
       const Outcome outcome = run.simulation.run(0);
@@ -146,7 +146,7 @@ TEST_CASE("a saved run goes on from step 1e9 and from 2^53 - 1000 with exact tim
 TEST_CASE("as many steps as there are can be asked for behind the first too", "[extremes]") {
   ParticleSystem<double> pair = slow_body();
   pair.add("heavy", 1e30, {0, 0, 0}, {0, 0, 0});
-  Simulation simulation(std::move(pair), compose(KineticPotential(Sum<>()), schemes::verlet), 1.0);
+  Simulation simulation(std::move(pair), compose(kinetic_potential(), schemes::verlet), 1.0);
   simulation.stop_when(farther_than(0x1p-10), 1);
   REQUIRE(simulation.run(10).step == 10);
   const Outcome outcome = simulation.run(std::numeric_limits<std::int64_t>::max());
@@ -205,7 +205,7 @@ TEST_CASE("the program runs backwards to the bits of a simulation", "[extremes]"
   ExtremeScene scene{.bodies = {}, .step = -0.1, .steps = 100};
   for (Index i = 0; i < start.size(); ++i) scene.bodies.push_back(body_text(start, i));
   const ProcessResult result = run_scene(SceneFolder(scene.text()));
-  Simulation simulation(start, compose(KineticPotential(Gravity{.G = 1.0}), schemes::verlet), -0.1);
+  Simulation simulation(start, compose(kinetic_potential(Gravity{.G = 1.0}), schemes::verlet), -0.1);
   REQUIRE(simulation.run(100).ok());
   CHECK(json_member(result.out, "digest") == "\"" + io::digest(simulation.particles()) + "\"");
   CHECK(json_member(result.out, "time") == "-10");

@@ -11,6 +11,7 @@
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/schemes.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/drivers.hpp"
 #include "tests/support/liquid.hpp"
 #include "tests/support/pair_forces.hpp"
 #include "tests/support/refusal.hpp"
@@ -236,12 +237,12 @@ TEST_CASE("Buckingham's catastrophe is caught at the top of its barrier", "[pair
   s.add("He", 1, {1, 1, 1}, {4, 0, 0});
   s.add("other", 1, {3, 1, 1}, {0, 0, 0});
   Simulation<double> slow(
-      s, Composition(KineticPotential(pair_force(helium, 2.1, Cutoff::shifted_force)), schemes::verlet), 1e-3);
+      s, Composition(test::kinetic_potential(pair_force(helium, 2.1, Cutoff::shifted_force)), schemes::verlet), 1e-3);
   CHECK(slow.run(5000).ok());
   s.velocities().set(0, {400, 0, 0});
   const auto fall = [&](bool watched) {
     Simulation<double> fast(
-        s, Composition(KineticPotential(pair_force(helium, 2.1, Cutoff::shifted_force)), schemes::verlet), 1e-5);
+        s, Composition(test::kinetic_potential(pair_force(helium, 2.1, Cutoff::shifted_force)), schemes::verlet), 1e-5);
     if (watched) fast.every(1, Energy{});
     return fast.run(5000);
   };

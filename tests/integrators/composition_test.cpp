@@ -10,6 +10,7 @@
 #include "integrators/schemes.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/drivers.hpp"
 #include "tests/support/planets.hpp"
 
 namespace noether {
@@ -17,7 +18,7 @@ namespace {
 
 using test::outer_G;
 
-auto gravity() { return KineticPotential(Gravity{.G = outer_G}); }
+auto gravity() { return test::kinetic_potential(Gravity{.G = outer_G}); }
 
 template <class H> std::string refusal(const H& hamiltonian, const Scheme& scheme) {
   try {
@@ -38,7 +39,7 @@ struct Clocked {
 /// Stage times of two steps of length 8 from time 0, and of the look after them.
 std::vector<double> stage_times(const Scheme& scheme) {
   std::vector<double> times;
-  Simulation run(test::outer_planets(), compose(KineticPotential(Clocked{&times}), scheme), 8.0);
+  Simulation run(test::outer_planets(), compose(test::kinetic_potential(Clocked{&times}), scheme), 8.0);
   CHECK(run.run(2).ok());
   run.particles();
   return times;
@@ -148,7 +149,8 @@ TEST_CASE("an oscillating field is integrated with the order of the scheme", "[c
     for (const int k : {0, 1}) {
       const std::int64_t n = 64 << k;
       const OscillatingField field{.acceleration = {1, 0, 0}, .omega = w};
-      Simulation run(glider(0), compose(KineticPotential(field), *schemes::find(name)), T / static_cast<double>(n));
+      Simulation run(glider(0), compose(test::kinetic_potential(field), *schemes::find(name)),
+                     T / static_cast<double>(n));
       CHECK(run.run(n).ok());
       errors[static_cast<std::size_t>(k)] =
           std::abs(std::as_const(run.particles()).positions()[0][0] - (1 - std::cos(w * T)) / (w * w));
@@ -180,7 +182,7 @@ TEST_CASE("a look and the next kick share one evaluation of the forces", "[compo
   struct Look {
     void observe(const Snapshot<double>& now) const { now.state(); }
   };
-  Simulation run(test::outer_planets(), compose(KineticPotential(Clocked{&times}), schemes::verlet), 8.0);
+  Simulation run(test::outer_planets(), compose(test::kinetic_potential(Clocked{&times}), schemes::verlet), 8.0);
   run.every(1, Look{});
   CHECK(run.run(10).ok());
   CHECK(times.size() == 11);
@@ -240,27 +242,27 @@ TEST_CASE("a processed run saved and restored does not begin anew", "[compositio
 }
 
 TEST_CASE("schemes that do not fit a Hamiltonian are refused by name", "[composition]") {
-  const WisdomHolman democratic({.G = outer_G, .coordinates = Coordinates::democratic});
+  const auto democratic = test::wisdom_holman({.G = outer_G, .coordinates = Coordinates::democratic});
   CHECK(refusal(gravity(), word("BAOAB")) == "scheme 'BAOAB' uses the letter O, but 'kinetic_potential' has only AB");
-  const WisdomHolman<double, Sum<HarmonicField>> in_field({.G = outer_G, .coordinates = Coordinates::democratic},
-                                                          Sum(HarmonicField{.k = 1e-9}));
+  const auto in_field =
+      test::wisdom_holman({.G = outer_G, .coordinates = Coordinates::democratic}, HarmonicField{.k = 1e-9});
   CHECK(refusal(in_field, schemes::ruth_3) ==
         "scheme 'ruth_3' needs exact flows, but part B of 'wisdom_holman' is a symmetric map of order 2; "
         "use 'verlet', or a scheme made for it such as 'abah_8_6_4' or 'abah_10_6_4'");
   CHECK(refusal(democratic, schemes::srkn14a) ==
         "scheme 'srkn14a' is a Runge-Kutta-Nystroem splitting and keeps its order only where {B,{B,{B,A}}} = 0, which "
         "'wisdom_holman' does not grant; use a general scheme such as 'blanes_moan_s10'");
-  const Damped damped(gravity(), {.rate = 0.1});
+  const auto damped = test::damped(gravity(), {.rate = 0.1});
   CHECK(refusal(damped, schemes::yoshida_4) ==
         "scheme 'yoshida_4' steps backwards, but part D of 'damped' is irreversible; use a scheme with forward steps "
         "only, such as 'verlet' or 'mclachlan_2_s2'");
   CHECK(refusal(damped, schemes::verlet) == "accepted");
   CHECK(refusal(gravity(), schemes::srkn14a) == "accepted");
-  CHECK(refusal(WisdomHolman({.G = outer_G}), schemes::srkn14a) == "accepted");
+  CHECK(refusal(test::wisdom_holman({.G = outer_G}), schemes::srkn14a) == "accepted");
 }
 
 TEST_CASE("the schemes that refusals propose are accepted where they are proposed", "[composition]") {
-  const WisdomHolman democratic({.G = outer_G, .coordinates = Coordinates::democratic});
+  const auto democratic = test::wisdom_holman({.G = outer_G, .coordinates = Coordinates::democratic});
   for (const char* name : {"yoshida_6", "abah_10_6_4"}) {
     CAPTURE(name);
     REQUIRE(schemes::find(name) != nullptr);
@@ -269,7 +271,7 @@ TEST_CASE("the schemes that refusals propose are accepted where they are propose
   for (const char* name : {"verlet", "mclachlan_2_s2"}) {
     CAPTURE(name);
     REQUIRE(schemes::find(name) != nullptr);
-    CHECK(refusal(Damped(gravity(), {.rate = 0.1}), *schemes::find(name)) == "accepted");
+    CHECK(refusal(test::damped(gravity(), {.rate = 0.1}), *schemes::find(name)) == "accepted");
   }
 }
 
@@ -291,7 +293,7 @@ TEST_CASE("a Hamiltonian with quadratic kinetic energy only is demanded by Nystr
 }
 
 TEST_CASE("drag stands at both ends of a word, and in the middle of a symplectic Euler", "[composition]") {
-  const Damped damped(gravity(), {.rate = 0.1});
+  const auto damped = test::damped(gravity(), {.rate = 0.1});
   CHECK(letters(compose(damped, schemes::verlet)) == "DBABD");
   CHECK(letters(compose(damped, schemes::verlet_aba)) == "DABAD");
   CHECK(letters(compose(damped, schemes::symplectic_euler_a)) == "BDA");
@@ -305,14 +307,16 @@ TEST_CASE("drag stands at both ends of a word, and in the middle of a symplectic
 
 TEST_CASE("drag without forces is exact for any step", "[composition]") {
   for (const char* name : {"verlet", "symplectic_euler_a"}) {
-    Simulation run(glider(3),
-                   compose(Damped(KineticPotential(HarmonicField{.k = 0}), {.rate = 0.5}), *schemes::find(name)), 0.25);
+    Simulation run(
+        glider(3),
+        compose(test::damped(test::kinetic_potential(HarmonicField{.k = 0}), {.rate = 0.5}), *schemes::find(name)),
+        0.25);
     CHECK(run.run(80).ok());
     const double expected = static_cast<double>(Quad(3) * exp(Quad(-10)));
     // 81 factors, each rounded once with its product.
     CHECK(std::abs(run.particles().velocities()[0][0] - expected) < 2 * 81 * ulp * expected);
   }
-  CHECK_THROWS_WITH(Damped(gravity(), {.rate = -1}),
+  CHECK_THROWS_WITH(test::damped(gravity(), {.rate = -1}),
                     "a drag rate of -1.000000 drives instead of damping; give 0 or more");
 }
 
@@ -322,10 +326,10 @@ TEST_CASE("compensated sums are right to half an ulp after any number of steps",
   const Quad exact = Quad(n) * Quad(v * dt);
   std::array<double, 2> errors{};
   for (const bool compensated : {false, true}) {
-    Simulation run(
-        glider(v),
-        compose(KineticPotential(HarmonicField{.k = 0}), schemes::symplectic_euler_a, {.compensated = compensated}),
-        dt);
+    Simulation run(glider(v),
+                   compose(test::kinetic_potential(HarmonicField{.k = 0}), schemes::symplectic_euler_a,
+                           {.compensated = compensated}),
+                   dt);
     CHECK(run.run(n).ok());
     const double x = std::as_const(run.particles()).positions()[0][0];
     errors[compensated ? 1 : 0] = static_cast<double>(abs(Quad(x) - exact) / exact);
@@ -344,7 +348,7 @@ TEST_CASE("a composition claims what its scheme and its Hamiltonian are", "[comp
   CHECK(claims.energy);
   CHECK_FALSE(claims.time_dependent);
   std::vector<double> times;
-  CHECK(compose(KineticPotential(Clocked{&times}), schemes::verlet).claims().time_dependent);
+  CHECK(compose(test::kinetic_potential(Clocked{&times}), schemes::verlet).claims().time_dependent);
 }
 
 }  // namespace noether

@@ -38,7 +38,7 @@ template <class Real> ParticleSystem<Real> bodies(Index n, const Real& x = Real(
 }
 
 template <class Real> auto oscillators(double temperature = kT) {
-  return Langevin(KineticPotential<HarmonicField, Real>(HarmonicField{.k = stiffness}),
+  return Langevin(KineticPotential<ForceField<Real>, Real>(test::field_of<Real>(HarmonicField{.k = stiffness})),
                   {.temperature = temperature, .friction = friction, .seed = 7});
 }
 
@@ -168,7 +168,7 @@ struct Quartic {
 /// <|grad U|^2> / <laplacian U> over kT, less 1, from many independent particles.
 double configurational_error(const Scheme& scheme, double dt) {
   auto integrator =
-      compose(Langevin(KineticPotential(Quartic{}), {.temperature = kT, .friction = 1, .seed = 3}), scheme);
+      compose(test::in_bath(test::field_of(Quartic{}), {.temperature = kT, .friction = 1, .seed = 3}), scheme);
   auto s = bodies<double>(1000);
   s.clock() = Clock<double>::fixed(0, dt);
   integrator.bind(s);
@@ -229,7 +229,7 @@ TEST_CASE("another seed is another run, and a saved run does not go on in anothe
   const auto run_of = [](LangevinOptions options) {
     return Simulation<double>(
         bodies<double>(2, 0.2),
-        compose(Langevin(KineticPotential(HarmonicField{.k = stiffness}), options), word("BAOAB")), 0.1);
+        compose(test::in_bath(test::field_of(HarmonicField{.k = stiffness}), options), word("BAOAB")), 0.1);
   };
   auto one = run_of({.temperature = 1, .friction = 1, .seed = 1}),
        two = run_of({.temperature = 1, .friction = 1, .seed = 2});
@@ -254,10 +254,11 @@ TEST_CASE("the energy of a run in a bath is recorded without a verdict, and no s
 
 TEST_CASE("constraints hold in a bath, and what is left of the velocities has its temperature", "[langevin]") {
   const test::Mechanism chain = test::hanging_chain(8);
-  Simulation<double> sim(
-      chain.particles,
-      compose(Langevin(test::hamiltonian_of(chain), {.temperature = 5, .friction = 2, .seed = 1}), word("BAOAB")),
-      0.02);
+  Simulation<double> sim(chain.particles,
+                         compose(test::in_bath(test::field_of(test::weight), chain.constraints,
+                                               {.temperature = 5, .friction = 2, .seed = 1}),
+                                 word("BAOAB")),
+                         0.02);
   ConstraintResidual residual;
   residual.watch(chain.constraints);
   const ConstraintResidual& violated = sim.every(10, residual);
@@ -275,7 +276,7 @@ TEST_CASE("constraints hold in a bath, and what is left of the velocities has it
 }
 
 TEST_CASE("baths that cannot be are refused by name", "[langevin]") {
-  const KineticPotential field(HarmonicField{.k = 1});
+  const KineticPotential field(test::field_of(HarmonicField{.k = 1}));
   CHECK(test::refusal_of([&] { Langevin(field, {.temperature = -1, .friction = 1}); }) ==
         "temperature = -1 is no temperature; 0 or more is expected");
   CHECK(test::refusal_of([&] { Langevin(field, {.temperature = 1, .friction = -2}); }) ==
@@ -289,7 +290,7 @@ TEST_CASE("baths that cannot be are refused by name", "[langevin]") {
         "'dust' has no mass, so it has no temperature; give it one, or take the bath out");
   CHECK(test::refusal_of([&] { Simulation<double>(bodies<double>(2), compose(bath, word("BAOAB")), -0.1); }) ==
         "a bath knows no way back; a step above 0 is expected");
-  const Langevin planets(WisdomHolman({.G = test::outer_G}), {.temperature = 1, .friction = 1});
+  const Langevin planets(test::wisdom_holman({.G = test::outer_G}), {.temperature = 1, .friction = 1});
   CHECK(test::refusal_of([&] {
           Simulation<double>(test::outer_planets(), compose(planets, schemes::verlet), 10);
         }).find("'wisdom_holman' moves in coordinates of its own") == 0);
@@ -300,11 +301,11 @@ TEST_CASE("baths that cannot be are refused by name", "[langevin]") {
 }
 
 TEST_CASE("drag and bath stand side by side, and an O by itself is refused", "[langevin]") {
-  const Langevin both(Damped(KineticPotential(HarmonicField{.k = 1}), {.rate = 0.1}),
+  const Langevin both(test::damped(test::kinetic_potential(HarmonicField{.k = 1}), {.rate = 0.1}),
                       {.temperature = 1, .friction = 1});
   CHECK(both.claims().alphabet == "ABDO");
   CHECK(both.claims().irreversible == "DO");
-  Langevin alone(KineticPotential(HarmonicField{.k = 1}), {.temperature = 1, .friction = 1});
+  Langevin alone(test::kinetic_potential(HarmonicField{.k = 1}), {.temperature = 1, .friction = 1});
   auto s = bodies<double>(1);
   CHECK_THROWS_AS(alone.flow('O', s, 0.1), LogicError);
 }

@@ -8,6 +8,7 @@
 #include "integrators/composition.hpp"
 #include "integrators/schemes.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/drivers.hpp"
 #include "tests/support/planets.hpp"
 
 namespace noether {
@@ -18,8 +19,8 @@ constexpr Coordinates both[] = {Coordinates::jacobi, Coordinates::democratic};
 
 using Ranks = std::vector<std::int64_t>;
 
-template <class Real = double> WisdomHolman<Real> splitting(Coordinates coordinates = Coordinates::jacobi) {
-  return WisdomHolman<Real>({.G = outer_G, .coordinates = coordinates});
+template <class Real = double> AnyHamiltonian<Real> splitting(Coordinates coordinates = Coordinates::jacobi) {
+  return test::wisdom_holman<Real>({.G = outer_G, .coordinates = coordinates});
 }
 
 /// Largest |x_a - x_b| / |x_a| and |v_a - v_b| / |v_a| over the particles that both have.
@@ -154,7 +155,7 @@ TEST_CASE("the center of mass is row 0 of the working coordinates and moves stra
 
 TEST_CASE("Jacobi coordinates take the bodies by semi-major axis, however they are given", "[wisdom_holman]") {
   auto s = scrambled();
-  auto hamiltonian = splitting();
+  WisdomHolman hamiltonian({.G = outer_G});
   hamiltonian.bind(s);
   CHECK(hamiltonian.order() == Ranks{0, 2, 4, 3, 1});
 
@@ -178,14 +179,14 @@ TEST_CASE("in what order the bodies are given matters to rounding only", "[wisdo
 
 TEST_CASE("the order of Jacobi coordinates is state: it is saved and comes back", "[wisdom_holman]") {
   auto s = scrambled();
-  auto first = splitting();
+  WisdomHolman first({.G = outer_G});
   first.bind(s);
   SavedState saved;
   first.save(saved, "");
   // The same particles later, Jupiter now outermost.
   s.positions().set(2, {300, 0, 0});
   s.velocities().set(2, {0, 0.0005, 0});
-  auto second = splitting();
+  WisdomHolman second({.G = outer_G});
   second.bind(s);
   CHECK(second.order() == Ranks{0, 4, 3, 1, 2});
   second.load(saved, "");
@@ -225,7 +226,8 @@ TEST_CASE("two bodies in Jacobi coordinates move on their exact orbit, whatever 
     for (const char* name : {"verlet", "verlet_aba", "aba_10_6_4"}) {
       const std::int64_t n = 12;
       CAPTURE(dt, name);
-      const auto end = run(two.at(0, 0), WisdomHolman<Quad>({.G = outer_G}), *schemes::find(name), dt * period, n);
+      const auto end =
+          run(two.at(0, 0), test::wisdom_holman<Quad>({.G = outer_G}), *schemes::find(name), dt * period, n);
       const Quad t = Quad(n) * Quad(dt * period);
       const auto exact = two.at(two.anomaly(t), t);
       CHECK(difference(exact, end) < 1e-29);
@@ -286,7 +288,7 @@ TEST_CASE("Jacobi, democratic and inertial splittings agree ever better, with th
           "[wisdom_holman]") {
   // Planets, a massive visitor on a hyperbola, tracers bound and unbound.
   const auto start = with_visitors();
-  const KineticPotential<Gravity, Quad> inertial(Gravity{.G = outer_G});
+  const auto inertial = test::kinetic_potential<Quad>(Gravity{.G = outer_G});
   CHECK(std::abs(common_order(start, splitting<Quad>(Coordinates::jacobi), inertial) - 8) < 0.4);
   CHECK(std::abs(common_order(start, splitting<Quad>(Coordinates::democratic), inertial) - 8) < 0.4);
   CHECK(std::abs(common_order(start, splitting<Quad>(), splitting<Quad>(Coordinates::democratic)) - 8) < 0.4);
@@ -296,12 +298,10 @@ TEST_CASE("other forces join the kicks in both coordinates, with the time of the
   const UniformField field{.acceleration = {2e-7, -1e-7, 3e-7}};
   const OscillatingField tide{.acceleration = {1e-6, 2e-6, -1e-6}, .omega = 0.02};
   const Oblateness flat{.J2 = 0.01, .J4 = -0.001, .radius = 0.5, .axis = {0.1, 0.3, 1}, .G = outer_G};
-  const Sum forces(field, tide, flat);
-  using Forces = Sum<UniformField, OscillatingField, Oblateness>;
   const auto start = with_visitors();
-  const KineticPotential<Sum<Gravity, Forces>, Quad> inertial(Sum(Gravity{.G = outer_G}, forces));
+  const auto inertial = test::kinetic_potential<Quad>(Gravity{.G = outer_G}, field, tide, flat);
   for (const Coordinates coordinates : both) {
-    const WisdomHolman<Quad, Forces> split({.G = outer_G, .coordinates = coordinates}, forces);
+    const auto split = test::wisdom_holman<Quad>({.G = outer_G, .coordinates = coordinates}, field, tide, flat);
     // In democratic coordinates J does not commute with them, so that kicks are exact to order 2 only; these forces
     // are as weak as the interaction, so the error is that of abah_8_6_4 in the first power of it.
     const bool exact = coordinates == Coordinates::jacobi;
@@ -314,8 +314,8 @@ TEST_CASE("a uniform field accelerates the center of mass as it does one body", 
   const double g = 1e-6, dt = 40;
   const std::int64_t n = 50;
   for (const Coordinates coordinates : both) {
-    const WisdomHolman<Quad, Sum<UniformField>> split({.G = outer_G, .coordinates = coordinates},
-                                                      Sum(UniformField{.acceleration = {g, 0, 0}}));
+    const auto split =
+        test::wisdom_holman<Quad>({.G = outer_G, .coordinates = coordinates}, UniformField{.acceleration = {g, 0, 0}});
     const auto start = test::outer_planets<Quad>();
     const auto end = run(start, split, schemes::verlet, dt, n);
     Quad moved = 0, speed = 0, total = 0;
@@ -332,7 +332,7 @@ TEST_CASE("a uniform field accelerates the center of mass as it does one body", 
 
 TEST_CASE("energy and accelerations are those of inertial bodies", "[wisdom_holman]") {
   const auto s = with_visitors();
-  KineticPotential<Gravity, Quad> inertial(Gravity{.G = outer_G});
+  auto inertial = test::kinetic_potential<Quad>(Gravity{.G = outer_G});
   auto bound = s;
   inertial.bind(bound);
   VectorColumn<Quad> expected(s.size()), found(s.size());
@@ -361,11 +361,10 @@ TEST_CASE("claims of the splitting follow its coordinates and its forces", "[wis
   CHECK(jacobi.inexact.empty());
   CHECK(democratic.inexact.empty());
   CHECK(!democratic.quadratic_kinetic);
-  const WisdomHolman<double, Sum<HarmonicField>> in_field({.coordinates = Coordinates::democratic},
-                                                          Sum(HarmonicField{.k = 0.3}));
+  const auto in_field = test::wisdom_holman({.coordinates = Coordinates::democratic}, HarmonicField{.k = 0.3});
   CHECK(in_field.claims().inexact == "B");
   CHECK(jacobi.keeps_momentum);
-  const WisdomHolman<double, Sum<OscillatingField>> driven({.G = outer_G}, Sum(OscillatingField{}));
+  const auto driven = test::wisdom_holman({.G = outer_G}, OscillatingField{});
   CHECK(driven.claims().time_dependent);
   CHECK_FALSE(driven.claims().keeps_momentum);
 }

@@ -14,6 +14,7 @@
 #include "io/structure.hpp"
 #include "io/trajectory.hpp"
 #include "tests/io/support.hpp"
+#include "tests/support/drivers.hpp"
 
 #include <sstream>
 
@@ -172,7 +173,7 @@ TEST_CASE("the XYZ of a molecular run in a box reads back as its particles", "[i
   water.add("O_1", 15.999, {0.1, 1.9, -0.3}, {0.5, -0.25, 3});
   water.add("H_2", 1.008, {0.17, 1.85, 2.6}, {-2, 1, 0.125});
   water.add("ion", 22.99, {0.7, 0.6, 0.5}, {0, 0, -1});
-  Simulation<double> run(water, compose(KineticPotential(Sum<>{}), schemes::verlet), 0.001);
+  Simulation<double> run(water, compose(test::kinetic_potential(), schemes::verlet), 0.001);
   auto& writer = run.every(1, io::TrajectoryWriter(folder / "run.h5"));
   REQUIRE(run.run(0).ok());
   writer.finish(Outcome{});
@@ -198,7 +199,7 @@ TEST_CASE("positions of particles that cross the box are converted unwrapped whe
   gas.set_box(Box::periodic({1.5, 2, 2.5}));
   gas.add("up", 1, {1.25, 1, 1}, {0.5, 0, 0});      // to 3.75: over one edge and then the next
   gas.add("down", 1, {1, 0.25, 2}, {0, -0.25, 1});  // to y = -1, z = 7
-  Simulation<double> run(gas, compose(KineticPotential(Sum<>{}), schemes::verlet), 0.5);
+  Simulation<double> run(gas, compose(test::kinetic_potential(), schemes::verlet), 0.5);
   auto& writer = run.every(1, io::TrajectoryWriter(folder / "run.h5"));
   REQUIRE(run.run(10).ok());
   writer.finish(Outcome{});

@@ -12,6 +12,7 @@
 #include "io/checkpoint.hpp"
 #include "io/trajectory.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/drivers.hpp"
 #include "tests/support/planets.hpp"
 #include "tests/support/process.hpp"
 
@@ -60,7 +61,7 @@ inline PythonResult run_python(const std::string& script, const std::string& arg
 /// The outer planets under Verlet, steps of 40 days, writing frames every 5 steps and the energy every 3.
 struct WritingRun {
   explicit WritingRun(const std::filesystem::path& file, ParticleSystem<double> particles = outer_planets())
-      : simulation(std::move(particles), compose(KineticPotential(Gravity{.G = outer_G}), schemes::verlet), 40.0),
+      : simulation(std::move(particles), compose(kinetic_potential(Gravity{.G = outer_G}), schemes::verlet), 40.0),
         energy(&simulation.every(3, Energy{})),
         angular(&simulation.every(10, AngularMomentum{})),
         writer(&simulation.every(5, io::TrajectoryWriter(file, {.scene_toml = "title = \"outer planets\"\n"}))) {}

@@ -6,6 +6,7 @@
 #include "io/hdf5_file.hpp"
 #include "io/inspect.hpp"
 #include "tests/io/support.hpp"
+#include "tests/support/drivers.hpp"
 
 #include <sys/resource.h>
 
@@ -251,8 +252,8 @@ TEST_CASE("complete is set by a run that ended as asked, and taken back when it 
 
 TEST_CASE("without frames the samples of monitors alone are written", "[trajectory]") {
   const test::ScratchFolder folder;
-  Simulation simulation(test::outer_planets(), compose(KineticPotential(Gravity{.G = test::outer_G}), schemes::verlet),
-                        40.0);
+  Simulation simulation(test::outer_planets(),
+                        compose(test::kinetic_potential(Gravity{.G = test::outer_G}), schemes::verlet), 40.0);
   simulation.every(2, Energy{});
   auto& writer = simulation.every(100, io::TrajectoryWriter(folder / "run.h5", {.frames = false}));
   REQUIRE(simulation.run(9).ok());

@@ -7,6 +7,7 @@
 #include "integrators/first_order_system.hpp"
 #include "tests/methods/motions.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/drivers.hpp"
 #include "tests/support/planets.hpp"
 
 #include <algorithm>
@@ -38,7 +39,8 @@ std::string name_of(const MethodChoice& choice) {
 }
 
 Simulation<double> planets(const MethodChoice& choice, Direction direction, ParticleSystem<double> start) {
-  return {std::move(start), classical(Gravity{.G = test::outer_G}, choice), Clock<double>::free(0, direction)};
+  return {std::move(start), test::classical_over(Gravity{.G = test::outer_G}, choice),
+          Clock<double>::free(0, direction)};
 }
 Simulation<double> planets(const MethodChoice& choice, Direction direction) {
   return planets(choice, direction, test::outer_planets());
@@ -115,8 +117,9 @@ TEST_CASE("so it is where steps are rejected, and orders and lengths chosen anew
   for (MethodChoice choice : adaptive_methods(1e-6)) {
     CAPTURE(name_of(choice));
     choice.options.first = 5;
-    Simulation<double> back(s, classical(Gravity{.G = 1}, choice), Clock<double>::free(0, Direction::backward));
-    Simulation<double> mirrored(turned(s), classical(Gravity{.G = 1}, choice), Clock<double>::free(0));
+    Simulation<double> back(s, test::classical_over(Gravity{.G = 1}, choice),
+                            Clock<double>::free(0, Direction::backward));
+    Simulation<double> mirrored(turned(s), test::classical_over(Gravity{.G = 1}, choice), Clock<double>::free(0));
     REQUIRE(back.run_until(-7).ok());
     REQUIRE(mirrored.run_until(7).ok());
     CHECK(back.step() == mirrored.step());
@@ -236,7 +239,7 @@ TEST_CASE("a run that has turned is a run back from where it stood, and turns ag
     CAPTURE(name_of(choice));
     auto run = planets(choice, Direction::forward);
     REQUIRE(run.run_until(1000).ok());
-    auto other = Simulation<double>(run.particles(), classical(Gravity{.G = test::outer_G}, choice),
+    auto other = Simulation<double>(run.particles(), test::classical_over(Gravity{.G = test::outer_G}, choice),
                                     Clock<double>::free(1000, Direction::backward));
     const std::int64_t before = run.step();
     REQUIRE(run.run_until(300).ok());
@@ -262,7 +265,8 @@ TEST_CASE("events back in time are found where the motion turned round has them"
   const double E = std::acos(5.0 / 6), when = -(std::numbers::pi - (E - 0.6 * std::sin(E)));
   for (const char* name : {"dop853", "ias15", "gauss_8", "bdf"}) {
     CAPTURE(name);
-    Simulation<double> run(s, classical(Gravity{.G = 1}, method(name)), Clock<double>::free(0, Direction::backward));
+    Simulation<double> run(s, test::classical_over(Gravity{.G = 1}, method(name)),
+                           Clock<double>::free(0, Direction::backward));
     run.stop_when(closer_than(0.5), 1);
     const Outcome outcome = run.run_until(-20);
     CHECK(outcome.kind == Outcome::Kind::stopped);

@@ -6,6 +6,7 @@
 #include "integrators/classical.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/drivers.hpp"
 #include "tests/support/order_fit.hpp"
 #include "tests/support/planets.hpp"
 
@@ -63,8 +64,8 @@ std::vector<Errors<times>> with_steps_of_one_length(int members, std::int64_t fi
   return ensemble<times>(
       members,
       [&](const ParticleSystem<double>& s) {
-        return Simulation<double>(s, classical(Gravity{.G = test::outer_G}, method("gauss_8", {.adaptive = false})),
-                                  step);
+        return Simulation<double>(
+            s, test::classical_over(Gravity{.G = test::outer_G}, method("gauss_8", {.adaptive = false})), step);
       },
       [&](Simulation<double>& run, std::size_t k) { return run.run((first << (2 * k)) - run.step()); });
 }
@@ -77,7 +78,7 @@ std::vector<Errors<times>> with_steps_of_its_own(const char* name, int members, 
   return ensemble<times>(
       members,
       [&](const ParticleSystem<double>& s) {
-        return Simulation<double>(s, classical(Gravity{.G = test::outer_G}, method(name, options)));
+        return Simulation<double>(s, test::classical_over(Gravity{.G = test::outer_G}, method(name, options)));
       },
       [&](Simulation<double>& run, std::size_t k) { return run.run_until(365.25 * years * std::pow(4.0, k)); });
 }

@@ -4,6 +4,7 @@
 #include "integrators/kinetic_potential.hpp"
 #include "tests/methods/motions.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/drivers.hpp"
 #include "tests/support/order_fit.hpp"
 
 #include <cmath>
@@ -106,7 +107,7 @@ Drift verlet_with_steps(bool reversible) {
   ParticleSystem<double> s;
   s.add("sun", 1, {0, 0, 0}, {0, 0, 0});
   s.add("planet", 0, {1 - e, 0, 0}, {0, std::sqrt((1 + e) / (1 - e)), 0});
-  KineticPotential verlet(Gravity{.G = 1});
+  auto verlet = test::kinetic_potential(Gravity{.G = 1});
   verlet.bind(s);
   const auto state = [&] {
     return std::pair<Vec3<double>, Vec3<double>>(std::as_const(s).positions()[1], std::as_const(s).velocities()[1]);

@@ -16,6 +16,7 @@
 #include "tests/methods/restarts.hpp"
 #include "tests/methods/stiff_problems.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/drivers.hpp"
 #include "tests/support/order_fit.hpp"
 #include "tests/support/planets.hpp"
 
@@ -152,11 +153,12 @@ TEST_CASE("energy of the outer planets stays at rounding, with fixed steps and w
   constexpr double century = 36525;
   for (const char* name : {"gauss_8", "gauss_radau_15"}) {
     CAPTURE(name);
-    Simulation adaptive(test::outer_planets(), classical(outer_gravity, method(name)));
+    Simulation adaptive(test::outer_planets(), test::classical_over(outer_gravity, method(name)));
     auto& energy = adaptive.every(5, Energy{});
     REQUIRE(adaptive.run_until(10 * century).ok());
     CHECK(energy.worst() < 4e-15);
-    Simulation fixed(test::outer_planets(), classical(outer_gravity, method(name, {.adaptive = false})), 250.0);
+    Simulation fixed(test::outer_planets(), test::classical_over(outer_gravity, method(name, {.adaptive = false})),
+                     250.0);
     auto& other = fixed.every(5, Energy{});
     REQUIRE(fixed.run(1461).ok());
     CHECK(other.worst() < 4e-15);
@@ -174,7 +176,7 @@ TEST_CASE("stages at rest are not evaluated again where each is evaluated by its
        {Way{"gauss_8", 0}, Way{"gauss_radau_15", 0}, Way{"gauss_8", 400}, Way{"gauss_5", 50}, Way{"gauss_6", 100}}) {
     CAPTURE(way.name, way.step);
     const auto run = [&](const auto& force) {
-      const auto integrator = classical(force, method(way.name, {.adaptive = way.step == 0}));
+      const auto integrator = test::classical_over(force, method(way.name, {.adaptive = way.step == 0}));
       Simulation sim = way.step > 0 ? Simulation(test::outer_planets(), integrator, way.step)
                                     : Simulation(test::outer_planets(), integrator);
       auto& energy = sim.every(5, Energy{});
@@ -211,10 +213,11 @@ TEST_CASE("stages are found on a stiff spring, at turning points too, where only
   // omega = 100, h omega = 1: forces cancel to 1e-4 of what their parts are.
   ParticleSystem<double> s;
   s.add("bob", 1, {1.001, 0, 0}, {0, 0, 0});
-  const Sum forces(Tether{.k = 1e4, .length = 1, .tied = {{0}}}, UniformField{.acceleration = {0, -1, 0}});
+  const auto forces =
+      test::field_of(Tether{.k = 1e4, .length = 1, .tied = {{0}}}, UniformField{.acceleration = {0, -1, 0}});
   for (const char* name : {"implicit_midpoint", "gauss_2", "gauss_4"}) {
     CAPTURE(name);
-    Simulation run(s, classical(forces, method(name, fixed_steps(name))), 0.01);
+    Simulation run(s, test::classical_over(forces, method(name, fixed_steps(name))), 0.01);
     auto& energy = run.every(10, Energy{});
     const Outcome outcome = run.run(100'000);
     CAPTURE(to_text(outcome));
@@ -225,7 +228,8 @@ TEST_CASE("stages are found on a stiff spring, at turning points too, where only
 
 TEST_CASE("the same bits whatever looks on, and after a restart in the middle", "[restart]") {
   const auto make = [](bool adaptive) {
-    return classical(Sum(outer_gravity, DragForce{{.rate = 1e-9}}), method("gauss_8", {.adaptive = adaptive}));
+    return test::classical_over(test::field_of(outer_gravity, DragForce{{.rate = 1e-9}}),
+                                method("gauss_8", {.adaptive = adaptive}));
   };
   Simulation whole(test::outer_planets(), make(true));
   whole.every_time(321.0, Energy{});
@@ -247,7 +251,7 @@ TEST_CASE("a nearly straight fall and back needs no hint", "[extreme]") {
   for (const char* name : {"gauss_8", "gauss_radau_15"}) {
     const double e = 0.999999;
     const auto start = ellipse(e);
-    Simulation run(start, classical(Gravity{.G = 1}, method(name)));
+    Simulation run(start, test::classical_over(Gravity{.G = 1}, method(name)));
     REQUIRE(run.run_until(20 * 3.141592653589793).ok());
     CAPTURE(name, run.step(), run.evaluations().rejected);
     // Rounding of the start, where speeds are 1400, is 1e6 times that of the energy.
@@ -291,7 +295,7 @@ TEST_CASE("steps do not shrink without end where a force fades away and ends", "
   for (const char* name : {"gauss_4", "gauss_8", "gauss_radau_15"}) {
     MethodOptions options;
     options.adaptive = true;
-    Simulation run(pair, classical(force, method(name, options)));
+    Simulation run(pair, test::classical_over(force, method(name, options)));
     const Energy& energy = run.every_time(0.0001, Energy{});
     REQUIRE(run.run_until(0.02).ok());
     CAPTURE(name, run.step(), run.evaluations().rejected);
@@ -317,7 +321,7 @@ TEST_CASE("rates that vanish in one sweep are not taken for a solution", "[stage
   // From (1, 0) with h omega = 2 the first midpoint is 0, and so is the force there; the step itself is (0, -1).
   ParticleSystem<double> s;
   s.add("ball", 1, {1, 0, 0}, {0, 0, 0});
-  Simulation<double> run(s, classical(HarmonicField{1}, method("implicit_midpoint")), 2);
+  Simulation<double> run(s, test::classical_over(HarmonicField{1}, method("implicit_midpoint")), 2);
   REQUIRE(run.run(1).ok());
   CHECK(std::abs(run.particles().positions()[0][0]) < 1e-15);
   CHECK(std::abs(run.particles().velocities()[0][0] + 1) < 1e-15);
@@ -384,11 +388,12 @@ TEST_CASE("steps by Newton's iteration go on with the same bits after a restart"
   ParticleSystem<double> s;
   s.add("bob", 1, {1.001, 0, 0}, {0, 0, 0});
   s.add("ball", 1, {0, 1.002, 0}, {0.1, 0, 0.1});
-  const Sum forces(Tether{.k = 1e4, .length = 1, .tied = {{0}, {1}}}, UniformField{.acceleration = {0, -1, 0}});
+  const auto forces =
+      test::field_of(Tether{.k = 1e4, .length = 1, .tied = {{0}, {1}}}, UniformField{.acceleration = {0, -1, 0}});
   for (const char* name : {"implicit_midpoint", "gauss_2", "gauss_8"}) {
     for (const double h : {0.06, 0.1}) {
       CAPTURE(name, h);
-      const auto used = classical(forces, method(name, fixed_steps(name)));
+      const auto used = test::classical_over(forces, method(name, fixed_steps(name)));
       for (const std::int64_t n : {1, 7, 20}) test::check_goes_on(used, s, n, h);
       Simulation<double> run(s, used, h);
       REQUIRE(run.run(20).ok());

@@ -98,7 +98,7 @@ double area_change(const MethodChoice& choice) {
 }
 
 Simulation<double> planets(const Way& way) {
-  auto integrator = classical(Gravity{.G = test::outer_G}, method(way.info->name, way.options));
+  auto integrator = test::classical_over(Gravity{.G = test::outer_G}, method(way.info->name, way.options));
   return way.adaptive ? Simulation(test::outer_planets(), integrator)
                       : Simulation(test::outer_planets(), integrator, 20.0);
 }
@@ -157,7 +157,7 @@ TEST_CASE("every method that chooses its steps tells states between them, and wh
   for (const Way& way : every_way()) {
     if (!way.adaptive) continue;
     std::vector<std::pair<double, Vec3<double>>> seen;
-    Simulation run(start, classical(Gravity{}, method(way.info->name, way.options)));
+    Simulation run(start, test::classical_over(Gravity{}, method(way.info->name, way.options)));
     run.every_time(0.0625, Diary{&seen});
     REQUIRE(run.run_until(6).ok());
     REQUIRE(seen.size() == 97);
@@ -170,7 +170,7 @@ TEST_CASE("every method that chooses its steps tells states between them, and wh
     CAPTURE(way.info->name, worst);
     CHECK(worst < (reference ? 1e-13 : 2e-5));
 
-    Simulation watched(start, classical(Gravity{}, method(way.info->name, way.options)));
+    Simulation watched(start, test::classical_over(Gravity{}, method(way.info->name, way.options)));
     watched.stop_when(farther_than(0.75 * distance), 1);
     const Outcome outcome = watched.run_until(6);
     CAPTURE(outcome.message, passed);
@@ -196,10 +196,10 @@ TEST_CASE("a saved run goes on by the same method with the same tolerances only"
 
 TEST_CASE("a saved run goes on under the same forces only, however small their difference", "[restart]") {
   const auto dragged = [](double rate) {
-    return Simulation(
-        test::outer_planets(),
-        classical(Sum(Gravity{.G = test::outer_G}, DragForce{{.rate = rate}}), method("dop853", {.adaptive = false})),
-        20.0);
+    return Simulation(test::outer_planets(),
+                      test::classical_over(test::field_of(Gravity{.G = test::outer_G}, DragForce{{.rate = rate}}),
+                                           method("dop853", {.adaptive = false})),
+                      20.0);
   };
   auto run = dragged(1e-9), same = dragged(1e-9), other = dragged(2e-9);
   REQUIRE(run.run(3).ok());

@@ -64,7 +64,7 @@ double slope_on_henon_heiles(const MethodChoice& choice, long first) {
   const auto start = particle_in_plane(0.18, 0.18, 0.18, 0.18);
   const auto end = henon_heiles_flow(motion_of(start), 4.0);
   for (const long n : {first, 2 * first, 4 * first}) {
-    auto integrator = classical(HenonHeilesField{}, choice);
+    auto integrator = classical_over(HenonHeilesField{}, choice);
     const double h = 4.0 / static_cast<double>(n);
     points.push_back({h, distance(motion_of(run(integrator, start, h, n)), end)});
   }
@@ -109,7 +109,7 @@ TEST_CASE("a particle and the same system of first order go the same way") {
   y << 0.18, 0.18, 0.18, 0.18;
   for (const auto& [name, order] : implicit_methods) {
     INFO(name);
-    auto integrator = classical(HenonHeilesField{}, with_fixed_steps(name));
+    auto integrator = classical_over(HenonHeilesField{}, with_fixed_steps(name));
     const auto motion = motion_of(run(integrator, start, 0.125, 40));
     const auto reached = march<double>(HenonHeilesSystem{}, with_fixed_steps(name), y, 0.125, 40);
     Vector<double> same(4);
@@ -202,20 +202,20 @@ TEST_CASE("implicit methods go on from a saved run with the same bits") {
     const MethodChoice choice = method(name, {.rtol = 1e-5, .atol = 1e-10});
     check(classical(Kinetics{}, choice), kinetics);
     check(classical(heat, choice), line);
-    check(classical(Gravity{.G = 1}, choice), four_bodies());
+    check(classical_over(Gravity{.G = 1}, choice), four_bodies());
   }
   for (const auto& [name, order] : implicit_methods) {
     INFO(name);
     check(classical(Kinetics{}, with_fixed_steps(name)), kinetics);
     check(classical(heat, with_fixed_steps(name)), line);
-    check(classical(Gravity{.G = 1}, with_fixed_steps(name)), four_bodies());
+    check(classical_over(Gravity{.G = 1}, with_fixed_steps(name)), four_bodies());
   }
 }
 
 TEST_CASE("monitors and ends in time do not change a run of BDF") {
   const auto choice = method("bdf", {.rtol = 1e-8, .atol = 1e-10});
-  Simulation<double> watched(four_bodies(), classical(Gravity{.G = 1}, choice), Clock<double>::free(0));
-  Simulation<double> alone(four_bodies(), classical(Gravity{.G = 1}, choice), Clock<double>::free(0));
+  Simulation<double> watched(four_bodies(), classical_over(Gravity{.G = 1}, choice), Clock<double>::free(0));
+  Simulation<double> alone(four_bodies(), classical_over(Gravity{.G = 1}, choice), Clock<double>::free(0));
   REQUIRE(watched.run_until(0.3).ok());
   REQUIRE(watched.run_until(0.7).ok());
   REQUIRE(watched.run(10).ok());
@@ -245,7 +245,7 @@ TEST_CASE("an implicit step without solution is a named outcome that says what t
 TEST_CASE("the trapezoidal rule is reversible, backward Euler is not") {
   const auto start = particle_in_plane(0.18, 0.18, 0.18, 0.18);
   const auto there_and_back = [&](const std::string& name) {
-    auto integrator = classical(HenonHeilesField{}, method(name));
+    auto integrator = classical_over(HenonHeilesField{}, method(name));
     CHECK(integrator.claims().reversible == (name == "trapezoidal"));
     const auto there = run(integrator, start, 0.25, 20);
     return distance(run(integrator, there, -0.25, 20), start);

@@ -5,6 +5,7 @@
 #include "tests/methods/restarts.hpp"
 #include "tests/methods/stiff_problems.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/drivers.hpp"
 #include "tests/support/order_fit.hpp"
 #include "tests/support/planets.hpp"
 
@@ -60,7 +61,7 @@ ParticleSystem<double> bent_chain(int n) {
 
 template <class F> Vector<double> chain_by(const F& force, const MethodChoice& choice) {
   const auto s = bent_chain(20);
-  ForceMotion<F, double> field(force);
+  ForceMotion<ForceField<double>, double> field(field_of(force));
   field.bind(s);
   Vector<double> y;
   field.gather(s, y);
@@ -184,8 +185,8 @@ TEST_CASE("a matrix-free Jacobian solves what a dense one solves, by dual number
   };
   for (const double drag : {0.0, 40.0}) {
     INFO(drag);
-    ForceMotion<Chain, double> exact({.drag = drag});
-    ForceMotion<ChainInDouble, double> found({{.drag = drag}});
+    ForceMotion<ForceField<double>, double> exact(field_of(Chain{.drag = drag}));
+    ForceMotion<ForceField<double>, double> found(field_of(ChainInDouble{{.drag = drag}}));
     check(exact, 1e-10);
     CHECK_FALSE(found.has_derivative());
     check(found, 1e-7);
@@ -298,7 +299,7 @@ TEST_CASE("matrix-free methods go on from a saved run with the same bits") {
     const bool own = !methods::find(name)->fixed;
     const auto choice = in_form(own ? method(name, {.rtol = 1e-4}) : with_fixed_steps(name), matrix_free);
     if (name != "newmark") check(classical(heat, choice), line);
-    check(classical(Chain{.drag = 1}, choice), bent_chain(20));
+    check(classical_over(Chain{.drag = 1}, choice), bent_chain(20));
   }
   auto saved_by = [&](std::optional<JacobianForm> form) {
     auto made = classical(heat, method("bdf", {.jacobian = form}));

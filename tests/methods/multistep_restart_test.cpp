@@ -6,6 +6,7 @@
 #include "integrators/classical.hpp"
 #include "tests/methods/motions.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/drivers.hpp"
 #include "tests/support/planets.hpp"
 
 using namespace noether;
@@ -78,7 +79,8 @@ TEST_CASE("methods with a past go on bit for bit from any step of their start, a
 TEST_CASE("a simulation with a multistep method goes on bit for bit and as if nobody had looked", "[methods]") {
   for (const char* name : {"adams_bashforth_5", "adams_moulton_4", "stormer_cowell_13"}) {
     const auto make = [&](int cadence) {
-      Simulation<double> simulation(test::outer_planets(), classical(Gravity{.G = test::outer_G}, method(name)), 20.0);
+      Simulation<double> simulation(test::outer_planets(),
+                                    test::classical_over(Gravity{.G = test::outer_G}, method(name)), 20.0);
       if (cadence > 0) simulation.every(cadence, Energy{});
       return simulation;
     };
@@ -101,7 +103,8 @@ TEST_CASE("a simulation with steps of the method's choice goes on bit for bit, w
   for (const char* name : {"adams_pece", "gragg_bulirsch_stoer", "dprkn_12"}) {
     const auto make = [&](bool watched) {
       Simulation<double> simulation(
-          test::outer_planets(), classical(Gravity{.G = test::outer_G}, method(name, {.rtol = 1e-11, .atol = 1e-13})));
+          test::outer_planets(),
+          test::classical_over(Gravity{.G = test::outer_G}, method(name, {.rtol = 1e-11, .atol = 1e-13})));
       if (watched) simulation.every_time(777, Energy{});
       return simulation;
     };

@@ -49,7 +49,7 @@ struct Drift {
 
 /// Largest relative changes of energy and angular momentum of a particle on the spring, 2000 steps of 0.05.
 Drift drift_on_spring(const MethodChoice& choice, double k) {
-  auto integrator = classical(LongSpring{.k = k}, choice);
+  auto integrator = classical_over(LongSpring{.k = k}, choice);
   auto s = particle_in_plane(1.02, 0, 0, 1);
   s.clock() = Clock<double>::fixed(0, 0.05);
   integrator.bind(s);
@@ -87,30 +87,30 @@ TEST_CASE("Newmark's method loses energy and angular momentum on a stiff spring,
 
 TEST_CASE("Newmark's method of average acceleration is the trapezoidal rule") {
   const auto s = particle_in_plane(1.02, 0, 0, 1);
-  auto newmark = classical(LongSpring{}, method("newmark"));
-  auto trapezoidal = classical(LongSpring{}, method("trapezoidal"));
+  auto newmark = classical_over(LongSpring{}, method("newmark"));
+  auto trapezoidal = classical_over(LongSpring{}, method("trapezoidal"));
   CHECK(distance(run(newmark, s, 0.05, 200), run(trapezoidal, s, 0.05, 200)) < 1e-12);
 }
 
 TEST_CASE("Newmark's method with beta = 0 is velocity Verlet, in one evaluation a stage") {
   const auto s = particle_in_plane(0.18, 0.18, 0.18, 0.18);
-  auto newmark = classical(HenonHeilesField{}, method("newmark", {.beta = 0.0}));
+  auto newmark = classical_over(HenonHeilesField{}, method("newmark", {.beta = 0.0}));
   CHECK(newmark.claims().symplectic);
-  const auto verlet = run(KineticPotential(HenonHeilesField{}), schemes::verlet, s, 0.1, 100);
+  const auto verlet = run(kinetic_potential(HenonHeilesField{}), schemes::verlet, s, 0.1, 100);
   CHECK(distance(run(newmark, s, 0.1, 100), verlet) < 1e-14);
   CHECK(newmark.evaluations().jacobian == 0);
   CHECK(newmark.evaluations().force == 200);
-  CHECK_FALSE(classical(HenonHeilesField{}, method("newmark")).claims().symplectic);
+  CHECK_FALSE(classical_over(HenonHeilesField{}, method("newmark")).claims().symplectic);
 }
 
 TEST_CASE("Newmark's method is of order 2 with gamma = 1/2, of order 1 else, velocity-dependent forces or not") {
   const auto start = particle_in_plane(1, 0.2, 0, 0.7);
-  auto reference = classical(RoughSpring{}, method("dop853", {.adaptive = false}));
+  auto reference = classical_over(RoughSpring{}, method("dop853", {.adaptive = false}));
   const auto end = run(reference, start, 0.01, 300);
   const auto slope = [&](const MethodOptions& options) {
     std::vector<ErrorPoint> points;
     for (const long n : {75, 150, 300}) {
-      auto integrator = classical(RoughSpring{}, method("newmark", options));
+      auto integrator = classical_over(RoughSpring{}, method("newmark", options));
       points.push_back(
           {3.0 / static_cast<double>(n), distance(run(integrator, start, 3.0 / static_cast<double>(n), n), end)});
     }
@@ -120,13 +120,13 @@ TEST_CASE("Newmark's method is of order 2 with gamma = 1/2, of order 1 else, vel
   CHECK(std::abs(slope({.beta = 1.0 / 6}) - 2) < 0.05);
   CHECK(std::abs(slope({.beta = 0.0}) - 2) < 0.05);
   CHECK(std::abs(slope({.beta = 0.3025, .gamma = 0.6}) - 1) < 0.05);
-  CHECK(classical(RoughSpring{}, method("newmark")).claims().order == 2);
-  CHECK(classical(RoughSpring{}, method("newmark", {.gamma = 0.6})).claims().order == 1);
+  CHECK(classical_over(RoughSpring{}, method("newmark")).claims().order == 2);
+  CHECK(classical_over(RoughSpring{}, method("newmark", {.gamma = 0.6})).claims().order == 1);
 }
 
 TEST_CASE("Newmark's method refuses what it cannot do") {
-  CHECK_THROWS_AS(classical(RoughSpring{}, method("newmark", {.beta = -0.1})), Error);
-  CHECK_THROWS_AS(classical(RoughSpring{}, method("trapezoidal", {.beta = 0.25})), Error);
+  CHECK_THROWS_AS(classical_over(RoughSpring{}, method("newmark", {.beta = -0.1})), Error);
+  CHECK_THROWS_AS(classical_over(RoughSpring{}, method("trapezoidal", {.beta = 0.25})), Error);
   auto integrator = classical(Linear{}, method("newmark"));
   ParticleSystem<double> s;
   s.variables() = {1};

@@ -7,6 +7,7 @@
 #include "tests/methods/first_unstable.hpp"
 #include "tests/methods/motions.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/drivers.hpp"
 #include "tests/support/order_fit.hpp"
 #include "tests/support/planets.hpp"
 
@@ -34,7 +35,8 @@ double largest(int order, double z, long steps) {
 /// Relative energy errors of the outer Solar System, `samples` times over 10^4 years.
 std::vector<double> energy_errors(int order, double h, int samples) {
   auto s = test::outer_planets();
-  auto integrator = classical(Gravity{.G = test::outer_G}, method("stormer_cowell_" + std::to_string(order)));
+  auto integrator =
+      test::classical_over(Gravity{.G = test::outer_G}, method("stormer_cowell_" + std::to_string(order)));
   s.clock() = Clock<double>::fixed(0, h);
   integrator.bind(s);
   const double start = integrator.energy(s).total();

@@ -9,6 +9,7 @@
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/schemes.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/drivers.hpp"
 
 #include <algorithm>
 #include <array>
@@ -61,7 +62,7 @@ Exchange exchange(Simulation<double> run) {
 }
 
 Exchange exchange(const Scheme& scheme, double step) {
-  return exchange(Simulation<double>(start(), compose(KineticPotential(chain), scheme), step));
+  return exchange(Simulation<double>(start(), compose(test::kinetic_potential(chain), scheme), step));
 }
 
 /// Of the energy of a spring, over the second half of a run.
@@ -88,7 +89,8 @@ double total_strays(const Exchange& run) {
 }  // namespace
 
 TEST_CASE("stiff springs trade energy as the exact flow does at small steps, and otherwise at large ones", "[oracle]") {
-  const Exchange truth = exchange(Simulation<double>(start(), classical(chain, method("dop853", {.rtol = 1e-11}))));
+  const Exchange truth =
+      exchange(Simulation<double>(start(), test::classical_over(chain, method("dop853", {.rtol = 1e-11}))));
   CHECK(total_strays(truth) < 3 / omega);
   CHECK(mean(truth, 0) < 0.05);  // of the 1 it had, the first spring has given nearly all to the third
   CHECK(mean(truth, 2) > 0.8);
@@ -103,8 +105,8 @@ TEST_CASE("stiff springs trade energy as the exact flow does at small steps, and
   // h omega = 1.25: the energy of the chain is bounded, and goes to the wrong springs.
   const double h = 0.025;
   const Exchange verlet = exchange(schemes::verlet, h), euler = exchange(schemes::symplectic_euler_a, h);
-  const Exchange midpoint =
-      exchange(Simulation<double>(start(), classical(chain, method("implicit_midpoint", {.adaptive = false})), h));
+  const Exchange midpoint = exchange(
+      Simulation<double>(start(), test::classical_over(chain, method("implicit_midpoint", {.adaptive = false})), h));
   for (const Exchange* run : {&verlet, &euler, &midpoint}) {
     CHECK(run->error < 0.5);
     CHECK(apart(*run, truth) > 0.15);

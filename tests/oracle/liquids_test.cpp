@@ -8,6 +8,7 @@
 #include "integrators/langevin.hpp"
 #include "integrators/schemes.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/drivers.hpp"
 #include "tests/support/liquid.hpp"
 
 #include <fmt/format.h>
@@ -88,7 +89,7 @@ StatePoint state_point(const LennardJonesForce& driving, const LennardJonesForce
                        double temperature, std::int64_t steps) {
   Simulation sim(
       test::liquid(5, density, temperature),
-      compose(Langevin(KineticPotential(driving), {.temperature = temperature, .friction = 0.5}), word("BAOAB")),
+      compose(test::in_bath(test::field_of(driving), {.temperature = temperature, .friction = 0.5}), word("BAOAB")),
       0.004);
   NeighborList list(3.0);
   REQUIRE(sim.run(20000).ok());
@@ -186,7 +187,8 @@ TEST_CASE("liquid at NIST's saturated densities has NIST's energy, and the vapou
 
 TEST_CASE("the energy of a switched liquid goes nowhere in a million steps", "[liquids][drift][nightly]") {
   constexpr double step = 0.002;
-  Simulation sim(test::liquid(10, 0.8442, 1.44), compose(KineticPotential(switched(2.5, 2.0)), schemes::verlet), step);
+  Simulation sim(test::liquid(10, 0.8442, 1.44), compose(test::kinetic_potential(switched(2.5, 2.0)), schemes::verlet),
+                 step);
   REQUIRE(sim.run(5000).ok());
   std::vector<double> energies;
   auto& energy = sim.every(100, Energy{});

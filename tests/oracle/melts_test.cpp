@@ -14,6 +14,7 @@
 #include "scene/evaluate.hpp"
 #include "scene/scene.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/drivers.hpp"
 #include "tests/support/liquid.hpp"
 #include "tests/support/process.hpp"
 #include "tests/support/recorded.hpp"
@@ -28,8 +29,6 @@
 
 namespace noether {
 namespace {
-
-using Liquid = KineticPotential<LennardJonesForce>;
 
 const std::filesystem::path lammps_files = std::filesystem::path(NOETHER_SOURCE_DIR) / "tests" / "data" / "lammps";
 
@@ -97,18 +96,18 @@ struct Melted {
 
 Melted melted(int threads, const NeighborOptions& options) {
   const test::Threads now(threads);
-  Liquid liquid(argon(Cutoff::plain));
-  liquid.set_neighbor_options(options);
-  Simulation sim(test::liquid(5, 0.8442, 1.44), compose(std::move(liquid), schemes::verlet), 0.005);
+  const auto liquid = test::kinetic_potential_over(test::field_of(argon(Cutoff::plain)), options);
+  Simulation sim(test::liquid(5, 0.8442, 1.44), compose(liquid, schemes::verlet), 0.005);
   REQUIRE(sim.run(300).ok());
   return {io::digest(sim.particles()), sim.evaluations().neighbors.value()};
 }
 
 /// Rms of the relative energy error over a time of 2, after as much to begin with.
 double energy_error(double step) {
-  Simulation sim(test::liquid(4, 0.8442, 1.44), compose(Liquid(argon(Cutoff::switch_c4)), schemes::verlet), 0.004);
+  Simulation sim(test::liquid(4, 0.8442, 1.44),
+                 compose(test::kinetic_potential(argon(Cutoff::switch_c4)), schemes::verlet), 0.004);
   REQUIRE(sim.run(500).ok());
-  Simulation fine(sim.particles(), compose(Liquid(argon(Cutoff::switch_c4)), schemes::verlet), step);
+  Simulation fine(sim.particles(), compose(test::kinetic_potential(argon(Cutoff::switch_c4)), schemes::verlet), step);
   auto& energy = fine.every(fine.steps_in(0.008), Energy{});
   REQUIRE(fine.run_until(2.0).ok());
   return energy.rms();
@@ -117,8 +116,8 @@ double energy_error(double step) {
 /// At the start and after 100 steps: LAMMPS prints eight digits; all are to agree, but the last.
 template <class Force>
 void check_against_lammps(const std::string& name, const ParticleSystem<double>& start, const Force& force) {
-  Simulation sim(start, compose(KineticPotential(force), schemes::verlet), 0.005);
-  auto probe = compose(KineticPotential(force), schemes::verlet);
+  Simulation sim(start, compose(test::kinetic_potential(force), schemes::verlet), 0.005);
+  auto probe = compose(test::kinetic_potential(force), schemes::verlet);
   auto expected = test::lammps_energies(name);
   for (const std::string step : {"0.", "100."}) {
     const auto agree = [&](const char* key, double found) {
@@ -182,8 +181,8 @@ TEST_CASE("LAMMPS's in.chain, 32 000 beads of its own, has LAMMPS's printed figu
   options.types = {{.type = "1", .epsilon = 1.0, .sigma = 1.0}};
   ParticleSystem<double> s = io::read_structure(folder / "chain.data", options);
   REQUIRE(s.size() == 32'000);
-  auto pairs = compose(Liquid(repulsion), schemes::verlet);
-  auto all = compose(KineticPotential(chain_forces()), schemes::verlet);
+  auto pairs = compose(test::kinetic_potential(repulsion), schemes::verlet);
+  auto all = compose(test::kinetic_potential(chain_forces()), schemes::verlet);
   ParticleSystem<double> copy = s;
   pairs.bind(copy);
   all.bind(s);
@@ -261,7 +260,7 @@ TEST_CASE("a fixed schedule of searches misses pairs, the same on any number of 
 TEST_CASE("list and columns of state of LAMMPS's melt take at most 700 bytes for each atom, 760 with all of its own",
           "[melts][memory]") {
   const ParticleSystem<double> start = test::liquid(20, 0.8442, 1.44);
-  Simulation sim(start, compose(Liquid(argon(Cutoff::plain)), schemes::verlet), 0.005);
+  Simulation sim(start, compose(test::kinetic_potential(argon(Cutoff::plain)), schemes::verlet), 0.005);
   REQUIRE(sim.run(200).ok());  // molten, and the skin is the one that costs least
   const double list = static_cast<double>(sim.evaluations().neighbors.value().bytes) / 32'000;
   const double state = static_cast<double>(sim.particles().bytes_per_particle());
@@ -274,7 +273,8 @@ TEST_CASE("list and columns of state of LAMMPS's melt take at most 700 bytes for
 }
 
 TEST_CASE("the shadow of a liquid's energy is flat across the faces of its box", "[melts][shadow]") {
-  Simulation sim(test::liquid(3, 0.8442, 1.44), compose(Liquid(argon(Cutoff::switch_c4)), schemes::verlet), 0.004);
+  Simulation sim(test::liquid(3, 0.8442, 1.44),
+                 compose(test::kinetic_potential(argon(Cutoff::switch_c4)), schemes::verlet), 0.004);
   auto& energy = sim.every(1, Energy{});
   auto& shadow = sim.every(1, ShadowHamiltonian<double>{});
   REQUIRE(sim.run(300).ok());
@@ -286,8 +286,8 @@ TEST_CASE("the shadow of a liquid's energy is flat across the faces of its box",
 
 TEST_CASE("a melt that was saved goes on with the same bits", "[melts][restart]") {
   const auto make = [] {
-    return Simulation(test::liquid(4, 0.8442, 1.44), compose(Liquid(argon(Cutoff::shifted_force)), schemes::verlet),
-                      0.005);
+    return Simulation(test::liquid(4, 0.8442, 1.44),
+                      compose(test::kinetic_potential(argon(Cutoff::shifted_force)), schemes::verlet), 0.005);
   };
   auto whole = make(), first = make(), second = make();
   REQUIRE(whole.run(120).ok());
@@ -302,7 +302,7 @@ TEST_CASE("a run in which two atoms collide head on ends as overlap, and names t
   s.set_box(Box::periodic({20, 20, 20}));
   s.add("left", 1, {5, 5, 5}, {5000, 0, 0});
   s.add("right", 1, {8, 5, 5}, {-5000, 0, 0});
-  Simulation sim(std::move(s), compose(Liquid(argon(Cutoff::shifted_force)), schemes::verlet), 1e-5);
+  Simulation sim(std::move(s), compose(test::kinetic_potential(argon(Cutoff::shifted_force)), schemes::verlet), 1e-5);
   const Outcome outcome = sim.run(1000);
   CHECK(outcome.kind == Outcome::Kind::overlap);
   CHECK(exit_code(outcome) == 1);
@@ -316,13 +316,13 @@ TEST_CASE("no atoms, one atom and extreme densities run or stop with a name", "[
     const double edge = std::cbrt(4 / density);
     CAPTURE(density);
     Simulation sim(test::liquid(edge < 1 ? 2 : 1, density, 1.0),
-                   compose(Liquid(argon(Cutoff::shifted_force)), schemes::verlet), 1e-4);
+                   compose(test::kinetic_potential(argon(Cutoff::shifted_force)), schemes::verlet), 1e-4);
     const Outcome outcome = sim.run(20);
     CHECK(outcome.kind == (density > 100 ? Outcome::Kind::overlap : Outcome::Kind::completed));
   }
   ParticleSystem<double> s;
   s.set_box(Box::periodic({3, 3, 3}));
-  const auto liquid = compose(Liquid(argon(Cutoff::shifted_force)), schemes::verlet);
+  const auto liquid = compose(test::kinetic_potential(argon(Cutoff::shifted_force)), schemes::verlet);
   CHECK_THROWS_WITH(Simulation(s, liquid, 0.01), Catch::Contains("there are no particles"));
   s.add("alone", 1, {1, 1, 1}, {0.1, 0.2, 0.3});
   CHECK(Simulation(s, liquid, 0.01).run(100).ok());

@@ -26,7 +26,7 @@ ParticleSystem<Quad> henon_heiles(Quad x, Quad y, Quad u, Quad v) {
 }
 
 TEST_CASE("two orbits of Henon and Heiles end where the references end", "[oracle]") {
-  const KineticPotential<HenonHeilesField, Quad> hamiltonian(HenonHeilesField{});
+  const auto hamiltonian = kinetic_potential<Quad>(HenonHeilesField{});
   const auto a = henon_heiles(0.18_q, 0.18_q, 0.18_q, 0.18_q), b = henon_heiles(0.1_q, 0_q, 0_q, 0.5_q);
   const auto near_a = [](const PhasePoint<Quad>& m) {
     return distance_from(m, 0.1199368952782719296202_q, 0.2809431280773217541052_q, 0.1506484736107446417959_q,
@@ -41,7 +41,7 @@ TEST_CASE("two orbits of Henon and Heiles end where the references end", "[oracl
   CHECK(near_b(henon_heiles_flow(motion_of(b), 100)) < 1e-21);
   CHECK(near_a(motion_of(run(hamiltonian, schemes::sofroniou_spaletta_10_s35, a, 0.0625, 320))) < 1e-18);
   CHECK(near_b(motion_of(run(hamiltonian, schemes::sofroniou_spaletta_10_s35, b, 0.0625, 1600))) < 1e-15);
-  const KineticPotential working(HenonHeilesField{});
+  const auto working = kinetic_potential(HenonHeilesField{});
   const auto start = particle_in_plane(0.18, 0.18, 0.18, 0.18);
   const auto end = run(working, schemes::sofroniou_spaletta_10_s35, start, 0.125, 160);
   CHECK(near_a(motion_of(end.as<Quad>())) < 1e-14);
@@ -52,10 +52,10 @@ TEST_CASE("one Kepler arc of any length is the closed form of the two-body probl
   for (const double dt : {0.01, 1.0, 7.0, -20.0, 1000.0}) {
     const auto exact = kepler_motion(start.as<Quad>(), Quad(dt));
     const double ulps = 32 * (1 + std::fabs(dt));  // an ulp of mu or of the axis is an ulp of the phase per radian
-    const auto end = run(WisdomHolman<double>({}), schemes::verlet, start, dt, 1);
+    const auto end = run(wisdom_holman({}), schemes::verlet, start, dt, 1);
     INFO("dt " << dt);
     CHECK(distance(relative_motion(end.as<Quad>()), exact) < ulps * 0x1p-53);
-    const auto wide = run(WisdomHolman<Quad>({}), schemes::verlet, start.as<Quad>(), dt, 1);
+    const auto wide = run(wisdom_holman<Quad>({}), schemes::verlet, start.as<Quad>(), dt, 1);
     CHECK(distance(relative_motion(wide), exact) < ulps * 0x1p-113);
   }
 }
@@ -63,7 +63,7 @@ TEST_CASE("one Kepler arc of any length is the closed form of the two-body probl
 TEST_CASE("ten turns of an orbit of eccentricity 0.6 in double end on the closed form", "[oracle]") {
   const auto start = kepler_pair(0.6, 1.0);
   const double dt = 0x1p-4;
-  const auto end = run(KineticPotential(Gravity{}), schemes::sofroniou_spaletta_10_s35, start, dt, 1000);
+  const auto end = run(kinetic_potential(Gravity{}), schemes::sofroniou_spaletta_10_s35, start, dt, 1000);
   CHECK(distance(relative_motion(end.as<Quad>()), kepler_motion(start.as<Quad>(), Quad(1000) * Quad(dt))) < 1e-11);
 }
 
@@ -71,7 +71,7 @@ TEST_CASE("the figure-eight closes after its period, and after a third of it the
           "[oracle]") {
   const double period = 6.32591398;
   const auto start = figure_eight();
-  const KineticPotential hamiltonian(Gravity{});
+  const auto hamiltonian = kinetic_potential(Gravity{});
   const auto after = [&](const Scheme& scheme, long steps, double turns) {
     return run(hamiltonian, scheme, start, turns * period / static_cast<double>(steps), steps);
   };
@@ -128,10 +128,11 @@ TEST_CASE("the outer planets are where independent integrations put them after 1
   const auto exact = outer_solar_system_after();
   const auto start = outer_solar_system();
   const auto error = [&](const auto& end) { return distance(end.template as<Quad>(), exact); };
-  const WisdomHolman<double> jacobi({.G = G}), democratic({.G = G, .coordinates = Coordinates::democratic});
+  const auto jacobi = wisdom_holman({.G = G}),
+             democratic = wisdom_holman({.G = G, .coordinates = Coordinates::democratic});
   CHECK(error(run(jacobi, schemes::aba_10_6_4, start, 100, 100)) < 2e-12);
   CHECK(error(run(democratic, schemes::abah_10_6_4, start, 50, 200)) < 2e-12);
-  const KineticPotential<Gravity, Quad> gravity(Gravity{.G = G});
+  const auto gravity = kinetic_potential<Quad>(Gravity{.G = G});
   const auto at_step = [&](double dt, long n) {
     return distance(run(gravity, schemes::sofroniou_spaletta_10_s35, start.as<Quad>(), dt, n), exact);
   };

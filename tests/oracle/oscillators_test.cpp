@@ -36,7 +36,7 @@ template <class I, class See> void walk(I integrator, double x, double v, double
 TEST_CASE("Verlet's energy swings by h^2/8 on the oscillator, its shadow energy is kept", "[oracle]") {
   for (const double h : {0.2, 0.1, 0.05}) {
     double swing = 0, shadow = 0;
-    const auto integrator = compose(KineticPotential(spring), schemes::verlet);
+    const auto integrator = compose(kinetic_potential(spring), schemes::verlet);
     walk(integrator, 1, 0, h, std::lround(1000 / h), [&](long, double q, double p) {
       swing = std::max(swing, std::fabs((p * p + q * q) / 2 - 0.5));
       shadow = std::max(shadow, std::fabs(p * p / (2 * (1 - h * h / 4)) + q * q / 2 - 0.5));
@@ -50,7 +50,7 @@ TEST_CASE("symplectic Euler's energy error on the oscillator is the same in the 
   const auto largest = [](double h) {
     std::pair<double, double> tenths{};
     const long steps = std::lround(2e4 / h);
-    const auto integrator = compose(KineticPotential(spring), schemes::symplectic_euler_a);
+    const auto integrator = compose(kinetic_potential(spring), schemes::symplectic_euler_a);
     walk(integrator, 1, 0, h, steps, [&](long n, double q, double p) {
       const double error = std::fabs((p * p + q * q) / 2 - 0.5);
       if (n <= steps / 10) tenths.first = std::max(tenths.first, error);
@@ -68,7 +68,7 @@ TEST_CASE("symplectic Euler's energy error on the oscillator is the same in the 
 /// Largest error over T = 20 of the damped oscillator y'' = -y - 0.2 y', y(0) = 1, y'(0) = -0.1.
 std::string damped_error(const Scheme& scheme, double h) {
   double worst = 0;
-  const auto integrator = compose(Damped(KineticPotential(spring), {.rate = 0.2}), scheme);
+  const auto integrator = compose(damped(kinetic_potential(spring), {.rate = 0.2}), scheme);
   walk(integrator, 1, -0.1, h, std::lround(20 / h), [&](long n, double y, double) {
     const double t = static_cast<double>(n) * h;
     worst = std::max(worst, std::fabs(y - std::exp(-0.1 * t) * std::cos(std::sqrt(0.99) * t)));
@@ -101,7 +101,7 @@ struct QuadraticSpring {
 double largest_bounded(double h) {
   for (int k = 1;; ++k) {
     const auto start = particle_in_plane(0.001 * k, 0, 0, 0);
-    const auto end = run(KineticPotential(QuadraticSpring{}), schemes::verlet, start, h, 1500);
+    const auto end = run(kinetic_potential(QuadraticSpring{}), schemes::verlet, start, h, 1500);
     if (!(std::fabs(end.positions()[0][0]) < 10)) return 0.001 * (k - 1);
   }
 }
@@ -136,7 +136,7 @@ TEST_CASE("every scheme costs the evaluations it declares, counted, and observer
     const CountingForce force;
     auto s = particle_in_plane(0.1, 0, 0, 0);
     s.clock() = Clock<double>::fixed(0, 0.05);
-    Composition integrator{KineticPotential(force), *scheme};
+    Composition integrator{kinetic_potential(force), *scheme};
     integrator.bind(s);
     auto settled = s;
     integrator.advance(s, {.steps = 10});
@@ -156,7 +156,7 @@ TEST_CASE("a kick at positions that have not moved costs no evaluation, and is n
   const CountingForce force;
   auto s = particle_in_plane(0.1, 0, 0, 0);
   s.clock() = Clock<double>::fixed(0, 0.05);
-  Composition integrator{Damped(KineticPotential(force), {.rate = 0.1}), schemes::verlet};  // D B A B D
+  Composition integrator{damped(kinetic_potential(force), {.rate = 0.1}), schemes::verlet};  // D B A B D
   integrator.bind(s);
   auto settled = s;
   for (int n = 0; n < 10; ++n) {
@@ -192,7 +192,7 @@ Scheme drift_first(Scheme scheme) {
 /// Error of one step of 0.1 on Henon and Heiles, (|x - x*|^2 + |v - v*|^2)^(1/2).
 double error_of_step(const Scheme& scheme, const ParticleSystem<double>& state) {
   const auto start = state.as<Quad>();
-  const KineticPotential<HenonHeilesField, Quad> hamiltonian(HenonHeilesField{});
+  const auto hamiltonian = kinetic_potential<Quad>(HenonHeilesField{});
   const PhasePoint<Quad> found = motion_of(run(hamiltonian, scheme, start, 0.1, 1)),
                          exact = henon_heiles_flow(motion_of(start), 0.1);
   const Vec3<Quad> x = found.x - exact.x, v = found.v - exact.v;

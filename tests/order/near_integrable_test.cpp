@@ -18,7 +18,7 @@ constexpr double mass_ratio = 1e-7;  // epsilon: masses of two planets are 1, 2,
 
 /// Positions of the planets after half a turn, shape (6).
 std::vector<Quad> outcome(const Scheme& scheme, double mass, long n, Coordinates coordinates) {
-  const WisdomHolman<Quad> hamiltonian({.coordinates = coordinates});
+  const auto hamiltonian = wisdom_holman<Quad>({.coordinates = coordinates});
   const auto end = run(hamiltonian, scheme, planets(mass, 2).as<Quad>(), half_turn / static_cast<double>(n), n);
   std::vector<Quad> x;
   for (Index i = 1; i < end.size(); ++i) {

@@ -51,7 +51,7 @@ TEST_CASE("every scheme has its order on the potential of Henon and Heiles", "[o
   const PhasePoint<Quad> exact = henon_heiles_flow(motion_of(start), duration);
   for (const Scheme* scheme : schemes::all()) {
     check_order(*scheme, climb(*scheme, duration, 6000, [&](double dt, long n) {
-      const KineticPotential<HenonHeilesField, Quad> hamiltonian(HenonHeilesField{});
+      const auto hamiltonian = kinetic_potential<Quad>(HenonHeilesField{});
       return distance(motion_of(run(hamiltonian, *scheme, start, dt, n)), exact);
     }));
   }
@@ -63,7 +63,7 @@ TEST_CASE("every scheme has its order on a Kepler orbit of eccentricity 0.6", "[
   const PhasePoint<Quad> exact = kepler_motion(start, Quad(duration));
   for (const Scheme* scheme : schemes::all()) {
     check_order(*scheme, climb(*scheme, duration, 6000, [&](double dt, long n) {
-      const KineticPotential<Gravity, Quad> hamiltonian(Gravity{});
+      const auto hamiltonian = kinetic_potential<Quad>(Gravity{});
       return distance(relative_motion(run(hamiltonian, *scheme, start, dt, n)), exact);
     }));
   }
@@ -77,7 +77,7 @@ TEST_CASE("every scheme has its order on a driven oscillator: kicks see the time
   const PhasePoint<Quad> exact = driven_motion(motion_of(start), spring, drive, Quad(duration));
   for (const Scheme* scheme : schemes::all()) {
     check_order(*scheme, climb(*scheme, duration, 2000, [&](double dt, long n) {
-      const KineticPotential<Sum<HarmonicField, OscillatingField>, Quad> hamiltonian(Sum(spring, drive));
+      const auto hamiltonian = kinetic_potential<Quad>(spring, drive);
       return distance(motion_of(run(hamiltonian, *scheme, start, dt, n)), exact);
     }));
   }
@@ -96,7 +96,7 @@ TEST_CASE("one digit changed in a table is seen in the measured order", "[order]
       broken.word.push_back({scheme->word[k].letter, scheme->word[k].weight + Quad(more ? 1e-5 : less ? -1e-5 : 0.0)});
     }
     const auto points = climb(broken, duration, 6000, [&](double dt, long n) {
-      const KineticPotential<HenonHeilesField, Quad> hamiltonian(HenonHeilesField{});
+      const auto hamiltonian = kinetic_potential<Quad>(HenonHeilesField{});
       return distance(motion_of(run(hamiltonian, broken, start, dt, n)), exact);
     });
     INFO(scheme->name << "\n" << to_text(points));
@@ -122,7 +122,7 @@ TEST_CASE("kicks that do not see the time of their stage are seen in the measure
   const OscillatingField drive{.acceleration = {0.7, 0, 0}, .omega = 2.25};
   const PhasePoint<Quad> exact = driven_motion(motion_of(start), spring, drive, Quad(3));
   const auto points = climb(schemes::yoshida_4, 3, 2000, [&](double dt, long n) {
-    const KineticPotential<Sum<HarmonicField, SteppedField>, Quad> hamiltonian(Sum(spring, SteppedField{drive}));
+    const auto hamiltonian = kinetic_potential<Quad>(spring, SteppedField{drive});
     return distance(motion_of(run(hamiltonian, schemes::yoshida_4, start, dt, n)), exact);
   });
   CHECK(measured_order(schemes::yoshida_4, points) < 2.2);

@@ -38,19 +38,19 @@ template <class H> void check_order(const Scheme& scheme, const H& hamiltonian, 
   CHECK(std::fabs(fitted_slope(used) - scheme.order.classical) < 0.2);
 }
 
-template <class F> ParticleSystem<Quad> reference(const F& forces) {
-  const KineticPotential<F, Quad> hamiltonian(forces);
+template <class... Fs> ParticleSystem<Quad> reference(const Fs&... forces) {
+  const auto hamiltonian = kinetic_potential<Quad>(forces...);
   return run(hamiltonian, schemes::sofroniou_spaletta_10_s35, planets(0.2, 2).as<Quad>(), arcs_duration / 384, 384);
 }
 
 TEST_CASE("every scheme has its order over Kepler arcs in Jacobi coordinates", "[order][slow]") {
   const auto exact = reference(Gravity{});
-  for (const Scheme* scheme : schemes::all()) check_order(*scheme, WisdomHolman<Quad>({}), exact);
+  for (const Scheme* scheme : schemes::all()) check_order(*scheme, wisdom_holman<Quad>({}), exact);
 }
 
 TEST_CASE("every scheme but Nystroem's has its order over Kepler arcs in democratic coordinates", "[order][slow]") {
   const auto exact = reference(Gravity{});
-  const WisdomHolman<Quad> democratic({.coordinates = Coordinates::democratic});
+  const auto democratic = wisdom_holman<Quad>({.coordinates = Coordinates::democratic});
   int tested = 0;
   for (const Scheme* scheme : schemes::all()) {
     if (scheme->scheme_class == SchemeClass::rkn) continue;
@@ -62,9 +62,9 @@ TEST_CASE("every scheme but Nystroem's has its order over Kepler arcs in democra
 
 TEST_CASE("a strong field beside the arcs leaves every scheme that is not refused its order", "[order][slow]") {
   const HarmonicField field{.k = 0.05};
-  const auto exact = reference(Sum(Gravity{}, field));
-  using Arcs = WisdomHolman<Quad, Sum<HarmonicField>>;
-  const Arcs jacobi({}, Sum(field)), democratic({.coordinates = Coordinates::democratic}, Sum(field));
+  const auto exact = reference(Gravity{}, field);
+  const auto jacobi = wisdom_holman<Quad>({}, field),
+             democratic = wisdom_holman<Quad>({.coordinates = Coordinates::democratic}, field);
   int inexact = 0;
   for (const Scheme* scheme : schemes::all()) {
     if (scheme->order.classical > 8) continue;  // at the digits of their tables before the order shows
@@ -82,8 +82,8 @@ TEST_CASE("drag beside Kepler arcs leaves schemes with forward steps their order
   const LinearDrag drag{.rate = 0.2};
   for (const Scheme* scheme : {&schemes::verlet, &schemes::saba_4, &schemes::symplectic_euler_a}) {
     const int order = scheme == &schemes::symplectic_euler_a ? 1 : 2;
-    const Damped jacobi(WisdomHolman<Quad>({}), drag);
-    const Damped inertial(KineticPotential<Gravity, Quad>(Gravity{}), drag);
+    const auto jacobi = damped(wisdom_holman<Quad>({}), drag);
+    const auto inertial = damped(kinetic_potential<Quad>(Gravity{}), drag);
     std::vector<ErrorPoint> points;
     for (const long n : {32, 64, 128, 256}) {
       const double dt = arcs_duration / static_cast<double>(n);
@@ -99,8 +99,8 @@ TEST_CASE("drag beside Kepler arcs leaves schemes with forward steps their order
 TEST_CASE("a symmetric composition would lose its order over kicks that are not exact", "[order]") {
   // What the refusal is for: yoshida_4 joins the kicks of its steps.
   const HarmonicField field{.k = 0.3};
-  const auto exact = reference(Sum(Gravity{}, field));
-  const WisdomHolman<Quad, Sum<HarmonicField>> democratic({.coordinates = Coordinates::democratic}, Sum(field));
+  const auto exact = reference(Gravity{}, field);
+  const auto democratic = wisdom_holman<Quad>({.coordinates = Coordinates::democratic}, field);
   Scheme unaware = schemes::yoshida_4;
   unaware.exact = "";
   std::vector<ErrorPoint> points;

@@ -12,6 +12,7 @@
 #include "integrators/schemes.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/drivers.hpp"
 #include "tests/support/planets.hpp"
 
 #include <fmt/format.h>
@@ -75,21 +76,21 @@ template <class Real> void check_all_hamiltonians(const Scheme& scheme, std::int
   const Gravity gravity{.G = test::outer_G};
   for (const bool compensated : {false, true}) {
     CAPTURE(scheme.name, compensated);
-    check_restart<Real>(compose(KineticPotential<Gravity, Real>(gravity), scheme, {.compensated = compensated}), n);
-    check_restart<Real>(compose(WisdomHolman<Real>({.G = test::outer_G}), scheme, {.compensated = compensated}), n);
-    const WisdomHolman<Real> democratic({.G = test::outer_G, .coordinates = Coordinates::democratic});
+    check_restart<Real>(compose(test::kinetic_potential<Real>(gravity), scheme, {.compensated = compensated}), n);
+    check_restart<Real>(compose(test::wisdom_holman<Real>({.G = test::outer_G}), scheme, {.compensated = compensated}),
+                        n);
+    const auto democratic = test::wisdom_holman<Real>({.G = test::outer_G, .coordinates = Coordinates::democratic});
     if (scheme.scheme_class != SchemeClass::rkn) {
       check_restart<Real>(compose(democratic, scheme, {.compensated = compensated}), n);
     }
-    const Sum forces(UniformField{.acceleration = {1e-8, 0, 2e-8}},
-                     OscillatingField{.acceleration = {1e-7, 0, 2e-7}, .omega = 0.03});
-    const WisdomHolman<Real, std::decay_t<decltype(forces)>> driven({.G = test::outer_G}, forces);
+    const auto driven = test::wisdom_holman<Real>({.G = test::outer_G}, UniformField{.acceleration = {1e-8, 0, 2e-8}},
+                                                  OscillatingField{.acceleration = {1e-7, 0, 2e-7}, .omega = 0.03});
     check_restart<Real>(compose(driven, scheme, {.compensated = compensated}), n);
     if (scheme.has_negative_steps()) continue;
     const LinearDrag drag{.rate = 1e-4};
-    const KineticPotential<Gravity, Real> inertial(gravity);
-    check_restart<Real>(compose(Damped(inertial, drag), scheme, {.compensated = compensated}), n);
-    check_restart<Real>(compose(Damped(driven, drag), scheme, {.compensated = compensated}), n);
+    const auto inertial = test::kinetic_potential<Real>(gravity);
+    check_restart<Real>(compose(test::damped(inertial, drag), scheme, {.compensated = compensated}), n);
+    check_restart<Real>(compose(test::damped(driven, drag), scheme, {.compensated = compensated}), n);
   }
 }
 
@@ -107,7 +108,7 @@ TEST_CASE("the same in Quad", "[restart]") {
 }
 
 TEST_CASE("a restored run of another scheme, step or set of particles is refused", "[restart]") {
-  const KineticPotential<Gravity> gravity(Gravity{.G = test::outer_G});
+  const auto gravity = test::kinetic_potential(Gravity{.G = test::outer_G});
   Simulation run(test::outer_planets(), compose(gravity, schemes::verlet), 40.0);
   CHECK(run.run(3).ok());
   const SavedRun saved = run.save();
@@ -115,9 +116,9 @@ TEST_CASE("a restored run of another scheme, step or set of particles is refused
   Simulation other_scheme(test::outer_planets(), compose(gravity, schemes::verlet_aba), 40.0);
   CHECK_THROWS_WITH(other_scheme.restore(saved),
                     "the saved run was made by method 'verlet', this one uses 'verlet_aba'");
-  Simulation other_force(test::outer_planets(),
-                         compose(KineticPotential(Gravity{.G = test::outer_G, .softening = 0.5}), schemes::verlet),
-                         40.0);
+  Simulation other_force(
+      test::outer_planets(),
+      compose(test::kinetic_potential(Gravity{.G = test::outer_G, .softening = 0.5}), schemes::verlet), 40.0);
   CHECK_THROWS_WITH(other_force.restore(saved),
                     "the saved run was made with gravity(G = 0.000295912208286, softening = 0), this one has "
                     "gravity(G = 0.000295912208286, softening = 0.5)");

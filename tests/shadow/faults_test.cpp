@@ -1,6 +1,7 @@
 /// Planted faults: each is found and named.
 
 #include "tests/shadow/support.hpp"
+#include "tests/support/drivers.hpp"
 
 #include <cmath>
 
@@ -45,12 +46,12 @@ TEST_CASE("a method that only poses as symplectic is named", "[shadow]") {
 
 TEST_CASE("a force that is no gradient is named, a gradient is not", "[shadow]") {
   for (const double strength : {1e-2, 1e-4}) {
-    const auto shadow = test::shadow_of(compose(KineticPotential(Swirl{strength}), schemes::verlet),
+    const auto shadow = test::shadow_of(compose(test::kinetic_potential(Swirl{strength}), schemes::verlet),
                                         test::henon_heiles_start(), 0.1, 2000, test::shadow_orders);
     CAPTURE(strength, shadow.verdict());
     CHECK_THAT(shadow.verdict(), StartsWith("force is no gradient: it differs from that of its energy by "));
   }
-  const auto straight = test::shadow_of(compose(KineticPotential(Swirl{0}), schemes::verlet),
+  const auto straight = test::shadow_of(compose(test::kinetic_potential(Swirl{0}), schemes::verlet),
                                         test::henon_heiles_start(), 0.1, 2000, test::shadow_orders);
   CHECK_THAT(straight.verdict(), StartsWith("kept to rounding"));
 }
@@ -59,15 +60,15 @@ TEST_CASE("a step too large is named: a plateau, then growth with the order", "[
   // Near the largest bounded start of q'' = -q - q^2 at h omega = 1.72.
   ParticleSystem<double> start;
   start.add("", 1.0, {0.027, 0, 0}, {0, 0, 0});
-  const auto shadow =
-      test::shadow_of(compose(KineticPotential(Quadratic{}), schemes::verlet), start, 1.72, 5000, test::shadow_orders);
+  const auto shadow = test::shadow_of(compose(test::kinetic_potential(Quadratic{}), schemes::verlet), start, 1.72, 5000,
+                                      test::shadow_orders);
   for (std::size_t k = 1; k < test::shadow_orders.size(); ++k) CHECK(shadow.fluctuation(k) > shadow.fluctuation(k - 1));
   CHECK_THAT(shadow.verdict(), StartsWith("step too large: order "));
 }
 
 TEST_CASE("a run that leaves all bounds has no shadow, and the verdict does not praise it", "[shadow]") {
   Simulation simulation(test::henon_heiles_start(),
-                        compose(KineticPotential(test::HenonHeilesField{}), schemes::verlet), 1.2);
+                        compose(test::kinetic_potential(test::HenonHeilesField{}), schemes::verlet), 1.2);
   auto& shadow = simulation.every(1, ShadowHamiltonian<>());
   CHECK(simulation.run(1000).kind == Outcome::Kind::diverged);
   CHECK_THAT(shadow.verdict(), StartsWith("step too large: "));
@@ -88,7 +89,7 @@ TEST_CASE("a wrong digit in a scheme leaves the shadow flat; its distance from t
   const auto slope = [](const Scheme& scheme) {
     std::vector<double> distances;
     for (const double h : {0.2, 0.1}) {
-      const KineticPotential<test::HenonHeilesField, Quad> field(test::HenonHeilesField{});
+      const auto field = test::kinetic_potential<Quad>(test::HenonHeilesField{});
       const auto steps = static_cast<std::int64_t>(std::round(8 / h)) + 6;  // the window ends 6 steps after its middle
       const auto shadow = test::shadow_of(compose(field, scheme), test::henon_heiles_start(), h, steps, {24});
       CHECK(shadow.fluctuation(0) < 1e-15);

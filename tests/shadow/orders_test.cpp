@@ -4,6 +4,7 @@
 #include "integrators/classical.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "tests/shadow/support.hpp"
+#include "tests/support/drivers.hpp"
 
 #include <cmath>
 
@@ -42,7 +43,7 @@ MethodChoice fixed(const std::string& name) {
 }  // namespace
 
 TEST_CASE("the shadow Hamiltonian is flat to its order under compositions of drift and kick", "[shadow]") {
-  const KineticPotential<test::HenonHeilesField, Quad> field(test::HenonHeilesField{});
+  const auto field = test::kinetic_potential<Quad>(test::HenonHeilesField{});
   for (const Scheme& scheme : {schemes::verlet, schemes::verlet_aba, schemes::yoshida_4, schemes::blanes_moan_s6}) {
     CAPTURE(scheme.name);
     check_orders(slopes(compose(field, scheme), test::henon_heiles_start(), 0.15, 300));
@@ -51,20 +52,20 @@ TEST_CASE("the shadow Hamiltonian is flat to its order under compositions of dri
 
 TEST_CASE("the shadow Hamiltonian is flat to its order under Gauss's methods, the midpoint rule among them",
           "[shadow]") {
-  const KineticPotential<test::HenonHeilesField, Quad> field(test::HenonHeilesField{});
+  const auto field = test::field_of<Quad>(test::HenonHeilesField{});
   for (const char* name : {"implicit_midpoint", "gauss_2"}) {
     CAPTURE(name);
-    const auto found = slopes(classical(field, fixed(name)), test::henon_heiles_start(), 0.15, 300);
+    const auto found = slopes(test::classical_over(field, fixed(name)), test::henon_heiles_start(), 0.15, 300);
     check_orders(found);
   }
 }
 
 TEST_CASE("the shadow of Gauss's method is nearer to the energy by its order", "[shadow]") {
   // H_h - H = O(h^4): what the energy loses against its shadow falls by 16 when the step halves.
-  const KineticPotential<test::HenonHeilesField, Quad> field(test::HenonHeilesField{});
+  const auto field = test::field_of<Quad>(test::HenonHeilesField{});
   std::vector<double> lost;
   for (const double h : {0.2, 0.1}) {
-    Simulation run(test::henon_heiles_start().as<Quad>(), classical(field, fixed("gauss_2")), h);
+    Simulation run(test::henon_heiles_start().as<Quad>(), test::classical_over(field, fixed("gauss_2")), h);
     auto& energy = run.every(1, Energy{});
     auto& shadow = run.every(1, ShadowHamiltonian<Quad>(test::shadow_orders));
     REQUIRE(run.run(static_cast<std::int64_t>(std::round(40 / h))).ok());
@@ -77,7 +78,7 @@ TEST_CASE("the shadow of Gauss's method is nearer to the energy by its order", "
 TEST_CASE("the shadow Hamiltonian is flat to its order under Wisdom-Holman in both coordinates", "[shadow]") {
   const auto start = test::planets(1e-3);
   for (const Coordinates coordinates : {Coordinates::jacobi, Coordinates::democratic}) {
-    const WisdomHolman<Quad> planets(WisdomHolmanOptions{.G = 1, .coordinates = coordinates});
+    const auto planets = test::wisdom_holman<Quad>({.G = 1, .coordinates = coordinates});
     for (const Scheme& scheme : {schemes::verlet_aba, schemes::aba_10_6_4}) {
       CAPTURE(scheme.name, static_cast<int>(coordinates));
       check_orders(slopes(compose(planets, scheme), start, 0.15, 120));
@@ -87,7 +88,7 @@ TEST_CASE("the shadow Hamiltonian is flat to its order under Wisdom-Holman in bo
 
 TEST_CASE("a quadratic Hamiltonian has an exact shadow, to every order alike", "[shadow]") {
   const auto start = test::particle_in_plane(1, 0.2, 0, 0.7);
-  const KineticPotential<HarmonicField, Quad> spring(HarmonicField{.k = 1});
+  const auto spring = test::kinetic_potential<Quad>(HarmonicField{.k = 1});
   const auto shadow = test::shadow_of(compose(spring, schemes::verlet), start, 0.9, 200, test::shadow_orders);
   for (std::size_t k = 0; k < test::shadow_orders.size(); ++k) CHECK(shadow.fluctuation(k) < 1e-29);
 }
@@ -95,7 +96,7 @@ TEST_CASE("a quadratic Hamiltonian has an exact shadow, to every order alike", "
 TEST_CASE("Verlet's shadow is the Hamiltonian and the known terms of order h^2", "[shadow]") {
   // H + h^2 (p U'' p / 12 - |grad U|^2 / 24) for kick, drift, kick, at the middle of the window.
   const auto start = test::henon_heiles_start();
-  const KineticPotential<test::HenonHeilesField, Quad> field(test::HenonHeilesField{});
+  const auto field = test::kinetic_potential<Quad>(test::HenonHeilesField{});
   std::vector<double> errors;
   for (const double h : {0.04, 0.02}) {
     const auto to_middle = static_cast<std::int64_t>(std::round(0.8 / h));
@@ -114,7 +115,7 @@ TEST_CASE("Verlet's shadow is the Hamiltonian and the known terms of order h^2",
 }
 
 TEST_CASE("in doubles the shadow is five orders of magnitude flatter than the energy", "[shadow]") {
-  const KineticPotential field(test::HenonHeilesField{});
+  const auto field = test::kinetic_potential(test::HenonHeilesField{});
   Simulation simulation(test::henon_heiles_start(), compose(field, schemes::verlet), 0.1);
   auto& shadow = simulation.every(1, ShadowHamiltonian<>());
   auto& energy = simulation.every(1, Energy{});

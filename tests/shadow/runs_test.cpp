@@ -7,6 +7,7 @@
 #include "forces/linear_drag.hpp"
 #include "integrators/damped.hpp"
 #include "integrators/wisdom_holman.hpp"
+#include "tests/support/drivers.hpp"
 #include "tests/support/planets.hpp"
 
 using namespace noether;
@@ -15,11 +16,11 @@ using Catch::Matchers::Contains;
 namespace {
 
 Simulation<double> planets(const Scheme& scheme) {
-  return Simulation(test::outer_planets(), compose(WisdomHolman(WisdomHolmanOptions{}), scheme), 100.0);
+  return Simulation(test::outer_planets(), compose(test::wisdom_holman({}), scheme), 100.0);
 }
 Simulation<double> field(CompositionOptions options = {}) {
   return Simulation(test::henon_heiles_start(),
-                    compose(KineticPotential(test::HenonHeilesField{}), schemes::yoshida_4, options), 0.1);
+                    compose(test::kinetic_potential(test::HenonHeilesField{}), schemes::yoshida_4, options), 0.1);
 }
 
 /// Keeps what was looked at.
@@ -112,7 +113,7 @@ TEST_CASE("a corrector does not disturb the shadow: it is that of the composed m
   processed.before.push_back({'A', Quad(0.1)});
   processed.after.push_back({'A', Quad(-0.1)});
   processed.after.push_back({'B', Quad(-0.05)});
-  const auto shadow = test::shadow_of(compose(KineticPotential(test::HenonHeilesField{}), processed),
+  const auto shadow = test::shadow_of(compose(test::kinetic_potential(test::HenonHeilesField{}), processed),
                                       test::henon_heiles_start(), 0.1, 100, {4, 8, 12, 16});
   CHECK(shadow.report().samples == 93);
   CHECK(shadow.fluctuation(2) < 1e-13);
@@ -135,12 +136,14 @@ TEST_CASE("runs that keep no shadow are refused by name", "[shadow]") {
     Simulation<double> simulation(test::henon_heiles_start(), compose(std::move(hamiltonian), scheme), 0.1);
     simulation.every(1, ShadowHamiltonian<>());
   };
-  CHECK_THROWS_WITH(attach(Damped(KineticPotential(HarmonicField{.k = 1}), LinearDrag{.rate = 0.1}), schemes::verlet),
-                    "monitor 'shadow_hamiltonian' needs the action of every step: a force of this run is dissipative, "
-                    "so no action tells its motion");
-  CHECK_THROWS_WITH(attach(KineticPotential(OscillatingField{.acceleration = {1, 0, 0}, .omega = 2}), schemes::verlet),
-                    "monitor 'shadow_hamiltonian' needs the action of every step: a force of this run depends on time, "
-                    "so no energy is kept, the exact one neither");
+  CHECK_THROWS_WITH(
+      attach(test::damped(test::kinetic_potential(HarmonicField{.k = 1}), LinearDrag{.rate = 0.1}), schemes::verlet),
+      "monitor 'shadow_hamiltonian' needs the action of every step: a force of this run is dissipative, "
+      "so no action tells its motion");
+  CHECK_THROWS_WITH(
+      attach(test::kinetic_potential(OscillatingField{.acceleration = {1, 0, 0}, .omega = 2}), schemes::verlet),
+      "monitor 'shadow_hamiltonian' needs the action of every step: a force of this run depends on time, "
+      "so no energy is kept, the exact one neither");
   Simulation<double> simulation = field();
   CHECK_THROWS_WITH(simulation.every_wall(1, ShadowHamiltonian<>()), Contains("attach it by steps, not by wall time"));
 }

@@ -9,6 +9,7 @@
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/schemes.hpp"
+#include "tests/support/drivers.hpp"
 
 #include <array>
 #include <cmath>
@@ -29,8 +30,8 @@ inline const UniformField weight{{0, 0, -g_earth}};
 
 /// The Hamiltonian of a mechanism under a force, its weight unless told.
 template <class Real = double, class F = UniformField>
-KineticPotential<F, Real, ConstraintSet> hamiltonian_of(const Mechanism& mechanism, const F& force = weight) {
-  return KineticPotential<F, Real, ConstraintSet>(force, mechanism.constraints);
+AnyHamiltonian<Real> hamiltonian_of(const Mechanism& mechanism, const F& force = weight) {
+  return kinetic_potential_over(field_of<Real>(force), mechanism.constraints);
 }
 
 /// A mass on a rod of length 1 that turns about the vertical as it swings.

@@ -7,6 +7,7 @@
 #include "forces/sum.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
+#include "tests/support/drivers.hpp"
 
 #include <array>
 #include <cmath>
@@ -173,25 +174,20 @@ inline ParticleSystem<double> figure_eight() {
   return s;
 }
 
-/// The settled particles after `steps` steps of `dt` of an integrator, without the machinery of a simulation.
-template <class I>
-ParticleSystem<typename I::real> run(I& integrator, ParticleSystem<typename I::real> s, double dt, std::int64_t steps,
-                                     double start = 0) {
-  s.clock() = Clock<typename I::real>::fixed(start, dt);
-  integrator.bind(s);
-  auto settled = s;
-  integrator.advance(s, {.steps = steps});
-  integrator.settle(s, settled, {}, std::nullopt, true);
-  return settled;
-}
-
-/// The same with a scheme over a Hamiltonian.
-template <class H>
-ParticleSystem<typename H::real> run(const H& hamiltonian, const Scheme& scheme,
-                                     const ParticleSystem<typename H::real>& s, double dt, std::int64_t steps,
-                                     CompositionOptions options = {}) {
-  Composition<H> integrator(hamiltonian, scheme, options);
-  return run(integrator, s, dt, steps);
-}
-
 }  // namespace noether::test
+
+namespace noether {
+
+// Compiled once, in problems.cpp.
+extern template struct detail::ForceModel<test::HenonHeilesField, double>;
+extern template struct detail::ForceModel<test::HenonHeilesField, Quad>;
+
+namespace test {
+extern template PhasePoint<Quad> henon_heiles_flow(PhasePoint<Quad>, double);
+extern template PhasePoint<double> kepler_motion(const ParticleSystem<double>&, const double&);
+extern template PhasePoint<Quad> kepler_motion(const ParticleSystem<Quad>&, const Quad&);
+extern template PhasePoint<Quad> driven_motion(const PhasePoint<Quad>&, const HarmonicField&, const OscillatingField&,
+                                               const Quad&);
+}  // namespace test
+
+}  // namespace noether

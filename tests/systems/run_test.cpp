@@ -12,6 +12,7 @@
 #include "integrators/systems/heat_line.hpp"
 #include "integrators/systems/lorenz.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/drivers.hpp"
 #include "tests/support/planets.hpp"
 
 #include <cmath>
@@ -74,7 +75,7 @@ TEST_CASE("monitors and stops of particles are refused for a system, before the 
 }
 
 TEST_CASE("variables go to methods for them, and particles to methods for those", "[system_run]") {
-  const auto kick = compose(KineticPotential(Gravity{}), schemes::verlet);
+  const auto kick = compose(test::kinetic_potential(Gravity{}), schemes::verlet);
   CHECK_THROWS_WITH(Simulation(initial_state(Lorenz{}), kick, 0.01),
                     "method 'verlet' moves particles, but it was given the variables of a system of first order; use a "
                     "method for y' = f, such as 'dop853' or 'rodas_5p'");
