@@ -5,12 +5,6 @@
 
 #include <memory>
 
-namespace noether {
-
-template class WisdomHolman<Quad, ForceField<Quad>>;
-
-}  // namespace noether
-
 namespace noether::test {
 
 namespace {
@@ -26,12 +20,6 @@ AnyHamiltonian<Real> held(ForceField<Real> forces, const ConstraintSet& constrai
   KineticPotential<ForceField<Real>, Real, ConstraintSet> hamiltonian(std::move(forces), constraints);
   hamiltonian.set_neighbor_options(list);
   return hamiltonian;
-}
-
-/// The splitting alone where there are no further forces: its kicks in democratic coordinates are exact then.
-template <class Real> AnyHamiltonian<Real> arcs(const WisdomHolmanOptions& options, ForceField<Real> forces) {
-  if (forces.terms().empty()) return WisdomHolman<Real>(options);
-  return WisdomHolman<Real, ForceField<Real>>(options, std::move(forces));
 }
 
 }  // namespace
@@ -58,18 +46,18 @@ AnyHamiltonian<Quad> damped(AnyHamiltonian<Quad> hamiltonian, const LinearDrag& 
   return Damped(std::move(hamiltonian), drag);
 }
 AnyHamiltonian<double> in_bath(ForceField<double> forces, const LangevinOptions& options) {
-  return Langevin(KineticPotential(std::move(forces)), options);
+  return Langevin(kinetic_potential_over(std::move(forces)), options);
 }
 AnyHamiltonian<double> in_bath(ForceField<double> forces, const ConstraintSet& constraints,
                                const LangevinOptions& options) {
-  return Langevin(KineticPotential(std::move(forces), constraints), options);
+  return Langevin(kinetic_potential_over(std::move(forces), constraints), options);
 }
 
 AnyHamiltonian<double> wisdom_holman_over(const WisdomHolmanOptions& options, ForceField<double> forces) {
-  return arcs(options, std::move(forces));
+  return options.split(std::move(forces));
 }
 AnyHamiltonian<Quad> wisdom_holman_over(const WisdomHolmanOptions& options, ForceField<Quad> forces) {
-  return arcs(options, std::move(forces));
+  return options.split(std::move(forces));
 }
 
 Classical<double> classical_over(ForceField<double> forces, const MethodChoice& choice) {

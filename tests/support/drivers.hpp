@@ -15,12 +15,6 @@
 #include <optional>
 #include <utility>
 
-namespace noether {
-
-extern template class WisdomHolman<Quad, ForceField<Quad>>;  // compiled once, in drivers.cpp
-
-}  // namespace noether
-
 namespace noether::test {
 
 /// Forces added in order.
