@@ -18,12 +18,7 @@ find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(fmt 9 REQUIRED)
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)
 find_package(CLI11 REQUIRED)
-
-set(NOETHER_OPENMP_TARGET)
-if(NOETHER_OPENMP)
-  find_package(OpenMP REQUIRED COMPONENTS CXX)
-  set(NOETHER_OPENMP_TARGET OpenMP::OpenMP_CXX)
-endif()
+find_package(Threads REQUIRED)
 
 set(NOETHER_HDF5_TARGET)
 if(NOETHER_HDF5)
@@ -61,9 +56,6 @@ target_compile_options(noether_options INTERFACE -fno-trapping-math)
 target_compile_definitions(noether_options INTERFACE EIGEN_MAX_ALIGN_BYTES=64 EIGEN_MAX_STATIC_ALIGN_BYTES=16)
 # HDF5's own list of libraries brings curl and others along; only what is used is loaded.
 target_link_options(noether_options INTERFACE LINKER:--as-needed)
-if(NOT NOETHER_OPENMP)
-  target_compile_options(noether_options INTERFACE -Wno-unknown-pragmas)
-endif()
 
 # Warnings are ours, never a consumer's. Square roots need no errno; that changes no bit.
 function(noether_warnings target)
