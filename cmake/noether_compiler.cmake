@@ -27,6 +27,7 @@ find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(fmt 9 REQUIRED)
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)
 find_package(CLI11 REQUIRED)
+find_package(Threads REQUIRED)
 
 set(NOETHER_OPENMP_TARGET)
 if(NOETHER_OPENMP)

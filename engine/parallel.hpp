@@ -4,16 +4,12 @@
 #include "engine/types.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <vector>
-
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 namespace noether {
 
-/// Threads that `for_blocks` and `reduce` may use; 1 without OpenMP.
+/// Threads that `for_blocks` and `reduce` may use: what OMP_NUM_THREADS says, or else as many as the processors that
+/// this process may use; 1 without OpenMP.
 int thread_count();
 /// Sets that number. @throws Error if it is below 1
 void set_thread_count(int threads);
@@ -25,55 +21,24 @@ inline constexpr Index parallel_threshold = 256;
 
 namespace detail {
 
-/// Blocks for some threads: each has a range of its own, the same in every loop of one length, so that what it has
-/// written stays in its cache; whoever is done helps the others, so that one on a busy core lets nobody wait.
-class Shares {
- public:
-  Shares(Index blocks, int threads) : blocks_(blocks), ranges_(std::min(threads, most_ranges)) {
-    for (int r = 0; r < ranges_; ++r) next_[r].block.store(begin(r), std::memory_order_relaxed);
-    at_a_time_ = std::max(Index(1), blocks / (16 * threads));
-  }
-  template <class Body> void take(int thread, const Body& body) {
-    for (int k = 0; k < ranges_; ++k) {
-      const int r = (thread + k) % ranges_;
-      const Index end = begin(r + 1);
-      while (true) {
-        const Index from = next_[r].block.fetch_add(at_a_time_, std::memory_order_relaxed);
-        if (from >= end) break;
-        for (Index b = from; b < std::min(end, from + at_a_time_); ++b) body(b);
-      }
-    }
-  }
-
- private:
-  static constexpr int most_ranges = 64;
-  struct alignas(64) Next {
-    std::atomic<Index> block{0};
-  };
-  Index begin(int range) const { return blocks_ * range / ranges_; }
-
-  Index blocks_, at_a_time_;
-  int ranges_;
-  Next next_[most_ranges];
-};
+/// Calls `run(body, block)` for every block, each by one of thread_count() threads; see engine/parallel.cpp.
+void share_blocks(Index blocks, void (*run)(const void* body, Index block), const void* body);
 
 }  // namespace detail
 
 /// Calls `body(begin, end)` for every block of [0, n); blocks may run at the same time, each by one thread.
 ///
-/// The owner of a block computes all of it, so results cannot depend on the number of threads.
+/// Whoever takes a block computes all of it, so results cannot depend on the number of threads.
 /// @throws never; `body` must not throw
 template <class Body> void for_blocks(Index n, const Body& body) {
   const Index blocks = (n + block_size - 1) / block_size;
-#ifdef _OPENMP
+  const auto run = [&body, n](Index b) { body(b * block_size, std::min(n, (b + 1) * block_size)); };
   if (n >= parallel_threshold && thread_count() > 1) {
-    detail::Shares shares(blocks, thread_count());
-#pragma omp parallel num_threads(thread_count())
-    shares.take(omp_get_thread_num(), [&](Index b) { body(b * block_size, std::min(n, (b + 1) * block_size)); });
+    detail::share_blocks(
+        blocks, [](const void* run_it, Index b) { (*static_cast<decltype(run)*>(run_it))(b); }, &run);
     return;
   }
-#endif
-  for (Index b = 0; b < blocks; ++b) body(b * block_size, std::min(n, (b + 1) * block_size));
+  for (Index b = 0; b < blocks; ++b) run(b);
 }
 
 /// Sum over [0, n) of `partial(begin, end)`, one value per block, added in block order.

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -21,13 +20,6 @@ std::string json_output(const ScratchFolder& folder, const std::string& line, co
   return json;
 }
 
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream source(text);
-  for (std::string line; std::getline(source, line);) lines.push_back(line);
-  return lines;
-}
-
 TEST_CASE("--version and --help succeed, for the program and each command", "[cli]") {
   const ScratchFolder folder;
   CHECK(output(folder, "--version").starts_with("noether "));
@@ -41,9 +33,9 @@ TEST_CASE("--version and --help succeed, for the program and each command", "[cl
 TEST_CASE("evaluate tells energies, virial and forces of the initial state", "[cli][evaluate]") {
   const SceneFolder folder;
   const std::string json = json_output(folder, "evaluate scene.toml --check --forces forces.csv", "evaluate");
-  CHECK(json_block(json, "energy") ==
+  CHECK(json_member(json, "energy") ==
         R"({"total":-5e-04,"kinetic":5e-04,"potential":-0.001,"terms":{"gravity":-0.001}})");
-  CHECK(json_block(json, "virial") == "[[-0.001,0,0],[0,0,0],[0,0,0]]");
+  CHECK(json_member(json, "virial") == "[[-0.001,0,0],[0,0,0],[0,0,0]]");
   CHECK(json_member(json, "pressure") == "null");
   CHECK(json_member(json, "force_max") == "0.001");
   CHECK(std::stod(json_member(json, "gradient_error")) < 1e-20);
@@ -193,8 +185,8 @@ TEST_CASE("small boxes, bonds and neighbors are spoken of", "[cli][messages]") {
   CHECK(has(text, "\nwarning: the structure has 2 bonded terms that nothing acts on: there is no force 'bonded'\n"));
   CHECK(has(text, " s of it in searches for neighbors, with 1 sort into cells in "));
   const std::string json = output(chain, "run scene.toml --fresh --json" + forces);
-  CHECK(json_member(json_block(json, "neighbors"), "sorts") == "1");
-  CHECK(std::stod(json_member(json_block(json, "neighbors"), "sort_seconds")) > 0);
+  CHECK(json_member(json_member(json, "neighbors"), "sorts") == "1");
+  CHECK(std::stod(json_member(json_member(json, "neighbors"), "sort_seconds")) > 0);
   CHECK(has(json, "\"warnings\":[\"the structure has 2 bonded terms"));
   const auto refused = [&](const std::string& set) {
     const ProcessResult result = noether(pair, "run scene.toml --fresh " + set);
@@ -269,7 +261,7 @@ TEST_CASE("explain tells what is in and what is left out", "[cli][explain]") {
   CHECK(text.find("\nleft out:\n") < text.find("\n  monitor momentum\n"));
   CHECK(text.find("\n  monitor energy") < text.find("\nleft out:\n"));
   const std::string json = json_output(folder, "explain scene.toml", "explain");
-  CHECK(json_block(json, "flows_per_step") == R"({"A":3,"B":3})");
+  CHECK(json_member(json, "flows_per_step") == R"({"A":3,"B":3})");
   CHECK(json_member(json, "bytes_per_particle") == "64");
   // A twentieth of the time a circle through the pericenter would take at the speed there.
   const double mu = 1.001, a = 1 / (2 - 1 / mu), q = 2 * a - 1;
@@ -290,7 +282,7 @@ TEST_CASE("list knows every kind of part", "[cli][list]") {
   for (const char* what : {"methods", "forces", "constraints", "systems", "monitors", "builders", "units"}) {
     const std::string json = json_output(folder, std::string("list ") + what, "list");
     CHECK(json_member(json, "list") == "\"" + std::string(what) + "\"");
-    CHECK(json_block(json, "items").front() == '[');
+    CHECK(json_member(json, "items").front() == '[');
     CHECK_FALSE(output(folder, std::string("list ") + what).empty());
   }
 }
@@ -302,7 +294,7 @@ TEST_CASE("describe tells formula, order, fields and source", "[cli][describe]")
   CHECK(has(method, "\n@article{"));
   const std::string json = json_output(folder, "describe aba_10_6_4", "describe");
   CHECK(json_member(json, "kind") == "\"method\"");
-  CHECK(json_block(json, "near_integrable_orders") == "[10,6,4]");
+  CHECK(json_member(json, "near_integrable_orders") == "[10,6,4]");
   CHECK(has(json, "\"bibtex\":\"@"));
   CHECK(json_member(output(folder, "describe forest_ruth --json"), "name") == "\"yoshida_4\"");
 
@@ -397,7 +389,7 @@ TEST_CASE("info and verify read the files of a run", "[cli][info]") {
     const std::string verified = json_output(folder, "verify " + path, "verify");
     CHECK(json_member(verified, "ok") == "true");
     CHECK(json_member(verified, "complete") == "true");
-    CHECK(json_block(verified, "damaged") == "[]");
+    CHECK(json_member(verified, "damaged") == "[]");
     CHECK(json_member(verified, "last_step") == "100");
     CHECK(json_member(verified, "digest") == json_member(run, "digest"));
   }
@@ -424,7 +416,7 @@ TEST_CASE("verify tells damage on stderr, or in its JSON", "[cli][verify]") {
   CHECK(json.exit_code == 3);
   CHECK(is_json_line(json.out));
   CHECK(json_member(json.out, "ok") == "false");
-  CHECK(json_block(json.out, "damaged").size() > 4);
+  CHECK(json_member(json.out, "damaged").size() > 4);
 }
 
 TEST_CASE("convert writes extended XYZ and CSV", "[cli][convert]") {

@@ -190,7 +190,7 @@ TEST_CASE("without HDF5 an interrupted run exits 130 and names no checkpoint", "
   const ProcessResult result = process.wait();
   CHECK(result.exit_code == 130);
   CHECK(json_member(result.out, "outcome") == "\"interrupted\"");
-  CHECK(json_block(result.out, "files") == R"({"trajectory":null,"checkpoint":null})");
+  CHECK(json_member(result.out, "files") == R"({"trajectory":null,"checkpoint":null})");
 }
 
 #endif

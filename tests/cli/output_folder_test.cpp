@@ -47,7 +47,7 @@ TEST_CASE("files stand in SCENE.out of the working folder, or where --out says",
   fs::create_directory(folder / "below");
   fs::rename(folder / "scene.toml", folder / "below/scene.toml");
   const std::string json = noether(folder, "run below/scene.toml --json").out;
-  CHECK(json_block(json, "files") == R"({"trajectory":"scene.out/run.h5","checkpoint":"scene.out/checkpoint.h5"})");
+  CHECK(json_member(json, "files") == R"({"trajectory":"scene.out/run.h5","checkpoint":"scene.out/checkpoint.h5"})");
   CHECK(noether(folder, "run below/scene.toml --quiet --out deep/er/").exit_code == 0);
   for (const char* out : {"scene.out", "deep/er"}) {
     for (const char* file : {"run.h5", "checkpoint.h5", "checkpoint.previous.h5"}) {

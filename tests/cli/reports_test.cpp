@@ -114,7 +114,7 @@ TEST_CASE("explain knows what is inside, what is used again, and when a run is s
             "\n  3 x B: kicks, 2 force evaluations:"));
 #if NOETHER_HDF5
   const std::string ran = output(damped, "run scene.toml --json --set integrator.method=verlet");
-  CHECK(json_member(json_block(ran, "evaluations"), "force") == "101");  // the first kick, and one for each step
+  CHECK(json_member(json_member(ran, "evaluations"), "force") == "101");  // the first kick, and one for each step
 #endif
 }
 

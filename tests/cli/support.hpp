@@ -2,10 +2,10 @@
 /// What the tests of the program share: calls of it, its scenes, files that are compared or spoiled.
 
 #include "tests/support/catch.hpp"
+#include "tests/support/json.hpp"
 #include "tests/support/process.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -54,8 +54,6 @@ inline std::string output(const ScratchFolder& folder, const std::string& line) 
   CHECK(result.err.empty());
   return result.out;
 }
-
-inline bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 inline std::size_t line_count(const std::string& text) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
@@ -135,83 +133,6 @@ inline void damage(const std::filesystem::path& file) {
   write_text(file, bytes);
 }
 
-/// Checks that two HDF5 files agree value for value, in every group, dataset and attribute.
-inline void check_same_content(const std::filesystem::path& one, const std::filesystem::path& other) {
-  const std::string python = NOETHER_PYTHON;
-  const std::filesystem::path script = std::filesystem::path(NOETHER_SOURCE_DIR) / "tests/io/compare_files.py";
-  ProcessResult result{77, "there is no Python\n", ""};
-  const ScratchFolder folder;
-  if (!python.empty())
-    result = run_process({python, "-B", script.string(), one.string(), other.string()}, folder.path());
-  if (result.exit_code == 77) {
-    WARN("not compared: " << result.out);
-    return;
-  }
-  INFO(result.out << result.err);
-  CHECK(result.exit_code == 0);
-}
-
-/// Reads JSON as far as to say whether it is JSON.
-class JsonCheck {
- public:
-  explicit JsonCheck(std::string_view text) : rest_(text) {}
-  bool whole() { return value() && rest_.empty(); }
-
- private:
-  bool take(char c) {
-    if (rest_.empty() || rest_[0] != c) return false;
-    rest_.remove_prefix(1);
-    return true;
-  }
-  bool word(std::string_view expected) {
-    if (!rest_.starts_with(expected)) return false;
-    rest_.remove_prefix(expected.size());
-    return true;
-  }
-  bool string() {
-    if (!take('"')) return false;
-    while (!rest_.empty() && rest_[0] != '"') {
-      if (static_cast<unsigned char>(rest_[0]) < ' ') return false;
-      rest_.remove_prefix(std::min<std::size_t>(rest_[0] == '\\' ? 2 : 1, rest_.size()));
-    }
-    return take('"');
-  }
-  bool digits() {
-    const std::size_t before = rest_.size();
-    while (!rest_.empty() && std::isdigit(static_cast<unsigned char>(rest_[0])) != 0) rest_.remove_prefix(1);
-    return rest_.size() < before;
-  }
-  bool number() {
-    take('-');
-    if (!digits() || (take('.') && !digits())) return false;
-    if (!take('e')) return true;
-    if (!take('-')) take('+');
-    return digits();
-  }
-  template <class Item> bool items(char open, char close, const Item& item) {
-    if (!take(open)) return false;
-    if (take(close)) return true;
-    do {
-      if (!item()) return false;
-    } while (take(','));
-    return take(close);
-  }
-  bool value() {
-    if (rest_.empty()) return false;
-    if (rest_[0] == '{') return items('{', '}', [this] { return string() && take(':') && value(); });
-    if (rest_[0] == '[') return items('[', ']', [this] { return value(); });
-    return rest_[0] == '"' ? string() : word("null") || word("true") || word("false") || number();
-  }
-
-  std::string_view rest_;
-};
-
-/// Whether a text is one line that holds one JSON object.
-inline bool is_json_line(const std::string& text) {
-  return !text.empty() && text.back() == '\n' && line_count(text) == 1 && text[0] == '{' &&
-         JsonCheck(std::string_view(text).substr(0, text.size() - 1)).whole();
-}
-
 /// What must not depend on whether and how often a run was stopped.
 inline void check_same_run(const std::string& json, const std::string& whole) {
   INFO(json);
@@ -220,9 +141,9 @@ inline void check_same_run(const std::string& json, const std::string& whole) {
     CHECK(json_member(json, key) == json_member(whole, key));
   }
   CHECK(json_member(json, "outcome") == "\"completed\"");
-  CHECK(json_block(json, "evaluations") == json_block(whole, "evaluations"));
-  CHECK(json_block(json, "monitors") == json_block(whole, "monitors"));
-  CHECK_FALSE(json_block(json, "monitors").empty());
+  CHECK(json_member(json, "evaluations") == json_member(whole, "evaluations"));
+  CHECK(json_member(json, "monitors") == json_member(whole, "monitors"));
+  CHECK_FALSE(json_member(json, "monitors").empty());
 }
 
 }  // namespace noether::test

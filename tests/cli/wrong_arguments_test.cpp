@@ -99,14 +99,12 @@ const std::vector<Wrong> wrong_lines = {
     {"plot run.h5 --out a.jpg", 2, "a picture 'a.jpg' is of no known format; give a name that ends in .svg or .png"},
 };
 
-/// The message in the JSON of an error, of which it is the last member.
+/// The message in the JSON of an error.
 std::string message_of(const std::string& json) {
-  const std::string before = "\"message\":\"", after = "\"}\n";
-  const auto at = json.find(before);
-  if (at == std::string::npos || !json.ends_with(after)) return "no message";
-  std::string text = json.substr(at + before.size(), json.size() - after.size() - at - before.size());
+  std::string text = json_member(json, "message");
+  if (!text.starts_with('"')) return "no message";
   std::erase(text, '\\');
-  return text;
+  return text.substr(1, text.size() - 2);
 }
 
 TEST_CASE("what cannot be written to the terminal is exit 3, and no crash", "[cli][messages]") {

@@ -4,8 +4,11 @@
 
 #include "engine/error.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/process.hpp"
 #include "tests/support/settings.hpp"
 
+#include <atomic>
+#include <thread>
 #include <vector>
 
 namespace noether {
@@ -56,6 +59,44 @@ TEST_CASE("a sum is that of its blocks in order, for any number of threads", "[p
       CHECK(harmonic(n) == expected);
     }
   }
+}
+
+TEST_CASE("loops that call loops, and loops of several threads at once, give the same bits", "[parallel]") {
+  const double expected = harmonic_in_blocks(5000);
+  for (const int threads : {1, 2, 3, 8}) {
+    const test::Threads use(threads);
+    CAPTURE(threads);
+    std::vector<double> inner(20);
+    for_blocks(20 * block_size,
+               [&](Index begin, Index) { inner[static_cast<std::size_t>(begin / block_size)] = harmonic(5000); });
+    CHECK(inner == std::vector<double>(20, expected));
+
+    std::vector<double> outer(3);
+    std::vector<std::thread> callers;
+    for (double& sum : outer) {
+      callers.emplace_back([&sum, expected] {
+        sum = expected;
+        for (int k = 0; k < 50; ++k) sum = sum == expected ? harmonic(5000) : sum;
+      });
+    }
+    for (std::thread& caller : callers) caller.join();
+    CHECK(outer == std::vector<double>(3, expected));
+  }
+}
+
+TEST_CASE("several threads share one loop", "[parallel]") {
+  const test::Threads use(2);
+  // Whoever waits in a block keeps that block; the loop ends only if another thread takes the other one.
+  std::atomic<int> begun{0};
+  std::vector<std::thread::id> by(2);
+  for_blocks(2 * parallel_threshold, [&](Index begin, Index) {
+    if (begin != 0 && begin != parallel_threshold) return;
+    by[begin == 0 ? 0 : 1] = std::this_thread::get_id();
+    ++begun;
+    test::wait_until([&] { return begun == 2; });
+  });
+  CHECK(begun == 2);
+  CHECK(by[0] != by[1]);
 }
 
 TEST_CASE("a sum in another order has other bits, so the equality above means something", "[parallel]") {

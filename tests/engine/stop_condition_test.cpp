@@ -11,6 +11,7 @@
 #include "integrators/wisdom_holman.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"
+#include "tests/support/files.hpp"
 #include "tests/support/order_fit.hpp"
 #include "tests/support/planets.hpp"
 
@@ -42,11 +43,6 @@ ParticleSystem<Quad> ellipse(const Quad& E) {
   s.add("heavy", heavy, -light * x, -light * v);
   s.add("light", light, heavy * x, heavy * v);
   return s;
-}
-
-/// The number in a message after `word`.
-double number_after(const std::string& text, const std::string& word) {
-  return std::stod(text.substr(text.find(word) + word.size()));
 }
 
 /// When the rule held, looked at every `interval` from eccentric anomaly E on, by the interpolated motion.
@@ -143,7 +139,7 @@ TEST_CASE("an escape is told with the time of the crossing", "[stop]") {
   // |x| = 50 at t = 10 + sqrt(50^2 - 1)/3; looks every 4.
   CHECK(to_text(outcome) == "stopped at step 56: escape of probe, distance 54.0093 above 50 since time 26.663333");
   CHECK(outcome.time == 28);
-  CHECK(std::abs(number_after(outcome.message, "since time ") - (10 + std::sqrt(2499.0) / 3)) < 1e-7);
+  CHECK(std::abs(test::number_after(outcome.message, "since time ") - (10 + std::sqrt(2499.0) / 3)) < 1e-7);
 }
 
 TEST_CASE("the last step is looked at whatever the cadence, and a run that goes on does not notice", "[stop]") {

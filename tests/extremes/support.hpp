@@ -104,7 +104,7 @@ inline std::string body_text(const ParticleSystem<double>& s, Index i) {
 
 /// Whether a figure that every monitor has is missing from a report of the program.
 inline bool lacks_figures(const std::string& json) {
-  const std::string monitors = json_block(json, "monitors");
+  const std::string monitors = json_member(json, "monitors");
   for (const char* key : {"first", "last", "worst", "rms"}) {
     if (has(monitors, std::string("\"") + key + "\":null")) return true;
   }

@@ -25,10 +25,16 @@ mkdir -p build/fuzz/findings
   cmake --build build/fuzz -j 2 --target "${target}_fuzz" >build/fuzz.log 2>&1 9>&- || { tail -50 build/fuzz.log; exit 4; }
 } 9>build/fuzz.lock
 
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+mkdir "$scratch/corpus" "$scratch/tmp" "$scratch/scenes"
 seeds=(tests/fuzz/seeds/"$target"/*)
 longest=4096
 case $target in
-  scene) seeds+=(tests/scenes/good/*.toml tests/scenes/bad/*.toml) ;;
+  scene)
+    build/fuzz/tests/fuzz/write_scenes "$scratch/scenes"
+    seeds+=(tests/scenes/good/*.toml "$scratch"/scenes/bad/*.toml)
+    ;;
   csv_bodies) seeds+=(tests/scenes/good/*.csv tests/scenes/bad/*.csv) ;;
   structure) seeds+=(tests/data/lammps/*.data) ;;
   horizons) seeds+=(tests/data/horizons/*.txt) longest=8192 ;;
@@ -37,9 +43,6 @@ case $target in
   checkpoint_state) longest=128 ;;
 esac
 
-scratch=$(mktemp -d)
-trap 'rm -rf "$scratch"' EXIT
-mkdir "$scratch/corpus" "$scratch/tmp"
 for seed in "${seeds[@]}"; do
   [ ! -f "$seed" ] || cp "$seed" "$scratch/corpus/$(basename "$(dirname "$seed")")-$(basename "$seed")"
 done

@@ -13,7 +13,7 @@
 #include "io/files.hpp"
 #include "io/structure.hpp"
 #include "scene/scene.hpp"
-#include "tests/support/process.hpp"
+#include "tests/support/files.hpp"
 
 #include <fmt/format.h>
 
@@ -23,6 +23,7 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <set>
 #include <stdexcept>
 #include <string>

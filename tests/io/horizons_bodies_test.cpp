@@ -24,12 +24,6 @@ std::string horizons_refusal(const std::string& content, const io::BodiesOptions
   return name == std::string::npos ? message : message.substr(name);
 }
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  REQUIRE(at != std::string::npos);
-  return text.replace(at, from.size(), to);
-}
-
 }  // namespace
 
 TEST_CASE("Horizons tables give names, states of the first record, and masses from DE440", "[bodies][horizons]") {
@@ -68,7 +62,7 @@ TEST_CASE("a mass that a user puts into a Horizons table is taken", "[bodies][ho
   const auto line = read_horizons(table("asteroid.txt"));
   CHECK(line.name(0) == "1 Ceres (A801 AA)");
   CHECK(line.masses()[0] == 9.3839e20 * kg);
-  const std::string with_column = replaced(replaced(table("commas.txt"), "VZ,\n", "VZ, mass [Msun],\n"),
+  const std::string with_column = test::replaced(test::replaced(table("commas.txt"), "VZ,\n", "VZ, mass [Msun],\n"),
                                            "1.818029678645833E-01,", "1.8E-01, 3e-4,");
   CHECK(read_horizons(with_column).masses()[0] == 3e-4);
 }
@@ -82,33 +76,33 @@ TEST_CASE("Horizons tables that do not fit are refused with the line", "[bodies]
         "h.txt:25: the table of Saturn Barycenter has no VX; ask Horizons for positions and velocities (vector table "
         "type "
         "2 or 3)");
-  CHECK(horizons_refusal(replaced(table("asteroid.txt"), "mass [kg] = 9.3839e20\n", "")) ==
+  CHECK(horizons_refusal(test::replaced(table("asteroid.txt"), "mass [kg] = 9.3839e20\n", "")) ==
         "h.txt:4: the mass of 1 Ceres (A801 AA) is not built in, and Horizons gives none; put a line 'mass [kg] = ...' "
         "(0 "
         "for a tracer) before '$$SOE'");
-  CHECK(horizons_refusal(replaced(table("asteroid.txt"), "9.3839e20", "-1")) ==
+  CHECK(horizons_refusal(test::replaced(table("asteroid.txt"), "9.3839e20", "-1")) ==
         "h.txt:20: the mass is -1; expected 0 or more");
-  CHECK(horizons_refusal(replaced(table("asteroid.txt"), "[kg]", "[km]")) ==
+  CHECK(horizons_refusal(test::replaced(table("asteroid.txt"), "[kg]", "[km]")) ==
         "h.txt:20: the mass is in 'km'; expected a unit of mass, such as 'mass [kg]'");
-  CHECK(horizons_refusal(replaced(table("asteroid.txt"), "9.3839e20", "much")) ==
+  CHECK(horizons_refusal(test::replaced(table("asteroid.txt"), "9.3839e20", "much")) ==
         "h.txt:20: the mass is 'much', which is no number");
-  CHECK(horizons_refusal(replaced(table("plain.txt"), "$$EOE\n", "")) ==
+  CHECK(horizons_refusal(test::replaced(table("plain.txt"), "$$EOE\n", "")) ==
         "h.txt:25: the table that begins here has no end: '$$EOE' is missing");
   CHECK(horizons_refusal("$$SOE\n$$EOE\n") == "h.txt:1: the head of this table has no line 'Target body name'");
-  CHECK(horizons_refusal(replaced(table("plain.txt"), "KM-D", "PC-D")) ==
+  CHECK(horizons_refusal(test::replaced(table("plain.txt"), "KM-D", "PC-D")) ==
         "h.txt:4: the output units of Jupiter Barycenter are 'PC-D'; expected AU-D, KM-S or KM-D");
   CHECK(horizons_refusal(labels + labels) == "h.txt:144: the name 'Sun' is taken; names must differ");
   CHECK(
-      horizons_refusal(labels + replaced(table("commas.txt"), "Solar System Barycenter (0)", "Sun (10)")) ==
+      horizons_refusal(labels + test::replaced(table("commas.txt"), "Solar System Barycenter (0)", "Sun (10)")) ==
       "h.txt:132: the table of Saturn Barycenter is about 'Sun (10)', that of Sun about 'Solar System Barycenter (0)'; "
       "take one center for all");
-  CHECK(horizons_refusal(labels + replaced(table("commas.txt"), "Ecliptic of J2000.0", "ICRF")) ==
+  CHECK(horizons_refusal(labels + test::replaced(table("commas.txt"), "Ecliptic of J2000.0", "ICRF")) ==
         "h.txt:132: the table of Saturn Barycenter is in the frame 'ICRF', that of Sun in 'Ecliptic of J2000.0'; take "
         "one "
         "frame for all");
-  CHECK(horizons_refusal(replaced(table("plain.txt"), "cartesian states", "osculating elements")) ==
+  CHECK(horizons_refusal(test::replaced(table("plain.txt"), "cartesian states", "osculating elements")) ==
         "h.txt:17: this is a table of elements; ask Horizons for vectors (EPHEM_TYPE = VECTORS)");
-  CHECK(horizons_refusal(replaced(table("plain.txt"), "5.968955040929999E+08", "5.968955040929999F+08")) ==
+  CHECK(horizons_refusal(test::replaced(table("plain.txt"), "5.968955040929999E+08", "5.968955040929999F+08")) ==
         "h.txt:27: X is '5.968955040929999F+08', which is no number");
   CHECK(horizons_refusal(table("plain.txt"), {.units = &unit_system("reduced")}) ==
         "h.txt: a Horizons table has units; expected the unit system solar, si or molecular, not reduced");

@@ -167,13 +167,6 @@ void check_frames(const std::filesystem::path& file, const io::Frames& whole, st
   }
 }
 
-/// Compares every value; that is done now and then, because Python is slow.
-void check_same_content(const std::filesystem::path& file, const std::filesystem::path& whole) {
-  const test::PythonResult equal = test::run_python("compare_files.py", whole.string() + " " + file.string());
-  INFO(equal.output);
-  CHECK((equal.status == 0 || equal.status == 77));
-}
-
 /// Lets one run die again and again until it is through, then begins anew, until there were so many deaths.
 void die_often(int wanted,
                const std::function<Victim(const std::filesystem::path&, const Reference&, std::int64_t)>& next) {
@@ -190,7 +183,7 @@ void die_often(int wanted,
     if (good > 0) check_frames(file, reference.frames, good / 5 + 1);
     if (!through) ++deaths;
     if (!through) continue;
-    if (ends++ % 5 == 0) check_same_content(file, folder / "whole.h5");
+    if (ends++ % 5 == 0) test::check_same_content(file, folder / "whole.h5");
     std::filesystem::remove(file);
     good = 0;
   }
@@ -307,7 +300,7 @@ void die_anywhere(const WholeRun& run, int wanted) {
       check_files(folder, whole);
     }
     CHECK(check_files(folder, whole) == digest);
-    if (chain % 5 == 0) check_same_content(folder / "run.h5", reference / "run.h5");
+    if (chain % 5 == 0) test::check_same_content(folder / "run.h5", reference / "run.h5");
     std::filesystem::remove_all(folder);
   }
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of files share: errors in a line, Python, a run that writes.
+/// What the tests of files share: errors in a line, a run that writes.
 
 #include "engine/monitors.hpp"
 #include "engine/simulation.hpp"
@@ -16,10 +16,6 @@
 #include "tests/support/planets.hpp"
 #include "tests/support/process.hpp"
 
-#include <sys/wait.h>
-
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -34,28 +30,6 @@ template <class Call> std::string error_of(const Call& call) {
     return error.what();
   }
   return "";
-}
-
-struct PythonResult {
-  int status = -1;
-  std::string output;  ///< what the script printed
-};
-
-/// Runs a script of tests/io; its status is 77 where a module it needs is not installed.
-inline PythonResult run_python(const std::string& script, const std::string& arguments) {
-  PythonResult result;
-  const std::string python = NOETHER_PYTHON;
-  if (python.empty()) return {77, "there is no Python with h5py"};
-  const std::string command = python + " -B " + NOETHER_SOURCE_DIR + "/tests/io/" + script + " " + arguments + " 2>&1";
-  std::FILE* pipe = ::popen(command.c_str(), "r");
-  if (pipe == nullptr) return result;
-  std::array<char, 4096> buffer{};
-  for (std::size_t got; (got = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) {
-    result.output.append(buffer.data(), got);
-  }
-  const int status = ::pclose(pipe);
-  result.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  return result;
 }
 
 /// The outer planets under Verlet, steps of 40 days, writing frames every 5 steps and the energy every 3.

@@ -7,8 +7,6 @@
 #include "io/repair.hpp"
 #include "tests/io/support.hpp"
 
-#include <fstream>
-#include <iterator>
 
 using namespace noether;
 using test::error_of;
@@ -27,31 +25,15 @@ TEST_CASE("the digest of a system is what Python's hashlib computes from the sam
 
 #if NOETHER_HDF5
 
-namespace {
-
-void check_equal_system_files(const std::filesystem::path& a, const std::filesystem::path& b) {
-  const test::PythonResult result = test::run_python("compare_files.py", a.string() + " " + b.string());
-  INFO(result.output);
-  CHECK((result.status == 0 || result.status == 77));
-}
-
-std::string text_of(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-}  // namespace
-
 TEST_CASE("h5py finds the frames of a system, and Python's digest of the last one is the run's", "[system_files]") {
   const test::ScratchFolder folder;
   LorenzRun run(folder / "run.h5");
   REQUIRE(run.simulation.run(100).ok());
   run.writer->finish(Outcome{});
   const std::string digest = io::digest(run.simulation.particles());
-  const test::PythonResult read =
-      test::run_python("read_system.py", (folder / "run.h5").string() + " 21 5 0.0025 x,y,z");
-  INFO(read.output);
-  if (read.status != 77) CHECK(read.output == digest + "\n");
+  const auto read =
+      test::python_output("read_system.py", {(folder / "run.h5").string(), "21", "5", "0.0025", "x,y,z"});
+  if (read) CHECK(*read == digest + "\n");
   const io::FileInfo info = io::verify(folder / "run.h5");
   CHECK(info.damaged.empty());
   CHECK(info.digest == digest);
@@ -80,7 +62,7 @@ TEST_CASE("a system's run that goes on writes the file of a run that was never c
   second.simulation.restore(saved);
   REQUIRE(second.simulation.run(123).ok());
   second.writer->finish(Outcome{});
-  check_equal_system_files(folder / "whole.h5", folder / "run.h5");
+  test::check_same_content(folder / "whole.h5", folder / "run.h5");
   const io::Frames a = io::read_frames(folder / "whole.h5"), b = io::read_frames(folder / "run.h5");
   REQUIRE(a.frames.size() == 41);
   REQUIRE(b.frames.size() == 41);
@@ -132,7 +114,7 @@ TEST_CASE("frames of a system convert to CSV, and are refused as XYZ", "[system_
   run.writer->flush();
   CHECK(io::convert(folder / "run.h5", folder / "run.csv") == 2);
   const auto& y = run.simulation.particles().variables();
-  CHECK(text_of(folder / "run.csv") ==
+  CHECK(test::read_text(folder / "run.csv") ==
         fmt::format("step,time,x,y,z\n0,0,1,1,1\n5,{:.17g},{:.17g},{:.17g},{:.17g}\n", 5 * 0.25e-2, y[0], y[1], y[2]));
   const std::string xyz = (folder / "run.xyz").string();
   CHECK(error_of([&] { io::convert(folder / "run.h5", folder / "run.csv", {.unwrapped = true}); }) ==

@@ -9,6 +9,8 @@
 #include "tests/support/drivers.hpp"
 
 #include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <csignal>
 
@@ -20,22 +22,6 @@ using test::WritingRun;
 
 namespace {
 
-/// Runs a reader; a module that is not installed is told, and no failure.
-std::string read_by(const std::string& script, const std::string& arguments) {
-  const test::PythonResult result = test::run_python(script, arguments);
-  if (result.status == 77) {
-    WARN("skipped: " << result.output);
-    return "skipped";
-  }
-  INFO(result.output);
-  CHECK(result.status == 0);
-  return result.output;
-}
-
-void check_equal_files(const std::filesystem::path& a, const std::filesystem::path& b) {
-  read_by("compare_files.py", a.string() + " " + b.string());
-}
-
 }  // namespace
 
 TEST_CASE("h5py finds the layout of H5MD, and Python's digest of the last frame is the run's", "[trajectory]") {
@@ -43,8 +29,9 @@ TEST_CASE("h5py finds the layout of H5MD, and Python's digest of the last frame 
   WritingRun run(folder / "run.h5");
   REQUIRE(run.simulation.run(100).ok());
   run.writer->flush();
-  const std::string output = read_by("read_trajectory.py", (folder / "run.h5").string() + " 21 5 40 solar");
-  if (output != "skipped") CHECK(output == io::digest(run.simulation.particles()) + "\n");
+  const std::string file = (folder / "run.h5").string();
+  const auto output = test::python_output("read_trajectory.py", {file, "21", "5", "40", "solar"});
+  if (output) CHECK(*output == io::digest(run.simulation.particles()) + "\n");
   CHECK(io::info(folder / "run.h5").digest == io::digest(run.simulation.particles()));
 }
 
@@ -59,9 +46,9 @@ TEST_CASE("MDAnalysis reads every frame, in solar, reduced and molecular units",
     WritingRun run(folder / "run.h5", particles);
     REQUIRE(run.simulation.run(1500).ok());
     run.writer->flush();
-    const std::string output = read_by("read_with_mdanalysis.py", (folder / "run.h5").string());
-    if (output != "skipped") CHECK(output == "301 frames\n");
-    read_by("read_trajectory.py", (folder / "run.h5").string() + " 301 5 40 " + units);
+    const auto output = test::python_output("read_with_mdanalysis.py", {(folder / "run.h5").string()});
+    if (output) CHECK(*output == "301 frames\n");
+    test::python_output("read_trajectory.py", {(folder / "run.h5").string(), "301", "5", "40", units});
   }
 }
 
@@ -192,7 +179,7 @@ TEST_CASE("a resumed run's file equals that of an uninterrupted one, value for v
   REQUIRE(second.simulation.run(123).ok());
   second.writer->finish(Outcome{});
 
-  check_equal_files(folder / "whole.h5", folder / "run.h5");
+  test::check_same_content(folder / "whole.h5", folder / "run.h5");
   const io::Frames a = io::read_frames(folder / "whole.h5"), b = io::read_frames(folder / "run.h5");
   REQUIRE(a.frames.size() == 41);
   REQUIRE(b.frames.size() == 41);
@@ -216,7 +203,7 @@ TEST_CASE("a run may go back within one program, again and again", "[trajectory]
   WritingRun whole(folder / "whole.h5");
   REQUIRE(whole.simulation.run(100).ok());
   whole.writer->finish(Outcome{});
-  check_equal_files(folder / "whole.h5", folder / "run.h5");
+  test::check_same_content(folder / "whole.h5", folder / "run.h5");
 }
 
 TEST_CASE("a run saved before its first step writes its file anew", "[trajectory][restart]") {
@@ -229,7 +216,7 @@ TEST_CASE("a run saved before its first step writes its file anew", "[trajectory
   run.writer->finish(Outcome{});
   REQUIRE(whole.simulation.run(20).ok());
   whole.writer->finish(Outcome{});
-  check_equal_files(folder / "whole.h5", folder / "run.h5");
+  test::check_same_content(folder / "whole.h5", folder / "run.h5");
 }
 
 TEST_CASE("complete is set by a run that ended as asked, and taken back when it goes on", "[trajectory]") {
@@ -348,7 +335,7 @@ TEST_CASE("a full disk ends the run with the file's name, and the program still 
     REQUIRE(run->simulation.run(50).ok());
     run->writer->finish(Outcome{});
   }
-  check_equal_files(folder / "whole.h5", file);
+  test::check_same_content(folder / "whole.h5", file);
 }
 
 #else

@@ -2,7 +2,8 @@
 
 #include "scene/run.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/process.hpp"
+#include "tests/support/files.hpp"
+#include "tests/support/json.hpp"
 
 #include <limits>
 #include <string>
@@ -15,8 +16,6 @@ RunReport report_with(const std::string& name, const MonitorReport& monitor) {
   report.monitors.emplace_back(name, monitor);
   return report;
 }
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 TEST_CASE("a note is no message of the run, a reason is", "[scene][report]") {
   MonitorReport monitor;

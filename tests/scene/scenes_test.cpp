@@ -6,11 +6,14 @@
 #include "scene/toml.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/process.hpp"
+#include "tests/support/refusal.hpp"
+#include "tests/support/scene_table.hpp"
 
 #include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -19,9 +22,9 @@ namespace {
 
 const std::filesystem::path scenes = std::filesystem::path(NOETHER_SOURCE_DIR) / "tests" / "scenes";
 
-std::vector<std::filesystem::path> scenes_in(const std::string& folder) {
+std::vector<std::filesystem::path> good_scenes() {
   std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(scenes / folder)) {
+  for (const auto& entry : std::filesystem::directory_iterator(scenes / "good")) {
     if (entry.path().extension() == ".toml") files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
@@ -67,9 +70,10 @@ std::string without_folder(std::string text, const std::filesystem::path& folder
 }
 
 TEST_CASE("every bad scene is refused with its message, at its line", "[scene]") {
-  const auto files = scenes_in("bad");
-  REQUIRE(files.size() >= 60);
-  for (const auto& file : files) {
+  const ScratchFolder folder;
+  const SceneFiles files = write_scene_table(folder.path());
+  REQUIRE(files.bad.size() >= 255);
+  for (const auto& file : files.bad) {
     const Expected expected = expected_of(file);
     INFO(file.filename().string());
     REQUIRE(expected.messages == 1);
@@ -89,13 +93,44 @@ TEST_CASE("every bad scene is refused with its message, at its line", "[scene]")
   }
 }
 
+TEST_CASE("what the bad scenes are changed from is good", "[scene]") {
+  const ScratchFolder folder;
+  for (const auto& file : write_scene_table(folder.path()).good) {
+    INFO(file.filename().string());
+    CHECK(refusal_of([&] { load_scene(file); }) == "");
+  }
+}
+
+/// What is wrong with a row of the table.
+std::string wrong_row(const std::string& row) {
+  try {
+    scene_table("==== good\na = 1\nb = 2\na = 3\n\n== bad\n" + row);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST_CASE("a row of the table changes what it names, in order", "[scene]") {
+  const std::string good = "==== good\na = 1\nb = 2\na = 3\n\n";
+  CHECK(scene_table(good + "== bad\n#!exit 3\n  b = 2\n= a = 4  #! no\n+\n+ c = 5\n\n").bad.at(0).text ==
+        "#!exit 3\na = 1\nb = 2\na = 4  #! no\n\nc = 5\n");
+  CHECK(scene_table(good + "== bad\n- a = 3\n").bad.at(0).text == "a = 1\nb = 2\n");
+  const std::string lost = "is not found in the scene that is changed, below the change before";
+  CHECK(wrong_row("= c = 1\n") == "line 7: '= c = 1' " + lost);
+  CHECK(wrong_row("- b = 2\n  a = 1\n") == "line 8: '  a = 1' " + lost);
+  CHECK(wrong_row("  b = 2\n") == "line 6: '== bad' changes nothing");
+  CHECK(wrong_row("b = 3\n") == "line 7: 'b = 3' begins with none of '+', '-', '=' and ' '");
+  CHECK(wrong_row("- b = 2\n== good\n") == "line 8: '== good' stands twice");
+}
+
 Outcome run_to_its_end(Simulation<double>& sim, const Scene& scene) {
   const SceneIntegrator& made = scene.integrator;
   return made.until ? sim.run_until(*made.until) : sim.run(*made.steps);
 }
 
 TEST_CASE("every good scene runs, and so does the scene that its files store", "[scene]") {
-  const auto files = scenes_in("good");
+  const auto files = good_scenes();
   REQUIRE(files.size() >= 4);
   for (const auto& file : files) {
     INFO(file.filename().string());

@@ -37,14 +37,6 @@ std::vector<std::string> pictures(const std::string& page) {
   return found;
 }
 
-/// The number that follows a text, after the text's n-th appearance.
-double number_after(const std::string& svg, const std::string& text, std::size_t n = 0) {
-  std::size_t at = svg.find(text);
-  while (n-- > 0 && at != std::string::npos) at = svg.find(text, at + 1);
-  REQUIRE(at != std::string::npos);
-  return std::stod(svg.substr(at + text.size()));
-}
-
 SuiteRow verdict(const std::string& method, const std::string& found, bool agrees, std::vector<std::string> sets = {}) {
   SuiteRow row;
   row.scene = "spring.toml";
