@@ -1,6 +1,6 @@
 #pragma once
-/// The commands of the program: each adds itself to the parser and sets the exit code when it has run. Scenes may name the
-/// parts that it is given.
+/// The commands of the program: each adds itself to the parser and sets the exit code when it has run. Scenes may name
+/// the parts that it is given.
 
 namespace CLI {
 class App;

@@ -47,7 +47,7 @@ std::vector<std::pair<std::string, PartInfo>> all_parts(const Parts& parts) {
   for (const auto& kind : parts.systems()) all.emplace_back("system", kind.info);
   for (const auto& kind : parts.monitors()) all.emplace_back("monitor", kind.info);
   for (const PartInfo& info : writer_parts()) all.emplace_back("writer", info);
-  for (const PartInfo& info : stop_parts()) all.emplace_back("stop", info);
+  for (const auto& kind : parts.stops()) all.emplace_back("stop", kind.info);
   return all;
 }
 

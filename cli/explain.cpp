@@ -118,8 +118,8 @@ void sort_parts(const Scene& scene, Explanation& e) {
   }
   for (const SceneStop& stop : scene.stops) {
     const bool escape = stop.rule.kind == StopRule::Kind::escape;
-    e.in.push_back(fmt::format("stop {}, {} {}, every {} {}", escape ? "escape" : "collision",
-                               escape ? "beyond" : "below", length_text(stop.rule.distance, *scene.units), stop.steps,
+    e.in.push_back(fmt::format("stop {}, {} {}, every {} {}", stop.name, escape ? "beyond" : "below",
+                               length_text(stop.rule.distance, *scene.units), stop.steps,
                                stop.steps == 1 ? "step" : "steps"));
   }
   const auto leave_out = [&](const std::string& what) {
@@ -136,8 +136,7 @@ void sort_parts(const Scene& scene, Explanation& e) {
   for (const auto& kind : parts.constraints()) leave_out("constraint " + kind.info.name);
   for (const auto& kind : parts.monitors()) leave_out("monitor " + kind.info.name);
   leave_out("writer trajectory");
-  leave_out("stop escape");
-  leave_out("stop collision");
+  for (const auto& kind : parts.stops()) leave_out("stop " + kind.info.name);
 }
 
 /// What the stages of a scheme do, from its word.

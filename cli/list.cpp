@@ -105,7 +105,7 @@ Listing listing_of(const std::string& what, const Parts& parts) {
     Listing list{{"name", "kind", "help"}, {}, {}};
     for (const PartInfo& info : infos_of(parts.monitors())) list.add({info.name, "monitor", info.help});
     for (const PartInfo& info : writer_parts()) list.add({info.name, "writer", info.help});
-    for (const PartInfo& info : stop_parts()) list.add({info.name, "stop", info.help});
+    for (const PartInfo& info : infos_of(parts.stops())) list.add({info.name, "stop", info.help});
     return list;
   }
   const std::vector<std::string> known = {"methods", "hamiltonians", "forces",   "constraints",
@@ -184,8 +184,8 @@ void print_measured(bool json) {
 void add_list_command(CLI::App& app, const Parts& parts, int& exit_code) {
   const auto what = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
-  CLI::App* command =
-      app.add_subcommand("list", "what there is: methods, hamiltonians, forces, constraints, systems, monitors, builders, units");
+  CLI::App* command = app.add_subcommand(
+      "list", "what there is: methods, hamiltonians, forces, constraints, systems, monitors, builders, units");
   command->add_option("what", *what, "methods, hamiltonians, forces, constraints, systems, monitors, builders or units")
       ->required()
       ->type_name("WHAT");

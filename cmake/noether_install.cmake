@@ -15,6 +15,8 @@ foreach(room IN LISTS NOETHER_ROOMS)
           FILES_MATCHING PATTERN "*.hpp" PATTERN "*_simd.hpp" EXCLUDE)
 endforeach()
 
+install(FILES ${PROJECT_SOURCE_DIR}/noether.hpp DESTINATION include/noether)
+
 # The scenes of `noether stability --suite`.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/study/suite DESTINATION ${CMAKE_INSTALL_DATADIR}/noether COMPONENT program)
 

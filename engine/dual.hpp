@@ -164,8 +164,8 @@ template <class Real, std::size_t n> struct Dual {
   }
   friend Dual fmod(const Dual& a, const Dual& b) {
     using std::fmod;
-    const Real rest = fmod(a.value, b.value);
-    return join(rest, a, Real(1), b, (rest - a.value) / b.value);
+    const Real left = fmod(a.value, b.value);
+    return join(left, a, Real(1), b, (left - a.value) / b.value);
   }
   friend Dual pow(const Dual& a, const Dual& p) {
     using std::pow, std::log;

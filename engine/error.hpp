@@ -78,8 +78,8 @@ class LogicError : public Error {
   int exit_code() const noexcept override { return 4; }
 };
 
-/// A branch in lanes that does not agree (engine/pack.hpp, `Mask`): whoever asked for eight lanes at once takes them one
-/// by one. Code of one's own over packs may write `select` instead, or ask for `any` and `all`.
+/// A branch in lanes that does not agree (engine/pack.hpp, `Mask`): whoever asked for eight lanes at once takes them
+/// one by one. Code of one's own over packs may write `select` instead, or ask for `any` and `all`.
 class LanesDiffer : public LogicError {
  public:
   LanesDiffer() : LogicError("a condition holds in some lanes and not in others; write select(condition, a, b)") {}

@@ -40,10 +40,11 @@ void check_class(const Scheme& scheme, const HamiltonianClaims& claims, const st
     if (claims.inexact.find(letter) == std::string_view::npos) continue;
     const bool constrained = letter == 'A' && claims.constraints > 0;
     throw SchemeMismatch(fmt::format(
-        "scheme '{}' needs exact flows, but part {} of '{}'{} is a symmetric map of order 2; use 'verlet', or {}",
+        "scheme '{}' needs exact flows, but part {} of '{}'{} is a symmetric map of order 2; use 'verlet', {}",
         scheme.name, letter, hamiltonian, constrained ? " with constraints" : "",
-        constrained ? "a composition of its whole steps such as 'yoshida_4' or 'kahan_li_6_s9'"
-                    : "a scheme made for it such as 'abah_8_6_4' or 'abah_10_6_4'"));
+        constrained ? "or a composition of its whole steps such as 'yoshida_4' or 'kahan_li_6_s9'"
+                    : "a composition of its steps such as 'yoshida_4', or a scheme made for it such as "
+                      "'abah_8_6_4'"));
   }
   if (scheme.scheme_class == SchemeClass::rkn && !claims.quadratic_kinetic) {
     throw SchemeMismatch(

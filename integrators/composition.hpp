@@ -58,8 +58,10 @@ template <SplitHamiltonian H> class Composition {
         symmetric_(scheme.is_symmetric() && scheme.before.size() == 0),
         word_(timed(fitted_word(scheme, hamiltonian_.claims(), detail::name_of(hamiltonian_)),
                     hamiltonian_.claims().timed)) {
-    for (const Stage& stage : scheme.before) before_.push_back({stage.letter, real(stage.weight), real(0)});
-    for (const Stage& stage : scheme.after) after_.push_back({stage.letter, real(stage.weight), real(0)});
+    for (const Stage& stage : scheme.before)
+      before_.push_back({stage.letter, detail::weight_in<real>(stage.weight), real(0)});
+    for (const Stage& stage : scheme.after)
+      after_.push_back({stage.letter, detail::weight_in<real>(stage.weight), real(0)});
   }
 
   IntegratorClaims claims() const {
@@ -160,7 +162,7 @@ template <SplitHamiltonian H> class Composition {
   /// The word in the weights of `real`, each stage with the time at which it begins.
   static TimedWord<real> timed(const FittedWord& fitted, std::string_view with_time) {
     const std::vector<Stage>& word = fitted.stages;
-    const auto weights = rounded_weights<real>(word);
+    const auto weights = rounded_weights<real>(std::span<const Stage>(word));
     std::vector<TimedStage<real>> stages;
     real fraction(0);
     for (std::size_t k = 0; k < word.size(); ++k) {

@@ -8,6 +8,7 @@
 #include "engine/parallel.hpp"
 #include "engine/signature.hpp"
 #include "integrators/kinetic_potential.hpp"
+#include "integrators/particle_vector.hpp"
 #include "integrators/vector_field.hpp"
 
 #include <algorithm>
@@ -54,20 +55,8 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
   }
   Index size() const override { return 6 * work_.size(); }
   Index particles() const override { return work_.size(); }
-  void gather(const ParticleSystem<Real>& s, Vector<Real>& y) const override {
-    y.resize(6 * s.size());
-    for (int k = 0; k < 3; ++k) {
-      std::copy_n(s.positions().component(k), s.size(), y.data() + k * s.size());
-      std::copy_n(s.velocities().component(k), s.size(), y.data() + (3 + k) * s.size());
-    }
-  }
-  void scatter(const Vector<Real>& y, ParticleSystem<Real>& s) const override {
-    VectorColumn<Real>&x = s.positions(), &v = s.velocities();
-    for (int k = 0; k < 3; ++k) {
-      std::copy_n(y.data() + k * s.size(), s.size(), x.component(k));
-      std::copy_n(y.data() + (3 + k) * s.size(), s.size(), v.component(k));
-    }
-  }
+  void gather(const ParticleSystem<Real>& s, Vector<Real>& y) const override { detail::gather_particles(s, y); }
+  void scatter(const Vector<Real>& y, ParticleSystem<Real>& s) const override { detail::scatter_particles(y, s); }
 
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) override {
     ForceSink<Real> sink(a_, s, {.energy = true}, &neighbors_);
@@ -182,7 +171,7 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
   }
   /// Where the lanes of a force take different branches, the sum starts again with a place to go lane by lane, and
   /// keeps it for a while: each way has the same bits, but giving up costs more than a copy of the sums.
-  void sum_in_lanes() {
+  void sum_in_lanes() requires sees_packs {
     if (careful_ == 0) {
       try {
         ForceSink<Pack> sink = sets_ ? ForceSink<Pack>::unset(pack_a_, packs_) : ForceSink<Pack>(pack_a_, packs_, {});

@@ -41,4 +41,33 @@ Scheme word(std::string_view letters) {
   return scheme;
 }
 
+std::vector<double> detail::rounded_to_double(std::span<const Stage> word) {
+  std::vector<double> weights;
+  for (const Stage& stage : word) weights.push_back(static_cast<double>(stage.weight));
+  for (const Stage& one : word) {
+    std::vector<std::size_t> places;
+    Quad total = 0;
+    for (std::size_t k = 0; k < word.size(); ++k) {
+      if (word[k].letter != one.letter) continue;
+      places.push_back(k);
+      total += word[k].weight;
+    }
+    const std::size_t n = places.size(), middle = n / 2;
+    Quad others = 0;
+    const bool pair = n % 2 == 0;
+    for (std::size_t k = 0; k < n; ++k) {
+      if (k != middle && !(pair && k + 1 == middle)) others += Quad(weights[places[k]]);
+    }
+    const Quad left = total - others;
+    weights[places[middle]] = static_cast<double>(pair ? left / Quad(2) : left);
+    if (pair && word[places[middle - 1]].weight == word[places[middle]].weight) {
+      weights[places[middle - 1]] = weights[places[middle]];
+    } else if (pair) {
+      weights[places[middle - 1]] = static_cast<double>(word[places[middle - 1]].weight);
+      weights[places[middle]] = static_cast<double>(left - Quad(weights[places[middle - 1]]));
+    }
+  }
+  return weights;
+}
+
 }  // namespace noether

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string_view>
 #include <type_traits>
 #include <vector>
@@ -207,39 +208,39 @@ constexpr Scheme alternating(Scheme scheme, char first, const std::array<Quad, n
 /// @throws SchemeMismatch  unless the text is one to 96 capital letters, A and B among them
 Scheme word(std::string_view letters);
 
-/// The weights of a word in the working type.
+namespace detail {
+/// The weights of a word in double: see `rounded_weights`.
+std::vector<double> rounded_to_double(std::span<const Stage> word);
+
+/// A number type that knows no more digits than double takes the weights that double has.
+template <class Real>
+inline constexpr bool counts_in_doubles = std::is_same_v<Real, double> || !std::is_constructible_v<Real, Quad>;
+
+template <class Real> Real weight_in(const Quad& weight) {
+  if constexpr (counts_in_doubles<Real>) {
+    return Real(static_cast<double>(weight));
+  } else {
+    return static_cast<Real>(weight);
+  }
+}
+}  // namespace detail
+
+/// The weights of a word in the working type: Quad as they are, dual numbers and packs over doubles as double has them.
 ///
 /// In double each weight is rounded, and then the middle one (or pair) of each letter is solved again, so that the
 /// exact sum of the rounded weights is that of the word to an ulp of the middle: a sum off by 1e-16 would be a
 /// clock that is wrong by as much.
-template <class Real, class Stages> std::vector<Real> rounded_weights(const Stages& word) {
+template <class Real> std::vector<Real> rounded_weights(std::span<const Stage> word) {
   std::vector<Real> weights;
-  for (const Stage& stage : word) weights.push_back(static_cast<Real>(stage.weight));
-  if constexpr (!std::is_same_v<Real, double>) return weights;
-  for (const Stage& one : word) {
-    std::vector<std::size_t> places;
-    Quad total = 0;
-    for (std::size_t k = 0; k < word.size(); ++k) {
-      if (word[k].letter != one.letter) continue;
-      places.push_back(k);
-      total += word[k].weight;
-    }
-    const std::size_t n = places.size(), middle = n / 2;
-    Quad others = 0;
-    const bool pair = n % 2 == 0;
-    for (std::size_t k = 0; k < n; ++k) {
-      if (k != middle && !(pair && k + 1 == middle)) others += Quad(static_cast<double>(weights[places[k]]));
-    }
-    const Quad left = total - others;
-    weights[places[middle]] = static_cast<Real>(pair ? left / Quad(2) : left);
-    if (pair && word[places[middle - 1]].weight == word[places[middle]].weight) {
-      weights[places[middle - 1]] = weights[places[middle]];
-    } else if (pair) {
-      weights[places[middle - 1]] = static_cast<Real>(word[places[middle - 1]].weight);
-      weights[places[middle]] = static_cast<Real>(left - Quad(static_cast<double>(weights[places[middle - 1]])));
-    }
+  if constexpr (detail::counts_in_doubles<Real>) {
+    for (const double weight : detail::rounded_to_double(word)) weights.push_back(Real(weight));
+  } else {
+    for (const Stage& stage : word) weights.push_back(static_cast<Real>(stage.weight));
   }
   return weights;
+}
+template <class Real> std::vector<Real> rounded_weights(const Word& word) {
+  return rounded_weights<Real>(std::span<const Stage>(word.begin(), word.end()));
 }
 
 }  // namespace noether

@@ -3,10 +3,9 @@
 #include "forces/sum.hpp"
 #include "integrators/classical.hpp"
 #include "integrators/composition.hpp"
+#include "integrators/hamiltonian_motion.hpp"
 #include "io/checkpoint.hpp"
 #include "io/trajectory.hpp"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
@@ -96,13 +95,12 @@ ForceField<double> forces_of(const Scene& scene) {
 std::unique_ptr<VectorField<double>> field_of(const Scene& scene) {
   if (scene.system) return scene.system->field();
   const SceneSplitting& splitting = scene.hamiltonian.splitting;
-  if (!splitting.only_forces) {
-    throw SchemeMismatch(
-        fmt::format("'{}' has parts that are no forces, so it is no y' = f for method '{}'; use a "
-                    "splitting scheme, such as 'verlet' or 'yoshida_4'",
-                    splitting.name, scene.integrator.method));
+  if (splitting.only_forces) {
+    return std::make_unique<ForceMotion<ForceField<double>, double>>(forces_of(scene), splitting.name);
   }
-  return std::make_unique<ForceMotion<ForceField<double>, double>>(forces_of(scene), splitting.name);
+  ForceField<double> kicks, letters;
+  for (const SceneForce& force : scene.hamiltonian.forces) (force.letter ? letters : kicks).add(force.force);
+  return std::make_unique<HamiltonianMotion<double>>(splitting.make(std::move(kicks)), std::move(letters));
 }
 
 AnyIntegrator<double> integrator_of(const Scene& scene) {

@@ -283,34 +283,24 @@ class SceneReader {
                "a stop follows the paths of particles through open space; in a periodic box take it out");
     }
     for (const SceneValue* table : tables) {
-      TableReader reader(context_, *table, "[[stop]]", fmt::format("stop.{}", list.size()));
-      reader.expect_only({"type", "distance", "steps", "every"});
-      const std::string type = reader.text("type");
-      if (type != "escape" && type != "collision") {
-        reader.fail("type", fmt::format("unknown stop '{}'{}", type, did_you_mean(type, {"escape", "collision"})));
-      }
-      const auto distance = reader.quantity("distance", "length");
-      if (!distance) reader.fail(nullptr, "distance", fmt::format("stop '{}' has no distance; give one", type));
-      if (!(*distance > 0))
-        reader.fail("distance", fmt::format("distance = {} cannot stop a run; a length above 0 is expected",
-                                            to_text(*reader.find("distance"))));
+      const std::string path = fmt::format("stop.{}", list.size());
+      const auto [kind, type] = kind_of_part(context_, *table, path, "stop", parts_.stops(), {});
+      TableReader reader(context_, *table, fmt::format("stop '{}'", type), path);
+      for (const char* key : {"type", "every"}) reader.find(key);
+      SceneStop stop = kind->read(reader);
       SceneValue effective = SceneValue::table();
       effective.put("type", SceneValue::of(type, reader.line("type")));
-      effective.put("distance", *reader.find("distance"));
-      SceneStop stop;
-      stop.rule = type == "escape" ? farther_than(*distance) : closer_than(*distance);
-      stop.steps = type == "escape" ? default_escape_steps : default_collision_steps;
-      if (reader.has("every") || reader.has("steps")) {
+      for (auto& [key, value] : *stop.effective.get<SceneValue::Table>()) effective.put(key, value);
+      if (reader.has("every")) {
+        effective.erase("steps");
         stop.steps = read_cadence(reader, false, scene_.integrator, effective).steps;
-        if (stop.steps == 0) {
-          reader.fail("every", fmt::format("stop '{}' looks at whole steps, and method '{}' chooses them; give steps",
-                                           type, scene_.integrator.method));
-        }
-      } else {
-        effective.put("steps", SceneValue::of(stop.steps));
+      }
+      if (stop.steps == 0) {
+        reader.fail("every", fmt::format("stop '{}' looks at whole steps, and method '{}' chooses them; give steps",
+                                         type, scene_.integrator.method));
       }
       list.push_back(std::move(effective));
-      scene_.stops.push_back(stop);
+      scene_.stops.push_back(std::move(stop));
     }
     if (!list.empty()) scene_.effective.put("stop", SceneValue::of(std::move(list)));
   }

@@ -55,6 +55,51 @@ struct RigidBar {
   }
 };
 
+void check_distance(double distance) {
+  if (!(distance > 0)) refuse_field("distance", distance, "cannot stop a run; a length above 0 is expected");
+}
+void check_steps(std::int64_t steps) {
+  if (steps < 1) refuse_field("steps", std::to_string(steps), "is too few; at least 1 is expected");
+}
+
+/// An escape is seen late as well as early.
+struct Escape {
+  double distance = 0;
+  std::int64_t steps = 100;
+
+  static constexpr auto describe() {
+    return part<Escape>("escape", "ends the run when a particle is far from the centre of mass",
+                        formula("|x_i - X| > distance,  X = sum m_j x_j / sum m_j"),
+                        quantities("the particle and, by interpolation, since when"),
+                        field<&Escape::distance>("distance", "length").required("\"100 au\""),
+                        field<&Escape::steps>("steps", "1", "steps between two looks"));
+  }
+  void check() const {
+    check_distance(distance);
+    check_steps(steps);
+  }
+  StopRule rule() const { return farther_than(distance); }
+};
+
+/// A collision is found between two looks only if they are close.
+struct Collision {
+  double distance = 0;
+  std::int64_t steps = 1;
+
+  static constexpr auto describe() {
+    return part<Collision>("collision", "ends the run when two particles, one of them massive, come near each other",
+                           formula("|x_i - x_j| < distance along quintic Hermite paths between two looks"),
+                           quantities("the pair, its least distance, since when"),
+                           field<&Collision::distance>("distance", "length").required("\"0.001 au\""),
+                           field<&Collision::steps>("steps", "1", "steps between two looks"));
+  }
+  void check() const {
+    check_distance(distance);
+    check_steps(steps);
+  }
+  StopRule rule() const { return closer_than(distance); }
+};
+
 }  // namespace
 
 Parts standard_parts() {
@@ -107,51 +152,20 @@ Parts standard_parts() {
   parts.add_monitor<Variables>();
   parts.add_monitor<ConstraintResidual>();
   parts.add_monitor<ShadowHamiltonian<double>>();
+  parts.add_stop<Escape>();
+  parts.add_stop<Collision>();
   return parts;
 }
 
 std::vector<PartInfo> writer_parts() { return {part_info<io::TrajectoryWriter>(), part_info<io::CheckpointWriter>()}; }
 
-namespace {
-
-/// The tables `[[stop]]`, as `noether describe` shows them.
-struct Escape {
-  double distance = 0;
-  std::int64_t steps = default_escape_steps;
-
-  static constexpr auto describe() {
-    return part<Escape>("escape", "ends the run when a particle is far from the centre of mass",
-                        formula("|x_i - X| > distance,  X = sum m_j x_j / sum m_j"),
-                        quantities("the particle and, by interpolation, since when"),
-                        field<&Escape::distance>("distance", "length").required("\"100 au\""),
-                        field<&Escape::steps>("steps", "1", "steps between two looks"));
-  }
-};
-
-struct Collision {
-  double distance = 0;
-  std::int64_t steps = default_collision_steps;
-
-  static constexpr auto describe() {
-    return part<Collision>("collision", "ends the run when two particles, one of them massive, come near each other",
-                           formula("|x_i - x_j| < distance along quintic Hermite paths between two looks"),
-                           quantities("the pair, its least distance, since when"),
-                           field<&Collision::distance>("distance", "length").required("\"0.001 au\""),
-                           field<&Collision::steps>("steps", "1", "steps between two looks"));
-  }
-};
-
-}  // namespace
-
-std::vector<PartInfo> stop_parts() { return {part_info<Escape>(), part_info<Collision>()}; }
-
 std::vector<PartInfo> other_parts(const Parts& parts) {
   std::vector<PartInfo> all;
   for (const Parts::ThermostatKind& kind : parts.thermostats()) all.push_back(kind.info);
   all.push_back(part_info<MinimizeOptions>());
-  all.push_back(
-      {"damped", "the name of any Hamiltonian with friction: a force linear_drag in the scene adds it as the letter D",
-       "D: v -> exp(-rate h) v", "", ""});
+  all.push_back({"damped",
+                 "the name of any Hamiltonian with friction: a force linear_drag in the scene adds it as the letter D",
+                 "D: v -> exp(-rate h) v", "", ""});
   return all;
 }
 

@@ -80,6 +80,14 @@ struct SceneMonitor {
   std::function<std::string(Index, std::int64_t)> cost;
 };
 
+/// A condition that ends the run, as a scene asked for it.
+struct SceneStop {
+  std::string name;
+  SceneValue effective;  ///< its table without a cadence, defaults included
+  StopRule rule;
+  std::int64_t steps = 1;  ///< between two looks
+};
+
 /// A first-order system as a scene asked for it.
 struct SceneSystem {
   std::string name;
@@ -126,7 +134,7 @@ template <class F> SceneForce scene_force(const F& part, SceneValue effective = 
   return made;
 }
 
-/// Hamiltonians, forces, constraints, thermostats, systems and monitors by name. A user's own part is one line:
+/// Hamiltonians, forces, constraints, thermostats, systems, monitors and stops by name. A user's own part is one line:
 ///
 ///     Parts parts = standard_parts();
 ///     parts.add_force<Oblateness>();
@@ -156,6 +164,10 @@ class Parts {
   struct SystemKind {
     PartInfo info;
     std::function<SceneSystem(TableReader&)> read;
+  };
+  struct StopKind {
+    PartInfo info;
+    std::function<SceneStop(TableReader&)> read;
   };
   struct MonitorKind {
     PartInfo info;
@@ -233,12 +245,21 @@ class Parts {
     return *this;
   }
 
+  /// Makes stop `S` known by the name it describes itself with: a struct of parameters, `steps` between two looks among
+  /// them, with `StopRule rule() const`. One of the same name is replaced.
+  template <class S> Parts& add_stop() {
+    static_assert(Described<S>, "a stop in a scene describes itself: static constexpr auto describe()");
+    put(stops_, StopKind{part_info<S>(), [](TableReader& reader) { return read_stop<S>(reader); }});
+    return *this;
+  }
+
   const std::vector<HamiltonianKind>& hamiltonians() const { return hamiltonians_; }
   const std::vector<ThermostatKind>& thermostats() const { return thermostats_; }
   const std::vector<ForceKind>& forces() const { return forces_; }
   const std::vector<ConstraintKind>& constraints() const { return constraints_; }
   const std::vector<SystemKind>& systems() const { return systems_; }
   const std::vector<MonitorKind>& monitors() const { return monitors_; }
+  const std::vector<StopKind>& stops() const { return stops_; }
 
  private:
   template <class H> static SceneSplitting read_splitting(TableReader& reader) {
@@ -349,6 +370,14 @@ class Parts {
     return made;
   }
 
+  template <class S> static SceneStop read_stop(TableReader& reader) {
+    S stop{};
+    read_part(reader, stop);
+    SceneStop made{std::string(part_name<S>()), SceneValue::table(), stop.rule(), stop.steps};
+    put_fields(reader, stop, made.effective);
+    return made;
+  }
+
   template <class Kind> static void put(std::vector<Kind>& kinds, Kind kind) {
     for (Kind& known : kinds) {
       if (known.info.name != kind.info.name) continue;
@@ -364,20 +393,14 @@ class Parts {
   std::vector<ConstraintKind> constraints_;
   std::vector<SystemKind> systems_;
   std::vector<MonitorKind> monitors_;
+  std::vector<StopKind> stops_;
 };
 
-/// Every Hamiltonian, force, constraint, thermostat, system and monitor of noether.
+/// Every Hamiltonian, force, constraint, thermostat, system, monitor and stop of noether.
 Parts standard_parts();
 
 /// What the writers say of themselves: they stand in `[[every]]` like monitors.
 std::vector<PartInfo> writer_parts();
-/// What the conditions that end a run say of themselves: they stand in `[[stop]]`.
-std::vector<PartInfo> stop_parts();
-
-/// Steps between two looks unless a scene says otherwise: an escape is seen late as well as early, a collision is found
-/// between two looks only if they are close.
-inline constexpr std::int64_t default_escape_steps = 100, default_collision_steps = 1;
-
 /// What else stands in `[hamiltonian]` and beside it: thermostats, and the start at a minimum.
 std::vector<PartInfo> other_parts(const Parts& parts);
 

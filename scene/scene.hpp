@@ -59,12 +59,6 @@ struct SceneWatch {
   Cadence cadence;
 };
 
-/// One `[[stop]]`.
-struct SceneStop {
-  StopRule rule;
-  std::int64_t steps = 1;
-};
-
 /// One `[[verdict]]`: what runs of the scene show (study/suite.hpp). A run passes it over.
 struct SceneVerdict {
   std::vector<std::string> methods = {};  ///< empty: the scene's own

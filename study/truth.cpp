@@ -1,9 +1,8 @@
 #include "study/truth.hpp"
 
-#include "forces/gravity.hpp"
-#include "forces/linear_drag.hpp"
 #include "forces/sum.hpp"
 #include "integrators/force_motion.hpp"
+#include "integrators/hamiltonian_motion.hpp"
 #include "integrators/methods.hpp"
 
 #include <fmt/format.h>
@@ -152,18 +151,32 @@ WideScene wide_scene(const Scene& scene) {
     wide.start = scene.particles.as<Quad>();
     return wide;
   }
-  ForceField<Quad> forces;
-  const ForceField<double> narrow = forces_of(scene);
-  for (const AnyForce<double>& force : narrow.terms()) {
-    const auto in_quad = force.in_quad();
-    if (!in_quad) {
-      wide.reason = fmt::format("force '{}' is written for doubles only", force.name());
+  ForceField<Quad> all, kicks, letters;
+  const auto widen = [&](const SceneForce& force) {
+    const auto in_quad = force.force.in_quad();
+    if (!in_quad) return false;
+    all.add(*in_quad);
+    (force.letter ? letters : kicks).add(*in_quad);
+    return true;
+  };
+  for (const std::vector<SceneForce>* list : {&h.splitting.own, &h.forces}) {
+    for (const SceneForce& force : *list) {
+      if (widen(force)) continue;
+      wide.reason = fmt::format("force '{}' is written for doubles only", force.name);
       return wide;
     }
-    forces.add(*in_quad);
   }
   wide.start = scene.particles.as<Quad>();
-  wide.field = std::make_unique<ForceMotion<ForceField<Quad>, Quad>>(std::move(forces));
+  if (h.splitting.only_forces) {
+    wide.field = std::make_unique<ForceMotion<ForceField<Quad>, Quad>>(std::move(all));
+  } else if (!h.splitting.make_wide) {
+    wide.reason = fmt::format("hamiltonian '{}' is written for doubles only", h.splitting.name);
+  } else if (!h.splitting.claims.inertial) {
+    wide.reason =
+        fmt::format("hamiltonian '{}' moves in coordinates of its own, which no reference does", h.splitting.name);
+  } else {
+    wide.field = std::make_unique<HamiltonianMotion<Quad>>(h.splitting.make_wide(std::move(kicks)), std::move(letters));
+  }
   return wide;
 }
 

@@ -20,8 +20,8 @@ struct WideScene {
   std::string reason = {};                        ///< why there is none
 };
 
-/// The motion of a scene in extended precision: all its forces together, a wisdom_holman scene's gravity among them,
-/// drag as the force a = -rate v.
+/// The motion of a scene in extended precision: all its forces together, those that its Hamiltonian has in itself among
+/// them, drag as the force a = -rate v; of a Hamiltonian that is more than forces, the accelerations that it tells.
 /// @throws never  a scene that has none says why
 WideScene wide_scene(const Scene& scene);
 

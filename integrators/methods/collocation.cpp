@@ -1,6 +1,7 @@
 #include "integrators/methods/collocation.hpp"
 
 #include "integrators/methods.hpp"
+#include "integrators/methods/dense_factors.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -67,7 +68,11 @@ template <class Real> StageTable<Real>::StageTable(const CollocationTable& table
     for (Index j = 0; j < stages; ++j) all(i, j) = table.a[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
   }
   if (table.c[0] > Quad(0)) {
-    const Vector<Quad> in_rest = all.partialPivLu().solve(Vector<Quad>::Ones(stages));
+    DenseFactors<Quad> factors;
+    factors.resize(stages);
+    factors.compute(all);
+    Vector<Quad> in_rest;
+    factors.solve(Vector<Quad>::Ones(stages), in_rest);
     for (Index i = 0; i < stages; ++i) resting[static_cast<std::size_t>(i)] = static_cast<Real>(in_rest[i]);
   }
   for (std::size_t i = table.stages(); i < lane_count; ++i) {

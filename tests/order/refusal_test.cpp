@@ -37,14 +37,15 @@ const WisdomHolman<double, Sum<HarmonicField>> arcs_in_field({.coordinates = Coo
 const Damped<KineticPotential<HarmonicField>> damped(KineticPotential(HarmonicField{.k = 1}), {.rate = 0.1});
 
 TEST_CASE("a scheme that needs exact kicks is refused where other forces join democratic coordinates", "[refusal]") {
-  for (const Scheme* scheme : {&schemes::aba_10_6_4, &schemes::yoshida_6}) {
+  for (const Scheme* scheme : {&schemes::aba_10_6_4, &schemes::blanes_moan_s6}) {
     CHECK(refusal(arcs_in_field, *scheme) ==
           "scheme '" + std::string(scheme->name) +
-              "' needs exact flows, but part B of 'wisdom_holman' is a symmetric map of order 2; use 'verlet', or a "
-              "scheme made for it such as 'abah_8_6_4' or 'abah_10_6_4'");
+              "' needs exact flows, but part B of 'wisdom_holman' is a symmetric map of order 2; use 'verlet', a "
+              "composition of its steps such as 'yoshida_4', or a scheme made for it such as 'abah_8_6_4'");
     CHECK(refusal(democratic_arcs, *scheme) == "");
   }
-  for (const Scheme* scheme : {&schemes::abah_10_6_4, &schemes::abah_8_6_4, &schemes::verlet, &schemes::verlet_aba}) {
+  for (const Scheme* scheme :
+       {&schemes::abah_10_6_4, &schemes::abah_8_6_4, &schemes::verlet, &schemes::verlet_aba, &schemes::yoshida_6}) {
     CHECK(refusal(arcs_in_field, *scheme) == "");
   }
   CHECK(refusal(WisdomHolman<double>({}), schemes::aba_10_6_4) == "");

@@ -59,7 +59,7 @@ TEST_CASE("whatever watches or ends a run tells its formula or its quantities", 
   std::vector<PartInfo> infos = writer_parts();
   const Parts parts = standard_parts();
   for (const auto& kind : parts.monitors()) infos.push_back(kind.info);
-  for (const PartInfo& stop : stop_parts()) infos.push_back(stop);
+  for (const auto& kind : parts.stops()) infos.push_back(kind.info);
   REQUIRE(infos.size() >= 10);
   for (const PartInfo& info : infos) {
     INFO(info.name);

@@ -108,8 +108,7 @@ const std::vector<Row> rows = {
 
 /// Magnitudes that the table of costs speaks of: the steps of a composition of Verlet are the weights of its drifts.
 std::vector<Quad> costly(const Scheme& scheme) {
-  const bool composition = scheme.is_symmetric() && scheme.word.front().letter == 'B' && scheme.exact != "AB";
-  return magnitudes(scheme.word, composition ? 'A' : 'B');
+  return magnitudes(scheme.word, scheme.is_composition() ? 'A' : 'B');
 }
 
 TEST_CASE("evaluations, largest weights and their sums are those of the published comparison", "[schemes]") {

@@ -1,0 +1,93 @@
+#include "integrators/hamiltonian_motion.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace noether {
+
+template <class Real>
+HamiltonianMotion<Real>::HamiltonianMotion(AnyHamiltonian<Real> hamiltonian, ForceField<Real> beside)
+    : hamiltonian_(std::move(hamiltonian)), beside_(std::move(beside)) {
+  const HamiltonianClaims claims = hamiltonian_.claims();
+  if (!claims.inertial) {
+    throw SchemeMismatch(
+        fmt::format("'{}' moves in coordinates of its own, so methods for y' = f cannot step it; use a "
+                    "splitting scheme, such as 'verlet_aba'",
+                    hamiltonian_.name()));
+  }
+  if (claims.constraints > 0) {
+    throw SchemeMismatch(
+        fmt::format("'{}' has constraints, which methods for y' = f do not know; use a splitting scheme, such as "
+                    "'verlet'",
+                    hamiltonian_.name()));
+  }
+}
+
+template <class Real> FieldClaims HamiltonianMotion<Real>::claims() const {
+  const HamiltonianClaims own = hamiltonian_.claims();
+  const ForceClaims beside = beside_.claims();
+  return {.name = hamiltonian_.name(),
+          .second_order = true,
+          .velocity_dependent = true,
+          .time_dependent = own.time_dependent || beside.time_dependent,
+          .energy = own.energy,
+          .dissipative = own.dissipative || beside.dissipative,
+          .keeps_momentum = own.keeps_momentum && beside.keeps_momentum,
+          .keeps_angular_momentum = own.keeps_angular_momentum && beside.keeps_angular_momentum};
+}
+
+template <class Real> std::string HamiltonianMotion<Real>::signature() const {
+  SavedState saved;
+  hamiltonian_.save(saved, "");
+  std::string all = hamiltonian_.name();
+  for (const auto& [key, value] : saved) {
+    const auto* texts = std::get_if<std::vector<std::string>>(&value);
+    if (key.ends_with("signature") && texts != nullptr && !texts->empty()) all += " " + texts->front();
+  }
+  return beside_.terms().empty() ? all : all + " + " + beside_.signature();
+}
+
+template <class Real> void HamiltonianMotion<Real>::bind(const ParticleSystem<Real>& s) {
+  work_ = s;
+  work_.keep_low_words(false);
+  work_.clock() = Clock<Real>::free(0);
+  hamiltonian_.bind(work_);
+  beside_.check(work_);
+  a_ = beside_a_ = VectorColumn<Real>(s.size());
+}
+
+template <class Real>
+void HamiltonianMotion<Real>::accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) {
+  hamiltonian_.accelerations(s, a);
+  if (beside_.terms().empty()) return;
+  ForceSink<Real> sink(beside_a_, s, {});
+  beside_.add_to(sink, s);
+  for (Index i = 0; i < a.size(); ++i) a.add(i, std::as_const(beside_a_)[i]);
+}
+
+template <class Real> void HamiltonianMotion<Real>::sum(const Real& t, const Vector<Real>& y) {
+  scatter(y, work_);
+  work_.clock().set_stage_offset(t);
+  work_.wrap();
+  accelerations(work_, a_);
+}
+
+template <class Real> void HamiltonianMotion<Real>::evaluate(const Real& t, const Vector<Real>& y, Vector<Real>& dy) {
+  const Index half = 3 * work_.size();
+  sum(t, y);
+  dy.resize(2 * half);
+  std::copy_n(y.data() + half, half, dy.data());
+  for (int k = 0; k < 3; ++k) std::copy_n(a_.component(k), work_.size(), dy.data() + half + k * work_.size());
+}
+
+template <class Real> void HamiltonianMotion<Real>::accelerate(const Real& t, const Vector<Real>& y, Vector<Real>& a) {
+  sum(t, y);
+  a.resize(3 * work_.size());
+  for (int k = 0; k < 3; ++k) std::copy_n(a_.component(k), work_.size(), a.data() + k * work_.size());
+}
+
+template class HamiltonianMotion<double>;
+template class HamiltonianMotion<Quad>;
+
+}  // namespace noether

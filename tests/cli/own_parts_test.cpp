@@ -1,0 +1,131 @@
+/// A Hamiltonian from outside the library (tests/support/gyration.hpp), with a basic word of five letters, through
+/// every command of a program that knows it.
+
+#include "tests/cli/support.hpp"
+
+#include <cmath>
+#include <complex>
+#include <regex>
+#include <string>
+
+namespace noether::test {
+namespace {
+
+/// Two charges in a trap that is the same in all directions of the plane: each turns on two circles.
+const std::string trap = R"(title = "Two charges in a trap"
+units = "reduced"
+[[particles.body]]
+name = "one"
+mass = 1
+x = [1, 0, 0.1]
+v = [0, 0.3, 0]
+[[particles.body]]
+name = "other"
+mass = 2
+x = [0, 0.5, 0]
+v = [0.2, 0, 0]
+[hamiltonian]
+type = "gyration"
+omega = 1.5
+[[hamiltonian.force]]
+type = "harmonic_field"
+k = 0.8
+[integrator]
+method = "yoshida_4"
+step = 0.02
+steps = 500
+[[every]]
+type = "energy"
+steps = 10
+[[every]]
+type = "trajectory"
+steps = 50
+[[every]]
+type = "checkpoint"
+steps = 100
+)";
+
+ProcessResult own(const ScratchFolder& folder, std::string_view line) {
+  std::vector<std::string> all{NOETHER_OWN_PROGRAM};
+  for (std::string& word : words(line)) all.push_back(std::move(word));
+  return run_process(all, folder.path());
+}
+
+std::string own_output(const ScratchFolder& folder, const std::string& line) {
+  const ProcessResult result = own(folder, line);
+  INFO(line << "\n" << result.out << result.err);
+  CHECK(result.exit_code == 0);
+  CHECK(result.err.empty());
+  return result.out;
+}
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+/// x + i y of a charge of mass m after time t: z'' = i omega z' - (k / m) z.
+std::complex<double> exact(std::complex<double> z, std::complex<double> w, double m, double t) {
+  using namespace std::complex_literals;
+  const double root = std::sqrt(1.5 * 1.5 / 4 + 0.8 / m), fast = 0.75 + root, slow = 0.75 - root;
+  const std::complex<double> a = (w / 1i - slow * z) / (fast - slow), b = z - a;
+  return a * std::exp(1i * fast * t) + b * std::exp(1i * slow * t);
+}
+
+}  // namespace
+
+TEST_CASE("a Hamiltonian from outside the library is listed, described and explained", "[cli][own_parts]") {
+  const SceneFolder folder(trap);
+  CHECK(has(own_output(folder, "list hamiltonians"), "gyration           charges that turn about a uniform field"));
+  CHECK(has(own_output(folder, "describe gyration"), "gyration (hamiltonian): charges that turn"));
+  const std::string explained = own_output(folder, "explain scene.toml");
+  CHECK(has(explained, "yoshida_4 over gyration, 2 particles"));
+  CHECK(has(explained, "\n  3 x A: drifts\n"));
+  CHECK(has(explained, "\n  3 x B: kicks, one force evaluation each\n"));
+  CHECK(has(explained, "\n  6 x R: turns of the velocities\n"));
+  CHECK(has(noether(folder, "explain scene.toml").err, "scene.toml:15: unknown hamiltonian 'gyration'; known are: "));
+}
+
+TEST_CASE("its runs are right, the same on any threads and across a restart, and can be verified and drawn",
+          "[cli][own_parts]") {
+  const SceneFolder folder(trap);
+  const std::string digest = json_member(own_output(folder, "run scene.toml --json --out a"), "digest");
+  CHECK(json_member(own_output(folder, "run scene.toml --json --out b --threads 2"), "digest") == digest);
+  own_output(folder, "run scene.toml --quiet --out c --set integrator.steps=300");
+  CHECK(own(folder, "verify a/run.h5").exit_code == 0);
+  own_output(folder, "plot a/run.h5 --out picture.svg");
+  own_output(folder, "info a/run.h5");
+  own_output(folder, "convert a/run.h5 --out a.csv");
+
+  const std::string csv = text_of(folder.path() / "a.csv");
+  const std::string last = csv.substr(csv.rfind("\n", csv.size() - 2) + 1);
+  CAPTURE(last);
+  CHECK(has(last, "other"));
+}
+
+TEST_CASE("its errors are measured against a truth in 113 bits, by splittings and by methods for y' = f",
+          "[cli][own_parts]") {
+  const SceneFolder folder(trap);
+  const std::string table = own_output(
+      folder,
+      "compare scene.toml --methods yoshida_4,verlet,ARBRA,dop853,gauss_4 --steps 0.04,0.02 --until 5 --quiet --json");
+  CHECK(has(table, "in quad"));
+  CAPTURE(table);
+  CHECK_FALSE(has(table, "failed"));
+}
+
+TEST_CASE("its largest stable steps are found, and advice is given", "[cli][own_parts]") {
+  const SceneFolder folder(trap);
+  CHECK(has(own_output(folder, "stability scene.toml --methods verlet,yoshida_4 --steps 2000"), "verlet"));
+  CHECK(has(own_output(folder, "advise scene.toml --error 1e-6 --methods yoshida_4,verlet"), "yoshida_4"));
+  CHECK(has(own_output(folder, "evaluate scene.toml"), "harmonic_field"));
+}
+
+TEST_CASE("what it cannot do is refused by name", "[cli][own_parts]") {
+  const SceneFolder folder(trap);
+  const auto refused = [&](const std::string& sets) { return own(folder, "run scene.toml" + sets).err; };
+  CHECK(has(refused(" --set integrator.method=aba_10_6_4"),
+            "scheme 'aba_10_6_4' has no letter R, which is a part of 'gyration'; use a composition of its steps ARBRA, "
+            "such as 'yoshida_4', or a word with all of its letters"));
+  CHECK(has(refused(" --set integrator.method=srkn14a"), "'srkn14a'"));
+  CHECK(has(refused(" --set every.0.type=shadow_hamiltonian"), "no canonical maps"));
+}
+
+}  // namespace noether::test
