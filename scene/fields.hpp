@@ -34,8 +34,8 @@ struct PartInfo {
 
   /// What the flow of a letter is, in words; empty: it has no such letter.
   std::string meaning(char letter) const {
-    for (const auto& [name, text] : letters) {
-      if (name == letter) return text;
+    for (const auto& [one, text] : letters) {
+      if (one == letter) return text;
     }
     return "";
   }
