@@ -43,11 +43,11 @@ double seconds_since(WallClock::time_point start) {
 
 }  // namespace
 
-template <class Real> bool Simulation<Real>::Schedule::due(std::int64_t step) const {
+template <class Real> bool Simulation<Real>::Looks::due(std::int64_t step) const {
   return steps > 0 && (steps == 1 || step % steps < in_a_row);
 }
 
-template <class Real> std::int64_t Simulation<Real>::Schedule::next(std::int64_t step) const {
+template <class Real> std::int64_t Simulation<Real>::Looks::next(std::int64_t step) const {
   const std::int64_t next = next_multiple(step, steps);
   return in_a_row > 1 && step % steps + 1 < in_a_row ? step + 1 : next;
 }
@@ -104,6 +104,23 @@ template <class Real> double Simulation<Real>::positive(double seconds) {
     throw Error(fmt::format("a cadence of {} s is impossible; a finite time above 0 is expected", seconds));
   }
   return seconds;
+}
+
+template <class Real> AnyMonitor<Real>& Simulation<Real>::attach(AnyMonitor<Real> monitor, const Schedule& schedule) {
+  const int given = (schedule.steps != 0) + (schedule.interval != 0) + (schedule.wall != 0);
+  if (given != 1) {
+    throw Error(fmt::format("monitor '{}' has {} cadences; give one: steps, an interval of time, or wall time",
+                            monitor.name(), given));
+  }
+  if (schedule.steps != 0) positive(schedule.steps);
+  if (schedule.wall != 0) positive(schedule.wall);
+  return add(std::move(monitor), schedule);
+}
+
+template <class Real> AnyMonitor<Real>& Simulation<Real>::add(AnyMonitor<Real> monitor, const Schedule& schedule) {
+  monitors_.push_back({"", {schedule}, std::move(monitor), std::chrono::steady_clock::now()});
+  register_last();
+  return monitors_.back().monitor;
 }
 
 template <class Real> void Simulation<Real>::register_last() {

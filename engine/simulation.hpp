@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <map>
 #include <string>
@@ -45,16 +46,20 @@ template <class Real = double> class Simulation {
   /// Attaches a monitor or writer that looks at step 0 and at every multiple of `steps`.
   /// @return the monitor, which stays where it is as long as the simulation lives
   template <class M> M& every(std::int64_t steps, M monitor) {
-    return attach<M>({.steps = positive(steps)}, std::move(monitor));
+    return *add(AnyMonitor<Real>(std::move(monitor)), {.steps = positive(steps)}).template get<M>();
   }
   /// The same by time [time], below 0 where time falls.
   template <class M> M& every_time(double interval, M monitor) {
-    return attach<M>({.interval = interval}, std::move(monitor));
+    return *add(AnyMonitor<Real>(std::move(monitor)), {.interval = interval}).template get<M>();
   }
   /// The same by wall time, at whole steps [s]. Bits of the trajectory do not depend on it.
   template <class M> M& every_wall(double seconds, M monitor) {
-    return attach<M>({.wall = positive(seconds)}, std::move(monitor));
+    return *add(AnyMonitor<Real>(std::move(monitor)), {.wall = positive(seconds)}).template get<M>();
   }
+  /// Attaches a monitor whose type is known only at run time: what a scene or another language asked for.
+  /// @return the monitor, which stays where it is as long as the simulation lives
+  /// @throws Error  unless exactly one cadence is given, and the run can serve the monitor
+  AnyMonitor<Real>& attach(AnyMonitor<Real> monitor, const Schedule& schedule);
   /// Stops the run when `rule` holds, looked at every `steps`: `sim.stop_when(farther_than(100 * au), 4'000)`.
   /// @throws Error  for a system without particles
   void stop_when(const StopRule& rule, std::int64_t steps);
@@ -113,9 +118,8 @@ template <class Real = double> class Simulation {
   double seconds() const { return seconds_; }
 
  private:
-  struct Schedule {
-    std::int64_t steps = 0;
-    double interval = 0, wall = 0;
+  /// When one looks, as the run reckons.
+  struct Looks : Schedule {
     std::int64_t in_a_row = 1;  ///< steps to look at, from each multiple on
 
     bool due(std::int64_t step) const;
@@ -123,7 +127,7 @@ template <class Real = double> class Simulation {
   };
   struct Scheduled {
     std::string name;
-    Schedule schedule;
+    Looks schedule;
     AnyMonitor<Real> monitor;
     std::chrono::steady_clock::time_point last_wall;
     std::int64_t observed = 0;                 ///< by time: how many multiples have been seen, or passed before it came
@@ -138,11 +142,7 @@ template <class Real = double> class Simulation {
   static double checked(double dt);
   static std::int64_t positive(std::int64_t steps);
   static double positive(double seconds);
-  template <class M> M& attach(Schedule schedule, M monitor) {
-    monitors_.push_back({"", schedule, AnyMonitor<Real>(std::move(monitor)), std::chrono::steady_clock::now()});
-    register_last();
-    return *monitors_.back().monitor.template get<M>();
-  }
+  AnyMonitor<Real>& add(AnyMonitor<Real> monitor, const Schedule& schedule);
   /// @throws Error  unless there are particles, or the variables of a system, as the integrator wants them
   void check_state(const IntegratorClaims& claims) const;
   void register_last();
@@ -194,7 +194,7 @@ template <class Real = double> class Simulation {
   ParticleSystem<Real> raw_, copy_, mapped_;
   std::optional<Good> good_;  ///< while a run goes on: at most 1024 steps and a cut old
   AnyIntegrator<Real> integrator_;
-  std::vector<Scheduled> monitors_;
+  std::deque<Scheduled> monitors_;  ///< one that is added moves no other
   std::vector<ScheduledStop> stops_;
   std::optional<double> shown_at_;      ///< free clock: where `run_until` has ended, beyond the last whole step
   std::int64_t observed_through_ = -1;  ///< last step whose due monitors have looked

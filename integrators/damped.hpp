@@ -4,6 +4,7 @@
 #include "engine/description.hpp"
 #include "engine/erasure.hpp"
 #include "forces/linear_drag.hpp"
+#include "integrators/wrapped.hpp"
 
 #include <cmath>
 #include <string>
@@ -17,18 +18,18 @@ namespace noether {
 /// It is irreversible: schemes with negative steps are refused. A word without a D gets half a D at both ends,
 /// `symplectic_euler_a` and `_b` one between their two flows (see `Composition`). Velocities of every coordinate
 /// system are linear in the inertial ones, so the same flow serves them all.
-template <SplitHamiltonian H> class Damped {
+template <SplitHamiltonian H> class Damped : public Wrapped<H> {
  public:
   using real = typename H::real;
 
-  Damped(H hamiltonian, LinearDrag drag) : hamiltonian_(std::move(hamiltonian)), drag_(drag) {
+  Damped(H hamiltonian, LinearDrag drag) : Wrapped<H>(std::move(hamiltonian)), drag_(drag) {
     if (!(drag.rate >= 0))
       throw Error("a drag rate of " + std::to_string(drag.rate) + " drives instead of damping; give 0 or more");
   }
 
   std::string name() const { return "damped"; }
   HamiltonianClaims claims() const {
-    HamiltonianClaims claims = hamiltonian_.claims();
+    HamiltonianClaims claims = Wrapped<H>::claims();
     claims.alphabet += 'D';
     claims.irreversible.insert(claims.irreversible.begin(), 'D');
     claims.dissipative = true;
@@ -36,46 +37,30 @@ template <SplitHamiltonian H> class Damped {
     claims.keeps_momentum = claims.keeps_angular_momentum = false;
     return claims;
   }
-
-  void bind(ParticleSystem<real>& s) { hamiltonian_.bind(s); }
-  void expect_kicks(double longest) { detail::expect_kicks(hamiltonian_, longest); }
-  bool set_neighbor_options(const NeighborOptions& options) {
-    return detail::set_neighbor_options(hamiltonian_, options);
-  }
-  bool can_project() const { return detail::can_project(hamiltonian_); }
-  void project_velocities(ParticleSystem<real>& s, const real& h) { detail::project_velocities(hamiltonian_, s, h); }
-  void open(ParticleSystem<real>& s) { hamiltonian_.open(s); }
-  void close(ParticleSystem<real>& s) { hamiltonian_.close(s); }
   void flow(char letter, ParticleSystem<real>& s, const real& h) {
-    if (letter != 'D') return hamiltonian_.flow(letter, s, h);
+    if (letter != 'D') return Wrapped<H>::flow(letter, s, h);
     using std::exp;
     s.scale_velocities(exp(-real(drag_.rate) * h));
   }
   /// @throws LogicError  for D: a dissipative flow has no action
   real flow_with_action(char letter, ParticleSystem<real>& s, const real& h) {
     NOETHER_EXPECTS(letter != 'D', "the dissipative flow D has no action increment");
-    return hamiltonian_.flow_with_action(letter, s, h);
+    return Wrapped<H>::flow_with_action(letter, s, h);
   }
-  EnergyTerms<real> energy(const ParticleSystem<real>& s) { return hamiltonian_.energy(s); }
-  std::optional<Mat3<real>> virial(const ParticleSystem<real>& s) { return detail::virial_of(hamiltonian_, s); }
   void accelerations(const ParticleSystem<real>& s, VectorColumn<real>& a) {
-    hamiltonian_.accelerations(s, a);
+    Wrapped<H>::accelerations(s, a);
     for (Index i = 0; i < s.size(); ++i) a.add(i, -real(drag_.rate) * s.velocities()[i]);
   }
-  void observe(std::optional<Wanted> wanted) { hamiltonian_.observe(wanted); }
-  const std::optional<Failure>& failure() const { return hamiltonian_.failure(); }
-  Evaluations evaluations() const { return hamiltonian_.evaluations(); }
   void save(SavedState& saved, const std::string& prefix) const {
     detail::save_signature(saved, prefix + "drag/", drag_);
-    detail::save_any(saved, prefix, hamiltonian_);
+    Wrapped<H>::save(saved, prefix);
   }
   void load(const SavedState& saved, const std::string& prefix) {
     detail::check_signature(saved, prefix + "drag/", drag_);
-    detail::load_any(saved, prefix, hamiltonian_);
+    Wrapped<H>::load(saved, prefix);
   }
 
  private:
-  H hamiltonian_;
   LinearDrag drag_;
 };
 

@@ -6,6 +6,7 @@
 #include "engine/parallel.hpp"
 #include "engine/random.hpp"
 #include "integrators/kinetic_potential.hpp"
+#include "integrators/wrapped.hpp"
 
 #include <array>
 #include <cmath>
@@ -54,13 +55,13 @@ struct LangevinOptions {
 /// that a copy completed for an observer has the noise of the run.
 /// @cost 12 random words, 2 logarithms and 4 sines or cosines for each particle and O
 /// @source LeimkuhlerMatthews2013, LeimkuhlerMatthews2016, Salmon2011
-template <SplitHamiltonian H> class Langevin {
+template <SplitHamiltonian H> class Langevin : public Wrapped<H> {
  public:
   using real = typename H::real;
 
   /// @throws Error  for a negative temperature or friction, or constraints that do not tell how to project velocities
   Langevin(H hamiltonian, LangevinOptions options)
-      : hamiltonian_(std::move(hamiltonian)), options_(options), key_(noise_key(options.seed)) {
+      : Wrapped<H>(std::move(hamiltonian)), options_(options), key_(noise_key(options.seed)) {
     options_.check();
     if (hamiltonian_.claims().constraints > 0 && !detail::can_project(hamiltonian_)) {
       throw Error("noise would push velocities off the constraints of '" + detail::name_of(hamiltonian_) +
@@ -95,15 +96,6 @@ template <SplitHamiltonian H> class Langevin {
                   "kinetic_potential");
     }
   }
-  void expect_kicks(double longest) { detail::expect_kicks(hamiltonian_, longest); }
-  bool set_neighbor_options(const NeighborOptions& options) {
-    return detail::set_neighbor_options(hamiltonian_, options);
-  }
-  bool can_project() const { return detail::can_project(hamiltonian_); }
-  void project_velocities(ParticleSystem<real>& s, const real& h) { detail::project_velocities(hamiltonian_, s, h); }
-  void open(ParticleSystem<real>& s) { hamiltonian_.open(s); }
-  void close(ParticleSystem<real>& s) { hamiltonian_.close(s); }
-
   /// Whole steps; only here the place of an O in the word is known.
   Advanced run(const TimedWord<real>& word, ParticleSystem<real>& s, const Span& span) {
     const real dt(s.clock().dt());
@@ -130,25 +122,21 @@ template <SplitHamiltonian H> class Langevin {
     NOETHER_EXPECTS(letter != 'O', "the irreversible flow O has no action increment");
     return hamiltonian_.flow_with_action(letter, s, h);
   }
-  EnergyTerms<real> energy(const ParticleSystem<real>& s) { return hamiltonian_.energy(s); }
-  std::optional<Mat3<real>> virial(const ParticleSystem<real>& s) { return detail::virial_of(hamiltonian_, s); }
   void accelerations(const ParticleSystem<real>& s, VectorColumn<real>& a) {
     hamiltonian_.accelerations(s, a);
     for (Index i = 0; i < s.size(); ++i) a.add(i, -real(options_.friction) * s.velocities()[i]);
   }
-  void observe(std::optional<Wanted> wanted) { hamiltonian_.observe(wanted); }
-  const std::optional<Failure>& failure() const { return hamiltonian_.failure(); }
-  Evaluations evaluations() const { return hamiltonian_.evaluations(); }
   void save(SavedState& saved, const std::string& prefix) const {
     detail::save_signature(saved, prefix + "langevin/", options_);
-    detail::save_any(saved, prefix, hamiltonian_);
+    Wrapped<H>::save(saved, prefix);
   }
   void load(const SavedState& saved, const std::string& prefix) {
     detail::check_signature(saved, prefix + "langevin/", options_);
-    detail::load_any(saved, prefix, hamiltonian_);
+    Wrapped<H>::load(saved, prefix);
   }
 
  private:
+  using Wrapped<H>::hamiltonian_;
   /// Place of an O that ends a step and is joined with the next; above that of any other.
   static constexpr std::uint32_t last_stage = 127;
 
@@ -178,7 +166,6 @@ template <SplitHamiltonian H> class Langevin {
     detail::project_velocities(hamiltonian_, s, h);
   }
 
-  H hamiltonian_;
   LangevinOptions options_;
   std::array<std::uint32_t, 2> key_;
 };

@@ -508,16 +508,20 @@ class SceneReader {
 
 }  // namespace
 
-Scene read_scene(std::string_view text, const std::filesystem::path& file, const Parts& parts,
+Scene read_scene(SceneValue root, const std::filesystem::path& file, const Parts& parts,
                  const std::vector<std::string>& sets) {
   Scene scene;
   scene.file = file;
   scene.parts = std::make_shared<const Parts>(parts);
   scene.source = {file.string(), sets};
-  SceneValue root = parse_toml(text, scene.source.file);
   apply_sets(root, scene.source);
   SceneReader(root, *scene.parts, scene).read();
   return scene;
+}
+
+Scene read_scene(std::string_view text, const std::filesystem::path& file, const Parts& parts,
+                 const std::vector<std::string>& sets) {
+  return read_scene(parse_toml(text, file.string()), file, parts, sets);
 }
 
 Scene load_scene(const std::filesystem::path& file, const Parts& parts, const std::vector<std::string>& sets) {

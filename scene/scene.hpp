@@ -102,6 +102,10 @@ Scene load_scene(const std::filesystem::path& file, const Parts& parts = standar
 Scene read_scene(std::string_view text, const std::filesystem::path& file, const Parts& parts = standard_parts(),
                  const std::vector<std::string>& sets = {});
 
+/// The same from a tree of values, as other languages put it together (scene/value.hpp): errors show their keys.
+Scene read_scene(SceneValue root, const std::filesystem::path& file = "scene", const Parts& parts = standard_parts(),
+                 const std::vector<std::string>& sets = {});
+
 /// Where a run writes. An empty path leaves its writer out.
 struct SceneFiles {
   std::filesystem::path trajectory, checkpoint;

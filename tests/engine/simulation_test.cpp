@@ -53,6 +53,30 @@ struct Push {
   }
 };
 
+TEST_CASE("a monitor whose type is known at run time is attached as any other, by one cadence", "[simulation]") {
+  ParticleSystem<double> s;
+  s.add("one", 1, {1, 0, 0}, {0, 1, 0});
+  const auto run_with = [&](const auto& attach) {
+    Simulation<double> run(s, compose(test::kinetic_potential(HarmonicField{.k = 1}), schemes::verlet), 0.1);
+    const Energy* energy = attach(run);
+    CHECK(run.run(50).ok());
+    return energy->worst();
+  };
+  const double by_type = run_with([](Simulation<double>& run) { return &run.every(7, Energy{}); });
+  const double erased = run_with([](Simulation<double>& run) {
+    AnyMonitor<double>& first = run.attach(Energy{}, {.steps = 7});
+    for (int k = 0; k < 20; ++k) run.attach(Momentum{}, {.interval = 0.5});
+    return first.get<Energy>();
+  });
+  CHECK(by_type == erased);
+  Simulation<double> run(s, compose(test::kinetic_potential(HarmonicField{.k = 1}), schemes::verlet), 0.1);
+  CHECK_THROWS_WITH(run.attach(Energy{}, {}),
+                    "monitor 'energy' has 0 cadences; give one: steps, an interval of time, or "
+                    "wall time");
+  CHECK_THROWS_WITH(run.attach(Energy{}, {.steps = 1, .wall = 2}),
+                    "monitor 'energy' has 2 cadences; give one: steps, an interval of time, or wall time");
+}
+
 }  // namespace
 
 TEST_CASE("a duration that is no whole number of steps is refused with the two nearest", "[simulation]") {

@@ -67,6 +67,42 @@ std::string digest_of(const Scene& scene) {
   return io::digest(sim.particles());
 }
 
+/// The same scene as another language would put it together: no text, no lines.
+SceneValue tree_of_two_bodies() {
+  const auto text = [](const char* of) { return SceneValue::of(std::string(of)); };
+  const auto table = [](SceneValue::Table entries) { return SceneValue::of(std::move(entries)); };
+  const auto list = [](SceneValue::Array values) { return SceneValue::of(std::move(values)); };
+  const SceneValue sun = table({{"name", text("Sun")}, {"mass", text("1 Msun")}});
+  const SceneValue earth = table({{"name", text("Earth")},
+                                  {"mass", text("3e-6 Msun")},
+                                  {"x", list({text("1 au"), text("0 au"), text("0 au")})},
+                                  {"v", list({text("0 au/day"), text("30 km/s"), text("0 au/day")})}});
+  const SceneValue gravity = table({{"type", text("gravity")}});
+  return table(
+      {{"units", text("solar")},
+       {"particles", table({{"body", list({sun, earth})}})},
+       {"hamiltonian", table({{"type", text("kinetic_potential")}, {"force", list({gravity})}})},
+       {"integrator", table({{"method", text("yoshida_4")}, {"step", text("5 day")}, {"until", text("1000 day")}})},
+       {"every", list({table({{"type", text("energy")}, {"every", text("100 day")}}),
+                       table({{"type", text("momentum")}, {"steps", SceneValue::of(std::int64_t{7})}})})}});
+}
+
+TEST_CASE("a scene from a tree of values is the one from text, and its errors name the key", "[scene]") {
+  const Scene from_tree = read_scene(tree_of_two_bodies()), from_text = read(two_bodies);
+  CHECK(from_tree.effective_toml == from_text.effective_toml);
+  CHECK(digest_of(from_tree) == digest_of(from_text));
+  SceneValue wrong = tree_of_two_bodies();
+  wrong.find("integrator")->put("method", SceneValue::of(std::string("yoshida4")));
+  try {
+    read_scene(std::move(wrong));
+    FAIL("a wrong method was taken");
+  } catch (const SceneError& error) {
+    CHECK(error.key() == "integrator.method");
+    CHECK(error.value() == "\"yoshida4\"");
+    CHECK_THAT(std::string(error.what()), Catch::Contains("unknown method 'yoshida4'; did you mean 'yoshida_4'?"));
+  }
+}
+
 TEST_CASE("a scene and a program end in the same digest", "[scene][determinism]") {
   using namespace noether::units::solar;
   ParticleSystem<double> s(unit_system("solar"));
