@@ -14,15 +14,6 @@ if(PROJECT_IS_TOP_LEVEL)
   endif()
 endif()
 
-# lld links in a third of the time.
-if(PROJECT_IS_TOP_LEVEL)
-  include(CheckLinkerFlag)
-  check_linker_flag(CXX -fuse-ld=lld NOETHER_LLD)
-  if(NOETHER_LLD)
-    add_link_options(-fuse-ld=lld)
-  endif()
-endif()
-
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(fmt 9 REQUIRED)
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)

@@ -21,7 +21,7 @@ namespace {
 
 /// OpenMP's number until somebody sets another: what OMP_NUM_THREADS says, or the processors that this process may use.
 std::atomic<int>& threads_in_use() {
-  static std::atomic<int> threads(omp_get_max_threads());
+  static std::atomic<int> threads(std::min(omp_get_max_threads(), 65536));
   return threads;
 }
 

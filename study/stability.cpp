@@ -335,9 +335,11 @@ Stability find_stability(const Scene& scene, const StabilityOptions& options) {
     if (std::find(methods.begin(), methods.end(), who) == methods.end()) methods.push_back(std::move(who));
   }
   found.spectrum = spectrum_along(scene);
-  const bool constrained = !scene.hamiltonian.constraints.empty();
-  if (constrained) found.spectrum = {};  // frequencies are not those of the free particles
-  found.linear = !constrained && is_linear(scene);
+  // Forces alone tell no frequencies where constraints hold particles, or a Hamiltonian turns their velocities.
+  const bool oscillates =
+      scene.hamiltonian.constraints.empty() && (scene.system || scene.hamiltonian.splitting.only_forces);
+  if (!oscillates) found.spectrum = {};
+  found.linear = oscillates && is_linear(scene);
   found.growth_told = told_growth(options.confirm_steps);
   found.mode = mode_of(scene, found.spectrum);
   check_motion(scene, found.spectrum.fastest > 0 ? found.spectrum.fastest : 1);

@@ -144,7 +144,7 @@ TEST_CASE("assigning state copies everything that a run changes", "[particles]")
   s.keep_low_words(true);
   s.add_column<Charge>()[0] = 2;
   s.clock() = Clock<double>::fixed(1, 2, 3);
-  s.phase() = {.coordinates = Coordinates::jacobi, .opened = true, .pending = true};
+  s.phase() = {.coordinates = std::uint8_t{1}, .opened = true, .pending = true};
   s.advance_positions(0.1);
   s.masses()[0] = 9;
   copy.assign_state(s);

@@ -222,18 +222,4 @@ TEST_CASE("a force over Pack gives each lane the bits of that lane alone", "[lan
   }
 }
 
-TEST_CASE("comparisons of packs hold if they hold in every lane", "[lanes]") {
-  Pack a(1), b(2);
-  CHECK(a < b);
-  CHECK(b > a);
-  CHECK(a <= a);
-  b.lane[3] = 1;
-  CHECK(!(a < b));
-  CHECK(a <= b);
-  CHECK(!(a == b));
-  b.lane[5] = std::numeric_limits<double>::quiet_NaN();
-  CHECK(!isfinite(b));
-  CHECK(isfinite(a));
-}
-
 }  // namespace noether

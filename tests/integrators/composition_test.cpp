@@ -248,7 +248,7 @@ TEST_CASE("schemes that do not fit a Hamiltonian are refused by name", "[composi
       test::wisdom_holman({.G = outer_G, .coordinates = Coordinates::democratic}, HarmonicField{.k = 1e-9});
   CHECK(refusal(in_field, schemes::ruth_3) ==
         "scheme 'ruth_3' needs exact flows, but part B of 'wisdom_holman' is a symmetric map of order 2; "
-        "use 'verlet', or a scheme made for it such as 'abah_8_6_4' or 'abah_10_6_4'");
+        "use 'verlet', a composition of its steps such as 'yoshida_4', or a scheme made for it such as 'abah_8_6_4'");
   CHECK(refusal(democratic, schemes::srkn14a) ==
         "scheme 'srkn14a' is a Runge-Kutta-Nystroem splitting and keeps its order only where {B,{B,{B,A}}} = 0, which "
         "'wisdom_holman' does not grant; use a general scheme such as 'blanes_moan_s10'");

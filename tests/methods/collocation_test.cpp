@@ -20,6 +20,8 @@
 #include "tests/support/order_fit.hpp"
 #include "tests/support/planets.hpp"
 
+#include <Eigen/LU>
+
 #include <cmath>
 
 using namespace noether;
