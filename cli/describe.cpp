@@ -150,7 +150,7 @@ void describe_scheme(const Scheme& scheme, bool json) {
   if (scheme.scheme_class == SchemeClass::rkn) {
     fmt::print("  a Nystroem splitting: for quadratic kinetic energies only\n");
   }
-  if (!scheme.exact.empty()) fmt::print("  needs exact flows of {}\n", scheme.exact);
+  if (!scheme.exact.empty() && !scheme.is_composition()) fmt::print("  needs exact flows of {}\n", scheme.exact);
   if (scheme.stability_limit > 0)
     fmt::print("  stable on the oscillator up to h omega = {:.6g}\n", scheme.stability_limit);
   fmt::print("\n{}", word_text(scheme.word));

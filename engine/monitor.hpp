@@ -46,13 +46,6 @@ struct MonitorReport {
   std::string verdict;                     ///< what the figures say about the run, in words
 };
 
-/// When a monitor looks: at step 0 and every multiple of one of these; the others are 0.
-struct Schedule {
-  std::int64_t steps = 0;
-  double interval = 0;  ///< of time, below 0 where time falls [time]
-  double wall = 0;      ///< of wall time, at whole steps [s]; bits of the trajectory do not depend on it
-};
-
 /// Watches settled states. Optional members: `wanted()` (energy?), `series()` and `scale()` (what files store),
 /// `report()`, `record(Sample)` (receives every monitor's samples: writers), `flush()`, `finish(Outcome)`,
 /// `steps_in_a_row()` (looks at so many steps from each multiple of its cadence on), `forget()` (somebody has edited

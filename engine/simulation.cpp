@@ -18,12 +18,6 @@ constexpr std::int64_t longest_chunk = 1024;
 /// Steps between looks at the wall clock are chosen to last about this long [s].
 constexpr double chunk_seconds = 0.05;
 
-// Monitors that look at every step should not wait for a division.
-bool is_multiple(std::int64_t step, std::int64_t cadence) { return cadence == 1 || step % cadence == 0; }
-std::int64_t next_multiple(std::int64_t step, std::int64_t cadence) {
-  return cadence == 1 ? step + 1 : (step / cadence + 1) * cadence;
-}
-
 bool all_finite(const VectorColumn<double>& x, const VectorColumn<double>& v) {
   return finite_kernels().all(x.component(0), v.component(0), 3 * x.stride());
 }
@@ -42,15 +36,6 @@ double seconds_since(WallClock::time_point start) {
 }
 
 }  // namespace
-
-template <class Real> bool Simulation<Real>::Looks::due(std::int64_t step) const {
-  return steps > 0 && (steps == 1 || step % steps < in_a_row);
-}
-
-template <class Real> std::int64_t Simulation<Real>::Looks::next(std::int64_t step) const {
-  const std::int64_t next = next_multiple(step, steps);
-  return in_a_row > 1 && step % steps + 1 < in_a_row ? step + 1 : next;
-}
 
 template <class Real>
 Simulation<Real>::Simulation(ParticleSystem<Real> particles, AnyIntegrator<Real> integrator, Clock<Real> clock)
@@ -94,26 +79,8 @@ template <class Real> double Simulation<Real>::checked(double dt) {
   return dt;
 }
 
-template <class Real> std::int64_t Simulation<Real>::positive(std::int64_t steps) {
-  if (steps < 1) throw Error(fmt::format("a cadence of {} steps is impossible; at least 1 is expected", steps));
-  return steps;
-}
-
-template <class Real> double Simulation<Real>::positive(double seconds) {
-  if (!(seconds > 0) || !std::isfinite(seconds)) {
-    throw Error(fmt::format("a cadence of {} s is impossible; a finite time above 0 is expected", seconds));
-  }
-  return seconds;
-}
-
 template <class Real> AnyMonitor<Real>& Simulation<Real>::attach(AnyMonitor<Real> monitor, const Schedule& schedule) {
-  const int given = (schedule.steps != 0) + (schedule.interval != 0) + (schedule.wall != 0);
-  if (given != 1) {
-    throw Error(fmt::format("monitor '{}' has {} cadences; give one: steps, an interval of time, or wall time",
-                            monitor.name(), given));
-  }
-  if (schedule.steps != 0) positive(schedule.steps);
-  if (schedule.wall != 0) positive(schedule.wall);
+  detail::check_schedule(schedule, monitor.name());
   return add(std::move(monitor), schedule);
 }
 
@@ -207,7 +174,7 @@ template <class Real> void Simulation<Real>::stop_when(const StopRule& rule, std
     throw Error(fmt::format("stop '{}' watches distances of particles, but system '{}' has variables and no particles",
                             rule.kind == StopRule::Kind::escape ? "escape" : "collision", claims.hamiltonian));
   }
-  stops_.push_back({positive(steps), StopCheck<Real>(rule)});
+  stops_.push_back({detail::positive_cadence(steps), StopCheck<Real>(rule)});
 }
 
 template <class Real> std::int64_t Simulation<Real>::steps_in(double duration) const {
@@ -371,7 +338,7 @@ template <class Real> Outcome Simulation<Real>::fall_back() {
 template <class Real> std::optional<Outcome> Simulation<Real>::look_at_the_end() {
   const Snapshot<Real> moment = snapshot({});
   for (const ScheduledStop& stop : stops_) {
-    if (is_multiple(step(), stop.steps)) continue;
+    if (detail::is_multiple(step(), stop.steps)) continue;
     StopCheck<Real> check = stop.check;
     if (const auto reason = check.look(moment)) return stopped(*reason);
   }
@@ -397,7 +364,7 @@ template <class Real> std::optional<Outcome> Simulation<Real>::observe_due() {
     wanted.virial = wanted.virial || scheduled.wanted.virial;
     wanted.action = wanted.action || scheduled.wanted.action;
   }
-  const auto stop_due = [&](const ScheduledStop& stop) { return is_multiple(step(), stop.steps); };
+  const auto stop_due = [&](const ScheduledStop& stop) { return detail::is_multiple(step(), stop.steps); };
   if (looking_.empty() && std::none_of(stops_.begin(), stops_.end(), stop_due)) return std::nullopt;
   const Snapshot<Real> moment = snapshot(wanted);
   if (const auto bad = fault(moment.state())) return good_ ? fall_back() : *bad;
@@ -452,7 +419,7 @@ template <class Real> std::int64_t Simulation<Real>::next_cut(std::int64_t end) 
   for (const auto& scheduled : monitors_) {
     if (scheduled.schedule.steps > 0) cut = std::min(cut, scheduled.schedule.next(step()));
   }
-  for (const auto& stop : stops_) cut = std::min(cut, next_multiple(step(), stop.steps));
+  for (const auto& stop : stops_) cut = std::min(cut, detail::next_multiple(step(), stop.steps));
   return cut;
 }
 

@@ -2,6 +2,7 @@
 /// A run: it owns state, integrator and monitors, and cuts time at the next moment somebody wants to see.
 
 #include "engine/monitor.hpp"
+#include "engine/schedule.hpp"
 #include "engine/stop_condition.hpp"
 
 #include <chrono>
@@ -46,7 +47,7 @@ template <class Real = double> class Simulation {
   /// Attaches a monitor or writer that looks at step 0 and at every multiple of `steps`.
   /// @return the monitor, which stays where it is as long as the simulation lives
   template <class M> M& every(std::int64_t steps, M monitor) {
-    return *add(AnyMonitor<Real>(std::move(monitor)), {.steps = positive(steps)}).template get<M>();
+    return *add(AnyMonitor<Real>(std::move(monitor)), {.steps = detail::positive_cadence(steps)}).template get<M>();
   }
   /// The same by time [time], below 0 where time falls.
   template <class M> M& every_time(double interval, M monitor) {
@@ -54,7 +55,7 @@ template <class Real = double> class Simulation {
   }
   /// The same by wall time, at whole steps [s]. Bits of the trajectory do not depend on it.
   template <class M> M& every_wall(double seconds, M monitor) {
-    return *add(AnyMonitor<Real>(std::move(monitor)), {.wall = positive(seconds)}).template get<M>();
+    return *add(AnyMonitor<Real>(std::move(monitor)), {.wall = detail::positive_cadence(seconds)}).template get<M>();
   }
   /// Attaches a monitor whose type is known only at run time: what a scene or another language asked for.
   /// @return the monitor, which stays where it is as long as the simulation lives
@@ -118,16 +119,9 @@ template <class Real = double> class Simulation {
   double seconds() const { return seconds_; }
 
  private:
-  /// When one looks, as the run reckons.
-  struct Looks : Schedule {
-    std::int64_t in_a_row = 1;  ///< steps to look at, from each multiple on
-
-    bool due(std::int64_t step) const;
-    std::int64_t next(std::int64_t step) const;
-  };
   struct Scheduled {
     std::string name;
-    Looks schedule;
+    detail::Looks schedule;
     AnyMonitor<Real> monitor;
     std::chrono::steady_clock::time_point last_wall;
     std::int64_t observed = 0;                 ///< by time: how many multiples have been seen, or passed before it came
@@ -140,8 +134,6 @@ template <class Real = double> class Simulation {
   };
 
   static double checked(double dt);
-  static std::int64_t positive(std::int64_t steps);
-  static double positive(double seconds);
   AnyMonitor<Real>& add(AnyMonitor<Real> monitor, const Schedule& schedule);
   /// @throws Error  unless there are particles, or the variables of a system, as the integrator wants them
   void check_state(const IntegratorClaims& claims) const;

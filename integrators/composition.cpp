@@ -36,7 +36,7 @@ void check_letters(const Scheme& scheme, const std::vector<Stage>& stages, const
 }
 
 void check_class(const Scheme& scheme, const HamiltonianClaims& claims, const std::string& hamiltonian) {
-  for (const char letter : scheme.exact) {
+  for (const char letter : scheme.is_composition() ? std::string_view() : scheme.exact) {
     if (claims.inexact.find(letter) == std::string_view::npos) continue;
     const bool constrained = letter == 'A' && claims.constraints > 0;
     throw SchemeMismatch(fmt::format(

@@ -161,32 +161,37 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
   }
   /// Packs are not padded: a column holds what the stages hold, in the same order.
   static double* numbers(VectorColumn<Pack>& column) { return column.component(0)->lane.data(); }
-  const double* evaluate_lanes(const StageStates<double>& states) requires sees_packs {
-    const auto all = static_cast<std::size_t>(3 * work_.size());
-    if (states.q != place_of_stages()) copy_packs(states.q, place_of_stages(), all);
-    if (states.v != nullptr) copy_packs(states.v, numbers(packs_.velocities()), all);
-    packs_.clock().set_stage_offset(Pack::load(states.t));
-    sum_in_lanes();
-    return numbers(pack_a_);
+  const Real* evaluate_lanes(const StageStates<Real>& states) {
+    if constexpr (sees_packs) {
+      const auto all = static_cast<std::size_t>(3 * work_.size());
+      if (states.q != place_of_stages()) copy_packs(states.q, place_of_stages(), all);
+      if (states.v != nullptr) copy_packs(states.v, numbers(packs_.velocities()), all);
+      packs_.clock().set_stage_offset(Pack::load(states.t));
+      sum_in_lanes();
+      return numbers(pack_a_);
+    }
+    return nullptr;
   }
   /// Where the lanes of a force take different branches, the sum starts again with a place to go lane by lane, and
   /// keeps it for a while: each way has the same bits, but giving up costs more than a copy of the sums.
-  void sum_in_lanes() requires sees_packs {
-    if (careful_ == 0) {
-      try {
-        ForceSink<Pack> sink = sets_ ? ForceSink<Pack>::unset(pack_a_, packs_) : ForceSink<Pack>(pack_a_, packs_, {});
-        forces_.add_to(sink, packs_);
-        return this->note(sink.failure());
-      } catch (const LanesDiffer&) {
-        careful_ = 100;
+  void sum_in_lanes() {
+    if constexpr (sees_packs) {
+      if (careful_ == 0) {
+        try {
+          ForceSink<Pack> sink = sets_ ? ForceSink<Pack>::unset(pack_a_, packs_) : ForceSink<Pack>(pack_a_, packs_, {});
+          forces_.add_to(sink, packs_);
+          return this->note(sink.failure());
+        } catch (const LanesDiffer&) {
+          careful_ = 100;
+        }
       }
+      --careful_;
+      LaneByLane place(work_, a_, before_);
+      ForceSink<Pack> sink(pack_a_, packs_, {});
+      sink.set_lane_by_lane(&place);
+      add_in_lanes(forces_, sink, packs_);
+      this->note(sink.failure());
     }
-    --careful_;
-    LaneByLane place(work_, a_, before_);
-    ForceSink<Pack> sink(pack_a_, packs_, {});
-    sink.set_lane_by_lane(&place);
-    add_in_lanes(forces_, sink, packs_);
-    this->note(sink.failure());
   }
 
   /// One stage after the other, straight into the particles and out of them.

@@ -80,7 +80,7 @@ struct Scheme {
   std::string_view source = "";  ///< key of docs/references.bib
   Order order = {};
   SchemeClass scheme_class = SchemeClass::general;
-  std::string_view exact = "";  ///< letters whose maps must be exact flows
+  std::string_view exact = "";  ///< letters whose maps must be exact flows, unless it is walked as sub-steps
   /// First h omega on the harmonic oscillator that is unstable; NaN: it does not say.
   double stability_limit = std::numeric_limits<double>::quiet_NaN();
   int printed_digits = 34;  ///< significant digits of the shortest coefficient in the source
@@ -91,7 +91,20 @@ struct Scheme {
   std::array<Quad, most_substeps> substeps = {};
   std::size_t substep_count = 0;
 
-  constexpr bool is_composition() const { return substep_count > 0; }
+  /// Whether it is walked as sub-steps: where it has some, and its word is theirs over drifts and kicks.
+  constexpr bool is_composition() const {
+    Word theirs;
+    for (std::size_t k = 0; k < substep_count; ++k) {
+      theirs.push_back({'B', substeps[k] / Quad(2)});
+      theirs.push_back({'A', substeps[k]});
+      theirs.push_back({'B', substeps[k] / Quad(2)});
+    }
+    if (theirs.size() == 0 || theirs.size() != word.size()) return false;
+    for (std::size_t k = 0; k < word.size(); ++k) {
+      if (!(theirs[k] == word[k])) return false;
+    }
+    return true;
+  }
   constexpr bool has_negative_steps() const {
     for (const Stage& stage : word) {
       if (stage.weight < Quad(0)) return true;
@@ -161,6 +174,7 @@ constexpr Scheme checked(const Scheme& scheme) {
 /// steps are joined.
 template <std::size_t n> constexpr Scheme symmetric_composition(Scheme scheme, const std::array<Quad, n>& half) {
   static_assert(2 * n - 1 <= Scheme::most_substeps);
+  if (n > 1) scheme.exact = "B";  // as a word of its own; over sub-steps nothing is joined that is not exact
   const auto weights = detail::solved(half, true);
   for (std::size_t k = 0; k < 2 * n - 1; ++k) {
     const Quad w = weights[k < n ? k : 2 * n - 2 - k];

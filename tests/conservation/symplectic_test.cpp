@@ -79,7 +79,8 @@ double defect(const H& hamiltonian, const Scheme& scheme, const ParticleSystem<Q
 }
 
 bool takes_inexact_kicks(const Scheme& scheme) {
-  return scheme.exact.find('B') == std::string_view::npos && scheme.scheme_class != SchemeClass::rkn;
+  return (scheme.is_composition() || scheme.exact.find('B') == std::string_view::npos) &&
+         scheme.scheme_class != SchemeClass::rkn;
 }
 
 TEST_CASE("every scheme over kinetic and potential energy is symplectic", "[conservation][symplectic]") {
