@@ -8,8 +8,8 @@ namespace noether {
 
 namespace {
 
-/// Eigen's products on one thread while this lives: its own threads wait awake for each other, and beside other programs
-/// a factorization took thirty times as long on two as on one.
+/// Eigen's products on one thread while this lives: its own threads wait awake for each other, and beside other
+/// programs a factorization took many times as long on two as on one.
 class OneThread {
  public:
   OneThread() : before_(Eigen::nbThreads()) { Eigen::setNbThreads(1); }
