@@ -7,8 +7,8 @@
 
 #include <chrono>
 #include <cstdint>
-#include <deque>
 #include <functional>
+#include <list>
 #include <map>
 #include <string>
 #include <vector>
@@ -186,7 +186,7 @@ template <class Real = double> class Simulation {
   ParticleSystem<Real> raw_, copy_, mapped_;
   std::optional<Good> good_;  ///< while a run goes on: at most 1024 steps and a cut old
   AnyIntegrator<Real> integrator_;
-  std::deque<Scheduled> monitors_;  ///< one that is added moves no other
+  std::list<Scheduled> monitors_;  ///< one that is added moves no other
   std::vector<ScheduledStop> stops_;
   std::optional<double> shown_at_;      ///< free clock: where `run_until` has ended, beyond the last whole step
   std::int64_t observed_through_ = -1;  ///< last step whose due monitors have looked
