@@ -34,21 +34,22 @@ inline std::vector<std::string> words(std::string_view line) {
   return found;
 }
 
-/// The program with the words of a line as its arguments.
-inline std::vector<std::string> command(std::string_view line) {
-  std::vector<std::string> all{NOETHER_PROGRAM};
+/// The program, or another one, with the words of a line as its arguments.
+inline std::vector<std::string> command(std::string_view line, const char* program = NOETHER_PROGRAM) {
+  std::vector<std::string> all{program};
   for (std::string& word : words(line)) all.push_back(std::move(word));
   return all;
 }
 
 /// Calls the program in a folder: `noether(folder, "run scene.toml --json")`.
-inline ProcessResult noether(const ScratchFolder& folder, std::string_view line) {
-  return run_process(command(line), folder.path());
+inline ProcessResult noether(const ScratchFolder& folder, std::string_view line,
+                             const char* program = NOETHER_PROGRAM) {
+  return run_process(command(line, program), folder.path());
 }
 
 /// The output of a command that must succeed and say nothing on stderr.
-inline std::string output(const ScratchFolder& folder, const std::string& line) {
-  const ProcessResult result = noether(folder, line);
+inline std::string output(const ScratchFolder& folder, const std::string& line, const char* program = NOETHER_PROGRAM) {
+  const ProcessResult result = noether(folder, line, program);
   INFO(line << "\n" << result.out << result.err);
   CHECK(result.exit_code == 0);
   CHECK(result.err.empty());

@@ -5,6 +5,8 @@
 #include "forces/sum.hpp"
 #include "integrators/classical.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/drivers.hpp"
+#include "tests/support/planets.hpp"
 
 #include <cmath>
 #include <type_traits>
@@ -103,23 +105,13 @@ template <class F> ParticleSystem<double> after(const F& force, const Way& way, 
   return run.particles();
 }
 
-bool same_bits(const ParticleSystem<double>& a, const ParticleSystem<double>& b) {
-  return a.positions().all().isApprox(b.positions().all(), 0) && a.velocities().all().isApprox(b.velocities().all(), 0);
-}
-
-ForceField<double> field(const auto&... forces) {
-  ForceField<double> all;
-  (all.add(forces), ...);
-  return all;
-}
-
 }  // namespace
 
 TEST_CASE("a force that branches gives every method the bits that it gives one stage at a time", "[branches]") {
   for (const Way& way : every_way()) {
     CAPTURE(way.info->name, way.options.adaptive.value_or(true));
-    const auto alone = after(field(InDoubles<Walls>{}, InDoubles<Iterated>{}), way, 100);
-    CHECK(same_bits(after(field(Walls{}, Iterated{}), way, 100), alone));
+    const auto alone = after(test::field_of(InDoubles<Walls>{}, InDoubles<Iterated>{}), way, 100);
+    CHECK(test::same_bits(after(test::field_of(Walls{}, Iterated{}), way, 100), alone));
   }
 }
 
@@ -127,12 +119,12 @@ TEST_CASE("branches differ in terms of a sum, alone, and beside what chooses wit
   for (const char* const name : {"gauss_8", "gauss_4", "implicit_midpoint"}) {
     CAPTURE(name);
     const Way way{method(name).info, {.adaptive = false}};
-    const auto one = after(field(InDoubles<Walls>{}), way, 200);
-    CHECK(same_bits(after(Walls{}, way, 200), one));
-    CHECK(same_bits(after(ChosenWalls{}, way, 200), one));
-    const auto both = after(field(InDoubles<Iterated>{}, InDoubles<Walls>{}), way, 200);
-    CHECK(same_bits(after(Sum(Iterated{}, Walls{}), way, 200), both));
-    CHECK(same_bits(after(Sum(Iterated{}, ChosenWalls{}), way, 200), both));
+    const auto one = after(test::field_of(InDoubles<Walls>{}), way, 200);
+    CHECK(test::same_bits(after(Walls{}, way, 200), one));
+    CHECK(test::same_bits(after(ChosenWalls{}, way, 200), one));
+    const auto both = after(test::field_of(InDoubles<Iterated>{}, InDoubles<Walls>{}), way, 200);
+    CHECK(test::same_bits(after(Sum(Iterated{}, Walls{}), way, 200), both));
+    CHECK(test::same_bits(after(Sum(Iterated{}, ChosenWalls{}), way, 200), both));
   }
 }
 

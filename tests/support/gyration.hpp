@@ -73,6 +73,9 @@ template <class F, class Real = double> class Gyrating {
     save_value(saved, prefix + "evaluations", evaluations_.force);
   }
   void load(const SavedState& saved, const std::string& prefix) {
+    double omega = 0;
+    load_value(saved, prefix + "omega", omega);
+    if (omega != omega_) throw Error("the saved charges turn by another omega");
     detail::check_signature(saved, prefix, forces_);
     load_value(saved, prefix + "evaluations", evaluations_.force);
   }
