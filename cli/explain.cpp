@@ -145,6 +145,7 @@ void explain_scheme(const Scene& scene, Explanation& e) {
   e.constraints = hamiltonian.claims().constraints;
   count_flows(fitted_word(scheme_of(scene.integrator), hamiltonian.claims(), e.hamiltonian), e.flows);
   e.kicks = hamiltonian.claims().kicks;
+  for (const char letter : e.kicks) e.evaluations += e.flows.contains(letter) ? e.flows.at(letter) : 0;
   e.inexact = hamiltonian.claims().inexact;
 }
 
@@ -156,7 +157,7 @@ void count_evaluations(const Scene& scene, Explanation& e) {
   bare.stops.clear();
   Simulation<double> sim = assemble(bare);
   const std::int64_t made = sim.run(steps).step;
-  if (made == 0) return;
+  if (made < steps) return;  // a step that fails is made again and again: the word alone tells
   e.evaluations =
       static_cast<int>(std::lround(static_cast<double>(sim.evaluations().force) / static_cast<double>(made)));
 }
@@ -193,7 +194,7 @@ Explanation explained(const Scene& scene) {
   e.variables = static_cast<Index>(s.variables().size());
   if (!scene.system) e.columns = {"id", "position", "velocity", "mass"};
   if (s.low_words() != nullptr) e.columns.insert(e.columns.end(), {"low word of position", "low word of velocity"});
-  for (const auto& [name, column] : s.extra_columns()) e.columns.push_back(name);
+  for (const auto& column : s.columns()) e.columns.push_back(column.info.name);
   if (!scene.system) e.bytes_per_particle = s.bytes_per_particle();
   measure_stiffness(scene, e);
   if (!scene.integrator.classical) explain_scheme(scene, e);
@@ -205,7 +206,7 @@ Explanation explained(const Scene& scene) {
 }
 
 /// What the part that gives a letter calls its flow.
-std::string flow_of(char letter, const Scene& scene) {
+std::string flow_of(char letter, const Scene& scene, std::string_view kicks) {
   const auto meaning_in = [&](const auto& kinds, const auto& is_used) {
     std::string found;
     for (const auto& kind : kinds) {
@@ -224,11 +225,18 @@ std::string flow_of(char letter, const Scene& scene) {
       return std::any_of(h.forces.begin(), h.forces.end(), [&](const auto& f) { return f.name == name; });
     });
   }
+  if (found.empty() && kicks.find(letter) != std::string::npos) {
+    std::vector<std::string> names;
+    for (const SceneForce& force : h.forces) {
+      if (force.force.claims().kicks.find(letter) != std::string::npos) names.push_back(force.name);
+    }
+    found = fmt::format("kicks by {}", fmt::join(names, ", "));
+  }
   return found.empty() ? "flows" : found;
 }
 
 std::string meaning(char letter, const Scene& scene, const Explanation& e) {
-  const std::string flow = flow_of(letter, scene);
+  const std::string flow = flow_of(letter, scene, e.kicks);
   if (e.constraints > 0 && e.inexact.find(letter) != std::string::npos) {
     return fmt::format(
         "{}, each with {} equations of constraints solved for positions and for velocities; {} "

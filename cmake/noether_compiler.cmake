@@ -60,6 +60,9 @@ target_compile_options(noether_options INTERFACE -ffp-contract=off)
 target_compile_options(noether_options INTERFACE -fno-trapping-math)
 # Eigen's alignment is part of the binary interface; without these it would follow the consumer's -march.
 target_compile_definitions(noether_options INTERFACE EIGEN_MAX_ALIGN_BYTES=64 EIGEN_MAX_STATIC_ALIGN_BYTES=16)
+# Eigen's own threads wait awake for each other: beside other programs a factorization took many times as long on two as
+# on one.
+target_compile_definitions(noether_options INTERFACE EIGEN_DONT_PARALLELIZE)
 # HDF5's own list of libraries brings curl and others along; only what is used is loaded.
 target_link_options(noether_options INTERFACE LINKER:--as-needed)
 if(NOT NOETHER_OPENMP)
@@ -86,7 +89,9 @@ endfunction()
 function(noether_unity target)
   if(NOETHER_UNITY)
     set(batch ${NOETHER_UNITY})
-    if(batch STREQUAL "ROOM")
+    if(batch STREQUAL "ON")
+      set(batch 4)  # in build folders of before this was a number
+    elseif(batch STREQUAL "ROOM")
       set(batch 0)  # to CMake that is all
     elseif(NOT batch MATCHES "^[1-9][0-9]*$")
       message(FATAL_ERROR "NOETHER_UNITY is ${NOETHER_UNITY}; a number of sources is expected, ROOM or OFF")

@@ -46,7 +46,10 @@ template <class Base> class Erased {
 template <class Real> struct ForceBase {
   virtual ~ForceBase() = default;
   virtual std::unique_ptr<ForceBase> clone() const = 0;
+  virtual void bind(const ParticleSystem<Real>&) = 0;
   virtual void add_to(ForceSink<Real>&, const ParticleSystem<Real>&) const = 0;
+  virtual bool has_secant() const = 0;
+  virtual void add_secant_to(ForceSink<Real>&, const ParticleSystem<Real>&, const ParticleSystem<Real>&) const = 0;
   virtual bool has_lanes() const = 0;
   virtual void add_to(ForceSink<Pack>&, const ParticleSystem<Pack>&) const = 0;
   virtual bool has_derivative() const = 0;
@@ -60,7 +63,16 @@ template <class Real> struct ForceBase {
 template <class F, class Real> struct ForceModel final : ForceBase<Real> {
   explicit ForceModel(F f) : force(std::move(f)) {}
   std::unique_ptr<ForceBase<Real>> clone() const override { return std::make_unique<ForceModel>(force); }
+  void bind(const ParticleSystem<Real>& s) override {
+    if constexpr (requires { force.bind(s); }) force.bind(s);
+  }
   void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const override { force.add_to(out, s); }
+  bool has_secant() const override { return noether::has_secant<Real>(force); }
+  void add_secant_to(ForceSink<Real>& out, const ParticleSystem<Real>& from,
+                     const ParticleSystem<Real>& to) const override {
+    if constexpr (requires { force.add_secant_to(out, from, to); }) return force.add_secant_to(out, from, to);
+    throw LogicError("a force without secants was asked for them");
+  }
   bool has_lanes() const override { return noether::has_lanes(force); }
   void add_to(ForceSink<Pack>& out, const ParticleSystem<Pack>& s) const override {
     if constexpr (Force<F, Pack>) return add_in_lanes(force, out, s);
@@ -76,8 +88,15 @@ template <class F, class Real> struct ForceModel final : ForceBase<Real> {
   std::string name() const override { return name_of(force); }
   std::string signature() const override { return signature_of(force); }
   std::unique_ptr<ForceBase<Quad>> in_quad() const override {
-    if constexpr (Force<F, Quad>) return std::make_unique<ForceModel<F, Quad>>(force);
-    return nullptr;
+    if constexpr (requires { force.reference(); }) {
+      using Reference = decltype(force.reference());
+      static_assert(Force<Reference, Quad>, "the reference of a force is one over Quad");
+      return std::make_unique<ForceModel<Reference, Quad>>(force.reference());
+    } else if constexpr (Force<F, Quad>) {
+      return std::make_unique<ForceModel<F, Quad>>(force);
+    } else {
+      return nullptr;
+    }
   }
   F force;
 
@@ -102,7 +121,13 @@ template <class Real = double> class AnyForce : private detail::Erased<detail::F
   explicit AnyForce(std::unique_ptr<detail::ForceBase<Real>> held)
       : detail::Erased<detail::ForceBase<Real>>(std::move(held)) {}
 
+  void bind(const ParticleSystem<Real>& s) { this->held_->bind(s); }
   void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const { this->held_->add_to(out, s); }
+  bool has_secant() const { return this->held_->has_secant(); }
+  /// @throws LogicError  if it knows none
+  void add_secant_to(ForceSink<Real>& out, const ParticleSystem<Real>& from, const ParticleSystem<Real>& to) const {
+    this->held_->add_secant_to(out, from, to);
+  }
   /// Whether it is a force over `Pack` too, so that eight stages cost little more than one.
   bool has_lanes() const { return this->held_->has_lanes(); }
   /// @throws LogicError  if it is not
@@ -113,17 +138,32 @@ template <class Real = double> class AnyForce : private detail::Erased<detail::F
   void add_to(ForceSink<Dual<Real, 1>>& out, const ParticleSystem<Dual<Real, 1>>& s) const {
     this->held_->add_to(out, s);
   }
-  ForceClaims claims() const { return this->held_->claims(); }
+  ForceClaims claims() const {
+    ForceClaims claims = this->held_->claims();
+    if (kick_letter_ != 0) claims.kicks = kick_letter_;
+    return claims;
+  }
+  /// Takes part in the kicks of another letter than the force itself says, as multiple time steps want it.
+  AnyForce& in_kick(char letter) {
+    kick_letter_ = letter;
+    return *this;
+  }
   /// @throws Error  see `check_force`
   void check(const ParticleSystem<Real>& s) const { this->held_->check(s); }
   std::string name() const { return this->held_->name(); }
   std::string signature() const { return this->held_->signature(); }
-  /// The same force in extended precision; empty for one that is written for doubles only.
+  /// The same force in extended precision, or what it names as its `reference()` for truth; empty for one that is
+  /// written for doubles only.
   std::optional<AnyForce<Quad>> in_quad() const {
     auto wide = this->held_->in_quad();
     if (wide == nullptr) return {};
-    return AnyForce<Quad>(std::move(wide));
+    AnyForce<Quad> made(std::move(wide));
+    if (kick_letter_ != 0) made.in_kick(kick_letter_);
+    return made;
   }
+
+ private:
+  char kick_letter_ = 0;  ///< 0: as the force itself says
 };
 
 }  // namespace noether

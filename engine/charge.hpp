@@ -1,7 +1,7 @@
 #pragma once
 /// The column of electric charges.
 
-#include "engine/column.hpp"
+#include "engine/columns.hpp"
 
 #include <string_view>
 
@@ -13,7 +13,8 @@ namespace noether {
 ///     particles.column<Charge>()[0] = -0.8476;
 struct Charge {
   template <class Real> using type = ScalarColumn<Real>;
-  static constexpr std::string_view name = "charge";
+  static constexpr std::string_view name = "charge", dimension = "charge";
+  static constexpr ColumnRole role = ColumnRole::parameter;
 };
 
 }  // namespace noether

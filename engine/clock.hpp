@@ -18,7 +18,7 @@ enum class Direction : std::uint8_t { forward, backward };
 
 /// The clock of a run, and the stage time within a step that time-dependent forces see.
 ///
-///     t = t0 + (n + c) dt        fixed; c is the fraction of the step that the drifts have covered so far
+///     t = t0 + (n + c) dt        fixed; c is the fraction of the step that letters with time have covered so far
 ///     t = t_high + t_low         free
 ///
 /// It alone knows which way the run goes: the sign of dt says so, or the direction of a free clock.

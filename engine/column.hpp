@@ -45,6 +45,8 @@ template <class T> void copy_numbers(const AlignedVector<T>& from, AlignedVector
 /// One number per particle, shape (n).
 template <class T> class ScalarColumn {
  public:
+  static constexpr int width = 1;
+
   explicit ScalarColumn(Index n = 0) : values_(static_cast<std::size_t>(n)) {}
 
   Index size() const { return static_cast<Index>(values_.size()); }
@@ -54,6 +56,9 @@ template <class T> class ScalarColumn {
   T* data() { return values_.data(); }
   auto begin() const { return values_.begin(); }
   auto end() const { return values_.end(); }
+  /// As of wider columns; there is component 0 alone.
+  const T* component(int /*0*/) const { return values_.data(); }
+  T* component(int /*0*/) { return values_.data(); }
 
   /// The whole column as an Eigen vector, shape (n, 1).
   auto all() const { return Eigen::Map<const Eigen::Matrix<T, Eigen::Dynamic, 1>>(values_.data(), size()); }
@@ -68,61 +73,62 @@ template <class T> class ScalarColumn {
   AlignedVector<T> values_;
 };
 
-/// One vector per particle, shape (n, 3): all x, then all y, then all z, each run padded to a multiple of eight; not of
-/// numbers that fill a cache line each.
-template <class Real> class VectorColumn {
+/// A row of `w` numbers per particle, shape (n, w): all first ones, then all second ones, and so on, each run padded to
+/// a multiple of eight; not of numbers that fill a cache line each.
+template <class Real, int w> class RowColumn {
  public:
-  using Row = Eigen::Map<Vec3<Real>, Eigen::Unaligned, Eigen::InnerStride<>>;
-  using Block = Eigen::Matrix<Real, Eigen::Dynamic, 3>;
+  static constexpr int width = w;
+  using Vector = Eigen::Matrix<Real, w, 1>;
+  using Row = Eigen::Map<Vector, Eigen::Unaligned, Eigen::InnerStride<>>;
+  using Block = Eigen::Matrix<Real, Eigen::Dynamic, w>;
 
-  explicit VectorColumn(Index n = 0)
-      : size_(n), stride_(padded(n)), values_(static_cast<std::size_t>(3 * stride_), Real(0)) {}
+  explicit RowColumn(Index n = 0)
+      : size_(n), stride_(padded(n)), values_(static_cast<std::size_t>(w * stride_), Real(0)) {}
 
   Index size() const { return size_; }
-  /// Distance between the x and the y of one particle, in elements.
+  /// Distance between the first and the second number of one particle, in elements.
   Index stride() const { return stride_; }
 
-  Vec3<Real> operator[](Index i) const {
+  Vector operator[](Index i) const {
     const Real* p = values_.data() + i;
-    return Vec3<Real>(p[0], p[stride_], p[2 * stride_]);
+    if constexpr (w == 3) return Vector(p[0], p[stride_], p[2 * stride_]);
+    Vector row;
+    for (int k = 0; k < w; ++k) row[k] = p[k * stride_];
+    return row;
   }
   Row operator[](Index i) { return Row(values_.data() + i, Eigen::InnerStride<>(stride_)); }
-  void set(Index i, const Vec3<Real>& v) {
+  void set(Index i, const Vector& v) {
     Real* p = values_.data() + i;
-    p[0] = v[0];
-    p[stride_] = v[1];
-    p[2 * stride_] = v[2];
+    for (int k = 0; k < w; ++k) p[k * stride_] = v[k];
   }
-  void add(Index i, const Vec3<Real>& v) {
+  void add(Index i, const Vector& v) {
     Real* p = values_.data() + i;
-    p[0] += v[0];
-    p[stride_] += v[1];
-    p[2 * stride_] += v[2];
+    for (int k = 0; k < w; ++k) p[k * stride_] += v[k];
   }
 
   const Real* component(int k) const { return values_.data() + k * stride_; }
   Real* component(int k) { return values_.data() + k * stride_; }
 
-  /// The whole column as an Eigen matrix, shape (n, 3).
+  /// The whole column as an Eigen matrix, shape (n, w).
   auto all() const {
-    return Eigen::Map<const Block, Eigen::Aligned64, Eigen::OuterStride<>>(values_.data(), size_, 3,
+    return Eigen::Map<const Block, Eigen::Aligned64, Eigen::OuterStride<>>(values_.data(), size_, w,
                                                                            Eigen::OuterStride<>(stride_));
   }
   auto all() {
-    return Eigen::Map<Block, Eigen::Aligned64, Eigen::OuterStride<>>(values_.data(), size_, 3,
+    return Eigen::Map<Block, Eigen::Aligned64, Eigen::OuterStride<>>(values_.data(), size_, w,
                                                                      Eigen::OuterStride<>(stride_));
   }
 
   /// Adds `h` times another column of the same size; with the same stride in one loop, padding, which stays 0,
   /// included.
-  void add_scaled(const Real& h, const VectorColumn& other) {
+  void add_scaled(const Real& h, const RowColumn& other) {
     if (stride_ != other.stride_) return add_scaled(h, other, 0, size_);
-    for (Index i = 0; i < 3 * stride_; ++i)
+    for (Index i = 0; i < w * stride_; ++i)
       values_[static_cast<std::size_t>(i)] += h * other.values_[static_cast<std::size_t>(i)];
   }
   /// The same for the particles of [begin, end).
-  void add_scaled(const Real& h, const VectorColumn& other, Index begin, Index end) {
-    for (int k = 0; k < 3; ++k) {
+  void add_scaled(const Real& h, const RowColumn& other, Index begin, Index end) {
+    for (int k = 0; k < w; ++k) {
       Real* mine = component(k);
       const Real* theirs = other.component(k);
       for (Index i = begin; i < end; ++i) mine[i] += h * theirs[i];
@@ -130,7 +136,7 @@ template <class Real> class VectorColumn {
   }
 
   /// Becomes a copy of another. @cost no allocation where sizes agree
-  void assign(const VectorColumn& other) {
+  void assign(const RowColumn& other) {
     copy_numbers(other.values_, values_);
     size_ = other.size_;
     stride_ = other.stride_;
@@ -139,17 +145,17 @@ template <class Real> class VectorColumn {
   void set_zero() { set_to_zero(values_.data(), values_.size()); }
   /// The same for the particles of [begin, end).
   void set_zero(Index begin, Index end) {
-    for (int k = 0; k < 3; ++k) set_to_zero(component(k) + begin, static_cast<std::size_t>(end - begin));
+    for (int k = 0; k < w; ++k) set_to_zero(component(k) + begin, static_cast<std::size_t>(end - begin));
   }
 
   /// @cost O(1) on the average: the stride grows by half and may stay above what the size needs
-  void append(const Vec3<Real>& v) {
+  void append(const Vector& v) {
     if (size_ == stride_) lay_out(padded(size_ + size_ / 2 + 1));
     set(size_++, v);
   }
   void erase(Index i) {
-    for (Index j = i; j + 1 < size_; ++j) set(j, static_cast<const VectorColumn&>(*this)[j + 1]);
-    set(--size_, Vec3<Real>::Zero());
+    for (Index j = i; j + 1 < size_; ++j) set(j, static_cast<const RowColumn&>(*this)[j + 1]);
+    set(--size_, Vector::Zero());
   }
   /// Gives back what `append` has taken ahead.
   void trim() {
@@ -161,8 +167,8 @@ template <class Real> class VectorColumn {
   static Index padded(Index n) { return (n + padding - 1) / padding * padding; }
 
   void lay_out(Index stride) {
-    AlignedVector<Real> values(static_cast<std::size_t>(3 * stride), Real(0));
-    for (int k = 0; k < 3; ++k) std::copy_n(component(k), size_, values.data() + k * stride);
+    AlignedVector<Real> values(static_cast<std::size_t>(w * stride), Real(0));
+    for (int k = 0; k < w; ++k) std::copy_n(component(k), size_, values.data() + k * stride);
     values_ = std::move(values);
     stride_ = stride;
   }
@@ -171,5 +177,8 @@ template <class Real> class VectorColumn {
   Index stride_;
   AlignedVector<Real> values_;
 };
+
+/// One vector per particle, shape (n, 3).
+template <class Real> using VectorColumn = RowColumn<Real, 3>;
 
 }  // namespace noether

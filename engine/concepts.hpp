@@ -31,18 +31,20 @@ struct Evaluations {
 
 /// What a split Hamiltonian says of its parts; tests verify it, `Composition` refuses by it.
 struct HamiltonianClaims {
-  std::string alphabet;            ///< letters `flow` accepts
-  std::string_view inexact = "";   ///< letters whose map is symmetric of order 2 instead of the exact flow
-  std::string irreversible = "";   ///< letters that only run forward (drag, noise)
-  std::string_view timed = "A";    ///< letters that carry time: stages see what these have covered of a step
-  std::string_view basic = "BAB";  ///< palindrome of order 2 that symmetric compositions are made of
-  std::string_view kicks = "B";    ///< letters that evaluate the forces
-  bool quadratic_kinetic = true;   ///< {B,{B,{B,A}}} = 0: Runge-Kutta-Nystroem tables keep their order
-  bool symplectic = true;          ///< every flow is
-  bool energy = true;              ///< every force reports its potential
-  bool time_dependent = false;     ///< the energy is not conserved by the exact flow
+  std::string alphabet;           ///< letters `flow` accepts
+  std::string_view inexact = "";  ///< letters whose map is symmetric of order 2 instead of the exact flow
+  std::string irreversible = "";  ///< letters that only run forward (drag, noise)
+  std::string_view timed = "A";   ///< letters that carry time: stages see what these have covered of a step
+  std::string basic = "BAB";      ///< palindrome of order 2 that symmetric compositions are made of
+  std::string kicks = "B";        ///< letters that evaluate the forces
+  bool quadratic_kinetic = true;  ///< {B,{B,{B,A}}} = 0: Runge-Kutta-Nystroem tables keep their order
+  bool symplectic = true;         ///< every flow is
+  bool energy = true;             ///< every force reports its potential
+  bool time_dependent = false;    ///< the energy is not conserved by the exact flow
   bool dissipative = false;
   std::string_view no_action = "";  ///< why no action tells the motion; empty: the flows give theirs
+  bool columns = false;             ///< it moves columns beyond position and velocity
+  std::uint8_t coordinates = 0;     ///< of the position and velocity columns while a run goes on; 0: inertial
   bool inertial = true;             ///< flows meet x and v as users see them, so that letters of velocities may join
   bool kepler = false;              ///< two bodies alone are followed exactly, along Kepler arcs
   bool periodic = false;            ///< it knows periodic boxes

@@ -4,9 +4,13 @@
 #include "engine/dual.hpp"
 #include "engine/outcome.hpp"
 #include "engine/particle_system.hpp"
+#include "engine/workspace.hpp"
 
 #include <limits>
+#include <memory>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <utility>
 
 namespace noether {
@@ -31,11 +35,12 @@ struct Wanted {
 template <class Real> class ForceSink {
  public:
   /// @param accelerations  shape (n, 3), set to zero here [length/time^2]
-  /// @param neighbors  of the system, for forces of short range to share; without, each finds its own
+  /// @param workspace  of the Hamiltonian, with the neighbor list that forces of short range share; without, each force
+  ///   begins with nothing
   /// @param kick  the longest for which velocities are to change by these accelerations [time]; 0: not known
   ForceSink(VectorColumn<Real>& accelerations, const ParticleSystem<Real>& system, Wanted wanted,
-            NeighborList* neighbors = nullptr, double kick = 0)
-      : a_(accelerations), system_(system), wanted_(wanted), neighbors_(neighbors), kick_(kick) {
+            Workspace* workspace = nullptr, double kick = 0)
+      : a_(accelerations), system_(system), wanted_(wanted), shared_(workspace), own_(workspace), kick_(kick) {
     if (a_.size() < parallel_threshold) {
       a_.set_zero();
     } else {
@@ -84,7 +89,39 @@ template <class Real> class ForceSink {
   bool has_sums() const { return has_sums_; }
 
   /// The neighbor list of the system; null where there is none to be shared.
-  NeighborList* neighbors() const { return neighbors_; }
+  NeighborList* neighbors() const { return shared_ != nullptr ? shared_->find<NeighborList>() : nullptr; }
+  /// Where this force keeps what it wants to find again at its next evaluation (engine/workspace.hpp).
+  Workspace& workspace() {
+    if (own_ != nullptr) return *own_;
+    if (!lost_) lost_ = std::make_unique<Workspace>();
+    return *lost_;
+  }
+  /// Calls `add()` for term `k` of a sum, which has a workspace of its own.
+  template <class Add> void in_room(std::size_t k, const Add& add) {
+    if (own_ == nullptr) return add();
+    Workspace* const outer = std::exchange(own_, &own_->room(k));
+    add();
+    own_ = outer;
+  }
+
+  /// Sums the forces of the kicks of one letter only, as multiple time steps do.
+  void set_kick_letter(char letter) { letter_ = letter; }
+  /// Whether a force of these kicks (`ForceClaims::kicks`) is summed here.
+  bool takes(std::string_view kicks) const { return kicks.find(letter_) != std::string_view::npos; }
+  /// Whether forces of all kicks are.
+  bool takes_all() const { return letter_ == 0; }
+
+  /// Lets forces write their torques into a column, set to zero here [mass length^2/time^2].
+  void set_torques(VectorColumn<Real>& torques) {
+    torques_ = &torques;
+    torques.set_zero();
+  }
+  /// Whether somebody asked for torques; most sinks drop them.
+  bool wants_torques() const { return torques_ != nullptr; }
+  /// Adds the torque `t` on particle `i` about its own centre [mass length^2/time^2].
+  void torque(Index i, const Vec3<Real>& t) {
+    if (torques_ != nullptr) torques_->add(i, t);
+  }
   /// The longest kick by these accelerations [time]; 0 where it is not known.
   double kick() const { return kick_; }
   /// Where lanes that differ are evaluated one by one (engine/lane_by_lane.hpp); null: nobody has seen them differ.
@@ -102,7 +139,7 @@ template <class Real> class ForceSink {
  private:
   friend class LaneByLane;
   ForceSink(VectorColumn<Real>& accelerations, const ParticleSystem<Real>& system)
-      : a_(accelerations), system_(system), wanted_{}, neighbors_(nullptr), has_sums_(false) {}
+      : a_(accelerations), system_(system), wanted_{}, has_sums_(false) {}
 
   void push(Index i, const Vec3<Real>& f) {
     const Real m = system_.masses()[i];
@@ -118,9 +155,13 @@ template <class Real> class ForceSink {
   const ParticleSystem<Real>& system_;
   Wanted wanted_;
   Real energy_ = Real(0);
-  Mat3<Real> virial_;  ///< set where it is wanted: nine numbers in lanes take as long as a few forces
-  NeighborList* neighbors_;
+  Mat3<Real> virial_;                ///< set where it is wanted: nine numbers in lanes take as long as a few forces
+  Workspace* shared_ = nullptr;      ///< of the whole Hamiltonian
+  Workspace* own_ = nullptr;         ///< of the force that is summed
+  std::unique_ptr<Workspace> lost_;  ///< of a force to which nobody lends one: gone with the sink
+  VectorColumn<Real>* torques_ = nullptr;
   double kick_ = 0;
+  char letter_ = 0;  ///< 0: of all kicks
   bool has_sums_ = true;
   LaneByLane* lane_by_lane_ = nullptr;
   std::optional<Failure> failure_;
@@ -143,6 +184,7 @@ struct ForceClaims {
   std::optional<bool> charges = {};     ///< it looks at charges; empty: it does not say
   std::optional<bool> exclusions = {};  ///< it leaves excluded pairs out; empty: it does not say
   double drag = 0;                      ///< v' = - drag v, the same for all particles [1/time]
+  std::string kicks = "B";              ///< letters of the kicks that it takes part in
   double range = 0;  ///< distance beyond which pairs do not feel each other [length]; 0: any distance
 };
 
@@ -166,6 +208,14 @@ template <class F, class Real> void check_force(const F& force, const ParticleSy
   if constexpr (requires { force.check(s); }) force.check(s);
 }
 
+/// Makes a force ready for particles: checks them, and lets it take from them what it wants to know before the run,
+/// such as where the particles of given ids stand now.
+/// @throws Error  see `check_force`
+template <class F, class Real> void bind_force(F& force, const ParticleSystem<Real>& s) {
+  check_force(force, s);
+  if constexpr (requires { force.bind(s); }) force.bind(s);
+}
+
 /// A term of the force: it adds to a sink what it does to the particles, at their stage time.
 template <class F, class Real>
 concept Force = requires(const F& force, ForceSink<Real>& out, const ParticleSystem<Real>& system) {
@@ -182,6 +232,17 @@ template <class Real, class F> bool has_derivative(const F& force) {
     return force.has_derivative();
   } else {
     return true;
+  }
+}
+
+/// Whether a force knows its secants between two states: `add_secant_to(out, from, to)` adds forces f_i, the same for
+/// both ways, for which sum f_i . (x_i(to) - x_i(from)) = U(from) - U(to) to rounding. Methods that keep the energy at
+/// any step stand on them.
+template <class Real, class F> bool has_secant(const F& force) {
+  if constexpr (requires { force.has_secant(); }) {
+    return force.has_secant();
+  } else {
+    return requires(ForceSink<Real> & out, const ParticleSystem<Real>& s) { force.add_secant_to(out, s, s); };
   }
 }
 

@@ -4,6 +4,8 @@
 #include "engine/concepts.hpp"
 #include "engine/pack.hpp"
 
+#include <deque>
+
 namespace noether {
 
 /// The particles of one lane, and the sums that a force found before it began.
@@ -13,38 +15,44 @@ namespace noether {
 class LaneByLane {
  public:
   /// @param particles, accelerations  of the same system in doubles; their state is overwritten
-  /// @param before  a column of its size, to keep sums in
-  LaneByLane(ParticleSystem<double>& particles, VectorColumn<double>& accelerations, VectorColumn<Pack>& before)
+  /// @param before  columns to keep sums in, one for each sum within a sum
+  LaneByLane(ParticleSystem<double>& particles, VectorColumn<double>& accelerations,
+             std::deque<VectorColumn<Pack>>& before)
       : particles_(particles), accelerations_(accelerations), before_(before) {}
 
   /// Adds a force to sums in lanes: at once where its branches agree, else lane by lane.
   template <class F> void add(const F& force, ForceSink<Pack>& out, const ParticleSystem<Pack>& s) {
-    before_.assign(out.a_);
+    if (depth_ == before_.size()) before_.emplace_back();
+    VectorColumn<Pack>& before = before_[depth_];
+    before.assign(out.a_);
     const Pack energy = out.energy_;
     const Mat3<Pack> virial = out.virial();
     const std::optional<Failure> failure = out.failure_;
+    ++depth_;
     try {
       force.add_to(out, s);
+      --depth_;
     } catch (const LanesDiffer&) {
+      --depth_;
       out.failure_ = failure;
-      for (std::size_t lane = 0; lane < Pack::lanes; ++lane) add_one(lane, force, out, s, energy, virial);
+      for (std::size_t lane = 0; lane < Pack::lanes; ++lane) add_one(lane, force, out, s, before, energy, virial);
     }
   }
 
  private:
   template <class F>
   void add_one(std::size_t lane, const F& force, ForceSink<Pack>& out, const ParticleSystem<Pack>& s,
-               const Pack& energy, const Mat3<Pack>& virial) {
+               const VectorColumn<Pack>& before, const Pack& energy, const Mat3<Pack>& virial) {
     take(lane, s.positions(), particles_.positions());
     take(lane, s.velocities(), particles_.velocities());
     particles_.clock().set_stage_offset(s.time().lane[lane]);
     ForceSink<double> one(accelerations_, particles_, out.wanted_);
-    take(lane, before_, accelerations_);
+    take(lane, before, accelerations_);
     one.energy_ = energy.lane[lane];
     one.virial_ = lane_of(lane, virial);
     force.add_to(one, particles_);
     for (int k = 0; k < 3; ++k) {
-      for (Index i = 0; i < before_.size(); ++i) out.a_.component(k)[i].lane[lane] = accelerations_.component(k)[i];
+      for (Index i = 0; i < before.size(); ++i) out.a_.component(k)[i].lane[lane] = accelerations_.component(k)[i];
     }
     out.energy_.lane[lane] = one.energy_;
     for (int k = 0; k < 9; ++k) out.virial_(k / 3, k % 3).lane[lane] = one.virial_(k / 3, k % 3);
@@ -63,7 +71,8 @@ class LaneByLane {
 
   ParticleSystem<double>& particles_;
   VectorColumn<double>& accelerations_;
-  VectorColumn<Pack>& before_;
+  std::deque<VectorColumn<Pack>>& before_;
+  std::size_t depth_ = 0;  ///< of the sum that is being added to
 };
 
 /// Adds a force to sums in lanes, as every sum of forces does with each of its terms.

@@ -19,9 +19,11 @@ namespace noether {
 
 namespace {
 
+constexpr int most_threads = 65536;
+
 /// OpenMP's number until somebody sets another: what OMP_NUM_THREADS says, or the processors that this process may use.
 std::atomic<int>& threads_in_use() {
-  static std::atomic<int> threads(std::min(omp_get_max_threads(), 65536));
+  static std::atomic<int> threads(std::min(omp_get_max_threads(), most_threads));
   return threads;
 }
 
@@ -51,7 +53,7 @@ class Shares {
  public:
   Shares(Index blocks, int threads, void (*run)(const void*, Index), const void* body)
       : blocks_(blocks),
-        at_a_time_(std::max(Index(1), blocks / (16 * threads))),
+        at_a_time_(std::max(Index(1), blocks / (Index(16) * threads))),
         ranges_(std::min(threads, most_ranges)),
         threads_(threads),
         run_(run),
@@ -95,6 +97,7 @@ class Team {
   /// @return false if the team is busy: with a loop of another thread, or with the one that this call is part of.
   bool share(Index blocks, int threads, void (*run)(const void*, Index), const void* body) {
     if (busy_.exchange(true, std::memory_order_acquire)) return false;
+    threads = static_cast<int>(std::min<Index>(threads, blocks));
     hire(threads - 1);
     Shares shares(blocks, threads, run, body);
     shares_ = &shares;
@@ -111,17 +114,19 @@ class Team {
  private:
   static constexpr std::uint32_t closed = 1u << 31;
 
-  /// Starts helpers until there are `helpers`, or as many as the system allows. They end with the process.
+  /// Starts helpers until there are `helpers`, or as many as the system allows, each in a parallel region of its own:
+  /// OpenMP would end the program where it gets no thread. They end with the process.
   void hire(int helpers) {
-    if (helpers <= helpers_) return;
-    const int first = helpers_ + 1, more = helpers - helpers_;
-    helpers_ = helpers;
-    try {
-      std::thread([this, first, more] {
-#pragma omp parallel num_threads(more)
-        help(first + omp_get_thread_num());
-      }).detach();
-    } catch (const std::system_error&) {  // there are no threads to be had: the caller computes alone
+    while (helpers_ < helpers) {
+      try {
+        std::thread([this, own = helpers_ + 1] {
+#pragma omp parallel num_threads(1)
+          help(own);
+        }).detach();
+      } catch (const std::system_error&) {  // there are no more to be had: the others and the caller compute
+        return;
+      }
+      ++helpers_;
     }
   }
 
@@ -172,7 +177,7 @@ void detail::share_blocks(Index blocks, void (*run)(const void* body, Index bloc
 void set_thread_count(int threads) {
   if (threads < 1) throw Error(fmt::format("{} threads were asked for; at least 1 is needed", threads));
 #ifdef _OPENMP
-  threads_in_use().store(threads, std::memory_order_relaxed);
+  threads_in_use().store(std::min(threads, most_threads), std::memory_order_relaxed);
 #endif
 }
 

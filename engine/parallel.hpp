@@ -11,7 +11,7 @@ namespace noether {
 /// Threads that `for_blocks` and `reduce` may use: what OMP_NUM_THREADS says, or else as many as the processors that
 /// this process may use; 1 without OpenMP.
 int thread_count();
-/// Sets that number. @throws Error if it is below 1
+/// Sets that number; more than 65536 are as many. @throws Error if it is below 1
 void set_thread_count(int threads);
 
 /// Particles in one block: blocks are fixed by the problem, never by the number of threads.
@@ -29,13 +29,13 @@ void share_blocks(Index blocks, void (*run)(const void* body, Index block), cons
 /// Calls `body(begin, end)` for every block of [0, n); blocks may run at the same time, each by one thread.
 ///
 /// Whoever takes a block computes all of it, so results cannot depend on the number of threads.
-/// @throws never; `body` must not throw
+/// @throws never; a `body` that throws ends the program
 template <class Body> void for_blocks(Index n, const Body& body) {
   const Index blocks = (n + block_size - 1) / block_size;
-  const auto run = [&body, n](Index b) { body(b * block_size, std::min(n, (b + 1) * block_size)); };
+  const auto run = [&body, n](Index b) noexcept { body(b * block_size, std::min(n, (b + 1) * block_size)); };
   if (n >= parallel_threshold && thread_count() > 1) {
     detail::share_blocks(
-        blocks, [](const void* run_it, Index b) { (*static_cast<decltype(run)*>(run_it))(b); }, &run);
+        blocks, [](const void* run_it, Index b) noexcept { (*static_cast<decltype(run)*>(run_it))(b); }, &run);
     return;
   }
   for (Index b = 0; b < blocks; ++b) run(b);

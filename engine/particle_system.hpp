@@ -3,21 +3,18 @@
 
 #include "engine/box.hpp"
 #include "engine/clock.hpp"
-#include "engine/column.hpp"
+#include "engine/columns.hpp"
 #include "engine/error.hpp"
 #include "engine/parallel.hpp"
 #include "engine/real.hpp"
 #include "engine/topology.hpp"
 #include "engine/units.hpp"
 
-#include <atomic>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 namespace noether {
@@ -25,34 +22,11 @@ namespace noether {
 /// Where in the word of its integrator a system stands.
 struct Phase {
   std::uint8_t coordinates = 0;  ///< of the position and velocity columns: 0 inertial; else a Hamiltonian's own
-  bool opened = false;   ///< working coordinates and the word before the run are in effect
-  bool pending = false;  ///< the last stage of the last step is still to be done
+  bool opened = false;           ///< working coordinates and the word before the run are in effect
+  bool pending = false;          ///< the last stage of the last step is still to be done
 
   bool operator==(const Phase&) const = default;
 };
-
-namespace detail {
-/// A number no other call returns: names a state of the positions, so that a force already known is not computed again.
-inline std::uint64_t fresh_version() {
-  static std::atomic<std::uint64_t> next_thread{1};
-  thread_local std::uint64_t version = next_thread.fetch_add(1) << 40U;
-  return ++version;
-}
-/// A column in another number type; whole numbers stay what they are.
-template <class Other> ScalarColumn<std::int64_t> widened_to(const ScalarColumn<std::int64_t>& from) { return from; }
-template <class Other, class Real> ScalarColumn<Other> widened_to(const ScalarColumn<Real>& from) {
-  ScalarColumn<Other> to(from.size());
-  for (Index i = 0; i < from.size(); ++i) to[i] = static_cast<Other>(from[i]);
-  return to;
-}
-template <class Other, class Real> VectorColumn<Other> widened_to(const VectorColumn<Real>& from) {
-  VectorColumn<Other> to(from.size());
-  for (int k = 0; k < 3; ++k) {
-    for (Index i = 0; i < from.size(); ++i) to.component(k)[i] = static_cast<Other>(from.component(k)[i]);
-  }
-  return to;
-}
-}  // namespace detail
 
 /// Particles as a structure of arrays: id, name, x, v, m, the clock, the box and the phase.
 ///
@@ -60,19 +34,18 @@ template <class Other, class Real> VectorColumn<Other> widened_to(const VectorCo
 /// none. Sizes and parameters of a system in a run change only in `Simulation::edit`; ids are never used twice.
 template <class Real = double> class ParticleSystem {
  public:
-  using ExtraColumn = std::variant<ScalarColumn<Real>, ScalarColumn<std::int64_t>, VectorColumn<Real>>;
-
   explicit ParticleSystem(const UnitSystem& units = unit_system("reduced")) : units_(&units) {}
 
-  /// Appends one particle and returns its index.
+  /// Appends one particle and returns its index; in the columns that parts declared it starts as these say.
   /// @param x, v  inertial [length], [length/time]
   Index add(std::string name, const Real& mass, const Vec3<Real>& x, const Vec3<Real>& v) {
-    NOETHER_EXPECTS(extra_.empty() && !low_, "particles are added before an integrator is bound");
+    NOETHER_EXPECTS(!low_, "particles are added before an integrator is bound, or in Simulation::edit");
     ids_.push_back(next_id_++);
     names_.push_back(std::move(name));
     m_.append(mass);
     x_.append(x);
     v_.append(v);
+    if (!columns_.empty()) columns_.append();
     members_ = detail::fresh_version();
     if (box_.is_periodic()) {
       images_.append(Vec3<std::int32_t>::Zero());
@@ -84,13 +57,14 @@ template <class Real = double> class ParticleSystem {
 
   /// Takes particle `i` out; the others keep their ids.
   void remove(Index i) {
-    NOETHER_EXPECTS(extra_.empty() && !low_, "particles are removed in Simulation::edit");
+    NOETHER_EXPECTS(!low_, "particles are removed in Simulation::edit");
     NOETHER_EXPECTS(!topology_, "who is bonded to whom is known by index: no particle is removed");
     ids_.erase(ids_.begin() + i);
     names_.erase(names_.begin() + i);
     m_.erase(i);
     x_.erase(i);
     v_.erase(i);
+    columns_.erase(i);
     if (box_.is_periodic()) images_.erase(i);
     members_ = version_ = detail::fresh_version();
   }
@@ -100,6 +74,7 @@ template <class Real = double> class ParticleSystem {
     x_.trim();
     v_.trim();
     images_.trim();
+    columns_.trim();
   }
 
   Index size() const { return m_.size(); }
@@ -241,36 +216,43 @@ template <class Real = double> class ParticleSystem {
     if (!keep) low_.reset();
   }
 
-  /// A column declared by the part that needs it: charge, type, molecule. Tag has `type` and `name`.
-  template <class Tag> bool has() const { return extra_.count(std::string(Tag::name)) != 0; }
+  /// A column that the part that needs it declares (engine/columns.hpp): charge, type, orientation.
+  template <class Tag> bool has() const { return columns_.find(Tag::name) != nullptr; }
+  /// Gives the particles a column, each row as its declaration starts it.
   template <class Tag> typename Tag::template type<Real>& add_column() {
-    auto column = typename Tag::template type<Real>(size());
-    return std::get<typename Tag::template type<Real>>(extra_[std::string(Tag::name)] = std::move(column));
+    version_ = detail::fresh_version();
+    return columns_.template add<Tag>(size());
+  }
+  /// The same for a column known by name; one that is there stays as it is.
+  void add_column(const ColumnInfo& info) {
+    if (columns_.find(info.name) != nullptr) return;
+    version_ = detail::fresh_version();
+    columns_.add(info, size());
+  }
+  /// Gives particle `i` its numbers in a column known by name. @throws MissingColumn
+  void set_row(std::string_view name, Index i, const std::vector<Real>& numbers) {
+    version_ = detail::fresh_version();
+    columns_.set_row(name, i, numbers);
   }
   /// @throws MissingColumn
-  template <class Tag> const typename Tag::template type<Real>& column() const {
-    const auto found = extra_.find(std::string(Tag::name));
-    if (found == extra_.end()) throw MissingColumn("the particles have no column '" + std::string(Tag::name) + "'");
-    return std::get<typename Tag::template type<Real>>(found->second);
-  }
+  template <class Tag> const typename Tag::template type<Real>& column() const { return columns_.template get<Tag>(); }
+  /// The same to be written to: but of momenta, known forces become void.
   template <class Tag> typename Tag::template type<Real>& column() {
-    return const_cast<typename Tag::template type<Real>&>(std::as_const(*this).template column<Tag>());
+    if constexpr (Tag::role != ColumnRole::momentum) version_ = detail::fresh_version();
+    return columns_.template get<Tag>();
   }
-  const std::map<std::string, ExtraColumn>& extra_columns() const { return extra_; }
+  const Columns<Real>& columns() const { return columns_; }
   /// Puts back a column of a file or a copy.
-  void restore_column(const std::string& name, ExtraColumn column) { extra_[name] = std::move(column); }
+  void restore_column(typename Columns<Real>::Column column) {
+    version_ = detail::fresh_version();
+    columns_.put(std::move(column));
+  }
 
   /// Bytes of state per particle, as `noether explain` prints them.
   std::size_t bytes_per_particle() const {
-    std::size_t reals = 7 + (low_ ? 6 : 0);
-    std::size_t bytes = sizeof(std::int64_t);
-    for (const auto& [name, column] : extra_) {
-      reals += std::holds_alternative<VectorColumn<Real>>(column) ? 3 : 0;
-      reals += std::holds_alternative<ScalarColumn<Real>>(column) ? 1 : 0;
-      bytes += std::holds_alternative<ScalarColumn<std::int64_t>>(column) ? sizeof(std::int64_t) : 0;
-    }
-    if (box_.is_periodic()) bytes += 3 * sizeof(std::int32_t);
-    return bytes + reals * sizeof(Real);
+    const std::size_t reals = 7 + (low_ ? 6 : 0);
+    const std::size_t images = box_.is_periodic() ? 3 * sizeof(std::int32_t) : 0;
+    return sizeof(std::int64_t) + reals * sizeof(Real) + images + columns_.bytes_per_particle();
   }
 
   /// The same particles in another number type: doubles widen exactly.
@@ -287,10 +269,7 @@ template <class Real = double> class ParticleSystem {
     other.set_box(box_);
     other.set_topology(topology_);
     other.restore_images(images_);
-    for (const auto& [name, column] : extra_) {
-      std::visit([&, &key = name](const auto& values) { other.restore_column(key, detail::widened_to<Other>(values)); },
-                 column);
-    }
+    other.columns_ = columns_.template as<Other>();
     std::vector<Other> variables;
     for (const Real& y : variables_) variables.push_back(static_cast<Other>(y));
     other.set_variables(std::move(variables), variable_names_);
@@ -317,7 +296,7 @@ template <class Real = double> class ParticleSystem {
     clock_ = other.clock_;
     phase_ = other.phase_;
     version_ = other.version_;
-    if (!extra_.empty() || !other.extra_.empty()) extra_ = other.extra_;
+    columns_.assign(other.columns_);
   }
 
   /// Largest id: every whole number up to it is a double, as files and other programs may store ids.
@@ -410,7 +389,7 @@ template <class Real = double> class ParticleSystem {
   Clock<Real> clock_;
   Phase phase_;
   std::optional<LowWords> low_;
-  std::map<std::string, ExtraColumn> extra_;
+  Columns<Real> columns_;
   std::int64_t next_id_ = 0;
   std::uint64_t version_ = detail::fresh_version(), members_ = version_, mass_version_ = version_;
 };

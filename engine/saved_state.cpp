@@ -20,42 +20,59 @@ template <class Real> void unflatten(const SavedState& saved, const std::string&
   }
 }
 
-/// Columns beyond x, v and m, by kind: "scalar/charge", "integer/type", "vector/spin".
-template <class Real> void save_extra_columns(SavedState& saved, const ParticleSystem<Real>& s) {
-  for (const auto& [name, column] : s.extra_columns()) {
-    if (const auto* vectors = std::get_if<VectorColumn<Real>>(&column)) {
-      saved["vector/" + name] = flatten(*vectors);
-    } else if (const auto* numbers = std::get_if<ScalarColumn<Real>>(&column)) {
-      std::vector<double> flat;
-      for (const Real& x : *numbers) detail::append(flat, x);
-      saved["scalar/" + name] = std::move(flat);
-    } else {
-      const auto& integers = std::get<ScalarColumn<std::int64_t>>(column);
-      saved["integer/" + name] = std::vector<std::int64_t>(integers.begin(), integers.end());
-    }
+/// What parts declared beyond x, v and m: "column/charge" and the like, and what each of them is.
+template <class Real> void save_columns(SavedState& saved, const ParticleSystem<Real>& s) {
+  if (s.columns().empty()) return;
+  std::vector<std::string> names, dimensions;
+  std::vector<std::int64_t> kinds;
+  std::vector<double> starts;
+  for (const auto& column : s.columns()) {
+    names.push_back(column.info.name);
+    dimensions.push_back(column.info.dimension);
+    kinds.insert(kinds.end(), {static_cast<std::int64_t>(column.info.role), column.info.width, column.is_whole()});
+    starts.insert(starts.end(), column.info.start.begin(), column.info.start.end());
+    saved["column/" + column.info.name] = column.visit([](const auto& values) -> SavedArray {
+      using Number = std::decay_t<decltype(values.component(0)[0])>;
+      using Kept = std::conditional_t<std::is_same_v<Number, std::int64_t>, std::int64_t, double>;
+      std::vector<Kept> numbers;
+      for (Index i = 0; i < values.size(); ++i) {
+        for (int k = 0; k < values.width; ++k) detail::append(numbers, values.component(k)[i]);
+      }
+      return numbers;
+    });
   }
+  saved["columns/name"] = std::move(names);
+  saved["columns/dimension"] = std::move(dimensions);
+  saved["columns/kind"] = std::move(kinds);
+  saved["columns/start"] = std::move(starts);
 }
 
-template <class Real> void load_extra_columns(const SavedState& saved, ParticleSystem<Real>& s) {
-  for (const auto& [key, array] : saved) {
-    const std::size_t slash = key.find('/');
-    const std::string kind = key.substr(0, slash);
-    if (kind == "vector") {
-      VectorColumn<Real> column(s.size());
-      unflatten(saved, key, column);
-      s.restore_column(key.substr(slash + 1), std::move(column));
-    } else if (kind == "scalar") {
-      ScalarColumn<Real> column(s.size());
-      const auto& numbers = detail::array_of<double>(saved, key);
-      std::size_t at = 0;
-      for (Index i = 0; i < s.size(); ++i) detail::take(numbers, at, column[i]);
-      s.restore_column(key.substr(slash + 1), std::move(column));
-    } else if (kind == "integer") {
-      ScalarColumn<std::int64_t> column(s.size());
-      const auto& integers = detail::array_of<std::int64_t>(saved, key);
-      for (Index i = 0; i < s.size(); ++i) column[i] = detail::element(integers, static_cast<std::size_t>(i));
-      s.restore_column(key.substr(slash + 1), std::move(column));
-    }
+template <class Real> void load_columns(const SavedState& saved, ParticleSystem<Real>& s) {
+  if (saved.count("columns/name") == 0) return;
+  const auto& names = detail::array_of<std::string>(saved, "columns/name");
+  const auto& dimensions = detail::array_of<std::string>(saved, "columns/dimension");
+  const auto& kinds = detail::array_of<std::int64_t>(saved, "columns/kind");
+  const auto& starts = detail::array_of<double>(saved, "columns/start");
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    const std::int64_t width = detail::element(kinds, 3 * c + 1);
+    ColumnInfo info{names[c], detail::element(dimensions, c),
+                    detail::enumerator(detail::element(kinds, 3 * c), ColumnRole::momentum), static_cast<int>(width)};
+    for (std::size_t k = 0; k < info.start.size(); ++k) info.start[k] = detail::element(starts, 9 * c + k);
+    const bool whole = detail::element(kinds, 3 * c + 2) != 0;
+    using Values = typename Columns<Real>::Values;
+    auto values = whole ? Values(ScalarColumn<std::int64_t>(s.size())) : Columns<Real>::values_of(info.width, s.size());
+    std::visit(
+        [&](auto& column) {
+          using Number = std::decay_t<decltype(column.component(0)[0])>;
+          using Kept = std::conditional_t<std::is_same_v<Number, std::int64_t>, std::int64_t, double>;
+          const auto& numbers = detail::array_of<Kept>(saved, "column/" + names[c]);
+          std::size_t at = 0;
+          for (Index i = 0; i < column.size(); ++i) {
+            for (int k = 0; k < column.width; ++k) detail::take(numbers, at, column.component(k)[i]);
+          }
+        },
+        values);
+    s.restore_column({std::move(info), std::move(values)});
   }
 }
 
@@ -141,14 +158,14 @@ template <class Real> SavedState save_particles(const ParticleSystem<Real>& s) {
                                                     static_cast<std::int64_t>(clock.direction)};
   saved["clock/times"] = std::vector<double>{clock.start, clock.dt, clock.high, clock.low};
   save_value(saved, "clock/fraction", clock.fraction);
-  saved["phase"] = std::vector<std::int64_t>{s.phase().coordinates, s.phase().opened ? 1 : 0,
-                                             s.phase().pending ? 1 : 0};
+  saved["phase"] =
+      std::vector<std::int64_t>{s.phase().coordinates, s.phase().opened ? 1 : 0, s.phase().pending ? 1 : 0};
   saved["units"] = std::vector<std::string>{std::string(s.units().name)};
   saved["next_id"] = std::vector<std::int64_t>{s.next_id()};
   if (!s.variables().empty()) save_value(saved, "variables", s.variables());
   if (!s.variable_names().empty()) saved["variable_names"] = s.variable_names();
   save_box(saved, s);
-  save_extra_columns(saved, s);
+  save_columns(saved, s);
   return saved;
 }
 
@@ -176,7 +193,7 @@ template <class Real> ParticleSystem<Real> load_particles(const SavedState& save
   s.clock() = load_clock<Real>(saved);
   s.phase() = load_phase(saved);
   load_variables(saved, s);
-  load_extra_columns(saved, s);
+  load_columns(saved, s);
   return s;
 }
 

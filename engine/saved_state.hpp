@@ -63,10 +63,12 @@ template <class Enum> Enum enumerator(std::int64_t number, Enum last) {
 }
 
 inline void append(std::vector<double>& out, double x) { out.push_back(x); }
+inline void append(std::vector<std::int64_t>& out, std::int64_t x) { out.push_back(x); }
 inline void append(std::vector<double>& out, const Quad& x) {
   for (const double part : to_doubles(x)) out.push_back(part);
 }
 inline void take(const std::vector<double>& in, std::size_t& at, double& x) { x = element(in, at++); }
+inline void take(const std::vector<std::int64_t>& in, std::size_t& at, std::int64_t& x) { x = element(in, at++); }
 inline void take(const std::vector<double>& in, std::size_t& at, Quad& x) {
   x = from_doubles({element(in, at), element(in, at + 1), element(in, at + 2)});
   at += 3;

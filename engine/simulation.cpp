@@ -1,6 +1,6 @@
 #include "engine/simulation.hpp"
 
-#include "engine/finite_simd.hpp"
+#include "engine/not_finite.hpp"
 
 #include <fmt/format.h>
 
@@ -18,13 +18,6 @@ constexpr std::int64_t longest_chunk = 1024;
 /// Steps between looks at the wall clock are chosen to last about this long [s].
 constexpr double chunk_seconds = 0.05;
 
-bool all_finite(const VectorColumn<double>& x, const VectorColumn<double>& v) {
-  return finite_kernels().all(x.component(0), v.component(0), 3 * x.stride());
-}
-bool all_finite(const VectorColumn<Quad>& x, const VectorColumn<Quad>& v) {
-  return x.all().allFinite() && v.all().allFinite();
-}
-
 /// What a force has named says more than what came of it.
 bool tells_more(const Failure* failure, const std::optional<Outcome>& fault) {
   using Kind = Outcome::Kind;
@@ -39,7 +32,7 @@ double seconds_since(WallClock::time_point start) {
 
 template <class Real>
 Simulation<Real>::Simulation(ParticleSystem<Real> particles, AnyIntegrator<Real> integrator, Clock<Real> clock)
-    : raw_(std::move(particles)), copy_(raw_), mapped_(raw_), integrator_(std::move(integrator)) {
+    : raw_(std::move(particles)), copy_(raw_.units()), mapped_(raw_.units()), integrator_(std::move(integrator)) {
   const IntegratorClaims claims = integrator_.claims();
   check_state(claims);
   if (claims.clock != clock.mode()) {
@@ -55,8 +48,6 @@ Simulation<Real>::Simulation(ParticleSystem<Real> particles, AnyIntegrator<Real>
   raw_.clock() = clock;
   raw_.keep_low_words(false);  // those of another run belong to its working coordinates
   integrator_.bind(raw_);
-  copy_ = raw_;
-  mapped_ = raw_;
 }
 
 template <class Real> void Simulation<Real>::check_state(const IntegratorClaims& claims) const {
@@ -298,9 +289,15 @@ template <class Real> bool Simulation<Real>::action_is_wanted() const {
 
 template <class Real> std::optional<Outcome> Simulation<Real>::keep_good() {
   if (const auto bad = settled_fault()) return good_ ? fall_back() : *bad;
-  good_ = Good{raw_, {}};
-  integrator_.save(good_->integrator, "");
+  keep();
   return {};
+}
+
+template <class Real> void Simulation<Real>::keep() {
+  if (!good_) good_.emplace(Good{ParticleSystem<Real>(raw_.units()), {}});
+  good_->particles.assign_state(raw_);
+  good_->integrator.clear();
+  integrator_.save(good_->integrator, "");
 }
 
 /// Goes again, step by step, from the last state kept to the step that failed: where a run ends must not depend on when
@@ -308,7 +305,7 @@ template <class Real> std::optional<Outcome> Simulation<Real>::keep_good() {
 template <class Real> Outcome Simulation<Real>::fall_back() {
   const std::int64_t failing = step();
   const auto go_back = [&] {
-    raw_ = good_->particles;
+    raw_.assign_state(good_->particles);
     integrator_.load(good_->integrator, "");
   };
   go_back();
@@ -328,8 +325,7 @@ template <class Real> Outcome Simulation<Real>::fall_back() {
       return *reason;
     }
     if (step() > failing) throw LogicError("a step that had failed went well when it was made again");
-    good_ = Good{raw_, {}};
-    integrator_.save(good_->integrator, "");
+    keep();
   }
 }
 
@@ -435,27 +431,8 @@ template <class Real> double Simulation<Real>::next_time(double end) const {
 }
 
 template <class Real> std::optional<Outcome> Simulation<Real>::fault(const ParticleSystem<Real>& s) const {
-  using std::isfinite;
-  for (std::size_t i = 0; i < s.variables().size(); ++i) {
-    if (!isfinite(s.variables()[i])) return variable_fault(s, static_cast<Index>(i));
-  }
-  if (all_finite(s.positions(), s.velocities())) return std::nullopt;
-  for (Index i = 0; i < s.size(); ++i) {
-    for (int k = 0; k < 3; ++k) {
-      const bool position = !isfinite(s.positions().component(k)[i]);
-      if (!position && isfinite(s.velocities().component(k)[i])) continue;
-      Failure failure{Outcome::Kind::diverged, i, position ? "position" : "velocity", ""};
-      failure.message = fmt::format("{} of {} is not finite", failure.quantity, s.name(i));
-      return failed(failure);
-    }
-  }
-  return std::nullopt;
-}
-
-template <class Real> Outcome Simulation<Real>::variable_fault(const ParticleSystem<Real>& s, Index i) const {
-  const std::string place = fmt::format("y[{}]", i), name = s.variable_name(i);
-  const std::string called = name == place ? place : fmt::format("'{}', {},", name, place);
-  return failed({Outcome::Kind::diverged, -1, place, fmt::format("variable {} is not finite", called)});
+  const std::optional<Failure> found = not_finite(s);
+  return found ? std::optional<Outcome>(failed(*found)) : std::nullopt;
 }
 
 template <class Real> std::optional<Outcome> Simulation<Real>::settled_fault() {
@@ -492,7 +469,7 @@ template <class Real> const ParticleSystem<Real>& Simulation<Real>::particles() 
 template <class Real> void Simulation<Real>::begin_edit(std::optional<double> at) {
   integrator_.settle(raw_, copy_, {}, at, true);
   shown_at_.reset();
-  raw_ = copy_;
+  raw_.assign_state(copy_);
   raw_.phase() = Phase{};
   raw_.keep_low_words(false);
 }
@@ -504,8 +481,7 @@ template <class Real> void Simulation<Real>::end_edit() {
   check_state(integrator_.claims());
   raw_.trim();
   integrator_.bind(raw_);
-  copy_ = raw_;
-  mapped_ = raw_;
+  copy_ = mapped_ = ParticleSystem<Real>(raw_.units());  // the next look makes them anew
   for (auto& stop : stops_) stop.check.forget();
   for (auto& scheduled : monitors_) scheduled.monitor.forget();
 }
@@ -544,6 +520,16 @@ template <class Real> SavedRun Simulation<Real>::save() const {
   return saved;
 }
 
+template <class Real> void Simulation<Real>::check_columns(const ParticleSystem<Real>& saved) const {
+  for (const auto& column : raw_.columns()) {
+    if (!column.info.moves()) continue;
+    const auto* found = saved.columns().find(column.info.name);
+    if (found != nullptr && found->info == column.info) continue;
+    throw Error(fmt::format("the saved run has no column '{}' of {} numbers a particle, which this one moves",
+                            column.info.name, column.info.width));
+  }
+}
+
 template <class Real> void Simulation<Real>::restore(const SavedRun& saved) {
   const auto part = [&](const std::string& name) -> const SavedState& {
     const auto found = saved.parts.find(name);
@@ -566,6 +552,7 @@ template <class Real> void Simulation<Real>::restore(const SavedRun& saved) {
     throw Error(fmt::format("the saved run goes {} in time, this one {}", back ? "forward" : "back",
                             back ? "back" : "forward"));
   }
+  check_columns(particles);
   integrator_.bind(particles);  // the masses may have been edited
   integrator_.load(part("integrator"), "");
   raw_ = std::move(particles);

@@ -163,16 +163,18 @@ template <class Real = double> class Simulation {
   double next_time(double end) const;
   /// What is wrong with a state, if it is not finite.
   std::optional<Outcome> fault(const ParticleSystem<Real>& s) const;
-  Outcome variable_fault(const ParticleSystem<Real>& s, Index i) const;
   std::optional<Outcome> settled_fault();
   Outcome outcome(Outcome::Kind kind, std::string message = "") const;
   Outcome stopped(const StopReason& reason) const;
   Outcome failed(const Failure& failure) const;
   std::optional<Outcome> keep_good();
+  void keep();
   Outcome fall_back();
   std::optional<Outcome> look_at_the_end();
   Outcome run_to(std::int64_t end, double limit);
   void turn_back(double until);
+  /// @throws Error  unless a saved run has the columns that this one moves
+  void check_columns(const ParticleSystem<Real>& saved) const;
   /// @param at  free clock: the time to settle at, beyond the last whole step
   void begin_edit(std::optional<double> at = std::nullopt);
   void end_edit();

@@ -71,12 +71,14 @@ void Topology::exclude(const std::vector<Pair>& pairs) {
   });
 }
 
-bool Topology::is_special(Index i, Index j) const {
+bool Topology::is_special(Index i, Index j) const { return pair_factor(i, j) != 1; }
+
+double Topology::pair_factor(Index i, Index j) const {
   const Pair pair(std::min(i, j), std::max(i, j));
-  if (std::binary_search(exclusions.begin(), exclusions.end(), pair)) return true;
+  if (std::binary_search(exclusions.begin(), exclusions.end(), pair)) return 0;
   const auto found = std::lower_bound(scaled_pairs.begin(), scaled_pairs.end(), pair,
                                       [](const ScaledPair& one, const Pair& wanted) { return one.pair < wanted; });
-  return found != scaled_pairs.end() && found->pair == pair;
+  return found != scaled_pairs.end() && found->pair == pair ? found->factor : 1;
 }
 
 int Topology::type_count() const {

@@ -76,6 +76,8 @@ struct Topology {
 
   /// Whether the pair force of two particles is excluded or scaled. @cost O(log pairs)
   bool is_special(Index i, Index j) const;
+  /// What is left of the pair force of two particles: 0 of an excluded pair, 1 of most. @cost O(log pairs)
+  double pair_factor(Index i, Index j) const;
   /// Type of particle `i`; 0 where no types were given.
   int type(Index i) const { return types.empty() ? 0 : static_cast<int>(types[static_cast<std::size_t>(i)]); }
   /// Number of types, 1 at least.

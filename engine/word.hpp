@@ -13,7 +13,7 @@ namespace noether {
 template <class Real> struct TimedStage {
   char letter;
   Real weight;
-  Real fraction;  ///< part of the step that the drifts have covered when the stage begins
+  Real fraction;  ///< part of the step that the letters that carry time have covered when the stage begins
 };
 
 /// The stages of one step. Where the first and the last letter agree, the last stage is left *pending* and done
@@ -27,7 +27,6 @@ template <class Real> class TimedWord {
   }
 
   const std::vector<TimedStage<Real>>& stages() const { return stages_; }
-  bool merges() const { return merges_; }
 
   /// The longest stage of a letter, as a part of a step; what is joined with the next step counts as one stage.
   Real longest(char letter) const {

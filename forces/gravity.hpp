@@ -6,6 +6,7 @@
 #include "engine/force_sink.hpp"
 #include "engine/pack.hpp"
 #include "engine/parallel.hpp"
+#include "forces/secant.hpp"
 
 #include <cmath>
 #include <optional>
@@ -59,6 +60,10 @@ struct Gravity {
       add_rows(out, s);
     }
   }
+
+  /// Its secants between two states. @cost O(n^2)
+  template <class Real>
+  void add_secant_to(ForceSink<Real>& out, const ParticleSystem<Real>& from, const ParticleSystem<Real>& to) const;
 
   static constexpr Index smallest_in_rows = 16;
 
@@ -183,6 +188,28 @@ template <class Real> void Gravity::add_rows(ForceSink<Real>& out, const Particl
   const Totals totals = reduce(s.size(), Totals{}, rows);
   out.energy(totals.energy);
   out.virial(totals.virial);
+}
+
+template <class Real>
+void Gravity::add_secant_to(ForceSink<Real>& out, const ParticleSystem<Real>& from,
+                            const ParticleSystem<Real>& to) const {
+  using std::sqrt;
+  const Real g = constant(to), soft2 = Real(softening) * Real(softening);
+  const auto terms = [&](const Real& r2) {  // of two unit masses
+    const Real r = sqrt(r2 + soft2);
+    return PairTerms<Real>{-g / r, -g / (r * (r2 + soft2))};
+  };
+  const auto &x0 = from.positions(), &x1 = to.positions();
+  const ScalarColumn<Real>& m = to.masses();
+  for (Index i = 0; i < to.size(); ++i) {
+    for (Index j = 0; j < i; ++j) {
+      if (m[i] == Real(0) && m[j] == Real(0)) continue;
+      const Vec3<Real> d0 = x0[i] - x0[j], d1 = x1[i] - x1[j];
+      const Vec3<Real> pull = detail::secant_of(norm2(d0), norm2(d1), terms) / Real(2) * (d0 + d1);
+      out.acceleration(i, Vec3<Real>(m[j] * pull));
+      out.acceleration(j, Vec3<Real>(-m[i] * pull));
+    }
+  }
 }
 
 extern template void Gravity::add_pairs(ForceSink<double>&, const ParticleSystem<double>&) const;

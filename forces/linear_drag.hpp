@@ -48,7 +48,8 @@ struct DragForce {
             .drag = drag.rate};
   }
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
-    for (Index i = 0; i < s.size(); ++i) out.acceleration(i, -Real(drag.rate) * s.velocities()[i]);
+    // Not by `acceleration`, which would enter it into the virial: friction is no part of the pressure.
+    for (Index i = 0; i < s.size(); ++i) out.accelerations().add(i, -Real(drag.rate) * s.velocities()[i]);
   }
 };
 

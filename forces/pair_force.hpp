@@ -5,6 +5,7 @@
 #include "engine/pack.hpp"
 #include "engine/simd_loop.hpp"
 #include "forces/pairs.hpp"
+#include "forces/secant.hpp"
 
 #include <cstddef>
 #include <optional>
@@ -251,10 +252,7 @@ template <PairPotential P> struct PairForce : P {
     if constexpr (charged) charges = s.template column<Charge>().data();
     const Real constant(s.units().coulomb_constant);
     const auto terms = [&](Index i, Index j, const Real& r2, const auto& add) {
-      if (types[0] >= 0) {
-        const std::array<int, 2> pair = {s.topology()->type(i), s.topology()->type(j)};
-        if (pair != types && pair != std::array<int, 2>{types[1], types[0]}) return;
-      }
+      if (!is_between(types, s.topology(), i, j)) return;
       if (!(r2 < Real(reach() * reach()))) return;
       const Real product = charged ? constant * charges[i] * charges[j] : Real(0);
       add(detail::ended<Real>(static_cast<const P&>(*this), end, r2, product));
@@ -279,7 +277,44 @@ template <PairPotential P> struct PairForce : P {
     }
   }
 
+  /// Its secants between two states, those of every pair potential.
+  /// @cost O(n^2)
+  template <class Real>
+    requires(!std::is_same_v<Real, Pack>)
+  void add_secant_to(ForceSink<Real>& out, const ParticleSystem<Real>& from, const ParticleSystem<Real>& to) const {
+    const auto types = detail::pair_types(to.topology(), first, second);
+    const detail::PairEnd end = this->end();
+    const Topology* topology = to.topology();
+    const Real* charges = nullptr;
+    if constexpr (charged) charges = to.template column<Charge>().data();
+    const Real constant(to.units().coulomb_constant), reach2(reach() * reach());
+    for (Index i = 0; i < to.size(); ++i) {
+      for (Index j = 0; j < i; ++j) {
+        if (!is_between(types, topology, i, j)) continue;
+        const Real part(topology != nullptr ? topology->pair_factor(i, j) : 1);
+        if (part == Real(0)) continue;
+        const Real product = charged ? constant * charges[i] * charges[j] : Real(0);
+        const auto terms = [&](const Real& r2) -> PairTerms<Real> {
+          if (!(r2 < reach2)) return {Real(0), Real(0)};
+          const PairTerms<Real> whole = detail::ended<Real>(static_cast<const P&>(*this), end, r2, product);
+          return {part * whole.energy, part * whole.force};
+        };
+        const Vec3<Real> moved = (to.unwrapped(i) - from.unwrapped(i)) - (to.unwrapped(j) - from.unwrapped(j));
+        const double range = reach() + std::sqrt(static_cast<double>(norm2(moved)));
+        detail::for_images(from, i, j, range, [&](const Vec3<Real>& d) {
+          detail::add_secant_pair(out, i, j, d, Vec3<Real>(d + moved), terms);
+        });
+      }
+    }
+  }
+
  private:
+  /// Whether pairs of these two particles are those of the force.
+  static bool is_between(const std::array<int, 2>& types, const Topology* topology, Index i, Index j) {
+    if (types[0] < 0) return true;
+    const std::array<int, 2> pair = {topology->type(i), topology->type(j)};
+    return pair == types || pair == std::array<int, 2>{types[1], types[0]};
+  }
   double reach() const {
     if constexpr (ends_by_itself) {
       return P::range();

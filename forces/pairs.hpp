@@ -4,6 +4,7 @@
 #include "engine/description.hpp"
 #include "engine/force_sink.hpp"
 #include "engine/parallel.hpp"
+#include "forces/secant.hpp"
 
 #include <algorithm>
 #include <array>
@@ -35,9 +36,6 @@ template <> struct EnumNames<Cutoff> {
        {Cutoff::switch_c2, "switch_c2"},
        {Cutoff::switch_c4, "switch_c4"}}};
 };
-
-/// Energy of a pair, and the force along its line of centres over their distance: -U'(r) / r.
-template <class Real> struct PairTerms { Real energy, force; };
 
 namespace detail {
 

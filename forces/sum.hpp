@@ -34,6 +34,10 @@ inline void merge(ForceClaims& all, const ForceClaims& one) {
   all.exclusions = one_says_so(all.exclusions, one.exclusions);
   all.drag += one.drag;
   all.range = std::max(all.range, one.range);
+  for (const char letter : one.kicks) {
+    if (all.kicks.find(letter) == std::string::npos) all.kicks += letter;
+  }
+  std::sort(all.kicks.begin(), all.kicks.end());
 }
 }  // namespace detail
 
@@ -45,14 +49,25 @@ template <class... Fs> class Sum {
   template <class Real>
     requires(Force<Fs, Real>&&...)
   void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+    std::size_t term = 0;
     const auto add = [&](const auto& force) {
-      if constexpr (std::is_same_v<Real, Pack>) {
-        add_in_lanes(force, out, s);
-      } else {
-        force.add_to(out, s);
-      }
+      const std::size_t k = term++;
+      if (!out.takes_all() && !out.takes(claims_of(force).kicks)) return;
+      out.in_room(k, [&] {
+        if constexpr (std::is_same_v<Real, Pack>) {
+          add_in_lanes(force, out, s);
+        } else {
+          force.add_to(out, s);
+        }
+      });
     };
     std::apply([&](const auto&... force) { (add(force), ...); }, forces_);
+  }
+  template <class Real> void bind(const ParticleSystem<Real>& s) {
+    const auto one = [&](auto& force) {
+      if constexpr (requires { force.bind(s); }) force.bind(s);
+    };
+    std::apply([&](auto&... force) { (one(force), ...); }, forces_);
   }
   bool has_lanes() const {
     return std::apply([](const auto&... force) { return (noether::has_lanes(force) && ...); }, forces_);
@@ -65,7 +80,7 @@ template <class... Fs> class Sum {
     return std::apply([&](const auto&... force) { return (one(force) && ...); }, forces_);
   }
   ForceClaims claims() const {
-    ForceClaims all{.periodic = true, .sets = sizeof...(Fs) == 1, .charges = false, .exclusions = false};
+    ForceClaims all{.periodic = true, .sets = sizeof...(Fs) == 1, .charges = false, .exclusions = false, .kicks = ""};
     std::apply([&](const auto&... force) { (detail::merge(all, claims_of(force)), ...); }, forces_);
     return all;
   }
@@ -89,26 +104,36 @@ template <class Real = double> class ForceField {
  public:
   template <class F> ForceField& add(F force) {
     terms_.emplace_back(std::move(force));
+    kicks_.push_back(terms_.back().claims().kicks);
     return *this;
   }
 
   void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
-    for (const auto& term : terms_) term.add_to(out, s);
+    for_terms(out, [&](const AnyForce<Real>& term) { term.add_to(out, s); });
+  }
+  void bind(const ParticleSystem<Real>& s) {
+    for (auto& term : terms_) term.bind(s);
+  }
+  bool has_secant() const {
+    return std::all_of(terms_.begin(), terms_.end(), [](const auto& term) { return term.has_secant(); });
+  }
+  void add_secant_to(ForceSink<Real>& out, const ParticleSystem<Real>& from, const ParticleSystem<Real>& to) const {
+    for_terms(out, [&](const AnyForce<Real>& term) { term.add_secant_to(out, from, to); });
   }
   bool has_lanes() const {
     return std::all_of(terms_.begin(), terms_.end(), [](const auto& term) { return term.has_lanes(); });
   }
   void add_to(ForceSink<Pack>& out, const ParticleSystem<Pack>& s) const {
-    for (const auto& term : terms_) term.add_to(out, s);
+    for_terms(out, [&](const AnyForce<Real>& term) { term.add_to(out, s); });
   }
   bool has_derivative() const {
     return std::all_of(terms_.begin(), terms_.end(), [](const auto& term) { return term.has_derivative(); });
   }
   void add_to(ForceSink<Dual<Real, 1>>& out, const ParticleSystem<Dual<Real, 1>>& s) const {
-    for (const auto& term : terms_) term.add_to(out, s);
+    for_terms(out, [&](const AnyForce<Real>& term) { term.add_to(out, s); });
   }
   ForceClaims claims() const {
-    ForceClaims all{.periodic = true, .sets = terms_.size() == 1, .charges = false, .exclusions = false};
+    ForceClaims all{.periodic = true, .sets = terms_.size() == 1, .charges = false, .exclusions = false, .kicks = ""};
     for (const auto& term : terms_) detail::merge(all, term.claims());
     return all;
   }
@@ -124,7 +149,14 @@ template <class Real = double> class ForceField {
   const std::vector<AnyForce<Real>>& terms() const { return terms_; }
 
  private:
+  template <class Sink, class Add> void for_terms(Sink& out, const Add& add) const {
+    for (std::size_t k = 0; k < terms_.size(); ++k) {
+      if (out.takes_all() || out.takes(kicks_[k])) out.in_room(k, [&] { add(terms_[k]); });
+    }
+  }
+
   std::vector<AnyForce<Real>> terms_;
+  std::vector<std::string> kicks_;  ///< of each term
 };
 
 extern template class ForceField<double>;

@@ -11,7 +11,8 @@ template <class Real> IntegratorClaims Classical<Real>::claims() const {
           .hamiltonian = field.name,
           .order = method.order,
           .clock = method.adaptive ? ClockMode::free : ClockMode::fixed,
-          .symplectic = method.symplectic && !method.adaptive && !field.dissipative,
+          .symplectic = method.symplectic && !method.adaptive && !field.dissipative && field.symplectic,
+          .no_action = field.no_action,
           .reversible = method.reversible && !method.adaptive && !field.dissipative,
           .backward = true,
           .energy = field.energy,
@@ -157,6 +158,7 @@ template <class Real> void Classical<Real>::save(SavedState& saved, const std::s
   const Evaluations& counted = field_->evaluations();
   save_value(saved, prefix + "evaluations",
              std::vector<std::int64_t>{counted.force, counted.jacobian, counted.rejected});
+  field_->save(saved, prefix + "field/");
   method_->save(saved, prefix + "state/");
 }
 
@@ -168,6 +170,7 @@ template <class Real> void Classical<Real>::load(const SavedState& saved, const 
   };
   check("method", signature());
   check("field", field_->signature());
+  field_->load(saved, prefix + "field/");
   std::vector<std::int64_t> counted;
   load_value(saved, prefix + "evaluations", counted);
   field_->evaluations() = {.force = detail::element(counted, 0),

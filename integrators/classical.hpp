@@ -38,7 +38,7 @@ template <class Real> class Classical {
   /// @throws SchemeMismatch  if the method cannot serve the field
   void bind(ParticleSystem<Real>& s);
   Advanced advance(ParticleSystem<Real>& s, const Span& span);
-  bool has_action() const { return method_->has_action() && field_->claims().energy; }
+  bool has_action() const { return method_->has_action() && field_->has_potential(); }
   Advanced advance_with_action(ParticleSystem<Real>& s, const Span& span, Real& action);
   Real settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Wanted wanted, std::optional<double> at,
               bool corrected);

@@ -77,7 +77,7 @@ std::vector<Stage> composed(const Scheme& scheme, std::string_view basic, bool j
 }
 
 /// Half a D at both ends; between the two stages of a symplectic Euler, one D.
-std::vector<Stage> with_letter(const std::vector<Stage>& word, char letter) {
+std::vector<Stage> with_outer(const std::vector<Stage>& word, char letter) {
   if (word.size() == 2) return {word[0], {letter, Quad(1)}, word[1]};
   std::vector<Stage> result = {{letter, Quad(1) / Quad(2)}};
   result.insert(result.end(), word.begin(), word.end());
@@ -85,9 +85,21 @@ std::vector<Stage> with_letter(const std::vector<Stage>& word, char letter) {
   return result;
 }
 
+/// The claim that compositions stand on. @throws LogicError
+void check_basic(const HamiltonianClaims& claims, const std::string& hamiltonian) {
+  const std::string& basic = claims.basic;
+  if (!basic.empty() && std::equal(basic.begin(), basic.end(), basic.rbegin()) &&
+      basic.find_first_not_of(claims.alphabet) == std::string::npos) {
+    return;
+  }
+  throw LogicError(fmt::format("the basic word '{}' of '{}' is no palindrome of its letters {}", basic, hamiltonian,
+                               claims.alphabet));
+}
+
 }  // namespace
 
 FittedWord fitted_word(const Scheme& scheme, const HamiltonianClaims& claims, const std::string& hamiltonian) {
+  check_basic(claims, hamiltonian);
   FittedWord word{{scheme.word.begin(), scheme.word.end()}};
   if (scheme.is_composition()) {
     const bool exact = claims.inexact.find(claims.basic.front()) == std::string_view::npos;
@@ -103,7 +115,7 @@ FittedWord fitted_word(const Scheme& scheme, const HamiltonianClaims& claims, co
                       "forward steps only, such as 'verlet' or 'mclachlan_2_s2'",
                       scheme.name, letter, hamiltonian));
     }
-    if (!uses(word.stages, letter)) word.stages = with_letter(word.stages, letter);
+    if (!uses(word.stages, letter)) word.stages = with_outer(word.stages, letter);
   }
   return word;
 }

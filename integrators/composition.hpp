@@ -30,8 +30,9 @@ struct FittedWord {
 /// What a scheme becomes over a Hamiltonian: the sub-steps of a composition as steps of its basic word, and
 /// irreversible letters added where the scheme has none.
 ///
-/// Where sub-steps meet, their outer letters are joined if these are exact flows, and never if they are not: of a map
-/// of order 2 two halves are no whole. A word without a D gets half a D at both ends; a word of two stages
+/// Where sub-steps of a composition meet, their outer letters are joined if these are exact flows, and never if they
+/// are not: of a map of order 2 two halves are no whole. (From step to step a scheme of order 2 may join them: it stays
+/// one.) A word without a D gets half a D at both ends; a word of two stages
 /// (`symplectic_euler_a`, `_b`) one D between them.
 /// @throws SchemeMismatch  naming the scheme and what it lacks: a letter, an exact part, quadratic kinetic energy,
 ///         forward steps
@@ -40,9 +41,9 @@ FittedWord fitted_word(const Scheme& scheme, const HamiltonianClaims& claims, co
 /// Advances a split Hamiltonian along a scheme.
 ///
 /// One step is the product of flows  phi_{p1}(w1 h), ..., phi_{pk}(wk h), first stage first. Where the first and the
-/// last letter agree they are merged across steps: after `advance` the last stage is *pending*, and `settle` completes
-/// it on a copy. Neighbours of one letter are merged, stages of weight 0 dropped. Every stage sees the time that the
-/// drifts (A) before it have reached.
+/// last letter agree and may be joined they are merged across steps: after `advance` the last stage is *pending*, and
+/// `settle` completes it on a copy. Stages of weight 0 are dropped. Every stage sees the time that the letters that
+/// carry time before it have reached.
 /// @cost the flows of the word, nothing else: no allocation, no validation
 /// @source HairerLubichWanner2006
 template <SplitHamiltonian H> class Composition {
@@ -55,9 +56,9 @@ template <SplitHamiltonian H> class Composition {
         options_(options),
         name_(scheme.name),
         order_(scheme.order.classical),
-        symmetric_(scheme.is_symmetric() && scheme.before.size() == 0),
         word_(timed(fitted_word(scheme, hamiltonian_.claims(), detail::name_of(hamiltonian_)),
                     hamiltonian_.claims().timed)) {
+    symmetric_ = scheme.is_symmetric() && scheme.before.size() == 0 && is_palindrome(word_.stages());
     for (const Stage& stage : scheme.before)
       before_.push_back({stage.letter, detail::weight_in<real>(stage.weight), real(0)});
     for (const Stage& stage : scheme.after)
@@ -86,9 +87,14 @@ template <SplitHamiltonian H> class Composition {
   void bind(ParticleSystem<real>& s) {
     s.keep_low_words(options_.compensated);
     hamiltonian_.bind(s);
+    const HamiltonianClaims claims = hamiltonian_.claims();
+    if (s.phase().coordinates != 0 && s.phase().coordinates != claims.coordinates) {
+      throw Error("the particles stand in coordinates of another Hamiltonian than '" + detail::name_of(hamiltonian_) +
+                  "'; begin with inertial ones");
+    }
     if constexpr (std::is_same_v<real, double>) {
       double longest = 0;
-      for (const char letter : hamiltonian_.claims().kicks) longest = std::max(longest, word_.longest(letter));
+      for (const char letter : claims.kicks) longest = std::max(longest, word_.longest(letter));
       detail::expect_kicks(hamiltonian_, longest * std::abs(s.clock().dt()));
     }
   }
@@ -171,6 +177,10 @@ template <SplitHamiltonian H> class Composition {
     }
     return TimedWord<real>(std::move(stages), fitted.joins);
   }
+  static bool is_palindrome(const std::vector<TimedStage<real>>& stages) {
+    return std::equal(stages.begin(), stages.begin() + static_cast<std::ptrdiff_t>(stages.size() / 2), stages.rbegin(),
+                      [](const auto& a, const auto& b) { return a.letter == b.letter && a.weight == b.weight; });
+  }
   void open(ParticleSystem<real>& s, const real& dt) {
     hamiltonian_.open(s);
     s.phase().opened = true;
@@ -187,7 +197,7 @@ template <SplitHamiltonian H> class Composition {
   CompositionOptions options_;
   std::string name_;
   int order_;
-  bool symmetric_;
+  bool symmetric_ = false;
   TimedWord<real> word_;
   std::vector<TimedStage<real>> before_, after_;
 };

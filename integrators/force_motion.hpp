@@ -12,6 +12,7 @@
 #include "integrators/vector_field.hpp"
 
 #include <algorithm>
+#include <deque>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -43,8 +44,9 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
   std::string signature() const override { return detail::signature_of(forces_); }
 
   void bind(const ParticleSystem<Real>& s) override {
-    check_force(forces_, s);
-    neighbors_ = NeighborList(claims_of(forces_).range);
+    bind_force(forces_, s);
+    workspace_ = Workspace();
+    workspace_.put(NeighborList(claims_of(forces_).range));
     work_ = s;
     work_.keep_low_words(false);
     work_.clock() = Clock<Real>::free(0);
@@ -52,6 +54,7 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
     in_lanes_ = std::is_same_v<Real, double> && has_lanes(forces_) && s.size() <= most_in_lanes;
     if (in_lanes_) bind_lanes(s);
     along_.reset();
+    other_.reset();
   }
   Index size() const override { return 6 * work_.size(); }
   Index particles() const override { return work_.size(); }
@@ -59,28 +62,52 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
   void scatter(const Vector<Real>& y, ParticleSystem<Real>& s) const override { detail::scatter_particles(y, s); }
 
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) override {
-    ForceSink<Real> sink(a_, s, {.energy = true}, &neighbors_);
+    ForceSink<Real> sink(a_, s, {.energy = true}, &workspace_);
     forces_.add_to(sink, s);
     return {kinetic_energy(s), sink.potential()};
   }
   std::optional<Mat3<Real>> virial(const ParticleSystem<Real>& s) override {
     if (!claims_of(forces_).virial) return {};
-    ForceSink<Real> sink(a_, s, {.virial = true}, &neighbors_);
+    ForceSink<Real> sink(a_, s, {.virial = true}, &workspace_);
     forces_.add_to(sink, s);
     return sink.virial();
   }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) override {
-    ForceSink<Real> sink(a, s, {}, &neighbors_);
+    ForceSink<Real> sink(a, s, {}, &workspace_);
     forces_.add_to(sink, s);
   }
 
-  Real lagrangian(const Real& t, const Vector<Real>& y) override {
+  bool has_potential() const override { return claims_of(forces_).energy; }
+  Real potential(const Real& t, const Vector<Real>& y) override {
     scatter(y, work_);
     work_.clock().set_stage_offset(t);
     work_.wrap();
-    ForceSink<Real> sink(a_, work_, {.energy = true}, &neighbors_);
+    ForceSink<Real> sink(a_, work_, {.energy = true}, &workspace_);
     forces_.add_to(sink, work_);
-    return kinetic_energy(work_) - sink.potential();
+    return sink.potential();
+  }
+  Vector<Real> masses() const override { return work_.masses().all().replicate(3, 1); }
+  Real lagrangian(const Real& t, const Vector<Real>& y) override {
+    const Real u = potential(t, y);
+    return kinetic_energy(work_) - u;
+  }
+  bool has_secant() const override { return noether::has_secant<Real>(forces_); }
+  void secant(const Real& t, const Vector<Real>& y0, const Vector<Real>& y1, Vector<Real>& a) override {
+    if constexpr (requires(ForceSink<Real> & out) { forces_.add_secant_to(out, work_, work_); }) {
+      ++this->evaluations().force;
+      if (!other_) other_.emplace(work_);
+      scatter(y0, *other_);
+      scatter(y1, work_);
+      other_->clock().set_stage_offset(t);
+      work_.clock().set_stage_offset(t);
+      ForceSink<Real> sink(a_, work_, {}, &workspace_);
+      forces_.add_secant_to(sink, *other_, work_);
+      this->note(sink.failure());
+      a.resize(3 * work_.size());
+      write(a.data());
+    } else {
+      VectorField<Real>::secant(t, y0, y1, a);
+    }
   }
 
   bool has_derivative() const override { return noether::has_derivative<Real>(forces_); }
@@ -155,7 +182,7 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
       packs_ = s.template as<Pack>();
       packs_.trim();
       packs_.clock() = Clock<Pack>::free(0);
-      pack_a_ = before_ = VectorColumn<Pack>(s.size());
+      pack_a_ = VectorColumn<Pack>(s.size());
       sets_ = claims_of(forces_).sets;
     }
   }
@@ -178,7 +205,8 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
     if constexpr (sees_packs) {
       if (careful_ == 0) {
         try {
-          ForceSink<Pack> sink = sets_ ? ForceSink<Pack>::unset(pack_a_, packs_) : ForceSink<Pack>(pack_a_, packs_, {});
+          ForceSink<Pack> sink =
+              sets_ ? ForceSink<Pack>::unset(pack_a_, packs_) : ForceSink<Pack>(pack_a_, packs_, {}, &workspace_);
           forces_.add_to(sink, packs_);
           return this->note(sink.failure());
         } catch (const LanesDiffer&) {
@@ -187,7 +215,7 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
       }
       --careful_;
       LaneByLane place(work_, a_, before_);
-      ForceSink<Pack> sink(pack_a_, packs_, {});
+      ForceSink<Pack> sink(pack_a_, packs_, {}, &workspace_);
       sink.set_lane_by_lane(&place);
       add_in_lanes(forces_, sink, packs_);
       this->note(sink.failure());
@@ -229,7 +257,7 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
   /// help, or the run has diverged.
   void sum_forces() {
     work_.wrap();
-    ForceSink<Real> sink(a_, work_, {}, &neighbors_);
+    ForceSink<Real> sink(a_, work_, {}, &workspace_);
     forces_.add_to(sink, work_);
     if (!sink.failure()) return;
     this->note(sink.failure());
@@ -264,12 +292,14 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
 
   F forces_;
   std::string name_;
-  NeighborList neighbors_;
+  Workspace workspace_;
   ParticleSystem<Real> work_;
+  std::optional<ParticleSystem<Real>> other_;  ///< where secants begin; made by the first of them
   VectorColumn<Real> a_;
   bool in_lanes_ = false, sets_ = false;
   ParticleSystem<Pack> packs_;
-  VectorColumn<Pack> pack_a_, before_;
+  VectorColumn<Pack> pack_a_;
+  std::deque<VectorColumn<Pack>> before_;
   int careful_ = 0;             ///< evaluations to come that are ready for lanes that differ
   std::optional<Along> along_;  ///< made by the first derivative
   Vector<Real> direction_, column_;

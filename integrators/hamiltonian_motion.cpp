@@ -1,8 +1,11 @@
 #include "integrators/hamiltonian_motion.hpp"
 
+#include "engine/neighbor_list.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace noether {
 
@@ -14,6 +17,12 @@ HamiltonianMotion<Real>::HamiltonianMotion(AnyHamiltonian<Real> hamiltonian, For
     throw SchemeMismatch(
         fmt::format("'{}' moves in coordinates of its own, so methods for y' = f cannot step it; use a "
                     "splitting scheme, such as 'verlet_aba'",
+                    hamiltonian_.name()));
+  }
+  if (claims.columns) {
+    throw SchemeMismatch(
+        fmt::format("'{}' moves more than positions and velocities, so methods for y' = f cannot step it; use a "
+                    "splitting scheme, such as 'verlet' or 'yoshida_4'",
                     hamiltonian_.name()));
   }
   if (claims.constraints > 0) {
@@ -33,6 +42,10 @@ template <class Real> FieldClaims HamiltonianMotion<Real>::claims() const {
           .time_dependent = own.time_dependent || beside.time_dependent,
           .energy = own.energy,
           .dissipative = own.dissipative || beside.dissipative,
+          .symplectic = own.symplectic,
+          .no_action = own.no_action.empty()
+                           ? "methods for y' = f know no action of a Hamiltonian that is more than forces"
+                           : own.no_action,
           .keeps_momentum = own.keeps_momentum && beside.keeps_momentum,
           .keeps_angular_momentum = own.keeps_angular_momentum && beside.keeps_angular_momentum};
 }
@@ -53,24 +66,30 @@ template <class Real> void HamiltonianMotion<Real>::bind(const ParticleSystem<Re
   work_.keep_low_words(false);
   work_.clock() = Clock<Real>::free(0);
   hamiltonian_.bind(work_);
-  beside_.check(work_);
+  bind_force(beside_, work_);
+  workspace_ = Workspace();
+  workspace_.put(NeighborList(beside_.claims().range));
   a_ = beside_a_ = VectorColumn<Real>(s.size());
 }
 
 template <class Real>
-void HamiltonianMotion<Real>::accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) {
+std::optional<Failure> HamiltonianMotion<Real>::sum(const ParticleSystem<Real>& s, VectorColumn<Real>& a) {
   hamiltonian_.accelerations(s, a);
-  if (beside_.terms().empty()) return;
-  ForceSink<Real> sink(beside_a_, s, {});
+  if (beside_.terms().empty()) return hamiltonian_.failure();
+  ForceSink<Real> sink(beside_a_, s, {}, &workspace_);
   beside_.add_to(sink, s);
   for (Index i = 0; i < a.size(); ++i) a.add(i, std::as_const(beside_a_)[i]);
+  return hamiltonian_.failure() ? hamiltonian_.failure() : sink.failure();
 }
 
 template <class Real> void HamiltonianMotion<Real>::sum(const Real& t, const Vector<Real>& y) {
   scatter(y, work_);
   work_.clock().set_stage_offset(t);
   work_.wrap();
-  accelerations(work_, a_);
+  const std::optional<Failure> failure = sum(work_, a_);
+  if (!failure) return;
+  this->note(failure);
+  for (int k = 0; k < 3; ++k) std::fill_n(a_.component(k), a_.size(), Real(std::numeric_limits<double>::quiet_NaN()));
 }
 
 template <class Real> void HamiltonianMotion<Real>::evaluate(const Real& t, const Vector<Real>& y, Vector<Real>& dy) {

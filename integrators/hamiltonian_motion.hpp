@@ -18,7 +18,7 @@ namespace noether {
 /// @cost the accelerations of the Hamiltonian and a copy of 12 n numbers
 template <class Real> class HamiltonianMotion final : public VectorField<Real> {
  public:
-  /// @throws SchemeMismatch  for a Hamiltonian in coordinates of its own, or with constraints
+  /// @throws SchemeMismatch  for a Hamiltonian in coordinates of its own, with columns that move, or with constraints
   explicit HamiltonianMotion(AnyHamiltonian<Real> hamiltonian, ForceField<Real> beside = {});
 
   std::unique_ptr<VectorField<Real>> clone() const override { return std::make_unique<HamiltonianMotion>(*this); }
@@ -31,7 +31,9 @@ template <class Real> class HamiltonianMotion final : public VectorField<Real> {
   void scatter(const Vector<Real>& y, ParticleSystem<Real>& s) const override { detail::scatter_particles(y, s); }
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) override { return hamiltonian_.energy(s); }
   std::optional<Mat3<Real>> virial(const ParticleSystem<Real>& s) override { return hamiltonian_.virial(s); }
-  void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) override;
+  void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) override { sum(s, a); }
+  void save(SavedState& saved, const std::string& prefix) const override { hamiltonian_.save(saved, prefix); }
+  void load(const SavedState& saved, const std::string& prefix) override { hamiltonian_.load(saved, prefix); }
 
  protected:
   void evaluate(const Real& t, const Vector<Real>& y, Vector<Real>& dy) override;
@@ -39,11 +41,14 @@ template <class Real> class HamiltonianMotion final : public VectorField<Real> {
 
  private:
   void sum(const Real& t, const Vector<Real>& y);
+  /// @return why they could not be computed
+  std::optional<Failure> sum(const ParticleSystem<Real>& s, VectorColumn<Real>& a);
 
   AnyHamiltonian<Real> hamiltonian_;
   ForceField<Real> beside_;
   ParticleSystem<Real> work_;
   VectorColumn<Real> a_, beside_a_;
+  Workspace workspace_;  ///< of the forces beside
 };
 
 extern template class HamiltonianMotion<double>;

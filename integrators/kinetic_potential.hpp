@@ -15,6 +15,7 @@
 #include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 namespace noether {
 
@@ -34,6 +35,9 @@ template <class Real> Real kinetic_energy(const ParticleSystem<Real>& s) {
 ///
 /// `B A B` is velocity Verlet. Accelerations are kept until positions change: settling a step for an observer and the
 /// next kick share one evaluation.
+///
+/// Forces that claim kicks of other letters (`ForceClaims::kicks`, `AnyForce::in_kick`) have flows of their own: slow
+/// ones under C, say, make the words of multiple time steps, such as C B A B A B C, and the basic word C B A B C.
 ///
 /// With constraints g(q) = 0 both flows end on them, positions and velocities, and `B A B` is RATTLE:
 ///
@@ -64,7 +68,10 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
 
   HamiltonianClaims claims() const {
     const ForceClaims forces = claims_of(forces_);
-    HamiltonianClaims claims{.alphabet = "AB",
+    const std::string kicks = letters_of(forces);
+    HamiltonianClaims claims{.alphabet = "A" + kicks,
+                             .basic = std::string(kicks.rbegin(), kicks.rend()) + "A" + kicks,
+                             .kicks = kicks,
                              .energy = forces.energy,
                              .time_dependent = forces.time_dependent,
                              .dissipative = forces.dissipative,
@@ -84,24 +91,25 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
   const F& forces() const { return forces_; }
 
   void bind(ParticleSystem<Real>& s) {
-    check_force(forces_, s);
-    acceleration_ = VectorColumn<Real>(s.size());
-    neighbors_ = NeighborList(claims_of(forces_).range, neighbor_options_);
+    bind_force(forces_, s);
+    const ForceClaims claims = claims_of(forces_);
+    kicks_.clear();
+    for (const char letter : letters_of(claims)) kicks_.emplace_back(letter, s.size());
+    workspace_ = Workspace();
+    workspace_.put(NeighborList(claims.range, neighbor_options_));
     periodic_ = s.box().is_periodic();
-    known_.reset();
     failure_.reset();
-    force_failure_.reset();
-    moved_ = true;
     if constexpr (constrained) constraints_.bind(s);
   }
   /// How long the longest kick is: pair forces tell where a step cannot follow them.
-  void expect_kicks(double longest) { kick_ = longest; }
+  void expect_kicks(double longest) { longest_kick_ = longest; }
   /// How neighbors are found; before the first step.
   bool set_neighbor_options(const NeighborOptions& options) {
     neighbor_options_ = options;
     return true;
   }
-  const NeighborList& neighbors() const { return neighbors_; }
+  /// What its forces keep between evaluations; after `bind` with the neighbor list that they share.
+  const Workspace& workspace() const { return workspace_; }
   void open(ParticleSystem<Real>& /*inertial already*/) {}
   void close(ParticleSystem<Real>& /*inertial already*/) {}
 
@@ -111,11 +119,11 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
       project(s, h);
       return;
     }
-    evaluate(s, observing_.value_or(Wanted{}));
-    s.advance_velocities(h, acceleration_);
+    Kick& kick = kick_of(letter);
+    evaluate(kick, s, observing_.value_or(Wanted{}));
+    s.advance_velocities(h, kick.acceleration);
     project(s, h);
-    if (!observing_) note_failure();
-    if (!observing_ && std::exchange(moved_, false)) ++evaluations_.force;
+    if (!observing_) count(kick);
   }
 
   /// Brings velocities back along the constraints, for flows of other letters; nothing where there are none.
@@ -131,12 +139,13 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
         s.clock().set_fraction(fraction);
         if (letter == 'A') {
           s.advance_positions(weight * dt);
-          drifted = moved_ = true;
+          drifted = true;
+          for (Kick& kick : kicks_) kick.moved = true;
         } else {
-          drifted ? sum(s, {}) : evaluate(s, {});
-          s.advance_velocities(weight * dt, acceleration_);
-          note_failure();
-          if (std::exchange(moved_, false)) ++evaluations_.force;
+          Kick& kick = kick_of(letter);
+          drifted ? sum(kick, s, {}) : evaluate(kick, s, {});
+          s.advance_velocities(weight * dt, kick.acceleration);
+          count(kick);
         }
       });
       s.clock().tick(Real(0));
@@ -144,7 +153,7 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
       if (failure_) done.failure = &*failure_;
       if (failure_ || span.asked_to_stop()) break;
     }
-    if (drifted) known_.reset();
+    if (drifted) forget();
     return done;
   }
 
@@ -155,14 +164,19 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
       project(s, h);
       return action;
     }
-    evaluate(s, {.energy = true});
+    Kick& kick = kick_of(letter);
+    evaluate(kick, s, {.energy = true});
     flow(letter, s, h);
-    return -h * potential_;
+    return -h * kick.potential;
   }
 
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) {
-    evaluate(s, {.energy = true});
-    return {kinetic_energy(s), potential_};
+    Real potential(0);
+    for (Kick& kick : kicks_) {
+      evaluate(kick, s, {.energy = true});
+      potential += kick.potential;
+    }
+    return {kinetic_energy(s), potential};
   }
   /// Sum x (x) f, the forces of constraints too [energy]; empty if a force does not tell it, or a constraint holds
   /// particles in place. Once asked for, it is summed along with the energy.
@@ -172,13 +186,21 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
       if (!constraints_.set().keeps_momentum()) return {};
     }
     virial_wanted_ = true;
-    evaluate(s, {.energy = true, .virial = true});
-    if constexpr (constrained) return Mat3<Real>(virial_ + constraints_.virial(s, acceleration_));
-    return virial_;
+    Mat3<Real> virial = Mat3<Real>::Zero();
+    for (Kick& kick : kicks_) {
+      evaluate(kick, s, {.energy = true, .virial = true});
+      virial += kick.virial;
+    }
+    if constexpr (constrained) {
+      VectorColumn<Real> a;
+      sum_of_kicks(a);
+      virial += constraints_.virial(s, a);
+    }
+    return virial;
   }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) {
-    evaluate(s, {});
-    a = acceleration_;
+    for (Kick& kick : kicks_) evaluate(kick, s, {});
+    sum_of_kicks(a);
     if constexpr (constrained) constraints_.constrain(s, a);
   }
 
@@ -202,13 +224,14 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
   Evaluations evaluations() const {
     Evaluations evaluations = evaluations_;
     if constexpr (constrained) evaluations.constraint = constraints_.iterations();
-    if (neighbors_.statistics().searches > 0) evaluations.neighbors = neighbors_.statistics();
+    const auto* list = workspace_.find<NeighborList>();
+    if (list != nullptr && list->statistics().searches > 0) evaluations.neighbors = list->statistics();
     return evaluations;
   }
   void save(SavedState& saved, const std::string& prefix) const {
     detail::save_signature(saved, prefix, forces_);
     save_value(saved, prefix + "evaluations", evaluations_.force);
-    save_value(saved, prefix + "moved", moved_);
+    for (const Kick& kick : kicks_) save_value(saved, moved_key(prefix, kick), kick.moved);
     if constexpr (constrained) {
       detail::save_signature(saved, prefix + "constraints/", constraints_.set());
       save_value(saved, prefix + "constraints/iterations", constraints_.iterations());
@@ -217,10 +240,12 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
   void load(const SavedState& saved, const std::string& prefix) {
     detail::check_signature(saved, prefix, forces_);
     load_value(saved, prefix + "evaluations", evaluations_.force);
-    load_value(saved, prefix + "moved", moved_);
-    known_.reset();
+    for (Kick& kick : kicks_) {
+      load_value(saved, moved_key(prefix, kick), kick.moved);
+      kick.failure.reset();
+    }
+    forget();
     failure_.reset();
-    force_failure_.reset();
     if constexpr (constrained) {
       detail::check_signature(saved, prefix + "constraints/", constraints_.set());
       load_value(saved, prefix + "constraints/iterations", evaluations_.constraint);
@@ -235,6 +260,37 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     Real time;
     bool energy, virial;
   };
+  /// The forces of one letter, as they were evaluated last.
+  struct Kick {
+    Kick(char of, Index n) : letter(of), acceleration(n) {}
+
+    char letter;
+    bool moved = true;  ///< since the last evaluation that was counted
+    VectorColumn<Real> acceleration;
+    Real potential = Real(0);
+    Mat3<Real> virial = Mat3<Real>::Zero();
+    std::optional<Known> known;
+    std::optional<Failure> failure;  ///< of the last evaluation, whoever asked for it
+  };
+
+  static std::string letters_of(const ForceClaims& forces) { return forces.kicks.empty() ? "B" : forces.kicks; }
+  static std::string moved_key(const std::string& prefix, const Kick& kick) {
+    return prefix + "moved" + (kick.letter == 'B' ? std::string() : std::string("_") + kick.letter);
+  }
+  Kick& kick_of(char letter) {
+    if (kicks_.size() == 1) return kicks_.front();
+    for (Kick& kick : kicks_) {
+      if (kick.letter == letter) return kick;
+    }
+    throw LogicError("there are no kicks of this letter");
+  }
+  void sum_of_kicks(VectorColumn<Real>& a) const {
+    a = kicks_.front().acceleration;
+    for (std::size_t k = 1; k < kicks_.size(); ++k) a.add_scaled(Real(1), kicks_[k].acceleration);
+  }
+  void forget() {
+    for (Kick& kick : kicks_) kick.known.reset();
+  }
 
   void move(ParticleSystem<Real>& s, const Real& h) {
     if constexpr (constrained) {
@@ -242,46 +298,47 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     } else {
       s.advance_positions(h);
     }
-    if (!observing_) moved_ = true;
+    if (observing_) return;
+    for (Kick& kick : kicks_) kick.moved = true;
   }
   void project(ParticleSystem<Real>& s, const Real& h) {
     if constexpr (constrained) constraints_.project_velocities(s, h);
   }
-  /// The first of a step is told: what follows from it, positions that are no numbers, may be worse.
-  void note_failure() {
-    if (force_failure_ && !failure_) failure_ = force_failure_;
+  /// Counts an evaluation of the run. The first failure of a step is told: what follows from it, positions that are no
+  /// numbers, may be worse.
+  void count(Kick& kick) {
+    if (kick.failure && !failure_) failure_ = kick.failure;
+    if (std::exchange(kick.moved, false)) ++evaluations_.force;
   }
-  void evaluate(const ParticleSystem<Real>& s, Wanted wanted) {
+  void evaluate(Kick& kick, const ParticleSystem<Real>& s, Wanted wanted) {
     const Real time = s.time();
-    const bool here = known_ && known_->version == s.version() && known_->time == time;
-    if (here && (known_->energy || !wanted.energy) && (known_->virial || !wanted.virial)) return;
+    const std::optional<Known>& known = kick.known;
+    const bool here = known && known->version == s.version() && known->time == time;
+    if (here && (known->energy || !wanted.energy) && (known->virial || !wanted.virial)) return;
     wanted.virial = wanted.virial || (wanted.energy && virial_wanted_);
-    sum(s, wanted);
-    known_ = Known{s.version(), time, wanted.energy, wanted.virial};
+    sum(kick, s, wanted);
+    kick.known = Known{s.version(), time, wanted.energy, wanted.virial};
   }
-  void sum(const ParticleSystem<Real>& s, Wanted wanted) {
-    ForceSink<Real> sink(acceleration_, s, {.energy = wanted.energy, .virial = wanted.virial}, &neighbors_, kick_);
+  void sum(Kick& kick, const ParticleSystem<Real>& s, Wanted wanted) {
+    const Wanted of_forces{.energy = wanted.energy, .virial = wanted.virial};
+    ForceSink<Real> sink(kick.acceleration, s, of_forces, &workspace_, longest_kick_);
+    if (kicks_.size() > 1) sink.set_kick_letter(kick.letter);
     forces_.add_to(sink, s);
-    if (wanted.energy) potential_ = sink.potential();
-    if (wanted.virial) virial_ = sink.virial();
-    force_failure_ = sink.failure();
+    if (wanted.energy) kick.potential = sink.potential();
+    if (wanted.virial) kick.virial = sink.virial();
+    kick.failure = sink.failure();
   }
 
   F forces_;
   typename C::template Solver<Real> constraints_;
-  VectorColumn<Real> acceleration_;
-  Real potential_ = Real(0);
-  Mat3<Real> virial_ = Mat3<Real>::Zero();
+  std::vector<Kick> kicks_{Kick('B', 0)};  ///< one for each letter
   bool virial_wanted_ = false;
-  std::optional<Known> known_;
   std::optional<Wanted> observing_;
-  bool moved_ = true;                     ///< since the last evaluation that was counted
-  std::optional<Failure> failure_;        ///< why the last flow could not be done
-  std::optional<Failure> force_failure_;  ///< of the last evaluation, whoever asked for it
+  std::optional<Failure> failure_;  ///< why the last flow could not be done
   NeighborOptions neighbor_options_;
-  NeighborList neighbors_;
+  Workspace workspace_;
   bool periodic_ = false;
-  double kick_ = 0;  ///< the longest of a step [time]; 0: nobody has told
+  double longest_kick_ = 0;  ///< of a step [time]; 0: nobody has told
   Evaluations evaluations_;
 };
 

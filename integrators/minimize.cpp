@@ -95,7 +95,8 @@ double usual_displacement(const ParticleSystem<double>& s) {
 class Descent {
  public:
   Descent(ParticleSystem<double>& s, const AnyForce<double>& forces, const MinimizeOptions& options)
-      : s_(s), forces_(forces), options_(options), neighbors_(forces.claims().range), f_(s.size()), v_(s.size()) {
+      : s_(s), forces_(forces), options_(options), f_(s.size()), v_(s.size()) {
+    workspace_.put(NeighborList(forces.claims().range));
     reach_ = options.max_displacement > 0 ? options.max_displacement : usual_displacement(s);
   }
 
@@ -130,7 +131,7 @@ class Descent {
 
   /// Forces at the present positions. @return whether they can be computed
   bool evaluate() {
-    ForceSink<double> sink(f_, s_, {}, &neighbors_);
+    ForceSink<double> sink(f_, s_, {}, &workspace_);
     forces_.add_to(sink, s_);
     ++made_;
     failure_ = overlap_ = {};
@@ -239,7 +240,7 @@ class Descent {
   ParticleSystem<double>& s_;
   const AnyForce<double>& forces_;
   const MinimizeOptions& options_;
-  NeighborList neighbors_;
+  Workspace workspace_;
   VectorColumn<double> f_, v_, before_;
   double reach_ = 0, dt_ = 0, alpha_ = alpha_start, largest_ = 0;
   double curvature_ = 0;    ///< largest of late [mass/time^2]

@@ -50,6 +50,8 @@ struct FieldClaims {
   bool time_dependent = false;
   bool energy = false;  ///< an energy exists
   bool dissipative = false;
+  bool symplectic = true;           ///< the exact motion is; of particles under forces of a potential it is
+  std::string_view no_action = "";  ///< why no action tells the motion; empty: the Lagrangian gives one
   bool keeps_momentum = false;
   bool keeps_angular_momentum = false;
 };
@@ -114,10 +116,34 @@ template <class Real> class VectorField {
   /// The virial of its forces [energy]; empty where it has none, or they do not tell.
   virtual std::optional<Mat3<Real>> virial(const ParticleSystem<Real>& /*s*/) { return {}; }
   virtual void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) = 0;
-  /// Kinetic less potential energy at y = (q, v), not counted. @throws LogicError  for a system of first order
-  virtual Real lagrangian(const Real& /*t*/, const Vector<Real>& /*y*/) {
-    throw LogicError("a system of first order has no Lagrangian");
+  /// Whether v' = - M^-1 dU/dq with masses and a potential that it gives: what `lagrangian`, `potential` and `masses`
+  /// stand on.
+  virtual bool has_potential() const { return false; }
+  /// U(t, q) at y = (q, v), not counted [energy]. @throws LogicError  where `has_potential` is false
+  virtual Real potential(const Real& /*t*/, const Vector<Real>& /*y*/) {
+    throw LogicError("a vector field without a potential was asked for it");
   }
+  /// The mass of each q, shape (size / 2) [mass]. @throws LogicError  as `potential`
+  virtual Vector<Real> masses() const { throw LogicError("a vector field without masses was asked for them"); }
+  /// Kinetic less potential energy at y = (q, v), not counted [energy]. @throws LogicError  as `potential`
+  virtual Real lagrangian(const Real& t, const Vector<Real>& y) {
+    const Vector<Real> m = masses();
+    Real kinetic(0);
+    for (Index i = 0; i < m.size(); ++i) kinetic += m[i] * y[m.size() + i] * y[m.size() + i] / Real(2);
+    return kinetic - potential(t, y);
+  }
+  /// Whether all forces know their secants (engine/force_sink.hpp).
+  virtual bool has_secant() const { return false; }
+  /// Accelerations a, shape (size / 2), for which m a . (q1 - q0) = U(t, q0) - U(t, q1) to rounding, counted.
+  /// @throws LogicError  where `has_secant` is false
+  virtual void secant(const Real& /*t*/, const Vector<Real>& /*y0*/, const Vector<Real>& /*y1*/, Vector<Real>& /*a*/) {
+    throw LogicError("a vector field without secants was asked for them");
+  }
+
+  /// What of it is to be checked when a saved run goes on, beside its signature.
+  virtual void save(SavedState& /*saved*/, const std::string& /*prefix*/) const {}
+  /// @throws Error  if the saved run was made by another field
+  virtual void load(const SavedState& /*saved*/, const std::string& /*prefix*/) {}
 
   /// Why forces could not be computed, the first time since this was forgotten; their rates were no numbers.
   const std::optional<Failure>& failure() const { return failure_; }

@@ -13,12 +13,18 @@ namespace noether {
 
 template <class Real, class F> HamiltonianClaims WisdomHolman<Real, F>::claims() const {
   const ForceClaims forces = claims_of(forces_);
+  if (forces.kicks.find_first_not_of('B') != std::string::npos) {
+    throw SchemeMismatch(
+        "wisdom_holman has kicks of the letter B alone; take the letter of the force out, or use "
+        "kinetic_potential");
+  }
   return {.alphabet = "AB",
           .inexact = jacobi() || !has_forces ? "" : "B",
           .quadratic_kinetic = jacobi(),
           .energy = forces.energy,
           .time_dependent = forces.time_dependent,
           .dissipative = forces.dissipative,
+          .coordinates = static_cast<std::uint8_t>(options_.coordinates),
           .inertial = false,
           .kepler = true,
           .keeps_momentum = forces.keeps_momentum,

@@ -48,19 +48,38 @@ std::string cell_of(const Frame& frame, double length) {
                      frame.edges[1] / length, frame.edges[2] / length);
 }
 
+/// Other columns that move, as properties of extended XYZ: ":orientation:R:4".
+std::string properties_of(const Frames& shared) {
+  std::string text;
+  for (const auto& [name, column] : shared.columns) text += fmt::format(":{}:R:{}", word_of(name), column.first);
+  return text;
+}
+
+/// Their numbers for particle `i`, each after `mark`.
+void write_columns(const Frames& shared, const Frame& frame, std::size_t i, char mark, fmt::memory_buffer& out) {
+  for (const auto& [name, column] : shared.columns) {
+    const auto width = static_cast<std::size_t>(column.first);
+    for (std::size_t k = 0; k < width; ++k) {
+      fmt::format_to(std::back_inserter(out), "{}{:.17g}", mark, frame.columns.at(name).at(width * i + k));
+    }
+  }
+}
+
 /// A molecular run, in the units that `read_structure` expects of such a file: those of ASE.
 void write_molecular_xyz(const TrajectoryReader& reader, const Frame& frame, fmt::memory_buffer& out) {
   const Frames& shared = reader.shared();
   const FileUnits ase = file_units_of(StructureFormat::extended_xyz, {});
   const auto into = std::back_inserter(out);
   fmt::format_to(into,
-                 "{}\nProperties=species:S:1:pos:R:3:masses:R:1:momenta:R:3 Time={:.17g} Step={} {} time_unit=ps\n",
-                 shared.ids.size(), frame.time, frame.step, cell_of(frame, ase.length));
+                 "{}\nProperties=species:S:1:pos:R:3:masses:R:1:momenta:R:3{} Time={:.17g} Step={} {} time_unit=ps\n",
+                 shared.ids.size(), properties_of(shared), frame.time, frame.step, cell_of(frame, ase.length));
   for (std::size_t i = 0; i < shared.ids.size(); ++i) {
     const double *x = &frame.positions[3 * i], *v = &frame.velocities[3 * i], m = shared.masses[i];
     const double p = m / ase.momentum_velocity;
-    fmt::format_to(into, "{} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n", element_of(shared.names[i]),
+    fmt::format_to(into, "{} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}", element_of(shared.names[i]),
                    x[0] / ase.length, x[1] / ase.length, x[2] / ase.length, m, p * v[0], p * v[1], p * v[2]);
+    write_columns(shared, frame, i, ' ', out);
+    out.push_back('\n');
   }
 }
 
@@ -68,8 +87,8 @@ void write_molecular_xyz(const TrajectoryReader& reader, const Frame& frame, fmt
 void write_own_xyz(const TrajectoryReader& reader, const Frame& frame, fmt::memory_buffer& out) {
   const Frames& shared = reader.shared();
   const auto into = std::back_inserter(out);
-  fmt::format_to(into, "{}\nProperties=species:S:1:pos:R:3:vel:R:3 Time={:.17g} Step={} {} units={}", shared.ids.size(),
-                 frame.time, frame.step, cell_of(frame, 1), shared.units);
+  fmt::format_to(into, "{}\nProperties=species:S:1:pos:R:3:vel:R:3{} Time={:.17g} Step={} {} units={}",
+                 shared.ids.size(), properties_of(shared), frame.time, frame.step, cell_of(frame, 1), shared.units);
   if (shared.units != "reduced") {
     fmt::format_to(into, " length_unit={} velocity_unit={} time_unit={}", shared.length_unit, shared.velocity_unit,
                    shared.time_unit);
@@ -77,8 +96,10 @@ void write_own_xyz(const TrajectoryReader& reader, const Frame& frame, fmt::memo
   out.push_back('\n');
   for (std::size_t i = 0; i < shared.ids.size(); ++i) {
     const double *x = &frame.positions[3 * i], *v = &frame.velocities[3 * i];
-    fmt::format_to(into, "{} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n", word_of(shared.names[i]), x[0], x[1],
+    fmt::format_to(into, "{} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}", word_of(shared.names[i]), x[0], x[1],
                    x[2], v[0], v[1], v[2]);
+    write_columns(shared, frame, i, ' ', out);
+    out.push_back('\n');
   }
 }
 
@@ -91,9 +112,11 @@ void write_csv(const TrajectoryReader& reader, const Frame& frame, fmt::memory_b
   const Frames& shared = reader.shared();
   for (std::size_t i = 0; i < shared.ids.size(); ++i) {
     const double *x = &frame.positions[3 * i], *v = &frame.velocities[3 * i];
-    fmt::format_to(std::back_inserter(out), "{},{:.17g},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n",
+    fmt::format_to(std::back_inserter(out), "{},{:.17g},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}",
                    frame.step, frame.time, shared.ids[i], quoted_field(shared.names[i]), x[0], x[1], x[2], v[0], v[1],
                    v[2]);
+    write_columns(shared, frame, i, ',', out);
+    out.push_back('\n');
   }
 }
 
@@ -124,8 +147,12 @@ std::string csv_head(const Frames& shared) {
     return symbol.empty() || symbol == "1" ? "" : " [" + symbol + "]";
   };
   const std::string length = unit(shared.length_unit), velocity = unit(shared.velocity_unit);
-  return fmt::format("step,time{0},id,name,x{1},y{1},z{1},vx{2},vy{2},vz{2}\n", unit(shared.time_unit), length,
-                     velocity);
+  std::string head =
+      fmt::format("step,time{0},id,name,x{1},y{1},z{1},vx{2},vy{2},vz{2}", unit(shared.time_unit), length, velocity);
+  for (const auto& [name, column] : shared.columns) {
+    for (Index k = 0; k < column.first; ++k) head += fmt::format(",{}[{}]{}", name, k, unit(column.second));
+  }
+  return head.append("\n");
 }
 
 }  // namespace

@@ -59,8 +59,8 @@ std::vector<Index> id_order(const std::vector<std::int64_t>& ids) {
 
 std::string digest(std::int64_t step, double time, std::span<const std::int64_t> ids, std::span<const double> positions,
                    std::span<const double> velocities, std::span<const double> masses,
-                   std::span<const std::int32_t> images) {
-  static constexpr std::string_view head = "noether-state-1\n";
+                   std::span<const std::int32_t> images, const MovingColumns& moving) {
+  const std::string_view head = moving.empty() ? "noether-state-1\n" : "noether-state-2\n";
   Sha256 hash;
   hash.add(head.data(), head.size());
   hash.add(step);
@@ -71,6 +71,10 @@ std::string digest(std::int64_t step, double time, std::span<const std::int64_t>
   hash.add(velocities.data(), velocities.size_bytes());
   hash.add(masses.data(), masses.size_bytes());
   hash.add(images.data(), images.size_bytes());
+  for (const auto& [name, values] : moving) {
+    hash.add(name.data(), name.size());
+    hash.add(values.data(), values.size() * sizeof(double));
+  }
   return "sha256:" + hash.hex();
 }
 
@@ -85,6 +89,21 @@ std::string system_digest(std::int64_t step, double time, std::span<const double
   return "sha256:" + hash.hex();
 }
 
+MovingColumns moving_columns(const ParticleSystem<double>& s, const std::vector<Index>& order) {
+  MovingColumns all;
+  for (const auto& column : s.columns()) {
+    if (!column.info.moves()) continue;
+    std::vector<double>& numbers = all[column.info.name];
+    numbers.reserve(order.size() * static_cast<std::size_t>(column.info.width));
+    column.visit([&](const auto& values) {
+      for (const Index i : order) {
+        for (int k = 0; k < values.width; ++k) numbers.push_back(static_cast<double>(values.component(k)[i]));
+      }
+    });
+  }
+  return all;
+}
+
 std::string digest(const ParticleSystem<double>& settled) {
   const auto& clock = settled.clock();
   const double time = clock.mode() == ClockMode::fixed ? clock.time_at(clock.step()) : clock.high();
@@ -92,7 +111,8 @@ std::string digest(const ParticleSystem<double>& settled) {
   std::vector<std::int64_t> ids;
   std::vector<double> x, v, m;
   std::vector<std::int32_t> images;
-  for (const Index i : id_order(settled.ids())) {
+  const std::vector<Index> order = id_order(settled.ids());
+  for (const Index i : order) {
     ids.push_back(settled.ids()[static_cast<std::size_t>(i)]);
     const Vec3<double> position = settled.positions()[i], velocity = settled.velocities()[i];
     x.insert(x.end(), position.begin(), position.end());
@@ -100,7 +120,7 @@ std::string digest(const ParticleSystem<double>& settled) {
     m.push_back(settled.masses()[i]);
     for (int k = 0; k < 3 && settled.box().is_periodic(); ++k) images.push_back(settled.images().component(k)[i]);
   }
-  return digest(clock.step(), time, ids, x, v, m, images);
+  return digest(clock.step(), time, ids, x, v, m, images, moving_columns(settled, order));
 }
 
 }  // namespace noether::io

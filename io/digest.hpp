@@ -4,6 +4,7 @@
 #include "engine/particle_system.hpp"
 
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -20,16 +21,23 @@ std::string sha256(std::string_view bytes);
 ///
 /// SHA-256, little-endian, of the ASCII "noether-state-1\n", int64 step, int64 n, float64 time (t0 + n dt; of a free
 /// clock its high word), then in id order int64 id[n], float64 x[n][3], v[n][3], m[n], and in a periodic box
-/// int32 image[n][3]. Of a first-order system: over
+/// int32 image[n][3]. Where other columns move, the first word is "noether-state-2\n", and they follow in the order of
+/// their names, each as its name and its float64 values. Of a first-order system: over
 /// "noether-system-1\n", int64 step, int64 n, float64 time, float64 y[n].
 /// @cost O(n log n)
 std::string digest(const ParticleSystem<double>& settled);
 
+/// Values of columns that move, by name; of each shape (n, width), row by row, in id order.
+using MovingColumns = std::map<std::string, std::vector<double>>;
+
+/// The columns of a system that move, its particles in some order.
+MovingColumns moving_columns(const ParticleSystem<double>& s, const std::vector<Index>& order);
+
 /// The same from arrays that stand in id order: ids (n), positions (n, 3), velocities (n, 3), masses (n), row by row,
-/// and in a periodic box images (n, 3).
+/// in a periodic box images (n, 3), and other columns that move.
 std::string digest(std::int64_t step, double time, std::span<const std::int64_t> ids, std::span<const double> positions,
                    std::span<const double> velocities, std::span<const double> masses,
-                   std::span<const std::int32_t> images = {});
+                   std::span<const std::int32_t> images = {}, const MovingColumns& moving = {});
 
 /// The same of a first-order system, from its variables y (n).
 std::string system_digest(std::int64_t step, double time, std::span<const double> variables);

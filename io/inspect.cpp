@@ -98,7 +98,7 @@ FileInfo trajectory_info(const std::filesystem::path& path) {
   info.last_time = last.time;
   info.digest = info.variables > 0 ? system_digest(last.step, last.time, last.variables)
                                    : digest(last.step, last.time, reader.shared().ids, last.positions, last.velocities,
-                                            reader.shared().masses, last.images);
+                                            reader.shared().masses, last.images, last.columns);
   return info;
 }
 
@@ -149,10 +149,12 @@ void check_frames(const TrajectoryReader& reader, bool complete, std::vector<std
     const Frame frame = reader.frame(k);
     steps.push_back(frame.step);
     times.push_back(frame.time);
-    const auto finite = [](double x) { return std::isfinite(x); };
-    if (!std::all_of(frame.positions.begin(), frame.positions.end(), finite) ||
-        !std::all_of(frame.velocities.begin(), frame.velocities.end(), finite) ||
-        !std::all_of(frame.variables.begin(), frame.variables.end(), finite)) {
+    const auto finite = [](const std::vector<double>& numbers) {
+      return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
+    };
+    if (!finite(frame.positions) || !finite(frame.velocities) || !finite(frame.variables) ||
+        !std::all_of(frame.columns.begin(), frame.columns.end(),
+                     [&](const auto& column) { return finite(column.second); })) {
       damaged.push_back(fmt::format("frame {} at step {} is not finite", k, frame.step));
     }
   }

@@ -55,6 +55,8 @@ struct Frame {
   std::vector<double> variables = {};         ///< (n)
   std::vector<std::int32_t> images = {};  ///< (n, 3), how often each has crossed the periodic box; empty without one
   std::vector<double> edges = {};         ///< (3), of the periodic box [length]; empty without one
+  /// Other columns that move, by name: (n, width), row by row.
+  std::map<std::string, std::vector<double>> columns = {};
 };
 
 /// All frames of a trajectory and what they share.
@@ -64,6 +66,8 @@ struct Frames {
   std::vector<std::string> names;
   std::vector<double> masses;
   std::vector<std::string> variable_names;  ///< "y[0]", "y[1]", ... where the system gives none
+  /// Other columns that move, by name: how many numbers a particle has, and their unit.
+  std::map<std::string, std::pair<Index, std::string>> columns;
   std::vector<Frame> frames;
 };
 

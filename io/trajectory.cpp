@@ -3,9 +3,9 @@
 #include "engine/quantity.hpp"
 #include "engine/simd.hpp"
 #include "engine/version.hpp"
-#include "io/buffered_dataset.hpp"
 #include "io/digest.hpp"
 #include "io/hdf5_file.hpp"
+#include "io/trajectory_datasets.hpp"
 #include "io/trajectory_layout.hpp"
 #include "io/trial.hpp"
 
@@ -55,51 +55,6 @@ std::vector<std::int64_t> species_of(const std::vector<std::string>& names) {
   }
   return species;
 }
-
-/// A sample that waits for its file.
-struct KeptSample {
-  explicit KeptSample(const Sample& s)
-      : monitor(s.monitor), step(s.step), time(s.time), series(s.series.begin(), s.series.end()), scale(s.scale) {}
-  Sample sample() const { return {monitor, step, time, series, scale}; }
-
-  std::string monitor;
-  std::int64_t step;
-  double time;
-  std::vector<Series> series;
-  std::optional<double> scale;
-};
-
-/// The datasets of one monitor, open.
-struct MonitorDatasets {
-  BufferedDataset<std::int64_t> step;
-  BufferedDataset<double> time;
-  std::vector<BufferedDataset<double>> quantities;  ///< in the order of the sample's series
-  std::optional<double> scale;
-
-  void write_out() {
-    for (auto& quantity : quantities) quantity.write_out();
-    time.write_out();
-    step.write_out();
-  }
-};
-
-/// The datasets of the frames, open: of particles, or of the variables of a system.
-struct FrameDatasets {
-  BufferedDataset<double> position, velocity, variables, edges;
-  BufferedDataset<std::int64_t> step, image;
-  BufferedDataset<double> time;
-
-  /// The values that readers go by come last: a frame that has them has everything.
-  void write_out() {
-    velocity.write_out();
-    image.write_out();
-    edges.write_out();
-    time.write_out();
-    step.write_out();
-    position.write_out();
-    variables.write_out();
-  }
-};
 
 }  // namespace
 
@@ -210,7 +165,7 @@ class TrajectoryWriter::File {
     describe_file();
     if (state.variables().empty()) {
       describe_particles(state);
-      if (options_.frames) create_frames(state.size());
+      if (options_.frames) create_frames(state);
     } else {
       describe_system(state);
       if (options_.frames) create_system_frames();
@@ -254,6 +209,24 @@ class TrajectoryWriter::File {
     hdf5_->set_attribute(particles_path + "/box", "boundary",
                          std::vector<std::string>(3, state.box().is_periodic() ? "periodic" : "none"));
     periodic_ = state.box().is_periodic();
+    for (const auto& column : state.columns()) {
+      if (!column.info.moves()) describe_parameter(column);
+    }
+  }
+
+  /// A column that does not move stands once in the file, as masses do: shape (n), or (n, width).
+  void describe_parameter(const Columns<double>::Column& column) const {
+    const std::string path = particles_path + "/" + column.info.name;
+    std::vector<Index> shape{static_cast<Index>(order_.size())};
+    if (column.info.width > 1) shape.push_back(column.info.width);
+    column.visit([&](const auto& values) {
+      std::vector<std::decay_t<decltype(values.component(0)[0])>> numbers;
+      for (const Index i : order_) {
+        for (int k = 0; k < values.width; ++k) numbers.push_back(values.component(k)[i]);
+      }
+      hdf5_->write(path, numbers, shape);
+    });
+    hdf5_->set_attribute(path, "noether_unit", unit_in_words(column.info.dimension, *units_));
   }
 
   void describe_system(const ParticleSystem<double>& state) {
@@ -273,7 +246,8 @@ class TrajectoryWriter::File {
   }
 
   /// Position's values come first, step and time are shared by position and velocity.
-  void create_frames(Index particles) {
+  void create_frames(const ParticleSystem<double>& state) {
+    const Index particles = state.size();
     const std::string position = particles_path + "/position";
     const std::string velocity = particles_path + "/velocity";
     const Index rows = rows_per_chunk(3 * particles, frame_bytes), few = rows_per_chunk(1, sample_bytes);
@@ -287,6 +261,9 @@ class TrajectoryWriter::File {
     hdf5_->link(position + "/step", velocity + "/step");
     hdf5_->link(position + "/time", velocity + "/time");
     if (periodic_) create_box_frames(particles, rows, few);
+    for (const auto& column : state.columns()) {
+      if (column.info.moves()) create_column_frames(column.info, particles);
+    }
     hdf5_->open(position + "/value").write_last();
     set_unit(position + "/value", std::string(units_->length), "nm");
     set_unit(velocity + "/value", unit_of(dimensions::velocity, *units_), "nm ps-1");
@@ -303,6 +280,19 @@ class TrajectoryWriter::File {
       hdf5_->link(particles_path + "/position/time", group + "/time");
     }
     set_unit(edges_path + "/value", std::string(units_->length), "nm");
+  }
+
+  /// A column that moves beyond position and velocity, such as an orientation: shape (frames, n, width).
+  void create_column_frames(const ColumnInfo& info, Index particles) {
+    const std::string group = particles_path + "/" + info.name;
+    frame_.columns[info.name] = BufferedDataset<double>(
+        hdf5_->create_growing(group + "/value", ElementType::real, {particles, Index{info.width}},
+                              rows_per_chunk(info.width * particles, frame_bytes)));
+    hdf5_->link(particles_path + "/position/step", group + "/step");
+    hdf5_->link(particles_path + "/position/time", group + "/time");
+    hdf5_->set_attribute(group, role_attribute,
+                         std::string(info.role == ColumnRole::momentum ? "momentum" : "configuration"));
+    hdf5_->set_attribute(group, "noether_unit", unit_in_words(info.dimension, *units_));
   }
 
   void create_system_frames() {
@@ -338,6 +328,11 @@ class TrajectoryWriter::File {
     frame_.velocity = BufferedDataset<double>(open(particles_path + "/velocity/value", {particles, 3}));
     frame_.step = BufferedDataset<std::int64_t>(open(particles_path + "/position/step", {}));
     frame_.time = BufferedDataset<double>(open(particles_path + "/position/time", {}));
+    for (const std::string& name : moving_columns(*hdf5_)) {
+      const std::string path = fmt::format("{}/{}/value", particles_path, name);
+      const std::vector<Index> shape = hdf5_->open(path).growing_shape();
+      frame_.columns[name] = BufferedDataset<double>(open(path, {particles, shape.back()}));
+    }
     periodic_ = hdf5_->has(image_path);
     if (!periodic_) return;
     frame_.image = BufferedDataset<std::int64_t>(open(image_path + "/value", {particles, 3}));
@@ -369,6 +364,9 @@ class TrajectoryWriter::File {
                particles_path + "/velocity/value"};
     }
     if (hdf5_->has(image_path)) paths.insert(paths.end(), {image_path + "/value", edges_path + "/value"});
+    for (const std::string& name : moving_columns(*hdf5_)) {
+      paths.push_back(fmt::format("{}/{}/value", particles_path, name));
+    }
     if (hdf5_->has(system_path + "/value")) {
       paths = {system_path + "/step", system_path + "/time", system_path + "/value"};
     }
@@ -463,6 +461,7 @@ class TrajectoryWriter::File {
       return;
     }
     if (periodic_) write_box(state);
+    write_columns(state);
     gather(state.velocities());
     frame_.velocity.append(row_);
     frame_.time.append(now.time());
@@ -478,6 +477,22 @@ class TrajectoryWriter::File {
     }
     frame_.image.append(images);
     frame_.edges.append(std::span(state.box().edges().data(), 3));
+  }
+
+  /// @throws FileError  where the run moves other columns than the file has
+  void write_columns(const ParticleSystem<double>& state) {
+    if (frame_.columns.empty() && !state.columns().any_moves()) return;
+    const MovingColumns moving = moving_columns(state, order_);
+    for (const auto& [name, values] : moving) {
+      const auto found = frame_.columns.find(name);
+      if (found == frame_.columns.end() || moving.size() != frame_.columns.size()) {
+        throw FileError(fmt::format("the file does not have the columns that the run moves, such as '{}': a trajectory "
+                                    "is of one kind of particles; after an edit write another file",
+                                    name),
+                        {.file = path_.string()});
+      }
+      found->second.append(values);
+    }
   }
 
   void write_sample(const Sample& sample) {

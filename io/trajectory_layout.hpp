@@ -3,9 +3,11 @@
 
 #include "engine/error.hpp"
 #include "engine/units.hpp"
+#include "io/hdf5_file.hpp"
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace noether::io {
 
@@ -14,6 +16,19 @@ inline const std::string image_path = particles_path + "/image";
 inline const std::string edges_path = particles_path + "/box/edges";
 inline const std::string system_path = "/noether/system";
 inline const std::string monitors_path = "/noether/monitors";
+
+/// Attribute of the group of a column that moves beyond position and velocity: what it is to forces.
+inline const std::string role_attribute = "noether_role";
+
+/// Names of the columns of a file that move beyond position and velocity, in their order.
+inline std::vector<std::string> moving_columns(const Hdf5File& file) {
+  std::vector<std::string> names;
+  for (const std::string& name : file.children(particles_path)) {
+    const std::string group = particles_path + "/" + name;
+    if (file.is_group(group) && file.has_attribute(group, role_attribute)) names.push_back(name);
+  }
+  return names;
+}
 
 /// Whether a dataset is the one that readers go by: on disk nothing of its group is ever shorter. These are positions
 /// of frames, variables of a system and steps of samples.

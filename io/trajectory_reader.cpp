@@ -89,6 +89,7 @@ void TrajectoryReader::open_particles(const std::filesystem::path& path) {
           {.file = path.string()});
     }
   }
+  open_columns(path);
   steps_ = file_.open(particles_path + "/position/step").read_integers();
   times_ = file_.open(particles_path + "/position/time").read_reals();
   shared_.length_unit = unit_at(file_, particles_path + "/position/value", "nm");
@@ -97,6 +98,23 @@ void TrajectoryReader::open_particles(const std::filesystem::path& path) {
   frames_ = std::min(
       {position_.rows(), velocity_.rows(), static_cast<Index>(steps_.size()), static_cast<Index>(times_.size())});
   if (periodic_) frames_ = std::min({frames_, image_.rows(), edges_.rows()});
+  for (const auto& [name, column] : columns_) frames_ = std::min(frames_, column.rows());
+}
+
+void TrajectoryReader::open_columns(const std::filesystem::path& path) {
+  const Index n = static_cast<Index>(shared_.ids.size());
+  for (const std::string& name : moving_columns(file_)) {
+    const std::string group = particles_path + "/" + name;
+    Hdf5Dataset column = file_.open(group + "/value");
+    const std::vector<Index> shape = column.shape();
+    if (shape.size() != 3 || shape[1] != n || shape[2] < 1 || shape[2] > 9) {
+      throw FileError(
+          fmt::format("damaged: column '{}' of {} particles does not have the shape ({}, 1 to 9)", name, n, n),
+          {.file = path.string()});
+    }
+    shared_.columns[name] = {shape[2], unit_at(file_, group + "/value", file_.text_attribute(group, "noether_unit"))};
+    columns_.emplace(name, std::move(column));
+  }
 }
 
 Frame TrajectoryReader::frame(Index k) const {
@@ -108,6 +126,7 @@ Frame TrajectoryReader::frame(Index k) const {
       frame.images.push_back(static_cast<std::int32_t>(image));
     frame.edges = edges_.read_reals(k, 1);
   }
+  for (const auto& [name, column] : columns_) frame.columns[name] = column.read_reals(k, 1);
   return frame;
 }
 
@@ -126,6 +145,9 @@ std::vector<std::pair<std::string, Index>> TrajectoryReader::lengths() const {
   if (periodic_) {
     all.emplace_back(image_path + "/value", image_.rows());
     all.emplace_back(edges_path + "/value", edges_.rows());
+  }
+  for (const auto& [name, column] : columns_) {
+    all.emplace_back(fmt::format("{}/{}/value", particles_path, name), column.rows());
   }
   return all;
 }

@@ -5,6 +5,7 @@
 #include "io/inspect.hpp"
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,8 +30,11 @@ class TrajectoryReader {
   void open_particles(const std::filesystem::path& path);
   void open_system(const std::filesystem::path& path);
 
+  void open_columns(const std::filesystem::path& path);
+
   Hdf5File file_;
   Hdf5Dataset position_, velocity_, variables_, image_, edges_;
+  std::map<std::string, Hdf5Dataset> columns_;  ///< others that move, by name
   std::vector<std::int64_t> steps_;
   std::vector<double> times_;
   Frames shared_;

@@ -67,6 +67,23 @@ bool SceneHamiltonian::is_keplerian() const {
   return std::any_of(all.begin(), all.end(), [](const SceneForce& f) { return f.force.claims().kepler; });
 }
 
+namespace {
+
+/// @throws SchemeMismatch  if the part gives no letter of its own: another one would hide it
+AnyHamiltonian<double> with_part(AnyHamiltonian<double> hamiltonian, const SceneLetter& letter,
+                                 const std::string& name) {
+  const std::string before = hamiltonian.claims().alphabet;
+  AnyHamiltonian<double> made = letter(std::move(hamiltonian));
+  for (const char one : made.claims().alphabet.substr(before.size())) {
+    if (before.find(one) == std::string::npos) continue;
+    throw SchemeMismatch(
+        fmt::format("the letter {} of '{}' stands in the Hamiltonian already; take one of the two out", one, name));
+  }
+  return made;
+}
+
+}  // namespace
+
 AnyHamiltonian<double> hamiltonian_of(const Scene& scene) {
   const SceneHamiltonian& made = scene.hamiltonian;
   ForceField<double> forces;
@@ -77,10 +94,11 @@ AnyHamiltonian<double> hamiltonian_of(const Scene& scene) {
                                            ? made.splitting.make(std::move(forces))
                                            : made.splitting.make_constrained(std::move(forces), constraints_of(scene));
   if (made.neighbors) hamiltonian.set_neighbor_options(*made.neighbors);
-  if (made.thermostat) hamiltonian = made.thermostat->letter(std::move(hamiltonian));
   for (const SceneForce& force : made.forces) {
-    if (force.letter) hamiltonian = force.letter(std::move(hamiltonian));
+    if (force.letter) hamiltonian = with_part(std::move(hamiltonian), force.letter, force.name);
   }
+  // Outermost, because noise is walked by whole steps.
+  if (made.thermostat) hamiltonian = with_part(std::move(hamiltonian), made.thermostat->letter, made.thermostat->name);
   return hamiltonian;
 }
 

@@ -37,6 +37,19 @@ Outcome outcome_of(const Failure& failure, const ParticleSystem<double>& s) {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
+/// What a Hamiltonian has beside forces: its own energy as one more term, and all that it does to the particles.
+void add_hamiltonian(const Scene& scene, ParticleSystem<double>& s, Evaluation& result) {
+  AnyHamiltonian<double> hamiltonian = hamiltonian_of(scene);
+  hamiltonian.bind(s);
+  const EnergyTerms<double> energy = hamiltonian.energy(s);
+  result.kinetic = energy.kinetic;
+  result.terms.emplace_back(scene.hamiltonian.splitting.name, energy.potential - result.potential);
+  result.potential = energy.potential;
+  VectorColumn<double> a(s.size());
+  hamiltonian.accelerations(s, a);
+  for (Index i = 0; i < s.size(); ++i) result.forces.set(i, std::as_const(s).masses()[i] * std::as_const(a)[i]);
+}
+
 }  // namespace
 
 Evaluation evaluate(const Scene& scene, bool check) {
@@ -68,6 +81,10 @@ Evaluation evaluate(const Scene& scene, bool check) {
     for (Index i = 0; i < s.size(); ++i) result.forces.add(i, std::as_const(s).masses()[i] * a[i]);
     if (check && !failed)
       result.gradient_error = std::max(result.gradient_error.value_or(0), gradient_error(term.force, s));
+  }
+  if (!scene.hamiltonian.splitting.only_forces) {
+    add_hamiltonian(scene, s, result);
+    has_pressure = false;
   }
   if (has_pressure) result.pressure = pressure_tensor(s, result.virial).trace() / 3;
   for (Index i = 0; i < s.size(); ++i) {

@@ -45,6 +45,7 @@ class SceneReader {
       read_system(top, *system);
     } else {
       read_constant(table(top, "hamiltonian"));
+      context_.columns = declared_columns(table(top, "hamiltonian"));
       SceneValue& particles = scene_.effective.put("particles", SceneValue::table());
       scene_.particles = read_particles(context_, table(top, "particles"), scene_.file.parent_path(), particles);
       read_hamiltonian(table(top, "hamiltonian"));
@@ -128,6 +129,27 @@ class SceneReader {
     context_.G = *G;
   }
 
+  /// The columns that the Hamiltonian and the forces of a scene declare. What is wrong with these is told later, when
+  /// they are read.
+  std::vector<ColumnInfo> declared_columns(const SceneValue& hamiltonian) const {
+    std::vector<ColumnInfo> all;
+    const auto take = [&](const SceneValue& table, const auto& kinds) {
+      const SceneValue* type = table.find("type");
+      const std::string* name = type != nullptr ? type->get<std::string>() : nullptr;
+      for (const auto& kind : kinds) {
+        if (name == nullptr || kind.info.name != *name) continue;
+        for (const ColumnInfo& column : kind.columns) {
+          if (std::find(all.begin(), all.end(), column) == all.end()) all.push_back(column);
+        }
+      }
+    };
+    take(hamiltonian, parts_.hamiltonians());
+    const SceneValue* forces = hamiltonian.find("force");
+    const auto* list = forces != nullptr ? forces->get<SceneValue::Array>() : nullptr;
+    for (std::size_t k = 0; list != nullptr && k < list->size(); ++k) take((*list)[k], parts_.forces());
+    return all;
+  }
+
   void read_hamiltonian(const SceneValue& table) {
     SceneHamiltonian& made = scene_.hamiltonian;
     const auto [kind, type] = kind_of_part(context_, table, "hamiltonian", "hamiltonian", parts_.hamiltonians(), {});
@@ -205,9 +227,12 @@ class SceneReader {
       if (twice == particles.end()) continue;
       reader.fail("pairs", fmt::format("force '{}' ties '{}' to itself", type, scene_.particles.name(*twice)));
     }
+    const std::string kick = reader.text("kick", "B");
+    if (reader.has("kick")) effective.put("kick", SceneValue::of(kick, reader.line("kick")));
     SceneForce force = kind->read(reader, tied);
     reader.finish();
     check_force_beside(reader, *kind);
+    set_kick(reader, force, kick);
     if (!force.letter) {
       try {
         force.force.check(scene_.particles);
@@ -221,6 +246,20 @@ class SceneReader {
     list.push_back(effective);
     force.effective = std::move(effective);
     scene_.hamiltonian.forces.push_back(std::move(force));
+  }
+
+  /// Takes the letter of the kicks that the scene wants a force in.
+  static void set_kick(TableReader& reader, SceneForce& force, const std::string& kick) {
+    if (!reader.has("kick")) return;
+    if (force.letter) {
+      reader.fail("kick",
+                  fmt::format("{} is a letter of its own and takes part in no kick; take the key out", force.name));
+    }
+    if (kick.size() != 1 || kick[0] < 'B' || kick[0] > 'Z') {
+      reader.fail("kick",
+                  fmt::format("kick = \"{}\" is no letter of kicks; one from B to Z is expected, such as \"C\"", kick));
+    }
+    force.force.in_kick(kick[0]);
   }
 
   /// Refuses a force that the splitting has in itself, and one that stands twice where it must not.

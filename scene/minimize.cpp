@@ -21,7 +21,12 @@ SceneValue read_minimize(const SceneContext& context, const SceneValue& table, S
                 "the minimizer moves particles off their constraints; take [minimize] out, or minimize "
                 "with springs in their place");
   }
-  for (const SceneForce& force : scene.hamiltonian.forces) {
+  if (!scene.hamiltonian.splitting.only_forces) {
+    reader.fail(nullptr, "",
+                fmt::format("{} is more than forces, so a minimum of their energy is no rest of it; take [minimize] out",
+                            scene.hamiltonian.splitting.name));
+  }
+  for (const SceneForce& force : scene.hamiltonian.terms()) {
     if (!force.force.claims().time_dependent) continue;
     reader.fail(nullptr, "",
                 fmt::format("force '{}' depends on time, so there is no minimum to go to; take [minimize] "
@@ -36,9 +41,7 @@ SceneValue read_minimize(const SceneContext& context, const SceneValue& table, S
 
 Minimized minimize_start(Scene& scene) {
   ForceField<double> forces;
-  for (const SceneForce& force : scene.hamiltonian.forces) {
-    if (!force.letter) forces.add(force.force);  // drag has no part in a minimum
-  }
+  for (const SceneForce& force : scene.hamiltonian.terms()) forces.add(force.force);  // drag has no part in a minimum
   return minimize(scene.particles, forces, *scene.minimize);
 }
 

@@ -143,6 +143,7 @@ class Parts {
   struct HamiltonianKind {
     PartInfo info;
     std::function<SceneSplitting(TableReader&)> read;  ///< its own keys, among those that all Hamiltonians have
+    std::vector<ColumnInfo> columns = {};              ///< that it gives particles
     bool needs_forces = false;                         ///< without forces or constraints nothing would move
   };
   struct ThermostatKind {
@@ -152,9 +153,10 @@ class Parts {
   struct ForceKind {
     PartInfo info;
     std::function<SceneForce(TableReader&, const TiedParticles&)> read;
-    std::size_t particles = 0;   ///< of each tuple that the force ties; 0: it acts on all
-    ForceClaims claims = {};     ///< of the force with its defaults
-    std::string only_once = {};  ///< why it does not stand twice in a scene; empty: it may
+    std::size_t particles = 0;             ///< of each tuple that the force ties; 0: it acts on all
+    std::vector<ColumnInfo> columns = {};  ///< that it gives particles
+    ForceClaims claims = {};               ///< of the force with its defaults
+    std::string only_once = {};            ///< why it does not stand twice in a scene; empty: it may
   };
   struct ConstraintKind {
     PartInfo info;
@@ -183,9 +185,11 @@ class Parts {
   ///     template <class Real> auto split(ForceField<Real> forces) const;                      // a SplitHamiltonian
   ///     template <class Real, class C> auto split(ForceField<Real>, C constraints) const;     // where it knows them
   ///     std::tuple<Gravity> forces() const;  // where p^2/2m, these and the scene's forces are all of it
+  ///     using columns = ColumnList<Orientation, Spin>;  // that particles get, and bodies of scenes may have as keys
   template <class H> Parts& add_hamiltonian() {
     static_assert(Described<H>, "a Hamiltonian in a scene describes itself: static constexpr auto describe()");
-    HamiltonianKind kind{part_info<H>(), [](TableReader& reader) { return read_splitting<H>(reader); }};
+    HamiltonianKind kind{part_info<H>(), [](TableReader& reader) { return read_splitting<H>(reader); },
+                         columns_of<H>()};
     if constexpr (requires { H{}.forces(); }) kind.needs_forces = std::tuple_size_v<decltype(H{}.forces())> == 0;
     put(hamiltonians_, std::move(kind));
     return *this;
@@ -211,7 +215,7 @@ class Parts {
     if constexpr (requires { F{}.tied; }) particles = F::particles;
     ForceKind kind{part_info<F>(),
                    [](TableReader& reader, const TiedParticles& tied) { return read_force<F>(reader, tied); },
-                   particles, claims_of(force_of(F{}))};
+                   particles, columns_of<F>(), claims_of(force_of(F{}))};
     if constexpr (requires { F::only_once; }) kind.only_once = F::only_once;
     put(forces_, std::move(kind));
     return *this;
@@ -265,6 +269,7 @@ class Parts {
   template <class H> static SceneSplitting read_splitting(TableReader& reader) {
     H part{};
     read_fields(reader, part);
+    reader.finish();  // a misspelt key is told before the one that it should have been
     SceneSplitting made;
     made.name = part_name<H>();
     made.effective = SceneValue::table();
@@ -284,11 +289,24 @@ class Parts {
     }
     if constexpr (requires { part.forces(); }) {
       made.only_forces = true;
-      std::apply([&](const auto&... own) { (made.own.push_back(scene_force(own)), ...); }, part.forces());
+      std::apply([&](const auto&... own) { (made.own.push_back(scene_force(own, set_fields(reader, own))), ...); },
+                 part.forces());
     }
     detail::check_fields(reader, part);
     made.claims = made.make({}).claims();
     return made;
+  }
+
+  /// The fields of a part that differ from their defaults, as a scene would set them.
+  template <class F> static SceneValue set_fields(TableReader& reader, const F& part) {
+    SceneValue all = SceneValue::table(), usual = SceneValue::table(), set = SceneValue::table();
+    put_fields(reader, part, all);
+    put_fields(reader, F{}, usual);
+    for (const auto& [key, value] : *all.get<SceneValue::Table>()) {
+      const SceneValue* other = usual.find(key);
+      if (other == nullptr || to_text(*other) != to_text(value)) set.put(key, value);
+    }
+    return set;
   }
 
   template <class T> static SceneThermostat read_thermostat(TableReader& reader) {

@@ -130,7 +130,8 @@ class TypedBodies {
 
 void add_body(TableReader& body, ParticleSystem<double>& s, std::unordered_set<std::string>& names,
               TypedBodies& typed) {
-  body.expect_only({"name", "mass", "x", "v", "a", "e", "inc", "Omega", "omega", "M", "type", "charge"});
+  const std::vector<ColumnInfo>& columns = body.context().columns;
+  body.expect_only({"name", "mass", "x", "v", "a", "e", "inc", "Omega", "omega", "M", "type", "charge"}, columns);
   const std::string name = body.text("name", fmt::format("body_{}", s.size() + 1));
   if (const std::string wrong = wrong_name(name); !wrong.empty()) body.fail("name", wrong);
   const std::optional<double> of_type = typed.add(body);
@@ -156,6 +157,9 @@ void add_body(TableReader& body, ParticleSystem<double>& s, std::unordered_set<s
   } else {
     s.add(name, *mass, column(x.value_or(std::array<double, 3>{})), column(v.value_or(std::array<double, 3>{})));
   }
+  for (const ColumnInfo& declared : columns) {
+    if (const auto row = body.row(declared)) s.set_row(declared.name, s.size() - 1, *row);
+  }
 }
 
 ParticleSystem<double> from_file(TableReader& reader, const std::filesystem::path& folder, SceneValue& effective) {
@@ -171,6 +175,7 @@ ParticleSystem<double> from_tables(TableReader& reader, const std::vector<const 
                                    SceneValue& effective) {
   reader.expect_only({"body", "frame", "box", "type", "pair", "mixing", "exclusions"});
   ParticleSystem<double> s(*reader.context().units);
+  for (const ColumnInfo& column : reader.context().columns) s.add_column(column);
   TypedBodies typed(reader, effective);
   std::unordered_set<std::string> names;
   SceneValue::Array list;
@@ -264,7 +269,11 @@ ParticleSystem<double> read_particles(const SceneContext& context, const SceneVa
                         "box", "special", "exclusions", "file_units", "atom_style", "frame", "temperature", "seed"});
   }
   check_sources(reader);
-  if (is_built(reader)) return build_particles(reader, effective);
+  if (is_built(reader)) {
+    ParticleSystem<double> s = build_particles(reader, effective);
+    for (const ColumnInfo& column : context.columns) s.add_column(column);
+    return s;
+  }
   TableReader own(context, table, "[particles]", "particles");
   ParticleSystem<double> s = reader.has("structure") ? read_structure_particles(own, folder, effective)
                              : reader.has("bodies")  ? from_file(own, folder, effective)
@@ -272,6 +281,7 @@ ParticleSystem<double> read_particles(const SceneContext& context, const SceneVa
   if (!reader.has("structure")) {
     if (const auto box = read_box(own, effective)) s.set_box(*box);
   }
+  for (const ColumnInfo& column : context.columns) s.add_column(column);
   read_exclusions(own, s, effective);
   read_frame(own, s, effective);
   return s;

@@ -150,6 +150,19 @@ void TableReader::finish() const {
   }
 }
 
+std::optional<std::vector<double>> TableReader::row(const ColumnInfo& column) {
+  const SceneValue* value = find(column.name);
+  if (value == nullptr) return {};
+  if (column.width == 1) return std::vector<double>{number(*value, column.name, column.dimension)};
+  const auto* list = value->get<SceneValue::Array>();
+  if (list == nullptr || list->size() != static_cast<std::size_t>(column.width)) {
+    fail(value, column.name, fmt::format("{} = {} is no list of {}", column.name, to_text(*value), column.width));
+  }
+  std::vector<double> numbers;
+  for (const SceneValue& one : *list) numbers.push_back(number(one, column.name, column.dimension));
+  return numbers;
+}
+
 std::vector<const SceneValue*> tables_of(TableReader& reader, std::string_view key) {
   std::vector<const SceneValue*> tables;
   const SceneValue* value = reader.find(key);

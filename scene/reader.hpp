@@ -1,6 +1,7 @@
 #pragma once
 /// Reading one table of a scene: every key that nobody asks for is an error.
 
+#include "engine/columns.hpp"
 #include "engine/error.hpp"
 #include "engine/quantity.hpp"
 #include "scene/value.hpp"
@@ -27,7 +28,8 @@ struct SceneSource {
 struct SceneContext {
   SceneSource source;
   const UnitSystem* units = &unit_system("solar");
-  std::optional<SceneValue> G = {};  ///< `hamiltonian.G`: the default of every field of that name
+  std::optional<SceneValue> G = {};      ///< `hamiltonian.G`: the default of every field of that name
+  std::vector<ColumnInfo> columns = {};  ///< that the Hamiltonian and the forces of the scene declare
 };
 
 /// Reads one table; remembers which keys were asked for.
@@ -53,13 +55,16 @@ class TableReader {
   /// A quantity in the units of the scene. @throws SceneError
   std::optional<double> quantity(std::string_view key, std::string_view dimension);
   std::optional<std::array<double, 3>> vector(std::string_view key, std::string_view dimension);
+  /// The numbers of a particle in a column, under the name of the column.
+  std::optional<std::vector<double>> row(const ColumnInfo& column);
 
   /// One number with a dimension, of this or another table.
   double number(const SceneValue& value, std::string_view key, std::string_view dimension) const;
 
   /// Knows these keys and no others, so that a misspelt key is told before a missing one. @throws SceneError
-  void expect_only(std::initializer_list<std::string_view> keys) {
+  void expect_only(std::initializer_list<std::string_view> keys, const std::vector<ColumnInfo>& columns = {}) {
     for (const std::string_view key : keys) find(key);
+    for (const ColumnInfo& column : columns) find(column.name);
     finish();
   }
   /// @throws SceneError  naming the first key nobody has asked for, with a proposal

@@ -152,7 +152,8 @@ std::vector<std::string> warnings_of(const Scene& scene) {
                       terms == 1 ? "term" : "terms"));
     }
   }
-  if (!forces.empty() && none_does(scene, &ForceClaims::charges) && has_charges(scene.particles)) {
+  if (!forces.empty() && scene.hamiltonian.splitting.only_forces && none_does(scene, &ForceClaims::charges) &&
+      has_charges(scene.particles)) {
     add("the particles have charges that no force looks at");
   }
   const SceneValue* particles = scene.effective.find("particles");

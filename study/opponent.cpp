@@ -65,7 +65,7 @@ Opponent opponent(const Scene& scene, std::string_view name) {
   if (!over.empty() && over != own_name && over != plain_name) {
     throw Error(fmt::format("'{}': the scene has no splitting '{}'; leave '@{}' out", name, over, over));
   }
-  if (over == plain_name && !is_plain(scene) && !may_be_joined(scene)) {
+  if (over == plain_name && !scene.system && !is_plain(scene) && !may_be_joined(scene)) {
     throw Error(fmt::format("'{}': '{}' has parts that are no forces; leave '@{}' out", name, own_name, over));
   }
   const MethodInfo* info = methods::find(method);

@@ -176,7 +176,11 @@ Operator weighted_hessian(VectorField<double>& f, double t, const Vector<double>
   };
 }
 
+/// Whether forces tell all of the motion, so that their frequencies are its own.
+bool forces_tell_all(const Scene& scene) { return scene.system || scene.hamiltonian.splitting.only_forces; }
+
 Spectrum spectrum_at(const Scene& scene, const ParticleSystem<double>& s) {
+  if (!forces_tell_all(scene)) return {};
   const auto field = field_of(scene);
   field->bind(s);
   return spectrum_of(*field, s, 0);
@@ -190,6 +194,7 @@ double drag_of(const Scene& scene) {
 }
 
 bool is_linear(const Scene& scene) {
+  if (!forces_tell_all(scene)) return false;
   const auto field = field_of(scene);
   field->bind(scene.particles);
   Vector<double> y, start, one, two;
@@ -207,6 +212,7 @@ bool is_linear(const Scene& scene) {
 }
 
 Spectrum spectrum_along(const Scene& scene) {
+  if (!forces_tell_all(scene)) return {};
   const auto field = field_of(scene);
   field->bind(scene.particles);
   Spectrum found = spectrum_of(*field, scene.particles, 0);

@@ -335,9 +335,7 @@ Stability find_stability(const Scene& scene, const StabilityOptions& options) {
     if (std::find(methods.begin(), methods.end(), who) == methods.end()) methods.push_back(std::move(who));
   }
   found.spectrum = spectrum_along(scene);
-  // Forces alone tell no frequencies where constraints hold particles, or a Hamiltonian turns their velocities.
-  const bool oscillates =
-      scene.hamiltonian.constraints.empty() && (scene.system || scene.hamiltonian.splitting.only_forces);
+  const bool oscillates = scene.hamiltonian.constraints.empty();  // else forces alone tell no frequencies
   if (!oscillates) found.spectrum = {};
   found.linear = oscillates && is_linear(scene);
   found.growth_told = told_growth(options.confirm_steps);

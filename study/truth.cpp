@@ -4,6 +4,7 @@
 #include "integrators/force_motion.hpp"
 #include "integrators/hamiltonian_motion.hpp"
 #include "integrators/methods.hpp"
+#include "study/truth_by_splitting.hpp"
 
 #include <fmt/format.h>
 
@@ -174,6 +175,11 @@ WideScene wide_scene(const Scene& scene) {
   } else if (!h.splitting.claims.inertial) {
     wide.reason =
         fmt::format("hamiltonian '{}' moves in coordinates of its own, which no reference does", h.splitting.name);
+  } else if (h.splitting.claims.columns && !letters.terms().empty()) {
+    wide.reason =
+        fmt::format("hamiltonian '{}' has a letter beside it that is known in double precision only", h.splitting.name);
+  } else if (h.splitting.claims.columns) {
+    wide.splitting = h.splitting.make_wide(std::move(kicks));
   } else {
     wide.field = std::make_unique<HamiltonianMotion<Quad>>(h.splitting.make_wide(std::move(kicks)), std::move(letters));
   }
@@ -190,6 +196,7 @@ void refuse_noise(const Scene& scene) {
 
 bool about_center(const Scene& scene) {
   if (scene.particles.size() < 2 || !scene.hamiltonian.constraints.empty()) return false;
+  if (!scene.hamiltonian.splitting.claims.keeps_momentum) return false;
   for (const SceneForce& force : scene.hamiltonian.forces) {
     if (!force.force.claims().keeps_momentum) return false;
   }
@@ -338,8 +345,9 @@ Truth find_truth(const Scene& scene, const Sampling& sampling, const TruthOption
   Truth truth{.name = std::string(no_truth)};
   WideScene wide = wide_scene(scene);
   truth.note = wide.field == nullptr ? wide.reason : "no method of high order is known in extended precision";
-  if (wide.field == nullptr) return truth;
+  if (wide.field == nullptr && !wide.splitting) return truth;
   PositionError error(scene.particles, about_center(scene));
+  if (wide.splitting) return truth_by_splitting(wide, sampling, options, error);
   double spent = 0;
   for (const Way& way : ways_of(wide, options)) {
     truth = drive(wide, way, sampling, error, options.budget - spent);

@@ -6,23 +6,6 @@
 
 namespace noether {
 
-namespace {
-
-/// Eigen's products on one thread while this lives: its own threads wait awake for each other, and beside other
-/// programs a factorization took many times as long on two as on one.
-class OneThread {
- public:
-  OneThread() : before_(Eigen::nbThreads()) { Eigen::setNbThreads(1); }
-  OneThread(const OneThread&) = delete;
-  OneThread& operator=(const OneThread&) = delete;
-  ~OneThread() { Eigen::setNbThreads(before_); }
-
- private:
-  int before_;
-};
-
-}  // namespace
-
 template <class Real> struct DenseFactors<Real>::Solver { Eigen::PartialPivLU<Matrix<Real>> lu; };
 
 template <class Real> DenseFactors<Real>::DenseFactors() = default;
@@ -44,7 +27,6 @@ template <class Real> void DenseFactors<Real>::resize(Index n) {
 template <class Real> bool DenseFactors<Real>::compute(const Matrix<Real>& matrix) {
   using std::isfinite;
   if (!solver_) solver_ = std::make_unique<Solver>();
-  const OneThread alone;
   solver_->lu.compute(matrix);
   bool regular = true;
   for (Index i = 0; i < matrix.rows(); ++i) {

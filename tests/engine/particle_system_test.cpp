@@ -127,7 +127,7 @@ TEST_CASE("a column exists only if a part has asked for it", "[particles]") {
   CHECK(s.column<Kind>()[2] == 7);
   CHECK(std::as_const(s.column<Spin>())[0] == Vec3<double>(0, 0, 1));
   CHECK(s.bytes_per_particle() == bare + sizeof(double) + sizeof(std::int64_t) + 3 * sizeof(double));
-  CHECK(s.extra_columns().size() == 3);
+  CHECK(s.columns().size() == 3);
 }
 
 TEST_CASE("particles are neither added nor removed where columns of other parts would not follow", "[particles]") {

@@ -122,7 +122,7 @@ TEST_CASE("columns that parts have asked for come back with the particles", "[sa
   s.add_column<Kind>()[2] = std::int64_t{1} << 60;
   s.add_column<Spin>().set(0, vector);
   const auto again = load_particles<Quad>(save_particles(s));
-  CHECK(again.extra_columns().size() == 3);
+  CHECK(again.columns().size() == 3);
   CHECK(again.column<Charge>()[1] == third);
   CHECK(again.column<Kind>()[2] == std::int64_t{1} << 60);
   CHECK((again.column<Spin>()[0] == vector));

@@ -317,8 +317,8 @@ TEST_CASE("a box far too full is refused by name before neighbors are listed", "
       CHECK(done.failure->kind == Outcome::Kind::overlap);
       CHECK(done.failure->message.find("with more than 32768 others or images of them in the range 2.5") !=
             std::string::npos);
-      CHECK(hamiltonian.neighbors().statistics().pairs == 0);
-      CHECK(hamiltonian.neighbors().statistics().bytes < 300'000'000);
+      CHECK(hamiltonian.workspace().find<NeighborList>()->statistics().pairs == 0);
+      CHECK(hamiltonian.workspace().find<NeighborList>()->statistics().bytes < 300'000'000);
       CHECK(Simulation(s, melt(), 1e-4).run(5).kind == Outcome::Kind::overlap);
     }
   }

@@ -1,7 +1,7 @@
 #include "forces/check_gradient.hpp"
 #include "forces/external_fields.hpp"
-#include "forces/henon_heiles.hpp"
 #include "forces/gravity.hpp"
+#include "forces/henon_heiles.hpp"
 #include "forces/oblateness.hpp"
 #include "forces/sum.hpp"
 #include "tests/support/catch.hpp"

@@ -85,7 +85,8 @@ TEST_CASE("a force in doubles and one in mixed precision share a list", "[lennar
   const ParticleSystem<double> s = liquid(4, 0.85, 1, 0.1);
   LennardJonesForce doubles = mixed_argon(Cutoff::plain);
   doubles.precision = PairPrecision::full;
-  NeighborList list(2.5, {});
+  Workspace list;
+  list.put(NeighborList(2.5, {}));
   const Evaluated full = evaluated<double>(doubles, s, &list),
                   mixed = evaluated<double>(mixed_argon(Cutoff::plain), s, &list);
   CHECK(full.a.all() == evaluated<double>(doubles, s).a.all());
@@ -130,7 +131,8 @@ TEST_CASE("no skin is too wide for mixed precision", "[lennard_jones][mixed]") {
   const ParticleSystem<double> s = liquid(3, 0.85, 1, 0.1);
   const LennardJonesForce force = mixed_argon(Cutoff::plain, 2.2);
   for (const double skin : {1.0, 2.5, 20.0}) {
-    NeighborList wide(2.2, {.skin = skin, .verify = true});
+    Workspace wide;
+    wide.put(NeighborList(2.2, {.skin = skin, .verify = true}));
     CHECK(evaluated<double>(force, s, &wide).a.all() == evaluated<double>(force, s).a.all());
   }
 }

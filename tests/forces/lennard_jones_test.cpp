@@ -69,13 +69,14 @@ TEST_CASE("in a box smaller than the range bits depend on no list either, and fo
   const LennardJonesForce force{.cutoff = reaches * edge, .epsilon = 1.0, .sigma = edge / 1.6};
   for (unsigned seed = 1; seed <= 25; ++seed) {
     ParticleSystem<double> s = liquid(1, 4 / std::pow(edge, 3), 1, 0.05 * edge, seed);
-    NeighborList old(force.cutoff, {.skin = 0.09 * edge});
+    Workspace old;
+    const NeighborList& kept = old.put(NeighborList(force.cutoff, {.skin = 0.09 * edge}));
     static_cast<void>(evaluated<double>(force, s, &old));
     s.scale_velocities(0.03 * edge / s.velocities().all().cwiseAbs().maxCoeff());
     s.advance_positions(0.8);  // across faces, and less far than the list lasts
     const Evaluated by_old = evaluated<double>(force, s, &old), by_new = evaluated<double>(force, s);
     REQUIRE_FALSE(by_new.failure);
-    REQUIRE(old.statistics().searches == 1);
+    REQUIRE(kept.statistics().searches == 1);
     REQUIRE(by_old.a.all() == by_new.a.all());
     REQUIRE(by_old.energy == by_new.energy);
     test::check_sum_is_zero(by_new.a, std::exp2(std::ceil(std::log2(24 / *force.sigma)) - 47));

@@ -76,9 +76,9 @@ const LennardJonesForce shifted{.cutoff = 3, .cutoff_style = Cutoff::shifted_for
 
 /// Both of these pairs; the pressure of an ideal gas is that of its temperature.
 std::pair<double, double> energy_and_pressure(const LennardJonesForce& force, const ParticleSystem<double>& s,
-                                              NeighborList& list, double temperature) {
+                                              Workspace& lists, double temperature) {
   VectorColumn<double> a(s.size());
-  ForceSink<double> sink(a, s, {.energy = true, .virial = true}, &list);
+  ForceSink<double> sink(a, s, {.energy = true, .virial = true}, &lists);
   force.add_to(sink, s);
   const auto n = static_cast<double>(s.size());
   return {sink.potential() / n, (n * temperature + sink.virial().trace() / 3) / s.box().volume()};
@@ -91,7 +91,8 @@ StatePoint state_point(const LennardJonesForce& driving, const LennardJonesForce
       test::liquid(5, density, temperature),
       compose(test::in_bath(test::field_of(driving), {.temperature = temperature, .friction = 0.5}), word("BAOAB")),
       0.004);
-  NeighborList list(3.0);
+  Workspace list;
+  list.put(NeighborList(3.0));
   REQUIRE(sim.run(20000).ok());
   std::vector<double> energies, pressures;
   for (std::int64_t k = 0; k < steps; k += 25) {

@@ -1,7 +1,7 @@
 #pragma once
 /// Columns that parts may declare: of numbers, of whole numbers, of vectors.
 
-#include "engine/column.hpp"
+#include "engine/columns.hpp"
 
 #include <cstdint>
 #include <string_view>
@@ -13,11 +13,13 @@ struct Charge {
   template <class Real> using type = ScalarColumn<Real>;
 };
 struct Kind {
-  static constexpr std::string_view name = "kind";
+  static constexpr std::string_view name = "kind", dimension = "1";
+  static constexpr ColumnRole role = ColumnRole::parameter;
   template <class Real> using type = ScalarColumn<std::int64_t>;
 };
 struct Spin {
-  static constexpr std::string_view name = "spin";
+  static constexpr std::string_view name = "spin", dimension = "mass length^2/time";
+  static constexpr ColumnRole role = ColumnRole::momentum;
   template <class Real> using type = VectorColumn<Real>;
 };
 

@@ -50,10 +50,10 @@ struct Evaluated {
 
 /// Everything that a force gives, computed in numbers of type `Real`.
 template <class Real, class F>
-Evaluated evaluated(const F& force, const ParticleSystem<double>& s, NeighborList* list = nullptr) {
+Evaluated evaluated(const F& force, const ParticleSystem<double>& s, Workspace* lists = nullptr) {
   const ParticleSystem<Real> particles = s.as<Real>();
   VectorColumn<Real> a(s.size());
-  ForceSink<Real> sink(a, particles, {.energy = true, .virial = true}, list);
+  ForceSink<Real> sink(a, particles, {.energy = true, .virial = true}, lists);
   force.add_to(sink, particles);
   Evaluated all{VectorColumn<double>(s.size()), static_cast<double>(sink.potential()), {}, sink.failure()};
   for (Index i = 0; i < s.size(); ++i) {
@@ -80,7 +80,8 @@ inline void check_sum_is_zero(const VectorColumn<double>& a, double unit) {
 
 /// A list that is some steps old gives the bits of a new one, while particles move on and cross the box.
 template <class F> void check_old_lists(const F& force, ParticleSystem<double> s, double cutoff) {
-  NeighborList list(cutoff, {.skin = 0.2});
+  Workspace list;
+  const NeighborList& kept = list.put(NeighborList(cutoff, {.skin = 0.2}));
   for (int n = 0; n < 60; ++n) {
     s.advance_positions(0.01);
     const Evaluated old = evaluated<double>(force, s, &list), fresh = evaluated<double>(force, s);
@@ -88,9 +89,9 @@ template <class F> void check_old_lists(const F& force, ParticleSystem<double> s
     REQUIRE(old.energy == fresh.energy);
     REQUIRE(old.virial == fresh.virial);
   }
-  CHECK(list.statistics().sorts > 1);
-  CHECK(list.statistics().searches > list.statistics().sorts);
-  CHECK(list.statistics().searches < 30);
+  CHECK(kept.statistics().sorts > 1);
+  CHECK(kept.statistics().searches > kept.statistics().sorts);
+  CHECK(kept.statistics().searches < 30);
 }
 
 /// A pair force gives the same bits by any neighbor list, on any number of threads, and without energies.
@@ -99,7 +100,8 @@ template <class F> void check_bits_of_lists(const F& force, const ParticleSystem
   for (const double skin : {0.01, 0.1, 0.3, 0.6}) {
     for (const int threads : {1, 2, 3, 8}) {
       const Threads now(threads);
-      NeighborList list(cutoff, {.skin = skin, .verify = threads == 1});
+      Workspace list;
+      list.put(NeighborList(cutoff, {.skin = skin, .verify = threads == 1}));
       const Evaluated again = evaluated<double>(force, s, &list);
       CHECK(again.a.all() == first.a.all());
       CHECK(again.energy == first.energy);

@@ -1,0 +1,101 @@
+#include "study/truth_by_splitting.hpp"
+
+#include "integrators/composition.hpp"
+#include "integrators/particle_vector.hpp"
+#include "integrators/schemes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <string_view>
+
+namespace noether {
+
+namespace {
+
+/// Two runs that agree so well need no third.
+constexpr double agreement = 2e-16;
+constexpr std::string_view first_scheme = "sofroniou_spaletta_10_s35", other_scheme = "kahan_li_10_s33";
+
+/// One run that stops at every moment of a sampling.
+struct SplitRun {
+  std::vector<Vector<Quad>> y, rate;
+  std::vector<double> energy;
+  bool whole = false;  ///< it came to the end in time
+};
+
+SplitRun run_along(const WideScene& wide, const Sampling& sampling, std::string_view scheme, std::int64_t steps,
+                   std::chrono::steady_clock::time_point deadline) {
+  SplitRun run;
+  Composition<AnyHamiltonian<Quad>> along(*wide.splitting, *schemes::find(scheme));
+  ParticleSystem<Quad> s = wide.start;
+  s.clock() = Clock<Quad>::fixed(0, sampling.interval / static_cast<double>(steps));
+  along.bind(s);
+  ParticleSystem<Quad> seen = s;
+  VectorColumn<Quad> a(s.size());
+  const auto keep = [&] {
+    along.settle(s, seen, {}, {}, true);
+    along.accelerations(seen, a);
+    run.energy.push_back(static_cast<double>(along.energy(seen).total()));
+    detail::gather_particles(seen, run.y.emplace_back());
+    Vector<Quad>& rate = run.rate.emplace_back(run.y.back());
+    const Index n = s.size();
+    for (int k = 0; k < 3; ++k) {
+      std::copy_n(seen.velocities().component(k), n, rate.data() + k * n);
+      std::copy_n(a.component(k), n, rate.data() + (3 + k) * n);
+    }
+  };
+  keep();
+  for (int j = 1; j <= sampling.samples; ++j) {
+    for (std::int64_t k = 0; k < steps; ++k) {
+      if (along.advance(s, {.steps = 1}).failure != nullptr) return run;
+      if (std::chrono::steady_clock::now() > deadline) return run;
+    }
+    keep();
+  }
+  run.whole = true;
+  return run;
+}
+
+double distance(const SplitRun& a, const SplitRun& b, PositionError& error) {
+  error.set_scale(a.y);
+  double worst = 0;
+  for (std::size_t j = 0; j < a.y.size(); ++j) worst = std::max(worst, error(b.y[j], a.y[j]));
+  return worst;
+}
+
+}  // namespace
+
+Truth truth_by_splitting(const WideScene& wide, const Sampling& sampling, const TruthOptions& options,
+                         PositionError& error) {
+  Truth truth{.name = "invariants",
+              .note = "extended precision would take longer than its budget; give a shorter --until"};
+  const auto begin = std::chrono::steady_clock::now();
+  const auto deadline = begin + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                                    std::chrono::duration<double>(options.budget));
+  for (std::int64_t steps = 2;; steps *= 2) {
+    SplitRun run = run_along(wide, sampling, first_scheme, steps, deadline);
+    if (!run.whole) break;
+    const SplitRun beside = run_along(wide, sampling, other_scheme, steps, deadline);
+    if (!beside.whole) break;
+    const double apart = distance(run, beside, error);
+    if (truth.error && !(apart < *truth.error)) break;
+    truth.error = apart;
+    truth.note = fmt::format("{} of the splitting itself in extended precision, {} steps a moment, beside {}",
+                             first_scheme, steps, other_scheme);
+    truth.y = std::move(run.y);
+    truth.rate = std::move(run.rate);
+    truth.energy = std::move(run.energy);
+    if (apart < agreement) break;
+  }
+  truth.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  if (!truth.error || !(*truth.error < 1e-3)) {
+    return {.name = truth.name, .note = truth.note, .seconds = truth.seconds};
+  }
+  truth.kind = TruthKind::quad;
+  truth.name = fmt::format("{} in quad", first_scheme);
+  return truth;
+}
+
+}  // namespace noether
