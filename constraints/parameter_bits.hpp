@@ -25,14 +25,14 @@ template <class T> void append_bits(std::string& bits, const T& value) {
 }
 template <class T> void append_bits(std::string& bits, const std::optional<T>& value) {
   bits += value ? '1' : '0';
-  append_bits(bits, value.value_or(T{}));
+  if (value) append_bits(bits, *value);
 }
 template <class T, std::size_t n> void append_bits(std::string& bits, const std::array<T, n>& values) {
   for (const T& value : values) append_bits(bits, value);
 }
 
-/// Whether the fields that a part describes are all that it consists of, and their bits tell what they are: it has no
-/// room for another member.
+/// Whether the fields that a part describes are all that it consists of, and their bits tell what they are: they leave
+/// no room for another member.
 template <class C> constexpr bool described_by_bits() {
   std::size_t bytes = 0;
   bool all = true;
@@ -41,7 +41,7 @@ template <class C> constexpr bool described_by_bits() {
     bytes += sizeof(Value);
     all = all && tells_by_bits<Value>;
   });
-  return all && (bytes + alignof(C) - 1) / alignof(C) * alignof(C) == sizeof(C);
+  return all && bytes == sizeof(C);
 }
 
 /// The bits of a constraint's parameters. Of one that does not describe all of them nobody knows when it is equal to

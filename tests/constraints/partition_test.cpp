@@ -291,6 +291,18 @@ struct HalfSilent {
   template <class Real> Real value(const Points<Real, 1>& x) const { return x[0][2] - Real(a) * x[0][0] - Real(b); }
 };
 
+/// With room for a number that nobody tells.
+struct WithRoom {
+  double a = 1;
+  bool upwards = true;
+  static constexpr std::size_t particles = 1;
+  static constexpr auto describe() {
+    return part<WithRoom>("with_room", "may have another parameter", field<&WithRoom::a>("a", "1"),
+                          field<&WithRoom::upwards>("upwards", "1"));
+  }
+  template <class Real> Real value(const Points<Real, 1>& x) const { return x[0][2] - Real(upwards ? a : -a); }
+};
+
 /// Without any.
 struct OnFloor {
   static constexpr std::size_t particles = 1;
@@ -300,12 +312,14 @@ struct OnFloor {
 
 TEST_CASE("a constraint that does not tell all of its parameters is equal to no other", "[constraints][partition]") {
   const auto s = particles_of({1, 1});
-  ConstraintSet silent, half, none;
+  ConstraintSet silent, half, room, none;
   silent.add(s, Silent{}, {0}).add(s, Silent{}, {1});
   half.add(s, HalfSilent{}, {0}).add(s, HalfSilent{}, {1});
+  room.add(s, WithRoom{}, {0}).add(s, WithRoom{}, {1});
   none.add(s, OnFloor{}, {0}).add(s, OnFloor{}, {1});
   CHECK(kinds_of_two(silent, s) == 2);
   CHECK(kinds_of_two(half, s) == 2);
+  CHECK(kinds_of_two(room, s) == 2);
   CHECK(kinds_of_two(none, s) == 1);
 }
 
