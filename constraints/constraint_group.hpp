@@ -2,6 +2,7 @@
 /// Constraints of one type, side by side: types are erased per group, never per constraint.
 
 #include "constraints/constraint.hpp"
+#include "constraints/parameter_bits.hpp"
 #include "engine/particle_system.hpp"
 #include "engine/signature.hpp"
 
@@ -63,6 +64,8 @@ class ConstraintGroup {
   virtual std::string name() const = 0;
   /// Type, parameters and particles in text.
   virtual std::string signature() const = 0;
+  /// The bits of a constraint's parameters: the same for those of the group that are equal in everything but particles.
+  virtual std::string parameters(Index constraint) const = 0;
   /// Number of constraints, and of equations and particles of each.
   virtual Index size() const = 0;
   virtual Index equations() const = 0;
@@ -115,6 +118,7 @@ template <Constraint C> class ConstraintsOf final : public ConstraintGroup {
     }
     return text;
   }
+  std::string parameters(Index constraint) const override { return detail::parameter_bits(at(constraint), constraint); }
   Index size() const override { return static_cast<Index>(constraints_.size()); }
   Index equations() const override { return static_cast<Index>(each); }
   Index particles() const override { return static_cast<Index>(tied); }

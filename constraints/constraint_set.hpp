@@ -2,6 +2,7 @@
 /// The constraints of a system, type by type, and how they are to be solved.
 
 #include "constraints/constraint_group.hpp"
+#include "constraints/constraint_method.hpp"
 #include "constraints/rigid_bar.hpp"
 #include "engine/particle_system.hpp"
 
@@ -10,12 +11,6 @@
 #include <vector>
 
 namespace noether {
-
-/// How the equations of constraints are solved.
-enum class ConstraintMethod : std::uint8_t {
-  newton,  ///< all at once, to rounding: sparse factorisations, chord steps, fresh matrices where these are slow
-  rattle   ///< one after the other in sweeps, to a tolerance (SHAKE for positions, RATTLE for velocities)
-};
 
 struct ConstraintOptions {
   ConstraintMethod solver = ConstraintMethod::newton;
@@ -31,10 +26,6 @@ struct ConstraintOptions {
   }
   /// @throws Error  for a tolerance that is not above 0, a number of sweeps below 1
   void check() const;
-};
-template <> struct EnumNames<ConstraintMethod> {
-  static constexpr std::array<std::pair<ConstraintMethod, std::string_view>, 2> values = {
-      {{ConstraintMethod::newton, "newton"}, {ConstraintMethod::rattle, "rattle"}}};
 };
 
 /// One equation of a set, found.
@@ -101,7 +92,7 @@ class ConstraintSet {
   template <class Real> Worst worst(const ParticleSystem<Real>& s) const;
 
   /// The relative violation that is left on purpose; 0: rounding.
-  double tolerance() const { return options_.solver == ConstraintMethod::newton ? 0 : options_.tolerance; }
+  double tolerance() const { return info_of(options_.solver).to_rounding ? 0 : options_.tolerance; }
   bool keeps_momentum() const;
   bool keeps_angular_momentum() const;
   /// Everything in text: a run goes on with the same set only.

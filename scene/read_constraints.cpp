@@ -15,6 +15,15 @@ namespace {
 
 std::string path_of(std::size_t table) { return fmt::format("hamiltonian.constraint.{}", table); }
 
+/// Their names as a scene types them, "or" between them.
+std::string solvers_to_a_tolerance() {
+  std::string names;
+  for (const ConstraintMethodInfo& info : constraint_methods) {
+    if (!info.to_rounding) names += fmt::format("{}\"{}\"", names.empty() ? "" : " or ", info.name);
+  }
+  return names;
+}
+
 /// How all constraints are solved: keys that any of the tables may have, but only in one way.
 ConstraintOptions read_options(const SceneContext& context, const std::vector<const SceneValue*>& tables) {
   constexpr std::array<const char*, 3> keys = {"solver", "tolerance", "iterations"};
@@ -39,11 +48,12 @@ ConstraintOptions read_options(const SceneContext& context, const std::vector<co
       reader.refuse(error);
     }
   }
-  for (std::size_t k = 0; k < tables.size() && options.solver == ConstraintMethod::newton; ++k) {
+  for (std::size_t k = 0; k < tables.size() && info_of(options.solver).to_rounding; ++k) {
     TableReader reader(context, *tables[k], "[[hamiltonian.constraint]]", path_of(k));
     for (const char* key : {"tolerance", "iterations"}) {
       if (!reader.has(key)) continue;
-      reader.fail(key, fmt::format("{} belongs to solver = \"rattle\"; newton solves to rounding", key));
+      reader.fail(key, fmt::format("{} belongs to solver = {}; {} solves to rounding", key, solvers_to_a_tolerance(),
+                                   info_of(options.solver).name));
     }
   }
   return options;
@@ -51,7 +61,7 @@ ConstraintOptions read_options(const SceneContext& context, const std::vector<co
 
 void put_options(const ConstraintOptions& options, const UnitSystem& units, SceneValue& effective) {
   effective.put("solver", detail::field_value(options.solver, "1", units));
-  if (options.solver == ConstraintMethod::newton) return;
+  if (info_of(options.solver).to_rounding) return;
   effective.put("tolerance", detail::field_value(options.tolerance, "1", units));
   effective.put("iterations", detail::field_value(options.iterations, "1", units));
 }

@@ -265,6 +265,34 @@ TEST_CASE("a run saved, rebuilt and restored goes on bit for bit, for every sche
   }
 }
 
+TEST_CASE("a copy of a solver goes on from any stage with the same bits, and apart from it", "[constraints][restart]") {
+  for (const ConstraintMethod method : {ConstraintMethod::newton, ConstraintMethod::rattle}) {
+    CAPTURE(static_cast<int>(method));
+    const Mechanism chain = hanging_chain(5, {.solver = method, .tolerance = 1e-5});
+    ParticleSystem<double> s = chain.particles;
+    ConstraintSolver<double> solver(chain.constraints), assigned(ConstraintSet{});
+    solver.bind(s);
+    for (int step = 0; step < 3; ++step) {
+      solver.advance_positions(s, 0.01);
+      ConstraintSolver<double> copy = solver;  // between the two stages
+      assigned = copy;
+      ParticleSystem<double> other = s, third = s;
+      copy.project_velocities(other, 0.01);
+      copy.advance_positions(other, 0.02);
+      copy.project_velocities(other, 0.02);
+      assigned.project_velocities(third, 0.01);
+      solver.project_velocities(s, 0.01);
+      CHECK(distance_of_states(third, s) == 0);
+      CHECK(assigned.iterations() == solver.iterations());
+      assigned.advance_positions(third, 0.02);
+      assigned.project_velocities(third, 0.02);
+      CHECK(distance_of_states(other, third) == 0);
+      CHECK(copy.iterations() > solver.iterations());
+      REQUIRE(!copy.failure());
+    }
+  }
+}
+
 TEST_CASE("what is edited in a run is moved onto the constraints again", "[constraints]") {
   const Mechanism chain = free_chain(4);
   Simulation<double> sim(
