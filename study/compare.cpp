@@ -96,7 +96,8 @@ void check_use(const std::vector<Opponent>& methods, const CompareOptions& optio
   }
   for (const Opponent& who : methods) {
     if (!who.adaptive) continue;
-    for (const double tolerance : options.tolerances) check_options(*methods::find(who.method), {.rtol = tolerance});
+    for (const double tolerance : options.tolerances)
+      check_options(*scene.parts->find_method(who.method), {.rtol = tolerance});
   }
 }
 
