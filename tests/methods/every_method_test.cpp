@@ -29,7 +29,7 @@ std::vector<Way> every_way() {
   for (const MethodInfo* info : methods::all()) {
     const auto add = [&](MethodOptions options, bool adaptive) {
       ways.push_back({info, options, adaptive});
-      if (info->options.find("jacobian") == std::string_view::npos) return;
+      if (!info->takes(*linear_solver)) return;
       options.jacobian = JacobianForm::matrix_free;
       ways.push_back({info, options, adaptive});
     };

@@ -115,7 +115,7 @@ LinearMap<double> rotations(double most) {
 std::vector<std::string> methods_with_a_jacobian() {
   std::vector<std::string> names;
   for (const MethodInfo* info : methods::all()) {
-    if (info->options.find("jacobian") != std::string_view::npos) names.emplace_back(info->name);
+    if (info->takes(*linear_solver)) names.emplace_back(info->name);
   }
   return names;
 }

@@ -1,5 +1,6 @@
 /// Newmark's method: what it keeps and what it loses, its options, forces that depend on velocities.
 
+#include "integrators/methods/newmark.hpp"
 #include "integrators/classical.hpp"
 #include "integrators/schemes.hpp"
 #include "tests/methods/stiff_problems.hpp"
