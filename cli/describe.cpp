@@ -5,11 +5,13 @@
 #include "engine/quantity.hpp"
 #include "engine/suggest.hpp"
 #include "engine/text.hpp"
+#include "integrators/composition_options.hpp"
 #include "integrators/methods.hpp"
 #include "integrators/schemes.hpp"
 #include "scene/json.hpp"
 #include "scene/parts.hpp"
 #include "scene/read_builder.hpp"
+#include "scene/read_options.hpp"
 #include "scene/references.hpp"
 
 #include <fmt/format.h>
@@ -45,6 +47,7 @@ std::vector<std::pair<std::string, PartInfo>> all_parts(const Parts& parts) {
   for (const auto& kind : parts.forces()) all.emplace_back("force", kind.info);
   for (const auto& kind : parts.constraints()) all.emplace_back("constraint", kind.info);
   for (const auto& kind : parts.systems()) all.emplace_back("system", kind.info);
+  for (const auto& kind : parts.decorators()) all.emplace_back("decorator", kind.info);
   for (const auto& kind : parts.monitors()) all.emplace_back("monitor", kind.info);
   for (const PartInfo& info : writer_parts()) all.emplace_back("writer", info);
   for (const auto& kind : parts.stops()) all.emplace_back("stop", kind.info);
@@ -61,25 +64,41 @@ std::string table_of(const std::string& kind) {
   }
   if (kind == "system")
     return "[system], in the place of [particles] and [hamiltonian]; start = [...] begins elsewhere";
+  if (kind == "decorator") return "[[integrator.decorator]]; the first stands around the method, others around it";
   if (kind == "monitor") return "[[every]], with every = \"TIME\" or steps = N";
   if (kind == "writer") return "[[every]], with every = \"TIME\" or steps = N (checkpoint also: wall = \"5 min\")";
   if (kind == "stop") return "[[stop]]; every = \"TIME\" may stand instead of steps = N";
   return "";
 }
 
+Json json_of(const std::vector<FieldInfo>& fields) {
+  std::vector<Json> all;
+  for (const FieldInfo& f : fields) {
+    all.push_back(Json::object({{"name", f.name},
+                                {"kind", f.kind},
+                                {"dimension", f.dimension},
+                                {"required", !f.example.empty()},
+                                {"example", f.example.empty() ? Json() : Json(f.example)},
+                                {"default", f.default_value.empty() ? Json() : Json(f.default_value)},
+                                {"choices", Json::list_of(f.choices)},
+                                {"help", f.help}}));
+  }
+  return Json::list(all);
+}
+
+void print_fields(const std::vector<FieldInfo>& fields) {
+  if (!fields.empty()) fmt::print("\n");
+  for (const FieldInfo& f : fields) {
+    std::string value = f.default_value.empty() ? "" : ", default " + f.default_value;
+    if (!f.example.empty()) value = ", required, such as " + f.example;
+    const std::string choices = f.choices.empty() ? "" : fmt::format(", one of {}", fmt::join(f.choices, ", "));
+    fmt::print("  {:<14} {} [{}]{}{}{}{}\n", f.name, f.kind, f.dimension, choices, value, f.help.empty() ? "" : ": ",
+               f.help);
+  }
+}
+
 void describe_part(const std::string& kind, const PartInfo& info, bool json) {
   if (json) {
-    std::vector<Json> fields;
-    for (const FieldInfo& f : info.fields) {
-      fields.push_back(Json::object({{"name", f.name},
-                                     {"kind", f.kind},
-                                     {"dimension", f.dimension},
-                                     {"required", !f.example.empty()},
-                                     {"example", f.example.empty() ? Json() : Json(f.example)},
-                                     {"default", f.default_value.empty() ? Json() : Json(f.default_value)},
-                                     {"choices", Json::list_of(f.choices)},
-                                     {"help", f.help}}));
-    }
     fmt::print("{}\n", Json::object({{"schema", "noether.describe/1"},
                                      {"kind", kind},
                                      {"name", info.name},
@@ -87,7 +106,7 @@ void describe_part(const std::string& kind, const PartInfo& info, bool json) {
                                      {"formula", info.formula},
                                      {"quantities", info.quantities},
                                      {"table", table_of(kind)},
-                                     {"fields", Json::list(fields)},
+                                     {"fields", json_of(info.fields)},
                                      {"source", info.source},
                                      {"bibtex", entries_of(info.source)}})
                            .text());
@@ -97,14 +116,7 @@ void describe_part(const std::string& kind, const PartInfo& info, bool json) {
   if (!info.formula.empty()) fmt::print("\n    {}\n", info.formula);
   if (!info.quantities.empty()) fmt::print("\n  quantities: {}\n", info.quantities);
   if (const std::string table = table_of(kind); !table.empty()) fmt::print("\n  stands in {}\n", table);
-  if (!info.fields.empty()) fmt::print("\n");
-  for (const FieldInfo& f : info.fields) {
-    std::string value = f.default_value.empty() ? "" : ", default " + f.default_value;
-    if (!f.example.empty()) value = ", required, such as " + f.example;
-    const std::string choices = f.choices.empty() ? "" : fmt::format(", one of {}", fmt::join(f.choices, ", "));
-    fmt::print("  {:<14} {} [{}]{}{}{}{}\n", f.name, f.kind, f.dimension, choices, value, f.help.empty() ? "" : ": ",
-               f.help);
-  }
+  print_fields(info.fields);
   const std::string entries = entries_of(info.source);
   if (!entries.empty()) fmt::print("\n{}", entries);
 }
@@ -137,6 +149,7 @@ void describe_scheme(const Scheme& scheme, bool json) {
                              {"symmetric", scheme.is_symmetric()},
                              {"stability_limit", scheme.stability_limit > 0 ? Json(scheme.stability_limit) : Json()},
                              {"word", Json::list(stages)},
+                             {"fields", json_of(part_info<CompositionOptions>().fields)},
                              {"source", scheme.source},
                              {"bibtex", entries_of(scheme.source)}})
                    .text());
@@ -154,6 +167,7 @@ void describe_scheme(const Scheme& scheme, bool json) {
   if (scheme.stability_limit > 0)
     fmt::print("  stable on the oscillator up to h omega = {:.6g}\n", scheme.stability_limit);
   fmt::print("\n{}", word_text(scheme.word));
+  print_fields(part_info<CompositionOptions>().fields);
   const std::string entries = entries_of(scheme.source);
   if (!entries.empty()) fmt::print("\n{}", entries);
 }
@@ -184,6 +198,16 @@ Served served_by(const MethodClaims& claims) {
   return {"y' = f(t, y)", "it takes all forces together, velocity-dependent ones too"};
 }
 
+/// What a method takes beside step and error control.
+std::vector<std::string> own_keys(const MethodInfo& info) {
+  std::vector<std::string> keys;
+  for (const OptionGroup* group : info.option_groups()) {
+    if (group == error_control) continue;
+    for (const OptionValue& one : group->values({})) keys.emplace_back(one.name);
+  }
+  return keys;
+}
+
 void describe_method(const MethodInfo& info, bool json) {
   const Served served = served_by(info.make(info, {})->claims());
   const std::vector<std::string> aliases = methods::aliases_of(info);
@@ -200,7 +224,8 @@ void describe_method(const MethodInfo& info, bool json) {
                                      {"evaluations", info.evaluations > 0 ? Json(info.evaluations) : Json()},
                                      {"fixed", info.fixed},
                                      {"adaptive", info.adaptive},
-                                     {"options", Json::list_of(words_of(info.options))},
+                                     {"options", Json::list_of(own_keys(info))},
+                                     {"fields", json_of(fields_of(info))},
                                      {"rtol", info.adaptive ? Json(info.rtol) : Json()},
                                      {"atol", info.adaptive ? Json(info.atol) : Json()},
                                      {"stability_limit", limit_json(info.stability_limit)},
@@ -216,7 +241,6 @@ void describe_method(const MethodInfo& info, bool json) {
     fmt::print("  {} {} a step of given length\n", info.evaluations,
                info.evaluations == 1 ? "evaluation" : "evaluations");
   }
-  if (!info.options.empty()) fmt::print("  takes {} too\n", fmt::join(words_of(info.options), ", "));
   if (std::isinf(info.stability_limit)) {
     fmt::print("  stable on the oscillator at any step\n");
   } else if (info.stability_limit == 0) {
@@ -224,6 +248,7 @@ void describe_method(const MethodInfo& info, bool json) {
   } else if (info.stability_limit > 0) {
     fmt::print("  stable on the oscillator up to h omega = {:.6g}\n", info.stability_limit);
   }
+  print_fields(fields_of(info));
   const std::string entries = entries_of(info.source);
   if (!entries.empty()) fmt::print("\n{}", entries);
 }
@@ -254,11 +279,11 @@ void describe(const std::string& name, const Parts& parts, bool json) {
     known.push_back(info.name);
   }
   if (const Scheme* scheme = schemes::find(name)) return describe_scheme(*scheme, json);
-  if (const MethodInfo* info = methods::find(name)) return describe_method(*info, json);
+  if (const MethodInfo* info = parts.find_method(name)) return describe_method(*info, json);
   for (const UnitRow& row : list_units()) {
     if (row.symbol == name) return describe_unit(row, json);
   }
-  const std::vector<std::string> methods_too = methods::known_names();
+  const std::vector<std::string> methods_too = parts.method_names();
   known.insert(known.end(), methods_too.begin(), methods_too.end());
   const std::string near = suggest(name, known);
   throw Error(fmt::format("there is nothing called '{}'; {}", name,

@@ -56,6 +56,14 @@ std::string plain_text(const SceneValue& value) {
   return text != nullptr ? *text : to_text(value);
 }
 
+/// The keys of a part behind its name: ", temperature 300 K, seed 1".
+std::string keys_text(const SceneValue& table) {
+  std::string text;
+  for (const auto& [key, value] : *table.get<SceneValue::Table>())
+    text += fmt::format(", {} {}", key, plain_text(value));
+  return text;
+}
+
 std::string length_text(double length, const UnitSystem& units) {
   return format_number(length) + (units.is_reduced() ? "" : " " + std::string(units.length));
 }
@@ -96,14 +104,13 @@ void sort_parts(const Scene& scene, Explanation& e) {
     e.in.push_back("force " + force.name + (wide ? "" : ", for doubles only: compare has no truth for it"));
   }
   if (const auto& bath = scene.hamiltonian.thermostat) {
-    std::string text = "thermostat " + bath->name;
-    for (const auto& [key, value] : *bath->effective.get<SceneValue::Table>()) {
-      text += fmt::format(", {} {}", key, plain_text(value));
-    }
-    e.in.push_back(std::move(text));
+    e.in.push_back("thermostat " + bath->name + keys_text(bath->effective));
   }
   for (const SceneConstraint& constraint : scene.hamiltonian.constraints) {
     e.in.push_back(fmt::format("constraint {}, {} times", constraint.name, constraint.tied.size()));
+  }
+  for (const SceneDecorator& decorator : scene.integrator.decorators) {
+    e.in.push_back("decorator " + decorator.name + keys_text(decorator.effective));
   }
   for (const SceneWatch& watch : scene.watches) {
     const bool monitor = watch.kind == SceneWatch::Kind::monitor;
@@ -134,6 +141,7 @@ void sort_parts(const Scene& scene, Explanation& e) {
     if (!own) leave_out("force " + kind.info.name);
   }
   for (const auto& kind : parts.constraints()) leave_out("constraint " + kind.info.name);
+  for (const auto& kind : parts.decorators()) leave_out("decorator " + kind.info.name);
   for (const auto& kind : parts.monitors()) leave_out("monitor " + kind.info.name);
   leave_out("writer trajectory");
   for (const auto& kind : parts.stops()) leave_out("stop " + kind.info.name);

@@ -50,7 +50,7 @@ std::string order_text(const Order& order) {
                  : fmt::format("{} ({},{},{})", order.classical, p1, p2, p3);
 }
 
-Listing methods() {
+Listing methods(const Parts& parts) {
   Listing list{{"name", "order", "class", "evaluations", "stability_limit", "aliases", "kicks"}, {}, {}};
   for (const Scheme* scheme : schemes::all()) {
     const std::vector<std::string> aliases = schemes::aliases_of(*scheme);
@@ -60,7 +60,7 @@ Listing methods() {
              {scheme->name, scheme->order.classical, class_text(*scheme), scheme->evaluations(),
               limit_json(scheme->stability_limit), Json::list_of(aliases), scheme->evaluations()});
   }
-  for (const MethodInfo* info : methods::all()) {
+  for (const MethodInfo* info : parts.methods()) {
     const std::vector<std::string> aliases = methods::aliases_of(*info);
     list.add({std::string(info->name), order_text(*info), std::string(info->family), evaluations_text(*info),
               limit_text(info->stability_limit), fmt::format("{}", fmt::join(aliases, " "))},
@@ -94,12 +94,13 @@ Listing units() {
 }
 
 Listing listing_of(const std::string& what, const Parts& parts) {
-  if (what == "methods") return methods();
+  if (what == "methods") return methods(parts);
   if (what == "hamiltonians") return listing_of_parts(infos_of(parts.hamiltonians()));
   if (what == "forces") return listing_of_parts(infos_of(parts.forces()));
   if (what == "units") return units();
   if (what == "constraints") return listing_of_parts(infos_of(parts.constraints()));
   if (what == "systems") return listing_of_parts(infos_of(parts.systems()));
+  if (what == "decorators") return listing_of_parts(infos_of(parts.decorators()));
   if (what == "builders") return listing_of_parts(infos_of(builders()));
   if (what == "monitors") {
     Listing list{{"name", "kind", "help"}, {}, {}};
@@ -108,8 +109,8 @@ Listing listing_of(const std::string& what, const Parts& parts) {
     for (const PartInfo& info : infos_of(parts.stops())) list.add({info.name, "stop", info.help});
     return list;
   }
-  const std::vector<std::string> known = {"methods", "hamiltonians", "forces",   "constraints",
-                                          "systems", "monitors",     "builders", "units"};
+  const std::vector<std::string> known = {"methods",    "hamiltonians", "forces",   "constraints", "systems",
+                                          "decorators", "monitors",     "builders", "units"};
   throw Error(fmt::format("there is no list of '{}'{}", what, did_you_mean(what, known)));
 }
 
@@ -185,8 +186,11 @@ void add_list_command(CLI::App& app, const Parts& parts, int& exit_code) {
   const auto what = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
   CLI::App* command = app.add_subcommand(
-      "list", "what there is: methods, hamiltonians, forces, constraints, systems, monitors, builders, units");
-  command->add_option("what", *what, "methods, hamiltonians, forces, constraints, systems, monitors, builders or units")
+      "list",
+      "what there is: methods, hamiltonians, forces, constraints, systems, decorators, monitors, builders, units");
+  command
+      ->add_option("what", *what,
+                   "methods, hamiltonians, forces, constraints, systems, decorators, monitors, builders or units")
       ->required()
       ->type_name("WHAT");
   command->add_flag("--json", *json, "as one line of JSON");

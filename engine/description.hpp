@@ -115,6 +115,28 @@ concept Described = requires {
 };
 
 namespace detail {
+template <class T> struct optional_value { using type = T; };
+template <class T> struct optional_value<std::optional<T>> { using type = T; };
+
+/// What values of a field are, in words.
+template <class V> constexpr std::string_view field_kind() {
+  using T = typename optional_value<V>::type;
+  if constexpr (std::is_same_v<T, bool>)
+    return "flag";
+  else if constexpr (std::is_integral_v<T>)
+    return "whole number";
+  else if constexpr (std::is_floating_point_v<T>)
+    return "number";
+  else if constexpr (std::is_enum_v<T>)
+    return "choice";
+  else if constexpr (std::is_same_v<T, std::string>)
+    return "text";
+  else if constexpr (std::is_same_v<T, std::array<double, 3>>)
+    return "vector";
+  else
+    return "list";
+}
+
 /// The description of `T`, once for all who read it.
 template <class T> inline constexpr auto description_of = T::describe();
 

@@ -9,25 +9,32 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 namespace noether {
 
 namespace detail {
 
-/// Writes the state a part declares by its description, or by `save` of its own.
+/// Writes the state a part declares by its description, or by `save` of its own. What stands around another part
+/// (integrators/wrapped.hpp) is written with its fields, and then the one inside.
 template <class T> void save_any(SavedState& saved, const std::string& prefix, const T& value) {
   if constexpr (requires { value.save(saved, prefix); }) {
     value.save(saved, prefix);
   } else {
+    if constexpr (requires { value.inside(); } && Described<T>) save_signature(saved, prefix, value);
     save_part(saved, prefix, value);
+    if constexpr (requires { value.inside(); }) save_any(saved, prefix + "inside/", value.inside());
   }
 }
+/// @throws Error  if something is missing, or was saved around a part by one with other fields
 template <class T> void load_any(const SavedState& saved, const std::string& prefix, T& value) {
   if constexpr (requires { value.load(saved, prefix); }) {
     value.load(saved, prefix);
   } else {
+    if constexpr (requires { value.inside(); } && Described<T>) check_signature(saved, prefix, value);
     load_part(saved, prefix, value);
+    if constexpr (requires { value.inside(); }) load_any(saved, prefix + "inside/", value.inside());
   }
 }
 
@@ -124,6 +131,48 @@ template <class H> struct HamiltonianModel final : HamiltonianBase<typename H::r
   H hamiltonian;
 };
 
+template <class I>
+concept GivesAction = requires(I& i, ParticleSystem<typename I::real>& s, const Span& span, typename I::real& action) {
+  i.advance_with_action(s, span, action);
+};
+/// Whether an integrator offers `advance_with_action`.
+template <class I> bool has_action(const I& integrator) {
+  if constexpr (requires { integrator.has_action(); }) return integrator.has_action();
+  return GivesAction<I>;
+}
+/// @throws LogicError  if it does not
+template <class I, class Real>
+Advanced advance_with_action(I& integrator, ParticleSystem<Real>& s, const Span& span, Real& action) {
+  if constexpr (GivesAction<I>) return integrator.advance_with_action(s, span, action);
+  throw LogicError("a method that gives no action was asked for it");
+}
+/// Completes a copy. @return the action of the flows that do, if wanted; 0 for a method that gives none
+template <class I, class Real>
+Real settle(I& integrator, const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Wanted wanted,
+            const std::optional<double>& at, bool corrected) {
+  if constexpr (GivesAction<I>) return integrator.settle(raw, out, wanted, at, corrected);
+  integrator.settle(raw, out, wanted, at, corrected);
+  return Real(0);
+}
+
+template <class R, class C, class... A> std::type_identity<C> written_in(R (C::*)(A...));
+template <class R, class C, class... A> std::type_identity<C> written_in(R (C::*)(A...) const);
+
+/// Whether what stands around an integrator and advances in its own way says so of steps with their action as well.
+template <class I> constexpr bool action_follows() {
+  if constexpr (requires(I & i) {
+                  i.inside();
+                  written_in(&I::advance);
+                  written_in(&I::advance_with_action);
+                  written_in(&I::has_action);
+                }) {
+    using Advances = decltype(written_in(&I::advance));
+    using WithAction = decltype(written_in(&I::advance_with_action));
+    return std::is_same_v<Advances, WithAction> || !std::is_same_v<decltype(written_in(&I::has_action)), WithAction>;
+  }
+  return true;
+}
+
 template <class Real> struct IntegratorBase {
   virtual ~IntegratorBase() = default;
   virtual std::unique_ptr<IntegratorBase> clone() const = 0;
@@ -143,27 +192,21 @@ template <class Real> struct IntegratorBase {
 };
 template <class I> struct IntegratorModel final : IntegratorBase<typename I::real> {
   using Real = typename I::real;
+  static_assert(action_follows<I>(),
+                "what stands around an integrator and has an `advance` of its own has an `advance_with_action` of its "
+                "own too, or a `has_action` that says no");
   explicit IntegratorModel(I i) : integrator(std::move(i)) {}
   std::unique_ptr<IntegratorBase<Real>> clone() const override { return std::make_unique<IntegratorModel>(integrator); }
   IntegratorClaims claims() const override { return integrator.claims(); }
   void bind(ParticleSystem<Real>& s) override { integrator.bind(s); }
   Advanced advance(ParticleSystem<Real>& s, const Span& span) override { return integrator.advance(s, span); }
-  static constexpr bool gives_action = requires(I & i, ParticleSystem<Real>& s, const Span& span, Real& action) {
-    i.advance_with_action(s, span, action);
-  };
-  bool has_action() const override {
-    if constexpr (requires { integrator.has_action(); }) return integrator.has_action();
-    return gives_action;
-  }
+  bool has_action() const override { return detail::has_action(integrator); }
   Advanced advance_with_action(ParticleSystem<Real>& s, const Span& span, Real& action) override {
-    if constexpr (gives_action) return integrator.advance_with_action(s, span, action);
-    throw LogicError("a method that gives no action was asked for it");
+    return detail::advance_with_action(integrator, s, span, action);
   }
   Real settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Wanted wanted,
               const std::optional<double>& at, bool corrected) override {
-    if constexpr (gives_action) return integrator.settle(raw, out, wanted, at, corrected);
-    integrator.settle(raw, out, wanted, at, corrected);
-    return Real(0);
+    return detail::settle(integrator, raw, out, wanted, at, corrected);
   }
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) override { return integrator.energy(s); }
   std::optional<Mat3<Real>> virial(const ParticleSystem<Real>& s) override { return virial_of(integrator, s); }

@@ -144,12 +144,20 @@ template <class Real> void Classical<Real>::look_ahead(const ParticleSystem<Real
 }
 
 template <class Real> std::string Classical<Real>::signature() const {
-  const MethodOptions& o = choice_.options;
-  const auto text = [](const std::optional<double>& x) { return detail::value_text(x); };
-  const std::string jacobian = o.jacobian ? fmt::format(", jacobian = {}", name_of(*o.jacobian)) : "";
-  return fmt::format("{}(rtol = {}, atol = {}, adaptive = {}, first = {}, beta = {}, gamma = {}{})", choice_.info->name,
-                     text(o.rtol), text(o.atol), choice_.info->is_adaptive(o), text(o.first), text(o.beta),
-                     text(o.gamma), jacobian);
+  const MethodInfo& info = *choice_.info;
+  MethodOptions options = choice_.options;
+  options.adaptive = info.is_adaptive(options);
+  std::string fields;
+  std::vector<const OptionGroup*> groups = {error_control};
+  for (const OptionGroup* group : info.options) {
+    if (group != nullptr) groups.push_back(group);
+  }
+  for (const OptionGroup* group : groups) {
+    for (const OptionValue& one : group->values(options)) {
+      detail::add_field_text(fields, one.name, option_text(one.value));
+    }
+  }
+  return fmt::format("{}({}, first = {})", info.name, fields, detail::value_text(options.first));
 }
 
 template <class Real> void Classical<Real>::save(SavedState& saved, const std::string& prefix) const {

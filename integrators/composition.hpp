@@ -4,6 +4,7 @@
 #include "engine/concepts.hpp"
 #include "engine/erasure.hpp"
 #include "engine/word.hpp"
+#include "integrators/composition_options.hpp"
 #include "integrators/scheme.hpp"
 
 #include <algorithm>
@@ -16,10 +17,6 @@
 #include <vector>
 
 namespace noether {
-
-struct CompositionOptions {
-  bool compensated = false;  ///< keep the rounding errors of x and v and add them back (Kahan, Neumaier)
-};
 
 /// The stages of one step as a scheme has them over a Hamiltonian.
 struct FittedWord {

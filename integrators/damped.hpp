@@ -53,11 +53,11 @@ template <SplitHamiltonian H> class Damped : public Wrapped<H> {
   }
   void save(SavedState& saved, const std::string& prefix) const {
     detail::save_signature(saved, prefix + "drag/", drag_);
-    Wrapped<H>::save(saved, prefix);
+    detail::save_any(saved, prefix, this->hamiltonian_);
   }
   void load(const SavedState& saved, const std::string& prefix) {
     detail::check_signature(saved, prefix + "drag/", drag_);
-    Wrapped<H>::load(saved, prefix);
+    detail::load_any(saved, prefix, this->hamiltonian_);
   }
 
  private:

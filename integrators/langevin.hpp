@@ -128,11 +128,11 @@ template <SplitHamiltonian H> class Langevin : public Wrapped<H> {
   }
   void save(SavedState& saved, const std::string& prefix) const {
     detail::save_signature(saved, prefix + "langevin/", options_);
-    Wrapped<H>::save(saved, prefix);
+    detail::save_any(saved, prefix, hamiltonian_);
   }
   void load(const SavedState& saved, const std::string& prefix) {
     detail::check_signature(saved, prefix + "langevin/", options_);
-    Wrapped<H>::load(saved, prefix);
+    detail::load_any(saved, prefix, hamiltonian_);
   }
 
  private:

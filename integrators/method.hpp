@@ -2,6 +2,7 @@
 /// A classical method: how to get from y(t) to y(t + h) when y' = f(t, y).
 
 #include "engine/saved_state.hpp"
+#include "integrators/method_options.hpp"
 #include "integrators/vector_field.hpp"
 
 #include <array>
@@ -12,29 +13,9 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace noether {
-
-/// How an implicit method keeps J = df/dy and solves its linear systems: LU of all elements, LU of those that can be
-/// other than 0, or products J v only.
-enum class JacobianForm : std::uint8_t { dense, sparse, matrix_free };
-
-/// Their names, in that order.
-inline constexpr std::array<std::string_view, 3> jacobian_forms{"dense", "sparse", "matrix_free"};
-constexpr std::string_view name_of(JacobianForm form) { return jacobian_forms[static_cast<std::size_t>(form)]; }
-
-/// What a user may set of a method; a method takes what it knows and refuses the rest.
-struct MethodOptions {
-  std::optional<double> rtol = {};    ///< relative tolerance of adaptive methods [1]
-  std::optional<double> atol = {};    ///< absolute tolerance, in the units of each variable
-  std::optional<bool> adaptive = {};  ///< for methods that can do both
-  std::optional<double> first = {};   ///< length of the first step of adaptive methods [time]; default: by the method
-  std::optional<double> beta = {}, gamma = {};  ///< of `newmark`
-  /// Of methods that solve linear systems; default: sparse where the field has a `sparsity`, else dense.
-  std::optional<JacobianForm> jacobian = {};
-
-  bool operator==(const MethodOptions&) const = default;
-};
 
 /// What a method says of itself; tests measure every word of it.
 struct MethodClaims {
@@ -101,10 +82,10 @@ struct MethodInfo {
   std::string_view name;
   std::string_view aliases = "";  ///< parted by blanks
   std::string_view summary = "";
-  std::string_view use = "";      ///< what it is best for, in a few words
-  std::string_view source = "";   ///< keys of docs/references.bib
-  std::string_view family = "";   ///< "runge-kutta", "multistep", ...
-  std::string_view options = "";  ///< names of options it takes beside step, rtol and atol, parted by blanks
+  std::string_view use = "";                       ///< what it is best for, in a few words
+  std::string_view source = "";                    ///< keys of docs/references.bib
+  std::string_view family = "";                    ///< "runge-kutta", "multistep", ...
+  std::array<const OptionGroup*, 2> options = {};  ///< that it takes beside step and error control; the rest is null
   int order = 0;
   int evaluations = 0;                  ///< forces a fixed step, after the start; 0: it iterates, so it depends
   int printed_digits = 34;              ///< significant digits of the shortest coefficient in the source
@@ -116,6 +97,12 @@ struct MethodInfo {
   std::unique_ptr<Method<double>> (*make)(const MethodInfo&, const MethodOptions&) = nullptr;
   std::unique_ptr<Method<Quad>> (*make_quad)(const MethodInfo&, const MethodOptions&) = nullptr;  ///< null: double only
 
+  /// All options it takes: of error control where it can choose its steps, then others.
+  std::vector<const OptionGroup*> option_groups() const;
+  /// Whether it takes options of a group.
+  bool takes(const OptionGroup& group) const;
+  /// Options with the defaults of this method in the place of what is not said; what it does not look at is left out.
+  MethodOptions resolved(const MethodOptions& options_given) const;
   /// Whether it runs with adaptive steps when asked like this.
   bool is_adaptive(const MethodOptions& options_given) const {
     return adaptive && options_given.adaptive.value_or(true);
@@ -132,6 +119,9 @@ template <> std::unique_ptr<Method<Quad>> make_method(const MethodInfo& info, co
 struct MethodChoice {
   const MethodInfo* info = nullptr;
   MethodOptions options = {};
+
+  /// See `MethodInfo::resolved`.
+  MethodOptions resolved() const { return info->resolved(options); }
 };
 
 }  // namespace noether

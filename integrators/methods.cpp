@@ -55,46 +55,91 @@ MethodChoice method(std::string_view name, const MethodOptions& options) {
   throw Error(fmt::format("unknown method '{}'{}", name, did_you_mean(name, methods::known_names())));
 }
 
-void check_options(const MethodInfo& info, const MethodOptions& options, double rounding) {
-  const auto fail = [](std::string_view key, const std::string& message) {
-    throw Error(message, {.key = std::string(key)});
-  };
-  const auto takes = [&](std::string_view option) { return info.options.find(option) != std::string_view::npos; };
-  if (options.adaptive.value_or(false) && !info.adaptive) {
-    fail("adaptive", fmt::format("method '{}' has no error estimate, so its steps cannot be adaptive", info.name));
+std::vector<const OptionGroup*> MethodInfo::option_groups() const {
+  std::vector<const OptionGroup*> groups;
+  if (adaptive) groups.push_back(error_control);
+  for (const OptionGroup* group : options) {
+    if (group != nullptr) groups.push_back(group);
   }
-  if (!options.adaptive.value_or(true) && !info.fixed) {
-    fail("adaptive", fmt::format("method '{}' chooses its steps itself; they cannot be fixed", info.name));
+  return groups;
+}
+
+bool MethodInfo::takes(const OptionGroup& group) const {
+  const auto groups = option_groups();
+  return std::find(groups.begin(), groups.end(), &group) != groups.end();
+}
+
+MethodOptions MethodInfo::resolved(const MethodOptions& options_given) const {
+  MethodOptions all = options_given;
+  const bool chooses = is_adaptive(options_given);
+  all.adaptive = adaptive && fixed ? std::optional(chooses) : std::nullopt;
+  all.rtol = chooses ? std::optional(all.rtol.value_or(rtol)) : std::nullopt;
+  all.atol = chooses ? std::optional(all.atol.value_or(atol)) : std::nullopt;
+  return all;
+}
+
+namespace {
+
+[[noreturn]] void refuse_option(std::string_view key, const std::string& message) {
+  throw Error(message, {.key = std::string(key)});
+}
+
+/// Refuses what a method does not take, and what those say of themselves that it takes.
+void check_groups(const MethodInfo& info, const MethodOptions& options) {
+  if (const OptionGroup* own = options.own.group(); own != nullptr && !info.takes(*own)) {
+    const std::string_view key = own->values(options).front().name;
+    refuse_option(key, fmt::format("method '{}' has no options of '{}'; take them out", info.name, own->name));
   }
-  for (const auto& [value, key] : {std::pair(options.rtol, "rtol"), std::pair(options.atol, "atol")}) {
-    if (value && !info.is_adaptive(options)) {
-      fail(key, fmt::format("method '{}' takes steps of one length here, so {} means nothing to it; take it out",
-                            info.name, key));
+  if (options.jacobian && !info.takes(*linear_solver))
+    refuse_option("jacobian", lacks_option(info.name, *linear_solver, "jacobian"));
+  for (const OptionGroup* group : info.option_groups()) group->check(options);
+}
+
+void check_tolerances(const MethodInfo& info, const MethodOptions& options, double rounding) {
+  for (const OptionValue& one : error_control->values(options)) {
+    const double* value = std::get_if<double>(&one.value);
+    if (value == nullptr) continue;
+    if (!info.is_adaptive(options)) {
+      refuse_option(one.name,
+                    fmt::format("method '{}' takes steps of one length here, so {} means nothing to it; take it out",
+                                info.name, one.name));
     }
-    if (value && !(*value >= 0 && std::isfinite(*value))) {
-      throw Error(fmt::format("{} = {} is no tolerance; a number of at least 0 is expected", key, *value),
-                  {.key = key, .value = fmt::format("{}", *value)});
-    }
+    if (!(*value >= 0 && std::isfinite(*value)))
+      refuse_field(one.name, fmt::format("{}", *value), "is no tolerance; a number of at least 0 is expected");
   }
   // The references take 1e-16 for "to rounding"; others would shorten their steps without end.
   if (options.rtol && *options.rtol > 0 && *options.rtol < 4 * rounding && info.rtol > 1e-15) {
-    throw Error(fmt::format("rtol = {} is more than {} can tell; at least {:.1g} is expected, or a method that goes to "
-                            "rounding, such as 'gauss_8'",
-                            *options.rtol, rounding < 1e-20 ? "extended precision" : "doubles", 4 * rounding),
-                {.key = "rtol", .value = fmt::format("{}", *options.rtol)});
-  }
-  for (const auto& [value, key] : {std::pair(options.beta, "beta"), std::pair(options.gamma, "gamma")}) {
-    if (value && !takes(key)) fail(key, fmt::format("method '{}' has no {}; take it out", info.name, key));
-  }
-  if (options.jacobian && !takes("jacobian")) {
-    fail("jacobian",
-         fmt::format("method '{}' solves no linear systems, so jacobian means nothing to it; take it out", info.name));
+    refuse_field(
+        "rtol", fmt::format("{}", *options.rtol),
+        fmt::format("is more than {} can tell; at least {:.1g} is expected, or a method that goes to rounding, "
+                    "such as 'gauss_8'",
+                    rounding < 1e-20 ? "extended precision" : "doubles", 4 * rounding));
   }
   if (info.is_adaptive(options) && options.rtol.value_or(info.rtol) == 0 && options.atol.value_or(info.atol) == 0) {
-    fail("rtol", "rtol and atol are both 0, so no step could pass; give one of them above 0");
+    refuse_option("rtol", "rtol and atol are both 0, so no step could pass; give one of them above 0");
   }
+}
+
+}  // namespace
+
+std::string lacks_option(std::string_view name, const OptionGroup& group, std::string_view key) {
+  if (group.lacks.empty()) return fmt::format("method '{}' has no {}; take it out", name, key);
+  return fmt::format("method '{}' {}, so {} means nothing to it; take it out", name, group.lacks, key);
+}
+
+void check_options(const MethodInfo& info, const MethodOptions& options, double rounding) {
+  if (options.adaptive.value_or(false) && !info.adaptive) {
+    refuse_option("adaptive",
+                  fmt::format("method '{}' has no error estimate, so its steps cannot be adaptive", info.name));
+  }
+  if (!options.adaptive.value_or(true) && !info.fixed) {
+    refuse_option("adaptive", fmt::format("method '{}' chooses its steps itself; they cannot be fixed", info.name));
+  }
+  check_tolerances(info, options, rounding);
+  check_groups(info, options);
   if (options.first && !(*options.first > 0 && std::isfinite(*options.first))) {
-    fail("step", fmt::format("a first step of {} is no step; a finite time above 0 is expected", *options.first));
+    refuse_option("step",
+                  fmt::format("a first step of {} is no step; a finite time above 0 is expected", *options.first));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace noether {
@@ -37,6 +38,9 @@ std::span<const MethodInfo> bdf_list();
 
 }  // namespace methods
 
+/// Why a method, or a scheme, does not take an option of a group that is not its own.
+std::string lacks_option(std::string_view name, const OptionGroup& group, std::string_view key);
+
 /// @param rounding  of the numbers it is to run with; only methods that go to rounding take relative tolerances below
 ///   four times as much
 /// @throws Error  for options that a method does not take, and tolerances out of range, naming the key
@@ -45,5 +49,10 @@ void check_options(const MethodInfo& info, const MethodOptions& options, double 
 /// The classical method of a name or an alias, with options.
 /// @throws Error  for an unknown name, with a proposal
 MethodChoice method(std::string_view name, const MethodOptions& options = {});
+/// The same with options of its own: `method("newmark", NewmarkOptions{.beta = 0.3})`.
+template <Described T> MethodChoice method(std::string_view name, T own, MethodOptions options = {}) {
+  options.own = std::move(own);
+  return method(name, options);
+}
 
 }  // namespace noether

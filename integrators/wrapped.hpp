@@ -1,5 +1,5 @@
 #pragma once
-/// What stands around a Hamiltonian and changes some of it: everything else goes through.
+/// What stands around a Hamiltonian or an integrator and changes some of it: everything else goes through.
 
 #include "engine/erasure.hpp"
 
@@ -9,14 +9,22 @@
 
 namespace noether {
 
-/// The members of a split Hamiltonian, each as that of the one inside. A letter of its own (drag, a bath) derives from
-/// it and writes what it changes: its claims, the flow of its letter, what it saves.
-template <SplitHamiltonian H> class Wrapped {
+/// The members of a split Hamiltonian or of an integrator, each as that of the one inside.
+///
+/// Neither `save` nor `load` is among them. A part around another one that has none either is saved as it describes
+/// itself: its fields, which a saved run must have been made with, its state, and then the one inside.
+template <class T> class Wrapped;
+
+/// Around a Hamiltonian. A letter of its own (drag, a bath) derives from it and writes what it changes: its claims, the
+/// flow of its letter, what it saves.
+template <SplitHamiltonian H> class Wrapped<H> {
  public:
   using real = typename H::real;
 
   explicit Wrapped(H hamiltonian) : hamiltonian_(std::move(hamiltonian)) {}
 
+  const H& inside() const { return hamiltonian_; }
+  H& inside() { return hamiltonian_; }
   std::string name() const { return detail::name_of(hamiltonian_); }
   HamiltonianClaims claims() const { return hamiltonian_.claims(); }
   void bind(ParticleSystem<real>& s) { hamiltonian_.bind(s); }
@@ -38,11 +46,49 @@ template <SplitHamiltonian H> class Wrapped {
   void observe(std::optional<Wanted> wanted) { hamiltonian_.observe(wanted); }
   const std::optional<Failure>& failure() const { return hamiltonian_.failure(); }
   Evaluations evaluations() const { return hamiltonian_.evaluations(); }
-  void save(SavedState& saved, const std::string& prefix) const { detail::save_any(saved, prefix, hamiltonian_); }
-  void load(const SavedState& saved, const std::string& prefix) { detail::load_any(saved, prefix, hamiltonian_); }
 
  protected:
   H hamiltonian_;
+};
+
+/// Around an integrator. A decorator (what is done to the run at its whole steps) derives from it and writes what it
+/// changes: its claims, `advance`, and with that `advance_with_action` or `has_action`. Its `advance` must leave the
+/// same bits for any cuts of a run: what it does when may depend on the count of steps alone.
+template <Integrator I> class Wrapped<I> {
+ public:
+  using real = typename I::real;
+
+  explicit Wrapped(I integrator) : integrator_(std::move(integrator)) {}
+
+  const I& inside() const { return integrator_; }
+  I& inside() { return integrator_; }
+  IntegratorClaims claims() const { return integrator_.claims(); }
+  void bind(ParticleSystem<real>& s) { integrator_.bind(s); }
+  Advanced advance(ParticleSystem<real>& s, const Span& span) { return integrator_.advance(s, span); }
+  bool has_action() const { return detail::has_action(integrator_); }
+  Advanced advance_with_action(ParticleSystem<real>& s, const Span& span, real& action) {
+    return detail::advance_with_action(integrator_, s, span, action);
+  }
+  real settle(const ParticleSystem<real>& raw, ParticleSystem<real>& out, Wanted wanted,
+              const std::optional<double>& at, bool corrected) {
+    return detail::settle(integrator_, raw, out, wanted, at, corrected);
+  }
+  EnergyTerms<real> energy(const ParticleSystem<real>& s) { return integrator_.energy(s); }
+  std::optional<Mat3<real>> virial(const ParticleSystem<real>& s) { return detail::virial_of(integrator_, s); }
+  void accelerations(const ParticleSystem<real>& s, VectorColumn<real>& a) { integrator_.accelerations(s, a); }
+  Evaluations evaluations() const { return integrator_.evaluations(); }
+
+ protected:
+  /// Goes on from another state of the particles at a whole step, as after an edit: the method begins anew.
+  /// @param now  settled, then changed
+  void continue_from(const ParticleSystem<real>& now, ParticleSystem<real>& raw) {
+    raw = now;
+    raw.phase() = Phase{};
+    raw.keep_low_words(false);
+    integrator_.bind(raw);
+  }
+
+  I integrator_;
 };
 
 }  // namespace noether

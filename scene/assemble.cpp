@@ -121,16 +121,26 @@ std::unique_ptr<VectorField<double>> field_of(const Scene& scene) {
   return std::make_unique<HamiltonianMotion<double>>(splitting.make(std::move(kicks)), std::move(letters));
 }
 
-AnyIntegrator<double> integrator_of(const Scene& scene) {
+Clock<double> clock_of(const SceneIntegrator& integrator) {
+  return integrator.adaptive() ? Clock<double>::free(0, integrator.direction())
+                               : Clock<double>::fixed(0, integrator.step);
+}
+
+AnyIntegrator<double> integrator_of(const Scene& scene, std::size_t decorators) {
   const SceneIntegrator& made = scene.integrator;
-  if (made.classical) return Classical<double>(field_of(scene), *made.classical);
-  return Composition<AnyHamiltonian<double>>(hamiltonian_of(scene), scheme_of(made), {.compensated = made.compensated});
+  AnyIntegrator<double> integrator = [&]() -> AnyIntegrator<double> {
+    if (made.classical) return Classical<double>(field_of(scene), *made.classical);
+    return Composition<AnyHamiltonian<double>>(hamiltonian_of(scene), scheme_of(made), made.composition);
+  }();
+  for (const SceneDecorator& decorator : made.decorators) {
+    if (decorators-- == 0) break;
+    integrator = decorator.around(std::move(integrator));
+  }
+  return integrator;
 }
 
 Simulation<double> assemble(const Scene& scene, const SceneFiles& files) {
-  const SceneIntegrator& own = scene.integrator;
-  const auto clock = own.adaptive() ? Clock<double>::free(0, own.direction()) : Clock<double>::fixed(0, own.step);
-  Simulation<double> sim(scene.particles, integrator_of(scene), clock);
+  Simulation<double> sim(scene.particles, integrator_of(scene), clock_of(scene.integrator));
   const ConstraintSet constraints = constraints_of(scene);
   for (const SceneWatch& watch : scene.watches) {
     if (watch.kind == SceneWatch::Kind::monitor) watch.monitor.attach(sim, watch.cadence, constraints);

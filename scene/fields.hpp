@@ -43,9 +43,6 @@ struct PartInfo {
 
 namespace detail {
 
-template <class T> struct optional_value { using type = T; };
-template <class T> struct optional_value<std::optional<T>> { using type = T; };
-
 /// A default in the units of a scene, as text that reads back to the same bits.
 SceneValue quantity_value(double value, std::string_view dimension, const UnitSystem& units);
 
@@ -53,24 +50,6 @@ template <class E> std::vector<std::string> choice_names() {
   std::vector<std::string> names;
   for (const auto& [value, name] : EnumNames<E>::values) names.emplace_back(name);
   return names;
-}
-
-template <class V> constexpr std::string_view field_kind() {
-  using T = typename optional_value<V>::type;
-  if constexpr (std::is_same_v<T, bool>)
-    return "flag";
-  else if constexpr (std::is_integral_v<T>)
-    return "whole number";
-  else if constexpr (std::is_floating_point_v<T>)
-    return "number";
-  else if constexpr (std::is_enum_v<T>)
-    return "choice";
-  else if constexpr (std::is_same_v<T, std::string>)
-    return "text";
-  else if constexpr (std::is_same_v<T, std::array<double, 3>>)
-    return "vector";
-  else
-    return "list";
 }
 
 /// A value of a field as a scene writes it.

@@ -53,8 +53,9 @@ class SceneReader {
         scene_.effective.put("minimize", read_minimize(context_, *start, scene_));
       }
     }
-    scene_.integrator = read_integrator(context_, table(top, "integrator"), !scene_.hamiltonian.constraints.empty(),
-                                        scene_.effective.put("integrator", SceneValue::table()));
+    scene_.integrator =
+        read_integrator(context_, table(top, "integrator"), parts_, !scene_.hamiltonian.constraints.empty(),
+                        scene_.effective.put("integrator", SceneValue::table()));
     read_watches(top);
     read_stops(top);
     if (const SceneValue* expect = top.find("expect")) {
@@ -399,6 +400,7 @@ class SceneReader {
     } else {
       check_hamiltonian(top);
     }
+    check_decorators(top);
     try {
       assemble(scene_);
     } catch (const SceneError&) {
@@ -409,11 +411,30 @@ class SceneReader {
     }
   }
 
+  /// Puts the decorators around the method one by one: each refuses what it cannot stand around.
+  void check_decorators(TableReader& top) const {
+    TableReader integrator(context_, *top.find("integrator"), "[integrator]", "integrator");
+    const auto tables = tables_of(integrator, "decorator");
+    for (std::size_t k = 0; k < tables.size(); ++k) {
+      ParticleSystem<double> s = scene_.particles;
+      s.clock() = clock_of(scene_.integrator);
+      try {
+        integrator_of(scene_, k + 1).bind(s);
+      } catch (const Error& error) {
+        TableReader decorator(context_, *tables[k], "[[integrator.decorator]]",
+                              fmt::format("integrator.decorator.{}", k));
+        decorator.find("type");
+        const bool own = !error.key().empty() && tables[k]->find(error.key()) != nullptr;
+        decorator.fail(own ? error.key() : "type", error.message());
+      }
+    }
+  }
+
   void check_system(TableReader& top) {
     TableReader integrator(context_, *top.find("integrator"), "[integrator]", "integrator");
     ParticleSystem<double> s = scene_.particles;
     try {
-      integrator_of(scene_).bind(s);
+      integrator_of(scene_, 0).bind(s);
     } catch (const SchemeMismatch& error) {
       integrator.fail(error.key().empty() ? "method" : error.key(), error.message());
     }
@@ -459,7 +480,7 @@ class SceneReader {
     }
     std::optional<AnyIntegrator<double>> made;
     try {
-      made = integrator_of(scene_);
+      made = integrator_of(scene_, 0);
     } catch (const SchemeMismatch& error) {
       integrator.fail(error.key().empty() ? "method" : error.key(), error.message() + std::string(who_has_noise()));
     }

@@ -25,7 +25,9 @@
 #include "integrators/damped.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/langevin.hpp"
+#include "integrators/methods.hpp"
 #include "integrators/minimize.hpp"
+#include "integrators/schemes.hpp"
 #include "integrators/systems/forced_damped_oscillator.hpp"
 #include "integrators/systems/heat_line.hpp"
 #include "integrators/systems/lorenz.hpp"
@@ -36,6 +38,8 @@
 #include "io/checkpoint.hpp"
 #include "io/trajectory.hpp"
 #include "scene/constrained.hpp"
+
+#include <algorithm>
 
 namespace noether {
 
@@ -154,7 +158,48 @@ Parts standard_parts() {
   parts.add_monitor<ShadowHamiltonian<double>>();
   parts.add_stop<Escape>();
   parts.add_stop<Collision>();
+  for (const MethodInfo* method : methods::all()) parts.add_method(*method);
   return parts;
+}
+
+Parts& Parts::add_method(const MethodInfo& method) {
+  const auto known =
+      std::find_if(methods_.begin(), methods_.end(), [&](auto* one) { return one->name == method.name; });
+  if (known != methods_.end()) {
+    *known = &method;
+  } else {
+    methods_.push_back(&method);
+  }
+  return *this;
+}
+
+const MethodInfo* Parts::find_method(std::string_view name) const {
+  for (const MethodInfo* info : methods_) {
+    const std::vector<std::string> aliases = methods::aliases_of(*info);
+    if (info->name == name || std::find(aliases.begin(), aliases.end(), name) != aliases.end()) return info;
+  }
+  return nullptr;
+}
+
+std::vector<std::string> Parts::method_names() const {
+  std::vector<std::string> names;
+  const auto add = [&](std::string_view name, const std::vector<std::string>& aliases) {
+    names.emplace_back(name);
+    names.insert(names.end(), aliases.begin(), aliases.end());
+  };
+  for (const Scheme* scheme : schemes::all()) add(scheme->name, schemes::aliases_of(*scheme));
+  for (const MethodInfo* info : methods_) add(info->name, methods::aliases_of(*info));
+  return names;
+}
+
+std::vector<const OptionGroup*> Parts::method_options() const {
+  std::vector<const OptionGroup*> groups = {error_control};
+  for (const MethodInfo* info : methods_) {
+    for (const OptionGroup* group : info->option_groups()) {
+      if (std::find(groups.begin(), groups.end(), group) == groups.end()) groups.push_back(group);
+    }
+  }
+  return groups;
 }
 
 std::vector<PartInfo> writer_parts() { return {part_info<io::TrajectoryWriter>(), part_info<io::CheckpointWriter>()}; }

@@ -6,12 +6,14 @@
 #include "engine/simulation.hpp"
 #include "forces/sum.hpp"
 #include "integrators/first_order_system.hpp"
+#include "integrators/method.hpp"
 #include "scene/fields.hpp"
 
 #include <algorithm>
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -88,6 +90,13 @@ struct SceneStop {
   std::int64_t steps = 1;  ///< between two looks
 };
 
+/// What stands around the integrator, as a scene asked for it.
+struct SceneDecorator {
+  std::string name;
+  SceneValue effective;  ///< its table, defaults included
+  std::function<AnyIntegrator<double>(AnyIntegrator<double>)> around;
+};
+
 /// A first-order system as a scene asked for it.
 struct SceneSystem {
   std::string name;
@@ -134,7 +143,8 @@ template <class F> SceneForce scene_force(const F& part, SceneValue effective = 
   return made;
 }
 
-/// Hamiltonians, forces, constraints, thermostats, systems, monitors and stops by name. A user's own part is one line:
+/// Hamiltonians, forces, constraints, thermostats, systems, methods, decorators, monitors and stops by name. A user's
+/// own part is one line:
 ///
 ///     Parts parts = standard_parts();
 ///     parts.add_force<Oblateness>();
@@ -166,6 +176,10 @@ class Parts {
   struct SystemKind {
     PartInfo info;
     std::function<SceneSystem(TableReader&)> read;
+  };
+  struct DecoratorKind {
+    PartInfo info;
+    std::function<SceneDecorator(TableReader&)> read;
   };
   struct StopKind {
     PartInfo info;
@@ -242,6 +256,19 @@ class Parts {
     return *this;
   }
 
+  /// Makes a method for y' = f known by its name, with the options that it brings; one of the same name is replaced.
+  /// @param method  lives as long as scenes are read
+  Parts& add_method(const MethodInfo& method);
+
+  /// Makes decorator `D` known by the name it describes itself with: a struct of its parameters for which
+  /// `around(part, I)` (found by its argument) makes an integrator around another one, see integrators/wrapped.hpp. One
+  /// of the same name is replaced.
+  template <class D> Parts& add_decorator() {
+    static_assert(Described<D>, "a decorator in a scene describes itself: static constexpr auto describe()");
+    put(decorators_, DecoratorKind{part_info<D>(), [](TableReader& reader) { return read_decorator<D>(reader); }});
+    return *this;
+  }
+
   /// Makes monitor `M` known by the name it describes itself with; one of the same name is replaced.
   template <class M> Parts& add_monitor() {
     static_assert(Described<M>, "a monitor in a scene describes itself: static constexpr auto describe()");
@@ -264,6 +291,15 @@ class Parts {
   const std::vector<SystemKind>& systems() const { return systems_; }
   const std::vector<MonitorKind>& monitors() const { return monitors_; }
   const std::vector<StopKind>& stops() const { return stops_; }
+  const std::vector<DecoratorKind>& decorators() const { return decorators_; }
+  const std::vector<const MethodInfo*>& methods() const { return methods_; }
+
+  /// The method for y' = f of a name or an alias; null if there is none.
+  const MethodInfo* find_method(std::string_view name) const;
+  /// Names and aliases of all schemes and methods: what a misspelt name may have meant.
+  std::vector<std::string> method_names() const;
+  /// Every group of options that some method takes, once.
+  std::vector<const OptionGroup*> method_options() const;
 
  private:
   template <class H> static SceneSplitting read_splitting(TableReader& reader) {
@@ -388,6 +424,17 @@ class Parts {
     return made;
   }
 
+  template <class D> static SceneDecorator read_decorator(TableReader& reader) {
+    D part{};
+    read_part(reader, part);
+    SceneDecorator made{std::string(part_name<D>()), SceneValue::table(), {}};
+    put_fields(reader, part, made.effective);
+    made.around = [part](AnyIntegrator<double> inside) {
+      return AnyIntegrator<double>(around(part, std::move(inside)));
+    };
+    return made;
+  }
+
   template <class S> static SceneStop read_stop(TableReader& reader) {
     S stop{};
     read_part(reader, stop);
@@ -412,9 +459,11 @@ class Parts {
   std::vector<SystemKind> systems_;
   std::vector<MonitorKind> monitors_;
   std::vector<StopKind> stops_;
+  std::vector<DecoratorKind> decorators_;
+  std::vector<const MethodInfo*> methods_;
 };
 
-/// Every Hamiltonian, force, constraint, thermostat, system, monitor and stop of noether.
+/// Every Hamiltonian, force, constraint, thermostat, system, method, monitor and stop of noether.
 Parts standard_parts();
 
 /// What the writers say of themselves: they stand in `[[every]]` like monitors.

@@ -3,6 +3,7 @@
 #include "engine/suggest.hpp"
 #include "integrators/methods.hpp"
 #include "integrators/schemes.hpp"
+#include "scene/read_options.hpp"
 
 #include <fmt/format.h>
 
@@ -49,20 +50,20 @@ std::int64_t counted_steps(TableReader& reader, std::string_view key) {
   return steps;
 }
 
-void unknown_method(TableReader& reader, const std::string& name) {
-  const std::string near = suggest(name, methods::known_names());
+void unknown_method(TableReader& reader, const std::string& name, const Parts& parts) {
+  const std::string near = suggest(name, parts.method_names());
   reader.fail("method", fmt::format("unknown method '{}'; {}", name,
                                     near.empty() ? "see `noether list methods`" : "did you mean '" + near + "'?"));
 }
 
-void read_method(TableReader& reader, SceneIntegrator& made) {
+void read_method(TableReader& reader, const Parts& parts, SceneIntegrator& made) {
   const std::string name = reader.text("method");
   if (!reader.has("method")) reader.fail(nullptr, "method", "[integrator] has no method; see `noether list methods`");
   const bool letters = !name.empty() && name.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ") == std::string::npos;
   if (const Scheme* scheme = schemes::find(name)) {
     made.scheme = *scheme;
     made.method = std::string(scheme->name);
-  } else if (const MethodInfo* info = methods::find(name)) {
+  } else if (const MethodInfo* info = parts.find_method(name)) {
     made.classical = MethodChoice{info, {}};
     made.method = std::string(info->name);
   } else if (letters) {
@@ -73,41 +74,45 @@ void read_method(TableReader& reader, SceneIntegrator& made) {
     }
     made.method = name;
   } else {
-    unknown_method(reader, name);
+    unknown_method(reader, name, parts);
   }
 }
 
 /// What a splitting scheme takes beside its step.
-void read_scheme_options(TableReader& reader, SceneIntegrator& made, bool constrained, SceneValue& effective) {
-  for (const char* key : {"rtol", "atol", "adaptive", "beta", "gamma", "jacobian"}) {
-    if (reader.has(key)) {
-      reader.fail(key, fmt::format("method '{}' takes steps of one length, so {} means nothing to it; take it out, or "
-                                   "use a method such as 'dop853'",
-                                   made.method, key));
+void read_scheme_options(TableReader& reader, const Parts& parts, SceneIntegrator& made, bool constrained,
+                         SceneValue& effective) {
+  for (const OptionGroup* group : parts.method_options()) {
+    const std::string_view remedy = group == error_control ? ", or use a method such as 'dop853'" : "";
+    for (const OptionValue& one : group->values({})) {
+      if (reader.has(one.name))
+        reader.fail(one.name, lacks_option(made.method, *group, one.name) + std::string(remedy));
     }
   }
-  made.compensated = reader.flag("compensated", false);
-  if (made.compensated && constrained) {
-    reader.fail("compensated",
-                "compensated = true does not go with constraints, which are solved to the rounding of "
-                "plain sums");
+  read_fields(reader, made.composition);
+  try {
+    if (constrained) made.composition.check_with_constraints();
+  } catch (const Error& error) {
+    reader.refuse(error);
   }
-  effective.put("compensated", SceneValue::of(made.compensated, reader.line("compensated")));
+  put_fields(reader, made.composition, effective);
 }
 
-std::optional<JacobianForm> read_jacobian(TableReader& reader) {
-  if (!reader.has("jacobian")) return {};
-  const std::string name = reader.text("jacobian");
-  const auto* at = std::find(jacobian_forms.begin(), jacobian_forms.end(), name);
-  if (at == jacobian_forms.end()) {
-    reader.fail("jacobian", fmt::format("unknown jacobian '{}'{}", name,
-                                        did_you_mean(name, {jacobian_forms.begin(), jacobian_forms.end()})));
-  }
-  return static_cast<JacobianForm>(at - jacobian_forms.begin());
+/// Refuses what only a splitting takes, where it is more than its default.
+void refuse_scheme_options(TableReader& reader, const SceneIntegrator& made) {
+  CompositionOptions given;
+  const CompositionOptions defaults;
+  read_fields(reader, given);
+  for_each_field<CompositionOptions>([&](const auto& field) {
+    if (given.*(field.member) == defaults.*(field.member)) return;
+    reader.fail(field.name,
+                fmt::format("method '{}' {}; {} = {} is for splitting schemes such as 'verlet'", made.method,
+                            CompositionOptions::elsewhere, field.name, to_text(*reader.find(field.name))));
+  });
 }
 
 /// What a classical method takes beside its step.
-void read_method_options(TableReader& reader, SceneIntegrator& made, bool constrained, SceneValue& effective) {
+void read_method_options(TableReader& reader, const Parts& parts, SceneIntegrator& made, bool constrained,
+                         SceneValue& effective) {
   const MethodInfo& info = *made.classical->info;
   MethodOptions& options = made.classical->options;
   if (constrained) {
@@ -115,30 +120,46 @@ void read_method_options(TableReader& reader, SceneIntegrator& made, bool constr
                                       "composition of it such as 'yoshida_4'",
                                       made.method));
   }
-  if (reader.flag("compensated", false)) {
-    reader.fail("compensated", fmt::format("method '{}' has sums of its own; compensated = true is for splitting "
-                                           "schemes such as 'verlet'",
-                                           made.method));
+  refuse_scheme_options(reader, made);
+  for (const OptionGroup* group : parts.method_options()) {
+    // What control of errors means to a method without it, `check_options` says.
+    if (group == error_control || info.takes(*group)) {
+      read_options(reader, *group, options);
+      continue;
+    }
+    for (const OptionValue& one : group->values({})) {
+      if (reader.has(one.name)) reader.fail(one.name, lacks_option(made.method, *group, one.name));
+    }
   }
-  if (reader.has("adaptive")) options.adaptive = reader.flag("adaptive", true);
-  options.rtol = reader.quantity("rtol", "1");
-  options.atol = reader.quantity("atol", "1");
-  options.beta = reader.quantity("beta", "1");
-  options.gamma = reader.quantity("gamma", "1");
-  options.jacobian = read_jacobian(reader);
   try {
     check_options(info, options);
   } catch (const Error& error) {
     reader.refuse(error);
   }
-  if (info.adaptive && info.fixed) effective.put("adaptive", SceneValue::of(made.adaptive(), reader.line("adaptive")));
-  if (made.adaptive()) {
-    effective.put("rtol", SceneValue::of(options.rtol.value_or(info.rtol), reader.line("rtol")));
-    effective.put("atol", SceneValue::of(options.atol.value_or(info.atol), reader.line("atol")));
+  const MethodOptions resolved = info.resolved(options);
+  for (const OptionGroup* group : info.option_groups()) put_options(reader, *group, resolved, effective);
+}
+
+/// What stands around the method, from the inside out.
+void read_decorators(TableReader& integrator, const Parts& parts, SceneIntegrator& made, SceneValue& effective) {
+  const SceneContext& context = integrator.context();
+  SceneValue::Array list;
+  for (const SceneValue* table : tables_of(integrator, "decorator")) {
+    if (parts.decorators().empty()) {
+      integrator.fail(table, "decorator", "this program knows no decorators; its `parts.add_decorator` adds them");
+    }
+    const std::string path = fmt::format("integrator.decorator.{}", list.size());
+    const auto [kind, type] = kind_of_part(context, *table, path, "decorator", parts.decorators(), {});
+    TableReader reader(context, *table, fmt::format("decorator '{}'", type), path);
+    reader.find("type");
+    SceneDecorator decorator = kind->read(reader);
+    SceneValue one = SceneValue::table();
+    one.put("type", SceneValue::of(type, reader.line("type")));
+    for (const auto& [key, value] : *decorator.effective.get<SceneValue::Table>()) one.put(key, value);
+    list.push_back(std::move(one));
+    made.decorators.push_back(std::move(decorator));
   }
-  for (const char* key : {"beta", "gamma", "jacobian"}) {
-    if (const SceneValue* value = reader.find(key)) effective.put(key, *value);
-  }
+  if (!list.empty()) effective.put("decorator", SceneValue::of(std::move(list)));
 }
 
 /// A step as scenes of these units write it.
@@ -202,24 +223,32 @@ double wall_seconds(const TableReader& reader, const SceneValue& wall) {
   return seconds;
 }
 
+/// A misspelt key is told before a missing one.
+void know_keys(TableReader& reader, const Parts& parts) {
+  for (const char* key : {"method", "step", "until", "steps", "decorator"}) reader.find(key);
+  for_each_field<CompositionOptions>([&](const auto& field) { reader.find(field.name); });
+  for (const OptionGroup* group : parts.method_options()) {
+    for (const OptionValue& one : group->values({})) reader.find(one.name);
+  }
+  reader.finish();
+}
+
 }  // namespace
 
-SceneIntegrator read_integrator(const SceneContext& context, const SceneValue& table, bool constrained,
-                                SceneValue& effective) {
+SceneIntegrator read_integrator(const SceneContext& context, const SceneValue& table, const Parts& parts,
+                                bool constrained, SceneValue& effective) {
   SceneIntegrator made;
   TableReader reader(context, table, "[integrator]", "integrator");
-  reader.expect_only(
-      {"method", "step", "until", "steps", "compensated", "rtol", "atol", "adaptive", "beta", "gamma", "jacobian"});
-  read_method(reader, made);
+  know_keys(reader, parts);
+  read_method(reader, parts, made);
   effective.put("method", SceneValue::of(made.method, reader.line("method")));
   SceneValue options = SceneValue::table();
-  if (made.classical) {
-    read_method_options(reader, made, constrained, options);
-  }
+  if (made.classical) read_method_options(reader, parts, made, constrained, options);
   read_step(reader, made, effective);
   read_end(reader, made, effective);
-  if (!made.classical) read_scheme_options(reader, made, constrained, options);
+  if (!made.classical) read_scheme_options(reader, parts, made, constrained, options);
   for (auto& [key, value] : *options.get<SceneValue::Table>()) effective.put(key, value);
+  read_decorators(reader, parts, made, effective);
   return made;
 }
 

@@ -5,12 +5,12 @@
 
 namespace noether {
 
-/// Reads the method, its step or tolerances, and the end of the run.
+/// Reads the method, its step or tolerances, the end of the run, and what stands around the method.
 /// @param constrained  whether the Hamiltonian has constraints
 /// @param effective  receives the table with every default
 /// @throws SceneError  at the line of the key
-SceneIntegrator read_integrator(const SceneContext& context, const SceneValue& table, bool constrained,
-                                SceneValue& effective);
+SceneIntegrator read_integrator(const SceneContext& context, const SceneValue& table, const Parts& parts,
+                                bool constrained, SceneValue& effective);
 
 /// Reads the cadence of a monitor, a writer or a stop: `every`, `steps` or `wall`.
 /// @param effective  receives what the scene wrote

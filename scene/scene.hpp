@@ -3,6 +3,7 @@
 
 #include "engine/simulation.hpp"
 #include "forces/sum.hpp"
+#include "integrators/composition_options.hpp"
 #include "integrators/methods.hpp"
 #include "integrators/minimize.hpp"
 #include "integrators/scheme.hpp"
@@ -36,14 +37,15 @@ struct SceneHamiltonian {
 
 /// The integrator of a scene.
 struct SceneIntegrator {
-  std::string method;                     ///< name of the scheme, or a word
-  Scheme scheme;                          ///< `scheme_of` gives it its name
-  std::optional<MethodChoice> classical;  ///< a classical method instead of the scheme
-  double step = 0;                        ///< [time], signed; 0: the method chooses, and finds the first one itself
-  std::string step_text;                  ///< as the scene writes it
-  std::optional<std::int64_t> steps;      ///< of the whole run; empty if the scene has no end, or one in time
-  std::optional<double> until;            ///< [time]: the end, where the method chooses its steps
-  bool compensated = false;
+  std::string method;                      ///< name of the scheme, or a word
+  Scheme scheme;                           ///< `scheme_of` gives it its name
+  std::optional<MethodChoice> classical;   ///< a classical method instead of the scheme
+  double step = 0;                         ///< [time], signed; 0: the method chooses, and finds the first one itself
+  std::string step_text;                   ///< as the scene writes it
+  std::optional<std::int64_t> steps;       ///< of the whole run; empty if the scene has no end, or one in time
+  std::optional<double> until;             ///< [time]: the end, where the method chooses its steps
+  CompositionOptions composition;          ///< of the scheme
+  std::vector<SceneDecorator> decorators;  ///< the first stands around the method, each further one around all before
 
   /// Whether the method chooses its steps.
   bool adaptive() const { return classical && classical->info->is_adaptive(classical->options); }
@@ -115,6 +117,9 @@ struct SceneFiles {
 /// The scheme of a scene; its name lives as long as `integrator`.
 Scheme scheme_of(const SceneIntegrator& integrator);
 
+/// The clock of a scene at its start.
+Clock<double> clock_of(const SceneIntegrator& integrator);
+
 /// The constraints of a scene's first `tables` tables; all of them unless told.
 ConstraintSet constraints_of(const Scene& scene, std::size_t tables = std::numeric_limits<std::size_t>::max());
 
@@ -128,9 +133,11 @@ ForceField<double> forces_of(const Scene& scene);
 std::unique_ptr<VectorField<double>> field_of(const Scene& scene);
 
 /// The integrator of a scene: its scheme over the parts of its Hamiltonian, or its classical method over all its
-/// forces.
+/// forces, with what stands around it.
+/// @param decorators  of the scene's, so many are taken; all of them unless told
 /// @throws SchemeMismatch
-AnyIntegrator<double> integrator_of(const Scene& scene);
+AnyIntegrator<double> integrator_of(const Scene& scene,
+                                    std::size_t decorators = std::numeric_limits<std::size_t>::max());
 
 /// The run of a scene, at its first step.
 ///

@@ -82,7 +82,7 @@ void check(const CompareOptions& options, const Sampling& sampling) {
 }
 
 /// @throws Error  for steps or tolerances that no method takes
-void check_use(const std::vector<Opponent>& methods, const CompareOptions& options) {
+void check_use(const Scene& scene, const std::vector<Opponent>& methods, const CompareOptions& options) {
   const auto adaptive = [](const Opponent& who) { return who.adaptive; };
   if (!options.steps.empty() && std::all_of(methods.begin(), methods.end(), adaptive)) {
     throw Error(
@@ -96,7 +96,8 @@ void check_use(const std::vector<Opponent>& methods, const CompareOptions& optio
   }
   for (const Opponent& who : methods) {
     if (!who.adaptive) continue;
-    for (const double tolerance : options.tolerances) check_options(*methods::find(who.method), {.rtol = tolerance});
+    for (const double tolerance : options.tolerances)
+      check_options(*scene.parts->find_method(who.method), {.rtol = tolerance});
   }
 }
 
@@ -189,7 +190,7 @@ Comparison compare(const Scene& scene, const CompareOptions& options) {
   };
   Comparison c = headed(scene, sampling);
   c.methods = opponents_of(scene, options);
-  check_use(c.methods, options);
+  check_use(scene, c.methods, options);
   std::vector<std::vector<Setting>> settings;  // all before anything runs: one that cannot be is told at once
   for (const Opponent& who : c.methods) settings.push_back(settings_of(scene, who, sampling, options));
   tell("reference in extended precision");

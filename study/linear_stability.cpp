@@ -244,7 +244,7 @@ std::optional<StepMatrix> step_matrix(const Scene& scene, const Opponent& who, c
   // Of a splitting of its own nobody knows what it makes of a mode.
   const SceneSplitting& splitting = scene.hamiltonian.splitting;
   const bool drifts = scene.system || who.joined || (splitting.only_forces && splitting.own.empty());
-  if (!(mode.scale() > 0) || !drifts) return {};
+  if (!(mode.scale() > 0) || !drifts || !scene.integrator.decorators.empty()) return {};
   const Scene made = variant(scene, who, {.step = 1, .tolerance = 0});
   if (made.integrator.classical) {
     const MethodChoice& choice = *made.integrator.classical;

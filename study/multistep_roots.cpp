@@ -130,6 +130,7 @@ MultistepRoots stoermer_roots(int order) {
 }
 
 std::optional<MultistepRoots> multistep_roots(const Scene& scene, const Opponent& who, const Mode& mode) {
+  if (!scene.integrator.decorators.empty()) return {};
   const Scene made = variant(scene, who, {.step = 1, .tolerance = 0});
   if (!made.integrator.classical || !(mode.scale() > 0)) return {};
   const std::string_view name = made.integrator.classical->info->name;

@@ -1,7 +1,6 @@
 #include "study/opponent.hpp"
 
 #include "engine/suggest.hpp"
-#include "integrators/methods.hpp"
 #include "integrators/schemes.hpp"
 #include "scene/fields.hpp"
 
@@ -68,10 +67,10 @@ Opponent opponent(const Scene& scene, std::string_view name) {
   if (over == plain_name && !scene.system && !is_plain(scene) && !may_be_joined(scene)) {
     throw Error(fmt::format("'{}': '{}' has parts that are no forces; leave '@{}' out", name, own_name, over));
   }
-  const MethodInfo* info = methods::find(method);
+  const MethodInfo* info = scene.parts->find_method(method);
   const Scheme* scheme = schemes::find(method);
   if (info == nullptr && scheme == nullptr && !is_word(method)) {
-    const std::string near = suggest(method, methods::known_names());
+    const std::string near = suggest(method, scene.parts->method_names());
     throw Error(fmt::format("unknown method '{}'; {}", method,
                             near.empty() ? "see `noether list methods`" : "did you mean '" + near + "'?"),
                 {.value = method});
@@ -134,7 +133,7 @@ Scene variant(const Scene& scene, const Opponent& who, const Setting& setting) {
   integrator.step = who.adaptive ? 0 : setting.step;
   integrator.steps.reset();
   integrator.until.reset();
-  if (scene.particles.size() == 0 && methods::find(who.method) == nullptr) {
+  if (scene.particles.size() == 0 && scene.parts->find_method(who.method) == nullptr) {
     throw Error(
         fmt::format("'{}' splits a Hamiltonian, and a system of first order has none; use a method for y' = f, "
                     "such as 'dop853' or 'rodas_5p'",
@@ -142,16 +141,13 @@ Scene variant(const Scene& scene, const Opponent& who, const Setting& setting) {
   }
   if (const Scheme* scheme = schemes::find(who.method)) {
     integrator.scheme = *scheme;
-  } else if (const MethodInfo* info = methods::find(who.method)) {
+  } else if (const MethodInfo* info = scene.parts->find_method(who.method)) {
     if (!scene.hamiltonian.constraints.empty()) {
       throw Error(
           fmt::format("method '{}' knows no constraints; use a splitting scheme, such as 'verlet'", who.method));
     }
-    MethodOptions options = own && before ? before->options : MethodOptions{};
-    options.rtol.reset();
-    options.atol.reset();
-    options.first.reset();
-    options.adaptive.reset();
+    MethodOptions options;
+    if (own && before) options = before->options.without_error_control();
     if (who.adaptive) {
       options.rtol = setting.tolerance;
       options.atol = absolute_tolerance(scene, setting.tolerance);
@@ -159,7 +155,7 @@ Scene variant(const Scene& scene, const Opponent& who, const Setting& setting) {
       options.adaptive = false;
     }
     integrator.classical = MethodChoice{info, options};
-    integrator.compensated = false;
+    integrator.composition = {};
   } else {
     integrator.scheme = word(who.method);
   }
@@ -169,8 +165,8 @@ Scene variant(const Scene& scene, const Opponent& who, const Setting& setting) {
 double absolute_tolerance(const Scene& scene, double relative) {
   double ratio = 1e-3;
   if (scene.integrator.adaptive()) {
-    const MethodChoice& own = *scene.integrator.classical;
-    const double rtol = own.options.rtol.value_or(own.info->rtol), atol = own.options.atol.value_or(own.info->atol);
+    const MethodOptions own = scene.integrator.classical->resolved();
+    const double rtol = *own.rtol, atol = *own.atol;
     if (rtol > 0 && atol > 0) ratio = atol / rtol;
   }
   return ratio * relative;

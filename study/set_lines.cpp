@@ -60,7 +60,8 @@ std::vector<std::string> wanted(const Scene& scene, const Opponent& who, const S
 bool may_go(const Scene& scene, const std::string& key, const std::vector<std::string>& lines) {
   const bool of_splitting = key.starts_with("hamiltonian.") &&
                             scene.hamiltonian.splitting.effective.find(key.substr(key.find('.') + 1)) != nullptr;
-  if (!key.starts_with("integrator.") && !of_splitting) return false;
+  const bool of_integrator = key.starts_with("integrator.") && !key.starts_with("integrator.decorator.");
+  if (!of_integrator && !of_splitting) return false;
   return std::none_of(lines.begin(), lines.end(), [&](const std::string& line) { return line.starts_with(key + "="); });
 }
 

@@ -1,6 +1,5 @@
 #include "study/stability.hpp"
 
-#include "integrators/methods.hpp"
 #include "study/solution_growth.hpp"
 
 #include <fmt/format.h>
@@ -286,7 +285,7 @@ void check_motion(const Scene& scene, double frequency) {
 
 Opponent fixed_opponent(const Scene& scene, const std::string& name) {
   Opponent who = opponent(scene, name);
-  const MethodInfo* info = methods::find(who.method);
+  const MethodInfo* info = scene.parts->find_method(who.method);
   if (info != nullptr && !info->fixed) {
     throw Error(
         fmt::format("method '{}' chooses its steps by a tolerance, so it has no largest step; ask for one of fixed "
@@ -329,6 +328,7 @@ Stability find_stability(const Scene& scene, const StabilityOptions& options) {
   found.scene = scene.source.file;
   found.title = scene.title;
   found.time_unit = scene.units->time;
+  for (const SceneDecorator& one : scene.integrator.decorators) found.decorators.push_back(one.name);
   std::vector<Opponent> methods;
   for (const std::string& name : options.methods.empty() ? default_stability_methods(scene) : options.methods) {
     Opponent who = fixed_opponent(scene, name);

@@ -105,6 +105,7 @@ struct StabilityRow {
 /// A finished search.
 struct Stability {
   std::string scene = {}, title = {}, time_unit = {};
+  std::vector<std::string> decorators = {};  ///< around every method: then linear theory, of bare methods, says nothing
   Spectrum spectrum = {};
   Mode mode = {};
   bool linear = false;

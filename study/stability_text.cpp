@@ -100,6 +100,7 @@ std::string to_json(const Stability& found) {
                        {"growth_threshold", found.growth_told},
                        {"theory_growth_threshold", growth_threshold},
                        {"kepler", found.kepler ? json_of(*found.kepler) : Json()},
+                       {"decorators", Json::list_of(found.decorators)},
                        {"rows", Json::list(rows)}})
       .text();
 }
@@ -117,6 +118,10 @@ std::string to_text(const Stability& found) {
   }
   for (const std::string& line : kepler_lines(found)) out += plain_line(line) + "\n";
   for (const std::string& line : growth_lines(found)) out += line + "\n";
+  if (!found.decorators.empty()) {
+    out += fmt::format("around every method stands {}, so linear theory, which is of bare methods, is left out\n",
+                       fmt::join(found.decorators, ", "));
+  }
   out += fmt::format("{:<28} {:>12} {:>10} {:>10} {:<18} {:>10} {:>13} {:>7}\n", "method", "limit step", "h omega",
                      "theory", "reason", "gap end", "recommended", "s");
   for (const StabilityRow& row : found.rows) {

@@ -70,7 +70,7 @@ double tolerance_of(const Scene& scene) {
 std::vector<Opponent> every_method(const Scene& scene) {
   std::vector<std::string_view> names;
   for (const Scheme* scheme : schemes::all()) names.push_back(scheme->name);
-  for (const MethodInfo* info : methods::all()) {
+  for (const MethodInfo* info : scene.parts->methods()) {
     if (info->fixed) names.push_back(info->name);
   }
   std::vector<Opponent> all;

@@ -356,6 +356,8 @@ Truth find_truth(const Scene& scene, const Sampling& sampling, const TruthOption
     if (truth.error || spent > options.budget / 2) break;
   }
   if (truth.error && *truth.error < 1e-3) {
+    for (const SceneDecorator& one : scene.integrator.decorators)
+      truth.note += fmt::format("; decorator '{}' is left out of it", one.name);
     set_energies(truth, wide);
     return truth;
   }

@@ -7,19 +7,19 @@
 
 namespace noether {
 
+void NewmarkOptions::check() const {
+  if (!(beta >= 0 && std::isfinite(beta)))
+    refuse_field("beta", beta, "is none of Newmark's method; 0 or more is expected, 0.25 by default");
+  if (!std::isfinite(gamma))
+    refuse_field("gamma", gamma, "is none of Newmark's method; a number is expected, 0.5 by default");
+}
+
 template <class Real>
 Newmark<Real>::Newmark(const MethodInfo& info, const MethodOptions& options)
     : name_(info.name),
-      beta_(options.beta.value_or(0.25)),
-      gamma_(options.gamma.value_or(0.5)),
-      form_(options.jacobian) {
-  if (!(beta_ >= 0 && std::isfinite(beta_))) {
-    throw Error(fmt::format("beta = {} is none of Newmark's method; 0 or more is expected, 0.25 by default", beta_));
-  }
-  if (!std::isfinite(gamma_)) {
-    throw Error(fmt::format("gamma = {} is none of Newmark's method; a number is expected, 0.5 by default", gamma_));
-  }
-}
+      beta_(options.own.as<NewmarkOptions>().beta),
+      gamma_(options.own.as<NewmarkOptions>().gamma),
+      form_(options.jacobian) {}
 
 template <class Real> MethodClaims Newmark<Real>::claims() const {
   const bool verlet = beta_ == 0 && gamma_ == 0.5;
@@ -114,7 +114,7 @@ std::span<const MethodInfo> methods::newmark_list() {
        .use = "structures: stiff springs with steps set by what is to be seen",
        .source = "Newmark1959",
        .family = "implicit",
-       .options = "beta gamma jacobian",
+       .options = {&own_options<NewmarkOptions>, linear_solver},
        .order = 2,
        .stability_limit = std::numeric_limits<double>::infinity(),
        .make = make_newmark<double>,

@@ -6,6 +6,20 @@
 
 namespace noether {
 
+/// The two weights of Newmark's family.
+struct NewmarkOptions {
+  double beta = 0.25;  ///< of the new acceleration in the positions [1]
+  double gamma = 0.5;  ///< and in the velocities [1]
+
+  static constexpr auto describe() {
+    return part<NewmarkOptions>(
+        "newmark", "the weights of Newmark's method",
+        field<&NewmarkOptions::beta>("beta", "1", "weight of the new acceleration in the positions, 0 or more"),
+        field<&NewmarkOptions::gamma>("gamma", "1", "and in the velocities; above 0.5 it damps"));
+  }
+  void check() const;
+};
+
 /// Newmark's family with fixed steps.
 ///
 ///     q1 = q + h v + h^2 ((1/2 - beta) a + beta a1)
@@ -18,7 +32,6 @@ namespace noether {
 /// @source Newmark1959, SimoTarnowWong1992
 template <class Real> class Newmark final : public Method<Real> {
  public:
-  /// @throws Error  for a beta below 0, or a beta or gamma that is not finite
   Newmark(const MethodInfo& info, const MethodOptions& options);
 
   std::unique_ptr<Method<Real>> clone() const override { return std::make_unique<Newmark>(*this); }

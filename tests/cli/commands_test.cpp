@@ -303,7 +303,16 @@ TEST_CASE("describe tells formula, order, fields and source", "[cli][describe]")
   CHECK(has(force, "\n  softening "));
   CHECK(has(force, "\n@book{Newton1687,"));
   CHECK(json_member(json_output(folder, "describe gravity", "describe"), "kind") == "\"force\"");
-  CHECK(output(folder, "describe newmark").find("takes beta, gamma, jacobian too") != std::string::npos);
+  const std::string newmark = output(folder, "describe newmark"), dop853 = output(folder, "describe dop853");
+  CHECK(has(newmark, "\n  beta           number [1], default 0.25: weight of the new acceleration in the positions"));
+  CHECK(has(newmark, "\n  jacobian       choice [1], one of dense, sparse, matrix_free: how df/dy is kept; "));
+  CHECK_FALSE(has(newmark, "\n  rtol "));
+  CHECK(json_member(json_output(folder, "describe newmark", "describe"), "options") ==
+        R"(["beta","gamma","jacobian"])");
+  CHECK(has(dop853, "\n  adaptive       flag [1], default true: false: steps of one length\n"));
+  CHECK(has(dop853, "\n  rtol           number [1], default 1e-06: relative tolerance\n"));
+  CHECK_FALSE(has(output(folder, "describe bdf"), "\n  adaptive "));
+  CHECK(has(method, "\n  compensated    flag [1], default false: keeps the rounding errors of sums"));
   CHECK(output(folder, "describe energy").starts_with("energy (monitor): "));
   CHECK(json_member(json_output(folder, "describe elements", "describe"), "kind") == "\"monitor\"");
   CHECK(json_member(json_output(folder, "describe trajectory", "describe"), "kind") == "\"writer\"");

@@ -18,6 +18,7 @@
 #include "scene/scene.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"
+#include "tests/support/energy_projection.hpp"
 #include "tests/support/liquid.hpp"
 #include "tests/support/planets.hpp"
 #include "tests/support/settings.hpp"
@@ -40,7 +41,8 @@ struct Twin {
   double step;
   std::string hamiltonian;  ///< of the scene
   std::string method;
-  std::string place = {};  ///< where the scene's particles are, if not in open space
+  std::string place = {};       ///< where the scene's particles are, if not in open space
+  std::string decorators = {};  ///< of the scene
 };
 
 /// One way to make the run.
@@ -51,13 +53,21 @@ struct Way {
   bool restarted = false;
 };
 
+/// Those of noether, and a decorator from outside.
+Parts parts() {
+  Parts all = standard_parts();
+  all.add_decorator<test::EnergyProjection>();
+  return all;
+}
+
 Simulation<double> simulation_of(const Twin& twin, const Way& way) {
   const std::string watch = way.cadence > 0 ? fmt::format("[[every]]\ntype='energy'\nsteps={0}\n", way.cadence) : "";
   const auto from_scene = [&] {
-    Scene scene = read_scene(fmt::format("units='reduced'\n{}[[particles.body]]\nname='replaced'\nmass=1\nx=[0,0,0]\n"
-                                         "v=[0,0,0]\n{}[integrator]\nmethod='{}'\nstep={}\nsteps={}\n{}",
-                                         twin.place, twin.hamiltonian, twin.method, twin.step, steps, watch),
-                             "scene.toml");
+    Scene scene =
+        read_scene(fmt::format("units='reduced'\n{}[[particles.body]]\nname='replaced'\nmass=1\nx=[0,0,0]\n"
+                               "v=[0,0,0]\n{}[integrator]\nmethod='{}'\nstep={}\nsteps={}\n{}{}",
+                               twin.place, twin.hamiltonian, twin.method, twin.step, steps, twin.decorators, watch),
+                   "scene.toml", parts());
     scene.particles = twin.bodies;
     return assemble(scene);
   };
@@ -182,9 +192,21 @@ std::vector<Twin> liquid_twins() {
   return twins;
 }
 
+/// A decorator with state, around splittings in inertial and in other coordinates: two of five steps are projected.
+std::vector<Twin> decorated_twins() {
+  const std::string scene = "[[integrator.decorator]]\ntype='energy_projection'\nsteps=2\n";
+  std::vector<Twin> twins = {gravity_twins().front(), wisdom_holman_twins(Coordinates::jacobi).front()};
+  for (Twin& twin : twins) {
+    twin.name += ", decorated";
+    twin.program = around(test::EnergyProjection{.steps = 2}, twin.program);
+    twin.decorators = scene;
+  }
+  return twins;
+}
+
 void check_all_twins(std::size_t stride) {
-  for (const auto& twins : {gravity_twins(), force_twins(), liquid_twins(), wisdom_holman_twins(Coordinates::jacobi),
-                            wisdom_holman_twins(Coordinates::democratic)}) {
+  for (const auto& twins : {gravity_twins(), force_twins(), liquid_twins(), decorated_twins(),
+                            wisdom_holman_twins(Coordinates::jacobi), wisdom_holman_twins(Coordinates::democratic)}) {
     for (const Twin& twin : twins) check_ways(twin, stride);
   }
 }

@@ -27,7 +27,7 @@ std::vector<MethodChoice> adaptive_methods(double tolerance) {
     MethodOptions options;
     if (info->rtol > 1e-15) options.rtol = options.atol = tolerance;
     all.push_back({info, options});
-    if (info->options.find("jacobian") == std::string_view::npos) continue;
+    if (!info->takes(*linear_solver)) continue;
     options.jacobian = JacobianForm::matrix_free;
     all.push_back({info, options});
   }

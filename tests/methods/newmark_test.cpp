@@ -1,5 +1,6 @@
 /// Newmark's method: what it keeps and what it loses, its options, forces that depend on velocities.
 
+#include "integrators/methods/newmark.hpp"
 #include "integrators/classical.hpp"
 #include "integrators/schemes.hpp"
 #include "tests/methods/stiff_problems.hpp"
@@ -94,7 +95,7 @@ TEST_CASE("Newmark's method of average acceleration is the trapezoidal rule") {
 
 TEST_CASE("Newmark's method with beta = 0 is velocity Verlet, in one evaluation a stage") {
   const auto s = particle_in_plane(0.18, 0.18, 0.18, 0.18);
-  auto newmark = classical_over(HenonHeilesField{}, method("newmark", {.beta = 0.0}));
+  auto newmark = classical_over(HenonHeilesField{}, method("newmark", NewmarkOptions{.beta = 0.0}));
   CHECK(newmark.claims().symplectic);
   const auto verlet = run(kinetic_potential(HenonHeilesField{}), schemes::verlet, s, 0.1, 100);
   CHECK(distance(run(newmark, s, 0.1, 100), verlet) < 1e-14);
@@ -107,7 +108,7 @@ TEST_CASE("Newmark's method is of order 2 with gamma = 1/2, of order 1 else, vel
   const auto start = particle_in_plane(1, 0.2, 0, 0.7);
   auto reference = classical_over(RoughSpring{}, method("dop853", {.adaptive = false}));
   const auto end = run(reference, start, 0.01, 300);
-  const auto slope = [&](const MethodOptions& options) {
+  const auto slope = [&](const NewmarkOptions& options) {
     std::vector<ErrorPoint> points;
     for (const long n : {75, 150, 300}) {
       auto integrator = classical_over(RoughSpring{}, method("newmark", options));
@@ -121,12 +122,16 @@ TEST_CASE("Newmark's method is of order 2 with gamma = 1/2, of order 1 else, vel
   CHECK(std::abs(slope({.beta = 0.0}) - 2) < 0.05);
   CHECK(std::abs(slope({.beta = 0.3025, .gamma = 0.6}) - 1) < 0.05);
   CHECK(classical_over(RoughSpring{}, method("newmark")).claims().order == 2);
-  CHECK(classical_over(RoughSpring{}, method("newmark", {.gamma = 0.6})).claims().order == 1);
+  CHECK(classical_over(RoughSpring{}, method("newmark", NewmarkOptions{.gamma = 0.6})).claims().order == 1);
 }
 
 TEST_CASE("Newmark's method refuses what it cannot do") {
-  CHECK_THROWS_AS(classical_over(RoughSpring{}, method("newmark", {.beta = -0.1})), Error);
-  CHECK_THROWS_AS(classical_over(RoughSpring{}, method("trapezoidal", {.beta = 0.25})), Error);
+  CHECK_THROWS_WITH(classical_over(RoughSpring{}, method("newmark", NewmarkOptions{.beta = -0.1})),
+                    "beta = -0.1 is none of Newmark's method; 0 or more is expected, 0.25 by default");
+  CHECK_THROWS_WITH(classical_over(RoughSpring{}, method("newmark", NewmarkOptions{.gamma = NAN})),
+                    "gamma = nan is none of Newmark's method; a number is expected, 0.5 by default");
+  CHECK_THROWS_WITH(classical_over(RoughSpring{}, method("trapezoidal", NewmarkOptions{})),
+                    "method 'trapezoidal' has no options of 'newmark'; take them out");
   auto integrator = classical(Linear{}, method("newmark"));
   ParticleSystem<double> s;
   s.variables() = {1};

@@ -201,7 +201,7 @@ TEST_CASE("the scene of docs/scenes.md can be run", "[scene]") {
 }
 
 TEST_CASE("a value of --set is TOML, or else a text", "[scene][set]") {
-  CHECK(read(two_bodies, {"integrator.compensated=true"}).integrator.compensated);
+  CHECK(read(two_bodies, {"integrator.compensated=true"}).integrator.composition.compensated);
   CHECK(read(two_bodies, {"integrator.step=10 day"}).integrator.step == 10);
   CHECK(read(two_bodies, {"integrator.step=\"10 day\""}).integrator.step == 10);
   CHECK(read(two_bodies, {"title=1979-05-27"}).title == "1979-05-27");
