@@ -2,6 +2,7 @@
 
 #include "engine/error.hpp"
 #include "engine/orbital_elements.hpp"
+#include "engine/sums.hpp"
 #include "engine/units.hpp"
 #include "io/inspect.hpp"
 #include "io/trajectory_layout.hpp"
@@ -291,8 +292,8 @@ std::vector<PlotOrbits> read_orbits(const io::Frames& all, const SceneValue& sce
   if (!all.frames.empty() && !all.variable_names.empty()) return variables_against_time(all, unit);
   if (all.frames.empty() || n == 0) return {};
   if (all_on_one_line(all)) return {against_time(all, unit)};
-  double others = 0;
-  for (std::size_t i = 1; i < n; ++i) others += all.masses[i];
+  const double others =
+      sum_over<double>(static_cast<Index>(n) - 1, [&](Index i) { return all.masses[static_cast<std::size_t>(i) + 1]; });
   const bool relative = n > 1 && all.masses[0] > 10 * others;
 
   PlotOrbits picture;

@@ -3,6 +3,7 @@
 #include <hwy/highway.h>
 
 #include <cstdint>
+#include <cstring>
 
 namespace noether::NOETHER_SIMD_LEVEL {
 
@@ -43,74 +44,77 @@ HWY_INLINE Wide product(Vector a, Vector b) {
 
 #endif
 
-/// A sum that keeps what rounding leaves out of it beside itself.
+/// How many grids numbers are cut to.
+constexpr int grids = 3;
+
+/// A sum of numbers that are cut to multiples of grids, each finer than the one before: all additions are exact.
 struct Sum {
-  Vector high, low;
+  Vector parts[grids];
 
-  HWY_INLINE void add(Vector p, Vector p_low) {
-    const auto s = hn::Add(high, p), of_p = hn::Sub(s, high);
-    const auto lost = hn::Add(hn::Sub(high, hn::Sub(s, of_p)), hn::Sub(p, of_p));
-    low = hn::Add(low, hn::Add(lost, p_low));
-    high = s;
+  /// @param anchors  1.5 2^52 times each grid, which round to it what is added to them
+  HWY_INLINE void add(Vector x, const Vector (&anchors)[grids]) {
+    for (int k = 0; k < grids; ++k) {
+      const Vector part = hn::Sub(hn::Add(x, anchors[k]), anchors[k]);
+      parts[k] = hn::Add(parts[k], part);
+      if (k + 1 < grids) x = hn::Sub(x, part);
+    }
   }
 };
 
-/// Sums along the three axes.
-struct Sums {
-  Sum axis[3];
+/// Products of one register of particles: `count` along each axis.
+template <int count> struct Products { Wide of[3][count]; };
 
-  HWY_INLINE void add(const Sums& other) {
-    for (int k = 0; k < 3; ++k) axis[k].add(other.axis[k].high, other.axis[k].low);
-  }
-};
+/// The exponent that infinities have, and what is no number.
+constexpr std::uint64_t not_finite = 0x7FF;
 
-#if HWY_TARGET == HWY_SCALAR
+std::uint64_t exponent_of(double size) {
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, &size, sizeof bits);
+  return bits >> 52U;
+}
 
-HWY_INLINE void store_totals(const Sums& all, WideSums& sums) {
-  for (int k = 0; k < 3; ++k) {
-    sums.high[k] = hn::GetLane(all.axis[k].high);
-    sums.low[k] = hn::GetLane(all.axis[k].low);
+double power_of_two(std::int64_t exponent) {
+  const std::uint64_t bits = static_cast<std::uint64_t>(exponent + 1023) << 52U;
+  double power = 0;
+  std::memcpy(&power, &bits, sizeof power);
+  return power;
+}
+
+/// The exponent of numbers that have been made smaller by 2^down.
+std::uint64_t lowered(std::uint64_t exponent, std::uint64_t down) {
+  if (exponent == not_finite) return exponent;
+  return exponent > down ? exponent - down : 0;
+}
+
+/// Grids for 2^room numbers below twice a power of two: where all of them are multiples of a grid, their sum has 53
+/// bits.
+/// @param exponent  of the largest number, biased; of what is not finite all sums are no numbers
+HWY_INLINE void set_anchors(std::uint64_t exponent, std::uint64_t room, Vector (&anchors)[grids]) {
+  std::int64_t at = static_cast<std::int64_t>(exponent + room);
+  for (int k = 0; k < grids; ++k) {
+    const std::uint64_t held = exponent == not_finite ? not_finite : at < 1 ? 1 : static_cast<std::uint64_t>(at);
+    const std::uint64_t bits = (held << 52U) | (std::uint64_t{1} << 51U);
+    double anchor = 0;
+    std::memcpy(&anchor, &bits, sizeof anchor);
+    anchors[k] = hn::Set(Lanes(), anchor);
+    at -= 54 - static_cast<std::int64_t>(room);
   }
 }
 
-#else
-
-/// Neighbouring lanes added, those of `a` in the lower half of the register and those of `b` in the upper one.
-HWY_INLINE Sum pairs(const Sum& a, const Sum& b) {
-  const Lanes d;
-  Sum both{hn::ConcatEven(d, b.high, a.high), hn::ConcatEven(d, b.low, a.low)};
-  both.add(hn::ConcatOdd(d, b.high, a.high), hn::ConcatOdd(d, b.low, a.low));
-  return both;
-}
-
-/// Writes as many lanes as three sums have room for.
-template <class D> HWY_INLINE void store_row(D d, hn::Vec<D> row, double* to) {
-  if constexpr (hn::MaxLanes(D()) > 4) {
-    const hn::Half<D> half;
-    store_row(half, hn::LowerHalf(half, row), to);
-  } else {
-    hn::StoreU(row, d, to);
-  }
-}
-
-/// Adds the lanes of each axis; all axes share a register as soon as they fit in.
-HWY_INLINE void store_totals(const Sums& all, WideSums& sums) {
-  const auto store = [&](const Sum& totals, int axis) HWY_ATTR {
-    store_row(Lanes(), totals.high, sums.high + axis);
-    store_row(Lanes(), totals.low, sums.low + axis);
+/// The sum of all parts, as high + low.
+HWY_INLINE void store_total(const Sum& sum, double back, double& high, double& low) {
+  double part[grids];
+  for (int k = 0; k < grids; ++k) part[k] = hn::GetLane(hn::SumOfLanes(Lanes(), sum.parts[k]));
+  const auto add = [](double a, double b, double& lost) {
+    const double s = a + b, of_b = s - a;
+    lost = (a - (s - of_b)) + (b - of_b);
+    return s;
   };
-  const Sum xy = pairs(all.axis[0], all.axis[1]), z = pairs(all.axis[2], all.axis[2]);
-  if constexpr (lanes == 2) {
-    store(xy, 0);
-    store(z, 2);
-  } else {
-    Sum xyz = pairs(xy, z);
-    for (std::ptrdiff_t joined = 4; joined < lanes; joined *= 2) xyz = pairs(xyz, xyz);
-    store(xyz, 0);
-  }
+  double lost = 0, lost_before = 0;
+  const double fine = add(part[1], part[2], lost_before);
+  high = back * add(part[0], fine, lost);
+  low = back * (lost + lost_before);
 }
-
-#endif
 
 /// The first `count` numbers of a column, and zeros.
 HWY_INLINE Vector load_some(const double* column, std::ptrdiff_t count) {
@@ -124,28 +128,63 @@ HWY_INLINE Vector load_some(const double* column, std::ptrdiff_t count) {
 #endif
 }
 
-/// Sums what `terms(load)` gives for every register of particles, where `load` reads a column.
-template <class Terms> HWY_INLINE void sum_registers(std::ptrdiff_t count, const Terms& terms, WideSums& sums) {
+/// Calls `body(load)` for every register of particles, where `load` reads a column.
+template <class Body> HWY_INLINE void for_registers(std::ptrdiff_t count, const Body& body) {
   const Lanes d;
-  std::ptrdiff_t i = count % lanes;
-  Sums all = terms([&](const double* column) HWY_ATTR { return load_some(column, count % lanes); });
-  for (; i < count; i += lanes) {
-    all.add(terms([&](const double* column) HWY_ATTR { return hn::LoadU(d, column + i); }));
+  const std::ptrdiff_t some = count % lanes;
+  if (some > 0) body([&](const double* column) HWY_ATTR { return load_some(column, some); });
+  for (std::ptrdiff_t i = some; i < count; i += lanes) {
+    body([&](const double* column) HWY_ATTR { return hn::LoadU(d, column + i); });
   }
-  store_totals(all, sums);
+}
+
+/// Sums what `products(load, scale)` gives for every register of particles: looks for the largest first, so that the
+/// grids do not depend on any order.
+template <int terms, class Of> HWY_INLINE void sum_registers(std::ptrdiff_t count, const Of& products, WideSums& sums) {
+  const Lanes d;
+  Vector largest[3] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+  for_registers(count, [&](const auto& load) HWY_ATTR {
+    const Products<terms> all = products(load, hn::Set(d, 1.0));
+    for (int k = 0; k < 3; ++k) {
+      for (int j = 0; j < terms; ++j) largest[k] = hn::Max(largest[k], hn::Abs(all.of[k][j].high));
+    }
+  });
+  std::uint64_t exponents[3], room = 2, highest = 0;
+  while ((std::int64_t{1} << room) < 2 * terms * count) ++room;
+  for (int k = 0; k < 3; ++k) {
+    exponents[k] = exponent_of(hn::GetLane(hn::MaxOfLanes(d, largest[k])));
+    highest = exponents[k] > highest ? exponents[k] : highest;
+  }
+  // Anchors are above what they round: where that would leave the doubles, masses count less.
+  const std::uint64_t down = highest > 1850 && highest < not_finite ? 256 : 0;
+  Vector anchors[3][grids];
+  for (int k = 0; k < 3; ++k) set_anchors(lowered(exponents[k], down), room, anchors[k]);
+  Sum all[3];
+  for (Sum& sum : all) {
+    for (Vector& part : sum.parts) part = hn::Zero(d);
+  }
+  const Vector scale = hn::Set(d, power_of_two(-static_cast<std::int64_t>(down)));
+  for_registers(count, [&](const auto& load) HWY_ATTR {
+    const Products<terms> some = products(load, scale);
+    for (int k = 0; k < 3; ++k) {
+      for (int j = 0; j < terms; ++j) {
+        all[k].add(some.of[k][j].high, anchors[k]);
+        all[k].add(some.of[k][j].low, anchors[k]);
+      }
+    }
+  });
+  const double back = power_of_two(static_cast<std::int64_t>(down));
+  for (int k = 0; k < 3; ++k) store_total(all[k], back, sums.high[k], sums.low[k]);
 }
 
 void weighted(const WeightedVectors& vectors, WideSums& sums) {
-  const auto terms = [&](const auto& load) HWY_ATTR {
-    const Vector m = load(vectors.mass);
-    Sums all;
-    for (int k = 0; k < 3; ++k) {
-      const Wide p = product(m, load(vectors.x[k]));
-      all.axis[k] = {p.high, p.low};
-    }
+  const auto products = [&](const auto& load, Vector scale) HWY_ATTR {
+    const Vector m = hn::Mul(scale, load(vectors.mass));
+    Products<1> all;
+    for (int k = 0; k < 3; ++k) all.of[k][0] = product(m, load(vectors.x[k]));
     return all;
   };
-  sum_registers(vectors.count, terms, sums);
+  sum_registers<1>(vectors.count, products, sums);
 }
 
 void crossed(const WeightedVectors& velocities, const double* const (&x)[3], WideSums& sums) {
@@ -153,24 +192,23 @@ void crossed(const WeightedVectors& velocities, const double* const (&x)[3], Wid
     const Wide q = product(distance, momentum.high);
     return Wide{q.high, hn::Add(q.low, hn::Mul(distance, momentum.low))};
   };
-  const auto terms = [&](const auto& load) HWY_ATTR {
-    const Vector m = load(velocities.mass);
+  const auto products = [&](const auto& load, Vector scale) HWY_ATTR {
+    const Vector m = hn::Mul(scale, load(velocities.mass));
     Vector at[3];
     Wide p[3];
     for (int k = 0; k < 3; ++k) {
       at[k] = load(x[k]);
       p[k] = product(m, load(velocities.x[k]));
     }
-    Sums all;
+    Products<2> all;
     for (int k = 0; k < 3; ++k) {
       const int a = (k + 1) % 3, b = (k + 2) % 3;
-      const Wide one = moment(at[a], p[b]), other = moment(hn::Neg(at[b]), p[a]);
-      all.axis[k] = {one.high, one.low};
-      all.axis[k].add(other.high, other.low);
+      all.of[k][0] = moment(at[a], p[b]);
+      all.of[k][1] = moment(hn::Neg(at[b]), p[a]);
     }
     return all;
   };
-  sum_registers(velocities.count, terms, sums);
+  sum_registers<2>(velocities.count, products, sums);
 }
 
 }  // namespace

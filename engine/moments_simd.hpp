@@ -15,12 +15,13 @@ struct WeightedVectors {
   const double* x[3];
 };
 
-/// Three sums, each high + low; low is not rounded off against high. The fourth place is room for a register.
+/// Three sums, each high + low; low is not rounded off against high.
 struct WideSums {
-  double high[4], low[4];
+  double high[3], low[3];
 };
 
-/// Products are exact; sums are right to count^2 2^-106 of the sum of all sizes.
+/// Sums of exact products, right to count^2 2^-104 of the sum of all sizes. Terms are cut to grids that the largest of
+/// them sets, and on which all additions are exact: sums have the same bits in any order of particles.
 struct MomentKernels {
   /// Sum of m_i x_i.
   void (*weighted)(const WeightedVectors& vectors, WideSums& sums);

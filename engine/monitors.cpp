@@ -1,6 +1,7 @@
 #include "engine/monitors.hpp"
 
-#include "engine/moments_simd.hpp"
+#include "engine/moments.hpp"
+#include "engine/sums.hpp"
 
 #include <fmt/format.h>
 
@@ -25,37 +26,6 @@ template <class Real> using WideVector = std::conditional_t<std::is_same_v<Real,
 Vec3<Quad> wide(const WideSums& sums) {
   const auto axis = [&](int k) { return Quad(sums.high[k]) + Quad(sums.low[k]); };
   return {axis(0), axis(1), axis(2)};
-}
-
-WeightedVectors weighted_vectors(const ParticleSystem<double>& s, const VectorColumn<double>& of) {
-  return {s.size(), s.masses().data(), {of.component(0), of.component(1), of.component(2)}};
-}
-
-/// Sum of m_i times the rows of a column.
-WideSums weighted_sum(const ParticleSystem<double>& s, const VectorColumn<double>& of) {
-  WideSums sums{};
-  moment_kernels().weighted(weighted_vectors(s, of), sums);
-  return sums;
-}
-Vec3<Quad> weighted_sum(const ParticleSystem<Quad>& s, const VectorColumn<Quad>& of) {
-  Vec3<Quad> sum = Vec3<Quad>::Zero();
-  for (Index i = 0; i < s.size(); ++i) sum += s.masses()[i] * of[i];
-  return sum;
-}
-
-/// Sum of x_i cross m_i v_i.
-WideSums angular_momentum(const ParticleSystem<double>& s) {
-  const VectorColumn<double>& x = s.positions();
-  WideSums sums{};
-  moment_kernels().crossed(weighted_vectors(s, s.velocities()), {x.component(0), x.component(1), x.component(2)}, sums);
-  return sums;
-}
-Vec3<Quad> angular_momentum(const ParticleSystem<Quad>& s) {
-  Vec3<Quad> sum = Vec3<Quad>::Zero();
-  for (Index i = 0; i < s.size(); ++i) {
-    sum += s.masses()[i] * cross(Vec3<Quad>(s.positions()[i]), Vec3<Quad>(s.velocities()[i]));
-  }
-  return sum;
 }
 
 /// x - start - t speed; the difference of the large parts is exact where x lies near that line.
@@ -291,9 +261,8 @@ template <class Real> void Momentum::observe(const Snapshot<Real>& now) {
   const ParticleSystem<Real>& s = now.state();
   const auto sum = weighted_sum(s, s.velocities());
   if (!begun()) {
-    Quad scale = 0;
-    for (Index i = 0; i < s.size(); ++i) scale += wide(s.masses()[i]) * sqrt(norm2(wide(s.velocities()[i])));
-    begin(wide(sum), scale, now.claims().keeps_momentum);
+    const auto size = [&](Index i) { return wide(s.masses()[i]) * sqrt(norm2(wide(s.velocities()[i]))); };
+    begin(wide(sum), sum_over<Quad>(s.size(), size), now.claims().keeps_momentum);
     time_unit_ = std::string(now.units().time);
   }
   add(now.time(), sum);
@@ -303,11 +272,10 @@ template <class Real> void AngularMomentum::observe(const Snapshot<Real>& now) {
   const ParticleSystem<Real>& s = now.state();
   const auto sum = angular_momentum(s);
   if (!begun()) {
-    Quad scale = 0;
-    for (Index i = 0; i < s.size(); ++i) {
-      scale += wide(s.masses()[i]) * sqrt(norm2(wide(s.positions()[i])) * norm2(wide(s.velocities()[i])));
-    }
-    begin(wide(sum), scale, now.claims().keeps_angular_momentum);
+    const auto size = [&](Index i) {
+      return wide(s.masses()[i]) * sqrt(norm2(wide(s.positions()[i])) * norm2(wide(s.velocities()[i])));
+    };
+    begin(wide(sum), sum_over<Quad>(s.size(), size), now.claims().keeps_angular_momentum);
     time_unit_ = std::string(now.units().time);
   }
   add(now.time(), sum);
@@ -315,15 +283,9 @@ template <class Real> void AngularMomentum::observe(const Snapshot<Real>& now) {
 
 template <class Real> void CenterOfMass::observe(const Snapshot<Real>& now) {
   const ParticleSystem<Real>& s = now.state();
-  const auto moments = [&] {
-    if (!s.box().is_periodic()) return weighted_sum(s, s.positions());
-    VectorColumn<Real> unwrapped(s.size());
-    for (Index i = 0; i < s.size(); ++i) unwrapped.set(i, s.unwrapped(i));
-    return weighted_sum(s, unwrapped);
-  };
-  const WideVector<Real> x = moments(), v = weighted_sum(s, s.velocities());
-  double mass = 0;  // 0 with tracers alone, who have no center: 0/0, which the report explains
-  for (Index i = 0; i < s.size(); ++i) mass += static_cast<double>(s.masses()[i]);
+  const WideVector<Real> x = weighted_positions(s), v = weighted_sum(s, s.velocities());
+  // 0 with tracers alone, who have no center: 0/0, which the report explains.
+  const double mass = sum_over<double>(s.size(), [&](Index i) { return static_cast<double>(s.masses()[i]); });
   if (!begun_) {
     begun_ = true;
     const Vec3<Quad> first = wide(x), speed = wide(v);

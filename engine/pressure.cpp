@@ -1,6 +1,6 @@
 #include "engine/pressure.hpp"
 
-#include "engine/parallel.hpp"
+#include "engine/sums.hpp"
 
 #include <fmt/format.h>
 
@@ -10,14 +10,13 @@ namespace {
 
 /// Sum of m v (x) v [energy].
 template <class Real> Mat3<Real> momentum_flux(const ParticleSystem<Real>& s) {
-  return reduce(s.size(), Mat3<Real>(Mat3<Real>::Zero()), [&](Index begin, Index end) {
-    Mat3<Real> sum = Mat3<Real>::Zero();
-    for (Index i = begin; i < end; ++i) {
-      const Vec3<Real> v = s.velocities()[i];
-      sum += s.masses()[i] * v * v.transpose();
-    }
-    return sum;
+  const auto [xx, yy, zz, xy, xz, yz] = sums_over<Real, 6>(s.size(), [&](Index i) {
+    const Vec3<Real> v = s.velocities()[i], p = s.masses()[i] * v;
+    return std::array{p[0] * v[0], p[1] * v[1], p[2] * v[2], p[0] * v[1], p[0] * v[2], p[1] * v[2]};
   });
+  Mat3<Real> flux;
+  flux << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+  return flux;
 }
 
 /// A bar is 10^5 Pa.

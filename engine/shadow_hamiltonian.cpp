@@ -1,6 +1,6 @@
 #include "engine/shadow_hamiltonian.hpp"
 
-#include "engine/parallel.hpp"
+#include "engine/sums.hpp"
 
 #include <fmt/format.h>
 
@@ -89,11 +89,10 @@ template <class Real> void ShadowHamiltonian<Real>::begin(const Snapshot<Real>& 
   time_unit_ = std::string(now.units().time);
   // Positions are rounded at every step, so that momentum times distance is uncertain in proportion.
   const ParticleSystem<Real>& s = now.state();
-  double distance = 0;
-  for (Index i = 0; i < s.size(); ++i) {
+  const double distance = sum_over<double>(s.size(), [&](Index i) {
     using std::sqrt;
-    distance += static_cast<double>(s.masses()[i] * sqrt(norm2(s.positions()[i]) * norm2(s.velocities()[i])));
-  }
+    return static_cast<double>(s.masses()[i] * sqrt(norm2(s.positions()[i]) * norm2(s.velocities()[i])));
+  });
   const auto epsilon = static_cast<double>(std::numeric_limits<Real>::epsilon());
   noise_ = 8 * epsilon * (distance / std::abs(s.clock().dt()) + t + std::abs(u)) / scale_;
   wear_ = 4 * epsilon * (t + std::abs(u)) / scale_;
@@ -121,14 +120,16 @@ template <class Real> void ShadowHamiltonian<Real>::compare_force_and_energy(con
     return Vec3<Real>(f[0] + Real(0.7) * f[1] - Real(0.4) * f[2], f[1] - Real(0.7) * f[0] + Real(0.3) * f[2],
                       f[2] + Real(0.4) * f[0] - Real(0.3) * f[1]);
   };
-  Real work(0), size(0), length(0), distance(0);
+  Real length(0), distance(0);
   for (Index i = 0; i < s.size(); ++i) {
-    const Vec3<Real> d = direction(i), x = s.positions()[i];
-    work += s.masses()[i] * dot(Vec3<Real>(a[i]), d);
-    size += s.masses()[i] * sqrt(norm2(Vec3<Real>(a[i])) * norm2(d));
-    length = std::max(length, sqrt(norm2(d)));
-    distance = std::max(distance, sqrt(norm2(x)));
+    length = std::max(length, sqrt(norm2(direction(i))));
+    distance = std::max(distance, sqrt(norm2(s.positions()[i])));
   }
+  const auto [work, size] = sums_over<Real, 2>(s.size(), [&](Index i) {
+    const Vec3<Real> d = direction(i);
+    return std::array<Real, 2>{s.masses()[i] * dot(Vec3<Real>(a[i]), d),
+                               s.masses()[i] * sqrt(norm2(Vec3<Real>(a[i])) * norm2(d))};
+  });
   if (!(size > Real(0)) || !(distance > Real(0))) return;
   const auto potential_at = [&](const Real& epsilon) {
     ParticleSystem<Real> moved = s;
@@ -181,14 +182,8 @@ Real ShadowHamiltonian<Real>::product(const Point& older, const Point& newer, co
                                       const Real& action) const {
   const Difference<Real> high{older.x, older.v, newer.x, newer.v}, low{older.x_low, older.v, newer.x_low, newer.v};
   const bool compensated = newer.x_low.size() == masses.size() && older.x_low.size() == masses.size();
-  const Real sum = reduce(masses.size(), Real(0), [&](Index begin, Index end) {
-    Real part(0);
-    for (Index i = begin; i < end; ++i) {
-      part += masses[i] * high.at(i);
-      if (compensated) part += masses[i] * low.at(i);
-    }
-    return part;
-  });
+  Real sum = sum_over<Real>(masses.size(), [&](Index i) { return masses[i] * high.at(i); });
+  if (compensated) sum += sum_over<Real>(masses.size(), [&](Index i) { return masses[i] * low.at(i); });
   return sum - Real(2) * action;
 }
 

@@ -1,6 +1,8 @@
 #include "engine/stop_condition.hpp"
 
 #include "engine/hermite.hpp"
+#include "engine/moments.hpp"
+#include "engine/sums.hpp"
 
 #include <fmt/format.h>
 
@@ -11,23 +13,16 @@ namespace noether {
 
 namespace {
 
-template <class Real> Motion<Real> center_of_mass(const ParticleSystem<Real>& s, const std::vector<Motion<Real>>& all) {
-  Motion<Real> center{Vec3<Real>::Zero(), Vec3<Real>::Zero(), Vec3<Real>::Zero()};
-  Real total(0);
-  for (Index i = 0; i < s.size(); ++i) {
-    const Real m = s.masses()[i];
-    const auto& p = all[static_cast<std::size_t>(i)];
-    center.x += m * p.x;
-    center.v += m * p.v;
-    center.a += m * p.a;
-    total += m;
-  }
-  if (total > Real(0)) {
-    center.x /= total;
-    center.v /= total;
-    center.a /= total;
-  }
-  return center;
+/// Mean of the rows of a column, weighted by mass; zero where nobody has any.
+template <class Real> Vec3<Real> mean_by_mass(const ParticleSystem<Real>& s, const VectorColumn<Real>& of) {
+  const Real mass = sum_over<Real>(s.size(), [&](Index i) { return s.masses()[i]; });
+  return mass > Real(0) ? Vec3<Real>(rounded(weighted_sum(s, of)) / mass) : Vec3<Real>(Vec3<Real>::Zero());
+}
+
+template <class Real> Vec3<Real> mean_by_mass(const ParticleSystem<Real>& s, const std::vector<Vec3<Real>>& rows) {
+  VectorColumn<Real> column(s.size());
+  for (Index i = 0; i < s.size(); ++i) column.set(i, rows[static_cast<std::size_t>(i)]);
+  return mean_by_mass(s, column);
 }
 
 template <class Real> double root(const Real& x) {
@@ -66,20 +61,20 @@ template <class Real>
 std::optional<typename StopCheck<Real>::Event> StopCheck<Real>::escape(const Snapshot<Real>& now) {
   const ParticleSystem<Real>& s = now.state();
   const Real limit2 = Real(rule_.distance) * Real(rule_.distance);
-  std::vector<Motion<Real>> before, after;
-  for (Index i = 0; i < s.size(); ++i) {
-    after.push_back(now.motion(i));
-    if (moved_) before.push_back(last_motion(i));
-  }
-  const Motion<Real> center = center_of_mass(s, after);
+  const Vec3<Real> center = mean_by_mass(s, s.positions());
+  const auto center_now = [&] {
+    return Motion<Real>{center, mean_by_mass(s, s.velocities()), mean_by_mass(s, now.accelerations())};
+  };
+  const auto center_before = [&] {
+    return Motion<Real>{mean_by_mass(s, x_), mean_by_mass(s, v_), mean_by_mass(s, a_)};
+  };
   std::optional<Event> first;
   for (Index i = 0; i < s.size(); ++i) {
-    const Motion<Real> end = after[static_cast<std::size_t>(i)] - center;
-    const Real d2 = norm2(end.x);
+    const Real d2 = norm2(s.positions()[i] - center);
     if (!(d2 > limit2)) continue;
     Real at(1);
     if (moved_) {
-      const Motion<Real> begin = before[static_cast<std::size_t>(i)] - center_of_mass(s, before);
+      const Motion<Real> begin = last_motion(i) - center_before(), end = now.motion(i) - center_now();
       const Hermite<Real> path(begin, end, Real(now.time()) - Real(last_time_));
       at = Hermite<Real>::bisect(Real(0), Real(1), [&](const Real& u) { return norm2(path.position(u)) > limit2; });
     }

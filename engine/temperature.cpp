@@ -1,6 +1,7 @@
 #include "engine/temperature.hpp"
 
-#include "engine/parallel.hpp"
+#include "engine/moments.hpp"
+#include "engine/sums.hpp"
 
 #include <limits>
 
@@ -9,22 +10,16 @@ namespace noether {
 template <class Real> void Temperature::observe(const Snapshot<Real>& now) {
   const ParticleSystem<Real>& s = now.state();
   const IntegratorClaims claims = now.claims();
-  Vec3<Real> drift = Vec3<Real>::Zero();
-  Real total(0);
   Index massive = 0;
-  for (Index i = 0; i < s.size(); ++i) {
-    if (!(s.masses()[i] > Real(0))) continue;
-    ++massive;
-    total += s.masses()[i];
-    drift += s.masses()[i] * s.velocities()[i];
-  }
+  for (Index i = 0; i < s.size(); ++i) massive += s.masses()[i] > Real(0) ? 1 : 0;
   const bool about_center = claims.keeps_momentum && massive > 0;
-  drift = about_center ? Vec3<Real>(drift / total) : Vec3<Real>(Vec3<Real>::Zero());
-  const Real twice = reduce(s.size(), Real(0), [&](Index begin, Index end) {
-    Real sum(0);
-    for (Index i = begin; i < end; ++i) sum += s.masses()[i] * norm2(Vec3<Real>(s.velocities()[i] - drift));
-    return sum;
-  });
+  Vec3<Real> drift = Vec3<Real>::Zero();
+  if (about_center) {
+    const Real mass = sum_over<Real>(s.size(), [&](Index i) { return s.masses()[i]; });
+    drift = rounded(weighted_sum(s, s.velocities())) / mass;
+  }
+  const Real twice =
+      sum_over<Real>(s.size(), [&](Index i) { return s.masses()[i] * norm2(Vec3<Real>(s.velocities()[i] - drift)); });
   freedom_ = 3 * massive - claims.constraints - (about_center ? 3 : 0);
   now_ = freedom_ > 0 ? static_cast<double>(twice) / (static_cast<double>(freedom_) * now.units().k_B)
                       : std::numeric_limits<double>::quiet_NaN();

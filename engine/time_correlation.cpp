@@ -1,8 +1,9 @@
 #include "engine/time_correlation.hpp"
 
-#include "engine/parallel.hpp"
+#include "engine/moments.hpp"
 #include "engine/quantity.hpp"
 #include "engine/suggest.hpp"
+#include "engine/sums.hpp"
 
 #include <fmt/format.h>
 
@@ -20,19 +21,10 @@ constexpr std::size_t fit_numbers = 5;
 /// Spans of time side by side, below which their scatter says little.
 constexpr double fewest_spans = 5;
 
-/// Mean of x or v weighted by mass; zero where nobody has any.
-template <class Real, class Of> Vec3<Real> mean_by_mass(const ParticleSystem<Real>& s, const Of& of) {
-  using Sum = Eigen::Matrix<Real, 4, 1>;
-  const Sum sum = reduce(s.size(), Sum(Sum::Zero()), [&](Index begin, Index end) {
-    Sum part = Sum::Zero();
-    for (Index i = begin; i < end; ++i) {
-      const Vec3<Real> moment = s.masses()[i] * of(i);
-      part += Sum(moment[0], moment[1], moment[2], s.masses()[i]);
-    }
-    return part;
-  });
-  if (!(sum[3] > Real(0))) return Vec3<Real>::Zero();
-  return Vec3<Real>(sum[0] / sum[3], sum[1] / sum[3], sum[2] / sum[3]);
+/// Mean of x or v weighted by mass, from its sum; zero where nobody has any.
+template <class Real> Vec3<Real> mean_by_mass(const ParticleSystem<Real>& s, const Vec3<Real>& sum) {
+  const Real mass = sum_over<Real>(s.size(), [&](Index i) { return s.masses()[i]; });
+  return mass > Real(0) ? Vec3<Real>(sum / mass) : Vec3<Real>(Vec3<Real>::Zero());
 }
 
 template <class T> void drop_front(std::vector<T>& all, std::size_t count) {
@@ -89,7 +81,8 @@ void TimeCorrelation::check_loaded() const {
 
 template <class Real> std::vector<double> TimeCorrelation::chosen(const ParticleSystem<Real>& s, Kind kind) const {
   const auto of = [&](Index i) { return kind == Kind::displacement ? s.unwrapped(i) : Vec3<Real>(s.velocities()[i]); };
-  const Vec3<Real> center = mean_by_mass(s, of);
+  const Vec3<Real> center =
+      mean_by_mass(s, rounded(kind == Kind::displacement ? weighted_positions(s) : weighted_sum(s, s.velocities())));
   std::vector<double> rows;
   rows.reserve(3 * static_cast<std::size_t>(s.size()));
   for (Index i = 0; i < s.size(); ++i) {
@@ -105,13 +98,11 @@ template <class Real> std::vector<double> TimeCorrelation::chosen(const Particle
 
 double TimeCorrelation::average(const std::vector<double>& now, const double* then, Kind kind) {
   const auto particles = static_cast<Index>(now.size() / 3);
-  const double sum = reduce(particles, 0.0, [&](Index begin, Index end) {
-    double part = 0;
-    for (auto k = static_cast<std::size_t>(3 * begin); k < static_cast<std::size_t>(3 * end); ++k) {
-      const double d = now[k] - then[k];
-      part += kind == Kind::displacement ? d * d : now[k] * then[k];
-    }
-    return part;
+  const double sum = sum_over<double>(particles, [&](Index i) {
+    const double *here = now.data() + 3 * i, *there = then + 3 * i;
+    if (kind == Kind::velocity) return here[0] * there[0] + here[1] * there[1] + here[2] * there[2];
+    const double x = here[0] - there[0], y = here[1] - there[1], z = here[2] - there[2];
+    return x * x + y * y + z * z;
   });
   return sum / static_cast<double>(particles);
 }

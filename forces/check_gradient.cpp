@@ -1,6 +1,7 @@
 #include "forces/check_gradient.hpp"
 
 #include "engine/force_sink.hpp"
+#include "engine/sums.hpp"
 
 #include <fmt/format.h>
 
@@ -32,8 +33,7 @@ double error_by_differences(const AnyForce<Real>& force, ParticleSystem<Real> s,
   using std::abs, std::isfinite, std::sqrt;
   VectorColumn<Real> a(s.size()), scratch(s.size());
   const Real energy = abs(potential_of(force, s, a));
-  Real scale(0);
-  for (Index i = 0; i < s.size(); ++i) scale += norm2(s.positions()[i]);
+  Real scale = sum_over<Real>(s.size(), [&](Index i) { return norm2(std::as_const(s).positions()[i]); });
   const auto n = static_cast<double>(s.size());
   scale = sqrt(scale / Real(n)) / Real(std::cbrt(n));
   const Real h = relative_step * (scale > Real(0) ? scale : Real(1));

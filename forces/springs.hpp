@@ -4,10 +4,10 @@
 #include "engine/any_force.hpp"
 #include "engine/description.hpp"
 #include "engine/force_sink.hpp"
+#include "engine/tied.hpp"
 
 #include <array>
 #include <cmath>
-#include <vector>
 
 namespace noether {
 
@@ -48,7 +48,7 @@ inline void check_length(double length) {
 struct HarmonicBond {
   double k = 0.0;                              ///< [mass/time^2]
   double length = 0.0;                         ///< at rest [length]
-  std::vector<std::array<Index, 2>> tied{};    ///< pairs of particles, by their places; shape (bonds, 2)
+  Tied<2> tied{};                              ///< pairs of particles, by their places at first; shape (bonds, 2)
   static constexpr std::size_t particles = 2;  ///< that each bond ties
 
   static constexpr auto describe() {
@@ -62,6 +62,8 @@ struct HarmonicBond {
 
   /// @throws Error  for a negative length
   void check() const { detail::check_length(length); }
+  /// @throws Error  if a tied particle is not there
+  template <class Real> void check(const ParticleSystem<Real>& s) const { tied.find(s); }
 
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     for (const auto& [i, j] : tied) {
@@ -85,7 +87,7 @@ struct Tether {
   std::array<double, 3> point = {0, 0, 0};     ///< [length]
   double k = 0.0;                              ///< [mass/time^2]
   double length = 0.0;                         ///< at rest [length]
-  std::vector<std::array<Index, 1>> tied{};    ///< particles, by their places; shape (springs, 1)
+  Tied<1> tied{};                              ///< particles, by their places at first; shape (springs, 1)
   static constexpr std::size_t particles = 1;  ///< that each spring ties
 
   static constexpr auto describe() {
@@ -106,6 +108,8 @@ struct Tether {
 
   /// @throws Error  for a negative length
   void check() const { detail::check_length(length); }
+  /// @throws Error  if a tied particle is not there
+  template <class Real> void check(const ParticleSystem<Real>& s) const { tied.find(s); }
 
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     const Vec3<Real> end = {Real(point[0]), Real(point[1]), Real(point[2])};

@@ -34,6 +34,7 @@ template <class Real, class F> HamiltonianClaims WisdomHolman<Real, F>::claims()
 template <class Real, class F> void WisdomHolman<Real, F>::bind(ParticleSystem<Real>& s) {
   using std::sqrt;
   const auto& c = std::as_const(s);
+  if constexpr (has_forces) check_force(forces_, s);
   g_ = Real(options_.G ? *options_.G : s.units().G);
   const auto n = static_cast<std::size_t>(s.size());
   if (!(c.masses()[0] > Real(0))) {

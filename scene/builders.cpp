@@ -104,7 +104,8 @@ std::size_t lot(Philox& random, std::size_t count) {
   return static_cast<std::size_t>((std::uint64_t{random.next()[0]} * count) >> 32U);
 }
 
-/// Moves the centre of mass to rest; returns twice the kinetic energy that is left.
+/// Moves the centre of mass to rest; returns twice the kinetic energy that is left. Plain sums, made once before a run
+/// begins, in the order of ids: their roundings stand in the trajectories of all runs that begin so.
 double take_off_drift(ParticleSystem<double>& s) {
   Vec3<double> momentum = Vec3<double>::Zero();
   double total = 0, twice = 0;

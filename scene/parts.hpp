@@ -220,7 +220,7 @@ class Parts {
   /// Makes force `F` known by the name it describes itself with; a force of the same name is replaced.
   ///
   /// One that acts on some particles only has `static constexpr std::size_t particles`, how many each of its terms
-  /// ties, and a member `std::vector<std::array<Index, particles>> tied`: scenes then say which, as for constraints.
+  /// ties, and a member `Tied<particles> tied` (engine/tied.hpp): scenes then say which, as for constraints.
   /// One that is a letter of its own (drag) has `with_letter(part, H)`, and `as_force(part)` for methods that do not
   /// split.
   template <class F> Parts& add_force() {

@@ -1,6 +1,8 @@
 #pragma once
 /// How large a state is: what stays bounded, or does not.
 
+#include "engine/moments.hpp"
+#include "engine/sums.hpp"
 #include "study/truth.hpp"
 
 #include <cmath>
@@ -17,31 +19,25 @@ class Amplitude {
   Amplitude(const Scene& scene, double frequency) : frequency_(frequency), about_center_(about_center(scene)) {}
 
   double operator()(const ParticleSystem<double>& s) const {
-    double sum = 0;
     if (s.size() == 0) {
-      for (const double y : s.variables()) sum += y * y;
-      return std::sqrt(sum);
+      double squares = 0;
+      for (const double y : s.variables()) squares += y * y;
+      return std::sqrt(squares);
     }
     Vec3<double> X = Vec3<double>::Zero(), V = Vec3<double>::Zero();
     if (about_center_) center(s, X, V);
-    for (Index i = 0; i < s.size(); ++i) {
+    return std::sqrt(sum_over<double>(s.size(), [&](Index i) {
       const Vec3<double> x = s.positions()[i] - X, v = s.velocities()[i] - V;
-      sum += norm2(v) + frequency_ * frequency_ * norm2(x);
-    }
-    return std::sqrt(sum);
+      return norm2(v) + frequency_ * frequency_ * norm2(x);
+    }));
   }
 
  private:
   static void center(const ParticleSystem<double>& s, Vec3<double>& X, Vec3<double>& V) {
-    double mass = 0;
-    for (Index i = 0; i < s.size(); ++i) {
-      const double m = s.masses()[i];
-      mass += m;
-      X += m * s.positions()[i];
-      V += m * s.velocities()[i];
-    }
-    if (mass > 0) X /= mass;
-    if (mass > 0) V /= mass;
+    const double mass = sum_over<double>(s.size(), [&](Index i) { return s.masses()[i]; });
+    if (!(mass > 0)) return;
+    X = rounded(weighted_sum(s, s.positions())) / mass;
+    V = rounded(weighted_sum(s, s.velocities())) / mass;
   }
 
   double frequency_;

@@ -1,5 +1,7 @@
 #include "study/stability.hpp"
 
+#include "engine/sums.hpp"
+#include "integrators/methods.hpp"
 #include "study/solution_growth.hpp"
 
 #include <fmt/format.h>
@@ -272,11 +274,9 @@ void check(const StabilityOptions& options) {
 
 /// @throws Error  for a scene in which nothing could grow
 void check_motion(const Scene& scene, double frequency) {
-  double size = 0;
   const ParticleSystem<double>& s = scene.particles;
-  for (Index i = 0; i < s.size(); ++i) {
-    size += norm2(s.velocities()[i]) + frequency * frequency * norm2(s.positions()[i]);
-  }
+  double size = sum_over<double>(
+      s.size(), [&](Index i) { return norm2(s.velocities()[i]) + frequency * frequency * norm2(s.positions()[i]); });
   for (const double y : s.variables()) size += y * y;
   if (!(size > 0)) throw Error("everything rests at the origin, where no step is too long; start the scene elsewhere");
 }

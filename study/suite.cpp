@@ -2,6 +2,7 @@
 
 #include "engine/error.hpp"
 #include "engine/monitors.hpp"
+#include "engine/sums.hpp"
 #include "integrators/methods.hpp"
 #include "integrators/schemes.hpp"
 #include "study/multistep_roots.hpp"
@@ -12,7 +13,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numeric>
 
 namespace noether {
 
@@ -31,7 +31,9 @@ class Sharing {
   /// Largest difference, over the sum of all.
   double apart_from(const Sharing& truth) const {
     const double mine = looks_ - RunLength::looks / 2.0, others = truth.looks_ - RunLength::looks / 2.0;
-    const double all = std::accumulate(truth.sums_.begin(), truth.sums_.end(), 0.0) / others;
+    const double all =
+        sum_over<double>(std::ssize(truth.sums_), [&](Index i) { return truth.sums_[static_cast<std::size_t>(i)]; }) /
+        others;
     double worst = 0;
     for (std::size_t i = 0; i < std::min(sums_.size(), truth.sums_.size()); ++i) {
       worst = std::max(worst, std::abs(sums_[i] / mine - truth.sums_[i] / others));

@@ -1,5 +1,6 @@
 #include "study/truth.hpp"
 
+#include "engine/sums.hpp"
 #include "forces/sum.hpp"
 #include "integrators/force_motion.hpp"
 #include "integrators/hamiltonian_motion.hpp"
@@ -204,11 +205,8 @@ bool about_center(const Scene& scene) {
 }
 
 PositionError::PositionError(const ParticleSystem<double>& particles, bool about) : about_center_(about) {
-  double total = 0;
-  for (Index i = 0; i < particles.size(); ++i) {
-    masses_.emplace_back(particles.masses()[i]);
-    total += particles.masses()[i];
-  }
+  for (Index i = 0; i < particles.size(); ++i) masses_.emplace_back(particles.masses()[i]);
+  const double total = sum_over<double>(particles.size(), [&](Index i) { return particles.masses()[i]; });
   if (!(total > 0)) about_center_ = false;
 }
 
@@ -245,7 +243,11 @@ void PositionError::set_scale(const std::vector<Vector<Quad>>& y) {
   }
   double squares = 0;
   for (const Vector<Quad>& one : y) {
-    for (const Quad& x : positions(one)) squares += static_cast<double>(x) * static_cast<double>(x);
+    const std::vector<Quad> all = positions(one);
+    squares += sum_over<double>(std::ssize(all), [&](Index i) {
+      const double x = static_cast<double>(all[static_cast<std::size_t>(i)]);
+      return x * x;
+    });
   }
   scale_ = std::sqrt(squares / static_cast<double>(y.size()));
 }

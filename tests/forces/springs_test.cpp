@@ -1,10 +1,14 @@
 // Springs: bonds, tethers, and the chain of Fermi, Pasta and Ulam, against gradients and closed forms.
 
 #include "forces/springs.hpp"
+
+#include "engine/simulation.hpp"
 #include "forces/check_gradient.hpp"
 #include "forces/fermi_pasta_ulam.hpp"
 #include "forces/sum.hpp"
+#include "integrators/schemes.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/drivers.hpp"
 #include "tests/support/problems.hpp"
 
 #include <algorithm>
@@ -121,6 +125,33 @@ TEST_CASE("what a spring ties is part of its signature", "[springs]") {
   other.tied[1] = {1, 2};
   CHECK(detail::signature_of(bonds) != detail::signature_of(other));
   CHECK(detail::signature_of(tethers) == "tether(point = [0.3, -1, 2], k = 1.5, length = 0.4, tied = [[0][2]])");
+}
+
+TEST_CASE("springs hold the particles they were given when others are taken out of a run", "[springs]") {
+  const auto simulation = [](const ParticleSystem<double>& s, const HarmonicBond& bond, const Tether& tether) {
+    return Simulation<double>(s, compose(test::kinetic_potential(bond, tether), schemes::verlet), 0x1p-6);
+  };
+  ParticleSystem<double> s = four_bodies();
+  auto run = simulation(s, {.k = 2, .length = 1, .tied = {{1, 3}}}, {.k = 1, .tied = {{3}}});
+  run.edit([](ParticleSystem<double>& all) { all.remove(0); });
+  run.edit([](ParticleSystem<double>& all) { all.remove(1); });
+  s.remove(0);
+  s.remove(1);
+  auto alone = simulation(s, {.k = 2, .length = 1, .tied = {{0, 1}}}, {.k = 1, .tied = {{1}}});
+  REQUIRE(run.run(100).ok());
+  REQUIRE(alone.run(100).ok());
+  for (Index i = 0; i < 2; ++i) CHECK(run.particles().positions()[i] == alone.particles().positions()[i]);
+}
+
+TEST_CASE("a spring to a particle that is not there is refused", "[springs][messages]") {
+  const auto bound = [](const HarmonicBond& bond) {
+    return Simulation<double>(four_bodies(), compose(test::kinetic_potential(bond), schemes::verlet), 0x1p-6);
+  };
+  CHECK_THROWS_WITH(bound({.k = 1, .tied = {{0, 4}}}),
+                    "particle 4 is tied, but there are 4, counted from 0; give one of them");
+  auto run = bound({.k = 1, .tied = {{1, 3}}});
+  CHECK_THROWS_WITH(run.edit([](ParticleSystem<double>& all) { all.remove(1); }),
+                    "the particle with id 1 is tied to others or to a place, but has been taken out; keep it");
 }
 
 TEST_CASE("a spring with a negative length is refused", "[springs]") {

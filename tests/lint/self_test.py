@@ -11,6 +11,7 @@ import named_tests
 import simd_symbols
 import sizes
 import sources
+import sums
 import text
 
 CLEAN_HEADER = """#pragma once
@@ -27,6 +28,10 @@ struct Thing {
 
 def long_function(lines):
     return "int f(int x) {\n" + "  x += 1;\n" * (lines - 3) + "  return x;\n}\n"
+
+
+def sum_over_particles(before, added):
+    return before + "for (Index i = 0; i < s.size(); ++i)\n  " + added + "\n"
 
 
 # file, content, lint, what the finding must say; "" where the lint must stay silent
@@ -72,6 +77,16 @@ SAMPLES = [
     ("docs/claims.md", "| `tests/a_test.cpp` |\n", named_tests.problems, "there is no tests/a_test.cpp"),
     ("docs/claims.md", '| `tests/lint/b_test.cpp` "one", "two" |\n', named_tests.problems, "has no case 'two'"),
     ("docs/promises.md", '| "two" | `tests/lint/b_test.cpp`, `tests/lint`: "one", "a\\|b" |\n', named_tests.problems, ""),
+    ("engine/a.cpp", sum_over_particles("double m = 0;\n", "m += s.masses()[i];"), sums.problems, "3: 'm' is summed"),
+    ("io/a.cpp", sum_over_particles("Motion c;\n", "{ if (i > 2) { c.x -= p; } }"), sums.problems, "'c.x' is summed"),
+    ("study/a.cpp", sum_over_particles("", "for (int k = 0; k < 3; ++k) v[k] = 0, t += v;"), sums.problems, "'t' is summed"),
+    ("scene/a.cpp", "for (std::size_t k = 0; k < n; ++k) p += k * masses[k];\n", sums.problems, "'p' is summed"),
+    ("scene/a.cpp", "for (std::size_t k = 0; k < n; ++k) p += k * lags[k];\n", sums.problems, ""),
+    ("engine/a.cpp", sum_over_particles("int n = 0;\n", "n += s.masses()[i] > 0 ? 1 : 0;"), sums.problems, ""),
+    ("engine/a.cpp", sum_over_particles("", "{ Real t = v[i]; t += 2 * a[i]; x[i] += h * t; }"), sums.problems, ""),
+    ("tests/a.cpp", sum_over_particles("", "t += s.masses()[i];"), sums.problems, ""),
+    ("integrators/methods/a.cpp", sum_over_particles("", "t += y[i];"), sums.problems, ""),
+    ("tests/lint/exceptions.txt", "sums engine/clean.hpp a reason\n", sums.problems, "has no sum over particles"),
     ("engine/a.cpp", "// caf\u00e9\n", text.problems, "not ASCII"),
     ("engine/a.cpp", "//" + "x" * 119 + "\n", text.problems, "121 columns"),
     ("engine/a.cpp", "\tint x;\n", text.problems, "a tab"),
