@@ -20,8 +20,10 @@
 #include "tests/support/drivers.hpp"
 #include "tests/support/energy_projection.hpp"
 #include "tests/support/liquid.hpp"
+#include "tests/support/mesh_field.hpp"
 #include "tests/support/planets.hpp"
 #include "tests/support/settings.hpp"
+#include "tests/support/tops.hpp"
 
 #include <fmt/format.h>
 
@@ -53,10 +55,12 @@ struct Way {
   bool restarted = false;
 };
 
-/// Those of noether, and a decorator from outside.
+/// Those of noether, and some from outside.
 Parts parts() {
   Parts all = standard_parts();
   all.add_decorator<test::EnergyProjection>();
+  all.add_hamiltonian<test::Tops>();
+  all.add_force<test::MeshField>();
   return all;
 }
 
@@ -204,8 +208,25 @@ std::vector<Twin> decorated_twins() {
   return twins;
 }
 
+/// A Hamiltonian from outside with an orientation and a spin, under a force from outside with a mesh and a torque.
+std::vector<Twin> turning_twins() {
+  ParticleSystem<double> bodies = test::cloud(300);
+  auto& spin = bodies.add_column<test::Spin>();
+  bodies.add_column<test::Orientation>();
+  for (Index i = 0; i < bodies.size(); ++i) spin.set(i, {0.1 * static_cast<double>(i % 7), 0.3, -0.2});
+  const ForceField<double> field =
+      ForceField<double>().add(Gravity{.G = 1, .softening = 0.05}).add(test::MeshField{.strength = 0.5, .period = 1});
+  return {{.name = "tops in a field on a mesh",
+           .bodies = bodies,
+           .program = compose(AnyHamiltonian<double>(test::SpinningTops(0.7, field)), schemes::yoshida_4),
+           .step = 0.01,
+           .hamiltonian = "[hamiltonian]\ntype='tops'\ninertia=0.7\nG=1\n[[hamiltonian.force]]\ntype='gravity'\n"
+                          "softening=0.05\n[[hamiltonian.force]]\ntype='mesh_field'\nstrength=0.5\nperiod=1\n",
+           .method = "yoshida_4"}};
+}
+
 void check_all_twins(std::size_t stride) {
-  for (const auto& twins : {gravity_twins(), force_twins(), liquid_twins(), decorated_twins(),
+  for (const auto& twins : {gravity_twins(), force_twins(), liquid_twins(), decorated_twins(), turning_twins(),
                             wisdom_holman_twins(Coordinates::jacobi), wisdom_holman_twins(Coordinates::democratic)}) {
     for (const Twin& twin : twins) check_ways(twin, stride);
   }
