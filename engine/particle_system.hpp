@@ -394,7 +394,8 @@ template <class Real = double> class ParticleSystem {
   std::uint64_t version_ = detail::fresh_version(), members_ = version_, mass_version_ = version_;
 };
 
-/// Shifts positions and velocities so that the centre of mass rests in the origin.
+/// Shifts positions and velocities so that the centre of mass rests in the origin. Plain sums, made once before a run
+/// begins, in the order of ids: their rounding stands in trajectories.
 /// @throws Error  if all masses are 0
 template <class Real> void move_to_barycenter(ParticleSystem<Real>& s) {
   Vec3<Real> x = Vec3<Real>::Zero(), v = Vec3<Real>::Zero();

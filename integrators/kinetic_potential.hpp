@@ -4,8 +4,8 @@
 #include "engine/concepts.hpp"
 #include "engine/erasure.hpp"
 #include "engine/neighbor_list.hpp"
-#include "engine/parallel.hpp"
 #include "engine/signature.hpp"
+#include "engine/sums.hpp"
 #include "engine/unconstrained.hpp"
 #include "engine/word.hpp"
 #include "forces/sum.hpp"
@@ -19,13 +19,9 @@
 
 namespace noether {
 
-/// Kinetic energy of inertial particles, T = sum m v^2 / 2, summed in fixed blocks [energy].
+/// Kinetic energy of inertial particles, T = sum m v^2 / 2, the same in any order of them [energy].
 template <class Real> Real kinetic_energy(const ParticleSystem<Real>& s) {
-  return reduce(s.size(), Real(0), [&](Index begin, Index end) {
-    Real sum(0);
-    for (Index i = begin; i < end; ++i) sum += s.masses()[i] * norm2(s.velocities()[i]) / Real(2);
-    return sum;
-  });
+  return sum_over<Real>(s.size(), [&](Index i) { return s.masses()[i] * norm2(s.velocities()[i]) / Real(2); });
 }
 
 /// The Hamiltonian H = T(p) + U(q, t) of forces that depend on positions and stage time.

@@ -105,6 +105,8 @@ template <class M> void append_figures(const M& monitor, std::vector<double>& al
 /// What all monitors that sum over particles have to say of a flight without forces.
 std::vector<double> figures_of(const ParticleSystem<double>& s) {
   Simulation<double> sim(s, compose(test::kinetic_potential(), schemes::verlet), 0x1p-7);
+  const auto& energy = sim.every(1, Energy{});
+  const auto& shadow = sim.every(1, ShadowHamiltonian<>({4, 8}));
   const auto& momentum = sim.every(1, Momentum{});
   const auto& angular = sim.every(1, AngularMomentum{});
   const auto& center = sim.every(1, CenterOfMass{});
@@ -114,6 +116,8 @@ std::vector<double> figures_of(const ParticleSystem<double>& s) {
   const Pressure* pressure = s.box().is_periodic() ? &sim.every(1, Pressure{}) : nullptr;
   REQUIRE(sim.run(12).ok());
   std::vector<double> all;
+  append_figures(energy, all);
+  append_figures(shadow, all);
   append_figures(momentum, all);
   append_figures(angular, all);
   append_figures(center, all);

@@ -1,6 +1,7 @@
 #pragma once
 /// Columns that parts may declare: of numbers, of whole numbers, of vectors.
 
+#include "engine/charge.hpp"
 #include "engine/columns.hpp"
 
 #include <cstdint>
@@ -8,10 +9,6 @@
 
 namespace noether {
 
-struct Charge {
-  static constexpr std::string_view name = "charge";
-  template <class Real> using type = ScalarColumn<Real>;
-};
 struct Kind {
   static constexpr std::string_view name = "kind", dimension = "1";
   static constexpr ColumnRole role = ColumnRole::parameter;

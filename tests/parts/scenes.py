@@ -1,0 +1,305 @@
+"""A short scene for every part: what tests/parts/every_part.py walks through all commands.
+
+Parts are found by the program itself; one that has no scene here fails the test by name. A case is the text of its
+tables; units are reduced and times bare numbers in all of them.
+"""
+
+import dataclasses
+
+STEPS = 60
+
+# Methods for `compare`, of which `stability` takes the first: of order 2 and 4; with steps forward only, for what is
+# irreversible; made of whole steps of RATTLE.
+RIVALS = ("verlet", "blanes_moan_s6")
+FORWARD = ("verlet", "mclachlan_2_s2")
+WHOLE_STEPS = ("verlet", "yoshida_4")
+
+
+@dataclasses.dataclass
+class Case:
+    """One scene; its Hamiltonian or system is `motion`, and `watch` what looks on beside energy and files."""
+    place: str
+    motion: str
+    method: str = "verlet"
+    step: float = 0.02
+    watch: str = ""
+    stop: str = ""
+    flow: str = "dop853"                         # the method for y' = f that chooses its steps
+    rivals: tuple = RIVALS                       # methods of `compare` and `advise`; the first is that of `stability`
+    energy: bool = True
+    particles: bool = True
+    files: dict = dataclasses.field(default_factory=dict)
+
+
+def body(name, mass, x, v, more=""):
+    return f'[[particles.body]]\nname = "{name}"\nmass = {mass}\nx = {list(x)}\nv = {list(v)}\n{more}'
+
+
+def table(place, keys):
+    return f"[[{place}]]\n" + "\n".join(keys.split("; ")) + "\n"
+
+
+def forces(*lists):
+    return '[hamiltonian]\ntype = "kinetic_potential"\n' + "".join(table("hamiltonian.force", keys) for keys in lists)
+
+
+def constrained(place, keys):
+    """Under a weight and a weak spring, so that everything that is free to move does."""
+    motion = forces(WEIGHT, "type = 'harmonic_field'; k = 0.5") + table("hamiltonian.constraint", keys)
+    return Case(place, motion, rivals=WHOLE_STEPS)
+
+
+WEIGHT = "type = 'uniform_field'; acceleration = [0.0, 0.3, -1.0]"
+SPRING = "type = 'harmonic_field'; k = 1"
+
+PAIR = body("a", 1.0, (0.5, 0.1, 0.0), (0.0, 0.2, 0.1)) + body("b", 2.0, (-0.3, 0.2, 0.1), (0.1, 0.0, -0.1))
+
+PLANETS = (body("star", 1.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)) +
+           body("inner", 1e-3, (1.0, 0.0, 0.0), (0.0, 1.0, 0.05)) +
+           body("outer", 1e-3, (0.0, -2.0, 0.1), (0.7, 0.0, 0.0)))
+GRAVITY = "type = 'gravity'; G = 1"
+
+ROW = "".join(body(f"q{k}", 1.0, (x, 0.0, 0.0), (v, 0.0, 0.0))
+              for k, (x, v) in enumerate([(0.1, 0.2), (-0.1, 0.0), (0.2, -0.1), (0.05, 0.1)]))
+
+# Three that a constraint can tie: on a bar of length 2, with the middle of it between them.
+BAR = (body("one", 1.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)) + body("two", 0.5, (1.0, 0.0, 0.0), (0.0, 0.1, 0.0)) +
+       body("three", 1.0, (2.0, 0.0, 0.0), (0.0, 0.2, 0.0)))
+BENT = (body("one", 1.0, (1.0, 0.0, 0.0), (0.0, 0.0, 0.1)) + body("two", 1.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.1)) +
+        body("three", 1.0, (0.0, 1.0, 0.0), (0.0, 0.0, 0.1)))
+BEAD = body("bead", 1.0, (1.0, 0.0, 0.0), (0.0, 0.0, 0.0)) + body("free", 1.0, (0.0, 2.0, 0.0), (0.1, 0.0, 0.0))
+
+# Eight charged atoms of two types, shaken from the sites of a cube.
+SALT_FILE = """8
+Lattice="3.6 0 0 0 3.6 0 0 0 3.6" Properties=species:S:1:pos:R:3:velo:R:3:mass:R:1:charge:R:1 pbc="T T T"
+A 0.05 0.00 0.10 0.2 0.1 0.0 1.0 0.3
+B 1.80 0.06 0.00 -0.1 0.0 0.2 1.5 -0.3
+B 0.00 1.84 0.05 0.0 -0.2 0.1 1.5 -0.3
+A 1.85 1.80 0.02 0.1 0.1 -0.2 1.0 0.3
+B 0.04 0.02 1.83 -0.2 0.1 0.1 1.5 -0.3
+A 1.80 0.03 1.78 0.1 -0.2 0.0 1.0 0.3
+A 0.02 1.79 1.80 0.0 0.1 -0.1 1.0 0.3
+B 1.83 1.81 1.82 0.1 0.0 0.1 1.5 -0.3
+"""
+SALT = '[particles]\nstructure = "salt.xyz"\nfile_units = "lj"\n'
+LENNARD_JONES = "type = 'lennard_jones'; epsilon = 1; sigma = 1; cutoff = 1.75"
+
+
+def salt(*lists, **options):
+    return Case(SALT, forces(*lists), step=0.005, files={"salt.xyz": SALT_FILE}, **options)
+
+
+# A chain of six beads that bends and twists, with a bond of each kind, across the faces of its box.
+CHAIN_FILE = """six beads
+
+6 atoms
+5 bonds
+4 angles
+3 dihedrals
+1 impropers
+1 atom types
+2 bond types
+2 angle types
+2 dihedral types
+1 improper types
+
+0 8 xlo xhi
+0 8 ylo yhi
+0 8 zlo zhi
+
+Masses
+
+1 1.0
+
+Atoms # molecular
+
+1 1 1 3.550 4.000 7.200
+2 1 1 2.902 4.541 7.550
+3 1 1 2.485 3.807 7.900
+4 1 1 3.282 3.528 0.250
+5 1 1 3.415 4.361 0.600
+6 1 1 2.571 4.344 0.950
+
+Velocities
+
+1 0.1 0.0 0.2
+2 0.0 -0.1 0.1
+3 -0.1 0.1 0.0
+4 0.1 0.0 -0.1
+5 0.0 0.1 -0.1
+6 -0.1 -0.1 -0.1
+
+Bonds
+
+1 1 1 2
+2 2 2 3
+3 1 3 4
+4 2 4 5
+5 1 5 6
+
+Angles
+
+1 1 1 2 3
+2 2 2 3 4
+3 1 3 4 5
+4 2 4 5 6
+
+Dihedrals
+
+1 1 1 2 3 4
+2 2 2 3 4 5
+3 1 3 4 5 6
+
+Impropers
+
+1 1 1 2 3 4
+
+Bond Coeffs # hybrid
+
+1 harmonic 20.0 1.0
+2 morse 20.0 2.0 1.0
+
+Angle Coeffs # hybrid
+
+1 harmonic 5.0 120.0
+2 cosine 1.0
+
+Dihedral Coeffs # hybrid
+
+1 charmm 0.5 3 60 0.0
+2 opls 0.4 -0.2 0.6 0.1
+
+Improper Coeffs # hybrid
+
+1 harmonic 5.0 70.0
+"""
+CHAIN = '[particles]\nstructure = "chain.data"\nfile_units = "lj"\n'
+
+
+def system(keys, **options):
+    options = {"method": "rk4", "flow": "dop853", "rivals": ("rk4", "heun"), **options}
+    return Case("", "[system]\n" + "\n".join(keys.split("; ")) + "\n", energy=False, particles=False, **options)
+
+
+STIFF = {"method": "backward_euler", "flow": "bdf", "rivals": ("backward_euler", "trapezoidal")}
+
+HAMILTONIANS = {
+    "kinetic_potential": Case(PLANETS, forces(GRAVITY)),
+    "wisdom_holman": Case(PLANETS, '[hamiltonian]\ntype = "wisdom_holman"\nG = 1\n'),
+}
+
+FORCES = {
+    "gravity": Case(PLANETS, forces("type = 'gravity'; G = 1; softening = 0.01")),
+    "oblateness": Case(PLANETS, forces(GRAVITY, "type = 'oblateness'; J2 = 0.01; J4 = -0.001; radius = 0.1; G = 1")),
+    "uniform_field": Case(PAIR, forces(WEIGHT, SPRING)),
+    "oscillating_field": Case(PAIR, forces(
+        "type = 'oscillating_field'; acceleration = [0.1, 0.0, 0.2]; omega = 3.0; phase = 0.2", SPRING)),
+    "harmonic_field": Case(PAIR, forces(SPRING)),
+    "henon_heiles": Case(PAIR, forces("type = 'henon_heiles'; omega = 1.0; length = 2.0")),
+    "fermi_pasta_ulam": Case(ROW, forces("type = 'fermi_pasta_ulam'; k = 100")),
+    "lennard_jones": salt(LENNARD_JONES),
+    "wca": salt("type = 'wca'; epsilon = 1; sigma = 1.6"),
+    "morse": salt("type = 'morse'; depth = 1; a = 2; length = 1.7; cutoff = 1.75; cutoff_style = 'switch_c4'"),
+    "buckingham": salt("type = 'buckingham'; A = 1000; rho = 0.3; C = 1; cutoff = 1.75; cutoff_style = 'switch_c2'"),
+    "reaction_field": salt(LENNARD_JONES, "type = 'reaction_field'; cutoff = 1.75"),
+    "harmonic_bond": Case(PAIR, forces("type = 'harmonic_bond'; chain = ['a', 'b']; k = 10; length = 0.7")),
+    "tether": Case(PAIR, forces("type = 'tether'; bodies = 'all'; k = 10; length = 0.2; point = [0.0, 0.0, 0.3]")),
+    "bonded": Case(CHAIN, forces("type = 'bonded'"), step=0.01, files={"chain.data": CHAIN_FILE}),
+    "linear_drag": Case(PAIR, forces(SPRING, "type = 'linear_drag'; rate = 0.1"), rivals=FORWARD),
+}
+
+THERMOSTATS = {
+    "langevin": Case(PAIR, forces(SPRING) + "[hamiltonian.thermostat]\ntype = 'langevin'\ntemperature = 1\n"
+                     "friction = 0.5\nseed = 7\n", method="BAOAB"),
+}
+
+TIED = "type = 'distance'; pairs = [['one', 'two'], ['two', 'three']]"
+
+CONSTRAINTS = {
+    "distance": constrained(BAR, TIED),
+    "rigid_bar": constrained(BAR, "type = 'rigid_bar'; bodies = ['one', 'two', 'three']"),
+    "angle": constrained(BENT, "type = 'angle'; triples = [['one', 'two', 'three']]"),
+    "fixed": constrained(BEAD, "type = 'fixed'; bodies = ['bead']"),
+    "on_sphere": constrained(BEAD, "type = 'on_sphere'; bodies = ['bead']"),
+    "on_plane": constrained(BEAD, "type = 'on_plane'; bodies = ['bead']; normal = [1, 0, 1]"),
+    "on_cylinder": constrained(BEAD, "type = 'on_cylinder'; bodies = ['bead']"),
+    "on_circle": constrained(BEAD, "type = 'on_circle'; bodies = ['bead']; normal = [0, 1, 0]"),
+    "on_line": constrained(BEAD, "type = 'on_line'; bodies = ['bead']; direction = [1, 0, 1]"),
+}
+
+# How equations of constraints are solved.
+SOLVERS = {
+    "newton": constrained(BAR, TIED + "; solver = 'newton'"),
+    "rattle": constrained(BAR, TIED + "; solver = 'rattle'; tolerance = 1e-12; iterations = 1000"),
+}
+
+SYSTEMS = {
+    "robertson": system("type = 'robertson'", step=0.05, **STIFF),
+    "rc_ladder": system("type = 'rc_ladder'; stages = 4; spread = 100; omega = 1; start = [1.0, 0.5, 0.2, 0.1]", **STIFF),
+    "heat_line": system("type = 'heat_line'; points = 6", **STIFF),
+    "lorenz": system("type = 'lorenz'", step=0.01),
+    "prothero_robinson": system("type = 'prothero_robinson'; lambda = -1000", **STIFF),
+    "forced_damped_oscillator": system("type = 'forced_damped_oscillator'"),
+}
+
+
+def seen(keys, case):
+    """The same scene with a watcher."""
+    return dataclasses.replace(case, watch=table("every", keys))
+
+
+MONITORS = {
+    "energy": Case(PLANETS, forces(GRAVITY)),
+    "momentum": seen("type = 'momentum'; steps = {cadence}", Case(PLANETS, forces(GRAVITY))),
+    "angular_momentum": seen("type = 'angular_momentum'; steps = {cadence}", Case(PLANETS, forces(GRAVITY))),
+    "center_of_mass": seen("type = 'center_of_mass'; steps = {cadence}", Case(PLANETS, forces(GRAVITY))),
+    "elements": seen("type = 'elements'; G = 1; steps = {cadence}", Case(PLANETS, forces(GRAVITY))),
+    "closest_approach": seen("type = 'closest_approach'; steps = {cadence}", Case(PLANETS, forces(GRAVITY))),
+    "temperature": seen("type = 'temperature'; steps = {cadence}", salt(LENNARD_JONES)),
+    "pressure": seen("type = 'pressure'; steps = {cadence}", salt(LENNARD_JONES)),
+    "radial_distribution": seen("type = 'radial_distribution'; bins = 10; types = ['A', 'B']; steps = {cadence}",
+                                salt(LENNARD_JONES)),
+    "mean_square_displacement": seen("type = 'mean_square_displacement'; length = 4; origins = 2; steps = {cadence}",
+                                     salt(LENNARD_JONES)),
+    "velocity_autocorrelation": seen("type = 'velocity_autocorrelation'; length = 4; origins = 2; steps = {cadence}",
+                                     salt(LENNARD_JONES)),
+    "variables": seen("type = 'variables'; variable = 'z'; steps = {cadence}", system("type = 'lorenz'", step=0.01)),
+    "constraint_residual": seen("type = 'constraint_residual'; steps = {cadence}",
+                                constrained(BAR, TIED)),
+    "shadow_hamiltonian": seen("type = 'shadow_hamiltonian'; orders = [4, 8]; steps = 1",
+                               Case(PLANETS, forces(GRAVITY))),
+    "trajectory": Case(PLANETS, forces(GRAVITY)),
+    "checkpoint": Case(PLANETS, forces(GRAVITY)),
+    # Both end the run between its half and its end.
+    "escape": Case(body("here", 1.0, (0.0, 0.0, 0.0), (-1.0, 0.0, 0.0)) +
+                   body("there", 1.0, (1.0, 0.0, 0.0), (1.0, 0.0, 0.0)), forces(GRAVITY),
+                   stop=table("stop", "type = 'escape'; distance = 1.2; steps = 1")),
+    "collision": Case(body("here", 1.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)) +
+                      body("there", 1.0, (1.0, 0.1, 0.0), (-1.0, 0.0, 0.0)), forces(
+                          "type = 'gravity'; G = 0.1; softening = 0.1"),
+                      stop=table("stop", "type = 'collision'; distance = 0.2; steps = 1")),
+}
+
+BUILDERS = {
+    "lattice": Case("[particles]\ntype = 'lattice'\nlattice = 'sc'\ncells = [2, 2, 2]\ndensity = 0.2\nmass = 1\n"
+                    "temperature = 0.5\n", forces(LENNARD_JONES), step=0.005),
+    "liquid": Case("[particles]\ntype = 'liquid'\nparticles = 8\ndensity = 0.2\nmass = 1\ntemperature = 0.5\n",
+                   forces(LENNARD_JONES), step=0.005),
+    "polymer_chains": Case("[particles]\ntype = 'polymer_chains'\nchains = 2\nbeads = 4\ndensity = 0.1\nmass = 1\n"
+                           "bending = 1\ntemperature = 0.5\n", forces("type = 'bonded'"), step=0.002),
+}
+
+# A list that the program has of each kind, the table of cases for it, and what a page says of it.
+KINDS = {
+    "hamiltonians": (HAMILTONIANS, "Hamiltonians"),
+    "forces": (FORCES, "Forces"),
+    "thermostats": (THERMOSTATS, "Thermostats"),
+    "constraints": (CONSTRAINTS, "Constraints"),
+    "solvers": (SOLVERS, "Solvers of constraints"),
+    "systems": (SYSTEMS, "First-order systems"),
+    "decorators": ({}, "Decorators of integrators"),
+    "monitors": (MONITORS, "Monitors, writers and stops"),
+    "builders": (BUILDERS, "Builders of particles"),
+}
+# Lists of what is no part to be walked: units, and methods, each of which is measured in docs/methods.md.
+OTHER_LISTS = {"units", "methods"}
