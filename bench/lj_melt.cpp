@@ -20,8 +20,6 @@
 
 #include "bench/melt.hpp"
 #include "engine/charge.hpp"
-#include "engine/monitors.hpp"
-#include "engine/simd.hpp"
 #include "engine/simulation.hpp"
 #include "forces/fused_pair.hpp"
 #include "forces/lennard_jones.hpp"
@@ -31,6 +29,8 @@
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/schemes.hpp"
+#include "monitors/monitors.hpp"
+#include "numbers/simd.hpp"
 
 using namespace noether;
 

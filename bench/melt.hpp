@@ -3,10 +3,10 @@
 
 #include "bench/peer_program.hpp"
 #include "bench/support.hpp"
-#include "engine/error.hpp"
 #include "engine/neighbor_options.hpp"
 #include "engine/particle_system.hpp"
 #include "integrators/composition.hpp"
+#include "numbers/error.hpp"
 
 #include <functional>
 #include <memory>

@@ -6,8 +6,8 @@
 
 #include "bench/planets.hpp"
 
-#include "engine/monitors.hpp"
-#include "engine/shadow_hamiltonian.hpp"
+#include "monitors/monitors.hpp"
+#include "monitors/shadow_hamiltonian.hpp"
 
 using namespace noether;
 

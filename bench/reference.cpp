@@ -13,9 +13,9 @@
 #include "bench/peer_program.hpp"
 #include "bench/support.hpp"
 
-#include "engine/monitors.hpp"
 #include "forces/gravity.hpp"
 #include "integrators/classical.hpp"
+#include "monitors/monitors.hpp"
 #include "scene/scene.hpp"
 
 #include <filesystem>
@@ -125,7 +125,7 @@ class WideEnergy {
   explicit WideEnergy(double G) : G_(G) {}
 
   static constexpr auto describe() { return part<WideEnergy>("wide_energy", "energy errors below rounding"); }
-  static Wanted wanted() { return {}; }
+  static Request wanted() { return {}; }
   void observe(const Snapshot<double>& now) {
     const ParticleSystem<double>& s = now.state();
     Quad energy(0);

@@ -1,9 +1,9 @@
 #pragma once
 /// What the benchmarks share: timing by medians, and rows for people or, with --json, one object a line.
 
-#include "engine/parallel.hpp"
-#include "engine/simd.hpp"
-#include "engine/version.hpp"
+#include "numbers/parallel.hpp"
+#include "numbers/simd.hpp"
+#include "numbers/version.hpp"
 #include "scene/json.hpp"
 
 #include <fmt/format.h>

@@ -1,8 +1,8 @@
 #include "cli/commands.hpp"
 
-#include "cli/lists.hpp"
-#include "engine/error.hpp"
-#include "engine/suggest.hpp"
+#include "cli/comma_lists.hpp"
+#include "numbers/error.hpp"
+#include "numbers/suggest.hpp"
 #include "scene/scene.hpp"
 #include "study/advise.hpp"
 

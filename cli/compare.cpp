@@ -1,7 +1,7 @@
 #include "cli/commands.hpp"
 
-#include "cli/lists.hpp"
-#include "engine/error.hpp"
+#include "cli/comma_lists.hpp"
+#include "numbers/error.hpp"
 #include "scene/scene.hpp"
 #include "study/compare_files.hpp"
 #include "study/report.hpp"

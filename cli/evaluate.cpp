@@ -1,9 +1,9 @@
 #include "cli/commands.hpp"
 
-#include "engine/error.hpp"
-#include "engine/parallel.hpp"
-#include "engine/quantity.hpp"
-#include "engine/text.hpp"
+#include "numbers/error.hpp"
+#include "numbers/parallel.hpp"
+#include "numbers/quantity.hpp"
+#include "numbers/text.hpp"
 #include "scene/evaluate.hpp"
 #include "scene/json.hpp"
 

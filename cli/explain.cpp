@@ -1,10 +1,10 @@
 #include "cli/commands.hpp"
 
-#include "engine/quantity.hpp"
-#include "engine/simd.hpp"
-#include "engine/text.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/stiffness.hpp"
+#include "numbers/quantity.hpp"
+#include "numbers/simd.hpp"
+#include "numbers/text.hpp"
 #include "scene/json.hpp"
 #include "scene/scene.hpp"
 #include "scene/warnings.hpp"

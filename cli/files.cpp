@@ -1,9 +1,9 @@
 #include "cli/commands.hpp"
 
-#include "engine/error.hpp"
-#include "engine/text.hpp"
 #include "io/inspect.hpp"
 #include "io/repair.hpp"
+#include "numbers/error.hpp"
+#include "numbers/text.hpp"
 #include "scene/json.hpp"
 #include "scene/output_folder.hpp"
 

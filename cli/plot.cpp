@@ -3,7 +3,7 @@
 #include "cli/commands.hpp"
 #include "cli/plot_data.hpp"
 #include "cli/plot_script.hpp"
-#include "engine/error.hpp"
+#include "numbers/error.hpp"
 #include "scene/json.hpp"
 
 #include <fmt/format.h>

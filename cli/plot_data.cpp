@@ -1,11 +1,11 @@
 #include "cli/plot_data.hpp"
 
-#include "engine/error.hpp"
 #include "engine/orbital_elements.hpp"
 #include "engine/sums.hpp"
-#include "engine/units.hpp"
 #include "io/inspect.hpp"
 #include "io/trajectory_layout.hpp"
+#include "numbers/error.hpp"
+#include "numbers/units.hpp"
 #include "scene/parts.hpp"
 #include "scene/toml.hpp"
 

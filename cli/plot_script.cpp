@@ -1,6 +1,6 @@
 #include "cli/plot_script.hpp"
 
-#include "engine/text.hpp"
+#include "numbers/text.hpp"
 
 #include <fmt/format.h>
 

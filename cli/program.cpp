@@ -2,10 +2,10 @@
 
 #include "cli/commands.hpp"
 
-#include "engine/error.hpp"
-#include "engine/suggest.hpp"
-#include "engine/text.hpp"
-#include "engine/version.hpp"
+#include "numbers/error.hpp"
+#include "numbers/suggest.hpp"
+#include "numbers/text.hpp"
+#include "numbers/version.hpp"
 #include "scene/json.hpp"
 
 #include <fmt/format.h>
@@ -29,8 +29,7 @@ namespace noether {
 namespace {
 
 /// Says what went wrong: one line on stderr and, where reports are JSON, one on stdout.
-int complain(const ErrorLocation& at, const std::string& message, const std::string& line, int code,
-             bool json) {
+int complain(const ErrorLocation& at, const std::string& message, const std::string& line, int code, bool json) {
   std::fputs((escaped(line) + "\n").c_str(), stderr);  // where that cannot be written, nothing can be said
   if (json) {
     const auto text = [](const std::string& t) { return t.empty() ? Json() : Json(t); };
@@ -132,10 +131,9 @@ int run_command(int argc, char** argv, const Parts& parts, bool json) {
     app.require_subcommand(1);
     app.option_defaults()->disable_flag_override();
     int exit_code = 0;
-    for (const auto add : {add_run_command, add_evaluate_command, add_explain_command,
-                           add_compare_command, add_advise_command, add_stability_command,
-                           add_list_command, add_describe_command, add_info_command,
-                           add_verify_command, add_convert_command, add_plot_command}) {
+    for (const auto add : {add_run_command, add_evaluate_command, add_explain_command, add_compare_command,
+                           add_advise_command, add_stability_command, add_list_command, add_describe_command,
+                           add_info_command, add_verify_command, add_convert_command, add_plot_command}) {
       add(app, parts, exit_code);
     }
     return parse(app, argc, argv, exit_code, json);

@@ -1,8 +1,8 @@
 #include "cli/commands.hpp"
 
-#include "engine/error.hpp"
-#include "engine/parallel.hpp"
-#include "engine/text.hpp"
+#include "numbers/error.hpp"
+#include "numbers/parallel.hpp"
+#include "numbers/text.hpp"
 #include "scene/run.hpp"
 
 #include <fmt/format.h>

@@ -1,8 +1,8 @@
 #include "cli/commands.hpp"
 
-#include "cli/lists.hpp"
-#include "engine/error.hpp"
+#include "cli/comma_lists.hpp"
 #include "io/files.hpp"
+#include "numbers/error.hpp"
 #include "scene/scene.hpp"
 #include "study/stability.hpp"
 #include "study/suite.hpp"

@@ -4,7 +4,7 @@
 # The library noether::<folder> from <folder>/*.cpp (and one level of folders below) and SOURCES. A folder without sources is a
 # header-only library, a folder that does not exist is none at all, and ROOMS that do not exist are passed over.
 # <folder>/*_simd.cpp go through noether_simd, EXCEPT names a source that is no part of it.
-# Without PRECOMPILE a folder shares the precompiled header of another one, by default that of the engine.
+# Without PRECOMPILE a folder shares the precompiled header of another one, by default that of numbers.
 
 set(NOETHER_ROOMS "" CACHE INTERNAL "folders that became libraries, lowest layer first")
 
@@ -43,7 +43,7 @@ function(noether_library folder)
       target_precompile_headers(${target} PRIVATE ${library_PRECOMPILE})
     elseif(NOETHER_PCH)
       if(NOT library_PRECOMPILED_BY)
-        set(library_PRECOMPILED_BY engine)
+        set(library_PRECOMPILED_BY numbers)
       endif()
       target_precompile_headers(${target} REUSE_FROM noether_${library_PRECOMPILED_BY})
     endif()

@@ -1,4 +1,4 @@
-# Code in lanes of SIMD registers: `*_simd.cpp` is compiled once per level of engine/simd.hpp, with that level's
+# Code in lanes of SIMD registers: `*_simd.cpp` is compiled once per level of numbers/simd.hpp, with that level's
 # instructions, in the namespace of that level; which one runs is chosen when the program starts.
 
 find_path(NOETHER_HIGHWAY_INCLUDE hwy/highway.h REQUIRED)

@@ -1,8 +1,8 @@
 #pragma once
 /// What a constraint is: a function of some particles' positions that stays 0. Everything else follows from it.
 
-#include "engine/dual.hpp"
-#include "engine/types.hpp"
+#include "numbers/dual.hpp"
+#include "numbers/types.hpp"
 
 #include <array>
 #include <concepts>

@@ -1,8 +1,8 @@
 #pragma once
 /// The sparse matrix that couples constraints, G M^-1 G^T, and its factors.
 
-#include "engine/real.hpp"
-#include "engine/types.hpp"
+#include "numbers/real.hpp"
+#include "numbers/types.hpp"
 
 #include <memory>
 #include <vector>

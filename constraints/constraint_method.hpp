@@ -2,7 +2,7 @@
 /// The solvers of constraints: which there are, what scenes call them, how they are made.
 
 #include "engine/description.hpp"
-#include "engine/real.hpp"
+#include "numbers/real.hpp"
 
 #include <array>
 #include <cstddef>

@@ -2,7 +2,7 @@
 /// The parameters of a constraint as bits, to tell which constraints are equal.
 
 #include "engine/description.hpp"
-#include "engine/types.hpp"
+#include "numbers/types.hpp"
 
 #include <array>
 #include <cstddef>

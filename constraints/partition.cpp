@@ -1,6 +1,6 @@
 #include "constraints/partition.hpp"
 
-#include "engine/error.hpp"
+#include "numbers/error.hpp"
 
 #include <fmt/format.h>
 

@@ -4,8 +4,8 @@
 
 #include "engine/concepts.hpp"
 #include "engine/lane_by_lane.hpp"
-#include "engine/pack.hpp"
 #include "engine/signature.hpp"
+#include "numbers/pack.hpp"
 
 #include <memory>
 #include <optional>

@@ -1,7 +1,7 @@
 #include "engine/box.hpp"
 
 #include "engine/box_simd.hpp"
-#include "engine/error.hpp"
+#include "numbers/error.hpp"
 
 #include <fmt/format.h>
 

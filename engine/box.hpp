@@ -1,7 +1,7 @@
 #pragma once
 /// The space particles live in: open, or a cell that repeats in every direction.
 
-#include "engine/types.hpp"
+#include "numbers/types.hpp"
 
 #include <cmath>
 #include <cstdint>

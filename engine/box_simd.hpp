@@ -1,7 +1,7 @@
 #pragma once
 /// Drifts in a periodic box in lanes: the interface of `box_simd.cpp`, compiled once per SIMD level.
 
-#include "engine/kernels_simd.hpp"
+#include "numbers/kernels_simd.hpp"
 
 #include <cstddef>
 

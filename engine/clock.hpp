@@ -1,7 +1,7 @@
 #pragma once
 /// Time: counted in whole steps, never accumulated.
 
-#include "engine/real.hpp"
+#include "numbers/real.hpp"
 
 #include <cstdint>
 #include <limits>

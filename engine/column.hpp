@@ -1,8 +1,8 @@
 #pragma once
 /// Columns: one array per quantity, aligned and padded for vector loops, addressed per particle or as a whole.
 
-#include "engine/real.hpp"
-#include "engine/types.hpp"
+#include "numbers/real.hpp"
+#include "numbers/types.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -2,8 +2,8 @@
 /// The columns that parts declare beyond position, velocity and mass: charges, orientations, spins.
 
 #include "engine/column.hpp"
-#include "engine/error.hpp"
-#include "engine/fresh_version.hpp"
+#include "numbers/error.hpp"
+#include "numbers/fresh_version.hpp"
 
 #include <algorithm>
 #include <array>

@@ -62,13 +62,13 @@ struct HamiltonianClaims {
 /// `observe({})` flows serve an observer on a copy: they sum what is wanted and leave no trace in `evaluations` (what
 /// the run itself needs) and `failure` (why the last flow could not be done).
 ///
-/// A Hamiltonian may offer `Advanced run(const TimedWord<Real>&, s, span)` (engine/word.hpp): a fused walk of whole
+/// A Hamiltonian may offer `Advance run(const TimedWord<Real>&, s, span)` (engine/word.hpp): a fused walk of whole
 /// steps, with the bits of the letters one by one.
 template <class H>
 concept SplitHamiltonian = requires(H& h, const H& c, ParticleSystem<typename H::real>& s,
                                     const ParticleSystem<typename H::real>& settled, char letter,
                                     const typename H::real& tau, VectorColumn<typename H::real>& column,
-                                    std::optional<Wanted> wanted) {
+                                    std::optional<Request> wanted) {
   { c.claims() } -> std::convertible_to<HamiltonianClaims>;
   h.bind(s);
   h.open(s);
@@ -113,7 +113,7 @@ struct Span {
 };
 
 /// How far it went.
-struct Advanced {
+struct Advance {
   std::int64_t steps = 0;
   bool at_limit = false;             ///< free clock: the next whole step would pass `limit`
   const Failure* failure = nullptr;  ///< why the last step could not be done; the integrator's, until it is used again
@@ -123,17 +123,17 @@ struct Advanced {
 /// with a free clock it is reached at time `at` by one shortened step, and its clock moved there without counting a
 /// step; the run itself never shortens a step. `bind` comes before `load` and may see working coordinates then.
 ///
-/// A method whose steps are symplectic may offer `Advanced advance_with_action(s, span, action)`: the same bits as
+/// A method whose steps are symplectic may offer `Advance advance_with_action(s, span, action)`: the same bits as
 /// `advance`, and the action increments of its flows, the integral of p dq - H dt, added to `action`. Its `settle` then
 /// returns the action of the flows that complete the copy, correctors left out, where `wanted.action` asks for it. One
 /// that gives the action at times only says so by `has_action()`.
 template <class I>
 concept Integrator = requires(I& i, const I& c, ParticleSystem<typename I::real>& s,
-                              const ParticleSystem<typename I::real>& raw, const Span& span, Wanted wanted,
+                              const ParticleSystem<typename I::real>& raw, const Span& span, Request wanted,
                               std::optional<double> at, bool corrected, VectorColumn<typename I::real>& column) {
   { c.claims() } -> std::convertible_to<IntegratorClaims>;
   i.bind(s);
-  { i.advance(s, span) } -> std::convertible_to<Advanced>;
+  { i.advance(s, span) } -> std::convertible_to<Advance>;
   i.settle(raw, s, wanted, at, corrected);
   { i.energy(raw) } -> std::convertible_to<EnergyTerms<typename I::real>>;
   i.accelerations(raw, column);

@@ -1,6 +1,6 @@
 #include "engine/description.hpp"
 
-#include "engine/quantity.hpp"
+#include "numbers/quantity.hpp"
 
 #include <fmt/format.h>
 

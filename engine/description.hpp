@@ -2,8 +2,8 @@
 /// A part describes itself once: name, help, fields with dimensions, state. Readers, writers, `noether list`,
 /// `noether describe`, docs and checkpoints are all driven by that one description.
 
-#include "engine/error.hpp"
 #include "engine/saved_state.hpp"
+#include "numbers/error.hpp"
 
 #include <array>
 #include <optional>

@@ -86,11 +86,11 @@ template <class Real> struct HamiltonianBase {
   virtual void close(ParticleSystem<Real>&) = 0;
   virtual void flow(char, ParticleSystem<Real>&, const Real&) = 0;
   virtual Real flow_with_action(char, ParticleSystem<Real>&, const Real&) = 0;
-  virtual Advanced run(const TimedWord<Real>&, ParticleSystem<Real>&, const Span&) = 0;
+  virtual Advance run(const TimedWord<Real>&, ParticleSystem<Real>&, const Span&) = 0;
   virtual EnergyTerms<Real> energy(const ParticleSystem<Real>&) = 0;
   virtual std::optional<Mat3<Real>> virial(const ParticleSystem<Real>&) = 0;
   virtual void accelerations(const ParticleSystem<Real>&, VectorColumn<Real>&) = 0;
-  virtual void observe(std::optional<Wanted>) = 0;
+  virtual void observe(std::optional<Request>) = 0;
   virtual const std::optional<Failure>& failure() const = 0;
   virtual Evaluations evaluations() const = 0;
   virtual void save(SavedState&, const std::string&) const = 0;
@@ -117,13 +117,13 @@ template <class H> struct HamiltonianModel final : HamiltonianBase<typename H::r
   Real flow_with_action(char letter, ParticleSystem<Real>& s, const Real& h) override {
     return hamiltonian.flow_with_action(letter, s, h);
   }
-  Advanced run(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span) override {
+  Advance run(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span) override {
     return walk(hamiltonian, word, s, span);
   }
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) override { return hamiltonian.energy(s); }
   std::optional<Mat3<Real>> virial(const ParticleSystem<Real>& s) override { return virial_of(hamiltonian, s); }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) override { hamiltonian.accelerations(s, a); }
-  void observe(std::optional<Wanted> wanted) override { hamiltonian.observe(wanted); }
+  void observe(std::optional<Request> wanted) override { hamiltonian.observe(wanted); }
   const std::optional<Failure>& failure() const override { return hamiltonian.failure(); }
   Evaluations evaluations() const override { return hamiltonian.evaluations(); }
   void save(SavedState& saved, const std::string& prefix) const override { save_any(saved, prefix, hamiltonian); }
@@ -142,13 +142,13 @@ template <class I> bool has_action(const I& integrator) {
 }
 /// @throws LogicError  if it does not
 template <class I, class Real>
-Advanced advance_with_action(I& integrator, ParticleSystem<Real>& s, const Span& span, Real& action) {
+Advance advance_with_action(I& integrator, ParticleSystem<Real>& s, const Span& span, Real& action) {
   if constexpr (GivesAction<I>) return integrator.advance_with_action(s, span, action);
   throw LogicError("a method that gives no action was asked for it");
 }
 /// Completes a copy. @return the action of the flows that do, if wanted; 0 for a method that gives none
 template <class I, class Real>
-Real settle(I& integrator, const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Wanted wanted,
+Real settle(I& integrator, const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Request wanted,
             const std::optional<double>& at, bool corrected) {
   if constexpr (GivesAction<I>) return integrator.settle(raw, out, wanted, at, corrected);
   integrator.settle(raw, out, wanted, at, corrected);
@@ -178,10 +178,10 @@ template <class Real> struct IntegratorBase {
   virtual std::unique_ptr<IntegratorBase> clone() const = 0;
   virtual IntegratorClaims claims() const = 0;
   virtual void bind(ParticleSystem<Real>&) = 0;
-  virtual Advanced advance(ParticleSystem<Real>&, const Span&) = 0;
+  virtual Advance advance(ParticleSystem<Real>&, const Span&) = 0;
   virtual bool has_action() const = 0;
-  virtual Advanced advance_with_action(ParticleSystem<Real>&, const Span&, Real&) = 0;
-  virtual Real settle(const ParticleSystem<Real>&, ParticleSystem<Real>&, Wanted, const std::optional<double>&,
+  virtual Advance advance_with_action(ParticleSystem<Real>&, const Span&, Real&) = 0;
+  virtual Real settle(const ParticleSystem<Real>&, ParticleSystem<Real>&, Request, const std::optional<double>&,
                       bool) = 0;
   virtual EnergyTerms<Real> energy(const ParticleSystem<Real>&) = 0;
   virtual std::optional<Mat3<Real>> virial(const ParticleSystem<Real>&) = 0;
@@ -199,12 +199,12 @@ template <class I> struct IntegratorModel final : IntegratorBase<typename I::rea
   std::unique_ptr<IntegratorBase<Real>> clone() const override { return std::make_unique<IntegratorModel>(integrator); }
   IntegratorClaims claims() const override { return integrator.claims(); }
   void bind(ParticleSystem<Real>& s) override { integrator.bind(s); }
-  Advanced advance(ParticleSystem<Real>& s, const Span& span) override { return integrator.advance(s, span); }
+  Advance advance(ParticleSystem<Real>& s, const Span& span) override { return integrator.advance(s, span); }
   bool has_action() const override { return detail::has_action(integrator); }
-  Advanced advance_with_action(ParticleSystem<Real>& s, const Span& span, Real& action) override {
+  Advance advance_with_action(ParticleSystem<Real>& s, const Span& span, Real& action) override {
     return detail::advance_with_action(integrator, s, span, action);
   }
-  Real settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Wanted wanted,
+  Real settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Request wanted,
               const std::optional<double>& at, bool corrected) override {
     return detail::settle(integrator, raw, out, wanted, at, corrected);
   }
@@ -242,14 +242,14 @@ template <class Real = double> class AnyHamiltonian : private detail::Erased<det
   Real flow_with_action(char letter, ParticleSystem<Real>& s, const Real& h) {
     return this->held_->flow_with_action(letter, s, h);
   }
-  Advanced run(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span) {
+  Advance run(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span) {
     return this->held_->run(word, s, span);
   }
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) { return this->held_->energy(s); }
   /// The virial of the forces, sum x (x) f [energy]; empty where it is not known.
   std::optional<Mat3<Real>> virial(const ParticleSystem<Real>& s) { return this->held_->virial(s); }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) { this->held_->accelerations(s, a); }
-  void observe(std::optional<Wanted> wanted) { this->held_->observe(wanted); }
+  void observe(std::optional<Request> wanted) { this->held_->observe(wanted); }
   const std::optional<Failure>& failure() const { return this->held_->failure(); }
   Evaluations evaluations() const { return this->held_->evaluations(); }
   void save(SavedState& saved, const std::string& prefix) const { this->held_->save(saved, prefix); }
@@ -267,15 +267,15 @@ template <class Real = double> class AnyIntegrator : private detail::Erased<deta
 
   IntegratorClaims claims() const { return this->held_->claims(); }
   void bind(ParticleSystem<Real>& s) { this->held_->bind(s); }
-  Advanced advance(ParticleSystem<Real>& s, const Span& span) { return this->held_->advance(s, span); }
+  Advance advance(ParticleSystem<Real>& s, const Span& span) { return this->held_->advance(s, span); }
   /// Whether the method offers `advance_with_action`.
   bool has_action() const { return this->held_->has_action(); }
   /// @throws LogicError  if it does not
-  Advanced advance_with_action(ParticleSystem<Real>& s, const Span& span, Real& action) {
+  Advance advance_with_action(ParticleSystem<Real>& s, const Span& span, Real& action) {
     return this->held_->advance_with_action(s, span, action);
   }
   /// @return the action of the flows that complete the copy, if wanted; 0 for a method that gives none
-  Real settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Wanted wanted,
+  Real settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Request wanted,
               const std::optional<double>& at, bool corrected) {
     return this->held_->settle(raw, out, wanted, at, corrected);
   }

@@ -1,7 +1,7 @@
 #pragma once
 /// Whether numbers are finite, in lanes: the interface of `finite_simd.cpp`, compiled once per SIMD level.
 
-#include "engine/kernels_simd.hpp"
+#include "numbers/kernels_simd.hpp"
 
 #include <cstddef>
 

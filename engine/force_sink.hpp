@@ -1,10 +1,10 @@
 #pragma once
 /// Where forces write: accelerations always, energy and virial only where somebody asked.
 
-#include "engine/dual.hpp"
 #include "engine/outcome.hpp"
 #include "engine/particle_system.hpp"
 #include "engine/workspace.hpp"
+#include "numbers/dual.hpp"
 
 #include <limits>
 #include <memory>
@@ -20,7 +20,7 @@ class LaneByLane;
 
 /// What is to be summed beside the accelerations. In one byte: three that are stored one by one and read as a word wait
 /// for each other, which a look at a step of six bodies feels.
-struct Wanted {
+struct Request {
   bool energy : 1 = false;
   bool virial : 1 = false;
   bool action : 1 = false;  ///< of the flows: by integrators, not by forces
@@ -38,7 +38,7 @@ template <class Real> class ForceSink {
   /// @param workspace  of the Hamiltonian, with the neighbor list that forces of short range share; without, each force
   ///   begins with nothing
   /// @param kick  the longest for which velocities are to change by these accelerations [time]; 0: not known
-  ForceSink(VectorColumn<Real>& accelerations, const ParticleSystem<Real>& system, Wanted wanted,
+  ForceSink(VectorColumn<Real>& accelerations, const ParticleSystem<Real>& system, Request wanted,
             Workspace* workspace = nullptr, double kick = 0)
       : a_(accelerations), system_(system), wanted_(wanted), shared_(workspace), own_(workspace), kick_(kick) {
     if (a_.size() < parallel_threshold) {
@@ -153,7 +153,7 @@ template <class Real> class ForceSink {
 
   VectorColumn<Real>& a_;
   const ParticleSystem<Real>& system_;
-  Wanted wanted_;
+  Request wanted_;
   Real energy_ = Real(0);
   Mat3<Real> virial_;                ///< set where it is wanted: nine numbers in lanes take as long as a few forces
   Workspace* shared_ = nullptr;      ///< of the whole Hamiltonian

@@ -2,7 +2,7 @@
 /// Forces in eight lanes whose branches differ: evaluated again, one lane after the other, with the bits of double.
 
 #include "engine/concepts.hpp"
-#include "engine/pack.hpp"
+#include "numbers/pack.hpp"
 
 #include <deque>
 

@@ -2,7 +2,7 @@
 /// Sums of products over particles to twice the digits of a double: the interface of `moments_simd.cpp`, compiled once
 /// per SIMD level.
 
-#include "engine/kernels_simd.hpp"
+#include "numbers/kernels_simd.hpp"
 
 #include <cstddef>
 

@@ -66,7 +66,7 @@ template <class Real> struct MonitorBase {
   virtual bool looks_last() const = 0;
   virtual bool needs_particles() const = 0;
   virtual void check(const ParticleSystem<Real>&) const = 0;
-  virtual Wanted wanted() const = 0;
+  virtual Request wanted() const = 0;
   virtual void observe(const Snapshot<Real>&) = 0;
   virtual std::vector<Series> series() const = 0;
   virtual std::optional<double> scale() const = 0;
@@ -95,7 +95,7 @@ template <class M, class Real> struct MonitorModel final : MonitorBase<Real> {
   void check(const ParticleSystem<Real>& s) const override {
     if constexpr (requires { monitor.check(s); }) monitor.check(s);
   }
-  Wanted wanted() const override {
+  Request wanted() const override {
     if constexpr (requires { monitor.wanted(); }) return monitor.wanted();
     return {};
   }
@@ -149,7 +149,7 @@ template <class Real = double> class AnyMonitor {
   bool needs_particles() const { return held_->needs_particles(); }
   /// @throws Error  if a monitor says that it cannot watch such a state
   void check(const ParticleSystem<Real>& s) const { held_->check(s); }
-  Wanted wanted() const { return held_->wanted(); }
+  Request wanted() const { return held_->wanted(); }
   void observe(const Snapshot<Real>& snapshot) { held_->observe(snapshot); }
   std::vector<Series> series() const { return held_->series(); }
   std::optional<double> scale() const { return held_->scale(); }

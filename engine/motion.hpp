@@ -1,7 +1,7 @@
 #pragma once
 /// How a point moves at a moment: what interpolation between two moments needs.
 
-#include "engine/types.hpp"
+#include "numbers/types.hpp"
 
 namespace noether {
 

@@ -1,7 +1,7 @@
 #include "engine/orbital_elements.hpp"
 
 #include "engine/description.hpp"
-#include "engine/quantity.hpp"
+#include "numbers/quantity.hpp"
 
 #include <cmath>
 

@@ -1,9 +1,9 @@
 #pragma once
 /// Orbital elements of a Kepler orbit, from and to position and velocity.
 
-#include "engine/error.hpp"
-#include "engine/real.hpp"
-#include "engine/types.hpp"
+#include "numbers/error.hpp"
+#include "numbers/real.hpp"
+#include "numbers/types.hpp"
 
 #include <algorithm>
 #include <cmath>

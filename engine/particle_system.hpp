@@ -4,11 +4,11 @@
 #include "engine/box.hpp"
 #include "engine/clock.hpp"
 #include "engine/columns.hpp"
-#include "engine/error.hpp"
-#include "engine/parallel.hpp"
-#include "engine/real.hpp"
 #include "engine/topology.hpp"
-#include "engine/units.hpp"
+#include "numbers/error.hpp"
+#include "numbers/parallel.hpp"
+#include "numbers/real.hpp"
+#include "numbers/units.hpp"
 
 #include <cstdint>
 #include <memory>

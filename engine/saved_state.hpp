@@ -2,7 +2,7 @@
 /// State on its way to a checkpoint and back: named arrays, exact.
 
 #include "engine/particle_system.hpp"
-#include "engine/real.hpp"
+#include "numbers/real.hpp"
 
 #include <array>
 #include <cstdint>

@@ -1,6 +1,6 @@
 #include "engine/schedule.hpp"
 
-#include "engine/error.hpp"
+#include "numbers/error.hpp"
 
 #include <fmt/format.h>
 

@@ -2,8 +2,8 @@
 /// What a part was made with, in text: a saved run goes on with the same parts and parameters only.
 
 #include "engine/description.hpp"
-#include "engine/error.hpp"
-#include "engine/types.hpp"
+#include "numbers/error.hpp"
+#include "numbers/types.hpp"
 
 #include <fmt/format.h>
 

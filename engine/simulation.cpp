@@ -239,7 +239,7 @@ template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double 
       break;
     }
     const std::int64_t steps = next_cut(end) - step();
-    const Advanced done = advance({steps, next_time(limit), stop_flag_});
+    const Advance done = advance({steps, next_time(limit), stop_flag_});
     unclocked += done.steps;
     const bool chunk_is_full = unclocked >= chunk_ || done.at_limit || step() >= end;
     if (chunk_is_full) {
@@ -275,7 +275,7 @@ template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double 
   return result ? *result : outcome(Outcome::Kind::completed);
 }
 
-template <class Real> Advanced Simulation<Real>::advance(const Span& span) {
+template <class Real> Advance Simulation<Real>::advance(const Span& span) {
   if (span.steps > 1 || !action_is_wanted()) return integrator_.advance(raw_, span);
   action_ = Real(0);
   return integrator_.advance_with_action(raw_, span, action_);
@@ -351,7 +351,7 @@ template <class Real> std::optional<Outcome> Simulation<Real>::observe_due() {
   if (observed_through_ == step()) return std::nullopt;
   observed_through_ = step();
   looking_.clear();
-  Wanted wanted;
+  Request wanted;
   for (auto& scheduled : monitors_) {
     if (!due(scheduled)) continue;
     looking_.push_back(&scheduled);
@@ -399,7 +399,7 @@ template <class Real> void Simulation<Real>::show(const Snapshot<Real>& moment) 
 
 template <class Real> void Simulation<Real>::observe_times(double until) {
   looking_.clear();
-  Wanted wanted;
+  Request wanted;
   for (auto& scheduled : monitors_) {
     if (!by_time(scheduled)) continue;
     if (raw_.clock().is_later(look_of(scheduled), until)) continue;

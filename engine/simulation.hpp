@@ -126,7 +126,7 @@ template <class Real = double> class Simulation {
     std::chrono::steady_clock::time_point last_wall;
     std::int64_t observed = 0;                 ///< by time: how many multiples have been seen, or passed before it came
     bool records = false, looks_last = false;  ///< as the monitor says
-    Wanted wanted = {};
+    Request wanted = {};
   };
   struct ScheduledStop {
     std::int64_t steps;
@@ -148,7 +148,7 @@ template <class Real = double> class Simulation {
   double look_of(const Scheduled& s) const {
     return raw_.clock().start() + static_cast<double>(s.observed) * s.schedule.interval;
   }
-  Snapshot<Real> snapshot(Wanted wanted, const std::optional<double>& at = std::nullopt) {
+  Snapshot<Real> snapshot(Request wanted, const std::optional<double>& at = std::nullopt) {
     const RunSource run{this, [](const void* self) { return static_cast<const Simulation*>(self)->save(); }};
     return Snapshot<Real>(integrator_, raw_, copy_, mapped_, wanted, at, action_, run);
   }
@@ -159,7 +159,7 @@ template <class Real = double> class Simulation {
   std::int64_t next_cut(std::int64_t end) const;
   /// Whether a monitor looks here and at the next step, and wants to know the action between.
   bool action_is_wanted() const;
-  Advanced advance(const Span& span);
+  Advance advance(const Span& span);
   double next_time(double end) const;
   /// What is wrong with a state, if it is not finite.
   std::optional<Outcome> fault(const ParticleSystem<Real>& s) const;

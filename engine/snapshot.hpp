@@ -23,7 +23,7 @@ template <class Real> class Snapshot {
   /// @param at  free clock: the time to be shown, not beyond the next whole step
   /// @param action  of the run's flows in the step before this moment, where it was asked for
   Snapshot(AnyIntegrator<Real>& integrator, const ParticleSystem<Real>& raw, ParticleSystem<Real>& copy,
-           ParticleSystem<Real>& mapped, Wanted wanted, const std::optional<double>& at, const Real& action,
+           ParticleSystem<Real>& mapped, Request wanted, const std::optional<double>& at, const Real& action,
            const RunSource& run)
       : integrator_(integrator),
         raw_(raw),
@@ -95,7 +95,7 @@ template <class Real> class Snapshot {
   const ParticleSystem<Real>& raw_;
   ParticleSystem<Real>& copy_;
   ParticleSystem<Real>& mapped_;
-  Wanted wanted_;
+  Request wanted_;
   std::optional<double> at_;  ///< free clock: a time after the last whole step [time]
   Real action_;
   RunSource run_;

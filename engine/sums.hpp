@@ -1,8 +1,8 @@
 #pragma once
 /// Sums over particles that come out the same in any order.
 
-#include "engine/double_double.hpp"
-#include "engine/parallel.hpp"
+#include "numbers/double_double.hpp"
+#include "numbers/parallel.hpp"
 
 #include <array>
 #include <cmath>

@@ -2,7 +2,7 @@
 /// Who is bonded to whom. Its place is the engine: files read it, forces and constraints use it, and these three rooms
 /// do not see each other.
 
-#include "engine/types.hpp"
+#include "numbers/types.hpp"
 
 #include <array>
 #include <cstdint>

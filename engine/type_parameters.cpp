@@ -1,8 +1,8 @@
 #include "engine/type_parameters.hpp"
 
 #include "engine/charge.hpp"
-#include "engine/quantity.hpp"
-#include "engine/suggest.hpp"
+#include "numbers/quantity.hpp"
+#include "numbers/suggest.hpp"
 
 #include <fmt/format.h>
 

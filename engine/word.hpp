@@ -60,10 +60,10 @@ template <class Real> class TimedWord {
 /// Advances by whole steps: `flow(letter, duration)` for each letter. Ends after a step that fails, or after which it
 /// is asked to stop.
 template <class H, class Real, class Flow>
-Advanced walk_letters(const H& hamiltonian, const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span,
-                      const Flow& flow) {
+Advance walk_letters(const H& hamiltonian, const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span,
+                     const Flow& flow) {
   const Real dt(s.clock().dt());
-  Advanced done;
+  Advance done;
   while (done.steps < span.steps) {
     word.step(s.phase(), [&](char letter, const Real& weight, const Real& fraction) {
       s.clock().set_fraction(fraction);
@@ -79,7 +79,7 @@ Advanced walk_letters(const H& hamiltonian, const TimedWord<Real>& word, Particl
 
 /// Advances by whole steps: by the Hamiltonian's own fused walk where it has one, else letter by letter.
 template <class H, class Real>
-Advanced walk(H& hamiltonian, const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span) {
+Advance walk(H& hamiltonian, const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span) {
   if constexpr (requires { hamiltonian.run(word, s, span); }) {
     return hamiltonian.run(word, s, span);
   } else {
@@ -90,8 +90,8 @@ Advanced walk(H& hamiltonian, const TimedWord<Real>& word, ParticleSystem<Real>&
 
 /// The same, with the same bits; adds the action increments of the flows to `action`.
 template <class H, class Real>
-Advanced walk_with_action(H& hamiltonian, const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span,
-                          Real& action) {
+Advance walk_with_action(H& hamiltonian, const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span,
+                         Real& action) {
   return walk_letters(hamiltonian, word, s, span,
                       [&](char letter, const Real& h) { action += hamiltonian.flow_with_action(letter, s, h); });
 }

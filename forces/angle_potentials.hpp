@@ -1,7 +1,7 @@
 #pragma once
 /// Potentials of angles: energy and force without a loss of digits at 0 and 180 degrees, where cosines hide the angle.
 
-#include "engine/types.hpp"
+#include "numbers/types.hpp"
 
 #include <array>
 #include <cmath>

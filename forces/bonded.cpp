@@ -1,7 +1,7 @@
 #include "forces/bonded.hpp"
 
-#include "engine/error.hpp"
-#include "engine/simd_loop.hpp"
+#include "numbers/error.hpp"
+#include "numbers/simd_loop.hpp"
 
 #include <fmt/format.h>
 

@@ -4,10 +4,10 @@
 #include "engine/any_force.hpp"
 #include "engine/description.hpp"
 #include "engine/force_sink.hpp"
-#include "engine/parallel.hpp"
-#include "engine/simd_loop.hpp"
 #include "forces/bonded_loop.hpp"
 #include "forces/bonded_terms.hpp"
+#include "numbers/parallel.hpp"
+#include "numbers/simd_loop.hpp"
 
 #include <array>
 #include <memory>

@@ -1,12 +1,12 @@
 #pragma once
 /// The loop over bonded terms: what each does to its particles.
 
-#include "engine/pack.hpp"
 #include "engine/particle_system.hpp"
 #include "forces/angle_potentials.hpp"
 #include "forces/bond_potentials.hpp"
 #include "forces/bonded_terms.hpp"
 #include "forces/dihedral_potentials.hpp"
+#include "numbers/pack.hpp"
 
 #include <algorithm>
 #include <array>

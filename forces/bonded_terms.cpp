@@ -1,7 +1,7 @@
 #include "forces/bonded_terms.hpp"
 
-#include "engine/error.hpp"
-#include "engine/suggest.hpp"
+#include "numbers/error.hpp"
+#include "numbers/suggest.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

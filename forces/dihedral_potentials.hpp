@@ -1,7 +1,7 @@
 #pragma once
 /// Potentials of dihedral and improper angles: by both cosine and sine, so that no digits are lost anywhere.
 
-#include "engine/types.hpp"
+#include "numbers/types.hpp"
 
 #include <array>
 #include <cmath>

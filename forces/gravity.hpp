@@ -4,9 +4,9 @@
 #include "engine/any_force.hpp"
 #include "engine/description.hpp"
 #include "engine/force_sink.hpp"
-#include "engine/pack.hpp"
-#include "engine/parallel.hpp"
 #include "forces/secant.hpp"
+#include "numbers/pack.hpp"
+#include "numbers/parallel.hpp"
 
 #include <cmath>
 #include <optional>

@@ -1,6 +1,6 @@
 #include "forces/gravity_simd.hpp"
 
-#include "engine/reciprocal_sqrt_simd.hpp"
+#include "numbers/reciprocal_sqrt_simd.hpp"
 
 namespace noether::NOETHER_SIMD_LEVEL {
 

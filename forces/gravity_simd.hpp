@@ -1,8 +1,9 @@
 #pragma once
-/// Direct gravity in lanes: the interface of `gravity_simd.cpp`, which is compiled once per level of `engine/simd.hpp`.
+/// Direct gravity in lanes: the interface of `gravity_simd.cpp`, which is compiled once per level of
+/// `numbers/simd.hpp`.
 
 #include <cstddef>
-#include "engine/kernels_simd.hpp"
+#include "numbers/kernels_simd.hpp"
 
 namespace noether {
 

@@ -1,7 +1,7 @@
 #pragma once
 /// Direct gravity of few bodies at eight stages at once: the interface of `gravity_stages_simd.cpp`.
 
-#include "engine/kernels_simd.hpp"
+#include "numbers/kernels_simd.hpp"
 
 #include <cstddef>
 

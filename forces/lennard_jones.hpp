@@ -4,10 +4,10 @@
 #include "engine/any_force.hpp"
 #include "engine/description.hpp"
 #include "engine/force_sink.hpp"
-#include "engine/neighbor_list.hpp"
-#include "engine/pack.hpp"
 #include "forces/lennard_jones_row.hpp"
 #include "forces/pairs.hpp"
+#include "neighbors/neighbor_list.hpp"
+#include "numbers/pack.hpp"
 
 #include <algorithm>
 #include <array>

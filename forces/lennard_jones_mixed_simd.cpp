@@ -1,7 +1,7 @@
 #include "forces/lennard_jones_mixed_simd.hpp"
 
 #include "forces/lennard_jones_lanes_simd.hpp"
-#include "forces/lesser_simd.hpp"
+#include "forces/minimum_simd.hpp"
 
 namespace noether::NOETHER_SIMD_LEVEL {
 

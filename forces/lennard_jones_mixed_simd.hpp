@@ -2,9 +2,9 @@
 /// Lennard-Jones forces in lanes of single precision: the interface of `lennard_jones_mixed_simd.cpp`, compiled once
 /// per SIMD level.
 
-#include "engine/kernels_simd.hpp"
 #include "forces/lennard_jones_row.hpp"
 #include "forces/pair_row.hpp"
+#include "numbers/kernels_simd.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,9 +1,9 @@
 #pragma once
 /// Lennard-Jones pairs in lanes: the interface of `lennard_jones_simd.cpp`, compiled once per SIMD level.
 
-#include "engine/kernels_simd.hpp"
 #include "forces/lennard_jones_row.hpp"
 #include "forces/pair_row.hpp"
+#include "numbers/kernels_simd.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,8 +1,8 @@
 #pragma once
 /// Pairs of any potential in lanes: the interface of `pair_chunk_simd.cpp`, compiled once per SIMD level.
 
-#include "engine/kernels_simd.hpp"
 #include "forces/pair_row.hpp"
+#include "numbers/kernels_simd.hpp"
 
 namespace noether {
 

@@ -2,10 +2,10 @@
 /// A pair force from a potential of a few lines.
 
 #include "engine/charge.hpp"
-#include "engine/pack.hpp"
-#include "engine/simd_loop.hpp"
 #include "forces/pairs.hpp"
 #include "forces/secant.hpp"
+#include "numbers/pack.hpp"
+#include "numbers/simd_loop.hpp"
 
 #include <cstddef>
 #include <optional>

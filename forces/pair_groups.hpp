@@ -1,11 +1,11 @@
 #pragma once
 /// The loop of pair forces over the groups of a neighbor list.
 
-#include "engine/exact_sum.hpp"
-#include "engine/neighbor_list.hpp"
-#include "engine/parallel.hpp"
 #include "forces/pair_row.hpp"
 #include "forces/pairs.hpp"
+#include "neighbors/neighbor_list.hpp"
+#include "numbers/exact_sum.hpp"
+#include "numbers/parallel.hpp"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 /// Eight particles and their neighbors in lanes of doubles: loading pairs, and summing what they do in whole units. For
 /// `*_simd.cpp` alone.
 
-#include "forces/lesser_simd.hpp"
+#include "forces/minimum_simd.hpp"
 #include "forces/pair_row.hpp"
 
 #include <hwy/highway.h>

@@ -6,7 +6,7 @@
 
 namespace noether {
 
-/// Eight particles and their neighbors (engine/neighbor_list.hpp).
+/// Eight particles and their neighbors (neighbors/neighbor_list.hpp).
 struct PairGroup {
   const std::int32_t* records;  ///< where their records begin
   const std::int32_t* entries;  ///< where those of neighbors begin, shape (rows, 8)

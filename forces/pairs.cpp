@@ -1,6 +1,6 @@
 #include "forces/pairs.hpp"
 
-#include "engine/neighbor_list.hpp"
+#include "neighbors/neighbor_list.hpp"
 
 #include <fmt/format.h>
 

@@ -3,8 +3,8 @@
 
 #include "engine/description.hpp"
 #include "engine/force_sink.hpp"
-#include "engine/parallel.hpp"
 #include "forces/secant.hpp"
+#include "numbers/parallel.hpp"
 
 #include <algorithm>
 #include <array>

@@ -45,8 +45,8 @@ template <class Real> void Classical<Real>::bind(ParticleSystem<Real>& s) {
   ahead_.reset();
 }
 
-template <class Real> Advanced Classical<Real>::advance(ParticleSystem<Real>& s, const Span& span) {
-  Advanced done;
+template <class Real> Advance Classical<Real>::advance(ParticleSystem<Real>& s, const Span& span) {
+  Advance done;
   const bool fixed = s.clock().mode() == ClockMode::fixed;
   const double most = fixed ? s.clock().dt() : s.clock().never();
   field_->gather(s, y_);
@@ -57,7 +57,7 @@ template <class Real> Advanced Classical<Real>::advance(ParticleSystem<Real>& s,
       break;
     }
     field_->forget_failure();
-    Stepped made = method_->step(*field_, t, y_, most);
+    StepResult made = method_->step(*field_, t, y_, most);
     field_->evaluations().rejected += made.rejected;
     // A step of free length can go round what a force cannot do; one that is given cannot.
     if (fixed && field_->failure() && (made.failure || !y_.allFinite())) made.failure = field_->failure();
@@ -79,14 +79,14 @@ template <class Real> Advanced Classical<Real>::advance(ParticleSystem<Real>& s,
 }
 
 template <class Real>
-Advanced Classical<Real>::advance_with_action(ParticleSystem<Real>& s, const Span& span, Real& action) {
-  Advanced done;
+Advance Classical<Real>::advance_with_action(ParticleSystem<Real>& s, const Span& span, Real& action) {
+  Advance done;
   Span step = span;
   step.steps = 1;
   while (done.steps < span.steps) {
     field_->gather(s, before_);
     const Real t = s.clock().time();
-    const Advanced made = advance(s, step);
+    const Advance made = advance(s, step);
     if (made.steps == 0) {
       done.at_limit = made.at_limit;
       done.failure = made.failure;
@@ -100,7 +100,7 @@ Advanced Classical<Real>::advance_with_action(ParticleSystem<Real>& s, const Spa
 }
 
 template <class Real>
-Real Classical<Real>::settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Wanted /*wanted*/,
+Real Classical<Real>::settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Request /*wanted*/,
                              std::optional<double> at, bool /*corrected*/) {
   out.assign_state(raw);
   if (!at) {
@@ -132,7 +132,7 @@ template <class Real> void Classical<Real>::look_ahead(const ParticleSystem<Real
     ahead_->t += ahead_->h;
     const Real t = ahead_->t == begin ? clock.time() : Real(ahead_->t);
     const double most = dense ? clock.never() : at - ahead_->t;
-    const Stepped made = ahead_->method->step(*field_, t, ahead_->y, most);
+    const StepResult made = ahead_->method->step(*field_, t, ahead_->y, most);
     // What fails here fails in the run as well, and is told there.
     if (made.failure || !(std::abs(made.h) > 0)) return;
     ahead_->h = made.h;

@@ -37,10 +37,10 @@ template <class Real> class Classical {
   const Method<Real>& method() const { return *method_; }
   /// @throws SchemeMismatch  if the method cannot serve the field
   void bind(ParticleSystem<Real>& s);
-  Advanced advance(ParticleSystem<Real>& s, const Span& span);
+  Advance advance(ParticleSystem<Real>& s, const Span& span);
   bool has_action() const { return method_->has_action() && field_->has_potential(); }
-  Advanced advance_with_action(ParticleSystem<Real>& s, const Span& span, Real& action);
-  Real settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Wanted wanted, std::optional<double> at,
+  Advance advance_with_action(ParticleSystem<Real>& s, const Span& span, Real& action);
+  Real settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Request wanted, std::optional<double> at,
               bool corrected);
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) { return field_->energy(s); }
   std::optional<Mat3<Real>> virial(const ParticleSystem<Real>& s) { return field_->virial(s); }

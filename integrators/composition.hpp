@@ -96,11 +96,11 @@ template <SplitHamiltonian H> class Composition {
     }
   }
 
-  Advanced advance(ParticleSystem<real>& s, const Span& span) {
+  Advance advance(ParticleSystem<real>& s, const Span& span) {
     if (!s.phase().opened) open(s, real(s.clock().dt()));
     return walk(hamiltonian_, word_, s, span);
   }
-  Advanced advance_with_action(ParticleSystem<real>& s, const Span& span, real& action) {
+  Advance advance_with_action(ParticleSystem<real>& s, const Span& span, real& action) {
     if (!s.phase().opened) open(s, real(s.clock().dt()));
     return walk_with_action(hamiltonian_, word_, s, span, action);
   }
@@ -108,7 +108,7 @@ template <SplitHamiltonian H> class Composition {
   /// Completes a copy: pending stage, word after the run (if `corrected`), inertial coordinates. Not corrected, it
   /// stands where the composed map stands, at the start too: behind the word before the run.
   /// @return the action of the pending stage, if wanted
-  real settle(const ParticleSystem<real>& raw, ParticleSystem<real>& out, Wanted wanted, std::optional<double> at,
+  real settle(const ParticleSystem<real>& raw, ParticleSystem<real>& out, Request wanted, std::optional<double> at,
               bool corrected) {
     NOETHER_EXPECTS(!at, "a composition stands at whole steps only");
     out.assign_state(raw);

@@ -1,9 +1,9 @@
 #pragma once
 /// Systems of first order, y' = f(t, y): kinetics, circuits, heat. The classical methods step them.
 
-#include "engine/dual.hpp"
 #include "engine/signature.hpp"
 #include "integrators/classical.hpp"
+#include "numbers/dual.hpp"
 
 #include <concepts>
 #include <memory>

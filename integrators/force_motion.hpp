@@ -3,13 +3,13 @@
 
 #include "engine/erasure.hpp"
 #include "engine/lane_by_lane.hpp"
-#include "engine/neighbor_list.hpp"
-#include "engine/pack.hpp"
-#include "engine/parallel.hpp"
 #include "engine/signature.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/particle_vector.hpp"
 #include "integrators/vector_field.hpp"
+#include "neighbors/neighbor_list.hpp"
+#include "numbers/pack.hpp"
+#include "numbers/parallel.hpp"
 
 #include <algorithm>
 #include <deque>

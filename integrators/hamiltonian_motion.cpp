@@ -1,6 +1,6 @@
 #include "integrators/hamiltonian_motion.hpp"
 
-#include "engine/neighbor_list.hpp"
+#include "neighbors/neighbor_list.hpp"
 
 #include <fmt/format.h>
 

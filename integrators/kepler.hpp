@@ -1,8 +1,8 @@
 #pragma once
 /// The two-body problem solved exactly: one arc of any orbit, over any time.
 
-#include "engine/real.hpp"
-#include "engine/types.hpp"
+#include "numbers/real.hpp"
+#include "numbers/types.hpp"
 
 #include <cstdint>
 

@@ -3,12 +3,12 @@
 
 #include "engine/concepts.hpp"
 #include "engine/erasure.hpp"
-#include "engine/neighbor_list.hpp"
 #include "engine/signature.hpp"
 #include "engine/sums.hpp"
 #include "engine/unconstrained.hpp"
 #include "engine/word.hpp"
 #include "forces/sum.hpp"
+#include "neighbors/neighbor_list.hpp"
 
 #include <limits>
 #include <optional>
@@ -116,7 +116,7 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
       return;
     }
     Kick& kick = kick_of(letter);
-    evaluate(kick, s, observing_.value_or(Wanted{}));
+    evaluate(kick, s, observing_.value_or(Request{}));
     s.advance_velocities(h, kick.acceleration);
     project(s, h);
     if (!observing_) count(kick);
@@ -126,9 +126,9 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
   void project_velocities(ParticleSystem<Real>& s, const Real& h) { project(s, h); }
 
   /// The fused walk: between the stages of whole steps nobody asks whether the forces are known.
-  Advanced run(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span) requires(!constrained) {
+  Advance run(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span) requires(!constrained) {
     const Real dt(s.clock().dt());
-    Advanced done;
+    Advance done;
     bool drifted = false;  // before that an observer may have evaluated what the first kick needs
     while (done.steps < span.steps) {
       word.step(s.phase(), [&](char letter, const Real& weight, const Real& fraction) {
@@ -200,7 +200,7 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     if constexpr (constrained) constraints_.constrain(s, a);
   }
 
-  void observe(std::optional<Wanted> wanted) {
+  void observe(std::optional<Request> wanted) {
     observing_ = wanted;
     if constexpr (constrained) {
       if (wanted) {
@@ -306,7 +306,7 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     if (kick.failure && !failure_) failure_ = kick.failure;
     if (std::exchange(kick.moved, false)) ++evaluations_.force;
   }
-  void evaluate(Kick& kick, const ParticleSystem<Real>& s, Wanted wanted) {
+  void evaluate(Kick& kick, const ParticleSystem<Real>& s, Request wanted) {
     const Real time = s.time();
     const std::optional<Known>& known = kick.known;
     const bool here = known && known->version == s.version() && known->time == time;
@@ -315,8 +315,8 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     sum(kick, s, wanted);
     kick.known = Known{s.version(), time, wanted.energy, wanted.virial};
   }
-  void sum(Kick& kick, const ParticleSystem<Real>& s, Wanted wanted) {
-    const Wanted of_forces{.energy = wanted.energy, .virial = wanted.virial};
+  void sum(Kick& kick, const ParticleSystem<Real>& s, Request wanted) {
+    const Request of_forces{.energy = wanted.energy, .virial = wanted.virial};
     ForceSink<Real> sink(kick.acceleration, s, of_forces, &workspace_, longest_kick_);
     if (kicks_.size() > 1) sink.set_kick_letter(kick.letter);
     forces_.add_to(sink, s);
@@ -329,7 +329,7 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
   typename C::template Solver<Real> constraints_;
   std::vector<Kick> kicks_{Kick('B', 0)};  ///< one for each letter
   bool virial_wanted_ = false;
-  std::optional<Wanted> observing_;
+  std::optional<Request> observing_;
   std::optional<Failure> failure_;  ///< why the last flow could not be done
   NeighborOptions neighbor_options_;
   Workspace workspace_;

@@ -3,10 +3,10 @@
 
 #include "engine/description.hpp"
 #include "engine/erasure.hpp"
-#include "engine/parallel.hpp"
-#include "engine/random.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/wrapped.hpp"
+#include "numbers/parallel.hpp"
+#include "numbers/random.hpp"
 
 #include <array>
 #include <cmath>
@@ -97,7 +97,7 @@ template <SplitHamiltonian H> class Langevin : public Wrapped<H> {
     }
   }
   /// Whole steps; only here the place of an O in the word is known.
-  Advanced run(const TimedWord<real>& word, ParticleSystem<real>& s, const Span& span) {
+  Advance run(const TimedWord<real>& word, ParticleSystem<real>& s, const Span& span) {
     const real dt(s.clock().dt());
     std::int64_t step = -1;
     std::uint32_t place = 0;

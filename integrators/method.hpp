@@ -30,7 +30,7 @@ struct MethodClaims {
 };
 
 /// A step that was made, or why none was.
-struct Stepped {
+struct StepResult {
   double h = 0;               ///< how far it went [time]
   std::int64_t rejected = 0;  ///< trials before it that were thrown away
   std::optional<Failure> failure = {};
@@ -56,7 +56,7 @@ template <class Real> class Method {
     throw LogicError("a method of fixed steps has no step of its own");
   }
   /// Goes from y(t) to y(t + h) in place. On failure y and the method's state are void.
-  virtual Stepped step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) = 0;
+  virtual StepResult step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) = 0;
 
   /// Whether `interpolate` knows the solution inside the last step as well as the method itself does.
   virtual bool dense() const { return false; }

@@ -1,8 +1,8 @@
 #include "integrators/methods.hpp"
 
-#include "engine/suggest.hpp"
-#include "engine/text.hpp"
 #include "integrators/schemes.hpp"
+#include "numbers/suggest.hpp"
+#include "numbers/text.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #include "integrators/minimize.hpp"
 
-#include "engine/neighbor_list.hpp"
-#include "engine/parallel.hpp"
+#include "neighbors/neighbor_list.hpp"
+#include "numbers/parallel.hpp"
 
 #include <fmt/format.h>
 

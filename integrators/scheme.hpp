@@ -1,8 +1,8 @@
 #pragma once
 /// Schemes: words in exactly solvable flows, with weights. Numbers only; `Composition` walks them.
 
-#include "engine/error.hpp"
-#include "engine/real.hpp"
+#include "numbers/error.hpp"
+#include "numbers/real.hpp"
 
 #include <array>
 #include <cstddef>

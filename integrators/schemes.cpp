@@ -1,6 +1,6 @@
 #include "integrators/schemes.hpp"
 
-#include "engine/text.hpp"
+#include "numbers/text.hpp"
 
 #include <algorithm>
 

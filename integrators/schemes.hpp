@@ -2,7 +2,7 @@
 /// All schemes, by name.
 
 #include "integrators/scheme.hpp"
-#include "integrators/schemes/classical.hpp"
+#include "integrators/schemes/low_order.hpp"
 #include "integrators/schemes/near_integrable.hpp"
 #include "integrators/schemes/nystrom.hpp"
 #include "integrators/schemes/splitting.hpp"

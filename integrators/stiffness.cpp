@@ -96,7 +96,7 @@ std::vector<Place> steps_of(VectorField<double>& f, const Vector<double>& start,
   Vector<double> y = start;
   double t = 0;
   while (std::abs(length - t) > 1e-12 * std::abs(length) && static_cast<std::int64_t>(places.size()) <= most) {
-    const Stepped made = stepper->step(f, t, y, length - t);
+    const StepResult made = stepper->step(f, t, y, length - t);
     if (made.failure || !(std::abs(made.h) > 0)) break;
     t += made.h;
     places.push_back({t, y});

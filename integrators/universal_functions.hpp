@@ -1,7 +1,7 @@
 #pragma once
 /// The universal functions of the two-body problem: one set for ellipse, parabola and hyperbola.
 
-#include "engine/real.hpp"
+#include "numbers/real.hpp"
 
 #include <array>
 #include <cstddef>

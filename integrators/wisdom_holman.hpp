@@ -2,12 +2,12 @@
 /// H = Kepler + interaction: planets on Kepler arcs, kicked by each other.
 
 #include "engine/concepts.hpp"
-#include "engine/parallel.hpp"
 #include "engine/signature.hpp"
 #include "forces/gravity.hpp"
 #include "forces/sum.hpp"
 #include "integrators/kepler.hpp"
 #include "integrators/kinetic_potential.hpp"
+#include "numbers/parallel.hpp"
 
 #include <array>
 #include <atomic>
@@ -92,7 +92,7 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
   }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) { newton(s, a, {}); }
 
-  void observe(std::optional<Wanted> wanted) { observing_ = wanted.has_value(); }
+  void observe(std::optional<Request> wanted) { observing_ = wanted.has_value(); }
   const std::optional<Failure>& failure() const { return failure_; }
   Evaluations evaluations() const { return evaluations_; }
   void save(SavedState& saved, const std::string& prefix) const {
@@ -133,7 +133,7 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
   Real interaction(const VectorColumn<Real>& x, bool skip_inner, Index first, bool energy);
   Real indirect(const ParticleSystem<Real>& s, bool energy);
   Real other_forces(const ParticleSystem<Real>& s, bool energy);
-  Real newton(const ParticleSystem<Real>& s, VectorColumn<Real>& a, Wanted wanted);
+  Real newton(const ParticleSystem<Real>& s, VectorColumn<Real>& a, Request wanted);
 
   WisdomHolmanOptions options_;
   F forces_;

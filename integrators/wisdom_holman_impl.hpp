@@ -347,7 +347,7 @@ template <class Real, class F> Real WisdomHolman<Real, F>::jump(ParticleSystem<R
 }
 
 template <class Real, class F>
-Real WisdomHolman<Real, F>::newton(const ParticleSystem<Real>& s, VectorColumn<Real>& a, Wanted wanted) {
+Real WisdomHolman<Real, F>::newton(const ParticleSystem<Real>& s, VectorColumn<Real>& a, Request wanted) {
   if (a.size() != s.size()) a = VectorColumn<Real>(s.size());
   ForceSink<Real> sink(a, s, wanted);
   Gravity{.G = options_.G}.add_to(sink, s);

@@ -43,7 +43,7 @@ template <SplitHamiltonian H> class Wrapped<H> {
   EnergyTerms<real> energy(const ParticleSystem<real>& s) { return hamiltonian_.energy(s); }
   std::optional<Mat3<real>> virial(const ParticleSystem<real>& s) { return detail::virial_of(hamiltonian_, s); }
   void accelerations(const ParticleSystem<real>& s, VectorColumn<real>& a) { hamiltonian_.accelerations(s, a); }
-  void observe(std::optional<Wanted> wanted) { hamiltonian_.observe(wanted); }
+  void observe(std::optional<Request> wanted) { hamiltonian_.observe(wanted); }
   const std::optional<Failure>& failure() const { return hamiltonian_.failure(); }
   Evaluations evaluations() const { return hamiltonian_.evaluations(); }
 
@@ -64,12 +64,12 @@ template <Integrator I> class Wrapped<I> {
   I& inside() { return integrator_; }
   IntegratorClaims claims() const { return integrator_.claims(); }
   void bind(ParticleSystem<real>& s) { integrator_.bind(s); }
-  Advanced advance(ParticleSystem<real>& s, const Span& span) { return integrator_.advance(s, span); }
+  Advance advance(ParticleSystem<real>& s, const Span& span) { return integrator_.advance(s, span); }
   bool has_action() const { return detail::has_action(integrator_); }
-  Advanced advance_with_action(ParticleSystem<real>& s, const Span& span, real& action) {
+  Advance advance_with_action(ParticleSystem<real>& s, const Span& span, real& action) {
     return detail::advance_with_action(integrator_, s, span, action);
   }
-  real settle(const ParticleSystem<real>& raw, ParticleSystem<real>& out, Wanted wanted,
+  real settle(const ParticleSystem<real>& raw, ParticleSystem<real>& out, Request wanted,
               const std::optional<double>& at, bool corrected) {
     return detail::settle(integrator_, raw, out, wanted, at, corrected);
   }

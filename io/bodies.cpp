@@ -1,8 +1,8 @@
 #include "io/bodies.hpp"
 
-#include "engine/text.hpp"
 #include "io/files.hpp"
 #include "io/text_table.hpp"
+#include "numbers/text.hpp"
 
 #include <fmt/format.h>
 

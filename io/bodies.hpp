@@ -2,7 +2,7 @@
 /// Bodies from tables: CSV files, and vector tables as JPL Horizons prints them.
 
 #include "engine/particle_system.hpp"
-#include "engine/units.hpp"
+#include "numbers/units.hpp"
 
 #include <filesystem>
 #include <optional>

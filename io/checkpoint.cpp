@@ -1,10 +1,10 @@
 #include "io/checkpoint.hpp"
 
 #include "engine/snapshot.hpp"
-#include "engine/version.hpp"
 #include "io/digest.hpp"
 #include "io/files.hpp"
 #include "io/hdf5_file.hpp"
+#include "numbers/version.hpp"
 
 #include <fmt/format.h>
 

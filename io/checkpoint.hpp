@@ -4,7 +4,7 @@
 #include "engine/description.hpp"
 #include "engine/monitor.hpp"
 #include "engine/saved_state.hpp"
-#include "engine/simd.hpp"
+#include "numbers/simd.hpp"
 
 #include <cstdint>
 #include <filesystem>

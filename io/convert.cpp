@@ -1,10 +1,10 @@
 // Trajectories as text: extended XYZ and CSV.
-#include "engine/error.hpp"
-#include "engine/suggest.hpp"
 #include "io/inspect.hpp"
+#include "io/sandbox.hpp"
 #include "io/structure_parts.hpp"
 #include "io/trajectory_reader.hpp"
-#include "io/trial.hpp"
+#include "numbers/error.hpp"
+#include "numbers/suggest.hpp"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,9 @@
 // Bodies from CSV: columns by name, units in brackets, positions and velocities or elements.
 #include "engine/orbital_elements.hpp"
-#include "engine/quantity.hpp"
-#include "engine/suggest.hpp"
-#include "engine/text.hpp"
 #include "io/text_table.hpp"
+#include "numbers/quantity.hpp"
+#include "numbers/suggest.hpp"
+#include "numbers/text.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // Extended XYZ, and plain XYZ: one frame.
-#include "engine/text.hpp"
 #include "io/structure_parts.hpp"
+#include "numbers/text.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "io/files.hpp"
 
-#include "engine/error.hpp"
+#include "numbers/error.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 // Structures of GROMACS, .gro: fixed columns, positions in nm, velocities in nm/ps.
-#include "engine/text.hpp"
 #include "io/structure_parts.hpp"
+#include "numbers/text.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
-#include "engine/error.hpp"
 #include "io/hdf5_file.hpp"
 #include "io/hdf5_handle.hpp"
 #include "io/padded_texts.hpp"
+#include "numbers/error.hpp"
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
 #include "io/hdf5_file.hpp"
 
-#include "engine/error.hpp"
 #include "io/files.hpp"
 #include "io/hdf5_handle.hpp"
 #include "io/ordered_file.hpp"
 #include "io/padded_texts.hpp"
+#include "numbers/error.hpp"
 
 #include <fmt/format.h>
 

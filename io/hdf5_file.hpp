@@ -3,7 +3,7 @@
 ///
 /// In a build without HDF5 every function that opens a file throws FileError.
 
-#include "engine/types.hpp"
+#include "numbers/types.hpp"
 
 #include <cstdint>
 #include <filesystem>

@@ -1,7 +1,7 @@
 #include "io/hdf5_handle.hpp"
 
-#include "engine/error.hpp"
 #include "io/hdf5_error.hpp"
+#include "numbers/error.hpp"
 
 #include <fmt/format.h>
 

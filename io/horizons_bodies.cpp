@@ -1,6 +1,6 @@
 // Bodies from vector tables as JPL Horizons prints them: text or CSV, with or without labels, one or more in a file.
-#include "engine/quantity.hpp"
 #include "io/text_table.hpp"
+#include "numbers/quantity.hpp"
 
 #include <fmt/format.h>
 

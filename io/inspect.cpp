@@ -1,12 +1,12 @@
 #include "io/inspect.hpp"
 
-#include "engine/error.hpp"
-#include "engine/units.hpp"
 #include "io/checkpoint.hpp"
 #include "io/digest.hpp"
+#include "io/sandbox.hpp"
 #include "io/trajectory_layout.hpp"
 #include "io/trajectory_reader.hpp"
-#include "io/trial.hpp"
+#include "numbers/error.hpp"
+#include "numbers/units.hpp"
 
 #include <fmt/format.h>
 

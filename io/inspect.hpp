@@ -1,7 +1,7 @@
 #pragma once
 /// What stands in a file: summaries, checks, conversions, and series for plots.
 
-#include "engine/types.hpp"
+#include "numbers/types.hpp"
 
 #include <cstdint>
 #include <filesystem>

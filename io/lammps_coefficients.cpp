@@ -1,6 +1,6 @@
 // Coefficients of LAMMPS data files, in LAMMPS's conventions, as kinds of noether.
-#include "engine/suggest.hpp"
 #include "io/lammps_text.hpp"
+#include "numbers/suggest.hpp"
 
 #include <fmt/format.h>
 

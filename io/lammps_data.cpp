@@ -1,6 +1,6 @@
 // LAMMPS data files: atoms, velocities and the terms that join atoms.
-#include "engine/suggest.hpp"
 #include "io/lammps_text.hpp"
+#include "numbers/suggest.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "io/lammps_text.hpp"
 
-#include "engine/suggest.hpp"
+#include "numbers/suggest.hpp"
 
 #include <fmt/format.h>
 

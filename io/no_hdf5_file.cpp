@@ -1,7 +1,7 @@
 // The same functions in a build without HDF5: opening a file throws, and nothing else can be reached.
-#include "engine/error.hpp"
 #include "io/hdf5_file.hpp"
 #include "io/ordered_file.hpp"
+#include "numbers/error.hpp"
 
 #if !NOETHER_HDF5
 

@@ -1,12 +1,12 @@
 #include "io/repair.hpp"
 
-#include "engine/error.hpp"
 #include "io/files.hpp"
 #include "io/hdf5_file.hpp"
 #include "io/ordered_file.hpp"
+#include "io/sandbox.hpp"
 #include "io/trajectory_layout.hpp"
 #include "io/trajectory_reader.hpp"
-#include "io/trial.hpp"
+#include "numbers/error.hpp"
 
 #include <fmt/format.h>
 

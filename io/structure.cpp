@@ -1,9 +1,9 @@
 #include "io/structure.hpp"
 
 #include "engine/charge.hpp"
-#include "engine/quantity.hpp"
-#include "engine/suggest.hpp"
 #include "io/structure_parts.hpp"
+#include "numbers/quantity.hpp"
+#include "numbers/suggest.hpp"
 
 #include <fmt/format.h>
 

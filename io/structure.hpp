@@ -3,7 +3,7 @@
 
 #include "engine/particle_system.hpp"
 #include "engine/type_parameters.hpp"
-#include "engine/units.hpp"
+#include "numbers/units.hpp"
 
 #include <array>
 #include <filesystem>

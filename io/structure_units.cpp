@@ -1,6 +1,6 @@
 // Units of structure files.
-#include "engine/suggest.hpp"
 #include "io/structure_parts.hpp"
+#include "numbers/suggest.hpp"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 /// Tables in text files, line by line, with errors that name file and line.
 
 #include "engine/particle_system.hpp"
-#include "engine/units.hpp"
+#include "numbers/units.hpp"
 
 #include <filesystem>
 #include <optional>

@@ -1,13 +1,13 @@
 #include "io/trajectory.hpp"
 
-#include "engine/quantity.hpp"
-#include "engine/simd.hpp"
-#include "engine/version.hpp"
 #include "io/digest.hpp"
 #include "io/hdf5_file.hpp"
+#include "io/sandbox.hpp"
 #include "io/trajectory_datasets.hpp"
 #include "io/trajectory_layout.hpp"
-#include "io/trial.hpp"
+#include "numbers/quantity.hpp"
+#include "numbers/simd.hpp"
+#include "numbers/version.hpp"
 
 #include <fmt/format.h>
 

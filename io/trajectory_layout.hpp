@@ -1,9 +1,9 @@
 #pragma once
 /// Where things stand in run.h5: the writer, the reader and the inspector agree on it here.
 
-#include "engine/error.hpp"
-#include "engine/units.hpp"
 #include "io/hdf5_file.hpp"
+#include "numbers/error.hpp"
+#include "numbers/units.hpp"
 
 #include <filesystem>
 #include <string>

@@ -1,7 +1,7 @@
 #include "io/trajectory_reader.hpp"
 
-#include "engine/error.hpp"
 #include "io/trajectory_layout.hpp"
+#include "numbers/error.hpp"
 
 #include <fmt/format.h>
 

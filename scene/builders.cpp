@@ -1,6 +1,6 @@
 #include "scene/builders.hpp"
 
-#include "engine/random.hpp"
+#include "numbers/random.hpp"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 #include "scene/evaluate.hpp"
 
-#include "engine/pressure.hpp"
 #include "forces/check_gradient.hpp"
 #include "integrators/kinetic_potential.hpp"
+#include "monitors/pressure.hpp"
 
 #include <fmt/format.h>
 

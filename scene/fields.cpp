@@ -1,7 +1,7 @@
 #include "scene/fields.hpp"
 
-#include "engine/quantity.hpp"
-#include "engine/text.hpp"
+#include "numbers/quantity.hpp"
+#include "numbers/text.hpp"
 
 namespace noether::detail {
 

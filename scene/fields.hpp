@@ -2,7 +2,7 @@
 /// Fields of a part, read from a scene as the part's own description tells.
 
 #include "engine/description.hpp"
-#include "engine/suggest.hpp"
+#include "numbers/suggest.hpp"
 #include "scene/reader.hpp"
 
 #include <fmt/format.h>

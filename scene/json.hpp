@@ -1,8 +1,8 @@
 #pragma once
 /// JSON on one line: what reports are written in.
 
-#include "engine/quantity.hpp"
-#include "engine/text.hpp"
+#include "numbers/quantity.hpp"
+#include "numbers/text.hpp"
 
 #include <cmath>
 #include <cstdint>

@@ -1,10 +1,10 @@
 #include "scene/scene.hpp"
 
-#include "engine/neighbor_images.hpp"
-#include "engine/suggest.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/schemes.hpp"
 #include "io/files.hpp"
+#include "neighbors/neighbor_images.hpp"
+#include "numbers/suggest.hpp"
 #include "scene/minimize.hpp"
 #include "scene/read_constraints.hpp"
 #include "scene/read_integrator.hpp"
@@ -12,7 +12,7 @@
 #include "scene/read_thermostat.hpp"
 #include "scene/read_tied.hpp"
 #include "scene/read_verdicts.hpp"
-#include "scene/sets.hpp"
+#include "scene/set_option.hpp"
 #include "scene/toml.hpp"
 
 #include <fmt/format.h>

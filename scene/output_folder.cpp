@@ -1,7 +1,7 @@
 #include "scene/output_folder.hpp"
 
-#include "engine/error.hpp"
 #include "io/files.hpp"
+#include "numbers/error.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

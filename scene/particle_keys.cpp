@@ -1,8 +1,8 @@
 #include "scene/particle_keys.hpp"
 
-#include "engine/suggest.hpp"
 #include "io/digest.hpp"
 #include "io/files.hpp"
+#include "numbers/suggest.hpp"
 #include "scene/builders.hpp"
 
 #include <fmt/format.h>

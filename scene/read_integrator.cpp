@@ -1,8 +1,8 @@
 #include "scene/read_integrator.hpp"
 
-#include "engine/suggest.hpp"
 #include "integrators/methods.hpp"
 #include "integrators/schemes.hpp"
+#include "numbers/suggest.hpp"
 #include "scene/read_options.hpp"
 
 #include <fmt/format.h>

@@ -2,9 +2,9 @@
 
 #include "engine/charge.hpp"
 #include "engine/orbital_elements.hpp"
-#include "engine/suggest.hpp"
-#include "engine/text.hpp"
 #include "io/bodies.hpp"
+#include "numbers/suggest.hpp"
+#include "numbers/text.hpp"
 #include "scene/particle_keys.hpp"
 #include "scene/read_builder.hpp"
 #include "scene/read_structure.hpp"

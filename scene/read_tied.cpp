@@ -1,6 +1,6 @@
 #include "scene/read_tied.hpp"
 
-#include "engine/suggest.hpp"
+#include "numbers/suggest.hpp"
 
 #include <fmt/format.h>
 

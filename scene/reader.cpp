@@ -1,7 +1,7 @@
 #include "scene/reader.hpp"
 
-#include "engine/suggest.hpp"
-#include "engine/text.hpp"
+#include "numbers/suggest.hpp"
+#include "numbers/text.hpp"
 
 #include <fmt/format.h>
 

@@ -2,8 +2,8 @@
 /// Reading one table of a scene: every key that nobody asks for is an error.
 
 #include "engine/columns.hpp"
-#include "engine/error.hpp"
-#include "engine/quantity.hpp"
+#include "numbers/error.hpp"
+#include "numbers/quantity.hpp"
 #include "scene/value.hpp"
 
 #include <array>

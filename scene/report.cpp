@@ -1,7 +1,7 @@
 #include "scene/json.hpp"
 #include "scene/run.hpp"
 
-#include "engine/version.hpp"
+#include "numbers/version.hpp"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,9 @@
 #include "scene/run.hpp"
 
-#include "engine/monitors.hpp"
-#include "engine/parallel.hpp"
-#include "engine/quantity.hpp"
 #include "io/digest.hpp"
+#include "monitors/monitors.hpp"
+#include "numbers/parallel.hpp"
+#include "numbers/quantity.hpp"
 #include "scene/minimize.hpp"
 #include "scene/resume.hpp"
 #include "scene/signals.hpp"

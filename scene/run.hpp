@@ -1,7 +1,7 @@
 #pragma once
 /// A scene, run as the program runs it: output folder, checkpoints, resume, signals, report.
 
-#include "engine/simd.hpp"
+#include "numbers/simd.hpp"
 #include "scene/output_folder.hpp"
 #include "scene/scene.hpp"
 

@@ -1,7 +1,7 @@
 #include "scene/toml.hpp"
 
-#include "engine/error.hpp"
-#include "engine/quantity.hpp"
+#include "numbers/error.hpp"
+#include "numbers/quantity.hpp"
 
 #include <fmt/format.h>
 

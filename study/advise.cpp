@@ -1,6 +1,6 @@
 #include "study/advise.hpp"
 
-#include "engine/quantity.hpp"
+#include "numbers/quantity.hpp"
 #include "scene/json.hpp"
 #include "study/analysis.hpp"
 #include "study/set_lines.hpp"
@@ -51,10 +51,10 @@ double two_digits(double x) {
   return std::stod(fmt::format("{:.1e}", std::floor(x / unit * (1 + 1e-12)) * unit));
 }
 
-/// The trials of one opponent, and what they say about any step or tolerance.
+/// The trials of one candidate, and what they say about any step or tolerance.
 class Fit {
  public:
-  Fit(const Scene& scene, const Comparison& trials, const Opponent& who, Metric metric) : who_(who) {
+  Fit(const Scene& scene, const Comparison& trials, const Candidate& who, Metric metric) : who_(who) {
     for (const Row& row : trials.rows) {
       if (row.who == who && error_of(row, metric)) rows_.push_back(&row);
     }
@@ -141,7 +141,7 @@ class Fit {
     return {exponent, fmt::format("errors go on growing as they did in the trials, t^{:.2f}", exponent)};
   }
 
-  Opponent who_;
+  Candidate who_;
   std::vector<const Row*> rows_;
   std::optional<PowerLaw> law_;
   Growth growth_;
@@ -210,7 +210,7 @@ Advice advise(const Scene& scene, const AdviseOptions& options) {
   const Comparison& c = advice.trials;
   advice.trial_end = c.end;
   check_measured(c, options.metric);
-  for (const Opponent& who : c.methods) {
+  for (const Candidate& who : c.methods) {
     const Fit fit(scene, c, who, options.metric);
     auto proposal = fit.propose(options.error, advice.trial_end, advice.end);
     if (!proposal) continue;

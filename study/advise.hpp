@@ -22,15 +22,15 @@ struct AdviseOptions {
   std::function<void(const std::string&)> progress = {};
 };
 
-/// How the error of one opponent grows along the run: error ~ t^exponent.
+/// How the error of one candidate grows along the run: error ~ t^exponent.
 struct Growth {
   double exponent = 0;
   std::string assumption = {};  ///< in words
 };
 
-/// What an opponent would need to hold the error.
+/// What an candidate would need to hold the error.
 struct Proposal {
-  Opponent who = {};
+  Candidate who = {};
   Setting setting = {};
   double predicted_error = 0;
   double predicted_wall_s = 0;

@@ -86,7 +86,7 @@ std::optional<PowerLaw> asymptotic_fit(std::vector<std::pair<double, double>> po
 
 namespace {
 
-std::optional<OrderFit> order_of(const Comparison& c, const Opponent& who) {
+std::optional<OrderFit> order_of(const Comparison& c, const Candidate& who) {
   OrderFit fit{.label = who.label, .adaptive = who.adaptive, .measured = c.position_measured ? "position" : "energy"};
   std::vector<std::pair<double, double>> points;
   for (const Row& row : c.rows) {
@@ -124,7 +124,7 @@ void analyse(Comparison& c) {
     c.rows[i].pareto_evaluations = by_evaluations[i];
   }
   c.orders.clear();
-  for (const Opponent& who : c.methods) {
+  for (const Candidate& who : c.methods) {
     if (auto fit = order_of(c, who)) c.orders.push_back(std::move(*fit));
   }
 }
@@ -132,7 +132,7 @@ void analyse(Comparison& c) {
 void use_finest_run(Comparison& c, const PositionError& error) {
   const Row* finest = nullptr;
   double least = std::numeric_limits<double>::infinity();
-  for (const Opponent& who : c.methods) {
+  for (const Candidate& who : c.methods) {
     std::vector<const Row*> done;
     for (const Row& row : c.rows) {
       if (row.who == who && row.completed() && !row.track.y.empty()) done.push_back(&row);

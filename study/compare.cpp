@@ -1,9 +1,9 @@
 #include "study/compare.hpp"
 
-#include "engine/parallel.hpp"
-#include "engine/simd.hpp"
-#include "engine/version.hpp"
 #include "integrators/methods.hpp"
+#include "numbers/parallel.hpp"
+#include "numbers/simd.hpp"
+#include "numbers/version.hpp"
 #include "study/analysis.hpp"
 
 #include <fmt/chrono.h>
@@ -38,13 +38,13 @@ double own_step(const Scene& scene, const Sampling& sampling) {
   return sim.step() > 0 ? sampling.interval / static_cast<double>(sim.step()) : sampling.interval;
 }
 
-/// Steps of an opponent that cost as much as the scene's own: four times as long to eight times as short, by twos.
-std::vector<double> ladder(const Scene& scene, const Opponent& who, const Sampling& sampling) {
+/// Steps of an candidate that cost as much as the scene's own: four times as long to eight times as short, by twos.
+std::vector<double> ladder(const Scene& scene, const Candidate& who, const Sampling& sampling) {
   const double own = own_step(scene, sampling);
   const double measured_at = std::min(own, sampling.interval);
   double factor = 1;
   if (!scene.integrator.adaptive()) {
-    const Opponent self{scene.integrator.method, scene.integrator.method, false, false};
+    const Candidate self{scene.integrator.method, scene.integrator.method, false, false};
     const double mine = evaluations_per_step(scene, self, measured_at);
     const double other = evaluations_per_step(scene, who, measured_at);
     if (mine > 0 && other > 0) factor = other / mine;
@@ -82,8 +82,8 @@ void check(const CompareOptions& options, const Sampling& sampling) {
 }
 
 /// @throws Error  for steps or tolerances that no method takes
-void check_use(const Scene& scene, const std::vector<Opponent>& methods, const CompareOptions& options) {
-  const auto adaptive = [](const Opponent& who) { return who.adaptive; };
+void check_use(const Scene& scene, const std::vector<Candidate>& methods, const CompareOptions& options) {
+  const auto adaptive = [](const Candidate& who) { return who.adaptive; };
   if (!options.steps.empty() && std::all_of(methods.begin(), methods.end(), adaptive)) {
     throw Error(
         "--steps is for methods of fixed steps, and all of those compared choose theirs by a tolerance; leave "
@@ -94,18 +94,18 @@ void check_use(const Scene& scene, const std::vector<Opponent>& methods, const C
         "--tolerances is for methods that choose their steps, and all of those compared take fixed ones; leave "
         "it out, or add such a method, as 'dop853'");
   }
-  for (const Opponent& who : methods) {
+  for (const Candidate& who : methods) {
     if (!who.adaptive) continue;
     for (const double tolerance : options.tolerances)
       check_options(*scene.parts->find_method(who.method), {.rtol = tolerance});
   }
 }
 
-std::vector<Opponent> opponents_of(const Scene& scene, const CompareOptions& options) {
+std::vector<Candidate> opponents_of(const Scene& scene, const CompareOptions& options) {
   if (options.methods.empty()) return default_opponents(scene);
-  std::vector<Opponent> all;
+  std::vector<Candidate> all;
   for (const std::string& name : options.methods) {
-    Opponent who = opponent(scene, name);
+    Candidate who = candidate(scene, name);
     if (std::find(all.begin(), all.end(), who) == all.end()) all.push_back(std::move(who));
   }
   return all;
@@ -159,7 +159,7 @@ Sampling sampling_of(const Scene& scene, const std::optional<double>& until) {
   return sampling;
 }
 
-std::vector<Setting> settings_of(const Scene& scene, const Opponent& who, const Sampling& sampling,
+std::vector<Setting> settings_of(const Scene& scene, const Candidate& who, const Sampling& sampling,
                                  const CompareOptions& options) {
   std::vector<Setting> settings;
   if (who.adaptive) {
@@ -192,11 +192,11 @@ Comparison compare(const Scene& scene, const CompareOptions& options) {
   c.methods = opponents_of(scene, options);
   check_use(scene, c.methods, options);
   std::vector<std::vector<Setting>> settings;  // all before anything runs: one that cannot be is told at once
-  for (const Opponent& who : c.methods) settings.push_back(settings_of(scene, who, sampling, options));
+  for (const Candidate& who : c.methods) settings.push_back(settings_of(scene, who, sampling, options));
   tell("reference in extended precision");
   c.truth = find_truth(scene, sampling, options.truth);
   for (std::size_t i = 0; i < c.methods.size(); ++i) {
-    const Opponent& who = c.methods[i];
+    const Candidate& who = c.methods[i];
     for (const Setting& setting : settings[i]) {
       const std::string with =
           who.adaptive ? fmt::format("rtol {:.0e}", setting.tolerance) : fmt::format("step {:.4g}", setting.step);

@@ -11,7 +11,7 @@
 namespace noether {
 
 struct CompareOptions {
-  std::vector<std::string> methods = {};  ///< names as `opponent` reads them; empty: `default_opponents`
+  std::vector<std::string> methods = {};  ///< names as `candidate` reads them; empty: `default_opponents`
   std::vector<double> steps = {};         ///< of every method with fixed steps [time]; empty: a ladder for each
   std::vector<double> tolerances = {};    ///< of every adaptive method; empty: 1e-4 ... 1e-14
   std::optional<double> until = {};       ///< [time]; default: the scene's end, at most `longest_steps` of its steps
@@ -45,7 +45,7 @@ struct Comparison {
   Truth truth = {};
   std::optional<std::size_t> reference = {};  ///< the row that is the truth, where that is the finest run
   bool position_measured = false;             ///< else the energy decides
-  std::vector<Opponent> methods = {};
+  std::vector<Candidate> methods = {};
   std::vector<Row> rows = {};  ///< method by method, from coarse to fine
   std::vector<OrderFit> orders = {};
 
@@ -63,8 +63,8 @@ Comparison compare(const Scene& scene, const CompareOptions& options = {});
 /// The moments a scene is compared at. @throws Error  for a scene without an end, or one that runs backwards
 Sampling sampling_of(const Scene& scene, const std::optional<double>& until);
 
-/// The steps or tolerances an opponent is run with, from coarse to fine.
-std::vector<Setting> settings_of(const Scene& scene, const Opponent& who, const Sampling& sampling,
+/// The steps or tolerances an candidate is run with, from coarse to fine.
+std::vector<Setting> settings_of(const Scene& scene, const Candidate& who, const Sampling& sampling,
                                  const CompareOptions& options);
 
 }  // namespace noether

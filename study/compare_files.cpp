@@ -1,7 +1,7 @@
 #include "study/compare_files.hpp"
 
-#include "engine/quantity.hpp"
 #include "io/files.hpp"
+#include "numbers/quantity.hpp"
 #include "scene/json.hpp"
 #include "study/analysis.hpp"
 

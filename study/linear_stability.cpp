@@ -240,7 +240,7 @@ int LinearTheory::resonance_at(double z) const {
   return nearest;
 }
 
-std::optional<StepMatrix> step_matrix(const Scene& scene, const Opponent& who, const Mode& mode) {
+std::optional<StepMatrix> step_matrix(const Scene& scene, const Candidate& who, const Mode& mode) {
   // Of a splitting of its own nobody knows what it makes of a mode.
   const SceneSplitting& splitting = scene.hamiltonian.splitting;
   const bool drifts = scene.system || who.joined || (splitting.only_forces && splitting.own.empty());
@@ -261,7 +261,7 @@ std::optional<StepMatrix> step_matrix(const Scene& scene, const Opponent& who, c
   return [word, drag = mode.rate / mode.omega](double z) { return walk_word(word, z, drag); };
 }
 
-LinearTheory linear_theory(const Scene& scene, const Opponent& who, const Mode& mode) {
+LinearTheory linear_theory(const Scene& scene, const Candidate& who, const Mode& mode) {
   LinearTheory found;
   const std::optional<StepMatrix> step = step_matrix(scene, who, mode);
   if (!step) {

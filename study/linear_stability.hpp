@@ -2,7 +2,7 @@
 /// What linear theory says of a method: its step on one mode as a matrix, where that grows, and where it resonates.
 
 #include "scene/scene.hpp"
-#include "study/opponent.hpp"
+#include "study/candidate.hpp"
 #include "study/spectrum.hpp"
 
 #include <Eigen/Core>
@@ -38,7 +38,7 @@ Mode mode_of(const Scene& scene, const Spectrum& spectrum);
 /// multistep method remembers more than a state: it has no such matrix.
 using StepMatrix = std::function<Eigen::Matrix2d(double z)>;
 /// @return empty for a multistep method, and for a splitting into Kepler arcs, which is exact on no such mode
-std::optional<StepMatrix> step_matrix(const Scene& scene, const Opponent& who, const Mode& mode);
+std::optional<StepMatrix> step_matrix(const Scene& scene, const Candidate& who, const Mode& mode);
 
 /// Largest modulus of an eigenvalue of a step, less 1: the growth in one step. Growth below 1e-6 is told from rounding
 /// only where eigenvalues are complex, as those of all methods are that are not symplectic.
@@ -65,7 +65,7 @@ struct LinearTheory {
 /// `accurate`: the largest z up to which |log(mu) / (lambda h) - 1| is below (pi/10)^2/24, the error of leapfrog with
 /// 20 steps a period, where mu is the eigenvalue of the step.
 /// @source HairerLubichWanner2006, MandziukSchlick1995
-LinearTheory linear_theory(const Scene& scene, const Opponent& who, const Mode& mode);
+LinearTheory linear_theory(const Scene& scene, const Candidate& who, const Mode& mode);
 
 /// Steps z of a search: upward by 2e-3, from 10 on by 2 %.
 double next_z(double z);

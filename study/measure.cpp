@@ -1,8 +1,8 @@
 #include "study/measure.hpp"
 
-#include "engine/monitors.hpp"
-#include "engine/shadow_hamiltonian.hpp"
 #include "io/digest.hpp"
+#include "monitors/monitors.hpp"
+#include "monitors/shadow_hamiltonian.hpp"
 
 #include <fmt/format.h>
 
@@ -23,7 +23,7 @@ class Recorder {
       : track_(std::move(kept)), energy_(with_energy), dt_(step) {}
 
   static constexpr auto describe() { return part<Recorder>("recorder", "states for a comparison"); }
-  Wanted wanted() const { return {.energy = energy_}; }
+  Request wanted() const { return {.energy = energy_}; }
   void observe(const Snapshot<double>& now) {
     const ParticleSystem<double>& s = now.state();
     track_->times.push_back(dt_ != 0 ? Quad(dt_) * Quad(now.step()) : Quad(now.time()));
@@ -215,7 +215,7 @@ Spread spread_of(std::vector<double> values) {
   return spread;
 }
 
-Row measure(const Scene& scene, const Opponent& who, const Setting& setting, const Sampling& sampling,
+Row measure(const Scene& scene, const Candidate& who, const Setting& setting, const Sampling& sampling,
             const MeasureOptions& options) {
   Row row{.who = who, .setting = setting};
   if (!who.adaptive) {

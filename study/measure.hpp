@@ -1,7 +1,7 @@
 #pragma once
 /// One run of a comparison: what it costs, and where it was at the moments of the sampling.
 
-#include "study/opponent.hpp"
+#include "study/candidate.hpp"
 #include "study/sampling.hpp"
 #include "study/truth.hpp"
 
@@ -23,7 +23,7 @@ struct Track {
 
 /// One row of a comparison: columns as in `compare.csv`. Empty: not measured.
 struct Row {
-  Opponent who = {};
+  Candidate who = {};
   Setting setting = {};
   std::string outcome = {};  ///< of the run, or "over_budget"
   std::string message = {};
@@ -58,11 +58,11 @@ struct MeasureOptions {
   double budget = 10;  ///< seconds of wall time for one run
 };
 
-/// Runs one opponent with one setting: once watched, then `repeats` times alone, for the time.
+/// Runs one candidate with one setting: once watched, then `repeats` times alone, for the time.
 ///
 /// A run that fails is a row as any other. One beyond the budget ends there, outcome "over_budget". One that comes to
 /// its end, but has left the motion behind, is told by `set_errors`.
-Row measure(const Scene& scene, const Opponent& who, const Setting& setting, const Sampling& sampling,
+Row measure(const Scene& scene, const Candidate& who, const Setting& setting, const Sampling& sampling,
             const MeasureOptions& options = {});
 
 /// A run whose positions (or variables) come to so many times the largest of the truth has diverged, finite or not.

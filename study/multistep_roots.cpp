@@ -129,7 +129,7 @@ MultistepRoots stoermer_roots(int order) {
                          [g = method.position_weights()](Complex mu) { return stoermer(g, mu); });
 }
 
-std::optional<MultistepRoots> multistep_roots(const Scene& scene, const Opponent& who, const Mode& mode) {
+std::optional<MultistepRoots> multistep_roots(const Scene& scene, const Candidate& who, const Mode& mode) {
   if (!scene.integrator.decorators.empty()) return {};
   const Scene made = variant(scene, who, {.step = 1, .tolerance = 0});
   if (!made.integrator.classical || !(mode.scale() > 0)) return {};

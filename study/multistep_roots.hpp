@@ -32,9 +32,9 @@ struct MultistepRoots {
 MultistepRoots adams_roots(AdamsKind kind, int order, const Mode& mode);
 MultistepRoots stoermer_roots(int order);
 
-/// Those of an opponent with steps of one length.
+/// Those of an candidate with steps of one length.
 /// @return empty for methods of one step, and where no polynomial is known: Stoermer and Cowell's with drag
 /// @source HairerNoersettWanner1993 III.3, HairerWanner1996 V.1
-std::optional<MultistepRoots> multistep_roots(const Scene& scene, const Opponent& who, const Mode& mode);
+std::optional<MultistepRoots> multistep_roots(const Scene& scene, const Candidate& who, const Mode& mode);
 
 }  // namespace noether

@@ -64,7 +64,7 @@ std::pair<State, double> travelled(const MethodInfo& info, const State& from, do
   f.gather(s, y);
   Quad t(0);
   while (static_cast<double>(Quad(duration) - t) > 1e-14) {
-    const Stepped made = method->step(f, t, y, static_cast<double>(Quad(duration) - t));
+    const StepResult made = method->step(f, t, y, static_cast<double>(Quad(duration) - t));
     if (made.failure) throw Error(made.failure->message);
     t += Quad(made.h);
   }
@@ -252,7 +252,7 @@ bool chooses_steps(const MethodInfo& info) {
   f.gather(s, y);
   double t = 0, shortest = 10, longest = 0;
   for (int n = 0; n < 8; ++n) {
-    const Stepped made = method->step(f, t, y, 10);
+    const StepResult made = method->step(f, t, y, 10);
     if (made.failure) return false;
     t += made.h;
     shortest = std::min(shortest, made.h), longest = std::max(longest, made.h);

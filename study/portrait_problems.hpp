@@ -82,7 +82,7 @@ template <class Real> class Walk {
 
   /// Goes on for so many steps. @return whether all of them could be made
   bool go(std::int64_t steps) {
-    const Advanced done = integrator_.advance(raw_, {.steps = steps});
+    const Advance done = integrator_.advance(raw_, {.steps = steps});
     return done.failure == nullptr && done.steps == steps;
   }
   const ParticleSystem<Real>& particles() {

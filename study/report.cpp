@@ -1,6 +1,6 @@
 #include "study/report.hpp"
 
-#include "engine/quantity.hpp"
+#include "numbers/quantity.hpp"
 #include "scene/json.hpp"
 #include "study/analysis.hpp"
 #include "study/plot.hpp"
@@ -16,7 +16,7 @@ namespace noether {
 namespace {
 
 /// The name of a method in plots: a dagger stands for the other Hamiltonian.
-std::string short_label(const Opponent& who) {
+std::string short_label(const Candidate& who) {
   const std::size_t at = who.label.find('@');
   return at == std::string::npos ? who.label : who.label.substr(0, at) + " \u2020";
 }
@@ -44,7 +44,7 @@ class Page {
     return c_.position_measured ? "largest relative error of positions" : "largest relative error of the energy";
   }
 
-  int style_of(const Opponent& who) const {
+  int style_of(const Candidate& who) const {
     return static_cast<int>(std::find(c_.methods.begin(), c_.methods.end(), who) - c_.methods.begin());
   }
 
@@ -72,7 +72,7 @@ class Page {
     return out + "</p>\n";
   }
 
-  ChartCurve curve_of(const Opponent& who, bool by_time) const {
+  ChartCurve curve_of(const Candidate& who, bool by_time) const {
     ChartCurve curve{.label = short_label(who), .style = style_of(who), .dashed = who.adaptive};
     for (const Row& row : c_.rows) {
       const auto error = c_.error_of(row);
@@ -88,7 +88,7 @@ class Page {
     std::string out;
     for (const bool by_time : {true, false}) {
       std::vector<ChartCurve> curves;
-      for (const Opponent& who : c_.methods) curves.push_back(curve_of(who, by_time));
+      for (const Candidate& who : c_.methods) curves.push_back(curve_of(who, by_time));
       out += fmt::format("<h2>Error against {}</h2>\n", by_time ? "run time" : "evaluations of the forces");
       out += plot_svg(
           {.x = by_time ? "wall time of the run alone [s], median" : "evaluations of the forces", .y = error_name()},
@@ -98,7 +98,7 @@ class Page {
         "<p class=\"lead\">Rings and the broad line: the front, beaten by no other run in both. Solid, filled: fixed "
         "steps. Dashed, hollow: steps chosen by a tolerance.";
     const bool dagger = std::any_of(c_.methods.begin(), c_.methods.end(),
-                                    [&](const Opponent& who) { return who.label.find('@') != std::string::npos; });
+                                    [&](const Candidate& who) { return who.label.find('@') != std::string::npos; });
     if (dagger)
       out +=
           " \u2020: on kinetic_potential, the whole gravity as one kick; unmarked schemes run on the scene's own "
@@ -116,7 +116,7 @@ class Page {
         "[s]</th></tr>\n";
     for (const OrderFit& fit : c_.orders) {
       const auto who = std::find_if(c_.methods.begin(), c_.methods.end(),
-                                    [&](const Opponent& one) { return one.label == fit.label; });
+                                    [&](const Candidate& one) { return one.label == fit.label; });
       const Row* best = best_row(*who);
       out += fmt::format(
           "<tr data-name=\"{}\"><td>{}{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
@@ -128,7 +128,7 @@ class Page {
     return out + "</table></div>\n";
   }
 
-  const Row* best_row(const Opponent& who) const {
+  const Row* best_row(const Candidate& who) const {
     const Row* best = nullptr;
     for (const Row& row : c_.rows) {
       const auto error = c_.error_of(row);
@@ -152,7 +152,7 @@ class Page {
 
   std::string over_time() const {
     std::vector<ChartCurve> energies, positions;
-    for (const Opponent& who : c_.methods) {
+    for (const Candidate& who : c_.methods) {
       const Row* best = best_row(who);
       if (best == nullptr) continue;
       ChartCurve curve{.label = short_label(who), .style = style_of(who), .dashed = who.adaptive, .markers = false};
@@ -241,7 +241,7 @@ class Page {
         html_text(with_unit(c_.time_unit, ", ")) +
         "</th><th>rtol</th><th>steps</th><th>evaluations</th><th>time [s]</th><th>\u00b1</th><th>position, max</th>"
         "<th>position, end</th><th>energy, max</th><th>energy slope</th><th>angular momentum</th><th>front</th></tr>\n";
-    const Opponent* last = nullptr;
+    const Candidate* last = nullptr;
     for (const Row& row : c_.rows) {
       const bool begins = last == nullptr || !(*last == row.who);
       last = &row.who;

@@ -1,9 +1,9 @@
 #pragma once
 /// When the runs of a comparison are looked at: the same moments for every one of them.
 
-#include "engine/error.hpp"
-#include "engine/real.hpp"
-#include "engine/types.hpp"
+#include "numbers/error.hpp"
+#include "numbers/real.hpp"
+#include "numbers/types.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "study/set_lines.hpp"
 
-#include "engine/quantity.hpp"
+#include "numbers/quantity.hpp"
 
 #include <fmt/format.h>
 
@@ -35,7 +35,7 @@ std::string all_forces(const Scene& scene, const SceneValue& hamiltonian) {
   return to_text(SceneValue::of(std::move(all)));
 }
 
-std::vector<std::string> wanted(const Scene& scene, const Opponent& who, const Setting& setting, double end) {
+std::vector<std::string> wanted(const Scene& scene, const Candidate& who, const Setting& setting, double end) {
   std::vector<std::string> lines;
   if (who.joined) {
     lines = {"hamiltonian.type=" + scene.parts->hamiltonians().front().info.name,
@@ -67,7 +67,7 @@ bool may_go(const Scene& scene, const std::string& key, const std::vector<std::s
 
 }  // namespace
 
-SetLines set_lines(const Scene& scene, const Opponent& who, const Setting& setting, double end) {
+SetLines set_lines(const Scene& scene, const Candidate& who, const Setting& setting, double end) {
   SetLines result{.lines = wanted(scene, who, setting, end)};
   if (!std::filesystem::exists(scene.file)) return result;
   for (;;) {

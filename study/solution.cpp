@@ -1,8 +1,8 @@
 #include "study/solution.hpp"
 
-#include "engine/quantity.hpp"
 #include "integrators/damped.hpp"
 #include "integrators/methods.hpp"
+#include "numbers/quantity.hpp"
 #include "study/spectrum.hpp"
 
 #include <fmt/format.h>
@@ -45,21 +45,21 @@ std::optional<Shape> shape_of(const Truth& truth, std::size_t axes) {
 }
 
 /// Methods worth looking at here: those compared, then some that are known for their faults.
-std::vector<Opponent> displayed(const Scene& scene, const Comparison& c) {
-  std::vector<Opponent> all;
-  const auto add = [&](const Opponent& who) {
+std::vector<Candidate> displayed(const Scene& scene, const Comparison& c) {
+  std::vector<Candidate> all;
+  const auto add = [&](const Candidate& who) {
     const bool known = std::find(all.begin(), all.end(), who) != all.end();
     if (!who.adaptive && !known && all.size() < 8) all.push_back(who);
   };
   if (!c.methods.empty()) add(c.methods.front());
   for (const char* name : {"verlet", "euler", "symplectic_euler_a", "rk4", "implicit_midpoint", "backward_euler"}) {
     try {
-      add(opponent(scene, name));
+      add(candidate(scene, name));
     } catch (const Error&) {
       continue;  // it cannot serve this scene
     }
   }
-  for (const Opponent& who : c.methods) add(who);
+  for (const Candidate& who : c.methods) add(who);
   return all;
 }
 
@@ -115,7 +115,7 @@ void choose_dampings(Solution& s, const Scene& scene) {
   }
 }
 
-DisplayedRun display(const Scene& scene, const Opponent& who, double step, double end, const Shape& shape,
+DisplayedRun display(const Scene& scene, const Candidate& who, double step, double end, const Shape& shape,
                      const Truth& truth) {
   // The moments of this run are every so many steps, or every so many moments of the truth.
   const double spacing = end / moments;
@@ -158,8 +158,8 @@ std::optional<Solution> solution_of(const Scene& scene, const Comparison& c) {
   const double end = std::min(c.end, periods * 2 * M_PI / s.omega), spacing = end / moments;
   for (const int m : {1, 2, 4, 8, 12, 13, 16}) s.steps.push_back(spacing * m);
   choose_dampings(s, scene);
-  const std::vector<Opponent> methods = displayed(scene, c);
-  for (const Opponent& who : methods) s.methods.push_back(who.label);
+  const std::vector<Candidate> methods = displayed(scene, c);
+  for (const Candidate& who : methods) s.methods.push_back(who.label);
   for (std::size_t d = 0; d < s.dampings.size(); ++d) {
     const Scene one = damped(scene, s.dampings[d]);
     const Truth truth = find_truth(one, {spacing, moments}, {.budget = 20, .rtol = 1e-18});

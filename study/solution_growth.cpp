@@ -9,7 +9,7 @@ void SolutionGrowth::look(double time, double budget, const Bounds& bounds) {
   if (leaves_ || !(time > known_)) return;
   known_ = time;  // asked once: what takes too long, or has no reference, explains nothing
   try {
-    const Opponent who = opponent(scene_, "dop853");
+    const Candidate who = candidate(scene_, "dop853");
     Simulation<double> sim = assemble(variant(scene_, who, {.step = 0, .tolerance = 1e-12}));
     const double most = bounds.most / 10;
     const Trial trial = follow(sim, {.steps = 0, .until = time}, Amplitude(scene_, frequency_),

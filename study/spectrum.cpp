@@ -1,9 +1,9 @@
 #include "study/spectrum.hpp"
 
-#include "engine/error.hpp"
 #include "integrators/eigenvalues.hpp"
 #include "integrators/stiffness.hpp"
-#include "study/opponent.hpp"
+#include "numbers/error.hpp"
+#include "study/candidate.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Eigenvalues>
@@ -220,7 +220,7 @@ Spectrum spectrum_along(const Scene& scene) {
   if (end == 0 || is_linear(scene) || !scene.hamiltonian.constraints.empty() || scene.system) return found;
   constexpr int looks = 64;
   try {
-    Simulation<double> sim = assemble(variant(scene, opponent(scene, "dop853"), {.step = 0, .tolerance = 1e-8}));
+    Simulation<double> sim = assemble(variant(scene, candidate(scene, "dop853"), {.step = 0, .tolerance = 1e-8}));
     std::atomic<bool> over{false};
     sim.stop_on(&over);
     sim.on_progress([&](const Progress& now) { over = now.seconds > 1; });

@@ -283,8 +283,8 @@ void check_motion(const Scene& scene, double frequency) {
 
 }  // namespace
 
-Opponent fixed_opponent(const Scene& scene, const std::string& name) {
-  Opponent who = opponent(scene, name);
+Candidate fixed_candidate(const Scene& scene, const std::string& name) {
+  Candidate who = candidate(scene, name);
   const MethodInfo* info = scene.parts->find_method(who.method);
   if (info != nullptr && !info->fixed) {
     throw Error(
@@ -306,11 +306,11 @@ std::vector<std::string> default_stability_methods(const Scene& scene) {
     names.insert(names.end(), {"verlet", "yoshida_4", "blanes_moan_s6", "srkn11b", "kahan_li_8_s17", "rk4",
                                "dormand_prince_5", "dop853", "adams_bashforth_3", "implicit_midpoint", "gauss_2"});
   }
-  std::vector<Opponent> all;
+  std::vector<Candidate> all;
   std::vector<std::string> kept;
   for (const std::string& one : names) {
     try {
-      Opponent who = fixed_opponent(scene, one);
+      Candidate who = fixed_candidate(scene, one);
       if (std::find(all.begin(), all.end(), who) != all.end()) continue;
       all.push_back(std::move(who));
       kept.push_back(one);
@@ -329,9 +329,9 @@ Stability find_stability(const Scene& scene, const StabilityOptions& options) {
   found.title = scene.title;
   found.time_unit = scene.units->time;
   for (const SceneDecorator& one : scene.integrator.decorators) found.decorators.push_back(one.name);
-  std::vector<Opponent> methods;
+  std::vector<Candidate> methods;
   for (const std::string& name : options.methods.empty() ? default_stability_methods(scene) : options.methods) {
-    Opponent who = fixed_opponent(scene, name);
+    Candidate who = fixed_candidate(scene, name);
     if (std::find(methods.begin(), methods.end(), who) == methods.end()) methods.push_back(std::move(who));
   }
   found.spectrum = spectrum_along(scene);
@@ -342,7 +342,7 @@ Stability find_stability(const Scene& scene, const StabilityOptions& options) {
   found.mode = mode_of(scene, found.spectrum);
   check_motion(scene, found.spectrum.fastest > 0 ? found.spectrum.fastest : 1);
   SolutionGrowth growth(scene, scale_of(scene, found.mode));
-  for (const Opponent& who : methods) {
+  for (const Candidate& who : methods) {
     StabilityRow row;
     row.who = who;
     row.theory = linear_theory(scene, who, found.mode);

@@ -2,9 +2,9 @@
 /// `noether stability`: the largest step at which a method stays bounded on a scene, beside what linear theory says.
 
 #include "study/amplitude.hpp"
+#include "study/candidate.hpp"
 #include "study/kepler_steps.hpp"
 #include "study/linear_stability.hpp"
-#include "study/opponent.hpp"
 #include "study/spectrum.hpp"
 
 #include <algorithm>
@@ -72,12 +72,12 @@ inline double told_growth(std::int64_t steps) { return std::max(growth_threshold
 /// what it was, or, on a linear problem, when A surely (by three standard errors) grows by more than `growth_threshold`
 /// a step, and by more than `told_growth`.
 /// @param budget  seconds of wall time
-Trial try_step(const Scene& scene, const Opponent& who, double step, std::int64_t steps, const Bounds& bounds,
+Trial try_step(const Scene& scene, const Candidate& who, double step, std::int64_t steps, const Bounds& bounds,
                double budget);
 
 /// How a search goes.
 struct StabilityOptions {
-  std::vector<std::string> methods = {};  ///< names as `opponent` reads them; empty: `default_stability_methods`
+  std::vector<std::string> methods = {};  ///< names as `candidate` reads them; empty: `default_stability_methods`
   std::int64_t confirm_steps = 100'000;   ///< of the runs that settle a limit
   double row_budget = 20;                 ///< seconds of wall time for one method
   std::function<void(const std::string&)> progress = {};
@@ -85,7 +85,7 @@ struct StabilityOptions {
 
 /// One method.
 struct StabilityRow {
-  Opponent who = {};
+  Candidate who = {};
   std::optional<double> limit_step = {};  ///< first step that is not bounded [time]; none: bounded as far as searched
   std::optional<double> limit_h_omega = {};  ///< the same times omega; none where nothing oscillates
   LinearTheory theory = {};
@@ -136,8 +136,8 @@ Stability find_stability(const Scene& scene, const StabilityOptions& options = {
 /// Methods worth asking on a scene, its own first: those that can serve it with fixed steps.
 std::vector<std::string> default_stability_methods(const Scene& scene);
 
-/// The opponent of a name, with fixed steps. @throws Error  as `opponent`, and for methods that choose their steps
-Opponent fixed_opponent(const Scene& scene, const std::string& name);
+/// The candidate of a name, with fixed steps. @throws Error  as `candidate`, and for methods that choose their steps
+Candidate fixed_candidate(const Scene& scene, const std::string& name);
 
 /// As one line of JSON: the schema noether.stability/1.
 std::string to_json(const Stability& found);

@@ -1,4 +1,4 @@
-#include "engine/text.hpp"
+#include "numbers/text.hpp"
 #include "scene/json.hpp"
 #include "study/stability.hpp"
 

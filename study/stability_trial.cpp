@@ -107,7 +107,7 @@ Trial follow(Simulation<double>& sim, const RunLength& length, const Amplitude& 
   return trial;
 }
 
-Trial try_step(const Scene& scene, const Opponent& who, double step, std::int64_t steps, const Bounds& bounds,
+Trial try_step(const Scene& scene, const Candidate& who, double step, std::int64_t steps, const Bounds& bounds,
                double budget) {
   if (bounds.until < static_cast<double>(steps) * std::abs(step)) {
     steps = static_cast<std::int64_t>(bounds.until / std::abs(step));

@@ -1,10 +1,10 @@
 #include "study/suite.hpp"
 
-#include "engine/error.hpp"
-#include "engine/monitors.hpp"
 #include "engine/sums.hpp"
 #include "integrators/methods.hpp"
 #include "integrators/schemes.hpp"
+#include "monitors/monitors.hpp"
+#include "numbers/error.hpp"
 #include "study/multistep_roots.hpp"
 
 #include <fmt/format.h>
@@ -46,7 +46,7 @@ class Sharing {
   std::vector<double> sums_;
 };
 
-RunLength length_of(const Scene& scene, const Opponent& who) {
+RunLength length_of(const Scene& scene, const Candidate& who) {
   const SceneIntegrator& own = scene.integrator;
   if (who.adaptive) {
     if (!own.until) throw Error("a method that chooses its steps needs until in [integrator]");
@@ -69,16 +69,16 @@ double tolerance_of(const Scene& scene) {
 }
 
 /// Methods of fixed steps that can serve a scene.
-std::vector<Opponent> every_method(const Scene& scene) {
+std::vector<Candidate> every_method(const Scene& scene) {
   std::vector<std::string_view> names;
   for (const Scheme* scheme : schemes::all()) names.push_back(scheme->name);
   for (const MethodInfo* info : scene.parts->methods()) {
     if (info->fixed) names.push_back(info->name);
   }
-  std::vector<Opponent> all;
+  std::vector<Candidate> all;
   for (const std::string_view name : names) {
     try {
-      all.push_back(fixed_opponent(scene, std::string(name)));
+      all.push_back(fixed_candidate(scene, std::string(name)));
     } catch (const Error&) {
       continue;  // it cannot serve this scene
     }
@@ -86,13 +86,13 @@ std::vector<Opponent> every_method(const Scene& scene) {
   return all;
 }
 
-std::vector<Opponent> methods_of(const Scene& scene, const SceneVerdict& verdict) {
+std::vector<Candidate> methods_of(const Scene& scene, const SceneVerdict& verdict) {
   if (verdict.every_method) return every_method(scene);
   std::vector<std::string> names = verdict.methods;
   if (names.empty()) names.push_back(scene.integrator.method);
-  std::vector<Opponent> all;
+  std::vector<Candidate> all;
   for (const std::string& name : names) {
-    all.push_back(scene.integrator.adaptive() ? opponent(scene, name) : fixed_opponent(scene, name));
+    all.push_back(scene.integrator.adaptive() ? candidate(scene, name) : fixed_candidate(scene, name));
   }
   return all;
 }
@@ -132,7 +132,7 @@ class Judge {
   }
 
   void run(std::vector<SuiteRow>& rows) {
-    for (const Opponent& who : methods_of(scene_, verdict_)) {
+    for (const Candidate& who : methods_of(scene_, verdict_)) {
       SuiteRow row;
       row.scene = scene_.source.file;
       row.title = scene_.title;
@@ -155,7 +155,7 @@ class Judge {
   }
 
  private:
-  void judge(SuiteRow& row, const Opponent& who, const std::string& outcome) {
+  void judge(SuiteRow& row, const Candidate& who, const std::string& outcome) {
     const auto begin = std::chrono::steady_clock::now();
     Simulation<double> sim = assemble(variant(scene_, who, {scene_.integrator.step, tolerance_of(scene_)}));
     const RunLength length = length_of(scene_, who);
@@ -186,7 +186,7 @@ class Judge {
     reference_.emplace();
     const double end = scene_.integrator.until.value_or(static_cast<double>(scene_.integrator.steps.value_or(0)) *
                                                         scene_.integrator.step);
-    Simulation<double> sim = assemble(variant(scene_, opponent(scene_, "dop853"), {.step = 0, .tolerance = 1e-10}));
+    Simulation<double> sim = assemble(variant(scene_, candidate(scene_, "dop853"), {.step = 0, .tolerance = 1e-10}));
     static_cast<void>(follow(sim, {.steps = 0, .until = end}, Amplitude(scene_, bounds_.frequency), bounds_,
                              options_.row_budget, [&](Simulation<double>& now) { reference_->look(now.particles()); }));
     return *reference_;
@@ -206,7 +206,7 @@ std::size_t Suite::agreeing() const {
   return static_cast<std::size_t>(std::count_if(rows.begin(), rows.end(), [](const SuiteRow& r) { return r.agrees; }));
 }
 
-std::string expected_by_theory(const Scene& scene, const Opponent& who, double step) {
+std::string expected_by_theory(const Scene& scene, const Candidate& who, double step) {
   const Mode mode = mode_of(scene, spectrum_at(scene, scene.particles));
   const double z = step * mode.scale();
   const auto matrix = step_matrix(scene, who, mode);

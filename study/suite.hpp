@@ -58,7 +58,7 @@ Suite run_suite(const std::vector<std::filesystem::path>& scenes, const SuiteOpt
 
 /// What linear theory expects of a step on the fastest mode of a scene: bounded or unbounded; solver where the method
 /// cannot solve its own step on the mode; empty where theory says nothing.
-std::string expected_by_theory(const Scene& scene, const Opponent& who, double step);
+std::string expected_by_theory(const Scene& scene, const Candidate& who, double step);
 
 /// As one line of JSON: the schema noether.stability_suite/1.
 std::string to_json(const Suite& suite);

@@ -1,6 +1,6 @@
 #include "study/svg.hpp"
 
-#include "engine/text.hpp"
+#include "numbers/text.hpp"
 
 #include <fmt/format.h>
 

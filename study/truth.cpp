@@ -76,7 +76,7 @@ WideRun run_wide(const WideScene& wide, const Sampling& sampling, const MethodCh
     while (true) {
       const double left = static_cast<double>(goal - t);
       if (!(left > 1e-12 * sampling.interval)) break;
-      const Stepped made = method->step(*field, t, y, left);
+      const StepResult made = method->step(*field, t, y, left);
       if (made.failure || !(made.h > 0)) {
         run.failure = made.failure ? made.failure->message : "no step was made";
         return run;

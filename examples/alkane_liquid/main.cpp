@@ -1,10 +1,5 @@
 // Liquid decane from a LAMMPS data file: brought to a minimum, then kept at 298 K under BAOAB.
-#include "engine/monitors.hpp"
-#include "engine/pressure.hpp"
 #include "engine/simulation.hpp"
-#include "engine/temperature.hpp"
-#include "engine/time_correlation.hpp"
-#include "engine/units.hpp"
 #include "forces/bonded.hpp"
 #include "forces/lennard_jones.hpp"
 #include "forces/sum.hpp"
@@ -16,6 +11,11 @@
 #include "io/digest.hpp"
 #include "io/structure.hpp"
 #include "io/trajectory.hpp"
+#include "monitors/monitors.hpp"
+#include "monitors/pressure.hpp"
+#include "monitors/temperature.hpp"
+#include "monitors/time_correlation.hpp"
+#include "numbers/units.hpp"
 #include "scene/builders.hpp"
 
 #include <fmt/format.h>

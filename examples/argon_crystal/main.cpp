@@ -1,14 +1,14 @@
 // Seven argon atoms, frozen in the plane: the energy error of leapfrog falls by four with half the step.
-#include "engine/monitors.hpp"
 #include "engine/simulation.hpp"
-#include "engine/temperature.hpp"
-#include "engine/units.hpp"
 #include "forces/lennard_jones.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/schemes.hpp"
 #include "io/digest.hpp"
 #include "io/trajectory.hpp"
+#include "monitors/monitors.hpp"
+#include "monitors/temperature.hpp"
+#include "numbers/units.hpp"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,6 @@
 #include "constraints/constraint_residual.hpp"
 #include "constraints/constraint_solver.hpp"
 #include "constraints/surfaces.hpp"
-#include "engine/monitors.hpp"
 #include "engine/simulation.hpp"
 #include "forces/check_gradient.hpp"
 #include "integrators/composition.hpp"
@@ -13,6 +12,7 @@
 #include "io/bodies.hpp"
 #include "io/digest.hpp"
 #include "io/trajectory.hpp"
+#include "monitors/monitors.hpp"
 
 #include <fmt/format.h>
 

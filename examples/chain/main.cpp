@@ -3,7 +3,6 @@
 #include "constraints/constraint_solver.hpp"
 #include "constraints/distance.hpp"
 #include "constraints/surfaces.hpp"
-#include "engine/monitors.hpp"
 #include "engine/simulation.hpp"
 #include "forces/external_fields.hpp"
 #include "integrators/composition.hpp"
@@ -12,6 +11,7 @@
 #include "io/bodies.hpp"
 #include "io/digest.hpp"
 #include "io/trajectory.hpp"
+#include "monitors/monitors.hpp"
 
 #include <fmt/format.h>
 

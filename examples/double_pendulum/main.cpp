@@ -3,8 +3,6 @@
 #include "constraints/constraint_solver.hpp"
 #include "constraints/distance.hpp"
 #include "constraints/surfaces.hpp"
-#include "engine/monitors.hpp"
-#include "engine/shadow_hamiltonian.hpp"
 #include "engine/simulation.hpp"
 #include "forces/external_fields.hpp"
 #include "integrators/composition.hpp"
@@ -12,6 +10,8 @@
 #include "integrators/schemes.hpp"
 #include "io/digest.hpp"
 #include "io/trajectory.hpp"
+#include "monitors/monitors.hpp"
+#include "monitors/shadow_hamiltonian.hpp"
 
 #include <fmt/format.h>
 

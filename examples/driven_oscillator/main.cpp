@@ -1,5 +1,4 @@
 // A spring, friction and a periodic push: after a while the bob follows the push.
-#include "engine/monitors.hpp"
 #include "engine/simulation.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/linear_drag.hpp"
@@ -10,6 +9,7 @@
 #include "integrators/schemes.hpp"
 #include "io/digest.hpp"
 #include "io/trajectory.hpp"
+#include "monitors/monitors.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,5 @@
 // A melt of bead-spring chains in a bath: Kremer and Grest's model, under BAOAB.
-#include "engine/monitors.hpp"
 #include "engine/simulation.hpp"
-#include "engine/temperature.hpp"
 #include "forces/bonded.hpp"
 #include "forces/lennard_jones.hpp"
 #include "forces/sum.hpp"
@@ -11,6 +9,8 @@
 #include "integrators/minimize.hpp"
 #include "integrators/schemes.hpp"
 #include "io/digest.hpp"
+#include "monitors/monitors.hpp"
+#include "monitors/temperature.hpp"
 #include "scene/builders.hpp"
 
 #include <fmt/format.h>

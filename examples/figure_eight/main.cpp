@@ -1,6 +1,4 @@
 // Three equal masses chase each other along one figure eight.
-#include "engine/monitors.hpp"
-#include "engine/orbital_monitors.hpp"
 #include "engine/simulation.hpp"
 #include "forces/gravity.hpp"
 #include "integrators/composition.hpp"
@@ -8,6 +6,8 @@
 #include "integrators/schemes.hpp"
 #include "io/digest.hpp"
 #include "io/trajectory.hpp"
+#include "monitors/monitors.hpp"
+#include "monitors/orbital_monitors.hpp"
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
 // Heat on a line: what a finer line costs an explicit method, and what it costs a stiff one.
 #include "engine/simulation.hpp"
-#include "engine/variables.hpp"
 #include "integrators/first_order_system.hpp"
 #include "integrators/systems/heat_line.hpp"
 #include "io/digest.hpp"
 #include "io/trajectory.hpp"
+#include "monitors/variables.hpp"
 
 #include <fmt/format.h>
 

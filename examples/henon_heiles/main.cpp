@@ -1,6 +1,4 @@
 // A particle in the well of Henon and Heiles, its energy and the shadow of its energy.
-#include "engine/monitors.hpp"
-#include "engine/shadow_hamiltonian.hpp"
 #include "engine/simulation.hpp"
 #include "forces/henon_heiles.hpp"
 #include "integrators/composition.hpp"
@@ -8,6 +6,8 @@
 #include "integrators/schemes.hpp"
 #include "io/digest.hpp"
 #include "io/trajectory.hpp"
+#include "monitors/monitors.hpp"
+#include "monitors/shadow_hamiltonian.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,4 @@
 // A Kepler orbit of eccentricity 0.9 for ten periods: does the planet come back to where it was?
-#include "engine/monitors.hpp"
 #include "engine/simulation.hpp"
 #include "forces/gravity.hpp"
 #include "integrators/composition.hpp"
@@ -7,6 +6,7 @@
 #include "integrators/schemes.hpp"
 #include "io/digest.hpp"
 #include "io/trajectory.hpp"
+#include "monitors/monitors.hpp"
 
 #include <fmt/format.h>
 

@@ -1,13 +1,13 @@
 // A Lennard-Jones crystal melts: the benchmark in.lj of LAMMPS, with a cutoff that keeps its energy.
-#include "engine/monitors.hpp"
 #include "engine/simulation.hpp"
-#include "engine/temperature.hpp"
 #include "forces/lennard_jones.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/schemes.hpp"
 #include "io/digest.hpp"
 #include "io/trajectory.hpp"
+#include "monitors/monitors.hpp"
+#include "monitors/temperature.hpp"
 #include "scene/builders.hpp"
 
 #include <fmt/format.h>

@@ -1,10 +1,7 @@
 // Six moons of an oblate Saturn: a force the user wrote, in a program.
 #include "examples/oblate_saturn/oblateness.hpp"
 
-#include "engine/monitors.hpp"
-#include "engine/orbital_monitors.hpp"
 #include "engine/simulation.hpp"
-#include "engine/units.hpp"
 #include "forces/check_gradient.hpp"
 #include "forces/gravity.hpp"
 #include "forces/sum.hpp"
@@ -13,6 +10,9 @@
 #include "integrators/schemes.hpp"
 #include "io/bodies.hpp"
 #include "io/digest.hpp"
+#include "monitors/monitors.hpp"
+#include "monitors/orbital_monitors.hpp"
+#include "numbers/units.hpp"
 
 #include <fmt/format.h>
 

@@ -1,13 +1,13 @@
 // Sun, Jupiter ... Pluto for a million years.
-#include "engine/monitors.hpp"
 #include "engine/simulation.hpp"
-#include "engine/units.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/schemes.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "io/bodies.hpp"
 #include "io/digest.hpp"
 #include "io/trajectory.hpp"
+#include "monitors/monitors.hpp"
+#include "numbers/units.hpp"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,6 @@
 #include "constraints/constraint_residual.hpp"
 #include "constraints/constraint_solver.hpp"
 #include "constraints/surfaces.hpp"
-#include "engine/monitors.hpp"
 #include "engine/simulation.hpp"
 #include "forces/external_fields.hpp"
 #include "integrators/composition.hpp"
@@ -10,6 +9,7 @@
 #include "integrators/schemes.hpp"
 #include "io/digest.hpp"
 #include "io/trajectory.hpp"
+#include "monitors/monitors.hpp"
 
 #include <fmt/format.h>
 

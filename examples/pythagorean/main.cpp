@@ -1,6 +1,4 @@
 // Burrau's problem: masses 3, 4, 5 at rest in the corners of the triangle with sides 3, 4, 5.
-#include "engine/monitors.hpp"
-#include "engine/orbital_monitors.hpp"
 #include "engine/simulation.hpp"
 #include "forces/gravity.hpp"
 #include "integrators/composition.hpp"
@@ -8,6 +6,8 @@
 #include "integrators/schemes.hpp"
 #include "io/digest.hpp"
 #include "io/trajectory.hpp"
+#include "monitors/monitors.hpp"
+#include "monitors/orbital_monitors.hpp"
 
 #include <fmt/format.h>
 

@@ -2,9 +2,9 @@
 #include "examples/robertson/kinetics.hpp"
 
 #include "engine/simulation.hpp"
-#include "engine/variables.hpp"
 #include "io/digest.hpp"
 #include "io/trajectory.hpp"
+#include "monitors/variables.hpp"
 
 #include <fmt/format.h>
 

@@ -1,14 +1,14 @@
 // Sun and eight planets for a thousand years, with a step of five days.
-#include "engine/monitors.hpp"
-#include "engine/orbital_monitors.hpp"
 #include "engine/simulation.hpp"
-#include "engine/units.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/schemes.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "io/bodies.hpp"
 #include "io/digest.hpp"
 #include "io/trajectory.hpp"
+#include "monitors/monitors.hpp"
+#include "monitors/orbital_monitors.hpp"
+#include "numbers/units.hpp"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,6 @@
 // A pendulum that goes round as well as up and down: its energy, the shadow of its energy, its angular momentum.
 #include "constraints/constraint_solver.hpp"
 #include "constraints/surfaces.hpp"
-#include "engine/monitors.hpp"
-#include "engine/shadow_hamiltonian.hpp"
 #include "engine/simulation.hpp"
 #include "forces/external_fields.hpp"
 #include "integrators/composition.hpp"
@@ -10,6 +8,8 @@
 #include "integrators/schemes.hpp"
 #include "io/digest.hpp"
 #include "io/trajectory.hpp"
+#include "monitors/monitors.hpp"
+#include "monitors/shadow_hamiltonian.hpp"
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
-#include "engine/monitors.hpp"
 #include "engine/simulation.hpp"
 #include "forces/gravity.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/schemes.hpp"
 #include "io/digest.hpp"
+#include "monitors/monitors.hpp"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,6 @@
 // A liquid slab between its vapour: surface tension and density across the box, by monitors of this program's own.
-#include "engine/pressure.hpp"
 #include "engine/simulation.hpp"
 #include "engine/statistics.hpp"
-#include "engine/temperature.hpp"
 #include "forces/lennard_jones.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
@@ -11,6 +9,8 @@
 #include "io/digest.hpp"
 #include "io/structure.hpp"
 #include "io/trajectory.hpp"
+#include "monitors/pressure.hpp"
+#include "monitors/temperature.hpp"
 #include "scene/builders.hpp"
 
 #include <fmt/format.h>
@@ -27,7 +27,7 @@ constexpr double melted = 50;  // time from which on there is a liquid to be ave
 struct SurfaceTension {
   SeriesStatistics values;
 
-  static Wanted wanted() { return {.virial = true}; }
+  static Request wanted() { return {.virial = true}; }
   void observe(const Snapshot<double>& now) {
     if (now.time() < melted) return;
     const ParticleSystem<double>& s = now.state();

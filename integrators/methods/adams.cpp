@@ -40,8 +40,8 @@ template <class Real> void Adams<Real>::bind(const VectorField<Real>& f) {
   h_ = 0;
 }
 
-template <class Real> Stepped Adams<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
-  Stepped made{.h = h};
+template <class Real> StepResult Adams<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
+  StepResult made{.h = h};
   if (h != h_) {
     rates_.forget();
     have_rate_ = false;

@@ -33,8 +33,8 @@ double AdamsPece<Real>::next_step(VectorField<Real>& f, const Real& t, const Vec
   return shorter(next_, h);
 }
 
-template <class Real> Stepped AdamsPece<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
-  Stepped made;
+template <class Real> StepResult AdamsPece<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
+  StepResult made;
   if (known_ == 0) {
     f.rate(t, y, d_[0]);
     known_ = 1;

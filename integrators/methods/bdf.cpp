@@ -187,8 +187,8 @@ template <class Real> double Bdf<Real>::error(std::size_t order, const Vector<Re
   return tolerance_.norm(d, y, y1_) / static_cast<double>(order + 1);
 }
 
-template <class Real> Stepped Bdf<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
-  Stepped made;
+template <class Real> StepResult Bdf<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
+  StepResult made;
   const double tried = next_step(f, t, y, h);
   if (!started_) {
     h_ = next_h_;
@@ -352,8 +352,8 @@ std::optional<Failure> FixedBdf<Real>::solve(VectorField<Real>& f, const Real& t
   return newton_to_rounding<Real>(correct, restart, renew);
 }
 
-template <class Real> Stepped FixedBdf<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
-  Stepped made{.h = h};
+template <class Real> StepResult FixedBdf<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
+  StepResult made{.h = h};
   if (h != h_) known_ = 0;
   h_ = h;
   if (known_ == 0) remember(y);

@@ -51,7 +51,7 @@ template <class Real> class Bdf final : public Method<Real> {
   MethodClaims claims() const override { return {.name = name_, .order = highest, .adaptive = true}; }
   void bind(const VectorField<Real>& f) override;
   double next_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h) override;
-  Stepped step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
+  StepResult step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
   bool dense() const override { return true; }
   void interpolate(VectorField<Real>& f, const Real& theta, Vector<Real>& y) override;
   void save(SavedState& saved, const std::string& prefix) const override;
@@ -90,7 +90,7 @@ template <class Real> class FixedBdf final : public Method<Real> {
   std::unique_ptr<Method<Real>> clone() const override { return std::make_unique<FixedBdf>(*this); }
   MethodClaims claims() const override { return {.name = name_, .order = static_cast<int>(order_)}; }
   void bind(const VectorField<Real>& f) override;
-  Stepped step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
+  StepResult step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
   void save(SavedState& saved, const std::string& prefix) const override;
   void load(const SavedState& saved, const std::string& prefix) override;
 

@@ -143,8 +143,9 @@ double Collocation<Real>::next_step(VectorField<Real>& f, const Real& t, const V
   return shorter(next_, h);
 }
 
-template <class Real> Stepped Collocation<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
-  Stepped made;
+template <class Real>
+StepResult Collocation<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
+  StepResult made;
   while (true) {
     made.h = adaptive_ ? next_step(f, t, y, h) : h;
     predict(f, t, y, made.h);

@@ -53,7 +53,7 @@ template <class Real> class Collocation final : public Method<Real> {
   MethodClaims claims() const override;
   void bind(const VectorField<Real>& f) override;
   double next_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h) override;
-  Stepped step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
+  StepResult step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
   bool has_action() const override { return symplectic_ && !adaptive_ && second_order_; }
   Real action(VectorField<Real>& f, const Real& t, const Vector<Real>& y) override;
   void save(SavedState& saved, const std::string& prefix) const override;

@@ -1,7 +1,7 @@
 #pragma once
 /// The arithmetic of collocation in lanes of doubles: the interface of `collocation_simd.cpp`.
 
-#include "engine/kernels_simd.hpp"
+#include "numbers/kernels_simd.hpp"
 
 #include <cstddef>
 #include <cstdint>

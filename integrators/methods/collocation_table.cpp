@@ -1,6 +1,6 @@
 #include "integrators/methods/collocation_table.hpp"
 
-#include "engine/error.hpp"
+#include "numbers/error.hpp"
 
 #include <array>
 #include <functional>

@@ -1,7 +1,7 @@
 #pragma once
 /// Collocation methods as tables made from their nodes, in extended precision.
 
-#include "engine/real.hpp"
+#include "numbers/real.hpp"
 
 #include <vector>
 

@@ -71,8 +71,8 @@ std::optional<Failure> DiagonallyImplicit<Real>::solve_stage(VectorField<Real>& 
 }
 
 template <class Real>
-Stepped DiagonallyImplicit<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
-  Stepped made{.h = h};
+StepResult DiagonallyImplicit<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
+  StepResult made{.h = h};
   const Real weight = Real(h) * diagonal_;
   jacobian_.evaluate(f, t, y);
   if (!jacobian_.factorize(Real(1), weight)) {

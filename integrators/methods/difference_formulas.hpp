@@ -1,7 +1,7 @@
 #pragma once
 /// Coefficients of the multistep formulas that come from interpolation, generated, not stored.
 
-#include "engine/real.hpp"
+#include "numbers/real.hpp"
 
 #include <vector>
 

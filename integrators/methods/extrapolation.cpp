@@ -41,8 +41,8 @@ double Extrapolation<Real>::next_step(VectorField<Real>& f, const Real& t, const
 }
 
 template <class Real>
-Stepped Extrapolation<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
-  Stepped made;
+StepResult Extrapolation<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
+  StepResult made;
   if (leapfrog_) {
     f.acceleration(t, y, f0_);
   } else {

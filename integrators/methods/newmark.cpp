@@ -81,8 +81,8 @@ std::optional<Failure> Newmark<Real>::solve(VectorField<Real>& f, const Real& t,
   return newton_to_rounding<Real>(correct, restart, renew);
 }
 
-template <class Real> Stepped Newmark<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
-  Stepped made{.h = h};
+template <class Real> StepResult Newmark<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
+  StepResult made{.h = h};
   f.acceleration(t, y, a0_);
   a1_ = a0_;
   if (explicit_) {

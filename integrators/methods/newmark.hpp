@@ -37,7 +37,7 @@ template <class Real> class Newmark final : public Method<Real> {
   std::unique_ptr<Method<Real>> clone() const override { return std::make_unique<Newmark>(*this); }
   MethodClaims claims() const override;
   void bind(const VectorField<Real>& f) override;
-  Stepped step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
+  StepResult step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
   void save(SavedState& /*saved*/, const std::string& /*prefix*/) const override {}
   void load(const SavedState& /*saved*/, const std::string& /*prefix*/) override {}
 

@@ -31,8 +31,9 @@ double NystromPair<Real>::next_step(VectorField<Real>& f, const Real& t, const V
   return shorter(control_.next(), h);
 }
 
-template <class Real> Stepped NystromPair<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
-  Stepped made;
+template <class Real>
+StepResult NystromPair<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
+  StepResult made;
   f.acceleration(t, y, k_[0]);
   while (true) {
     made.h = adaptive_ ? next_step(f, t, y, h) : h;

@@ -70,8 +70,9 @@ std::optional<Failure> Rosenbrock<Real>::trial(VectorField<Real>& f, const Real&
   return {};
 }
 
-template <class Real> Stepped Rosenbrock<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
-  Stepped made{.h = adaptive_ ? next_step(f, t, y, h) : h};
+template <class Real>
+StepResult Rosenbrock<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
+  StepResult made{.h = adaptive_ ? next_step(f, t, y, h) : h};
   f.rate(t, y, f0_);
   jacobian_.evaluate(f, t, y);
   jacobian_.time_derivative(f, t, y, made.h, slope_);

@@ -41,7 +41,7 @@ template <class Real> class Rosenbrock final : public Method<Real> {
   MethodClaims claims() const override { return {.name = name_, .order = order_, .adaptive = adaptive_}; }
   void bind(const VectorField<Real>& f) override;
   double next_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h) override;
-  Stepped step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
+  StepResult step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
   bool dense() const override { return true; }
   void interpolate(VectorField<Real>& f, const Real& theta, Vector<Real>& y) override;
   void save(SavedState& saved, const std::string& prefix) const override { control_.save(saved, prefix + "control/"); }

@@ -58,8 +58,9 @@ void RungeKutta<Real>::combine(const std::vector<Real>& w, double h, const Vecto
   for (Index i = 0; i < n; ++i) sum[i] = first ? y[i] : y[i] + step * sum[i];
 }
 
-template <class Real> Stepped RungeKutta<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
-  Stepped made;
+template <class Real>
+StepResult RungeKutta<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
+  StepResult made;
   if (!have_first_) f.rate(t, y, k_[0]);
   while (true) {
     made.h = adaptive_ ? next_step(f, t, y, h) : h;
@@ -149,7 +150,7 @@ template <class Real> void Dop853<Real>::bind(const VectorField<Real>& f) {
   have_terms_ = false;
 }
 
-template <class Real> Stepped Dop853<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
+template <class Real> StepResult Dop853<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
   have_terms_ = false;
   return RungeKutta<Real>::step(f, t, y, h);
 }

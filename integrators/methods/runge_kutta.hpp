@@ -20,7 +20,7 @@ template <class Real> class RungeKutta : public Method<Real> {
   MethodClaims claims() const override;
   void bind(const VectorField<Real>& f) override;
   double next_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h) override;
-  Stepped step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
+  StepResult step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
   void save(SavedState& saved, const std::string& prefix) const override;
   void load(const SavedState& saved, const std::string& prefix) override;
 
@@ -66,7 +66,7 @@ template <class Real> class Dop853 final : public RungeKutta<Real> {
   std::unique_ptr<Method<Real>> clone() const override { return std::make_unique<Dop853>(*this); }
   bool dense() const override { return true; }
   void bind(const VectorField<Real>& f) override;
-  Stepped step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
+  StepResult step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
   void interpolate(VectorField<Real>& f, const Real& theta, Vector<Real>& y) override;
 
  private:

@@ -1,7 +1,7 @@
 #include "integrators/methods/stage_arithmetic.hpp"
 
-#include "engine/double_double.hpp"
 #include "integrators/methods/collocation_simd.hpp"
+#include "numbers/double_double.hpp"
 
 #include <cmath>
 #include <type_traits>

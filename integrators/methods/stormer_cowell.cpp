@@ -35,7 +35,7 @@ template <class Real> void StormerCowell<Real>::bind(const VectorField<Real>& f)
 }
 
 template <class Real>
-Stepped StormerCowell<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
+StepResult StormerCowell<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
   const Index half = a_.size();
   const std::size_t needed = velocity_.size();
   const Real step(h);

@@ -25,7 +25,7 @@ template <class Real> class StormerCowell final : public Method<Real> {
     return {.name = name_, .order = order_, .second_order_only = true, .positions_only = true};
   }
   void bind(const VectorField<Real>& f) override;
-  Stepped step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
+  StepResult step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) override;
   void save(SavedState& saved, const std::string& prefix) const override;
   void load(const SavedState& saved, const std::string& prefix) override;
 

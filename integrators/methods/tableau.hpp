@@ -1,7 +1,7 @@
 #pragma once
 /// Butcher tableaus of Runge-Kutta methods, as data.
 
-#include "engine/real.hpp"
+#include "numbers/real.hpp"
 
 #include <string_view>
 #include <vector>

@@ -135,7 +135,7 @@ TEST_CASE("no classical method allocates inside advance", "[allocation]") {
       integrator.bind(s);
       integrator.advance(s, {.steps = 20});  // the start of multistep methods among them
       const long start = allocations;
-      const Advanced done = integrator.advance(s, {.steps = 20});
+      const Advance done = integrator.advance(s, {.steps = 20});
       const long made = allocations - start;
       CAPTURE(info->name, adaptive);
       CHECK(done.steps == 20);

@@ -1,6 +1,6 @@
 // Hostile text, failed runs, and what explain, describe, convert and plot tell: one line where one line is promised.
 
-#include "engine/text.hpp"
+#include "numbers/text.hpp"
 #include "tests/cli/support.hpp"
 
 #include <string>

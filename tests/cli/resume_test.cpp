@@ -1,6 +1,6 @@
 // `noether run --resume`: from which checkpoint, to which end, and what it refuses.
 
-#include "engine/simd.hpp"
+#include "numbers/simd.hpp"
 #include "tests/cli/support.hpp"
 
 #include <filesystem>

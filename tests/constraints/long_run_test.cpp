@@ -1,4 +1,4 @@
-#include "engine/monitors.hpp"
+#include "monitors/monitors.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/mechanisms.hpp"
 

@@ -1,7 +1,7 @@
 #include "constraints/constraint_residual.hpp"
-#include "engine/monitors.hpp"
 #include "forces/gravity.hpp"
 #include "forces/sum.hpp"
+#include "monitors/monitors.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/mechanisms.hpp"
 

@@ -1,7 +1,5 @@
 /// The same bits for any cadence, number of threads, assembly and division of a run.
 
-#include "engine/monitors.hpp"
-#include "engine/parallel.hpp"
 #include "engine/simulation.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
@@ -12,6 +10,8 @@
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/schemes.hpp"
 #include "integrators/wisdom_holman.hpp"
+#include "monitors/monitors.hpp"
+#include "numbers/parallel.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"
 #include "tests/support/planets.hpp"

@@ -1,7 +1,5 @@
 /// Threads x cadence x program or scene x restart, for schemes, Hamiltonians and forces, at every SIMD level.
 
-#include "engine/monitors.hpp"
-#include "engine/simd.hpp"
 #include "engine/simulation.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
@@ -15,6 +13,8 @@
 #include "integrators/schemes.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "io/digest.hpp"
+#include "monitors/monitors.hpp"
+#include "numbers/simd.hpp"
 #include "scene/scene.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"

@@ -2,8 +2,8 @@
 
 #include "engine/column.hpp"
 
-#include "engine/pack.hpp"
-#include "engine/simd.hpp"
+#include "numbers/pack.hpp"
+#include "numbers/simd.hpp"
 #include "tests/support/catch.hpp"
 
 #include <cmath>

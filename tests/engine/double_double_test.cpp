@@ -1,6 +1,6 @@
 /// Sums and products of two doubles against 113 bits, which hold every product of two doubles exactly.
 
-#include "engine/double_double.hpp"
+#include "numbers/double_double.hpp"
 
 #include "tests/support/catch.hpp"
 

@@ -1,4 +1,4 @@
-#include "engine/dual.hpp"
+#include "numbers/dual.hpp"
 #include "tests/support/catch.hpp"
 
 #include <functional>

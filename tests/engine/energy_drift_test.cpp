@@ -1,6 +1,5 @@
 // The drift of the energy as molecular dynamics tells it, against energies taken by hand.
 
-#include "engine/monitors.hpp"
 #include "engine/simulation.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
@@ -8,6 +7,7 @@
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/schemes.hpp"
+#include "monitors/monitors.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"
 #include "tests/support/liquid.hpp"
@@ -22,7 +22,7 @@ namespace {
 
 /// Keeps the energies it sees.
 struct EnergyDiary {
-  static Wanted wanted() { return {.energy = true}; }
+  static Request wanted() { return {.energy = true}; }
   void observe(const Snapshot<double>& now) {
     total.add(now.time(), now.energy().total());
     kinetic.add(now.time(), now.energy().kinetic);

@@ -2,11 +2,11 @@
 
 #include "engine/simulation.hpp"
 
-#include "engine/monitors.hpp"
 #include "forces/gravity.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/schemes.hpp"
+#include "monitors/monitors.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"
 #include "tests/support/planets.hpp"
@@ -32,7 +32,7 @@ class AdaptiveTest {
     for (auto* column : {&a_, &x_, &v_}) *column = VectorColumn<double>(s.size());
     for (std::size_t k = 0; k < 4; ++k) kx_[k] = kv_[k] = VectorColumn<double>(s.size());
   }
-  Advanced advance(System& s, const Span& span) {
+  Advance advance(System& s, const Span& span) {
     std::int64_t done = 0;
     while (done < span.steps) {
       if (s.clock().high() + next_ > span.limit) return {done, true, {}};
@@ -49,7 +49,7 @@ class AdaptiveTest {
     }
     return {done, false, {}};
   }
-  void settle(const System& raw, System& out, Wanted /*wanted*/, std::optional<double> at, bool /*corrected*/) {
+  void settle(const System& raw, System& out, Request /*wanted*/, std::optional<double> at, bool /*corrected*/) {
     out.assign_state(raw);
     if (!at) return;
     const std::int64_t counted = forces_;

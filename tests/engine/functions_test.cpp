@@ -1,7 +1,7 @@
 /// The functions that code over the number type may use are there in every number type.
 
-#include "engine/dual.hpp"
-#include "engine/pack.hpp"
+#include "numbers/dual.hpp"
+#include "numbers/pack.hpp"
 #include "tests/support/catch.hpp"
 
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "engine/hermite.hpp"
 
-#include "engine/real.hpp"
+#include "numbers/real.hpp"
 #include "tests/support/catch.hpp"
 
 #include <cmath>

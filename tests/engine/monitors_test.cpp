@@ -1,4 +1,4 @@
-#include "engine/monitors.hpp"
+#include "monitors/monitors.hpp"
 
 #include "engine/simulation.hpp"
 #include "forces/external_fields.hpp"

@@ -1,6 +1,6 @@
 /// Neighbor lists against all pairs, wherever the particles are.
 
-#include "engine/neighbor_list.hpp"
+#include "neighbors/neighbor_list.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/liquid.hpp"

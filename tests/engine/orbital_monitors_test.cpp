@@ -1,4 +1,4 @@
-#include "engine/orbital_monitors.hpp"
+#include "monitors/orbital_monitors.hpp"
 
 #include "engine/simulation.hpp"
 #include "forces/gravity.hpp"

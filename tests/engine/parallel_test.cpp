@@ -1,8 +1,8 @@
 /// Loops in fixed blocks: every particle once, sums in block order, whatever the number of threads.
 
-#include "engine/parallel.hpp"
+#include "numbers/parallel.hpp"
 
-#include "engine/error.hpp"
+#include "numbers/error.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/process.hpp"
 #include "tests/support/settings.hpp"

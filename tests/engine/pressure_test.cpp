@@ -1,8 +1,7 @@
 // The pressure: against the ideal gas, LAMMPS's figures, and what a change of volume does to the energy.
 
-#include "engine/pressure.hpp"
+#include "monitors/pressure.hpp"
 
-#include "engine/monitors.hpp"
 #include "engine/simulation.hpp"
 #include "forces/lennard_jones.hpp"
 #include "forces/sum.hpp"
@@ -10,6 +9,7 @@
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/langevin.hpp"
 #include "integrators/schemes.hpp"
+#include "monitors/monitors.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"
 #include "tests/support/liquid.hpp"

@@ -1,6 +1,6 @@
-#include "engine/quantity.hpp"
+#include "numbers/quantity.hpp"
 
-#include "engine/error.hpp"
+#include "numbers/error.hpp"
 #include "tests/support/catch.hpp"
 
 #include <bit>

@@ -1,6 +1,6 @@
 // g(r): against a count of all pairs, a lattice's shells, an ideal gas, and what must not change it.
 
-#include "engine/radial_distribution.hpp"
+#include "monitors/radial_distribution.hpp"
 
 #include "engine/simulation.hpp"
 #include "forces/lennard_jones.hpp"

@@ -1,6 +1,6 @@
 // Random numbers by counters: published vectors, accuracy of the deviates, and their distribution.
 
-#include "engine/random.hpp"
+#include "numbers/random.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/normal_bins.hpp"
 #include "tests/support/settings.hpp"

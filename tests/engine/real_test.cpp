@@ -1,8 +1,8 @@
 /// The 113-bit number type: literals, functions, text, and its exact form as doubles.
 
-#include "engine/real.hpp"
+#include "numbers/real.hpp"
 
-#include "engine/types.hpp"
+#include "numbers/types.hpp"
 #include "tests/support/catch.hpp"
 
 #include <stdexcept>

@@ -2,7 +2,6 @@
 
 #include "engine/simulation.hpp"
 
-#include "engine/monitors.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
 #include "forces/sum.hpp"
@@ -10,6 +9,7 @@
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/schemes.hpp"
 #include "integrators/wisdom_holman.hpp"
+#include "monitors/monitors.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"
 #include "tests/support/planets.hpp"

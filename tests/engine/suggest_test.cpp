@@ -1,4 +1,4 @@
-#include "engine/suggest.hpp"
+#include "numbers/suggest.hpp"
 
 #include "tests/support/catch.hpp"
 

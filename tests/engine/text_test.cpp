@@ -1,6 +1,6 @@
 // Names and lines of text from outside: what is taken, what is shown.
 
-#include "engine/text.hpp"
+#include "numbers/text.hpp"
 #include "engine/particle_system.hpp"
 #include "tests/support/catch.hpp"
 

@@ -1,6 +1,6 @@
 // Diffusion: closed forms of free flight, oscillators and Brownian motion; saved runs; who looks.
 
-#include "engine/time_correlation.hpp"
+#include "monitors/time_correlation.hpp"
 
 #include "engine/simulation.hpp"
 #include "forces/external_fields.hpp"

@@ -1,5 +1,5 @@
 #include "engine/topology.hpp"
-#include "engine/error.hpp"
+#include "numbers/error.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>

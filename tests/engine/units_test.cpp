@@ -1,7 +1,7 @@
-#include "engine/units.hpp"
+#include "numbers/units.hpp"
 
-#include "engine/error.hpp"
-#include "engine/real.hpp"
+#include "numbers/error.hpp"
+#include "numbers/real.hpp"
 #include "tests/support/catch.hpp"
 
 #include <string>

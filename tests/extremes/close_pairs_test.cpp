@@ -312,7 +312,7 @@ TEST_CASE("a box far too full is refused by name before neighbors are listed", "
       ParticleSystem<double> first = s;
       first.clock() = Clock<double>::fixed(0, 1e-4);
       integrator.bind(first);
-      const Advanced done = integrator.advance(first, {.steps = 1});
+      const Advance done = integrator.advance(first, {.steps = 1});
       REQUIRE(done.failure != nullptr);
       CHECK(done.failure->kind == Outcome::Kind::overlap);
       CHECK(done.failure->message.find("with more than 32768 others or images of them in the range 2.5") !=

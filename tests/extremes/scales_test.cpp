@@ -1,7 +1,7 @@
 /// Distances from 1e-100 to 1e100: forces against 113 bits, orbits that must scale, and what becomes of numbers beyond.
 
-#include "engine/simd.hpp"
 #include "forces/oblateness.hpp"
+#include "numbers/simd.hpp"
 #include "tests/extremes/support.hpp"
 #include "tests/support/planets.hpp"
 #include "tests/support/problems.hpp"

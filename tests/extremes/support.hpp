@@ -1,7 +1,6 @@
 #pragma once
 /// What the tests of extreme cases share: runs that must end with a name, and scenes put together in one call.
 
-#include "engine/monitors.hpp"
 #include "engine/simulation.hpp"
 #include "forces/gravity.hpp"
 #include "integrators/composition.hpp"
@@ -9,6 +8,7 @@
 #include "integrators/schemes.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "io/inspect.hpp"
+#include "monitors/monitors.hpp"
 #include "tests/cli/support.hpp"
 #include "tests/support/catch.hpp"
 

@@ -107,7 +107,7 @@ template <class Real> struct Evaluated {
 };
 
 template <class Real>
-Evaluated<Real> evaluate(const Bonded& bonded, const ParticleSystem<Real>& s, Wanted wanted = {true, true, false}) {
+Evaluated<Real> evaluate(const Bonded& bonded, const ParticleSystem<Real>& s, Request wanted = {true, true, false}) {
   VectorColumn<Real> a(s.size());
   ForceSink<Real> sink(a, s, wanted);
   bonded.add_to(sink, s);

@@ -16,7 +16,7 @@ namespace {
 using namespace noether::test;
 
 template <class Real, class F>
-VectorColumn<Real> accelerations(const F& force, const ParticleSystem<Real>& s, Wanted wanted = {}) {
+VectorColumn<Real> accelerations(const F& force, const ParticleSystem<Real>& s, Request wanted = {}) {
   VectorColumn<Real> a(s.size());
   ForceSink<Real> sink(a, s, wanted);
   force.add_to(sink, s);

@@ -1,9 +1,9 @@
 /// Direct gravity in lanes, at every SIMD level that this processor has: against 113 bits, with and without energy,
 /// with and without optimization.
 
-#include "engine/simd.hpp"
 #include "forces/gravity.hpp"
 #include "forces/gravity_simd.hpp"
+#include "numbers/simd.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/planets.hpp"
 #include "tests/support/settings.hpp"

@@ -1,9 +1,9 @@
 /// Gravity at eight stages at once: against the plain pair loop, at every SIMD level, with and without optimization.
 
-#include "engine/pack.hpp"
-#include "engine/simd.hpp"
 #include "forces/gravity.hpp"
 #include "forces/gravity_stages_simd.hpp"
+#include "numbers/pack.hpp"
+#include "numbers/simd.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/planets.hpp"
 

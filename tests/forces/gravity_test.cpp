@@ -64,7 +64,7 @@ Evaluation naive(const ParticleSystem<double>& s, double G, double softening) {
   return sum;
 }
 
-template <class Real, class F> Evaluation evaluate(const F& force, const ParticleSystem<Real>& s, Wanted wanted) {
+template <class Real, class F> Evaluation evaluate(const F& force, const ParticleSystem<Real>& s, Request wanted) {
   VectorColumn<Real> a(s.size());
   ForceSink<Real> sink(a, s, wanted);
   force.add_to(sink, s);
@@ -125,7 +125,7 @@ TEST_CASE("the bits of gravity are the same with and without energy and virial",
     const auto s = cloud(n);
     const Gravity gravity{.G = 0.7};
     const Evaluation bare = evaluate(gravity, s, {});
-    for (const Wanted wanted : {Wanted{true, false}, Wanted{false, true}, Wanted{true, true}}) {
+    for (const Request wanted : {Request{true, false}, Request{false, true}, Request{true, true}}) {
       const Evaluation full = evaluate(gravity, s, wanted);
       CHECK((bare.a.all() == full.a.all()));
     }

@@ -3,8 +3,8 @@
 
 #include "forces/lennard_jones.hpp"
 
-#include "engine/parallel.hpp"
-#include "engine/simd.hpp"
+#include "numbers/parallel.hpp"
+#include "numbers/simd.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/liquid.hpp"
 #include "tests/support/pair_forces.hpp"

@@ -2,7 +2,6 @@
 
 #include "forces/pair_force.hpp"
 
-#include "engine/monitors.hpp"
 #include "engine/simulation.hpp"
 #include "forces/check_gradient.hpp"
 #include "forces/lennard_jones.hpp"
@@ -10,6 +9,7 @@
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/schemes.hpp"
+#include "monitors/monitors.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"
 #include "tests/support/liquid.hpp"

@@ -4,7 +4,6 @@
 /// An input may be taken or refused by an exception below noether::Error; all else is a finding: a broken property, an
 /// exception of another kind, a crash, a report of a sanitizer. A LogicError is one too: no file breaks a contract.
 
-#include "engine/quantity.hpp"
 #include "engine/saved_state.hpp"
 #include "engine/snapshot.hpp"
 #include "io/bodies.hpp"
@@ -12,6 +11,7 @@
 #include "io/digest.hpp"
 #include "io/files.hpp"
 #include "io/structure.hpp"
+#include "numbers/quantity.hpp"
 #include "scene/scene.hpp"
 #include "tests/support/files.hpp"
 

@@ -1,7 +1,6 @@
 // A program as users write it, for cmake/check_install.cmake: whatever flags it is built with, it ends in the same
 // bits.
 
-#include "engine/monitors.hpp"
 #include "engine/simulation.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
@@ -12,6 +11,7 @@
 #include "integrators/schemes.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "io/digest.hpp"
+#include "monitors/monitors.hpp"
 
 #include <fmt/format.h>
 

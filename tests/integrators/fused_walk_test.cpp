@@ -1,6 +1,5 @@
 /// A Hamiltonian's own walk over whole steps has the bits of the letters one by one, and their count of work.
 
-#include "engine/monitors.hpp"
 #include "engine/simulation.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
@@ -8,6 +7,7 @@
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/schemes.hpp"
+#include "monitors/monitors.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/planets.hpp"
 

@@ -1,13 +1,13 @@
 /// Compositions over dual numbers carry the tangent map, over packs eight systems at once.
 
-#include "engine/dual.hpp"
-#include "engine/pack.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
 #include "forces/henon_heiles.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/schemes.hpp"
+#include "numbers/dual.hpp"
+#include "numbers/pack.hpp"
 #include "tests/support/catch.hpp"
 
 #include <cmath>

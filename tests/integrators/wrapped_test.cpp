@@ -2,10 +2,10 @@
 
 #include "integrators/wrapped.hpp"
 
-#include "engine/monitors.hpp"
 #include "engine/simulation.hpp"
 #include "forces/henon_heiles.hpp"
 #include "integrators/schemes.hpp"
+#include "monitors/monitors.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"
 #include "tests/support/energy_projection.hpp"
@@ -41,7 +41,7 @@ struct Plain : Wrapped<AnyIntegrator<double>> {
 /// Forgets that a run may be asked for its action.
 struct Careless : Plain {
   using Plain::Plain;
-  Advanced advance(ParticleSystem<double>& s, const Span& span) { return integrator_.advance(s, span); }
+  Advance advance(ParticleSystem<double>& s, const Span& span) { return integrator_.advance(s, span); }
 };
 struct Careful : Careless {
   using Careless::Careless;
@@ -55,8 +55,8 @@ struct Counting : Wrapped<AnyIntegrator<double>> {
     return part<Counting>("counting", "counts steps", field<&Counting::by>("by", "1"),
                           state<&Counting::count>("count"));
   }
-  Advanced advance(ParticleSystem<double>& s, const Span& span) {
-    const Advanced made = integrator_.advance(s, span);
+  Advance advance(ParticleSystem<double>& s, const Span& span) {
+    const Advance made = integrator_.advance(s, span);
     count += by * made.steps;
     return made;
   }
@@ -68,10 +68,10 @@ struct Counting : Wrapped<AnyIntegrator<double>> {
 /// Makes a v + b of every velocity along x after each step.
 struct Linear : Wrapped<AnyIntegrator<double>> {
   Linear(AnyIntegrator<double> inside, double a_, double b_) : Wrapped(std::move(inside)), a(a_), b(b_) {}
-  Advanced advance(ParticleSystem<double>& s, const Span& span) {
+  Advance advance(ParticleSystem<double>& s, const Span& span) {
     Span one = span;
     one.steps = 1;
-    const Advanced made = integrator_.advance(s, one);
+    const Advance made = integrator_.advance(s, one);
     ParticleSystem<double> now = s;
     integrator_.settle(s, now, {}, std::nullopt, true);
     const Vec3<double> v = now.velocities()[0];

@@ -2,8 +2,6 @@
 
 #include "io/inspect.hpp"
 
-#include "engine/quantity.hpp"
-#include "engine/version.hpp"
 #include "forces/sum.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
@@ -13,6 +11,8 @@
 #include "io/hdf5_file.hpp"
 #include "io/structure.hpp"
 #include "io/trajectory.hpp"
+#include "numbers/quantity.hpp"
+#include "numbers/version.hpp"
 #include "tests/io/support.hpp"
 #include "tests/support/drivers.hpp"
 

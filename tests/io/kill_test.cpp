@@ -1,8 +1,8 @@
 // kill -9 while files are written: whatever was flushed is there, and the run goes on from it.
 
-#include "engine/parallel.hpp"
 #include "io/digest.hpp"
 #include "io/inspect.hpp"
+#include "numbers/parallel.hpp"
 #include "tests/io/support.hpp"
 #include "tests/support/settings.hpp"
 

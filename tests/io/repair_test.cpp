@@ -4,7 +4,7 @@
 
 #include "io/digest.hpp"
 #include "io/hdf5_file.hpp"
-#include "io/trial.hpp"
+#include "io/sandbox.hpp"
 #include "tests/io/support.hpp"
 #include "tests/support/damage.hpp"
 

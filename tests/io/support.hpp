@@ -1,7 +1,6 @@
 #pragma once
 /// What the tests of files share: errors in a line, a run that writes.
 
-#include "engine/monitors.hpp"
 #include "engine/simulation.hpp"
 #include "forces/gravity.hpp"
 #include "integrators/composition.hpp"
@@ -11,6 +10,7 @@
 #include "integrators/systems/lorenz.hpp"
 #include "io/checkpoint.hpp"
 #include "io/trajectory.hpp"
+#include "monitors/monitors.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"
 #include "tests/support/planets.hpp"

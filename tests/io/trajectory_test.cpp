@@ -1,10 +1,10 @@
 // run.h5: its layout as others read it, and cutting back.
 
-#include "engine/orbital_monitors.hpp"
-#include "engine/shadow_hamiltonian.hpp"
 #include "io/digest.hpp"
 #include "io/hdf5_file.hpp"
 #include "io/inspect.hpp"
+#include "monitors/orbital_monitors.hpp"
+#include "monitors/shadow_hamiltonian.hpp"
 #include "tests/io/support.hpp"
 #include "tests/support/drivers.hpp"
 
@@ -20,9 +20,7 @@ using test::WritingRun;
 
 #if NOETHER_HDF5
 
-namespace {
-
-}  // namespace
+namespace {}  // namespace
 
 TEST_CASE("h5py finds the layout of H5MD, and Python's digest of the last frame is the run's", "[trajectory]") {
   const test::ScratchFolder folder;

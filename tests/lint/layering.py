@@ -7,14 +7,17 @@ import sys
 
 import tree
 
-BELOW_SCENE = {"engine", "forces", "constraints", "io", "integrators"}
+BELOW_SCENE = {"numbers", "engine", "neighbors", "monitors", "forces", "constraints", "io", "integrators"}
 LIBRARIES = BELOW_SCENE | {"scene", "study"}
 MAY_SEE = {
-    "engine": {"engine"},
-    "forces": {"engine", "forces"},
-    "constraints": {"engine", "constraints"},
-    "io": {"engine", "io"},
-    "integrators": {"engine", "forces", "integrators"},
+    "numbers": {"numbers"},
+    "engine": {"numbers", "engine"},
+    "neighbors": {"numbers", "engine", "neighbors"},
+    "monitors": {"numbers", "engine", "neighbors", "monitors"},
+    "forces": {"numbers", "engine", "neighbors", "forces"},
+    "constraints": {"numbers", "engine", "constraints"},
+    "io": {"numbers", "engine", "io"},
+    "integrators": {"numbers", "engine", "neighbors", "forces", "integrators"},
     "scene": BELOW_SCENE | {"scene"},
     "study": LIBRARIES,
     "cli": LIBRARIES | {"cli"},
@@ -30,7 +33,7 @@ GUARDED = [
     (re.compile(r"^openssl/"), "OpenSSL", "io"),
 ]
 IN_LANES = re.compile(r"_simd\.[ch]pp$")
-FOR_LANES = re.compile(r"_simd\.hpp$|_row\.hpp$|^engine/simd\.hpp$")  # *_row.hpp: plain numbers, installed too
+FOR_LANES = re.compile(r"_simd\.hpp$|_row\.hpp$|^numbers/simd\.hpp$")  # *_row.hpp: plain numbers, installed too
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.MULTILINE)
 
 
@@ -47,7 +50,7 @@ def problems(root):
             if header.startswith("hwy/") and not IN_LANES.search(path.name):
                 found.append(f"{where}: Highway header '{header}' may be included only in *_simd.cpp and *_simd.hpp")
             if quoted and IN_LANES.search(path.name) and not FOR_LANES.search(header):
-                found.append(f"{where}: code in lanes may include only *_simd.hpp, *_row.hpp and engine/simd.hpp, not \"{header}\"")
+                found.append(f"{where}: code in lanes may include only *_simd.hpp, *_row.hpp and numbers/simd.hpp, not \"{header}\"")
             for pattern, name, room in GUARDED:
                 if pattern.search(header) and not (path.parts[0] == room and path.suffix == ".cpp"):
                     found.append(f"{where}: {name} header '{header}' may be included only in {room}/*.cpp")

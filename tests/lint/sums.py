@@ -11,7 +11,7 @@ import sys
 
 import tree
 
-ROOMS = ("engine", "forces", "io", "integrators", "scene", "study", "cli")
+ROOMS = ("numbers", "engine", "neighbors", "monitors", "forces", "io", "integrators", "scene", "study", "cli")
 METHODS = ("integrators", "methods")
 LOOP = re.compile(r"\bfor \((?P<type>Index|auto|std::size_t|int) (?P<index>\w+) = ")
 OF_PARTICLES = re.compile(r"mass|position|velocit")

@@ -54,7 +54,7 @@ TEST_CASE("the variable-order Adams method climbs to order 12 and takes two eval
   int highest = 0;
   std::int64_t steps = 0, rejected = 0;
   while (t < 200) {
-    const Stepped made = method.step(f, t, y, 1e9);
+    const StepResult made = method.step(f, t, y, 1e9);
     REQUIRE(!made.failure);
     t += made.h;
     ++steps;
@@ -78,7 +78,7 @@ TEST_CASE("dense output of the Adams method meets the run at both ends and is as
   double worst = 0, worst_at_steps = 0, gap = 0;
   while (t < Quad(40)) {
     before = y;
-    const Stepped made = method.step(f, t, y, 1e9);
+    const StepResult made = method.step(f, t, y, 1e9);
     REQUIRE(!made.failure);
     const auto counted = f.evaluations().force;
     method.interpolate(f, Quad(0), inside);
@@ -109,7 +109,7 @@ TEST_CASE("a tolerance that nothing can meet ends in a named failure", "[methods
   Vector<double> y(4);
   y << 1, 0, 0, 0;
   double t = 0;
-  Stepped made;
+  StepResult made;
   for (int n = 0; n < 100000 && !made.failure && t < 2; ++n) {
     made = method.step(f, t, y, 1e9);
     t += made.h;

@@ -1,10 +1,10 @@
 /// Adaptive methods back in time: runs whose clock falls, runs that turn, and what they keep of runs that go forward.
 
-#include "engine/monitors.hpp"
 #include "engine/simulation.hpp"
 #include "forces/gravity.hpp"
 #include "integrators/classical.hpp"
 #include "integrators/first_order_system.hpp"
+#include "monitors/monitors.hpp"
 #include "tests/methods/motions.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"

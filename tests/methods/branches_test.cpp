@@ -1,9 +1,9 @@
 /// Forces that branch on positions: in lanes, stages that take different branches get the bits of one stage at a time.
 
-#include "engine/monitors.hpp"
 #include "engine/simulation.hpp"
 #include "forces/sum.hpp"
 #include "integrators/classical.hpp"
+#include "monitors/monitors.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"
 #include "tests/support/planets.hpp"

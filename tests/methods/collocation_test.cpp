@@ -2,7 +2,6 @@
 
 #include "integrators/methods/collocation.hpp"
 
-#include "engine/monitors.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
 #include "forces/lennard_jones.hpp"
@@ -12,6 +11,7 @@
 #include "integrators/classical.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/schemes.hpp"
+#include "monitors/monitors.hpp"
 #include "tests/methods/motions.hpp"
 #include "tests/methods/restarts.hpp"
 #include "tests/methods/stiff_problems.hpp"
@@ -271,7 +271,7 @@ TEST_CASE("a step without solution is a named failure, and adaptive steps need n
     fixed->bind(center);
     Vector<double> start(4);
     start << 0, 0, 0, 0;
-    const Stepped failed = fixed->step(center, 0, start, 1.0);
+    const StepResult failed = fixed->step(center, 0, start, 1.0);
     REQUIRE(failed.failure);
     CHECK(failed.failure->kind == Outcome::Kind::solver_failure);
     CHECK(failed.failure->message == "the stages of '" + std::string(name) +

@@ -1,11 +1,11 @@
 /// What classical methods claim, measured for every one of them: none can be added without.
 
-#include "engine/monitors.hpp"
 #include "engine/simulation.hpp"
 #include "forces/gravity.hpp"
 #include "forces/linear_drag.hpp"
 #include "forces/sum.hpp"
 #include "integrators/classical.hpp"
+#include "monitors/monitors.hpp"
 #include "tests/methods/motions.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/planets.hpp"
@@ -49,7 +49,7 @@ Vector<Quad> steps_on_ellipse(Method<Quad>& method, VectorField<Quad>& f, Vector
   method.bind(f);
   Quad t(0);
   for (int n = 0; n < steps; ++n) {
-    const Stepped made = method.step(f, t, y, h);
+    const StepResult made = method.step(f, t, y, h);
     REQUIRE(!made.failure);
     t += Quad(h);
   }

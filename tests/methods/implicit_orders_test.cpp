@@ -229,7 +229,7 @@ TEST_CASE("an implicit step without solution is a named outcome that says what t
     s.variables() = {1};
     s.clock() = Clock<double>::fixed(0, 1);
     integrator.bind(s);
-    const Advanced done = integrator.advance(s, {.steps = 10});
+    const Advance done = integrator.advance(s, {.steps = 10});
     REQUIRE(done.failure != nullptr);
     CHECK(done.failure->kind == Outcome::Kind::solver_failure);
     CHECK(done.failure->message.find("smaller step") != std::string::npos);

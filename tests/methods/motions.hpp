@@ -96,7 +96,7 @@ template <class Real>
 Vector<Real> walk(Method<Real>& method, VectorField<Real>& f, Vector<Real> y, double h, long steps) {
   method.bind(f);
   for (long n = 0; n < steps; ++n) {
-    const Stepped made = method.step(f, Real(h) * Real(n), y, h);
+    const StepResult made = method.step(f, Real(h) * Real(n), y, h);
     if (made.failure) throw Error(made.failure->message);
   }
   return y;
@@ -107,7 +107,7 @@ template <class Real> Vector<Real> travel(Method<Real>& method, VectorField<Real
   method.bind(f);
   Real t(0);
   while (std::abs(static_cast<double>(end - t)) > 1e-14 * std::abs(static_cast<double>(end))) {
-    const Stepped made = method.step(f, t, y, static_cast<double>(end - t));
+    const StepResult made = method.step(f, t, y, static_cast<double>(end - t));
     if (made.failure) throw Error(made.failure->message);
     f.evaluations().rejected += made.rejected;
     t += Real(made.h);

@@ -1,9 +1,9 @@
 /// Methods with a past go on bit for bit when they are saved and loaded, in their start and later.
 
-#include "engine/monitors.hpp"
 #include "engine/simulation.hpp"
 #include "forces/gravity.hpp"
 #include "integrators/classical.hpp"
+#include "monitors/monitors.hpp"
 #include "tests/methods/motions.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"
@@ -37,7 +37,7 @@ std::vector<RestartChoice> restart_choices() {
 /// Goes `steps` steps, fixed or the method's own.
 template <class Real> void go_on(Method<Real>& method, VectorField<Real>& f, Real& t, Vector<Real>& y, int steps) {
   for (int n = 0; n < steps; ++n) {
-    const Stepped made = method.step(f, t, y, 0.015625);
+    const StepResult made = method.step(f, t, y, 0.015625);
     REQUIRE(!made.failure);
     t += Real(made.h);
   }

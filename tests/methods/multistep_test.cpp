@@ -232,7 +232,7 @@ TEST_CASE("an implicit Adams step that cannot be solved says so, and by how much
   method.bind(f);
   Vector<double> y(2);
   y << 1, 0;
-  Stepped made;
+  StepResult made;
   for (int n = 0; n < 10 && !made.failure; ++n) made = method.step(f, n * 0.05, y, 0.05);
   REQUIRE(made.failure);
   CHECK(made.failure->kind == Outcome::Kind::solver_failure);

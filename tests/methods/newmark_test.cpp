@@ -62,7 +62,7 @@ Drift drift_on_spring(const MethodChoice& choice, double k) {
   const double first_energy = energy(), first_momentum = momentum();
   Drift worst;
   for (int step = 0; step < 2000; ++step) {
-    const Advanced done = integrator.advance(s, {.steps = 1});
+    const Advance done = integrator.advance(s, {.steps = 1});
     REQUIRE(done.failure == nullptr);
     worst.energy = std::max(worst.energy, std::abs(energy() / first_energy - 1));
     worst.angular_momentum = std::max(worst.angular_momentum, std::abs(momentum() / first_momentum - 1));

@@ -1,7 +1,7 @@
 #pragma once
 /// Rooted trees and the order conditions of Runge-Kutta and Rosenbrock methods.
 
-#include "engine/real.hpp"
+#include "numbers/real.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -177,7 +177,7 @@ Reached<Real> march_to(const S& system, const MethodChoice& choice, const Vector
   while (t < Real(end) && !reached.failure) {
     const double left = static_cast<double>(Real(end) - t);
     method->next_step(*field, t, reached.y, left);
-    const Stepped made = method->step(*field, t, reached.y, left);
+    const StepResult made = method->step(*field, t, reached.y, left);
     t = made.h < left ? t + Real(made.h) : Real(end);
     ++reached.steps;
     reached.rejected += made.rejected;

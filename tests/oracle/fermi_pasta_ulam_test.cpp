@@ -2,12 +2,12 @@
 /// first spring to the third, right or wrong, while the energy of the chain tells nothing of it.
 
 #include "forces/fermi_pasta_ulam.hpp"
-#include "engine/monitors.hpp"
 #include "engine/simulation.hpp"
 #include "integrators/classical.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/schemes.hpp"
+#include "monitors/monitors.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"
 

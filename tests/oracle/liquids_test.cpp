@@ -1,12 +1,12 @@
 /// Liquids over long times: published state points, and energy that goes nowhere.
 
-#include "engine/monitors.hpp"
 #include "engine/simulation.hpp"
 #include "forces/lennard_jones.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/langevin.hpp"
 #include "integrators/schemes.hpp"
+#include "monitors/monitors.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"
 #include "tests/support/liquid.hpp"

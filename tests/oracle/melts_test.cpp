@@ -1,7 +1,5 @@
 /// Liquids beside another program, against the order of the method, and against themselves on other threads.
 
-#include "engine/monitors.hpp"
-#include "engine/shadow_hamiltonian.hpp"
 #include "engine/simulation.hpp"
 #include "forces/bonded.hpp"
 #include "forces/lennard_jones.hpp"
@@ -11,6 +9,8 @@
 #include "integrators/schemes.hpp"
 #include "io/digest.hpp"
 #include "io/structure.hpp"
+#include "monitors/monitors.hpp"
+#include "monitors/shadow_hamiltonian.hpp"
 #include "scene/evaluate.hpp"
 #include "scene/scene.hpp"
 #include "tests/support/catch.hpp"

@@ -1,7 +1,5 @@
 /// run(2n) equals run(n) + save + load + run(n), bit for bit, for every scheme over both Hamiltonians.
 
-#include "engine/monitors.hpp"
-#include "engine/orbital_monitors.hpp"
 #include "engine/simulation.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
@@ -11,6 +9,8 @@
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/schemes.hpp"
 #include "integrators/wisdom_holman.hpp"
+#include "monitors/monitors.hpp"
+#include "monitors/orbital_monitors.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"
 #include "tests/support/planets.hpp"

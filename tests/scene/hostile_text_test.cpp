@@ -1,7 +1,7 @@
 // Text that would break a parser, a report or a terminal.
 
-#include "engine/error.hpp"
-#include "engine/text.hpp"
+#include "numbers/error.hpp"
+#include "numbers/text.hpp"
 #include "scene/json.hpp"
 #include "scene/scene.hpp"
 #include "scene/toml.hpp"

@@ -1,12 +1,12 @@
 // From text to parts: defaults, --set, units, a user's own part, the same bits as a program.
 
-#include "engine/monitors.hpp"
 #include "forces/gravity.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/schemes.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "io/digest.hpp"
+#include "monitors/monitors.hpp"
 #include "scene/evaluate.hpp"
 #include "scene/scene.hpp"
 #include "tests/support/catch.hpp"

@@ -61,7 +61,7 @@ class Tilted final : public Method<double> {
   std::unique_ptr<Method<double>> clone() const override { return std::make_unique<Tilted>(*this); }
   MethodClaims claims() const override { return {.name = name_, .order = 0}; }
   void bind(const VectorField<double>& f) override { rate_.resize(f.size()); }
-  Stepped step(VectorField<double>& f, const double& t, Vector<double>& y, double h) override {
+  StepResult step(VectorField<double>& f, const double& t, Vector<double>& y, double h) override {
     f.rate(t, y, rate_);
     y += options_.tilt * h * rate_;
     return {.h = h};

@@ -1,10 +1,10 @@
 // The scene of a liquid of rigid molecules in a periodic box: what is kept, and what no bit may depend on.
 
 #include "tests/support/molecules.hpp"
-#include "engine/monitors.hpp"
-#include "engine/shadow_hamiltonian.hpp"
-#include "engine/temperature.hpp"
 #include "io/digest.hpp"
+#include "monitors/monitors.hpp"
+#include "monitors/shadow_hamiltonian.hpp"
+#include "monitors/temperature.hpp"
 #include "scene/scene.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/planets.hpp"

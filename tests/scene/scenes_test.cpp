@@ -1,7 +1,7 @@
 // Scenes of tests/scenes: the good ones load and run, the bad ones are refused to the letter.
 
-#include "engine/error.hpp"
 #include "io/digest.hpp"
+#include "numbers/error.hpp"
 #include "scene/scene.hpp"
 #include "scene/toml.hpp"
 #include "tests/support/catch.hpp"

@@ -1,8 +1,8 @@
 // Scenes of structures, builders, types and boxes.
 
 #include "engine/charge.hpp"
-#include "engine/error.hpp"
 #include "io/digest.hpp"
+#include "numbers/error.hpp"
 #include "scene/scene.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/process.hpp"

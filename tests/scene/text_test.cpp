@@ -1,6 +1,6 @@
 // TOML in and out, JSON out.
 
-#include "engine/error.hpp"
+#include "numbers/error.hpp"
 #include "scene/json.hpp"
 #include "scene/references.hpp"
 #include "scene/toml.hpp"

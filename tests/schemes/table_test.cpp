@@ -1,7 +1,7 @@
 // The tables themselves: sums, symmetry, costs, names, and the weights a run works with.
 
-#include "engine/error.hpp"
 #include "integrators/schemes.hpp"
+#include "numbers/error.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -107,9 +107,7 @@ const std::vector<Row> rows = {
 };
 
 /// Magnitudes that the table of costs speaks of: the steps of a composition of Verlet are the weights of its drifts.
-std::vector<Quad> costly(const Scheme& scheme) {
-  return magnitudes(scheme.word, scheme.is_composition() ? 'A' : 'B');
-}
+std::vector<Quad> costly(const Scheme& scheme) { return magnitudes(scheme.word, scheme.is_composition() ? 'A' : 'B'); }
 
 TEST_CASE("evaluations, largest weights and their sums are those of the published comparison", "[schemes]") {
   for (const Row& row : rows) {

@@ -1,8 +1,8 @@
 /// Orders of the shadow Hamiltonian in 113 bits, where it is exact, and what it is at order h^2.
 
-#include "engine/monitors.hpp"
 #include "integrators/classical.hpp"
 #include "integrators/wisdom_holman.hpp"
+#include "monitors/monitors.hpp"
 #include "tests/shadow/support.hpp"
 #include "tests/support/drivers.hpp"
 

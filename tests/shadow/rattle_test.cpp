@@ -1,6 +1,6 @@
 /// The shadow of constrained motion.
 
-#include "engine/monitors.hpp"
+#include "monitors/monitors.hpp"
 #include "tests/shadow/support.hpp"
 #include "tests/support/mechanisms.hpp"
 

@@ -1,9 +1,9 @@
 #pragma once
 /// What the tests of the shadow Hamiltonian share: watched runs, and a method that only poses as symplectic.
 
-#include "engine/shadow_hamiltonian.hpp"
 #include "engine/simulation.hpp"
 #include "integrators/schemes.hpp"
+#include "monitors/shadow_hamiltonian.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/problems.hpp"
 
@@ -36,11 +36,11 @@ template <class F, class Real = double> class PosingRungeKutta {
     return {.method = "posing_rk4", .hamiltonian = "kinetic_potential", .order = 4, .symplectic = true};
   }
   void bind(ParticleSystem<Real>&) {}
-  Advanced advance(ParticleSystem<Real>& s, const Span& span) {
+  Advance advance(ParticleSystem<Real>& s, const Span& span) {
     Real ignored(0);
     return advance_with_action(s, span, ignored);
   }
-  Advanced advance_with_action(ParticleSystem<Real>& s, const Span& span, Real& action) {
+  Advance advance_with_action(ParticleSystem<Real>& s, const Span& span, Real& action) {
     const Real h(s.clock().dt());
     for (std::int64_t k = 0; k < span.steps; ++k) {
       const ParticleSystem<Real> start = s;
@@ -63,7 +63,7 @@ template <class F, class Real = double> class PosingRungeKutta {
     }
     return {.steps = span.steps};
   }
-  Real settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Wanted, std::optional<double>, bool) {
+  Real settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Request, std::optional<double>, bool) {
     out.assign_state(raw);
     return Real(0);
   }

@@ -1,6 +1,6 @@
 /// The weights of the closed form against the tables of EngleSkeelDrees2005.
 
-#include "engine/real.hpp"
+#include "numbers/real.hpp"
 #include "tests/shadow/support.hpp"
 
 #include <fstream>

@@ -117,7 +117,7 @@ step = 0.05
 until = 20
 )");
   const Scene scene = file.load();
-  const Opponent who = opponent(scene, "blanes_moan_s6@kinetic_potential");
+  const Candidate who = candidate(scene, "blanes_moan_s6@kinetic_potential");
   const SetLines lines = set_lines(scene, who, {.step = 0.1}, 20);
   REQUIRE(lines.refusal.empty());
   CHECK(lines.lines.front() == "hamiltonian.coordinates=");

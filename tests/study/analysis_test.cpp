@@ -44,7 +44,7 @@ TEST_CASE("an order is the slope between coarse steps and rounding", "[analysis]
   CHECK(std::abs(law->exponent - 4) < 0.05);
 }
 
-Row row(const Opponent& who, const std::string& outcome, double seconds, std::int64_t evaluations, double error) {
+Row row(const Candidate& who, const std::string& outcome, double seconds, std::int64_t evaluations, double error) {
   Row made{.who = who};
   made.outcome = outcome;
   made.wall_s = seconds;
@@ -55,7 +55,7 @@ Row row(const Opponent& who, const std::string& outcome, double seconds, std::in
 
 TEST_CASE("a comparison marks both fronts, and rows that have failed stand on none", "[analysis]") {
   Comparison c;
-  const Opponent one{"one", "one", {}, false}, other{"other", "other", {}, false};
+  const Candidate one{"one", "one", {}, false}, other{"other", "other", {}, false};
   c.methods = {one, other};
   c.position_measured = true;
   c.rows = {row(one, "completed", 1, 100, 1e-3),       row(one, "completed", 2, 400, 1e-5),

@@ -1,7 +1,7 @@
 // Comparisons of small scenes: known slopes, failed rows, and what is written of them.
 
-#include "engine/shadow_hamiltonian.hpp"
 #include "integrators/systems/forced_damped_oscillator.hpp"
+#include "monitors/shadow_hamiltonian.hpp"
 #include "study/compare_files.hpp"
 #include "study/report.hpp"
 #include "tests/study/scenes.hpp"
@@ -65,7 +65,7 @@ TEST_CASE("steps divide the time between two moments, and errors shrink with the
   CHECK(sampling.interval == 0.1);
   CompareOptions options;
   options.steps = {0.013, 0.0249, 0.025, 0.1};
-  const auto settings = settings_of(scene, opponent(scene, "verlet"), sampling, options);
+  const auto settings = settings_of(scene, candidate(scene, "verlet"), sampling, options);
   REQUIRE(settings.size() == 3);
   CHECK(settings[0].step == 0.1);
   CHECK(settings[1].step == 0.1 / 4);
@@ -75,14 +75,14 @@ TEST_CASE("steps divide the time between two moments, and errors shrink with the
 TEST_CASE("by default a ladder of six steps costs as much for every method", "[compare]") {
   const Scene scene = kepler(0, "method = \"verlet\"\nstep = 0.01\nsteps = 2000");
   const Sampling sampling = sampling_of(scene, {});
-  const auto verlet = settings_of(scene, opponent(scene, "verlet"), sampling, {});
-  const auto rk4 = settings_of(scene, opponent(scene, "rk4"), sampling, {});
+  const auto verlet = settings_of(scene, candidate(scene, "verlet"), sampling, {});
+  const auto rk4 = settings_of(scene, candidate(scene, "rk4"), sampling, {});
   REQUIRE(verlet.size() == 6);
   CHECK(std::abs(verlet.front().step / 0.04 - 1) < 0.3);
   CHECK(std::abs(verlet.back().step / 0.00125 - 1) < 0.01);
   REQUIRE(rk4.size() >= 5);
   CHECK(std::abs(rk4.back().step / 0.005 - 1) < 0.01);
-  CHECK(settings_of(scene, opponent(scene, "dop853"), sampling, {}).size() == 6);
+  CHECK(settings_of(scene, candidate(scene, "dop853"), sampling, {}).size() == 6);
 }
 
 TEST_CASE("a run that diverges is a row, and so is one beyond its budget", "[compare]") {
@@ -155,7 +155,7 @@ TEST_CASE("a run far beyond its limit has diverged, though its numbers are still
 TEST_CASE("the run that is timed has the bits of the one that is watched", "[compare]") {
   const Scene scene = kepler(0.3, "method = \"verlet\"\nstep = 0.01\nsteps = 200");
   const Sampling sampling = sampling_of(scene, {});
-  const Opponent who = opponent(scene, "yoshida_4");
+  const Candidate who = candidate(scene, "yoshida_4");
   const Row row = measure(scene, who, {.step = 0.01, .tolerance = 0}, sampling, {.repeats = 1, .budget = 10});
   Simulation<double> alone = assemble(variant(scene, who, row.setting));
   REQUIRE(alone.run(row.steps).ok());
@@ -175,7 +175,7 @@ TEST_CASE("of repeated runs the median is told, and the median distance from it"
   check({1, 1, 1, 1000}, 1, 0);  // one interruption decides nothing
   check({9, 1, 1, 5, 2}, 2, 1);
   const Scene scene = kepler(0.3, "method = \"verlet\"\nstep = 0.01\nsteps = 200");
-  const Row row = measure(scene, opponent(scene, "verlet"), {.step = 0.01, .tolerance = 0}, sampling_of(scene, {}),
+  const Row row = measure(scene, candidate(scene, "verlet"), {.step = 0.01, .tolerance = 0}, sampling_of(scene, {}),
                           {.repeats = 3, .budget = 10});
   CHECK(row.repeats > 3);  // it is soon over
   CHECK(row.repeats <= 15);
@@ -212,11 +212,11 @@ TEST_CASE("a row tells how far the shadow of its run fluctuates, where it can ha
 
 TEST_CASE("a wisdom_holman scene is compared with whole-gravity kicks too", "[compare]") {
   const Scene scene = outer_solar_system();
-  CHECK(opponent(scene, "verlet").label == "verlet");
-  CHECK(opponent(scene, "verlet@kinetic_potential").label == "verlet@kinetic_potential");
-  CHECK(opponent(scene, "srkn14a").label == "srkn14a");
-  CHECK(opponent(scene, "rk4").label == "rk4");
-  const std::vector<Opponent> all = default_opponents(scene);
+  CHECK(candidate(scene, "verlet").label == "verlet");
+  CHECK(candidate(scene, "verlet@kinetic_potential").label == "verlet@kinetic_potential");
+  CHECK(candidate(scene, "srkn14a").label == "srkn14a");
+  CHECK(candidate(scene, "rk4").label == "rk4");
+  const std::vector<Candidate> all = default_opponents(scene);
   CHECK(all.size() >= 8);
   CHECK(all.front().label == "aba_10_6_4");
   CompareOptions options;

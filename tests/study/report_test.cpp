@@ -239,7 +239,7 @@ TEST_CASE("the report of a comparison has its fronts, its orders and its errors 
     const std::size_t line = svg.find("<path class=\"front\"");
     const std::string front = svg.substr(line, svg.find("/>", line) - line);
     CHECK(static_cast<std::ptrdiff_t>(count(front, "H")) == on_front - 1);
-    for (const Opponent& who : c.methods) {
+    for (const Candidate& who : c.methods) {
       CHECK(count(svg, "<g class=\"curve\" data-name=\"" + who.label + "\">") == 1);
     }
   }

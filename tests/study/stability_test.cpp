@@ -110,7 +110,7 @@ TEST_CASE("the spectrum of a circular orbit has the orbit's frequency and the ti
 TEST_CASE("linear theory has the tabulated limits and the closed resonances", "[stability]") {
   const Scene scene = ball();
   const Mode mode{.omega = 1, .rate = 0, .lambda = {}};
-  const auto theory = [&](const std::string& name) { return linear_theory(scene, fixed_opponent(scene, name), mode); };
+  const auto theory = [&](const std::string& name) { return linear_theory(scene, fixed_candidate(scene, name), mode); };
   for (const Scheme* scheme : schemes::all()) {
     if (scheme->stability_limit == 0) continue;
     CAPTURE(std::string(scheme->name));
@@ -140,7 +140,7 @@ TEST_CASE("linear theory has the tabulated limits and the closed resonances", "[
 TEST_CASE("theory of multistep methods is that of their characteristic roots", "[stability]") {
   const Scene scene = ball();
   const auto theory = [&](const std::string& name, const Mode& mode) {
-    return linear_theory(scene, fixed_opponent(scene, name), mode);
+    return linear_theory(scene, fixed_candidate(scene, name), mode);
   };
   const Mode undamped{.omega = 1, .rate = 0, .lambda = {}};
   for (const char* name : {"adams_bashforth_3", "adams_bashforth_4", "adams_moulton_5", "adams_moulton_6", "bdf_5",
@@ -217,7 +217,7 @@ TEST_CASE("the largest bounded start of q'' = -q - q^2 under leapfrog is that of
                                    std::pair(1.74, 0.009), std::pair(1.78, 0.047), std::pair(1.9, 0.127)}) {
     const auto bounded = [&, step = h](double q0) {
       const Scene scene = quadratic_well(q0, step);
-      return try_step(scene, opponent(scene, "verlet"), step, 1500, {}, 10).stable();
+      return try_step(scene, candidate(scene, "verlet"), step, 1500, {}, 10).stable();
     };
     CAPTURE(h, largest);
     if (largest > 0.002) CHECK(bounded(largest - 0.002));
@@ -406,7 +406,7 @@ TEST_CASE("steps along Kepler arcs resonate with periods of Kepler's third law",
   for (const int n : {1, 3, 5}) {
     CAPTURE(n);
     Scene scene = planet_and_comet(0.25, 0.5);
-    Simulation<double> sim = assemble(variant(scene, opponent(scene, "verlet"), {inside.resonance(n), 0}));
+    Simulation<double> sim = assemble(variant(scene, candidate(scene, "verlet"), {inside.resonance(n), 0}));
     REQUIRE(sim.run(n).ok());
     const Vec3<double> moved = sim.particles().positions()[2] - scene.particles.positions()[2];
     CHECK(std::sqrt(norm2(moved)) < 1e-13);
@@ -450,7 +450,7 @@ steps = 1000
 )",
                                  "comet.toml");
   const double h = kepler_steps(scene).value().passage / steps_in_a_passage, n = std::sqrt(1.001 / 125);
-  Simulation<double> sim = assemble(variant(scene, opponent(scene, "verlet"), {h, 0}));
+  Simulation<double> sim = assemble(variant(scene, candidate(scene, "verlet"), {h, 0}));
   const auto constant = [&] {
     const auto& s = sim.particles();
     const Vec3<double> x = s.positions()[2], v = s.velocities()[2];

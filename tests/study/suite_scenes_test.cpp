@@ -2,7 +2,7 @@
 
 #include "integrators/methods.hpp"
 #include "integrators/schemes.hpp"
-#include "study/opponent.hpp"
+#include "study/candidate.hpp"
 #include "study/suite.hpp"
 #include "tests/study/scenes.hpp"
 #include "tests/support/catch.hpp"
@@ -125,7 +125,7 @@ TEST_CASE("every method that can run the chain of Fermi, Pasta and Ulam has a ve
     if (info != nullptr && info->adaptive) CHECK(adaptive.count(name) == 2);  // at two tolerances
     if (info != nullptr && !info->fixed) continue;
     try {
-      static_cast<void>(fixed_opponent(scene, name));
+      static_cast<void>(fixed_candidate(scene, name));
     } catch (const Error&) {
       continue;  // it cannot serve the scene
     }
@@ -152,7 +152,7 @@ TEST_CASE("theory has a verdict for every method on the oscillator, at three ste
   for (const std::string& name : names) {
     CAPTURE(name);
     for (const double step : {1.9, 2.0, 2.1}) {
-      CHECK_FALSE(expected_by_theory(scene, fixed_opponent(scene, name), step).empty());
+      CHECK_FALSE(expected_by_theory(scene, fixed_candidate(scene, name), step).empty());
     }
   }
 }

@@ -56,13 +56,13 @@ template <Integrator I> class EnergyProjected : public Wrapped<I>, public Energy
     now_ = s;
     energy_.reset();
   }
-  Advanced advance(ParticleSystem<real>& s, const Span& span) {
+  Advance advance(ParticleSystem<real>& s, const Span& span) {
     if (!energy_) energy_ = settled_energy(s).total();
-    Advanced done;
+    Advance done;
     while (done.steps < span.steps) {
       Span until_next = span;
       until_next.steps = std::min(span.steps - done.steps, steps - s.clock().step() % steps);
-      const Advanced made = this->integrator_.advance(s, until_next);
+      const Advance made = this->integrator_.advance(s, until_next);
       done.steps += made.steps;
       done.at_limit = made.at_limit;
       done.failure = made.failure;

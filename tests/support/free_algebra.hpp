@@ -1,9 +1,9 @@
 #pragma once
 /// The word test: what a scheme is, in the free associative algebra on {A, B}, word by word.
 
-#include "engine/error.hpp"
-#include "engine/real.hpp"
 #include "integrators/scheme.hpp"
+#include "numbers/error.hpp"
+#include "numbers/real.hpp"
 
 #include <algorithm>
 #include <bit>

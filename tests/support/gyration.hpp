@@ -64,7 +64,7 @@ template <class F, class Real = double> class Gyrating {
       a.add(i, Vec3<Real>(-Real(omega_) * v[1], Real(omega_) * v[0], Real(0)));
     }
   }
-  void observe(std::optional<Wanted> wanted) { observing_ = wanted.has_value(); }
+  void observe(std::optional<Request> wanted) { observing_ = wanted.has_value(); }
   const std::optional<Failure>& failure() const { return failure_; }
   Evaluations evaluations() const { return evaluations_; }
   void save(SavedState& saved, const std::string& prefix) const {
@@ -89,7 +89,7 @@ template <class F, class Real = double> class Gyrating {
       s.velocities().set(i, Vec3<Real>(c * v[0] - d * v[1], d * v[0] + c * v[1], v[2]));
     }
   }
-  Real sum(const ParticleSystem<Real>& s, Wanted wanted) {
+  Real sum(const ParticleSystem<Real>& s, Request wanted) {
     ForceSink<Real> sink(a_, s, wanted);
     forces_.add_to(sink, s);
     return sink.potential();

@@ -2,8 +2,8 @@
 /// Truncated power series as a number type: the same code that steps a system, run with `Jet`, yields its Taylor
 /// series.
 
-#include "engine/real.hpp"
 #include "integrators/scheme.hpp"
+#include "numbers/real.hpp"
 
 #include <Eigen/Core>
 

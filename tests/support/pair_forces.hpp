@@ -2,8 +2,8 @@
 /// What pair forces give, in any number type and at any SIMD level.
 
 #include "engine/force_sink.hpp"
-#include "engine/neighbor_list.hpp"
 #include "forces/lennard_jones.hpp"
+#include "neighbors/neighbor_list.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/liquid.hpp"
 #include "tests/support/settings.hpp"

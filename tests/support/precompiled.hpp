@@ -1,11 +1,11 @@
 #pragma once
 /// What most tests include, compiled once for all of them.
 
-#include "engine/monitors.hpp"
 #include "engine/simulation.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
 #include "integrators/schemes.hpp"
+#include "monitors/monitors.hpp"
 #include "scene/scene.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 /// What a call is refused with.
 
-#include "engine/error.hpp"
+#include "numbers/error.hpp"
 
 #include <string>
 

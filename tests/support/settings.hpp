@@ -1,8 +1,8 @@
 #pragma once
 /// What a test sets for the whole process, and puts back.
 
-#include "engine/parallel.hpp"
-#include "engine/simd.hpp"
+#include "numbers/parallel.hpp"
+#include "numbers/simd.hpp"
 
 #include <vector>
 

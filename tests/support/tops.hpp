@@ -4,10 +4,10 @@
 #include "engine/columns.hpp"
 #include "engine/concepts.hpp"
 #include "engine/description.hpp"
-#include "engine/neighbor_list.hpp"
 #include "engine/signature.hpp"
 #include "forces/sum.hpp"
 #include "integrators/kinetic_potential.hpp"
+#include "neighbors/neighbor_list.hpp"
 
 #include <array>
 #include <cmath>
@@ -99,7 +99,7 @@ template <class F, class Real = double> class SpinningTops {
     sum(s, {});
     a = a_;
   }
-  void observe(std::optional<Wanted> wanted) { observing_ = wanted.has_value(); }
+  void observe(std::optional<Request> wanted) { observing_ = wanted.has_value(); }
   const std::optional<Failure>& failure() const { return failure_; }
   Evaluations evaluations() const { return evaluations_; }
   void save(SavedState& saved, const std::string& prefix) const {
@@ -129,7 +129,7 @@ template <class F, class Real = double> class SpinningTops {
       orientation.set(i, product(by, Quaternion<Real>(std::as_const(orientation)[i])));
     }
   }
-  Real sum(const ParticleSystem<Real>& s, Wanted wanted) {
+  Real sum(const ParticleSystem<Real>& s, Request wanted) {
     ForceSink<Real> sink(a_, s, wanted, &workspace_);
     sink.set_torques(torque_);
     forces_.add_to(sink, s);

@@ -1,9 +1,5 @@
 // Runs of systems without particles: refusals, faults, restarts, edits.
 
-#include "engine/monitors.hpp"
-#include "engine/orbital_monitors.hpp"
-#include "engine/shadow_hamiltonian.hpp"
-#include "engine/temperature.hpp"
 #include "forces/gravity.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/first_order_system.hpp"
@@ -11,6 +7,10 @@
 #include "integrators/schemes.hpp"
 #include "integrators/systems/heat_line.hpp"
 #include "integrators/systems/lorenz.hpp"
+#include "monitors/monitors.hpp"
+#include "monitors/orbital_monitors.hpp"
+#include "monitors/shadow_hamiltonian.hpp"
+#include "monitors/temperature.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"
 #include "tests/support/planets.hpp"

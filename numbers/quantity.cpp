@@ -1,0 +1,383 @@
+#include "numbers/quantity.hpp"
+
+#include "numbers/error.hpp"
+#include "numbers/suggest.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <system_error>
+#include <utility>
+
+namespace noether {
+
+namespace {
+
+[[noreturn]] void fail(const std::string& message, std::string_view text) {
+  throw Error(message, {.value = std::string(text)});
+}
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blank = " \t\r\n";
+  const std::size_t first = text.find_first_not_of(blank);
+  if (first == std::string_view::npos) return "";
+  return text.substr(first, text.find_last_not_of(blank) - first + 1);
+}
+
+/// A word of a product: "day", or "1", with its power, multiplied or divided.
+struct Term {
+  std::string_view word;
+  int power = 1;
+  bool divides = false;
+};
+
+/// Letters, and whatever is not ASCII: an unknown unit is then named whole.
+bool is_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || static_cast<unsigned char>(c) >= 128;
+}
+
+/// Reads products of words; `whole` is what messages quote.
+class TermReader {
+ public:
+  TermReader(std::string_view text, std::string_view whole) : rest_(text), whole_(whole) {}
+
+  /// All terms. An operator may stand before the first one, as in "1" followed by "/ps".
+  std::vector<Term> read(bool operator_first) {
+    std::vector<Term> terms;
+    skip_blanks();
+    while (!rest_.empty()) {
+      const bool may_join = operator_first || !terms.empty();
+      const bool divides = may_join && take('/');
+      if (may_join && !divides) take('*');
+      terms.push_back(read_term(divides));
+    }
+    return terms;
+  }
+
+ private:
+  Term read_term(bool divides) {
+    std::size_t length = 0;
+    while (length < rest_.size() && is_letter(rest_[length])) ++length;
+    if (length == 0 && rest_.starts_with('1')) length = 1;
+    if (length == 0) unexpected();
+    Term term{.word = rest_.substr(0, length), .power = 1, .divides = divides};
+    rest_.remove_prefix(length);
+    if (rest_.starts_with('^')) term.power = read_power();
+    const bool ends = rest_.empty() || rest_[0] == ' ' || rest_[0] == '*' || rest_[0] == '/';
+    if (!ends) unexpected();
+    skip_blanks();
+    return term;
+  }
+
+  int read_power() {
+    rest_.remove_prefix(1);
+    int power = 0;
+    const auto [end, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), power);
+    if (error != std::errc() || power < -9 || power > 9) {
+      fail(fmt::format("bad power in '{}'; expected a whole number from -9 to 9, as in 'm^2'", whole_), whole_);
+    }
+    rest_.remove_prefix(static_cast<std::size_t>(end - rest_.data()));
+    return power;
+  }
+
+  bool take(char c) {
+    if (!rest_.starts_with(c)) return false;
+    rest_.remove_prefix(1);
+    skip_blanks();
+    return true;
+  }
+
+  void skip_blanks() {
+    while (rest_.starts_with(' ')) rest_.remove_prefix(1);
+  }
+
+  [[noreturn]] void unexpected() const {
+    const std::string_view what = rest_.empty() ? "end" : rest_.substr(0, 1);
+    const char* const quote = rest_.empty() ? "" : "'";
+    fail(fmt::format("unexpected {}{}{} in '{}'; units are joined by '*', '/' or a space, as in 'kg m/s^2'", quote,
+                     what, quote, whole_),
+         whole_);
+  }
+
+  std::string_view rest_, whole_;
+};
+
+[[noreturn]] void unknown_unit(std::string_view word, std::string_view whole) {
+  std::vector<std::string> known;
+  for (const units::Definition& unit : units::definitions) known.emplace_back(unit.symbol);
+  const std::string in = word == whole ? "" : fmt::format(" in '{}'", whole);
+  // Half of a quotient, or a name from C++ or English, has one answer: "seconds" is far from "s" in letters.
+  const std::string_view singular = word.ends_with('s') ? word.substr(0, word.size() - 1) : word;
+  for (const units::Definition& unit : units::definitions) {
+    const bool is_half = unit.symbol.starts_with(word) && unit.symbol.substr(word.size()).starts_with('/');
+    if (!is_half && unit.constant != word && unit.constant != singular) continue;
+    fail(fmt::format("unknown unit '{}'{}; did you mean '{}'?", word, in, unit.symbol), whole);
+  }
+  fail(fmt::format("unknown unit '{}'{}{}", word, in, did_you_mean(word, known)), whole);
+}
+
+/// The unit made of two words, "kJ/mol" or "g/cm^3", where the terms at i spell one.
+const units::Definition* find_quotient(const std::vector<Term>& terms, std::size_t i) {
+  if (i + 1 >= terms.size() || terms[i].divides || terms[i].power != 1 || !terms[i + 1].divides) return nullptr;
+  const Term& below = terms[i + 1];
+  const std::string power = below.power == 1 ? "" : fmt::format("^{}", below.power);
+  return units::find(fmt::format("{}/{}{}", terms[i].word, below.word, power));
+}
+
+/// The value of a unit in a system; plain numbers, such as the degree, are the same in all.
+double value_in(const units::Definition& unit, const UnitSystem& system) {
+  return units::value(unit, system.scale.value_or(units::si_scale));
+}
+
+void append(Unit& unit, const units::Definition& definition, const Term& term, const UnitSystem& system) {
+  unit.dimension = term.divides ? unit.dimension / power(definition.dimension, term.power)
+                                : unit.dimension * power(definition.dimension, term.power);
+  const double one = value_in(definition, system);
+  double value = 1;
+  for (int i = 0; i < std::abs(term.power); ++i) value *= one;
+  unit.factors.push_back({value, term.divides != (term.power < 0)});
+}
+
+Unit unit_from(const std::vector<Term>& terms, std::string_view whole, const UnitSystem& system) {
+  Unit unit;
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    if (terms[i].word == "1") continue;
+    const units::Definition* const quotient = find_quotient(terms, i);
+    const units::Definition* const definition = quotient ? quotient : units::find(terms[i].word);
+    if (!definition) unknown_unit(terms[i].word, whole);
+    append(unit, *definition, terms[i], system);
+    if (quotient) ++i;
+  }
+  return unit;
+}
+
+/// Whether the reduced system knows every word: it has plain numbers and angles only.
+bool all_plain(const std::vector<Term>& terms) {
+  for (const Term& term : terms) {
+    if (term.word != "1" && term.word != "deg" && term.word != "rad") return false;
+  }
+  return true;
+}
+
+struct NamedDimension {
+  std::string_view name;
+  Dimension dimension;
+};
+
+/// Words for dimensions; the first of each dimension is the one that is written.
+constexpr std::array named_dimensions = {
+    NamedDimension{"1", dimensions::none},
+    NamedDimension{"angle", dimensions::none},
+    NamedDimension{"length", dimensions::length},
+    NamedDimension{"time", dimensions::time},
+    NamedDimension{"mass", dimensions::mass},
+    NamedDimension{"charge", dimensions::charge},
+    NamedDimension{"temperature", dimensions::temperature},
+    NamedDimension{"velocity", dimensions::velocity},
+    NamedDimension{"acceleration", dimensions::acceleration},
+    NamedDimension{"force", dimensions::force},
+    NamedDimension{"energy", dimensions::energy},
+    NamedDimension{"frequency", dimensions::frequency},
+    NamedDimension{"density", dimensions::density},
+    NamedDimension{"pressure", dimensions::pressure},
+};
+
+const NamedDimension* find_dimension(std::string_view name) {
+  for (const NamedDimension& named : named_dimensions) {
+    if (named.name == name) return &named;
+  }
+  return nullptr;
+}
+
+/// "mass length^2/time^2" from the exponents and a word for each base quantity.
+std::string product(const Dimension& d, const std::array<std::string_view, 5>& words) {
+  const std::array<int, 5> powers = {d.mass, d.length, d.charge, d.temperature, d.time};
+  std::string above, below;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const int n = std::abs(powers[i]);
+    if (n == 0) continue;
+    const std::string factor = n == 1 ? std::string(words[i]) : fmt::format("{}^{}", words[i], n);
+    if (powers[i] > 0) {
+      above += (above.empty() ? "" : " ") + factor;
+    } else {
+      below += "/" + factor;
+    }
+  }
+  return (above.empty() ? "1" : above) + below;
+}
+
+/// "a time", "an energy", "a quantity of dimension length^3/time^2".
+std::string with_article(const Dimension& dimension) {
+  if (dimension == dimensions::none) return "a plain number";
+  const std::string text = to_text(dimension);
+  if (!find_dimension(text)) return "a quantity of dimension " + text;
+  return (text[0] == 'a' || text[0] == 'e' ? "an " : "a ") + text;
+}
+
+/// What a text should be: a dimension, or an angle, which has none.
+struct Expected {
+  Dimension dimension = dimensions::none;
+  bool angle = false;
+};
+
+/// "a time is expected, such as '100 day'".
+std::string expectation(const Expected& wanted, std::string_view number, const UnitSystem& system) {
+  if (wanted.angle) return fmt::format("an angle is expected, such as '{} deg'", number);
+  return fmt::format("{} is expected, such as '{}'", with_article(wanted.dimension),
+                     example_of(wanted.dimension, number, system));
+}
+
+bool is_angle(const Term& term) { return term.word == "deg" || term.word == "rad"; }
+
+/// What a quantity with a unit is, in words: "an angle", "a time", "a plain number".
+std::string kind_of(const std::vector<Term>& terms, const Dimension& dimension) {
+  return terms.size() == 1 && is_angle(terms[0]) ? "an angle" : with_article(dimension);
+}
+
+/// The number at the front of a text and how many characters it takes.
+struct Number {
+  double value = 0;
+  std::size_t length = 0;
+};
+
+Number read_number(std::string_view text, const Expected& expected, const UnitSystem& system) {
+  // std::from_chars reads no plus sign, and would read the minus of "+-1".
+  const bool plus = text.starts_with('+') && !text.starts_with("+-");
+  const char* const first = text.data() + (plus ? 1 : 0);
+  Number number;
+  const auto [end, error] = std::from_chars(first, text.data() + text.size(), number.value);
+  number.length = static_cast<std::size_t>(end - text.data());
+  const auto complain = [&](std::string_view what) {
+    fail(fmt::format("'{}' {}; {}", text, what, expectation(expected, "1", system)), text);
+  };
+  if (text.empty()) complain("is empty");
+  if (error == std::errc::invalid_argument) complain("does not begin with a number");
+  if (error == std::errc::result_out_of_range) complain("is outside the range of numbers, about 1e-308 to 1e308");
+  if (!std::isfinite(number.value)) complain("is not finite");
+  return number;
+}
+
+double read_quantity(std::string_view text, const Expected& wanted, const UnitSystem& system) {
+  const std::string_view whole = trimmed(text);
+  const Number number = read_number(whole, wanted, system);
+  const std::string_view digits = whole.substr(0, number.length);
+  if (number.length == whole.size()) {
+    if (system.is_reduced() || (wanted.dimension == dimensions::none && !wanted.angle)) return number.value;
+    fail(fmt::format("'{}' has no unit; {}", whole, expectation(wanted, digits, system)), whole);
+  }
+  const std::vector<Term> terms = TermReader(whole.substr(number.length), whole).read(true);
+  if (system.is_reduced() && !all_plain(terms)) {
+    fail(fmt::format("'{}' has a unit; the reduced system takes bare numbers, such as '{}'", whole, digits), whole);
+  }
+  const Unit unit = unit_from(terms, whole, system);
+  if (unit.dimension != wanted.dimension || (wanted.angle && !std::any_of(terms.begin(), terms.end(), is_angle))) {
+    fail(fmt::format("'{}' is {}; {}", whole, kind_of(terms, unit.dimension), expectation(wanted, digits, system)),
+         whole);
+  }
+  const double value = unit.times(number.value);
+  if (!std::isfinite(value)) fail(fmt::format("'{}' is too large for the {} system", whole, system.name), whole);
+  return value;
+}
+
+}  // namespace
+
+double Unit::times(double number) const noexcept {
+  for (const Factor& factor : factors) number = factor.divides ? number / factor.value : number * factor.value;
+  return number;
+}
+
+Unit parse_unit(std::string_view text, const UnitSystem& system) {
+  const std::string_view whole = trimmed(text);
+  if (whole.empty()) fail("empty unit; expected one such as 'km/s', or '1' for a plain number", text);
+  const std::vector<Term> terms = TermReader(whole, whole).read(false);
+  if (system.is_reduced() && !all_plain(terms)) {
+    fail(fmt::format("unit '{}' in the reduced system, which takes bare numbers; leave the unit out, or choose "
+                     "solar, molecular or si",
+                     whole),
+         whole);
+  }
+  return unit_from(terms, whole, system);
+}
+
+double unit_value(std::string_view unit, const UnitSystem& system) { return parse_unit(unit, system).times(1.0); }
+
+double parse_quantity(std::string_view text, const Dimension& expected, const UnitSystem& system) {
+  return read_quantity(text, {.dimension = expected}, system);
+}
+
+double parse_angle(std::string_view text, const UnitSystem& system) {
+  return read_quantity(text, {.angle = true}, system);
+}
+
+std::string example_of(const Dimension& dimension, std::string_view number, const UnitSystem& system) {
+  const std::string unit = unit_of(dimension, system);
+  if (unit == "1") return std::string(number);
+  // "1 1/day" would puzzle; "1/day" reads as it is written.
+  return unit.starts_with("1/") ? std::string(number) + unit.substr(1) : fmt::format("{} {}", number, unit);
+}
+
+Dimension parse_dimension(std::string_view text) {
+  const std::string_view whole = trimmed(text);
+  if (whole.empty()) fail("empty dimension; expected one such as 'length/time', or '1' for a plain number", text);
+  Dimension result;
+  for (const Term& term : TermReader(whole, whole).read(false)) {
+    const NamedDimension* const named = find_dimension(term.word);
+    if (!named) {
+      std::vector<std::string> known;
+      for (const NamedDimension& candidate : named_dimensions) known.emplace_back(candidate.name);
+      fail(fmt::format("unknown dimension '{}'{}", term.word, did_you_mean(term.word, known)), whole);
+    }
+    result = result * power(named->dimension, term.divides ? -term.power : term.power);
+  }
+  return result;
+}
+
+std::string to_text(const Dimension& dimension) {
+  for (const NamedDimension& named : named_dimensions) {
+    if (named.dimension == dimension) return std::string(named.name);
+  }
+  return product(dimension, {"mass", "length", "charge", "temperature", "time"});
+}
+
+std::string unit_of(const Dimension& dimension, const UnitSystem& system) {
+  if (system.is_reduced() || dimension == dimensions::none) return "1";
+  if (dimension == dimensions::energy) return std::string(system.energy);
+  return product(dimension, {system.mass, system.length, system.charge, system.temperature, system.time});
+}
+
+std::string format_number(double value) {
+  if (std::isnan(value)) return "nan";
+  std::array<char, 32> buffer;
+  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+  return error == std::errc() ? std::string(buffer.data(), end) : fmt::format("{}", value);
+}
+
+std::vector<UnitRow> list_units() {
+  const UnitSystem& solar = unit_system("solar");
+  const UnitSystem& molecular = unit_system("molecular");
+  const UnitSystem& si = unit_system("si");
+  const UnitSystem& reduced = unit_system("reduced");
+  std::vector<UnitRow> rows;
+  for (const units::Definition& unit : units::definitions) {
+    UnitRow row{.symbol = std::string(unit.symbol),
+                .constant = std::string(unit.constant),
+                .dimension = unit.symbol == "deg" || unit.symbol == "rad" ? "angle" : to_text(unit.dimension),
+                .solar = value_in(unit, solar),
+                .molecular = value_in(unit, molecular),
+                .si = value_in(unit, si),
+                .reduced = std::nullopt};
+    if (unit.dimension == dimensions::none) row.reduced = value_in(unit, reduced);
+    rows.push_back(std::move(row));
+  }
+  const auto add_constant = [&](const char* name, const char* dimension, double UnitSystem::*value) {
+    rows.push_back({name, name, dimension, solar.*value, molecular.*value, si.*value, reduced.*value});
+  };
+  add_constant("G", "length^3/mass/time^2", &UnitSystem::G);
+  add_constant("k_B", "energy/temperature", &UnitSystem::k_B);
+  add_constant("coulomb_constant", "energy length/charge^2", &UnitSystem::coulomb_constant);
+  return rows;
+}
+
+}  // namespace noether

@@ -1,0 +1,204 @@
+#include "scene/set_option.hpp"
+
+#include "numbers/suggest.hpp"
+#include "numbers/text.hpp"
+#include "scene/toml.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+
+namespace noether {
+
+namespace {
+
+/// Tables and lists of tables a scene may have without having been written.
+constexpr std::array<std::string_view, 5> known_tables = {"particles", "hamiltonian", "system", "integrator", "expect"};
+/// The same of tables in [hamiltonian].
+constexpr std::array<std::string_view, 2> known_of_hamiltonian = {"neighbors", "thermostat"};
+
+/// Keys of one table of which at most one is given.
+constexpr std::array<std::array<std::string_view, 3>, 3> alternatives = {
+    {{"steps", "until", ""}, {"steps", "every", "wall"}, {"density", "constant", ""}}};
+
+std::vector<std::string> split(std::string_view path) {
+  std::vector<std::string> keys(1);
+  bool quoted = false;
+  for (const char c : path) {
+    if (c == '"') {
+      quoted = !quoted;
+    } else if (c == '.' && !quoted) {
+      keys.emplace_back();
+    } else {
+      keys.back() += c;
+    }
+  }
+  return keys;
+}
+
+std::string text_of(const SceneValue& table, std::string_view key) {
+  const SceneValue* value = table.find(key);
+  const std::string* text = value != nullptr ? value->get<std::string>() : nullptr;
+  return text != nullptr ? *text : "";
+}
+
+void add_new(std::vector<std::string>& names, std::string_view name) {
+  if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) names.emplace_back(name);
+}
+
+/// One `--set` at work.
+class Setter {
+ public:
+  Setter(const SceneSource& source, std::size_t index)
+      : source_(source), line_(-static_cast<int>(index) - 1), text_(source.sets[index]) {}
+
+  void apply(SceneValue& scene) {
+    if (!is_utf8(text_)) fail("this is not UTF-8; give text in that encoding");
+    if (text_.starts_with(until_option)) {
+      path_ = "integrator.until";
+      return put(scene, SceneValue::of(text_.substr(until_option.size()), line_));
+    }
+    const std::size_t equals = text_.find('=');
+    if (equals == std::string::npos || equals == 0) {
+      fail("expected key=value, such as integrator.step=\"50 day\"");
+    }
+    path_ = text_.substr(0, equals);
+    const std::string value = text_.substr(equals + 1);
+    if (value.empty()) return take_out(scene);
+    put(scene, parse_toml_value(value, line_).value_or(SceneValue::of(value, line_)));
+  }
+
+ private:
+  void put(SceneValue& scene, SceneValue value) {
+    const std::vector<std::string> keys = split(path_);
+    SceneValue& at = holder_of(scene, keys);
+    if (SceneValue::Array* list = at.get<SceneValue::Array>()) return put_element(*list, keys.back(), std::move(value));
+    if (keys.size() == 1) check_top(at, keys[0], value);
+    drop_alternatives(at, keys.back());
+    at.put(keys.back(), std::move(value));
+  }
+
+  void take_out(SceneValue& scene) {
+    const std::vector<std::string> keys = split(path_);
+    SceneValue& at = holder_of(scene, keys);
+    const std::string& key = keys.back();
+    if (SceneValue::Array* list = at.get<SceneValue::Array>()) {
+      list->erase(list->begin() + (&element(*list, key) - list->data()));
+      return;
+    }
+    if (at.find(key) == nullptr) {
+      std::vector<std::string> written;
+      for (const auto& [name, value] : *at.get<SceneValue::Table>()) add_new(written, name);
+      fail(fmt::format("there is no '{}' to take out of the scene{}", key, did_you_mean(key, written)));
+    }
+    at.erase(key);
+  }
+
+  /// The table or the list of tables in which the last of the keys stands.
+  SceneValue& holder_of(SceneValue& scene, const std::vector<std::string>& keys) {
+    if (keys.size() > static_cast<std::size_t>(deepest_table)) {
+      fail(fmt::format("the key has {} parts; at most {} are expected", keys.size(), deepest_table));
+    }
+    in_expect_ = keys[0] == "expect";
+    SceneValue* at = &scene;
+    for (std::size_t k = 0; k + 1 < keys.size(); ++k)
+      at = &enter(*at, keys[k], k == 0, k == 1 && keys[0] == "hamiltonian");
+    if (!at->is_table() && at->get<SceneValue::Array>() == nullptr)
+      fail(fmt::format("'{}' is not a key of a table", path_));
+    return *at;
+  }
+
+  [[noreturn]] void fail(const std::string& message) const { throw scene_error(source_, line_, path_, "", message); }
+
+  /// One table of a list: `every.0={type="energy", steps=10}`; the number after the last adds one.
+  void put_element(SceneValue::Array& list, const std::string& key, SceneValue value) {
+    if (!value.is_table()) fail(fmt::format("'{}' is a table; set one of its keys: {}.key=value", path_, path_));
+    if (key == std::to_string(list.size())) {
+      list.push_back(std::move(value));
+    } else {
+      element(list, key) = std::move(value);
+    }
+  }
+
+  void check_top(const SceneValue& scene, const std::string& key, const SceneValue& value) const {
+    const SceneValue* old = scene.find(key);
+    if (old == nullptr) return;
+    if (old->is_table()) fail(fmt::format("'{}' is a table; set one of its keys: {}.key=value", key, key));
+    if (old->is_table_list() && value.get<SceneValue::Array>() == nullptr) {
+      fail(fmt::format("'{0}' is a list of tables; give a list, or set a key of one: {0}.0.key=value", key));
+    }
+  }
+
+  /// @param top  whether this is the scene itself  @param hamiltonian  whether it is its [hamiltonian]
+  SceneValue& enter(SceneValue& at, const std::string& key, bool top, bool hamiltonian) {
+    if (SceneValue::Array* list = at.get<SceneValue::Array>()) return element(*list, key);
+    if (!at.is_table()) fail(fmt::format("there is nothing below the value {}", to_text(at)));
+    if (SceneValue* next = at.find(key)) return *next;
+    for (const std::string_view known : known_tables) {
+      if (in_expect_ || (top && key == known)) return at.put(key, SceneValue::table(line_));
+    }
+    for (const std::string_view known : known_of_hamiltonian) {
+      if (hamiltonian && key == known) return at.put(key, SceneValue::table(line_));
+    }
+    std::vector<std::string> keys;
+    for (const auto& [name, value] : *at.get<SceneValue::Table>()) {
+      if (value.is_table() || value.is_table_list()) add_new(keys, name);
+    }
+    for (const std::string_view known : known_tables) {
+      if (top) add_new(keys, known);
+    }
+    for (const std::string_view known : known_of_hamiltonian) {
+      if (hamiltonian) add_new(keys, known);
+    }
+    fail(fmt::format("there is no '{}' in the scene{}", key, did_you_mean(key, keys)));
+  }
+
+  SceneValue& element(SceneValue::Array& list, const std::string& key) {
+    std::size_t index = 0;
+    const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), index);
+    if (error == std::errc() && end == key.data() + key.size()) {
+      if (index >= list.size())
+        fail(fmt::format("there is no number {}; there are {}, counted from 0", index, list.size()));
+      return list[index];
+    }
+    std::vector<SceneValue*> found;
+    std::vector<std::string> names;
+    for (SceneValue& one : list) {
+      const std::string type = text_of(one, "type"), name = text_of(one, "name");
+      if (type == key || name == key) found.push_back(&one);
+      for (const std::string& known : {type, name}) add_new(names, known);
+    }
+    if (found.empty()) fail(fmt::format("there is no '{}' in the scene{}", key, did_you_mean(key, names)));
+    if (found.size() > 1) {
+      fail(fmt::format("'{}' stands {} times in the scene; give its number, counted from 0", key, found.size()));
+    }
+    return *found.front();
+  }
+
+  static void drop_alternatives(SceneValue& table, const std::string& key) {
+    for (const auto& group : alternatives) {
+      bool member = false;
+      for (const std::string_view one : group) member = member || one == key;
+      if (!member) continue;
+      for (const std::string_view one : group) {
+        if (one != key) table.erase(one);
+      }
+    }
+  }
+
+  const SceneSource& source_;
+  int line_;
+  const std::string& text_;
+  std::string path_;
+  bool in_expect_ = false;  ///< where tables need not have been written
+};
+
+}  // namespace
+
+void apply_sets(SceneValue& scene, const SceneSource& source) {
+  for (std::size_t k = 0; k < source.sets.size(); ++k) Setter(source, k).apply(scene);
+}
+
+}  // namespace noether
