@@ -3,6 +3,7 @@
 
 #include "engine/concepts.hpp"
 #include "engine/description.hpp"
+#include "engine/sums.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -128,8 +129,8 @@ template <class Real> class VectorField {
   /// Kinetic less potential energy at y = (q, v), not counted [energy]. @throws LogicError  as `potential`
   virtual Real lagrangian(const Real& t, const Vector<Real>& y) {
     const Vector<Real> m = masses();
-    Real kinetic(0);
-    for (Index i = 0; i < m.size(); ++i) kinetic += m[i] * y[m.size() + i] * y[m.size() + i] / Real(2);
+    const Real kinetic =
+        sum_over<Real>(m.size(), [&](Index i) { return m[i] * y[m.size() + i] * y[m.size() + i] / Real(2); });
     return kinetic - potential(t, y);
   }
   /// Whether all forces know their secants (engine/force_sink.hpp).

@@ -12,9 +12,9 @@ SceneValue read_minimize(const SceneContext& context, const SceneValue& table, S
   MinimizeOptions options;
   read_part(reader, options);
   if (!scene.hamiltonian.splitting.claims.inertial) {
-    reader.fail(nullptr, "",
-                fmt::format("planets of {} have no minimum to go to; take [minimize] out",
-                            scene.hamiltonian.splitting.name));
+    reader.fail(
+        nullptr, "",
+        fmt::format("planets of {} have no minimum to go to; take [minimize] out", scene.hamiltonian.splitting.name));
   }
   if (!scene.hamiltonian.constraints.empty()) {
     reader.fail(nullptr, "",
@@ -23,7 +23,8 @@ SceneValue read_minimize(const SceneContext& context, const SceneValue& table, S
   }
   if (!scene.hamiltonian.splitting.only_forces) {
     reader.fail(nullptr, "",
-                fmt::format("{} is more than forces, so a minimum of their energy is no rest of it; take [minimize] out",
+                fmt::format("{} is more than forces, so a minimum of their energy is no rest of it; take [minimize] "
+                            "out",
                             scene.hamiltonian.splitting.name));
   }
   for (const SceneForce& force : scene.hamiltonian.terms()) {
