@@ -1,10 +1,9 @@
 #include "scene/scene.hpp"
 
-#include "integrators/composition.hpp"
 #include "integrators/schemes.hpp"
 #include "io/files.hpp"
-#include "neighbors/neighbor_images.hpp"
 #include "numbers/suggest.hpp"
+#include "scene/check.hpp"
 #include "scene/minimize.hpp"
 #include "scene/read_constraints.hpp"
 #include "scene/read_integrator.hpp"
@@ -66,7 +65,7 @@ class SceneReader {
     const auto verdicts = tables_of(top, "verdict");
     scene_.verdicts = read_verdicts(context_, verdicts);
     if (!verdicts.empty()) scene_.effective.put("verdict", *top.find("verdict"));
-    check(top);
+    check_scene(context_, root_, scene_);
     scene_.effective_toml = print_toml(scene_.effective);
   }
 
@@ -393,173 +392,6 @@ class SceneReader {
     }
   }
 
-  /// Puts the parts together once: what they refuse is told with its place in the scene.
-  void check(TableReader& top) {
-    if (scene_.system) {
-      check_system(top);
-    } else {
-      check_hamiltonian(top);
-    }
-    check_decorators(top);
-    try {
-      assemble(scene_);
-    } catch (const SceneError&) {
-      throw;
-    } catch (const Error& error) {
-      refuse_monitor(top);
-      top.fail(nullptr, "", error.message());
-    }
-  }
-
-  /// Puts the decorators around the method one by one: each refuses what it cannot stand around.
-  void check_decorators(TableReader& top) const {
-    TableReader integrator(context_, *top.find("integrator"), "[integrator]", "integrator");
-    const auto tables = tables_of(integrator, "decorator");
-    for (std::size_t k = 0; k < tables.size(); ++k) {
-      ParticleSystem<double> s = scene_.particles;
-      s.clock() = clock_of(scene_.integrator);
-      try {
-        integrator_of(scene_, k + 1).bind(s);
-      } catch (const Error& error) {
-        TableReader decorator(context_, *tables[k], "[[integrator.decorator]]",
-                              fmt::format("integrator.decorator.{}", k));
-        decorator.find("type");
-        const bool own = !error.key().empty() && tables[k]->find(error.key()) != nullptr;
-        decorator.fail(own ? error.key() : "type", error.message());
-      }
-    }
-  }
-
-  void check_system(TableReader& top) {
-    TableReader integrator(context_, *top.find("integrator"), "[integrator]", "integrator");
-    ParticleSystem<double> s = scene_.particles;
-    try {
-      integrator_of(scene_, 0).bind(s);
-    } catch (const SchemeMismatch& error) {
-      integrator.fail(error.key().empty() ? "method" : error.key(), error.message());
-    }
-    const std::unique_ptr<VectorField<double>> field = scene_.system->field();
-    Vector<double> y, dy;
-    field->gather(s, y);
-    field->rate(0, y, dy);
-    for (Index i = 0; i < dy.size(); ++i) {
-      if (std::isfinite(dy[i])) continue;
-      TableReader(context_, *top.find("system"), "[system]", "system")
-          .fail(nullptr, "start", fmt::format("the rate of {} is not finite at the start", s.variable_name(i)));
-    }
-  }
-
-  void check_hamiltonian(TableReader& top) {
-    check_range(top);
-    TableReader hamiltonian(context_, *top.find("hamiltonian"), "[hamiltonian]", "hamiltonian");
-    refuse_constraints(context_, tables_of(hamiltonian, "constraint"), scene_);
-    TableReader integrator(context_, *top.find("integrator"), "[integrator]", "integrator");
-    try {
-      if (!scene_.integrator.classical) hamiltonian_of(scene_);
-    } catch (const SceneError&) {
-      throw;
-    } catch (const Error& error) {
-      hamiltonian.fail("type", error.message());
-    }
-    if (scene_.hamiltonian.neighbors && scene_.integrator.classical) {
-      integrator.fail("method",
-                      fmt::format("method '{}' keeps a neighbor list of its own; [hamiltonian.neighbors] is for "
-                                  "splittings",
-                                  scene_.integrator.method));
-    }
-    if (scene_.hamiltonian.thermostat && scene_.integrator.classical) {
-      integrator.fail("method", fmt::format("method '{}' knows no noise: a thermostat is the letter O of a word; use "
-                                            "\"BAOAB\", or a scheme such as 'verlet'",
-                                            scene_.integrator.method));
-    }
-    if (scene_.hamiltonian.thermostat && scene_.integrator.step < 0) {
-      integrator.fail("step",
-                      fmt::format("step = {} leads backwards, and a thermostat knows no way back; a step above 0 "
-                                  "is expected",
-                                  scene_.integrator.step_text));
-    }
-    std::optional<AnyIntegrator<double>> made;
-    try {
-      made = integrator_of(scene_, 0);
-    } catch (const SchemeMismatch& error) {
-      integrator.fail(error.key().empty() ? "method" : error.key(), error.message() + std::string(who_has_noise()));
-    }
-    check_start(hamiltonian, integrator, *made);
-  }
-
-  /// Ends at the table of the monitor that this run cannot serve, if one is the reason why it cannot be assembled.
-  void refuse_monitor(TableReader& top) const {
-    const auto tables = tables_of(top, "every");
-    for (std::size_t k = 0; k < scene_.watches.size(); ++k) {
-      Scene alone = scene_;
-      alone.watches = {scene_.watches[k]};
-      try {
-        assemble(alone);
-      } catch (const Error& error) {
-        TableReader(context_, *tables[k], "[[every]]", fmt::format("every.{}", k)).fail("type", error.message());
-      }
-    }
-  }
-
-  /// Refuses a box that is too small for the range of the forces before somebody looks for neighbors there.
-  void check_range(TableReader& top) const {
-    double range = 0;
-    for (const SceneForce& force : scene_.hamiltonian.forces) {
-      range = std::max(range, force.force.claims().range);
-    }
-    try {
-      check_images(scene_.particles.box(), range, scene_.hamiltonian.neighbors.value_or(NeighborOptions{}).skin);
-    } catch (const Error& error) {
-      if (error.key() == "skin") {
-        TableReader hamiltonian(context_, *top.find("hamiltonian"), "[hamiltonian]", "hamiltonian");
-        TableReader(context_, *hamiltonian.find("neighbors"), "[hamiltonian.neighbors]", "hamiltonian.neighbors")
-            .fail("skin", error.message());
-      }
-      TableReader particles(context_, *top.find("particles"), "[particles]", "particles");
-      particles.fail(particles.find("box"), "box", error.message());
-    }
-  }
-
-  void check_start(const TableReader& hamiltonian, const TableReader& integrator, AnyIntegrator<double>& made) {
-    ParticleSystem<double> s = scene_.particles;
-    s.clock() = Clock<double>::fixed(0, scene_.integrator.step);
-    try {
-      made.bind(s);
-    } catch (const SchemeMismatch& error) {
-      integrator.fail(error.key().empty() ? "method" : error.key(), error.message());
-    } catch (const Error& error) {
-      hamiltonian.fail("type", error.message());
-    }
-    const auto pair = coincident_bodies(s);
-    if (!pair) return;
-    VectorColumn<double> a(s.size());
-    made.accelerations(s, a);
-    const Vec3<double> one = a[pair->first], other = a[pair->second];
-    if (one.allFinite() && other.allFinite()) return;
-    const SceneValue* particles = root_.find("particles");
-    const SceneValue* bodies = particles->find("body");
-    int line = particles->line;
-    if (bodies != nullptr)
-      line = std::get<SceneValue::Array>(bodies->data)[static_cast<std::size_t>(pair->second)].line;
-    throw scene_error(
-        scene_.source, line, "particles", "",
-        fmt::format("'{}' and '{}' stand in one place, where {}", s.name(pair->first), s.name(pair->second),
-                    scene_.hamiltonian.is_keplerian() ? "their attraction is infinite; move one, or give gravity a "
-                                                        "softening"
-                                                      : "a force between them is no number; move one"));
-  }
-
-  /// Ends the refusal of a word with noise where there is none.
-  std::string_view who_has_noise() const {
-    if (scene_.hamiltonian.thermostat || !scene_.hamiltonian.splitting.claims.inertial) return "";
-    const Word& word = scene_.integrator.scheme.word;
-    const bool noisy = std::any_of(word.begin(), word.end(), [&](const Stage& stage) {
-      return std::any_of(parts_.thermostats().begin(), parts_.thermostats().end(),
-                         [&](const auto& kind) { return !kind.info.meaning(stage.letter).empty(); });
-    });
-    return noisy ? "; O is the letter of a thermostat: add [hamiltonian.thermostat]" : "";
-  }
-
   const SceneValue& root_;
   const Parts& parts_;
   Scene& scene_;
@@ -574,6 +406,7 @@ Scene read_scene(SceneValue root, const std::filesystem::path& file, const Parts
   scene.file = file;
   scene.parts = std::make_shared<const Parts>(parts);
   scene.source = {file.string(), sets};
+  check_tree(root, scene.source);
   apply_sets(root, scene.source);
   SceneReader(root, *scene.parts, scene).read();
   return scene;

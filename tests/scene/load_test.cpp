@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -101,6 +102,28 @@ TEST_CASE("a scene from a tree of values is the one from text, and its errors na
     CHECK(error.value() == "\"yoshida4\"");
     CHECK_THAT(std::string(error.what()), Catch::Contains("unknown method 'yoshida4'; did you mean 'yoshida_4'?"));
   }
+}
+
+TEST_CASE("a tree of values is held to what texts grant: keys once, UTF-8, no endless depth", "[scene][load]") {
+  const auto message = [](const std::function<void(SceneValue&)>& change) {
+    SceneValue root = tree_of_two_bodies();
+    change(root);
+    try {
+      read_scene(root);
+    } catch (const SceneError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  CHECK(message([](SceneValue& root) { root.get<SceneValue::Table>()->emplace_back("units", SceneValue::of(true)); }) ==
+        "scene: the key 'units' stands twice; give it once");
+  CHECK(message([](SceneValue& root) { root.put("title", SceneValue::of(std::string("\xFF"))); }) ==
+        "scene: title is not UTF-8; give text in that encoding");
+  CHECK(message([](SceneValue& root) {
+          SceneValue deep = SceneValue::of(true);
+          for (int k = 0; k < 100; ++k) deep = SceneValue::of(SceneValue::Array{deep});
+          root.put("expect", deep);
+        }).find("more than 64 deep") != std::string::npos);
 }
 
 TEST_CASE("a scene and a program end in the same digest", "[scene][determinism]") {
