@@ -33,6 +33,7 @@ template <class Real> void ConstraintEquations<Real>::lay_out(const ParticleSyst
   layout_ = {};
   layout_.first.push_back(0);
   scales_.clear();
+  set_.find(s.ids());
   for (const auto& group : set_.groups()) {
     for (Index c = 0; c < group->size(); ++c) {
       for (Index e = 0; e < group->equations(); ++e) {

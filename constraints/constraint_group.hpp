@@ -5,6 +5,7 @@
 #include "constraints/parameter_bits.hpp"
 #include "engine/particle_system.hpp"
 #include "engine/signature.hpp"
+#include "engine/tied.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -72,6 +73,9 @@ class ConstraintGroup {
   virtual Index particles() const = 0;
   /// The particle in place `k` of a constraint.
   virtual Index particle(Index constraint, Index k) const = 0;
+  /// Finds the particles among those of a run: from the first time on they are known by their ids, so that they stay
+  /// the same particles when others are taken out. @throws Error  for a particle that has gone
+  virtual void find(const std::vector<std::int64_t>& ids) = 0;
   /// How far an equation's value is from 0, relative to the scale of its constraint [1].
   virtual double residual(Index constraint, double g) const = 0;
   virtual double scale(Index constraint) const = 0;
@@ -103,6 +107,19 @@ template <Constraint C> class ConstraintsOf final : public ConstraintGroup {
   void add(C constraint, const Particles& particles) {
     constraints_.push_back(std::move(constraint));
     particles_.push_back(particles);
+    ids_.clear();
+  }
+  void find(const std::vector<std::int64_t>& ids) override {
+    std::vector<Index> places;
+    for (const Particles& of : particles_) places.insert(places.end(), of.begin(), of.end());
+    const auto is_there = [&](Index i) { return i >= 0 && i < std::ssize(ids); };
+    if (ids_.empty() && !std::all_of(places.begin(), places.end(), is_there))
+      return;  // told when equations are laid out
+    detail::find_tied(ids, places, ids_);
+    auto place = places.begin();
+    for (Particles& of : particles_) {
+      for (Index& i : of) i = *place++;
+    }
   }
 
   std::unique_ptr<ConstraintGroup> clone() const override { return std::make_unique<ConstraintsOf>(*this); }
@@ -189,6 +206,7 @@ template <Constraint C> class ConstraintsOf final : public ConstraintGroup {
 
   std::vector<C> constraints_;
   std::vector<Particles> particles_;
+  std::vector<std::int64_t> ids_;  ///< of the particles, once they are known by them
 };
 
 }  // namespace noether

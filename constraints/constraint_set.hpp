@@ -77,6 +77,11 @@ class ConstraintSet {
   bool empty() const { return groups_.empty(); }
   /// Number of equations: the degrees of freedom they take.
   Index equations() const;
+  /// Finds its particles among those of a run, by their ids from the first time on.
+  /// @throws Error  for a particle that has gone
+  void find(const std::vector<std::int64_t>& ids) {
+    for (const auto& group : groups_) group->find(ids);
+  }
   /// The constraint that an equation belongs to. @param equation  in [0, equations())
   ConstraintPlace place(Index equation) const;
   /// A constraint in words: "distance of 'a' and 'b'".

@@ -199,11 +199,11 @@ struct OnLine {
   }
 };
 
-extern template class ConstraintsOf<Fixed>;  // compiled once, in surfaces.cpp
-extern template class ConstraintsOf<OnSphere>;  // compiled once, in surfaces.cpp
-extern template class ConstraintsOf<OnPlane>;  // compiled once, in surfaces.cpp
+extern template class ConstraintsOf<Fixed>;       // compiled once, in surfaces.cpp
+extern template class ConstraintsOf<OnSphere>;    // compiled once, in surfaces.cpp
+extern template class ConstraintsOf<OnPlane>;     // compiled once, in surfaces.cpp
 extern template class ConstraintsOf<OnCylinder>;  // compiled once, in surfaces.cpp
-extern template class ConstraintsOf<OnCircle>;  // compiled once, in surfaces.cpp
-extern template class ConstraintsOf<OnLine>;  // compiled once, in surfaces.cpp
+extern template class ConstraintsOf<OnCircle>;    // compiled once, in surfaces.cpp
+extern template class ConstraintsOf<OnLine>;      // compiled once, in surfaces.cpp
 
 }  // namespace noether

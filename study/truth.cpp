@@ -60,6 +60,11 @@ WideRun run_wide(const WideScene& wide, const Sampling& sampling, const MethodCh
   field->bind(wide.start);
   method->bind(*field);
   field->gather(wide.start, y);
+  // As if nobody had ever been wrapped, as positions of runs are recorded.
+  const Index n = wide.start.size();
+  for (int k = 0; k < 3; ++k) {
+    for (Index i = 0; i < n; ++i) y[k * n + i] = wide.start.unwrapped(i)[k];
+  }
   rate.resize(y.size());
   // What is left to the moment is a rounding error of time in doubles: a line leads there.
   const auto keep = [&](const Quad& t, const Quad& goal) {
@@ -331,12 +336,16 @@ Truth drive(const WideScene& wide, const Way& way, const Sampling& sampling, Pos
   return truth;
 }
 
-void set_energies(Truth& truth, WideScene& wide) {
+void set_energies(Truth& truth, WideScene& wide, const Sampling& sampling) {
   ParticleSystem<Quad> s = wide.start;
   if (s.size() == 0) return;
-  for (const Vector<Quad>& y : truth.y) {
-    wide.field->bind(s);
+  s.clock() = Clock<Quad>::free(0);
+  wide.field->bind(s);
+  for (std::size_t j = 0; j < truth.y.size(); ++j) {
+    const Vector<Quad>& y = truth.y[j];
     wide.field->scatter(y, s);
+    s.wrap();
+    s.clock().set_stage_offset(sampling.exact_time(static_cast<int>(j)));
     truth.energy.push_back(static_cast<double>(wide.field->energy(s).total()));
   }
 }
@@ -360,7 +369,7 @@ Truth find_truth(const Scene& scene, const Sampling& sampling, const TruthOption
   if (truth.error && *truth.error < 1e-3) {
     for (const SceneDecorator& one : scene.integrator.decorators)
       truth.note += fmt::format("; decorator '{}' is left out of it", one.name);
-    set_energies(truth, wide);
+    set_energies(truth, wide, sampling);
     return truth;
   }
   if (truth.error) {

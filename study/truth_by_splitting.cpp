@@ -42,6 +42,7 @@ SplitRun run_along(const WideScene& wide, const Sampling& sampling, std::string_
     Vector<Quad>& rate = run.rate.emplace_back(run.y.back());
     const Index n = s.size();
     for (int k = 0; k < 3; ++k) {
+      for (Index i = 0; i < n; ++i) run.y.back()[k * n + i] = seen.unwrapped(i)[k];
       std::copy_n(seen.velocities().component(k), n, rate.data() + k * n);
       std::copy_n(a.component(k), n, rate.data() + (3 + k) * n);
     }

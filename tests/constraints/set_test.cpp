@@ -225,6 +225,23 @@ TEST_CASE("temperature counts the degrees of freedom that are left", "[constrain
       4);
 }
 
+TEST_CASE("constraints stay with their particles when others are taken out of a run", "[constraints][set]") {
+  ParticleSystem<double> s(unit_system("reduced"));
+  s.add("free", 1, Vec3<double>(9, 9, 9), Vec3<double>::Zero());
+  s.add("a", 1, Vec3<double>(0, 0, 0), Vec3<double>(0, 1, 0));
+  s.add("b", 1, Vec3<double>(1, 0, 0), Vec3<double>(0, -1, 0));
+  ConstraintSet bar;
+  bar.add(s, Distance{}, {1, 2});
+  Simulation sim(s, compose(KineticPotential(UniformField{{0, 0, -1}}, bar), schemes::verlet), 0.01);
+  REQUIRE(sim.run(20).ok());
+  sim.edit([](ParticleSystem<double>& all) { all.remove(0); });
+  REQUIRE(sim.run(20).ok());
+  const auto& x = sim.particles().positions();
+  CHECK(std::abs(std::sqrt(norm2(Vec3<double>(x[1] - x[0]))) - 1) < 1e-13);
+  CHECK_THROWS_WITH(sim.edit([](ParticleSystem<double>& all) { all.remove(0); }),
+                    Catch::Contains("the particle with id 1 is tied"));
+}
+
 TEST_CASE("a run goes on with the same constraints only", "[constraints][restart]") {
   const Mechanism one = hanging_chain(4), other = hanging_chain(4, {.solver = ConstraintMethod::rattle});
   Simulation<double> sim(one.particles, compose(hamiltonian_of(one), schemes::verlet), 0.01);
