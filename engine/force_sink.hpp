@@ -98,7 +98,12 @@ template <class Real> class ForceSink {
   }
   /// Calls `add()` for term `k` of a sum, which has a workspace of its own.
   template <class Add> void in_room(std::size_t k, const Add& add) {
-    if (own_ == nullptr) return add();
+    if (own_ == nullptr) {
+      std::unique_ptr<Workspace> outer = std::move(lost_);
+      add();
+      lost_ = std::move(outer);
+      return;
+    }
     Workspace* const outer = std::exchange(own_, &own_->room(k));
     add();
     own_ = outer;

@@ -169,11 +169,11 @@ template <class Real, std::size_t n> struct Dual {
   }
   friend Dual pow(const Dual& a, const Dual& p) {
     using std::pow, std::log;
-    const Real power = pow(a.value, p.value), slope = p.value * pow(a.value, p.value - Real(1));
+    const Real power = pow(a.value, p.value), rate = p.value * pow(a.value, p.value - Real(1));
     // An exponent that stays as it is has no slope to give, not even where there is no logarithm.
-    Dual result = join(power, a, slope, p, power * log(a.value));
+    Dual result = join(power, a, rate, p, power * log(a.value));
     for (std::size_t k = 0; k < static_cast<std::size_t>(n); ++k) {
-      result.slope[k] = select(p.slope[k] == Real(0), Real(slope * a.slope[k]), result.slope[k]);
+      result.slope[k] = select(p.slope[k] == Real(0), Real(rate * a.slope[k]), result.slope[k]);
     }
     return result;
   }

@@ -54,16 +54,6 @@ type = "checkpoint"
 steps = 100
 )";
 
-ProcessResult own(const ScratchFolder& folder, std::string_view line) {
-  return noether(folder, line, NOETHER_OWN_PROGRAM);
-}
-std::string own_output(const ScratchFolder& folder, const std::string& line) {
-  return output(folder, line, NOETHER_OWN_PROGRAM);
-}
-std::string digest_of(const ScratchFolder& folder, const std::string& line) {
-  return json_member(own_output(folder, line), "digest");
-}
-
 }  // namespace
 
 TEST_CASE("parts from outside with columns of their own are listed, described and explained", "[cli][own_columns]") {
@@ -81,16 +71,16 @@ TEST_CASE("parts from outside with columns of their own are listed, described an
 TEST_CASE("runs that move columns have the same bits on any threads, at any cadence and across a restart",
           "[cli][own_columns]") {
   const SceneFolder folder(wave);
-  const std::string digest = digest_of(folder, "run scene.toml --json --out a");
-  CHECK(digest_of(folder, "run scene.toml --json --out b --threads 2") == digest);
-  CHECK(digest_of(folder, "run scene.toml --json --out c --set every.0.steps=1 --set every.1.steps=3") == digest);
+  const std::string digest = own_digest(folder, "a");
+  CHECK(own_digest(folder, "b --threads 2") == digest);
+  CHECK(own_digest(folder, "c --set every.0.steps=1 --set every.1.steps=3") == digest);
   own_output(folder, "run scene.toml --quiet --out d --until 6");
-  CHECK(digest_of(folder, "run scene.toml --json --out d --resume --until 10") == digest);
+  CHECK(own_digest(folder, "d --resume --until 10") == digest);
   CHECK(json_member(own_output(folder, "info --json d/run.h5"), "digest") == digest);
   CHECK(json_member(own_output(folder, "info --json d/checkpoint.h5"), "digest") == digest);
   CHECK(own(folder, "verify d/run.h5").exit_code == 0);
   // Turned otherwise at the start, it is another run.
-  CHECK(digest_of(folder, "run scene.toml --json --out e --set particles.body.1.orientation=[0.6,0,0.8,0]") != digest);
+  CHECK(own_digest(folder, "e --set particles.body.1.orientation=[0.6,0,0.8,0]") != digest);
 }
 
 TEST_CASE("frames hold the columns that move, and what is drawn and written from them does too", "[cli][own_columns]") {

@@ -51,18 +51,6 @@ const std::string adaptive =
     " --set integrator.method=dop853 --set integrator.step= --set integrator.steps= --set integrator.until=10";
 const std::string without = " --set integrator.decorator=";
 
-ProcessResult own(const ScratchFolder& folder, std::string_view line) {
-  return noether(folder, line, NOETHER_OWN_PROGRAM);
-}
-std::string own_output(const ScratchFolder& folder, const std::string& line) {
-  return output(folder, line, NOETHER_OWN_PROGRAM);
-}
-std::string digest_of(const ScratchFolder& folder, const std::string& line) {
-  const std::string digest = json_member(own_output(folder, "run scene.toml --json --out " + line), "digest");
-  CHECK(digest.size() > 10);
-  return digest;
-}
-
 double number(const std::string& text) {
   double value = std::nan("");
   std::from_chars(text.data(), text.data() + text.size(), value);
@@ -117,15 +105,15 @@ TEST_CASE("decorated runs have the same bits on any threads, at any cadence and 
                                   std::string(" --set integrator.compensated=true"), adaptive}) {
     CAPTURE(sets);
     const SceneFolder folder(orbit);
-    const std::string digest = digest_of(folder, "a" + sets);
-    CHECK(digest_of(folder, "b --threads 2" + sets) == digest);
-    CHECK(digest_of(folder, "c --set every.0.steps=1" + sets) == digest);
-    CHECK(digest_of(folder, "e --set every.0.steps=7" + sets) == digest);
+    const std::string digest = own_digest(folder, "a" + sets);
+    CHECK(own_digest(folder, "b --threads 2" + sets) == digest);
+    CHECK(own_digest(folder, "c --set every.0.steps=1" + sets) == digest);
+    CHECK(own_digest(folder, "e --set every.0.steps=7" + sets) == digest);
     // 3.3 lies between two projections: what the run is to be put back to is state, not what it then has.
     own_output(folder, "run scene.toml --quiet --out d --until 3.3" + sets);
-    CHECK(digest_of(folder, "d --resume --until 10" + sets) == digest);
-    CHECK(digest_of(folder, "f" + sets + without) != digest);
-    CHECK(digest_of(folder, "g" + sets + " --set integrator.decorator.0.steps=3") != digest);
+    CHECK(own_digest(folder, "d --resume --until 10" + sets) == digest);
+    CHECK(own_digest(folder, "f" + sets + without) != digest);
+    CHECK(own_digest(folder, "g" + sets + " --set integrator.decorator.0.steps=3") != digest);
   }
 }
 
@@ -160,10 +148,10 @@ TEST_CASE("a run that was decorated in another way is not gone on with", "[cli][
 TEST_CASE("several decorators stand around each other in their order", "[cli][own_decorator]") {
   const SceneFolder folder(orbit);
   const std::string two = " --set 'integrator.decorator.1={type=\"energy_projection\", steps=15}'";
-  const std::string digest = digest_of(folder, "a" + two);
-  CHECK(digest_of(folder, "b") != digest);
+  const std::string digest = own_digest(folder, "a" + two);
+  CHECK(own_digest(folder, "b") != digest);
   own_output(folder, "run scene.toml --quiet --out c --until 3.3" + two);
-  CHECK(digest_of(folder, "c --resume --until 10" + two) == digest);
+  CHECK(own_digest(folder, "c --resume --until 10" + two) == digest);
   const std::string explained = own_output(folder, "explain scene.toml" + two);
   CHECK(has(explained, "  decorator energy_projection, steps 10\n  decorator energy_projection, steps 15\n"));
 }

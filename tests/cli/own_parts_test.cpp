@@ -45,13 +45,6 @@ type = "checkpoint"
 steps = 100
 )";
 
-ProcessResult own(const ScratchFolder& folder, std::string_view line) {
-  return noether(folder, line, NOETHER_OWN_PROGRAM);
-}
-std::string own_output(const ScratchFolder& folder, const std::string& line) {
-  return output(folder, line, NOETHER_OWN_PROGRAM);
-}
-
 /// x + i y of a charge of mass m after time t: z'' = i omega z' - (k / m) z.
 std::complex<double> exact(std::complex<double> z, std::complex<double> w, double m, double t) {
   using namespace std::complex_literals;

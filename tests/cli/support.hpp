@@ -56,6 +56,14 @@ inline std::string output(const ScratchFolder& folder, const std::string& line, 
   return result.out;
 }
 
+/// The same of the program with parts from outside the library (tests/cli/own_parts).
+inline ProcessResult own(const ScratchFolder& folder, std::string_view line) {
+  return noether(folder, line, NOETHER_OWN_PROGRAM);
+}
+inline std::string own_output(const ScratchFolder& folder, const std::string& line) {
+  return output(folder, line, NOETHER_OWN_PROGRAM);
+}
+
 inline std::size_t line_count(const std::string& text) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }
@@ -145,6 +153,13 @@ inline void check_same_run(const std::string& json, const std::string& whole) {
   CHECK(json_member(json, "evaluations") == json_member(whole, "evaluations"));
   CHECK(json_member(json, "monitors") == json_member(whole, "monitors"));
   CHECK_FALSE(json_member(json, "monitors").empty());
+}
+
+/// The digest of a run of scene.toml by that program into a folder, with more options after it.
+inline std::string own_digest(const ScratchFolder& folder, const std::string& line) {
+  const std::string digest = json_member(own_output(folder, "run scene.toml --json --out " + line), "digest");
+  CHECK(digest.size() > 10);
+  return digest;
 }
 
 }  // namespace noether::test
