@@ -122,7 +122,7 @@ TEST_CASE("its runs can be verified, drawn and converted, and tell the scene wit
   own_output(folder, "run scene.toml --quiet --out a --set integrator.decorator.0.steps=5");
   CHECK(own(folder, "verify a/run.h5").exit_code == 0);
   own_output(folder, "plot a/run.h5 --out picture.svg");
-  CHECK(has(own_output(folder, "info a/run.h5"), "planet"));
+  CHECK(has(own_output(folder, "info a/run.h5"), "2 particles"));
   own_output(folder, "convert a/run.h5 a.csv");
   CHECK(has(read_text(folder / "a.csv"), "planet"));
   const std::string scene = io::info(folder / "a/run.h5").scene_toml;

@@ -287,7 +287,7 @@ TEST_CASE("a copy of a solver goes on from any stage with the same bits, and apa
       assigned.advance_positions(third, 0.02);
       assigned.project_velocities(third, 0.02);
       CHECK(distance_of_states(other, third) == 0);
-      CHECK(copy.iterations() > solver.iterations());
+      if (method == ConstraintMethod::newton) CHECK(copy.iterations() > solver.iterations());
       REQUIRE(!copy.failure());
     }
   }
