@@ -1,5 +1,7 @@
 #include "engine/moments.hpp"
 
+#include "engine/moments_simd.hpp"
+
 #include "engine/sums.hpp"
 
 #include <array>

@@ -1,8 +1,8 @@
 #pragma once
 /// Momenta and moments of all particles: sums of vectors that come out the same in any order.
 
-#include "engine/moments_simd.hpp"
 #include "engine/particle_system.hpp"
+#include "engine/wide_sums_row.hpp"
 
 namespace noether {
 

@@ -2,6 +2,7 @@
 /// Sums of products over particles to twice the digits of a double: the interface of `moments_simd.cpp`, compiled once
 /// per SIMD level.
 
+#include "engine/wide_sums_row.hpp"
 #include "numbers/kernels_simd.hpp"
 
 #include <cstddef>
@@ -13,11 +14,6 @@ struct WeightedVectors {
   std::ptrdiff_t count;
   const double* mass;
   const double* x[3];
-};
-
-/// Three sums, each high + low; low is not rounded off against high.
-struct WideSums {
-  double high[3], low[3];
 };
 
 /// Sums of exact products, right to count^2 2^-104 of the sum of all sizes. Terms are cut to grids that the largest of
