@@ -211,8 +211,8 @@ std::vector<Twin> decorated_twins() {
 /// A Hamiltonian from outside with an orientation and a spin, under a force from outside with a mesh and a torque.
 std::vector<Twin> turning_twins() {
   ParticleSystem<double> bodies = test::cloud(300);
-  auto& spin = bodies.add_column<test::Spin>();
   bodies.add_column<test::Orientation>();
+  auto& spin = bodies.add_column<test::Spin>();
   for (Index i = 0; i < bodies.size(); ++i) spin.set(i, {0.1 * static_cast<double>(i % 7), 0.3, -0.2});
   const ForceField<double> field =
       ForceField<double>().add(Gravity{.G = 1, .softening = 0.05}).add(test::MeshField{.strength = 0.5, .period = 1});
