@@ -161,19 +161,20 @@ TEST_CASE("a body that nothing holds turns about its spin by the closed form", "
   CHECK(std::abs(q[3] - std::sin(10.0)) < 1e-14);
 }
 
-TEST_CASE("errors of tops are measured against their own splitting in 113 bits", "[cli][own_columns]") {
+TEST_CASE("errors of tops are measured against their own splitting in 113 bits", "[cli][own_columns][slow]") {
   const SceneFolder folder(wave);
-  const std::string table = own_output(
-      folder, "compare scene.toml --methods yoshida_4,verlet,suzuki_umeno_8_s15 --steps 0.02,0.01 --until 4 --json");
+  const std::string table =
+      own_output(folder, "compare scene.toml --methods yoshida_4,verlet --steps 0.02,0.01 --until 4 --json");
   CHECK(has(table, "sofroniou_spaletta_10_s35 in quad"));
   CHECK_FALSE(has(table, "diverged"));
-  const auto error_of = [&](const std::string& method, const std::string& step) {
-    return std::stod(json_member(
-        own_output(folder, "compare scene.toml --methods " + method + " --steps " + step + " --until 4 --json"),
-        "position_error_max"));
+  const auto order_of = [&](const std::string& method) {
+    const std::string before = "\"method\":\"" + method + "\",\"order\":";
+    const std::size_t at = table.find(before);
+    REQUIRE(at != std::string::npos);
+    return std::stod(table.substr(at + before.size()));
   };
-  CHECK(std::abs(std::log2(error_of("verlet", "0.02") / error_of("verlet", "0.01")) - 2) < 0.3);
-  CHECK(std::abs(std::log2(error_of("yoshida_4", "0.02") / error_of("yoshida_4", "0.01")) - 4.3) < 0.7);
+  CHECK(std::abs(order_of("verlet") - 2) < 0.1);
+  CHECK(std::abs(order_of("yoshida_4") - 4.3) < 0.7);  // third derivatives of the mesh have jumps
 }
 
 TEST_CASE("limits, advice and energies of tops are told", "[cli][own_columns]") {
