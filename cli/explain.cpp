@@ -255,6 +255,7 @@ std::string meaning(char letter, const Scene& scene, const Explanation& e) {
   int kicks = 0;
   for (const char one : e.kicks) kicks += e.flows.contains(one) ? e.flows.at(one) : 0;
   if (e.evaluations == kicks) return flow + ", one force evaluation each";
+  if (e.kicks.size() > 1) return fmt::format("{}, {} force evaluations of all kicks together", flow, e.evaluations);
   return fmt::format("{}, {} force {}: a kick where nothing has moved uses the forces again", flow, e.evaluations,
                      e.evaluations == 1 ? "evaluation" : "evaluations");
 }

@@ -86,7 +86,7 @@ class SceneCheck {
     refuse_constraints(context_, tables_of(hamiltonian, "constraint"), scene_);
     TableReader integrator(context_, *top.find("integrator"), "[integrator]", "integrator");
     try {
-      if (!scene_.integrator.classical) hamiltonian_of(scene_);
+      if (!scene_.integrator.classical) check_kicks(hamiltonian, hamiltonian_of(scene_).claims().kicks);
     } catch (const SceneError&) {
       throw;
     } catch (const Error& error) {
@@ -116,6 +116,16 @@ class SceneCheck {
       integrator.fail(error.key().empty() ? "method" : error.key(), error.message() + std::string(who_has_noise()));
     }
     check_start(hamiltonian, integrator, *made);
+  }
+
+  /// Refuses a force in a kick that the Hamiltonian does not have: it would be summed in another one.
+  void check_kicks(const TableReader& hamiltonian, const std::string& kicks) const {
+    for (const SceneForce& force : scene_.hamiltonian.forces) {
+      const std::string own = force.force.claims().kicks;
+      if (force.letter || own.find_first_not_of(kicks) == std::string::npos) continue;
+      hamiltonian.fail("type", fmt::format("force '{}' is in the kick {}, and '{}' has only {}; take its kick out",
+                                           force.name, own, scene_.hamiltonian.splitting.name, kicks));
+    }
   }
 
   /// Ends at the table of the monitor that this run cannot serve, if one is the reason why it cannot be assembled.

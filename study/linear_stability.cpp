@@ -257,7 +257,12 @@ std::optional<StepMatrix> step_matrix(const Scene& scene, const Candidate& who, 
     claims.irreversible = "D";
     claims.dissipative = true;
   }
-  const std::vector<Stage> word = fitted_word(scheme_of(made.integrator), claims, "mode").stages;
+  const Scheme scheme = scheme_of(made.integrator);
+  // Of multiple time steps theory knows one force at a time: a composition has all kicks at the same places.
+  const bool several = std::any_of(made.hamiltonian.forces.begin(), made.hamiltonian.forces.end(),
+                                   [](const SceneForce& force) { return force.force.claims().kicks != "B"; });
+  if (several && !scheme.is_composition()) return {};
+  const std::vector<Stage> word = fitted_word(scheme, claims, "mode").stages;
   return [word, drag = mode.rate / mode.omega](double z) { return walk_word(word, z, drag); };
 }
 

@@ -195,6 +195,8 @@ TEST_CASE("what cannot move columns refuses them by name", "[cli][own_columns]")
   CHECK(has(refused(" --set particles.body.0.orientatoin=[1,0,0,0]"), "did you mean 'orientation'?"));
   CHECK(has(refused(" --set hamiltonian.type=kinetic_potential"), "orientation"));
   CHECK(has(refused(" --set every.0.type=shadow_hamiltonian"), "no motion of positions and momenta"));
+  CHECK(has(refused(" --set hamiltonian.force.0.kick=C"),
+            "force 'mesh_field' is in the kick C, and 'tops' has only B; take its kick out"));
 }
 
 }  // namespace noether::test
