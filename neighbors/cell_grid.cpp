@@ -17,7 +17,7 @@ constexpr double most_cells_per_point = 8;
 /// widest, in ranges of the search. (What costs a search least in melts with cutoffs of 1.12 and 2.5 sigma.)
 constexpr double points_per_cell = 6;
 constexpr double width_to_length = 4;
-constexpr double widest = 1.4;
+constexpr double widest_cell = 1.4;
 
 struct Interval {
   double lower = std::numeric_limits<double>::infinity(), upper = -std::numeric_limits<double>::infinity();
@@ -100,7 +100,7 @@ void CellGrid::lay_axes(const std::array<const double*, 3>& coordinates, Index c
   }
   const double even =
       std::cbrt(points_per_cell * width_to_length * volume / static_cast<double>(std::max<Index>(count, 1)));
-  const double width = std::clamp(even, range / 4, widest * range);
+  const double width = std::clamp(even, range / 4, widest_cell * range);
   double cells = 1;
   for (std::size_t k = 0; k < 3; ++k) {
     Axis& axis = axes_[k];
