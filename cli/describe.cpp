@@ -42,7 +42,8 @@ std::string entries_of(std::string_view sources) {
 std::vector<std::pair<std::string, PartInfo>> all_parts(const Parts& parts) {
   std::vector<std::pair<std::string, PartInfo>> all;
   for (const auto& kind : parts.hamiltonians()) all.emplace_back("hamiltonian", kind.info);
-  for (const PartInfo& info : other_parts(parts)) all.emplace_back("hamiltonian", info);
+  for (const auto& kind : parts.thermostats()) all.emplace_back("thermostat", kind.info);
+  for (auto& part : other_parts()) all.push_back(std::move(part));
   for (const BuilderKind& kind : builders()) all.emplace_back("builder", kind.info);
   for (const auto& kind : parts.forces()) all.emplace_back("force", kind.info);
   for (const auto& kind : parts.constraints()) all.emplace_back("constraint", kind.info);
@@ -58,6 +59,8 @@ std::vector<std::pair<std::string, PartInfo>> all_parts(const Parts& parts) {
 std::string table_of(const std::string& kind) {
   if (kind == "builder") return "[particles], as type = \"NAME\"";
   if (kind == "force") return "[[hamiltonian.force]]";
+  if (kind == "thermostat") return "[hamiltonian.thermostat]";
+  if (kind == "start") return "[minimize]";
   if (kind == "constraint") {
     return "[[hamiltonian.constraint]], with the particles: bodies, pairs or triples of names, or \"bonds\", "
            "\"angles\" of a structure; solver = \"newton\" or \"rattle\" (with tolerance, iterations)";

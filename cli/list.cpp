@@ -15,9 +15,11 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace noether {
@@ -93,25 +95,45 @@ Listing units() {
   return list;
 }
 
+Listing monitors(const Parts& parts) {
+  Listing list{{"name", "kind", "help"}, {}, {}};
+  for (const PartInfo& info : infos_of(parts.monitors())) list.add({info.name, "monitor", info.help});
+  for (const PartInfo& info : writer_parts()) list.add({info.name, "writer", info.help});
+  for (const PartInfo& info : infos_of(parts.stops())) list.add({info.name, "stop", info.help});
+  return list;
+}
+
+struct NamedListing {
+  std::string_view name;
+  Listing (*make)(const Parts&);
+};
+
+/// A list of one kind of parts.
+template <auto kinds> Listing parts_of(const Parts& parts) { return listing_of_parts(infos_of((parts.*kinds)())); }
+
+constexpr std::array<NamedListing, 10> listings = {{
+    {"methods", methods},
+    {"hamiltonians", parts_of<&Parts::hamiltonians>},
+    {"forces", parts_of<&Parts::forces>},
+    {"thermostats", parts_of<&Parts::thermostats>},
+    {"constraints", parts_of<&Parts::constraints>},
+    {"systems", parts_of<&Parts::systems>},
+    {"decorators", parts_of<&Parts::decorators>},
+    {"monitors", monitors},
+    {"builders", [](const Parts&) { return listing_of_parts(infos_of(builders())); }},
+    {"units", [](const Parts&) { return units(); }},
+}};
+
+std::vector<std::string> names_of_listings() {
+  std::vector<std::string> names;
+  for (const NamedListing& listing : listings) names.emplace_back(listing.name);
+  return names;
+}
+
 Listing listing_of(const std::string& what, const Parts& parts) {
-  if (what == "methods") return methods(parts);
-  if (what == "hamiltonians") return listing_of_parts(infos_of(parts.hamiltonians()));
-  if (what == "forces") return listing_of_parts(infos_of(parts.forces()));
-  if (what == "units") return units();
-  if (what == "constraints") return listing_of_parts(infos_of(parts.constraints()));
-  if (what == "systems") return listing_of_parts(infos_of(parts.systems()));
-  if (what == "decorators") return listing_of_parts(infos_of(parts.decorators()));
-  if (what == "builders") return listing_of_parts(infos_of(builders()));
-  if (what == "monitors") {
-    Listing list{{"name", "kind", "help"}, {}, {}};
-    for (const PartInfo& info : infos_of(parts.monitors())) list.add({info.name, "monitor", info.help});
-    for (const PartInfo& info : writer_parts()) list.add({info.name, "writer", info.help});
-    for (const PartInfo& info : infos_of(parts.stops())) list.add({info.name, "stop", info.help});
-    return list;
-  }
-  const std::vector<std::string> known = {"methods",    "hamiltonians", "forces",   "constraints", "systems",
-                                          "decorators", "monitors",     "builders", "units"};
-  throw Error(fmt::format("there is no list of '{}'{}", what, did_you_mean(what, known)));
+  const auto found = std::find_if(listings.begin(), listings.end(), [&](const auto& one) { return one.name == what; });
+  if (found != listings.end()) return found->make(parts);
+  throw Error(fmt::format("there is no list of '{}'{}", what, did_you_mean(what, names_of_listings())));
 }
 
 void print_json(const std::string& what, const Listing& list) {
@@ -185,14 +207,9 @@ void print_measured(bool json) {
 void add_list_command(CLI::App& app, const Parts& parts, int& exit_code) {
   const auto what = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
-  CLI::App* command = app.add_subcommand(
-      "list",
-      "what there is: methods, hamiltonians, forces, constraints, systems, decorators, monitors, builders, units");
-  command
-      ->add_option("what", *what,
-                   "methods, hamiltonians, forces, constraints, systems, decorators, monitors, builders or units")
-      ->required()
-      ->type_name("WHAT");
+  const std::string names = fmt::format("{}", fmt::join(names_of_listings(), ", "));
+  CLI::App* command = app.add_subcommand("list", "what there is: " + names);
+  command->add_option("what", *what, "one of: " + names)->required()->type_name("WHAT");
   command->add_flag("--json", *json, "as one line of JSON");
   const auto measured = std::make_shared<bool>(false);
   command->add_flag("--measured", *measured, "methods: what each of them does when it is run, as docs/methods.md");

@@ -85,8 +85,10 @@ function(noether_warnings target)
   endif()
 endfunction()
 
-# Compiles the sources of a target several at a time, so that headers and templates are met once for all of them.
+# Compiles the sources of a target several at a time, so that headers and templates are met once for all of them; at
+# most MOST of them, where that is given.
 function(noether_unity target)
+  cmake_parse_arguments(ARG "" "MOST" "" ${ARGN})
   if(NOETHER_UNITY)
     set(batch ${NOETHER_UNITY})
     if(batch STREQUAL "ON")
@@ -95,6 +97,9 @@ function(noether_unity target)
       set(batch 0)  # to CMake that is all
     elseif(NOT batch MATCHES "^[1-9][0-9]*$")
       message(FATAL_ERROR "NOETHER_UNITY is ${NOETHER_UNITY}; a number of sources is expected, ROOM or OFF")
+    endif()
+    if(ARG_MOST AND (batch EQUAL 0 OR batch GREATER ARG_MOST))
+      set(batch ${ARG_MOST})
     endif()
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${batch})
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")

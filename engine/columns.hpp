@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <list>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -36,6 +37,9 @@ struct ColumnInfo {
   bool moves() const { return role != ColumnRole::parameter; }
   bool operator==(const ColumnInfo&) const = default;
 };
+
+/// @throws Error  where two columns of one name differ in anything else: two parts would write over each other
+void expect_same_meaning(const ColumnInfo& one, const ColumnInfo& other);
 
 /// What a part declares of the column that it needs:
 ///
@@ -103,12 +107,21 @@ template <class Real> class Columns {
   }
 
   /// Puts a column of `n` rows in its place among the others, each row as the declaration starts it.
+  /// @throws Error  where a column of the same name means something else
   template <class Tag> typename Tag::template type<Real>& add(Index n) {
     using Type = typename Tag::template type<Real>;
+    expect_same(column_info<Tag>());
     return std::get<Type>(put(started(column_info<Tag>(), Type(n))).values);
   }
   /// The same for a column known by name.
-  Column& add(const ColumnInfo& info, Index n) { return put(started(info, values_of(info.width, n))); }
+  Column& add(const ColumnInfo& info, Index n) {
+    expect_same(info);
+    return put(started(info, values_of(info.width, n)));
+  }
+  /// @throws Error  where a column of the same name means something else
+  void expect_same(const ColumnInfo& info) const {
+    if (const Column* found = find(info.name)) expect_same_meaning(found->info, info);
+  }
   /// `n` rows of zeros, of so many numbers each. @throws Error  unless these are 1, 3, 4 or 9
   static Values values_of(int width, Index n) {
     if (width == 1) return ScalarColumn<Real>(n);
@@ -117,12 +130,12 @@ template <class Real> class Columns {
     if (width == 9) return RowColumn<Real, 9>(n);
     throw Error("a column has " + std::to_string(width) + " numbers a particle; 1, 3, 4 or 9 are expected");
   }
-  /// Puts back a column of a file or a copy, or takes one of the same name away first.
+  /// Puts back a column of a file or a copy, or takes one of the same name away first. References to other columns
+  /// hold.
   Column& put(Column column) {
     layout_ = parameters_ = detail::fresh_version();
-    const auto place =
-        std::lower_bound(columns_.begin(), columns_.end(), column.info.name,
-                         [](const Column& one, const std::string& name) { return one.info.name < name; });
+    const auto place = std::find_if(columns_.begin(), columns_.end(),
+                                    [&](const Column& one) { return one.info.name >= column.info.name; });
     if (place != columns_.end() && place->info.name == column.info.name) return *place = std::move(column);
     return *columns_.insert(place, std::move(column));
   }
@@ -202,10 +215,11 @@ template <class Real> class Columns {
       return;
     }
     const bool all = parameters_ != other.parameters_;
-    for (std::size_t k = 0; k < columns_.size(); ++k) {
-      if (!all && !columns_[k].info.moves()) continue;
-      std::visit([&](auto& mine) { mine.assign(std::get<std::decay_t<decltype(mine)>>(other.columns_[k].values)); },
-                 columns_[k].values);
+    auto theirs = other.columns_.begin();
+    for (Column& column : columns_) {
+      const Column& from = *theirs++;
+      if (!all && !column.info.moves()) continue;
+      std::visit([&](auto& mine) { mine.assign(std::get<std::decay_t<decltype(mine)>>(from.values)); }, column.values);
     }
     parameters_ = other.parameters_;
   }
@@ -269,7 +283,7 @@ template <class Real> class Columns {
     }
   }
 
-  std::vector<Column> columns_;
+  std::list<Column> columns_;  ///< a list: who was given a column keeps it while others are added
   /// Name which columns there are, of how many rows, and what the parameters among them hold.
   std::uint64_t layout_ = 0, parameters_ = 0;
 };

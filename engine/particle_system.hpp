@@ -218,13 +218,15 @@ template <class Real = double> class ParticleSystem {
 
   /// A column that the part that needs it declares (engine/columns.hpp): charge, type, orientation.
   template <class Tag> bool has() const { return columns_.find(Tag::name) != nullptr; }
-  /// Gives the particles a column, each row as its declaration starts it.
+  /// Gives the particles a column, each row as its declaration starts it; the reference holds while others are added.
+  /// @throws Error  where a column of that name means something else
   template <class Tag> typename Tag::template type<Real>& add_column() {
     version_ = detail::fresh_version();
     return columns_.template add<Tag>(size());
   }
   /// The same for a column known by name; one that is there stays as it is.
   void add_column(const ColumnInfo& info) {
+    columns_.expect_same(info);
     if (columns_.find(info.name) != nullptr) return;
     version_ = detail::fresh_version();
     columns_.add(info, size());

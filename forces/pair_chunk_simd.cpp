@@ -55,7 +55,7 @@ void load(const PairFilter& filter, const PairGroup& group, std::ptrdiff_t first
 
 /// Adds whole numbers to those of the rows before.
 template <class Numbers> void merge(const Numbers& found, Numbers& sums) {
-  for (int k = 0; k < 8; ++k) sums[k] += found[k];
+  for (int k = 0; k < 8; ++k) sums[k] = sum_around(sums[k], found[k]);
 }
 
 template <bool everything, class Sum> void add(const PairFilter& filter, const PairChunk& chunk, PairSums& sums) {

@@ -77,6 +77,12 @@ constexpr std::ptrdiff_t rows_asked_ahead = 128;
 /// Times a unit: the last bit of numbers near it is one unit.
 constexpr double magic_number = 6755399441055744.0;  // 1.5 x 2^52
 
+/// a + b, which goes round beyond 2^63: sums of what is too strong for them are found by their strength, and done again
+/// or refused.
+HWY_INLINE std::int64_t sum_around(std::int64_t a, std::int64_t b) {
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
+}
+
 /// A sum in whole units of products, each rounded to a unit: added to `magic`, 1.5 x 2^52 units, the last bit of a
 /// double is one unit, and its bits are a whole number. Right for products below 2^51 units.
 struct QuickSum {
@@ -116,12 +122,12 @@ struct CarefulSum {
       const double unit = offset[k] / magic_number;
       const double size = product[k] < 0 ? -product[k] : product[k];
       if (size < 0x1.fcp50 * unit) {
-        sum[k] += bits[k] - zero[k];
+        sum[k] = sum_around(sum[k], bits[k] - zero[k]);
       } else if (size < 0x1p61 * unit) {
-        sum[k] += std::llrint(product[k] / unit);
+        sum[k] = sum_around(sum[k], std::llrint(product[k] / unit));
       } else {
         strong[k] = true;
-        sum[k] += product[k] > 0 ? strongest : product[k] < 0 ? -strongest : 0;
+        sum[k] = sum_around(sum[k], product[k] > 0 ? strongest : product[k] < 0 ? -strongest : 0);
       }
     }
   }

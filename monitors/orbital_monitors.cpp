@@ -11,7 +11,7 @@ namespace noether {
 
 namespace {
 
-constexpr std::size_t columns = 6;
+constexpr std::size_t elements_of_body = 6;
 constexpr std::size_t motion_length = 9;
 
 /// The motion of particle `i` as it was seen before; what was a double is one again.
@@ -26,21 +26,21 @@ template <class Real> Motion<Real> motion_from(const std::vector<Quad>& seen, In
 template <class Real> void Elements::observe(const Snapshot<Real>& now) {
   const ParticleSystem<Real>& s = now.state();
   const Real g(G ? *G : now.units().G);
-  rows_.assign(static_cast<std::size_t>(s.size()) * columns, std::numeric_limits<double>::quiet_NaN());
+  rows_.assign(static_cast<std::size_t>(s.size()) * elements_of_body, std::numeric_limits<double>::quiet_NaN());
   for (Index i = 1; i < s.size(); ++i) {
     const Vec3<Real> x = s.positions()[i] - s.positions()[0], v = s.velocities()[i] - s.velocities()[0];
     const OrbitalElements<Real> o = elements_from_state<Real>(x, v, g * (s.masses()[0] + s.masses()[i]));
-    std::size_t k = static_cast<std::size_t>(i) * columns;
+    std::size_t k = static_cast<std::size_t>(i) * elements_of_body;
     for (const Real& value : {o.a, o.e, o.inc, o.Omega, o.omega, o.M}) rows_[k++] = static_cast<double>(value);
   }
   ++samples_;
 }
 
 std::vector<Series> Elements::series() const {
-  const Index rows = static_cast<Index>(rows_.size() / columns);
+  const Index rows = static_cast<Index>(rows_.size() / elements_of_body);
   return {{.name = "value",
            .dimension = "length, 1, angle, angle, angle, angle",
-           .shape = {rows, static_cast<Index>(columns)},
+           .shape = {rows, static_cast<Index>(elements_of_body)},
            .values = rows_,
            .columns = {"a", "e", "inc", "Omega", "omega", "M"}}};
 }
@@ -53,7 +53,7 @@ MonitorReport Elements::report() const {
 }
 
 OrbitalElements<double> Elements::of(Index i) const {
-  const auto at = [&](std::size_t k) { return rows_.at(static_cast<std::size_t>(i) * columns + k); };
+  const auto at = [&](std::size_t k) { return rows_.at(static_cast<std::size_t>(i) * elements_of_body + k); };
   return {at(0), at(1), at(2), at(3), at(4), at(5)};
 }
 

@@ -139,7 +139,17 @@ class SceneReader {
       for (const auto& kind : kinds) {
         if (name == nullptr || kind.info.name != *name) continue;
         for (const ColumnInfo& column : kind.columns) {
-          if (std::find(all.begin(), all.end(), column) == all.end()) all.push_back(column);
+          const auto same_name = [&](const ColumnInfo& other) { return other.name == column.name; };
+          const auto other = std::find_if(all.begin(), all.end(), same_name);
+          if (other == all.end()) {
+            all.push_back(column);
+            continue;
+          }
+          try {
+            expect_same_meaning(*other, column);
+          } catch (const Error& error) {
+            TableReader(context_, table, *name, "hamiltonian").fail("type", error.message());
+          }
         }
       }
     };

@@ -204,14 +204,12 @@ std::vector<const OptionGroup*> Parts::method_options() const {
 
 std::vector<PartInfo> writer_parts() { return {part_info<io::TrajectoryWriter>(), part_info<io::CheckpointWriter>()}; }
 
-std::vector<PartInfo> other_parts(const Parts& parts) {
-  std::vector<PartInfo> all;
-  for (const Parts::ThermostatKind& kind : parts.thermostats()) all.push_back(kind.info);
-  all.push_back(part_info<MinimizeOptions>());
-  all.push_back({"damped",
-                 "the name of any Hamiltonian with friction: a force linear_drag in the scene adds it as the letter D",
-                 "D: v -> exp(-rate h) v", "", ""});
-  return all;
+std::vector<std::pair<std::string, PartInfo>> other_parts() {
+  return {
+      {"start", part_info<MinimizeOptions>()},
+      {"hamiltonian",
+       {"damped", "the name of any Hamiltonian with friction: a force linear_drag in the scene adds it as the letter D",
+        "D: v -> exp(-rate h) v", "", ""}}};
 }
 
 namespace detail {

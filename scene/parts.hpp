@@ -468,7 +468,7 @@ Parts standard_parts();
 
 /// What the writers say of themselves: they stand in `[[every]]` like monitors.
 std::vector<PartInfo> writer_parts();
-/// What else stands in `[hamiltonian]` and beside it: thermostats, and the start at a minimum.
-std::vector<PartInfo> other_parts(const Parts& parts);
+/// What no list has: the kind of each, and what it says of itself.
+std::vector<std::pair<std::string, PartInfo>> other_parts();
 
 }  // namespace noether

@@ -11,7 +11,7 @@ namespace noether {
 
 namespace {
 
-constexpr struct { int left = 74, right = 220, top = 14, bottom = 50; } margin;
+constexpr struct { int left = 74, right = 220, top = 14, bottom = 50; } margins;
 
 class Plot {
  public:
@@ -45,30 +45,30 @@ class Plot {
   }
 
  private:
-  double px(double x) const { return margin.left + x_.at(x) * (axes_.width - margin.left - margin.right); }
+  double px(double x) const { return margins.left + x_.at(x) * (axes_.width - margins.left - margins.right); }
   double py(double y) const {
-    return axes_.height - margin.bottom - y_.at(y) * (axes_.height - margin.top - margin.bottom);
+    return axes_.height - margins.bottom - y_.at(y) * (axes_.height - margins.top - margins.bottom);
   }
 
   std::string grid() const {
     std::string out;
-    const int x1 = axes_.width - margin.right, y0 = axes_.height - margin.bottom;
+    const int x1 = axes_.width - margins.right, y0 = axes_.height - margins.bottom;
     for (const double x : ticks_of(x_, 10)) {
       out += fmt::format("<line class=\"grid\" x1=\"{0:.1f}\" y1=\"{1}\" x2=\"{0:.1f}\" y2=\"{2}\"/>", px(x),
-                         margin.top, y0);
+                         margins.top, y0);
       out += fmt::format("<text class=\"tick\" x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>", px(x), y0 + 17,
                          tick_text(x_, x));
     }
     for (const double y : ticks_of(y_, 9)) {
-      out += fmt::format("<line class=\"grid\" x1=\"{0}\" y1=\"{1:.1f}\" x2=\"{2}\" y2=\"{1:.1f}\"/>", margin.left,
+      out += fmt::format("<line class=\"grid\" x1=\"{0}\" y1=\"{1:.1f}\" x2=\"{2}\" y2=\"{1:.1f}\"/>", margins.left,
                          py(y), x1);
-      out += fmt::format("<text class=\"tick\" x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>", margin.left - 7,
+      out += fmt::format("<text class=\"tick\" x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>", margins.left - 7,
                          py(y) + 4, tick_text(y_, y));
     }
-    out += fmt::format("<path class=\"axis\" d=\"M{} {}V{}H{}\"/>", margin.left, margin.top, y0, x1);
+    out += fmt::format("<path class=\"axis\" d=\"M{} {}V{}H{}\"/>", margins.left, margins.top, y0, x1);
     out += fmt::format("<text class=\"name\" x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
-                       (margin.left + x1) / 2, axes_.height - 10, html_text(axes_.x));
-    const int middle = (margin.top + y0) / 2;
+                       (margins.left + x1) / 2, axes_.height - 10, html_text(axes_.x));
+    const int middle = (margins.top + y0) / 2;
     return out + fmt::format(
                      "<text class=\"name\" transform=\"translate(18 {}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
                      middle, html_text(axes_.y));
@@ -122,14 +122,14 @@ class Plot {
       all.push_back({&curve, px(last.first), py(last.second), py(last.second)});
     }
     std::stable_sort(all.begin(), all.end(), [](const Label& a, const Label& b) { return a.y < b.y; });
-    const double line = std::min(17.0, (axes_.height - margin.top - 10.0) / std::max<std::size_t>(all.size(), 1));
+    const double line = std::min(17.0, (axes_.height - margins.top - 10.0) / std::max<std::size_t>(all.size(), 1));
     for (std::size_t k = 0; k < all.size(); ++k) {
-      all[k].place = std::max(all[k].place, k > 0 ? all[k - 1].place + line : margin.top + 8.0);
+      all[k].place = std::max(all[k].place, k > 0 ? all[k - 1].place + line : margins.top + 8.0);
     }
     double floor = axes_.height - 12;
     for (std::size_t k = all.size(); k-- > 0; floor -= line) all[k].place = std::min(all[k].place, floor);
     std::string out;
-    const int x = axes_.width - margin.right + 14;
+    const int x = axes_.width - margins.right + 14;
     for (const Label& one : all) {
       const int style = one.curve->style;
       out += fmt::format("<g class=\"label\" data-name=\"{}\">", html_text(one.curve->label));

@@ -15,7 +15,7 @@ namespace noether {
 namespace {
 
 /// Two runs that agree so well need no third: errors of runs in double precision are larger.
-constexpr double agreement = 1e-15;
+constexpr double agreement_of_schemes = 1e-15;
 constexpr std::string_view first_scheme = "sofroniou_spaletta_10_s35", other_scheme = "kahan_li_10_s33";
 
 /// One run that stops at every moment of a sampling.
@@ -88,7 +88,7 @@ Truth truth_by_splitting(const WideScene& wide, const Sampling& sampling, const 
     truth.y = std::move(run.y);
     truth.rate = std::move(run.rate);
     truth.energy = std::move(run.energy);
-    if (apart < agreement) break;
+    if (apart < agreement_of_schemes) break;
   }
   truth.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   if (!truth.error || !(*truth.error < 1e-3)) {

@@ -79,8 +79,8 @@ const std::vector<Wrong> wrong_lines = {
     {"list forces --measured", 2, "only methods are measured, not forces; leave --measured out"},
     {"list method", 2, "there is no list of 'method'; did you mean 'methods'?"},
     {"list everything", 2,
-     "there is no list of 'everything'; known are: methods, hamiltonians, forces, constraints, systems, decorators, "
-     "monitors, builders, units"},
+     "there is no list of 'everything'; known are: methods, hamiltonians, forces, thermostats, constraints, systems, "
+     "decorators, monitors, builders, units"},
     {"describe yoshda_4", 2, "there is nothing called 'yoshda_4'; did you mean 'yoshida_4'?"},
     {"describe qqqqqq", 2, "there is nothing called 'qqqqqq'; see `noether list`"},
 #if NOETHER_HDF5

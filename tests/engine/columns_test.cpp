@@ -29,7 +29,37 @@ ParticleSystem<double> bodies(Index n) {
   return s;
 }
 
+/// Another part's column of a name that is taken.
+struct Stretch {
+  template <class Real> using type = VectorColumn<Real>;
+  static constexpr std::string_view name = "stress", dimension = "length";
+  static constexpr ColumnRole role = ColumnRole::configuration;
+};
+
 }  // namespace
+
+TEST_CASE("who was given a column keeps it while others are added", "[engine][columns]") {
+  ParticleSystem<double> s = bodies(2);
+  auto& charges = s.add_column<Charge>();
+  s.add_column<Stress>();
+  s.add_column<Orientation>();
+  s.add_column<Spin>();
+  charges[1] = -1;
+  CHECK(std::as_const(s).column<Charge>()[1] == -1);
+}
+
+TEST_CASE("two columns of one name that mean different things are refused", "[engine][columns]") {
+  ParticleSystem<double> s = bodies(1);
+  s.add_column<Stress>();
+  CHECK_NOTHROW(s.add_column(column_info<Stress>()));
+  const std::string message =
+      "column 'stress' is declared twice, as a parameter of 9 numbers in [energy] that start at 0 0 0 0 0 0 0 0 0 and "
+      "as "
+      "a configuration of 3 numbers in [length] that start at 0 0 0; give one of them another name";
+  CHECK_THROWS_WITH(s.add_column<Stretch>(), message);
+  CHECK_THROWS_WITH(s.add_column(column_info<Stretch>()), message);
+  CHECK(s.columns().size() == 1);
+}
 
 TEST_CASE("a column starts as its declaration says, and grows and shrinks with the particles", "[engine][columns]") {
   ParticleSystem<double> s = bodies(2);

@@ -274,10 +274,9 @@ def known_instead(program, case, name):
 
 
 def lists(program):
-    """Every list of parts, as the program tells it; thermostats and solvers have none, but messages name them."""
+    """Every list of parts, as the program tells it; solvers have none, but messages name them."""
     names = [what for what in known_after(program, "list", "nothing") if what not in scenes.OTHER_LISTS]
-    return {"thermostats": known_instead(program, scenes.THERMOSTATS["langevin"], "langevin"),
-            "solvers": known_instead(program, scenes.SOLVERS["newton"], "newton"),
+    return {"solvers": known_instead(program, scenes.SOLVERS["newton"], "newton"),
             **{what: listed(program, what) for what in names}}
 
 
