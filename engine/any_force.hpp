@@ -5,11 +5,14 @@
 #include "engine/concepts.hpp"
 #include "engine/lane_by_lane.hpp"
 #include "engine/signature.hpp"
+#include "numbers/members.hpp"
 #include "numbers/pack.hpp"
 
+#include <concepts>
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 namespace noether {
@@ -42,6 +45,46 @@ template <class Base> class Erased {
   std::unique_ptr<Base> held_;
 };
 
+NOETHER_FINDS_MEMBER(claims)
+NOETHER_FINDS_MEMBER(check)
+NOETHER_FINDS_MEMBER(bind)
+NOETHER_FINDS_MEMBER(reference)
+NOETHER_FINDS_MEMBER(add_secant_to)
+
+template <class F>
+concept GivesClaims = requires(const F& force) {
+  { force.claims() } -> std::convertible_to<ForceClaims>;
+};
+template <class F>
+concept ChecksFields = requires(const F& force) {
+  force.check();
+};
+template <class F>
+concept ChecksParticles = requires(const F& force, const ParticleSystem<double>& s) {
+  force.check(s);
+};
+template <class F>
+concept BindsParticles = requires(F& force, const ParticleSystem<double>& s) {
+  force.bind(s);
+};
+template <class F>
+concept NamesReference = requires(const F& force) {
+  force.reference();
+};
+template <class F>
+concept GivesSecants = requires(const F& force, ForceSink<double>& out, const ParticleSystem<double>& s) {
+  force.add_secant_to(out, s, s);
+};
+
+/// Whether each optional member of a force, where there is one of its name, is what it has to be.
+template <class F> struct ForceMembers {
+  static constexpr bool claims = !finds_claims<F>() || GivesClaims<F>;
+  static constexpr bool check = !finds_check<F>() || ChecksFields<F> || ChecksParticles<F>;
+  static constexpr bool bind = !finds_bind<F>() || BindsParticles<F>;
+  static constexpr bool reference = !finds_reference<F>() || NamesReference<F>;
+  static constexpr bool secant = !finds_add_secant_to<F>() || GivesSecants<F>;
+};
+
 /// Built-in forces are compiled once, each in a .cpp of its own: their headers say `extern template`.
 template <class Real> struct ForceBase {
   virtual ~ForceBase() = default;
@@ -61,6 +104,13 @@ template <class Real> struct ForceBase {
   virtual std::unique_ptr<ForceBase<Quad>> in_quad() const = 0;
 };
 template <class F, class Real> struct ForceModel final : ForceBase<Real> {
+  using Members = ForceMembers<F>;
+  static_assert(Members::claims, "a force has `ForceClaims claims() const`, or no member of that name");
+  static_assert(Members::check,
+                "a force has `void check(const ParticleSystem<Real>&) const`, or of its fields `check()`, or none");
+  static_assert(Members::bind, "a force has `void bind(const ParticleSystem<Real>&)`, or no `bind`");
+  static_assert(Members::reference, "a force has a `reference() const` that gives another force, or none");
+  static_assert(Members::secant, "a force has `add_secant_to(ForceSink<Real>&, from, to) const`, or none of that name");
   explicit ForceModel(F f) : force(std::move(f)) {}
   std::unique_ptr<ForceBase<Real>> clone() const override { return std::make_unique<ForceModel>(force); }
   void bind(const ParticleSystem<Real>& s) override {

@@ -2,7 +2,9 @@
 /// Monitors and writers: what watches a run. They see settled copies and cannot change the trajectory.
 
 #include "engine/snapshot.hpp"
+#include "numbers/members.hpp"
 
+#include <concepts>
 #include <memory>
 #include <optional>
 #include <span>
@@ -59,6 +61,60 @@ concept Monitor = requires(M& m, const Snapshot<Real>& snapshot) {
 
 namespace detail {
 
+NOETHER_FINDS_MEMBER(wanted)
+NOETHER_FINDS_MEMBER(series)
+NOETHER_FINDS_MEMBER(scale)
+NOETHER_FINDS_MEMBER(report)
+NOETHER_FINDS_MEMBER(record)
+NOETHER_FINDS_MEMBER(flush)
+NOETHER_FINDS_MEMBER(finish)
+NOETHER_FINDS_MEMBER(forget)
+
+template <class M>
+concept SaysWhatItWants = requires(const M& monitor) {
+  { monitor.wanted() } -> std::convertible_to<Request>;
+};
+template <class M>
+concept GivesSeries = requires(const M& monitor) {
+  { monitor.series() } -> std::convertible_to<std::vector<Series>>;
+};
+template <class M>
+concept GivesScale = requires(const M& monitor) {
+  { monitor.scale() } -> std::convertible_to<std::optional<double>>;
+};
+template <class M>
+concept Reports = requires(const M& monitor) {
+  { monitor.report() } -> std::convertible_to<std::optional<MonitorReport>>;
+};
+template <class M>
+concept Records = requires(M& monitor, const Sample& sample) {
+  monitor.record(sample);
+};
+template <class M>
+concept Flushes = requires(M& monitor) {
+  monitor.flush();
+};
+template <class M>
+concept Finishes = requires(M& monitor, const Outcome& outcome) {
+  monitor.finish(outcome);
+};
+template <class M>
+concept Forgets = requires(M& monitor) {
+  monitor.forget();
+};
+
+/// Whether each optional member of a monitor, where there is one of its name, is what it has to be.
+template <class M> struct MonitorMembers {
+  static constexpr bool wanted = !finds_wanted<M>() || SaysWhatItWants<M>;
+  static constexpr bool series = !finds_series<M>() || GivesSeries<M>;
+  static constexpr bool scale = !finds_scale<M>() || GivesScale<M>;
+  static constexpr bool report = !finds_report<M>() || Reports<M>;
+  static constexpr bool record = !finds_record<M>() || Records<M>;
+  static constexpr bool flush = !finds_flush<M>() || Flushes<M>;
+  static constexpr bool finish = !finds_finish<M>() || Finishes<M>;
+  static constexpr bool forget = !finds_forget<M>() || Forgets<M>;
+};
+
 template <class Real> struct MonitorBase {
   virtual ~MonitorBase() = default;
   virtual std::string name() const = 0;
@@ -81,6 +137,15 @@ template <class Real> struct MonitorBase {
 };
 
 template <class M, class Real> struct MonitorModel final : MonitorBase<Real> {
+  using Members = MonitorMembers<M>;
+  static_assert(Members::wanted, "a monitor has `Request wanted() const`, or no member of that name");
+  static_assert(Members::series, "a monitor has `std::vector<Series> series() const`, or no member of that name");
+  static_assert(Members::scale, "a monitor has `std::optional<double> scale() const`, or no member of that name");
+  static_assert(Members::report, "a monitor has `MonitorReport report() const`, or no member of that name");
+  static_assert(Members::record, "a monitor has `void record(const Sample&)`, or no member of that name");
+  static_assert(Members::flush, "a monitor has `void flush()`, or no member of that name");
+  static_assert(Members::finish, "a monitor has `void finish(const Outcome&)`, or no member of that name");
+  static_assert(Members::forget, "a monitor has `void forget()`, or no member of that name");
   explicit MonitorModel(M m) : monitor(std::move(m)) {}
   std::string name() const override { return name_of(monitor); }
   bool records() const override {

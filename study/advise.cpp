@@ -67,6 +67,8 @@ class Fit {
     if (!rows_.empty()) growth_ = growth(scene, trials, metric);
   }
 
+  /// Whether the trials show how the error depends on the step or the tolerance.
+  bool tells() const { return law_.has_value(); }
   /// What holds an error over the whole run; empty where nothing tried tells.
   std::optional<Proposal> propose(double error, double trial_end, double end) const {
     if (!law_) return {};
@@ -210,8 +212,10 @@ Advice advise(const Scene& scene, const AdviseOptions& options) {
   const Comparison& c = advice.trials;
   advice.trial_end = c.end;
   check_measured(c, options.metric);
+  bool tells = false;
   for (const Candidate& who : c.methods) {
     const Fit fit(scene, c, who, options.metric);
+    tells = tells || fit.tells();
     auto proposal = fit.propose(options.error, advice.trial_end, advice.end);
     if (!proposal) continue;
     if (!who.adaptive) {
@@ -234,6 +238,12 @@ Advice advise(const Scene& scene, const AdviseOptions& options) {
     advice.sets = advice.proposals.front().sets;
   } else if (!advice.left_out.empty()) {
     advice.reason = advice.left_out.front();
+  } else if (!tells) {
+    advice.reason = "the trials do not tell how the error of any method depends on its step";
+    if (options.metric == Metric::position && c.truth.error) {
+      advice.reason += fmt::format("; the solution that they are measured against, {}, is known to {:.1e} only",
+                                   c.truth.name, *c.truth.error);
+    }
   } else {
     const std::string tried = c.methods.size() == 1
                                   ? "the one method tried does not hold"
