@@ -239,11 +239,11 @@ Advice advise(const Scene& scene, const AdviseOptions& options) {
   } else if (!advice.left_out.empty()) {
     advice.reason = advice.left_out.front();
   } else if (!tells) {
-    advice.reason = "the trials do not tell how the error of any method depends on its step";
-    if (options.metric == Metric::position && c.truth.error) {
-      advice.reason += fmt::format("; the solution that they are measured against, {}, is known to {:.1e} only",
-                                   c.truth.name, *c.truth.error);
-    }
+    const bool vague = options.metric == Metric::position && c.truth.error.value_or(0) > 10 * rounding;
+    advice.reason = "the trials do not tell how errors depend on the step; " +
+                    (vague ? fmt::format("the solution that they are measured against, {}, is known to {:.1e} only",
+                                         c.truth.name, *c.truth.error)
+                           : std::string("a longer run would tell more"));
   } else {
     const std::string tried = c.methods.size() == 1
                                   ? "the one method tried does not hold"

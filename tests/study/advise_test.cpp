@@ -162,6 +162,11 @@ TEST_CASE("advice that cannot be given is refused, or says why there is none", "
   CHECK(advice.proposals.empty());
   CHECK(advice.sets.empty());
   CHECK(advice.reason == "the one method tried does not hold an error of 1e-13 over the whole run");
+
+  const Scene brief = oscillator("method = \"verlet\"\nstep = 0.01\nsteps = 3");
+  const Advice untold = advise(brief, options);
+  CHECK(untold.proposals.empty());
+  CHECK(untold.reason == "the trials do not tell how errors depend on the step; a longer run would tell more");
 }
 
 /// A spring that tells no energy.
