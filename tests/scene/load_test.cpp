@@ -294,6 +294,36 @@ constexpr auto Spring::describe() {
                       field<&Spring::label>("label", "1"));
 }
 
+/// A part that gives particles a column "spin", of which another one means something else.
+template <int width> struct Spinner {
+  struct Spin {
+    template <class Real> using type = RowColumn<Real, width>;
+    static constexpr std::string_view name = "spin", dimension = "1";
+    static constexpr ColumnRole role = ColumnRole::parameter;
+  };
+  using columns = ColumnList<Spin>;
+  static constexpr auto describe() {
+    return part<Spinner>(width == 3 ? "spinner" : "twister", "a force that looks at a column");
+  }
+  template <class Real> void add_to(ForceSink<Real>&, const ParticleSystem<Real>&) const {}
+};
+
+TEST_CASE("two forces whose columns of one name mean different things are refused at the second", "[scene]") {
+  Parts parts = standard_parts();
+  parts.add_force<Spinner<3>>().add_force<Spinner<4>>();
+  std::string text = two_bodies;
+  text.replace(text.find("type = \"gravity\""), 16, "type = \"spinner\"\n[[hamiltonian.force]]\ntype = \"twister\"");
+  std::string message;
+  try {
+    read_scene(text, "scene.toml", parts);
+  } catch (const SceneError& error) {
+    message = error.what();
+  }
+  CHECK(message.find("scene.toml:") == 0);
+  CHECK(message.find("column 'spin' is declared twice, as a parameter of 3 numbers in [1] that start at 0 0 0 and as a "
+                     "parameter of 4 numbers") != std::string::npos);
+}
+
 TEST_CASE("a user's force is known after one line, with every kind of field", "[scene]") {
   Parts parts = standard_parts();
   parts.add_force<Spring>();
