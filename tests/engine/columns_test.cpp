@@ -54,8 +54,7 @@ TEST_CASE("two columns of one name that mean different things are refused", "[en
   CHECK_NOTHROW(s.add_column(column_info<Stress>()));
   const std::string message =
       "column 'stress' is declared twice, as a parameter of 9 numbers in [energy] that start at 0 0 0 0 0 0 0 0 0 and "
-      "as "
-      "a configuration of 3 numbers in [length] that start at 0 0 0; give one of them another name";
+      "as a configuration of 3 numbers in [length] that start at 0 0 0; give one of them another name";
   CHECK_THROWS_WITH(s.add_column<Stretch>(), message);
   CHECK_THROWS_WITH(s.add_column(column_info<Stretch>()), message);
   CHECK(s.columns().size() == 1);

@@ -55,6 +55,7 @@ struct LaneSample {
   void add(double px, double py, double pz, double mass) {
     x.push_back(px), y.push_back(py), z.push_back(pz), m.push_back(mass);
     row.push_back(static_cast<double>(row.size()));
+    for (auto* column : {&x, &y, &z, &m, &row}) column->reserve(column->size() + 8);  // kernels load whole registers
   }
   AttractingBodies bodies() const {
     return {x.data(), y.data(), z.data(), m.data(), row.data(), static_cast<Index>(m.size())};
