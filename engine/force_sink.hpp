@@ -5,6 +5,7 @@
 #include "engine/particle_system.hpp"
 #include "engine/workspace.hpp"
 #include "numbers/dual.hpp"
+#include "numbers/wide_sum.hpp"
 
 #include <limits>
 #include <memory>
@@ -41,12 +42,12 @@ template <class Real> class ForceSink {
   ForceSink(VectorColumn<Real>& accelerations, const ParticleSystem<Real>& system, Request wanted,
             Workspace* workspace = nullptr, double kick = 0)
       : a_(accelerations), system_(system), wanted_(wanted), shared_(workspace), own_(workspace), kick_(kick) {
+    if (wanted.virial) virial_.emplace();
     if (a_.size() < parallel_threshold) {
       a_.set_zero();
     } else {
       for_blocks(a_.size(), [&](Index begin, Index end) { a_.set_zero(begin, end); });
     }
-    if (wanted.virial) virial_.setZero();
   }
 
   /// For one force alone, which `sets` the accelerations: they hold anything.
@@ -57,27 +58,34 @@ template <class Real> class ForceSink {
   /// Adds `a` to the acceleration of particle `i` [length/time^2].
   void acceleration(Index i, const Vec3<Real>& a) {
     a_.add(i, a);
-    if (wanted_.virial) outer(system_.positions()[i], system_.masses()[i] * a);
+    if (virial_) virial_->add_outer(system_.positions()[i], system_.masses()[i] * a);
   }
   /// Adds the force `f` on particle `i` [mass length/time^2].
   void force(Index i, const Vec3<Real>& f) {
     push(i, f);
-    if (wanted_.virial) outer(system_.positions()[i], f);
+    if (virial_) virial_->add_outer(system_.positions()[i], f);
   }
   /// Adds `f` on particle `i` and `-f` on particle `j`: Newton's third law [mass length/time^2].
   void pair(Index i, Index j, const Vec3<Real>& f) {
     push(i, f);
     push(j, -f);
-    if (wanted_.virial)
-      outer(system_.box().minimum_image(Vec3<Real>(system_.positions()[i] - system_.positions()[j])), f);
+    if (!virial_) return;
+    virial_->add_outer(system_.box().minimum_image(Vec3<Real>(system_.positions()[i] - system_.positions()[j])), f);
   }
-  /// Adds to the potential energy [energy].
+  /// Adds to the potential energy [energy], in sums that hardly know an order. A force that has summed its terms itself
+  /// does so in a `WideSum`, and its virial in a `WideTensor`.
   void energy(const Real& u) {
+    if (wanted_.energy) energy_ += u;
+  }
+  void energy(const WideSum<Real>& u) {
     if (wanted_.energy) energy_ += u;
   }
   /// Adds to the virial tensor sum x (x) f what a force that writes `accelerations()` directly has summed [energy].
   void virial(const Mat3<Real>& w) {
-    if (wanted_.virial) virial_ += w;
+    if (virial_) *virial_ += w;
+  }
+  void virial(const WideTensor<Real>& w) {
+    if (virial_) *virial_ += w;
   }
 
   bool wants_energy() const { return wanted_.energy; }
@@ -138,8 +146,8 @@ template <class Real> class ForceSink {
   }
   const std::optional<Failure>& failure() const { return failure_; }
 
-  const Real& potential() const { return energy_; }
-  Mat3<Real> virial() const { return wanted_.virial ? virial_ : Mat3<Real>(Mat3<Real>::Zero()); }
+  Real potential() const { return energy_.value(); }
+  Mat3<Real> virial() const { return virial_ ? virial_->value() : Mat3<Real>(Mat3<Real>::Zero()); }
 
  private:
   friend class LaneByLane;
@@ -150,17 +158,12 @@ template <class Real> class ForceSink {
     const Real m = system_.masses()[i];
     if (m != Real(0)) a_.add(i, f / m);
   }
-  void outer(const Vec3<Real>& x, const Vec3<Real>& f) {
-    for (int r = 0; r < 3; ++r) {
-      for (int c = 0; c < 3; ++c) virial_(r, c) += x[r] * f[c];
-    }
-  }
 
   VectorColumn<Real>& a_;
   const ParticleSystem<Real>& system_;
   Request wanted_;
-  Real energy_ = Real(0);
-  Mat3<Real> virial_;                ///< set where it is wanted: nine numbers in lanes take as long as a few forces
+  WideSum<Real> energy_;
+  std::optional<WideTensor<Real>> virial_;  ///< where it is wanted: nine sums in lanes take as long as a few forces
   Workspace* shared_ = nullptr;      ///< of the whole Hamiltonian
   Workspace* own_ = nullptr;         ///< of the force that is summed
   std::unique_ptr<Workspace> lost_;  ///< of a force to which nobody lends one: gone with the sink

@@ -25,8 +25,8 @@ class LaneByLane {
     if (depth_ == before_.size()) before_.emplace_back();
     VectorColumn<Pack>& before = before_[depth_];
     before.assign(out.a_);
-    const Pack energy = out.energy_;
-    const Mat3<Pack> virial = out.virial();
+    const WideSum<Pack> energy = out.energy_;
+    const std::optional<WideTensor<Pack>> virial = out.virial_;
     const std::optional<Failure> failure = out.failure_;
     ++depth_;
     try {
@@ -42,31 +42,27 @@ class LaneByLane {
  private:
   template <class F>
   void add_one(std::size_t lane, const F& force, ForceSink<Pack>& out, const ParticleSystem<Pack>& s,
-               const VectorColumn<Pack>& before, const Pack& energy, const Mat3<Pack>& virial) {
+               const VectorColumn<Pack>& before, const WideSum<Pack>& energy,
+               const std::optional<WideTensor<Pack>>& virial) {
     take(lane, s.positions(), particles_.positions());
     take(lane, s.velocities(), particles_.velocities());
     particles_.clock().set_stage_offset(s.time().lane[lane]);
     ForceSink<double> one(accelerations_, particles_, out.wanted_);
     take(lane, before, accelerations_);
-    one.energy_ = energy.lane[lane];
-    one.virial_ = lane_of(lane, virial);
+    one.energy_ = energy.lane(lane);
+    if (virial) one.virial_ = virial->lane(lane);
     force.add_to(one, particles_);
     for (int k = 0; k < 3; ++k) {
       for (Index i = 0; i < before.size(); ++i) out.a_.component(k)[i].lane[lane] = accelerations_.component(k)[i];
     }
-    out.energy_.lane[lane] = one.energy_;
-    for (int k = 0; k < 9; ++k) out.virial_(k / 3, k % 3).lane[lane] = one.virial_(k / 3, k % 3);
+    out.energy_.set_lane(lane, one.energy_);
+    if (virial) out.virial_->set_lane(lane, *one.virial_);
     if (one.failure_) out.fail(*one.failure_);
   }
   static void take(std::size_t lane, const VectorColumn<Pack>& from, VectorColumn<double>& to) {
     for (int k = 0; k < 3; ++k) {
       for (Index i = 0; i < to.size(); ++i) to.component(k)[i] = from.component(k)[i].lane[lane];
     }
-  }
-  static Mat3<double> lane_of(std::size_t lane, const Mat3<Pack>& from) {
-    Mat3<double> one;
-    for (int k = 0; k < 9; ++k) one(k / 3, k % 3) = from(k / 3, k % 3).lane[lane];
-    return one;
   }
 
   ParticleSystem<double>& particles_;

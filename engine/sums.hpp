@@ -1,8 +1,8 @@
 #pragma once
 /// Sums over particles that come out the same in any order.
 
-#include "numbers/double_double.hpp"
 #include "numbers/parallel.hpp"
+#include "numbers/wide_sum.hpp"
 
 #include <array>
 #include <cmath>
@@ -28,20 +28,17 @@ class ExactDoubleSum {
 
 namespace detail {
 
-/// A sum to twice the digits of a double, and the sum of all sizes, which tells how good it is.
-struct WideSum {
-  double high = 0, low = 0, sizes = 0;
+/// A wide sum, and the sum of all sizes, which tells how good it is.
+struct JudgedSum {
+  WideSum<double> sum;
+  double sizes = 0;
 
   void add(double x) {
-    const DoubleDouble sum = DoubleDouble::sum(high, x);
-    high = sum.high;
-    low += sum.low;
+    sum += x;
     sizes += std::abs(x);
   }
-  WideSum& operator+=(const WideSum& other) {
-    const DoubleDouble sum = DoubleDouble::sum(high, other.high);
-    high = sum.high;
-    low += sum.low + other.low;
+  JudgedSum& operator+=(const JudgedSum& other) {
+    sum += other.sum;
     sizes += other.sizes;
     return *this;
   }
@@ -49,7 +46,7 @@ struct WideSum {
   std::optional<double> rounded(Index n) const {
     const double additions = static_cast<double>(block_size + n / block_size);
     const double doubt = sizes * (additions * additions * 0x1p-104);
-    const double least = high + (low - doubt), most = high + (low + doubt);
+    const double least = sum.high() + (sum.low() - doubt), most = sum.high() + (sum.low() + doubt);
     if (!(least == most)) return {};
     return most;
   }
@@ -78,7 +75,7 @@ template <class Sum, std::size_t count> struct BlockSums {
 template <class Real, std::size_t count, class Terms> std::array<Real, count> sums_over(Index n, const Terms& terms) {
   std::array<Real, count> result;
   if constexpr (std::is_same_v<Real, double>) {
-    using Sums = detail::BlockSums<detail::WideSum, count>;
+    using Sums = detail::BlockSums<detail::JudgedSum, count>;
     const Sums all = reduce(n, Sums{}, [&](Index begin, Index end) {
       Sums block{};
       for (Index i = begin; i < end; ++i) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <initializer_list>
+#include <utility>
 #include <vector>
 
 namespace noether {
@@ -28,6 +29,7 @@ template <std::size_t count> class Tied {
 
   Tied() = default;
   Tied(std::initializer_list<Group> groups) : groups_(groups) {}
+  explicit Tied(std::vector<Group> groups) : groups_(std::move(groups)) {}
 
   /// Finds the particles among those of a run: a force does so in `check(system)`, which is called before the first
   /// step and after each edit.

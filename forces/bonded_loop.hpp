@@ -7,6 +7,7 @@
 #include "forces/bonded_terms.hpp"
 #include "forces/dihedral_potentials.hpp"
 #include "numbers/pack.hpp"
+#include "numbers/wide_sum.hpp"
 
 #include <algorithm>
 #include <array>
@@ -18,18 +19,13 @@ namespace noether::detail {
 
 /// What one evaluation sums beside the forces.
 template <class Real> struct BondedTotals {
-  Real energy = Real(0);
-  Mat3<Real> virial = Mat3<Real>::Zero();
+  WideSum<Real> energy;
+  WideTensor<Real> virial;
 
   BondedTotals& operator+=(const BondedTotals& other) {
     energy += other.energy;
     virial += other.virial;
     return *this;
-  }
-  void outer(const Vec3<Real>& x, const Vec3<Real>& f) {
-    for (int r = 0; r < 3; ++r) {
-      for (int c = 0; c < 3; ++c) virial(r, c) += x[r] * f[c];
-    }
   }
 };
 
@@ -289,18 +285,18 @@ template <class Real> class BondedLoop {
   /// By the places of the particles about the second one.
   static void add_virial(const std::array<Vec3<Real>, 1>& d, const std::array<Vec3<Real>, 2>& f,
                          BondedTotals<Real>& totals) {
-    totals.outer(d[0], f[0]);
+    totals.virial.add_outer(d[0], f[0]);
   }
   static void add_virial(const std::array<Vec3<Real>, 2>& d, const std::array<Vec3<Real>, 3>& f,
                          BondedTotals<Real>& totals) {
-    totals.outer(d[0], f[0]);
-    totals.outer(d[1], f[2]);
+    totals.virial.add_outer(d[0], f[0]);
+    totals.virial.add_outer(d[1], f[2]);
   }
   static void add_virial(const std::array<Vec3<Real>, 3>& d, const std::array<Vec3<Real>, 4>& f,
                          BondedTotals<Real>& totals) {
-    totals.outer(d[0], f[0]);
-    totals.outer(-d[1], f[2]);
-    totals.outer(d[2] - d[1], f[3]);
+    totals.virial.add_outer(d[0], f[0]);
+    totals.virial.add_outer(-d[1], f[2]);
+    totals.virial.add_outer(d[2] - d[1], f[3]);
   }
 
   const BondedTerms& terms_;

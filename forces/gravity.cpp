@@ -71,29 +71,20 @@ void attract(const ParticleSystem<double>& s, const Gathered& gathered, Index be
 }
 
 /// sum over pairs of - G m_i m_j d (x) d / (d^2 + softening^2)^(3/2), in plain loops: it is asked for once in a while.
-Mat3<double> virial_of(const Gathered& gathered, double g, double softening) {
-  struct Total {
-    Mat3<double> sum = Mat3<double>::Zero();
-    Total& operator+=(const Total& other) {
-      sum += other.sum;
-      return *this;
-    }
-  };
+WideTensor<double> virial_of(const Gathered& gathered, double g, double softening) {
   const AttractingBodies b = gathered.bodies();
-  return reduce(b.count, Total{},
-                [&](Index begin, Index end) {
-                  Total total;
-                  for (Index i = begin; i < end; ++i) {
-                    for (Index j = 0; j < b.count; ++j) {
-                      if (j == i) continue;
-                      const Vec3<double> d(b.x[i] - b.x[j], b.y[i] - b.y[j], b.z[i] - b.z[j]);
-                      const double r2 = norm2(d) + softening * softening;
-                      total.sum -= g * b.m[i] * b.m[j] / (r2 * std::sqrt(r2)) / 2 * d * d.transpose();
-                    }
-                  }
-                  return total;
-                })
-      .sum;
+  return reduce(b.count, WideTensor<double>{}, [&](Index begin, Index end) {
+    WideTensor<double> total;
+    for (Index i = begin; i < end; ++i) {
+      for (Index j = 0; j < b.count; ++j) {
+        if (j == i) continue;
+        const Vec3<double> d(b.x[i] - b.x[j], b.y[i] - b.y[j], b.z[i] - b.z[j]);
+        const double r2 = norm2(d) + softening * softening;
+        total.add_outer(d, -g * b.m[i] * b.m[j] / (r2 * std::sqrt(r2)) / 2 * d);
+      }
+    }
+    return total;
+  });
 }
 
 }  // namespace
@@ -117,7 +108,7 @@ void Gravity::add_lanes(ForceSink<double>& out, const ParticleSystem<double>& s)
   const auto block = [&](Index begin, Index end) {
     Felt felt;
     attract(s, massive, begin, end, softening, out.wants_energy(), felt);
-    double energy = 0;
+    WideSum<double> energy;
     for (Index i = begin; i < end; ++i) {
       const Index k = i - begin;
       a.add(i, g * Vec3<double>(felt.ax[k], felt.ay[k], felt.az[k]));
@@ -126,7 +117,7 @@ void Gravity::add_lanes(ForceSink<double>& out, const ParticleSystem<double>& s)
     return energy;
   };
   if (out.wants_energy()) {
-    out.energy(reduce(s.size(), 0.0, block));
+    out.energy(reduce(s.size(), WideSum<double>{}, block));
   } else {
     for_blocks(s.size(), block);
   }

@@ -120,7 +120,7 @@ template <class Real> void Gravity::add_pairs(ForceSink<Real>& out, const Partic
   }
   if (!out.wants_energy() && !out.wants_virial()) return;
   for (Index p = 0; p < pairs; ++p) r[p] = k[p] * r2[p];  // 1 / r
-  Real energy(0);
+  WideSum<Real> energy;
   for (Index i = 1, p = 0; i < n; p += i++) {
     if (m[i] == Real(0)) continue;
     Real phi(0);  // a sum for each row: they do not wait for each other
@@ -129,12 +129,12 @@ template <class Real> void Gravity::add_pairs(ForceSink<Real>& out, const Partic
   }
   out.energy(energy);
   if (!out.wants_virial()) return;
-  Mat3<Real> virial = Mat3<Real>::Zero();
+  WideTensor<Real> virial;
   for (Index i = 1, p = 0; i < n; ++i) {
     for (Index j = 0; j < i; ++j, ++p) {
       if (m[i] == Real(0) || m[j] == Real(0)) continue;
       const Vec3<Real> d(dx[p], dy[p], dz[p]);
-      virial -= m[i] * (k[p] * mu[j]) * d * d.transpose();
+      virial.add_outer(d, -m[i] * (k[p] * mu[j]) * d);
     }
   }
   out.virial(virial);
@@ -143,8 +143,8 @@ template <class Real> void Gravity::add_pairs(ForceSink<Real>& out, const Partic
 template <class Real> void Gravity::add_rows(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
   using std::sqrt;
   struct Totals {
-    Real energy = Real(0);
-    Mat3<Real> virial = Mat3<Real>::Zero();
+    WideSum<Real> energy;
+    WideTensor<Real> virial;
     Totals& operator+=(const Totals& other) {
       energy += other.energy;
       virial += other.virial;
@@ -172,10 +172,7 @@ template <class Real> void Gravity::add_rows(ForceSink<Real>& out, const Particl
         if (!sums) continue;
         totals.energy -= g * m[i] * m[j] / r / Real(2);
         const Vec3<Real> d(dx, dy, dz);
-        for (int row = 0; row < 3; ++row) {
-          for (int column = 0; column < 3; ++column)
-            totals.virial(row, column) -= m[i] * k * d[row] * d[column] / Real(2);
-        }
+        totals.virial.add_outer(d, -m[i] * k / Real(2) * d);
       }
       a.add(i, pull);
     }

@@ -4,6 +4,9 @@
 
 #include "engine/moments.hpp"
 #include "engine/simulation.hpp"
+#include "forces/bonded.hpp"
+#include "forces/external_fields.hpp"
+#include "forces/springs.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/schemes.hpp"
@@ -12,6 +15,7 @@
 #include "monitors/shadow_hamiltonian.hpp"
 #include "monitors/temperature.hpp"
 #include "monitors/time_correlation.hpp"
+#include "numbers/pack.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"
 #include "tests/support/settings.hpp"
@@ -234,6 +238,105 @@ TEST_CASE("what monitors tell does not depend on the order of particles", "[sums
       }
     }
   }
+}
+
+TEST_CASE("a wide sum is the exact one, in any order, in lanes too", "[sums]") {
+  Numbers numbers(4);
+  for (const Index n : {1, 2, 3, 64, 1000, 5000}) {
+    std::vector<double> all;
+    while (std::ssize(all) < n) {
+      all.push_back(numbers.next(20));
+      if (std::ssize(all) % 3 != 0) all.push_back(-all.back() * (1 + 0x1p-20));
+    }
+    const double expected = exact_sum(all);
+    for (int round = 0; round < 5; ++round) {
+      WideSum<double> first, second;
+      WideSum<Pack> lanes;
+      WideSum<Quad> quad;
+      for (std::size_t k = 0; k < all.size(); ++k) {
+        (k % 2 == 0 ? first : second) += all[k];
+        Pack pack(0.0);
+        pack.lane[3] = all[k];
+        pack.lane[5] = -all[k];
+        lanes += pack;
+        quad += Quad(all[k]);
+      }
+      first += second;
+      CAPTURE(n, round);
+      CHECK(first.value() == expected);
+      CHECK(lanes.value().lane[3] == expected);
+      CHECK(lanes.value().lane[5] == -expected);
+      CHECK(lanes.lane(5).value() == -expected);
+      CHECK(static_cast<double>(quad.value()) == expected);
+      std::shuffle(all.begin(), all.end(), numbers.random());
+    }
+  }
+  const auto sum = [](std::initializer_list<double> terms) {
+    WideSum<double> all;
+    for (const double x : terms) all += x;
+    return all.value();
+  };
+  CHECK(sum({1, infinite, 2}) == infinite);
+  CHECK(sum({1, -infinite, 2}) == -infinite);
+  CHECK(std::isnan(sum({infinite, -infinite})));
+  CHECK(std::isnan(sum({1, std::numeric_limits<double>::quiet_NaN()})));
+}
+
+/// Energy and virial of a force, ten numbers.
+template <class F> std::vector<double> energy_and_virial(const F& force, const ParticleSystem<double>& s) {
+  VectorColumn<double> a(s.size());
+  ForceSink<double> sink(a, s, {.energy = true, .virial = true});
+  force.add_to(sink, s);
+  std::vector<double> all = {sink.potential()};
+  const Mat3<double> virial = sink.virial();
+  all.insert(all.end(), virial.data(), virial.data() + 9);
+  return all;
+}
+
+TEST_CASE("energies and virials of forces do not depend on the order of their terms", "[sums][determinism]") {
+  const Index n = 400;
+  const ParticleSystem<double> s = crowd(n, Box{});
+  const UniformField field{.acceleration = {0.3, -0.7, 0.1}};
+  const auto of_field = bits_of(energy_and_virial(field, s));
+  HarmonicBond springs{.k = 0.3, .length = 0.1};
+  auto topology = std::make_shared<Topology>();
+  topology->bond_kinds = {{"harmonic", {2.5, 0.7}}};
+  topology->angle_kinds = {{"harmonic", {1.5, 1.9}}};
+  std::vector<std::array<Index, 2>> pairs;
+  for (Index i = 0; i + 2 < n; ++i) {
+    pairs.push_back({i, i + 1});
+    topology->bonds.push_back({{i, i + 1}, 0});
+    topology->angles.push_back({{i, i + 1, i + 2}, 0});
+  }
+  const auto of_terms = [&] {
+    ParticleSystem<double> bound = s;
+    bound.set_topology(std::make_shared<const Topology>(*topology));
+    springs.tied = Tied<2>(pairs);
+    std::vector<double> all = energy_and_virial(springs, s);
+    const std::vector<double> bonded = energy_and_virial(Bonded{}, bound);
+    all.insert(all.end(), bonded.begin(), bonded.end());
+    return all;
+  };
+  const std::vector<double> expected = of_terms();
+  CHECK(*std::min_element(expected.begin(), expected.end()) != 0);
+  Numbers numbers(6);
+  int plain_differs = 0;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const ParticleSystem<double> other = reordered(s, seed);
+    CHECK(bits_of(energy_and_virial(field, other)) == of_field);
+    std::shuffle(pairs.begin(), pairs.end(), numbers.random());
+    std::shuffle(topology->bonds.begin(), topology->bonds.end(), numbers.random());
+    std::shuffle(topology->angles.begin(), topology->angles.end(), numbers.random());
+    const Threads threads(static_cast<int>(seed));
+    CHECK(bits_of(of_terms()) == bits_of(expected));
+    const auto plain = [](const ParticleSystem<double>& of) {
+      double sum = 0;
+      for (Index i = 0; i < n; ++i) sum += of.masses()[i] * of.positions()[i][0];
+      return sum;
+    };
+    plain_differs += plain(s) == plain(other) ? 0 : 1;
+  }
+  CHECK(plain_differs > 0);  // else nothing is shown
 }
 
 TEST_CASE("an escape is told alike in any order of particles", "[sums][stop]") {

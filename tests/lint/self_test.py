@@ -78,6 +78,7 @@ SAMPLES = [
     ("docs/claims.md", '| `tests/lint/b_test.cpp` "one", "two" |\n', named_tests.problems, "has no case 'two'"),
     ("docs/promises.md", '| "two" | `tests/lint/b_test.cpp`, `tests/lint`: "one", "a\\|b" |\n', named_tests.problems, ""),
     ("engine/a.cpp", sum_over_particles("double m = 0;\n", "m += s.masses()[i];"), sums.problems, "3: 'm' is summed"),
+    ("engine/a.cpp", sum_over_particles("WideSum<double> m;\n", "m += s.masses()[i];"), sums.problems, ""),
     ("io/a.cpp", sum_over_particles("Motion c;\n", "{ if (i > 2) { c.x -= p; } }"), sums.problems, "'c.x' is summed"),
     ("study/a.cpp", sum_over_particles("", "for (int k = 0; k < 3; ++k) v[k] = 0, t += v;"), sums.problems, "'t' is summed"),
     ("scene/a.cpp", "for (std::size_t k = 0; k < n; ++k) p += k * masses[k];\n", sums.problems, "'p' is summed"),

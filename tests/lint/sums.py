@@ -1,4 +1,5 @@
-"""Sums over particles: numbers that loops over particles add up go through engine/sums.hpp, so that order never matters.
+"""Sums over particles: numbers that loops over particles add up go through engine/sums.hpp or a WideSum, so that order
+never matters.
 
 Found is every `x += ...` or `x -= ...` of a loop `for (Index i = ...)`, or over another index where masses, positions or
 velocities are added, if `x` is declared outside of the loop and is no element of anything. Whole numbers have one sum in
@@ -41,6 +42,11 @@ def declared_in(body, name):
     return bool(first) and not re.search(rf"\breturn {name}\b", first.group())
 
 
+def is_wide(text, name):
+    """Whether a sum keeps what its rounding leaves out (numbers/wide_sum.hpp): so do members of that name."""
+    return bool(re.search(rf"\bWide(?:Sum|Tensor)<[^;>]*> {name.split('.')[-1]}\b", text))
+
+
 def sums_in(text):
     """(index, name) of every sum over particles; `text` is without comments and strings."""
     for loop in LOOP.finditer(text):
@@ -50,7 +56,7 @@ def sums_in(text):
             what, root = added.group("what").strip(), added.group("to").split(".")[0]
             over_particles = loop.group("type") == "Index" or OF_PARTICLES.search(what)
             if over_particles and root != loop.group("index") and not COUNT.search(what) and \
-                    not declared_in(body[:added.start()], root):
+                    not declared_in(body[:added.start()], root) and not is_wide(text, added.group("to")):
                 yield begin + added.start(), added.group("to")
 
 
@@ -65,7 +71,7 @@ def problems(root):
                 used.add(str(path))
             else:
                 found.append(f"{path}:{tree.line_of(text, index)}: '{name}' is summed over particles in their order; "
-                             "use sum_over of engine/sums.hpp")
+                             "use sum_over of engine/sums.hpp, or a WideSum")
     for lint, subject in excused:
         if lint == "sums" and subject not in used:
             found.append(f"tests/lint/exceptions.txt: '{subject}' has no sum over particles; remove the line")
