@@ -12,9 +12,9 @@
 #include "constraints/distance.hpp"
 #include "engine/simulation.hpp"
 #include "forces/external_fields.hpp"
+#include "integrators/all_schemes.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
-#include "integrators/schemes.hpp"
 
 #include <random>
 

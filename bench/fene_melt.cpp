@@ -13,10 +13,10 @@
 #include "forces/bonded.hpp"
 #include "forces/lennard_jones.hpp"
 #include "forces/sum.hpp"
+#include "integrators/all_schemes.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/langevin.hpp"
 #include "integrators/minimize.hpp"
-#include "integrators/schemes.hpp"
 #include "scene/builders.hpp"
 
 #include <filesystem>

@@ -26,9 +26,9 @@
 #include "forces/pair_force.hpp"
 #include "forces/pair_potentials.hpp"
 #include "forces/sum.hpp"
+#include "integrators/all_schemes.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
-#include "integrators/schemes.hpp"
 #include "monitors/monitors.hpp"
 #include "numbers/simd.hpp"
 

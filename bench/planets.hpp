@@ -4,9 +4,9 @@
 #include "bench/support.hpp"
 #include "engine/simulation.hpp"
 #include "forces/gravity.hpp"
+#include "integrators/all_schemes.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
-#include "integrators/schemes.hpp"
 #include "integrators/wisdom_holman.hpp"
 
 #include <cmath>

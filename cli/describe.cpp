@@ -1,9 +1,9 @@
 #include "cli/commands.hpp"
 
 #include "cli/method_text.hpp"
+#include "integrators/all_methods.hpp"
+#include "integrators/all_schemes.hpp"
 #include "integrators/composition_options.hpp"
-#include "integrators/methods.hpp"
-#include "integrators/schemes.hpp"
 #include "numbers/error.hpp"
 #include "numbers/quantity.hpp"
 #include "numbers/suggest.hpp"

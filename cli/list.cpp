@@ -1,15 +1,15 @@
 #include "cli/commands.hpp"
 
 #include "cli/method_text.hpp"
-#include "integrators/methods.hpp"
-#include "integrators/schemes.hpp"
+#include "integrators/all_methods.hpp"
+#include "integrators/all_schemes.hpp"
 #include "numbers/error.hpp"
 #include "numbers/quantity.hpp"
 #include "numbers/suggest.hpp"
 #include "scene/json.hpp"
 #include "scene/parts.hpp"
 #include "scene/read_builder.hpp"
-#include "study/portrait.hpp"
+#include "study/methods_page.hpp"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -183,20 +183,20 @@ Json traits_json(const MethodTraits& traits) {
 
 /// docs/methods.md, or its cells for machines.
 void print_measured(bool json) {
-  std::vector<Portrait> portraits;
-  for (const Sitter& sitter : all_sitters()) portraits.push_back(portrait_of(sitter));
+  std::vector<MeasuredMethod> methods_measured;
+  for (const KnownMethod& known : all_known_methods()) methods_measured.push_back(measured_method(known));
   if (!json) {
-    fmt::print("{}", portraits_page(portraits));
+    fmt::print("{}", methods_page(methods_measured));
     return;
   }
   std::vector<Json> items;
-  for (const Portrait& portrait : portraits) {
-    items.push_back(Json::object({{"name", portrait.name},
-                                  {"family", portrait.family},
-                                  {"use", portrait.use},
-                                  {"measured", traits_json(portrait.measured)},
-                                  {"claimed", traits_json(portrait.claimed)},
-                                  {"differences", Json::list_of(portrait.differences())}}));
+  for (const MeasuredMethod& method : methods_measured) {
+    items.push_back(Json::object({{"name", method.name},
+                                  {"family", method.family},
+                                  {"use", method.use},
+                                  {"measured", traits_json(method.measured)},
+                                  {"claimed", traits_json(method.claimed)},
+                                  {"differences", Json::list_of(method.differences())}}));
   }
   fmt::print("{}\n",
              Json::object({{"schema", "noether.list/1"}, {"list", "methods"}, {"items", Json::list(items)}}).text());

@@ -2,9 +2,9 @@
 /// The integrator of the classical methods: one loop over y' = f(t, y) for all of them.
 
 #include "engine/simulation.hpp"
+#include "integrators/all_methods.hpp"
 #include "integrators/force_motion.hpp"
 #include "integrators/method.hpp"
-#include "integrators/methods.hpp"
 
 #include <concepts>
 #include <memory>

@@ -1,7 +1,7 @@
 #include "integrators/stiffness.hpp"
 
+#include "integrators/all_methods.hpp"
 #include "integrators/eigenvalues.hpp"
-#include "integrators/methods.hpp"
 
 #include <fmt/format.h>
 

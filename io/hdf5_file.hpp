@@ -3,6 +3,7 @@
 ///
 /// In a build without HDF5 every function that opens a file throws FileError.
 
+#include "io/element_type.hpp"
 #include "numbers/types.hpp"
 
 #include <cstdint>
@@ -17,9 +18,6 @@ namespace noether::io {
 
 /// Whether this build reads and writes HDF5 files.
 bool has_hdf5() noexcept;
-
-/// What elements a dataset or attribute has; `other` is what noether never writes.
-enum class ElementType : std::uint8_t { real, integer, text, other };
 
 /// One HDF5 object, closed with its last owner.
 class Hdf5Handle;

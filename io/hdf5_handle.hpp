@@ -2,7 +2,7 @@
 /// What the files that speak with HDF5 share: an id that is closed with its owner, and errors that name the file. It
 /// needs no header of HDF5: an id is an integer, a status another.
 
-#include "io/hdf5_file.hpp"
+#include "io/element_type.hpp"
 #include "io/ordered_file.hpp"
 #include "numbers/types.hpp"
 

@@ -1,7 +1,8 @@
 #pragma once
 /// What the readers of structures share: units of files, particles before they are put together, words and numbers.
 
-#include "io/structure.hpp"
+#include "engine/particle_system.hpp"
+#include "io/structure_options.hpp"
 #include "io/text_table.hpp"
 
 #include <cstdint>

@@ -1,8 +1,8 @@
 #pragma once
 /// Reads the frames of a trajectory one by one.
 
+#include "io/frames.hpp"
 #include "io/hdf5_file.hpp"
-#include "io/inspect.hpp"
 
 #include <filesystem>
 #include <map>

@@ -48,7 +48,8 @@ template <class Real> class WideSum {
     }
   }
 
-  /// The sum as rounded number by number, and what that left out: 0 in number types that are added as they are. @throws never
+  /// The sum as rounded number by number, and what that left out: 0 in number types that are added as they are.
+  /// @throws never
   const Real& high() const { return high_; }
   const Real& low() const { return low_; }
 

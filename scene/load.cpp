@@ -1,6 +1,6 @@
 #include "scene/scene.hpp"
 
-#include "integrators/schemes.hpp"
+#include "integrators/all_schemes.hpp"
 #include "io/files.hpp"
 #include "numbers/suggest.hpp"
 #include "scene/check.hpp"

@@ -1,7 +1,7 @@
 #include "scene/read_integrator.hpp"
 
-#include "integrators/methods.hpp"
-#include "integrators/schemes.hpp"
+#include "integrators/all_methods.hpp"
+#include "integrators/all_schemes.hpp"
 #include "numbers/suggest.hpp"
 #include "scene/read_options.hpp"
 

@@ -3,8 +3,8 @@
 
 #include "engine/simulation.hpp"
 #include "forces/sum.hpp"
+#include "integrators/all_methods.hpp"
 #include "integrators/composition_options.hpp"
-#include "integrators/methods.hpp"
 #include "integrators/minimize.hpp"
 #include "integrators/scheme.hpp"
 #include "scene/parts.hpp"

@@ -3,7 +3,9 @@
 #include "numbers/quantity.hpp"
 #include "scene/json.hpp"
 #include "study/analysis.hpp"
+#include "study/compare.hpp"
 #include "study/set_lines.hpp"
+#include "study/wide_scene.hpp"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 
 #include "engine/moments.hpp"
 #include "engine/sums.hpp"
-#include "study/truth.hpp"
+#include "study/position_error.hpp"
 
 #include <cmath>
 

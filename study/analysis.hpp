@@ -1,7 +1,7 @@
 #pragma once
 /// What the rows of a comparison say together: who is ahead, and by which order errors fall.
 
-#include "study/compare.hpp"
+#include "study/comparison.hpp"
 
 #include <optional>
 #include <utility>

@@ -1,6 +1,6 @@
 #include "study/candidate.hpp"
 
-#include "integrators/schemes.hpp"
+#include "integrators/all_schemes.hpp"
 #include "numbers/suggest.hpp"
 #include "scene/fields.hpp"
 

@@ -1,10 +1,12 @@
 #include "study/compare.hpp"
 
-#include "integrators/methods.hpp"
+#include "integrators/all_methods.hpp"
 #include "numbers/parallel.hpp"
 #include "numbers/simd.hpp"
 #include "numbers/version.hpp"
 #include "study/analysis.hpp"
+#include "study/find_truth.hpp"
+#include "study/wide_scene.hpp"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>

@@ -1,10 +1,10 @@
 #include "study/linear_stability.hpp"
 
 #include "forces/external_fields.hpp"
+#include "integrators/all_methods.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/damped.hpp"
 #include "integrators/first_order_system.hpp"
-#include "integrators/methods.hpp"
 #include "study/multistep_roots.hpp"
 
 #include <Eigen/LU>
@@ -20,8 +20,6 @@ namespace noether {
 namespace {
 
 using Matrix2 = Eigen::Matrix2d;
-
-constexpr double z_step = 2e-3;
 
 /// y' = lambda y in two real variables.
 struct LinearMode {
@@ -215,13 +213,6 @@ LinearTheory theory_of(const MultistepRoots& roots) {
 }
 
 }  // namespace
-
-Mode mode_of(const Scene& scene, const Spectrum& spectrum) {
-  if (scene.system) return {.omega = 0, .rate = 0, .lambda = spectrum.stiffest};
-  return {.omega = spectrum.fastest, .rate = drag_of(scene), .lambda = {}};
-}
-
-double next_z(double z) { return z < 10 ? z + z_step : 1.02 * z; }
 
 double growth_of(const Matrix2& step) {
   const double half = step.trace() / 2, det = step.determinant(), square = half * half - det;

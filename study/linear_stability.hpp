@@ -1,36 +1,16 @@
 #pragma once
 /// What linear theory says of a method: its step on one mode as a matrix, where that grows, and where it resonates.
 
-#include "scene/scene.hpp"
 #include "study/candidate.hpp"
-#include "study/spectrum.hpp"
+#include "study/mode.hpp"
 
 #include <Eigen/Core>
 
-#include <complex>
 #include <functional>
 #include <map>
 #include <optional>
 
 namespace noether {
-
-/// Growth of an amplitude in one step from which a method counts as unstable, in theory and where it is measured on a
-/// linear problem. Symplectic methods have no growth below their limits; Runge-Kutta and multistep methods may grow by
-/// less from their first step on (Cash and Karp's by 1e-9 at h omega = 0.139), and limits are of a threshold.
-inline constexpr double growth_threshold = 1e-9;
-
-/// One mode of a linear problem: q'' = - omega^2 q - rate q', or y' = lambda y.
-struct Mode {
-  double omega = 0;                                 ///< of particles; 0: `lambda` counts [1/time]
-  double rate = 0;                                  ///< of linear drag [1/time]
-  std::optional<std::complex<double>> lambda = {};  ///< of a first-order system [1/time]
-
-  /// What steps are multiplied with: omega, or |lambda| [1/time].
-  double scale() const { return lambda ? std::abs(*lambda) : omega; }
-};
-
-/// The mode that bounds the steps of a scene: its fastest oscillation, or its stiffest rate.
-Mode mode_of(const Scene& scene, const Spectrum& spectrum);
 
 /// One step of a method on a mode, as a real matrix of shape (2, 2), by z = h omega (or h |lambda|).
 ///
@@ -66,9 +46,5 @@ struct LinearTheory {
 /// 20 steps a period, where mu is the eigenvalue of the step.
 /// @source HairerLubichWanner2006, MandziukSchlick1995
 LinearTheory linear_theory(const Scene& scene, const Candidate& who, const Mode& mode);
-
-/// Steps z of a search: upward by 2e-3, from 10 on by 2 %.
-double next_z(double z);
-inline constexpr double largest_z = 200;
 
 }  // namespace noether

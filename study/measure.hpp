@@ -2,6 +2,7 @@
 /// One run of a comparison: what it costs, and where it was at the moments of the sampling.
 
 #include "study/candidate.hpp"
+#include "study/position_error.hpp"
 #include "study/sampling.hpp"
 #include "study/truth.hpp"
 

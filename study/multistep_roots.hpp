@@ -2,7 +2,8 @@
 /// Multistep methods on one mode: the roots of their characteristic polynomials.
 
 #include "integrators/methods/adams.hpp"
-#include "study/linear_stability.hpp"
+#include "study/candidate.hpp"
+#include "study/mode.hpp"
 
 #include <complex>
 #include <functional>

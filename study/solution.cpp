@@ -1,8 +1,9 @@
 #include "study/solution.hpp"
 
+#include "integrators/all_methods.hpp"
 #include "integrators/damped.hpp"
-#include "integrators/methods.hpp"
 #include "numbers/quantity.hpp"
+#include "study/find_truth.hpp"
 #include "study/spectrum.hpp"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #pragma once
 /// Whether a solution itself leaves all bounds, so that no method is to blame.
 
-#include "study/stability.hpp"
+#include "study/stability_trial.hpp"
 
 #include <optional>
 

@@ -1,8 +1,9 @@
 #include "study/stability.hpp"
 
 #include "engine/sums.hpp"
-#include "integrators/methods.hpp"
+#include "integrators/all_methods.hpp"
 #include "study/solution_growth.hpp"
+#include "study/wide_scene.hpp"
 
 #include <fmt/format.h>
 

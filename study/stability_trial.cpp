@@ -1,5 +1,4 @@
-#include "study/amplitude.hpp"
-#include "study/stability.hpp"
+#include "study/stability_trial.hpp"
 
 #include <fmt/format.h>
 

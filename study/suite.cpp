@@ -1,8 +1,8 @@
 #include "study/suite.hpp"
 
 #include "engine/sums.hpp"
-#include "integrators/methods.hpp"
-#include "integrators/schemes.hpp"
+#include "integrators/all_methods.hpp"
+#include "integrators/all_schemes.hpp"
 #include "monitors/monitors.hpp"
 #include "numbers/error.hpp"
 #include "study/multistep_roots.hpp"

@@ -1,8 +1,8 @@
 #include "study/truth_by_splitting.hpp"
 
+#include "integrators/all_schemes.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/particle_vector.hpp"
-#include "integrators/schemes.hpp"
 
 #include <fmt/format.h>
 

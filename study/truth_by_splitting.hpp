@@ -1,7 +1,10 @@
 #pragma once
 /// The reference of a scene whose Hamiltonian moves more than positions and velocities.
 
+#include "study/position_error.hpp"
+#include "study/sampling.hpp"
 #include "study/truth.hpp"
+#include "study/wide_scene.hpp"
 
 namespace noether {
 

@@ -1,9 +1,9 @@
 // Seven argon atoms, frozen in the plane: the energy error of leapfrog falls by four with half the step.
 #include "engine/simulation.hpp"
 #include "forces/lennard_jones.hpp"
+#include "integrators/all_schemes.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
-#include "integrators/schemes.hpp"
 #include "io/digest.hpp"
 #include "io/trajectory.hpp"
 #include "monitors/monitors.hpp"

@@ -1,9 +1,9 @@
 // Three equal masses chase each other along one figure eight.
 #include "engine/simulation.hpp"
 #include "forces/gravity.hpp"
+#include "integrators/all_schemes.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
-#include "integrators/schemes.hpp"
 #include "io/digest.hpp"
 #include "io/trajectory.hpp"
 #include "monitors/monitors.hpp"

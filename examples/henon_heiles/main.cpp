@@ -1,9 +1,9 @@
 // A particle in the well of Henon and Heiles, its energy and the shadow of its energy.
 #include "engine/simulation.hpp"
 #include "forces/henon_heiles.hpp"
+#include "integrators/all_schemes.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
-#include "integrators/schemes.hpp"
 #include "io/digest.hpp"
 #include "io/trajectory.hpp"
 #include "monitors/monitors.hpp"

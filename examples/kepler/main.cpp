@@ -1,9 +1,9 @@
 // A Kepler orbit of eccentricity 0.9 for ten periods: does the planet come back to where it was?
 #include "engine/simulation.hpp"
 #include "forces/gravity.hpp"
+#include "integrators/all_schemes.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
-#include "integrators/schemes.hpp"
 #include "io/digest.hpp"
 #include "io/trajectory.hpp"
 #include "monitors/monitors.hpp"

@@ -1,9 +1,9 @@
 // A Lennard-Jones crystal melts: the benchmark in.lj of LAMMPS, with a cutoff that keeps its energy.
 #include "engine/simulation.hpp"
 #include "forces/lennard_jones.hpp"
+#include "integrators/all_schemes.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
-#include "integrators/schemes.hpp"
 #include "io/digest.hpp"
 #include "io/trajectory.hpp"
 #include "monitors/monitors.hpp"

@@ -1,7 +1,7 @@
 // Sun, Jupiter ... Pluto for a million years.
 #include "engine/simulation.hpp"
+#include "integrators/all_schemes.hpp"
 #include "integrators/composition.hpp"
-#include "integrators/schemes.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "io/bodies.hpp"
 #include "io/digest.hpp"

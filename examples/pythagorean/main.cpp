@@ -1,9 +1,9 @@
 // Burrau's problem: masses 3, 4, 5 at rest in the corners of the triangle with sides 3, 4, 5.
 #include "engine/simulation.hpp"
 #include "forces/gravity.hpp"
+#include "integrators/all_schemes.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
-#include "integrators/schemes.hpp"
 #include "io/digest.hpp"
 #include "io/trajectory.hpp"
 #include "monitors/monitors.hpp"

@@ -1,7 +1,7 @@
 // Sun and eight planets for a thousand years, with a step of five days.
 #include "engine/simulation.hpp"
+#include "integrators/all_schemes.hpp"
 #include "integrators/composition.hpp"
-#include "integrators/schemes.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "io/bodies.hpp"
 #include "io/digest.hpp"

@@ -1,8 +1,8 @@
 #include "engine/simulation.hpp"
 #include "forces/gravity.hpp"
+#include "integrators/all_schemes.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
-#include "integrators/schemes.hpp"
 #include "io/digest.hpp"
 #include "monitors/monitors.hpp"
 

@@ -1,6 +1,6 @@
 #include "integrators/methods/bdf.hpp"
 
-#include "integrators/methods.hpp"
+#include "integrators/all_methods.hpp"
 #include "integrators/methods/newton.hpp"
 
 #include <cmath>

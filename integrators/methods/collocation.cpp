@@ -1,6 +1,6 @@
 #include "integrators/methods/collocation.hpp"
 
-#include "integrators/methods.hpp"
+#include "integrators/all_methods.hpp"
 #include "integrators/methods/dense_factors.hpp"
 
 #include <algorithm>

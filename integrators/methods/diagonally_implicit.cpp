@@ -1,6 +1,6 @@
 #include "integrators/methods/diagonally_implicit.hpp"
 
-#include "integrators/methods.hpp"
+#include "integrators/all_methods.hpp"
 #include "integrators/methods/diagonally_implicit_tableaus.hpp"
 #include "integrators/methods/newton.hpp"
 

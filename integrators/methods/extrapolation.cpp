@@ -1,6 +1,6 @@
 #include "integrators/methods/extrapolation.hpp"
 
-#include "integrators/methods.hpp"
+#include "integrators/all_methods.hpp"
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 /// The multistep methods as lists show them.
 
-#include "integrators/methods.hpp"
+#include "integrators/all_methods.hpp"
 #include "integrators/methods/adams.hpp"
 #include "integrators/methods/adams_pece.hpp"
 #include "integrators/methods/stormer_cowell.hpp"

@@ -1,6 +1,6 @@
 #include "integrators/methods/nystrom_pair.hpp"
 
-#include "integrators/methods.hpp"
+#include "integrators/all_methods.hpp"
 
 namespace noether {
 

@@ -1,6 +1,6 @@
 #include "integrators/methods/rosenbrock.hpp"
 
-#include "integrators/methods.hpp"
+#include "integrators/all_methods.hpp"
 #include "integrators/methods/newton.hpp"
 #include "integrators/methods/tableau.hpp"
 

@@ -1,6 +1,6 @@
 #include "integrators/methods/runge_kutta.hpp"
 
-#include "integrators/methods.hpp"
+#include "integrators/all_methods.hpp"
 #include "integrators/methods/explicit_tableaus.hpp"
 
 #include <utility>

@@ -3,8 +3,8 @@
 
 #include "engine/charge.hpp"
 #include "engine/simulation.hpp"
+#include "integrators/all_schemes.hpp"
 #include "integrators/composition.hpp"
-#include "integrators/schemes.hpp"
 #include "io/digest.hpp"
 #include "io/inspect.hpp"
 #include "tests/cli/support.hpp"

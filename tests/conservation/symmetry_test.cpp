@@ -2,7 +2,7 @@
 /// the start is turned, the whole run is.
 
 #include "forces/oblateness.hpp"
-#include "integrators/schemes.hpp"
+#include "integrators/all_schemes.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/problems.hpp"

@@ -1,5 +1,5 @@
+#include "integrators/all_schemes.hpp"
 #include "integrators/damped.hpp"
-#include "integrators/schemes.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/problems.hpp"

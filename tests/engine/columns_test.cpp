@@ -4,8 +4,8 @@
 #include "engine/not_finite.hpp"
 #include "engine/saved_state.hpp"
 #include "engine/simulation.hpp"
+#include "integrators/all_schemes.hpp"
 #include "integrators/composition.hpp"
-#include "integrators/schemes.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/tops.hpp"
 

@@ -3,9 +3,9 @@
 #include "engine/simulation.hpp"
 
 #include "forces/gravity.hpp"
+#include "integrators/all_schemes.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
-#include "integrators/schemes.hpp"
 #include "monitors/monitors.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"

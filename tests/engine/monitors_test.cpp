@@ -4,10 +4,10 @@
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
 #include "forces/linear_drag.hpp"
+#include "integrators/all_schemes.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/damped.hpp"
 #include "integrators/kinetic_potential.hpp"
-#include "integrators/schemes.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"
 

@@ -6,7 +6,7 @@
 #include "forces/check_gradient.hpp"
 #include "forces/fermi_pasta_ulam.hpp"
 #include "forces/sum.hpp"
-#include "integrators/schemes.hpp"
+#include "integrators/all_schemes.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"
 #include "tests/support/problems.hpp"

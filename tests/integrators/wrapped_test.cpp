@@ -4,7 +4,7 @@
 
 #include "engine/simulation.hpp"
 #include "forces/henon_heiles.hpp"
-#include "integrators/schemes.hpp"
+#include "integrators/all_schemes.hpp"
 #include "monitors/monitors.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"

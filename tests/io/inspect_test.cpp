@@ -3,9 +3,9 @@
 #include "io/inspect.hpp"
 
 #include "forces/sum.hpp"
+#include "integrators/all_schemes.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
-#include "integrators/schemes.hpp"
 #include "io/bodies.hpp"
 #include "io/digest.hpp"
 #include "io/hdf5_file.hpp"

@@ -3,10 +3,10 @@
 
 #include "engine/simulation.hpp"
 #include "forces/gravity.hpp"
+#include "integrators/all_schemes.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/first_order_system.hpp"
 #include "integrators/kinetic_potential.hpp"
-#include "integrators/schemes.hpp"
 #include "integrators/systems/lorenz.hpp"
 #include "io/checkpoint.hpp"
 #include "io/trajectory.hpp"

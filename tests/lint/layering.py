@@ -1,6 +1,8 @@
-"""Layering: which folder may include which, which files may see HDF5, TOML, CLI11, OpenSSL and Highway, and that code
-in lanes sees nothing else: an inline function that it shared with ordinary code would be linked with its instructions."""
+"""Layering: which folder may include which, which files may see HDF5, TOML, CLI11, OpenSSL and Highway, that files of a
+room (a header with the source of its name) stand on each other in one direction, and that code in lanes sees nothing
+else: an inline function that it shared with ordinary code would be linked with its instructions."""
 
+import graphlib
 import pathlib
 import re
 import sys
@@ -38,7 +40,7 @@ INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.MULTIL
 
 
 def problems(root):
-    found = []
+    found, beneath = [], {}
     for path in tree.cpp_files(root):
         text = tree.blank(tree.read(root, path))
         # An example that stands on an installed copy lives outside the rooms.
@@ -47,6 +49,7 @@ def problems(root):
             quoted, header = match.group(1) == '"', match.group(2)
             if quoted:
                 found += room_problems(root, path, where, header)
+                note_neighbor(beneath, path, header)
             if header.startswith("hwy/") and not IN_LANES.search(path.name):
                 found.append(f"{where}: Highway header '{header}' may be included only in *_simd.cpp and *_simd.hpp")
             if quoted and IN_LANES.search(path.name) and not FOR_LANES.search(header):
@@ -54,7 +57,28 @@ def problems(root):
             for pattern, name, room in GUARDED:
                 if pattern.search(header) and not (path.parts[0] == room and path.suffix == ".cpp"):
                     found.append(f"{where}: {name} header '{header}' may be included only in {room}/*.cpp")
-    return found
+    return found + circles(beneath)
+
+
+def stem_of(path):
+    """What a header, its source and its templates (`_impl`) are together."""
+    return str(path.with_suffix("")).removesuffix("_impl")
+
+
+def note_neighbor(beneath, path, header):
+    """Remembers what a file of a room stands on in the same room."""
+    above, below = stem_of(path), stem_of(pathlib.PurePath(header))
+    if path.parts[0] in LIBRARIES and pathlib.PurePath(header).parts[0] == path.parts[0] and above != below:
+        beneath.setdefault(above, set()).add(below)
+
+
+def circles(beneath):
+    try:
+        graphlib.TopologicalSorter(beneath).prepare()
+    except graphlib.CycleError as circle:
+        return [f"{circle.args[1][0]}: includes lead round: {' <- '.join(circle.args[1])}; "
+                "put what both need into a header of its own"]
+    return []
 
 
 def room_problems(root, path, where, header):

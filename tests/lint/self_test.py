@@ -51,6 +51,8 @@ SAMPLES = [
     ("forces/a_simd.cpp", "#include <hwy/highway.h>\n", layering.problems, ""),
     ("io/a.cpp", '#include <hdf5.h>\n// #include "forces/b.hpp"\n', layering.problems, ""),
     ("forces/a.cpp", '#include "engine/clean.hpp"\n', layering.problems, ""),
+    ("engine/clean.cpp", '#include "engine/above.hpp"\n', layering.problems, "includes lead round: "),
+    ("engine/clean_impl.hpp", '#include "engine/clean.hpp"\n', layering.problems, ""),
     ("engine/a.cpp", "int x;\n" * 601, sizes.problems, "601 lines"),
     ("engine/a.cpp", "int x;\n" * 600, sizes.problems, ""),
     ("engine/a.cpp", long_function(81), sizes.problems, "'f' has 81 lines"),
@@ -100,7 +102,8 @@ def planted(name, content):
     """A small clean tree with one file planted in it."""
     folder = tempfile.TemporaryDirectory()
     root = pathlib.Path(folder.name)
-    tree = {"engine/clean.hpp": CLEAN_HEADER, "docs/references.bib": "@article{Author2001,\n}\n",
+    tree = {"engine/clean.hpp": CLEAN_HEADER, "engine/above.hpp": '#pragma once\n#include "engine/clean.hpp"\n',
+            "docs/references.bib": "@article{Author2001,\n}\n",
             "tests/lint/b_test.cpp": 'TEST_CASE("o" "ne") {}\nTEST_CASE("a|b",\n "[x]") {}\n', name: content}
     for path, text_of_file in tree.items():
         (root / path).parent.mkdir(parents=True, exist_ok=True)

@@ -1,7 +1,7 @@
 #pragma once
 /// Small motions for the tests of classical methods, and the shortest way to walk them.
 
-#include "integrators/methods.hpp"
+#include "integrators/all_methods.hpp"
 #include "integrators/vector_field.hpp"
 
 #include <cmath>

@@ -1,8 +1,8 @@
 /// Newmark's method: what it keeps and what it loses, its options, forces that depend on velocities.
 
 #include "integrators/methods/newmark.hpp"
+#include "integrators/all_schemes.hpp"
 #include "integrators/classical.hpp"
-#include "integrators/schemes.hpp"
 #include "tests/methods/stiff_problems.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/order_fit.hpp"

@@ -1,8 +1,8 @@
 #pragma once
 /// Systems that the implicit methods are tested on, and the shortest way to let a method go.
 
+#include "integrators/all_methods.hpp"
 #include "integrators/first_order_system.hpp"
-#include "integrators/methods.hpp"
 
 #include <cmath>
 #include <limits>

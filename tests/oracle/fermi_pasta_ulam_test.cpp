@@ -3,10 +3,10 @@
 
 #include "forces/fermi_pasta_ulam.hpp"
 #include "engine/simulation.hpp"
+#include "integrators/all_schemes.hpp"
 #include "integrators/classical.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
-#include "integrators/schemes.hpp"
 #include "monitors/monitors.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"

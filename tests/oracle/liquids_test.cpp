@@ -2,10 +2,10 @@
 
 #include "engine/simulation.hpp"
 #include "forces/lennard_jones.hpp"
+#include "integrators/all_schemes.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/langevin.hpp"
-#include "integrators/schemes.hpp"
 #include "monitors/monitors.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"

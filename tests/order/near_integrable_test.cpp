@@ -1,4 +1,4 @@
-#include "integrators/schemes.hpp"
+#include "integrators/all_schemes.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/order_fit.hpp"

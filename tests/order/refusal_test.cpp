@@ -1,7 +1,7 @@
 #include "forces/sum.hpp"
+#include "integrators/all_schemes.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/damped.hpp"
-#include "integrators/schemes.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/problems.hpp"

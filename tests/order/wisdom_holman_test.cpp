@@ -1,6 +1,6 @@
 #include "integrators/wisdom_holman.hpp"
+#include "integrators/all_schemes.hpp"
 #include "integrators/damped.hpp"
-#include "integrators/schemes.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/order_fit.hpp"
 #include "tests/support/problems.hpp"

@@ -1,9 +1,9 @@
 // From text to parts: defaults, --set, units, a user's own part, the same bits as a program.
 
 #include "forces/gravity.hpp"
+#include "integrators/all_schemes.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
-#include "integrators/schemes.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "io/digest.hpp"
 #include "monitors/monitors.hpp"

@@ -1,6 +1,6 @@
 /// Options of methods are read as they describe themselves, those of a method from outside the library among them.
 
-#include "integrators/methods.hpp"
+#include "integrators/all_methods.hpp"
 #include "integrators/methods/newmark.hpp"
 #include "scene/read_options.hpp"
 #include "scene/scene.hpp"

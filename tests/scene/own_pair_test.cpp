@@ -2,9 +2,9 @@
 
 #include "engine/simulation.hpp"
 #include "forces/pair_force.hpp"
+#include "integrators/all_schemes.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
-#include "integrators/schemes.hpp"
 #include "scene/parts.hpp"
 #include "scene/scene.hpp"
 #include "tests/support/catch.hpp"

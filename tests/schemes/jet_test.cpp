@@ -1,9 +1,9 @@
 // Orders by Taylor series: every scheme, of every class, against the exact flow of random quartic Hamiltonians.
 
 #include "tests/support/jet.hpp"
+#include "integrators/all_schemes.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
-#include "integrators/schemes.hpp"
 #include "tests/support/catch.hpp"
 
 #include <string>

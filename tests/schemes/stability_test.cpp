@@ -1,6 +1,6 @@
 // Stability on the harmonic oscillator, from the step's matrix: no simulation.
 
-#include "integrators/schemes.hpp"
+#include "integrators/all_schemes.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // The tables themselves: sums, symmetry, costs, names, and the weights a run works with.
 
-#include "integrators/schemes.hpp"
+#include "integrators/all_schemes.hpp"
 #include "numbers/error.hpp"
 #include "tests/support/catch.hpp"
 

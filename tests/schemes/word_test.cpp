@@ -1,6 +1,6 @@
 // The word test: every table against the algebra it claims to satisfy, to all 4095 words of up to 11 letters.
 
-#include "integrators/schemes.hpp"
+#include "integrators/all_schemes.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/free_algebra.hpp"
 

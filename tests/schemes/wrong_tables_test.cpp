@@ -1,7 +1,7 @@
 // The tests of the schemes, tested: tables as others have published them wrongly, and every table with a slip of the
 // pen. The sums of all of them are right, so nothing but an order test finds them.
 
-#include "integrators/schemes.hpp"
+#include "integrators/all_schemes.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/free_algebra.hpp"
 #include "tests/support/jet.hpp"

@@ -2,7 +2,7 @@
 /// What the tests of the shadow Hamiltonian share: watched runs, and a method that only poses as symplectic.
 
 #include "engine/simulation.hpp"
-#include "integrators/schemes.hpp"
+#include "integrators/all_schemes.hpp"
 #include "monitors/shadow_hamiltonian.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/problems.hpp"

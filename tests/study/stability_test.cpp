@@ -1,8 +1,8 @@
 // Stability: spectra against closed forms, limits against tables, resonances against the literature.
 
 #include "study/stability.hpp"
-#include "integrators/methods.hpp"
-#include "integrators/schemes.hpp"
+#include "integrators/all_methods.hpp"
+#include "integrators/all_schemes.hpp"
 #include "scene/json.hpp"
 #include "tests/study/scenes.hpp"
 #include "tests/support/catch.hpp"

@@ -1,7 +1,7 @@
 // Scenes of the suite: what their verdicts, bounds of energies, do not ask.
 
-#include "integrators/methods.hpp"
-#include "integrators/schemes.hpp"
+#include "integrators/all_methods.hpp"
+#include "integrators/all_schemes.hpp"
 #include "study/candidate.hpp"
 #include "study/suite.hpp"
 #include "tests/study/scenes.hpp"

@@ -1,6 +1,7 @@
 // The reference in extended precision, against closed forms and against itself.
 
-#include "study/truth.hpp"
+#include "study/find_truth.hpp"
+#include "study/position_error.hpp"
 #include "tests/study/scenes.hpp"
 #include "tests/support/catch.hpp"
 

@@ -6,9 +6,9 @@
 #include "constraints/surfaces.hpp"
 #include "engine/simulation.hpp"
 #include "forces/external_fields.hpp"
+#include "integrators/all_schemes.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
-#include "integrators/schemes.hpp"
 #include "tests/support/drivers.hpp"
 
 #include <array>

@@ -4,7 +4,7 @@
 #include "engine/simulation.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
-#include "integrators/schemes.hpp"
+#include "integrators/all_schemes.hpp"
 #include "monitors/monitors.hpp"
 #include "scene/scene.hpp"
 #include "tests/support/catch.hpp"

@@ -1,10 +1,10 @@
 // Runs of systems without particles: refusals, faults, restarts, edits.
 
 #include "forces/gravity.hpp"
+#include "integrators/all_schemes.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/first_order_system.hpp"
 #include "integrators/kinetic_potential.hpp"
-#include "integrators/schemes.hpp"
 #include "integrators/systems/heat_line.hpp"
 #include "integrators/systems/lorenz.hpp"
 #include "monitors/monitors.hpp"

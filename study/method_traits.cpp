@@ -1,6 +1,7 @@
-#include "study/portrait.hpp"
+#include "study/method_traits.hpp"
 
-#include "study/portrait_problems.hpp"
+#include "study/stability_limit.hpp"
+#include "study/trait_problems.hpp"
 
 #include <fmt/format.h>
 
@@ -14,14 +15,14 @@ namespace noether {
 
 namespace {
 
-using portrait::Walk;
+using traits::Walk;
 
 using State = std::array<Quad, 4>;  ///< (x, y, u, v) of a particle in the plane
 
 constexpr int some_steps = 24;  ///< beyond the start of every method with a past
 
 ParticleSystem<Quad> particle_at(const State& z) {
-  ParticleSystem<Quad> s = portrait::one_particle(0, 0, 0, 0).as<Quad>();
+  ParticleSystem<Quad> s = traits::one_particle(0, 0, 0, 0).as<Quad>();
   s.positions().set(0, Vec3<Quad>(z[0], z[1], Quad(0)));
   s.velocities().set(0, Vec3<Quad>(z[2], z[3], Quad(0)));
   return s;
@@ -45,8 +46,8 @@ double distance(const State& a, const State& b) {
 }
 
 /// Where a method is after some steps in the well; empty if it cannot make them.
-std::optional<State> walked(const Sitter& sitter, const State& from, double h, std::int64_t steps) {
-  Walk<Quad> walk(portrait::integrator_of<Quad>(sitter, HenonHeiles{}), particle_at(from), h);
+std::optional<State> walked(const KnownMethod& known, const State& from, double h, std::int64_t steps) {
+  Walk<Quad> walk(traits::integrator_of<Quad>(known, HenonHeiles{}), particle_at(from), h);
   if (!walk.go(steps)) return std::nullopt;
   return state_of(walk.particles());
 }
@@ -56,7 +57,7 @@ constexpr double duration = 6;
 /// Where a method with steps of its own is at t = 6, and the forces it took.
 std::pair<State, double> travelled(const MethodInfo& info, const State& from, double tolerance) {
   const auto method = make_method<Quad>(info, {.rtol = tolerance, .atol = tolerance});
-  ForceMotion<ForceField<Quad>, Quad> f(portrait::field_of<Quad>(HenonHeiles{}));
+  ForceMotion<ForceField<Quad>, Quad> f(traits::field_of<Quad>(HenonHeiles{}));
   ParticleSystem<Quad> s = particle_at(from);
   f.bind(s);
   method->bind(f);
@@ -100,17 +101,17 @@ double slope_of(const std::vector<Rung>& rungs) {
 }
 
 /// Below it the digits of a table show: it breaks the conditions of its order by its last digit.
-double floor_of(const Sitter& sitter) { return std::pow(10.0, 3 - std::min(sitter.printed_digits(), 26)); }
+double floor_of(const KnownMethod& known) { return std::pow(10.0, 3 - std::min(known.printed_digits(), 26)); }
 
 /// Errors over a ladder of 6, 8, 12, 16, 24, ... steps, the finest three above the floor; fewer if there are not so
 /// many.
-std::vector<Rung> finest_rungs(const Sitter& sitter, bool lively) {
+std::vector<Rung> finest_rungs(const KnownMethod& known, bool lively) {
   std::vector<Rung> rungs;
   for (std::int64_t n = 6; n <= 1024; n = n % 3 == 0 ? n / 3 * 4 : n / 2 * 3) {
     const double h = duration / static_cast<double>(n);
-    const std::optional<State> end = walked(sitter, lively ? lively_start() : start(), h, n);
+    const std::optional<State> end = walked(known, lively ? lively_start() : start(), h, n);
     const double error = end ? distance(*end, truth(lively)) : std::numeric_limits<double>::infinity();
-    if (error < floor_of(sitter)) break;
+    if (error < floor_of(known)) break;
     if (error < 0.1) rungs.push_back({h, error});
   }
   if (rungs.size() > 3) rungs.erase(rungs.begin(), rungs.end() - 3);
@@ -118,10 +119,10 @@ std::vector<Rung> finest_rungs(const Sitter& sitter, bool lively) {
 }
 
 /// The smaller slope of two orbits: an order is what holds for all of them. Empty if there are too few rungs.
-std::optional<double> measured_order(const Sitter& sitter) {
+std::optional<double> measured_order(const KnownMethod& known) {
   std::optional<double> order;
   for (const bool lively : {false, true}) {
-    const std::vector<Rung> rungs = finest_rungs(sitter, lively);
+    const std::vector<Rung> rungs = finest_rungs(known, lively);
     if (rungs.size() < 3) return std::nullopt;
     const double slope = slope_of(rungs);
     order = order ? std::min(*order, slope) : slope;
@@ -140,10 +141,10 @@ double work_exponent(const MethodInfo& info) {
 }
 
 /// Forces a step after the start, if every step costs the same, at two lengths of the step.
-std::optional<double> measured_evaluations(const Sitter& sitter) {
+std::optional<double> measured_evaluations(const KnownMethod& known) {
   std::optional<std::int64_t> each;
   for (const double h : {0.01, 0.25}) {
-    Walk<Quad> walk(portrait::integrator_of<Quad>(sitter, HenonHeiles{}), particle_at(start()), h);
+    Walk<Quad> walk(traits::integrator_of<Quad>(known, HenonHeiles{}), particle_at(start()), h);
     if (!walk.go(some_steps)) return std::nullopt;
     for (int n = 0; n < 8; ++n) {
       const std::int64_t before = walk.evaluations();
@@ -157,14 +158,14 @@ std::optional<double> measured_evaluations(const Sitter& sitter) {
 }
 
 /// Largest entry of M^T J M - J, M the Jacobian of some steps, by central differences of the fourth order.
-double symplectic_defect(const Sitter& sitter, double h) {
+double symplectic_defect(const KnownMethod& known, double h) {
   const double d = 1e-7;
   std::array<State, 4> m{};  // m[k]: derivative along coordinate k
   for (std::size_t k = 0; k < 4; ++k) {
     const auto moved = [&](double by) {
       State z = start();
       z[k] += Quad(by);
-      return walked(sitter, z, h, some_steps);
+      return walked(known, z, h, some_steps);
     };
     const auto a = moved(-2 * d), b = moved(-d), c = moved(d), e = moved(2 * d);
     if (!a || !b || !c || !e) return std::numeric_limits<double>::infinity();
@@ -184,18 +185,18 @@ double symplectic_defect(const Sitter& sitter, double h) {
 }
 
 /// How far a run with its velocities turned ends from where it began.
-double way_back(const Sitter& sitter, double h) {
+double way_back(const KnownMethod& known, double h) {
   const auto turned = [](State z) {
     z[2] = -z[2], z[3] = -z[3];
     return z;
   };
-  const auto there = walked(sitter, start(), h, some_steps);
-  const auto back = there ? walked(sitter, turned(*there), h, some_steps) : std::nullopt;
+  const auto there = walked(known, start(), h, some_steps);
+  const auto back = there ? walked(known, turned(*there), h, some_steps) : std::nullopt;
   return back ? distance(turned(*back), start()) : std::numeric_limits<double>::infinity();
 }
 
 /// Relative changes of momentum and angular momentum of three bodies over some steps.
-std::pair<double, double> momenta_lost(const Sitter& sitter, double h) {
+std::pair<double, double> momenta_lost(const KnownMethod& known, double h) {
   struct Sums {
     Vec3<Quad> p = Vec3<Quad>::Zero(), l = Vec3<Quad>::Zero();
     Quad p_scale = Quad(0), l_scale = Quad(0);
@@ -209,7 +210,7 @@ std::pair<double, double> momenta_lost(const Sitter& sitter, double h) {
     }
     return made;
   };
-  Walk<Quad> walk(portrait::integrator_of<Quad>(sitter, Gravity{.G = 1}), portrait::three_bodies().as<Quad>(), h);
+  Walk<Quad> walk(traits::integrator_of<Quad>(known, Gravity{.G = 1}), traits::three_bodies().as<Quad>(), h);
   const Sums before = sums(walk.particles());
   if (!walk.go(some_steps)) return {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   const Sums after = sums(walk.particles());
@@ -218,8 +219,8 @@ std::pair<double, double> momenta_lost(const Sitter& sitter, double h) {
 }
 
 /// Largest energy errors, relative, of the first and the last eighth of many periods. Not finite where it escapes.
-std::pair<double, double> energy_errors(const Sitter& sitter, double h) {
-  Walk<Quad> walk(portrait::integrator_of<Quad>(sitter, HenonHeiles{}), particle_at(start()), h);
+std::pair<double, double> energy_errors(const KnownMethod& known, double h) {
+  Walk<Quad> walk(traits::integrator_of<Quad>(known, HenonHeiles{}), particle_at(start()), h);
   const Quad before = walk.energy();
   const auto steps = static_cast<std::int64_t>(std::ceil(628 / h)), eighth = steps / 8, looks = std::int64_t{128};
   const std::pair<double, double> lost(0, std::numeric_limits<double>::infinity());
@@ -244,8 +245,8 @@ double long_step(int order, const std::optional<StabilityLimit>& limit) {
 /// Whether a method chooses its steps if it is let: lengths of its first ones, asked for ten units of time.
 bool chooses_steps(const MethodInfo& info) {
   const auto method = make_method<double>(info, {});
-  ForceMotion<ForceField<double>, double> f(portrait::field_of<double>(HenonHeiles{}));
-  ParticleSystem<double> s = portrait::one_particle(0.12, 0.1, 0.2, 0.15);
+  ForceMotion<ForceField<double>, double> f(traits::field_of<double>(HenonHeiles{}));
+  ParticleSystem<double> s = traits::one_particle(0.12, 0.1, 0.2, 0.15);
   f.bind(s);
   method->bind(f);
   Vector<double> y;
@@ -267,15 +268,8 @@ std::string_view text_of(EnergyError energy) {
   return energy == EnergyError::kept ? "kept" : energy == EnergyError::bounded ? "bounded" : "drifts";
 }
 
-std::vector<Sitter> all_sitters() {
-  std::vector<Sitter> every;
-  for (const Scheme* scheme : schemes::all()) every.push_back({.scheme = scheme});
-  for (const MethodInfo* info : methods::all()) every.push_back({.info = info});
-  return every;
-}
-
-MethodTraits claimed_traits(const Sitter& sitter) {
-  const IntegratorClaims claims = portrait::integrator_of<Quad>(sitter, Gravity{.G = 1}).claims();
+MethodTraits claimed_traits(const KnownMethod& known) {
+  const IntegratorClaims claims = traits::integrator_of<Quad>(known, Gravity{.G = 1}).claims();
   MethodTraits traits;
   traits.order = claims.order;
   traits.symplectic = claims.symplectic;
@@ -284,57 +278,57 @@ MethodTraits claimed_traits(const Sitter& sitter) {
   traits.angular_momentum = claims.keeps_angular_momentum;
   // Of a regular orbit: near-by integrals exist for symplectic maps, and for reversible ones too.
   traits.energy = claims.symplectic || claims.reversible ? EnergyError::bounded : EnergyError::drifts;
-  const double limit = sitter.scheme != nullptr ? sitter.scheme->stability_limit : sitter.info->stability_limit;
+  const double limit = known.scheme != nullptr ? known.scheme->stability_limit : known.info->stability_limit;
   if (!std::isnan(limit)) traits.stability_limit = limit;
-  if (sitter.scheme != nullptr) {
-    traits.evaluations = sitter.scheme->evaluations();
+  if (known.scheme != nullptr) {
+    traits.evaluations = known.scheme->evaluations();
   } else {
-    if (sitter.info->evaluations > 0) traits.evaluations = sitter.info->evaluations;
-    traits.fixed_steps = sitter.info->fixed;
-    traits.own_steps = sitter.info->adaptive;
+    if (known.info->evaluations > 0) traits.evaluations = known.info->evaluations;
+    traits.fixed_steps = known.info->fixed;
+    traits.own_steps = known.info->adaptive;
   }
   return traits;
 }
 
-MethodTraits measured_traits(const Sitter& sitter) {
+MethodTraits measured_traits(const KnownMethod& known) {
   MethodTraits traits;
-  const bool fixed = portrait::integrator_of<Quad>(sitter, HenonHeiles{}).claims().clock == ClockMode::fixed;
+  const bool fixed = traits::integrator_of<Quad>(known, HenonHeiles{}).claims().clock == ClockMode::fixed;
   traits.fixed_steps = fixed;
-  traits.own_steps = sitter.info != nullptr && chooses_steps(*sitter.info);
-  traits.order = fixed ? measured_order(sitter) : work_exponent(*sitter.info);
-  if (fixed) traits.evaluations = measured_evaluations(sitter);
-  const std::optional<StabilityLimit> limit = stability_limit_of(sitter);
+  traits.own_steps = known.info != nullptr && chooses_steps(*known.info);
+  traits.order = fixed ? measured_order(known) : work_exponent(*known.info);
+  if (fixed) traits.evaluations = measured_evaluations(known);
+  const std::optional<StabilityLimit> limit = stability_limit_of(known);
   if (limit) {
     traits.stability_limit = limit->z;
     traits.limit_of_iteration = limit->of_iteration;
   }
   const double h = long_step(static_cast<int>(std::lround(traits.order.value_or(2))), limit);
-  const auto [momentum, angular] = momenta_lost(sitter, std::min(h, traits.order.value_or(2) < 3.5 ? 0x1p-5 : 0.25));
+  const auto [momentum, angular] = momenta_lost(known, std::min(h, traits.order.value_or(2) < 3.5 ? 0x1p-5 : 0.25));
   traits.momentum = momentum < 1e-29;
   traits.angular_momentum = angular < 1e-29;
-  traits.symplectic = symplectic_defect(sitter, h) < 1e-22;
-  traits.reversible = way_back(sitter, h) < 1e-29;
-  const auto [early, late] = energy_errors(sitter, h);
+  traits.symplectic = symplectic_defect(known, h) < 1e-22;
+  traits.reversible = way_back(known, h) < 1e-29;
+  const auto [early, late] = energy_errors(known, h);
   traits.energy = late < 1e-28 ? EnergyError::kept : late < 1.5 * early ? EnergyError::bounded : EnergyError::drifts;
   return traits;
 }
 
-Portrait portrait_of(const Sitter& sitter) {
-  Portrait made{
-      .name = std::string(sitter.name()), .measured = measured_traits(sitter), .claimed = claimed_traits(sitter)};
-  if (sitter.scheme != nullptr) {
+MeasuredMethod measured_method(const KnownMethod& known) {
+  MeasuredMethod made{
+      .name = std::string(known.name()), .measured = measured_traits(known), .claimed = claimed_traits(known)};
+  if (known.scheme != nullptr) {
     made.family = "splitting";
-    made.use = sitter.scheme->use;
-    made.highest_order = sitter.scheme->order.classical;
+    made.use = known.scheme->use;
+    made.highest_order = known.scheme->order.classical;
   } else {
-    made.family = sitter.info->family;
-    made.use = sitter.info->use.empty() ? sitter.info->summary : sitter.info->use;
-    made.highest_order = sitter.info->order;
+    made.family = known.info->family;
+    made.use = known.info->use.empty() ? known.info->summary : known.info->use;
+    made.highest_order = known.info->order;
   }
   return made;
 }
 
-std::vector<std::string> Portrait::differences() const {
+std::vector<std::string> MeasuredMethod::differences() const {
   std::vector<std::string> found;
   const auto check = [&](bool same, std::string_view cell, const std::string& claim, const std::string& fact) {
     if (!same) found.push_back(fmt::format("{}: claims {}, measured {}", cell, claim, fact));

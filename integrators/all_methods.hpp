@@ -1,5 +1,5 @@
 #pragma once
-/// All classical methods, by name. (Splitting schemes are in integrators/schemes.hpp.)
+/// All classical methods, by name. (Splitting schemes are in integrators/all_schemes.hpp.)
 
 #include "integrators/method.hpp"
 

@@ -1,6 +1,6 @@
-#include "integrators/methods.hpp"
+#include "integrators/all_methods.hpp"
 
-#include "integrators/schemes.hpp"
+#include "integrators/all_schemes.hpp"
 #include "numbers/suggest.hpp"
 #include "numbers/text.hpp"
 

@@ -1,4 +1,4 @@
-#include "integrators/schemes.hpp"
+#include "integrators/all_schemes.hpp"
 
 #include "numbers/text.hpp"
 

@@ -1,4 +1,4 @@
-#include "study/portrait.hpp"
+#include "study/methods_page.hpp"
 
 #include <fmt/format.h>
 
@@ -40,7 +40,7 @@ Orders (8, 6, 4) and the like, for H = A + eps B with eps small, are measured in
 
 std::string_view mark(bool yes) { return yes ? "yes" : ""; }
 
-std::string order_cell(const Portrait& p) {
+std::string order_cell(const MeasuredMethod& p) {
   if (!p.measured.order) return "?";
   const double order = *p.measured.order;
   if (!p.measured.fixed_steps) {
@@ -66,21 +66,21 @@ std::string steps_cell(const MethodTraits& measured) {
   return measured.fixed_steps ? "fixed" : "own";
 }
 
-std::string row_of(const Portrait& portrait) {
+std::string row_of(const MeasuredMethod& method) {
   std::string row = "|";
-  for (const std::string& cell : cells_of(portrait)) row += cell.empty() ? " |" : fmt::format(" {} |", cell);
-  const std::vector<std::string> differences = portrait.differences();
+  for (const std::string& cell : cells_of(method)) row += cell.empty() ? " |" : fmt::format(" {} |", cell);
+  const std::vector<std::string> differences = method.differences();
   if (!differences.empty()) row.insert(row.size() - 2, fmt::format(" [{}]", fmt::join(differences, "; ")));
   return row + "\n";
 }
 
 }  // namespace
 
-std::vector<std::string> cells_of(const Portrait& portrait) {
-  const MethodTraits& m = portrait.measured;
+std::vector<std::string> cells_of(const MeasuredMethod& method) {
+  const MethodTraits& m = method.measured;
   const std::string forces = m.evaluations ? fmt::format("{:.0f}", *m.evaluations) : m.fixed_steps ? "iterates" : "";
-  return {portrait.name,
-          order_cell(portrait),
+  return {method.name,
+          order_cell(method),
           forces,
           std::string(mark(m.symplectic)),
           std::string(mark(m.reversible)),
@@ -89,24 +89,24 @@ std::vector<std::string> cells_of(const Portrait& portrait) {
           std::string(text_of(m.energy)),
           steps_cell(m),
           limit_cell(m),
-          portrait.use};
+          method.use};
 }
 
-std::string portraits_page(const std::vector<Portrait>& portraits) {
+std::string methods_page(const std::vector<MeasuredMethod>& methods_measured) {
   const std::string head =
       "| method | order | forces | S | R | P | L | energy | steps | stable to | best for |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|\n";
   std::string page(introduction);
   std::vector<std::string> families;
-  for (const Portrait& portrait : portraits) {
-    if (std::find(families.begin(), families.end(), portrait.family) == families.end()) {
-      families.push_back(portrait.family);
+  for (const MeasuredMethod& method : methods_measured) {
+    if (std::find(families.begin(), families.end(), method.family) == families.end()) {
+      families.push_back(method.family);
     }
   }
   for (const std::string& family : families) {
     page += fmt::format("\n## {}\n\n{}", family, head);
-    for (const Portrait& portrait : portraits) {
-      if (portrait.family == family) page += row_of(portrait);
+    for (const MeasuredMethod& method : methods_measured) {
+      if (method.family == family) page += row_of(method);
     }
   }
   return page;

@@ -1,5 +1,6 @@
-#include "study/portrait.hpp"
-#include "study/portrait_problems.hpp"
+#include "study/stability_limit.hpp"
+
+#include "study/trait_problems.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +12,7 @@ namespace noether {
 
 namespace {
 
-using portrait::Walk;
+using traits::Walk;
 
 constexpr double farthest = 12;
 
@@ -34,22 +35,22 @@ struct StepMatrix {
 };
 
 template <class Real> ParticleSystem<Real> on_spring(double x, double v) {
-  return portrait::one_particle(x, 0, v, 0).as<Real>();
+  return traits::one_particle(x, 0, v, 0).as<Real>();
 }
 
 std::pair<Quad, Quad> point_of(const ParticleSystem<Quad>& s) { return {s.positions()[0][0], s.velocities()[0][0]}; }
 
 /// Whether some steps of h omega = z can be made in double precision.
-bool can_step(const Sitter& sitter, double z) {
-  Walk<double> walk(portrait::integrator_of<double>(sitter, HarmonicField{.k = 1}), on_spring<double>(1, 0), z);
+bool can_step(const KnownMethod& known, double z) {
+  Walk<double> walk(traits::integrator_of<double>(known, HarmonicField{.k = 1}), on_spring<double>(1, 0), z);
   return walk.go(64);
 }
 
 /// The matrix of one step of h omega = z; empty if the step cannot be made.
-std::optional<StepMatrix> step_matrix(const Sitter& sitter, double z) {
+std::optional<StepMatrix> step_matrix(const KnownMethod& known, double z) {
   std::pair<Quad, Quad> ends[2];
   for (int k = 0; k < 2; ++k) {
-    Walk<Quad> walk(portrait::integrator_of<Quad>(sitter, HarmonicField{.k = 1}), on_spring<Quad>(1 - k, k), z);
+    Walk<Quad> walk(traits::integrator_of<Quad>(known, HarmonicField{.k = 1}), on_spring<Quad>(1 - k, k), z);
     if (!walk.go(1)) return std::nullopt;
     ends[k] = point_of(walk.particles());
   }
@@ -58,8 +59,8 @@ std::optional<StepMatrix> step_matrix(const Sitter& sitter, double z) {
 
 /// Growth a step of what is left of a run on the spring once all that is spurious has decayed; empty as long as more
 /// than two modes are seen, or a step cannot be made.
-std::optional<double> principal_growth(const Sitter& sitter, double z) {
-  Walk<Quad> walk(portrait::integrator_of<Quad>(sitter, HarmonicField{.k = 1}), on_spring<Quad>(1, 0), z);
+std::optional<double> principal_growth(const KnownMethod& known, double z) {
+  Walk<Quad> walk(traits::integrator_of<Quad>(known, HarmonicField{.k = 1}), on_spring<Quad>(1, 0), z);
   std::pair<Quad, Quad> seen[4];
   for (int k = 0; k < 4; ++k) {
     if (!walk.go(k == 0 ? 100 : 1)) return std::nullopt;
@@ -78,8 +79,8 @@ std::optional<double> principal_growth(const Sitter& sitter, double z) {
 }
 
 /// Whether a run whose first steps were disturbed grows, or cannot go on.
-bool grows_in_a_run(const Sitter& sitter, double z, std::int64_t steps) {
-  Walk<double> walk(portrait::integrator_of<double>(sitter, portrait::ShakenSpring{.end = 20.5 * z}),
+bool grows_in_a_run(const KnownMethod& known, double z, std::int64_t steps) {
+  Walk<double> walk(traits::integrator_of<double>(known, traits::ShakenSpring{.end = 20.5 * z}),
                     on_spring<double>(1, 0), z);
   constexpr std::int64_t window = 400;
   double before = 0, largest = 0;
@@ -108,11 +109,11 @@ double edge_between(const std::function<bool(double)>& inside, double below, dou
 }
 
 /// Zero of an entry of the matrix between two steps where its signs differ.
-double zero_of(const Sitter& sitter, Quad StepMatrix::*entry, double below, double above) {
-  const bool negative = (*step_matrix(sitter, below)).*entry < Quad(0);
+double zero_of(const KnownMethod& known, Quad StepMatrix::*entry, double below, double above) {
+  const bool negative = (*step_matrix(known, below)).*entry < Quad(0);
   return edge_between(
       [&](double z) {
-        const auto m = step_matrix(sitter, z);
+        const auto m = step_matrix(known, z);
         return !m || ((*m).*entry < Quad(0)) != negative;
       },
       below, above);
@@ -120,69 +121,69 @@ double zero_of(const Sitter& sitter, Quad StepMatrix::*entry, double below, doub
 
 /// Where, between two steps, a symmetric method has a gap of instability, however low: (trace/2)^2 - 1 = qp pq there,
 /// so it lies between the zeros of the two.
-std::optional<double> gap_between(const Sitter& sitter, const StepMatrix& m, const StepMatrix& next, double below,
+std::optional<double> gap_between(const KnownMethod& known, const StepMatrix& m, const StepMatrix& next, double below,
                                   double above) {
   if (std::abs(static_cast<double>(m.qq - m.pp)) > any_growth) return std::nullopt;
   std::optional<double> first, second;
   for (Quad StepMatrix::*entry : {&StepMatrix::qp, &StepMatrix::pq}) {
     if ((m.*entry < Quad(0)) == (next.*entry < Quad(0))) continue;
-    (first ? second : first) = zero_of(sitter, entry, below, above);
+    (first ? second : first) = zero_of(known, entry, below, above);
   }
   if (first && second && std::abs(*first - *second) < 1e-9) return std::nullopt;  // a full turn: no gap
   return second ? std::min(first, second) : first;
 }
 
 /// Growth at the first look that is more than the digits of its table explain.
-bool always_grows(const Sitter& sitter, double growth) {
-  return growth > std::max(any_growth, std::pow(10.0, 1 - sitter.printed_digits()));
+bool always_grows(const KnownMethod& known, double growth) {
+  return growth > std::max(any_growth, std::pow(10.0, 1 - known.printed_digits()));
 }
 
 /// Where steps in double precision, which ask less of an iteration than extended ones, can no longer be made.
-double limit_of_iteration(const Sitter& sitter, double from, double step) {
+double limit_of_iteration(const KnownMethod& known, double from, double step) {
   double z = from;
-  while (z <= farthest && can_step(sitter, z + step)) z += step;
-  return edge_between([&](double at) { return !can_step(sitter, at); }, z, z + step);
+  while (z <= farthest && can_step(known, z + step)) z += step;
+  return edge_between([&](double at) { return !can_step(known, at); }, z, z + step);
 }
 
-StabilityLimit limit_of_map(const Sitter& sitter, double step) {
-  const auto unstable = [&](double z) { return step_matrix(sitter, z)->growth() > some_growth; };
+StabilityLimit limit_of_map(const KnownMethod& known, double step) {
+  const auto unstable = [&](double z) { return step_matrix(known, z)->growth() > some_growth; };
   double below = first_look;
-  std::optional<StepMatrix> last = step_matrix(sitter, below);
-  if (!last || always_grows(sitter, last->growth())) return {0};
+  std::optional<StepMatrix> last = step_matrix(known, below);
+  if (!last || always_grows(known, last->growth())) return {0};
   for (int k = 1; first_look + k * step <= farthest; ++k) {
     const double z = first_look + k * step;
-    const auto m = step_matrix(sitter, z);
+    const auto m = step_matrix(known, z);
     if (m) {
-      if (const auto gap = gap_between(sitter, *last, *m, below, z)) return {*gap};
+      if (const auto gap = gap_between(known, *last, *m, below, z)) return {*gap};
     }
-    if (!m) return {limit_of_iteration(sitter, below, step), true};
+    if (!m) return {limit_of_iteration(known, below, step), true};
     if (m->growth() > some_growth) return {edge_between(unstable, below, z)};
     last = m, below = z;
   }
   return {std::numeric_limits<double>::infinity()};
 }
 
-StabilityLimit limit_of_runs(const Sitter& sitter, double step) {
+StabilityLimit limit_of_runs(const KnownMethod& known, double step) {
   const auto unstable = [&](double z, std::int64_t steps) {
-    return principal_growth(sitter, z).value_or(0) > some_growth || grows_in_a_run(sitter, z, steps);
+    return principal_growth(known, z).value_or(0) > some_growth || grows_in_a_run(known, z, steps);
   };
-  if (always_grows(sitter, principal_growth(sitter, first_look).value_or(0))) return {0};
+  if (always_grows(known, principal_growth(known, first_look).value_or(0))) return {0};
   for (int k = 1; k * step <= farthest; ++k) {
     if (!unstable(k * step, 1600)) continue;
     const double edge = edge_between([&](double z) { return unstable(z, 32'000); }, (k - 1) * step, k * step, 10);
-    return {edge, !can_step(sitter, edge + step)};
+    return {edge, !can_step(known, edge + step)};
   }
   return {std::numeric_limits<double>::infinity()};
 }
 
 }  // namespace
 
-std::optional<StabilityLimit> stability_limit_of(const Sitter& sitter) {
-  if (sitter.info != nullptr && !sitter.info->fixed) return std::nullopt;
-  const bool with_past = sitter.info != nullptr && sitter.info->family == "multistep";
-  const bool iterates = sitter.info != nullptr && sitter.info->evaluations == 0;
+std::optional<StabilityLimit> stability_limit_of(const KnownMethod& known) {
+  if (known.info != nullptr && !known.info->fixed) return std::nullopt;
+  const bool with_past = known.info != nullptr && known.info->family == "multistep";
+  const bool iterates = known.info != nullptr && known.info->evaluations == 0;
   const double step = iterates ? 0.05 : with_past ? 0.005 : 0.002;
-  return with_past ? limit_of_runs(sitter, step) : limit_of_map(sitter, step);
+  return with_past ? limit_of_runs(known, step) : limit_of_map(known, step);
 }
 
 }  // namespace noether

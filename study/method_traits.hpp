@@ -1,8 +1,7 @@
 #pragma once
-/// Portraits of methods: what each of them does, measured, beside what it claims.
+/// What methods do, measured, beside what they claim.
 
-#include "integrators/methods.hpp"
-#include "integrators/schemes.hpp"
+#include "study/known_method.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -36,7 +35,7 @@ struct MethodTraits {
 };
 
 /// One method: a scheme over kinetic and potential energy, or a classical method.
-struct Portrait {
+struct MeasuredMethod {
   std::string name = {}, family = {}, use = {};
   int highest_order = 0;  ///< among the orders of a method that varies it
   MethodTraits measured = {}, claimed = {};
@@ -45,21 +44,8 @@ struct Portrait {
   std::vector<std::string> differences() const;
 };
 
-/// A method to be measured: exactly one of the two is given.
-struct Sitter {
-  const Scheme* scheme = nullptr;
-  const MethodInfo* info = nullptr;
-
-  /// Significant digits of the shortest coefficient in its source.
-  int printed_digits() const { return scheme != nullptr ? scheme->printed_digits : info->printed_digits; }
-  std::string_view name() const { return scheme != nullptr ? scheme->name : info->name; }
-};
-
-/// Every scheme, then every classical method.
-std::vector<Sitter> all_sitters();
-
 /// What a method says of itself, with steps of one length where it has them.
-MethodTraits claimed_traits(const Sitter& sitter);
+MethodTraits claimed_traits(const KnownMethod& known);
 
 /// The same as found by running it, in extended precision on small problems:
 ///
@@ -72,28 +58,9 @@ MethodTraits claimed_traits(const Sitter& sitter);
 /// - stability: see `stability_limit_of`.
 /// @throws never  what a method cannot do is found to fail
 /// @cost half a second on average, some seconds for the multistep methods that iterate
-MethodTraits measured_traits(const Sitter& sitter);
-
-/// Where a method becomes unstable on the oscillator.
-struct StabilityLimit {
-  double z =
-      0;  ///< first unstable h omega, to 2e-4 (5 % of an iteration); 0: at every step, infinity: nowhere up to 12
-  bool of_iteration = false;  ///< beyond it a step is not unstable, but cannot be made
-};
-
-/// First h omega at which the oscillator grows by more than 1e-15 a step: by the matrix of one step where a step is a
-/// map; else by a run whose start is disturbed, and by the growth of what remains once the disturbance has decayed.
-/// Empty for methods without steps of one length.
-std::optional<StabilityLimit> stability_limit_of(const Sitter& sitter);
+MethodTraits measured_traits(const KnownMethod& known);
 
 /// Measures a method and puts its claims beside.
-Portrait portrait_of(const Sitter& sitter);
-
-/// A row of docs/methods.md: name, order, forces, symplectic, reversible, momentum, angular momentum, energy, steps,
-/// stability limit, use.
-std::vector<std::string> cells_of(const Portrait& portrait);
-
-/// docs/methods.md: the portraits as one table for each family, with a word on how they were made.
-std::string portraits_page(const std::vector<Portrait>& portraits);
+MeasuredMethod measured_method(const KnownMethod& known);
 
 }  // namespace noether

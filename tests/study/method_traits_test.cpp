@@ -1,6 +1,6 @@
 /// Every method is held to what it claims, and to docs/methods.md.
 
-#include "study/portrait.hpp"
+#include "study/methods_page.hpp"
 #include "tests/support/catch.hpp"
 
 #include <fmt/format.h>
@@ -50,15 +50,15 @@ bool same_limit(const std::string& a, const std::string& b) {
   return std::abs(x - y) < (words.empty() ? 1e-3 : 0.05 * x) && words == other;
 }
 
-void check_portrait(const Sitter& sitter) {
-  const Portrait portrait = portrait_of(sitter);
-  INFO(portrait.name << ": " << fmt::format("{}", fmt::join(portrait.differences(), "; ")));
-  CHECK(portrait.differences().empty());
+void check_method(const KnownMethod& known) {
+  const MeasuredMethod method = measured_method(known);
+  INFO(method.name << ": " << fmt::format("{}", fmt::join(method.differences(), "; ")));
+  CHECK(method.differences().empty());
   INFO("docs/methods.md is written by ./noether list methods --measured > docs/methods.md");
-  const auto row = rows_of_the_page().find(portrait.name);
+  const auto row = rows_of_the_page().find(method.name);
   CHECK((row != rows_of_the_page().end()));
   if (row == rows_of_the_page().end()) return;
-  const std::vector<std::string> cells = cells_of(portrait);
+  const std::vector<std::string> cells = cells_of(method);
   REQUIRE(row->second.size() == cells.size());
   for (std::size_t k = 0; k < cells.size(); ++k) {
     CAPTURE(k, cells[k], row->second[k]);
@@ -67,42 +67,44 @@ void check_portrait(const Sitter& sitter) {
 }
 
 /// Methods whose steps are dear where their stability is looked for by runs.
-bool is_dear(const Sitter& sitter) {
-  return sitter.info != nullptr && sitter.info->family == "multistep" && sitter.info->evaluations == 0 &&
-         sitter.info->fixed;
+bool is_dear(const KnownMethod& known) {
+  return known.info != nullptr && known.info->family == "multistep" && known.info->evaluations == 0 &&
+         known.info->fixed;
 }
 
-std::vector<std::string> differences(const Scheme& scheme) { return portrait_of({.scheme = &scheme}).differences(); }
+std::vector<std::string> differences(const Scheme& scheme) {
+  return measured_method({.scheme = &scheme}).differences();
+}
 
 }  // namespace
 
 TEST_CASE("every scheme does what it claims, and what docs/methods.md says of it", "[methods][slow]") {
-  for (const Sitter& sitter : all_sitters()) {
-    if (sitter.scheme != nullptr) check_portrait(sitter);
+  for (const KnownMethod& known : all_known_methods()) {
+    if (known.scheme != nullptr) check_method(known);
   }
 }
 
 TEST_CASE("every classical method does what it claims, and what docs/methods.md says of it", "[methods][slow]") {
-  for (const Sitter& sitter : all_sitters()) {
-    if (sitter.info != nullptr && !is_dear(sitter)) check_portrait(sitter);
+  for (const KnownMethod& known : all_known_methods()) {
+    if (known.info != nullptr && !is_dear(known)) check_method(known);
   }
 }
 
 TEST_CASE("multistep methods that iterate do what they claim, and what docs/methods.md says of them",
           "[methods][slow]") {
-  for (const Sitter& sitter : all_sitters()) {
-    if (is_dear(sitter)) check_portrait(sitter);
+  for (const KnownMethod& known : all_known_methods()) {
+    if (is_dear(known)) check_method(known);
   }
 }
 
 TEST_CASE("docs/methods.md has a row for every method and for nothing else, and each says what it is for",
           "[methods]") {
   std::vector<std::string> names = {"method"};
-  for (const Sitter& sitter : all_sitters()) {
-    CAPTURE(std::string(sitter.name()));
-    names.emplace_back(sitter.name());
-    CHECK((sitter.scheme != nullptr ? !sitter.scheme->use.empty()
-                                    : !(sitter.info->use.empty() && sitter.info->summary.empty())));
+  for (const KnownMethod& known : all_known_methods()) {
+    CAPTURE(std::string(known.name()));
+    names.emplace_back(known.name());
+    CHECK((known.scheme != nullptr ? !known.scheme->use.empty()
+                                   : !(known.info->use.empty() && known.info->summary.empty())));
   }
   std::sort(names.begin(), names.end());
   std::vector<std::string> rows;
@@ -130,13 +132,13 @@ TEST_CASE("a wrong claim of a classical method is seen", "[methods]") {
   MethodInfo wrong = *methods::find("rk4");
   wrong.evaluations = 5;
   wrong.stability_limit = 3;
-  CHECK(portrait_of({.info = &wrong}).differences() ==
+  CHECK(measured_method({.info = &wrong}).differences() ==
         std::vector<std::string>{"evaluations: claims 5, measured 4", "stability limit: claims 3, measured 2.828"});
   wrong = *methods::find("heun");
   wrong.make = methods::find("trapezoidal")->make;
   wrong.make_quad = methods::find("trapezoidal")->make_quad;
   wrong.name = "trapezoidal";
-  CHECK(portrait_of({.info = &wrong}).differences() ==
+  CHECK(measured_method({.info = &wrong}).differences() ==
         std::vector<std::string>{"evaluations: claims 2, measured nothing", "stability limit: claims 0, measured inf"});
 }
 

@@ -8,13 +8,13 @@
 #include "integrators/classical.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
-#include "study/portrait.hpp"
+#include "study/known_method.hpp"
 
 #include <cmath>
 #include <memory>
 #include <string>
 
-namespace noether::portrait {
+namespace noether::traits {
 
 /// x'' = -x, and until `end` a rough force that no smooth start can follow: it wakes all that a method remembers.
 struct ShakenSpring {
@@ -56,17 +56,17 @@ template <class Real, class F> ForceField<Real> field_of(F force) {
 
 /// A method over forces, with steps of one length where it has them. All of them are in force fields, whose assemblies
 /// the libraries have compiled.
-template <class Real> AnyIntegrator<Real> integrator_over(const Sitter& sitter, ForceField<Real> forces) {
-  if (sitter.scheme != nullptr) {
-    return compose(AnyHamiltonian<Real>(KineticPotential<ForceField<Real>, Real>(std::move(forces))), *sitter.scheme);
+template <class Real> AnyIntegrator<Real> integrator_over(const KnownMethod& known, ForceField<Real> forces) {
+  if (known.scheme != nullptr) {
+    return compose(AnyHamiltonian<Real>(KineticPotential<ForceField<Real>, Real>(std::move(forces))), *known.scheme);
   }
   MethodOptions options;
-  if (sitter.info->fixed && sitter.info->adaptive) options.adaptive = false;
+  if (known.info->fixed && known.info->adaptive) options.adaptive = false;
   return Classical<Real>(std::make_unique<ForceMotion<ForceField<Real>, Real>>(std::move(forces)),
-                         {sitter.info, options});
+                         {known.info, options});
 }
-template <class Real, class F> AnyIntegrator<Real> integrator_of(const Sitter& sitter, const F& force) {
-  return integrator_over<Real>(sitter, field_of<Real>(force));
+template <class Real, class F> AnyIntegrator<Real> integrator_of(const KnownMethod& known, const F& force) {
+  return integrator_over<Real>(known, field_of<Real>(force));
 }
 
 /// A run without the machinery of a simulation: no monitors, no files.
@@ -97,4 +97,4 @@ template <class Real> class Walk {
   ParticleSystem<Real> raw_, settled_;
 };
 
-}  // namespace noether::portrait
+}  // namespace noether::traits

@@ -1,11 +1,9 @@
-#include "study/truth.hpp"
+#include "study/find_truth.hpp"
 
-#include "engine/sums.hpp"
-#include "forces/sum.hpp"
-#include "integrators/force_motion.hpp"
-#include "integrators/hamiltonian_motion.hpp"
-#include "integrators/methods.hpp"
+#include "integrators/all_methods.hpp"
+#include "study/position_error.hpp"
 #include "study/truth_by_splitting.hpp"
+#include "study/wide_scene.hpp"
 
 #include <fmt/format.h>
 
@@ -138,152 +136,6 @@ constexpr double agreement = 2e-16;
 constexpr std::int64_t patience = 4;
 
 constexpr std::string_view no_truth = "invariants";
-
-}  // namespace
-
-WideScene wide_scene(const Scene& scene) {
-  WideScene wide;
-  const SceneHamiltonian& h = scene.hamiltonian;
-  if (scene.particles.size() > most_bodies) {
-    wide.reason = fmt::format("more than {} bodies are too many for a reference", most_bodies);
-    return wide;
-  }
-  if (!h.constraints.empty()) {
-    wide.reason = "constraints are solved in double precision only";
-    return wide;
-  }
-  if (scene.system) {
-    if (scene.system->wide_field) wide.field = scene.system->wide_field();
-    if (wide.field == nullptr) wide.reason = fmt::format("system '{}' is written for doubles only", scene.system->name);
-    wide.start = scene.particles.as<Quad>();
-    return wide;
-  }
-  ForceField<Quad> all, kicks, letters;
-  const auto widen = [&](const SceneForce& force) {
-    const auto in_quad = force.force.in_quad();
-    if (!in_quad) return false;
-    all.add(*in_quad);
-    (force.letter ? letters : kicks).add(*in_quad);
-    return true;
-  };
-  for (const std::vector<SceneForce>* list : {&h.splitting.own, &h.forces}) {
-    for (const SceneForce& force : *list) {
-      if (widen(force)) continue;
-      wide.reason = fmt::format("force '{}' is written for doubles only", force.name);
-      return wide;
-    }
-  }
-  wide.start = scene.particles.as<Quad>();
-  if (h.splitting.only_forces) {
-    wide.field = std::make_unique<ForceMotion<ForceField<Quad>, Quad>>(std::move(all));
-  } else if (!h.splitting.make_wide) {
-    wide.reason = fmt::format("hamiltonian '{}' is written for doubles only", h.splitting.name);
-  } else if (!h.splitting.claims.inertial) {
-    wide.reason =
-        fmt::format("hamiltonian '{}' moves in coordinates of its own, which no reference does", h.splitting.name);
-  } else if (h.splitting.claims.columns && !letters.terms().empty()) {
-    wide.reason =
-        fmt::format("hamiltonian '{}' has a letter beside it that is known in double precision only", h.splitting.name);
-  } else if (h.splitting.claims.columns) {
-    wide.splitting = h.splitting.make_wide(std::move(kicks));
-  } else {
-    wide.field = std::make_unique<HamiltonianMotion<Quad>>(h.splitting.make_wide(std::move(kicks)), std::move(letters));
-  }
-  return wide;
-}
-
-void refuse_noise(const Scene& scene) {
-  if (!scene.hamiltonian.thermostat) return;
-  throw SceneError(
-      "the scene has a thermostat, whose noise no reference shares, so errors and limits of steps cannot "
-      "be told; take [hamiltonian.thermostat] out",
-      {.file = scene.source.file, .key = "hamiltonian.thermostat"});
-}
-
-bool about_center(const Scene& scene) {
-  if (scene.particles.size() < 2 || !scene.hamiltonian.constraints.empty()) return false;
-  if (!scene.hamiltonian.splitting.claims.keeps_momentum) return false;
-  for (const SceneForce& force : scene.hamiltonian.forces) {
-    if (!force.force.claims().keeps_momentum) return false;
-  }
-  return true;
-}
-
-PositionError::PositionError(const ParticleSystem<double>& particles, bool about) : about_center_(about) {
-  for (Index i = 0; i < particles.size(); ++i) masses_.emplace_back(particles.masses()[i]);
-  const double total = sum_over<double>(particles.size(), [&](Index i) { return particles.masses()[i]; });
-  if (!(total > 0)) about_center_ = false;
-}
-
-std::vector<Quad> PositionError::positions(const Vector<Quad>& y) const {
-  const std::size_t n = masses_.size();
-  if (n == 0) return {y.data(), y.data() + y.size()};
-  std::vector<Quad> x(y.data(), y.data() + 3 * static_cast<Index>(n));
-  if (!about_center_) return x;
-  for (std::size_t k = 0; k < 3; ++k) {
-    Quad sum(0), total(0);
-    for (std::size_t i = 0; i < n; ++i) {
-      sum += masses_[i] * x[k * n + i];
-      total += masses_[i];
-    }
-    for (std::size_t i = 0; i < n; ++i) x[k * n + i] -= sum / total;
-  }
-  return x;
-}
-
-void PositionError::set_scale(const std::vector<Vector<Quad>>& y) {
-  scale_ = 0;
-  sizes_.clear();
-  if (about_center_ || y.empty()) return;
-  if (masses_.empty()) {
-    sizes_.assign(static_cast<std::size_t>(y[0].size()), 0);
-    for (const Vector<Quad>& one : y) {
-      for (std::size_t i = 0; i < sizes_.size(); ++i) {
-        sizes_[i] = std::max(sizes_[i], std::abs(static_cast<double>(one[static_cast<Index>(i)])));
-      }
-    }
-    const double largest = *std::max_element(sizes_.begin(), sizes_.end());
-    std::replace(sizes_.begin(), sizes_.end(), 0.0, largest);  // what is 0 all the time is measured by the others
-    return;
-  }
-  double squares = 0;
-  for (const Vector<Quad>& one : y) {
-    const std::vector<Quad> all = positions(one);
-    squares += sum_over<double>(std::ssize(all), [&](Index i) {
-      const double x = static_cast<double>(all[static_cast<std::size_t>(i)]);
-      return x * x;
-    });
-  }
-  scale_ = std::sqrt(squares / static_cast<double>(y.size()));
-}
-
-double PositionError::size(const Vector<Quad>& y) const {
-  Quad squares(0);
-  for (const Quad& x : positions(y)) squares += x * x;
-  return static_cast<double>(sqrt(squares));
-}
-
-double PositionError::operator()(const Vector<Quad>& y, const Vector<Quad>& truth) const {
-  const std::vector<Quad> x = positions(y), exact = positions(truth);
-  if (!sizes_.empty() && sizes_[0] > 0) {
-    double squares = 0;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      const double error = static_cast<double>(x[i] - exact[i]) / sizes_[i];
-      squares += error * error;
-    }
-    return std::sqrt(squares / static_cast<double>(x.size()));
-  }
-  Quad difference(0), size(0);
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    difference += (x[i] - exact[i]) * (x[i] - exact[i]);
-    size += exact[i] * exact[i];
-  }
-  const double whole = scale_ > 0 ? scale_ : static_cast<double>(sqrt(size));
-  const double distance = static_cast<double>(sqrt(difference));
-  return whole > 0 ? distance / whole : distance;
-}
-
-namespace {
 
 double distance(const WideRun& a, const WideRun& b, PositionError& error) {
   error.set_scale(a.y);

@@ -1,0 +1,73 @@
+#include "study/wide_scene.hpp"
+
+#include "forces/sum.hpp"
+#include "integrators/force_motion.hpp"
+#include "integrators/hamiltonian_motion.hpp"
+#include "study/sampling.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace noether {
+
+WideScene wide_scene(const Scene& scene) {
+  WideScene wide;
+  const SceneHamiltonian& h = scene.hamiltonian;
+  if (scene.particles.size() > most_bodies) {
+    wide.reason = fmt::format("more than {} bodies are too many for a reference", most_bodies);
+    return wide;
+  }
+  if (!h.constraints.empty()) {
+    wide.reason = "constraints are solved in double precision only";
+    return wide;
+  }
+  if (scene.system) {
+    if (scene.system->wide_field) wide.field = scene.system->wide_field();
+    if (wide.field == nullptr) wide.reason = fmt::format("system '{}' is written for doubles only", scene.system->name);
+    wide.start = scene.particles.as<Quad>();
+    return wide;
+  }
+  ForceField<Quad> all, kicks, letters;
+  const auto widen = [&](const SceneForce& force) {
+    const auto in_quad = force.force.in_quad();
+    if (!in_quad) return false;
+    all.add(*in_quad);
+    (force.letter ? letters : kicks).add(*in_quad);
+    return true;
+  };
+  for (const std::vector<SceneForce>* list : {&h.splitting.own, &h.forces}) {
+    for (const SceneForce& force : *list) {
+      if (widen(force)) continue;
+      wide.reason = fmt::format("force '{}' is written for doubles only", force.name);
+      return wide;
+    }
+  }
+  wide.start = scene.particles.as<Quad>();
+  if (h.splitting.only_forces) {
+    wide.field = std::make_unique<ForceMotion<ForceField<Quad>, Quad>>(std::move(all));
+  } else if (!h.splitting.make_wide) {
+    wide.reason = fmt::format("hamiltonian '{}' is written for doubles only", h.splitting.name);
+  } else if (!h.splitting.claims.inertial) {
+    wide.reason =
+        fmt::format("hamiltonian '{}' moves in coordinates of its own, which no reference does", h.splitting.name);
+  } else if (h.splitting.claims.columns && !letters.terms().empty()) {
+    wide.reason =
+        fmt::format("hamiltonian '{}' has a letter beside it that is known in double precision only", h.splitting.name);
+  } else if (h.splitting.claims.columns) {
+    wide.splitting = h.splitting.make_wide(std::move(kicks));
+  } else {
+    wide.field = std::make_unique<HamiltonianMotion<Quad>>(h.splitting.make_wide(std::move(kicks)), std::move(letters));
+  }
+  return wide;
+}
+
+void refuse_noise(const Scene& scene) {
+  if (!scene.hamiltonian.thermostat) return;
+  throw SceneError(
+      "the scene has a thermostat, whose noise no reference shares, so errors and limits of steps cannot "
+      "be told; take [hamiltonian.thermostat] out",
+      {.file = scene.source.file, .key = "hamiltonian.thermostat"});
+}
+
+}  // namespace noether
