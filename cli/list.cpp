@@ -88,8 +88,8 @@ Listing units() {
   Listing list{{"unit", "constant", "dimension", "solar", "molecular", "si", "reduced"}, {}, {}};
   for (const UnitRow& row : list_units()) {
     const auto text = [](const std::optional<double>& x) { return x ? format_number(*x) : std::string("-"); };
-    list.add({row.symbol, row.constant, row.dimension, text(row.solar), text(row.molecular), text(row.si),
-              text(row.reduced)},
+    list.add({row.symbol, row.constant.empty() ? "-" : row.constant, row.dimension, text(row.solar),
+              text(row.molecular), text(row.si), text(row.reduced)},
              {row.symbol, row.constant, row.dimension, row.solar, row.molecular, row.si, row.reduced});
   }
   return list;

@@ -104,17 +104,77 @@ class TermReader {
   std::string_view rest_, whole_;
 };
 
+/// Another word for a unit of the table; plurals are made of `constant` and of these.
+struct Alias {
+  std::string_view word, symbol;
+};
+constexpr std::array aliases = {
+    Alias{"h", "hour"},       Alias{"hr", "hour"},        Alias{"hrs", "hour"},      Alias{"yrs", "yr"},
+    Alias{"AU", "au"},        Alias{"parsec", "pc"},      Alias{"kilometer", "km"},  Alias{"centimeter", "cm"},
+    Alias{"nanometer", "nm"}, Alias{"femtosecond", "fs"}, Alias{"picosecond", "ps"}, Alias{"nanosecond", "ns"},
+    Alias{"kilogram", "kg"},  Alias{"kelvin", "K"},
+};
+
+/// GM of a planet over that of the Sun, both nominal, in solar masses.
+constexpr units::Ratio of_msun(std::int64_t digits, int exponent) {
+  return units::find("Msun")->si * units::decimal(digits, exponent) / units::decimal(13271244);
+}
+
+/// Units that texts alone have: programs ask `unit_value` for them. Masses of planets are to Msun as the nominal GM
+/// are, 3.986004e14 and 1.2668653e17 to 1.3271244e20 m^3/s^2; radii are nominal, those of planets equatorial; the
+/// parsec is 648000/pi au.
+/// @source IauB2of2015, IauB3of2015
+constexpr std::array text_units = {
+    units::Definition{"Mearth", "", dimensions::mass, of_msun(3986004, -5)},
+    units::Definition{"Mjup", "", dimensions::mass, of_msun(12668653, -3)},
+    units::Definition{"Rsun", "", dimensions::length, units::decimal(6957, 5)},
+    units::Definition{"Rearth", "", dimensions::length, units::decimal(63781, 2)},
+    units::Definition{"Rjup", "", dimensions::length, units::decimal(71492, 3)},
+    units::Definition{"pc", "", dimensions::length, units::Ratio{648000 * Quad(149597870700), units::pi}},
+    units::Definition{"kpc", "", dimensions::length, units::Ratio{648000000 * Quad(149597870700), units::pi}},
+};
+
+/// The unit of a symbol, or null.
+const units::Definition* find_unit(std::string_view symbol) {
+  if (const units::Definition* const unit = units::find(symbol)) return unit;
+  for (const units::Definition& unit : text_units) {
+    if (unit.symbol == symbol) return &unit;
+  }
+  return nullptr;
+}
+
+/// The symbol that a word stands for: itself, or that of a name in English, singular or plural: "days", "AU".
+std::string_view symbol_of(std::string_view word) {
+  if (find_unit(word) != nullptr) return word;
+  const bool plural = word.size() > 2 && word.ends_with('s');
+  for (const std::string_view name : {word, plural ? word.substr(0, word.size() - 1) : word}) {
+    for (const Alias& alias : aliases) {
+      if (alias.word == name) return alias.symbol;
+    }
+    for (const units::Definition& unit : units::definitions) {
+      if (unit.constant == name && name.size() > 2) return unit.symbol;
+    }
+  }
+  return word;
+}
+
 [[noreturn]] void unknown_unit(std::string_view word, std::string_view whole) {
   std::vector<std::string> known;
   for (const units::Definition& unit : units::definitions) known.emplace_back(unit.symbol);
+  for (const units::Definition& unit : text_units) known.emplace_back(unit.symbol);
   const std::string in = word == whole ? "" : fmt::format(" in '{}'", whole);
-  // Half of a quotient, or a name from C++ or English, has one answer: "seconds" is far from "s" in letters.
-  const std::string_view singular = word.ends_with('s') ? word.substr(0, word.size() - 1) : word;
+  // Half of a quotient has one answer, however far it is in letters.
   for (const units::Definition& unit : units::definitions) {
-    const bool is_half = unit.symbol.starts_with(word) && unit.symbol.substr(word.size()).starts_with('/');
-    if (!is_half && unit.constant != word && unit.constant != singular) continue;
+    if (!unit.symbol.starts_with(word) || !unit.symbol.substr(word.size()).starts_with('/')) continue;
     fail(fmt::format("unknown unit '{}'{}; did you mean '{}'?", word, in, unit.symbol), whole);
   }
+  std::vector<std::string> names;
+  for (const Alias& alias : aliases) names.emplace_back(alias.word);
+  for (const units::Definition& unit : units::definitions) {
+    if (unit.constant.find('_') == std::string_view::npos) names.emplace_back(unit.constant);
+  }
+  const std::string name = suggest(word, known).empty() ? suggest(word, names) : "";
+  if (!name.empty()) fail(fmt::format("unknown unit '{}'{}; did you mean '{}'?", word, in, name), whole);
   fail(fmt::format("unknown unit '{}'{}{}", word, in, did_you_mean(word, known)), whole);
 }
 
@@ -145,12 +205,19 @@ Unit unit_from(const std::vector<Term>& terms, std::string_view whole, const Uni
   for (std::size_t i = 0; i < terms.size(); ++i) {
     if (terms[i].word == "1") continue;
     const units::Definition* const quotient = find_quotient(terms, i);
-    const units::Definition* const definition = quotient ? quotient : units::find(terms[i].word);
+    const units::Definition* const definition = quotient ? quotient : find_unit(terms[i].word);
     if (!definition) unknown_unit(terms[i].word, whole);
     append(unit, *definition, terms[i], system);
     if (quotient) ++i;
   }
   return unit;
+}
+
+/// The terms of a unit, by their symbols.
+std::vector<Term> unit_terms(std::string_view text, std::string_view whole, bool operator_first) {
+  std::vector<Term> terms = TermReader(text, whole).read(operator_first);
+  for (Term& term : terms) term.word = symbol_of(term.word);
+  return terms;
 }
 
 /// Whether the reduced system knows every word: it has plain numbers and angles only.
@@ -267,7 +334,7 @@ double read_quantity(std::string_view text, const Expected& wanted, const UnitSy
     if (system.is_reduced() || (wanted.dimension == dimensions::none && !wanted.angle)) return number.value;
     fail(fmt::format("'{}' has no unit; {}", whole, expectation(wanted, digits, system)), whole);
   }
-  const std::vector<Term> terms = TermReader(whole.substr(number.length), whole).read(true);
+  const std::vector<Term> terms = unit_terms(whole.substr(number.length), whole, true);
   if (system.is_reduced() && !all_plain(terms)) {
     fail(fmt::format("'{}' has a unit; the reduced system takes bare numbers, such as '{}'", whole, digits), whole);
   }
@@ -291,7 +358,7 @@ double Unit::times(double number) const noexcept {
 Unit parse_unit(std::string_view text, const UnitSystem& system) {
   const std::string_view whole = trimmed(text);
   if (whole.empty()) fail("empty unit; expected one such as 'km/s', or '1' for a plain number", text);
-  const std::vector<Term> terms = TermReader(whole, whole).read(false);
+  const std::vector<Term> terms = unit_terms(whole, whole, false);
   if (system.is_reduced() && !all_plain(terms)) {
     fail(fmt::format("unit '{}' in the reduced system, which takes bare numbers; leave the unit out, or choose "
                      "solar, molecular or si",
@@ -360,7 +427,7 @@ std::vector<UnitRow> list_units() {
   const UnitSystem& si = unit_system("si");
   const UnitSystem& reduced = unit_system("reduced");
   std::vector<UnitRow> rows;
-  for (const units::Definition& unit : units::definitions) {
+  const auto add = [&](const units::Definition& unit) {
     UnitRow row{.symbol = std::string(unit.symbol),
                 .constant = std::string(unit.constant),
                 .dimension = unit.symbol == "deg" || unit.symbol == "rad" ? "angle" : to_text(unit.dimension),
@@ -370,7 +437,9 @@ std::vector<UnitRow> list_units() {
                 .reduced = std::nullopt};
     if (unit.dimension == dimensions::none) row.reduced = value_in(unit, reduced);
     rows.push_back(std::move(row));
-  }
+  };
+  for (const units::Definition& unit : units::definitions) add(unit);
+  for (const units::Definition& unit : text_units) add(unit);
   const auto add_constant = [&](const char* name, const char* dimension, double UnitSystem::*value) {
     rows.push_back({name, name, dimension, solar.*value, molecular.*value, si.*value, reduced.*value});
   };

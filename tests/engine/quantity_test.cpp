@@ -151,12 +151,64 @@ TEST_CASE("a missing or wrong unit is refused and the right one shown", "[quanti
 TEST_CASE("an unknown unit is refused with a proposal", "[quantity]") {
   CHECK(refusal("100 dya", dimensions::time, solar) == "unknown unit 'dya' in '100 dya'; did you mean 'day'?");
   CHECK(refusal("2 MSUN", dimensions::mass, solar) == "unknown unit 'MSUN' in '2 MSUN'; did you mean 'Msun'?");
-  CHECK(refusal("2 seconds", dimensions::time, si) == "unknown unit 'seconds' in '2 seconds'; did you mean 's'?");
-  CHECK(refusal("2 years", dimensions::time, si) == "unknown unit 'years' in '2 years'; did you mean 'yr'?");
+  CHECK(refusal("2 secnods", dimensions::time, si) == "unknown unit 'secnods' in '2 secnods'; did you mean 'second'?");
   CHECK(refusal("2 kJ", dimensions::energy, si) == "unknown unit 'kJ' in '2 kJ'; did you mean 'kJ/mol'?");
   CHECK(refusal("2 furlongs", dimensions::length, si) ==
         "unknown unit 'furlongs' in '2 furlongs'; known are: s, min, hour, day, yr, kyr, Myr, Gyr, fs, ps, ns, m, cm, "
-        "km, au, nm, angstrom, kg, g, Msun, u, K, deg, rad, kJ/mol, J, e, C, g/cm^3");
+        "km, au, nm, angstrom, kg, g, Msun, u, K, deg, rad, kJ/mol, J, e, C, g/cm^3, Mearth, Mjup, Rsun, Rearth, Rjup, "
+        "pc, kpc");
+}
+
+TEST_CASE("names of units in English, plurals and AU are the units that they name", "[quantity]") {
+  const auto same = [](std::string_view words, std::string_view symbol, const Dimension& dimension) {
+    CAPTURE(words);
+    for (const UnitSystem* system : {&solar, &molecular, &si}) {
+      CHECK(same_bits(parse_quantity(words, dimension, *system), parse_quantity(symbol, dimension, *system)));
+    }
+  };
+  for (const auto& [words, symbol] :
+       std::vector<std::pair<std::string_view, std::string_view>>{{"3 seconds", "3 s"},
+                                                                  {"3 second", "3 s"},
+                                                                  {"3 minutes", "3 min"},
+                                                                  {"3 hours", "3 hour"},
+                                                                  {"3 h", "3 hour"},
+                                                                  {"3 hr", "3 hour"},
+                                                                  {"3 days", "3 day"},
+                                                                  {"3 years", "3 yr"},
+                                                                  {"3 year", "3 yr"},
+                                                                  {"3 yrs", "3 yr"},
+                                                                  {"3 femtoseconds", "3 fs"},
+                                                                  {"3 picoseconds", "3 ps"}}) {
+    same(words, symbol, dimensions::time);
+  }
+  same("3 AU", "3 au", dimensions::length);
+  same("3 meters", "3 m", dimensions::length);
+  same("3 kilometers", "3 km", dimensions::length);
+  same("3 angstroms", "3 angstrom", dimensions::length);
+  same("3 parsecs", "3 pc", dimensions::length);
+  same("3 kilograms", "3 kg", dimensions::mass);
+  same("3 grams", "3 g", dimensions::mass);
+  same("3 kilometers/second", "3 km/s", dimensions::velocity);
+  same("3/years", "3/yr", dimensions::frequency);
+  CHECK(parse_angle("3 degrees", solar) == parse_angle("3 deg", solar));
+  CHECK(parse_angle("3 radians", reduced) == 3);
+  CHECK(refusal("3 hours", dimensions::length, solar) == "'3 hours' is a time; a length is expected, such as '3 au'");
+  CHECK(refusal("3 dayss", dimensions::time, solar) == "unknown unit 'dayss' in '3 dayss'; did you mean 'day'?");
+}
+
+TEST_CASE("masses and radii of planets and the parsec are the IAU's", "[quantity]") {
+  // Python's exact fractions of the nominal values, and mpmath's pi, rounded once.
+  CHECK(unit_value("Mjup", solar) == 0.0009545942339693249);
+  CHECK(unit_value("Mearth", solar) == 3.0034893488507934e-06);
+  CHECK(unit_value("Mjup", si) == 1.8981247207669455e+27);
+  CHECK(unit_value("Mearth", si) == 5.972168256148406e+24);
+  CHECK(unit_value("Rsun", si) == 695700000.0);
+  CHECK(unit_value("Rjup", si) == 71492000.0);
+  CHECK(unit_value("Rearth", si) == 6378100.0);
+  CHECK(unit_value("Rsun", solar) == 0.004650467260962157);
+  CHECK(unit_value("pc", solar) == 206264.80624709636);
+  CHECK(unit_value("pc", si) == 3.085677581491367e+16);
+  CHECK(unit_value("kpc", si) == 3.085677581491367e+19);
 }
 
 TEST_CASE("what is not a quantity is refused", "[quantity]") {
@@ -232,7 +284,7 @@ TEST_CASE("numbers are written in the shortest form that reads back", "[quantity
 
 TEST_CASE("the list of units holds every unit and the constants of nature", "[quantity]") {
   const std::vector<UnitRow> rows = list_units();
-  REQUIRE(rows.size() == units::definitions.size() + 3);
+  REQUIRE(rows.size() == units::definitions.size() + 7 + 3);
   const UnitRow& year = rows.at(4);
   CHECK(year.symbol == "yr");
   CHECK(year.constant == "year");

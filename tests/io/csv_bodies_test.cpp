@@ -114,7 +114,7 @@ TEST_CASE("a wrong heading is refused with what is wrong and what to write", "[b
         "b.csv:1: there is no column mass, M; expected mass and a, e, inc, Omega, omega, M");
   CHECK(csv_refusal("mass [Msun],x [au],a [au]\n") ==
         "b.csv:1: columns 'x' and 'a' are of two kinds; give positions and velocities, or elements");
-  CHECK(csv_refusal("mass [Msun],x [parsec]\n").starts_with("b.csv:1: column 'x': unknown unit 'parsec'"));
+  CHECK(csv_refusal("mass [Msun],x [furlong]\n").starts_with("b.csv:1: column 'x': unknown unit 'furlong'"));
 }
 
 TEST_CASE("a broken row is refused with its line", "[bodies][messages]") {
