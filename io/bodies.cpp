@@ -1,7 +1,7 @@
 #include "io/bodies.hpp"
 
+#include "io/body_readers.hpp"
 #include "io/files.hpp"
-#include "io/text_table.hpp"
 #include "numbers/text.hpp"
 
 #include <fmt/format.h>
@@ -15,6 +15,9 @@ namespace noether::io {
 TextFile::TextFile(std::filesystem::path file, std::string_view expected) : file_(std::move(file)) {
   static constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   const std::string bytes = read_bytes(file_);
+  if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) {
+    throw FileError("this is text in UTF-16; save it as UTF-8", {.file = file_.string()});
+  }
   const std::size_t zero = bytes.find('\0');
   if (zero != std::string::npos) {
     throw FileError(fmt::format("this is no text: byte {} is zero; expected {}", zero, expected),
@@ -22,8 +25,22 @@ TextFile::TextFile(std::filesystem::path file, std::string_view expected) : file
   }
   std::string_view rest = bytes;
   if (rest.starts_with(byte_order_mark)) rest.remove_prefix(byte_order_mark.size());
+  set_lines(rest);
+}
+
+TextFile TextFile::within(std::size_t line, std::string_view content) const {
+  TextFile text;
+  text.file_ = file_;
+  text.outer_line_ = line;
+  text.set_lines(content);
+  return text;
+}
+
+void TextFile::set_lines(std::string_view rest) {
+  // Lines end as in Unix, DOS, or, where there is no other end, as in the old Macintosh.
+  const char line_end = rest.find('\n') == std::string_view::npos ? '\r' : '\n';
   while (!rest.empty()) {
-    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    const std::size_t end = std::min(rest.find(line_end), rest.size());
     std::string_view line = rest.substr(0, end);
     if (line.ends_with('\r')) line.remove_suffix(1);
     lines_.emplace_back(line);
@@ -32,7 +49,10 @@ TextFile::TextFile(std::filesystem::path file, std::string_view expected) : file
 }
 
 void TextFile::fail(std::size_t line, const std::string& message, const std::string& value) const {
-  throw SceneError(message, {.file = file_.string(), .line = static_cast<int>(line), .value = value});
+  const bool inner = outer_line_ != 0;
+  const std::string place = inner && line != 0 ? fmt::format("line {} of its text: ", line) : "";
+  throw SceneError(place + message,
+                   {.file = file_.string(), .line = static_cast<int>(inner ? outer_line_ : line), .value = value});
 }
 
 std::string_view trimmed(std::string_view text) {
@@ -68,7 +88,10 @@ double number_in(const TextFile& text, std::size_t line, std::string_view word, 
     text.fail(line, fmt::format("{} is {}, which no double can hold", what, shown), shown);
   }
   if (problem != std::errc() || end != digits.data() + digits.size() || digits.front() == '+') {
-    text.fail(line, fmt::format("{} is '{}', which is no number", what, shown), shown);
+    const bool comma = word.find(',') != std::string_view::npos;
+    text.fail(line,
+              fmt::format("{} is '{}', which is no number{}", what, shown, comma ? "; decimals have a point" : ""),
+              shown);
   }
   if (!std::isfinite(number)) text.fail(line, fmt::format("{} is {}; expected a finite number", what, shown), shown);
   return number;
@@ -91,11 +114,13 @@ void BodyList::add(std::size_t line, const std::string& name, double mass, const
   particles_.add(name, mass, x, v);
 }
 
+BodyTable read_body_table(const std::filesystem::path& file, const BodiesOptions& options) {
+  const TextFile text = horizons_answer(TextFile(file));
+  return is_horizons(text) ? read_horizons_bodies(text, options) : read_csv_bodies(text, options);
+}
+
 ParticleSystem<double> read_bodies(const std::filesystem::path& file, const BodiesOptions& options) {
-  const TextFile text(file);
-  const UnitSystem& units = *options.units;
-  const double G = options.G.value_or(units.G);
-  return is_horizons(text) ? read_horizons_bodies(text, units, G) : read_csv_bodies(text, units, G);
+  return read_body_table(file, options).particles;
 }
 
 }  // namespace noether::io

@@ -1,6 +1,6 @@
 // Bodies from CSV: columns by name, units in brackets, positions and velocities or elements.
-#include "engine/orbital_elements.hpp"
-#include "io/text_table.hpp"
+#include "engine/given_orbit.hpp"
+#include "io/body_readers.hpp"
 #include "numbers/quantity.hpp"
 #include "numbers/suggest.hpp"
 #include "numbers/text.hpp"
@@ -12,31 +12,97 @@
 #include <charconv>
 #include <map>
 #include <set>
+#include <unordered_map>
 #include <utility>
 
 namespace noether::io {
 
 namespace {
 
-/// What a table may hold; `dimension` in words, "" for what is no number.
+/// What a table may hold; `dimension` in words, "" for what is no number. A unit serves all columns of a group.
 struct KnownColumn {
+  enum class Group { none, position, velocity, angle };
   std::string_view name, dimension;
+  Group group = Group::none;
 };
-constexpr std::array known_columns = {
-    KnownColumn{"name", ""},       KnownColumn{"id", ""},         KnownColumn{"mass", "mass"},
-    KnownColumn{"x", "length"},    KnownColumn{"y", "length"},    KnownColumn{"z", "length"},
-    KnownColumn{"vx", "velocity"}, KnownColumn{"vy", "velocity"}, KnownColumn{"vz", "velocity"},
-    KnownColumn{"a", "length"},    KnownColumn{"e", "1"},         KnownColumn{"inc", "angle"},
-    KnownColumn{"Omega", "angle"}, KnownColumn{"omega", "angle"}, KnownColumn{"M", "angle"},
-};
-constexpr std::array<std::string_view, 6> cartesian = {"x", "y", "z", "vx", "vy", "vz"};
-constexpr std::array<std::string_view, 6> elements = {"a", "e", "inc", "Omega", "omega", "M"};
 
-/// A line without its comment, cut at commas; commas and '#' in double quotes do not count.
-std::vector<std::string> fields_of(const TextFile& text, std::size_t line) {
-  const std::string& content = text.lines()[line - 1];
+/// All columns, in the order in which messages list them.
+const std::vector<KnownColumn>& known_columns() {
+  using Group = KnownColumn::Group;
+  static const std::vector<KnownColumn> all = [] {
+    std::vector<KnownColumn> columns = {{"name", ""},
+                                        {"id", ""},
+                                        {"mass", "mass"},
+                                        {"x", "length", Group::position},
+                                        {"y", "length", Group::position},
+                                        {"z", "length", Group::position},
+                                        {"vx", "velocity", Group::velocity},
+                                        {"vy", "velocity", Group::velocity},
+                                        {"vz", "velocity", Group::velocity},
+                                        {"about", ""}};
+    for (const OrbitKey& key : orbit_keys) {
+      columns.push_back({key.name, key.dimension, key.dimension == "angle" ? Group::angle : Group::none});
+    }
+    return columns;
+  }();
+  return all;
+}
+
+constexpr std::array<std::string_view, 6> cartesian = {"x", "y", "z", "vx", "vy", "vz"};
+
+/// What parts the fields of a table: ',' ';' tab, or ' ' for any number of blanks.
+enum class Separator : char { comma = ',', semicolon = ';', tab = '\t', blank = ' ' };
+
+std::string_view name_of(Separator separator) {
+  switch (separator) {
+    case Separator::comma:
+      return "a comma";
+    case Separator::semicolon:
+      return "a semicolon";
+    case Separator::tab:
+      return "a tab";
+    default:
+      return "a blank";
+  }
+}
+
+/// That of a line of column names: the first of comma, semicolon, tab and blank that stands in it outside of quotes.
+Separator separator_of(std::string_view line) {
+  std::string plain;
+  bool quoted = false;
+  for (const char c : trimmed(line.substr(0, line.find('#')))) {
+    if (c == '"') quoted = !quoted;
+    if (!quoted) plain += c;
+  }
+  for (const Separator separator : {Separator::comma, Separator::semicolon, Separator::tab}) {
+    if (plain.find(static_cast<char>(separator)) != std::string::npos) return separator;
+  }
+  return Separator::blank;
+}
+
+/// Column names parted by blanks: those in and before the brackets of a unit part nothing.
+std::string with_whole_units(std::string_view line) {
+  std::string result;
+  bool inside = false;
+  for (const char c : line) {
+    const bool blank = c == ' ' || c == '\t';
+    if (c == '[') {
+      result.resize(result.find_last_not_of(" \t") + 1);
+      inside = true;
+    }
+    if (c == ']') inside = false;
+    result += inside && blank ? '*' : c;
+  }
+  return result;
+}
+
+/// A line without its comment, cut at separators; separators and '#' in double quotes do not count.
+std::vector<std::string> fields_of(const TextFile& text, std::size_t line, std::string_view content,
+                                   Separator separator) {
   std::vector<std::string> fields(1);
-  bool quoted = false, was_quoted = false;
+  bool quoted = false, was_quoted = false, ended = false;
+  const bool runs = separator == Separator::blank;
+  const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
   const auto end_field = [&] {
     if (!was_quoted) fields.back() = trimmed(fields.back());
     was_quoted = false;
@@ -48,12 +114,20 @@ std::vector<std::string> fields_of(const TextFile& text, std::size_t line) {
       if (c == '"' && !doubled) quoted = false;
       if (c != '"' || doubled) fields.back() += c;
       if (doubled) ++i;
-    } else if (c == '#') {
-      break;
-    } else if (c == ',') {
+      continue;
+    }
+    if (c == '#') break;
+    if (runs && is_blank(c)) {
+      ended = !fields.back().empty() || was_quoted;
+      continue;
+    }
+    if (ended || (!runs && c == static_cast<char>(separator))) {
       end_field();
       fields.emplace_back();
-    } else if (c == '"') {
+      ended = false;
+      if (!runs) continue;
+    }
+    if (c == '"') {
       if (was_quoted || !trimmed(fields.back()).empty()) {
         text.fail(line,
                   "a double quote stands inside a field; quote the whole field, and write \"\" for a quote in it");
@@ -62,29 +136,34 @@ std::vector<std::string> fields_of(const TextFile& text, std::size_t line) {
       quoted = was_quoted = true;
     } else if (!was_quoted) {
       fields.back() += c;
-    } else if (c != ' ' && c != '\t') {
-      text.fail(line, fmt::format("'{}' follows the double quote that ends a field; expected a comma", c));
+    } else if (!is_blank(c)) {
+      text.fail(line,
+                fmt::format("'{}' follows the double quote that ends a field; expected {}", c, name_of(separator)));
     }
   }
   if (quoted) text.fail(line, "a double quote is not closed on this line");
+  const bool empty = fields.size() == 1 && trimmed(fields[0]).empty() && !was_quoted;
   end_field();
-  if (fields.size() == 1 && fields[0].empty() && !was_quoted) return {};
+  if (empty) return {};
   return fields;
 }
 
 /// A CSV table of bodies, read line by line.
 class CsvBodies {
  public:
-  CsvBodies(const TextFile& text, const UnitSystem& units, double G)
-      : text_(text), units_(units), G_(G), bodies_(text, units) {}
+  CsvBodies(const TextFile& text, const BodiesOptions& options)
+      : text_(text),
+        units_(*options.units),
+        G_(options.G.value_or(options.units->G)),
+        elements_about_(options.elements),
+        bodies_(text, units_) {}
 
-  ParticleSystem<double> read() {
+  BodyTable read() {
     for (std::size_t line = 1; line <= text_.lines().size(); ++line) {
-      const std::vector<std::string> fields = fields_of(text_, line);
-      if (fields.empty()) continue;
+      const std::string_view content = text_.lines()[line - 1];
       if (heading_line_ == 0) {
-        read_headings(line, fields);
-      } else {
+        read_head(line, content);
+      } else if (const auto fields = fields_of(text_, line, content, separator_); !fields.empty()) {
         read_row(line, fields);
       }
     }
@@ -94,67 +173,103 @@ class CsvBodies {
     if (bodies_.particles().size() == 0) text_.fail(heading_line_, "the table has column names, but no bodies");
     ParticleSystem<double> particles = bodies_.take();
     if (!ids_.empty()) particles.restore_ids(ids_);
-    return particles;
+    return {.particles = std::move(particles)};
   }
 
  private:
   struct Column {
-    std::size_t field;
-    std::optional<Unit> unit;
+    std::size_t field = 0;
+    std::optional<Unit> unit = {};
   };
+
+  /// A line before the rows: column names, a comment, or "sep=;" as spreadsheets write it.
+  void read_head(std::size_t line, std::string_view content) {
+    if (content.starts_with("sep=") && content.size() == 5) return;
+    separator_ = separator_of(content);
+    const std::string whole = with_whole_units(content);
+    const auto fields = fields_of(text_, line, separator_ == Separator::blank ? whole : content, separator_);
+    if (!fields.empty()) read_headings(line, fields);
+  }
 
   void read_headings(std::size_t line, const std::vector<std::string>& fields) {
     heading_line_ = line;
     field_count_ = fields.size();
+    std::vector<std::pair<const KnownColumn*, Heading>> headings;
     for (std::size_t k = 0; k < fields.size(); ++k) {
       const Heading heading = parse_heading(fields[k]);
       const KnownColumn& known = known_column(line, k, heading.name);
-      const bool is_new = columns_.try_emplace(heading.name, Column{k, {}}).second;
+      const bool is_new = columns_.try_emplace(heading.name, Column{k}).second;
       if (!is_new) text_.fail(line, fmt::format("column '{}' stands twice", heading.name), heading.name);
-      if (!known.dimension.empty()) {
-        columns_.at(heading.name).unit = unit_of_column(line, heading, known.dimension);
-      } else if (heading.unit) {
+      if (known.dimension.empty() && heading.unit) {
         text_.fail(line, fmt::format("column '{}' takes no unit, not '{}'", heading.name, *heading.unit),
                    *heading.unit);
       }
+      headings.emplace_back(&known, heading);
+    }
+    for (const auto& [known, heading] : headings) {
+      if (known->dimension.empty()) continue;
+      std::set<std::string> beside;  // units of the columns of its group
+      for (const auto& [other, its] : headings) {
+        const bool same = other->group == known->group && known->group != KnownColumn::Group::none;
+        const bool plain = units_.is_reduced() && (its.unit == "1" || its.unit == "rad");
+        if (same && its.unit && !plain) beside.insert(*its.unit);
+      }
+      columns_.at(heading.name).unit = unit_of_column(line, heading, known->dimension, beside);
     }
     check_columns(line);
   }
 
   const KnownColumn& known_column(std::size_t line, std::size_t field, const std::string& name) const {
     std::vector<std::string> names;
-    for (const KnownColumn& known : known_columns) {
+    for (const KnownColumn& known : known_columns()) {
       if (known.name == name) return known;
       names.emplace_back(known.name);
     }
     if (name.empty()) text_.fail(line, fmt::format("column {} has no name", field + 1));
+    double number = 0;
+    const auto [end, problem] = std::from_chars(name.data(), name.data() + name.size(), number);
+    if (problem == std::errc() && end == name.data() + name.size()) {
+      text_.fail(line,
+                 fmt::format("'{}' is a number where a column name is expected; the first line names the columns, such "
+                             "as 'name,mass [Msun],x [au],...', and is no comment",
+                             name),
+                 name);
+    }
     text_.fail(line, fmt::format("unknown column '{}'{}", name, did_you_mean(name, names)), name);
   }
 
-  Unit unit_of_column(std::size_t line, const Heading& heading, std::string_view words) const {
+  /// The unit of a column: its own, or that of its group.
+  Unit unit_of_column(std::size_t line, const Heading& heading, std::string_view words,
+                      const std::set<std::string>& beside) const {
     const Dimension expected = parse_dimension(words);
-    const bool bare = units_.is_reduced() || words == "1";
-    if (!heading.unit || (units_.is_reduced() && *heading.unit == "1")) {
-      if (bare) return parse_unit("1", units_);
-      const std::string example = words == "angle" ? "deg" : noether::unit_of(expected, units_);
+    const bool reduced = units_.is_reduced(), bare = !heading.unit || (reduced && *heading.unit == "1");
+    if (bare && (words == "1" || (reduced && (beside.empty() || heading.unit)))) return parse_unit("1", units_);
+    if (bare && (beside.size() != 1 || reduced)) {
+      const std::string example = !beside.empty()    ? *beside.begin()
+                                  : words == "angle" ? "deg"
+                                                     : noether::unit_of(expected, units_);
+      const std::string why = beside.empty() ? "" : fmt::format(" beside '{}'", fmt::join(beside, "' and '"));
       text_.fail(line,
-                 fmt::format("column '{0}' has no unit; write '{0} [{1}]' or another unit of {2}", heading.name,
+                 fmt::format("column '{0}' has no unit{1}; write '{0} [{2}]' or another unit of {3}", heading.name, why,
                              example, words),
                  heading.name);
     }
+    return read_unit(line, heading.name, bare ? *beside.begin() : *heading.unit, expected, words);
+  }
+
+  Unit read_unit(std::size_t line, const std::string& column, const std::string& text, const Dimension& expected,
+                 std::string_view words) const {
     Unit unit;
     try {
-      unit = parse_unit(*heading.unit, units_);
+      unit = parse_unit(text, units_);
     } catch (const Error& error) {
-      text_.fail(line, fmt::format("column '{}': {}", heading.name, error.message()), *heading.unit);
+      text_.fail(line, fmt::format("column '{}': {}", column, error.message()), text);
     }
-    if (unit.dimension != expected) {
-      text_.fail(line,
-                 fmt::format("column '{}' is in '{}', which is of dimension {}; expected {}", heading.name,
-                             *heading.unit, to_text(unit.dimension), words),
-                 *heading.unit);
-    }
-    return unit;
+    if (unit.dimension == expected) return unit;
+    text_.fail(line,
+               fmt::format("column '{}' is in '{}', which is of dimension {}; expected {}", column, text,
+                           to_text(unit.dimension), words),
+               text);
   }
 
   bool has(std::string_view name) const { return columns_.count(std::string(name)) != 0; }
@@ -162,20 +277,32 @@ class CsvBodies {
   void check_columns(std::size_t line) {
     const auto present = [&](std::string_view name) { return has(name); };
     const auto x = std::find_if(cartesian.begin(), cartesian.end(), present);
-    const auto a = std::find_if(elements.begin(), elements.end(), present);
-    if (x != cartesian.end() && a != elements.end()) {
+    const auto a = std::find_if(orbit_keys.begin(), orbit_keys.end(), [&](const auto& key) { return has(key.name); });
+    if (x != cartesian.end() && a != orbit_keys.end()) {
       text_.fail(line, fmt::format("columns '{}' and '{}' are of two kinds; give positions and velocities, or elements",
-                                   *x, *a));
+                                   *x, a->name));
     }
-    by_elements_ = a != elements.end();
-    std::vector<std::string_view> missing;
-    if (!has("mass")) missing.push_back("mass");
-    for (const std::string_view name : by_elements_ ? elements : cartesian) {
-      if (!has(name)) missing.push_back(name);
+    by_elements_ = a != orbit_keys.end();
+    std::vector<std::string> missing;
+    if (!has("mass")) missing.emplace_back("mass");
+    if (by_elements_) {
+      std::map<OrbitKey::Choice, std::vector<std::string>> choices;
+      std::set<OrbitKey::Choice> made;
+      for (const OrbitKey& key : orbit_keys) {
+        choices[key.choice].emplace_back(key.name);
+        if (has(key.name)) made.insert(key.choice);
+      }
+      for (const auto& [choice, names] : choices) {
+        if (made.count(choice) == 0) missing.push_back(names.front());
+      }
+    } else {
+      for (const std::string_view name : cartesian) {
+        if (!has(name)) missing.emplace_back(name);
+      }
     }
     if (missing.empty()) return;
     text_.fail(line, fmt::format("there is no column {}; expected mass and {}", fmt::join(missing, ", "),
-                                 by_elements_ ? "a, e, inc, Omega, omega, M"
+                                 by_elements_ ? "a (or P, q), e, inc, Omega, omega (or pomega), M (or f, l, T)"
                                               : "x, y, z, vx, vy, vz, or the elements a, e, inc, Omega, omega, M"));
   }
 
@@ -191,8 +318,10 @@ class CsvBodies {
     if (!wrong.empty()) text_.fail(line, wrong, name);
     read_id(line, fields);
     const double mass = number(line, fields, "mass");
-    auto [x, v] = by_elements_ ? state_by_elements(line, fields, name, mass, row == 0) : state(line, fields);
+    const auto [x, v] = state(line, fields, name, mass);
     bodies_.add(line, name, mass, x, v);
+    index_.emplace(name, row);
+    before_.add(mass, x, v);
   }
 
   void read_id(std::size_t line, const std::vector<std::string>& fields) {
@@ -216,55 +345,132 @@ class CsvBodies {
 
   using State = std::pair<Vec3<double>, Vec3<double>>;
 
-  State state(std::size_t line, const std::vector<std::string>& fields) const {
+  State state(std::size_t line, const std::vector<std::string>& fields, const std::string& name, double mass) {
+    const std::vector<Index> about = bodies_about(line, fields);
+    if (!by_elements_) {
+      const State state = cartesian_state(line, fields);
+      return about.empty() ? state : moved(state, center_at(line, about));
+    }
+    if (bodies_.particles().size() == 0) return first_state(line, fields, name, mass);
+    const bool jacobi = about.empty() && elements_about_ == ElementsAbout::all_before_it;
+    const OrbitCenter center = jacobi ? before_ : center_at(line, about.empty() ? std::vector<Index>{0} : about);
+    const State state = state_by_elements(line, fields, G_ * (center.mass() + mass));
+    // The first body rests in the origin.
+    return about.empty() && !jacobi ? state : moved(state, center);
+  }
+
+  State cartesian_state(std::size_t line, const std::vector<std::string>& fields) const {
     std::array<double, 6> s{};
     for (std::size_t k = 0; k < s.size(); ++k) s[k] = number(line, fields, cartesian[k]);
     return {Vec3<double>(s[0], s[1], s[2]), Vec3<double>(s[3], s[4], s[5])};
   }
 
-  State state_by_elements(std::size_t line, const std::vector<std::string>& fields, const std::string& name,
-                          double mass, bool first) {
-    if (first) {
-      for (const std::string_view column : elements) {
-        const std::string& word = fields[columns_.at(std::string(column)).field];
-        if (word.empty() || number(line, fields, column) == 0) continue;
-        text_.fail(line,
-                   fmt::format("column '{}' of the first body is '{}'; the elements are about this body: leave them "
-                               "empty",
-                               column, word),
-                   word);
-      }
-      if (!(mass > 0)) text_.fail(line, fmt::format("{} has no mass; the elements are about this body", name));
-      primary_mass_ = mass;
-      return {Vec3<double>::Zero(), Vec3<double>::Zero()};
+  static State moved(const State& state, const OrbitCenter& center) {
+    return {state.first + center.x(), state.second + center.v()};
+  }
+
+  /// The bodies above that `about` names: one, or several with '+' between them; none where it is empty.
+  std::vector<Index> bodies_about(std::size_t line, const std::vector<std::string>& fields) const {
+    if (!has("about")) return {};
+    const std::string& word = fields[columns_.at("about").field];
+    if (word.empty()) return {};
+    std::vector<Index> found;
+    std::string_view rest = word;
+    while (index_.count(word) == 0) {
+      const std::size_t end = rest.find('+');
+      found.push_back(body_named(line, std::string(trimmed(rest.substr(0, end)))));
+      if (end == std::string_view::npos) return found;
+      rest.remove_prefix(end + 1);
     }
-    std::array<double, 6> s{};
-    for (std::size_t k = 0; k < s.size(); ++k) s[k] = number(line, fields, elements[k]);
-    const bool ellipse = s[0] > 0 && s[1] >= 0 && s[1] < 1, hyperbola = s[0] < 0 && s[1] > 1;
-    if (!ellipse && !hyperbola) {
+    return {index_.at(word)};
+  }
+
+  Index body_named(std::size_t line, const std::string& name) const {
+    const auto found = index_.find(name);
+    if (found != index_.end()) return found->second;
+    const std::vector<std::string>& names = bodies_.particles().names();
+    if (names.empty()) text_.fail(line, "column 'about' of the first body names another; leave it empty", name);
+    text_.fail(line, fmt::format("there is no '{}' above this body{}", name, did_you_mean(name, names)), name);
+  }
+
+  OrbitCenter center_at(std::size_t line, const std::vector<Index>& about) const {
+    try {
+      return center_of(bodies_.particles(), about);
+    } catch (const Error& error) {
+      text_.fail(line, error.message());
+    }
+  }
+
+  /// The first body of a table of elements: at rest in the origin.
+  State first_state(std::size_t line, const std::vector<std::string>& fields, const std::string& name, double mass) {
+    for (const OrbitKey& key : orbit_keys) {
+      if (!has(key.name)) continue;
+      const std::string& word = fields[columns_.at(std::string(key.name)).field];
+      if (word.empty() || number(line, fields, key.name) == 0) continue;
+      text_.fail(
+          line,
+          fmt::format("column '{}' of the first body is '{}'; the elements are about this body: leave them empty",
+                      key.name, word),
+          word);
+    }
+    if (!(mass > 0)) text_.fail(line, fmt::format("{} has no mass; the elements are about this body", name));
+    return {Vec3<double>::Zero(), Vec3<double>::Zero()};
+  }
+
+  State state_by_elements(std::size_t line, const std::vector<std::string>& fields, double mu) const {
+    GivenOrbit orbit;
+    for (const OrbitKey& key : orbit_keys) {
+      if (!has(key.name)) continue;
+      // A field may be empty where another column of its choice stands beside it.
+      const bool alone = std::none_of(orbit_keys.begin(), orbit_keys.end(), [&](const OrbitKey& other) {
+        return other.choice == key.choice && other.name != key.name && has(other.name);
+      });
+      const bool empty = fields[columns_.at(std::string(key.name)).field].empty();
+      if (alone || !empty) orbit.*key.value = number(line, fields, key.name);
+    }
+    const double e = orbit.e.value_or(0);
+    if (orbit.a && !orbit.P && !orbit.q && !(*orbit.a > 0 && e >= 0 && e < 1) && !(*orbit.a < 0 && e > 1)) {
       text_.fail(line, fmt::format("a = {} and e = {} are no orbit; expected a > 0 and 0 <= e < 1, or a < 0 and e > 1",
                                    fields[columns_.at("a").field], fields[columns_.at("e").field]));
     }
-    return state_from_elements(OrbitalElements<double>{s[0], s[1], s[2], s[3], s[4], s[5]},
-                               G_ * (primary_mass_ + mass));
+    try {
+      return state_of_orbit(orbit, mu);
+    } catch (const Error& error) {
+      refuse(line, fields, error);
+    }
+  }
+
+  /// Ends reading with what is wrong with an element, which is shown as it was written.
+  [[noreturn]] void refuse(std::size_t line, const std::vector<std::string>& fields, const Error& error) const {
+    std::string message = error.message();
+    const std::string start = error.key() + " = " + error.value();
+    const auto column = columns_.find(error.key());
+    if (column != columns_.end() && message.starts_with(start)) {
+      message.replace(0, start.size(), error.key() + " = " + fields[column->second.field]);
+    }
+    text_.fail(line, message);
   }
 
   const TextFile& text_;
   const UnitSystem& units_;
   double G_;
+  ElementsAbout elements_about_;
   BodyList bodies_;
+  Separator separator_ = Separator::comma;
   std::size_t heading_line_ = 0, field_count_ = 0;
   std::map<std::string, Column> columns_;
   bool by_elements_ = false;
-  double primary_mass_ = 0;
+  OrbitCenter before_;  ///< of all bodies above
+  std::unordered_map<std::string, Index> index_;
   std::vector<std::int64_t> ids_;
   std::set<std::int64_t> known_ids_;
 };
 
 }  // namespace
 
-ParticleSystem<double> read_csv_bodies(const TextFile& text, const UnitSystem& units, double G) {
-  return CsvBodies(text, units, G).read();
+BodyTable read_csv_bodies(const TextFile& text, const BodiesOptions& options) {
+  if (options.epoch) text.fail(0, "an epoch is one of the records of Horizons tables, and this is CSV; take it out");
+  return CsvBodies(text, options).read();
 }
 
 }  // namespace noether::io

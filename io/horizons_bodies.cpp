@@ -1,5 +1,6 @@
 // Bodies from vector tables as JPL Horizons prints them: text or CSV, with or without labels, one or more in a file.
-#include "io/text_table.hpp"
+#include "io/body_readers.hpp"
+#include "io/horizons_table.hpp"
 #include "numbers/quantity.hpp"
 
 #include <fmt/format.h>
@@ -7,7 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -36,26 +37,19 @@ constexpr std::array known_masses = {
     KnownMass{899, 6835103.145462294}, KnownMass{999, 869.6138177608748},
 };
 
-constexpr std::string_view table_start = "$$SOE", table_end = "$$EOE";
 constexpr std::array<std::string_view, 6> components = {"X", "Y", "Z", "VX", "VY", "VZ"};
+constexpr int solar_system = 0, sun = 10;
 
-/// What stands between "label :" and a remark in braces, if the line begins with the label.
-std::optional<std::string> value_after(std::string_view line, std::string_view label) {
-  line = trimmed(line);
-  if (!line.starts_with(label)) return {};
-  line = trimmed(line.substr(label.size()));
-  if (!line.starts_with(':')) return {};
-  return std::string(trimmed(line.substr(1, line.find('{') - 1)));
+/// Whether a number is that of a planet or moon, 3 for 301 and 399, 6 for 65035: the system it belongs to; else 0.
+int system_of(const HorizonsObject& object) {
+  const int number = object.number.value_or(0);
+  if (number > 100 && number < 1000) return number / 100;
+  if (number > 10'000 && number < 100'000 && number / 1000 % 10 == 5) return number / 10'000;
+  return 0;
 }
 
-/// One table: what its head says, and where its records stand (lines counted from 1).
-struct Table {
-  std::string target, center, frame, units;
-  std::optional<int> number;  ///< of the body, in parentheses after its name
-  std::optional<double> mass;
-  std::vector<std::string> headings;  ///< of a table with commas
-  std::size_t target_line = 0, start = 0, end = 0;
-};
+/// Whether a number is that of the barycenter of a planet and its moons.
+bool is_system(const HorizonsObject& object) { return object.number && *object.number > 0 && *object.number < 10; }
 
 /// A record: its epoch and six numbers by name.
 struct Record {
@@ -65,116 +59,65 @@ struct Record {
   std::optional<double> mass;
 };
 
+/// What becomes a particle.
+struct Body {
+  std::size_t line = 0;
+  HorizonsObject object;
+  double mass = 0;
+  bool own_mass = false;  ///< given by the user
+  Vec3<double> x = Vec3<double>::Zero(), v = Vec3<double>::Zero();
+};
+
 class HorizonsBodies {
  public:
-  HorizonsBodies(const TextFile& text, const UnitSystem& units, double G)
-      : text_(text), units_(units), G_(G), bodies_(text, units) {}
+  HorizonsBodies(const TextFile& text, const BodiesOptions& options)
+      : text_(text),
+        units_(*options.units),
+        G_(options.G.value_or(options.units->G)),
+        wanted_(options.epoch),
+        list_(text, units_) {}
 
-  ParticleSystem<double> read() {
+  BodyTable read() {
     if (units_.is_reduced()) {
       text_.fail(0, "a Horizons table has units; expected the unit system solar, si or molecular, not reduced");
     }
     std::size_t line = 1;
-    while (const std::optional<Table> table = next_table(line)) {
+    while (const std::optional<HorizonsTable> table = next_horizons_table(text_, units_, line)) {
       add(*table);
       line = table->end + 1;
     }
-    return bodies_.take();
+    join_center();
+    check_masses_once();
+    for (const Body& body : bodies_) list_.add(body.line, body.object.name, body.mass, body.x, body.v);
+    const bool of_solar_system = first_->center.number == solar_system;
+    return {.particles = list_.take(),
+            .epoch = BodyEpoch{*epoch_, first_->time_scale},
+            .without_sun = of_solar_system && !has_number(sun)};
   }
 
  private:
   const std::string& at(std::size_t line) const { return text_.lines()[line - 1]; }
 
-  /// The next table at or after a line.
-  std::optional<Table> next_table(std::size_t line) const {
-    Table table;
-    std::string_view last_text;
-    for (; line <= text_.lines().size(); ++line) {
-      const std::string_view content = trimmed(at(line));
-      if (content == table_start) break;
-      read_head(table, line);
-      if (!content.empty() && content.front() != '*') last_text = content;
-    }
-    if (line > text_.lines().size()) return {};
-    table.start = line;
-    for (; line <= text_.lines().size() && trimmed(at(line)) != table_end; ++line) {
-    }
-    if (line > text_.lines().size())
-      text_.fail(table.start, "the table that begins here has no end: '$$EOE' is missing");
-    table.end = line;
-    if (last_text.find(',') != std::string_view::npos) table.headings = split_at_commas(last_text);
-    return table;
+  bool has_number(int number) const {
+    return std::any_of(bodies_.begin(), bodies_.end(), [&](const Body& body) { return body.object.number == number; });
   }
 
-  void read_head(Table& table, std::size_t line) const {
-    const std::string& content = at(line);
-    if (const auto target = value_after(content, "Target body name")) {
-      table.target_line = line;
-      read_target(table, *target);
-    }
-    if (const auto center = value_after(content, "Center body name")) table.center = *center;
-    if (const auto frame = value_after(content, "Reference frame")) table.frame = *frame;
-    if (const auto units = value_after(content, "Output units")) table.units = units->substr(0, units->find(','));
-    const auto type = value_after(content, "Output type");
-    if (type && type->find("elements") != std::string::npos) {
-      text_.fail(line, "this is a table of elements; ask Horizons for vectors (EPHEM_TYPE = VECTORS)");
-    }
-    if (const auto mass = mass_of_line(line)) table.mass = mass;
-  }
-
-  /// "Jupiter Barycenter (5)": the number in the last parentheses, if it is one.
-  static void read_target(Table& table, const std::string& target) {
-    const std::size_t open = target.rfind('('), close = target.rfind(')');
-    table.target = target;
-    if (open == std::string::npos || close == std::string::npos || close < open) return;
-    int number = 0;
-    const char* first = target.data() + open + 1;
-    const auto [end, problem] = std::from_chars(first, target.data() + close, number);
-    if (problem != std::errc() || end != target.data() + close) return;
-    table.number = number;
-    table.target = trimmed(target.substr(0, open));
-  }
-
-  /// A line "mass [kg] = 1.9e27" that a user has put in.
-  std::optional<double> mass_of_line(std::size_t line) const {
-    const std::string_view content = trimmed(at(line));
-    const std::size_t equals = content.find_first_of("=:");
-    if (!content.starts_with("mass") || equals == std::string_view::npos) return {};
-    const Heading heading = parse_heading(trimmed(content.substr(0, equals)));
-    if (heading.name != "mass" || !heading.unit) return {};
-    return mass_in(line, heading, trimmed(content.substr(equals + 1)));
-  }
-
-  double mass_in(std::size_t line, const Heading& heading, std::string_view word) const {
-    try {
-      const Unit unit = parse_unit(heading.unit.value_or("1"), units_);
-      if (unit.dimension == dimensions::mass) return unit.times(mass_number_in(text_, line, word, "the mass"));
-    } catch (const SceneError&) {
-      throw;
-    } catch (const Error& error) {
-      text_.fail(line, "mass: " + error.message());
-    }
-    text_.fail(line, fmt::format("the mass is in '{}'; expected a unit of mass, such as 'mass [kg]'",
-                                 heading.unit.value_or("1")));
-  }
-
-  void add(const Table& table) {
-    if (table.target_line == 0) text_.fail(table.start, "the head of this table has no line 'Target body name'");
+  void add(const HorizonsTable& table) {
     check_agreement(table);
-    const Record record = table.headings.empty() ? text_record(table) : comma_record(table);
+    const Record record = record_of(table);
     for (const std::string_view name : components) {
       if (record.values.count(std::string(name)) != 0) continue;
       text_.fail(record.line,
                  fmt::format("the table of {} has no {}; ask Horizons for positions and velocities (vector "
                              "table type 2 or 3)",
-                             table.target, name));
+                             table.target.name, name));
     }
     if (!epoch_) epoch_ = record.epoch;
     if (record.epoch != *epoch_) {
       text_.fail(
           record.line,
-          fmt::format("the table of {} begins at JD {}, that of {} at JD {}; take one epoch for all", table.target,
-                      format_number(record.epoch), bodies_.particles().name(0), format_number(*epoch_)));
+          fmt::format("the table of {} begins at JD {}, that of {} at JD {}; take one epoch for all", table.target.name,
+                      format_number(record.epoch), first_->target.name, format_number(*epoch_)));
     }
     const auto [length, velocity] = units_of(table);
     const auto vector = [&](std::size_t first, const Unit& unit) {
@@ -183,84 +126,181 @@ class HorizonsBodies {
       };
       return Vec3<double>(value(0), value(1), value(2));
     };
-    const double mass = record.mass ? *record.mass : mass_of(table);
-    bodies_.add(table.target_line, table.target, mass, vector(0, length), vector(3, velocity));
+    const auto own_mass = record.mass ? record.mass : table.mass;
+    bodies_.push_back({.line = table.target_line,
+                       .object = table.target,
+                       .mass = own_mass ? *own_mass : mass_of(table),
+                       .own_mass = own_mass.has_value(),
+                       .x = vector(0, length),
+                       .v = vector(3, velocity)});
+    if (table.center_mass) center_mass_ = table.center_mass;
   }
 
-  /// All tables must be about one center and in one frame.
-  void check_agreement(const Table& table) {
+  /// All tables must be about one center, in one frame and in one scale of time.
+  void check_agreement(const HorizonsTable& table) {
     if (!first_) first_ = table;
+    const std::string &name = table.target.name, &first = first_->target.name;
     if (table.center != first_->center) {
       text_.fail(table.target_line,
                  fmt::format("the table of {} is about '{}', that of {} about '{}'; take one center for "
                              "all",
-                             table.target, table.center, first_->target, first_->center));
+                             name, table.center.text, first, first_->center.text));
     }
     if (table.frame != first_->frame) {
-      text_.fail(table.target_line,
-                 fmt::format("the table of {} is in the frame '{}', that of {} in '{}'; take one frame "
-                             "for all",
-                             table.target, table.frame, first_->target, first_->frame));
+      text_.fail(table.target_line, fmt::format("the table of {} is in the frame '{}', that of {} in '{}'; take one "
+                                                "frame for all",
+                                                name, table.frame, first, first_->frame));
+    }
+    if (table.time_scale != first_->time_scale && !table.time_scale.empty() && !first_->time_scale.empty()) {
+      text_.fail(table.target_line, fmt::format("the table of {} is in the time scale '{}', that of {} in '{}'; take "
+                                                "one time scale for all",
+                                                name, table.time_scale, first, first_->time_scale));
     }
   }
 
-  std::pair<Unit, Unit> units_of(const Table& table) const {
+  /// The body that all states are about attracts the others: it stands first, at rest in the origin. A barycenter is
+  /// only a place where what it is the barycenter of is among the bodies.
+  void join_center() {
+    const HorizonsObject& center = first_->center;
+    if (center.text.empty() || center.number == solar_system) return;
+    for (const Body& body : bodies_) {
+      if (body.object != center) continue;
+      if (body.x == Vec3<double>::Zero() && body.v == Vec3<double>::Zero()) return;
+      text_.fail(body.line, fmt::format("{} is not at rest in the origin, and all states are about it; take this "
+                                        "table out",
+                                        center.text));
+    }
+    const auto is_member = [&](const Body& body) { return system_of(body.object) == center.number; };
+    const auto member = std::find_if(bodies_.begin(), bodies_.end(), is_member);
+    if (is_system(center) && member != bodies_.end()) {
+      const int planet = *center.number * 100 + 99;
+      if (has_number(planet)) return;
+      text_.fail(member->line,
+                 fmt::format("the states are about '{}', but its planet ({}) is not among the bodies; add "
+                             "its table",
+                             center.text, planet));
+    }
+    Body body{.line = first_->target_line, .object = center, .own_mass = center_mass_.has_value()};
+    const auto mass = center_mass_ ? center_mass_ : known_mass(center);
+    if (!mass) {
+      text_.fail(first_->target_line,
+                 fmt::format("the states are about '{}', whose mass is not built in; put a line 'center mass [kg] = "
+                             "...' before '$$SOE', or ask Horizons for states about the Solar System Barycenter "
+                             "(CENTER = '500@0')",
+                             center.text));
+    }
+    body.mass = *mass;
+    bodies_.insert(bodies_.begin(), std::move(body));
+  }
+
+  /// GM of a barycenter is that of all its bodies. @throws SceneError where one of these stands beside it
+  void check_masses_once() const {
+    for (const Body& whole : bodies_) {
+      if (!is_system(whole.object) || whole.own_mass || whole.mass == 0) continue;
+      for (const Body& part : bodies_) {
+        if (system_of(part.object) != whole.object.number || part.mass == 0) continue;
+        text_.fail(
+            part.line,
+            fmt::format("the mass of {} ({}) would count twice, because {} ({}) includes it; take one of them out",
+                        part.object.name, *part.object.number, whole.object.name, *whole.object.number));
+      }
+    }
+  }
+
+  std::pair<Unit, Unit> units_of(const HorizonsTable& table) const {
     static constexpr std::array<std::array<std::string_view, 3>, 3> known = {
         {{"AU-D", "au", "au/day"}, {"KM-S", "km", "km/s"}, {"KM-D", "km", "km/day"}}};
     for (const auto& [name, length, velocity] : known) {
       if (table.units == name) return {parse_unit(length, units_), parse_unit(velocity, units_)};
     }
-    text_.fail(table.target_line,
-               fmt::format("the output units of {} are '{}'; expected AU-D, KM-S or KM-D", table.target, table.units),
-               table.units);
+    text_.fail(
+        table.target_line,
+        fmt::format("the output units of {} are '{}'; expected AU-D, KM-S or KM-D", table.target.name, table.units),
+        table.units);
   }
 
-  double mass_of(const Table& table) const {
-    if (table.mass) return *table.mass;
+  std::optional<double> known_mass(const HorizonsObject& object) const {
     const auto known = std::find_if(known_masses.begin(), known_masses.end(),
-                                    [&](const KnownMass& one) { return one.number == table.number; });
-    if (known != known_masses.end()) return parse_unit("km^3/s^2", units_).times(known->GM) / G_;
+                                    [&](const KnownMass& one) { return one.number == object.number; });
+    if (known == known_masses.end()) return {};
+    return parse_unit("km^3/s^2", units_).times(known->GM) / G_;
+  }
+
+  double mass_of(const HorizonsTable& table) const {
+    if (const auto mass = known_mass(table.target)) return *mass;
+    if (table.target.number == solar_system) {
+      text_.fail(table.target_line, fmt::format("{} is a place and no body; take its table out", table.target.name));
+    }
     text_.fail(table.target_line,
                fmt::format("the mass of {} is not built in, and Horizons gives none; put a line 'mass "
                            "[kg] = ...' (0 for a tracer) before '$$SOE'",
-                           table.target));
+                           table.target.name));
   }
 
-  Record comma_record(const Table& table) const {
+  // ---- records -----------------------------------------------------------------------------------------------------
+
+  static bool has_date(const std::string& line) {
+    return line.find("A.D.") != std::string::npos || line.find("B.C.") != std::string::npos;
+  }
+
+  /// The lines where records begin.
+  std::vector<std::size_t> record_lines(const HorizonsTable& table) const {
+    std::vector<std::size_t> lines;
+    for (std::size_t line = table.start + 1; line < table.end; ++line) {
+      if (trimmed(at(line)).empty()) continue;
+      if (lines.empty() || !table.headings.empty() || has_date(at(line))) lines.push_back(line);
+    }
+    if (lines.empty()) text_.fail(table.start, fmt::format("the table of {} is empty", table.target.name));
+    return lines;
+  }
+
+  double epoch_at(const HorizonsTable& table, std::size_t line) const {
+    const std::string_view content = at(line);
+    const char mark = table.headings.empty() ? '=' : ',';
+    return number_in(text_, line, trimmed(content.substr(0, content.find(mark))), "the Julian day");
+  }
+
+  /// The first record, or that of the epoch that is asked for.
+  Record record_of(const HorizonsTable& table) const {
+    static constexpr double printed = 1e-9;  // days: the last digit of a Julian day
+    const std::vector<std::size_t> lines = record_lines(table);
+    const auto is_wanted = [&](std::size_t line) {
+      return !wanted_ || std::abs(epoch_at(table, line) - *wanted_) <= printed;
+    };
+    const auto found = std::find_if(lines.begin(), lines.end(), is_wanted);
+    if (found == lines.end()) {
+      text_.fail(table.start, fmt::format("the table of {} has no record of JD {}; it has {}, from JD {} to JD {}",
+                                          table.target.name, format_number(*wanted_), lines.size(),
+                                          format_number(epoch_at(table, lines.front())),
+                                          format_number(epoch_at(table, lines.back()))));
+    }
+    const std::size_t end = found + 1 == lines.end() ? table.end : found[1];
+    return table.headings.empty() ? text_record(table, *found, end) : comma_record(table, *found);
+  }
+
+  Record comma_record(const HorizonsTable& table, std::size_t line) const {
     Record record;
-    record.line = first_record(table);
-    const std::vector<std::string> fields = split_at_commas(at(record.line));
+    record.line = line;
+    const std::vector<std::string> fields = split_at_commas(at(line));
     const std::size_t count = std::min(fields.size(), table.headings.size());
-    record.epoch = number_in(text_, record.line, fields[0], "the Julian day");
+    record.epoch = epoch_at(table, line);
     for (std::size_t k = 1; k < count; ++k) {
       const Heading heading = parse_heading(table.headings[k]);
       if (std::find(components.begin(), components.end(), heading.name) != components.end()) {
-        record.values[heading.name] = number_in(text_, record.line, fields[k], heading.name);
+        record.values[heading.name] = number_in(text_, line, fields[k], heading.name);
       }
-      if (heading.name == "mass") record.mass = mass_in(record.line, heading, fields[k]);
+      if (heading.name == "mass") record.mass = mass_in(text_, units_, line, heading, fields[k]);
     }
     return record;
   }
 
-  std::size_t first_record(const Table& table) const {
-    for (std::size_t line = table.start + 1; line < table.end; ++line) {
-      if (!trimmed(at(line)).empty()) return line;
-    }
-    text_.fail(table.start, fmt::format("the table of {} is empty", table.target));
-  }
-
   /// "2451545.000000000 = A.D. 2000-Jan-01 12:00:00.0000 TDB", then "X = ... Y = ... Z = ..." with or without labels.
-  Record text_record(const Table& table) const {
+  Record text_record(const HorizonsTable& table, std::size_t first, std::size_t end) const {
     Record record;
-    record.line = first_record(table);
-    const std::string& head = at(record.line);
-    record.epoch =
-        number_in(text_, record.line, trimmed(std::string_view(head).substr(0, head.find('='))), "the Julian day");
+    record.line = first;
+    record.epoch = epoch_at(table, first);
     std::size_t unlabeled = 0;
-    for (std::size_t line = record.line + 1; line < table.end; ++line) {
-      if (at(line).find("A.D.") != std::string::npos || at(line).find("B.C.") != std::string::npos) break;
-      read_numbers(line, record, unlabeled);
-    }
+    for (std::size_t line = first + 1; line < end; ++line) read_numbers(line, record, unlabeled);
     return record;
   }
 
@@ -294,20 +334,17 @@ class HorizonsBodies {
   const TextFile& text_;
   const UnitSystem& units_;
   double G_;
-  BodyList bodies_;
-  std::optional<Table> first_;
-  std::optional<double> epoch_;
+  std::optional<double> wanted_;  ///< epoch
+  BodyList list_;
+  std::vector<Body> bodies_;
+  std::optional<HorizonsTable> first_;
+  std::optional<double> epoch_, center_mass_;
 };
 
 }  // namespace
 
-bool is_horizons(const TextFile& text) {
-  return std::any_of(text.lines().begin(), text.lines().end(),
-                     [](const std::string& line) { return trimmed(line) == table_start; });
-}
-
-ParticleSystem<double> read_horizons_bodies(const TextFile& text, const UnitSystem& units, double G) {
-  return HorizonsBodies(text, units, G).read();
+BodyTable read_horizons_bodies(const TextFile& text, const BodiesOptions& options) {
+  return HorizonsBodies(text, options).read();
 }
 
 }  // namespace noether::io

@@ -21,12 +21,18 @@ class TextFile {
   explicit TextFile(std::filesystem::path file, std::string_view expected = "CSV or a vector table of Horizons");
 
   const std::vector<std::string>& lines() const { return lines_; }
+  /// A text that stands within a line of this one: messages name that line, and theirs in words.
+  TextFile within(std::size_t line, std::string_view content) const;
   /// @param line  counted from 1; 0 for the file as a whole
   [[noreturn]] void fail(std::size_t line, const std::string& message, const std::string& value = "") const;
 
  private:
+  TextFile() = default;
+  void set_lines(std::string_view content);
+
   std::filesystem::path file_;
   std::vector<std::string> lines_;
+  std::size_t outer_line_ = 0;  ///< of the file, where the text stands within it
 };
 
 /// Without blanks at both ends.
@@ -63,12 +69,6 @@ class BodyList {
   ParticleSystem<double> particles_;
   std::set<std::string> names_;
 };
-
-/// Bodies from CSV. @throws SceneError
-ParticleSystem<double> read_csv_bodies(const TextFile& text, const UnitSystem& units, double G);
-
-/// Bodies from vector tables of Horizons. @throws SceneError
-ParticleSystem<double> read_horizons_bodies(const TextFile& text, const UnitSystem& units, double G);
 
 /// Whether the text has a Horizons table.
 bool is_horizons(const TextFile& text);

@@ -1,5 +1,6 @@
 // Bodies from CSV: what is read, to the bit, and what is refused, in which words.
 
+#include "engine/given_orbit.hpp"
 #include "engine/orbital_elements.hpp"
 #include "io/bodies.hpp"
 #include "tests/io/support.hpp"
@@ -79,10 +80,107 @@ TEST_CASE("elements are about the first body, with the sum of both masses", "[bo
 }
 
 TEST_CASE("elements of the reduced system are in radians, unless they say degrees", "[bodies]") {
-  const auto s = read_csv("mass,a,e,inc,Omega [deg],omega [rad],M\n1,,,,,,\n0,1,0.1,0.5,90,0.25,0.75\n", "reduced");
+  const auto s =
+      read_csv("mass,a,e,inc [rad],Omega [deg],omega [rad],M [1]\n1,,,,,,\n0,1,0.1,0.5,90,0.25,0.75\n", "reduced");
   const auto expected = state_from_elements<double>({1, 0.1, 0.5, 90 * units::solar::degree, 0.25, 0.75}, 1.0);
   CHECK(s.positions()[1] == expected.first);
   CHECK(s.velocities()[1] == expected.second);
+}
+
+TEST_CASE("a unit stands once for positions, velocities and angles", "[bodies]") {
+  using namespace units::solar;
+  const auto s = read_csv("mass [kg],x [km],y,z,vx,vy,vz [km/s]\n1,1,2,3,4,5,6\n");
+  CHECK(s.positions()[0] == Vec3<double>(1 * km, 2 * km, 3 * km));
+  CHECK(s.velocities()[0] == Vec3<double>(4 * km / second, 5 * km / second, 6 * km / second));
+  const auto angles = read_csv("mass [Msun],a [au],e,inc,Omega [deg],omega,M\n1,,,,,,\n0,1,0.1,10,20,30,40\n");
+  const auto expected = state_from_elements<double>({1, 0.1, 10 * degree, 20 * degree, 30 * degree, 40 * degree}, G);
+  CHECK(angles.positions()[1] == expected.first);
+  CHECK(csv_refusal("mass [kg],x [km],y [au],z,vx [km/s],vy,vz\n") ==
+        "b.csv:1: column 'z' has no unit beside 'au' and 'km'; write 'z [au]' or another unit of length");
+  // Bare angles of the reduced system are radians; beside one in degrees it would be a guess.
+  CHECK(csv_refusal("mass,a,e,inc [deg],Omega,omega,M\n", "reduced") ==
+        "b.csv:1: column 'Omega' has no unit beside 'deg'; write 'Omega [deg]' or another unit of angle");
+}
+
+TEST_CASE("fields are parted by commas, semicolons, tabs or blanks", "[bodies]") {
+  using namespace units::solar;
+  const std::string columns = "name,mass [kg],x [au],y [au],z [au],vx [kg m/kg/s],vy,vz\n";
+  const std::string rows = "\"a b\",1,2,3,4,5,6,7   # a comment, with a comma\n\"c;d\",0,-1e-3,+2,.5,1,0,0\n";
+  const auto with = [](std::string text, const std::string& separator) {
+    for (std::size_t at = text.find(','); at != std::string::npos; at = text.find(',', at + separator.size())) {
+      text.replace(at, 1, separator);
+    }
+    return text;
+  };
+  const auto plain = read_csv(columns + rows);
+  for (const std::string separator : {";", "\t", " ; ", "  ", " \t "}) {
+    CAPTURE(separator);
+    const auto s = read_csv(with(columns + rows, separator));
+    REQUIRE(s.size() == 2);
+    CHECK(s.name(0) == "a b");
+    CHECK(s.name(1) == "c;d");
+    for (Index i = 0; i < 2; ++i) {
+      CHECK(s.positions()[i] == plain.positions()[i]);
+      CHECK(s.velocities()[i] == plain.velocities()[i]);
+    }
+  }
+  CHECK(plain.velocities()[0] ==
+        Vec3<double>(5 * kg * meter / kg / second, 6 * kg * meter / kg / second, 7 * kg * meter / kg / second));
+  // As spreadsheets write it, and with the line ends of every system.
+  CHECK(read_csv("sep=;\r\nmass [kg];x [m];y;z;vx [m/s];vy;vz\r\n1;1;2;3;4;5;6\r\n", "si").positions()[0][2] == 3);
+  CHECK(read_csv("mass x y z vx vy vz\r1 1 2 3 4 5 6\r2 2 2 3 4 5 6\r", "reduced").size() == 2);
+  CHECK(csv_refusal("mass;x;y;z;vx;vy;vz\n\"1\" 2;0;0;0;0;0;0\n", "reduced") ==
+        "b.csv:2: '2' follows the double quote that ends a field; expected a semicolon");
+}
+
+TEST_CASE("elements of a table may be other ones, row by row", "[bodies]") {
+  using namespace units::solar;
+  const auto s = read_csv(
+      "name,mass [Msun],a [au],q [au],P [yr],e,inc [deg],Omega,pomega,l,f,T "
+      "[day]\nSun,1,,,,,,,,,,\nEarth,3e-6,1,,,0.0167,0.1,"
+      "20,50,90,,\ncomet,0,,0.5,,1,100,0,10,,,-20\nfar,0,,,8,0.5,1,2,3,,90,\n");
+  REQUIRE(s.size() == 4);
+  const auto earth = state_of_orbit(
+      {.a = 1, .e = 0.0167, .inc = 0.1 * degree, .Omega = 20 * degree, .pomega = 50 * degree, .l = 90 * degree},
+      G * (1 + 3e-6));
+  const auto comet =
+      state_of_orbit({.q = 0.5, .e = 1, .inc = 100 * degree, .Omega = 0, .pomega = 10 * degree, .T = -20}, G);
+  const auto far = state_of_orbit(
+      {.P = 8 * year, .e = 0.5, .inc = 1 * degree, .Omega = 2 * degree, .pomega = 3 * degree, .f = 90 * degree}, G);
+  CHECK(s.positions()[1] == earth.first);
+  CHECK(s.velocities()[1] == earth.second);
+  CHECK(s.positions()[2] == comet.first);
+  CHECK(s.velocities()[3] == far.second);
+}
+
+TEST_CASE("elements and vectors may be about another body, a barycenter, or all before it", "[bodies]") {
+  const std::string heads = "name,mass,about,a,e,inc,Omega,omega,M\nA,1,,,,,,,\nB,0.5,,2,0,0,0,0,0\n";
+  const auto s = read_csv(heads + "C,0.25,B,0.25,0,0,0,0,0\nD,0,A + B,9,0,0,0,0,0\n", "reduced");
+  // Circles seen from the x axis: distance a, speed sqrt(mu/a).
+  const double v1 = std::sqrt(1.5 / 2), v2 = std::sqrt(0.75 / 0.25), v3 = std::sqrt(1.5 / 9);
+  CHECK(s.positions()[2] == Vec3<double>(2.25, 0, 0));
+  CHECK(std::abs(s.velocities()[2][1] - (v1 + v2)) < 2e-15);
+  CHECK(std::abs(s.positions()[3][0] - (2.0 / 3 + 9)) < 2e-15);
+  CHECK(std::abs(s.velocities()[3][1] - (v1 / 3 + v3)) < 2e-16);
+
+  const test::ScratchFolder folder;
+  test::write_text(folder / "b.csv", heads + "C,0.25,,9,0,0,0,0,0\nD,0,,20,0,0,0,0,0\n");
+  const auto jacobi = io::read_bodies(folder / "b.csv",
+                                      {.units = &unit_system("reduced"), .elements = io::ElementsAbout::all_before_it});
+  const double x3 = (0.25 * (2.0 / 3 + 9) + 1) / 1.75, v4 = (0.25 * (v1 / 3 + std::sqrt(1.75 / 9)) + 0.5 * v1) / 1.75;
+  CHECK(std::abs(jacobi.positions()[2][0] - (2.0 / 3 + 9)) < 2e-15);
+  CHECK(std::abs(jacobi.velocities()[2][1] - (v1 / 3 + std::sqrt(1.75 / 9))) < 4e-16);
+  CHECK(std::abs(jacobi.positions()[3][0] - (x3 + 20)) < 4e-15);
+  CHECK(std::abs(jacobi.velocities()[3][1] - (v4 + std::sqrt(1.75 / 20))) < 4e-16);
+
+  const auto vectors =
+      read_csv("name,mass,about,x,y,z,vx,vy,vz\nA + B,1,,1,2,3,4,5,6\nmoon,0,A + B,0.5,0,0,0,0.25,0\n", "reduced");
+  CHECK(vectors.positions()[1] == Vec3<double>(1.5, 2, 3));
+  CHECK(vectors.velocities()[1] == Vec3<double>(4, 5.25, 6));
+  CHECK(csv_refusal(heads + "C,0,BB,1,0,0,0,0,0\n", "reduced") ==
+        "b.csv:4: there is no 'BB' above this body; did you mean 'B'?");
+  CHECK(csv_refusal("name,mass,about,x,y,z,vx,vy,vz\nA,1,B,0,0,0,0,0,0\n", "reduced") ==
+        "b.csv:2: column 'about' of the first body names another; leave it empty");
 }
 
 TEST_CASE("a wrong heading is refused with what is wrong and what to write", "[bodies][messages]") {
@@ -93,12 +191,12 @@ TEST_CASE("a wrong heading is refused with what is wrong and what to write", "[b
   CHECK(csv_refusal("#\n" + head) == "b.csv:2: the table has column names, but no bodies");
   // An unknown column comes before missing ones.
   CHECK(csv_refusal("name,mas [Msun],x [au]\nSun,1,0\n") == "b.csv:1: unknown column 'mas'; did you mean 'mass'?");
-  CHECK(
-      csv_refusal("name,mass [Msun],position [au]\n") ==
-      "b.csv:1: unknown column 'position'; known are: name, id, mass, x, y, z, vx, vy, vz, a, e, inc, Omega, omega, M");
+  CHECK(csv_refusal("name,mass [Msun],position [au]\n") ==
+        "b.csv:1: unknown column 'position'; known are: name, id, mass, x, y, z, vx, vy, vz, about, a, P, q, e, inc, "
+        "Omega, omega, pomega, M, f, l, T");
   CHECK(csv_refusal("name,mass [Msun],\n") == "b.csv:1: column 3 has no name");
   CHECK(csv_refusal("mass [Msun],x [au],x [au]\n") == "b.csv:1: column 'x' stands twice");
-  CHECK(csv_refusal("mass [Msun],x,y [au]\n") ==
+  CHECK(csv_refusal("mass [Msun],x,y\n") ==
         "b.csv:1: column 'x' has no unit; write 'x [au]' or another unit of length");
   CHECK(csv_refusal("mass [Msun],vx\n") ==
         "b.csv:1: column 'vx' has no unit; write 'vx [au/day]' or another unit of velocity");
@@ -110,8 +208,10 @@ TEST_CASE("a wrong heading is refused with what is wrong and what to write", "[b
   CHECK(csv_refusal("mass [Msun],x [au],y [au],z [au],vx [au/day]\n") ==
         "b.csv:1: there is no column vy, vz; expected mass and x, y, z, vx, vy, vz, or the elements a, e, inc, Omega, "
         "omega, M");
-  CHECK(csv_refusal("a [au],e,inc [deg],Omega [deg],omega [deg]\n") ==
-        "b.csv:1: there is no column mass, M; expected mass and a, e, inc, Omega, omega, M");
+  CHECK(
+      csv_refusal("a [au],e,inc [deg],Omega [deg],omega [deg]\n") ==
+      "b.csv:1: there is no column mass, M; expected mass and a (or P, q), e, inc, Omega, omega (or pomega), M (or f, "
+      "l, T)");
   CHECK(csv_refusal("mass [Msun],x [au],a [au]\n") ==
         "b.csv:1: columns 'x' and 'a' are of two kinds; give positions and velocities, or elements");
   CHECK(csv_refusal("mass [Msun],x [furlong]\n").starts_with("b.csv:1: column 'x': unknown unit 'furlong'"));
@@ -123,6 +223,13 @@ TEST_CASE("a broken row is refused with its line", "[bodies][messages]") {
         "b.csv:5: this row has 3 fields; expected 8, as line 2 names");
   CHECK(csv_refusal(head + "Sun,1,0,0,O,0,0,0\n") == "b.csv:2: column 'z' is 'O', which is no number");
   CHECK(csv_refusal(head + "Sun,1,0,0,1 2,0,0,0\n") == "b.csv:2: column 'z' is '1 2', which is no number");
+  CHECK(csv_refusal("mass [kg];x [m];y;z;vx [m/s];vy;vz\n1;0;0;0,5;0;0;0\n") ==
+        "b.csv:2: column 'z' is '0,5', which is no number; decimals have a point");
+  CHECK(csv_refusal("Sun,1,0,0,0,0,0,0\n").starts_with("b.csv:1: unknown column 'Sun'; known are: name, id, mass"));
+  CHECK(
+      csv_refusal("1,0,0,0,0,0,0\n") ==
+      "b.csv:1: '1' is a number where a column name is expected; the first line names the columns, such as 'name,mass "
+      "[Msun],x [au],...', and is no comment");
   CHECK(csv_refusal(head + "Sun,1,0,0,,0,0,0\n") == "b.csv:2: column 'z' is empty; expected a number");
   CHECK(csv_refusal(head + "Sun,1,nan,0,0,0,0,0\n") == "b.csv:2: column 'x' is nan; expected a finite number");
   CHECK(csv_refusal(head + "Sun,inf,0,0,0,0,0,0\n") == "b.csv:2: column 'mass' is inf; expected a finite number");
@@ -154,6 +261,12 @@ TEST_CASE("elements that are no orbit are refused", "[bodies][messages]") {
         "b.csv:3: a = 1 and e = 1 are no orbit; expected a > 0 and 0 <= e < 1, or a < 0 and e > 1");
   CHECK(csv_refusal(by_elements + sun + "Earth,0,-1,0.5,0,0,0,0\n") ==
         "b.csv:3: a = -1 and e = 0.5 are no orbit; expected a > 0 and 0 <= e < 1, or a < 0 and e > 1");
+  CHECK(csv_refusal("name,mass [Msun],q [au],e,inc [deg],Omega,omega,M\n" + sun + "c,0,2,1,0,0,0,3\n") ==
+        "b.csv:3: M = 3 has no meaning on a parabola, e = 1; give f or T");
+  CHECK(csv_refusal("mass [Msun],a [au],P [yr],e,inc [deg],Omega,omega,M\n1,,,,,,,\n0,,,0,0,0,0,0\n") ==
+        "b.csv:3: the orbit has no size; give a, P or q");
+  CHECK(csv_refusal("mass [Msun],a [au],P [yr],e,inc [deg],Omega,omega,M\n1,,,,,,,\n0,1,1.5,0,0,0,0,0\n") ==
+        "b.csv:3: P = 1.5 stands beside a; give one of a, P or q");
   CHECK(csv_refusal(by_elements + sun + "Earth,0,,0.5,0,0,0,0\n") == "b.csv:3: column 'a' is empty; expected a number");
   CHECK(csv_refusal(by_elements + "Sun,1,0,0,0,0,0,0\n").empty());
 }

@@ -1,0 +1,39 @@
+#pragma once
+/// Bodies of a table, what reading them takes, and what the table says of them.
+
+#include "engine/particle_system.hpp"
+#include "numbers/units.hpp"
+
+#include <optional>
+#include <string>
+
+namespace noether::io {
+
+/// What the orbits of a table are about, unless its column `about` names another body.
+enum class ElementsAbout {
+  first_body,    ///< mu = G (m_0 + m)
+  all_before_it  ///< the barycenter of all bodies before it, Jacobi's elements: mu = G (m_0 + ... + m)
+};
+
+/// What a table of bodies does not say itself.
+struct BodiesOptions {
+  const UnitSystem* units = &unit_system("solar");  ///< the unit system of the particles
+  std::optional<double> G = {};  ///< constant of gravitation [length^3/mass/time^2]; default: the unit system's own
+  ElementsAbout elements = ElementsAbout::first_body;
+  std::optional<double> epoch = {};  ///< Julian day of the records to take of Horizons; default: the first
+};
+
+/// The moment for which the states of a Horizons table hold.
+struct BodyEpoch {
+  double julian_day = 0;
+  std::string scale;  ///< "TDB", as the table has it; empty if it does not say
+};
+
+/// Bodies, and what a table says of them.
+struct BodyTable {
+  ParticleSystem<double> particles;
+  std::optional<BodyEpoch> epoch = {};  ///< of Horizons
+  bool without_sun = false;             ///< states about the Solar System Barycenter, and no Sun among them
+};
+
+}  // namespace noether::io
