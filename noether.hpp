@@ -8,6 +8,7 @@
 #include "constraints/distance.hpp"
 #include "constraints/rigid_bar.hpp"
 #include "constraints/surfaces.hpp"
+#include "engine/given_orbit.hpp"
 #include "engine/orbital_elements.hpp"
 #include "engine/simulation.hpp"
 #include "forces/bonded.hpp"

@@ -6,6 +6,7 @@
 #include "numbers/simd.hpp"
 #include "numbers/text.hpp"
 #include "scene/json.hpp"
+#include "scene/read_particles.hpp"
 #include "scene/scene.hpp"
 #include "scene/warnings.hpp"
 #include "study/kepler_steps.hpp"
@@ -310,6 +311,9 @@ void print_text(const Scene& scene, const Explanation& e) {
         force.name);
   }
   if (!e.small_box.empty()) fmt::print("{}\n", e.small_box);
+  if (const std::string epoch = epoch_of(scene.effective); !epoch.empty()) {
+    fmt::print("bodies: as of {}\n", epoch);
+  }
   for (const std::string& warning : warnings_of(scene)) fmt::print("warning: {}\n", warning);
   if (e.stiffness) print_stiffness(scene, e);
   if (!e.why_no_stiffness.empty()) fmt::print("stiffness: not known: {}\n", e.why_no_stiffness);
@@ -347,6 +351,7 @@ Json stiffness_json(const Explanation& e) {
 }
 
 Json json_of(const Scene& scene, const Explanation& e) {
+  const std::string epoch = epoch_of(scene.effective);
   Json::Members flows;
   std::vector<std::string> letters;
   letters.reserve(e.flows.size());  // the members point into it
@@ -371,6 +376,7 @@ Json json_of(const Scene& scene, const Explanation& e) {
        {"force_evaluations_per_step", e.evaluations},
        {"simd", std::string(name(simd_level()))},
        {"step", scene.integrator.step},
+       {"epoch", epoch.empty() ? Json() : Json(epoch)},
        {"recommended_step", e.kepler ? Json(e.kepler->recommended()) : Json()},
        {"time_unit", scene.units->time}});
 }

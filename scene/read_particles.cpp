@@ -1,7 +1,7 @@
 #include "scene/read_particles.hpp"
 
 #include "engine/charge.hpp"
-#include "engine/orbital_elements.hpp"
+#include "engine/given_orbit.hpp"
 #include "io/bodies.hpp"
 #include "numbers/suggest.hpp"
 #include "numbers/text.hpp"
@@ -12,9 +12,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <memory>
-#include <unordered_set>
+#include <unordered_map>
 
 namespace noether {
 
@@ -31,38 +32,16 @@ void check_mass(TableReader& reader, const std::string& name, double mass) {
                                   to_text(*reader.find("mass"))));
 }
 
-constexpr std::array<std::string_view, 6> element_keys = {"a", "e", "inc", "Omega", "omega", "M"};
-constexpr std::array<std::string_view, 6> element_dimensions = {"length", "1", "angle", "angle", "angle", "angle"};
-
-/// Position and velocity from the elements of one `[[particles.body]]`, about the first body.
-std::pair<Vec3<double>, Vec3<double>> from_elements(TableReader& body, const ParticleSystem<double>& s, double mass) {
-  std::array<double, 6> numbers{};
-  for (std::size_t k = 0; k < 6; ++k) numbers[k] = body.quantity(element_keys[k], element_dimensions[k]).value_or(0);
-  if (s.size() == 0) {
-    body.fail(
-        "a", "the first body has no other to move about; give its x and v, or nothing to put it at rest in the origin");
-  }
-  if (!body.has("a"))
-    body.fail(nullptr, "a", fmt::format("the elements of {} have no semi-major axis; give a", body.what()));
-  const double mu = gravitation(body) * (s.masses()[0] + mass);
-  try {
-    auto state =
-        state_from_elements<double>({numbers[0], numbers[1], numbers[2], numbers[3], numbers[4], numbers[5]}, mu);
-    state.first += s.positions()[0];
-    state.second += s.velocities()[0];
-    return state;
-  } catch (const Error& error) {
-    body.refuse(error);
-  }
-}
-
 Vec3<double> column(const std::array<double, 3>& v) { return Vec3<double>(v[0], v[1], v[2]); }
 
 /// Types and charges of the bodies of `[[particles.body]]`.
 class TypedBodies {
  public:
-  TypedBodies(TableReader& reader, SceneValue& effective)
-      : types_(read_types(reader, effective)), pairs_(read_pairs(reader, effective)) {
+  /// @param before  bodies that are there already, without types and charges
+  TypedBodies(TableReader& reader, SceneValue& effective, Index before)
+      : types_(read_types(reader, effective)),
+        pairs_(read_pairs(reader, effective)),
+        charges_(static_cast<std::size_t>(before)) {
     const auto mixing = read_mixing(reader, effective);
     if (types_.empty() && (mixing || !pairs_.empty())) {
       const char* key = mixing ? "mixing" : "pair";
@@ -128,71 +107,239 @@ class TypedBodies {
   Topology topology_;
 };
 
-void add_body(TableReader& body, ParticleSystem<double>& s, std::unordered_set<std::string>& names,
-              TypedBodies& typed) {
-  const std::vector<ColumnInfo>& columns = body.context().columns;
-  body.expect_only({"name", "mass", "x", "v", "a", "e", "inc", "Omega", "omega", "M", "type", "charge"}, columns);
-  const std::string name = body.text("name", fmt::format("body_{}", s.size() + 1));
-  if (const std::string wrong = wrong_name(name); !wrong.empty()) body.fail("name", wrong);
-  const std::optional<double> of_type = typed.add(body);
-  const auto given = body.quantity("mass", "mass"), mass = given ? given : of_type;
-  if (!mass) body.fail(nullptr, "mass", fmt::format("{} has no mass; 0 marks a tracer", body.what()));
-  if (given) check_mass(body, name, *mass);
-  if (!names.insert(name).second) {
-    body.fail("name", fmt::format("two bodies are named '{}'; names must differ", name));
+/// The bodies of `[[particles.body]]`, behind those of a file where there is one.
+class BodyTables {
+ public:
+  BodyTables(TableReader& reader, SceneValue& effective, ParticleSystem<double> s, io::ElementsAbout elements)
+      : reader_(reader), s_(std::move(s)), elements_(elements), typed_(reader, effective, s_.size()) {
+    for (const ColumnInfo& column : reader.context().columns) s_.add_column(column);
+    for (Index i = 0; i < s_.size(); ++i) note(i);
   }
-  const auto x = body.vector("x", "length"), v = body.vector("v", "velocity");
-  bool elements = false;
-  for (const std::string_view key : element_keys) elements = body.has(key) || elements;
-  if (elements && (x || v)) {
-    body.fail(x ? "x" : "v",
-              fmt::format("{} has both elements and {}; give one or the other", body.what(), x ? "x" : "v"));
+
+  /// Takes one in; returns its name.
+  std::string add(const SceneValue& table, std::size_t number) {
+    const SceneValue* given = table.find("name");
+    const std::string* text = given != nullptr ? given->get<std::string>() : nullptr;
+    const std::string called = text != nullptr ? *text : fmt::format("body_{}", s_.size() + 1);
+    TableReader body(reader_.context(), table, fmt::format("body '{}'", called),
+                     fmt::format("particles.body.{}", number));
+    add_body(body);
+    return called;
   }
-  if (elements) {
-    const auto [position, velocity] = from_elements(body, s, *mass);
-    s.add(name, *mass, position, velocity);
-  } else if (!x != !v || (!x && s.size() > 0)) {
-    body.fail(nullptr, x ? "v" : "x",
-              fmt::format("{} has no {}; give x and v, or elements about the first body", body.what(), x ? "v" : "x"));
-  } else {
-    s.add(name, *mass, column(x.value_or(std::array<double, 3>{})), column(v.value_or(std::array<double, 3>{})));
+
+  ParticleSystem<double> take() {
+    typed_.give_to(s_, reader_);
+    return std::move(s_);
   }
-  for (const ColumnInfo& declared : columns) {
-    if (const auto row = body.row(declared)) s.set_row(declared.name, s.size() - 1, *row);
+
+ private:
+  using State = std::pair<Vec3<double>, Vec3<double>>;
+
+  void note(Index i) {
+    index_.emplace(s_.name(i), i);
+    before_.add(s_.masses()[i], s_.positions()[i], s_.velocities()[i]);
   }
+
+  void add_body(TableReader& body) {
+    const std::vector<ColumnInfo>& columns = body.context().columns;
+    body.expect_only({"name", "mass", "about", "x", "v", "a", "P", "q", "e", "inc", "Omega", "omega", "pomega", "M",
+                      "f", "l", "T", "type", "charge"},
+                     columns);
+    const std::string name = body.text("name", fmt::format("body_{}", s_.size() + 1));
+    if (const std::string wrong = wrong_name(name); !wrong.empty()) body.fail("name", wrong);
+    const std::optional<double> of_type = typed_.add(body);
+    const auto given = body.quantity("mass", "mass"), mass = given ? given : of_type;
+    if (!mass) body.fail(nullptr, "mass", fmt::format("{} has no mass; 0 marks a tracer", body.what()));
+    if (given) check_mass(body, name, *mass);
+    if (index_.count(name) != 0) {
+      body.fail("name", fmt::format("two bodies are named '{}'; names must differ", name));
+    }
+    const State state = state_of(body, *mass);
+    s_.add(name, *mass, state.first, state.second);
+    note(s_.size() - 1);
+    for (const ColumnInfo& declared : columns) {
+      if (const auto row = body.row(declared)) s_.set_row(declared.name, s_.size() - 1, *row);
+    }
+  }
+
+  State state_of(TableReader& body, double mass) const {
+    const auto x = body.vector("x", "length"), v = body.vector("v", "velocity");
+    const auto element =
+        std::find_if(orbit_keys.begin(), orbit_keys.end(), [&](const OrbitKey& key) { return body.has(key.name); });
+    const std::vector<Index> about = bodies_about(body);
+    if (element != orbit_keys.end() && (x || v)) {
+      body.fail(x ? "x" : "v",
+                fmt::format("{} has both elements and {}; give one or the other", body.what(), x ? "x" : "v"));
+    }
+    if (element != orbit_keys.end()) return by_elements(body, mass, about, element->name);
+    if (!x != !v || (!x && s_.size() > 0)) {
+      body.fail(
+          nullptr, x ? "v" : "x",
+          fmt::format("{} has no {}; give x and v, or elements about the first body", body.what(), x ? "v" : "x"));
+    }
+    State state(column(x.value_or(std::array<double, 3>{})), column(v.value_or(std::array<double, 3>{})));
+    return about.empty() ? state : moved(state, center_at(body, about));
+  }
+
+  static State moved(const State& state, const OrbitCenter& center) {
+    return {state.first + center.x(), state.second + center.v()};
+  }
+
+  /// Position and velocity from elements: about those that `about` names, else the first body or, of Jacobi's
+  /// elements, the barycenter of all before it.
+  State by_elements(TableReader& body, double mass, const std::vector<Index>& about, std::string_view first_key) const {
+    GivenOrbit orbit;
+    for (const OrbitKey& key : orbit_keys) orbit.*key.value = body.quantity(key.name, key.dimension);
+    if (s_.size() == 0) {
+      body.fail(first_key,
+                "the first body has no other to move about; give its x and v, or nothing to put it at rest in the "
+                "origin");
+    }
+    if (!orbit.a && !orbit.P && !orbit.q) {
+      body.fail(nullptr, "a",
+                fmt::format("the elements of {} say no size; give the semi-major axis a, the period P or the distance "
+                            "of the pericenter q",
+                            body.what()));
+    }
+    const bool jacobi = about.empty() && elements_ == io::ElementsAbout::all_before_it;
+    const OrbitCenter center = jacobi ? before_ : center_at(body, about.empty() ? std::vector<Index>{0} : about);
+    try {
+      return moved(state_of_orbit(orbit, gravitation(body) * (center.mass() + mass)), center);
+    } catch (const Error& error) {
+      body.refuse(error);
+    }
+  }
+
+  /// The bodies that `about` names: one by a text, several by a list.
+  std::vector<Index> bodies_about(TableReader& body) const {
+    const SceneValue* value = body.find("about");
+    if (value == nullptr) return {};
+    const auto named = [&](const SceneValue& one) {
+      const std::string* name = one.get<std::string>();
+      if (name == nullptr) body.wrong_kind(*value, "about", "the name of a body, or a list of names,");
+      const auto found = index_.find(*name);
+      if (found == index_.end()) {
+        body.fail("about", fmt::format("about = {}: there is no '{}' above {}{}", to_text(*value), *name, body.what(),
+                                       did_you_mean(*name, s_.names())));
+      }
+      return found->second;
+    };
+    const auto* list = value->get<SceneValue::Array>();
+    if (list == nullptr) return {named(*value)};
+    std::vector<Index> found;
+    for (const SceneValue& one : *list) found.push_back(named(one));
+    std::vector<Index> sorted = found;
+    std::sort(sorted.begin(), sorted.end());
+    if (found.empty() || std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
+      body.fail("about", fmt::format("about = {} names no barycenter; different bodies are expected", to_text(*value)));
+    }
+    return found;
+  }
+
+  OrbitCenter center_at(TableReader& body, const std::vector<Index>& about) const {
+    try {
+      return center_of(s_, about);
+    } catch (const Error& error) {
+      body.fail("about", fmt::format("about = {}: {}", to_text(*body.find("about")), error.message()));
+    }
+  }
+
+  TableReader& reader_;
+  ParticleSystem<double> s_;
+  io::ElementsAbout elements_;
+  TypedBodies typed_;
+  std::unordered_map<std::string, Index> index_;
+  OrbitCenter before_;  ///< of all bodies so far
+};
+
+/// `elements = "jacobi"`: what elements are about. @throws SceneError
+io::ElementsAbout read_elements_about(TableReader& reader, SceneValue& effective) {
+  const SceneValue* value = reader.find("elements");
+  if (value == nullptr) return io::ElementsAbout::first_body;
+  const std::string text = reader.text("elements");
+  if (text != "jacobi" && text != "first_body") {
+    reader.fail("elements", fmt::format("unknown elements '{}'{}", text, did_you_mean(text, {"first_body", "jacobi"})));
+  }
+  effective.put("elements", *value);
+  return text == "jacobi" ? io::ElementsAbout::all_before_it : io::ElementsAbout::first_body;
 }
 
-ParticleSystem<double> from_file(TableReader& reader, const std::filesystem::path& folder, SceneValue& effective) {
-  reader.expect_only({"bodies", "bodies_sha256", "frame", "box", "exclusions"});
-  io::BodiesOptions options;
-  options.units = reader.context().units;
+/// `epoch = "JD 2451545 TDB"`, or without the scale. @throws SceneError
+std::optional<io::BodyEpoch> read_epoch(TableReader& reader) {
+  const SceneValue* value = reader.find("epoch");
+  if (value == nullptr) return {};
+  const auto wrong = [&] {
+    reader.fail("epoch", fmt::format("epoch = {} is no Julian day; one is expected, such as \"JD 2451545\" or \"JD "
+                                     "2451545 TDB\"",
+                                     to_text(*value)));
+  };
+  const std::string* text = value->get<std::string>();
+  if (text == nullptr || !text->starts_with("JD ")) wrong();
+  io::BodyEpoch epoch;
+  const char *first = text->data() + 3, *last = text->data() + text->size();
+  const auto [end, problem] = std::from_chars(first, last, epoch.julian_day);
+  if (problem != std::errc() || !std::isfinite(epoch.julian_day) || (end != last && *end != ' ')) wrong();
+  if (end != last) epoch.scale.assign(end + 1, last);
+  return epoch;
+}
+
+std::string text_of(const io::BodyEpoch& epoch) {
+  return fmt::format("JD {}{}{}", format_number(epoch.julian_day), epoch.scale.empty() ? "" : " ", epoch.scale);
+}
+
+/// The bodies of a table in a file.
+ParticleSystem<double> from_file(TableReader& reader, const std::filesystem::path& folder, io::ElementsAbout elements,
+                                 bool alone, SceneValue& effective, std::vector<std::string>& warnings) {
+  io::BodiesOptions options{.units = reader.context().units, .elements = elements};
   if (reader.context().G) options.G = gravitation(reader);
-  return particles_in_file(reader, "bodies", folder, "bodies.csv", "a table of bodies", effective,
-                           [&](const std::filesystem::path& file) { return io::read_bodies(file, options); });
+  const std::optional<io::BodyEpoch> wanted = read_epoch(reader);
+  if (wanted) options.epoch = wanted->julian_day;
+  io::BodyTable table;
+  ParticleSystem<double> s = particles_in_file(reader, "bodies", folder, "bodies.csv", "a table of bodies", effective,
+                                               [&](const std::filesystem::path& file) {
+                                                 table = io::read_body_table(file, options);
+                                                 return std::move(table.particles);
+                                               });
+  if (table.epoch) {
+    if (wanted && !wanted->scale.empty() && !table.epoch->scale.empty() && wanted->scale != table.epoch->scale) {
+      reader.fail("epoch", fmt::format("epoch = \"{}\" is not in the time scale of the tables, {}", text_of(*wanted),
+                                       table.epoch->scale));
+    }
+    effective.put("epoch", SceneValue::of(text_of(*table.epoch), reader.line("epoch")));
+  }
+  if (table.without_sun && alone) {
+    warnings.push_back(
+        fmt::format("the states in {} are about the Solar System Barycenter, and the Sun is not among "
+                    "them",
+                    reader.text("bodies")));
+  }
+  return s;
 }
 
-ParticleSystem<double> from_tables(TableReader& reader, const std::vector<const SceneValue*>& bodies,
-                                   SceneValue& effective) {
-  reader.expect_only({"body", "frame", "box", "type", "pair", "mixing", "exclusions"});
+/// Bodies of a file, of `[[particles.body]]` tables, or of both, in this order.
+ParticleSystem<double> from_bodies(TableReader& reader, const std::filesystem::path& folder, SceneValue& effective,
+                                   std::vector<std::string>& warnings) {
+  const bool file = reader.has("bodies");
+  if (file) {
+    reader.expect_only({"bodies", "bodies_sha256", "epoch", "elements", "body", "frame", "box", "exclusions"});
+  } else {
+    reader.expect_only({"body", "elements", "frame", "box", "type", "pair", "mixing", "exclusions"});
+  }
+  const auto tables = tables_of(reader, "body");
+  const io::ElementsAbout elements = read_elements_about(reader, effective);
   ParticleSystem<double> s(*reader.context().units);
-  for (const ColumnInfo& column : reader.context().columns) s.add_column(column);
-  TypedBodies typed(reader, effective);
-  std::unordered_set<std::string> names;
+  if (file) s = from_file(reader, folder, elements, tables.empty(), effective, warnings);
+  if (tables.empty()) return s;
+  BodyTables bodies(reader, effective, std::move(s), elements);
   SceneValue::Array list;
-  for (const SceneValue* table : bodies) {
-    const SceneValue* name = table->find("name");
-    const std::string* text = name != nullptr ? name->get<std::string>() : nullptr;
-    const std::string called = text != nullptr ? *text : fmt::format("body_{}", s.size() + 1);
-    TableReader body(reader.context(), *table, fmt::format("body '{}'", called),
-                     fmt::format("particles.body.{}", list.size()));
-    add_body(body, s, names, typed);
+  for (const SceneValue* table : tables) {
+    const std::string name = bodies.add(*table, list.size());
     SceneValue entry = *table;
-    if (name == nullptr) entry.put("name", SceneValue::of(called));
+    if (entry.find("name") == nullptr) entry.put("name", SceneValue::of(name));
     list.push_back(std::move(entry));
   }
   effective.put("body", SceneValue::of(std::move(list)));
-  typed.give_to(s, reader);
-  return s;
+  return bodies.take();
 }
 
 /// For each particle its place in the order of x, y, z: equal positions become neighbors.
@@ -212,7 +359,7 @@ bool is_built(TableReader& reader) {
   return type != nullptr && type->get<SceneValue::Array>() == nullptr;
 }
 
-/// Particles come from one place. @throws SceneError
+/// Particles come from one place; only bodies of a file and of tables may stand together. @throws SceneError
 void check_sources(TableReader& reader) {
   const auto bodies = tables_of(reader, "body");
   std::vector<std::pair<const char*, const char*>> found;
@@ -220,7 +367,8 @@ void check_sources(TableReader& reader) {
   if (reader.has("structure")) found.emplace_back("structure", "from a structure");
   if (is_built(reader)) found.emplace_back("type", "from a builder");
   if (!bodies.empty()) found.emplace_back("body", "from [[particles.body]]");
-  if (found.size() > 1) {
+  const bool both = found.size() == 2 && reader.has("bodies") && !bodies.empty();
+  if (found.size() > 1 && !both) {
     reader.fail(found[0].first,
                 fmt::format("bodies come {} and {}; give one or the other", found[0].second, found[1].second));
   }
@@ -251,6 +399,12 @@ void read_frame(TableReader& reader, ParticleSystem<double>& s, SceneValue& effe
 
 }  // namespace
 
+std::string epoch_of(const SceneValue& effective) {
+  const SceneValue* particles = effective.find("particles");
+  const SceneValue* epoch = particles != nullptr ? particles->find("epoch") : nullptr;
+  return epoch != nullptr ? *epoch->get<std::string>() : "";
+}
+
 std::optional<std::pair<Index, Index>> coincident_bodies(const ParticleSystem<double>& s) {
   const std::vector<Index> order = sorted_by_position(s);
   for (std::size_t k = 1; k < order.size(); ++k) {
@@ -262,11 +416,13 @@ std::optional<std::pair<Index, Index>> coincident_bodies(const ParticleSystem<do
 }
 
 ParticleSystem<double> read_particles(const SceneContext& context, const SceneValue& table,
-                                      const std::filesystem::path& folder, SceneValue& effective) {
+                                      const std::filesystem::path& folder, SceneValue& effective,
+                                      std::vector<std::string>& warnings) {
   TableReader reader(context, table, "[particles]", "particles");
   if (!is_built(reader)) {
-    reader.expect_only({"bodies", "bodies_sha256", "body", "structure", "structure_sha256", "type", "pair", "mixing",
-                        "box", "special", "exclusions", "file_units", "atom_style", "frame", "temperature", "seed"});
+    reader.expect_only({"bodies", "bodies_sha256", "epoch", "elements", "body", "structure", "structure_sha256", "type",
+                        "pair", "mixing", "box", "special", "exclusions", "file_units", "atom_style", "frame",
+                        "temperature", "seed"});
   }
   check_sources(reader);
   if (is_built(reader)) {
@@ -276,8 +432,7 @@ ParticleSystem<double> read_particles(const SceneContext& context, const SceneVa
   }
   TableReader own(context, table, "[particles]", "particles");
   ParticleSystem<double> s = reader.has("structure") ? read_structure_particles(own, folder, effective)
-                             : reader.has("bodies")  ? from_file(own, folder, effective)
-                                                     : from_tables(own, tables_of(own, "body"), effective);
+                                                     : from_bodies(own, folder, effective, warnings);
   if (!reader.has("structure")) {
     if (const auto box = read_box(own, effective)) s.set_box(*box);
   }

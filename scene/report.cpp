@@ -105,6 +105,7 @@ std::string to_json(const RunReport& r) {
   if (r.minimized) {
     members.emplace_back("minimized", Json::object({{"force", r.minimized->force}, {"steps", r.minimized->steps}}));
   }
+  if (!r.epoch.empty()) members.emplace_back("epoch", r.epoch);
   if (!r.warnings.empty()) members.emplace_back("warnings", Json::list_of(r.warnings));
   return Json::object(members).text();
 }
@@ -149,6 +150,7 @@ std::string to_text(const RunReport& r) {
     text += fmt::format("minimized: largest force {:.3g}{}{} after {} force evaluations\n", r.minimized->force,
                         r.force_unit == "1" ? "" : " ", r.force_unit == "1" ? "" : r.force_unit, r.minimized->steps);
   }
+  if (!r.epoch.empty()) text += fmt::format("bodies: as of {}\n", r.epoch);
   for (const std::string& warning : r.warnings) text += fmt::format("warning: {}\n", warning);
   if (r.resumed_from_step) text += fmt::format("resumed from step {}\n", *r.resumed_from_step);
   for (const auto& [name, monitor] : r.monitors) {

@@ -5,6 +5,7 @@
 #include "numbers/parallel.hpp"
 #include "numbers/quantity.hpp"
 #include "scene/minimize.hpp"
+#include "scene/read_particles.hpp"
 #include "scene/resume.hpp"
 #include "scene/signals.hpp"
 #include "scene/warnings.hpp"
@@ -239,6 +240,7 @@ class Runner {
     const IntegratorClaims claims = sim.claims();
     r.outcome = ending_.outcome;
     r.warnings = warnings_of(scene_);
+    r.epoch = epoch_of(scene_.effective);
     r.scene = scene_.source.file;
     r.scene_sha256 = io::sha256(scene_.effective_toml);
     r.method = claims.method;

@@ -27,6 +27,7 @@ struct RunOptions {
 struct RunReport {
   Outcome outcome;
   std::string scene, scene_sha256;  ///< as typed; hash of the effective scene
+  std::string epoch;                ///< of the bodies of a Horizons table, "JD 2451545 TDB"; else empty
   std::string method, hamiltonian, time_unit, simd, digest;
   double dt = 0;
   Index particles = 0;

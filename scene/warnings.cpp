@@ -138,7 +138,7 @@ std::string other_cutoff(const Scene& scene) {
 }  // namespace
 
 std::vector<std::string> warnings_of(const Scene& scene) {
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = scene.warnings;
   const auto add = [&](std::string warning) {
     if (!warning.empty()) warnings.push_back(std::move(warning));
   };

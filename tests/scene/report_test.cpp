@@ -34,6 +34,15 @@ TEST_CASE("a note is no message of the run, a reason is", "[scene][report]") {
   CHECK(has(to_text(reasoned), "energy: the run is dissipative; six numbers for each particle (3 samples)\n"));
 }
 
+TEST_CASE("the epoch of bodies from Horizons stands in the report, where there is one", "[scene][report]") {
+  RunReport report;
+  CHECK_FALSE(has(to_json(report), "epoch"));
+  CHECK_FALSE(has(to_text(report), "bodies"));
+  report.epoch = "JD 2451545 TDB";
+  CHECK(json_member(to_json(report), "epoch") == "\"JD 2451545 TDB\"");
+  CHECK(has(to_text(report), "bodies: as of JD 2451545 TDB\n"));
+}
+
 TEST_CASE("a drift stands in JSON as a number with its error and unit, where there is one", "[scene][report]") {
   MonitorReport monitor;
   monitor.samples = 3;

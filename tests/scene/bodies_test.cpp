@@ -1,0 +1,229 @@
+// BodyScene of files and of tables: together, about one another, and as of an epoch.
+
+#include "engine/given_orbit.hpp"
+#include "scene/read_particles.hpp"
+#include "scene/scene.hpp"
+#include "scene/warnings.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/files.hpp"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace noether::test {
+namespace {
+
+const std::string gravity_alone =
+    "[hamiltonian]\ntype = 'kinetic_potential'\n[[hamiltonian.force]]\ntype = 'gravity'\n[integrator]\nmethod = "
+    "'verlet'\nstep = '1 day'\nuntil = '10 day'\n";
+
+/// BodyScene of a scene whose `[particles]` and what follows is given, with a file beside it.
+struct BodyScene {
+  explicit BodyScene(const std::string& particles, const std::string& file = "", const char* units = "solar",
+                     const std::string& rest = gravity_alone)
+      : text("units = '" + std::string(units) + "'\n[particles]\n" + particles + rest) {
+    if (!file.empty()) write_text(folder / "bodies.txt", file);
+  }
+  Scene scene() const { return read_scene(text, folder / "scene.toml"); }
+  ParticleSystem<double> particles() const { return scene().particles; }
+  /// What reading it is refused with, the folder cut away.
+  std::string refusal() const {
+    try {
+      scene();
+    } catch (const Error& error) {
+      const std::string message = error.what(), path = (folder / "").string();
+      return message.starts_with(path) ? message.substr(path.size()) : message;
+    }
+    return "";
+  }
+
+  ScratchFolder folder;
+  std::string text;
+};
+
+/// Two records of Jupiter about the Sun, as Horizons writes them.
+const std::string jupiter_table =
+    "Target body name: Jupiter Barycenter (5)        {source: DE441}\nCenter body name: Sun (10)\nCenter-site name: "
+    "BODY "
+    "CENTER\nOutput units    : AU-D\nOutput type     : GEOMETRIC cartesian states\nReference frame : Ecliptic of "
+    "J2000.0\nJDTDB\n$$SOE\n2451545.000000000 = A.D. 2000-Jan-01 12:00:00.0000 TDB\n X = 5.2 Y = 0 Z = 0\n VX= 0 VY= "
+    "7.543619416505264E-03 VZ= 0\n2451546.500000000 = A.D. 2000-Jan-03 00:00:00.0000 TDB\n X = 5.1 Y = 0.5 Z = 0\n VX= "
+    "0 "
+    "VY= 7E-03 VZ= 0\n$$EOE\n";
+
+const std::string two_planets =
+    "name,id,mass [Msun],x [au],y,z,vx [au/day],vy,vz\nSun,7,1,1,0,0,0,0,0\nEarth,3,3e-6,2,0,0,0,0.0172,0\n";
+
+std::string body_table(const std::string& name, const std::string& keys) {
+  return "[[particles.body]]\nname = '" + name + "'\n" + keys;
+}
+
+TEST_CASE("tables of Horizons about the Sun move as a planet and its star do", "[scene][bodies]") {
+  const BodyScene bodies(
+      "bodies = 'bodies.txt'\n", jupiter_table, "solar",
+      "[hamiltonian]\ntype = 'wisdom_holman'\n[integrator]\nmethod = 'aba_10_6_4'\nstep = '10 day'\nuntil "
+      "= '1000 day'\n");
+  const Scene scene = bodies.scene();
+  CHECK(scene.particles.names() == std::vector<std::string>{"Sun", "Jupiter Barycenter"});
+  Simulation<double> sim = assemble(scene);
+  REQUIRE(sim.run(100).ok());
+  const auto& s = sim.particles();
+  const Vec3<double> x = s.positions()[1] - s.positions()[0], v = s.velocities()[1] - s.velocities()[0];
+  // Kepler's equation in 50 digits with the GM of DE440 for both.
+  CHECK(std::abs(x[0] - 0.6179829302130653) < 2e-13);
+  CHECK(std::abs(x[1] - 5.158746061217055) < 2e-13);
+  CHECK(std::abs(v[0] + 0.007497219492929394) < 2e-16);
+  CHECK(std::abs(v[1] - 0.0008909136639232234) < 2e-16);
+}
+
+TEST_CASE("the epoch of Horizons tables stands in the effective scene, and is a key", "[scene][bodies]") {
+  const Scene first = BodyScene("bodies = 'bodies.txt'\n", jupiter_table).scene();
+  CHECK(epoch_of(first.effective) == "JD 2451545 TDB");
+  CHECK(has(first.effective_toml, "epoch = \"JD 2451545 TDB\"\n"));
+  for (const std::string epoch : {"JD 2451546.5", "JD 2451546.5 TDB"}) {
+    const BodyScene later("bodies = 'bodies.txt'\nepoch = '" + epoch + "'\n", jupiter_table);
+    CHECK(later.particles().positions()[1] == Vec3<double>(5.1, 0.5, 0));
+    const Scene scene = later.scene();
+    CHECK(epoch_of(scene.effective) == "JD 2451546.5 TDB");
+    CHECK(read_scene(scene.effective_toml, later.folder / "scene.toml").effective_toml == scene.effective_toml);
+  }
+  CHECK(BodyScene("bodies = 'bodies.txt'\nepoch = 'JD 2451546.5 UT'\n", jupiter_table).refusal() ==
+        "scene.toml:4: epoch = \"JD 2451546.5 UT\" is not in the time scale of the tables, TDB");
+  CHECK(
+      BodyScene("bodies = 'bodies.txt'\nepoch = 2451545\n", jupiter_table).refusal() ==
+      "scene.toml:4: epoch = 2451545 is no Julian day; one is expected, such as \"JD 2451545\" or \"JD 2451545 TDB\"");
+  CHECK(BodyScene("bodies = 'bodies.txt'\nepoch = 'JD 2451547'\n", jupiter_table).refusal() ==
+        "bodies.txt:8: the table of Jupiter Barycenter has no record of JD 2451547; it has 2, from JD 2451545 to JD "
+        "2451546.5");
+  CHECK(BodyScene("bodies = 'bodies.txt'\nepoch = 'JD 2451545'\n", two_planets).refusal() ==
+        "bodies.txt: an epoch is one of the records of Horizons tables, and this is CSV; take it out");
+  CHECK(epoch_of(BodyScene("bodies = 'bodies.txt'\n", two_planets).scene().effective).empty());
+}
+
+TEST_CASE("states about the Solar System Barycenter without the Sun are warned of", "[scene][bodies][warnings]") {
+  const std::string about_all = replaced(jupiter_table, "Sun (10)", "Solar System Barycenter (0)");
+  CHECK(warnings_of(BodyScene("bodies = 'bodies.txt'\n", about_all).scene()) ==
+        std::vector<std::string>{
+            "the states in bodies.txt are about the Solar System Barycenter, and the Sun is not among them"});
+  CHECK(warnings_of(BodyScene("bodies = 'bodies.txt'\n", jupiter_table).scene()).empty());
+  const std::string sun =
+      "[[particles.body]]\nname = 'Sun'\nmass = '1 Msun'\nx = ['0 au', '0 au', '0 au']\nv = ['0 km/s', '0 km/s', '0 "
+      "km/s']\n";
+  CHECK(warnings_of(BodyScene("bodies = 'bodies.txt'\n" + sun, about_all).scene()).empty());
+}
+
+TEST_CASE("bodies of a file and of tables stand together, the file's first", "[scene][bodies]") {
+  const auto s =
+      BodyScene("bodies = 'bodies.txt'\n" + body_table("comet", "mass = '0 kg'\nq = '0.5 au'\ne = 1\nT = '-20 day'\n") +
+                    body_table("Moon", "mass = '7.3e22 kg'\nabout = 'Earth'\na = '384400 km'\n"),
+                two_planets)
+          .particles();
+  CHECK(s.names() == std::vector<std::string>{"Sun", "Earth", "comet", "Moon"});
+  CHECK(s.ids() == std::vector<std::int64_t>{7, 3, 8, 9});
+  const double G = units::solar::G, day = 1;
+  const auto comet = state_of_orbit({.q = 0.5, .e = 1, .T = -20 * day}, G);
+  CHECK(s.positions()[2] == Vec3<double>(comet.first + Vec3<double>(1, 0, 0)));
+  CHECK(s.velocities()[2] == comet.second);
+  const auto moon = state_of_orbit({.a = 384400 * units::solar::km}, G * (3e-6 + 7.3e22 * units::solar::kg));
+  CHECK(s.positions()[3] == Vec3<double>(moon.first + Vec3<double>(2, 0, 0)));
+  CHECK(s.velocities()[3] == Vec3<double>(moon.second + Vec3<double>(0, 0.0172, 0)));
+  // The effective scene is the same scene, and a change reaches the tables.
+  const std::string table = "bodies = 'bodies.txt'\n[[particles.body]]\nname = 'c'\nmass = '0 kg'\na = '3 au'\n";
+  const BodyScene one(table, two_planets);
+  const Scene scene = one.scene();
+  CHECK(read_scene(scene.effective_toml, one.folder / "scene.toml").effective_toml == scene.effective_toml);
+  CHECK(read_scene(one.text, one.folder / "scene.toml", standard_parts(), {"particles.body.c.a=4 au"})
+            .particles.positions()[2][0] == 5);
+  CHECK(BodyScene(replaced(table, "'c'", "'Sun'"), two_planets).refusal() ==
+        "scene.toml:5: two bodies are named 'Sun'; names must differ");
+}
+
+TEST_CASE("the scene and the table of docs/bodies.md can be run", "[scene][bodies]") {
+  std::vector<std::string> blocks(1);  // lines that begin with four blanks
+  for (const std::string& line : lines_of(read_text(std::filesystem::path(NOETHER_SOURCE_DIR) / "docs/bodies.md"))) {
+    if (line.starts_with("    ")) {
+      blocks.back() += line.substr(4) + "\n";
+    } else if (!line.empty() && !blocks.back().empty()) {
+      blocks.emplace_back();
+    }
+  }
+  REQUIRE(blocks.size() >= 2);
+  const BodyScene page(replaced(blocks[0], "[particles]\n", ""), blocks[1]);
+  const std::string scene = replaced(page.text, "planets.csv", "bodies.txt");
+  const Scene read = read_scene(scene, page.folder / "scene.toml");
+  CHECK(read.particles.names() == std::vector<std::string>{"Sun", "Earth", "comet"});
+  CHECK(assemble(read).run(10).ok());
+}
+
+const std::string reduced_gravity_alone =
+    "[hamiltonian]\ntype = 'kinetic_potential'\n[[hamiltonian.force]]\ntype = 'gravity'\n[integrator]\nmethod = "
+    "'verlet'\nstep = 0.1\nsteps = 1\n";
+
+BodyScene reduced_scene(const std::string& particles, const std::string& file = "") {
+  return BodyScene(particles, file, "reduced", reduced_gravity_alone);
+}
+
+TEST_CASE("elements are about the first body, another, a barycenter, or all before", "[scene][bodies]") {
+  const std::string pair = body_table("A", "mass = 1\n") + body_table("B", "mass = 0.5\na = 2\n");
+  // Circles seen from the x axis: distance a, speed sqrt(mu/a).
+  const double v1 = std::sqrt(1.5 / 2), v2 = std::sqrt(0.75 / 0.25), v3 = std::sqrt(1.5 / 9);
+  const auto s =
+      reduced_scene(pair + body_table("C", "mass = 0.25\na = 0.25\nabout = 'B'\n") +
+                    body_table("D", "mass = 0\na = 9\nabout = ['A', 'B']\n") + body_table("E", "mass = 0\na = 4\n") +
+                    body_table("F", "mass = 0\nabout = 'B'\nx = [0, 0.5, 0]\nv = [1, 0, 0]\n"))
+          .particles();
+  CHECK(s.positions()[2] == Vec3<double>(2.25, 0, 0));
+  CHECK(std::abs(s.velocities()[2][1] - (v1 + v2)) < 2e-15);
+  CHECK(std::abs(s.positions()[3][0] - (2.0 / 3 + 9)) < 2e-15);
+  CHECK(std::abs(s.velocities()[3][1] - (v1 / 3 + v3)) < 2e-16);
+  CHECK(s.positions()[4] == Vec3<double>(4, 0, 0));
+  CHECK(s.velocities()[4] == Vec3<double>(0, 0.5, 0));
+  CHECK(s.positions()[5] == Vec3<double>(2, 0.5, 0));
+  CHECK(s.velocities()[5] == Vec3<double>(1, s.velocities()[1][1], 0));
+
+  const auto jacobi = reduced_scene("elements = 'jacobi'\n" + pair + body_table("C", "mass = 0.25\na = 9\n") +
+                                    body_table("D", "mass = 0\na = 20\n"))
+                          .particles();
+  const double x3 = (0.25 * (2.0 / 3 + 9) + 1) / 1.75, v4 = (0.25 * (v1 / 3 + std::sqrt(1.75 / 9)) + 0.5 * v1) / 1.75;
+  CHECK(std::abs(jacobi.positions()[2][0] - (2.0 / 3 + 9)) < 2e-15);
+  CHECK(std::abs(jacobi.velocities()[2][1] - (v1 / 3 + std::sqrt(1.75 / 9))) < 4e-16);
+  CHECK(std::abs(jacobi.positions()[3][0] - (x3 + 20)) < 4e-15);
+  CHECK(std::abs(jacobi.velocities()[3][1] - (v4 + std::sqrt(1.75 / 20))) < 4e-16);
+
+  // The same from a file.
+  const BodyScene file =
+      reduced_scene("elements = 'jacobi'\nbodies = 'bodies.txt'\n" + body_table("D", "mass = 0\na = 20\n"),
+                    "name,mass,a,e,inc,Omega,omega,M\nA,1,,,,,,\nB,0.5,2,0,0,0,0,0\nC,0.25,9,0,0,0,0,0\n");
+  for (Index i = 0; i < 4; ++i) CHECK(file.particles().positions()[i] == jacobi.positions()[i]);
+  CHECK(has(file.scene().effective_toml, "elements = \"jacobi\"\n"));
+}
+
+TEST_CASE("what elements cannot be about is refused", "[scene][bodies][messages]") {
+  const std::string a = body_table("A", "mass = 1\n"), b = body_table("B", "mass = 0\na = 2\n");
+  CHECK(reduced_scene(a + body_table("C", "mass = 0\na = 1\nabout = 'a'\n")).refusal() ==
+        "scene.toml:10: about = \"a\": there is no 'a' above body 'C'; did you mean 'A'?");
+  CHECK(reduced_scene(a + body_table("C", "mass = 0\na = 1\nabout = 'C'\n")).refusal() ==
+        "scene.toml:10: about = \"C\": there is no 'C' above body 'C'; known are: A");
+  CHECK(reduced_scene(a + b + body_table("C", "mass = 0\na = 1\nabout = ['A', 'A']\n")).refusal() ==
+        "scene.toml:14: about = [\"A\", \"A\"] names no barycenter; different bodies are expected");
+  CHECK(reduced_scene(a + b + body_table("C", "mass = 0\na = 1\nabout = 3\n")).refusal() ==
+        "scene.toml:14: about = 3 is a whole number; the name of a body, or a list of names, is expected");
+  CHECK(reduced_scene(a + b + body_table("C", "mass = 0\na = 2\n") +
+                      body_table("D", "mass = 0\na = 1\nabout = ['B', 'C']\n"))
+            .refusal() ==
+        "scene.toml:18: about = [\"B\", \"C\"]: these bodies have no mass, so they have no barycenter");
+  CHECK(reduced_scene(a + b + body_table("C", "mass = 0\na = 1\nabout = 'B'\n")).refusal() ==
+        "scene.toml:12: an orbit about G m = 0 is impossible; a mass above 0 is expected");
+  CHECK(reduced_scene(a + body_table("C", "mass = 0\na = 1\nP = 3\n")).refusal() ==
+        "scene.toml:10: P = 3 stands beside a; give one of a, P or q");
+  CHECK(
+      reduced_scene(a + body_table("C", "mass = 0\ne = 0.5\n")).refusal() ==
+      "scene.toml:6: the elements of body 'C' say no size; give the semi-major axis a, the period P or the distance of "
+      "the pericenter q");
+  CHECK(reduced_scene("elements = 'jacoby'\n" + a).refusal() ==
+        "scene.toml:3: unknown elements 'jacoby'; did you mean 'jacobi'?");
+}
+
+}  // namespace
+}  // namespace noether::test
