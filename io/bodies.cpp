@@ -71,8 +71,9 @@ std::vector<std::string> split_at_commas(std::string_view text) {
 }
 
 Heading parse_heading(std::string_view text) {
-  const std::size_t bracket = text.find('[');
-  if (bracket == std::string_view::npos || !text.ends_with(']')) return {std::string(text), {}};
+  const std::size_t bracket = text.find_first_of("[(");
+  const bool closed = bracket != std::string_view::npos && text.ends_with(text[bracket] == '[' ? ']' : ')');
+  if (!closed) return {std::string(text), {}};
   return {std::string(trimmed(text.substr(0, bracket))),
           std::string(trimmed(text.substr(bracket + 1, text.size() - bracket - 2)))};
 }

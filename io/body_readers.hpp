@@ -12,7 +12,7 @@ BodyTable read_csv_bodies(const TextFile& text, const BodiesOptions& options);
 /// Bodies from vector tables of Horizons. @throws SceneError
 BodyTable read_horizons_bodies(const TextFile& text, const BodiesOptions& options);
 
-/// The text that Horizons' JSON answer brings as its "result"; the text itself where it is no JSON.
+/// The text that Horizons' JSON answers, one or several, bring as their "result"; the text itself where it is no JSON.
 /// @throws SceneError  for JSON that is broken or holds no table, with what Horizons says
 TextFile horizons_answer(TextFile text);
 

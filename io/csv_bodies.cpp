@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <map>
 #include <set>
@@ -50,7 +51,7 @@ const std::vector<KnownColumn>& known_columns() {
 
 constexpr std::array<std::string_view, 6> cartesian = {"x", "y", "z", "vx", "vy", "vz"};
 
-/// What parts the fields of a table: ',' ';' tab, or ' ' for any number of blanks.
+/// What separates the fields of a table: ',' ';' tab, or ' ' for any number of blanks.
 enum class Separator : char { comma = ',', semicolon = ';', tab = '\t', blank = ' ' };
 
 std::string_view name_of(Separator separator) {
@@ -80,18 +81,25 @@ Separator separator_of(std::string_view line) {
   return Separator::blank;
 }
 
-/// Column names parted by blanks: those in and before the brackets of a unit part nothing.
+/// Column names separated by blanks, without those before and within the brackets of units: "[kg m/s]" becomes
+/// "[kg*m/s]".
 std::string with_whole_units(std::string_view line) {
+  const auto is_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; };
   std::string result;
-  bool inside = false;
+  bool inside = false, blank = false;
   for (const char c : line) {
-    const bool blank = c == ' ' || c == '\t';
-    if (c == '[') {
+    if (c == '[' || c == '(') {
       result.resize(result.find_last_not_of(" \t") + 1);
       inside = true;
     }
-    if (c == ']') inside = false;
-    result += inside && blank ? '*' : c;
+    if (c == ']' || c == ')') inside = false;
+    if (inside && (c == ' ' || c == '\t')) {
+      blank = true;
+      continue;
+    }
+    if (blank && is_word(result.back()) && is_word(c)) result += '*';
+    blank = false;
+    result += c;
   }
   return result;
 }

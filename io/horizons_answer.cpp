@@ -25,6 +25,9 @@ class JsonTexts {
     std::string content;
   };
 
+  bool at_end() { return !next_is('\0') && at_ == bytes_.size(); }
+
+  /// The next object.
   std::map<std::string, Member> read() {
     std::map<std::string, Member> members;
     expect('{');
@@ -177,19 +180,29 @@ bool is_of_horizons(const TextFile& text) {
 TextFile horizons_answer(TextFile text) {
   const auto first = std::find_if(text.lines().begin(), text.lines().end(),
                                   [](const std::string& line) { return !trimmed(line).empty(); });
-  if (first == text.lines().end() || !trimmed(*first).starts_with('{')) {
+  const char begin = first == text.lines().end() ? ' ' : trimmed(*first).front();
+  if (begin == '[') text.fail(1, "this is a list in JSON; expected answers of Horizons, {...}, one after the other");
+  if (begin != '{') {
     if (!is_horizons(text) && is_of_horizons(text)) refuse_answer(text, 1, first_words(text));
     return text;
   }
-  auto members = JsonTexts(text).read();
-  for (const char* key : {"result", "error"}) {
-    const auto member = members.find(key);
-    if (member == members.end()) continue;
-    TextFile answer = text.within(member->second.line, member->second.content);
-    if (!is_horizons(answer)) refuse_answer(text, member->second.line, first_words(answer));
-    return answer;
+  JsonTexts answers(text);
+  std::string content;
+  std::size_t line = 0;
+  while (!answers.at_end()) {
+    const auto members = answers.read();
+    const auto result = members.find("result"), error = members.find("error");
+    const auto said = result != members.end() ? result : error;
+    if (said == members.end()) {
+      text.fail(1,
+                "this JSON has no \"result\", as answers of Horizons have; expected CSV or a vector table of Horizons");
+    }
+    const TextFile answer = text.within(said->second.line, said->second.content);
+    if (!is_horizons(answer)) refuse_answer(text, said->second.line, first_words(answer));
+    if (line == 0) line = said->second.line;
+    content += said->second.content + '\n';
   }
-  text.fail(1, "this JSON has no \"result\", as answers of Horizons have; expected CSV or a vector table of Horizons");
+  return text.within(line, content);
 }
 
 }  // namespace noether::io

@@ -41,10 +41,10 @@ std::string_view trimmed(std::string_view text);
 /// The fields between commas, trimmed; empty ones count.
 std::vector<std::string> split_at_commas(std::string_view text);
 
-/// A heading such as "vx [au/day]".
+/// A heading such as "vx [au/day]" or "vx (au/day)".
 struct Heading {
   std::string name;
-  std::optional<std::string> unit;  ///< what stands in brackets
+  std::optional<std::string> unit;  ///< what stands in brackets of either kind
 };
 Heading parse_heading(std::string_view text);
 

@@ -92,6 +92,8 @@ TEST_CASE("a unit stands once for positions, velocities and angles", "[bodies]")
   const auto s = read_csv("mass [kg],x [km],y,z,vx,vy,vz [km/s]\n1,1,2,3,4,5,6\n");
   CHECK(s.positions()[0] == Vec3<double>(1 * km, 2 * km, 3 * km));
   CHECK(s.velocities()[0] == Vec3<double>(4 * km / second, 5 * km / second, 6 * km / second));
+  CHECK(read_csv("mass (kg),x (km),y,z,vx (km/s),vy,vz\n1,1,2,3,4,5,6\n").velocities()[0] == s.velocities()[0]);
+  CHECK(read_csv("mass (kg) x (km) y z vx (km / s) vy vz\n1 1 2 3 4 5 6\n").velocities()[0] == s.velocities()[0]);
   const auto angles = read_csv("mass [Msun],a [au],e,inc,Omega [deg],omega,M\n1,,,,,,\n0,1,0.1,10,20,30,40\n");
   const auto expected = state_from_elements<double>({1, 0.1, 10 * degree, 20 * degree, 30 * degree, 40 * degree}, G);
   CHECK(angles.positions()[1] == expected.first);

@@ -306,6 +306,8 @@ TEST_CASE("the JSON answer of Horizons' API is read as the text in it", "[bodies
       CHECK(read.velocities()[i] == plain.velocities()[i]);
     }
   }
+  const auto answer = [&](const char* file) { return "{\"result\": " + json_text(table(file)) + "}\n"; };
+  CHECK(read_horizons(answer("labels.txt") + answer("commas.txt")).names() == plain.names());
   const auto named = read_horizons(
       "{\"result\": " +
       test::replaced(json_text(table("asteroid.txt")), "1 Ceres", "\\u0043\\u00e9r\\u20ac\\ud83d\\ude00") + "}");
@@ -327,6 +329,10 @@ TEST_CASE("an answer of Horizons without a table, or broken JSON, is named", "[b
   CHECK(horizons_refusal("{\"result\": " + json_text(test::replaced(table("plain.txt"), "KM-D", "PC-D")) + "}") ==
         "h.txt:1: line 4 of its text: the output units of Jupiter Barycenter are 'PC-D'; expected AU-D, KM-S or "
         "KM-D");
+  CHECK(horizons_refusal("[{\"result\": 1}]") ==
+        "h.txt:1: this is a list in JSON; expected answers of Horizons, {...}, one after the other");
+  CHECK(horizons_refusal("{\"result\": " + json_text(table("plain.txt")) + "} x") ==
+        "h.txt:1: this is no JSON: '{' is expected");
   CHECK(horizons_refusal("{\"result\": \"abc") == "h.txt:1: this is no JSON: its end is missing");
   CHECK(horizons_refusal("{\"result\" \"abc\"}") == "h.txt:1: this is no JSON: ':' is expected");
   CHECK(horizons_refusal("{\"a\": 1]}") == "h.txt:1: this is no JSON: ']' closes nothing");
