@@ -1,6 +1,7 @@
 // BodyScene of files and of tables: together, about one another, and as of an epoch.
 
 #include "engine/given_orbit.hpp"
+#include "numbers/quantity.hpp"
 #include "scene/read_particles.hpp"
 #include "scene/scene.hpp"
 #include "scene/warnings.hpp"
@@ -137,6 +138,37 @@ TEST_CASE("bodies of a file and of tables stand together, the file's first", "[s
             .particles.positions()[2][0] == 5);
   CHECK(BodyScene(replaced(table, "'c'", "'Sun'"), two_planets).refusal() ==
         "scene.toml:5: two bodies are named 'Sun'; names must differ");
+}
+
+TEST_CASE("orbits by their periods have the sizes that are published, to the last digit", "[scene][bodies]") {
+  // Periods, masses and semi-major axes as printed: Brozovic et al. 2015 (Charon), Agol et al. 2021 (TRAPPIST-1 b),
+  // Torres et al. 2008 (HD 209458 b), Suarez Mascareno et al. 2020 (Proxima b); a geostationary orbit about the nominal
+  // Earth.
+  struct Published {
+    const char *center, *mass, *period;
+    double a, digit;
+    const char* unit;
+  };
+  for (const Published& one : {Published{"1.30291e22 kg", "1.5866e21 kg", "6.3872273 days", 19596, 1, "km"},
+                               Published{"0.0898 Msun", "1.374 Mearth", "1.510826 days", 0.01154, 1e-5, "AU"},
+                               Published{"1.119 Msun", "0.685 Mjup", "3.52474859 days", 0.04707, 1e-5, "AU"},
+                               Published{"0.1221 Msun", "0 Mearth", "11.1868 days", 0.04856, 1e-5, "AU"},
+                               Published{"1 Mearth", "0 kg", "86164.0905 seconds", 42164, 1, "km"}}) {
+    CAPTURE(one.period);
+    const auto s = BodyScene(body_table("center", "mass = '" + std::string(one.center) + "'\n") +
+                                 body_table("b", "mass = '" + std::string(one.mass) + "'\nP = '" + one.period + "'\n"),
+                             "", "si", replaced(gravity_alone, "'1 day'", "'1 s'"))
+                       .particles();
+    CHECK(std::abs(s.positions()[1][0] / unit_value(one.unit, unit_system("si")) - one.a) < 0.6 * one.digit);
+  }
+  // Speeds at one astronomical unit, on a circle and on a parabola.
+  const auto s =
+      BodyScene(body_table("Sun", "mass = '1 Msun'\n") + body_table("circle", "mass = '0 kg'\na = '1 AU'\n") +
+                body_table("parabola", "mass = '0 kg'\nq = '1 AU'\ne = 1\n"))
+          .particles();
+  const double km_per_s = units::solar::km / units::solar::second;
+  CHECK(std::abs(s.velocities()[1][1] / km_per_s - 29.7847) < 0.5e-4);
+  CHECK(std::abs(s.velocities()[2][1] / km_per_s - 42.1219) < 0.5e-4);
 }
 
 TEST_CASE("the scene and the table of docs/bodies.md can be run", "[scene][bodies]") {
