@@ -46,7 +46,8 @@ class SceneReader {
       read_constant(table(top, "hamiltonian"));
       context_.columns = declared_columns(table(top, "hamiltonian"));
       SceneValue& particles = scene_.effective.put("particles", SceneValue::table());
-      scene_.particles = read_particles(context_, table(top, "particles"), scene_.file.parent_path(), particles);
+      scene_.particles =
+          read_particles(context_, table(top, "particles"), scene_.file.parent_path(), particles, scene_.notes);
       read_hamiltonian(table(top, "hamiltonian"));
       if (const SceneValue* start = top.find("minimize")) {
         scene_.effective.put("minimize", read_minimize(context_, *start, scene_));

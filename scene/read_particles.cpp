@@ -232,6 +232,10 @@ void check_sources(TableReader& reader) {
 }
 
 void read_frame(TableReader& reader, ParticleSystem<double>& s, SceneValue& effective) {
+  if (reader.has("structure") && has_frame_number(reader)) {
+    effective.put("frame", *reader.find("frame"));
+    return;
+  }
   const std::string frame = reader.text("frame", "as_given");
   if (frame != "as_given" && frame != "barycenter") {
     reader.fail("frame", fmt::format("unknown frame '{}'{}", frame, did_you_mean(frame, {"barycenter", "as_given"})));
@@ -262,11 +266,13 @@ std::optional<std::pair<Index, Index>> coincident_bodies(const ParticleSystem<do
 }
 
 ParticleSystem<double> read_particles(const SceneContext& context, const SceneValue& table,
-                                      const std::filesystem::path& folder, SceneValue& effective) {
+                                      const std::filesystem::path& folder, SceneValue& effective,
+                                      std::vector<std::string>& notes) {
   TableReader reader(context, table, "[particles]", "particles");
   if (!is_built(reader)) {
     reader.expect_only({"bodies", "bodies_sha256", "body", "structure", "structure_sha256", "type", "pair", "mixing",
-                        "box", "special", "exclusions", "file_units", "atom_style", "frame", "temperature", "seed"});
+                        "box", "special", "exclusions", "file_units", "atom_style", "frame", "temperature", "seed",
+                        "coefficients", "coefficients_sha256"});
   }
   check_sources(reader);
   if (is_built(reader)) {
@@ -275,7 +281,7 @@ ParticleSystem<double> read_particles(const SceneContext& context, const SceneVa
     return s;
   }
   TableReader own(context, table, "[particles]", "particles");
-  ParticleSystem<double> s = reader.has("structure") ? read_structure_particles(own, folder, effective)
+  ParticleSystem<double> s = reader.has("structure") ? read_structure_particles(own, folder, effective, notes)
                              : reader.has("bodies")  ? from_file(own, folder, effective)
                                                      : from_tables(own, tables_of(own, "body"), effective);
   if (!reader.has("structure")) {

@@ -88,9 +88,10 @@ struct Scene {
   std::vector<SceneStop> stops;
   std::map<std::string, SceneValue> expect;  ///< dotted key below [expect]
   std::vector<SceneVerdict> verdicts;
-  SceneSource source;          ///< where errors point
-  SceneValue effective;        ///< the scene with every default, as a tree
-  std::string effective_toml;  ///< the same as text: what files store
+  std::vector<std::string> notes;  ///< what its files hold and nobody reads, a line each
+  SceneSource source;              ///< where errors point
+  SceneValue effective;            ///< the scene with every default, as a tree
+  std::string effective_toml;      ///< the same as text: what files store
 };
 
 /// Reads a scene and checks all that can be checked before the first step.

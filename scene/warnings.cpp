@@ -161,6 +161,7 @@ std::vector<std::string> warnings_of(const Scene& scene) {
     add(fmt::format("exclusions change nothing: no force leaves pairs out; those that do are {}",
                     fmt::join(with_exclusions(*scene.parts), ", ")));
   }
+  for (const std::string& line : scene.notes) add(line);
   add(other_cutoff(scene));
   add(too_stiff(scene));
   return warnings;
