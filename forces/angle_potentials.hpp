@@ -1,6 +1,7 @@
 #pragma once
 /// Potentials of angles: energy and force without a loss of digits at 0 and 180 degrees, where cosines hide the angle.
 
+#include "forces/bond_potentials.hpp"
 #include "numbers/types.hpp"
 
 #include <array>
@@ -143,6 +144,23 @@ template <class Real> struct CosineSquared {
     return cos(Real(p[1]));
   }
   Real stretch(const Bend<Real>& bend) const { return straight ? bend.one_plus_cosine() : bend.cosine() - cosine; }
+};
+
+/// A spring in the angle, and one between its ends.
+///
+///     U = k (theta - angle)^2 / 2 + k_ends (r - length)^2 / 2,   r = |x_1 - x_3|
+///
+/// CHARMM and LAMMPS leave out the halves.
+/// @throws never
+/// @source MacKerell1998
+template <class Real> struct UreyBradley {
+  Harmonic<Real> spring;
+  bond_potential::Harmonic<Real> ends;  ///< what acts between the ends
+
+  explicit UreyBradley(const std::array<double, 6>& p) : spring(p), ends({p[2], p[3], 0, 0, 0, 0}) {}
+
+  Real slope(const Bend<Real>& bend) const { return spring.slope(bend); }
+  Real energy(const Bend<Real>& bend) const { return spring.energy(bend); }
 };
 
 }  // namespace noether::angle_potential

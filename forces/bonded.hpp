@@ -28,10 +28,14 @@ namespace noether {
 ///     angles     harmonic            k, angle                    k (theta - angle)^2 / 2
 ///                cosine              k                           k (1 + cos theta)
 ///                cosine_squared      k, angle                    k (cos theta - cos angle)^2 / 2
+///                urey_bradley        k, angle, k_ends, length    k (theta - angle)^2 / 2 + k_ends (r - length)^2 / 2
 ///     dihedrals  periodic            k, n, phase                 k (1 + cos(n phi - phase))
 ///                ryckaert_bellemans  c0, c1, c2, c3, c4, c5      sum c_n cos^n(phi - 180 degrees)
+///                one_four            epsilon, sigma, charges     4 epsilon ((sigma/r)^12 - (sigma/r)^6) + charges/r
 ///     impropers  harmonic            k, angle                    k (chi - angle)^2 / 2,  chi = |phi|
 ///                periodic            k, n, phase                 k (1 + cos(n phi - phase))
+///
+/// with r the distance of the first and the last particle of an angle or a dihedral.
 ///
 /// Bonded particles may lie on both sides of a periodic box: the nearest image counts. A dihedral of which three
 /// particles are exactly in line has no angle and exerts no force. A `fene` bond of its greatest length or more ends
@@ -40,7 +44,7 @@ namespace noether {
 /// @cost O(terms); the first call makes lists of 4 bytes for each particle of each term and of 5 for each particle, and
 /// a thread keeps 24 for each bond and each particle of other terms. Bonds whose particles follow each other, as along
 /// a chain, go in lanes all the way.
-/// @source Allen2017
+/// @source Allen2017, MacKerell1998
 struct Bonded {
   static constexpr auto describe() {
     return part<Bonded>("bonded", "bonds, angles, dihedrals and impropers of the structure",

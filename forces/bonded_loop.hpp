@@ -38,12 +38,14 @@ template <class Real, class Body> auto with_potential(const BondedKind<BondPoten
 template <class Real, class Body> auto with_potential(const BondedKind<AnglePotential>& kind, const Body& body) {
   if (kind.potential == AnglePotential::harmonic) return body(angle_potential::Harmonic<Real>(kind.parameters));
   if (kind.potential == AnglePotential::cosine) return body(angle_potential::Cosine<Real>(kind.parameters));
+  if (kind.potential == AnglePotential::urey_bradley) return body(angle_potential::UreyBradley<Real>(kind.parameters));
   return body(angle_potential::CosineSquared<Real>(kind.parameters));
 }
 template <class Real, class Body> auto with_potential(const BondedKind<DihedralPotential>& kind, const Body& body) {
   using namespace dihedral_potential;
   if (kind.potential == DihedralPotential::periodic) return body(Periodic<Real>(kind.parameters));
   if (kind.potential == DihedralPotential::ryckaert_bellemans) return body(RyckaertBellemans<Real>(kind.parameters));
+  if (kind.potential == DihedralPotential::one_four) return body(OneFour<Real>(kind.parameters));
   return body(HarmonicImproper<Real>(kind.parameters));
 }
 
@@ -127,27 +129,45 @@ BondedResult<Real, 3> bonded_forces(const Potential& potential, const std::array
   result.force[2] = (slope / bend.b2) * cross(bend.normal, bend.b);
   result.force[1] = -(result.force[0] + result.force[2]);
   if (with_energy) result.energy = potential.energy(bend);
+  if constexpr (requires { potential.ends; }) {
+    const Vec3<Real> between = d[0] - d[1];
+    const Real r2 = norm2(between);
+    const Vec3<Real> pull = potential.ends.force_over_r(r2) * between;
+    result.force[0] += pull;
+    result.force[2] -= pull;
+    if (with_energy) result.energy += potential.ends.energy(r2);
+  }
   return result;
 }
 
 /// A dihedral or improper with d = {x_1 - x_2, x_2 - x_3, x_4 - x_3}. @source BlondelKarplus1996
 template <class Real, class Potential>
 BondedResult<Real, 4> bonded_forces(const Potential& potential, const std::array<Vec3<Real>, 3>& d, bool with_energy) {
-  const dihedral_potential::Twist<Real> twist(d[0], d[1], d[2]);
   BondedResult<Real, 4> result;
-  if (!twist.is_defined()) {
+  if constexpr (requires { potential.force_over_r(Real(1)); }) {  // between the ends alone
+    const Vec3<Real> between = d[0] + d[1] - d[2];
+    const Real r2 = norm2(between);
     result.force.fill(Vec3<Real>::Zero());
+    result.force[0] = potential.force_over_r(r2) * between;
+    result.force[3] = -result.force[0];
+    if (with_energy) result.energy = potential.energy(r2);
+    return result;
+  } else {
+    const dihedral_potential::Twist<Real> twist(d[0], d[1], d[2]);
+    if (!twist.is_defined()) {
+      result.force.fill(Vec3<Real>::Zero());
+      return result;
+    }
+    const Real slope = potential.slope(twist);
+    const Vec3<Real> one = (slope / twist.A2) * twist.A, other = (slope / twist.B2) * twist.B;
+    const Vec3<Real> axis = (dot(twist.f, twist.g) * one - dot(twist.h, twist.g) * other) / twist.length;
+    result.force[0] = twist.length * one;
+    result.force[3] = -twist.length * other;
+    result.force[1] = -(result.force[0] + axis);
+    result.force[2] = axis - result.force[3];
+    if (with_energy) result.energy = potential.energy(twist);
     return result;
   }
-  const Real slope = potential.slope(twist);
-  const Vec3<Real> one = (slope / twist.A2) * twist.A, other = (slope / twist.B2) * twist.B;
-  const Vec3<Real> axis = (dot(twist.f, twist.g) * one - dot(twist.h, twist.g) * other) / twist.length;
-  result.force[0] = twist.length * one;
-  result.force[3] = -twist.length * other;
-  result.force[1] = -(result.force[0] + axis);
-  result.force[2] = axis - result.force[3];
-  if (with_energy) result.energy = potential.energy(twist);
-  return result;
 }
 
 /// The same in eight lanes, each with the bits of double.

@@ -47,7 +47,8 @@ Known<BondPotential> known_bonds() {
 Known<AnglePotential> known_angles() {
   return {{"harmonic", AnglePotential::harmonic, {stiffness, rest_angle}},
           {"cosine", AnglePotential::cosine, {stiffness}},
-          {"cosine_squared", AnglePotential::cosine_squared, {stiffness, rest_angle}}};
+          {"cosine_squared", AnglePotential::cosine_squared, {stiffness, rest_angle}},
+          {"urey_bradley", AnglePotential::urey_bradley, {stiffness, rest_angle, {"k_ends"}, rest_length}}};
 }
 
 const std::vector<KnownParameter> of_periodic = {stiffness, {"n", Allowed::whole}, {"phase"}};
@@ -55,7 +56,8 @@ const std::vector<KnownParameter> of_periodic = {stiffness, {"n", Allowed::whole
 Known<DihedralPotential> known_dihedrals() {
   return {
       {"periodic", DihedralPotential::periodic, of_periodic},
-      {"ryckaert_bellemans", DihedralPotential::ryckaert_bellemans, {{"c0"}, {"c1"}, {"c2"}, {"c3"}, {"c4"}, {"c5"}}}};
+      {"ryckaert_bellemans", DihedralPotential::ryckaert_bellemans, {{"c0"}, {"c1"}, {"c2"}, {"c3"}, {"c4"}, {"c5"}}},
+      {"one_four", DihedralPotential::one_four, {{"epsilon"}, {"sigma", Allowed::not_negative}, {"charges"}}}};
 }
 
 Known<DihedralPotential> known_impropers() {

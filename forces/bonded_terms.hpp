@@ -12,8 +12,8 @@
 namespace noether {
 
 enum class BondPotential : std::uint8_t { harmonic, morse, fene };
-enum class AnglePotential : std::uint8_t { harmonic, cosine, cosine_squared };
-enum class DihedralPotential : std::uint8_t { periodic, ryckaert_bellemans, harmonic_improper };
+enum class AnglePotential : std::uint8_t { harmonic, cosine, cosine_squared, urey_bradley };
+enum class DihedralPotential : std::uint8_t { periodic, ryckaert_bellemans, harmonic_improper, one_four };
 
 /// One kind of term: its potential, and the parameters in the order of forces/bonded.hpp.
 template <class Potential> struct BondedKind {

@@ -115,4 +115,31 @@ template <class Real> struct HarmonicImproper {
   }
 };
 
+/// The pair force between the ends of a dihedral, three bonds apart, where it is another one than of other pairs.
+///
+///     U = 4 epsilon ((sigma/r)^12 - (sigma/r)^6) + charges/r,   r = |x_1 - x_4|
+///
+/// There is no cutoff. What is left of it is a part of epsilon and charges.
+/// @throws never
+/// @source MacKerell1998
+template <class Real> struct OneFour {
+  Real epsilon;  ///< [energy]
+  Real sigma;    ///< [length]
+  Real charges;  ///< coulomb_constant q_1 q_4 [energy length]
+
+  explicit OneFour(const std::array<double, 6>& p) : epsilon(p[0]), sigma(p[1]), charges(p[2]) {}
+
+  /// -U'(r) / r
+  Real force_over_r(const Real& r2) const {
+    using std::sqrt;
+    const Real s2 = sigma * sigma / r2, s6 = s2 * s2 * s2;
+    return (Real(24) * epsilon * s6 * (Real(2) * s6 - Real(1)) + charges / sqrt(r2)) / r2;
+  }
+  Real energy(const Real& r2) const {
+    using std::sqrt;
+    const Real s2 = sigma * sigma / r2, s6 = s2 * s2 * s2;
+    return Real(4) * epsilon * s6 * (s6 - Real(1)) + charges / sqrt(r2);
+  }
+};
+
 }  // namespace noether::dihedral_potential

@@ -1,13 +1,11 @@
-// Extended XYZ, and plain XYZ: one frame.
+// Extended XYZ, and plain XYZ: one frame of a file.
 #include "io/structure_parts.hpp"
+#include "io/xyz_comment.hpp"
 #include "numbers/text.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
 
@@ -15,102 +13,70 @@ namespace noether::io {
 
 namespace {
 
-/// What the comment of a frame says: key=value, values in double quotes where they have blanks.
-using Comment = std::map<std::string, std::string>;
-
 /// One property of a frame: where its columns begin, and how many there are.
 struct XyzProperty {
   std::size_t column, count;
+  bool read = false;
+};
+
+/// One frame: the line of its number of atoms.
+struct XyzFrame {
+  std::size_t line, atoms;
 };
 
 class ExtendedXyzReader {
  public:
-  ExtendedXyzReader(const TextFile& text, const FileUnits& units) : text_(text), units_(units) {}
+  ExtendedXyzReader(const TextFile& text, const FileUnits& units, const StructureOptions& options)
+      : text_(text), units_(units), options_(options) {}
 
   Structure read() {
     if (text_.lines().empty()) text_.fail(0, "the file is empty; XYZ begins with the number of atoms");
-    const std::string_view first = trimmed(text_.lines()[0]);
-    const auto atoms =
-        static_cast<std::size_t>(whole_number_in(text_, 1, first, "the number of atoms", 1, most_particles));
-    if (text_.lines().size() < atoms + 2) {
-      text_.fail(1, fmt::format("{} atoms are announced, but the file ends after {} of them", atoms,
-                                std::max<std::size_t>(text_.lines().size(), 2) - 2));
-    }
-    read_comment();
-    for (std::size_t line = 3; line < atoms + 3; ++line) read_atom(line);
-    for (std::size_t line = atoms + 3; line <= text_.lines().size(); ++line) {
-      if (trimmed(text_.lines()[line - 1]).empty()) continue;
-      text_.fail(line,
-                 fmt::format("there is more behind the {} atoms of the first frame; a structure is one frame", atoms));
-    }
+    const XyzFrame frame = chosen();
+    comment_line_ = frame.line + 1;
+    const XyzComment comment(text_, comment_line_);
+    const std::string* properties = comment.find("Properties");
+    read_properties(properties == nullptr ? "species:S:1:pos:R:3" : *properties);
+    if (comment.is_periodic()) structure_.box = comment.box(units_.length);
+    check_units_of_velocities(comment);
+    for (std::size_t k = 0; k < frame.atoms; ++k) read_atom(comment_line_ + 1 + k);
     return std::move(structure_);
   }
 
  private:
-  void read_comment() {
-    const Comment comment = parts_of(text_.lines()[1]);
-    const auto properties = comment.find("Properties");
-    read_properties(properties == comment.end() ? "species:S:1:pos:R:3" : properties->second);
-    bool periodic = comment.count("Lattice") != 0;
-    if (const auto pbc = comment.find("pbc"); pbc != comment.end()) periodic = is_periodic(pbc->second);
-    if (!periodic) return;
-    const auto lattice = comment.find("Lattice");
-    if (lattice == comment.end()) text_.fail(2, "pbc is true, but there is no Lattice");
-    read_lattice(lattice->second);
+  /// The frame whose number of atoms stands in a line.
+  XyzFrame frame_at(std::size_t line) const {
+    const std::string_view count = trimmed(text_.lines()[line - 1]);
+    const auto atoms =
+        static_cast<std::size_t>(whole_number_in(text_, line, count, "the number of atoms", 1, most_particles));
+    const std::size_t left = text_.lines().size() - line;
+    if (left < atoms + 1) {
+      text_.fail(line, fmt::format("{} atoms are announced, but the file ends after {} of them", atoms,
+                                   std::max<std::size_t>(left, 1) - 1));
+    }
+    return {line, atoms};
   }
 
-  Comment parts_of(std::string_view line) const {
-    Comment comment;
-    while (true) {
-      line = trimmed(line);
-      const std::size_t mark = line.find('='), blank = line.find_first_of(" \t");
-      if (line.empty()) return comment;
-      if (mark == std::string_view::npos || (blank < mark)) {  // a lone word
-        line.remove_prefix(std::min(blank, line.size()));
-        continue;
-      }
-      const std::string key(line.substr(0, mark));
-      line.remove_prefix(mark + 1);
-      const bool quoted = line.starts_with('"');
-      if (quoted) line.remove_prefix(1);
-      const std::size_t end = quoted ? line.find('"') : std::min(line.find_first_of(" \t"), line.size());
-      if (end == std::string_view::npos) text_.fail(2, fmt::format("a double quote behind '{}=' is not closed", key));
-      comment[key] = std::string(line.substr(0, end));
-      line.remove_prefix(end + (quoted ? 1 : 0));
+  /// The next line that is not empty; 0 if there is none.
+  std::size_t line_behind(const XyzFrame& frame) const {
+    for (std::size_t line = frame.line + frame.atoms + 2; line <= text_.lines().size(); ++line) {
+      if (!trimmed(text_.lines()[line - 1]).empty()) return line;
     }
+    return 0;
   }
 
-  /// All three directions, or none.
-  bool is_periodic(const std::string& value) const {
-    std::vector<std::string_view> words;
-    split_words(value, words);
-    int periodic = 0;
-    for (const std::string_view word : words) {
-      const bool yes = word == "T" || word == "True" || word == "true" || word == "1";
-      if (!yes && word != "F" && word != "False" && word != "false" && word != "0") words.clear();
-      periodic += yes ? 1 : 0;
+  XyzFrame chosen() const {
+    std::vector<XyzFrame> frames = {frame_at(1)};
+    if (options_.frame) {
+      while (const std::size_t next = line_behind(frames.back())) frames.push_back(frame_at(next));
+      return frames[frame_of(options_, frames.size())];
     }
-    if (words.size() != 3)
-      text_.fail(2, fmt::format("pbc=\"{}\" is not understood; \"T T T\" or \"F F F\" is expected", value));
-    if (periodic != 0 && periodic != 3) {
-      text_.fail(
-          2, fmt::format("pbc=\"{}\" is periodic in {} of 3 directions; all or none are expected", value, periodic));
+    if (const std::size_t next = line_behind(frames[0])) {
+      text_.fail(next,
+                 fmt::format("there is more behind the {} atoms of the first frame; a structure is one frame: give "
+                             "frame = 0, or frame = -1 for the last",
+                             frames[0].atoms));
     }
-    return periodic == 3;
-  }
-
-  void read_lattice(const std::string& value) {
-    std::vector<std::string_view> words;
-    split_words(value, words);
-    if (words.size() != 9) text_.fail(2, fmt::format("Lattice has {} numbers; 9 are expected", words.size()));
-    Vec3<double> edges;
-    for (std::size_t k = 0; k < 9; ++k) {
-      const double number = number_in(text_, 2, words[k], "a number of Lattice");
-      if (k % 4 == 0) edges[static_cast<int>(k / 4)] = number * units_.length;
-      if (k % 4 == 0 || number == 0) continue;
-      text_.fail(2, fmt::format("Lattice=\"{}\" is not orthogonal along the axes; boxes are", value));
-    }
-    structure_.box = box_in(text_, 2, edges);
+    return frames[0];
   }
 
   void read_properties(const std::string& value) {
@@ -120,35 +86,67 @@ class ExtendedXyzReader {
       if (c != ':') words.back() += c;
     }
     if (words.size() % 3 != 0) {
-      text_.fail(2, fmt::format("Properties={} is not of the form name:type:columns:...", value), value);
+      fail(fmt::format("Properties={} is not of the form name:type:columns:...", value), value);
     }
     for (std::size_t k = 0; k < words.size(); k += 3) {
-      const auto count = static_cast<std::size_t>(
-          whole_number_in(text_, 2, words[k + 2], fmt::format("the columns of property '{}'", words[k]), 1, 1000));
+      const auto count = static_cast<std::size_t>(whole_number_in(
+          text_, comment_line_, words[k + 2], fmt::format("the columns of property '{}'", words[k]), 1, 1000));
       if (!properties_.try_emplace(words[k], XyzProperty{columns_, count}).second) {
-        text_.fail(2, fmt::format("property '{}' stands twice", words[k]), words[k]);
+        fail(fmt::format("property '{}' stands twice", words[k]), words[k]);
       }
       columns_ += count;
     }
     species_ = property({"species"}, 1);
     position_ = property({"pos"}, 3);
     for (const auto& [name, wanted] : {std::pair("species", species_), std::pair("pos", position_)}) {
-      if (!wanted) text_.fail(2, fmt::format("there is no property '{}' in Properties={}", name, value), value);
+      if (!wanted) fail(fmt::format("there is no property '{}' in Properties={}", name, value), value);
     }
-    velocity_ = property({"velo", "vel"}, 3);
+    velocity_ = property({"velo", "vel", "velocities", "velocity"}, 3);
     momentum_ = property({"momenta"}, 3);
     charge_ = property({"charge", "initial_charges"}, 1);
     mass_ = property({"mass", "masses"}, 1);
-    if (velocity_ && momentum_) text_.fail(2, "there are both velocities and momenta; one of them is expected");
+    for (const auto& [name, one] : properties_) {
+      // Forces are computed anew.
+      if (one.read || name == "forces" || name == "force") continue;
+      note(options_, fmt::format("the columns '{}' of the structure are not read", name));
+    }
+  }
+
+  /// Refuses velocities of which nobody says what they count.
+  void check_units_of_velocities(const XyzComment& comment) {
+    if (velocity_ && momentum_) fail("there are both velocities and momenta; one of them is expected");
+    const std::string* temperature = comment.find("Temperature");
+    if (temperature != nullptr && (velocity_ || momentum_)) {
+      const double stated = mass_number_in(text_, comment_line_, *temperature, "Temperature");
+      structure_.temperature = {stated, comment_line_, momentum_.has_value()};
+    }
+    static constexpr std::string_view remedy = "give file_units = \"real\" (angstrom/fs) or \"metal\" (angstrom/ps)";
+    if (momentum_ && !options_.file_units.empty() && options_.file_units != "lj") {
+      fail(fmt::format("momenta are in sqrt(eV u), as ASE writes them, whatever file_units = \"{}\" says; take it out",
+                       options_.file_units));
+    }
+    if (!velocity_ || !options_.file_units.empty()) return;
+    structure_.velocity_units_assumed = true;
+    if (const std::string name = velocity_name_; name != "velo" && name != "vel") {
+      fail(fmt::format("'{}' may be in any units; {}", name, remedy), name);
+    }
+    if (temperature == nullptr && comment.find("Timestep") != nullptr) {
+      fail(fmt::format("velocities that LAMMPS writes are in the units of its run, and the file does not say which; {}",
+                       remedy));
+    }
   }
 
   /// The first of these properties that is there.
-  std::optional<XyzProperty> property(const std::vector<std::string>& names, std::size_t count) const {
+  std::optional<XyzProperty> property(const std::vector<std::string>& names, std::size_t count) {
     for (const std::string& name : names) {
       const auto found = properties_.find(name);
       if (found == properties_.end()) continue;
-      if (found->second.count == count) return found->second;
-      text_.fail(2, fmt::format("property '{}' has {} columns; expected {}", name, found->second.count, count), name);
+      if (found->second.count != count) {
+        fail(fmt::format("property '{}' has {} columns; expected {}", name, found->second.count, count), name);
+      }
+      if (name.starts_with("vel")) velocity_name_ = name;
+      found->second.read = true;
+      return found->second;
     }
     return {};
   }
@@ -194,20 +192,27 @@ class ExtendedXyzReader {
     return at->second;
   }
 
+  [[noreturn]] void fail(const std::string& message, const std::string& value = "") const {
+    text_.fail(comment_line_, message, value);
+  }
+
   const TextFile& text_;
   FileUnits units_;
+  const StructureOptions& options_;
+  std::size_t comment_line_ = 0;
   Structure structure_;
   std::map<std::string, XyzProperty> properties_;
   std::size_t columns_ = 0;
   std::optional<XyzProperty> species_, position_, velocity_, momentum_, charge_, mass_;
+  std::string velocity_name_;
   std::map<std::string, std::int64_t> types_;
   std::vector<std::string_view> words_;
 };
 
 }  // namespace
 
-Structure read_extended_xyz(const TextFile& text, const FileUnits& units) {
-  return ExtendedXyzReader(text, units).read();
+Structure read_extended_xyz(const TextFile& text, const FileUnits& units, const StructureOptions& options) {
+  return ExtendedXyzReader(text, units, options).read();
 }
 
 }  // namespace noether::io

@@ -1,4 +1,5 @@
 // LAMMPS data files: atoms, velocities and the terms that join atoms.
+#include "io/lammps_script.hpp"
 #include "io/lammps_text.hpp"
 #include "numbers/suggest.hpp"
 
@@ -27,6 +28,12 @@ constexpr std::array<AtomStyle, 6> atom_styles = {{{"atomic", -1, 1, -1, 2},
                                                    {"molecular", 1, 2, -1, 3},
                                                    {"full", 1, 2, 3, 4}}};
 
+/// Styles of LAMMPS whose rows say more of an atom than is read.
+constexpr std::array<std::string_view, 25> other_atom_styles = {
+    "amoeba", "apip",   "body",      "bpm/sphere", "dielectric", "dipole", "dpd",       "edpd",         "electron",
+    "hybrid", "line",   "ellipsoid", "mdpd",       "mesont",     "peri",   "rheo",      "rheo/thermal", "smd",
+    "sph",    "sphere", "spin",      "tdpd",       "template",   "tri",    "wavepacket"};
+
 struct LammpsAtom {
   std::int64_t id = 0, molecule = 0;
   std::size_t line = 0;
@@ -44,8 +51,9 @@ bool is_whole(std::string_view word) {
 
 class LammpsDataReader {
  public:
-  LammpsDataReader(const TextFile& text, const FileUnits& units, const StructureOptions& options)
-      : text_(text), units_(units), options_(options), data_(text) {}
+  LammpsDataReader(const TextFile& text, const LammpsScript& script, const FileUnits& units,
+                   const StructureOptions& options)
+      : text_(text), script_(script), units_(units), options_(options), data_(text) {}
 
   Structure read() {
     const LammpsSection* atoms = data_.section("Atoms", "atoms", true);
@@ -53,11 +61,15 @@ class LammpsDataReader {
     read_masses();
     read_atoms(*atoms);
     if (const LammpsSection* found = data_.section("Velocities", "atoms", false)) read_velocities(*found);
-    read_lammps_coefficients(data_, units_, topology_);
-    read_terms("Bonds", "bonds", "bond", topology_.bonds);
-    read_terms("Angles", "angles", "angle", topology_.angles);
-    read_terms("Dihedrals", "dihedrals", "dihedral", topology_.dihedrals);
-    read_terms("Impropers", "impropers", "improper", topology_.impropers);
+    LammpsCoefficients kinds = read_lammps_coefficients(data_, script_, units_, structure_);
+    read_terms("Bonds", "bond", kinds.bonds, topology_.bonds);
+    read_terms("Angles", "angle", kinds.angles, topology_.angles);
+    read_terms("Dihedrals", "dihedral", kinds.dihedrals, topology_.dihedrals);
+    read_terms("Impropers", "improper", kinds.impropers, topology_.impropers);
+    topology_.bond_kinds = std::move(kinds.bonds.kinds);
+    topology_.angle_kinds = std::move(kinds.angles.kinds);
+    topology_.dihedral_kinds = std::move(kinds.dihedrals.kinds);
+    topology_.improper_kinds = std::move(kinds.impropers.kinds);
     return finish();
   }
 
@@ -65,15 +77,32 @@ class LammpsDataReader {
   void read_masses() {
     const std::int64_t types = data_.count("atom types");
     masses_.assign(static_cast<std::size_t>(types), std::numeric_limits<double>::quiet_NaN());
-    for (std::int64_t k = 1; k <= types; ++k) topology_.type_names.push_back(fmt::format("{}", k));
-    const LammpsSection* section = data_.section("Masses", "atom types", false);
-    if (section == nullptr) return;
-    for (const std::size_t line : section->rows) {
-      words_of_row(*section, line, 2);
-      const auto type = static_cast<std::size_t>(whole_number_in(text_, line, words_[0], "the type", 1, types) - 1);
-      if (masses_[type] == masses_[type]) text_.fail(line, fmt::format("the mass of type {} stands twice", type + 1));
-      masses_[type] = mass_number_in(text_, line, words_[1], "the mass");
+    for (std::int64_t k = 1; k <= types; ++k) {
+      const std::string label = data_.labels().label("atom", k);
+      topology_.type_names.push_back(label.empty() ? fmt::format("{}", k) : label);
     }
+    if (const LammpsSection* section = data_.section("Masses", "atom types", false)) {
+      for (const std::size_t line : section->rows) {
+        words_of_row(*section, line, 2);
+        double& mass = masses_[static_cast<std::size_t>(type_in(line, words_[0], "the type"))];
+        if (mass == mass) text_.fail(line, fmt::format("the mass of type {} stands twice", words_[0]));
+        mass = mass_number_in(text_, line, words_[1], "the mass");
+      }
+    }
+    for (const LammpsCommand* command : script_.all("mass")) {
+      if (command->words.size() != 3) command->fail("a type and its mass are expected behind 'mass'");
+      const double mass = mass_number_in(*command->text, command->line, command->words[2], "the mass");
+      const std::string_view type = command->words[1];
+      if (type == "*") std::fill(masses_.begin(), masses_.end(), mass);
+      if (type == "*") continue;
+      masses_[static_cast<std::size_t>(
+          data_.labels().type_in(*command->text, command->line, type, "atom", "the type", types) - 1)] = mass;
+    }
+  }
+
+  /// A type of atoms, counted from 0, by number or label.
+  std::int64_t type_in(std::size_t line, std::string_view word, std::string_view what) const {
+    return data_.labels().type_in(text_, line, word, "atom", what, data_.count("atom types")) - 1;
   }
 
   /// Parts a row that must have so many words.
@@ -116,8 +145,7 @@ class LammpsDataReader {
     LammpsAtom atom;
     atom.line = line;
     atom.id = whole_number_in(text_, line, word(0), "the id of an atom", 1, ParticleSystem<double>::largest_id);
-    atom.type = static_cast<int>(
-        whole_number_in(text_, line, word(style.type), "the type of an atom", 1, data_.count("atom types")) - 1);
+    atom.type = static_cast<int>(type_in(line, word(style.type), "the type of an atom"));
     if (style.molecule >= 0) {
       atom.molecule = whole_number_in(text_, line, word(style.molecule), "the molecule of an atom", 0,
                                       ParticleSystem<double>::largest_id);
@@ -134,21 +162,33 @@ class LammpsDataReader {
   }
 
   AtomStyle style_of(const LammpsSection& section) {
-    const std::string& said = options_.atom_style;
-    if (!said.empty() && !section.style.empty() && said != section.style) {
-      text_.fail(section.line, fmt::format("the file says atom style '{}', the scene says '{}'; take atom_style out",
-                                           section.style, said));
+    const std::string said = without_suffix(options_.atom_style);
+    // A word that is no style of LAMMPS is a remark.
+    const std::string own = is_atom_style(section.style) ? section.style : "";
+    if (!said.empty() && !own.empty() && said != own) {
+      text_.fail(section.line,
+                 fmt::format("the file says atom style '{}', the scene says '{}'; take atom_style out", own, said));
     }
-    const std::string& name = section.style.empty() ? said : section.style;
+    const std::string& name = own.empty() ? said : own;
     if (name.empty()) return deduced_style(section);
     std::vector<std::string> known;
     for (const AtomStyle& style : atom_styles) {
       if (style.name == name) return style;
       known.emplace_back(style.name);
     }
-    const std::string message = fmt::format("atom style '{}' is not read{}", name, did_you_mean(name, known));
-    if (section.style.empty()) throw Error(message, {.key = "atom_style", .value = name});
+    if (own.empty() && !is_atom_style(name)) {
+      throw Error(fmt::format("atom style '{}' is not read{}", name, did_you_mean(name, known)),
+                  {.key = "atom_style", .value = name});
+    }
+    const std::string message = fmt::format("atom style '{}' is not read; known are: {}", name, fmt::join(known, ", "));
+    if (own.empty()) throw Error(message, {.key = "atom_style", .value = name});
     text_.fail(section.line, message, name);
+  }
+
+  static bool is_atom_style(const std::string& name) {
+    const auto is_name = [&](const AtomStyle& style) { return style.name == name; };
+    return std::any_of(atom_styles.begin(), atom_styles.end(), is_name) ||
+           std::find(other_atom_styles.begin(), other_atom_styles.end(), name) != other_atom_styles.end();
   }
 
   /// The style by the number of columns; molecular and charge have as many, and differ where charges are no whole
@@ -166,9 +206,9 @@ class LammpsDataReader {
       }
     }
     text_.fail(section.line,
-               fmt::format("rows of {} words may be of several styles; write 'Atoms # molecular', or give "
+               fmt::format("rows of {} words may be of several styles{}; write 'Atoms # molecular', or give "
                            "atom_style = \"molecular\" or another one",
-                           columns));
+                           columns, section.style.empty() ? "" : fmt::format(", and '{}' is none", section.style)));
   }
 
   std::size_t index_of(std::int64_t id) const {
@@ -194,23 +234,31 @@ class LammpsDataReader {
   }
 
   template <std::size_t n>
-  void read_terms(const std::string& name, const std::string& counted, std::string_view term,
+  void read_terms(const std::string& name, const std::string& term, const LammpsKinds& kinds,
                   std::vector<BondedTerm<n>>& terms) {
-    const LammpsSection* section = data_.section(name, counted, true);
+    const LammpsSection* section = data_.section(name, term + "s", true);
     if (section == nullptr) return;
     const std::int64_t types = data_.count(fmt::format("{} types", term));
     const std::string what = fmt::format("the type of this {}", term);
     for (const std::size_t line : section->rows) {
       words_of_row(*section, line, n + 2);
       BondedTerm<n> one;
-      one.type = static_cast<int>(whole_number_in(text_, line, words_[1], what, 1, types) - 1);
+      one.type = static_cast<int>(data_.labels().type_in(text_, line, words_[1], term, what, types) - 1);
       for (std::size_t k = 0; k < n; ++k) one.particles[k] = joined(line, term, words_[k + 2]);
       auto sorted = one.particles;
       std::sort(sorted.begin(), sorted.end());
       if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
         text_.fail(line, fmt::format("{} {} joins an atom to itself", term, words_[0]));
       }
-      terms.push_back(one);
+      if (kinds.types.empty()) {
+        terms.push_back(one);
+        continue;
+      }
+      const LammpsKinds::OfType& of_type = kinds.types[static_cast<std::size_t>(one.type)];
+      for (int k = 0; k < of_type.count; ++k) terms.push_back({one.particles, of_type.first + k});
+      if constexpr (n == 4) {
+        if (of_type.weight != 0) structure_.end_pairs.push_back({one.particles, of_type.weight});
+      }
     }
   }
 
@@ -224,7 +272,7 @@ class LammpsDataReader {
   }
 
   Structure finish() {
-    Structure s;
+    Structure& s = structure_;
     for (const LammpsAtom& atom : atoms_) {
       s.ids.push_back(atom.id);
       s.names.push_back(fmt::format("atom_{}", atom.id));
@@ -237,25 +285,27 @@ class LammpsDataReader {
       if (has_molecules_) topology_.molecules.push_back(atom.molecule);
     }
     s.box = box_in(text_, data_.box_line(), data_.edges() * units_.length);
-    s.topology = std::move(topology_);
-    return s;
+    return std::move(s);
   }
 
   const TextFile& text_;
+  const LammpsScript& script_;
   FileUnits units_;
   const StructureOptions& options_;
   LammpsText data_;
   std::vector<double> masses_;
   std::vector<LammpsAtom> atoms_;
-  Topology topology_;
+  Structure structure_;
+  Topology& topology_ = structure_.topology;
   bool has_images_ = false, has_charges_ = false, has_molecules_ = false;
   std::vector<std::string_view> words_;
 };
 
 }  // namespace
 
-Structure read_lammps_data(const TextFile& text, const FileUnits& units, const StructureOptions& options) {
-  return LammpsDataReader(text, units, options).read();
+Structure read_lammps_data(const TextFile& text, const LammpsScript& script, const FileUnits& units,
+                           const StructureOptions& options) {
+  return LammpsDataReader(text, script, units, options).read();
 }
 
 }  // namespace noether::io

@@ -19,9 +19,41 @@ constexpr std::array<std::string_view, 10> counted = {"atoms",          "bonds",
 constexpr std::array<std::string_view, 5> passed_over = {"extra bond per atom", "extra angle per atom",
                                                          "extra dihedral per atom", "extra improper per atom",
                                                          "extra special per atom"};
-constexpr std::array<std::string_view, 13> section_names = {
-    "Masses",      "Atoms",         "Velocities",  "Bonds",        "Angles",          "Dihedrals",      "Impropers",
-    "Pair Coeffs", "PairIJ Coeffs", "Bond Coeffs", "Angle Coeffs", "Dihedral Coeffs", "Improper Coeffs"};
+constexpr std::array<std::string_view, 18> section_names = {"Masses",
+                                                            "Atoms",
+                                                            "Velocities",
+                                                            "Bonds",
+                                                            "Angles",
+                                                            "Dihedrals",
+                                                            "Impropers",
+                                                            "Pair Coeffs",
+                                                            "PairIJ Coeffs",
+                                                            "Bond Coeffs",
+                                                            "Angle Coeffs",
+                                                            "Dihedral Coeffs",
+                                                            "Improper Coeffs",
+                                                            "Atom Type Labels",
+                                                            "Bond Type Labels",
+                                                            "Angle Type Labels",
+                                                            "Dihedral Type Labels",
+                                                            "Improper Type Labels"};
+/// Sections of other potentials and particles: nothing that is read stands in for them.
+constexpr std::array<std::string_view, 13> other_sections = {"Ellipsoids",
+                                                             "Lines",
+                                                             "Triangles",
+                                                             "Bodies",
+                                                             "CMAP",
+                                                             "BondBond Coeffs",
+                                                             "BondAngle Coeffs",
+                                                             "MiddleBondTorsion Coeffs",
+                                                             "EndBondTorsion Coeffs",
+                                                             "AngleTorsion Coeffs",
+                                                             "AngleAngleTorsion Coeffs",
+                                                             "BondBond13 Coeffs",
+                                                             "AngleAngle Coeffs"};
+constexpr std::array<std::string_view, 8> suffixes = {"/omp", "/opt",     "/gpu",       "/intel",
+                                                      "/kk",  "/kk/host", "/kk/device", "/kk/gpu"};
+constexpr std::array<std::string_view, 5> labelled = {"atom", "bond", "angle", "dihedral", "improper"};
 
 bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
 
@@ -29,19 +61,79 @@ template <std::size_t n> bool stands_in(const std::array<std::string_view, n>& l
   return std::find(list.begin(), list.end(), word) != list.end();
 }
 
+/// The title of the section with the labels of a kind: "Atom Type Labels".
+std::string section_of_labels(std::string_view kind) {
+  std::string title(kind);
+  title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
+  return title + " Type Labels";
+}
+
 }  // namespace
+
+std::string without_suffix(std::string_view style) {
+  for (const std::string_view suffix : suffixes) {
+    if (style.size() > suffix.size() && style.ends_with(suffix)) {
+      return std::string(style.substr(0, style.size() - suffix.size()));
+    }
+  }
+  return std::string(style);
+}
+
+void TypeLabels::add(const TextFile& text, std::size_t line, const std::string& kind, std::int64_t type,
+                     const std::string& label) {
+  auto& types = types_[kind];
+  const bool again = std::any_of(types.begin(), types.end(), [&](const auto& known) { return known.second == type; });
+  if (!again && types.try_emplace(label, type).second) return;
+  text.fail(line,
+            fmt::format("{} of {} types stands twice", again ? fmt::format("type {}", type) : "'" + label + "'", kind),
+            label);
+}
+
+std::int64_t TypeLabels::type_in(const TextFile& text, std::size_t line, std::string_view word, const std::string& kind,
+                                 std::string_view what, std::int64_t most) const {
+  const auto known = types_.find(kind);
+  if (known == types_.end() || std::isdigit(static_cast<unsigned char>(word.front())) != 0) {
+    return whole_number_in(text, line, word, what, 1, most);
+  }
+  const std::string label(word);
+  const auto found = known->second.find(label);
+  if (found != known->second.end()) return found->second;
+  std::vector<std::string> labels;
+  for (const auto& [one, type] : known->second) labels.push_back(one);
+  text.fail(line,
+            fmt::format("{} is '{}', which is no label of {} types{}", what, label, kind, did_you_mean(label, labels)),
+            label);
+}
+
+bool TypeLabels::is_label(const std::string& kind, std::string_view word) const {
+  const auto known = types_.find(kind);
+  return known != types_.end() && known->second.contains(std::string(word));
+}
+
+std::string TypeLabels::label(const std::string& kind, std::int64_t type) const {
+  const auto known = types_.find(kind);
+  if (known == types_.end()) return "";
+  for (const auto& [label, of_type] : known->second) {
+    if (of_type == type) return label;
+  }
+  return "";
+}
 
 LammpsText::LammpsText(const TextFile& text) : text_(text) {
   if (text.lines().empty()) text.fail(0, "the file is empty; a LAMMPS data file is expected");
   std::vector<std::string_view> words;
+  bool has_labels = false;  // rows may begin with them
   for (std::size_t line = 2; line <= text.lines().size(); ++line) {
     split_words(text.lines()[line - 1], words);
     if (words.empty()) continue;
     const char first = words.front().front();
     const bool number =
         std::isdigit(static_cast<unsigned char>(first)) != 0 || first == '-' || first == '+' || first == '.';
-    if (!number) {
+    const std::string name = fmt::format("{}", fmt::join(words, " "));
+    const bool begins = stands_in(section_names, name) || stands_in(other_sections, name);
+    if (!number && (begins || !has_labels)) {
       begin_section(line);
+      has_labels = has_labels || name.ends_with(" Type Labels");
     } else if (sections_.empty()) {
       read_header_line(line, words);
     } else {
@@ -52,6 +144,27 @@ LammpsText::LammpsText(const TextFile& text) : text_(text) {
     text.fail(0, "there is no line 'N atoms'; a LAMMPS data file is expected: a comment, then the header");
   }
   check_bounds();
+  read_labels();
+}
+
+void LammpsText::read_labels() {
+  std::vector<std::string_view> words;
+  for (const std::string_view kind_of : labelled) {
+    const std::string kind(kind_of), counted = kind + " types";
+    const LammpsSection* found = section(section_of_labels(kind), counted, false);
+    if (found == nullptr) continue;
+    for (const std::size_t line : found->rows) {
+      split_words(text_.lines()[line - 1], words);
+      if (words.size() != 2) {
+        text_.fail(line, fmt::format("this row of section '{}' has {} words; expected 2", found->name, words.size()));
+      }
+      const std::string label(words[1]);
+      if (std::isdigit(static_cast<unsigned char>(label[0])) != 0) {
+        text_.fail(line, fmt::format("the label '{}' begins with a digit, as numbers of types do", label), label);
+      }
+      labels_.add(text_, line, kind, whole_number_in(text_, line, words[0], "the type", 1, count(counted)), label);
+    }
+  }
 }
 
 void LammpsText::read_header_line(std::size_t line, const std::vector<std::string_view>& words) {
@@ -66,12 +179,11 @@ void LammpsText::read_header_line(std::size_t line, const std::vector<std::strin
   } else if ((key == "xlo xhi" || key == "ylo yhi" || key == "zlo zhi") && numbers == 2) {
     read_bounds(line, words, key);
   } else if (key == "xy xz yz" && numbers == 3) {
-    for (const std::string_view tilt : {words[0], words[1], words[2]}) {
-      if (number_in(text_, line, tilt, "a tilt factor") == 0) continue;
-      text_.fail(line, fmt::format("the box is triclinic, with tilt factors xy xz yz = {} {} {}; boxes are orthogonal",
-                                   words[0], words[1], words[2]));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double tilt = number_in(text_, line, words[k], "a tilt factor");
+      if (tilt != 0) tilts_[static_cast<int>(k)] = tilt, tilt_line_ = line;
     }
-  } else if (!(stands_in(passed_over, key) && numbers == 1)) {
+  } else if (!(numbers == 1 && (stands_in(passed_over, key) || words[0] == "0"))) {
     std::vector<std::string> known(counted.begin(), counted.end());
     known.insert(known.end(), {"xlo xhi", "ylo yhi", "zlo zhi"});
     text_.fail(
@@ -97,6 +209,12 @@ void LammpsText::check_bounds() const {
     if (bounds_.count(axis) != 0) continue;
     text_.fail(0, fmt::format("there is no line '{}'; the header gives the box by xlo xhi, ylo yhi and zlo zhi", axis));
   }
+  for (int k = 0; k < 3; ++k) {
+    if (is_rounding_beside(tilts_[k], edges_)) continue;
+    text_.fail(tilt_line_,
+               fmt::format("the box is triclinic, with tilt factors xy xz yz = {} {} {}; boxes are orthogonal",
+                           tilts_[0], tilts_[1], tilts_[2]));
+  }
 }
 
 void LammpsText::begin_section(std::size_t line) {
@@ -105,6 +223,9 @@ void LammpsText::begin_section(std::size_t line) {
   std::vector<std::string_view> words;
   split_words(content, words);
   const std::string name = fmt::format("{}", fmt::join(words, " "));
+  if (stands_in(other_sections, name)) {
+    text_.fail(line, fmt::format("section '{}' is not read: nothing here acts by it", name), name);
+  }
   if (!stands_in(section_names, name)) {
     const std::vector<std::string> known(section_names.begin(), section_names.end());
     text_.fail(line, fmt::format("'{}' is no section that is read{}", name, did_you_mean(name, known)), name);
@@ -113,7 +234,7 @@ void LammpsText::begin_section(std::size_t line) {
     text_.fail(line, fmt::format("section '{}' stands twice, also at line {}", name, other->line), name);
   }
   if (mark < content.size()) split_words(std::string_view(content).substr(mark + 1), words);
-  sections_.push_back({name, mark < content.size() && !words.empty() ? std::string(words.front()) : "", line});
+  sections_.push_back({name, mark < content.size() && !words.empty() ? without_suffix(words.front()) : "", line});
 }
 
 std::int64_t LammpsText::count(const std::string& what) const {

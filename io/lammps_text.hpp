@@ -17,6 +17,28 @@ struct LammpsSection {
   std::vector<std::size_t> rows = {};
 };
 
+/// Names that a file gives to types: of atoms, bonds, angles, dihedrals and impropers.
+class TypeLabels {
+ public:
+  /// @throws SceneError  where it stands twice
+  void add(const TextFile& text, std::size_t line, const std::string& kind, std::int64_t type,
+           const std::string& label);
+  /// The type that a word means, its number or its label. @param kind  "atom", "bond", ...
+  /// @param what  names it in messages
+  /// @throws SceneError
+  std::int64_t type_in(const TextFile& text, std::size_t line, std::string_view word, const std::string& kind,
+                       std::string_view what, std::int64_t most) const;
+  bool is_label(const std::string& kind, std::string_view word) const;
+  /// The label of a type; empty if it has none.
+  std::string label(const std::string& kind, std::int64_t type) const;
+
+ private:
+  std::map<std::string, std::map<std::string, std::int64_t>> types_;  ///< by kind and label
+};
+
+/// A style without the suffix of the package that computes it: "harmonic" of "harmonic/kk".
+std::string without_suffix(std::string_view style);
+
 /// Header and sections of a LAMMPS data file; rows are counted, not read.
 class LammpsText {
  public:
@@ -34,6 +56,7 @@ class LammpsText {
 
   const Vec3<double>& low() const { return low_; }
   const Vec3<double>& edges() const { return edges_; }
+  const TypeLabels& labels() const { return labels_; }
   /// The line of an edge of the box.
   std::size_t box_line() const { return bounds_.at("xlo xhi"); }
 
@@ -42,6 +65,7 @@ class LammpsText {
   void read_bounds(std::size_t line, const std::vector<std::string_view>& words, const std::string& axis);
   void begin_section(std::size_t line);
   void check_bounds() const;
+  void read_labels();
 
   struct Count {
     std::int64_t number;
@@ -52,10 +76,32 @@ class LammpsText {
   std::map<std::string, std::size_t> bounds_;
   std::vector<LammpsSection> sections_;
   Vec3<double> low_ = Vec3<double>::Zero(), edges_ = Vec3<double>::Zero();
+  Vec3<double> tilts_ = Vec3<double>::Zero();
+  std::size_t tilt_line_ = 0;
+  TypeLabels labels_;
 };
 
-/// Kinds of terms and pairs of a LAMMPS data file, in noether's conventions.
+/// The kinds of one family of terms, and which of them a type of the file stands for: a sum has several.
+struct LammpsKinds {
+  struct OfType {
+    int first = 0, count = 0;
+    double weight = 0;  ///< of the pair force between the ends of a dihedral
+  };
+  std::vector<TermKind> kinds = {};
+  std::vector<OfType> types = {};  ///< empty where the file has no coefficients
+};
+
+/// Kinds of the four families of terms.
+struct LammpsCoefficients {
+  LammpsKinds bonds, angles, dihedrals, impropers;
+};
+
+class LammpsScript;
+
+/// Kinds of terms of a LAMMPS data file and its scripts, in noether's conventions; those of pairs go into the
+/// structure.
 /// @throws SceneError
-void read_lammps_coefficients(const LammpsText& data, const FileUnits& units, Topology& topology);
+LammpsCoefficients read_lammps_coefficients(const LammpsText& data, const LammpsScript& script, const FileUnits& units,
+                                            Structure& structure);
 
 }  // namespace noether::io

@@ -1,6 +1,7 @@
 #include "io/structure.hpp"
 
 #include "engine/charge.hpp"
+#include "io/lammps_script.hpp"
 #include "io/structure_parts.hpp"
 #include "numbers/quantity.hpp"
 #include "numbers/suggest.hpp"
@@ -20,11 +21,14 @@ namespace {
 
 StructureFormat format_of(const std::filesystem::path& file) {
   const std::string extension = file.extension().string();
-  if (extension == ".data" || extension == ".lmp") return StructureFormat::lammps_data;
+  for (const char* known : {".data", ".lmp", ".lammps", ".lmpdat"}) {
+    if (extension == known) return StructureFormat::lammps_data;
+  }
   if (extension == ".xyz" || extension == ".extxyz") return StructureFormat::extended_xyz;
   if (extension == ".gro") return StructureFormat::gro;
-  throw Error(fmt::format("'{}' is of no kind that is read; a structure is a .data or .lmp file (LAMMPS), .xyz or "
-                          ".extxyz, or .gro",
+  if (file.filename().string().starts_with("data.")) return StructureFormat::lammps_data;
+  throw Error(fmt::format("'{}' is of no kind that is read; a structure is a .data or .lmp file or data.NAME (LAMMPS), "
+                          ".xyz or .extxyz, or .gro",
                           file.filename().string()),
               {.key = "structure", .value = file.string()});
 }
@@ -53,27 +57,6 @@ Box box_of(const Box& of_file, const StructureOptions& options) {
                 {.key = "box"});
   }
   return *options.box;
-}
-
-/// Options with the units that LAMMPS writes into the first line of its data files, "..., units = real".
-StructureOptions with_units_of_file(const TextFile& text, StructureFormat format, StructureOptions options) {
-  static constexpr std::string_view mark = "units = ";
-  if (format != StructureFormat::lammps_data || text.lines().empty()) return options;
-  const std::string& line = text.lines()[0];
-  const std::size_t at = line.find(mark);
-  if (!line.starts_with("LAMMPS") || at == std::string::npos) return options;
-  const std::string units(trimmed(std::string_view(line).substr(at + mark.size())));
-  if (units != "lj" && units != "real" && units != "metal") {
-    text.fail(1, fmt::format("the file is in units {}; lj, real and metal are read", units), units);
-  }
-  if (!options.file_units.empty() && options.file_units != units) {
-    text.fail(
-        1,
-        fmt::format("the file says units = {}, file_units says '{}'; take file_units out", units, options.file_units),
-        units);
-  }
-  options.file_units = units;
-  return options;
 }
 
 /// Positions of particles that a file gives by cells of a box that is taken away.
@@ -164,27 +147,87 @@ Box box_in(const TextFile& text, std::size_t line, const Vec3<double>& edges) {
   }
 }
 
+bool is_rounding_beside(double number, const Vec3<double>& edges) {
+  return std::abs(number) < 1e-10 * edges.cwiseAbs().minCoeff() || number == 0;
+}
+
+void note(const StructureOptions& options, std::string what) {
+  if (options.notes != nullptr) options.notes->push_back(std::move(what));
+}
+
+void add_end_pairs(const TextFile& text, const Structure& structure, const ParticleSystem<double>& s,
+                   Topology& topology) {
+  if (structure.end_pairs.empty()) return;
+  Topology ends;  // mixes their parameters
+  ends.pair_kinds = structure.end_kinds.empty() ? topology.pair_kinds : structure.end_kinds;
+  ends.explicit_pairs = structure.end_kinds.empty() ? topology.explicit_pairs : structure.explicit_end_kinds;
+  ends.mixing = topology.mixing;
+  if (ends.pair_kinds.empty()) {
+    text.fail(0,
+              "dihedrals give their ends a pair force by a weight, and types have no epsilon and sigma; give both in "
+              "section 'Pair Coeffs' or [[particles.type]]");
+  }
+  std::map<std::array<double, 3>, int> known;
+  for (const auto& [particles, weight] : structure.end_pairs) {
+    const Index i = particles.front(), j = particles.back();
+    const PairKind pair = ends.pair_kind(topology.type(i), topology.type(j));
+    const double charges =
+        s.has<Charge>() ? s.units().coulomb_constant * s.column<Charge>()[i] * s.column<Charge>()[j] : 0;
+    const std::array<double, 3> parameters = {weight * pair.epsilon, pair.sigma, weight * charges};
+    const auto [at, fresh] = known.try_emplace(parameters, static_cast<int>(topology.dihedral_kinds.size()));
+    if (fresh) topology.dihedral_kinds.push_back({"one_four", {parameters.begin(), parameters.end()}});
+    topology.dihedrals.push_back({particles, at->second});
+  }
+}
+
+std::size_t frame_of(const StructureOptions& options, std::size_t frames) {
+  const auto count = static_cast<std::int64_t>(frames);
+  const std::int64_t wanted = options.frame.value_or(0), frame = wanted < 0 ? wanted + count : wanted;
+  if (frame >= 0 && frame < count) return static_cast<std::size_t>(frame);
+  throw Error(fmt::format("frame = {}, but the file has {} {}: {}, or -1 for the last", wanted, count,
+                          count == 1 ? "frame" : "frames", count == 1 ? "0" : fmt::format("0 to {}", count - 1)),
+              {.key = "frame"});
+}
+
 ParticleSystem<double> read_structure(const std::filesystem::path& file, const StructureOptions& options) {
   const StructureFormat format = format_of(file);
-  check_special(options.special);
   if (!options.atom_style.empty() && format != StructureFormat::lammps_data) {
     throw Error(fmt::format("atom_style = \"{}\" is for LAMMPS data files; leave it out", options.atom_style),
                 {.key = "atom_style", .value = options.atom_style});
   }
+  if (options.frame && format == StructureFormat::lammps_data) {
+    throw Error("a LAMMPS data file is one frame; leave frame out", {.key = "frame"});
+  }
+  if (!options.coefficients.empty() && format != StructureFormat::lammps_data) {
+    throw Error("coefficients are for LAMMPS data files; leave them out", {.key = "coefficients"});
+  }
   const TextFile text(file, expected_of(format));
-  const FileUnits units = file_units_of(format, with_units_of_file(text, format, options));
-  Structure structure = format == StructureFormat::lammps_data ? read_lammps_data(text, units, options)
-                        : format == StructureFormat::gro       ? read_gro(text, units)
-                                                               : read_extended_xyz(text, units);
+  const LammpsScript script(options);
+  const StructureOptions told = with_units_of_file(text, format, script.completed(options));
+  const FileUnits units = file_units_of(format, told);
+  const std::array<double, 3> special = told.special.value_or(std::array<double, 3>{0, 0, 0});
+  check_special(special);
+  Structure structure = format == StructureFormat::lammps_data ? read_lammps_data(text, script, units, told)
+                        : format == StructureFormat::gro       ? read_gro(text, units, told)
+                                                               : read_extended_xyz(text, units, told);
+  if (!structure.end_pairs.empty() && special[2] != 0) {
+    throw Error(
+        fmt::format("special leaves {} of the force between particles three bonds apart, which dihedrals of this "
+                    "file give by their weights; 0 is expected there",
+                    format_number(special[2])),
+        {.key = "special"});
+  }
   const Box box = box_of(structure.box, options);
   if (structure.box.is_periodic() && !box.is_periodic()) unwrap(structure);
   ParticleSystem<double> s = particles_of(structure, *options.units);
   Topology& topology = structure.topology;
-  topology.mixing =
-      options.mixing.value_or(format == StructureFormat::lammps_data ? Mixing::geometric : Mixing::lorentz_berthelot);
+  const Mixing own = format == StructureFormat::lammps_data ? Mixing::geometric : Mixing::lorentz_berthelot;
+  topology.mixing = told.mixing.value_or(structure.mixing.value_or(own));
   set_type_parameters(s, topology, options.types, options.pairs);
   check_masses(s, topology, file);
-  topology.scale_by_bonds(s.size(), options.special);
+  check_stated_temperature(text, structure, s, told);
+  topology.scale_by_bonds(s.size(), special);
+  add_end_pairs(text, structure, s, topology);
   s.set_box(box);
   check_positions(s, file);
   count_images(s, structure.images);

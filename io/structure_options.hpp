@@ -6,6 +6,8 @@
 #include "numbers/units.hpp"
 
 #include <array>
+#include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,16 +18,23 @@ namespace noether::io {
 struct StructureOptions {
   const UnitSystem* units = &unit_system("molecular");  ///< the unit system of the particles
   /// "lj" (in the reduced system), "real" or "metal" (in the molecular one): the units of a LAMMPS data file that does
-  /// not say them in its first line, as LAMMPS itself does; extended XYZ may be in "lj" too. Empty: what the file says.
+  /// not say them in its first line, as LAMMPS itself does, and of the velocities of extended XYZ. Empty: what the file
+  /// says.
   std::string file_units = {};
   std::string atom_style = {};  ///< of a LAMMPS data file without it: atomic, charge, bond, angle, molecular or full
-  /// Factors of the pair forces of particles one, two and three bonds apart.
-  std::array<double, 3> special = {0, 0, 0};
+  /// Factors of the pair forces of particles one, two and three bonds apart; empty: those of `special_bonds` in
+  /// `coefficients`, or else 0.
+  std::optional<std::array<double, 3>> special = {};
   std::optional<Mixing> mixing = {};       ///< default: geometric for LAMMPS data, as there, and else lorentz_berthelot
   std::vector<TypeParameters> types = {};  ///< given in addition to those of the file, or instead
   std::vector<PairParameters> pairs = {};
   /// For a file that has none; `Box::open()` takes the box of a file away.
   std::optional<Box> box = {};
+  std::optional<std::int64_t> frame = {};  ///< of XYZ and .gro, from 0; -1 is the last. Needed where there are several
+  /// Input scripts of LAMMPS with the coefficients that a data file leaves to them, in their order.
+  std::vector<std::filesystem::path> coefficients = {};
+  /// Where it is given, what the file holds and nobody reads is told here, a line each.
+  std::vector<std::string>* notes = nullptr;
 };
 
 }  // namespace noether::io

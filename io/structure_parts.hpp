@@ -5,7 +5,10 @@
 #include "io/structure_options.hpp"
 #include "io/text_table.hpp"
 
+#include <array>
 #include <cstdint>
+#include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -25,6 +28,10 @@ struct FileUnits {
 /// @throws Error  at key "file_units" or "units" where they do not fit each other
 FileUnits file_units_of(StructureFormat format, const StructureOptions& options);
 
+/// Options with the units that the file says itself: LAMMPS data in its first line, "units = real", XYZ in its comment.
+/// @throws SceneError  where they are not read, or the options say others
+StructureOptions with_units_of_file(const TextFile& text, StructureFormat format, StructureOptions options);
+
 /// Particles as a file lists them, in the units of the particles.
 struct Structure {
   std::vector<std::int64_t> ids;
@@ -35,6 +42,23 @@ struct Structure {
   std::vector<double> charges;             ///< empty: none were given
   Box box;
   Topology topology;
+  /// The temperature that stands beside velocities, in kelvin or reduced, and its line.
+  struct StatedTemperature {
+    double value;
+    std::size_t line;
+    bool of_momenta;  ///< those are in one unit, whatever file_units says
+  };
+  std::optional<StatedTemperature> temperature;
+  bool velocity_units_assumed = false;  ///< because nobody says them
+  std::optional<Mixing> mixing;  ///< as the program does it that wrote the file
+  /// The ends of dihedrals have a pair force of their own, times a weight.
+  struct EndPair {
+    std::array<Index, 4> particles;
+    double weight;
+  };
+  std::vector<EndPair> end_pairs;
+  std::vector<PairKind> end_kinds;  ///< their parameters by type; empty: those of all pairs
+  std::map<std::pair<int, int>, PairKind> explicit_end_kinds;
 };
 
 /// The standard atomic weight of an element [u]; not a number for what is none, or has none.
@@ -52,13 +76,40 @@ std::int64_t whole_number_in(const TextFile& text, std::size_t line, std::string
 /// The box of three edges as numbers of a file. @throws SceneError
 Box box_in(const TextFile& text, std::size_t line, const Vec3<double>& edges);
 
+/// Whether a number that ought to be 0 beside these edges of a box is what rounding has left of it: below 1e-10 of
+/// each.
+/// @throws never
+bool is_rounding_beside(double number, const Vec3<double>& edges);
+
+/// Which of the frames of a file is asked for, counted from 0.
+/// @throws Error  at key "frame" if there is none of that number
+std::size_t frame_of(const StructureOptions& options, std::size_t frames);
+
+/// Tells what the file holds and nobody reads.
+void note(const StructureOptions& options, std::string what);
+
+/// Refuses velocities that do not make the temperature that the file states, as those in other units do: where the
+/// degrees of freedom that this takes are not between a tenth and three for a particle. Where no temperature is stated
+/// and the units are assumed, more than 10 000 K is noted.
+/// @throws SceneError
+void check_stated_temperature(const TextFile& text, const Structure& structure, const ParticleSystem<double>& s,
+                              const StructureOptions& options);
+
+/// Makes dihedrals of kind "one_four" of the ends that have a pair force of their own.
+/// @throws SceneError  where particles have no Lennard-Jones parameters
+void add_end_pairs(const TextFile& text, const Structure& structure, const ParticleSystem<double>& s,
+                   Topology& topology);
+
 /// The most particles a file is believed to have.
 inline constexpr std::int64_t most_particles = 1'000'000'000;
 /// The most types of particles or terms.
 inline constexpr std::int64_t most_types = 100'000;
 
-Structure read_lammps_data(const TextFile& text, const FileUnits& units, const StructureOptions& options);
-Structure read_extended_xyz(const TextFile& text, const FileUnits& units);
-Structure read_gro(const TextFile& text, const FileUnits& units);
+class LammpsScript;
+
+Structure read_lammps_data(const TextFile& text, const LammpsScript& script, const FileUnits& units,
+                           const StructureOptions& options);
+Structure read_extended_xyz(const TextFile& text, const FileUnits& units, const StructureOptions& options);
+Structure read_gro(const TextFile& text, const FileUnits& units, const StructureOptions& options);
 
 }  // namespace noether::io

@@ -1,9 +1,15 @@
 // Units of structure files.
 #include "io/structure_parts.hpp"
+#include "io/xyz_comment.hpp"
+#include "numbers/quantity.hpp"
 #include "numbers/suggest.hpp"
+#include "numbers/wide_sum.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
 
 namespace noether::io {
@@ -49,9 +55,10 @@ class UnitsCheck {
       refuse("file_units",
              fmt::format("unknown file_units '{}'{}", said_, did_you_mean(said_, {"lj", "real", "metal"})));
     }
-    if (said_ == "lj" ? format_ == StructureFormat::gro : !said_.empty() && !is_lammps()) {
-      refuse("file_units", fmt::format("file_units = \"{}\" is not for {}, which has units of its own; leave it out",
-                                       said_, name_of(format_)));
+    if (!said_.empty() && format_ == StructureFormat::gro) {
+      refuse(
+          "file_units",
+          fmt::format("file_units = \"{}\" is not for a .gro file, which has units of its own; leave it out", said_));
     }
   }
 
@@ -74,7 +81,88 @@ class UnitsCheck {
   const UnitSystem& system_;
 };
 
+bool is_letter_of_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
+
+/// The word behind "units = " in the first line of a LAMMPS data file; empty where there is none.
+std::string units_of_lammps(const TextFile& text) {
+  static constexpr std::string_view mark = "units = ";
+  static constexpr std::array<std::string_view, 8> styles = {"lj",  "real",     "metal", "si",
+                                                             "cgs", "electron", "micro", "nano"};
+  const std::string_view line = text.lines()[0];
+  const std::size_t at = line.find(mark);
+  if (at == std::string_view::npos || (at > 0 && is_letter_of_word(line[at - 1]))) return "";
+  const std::string_view rest = line.substr(at + mark.size());
+  const std::string_view units = rest.substr(
+      0, static_cast<std::size_t>(std::find_if_not(rest.begin(), rest.end(), is_letter_of_word) - rest.begin()));
+  // The line is a comment: what is no unit of LAMMPS is a word like any other.
+  const bool style = std::find(styles.begin(), styles.end(), units) != styles.end();
+  return style || line.starts_with("LAMMPS") ? std::string(units) : "";
+}
+
+/// The value of "units" in the comment of XYZ, as a name of `file_units`; empty where it says nothing new.
+std::string units_of_xyz(const TextFile& text) {
+  if (text.lines().size() < 2) return "";
+  const std::string* said = XyzComment(text, 2).find("units");
+  if (said == nullptr || *said == "angstrom" || *said == "Angstrom") return "";
+  return *said == "reduced" ? "lj" : *said;
+}
+
+/// The sum of m v^2. @throws never
+double twice_kinetic_energy(const ParticleSystem<double>& s) {
+  WideSum<double> sum;
+  for (Index i = 0; i < s.size(); ++i) sum += s.masses()[i] * Vec3<double>(s.velocities()[i]).squaredNorm();
+  return sum.value();
+}
+
 }  // namespace
+
+StructureOptions with_units_of_file(const TextFile& text, StructureFormat format, StructureOptions options) {
+  if (format == StructureFormat::gro || text.lines().empty()) return options;
+  const bool lammps = format == StructureFormat::lammps_data;
+  const std::string units = lammps ? units_of_lammps(text) : units_of_xyz(text);
+  const std::size_t line = lammps ? 1 : 2;
+  if (units.empty()) return options;
+  if (units != "lj" && units != "real" && units != "metal") {
+    text.fail(line, fmt::format("the file is in units {}; lj, real and metal are read", units), units);
+  }
+  if (!options.file_units.empty() && options.file_units != units) {
+    text.fail(
+        line,
+        fmt::format("the file says units = {}, file_units says '{}'; take file_units out", units, options.file_units),
+        units);
+  }
+  options.file_units = units;
+  return options;
+}
+
+void check_stated_temperature(const TextFile& text, const Structure& structure, const ParticleSystem<double>& s,
+                              const StructureOptions& options) {
+  if (s.size() < 2 || !(structure.temperature || structure.velocity_units_assumed)) return;
+  const double n = static_cast<double>(s.size()), k_B = options.units->k_B, energy = twice_kinetic_energy(s);
+  const double found = energy / (3 * n - 3) / k_B;
+  if (!structure.temperature) {
+    if (found < 1e4) return;
+    return note(options,
+                fmt::format("the structure's velocities, taken as angstrom/fs, make {:.3g} K; give file_units if "
+                            "they are in others",
+                            found));
+  }
+  const auto [stated, line, of_momenta] = *structure.temperature;
+  if (energy == 0) return;
+  const auto fits = [&](double factor) {
+    const double degrees = energy * factor * factor / (k_B * stated) / n;
+    return degrees > 0.1 && degrees < 3.1;
+  };
+  if (fits(1)) return;
+  const bool metal = options.file_units == "metal";
+  std::string remedy = "give the file_units of the program that wrote the file";
+  if (of_momenta) remedy = "momenta are expected in sqrt(eV u), as ASE writes them";
+  if (!of_momenta && !options.units->is_reduced() && fits(metal ? 1e3 : 1e-3)) {
+    remedy = fmt::format("give file_units = \"{}\"", metal ? "real" : "metal");
+  }
+  text.fail(line, fmt::format("Temperature={}, but the {} make {:.4g}; {}", format_number(stated),
+                              of_momenta ? "momenta" : "velocities", found, remedy));
+}
 
 FileUnits file_units_of(StructureFormat format, const StructureOptions& options) {
   UnitsCheck(format, options).check();

@@ -88,6 +88,11 @@ std::optional<Box> read_box(TableReader& reader, SceneValue& effective) {
   }
 }
 
+bool has_frame_number(TableReader& reader) {
+  const SceneValue* frame = reader.find("frame");
+  return frame != nullptr && frame->get<std::int64_t>() != nullptr;
+}
+
 std::optional<Mixing> read_mixing(TableReader& reader, SceneValue& effective) {
   const SceneValue* value = reader.find("mixing");
   if (value == nullptr) return {};

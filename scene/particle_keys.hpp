@@ -26,6 +26,9 @@ ParticleSystem<double> particles_in_file(
 /// `box = ["10 nm", "10 nm", "10 nm"]` or `"open"`; empty where the scene says nothing. @throws SceneError
 std::optional<Box> read_box(TableReader& reader, SceneValue& effective);
 
+/// Whether `frame` is the number of a frame of a file, and not "barycenter" or "as_given".
+bool has_frame_number(TableReader& reader);
+
 /// `mixing`; empty where the scene says nothing. @throws SceneError
 std::optional<Mixing> read_mixing(TableReader& reader, SceneValue& effective);
 

@@ -380,6 +380,10 @@ void check_sources(TableReader& reader) {
 }
 
 void read_frame(TableReader& reader, ParticleSystem<double>& s, SceneValue& effective) {
+  if (reader.has("structure") && has_frame_number(reader)) {
+    effective.put("frame", *reader.find("frame"));
+    return;
+  }
   const std::string frame = reader.text("frame", "as_given");
   if (frame != "as_given" && frame != "barycenter") {
     reader.fail("frame", fmt::format("unknown frame '{}'{}", frame, did_you_mean(frame, {"barycenter", "as_given"})));
@@ -422,7 +426,7 @@ ParticleSystem<double> read_particles(const SceneContext& context, const SceneVa
   if (!is_built(reader)) {
     reader.expect_only({"bodies", "bodies_sha256", "epoch", "elements", "body", "structure", "structure_sha256", "type",
                         "pair", "mixing", "box", "special", "exclusions", "file_units", "atom_style", "frame",
-                        "temperature", "seed"});
+                        "temperature", "seed", "coefficients", "coefficients_sha256"});
   }
   check_sources(reader);
   if (is_built(reader)) {
@@ -431,7 +435,7 @@ ParticleSystem<double> read_particles(const SceneContext& context, const SceneVa
     return s;
   }
   TableReader own(context, table, "[particles]", "particles");
-  ParticleSystem<double> s = reader.has("structure") ? read_structure_particles(own, folder, effective)
+  ParticleSystem<double> s = reader.has("structure") ? read_structure_particles(own, folder, effective, warnings)
                                                      : from_bodies(own, folder, effective, warnings);
   if (!reader.has("structure")) {
     if (const auto box = read_box(own, effective)) s.set_box(*box);

@@ -1,8 +1,13 @@
 #include "scene/read_structure.hpp"
 
+#include "io/digest.hpp"
+#include "io/files.hpp"
 #include "io/structure.hpp"
 #include "scene/particle_keys.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <string_view>
 
 namespace noether {
@@ -15,14 +20,56 @@ std::string kept_text(TableReader& reader, std::string_view key, SceneValue& eff
   return reader.text(key);
 }
 
+/// `coefficients`: one file or a list of them, with the hash of all of them one behind the other.
+std::vector<std::filesystem::path> read_coefficients(TableReader& reader, const std::filesystem::path& folder,
+                                                     SceneValue& effective) {
+  static constexpr std::string_view key = "coefficients", hash_key = "coefficients_sha256";
+  const SceneValue* value = reader.find(key);
+  if (value == nullptr) {
+    if (reader.has(hash_key)) reader.fail(hash_key, "there are no coefficients that could have this hash; take it out");
+    return {};
+  }
+  const auto* list = value->get<SceneValue::Array>();
+  std::vector<std::filesystem::path> files;
+  std::string bytes;
+  const SceneValue::Array names = list != nullptr ? *list : SceneValue::Array{*value};
+  for (std::size_t k = 0; k < std::max<std::size_t>(names.size(), 1); ++k) {
+    const std::string* name = names.empty() ? nullptr : names[k].get<std::string>();
+    if (name == nullptr || name->empty()) {
+      reader.fail(key,
+                  fmt::format("coefficients = {} names no file; give one, such as \"system.in.settings\", or a list",
+                              to_text(*value)));
+    }
+    files.push_back(folder / *name);
+    try {
+      bytes += io::read_bytes(files.back());
+    } catch (const FileError& error) {
+      throw FileError(error.what(), {.file = reader.context().source.file,
+                                     .line = reader.line(key),
+                                     .key = reader.path_of(key),
+                                     .value = files.back().string()});
+    }
+  }
+  const std::string hash = io::sha256(bytes);
+  if (reader.text(hash_key, hash) != hash) {
+    reader.fail(hash_key, fmt::format("the coefficients are no longer those this scene was run with: their hash is {}; "
+                                      "take the key out to use the new ones",
+                                      hash));
+  }
+  effective.put(std::string(key), *value);
+  effective.put(std::string(hash_key), SceneValue::of(hash, reader.line(key)));
+  return files;
+}
+
 }  // namespace
 
 ParticleSystem<double> read_structure_particles(TableReader& reader, const std::filesystem::path& folder,
-                                                SceneValue& effective) {
+                                                SceneValue& effective, std::vector<std::string>& notes) {
   reader.expect_only({"structure", "structure_sha256", "file_units", "special", "exclusions", "atom_style", "mixing",
-                      "box", "type", "pair", "temperature", "seed", "frame"});
+                      "box", "type", "pair", "temperature", "seed", "frame", "coefficients", "coefficients_sha256"});
   io::StructureOptions options;
   options.units = reader.context().units;
+  options.notes = &notes;
   const auto read = [&](const std::filesystem::path& file) {
     try {
       return io::read_structure(file, options);
@@ -37,11 +84,14 @@ ParticleSystem<double> read_structure_particles(TableReader& reader, const std::
   SceneValue keys = SceneValue::table();
   options.file_units = kept_text(reader, "file_units", keys);
   options.atom_style = kept_text(reader, "atom_style", keys);
-  options.special = read_special(reader, keys);
+  options.coefficients = read_coefficients(reader, folder, keys);
+  // What the scene does not say, the coefficients may.
+  if (reader.has("special") || options.coefficients.empty()) options.special = read_special(reader, keys);
   options.mixing = read_mixing(reader, keys);
   options.box = read_box(reader, keys);
   options.types = read_types(reader, keys);
   options.pairs = read_pairs(reader, keys);
+  if (has_frame_number(reader)) options.frame = reader.integer("frame");
   ParticleSystem<double> s =
       particles_in_file(reader, "structure", folder, "water.data", "a structure", effective, read);
   for (auto& [key, value] : *keys.get<SceneValue::Table>()) effective.put(key, std::move(value));

@@ -29,6 +29,11 @@ TEST_CASE("what once broke the reader of tables of bodies does not", "[fuzz]") {
   take_all("data/horizons", take_bodies);
 }
 
+TEST_CASE("what once broke the readers of structures does not", "[fuzz]") {
+  take_all("fuzz/seeds/structure", take_structure);
+  take_all("data/lammps", take_structure);
+}
+
 TEST_CASE("what once broke the reader of scenes does not", "[fuzz]") {
   take_all("fuzz/seeds/scene", take_scene);
   take_all("scenes/good", take_scene);

@@ -147,8 +147,22 @@ inline void check_topology(const ParticleSystem<double>& s) {
   inside(topology.impropers, topology.improper_kinds.size());
 }
 
-/// A structure in each format, in units that fit.
+/// A chain of four atoms that leaves its coefficients to a script.
+inline const std::filesystem::path& chain_without_coefficients() {
+  static const std::filesystem::path file = as_file(
+      "chain.data",
+      "#\n4 atoms\n3 bonds\n1 angles\n1 dihedrals\n2 atom types\n1 bond types\n1 angle types\n1 dihedral types\n"
+      "0 9 xlo xhi\n0 9 ylo yhi\n0 9 zlo zhi\n\nAtom Type Labels\n\n1 C\n2 O\n\nMasses\n\nC 12\nO 16\n\n"
+      "Atoms # full\n\n1 1 C 0 1 1 1\n2 1 C 0 2 1 1\n3 1 O 0 2 2 1\n4 1 O 0 2 2 2\n\n"
+      "Bonds\n\n1 1 1 2\n2 1 2 3\n3 1 3 4\n\nAngles\n\n1 1 1 2 3\n\nDihedrals\n\n1 1 1 2 3 4\n");
+  return file;
+}
+
+/// A structure in each format, in units that fit, and the coefficients of one.
 inline void take_structure(std::string_view bytes) {
+  const io::StructureOptions with_script = {.units = &unit_system("reduced"),
+                                            .coefficients = {as_file("structure.in", bytes)}};
+  accepted([&] { check_topology(io::read_structure(chain_without_coefficients(), with_script)); });
   const std::array<std::pair<const char*, io::StructureOptions>, 4> readings = {{
       {"structure.data", {.units = &unit_system("reduced")}},
       {"structure.lmp", {.file_units = "real", .box = Box::open()}},

@@ -4,6 +4,7 @@
 #include "io/structure.hpp"
 #include "tests/io/support.hpp"
 
+#include <cmath>
 #include <numbers>
 
 using namespace noether;
@@ -179,10 +180,12 @@ TEST_CASE("units that do not fit are refused", "[structure][messages]") {
   CHECK(data_refusal(content, {.file_units = "metals"}) == "unknown file_units 'metals'; did you mean 'metal'?");
   CHECK(data_refusal(content, {.units = &unit_system("solar"), .file_units = "real"}) ==
         "a structure is read in units = \"molecular\" or \"reduced\", not \"solar\"");
-  CHECK(data_refusal(content, {.units = &reduced, .special = {0, 0, 2}}) ==
+  CHECK(data_refusal(content, {.units = &reduced, .special = {{0, 0, 2}}}) ==
         "special holds 2; factors from 0 to 1 are expected");
-  CHECK(error_of([] { io::read_structure("m.pdb"); }) ==
-        "'m.pdb' is of no kind that is read; a structure is a .data or .lmp file (LAMMPS), .xyz or .extxyz, or .gro");
+  CHECK(
+      error_of([] { io::read_structure("m.pdb"); }) ==
+      "'m.pdb' is of no kind that is read; a structure is a .data or .lmp file or data.NAME (LAMMPS), .xyz or .extxyz, "
+      "or .gro");
 }
 
 TEST_CASE("the units that LAMMPS writes into its first line are taken", "[structure]") {
@@ -248,7 +251,10 @@ TEST_CASE("rows that are wrong are refused with their line", "[structure][messag
   CHECK(atoms("2 1 0 0") ==
         "m.data:17: this row of section 'Atoms' has 4 words; style 'atomic' has 5, or 8 with images, in every row");
   CHECK(atoms("0 1 0 0 0") == "m.data:17: the id of an atom is '0'; a whole number is expected, 1 to 9007199254740992");
-  CHECK(atoms("2 1 0 0 0", "sphere").starts_with("m.data:14: atom style 'sphere' is not read; known are: atomic"));
+  CHECK(atoms("2 1 0 0 0", "sphere") ==
+        "m.data:14: atom style 'sphere' is not read; known are: atomic, charge, bond, angle, molecular, full");
+  CHECK(
+      atoms("2 1 0 0 0", "hybrid atomic sphere").starts_with("m.data:14: atom style 'hybrid' is not read; known are"));
   CHECK(data_refusal(two_atoms + "\nAtoms # atomic\n\n1 1 0 1 0 0 0 0\n2 1 0 1 0 0 0.5 0\n") ==
         "m.data:17: an image is '0.5'; a whole number is expected, -536870912 to 536870912");
   CHECK(data_refusal(two_atoms + pair_atoms + "\nVelocities\n\n1 0 0 0\n3 0 0 0\n") ==
@@ -287,11 +293,102 @@ TEST_CASE("terms that are wrong are refused with their line", "[structure][messa
         with_coefficients("1 dihedrals\n1 dihedral types\n",
                           "Dihedral Coeffs # " + style + "\n\n1 " + numbers + "\n\nDihedrals\n\n1 1 1 2 3 4\n"));
   };
+  CHECK(dihedral("charmm", "1 1 0 1.5") == "m.data:23: the weight of a charmm dihedral is 1.5; 0 to 1 is expected");
   CHECK(dihedral("charmm", "1 1 0 0.5") ==
-        "m.data:23: the weight of a charmm dihedral is 0.5; only 0 is read: what it scales is said by special");
+        "m.data: dihedrals give their ends a pair force by a weight, and types have no epsilon and sigma; give both in "
+        "section 'Pair Coeffs' or [[particles.type]]");
+  CHECK(dihedral("fourier", "2 1 1 0") ==
+        "m.data:23: the number of terms of style 'fourier' is '2'; a whole number is expected, 1 to 1");
+  CHECK(dihedral("fourier", "2 1 1 0 1 1 0 5") ==
+        "m.data:23: style 'fourier' of section 'Dihedral Coeffs' takes 7 coefficients for 2 terms; this row has 8");
   CHECK(dihedral("harmonic", "1 0.5 1") == "m.data:23: coefficient 2 of style 'harmonic' is 0.5; 1 or -1 is expected");
   CHECK(dihedral("charmm", "1 1.5 0 0") ==
         "m.data:23: coefficient 2 of style 'charmm' is 1.5; a whole number is expected, 0 to 100");
   CHECK(data_refusal(two_atoms + pair_atoms + "\nPair Coeffs # buck\n\n1 1 1 1\n2 1 1 1\n")
             .starts_with("m.data:21: pair style 'buck' is not read; known are: lj/cut"));
+}
+
+TEST_CASE("no other potential is proposed in the place of one that is not read", "[structure][messages]") {
+  CHECK(data_refusal(two_atoms + pair_atoms + "\nPair Coeffs # lj/cuts\n\n1 1 1\n2 1 1\n") ==
+        "m.data:21: pair style 'lj/cuts' is not read; known are: lj/cut, lj, lj/cut/coul/cut, lj/cut/coul/long, "
+        "lj/cut/coul/dsf, lj/cut/coul/debye, lj/cut/coul/msm, lj/charmm/coul/charmm, lj/charmm/coul/long, "
+        "lj/charmm/coul/msm");
+  const auto angle = [](const std::string& style) {
+    return data_refusal(with_coefficients("1 angles\n1 angle types\n",
+                                          "Angle Coeffs # " + style + "\n\n1 1 1 1\n\nAngles\n\n1 1 1 2 3\n"));
+  };
+  CHECK(angle("cosine/delta") ==
+        "m.data:23: style 'cosine/delta' of section 'Angle Coeffs' is not read; known are: "
+        "harmonic, cosine, cosine/squared, charmm");
+  CHECK(data_refusal(with_coefficients("1 bonds\n1 bond types\n", "BondBond Coeffs\n\n1 1 1 1\n")) ==
+        "m.data:21: section 'BondBond Coeffs' is not read: nothing here acts by it");
+}
+
+TEST_CASE("styles are those of LAMMPS whatever package computes them", "[structure]") {
+  const std::string file =
+      "LAMMPS data file via write_data, version 22 Jul 2025, timestep = 0, units = lj\n\n2 atoms\n1 atom types\n1 "
+      "bonds\n1 bond types\n\n0 10 xlo xhi\n0 10 ylo yhi\n0 10 zlo zhi\n\nMasses\n\n1 1\n\nPair Coeffs # "
+      "lj/cut/@\n\n1 1 1\n\nBond Coeffs # harmonic/@\n\n1 30 1\n\nAtoms # bond/@\n\n1 1 1 1 1 1 0 0 0\n2 1 1 "
+      "2.1 1 1 0 0 0\n\nBonds\n\n1 1 1 2\n";
+  for (const std::string suffix : {"omp", "opt", "gpu", "intel", "kk", "kk/host", "kk/device"}) {
+    std::string content = file;
+    for (auto at = content.find('@'); at != std::string::npos; at = content.find('@')) content.replace(at, 1, suffix);
+    const auto s = read_data(content, {.units = &reduced, .special = {{1, 1, 1}}});
+    const double r = s.positions()[1][0] - s.positions()[0][0], six = std::pow(r, -6);
+    const TermKind& bond = s.topology()->bond_kinds.at(0);
+    CHECK(bond == TermKind{"harmonic", {60, 1}});
+    CHECK(s.topology()->pair_kind(0, 0) == PairKind{1, 1});
+    CHECK(std::abs(4 * (six * six - six) + 30 * (r - 1) * (r - 1) + 0.6833724493737485) < 1e-13);
+  }
+}
+
+TEST_CASE("a word behind Atoms that is no style is a remark where the columns tell the style", "[structure]") {
+  const auto s = read_data(
+      "LAMMPS description\n\n2 atoms\n1 atom types\n0 ellipsoids\n0 crossterms\n\n0 10 xlo xhi\n0 10 ylo yhi\n0 10 zlo "
+      "zhi\n0 -2e-16 0 xy xz yz\n\nMasses\n\n1 1.0\n\nAtoms # I like comments\n\n1 1 1.0 1.0 1.0\n2 1 9.0 1.5 1.0\n");
+  const double r2 = s.box().minimum_image(Vec3<double>(s.positions()[1] - s.positions()[0])).squaredNorm();
+  const double six = 1 / (r2 * r2 * r2);
+  CHECK(std::abs(4 * (six * six - six) + 0.05142787991644582) < 1e-14);
+  const std::string rows = "\n\n1 1 1 0 1 0\n2 1 2 1 1 0\n";
+  CHECK(data_refusal(two_atoms + "\nAtoms # my atoms" + rows) ==
+        "m.data:14: rows of 6 words may be of several styles, and 'my' is none; write 'Atoms # molecular', or give "
+        "atom_style = \"molecular\" or another one");
+  CHECK(read_data(two_atoms + "\nAtoms # my atoms" + rows, {.units = &reduced, .atom_style = "molecular"}).size() == 2);
+}
+
+TEST_CASE("files are named as LAMMPS users name them", "[structure]") {
+  const test::ScratchFolder folder;
+  for (const char* name : {"data.water", "water.lmp", "water.lammps", "water.lmpdat"}) {
+    test::write_text(folder / name, two_atoms + pair_atoms);
+    CHECK(io::read_structure(folder / name, {.units = &reduced}).size() == 2);
+  }
+  // The extension counts more.
+  test::write_text(folder / "data.xyz", "1\n\nO 0 0 0\n");
+  CHECK(io::read_structure(folder / "data.xyz").size() == 1);
+}
+
+TEST_CASE("labels stand for types", "[structure]") {
+  const std::string labelled =
+      "#\n3 atoms\n2 atom types\n1 bonds\n1 bond types\n" + box +
+      "\nAtom Type Labels\n\n2 OH\n1 CT  # carbon\n\nBond Type Labels\n\n1 CT-OH\n\nMasses\n\nOH 16\n1 12\n"
+      "\nPair Coeffs # lj/cut\n\nOH 1 2\nCT 3 4\n\nBond Coeffs # harmonic\n\nCT-OH 5 1\n";
+  const auto s =
+      read_data(labelled + "\nAtoms # bond\n\n1 1 CT 0 1 0\n2 1 OH 1 1 0\n3 2 2 2 2 2\n\nBonds\n\n1 CT-OH 1 2\n");
+  CHECK(s.topology()->type_names == std::vector<std::string>{"CT", "OH"});
+  CHECK(s.topology()->types == std::vector<std::int64_t>{0, 1, 1});
+  CHECK(s.masses()[0] == 12);
+  CHECK(s.masses()[2] == 16);
+  CHECK(s.topology()->pair_kind(1, 1) == PairKind{1, 2});
+  CHECK(s.topology()->bond_kinds == std::vector<TermKind>{{"harmonic", {10, 1}}});
+  CHECK(s.topology()->bonds == std::vector<BondedTerm<2>>{{{0, 1}, 0}});
+  const auto typed =
+      read_data(labelled + "\nAtoms # bond\n\n1 1 CT 0 1 0\n2 1 OH 1 1 0\n3 2 2 2 2 2\n\nBonds\n\n1 1 1 2\n",
+                {.units = &reduced, .types = {{.type = "OH", .mass = 17}}});
+  CHECK(typed.masses()[1] == 17);
+  CHECK(data_refusal(labelled + "\nAtoms # bond\n\n1 1 CH 0 1 0\n2 1 OH 1 1 0\n3 2 2 2 2 2\n\nBonds\n\n1 1 1 2\n") ==
+        "m.data:35: the type of an atom is 'CH', which is no label of atom types; did you mean 'CT'?");
+  CHECK(data_refusal("#\n1 atoms\n2 atom types\n" + box + "\nAtom Type Labels\n\n1 A\n2 A\n") ==
+        "m.data:11: 'A' of atom types stands twice");
+  CHECK(data_refusal("#\n1 atoms\n1 atom types\n" + box + "\nAtom Type Labels\n\n1 1A\n") ==
+        "m.data:10: the label '1A' begins with a digit, as numbers of types do");
 }

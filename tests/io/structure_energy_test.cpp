@@ -1,6 +1,8 @@
 // Structures against the energies that LAMMPS computed of the same files: tests/data/lammps/README.md.
 
 #include "engine/charge.hpp"
+#include "forces/bonded.hpp"
+#include "forces/check_gradient.hpp"
 #include "io/structure.hpp"
 #include "tests/io/support.hpp"
 #include "tests/support/recorded.hpp"
@@ -64,6 +66,10 @@ class Terms {
     double u = 0;
     if (potential == "harmonic") u = p[0] * (theta - p[1]) * (theta - p[1]) / 2;
     if (potential == "cosine") u = p[0] * (1 + std::cos(theta));
+    if (potential == "cosine_squared") u = p[0] * std::pow(std::cos(theta) - std::cos(p[1]), 2) / 2;
+    if (potential == "urey_bradley") {
+      u = p[0] * (theta - p[1]) * (theta - p[1]) / 2 + p[2] * std::pow((a - b).norm() - p[3], 2) / 2;
+    }
     energy["angle." + potential] += u;
   }
 
@@ -81,6 +87,11 @@ class Terms {
     if (potential == "periodic") u = p[0] * (1 + std::cos(p[1] * phi - p[2]));
     if (potential == "ryckaert_bellemans") {
       for (std::size_t n = 0; n < 6; ++n) u += p[n] * std::pow(std::cos(phi - std::numbers::pi), n);
+    }
+    if (potential == "one_four") {
+      const double r = between(one.particles[0], one.particles[3]).norm(), six = std::pow(p[1] / r, 6);
+      energy["ends.lennard_jones"] += 4 * p[0] * (six * six - six);
+      energy["ends.charges"] += p[2] / r;
     }
     energy["dihedral." + potential] += u;
   }
@@ -134,7 +145,7 @@ double kinetic_energy(const ParticleSystem<double>& s) {
 }  // namespace
 
 TEST_CASE("every style of terms has the energy that LAMMPS computes", "[structure]") {
-  const auto s = io::read_structure(lammps_files / "molecule.data", {.file_units = "real", .special = {0, 0, 0.5}});
+  const auto s = io::read_structure(lammps_files / "molecule.data", {.file_units = "real", .special = {{0, 0, 0.5}}});
   auto expected = test::lammps_energies("molecule");
   auto energy = Terms(s).energy;
   const double rounding = 1e-13;
@@ -153,9 +164,35 @@ TEST_CASE("every style of terms has the energy that LAMMPS computes", "[structur
   CHECK(agree(coulomb, kcal * expected["ecoul"], 2e-8));  // LAMMPS rounds Coulomb's constant to 332.06371
 }
 
+TEST_CASE("coefficients of an input script have the energies that LAMMPS computes with it", "[structure]") {
+  // Sums of cosines, springs between the ends of angles, weights and four numbers of a pair; labels, "*", "&".
+  const auto s = io::read_structure(lammps_files / "charmm.data", {.coefficients = {lammps_files / "charmm.in"}});
+  auto expected = test::lammps_energies("charmm");
+  auto energy = Terms(s).energy;
+  CHECK(s.topology()->type_names == std::vector<std::string>{"CT", "OH", "C*"});
+  CHECK(s.topology()->mixing == Mixing::lorentz_berthelot);
+  CHECK(std::abs(s.topology()->stated_cutoff - 1.1) < 1e-15);
+  CHECK(agree(energy["bond.harmonic"], kcal * expected["ebond"], 1e-13));
+  CHECK(agree(energy["angle.harmonic"] + energy["angle.urey_bradley"] + energy["angle.cosine_squared"],
+              kcal * expected["eangle"], 1e-13));
+  CHECK(agree(energy["dihedral.periodic"], kcal * expected["edihed"], 1e-12));
+  CHECK(agree(energy["improper.harmonic"], kcal * expected["eimp"], 1e-12));
+  const auto [lennard_jones, charges] = pair_energies(s, 1.0, false);
+  CHECK(agree(lennard_jones + energy["ends.lennard_jones"], kcal * expected["evdwl"], 1e-12));
+  CHECK(agree(charges + energy["ends.charges"], kcal * expected["ecoul"], 2e-8));  // LAMMPS rounds Coulomb's constant
+  // And so has the force of a run.
+  double sum = 0;
+  for (const auto& [name, part] : energy) sum += part;
+  VectorColumn<double> accelerations(s.size());
+  ForceSink<double> sink(accelerations, s, {true, true, false});
+  Bonded{}.add_to(sink, s);
+  CHECK(agree(sink.potential(), sum, 1e-12));
+  check_gradient(Bonded{}, s);
+}
+
 TEST_CASE("chains of beads have the energies that LAMMPS computes", "[structure]") {
   const auto s =
-      io::read_structure(lammps_files / "chains.data", {.units = &unit_system("reduced"), .special = {0, 1, 1}});
+      io::read_structure(lammps_files / "chains.data", {.units = &unit_system("reduced"), .special = {{0, 1, 1}}});
   auto expected = test::lammps_energies("chains");
   auto energy = Terms(s).energy;
   CHECK(agree(energy["bond.fene"], expected["ebond"], 1e-13));

@@ -4,6 +4,8 @@
 #include "io/structure.hpp"
 #include "tests/io/support.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <fstream>
 
@@ -107,7 +109,8 @@ TEST_CASE("extended XYZ that is wrong is refused with its line", "[structure][me
   CHECK(xyz_refusal("1\n\nO 0 0\n") == "m.xyz:3: this atom has 3 columns; expected 4, as Properties say");
   CHECK(xyz_refusal("1\n\nO 0 0 zero\n") == "m.xyz:3: pos is 'zero', which is no number");
   CHECK(xyz_refusal("1\n\nO 0 0 0\n1\n\nO 0 0 1\n") ==
-        "m.xyz:4: there is more behind the 1 atoms of the first frame; a structure is one frame");
+        "m.xyz:4: there is more behind the 1 atoms of the first frame; a structure is one frame: give frame = 0, or "
+        "frame = -1 for the last");
   CHECK(xyz_refusal("1\nLattice=\"1 0 0 0 1 0 0.5 0 1\"\nO 0 0 0\n") ==
         "m.xyz:2: Lattice=\"1 0 0 0 1 0 0.5 0 1\" is not orthogonal along the axes; boxes are");
   CHECK(xyz_refusal("1\nLattice=\"1 0 0\"\nO 0 0 0\n") == "m.xyz:2: Lattice has 3 numbers; 9 are expected");
@@ -131,10 +134,153 @@ TEST_CASE("extended XYZ that is wrong is refused with its line", "[structure][me
         "m.xyz: particles of type 'CW' have no mass; give it in [[particles.type]]: name = \"CW\", mass = ...");
   CHECK(xyz_refusal("1\n\nO 0 0 0\n", {.units = &unit_system("reduced")}) ==
         "an extended XYZ file in angstrom needs units = \"molecular\", not \"reduced\"; or give file_units = \"lj\"");
-  CHECK(xyz_refusal("1\n\nO 0 0 0\n", {.file_units = "real"}) ==
-        "file_units = \"real\" is not for an extended XYZ file, which has units of its own; leave it out");
   CHECK(xyz_refusal("1\n\nO 0 0 0\n", {.atom_style = "full"}) ==
         "atom_style = \"full\" is for LAMMPS data files; leave it out");
+}
+
+TEST_CASE("velocities of XYZ are in the units that file_units says", "[structure]") {
+  // What LAMMPS writes of two atoms at 100 K in units metal, as its dump style extxyz does.
+  const std::string dump =
+      "2\nTimestep=0 Time=0.000000 pbc=\"T T T\" Lattice=\"20 0 0 0 20 0 0 0 20\" Temperature=99.99999999999997 "
+      "Properties=species:S:1:pos:R:3:vel:R:3:forces:R:3\n"
+      "Ar 1 1 1 -0.696798 -0.0146085 1.62365 0.000872083 0 0\n"
+      "Ar 17.2 1 1 0.696798 0.0146085 -1.62365 -0.000872083 0 0\n";
+  CHECK(xyz_refusal(dump) ==
+        "m.xyz:2: Temperature=99.99999999999997, but the velocities make 1e+08; give file_units = "
+        "\"metal\"");
+  std::vector<std::string> notes;
+  const auto s = read_as("m.xyz", dump, {.file_units = "metal", .notes = &notes});
+  CHECK(notes.empty());  // forces are what a run computes anew
+  CHECK(s.velocities()[0] == Vec3<double>(-0.696798, -0.0146085, 1.62365) * 0.1);
+  // 3 k_B T / 2 of three degrees of freedom, which LAMMPS takes where the momentum is none.
+  double kinetic = 0;
+  for (const Index i : {0, 1}) kinetic += s.masses()[i] * Vec3<double>(s.velocities()[i]).squaredNorm() / 2;
+  CHECK(std::abs(kinetic / (1.5 * 8.31446261815324e-3 * 100) - 1) < 2e-6);
+  CHECK(xyz_refusal(dump, {.file_units = "real"}).find("give file_units = \"metal\"") != std::string::npos);
+  const auto without = [&](std::string what, const std::string& with = "") {
+    return std::string(dump).replace(dump.find(what), what.size(), with);
+  };
+  CHECK(xyz_refusal(without(" Temperature=99.99999999999997")) ==
+        "m.xyz:2: velocities that LAMMPS writes are in the units of its run, and the file does not say which; give "
+        "file_units = \"real\" (angstrom/fs) or \"metal\" (angstrom/ps)");
+  CHECK(xyz_refusal(without(":vel:", ":velocities:")) ==
+        "m.xyz:2: 'velocities' may be in any units; give file_units = \"real\" (angstrom/fs) or \"metal\" "
+        "(angstrom/ps)");
+  CHECK(read_as("m.xyz", without(":vel:", ":velocities:"), {.file_units = "metal"}).velocities()[0] ==
+        s.velocities()[0]);
+  // A degree of freedom more or less, or molecules that are rigid, are no other units.
+  CHECK(read_as("m.xyz", without("99.99999999999997", "55"), {.file_units = "metal"}).size() == 2);
+  CHECK(xyz_refusal(without("99.99999999999997", "20000"), {.file_units = "metal"}) ==
+        "m.xyz:2: Temperature=20000, but the velocities make 100; give the file_units of the program that wrote the "
+        "file");
+  const std::string momenta =
+      "2\nTemperature=3 Properties=species:S:1:pos:R:3:momenta:R:3\nAr 0 0 0 1 0 0\n"
+      "Ar 4 0 0 -1 0 0\n";
+  CHECK(xyz_refusal(momenta, {.file_units = "metal"}) ==
+        "m.xyz:2: momenta are in sqrt(eV u), as ASE writes them, whatever file_units = \"metal\" says; take it out");
+  CHECK(xyz_refusal(momenta) ==
+        "m.xyz:2: Temperature=3, but the momenta make 193.7; momenta are expected in sqrt(eV u), "
+        "as ASE writes them");
+}
+
+TEST_CASE("columns of XYZ that nobody reads are named, and velocities that are hardly meant so", "[structure]") {
+  std::vector<std::string> notes;
+  const std::string fast = "2\nProperties=species:S:1:pos:R:3:vel:R:3\nAr 0 0 0 0.7 0 1.6\nAr 9 0 0 -0.7 0 -1.6\n";
+  read_as("m.xyz", fast, {.file_units = "metal", .notes = &notes});
+  CHECK(notes.empty());
+  read_as("m.xyz", fast, {.notes = &notes});
+  REQUIRE(notes.size() == 1);
+  // 2 m v^2 / (3 k_B) with m = 39.948 u and v = sqrt(3.05) angstrom/fs
+  CHECK(notes[0] ==
+        "the structure's velocities, taken as angstrom/fs, make 9.77e+07 K; give file_units if they are in "
+        "others");
+  notes.clear();
+  read_as("m.xyz", "1\nProperties=species:S:1:pos:R:3:magmom:R:3:forces:R:3:move_mask:L:1\nO 0 0 0 1 2 3 4 5 6 T\n",
+          {.notes = &notes});
+  CHECK(notes == std::vector<std::string>{"the columns 'magmom' of the structure are not read",
+                                          "the columns 'move_mask' of the structure are not read"});
+}
+
+TEST_CASE("a comment of XYZ is read however it is written", "[structure]") {
+  const auto edges = [](const std::string& comment) {
+    return read_as("m.xyz", "1\n" + comment + "\nO 1 2 3\n").box().edges();
+  };
+  const Vec3<double> box(2, 3, 4);
+  CHECK(edges("Lattice = \"20 0 0 0 30 0 0 0 40\"") == box);
+  CHECK(edges("Lattice='20 0 0 0 30 0 0 0 40'  pbc = T") == box);
+  CHECK(edges("  Lattice={20 0 0 0 30 0 0 0 40} pbc=[T, T, T] note=\"a \\\"b\\\" = c\"") == box);
+  CHECK(edges("energy= -1.5 Lattice=[[20, 0, 0], [0, 30, 0], [0, 0, 40]], pbc=TTT") == box);
+  CHECK(edges("LATTICE=\"20,0,0,0,30,0,0,0,40\" PBC=\"true true true\"") == box);
+  CHECK(edges("pbc='F F F' Lattice='20 0 0 0 30 0 0 0 40'") == Vec3<double>(0, 0, 0));
+  CHECK(edges(" i = 0, time = 0.000, E = -17.1643447508") == Vec3<double>(0, 0, 0));
+  CHECK(edges("no mark of a key at all, Lattice 1 2 3") == Vec3<double>(0, 0, 0));
+  const auto refused = [](const std::string& comment) { return xyz_refusal("1\n" + comment + "\nO 1 2 3\n"); };
+  CHECK(refused("Lattice \"20 0 0 0 30 0 0 0 40\" pbc=T") ==
+        "m.xyz:2: 'Lattice' is not understood: a comment with '=' is read as key=value; put quotes about values with "
+        "blanks, or take the '=' out of a comment that is only a text");
+  CHECK(refused("a = 5.26 angstrom").starts_with("m.xyz:2: 'angstrom' is not understood"));
+  CHECK(refused("energy= pbc=T") ==
+        "m.xyz:2: behind 'energy=' stands 'pbc=T'; a value is expected, in quotes if it has blanks or '='");
+  CHECK(refused("pbc=") ==
+        "m.xyz:2: behind 'pbc=' stands nothing; a value is expected, in quotes if it has blanks or '='");
+  CHECK(refused("Lattice='1 0 0 0 1 0 0 0 1'pbc=F") ==
+        "m.xyz:2: behind the value of 'Lattice=' stands 'pbc=F'; a blank is expected");
+  CHECK(refused("Lattice={1 0 0 0 1 0 0 0 1") == "m.xyz:2: a brace behind 'Lattice=' is not closed");
+  CHECK(refused("step=1 step=2") == "m.xyz:2: 'step' stands twice in the comment");
+  CHECK(refused("Latice=\"20 0 0 0 30 0 0 0 40\"") ==
+        "m.xyz:2: 'Latice=' is not read; the box is given as Lattice=\"ax 0 0 0 by 0 0 0 cz\"");
+  CHECK(refused("cell=\"20 30 40\"").starts_with("m.xyz:2: 'cell=' is not read; the box is given as Lattice="));
+  CHECK(refused("units=bohr") == "m.xyz:2: the file is in units bohr; lj, real and metal are read");
+  CHECK(read_as("m.xyz", "1\nunits=reduced\nO 1 2 3\n", {.units = &unit_system("reduced")}).positions()[0][2] == 3);
+}
+
+TEST_CASE("what rounding leaves of an angle of 90 degrees is none", "[structure]") {
+  // The lattice of a cubic cell whose vectors were turned: 4 x 4 x 4 cells of argon, fcc, 5.26 angstrom.
+  std::string content =
+      "256\nLattice=\"21.04 0.0 1.2883284327030156e-15 3.3834900549196428e-15 21.04 1.2883284327030156e-15 0.0 0.0 "
+      "21.04\" pbc=\"T T T\"\n";
+  for (int cell = 0; cell < 64; ++cell) {
+    for (const Vec3<double>& site : {Vec3<double>(0, 0, 0), Vec3<double>(0, 2.63, 2.63), Vec3<double>(2.63, 0, 2.63),
+                                     Vec3<double>(2.63, 2.63, 0)}) {
+      const Vec3<double> x = site + 5.26 * Vec3<double>(cell % 4, cell / 4 % 4, cell / 16);
+      content += fmt::format("Ar {:.8f} {:.8f} {:.8f}\n", x[0], x[1], x[2]);
+    }
+  }
+  const auto s = read_as("m.xyz", content);
+  CHECK(s.box() == Box::periodic(Vec3<double>(21.04, 21.04, 21.04) * 0.1));
+  // Lennard-Jones below 0.9 nm, summed here: kJ/mol.
+  double energy = 0;
+  for (Index i = 0; i < s.size(); ++i) {
+    for (Index j = i + 1; j < s.size(); ++j) {
+      const double r2 = s.box().minimum_image(Vec3<double>(s.positions()[i] - s.positions()[j])).squaredNorm();
+      const double six = std::pow(0.34 * 0.34 / r2, 3);
+      if (r2 < 0.81) energy += 4 * 0.996 * (six * six - six);
+    }
+  }
+  CHECK(std::abs(energy + 2065.0061130040617) < 1e-9);
+  CHECK(xyz_refusal("1\nLattice=\"20 0 0 1e-8 30 0 0 0 40\"\nO 0 0 0\n").find("is not orthogonal along the axes") !=
+        std::string::npos);
+  CHECK(read_as("m.gro", water + "2.0 2.0 2.0 0 0 1e-12 0 -1e-12 0\n", water_masses).box() == Box::periodic({2, 2, 2}));
+}
+
+TEST_CASE("one frame of several is taken by its number", "[structure]") {
+  const std::string frames =
+      "1\nstep=0\nO 1 0 0\n2\nstep=1 Lattice='9 0 0 0 9 0 0 0 9'\nO 2 0 0\nH 3 0 0\n\n1\nstep=2\nN 4 0 0\n\n";
+  CHECK(read_as("m.xyz", frames, {.frame = 0}).positions()[0][0] == 1 * 0.1);
+  CHECK(read_as("m.xyz", frames, {.frame = 1}).size() == 2);
+  CHECK(read_as("m.xyz", frames, {.frame = 1}).box().is_periodic());
+  CHECK(read_as("m.xyz", frames, {.frame = -1}).masses()[0] == 14.007);
+  CHECK(xyz_refusal(frames, {.frame = 3}) == "frame = 3, but the file has 3 frames: 0 to 2, or -1 for the last");
+  CHECK(xyz_refusal(frames, {.frame = -4}) == "frame = -4, but the file has 3 frames: 0 to 2, or -1 for the last");
+  CHECK(xyz_refusal(frames + "5\n", {.frame = 0}) ==
+        "m.xyz:13: 5 atoms are announced, but the file ends after 0 of them");
+  CHECK(xyz_refusal("1\nstep=1\nO 0 0 0\n1\nstep 1 =\nO 0 0\n", {.frame = 1}).starts_with("m.xyz:5: 'step' is not"));
+  const std::string two = water + water_box + "\n    1\n    1SOL     OW    1   0.500   1.624   1.679\n   3.0 3.0 3.0\n";
+  CHECK(read_as("m.gro", two, {.types = water_masses.types, .frame = 0}).size() == 4);
+  const io::StructureOptions oxygen = {.types = {{.type = "OW", .mass = 16}}, .frame = -1};
+  CHECK(read_as("m.gro", two, oxygen).positions()[0][0] == 0.5);
+  CHECK(read_as("m.gro", two, oxygen).box() == Box::periodic({3, 3, 3}));
+  CHECK(gro_refusal(two, {.frame = 2}) == "frame = 2, but the file has 2 frames: 0 to 1, or -1 for the last");
 }
 
 TEST_CASE("a .gro file gives particles, residues and a box", "[structure]") {
@@ -169,7 +315,8 @@ TEST_CASE("a .gro file that is wrong is refused with its line", "[structure][mes
   CHECK(gro_refusal(water + "1 1 1 0 0 0.5 0 0 0\n", water_masses) ==
         "m.gro:7: the box is triclinic: its 9 numbers are 1 1 1 0 0 0.5 0 0 0; boxes are orthogonal");
   CHECK(gro_refusal(water + water_box + water, water_masses) ==
-        "m.gro:8: there is more behind the 4 atoms of the first frame; a structure is one frame");
+        "m.gro:8: there is more behind the 4 atoms of the first frame; a structure is one frame: give frame = 0, or "
+        "frame = -1 for the last");
   const std::string atom = "\n1\n    1SOL     OW    1   0.126   1.624";
   CHECK(gro_refusal(atom + "   1.6\n0 0 0\n") ==
         "m.gro:3: this atom ends at column 42; expected 44, as its numbers have 8 columns each");
@@ -178,6 +325,37 @@ TEST_CASE("a .gro file that is wrong is refused with its line", "[structure][mes
         "m.gro:3: there are no two numbers with decimal points behind column 20, where positions stand");
   CHECK(gro_refusal(atom + "   1.679\n0 0 0\n", {.units = &unit_system("reduced")}) ==
         "a .gro file in nm and ps needs units = \"molecular\", not \"reduced\"");
+}
+
+TEST_CASE("numbers of a .gro box that have grown together are read", "[structure]") {
+  const auto edges = [](const std::string& box) {
+    return read_as("m.gro", water + box + "\n", water_masses).box().edges();
+  };
+  CHECK(edges("1234.500001234.600001234.70000") == Vec3<double>(1234.5, 1234.6, 1234.7));
+  CHECK(edges("  10.000001234.50000   3.00000") == Vec3<double>(10, 1234.5, 3));
+  CHECK(edges("1000.000001000.000001000.00000-0.00000   0.00000-0.00000   0.00000   0.00000   0.00000") ==
+        Vec3<double>(1000, 1000, 1000));
+  CHECK(gro_refusal(water + "1234.500001234.60000\n", water_masses) ==
+        "m.gro:7: the box has 2 numbers; 3 are expected, or 9");
+}
+
+TEST_CASE("a wrong number of atoms in a .gro file, and velocities that are missing, are said as such",
+          "[structure][messages]") {
+  const auto counted = [](int atoms) {
+    return "title\n" + std::to_string(atoms) + water.substr(water.find("\n    1SOL"));
+  };
+  CHECK(gro_refusal(counted(3) + water_box, water_masses) ==
+        "m.gro:6: line 2 says 3 atoms, but 4 stand there; is the number wrong?");
+  CHECK(gro_refusal(counted(2) + water_box, water_masses) ==
+        "m.gro:5: line 2 says 2 atoms, but 4 stand there; is the number wrong?");
+  CHECK(gro_refusal(counted(5) + water_box + "\n", water_masses) ==
+        "m.gro:7: line 2 says 5 atoms, but the box stands here, behind 4; is the number wrong?");
+  const std::string still = "    1SOL    HW1    2   0.190   1.661   1.747\n",
+                    moved = "    1SOL     OW    1   0.126   1.624   1.679  0.1227 -0.0580  0.0434\n";
+  CHECK(gro_refusal("title\n2\n" + moved + still + water_box) ==
+        "m.gro:4: this atom has no velocity, and the first one has one; give velocities to all of them, or to none");
+  CHECK(gro_refusal("title\n2\n" + still + moved + water_box) ==
+        "m.gro:4: this atom has a velocity, and the first one has none; give velocities to all of them, or to none");
 }
 
 TEST_CASE("a structure that is not there is an error of files", "[structure]") {

@@ -195,7 +195,7 @@ TEST_CASE("LAMMPS's in.chain, 32 000 beads of its own, has LAMMPS's printed figu
 TEST_CASE("a molecule with pairs of 1-4 at half their strength has LAMMPS's energies, style by style",
           "[melts][oracle]") {
   const auto read = [](double factor) {
-    return io::read_structure(lammps_files / "molecule.data", {.file_units = "real", .special = {0, 0, factor}});
+    return io::read_structure(lammps_files / "molecule.data", {.file_units = "real", .special = {{0, 0, factor}}});
   };
   constexpr double kcal = 4.184;
   const LennardJonesForce pairs{.cutoff = 0.9, .cutoff_style = Cutoff::plain};

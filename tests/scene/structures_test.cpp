@@ -4,6 +4,7 @@
 #include "io/digest.hpp"
 #include "numbers/error.hpp"
 #include "scene/scene.hpp"
+#include "scene/warnings.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/process.hpp"
 
@@ -126,6 +127,54 @@ TEST_CASE("a structure runs in its box, and has changed where its hash has", "[s
                     Catch::Matchers::Contains("'argon.data' is no longer the file this scene was run with"));
 }
 
+TEST_CASE("coefficients of an input script are kept with their hash", "[scene][structure]") {
+  const std::string charmm = "structure = 'charmm.data'\ncoefficients = 'charmm.in'\n";
+  const Scene scene = scene_of(charmm, "molecular");
+  CHECK(scene.particles.topology()->mixing == Mixing::lorentz_berthelot);
+  CHECK(scene.effective_toml.find("coefficients_sha256 = ") != std::string::npos);
+  CHECK(scene.effective_toml.find("special = ") == std::string::npos);
+  check_effective(scene);
+  check_effective(
+      scene_of("structure = 'charmm.data'\ncoefficients = ['charmm.in']\nspecial = [0, 0, 0]\n", "molecular"));
+  CHECK(structure_refusal(charmm + "special = [0, 0, 1]\n", "molecular") ==
+        "charmm.in:11: special_bonds leaves [0, 0, 0], special says [0, 0, 1]; take one of them out");
+  CHECK(structure_refusal(charmm + "coefficients_sha256 = '12'\n", "molecular")
+            .starts_with("scene.toml:5: the coefficients are no longer those this scene was run with: their hash is "));
+  CHECK(structure_refusal("structure = 'charmm.data'\ncoefficients = []\ncoefficients_sha256 = ''\n", "molecular") ==
+        "scene.toml:4: coefficients = [] names no file; give one, such as \"system.in.settings\", or a list");
+  CHECK(structure_refusal("structure = 'charmm.data'\ncoefficients = ['charmm.in', 3]\n", "molecular") ==
+        "scene.toml:4: coefficients = [\"charmm.in\", 3] names no file; give one, such as \"system.in.settings\", or a "
+        "list");
+  CHECK(structure_refusal("structure = 'charmm.data'\ncoefficients = 'none.in'\n", "molecular")
+            .starts_with("scene.toml:4: none.in: "));
+}
+
+TEST_CASE("a scene takes one frame of several, and is told of columns that nobody reads", "[scene][structure]") {
+  const ScratchFolder folder;
+  write_text(folder / "run.xyz",
+             "1\nstep=0\nO 1 0 0\n2\nstep=1 Properties=species:S:1:pos:R:3:magmom:R:1\nO 2 0 0 0.5\nH 3 0 0 0.5\n");
+  const auto with = [&](const std::string& more) {
+    return read_scene(
+        "units = 'molecular'\n[particles]\nstructure = 'run.xyz'\n" + more +
+            "[hamiltonian]\ntype = 'kinetic_potential'\n[[hamiltonian.force]]\ntype = "
+            "'uniform_field'\nacceleration = ['0 nm/ps^2', '0 nm/ps^2', '0 nm/ps^2']\n[integrator]\nmethod = "
+            "'verlet'\nstep = '1 fs'\nsteps = 2\n",
+        folder / "scene.toml");
+  };
+  const Scene last = with("frame = -1\n");
+  CHECK(last.particles.size() == 2);
+  CHECK(last.effective_toml.find("frame = -1\n") != std::string::npos);
+  check_effective(last);
+  CHECK(warnings_of(last) == std::vector<std::string>{"the columns 'magmom' of the structure are not read"});
+  CHECK(with("frame = 0\n").particles.size() == 1);
+  CHECK_THROWS_WITH(
+      with("frame = 2\n"),
+      Catch::Matchers::Contains("scene.toml:4: frame = 2, but the file has 2 frames: 0 to 1, or -1 for the "
+                                "last"));
+  CHECK_THROWS_WITH(with("frame = 'barycenter'\n"),
+                    Catch::Matchers::Contains("run.xyz:4: there is more behind the 1 atoms"));
+}
+
 TEST_CASE("a builder is asked for by its name, and its scene is the same again", "[scene][builders]") {
   const Scene melt = scene_of("type = 'lattice'\ncells = [3, 3, 3]\ndensity = 0.8442\nmass = 1\ntemperature = 1.44\n");
   CHECK(melt.particles.size() == 108);
@@ -165,9 +214,10 @@ TEST_CASE("keys of structures that are wrong are refused at their lines", "[scen
         "scene.toml:2: a LAMMPS data file in real needs units = \"molecular\", not \"reduced\"");
   CHECK(structure_refusal("structure = 'molecule.data'\nfile_units = 'reel'\n", "molecular") ==
         "molecule.data:1: the file says units = real, file_units says 'reel'; take file_units out");
-  CHECK(structure_refusal("structure = 'make.py'\n") ==
-        "scene.toml:3: 'make.py' is of no kind that is read; a structure is a .data or .lmp file (LAMMPS), .xyz or "
-        ".extxyz, or .gro");
+  CHECK(
+      structure_refusal("structure = 'make.py'\n") ==
+      "scene.toml:3: 'make.py' is of no kind that is read; a structure is a .data or .lmp file or data.NAME (LAMMPS), "
+      ".xyz or .extxyz, or .gro");
   CHECK(structure_refusal("structure = 'none.data'\n").starts_with("scene.toml:3: none.data: "));
   CHECK(structure_refusal("structure = ''\n") ==
         "scene.toml:3: structure = \"\" names no file; give one, such as \"water.data\"");

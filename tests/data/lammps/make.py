@@ -1,5 +1,6 @@
 """Lets LAMMPS write data files, and record what it computes of them: see README.md."""
 
+import os
 import pathlib
 import sys
 
@@ -157,6 +158,19 @@ run 0
     for identifier, names in (("bond", bonds), ("angle", angles), ("dihedral", dihedrals), ("improper", impropers)):
         quantities.update(per_style(lmp, identifier, names))
     record(lmp, "molecule", quantities)
+    lmp.close()
+
+
+def charmm():
+    """The chain of charmm.data, by hand, with the coefficients of charmm.in: ends of dihedrals have forces of their own."""
+    lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
+    os.chdir(HERE)
+    lmp.file("charmm.in")
+    lmp.commands_string("""
+thermo_style custom step pe evdwl ecoul ebond eangle edihed eimp
+run 0
+""")
+    record(lmp, "charmm", {key: lmp.get_thermo(key) for key in ("evdwl", "ecoul", "ebond", "eangle", "edihed", "eimp")})
     lmp.close()
 
 
@@ -375,6 +389,7 @@ run 0
 
 if __name__ == "__main__":
     molecule()
+    charmm()
     chains()
     argon()
     melt()
