@@ -328,8 +328,8 @@ class CsvBodies {
     const double mass = number(line, fields, "mass");
     const auto [x, v] = state(line, fields, name, mass);
     bodies_.add(line, name, mass, x, v);
-    index_.emplace(name, row);
-    before_.add(mass, x, v);
+    if (has("about")) index_.emplace(name, row);
+    if (by_elements_) before_.add(mass, x, v);
   }
 
   void read_id(std::size_t line, const std::vector<std::string>& fields) {
@@ -362,6 +362,10 @@ class CsvBodies {
     if (bodies_.particles().size() == 0) return first_state(line, fields, name, mass);
     const bool jacobi = about.empty() && elements_about_ == ElementsAbout::all_before_it;
     const OrbitCenter center = jacobi ? before_ : center_at(line, about.empty() ? std::vector<Index>{0} : about);
+    if (center.mass() + mass == 0) {
+      const std::string& word = fields[columns_.at("about").field];
+      text_.fail(line, fmt::format("column 'about' is '{}', which has no mass to move about", word), word);
+    }
     const State state = state_by_elements(line, fields, G_ * (center.mass() + mass));
     // The first body rests in the origin.
     return about.empty() && !jacobi ? state : moved(state, center);
@@ -468,8 +472,8 @@ class CsvBodies {
   std::size_t heading_line_ = 0, field_count_ = 0;
   std::map<std::string, Column> columns_;
   bool by_elements_ = false;
-  OrbitCenter before_;  ///< of all bodies above
-  std::unordered_map<std::string, Index> index_;
+  OrbitCenter before_;                            ///< of all bodies above
+  std::unordered_map<std::string, Index> index_;  ///< by name, where `about` asks for it
   std::vector<std::int64_t> ids_;
   std::set<std::int64_t> known_ids_;
 };

@@ -203,6 +203,10 @@ class BodyTables {
     }
     const bool jacobi = about.empty() && elements_ == io::ElementsAbout::all_before_it;
     const OrbitCenter center = jacobi ? before_ : center_at(body, about.empty() ? std::vector<Index>{0} : about);
+    if (!about.empty() && center.mass() + mass == 0) {
+      body.fail("about", fmt::format("about = {} has no mass to move about; a body with a mass is expected",
+                                     to_text(*body.find("about"))));
+    }
     try {
       return moved(state_of_orbit(orbit, gravitation(body) * (center.mass() + mass)), center);
     } catch (const Error& error) {

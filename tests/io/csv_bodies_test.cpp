@@ -181,6 +181,8 @@ TEST_CASE("elements and vectors may be about another body, a barycenter, or all 
   CHECK(vectors.velocities()[1] == Vec3<double>(4, 5.25, 6));
   CHECK(csv_refusal(heads + "C,0,BB,1,0,0,0,0,0\n", "reduced") ==
         "b.csv:4: there is no 'BB' above this body; did you mean 'B'?");
+  CHECK(csv_refusal(heads + "C,0,,1,0,0,0,0,0\nD,0,C,1,0,0,0,0,0\n", "reduced") ==
+        "b.csv:5: column 'about' is 'C', which has no mass to move about");
   CHECK(csv_refusal("name,mass,about,x,y,z,vx,vy,vz\nA,1,B,0,0,0,0,0,0\n", "reduced") ==
         "b.csv:2: column 'about' of the first body names another; leave it empty");
 }

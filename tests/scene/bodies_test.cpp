@@ -246,7 +246,7 @@ TEST_CASE("what elements cannot be about is refused", "[scene][bodies][messages]
             .refusal() ==
         "scene.toml:18: about = [\"B\", \"C\"]: these bodies have no mass, so they have no barycenter");
   CHECK(reduced_scene(a + b + body_table("C", "mass = 0\na = 1\nabout = 'B'\n")).refusal() ==
-        "scene.toml:12: an orbit about G m = 0 is impossible; a mass above 0 is expected");
+        "scene.toml:14: about = \"B\" has no mass to move about; a body with a mass is expected");
   CHECK(reduced_scene(a + body_table("C", "mass = 0\na = 1\nP = 3\n")).refusal() ==
         "scene.toml:10: P = 3 stands beside a; give one of a, P or q");
   CHECK(
