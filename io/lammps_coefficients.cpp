@@ -405,8 +405,11 @@ class PairReader {
     if (style == nullptr) row.fail(not_read(name), name);
     const std::size_t count = row.words.size();
     if (count < 2 || count > (style->charmm ? 4 : 3) || (style->charmm && count == 3)) {
-      row.fail(fmt::format("this pair has {} coefficients; epsilon and sigma are expected, and perhaps {}", count,
-                           style->charmm ? "both again for the ends of dihedrals" : "a cutoff"));
+      const bool unsaid = row.style.empty() && count == 4;
+      row.fail(fmt::format(
+          "this pair has {} coefficients; epsilon and sigma are expected, and perhaps {}{}", count,
+          style->charmm ? "both again for the ends of dihedrals" : "a cutoff",
+          unsaid ? ", or the style behind the name of the section: 'Pair Coeffs # lj/charmm/coul/long'" : ""));
     }
     static constexpr std::array<std::string_view, 4> names = {"epsilon", "sigma", "epsilon of ends", "sigma of ends"};
     std::array<double, 4> c{};

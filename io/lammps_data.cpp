@@ -257,7 +257,7 @@ class LammpsDataReader {
       const LammpsKinds::OfType& of_type = kinds.types[static_cast<std::size_t>(one.type)];
       for (int k = 0; k < of_type.count; ++k) terms.push_back({one.particles, of_type.first + k});
       if constexpr (n == 4) {
-        if (of_type.weight != 0) structure_.end_pairs.push_back({one.particles, of_type.weight});
+        if (of_type.weight != 0) structure_.end_pairs.push_back({one.particles, of_type.weight, of_type.weight});
       }
     }
   }

@@ -119,9 +119,9 @@ TEST_CASE("what says more than coefficients is refused by name", "[structure][me
         "m.in.0:19: 'compute no' of pair_modify is not read; mix, shift and "
         "tail are");
   CHECK(
-      script_refusal("special_bonds amber") ==
-      "m.in.0:19: special_bonds leaves [0, 0, 0.5] of Lennard-Jones forces and [0, 0, 0.8333333333333334] of those of "
-      "charges; special has one factor for both: give it, and take this line out");
+      script_refusal("pair_style lj/cut/coul/cut 2.5\nspecial_bonds coul 0 0.5 1 lj 0 0 1") ==
+      "m.in.0:20: special_bonds leaves [0, 0, 1] of Lennard-Jones forces and [0, 0.5, 1] of those of charges; they may "
+      "differ in the third factor only");
   CHECK(script_refusal("special_bonds lj/coul 0 0 0.5 angle yes")
             .starts_with("m.in.0:19: 'angle yes' of special_bonds is not read"));
   CHECK(error_of([] {
@@ -131,6 +131,29 @@ TEST_CASE("what says more than coefficients is refused by name", "[structure][me
   CHECK(script_refusal("pair_modify shift yes tail yes", {.notes = &notes}).empty());
   CHECK(notes == std::vector<std::string>{"pair_modify shift yes is for the scene to say: cutoff_style = \"shifted\"",
                                           "pair_modify tail yes is for the scene to say: tail = true"});
+}
+
+TEST_CASE("special_bonds may leave of charges another part than of Lennard-Jones forces", "[structure]") {
+  // amber: a half, and five sixths; a style without charges knows only the first.
+  const auto plain = read_scripts({init + settings + "special_bonds amber\n"});
+  CHECK(plain.topology()->pair_factor(0, 3) == 0.5);
+  CHECK(plain.topology()->dihedrals.empty());
+  std::string charged = bare;
+  charged.replace(charged.find("# molecular"), 11, "# full");
+  for (const auto& [row, with] :
+       {std::pair("1 1 1 1 1 1\n", "1 1 1 0.5 1 1 1\n"), std::pair("2 1 2 2 1 1\n", "2 1 2 0 2 1 1\n"),
+        std::pair("3 1 2 2 2 1\n", "3 1 2 0 2 2 1\n"), std::pair("4 1 1 2 2 2\n", "4 1 1 -2 2 2 2\n")}) {
+    charged.replace(charged.find(row), std::string(row).size(), with);
+  }
+  const std::string scripts =
+      "units lj\natom_style full\npair_style lj/cut/coul/cut 2.5\nbond_style hybrid harmonic "
+      "morse\nangle_style harmonic\nspecial_bonds amber\n" +
+      settings;
+  const auto s = read_scripts({scripts}, {}, charged);
+  CHECK(s.topology()->pair_factor(0, 3) == 0);
+  CHECK(s.topology()->scaled_pairs.empty());
+  CHECK(s.topology()->dihedrals == std::vector<BondedTerm<4>>{{{0, 1, 2, 3}, 0}});
+  CHECK(s.topology()->dihedral_kinds == std::vector<TermKind>{{"one_four", {0.5, 1, -(5.0 / 6)}}});
 }
 
 TEST_CASE("ends of dihedrals have the pair force that weights leave them", "[structure]") {
