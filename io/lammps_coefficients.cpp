@@ -252,19 +252,18 @@ class CoefficientReader {
 
  private:
   void add(const CoefficientRow& row, const std::string& family, LammpsKinds& kinds) const {
-    if (row.style.empty() || is_hybrid(row.style)) {
-      row.fail(
-          row.of_script
-              ? fmt::format("the style of these coefficients is not said; give a line {}_style too", family)
-              : fmt::format("the style of these coefficients is not said; write it behind the name of the section: "
-                            "'{} # harmonic'",
-                            CoefficientRows::title_of(family)));
-    }
     std::vector<std::string> known;
     for (const CoefficientStyle& style : coefficient_styles) {
       if (style.family != family) continue;
       if (style.name == row.style) return add(style, row, kinds);
       known.emplace_back(style.name);
+    }
+    if (row.style.empty() || is_hybrid(row.style)) {
+      row.fail(fmt::format("the style of these coefficients is not said; {}{}",
+                           row.of_script ? fmt::format("give a line {}_style too", family)
+                                         : fmt::format("write it behind the name of the section, '{} # STYLE'",
+                                                       CoefficientRows::title_of(family)),
+                           those_read(known)));
     }
     row.fail(fmt::format("style '{}' of {} is not read{}", row.style, row.where, those_read(known)), row.style);
   }

@@ -280,8 +280,8 @@ TEST_CASE("terms that are wrong are refused with their line", "[structure][messa
   const std::string good = "1 1 1 2";
   CHECK(
       bond(good, "Bond Coeffs\n\n1 10 1\n") ==
-      "m.data:27: the style of these coefficients is not said; write it behind the name of the section: 'Bond Coeffs # "
-      "harmonic'");
+      "m.data:27: the style of these coefficients is not said; write it behind the name of the section, 'Bond Coeffs # "
+      "STYLE'; known are: harmonic, morse, fene");
   CHECK(bond(good, "Bond Coeffs # class2\n\n1 1 1 1 1\n") ==
         "m.data:27: style 'class2' of section 'Bond Coeffs' is not read; known are: harmonic, morse, fene");
   CHECK(bond(good, "Bond Coeffs # harmonic\n\n1 1\n") ==

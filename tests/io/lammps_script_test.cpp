@@ -111,8 +111,10 @@ TEST_CASE("what says more than coefficients is refused by name", "[structure][me
       script_refusal("pair_coeff 1 2 1 1 3.5") ==
       "m.in.0:19: the cutoffs of pairs differ: 3.5 here, 2.5 at line 14; a force has one cutoff, give it in the scene "
       "and take these out");
-  CHECK(script_refusal("bond_coeff 1 30.0 1.0") ==
-        "m.in.0:19: the style of these coefficients is not said; give a line bond_style too");
+  CHECK(
+      script_refusal("bond_coeff 1 30.0 1.0") ==
+      "m.in.0:19: the style of these coefficients is not said; give a line bond_style too; known are: harmonic, morse, "
+      "fene");
   CHECK(script_refusal("pair_modify mix sixthpower") ==
         "m.in.0:19: pair_modify mix sixthpower is not read; geometric and arithmetic are");
   CHECK(script_refusal("pair_modify compute no") ==
