@@ -204,17 +204,17 @@ class CoefficientRows {
     row.words.erase(row.words.begin());
   }
 
-  /// One type, or in a command those of "*", "2*", "*3", "2*3".
+  /// One type, or in a command perhaps several.
   std::pair<int, int> range(const CoefficientRow& row, std::string_view word, const std::string& kind,
                             std::int64_t types) const {
-    const bool plain = !row.of_script || data_.labels().is_label(kind, word);  // "C*" may be one
-    const std::size_t star = plain ? std::string_view::npos : word.find('*');
-    const auto type = [&](std::string_view one) {
-      return static_cast<int>(data_.labels().type_in(*row.text, row.line, one, kind, "the type", types) - 1);
-    };
-    if (star == std::string_view::npos) return {type(word), type(word)};
-    const std::string_view from = word.substr(0, star), to = word.substr(star + 1);
-    return {from.empty() ? 0 : type(from), to.empty() ? static_cast<int>(types) - 1 : type(to)};
+    const auto index = [](std::int64_t type) { return static_cast<int>(type - 1); };
+    const TypeLabels& labels = data_.labels();
+    if (row.of_script) {
+      const auto [from, to] = labels.types_in(*row.text, row.line, word, kind, types);
+      return {index(from), index(to)};
+    }
+    const int type = index(labels.type_in(*row.text, row.line, word, kind, "the type", types));
+    return {type, type};
   }
 
   const LammpsText& data_;

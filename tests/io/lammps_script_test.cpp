@@ -62,7 +62,7 @@ TEST_CASE("scripts of LAMMPS give masses, styles and coefficients", "[structure]
 
 TEST_CASE("commands of scripts come behind the sections of the data file", "[structure]") {
   const auto s =
-      read_scripts({init + settings + "mass * 5\npair_coeff * * 1 2\npair_coeff 1 2 7 8\nangle_coeff 1 6 60\n"}, {},
+      read_scripts({init + settings + "mass 1*2 5\npair_coeff * * 1 2\npair_coeff 1 2 7 8\nangle_coeff 1 6 60\n"}, {},
                    bare + "\nMasses\n\n1 1\n2 1\n\nPair Coeffs # the scene's\n\n1 9 9\n2 9 9\n");
   CHECK(s.masses()[1] == 5);
   CHECK(s.topology()->pair_kind(0, 0) == PairKind{1, 2});
@@ -106,6 +106,7 @@ TEST_CASE("what says more than coefficients is refused by name", "[structure][me
             .starts_with("m.in.0:19: pair style 'hybrid/overlay' is not read; known are: lj/cut, "));
   CHECK(
       script_refusal("pair_coeff 1 1 buck 1 1 1").starts_with("m.in.0:19: pair style 'buck' is not read; known are: "));
+  CHECK(script_refusal("mass 2*3 1") == "m.in.0:19: the type is '3'; a whole number is expected, 1 to 2");
   CHECK(script_refusal("pair_coeff 1 3 1 1") == "m.in.0:19: the type is '3'; a whole number is expected, 1 to 2");
   CHECK(
       script_refusal("pair_coeff 1 2 1 1 3.5") ==
