@@ -204,17 +204,17 @@ class CoefficientRows {
     row.words.erase(row.words.begin());
   }
 
-  /// One type, or in a command those of "*", "2*", "*3", "2*3".
+  /// One type, or in a command perhaps several.
   std::pair<int, int> range(const CoefficientRow& row, std::string_view word, const std::string& kind,
                             std::int64_t types) const {
-    const bool plain = !row.of_script || data_.labels().is_label(kind, word);  // "C*" may be one
-    const std::size_t star = plain ? std::string_view::npos : word.find('*');
-    const auto type = [&](std::string_view one) {
-      return static_cast<int>(data_.labels().type_in(*row.text, row.line, one, kind, "the type", types) - 1);
-    };
-    if (star == std::string_view::npos) return {type(word), type(word)};
-    const std::string_view from = word.substr(0, star), to = word.substr(star + 1);
-    return {from.empty() ? 0 : type(from), to.empty() ? static_cast<int>(types) - 1 : type(to)};
+    const auto index = [](std::int64_t type) { return static_cast<int>(type - 1); };
+    const TypeLabels& labels = data_.labels();
+    if (row.of_script) {
+      const auto [from, to] = labels.types_in(*row.text, row.line, word, kind, types);
+      return {index(from), index(to)};
+    }
+    const int type = index(labels.type_in(*row.text, row.line, word, kind, "the type", types));
+    return {type, type};
   }
 
   const LammpsText& data_;
@@ -252,19 +252,18 @@ class CoefficientReader {
 
  private:
   void add(const CoefficientRow& row, const std::string& family, LammpsKinds& kinds) const {
-    if (row.style.empty() || is_hybrid(row.style)) {
-      row.fail(
-          row.of_script
-              ? fmt::format("the style of these coefficients is not said; give a line {}_style too", family)
-              : fmt::format("the style of these coefficients is not said; write it behind the name of the section: "
-                            "'{} # harmonic'",
-                            CoefficientRows::title_of(family)));
-    }
     std::vector<std::string> known;
     for (const CoefficientStyle& style : coefficient_styles) {
       if (style.family != family) continue;
       if (style.name == row.style) return add(style, row, kinds);
       known.emplace_back(style.name);
+    }
+    if (row.style.empty() || is_hybrid(row.style)) {
+      row.fail(fmt::format("the style of these coefficients is not said; {}{}",
+                           row.of_script ? fmt::format("give a line {}_style too", family)
+                                         : fmt::format("write it behind the name of the section, '{} # STYLE'",
+                                                       CoefficientRows::title_of(family)),
+                           those_read(known)));
     }
     row.fail(fmt::format("style '{}' of {} is not read{}", row.style, row.where, those_read(known)), row.style);
   }
@@ -405,8 +404,11 @@ class PairReader {
     if (style == nullptr) row.fail(not_read(name), name);
     const std::size_t count = row.words.size();
     if (count < 2 || count > (style->charmm ? 4 : 3) || (style->charmm && count == 3)) {
-      row.fail(fmt::format("this pair has {} coefficients; epsilon and sigma are expected, and perhaps {}", count,
-                           style->charmm ? "both again for the ends of dihedrals" : "a cutoff"));
+      const bool unsaid = row.style.empty() && count == 4;
+      row.fail(fmt::format(
+          "this pair has {} coefficients; epsilon and sigma are expected, and perhaps {}{}", count,
+          style->charmm ? "both again for the ends of dihedrals" : "a cutoff",
+          unsaid ? ", or the style behind the name of the section: 'Pair Coeffs # lj/charmm/coul/long'" : ""));
     }
     static constexpr std::array<std::string_view, 4> names = {"epsilon", "sigma", "epsilon of ends", "sigma of ends"};
     std::array<double, 4> c{};

@@ -92,11 +92,8 @@ class LammpsDataReader {
     for (const LammpsCommand* command : script_.all("mass")) {
       if (command->words.size() != 3) command->fail("a type and its mass are expected behind 'mass'");
       const double mass = mass_number_in(*command->text, command->line, command->words[2], "the mass");
-      const std::string_view type = command->words[1];
-      if (type == "*") std::fill(masses_.begin(), masses_.end(), mass);
-      if (type == "*") continue;
-      masses_[static_cast<std::size_t>(
-          data_.labels().type_in(*command->text, command->line, type, "atom", "the type", types) - 1)] = mass;
+      const auto [from, to] = data_.labels().types_in(*command->text, command->line, command->words[1], "atom", types);
+      for (std::int64_t type = from; type <= to; ++type) masses_[static_cast<std::size_t>(type - 1)] = mass;
     }
   }
 
@@ -257,7 +254,7 @@ class LammpsDataReader {
       const LammpsKinds::OfType& of_type = kinds.types[static_cast<std::size_t>(one.type)];
       for (int k = 0; k < of_type.count; ++k) terms.push_back({one.particles, of_type.first + k});
       if constexpr (n == 4) {
-        if (of_type.weight != 0) structure_.end_pairs.push_back({one.particles, of_type.weight});
+        if (of_type.weight != 0) structure_.end_pairs.push_back({one.particles, of_type.weight, of_type.weight});
       }
     }
   }

@@ -61,7 +61,7 @@ std::pair<Factors, Factors> factors_of(const LammpsCommand& command) {
       ++k;
     } else {
       command.fail(
-          fmt::format("'{}' of special_bonds is not read; fene, charmm, dreiding, and three factors behind lj, "
+          fmt::format("'{}' of special_bonds is not read; fene, charmm, amber, dreiding, and three factors behind lj, "
                       "coul or lj/coul are",
                       fmt::join(words.begin() + static_cast<std::ptrdiff_t>(k), words.end(), " ")));
     }
@@ -165,17 +165,27 @@ std::string LammpsScript::style(const std::string& family) const {
   return command == nullptr ? "" : without_suffix(command->words[1]);
 }
 
+std::optional<LammpsScript::EndFactors> LammpsScript::end_factors() const {
+  const LammpsCommand *command = find("special_bonds"), *pairs = find("pair_style");
+  if (command == nullptr) return {};
+  const auto [lennard_jones, charges] = factors_of(*command);
+  // Where no style has charges, what is left of their forces means nothing.
+  const bool has_charges =
+      pairs == nullptr || fmt::format("{}", fmt::join(pairs->words, " ")).find("coul") != std::string::npos;
+  if (!has_charges || lennard_jones == charges) return {};
+  if (lennard_jones[0] == charges[0] && lennard_jones[1] == charges[1]) return EndFactors{lennard_jones[2], charges[2]};
+  command->fail(
+      fmt::format("special_bonds leaves {} of Lennard-Jones forces and {} of those of charges; they may differ "
+                  "in the third factor only",
+                  factors_told(lennard_jones), factors_told(charges)));
+}
+
 std::optional<Factors> LammpsScript::special() const {
   const LammpsCommand* command = find("special_bonds");
   if (command == nullptr) return {};
-  const auto [lennard_jones, charges] = factors_of(*command);
-  if (lennard_jones != charges) {
-    command->fail(
-        fmt::format("special_bonds leaves {} of Lennard-Jones forces and {} of those of charges; special has "
-                    "one factor for both: give it, and take this line out",
-                    factors_told(lennard_jones), factors_told(charges)));
-  }
-  return lennard_jones;
+  Factors factors = factors_of(*command).first;
+  if (end_factors()) factors[2] = 0;
+  return factors;
 }
 
 std::optional<Mixing> LammpsScript::mixing() const {

@@ -34,9 +34,17 @@ class LammpsScript {
   /// @throws FileError, SceneError
   explicit LammpsScript(const StructureOptions& options);
 
-  /// Options with what the scripts say: units, style of atoms, special_bonds, the mixing of pair_modify.
+  /// Options with what the scripts say: units, style of atoms, special_bonds, the mixing of pair_modify. Where there
+  /// are `end_factors`, special leaves nothing of such pairs.
   /// @throws SceneError  where the options say something else
   StructureOptions completed(StructureOptions options) const;
+
+  /// What special_bonds leaves of the two forces of particles three bonds apart, where it is not the same of both.
+  struct EndFactors {
+    double lennard_jones, charges;
+  };
+  /// @throws SceneError
+  std::optional<EndFactors> end_factors() const;
 
   /// The last command of a name, such as "bond_style"; null if there is none.
   const LammpsCommand* find(std::string_view name) const;

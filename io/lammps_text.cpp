@@ -105,6 +105,16 @@ std::int64_t TypeLabels::type_in(const TextFile& text, std::size_t line, std::st
             label);
 }
 
+std::pair<std::int64_t, std::int64_t> TypeLabels::types_in(const TextFile& text, std::size_t line,
+                                                           std::string_view word, const std::string& kind,
+                                                           std::int64_t most) const {
+  const auto type = [&](std::string_view one) { return type_in(text, line, one, kind, "the type", most); };
+  const std::size_t star = is_label(kind, word) ? std::string_view::npos : word.find('*');  // "C*" may be a label
+  if (star == std::string_view::npos) return {type(word), type(word)};
+  const std::string_view from = word.substr(0, star), to = word.substr(star + 1);
+  return {from.empty() ? 1 : type(from), to.empty() ? most : type(to)};
+}
+
 bool TypeLabels::is_label(const std::string& kind, std::string_view word) const {
   const auto known = types_.find(kind);
   return known != types_.end() && known->second.contains(std::string(word));

@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace noether::io {
@@ -28,6 +29,10 @@ class TypeLabels {
   /// @throws SceneError
   std::int64_t type_in(const TextFile& text, std::size_t line, std::string_view word, const std::string& kind,
                        std::string_view what, std::int64_t most) const;
+  /// The types, from and up to with, that a word of a command means: one, or those of "*", "2*", "*3", "2*3".
+  /// @throws SceneError
+  std::pair<std::int64_t, std::int64_t> types_in(const TextFile& text, std::size_t line, std::string_view word,
+                                                 const std::string& kind, std::int64_t most) const;
   bool is_label(const std::string& kind, std::string_view word) const;
   /// The label of a type; empty if it has none.
   std::string label(const std::string& kind, std::int64_t type) const;

@@ -155,31 +155,6 @@ void note(const StructureOptions& options, std::string what) {
   if (options.notes != nullptr) options.notes->push_back(std::move(what));
 }
 
-void add_end_pairs(const TextFile& text, const Structure& structure, const ParticleSystem<double>& s,
-                   Topology& topology) {
-  if (structure.end_pairs.empty()) return;
-  Topology ends;  // mixes their parameters
-  ends.pair_kinds = structure.end_kinds.empty() ? topology.pair_kinds : structure.end_kinds;
-  ends.explicit_pairs = structure.end_kinds.empty() ? topology.explicit_pairs : structure.explicit_end_kinds;
-  ends.mixing = topology.mixing;
-  if (ends.pair_kinds.empty()) {
-    text.fail(0,
-              "dihedrals give their ends a pair force by a weight, and types have no epsilon and sigma; give both in "
-              "section 'Pair Coeffs' or [[particles.type]]");
-  }
-  std::map<std::array<double, 3>, int> known;
-  for (const auto& [particles, weight] : structure.end_pairs) {
-    const Index i = particles.front(), j = particles.back();
-    const PairKind pair = ends.pair_kind(topology.type(i), topology.type(j));
-    const double charges =
-        s.has<Charge>() ? s.units().coulomb_constant * s.column<Charge>()[i] * s.column<Charge>()[j] : 0;
-    const std::array<double, 3> parameters = {weight * pair.epsilon, pair.sigma, weight * charges};
-    const auto [at, fresh] = known.try_emplace(parameters, static_cast<int>(topology.dihedral_kinds.size()));
-    if (fresh) topology.dihedral_kinds.push_back({"one_four", {parameters.begin(), parameters.end()}});
-    topology.dihedrals.push_back({particles, at->second});
-  }
-}
-
 std::size_t frame_of(const StructureOptions& options, std::size_t frames) {
   const auto count = static_cast<std::int64_t>(frames);
   const std::int64_t wanted = options.frame.value_or(0), frame = wanted < 0 ? wanted + count : wanted;
@@ -210,6 +185,12 @@ ParticleSystem<double> read_structure(const std::filesystem::path& file, const S
   Structure structure = format == StructureFormat::lammps_data ? read_lammps_data(text, script, units, told)
                         : format == StructureFormat::gro       ? read_gro(text, units, told)
                                                                : read_extended_xyz(text, units, told);
+  const auto ends = script.end_factors();
+  if (ends && !structure.end_pairs.empty()) {
+    text.fail(0,
+              "dihedrals give their ends a pair force by weights, and special_bonds gives them another one; make the "
+              "weights 0 or take special_bonds out");
+  }
   if (!structure.end_pairs.empty() && special[2] != 0) {
     throw Error(
         fmt::format("special leaves {} of the force between particles three bonds apart, which dihedrals of this "
@@ -227,6 +208,7 @@ ParticleSystem<double> read_structure(const std::filesystem::path& file, const S
   check_masses(s, topology, file);
   check_stated_temperature(text, structure, s, told);
   topology.scale_by_bonds(s.size(), special);
+  if (ends) structure.end_pairs = pairs_three_bonds_apart(topology, s.size(), ends->lennard_jones, ends->charges);
   add_end_pairs(text, structure, s, topology);
   s.set_box(box);
   check_positions(s, file);

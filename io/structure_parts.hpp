@@ -50,11 +50,11 @@ struct Structure {
   };
   std::optional<StatedTemperature> temperature;
   bool velocity_units_assumed = false;  ///< because nobody says them
-  std::optional<Mixing> mixing;  ///< as the program does it that wrote the file
-  /// The ends of dihedrals have a pair force of their own, times a weight.
+  std::optional<Mixing> mixing;         ///< as the program does it that wrote the file
+  /// Particles three bonds apart that have a pair force of their own, and what is left of its two parts.
   struct EndPair {
-    std::array<Index, 4> particles;
-    double weight;
+    std::array<Index, 4> particles;  ///< with those between them
+    double lennard_jones, charges;
   };
   std::vector<EndPair> end_pairs;
   std::vector<PairKind> end_kinds;  ///< their parameters by type; empty: those of all pairs
@@ -94,6 +94,10 @@ void note(const StructureOptions& options, std::string what);
 /// @throws SceneError
 void check_stated_temperature(const TextFile& text, const Structure& structure, const ParticleSystem<double>& s,
                               const StructureOptions& options);
+
+/// All pairs of particles three bonds apart, with what is left of their forces.
+std::vector<Structure::EndPair> pairs_three_bonds_apart(const Topology& topology, Index n, double lennard_jones,
+                                                        double charges);
 
 /// Makes dihedrals of kind "one_four" of the ends that have a pair force of their own.
 /// @throws SceneError  where particles have no Lennard-Jones parameters

@@ -56,7 +56,13 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 12> keys_of_
 
 XyzComment::XyzComment(const TextFile& text, std::size_t line) : text_(text), line_(line) {
   std::string_view rest = text.lines()[line - 1];
-  if (rest.find('=') == std::string_view::npos) return;
+  if (rest.find('=') == std::string_view::npos) {
+    // As i-PI writes it, with units of its own.
+    if (rest.find("CELL(") == std::string_view::npos && rest.find("CELL{") == std::string_view::npos) return;
+    fail(
+        "the cell of i-PI in this comment is not read; give Lattice=\"ax 0 0 0 by 0 0 0 cz\", and positions in "
+        "angstrom");
+  }
   for (skip_blanks(rest); !rest.empty(); skip_blanks(rest)) {
     const std::string name = key(rest), small = in_small_letters(name);
     std::string said = value(rest, name);

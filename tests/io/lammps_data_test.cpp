@@ -280,8 +280,8 @@ TEST_CASE("terms that are wrong are refused with their line", "[structure][messa
   const std::string good = "1 1 1 2";
   CHECK(
       bond(good, "Bond Coeffs\n\n1 10 1\n") ==
-      "m.data:27: the style of these coefficients is not said; write it behind the name of the section: 'Bond Coeffs # "
-      "harmonic'");
+      "m.data:27: the style of these coefficients is not said; write it behind the name of the section, 'Bond Coeffs # "
+      "STYLE'; known are: harmonic, morse, fene");
   CHECK(bond(good, "Bond Coeffs # class2\n\n1 1 1 1 1\n") ==
         "m.data:27: style 'class2' of section 'Bond Coeffs' is not read; known are: harmonic, morse, fene");
   CHECK(bond(good, "Bond Coeffs # harmonic\n\n1 1\n") ==
@@ -294,9 +294,10 @@ TEST_CASE("terms that are wrong are refused with their line", "[structure][messa
                           "Dihedral Coeffs # " + style + "\n\n1 " + numbers + "\n\nDihedrals\n\n1 1 1 2 3 4\n"));
   };
   CHECK(dihedral("charmm", "1 1 0 1.5") == "m.data:23: the weight of a charmm dihedral is 1.5; 0 to 1 is expected");
-  CHECK(dihedral("charmm", "1 1 0 0.5") ==
-        "m.data: dihedrals give their ends a pair force by a weight, and types have no epsilon and sigma; give both in "
-        "section 'Pair Coeffs' or [[particles.type]]");
+  CHECK(
+      dihedral("charmm", "1 1 0 0.5") ==
+      "m.data: the ends of dihedrals have a pair force of their own, and types have no epsilon and sigma; give both in "
+      "section 'Pair Coeffs' or [[particles.type]]");
   CHECK(dihedral("fourier", "2 1 1 0") ==
         "m.data:23: the number of terms of style 'fourier' is '2'; a whole number is expected, 1 to 1");
   CHECK(dihedral("fourier", "2 1 1 0 1 1 0 5") ==
@@ -306,6 +307,13 @@ TEST_CASE("terms that are wrong are refused with their line", "[structure][messa
         "m.data:23: coefficient 2 of style 'charmm' is 1.5; a whole number is expected, 0 to 100");
   CHECK(data_refusal(two_atoms + pair_atoms + "\nPair Coeffs # buck\n\n1 1 1 1\n2 1 1 1\n")
             .starts_with("m.data:21: pair style 'buck' is not read; known are: lj/cut"));
+}
+
+TEST_CASE("four numbers of a pair need a style that has them", "[structure][messages]") {
+  CHECK(data_refusal(two_atoms + pair_atoms + "\nPair Coeffs\n\n1 1 1 1 1\n2 1 1 1 1\n") ==
+        "m.data:21: this pair has 4 coefficients; epsilon and sigma are expected, and perhaps a cutoff, or the style "
+        "behind "
+        "the name of the section: 'Pair Coeffs # lj/charmm/coul/long'");
 }
 
 TEST_CASE("no other potential is proposed in the place of one that is not read", "[structure][messages]") {
@@ -348,7 +356,7 @@ TEST_CASE("a word behind Atoms that is no style is a remark where the columns te
       "zhi\n0 -2e-16 0 xy xz yz\n\nMasses\n\n1 1.0\n\nAtoms # I like comments\n\n1 1 1.0 1.0 1.0\n2 1 9.0 1.5 1.0\n");
   const double r2 = s.box().minimum_image(Vec3<double>(s.positions()[1] - s.positions()[0])).squaredNorm();
   const double six = 1 / (r2 * r2 * r2);
-  CHECK(std::abs(4 * (six * six - six) + 0.05142787991644582) < 1e-14);
+  CHECK(std::abs(4 * (six * six - six) + 0.05142787991644582) < 1e-12);
   const std::string rows = "\n\n1 1 1 0 1 0\n2 1 2 1 1 0\n";
   CHECK(data_refusal(two_atoms + "\nAtoms # my atoms" + rows) ==
         "m.data:14: rows of 6 words may be of several styles, and 'my' is none; write 'Atoms # molecular', or give "

@@ -62,7 +62,7 @@ TEST_CASE("scripts of LAMMPS give masses, styles and coefficients", "[structure]
 
 TEST_CASE("commands of scripts come behind the sections of the data file", "[structure]") {
   const auto s =
-      read_scripts({init + settings + "mass * 5\npair_coeff * * 1 2\npair_coeff 1 2 7 8\nangle_coeff 1 6 60\n"}, {},
+      read_scripts({init + settings + "mass 1*2 5\npair_coeff * * 1 2\npair_coeff 1 2 7 8\nangle_coeff 1 6 60\n"}, {},
                    bare + "\nMasses\n\n1 1\n2 1\n\nPair Coeffs # the scene's\n\n1 9 9\n2 9 9\n");
   CHECK(s.masses()[1] == 5);
   CHECK(s.topology()->pair_kind(0, 0) == PairKind{1, 2});
@@ -106,22 +106,25 @@ TEST_CASE("what says more than coefficients is refused by name", "[structure][me
             .starts_with("m.in.0:19: pair style 'hybrid/overlay' is not read; known are: lj/cut, "));
   CHECK(
       script_refusal("pair_coeff 1 1 buck 1 1 1").starts_with("m.in.0:19: pair style 'buck' is not read; known are: "));
+  CHECK(script_refusal("mass 2*3 1") == "m.in.0:19: the type is '3'; a whole number is expected, 1 to 2");
   CHECK(script_refusal("pair_coeff 1 3 1 1") == "m.in.0:19: the type is '3'; a whole number is expected, 1 to 2");
   CHECK(
       script_refusal("pair_coeff 1 2 1 1 3.5") ==
       "m.in.0:19: the cutoffs of pairs differ: 3.5 here, 2.5 at line 14; a force has one cutoff, give it in the scene "
       "and take these out");
-  CHECK(script_refusal("bond_coeff 1 30.0 1.0") ==
-        "m.in.0:19: the style of these coefficients is not said; give a line bond_style too");
+  CHECK(
+      script_refusal("bond_coeff 1 30.0 1.0") ==
+      "m.in.0:19: the style of these coefficients is not said; give a line bond_style too; known are: harmonic, morse, "
+      "fene");
   CHECK(script_refusal("pair_modify mix sixthpower") ==
         "m.in.0:19: pair_modify mix sixthpower is not read; geometric and arithmetic are");
   CHECK(script_refusal("pair_modify compute no") ==
         "m.in.0:19: 'compute no' of pair_modify is not read; mix, shift and "
         "tail are");
   CHECK(
-      script_refusal("special_bonds amber") ==
-      "m.in.0:19: special_bonds leaves [0, 0, 0.5] of Lennard-Jones forces and [0, 0, 0.8333333333333334] of those of "
-      "charges; special has one factor for both: give it, and take this line out");
+      script_refusal("pair_style lj/cut/coul/cut 2.5\nspecial_bonds coul 0 0.5 1 lj 0 0 1") ==
+      "m.in.0:20: special_bonds leaves [0, 0, 1] of Lennard-Jones forces and [0, 0.5, 1] of those of charges; they may "
+      "differ in the third factor only");
   CHECK(script_refusal("special_bonds lj/coul 0 0 0.5 angle yes")
             .starts_with("m.in.0:19: 'angle yes' of special_bonds is not read"));
   CHECK(error_of([] {
@@ -131,6 +134,29 @@ TEST_CASE("what says more than coefficients is refused by name", "[structure][me
   CHECK(script_refusal("pair_modify shift yes tail yes", {.notes = &notes}).empty());
   CHECK(notes == std::vector<std::string>{"pair_modify shift yes is for the scene to say: cutoff_style = \"shifted\"",
                                           "pair_modify tail yes is for the scene to say: tail = true"});
+}
+
+TEST_CASE("special_bonds may leave of charges another part than of Lennard-Jones forces", "[structure]") {
+  // amber: a half, and five sixths; a style without charges knows only the first.
+  const auto plain = read_scripts({init + settings + "special_bonds amber\n"});
+  CHECK(plain.topology()->pair_factor(0, 3) == 0.5);
+  CHECK(plain.topology()->dihedrals.empty());
+  std::string charged = bare;
+  charged.replace(charged.find("# molecular"), 11, "# full");
+  for (const auto& [row, with] :
+       {std::pair("1 1 1 1 1 1\n", "1 1 1 0.5 1 1 1\n"), std::pair("2 1 2 2 1 1\n", "2 1 2 0 2 1 1\n"),
+        std::pair("3 1 2 2 2 1\n", "3 1 2 0 2 2 1\n"), std::pair("4 1 1 2 2 2\n", "4 1 1 -2 2 2 2\n")}) {
+    charged.replace(charged.find(row), std::string(row).size(), with);
+  }
+  const std::string scripts =
+      "units lj\natom_style full\npair_style lj/cut/coul/cut 2.5\nbond_style hybrid harmonic "
+      "morse\nangle_style harmonic\nspecial_bonds amber\n" +
+      settings;
+  const auto s = read_scripts({scripts}, {}, charged);
+  CHECK(s.topology()->pair_factor(0, 3) == 0);
+  CHECK(s.topology()->scaled_pairs.empty());
+  CHECK(s.topology()->dihedrals == std::vector<BondedTerm<4>>{{{0, 1, 2, 3}, 0}});
+  CHECK(s.topology()->dihedral_kinds == std::vector<TermKind>{{"one_four", {0.5, 1, -(5.0 / 6)}}});
 }
 
 TEST_CASE("ends of dihedrals have the pair force that weights leave them", "[structure]") {

@@ -165,29 +165,33 @@ TEST_CASE("every style of terms has the energy that LAMMPS computes", "[structur
 }
 
 TEST_CASE("coefficients of an input script have the energies that LAMMPS computes with it", "[structure]") {
-  // Sums of cosines, springs between the ends of angles, weights and four numbers of a pair; labels, "*", "&".
-  const auto s = io::read_structure(lammps_files / "charmm.data", {.coefficients = {lammps_files / "charmm.in"}});
-  auto expected = test::lammps_energies("charmm");
-  auto energy = Terms(s).energy;
-  CHECK(s.topology()->type_names == std::vector<std::string>{"CT", "OH", "C*"});
-  CHECK(s.topology()->mixing == Mixing::lorentz_berthelot);
-  CHECK(std::abs(s.topology()->stated_cutoff - 1.1) < 1e-15);
-  CHECK(agree(energy["bond.harmonic"], kcal * expected["ebond"], 1e-13));
-  CHECK(agree(energy["angle.harmonic"] + energy["angle.urey_bradley"] + energy["angle.cosine_squared"],
-              kcal * expected["eangle"], 1e-13));
-  CHECK(agree(energy["dihedral.periodic"], kcal * expected["edihed"], 1e-12));
-  CHECK(agree(energy["improper.harmonic"], kcal * expected["eimp"], 1e-12));
-  const auto [lennard_jones, charges] = pair_energies(s, 1.0, false);
-  CHECK(agree(lennard_jones + energy["ends.lennard_jones"], kcal * expected["evdwl"], 1e-12));
-  CHECK(agree(charges + energy["ends.charges"], kcal * expected["ecoul"], 2e-8));  // LAMMPS rounds Coulomb's constant
-  // And so has the force of a run.
-  double sum = 0;
-  for (const auto& [name, part] : energy) sum += part;
-  VectorColumn<double> accelerations(s.size());
-  ForceSink<double> sink(accelerations, s, {true, true, false});
-  Bonded{}.add_to(sink, s);
-  CHECK(agree(sink.potential(), sum, 1e-12));
-  check_gradient(Bonded{}, s);
+  // Sums of cosines, springs between the ends of angles, weights and four numbers of a pair; labels, "*", "&"; and
+  // special_bonds amber.
+  for (const std::string name : {"charmm", "amber"}) {
+    INFO(name);
+    const auto s = io::read_structure(lammps_files / "charmm.data", {.coefficients = {lammps_files / (name + ".in")}});
+    auto expected = test::lammps_energies(name);
+    auto energy = Terms(s).energy;
+    CHECK(s.topology()->type_names == std::vector<std::string>{"CT", "OH", "C*"});
+    CHECK(s.topology()->mixing == Mixing::lorentz_berthelot);
+    CHECK(std::abs(s.topology()->stated_cutoff - (name == "charmm" ? 1.1 : 0.9)) < 1e-15);
+    CHECK(agree(energy["bond.harmonic"], kcal * expected["ebond"], 1e-13));
+    CHECK(agree(energy["angle.harmonic"] + energy["angle.urey_bradley"] + energy["angle.cosine_squared"],
+                kcal * expected["eangle"], 1e-13));
+    CHECK(agree(energy["dihedral.periodic"], kcal * expected["edihed"], 1e-12));
+    CHECK(agree(energy["improper.harmonic"] + energy["improper.periodic"], kcal * expected["eimp"], 1e-12));
+    const auto [lennard_jones, charges] = pair_energies(s, 0.9, false);
+    CHECK(agree(lennard_jones + energy["ends.lennard_jones"], kcal * expected["evdwl"], 1e-12));
+    CHECK(agree(charges + energy["ends.charges"], kcal * expected["ecoul"], 2e-8));  // LAMMPS rounds Coulomb's constant
+    // And so has the force of a run.
+    double sum = 0;
+    for (const auto& [part, of_part] : energy) sum += of_part;
+    VectorColumn<double> accelerations(s.size());
+    ForceSink<double> sink(accelerations, s, {true, true, false});
+    Bonded{}.add_to(sink, s);
+    CHECK(agree(sink.potential(), sum, 1e-12));
+    check_gradient(Bonded{}, s);
+  }
 }
 
 TEST_CASE("chains of beads have the energies that LAMMPS computes", "[structure]") {

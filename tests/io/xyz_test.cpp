@@ -230,6 +230,8 @@ TEST_CASE("a comment of XYZ is read however it is written", "[structure]") {
   CHECK(refused("Latice=\"20 0 0 0 30 0 0 0 40\"") ==
         "m.xyz:2: 'Latice=' is not read; the box is given as Lattice=\"ax 0 0 0 by 0 0 0 cz\"");
   CHECK(refused("cell=\"20 30 40\"").starts_with("m.xyz:2: 'cell=' is not read; the box is given as Lattice="));
+  CHECK(refused("# CELL(abcABC): 35.2 35.2 35.2 90.0 90.0 90.0 Traj: positions{atomic_unit} Step: 0")
+            .starts_with("m.xyz:2: the cell of i-PI in this comment is not read; give Lattice="));
   CHECK(refused("units=bohr") == "m.xyz:2: the file is in units bohr; lj, real and metal are read");
   CHECK(read_as("m.xyz", "1\nunits=reduced\nO 1 2 3\n", {.units = &unit_system("reduced")}).positions()[0][2] == 3);
 }

