@@ -190,7 +190,7 @@ void LennardJonesForce::add_lanes(ForceSink<double>& out, const ParticleSystem<d
   } else {
     detail::add_pair_groups(out, s, list, {known.force_unit, known.energy_unit}, limits, sum_doubles);
   }
-  detail::add_scaled_pairs(out, s, terms_of(s), limits);
+  detail::add_special_pairs(out, s, terms_of(s), limits);
   add_tail(out, s);
 }
 

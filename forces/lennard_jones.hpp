@@ -80,7 +80,8 @@ struct LennardJonesMixedTable {
 ///
 /// Parameters are those of the types of the particles (engine/topology.hpp), mixed or explicit, or one epsilon and
 /// sigma for all. Pairs that the topology excludes are left out, scaled ones are scaled. In a box whose edges are
-/// shorter than twice the cutoff all images in range count, a particle's own among them.
+/// shorter than twice the cutoff all images in range count, a particle's own among them, and of excluded and scaled
+/// pairs all but the nearest, whole: what is bound is one image of a pair.
 ///
 /// Doubles are summed in whole units of 2^-47 of the strongest attraction's scale, so that a sum depends on no order:
 /// forces have the same bits for any neighbor list and any number of threads, and add up to nothing exactly. A pair
@@ -131,7 +132,7 @@ struct LennardJonesForce {
       add_lanes(out, s);
     } else {
       detail::add_pairs_in_turn(out, s, cutoff, terms_of(s));
-      detail::add_scaled_pairs(out, s, terms_of(s));
+      detail::add_special_pairs(out, s, terms_of(s), {.range = cutoff});
       add_tail(out, s);
     }
   }

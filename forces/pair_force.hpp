@@ -270,10 +270,10 @@ template <PairPotential P> struct PairForce : P {
                                   types,
                                   name()};
       detail::add_pairs_in_lanes(out, s, plan);
-      detail::add_scaled_pairs(out, s, terms, detail::limits_of(plan));
+      detail::add_special_pairs(out, s, terms, detail::limits_of(plan));
     } else {
       detail::add_pairs_in_turn(out, s, reach(), terms);
-      detail::add_scaled_pairs(out, s, terms);
+      detail::add_special_pairs(out, s, terms, {.range = reach()});
     }
   }
 
@@ -292,17 +292,16 @@ template <PairPotential P> struct PairForce : P {
       for (Index j = 0; j < i; ++j) {
         if (!is_between(types, topology, i, j)) continue;
         const Real part(topology != nullptr ? topology->pair_factor(i, j) : 1);
-        if (part == Real(0)) continue;
         const Real product = charged ? constant * charges[i] * charges[j] : Real(0);
         const auto terms = [&](const Real& r2) -> PairTerms<Real> {
           if (!(r2 < reach2)) return {Real(0), Real(0)};
-          const PairTerms<Real> whole = detail::ended<Real>(static_cast<const P&>(*this), end, r2, product);
-          return {part * whole.energy, part * whole.force};
+          return detail::ended<Real>(static_cast<const P&>(*this), end, r2, product);
         };
         const Vec3<Real> moved = (to.unwrapped(i) - from.unwrapped(i)) - (to.unwrapped(j) - from.unwrapped(j));
         const double range = reach() + std::sqrt(static_cast<double>(norm2(moved)));
-        detail::for_images(from, i, j, range, [&](const Vec3<Real>& d) {
-          detail::add_secant_pair(out, i, j, d, Vec3<Real>(d + moved), terms);
+        detail::for_images(from, i, j, range, [&](const Vec3<Real>& d, bool nearest) {
+          const Real of_force = nearest ? part : Real(1);  // what is special is the pair itself, and no copy of it
+          if (of_force != Real(0)) detail::add_secant_pair(out, i, j, d, Vec3<Real>(d + moved), of_force, terms);
         });
       }
     }

@@ -55,7 +55,8 @@ template <class Real> struct Switch {
   }
 };
 
-/// Calls `act(d)` for the images of a pair that can be in range; of a particle with itself for those of its copies.
+/// Calls `act(d, nearest)` for the images of a pair that can be in range, with whether it is the nearest one; of a
+/// particle with itself for those of its copies.
 template <class Real, class Act>
 void for_images(const ParticleSystem<Real>& s, Index i, Index j, double range, const Act& act) {
   const Box& box = s.box();
@@ -72,13 +73,27 @@ void for_images(const ParticleSystem<Real>& s, Index i, Index j, double range, c
         if (a != 0) d[0] += Real(a * box.edges()[0]);
         if (b != 0) d[1] += Real(b * box.edges()[1]);
         if (c != 0) d[2] += Real(c * box.edges()[2]);
-        act(d);
+        act(d, a == 0 && b == 0 && c == 0);
       }
     }
   }
 }
 
-/// Adds all pairs in turn, each image in range, and the scaled ones; excluded pairs are left out.
+/// Whether particles can feel each other's images beyond the nearest one.
+inline bool feels_far_images(const Box& box, double range) {
+  if (!box.is_periodic()) return false;
+  return std::any_of(box.edges().data(), box.edges().data() + 3, [&](double edge) { return edge < 2 * range; });
+}
+
+/// Adds `f` to the first of two particles and `-f` to the second.
+template <class Real>
+void add_pair_of(ForceSink<Real>& out, const ParticleSystem<Real>& s, const Topology::Pair& pair, const Vec3<Real>& f) {
+  const auto [i, j] = pair;
+  if (s.masses()[i] != Real(0)) out.accelerations().add(i, f / s.masses()[i]);
+  if (s.masses()[j] != Real(0)) out.accelerations().add(j, -f / s.masses()[j]);
+}
+
+/// Adds all pairs in turn, each image in range, but those that the topology excludes or scales.
 /// @param terms  (i, j, r2, add): calls `add(PairTerms)` if the pair acts
 /// @cost O(n^2)
 template <class Real, class Terms>
@@ -88,11 +103,10 @@ void add_pairs_in_turn(ForceSink<Real>& out, const ParticleSystem<Real>& s, doub
     for (Index j = 0; j <= i; ++j) {
       if (i != j && topology != nullptr && topology->is_special(i, j)) continue;
       const Real part = i == j ? Real(1) / Real(2) : Real(1);
-      for_images(s, i, j, range, [&](const Vec3<Real>& d) {
+      for_images(s, i, j, range, [&](const Vec3<Real>& d, bool) {
         terms(i, j, norm2(d), [&](const PairTerms<Real>& found) {
           const Vec3<Real> f = found.force * d;
-          if (i != j && s.masses()[i] != Real(0)) out.accelerations().add(i, f / s.masses()[i]);
-          if (i != j && s.masses()[j] != Real(0)) out.accelerations().add(j, -f / s.masses()[j]);
+          if (i != j) add_pair_of(out, s, {i, j}, f);
           out.energy(part * found.energy);
           out.virial(part * f * d.transpose());
         });
@@ -135,6 +149,26 @@ inline bool can_add(ForceSink<double>& out, const ParticleSystem<double>& s, con
   return (well && (weak || out.kick() == 0)) || look_closer(out, s, pair, limits);
 }
 
+/// Adds what the images of a pair beyond the nearest one do to each other: what the topology excludes or scales is the
+/// pair itself, which is the nearest, and no copy of it.
+template <class Real, class Terms>
+void add_far_images(ForceSink<Real>& out, const ParticleSystem<Real>& s, const Topology::Pair& pair, const Terms& terms,
+                    const PairLimits& limits) {
+  const Index i = pair.first, j = pair.second;
+  for_images(s, i, j, limits.range, [&](const Vec3<Real>& d, bool nearest) {
+    if (nearest) return;
+    terms(i, j, norm2(d), [&](const PairTerms<Real>& found) {
+      const Vec3<Real> f = found.force * d;
+      if constexpr (std::is_same_v<Real, double>) {
+        if (!can_add(out, s, {i, j, norm2(d), f}, limits)) return;
+      }
+      add_pair_of(out, s, pair, f);
+      out.energy(found.energy);
+      out.virial(f * d.transpose());
+    });
+  });
+}
+
 /// A scaled pair as it was found.
 template <class Real> struct ScaledPairFound {
   Real r2, energy;
@@ -142,12 +176,13 @@ template <class Real> struct ScaledPairFound {
   bool acts;
 };
 
-/// Adds the pairs whose force the topology scales, at their nearest images; doubles within their limits, or the run
-/// ends. All threads find the forces, one adds them, in the order of the pairs.
+/// Adds the pairs whose force the topology scales, at their nearest images, and, in a box that is small for the range,
+/// all others in range of these and of excluded pairs; doubles within their limits, or the run ends. All threads find
+/// the forces of scaled pairs, one adds them, in the order of the pairs.
 /// @param terms  as above
 template <class Real, class Terms>
-void add_scaled_pairs(ForceSink<Real>& out, const ParticleSystem<Real>& s, const Terms& terms,
-                      [[maybe_unused]] const PairLimits& limits = {}) {
+void add_special_pairs(ForceSink<Real>& out, const ParticleSystem<Real>& s, const Terms& terms,
+                       const PairLimits& limits) {
   if (s.topology() == nullptr) return;
   const std::vector<Topology::ScaledPair>& pairs = s.topology()->scaled_pairs;
   thread_local std::vector<ScaledPairFound<Real>> memory;
@@ -177,6 +212,9 @@ void add_scaled_pairs(ForceSink<Real>& out, const ParticleSystem<Real>& s, const
     out.pair(i, j, found.force);
     out.energy(found.energy);
   }
+  if (!feels_far_images(s.box(), limits.range)) return;
+  for (const Topology::Pair& pair : s.topology()->exclusions) add_far_images(out, s, pair, terms, limits);
+  for (const Topology::ScaledPair& scaled : pairs) add_far_images(out, s, scaled.pair, terms, limits);
 }
 
 /// @throws Error  for a cutoff that is no length, or a switch that begins outside it or that there is none of

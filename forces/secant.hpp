@@ -27,11 +27,11 @@ template <class Real, class Terms> Real secant_of(const Real& from2, const Real&
   return Real(-2) * (terms(to2).energy - terms(from2).energy) / step;
 }
 
-/// Adds the secant force of a pair of particles from `d0` to `d1`, the distance vectors from j to i.
+/// Adds the secant force of a pair of particles from `d0` to `d1`, the distance vectors from j to i, times `factor`.
 template <class Real, class Terms>
 void add_secant_pair(ForceSink<Real>& out, Index i, Index j, const Vec3<Real>& d0, const Vec3<Real>& d1,
-                     const Terms& terms) {
-  const Real k = secant_of(norm2(d0), norm2(d1), terms);
+                     const Real& factor, const Terms& terms) {
+  const Real k = factor * secant_of(norm2(d0), norm2(d1), terms);
   out.pair(i, j, Vec3<Real>(k / Real(2) * (d0 + d1)));
 }
 
