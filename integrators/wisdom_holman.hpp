@@ -54,7 +54,8 @@ struct WisdomHolmanOptions {
 /// The Wisdom-Holman splitting in Jacobi or democratic heliocentric coordinates.
 ///
 /// Particle 0 is the primary; massive bodies come before tracers. Jacobi coordinates take the bodies by semi-major axis
-/// at the start; that order is state. With M_k the mass of the first k + 1 bodies in it, m'_k = m_k M_{k-1}/M_k:
+/// at the start, and a tracer goes round those whose orbits are smaller than its own; that order is state. With M_k the
+/// mass of the first k + 1 bodies in it, m'_k = m_k M_{k-1}/M_k:
 ///
 ///     jacobi      A = P^2/2M + sum_k [p'_k^2/2m'_k - G m'_k M_k/r'_k]
 ///                 B = sum_{k>1} G m'_k M_k/r'_k - sum_{pairs but the innermost} G m_i m_j/r_ij (+ other forces)
@@ -99,6 +100,7 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
     detail::save_signature(saved, prefix + "options/", options_);
     detail::save_signature(saved, prefix + "forces/", forces_);
     save_value(saved, prefix + "order", order_);
+    save_value(saved, prefix + "within", within_);
     save_value(saved, prefix + "kicks", evaluations_.force);
     save_value(saved, prefix + "arcs", evaluations_.kepler);
   }
@@ -110,6 +112,7 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
     load_value(saved, prefix + "arcs", evaluations_.kepler);
     failure_.reset();
     gather_masses();
+    load_within(saved, prefix);
   }
   /// Particles in the order of Jacobi coordinates, massive bodies first.
   const std::vector<std::int64_t>& order() const { return order_; }
@@ -118,9 +121,12 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
   bool jacobi() const { return options_.coordinates == Coordinates::jacobi; }
   static constexpr bool has_forces = !std::is_same_v<F, Sum<>>;
   void gather_masses();
+  void place_within(const std::vector<double>& axis);
   void load_order(const SavedState& saved, const std::string& prefix);
+  void load_within(const SavedState& saved, const std::string& prefix);
   std::size_t massive() const { return interior_.size(); }
   Index at(std::size_t k) const { return static_cast<Index>(order_[k]); }
+  std::size_t within(Index i) const { return static_cast<std::size_t>(within_[static_cast<std::size_t>(i)]); }
 
   void to_jacobi(VectorColumn<Real>& column) const;
   void from_jacobi(const VectorColumn<Real>& from, VectorColumn<Real>& to, const Vec3<Real>& center) const;
@@ -139,8 +145,10 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
   F forces_;
   Real g_ = Real(0);
   std::vector<std::int64_t> order_;
-  std::vector<Real> masses_;    ///< by particle
-  std::vector<Real> interior_;  ///< M_k, mass of the first k + 1 bodies in order
+  std::vector<std::int64_t> within_;         ///< by particle, k of the mass M_k that its Kepler arc goes round
+  std::vector<Real> masses_;                 ///< by particle
+  std::vector<Real> interior_;               ///< M_k, mass of the first k + 1 bodies in order
+  mutable std::vector<Vec3<Real>> centers_;  ///< of these, as the last change of coordinates met them
   VectorColumn<Real> scratch_, positions_, acceleration_, other_;
   std::optional<ParticleSystem<Real>> inertial_;  ///< positions for other forces
   std::optional<Failure> failure_;

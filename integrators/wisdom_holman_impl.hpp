@@ -67,6 +67,7 @@ template <class Real, class F> void WisdomHolman<Real, F>::bind(ParticleSystem<R
     return axis[a] < axis[b];
   });
   gather_masses();
+  place_within(axis);
   for (auto* column : {&scratch_, &positions_, &acceleration_, &other_}) *column = VectorColumn<Real>(s.size());
   if constexpr (has_forces) inertial_ = s;
   failure_.reset();
@@ -80,6 +81,42 @@ template <class Real, class F> void WisdomHolman<Real, F>::gather_masses() {
     if (m == Real(0)) break;
     interior_.push_back(total += m);
   }
+}
+
+/// Tracers go round the bodies whose orbits about the primary are smaller than theirs, as bodies do.
+template <class Real, class F> void WisdomHolman<Real, F>::place_within(const std::vector<double>& axis) {
+  within_.assign(order_.size(), 0);
+  centers_.assign(massive(), Vec3<Real>::Zero());
+  if (!jacobi()) return;
+  for (std::size_t k = 1; k < order_.size(); ++k) {
+    const auto i = static_cast<std::size_t>(at(k));
+    std::size_t inner = 0;
+    if (k < massive()) {
+      inner = k;
+    } else {
+      while (inner + 1 < massive() && axis[static_cast<std::size_t>(at(inner + 1))] < axis[i]) ++inner;
+    }
+    within_[i] = static_cast<std::int64_t>(inner);
+  }
+}
+
+/// @throws Error if the saved places are none of these particles'
+template <class Real, class F>
+void WisdomHolman<Real, F>::load_within(const SavedState& saved, const std::string& prefix) {
+  std::vector<std::int64_t> within(order_.size(), 0);
+  if (saved.contains(prefix + "within")) {
+    load_value(saved, prefix + "within", within);
+  } else if (jacobi()) {  // written when tracers went round all bodies, wherever they were
+    for (std::size_t k = 1; k < order_.size(); ++k)
+      within[static_cast<std::size_t>(at(k))] = static_cast<std::int64_t>(std::min(k, massive() - 1));
+  }
+  bool fits = within.size() == order_.size();
+  for (std::size_t k = 0; fits && k < order_.size(); ++k) {
+    const std::int64_t w = within[static_cast<std::size_t>(at(k))], own = jacobi() ? static_cast<std::int64_t>(k) : 0;
+    fits = k < massive() ? w == own : w >= 0 && w < static_cast<std::int64_t>(massive());
+  }
+  if (!fits) throw Error("the saved places of tracers among the bodies do not fit these particles");
+  within_ = std::move(within);
 }
 
 /// @throws Error if the saved order does not name each particle once, the primary first and tracers last
@@ -118,15 +155,18 @@ template <class Real, class F> void WisdomHolman<Real, F>::close(ParticleSystem<
   s.phase().coordinates = 0;
 }
 
-/// x'_k = x_k - X_{k-1},  X_k = X_{k-1} + (m_k/M_k) x'_k;  row 0 becomes X of all.
+/// x'_k = x_k - X_{k-1},  X_k = X_{k-1} + (m_k/M_k) x'_k, of a tracer x - X of the bodies within its orbit; row 0
+/// becomes X of all.
 template <class Real, class F> void WisdomHolman<Real, F>::to_jacobi(VectorColumn<Real>& column) const {
   const auto& read = std::as_const(column);
   Vec3<Real> center = read[0];
-  for (std::size_t k = 1; k < order_.size(); ++k) {
+  centers_[0] = center;
+  for (std::size_t k = 1; k < massive(); ++k) {
     const Vec3<Real> relative = read[at(k)] - center;
     column.set(at(k), relative);
-    if (k < massive()) center += masses_[static_cast<std::size_t>(at(k))] / interior_[k] * relative;
+    centers_[k] = center += masses_[static_cast<std::size_t>(at(k))] / interior_[k] * relative;
   }
+  for (std::size_t k = massive(); k < order_.size(); ++k) column.set(at(k), read[at(k)] - centers_[within(at(k))]);
   column.set(0, center);
 }
 
@@ -135,11 +175,14 @@ template <class Real, class F>
 void WisdomHolman<Real, F>::from_jacobi(const VectorColumn<Real>& from, VectorColumn<Real>& to,
                                         const Vec3<Real>& center_of_all) const {
   Vec3<Real> center = center_of_all;
-  for (std::size_t k = order_.size() - 1; k > 0; --k) {
+  for (std::size_t k = massive() - 1; k > 0; --k) {
     const Vec3<Real> relative = from[at(k)];
-    if (k < massive()) center -= masses_[static_cast<std::size_t>(at(k))] / interior_[k] * relative;
+    centers_[k] = center;
+    center -= masses_[static_cast<std::size_t>(at(k))] / interior_[k] * relative;
     to.set(at(k), center + relative);
   }
+  centers_[0] = center;
+  for (std::size_t k = massive(); k < order_.size(); ++k) to.set(at(k), centers_[within(at(k))] + from[at(k)]);
   to.set(0, center);
 }
 
@@ -210,8 +253,7 @@ template <class Real, class F> Real WisdomHolman<Real, F>::arcs(ParticleSystem<R
     for (Index k = std::max<Index>(begin, 1); k < end; ++k) {
       const auto rank = static_cast<std::size_t>(k);
       const Index i = at(rank);
-      const Real inside = jacobi() ? interior_[std::min(rank, massive() - 1)] : masses_[0];
-      const Real mu = g_ * inside;
+      const Real mu = g_ * interior_[within(i)];
       const Vec3<Real> x = c.positions()[i], v = c.velocities()[i];
       const KeplerArc<Real> arc = kepler_arc(x, v, mu, h);
       if (arc.status != KeplerStatus::converged) {
@@ -291,7 +333,7 @@ Real WisdomHolman<Real, F>::interaction(const VectorColumn<Real>& x, bool skip_i
   for_blocks(x.size() - bodies, [&](Index begin, Index end) {
     for (Index i = bodies + begin; i < bodies + end; ++i) {
       Vec3<Real> pull = Vec3<Real>::Zero();
-      for (Index j = first; j < bodies; ++j) {
+      for (Index j = jacobi() && within(i) == 0 ? 1 : first; j < bodies; ++j) {  // else its arc has done it exactly
         const Vec3<Real> d = x[i] - x[j];
         const Real r2 = norm2(d);
         pull -= g_ * masses_[static_cast<std::size_t>(j)] / (r2 * sqrt(r2)) * d;
@@ -307,11 +349,21 @@ template <class Real, class F> Real WisdomHolman<Real, F>::indirect(const Partic
   using std::sqrt;
   Real potential(0);
   if (!has_forces) acceleration_.set(0, Vec3<Real>::Zero());  // inner forces leave the centre of mass alone
-  const bool inner_is_massive = massive() > 1;
-  for (std::size_t k = inner_is_massive ? 2 : 1; k < order_.size(); ++k) {
+  // The innermost arc has moved the primary as well, and tracers within it go round the primary alone.
+  Vec3<Real> of_primary = Vec3<Real>::Zero();
+  if (massive() > 1) {
+    const Vec3<Real> x = s.positions()[at(1)];
+    const Real r2 = norm2(x);
+    of_primary = g_ * masses_[static_cast<std::size_t>(at(1))] / (r2 * sqrt(r2)) * x;
+  }
+  for (std::size_t k = std::min<std::size_t>(2, massive()); k < order_.size(); ++k) {
+    if (within(at(k)) == 0) {
+      acceleration_.add(at(k), -of_primary);
+      continue;
+    }
     const Vec3<Real> x = s.positions()[at(k)];
     const Real r2 = norm2(x), r = sqrt(r2);
-    const Real mu = g_ * interior_[std::min(k, massive() - 1)];
+    const Real mu = g_ * interior_[within(at(k))];
     acceleration_.add(at(k), mu / (r2 * r) * x);
     if (energy && k < massive()) potential += g_ * masses_[static_cast<std::size_t>(at(k))] * interior_[k - 1] / r;
   }

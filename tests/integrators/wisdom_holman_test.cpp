@@ -2,6 +2,7 @@
 
 #include "integrators/wisdom_holman.hpp"
 
+#include "engine/orbital_elements.hpp"
 #include "engine/simulation.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/oblateness.hpp"
@@ -10,6 +11,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"
 #include "tests/support/planets.hpp"
+
+#include <numbers>
 
 namespace noether {
 namespace {
@@ -257,19 +260,67 @@ TEST_CASE("a primary alone moves straight, and tracers about it on exact orbits"
 }
 
 TEST_CASE("a tracer is the limit of a body whose mass goes to zero", "[wisdom_holman]") {
-  // Pluto is the outermost body, so that its place among the Jacobi coordinates does not change with its mass.
-  const auto final_state = [](Coordinates coordinates, double of_pluto) {
+  // Pluto on its own orbit about the Sun, outside of all planets, and on smaller ones among them and within.
+  const auto final_state = [](Coordinates coordinates, double size, double of_pluto) {
     auto s = test::outer_planets<Quad>();
+    const auto& c = std::as_const(s);
+    const Vec3<Quad> x = c.positions()[5] - c.positions()[0], v = c.velocities()[5] - c.velocities()[0];
+    s.positions().set(5, c.positions()[0] + Quad(size) * x);
+    s.velocities().set(5, c.velocities()[0] + v / sqrt(Quad(size)));
     s.masses()[5] = of_pluto;
-    return run(s, splitting<Quad>(coordinates), schemes::verlet_aba, 100.0, 30);
+    return run(s, splitting<Quad>(coordinates), schemes::verlet_aba, 100.0 * size, 30);
   };
   for (const Coordinates coordinates : both) {
-    const auto tracer = final_state(coordinates, 0);
-    const double coarse = difference(tracer, final_state(coordinates, 1e-8));
-    const double fine = difference(tracer, final_state(coordinates, 1e-9));
-    CAPTURE(coarse, fine);
-    CHECK(fine > 1e-20);
-    CHECK(std::abs(std::log10(coarse / fine) - 1) < 1e-4);
+    for (const double size : {1.0, 0.6, 0.35, 0.2, 0.1, 0.02}) {
+      const auto tracer = final_state(coordinates, size, 0);
+      const double coarse = difference(tracer, final_state(coordinates, size, 1e-8));
+      const double fine = difference(tracer, final_state(coordinates, size, 1e-9));
+      CAPTURE(size, coarse, fine);
+      CHECK(fine > 1e-20);
+      CHECK(fine < 1e-5);  // of the Sun, which the body carries with it, the way is short
+      CHECK(std::abs(std::log10(coarse / fine) - 1) < 1e-3);
+    }
+  }
+}
+
+TEST_CASE("a tracer near the primary stays on its orbit, however far out the massive bodies are", "[wisdom_holman]") {
+  // Within Jupiter's tide, 1e-3 (0.02 / 5)^3 = 6e-11 of the attraction.
+  const double mu = outer_G;
+  const auto at = [&](double M) { return state_from_elements<double>({0.02, 0.1, 0.3, 0.2, 0.1, M}, mu); };
+  ParticleSystem<double> s(unit_system("solar"));
+  s.add("Star", 1, {0, 0, 0}, {0, 0, 0});
+  const auto [far, slow] = state_from_elements<double>({5.2, 0.05, 0, 0, 0, 0.4}, outer_G * 1.001);
+  s.add("Companion", 0.001, far, slow);
+  const auto [x, v] = at(1);
+  s.add("small", 0, x, v);
+  const double days = 40, motion = std::sqrt(mu / (0.02 * 0.02 * 0.02));
+  const Vec3<double> expected = at(std::fmod(1 + motion * days, 2 * std::numbers::pi)).first;
+  const auto end = run(s, splitting(Coordinates::jacobi), schemes::verlet, 0.05, 800);
+  CHECK(std::sqrt(norm2(Vec3<double>(end.positions()[2] - end.positions()[0] - expected))) < 1e-6 * 0.02);
+}
+
+TEST_CASE("what a tracer goes round is state; runs saved without it go on as they began", "[wisdom_holman]") {
+  auto s = test::planets_with_tracers(3);  // within Jupiter's orbit
+  const auto places = [](const SavedState& saved) { return std::get<Ranks>(saved.at("within")); };
+  WisdomHolman first({.G = outer_G}), second({.G = outer_G});
+  SavedState saved, again;
+  first.bind(s);
+  first.save(saved, "");
+  CHECK(places(saved) == Ranks{0, 1, 2, 3, 4, 5, 0, 0, 0});
+  second.bind(s);
+  std::get<Ranks>(saved.at("within"))[6] = 3;
+  second.load(saved, "");
+  second.save(again, "");
+  CHECK(places(again) == Ranks{0, 1, 2, 3, 4, 5, 3, 0, 0});
+  saved.erase("within");  // as when tracers went round all bodies
+  second.load(saved, "");
+  second.save(again, "");
+  CHECK(places(again) == Ranks{0, 1, 2, 3, 4, 5, 5, 5, 5});
+  for (const Ranks& wrong : {Ranks{0, 1, 2, 3, 4, 5, 0, 0}, Ranks{0, 1, 2, 3, 4, 5, 0, 0, 6},
+                             Ranks{0, 1, 2, 3, 4, 5, 0, -1, 0}, Ranks{0, 2, 1, 3, 4, 5, 0, 0, 0}}) {
+    saved["within"] = wrong;
+    CHECK_THROWS_WITH(second.load(saved, ""),
+                      "the saved places of tracers among the bodies do not fit these particles");
   }
 }
 
