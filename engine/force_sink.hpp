@@ -164,9 +164,9 @@ template <class Real> class ForceSink {
   Request wanted_;
   WideSum<Real> energy_;
   std::optional<WideTensor<Real>> virial_;  ///< where it is wanted: nine sums in lanes take as long as a few forces
-  Workspace* shared_ = nullptr;      ///< of the whole Hamiltonian
-  Workspace* own_ = nullptr;         ///< of the force that is summed
-  std::unique_ptr<Workspace> lost_;  ///< of a force to which nobody lends one: gone with the sink
+  Workspace* shared_ = nullptr;             ///< of the whole Hamiltonian
+  Workspace* own_ = nullptr;                ///< of the force that is summed
+  std::unique_ptr<Workspace> lost_;         ///< of a force to which nobody lends one: gone with the sink
   VectorColumn<Real>* torques_ = nullptr;
   double kick_ = 0;
   char letter_ = 0;  ///< 0: of all kicks

@@ -50,6 +50,7 @@ struct MonitorReport {
 
 /// Watches settled states. Optional members: `wanted()` (energy?), `series()` and `scale()` (what files store),
 /// `report()`, `record(Sample)` (receives every monitor's samples: writers), `flush()`, `finish(Outcome)`,
+/// `at_end(snapshot)` (the end of a run that is no look of its own, to be forgotten at the next one),
 /// `steps_in_a_row()` (looks at so many steps from each multiple of its cadence on), `forget()` (somebody has edited
 /// the run), `check(state)` (throws for a state that it cannot watch), a static `looks_last` for what must see a moment
 /// after all others (checkpoints), and a static `needs_particles` for what makes no sense of a system that has
@@ -68,6 +69,7 @@ NOETHER_FINDS_MEMBER(report)
 NOETHER_FINDS_MEMBER(record)
 NOETHER_FINDS_MEMBER(flush)
 NOETHER_FINDS_MEMBER(finish)
+NOETHER_FINDS_MEMBER(at_end)
 NOETHER_FINDS_MEMBER(forget)
 
 template <class M>
@@ -103,6 +105,11 @@ concept Forgets = requires(M& monitor) {
   monitor.forget();
 };
 
+template <class M, class Real>
+concept LooksAtTheEnd = requires(M& monitor, const Snapshot<Real>& end) {
+  monitor.at_end(end);
+};
+
 /// Whether each optional member of a monitor, where there is one of its name, is what it has to be.
 template <class M> struct MonitorMembers {
   static constexpr bool wanted = !finds_wanted<M>() || SaysWhatItWants<M>;
@@ -124,6 +131,8 @@ template <class Real> struct MonitorBase {
   virtual void check(const ParticleSystem<Real>&) const = 0;
   virtual Request wanted() const = 0;
   virtual void observe(const Snapshot<Real>&) = 0;
+  virtual bool looks_at_the_end() const = 0;
+  virtual void at_end(const Snapshot<Real>&) = 0;
   virtual std::vector<Series> series() const = 0;
   virtual std::optional<double> scale() const = 0;
   virtual std::optional<MonitorReport> report() const = 0;
@@ -145,6 +154,8 @@ template <class M, class Real> struct MonitorModel final : MonitorBase<Real> {
   static_assert(Members::record, "a monitor has `void record(const Sample&)`, or no member of that name");
   static_assert(Members::flush, "a monitor has `void flush()`, or no member of that name");
   static_assert(Members::finish, "a monitor has `void finish(const Outcome&)`, or no member of that name");
+  static_assert(!finds_at_end<M>() || LooksAtTheEnd<M, Real>,
+                "a monitor has `void at_end(const Snapshot<Real>&)`, or no member of that name");
   static_assert(Members::forget, "a monitor has `void forget()`, or no member of that name");
   explicit MonitorModel(M m) : monitor(std::move(m)) {}
   std::string name() const override { return name_of(monitor); }
@@ -165,6 +176,10 @@ template <class M, class Real> struct MonitorModel final : MonitorBase<Real> {
     return {};
   }
   void observe(const Snapshot<Real>& snapshot) override { monitor.observe(snapshot); }
+  bool looks_at_the_end() const override { return LooksAtTheEnd<M, Real>; }
+  void at_end(const Snapshot<Real>& end) override {
+    if constexpr (LooksAtTheEnd<M, Real>) monitor.at_end(end);
+  }
   std::vector<Series> series() const override {
     if constexpr (requires { monitor.series(); }) return monitor.series();
     return {};
@@ -216,6 +231,8 @@ template <class Real = double> class AnyMonitor {
   void check(const ParticleSystem<Real>& s) const { held_->check(s); }
   Request wanted() const { return held_->wanted(); }
   void observe(const Snapshot<Real>& snapshot) { held_->observe(snapshot); }
+  bool looks_at_the_end() const { return held_->looks_at_the_end(); }
+  void at_end(const Snapshot<Real>& end) { held_->at_end(end); }
   std::vector<Series> series() const { return held_->series(); }
   std::optional<double> scale() const { return held_->scale(); }
   std::optional<MonitorReport> report() const { return held_->report(); }

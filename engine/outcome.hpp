@@ -40,6 +40,8 @@ struct [[nodiscard]] Outcome {
   std::optional<ParticleRef> particle;  ///< whom it happened to, where it was one particle
   std::string quantity;                 ///< what went wrong with it, such as "position"; may be empty
   std::string message;                  ///< one phrase, such as "escape of Pluto, distance 101.2"; may be empty
+  /// How often a pair may have met between two looks of a stop that were too far apart to tell.
+  std::int64_t unresolved = 0;
 
   /// Whether the run ended as asked: completed or stopped.
   /// @throws never

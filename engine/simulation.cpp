@@ -269,10 +269,13 @@ template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double 
     }
   }
   if (!result && settled_fault()) result = fall_back();
+  unresolved_at_end_ = 0;
   if (!result) result = look_at_the_end();
   seconds_ = before + seconds_since(started);
   good_.reset();
-  return result ? *result : outcome(Outcome::Kind::completed);
+  Outcome ended = result ? *result : outcome(Outcome::Kind::completed);
+  ended.unresolved = unresolved();
+  return ended;
 }
 
 template <class Real> Advance Simulation<Real>::advance(const Span& span) {
@@ -332,13 +335,36 @@ template <class Real> Outcome Simulation<Real>::fall_back() {
 /// Stops that were not due at the last step look at it too, and forget what they saw: a run that goes on later is the
 /// run that was never cut.
 template <class Real> std::optional<Outcome> Simulation<Real>::look_at_the_end() {
-  const Snapshot<Real> moment = snapshot({});
+  const bool between_steps = shown_at_ && raw_.clock().is_later(*shown_at_, raw_.clock().high());
+  const Snapshot<Real> moment = snapshot({}, between_steps ? shown_at_ : std::nullopt);
   for (const ScheduledStop& stop : stops_) {
-    if (detail::is_multiple(step(), stop.steps)) continue;
+    if (!between_steps && detail::is_multiple(step(), stop.steps)) continue;
     StopCheck<Real> check = stop.check;
-    if (const auto reason = check.look(moment)) return stopped(*reason);
+    if (const auto reason = check.look(moment)) {
+      shown_at_.reset();  // the state of a run that was stopped is that of its last whole step
+      return stopped(*reason);
+    }
+    unresolved_at_end_ += check.unresolved() - stop.check.unresolved();
+  }
+  for (Scheduled& scheduled : monitors_) {
+    if (!scheduled.monitor.looks_at_the_end()) continue;
+    if (!has_looked(scheduled, moment.time(), between_steps)) scheduled.monitor.at_end(moment);
   }
   return {};
+}
+
+/// Whether a monitor has seen the end of the run already.
+template <class Real>
+bool Simulation<Real>::has_looked(const Scheduled& scheduled, double end, bool between_steps) const {
+  if (scheduled.schedule.steps > 0) return !between_steps && scheduled.schedule.due(step());
+  if (!by_time(scheduled) || scheduled.observed == 0) return false;
+  return !raw_.clock().is_later(end, look_of(scheduled) - scheduled.schedule.interval);
+}
+
+template <class Real> std::int64_t Simulation<Real>::unresolved() const {
+  std::int64_t all = unresolved_at_end_;
+  for (const ScheduledStop& stop : stops_) all += stop.check.unresolved();
+  return all;
 }
 
 template <class Real> bool Simulation<Real>::due(const Scheduled& scheduled) const {

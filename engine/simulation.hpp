@@ -171,6 +171,8 @@ template <class Real = double> class Simulation {
   void keep();
   Outcome fall_back();
   std::optional<Outcome> look_at_the_end();
+  bool has_looked(const Scheduled& scheduled, double end, bool between_steps) const;
+  std::int64_t unresolved() const;
   Outcome run_to(std::int64_t end, double limit);
   void turn_back(double until);
   /// @throws Error  unless a saved run has the columns that this one moves
@@ -193,6 +195,7 @@ template <class Real = double> class Simulation {
   std::optional<double> shown_at_;      ///< free clock: where `run_until` has ended, beyond the last whole step
   std::int64_t observed_through_ = -1;  ///< last step whose due monitors have looked
   std::vector<Scheduled*> looking_;     ///< at the present moment
+  std::int64_t unresolved_at_end_ = 0;  ///< pairs that may have met between the last look of a stop and the end
   Real action_ = Real(0);               ///< of the last step, where it was wanted
   std::int64_t chunk_ = 16;             ///< steps between looks at the wall clock
   std::chrono::steady_clock::time_point looked_at_clock_;

@@ -1,6 +1,7 @@
 #include "engine/stop_condition.hpp"
 
 #include "engine/hermite.hpp"
+#include "engine/kepler_passage.hpp"
 #include "engine/moments.hpp"
 #include "engine/sums.hpp"
 
@@ -102,6 +103,12 @@ std::optional<typename StopCheck<Real>::Event> StopCheck<Real>::collision(const 
           event.at = Hermite<Real>::bisect(Real(0), nearest.at,
                                            [&](const Real& u) { return norm2(path.position(u)) < limit2; });
         }
+        if (!nearest.resolved) {
+          const auto passage =
+              kepler_passage<Real>(last_motion(i) - last_motion(j), now.motion(i) - now.motion(j), h, rule_.distance);
+          if (!passage) ++unresolved_;
+          if (passage && passage->distance2 < limit2) event.distance2 = passage->distance2, event.at = passage->since;
+        }
       }
       if (event.distance2 < limit2 && (!first || event.at < first->at)) first = event;
     }
@@ -135,6 +142,7 @@ template <class Real> void StopCheck<Real>::save(SavedState& saved, const std::s
   save_value(saved, prefix + "/x", x_);
   save_value(saved, prefix + "/v", v_);
   save_value(saved, prefix + "/a", a_);
+  save_value(saved, prefix + "/unresolved", unresolved_);
 }
 
 template <class Real> void StopCheck<Real>::load(const SavedState& saved, const std::string& prefix) {
@@ -142,6 +150,8 @@ template <class Real> void StopCheck<Real>::load(const SavedState& saved, const 
   load_value(saved, prefix + "/x", x_);
   load_value(saved, prefix + "/v", v_);
   load_value(saved, prefix + "/a", a_);
+  unresolved_ = 0;  // of runs that were saved before these were counted
+  if (saved.contains(prefix + "/unresolved")) load_value(saved, prefix + "/unresolved", unresolved_);
   if (x_.size() != v_.size() || x_.size() != a_.size())
     throw Error("what a stop saw last was saved in parts that do not fit");
 }

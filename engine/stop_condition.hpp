@@ -4,6 +4,7 @@
 #include "engine/hermite.hpp"
 #include "engine/snapshot.hpp"
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,9 +34,10 @@ struct StopReason {
 };
 
 /// One rule at work. Between two looks the motion is the quintic Hermite polynomial of the two settled states, so an
-/// approach is found even if it was over at the second look (not if the looks were too far apart to tell). Of several
-/// events between two looks the first is told, with its least distance and the time since when the distance was passed;
-/// the state stays at the last whole step.
+/// approach is found even if it was over at the second look. Where the looks are too far apart for that, the pericenter
+/// of a pair that attracts each other tells (engine/kepler_passage.hpp); where it does not either, the pair is counted.
+/// Of several events between two looks the first is told, with its least distance and the time since when the distance
+/// was passed; the state stays at the last whole step.
 template <class Real> class StopCheck {
  public:
   explicit StopCheck(const StopRule& rule);
@@ -49,6 +51,9 @@ template <class Real> class StopCheck {
     v_.clear();
     a_.clear();
   }
+
+  /// How often a pair may have met between two looks that were too far apart to tell.
+  std::int64_t unresolved() const { return unresolved_; }
 
   void save(SavedState& saved, const std::string& prefix) const;
   void load(const SavedState& saved, const std::string& prefix);
@@ -67,7 +72,8 @@ template <class Real> class StopCheck {
   StopRule rule_;
   double last_time_ = 0;
   std::vector<Vec3<Real>> x_, v_, a_;  ///< at the last look
-  bool moved_ = false;                 ///< whether a motion leads from the last look to this one
+  std::int64_t unresolved_ = 0;
+  bool moved_ = false;  ///< whether a motion leads from the last look to this one
 };
 
 extern template class StopCheck<double>;

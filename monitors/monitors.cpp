@@ -128,6 +128,9 @@ MonitorReport Energy::report() const {
   if (!report.reason.empty()) return report;
   report.worst = errors_.worst();
   report.rms = errors_.rms();
+  if (first_ == 0 && kinetic_sum_ == 0 && report.worst == 0) {
+    report.note = "nothing that has mass moves or is pulled, so it says nothing of tracers: watch elements";
+  }
   fill_line(report, errors_, per_time("1", time_unit_));
   fill_drift(report);
   return report;

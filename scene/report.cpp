@@ -74,6 +74,7 @@ std::string to_json(const RunReport& r) {
       {"message", message_of(r)},
       {"particle", particle_of(r.outcome)},
       {"quantity", r.outcome.quantity.empty() ? Json() : Json(r.outcome.quantity)},
+      {"unresolved", r.outcome.unresolved},
       {"step", r.outcome.step},
       {"time", r.outcome.time},
       {"time_unit", r.time_unit},
@@ -149,6 +150,13 @@ std::string to_text(const RunReport& r) {
   if (r.minimized) {
     text += fmt::format("minimized: largest force {:.3g}{}{} after {} force evaluations\n", r.minimized->force,
                         r.force_unit == "1" ? "" : " ", r.force_unit == "1" ? "" : r.force_unit, r.minimized->steps);
+  }
+  if (r.outcome.unresolved > 0) {
+    text += fmt::format(
+        "stop: {} times a pair may have met between two looks that were too far apart to tell; look more often, or "
+        "take "
+        "shorter steps\n",
+        r.outcome.unresolved);
   }
   if (!r.epoch.empty()) text += fmt::format("bodies: as of {}\n", r.epoch);
   for (const std::string& warning : r.warnings) text += fmt::format("warning: {}\n", warning);

@@ -8,13 +8,15 @@
 
 namespace noether {
 
-/// The fastest Kepler orbits of a scene about its first body, by the osculating elements at the start.
+/// The fastest Kepler orbits of a scene, by the osculating elements at the start: about its first body, and of moons
+/// about theirs.
 struct KeplerSteps {
-  double period = 0;           ///< the shortest, 2 pi sqrt(a^3 / mu); 0 where no orbit is closed [time]
+  double period = 0;  ///< the shortest about the first body, 2 pi sqrt(a^3 / mu); 0 where no orbit is closed [time]
   std::string period_of = {};  ///< the body's name
   /// Of the fastest passage of a pericenter: one turn at the angular speed there, 2 pi sqrt(q^3 / (mu (1 + e))) [time].
+  /// Moons count, which no Kepler arc follows: what is bound to another body and within its Hill radius.
   double passage = 0;
-  std::string passage_of = {};
+  std::string passage_of = {};  ///< the body's name, or "Moon about Earth"
 
   static constexpr int resonances = 6;  ///< those that are told, n = 1 to 6
 

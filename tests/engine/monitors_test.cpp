@@ -191,6 +191,23 @@ TEST_CASE("a direction that turns is told, as the closed form says", "[monitors]
   CHECK(angular.report().note == "direction within 0.51 rad; not kept by the forces of this run");
 }
 
+TEST_CASE("an energy that is 0 because nothing has mass says nothing, and says so", "[monitors]") {
+  ParticleSystem<double> s;
+  s.add("Earth", 1, {0, 0, 0}, {0, 0, 0});
+  s.add("satellite", 0, {1, 0, 0}, {0, 1, 0});
+  Simulation sim(s, compose(test::kinetic_potential(Gravity{}), schemes::verlet), 0.1);
+  const auto& energy = sim.every(1, Energy{});
+  CHECK(sim.run(20).ok());
+  const MonitorReport report = energy.report();
+  CHECK(report.worst == 0);
+  CHECK(report.note == "nothing that has mass moves or is pulled, so it says nothing of tracers: watch elements");
+  s.velocities().set(0, {0.1, 0, 0});
+  Simulation moving(s, compose(test::kinetic_potential(Gravity{}), schemes::verlet), 0.1);
+  const auto& told = moving.every(1, Energy{});
+  CHECK(moving.run(20).ok());
+  CHECK(told.report().note.empty());
+}
+
 TEST_CASE("a dissipative run has an energy but no error of it, and says why", "[monitors]") {
   const auto damped = test::damped(test::kinetic_potential(HarmonicField{.k = 1}), LinearDrag{.rate = 0.125});
   Simulation sim(oscillator(), compose(damped, schemes::verlet), 0.125);

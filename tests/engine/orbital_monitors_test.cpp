@@ -1,7 +1,9 @@
 #include "monitors/orbital_monitors.hpp"
 
 #include "engine/simulation.hpp"
+#include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
+#include "integrators/all_methods.hpp"
 #include "integrators/all_schemes.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
@@ -62,6 +64,67 @@ TEST_CASE("the series of elements has one row per particle and none for the prim
   CHECK_THROWS_AS(elements.of(2), std::out_of_range);
 }
 
+TEST_CASE("elements are about the body that is named, wherever it stands", "[orbital_monitors]") {
+  const OrbitalElements<double> o{1, 0.5, 0.1, 0.2, 0.3, 0.4};
+  auto s = planet<double>(o);
+  s.add("moon", 0, s.positions()[1] + Vec3<double>(0.01, 0, 0), s.velocities()[1] + Vec3<double>(0, 5, 0));
+  const auto start = [&](std::vector<Index> order) {
+    ParticleSystem<double> t;
+    for (const Index i : order) t.add(s.name(i), s.masses()[i], s.positions()[i], s.velocities()[i]);
+    return orbits_of(std::move(t), 0.01);
+  };
+  const auto note = [](const Elements& elements) { return elements.report().note; };
+  auto sun_first = start({0, 1, 2}), planet_first = start({1, 0, 2}), moon_last = start({1, 2, 0});
+  const auto& usual = sun_first.every(1, Elements{});
+  const auto& wrong = planet_first.every(1, Elements{});
+  Elements about_sun, about_planet;
+  about_sun.about = "sun";
+  about_planet.about = "planet";
+  const auto& right = moon_last.every(1, about_sun);
+  const auto& of_moon = sun_first.every(1, about_planet);
+  for (auto* sim : {&sun_first, &planet_first, &moon_last}) CHECK(sim->run(0).ok());
+  CHECK(std::abs(usual.of(1).a - 1) < 1e-14);
+  CHECK(std::abs(right.of(0).a - 1) < 1e-14);
+  CHECK(std::abs(right.of(0).e - 0.5) < 1e-14);
+  CHECK(std::isnan(right.of(2).a));
+  // v^2 = mu (2/r - 1/a), mu = 1/4
+  CHECK(std::abs(of_moon.of(2).a - 1 / (2 / 0.01 - 25 / 0.25)) < 1e-12);
+  CHECK(note(usual) == "six numbers for each particle: see the trajectory file");
+  CHECK(note(right) == note(usual));
+  CHECK(note(wrong) == note(usual) +
+                           "; they are about 'planet', which comes first, and 'sun' has more mass: give about = "
+                           "\"sun\"");
+  Elements nobody;
+  nobody.about = "sum";
+  CHECK_THROWS_WITH(sun_first.every(1, nobody), "about = \"sum\" names no particle; did you mean 'sun'?");
+  nobody.about = "moon";
+  CHECK_THROWS_WITH(sun_first.every(1, nobody),
+                    "elements are about 'moon', whose mass is 0; give about = \"NAME\" of a body that has mass");
+}
+
+TEST_CASE("what orbital monitors kept later is no matter to runs that were saved before",
+          "[orbital_monitors][restart]") {
+  auto sim = orbits_of(planet<double>({1, 0.5, 0.1, 0.2, 0.3, 5.5}), 0.01);
+  sim.every(20, ClosestApproach{});
+  sim.every(20, Elements{});
+  CHECK(sim.run(40).ok());
+  SavedRun saved = sim.save();
+  int taken = 0;
+  for (auto& [name, part] : saved.parts) {
+    taken += static_cast<int>(std::erase_if(part, [](const auto& one) {
+      const std::string& key = one.first;
+      return key.ends_with("tracers") || key.ends_with("primary") || key.ends_with("heaviest");
+    }));
+  }
+  CHECK(taken == 3);
+  auto other = orbits_of(planet<double>({1, 0.5, 0.1, 0.2, 0.3, 5.5}), 0.01);
+  auto& closest = other.every(20, ClosestApproach{});
+  other.every(20, Elements{});
+  other.restore(saved);
+  CHECK(other.run(40).ok());
+  CHECK(closest.report().samples == 5);
+}
+
 TEST_CASE("elements take a constant of gravitation of their own", "[orbital_monitors]") {
   auto sim = orbits_of(planet<double>({1, 0.5, 0, 0, 0, std::numbers::pi}), 0.01);
   auto& own = sim.every(1, Elements{4.0});
@@ -104,18 +167,60 @@ TEST_CASE("the smallest distance is the smallest of the whole run, not the last"
   CHECK(series[2].values[0] == closest.at_time());
 }
 
-TEST_CASE("looks too far apart for an approach say so, and count only what was seen", "[orbital_monitors]") {
+TEST_CASE("between looks too far apart for a path the pericenter of a pair is found", "[orbital_monitors]") {
   auto seldom = orbits_of(planet<double>({1, 0.9, 0, 0, 0, -0.5}, 0), 0.001);
   auto often = orbits_of(planet<double>({1, 0.9, 0, 0, 0, -0.5}, 0), 0.001);
-  auto& guess = seldom.every(1000, ClosestApproach{});
+  auto& rare = seldom.every(1000, ClosestApproach{});
   auto& known = often.every(1, ClosestApproach{});
   CHECK(seldom.run(1000).ok());
   CHECK(often.run(1000).ok());
+  for (const ClosestApproach* closest : {&rare, &known}) {
+    CHECK(std::abs(closest->distance() - 0.1) < 1e-5);
+    CHECK(std::abs(closest->at_time() - 0.5) < 1e-5);
+    CHECK(closest->unresolved() == 0);
+  }
+}
+
+TEST_CASE("looks too far apart for an approach say so, and count only what was seen", "[orbital_monitors]") {
+  ParticleSystem<double> s;
+  s.add("rock", 1, {0, 0, 0}, {0, 0, 0});
+  s.add("ball", 1, {1, 0.01, 0}, {0, 0, 0});  // swings through the middle
+  const auto runs = [&] {
+    return Simulation<double>(s, compose(test::kinetic_potential(HarmonicField{.k = 1}), schemes::yoshida_8), 0.01);
+  };
+  auto seldom = runs(), often = runs();
+  auto& guess = seldom.every(230, ClosestApproach{});
+  auto& known = often.every(1, ClosestApproach{});
+  CHECK(seldom.run(230).ok());
+  CHECK(often.run(230).ok());
   CHECK(guess.distance() > 0.5);
   CHECK(guess.unresolved() == 1);
   CHECK(guess.report().note.find("; 1 times a pair may have been nearer between two looks") != std::string::npos);
-  CHECK(std::abs(known.distance() - 0.1) < 1e-5);
-  CHECK(known.unresolved() == 0);
+  CHECK(known.distance() < 0.01);
+}
+
+TEST_CASE("the end of a run is looked at whatever the cadence, and a run that goes on does not notice",
+          "[orbital_monitors]") {
+  const auto start = [] { return orbits_of(planet<double>({1, 0.5, 0, 0, 0, -0.5}, 0), 0.01); };
+  auto cut = start(), whole = start();
+  auto& closest = cut.every(40, ClosestApproach{});
+  auto& uncut = whole.every(40, ClosestApproach{});
+  CHECK(cut.run(75).ok());  // the pericenter is passed at 50, the last look was at 40
+  CHECK(std::abs(closest.distance() - 0.5) < 1e-3);  // by the path from 40 to 75
+  CHECK(closest.report().samples == 2);
+  CHECK(closest.report().last == closest.distance());
+  CHECK(cut.run(45).ok());
+  CHECK(whole.run(120).ok());
+  CHECK(closest.distance() == uncut.distance());
+  CHECK(closest.at_time() == uncut.at_time());
+  CHECK(closest.report().samples == 4);
+  // Where steps are the method's own the run ends between two of them.
+  Simulation<double> adaptive(
+      planet<double>({1, 0.5, 0, 0, 0, -0.5}, 0),
+      test::classical_over(Gravity{}, {methods::find("dop853"), {.rtol = 1e-10, .atol = 1e-10}}));
+  auto& by_steps = adaptive.every(1, ClosestApproach{});
+  CHECK(adaptive.run_until(0.5).ok());
+  CHECK(std::abs(by_steps.distance() - 0.5) < 1e-8);
 }
 
 TEST_CASE("tracers come near massive bodies, never near each other", "[orbital_monitors]") {
@@ -127,6 +232,7 @@ TEST_CASE("tracers come near massive bodies, never near each other", "[orbital_m
   auto& closest = sim.every(1, ClosestApproach{});
   CHECK(sim.run(0).ok());
   CHECK(closest.distance() == 1);
+  CHECK(closest.report().note == "sun and dust at time 0; pairs of the 2 tracers, whose mass is 0, are left out");
 }
 
 TEST_CASE("a single particle has no closest approach and reports none", "[orbital_monitors]") {

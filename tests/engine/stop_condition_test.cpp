@@ -2,9 +2,12 @@
 
 #include "engine/stop_condition.hpp"
 
+#include "engine/orbital_elements.hpp"
 #include "engine/simulation.hpp"
+#include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
 #include "forces/sum.hpp"
+#include "integrators/all_methods.hpp"
 #include "integrators/all_schemes.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/kinetic_potential.hpp"
@@ -154,6 +157,75 @@ TEST_CASE("the last step is looked at whatever the cadence, and a run that goes 
   for (Simulation<double>* one : {&cut, &whole}) one->stop_when(closer_than(1.5), 8);
   CHECK(cut.run(10).kind == Outcome::Kind::completed);
   CHECK(cut.run(30).message == whole.run(40).message);
+}
+
+TEST_CASE("a collision in the last part of a run with steps of its own is found", "[stop]") {
+  // On the ellipse of a = 1, e = 1/2 from its apocenter to the pericenter at pi; 0.6 is passed at cos E = 4/5.
+  ParticleSystem<double> s;
+  s.add("S", 1, {0, 0, 0}, {0, 0, 0});
+  s.add("t", 0, {1.5, 0, 0}, {0, std::sqrt(1.0 / 3), 0});
+  const double since = std::numbers::pi - (std::acos(0.8) - 0.3);
+  for (const double rtol : {1e-6, 1e-9, 1e-12}) {
+    for (const double end : {2.998091544796509, 2.8}) {
+      CAPTURE(rtol, end);
+      Simulation<double> run(s,
+                             test::classical_over(Gravity{}, {methods::find("dop853"), {.rtol = rtol, .atol = rtol}}));
+      run.stop_when(closer_than(0.6), 1);
+      CHECK(run.run_until(2.7).kind == Outcome::Kind::completed);
+      const Outcome outcome = run.run_until(end);
+      CHECK(outcome.kind == Outcome::Kind::stopped);
+      CHECK(outcome.unresolved == 0);
+      CHECK(std::abs(test::number_after(outcome.message, "since time ") - since) < 100 * rtol + 1e-8);
+    }
+  }
+}
+
+TEST_CASE("a passage that steps jump over is found along the orbit of the pair, for steps of any length", "[stop]") {
+  // Past the Sun at 0.003 au, on an orbit of 10 au: below 0.00465 au from some hours before the pericenter on.
+  const double mu = 2.9591220828559e-4, a = 10, e = 0.9997, M = -std::numbers::pi / 3, limit = 0.00465;
+  const double E = std::acos((1 - limit / a) / e), motion = std::sqrt(mu / (a * a * a));
+  const double since = (-(E - e * std::sin(E)) - M) / motion;
+  ParticleSystem<double> s(unit_system("solar"));
+  s.add("Sun", 1, {0, 0, 0}, {0, 0, 0});
+  const auto [x, v] = state_from_elements<double>({a, e, 1.4, 0.3, 0.2, 2 * std::numbers::pi + M}, mu);
+  s.add("grazer", 0, x, v);
+  for (const double step : {100.0, 30.0, 7.0, 1.0, 0.5, 0.1}) {
+    CAPTURE(step);
+    Simulation<double> run(s, compose(test::wisdom_holman<double>({.G = mu}), schemes::verlet), step);
+    run.stop_when(closer_than(limit), 1);
+    const Outcome outcome = run.run(static_cast<std::int64_t>(6000 / step));
+    REQUIRE(outcome.kind == Outcome::Kind::stopped);
+    CHECK(outcome.unresolved == 0);
+    CHECK(std::abs(test::number_after(outcome.message, "since time ") - since) < 1e-4);
+    CHECK(std::abs(test::number_after(outcome.message, "distance ") / (a * (1 - e)) - 1) < 1e-4);
+  }
+  // The pericenter is outside of a smaller distance, and time may run back.
+  Simulation<double> past(s, compose(test::wisdom_holman<double>({.G = mu}), schemes::verlet), 30.0);
+  past.stop_when(closer_than(0.0029), 1);
+  const Outcome whole = past.run(200);
+  CHECK(whole.kind == Outcome::Kind::completed);
+  CHECK(whole.unresolved == 0);
+  Simulation<double> back(past.particles(), compose(test::wisdom_holman<double>({.G = mu}), schemes::verlet), -30.0);
+  back.stop_when(closer_than(limit), 1);
+  CHECK(back.run(200).kind == Outcome::Kind::stopped);
+}
+
+TEST_CASE("what no orbit of a pair explains is counted", "[stop]") {
+  ParticleSystem<double> s;
+  s.add("rock", 1, {0, 0, 0}, {0, 0, 0});
+  s.add("ball", 1, {1, 0.01, 0}, {0, 0, 0});  // swings through the middle, on a spring
+  Simulation<double> run(s, compose(test::kinetic_potential(HarmonicField{.k = 1}), schemes::yoshida_8), 0.01);
+  run.stop_when(closer_than(0.02), 230);
+  const Outcome outcome = run.run(460);
+  CHECK(outcome.kind == Outcome::Kind::completed);
+  CHECK(outcome.unresolved >= 1);
+  // The count goes on over a restart.
+  Simulation<double> first(s, compose(test::kinetic_potential(HarmonicField{.k = 1}), schemes::yoshida_8), 0.01);
+  Simulation<double> second(s, compose(test::kinetic_potential(HarmonicField{.k = 1}), schemes::yoshida_8), 0.01);
+  for (auto* one : {&first, &second}) one->stop_when(closer_than(0.02), 230);
+  CHECK(first.run(300).ok());
+  second.restore(first.save());
+  CHECK(second.run(160).unresolved == outcome.unresolved);
 }
 
 TEST_CASE("a stopped run may go on", "[stop]") {

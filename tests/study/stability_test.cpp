@@ -429,6 +429,30 @@ TEST_CASE("the fastest passage of a pericenter is a turn at the angular speed th
   CHECK_FALSE(kepler_steps(ball()));
 }
 
+TEST_CASE("moons count among the fastest passages, wherever they are bound", "[stability][kepler]") {
+  // A moon 0.00242848670439 au from the Earth at 0.000625152665503885 au/day, in its pericenter.
+  const auto scene = [](const std::string& speed) {
+    return read_scene(
+        "units = 'solar'\n[[particles.body]]\nname = 'Sun'\nmass = '1 Msun'\n[[particles.body]]\nname = 'Earth'\nmass "
+        "= "
+        "'3.0034896e-06 Msun'\nx = ['1 au', '0 au', '0 au']\nv = ['0 au/day', '0.017202125100865537 au/day', '0 "
+        "au/day']\n[[particles.body]]\nname = 'Moon'\nmass = '3.694e-08 Msun'\nx = ['1.00242848670439 au', '0 au', '0 "
+        "au']\nv = ['0 au/day', '" +
+            speed +
+            " au/day', '0 au/day']\n[hamiltonian]\ntype = 'wisdom_holman'\n[integrator]\nmethod = 'aba_10_6_4'\nstep = "
+            "'1 day'\nsteps = 10\n",
+        "moon.toml");
+  };
+  const KeplerSteps found = kepler_steps(scene("0.017827278646340743")).value();
+  CHECK(found.passage_of == "Moon about Earth");
+  CHECK(found.period_of != "Moon about Earth");
+  const double turning = (0.017827278646340743 - 0.017202125100865537) / 0.00242848670439;
+  CHECK(std::abs(found.passage * turning / (2 * M_PI) - 1) < 1e-11);
+  CHECK(std::abs(found.recommended() - 1.22) < 0.01);
+  // One that is not bound is no moon: at a relative speed of 0.01 au/day it flies past.
+  CHECK(kepler_steps(scene("0.0272")).value().passage_of != "Moon about Earth");
+}
+
 /// How far the Jacobi constant of a massless comet on an orbit of e = 0.9, inside that of a giant on a circle, has come
 /// off over 4000 units of time: relative, on the mean of the last quarter.
 double jacobi_constant_lost(double steps_in_a_passage) {
