@@ -113,6 +113,9 @@ template <class V> void read_field(TableReader& reader, std::string_view key, st
     target = static_cast<T>(*reader.integer(key));
   } else if constexpr (std::is_floating_point_v<T>) {
     target = *reader.quantity(key, dimension);
+    if constexpr (std::is_same_v<V, std::optional<double>>) {
+      if (key == "G") reader.expect_same_constant(*target);
+    }
   } else if constexpr (std::is_enum_v<T>) {
     target = read_choice<T>(reader, key);
   } else if constexpr (std::is_same_v<T, std::string>) {

@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <set>
 
 namespace noether {
 
@@ -49,6 +50,7 @@ class SceneReader {
       scene_.particles =
           read_particles(context_, table(top, "particles"), scene_.file.parent_path(), particles, scene_.warnings);
       read_hamiltonian(table(top, "hamiltonian"));
+      context_.gravitates = scene_.hamiltonian.is_keplerian();
       if (const SceneValue* start = top.find("minimize")) {
         scene_.effective.put("minimize", read_minimize(context_, *start, scene_));
       }
@@ -122,12 +124,27 @@ class SceneReader {
   void read_constant(const SceneValue& hamiltonian) {
     TableReader reader(context_, hamiltonian, "[hamiltonian]", "hamiltonian");
     const SceneValue* G = reader.find("G");
-    if (G == nullptr) return;
+    if (G == nullptr) return read_constant_of_force(hamiltonian);
     scene_.hamiltonian.G = reader.number(*G, "G", "length^3/mass/time^2");
     if (!(*scene_.hamiltonian.G > 0)) {
       reader.fail("G", fmt::format("G = {} is no constant of gravitation; a number above 0 is expected", to_text(*G)));
     }
     context_.G = *G;
+  }
+
+  /// G that stands in a force alone is that of the scene too: of orbits by elements, and of what watches them.
+  void read_constant_of_force(const SceneValue& hamiltonian) {
+    const SceneValue* forces = hamiltonian.find("force");
+    const auto* list = forces != nullptr ? forces->get<SceneValue::Array>() : nullptr;
+    for (std::size_t k = 0; list != nullptr && k < list->size() && !context_.G; ++k) {
+      TableReader reader(context_, (*list)[k], "[[hamiltonian.force]]", fmt::format("hamiltonian.force.{}", k));
+      const SceneValue* G = (*list)[k].get<SceneValue::Table>() != nullptr ? reader.find("G") : nullptr;
+      if (G == nullptr) continue;
+      const double value = reader.number(*G, "G", "length^3/mass/time^2");
+      if (!(value > 0)) continue;  // the force will tell
+      scene_.hamiltonian.G = value;
+      context_.G = *G;
+    }
   }
 
   /// The columns that the Hamiltonian and the forces of a scene declare. What is wrong with these is told later, when
@@ -167,8 +184,7 @@ class SceneReader {
     TableReader reader(context_, table, "[hamiltonian]", "hamiltonian");
     SceneValue& effective = scene_.effective.put("hamiltonian", SceneValue::table());
     effective.put("type", SceneValue::of(type, reader.line("type")));
-    const SceneValue* G = reader.find("G");
-    effective.put("G", G != nullptr ? *G : SceneValue::of(scene_.units->G));
+    effective.put("G", context_.G ? *context_.G : SceneValue::of(scene_.units->G));
     const auto forces = tables_of(reader, "force"), constraints = tables_of(reader, "constraint");
     const SceneValue *thermostat = reader.find("thermostat"), *neighbors = reader.find("neighbors");
     for (const char* key : {"type", "G", "force", "constraint"}) reader.find(key);
@@ -242,7 +258,7 @@ class SceneReader {
     if (reader.has("kick")) effective.put("kick", SceneValue::of(kick, reader.line("kick")));
     SceneForce force = kind->read(reader, tied);
     reader.finish();
-    check_force_beside(reader, *kind);
+    check_force_beside(reader, *kind, force, table);
     set_kick(reader, force, kick);
     if (!force.letter) {
       try {
@@ -274,7 +290,8 @@ class SceneReader {
   }
 
   /// Refuses a force that the splitting has in itself, and one that stands twice where it must not.
-  void check_force_beside(const TableReader& reader, const Parts::ForceKind& kind) const {
+  void check_force_beside(const TableReader& reader, const Parts::ForceKind& kind, const SceneForce& force,
+                          const SceneValue& table) const {
     const SceneHamiltonian& made = scene_.hamiltonian;
     const auto is_it = [&](const SceneForce& other) { return other.name == kind.info.name; };
     if (std::any_of(made.splitting.own.begin(), made.splitting.own.end(), is_it)) {
@@ -285,6 +302,27 @@ class SceneReader {
       const std::string_view mark = kind.only_once.starts_with("so ") ? "," : ";";
       reader.fail("type", fmt::format("{} stands twice in the scene{} {}", kind.info.name, mark, kind.only_once));
     }
+    if (!(force.force.claims().range > 0)) return;
+    const std::set<std::string> types = types_between(table);
+    for (const SceneForce& other : made.forces) {
+      const std::set<std::string> theirs = types_between(other.effective);
+      if (!is_it(other) || !(types.empty() || theirs.empty() || types == theirs)) continue;
+      const std::set<std::string>& twice = types.empty() ? theirs : types;
+      reader.fail("type",
+                  fmt::format("{} stands twice in the scene, so {} would count twice; take one out", kind.info.name,
+                              twice.empty() ? "every pair"
+                                            : fmt::format("pairs of '{}' and '{}'", *twice.begin(), *twice.rbegin())));
+    }
+  }
+  /// The types whose pairs a force acts between; empty: all pairs.
+  static std::set<std::string> types_between(const SceneValue& force) {
+    std::set<std::string> types;
+    for (const char* key : {"first", "second"}) {
+      const SceneValue* value = force.find(key);
+      const std::string* name = value != nullptr ? value->get<std::string>() : nullptr;
+      if (name != nullptr && !name->empty()) types.insert(*name);
+    }
+    return types;
   }
 
   void read_watches(TableReader& top) {

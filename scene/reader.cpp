@@ -97,6 +97,19 @@ std::optional<std::int64_t> TableReader::integer(std::string_view key) {
   return *integer;
 }
 
+void TableReader::expect_same_constant(double G) const {
+  if (!(G > 0) || !(context_.G || context_.gravitates)) return;  // what is no constant is told by whoever wants one
+  const double known = context_.G ? number(*context_.G, "G", "length^3/mass/time^2") : context_.units->G;
+  if (G == known) return;
+  std::string where = "of the units";
+  if (context_.G && context_.G->line > 0) where = fmt::format("in line {}", context_.G->line);
+  if (context_.G && context_.G->line == 0) where = "of the scene";
+  fail("G",
+       fmt::format("G = {} differs from the G = {} {}; there is one constant of gravitation: give it once, as G in "
+                   "[hamiltonian]",
+                   format_number(G), format_number(known), where));
+}
+
 double TableReader::number(const SceneValue& value, std::string_view key, std::string_view dimension) const {
   const UnitSystem& units = *context_.units;
   const Dimension expected = parse_dimension(dimension);

@@ -28,7 +28,9 @@ struct SceneSource {
 struct SceneContext {
   SceneSource source;
   const UnitSystem* units = &unit_system("solar");
-  std::optional<SceneValue> G = {};      ///< `hamiltonian.G`: the default of every field of that name
+  /// `hamiltonian.G`, or that of a force where it stands there alone: the default of every field of that name.
+  std::optional<SceneValue> G = {};
+  bool gravitates = false;               ///< the Hamiltonian, as far as it has been read, has a constant of gravitation
   std::vector<ColumnInfo> columns = {};  ///< that the Hamiltonian and the forces of the scene declare
 };
 
@@ -57,6 +59,9 @@ class TableReader {
   std::optional<std::array<double, 3>> vector(std::string_view key, std::string_view dimension);
   /// The numbers of a particle in a column, under the name of the column.
   std::optional<std::vector<double>> row(const ColumnInfo& column);
+
+  /// @throws SceneError  for a constant of gravitation that is not the one of the scene
+  void expect_same_constant(double G) const;
 
   /// One number with a dimension, of this or another table.
   double number(const SceneValue& value, std::string_view key, std::string_view dimension) const;

@@ -135,6 +135,41 @@ std::string other_cutoff(const Scene& scene) {
   return "";
 }
 
+/// That a splitting into Kepler arcs goes round a body that is not the heaviest; empty where it is.
+std::string other_primary(const Scene& scene) {
+  const ParticleSystem<double>& s = scene.particles;
+  if (!scene.hamiltonian.splitting.claims.kepler || s.size() == 0) return "";
+  Index heaviest = 0;
+  for (Index i = 1; i < s.size(); ++i) heaviest = s.masses()[i] > s.masses()[heaviest] ? i : heaviest;
+  if (heaviest == 0) return "";
+  return fmt::format(
+      "'{}' comes first, so the Kepler arcs of {} go round it, but '{}' has {:.3g} times its mass; put '{}' first",
+      s.name(0), scene.hamiltonian.splitting.name, s.name(heaviest), s.masses()[heaviest] / s.masses()[0],
+      s.name(heaviest));
+}
+
+/// Particles that no force moves for want of mass, where pair forces are all there is; empty if there are none.
+std::string unmoved_tracers(const Scene& scene) {
+  const ParticleSystem<double>& s = scene.particles;
+  const auto acts_without_mass = [](const SceneForce& force) {
+    const ForceClaims claims = force.force.claims();
+    return claims.kepler || !(claims.range > 0 || claims.bonded);
+  };
+  const std::vector<SceneForce> terms = scene.hamiltonian.terms();
+  if (terms.empty() || std::any_of(terms.begin(), terms.end(), acts_without_mass)) return "";
+  Index count = 0, first = -1;
+  for (Index i = 0; i < s.size(); ++i) {
+    if (s.masses()[i] != 0) continue;
+    if (first < 0) first = i;
+    ++count;
+  }
+  if (count == 0) return "";
+  return fmt::format(
+      "{} of mass 0, such as '{}', {} pushed by no force of this scene: forces between molecules move nothing without "
+      "mass, which flies straight on; give masses",
+      count == 1 ? "1 particle" : fmt::format("{} particles", count), s.name(first), count == 1 ? "is" : "are");
+}
+
 }  // namespace
 
 std::vector<std::string> warnings_of(const Scene& scene) {
@@ -163,6 +198,8 @@ std::vector<std::string> warnings_of(const Scene& scene) {
   }
   add(other_cutoff(scene));
   add(too_stiff(scene));
+  add(other_primary(scene));
+  add(unmoved_tracers(scene));
   return warnings;
 }
 

@@ -241,7 +241,32 @@ TEST_CASE("G of the Hamiltonian is the G of its forces and of elements", "[scene
   const std::string digest = digest_of(read(two_bodies, {"hamiltonian.G=2.9e-4"}));
   CHECK(digest == io::digest(sim.particles()));
   CHECK(digest != digest_of(read(two_bodies)));
-  CHECK(digest == digest_of(read(two_bodies, {"hamiltonian.G=2.8e-4", "hamiltonian.force.gravity.G=2.9e-4"})));
+  // In the force alone it is that of the scene.
+  const Scene of_force = read(two_bodies, {"hamiltonian.force.gravity.G=2.9e-4"});
+  CHECK(digest == digest_of(of_force));
+  CHECK(of_force.hamiltonian.G == 2.9e-4);
+  const double* told = of_force.effective.find("hamiltonian")->find("G")->get<double>();
+  REQUIRE(told != nullptr);
+  CHECK(*told == 2.9e-4);
+}
+
+TEST_CASE("bodies by elements go round by the G of the force", "[scene]") {
+  // Half a turn of a circle in 4 pi^2 = G M takes half a year.
+  const std::string circle =
+      "units = 'reduced'\n[particles]\n[[particles.body]]\nname = 'S'\nmass = 1.0\n[[particles.body]]\nname = 'p'\n"
+      "mass = 1e-3\na = 1.0\n[hamiltonian]\ntype = 'kinetic_potential'\n[[hamiltonian.force]]\ntype = 'gravity'\n"
+      "G = 39.47841760435743\n[integrator]\nmethod = 'gauss_8'\nuntil = 0.5\n";
+  Simulation<double> sim = assemble(read(circle));
+  REQUIRE(sim.run_until(0.5).ok());
+  const ParticleSystem<double>& s = sim.particles();
+  const Vec3<double> apart = s.positions()[1] - s.positions()[0];
+  CHECK(std::abs(std::sqrt(norm2(apart)) - 1) < 1e-12);
+  const std::string watched = "[[every]]\ntype = 'elements'\nevery = 0.5\nG = 1\n";
+  CHECK(refusal(circle + watched)
+            .ends_with("G = 1 differs from the G = 39.47841760435743 in line 14; there is one constant of gravitation: "
+                       "give it once, as G "
+                       "in [hamiltonian]"));
+  CHECK(refusal(circle + watched, {"hamiltonian.force.0.G="}) == "");
 }
 
 TEST_CASE("until is a whole number of steps to 1e-9, and not to 1e-8", "[scene]") {

@@ -39,6 +39,68 @@ std::string harmonic(double z) { return fmt::format("harmonic\n\n1 {:.17g} 1.1",
 
 const std::string verlet = "method = 'verlet'\nstep = 0.01\n";
 
+TEST_CASE("Kepler arcs about a body that is not the heaviest are warned of", "[scene][warnings]") {
+  const auto of = [](const std::string& hamiltonian, const std::string& first, const std::string& second) {
+    const std::string body = "[[particles.body]]\n";
+    const std::string sun = body + "name = 'Sun'\nmass = 1\nx = [0, 0, 0]\nv = [0, 0, 0]\n";
+    const std::string earth = body + "name = 'Earth'\nmass = 3e-6\nx = [1, 0, 0]\nv = [0, 1, 0]\n";
+    return warnings_of(read_scene("units = 'reduced'\n" + (first == "Sun" ? sun + earth : earth + sun) +
+                                      "[hamiltonian]\ntype = '" + hamiltonian +
+                                      "'\n[integrator]\nmethod = 'verlet'\nstep = 0.01\nsteps = 10\n" + second,
+                                  "scene.toml"));
+  };
+  CHECK(of("wisdom_holman", "Sun", "").empty());
+  CHECK(of("wisdom_holman", "Earth", "") ==
+        std::vector<std::string>{"'Earth' comes first, so the Kepler arcs of wisdom_holman go round it, but 'Sun' has "
+                                 "3.33e+05 times its mass; put 'Sun' first"});
+}
+
+TEST_CASE("a pair force may stand in a scene for each pair of types, and once for each", "[scene][messages]") {
+  const ScratchFolder folder;
+  write_text(folder / "two.data",
+             "two\n\n2 atoms\n2 atom types\n0 20 xlo xhi\n0 20 ylo yhi\n0 20 zlo zhi\n\nMasses\n\n1 1\n2 1\n\nAtoms # "
+             "atomic\n\n1 1 5 5 5\n2 2 6.1 5 5\n");
+  const auto refused = [&](const std::string& first, const std::string& second) {
+    const auto wca = [](const std::string& types) {
+      return "[[hamiltonian.force]]\ntype = 'wca'\nepsilon = 1\nsigma = 1\n" + types;
+    };
+    try {
+      read_scene("units = 'reduced'\n[particles]\nstructure = 'two.data'\n[hamiltonian]\ntype = 'kinetic_potential'\n" +
+                     wca(first) + wca(second) + "[integrator]\nmethod = 'verlet'\nstep = 0.01\nsteps = 1\n",
+                 folder / "scene.toml");
+    } catch (const Error& error) {
+      return error.message();
+    }
+    return std::string();
+  };
+  CHECK(refused("first = '1'\nsecond = '1'\n", "first = '1'\nsecond = '2'\n").empty());
+  CHECK(refused("first = '2'\nsecond = '1'\n", "first = '1'\nsecond = '2'\n") ==
+        "wca stands twice in the scene, so pairs of '1' and '2' would count twice; take one out");
+  CHECK(refused("first = '2'\nsecond = '2'\n", "") ==
+        "wca stands twice in the scene, so pairs of '2' and '2' would count twice; take one out");
+  CHECK(refused("", "") == "wca stands twice in the scene, so every pair would count twice; take one out");
+}
+
+TEST_CASE("particles without mass that no force can move are warned of", "[scene][warnings]") {
+  const auto of = [](double mass, const std::string& force) {
+    const auto body = [](const std::string& name, double m, int x) {
+      return fmt::format("[[particles.body]]\nname = '{}'\nmass = {}\nx = [{}, 0, 0]\nv = [0, 0, 0]\n", name, m, x);
+    };
+    return warnings_of(read_scene("units = 'reduced'\n[particles]\nbox = [9, 9, 9]\n" + body("A", 1, 0) +
+                                      body("ghost", mass, 1) + body("B", mass, 2) +
+                                      "[hamiltonian]\ntype = 'kinetic_potential'\n[[hamiltonian.force]]\n" + force +
+                                      "[integrator]\nmethod = 'verlet'\nstep = 0.001\nsteps = 1\n",
+                                  "scene.toml"));
+  };
+  const std::string argon = "type = 'lennard_jones'\ncutoff = 2.5\nepsilon = 1\nsigma = 1\n";
+  CHECK(of(1, argon).empty());
+  CHECK(of(0, argon) ==
+        std::vector<std::string>{
+            "2 particles of mass 0, such as 'ghost', are pushed by no force of this scene: forces between "
+            "molecules move nothing without mass, which flies straight on; give masses"});
+  CHECK(of(0, "type = 'uniform_field'\nacceleration = [0, 0, -1]\n").empty());
+}
+
 TEST_CASE("a bond that the step cannot follow is warned of, from the limit of the method on", "[scene][warnings]") {
   CHECK(warnings(harmonic(1.99), verlet).empty());
   const auto told = warnings(harmonic(2.01), verlet);
