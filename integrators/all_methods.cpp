@@ -104,7 +104,10 @@ void check_tolerances(const MethodInfo& info, const MethodOptions& options, doub
                     fmt::format("method '{}' takes steps of one length here, so {} means nothing to it; take it out",
                                 info.name, one.name));
     }
-    if (!(*value >= 0 && std::isfinite(*value)))
+    const bool is_length = one.name == "max_step";
+    if (is_length && !(*value > 0 && std::isfinite(*value)))
+      refuse_field(one.name, fmt::format("{}", *value), "is no longest step; a time above 0 is expected");
+    if (!is_length && !(*value >= 0 && std::isfinite(*value)))
       refuse_field(one.name, fmt::format("{}", *value), "is no tolerance; a number of at least 0 is expected");
   }
   // The references take 1e-16 for "to rounding"; others would shorten their steps without end.

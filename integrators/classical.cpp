@@ -1,5 +1,7 @@
 #include "integrators/classical.hpp"
 
+#include "integrators/step_control.hpp"
+
 #include <cmath>
 
 namespace noether {
@@ -48,13 +50,22 @@ template <class Real> void Classical<Real>::bind(ParticleSystem<Real>& s) {
 template <class Real> Advance Classical<Real>::advance(ParticleSystem<Real>& s, const Span& span) {
   Advance done;
   const bool fixed = s.clock().mode() == ClockMode::fixed;
-  const double most = fixed ? s.clock().dt() : s.clock().never();
+  const double most = fixed ? s.clock().dt() : longest_step(s.clock());
   field_->gather(s, y_);
   while (done.steps < span.steps) {
     const Real t = s.clock().time();
-    if (!fixed && s.clock().is_later(s.clock().high() + method_->next_step(*field_, t, y_, most), span.limit)) {
-      done.at_limit = true;
-      break;
+    if (!fixed) {
+      const double next = method_->next_step(*field_, t, y_, most);
+      if (s.clock().is_later(s.clock().high() + next, span.limit)) {
+        done.at_limit = true;
+        break;
+      }
+      // Steps that all pass may grow shorter for ever, as on the way into a collision.
+      if (auto failure = underflow(s.clock().high(), next)) {
+        failure_ = std::move(failure);
+        done.failure = &*failure_;
+        break;
+      }
     }
     field_->forget_failure();
     StepResult made = method_->step(*field_, t, y_, most);
@@ -116,6 +127,11 @@ Real Classical<Real>::settle(const ParticleSystem<Real>& raw, ParticleSystem<Rea
   return Real(0);  // at whole steps nothing is left to do, and with steps of its own choice no action is told
 }
 
+/// Signed as time runs. @param clock  a free one
+template <class Real> double Classical<Real>::longest_step(const Clock<Real>& clock) const {
+  return choice_.options.max_step ? std::copysign(*choice_.options.max_step, clock.never()) : clock.never();
+}
+
 /// Leaves y at time `at` in `y_`, from the last whole step of the run.
 template <class Real> void Classical<Real>::look_ahead(const ParticleSystem<Real>& raw, double at) {
   const bool dense = method_->dense();
@@ -131,7 +147,8 @@ template <class Real> void Classical<Real>::look_ahead(const ParticleSystem<Real
   while (clock.is_later(at, ahead_->t + ahead_->h)) {
     ahead_->t += ahead_->h;
     const Real t = ahead_->t == begin ? clock.time() : Real(ahead_->t);
-    const double most = dense ? clock.never() : at - ahead_->t;
+    double most = longest_step(clock);
+    if (!dense && clock.is_later(ahead_->t + most, at)) most = at - ahead_->t;
     const StepResult made = ahead_->method->step(*field_, t, ahead_->y, most);
     // What fails here fails in the run as well, and is told there.
     if (made.failure || !(std::abs(made.h) > 0)) return;
@@ -154,6 +171,7 @@ template <class Real> std::string Classical<Real>::signature() const {
   }
   for (const OptionGroup* group : groups) {
     for (const OptionValue& one : group->values(options)) {
+      if (MethodOptions::is_new(one.name) && one.value.index() == 0) continue;
       detail::add_field_text(fields, one.name, option_text(one.value));
     }
   }

@@ -53,6 +53,7 @@ template <class Real> class Classical {
 
  private:
   std::string signature() const;
+  double longest_step(const Clock<Real>& clock) const;
   void look_ahead(const ParticleSystem<Real>& raw, double at);
 
   /// A copy of the method on its way past the last whole step of the run, for observers.

@@ -99,16 +99,19 @@ class OwnOptions {
 
 /// What a user may set of a method; a method takes what it knows and refuses the rest.
 struct MethodOptions {
-  std::optional<double> rtol = {};    ///< relative tolerance of adaptive methods [1]
-  std::optional<double> atol = {};    ///< absolute tolerance, in the units of each variable
-  std::optional<bool> adaptive = {};  ///< for methods that can do both
-  std::optional<double> first = {};   ///< length of the first step of adaptive methods [time]; default: by the method
+  std::optional<double> rtol = {};      ///< relative tolerance of adaptive methods [1]
+  std::optional<double> atol = {};      ///< absolute tolerance, in the units of each variable
+  std::optional<bool> adaptive = {};    ///< for methods that can do both
+  std::optional<double> first = {};     ///< length of the first step of adaptive methods [time]; default: by the method
+  std::optional<double> max_step = {};  ///< longest step of adaptive methods [time]; default: any
   /// Of methods that solve linear systems; default: sparse where the field has a `sparsity`, else dense.
   std::optional<JacobianForm> jacobian = {};
   OwnOptions own = {};  ///< of this method alone
 
   /// The same, with nothing said of tolerances and lengths of steps.
   MethodOptions without_error_control() const { return {.jacobian = jacobian, .own = own}; }
+  /// Options in a text that tells runs apart: what is not told is left out if there was a time without it.
+  static bool is_new(std::string_view option) { return option == "max_step"; }
   bool operator==(const MethodOptions&) const = default;
 };
 
@@ -120,7 +123,8 @@ struct ErrorControl {
     return part<MethodOptions>("error_control", "how a method chooses its steps",
                                field<&MethodOptions::adaptive>("adaptive", "1", "false: steps of one length"),
                                field<&MethodOptions::rtol>("rtol", "1", "relative tolerance"),
-                               field<&MethodOptions::atol>("atol", "1", "absolute tolerance, of each variable"));
+                               field<&MethodOptions::atol>("atol", "1", "absolute tolerance, of each variable"),
+                               field<&MethodOptions::max_step>("max_step", "time", "longest step; default: any"));
   }
 };
 

@@ -149,6 +149,7 @@ Scene variant(const Scene& scene, const Candidate& who, const Setting& setting) 
     MethodOptions options;
     if (own && before) options = before->options.without_error_control();
     if (who.adaptive) {
+      if (scene.integrator.adaptive()) options.max_step = scene.integrator.classical->options.max_step;
       options.rtol = setting.tolerance;
       options.atol = absolute_tolerance(scene, setting.tolerance);
     } else if (info->adaptive) {

@@ -1,5 +1,6 @@
 /// What classical methods claim, measured for every one of them: none can be added without.
 
+#include "engine/orbital_elements.hpp"
 #include "engine/simulation.hpp"
 #include "forces/gravity.hpp"
 #include "forces/linear_drag.hpp"
@@ -180,6 +181,55 @@ TEST_CASE("every method that chooses its steps tells states between them, and wh
     REQUIRE(at != std::string::npos);
     // Between two steps the motion is a quintic polynomial, however long they are.
     CHECK(std::abs(std::stod(outcome.message.substr(at + words.size())) - passed) < 1e-4);
+  }
+}
+
+TEST_CASE("no step is longer than max_step, and an encounter is not jumped over", "[max_step]") {
+  // Past a mass of 1e-3 at b = 0.05 with speed 1: deflected by 2 atan(m / (b v^2)).
+  ParticleSystem<double> s;
+  s.add("M", 1e-3, {0, 0, 0}, {0, 0, 0});
+  s.add("t", 0, {-100, 0.05, 0}, {1, 0, 0});
+  const double energy = 0.5 - 1e-3 / std::sqrt(1e4 + 0.0025), a = 1e-3 / (2 * energy), momentum = 0.05;
+  const double e = std::sqrt(1 + 2 * energy * momentum * momentum / 1e-6);
+  for (const Way& way : every_way()) {
+    if (!way.adaptive || way.info->rtol < 1e-15) continue;
+    MethodOptions options = way.options;
+    options.max_step = 0.05;
+    CAPTURE(way.info->name);
+    std::vector<std::pair<double, Vec3<double>>> seen;
+    Simulation<double> run(s, test::classical_over(Gravity{}, {way.info, options}));
+    run.every(1, Diary{&seen});
+    REQUIRE(run.run_until(200).ok());
+    double longest = 0, before = 0;
+    for (const auto& [time, x] : seen) longest = std::max(longest, time - std::exchange(before, time));
+    CHECK(longest <= 0.05 * (1 + 1e-9));
+    // Far out the speed along y is that of the hyperbola: the angle that the asymptotes leave, less what is to come.
+    const OrbitalElements<double> o =
+        elements_from_state<double>(run.particles().positions()[1], run.particles().velocities()[1], 1e-3);
+    CHECK(std::abs(o.a + a) < 1e-5 * a);
+    CHECK(std::abs(o.e - e) < 1e-5 * e);
+    CHECK(std::abs(run.particles().velocities()[1][1] + 0.0399) < 2e-4);
+  }
+  CHECK_THROWS_WITH(test::classical_over(Gravity{}, method("dop853", {.max_step = 0})),
+                    "max_step = 0 is no longest step; a time above 0 is expected");
+  CHECK_THROWS_WITH(test::classical_over(Gravity{}, method("rk4", {.max_step = 1})),
+                    "method 'rk4' takes steps of one length here, so max_step means nothing to it; take it out");
+}
+
+TEST_CASE("a fall into a point of mass ends by the references: it is passed, or steps become too short for time",
+          "[extremes]") {
+  // q = 2.5e-9 from a mass of 1e-3 at x = 1, with the half of the period of a = 0.01; the mass stands where doubles are
+  // 2e-16 apart.
+  ParticleSystem<double> s;
+  s.add("p", 1e-3, {1, 0, 0}, {0, 0, 0});
+  s.add("t", 0, {1.019999999, 0, 0}, {0, 7.071067986781228e-05, 0});
+  for (const char* name : {"gauss_8", "gauss_radau_15"}) {
+    CAPTURE(name);
+    Simulation<double> run(s, test::classical_over(Gravity{}, method(name)));
+    const Outcome outcome = run.run_until(0.19869176531592206);
+    CHECK((outcome.kind == Outcome::Kind::completed || outcome.kind == Outcome::Kind::step_underflow));
+    if (outcome.kind != Outcome::Kind::completed) CHECK(std::abs(outcome.time - 0.0993459) < 1e-5);
+    CHECK(run.step() < 100'000);
   }
 }
 
