@@ -1,5 +1,6 @@
 #include "integrators/minimize.hpp"
 
+#include "engine/not_finite.hpp"
 #include "neighbors/neighbor_list.hpp"
 #include "numbers/parallel.hpp"
 
@@ -34,6 +35,11 @@ constexpr double resolved = 1e-8;
 constexpr double dissolved = 1e-4;
 /// Steps taken back in a row before it is given up.
 constexpr int most_retreats = 60;
+
+/// So many steps downhill in a row are looked at where particles are held back; then the time step is at most so many
+/// first ones, by the forces there are.
+constexpr int long_held = 128;
+constexpr double longest_held = 1e3;
 
 /// Squares between these are neither lost nor infinite.
 constexpr double least_square = 1e-280, most_square = 1e280;
@@ -80,24 +86,29 @@ double product(const VectorColumn<double>& a, double a_scale, const VectorColumn
   return divides_last ? sum / scale : sum;
 }
 
-/// A twentieth of the distance that particles have on the average in the space they take.
-double usual_displacement(const ParticleSystem<double>& s) {
+/// A twentieth of the distance that particles have on the average in the space they take; in open space, where they may
+/// all stand in one place, at least a hundredth of the range of their forces.
+double usual_displacement(const ParticleSystem<double>& s, double range) {
   double widest = 0;
   for (int k = 0; k < 3; ++k) {
     const double* x = s.positions().component(k);
     const auto [low, high] = std::minmax_element(x, x + s.size());
     widest = std::max(widest, s.box().is_periodic() ? s.box().edges()[k] : *high - *low);
   }
-  return widest > 0 ? 0.05 * widest / std::cbrt(static_cast<double>(s.size())) : 1;
+  const double least = s.box().is_periodic() ? 0 : 0.01 * range;
+  if (!(widest > 0)) return least > 0 ? least : 1;
+  return std::max(least, 0.05 * widest / std::cbrt(static_cast<double>(s.size())));
 }
 
 /// One minimization on its way.
 class Descent {
  public:
-  Descent(ParticleSystem<double>& s, const AnyForce<double>& forces, const MinimizeOptions& options)
-      : s_(s), forces_(forces), options_(options), f_(s.size()), v_(s.size()) {
+  Descent(ParticleSystem<double>& s, const AnyForce<double>& forces, const MinimizeOptions& options,
+          MinimizeAlong* along)
+      : s_(s), forces_(forces), options_(options), along_(along), f_(s.size()), v_(s.size()) {
+    if (along_ != nullptr) along_->bind(s_);
     workspace_.put(NeighborList(forces.claims().range));
-    reach_ = options.max_displacement > 0 ? options.max_displacement : usual_displacement(s);
+    reach_ = options.max_displacement > 0 ? options.max_displacement : usual_displacement(s, forces.claims().range);
   }
 
   Minimized run() {
@@ -116,6 +127,7 @@ class Descent {
         return ended(std::move(*failure_));
       }
     }
+    if (auto lost = not_finite(s_)) return ended(std::move(*lost));
     return {made_, largest_, overlap_};
   }
 
@@ -137,6 +149,10 @@ class Descent {
     failure_ = overlap_ = {};
     // Forces of an overlap show the way out of it.
     (sink.failure() && sink.failure()->kind == Outcome::Kind::overlap ? overlap_ : failure_) = sink.failure();
+    if (along_ != nullptr && !failure_) {
+      along_->constrain(s_, f_);
+      failure_ = along_->take_failure();  // of the step that led here as well
+    }
     if (failure_) return false;
     for (Index i = 0; i < s_.size(); ++i) f_.set(i, std::as_const(s_).masses()[i] * std::as_const(f_)[i]);
     const double largest = largest_norm(f_);
@@ -180,6 +196,8 @@ class Descent {
       if (++downhill_ > patience) {
         dt_ *= longer;
         alpha_ *= alpha_factor;
+        // Where particles are held back all the while, a longer time step moves them no further.
+        if (held_back_ && downhill_ % long_held == 0) dt_ = std::min(dt_, longest_held * first_step());
       }
     } else {
       shift(-dt_ / 2);
@@ -194,7 +212,9 @@ class Descent {
   }
 
   void advance() {
+    if (along_ != nullptr) saved_.assign_state(s_);
     v_.add_scaled(dt_, f_);
+    if (along_ != nullptr) with_velocities([&] { along_->project_velocities(s_, dt_); });
     const double fastest = largest_norm(v_);
     const double speed = fastest * std::sqrt(product(v_, fastest, v_, fastest));
     const double force = std::sqrt(product(f_, largest_, f_, largest_));
@@ -226,22 +246,32 @@ class Descent {
   }
   /// Takes the last step back. @return whether the forces are those from before
   bool retreat() {
-    shift(-dt_);
+    if (along_ != nullptr) {
+      s_.assign_state(saved_);  // exactly, whatever became of the step
+    } else {
+      shift(-dt_);
+    }
     rest();
     return evaluate();
   }
   /// x += h v
   void shift(double h) {
+    with_velocities([&] { along_ != nullptr ? along_->advance_positions(s_, h) : s_.advance_positions(h); });
+  }
+  /// Acts where the particles have the velocities of the descent.
+  template <class Act> void with_velocities(const Act& act) {
     std::swap(s_.velocities(), v_);
-    s_.advance_positions(h);
+    act();
     std::swap(s_.velocities(), v_);
   }
 
   ParticleSystem<double>& s_;
   const AnyForce<double>& forces_;
   const MinimizeOptions& options_;
+  MinimizeAlong* along_;
   Workspace workspace_;
   VectorColumn<double> f_, v_, before_;
+  ParticleSystem<double> saved_;  ///< before the last step along constraints
   double reach_ = 0, dt_ = 0, alpha_ = alpha_start, largest_ = 0;
   double curvature_ = 0;    ///< largest of late [mass/time^2]
   bool held_back_ = false;  ///< whether a particle would have gone too far in the last step
@@ -252,13 +282,14 @@ class Descent {
 
 }  // namespace
 
-Minimized minimize(ParticleSystem<double>& s, const AnyForce<double>& forces, const MinimizeOptions& options) {
+Minimized minimize(ParticleSystem<double>& s, const AnyForce<double>& forces, const MinimizeOptions& options,
+                   MinimizeAlong* along) {
   options.check();
   const ForceClaims claims = forces.claims();
   if (claims.velocity_dependent || claims.time_dependent || claims.dissipative) {
     throw Error("a force depends on velocities or time, so there is no minimum to go to; leave it out");
   }
-  return Descent(s, forces, options).run();
+  return Descent(s, forces, options, along).run();
 }
 
 }  // namespace noether

@@ -40,17 +40,36 @@ struct Minimized {
   bool converged() const { return !failure.has_value(); }
 };
 
+/// What holds particles while they go downhill: constraints, of which integrators know no more than this.
+class MinimizeAlong {
+ public:
+  virtual ~MinimizeAlong() = default;
+  /// Takes the particles onto the constraints. @throws Error  where they are too far from them
+  virtual void bind(ParticleSystem<double>& s) = 0;
+  /// x += h v along the constraints; v follows.
+  virtual void advance_positions(ParticleSystem<double>& s, double h) = 0;
+  /// Takes from velocities what leads off the constraints. @param h  of the step that comes [time]
+  virtual void project_velocities(ParticleSystem<double>& s, double h) = 0;
+  /// Makes accelerations by forces those of motion along the constraints.
+  virtual void constrain(const ParticleSystem<double>& s, VectorColumn<double>& a) = 0;
+  /// Why one of these could not be done since the last time it was asked.
+  virtual std::optional<Failure> take_failure() = 0;
+};
+
 /// Moves particles downhill until no force is above `max_force`: FIRE, the fast inertial relaxation engine.
 ///
 /// All particles run as if they had one mass, along their forces; whenever the power f.v is negative they go back half
 /// a step, stand still, and begin again with half the time step, which stays below the limit of
 /// the stiffest motion seen of late. No particle moves further than `max_displacement` in a
 /// step, so that forces of overlapping particles, however large, drive them apart and not away. Where a force cannot be
-/// computed the last step is taken back. Velocities of the particles are left as they are; sums are in fixed blocks, so
-/// that any number of threads gives the same bits.
+/// computed the last step is taken back. Along constraints the forces that count are those that they leave over, and
+/// particles end on them to their tolerance. Velocities of the particles are left as they are; sums are in fixed
+/// blocks, so that any number of threads gives the same bits.
 /// @throws Error  if a force depends on velocities or time, or dissipates: it has no minimum
 /// @cost `steps` evaluations of the forces at most
 /// @source BitzekEtAl2006, GuenoleEtAl2020
-Minimized minimize(ParticleSystem<double>& s, const AnyForce<double>& forces, const MinimizeOptions& options);
+/// @param along  null: particles are free
+Minimized minimize(ParticleSystem<double>& s, const AnyForce<double>& forces, const MinimizeOptions& options,
+                   MinimizeAlong* along = nullptr);
 
 }  // namespace noether

@@ -1,5 +1,6 @@
 #include "scene/minimize.hpp"
 
+#include "constraints/constraint_solver.hpp"
 #include "scene/fields.hpp"
 
 #include <fmt/format.h>
@@ -15,11 +16,6 @@ SceneValue read_minimize(const SceneContext& context, const SceneValue& table, S
     reader.fail(
         nullptr, "",
         fmt::format("planets of {} have no minimum to go to; take [minimize] out", scene.hamiltonian.splitting.name));
-  }
-  if (!scene.hamiltonian.constraints.empty()) {
-    reader.fail(nullptr, "",
-                "the minimizer moves particles off their constraints; take [minimize] out, or minimize "
-                "with springs in their place");
   }
   if (!scene.hamiltonian.splitting.only_forces) {
     reader.fail(nullptr, "",
@@ -40,10 +36,34 @@ SceneValue read_minimize(const SceneContext& context, const SceneValue& table, S
   return effective;
 }
 
+namespace {
+
+/// The constraints of a scene, for the minimizer.
+class AlongConstraints final : public MinimizeAlong {
+ public:
+  explicit AlongConstraints(ConstraintSet set) : solver_(std::move(set)) {}
+  void bind(ParticleSystem<double>& s) override { solver_.bind(s); }
+  void advance_positions(ParticleSystem<double>& s, double h) override { solver_.advance_positions(s, h); }
+  void project_velocities(ParticleSystem<double>& s, double h) override { solver_.project_velocities(s, h); }
+  void constrain(const ParticleSystem<double>& s, VectorColumn<double>& a) override { solver_.constrain(s, a); }
+  std::optional<Failure> take_failure() override {
+    std::optional<Failure> failure = solver_.failure();
+    solver_.forget_failure();
+    return failure;
+  }
+
+ private:
+  ConstraintSolver<double> solver_;
+};
+
+}  // namespace
+
 Minimized minimize_start(Scene& scene) {
   ForceField<double> forces;
   for (const SceneForce& force : scene.hamiltonian.terms()) forces.add(force.force);  // drag has no part in a minimum
-  return minimize(scene.particles, forces, *scene.minimize);
+  if (scene.hamiltonian.constraints.empty()) return minimize(scene.particles, forces, *scene.minimize);
+  AlongConstraints along(constraints_of(scene, scene.hamiltonian.constraints.size()));
+  return minimize(scene.particles, forces, *scene.minimize, &along);
 }
 
 }  // namespace noether

@@ -3,6 +3,7 @@
 #include "integrators/minimize.hpp"
 #include "forces/bonded.hpp"
 #include "forces/external_fields.hpp"
+#include "forces/lennard_jones.hpp"
 #include "forces/linear_drag.hpp"
 #include "forces/springs.hpp"
 #include "forces/sum.hpp"
@@ -60,6 +61,25 @@ TEST_CASE("two atoms part from any overlap to the minimum of their potential", "
     // U'' = 57.1 there.
     CHECK(std::abs(std::sqrt(norm2(d)) - std::pow(2.0, 1.0 / 6)) < 1e-10 / 57 + 1e-15);
     CHECK(s.velocities()[1] == Vec3<double>(0.25, 0, 0));
+  }
+}
+
+TEST_CASE("two atoms in all but one place part by themselves, and no time step overflows on the way", "[minimize]") {
+  for (const double r : {0.5, 1e-2, 1e-3, 1e-6}) {
+    CAPTURE(r);
+    auto s = placed({{0, 0, 0}, {r, 0, 0}});
+    const LennardJonesForce force{.cutoff = 2.5, .epsilon = 1.0, .sigma = 1.0};
+    const Minimized done = minimize(s, force, {.max_force = 1e-4});
+    CHECK(done.converged());
+    CHECK(done.steps < 2000);
+    const Vec3<double> d = s.positions()[1] - s.positions()[0];
+    CHECK(std::abs(std::sqrt(norm2(d)) - 1.12) < 0.01);  // the shifted force moves the minimum by 0.003
+    // Of a force that tells no range each step is a part of the overlap: it comes to an end or says that it does not.
+    auto slow = placed({{0, 0, 0}, {r, 0, 0}});
+    const Minimized other = minimize(slow, Argon{}, {.max_force = 1e-4, .steps = 20'000});
+    CHECK(slow.positions()[1].allFinite());
+    CHECK((!other.converged() || std::abs(std::sqrt(norm2(Vec3<double>(slow.positions()[1] - slow.positions()[0]))) -
+                                          std::pow(2.0, 1.0 / 6)) < 1e-4));
   }
 }
 
