@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstddef>
+#include <cstring>
 #include <memory>
 #include <numeric>
 #include <utility>
@@ -14,37 +16,49 @@ namespace noether::io {
 
 static_assert(std::endian::native == std::endian::little, "files and digests are little-endian as memory is");
 
+struct RunningDigest::Context {
+  std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> held{EVP_MD_CTX_new(), EVP_MD_CTX_free};
+  bool begun = false;
+};
+void RunningDigest::Free::operator()(Context* context) const { delete context; }
+
 namespace {
 
-/// A running SHA-256.
-class Sha256 {
- public:
-  Sha256() : context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) {
-    check(context_ != nullptr && EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) == 1);
-  }
-  void add(const void* data, std::size_t bytes) { check(EVP_DigestUpdate(context_.get(), data, bytes) == 1); }
-  template <class T> void add(const T& number) { add(&number, sizeof number); }
-  std::string hex() {
-    std::array<unsigned char, EVP_MAX_MD_SIZE> hash{};
-    unsigned int size = 0;
-    check(EVP_DigestFinal_ex(context_.get(), hash.data(), &size) == 1);
-    std::string text;
-    for (unsigned int i = 0; i < size; ++i) text += fmt::format("{:02x}", hash[i]);
-    return text;
-  }
-
- private:
-  static void check(bool done) {
-    if (!done) throw Error("the cryptographic library gives no SHA-256; is it a restricted build of OpenSSL?");
-  }
-  std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
-};
+void expect_done(bool done) {
+  if (!done) throw Error("the cryptographic library gives no SHA-256; is it a restricted build of OpenSSL?");
+}
 
 }  // namespace
 
+RunningDigest::RunningDigest() : context_(new Context) { expect_done(context_->held != nullptr); }
+
+void RunningDigest::add(const void* data, std::size_t bytes) {
+  if (!context_->begun) expect_done(EVP_DigestInit_ex(context_->held.get(), EVP_sha256(), nullptr) == 1);
+  context_->begun = true;
+  expect_done(EVP_DigestUpdate(context_->held.get(), data, bytes) == 1);
+}
+
+RowDigest RunningDigest::row() {
+  if (!context_->begun) add(nullptr, 0);
+  std::array<unsigned char, EVP_MAX_MD_SIZE> hash{};
+  unsigned int size = 0;
+  expect_done(EVP_DigestFinal_ex(context_->held.get(), hash.data(), &size) == 1 && size == sizeof(RowDigest));
+  context_->begun = false;
+  RowDigest row{};
+  std::memcpy(row.data(), hash.data(), sizeof row);
+  return row;
+}
+
+std::string RunningDigest::hex() {
+  const RowDigest hash = row();
+  std::string text;
+  for (const std::byte one : std::as_bytes(std::span(hash))) text += fmt::format("{:02x}", std::to_integer<int>(one));
+  return text;
+}
+
 std::string sha256(std::string_view bytes) {
-  Sha256 hash;
-  hash.add(bytes.data(), bytes.size());
+  RunningDigest hash;
+  hash.add(bytes);
   return hash.hex();
 }
 
@@ -61,31 +75,31 @@ std::string digest(std::int64_t step, double time, std::span<const std::int64_t>
                    std::span<const double> velocities, std::span<const double> masses,
                    std::span<const std::int32_t> images, const MovingColumns& moving) {
   const std::string_view head = moving.empty() ? "noether-state-1\n" : "noether-state-2\n";
-  Sha256 hash;
-  hash.add(head.data(), head.size());
+  RunningDigest hash;
+  hash.add(head);
   hash.add(step);
   hash.add(static_cast<std::int64_t>(ids.size()));
   hash.add(time);
-  hash.add(ids.data(), ids.size_bytes());
-  hash.add(positions.data(), positions.size_bytes());
-  hash.add(velocities.data(), velocities.size_bytes());
-  hash.add(masses.data(), masses.size_bytes());
-  hash.add(images.data(), images.size_bytes());
+  hash.add(ids);
+  hash.add(positions);
+  hash.add(velocities);
+  hash.add(masses);
+  hash.add(images);
   for (const auto& [name, values] : moving) {
-    hash.add(name.data(), name.size());
-    hash.add(values.data(), values.size() * sizeof(double));
+    hash.add(std::string_view(name));
+    hash.add(std::span(values));
   }
   return "sha256:" + hash.hex();
 }
 
 std::string system_digest(std::int64_t step, double time, std::span<const double> variables) {
   static constexpr std::string_view head = "noether-system-1\n";
-  Sha256 hash;
-  hash.add(head.data(), head.size());
+  RunningDigest hash;
+  hash.add(head);
   hash.add(step);
   hash.add(static_cast<std::int64_t>(variables.size()));
   hash.add(time);
-  hash.add(variables.data(), variables.size_bytes());
+  hash.add(variables);
   return "sha256:" + hash.hex();
 }
 

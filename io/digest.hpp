@@ -3,8 +3,10 @@
 
 #include "engine/particle_system.hpp"
 
+#include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,6 +18,34 @@ namespace noether::io {
 /// @throws Error if the cryptographic library refuses
 /// @cost O(bytes)
 std::string sha256(std::string_view bytes);
+
+/// 32 bytes of SHA-256 as four whole numbers, as files keep them beside each row.
+using RowDigest = std::array<std::int64_t, 4>;
+
+/// A SHA-256 that is fed piece by piece.
+class RunningDigest {
+ public:
+  /// @throws Error if the cryptographic library refuses, here and below
+  RunningDigest();
+  void add(const void* data, std::size_t bytes);
+  void add(std::string_view text) { add(static_cast<const void*>(text.data()), text.size()); }
+  template <class Number> void add(std::span<const Number> numbers) {
+    add(static_cast<const void*>(numbers.data()), numbers.size_bytes());
+  }
+  void add(std::int64_t number) { add(&number, sizeof number); }
+  void add(double number) { add(&number, sizeof number); }
+  /// Of all that was added; then it begins anew.
+  RowDigest row();
+  /// The same as 64 hexadecimal digits.
+  std::string hex();
+
+ private:
+  struct Context;
+  struct Free {
+    void operator()(Context* context) const;
+  };
+  std::unique_ptr<Context, Free> context_;
+};
 
 /// The digest of a settled state, "sha256:<hex>".
 ///

@@ -161,6 +161,13 @@ Index Hdf5Dataset::rows_within(std::uint64_t bytes) const {
   return static_cast<Index>(count);
 }
 
+bool Hdf5Dataset::grows() const {
+  const Hdf5Handle space = own(H5Dget_space(*handle_), H5Sclose, handle_->file(), reading(path_));
+  std::vector<hsize_t> most(static_cast<std::size_t>(std::max(0, H5Sget_simple_extent_ndims(space))));
+  check(H5Sget_simple_extent_dims(space, nullptr, most.data()), *handle_, reading(path_));
+  return !most.empty() && most[0] == H5S_UNLIMITED;
+}
+
 ElementType Hdf5Dataset::type() const {
   return element_type(own(H5Dget_type(*handle_), H5Tclose, handle_->file(), reading(path_)));
 }

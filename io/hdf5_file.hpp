@@ -43,6 +43,9 @@ class Hdf5Dataset {
   /// Cuts the dataset to `rows` rows, or lengthens it.
   void resize(Index rows);
 
+  /// Whether it can have more rows.
+  bool grows() const;
+
   /// From now on, in each flush, its length grows on disk after those of all others, and shrinks before them.
   void write_last() const;
 

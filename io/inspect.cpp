@@ -3,6 +3,7 @@
 #include "io/checkpoint.hpp"
 #include "io/digest.hpp"
 #include "io/sandbox.hpp"
+#include "io/trajectory_digest.hpp"
 #include "io/trajectory_layout.hpp"
 #include "io/trajectory_reader.hpp"
 #include "numbers/error.hpp"
@@ -13,7 +14,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numeric>
+#include <span>
+#include <tuple>
 
 namespace noether::io {
 
@@ -156,7 +160,9 @@ void check_frames(const TrajectoryReader& reader, bool complete, std::vector<std
         !std::all_of(frame.columns.begin(), frame.columns.end(),
                      [&](const auto& column) { return finite(column.second); })) {
       damaged.push_back(fmt::format("frame {} at step {} is not finite", k, frame.step));
-    }
+    } else if (const auto digest = reader.digest(k); digest && *digest != frame_digest(frame))
+      damaged.push_back(
+          fmt::format("frame {} at step {} does not have the digest that was written with it", k, frame.step));
   }
   check_clock("frames", steps, times, damaged);
 }
@@ -174,6 +180,42 @@ void check_monitors(const Hdf5File& file, bool complete, std::vector<std::string
     check_clock("monitor " + name, file.open(group + "/step").read_integers(), file.open(group + "/time").read_reals(),
                 damaged);
   }
+}
+
+/// Samples that are not what was written.
+void check_samples(const Hdf5File& file, const std::vector<MonitorSeries>& all, std::vector<std::string>& damaged) {
+  for (const MonitorSeries& monitor : all) {
+    const std::string path = sample_digests_path(monitor.name);
+    if (!file.has(path)) continue;
+    const Hdf5Dataset dataset = file.open(path);
+    constexpr std::size_t size = std::tuple_size_v<RowDigest>;
+    const std::size_t samples = std::min(monitor.step.size(), static_cast<std::size_t>(dataset.rows()));
+    if (dataset.shape().size() != 2 || dataset.shape()[1] != Index{size}) {
+      damaged.push_back(fmt::format("monitor {}: its digests are not 32 bytes each", monitor.name));
+      continue;
+    }
+    const std::vector<std::int64_t> digests = dataset.read_integers();
+    for (std::size_t k = 0; k < samples; ++k) {
+      std::map<std::string, std::span<const double>, std::less<>> quantities;
+      for (const auto& [name, content] : monitor.quantities) {
+        const std::size_t numbers = monitor.step.empty() ? 0 : content.second.size() / monitor.step.size();
+        quantities[name] = std::span(content.second).subspan(k * numbers, numbers);
+      }
+      const RowDigest digest = sample_digest(monitor.step[k], monitor.time[k], quantities);
+      if (std::equal(digest.begin(), digest.end(), digests.begin() + static_cast<std::ptrdiff_t>(k * size))) continue;
+      damaged.push_back(
+          fmt::format("monitor {}: sample {} at step {} does not have the digest that was written with it",
+                      monitor.name, k, monitor.step[k]));
+      break;
+    }
+  }
+}
+
+/// Ids, names, masses and what else particles have once.
+void check_constants(const Hdf5File& file, std::vector<std::string>& damaged) {
+  if (!file.has_attribute("/noether", constants_attribute)) return;
+  if (file.text_attribute("/noether", constants_attribute) == constants_digest(file)) return;
+  damaged.emplace_back("the ids, names, masses or parameters of the particles are not those that were written");
 }
 
 std::vector<MonitorSeries> untried_monitors(const std::filesystem::path& path) {
@@ -225,7 +267,8 @@ FileInfo untried_verify(const std::filesystem::path& file) {
     const TrajectoryReader reader(file);
     check_frames(reader, result.complete, result.damaged);
     check_monitors(reader.file(), result.complete, result.damaged);
-    untried_monitors(file);
+    check_samples(reader.file(), untried_monitors(file), result.damaged);
+    check_constants(reader.file(), result.damaged);
   } catch (const FileError& error) {
     result.damaged.push_back(error.message());
   }

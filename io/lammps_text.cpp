@@ -159,9 +159,9 @@ LammpsText::LammpsText(const TextFile& text) : text_(text) {
 
 void LammpsText::read_labels() {
   std::vector<std::string_view> words;
-  for (const std::string_view kind_of : labelled) {
-    const std::string kind(kind_of), counted = kind + " types";
-    const LammpsSection* found = section(section_of_labels(kind), counted, false);
+  for (const std::string_view of : labelled) {
+    const std::string kind(of), counter = kind + " types";
+    const LammpsSection* found = section(section_of_labels(kind), counter, false);
     if (found == nullptr) continue;
     for (const std::size_t line : found->rows) {
       split_words(text_.lines()[line - 1], words);
@@ -172,7 +172,7 @@ void LammpsText::read_labels() {
       if (std::isdigit(static_cast<unsigned char>(label[0])) != 0) {
         text_.fail(line, fmt::format("the label '{}' begins with a digit, as numbers of types do", label), label);
       }
-      labels_.add(text_, line, kind, whole_number_in(text_, line, words[0], "the type", 1, count(counted)), label);
+      labels_.add(text_, line, kind, whole_number_in(text_, line, words[0], "the type", 1, count(counter)), label);
     }
   }
 }

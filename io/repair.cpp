@@ -4,6 +4,7 @@
 #include "io/hdf5_file.hpp"
 #include "io/ordered_file.hpp"
 #include "io/sandbox.hpp"
+#include "io/trajectory_digest.hpp"
 #include "io/trajectory_layout.hpp"
 #include "io/trajectory_reader.hpp"
 #include "numbers/error.hpp"
@@ -60,6 +61,7 @@ Plan plan(const fs::path& path, std::uint64_t size) {
     Together& samples = all.emplace_back(Together{fmt::format("monitor '{}'", name), {}});
     const std::string group = monitors_path + "/" + name;
     for (const std::string& quantity : file.children(group)) count(file, group + "/" + quantity, size, samples);
+    if (file.has(sample_digests_path(name))) count(file, sample_digests_path(name), size, samples);
   }
   return all;
 }

@@ -147,7 +147,8 @@ void check_stated_temperature(const TextFile& text, const Structure& structure, 
                             "they are in others",
                             found));
   }
-  const auto [stated, line, of_momenta] = *structure.temperature;
+  const auto& [stated_here, line, of_momenta] = *structure.temperature;
+  const double stated = stated_here;  // lambdas of some compilers see no part of a structure
   if (energy == 0) return;
   const auto fits = [&](double factor) {
     const double degrees = energy * factor * factor / (k_B * stated) / n;

@@ -4,6 +4,7 @@
 #include "io/hdf5_file.hpp"
 #include "io/sandbox.hpp"
 #include "io/trajectory_datasets.hpp"
+#include "io/trajectory_digest.hpp"
 #include "io/trajectory_layout.hpp"
 #include "numbers/quantity.hpp"
 #include "numbers/simd.hpp"
@@ -19,44 +20,6 @@
 #include <utility>
 
 namespace noether::io {
-
-namespace {
-
-/// Rows to a piece on disk: whole pages of 4096 bytes, at least `wanted` bytes, where that stays below 1 MiB.
-Index rows_per_chunk(Index numbers_per_row, Index wanted) {
-  const Index bytes = 8 * std::max<Index>(numbers_per_row, 1);
-  const Index whole_pages = 4096 / std::gcd(Index{4096}, bytes);
-  const Index enough = (wanted + bytes - 1) / bytes;
-  const Index rows = (enough + whole_pages - 1) / whole_pages * whole_pages;
-  return rows * bytes <= (1 << 20) ? rows : std::max<Index>(1, (1 << 20) / bytes);
-}
-constexpr Index frame_bytes = 65536, sample_bytes = 4096;
-
-/// The unit of a dimension in words, or those of a list of dimensions, one for each column; words that are no dimension
-/// stand for themselves.
-std::string unit_in_words(const std::string& dimension, const UnitSystem& units) {
-  if (const std::size_t comma = dimension.find(", "); comma != std::string::npos) {
-    return unit_in_words(dimension.substr(0, comma), units) + ", " + unit_in_words(dimension.substr(comma + 2), units);
-  }
-  if (dimension == "angle") return "rad";
-  try {
-    return unit_of(parse_dimension(dimension), units);
-  } catch (const Error&) {
-    return dimension;
-  }
-}
-
-/// Distinct names get distinct numbers, in the order of their first appearance.
-std::vector<std::int64_t> species_of(const std::vector<std::string>& names) {
-  std::map<std::string, std::int64_t> numbers;
-  std::vector<std::int64_t> species;
-  for (const std::string& name : names) {
-    species.push_back(numbers.emplace(name, static_cast<std::int64_t>(numbers.size())).first->second);
-  }
-  return species;
-}
-
-}  // namespace
 
 /// The file itself, shared by copies of the writer.
 class TrajectoryWriter::File {
@@ -171,6 +134,7 @@ class TrajectoryWriter::File {
       if (options_.frames) create_system_frames();
     }
     for (const KeptSample& kept : std::exchange(waiting_, {})) write_sample(kept.sample());
+    hdf5_->set_attribute("/noether", constants_attribute, constants_digest(*hdf5_));
     hdf5_->take_name();
   }
 
@@ -264,10 +228,22 @@ class TrajectoryWriter::File {
     for (const auto& column : state.columns()) {
       if (column.info.moves()) create_column_frames(column.info, particles);
     }
+    frame_.digest = create_digests(frame_digests_path);
     hdf5_->open(position + "/value").write_last();
     set_unit(position + "/value", std::string(units_->length), "nm");
     set_unit(velocity + "/value", unit_of(dimensions::velocity, *units_), "nm ps-1");
     set_unit(position + "/time", std::string(units_->time), "ps");
+  }
+
+  BufferedDataset<std::int64_t> create_digests(const std::string& path) const {
+    constexpr Index size = std::tuple_size_v<RowDigest>;
+    return BufferedDataset<std::int64_t>(
+        hdf5_->create_growing(path, ElementType::integer, {size}, rows_per_chunk(size, sample_bytes)));
+  }
+  /// Those of a file to go on with; none where it has none.
+  std::optional<BufferedDataset<std::int64_t>> open_digests(const std::string& path) const {
+    if (!hdf5_->has(path)) return {};
+    return BufferedDataset<std::int64_t>(open(path, {Index{std::tuple_size_v<RowDigest>}}));
   }
 
   /// Edges of the box and images of the particles: a particle's unwrapped position is position + image * edges.
@@ -302,6 +278,7 @@ class TrajectoryWriter::File {
     frame_.step =
         BufferedDataset<std::int64_t>(hdf5_->create_growing(system_path + "/step", ElementType::integer, {}, few));
     frame_.time = BufferedDataset<double>(hdf5_->create_growing(system_path + "/time", ElementType::real, {}, few));
+    frame_.digest = create_digests(frame_digests_path);
     hdf5_->open(system_path + "/value").write_last();
     set_unit(system_path + "/time", std::string(units_->time), "ps");
   }
@@ -323,6 +300,7 @@ class TrajectoryWriter::File {
   }
 
   void open_frames() {
+    frame_.digest = open_digests(frame_digests_path);
     const auto particles = static_cast<Index>(sorted_ids_.size());
     frame_.position = BufferedDataset<double>(open(particles_path + "/position/value", {particles, 3}));
     frame_.velocity = BufferedDataset<double>(open(particles_path + "/velocity/value", {particles, 3}));
@@ -340,6 +318,7 @@ class TrajectoryWriter::File {
   }
 
   void open_system_frames() {
+    frame_.digest = open_digests(frame_digests_path);
     frame_.variables = BufferedDataset<double>(open(system_path + "/value", {variables_}));
     frame_.step = BufferedDataset<std::int64_t>(open(system_path + "/step", {}));
     frame_.time = BufferedDataset<double>(open(system_path + "/time", {}));
@@ -373,7 +352,9 @@ class TrajectoryWriter::File {
     for (const std::string& monitor : hdf5_->children(monitors_path)) {
       const std::string group = monitors_path + "/" + monitor;
       for (const std::string& name : hdf5_->children(group)) paths.push_back(group + "/" + name);
+      if (hdf5_->has(sample_digests_path(monitor))) paths.push_back(sample_digests_path(monitor));
     }
+    if (hdf5_->has(frame_digests_path)) paths.push_back(frame_digests_path);
     return paths;
   }
 
@@ -446,46 +427,46 @@ class TrajectoryWriter::File {
         {.file = path_.string()});
   }
 
-  void gather(const VectorColumn<double>& column) {
-    row_.clear();
+  template <class Number, class Column> void gather(const Column& column, std::vector<Number>& row) const {
+    row.clear();
     for (const Index i : order_) {
-      for (int k = 0; k < 3; ++k) row_.push_back(column.component(k)[i]);
+      for (int k = 0; k < 3; ++k) row.push_back(column.component(k)[i]);
     }
   }
 
   void write_frame(const Snapshot<double>& now, const ParticleSystem<double>& state) {
+    now_.step = now.step();
+    now_.time = now.time();
     if (variables_ > 0) {
-      frame_.time.append(now.time());
-      frame_.step.append(now.step());
-      frame_.variables.append(state.variables());
-      return;
+      now_.variables = state.variables();
+      frame_.variables.append(now_.variables);
+    } else {
+      if (periodic_) write_box(state);
+      write_columns(state);
+      gather(state.velocities(), now_.velocities);
+      frame_.velocity.append(now_.velocities);
+      gather(state.positions(), now_.positions);
+      frame_.position.append(now_.positions);
     }
-    if (periodic_) write_box(state);
-    write_columns(state);
-    gather(state.velocities());
-    frame_.velocity.append(row_);
-    frame_.time.append(now.time());
-    frame_.step.append(now.step());
-    gather(state.positions());
-    frame_.position.append(row_);
+    frame_.time.append(now_.time);
+    frame_.step.append(now_.step);
+    if (frame_.digest) frame_.digest->append(frame_digest(now_));
   }
 
   void write_box(const ParticleSystem<double>& state) {
-    std::vector<std::int64_t> images;
-    for (const Index i : order_) {
-      for (int k = 0; k < 3; ++k) images.push_back(state.images().component(k)[i]);
-    }
-    frame_.image.append(images);
-    frame_.edges.append(std::span(state.box().edges().data(), 3));
+    gather(state.images(), now_.images);
+    now_.edges.assign(state.box().edges().data(), state.box().edges().data() + 3);
+    frame_.image.append(std::vector<std::int64_t>(now_.images.begin(), now_.images.end()));
+    frame_.edges.append(now_.edges);
   }
 
   /// @throws FileError  where the run moves other columns than the file has
   void write_columns(const ParticleSystem<double>& state) {
     if (frame_.columns.empty() && !state.columns().any_moves()) return;
-    const MovingColumns moving = moving_columns(state, order_);
-    for (const auto& [name, values] : moving) {
+    now_.columns = moving_columns(state, order_);
+    for (const auto& [name, values] : now_.columns) {
       const auto found = frame_.columns.find(name);
-      if (found == frame_.columns.end() || moving.size() != frame_.columns.size()) {
+      if (found == frame_.columns.end() || now_.columns.size() != frame_.columns.size()) {
         throw FileError(fmt::format("the file does not have the columns that the run moves, such as '{}': a trajectory "
                                     "is of one kind of particles; after an edit write another file",
                                     name),
@@ -501,6 +482,11 @@ class TrajectoryWriter::File {
     for (const Series& one : sample.series) monitor.quantities.at(k++).append(one.values);
     monitor.time.append(sample.time);
     monitor.step.append(sample.step);
+    if (monitor.digest) {
+      std::map<std::string, std::span<const double>, std::less<>> quantities;
+      for (const Series& one : sample.series) quantities[one.name] = one.values;
+      monitor.digest->append(sample_digest(sample.step, sample.time, quantities));
+    }
     if (sample.scale && sample.scale != monitor.scale) {
       hdf5_->set_attribute(monitors_path + "/" + std::string(sample.monitor), "scale", *sample.scale);
       monitor.scale = sample.scale;
@@ -523,8 +509,14 @@ class TrajectoryWriter::File {
     for (const Series& one : sample.series) {
       monitor.quantities.emplace_back(dataset(one.name, ElementType::real, one.shape));
     }
+    const std::string digests = sample_digests_path(sample.monitor);
+    if (there) {
+      monitor.digest = open_digests(digests);
+    } else {
+      monitor.digest = create_digests(digests);
+      describe_monitor(group, sample);
+    }
     hdf5_->open(group + "step").write_last();
-    if (!there) describe_monitor(group, sample);
     return monitor;
   }
 
@@ -551,9 +543,9 @@ class TrajectoryWriter::File {
   std::vector<KeptSample> waiting_;             ///< samples that came before the first look
   std::vector<std::int64_t> ids_, sorted_ids_;  ///< as the run has them, and as the file has them
   std::vector<Index> order_;
-  Index variables_ = 0;    ///< of a system without particles
-  bool periodic_ = false;  ///< frames have a box, and images of the particles
-  std::vector<double> row_;
+  Index variables_ = 0;                              ///< of a system without particles
+  bool periodic_ = false;                            ///< frames have a box, and images of the particles
+  Frame now_;                                        ///< the frame that is being written
   std::chrono::steady_clock::time_point flushed_{};  ///< long ago: the first sample or frame goes out at once
 };
 

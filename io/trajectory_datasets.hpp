@@ -29,11 +29,13 @@ struct KeptSample {
 struct MonitorDatasets {
   BufferedDataset<std::int64_t> step;
   BufferedDataset<double> time;
-  std::vector<BufferedDataset<double>> quantities;  ///< in the order of the sample's series
+  std::vector<BufferedDataset<double>> quantities;      ///< in the order of the sample's series
+  std::optional<BufferedDataset<std::int64_t>> digest;  ///< of each sample; none in a file from before there were any
   std::optional<double> scale;
 
   void write_out() {
     for (auto& quantity : quantities) quantity.write_out();
+    if (digest) digest->write_out();
     time.write_out();
     step.write_out();
   }
@@ -45,10 +47,12 @@ struct FrameDatasets {
   BufferedDataset<std::int64_t> step, image;
   BufferedDataset<double> time;
   std::map<std::string, BufferedDataset<double>> columns;  ///< others that move, by name
+  std::optional<BufferedDataset<std::int64_t>> digest;     ///< of each frame; none in a file from before there were any
 
   /// The values that readers go by come last: a frame that has them has everything.
   void write_out() {
     for (auto& [name, column] : columns) column.write_out();
+    if (digest) digest->write_out();
     velocity.write_out();
     image.write_out();
     edges.write_out();

@@ -5,6 +5,7 @@
 #include "numbers/error.hpp"
 #include "numbers/units.hpp"
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -36,6 +37,17 @@ inline bool is_leader(const std::string& path) {
   return path == particles_path + "/position/value" || path == system_path + "/value" ||
          (path.starts_with(monitors_path) && path.ends_with("/step"));
 }
+
+/// Rows to a piece on disk: whole pages of 4096 bytes, at least `wanted` bytes, where that stays below 1 MiB.
+Index rows_per_chunk(Index numbers_per_row, Index wanted);
+inline constexpr Index frame_bytes = 65536, sample_bytes = 4096;
+
+/// The unit of a dimension in words, or those of a list of dimensions, one for each column; words that are no dimension
+/// stand for themselves.
+std::string unit_in_words(const std::string& dimension, const UnitSystem& units);
+
+/// Distinct names get distinct numbers, in the order of their first appearance.
+std::vector<std::int64_t> species_of(const std::vector<std::string>& names);
 
 /// The unit system that a file names. @throws FileError if there is none of this name
 inline const UnitSystem& known_units(const std::string& name, const std::filesystem::path& file) {

@@ -1,11 +1,13 @@
 #include "io/trajectory_reader.hpp"
 
+#include "io/trajectory_digest.hpp"
 #include "io/trajectory_layout.hpp"
 #include "numbers/error.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <tuple>
 
 namespace noether::io {
 
@@ -31,6 +33,11 @@ TrajectoryReader::TrajectoryReader(const std::filesystem::path& path) : file_(Hd
   } else {
     open_particles(path);
   }
+  if (!file_.has(frame_digests_path)) return;
+  digests_ = file_.open(frame_digests_path);
+  if (digests_->shape().size() != 2 || digests_->shape()[1] != std::tuple_size_v<RowDigest>)
+    throw FileError("damaged: digests of frames are not 32 bytes each", {.file = path.string()});
+  frames_ = std::min(frames_, digests_->rows());
 }
 
 void TrajectoryReader::open_system(const std::filesystem::path& path) {
@@ -117,6 +124,14 @@ void TrajectoryReader::open_columns(const std::filesystem::path& path) {
   }
 }
 
+std::optional<RowDigest> TrajectoryReader::digest(Index k) const {
+  if (!digests_) return {};
+  const std::vector<std::int64_t> row = digests_->read_integers(k, 1);
+  RowDigest digest{};
+  std::copy(row.begin(), row.end(), digest.begin());
+  return digest;
+}
+
 Frame TrajectoryReader::frame(Index k) const {
   const auto at = static_cast<std::size_t>(k);
   if (of_system_) return {steps_.at(at), times_.at(at), {}, {}, variables_.read_reals(k, 1), {}, {}};
@@ -131,17 +146,19 @@ Frame TrajectoryReader::frame(Index k) const {
 }
 
 std::vector<std::pair<std::string, Index>> TrajectoryReader::lengths() const {
+  std::vector<std::pair<std::string, Index>> all;
   if (file_.has(system_path + "/value")) {
-    return {{system_path + "/value", variables_.rows()},
-            {system_path + "/step", static_cast<Index>(steps_.size())},
-            {system_path + "/time", static_cast<Index>(times_.size())}};
+    all = {{system_path + "/value", variables_.rows()},
+           {system_path + "/step", static_cast<Index>(steps_.size())},
+           {system_path + "/time", static_cast<Index>(times_.size())}};
+    if (digests_) all.emplace_back(frame_digests_path, digests_->rows());
+    return all;
   }
   if (!file_.has(particles_path + "/position")) return {};
-  std::vector<std::pair<std::string, Index>> all = {
-      {particles_path + "/position/value", position_.rows()},
-      {particles_path + "/velocity/value", velocity_.rows()},
-      {particles_path + "/position/step", static_cast<Index>(steps_.size())},
-      {particles_path + "/position/time", static_cast<Index>(times_.size())}};
+  all = {{particles_path + "/position/value", position_.rows()},
+         {particles_path + "/velocity/value", velocity_.rows()},
+         {particles_path + "/position/step", static_cast<Index>(steps_.size())},
+         {particles_path + "/position/time", static_cast<Index>(times_.size())}};
   if (periodic_) {
     all.emplace_back(image_path + "/value", image_.rows());
     all.emplace_back(edges_path + "/value", edges_.rows());
@@ -149,6 +166,7 @@ std::vector<std::pair<std::string, Index>> TrajectoryReader::lengths() const {
   for (const auto& [name, column] : columns_) {
     all.emplace_back(fmt::format("{}/{}/value", particles_path, name), column.rows());
   }
+  if (digests_) all.emplace_back(frame_digests_path, digests_->rows());
   return all;
 }
 

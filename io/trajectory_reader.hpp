@@ -1,11 +1,13 @@
 #pragma once
 /// Reads the frames of a trajectory one by one.
 
+#include "io/digest.hpp"
 #include "io/frames.hpp"
 #include "io/hdf5_file.hpp"
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +24,8 @@ class TrajectoryReader {
   Frame frame(Index k) const;
   /// What all frames share; without frames.
   const Frames& shared() const { return shared_; }
+  /// The digest that stands beside a frame; none in a file from before there were any.
+  std::optional<RowDigest> digest(Index k) const;
   /// Rows of each dataset of the frames.
   std::vector<std::pair<std::string, Index>> lengths() const;
   const Hdf5File& file() const { return file_; }
@@ -34,6 +38,7 @@ class TrajectoryReader {
 
   Hdf5File file_;
   Hdf5Dataset position_, velocity_, variables_, image_, edges_;
+  std::optional<Hdf5Dataset> digests_;
   std::map<std::string, Hdf5Dataset> columns_;  ///< others that move, by name
   std::vector<std::int64_t> steps_;
   std::vector<double> times_;

@@ -29,14 +29,16 @@ TEST_CASE("a repaired run.h5 is sound, and the run goes on from its checkpoint",
   const SceneFolder folder, other;
   CHECK(noether(other, "run scene.toml --quiet").exit_code == 0);
   leave_half_a_frame(folder);
-  CHECK(output(folder, "verify scene.out/run.h5 --repair") ==
-        "scene.out/run.h5: repaired: '/particles/system/velocity/value' cut from 6 rows to 5, as many as all of the "
-        "frames have\n"
-        "scene.out/run.h5: repaired: '/particles/system/position/step' cut from 6 rows to 5, as many as all of the "
-        "frames have\n"
-        "scene.out/run.h5: repaired: '/particles/system/position/time' cut from 6 rows to 5, as many as all of the "
-        "frames have\n"
-        "scene.out/run.h5: sound, not complete, last step 80\n");
+  CHECK(
+      output(folder, "verify scene.out/run.h5 --repair") ==
+      "scene.out/run.h5: repaired: '/particles/system/velocity/value' cut from 6 rows to 5, as many as all of the "
+      "frames have\n"
+      "scene.out/run.h5: repaired: '/particles/system/position/step' cut from 6 rows to 5, as many as all of the "
+      "frames have\n"
+      "scene.out/run.h5: repaired: '/particles/system/position/time' cut from 6 rows to 5, as many as all of the "
+      "frames have\n"
+      "scene.out/run.h5: repaired: '/noether/digests/frames' cut from 6 rows to 5, as many as all of the frames have\n"
+      "scene.out/run.h5: sound, not complete, last step 80\n");
   CHECK(output(folder, "verify scene.out/run.h5") == "scene.out/run.h5: sound, not complete, last step 80\n");
   CHECK(noether(folder, "run scene.toml --quiet --resume").exit_code == 0);
   check_same_content(folder / "scene.out/run.h5", other / "scene.out/run.h5");

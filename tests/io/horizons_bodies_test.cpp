@@ -168,9 +168,9 @@ TEST_CASE("a center without a known mass is refused, unless a line gives it", "[
   CHECK(s.names() == std::vector<std::string>{"243 Ida (A884 SB)", "Dactyl"});
   CHECK(s.masses()[0] == 4.2e16 * units::solar::kg);
   // A table of the center itself may be there; then it must be at rest.
-  const std::string rest = " X = 0 Y = 0 Z = 0\n VX= 0 VY= 0 VZ= 0";
+  const std::string at_rest = " X = 0 Y = 0 Z = 0\n VX= 0 VY= 0 VZ= 0";
   const std::string planet = vector_table("Jupiter Barycenter (5)", "Sun (10)", jupiter_state);
-  CHECK(read_horizons(planet + vector_table("Sun (10)", "Sun (10)", rest)).size() == 2);
+  CHECK(read_horizons(planet + vector_table("Sun (10)", "Sun (10)", at_rest)).size() == 2);
   CHECK(horizons_refusal(vector_table("Sun (10)", "Sun (10)", jupiter_state)) ==
         "h.txt:1: Sun (10) is not at rest in the origin, and all states are about it; take this table out");
 }

@@ -107,14 +107,17 @@ TEST_CASE("verify finds nothing wrong with a good file, and names what is wrong 
         std::vector<std::string>{"'/particles/system/velocity/value' has 12 rows, others 11",
                                  "'/particles/system/position/step' has 13 rows, others 11",
                                  "'/particles/system/position/time' has 13 rows, others 11",
-                                 "frame 4 at step 20 is not finite", "frames: step 5 follows step 35",
+                                 "'/noether/digests/frames' has 13 rows, others 11", "frame 4 at step 20 is not finite",
+                                 "frame 8 at step 5 does not have the digest that was written with it",
+                                 "frames: step 5 follows step 35",
                                  "'/noether/monitors/energy/total' has 20 rows, its steps 21"});
 
   // Of a run that did not end well, only what is too short is damage.
   io::Hdf5File::open_to_append(folder / "run.h5").set_attribute("/noether", "complete", std::int64_t{0});
   CHECK(io::verify(folder / "run.h5").damaged ==
-        std::vector<std::string>{"frame 4 at step 20 is not finite", "frames: step 5 follows step 35",
-                                 "'/noether/monitors/energy/total' has 20 rows, its steps 21"});
+        std::vector<std::string>{
+            "frame 4 at step 20 is not finite", "frame 8 at step 5 does not have the digest that was written with it",
+            "frames: step 5 follows step 35", "'/noether/monitors/energy/total' has 20 rows, its steps 21"});
 }
 
 TEST_CASE("a trajectory converts to extended XYZ and to CSV, and the numbers read back", "[inspect]") {

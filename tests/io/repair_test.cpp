@@ -145,11 +145,13 @@ TEST_CASE("rows that a dead run has left are cut off, and the run goes on as if 
             "'/particles/system/velocity/value' cut from 13 rows to 12, as many as all of the frames have",
             "'/particles/system/position/step' cut from 13 rows to 12, as many as all of the frames have",
             "'/particles/system/position/time' cut from 13 rows to 12, as many as all of the frames have",
+            "'/noether/digests/frames' cut from 13 rows to 12, as many as all of the frames have",
             "'/noether/monitors/energy/kinetic' cut from 21 rows to 12, as many as all of monitor 'energy' have",
             "'/noether/monitors/energy/potential' cut from 21 rows to 12, as many as all of monitor 'energy' have",
             "'/noether/monitors/energy/relative_error' cut from 21 rows to 12, as many as all of monitor 'energy' have",
             "'/noether/monitors/energy/time' cut from 21 rows to 12, as many as all of monitor 'energy' have",
-            "'/noether/monitors/energy/total' cut from 21 rows to 12, as many as all of monitor 'energy' have"});
+            "'/noether/monitors/energy/total' cut from 21 rows to 12, as many as all of monitor 'energy' have",
+            "'/noether/digests/monitors/energy' cut from 21 rows to 12, as many as all of monitor 'energy' have"});
   CHECK(done.info.damaged.empty());
   CHECK(done.info.frames == 12);
   CHECK(done.info.last_step == 55);

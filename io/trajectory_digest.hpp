@@ -1,0 +1,39 @@
+#pragma once
+/// Digests within run.h5: of every frame, of every sample, and of all that stands in it once.
+
+#include "io/digest.hpp"
+#include "io/frames.hpp"
+#include "io/hdf5_file.hpp"
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace noether::io {
+
+/// Where they stand: rows of four whole numbers, one for each frame, and one for each sample of a monitor.
+inline const std::string digests_path = "/noether/digests";
+inline const std::string frame_digests_path = digests_path + "/frames";
+inline std::string sample_digests_path(std::string_view monitor) {
+  return digests_path + "/monitors/" + std::string(monitor);
+}
+/// The attribute of /noether that has the digest of what stands in the file once and never changes.
+inline const std::string constants_attribute = "constants_sha256";
+
+/// SHA-256 of "noether-frame-1\n", int64 step, float64 time, x and v (n, 3), variables, int64 images (n, 3), edges, and
+/// of each other column that moves its name and its values; row by row, as the file has them.
+RowDigest frame_digest(const Frame& frame);
+
+/// SHA-256 of "noether-sample-1\n", int64 step, float64 time, and of each quantity, in the order of their names, its
+/// name and its values.
+RowDigest sample_digest(std::int64_t step, double time,
+                        const std::map<std::string, std::span<const double>, std::less<>>& quantities);
+
+/// SHA-256 of the datasets of the particles, or of a system, that do not grow, in the order of their names: each name,
+/// and its values. 64 hexadecimal digits.
+/// @throws FileError  for what HDF5 cannot read
+std::string constants_digest(const Hdf5File& file);
+
+}  // namespace noether::io
