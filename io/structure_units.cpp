@@ -102,7 +102,8 @@ std::string units_of_lammps(const TextFile& text) {
 /// The value of "units" in the comment of XYZ, as a name of `file_units`; empty where it says nothing new.
 std::string units_of_xyz(const TextFile& text) {
   if (text.lines().size() < 2) return "";
-  const std::string* said = XyzComment(text, 2).find("units");
+  const XyzComment comment(text, 2);
+  const std::string* said = comment.find("units");
   if (said == nullptr || *said == "angstrom" || *said == "Angstrom") return "";
   return *said == "reduced" ? "lj" : *said;
 }
