@@ -30,12 +30,11 @@ template <class Real> Motion<Real> motion_from(const std::vector<Quad>& seen, In
 
 template <class Real> Index Elements::primary_of(const ParticleSystem<Real>& s) const {
   if (about.empty()) return 0;
-  std::vector<std::string> names;
   for (Index i = 0; i < s.size(); ++i) {
     if (s.name(i) == about) return i;
-    names.push_back(s.name(i));
   }
-  throw Error(fmt::format("about = \"{}\" names no particle{}", about, did_you_mean(about, names)), {.key = "about"});
+  throw Error(fmt::format("about = \"{}\" names no particle{}", about, did_you_mean(about, s.names())),
+              {.key = "about"});
 }
 
 void Elements::refuse_massless(const std::string& name) {
