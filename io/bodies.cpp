@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <utility>
@@ -78,10 +80,40 @@ Heading parse_heading(std::string_view text) {
           std::string(trimmed(text.substr(bracket + 1, text.size() - bracket - 2)))};
 }
 
+namespace {
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// A number of Fortran with its exponent as C has it: 1.5D+03 becomes 1.5e+03. Other words stay as they are.
+std::string with_exponent_of_c(std::string_view word) {
+  std::string number(word);
+  const std::size_t mark = word.find_first_of("Dd");
+  if (mark == std::string_view::npos || mark == 0 || mark + 1 == word.size()) return number;
+  const char before = word[mark - 1];
+  std::string_view power = word.substr(mark + 1);
+  if (power.front() == '+' || power.front() == '-') power.remove_prefix(1);
+  const bool whole = !power.empty() && std::all_of(power.begin(), power.end(), is_digit);
+  if (whole && (is_digit(before) || before == '.')) number[mark] = 'e';
+  return number;
+}
+
+/// Ends the refusal of what is no number with what it may be meant as.
+std::string_view meant_by(std::string_view word) {
+  if (word.find(',') != std::string_view::npos) return "; decimals have a point";
+  static constexpr std::array<std::string_view, 4> minus_signs = {"\xE2\x88\x92", "\xE2\x80\x93", "\xE2\x80\x92",
+                                                                  "\xE2\x80\x90"};
+  for (const std::string_view sign : minus_signs) {
+    if (word.find(sign) != std::string_view::npos) return "; a minus is written '-'";
+  }
+  return "";
+}
+
+}  // namespace
+
 double number_in(const TextFile& text, std::size_t line, std::string_view word, const std::string& what) {
-  const std::string shown(word);
+  const std::string shown(word), plain = with_exponent_of_c(word);
   if (word.empty()) text.fail(line, what + " is empty; expected a number");
-  std::string_view digits = word;
+  std::string_view digits = plain;
   if (digits.front() == '+') digits.remove_prefix(1);
   double number = 0;
   const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
@@ -89,10 +121,7 @@ double number_in(const TextFile& text, std::size_t line, std::string_view word, 
     text.fail(line, fmt::format("{} is {}, which no double can hold", what, shown), shown);
   }
   if (problem != std::errc() || end != digits.data() + digits.size() || digits.front() == '+') {
-    const bool comma = word.find(',') != std::string_view::npos;
-    text.fail(line,
-              fmt::format("{} is '{}', which is no number{}", what, shown, comma ? "; decimals have a point" : ""),
-              shown);
+    text.fail(line, fmt::format("{} is '{}', which is no number{}", what, shown, meant_by(word)), shown);
   }
   if (!std::isfinite(number)) text.fail(line, fmt::format("{} is {}; expected a finite number", what, shown), shown);
   return number;

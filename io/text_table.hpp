@@ -48,7 +48,8 @@ struct Heading {
 };
 Heading parse_heading(std::string_view text);
 
-/// Reads a finite decimal number; `what` names it in messages, such as "column 'x'".
+/// Reads a finite decimal number, with the exponent of C or of Fortran, 1.5D+03; `what` names it in messages, such as
+/// "column 'x'".
 /// @throws SceneError
 double number_in(const TextFile& text, std::size_t line, std::string_view word, const std::string& what);
 
