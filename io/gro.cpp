@@ -80,10 +80,11 @@ class GroReader {
     return frames[0];
   }
 
-  /// Whether a line looks like an atom: a whole number before column 20, decimal points in step behind it.
+  /// Whether a line looks like an atom: names and a whole number up to column 20, decimal points in step behind it. The
+  /// nine numbers of a box have points before column 20.
   bool is_atom(std::size_t line) const {
     const std::string_view content = trimmed_end(text_.lines()[line - 1]);
-    if (content.size() <= numbers_begin) return false;
+    if (content.size() <= numbers_begin || content.find('.') < numbers_begin) return false;
     const std::string_view number = trimmed(content.substr(15, 5));
     const std::size_t one = content.find('.', numbers_begin), two = content.find('.', one + 1),
                       three = content.find('.', two + 1);
@@ -124,7 +125,7 @@ class GroReader {
     structure_.ids.push_back(number);
     structure_.names.push_back(fmt::format("{}_{}", atom, number));
     structure_.masses.push_back(std::numeric_limits<double>::quiet_NaN());
-    structure_.topology.types.push_back(type_of(atom));
+    structure_.topology.types.push_back(type_of(atom, line));
     structure_.topology.molecules.push_back(molecule_);
     structure_.x.push_back(vector(line, content.substr(numbers_begin), "") * units_.length);
     structure_.v.push_back(
@@ -189,10 +190,10 @@ class GroReader {
     if (edges != Vec3<double>::Zero()) structure_.box = box_in(text_, line, edges * units_.length);
   }
 
-  std::int64_t type_of(const std::string& atom) {
+  std::int64_t type_of(const std::string& atom, std::size_t line) {
     const auto count = static_cast<std::int64_t>(types_.size());
     const auto [at, fresh] = types_.try_emplace(atom, count);
-    if (fresh) structure_.topology.type_names.push_back(atom);
+    if (fresh) structure_.topology.type_names.push_back(atom), structure_.type_lines.push_back(line);
     return at->second;
   }
 
