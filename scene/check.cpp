@@ -128,7 +128,8 @@ class SceneCheck {
     }
   }
 
-  /// Ends at the table of the monitor that this run cannot serve, if one is the reason why it cannot be assembled.
+  /// Ends at the monitor that this run cannot serve, if one is the reason why it cannot be assembled: at the key that
+  /// is wrong, else at its type.
   void refuse_monitor(TableReader& top) const {
     const auto tables = tables_of(top, "every");
     for (std::size_t k = 0; k < scene_.watches.size(); ++k) {
@@ -137,7 +138,9 @@ class SceneCheck {
       try {
         assemble(alone);
       } catch (const Error& error) {
-        TableReader(context_, *tables[k], "[[every]]", fmt::format("every.{}", k)).fail("type", error.message());
+        const bool own = !error.key().empty() && tables[k]->find(error.key()) != nullptr;
+        TableReader(context_, *tables[k], "[[every]]", fmt::format("every.{}", k))
+            .fail(own ? error.key() : "type", error.message());
       }
     }
   }
