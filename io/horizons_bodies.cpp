@@ -16,27 +16,6 @@ namespace noether::io {
 
 namespace {
 
-/// GM of a body, or of a planet with its moons (numbers 1 to 9) [km^3/s^2].
-struct KnownMass {
-  int number;
-  double GM;
-};
-
-/// The outer planets without their moons are the solutions for satellites that JPL lists beside DE440.
-/// @source Park2021
-constexpr std::array known_masses = {
-    KnownMass{10, 132712440041.27942}, KnownMass{1, 22031.868551},
-    KnownMass{2, 324858.592},          KnownMass{3, 403503.235625},
-    KnownMass{4, 42828.375816},        KnownMass{5, 126712764.1},
-    KnownMass{6, 37940584.8418},       KnownMass{7, 5794556.4},
-    KnownMass{8, 6836527.10058},       KnownMass{9, 975.5},
-    KnownMass{199, 22031.868551},      KnownMass{299, 324858.592},
-    KnownMass{399, 398600.435507},     KnownMass{301, 4902.800118},
-    KnownMass{499, 42828.37362069909}, KnownMass{599, 126686531.9003704},
-    KnownMass{699, 37931206.23436167}, KnownMass{799, 5793951.256527211},
-    KnownMass{899, 6835103.145462294}, KnownMass{999, 869.6138177608748},
-};
-
 constexpr std::array<std::string_view, 6> components = {"X", "Y", "Z", "VX", "VY", "VZ"};
 constexpr int solar_system = 0, sun = 10;
 
@@ -220,10 +199,9 @@ class HorizonsBodies {
   }
 
   std::optional<double> known_mass(const HorizonsObject& object) const {
-    const auto known = std::find_if(known_masses.begin(), known_masses.end(),
-                                    [&](const KnownMass& one) { return one.number == object.number; });
-    if (known == known_masses.end()) return {};
-    return parse_unit("km^3/s^2", units_).times(known->GM) / G_;
+    const std::optional<double> GM = known_GM(object);
+    if (!GM) return {};
+    return parse_unit("km^3/s^2", units_).times(*GM) / G_;
   }
 
   double mass_of(const HorizonsTable& table) const {

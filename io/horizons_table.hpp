@@ -20,6 +20,11 @@ struct HorizonsObject {
   bool operator==(const HorizonsObject&) const = default;
 };
 
+/// GM of a body that Horizons names, or of a planet with its moons where it names a barycenter [km^3/s^2]; empty if it
+/// is not built in.
+/// @throws std::bad_alloc
+std::optional<double> known_GM(const HorizonsObject& object);
+
 /// One table: what its head says, and where its records stand (lines counted from 1).
 struct HorizonsTable {
   HorizonsObject target, center;
