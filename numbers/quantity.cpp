@@ -37,6 +37,7 @@ struct Term {
 bool is_letter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || static_cast<unsigned char>(c) >= 128;
 }
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// Reads products of words; `whole` is what messages quote.
 class TermReader {
@@ -59,27 +60,32 @@ class TermReader {
  private:
   Term read_term(bool divides) {
     std::size_t length = 0;
-    while (length < rest_.size() && is_letter(rest_[length])) ++length;
+    while (length < rest_.size() && (is_letter(rest_[length]) || (length > 0 && rest_[length] == '_'))) ++length;
     if (length == 0 && rest_.starts_with('1')) length = 1;
     if (length == 0) unexpected();
     Term term{.word = rest_.substr(0, length), .power = 1, .divides = divides};
     rest_.remove_prefix(length);
-    if (rest_.starts_with('^')) term.power = read_power();
+    read_power(term);
     const bool ends = rest_.empty() || rest_[0] == ' ' || rest_[0] == '*' || rest_[0] == '/';
     if (!ends) unexpected();
     skip_blanks();
     return term;
   }
 
-  int read_power() {
-    rest_.remove_prefix(1);
+  /// "^-1", "**-1", or the number alone, as catalogs of stars have it: "km s-1".
+  void read_power(Term& term) {
+    const std::size_t mark = rest_.starts_with("**") ? 2 : rest_.starts_with('^') ? 1 : 0;
+    const std::string_view behind = rest_.substr(mark);
+    const std::size_t sign = behind.starts_with('-') ? 1 : 0;
+    if (mark == 0 && (behind.size() <= sign || !is_digit(behind[sign]))) return;
+    rest_.remove_prefix(mark);
     int power = 0;
     const auto [end, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), power);
     if (error != std::errc() || power < -9 || power > 9) {
       fail(fmt::format("bad power in '{}'; expected a whole number from -9 to 9, as in 'm^2'", whole_), whole_);
     }
     rest_.remove_prefix(static_cast<std::size_t>(end - rest_.data()));
-    return power;
+    term.power = power;
   }
 
   bool take(char c) {
@@ -109,10 +115,76 @@ struct Alias {
   std::string_view word, symbol;
 };
 constexpr std::array aliases = {
-    Alias{"h", "hour"},       Alias{"hr", "hour"},        Alias{"hrs", "hour"},      Alias{"yrs", "yr"},
-    Alias{"AU", "au"},        Alias{"parsec", "pc"},      Alias{"kilometer", "km"},  Alias{"centimeter", "cm"},
-    Alias{"nanometer", "nm"}, Alias{"femtosecond", "fs"}, Alias{"picosecond", "ps"}, Alias{"nanosecond", "ns"},
-    Alias{"kilogram", "kg"},  Alias{"kelvin", "K"},
+    Alias{"h", "hour"},
+    Alias{"hr", "hour"},
+    Alias{"hrs", "hour"},
+    Alias{"yrs", "yr"},
+    Alias{"AU", "au"},
+    Alias{"parsec", "pc"},
+    Alias{"kilometer", "km"},
+    Alias{"centimeter", "cm"},
+    Alias{"nanometer", "nm"},
+    Alias{"femtosecond", "fs"},
+    Alias{"picosecond", "ps"},
+    Alias{"nanosecond", "ns"},
+    Alias{"kilogram", "kg"},
+    Alias{"kelvin", "K"},
+    // As astropy, VizieR, catalogs and files of molecules have them.
+    Alias{"sec", "s"},
+    Alias{"d", "day"},
+    Alias{"solMass", "Msun"},
+    Alias{"M_sun", "Msun"},
+    Alias{"M_Sun", "Msun"},
+    Alias{"Msol", "Msun"},
+    Alias{"MSun", "Msun"},
+    Alias{"M\xE2\x98\x89", "Msun"},
+    Alias{"M\xE2\x8A\x99", "Msun"},
+    Alias{"earthMass", "Mearth"},
+    Alias{"M_earth", "Mearth"},
+    Alias{"M_Earth", "Mearth"},
+    Alias{"MEarth", "Mearth"},
+    Alias{"M\xE2\x8A\x95", "Mearth"},
+    Alias{"jupiterMass", "Mjup"},
+    Alias{"M_jup", "Mjup"},
+    Alias{"M_Jup", "Mjup"},
+    Alias{"MJup", "Mjup"},
+    Alias{"Mjupiter", "Mjup"},
+    Alias{"solRad", "Rsun"},
+    Alias{"R_sun", "Rsun"},
+    Alias{"R_Sun", "Rsun"},
+    Alias{"RSun", "Rsun"},
+    Alias{"earthRad", "Rearth"},
+    Alias{"R_earth", "Rearth"},
+    Alias{"jupiterRad", "Rjup"},
+    Alias{"R_jup", "Rjup"},
+    Alias{"lyr", "ly"},
+    Alias{"arcsecond", "arcsec"},
+    Alias{"arcminute", "arcmin"},
+    Alias{"\xC2\xB0", "deg"},
+    Alias{"Angstrom", "angstrom"},
+    Alias{"\xC3\x85", "angstrom"},
+    Alias{"\xE2\x84\xAB", "angstrom"},
+    Alias{"picometer", "pm"},
+    Alias{"millimeter", "mm"},
+    Alias{"Bohr", "bohr"},
+    Alias{"a_0", "bohr"},
+    Alias{"amu", "u"},
+    Alias{"Da", "u"},
+    Alias{"dalton", "u"},
+    Alias{"Dalton", "u"},
+    Alias{"mole", "mol"},
+    Alias{"Kcal", "kcal"},
+    Alias{"electronvolt", "eV"},
+    Alias{"Hartree", "hartree"},
+    Alias{"E_h", "hartree"},
+    Alias{"newton", "N"},
+    Alias{"pascal", "Pa"},
+    Alias{"millisecond", "ms"},
+    Alias{"microsecond", "us"},
+    Alias{"\xC2\xB5s", "us"},
+    Alias{"\xCE\xBCs", "us"},
+    Alias{"\xC2\xB5m", "um"},
+    Alias{"\xCE\xBCm", "um"},
 };
 
 /// GM of a planet over that of the Sun, both nominal, in solar masses.
@@ -122,8 +194,9 @@ constexpr units::Ratio of_msun(std::int64_t digits, int exponent) {
 
 /// Units that texts alone have: programs ask `unit_value` for them. Masses of planets are to Msun as the nominal GM
 /// are, 3.986004e14 and 1.2668653e17 to 1.3271244e20 m^3/s^2; radii are nominal, those of planets equatorial; the
-/// parsec is 648000/pi au.
-/// @source IauB2of2015, IauB3of2015
+/// parsec is 648000/pi au, the light-year one of a Julian year, the calorie the thermochemical one; bohr and hartree
+/// are CODATA 2018.
+/// @source Codata2018, IauB2of2015, IauB3of2015
 constexpr std::array text_units = {
     units::Definition{"Mearth", "", dimensions::mass, of_msun(3986004, -5)},
     units::Definition{"Mjup", "", dimensions::mass, of_msun(12668653, -3)},
@@ -132,6 +205,26 @@ constexpr std::array text_units = {
     units::Definition{"Rjup", "", dimensions::length, units::decimal(71492, 3)},
     units::Definition{"pc", "", dimensions::length, units::Ratio{648000 * Quad(149597870700), units::pi}},
     units::Definition{"kpc", "", dimensions::length, units::Ratio{648000000 * Quad(149597870700), units::pi}},
+    units::Definition{"Mpc", "", dimensions::length, units::Ratio{648000000000 * Quad(149597870700), units::pi}},
+    units::Definition{"ly", "", dimensions::length, units::decimal(9460730472580800)},
+    units::Definition{"mm", "", dimensions::length, units::decimal(1, -3)},
+    units::Definition{"um", "", dimensions::length, units::decimal(1, -6)},
+    units::Definition{"pm", "", dimensions::length, units::decimal(1, -12)},
+    units::Definition{"bohr", "", dimensions::length, units::decimal(529177210903, -22)},
+    units::Definition{"ms", "", dimensions::time, units::decimal(1, -3)},
+    units::Definition{"us", "", dimensions::time, units::decimal(1, -6)},
+    units::Definition{"arcmin", "", dimensions::none, units::Ratio{units::pi, Quad(10800)}},
+    units::Definition{"arcsec", "", dimensions::none, units::Ratio{units::pi, Quad(648000)}},
+    units::Definition{"mas", "", dimensions::none, units::Ratio{units::pi, Quad(648000000)}},
+    units::Definition{"kcal/mol", "", dimensions::energy, units::decimal(4184) / units::decimal(602214076, 15)},
+    units::Definition{"eV", "", dimensions::energy, units::decimal(1602176634, -28)},
+    units::Definition{"meV", "", dimensions::energy, units::decimal(1602176634, -31)},
+    units::Definition{"hartree", "", dimensions::energy, units::decimal(43597447222071, -31)},
+    units::Definition{"erg", "", dimensions::energy, units::decimal(1, -7)},
+    units::Definition{"N", "", dimensions::force, units::decimal(1)},
+    units::Definition{"Pa", "", dimensions::pressure, units::decimal(1)},
+    units::Definition{"bar", "", dimensions::pressure, units::decimal(1, 5)},
+    units::Definition{"atm", "", dimensions::pressure, units::decimal(101325)},
 };
 
 /// The unit of a symbol, or null.
@@ -164,9 +257,9 @@ std::string_view symbol_of(std::string_view word) {
   for (const units::Definition& unit : text_units) known.emplace_back(unit.symbol);
   const std::string in = word == whole ? "" : fmt::format(" in '{}'", whole);
   // Half of a quotient has one answer, however far it is in letters.
-  for (const units::Definition& unit : units::definitions) {
-    if (!unit.symbol.starts_with(word) || !unit.symbol.substr(word.size()).starts_with('/')) continue;
-    fail(fmt::format("unknown unit '{}'{}; did you mean '{}'?", word, in, unit.symbol), whole);
+  for (const std::string& symbol : known) {
+    if (!symbol.starts_with(word) || !std::string_view(symbol).substr(word.size()).starts_with('/')) continue;
+    fail(fmt::format("unknown unit '{}'{}; did you mean '{}'?", word, in, symbol), whole);
   }
   std::vector<std::string> names;
   for (const Alias& alias : aliases) names.emplace_back(alias.word);
@@ -178,12 +271,14 @@ std::string_view symbol_of(std::string_view word) {
   fail(fmt::format("unknown unit '{}'{}{}", word, in, did_you_mean(word, known)), whole);
 }
 
-/// The unit made of two words, "kJ/mol" or "g/cm^3", where the terms at i spell one.
+/// The unit made of two words, "kJ/mol", "kJ mol^-1" or "g/cm^3", where the terms at i spell one.
 const units::Definition* find_quotient(const std::vector<Term>& terms, std::size_t i) {
-  if (i + 1 >= terms.size() || terms[i].divides || terms[i].power != 1 || !terms[i + 1].divides) return nullptr;
-  const Term& below = terms[i + 1];
+  if (i + 1 >= terms.size() || terms[i].divides || terms[i].power != 1) return nullptr;
+  Term below = terms[i + 1];
+  if (below.word == "mol" && !below.divides) below = {.word = "mol", .power = -below.power, .divides = true};
+  if (!below.divides) return nullptr;
   const std::string power = below.power == 1 ? "" : fmt::format("^{}", below.power);
-  return units::find(fmt::format("{}/{}{}", terms[i].word, below.word, power));
+  return find_unit(fmt::format("{}/{}{}", terms[i].word, below.word, power));
 }
 
 /// The value of a unit in a system; plain numbers, such as the degree, are the same in all.
@@ -223,7 +318,8 @@ std::vector<Term> unit_terms(std::string_view text, std::string_view whole, bool
 /// Whether the reduced system knows every word: it has plain numbers and angles only.
 bool all_plain(const std::vector<Term>& terms) {
   for (const Term& term : terms) {
-    if (term.word != "1" && term.word != "deg" && term.word != "rad") return false;
+    const units::Definition* const unit = find_unit(term.word);
+    if (term.word != "1" && (unit == nullptr || unit->dimension != dimensions::none)) return false;
   }
   return true;
 }
@@ -296,7 +392,11 @@ std::string expectation(const Expected& wanted, std::string_view number, const U
                      example_of(wanted.dimension, number, system));
 }
 
-bool is_angle(const Term& term) { return term.word == "deg" || term.word == "rad"; }
+/// All units without a dimension are angles.
+bool is_angle(const Term& term) {
+  const units::Definition* const unit = find_unit(term.word);
+  return unit != nullptr && unit->dimension == dimensions::none;
+}
 
 /// What a quantity with a unit is, in words: "an angle", "a time", "a plain number".
 std::string kind_of(const std::vector<Term>& terms, const Dimension& dimension) {
@@ -430,7 +530,7 @@ std::vector<UnitRow> list_units() {
   const auto add = [&](const units::Definition& unit) {
     UnitRow row{.symbol = std::string(unit.symbol),
                 .constant = std::string(unit.constant),
-                .dimension = unit.symbol == "deg" || unit.symbol == "rad" ? "angle" : to_text(unit.dimension),
+                .dimension = unit.dimension == dimensions::none ? "angle" : to_text(unit.dimension),
                 .solar = value_in(unit, solar),
                 .molecular = value_in(unit, molecular),
                 .si = value_in(unit, si),

@@ -156,7 +156,8 @@ TEST_CASE("an unknown unit is refused with a proposal", "[quantity]") {
   CHECK(refusal("2 furlongs", dimensions::length, si) ==
         "unknown unit 'furlongs' in '2 furlongs'; known are: s, min, hour, day, yr, kyr, Myr, Gyr, fs, ps, ns, m, cm, "
         "km, au, nm, angstrom, kg, g, Msun, u, K, deg, rad, kJ/mol, J, e, C, g/cm^3, Mearth, Mjup, Rsun, Rearth, Rjup, "
-        "pc, kpc");
+        "pc, kpc, Mpc, ly, mm, um, pm, bohr, ms, us, arcmin, arcsec, mas, kcal/mol, eV, meV, hartree, erg, N, Pa, bar, "
+        "atm");
 }
 
 TEST_CASE("names of units in English, plurals and AU are the units that they name", "[quantity]") {
