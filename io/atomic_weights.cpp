@@ -33,7 +33,28 @@ constexpr std::array<AtomicWeight, 84> atomic_weights = {
      {"Pt", 195.084},     {"Au", 196.966569}, {"Hg", 200.592},    {"Tl", 204.38},       {"Pb", 207.2},
      {"Bi", 208.9804},    {"Th", 232.0377},   {"Pa", 231.03588},  {"U", 238.02891}}};
 
+/// By atomic number, from 1.
+constexpr std::array<std::string_view, 118> element_symbols = {
+    "H",  "He", "Li", "Be", "B",  "C",  "N",  "O",  "F",  "Ne", "Na", "Mg", "Al", "Si", "P",  "S",  "Cl",
+    "Ar", "K",  "Ca", "Sc", "Ti", "V",  "Cr", "Mn", "Fe", "Co", "Ni", "Cu", "Zn", "Ga", "Ge", "As", "Se",
+    "Br", "Kr", "Rb", "Sr", "Y",  "Zr", "Nb", "Mo", "Tc", "Ru", "Rh", "Pd", "Ag", "Cd", "In", "Sn", "Sb",
+    "Te", "I",  "Xe", "Cs", "Ba", "La", "Ce", "Pr", "Nd", "Pm", "Sm", "Eu", "Gd", "Tb", "Dy", "Ho", "Er",
+    "Tm", "Yb", "Lu", "Hf", "Ta", "W",  "Re", "Os", "Ir", "Pt", "Au", "Hg", "Tl", "Pb", "Bi", "Po", "At",
+    "Rn", "Fr", "Ra", "Ac", "Th", "Pa", "U",  "Np", "Pu", "Am", "Cm", "Bk", "Cf", "Es", "Fm", "Md", "No",
+    "Lr", "Rf", "Db", "Sg", "Bh", "Hs", "Mt", "Ds", "Rg", "Cn", "Nh", "Fl", "Mc", "Lv", "Ts", "Og"};
+
 }  // namespace
+
+std::string_view symbol_of_element(int number) {
+  return number >= 1 && number <= 118 ? element_symbols[static_cast<std::size_t>(number - 1)] : "";
+}
+
+int number_of_element(std::string_view symbol) {
+  for (std::size_t k = 0; k < element_symbols.size(); ++k) {
+    if (element_symbols[k] == symbol) return static_cast<int>(k) + 1;
+  }
+  return 0;
+}
 
 double standard_atomic_weight(std::string_view element) {
   for (const AtomicWeight& one : atomic_weights) {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 
@@ -35,10 +36,13 @@ class ExtendedXyzReader {
     comment_line_ = frame.line + 1;
     const XyzComment comment(text_, comment_line_);
     const std::string* properties = comment.find("Properties");
-    read_properties(properties == nullptr ? "species:S:1:pos:R:3" : *properties);
+    plain_ = properties == nullptr;
+    read_properties(plain_ ? "species:S:1:pos:R:3" : *properties);
     if (comment.is_periodic()) structure_.box = comment.box(units_.length);
     check_units_of_velocities(comment);
+    if (plain_) pass_over_further_columns(frame);
     for (std::size_t k = 0; k < frame.atoms; ++k) read_atom(comment_line_ + 1 + k);
+    take_masses_of_quip();
     return std::move(structure_);
   }
 
@@ -79,6 +83,47 @@ class ExtendedXyzReader {
     return frames[0];
   }
 
+  /// Of plain XYZ: columns behind the position, charges or velocities or anything else, are passed over. An atomic
+  /// number before the position would pass for x.
+  void pass_over_further_columns(const XyzFrame& frame) {
+    const std::size_t first = frame.line + 2;
+    split_words(text_.lines()[first - 1], words_);
+    if (words_.size() <= columns_) return;
+    const std::size_t found = words_.size();
+    bool numbered = true;
+    for (std::size_t line = first; line < first + frame.atoms && numbered; ++line) {
+      split_words(text_.lines()[line - 1], words_);
+      const int number = words_.empty() ? 0 : number_of_element(words_[0]);
+      numbered = number > 0 && words_.size() > 1 && number_in(text_, line, words_[1], "pos") == number;
+    }
+    if (numbered) {
+      text_.fail(first, "the second column has the atomic number of each atom, where XYZ has x; take that column out");
+    }
+    note(options_,
+         fmt::format("the columns behind x, y, z of the structure are not read; there are {}", found - columns_));
+    columns_ = found;
+  }
+
+  /// QUIP writes masses in eV fs^2/angstrom^2 where others write u: all of them are then 103.64 times too large.
+  void take_masses_of_quip() {
+    static constexpr double factor = 1.66053906660e-27 / 1.602176634e-29;
+    if (!mass_) return;
+    std::size_t judged = 0;
+    for (std::size_t k = 0; k < structure_.masses.size(); ++k) {
+      const std::string& species =
+          structure_.topology.type_names[static_cast<std::size_t>(structure_.topology.types[k])];
+      const double ratio = structure_.masses[k] / standard_atomic_weight(species);
+      if (std::isnan(ratio)) continue;
+      if (std::abs(ratio / factor - 1) > 0.02) return;
+      ++judged;
+    }
+    if (judged == 0) return;
+    for (double& mass : structure_.masses) mass /= factor;
+    note(options_,
+         "the masses of the structure are 103.64 times the atomic weights: they are taken as eV fs^2/angstrom^2, as "
+         "QUIP writes them");
+  }
+
   void read_properties(const std::string& value) {
     std::vector<std::string> words(1);
     for (const char c : value) {
@@ -97,17 +142,19 @@ class ExtendedXyzReader {
       columns_ += count;
     }
     species_ = property({"species"}, 1);
+    if (!species_) atomic_number_ = property({"Z", "numbers", "atomic_numbers"}, 1);
     position_ = property({"pos"}, 3);
-    for (const auto& [name, wanted] : {std::pair("species", species_), std::pair("pos", position_)}) {
+    for (const auto& [name, wanted] :
+         {std::pair("species", species_ ? species_ : atomic_number_), std::pair("pos", position_)}) {
       if (!wanted) fail(fmt::format("there is no property '{}' in Properties={}", name, value), value);
     }
     velocity_ = property({"velo", "vel", "velocities", "velocity"}, 3);
     momentum_ = property({"momenta"}, 3);
-    charge_ = property({"charge", "initial_charges"}, 1);
+    charge_ = property({"charge", "initial_charges", "charges", "q"}, 1);
     mass_ = property({"mass", "masses"}, 1);
     for (const auto& [name, one] : properties_) {
       // Forces are computed anew.
-      if (one.read || name == "forces" || name == "force") continue;
+      if (one.read || name == "forces" || name == "force" || (name == "Z" && species_)) continue;
       note(options_, fmt::format("the columns '{}' of the structure are not read", name));
     }
   }
@@ -154,21 +201,31 @@ class ExtendedXyzReader {
   void read_atom(std::size_t line) {
     split_words(text_.lines()[line - 1], words_);
     if (words_.size() != columns_) {
-      text_.fail(line,
-                 fmt::format("this atom has {} columns; expected {}, as Properties say", words_.size(), columns_));
+      text_.fail(line, fmt::format("this atom has {} columns; expected {}, as {}", words_.size(), columns_,
+                                   !plain_         ? "Properties say"
+                                   : columns_ == 4 ? "there are a species and x, y, z"
+                                                   : "the first atom has"));
     }
-    const std::string species(words_[species_->column]);
+    const std::string species = species_of_atom(line);
     if (const std::string wrong = wrong_name(species); !wrong.empty()) text_.fail(line, wrong, species);
     const auto number = static_cast<std::int64_t>(structure_.ids.size()) + 1;
     structure_.ids.push_back(number);
     structure_.names.push_back(fmt::format("{}_{}", species, number));
-    structure_.topology.types.push_back(type_of(species));
+    structure_.topology.types.push_back(type_of(species, line));
     const double mass =
         mass_ ? mass_number_in(text_, line, words_[mass_->column], "the mass") : standard_atomic_weight(species);
     structure_.masses.push_back(mass);
     structure_.x.push_back(vector(line, *position_, "pos") * units_.length);
     structure_.v.push_back(velocity(line, mass, species));
     if (charge_) structure_.charges.push_back(number_in(text_, line, words_[charge_->column], "the charge"));
+  }
+
+  /// The species of an atom, by its name or its atomic number.
+  std::string species_of_atom(std::size_t line) const {
+    if (species_) return std::string(words_[species_->column]);
+    const std::string_view word = words_[atomic_number_->column];
+    return std::string(
+        symbol_of_element(static_cast<int>(whole_number_in(text_, line, word, "the atomic number", 1, 118))));
   }
 
   Vec3<double> velocity(std::size_t line, double mass, const std::string& species) const {
@@ -185,10 +242,10 @@ class ExtendedXyzReader {
     return v;
   }
 
-  std::int64_t type_of(const std::string& species) {
+  std::int64_t type_of(const std::string& species, std::size_t line) {
     const auto count = static_cast<std::int64_t>(types_.size());
     const auto [at, fresh] = types_.try_emplace(species, count);
-    if (fresh) structure_.topology.type_names.push_back(species);
+    if (fresh) structure_.topology.type_names.push_back(species), structure_.type_lines.push_back(line);
     return at->second;
   }
 
@@ -203,7 +260,8 @@ class ExtendedXyzReader {
   Structure structure_;
   std::map<std::string, XyzProperty> properties_;
   std::size_t columns_ = 0;
-  std::optional<XyzProperty> species_, position_, velocity_, momentum_, charge_, mass_;
+  bool plain_ = false;  ///< without Properties
+  std::optional<XyzProperty> species_, atomic_number_, position_, velocity_, momentum_, charge_, mass_;
   std::string velocity_name_;
   std::map<std::string, std::int64_t> types_;
   std::vector<std::string_view> words_;

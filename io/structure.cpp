@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -90,14 +91,35 @@ ParticleSystem<double> particles_of(const Structure& structure, const UnitSystem
   return s;
 }
 
-void check_masses(const ParticleSystem<double>& s, const Topology& topology, const std::filesystem::path& file) {
+/// The element that a label or a number may mean: C1, AR, ar, 18; empty where it is none.
+std::string element_meant_by(std::string_view label) {
+  int number = 0;
+  const auto [end, problem] = std::from_chars(label.data(), label.data() + label.size(), number);
+  if (problem == std::errc() && end == label.data() + label.size()) return std::string(symbol_of_element(number));
+  const auto is_letter_of_element = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
+  std::string letters(label.begin(), std::find_if_not(label.begin(), label.end(), is_letter_of_element));
+  if (number_of_element(letters) > 0) return letters;
+  for (std::size_t k = 0; k < letters.size(); ++k) {
+    const auto c = static_cast<unsigned char>(letters[k]);
+    letters[k] = static_cast<char>(k == 0 ? std::toupper(c) : std::tolower(c));
+  }
+  return number_of_element(letters) > 0 ? letters : "";
+}
+
+void check_masses(const ParticleSystem<double>& s, const Structure& structure, const TextFile& text) {
+  const Topology& topology = structure.topology;
   for (Index i = 0; i < s.size(); ++i) {
     if (!std::isnan(s.masses()[i])) continue;
-    const std::string& type = topology.type_names[static_cast<std::size_t>(topology.type(i))];
-    throw SceneError(fmt::format("particles of type '{}' have no mass; give it in [[particles.type]]: name = \"{}\", "
-                                 "mass = ...",
-                                 type, type),
-                     {.file = file.string(), .value = type});
+    const auto kind = static_cast<std::size_t>(topology.type(i));
+    const std::string& type = topology.type_names[kind];
+    const std::string meant = element_meant_by(type);
+    const double weight = standard_atomic_weight(meant);
+    const bool known = !std::isnan(weight);
+    text.fail(
+        kind < structure.type_lines.size() ? structure.type_lines[kind] : 0,
+        fmt::format("particles of type '{}' have no mass; give it in [[particles.type]]: name = \"{}\", mass = {}",
+                    type, type, known ? fmt::format("\"{} u\" if it is {}", weight, meant) : "..."),
+        type);
   }
 }
 
@@ -205,7 +227,7 @@ ParticleSystem<double> read_structure(const std::filesystem::path& file, const S
   const Mixing own = format == StructureFormat::lammps_data ? Mixing::geometric : Mixing::lorentz_berthelot;
   topology.mixing = told.mixing.value_or(structure.mixing.value_or(own));
   set_type_parameters(s, topology, options.types, options.pairs);
-  check_masses(s, topology, file);
+  check_masses(s, structure, text);
   check_stated_temperature(text, structure, s, told);
   topology.scale_by_bonds(s.size(), special);
   if (ends) structure.end_pairs = pairs_three_bonds_apart(topology, s.size(), ends->lennard_jones, ends->charges);

@@ -42,6 +42,7 @@ struct Structure {
   std::vector<double> charges;             ///< empty: none were given
   Box box;
   Topology topology;
+  std::vector<std::size_t> type_lines;  ///< of the first particle of each type; empty: not told
   /// The temperature that stands beside velocities, in kelvin or reduced, and its line.
   struct StatedTemperature {
     double value;
@@ -65,6 +66,14 @@ struct Structure {
 /// @throws never
 /// @source Meija2016
 double standard_atomic_weight(std::string_view element);
+
+/// The symbol of an element by its atomic number, 1 to 118; empty for other numbers.
+/// @throws never
+std::string_view symbol_of_element(int number);
+
+/// The atomic number of an element; 0 for what is none.
+/// @throws never
+int number_of_element(std::string_view symbol);
 
 /// Parts a line at blanks, and leaves out what stands behind `#`.
 void split_words(std::string_view line, std::vector<std::string_view>& words);

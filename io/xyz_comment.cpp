@@ -24,6 +24,14 @@ std::string in_small_letters(std::string_view text) {
   return small;
 }
 
+/// Whether a comment has a key, in small letters, with its mark.
+bool has_key(std::string_view comment, std::string_view key) {
+  const std::string small = in_small_letters(comment);
+  const std::size_t at = small.find(key);
+  const std::size_t behind = at == std::string::npos ? at : small.find_first_not_of(" \t", at + key.size());
+  return behind != std::string::npos && small[behind] == '=';
+}
+
 void skip_blanks(std::string_view& rest) {
   while (!rest.empty() && is_blank_of_comment(rest.front())) rest.remove_prefix(1);
 }
@@ -63,15 +71,42 @@ XyzComment::XyzComment(const TextFile& text, std::size_t line) : text_(text), li
         "the cell of i-PI in this comment is not read; give Lattice=\"ax 0 0 0 by 0 0 0 cz\", and positions in "
         "angstrom");
   }
+  const bool extended = has_key(rest, "properties") || has_key(rest, "lattice");
   for (skip_blanks(rest); !rest.empty(); skip_blanks(rest)) {
-    const std::string name = key(rest), small = in_small_letters(name);
-    std::string said = value(rest, name);
+    std::string said = "T";
+    std::string name = extended ? flag(rest) : "";
+    if (name.empty()) {
+      name = key(rest);
+      said = value(rest, name);
+    }
+    const std::string small = in_small_letters(name);
     if (!values_.try_emplace(small, std::move(said)).second) {
       fail(fmt::format("'{}' stands twice in the comment", name), name);
     }
     spelt_[small] = name;
   }
   check_keys();
+}
+
+/// Takes a word that stands alone, a key that is true; empty where the next is none. What means a box or columns is
+/// none.
+std::string XyzComment::flag(std::string_view& rest) {
+  const std::size_t end = std::min(rest.find_first_of(" \t="), rest.size());
+  const std::string name(rest.substr(0, end));
+  const bool plain =
+      std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
+  std::string_view behind = rest.substr(end);
+  skip_blanks(behind);
+  // One letter, or a word of truth, belongs to a value that has lost its quotes: pbc=T F T.
+  const std::string small = in_small_letters(name);
+  if (name.size() < 2 || !plain || small == "true" || small == "false" || behind.starts_with('=')) return "";
+  if (std::isalpha(static_cast<unsigned char>(name.front())) == 0) return "";
+  if (!suggest(name, {"Lattice", "Properties"}).empty()) return "";
+  for (const auto& other : keys_of_others) {
+    if (small == other.first) return "";
+  }
+  rest.remove_prefix(end);
+  return name;
 }
 
 /// Takes a key and the mark behind it.

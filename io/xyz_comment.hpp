@@ -28,6 +28,7 @@ class XyzComment {
   Box box(double length) const;
 
  private:
+  static std::string flag(std::string_view& rest);
   std::string key(std::string_view& rest) const;
   std::string value(std::string_view& rest, const std::string& key) const;
   std::string enclosed(std::string_view& rest, const std::string& where) const;

@@ -106,7 +106,8 @@ TEST_CASE("extended XYZ that is wrong is refused with its line", "[structure][me
   CHECK(xyz_refusal("") == "m.xyz: the file is empty; XYZ begins with the number of atoms");
   CHECK(xyz_refusal("two\n") == "m.xyz:1: the number of atoms is 'two'; a whole number is expected, 1 to 1000000000");
   CHECK(xyz_refusal("3\n\nO 0 0 0\nO 1 0 0\n") == "m.xyz:1: 3 atoms are announced, but the file ends after 2 of them");
-  CHECK(xyz_refusal("1\n\nO 0 0\n") == "m.xyz:3: this atom has 3 columns; expected 4, as Properties say");
+  CHECK(xyz_refusal("1\n\nO 0 0\n") ==
+        "m.xyz:3: this atom has 3 columns; expected 4, as there are a species and x, y, z");
   CHECK(xyz_refusal("1\n\nO 0 0 zero\n") == "m.xyz:3: pos is 'zero', which is no number");
   CHECK(xyz_refusal("1\n\nO 0 0 0\n1\n\nO 0 0 1\n") ==
         "m.xyz:4: there is more behind the 1 atoms of the first frame; a structure is one frame: give frame = 0, or "
@@ -124,14 +125,16 @@ TEST_CASE("extended XYZ that is wrong is refused with its line", "[structure][me
   CHECK(xyz_refusal("1\npbc=\"T T T\"\nO 0 0 0\n") == "m.xyz:2: pbc is true, but there is no Lattice");
   CHECK(xyz_refusal("1\nProperties=species:S:1:pos:R\nO 0 0 0\n") ==
         "m.xyz:2: Properties=species:S:1:pos:R is not of the form name:type:columns:...");
-  CHECK(xyz_refusal("1\nProperties=Z:I:1:pos:R:3\n8 0 0 0\n") ==
-        "m.xyz:2: there is no property 'species' in Properties=Z:I:1:pos:R:3");
+  CHECK(xyz_refusal("1\nProperties=tag:I:1:pos:R:3\n8 0 0 0\n") ==
+        "m.xyz:2: there is no property 'species' in Properties=tag:I:1:pos:R:3");
+  CHECK(xyz_refusal("1\nProperties=Z:I:1:pos:R:3\n119 0 0 0\n") ==
+        "m.xyz:3: the atomic number is '119'; a whole number is expected, 1 to 118");
   CHECK(xyz_refusal("1\nProperties=species:S:1:pos:R:2\nO 0 0\n") ==
         "m.xyz:2: property 'pos' has 2 columns; expected 3");
   CHECK(xyz_refusal("1\nProperties=species:S:1:pos:R:3:pos:R:3\nO 0 0 0 0 0 0\n") ==
         "m.xyz:2: property 'pos' stands twice");
   CHECK(xyz_refusal("1\n\nCW 0 0 0\n") ==
-        "m.xyz: particles of type 'CW' have no mass; give it in [[particles.type]]: name = \"CW\", mass = ...");
+        "m.xyz:3: particles of type 'CW' have no mass; give it in [[particles.type]]: name = \"CW\", mass = ...");
   CHECK(xyz_refusal("1\n\nO 0 0 0\n", {.units = &unit_system("reduced")}) ==
         "an extended XYZ file in angstrom needs units = \"molecular\", not \"reduced\"; or give file_units = \"lj\"");
   CHECK(xyz_refusal("1\n\nO 0 0 0\n", {.atom_style = "full"}) ==
@@ -311,7 +314,7 @@ TEST_CASE("a .gro file that is wrong is refused with its line", "[structure][mes
   CHECK(gro_refusal("") == "m.gro: the file has no second line; .gro has a title, then the number of atoms");
   CHECK(gro_refusal(water) == "m.gro:2: 4 atoms are announced, but the file ends after 6 lines; expected 7");
   CHECK(gro_refusal(water + water_box) ==
-        "m.gro: particles of type 'OW' have no mass; give it in [[particles.type]]: name = \"OW\", mass = ...");
+        "m.gro:3: particles of type 'OW' have no mass; give it in [[particles.type]]: name = \"OW\", mass = ...");
   CHECK(gro_refusal(water + "   1.82060   1.82060\n", water_masses) ==
         "m.gro:7: the box has 2 numbers; 3 are expected, or 9");
   CHECK(gro_refusal(water + "1 1 1 0 0 0.5 0 0 0\n", water_masses) ==
