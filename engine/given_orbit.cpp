@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -93,6 +94,42 @@ HalfAnomaly parabolic_anomaly(double q, double t, double mu) {
 }
 
 }  // namespace
+
+OtherName other_name_of(std::string_view name) {
+  struct Meaning {
+    std::string_view words, key, told;
+  };
+  // Words between blanks, in small letters but for those of one letter.
+  static constexpr std::array meanings = {
+      Meaning{" m ", "mass", "; did you mean 'mass'?"},
+      Meaning{" sma semimajor semimajor_axis semi_major_axis A ", "a", "; did you mean 'a'?"},
+      Meaning{" per period orbital_period pr ", "P", "; did you mean 'P'?"},
+      Meaning{" qr perihelion_distance periapsis_distance pericenter_distance ", "q", "; did you mean 'q'?"},
+      Meaning{" ecc eccentricity ec ", "e", "; did you mean 'e'?"},
+      Meaning{" i I incl incl. inclination in ", "inc", "; did you mean 'inc'?"},
+      Meaning{" om node raan lan long_node longnode asc_node ascending_node ", "Omega", "; did you mean 'Omega'?"},
+      Meaning{" w W peri peri. argp argperi arg_peri argper aop arg_pericenter ", "omega", "; did you mean 'omega'?"},
+      Meaning{" varpi longp long_peri longperi curlypi ", "pomega", "; did you mean 'pomega'?"},
+      Meaning{" ma m0 mean_anomaly meananomaly ", "M", "; did you mean 'M'?"},
+      Meaning{" nu ta true_anomaly trueanomaly ", "f", "; did you mean 'f'?"},
+      Meaning{" L lambda mean_longitude meanlongitude ", "l", "; did you mean 'l'?"},
+      Meaning{" tp tperi t_peri time_of_perihelion ", "T", "; did you mean 'T'?"},
+      Meaning{" n N mean_motion ", "", "; a mean motion n is not read: give the period P = 360 deg / n, or a"},
+      Meaning{" E eccentric_anomaly ", "", "; an eccentric anomaly E is not read: give M = E - e sin E, or f"},
+      Meaning{" Q ad aphelion ", "", "; the distance of the apocenter is not read: give a or q"},
+      Meaning{" theta true_longitude ", "", "; a true longitude is not read: give f, or the mean longitude l"},
+  };
+  std::string word(name);
+  if (word.find(' ') != std::string::npos || word.empty()) return {};
+  if (word.size() > 1) {
+    for (char& letter : word) letter = letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
+  }
+  word = ' ' + word + ' ';
+  for (const Meaning& meaning : meanings) {
+    if (meaning.words.find(word) != std::string_view::npos) return {meaning.key, meaning.told};
+  }
+  return {};
+}
 
 std::pair<Vec3<double>, Vec3<double>> state_of_orbit(const GivenOrbit& orbit, double mu) {
   check_choices(orbit);

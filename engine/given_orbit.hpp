@@ -60,6 +60,17 @@ inline constexpr std::array orbit_keys = {
     OrbitKey{"T", "time", &GivenOrbit::T, OrbitKey::Choice::place},
 };
 
+/// A name by which others call an element, or a column of a table of them.
+struct OtherName {
+  std::string_view key;   ///< its name here; empty where there is none
+  std::string_view told;  ///< the end of a message about it: "; did you mean 'Omega'?"; empty for a name nobody knows
+};
+
+/// What is meant by a name of the catalogs of JPL and of the Minor Planet Center, of textbooks and of REBOUND: "om",
+/// "node", "raan" are Omega. Upper and lower case are the same but where they differ in meaning: m, E, L.
+/// @throws never
+OtherName other_name_of(std::string_view name);
+
 /// Position [length] and velocity [length/time] relative to the center of attraction.
 ///
 /// Given by a, e, inc, Omega, omega and M it is that of `state_from_elements`, to the bit.

@@ -20,19 +20,25 @@ struct BodiesOptions {
   const UnitSystem* units = &unit_system("solar");  ///< the unit system of the particles
   std::optional<double> G = {};  ///< constant of gravitation [length^3/mass/time^2]; default: the unit system's own
   ElementsAbout elements = ElementsAbout::first_body;
-  std::optional<double> epoch = {};  ///< Julian day of the records to take of Horizons; default: the first
+  std::optional<double> epoch = {};  ///< Julian day of the start: the records to take of Horizons (default: the first);
+                                     ///< beside it stand times of the pericenter in Julian days
 };
 
-/// The moment for which the states of a Horizons table hold.
+/// The moment for which the states of a table hold.
 struct BodyEpoch {
   double julian_day = 0;
   std::string scale;  ///< "TDB", as the table has it; empty if it does not say
 };
 
+/// Whether a number of days from the start is rather a Julian day, of the years 1311 to 2406: six or seven thousand
+/// years are not counted in days.
+/// @throws never
+constexpr bool looks_like_julian_day(double days) { return days > 2.2e6 && days < 2.6e6; }
+
 /// Bodies, and what a table says of them.
 struct BodyTable {
   ParticleSystem<double> particles;
-  std::optional<BodyEpoch> epoch = {};  ///< of Horizons
+  std::optional<BodyEpoch> epoch = {};  ///< of Horizons, or as it was given
   bool without_sun = false;             ///< states about the Solar System Barycenter, and no Sun among them
 };
 

@@ -164,6 +164,7 @@ class CsvBodies {
         units_(*options.units),
         G_(options.G.value_or(options.units->G)),
         elements_about_(options.elements),
+        epoch_(options.epoch),
         bodies_(text, units_) {}
 
   BodyTable read() {
@@ -181,13 +182,17 @@ class CsvBodies {
     if (bodies_.particles().size() == 0) text_.fail(heading_line_, "the table has column names, but no bodies");
     ParticleSystem<double> particles = bodies_.take();
     if (!ids_.empty()) particles.restore_ids(ids_);
-    return {.particles = std::move(particles)};
+    BodyTable table{.particles = std::move(particles)};
+    if (epoch_) table.epoch = BodyEpoch{.julian_day = *epoch_, .scale = ""};
+    return table;
   }
 
  private:
   struct Column {
     std::size_t field = 0;
     std::optional<Unit> unit = {};
+    bool julian = false;   ///< Julian days
+    bool in_days = false;  ///< times from the start in days
   };
 
   /// A line before the rows: column names, a comment, or "sep=;" as spreadsheets write it.
@@ -201,9 +206,11 @@ class CsvBodies {
 
   void read_headings(std::size_t line, const std::vector<std::string>& fields) {
     heading_line_ = line;
-    field_count_ = fields.size();
+    // Spreadsheets write columns that are empty at the end.
+    const auto last = std::find_if(fields.rbegin(), fields.rend(), [](const std::string& one) { return !one.empty(); });
+    field_count_ = static_cast<std::size_t>(fields.rend() - last);
     std::vector<std::pair<const KnownColumn*, Heading>> headings;
-    for (std::size_t k = 0; k < fields.size(); ++k) {
+    for (std::size_t k = 0; k < field_count_; ++k) {
       const Heading heading = parse_heading(fields[k]);
       const KnownColumn& known = known_column(line, k, heading.name);
       const bool is_new = columns_.try_emplace(heading.name, Column{k}).second;
@@ -222,7 +229,11 @@ class CsvBodies {
         const bool plain = units_.is_reduced() && (its.unit == "1" || its.unit == "rad");
         if (same && its.unit && !plain) beside.insert(*its.unit);
       }
-      columns_.at(heading.name).unit = unit_of_column(line, heading, known->dimension, beside);
+      Column& column = columns_.at(heading.name);
+      column.julian = heading.name == "T" && heading.unit == "JD";
+      column.unit = column.julian ? unit_of_days(line) : unit_of_column(line, heading, known->dimension, beside);
+      column.in_days = heading.name == "T" && !column.julian && !units_.is_reduced() &&
+                       column.unit->times(1) == unit_value("day", units_);
     }
     check_columns(line);
   }
@@ -243,7 +254,28 @@ class CsvBodies {
                              name),
                  name);
     }
-    text_.fail(line, fmt::format("unknown column '{}'{}", name, did_you_mean(name, names)), name);
+    refuse_names_in_comment(line);
+    const OtherName other = other_name_of(name);
+    text_.fail(line,
+               fmt::format("unknown column '{}'{}", name,
+                           other.told.empty() ? did_you_mean(name, names) : std::string(other.told)),
+               name);
+  }
+
+  /// Refuses column names that stand behind '#', as some programs write them: the first row would pass for names.
+  void refuse_names_in_comment(std::size_t line) const {
+    for (std::size_t above = 1; above < line; ++above) {
+      std::string content = text_.lines()[above - 1];
+      if (!trimmed(content).starts_with('#')) continue;
+      std::replace_if(
+          content.begin(), content.end(), [](char c) { return c == '#' || c == ',' || c == ';'; }, ' ');
+      int known = 0;
+      for (const std::string& word : words_of(content)) {
+        for (const KnownColumn& column : known_columns()) known += column.name == word ? 1 : 0;
+      }
+      if (known < 3) continue;
+      text_.fail(above, "the names of the columns stand in a comment; take the '#' before them out");
+    }
   }
 
   /// The unit of a column: its own, or that of its group.
@@ -263,6 +295,18 @@ class CsvBodies {
                  heading.name);
     }
     return read_unit(line, heading.name, bare ? *beside.begin() : *heading.unit, expected, words);
+  }
+
+  /// The unit of a column of Julian days beside the epoch.
+  Unit unit_of_days(std::size_t line) const {
+    if (units_.is_reduced()) text_.fail(line, "column 'T' is in Julian days; the reduced system has none", "JD");
+    if (!epoch_) {
+      text_.fail(line,
+                 "column 'T' is in Julian days, and nobody says which the start is; give epoch = \"JD ...\" in "
+                 "[particles]",
+                 "JD");
+    }
+    return parse_unit("day", units_);
   }
 
   Unit read_unit(std::size_t line, const std::string& column, const std::string& text, const Dimension& expected,
@@ -314,8 +358,13 @@ class CsvBodies {
                                               : "x, y, z, vx, vy, vz, or the elements a, e, inc, Omega, omega, M"));
   }
 
+  /// A row; one of empty fields, as spreadsheets write below a table, is none.
   void read_row(std::size_t line, const std::vector<std::string>& fields) {
-    if (fields.size() != field_count_) {
+    const auto is_empty = [](const std::string& one) { return one.empty(); };
+    const std::size_t named = std::min(field_count_, fields.size());
+    const bool nothing_more = std::all_of(fields.begin() + static_cast<std::ptrdiff_t>(named), fields.end(), is_empty);
+    if (fields.size() > 1 && nothing_more && std::all_of(fields.begin(), fields.end(), is_empty)) return;
+    if (fields.size() < field_count_ || !nothing_more) {
       text_.fail(line, fmt::format("this row has {} fields; expected {}, as line {} names", fields.size(), field_count_,
                                    heading_line_));
     }
@@ -348,7 +397,18 @@ class CsvBodies {
   double number(std::size_t line, const std::vector<std::string>& fields, std::string_view name) const {
     const Column& column = columns_.at(std::string(name));
     const auto read = name == "mass" ? mass_number_in : number_in;
-    return column.unit->times(read(text_, line, fields[column.field], fmt::format("column '{}'", name)));
+    const std::string& word = fields[column.field];
+    const double value = read(text_, line, word, fmt::format("column '{}'", name));
+    if (column.julian) return column.unit->times(value - *epoch_);
+    if (column.in_days && looks_like_julian_day(value)) {
+      text_.fail(
+          line,
+          fmt::format("column '{}' is {}, counted from the start, which looks like a Julian day; name the column "
+                      "'T [JD]' and give the epoch in [particles], or a time in yr if it is meant so",
+                      name, word),
+          word);
+    }
+    return column.unit->times(value);
   }
 
   using State = std::pair<Vec3<double>, Vec3<double>>;
@@ -467,6 +527,7 @@ class CsvBodies {
   const UnitSystem& units_;
   double G_;
   ElementsAbout elements_about_;
+  std::optional<double> epoch_;
   BodyList bodies_;
   Separator separator_ = Separator::comma;
   std::size_t heading_line_ = 0, field_count_ = 0;
@@ -481,7 +542,6 @@ class CsvBodies {
 }  // namespace
 
 BodyTable read_csv_bodies(const TextFile& text, const BodiesOptions& options) {
-  if (options.epoch) text.fail(0, "an epoch is one of the records of Horizons tables, and this is CSV; take it out");
   return CsvBodies(text, options).read();
 }
 

@@ -3,6 +3,7 @@
 #include "engine/charge.hpp"
 #include "engine/given_orbit.hpp"
 #include "io/bodies.hpp"
+#include "numbers/quantity.hpp"
 #include "numbers/suggest.hpp"
 #include "numbers/text.hpp"
 #include "scene/particle_keys.hpp"
@@ -33,6 +34,62 @@ void check_mass(TableReader& reader, const std::string& name, double mass) {
 }
 
 Vec3<double> column(const std::array<double, 3>& v) { return Vec3<double>(v[0], v[1], v[2]); }
+
+/// A Julian day and, where it says one, its scale of time: "JD 2451545 TDB"; empty for what is none.
+std::optional<io::BodyEpoch> julian_day_of(const SceneValue& value) {
+  const std::string* text = value.get<std::string>();
+  if (text == nullptr || !text->starts_with("JD ")) return {};
+  io::BodyEpoch epoch;
+  const char *first = text->data() + 3, *last = text->data() + text->size();
+  const auto [end, problem] = std::from_chars(first, last, epoch.julian_day);
+  if (problem != std::errc() || !std::isfinite(epoch.julian_day) || (end != last && *end != ' ')) return {};
+  if (end != last) epoch.scale.assign(end + 1, last);
+  return epoch;
+}
+
+/// `epoch = "JD 2451545 TDB"`, or without the scale. @throws SceneError
+std::optional<io::BodyEpoch> read_epoch(TableReader& reader) {
+  const SceneValue* value = reader.find("epoch");
+  if (value == nullptr) return {};
+  if (const auto epoch = julian_day_of(*value)) return epoch;
+  reader.fail("epoch", fmt::format("epoch = {} is no Julian day; one is expected, such as \"JD 2451545\" or \"JD "
+                                   "2451545 TDB\"",
+                                   to_text(*value)));
+}
+
+std::string text_of(const io::BodyEpoch& epoch) {
+  return fmt::format("JD {}{}{}", format_number(epoch.julian_day), epoch.scale.empty() ? "" : " ", epoch.scale);
+}
+
+/// T of a body: a time from the start, or a Julian day beside the epoch of the start [time]. @throws SceneError
+std::optional<double> time_of_pericenter(TableReader& body, const std::optional<io::BodyEpoch>& epoch) {
+  const SceneValue* value = body.find("T");
+  const auto day = value != nullptr ? julian_day_of(*value) : std::nullopt;
+  if (!day) {
+    const auto T = body.quantity("T", "time");
+    const std::string* text = value != nullptr ? value->get<std::string>() : nullptr;
+    const bool in_days =
+        text != nullptr && (text->ends_with("day") || text->ends_with("days") || text->ends_with(" d"));
+    if (in_days && io::looks_like_julian_day(*T / unit_value("day", *body.context().units))) {
+      body.fail("T", fmt::format("T = {0} is counted from the start, and looks like a Julian day; give T = \"JD ...\" "
+                                 "and the epoch in [particles], or a time in yr if it is meant so",
+                                 to_text(*value)));
+    }
+    return T;
+  }
+  const UnitSystem& units = *body.context().units;
+  if (units.is_reduced())
+    body.fail("T", fmt::format("T = {} is a Julian day; the reduced system has none", to_text(*value)));
+  if (!epoch) {
+    body.fail("T", fmt::format("T = {} is a Julian day, and nobody says which the start is; give epoch = \"JD ...\" in "
+                               "[particles]",
+                               to_text(*value)));
+  }
+  if (!day->scale.empty() && !epoch->scale.empty() && day->scale != epoch->scale) {
+    body.fail("T", fmt::format("T = {} is not in the time scale of the epoch, {}", to_text(*value), epoch->scale));
+  }
+  return (day->julian_day - epoch->julian_day) * unit_value("day", units);
+}
 
 /// Types and charges of the bodies of `[[particles.body]]`.
 class TypedBodies {
@@ -110,8 +167,13 @@ class TypedBodies {
 /// The bodies of `[[particles.body]]`, behind those of a file where there is one.
 class BodyTables {
  public:
-  BodyTables(TableReader& reader, SceneValue& effective, ParticleSystem<double> s, io::ElementsAbout elements)
-      : reader_(reader), s_(std::move(s)), elements_(elements), typed_(reader, effective, s_.size()) {
+  BodyTables(TableReader& reader, SceneValue& effective, ParticleSystem<double> s, io::ElementsAbout elements,
+             std::optional<io::BodyEpoch> epoch)
+      : reader_(reader),
+        s_(std::move(s)),
+        elements_(elements),
+        epoch_(std::move(epoch)),
+        typed_(reader, effective, s_.size()) {
     for (const ColumnInfo& column : reader.context().columns) s_.add_column(column);
     for (Index i = 0; i < s_.size(); ++i) note(i);
   }
@@ -142,6 +204,7 @@ class BodyTables {
 
   void add_body(TableReader& body) {
     const std::vector<ColumnInfo>& columns = body.context().columns;
+    refuse_other_names(body, columns);
     body.expect_only({"name", "mass", "about", "x", "v", "a", "P", "q", "e", "inc", "Omega", "omega", "pomega", "M",
                       "f", "l", "T", "type", "charge"},
                      columns);
@@ -159,6 +222,18 @@ class BodyTables {
     note(s_.size() - 1);
     for (const ColumnInfo& declared : columns) {
       if (const auto row = body.row(declared)) s_.set_row(declared.name, s_.size() - 1, *row);
+    }
+  }
+
+  /// Refuses keys by which others call elements, with what they mean here: "om" is nearest to M, and means Omega.
+  static void refuse_other_names(const TableReader& body, const std::vector<ColumnInfo>& columns) {
+    for (const auto& entry : *body.table().get<SceneValue::Table>()) {
+      const std::string& key = entry.first;
+      const OtherName other = other_name_of(key);
+      const bool declared =
+          std::any_of(columns.begin(), columns.end(), [&](const auto& one) { return one.name == key; });
+      if (other.told.empty() || declared) continue;
+      body.fail(key, fmt::format("unknown key '{}' in {}{}", key, body.what(), other.told));
     }
   }
 
@@ -189,7 +264,9 @@ class BodyTables {
   /// elements, the barycenter of all before it.
   State by_elements(TableReader& body, double mass, const std::vector<Index>& about, std::string_view first_key) const {
     GivenOrbit orbit;
-    for (const OrbitKey& key : orbit_keys) orbit.*key.value = body.quantity(key.name, key.dimension);
+    for (const OrbitKey& key : orbit_keys) {
+      orbit.*key.value = key.name == "T" ? time_of_pericenter(body, epoch_) : body.quantity(key.name, key.dimension);
+    }
     if (s_.size() == 0) {
       body.fail(first_key,
                 "the first body has no other to move about; give its x and v, or nothing to put it at rest in the "
@@ -251,6 +328,7 @@ class BodyTables {
   TableReader& reader_;
   ParticleSystem<double> s_;
   io::ElementsAbout elements_;
+  std::optional<io::BodyEpoch> epoch_;
   TypedBodies typed_;
   std::unordered_map<std::string, Index> index_;
   OrbitCenter before_;  ///< of all bodies so far
@@ -268,35 +346,13 @@ io::ElementsAbout read_elements_about(TableReader& reader, SceneValue& effective
   return text == "jacobi" ? io::ElementsAbout::all_before_it : io::ElementsAbout::first_body;
 }
 
-/// `epoch = "JD 2451545 TDB"`, or without the scale. @throws SceneError
-std::optional<io::BodyEpoch> read_epoch(TableReader& reader) {
-  const SceneValue* value = reader.find("epoch");
-  if (value == nullptr) return {};
-  const auto wrong = [&] {
-    reader.fail("epoch", fmt::format("epoch = {} is no Julian day; one is expected, such as \"JD 2451545\" or \"JD "
-                                     "2451545 TDB\"",
-                                     to_text(*value)));
-  };
-  const std::string* text = value->get<std::string>();
-  if (text == nullptr || !text->starts_with("JD ")) wrong();
-  io::BodyEpoch epoch;
-  const char *first = text->data() + 3, *last = text->data() + text->size();
-  const auto [end, problem] = std::from_chars(first, last, epoch.julian_day);
-  if (problem != std::errc() || !std::isfinite(epoch.julian_day) || (end != last && *end != ' ')) wrong();
-  if (end != last) epoch.scale.assign(end + 1, last);
-  return epoch;
-}
-
-std::string text_of(const io::BodyEpoch& epoch) {
-  return fmt::format("JD {}{}{}", format_number(epoch.julian_day), epoch.scale.empty() ? "" : " ", epoch.scale);
-}
-
-/// The bodies of a table in a file.
+/// The bodies of a table in a file, and the moment for which they hold.
 ParticleSystem<double> from_file(TableReader& reader, const std::filesystem::path& folder, io::ElementsAbout elements,
-                                 bool alone, SceneValue& effective, std::vector<std::string>& warnings) {
+                                 bool alone, std::optional<io::BodyEpoch>& epoch, SceneValue& effective,
+                                 std::vector<std::string>& warnings) {
   io::BodiesOptions options{.units = reader.context().units, .elements = elements};
   if (reader.context().G) options.G = gravitation(reader);
-  const std::optional<io::BodyEpoch> wanted = read_epoch(reader);
+  const std::optional<io::BodyEpoch> wanted = epoch;
   if (wanted) options.epoch = wanted->julian_day;
   io::BodyTable table;
   ParticleSystem<double> s = particles_in_file(reader, "bodies", folder, "bodies.csv", "a table of bodies", effective,
@@ -309,7 +365,8 @@ ParticleSystem<double> from_file(TableReader& reader, const std::filesystem::pat
       reader.fail("epoch", fmt::format("epoch = \"{}\" is not in the time scale of the tables, {}", text_of(*wanted),
                                        table.epoch->scale));
     }
-    effective.put("epoch", SceneValue::of(text_of(*table.epoch), reader.line("epoch")));
+    epoch = table.epoch;
+    if (epoch->scale.empty() && wanted) epoch->scale = wanted->scale;
   }
   if (table.without_sun && alone) {
     warnings.push_back(
@@ -327,14 +384,16 @@ ParticleSystem<double> from_bodies(TableReader& reader, const std::filesystem::p
   if (file) {
     reader.expect_only({"bodies", "bodies_sha256", "epoch", "elements", "body", "frame", "box", "exclusions"});
   } else {
-    reader.expect_only({"body", "elements", "frame", "box", "type", "pair", "mixing", "exclusions"});
+    reader.expect_only({"body", "epoch", "elements", "frame", "box", "type", "pair", "mixing", "exclusions"});
   }
   const auto tables = tables_of(reader, "body");
   const io::ElementsAbout elements = read_elements_about(reader, effective);
   ParticleSystem<double> s(*reader.context().units);
-  if (file) s = from_file(reader, folder, elements, tables.empty(), effective, warnings);
+  std::optional<io::BodyEpoch> epoch = read_epoch(reader);
+  if (file) s = from_file(reader, folder, elements, tables.empty(), epoch, effective, warnings);
+  if (epoch) effective.put("epoch", SceneValue::of(text_of(*epoch), reader.line("epoch")));
   if (tables.empty()) return s;
-  BodyTables bodies(reader, effective, std::move(s), elements);
+  BodyTables bodies(reader, effective, std::move(s), elements, epoch);
   SceneValue::Array list;
   for (const SceneValue* table : tables) {
     const std::string name = bodies.add(*table, list.size());
@@ -428,9 +487,10 @@ ParticleSystem<double> read_particles(const SceneContext& context, const SceneVa
                                       std::vector<std::string>& warnings) {
   TableReader reader(context, table, "[particles]", "particles");
   if (!is_built(reader)) {
-    reader.expect_only({"bodies", "bodies_sha256", "epoch", "elements", "body", "structure", "structure_sha256", "type",
-                        "pair", "mixing", "box", "special", "exclusions", "file_units", "atom_style", "frame",
-                        "temperature", "seed", "coefficients", "coefficients_sha256"});
+    reader.expect_only({"bodies",    "bodies_sha256",    "epoch",      "elements",     "body",
+                        "structure", "structure_sha256", "type",       "pair",         "mixing",
+                        "box",       "special",          "exclusions", "file_units",   "atom_style",
+                        "frame",     "temperature",      "seed",       "coefficients", "coefficients_sha256"});
   }
   check_sources(reader);
   if (is_built(reader)) {

@@ -198,7 +198,7 @@ TEST_CASE("a wrong heading is refused with what is wrong and what to write", "[b
   CHECK(csv_refusal("name,mass [Msun],position [au]\n") ==
         "b.csv:1: unknown column 'position'; known are: name, id, mass, x, y, z, vx, vy, vz, about, a, P, q, e, inc, "
         "Omega, omega, pomega, M, f, l, T");
-  CHECK(csv_refusal("name,mass [Msun],\n") == "b.csv:1: column 3 has no name");
+  CHECK(csv_refusal("name,,mass [Msun]\n") == "b.csv:1: column 2 has no name");
   CHECK(csv_refusal("mass [Msun],x [au],x [au]\n") == "b.csv:1: column 'x' stands twice");
   CHECK(csv_refusal("mass [Msun],x,y\n") ==
         "b.csv:1: column 'x' has no unit; write 'x [au]' or another unit of length");

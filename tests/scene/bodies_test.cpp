@@ -97,8 +97,8 @@ TEST_CASE("the epoch of Horizons tables stands in the effective scene, and is a 
   CHECK(BodyScene("bodies = 'bodies.txt'\nepoch = 'JD 2451547'\n", jupiter_table).refusal() ==
         "bodies.txt:8: the table of Jupiter Barycenter has no record of JD 2451547; it has 2, from JD 2451545 to JD "
         "2451546.5");
-  CHECK(BodyScene("bodies = 'bodies.txt'\nepoch = 'JD 2451545'\n", two_planets).refusal() ==
-        "bodies.txt: an epoch is one of the records of Horizons tables, and this is CSV; take it out");
+  CHECK(epoch_of(BodyScene("bodies = 'bodies.txt'\nepoch = 'JD 2451545 TDB'\n", two_planets).scene().effective) ==
+        "JD 2451545 TDB");
   CHECK(epoch_of(BodyScene("bodies = 'bodies.txt'\n", two_planets).scene().effective).empty());
 }
 
