@@ -6,6 +6,7 @@
 #include "numbers/text.hpp"
 #include "scene/evaluate.hpp"
 #include "scene/json.hpp"
+#include "scene/warnings.hpp"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -55,22 +56,24 @@ void check_forces_file(const std::filesystem::path& file, const Scene& scene) {
   }
 }
 
-Json json_of(const Evaluation& e) {
+Json json_of(const Evaluation& e, const std::vector<std::string>& warnings) {
   Json::Members terms;
   for (const auto& [name, energy] : e.terms) terms.emplace_back(name, energy);
   std::vector<Json> rows;
   for (int r = 0; r < 3; ++r) rows.push_back(Json::list({e.virial(r, 0), e.virial(r, 1), e.virial(r, 2)}));
-  return Json::object({{"schema", "noether.evaluate/1"},
-                       {"outcome", name(e.outcome.kind)},
-                       {"message", e.outcome.message},
-                       {"energy", Json::object({{"total", e.kinetic + e.potential},
-                                                {"kinetic", e.kinetic},
-                                                {"potential", e.potential},
-                                                {"terms", Json::object(terms)}})},
-                       {"virial", Json::list(rows)},
-                       {"pressure", e.pressure},
-                       {"force_max", e.force_max},
-                       {"gradient_error", e.gradient_error}});
+  Json::Members members = {{"schema", "noether.evaluate/1"},
+                           {"outcome", name(e.outcome.kind)},
+                           {"message", e.outcome.message},
+                           {"energy", Json::object({{"total", e.kinetic + e.potential},
+                                                    {"kinetic", e.kinetic},
+                                                    {"potential", e.potential},
+                                                    {"terms", Json::object(terms)}})},
+                           {"virial", Json::list(rows)},
+                           {"pressure", e.pressure},
+                           {"force_max", e.force_max},
+                           {"gradient_error", e.gradient_error}};
+  if (!warnings.empty()) members.emplace_back("warnings", Json::list_of(warnings));
+  return Json::object(members);
 }
 
 void print_text(const Scene& scene, const Evaluation& e) {
@@ -104,10 +107,12 @@ int evaluate_scene(const EvaluateArguments& given, const Parts& parts) {
   const bool failed = !result.outcome.ok();
   if (failed) fmt::print(stderr, "{}\n", escaped(to_text(result.outcome)));
   if (!given.forces.empty() && !failed) write_forces(given.forces, scene, result);
+  const std::vector<std::string> warnings = warnings_of(scene);
   if (given.json) {
-    fmt::print("{}\n", json_of(result).text());
+    fmt::print("{}\n", json_of(result, warnings).text());
   } else {
     print_text(scene, result);
+    for (const std::string& warning : warnings) fmt::print("warning: {}\n", warning);
   }
   return exit_code(result.outcome);
 }

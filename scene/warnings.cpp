@@ -1,6 +1,7 @@
 #include "scene/warnings.hpp"
 
 #include "engine/charge.hpp"
+#include "numbers/quantity.hpp"
 
 #include <fmt/format.h>
 
@@ -170,6 +171,23 @@ std::string unmoved_tracers(const Scene& scene) {
       count == 1 ? "1 particle" : fmt::format("{} particles", count), s.name(first), count == 1 ? "is" : "are");
 }
 
+/// A constant of gravitation that is not the one of the units, given as a bare number; empty where it is. Names the
+/// units that it has, where they are known.
+std::string other_gravitation(const Scene& scene) {
+  const UnitSystem& units = *scene.units;
+  if (units.is_reduced() || !scene.hamiltonian.G || !scene.hamiltonian.is_keplerian()) return "";
+  const double G = *scene.hamiltonian.G;
+  if (std::abs(G / units.G - 1) < 0.01) return "";
+  std::string meant;
+  for (const char* unit : {"m^3/kg/s^2", "km^3/kg/s^2", "cm^3/g/s^2", "au^3/Msun/yr^2", "au^3/Msun/day^2",
+                           "pc km^2/s^2/Msun", "kpc km^2/s^2/Msun", "pc^3/Msun/Myr^2"}) {
+    const double same = unit_value(unit, units) * G / units.G;
+    if (std::abs(same - 1) < 0.01) meant = fmt::format(", and is that of {0}: give it as \"{1:.12g} {0}\"", unit, G);
+  }
+  return fmt::format("G = {:.6g} is {:.3g} times the constant of gravitation in these units, {:.6g} {}{}", G,
+                     G / units.G, units.G, unit_of(parse_dimension("length^3/mass/time^2"), units), meant);
+}
+
 }  // namespace
 
 std::vector<std::string> warnings_of(const Scene& scene) {
@@ -199,6 +217,7 @@ std::vector<std::string> warnings_of(const Scene& scene) {
   add(other_cutoff(scene));
   add(too_stiff(scene));
   add(other_primary(scene));
+  add(other_gravitation(scene));
   add(unmoved_tracers(scene));
   return warnings;
 }

@@ -9,7 +9,8 @@
 namespace noether {
 
 /// One line for each kind of thing that is in the scene and does nothing, that contradicts another, or that no step of
-/// this length can follow: bonds of a structure that shake their particles apart.
+/// this length can follow: bonds of a structure that shake their particles apart; and for a constant of gravitation
+/// that is not the one of the units.
 /// @cost O(bonds)
 std::vector<std::string> warnings_of(const Scene& scene);
 
