@@ -1,5 +1,6 @@
 // Bodies as spreadsheets, catalogs of small bodies, Horizons and users of REBOUND write them.
 
+#include "scene/warnings.hpp"
 #include "tests/sweep/support.hpp"
 
 #include <fmt/format.h>
@@ -12,8 +13,7 @@
 namespace noether::test {
 namespace {
 
-// ---- tables
-// ----------------------------------------------------------------------------------------------------------
+// ---- tables ----
 
 const std::string sun_and_earth =
     "name,mass [Msun],x [au],y,z,vx [au/day],vy,vz\nSun,1,0,0,0,0,0,0\nEarth,3e-6,1,0,0,0,0.017202098,0\n";
@@ -85,8 +85,7 @@ TEST_CASE("what a table of bodies has wrong is told with what is meant", "[sweep
   }
 }
 
-// ---- orbits
-// ----------------------------------------------------------------------------------------------------------
+// ---- orbits ----
 
 /// A body of 1e-6 Msun about one of 1 Msun, G = k^2: its state by REBOUND 5.2.2, sim.add(m=1e-6, ...) [au, au/day].
 struct OrbitRow {
@@ -167,8 +166,31 @@ TEST_CASE("a Julian day in the place of a time is told", "[sweep][bodies][messag
         "scene.toml:12: T = \"JD 2446470.5 UT\" is not in the time scale of the epoch, TDB");
 }
 
-// ---- Horizons
-// --------------------------------------------------------------------------------------------------------
+TEST_CASE("a constant of gravitation of other units is warned of", "[sweep][bodies][warnings]") {
+  const auto warned = [](const std::string& G, const std::string& units = "solar") {
+    const std::string scene = gravity_scene(sun_and_body + "mass = '1e-6 Msun'\na = '1 au'\n", units);
+    const std::string type = "type = 'kinetic_potential'\n";
+    return warnings_of(read_scene(replaced(scene, type, type + "G = " + G + "\n"), "scene.toml"));
+  };
+  // One constant in the units that people have it in, by CODATA 2018 and the IAU's parsec: 4.30091727e-3 pc km^2/s^2
+  // per Msun, 4 pi^2 au^3/yr^2 per Msun.
+  const std::string here = " times the constant of gravitation in these units, 0.000295912 au^3/Msun/day^2",
+                    that = here + ", and is that of ";
+  CHECK(warned("6.6743e-11") == std::vector<std::string>{"G = 6.6743e-11 is 2.26e-07" + that +
+                                                         "m^3/kg/s^2: give it as \"6.6743e-11 m^3/kg/s^2\""});
+  CHECK(warned("39.47841760435743") ==
+        std::vector<std::string>{"G = 39.4784 is 1.33e+05" + that +
+                                 "au^3/Msun/yr^2: give it as \"39.4784176044 au^3/Msun/yr^2\""});
+  CHECK(warned("4.30091727e-3") ==
+        std::vector<std::string>{"G = 0.00430092 is 14.5" + that +
+                                 "pc km^2/s^2/Msun: give it as \"0.00430091727 pc km^2/s^2/Msun\""});
+  CHECK(warned("1.0") == std::vector<std::string>{"G = 1 is 3.38e+03" + here});
+  CHECK(warned("2.95912208286e-4").empty());
+  CHECK(warned("'6.6743e-11 m^3/kg/s^2'").empty());
+  CHECK(warned("6.6743e-11", "si").empty());
+}
+
+// ---- Horizons ----
 
 struct TableOfHorizons {
   std::string target, center, x = "1.0E+00", vy = "1.7202098E-02", units = "AU-D";
