@@ -244,7 +244,10 @@ class CsvBodies {
       if (known.name == name) return known;
       names.emplace_back(known.name);
     }
-    if (name.empty()) text_.fail(line, fmt::format("column {} has no name", field + 1));
+    if (name.empty()) {
+      text_.fail(line, fmt::format("column {} has no name{}", field + 1,
+                                   field == 0 ? "; take a column of row numbers out, by index=False in pandas" : ""));
+    }
     double number = 0;
     const auto [end, problem] = std::from_chars(name.data(), name.data() + name.size(), number);
     if (problem == std::errc() && end == name.data() + name.size()) {

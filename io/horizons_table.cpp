@@ -65,6 +65,9 @@ class HeadReader {
 
   void read(std::size_t line) {
     const std::string& content = text_.lines()[line - 1];
+    if (trimmed(content).starts_with("Date__(")) {
+      text_.fail(line, "this is a table of observations; ask Horizons for vectors (EPHEM_TYPE = VECTORS)");
+    }
     if (const auto target = value_after(content, "Target body name")) {
       table_.target_line = line;
       table_.target = object_of(*target);

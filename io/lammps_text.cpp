@@ -193,6 +193,12 @@ void LammpsText::read_header_line(std::size_t line, const std::vector<std::strin
       const double tilt = number_in(text_, line, words[k], "a tilt factor");
       if (tilt != 0) tilts_[static_cast<int>(k)] = tilt, tilt_line_ = line;
     }
+  } else if (key == "avec" || key == "bvec" || key == "cvec" || key == "abc origin") {
+    text_.fail(
+        line,
+        fmt::format("'{}' is of a general triclinic box; boxes are orthogonal, given by xlo xhi, ylo yhi, zlo zhi",
+                    fmt::join(words, " ")),
+        key);
   } else if (!(numbers == 1 && (stands_in(passed_over, key) || words[0] == "0"))) {
     std::vector<std::string> known(counted.begin(), counted.end());
     known.insert(known.end(), {"xlo xhi", "ylo yhi", "zlo zhi"});

@@ -207,6 +207,11 @@ ParticleSystem<double> read_structure(const std::filesystem::path& file, const S
   Structure structure = format == StructureFormat::lammps_data ? read_lammps_data(text, script, units, told)
                         : format == StructureFormat::gro       ? read_gro(text, units, told)
                                                                : read_extended_xyz(text, units, told);
+  if (structure.pair_style_assumed) {
+    note(options,
+         "nobody says the style of the structure's pair coefficients: they are taken as epsilon and sigma of lj/cut; "
+         "write it behind the section, 'Pair Coeffs # lj/cut', if they are");
+  }
   const auto ends = script.end_factors();
   if (ends && !structure.end_pairs.empty()) {
     text.fail(0,

@@ -51,6 +51,7 @@ struct Structure {
   };
   std::optional<StatedTemperature> temperature;
   bool velocity_units_assumed = false;  ///< because nobody says them
+  bool pair_style_assumed = false;      ///< of LAMMPS, because nobody says it
   std::optional<Mixing> mixing;         ///< as the program does it that wrote the file
   /// Particles three bonds apart that have a pair force of their own, and what is left of its two parts.
   struct EndPair {

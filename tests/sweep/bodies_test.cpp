@@ -51,6 +51,8 @@ TEST_CASE("what a table of bodies has wrong is told with what is meant", "[sweep
   };
   CHECK(refusal("# " + sun_and_earth) ==
         "b.csv:1: the names of the columns stand in a comment; take the '#' before them out");
+  CHECK(refusal(",name,mass [Msun],x [au],y,z,vx [au/day],vy,vz\n0,Sun,1,0,0,0,0,0,0\n") ==
+        "b.csv:1: column 1 has no name; take a column of row numbers out, by index=False in pandas");
   CHECK(refusal(replaced(sun_and_earth, "mass [Msun]", "m [Msun]")) ==
         "b.csv:1: unknown column 'm'; did you mean 'mass'?");
   CHECK(refusal(replaced(sun_and_earth, "0.017",
@@ -246,6 +248,11 @@ TEST_CASE("moons, minor planets and planets of Horizons have JPL's masses", "[sw
     REQUIRE(it.particles.size() == 2);
     CHECK(near(it.particles.masses()[0], mass, 1e-12));
   }
+  CHECK(seen(gravity_scene("bodies = 'h.txt'\n"), "h.txt",
+             "Target body name: Mars (499)\n Date__(UT)__HR:MN     R.A._____(ICRF)_____DEC\n$$SOE\n 2000-Jan-01 00:00  "
+             " 22 "
+             "00 00.0 -13 00 00.0\n$$EOE\n")
+            .refusal == "h.txt:2: this is a table of observations; ask Horizons for vectors (EPHEM_TYPE = VECTORS)");
   const std::string barycenter = TableOfHorizons{"Jupiter Barycenter (5)", "Sun (10)", "5.2E+00"}.text(),
                     moon = TableOfHorizons{"Io (501)", "Sun (10)", "5.2028E+00"}.text();
   CHECK(

@@ -169,6 +169,18 @@ TEST_CASE("what passes for something else in a structure is told", "[sweep][stru
         "a.xyz:3: particles of type '18' have no mass; give it in [[particles.type]]: name = \"18\", mass = \"39.948 "
         "u\" if "
         "it is Ar");
+  const auto lammps = [](const std::string& content) {
+    return seen(structure_scene("a.data", "file_units = 'metal'\n", ""), "a.data", content);
+  };
+  CHECK(
+      lammps(replaced(metal_pairs, " # lj/cut", "")).warnings ==
+      std::vector<std::string>{
+          "nobody says the style of the structure's pair coefficients: they are taken as epsilon and sigma of lj/cut; "
+          "write it behind the section, 'Pair Coeffs # lj/cut', if they are"});
+  CHECK(lammps(metal_pairs).warnings.empty());
+  CHECK(lammps(replaced(metal_pairs, "0 30 xlo xhi\n", "30 0 0 avec\n")).refusal ==
+        "a.data:6: '30 0 0 avec' is of a general triclinic box; boxes are orthogonal, given by xlo xhi, ylo yhi, zlo "
+        "zhi");
   // Directions whose quotes are lost are no keys of their own.
   CHECK(xyz("1\nLattice=\"20 0 0 0 20 0 0 0 20\" pbc=T F T\nAr 0 0 0\n").refusal ==
         "a.xyz:2: 'F' is not understood: a comment with '=' is read as key=value; put quotes about values with blanks, "
