@@ -426,9 +426,21 @@ Number read_number(std::string_view text, const Expected& expected, const UnitSy
   return number;
 }
 
+/// Refuses an exponent of Fortran, 1.5D+30 kg: without a blank it may be days as well, 1d-3.
+void refuse_exponent_of_fortran(std::string_view whole, const Number& number) {
+  const std::string_view behind = whole.substr(number.length);
+  if (!behind.starts_with('D') && !behind.starts_with('d')) return;
+  const std::size_t digit = behind.size() > 1 && (behind[1] == '-' || behind[1] == '+') ? 2 : 1;
+  if (behind.size() <= digit || !is_digit(behind[digit])) return;
+  fail(fmt::format("'{}' has an exponent as Fortran writes it; write '{}e{}'", whole, whole.substr(0, number.length),
+                   behind.substr(1)),
+       whole);
+}
+
 double read_quantity(std::string_view text, const Expected& wanted, const UnitSystem& system) {
   const std::string_view whole = trimmed(text);
   const Number number = read_number(whole, wanted, system);
+  refuse_exponent_of_fortran(whole, number);
   const std::string_view digits = whole.substr(0, number.length);
   if (number.length == whole.size()) {
     if (system.is_reduced() || (wanted.dimension == dimensions::none && !wanted.angle)) return number.value;

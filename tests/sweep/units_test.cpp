@@ -70,6 +70,17 @@ TEST_CASE("headings with the units of astropy, VizieR and the IAU are read", "[s
   }
 }
 
+TEST_CASE("exponents of Fortran in quantities are told, and are no days", "[sweep][units][messages]") {
+  const auto refusal = [](const std::string& mass) {
+    return seen(gravity_scene("[[particles.body]]\nname = 'Sun'\nmass = '" + mass + "'\n"), "", "").refusal;
+  };
+  CHECK(refusal("1.989D30 kg") ==
+        "scene.toml:5: mass: '1.989D30 kg' has an exponent as Fortran writes it; write '1.989e30 kg'");
+  CHECK(refusal("1.989d+30 kg") ==
+        "scene.toml:5: mass: '1.989d+30 kg' has an exponent as Fortran writes it; write '1.989e+30 kg'");
+  CHECK(refusal("3 d") == "scene.toml:5: mass: '3 d' is a time; a mass is expected, such as '3 Msun'");
+}
+
 TEST_CASE("angles in degrees, minutes and seconds of arc", "[sweep][units]") {
   // z/r of a body 90 degrees past its node is the sine of the inclination, worked out by Python.
   for (const auto& [angle, sine] : std::vector<std::pair<std::string, double>>{{"5\xC2\xB0", 0.08715574274765817},
