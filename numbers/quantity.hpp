@@ -37,7 +37,7 @@ struct Unit {
 
 /// Reads a unit such as "au/day", "1/day", "kg m/s^2".
 ///
-/// The reduced system knows "1", "deg" and "rad" only.
+/// Powers are written "s^-1", "s**-1" or "s-1". The reduced system knows "1" and angles only.
 /// @throws Error for an unknown unit (with a proposal) or what is not a unit
 Unit parse_unit(std::string_view text, const UnitSystem& system);
 
