@@ -21,7 +21,8 @@ namespace noether::io {
 namespace {
 
 StructureFormat format_of(const std::filesystem::path& file) {
-  const std::string extension = file.extension().string();
+  std::string extension = file.extension().string();
+  for (char& letter : extension) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
   for (const char* known : {".data", ".lmp", ".lammps", ".lmpdat"}) {
     if (extension == known) return StructureFormat::lammps_data;
   }

@@ -48,6 +48,7 @@ const std::vector<Row> argon_rows = {
     {"nine numbers of a box, zeros of both signs", "a.gro",
      gro_atoms + "   2.00000   2.00000   2.00000   0.00000   0.00000  -0.00000   0.00000   0.00000   0.00000\n",
      argon_mass, 0, pair_of_argon},
+    {"a name in capitals, as DOS gave it", "A.XYZ", "2\n\nAr 0 0 0\nAr 0 0 4.0\n", "", 0, pair_of_argon},
     // m v^2 of both, v = 0.1 nm/ps.
     {"velocities of GROMACS", "a.gro",
      "two\n    2\n    1AR      AR    1   0.000   0.000   0.000  0.1000  0.0000  0.0000\n"
@@ -151,7 +152,7 @@ TEST_CASE("what passes for something else in a structure is told", "[sweep][stru
   CHECK(xyz("2\nenergy: 1.0\nAr 0 0 0 0.25\nAr 0 0 4.0 -0.25\n").warnings ==
         std::vector<std::string>{"the columns behind x, y, z of the structure are not read; there are 1"});
   CHECK(
-      xyz(argon_rows[11].content).warnings ==
+      xyz(argon_rows[12].content).warnings ==
       std::vector<std::string>{"the masses of the structure are 103.64 times the atomic weights: they are taken as eV "
                                "fs^2/angstrom^2, as QUIP writes them"});
   // As GAMESS and Molden order their columns.
