@@ -113,11 +113,12 @@ void check_masses(const ParticleSystem<double>& s, const Structure& structure, c
     if (!std::isnan(s.masses()[i])) continue;
     const auto kind = static_cast<std::size_t>(topology.type(i));
     const std::string& type = topology.type_names[kind];
-    const std::string meant = element_meant_by(type);
+    const bool has_lines = kind < structure.type_lines.size();  // of LAMMPS data numbers are those of types
+    const std::string meant = has_lines ? element_meant_by(type) : "";
     const double weight = standard_atomic_weight(meant);
     const bool known = !std::isnan(weight);
     text.fail(
-        kind < structure.type_lines.size() ? structure.type_lines[kind] : 0,
+        has_lines ? structure.type_lines[kind] : 0,
         fmt::format("particles of type '{}' have no mass; give it in [[particles.type]]: name = \"{}\", mass = {}",
                     type, type, known ? fmt::format("\"{} u\" if it is {}", weight, meant) : "..."),
         type);

@@ -91,10 +91,12 @@ TEST_CASE("Horizons tables that do not fit are refused with the line", "[bodies]
         "h.txt:25: the table of Saturn Barycenter has no VX; ask Horizons for positions and velocities (vector table "
         "type "
         "2 or 3)");
-  CHECK(horizons_refusal(test::replaced(table("asteroid.txt"), "mass [kg] = 9.3839e20\n", "")) ==
-        "h.txt:4: the mass of 1 Ceres (A801 AA) is not built in, and Horizons gives none; put a line 'mass [kg] = ...' "
-        "(0 "
-        "for a tracer) before '$$SOE'");
+  const std::string without_mass = test::replaced(table("asteroid.txt"), "mass [kg] = 9.3839e20\n", "");
+  CHECK(horizons_refusal(without_mass).empty());
+  CHECK(
+      horizons_refusal(test::replaced(without_mass, "1 Ceres (A801 AA)", "5 Astraea (A845 XA)")) ==
+      "h.txt:4: the mass of 5 Astraea (A845 XA) is not built in, and Horizons gives none; put a line 'mass [kg] = ...' "
+      "(0 for a tracer) before '$$SOE'");
   CHECK(horizons_refusal(test::replaced(table("asteroid.txt"), "9.3839e20", "-1")) ==
         "h.txt:20: the mass is -1; expected 0 or more");
   CHECK(horizons_refusal(test::replaced(table("asteroid.txt"), "[kg]", "[km]")) ==

@@ -120,7 +120,8 @@ const std::vector<Row> molecule_rows = {
 void check_rows(const std::vector<Row>& rows, const std::string& parameters, const std::string& forces, double error) {
   for (const Row& row : rows) {
     CAPTURE(row.what);
-    const Seen it = seen(structure_scene(row.file, row.keys, parameters, forces), row.file, row.content);
+    const std::string own = has(row.content, "Bonds") ? forces : "";
+    const Seen it = seen(structure_scene(row.file, row.keys, parameters, own), row.file, row.content);
     CHECK(it.refusal == "");
     CHECK(near(it.energy.potential, row.potential, error));
     CHECK(near(it.energy.kinetic, row.kinetic, error));
@@ -132,7 +133,7 @@ TEST_CASE("pairs of atoms as other programs write them have their energy", "[swe
 }
 
 TEST_CASE("molecules as LAMMPS, moltemplate and TopoTools write them have LAMMPS's energy", "[sweep][structure]") {
-  check_rows(molecule_rows, "", "[[hamiltonian.force]]\ntype = 'bonded'\n", 1e-11);
+  check_rows(molecule_rows, "", "[[hamiltonian.force]]\ntype = 'bonded'\n", 1e-10);
 }
 
 TEST_CASE("charges of XYZ are read by each of their names", "[sweep][structure]") {
