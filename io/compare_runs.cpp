@@ -115,10 +115,9 @@ void add_moment(RowComparison& all, const std::vector<Pair>& pairs, const Moment
   all.difference = std::move(found);
 }
 
-/// The one of step and time that two rows were not matched by.
-Pair other_of(MatchBy by, const Moments& a, std::size_t i, const Moments& b, std::size_t j) {
-  if (by == MatchBy::step) return {"time", {a.time[i]}, {b.time[j]}};
-  return {"step", {static_cast<double>(a.step[i])}, {static_cast<double>(b.step[j])}};
+/// Steps of two rows that were matched by time. Those matched by steps may have any times.
+void add_steps(MatchBy by, std::int64_t a, std::int64_t b, std::vector<Pair>& pairs) {
+  if (by == MatchBy::time) pairs.push_back({"step", {static_cast<double>(a)}, {static_cast<double>(b)}});
 }
 
 /// What each number of a frame's dataset is called. @param width  numbers of each particle
@@ -159,7 +158,7 @@ RowComparison compare_frames(const TrajectoryReader& a, const TrajectoryReader& 
   for (const auto& [i, j] : matched(mine, theirs, by)) {
     const Frame one = a.frame(static_cast<Index>(i)), other = b.frame(static_cast<Index>(j));
     std::vector<Pair> pairs = pairs_of(a.shared(), one, other);
-    pairs.push_back(other_of(by, mine, i, theirs, j));
+    add_steps(by, mine.step[i], theirs.step[j], pairs);
     add_moment(all, pairs, mine, i, theirs, j);
   }
   all.only_first = a.frames() - all.compared;
@@ -186,7 +185,7 @@ RowComparison compare_samples(const MonitorSeries& a, const MonitorSeries& b, Ma
       pairs.push_back({name, row_of(values, a.step.size(), i), row_of(other->second, b.step.size(), j),
                        [several](std::size_t k) { return several ? fmt::format("number {}", k) : std::string(); }});
     }
-    pairs.push_back(other_of(by, mine, i, theirs, j));
+    add_steps(by, mine.step[i], theirs.step[j], pairs);
     add_moment(all, pairs, mine, i, theirs, j);
   }
   all.only_first = std::ssize(a.step) - all.compared;

@@ -52,7 +52,7 @@ TEST_CASE("a run is resumed in the middle of its lists", "[cli][times][resume]")
   make_unfinished(folder / "late");
   CHECK(noether(folder, late + "--resume").exit_code == 0);
   check_same_content(folder / "late/run.h5", whole / "late/run.h5");
-  CHECK(times_of(folder / "late/run.h5") == std::vector<double>{0.9, 0.95});
+  CHECK(times_of(folder / "late/run.h5") == std::vector<double>{90 * 0.01, 95 * 0.01});
   make_unfinished(folder / "late");
   const ProcessResult other =
       noether(folder, "run scene.toml --set 'every.trajectory.times=[0.9]' --out late --resume");
@@ -80,13 +80,13 @@ TEST_CASE("a run from another time is the same run with another clock", "[cli][t
   const SceneFolder folder;
   const std::string moved = "run scene.toml --set integrator.start_time=1024 --out moved --json ";
   const std::string report = output(folder, moved);
-  CHECK(json_member(report, "time") == "1025.0");
-  CHECK(json_member(report, "start_time") == "1024.0");
+  CHECK(json_member(report, "time") == "1025");
+  CHECK(json_member(report, "start_time") == "1024");
   CHECK(json_member(report, "step") == "100");
   CHECK(json_member(output(folder, "run scene.toml --json --out bare"), "start_time").empty());
   const ProcessResult by_step = noether(folder, "verify moved/run.h5 --against bare/run.h5 --by step --json");
-  CHECK(by_step.exit_code == 3);
-  CHECK(json_member(by_step.out, "dataset") == "\"time\"");  // positions and velocities agree
+  CHECK(by_step.exit_code == 0);
+  CHECK(json_member(by_step.out, "ok") == "true");
   CHECK(json_member(by_step.out, "compared") == "6");
   const ProcessResult by_time = noether(folder, "verify moved/run.h5 --against bare/run.h5");
   CHECK(by_time.exit_code == 3);
@@ -129,7 +129,7 @@ TEST_CASE("verify names the first frame, sample and number in which two runs dif
   CHECK(checkpoint.err.starts_with("b/checkpoint.h5 is a checkpoint, which holds one moment; two run.h5 are compared"));
   CHECK(noether(folder, "verify a/run.h5 --against nothing.h5").exit_code == 3);
   CHECK(noether(folder, "verify a/run.h5 --by step").exit_code == 2);
-  damage(folder / "b/run.h5");
+  write_text(folder / "b/run.h5", read_text(folder / "b/run.h5").substr(0, 5000));
   CHECK(noether(folder, "verify a/run.h5 --against b/run.h5").exit_code == 3);
 }
 
