@@ -100,7 +100,9 @@ void add_compare_command(CLI::App& app, const Parts& parts, int& exit_code) {
   command->add_option("--steps", given->steps, "steps of methods with fixed steps, such as \"50 day,100 day\"")
       ->type_name("H,...");
   command->add_option("--tolerances", given->tolerances, "relative tolerances of adaptive methods")->type_name("E,...");
-  command->add_option("--until", given->until, "how long each run is; default: the scene's end, or 10000 of its steps")
+  command
+      ->add_option("--until", given->until,
+                   "when each run ends, by the clock; default: the scene's end, or 10000 of its steps")
       ->type_name("T");
   command->add_option("--repeat", given->repeat, "timed runs of each row; their median counts")
       ->check(wrong_count)

@@ -71,9 +71,7 @@ std::string length_text(double length, const UnitSystem& units) {
 
 /// Length of the whole run [time]; infinite where the scene gives none, or steps of the method's own choice.
 double length_of(const SceneIntegrator& made) {
-  if (made.until) return *made.until;
-  if (made.steps && !made.adaptive()) return static_cast<double>(*made.steps) * made.step;
-  return std::numeric_limits<double>::infinity();
+  return made.length().value_or(std::numeric_limits<double>::infinity());
 }
 
 /// What the Jacobian says: of systems along their run, and of few particles under a method for y' = f at its start.
@@ -85,13 +83,14 @@ void measure_stiffness(const Scene& scene, Explanation& e) {
     Vector<double> y;
     field->bind(scene.particles);
     field->gather(scene.particles, y);
-    std::vector<std::complex<double>> eigenvalues = eigenvalues_of(*field, 0, y);
+    std::vector<std::complex<double>> eigenvalues = eigenvalues_of(*field, scene.integrator.start, y);
     if (scene.integrator.direction() == Direction::backward) {
       for (auto& one : eigenvalues) one = -one;  // back in time what decays grows
     }
     const double length = length_of(scene.integrator);
     e.stiffness = stiffness_of(eigenvalues, std::abs(length));
-    if (scene.system && std::isfinite(length) && length != 0) e.along = stiffness_along(*field, y, length);
+    if (scene.system && std::isfinite(length) && length != 0)
+      e.along = stiffness_along(*field, y, length, scene.integrator.start);
   } catch (const Error& error) {
     e.why_no_stiffness = error.message();
   }
@@ -118,10 +117,13 @@ void sort_parts(const Scene& scene, Explanation& e) {
     const std::string name = monitor                                      ? "monitor " + watch.monitor.name
                              : watch.kind == SceneWatch::Kind::trajectory ? "writer trajectory"
                                                                           : "writer checkpoint";
-    const std::string when = watch.cadence.wall > 0        ? fmt::format("every {} s of wall time", watch.cadence.wall)
+    const std::size_t listed = watch.cadence.times.size();
+    const std::string when = listed > 0 ? fmt::format("at {} {} of a list", listed, listed == 1 ? "time" : "times")
+                             : watch.cadence.wall > 0      ? fmt::format("every {} s of wall time", watch.cadence.wall)
                              : watch.cadence.interval != 0 ? fmt::format("every {} of time", watch.cadence.interval)
                                                            : fmt::format("every {} steps", watch.cadence.steps);
-    const std::string cost = watch.monitor.cost ? watch.monitor.cost(scene.particles.size(), watch.cadence.steps) : "";
+    const std::string cost =
+        watch.monitor.cost && listed == 0 ? watch.monitor.cost(scene.particles.size(), watch.cadence.steps) : "";
     e.in.push_back(name + ", " + when + (cost.empty() ? "" : ": " + cost));
   }
   for (const SceneStop& stop : scene.stops) {
@@ -197,7 +199,7 @@ Explanation explained(const Scene& scene) {
   e.hamiltonian = integrator.claims().hamiltonian;
   sort_parts(scene, e);
   ParticleSystem<double> s = scene.particles;
-  s.clock() = Clock<double>::fixed(0, scene.integrator.step);
+  s.clock() = Clock<double>::fixed(scene.integrator.start, scene.integrator.step);
   integrator.bind(s);
   e.particles = s.size();
   e.variables = static_cast<Index>(s.variables().size());
@@ -269,9 +271,10 @@ void print_stiffness(const Scene& scene, const Explanation& e) {
     const StiffnessAlong& along = *e.along;
     fmt::print("stiffness: {}\n", along.mean.verdict());
     const double length = length_of(scene.integrator);
-    const bool whole = std::abs(along.reached / length - 1) < 1e-9;
+    const double begin = scene.integrator.start;
+    const bool whole = std::abs((along.reached - begin) / length - 1) < 1e-9;
     fmt::print("  seen at {} {} of a rough run to t = {:.3g}{}\n", along.places, along.places == 1 ? "place" : "places",
-               along.reached, whole ? "" : fmt::format(" of {:.3g}; what comes later is not known", length));
+               along.reached, whole ? "" : fmt::format(" of {:.3g}; what comes later is not known", begin + length));
     fmt::print("  fastest rate {:.3g}, at t = {:.3g}; at the start {:.3g}\n", along.fastest, along.at, start.fastest);
   }
   if (start.spread() > 1) {
@@ -312,7 +315,9 @@ void print_text(const Scene& scene, const Explanation& e) {
   }
   if (!e.small_box.empty()) fmt::print("{}\n", e.small_box);
   if (const std::string epoch = epoch_of(scene.effective); !epoch.empty()) {
-    fmt::print("bodies: as of {}\n", epoch);
+    const double start = scene.integrator.start;
+    const std::string unit = scene.units->is_reduced() ? "" : " " + std::string(scene.units->time);
+    fmt::print("bodies: as of {}{}\n", epoch, start == 0 ? "" : fmt::format(", at time {:.9g}{}", start, unit));
   }
   for (const std::string& warning : warnings_of(scene)) fmt::print("warning: {}\n", warning);
   if (e.stiffness) print_stiffness(scene, e);

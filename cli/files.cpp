@@ -1,5 +1,6 @@
 #include "cli/commands.hpp"
 
+#include "io/compare_runs.hpp"
 #include "io/inspect.hpp"
 #include "io/repair.hpp"
 #include "numbers/error.hpp"
@@ -97,8 +98,85 @@ int report_verified(const std::string& file, const io::Repair& found, bool json)
   return ok ? 0 : 3;
 }
 
+Json json_of(const io::RowComparison& rows) {
+  Json first;
+  if (rows.difference) {
+    const io::RowDifference& d = *rows.difference;
+    first = Json::object({{"step", d.step},
+                          {"other_step", d.other_step},
+                          {"time", d.time},
+                          {"other_time", d.other_time},
+                          {"dataset", d.dataset},
+                          {"differing", std::int64_t{d.differing}},
+                          {"numbers", std::int64_t{d.numbers}},
+                          {"where", text_or_null(d.where)},
+                          {"value", d.value},
+                          {"other_value", d.other_value},
+                          {"largest", d.largest}});
+  }
+  return Json::object({{"name", rows.name},
+                       {"compared", std::int64_t{rows.compared}},
+                       {"equal", std::int64_t{rows.equal}},
+                       {"only_here", std::int64_t{rows.only_first}},
+                       {"only_there", std::int64_t{rows.only_second}},
+                       {"first", first}});
+}
+
+std::string text_of(const io::RowDifference& d, const std::string& unit) {
+  std::string when = fmt::format("step {}, time {:.17g}{}", d.step, d.time, unit);
+  if (d.other_step != d.step) when += fmt::format(" (step {} there)", d.other_step);
+  if (d.other_time != d.time) when += fmt::format(" (time {:.17g}{} there)", d.other_time, unit);
+  return fmt::format("at {}: {}, {} of {} numbers, the first{}{}: {:.17g} and {:.17g}; largest difference {:.2g}", when,
+                     d.dataset, d.differing, d.numbers, d.where.empty() ? "" : " ", d.where, d.value, d.other_value,
+                     d.largest);
+}
+
+/// Two runs beside each other, after both have been found sound.
+int report_compared(const std::string& file, const std::string& other, const io::RunComparison& found,
+                    const io::FileInfo& info, bool json) {
+  const bool same = found.same();
+  if (json) {
+    std::vector<Json> rows;
+    for (const io::RowComparison& one : found.rows) rows.push_back(json_of(one));
+    fmt::print("{}\n", Json::object({{"schema", "noether.verify/1"},
+                                     {"ok", same},
+                                     {"complete", info.complete},
+                                     {"damaged", Json::list({})},
+                                     {"repaired", Json::list({})},
+                                     {"last_step", info.last_step},
+                                     {"digest", text_or_null(info.digest)},
+                                     {"against", other},
+                                     {"constants", Json::list_of(found.constants)},
+                                     {"notes", Json::list_of(found.notes)},
+                                     {"rows", Json::list(rows)}})
+                           .text());
+    return same ? 0 : 3;
+  }
+  const std::string unit = info.time_unit.empty() || info.time_unit == "1" ? "" : " " + info.time_unit;
+  const std::string verdict = same                   ? "the same to the bit wherever both have something"
+                              : found.compared() > 0 ? "they differ"
+                                                     : "there is nothing that both have";
+  fmt::print("{} and {}: {}\n", file, other, verdict);
+  for (const io::RowComparison& one : found.rows) {
+    fmt::print("  {}: {} compared, {} of them equal", one.name, one.compared, one.equal);
+    if (one.only_first > 0) fmt::print("; {} of the first alone", one.only_first);
+    if (one.only_second > 0) fmt::print("; {} of the second alone", one.only_second);
+    fmt::print("\n");
+  }
+  for (const std::string& note : found.notes) fmt::print("  {}\n", escaped(note));
+  for (const std::string& line : found.constants) fmt::print(stderr, "{}\n", escaped(file + ": " + line));
+  for (const io::RowComparison& one : found.rows) {
+    if (!one.difference) continue;
+    fmt::print(stderr, "{}\n",
+               escaped(fmt::format("{}: {} differ first from {} {}", file,
+                                   one.name == "frames" ? "frames" : "samples of '" + one.name + "'", other,
+                                   text_of(*one.difference, unit))));
+  }
+  return same ? 0 : 3;
+}
+
 struct FileArguments {
-  std::string file, out;
+  std::string file, out, against, by = "time";
   bool json = false, repair = false, unwrapped = false;
 };
 
@@ -135,9 +213,28 @@ void add_verify_command(CLI::App& app, const Parts& /*parts*/, int& exit_code) {
                                    "run.h5 or a checkpoint", given);
   command->add_flag("--json", given->json, "as one line of JSON");
   command->add_flag("--repair", given->repair, "cut run.h5 back to the last frame that is whole; nothing else is lost");
+  CLI::Option* against = command->add_option("--against", given->against,
+                                             "another run.h5: say where the two first differ, frame by frame and "
+                                             "sample by sample, at the times that both have");
+  against->type_name("FILE")->check(
+      [](const std::string& file) { return std::string(file.empty() ? "the name of the file is empty" : ""); });
+  command->add_option("--by", given->by, "what --against matches frames by: time, or step for runs from other starts")
+      ->check(CLI::IsMember({"time", "step"}))
+      ->needs(against);
   command->callback([given, &exit_code] {
     const io::Repair found = given->repair ? repair_alone(given->file) : io::Repair{io::verify(given->file), {}};
-    exit_code = report_verified(given->file, found, given->json);
+    if (given->against.empty() || !found.info.damaged.empty()) {
+      exit_code = report_verified(given->file, found, given->json);
+      return;
+    }
+    const io::Repair other{io::verify(given->against), {}};
+    if (!other.info.damaged.empty()) {
+      exit_code = report_verified(given->against, other, given->json);
+      return;
+    }
+    const auto by = given->by == "step" ? io::MatchBy::step : io::MatchBy::time;
+    exit_code = report_compared(given->file, given->against, io::compare_runs(given->file, given->against, by),
+                                found.info, given->json);
   });
 }
 

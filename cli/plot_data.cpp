@@ -383,6 +383,17 @@ SceneValue stored_scene(const std::string& toml, const std::filesystem::path& fi
   }
 }
 
+/// The least and the largest time at which something was seen.
+std::pair<double, double> span_of(const io::Frames& frames, const std::vector<io::MonitorSeries>& monitors) {
+  double low = INFINITY, high = -INFINITY;
+  const auto take = [&](double time) { low = std::min(low, time), high = std::max(high, time); };
+  for (const io::Frame& frame : frames.frames) take(frame.time);
+  for (const io::MonitorSeries& monitor : monitors) {
+    for (const double time : monitor.time) take(time);
+  }
+  return low <= high ? std::pair(low, high) : std::pair(0.0, 0.0);
+}
+
 }  // namespace
 
 PlotData read_plot_data(const std::filesystem::path& file, const Parts& parts) {
@@ -396,15 +407,14 @@ PlotData read_plot_data(const std::filesystem::path& file, const Parts& parts) {
   const std::vector<io::MonitorSeries> monitors = io::read_monitors(file);
 
   PlotData data;
-  double end = frames.frames.empty() ? 0 : frames.frames.back().time;
-  for (const auto& monitor : monitors) {
-    if (!monitor.time.empty()) end = std::max(end, monitor.time.back());
-  }
-  const TimeUnit unit = time_unit_for(frames.time_unit.empty() ? about.time_unit : frames.time_unit, end);
+  const auto [begin, end] = span_of(frames, monitors);
+  const double longest = std::max(std::abs(begin), std::abs(end));
+  const TimeUnit unit = time_unit_for(frames.time_unit.empty() ? about.time_unit : frames.time_unit, longest);
   data.title = text_at(scene, {"title"});
   if (data.title.empty()) data.title = file.filename().string();
   data.subtitle = method_line(scene);
   data.time_label = with_unit("time", unit.name);
+  data.begin = begin / unit.length;
   data.end = end / unit.length;
   data.orbits = read_orbits(frames, scene, unit, file);
   for (const auto& [name, title] :

@@ -48,7 +48,7 @@ struct PlotData {
   std::string title, subtitle, time_label;
   std::vector<PlotOrbits> orbits;  ///< one, or two where the small need a scale of their own
   std::vector<PlotError> errors;
-  double end = 0;  ///< of the time axis
+  double begin = 0, end = 0;  ///< of the time axis
 };
 
 /// Gathers what a trajectory file holds. @param parts  those that its scene may name

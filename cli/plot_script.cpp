@@ -191,8 +191,8 @@ std::string error_panel(const PlotData& all, std::size_t k, const Layout& layout
   const double bottom = empty ? -17 : std::max(std::floor(std::log10(low)), several ? -17.0 : most - 5);
   const double top = several ? most + std::ceil((most - bottom) / 4) : most;  // room for the key
   std::string text = layout.error_margins(k);
-  text += fmt::format("set xrange [0:{:.9g}]\nset yrange [1e{:.0f}:1e{:.0f}]\nset logscale y\n",
-                      all.end > 0 ? all.end : 1, std::min(bottom, top - 2), top);
+  text += fmt::format("set xrange [{:.9g}:{:.9g}]\nset yrange [1e{:.0f}:1e{:.0f}]\nset logscale y\n", all.begin,
+                      all.end > all.begin ? all.end : all.begin + 1, std::min(bottom, top - 2), top);
   text +=
       fmt::format("set format x '%g'\nset format y '10^{{%T}}'\nset ytics {}\n", several ? "1e-18,1e3" : "autofreq");
   const std::string worst = empty ? "exactly zero" : fmt::format("worst {:.1e}", error.worst);

@@ -50,11 +50,12 @@ struct MonitorReport {
 
 /// Watches settled states. Optional members: `wanted()` (energy?), `series()` and `scale()` (what files store),
 /// `report()`, `record(Sample)` (receives every monitor's samples: writers), `flush()`, `finish(Outcome)`,
-/// `at_end(snapshot)` (the end of a run that is no look of its own, to be forgotten at the next one),
+/// `at_start(snapshot)` (the state that a run goes on from, where a list of times tells when to look: writers make
+/// their files), `at_end(snapshot)` (the end of a run that is no look of its own, to be forgotten at the next one),
 /// `steps_in_a_row()` (looks at so many steps from each multiple of its cadence on), `forget()` (somebody has edited
 /// the run), `check(state)` (throws for a state that it cannot watch), a static `looks_last` for what must see a moment
-/// after all others (checkpoints), and a static `needs_particles` for what makes no sense of a system that has
-/// variables instead.
+/// after all others (checkpoints), a static `needs_equal_intervals` for what counts lags in looks, and a static
+/// `needs_particles` for what makes no sense of a system that has variables instead.
 template <class M, class Real>
 concept Monitor = requires(M& m, const Snapshot<Real>& snapshot) {
   m.observe(snapshot);
@@ -69,6 +70,7 @@ NOETHER_FINDS_MEMBER(report)
 NOETHER_FINDS_MEMBER(record)
 NOETHER_FINDS_MEMBER(flush)
 NOETHER_FINDS_MEMBER(finish)
+NOETHER_FINDS_MEMBER(at_start)
 NOETHER_FINDS_MEMBER(at_end)
 NOETHER_FINDS_MEMBER(forget)
 
@@ -106,6 +108,10 @@ concept Forgets = requires(M& monitor) {
 };
 
 template <class M, class Real>
+concept LooksAtTheStart = requires(M& monitor, const Snapshot<Real>& start) {
+  monitor.at_start(start);
+};
+template <class M, class Real>
 concept LooksAtTheEnd = requires(M& monitor, const Snapshot<Real>& end) {
   monitor.at_end(end);
 };
@@ -128,9 +134,11 @@ template <class Real> struct MonitorBase {
   virtual bool records() const = 0;
   virtual bool looks_last() const = 0;
   virtual bool needs_particles() const = 0;
+  virtual bool needs_equal_intervals() const = 0;
   virtual void check(const ParticleSystem<Real>&) const = 0;
   virtual Request wanted() const = 0;
   virtual void observe(const Snapshot<Real>&) = 0;
+  virtual void at_start(const Snapshot<Real>&) = 0;
   virtual bool looks_at_the_end() const = 0;
   virtual void at_end(const Snapshot<Real>&) = 0;
   virtual std::vector<Series> series() const = 0;
@@ -154,6 +162,8 @@ template <class M, class Real> struct MonitorModel final : MonitorBase<Real> {
   static_assert(Members::record, "a monitor has `void record(const Sample&)`, or no member of that name");
   static_assert(Members::flush, "a monitor has `void flush()`, or no member of that name");
   static_assert(Members::finish, "a monitor has `void finish(const Outcome&)`, or no member of that name");
+  static_assert(!finds_at_start<M>() || LooksAtTheStart<M, Real>,
+                "a monitor has `void at_start(const Snapshot<Real>&)`, or no member of that name");
   static_assert(!finds_at_end<M>() || LooksAtTheEnd<M, Real>,
                 "a monitor has `void at_end(const Snapshot<Real>&)`, or no member of that name");
   static_assert(Members::forget, "a monitor has `void forget()`, or no member of that name");
@@ -168,6 +178,9 @@ template <class M, class Real> struct MonitorModel final : MonitorBase<Real> {
   bool needs_particles() const override {
     return requires { M::needs_particles; };
   }
+  bool needs_equal_intervals() const override {
+    return requires { M::needs_equal_intervals; };
+  }
   void check(const ParticleSystem<Real>& s) const override {
     if constexpr (requires { monitor.check(s); }) monitor.check(s);
   }
@@ -176,6 +189,9 @@ template <class M, class Real> struct MonitorModel final : MonitorBase<Real> {
     return {};
   }
   void observe(const Snapshot<Real>& snapshot) override { monitor.observe(snapshot); }
+  void at_start(const Snapshot<Real>& start) override {
+    if constexpr (LooksAtTheStart<M, Real>) monitor.at_start(start);
+  }
   bool looks_at_the_end() const override { return LooksAtTheEnd<M, Real>; }
   void at_end(const Snapshot<Real>& end) override {
     if constexpr (LooksAtTheEnd<M, Real>) monitor.at_end(end);
@@ -227,10 +243,12 @@ template <class Real = double> class AnyMonitor {
   bool records() const { return held_->records(); }
   bool looks_last() const { return held_->looks_last(); }
   bool needs_particles() const { return held_->needs_particles(); }
+  bool needs_equal_intervals() const { return held_->needs_equal_intervals(); }
   /// @throws Error  if a monitor says that it cannot watch such a state
   void check(const ParticleSystem<Real>& s) const { held_->check(s); }
   Request wanted() const { return held_->wanted(); }
   void observe(const Snapshot<Real>& snapshot) { held_->observe(snapshot); }
+  void at_start(const Snapshot<Real>& start) { held_->at_start(start); }
   bool looks_at_the_end() const { return held_->looks_at_the_end(); }
   void at_end(const Snapshot<Real>& end) { held_->at_end(end); }
   std::vector<Series> series() const { return held_->series(); }

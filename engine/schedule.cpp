@@ -4,15 +4,20 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 
 namespace noether::detail {
 
 void check_schedule(const Schedule& schedule, const std::string& monitor) {
-  const int given = (schedule.steps != 0) + (schedule.interval != 0) + (schedule.wall != 0);
+  const int given = (schedule.steps != 0) + (schedule.interval != 0) + (schedule.wall != 0) + !schedule.times.empty();
   if (given != 1) {
-    throw Error(fmt::format("monitor '{}' has {} cadences; give one: steps, an interval of time, or wall time", monitor,
-                            given));
+    throw Error(
+        fmt::format("monitor '{}' has {} cadences; give one: steps, an interval of time, wall time, or a list "
+                    "of times",
+                    monitor, given));
   }
   if (schedule.steps != 0) positive_cadence(schedule.steps);
   if (schedule.wall != 0) positive_cadence(schedule.wall);
@@ -28,6 +33,109 @@ double positive_cadence(double seconds) {
     throw Error(fmt::format("a cadence of {} s is impossible; a finite time above 0 is expected", seconds));
   }
   return seconds;
+}
+
+double checked_step(double dt) {
+  if (!std::isfinite(dt) || dt == 0)
+    throw Error(fmt::format("a step of {} is no step; a finite time other than 0 is expected", dt));
+  return dt;
+}
+
+void check_start(double start) {
+  if (!std::isfinite(start)) {
+    throw Error(fmt::format("a run cannot begin at time {}; a finite time is expected", start));
+  }
+}
+
+std::int64_t steps_of(double duration, double dt) {
+  const double exact = duration / dt;
+  const double whole = std::round(exact);
+  if (!std::isfinite(exact) || std::abs(exact) > 9e15) {
+    throw Error(fmt::format("a duration of {} is no number of steps of {}", duration, dt));
+  }
+  if (exact < 0) throw Error(fmt::format("a duration of {} lies behind; steps of {} lead the other way", duration, dt));
+  // Beside 1e-9 of a step, the rounding of a long duration.
+  if (std::abs(exact - whole) > 1e-9 + 16 * std::numeric_limits<double>::epsilon() * exact) {
+    throw Error(fmt::format("a duration of {} is {} steps of {}; the nearest whole numbers are {} ({}) and {} ({})",
+                            duration, exact, dt, std::floor(exact) * dt, std::floor(exact), std::ceil(exact) * dt,
+                            std::ceil(exact)));
+  }
+  return static_cast<std::int64_t>(whole);
+}
+
+std::int64_t steps_to(double time, double start, double dt) {
+  if (start == 0) return steps_of(time, dt);
+  const double exact = (time - start) / dt, whole = std::round(exact);
+  if (!(std::abs(exact) <= 9e15)) throw Error(fmt::format("time {} is no number of steps of {}", time, dt));
+  constexpr double epsilon = std::numeric_limits<double>::epsilon();
+  const double rounding = std::min(4 * epsilon * std::max(std::abs(time), std::abs(start)) / std::abs(dt), 0.01);
+  if (exact < -rounding) throw Error(fmt::format("time {} lies before the start at {}", time, start));
+  if (std::abs(exact - whole) > 1e-9 + 16 * epsilon * std::abs(exact) + rounding) {
+    throw Error(
+        fmt::format("time {} is {} steps of {} after the start at {}; the nearest whole numbers are at {} ({}) and {} "
+                    "({})",
+                    time, exact, dt, start, start + std::floor(exact) * dt, std::floor(exact),
+                    start + std::ceil(exact) * dt, std::ceil(exact)));
+  }
+  return static_cast<std::int64_t>(std::abs(whole));
+}
+
+void check_times(const std::vector<double>& times, double start, double sign, const std::string& monitor) {
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const auto refuse = [&](const std::string& why) {
+      throw Error(fmt::format("monitor '{}' cannot look at time {}: {}", monitor, times[k], why));
+    };
+    if (!std::isfinite(times[k])) refuse("a finite time is expected");
+    if (sign * (times[k] - start) < 0) refuse(fmt::format("it lies before the start at {}", start));
+    if (k == 0) continue;
+    if (times[k] == times[k - 1]) refuse("it stands twice in its list");
+    if (sign * (times[k] - times[k - 1]) < 0)
+      refuse(fmt::format("it stands after {}, where the run comes later", times[k - 1]));
+  }
+}
+
+void check_equal_intervals(const std::vector<double>& times, const std::string& monitor) {
+  for (std::size_t k = 2; k < times.size(); ++k) {
+    const double first = times[1] - times[0], now = times[k] - times[k - 1];
+    const double rounding = 4 * std::numeric_limits<double>::epsilon() * std::abs(times[k]);
+    if (std::abs(now - first) <= 1e-9 * std::abs(first) + rounding) continue;
+    throw Error(
+        fmt::format("monitor '{}' counts lags in looks, so it looks at equal distances: after {} comes {} in "
+                    "its list, but {} apart are the first two; attach it by steps or an interval of time",
+                    monitor, times[k - 1], times[k], first));
+  }
+}
+
+std::vector<std::int64_t> steps_at(const std::vector<double>& times, double start, double dt,
+                                   const std::string& monitor) {
+  std::vector<std::int64_t> steps;
+  for (const double time : times) {
+    try {
+      steps.push_back(steps_to(time, start, dt));
+    } catch (const Error& error) {
+      throw Error(fmt::format("monitor '{}' cannot look at time {}: {}", monitor, time, error.message()));
+    }
+    if (steps.size() > 1 && steps.back() == steps[steps.size() - 2]) {
+      throw Error(fmt::format("monitor '{}' cannot look at time {}: it stands twice in its list, at step {}", monitor,
+                              time, steps.back()));
+    }
+  }
+  return steps;
+}
+
+std::string when_in_time(const Schedule& schedule) {
+  return schedule.times.empty() ? fmt::format("every {} of time", schedule.interval) : "at times of a list";
+}
+
+bool Looks::is_listed(std::int64_t step) const {
+  const auto after = std::upper_bound(at_steps.begin(), at_steps.end(), step);
+  return after != at_steps.begin() && step - *std::prev(after) < in_a_row;
+}
+
+std::int64_t Looks::next_listed(std::int64_t step) const {
+  if (in_a_row > 1 && is_listed(step) && is_listed(step + 1)) return step + 1;
+  const auto after = std::upper_bound(at_steps.begin(), at_steps.end(), step);
+  return after == at_steps.end() ? std::numeric_limits<std::int64_t>::max() : *after;
 }
 
 }  // namespace noether::detail

@@ -3,14 +3,16 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace noether {
 
-/// At step 0 and every multiple of one of these; the others are 0.
+/// At step 0 and every multiple of one of the first three, or at the times of a list; the others are 0 or empty.
 struct Schedule {
   std::int64_t steps = 0;
-  double interval = 0;  ///< of time, below 0 where time falls [time]
-  double wall = 0;      ///< of wall time, at whole steps [s]; bits of the trajectory do not depend on it
+  double interval = 0;             ///< of time, below 0 where time falls [time]
+  double wall = 0;                 ///< of wall time, at whole steps [s]; bits of the trajectory do not depend on it
+  std::vector<double> times = {};  ///< by the clock of the run, in the order in which it comes to them [time]
 };
 
 namespace detail {
@@ -22,6 +24,28 @@ std::int64_t positive_cadence(std::int64_t steps);
 /// @throws Error  unless it is finite and above 0
 double positive_cadence(double seconds);
 
+/// @throws Error  if a step is 0 or not finite
+double checked_step(double dt);
+/// @throws Error  unless it is finite
+void check_start(double start);
+/// How many steps of `dt` make `duration` [time].
+/// @throws Error  unless it is a whole number (to 1e-9), with the two nearest durations
+std::int64_t steps_of(double duration, double dt);
+/// How many lead from `start` to `time` [time]; both may be rounded.
+/// @throws Error  unless it is a whole number, with the two nearest times
+std::int64_t steps_to(double time, double start, double dt);
+/// @throws Error  unless times [time] are finite, none before `start`, each later than the one before as time runs
+/// @param sign  1 where time rises, -1 where it falls
+void check_times(const std::vector<double>& times, double start, double sign, const std::string& monitor);
+/// @throws Error  unless the times of a list follow each other at one distance, to 1e-9
+void check_equal_intervals(const std::vector<double>& times, const std::string& monitor);
+/// The steps of a list of times; each is later than the one before. @throws Error  as `steps_to`, and for two at one
+/// step
+std::vector<std::int64_t> steps_at(const std::vector<double>& times, double start, double dt,
+                                   const std::string& monitor);
+/// When a monitor by time looks, in words.
+std::string when_in_time(const Schedule& schedule);
+
 // Monitors that look at every step should not wait for a division.
 inline bool is_multiple(std::int64_t step, std::int64_t cadence) { return cadence == 1 || step % cadence == 0; }
 inline std::int64_t next_multiple(std::int64_t step, std::int64_t cadence) {
@@ -30,12 +54,26 @@ inline std::int64_t next_multiple(std::int64_t step, std::int64_t cadence) {
 
 /// A schedule as the run reckons with it.
 struct Looks : Schedule {
-  std::int64_t in_a_row = 1;  ///< steps to look at, from each multiple on
+  std::int64_t in_a_row = 1;                ///< steps to look at, from each multiple or listed one on
+  std::vector<std::int64_t> at_steps = {};  ///< those of `times`, where the clock is fixed; they rise
 
-  bool due(std::int64_t step) const { return steps > 0 && (steps == 1 || step % steps < in_a_row); }
+  /// Whether steps tell when to look.
+  bool by_steps() const { return steps > 0 || !at_steps.empty(); }
+  /// Whether times tell: a fixed clock has turned them into steps.
+  bool by_time() const { return (interval != 0 || !times.empty()) && !by_steps(); }
+  bool due(std::int64_t step) const {
+    if (steps > 0) return steps == 1 || step % steps < in_a_row;
+    return !at_steps.empty() && is_listed(step);
+  }
+  /// The step after `step` that is looked at; none: the largest number there is.
   std::int64_t next(std::int64_t step) const {
+    if (steps == 0) return next_listed(step);
     return in_a_row > 1 && step % steps + 1 < in_a_row ? step + 1 : next_multiple(step, steps);
   }
+
+ private:
+  bool is_listed(std::int64_t step) const;
+  std::int64_t next_listed(std::int64_t step) const;
 };
 
 }  // namespace detail

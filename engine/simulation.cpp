@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace noether {
 
@@ -44,6 +45,7 @@ Simulation<Real>::Simulation(ParticleSystem<Real> particles, AnyIntegrator<Real>
   if (clock.mode() == ClockMode::free && clock.direction() == Direction::backward && !claims.backward) {
     throw Error(fmt::format("method '{}' knows no way back; give it a clock that goes forward", claims.method));
   }
+  detail::check_start(clock.start());
   raw_.trim();
   raw_.clock() = clock;
   raw_.keep_low_words(false);  // those of another run belong to its working coordinates
@@ -62,12 +64,6 @@ template <class Real> void Simulation<Real>::check_state(const IntegratorClaims&
                                   "order; use a method for y' = f, such as 'dop853' or 'rodas_5p'",
                                   claims.method));
   }
-}
-
-template <class Real> double Simulation<Real>::checked(double dt) {
-  if (!std::isfinite(dt) || dt == 0)
-    throw Error(fmt::format("a step of {} is no step; a finite time other than 0 is expected", dt));
-  return dt;
 }
 
 template <class Real> AnyMonitor<Real>& Simulation<Real>::attach(AnyMonitor<Real> monitor, const Schedule& schedule) {
@@ -134,10 +130,11 @@ template <class Real> void Simulation<Real>::check_wanted(const Scheduled& added
   if (claims.time_dependent) refuse("a force of this run depends on time, so no energy is kept, the exact one neither");
   if (!integrator_.has_action())
     refuse(fmt::format("method '{}' gives none{}", claims.method, claims.symplectic ? "" : "; it is not symplectic"));
-  if (added.schedule.steps == 0) refuse("attach it by steps, not by wall time");
+  if (!added.schedule.by_steps()) refuse("attach it by steps, not by wall time");
 }
 
 template <class Real> void Simulation<Real>::schedule_by_time(Scheduled& added) {
+  if (!added.schedule.times.empty()) return schedule_at_times(added);
   const double interval = added.schedule.interval;
   const bool forward = raw_.clock().direction() == Direction::forward;
   if (!std::isfinite(interval) || interval == 0 || (interval > 0) != forward) {
@@ -148,7 +145,7 @@ template <class Real> void Simulation<Real>::schedule_by_time(Scheduled& added) 
     // One that comes late has nothing to say of times that have passed.
     const double passed = std::floor((time() - raw_.clock().start()) / interval);
     if (passed > 0 && passed < 9e15) added.observed = static_cast<std::int64_t>(passed);
-    while (raw_.clock().is_later(time(), look_of(added))) ++added.observed;
+    while (raw_.clock().is_later(time(), next_look(added))) ++added.observed;
     return;
   }
   const std::int64_t steps = steps_in(interval);
@@ -168,21 +165,21 @@ template <class Real> void Simulation<Real>::stop_when(const StopRule& rule, std
   stops_.push_back({detail::positive_cadence(steps), StopCheck<Real>(rule)});
 }
 
+template <class Real> void Simulation<Real>::schedule_at_times(Scheduled& added) {
+  const Clock<Real>& clock = raw_.clock();
+  const std::vector<double>& times = added.schedule.times;
+  detail::check_times(times, clock.start(), clock.sign(), added.name);
+  if (added.monitor.needs_equal_intervals()) detail::check_equal_intervals(times, added.name);
+  if (clock.mode() == ClockMode::fixed) {
+    added.schedule.at_steps = detail::steps_at(times, clock.start(), clock.dt(), added.name);
+    return;
+  }
+  // One that comes late has nothing to say of times that have passed.
+  added.observed = std::count_if(times.begin(), times.end(), [&](double t) { return clock.is_later(time(), t); });
+}
+
 template <class Real> std::int64_t Simulation<Real>::steps_in(double duration) const {
-  const double dt = raw_.clock().dt();
-  const double exact = duration / dt;
-  const double whole = std::round(exact);
-  if (!std::isfinite(exact) || std::abs(exact) > 9e15) {
-    throw Error(fmt::format("a duration of {} is no number of steps of {}", duration, dt));
-  }
-  if (exact < 0) throw Error(fmt::format("a duration of {} lies behind; steps of {} lead the other way", duration, dt));
-  // Beside 1e-9 of a step, the rounding of a long duration.
-  if (std::abs(exact - whole) > 1e-9 + 16 * std::numeric_limits<double>::epsilon() * exact) {
-    throw Error(fmt::format("a duration of {} is {} steps of {}; the nearest whole numbers are {} ({}) and {} ({})",
-                            duration, exact, dt, std::floor(exact) * dt, std::floor(exact), std::ceil(exact) * dt,
-                            std::ceil(exact)));
-  }
-  return static_cast<std::int64_t>(whole);
+  return detail::steps_of(duration, raw_.clock().dt());
 }
 
 template <class Real> Outcome Simulation<Real>::run(std::int64_t steps) {
@@ -200,7 +197,7 @@ template <class Real> Outcome Simulation<Real>::run_until(double until) {
   if (free && passed) turn_back(until);
   if (free) return run_to(std::numeric_limits<std::int64_t>::max(), until);
   if (passed) throw Error(fmt::format("time {} has passed: the run stands at {}", until, time()));
-  return run_to(steps_in(until - clock.start()), clock.never());
+  return run_to(detail::steps_to(until, clock.start(), clock.dt()), clock.never());
 }
 
 template <class Real> void Simulation<Real>::turn_back(double until) {
@@ -210,9 +207,9 @@ template <class Real> void Simulation<Real>::turn_back(double until) {
   const IntegratorClaims claims = integrator_.claims();
   if (!claims.backward) refuse(fmt::format("method '{}' knows no way back", claims.method));
   for (const auto& scheduled : monitors_) {
-    if (!by_time(scheduled)) continue;
-    refuse(fmt::format("monitor '{}' looks every {} of time, so it cannot turn; attach it by steps", scheduled.name,
-                       scheduled.schedule.interval));
+    if (!scheduled.schedule.by_time()) continue;
+    refuse(fmt::format("monitor '{}' looks {}, so it cannot turn; attach it by steps", scheduled.name,
+                       detail::when_in_time(scheduled.schedule)));
   }
   begin_edit(shown_at_);
   raw_.clock().turn();
@@ -223,6 +220,7 @@ template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double 
   shown_at_.reset();
   std::optional<Outcome> result = fault(raw_);
   if (!result) result = keep_good();
+  if (!result) show_start();
   if (!result) result = observe_due();  // before the clock starts: writers open their files when they first look
   if (result) return *result;
   const auto started = WallClock::now();
@@ -356,9 +354,9 @@ template <class Real> std::optional<Outcome> Simulation<Real>::look_at_the_end()
 /// Whether a monitor has seen the end of the run already.
 template <class Real>
 bool Simulation<Real>::has_looked(const Scheduled& scheduled, double end, bool between_steps) const {
-  if (scheduled.schedule.steps > 0) return !between_steps && scheduled.schedule.due(step());
-  if (!by_time(scheduled) || scheduled.observed == 0) return false;
-  return !raw_.clock().is_later(end, look_of(scheduled) - scheduled.schedule.interval);
+  if (scheduled.schedule.by_steps()) return !between_steps && scheduled.schedule.due(step());
+  if (!scheduled.schedule.by_time() || scheduled.observed == 0) return false;
+  return !raw_.clock().is_later(end, look_of(scheduled, scheduled.observed - 1));
 }
 
 template <class Real> std::int64_t Simulation<Real>::unresolved() const {
@@ -368,9 +366,16 @@ template <class Real> std::int64_t Simulation<Real>::unresolved() const {
 }
 
 template <class Real> bool Simulation<Real>::due(const Scheduled& scheduled) const {
-  if (scheduled.schedule.steps > 0) return scheduled.schedule.due(step());
+  if (scheduled.schedule.by_steps()) return scheduled.schedule.due(step());
   if (scheduled.schedule.wall <= 0) return false;
   return std::chrono::duration<double>(looked_at_clock_ - scheduled.last_wall).count() >= scheduled.schedule.wall;
+}
+
+template <class Real> void Simulation<Real>::show_start() {
+  for (auto& scheduled : monitors_) {
+    if (std::exchange(scheduled.begun, true) || scheduled.schedule.times.empty()) continue;
+    scheduled.monitor.at_start(snapshot({}));
+  }
 }
 
 template <class Real> std::optional<Outcome> Simulation<Real>::observe_due() {
@@ -427,8 +432,7 @@ template <class Real> void Simulation<Real>::observe_times(double until) {
   looking_.clear();
   Request wanted;
   for (auto& scheduled : monitors_) {
-    if (!by_time(scheduled)) continue;
-    if (raw_.clock().is_later(look_of(scheduled), until)) continue;
+    if (!scheduled.schedule.by_time() || raw_.clock().is_later(next_look(scheduled), until)) continue;
     ++scheduled.observed;
     looking_.push_back(&scheduled);
     wanted.energy = wanted.energy || scheduled.wanted.energy;
@@ -439,7 +443,7 @@ template <class Real> void Simulation<Real>::observe_times(double until) {
 template <class Real> std::int64_t Simulation<Real>::next_cut(std::int64_t end) const {
   std::int64_t cut = std::min(end, step() + chunk_);
   for (const auto& scheduled : monitors_) {
-    if (scheduled.schedule.steps > 0) cut = std::min(cut, scheduled.schedule.next(step()));
+    if (scheduled.schedule.by_steps()) cut = std::min(cut, scheduled.schedule.next(step()));
   }
   for (const auto& stop : stops_) cut = std::min(cut, detail::next_multiple(step(), stop.steps));
   return cut;
@@ -449,8 +453,8 @@ template <class Real> double Simulation<Real>::next_time(double end) const {
   double next = end;
   if (raw_.clock().mode() == ClockMode::fixed) return next;
   for (const auto& scheduled : monitors_) {
-    if (!by_time(scheduled)) continue;
-    const double look = look_of(scheduled);
+    if (!scheduled.schedule.by_time()) continue;
+    const double look = next_look(scheduled);
     if (raw_.clock().is_later(next, look)) next = look;
   }
   return next;
@@ -513,16 +517,14 @@ template <class Real> void Simulation<Real>::end_edit() {
 }
 
 template <class Real> void Simulation<Real>::change_step(double dt) {
-  checked(dt);
+  detail::checked_step(dt);
   if (raw_.clock().mode() == ClockMode::free) {
     throw Error(fmt::format("method '{}' chooses its steps itself; they cannot be set", integrator_.claims().method));
   }
   for (const auto& scheduled : monitors_) {
-    if (scheduled.schedule.interval == 0) continue;
-    throw Error(
-        fmt::format("monitor '{}' looks every {} of time, at steps that a new step would shift; attach it by "
-                    "steps",
-                    scheduled.name, scheduled.schedule.interval));
+    if (scheduled.schedule.interval == 0 && scheduled.schedule.times.empty()) continue;
+    throw Error(fmt::format("monitor '{}' looks {}, at steps that a new step would shift; attach it by steps",
+                            scheduled.name, detail::when_in_time(scheduled.schedule)));
   }
   begin_edit();
   const double now = time();

@@ -28,20 +28,21 @@ struct Progress {
 /// unsettled original. Outputs cannot change a trajectory.
 template <class Real = double> class Simulation {
  public:
-  /// A run of fixed step `dt` [time] that begins at time 0.
-  /// @throws Error  if dt is 0 or not finite, or the integrator chooses its steps or cannot serve these particles
+  /// A run of fixed step `dt` [time] whose clock shows `start` [time] at step 0.
+  /// @throws Error  if dt is 0 or not finite, the start is not finite, or the integrator chooses its steps or cannot
+  ///                serve these particles
   template <Integrator I>
-  Simulation(ParticleSystem<Real> particles, I integrator, double dt)
+  Simulation(ParticleSystem<Real> particles, I integrator, double dt, double start = 0)
       : Simulation(std::move(particles), AnyIntegrator<Real>(std::move(integrator)),
-                   Clock<Real>::fixed(0, checked(dt))) {}
+                   Clock<Real>::fixed(start, detail::checked_step(dt))) {}
 
   /// A run of an integrator that chooses its own steps, from time 0 forward.
   template <Integrator I>
   Simulation(ParticleSystem<Real> particles, I integrator)
       : Simulation(std::move(particles), AnyIntegrator<Real>(std::move(integrator)), Clock<Real>::free(0)) {}
 
-  /// A run from where `clock` stands, the way it goes.
-  /// @throws Error  if the integrator wants another clock, or cannot serve these particles
+  /// A run from where `clock` stands, the way it goes: `Clock<double>::free(1000)`.
+  /// @throws Error  if the integrator wants another clock, its start is not finite, or it cannot serve these particles
   Simulation(ParticleSystem<Real> particles, AnyIntegrator<Real> integrator, Clock<Real> clock);
 
   /// Attaches a monitor or writer that looks at step 0 and at every multiple of `steps`.
@@ -52,6 +53,13 @@ template <class Real = double> class Simulation {
   /// The same by time [time], below 0 where time falls.
   template <class M> M& every_time(double interval, M monitor) {
     return *add(AnyMonitor<Real>(std::move(monitor)), {.interval = interval}).template get<M>();
+  }
+  /// Attaches a monitor or writer that looks at these times of the clock [time], in the order in which the run comes to
+  /// them; those beyond its end are never seen. Bits of the trajectory do not depend on it.
+  /// @throws Error  for no times, one that is not finite, before the start or out of order, and where steps are of one
+  ///                length and a time is no whole number of them
+  template <class M> M& at_times(std::vector<double> times, M monitor) {
+    return *attach(AnyMonitor<Real>(std::move(monitor)), {.times = std::move(times)}).template get<M>();
   }
   /// The same by wall time, at whole steps [s]. Bits of the trajectory do not depend on it.
   template <class M> M& every_wall(double seconds, M monitor) {
@@ -124,8 +132,9 @@ template <class Real = double> class Simulation {
     detail::Looks schedule;
     AnyMonitor<Real> monitor;
     std::chrono::steady_clock::time_point last_wall;
-    std::int64_t observed = 0;                 ///< by time: how many multiples have been seen, or passed before it came
+    std::int64_t observed = 0;                 ///< by time: how many looks have been taken, or passed before it came
     bool records = false, looks_last = false;  ///< as the monitor says
+    bool begun = false;                        ///< it has been shown where the run begins, if it wants to
     Request wanted = {};
   };
   struct ScheduledStop {
@@ -133,25 +142,28 @@ template <class Real = double> class Simulation {
     StopCheck<Real> check;
   };
 
-  static double checked(double dt);
   AnyMonitor<Real>& add(AnyMonitor<Real> monitor, const Schedule& schedule);
   /// @throws Error  unless there are particles, or the variables of a system, as the integrator wants them
   void check_state(const IntegratorClaims& claims) const;
   void register_last();
   void schedule(Scheduled& added);
   void schedule_by_time(Scheduled& added);
+  void schedule_at_times(Scheduled& added);
   /// @throws Error  if this run has not what the monitor wants
   void check_wanted(const Scheduled& added) const;
-  /// Whether times, not steps, tell when to look: a fixed clock has turned them into steps.
-  static bool by_time(const Scheduled& s) { return s.schedule.interval != 0 && s.schedule.steps == 0; }
-  /// When a monitor by time looks next.
-  double look_of(const Scheduled& s) const {
-    return raw_.clock().start() + static_cast<double>(s.observed) * s.schedule.interval;
+  /// When a monitor by time takes its look `k`; one that a list does not have is never taken.
+  double look_of(const Scheduled& s, std::int64_t k) const {
+    const std::vector<double>& listed = s.schedule.times;
+    if (listed.empty()) return raw_.clock().start() + static_cast<double>(k) * s.schedule.interval;
+    return k < std::ssize(listed) ? listed[static_cast<std::size_t>(k)] : raw_.clock().never();
   }
+  double next_look(const Scheduled& s) const { return look_of(s, s.observed); }
   Snapshot<Real> snapshot(Request wanted, const std::optional<double>& at = std::nullopt) {
     const RunSource run{this, [](const void* self) { return static_cast<const Simulation*>(self)->save(); }};
     return Snapshot<Real>(integrator_, raw_, copy_, mapped_, wanted, at, action_, run);
   }
+  /// Shows the state to those that a list of times makes wait for their first look.
+  void show_start();
   std::optional<Outcome> observe_due();
   void observe_times(double until);
   bool due(const Scheduled& scheduled) const;
@@ -205,6 +217,8 @@ template <class Real = double> class Simulation {
 };
 
 template <class Real, class I> Simulation(ParticleSystem<Real>, I, double) -> Simulation<Real>;
+template <class Real, class I> Simulation(ParticleSystem<Real>, I, double, double) -> Simulation<Real>;
+template <class Real, class I> Simulation(ParticleSystem<Real>, I, Clock<Real>) -> Simulation<Real>;
 template <class Real, class I> Simulation(ParticleSystem<Real>, I) -> Simulation<Real>;
 
 extern template class Simulation<double>;

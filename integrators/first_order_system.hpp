@@ -25,8 +25,9 @@ namespace noether {
 ///
 /// It may also offer `Sparsity sparsity() const`, where its Jacobian can be other than 0,
 /// `std::vector<double> start() const`, the values it begins with, `std::vector<std::string> names() const` of its
-/// variables, and `std::vector<double> exact(double t) const`, the solution from `start()`. Jacobians are found by dual
-/// numbers where `rates` is a template on the number type, else by differences.
+/// variables, `std::vector<double> exact(double t) const`, the solution from `start()` at time 0, and
+/// `std::vector<double> start_at(double t) const`, where a run that begins at another time is to begin elsewhere.
+/// Jacobians are found by dual numbers where `rates` is a template on the number type, else by differences.
 template <class S, class Real>
 concept FirstOrderSystem = requires(const S& system, const Real& t, const Vector<Real>& y, Vector<Real>& dy) {
   { system.size() } -> std::convertible_to<Index>;

@@ -86,17 +86,19 @@ struct Place {
 };
 
 /// The steps of a run, the start among them, as far as so many steps lead.
-std::vector<Place> steps_of(VectorField<double>& f, const Vector<double>& start, double length, std::int64_t most) {
+std::vector<Place> steps_of(VectorField<double>& f, const Vector<double>& start, double length, double begin,
+                            std::int64_t most) {
   double size = 0;
   for (Index i = 0; i < start.size(); ++i) size = std::max(size, std::abs(start[i]));
   const MethodChoice choice = method("rodas_5p", {.rtol = 1e-4, .atol = 1e-9 * (size > 0 ? size : 1)});
   const auto stepper = make_method<double>(*choice.info, choice.options);
   stepper->bind(f);
-  std::vector<Place> places = {{0, start}};
+  std::vector<Place> places = {{begin, start}};
   Vector<double> y = start;
-  double t = 0;
-  while (std::abs(length - t) > 1e-12 * std::abs(length) && static_cast<std::int64_t>(places.size()) <= most) {
-    const StepResult made = stepper->step(f, t, y, length - t);
+  double t = begin;
+  const double end = begin + length;
+  while (std::abs(end - t) > 1e-12 * std::abs(length) && static_cast<std::int64_t>(places.size()) <= most) {
+    const StepResult made = stepper->step(f, t, y, end - t);
     if (made.failure || !(std::abs(made.h) > 0)) break;
     t += made.h;
     places.push_back({t, y});
@@ -106,15 +108,15 @@ std::vector<Place> steps_of(VectorField<double>& f, const Vector<double>& start,
 
 }  // namespace
 
-StiffnessAlong stiffness_along(VectorField<double>& f, const Vector<double>& start, double length) {
+StiffnessAlong stiffness_along(VectorField<double>& f, const Vector<double>& start, double length, double begin) {
   const double cube = std::pow(static_cast<double>(start.size()), 3);
   const auto most_steps = static_cast<std::int64_t>(std::clamp(3e9 / cube, 40.0, 2000.0));
   const auto most_places = static_cast<std::size_t>(std::clamp(2e8 / cube, 3.0, 64.0));
-  const std::vector<Place> all = steps_of(f, start, length, most_steps);
+  const std::vector<Place> all = steps_of(f, start, length, begin, most_steps);
   const std::size_t last = all.size() - 1, parts = std::min(most_places - 1, last);
   StiffnessAlong found;
   Stiffness before, sums;
-  double t = 0;
+  double t = begin;
   for (std::size_t k = 0; k <= parts; ++k) {
     const Place& place = all[parts > 0 ? k * last / parts : 0];
     std::vector<std::complex<double>> eigenvalues = eigenvalues_of(f, place.t, place.y);
@@ -136,7 +138,7 @@ StiffnessAlong stiffness_along(VectorField<double>& f, const Vector<double>& sta
     ++found.places;
   }
   found.reached = t;
-  const double seen = std::abs(t);
+  const double seen = std::abs(t - begin);
   found.mean = seen > 0 ? Stiffness{.fastest = sums.fastest / seen,
                                     .slowest = sums.slowest,
                                     .growth = sums.growth / seen,

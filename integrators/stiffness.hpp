@@ -47,14 +47,14 @@ struct StiffnessAlong {
   Stiffness mean = {};
   double fastest = 0;  ///< largest |Re lambda| on the way [1/time]
   double at = 0;       ///< where it was [time]
-  double reached = 0;  ///< how far eigenvalues were looked at [time]
+  double reached = 0;  ///< the time up to which eigenvalues were looked at [time]
   int places = 0;      ///< at which they were
 };
 
-/// Follows a run from y(0) over `length` [time], below 0 backward, by `rodas_5p` with rtol 1e-4 and takes eigenvalues
-/// at up to 64 places, fewer of large systems. A run of too many steps, or that fails, is seen in part.
+/// Follows a run from y at time `begin` over `length` [time], below 0 backward, by `rodas_5p` with rtol 1e-4 and takes
+/// eigenvalues at up to 64 places, fewer of large systems. A run of too many steps, or that fails, is seen in part.
 /// @throws Error  as `eigenvalues_of`
 /// @cost at most some 2000 steps, for large systems O(n^3) 50 times
-StiffnessAlong stiffness_along(VectorField<double>& f, const Vector<double>& start, double length);
+StiffnessAlong stiffness_along(VectorField<double>& f, const Vector<double>& start, double length, double begin = 0);
 
 }  // namespace noether

@@ -50,6 +50,34 @@ bool Hdf5File::has_attribute(const std::string& path, const std::string& name) c
   return has(path) && H5Aexists_by_name(*handle_, path.c_str(), name.c_str(), H5P_DEFAULT) > 0;
 }
 
+std::vector<std::string> Hdf5File::attributes(const std::string& path) const {
+  const Hdf5Handle object = own(H5Oopen(*handle_, path.c_str(), H5P_DEFAULT), H5Oclose, handle_->file(), reading(path));
+  const auto keep = [](hid_t, const char* name, const H5A_info_t*, void* kept) -> herr_t {
+    static_cast<std::vector<std::string>*>(kept)->emplace_back(name);
+    return 0;
+  };
+  std::vector<std::string> names;
+  check(H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_INC, nullptr, keep, &names), *handle_, reading(path));
+  return names;
+}
+
+std::string Hdf5File::attribute_bytes(const std::string& path, const std::string& name) const {
+  constexpr hssize_t most = 65536;  // attributes stand in headers, which are short
+  const std::string what = fmt::format("cannot read attribute '{}' of '{}'", name, path);
+  const Hdf5Handle object = own(H5Oopen(*handle_, path.c_str(), H5P_DEFAULT), H5Oclose, handle_->file(), what);
+  const Hdf5Handle attribute = own(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose, handle_->file(), what);
+  const Hdf5Handle type = own(H5Aget_type(attribute), H5Tclose, handle_->file(), what);
+  const Hdf5Handle space = own(H5Aget_space(attribute), H5Sclose, handle_->file(), what);
+  const auto size = static_cast<hssize_t>(H5Tget_size(type)), values = H5Sget_simple_extent_npoints(space);
+  std::string bytes = fmt::format("{} of {} x {}:", static_cast<int>(element_type(type)), values, size);
+  if (H5Tis_variable_str(type) != 0 || H5Tdetect_class(type, H5T_VLEN) != 0 || values < 1) return bytes;
+  if (size < 1 || size > most || values > most / size) refuse(handle_->file(), what);
+  const std::size_t begin = bytes.size();
+  bytes.resize(begin + static_cast<std::size_t>(size * values));
+  check(H5Aread(attribute, type, bytes.data() + begin), *handle_, what);
+  return bytes;
+}
+
 void Hdf5File::set_attribute(const std::string& path, const std::string& name, const std::string& text) const {
   const PaddedTexts padded = pad({text});
   const Hdf5Handle type = text_type(handle_->file(), padded.size);

@@ -119,6 +119,11 @@ class Hdf5File {
   std::string read_text(const std::string& path) const;
 
   bool has_attribute(const std::string& path, const std::string& name) const;
+  /// Names of the attributes of an object, sorted. @throws FileError
+  std::vector<std::string> attributes(const std::string& path) const;
+  /// An attribute as it stands in the file, its type and shape in front; of a text of variable length nothing else.
+  /// @throws FileError
+  std::string attribute_bytes(const std::string& path, const std::string& name) const;
   /// Attributes are replaced where they exist.
   void set_attribute(const std::string& path, const std::string& name, const std::string& text) const;
   void set_attribute(const std::string& path, const std::string& name, const char* text) const {

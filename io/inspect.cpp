@@ -218,6 +218,31 @@ void check_constants(const Hdf5File& file, std::vector<std::string>& damaged) {
   damaged.emplace_back("the ids, names, masses or parameters of the particles are not those that were written");
 }
 
+/// What a file that has digests must have of them: without one a change would pass unseen.
+void check_digests(const Hdf5File& file, std::vector<std::string>& damaged) {
+  const auto expect = [&](bool there, const std::string& what) {
+    if (!there) damaged.push_back("there is no digest of " + what + ", which stands in every such file");
+  };
+  expect(file.has_attribute("/noether", constants_attribute), "what particles have once");
+  for (const std::string& path : {particles_path + "/position/value", system_path + "/value"})
+    if (file.has(path) && file.open(path).rows() > 0) expect(file.has(frame_digests_path), "the frames");
+  for (const std::string& name : file.children(monitors_path)) {
+    // A killed writer may not have come further than to make the datasets of a monitor.
+    const std::string steps = monitors_path + "/" + name + "/step";
+    if (file.has(steps) && file.open(steps).rows() > 0)
+      expect(file.has(sample_digests_path(name)), "the samples of monitor " + name);
+  }
+}
+
+/// Everything that can be reached is looked at, and attributes that never change are those that were written.
+void check_headers(const Hdf5File& file, std::vector<std::string>& damaged) {
+  read_headers(file);
+  if (!file.has_attribute("/noether", headers_attribute)) return;
+  check_digests(file, damaged);
+  if (file.text_attribute("/noether", headers_attribute) == headers_digest(file)) return;
+  damaged.emplace_back("the units or other attributes of the particles are not those that were written");
+}
+
 std::vector<MonitorSeries> untried_monitors(const std::filesystem::path& path) {
   const Hdf5File file = Hdf5File::open_to_read(path);
   std::vector<MonitorSeries> result;
@@ -269,6 +294,7 @@ FileInfo untried_verify(const std::filesystem::path& file) {
     check_monitors(reader.file(), result.complete, result.damaged);
     check_samples(reader.file(), untried_monitors(file), result.damaged);
     check_constants(reader.file(), result.damaged);
+    check_headers(reader.file(), result.damaged);
   } catch (const FileError& error) {
     result.damaged.push_back(error.message());
   }

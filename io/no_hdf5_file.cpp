@@ -65,6 +65,8 @@ Hdf5Dataset Hdf5File::create_growing(const std::string&, ElementType, const std:
 }
 Hdf5Dataset Hdf5File::open(const std::string&) const { unreachable(); }
 std::string Hdf5File::read_text(const std::string&) const { unreachable(); }
+std::vector<std::string> Hdf5File::attributes(const std::string&) const { unreachable(); }
+std::string Hdf5File::attribute_bytes(const std::string&, const std::string&) const { unreachable(); }
 bool Hdf5File::has_attribute(const std::string&, const std::string&) const { unreachable(); }
 void Hdf5File::set_attribute(const std::string&, const std::string&, const std::string&) const { unreachable(); }
 void Hdf5File::set_attribute(const std::string&, const std::string&, std::int64_t) const { unreachable(); }

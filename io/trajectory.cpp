@@ -38,6 +38,10 @@ class TrajectoryWriter::File {
 
   const std::filesystem::path& path() const { return path_; }
 
+  void make_file(const ParticleSystem<double>& state) {
+    if (!hdf5_) create(state);
+  }
+
   void observe(const Snapshot<double>& now) {
     const ParticleSystem<double>& state = now.state();
     if (!hdf5_) create(state);
@@ -135,6 +139,7 @@ class TrajectoryWriter::File {
     }
     for (const KeptSample& kept : std::exchange(waiting_, {})) write_sample(kept.sample());
     hdf5_->set_attribute("/noether", constants_attribute, constants_digest(*hdf5_));
+    hdf5_->set_attribute("/noether", headers_attribute, headers_digest(*hdf5_));
     hdf5_->take_name();
   }
 
@@ -552,6 +557,7 @@ class TrajectoryWriter::File {
 TrajectoryWriter::TrajectoryWriter(std::filesystem::path file, TrajectoryOptions options)
     : held_(std::make_shared<File>(std::move(file), std::move(options))) {}
 
+void TrajectoryWriter::at_start(const Snapshot<double>& now) { held_->make_file(now.state()); }
 void TrajectoryWriter::observe(const Snapshot<double>& now) { held_->observe(now); }
 void TrajectoryWriter::record(const Sample& sample) { held_->record(sample); }
 void TrajectoryWriter::flush() { held_->flush(); }

@@ -33,6 +33,8 @@ class TrajectoryWriter {
                                   source("DeBuyl2014"));
   }
 
+  /// Makes the file, which may have to wait for its first frame. @throws FileError
+  void at_start(const Snapshot<double>& now);
   /// Writes a frame. @throws FileError
   void observe(const Snapshot<double>& now);
   /// Writes a monitor's sample below /noether/monitors/NAME. @throws FileError

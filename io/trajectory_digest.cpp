@@ -1,6 +1,9 @@
 #include "io/trajectory_digest.hpp"
 
 #include "io/trajectory_layout.hpp"
+#include "numbers/error.hpp"
+
+#include <utility>
 
 namespace noether::io {
 
@@ -69,6 +72,45 @@ std::string constants_digest(const Hdf5File& file) {
     }
   }
   return hash.hex();
+}
+
+namespace {
+
+/// Walks through a file: the path of an object, each of its attributes, then all that is below it.
+template <class Take> class HeaderWalk {
+ public:
+  HeaderWalk(const Hdf5File& file, Take take) : file_(file), take_(std::move(take)) {}
+
+  void at(const std::string& path) {
+    // A damaged link may lead back up.
+    if (++visited_ > most_objects) throw FileError("damaged: its groups have no end", {.file = file_.name()});
+    take_(path);
+    for (const std::string& name : file_.attributes(path)) take_(name + "=" + file_.attribute_bytes(path, name));
+    for (const std::string& name : file_.children(path)) at(path + (path == "/" ? "" : "/") + name);
+  }
+
+ private:
+  static constexpr int most_objects = 20'000;
+  const Hdf5File& file_;
+  Take take_;
+  int visited_ = 0;
+};
+
+}  // namespace
+
+std::string headers_digest(const Hdf5File& file) {
+  RunningDigest hash;
+  hash.add(std::string_view("noether-attributes-1\n"));
+  const auto add = [&](const std::string& one) { hash.add(one + '\n'); };
+  for (const std::string& group : {std::string("/h5md"), particles_path, system_path}) {
+    if (file.has(group)) HeaderWalk(file, add).at(group);
+  }
+  for (const char* name : {"commit", "simd", "units", "version"}) add(file.attribute_bytes("/noether", name));
+  return hash.hex();
+}
+
+void read_headers(const Hdf5File& file) {
+  HeaderWalk(file, [](const std::string&) {}).at("/");
 }
 
 }  // namespace noether::io

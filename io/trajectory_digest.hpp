@@ -22,6 +22,9 @@ inline std::string sample_digests_path(std::string_view monitor) {
 /// The attribute of /noether that has the digest of what stands in the file once and never changes.
 inline const std::string constants_attribute = "constants_sha256";
 
+/// The attribute of /noether that has the digest of the attributes that never change.
+inline const std::string headers_attribute = "attributes_sha256";
+
 /// SHA-256 of "noether-frame-1\n", int64 step, float64 time, x and v (n, 3), variables, int64 images (n, 3), edges, and
 /// of each other column that moves its name and its values; row by row, as the file has them.
 RowDigest frame_digest(const Frame& frame);
@@ -35,5 +38,14 @@ RowDigest sample_digest(std::int64_t step, double time,
 /// and its values. 64 hexadecimal digits.
 /// @throws FileError  for what HDF5 cannot read
 std::string constants_digest(const Hdf5File& file);
+
+/// SHA-256 of the attributes that a file is made with: all of /h5md, of the particles or the system with everything
+/// below, in the order of their paths and names, and of /noether commit, simd, units and version. All of these must be
+/// there before the first frame. Texts of variable length count by their names alone. 64 hexadecimal digits.
+/// @throws FileError  for what HDF5 cannot read
+std::string headers_digest(const Hdf5File& file);
+
+/// Reads every link and every attribute of a file. @throws FileError  for what HDF5 cannot read
+void read_headers(const Hdf5File& file);
 
 }  // namespace noether::io

@@ -28,6 +28,7 @@ class TimeCorrelation {
       : length(longest), origins(between), types(std::move(of)) {}
 
   static constexpr bool needs_particles = true;
+  static constexpr bool needs_equal_intervals = true;
 
   /// @throws Error  for a length below 2, more than a million, or origins below 1
   void check() const;

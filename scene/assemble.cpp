@@ -122,8 +122,8 @@ std::unique_ptr<VectorField<double>> field_of(const Scene& scene) {
 }
 
 Clock<double> clock_of(const SceneIntegrator& integrator) {
-  return integrator.adaptive() ? Clock<double>::free(0, integrator.direction())
-                               : Clock<double>::fixed(0, integrator.step);
+  return integrator.adaptive() ? Clock<double>::free(integrator.start, integrator.direction())
+                               : Clock<double>::fixed(integrator.start, integrator.step);
 }
 
 AnyIntegrator<double> integrator_of(const Scene& scene, std::size_t decorators) {

@@ -72,7 +72,7 @@ class SceneCheck {
     const std::unique_ptr<VectorField<double>> field = scene_.system->field();
     Vector<double> y, dy;
     field->gather(s, y);
-    field->rate(0, y, dy);
+    field->rate(scene_.integrator.start, y, dy);
     for (Index i = 0; i < dy.size(); ++i) {
       if (std::isfinite(dy[i])) continue;
       TableReader(context_, *top.find("system"), "[system]", "system")
@@ -166,7 +166,7 @@ class SceneCheck {
 
   void check_start(const TableReader& hamiltonian, const TableReader& integrator, AnyIntegrator<double>& made) {
     ParticleSystem<double> s = scene_.particles;
-    s.clock() = Clock<double>::fixed(0, scene_.integrator.step);
+    s.clock() = Clock<double>::fixed(scene_.integrator.start, scene_.integrator.step);
     try {
       made.bind(s);
     } catch (const SchemeMismatch& error) {

@@ -60,7 +60,7 @@ Evaluation evaluate(const Scene& scene, bool check) {
                      {.file = scene.source.file, .key = "system"});
   }
   ParticleSystem<double> s = scene.particles;
-  s.clock() = Clock<double>::fixed(0, scene.integrator.step);
+  s.clock() = Clock<double>::fixed(scene.integrator.start, scene.integrator.step);
   Evaluation result;
   result.forces = VectorColumn<double>(s.size());
   result.kinetic = kinetic_energy(s);

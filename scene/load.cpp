@@ -99,6 +99,7 @@ class SceneReader {
                                   other));
     }
     const auto [kind, type] = kind_of_part(context_, table, "system", "system", parts_.systems(), {});
+    context_.start_time = start_time(SceneReader::table(top, "integrator"));
     TableReader reader(context_, table, fmt::format("system '{}'", type), "system");
     reader.find("type");
     SceneSystem system = kind->read(reader);
@@ -108,6 +109,12 @@ class SceneReader {
     scene_.particles = system.start;
     scene_.system = std::move(system);
     refuse_scheme(SceneReader::table(top, "integrator"));
+  }
+
+  /// What the clock shows when the run begins [time]: systems may begin by it.
+  double start_time(const SceneValue& integrator) const {
+    TableReader reader(context_, integrator, "[integrator]", "integrator");
+    return reader.quantity("start_time", "time").value_or(0);
   }
 
   /// What a scheme takes or not is no matter where it cannot be used at all.
@@ -339,7 +346,7 @@ class SceneReader {
       SceneWatch watch;
       if (type == "trajectory") watch.kind = SceneWatch::Kind::trajectory;
       if (type == "checkpoint") watch.kind = SceneWatch::Kind::checkpoint;
-      for (const char* key : {"every", "steps"}) reader.find(key);
+      for (const char* key : {"every", "steps", "times"}) reader.find(key);
       if (kind != nullptr) watch.monitor = kind->read(reader);
       if (kind == nullptr && type == "checkpoint") reader.find("wall");
       reader.finish();

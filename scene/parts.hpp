@@ -21,11 +21,13 @@
 
 namespace noether {
 
-/// When a monitor looks: every so many steps, every so much time, or every so many seconds of wall time.
+/// When a monitor looks: every so many steps, every so much time, every so many seconds of wall time, or at the times
+/// of a list.
 struct Cadence {
   std::int64_t steps = 0;
-  double wall = 0;      ///< [s]; 0: not by wall time
-  double interval = 0;  ///< [time], where the method chooses the steps; 0: by steps
+  double wall = 0;                 ///< [s]; 0: not by wall time
+  double interval = 0;             ///< [time], where the method chooses the steps; 0: by steps
+  std::vector<double> times = {};  ///< by the clock of the run, as it comes to them [time]; empty: not by a list
 };
 
 /// What a part adds to a splitting as a letter of its own.
@@ -104,7 +106,7 @@ struct SceneSystem {
   ParticleSystem<double> start;  ///< its variables and no particles
   std::function<std::unique_ptr<VectorField<double>>()> field;
   std::function<std::unique_ptr<VectorField<Quad>>()> wide_field;  ///< empty for a system that knows doubles only
-  /// The closed solution, by time; empty where there is none, or the scene starts elsewhere.
+  /// The closed solution, by time; empty where there is none, or the scene starts elsewhere or at another time.
   std::function<std::vector<double>(double)> exact;
 };
 
@@ -114,7 +116,9 @@ std::vector<double> read_start(const TableReader& reader, const SceneValue& list
                                const std::vector<std::string>& names);
 
 template <class M> void attach(Simulation<double>& sim, const Cadence& cadence, const M& monitor) {
-  if (cadence.wall > 0) {
+  if (!cadence.times.empty()) {
+    sim.at_times(cadence.times, monitor);
+  } else if (cadence.wall > 0) {
     sim.every_wall(cadence.wall, monitor);
   } else if (cadence.interval != 0) {
     sim.every_time(cadence.interval, monitor);
@@ -395,8 +399,13 @@ class Parts {
       values = detail::read_start(reader, *start, system.size(), names);
       made.effective.put("start", *start);
     } else if constexpr (requires { system.start(); }) {
+      const double begin = reader.context().start_time;
       values = system.start();
-      if constexpr (requires { system.exact(0.0); }) made.exact = [system](double t) { return system.exact(t); };
+      if constexpr (requires { system.start_at(begin); }) values = system.start_at(begin);
+      if constexpr (requires { system.exact(0.0); }) {
+        const bool there = begin == 0 || requires { system.start_at(begin); };
+        if (there) made.exact = [system](double t) { return system.exact(t); };
+      }
     } else {
       reader.fail(nullptr, "start", fmt::format("{} does not say where to start; give start = [...]", reader.what()));
     }

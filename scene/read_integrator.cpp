@@ -2,6 +2,7 @@
 
 #include "integrators/all_methods.hpp"
 #include "integrators/all_schemes.hpp"
+#include "io/text_table.hpp"
 #include "numbers/suggest.hpp"
 #include "scene/read_options.hpp"
 
@@ -9,39 +10,64 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
+#include <variant>
 
 namespace noether {
 
 namespace {
 
-/// How many steps make a duration. @throws SceneError  unless it is a whole number, with the two nearest
+/// A time as scenes of these units write it.
+std::string time_text(double time, const UnitSystem& units) {
+  const std::string unit = unit_of(dimensions::time, units), number = format_number(time);
+  return unit == "1" ? number : "\"" + number + " " + unit + "\"";
+}
+
+/// The whole number of steps that a time is, counted from `from`; else what is wrong, with the two nearest times.
+std::variant<std::int64_t, std::string> steps_to(const SceneIntegrator& integrator, const UnitSystem& units,
+                                                 double time, double from) {
+  const double exact = (time - from) / integrator.step, whole = std::round(exact);
+  constexpr double epsilon = std::numeric_limits<double>::epsilon();
+  if (std::abs(exact) > 9e15)
+    return fmt::format("is {:.3g} steps of {}, more than can be counted", exact, integrator.step_text);
+  // Beside 1e-9 of a step, the rounding of a long duration, and of times far from 0.
+  const double far = from == 0 ? 0 : 4 * epsilon * std::max(std::abs(time), std::abs(from)) / std::abs(integrator.step);
+  if (std::abs(exact - whole) <= 1e-9 + 16 * epsilon * std::abs(exact) + std::min(far, 0.01))
+    return static_cast<std::int64_t>(whole);
+  const auto nearest = [&](double steps) {
+    return fmt::format("{} ({} {})", time_text(from + steps * integrator.step, units), format_number(steps),
+                       steps == 1 ? "step" : "steps");
+  };
+  const std::string is = fmt::format("is {:.12g} steps of {}{}", exact, integrator.step_text,
+                                     from == 0 ? "" : " after " + time_text(from, units));
+  if (exact < 1) return fmt::format("{}; the shortest time is {}", is, nearest(1));
+  return fmt::format("{}; the nearest whole numbers are {} and {}", is, nearest(std::floor(exact)),
+                     nearest(std::ceil(exact)));
+}
+
+/// How many steps lead from `from`, the start of a run or 0 for a duration, to the time that a key gives.
+/// @throws SceneError  unless it is a whole number, with the two nearest
 std::int64_t whole_steps(const TableReader& reader, std::string_view key, const SceneValue& value,
-                         const SceneIntegrator& integrator) {
-  const double duration = reader.number(value, key, "time"), exact = duration / integrator.step,
-               whole = std::round(exact);
+                         const SceneIntegrator& integrator, double from = 0) {
+  const UnitSystem& units = *reader.context().units;
+  const double time = reader.number(value, key, "time"), exact = (time - from) / integrator.step;
   const auto fail = [&](const std::string& message) {
     reader.fail(&value, key, fmt::format("{} = {} {}", key, to_text(value), message));
   };
+  const std::string origin = from == 0 ? "0" : time_text(from, units);
   if (exact < 0) {
-    fail(fmt::format("lies the other way; steps are of {}, so give a time {} 0", integrator.step_text,
-                     integrator.step > 0 ? "above" : "below"));
+    fail(fmt::format("lies {}; steps are of {}, so give a time {} {}",
+                     from == 0 ? "the other way" : "on the other side of the start_time", integrator.step_text,
+                     integrator.step > 0 ? "above" : "below", origin));
   }
-  if (!(exact > 0)) fail(fmt::format("is no time ahead; steps are of {}", integrator.step_text));
-  if (exact > 9e15) fail(fmt::format("is {:.3g} steps of {}, more than can be counted", exact, integrator.step_text));
-  if (std::abs(exact - whole) > 1e-9 + 16 * std::numeric_limits<double>::epsilon() * exact) {
-    const std::string unit = unit_of(dimensions::time, *reader.context().units);
-    const auto nearest = [&](double steps) {
-      const std::string number = format_number(steps * integrator.step);
-      return fmt::format("{} ({} {})", unit == "1" ? number : "\"" + number + " " + unit + "\"", format_number(steps),
-                         steps == 1 ? "step" : "steps");
-    };
-    const std::string is = fmt::format("is {:.12g} steps of {}", exact, integrator.step_text);
-    if (exact < 1) fail(fmt::format("{}; the shortest time is {}", is, nearest(1)));
-    fail(fmt::format("{}; the nearest whole numbers are {} and {}", is, nearest(std::floor(exact)),
-                     nearest(std::ceil(exact))));
+  if (!(exact > 0)) {
+    fail(fmt::format("is no time ahead; steps are of {}{}", integrator.step_text,
+                     from == 0 ? "" : fmt::format(", from the start_time {} on", origin)));
   }
-  return static_cast<std::int64_t>(whole);
+  const auto found = steps_to(integrator, units, time, from);
+  if (const auto* wrong = std::get_if<std::string>(&found)) fail(*wrong);
+  return std::get<std::int64_t>(found);
 }
 
 std::int64_t counted_steps(TableReader& reader, std::string_view key) {
@@ -183,6 +209,20 @@ void read_step(TableReader& reader, SceneIntegrator& made, SceneValue& effective
   effective.put("step", *step);
 }
 
+void read_start_time(TableReader& reader, SceneIntegrator& made, SceneValue& effective) {
+  const SceneValue* start = reader.find("start_time");
+  if (start == nullptr) return;
+  made.start = reader.number(*start, "start_time", "time");
+  if (made.start == 0) return;  // as if nobody had said it
+  if (made.step != 0 && std::abs(made.step) < 4 * std::numeric_limits<double>::epsilon() * std::abs(made.start)) {
+    reader.fail(start, "start_time",
+                fmt::format("start_time = {} is too far from 0: a step of {} is lost in its rounding; count time from "
+                            "another moment",
+                            to_text(*start), made.step_text));
+  }
+  effective.put("start_time", *start);
+}
+
 void read_end(TableReader& reader, SceneIntegrator& made, SceneValue& effective) {
   const SceneValue* until = reader.find("until");
   if (until != nullptr && reader.has("steps")) {
@@ -190,18 +230,21 @@ void read_end(TableReader& reader, SceneIntegrator& made, SceneValue& effective)
   }
   if (until != nullptr && made.adaptive()) {
     made.until = reader.number(*until, "until", "time");
-    if (*made.until == 0) {
-      reader.fail("until", fmt::format("until = {} is no time ahead; give a time above 0, or one below 0 to go back",
-                                       to_text(*until)));
+    const double length = *made.until - made.start;
+    const std::string origin = made.start == 0 ? "0" : time_text(made.start, *reader.context().units);
+    if (length == 0) {
+      reader.fail("until", fmt::format("until = {} is no time ahead; give a time above {}, or one below {} to go back",
+                                       to_text(*until), origin, made.start == 0 ? "0" : "it"));
     }
-    if (made.step != 0 && (*made.until > 0) != (made.step > 0)) {
+    if (made.step != 0 && (length > 0) != (made.step > 0)) {
       const std::string_view side = made.step > 0 ? "above" : "below", other = made.step > 0 ? "below" : "above";
-      reader.fail("until", fmt::format("until = {} lies the other way; the first step is {}, so give a time {} 0, or a "
-                                       "first step {} 0",
-                                       to_text(*until), made.step_text, side, other));
+      reader.fail("until",
+                  fmt::format("until = {} lies the other way; the first step is {}, so give a time {} {}, or a "
+                              "first step {} 0",
+                              to_text(*until), made.step_text, side, origin, other));
     }
   } else if (until != nullptr) {
-    made.steps = whole_steps(reader, "until", *until, made);
+    made.steps = whole_steps(reader, "until", *until, made, made.start);
   }
   if (until != nullptr) effective.put("until", *until);
   if (reader.has("steps")) made.steps = reader.integer("steps");
@@ -223,9 +266,104 @@ double wall_seconds(const TableReader& reader, const SceneValue& wall) {
   return seconds;
 }
 
+/// One of the times of a list.
+struct ListedTime {
+  double time;
+  std::string text;  ///< as it was written
+  SceneValue value;
+  std::size_t line = 0;  ///< of its file, where it comes from one
+};
+
+std::vector<ListedTime> times_in_file(const TableReader& reader, const SceneValue& name,
+                                      std::optional<io::TextFile>& file) {
+  const UnitSystem& units = *reader.context().units;
+  const std::string& given = *name.get<std::string>();
+  bool is_time = true;
+  try {
+    parse_quantity(given, dimensions::time, units);
+  } catch (const Error&) {
+    is_time = false;
+  }
+  if (is_time) {
+    reader.fail(&name, "times",
+                fmt::format("times = {0} is one time; a list is expected, times = [{0}], or the name of a file",
+                            to_text(name)));
+  }
+  if (given.empty()) reader.fail(&name, "times", "times = \"\" names no file; give one, such as \"times.txt\"");
+  const std::filesystem::path path = std::filesystem::path(reader.context().source.file).parent_path() / given;
+  try {
+    file.emplace(path, "a list of times, one a line");
+  } catch (const FileError& error) {
+    if (name.line <= 0) throw;
+    throw FileError(error.what(), {.file = reader.context().source.file,
+                                   .line = name.line,
+                                   .key = reader.path_of("times"),
+                                   .value = path.string()});
+  }
+  std::vector<ListedTime> all;
+  for (std::size_t k = 0; k < file->lines().size(); ++k) {
+    const std::string_view line = file->lines()[k];
+    const std::string one(io::trimmed(line.substr(0, line.find('#'))));
+    if (one.empty()) continue;
+    try {
+      const double time = parse_quantity(one, dimensions::time, units);
+      all.push_back({time, one, units.is_reduced() ? SceneValue::of(time) : SceneValue::of(one), k + 1});
+    } catch (const Error& error) {
+      file->fail(k + 1, error.message(), one);
+    }
+  }
+  return all;
+}
+
+/// Reads the times of a list, or of a file with one a line: each later than the one before, none before the start.
+void read_times(TableReader& reader, const SceneValue& value, const SceneIntegrator& integrator, Cadence& cadence,
+                SceneValue& effective) {
+  const UnitSystem& units = *reader.context().units;
+  std::optional<io::TextFile> file;
+  std::vector<ListedTime> all;
+  if (const auto* list = value.get<SceneValue::Array>()) {
+    for (const SceneValue& one : *list) all.push_back({reader.number(one, "times", "time"), to_text(one), one});
+  } else if (value.get<std::string>() != nullptr) {
+    all = times_in_file(reader, value, file);
+  } else {
+    reader.wrong_kind(value, "times", "a list of times, or the name of a file that has one a line,");
+  }
+  const auto refuse = [&](const ListedTime& one, const std::string& why) {
+    if (file) file->fail(one.line, fmt::format("time {} {}", one.text, why), one.text);
+    reader.fail(one.value.line != 0 ? &one.value : &value, "times",
+                fmt::format("times holds {}, which {}", one.text, why));
+  };
+  if (all.empty() && file) file->fail(0, "there is no time in it; one a line is expected");
+  if (all.empty()) reader.fail(&value, "times", "times = [] holds no time; give some, or take the table out");
+  const double sign = integrator.direction() == Direction::forward ? 1 : -1;
+  std::int64_t last = -1;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const ListedTime& one = all[k];
+    if (sign * (one.time - integrator.start) < 0) {
+      refuse(one, fmt::format("the run does not come to: it goes {} in time from {}", sign > 0 ? "forward" : "back",
+                              time_text(integrator.start, units)));
+    }
+    if (k > 0 && one.time == all[k - 1].time) refuse(one, "stands there twice");
+    if (k > 0 && sign * (one.time - all[k - 1].time) < 0) {
+      refuse(one, fmt::format("stands behind {}, to which the run comes later; put them in the order of the run",
+                              all[k - 1].text));
+    }
+    if (!integrator.adaptive()) {
+      const auto found = steps_to(integrator, units, one.time, integrator.start);
+      if (const auto* wrong = std::get_if<std::string>(&found)) refuse(one, *wrong);
+      if (std::get<std::int64_t>(found) == last) refuse(one, fmt::format("is at the step of {} too", all[k - 1].text));
+      last = std::get<std::int64_t>(found);
+    }
+    cadence.times.push_back(one.time);
+  }
+  SceneValue::Array written;
+  for (ListedTime& one : all) written.push_back(std::move(one.value));
+  effective.put("times", SceneValue::of(std::move(written), value.line));
+}
+
 /// A misspelt key is told before a missing one.
 void know_keys(TableReader& reader, const Parts& parts) {
-  for (const char* key : {"method", "step", "until", "steps", "decorator"}) reader.find(key);
+  for (const char* key : {"method", "step", "start_time", "until", "steps", "decorator"}) reader.find(key);
   for_each_field<CompositionOptions>([&](const auto& field) { reader.find(field.name); });
   for (const OptionGroup* group : parts.method_options()) {
     for (const OptionValue& one : group->values({})) reader.find(one.name);
@@ -245,6 +383,7 @@ SceneIntegrator read_integrator(const SceneContext& context, const SceneValue& t
   SceneValue options = SceneValue::table();
   if (made.classical) read_method_options(reader, parts, made, constrained, options);
   read_step(reader, made, effective);
+  read_start_time(reader, made, effective);
   read_end(reader, made, effective);
   if (!made.classical) read_scheme_options(reader, parts, made, constrained, options);
   for (auto& [key, value] : *options.get<SceneValue::Table>()) effective.put(key, value);
@@ -253,14 +392,15 @@ SceneIntegrator read_integrator(const SceneContext& context, const SceneValue& t
 }
 
 Cadence read_cadence(TableReader& reader, bool may_be_wall, const SceneIntegrator& integrator, SceneValue& effective) {
-  const SceneValue *every = reader.find("every"), *steps = reader.find("steps");
+  const SceneValue *every = reader.find("every"), *steps = reader.find("steps"), *times = reader.find("times");
   const SceneValue* wall = may_be_wall ? reader.find("wall") : nullptr;
-  const int given = (every != nullptr) + (steps != nullptr) + (wall != nullptr);
-  const std::string_view choices = may_be_wall ? "every, steps or wall" : "every or steps";
+  const int given = (every != nullptr) + (steps != nullptr) + (wall != nullptr) + (times != nullptr);
+  const std::string_view choices = may_be_wall ? "every, steps, wall or times" : "every, steps or times";
   if (given == 0) reader.fail(nullptr, "steps", fmt::format("{} does not say when; give {}", reader.what(), choices));
-  if (given > 1)
-    reader.fail(every != nullptr ? every : wall, every != nullptr ? "every" : "wall",
-                fmt::format("{} says twice when; give one of {}", reader.what(), choices));
+  if (given > 1) {
+    const std::string_view key = every != nullptr ? "every" : wall != nullptr ? "wall" : "times";
+    reader.fail(key, fmt::format("{} says twice when; give one of {}", reader.what(), choices));
+  }
   Cadence cadence;
   if (every != nullptr && integrator.adaptive()) {
     cadence.interval = reader.number(*every, "every", "time");
@@ -275,6 +415,7 @@ Cadence read_cadence(TableReader& reader, bool may_be_wall, const SceneIntegrato
   }
   if (steps != nullptr) cadence.steps = counted_steps(reader, "steps");
   if (wall != nullptr) cadence.wall = wall_seconds(reader, *wall);
+  if (times != nullptr) read_times(reader, *times, integrator, cadence, effective);
   if (every != nullptr) effective.put("every", *every);
   if (steps != nullptr) effective.put("steps", SceneValue::of(cadence.steps, reader.line("steps")));
   if (wall != nullptr) effective.put("wall", *wall);

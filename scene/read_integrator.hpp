@@ -12,7 +12,7 @@ namespace noether {
 SceneIntegrator read_integrator(const SceneContext& context, const SceneValue& table, const Parts& parts,
                                 bool constrained, SceneValue& effective);
 
-/// Reads the cadence of a monitor, a writer or a stop: `every`, `steps` or `wall`.
+/// Reads the cadence of a monitor, a writer or a stop: `every`, `steps`, `wall` or `times`.
 /// @param effective  receives what the scene wrote
 /// @throws SceneError
 Cadence read_cadence(TableReader& reader, bool may_be_wall, const SceneIntegrator& integrator, SceneValue& effective);

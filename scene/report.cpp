@@ -107,6 +107,7 @@ std::string to_json(const RunReport& r) {
     members.emplace_back("minimized", Json::object({{"force", r.minimized->force}, {"steps", r.minimized->steps}}));
   }
   if (!r.epoch.empty()) members.emplace_back("epoch", r.epoch);
+  if (r.start_time != 0) members.emplace_back("start_time", r.start_time);
   if (!r.warnings.empty()) members.emplace_back("warnings", Json::list_of(r.warnings));
   return Json::object(members).text();
 }
@@ -158,7 +159,9 @@ std::string to_text(const RunReport& r) {
         "shorter steps\n",
         r.outcome.unresolved);
   }
-  if (!r.epoch.empty()) text += fmt::format("bodies: as of {}\n", r.epoch);
+  const std::string begun = r.start_time == 0 ? "" : fmt::format("time {:.9g}{}", r.start_time, unit);
+  if (!r.epoch.empty()) text += fmt::format("bodies: as of {}{}\n", r.epoch, begun.empty() ? "" : ", at " + begun);
+  if (r.epoch.empty() && !begun.empty()) text += fmt::format("begun at {}\n", begun);
   for (const std::string& warning : r.warnings) text += fmt::format("warning: {}\n", warning);
   if (r.resumed_from_step) text += fmt::format("resumed from step {}\n", *r.resumed_from_step);
   for (const auto& [name, monitor] : r.monitors) {

@@ -65,25 +65,26 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  void attach(Simulation<double>& sim) {
+  /// @param begin  what the clock showed at step 0 [time]
+  void attach(Simulation<double>& sim, double begin) {
     if (!shows_) return;
     Energy* energy = nullptr;
     sim.for_each_monitor([&](const std::string&, AnyMonitor<double>& monitor) {
       if (auto* found = monitor.get<Energy>()) energy = found;
     });
     const std::int64_t first = sim.step();
-    const double start = sim.time();
-    sim.on_progress([=, this](const Progress& now) { show(now, first, start, energy); });
+    const double from = sim.time();
+    sim.on_progress([=, this](const Progress& now) { show(now, first, from, begin, energy); });
   }
 
  private:
-  void show(const Progress& now, std::int64_t first, double start, const Energy* energy) {
+  void show(const Progress& now, std::int64_t first, double from, double begin, const Energy* energy) {
     shown_ = true;
     const auto made = static_cast<double>(now.step - first);
     const bool in_time = std::isfinite(now.until);
-    const double done = in_time ? now.time : static_cast<double>(now.step);
-    const double end = in_time ? now.until : static_cast<double>(now.end);
-    const double gone = in_time ? now.time - start : made;
+    const double done = in_time ? now.time - begin : static_cast<double>(now.step);
+    const double end = in_time ? now.until - begin : static_cast<double>(now.end);
+    const double gone = in_time ? now.time - from : made;
     const double rate = now.seconds > 0 ? made / now.seconds : 0;
     std::string line = fmt::format("{:5.1f} %  {:.3g} steps/s", 100 * done / end, rate);
     if (gone != 0) line += fmt::format("  {} left", duration_text((end - done) / gone * now.seconds));
@@ -170,11 +171,12 @@ class Runner {
     check_same_scene(checkpoint, scene_);
     if (ends_in_time()) {
       const double end = *scene_.integrator.until;
-      const auto clock = Clock<double>::free(0, scene_.integrator.direction());
-      if (clock.is_later(0, checkpoint.time)) {
+      const double start = scene_.integrator.start;
+      const auto clock = clock_of(scene_.integrator);
+      if (clock.is_later(start, checkpoint.time)) {
         throw SceneError(fmt::format("the end at time {} lies the other way: the checkpoint stands at time {}; give a "
-                                     "time {} 0, or --fresh",
-                                     end, checkpoint.time, end > 0 ? "below" : "above"),
+                                     "time {} {}, or --fresh",
+                                     end, checkpoint.time, end > start ? "below" : "above", start),
                          {.file = scene_.source.file, .key = "integrator.until"});
       }
       if (!clock.is_later(checkpoint.time, end)) return;
@@ -208,7 +210,7 @@ class Runner {
     std::optional<StopOnSignals> signals;
     if (options_.handle_signals) sim.stop_on(signals.emplace().flag());
     ProgressLine line(options_.progress);
-    line.attach(sim);
+    line.attach(sim, scene_.integrator.start);
     return ends_in_time() ? sim.run_until(*scene_.integrator.until) : sim.run(target() - sim.step());
   }
 
@@ -248,6 +250,7 @@ class Runner {
     r.time_unit = scene_.units->time;
     r.digest = io::digest(sim.particles());
     r.dt = scene_.integrator.step;
+    r.start_time = scene_.integrator.start;
     r.particles = sim.particles().size();
     r.threads = thread_count();
     r.steps_made = ending_.steps_made;

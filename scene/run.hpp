@@ -29,7 +29,7 @@ struct RunReport {
   std::string scene, scene_sha256;  ///< as typed; hash of the effective scene
   std::string epoch;                ///< of the bodies of a Horizons table, "JD 2451545 TDB"; else empty
   std::string method, hamiltonian, time_unit, simd, digest;
-  double dt = 0;
+  double dt = 0, start_time = 0;  ///< the step, and what the clock showed at step 0 [time]
   Index particles = 0;
   int threads = 1;
   std::optional<std::int64_t> resumed_from_step;

@@ -42,15 +42,22 @@ struct SceneIntegrator {
   std::optional<MethodChoice> classical;   ///< a classical method instead of the scheme
   double step = 0;                         ///< [time], signed; 0: the method chooses, and finds the first one itself
   std::string step_text;                   ///< as the scene writes it
+  double start = 0;                        ///< what the clock shows at the first step [time]
   std::optional<std::int64_t> steps;       ///< of the whole run; empty if the scene has no end, or one in time
-  std::optional<double> until;             ///< [time]: the end, where the method chooses its steps
+  std::optional<double> until;             ///< [time] by the clock: the end, where the method chooses its steps
   CompositionOptions composition;          ///< of the scheme
   std::vector<SceneDecorator> decorators;  ///< the first stands around the method, each further one around all before
 
   /// Whether the method chooses its steps.
   bool adaptive() const { return classical && classical->info->is_adaptive(classical->options); }
   /// Which way the run goes: the end says it where there is one in time, else the step.
-  Direction direction() const { return until.value_or(step) < 0 ? Direction::backward : Direction::forward; }
+  Direction direction() const { return (until ? *until - start : step) < 0 ? Direction::backward : Direction::forward; }
+  /// How long the whole run is, below 0 where time falls [time]; empty where the scene does not say.
+  std::optional<double> length() const {
+    if (until) return *until - start;
+    if (steps && step != 0 && !adaptive()) return static_cast<double>(*steps) * step;
+    return {};
+  }
 };
 
 /// One `[[every]]`.
@@ -118,7 +125,7 @@ struct SceneFiles {
 /// The scheme of a scene; its name lives as long as `integrator`.
 Scheme scheme_of(const SceneIntegrator& integrator);
 
-/// The clock of a scene at its start.
+/// The clock of a scene at its first step.
 Clock<double> clock_of(const SceneIntegrator& integrator);
 
 /// The constraints of a scene's first `tables` tables; all of them unless told.

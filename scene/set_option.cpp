@@ -20,8 +20,8 @@ constexpr std::array<std::string_view, 5> known_tables = {"particles", "hamilton
 constexpr std::array<std::string_view, 2> known_of_hamiltonian = {"neighbors", "thermostat"};
 
 /// Keys of one table of which at most one is given.
-constexpr std::array<std::array<std::string_view, 3>, 3> alternatives = {
-    {{"steps", "until", ""}, {"steps", "every", "wall"}, {"density", "constant", ""}}};
+constexpr std::array<std::array<std::string_view, 4>, 3> alternatives = {
+    {{"steps", "until", "", ""}, {"steps", "every", "wall", "times"}, {"density", "constant", "", ""}}};
 
 std::vector<std::string> split(std::string_view path) {
   std::vector<std::string> keys(1);

@@ -188,6 +188,24 @@ std::string other_gravitation(const Scene& scene) {
                      G / units.G, units.G, unit_of(parse_dimension("length^3/mass/time^2"), units), meant);
 }
 
+/// Times of a list that the run does not come to; empty where there are none.
+std::string times_after_the_end(const SceneWatch& watch, const Scene& scene) {
+  const auto length = scene.integrator.length();
+  const std::vector<double>& times = watch.cadence.times;
+  if (!length || times.empty()) return "";
+  const double start = scene.integrator.start;
+  const double grace = scene.integrator.adaptive() ? 0 : std::abs(scene.integrator.step) / 2;
+  const auto later = [&](double time) { return std::abs(time - start) > std::abs(*length) + grace; };
+  const auto count = std::count_if(times.begin(), times.end(), later);
+  if (count == 0) return "";
+  const std::string unit = scene.units->time == "1" ? "" : fmt::format(" {}", scene.units->time);
+  const std::string name = watch.kind == SceneWatch::Kind::monitor      ? watch.monitor.name
+                           : watch.kind == SceneWatch::Kind::trajectory ? "trajectory"
+                                                                        : "checkpoint";
+  return fmt::format("{} of {} times of '{}' lie after the end at {:.12g}{}, so it does not look then", count,
+                     times.size(), name, start + *length, unit);
+}
+
 }  // namespace
 
 std::vector<std::string> warnings_of(const Scene& scene) {
@@ -219,6 +237,7 @@ std::vector<std::string> warnings_of(const Scene& scene) {
   add(other_primary(scene));
   add(other_gravitation(scene));
   add(unmoved_tracers(scene));
+  for (const SceneWatch& watch : scene.watches) add(times_after_the_end(watch, scene));
   return warnings;
 }
 

@@ -20,9 +20,10 @@ namespace {
 constexpr double margin = 0.7;      ///< of the error that was asked for: fits scatter
 constexpr double rounding = 1e-14;  ///< no fit is believed below
 
+/// From the start on [time].
 double end_of(const Scene& scene) {
   const SceneIntegrator& own = scene.integrator;
-  if (own.until) return *own.until;
+  if (own.until) return *own.until - own.start;
   if (own.steps && own.step != 0) return static_cast<double>(*own.steps) * own.step;
   throw SceneError("the scene has no end, so nothing can be said of its whole run; give until or steps in [integrator]",
                    {.file = scene.source.file, .key = "integrator.until"});
@@ -170,6 +171,9 @@ std::vector<double> times_to_meet(const Scene& scene, double end) {
   const SceneValue* every = scene.effective.find("every");
   const auto* tables = every == nullptr ? nullptr : every->get<SceneValue::Array>();
   for (std::size_t k = 0; tables != nullptr && k < tables->size() && k < scene.watches.size(); ++k) {
+    for (const double time : scene.watches[k].cadence.times) {
+      if (time != scene.integrator.start) times.push_back(time - scene.integrator.start);
+    }
     if ((*tables)[k].find("every") == nullptr) continue;
     times.push_back(static_cast<double>(scene.watches[k].cadence.steps) * scene.integrator.step);
   }

@@ -36,7 +36,7 @@ double own_step(const Scene& scene, const Sampling& sampling) {
   alone.watches.clear();
   alone.stops.clear();
   Simulation<double> sim = assemble(alone);
-  static_cast<void>(sim.run_until(sampling.interval));
+  static_cast<void>(sim.run_until(sampling.start + sampling.interval));
   return sim.step() > 0 ? sampling.interval / static_cast<double>(sim.step()) : sampling.interval;
 }
 
@@ -129,7 +129,7 @@ Comparison headed(const Scene& scene, const Sampling& sampling) {
   c.sampling = sampling;
   c.end = sampling.end();
   const SceneIntegrator& own = scene.integrator;
-  const double whole = own.until ? *own.until : own.steps ? static_cast<double>(*own.steps) * own.step : 0;
+  const double whole = own.until ? *own.until - own.start : own.steps ? static_cast<double>(*own.steps) * own.step : 0;
   if (std::abs(whole - c.end) > 1e-9 * whole) c.scene_end = whole;
   return c;
 }
@@ -138,8 +138,7 @@ Comparison headed(const Scene& scene, const Sampling& sampling) {
 
 Sampling sampling_of(const Scene& scene, const std::optional<double>& until) {
   const SceneIntegrator& own = scene.integrator;
-  double end = until.value_or(0);
-  if (!until && own.until) end = *own.until;
+  double end = until ? *until - own.start : own.until ? *own.until - own.start : 0;  // from the start on
   if (!until && !own.until) {
     if (!own.steps || own.step == 0) {
       throw SceneError("the scene has no end; give until or steps in [integrator], or --until",
@@ -153,11 +152,14 @@ Sampling sampling_of(const Scene& scene, const std::optional<double>& until) {
         {.file = scene.source.file, .key = "integrator.step", .value = fmt::format("{}", own.step)});
   }
   if (!(end > 0) || !std::isfinite(end)) {
-    throw SceneError(fmt::format("a comparison goes forward, over a time above 0; this one would end at {}", end),
+    const std::string from = own.start == 0 ? "" : fmt::format(", from a start at {}", own.start);
+    throw SceneError(fmt::format("a comparison goes forward, over a time above 0; this one would end at {}{}",
+                                 own.start + end, from),
                      {.file = scene.source.file, .key = "integrator.until"});
   }
   Sampling sampling;
   sampling.interval = end / sampling.samples;
+  sampling.start = own.start;
   return sampling;
 }
 

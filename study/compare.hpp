@@ -14,7 +14,7 @@ struct CompareOptions {
   std::vector<std::string> methods = {};  ///< names as `candidate` reads them; empty: `default_opponents`
   std::vector<double> steps = {};         ///< of every method with fixed steps [time]; empty: a ladder for each
   std::vector<double> tolerances = {};    ///< of every adaptive method; empty: 1e-4 ... 1e-14
-  std::optional<double> until = {};       ///< [time]; default: the scene's end, at most `longest_steps` of its steps
+  std::optional<double> until = {};       ///< by the clock [time]; default: the end, at most `longest_steps` steps on
   int repeats = 3;
   double row_budget = 10;  ///< seconds of wall time for one run
   TruthOptions truth = {};

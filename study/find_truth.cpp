@@ -72,10 +72,10 @@ WideRun run_wide(const WideScene& wide, const Sampling& sampling, const MethodCh
     run.rate.push_back(rate);
   };
   const auto begin = std::chrono::steady_clock::now();
-  Quad t(0);
+  Quad t(sampling.start);
   keep(t, t);
   for (int j = 1; j <= sampling.samples; ++j) {
-    const Quad goal = sampling.exact_time(j);
+    const Quad goal = sampling.clock_time(j);
     while (true) {
       const double left = static_cast<double>(goal - t);
       if (!(left > 1e-12 * sampling.interval)) break;
@@ -90,7 +90,7 @@ WideRun run_wide(const WideScene& wide, const Sampling& sampling, const MethodCh
         run.failure = "it takes too many evaluations";
         return run;
       }
-      const double reached = static_cast<double>(t) / sampling.end(), spent = since(begin);
+      const double reached = static_cast<double>(t - Quad(sampling.start)) / sampling.end(), spent = since(begin);
       if (spent > budget || (spent > 0.1 * budget && spent > 2 * reached * budget)) {
         run.failure = too_slow(reached, spent, budget);
         return run;
@@ -197,7 +197,7 @@ void set_energies(Truth& truth, WideScene& wide, const Sampling& sampling) {
     const Vector<Quad>& y = truth.y[j];
     wide.field->scatter(y, s);
     s.wrap();
-    s.clock().set_stage_offset(sampling.exact_time(static_cast<int>(j)));
+    s.clock().set_stage_offset(sampling.clock_time(static_cast<int>(j)));
     truth.energy.push_back(static_cast<double>(wide.field->energy(s).total()));
   }
 }

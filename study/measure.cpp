@@ -19,14 +19,14 @@ namespace {
 /// Keeps every state it sees.
 class Recorder {
  public:
-  Recorder(std::shared_ptr<Track> kept, bool with_energy, double step)
-      : track_(std::move(kept)), energy_(with_energy), dt_(step) {}
+  Recorder(std::shared_ptr<Track> kept, bool with_energy, double step, double start)
+      : track_(std::move(kept)), energy_(with_energy), dt_(step), start_(start) {}
 
   static constexpr auto describe() { return part<Recorder>("recorder", "states for a comparison"); }
   Request wanted() const { return {.energy = energy_}; }
   void observe(const Snapshot<double>& now) {
     const ParticleSystem<double>& s = now.state();
-    track_->times.push_back(dt_ != 0 ? Quad(dt_) * Quad(now.step()) : Quad(now.time()));
+    track_->times.push_back(dt_ != 0 ? Quad(dt_) * Quad(now.step()) : Quad(now.time()) - Quad(start_));
     if (s.size() <= most_bodies) keep(s);
     if (energy_) track_->energy.push_back(now.energy().total());
     if (energy_ && track_->energy_scale == 0) {
@@ -49,7 +49,8 @@ class Recorder {
 
   std::shared_ptr<Track> track_;
   bool energy_;
-  double dt_;  ///< of a fixed clock [time]; 0: the time of the snapshot
+  double dt_;     ///< of a fixed clock [time]; 0: the time of the snapshot
+  double start_;  ///< what the clock shows at step 0 [time]
 };
 
 /// Ends a run at the end of its budget.
@@ -73,7 +74,7 @@ std::int64_t steps_between(const Setting& setting, const Sampling& sampling) {
 
 Outcome run_whole(Simulation<double>& sim, const Setting& setting, const Sampling& sampling) {
   if (setting.step > 0) return sim.run(steps_between(setting, sampling) * sampling.samples);
-  return sim.run_until(sampling.end());
+  return sim.run_until(sampling.start + sampling.end());
 }
 
 template <class M> M* watch(Simulation<double>& sim, const Setting& setting, const Sampling& sampling, M monitor) {
@@ -111,7 +112,7 @@ bool watched_run(Row& row, const Scene& alone, const Sampling& sampling, const M
   const IntegratorClaims claims = sim.claims();
   const bool particles = alone.particles.size() > 0, energy = claims.energy && particles;
   auto track = std::make_shared<Track>();
-  watch(sim, row.setting, sampling, Recorder(track, energy, row.setting.step));
+  watch(sim, row.setting, sampling, Recorder(track, energy, row.setting.step, sampling.start));
   const Energy* watched = energy ? watch(sim, row.setting, sampling, Energy()) : nullptr;
   const Momentum* momentum =
       particles && claims.keeps_momentum ? watch(sim, row.setting, sampling, Momentum()) : nullptr;
@@ -188,7 +189,7 @@ std::optional<double> rms_of(const std::vector<double>& values) {
 }
 
 /// Calls a run that has grown out of all proportion what it is, though its numbers have stayed finite.
-void mark_diverged(Row& row, const Truth& truth, const PositionError& error) {
+void mark_diverged(Row& row, const Truth& truth, const Sampling& sampling, const PositionError& error) {
   const Track& track = row.track;
   if (!row.completed() || track.y.empty()) return;
   double scale = truth.has_states() ? 0 : error.size(track.y[0].cast<Quad>());
@@ -199,7 +200,7 @@ void mark_diverged(Row& row, const Truth& truth, const PositionError& error) {
     const double times = error.size(track.y[j].cast<Quad>()) / scale;
     if (times <= most) continue;
     row.outcome = name(Outcome::Kind::diverged);
-    row.outcome_time = static_cast<double>(track.times[j]);
+    row.outcome_time = static_cast<double>(Quad(sampling.start) + track.times[j]);
     row.message = fmt::format("{:.2g} times as large as {} at t = {:.6g}", times,
                               truth.has_states() ? "the truth ever is" : "at the start", row.outcome_time);
     return;
@@ -252,7 +253,7 @@ std::vector<double> energy_errors(const Track& track, const Truth& truth) {
 
 void set_errors(Row& row, const Truth& truth, const Sampling& sampling, const PositionError& error) {
   const Track& track = row.track;
-  mark_diverged(row, truth, error);
+  mark_diverged(row, truth, sampling, error);
   row.truth = truth.name;
   row.truth_error = truth.error;
   std::vector<double> errors;

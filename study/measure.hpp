@@ -14,7 +14,7 @@ namespace noether {
 
 /// States and invariants of a run at the moments of a sampling, the start among them.
 struct Track {
-  std::vector<Quad> times = {};        ///< of the states, exact products of the step
+  std::vector<Quad> times = {};        ///< of the states from the start on, exact products of the step
   std::vector<Vector<double>> y = {};  ///< as in `Truth`
   std::vector<double> energy = {};     ///< total [energy]; empty where no force tells it
   double energy_scale = 0;             ///< what energy errors are relative to
@@ -28,7 +28,7 @@ struct Row {
   Setting setting = {};
   std::string outcome = {};  ///< of the run, or "over_budget"
   std::string message = {};
-  double outcome_time = 0;  ///< [time]
+  double outcome_time = 0;  ///< by the clock [time]
   std::int64_t steps = 0;
   Evaluations evaluations = {};
   std::optional<double> wall_s = {}, wall_mad_s = {};  ///< of the run alone, nobody watching

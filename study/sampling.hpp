@@ -16,16 +16,19 @@ namespace noether {
 /// States of larger systems are not kept: a comparison holds two hundred of them for every row.
 inline constexpr Index most_bodies = 300;
 
-/// `samples` moments at equal distances, the last one at the end; the start is moment 0.
+/// `samples` moments at equal distances, the last one at the end; the start is moment 0. Times count from the start.
 struct Sampling {
   double interval = 0;  ///< [time]
   int samples = 200;
+  double start = 0;  ///< what the clock shows at moment 0 [time]
 
   double end() const { return interval * samples; }
   /// Moment `j` as adaptive methods are shown it [time].
   double time(int j) const { return interval * j; }
   /// The same, exact.
   Quad exact_time(int j) const { return Quad(interval) * Quad(j); }
+  /// What the clock shows then, exact [time].
+  Quad clock_time(int j) const { return Quad(start) + exact_time(j); }
 
   /// How many steps of about `step` make one interval; at least 1.
   /// @throws Error  for a step of which the whole run has more than can be counted

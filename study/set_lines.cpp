@@ -46,7 +46,7 @@ std::vector<std::string> wanted(const Scene& scene, const Candidate& who, const 
   if (who.adaptive) {
     lines.push_back("integrator.rtol=" + format_number(setting.tolerance));
     lines.push_back("integrator.atol=" + format_number(absolute_tolerance(scene, setting.tolerance)));
-    if (counts_steps) lines.push_back("integrator.until=" + time_text(end, *scene.units));
+    if (counts_steps) lines.push_back("integrator.until=" + time_text(scene.integrator.start + end, *scene.units));
     return lines;
   }
   lines.push_back("integrator.step=" + time_text(setting.step, *scene.units));

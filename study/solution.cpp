@@ -81,9 +81,9 @@ double damping_of(const Scene& scene) {
   if (!scene.system) return drag_of(scene);
   const auto field = scene.system->field();
   Vector<double> y = Vector<double>::Zero(2), still(2), moving(2);
-  field->rate(0, y, still);
+  field->rate(scene.integrator.start, y, still);
   y[1] = 1;
-  field->rate(0, y, moving);
+  field->rate(scene.integrator.start, y, moving);
   return still[1] - moving[1];
 }
 
@@ -121,7 +121,7 @@ DisplayedRun display(const Scene& scene, const Candidate& who, double step, doub
   // The moments of this run are every so many steps, or every so many moments of the truth.
   const double spacing = end / moments;
   const auto every = std::max<std::int64_t>(1, std::llround(step / spacing));
-  const Sampling own{spacing * static_cast<double>(every), static_cast<int>(moments / every)};
+  const Sampling own{spacing * static_cast<double>(every), static_cast<int>(moments / every), scene.integrator.start};
   Row row;
   try {
     row = measure(scene, who, {.step = step, .tolerance = 0}, own, {.repeats = 1, .budget = 1});
@@ -163,7 +163,7 @@ std::optional<Solution> solution_of(const Scene& scene, const Comparison& c) {
   for (const Candidate& who : methods) s.methods.push_back(who.label);
   for (std::size_t d = 0; d < s.dampings.size(); ++d) {
     const Scene one = damped(scene, s.dampings[d]);
-    const Truth truth = find_truth(one, {spacing, moments}, {.budget = 20, .rtol = 1e-18});
+    const Truth truth = find_truth(one, {spacing, moments, one.integrator.start}, {.budget = 20, .rtol = 1e-18});
     ExactMotion exact;
     for (std::size_t j = 0; j < truth.y.size(); ++j) {
       exact.t.push_back(spacing * static_cast<double>(j));

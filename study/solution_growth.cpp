@@ -15,7 +15,7 @@ void SolutionGrowth::look(double time, double budget, const Bounds& bounds) {
     const Trial trial = follow(sim, {.steps = 0, .until = time}, Amplitude(scene_, frequency_),
                                {.frequency = frequency_, .linear = false, .most = most}, budget);
     largest_ = std::max(largest_, trial.largest);
-    if (trial.verdict == Bounded::unbounded && trial.largest > most) leaves_ = sim.time();
+    if (trial.verdict == Bounded::unbounded && trial.largest > most) leaves_ = sim.time() - scene_.integrator.start;
   } catch (const Error&) {
     return;
   }

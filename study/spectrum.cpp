@@ -118,7 +118,7 @@ Spectrum spectrum_of(VectorField<double>& f, const ParticleSystem<double>& s, do
 /// How far a run looks ahead for frequencies [time]; 0: not at all.
 double look_ahead(const Scene& scene) {
   const SceneIntegrator& own = scene.integrator;
-  double end = own.until.value_or(0);
+  double end = own.until ? *own.until - own.start : 0;
   if (own.steps && own.step != 0) end = static_cast<double>(*own.steps) * own.step;
   if (own.step != 0) end = std::min(end > 0 ? end : 1000 * own.step, 1000 * own.step);
   return std::isfinite(end) && end > 0 ? end : 0;
@@ -183,7 +183,7 @@ Spectrum spectrum_at(const Scene& scene, const ParticleSystem<double>& s) {
   if (!forces_tell_all(scene)) return {};
   const auto field = field_of(scene);
   field->bind(s);
-  return spectrum_of(*field, s, 0);
+  return spectrum_of(*field, s, scene.integrator.start);
 }
 
 double drag_of(const Scene& scene) {
@@ -197,14 +197,15 @@ bool is_linear(const Scene& scene) {
   if (!forces_tell_all(scene)) return false;
   const auto field = field_of(scene);
   field->bind(scene.particles);
+  const double t = scene.integrator.start;
   Vector<double> y, start, one, two;
   field->gather(scene.particles, y);
-  field->rate(0, y, start);
+  field->rate(t, y, start);
   const double size = std::max(y.cwiseAbs().maxCoeff(), 1e-3);
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     const Vector<double> d = 0.7 * size * scattered(y.size(), seed);
-    field->rate(0, y + d, one);
-    field->rate(0, y + 2 * d, two);
+    field->rate(t, y + d, one);
+    field->rate(t, y + 2 * d, two);
     const double change = (one - start).cwiseAbs().maxCoeff(), bend = (two - 2 * one + start).cwiseAbs().maxCoeff();
     if (!(bend <= 1e-10 * (change + start.cwiseAbs().maxCoeff()))) return false;
   }
@@ -215,7 +216,7 @@ Spectrum spectrum_along(const Scene& scene) {
   if (!forces_tell_all(scene)) return {};
   const auto field = field_of(scene);
   field->bind(scene.particles);
-  Spectrum found = spectrum_of(*field, scene.particles, 0);
+  Spectrum found = spectrum_of(*field, scene.particles, scene.integrator.start);
   const double end = look_ahead(scene);
   if (end == 0 || is_linear(scene) || !scene.hamiltonian.constraints.empty() || scene.system) return found;
   constexpr int looks = 64;
@@ -225,7 +226,7 @@ Spectrum spectrum_along(const Scene& scene) {
     sim.stop_on(&over);
     sim.on_progress([&](const Progress& now) { over = now.seconds > 1; });
     for (int k = 1; k <= looks; ++k) {
-      if (!sim.run_until(end * k / looks).ok()) break;
+      if (!sim.run_until(scene.integrator.start + end * k / looks).ok()) break;
       const Spectrum one = spectrum_of(*field, sim.particles(), sim.time());
       found.fastest = std::max(found.fastest, one.fastest);
       found.steepest = std::max(found.steepest, one.steepest);

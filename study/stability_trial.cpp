@@ -61,7 +61,7 @@ std::string_view name(Bounded verdict) {
 Trial follow(Simulation<double>& sim, const RunLength& length, const Amplitude& amplitude, const Bounds& bounds,
              double budget, const std::function<void(Simulation<double>&)>& look) {
   const auto begin = std::chrono::steady_clock::now();
-  const double start = amplitude(sim.particles());
+  const double start = amplitude(sim.particles()), begun_at = sim.time();
   // What a symplectic method does to a linear problem is bounded, or grows by far more than rounding.
   const bool creeps = bounds.linear && !sim.claims().symplectic && length.until == 0;
   Trial trial;
@@ -76,7 +76,7 @@ Trial follow(Simulation<double>& sim, const RunLength& length, const Amplitude& 
     double most = 0;
     for (std::int64_t k = 0; k < looks_a_block && !done(looks); ++k) {
       ++looks;
-      const Outcome outcome = length.until > 0 ? sim.run_until(length.until * looks / RunLength::looks)
+      const Outcome outcome = length.until > 0 ? sim.run_until(begun_at + length.until * looks / RunLength::looks)
                                                : sim.run(std::min(cut, length.steps - trial.steps));
       trial.steps = sim.step();
       const double a = outcome.ok() ? amplitude(sim.particles()) : 0;

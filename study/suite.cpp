@@ -50,11 +50,11 @@ RunLength length_of(const Scene& scene, const Candidate& who) {
   const SceneIntegrator& own = scene.integrator;
   if (who.adaptive) {
     if (!own.until) throw Error("a method that chooses its steps needs until in [integrator]");
-    if (*own.until < 0) {
+    if (*own.until < own.start) {
       throw SceneError(fmt::format("a verdict is of a run that goes forward; this one would end at {}", *own.until),
                        {.file = scene.source.file, .key = "integrator.until"});
     }
-    return {.steps = 0, .until = *own.until};
+    return {.steps = 0, .until = *own.until - own.start};
   }
   if (!own.steps || *own.steps < RunLength::looks) {
     throw Error(fmt::format("a verdict is of a run of {} steps or more; give until or steps in [integrator]",
@@ -184,8 +184,7 @@ class Judge {
   const Sharing& reference() {
     if (reference_) return *reference_;
     reference_.emplace();
-    const double end = scene_.integrator.until.value_or(static_cast<double>(scene_.integrator.steps.value_or(0)) *
-                                                        scene_.integrator.step);
+    const double end = scene_.integrator.length().value_or(0);
     Simulation<double> sim = assemble(variant(scene_, candidate(scene_, "dop853"), {.step = 0, .tolerance = 1e-10}));
     static_cast<void>(follow(sim, {.steps = 0, .until = end}, Amplitude(scene_, bounds_.frequency), bounds_,
                              options_.row_budget, [&](Simulation<double>& now) { reference_->look(now.particles()); }));

@@ -30,7 +30,7 @@ SplitRun run_along(const WideScene& wide, const Sampling& sampling, std::string_
   SplitRun run;
   Composition<AnyHamiltonian<Quad>> along(*wide.splitting, *schemes::find(scheme));
   ParticleSystem<Quad> s = wide.start;
-  s.clock() = Clock<Quad>::fixed(0, sampling.interval / static_cast<double>(steps));
+  s.clock() = Clock<Quad>::fixed(sampling.start, sampling.interval / static_cast<double>(steps));
   along.bind(s);
   ParticleSystem<Quad> seen = s;
   VectorColumn<Quad> a(s.size());

@@ -12,7 +12,7 @@ namespace noether {
 
 /// A smooth solution that everything beside it falls onto at once, where methods lose order.
 ///
-///     y' = lambda (y - g(t)) + g'(t),   g(t) = sin(omega t + pi/4);   y = g where y(0) = g(0)
+///     y' = lambda (y - g(t)) + g'(t),   g(t) = sin(omega t + pi/4);   y = g where it begins there
 /// @source ProtheroRobinson1974
 struct ProtheroRobinson {
   double lambda = -1e6;  ///< how fast others fall onto the solution [1/time]
@@ -28,6 +28,8 @@ struct ProtheroRobinson {
 
   Index size() const { return 1; }
   std::vector<double> start() const { return exact(0); }
+  /// On the solution, at whatever time a run begins.
+  std::vector<double> start_at(double t) const { return exact(t); }
   /// The solution that begins at `start()`.
   std::vector<double> exact(double t) const { return {std::sin(omega * t + phase)}; }
 

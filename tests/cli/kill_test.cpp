@@ -86,6 +86,23 @@ type = "checkpoint"
 steps = 20
 )";
 
+/// Two bodies by a method with steps of its own, from another time than 0; frames and samples at times of lists.
+std::string listed_run() {
+  std::string frames, samples;
+  for (int k = 1; k <= 300; ++k) frames += fmt::format("{}{}", k == 1 ? "" : ", ", 1000 + 0.4 * k + 0.1 * (k % 3));
+  for (int k = 0; k <= 500; ++k) samples += fmt::format("{}{}", k == 0 ? "" : ", ", 1010 + 0.2 * k);
+  return two_bodies.substr(0, two_bodies.find("[integrator]")) + R"([integrator]
+method = "dop853"
+rtol = 1e-10
+start_time = 1000
+until = 1120
+[[every]]
+type = "energy"
+times = [)" +
+         samples + "]\n[[every]]\ntype = \"trajectory\"\ntimes = [" + frames +
+         "]\n[[every]]\ntype = \"checkpoint\"\nsteps = 20\n";
+}
+
 std::string tracers() {
   std::string bodies = "name,mass,x,y,z,vx,vy,vz\nstar,1,0,0,0,0,0,0\nplanet,0.001,1,0,0,0,1,0\n";
   for (int k = 0; k < 20'000; ++k) {
@@ -158,11 +175,17 @@ TEST_CASE("a system's run killed at moments from start to end ends, resumed, as 
   die_at_moments(stiff_system, 0, 12);
 }
 
+TEST_CASE("a run with lists of times killed at moments from start to end ends, resumed, as one never killed",
+          "[cli][resume][kill][times][slow]") {
+  die_at_moments(listed_run(), 0, 12);
+}
+
 TEST_CASE("so they do for hundreds of deaths", "[cli][resume][kill][.][nightly]") {
   die_at_moments(small_run, 20, 400);
   die_at_moments(large_run, 2, 150);
   die_at_moments(chaotic_system, 20, 200);
   die_at_moments(stiff_system, 0, 200);
+  die_at_moments(listed_run(), 0, 200);
 }
 
 }  // namespace

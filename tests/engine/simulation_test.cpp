@@ -72,10 +72,11 @@ TEST_CASE("a monitor whose type is known at run time is attached as any other, b
   static_assert(std::is_nothrow_move_constructible_v<Simulation<double>>, "vectors of simulations grow");
   Simulation<double> run(s, compose(test::kinetic_potential(HarmonicField{.k = 1}), schemes::verlet), 0.1);
   CHECK_THROWS_WITH(run.attach(Energy{}, {}),
-                    "monitor 'energy' has 0 cadences; give one: steps, an interval of time, or "
-                    "wall time");
+                    "monitor 'energy' has 0 cadences; give one: steps, an interval of time, wall time, or a list of "
+                    "times");
   CHECK_THROWS_WITH(run.attach(Energy{}, {.steps = 1, .wall = 2}),
-                    "monitor 'energy' has 2 cadences; give one: steps, an interval of time, or wall time");
+                    "monitor 'energy' has 2 cadences; give one: steps, an interval of time, wall time, or a list of "
+                    "times");
 }
 
 }  // namespace

@@ -1,10 +1,12 @@
 // A trajectory in which a bit of a number has changed: verify says where.
 
+#include "io/hdf5_file.hpp"
 #include "io/inspect.hpp"
 #include "tests/io/support.hpp"
 
 #include <fmt/format.h>
 
+#include <map>
 #include <random>
 
 #if NOETHER_HDF5
@@ -24,6 +26,8 @@ class Finished {
     monitors_ = io::read_monitors(folder_ / "run.h5");
   }
   const io::Frames& frames() const { return frames_; }
+  std::filesystem::path file() const { return folder_ / "run.h5"; }
+  std::size_t size() const { return bytes_.size(); }
   const std::vector<io::MonitorSeries>& monitors() const { return monitors_; }
 
   std::vector<std::string> damaged() const { return io::verify(folder_ / "run.h5").damaged; }
@@ -33,18 +37,93 @@ class Finished {
     const std::size_t at = bytes_.find(wanted);
     REQUIRE(at != std::string::npos);
     std::string changed = bytes_;
-    char& byte = changed[at + bit / 8];
-    byte = static_cast<char>(static_cast<unsigned char>(byte) ^ (1U << bit % 8));
-    write_text(folder_ / "run.h5", changed);
+    flip(changed, at, bit);
+    return damaged();
+  }
+  /// With one bit of the file flipped.
+  std::vector<std::string> damaged_at(std::size_t byte, std::size_t bit) const {
+    std::string changed = bytes_;
+    flip(changed, byte, bit);
     return damaged();
   }
 
  private:
+  void flip(std::string& bytes, std::size_t at, std::size_t bit) const {
+    char& byte = bytes[at + bit / 8];
+    byte = static_cast<char>(static_cast<unsigned char>(byte) ^ (1U << bit % 8));
+    write_text(folder_ / "run.h5", bytes);
+  }
+
   ScratchFolder folder_;
   std::string bytes_;
   io::Frames frames_;
   std::vector<io::MonitorSeries> monitors_;
 };
+
+template <class Number> std::string as_bytes(const std::vector<Number>& numbers) {
+  return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(Number)};
+}
+
+/// All that can be read of a file: each path with its values, each attribute.
+void read_all(const io::Hdf5File& file, const std::string& path, std::map<std::string, std::string>& all) {
+  for (const std::string& name : file.attributes(path)) all[path + "@" + name] = file.attribute_bytes(path, name);
+  if (file.is_group(path)) {
+    all[path] = "a group";
+    for (const std::string& name : file.children(path)) read_all(file, path + (path == "/" ? "" : "/") + name, all);
+    return;
+  }
+  const io::Hdf5Dataset dataset = file.open(path);
+  std::string& values = all[path];
+  if (dataset.type() == io::ElementType::real) values = as_bytes(dataset.read_reals());
+  if (dataset.type() == io::ElementType::integer) values = as_bytes(dataset.read_integers());
+  if (dataset.type() == io::ElementType::text) {
+    for (const std::string& one : dataset.read_texts()) values += one + '\n';
+  }
+}
+
+/// What no digest holds, as it changes while a run goes on: the scene, whose end may be moved, whether the run is
+/// complete, and the attributes of monitors, which come when they first look.
+bool is_held(const std::string& what) {
+  if (what.starts_with("/noether@")) {
+    for (const char* name : {"commit", "simd", "units", "version", "constants_sha256"}) {
+      if (what == std::string("/noether@") + name) return true;
+    }
+    return false;
+  }
+  return !what.starts_with("/noether/scene") &&
+         !(what.starts_with("/noether/monitors/") && what.find('@') != std::string::npos);
+}
+
+/// Flips bits anywhere in a file. Each is found, or changes nothing that can be read and is held.
+void flip_anywhere(std::uint64_t seed, int rounds) {
+  const Finished run;
+  std::map<std::string, std::string> before;
+  read_all(io::Hdf5File::open_to_read(run.file()), "/", before);
+  std::mt19937_64 random(seed);
+  int found = 0, harmless = 0;
+  for (int round = 0; round < rounds; ++round) {
+    const std::size_t byte = random() % run.size(), bit = random() % 8;
+    CAPTURE(round, byte, bit);
+    if (!run.damaged_at(byte, bit).empty()) {
+      ++found;
+      continue;
+    }
+    std::map<std::string, std::string> after;
+    read_all(io::Hdf5File::open_to_read(run.file()), "/", after);
+    std::vector<std::string> changed;
+    for (const auto& [what, value] : before) {
+      const auto now = after.find(what);
+      if ((now == after.end() || now->second != value) && is_held(what)) changed.push_back(what);
+    }
+    for (const auto& [what, value] : after) {
+      if (before.count(what) == 0 && is_held(what)) changed.push_back(what);
+    }
+    CHECK(changed == std::vector<std::string>{});
+    ++harmless;
+  }
+  CHECK(found > 0);
+  CHECK(harmless > 0);
+}
 
 std::string of_frame(const io::Frames& frames, std::size_t k) {
   return fmt::format("frame {} at step {} does not have the digest that was written with it", k, frames.frames[k].step);
@@ -90,6 +169,24 @@ TEST_CASE("any bit of a sample, or of what particles have once, is found", "[ins
               "the ids, names, masses or parameters of the particles are not those that were written"});
   }
 }
+
+TEST_CASE("a bit of an attribute that never changes is found", "[inspect][flips]") {
+  const Finished run;
+  const std::string bytes = read_text(run.file());
+  REQUIRE(io::Hdf5File::open_to_read(run.file()).text_attribute("/noether", "units") == "solar");
+  const std::size_t at = bytes.find("solar");
+  REQUIRE(at != std::string::npos);
+  CHECK_FALSE(run.damaged_at(at, 1).empty());
+  const std::size_t name = bytes.find("noether_unit");
+  REQUIRE(name != std::string::npos);
+  CHECK_FALSE(run.damaged_at(name + 3, 0).empty());
+}
+
+TEST_CASE("a bit that flips anywhere is found, or nothing that is held has changed", "[inspect][flips]") {
+  flip_anywhere(3, 200);
+}
+
+TEST_CASE("so it is with ten thousand", "[inspect][flips][.][nightly]") { flip_anywhere(4, 10'000); }
 
 }  // namespace noether::test
 
