@@ -99,7 +99,8 @@ int report_verified(const std::string& file, const io::Repair& found, bool json)
 
 struct FileArguments {
   std::string file, out;
-  bool json = false, repair = false, unwrapped = false;
+  bool json = false, repair = false, unwrapped = false, bodies = false;
+  std::optional<std::int64_t> frame;
 };
 
 CLI::App* file_command(CLI::App& app, const std::string& name, const std::string& help, const std::string& kinds,
@@ -143,12 +144,20 @@ void add_verify_command(CLI::App& app, const Parts& /*parts*/, int& exit_code) {
 
 void add_convert_command(CLI::App& app, const Parts& /*parts*/, int& exit_code) {
   const auto given = std::make_shared<FileArguments>();
-  CLI::App* command = file_command(app, "convert", "rewrite a trajectory as extended XYZ or CSV", "run.h5", given);
-  command->add_option("out", given->out, "FILE.xyz or FILE.csv")->required()->type_name("OUT");
+  CLI::App* command = file_command(app, "convert", "rewrite a trajectory as extended XYZ or CSV, or a frame as bodies",
+                                   "run.h5", given);
+  command->add_option("out", given->out, "FILE.xyz or FILE.csv; of bodies FILE.h5 or FILE.csv")
+      ->required()
+      ->type_name("OUT");
   command->add_flag("--unwrapped", given->unwrapped, "positions as if a periodic box had never taken them in");
+  CLI::Option* bodies = command->add_flag("--bodies", given->bodies, "one frame, for bodies = \"OUT\" of a new scene");
+  command->add_option("--frame", given->frame, "which frame, from 0; default: the last, -1")
+      ->needs(bodies)
+      ->type_name("N");
   command->add_flag("--json", given->json, "report as one line of JSON");
   command->callback([given, &exit_code] {
-    const Index frames = io::convert(given->file, given->out, {.unwrapped = given->unwrapped});
+    const Index frames = io::convert(given->file, given->out,
+                                     {.unwrapped = given->unwrapped, .bodies = given->bodies, .frame = given->frame});
     if (given->json) {
       fmt::print("{}\n",
                  Json::object({{"schema", "noether.convert/1"}, {"frames", std::int64_t{frames}}, {"file", given->out}})

@@ -224,7 +224,10 @@ template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double 
   std::optional<Outcome> result = fault(raw_);
   if (!result) result = keep_good();
   if (!result) result = observe_due();  // before the clock starts: writers open their files when they first look
-  if (result) return *result;
+  if (result) {
+    show_to_writers(*result);
+    return *result;
+  }
   const auto started = WallClock::now();
   const double before = seconds_;
   looked_at_clock_ = started;
@@ -271,6 +274,7 @@ template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double 
   if (!result && settled_fault()) result = fall_back();
   unresolved_at_end_ = 0;
   if (!result) result = look_at_the_end();
+  if (result) show_to_writers(*result);
   seconds_ = before + seconds_since(started);
   good_.reset();
   Outcome ended = result ? *result : outcome(Outcome::Kind::completed);
@@ -351,6 +355,20 @@ template <class Real> std::optional<Outcome> Simulation<Real>::look_at_the_end()
     if (!has_looked(scheduled, moment.time(), between_steps)) scheduled.monitor.at_end(moment);
   }
   return {};
+}
+
+/// Whoever writes files looks where a run has stopped or failed, due or not: nobody goes on from there, and the state
+/// that is told of must be one that can be read. A run that is interrupted goes on.
+template <class Real> void Simulation<Real>::show_to_writers(const Outcome& ended) {
+  if (ended.kind == Outcome::Kind::completed || ended.kind == Outcome::Kind::interrupted) return;
+  const Snapshot<Real> moment = snapshot({});
+  bool sound = false;
+  for (Scheduled& scheduled : monitors_) {
+    if (!scheduled.records || has_looked(scheduled, moment.time(), false)) continue;
+    if (!sound && fault(moment.state())) return;
+    sound = true;
+    scheduled.monitor.observe(moment);
+  }
 }
 
 /// Whether a monitor has seen the end of the run already.

@@ -7,6 +7,7 @@
 #include "io/trajectory_digest.hpp"
 #include "io/trajectory_layout.hpp"
 #include "io/trajectory_reader.hpp"
+#include "io/trajectory_topology.hpp"
 #include "numbers/error.hpp"
 
 #include <fmt/format.h>
@@ -42,10 +43,13 @@ void count(const Hdf5File& file, const std::string& path, std::uint64_t size, To
 Plan plan(const fs::path& path, std::uint64_t size) {
   const TrajectoryReader reader(path);
   const Hdf5File& file = reader.file();
-  std::vector<std::string> complete = {particles_path + "/id", particles_path + "/mass", particles_path + "/species",
-                                       particles_path + "/name"};
-  if (file.has(system_path)) complete.clear();
-  if (file.has(system_path + "/name")) complete.push_back(system_path + "/name");
+  std::vector<std::string> complete;
+  for (const std::string& group : {particles_path, system_path, connectivity_path, topology_path}) {
+    for (const std::string& one : file.children(group)) {
+      const std::string path_of_one = group + "/" + one;
+      if (!file.is_group(path_of_one) && !file.open(path_of_one).grows()) complete.push_back(path_of_one);
+    }
+  }
   complete.emplace_back("/noether/scene");
   for (const std::string& fixed : complete) {
     const Hdf5Dataset dataset = file.open(fixed);
