@@ -76,7 +76,8 @@ io::Repair repair_alone(const std::filesystem::path& file) {
   return io::repair(file);
 }
 
-int report_verified(const std::string& file, const io::Repair& found, bool json) {
+/// @param asked  whether a repair was asked for
+int report_verified(const std::string& file, const io::Repair& found, bool asked, bool json) {
   const io::FileInfo& info = found.info;
   const bool ok = info.damaged.empty();
   if (json) {
@@ -93,7 +94,12 @@ int report_verified(const std::string& file, const io::Repair& found, bool json)
   for (const std::string& line : found.repaired) fmt::print("{}: repaired: {}\n", file, escaped(line));
   if (ok)
     fmt::print("{}: sound{}, last step {}\n", file, info.complete ? " and complete" : ", not complete", info.last_step);
-  for (const std::string& line : info.damaged) fmt::print(stderr, "{}\n", escaped(file + ": " + line));
+  for (const std::string& line : info.damaged) {
+    const bool cut = !asked && line.starts_with("cut short: ");
+    const std::string way =
+        cut ? fmt::format("; 'noether verify --repair {}' keeps the frames that are whole", file) : "";
+    fmt::print(stderr, "{}\n", escaped(file + ": " + line + way));
+  }
   return ok ? 0 : 3;
 }
 
@@ -138,7 +144,7 @@ void add_verify_command(CLI::App& app, const Parts& /*parts*/, int& exit_code) {
   command->add_flag("--repair", given->repair, "cut run.h5 back to the last frame that is whole; nothing else is lost");
   command->callback([given, &exit_code] {
     const io::Repair found = given->repair ? repair_alone(given->file) : io::Repair{io::verify(given->file), {}};
-    exit_code = report_verified(given->file, found, given->json);
+    exit_code = report_verified(given->file, found, given->repair, given->json);
   });
 }
 

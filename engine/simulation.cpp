@@ -1,6 +1,7 @@
 #include "engine/simulation.hpp"
 
 #include "engine/not_finite.hpp"
+#include "engine/whole_steps.hpp"
 
 #include <fmt/format.h>
 
@@ -169,20 +170,7 @@ template <class Real> void Simulation<Real>::stop_when(const StopRule& rule, std
 }
 
 template <class Real> std::int64_t Simulation<Real>::steps_in(double duration) const {
-  const double dt = raw_.clock().dt();
-  const double exact = duration / dt;
-  const double whole = std::round(exact);
-  if (!std::isfinite(exact) || std::abs(exact) > 9e15) {
-    throw Error(fmt::format("a duration of {} is no number of steps of {}", duration, dt));
-  }
-  if (exact < 0) throw Error(fmt::format("a duration of {} lies behind; steps of {} lead the other way", duration, dt));
-  // Beside 1e-9 of a step, the rounding of a long duration.
-  if (std::abs(exact - whole) > 1e-9 + 16 * std::numeric_limits<double>::epsilon() * exact) {
-    throw Error(fmt::format("a duration of {} is {} steps of {}; the nearest whole numbers are {} ({}) and {} ({})",
-                            duration, exact, dt, std::floor(exact) * dt, std::floor(exact), std::ceil(exact) * dt,
-                            std::ceil(exact)));
-  }
-  return static_cast<std::int64_t>(whole);
+  return detail::whole_steps(duration, raw_.clock().dt());
 }
 
 template <class Real> Outcome Simulation<Real>::run(std::int64_t steps) {
@@ -362,12 +350,9 @@ template <class Real> std::optional<Outcome> Simulation<Real>::look_at_the_end()
 template <class Real> void Simulation<Real>::show_to_writers(const Outcome& ended) {
   if (ended.kind == Outcome::Kind::completed || ended.kind == Outcome::Kind::interrupted) return;
   const Snapshot<Real> moment = snapshot({});
-  bool sound = false;
+  if (fault(moment.state())) return;
   for (Scheduled& scheduled : monitors_) {
-    if (!scheduled.records || has_looked(scheduled, moment.time(), false)) continue;
-    if (!sound && fault(moment.state())) return;
-    sound = true;
-    scheduled.monitor.observe(moment);
+    if (scheduled.records && !has_looked(scheduled, moment.time(), false)) scheduled.monitor.observe(moment);
   }
 }
 

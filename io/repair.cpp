@@ -145,6 +145,13 @@ struct Temporary {
   const fs::path path;
 };
 
+std::string beyond_repair(std::uint64_t size, std::uint64_t expected) {
+  return fmt::format(
+      "cut short: {} of {} bytes are there, and more than frames and samples is missing: it cannot be "
+      "mended. A run whose checkpoint is sound goes on without it by 'noether run SCENE --resume'",
+      size, expected);
+}
+
 /// What is missing is put back as zeros, to which nothing points after the cut.
 void repair_end(const fs::path& file, std::uint64_t size, std::uint64_t expected, Repair& result) {
   const fs::path kept = with_ending(file, ".damaged");
@@ -162,10 +169,14 @@ void repair_end(const fs::path& file, std::uint64_t size, std::uint64_t expected
     found = try_first(copy.path, [&] { return plan(copy.path, size); });
     carry_out(found, copy.path);
   } catch (const FileError&) {
-    return;  // too much is missing
+    result.info.damaged = {beyond_repair(size, expected)};
+    return;
   }
   const FileInfo mended = verify(copy.path);
-  if (!mended.damaged.empty()) return;
+  if (!mended.damaged.empty()) {
+    result.info.damaged = {beyond_repair(size, expected)};
+    return;
+  }
   sync_file(copy.path);
   rename_if_there(file, kept);
   rename_if_there(copy.path, file);

@@ -24,7 +24,9 @@ namespace noether::io {
 /// The file itself, shared by copies of the writer.
 class TrajectoryWriter::File {
  public:
-  File(std::filesystem::path path, TrajectoryOptions options) : path_(std::move(path)), options_(std::move(options)) {}
+  /// @param one_frame  and no more: no room is kept for others
+  File(std::filesystem::path path, TrajectoryOptions options, bool one_frame = false)
+      : path_(std::move(path)), options_(std::move(options)), one_frame_(one_frame) {}
 
   File(const File&) = delete;
   File& operator=(const File&) = delete;
@@ -163,7 +165,7 @@ class TrajectoryWriter::File {
     const Index particles = state.size();
     const std::string position = particles_path + "/position";
     const std::string velocity = particles_path + "/velocity";
-    const Index rows = rows_per_chunk(3 * particles, frame_bytes), few = rows_per_chunk(1, sample_bytes);
+    const Index rows = rows_at_once(3 * particles, frame_bytes), few = rows_at_once(1, sample_bytes);
     frame_.position =
         BufferedDataset<double>(hdf5_->create_growing(position + "/value", ElementType::real, {particles, 3}, rows));
     frame_.velocity =
@@ -184,10 +186,12 @@ class TrajectoryWriter::File {
     set_unit_of_motion(*hdf5_, position + "/time", "time", *units_);
   }
 
+  Index rows_at_once(Index numbers, Index wanted) const { return one_frame_ ? 1 : rows_per_chunk(numbers, wanted); }
+
   BufferedDataset<std::int64_t> create_digests(const std::string& path) const {
     constexpr Index size = std::tuple_size_v<RowDigest>;
     return BufferedDataset<std::int64_t>(
-        hdf5_->create_growing(path, ElementType::integer, {size}, rows_per_chunk(size, sample_bytes)));
+        hdf5_->create_growing(path, ElementType::integer, {size}, rows_at_once(size, sample_bytes)));
   }
   /// Those of a file to go on with; none where it has none.
   std::optional<BufferedDataset<std::int64_t>> open_digests(const std::string& path) const {
@@ -212,7 +216,7 @@ class TrajectoryWriter::File {
     const std::string group = particles_path + "/" + info.name;
     frame_.columns[info.name] = BufferedDataset<double>(
         hdf5_->create_growing(group + "/value", ElementType::real, {particles, Index{info.width}},
-                              rows_per_chunk(info.width * particles, frame_bytes)));
+                              rows_at_once(info.width * particles, frame_bytes)));
     hdf5_->link(particles_path + "/position/step", group + "/step");
     hdf5_->link(particles_path + "/position/time", group + "/time");
     hdf5_->set_attribute(group, role_attribute,
@@ -224,7 +228,7 @@ class TrajectoryWriter::File {
   }
 
   void create_system_frames() {
-    const Index rows = rows_per_chunk(variables_, frame_bytes), few = rows_per_chunk(1, sample_bytes);
+    const Index rows = rows_at_once(variables_, frame_bytes), few = rows_at_once(1, sample_bytes);
     frame_.variables =
         BufferedDataset<double>(hdf5_->create_growing(system_path + "/value", ElementType::real, {variables_}, rows));
     frame_.step =
@@ -454,7 +458,7 @@ class TrajectoryWriter::File {
     const auto dataset = [&](const std::string& name, ElementType type, const std::vector<Index>& shape) {
       if (there) return open(group + name, shape);
       const Index values = std::accumulate(shape.begin(), shape.end(), Index{1}, std::multiplies<>());
-      return hdf5_->create_growing(group + name, type, shape, rows_per_chunk(values, sample_bytes));
+      return hdf5_->create_growing(group + name, type, shape, rows_at_once(values, sample_bytes));
     };
     monitor.step = BufferedDataset<std::int64_t>(dataset("step", ElementType::integer, {}));
     monitor.time = BufferedDataset<double>(dataset("time", ElementType::real, {}));
@@ -488,6 +492,7 @@ class TrajectoryWriter::File {
 
   std::filesystem::path path_;
   TrajectoryOptions options_;
+  bool one_frame_;
   const UnitSystem* units_ = nullptr;
   std::optional<Hdf5File> hdf5_;
   FrameDatasets frame_;
@@ -518,7 +523,7 @@ const std::filesystem::path& TrajectoryWriter::file() const { return held_->path
 struct OneFrame {
   static void write(const std::filesystem::path& path, const TrajectoryOptions& options,
                     const ParticleSystem<double>& settled, std::int64_t step, double time) {
-    TrajectoryWriter::File file(path, options);
+    TrajectoryWriter::File file(path, options, true);
     file.observe(settled, step, time);
     file.finish(Outcome{});
   }

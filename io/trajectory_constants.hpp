@@ -18,10 +18,10 @@ void write_header(const Hdf5File& file, const UnitSystem& units, const std::stri
 /// @param order  indices of the particles in the order of their ids
 void write_constants(const Hdf5File& file, const ParticleSystem<double>& state, const std::vector<Index>& order);
 
-/// Names a unit as H5MD does, "nm ps-1" or "kg m+2 s-1"; empty where H5MD has no word for one of its factors, as for
-/// au, and for numbers without a unit.
+/// Names a unit as the module `units` of H5MD does, "nm ps-1" or "kg m+2 s-1"; empty where H5MD has no word for one of
+/// its factors, as for au, and for numbers without a unit.
 /// @param dimension  in words, such as "charge" or "mass length^2/time"
-/// @source h5md/modules/units, version 1.0
+/// @source DeBuyl2014
 std::string h5md_unit(std::string_view dimension, const UnitSystem& units);
 
 /// Gives a dataset its unit: the attribute `unit` where H5MD has a word for it, else `noether_unit`.

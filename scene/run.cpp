@@ -216,8 +216,9 @@ class Runner {
     const std::filesystem::path& file = files_.trajectory;
     const std::string wrong = fmt::format("{}: {}", file.string(), why);
     if (is_over(checkpoint)) {
-      report_.warnings.push_back(fmt::format(
-          "{}; the run is finished: 'noether verify --repair {}' keeps what is whole of it", wrong, file.string()));
+      report_.warnings.push_back(
+          fmt::format("{}; the run is finished: 'noether verify --repair {}' keeps the frames that are whole", wrong,
+                      file.string()));
       return;
     }
     std::filesystem::path kept;
@@ -228,9 +229,10 @@ class Runner {
     }
     report_.warnings.push_back(fmt::format(
         "{}; a new one begins at step {}{}", wrong, checkpoint.step,
-        kept.empty() ? std::string()
-                     : fmt::format(", and the old one is {}: 'noether verify --repair {}' keeps what is whole of it",
-                                   kept.string(), kept.string())));
+        kept.empty()
+            ? std::string()
+            : fmt::format(", and the old one is {}: 'noether verify --repair {}' keeps its frames that are whole",
+                          kept.string(), kept.string())));
   }
 
   /// A completed run goes on if its end has been moved; one that has stopped or failed does not.

@@ -45,7 +45,7 @@ TEST_CASE("a run goes on beside a run.h5 that was cut short, wherever, and keeps
     CHECK(json_member(resumed, "resumed_from_step") == "80");
     CHECK(has(resumed,
               "; a new one begins at step 80, and the old one is scene.out/run.h5.damaged: 'noether verify "
-              "--repair scene.out/run.h5.damaged' keeps what is whole of it"));
+              "--repair scene.out/run.h5.damaged' keeps its frames that are whole"));
     const bool untouched = read_text(run.folder / "scene.out/run.h5.damaged") == kept;
     CHECK(untouched);
     CHECK(output(run.folder, "verify scene.out/run.h5") == "scene.out/run.h5: sound and complete, last step 100\n");
@@ -101,7 +101,8 @@ TEST_CASE("a finished run with a damaged run.h5 prints its report, and names the
   shorten(folder / "scene.out/run.h5", 1);
   const std::string again = output(folder, "run scene.toml --json --resume");
   check_same_run(again, whole);
-  CHECK(has(again, "; the run is finished: 'noether verify --repair scene.out/run.h5' keeps what is whole of it\""));
+  CHECK(has(again,
+            "; the run is finished: 'noether verify --repair scene.out/run.h5' keeps the frames that are whole\""));
   CHECK(has(output(folder, "verify --repair scene.out/run.h5"), "scene.out/run.h5: sound, not complete"));
 }
 
