@@ -37,6 +37,7 @@ struct StoredFrame {
   std::shared_ptr<const Topology> topology;
   std::map<std::string, StoredColumn> columns;
   std::string sha256, scene_toml;
+  bool knows_types = true;
 };
 
 /// The declaration of a column as far as the file tells it. Of a file from before dimensions were written its unit
@@ -117,6 +118,8 @@ StoredFrame stored_frame(const std::filesystem::path& path, std::int64_t wanted)
   stored.shared = reader.shared();
   stored.order = read_order(reader.file(), static_cast<Index>(stored.shared.ids.size()));
   stored.topology = read_topology(reader.file(), stored.shared.ids, stored.order);
+  // Species without names of types were numbers of names.
+  stored.knows_types = stored.topology != nullptr || !reader.file().has(particles_path + "/species");
   stored.columns = stored_columns(reader, stored.frame);
   check_stored(reader, stored, path);
   if (reader.file().has("/noether/scene")) stored.scene_toml = reader.file().read_text("/noether/scene");
@@ -231,7 +234,8 @@ FrameParticles read_frame_particles(const std::filesystem::path& file, const Fra
                         .time = stored.frame.time,
                         .sha256 = stored.sha256,
                         .scene_toml = stored.scene_toml,
-                        .left_out = {}};
+                        .left_out = {},
+                        .knows_types = stored.knows_types};
   fill(stored, options, file, result);
   return result;
 }

@@ -348,6 +348,12 @@ ParticleSystem<double> from_frame(TableReader& reader, const std::filesystem::pa
       particles_in_file(reader, "bodies", folder, "run.h5", "a run.h5", effective, read, [&] { return found.sha256; });
   if (has_frame_number(reader) || !reader.has("frame"))
     effective.put("frame", SceneValue::of(found.frame, reader.line("frame")));
+  if (!found.knows_types) {
+    warnings.push_back(
+        fmt::format("{} is from before types, molecules and bonds stood in such files: its particles "
+                    "have none here",
+                    reader.text("bodies")));
+  }
   for (const std::string& name : found.left_out) {
     warnings.push_back(
         fmt::format("no part of this scene has the column '{}' of {}: it is left out", name, reader.text("bodies")));

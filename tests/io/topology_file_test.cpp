@@ -367,6 +367,7 @@ TEST_CASE("a file from before types stood in it is read, verified, repaired, con
   CHECK(io::repair(folder / "run.h5").repaired.empty());
   CHECK(io::read_frames(folder / "run.h5").types.empty());
   CHECK(io::read_frame_particles(folder / "run.h5").particles.topology() == nullptr);
+  CHECK_FALSE(io::read_frame_particles(folder / "run.h5").knows_types);  // scenes warn of it
   io::convert(folder / "run.h5", folder / "run.xyz");
   CHECK(xyz_lines(folder / "run.xyz").at(3).starts_with("Jupiter "));
   WritingRun whole(folder / "whole.h5"), resumed(folder / "run.h5");
