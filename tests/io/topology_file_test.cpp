@@ -162,12 +162,14 @@ TEST_CASE("what particles do not have takes no room in the file", "[trajectory][
   WritingRun run(folder / "run.h5");
   REQUIRE(run.simulation.run(5).ok());
   run.writer->finish(Outcome{});
-  const io::Hdf5File file = io::Hdf5File::open_to_read(folder / "run.h5");
-  CHECK(file.children(io::particles_path) ==
-        std::vector<std::string>{"box", "id", "mass", "name", "position", "velocity"});
-  CHECK_FALSE(file.has("/connectivity"));
-  CHECK_FALSE(file.has("/noether/topology"));
-  CHECK_FALSE(file.has("/h5md/modules"));  // of solar units H5MD knows none
+  {
+    const io::Hdf5File file = io::Hdf5File::open_to_read(folder / "run.h5");
+    CHECK(file.children(io::particles_path) ==
+          std::vector<std::string>{"box", "id", "mass", "name", "position", "velocity"});
+    CHECK_FALSE(file.has("/connectivity"));
+    CHECK_FALSE(file.has("/noether/topology"));
+    CHECK_FALSE(file.has("/h5md/modules"));  // of solar units H5MD knows none
+  }
   CHECK(io::read_frames(folder / "run.h5").types.empty());
 }
 

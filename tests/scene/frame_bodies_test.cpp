@@ -5,6 +5,7 @@
 #include "io/frame_particles.hpp"
 #include "io/inspect.hpp"
 #include "io/trajectory.hpp"
+#include "monitors/monitors.hpp"
 #include "numbers/error.hpp"
 #include "scene/scene.hpp"
 #include "tests/support/catch.hpp"
@@ -119,11 +120,12 @@ TEST_CASE("a run from a frame has the energy that the other run had there", "[sc
   Simulation<double> fresh = assemble(scene);
   Simulation<double> whole =
       assemble(read_scene("units = 'molecular'\n[particles]\nstructure = 'chain.data'\n" + springs, scene.file));
+  const Energy& there = whole.every(7, Energy{});
+  const Energy& here = fresh.every(1, Energy{});
   REQUIRE(whole.run(7).ok());
-  const ParticleSystem<double> there = whole.particles();
-  AnyIntegrator<double> integrator = integrator_of(scene);
-  CHECK(integrator.energy(fresh.particles()).potential == integrator.energy(there).potential);
-  CHECK(integrator.energy(there).potential != 0);
+  REQUIRE(fresh.run(0).ok());
+  CHECK(here.total() == there.total());
+  CHECK(here.total() != 0);
 }
 
 TEST_CASE("planets start from a frame, in their order, and may be moved to their barycenter and have company",
