@@ -48,7 +48,6 @@ struct EarlierRun {
     auto& writer = run.every(1, io::TrajectoryWriter(folder / "run.h5", {.scene_toml = scene.effective_toml}));
     REQUIRE(run.run(*scene.integrator.steps).ok());
     writer.finish(Outcome{});
-    last = io::digest(run.particles());
     first = scene.particles;
   }
   /// A scene of the same units whose `[particles]` begins so.
@@ -68,7 +67,7 @@ struct EarlierRun {
   }
 
   ScratchFolder folder;
-  std::string units, last;
+  std::string units;
   ParticleSystem<double> first;
 };
 
@@ -152,7 +151,8 @@ TEST_CASE("the table and the file of one frame are the same start as the frame",
   io::convert(run.folder / "run.h5", run.folder / "start.h5", {.bodies = true, .frame = 4});
   CHECK(bits(run.scene("bodies = 'start.csv'\n", gravity_rest)) == frame);
   CHECK(bits(run.scene("bodies = 'start.h5'\n", gravity_rest)) == frame);
-  CHECK(bits(run.scene("bodies = 'run.h5'\n", gravity_rest)) == run.last);
+  CHECK(bits(run.scene("bodies = 'run.h5'\n", gravity_rest)) ==
+        bits(run.scene("bodies = 'run.h5'\nframe = 10\n", gravity_rest)));
 }
 
 TEST_CASE("the box of a frame stays as it is where the scene gives the same, or is taken away", "[scene][bodies]") {
