@@ -137,7 +137,7 @@ template <class Number> Vec3<Number> row_of(const std::vector<Number>& numbers, 
 }
 
 /// Whether the new run has room for a column: the charge always, others where it declares them.
-bool is_wanted(const ColumnInfo& info, const FrameOptions& options) {
+bool has_room_for(const ColumnInfo& info, const FrameOptions& options) {
   if (!options.columns || info.name == Charge::name) return true;
   return std::any_of(options.columns->begin(), options.columns->end(),
                      [&](const ColumnInfo& one) { return one.name == info.name && one.width == info.width; });
@@ -156,7 +156,7 @@ ColumnInfo declared(const ColumnInfo& info, const FrameOptions& options) {
 void give_columns(const StoredFrame& stored, const FrameOptions& options, FrameParticles& result) {
   ParticleSystem<double>& s = result.particles;
   for (const auto& [name, column] : stored.columns) {
-    if (!is_wanted(column.info, options)) {
+    if (!has_room_for(column.info, options)) {
       result.left_out.push_back(name);
       continue;
     }

@@ -21,10 +21,10 @@ namespace noether::test {
 namespace {
 
 /// The moments that somebody has been shown: step, time, and where the second particle was.
-struct Moment {
+struct ShownMoment {
   std::int64_t step;
   double time, x;
-  bool operator==(const Moment&) const = default;
+  bool operator==(const ShownMoment&) const = default;
 };
 
 /// Writes as files do, into memory.
@@ -35,7 +35,7 @@ struct MomentWriter {
   }
   void record(const Sample&) {}
 
-  std::vector<Moment>* seen;
+  std::vector<ShownMoment>* seen;
 };
 
 /// The same, but no writer.
@@ -43,7 +43,7 @@ struct MomentWatcher {
   static constexpr auto describe() { return part<MomentWatcher>("moment_watcher", "what it is shown, in memory"); }
   void observe(const Snapshot<double>& now) { seen->push_back({now.step(), now.time(), 0}); }
 
-  std::vector<Moment>* seen;
+  std::vector<ShownMoment>* seen;
 };
 
 /// A body and a tracer that pass each other on straight lines: nearest, at distance 1, when t = 10.
@@ -61,7 +61,7 @@ struct PassingRun {
     simulation.every(steps, MomentWriter{&written});
     simulation.every(steps, MomentWatcher{&watched});
   }
-  std::vector<Moment> written, watched;
+  std::vector<ShownMoment> written, watched;
   Simulation<double> simulation;
 };
 
@@ -73,14 +73,14 @@ TEST_CASE("the state at a stop is written, once", "[stop][last_frame]") {
   const Outcome outcome = run.simulation.run(1000);
   CHECK(outcome.kind == Outcome::Kind::stopped);
   CHECK(outcome.step == 21);  // within 1.5 since t = 9.63; looked at every 3.5
-  CHECK(run.written == std::vector<Moment>{{0, 0, -30}, {21, 10.5, 1.5}});
+  CHECK(run.written == std::vector<ShownMoment>{{0, 0, -30}, {21, 10.5, 1.5}});
   CHECK(run.watched.size() == 1);  // who writes nothing keeps to its cadence
 
   PassingRun due(7);
   due.simulation.stop_when(closer_than(1.5), 7);
   CHECK(due.simulation.run(1000).step == 21);
   CHECK(due.written.size() == 4);
-  CHECK(due.written.back() == Moment{21, 10.5, 1.5});
+  CHECK(due.written.back() == ShownMoment{21, 10.5, 1.5});
 }
 
 TEST_CASE("so is one that is found when the run ends", "[stop][last_frame]") {
@@ -88,7 +88,7 @@ TEST_CASE("so is one that is found when the run ends", "[stop][last_frame]") {
   run.simulation.stop_when(closer_than(1.5), 1000);
   const Outcome outcome = run.simulation.run(40);
   CHECK(outcome.kind == Outcome::Kind::stopped);
-  CHECK(run.written == std::vector<Moment>{{0, 0, -30}, {40, 20, 30}});
+  CHECK(run.written == std::vector<ShownMoment>{{0, 0, -30}, {40, 20, 30}});
 }
 
 TEST_CASE("an end that was asked for, and an interrupted run, write what is due", "[last_frame]") {
@@ -106,7 +106,7 @@ TEST_CASE("a run that fails leaves its last sound state", "[last_frame]") {
   // Each step of this spring multiplies the amplitude by 98.
   ParticleSystem<double> s;
   s.add("ball", 1, {1, 0, 0}, {0, 0, 0});
-  std::vector<Moment> written;
+  std::vector<ShownMoment> written;
   Simulation run(std::move(s), compose(kinetic_potential(HarmonicField{.k = 100}), schemes::verlet), 1.0);
   run.every(1000, MomentWriter{&written});
   const Outcome outcome = run.run(2000);
@@ -121,7 +121,7 @@ TEST_CASE("a run that fails leaves its last sound state", "[last_frame]") {
 TEST_CASE("where steps are chosen by the method, times of what is written still rise", "[stop][last_frame]") {
   for (const double interval : {0.75, 4.0, 100.0}) {
     CAPTURE(interval);
-    std::vector<Moment> written;
+    std::vector<ShownMoment> written;
     Simulation<double> run(passing_by(), classical(Gravity{.G = 1e-30}, method("dop853")));
     run.every_time(interval, MomentWriter{&written});
     run.stop_when(closer_than(1.5), 1);
