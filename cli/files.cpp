@@ -97,7 +97,7 @@ int report_verified(const std::string& file, const io::Repair& found, bool asked
   for (const std::string& line : info.damaged) {
     const bool cut = !asked && line.starts_with("cut short: ");
     const std::string way =
-        cut ? fmt::format("; 'noether verify --repair {}' keeps the frames that are whole", file) : "";
+        cut ? fmt::format("; 'noether verify --repair {}' mends it if no more than frames is missing", file) : "";
     fmt::print(stderr, "{}\n", escaped(file + ": " + line + way));
   }
   return ok ? 0 : 3;

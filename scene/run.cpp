@@ -216,9 +216,9 @@ class Runner {
     const std::filesystem::path& file = files_.trajectory;
     const std::string wrong = fmt::format("{}: {}", file.string(), why);
     if (is_over(checkpoint)) {
-      report_.warnings.push_back(
-          fmt::format("{}; the run is finished: 'noether verify --repair {}' keeps the frames that are whole", wrong,
-                      file.string()));
+      report_.warnings.push_back(fmt::format(
+          "{}; the run is finished: 'noether verify --repair {}' mends it if no more than frames is missing", wrong,
+          file.string()));
       return;
     }
     std::filesystem::path kept;
@@ -231,8 +231,9 @@ class Runner {
         "{}; a new one begins at step {}{}", wrong, checkpoint.step,
         kept.empty()
             ? std::string()
-            : fmt::format(", and the old one is {}: 'noether verify --repair {}' keeps its frames that are whole",
-                          kept.string(), kept.string())));
+            : fmt::format(
+                  ", and the old one is {}: 'noether verify --repair {}' mends it if no more than frames is missing",
+                  kept.string(), kept.string())));
   }
 
   /// A completed run goes on if its end has been moved; one that has stopped or failed does not.

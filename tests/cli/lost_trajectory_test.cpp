@@ -45,7 +45,7 @@ TEST_CASE("a run goes on beside a run.h5 that was cut short, wherever, and keeps
     CHECK(json_member(resumed, "resumed_from_step") == "80");
     CHECK(has(resumed,
               "; a new one begins at step 80, and the old one is scene.out/run.h5.damaged: 'noether verify "
-              "--repair scene.out/run.h5.damaged' keeps its frames that are whole"));
+              "--repair scene.out/run.h5.damaged' mends it if no more than frames is missing"));
     const bool untouched = read_text(run.folder / "scene.out/run.h5.damaged") == kept;
     CHECK(untouched);
     CHECK(output(run.folder, "verify scene.out/run.h5") == "scene.out/run.h5: sound and complete, last step 100\n");
@@ -102,7 +102,8 @@ TEST_CASE("a finished run with a damaged run.h5 prints its report, and names the
   const std::string again = output(folder, "run scene.toml --json --resume");
   check_same_run(again, whole);
   CHECK(has(again,
-            "; the run is finished: 'noether verify --repair scene.out/run.h5' keeps the frames that are whole\""));
+            "; the run is finished: 'noether verify --repair scene.out/run.h5' mends it if no more than frames is "
+            "missing\""));
   CHECK(has(output(folder, "verify --repair scene.out/run.h5"), "scene.out/run.h5: sound, not complete"));
 }
 
