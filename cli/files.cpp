@@ -77,7 +77,8 @@ io::Repair repair_alone(const std::filesystem::path& file) {
   return io::repair(file);
 }
 
-int report_verified(const std::string& file, const io::Repair& found, bool json) {
+/// @param asked  whether a repair was asked for
+int report_verified(const std::string& file, const io::Repair& found, bool asked, bool json) {
   const io::FileInfo& info = found.info;
   const bool ok = info.damaged.empty();
   if (json) {
@@ -94,7 +95,12 @@ int report_verified(const std::string& file, const io::Repair& found, bool json)
   for (const std::string& line : found.repaired) fmt::print("{}: repaired: {}\n", file, escaped(line));
   if (ok)
     fmt::print("{}: sound{}, last step {}\n", file, info.complete ? " and complete" : ", not complete", info.last_step);
-  for (const std::string& line : info.damaged) fmt::print(stderr, "{}\n", escaped(file + ": " + line));
+  for (const std::string& line : info.damaged) {
+    const bool cut = !asked && line.starts_with("cut short: ");
+    const std::string way =
+        cut ? fmt::format("; 'noether verify --repair {}' mends it if no more than frames is missing", file) : "";
+    fmt::print(stderr, "{}\n", escaped(file + ": " + line + way));
+  }
   return ok ? 0 : 3;
 }
 
@@ -177,7 +183,8 @@ int report_compared(const std::string& file, const std::string& other, const io:
 
 struct FileArguments {
   std::string file, out, against, by = "time";
-  bool json = false, repair = false, unwrapped = false;
+  bool json = false, repair = false, unwrapped = false, bodies = false;
+  std::optional<std::int64_t> frame;
 };
 
 CLI::App* file_command(CLI::App& app, const std::string& name, const std::string& help, const std::string& kinds,
@@ -224,12 +231,12 @@ void add_verify_command(CLI::App& app, const Parts& /*parts*/, int& exit_code) {
   command->callback([given, &exit_code] {
     const io::Repair found = given->repair ? repair_alone(given->file) : io::Repair{io::verify(given->file), {}};
     if (given->against.empty() || !found.info.damaged.empty()) {
-      exit_code = report_verified(given->file, found, given->json);
+      exit_code = report_verified(given->file, found, given->repair, given->json);
       return;
     }
     const io::Repair other{io::verify(given->against), {}};
     if (!other.info.damaged.empty()) {
-      exit_code = report_verified(given->against, other, given->json);
+      exit_code = report_verified(given->against, other, false, given->json);
       return;
     }
     const auto by = given->by == "step" ? io::MatchBy::step : io::MatchBy::time;
@@ -240,12 +247,20 @@ void add_verify_command(CLI::App& app, const Parts& /*parts*/, int& exit_code) {
 
 void add_convert_command(CLI::App& app, const Parts& /*parts*/, int& exit_code) {
   const auto given = std::make_shared<FileArguments>();
-  CLI::App* command = file_command(app, "convert", "rewrite a trajectory as extended XYZ or CSV", "run.h5", given);
-  command->add_option("out", given->out, "FILE.xyz or FILE.csv")->required()->type_name("OUT");
+  CLI::App* command = file_command(app, "convert", "rewrite a trajectory as extended XYZ or CSV, or a frame as bodies",
+                                   "run.h5", given);
+  command->add_option("out", given->out, "FILE.xyz or FILE.csv; of bodies FILE.h5 or FILE.csv")
+      ->required()
+      ->type_name("OUT");
   command->add_flag("--unwrapped", given->unwrapped, "positions as if a periodic box had never taken them in");
+  CLI::Option* bodies = command->add_flag("--bodies", given->bodies, "one frame, for bodies = \"OUT\" of a new scene");
+  command->add_option("--frame", given->frame, "which frame, from 0; default: the last, -1")
+      ->needs(bodies)
+      ->type_name("N");
   command->add_flag("--json", given->json, "report as one line of JSON");
   command->callback([given, &exit_code] {
-    const Index frames = io::convert(given->file, given->out, {.unwrapped = given->unwrapped});
+    const Index frames = io::convert(given->file, given->out,
+                                     {.unwrapped = given->unwrapped, .bodies = given->bodies, .frame = given->frame});
     if (given->json) {
       fmt::print("{}\n",
                  Json::object({{"schema", "noether.convert/1"}, {"frames", std::int64_t{frames}}, {"file", given->out}})

@@ -49,7 +49,8 @@ struct MonitorReport {
 };
 
 /// Watches settled states. Optional members: `wanted()` (energy?), `series()` and `scale()` (what files store),
-/// `report()`, `record(Sample)` (receives every monitor's samples: writers), `flush()`, `finish(Outcome)`,
+/// `report()`, `record(Sample)` (receives every monitor's samples: writers, who look where a run stops or fails too),
+/// `flush()`, `finish(Outcome)`,
 /// `at_start(snapshot)` (the state that a run goes on from, where a list of times tells when to look: writers make
 /// their files), `at_end(snapshot)` (the end of a run that is no look of its own, to be forgotten at the next one),
 /// `steps_in_a_row()` (looks at so many steps from each multiple of its cadence on), `forget()` (somebody has edited

@@ -1,5 +1,6 @@
 #include "engine/simulation.hpp"
 
+#include "engine/check_wanted.hpp"
 #include "engine/not_finite.hpp"
 
 #include <fmt/format.h>
@@ -109,28 +110,10 @@ template <class Real> void Simulation<Real>::check_wanted(const Scheduled& added
                             added.name, claims.hamiltonian));
   }
   added.monitor.check(raw_);
-  if (added.wanted.energy && !claims.energy) {
-    throw Error(fmt::format("monitor '{}' needs the energy, but a force of this run reports none", added.name));
-  }
   // A copy is asked: the run itself must not know.
-  if (added.wanted.virial && !AnyIntegrator<Real>(integrator_).virial(raw_)) {
-    throw Error(fmt::format("monitor '{}' needs the virial, but {}", added.name,
-                            claims.constraints > 0
-                                ? "a force or a constraint of this run tells none: what holds particles in place "
-                                  "has no part in a pressure"
-                                : fmt::format("'{}' tells none, or one of its forces does not", claims.hamiltonian)));
-  }
-  if (!added.wanted.action) return;
-  const auto refuse = [&](const std::string& why) {
-    throw Error(fmt::format("monitor '{}' needs the action of every step: {}", added.name, why));
-  };
-  if (claims.clock == ClockMode::free) refuse(fmt::format("method '{}' takes steps of varying length", claims.method));
-  if (!claims.no_action.empty()) refuse(std::string(claims.no_action));
-  if (claims.dissipative) refuse("a force of this run is dissipative, so no action tells its motion");
-  if (claims.time_dependent) refuse("a force of this run depends on time, so no energy is kept, the exact one neither");
-  if (!integrator_.has_action())
-    refuse(fmt::format("method '{}' gives none{}", claims.method, claims.symplectic ? "" : "; it is not symplectic"));
-  if (!added.schedule.by_steps()) refuse("attach it by steps, not by wall time");
+  const bool virial = added.wanted.virial && AnyIntegrator<Real>(integrator_).virial(raw_);
+  detail::check_wanted(added.name, added.wanted, claims,
+                       {.virial = virial, .action = integrator_.has_action(), .by_steps = added.schedule.by_steps()});
 }
 
 template <class Real> void Simulation<Real>::schedule_by_time(Scheduled& added) {
@@ -222,7 +205,10 @@ template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double 
   if (!result) result = keep_good();
   if (!result) show_start();
   if (!result) result = observe_due();  // before the clock starts: writers open their files when they first look
-  if (result) return *result;
+  if (result) {
+    show_to_writers(*result);
+    return *result;
+  }
   const auto started = WallClock::now();
   const double before = seconds_;
   looked_at_clock_ = started;
@@ -269,6 +255,7 @@ template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double 
   if (!result && settled_fault()) result = fall_back();
   unresolved_at_end_ = 0;
   if (!result) result = look_at_the_end();
+  if (result) show_to_writers(*result);
   seconds_ = before + seconds_since(started);
   good_.reset();
   Outcome ended = result ? *result : outcome(Outcome::Kind::completed);
@@ -349,6 +336,17 @@ template <class Real> std::optional<Outcome> Simulation<Real>::look_at_the_end()
     if (!has_looked(scheduled, moment.time(), between_steps)) scheduled.monitor.at_end(moment);
   }
   return {};
+}
+
+/// Whoever writes files looks where a run has stopped or failed, due or not: nobody goes on from there, and the state
+/// that is told of must be one that can be read. A run that is interrupted goes on.
+template <class Real> void Simulation<Real>::show_to_writers(const Outcome& ended) {
+  if (ended.kind == Outcome::Kind::completed || ended.kind == Outcome::Kind::interrupted) return;
+  const Snapshot<Real> moment = snapshot({});
+  if (fault(moment.state())) return;
+  for (Scheduled& scheduled : monitors_) {
+    if (scheduled.records && !has_looked(scheduled, moment.time(), false)) scheduled.monitor.observe(moment);
+  }
 }
 
 /// Whether a monitor has seen the end of the run already.

@@ -69,7 +69,8 @@ template <class Real = double> class Simulation {
   /// @return the monitor, which stays where it is as long as the simulation lives
   /// @throws Error  unless exactly one cadence is given, and the run can serve the monitor
   AnyMonitor<Real>& attach(AnyMonitor<Real> monitor, const Schedule& schedule);
-  /// Stops the run when `rule` holds, looked at every `steps`: `sim.stop_when(farther_than(100 * au), 4'000)`.
+  /// Stops the run when `rule` holds, looked at every `steps`: `sim.stop_when(farther_than(100 * au), 4'000)`. Writers
+  /// look where it stops.
   /// @throws Error  for a system without particles
   void stop_when(const StopRule& rule, std::int64_t steps);
 
@@ -183,6 +184,7 @@ template <class Real = double> class Simulation {
   void keep();
   Outcome fall_back();
   std::optional<Outcome> look_at_the_end();
+  void show_to_writers(const Outcome& ended);
   bool has_looked(const Scheduled& scheduled, double end, bool between_steps) const;
   std::int64_t unresolved() const;
   Outcome run_to(std::int64_t end, double limit);

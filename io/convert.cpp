@@ -1,15 +1,19 @@
-// Trajectories as text: extended XYZ and CSV.
+// Trajectories as text, extended XYZ and CSV, and frames as bodies of new scenes.
+#include "io/frame_particles.hpp"
 #include "io/inspect.hpp"
 #include "io/sandbox.hpp"
 #include "io/structure_parts.hpp"
+#include "io/trajectory.hpp"
 #include "io/trajectory_reader.hpp"
 #include "numbers/error.hpp"
+#include "numbers/quantity.hpp"
 #include "numbers/suggest.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <fstream>
+#include <functional>
 #include <iterator>
 
 namespace noether::io {
@@ -41,6 +45,11 @@ std::string element_of(const std::string& name) {
                                                                              : word_of(name);
 }
 
+/// What XYZ calls the species of row i.
+std::string species_of(const Frames& shared, std::size_t i) {
+  return shared.types.empty() ? element_of(shared.names[i]) : word_of(shared.types[i]);
+}
+
 /// Lattice and pbc; `length` is the file's unit of length.
 std::string cell_of(const Frame& frame, double length) {
   if (frame.edges.empty()) return "pbc=\"F F F\"";
@@ -70,14 +79,17 @@ void write_molecular_xyz(const TrajectoryReader& reader, const Frame& frame, fmt
   const Frames& shared = reader.shared();
   const FileUnits ase = file_units_of(StructureFormat::extended_xyz, {});
   const auto into = std::back_inserter(out);
+  const bool charged = !shared.charges.empty();
   fmt::format_to(into,
-                 "{}\nProperties=species:S:1:pos:R:3:masses:R:1:momenta:R:3{} Time={:.17g} Step={} {} time_unit=ps\n",
-                 shared.ids.size(), properties_of(shared), frame.time, frame.step, cell_of(frame, ase.length));
+                 "{}\nProperties=species:S:1:pos:R:3:masses:R:1:momenta:R:3{}{} Time={:.17g} Step={} {} time_unit=ps\n",
+                 shared.ids.size(), charged ? ":initial_charges:R:1" : "", properties_of(shared), frame.time,
+                 frame.step, cell_of(frame, ase.length));
   for (std::size_t i = 0; i < shared.ids.size(); ++i) {
     const double *x = &frame.positions[3 * i], *v = &frame.velocities[3 * i], m = shared.masses[i];
     const double p = m / ase.momentum_velocity;
-    fmt::format_to(into, "{} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}", element_of(shared.names[i]),
+    fmt::format_to(into, "{} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}", species_of(shared, i),
                    x[0] / ase.length, x[1] / ase.length, x[2] / ase.length, m, p * v[0], p * v[1], p * v[2]);
+    if (charged) fmt::format_to(into, " {:.17g}", shared.charges[i]);
     write_columns(shared, frame, i, ' ', out);
     out.push_back('\n');
   }
@@ -96,8 +108,9 @@ void write_own_xyz(const TrajectoryReader& reader, const Frame& frame, fmt::memo
   out.push_back('\n');
   for (std::size_t i = 0; i < shared.ids.size(); ++i) {
     const double *x = &frame.positions[3 * i], *v = &frame.velocities[3 * i];
-    fmt::format_to(into, "{} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}", word_of(shared.names[i]), x[0], x[1],
-                   x[2], v[0], v[1], v[2]);
+    fmt::format_to(into, "{} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}",
+                   shared.types.empty() ? word_of(shared.names[i]) : species_of(shared, i), x[0], x[1], x[2], v[0],
+                   v[1], v[2]);
     write_columns(shared, frame, i, ' ', out);
     out.push_back('\n');
   }
@@ -155,10 +168,84 @@ std::string csv_head(const Frames& shared) {
   return head.append("\n");
 }
 
+void write_text_file(const std::filesystem::path& out, const std::function<void(std::ofstream&)>& write) {
+  std::ofstream target(out, std::ios::binary);
+  const auto written = [&] {
+    if (!target)
+      throw FileError("cannot be written; is the folder there, and the disk not full?", {.file = out.string()});
+  };
+  written();
+  write(target);
+  target.close();
+  written();
+}
+
+/// What of these particles a table of bodies has no column for; empty: nothing.
+std::string beyond_a_table(const ParticleSystem<double>& s) {
+  if (s.box().is_periodic()) return "a periodic box";
+  if (s.topology() != nullptr) return "types or bonds";
+  return s.columns().empty() ? "" : fmt::format("a column '{}'", s.columns().begin()->info.name);
+}
+
+/// 17 digits are read back to the bit, and units are those of the run, so that nothing is converted.
+void write_body_table(const ParticleSystem<double>& s, std::ofstream& target) {
+  const UnitSystem& units = s.units();
+  const auto in = [&](const Dimension& dimension) {
+    return units.is_reduced() ? std::string() : fmt::format(" [{}]", unit_of(dimension, units));
+  };
+  target << fmt::format("id,name,mass{0},x{1},y{1},z{1},vx{2},vy{2},vz{2}\n", in(dimensions::mass),
+                        in(dimensions::length), in(dimensions::velocity));
+  for (Index i = 0; i < s.size(); ++i) {
+    const Vec3<double> x = s.positions()[i], v = s.velocities()[i];
+    target << fmt::format("{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n",
+                          s.ids()[static_cast<std::size_t>(i)], quoted_field(s.name(i)), s.masses()[i], x[0], x[1],
+                          x[2], v[0], v[1], v[2]);
+  }
+}
+
+void convert_to_bodies(const std::filesystem::path& file, const std::filesystem::path& out,
+                       const ConvertOptions& options) {
+  const bool table = out.extension() == ".csv";
+  if (!table && out.extension() != ".h5") {
+    throw Error(fmt::format("cannot write bodies to '{}': give a name that ends in .h5, or in .csv where there are no "
+                            "types, bonds, charges or boxes",
+                            out.string()),
+                {.value = out.extension().string()});
+  }
+  if (options.unwrapped) throw Error("bodies stay in their box; leave out --unwrapped");
+  const FrameParticles start = read_frame_particles(file, {.frame = options.frame});
+  const std::string beyond = table ? beyond_a_table(start.particles) : "";
+  if (!beyond.empty()) {
+    throw Error(fmt::format("cannot write bodies to '{}': a table has no room for {}; give a name that ends in .h5",
+                            out.string(), beyond),
+                {.value = out.extension().string()});
+  }
+  if (table) {
+    write_text_file(out, [&](std::ofstream& target) { write_body_table(start.particles, target); });
+  } else {
+    write_one_frame(out, start.particles, start.step, start.time, {.scene_toml = start.scene_toml});
+  }
+}
+
 }  // namespace
 
 Index convert(const std::filesystem::path& file, const std::filesystem::path& out, const ConvertOptions& options) {
+  std::error_code none;
+  if (std::filesystem::equivalent(file, out, none)) {
+    throw Error(fmt::format("'{}' would be written over itself; give another name", out.string()),
+                {.value = out.string()});
+  }
+  if (options.bodies) {
+    convert_to_bodies(file, out, options);
+    return 1;
+  }
   const std::string extension = out.extension().string();
+  if (extension == ".h5") {
+    throw Error(fmt::format("cannot convert to '{}': one frame becomes a file for a new scene by --bodies; all frames "
+                            "become .xyz or .csv",
+                            out.string()),
+                {.value = extension});
+  }
   if (extension != ".xyz" && extension != ".csv") {
     throw Error(fmt::format("cannot convert to '{}': unknown extension '{}'{}", out.string(), extension,
                             did_you_mean(extension, {".xyz", ".csv"})),
@@ -183,23 +270,16 @@ Index convert(const std::filesystem::path& file, const std::filesystem::path& ou
                     "periodic box; convert it as it is",
                     file.string()));
   }
-  std::ofstream target(out, std::ios::binary);
-  const auto check = [&] {
-    if (!target)
-      throw FileError("cannot be written; is the folder there, and the disk not full?", {.file = out.string()});
-  };
-  check();
-  if (extension == ".csv") target << csv_head(reader.shared());
   const Write write = of_system ? write_system : extension == ".csv" ? write_csv : write_xyz;
-  for (Index k = 0; k < reader.frames(); ++k) {
-    fmt::memory_buffer text;
-    const Frame frame = reader.frame(k);
-    write(reader, options.unwrapped ? unwrapped(frame) : frame, text);
-    target.write(text.data(), static_cast<std::streamsize>(text.size()));
-    check();
-  }
-  target.close();
-  check();
+  write_text_file(out, [&](std::ofstream& target) {
+    if (extension == ".csv") target << csv_head(reader.shared());
+    for (Index k = 0; k < reader.frames() && target; ++k) {
+      fmt::memory_buffer text;
+      const Frame frame = reader.frame(k);
+      write(reader, options.unwrapped ? unwrapped(frame) : frame, text);
+      target.write(text.data(), static_cast<std::streamsize>(text.size()));
+    }
+  });
   return reader.frames();
 }
 

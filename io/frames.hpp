@@ -29,6 +29,8 @@ struct Frames {
   std::vector<std::int64_t> ids;
   std::vector<std::string> names;
   std::vector<double> masses;
+  std::vector<std::string> types;           ///< by name; empty where particles have none
+  std::vector<double> charges;              ///< [charge]; empty where particles have none
   std::vector<std::string> variable_names;  ///< "y[0]", "y[1]", ... where the system gives none
   /// Other columns that move, by name: how many numbers a particle has, and their unit.
   std::map<std::string, std::pair<Index, std::string>> columns;

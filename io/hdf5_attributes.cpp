@@ -88,6 +88,11 @@ void Hdf5File::set_variable_text(const std::string& path, const std::string& nam
   const char* pointer = text.c_str();
   write_attribute(*handle_, path, name, type, type, {}, &pointer);
 }
+void Hdf5File::set_reference(const std::string& path, const std::string& name, const std::string& target) const {
+  hobj_ref_t reference = 0;
+  check(H5Rcreate(&reference, *handle_, target.c_str(), H5R_OBJECT, -1), *handle_, writing(path));
+  write_attribute(*handle_, path, name, H5T_STD_REF_OBJ, H5T_STD_REF_OBJ, {}, &reference);
+}
 void Hdf5File::set_attribute(const std::string& path, const std::string& name, std::int64_t value) const {
   write_attribute(*handle_, path, name, H5T_STD_I64LE, H5T_NATIVE_INT64, {}, &value);
 }

@@ -136,6 +136,8 @@ class Hdf5File {
   /// A text as MDAnalysis wants that of `unit`: of variable length. noether reads none, because damage to one can crash
   /// HDF5.
   void set_variable_text(const std::string& path, const std::string& name, const std::string& text) const;
+  /// Points at another object of the file, as H5MD's `particles_group` does. noether reads none.
+  void set_reference(const std::string& path, const std::string& name, const std::string& target) const;
   /// Empty text, 0, or an empty list where there is no such attribute.
   std::string text_attribute(const std::string& path, const std::string& name) const;
   std::int64_t integer_attribute(const std::string& path, const std::string& name) const;

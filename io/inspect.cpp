@@ -211,11 +211,12 @@ void check_samples(const Hdf5File& file, const std::vector<MonitorSeries>& all, 
   }
 }
 
-/// Ids, names, masses and what else particles have once.
+/// Ids, names, masses, types, bonds and what else particles have once.
 void check_constants(const Hdf5File& file, std::vector<std::string>& damaged) {
   if (!file.has_attribute("/noether", constants_attribute)) return;
   if (file.text_attribute("/noether", constants_attribute) == constants_digest(file)) return;
-  damaged.emplace_back("the ids, names, masses or parameters of the particles are not those that were written");
+  damaged.emplace_back(
+      "the ids, names, masses, types, bonds or parameters of the particles are not those that were written");
 }
 
 /// What a file that has digests must have of them: without one a change would pass unseen.

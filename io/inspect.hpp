@@ -59,16 +59,23 @@ FileInfo verify(const std::filesystem::path& file);
 
 struct ConvertOptions {
   bool unwrapped = false;  ///< positions as if never wrapped: x + image edges, of particles in a periodic box
+  bool bodies = false;     ///< one frame, as bodies that a scene starts from
+  std::optional<std::int64_t> frame = {};  ///< which one, from 0; -1, as nothing, is the last. Of bodies alone
 };
 
 /// Rewrites a trajectory as extended XYZ (`.xyz`) or CSV (`.csv`: step, time, id, name, x ... vz, 17 digits; of a
 /// first-order system, which has no XYZ: step, time, and a column for each variable).
 ///
-/// XYZ of a molecular run is as ASE reads it: the element as species (of a name such as "O_17" what stands before its
-/// number), positions in angstrom, masses in u, momenta in sqrt(eV u), Lattice and pbc of a periodic box, positions in
-/// it. Other runs keep their own units, which the comment of each frame tells.
+/// Species of XYZ are the types of the particles, "1", a label or the element, and where they have none their names (of
+/// "O_17" what stands before the number). XYZ of a molecular run is as ASE reads it: positions in angstrom, masses in
+/// u, momenta in sqrt(eV u), charges in e, Lattice and pbc of a periodic box, positions in it. Other runs keep their
+/// own units, which the comment of each frame tells.
+///
+/// Bodies go into a trajectory of one frame (`.h5`), with all that particles have, or into a table (`.csv`) where that
+/// has room for it: there are no types, bonds, charges, columns or box. Both are read back to the bit.
 /// @return the number of frames
-/// @throws Error for another extension, or images that are not there; FileError if a file cannot be read or written
+/// @throws Error for another extension, or images, a frame or room that are not there; FileError if a file cannot be
+///   read or written
 Index convert(const std::filesystem::path& file, const std::filesystem::path& out, const ConvertOptions& options = {});
 
 /// The samples of all monitors, in the order of their names.

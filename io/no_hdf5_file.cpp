@@ -78,6 +78,7 @@ void Hdf5File::set_attribute(const std::string&, const std::string&, const std::
   unreachable();
 }
 void Hdf5File::set_variable_text(const std::string&, const std::string&, const std::string&) const { unreachable(); }
+void Hdf5File::set_reference(const std::string&, const std::string&, const std::string&) const { unreachable(); }
 std::string Hdf5File::text_attribute(const std::string&, const std::string&) const { unreachable(); }
 std::int64_t Hdf5File::integer_attribute(const std::string&, const std::string&) const { unreachable(); }
 std::vector<std::int64_t> Hdf5File::integers_attribute(const std::string&, const std::string&) const { unreachable(); }

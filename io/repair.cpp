@@ -7,6 +7,7 @@
 #include "io/trajectory_digest.hpp"
 #include "io/trajectory_layout.hpp"
 #include "io/trajectory_reader.hpp"
+#include "io/trajectory_topology.hpp"
 #include "numbers/error.hpp"
 
 #include <fmt/format.h>
@@ -42,10 +43,13 @@ void count(const Hdf5File& file, const std::string& path, std::uint64_t size, To
 Plan plan(const fs::path& path, std::uint64_t size) {
   const TrajectoryReader reader(path);
   const Hdf5File& file = reader.file();
-  std::vector<std::string> complete = {particles_path + "/id", particles_path + "/mass", particles_path + "/species",
-                                       particles_path + "/name"};
-  if (file.has(system_path)) complete.clear();
-  if (file.has(system_path + "/name")) complete.push_back(system_path + "/name");
+  std::vector<std::string> complete;
+  for (const std::string& group : {particles_path, system_path, connectivity_path, topology_path}) {
+    for (const std::string& one : file.children(group)) {
+      const std::string path_of_one = group + "/" + one;
+      if (!file.is_group(path_of_one) && !file.open(path_of_one).grows()) complete.push_back(path_of_one);
+    }
+  }
   complete.emplace_back("/noether/scene");
   for (const std::string& fixed : complete) {
     const Hdf5Dataset dataset = file.open(fixed);
@@ -141,6 +145,13 @@ struct Temporary {
   const fs::path path;
 };
 
+std::string beyond_repair(std::uint64_t size, std::uint64_t expected) {
+  return fmt::format(
+      "cut short: {} of {} bytes are there, and more than frames and samples is missing: it cannot be "
+      "mended. A run whose checkpoint is sound goes on without it by 'noether run SCENE --resume'",
+      size, expected);
+}
+
 /// What is missing is put back as zeros, to which nothing points after the cut.
 void repair_end(const fs::path& file, std::uint64_t size, std::uint64_t expected, Repair& result) {
   const fs::path kept = with_ending(file, ".damaged");
@@ -158,10 +169,14 @@ void repair_end(const fs::path& file, std::uint64_t size, std::uint64_t expected
     found = try_first(copy.path, [&] { return plan(copy.path, size); });
     carry_out(found, copy.path);
   } catch (const FileError&) {
-    return;  // too much is missing
+    result.info.damaged = {beyond_repair(size, expected)};
+    return;
   }
   const FileInfo mended = verify(copy.path);
-  if (!mended.damaged.empty()) return;
+  if (!mended.damaged.empty()) {
+    result.info.damaged = {beyond_repair(size, expected)};
+    return;
+  }
   sync_file(copy.path);
   rename_if_there(file, kept);
   rename_if_there(copy.path, file);

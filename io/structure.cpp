@@ -29,6 +29,11 @@ StructureFormat format_of(const std::filesystem::path& file) {
   if (extension == ".xyz" || extension == ".extxyz") return StructureFormat::extended_xyz;
   if (extension == ".gro") return StructureFormat::gro;
   if (file.filename().string().starts_with("data.")) return StructureFormat::lammps_data;
+  if (extension == ".h5" || extension == ".hdf5") {
+    throw Error(fmt::format("'{}' is no structure; particles of a run go on by bodies = \"{}\"",
+                            file.filename().string(), file.filename().string()),
+                {.key = "structure", .value = file.string()});
+  }
   throw Error(fmt::format("'{}' is of no kind that is read; a structure is a .data or .lmp file or data.NAME (LAMMPS), "
                           ".xyz or .extxyz, or .gro",
                           file.filename().string()),

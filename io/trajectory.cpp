@@ -3,14 +3,14 @@
 #include "io/digest.hpp"
 #include "io/hdf5_file.hpp"
 #include "io/sandbox.hpp"
+#include "io/trajectory_constants.hpp"
 #include "io/trajectory_datasets.hpp"
 #include "io/trajectory_digest.hpp"
 #include "io/trajectory_layout.hpp"
-#include "numbers/quantity.hpp"
-#include "numbers/simd.hpp"
-#include "numbers/version.hpp"
 
 #include <fmt/format.h>
+
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -24,7 +24,9 @@ namespace noether::io {
 /// The file itself, shared by copies of the writer.
 class TrajectoryWriter::File {
  public:
-  File(std::filesystem::path path, TrajectoryOptions options) : path_(std::move(path)), options_(std::move(options)) {}
+  /// @param one_frame  and no more: no room is kept for others
+  File(std::filesystem::path path, TrajectoryOptions options, bool one_frame = false)
+      : path_(std::move(path)), options_(std::move(options)), one_frame_(one_frame) {}
 
   File(const File&) = delete;
   File& operator=(const File&) = delete;
@@ -38,16 +40,17 @@ class TrajectoryWriter::File {
 
   const std::filesystem::path& path() const { return path_; }
 
-  void make_file(const ParticleSystem<double>& state) {
+  void begin(const ParticleSystem<double>& state) {
     if (!hdf5_) create(state);
   }
 
-  void observe(const Snapshot<double>& now) {
-    const ParticleSystem<double>& state = now.state();
-    if (!hdf5_) create(state);
-    if (options_.frames) {
+  /// A moment that has just been written is not written again: of a cadence in wall time a stop may be a look already.
+  void observe(const ParticleSystem<double>& state, std::int64_t step, double time) {
+    begin(state);
+    if (options_.frames && !(wrote_ && now_.step == step && now_.time == time)) {
       match(state);
-      write_frame(now, state);
+      write_frame(state, step, time);
+      wrote_ = true;
     }
     flush_now_and_then();
   }
@@ -96,12 +99,18 @@ class TrajectoryWriter::File {
     load_value(saved, prefix + "/dataset", paths);
     load_value(saved, prefix + "/rows", rows);
     close();
-    if (!created) return;
+    if (!created || options_.lost) return;
     if (!std::filesystem::exists(path_)) {
-      throw FileError("the trajectory that the saved run counts on is missing; bring it back, or start afresh",
-                      {.file = path_.string()});
+      throw TrajectoryLost("the trajectory that the saved run counts on is missing; bring it back, or start afresh",
+                           {.file = path_.string()});
     }
-    try_in_child(path_, [&] { File(path_, options_).rehearse(paths, rows); });
+    try {
+      try_in_child(path_, [&] { File(path_, options_).rehearse(paths, rows); });
+    } catch (const FileError& error) {
+      // Nothing was written: what is wrong is wrong with the file, unless it is not ours.
+      if (::access(path_.c_str(), R_OK | W_OK) != 0) throw;
+      throw TrajectoryLost(error.message(), error.location());
+    }
     hdf5_ = Hdf5File::open_to_append(path_);
     cut(paths, rows);
     // Space that was freed by cutting is not reused before the file has been closed.
@@ -122,16 +131,18 @@ class TrajectoryWriter::File {
     waiting_.clear();
     ids_.clear();
     variables_ = 0;
-    periodic_ = false;
+    periodic_ = wrote_ = false;
     hdf5_.reset();
   }
 
   void create(const ParticleSystem<double>& state) {
     units_ = &state.units();
     hdf5_ = Hdf5File::create(path_);
-    describe_file();
+    write_header(*hdf5_, *units_, options_.scene_toml);
     if (state.variables().empty()) {
-      describe_particles(state);
+      match_order(state);
+      periodic_ = state.box().is_periodic();
+      write_constants(*hdf5_, state, order_);
       if (options_.frames) create_frames(state);
     } else {
       describe_system(state);
@@ -143,61 +154,6 @@ class TrajectoryWriter::File {
     hdf5_->take_name();
   }
 
-  void describe_file() const {
-    hdf5_->make_group("/h5md/author");
-    hdf5_->make_group("/h5md/creator");
-    hdf5_->set_attribute("/h5md", "version", std::vector<std::int64_t>{1, 1});
-    hdf5_->set_attribute("/h5md/author", "name", "noether");
-    hdf5_->set_attribute("/h5md/creator", "name", "noether");
-    hdf5_->set_attribute("/h5md/creator", "version", version());
-    hdf5_->make_group(monitors_path);
-    hdf5_->set_attribute("/noether", "version", version());
-    hdf5_->set_attribute("/noether", "commit", commit());
-    hdf5_->set_attribute("/noether", "simd", std::string(name(simd_level())));
-    hdf5_->set_attribute("/noether", "units", std::string(units_->name));
-    hdf5_->set_attribute("/noether", "complete", std::int64_t{0});
-    hdf5_->write_text("/noether/scene", options_.scene_toml);
-  }
-
-  void describe_particles(const ParticleSystem<double>& state) {
-    std::vector<double> masses;
-    std::vector<std::string> names;
-    match_order(state);
-    for (const Index i : order_) {
-      masses.push_back(state.masses()[i]);
-      names.push_back(state.name(i));
-    }
-    const std::vector<Index> shape{state.size()};
-    hdf5_->write(particles_path + "/id", sorted_ids_, shape);
-    hdf5_->write(particles_path + "/mass", masses, shape);
-    hdf5_->write(particles_path + "/species", species_of(names), shape);
-    hdf5_->write(particles_path + "/name", names);
-    set_unit(particles_path + "/mass", std::string(units_->mass), "u");
-    hdf5_->make_group(particles_path + "/box");
-    hdf5_->set_attribute(particles_path + "/box", "dimension", std::int64_t{3});
-    hdf5_->set_attribute(particles_path + "/box", "boundary",
-                         std::vector<std::string>(3, state.box().is_periodic() ? "periodic" : "none"));
-    periodic_ = state.box().is_periodic();
-    for (const auto& column : state.columns()) {
-      if (!column.info.moves()) describe_parameter(column);
-    }
-  }
-
-  /// A column that does not move stands once in the file, as masses do: shape (n), or (n, width).
-  void describe_parameter(const Columns<double>::Column& column) const {
-    const std::string path = particles_path + "/" + column.info.name;
-    std::vector<Index> shape{static_cast<Index>(order_.size())};
-    if (column.info.width > 1) shape.push_back(column.info.width);
-    column.visit([&](const auto& values) {
-      std::vector<std::decay_t<decltype(values.component(0)[0])>> numbers;
-      for (const Index i : order_) {
-        for (int k = 0; k < values.width; ++k) numbers.push_back(values.component(k)[i]);
-      }
-      hdf5_->write(path, numbers, shape);
-    });
-    hdf5_->set_attribute(path, "noether_unit", unit_in_words(column.info.dimension, *units_));
-  }
-
   void describe_system(const ParticleSystem<double>& state) {
     variables_ = static_cast<Index>(state.variables().size());
     hdf5_->make_group(system_path);
@@ -205,21 +161,12 @@ class TrajectoryWriter::File {
     if (!state.variable_names().empty()) hdf5_->write(system_path + "/name", state.variable_names());
   }
 
-  /// MDAnalysis takes only the units it knows, so an attribute `unit` stands in molecular files alone.
-  void set_unit(const std::string& path, const std::string& unit, const std::string& molecular) const {
-    if (units_->name == "molecular") {
-      hdf5_->set_variable_text(path, "unit", molecular);
-    } else {
-      hdf5_->set_attribute(path, "noether_unit", unit);
-    }
-  }
-
   /// Position's values come first, step and time are shared by position and velocity.
   void create_frames(const ParticleSystem<double>& state) {
     const Index particles = state.size();
     const std::string position = particles_path + "/position";
     const std::string velocity = particles_path + "/velocity";
-    const Index rows = rows_per_chunk(3 * particles, frame_bytes), few = rows_per_chunk(1, sample_bytes);
+    const Index rows = rows_at_once(3 * particles, frame_bytes), few = rows_at_once(1, sample_bytes);
     frame_.position =
         BufferedDataset<double>(hdf5_->create_growing(position + "/value", ElementType::real, {particles, 3}, rows));
     frame_.velocity =
@@ -235,15 +182,17 @@ class TrajectoryWriter::File {
     }
     frame_.digest = create_digests(frame_digests_path);
     hdf5_->open(position + "/value").write_last();
-    set_unit(position + "/value", std::string(units_->length), "nm");
-    set_unit(velocity + "/value", unit_of(dimensions::velocity, *units_), "nm ps-1");
-    set_unit(position + "/time", std::string(units_->time), "ps");
+    set_unit_of_motion(*hdf5_, position + "/value", "length", *units_);
+    set_unit_of_motion(*hdf5_, velocity + "/value", "velocity", *units_);
+    set_unit_of_motion(*hdf5_, position + "/time", "time", *units_);
   }
+
+  Index rows_at_once(Index numbers, Index wanted) const { return one_frame_ ? 1 : rows_per_chunk(numbers, wanted); }
 
   BufferedDataset<std::int64_t> create_digests(const std::string& path) const {
     constexpr Index size = std::tuple_size_v<RowDigest>;
     return BufferedDataset<std::int64_t>(
-        hdf5_->create_growing(path, ElementType::integer, {size}, rows_per_chunk(size, sample_bytes)));
+        hdf5_->create_growing(path, ElementType::integer, {size}, rows_at_once(size, sample_bytes)));
   }
   /// Those of a file to go on with; none where it has none.
   std::optional<BufferedDataset<std::int64_t>> open_digests(const std::string& path) const {
@@ -260,7 +209,7 @@ class TrajectoryWriter::File {
       hdf5_->link(particles_path + "/position/step", group + "/step");
       hdf5_->link(particles_path + "/position/time", group + "/time");
     }
-    set_unit(edges_path + "/value", std::string(units_->length), "nm");
+    set_unit(*hdf5_, edges_path + "/value", "length", *units_);
   }
 
   /// A column that moves beyond position and velocity, such as an orientation: shape (frames, n, width).
@@ -268,16 +217,19 @@ class TrajectoryWriter::File {
     const std::string group = particles_path + "/" + info.name;
     frame_.columns[info.name] = BufferedDataset<double>(
         hdf5_->create_growing(group + "/value", ElementType::real, {particles, Index{info.width}},
-                              rows_per_chunk(info.width * particles, frame_bytes)));
+                              rows_at_once(info.width * particles, frame_bytes)));
     hdf5_->link(particles_path + "/position/step", group + "/step");
     hdf5_->link(particles_path + "/position/time", group + "/time");
     hdf5_->set_attribute(group, role_attribute,
                          std::string(info.role == ColumnRole::momentum ? "momentum" : "configuration"));
     hdf5_->set_attribute(group, "noether_unit", unit_in_words(info.dimension, *units_));
+    hdf5_->set_attribute(group, dimension_attribute, info.dimension);
+    const std::string unit = h5md_unit(info.dimension, *units_);
+    if (!unit.empty()) hdf5_->set_variable_text(group + "/value", "unit", unit);
   }
 
   void create_system_frames() {
-    const Index rows = rows_per_chunk(variables_, frame_bytes), few = rows_per_chunk(1, sample_bytes);
+    const Index rows = rows_at_once(variables_, frame_bytes), few = rows_at_once(1, sample_bytes);
     frame_.variables =
         BufferedDataset<double>(hdf5_->create_growing(system_path + "/value", ElementType::real, {variables_}, rows));
     frame_.step =
@@ -285,7 +237,7 @@ class TrajectoryWriter::File {
     frame_.time = BufferedDataset<double>(hdf5_->create_growing(system_path + "/time", ElementType::real, {}, few));
     frame_.digest = create_digests(frame_digests_path);
     hdf5_->open(system_path + "/value").write_last();
-    set_unit(system_path + "/time", std::string(units_->time), "ps");
+    set_unit_of_motion(*hdf5_, system_path + "/time", "time", *units_);
   }
 
   /// Makes ready to go on with an existing file.
@@ -439,9 +391,9 @@ class TrajectoryWriter::File {
     }
   }
 
-  void write_frame(const Snapshot<double>& now, const ParticleSystem<double>& state) {
-    now_.step = now.step();
-    now_.time = now.time();
+  void write_frame(const ParticleSystem<double>& state, std::int64_t step, double time) {
+    now_.step = step;
+    now_.time = time;
     if (variables_ > 0) {
       now_.variables = state.variables();
       frame_.variables.append(now_.variables);
@@ -507,7 +459,7 @@ class TrajectoryWriter::File {
     const auto dataset = [&](const std::string& name, ElementType type, const std::vector<Index>& shape) {
       if (there) return open(group + name, shape);
       const Index values = std::accumulate(shape.begin(), shape.end(), Index{1}, std::multiplies<>());
-      return hdf5_->create_growing(group + name, type, shape, rows_per_chunk(values, sample_bytes));
+      return hdf5_->create_growing(group + name, type, shape, rows_at_once(values, sample_bytes));
     };
     monitor.step = BufferedDataset<std::int64_t>(dataset("step", ElementType::integer, {}));
     monitor.time = BufferedDataset<double>(dataset("time", ElementType::real, {}));
@@ -541,6 +493,7 @@ class TrajectoryWriter::File {
 
   std::filesystem::path path_;
   TrajectoryOptions options_;
+  bool one_frame_;
   const UnitSystem* units_ = nullptr;
   std::optional<Hdf5File> hdf5_;
   FrameDatasets frame_;
@@ -550,20 +503,37 @@ class TrajectoryWriter::File {
   std::vector<Index> order_;
   Index variables_ = 0;                              ///< of a system without particles
   bool periodic_ = false;                            ///< frames have a box, and images of the particles
-  Frame now_;                                        ///< the frame that is being written
+  Frame now_;                                        ///< the frame that is being written, or was the last
+  bool wrote_ = false;                               ///< `now_` is in the file
   std::chrono::steady_clock::time_point flushed_{};  ///< long ago: the first sample or frame goes out at once
 };
 
 TrajectoryWriter::TrajectoryWriter(std::filesystem::path file, TrajectoryOptions options)
     : held_(std::make_shared<File>(std::move(file), std::move(options))) {}
 
-void TrajectoryWriter::at_start(const Snapshot<double>& now) { held_->make_file(now.state()); }
-void TrajectoryWriter::observe(const Snapshot<double>& now) { held_->observe(now); }
+void TrajectoryWriter::at_start(const Snapshot<double>& now) { held_->begin(now.state()); }
+void TrajectoryWriter::observe(const Snapshot<double>& now) { held_->observe(now.state(), now.step(), now.time()); }
+void TrajectoryWriter::begin(const ParticleSystem<double>& state) { held_->begin(state); }
 void TrajectoryWriter::record(const Sample& sample) { held_->record(sample); }
 void TrajectoryWriter::flush() { held_->flush(); }
 void TrajectoryWriter::finish(const Outcome& outcome) { held_->finish(outcome); }
 void TrajectoryWriter::save(SavedState& saved, const std::string& prefix) const { held_->save(saved, prefix); }
 void TrajectoryWriter::load(const SavedState& saved, const std::string& prefix) { held_->load(saved, prefix); }
 const std::filesystem::path& TrajectoryWriter::file() const { return held_->path(); }
+
+/// The one frame goes through the same hands as those of a run.
+struct OneFrame {
+  static void write(const std::filesystem::path& path, const TrajectoryOptions& options,
+                    const ParticleSystem<double>& settled, std::int64_t step, double time) {
+    TrajectoryWriter::File file(path, options, true);
+    file.observe(settled, step, time);
+    file.finish(Outcome{});
+  }
+};
+
+void write_one_frame(const std::filesystem::path& file, const ParticleSystem<double>& settled, std::int64_t step,
+                     double time, const TrajectoryOptions& options) {
+  OneFrame::write(file, options, settled, step, time);
+}
 
 }  // namespace noether::io

@@ -4,6 +4,7 @@
 #include "engine/description.hpp"
 #include "engine/monitor.hpp"
 #include "engine/outcome.hpp"
+#include "numbers/error.hpp"
 
 #include <filesystem>
 #include <memory>
@@ -14,6 +15,13 @@ namespace noether::io {
 struct TrajectoryOptions {
   bool frames = true;        ///< write positions and velocities; without, only the samples of monitors
   std::string scene_toml{};  ///< effective scene, stored as /noether/scene
+  bool lost = false;         ///< load() looks for no file: the one that the saved run counts on is gone
+};
+
+/// The file that a saved run counts on is missing, damaged or shorter: exit code 3.
+class TrajectoryLost : public FileError {
+ public:
+  using FileError::FileError;
 };
 
 /// Writes frames and samples to one HDF5 file: `sim.every(100, io::TrajectoryWriter{"run.h5"})`.
@@ -27,7 +35,8 @@ class TrajectoryWriter {
 
   static constexpr auto describe() {
     return part<TrajectoryWriter>("trajectory", "frames and monitors' samples in an H5MD file",
-                                  quantities("position[n][3] [length], velocity[n][3] [length/time], id, mass, name; "
+                                  quantities("position[n][3] [length], velocity[n][3] [length/time], id, mass, name, "
+                                             "species, charge, bonds; "
                                              "every monitor's quantities below /noether/monitors; of a system, "
                                              "value[n] below /noether/system"),
                                   source("DeBuyl2014"));
@@ -47,14 +56,25 @@ class TrajectoryWriter {
   /// Lengths of all datasets.
   void save(SavedState& saved, const std::string& prefix) const;
   /// Opens the existing file and cuts every dataset back to its saved length.
-  /// @throws FileError if the file is missing or shorter than that
+  /// @throws TrajectoryLost if the file is missing, damaged or shorter than that; FileError if it cannot be written
   void load(const SavedState& saved, const std::string& prefix);
+  /// Begins the file now, before the first look. @throws FileError
+  void begin(const ParticleSystem<double>& state);
 
   const std::filesystem::path& file() const;
 
  private:
+  friend struct OneFrame;
   class File;
   std::shared_ptr<File> held_;
 };
+
+/// Writes particles as a trajectory of one frame, which `bodies` of a scene takes as any other; an old file is
+/// replaced.
+/// @param time  [time]
+/// @throws FileError
+/// @cost O(n)
+void write_one_frame(const std::filesystem::path& file, const ParticleSystem<double>& settled, std::int64_t step,
+                     double time, const TrajectoryOptions& options = {});
 
 }  // namespace noether::io

@@ -34,8 +34,9 @@ RowDigest frame_digest(const Frame& frame);
 RowDigest sample_digest(std::int64_t step, double time,
                         const std::map<std::string, std::span<const double>, std::less<>>& quantities);
 
-/// SHA-256 of the datasets of the particles, or of a system, that do not grow, in the order of their names: each name,
-/// and its values. 64 hexadecimal digits.
+/// SHA-256 of "noether-constants-1\n" and of the datasets of the particles, or of a system, that do not grow, of
+/// /connectivity and of /noether/topology, of each group in the order of their names: each name, and its values. 64
+/// hexadecimal digits.
 /// @throws FileError  for what HDF5 cannot read
 std::string constants_digest(const Hdf5File& file);
 

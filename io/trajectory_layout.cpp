@@ -3,7 +3,6 @@
 #include "numbers/quantity.hpp"
 
 #include <algorithm>
-#include <map>
 #include <numeric>
 
 namespace noether::io {
@@ -26,15 +25,6 @@ std::string unit_in_words(const std::string& dimension, const UnitSystem& units)
   } catch (const Error&) {
     return dimension;
   }
-}
-
-std::vector<std::int64_t> species_of(const std::vector<std::string>& names) {
-  std::map<std::string, std::int64_t> numbers;
-  std::vector<std::int64_t> species;
-  for (const std::string& name : names) {
-    species.push_back(numbers.emplace(name, static_cast<std::int64_t>(numbers.size())).first->second);
-  }
-  return species;
 }
 
 }  // namespace noether::io

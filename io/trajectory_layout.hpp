@@ -21,6 +21,9 @@ inline const std::string monitors_path = "/noether/monitors";
 /// Attribute of the group of a column that moves beyond position and velocity: what it is to forces.
 inline const std::string role_attribute = "noether_role";
 
+/// Attribute of a column: the dimension of its numbers in words, from which its unit follows.
+inline const std::string dimension_attribute = "noether_dimension";
+
 /// Names of the columns of a file that move beyond position and velocity, in their order.
 inline std::vector<std::string> moving_columns(const Hdf5File& file) {
   std::vector<std::string> names;
@@ -45,9 +48,6 @@ inline constexpr Index frame_bytes = 65536, sample_bytes = 4096;
 /// The unit of a dimension in words, or those of a list of dimensions, one for each column; words that are no dimension
 /// stand for themselves.
 std::string unit_in_words(const std::string& dimension, const UnitSystem& units);
-
-/// Distinct names get distinct numbers, in the order of their first appearance.
-std::vector<std::int64_t> species_of(const std::vector<std::string>& names);
 
 /// The unit system that a file names. @throws FileError if there is none of this name
 inline const UnitSystem& known_units(const std::string& name, const std::filesystem::path& file) {

@@ -2,7 +2,9 @@
 
 #include "io/trajectory_digest.hpp"
 #include "io/trajectory_layout.hpp"
+#include "io/trajectory_topology.hpp"
 #include "numbers/error.hpp"
+#include "numbers/quantity.hpp"
 
 #include <fmt/format.h>
 
@@ -13,10 +15,11 @@ namespace noether::io {
 
 namespace {
 
-/// What molecular files call `unit` is for others to read.
-std::string unit_at(const Hdf5File& file, const std::string& path, const std::string& molecular) {
-  const bool known = file.text_attribute("/noether", "units") == "molecular";
-  return known ? molecular : file.text_attribute(path, "noether_unit");
+/// The unit of a dataset. What H5MD calls `unit` is for others to read: it follows from the unit system.
+std::string unit_at(const Hdf5File& file, const std::string& path, const Dimension& dimension,
+                    const UnitSystem& units) {
+  const std::string own = file.text_attribute(path, "noether_unit");
+  return own.empty() ? unit_of(dimension, units) : own;
 }
 
 }  // namespace
@@ -61,7 +64,7 @@ void TrajectoryReader::open_system(const std::filesystem::path& path) {
     }
     steps_ = file_.open(system_path + "/step").read_integers();
     times_ = file_.open(system_path + "/time").read_reals();
-    shared_.time_unit = unit_at(file_, system_path + "/time", "ps");
+    shared_.time_unit = unit_at(file_, system_path + "/time", dimensions::time, known_units(shared_.units, path));
     frames_ = std::min({variables_.rows(), static_cast<Index>(steps_.size()), static_cast<Index>(times_.size())});
   }
   for (std::int64_t i = static_cast<std::int64_t>(shared_.variable_names.size()); i < n; ++i) {
@@ -77,6 +80,10 @@ void TrajectoryReader::open_particles(const std::filesystem::path& path) {
   if (shared_.names.size() != shared_.ids.size() || shared_.masses.size() != shared_.ids.size()) {
     throw FileError("damaged: ids, names and masses differ in number", {.file = path.string()});
   }
+  shared_.types = read_type_names(file_, n);
+  if (file_.has(particles_path + "/charge")) shared_.charges = file_.open(particles_path + "/charge").read_reals();
+  if (!shared_.charges.empty() && shared_.charges.size() != shared_.ids.size())
+    throw FileError("damaged: ids and charges differ in number", {.file = path.string()});
   if (!file_.has(particles_path + "/position")) return;
   position_ = file_.open(particles_path + "/position/value");
   velocity_ = file_.open(particles_path + "/velocity/value");
@@ -99,9 +106,10 @@ void TrajectoryReader::open_particles(const std::filesystem::path& path) {
   open_columns(path);
   steps_ = file_.open(particles_path + "/position/step").read_integers();
   times_ = file_.open(particles_path + "/position/time").read_reals();
-  shared_.length_unit = unit_at(file_, particles_path + "/position/value", "nm");
-  shared_.velocity_unit = unit_at(file_, particles_path + "/velocity/value", "nm/ps");
-  shared_.time_unit = unit_at(file_, particles_path + "/position/time", "ps");
+  const UnitSystem& units = known_units(shared_.units, path);
+  shared_.length_unit = unit_at(file_, particles_path + "/position/value", dimensions::length, units);
+  shared_.velocity_unit = unit_at(file_, particles_path + "/velocity/value", dimensions::velocity, units);
+  shared_.time_unit = unit_at(file_, particles_path + "/position/time", dimensions::time, units);
   frames_ = std::min(
       {position_.rows(), velocity_.rows(), static_cast<Index>(steps_.size()), static_cast<Index>(times_.size())});
   if (periodic_) frames_ = std::min({frames_, image_.rows(), edges_.rows()});
@@ -119,7 +127,7 @@ void TrajectoryReader::open_columns(const std::filesystem::path& path) {
           fmt::format("damaged: column '{}' of {} particles does not have the shape ({}, 1 to 9)", name, n, n),
           {.file = path.string()});
     }
-    shared_.columns[name] = {shape[2], unit_at(file_, group + "/value", file_.text_attribute(group, "noether_unit"))};
+    shared_.columns[name] = {shape[2], file_.text_attribute(group, "noether_unit")};
     columns_.emplace(name, std::move(column));
   }
 }

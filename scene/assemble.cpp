@@ -23,10 +23,12 @@ void attach_writers(Simulation<double>& sim, const Scene& scene, const SceneFile
     samples = samples || watch.kind == SceneWatch::Kind::monitor;
     if (watch.kind != SceneWatch::Kind::trajectory || files.trajectory.empty()) continue;
     frames = true;
-    detail::attach(sim, watch.cadence, io::TrajectoryWriter(files.trajectory, {.scene_toml = scene.effective_toml}));
+    detail::attach(sim, watch.cadence,
+                   io::TrajectoryWriter(files.trajectory, {.scene_toml = scene.effective_toml, .lost = files.lost}));
   }
   if (!frames && samples && !files.trajectory.empty()) {
-    sim.every(once, io::TrajectoryWriter(files.trajectory, {.frames = false, .scene_toml = scene.effective_toml}));
+    sim.every(once, io::TrajectoryWriter(files.trajectory,
+                                         {.frames = false, .scene_toml = scene.effective_toml, .lost = files.lost}));
   }
 }
 

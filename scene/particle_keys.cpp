@@ -51,7 +51,8 @@ std::vector<const SceneValue*> tables_and_keep(TableReader& reader, const std::s
 ParticleSystem<double> particles_in_file(
     TableReader& reader, const std::string& key, const std::filesystem::path& folder, const std::string& example,
     const std::string& what, SceneValue& effective,
-    const std::function<ParticleSystem<double>(const std::filesystem::path&)>& read) {
+    const std::function<ParticleSystem<double>(const std::filesystem::path&)>& read,
+    const std::function<std::string()>& hash_of) {
   const std::string name = reader.text(key), hash_key = key + "_sha256";
   if (name.empty()) reader.fail(key, fmt::format("{} = \"\" names no file; give one, such as \"{}\"", key, example));
   const std::filesystem::path file = folder / name;
@@ -61,7 +62,7 @@ ParticleSystem<double> particles_in_file(
                 fmt::format("{} = \"{}\" is this scene itself; give {}, such as \"{}\"", key, name, what, example));
   }
   ParticleSystem<double> s = told_of_line(reader, key, file, read);
-  const std::string hash = io::sha256(io::read_bytes(file));
+  const std::string hash = hash_of ? hash_of() : io::sha256(io::read_bytes(file));
   if (reader.text(hash_key, hash) != hash) {
     reader.fail(hash_key, fmt::format("'{}' is no longer the file this scene was run with: its hash is {}; take the "
                                       "key out to use the new one",

@@ -17,11 +17,13 @@ namespace noether {
 /// Reads particles from the file that a key names, and keeps name and hash, `<key>_sha256`, in the effective table.
 /// @param example  a name for messages, such as "bodies.csv"
 /// @param what  how messages call it: "a table of bodies"
+/// @param hash_of  the hash, asked for after the particles were read; of all bytes of the file unless it is given
 /// @throws SceneError if the name is wrong or the file has changed; FileError, told of the scene's line
 ParticleSystem<double> particles_in_file(
     TableReader& reader, const std::string& key, const std::filesystem::path& folder, const std::string& example,
     const std::string& what, SceneValue& effective,
-    const std::function<ParticleSystem<double>(const std::filesystem::path&)>& read);
+    const std::function<ParticleSystem<double>(const std::filesystem::path&)>& read,
+    const std::function<std::string()>& hash_of = {});
 
 /// `box = ["10 nm", "10 nm", "10 nm"]` or `"open"`; empty where the scene says nothing. @throws SceneError
 std::optional<Box> read_box(TableReader& reader, SceneValue& effective);

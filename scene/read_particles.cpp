@@ -3,6 +3,7 @@
 #include "engine/charge.hpp"
 #include "engine/given_orbit.hpp"
 #include "io/bodies.hpp"
+#include "io/frame_particles.hpp"
 #include "numbers/quantity.hpp"
 #include "numbers/suggest.hpp"
 #include "numbers/text.hpp"
@@ -377,11 +378,59 @@ ParticleSystem<double> from_file(TableReader& reader, const std::filesystem::pat
   return s;
 }
 
+/// Whether the bodies are those of a frame of run.h5.
+bool are_of_a_frame(TableReader& reader, const std::filesystem::path& folder) {
+  return reader.has("bodies") && io::is_hdf5(folder / reader.text("bodies"));
+}
+
+/// The bodies of a frame of run.h5, the last unless `frame` says which. What the frame is stands in the effective
+/// table: a run that goes on writing must not change the start of this one.
+ParticleSystem<double> from_frame(TableReader& reader, const std::filesystem::path& folder, SceneValue& effective,
+                                  std::vector<std::string>& warnings) {
+  io::FrameOptions options{.frame = {}, .units = reader.context().units, .columns = reader.context().columns};
+  if (has_frame_number(reader)) options.frame = reader.integer("frame");
+  io::FrameParticles found;
+  const auto read = [&](const std::filesystem::path& file) {
+    try {
+      found = io::read_frame_particles(file, options);
+    } catch (const FileError&) {
+      throw;
+    } catch (const Error& error) {
+      if (error.key() == "units") reader.fail("bodies", error.message());
+      reader.fail(error.key(), error.message());
+    }
+    return std::move(found.particles);
+  };
+  ParticleSystem<double> s =
+      particles_in_file(reader, "bodies", folder, "run.h5", "a run.h5", effective, read, [&] { return found.sha256; });
+  if (has_frame_number(reader) || !reader.has("frame"))
+    effective.put("frame", SceneValue::of(found.frame, reader.line("frame")));
+  if (!found.knows_types) {
+    warnings.push_back(
+        fmt::format("{} is from before types, molecules and bonds stood in such files: its particles "
+                    "have none here",
+                    reader.text("bodies")));
+  }
+  for (const std::string& name : found.left_out) {
+    warnings.push_back(
+        fmt::format("no part of this scene has the column '{}' of {}: it is left out", name, reader.text("bodies")));
+  }
+  if (reader.has("body") && (s.topology() != nullptr || s.has<Charge>())) {
+    reader.fail("body",
+                fmt::format("the particles of {} have types, bonds or charges, which bodies of tables would not "
+                            "have; take [[particles.body]] out",
+                            reader.text("bodies")));
+  }
+  return s;
+}
+
 /// Bodies of a file, of `[[particles.body]]` tables, or of both, in this order.
 ParticleSystem<double> from_bodies(TableReader& reader, const std::filesystem::path& folder, SceneValue& effective,
                                    std::vector<std::string>& warnings) {
-  const bool file = reader.has("bodies");
-  if (file) {
+  const bool file = reader.has("bodies"), frame = are_of_a_frame(reader, folder);
+  if (frame) {
+    reader.expect_only({"bodies", "bodies_sha256", "elements", "body", "frame", "box", "exclusions"});
+  } else if (file) {
     reader.expect_only({"bodies", "bodies_sha256", "epoch", "elements", "body", "frame", "box", "exclusions"});
   } else {
     reader.expect_only({"body", "epoch", "elements", "frame", "box", "type", "pair", "mixing", "exclusions"});
@@ -390,7 +439,11 @@ ParticleSystem<double> from_bodies(TableReader& reader, const std::filesystem::p
   const io::ElementsAbout elements = read_elements_about(reader, effective);
   ParticleSystem<double> s(*reader.context().units);
   std::optional<io::BodyEpoch> epoch = read_epoch(reader);
-  if (file) s = from_file(reader, folder, elements, tables.empty(), epoch, effective, warnings);
+  if (frame) {
+    s = from_frame(reader, folder, effective, warnings);
+  } else if (file) {
+    s = from_file(reader, folder, elements, tables.empty(), epoch, effective, warnings);
+  }
   if (epoch) effective.put("epoch", SceneValue::of(text_of(*epoch), reader.line("epoch")));
   if (tables.empty()) return s;
   BodyTables bodies(reader, effective, std::move(s), elements, epoch);
@@ -442,10 +495,18 @@ void check_sources(TableReader& reader) {
   }
 }
 
-void read_frame(TableReader& reader, ParticleSystem<double>& s, SceneValue& effective) {
+/// @param of_a_frame  particles of run.h5, whose frame has been read
+void read_frame(TableReader& reader, ParticleSystem<double>& s, bool of_a_frame, SceneValue& effective) {
   if (reader.has("structure") && has_frame_number(reader)) {
     effective.put("frame", *reader.find("frame"));
     return;
+  }
+  if (of_a_frame && (has_frame_number(reader) || !reader.has("frame"))) return;
+  if (has_frame_number(reader)) {
+    reader.fail("frame", fmt::format("frame = {} is the number of a frame, and {} has none; \"barycenter\" or "
+                                     "\"as_given\" is expected",
+                                     to_text(*reader.find("frame")),
+                                     reader.has("bodies") ? "a table of bodies" : "[[particles.body]]"));
   }
   const std::string frame = reader.text("frame", "as_given");
   if (frame != "as_given" && frame != "barycenter") {
@@ -502,11 +563,13 @@ ParticleSystem<double> read_particles(const SceneContext& context, const SceneVa
   ParticleSystem<double> s = reader.has("structure") ? read_structure_particles(own, folder, effective, warnings)
                                                      : from_bodies(own, folder, effective, warnings);
   if (!reader.has("structure")) {
-    if (const auto box = read_box(own, effective)) s.set_box(*box);
+    const auto box = read_box(own, effective);
+    // A box that particles of run.h5 have already would only count their images anew.
+    if (box && !(*box == s.box())) s.set_box(*box);
   }
   for (const ColumnInfo& column : context.columns) s.add_column(column);
   read_exclusions(own, s, effective);
-  read_frame(own, s, effective);
+  read_frame(own, s, !reader.has("structure") && are_of_a_frame(reader, folder), effective);
   return s;
 }
 

@@ -1,6 +1,8 @@
 #include "scene/run.hpp"
 
 #include "io/digest.hpp"
+#include "io/files.hpp"
+#include "io/trajectory.hpp"
 #include "monitors/monitors.hpp"
 #include "numbers/parallel.hpp"
 #include "numbers/quantity.hpp"
@@ -110,10 +112,9 @@ class Runner {
     const std::optional<io::Checkpoint> checkpoint = folder_.prepare(options_.existing);
     choose_simd(checkpoint);
     if (scene_.minimize && !checkpoint) minimize();
-    Simulation<double> sim = assemble(start_ ? *start_ : scene_, files_);
+    if (checkpoint) check_resume(*checkpoint);
+    Simulation<double> sim = checkpoint ? restored(*checkpoint) : assemble(start_ ? *start_ : scene_, files_);
     if (checkpoint) {
-      check_resume(*checkpoint);
-      sim.restore(checkpoint->run);
       report_.resumed_from_step = checkpoint->step;
       if (is_over(*checkpoint)) return finished(sim, *checkpoint);
     }
@@ -193,6 +194,50 @@ class Runner {
     }
   }
 
+  /// The run as the checkpoint has it; with a new trajectory where the old one is not what the checkpoint counts on.
+  Simulation<double> restored(const io::Checkpoint& checkpoint) {
+    try {
+      Simulation<double> sim = assemble(scene_, files_);
+      sim.restore(checkpoint.run);
+      return sim;
+    } catch (const io::TrajectoryLost& lost) {
+      set_aside(checkpoint, lost.message());
+    }
+    files_.lost = true;
+    Simulation<double> sim = assemble(scene_, files_);
+    sim.restore(checkpoint.run);
+    if (is_over(checkpoint)) return sim;
+    sim.for_each_monitor([&](const std::string&, AnyMonitor<double>& monitor) {
+      if (auto* writer = monitor.get<io::TrajectoryWriter>()) writer->begin(sim.particles());
+    });
+    return sim;
+  }
+
+  /// Nothing of a trajectory that cannot be gone on with is lost: it stays beside the new one.
+  void set_aside(const io::Checkpoint& checkpoint, const std::string& why) {
+    const std::filesystem::path& file = files_.trajectory;
+    const std::string wrong = fmt::format("{}: {}", file.string(), why);
+    if (is_over(checkpoint)) {
+      report_.warnings.push_back(fmt::format(
+          "{}; the run is finished: 'noether verify --repair {}' mends it if no more than frames is missing", wrong,
+          file.string()));
+      return;
+    }
+    std::filesystem::path kept;
+    if (std::filesystem::exists(file)) {
+      for (int k = 0; kept.empty() || std::filesystem::exists(kept); ++k)
+        kept = file.string() + (k == 0 ? ".damaged" : fmt::format(".damaged.{}", k));
+      io::rename_if_there(file, kept);
+    }
+    report_.warnings.push_back(fmt::format(
+        "{}; a new one begins at step {}{}", wrong, checkpoint.step,
+        kept.empty()
+            ? std::string()
+            : fmt::format(
+                  ", and the old one is {}: 'noether verify --repair {}' mends it if no more than frames is missing",
+                  kept.string(), kept.string())));
+  }
+
   /// A completed run goes on if its end has been moved; one that has stopped or failed does not.
   bool is_over(const io::Checkpoint& checkpoint) const {
     if (checkpoint.outcome.empty()) return false;
@@ -241,7 +286,8 @@ class Runner {
     RunReport r = report_;
     const IntegratorClaims claims = sim.claims();
     r.outcome = ending_.outcome;
-    r.warnings = warnings_of(scene_);
+    const std::vector<std::string> of_scene = warnings_of(scene_);
+    r.warnings.insert(r.warnings.end(), of_scene.begin(), of_scene.end());
     r.epoch = epoch_of(scene_.effective);
     r.scene = scene_.source.file;
     r.scene_sha256 = io::sha256(scene_.effective_toml);

@@ -120,6 +120,7 @@ Scene read_scene(SceneValue root, const std::filesystem::path& file = "scene", c
 struct SceneFiles {
   std::filesystem::path trajectory, checkpoint;
   double checkpoint_wall = 0;  ///< seconds between checkpoints beside those of the scene; 0: none
+  bool lost = false;           ///< the trajectory of the run that is gone on with is gone: it begins anew
 };
 
 /// The scheme of a scene; its name lives as long as `integrator`.

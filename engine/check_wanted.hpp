@@ -1,0 +1,19 @@
+#pragma once
+/// Whether a run has what a monitor wants to see of it.
+
+#include "engine/concepts.hpp"
+
+#include <string>
+
+namespace noether::detail {
+
+/// What a run can tell beside what its integrator claims; asked for what is wanted alone.
+struct Told {
+  bool virial = false, action = false;
+  bool by_steps = false;  ///< the monitor looks by steps
+};
+
+/// @throws Error  naming the monitor and what the run has not
+void check_wanted(const std::string& monitor, const Request& wanted, const IntegratorClaims& claims, const Told& told);
+
+}  // namespace noether::detail

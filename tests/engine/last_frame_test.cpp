@@ -1,0 +1,137 @@
+// Who writes files looks where a run stops or fails, due or not, once; and at no other end.
+
+#include "engine/simulation.hpp"
+#include "forces/external_fields.hpp"
+#include "forces/gravity.hpp"
+#include "integrators/all_methods.hpp"
+#include "integrators/all_schemes.hpp"
+#include "integrators/classical.hpp"
+#include "integrators/composition.hpp"
+#include "integrators/kinetic_potential.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/drivers.hpp"
+
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace noether::test {
+namespace {
+
+/// The moments that somebody has been shown: step, time, and where the second particle was.
+struct ShownMoment {
+  std::int64_t step;
+  double time, x;
+  bool operator==(const ShownMoment&) const = default;
+};
+
+/// Writes as files do, into memory.
+struct MomentWriter {
+  static constexpr auto describe() { return part<MomentWriter>("moment_writer", "what it is shown, in memory"); }
+  void observe(const Snapshot<double>& now) {
+    seen->push_back({now.step(), now.time(), now.state().positions()[now.state().size() - 1][0]});
+  }
+  void record(const Sample&) {}
+
+  std::vector<ShownMoment>* seen;
+};
+
+/// The same, but no writer.
+struct MomentWatcher {
+  static constexpr auto describe() { return part<MomentWatcher>("moment_watcher", "what it is shown, in memory"); }
+  void observe(const Snapshot<double>& now) { seen->push_back({now.step(), now.time(), 0}); }
+
+  std::vector<ShownMoment>* seen;
+};
+
+/// A body and a tracer that pass each other on straight lines: nearest, at distance 1, when t = 10.
+ParticleSystem<double> passing_by() {
+  ParticleSystem<double> s;
+  s.add("rock", 1e-30, {0, 0, 0}, {0, 0, 0});
+  s.add("probe", 0, {-30, 1, 0}, {3, 0, 0});
+  return s;
+}
+
+/// A run of both with steps of 1/2, whose writer looks every `steps`.
+struct PassingRun {
+  explicit PassingRun(std::int64_t steps)
+      : simulation(passing_by(), compose(kinetic_potential(Gravity{.G = 1e-30}), schemes::verlet), 0.5) {
+    simulation.every(steps, MomentWriter{&written});
+    simulation.every(steps, MomentWatcher{&watched});
+  }
+  std::vector<ShownMoment> written, watched;
+  Simulation<double> simulation;
+};
+
+}  // namespace
+
+TEST_CASE("the state at a stop is written, once", "[stop][last_frame]") {
+  PassingRun run(100);
+  run.simulation.stop_when(closer_than(1.5), 7);
+  const Outcome outcome = run.simulation.run(1000);
+  CHECK(outcome.kind == Outcome::Kind::stopped);
+  CHECK(outcome.step == 21);  // within 1.5 since t = 9.63; looked at every 3.5
+  CHECK(run.written == std::vector<ShownMoment>{{0, 0, -30}, {21, 10.5, 1.5}});
+  CHECK(run.watched.size() == 1);  // who writes nothing keeps to its cadence
+
+  PassingRun due(7);
+  due.simulation.stop_when(closer_than(1.5), 7);
+  CHECK(due.simulation.run(1000).step == 21);
+  CHECK(due.written.size() == 4);
+  CHECK(due.written.back() == ShownMoment{21, 10.5, 1.5});
+}
+
+TEST_CASE("so is one that is found when the run ends", "[stop][last_frame]") {
+  PassingRun run(100);
+  run.simulation.stop_when(closer_than(1.5), 1000);
+  const Outcome outcome = run.simulation.run(40);
+  CHECK(outcome.kind == Outcome::Kind::stopped);
+  CHECK(run.written == std::vector<ShownMoment>{{0, 0, -30}, {40, 20, 30}});
+}
+
+TEST_CASE("an end that was asked for, and an interrupted run, write what is due", "[last_frame]") {
+  PassingRun run(15);
+  CHECK(run.simulation.run(40).kind == Outcome::Kind::completed);
+  REQUIRE(run.written.size() == 3);
+  CHECK(run.written.back().step == 30);
+  const std::atomic<bool> stop = true;
+  run.simulation.stop_on(&stop);
+  CHECK(run.simulation.run(10).kind == Outcome::Kind::interrupted);
+  CHECK(run.written.size() == 3);
+}
+
+TEST_CASE("a run that fails leaves its last sound state", "[last_frame]") {
+  // Each step of this spring multiplies the amplitude by 98.
+  ParticleSystem<double> s;
+  s.add("ball", 1, {1, 0, 0}, {0, 0, 0});
+  std::vector<ShownMoment> written;
+  Simulation run(std::move(s), compose(kinetic_potential(HarmonicField{.k = 100}), schemes::verlet), 1.0);
+  run.every(1000, MomentWriter{&written});
+  const Outcome outcome = run.run(2000);
+  CHECK(outcome.kind == Outcome::Kind::diverged);
+  REQUIRE(written.size() == 2);
+  CHECK(written.back().step == outcome.step);
+  CHECK(outcome.step > 100);
+  CHECK(std::isfinite(written.back().x));
+  CHECK(written.back().x == run.particles().positions()[0][0]);
+}
+
+TEST_CASE("where steps are chosen by the method, times of what is written still rise", "[stop][last_frame]") {
+  for (const double interval : {0.75, 4.0, 100.0}) {
+    CAPTURE(interval);
+    std::vector<ShownMoment> written;
+    Simulation<double> run(passing_by(), classical(Gravity{.G = 1e-30}, method("dop853")));
+    run.every_time(interval, MomentWriter{&written});
+    run.stop_when(closer_than(1.5), 1);
+    const Outcome outcome = run.run_until(1000);
+    CHECK(outcome.kind == Outcome::Kind::stopped);
+    REQUIRE(written.size() > 1);
+    for (std::size_t k = 1; k < written.size(); ++k) CHECK(written[k].time > written[k - 1].time);
+    CHECK(written.back().time >= outcome.time);
+    if (interval == 100) CHECK(written.back().time == outcome.time);
+  }
+}
+
+}  // namespace noether::test

@@ -1,0 +1,218 @@
+// `bodies = "run.h5"`: scenes that start from a frame of another run.
+
+#include "engine/charge.hpp"
+#include "io/digest.hpp"
+#include "io/frame_particles.hpp"
+#include "io/inspect.hpp"
+#include "io/trajectory.hpp"
+#include "monitors/monitors.hpp"
+#include "numbers/error.hpp"
+#include "scene/scene.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/files.hpp"
+
+#include <filesystem>
+#include <string>
+
+#if NOETHER_HDF5
+
+namespace noether::test {
+namespace {
+
+const std::string springs =
+    "[hamiltonian]\ntype = 'kinetic_potential'\n"
+    "[[hamiltonian.force]]\ntype = 'lennard_jones'\ncutoff = '0.45 nm'\n[[hamiltonian.force]]\ntype = 'bonded'\n"
+    "[integrator]\nmethod = 'verlet'\nstep = '1 fs'\nsteps = 12\n";
+
+/// Three atoms, two of them bonded, in a box.
+const std::string chain_data =
+    "LAMMPS, units = real\n\n3 atoms\n2 atom types\n1 bonds\n1 bond types\n\n0 12 xlo xhi\n0 13 ylo yhi\n0 14 zlo "
+    "zhi\n\n"
+    "Masses\n\n1 14.0266\n2 15.0345\n\nPair Coeffs # lj/cut\n\n1 0.0914 3.95\n2 0.1947 3.75\n\n"
+    "Bond Coeffs # harmonic\n\n1 95.7 1.54\n\nAtoms # full\n\n1 1 1 0.25 1 1 1\n2 1 2 -0.25 2.5 1 1\n3 2 1 0 6 11 6\n\n"
+    "Velocities\n\n1 0.01 0 0\n2 -0.05 0.02 0\n3 0 0.03 0.01\n\nBonds\n\n1 1 1 2\n";
+
+const std::string one_planet =
+    "units = 'solar'\n[particles]\nframe = 'barycenter'\n[[particles.body]]\nname = 'Sun'\nmass = '1 Msun'\n"
+    "[[particles.body]]\nname = 'Earth'\nmass = '3e-6 Msun'\na = '1 au'\ne = 0.3\n"
+    "[hamiltonian]\ntype = 'kinetic_potential'\n[[hamiltonian.force]]\ntype = 'gravity'\n"
+    "[integrator]\nmethod = 'verlet'\nstep = '1 day'\nuntil = '10 day'\n";
+
+/// A folder with the run of a scene in it, each of whose steps is a frame.
+struct EarlierRun {
+  explicit EarlierRun(const std::string& scene_text) {
+    write_text(folder / "chain.data", chain_data);
+    const Scene scene = read_scene(scene_text, folder / "first.toml");
+    units = std::string(scene.units->name);
+    Simulation<double> run = assemble(scene);
+    auto& writer = run.every(1, io::TrajectoryWriter(folder / "run.h5", {.scene_toml = scene.effective_toml}));
+    REQUIRE(run.run(*scene.integrator.steps).ok());
+    writer.finish(Outcome{});
+    first = scene.particles;
+  }
+  /// A scene of the same units whose `[particles]` begins so.
+  Scene scene(const std::string& particles, const std::string& rest) const {
+    return read_scene("units = '" + units + "'\n[particles]\n" + particles + rest, folder / "scene.toml");
+  }
+  std::string refusal(const std::string& particles, const std::string& rest) const {
+    try {
+      scene(particles, rest);
+    } catch (const Error& error) {
+      std::string shown = error.what();
+      const std::string path = (folder / "").string();
+      for (auto at = shown.find(path); at != std::string::npos; at = shown.find(path)) shown.erase(at, path.size());
+      return std::to_string(error.exit_code()) + " " + shown;
+    }
+    return "";
+  }
+
+  ScratchFolder folder;
+  std::string units;
+  ParticleSystem<double> first;
+};
+
+EarlierRun chain_run() { return EarlierRun("units = 'molecular'\n[particles]\nstructure = 'chain.data'\n" + springs); }
+
+const std::string gravity_rest = one_planet.substr(one_planet.find("[hamiltonian]"));
+
+}  // namespace
+
+TEST_CASE("a scene starts from any frame of another run, with masses, types, charges and bonds", "[scene][bodies]") {
+  const EarlierRun run = chain_run();
+  const io::Frames frames = io::read_frames(run.folder / "run.h5");
+  REQUIRE(frames.frames.size() == 13);
+  for (const std::int64_t k : {0, 5, 12, -1}) {
+    CAPTURE(k);
+    const Scene scene = run.scene("bodies = 'run.h5'\nframe = " + std::to_string(k) + "\n", springs);
+    const ParticleSystem<double>& s = scene.particles;
+    const io::Frame& frame = frames.frames.at(k < 0 ? 12 : static_cast<std::size_t>(k));
+    for (Index i = 0; i < 3; ++i) {
+      CHECK(s.masses()[i] == run.first.masses()[i]);
+      CHECK(s.column<Charge>()[i] == run.first.column<Charge>()[i]);
+      for (Index j = 0; j < 3; ++j) {
+        const std::size_t at = 3 * static_cast<std::size_t>(i) + static_cast<std::size_t>(j);
+        CHECK(s.positions()[i][j] == frame.positions.at(at));
+        CHECK(s.velocities()[i][j] == frame.velocities.at(at));
+        CHECK(s.images()[i][j] == frame.images.at(at));
+      }
+    }
+    CHECK(s.names() == run.first.names());
+    CHECK(s.ids() == run.first.ids());
+    CHECK(s.box() == run.first.box());
+    CHECK(s.topology()->types == run.first.topology()->types);
+    CHECK(s.topology()->type_names == std::vector<std::string>{"1", "2"});
+    CHECK(s.topology()->bonds == run.first.topology()->bonds);
+    CHECK(s.topology()->bond_kinds == run.first.topology()->bond_kinds);
+    CHECK(s.topology()->pair_kinds == run.first.topology()->pair_kinds);
+    CHECK(s.topology()->exclusions == run.first.topology()->exclusions);
+    // What is the last frame today is told by its number, whatever the other run writes tomorrow.
+    CHECK(scene.effective_toml.find("frame = " + std::to_string(k < 0 ? 12 : k)) != std::string::npos);
+    const Scene again = read_scene(scene.effective_toml, scene.file);
+    CHECK(again.effective_toml == scene.effective_toml);
+    CHECK(io::digest(again.particles) == io::digest(s));
+  }
+}
+
+TEST_CASE("a run from a frame has the energy that the other run had there", "[scene][bodies]") {
+  const EarlierRun run = chain_run();
+  const Scene scene = run.scene("bodies = 'run.h5'\nframe = 7\n", springs);
+  Simulation<double> fresh = assemble(scene);
+  Simulation<double> whole =
+      assemble(read_scene("units = 'molecular'\n[particles]\nstructure = 'chain.data'\n" + springs, scene.file));
+  const Energy& there = whole.every(7, Energy{});
+  const Energy& here = fresh.every(1, Energy{});
+  REQUIRE(whole.run(7).ok());
+  REQUIRE(fresh.run(0).ok());
+  CHECK(here.total() == there.total());
+  CHECK(here.total() != 0);
+}
+
+TEST_CASE("planets start from a frame, in their order, and may be moved to their barycenter and have company",
+          "[scene][bodies]") {
+  const EarlierRun run(one_planet);
+  const Scene last = run.scene("bodies = 'run.h5'\n", gravity_rest);
+  CHECK(last.particles.names() == std::vector<std::string>{"Sun", "Earth"});
+  CHECK(last.particles.topology() == nullptr);
+  const io::FrameParticles frame = io::read_frame_particles(run.folder / "run.h5");
+  CHECK(io::digest(last.particles) == io::digest(frame.particles));
+  const Scene moved = run.scene("bodies = 'run.h5'\nframe = 'barycenter'\n", gravity_rest);
+  CHECK((Vec3<double>(moved.particles.positions()[1]) - Vec3<double>(last.particles.positions()[1])).norm() < 1e-15);
+  const Scene three = run.scene(
+      "bodies = 'run.h5'\nframe = 3\n[[particles.body]]\nname = 'comet'\nmass = '0 Msun'\na = '5 au'\ne = 0.9\n",
+      gravity_rest);
+  CHECK(three.particles.names() == std::vector<std::string>{"Sun", "Earth", "comet"});
+}
+
+TEST_CASE("the table and the file of one frame are the same start as the frame", "[scene][bodies]") {
+  const EarlierRun run(one_planet);
+  const auto bits = [](const Scene& scene) { return io::digest(scene.particles); };
+  const std::string frame = bits(run.scene("bodies = 'run.h5'\nframe = 4\n", gravity_rest));
+  io::convert(run.folder / "run.h5", run.folder / "start.csv", {.bodies = true, .frame = 4});
+  io::convert(run.folder / "run.h5", run.folder / "start.h5", {.bodies = true, .frame = 4});
+  CHECK(bits(run.scene("bodies = 'start.csv'\n", gravity_rest)) == frame);
+  CHECK(bits(run.scene("bodies = 'start.h5'\n", gravity_rest)) == frame);
+  CHECK(bits(run.scene("bodies = 'run.h5'\n", gravity_rest)) ==
+        bits(run.scene("bodies = 'run.h5'\nframe = 10\n", gravity_rest)));
+}
+
+TEST_CASE("the box of a frame stays as it is where the scene gives the same, or is taken away", "[scene][bodies]") {
+  const EarlierRun run = chain_run();
+  const Scene plain = run.scene("bodies = 'run.h5'\n", springs),
+              same = run.scene("bodies = 'run.h5'\nbox = ['1.2 nm', '1.3 nm', '1.4 nm']\n", springs),
+              open = run.scene("bodies = 'run.h5'\nbox = 'open'\n", springs);
+  CHECK(io::digest(same.particles) == io::digest(plain.particles));
+  CHECK_FALSE(open.particles.box().is_periodic());
+  CHECK(Vec3<double>(open.particles.positions()[2]) == plain.particles.unwrapped(2));
+}
+
+TEST_CASE("a frame that has changed since is told", "[scene][bodies][messages]") {
+  const EarlierRun run(one_planet);
+  const Scene scene = run.scene("bodies = 'run.h5'\nframe = 2\n", gravity_rest);
+  const Scene other = read_scene(one_planet + "[[every]]\ntype='energy'\nsteps=1\n", run.folder / "first.toml");
+  ParticleSystem<double> changed = other.particles;
+  changed.masses()[1] = 4e-6;
+  io::write_one_frame(run.folder / "run.h5", changed, 0, 0);
+  try {
+    std::string text = scene.effective_toml;
+    text.replace(text.find("frame = 2"), 9, "frame = 0");
+    read_scene(text, scene.file);
+    FAIL("the hash is another one");
+  } catch (const SceneError& error) {
+    CHECK(error.message().starts_with("'run.h5' is no longer the file this scene was run with: its hash is "));
+  }
+}
+
+TEST_CASE("a start that a run.h5 does not have is refused in one line", "[scene][bodies][messages]") {
+  const EarlierRun run = chain_run();
+  const auto said = [&](const std::string& particles) { return run.refusal(particles, springs); };
+  CHECK(said("bodies = 'run.h5'\nframe = 13\n") ==
+        "2 scene.toml:4: frame = 13, but 'run.h5' has 13 frames: 0 to 12, or -1 for the last");
+  CHECK(said("bodies = 'run.h5'\nframe = -2\n") ==
+        "2 scene.toml:4: frame = -2, but 'run.h5' has 13 frames: 0 to 12, or -1 for the last");
+  CHECK(said("bodies = 'run.h5'\nframe = 'baricenter'\n") ==
+        "2 scene.toml:4: unknown frame 'baricenter'; did you mean 'barycenter'?");
+  CHECK(said("structure = 'run.h5'\n") ==
+        "2 scene.toml:3: 'run.h5' is no structure; particles of a run go on by bodies = \"run.h5\"");
+  CHECK(said("bodies = 'nosuch.h5'\n") == "3 scene.toml:3: nosuch.h5: there is no such file");
+  CHECK(said("bodies = 'run.h5'\nepoch = 'JD 2451545'\n").starts_with("2 scene.toml:4: unknown key 'epoch'"));
+  CHECK(
+      said("bodies = 'run.h5'\n[[particles.body]]\nname = 'x'\nmass = '1 u'\n")
+          .starts_with("2 scene.toml:4: the particles of run.h5 have types, bonds or charges, which bodies of tables"));
+  const EarlierRun planets(one_planet);
+  std::filesystem::copy_file(planets.folder / "run.h5", run.folder / "planets.h5");
+  CHECK(said("bodies = 'planets.h5'\n") ==
+        "2 scene.toml:3: the particles of 'planets.h5' are in the units 'solar', not 'molecular'; give units = "
+        "\"solar\"");
+  write_text(planets.folder / "b.csv", "name,mass [Msun],x [au],y,z,vx [au/day],vy,vz\nSun,1,0,0,0,0,0,0\n");
+  CHECK(planets.refusal("bodies = 'b.csv'\nframe = 3\n", gravity_rest) ==
+        "2 scene.toml:4: frame = 3 is the number of a frame, and a table of bodies has none; \"barycenter\" or "
+        "\"as_given\" is expected");
+  // A file that has lost its end is one of damage, whatever is asked of it.
+  const std::string bytes = read_text(run.folder / "run.h5");
+  write_text(run.folder / "run.h5", bytes.substr(0, bytes.size() / 2));
+  CHECK(said("bodies = 'run.h5'\n").starts_with("3 scene.toml:3: run.h5: "));
+}
+
+}  // namespace noether::test
+
+#endif
