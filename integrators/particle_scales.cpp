@@ -4,6 +4,8 @@
 #include "neighbors/neighbor_list.hpp"
 #include "numbers/parallel.hpp"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 
@@ -19,11 +21,12 @@ template <class Real> Vec in_doubles(const Vec3<Real>& x) {
 
 /// Half the time until two bodies are nearest along a straight line, and twice what it takes to go as far as they are
 /// apart then; infinity where they do not come nearer, or deflect each other by less than `rtol`.
-double time_to_passage(double GM, double r2, double v2, double along, double soft2, double rtol) {
+double time_to_passage(const Vec& d, const Vec& v, double GM, double soft2, double rtol) {
+  const double along = d.dot(v), v2 = v.squaredNorm();
   if (!(along < 0)) return std::numeric_limits<double>::infinity();
-  const double until = -along / v2, nearest = std::sqrt(std::max(r2 - along * until, 0.0) + soft2);
+  const double nearest = std::sqrt(d.cross(v).squaredNorm() / v2 + soft2);
   if (2 * GM < rtol * nearest * v2) return std::numeric_limits<double>::infinity();
-  return 0.5 * until + 2 * nearest / std::sqrt(v2);
+  return -0.5 * along / v2 + 2 * nearest / std::sqrt(v2);
 }
 
 template <class Real> class Measuring {
@@ -44,6 +47,9 @@ template <class Real> class Measuring {
       for (Index i = begin; i < end; ++i) longest[static_cast<std::size_t>(i)] = attract(i);
     });
     out_.longest = *std::min_element(longest.begin(), longest.end());
+    for (Index i = 0; i < n && out_.lost < 0; ++i) {
+      if (is_lost(i)) out_.lost = i;
+    }
   }
 
   void all_pairs() {
@@ -106,12 +112,27 @@ template <class Real> class Measuring {
       const Index j = tracer ? massive[static_cast<std::size_t>(k)] : k;
       if (j == i) continue;
       const Vec d = in_doubles(Vec3<Real>(s_.positions()[i] - s_.positions()[j])), v = relative_velocity(i, j);
-      const double M = mass(i) + mass(j), r2 = d.squaredNorm(), v2 = v.squaredNorm(), r = std::sqrt(r2 + soft2);
-      const double GM = coupling_.G * M;
-      if (is_nearest(i, M, r)) set(i, j, r, std::sqrt(std::max(v2, GM / r)));
-      longest = std::min(longest, time_to_passage(GM, r2, v2, d.dot(v), soft2, rtol_));
+      const double M = mass(i) + mass(j), GM = coupling_.G * M, r = std::sqrt(d.squaredNorm() + soft2);
+      if (is_nearest(i, M, r)) {
+        const double v2 = v.squaredNorm();
+        set(i, j, r, std::sqrt(std::max(v2, GM / r)));
+        out_.work.binding[static_cast<std::size_t>(i)] = std::abs(v2 * r / GM - 2);
+      }
+      longest = std::min(longest, time_to_passage(d, v, GM, soft2, rtol_));
     }
+    double& part = out_.part[static_cast<std::size_t>(i)];
+    if (out_.length[static_cast<std::size_t>(i)] > 0)
+      part = std::clamp(out_.work.binding[static_cast<std::size_t>(i)], ParticleScales::least_part, 1.0);
     return longest;
+  }
+  /// Whether rounding of its position is a tenth of its energy about its neighbor. Near the origin it never is: an
+  /// orbit about the origin may be a parabola, whose energy is 0.
+  bool is_lost(Index i) const {
+    constexpr double rounding = 4 * static_cast<double>(std::numeric_limits<Real>::epsilon());
+    const auto at = static_cast<std::size_t>(i);
+    if (out_.length[at] == 0) return false;
+    const double far = in_doubles(Vec3<Real>(s_.positions()[i])).norm() / out_.length[at];
+    return far > 1000 && rounding * far > 0.1 * std::min(out_.work.binding[at], 1.0);
   }
 
   void pair(Index i, Index j) {
@@ -153,7 +174,9 @@ void measure(const ParticleSystem<Real>& s, const Coupling& coupling, NeighborLi
   out.length.assign(n, 0.0);
   out.speed.assign(n, 0.0);
   out.neighbor.assign(n, 0);
-  out.work.strength.assign(n, 0.0);
+  out.part.assign(n, 1.0);
+  out.lost = -1;
+  for (auto* all : {&out.work.strength, &out.work.binding}) all->assign(n, 0.0);
   out.size = out.fastest = 0;
   out.gravity = coupling.gravity;
   out.longest = std::numeric_limits<double>::infinity();

@@ -41,19 +41,27 @@ struct Coupling {
 struct ParticleScales {
   std::vector<double> length, speed;  ///< shape (n) [length], [length/time]; empty: y holds no particles
   std::vector<Index> neighbor;        ///< shape (n); meaningless where the length is 0
-  double size = 0, fastest = 0;       ///< largest |x|, |v| of all
+  /// What part of the tolerance a particle may use, shape (n): r / a on the orbit of semi-major axis a about its
+  /// neighbor where that is below 1, but no less than `least_part`. What is lost at the pericenter of a long orbit is
+  /// lost of the small difference that its energy is. 1 without gravity.
+  std::vector<double> part;
+  double size = 0, fastest = 0;  ///< largest |x|, |v| of all
   bool gravity = false;
+  /// A particle whose orbit cannot be told: its position, rounded far from the origin, leaves the energy about its
+  /// neighbor open; -1: there is none.
+  Index lost = -1;
   /// How far a step may go: half the time until a particle is nearest to a massive one that will deflect it, and what
   /// it takes to pass by. A long way without forces must not end in a step over a short encounter [time].
   double longest = std::numeric_limits<double>::infinity();
 
   /// Of `measure`, kept from step to step so that it allocates nothing: (m_i + m_j) / r^3 of the neighbor, the bound
-  /// that each particle sets to the step, and who has mass.
+  /// that each particle sets to the step, r / a about the neighbor, and who has mass.
   struct Work {
-    std::vector<double> strength, longest;
+    std::vector<double> strength, longest, binding;
     std::vector<Index> massive;
   } work = {};
 
+  static constexpr double least_part = 1e-6;
   Index particles() const { return static_cast<Index>(length.size()); }
 };
 

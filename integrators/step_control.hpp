@@ -17,11 +17,11 @@ namespace noether {
 ///
 /// Of particles the worst one counts, by vectors as wholes; who they are measured against, `ParticleScales` says:
 ///
-///     |e| = max_i max(|e_x,i| / (atol + rtol L_i), |e_v,i| / (atol + rtol S_i))
+///     |e| = max_i max(|e_x,i| / (atol + rtol p_i L_i), |e_v,i| / (atol + rtol p_i S_i))
 ///
-/// Here L and S are length and speed of particle i, to which rounding of x and v is added, since no step is better.
-/// Without a neighbor they are the larger of |x| at both ends of the step, but no less than a thousandth of the largest
-/// of all particles; velocities likewise. Systems of first order have the weighted norm of all variables:
+/// Here L, S and p are length, speed and part of particle i, to which rounding of x and v is added, since no step is
+/// better. Without a neighbor they are the larger of |x| at both ends of the step, but no less than a thousandth of the
+/// largest of all particles; velocities likewise. Systems of first order have the weighted norm of all variables:
 ///
 ///     |e| = sqrt(sum (e_i / (atol + rtol max(|y0_i|, |y1_i|)))^2 / n)
 struct Tolerance {
@@ -90,9 +90,9 @@ double Tolerance::of_worst(const ParticleScales& scales, const Vector<Real>& e, 
       speed = std::max({speed, length_of(y0, y1, i + 3 * n, n), 1e-3 * scales.fastest});
     }
     // Forces are as right as the distances that they are computed from.
-    const double lost = length > 0 ? x / length : 0;
-    count(length_of(e, i, n), least + rtol * length + rounding * x);
-    count(length_of(e, i + 3 * n, n), least + rtol * speed + rounding * (v + lost * speed));
+    const double lost = length > 0 ? x / length : 0, relative = rtol * scales.part[static_cast<std::size_t>(i)];
+    count(length_of(e, i, n), least + relative * length + rounding * x);
+    count(length_of(e, i + 3 * n, n), least + relative * speed + rounding * (v + lost * speed));
   }
   return worst;
 }
@@ -220,6 +220,20 @@ inline std::optional<Failure> underflow(double t, double h) {
                  fmt::format("the tolerance asks for a step of {:.3g} at time {:.9g}, below the resolution of time; "
                              "two bodies may have collided, or the tolerance is below rounding",
                              h, t)};
+}
+
+/// The same, and where the tolerance cannot be met at any length, since no step of doubles tells the orbit of a
+/// particle.
+inline std::optional<Failure> underflow(double t, double h, const ParticleScales& scales) {
+  if (scales.lost < 0) return underflow(t, h);
+  const auto at = static_cast<std::size_t>(scales.lost);
+  return Failure{
+      Outcome::Kind::step_underflow, scales.lost, "step",
+      fmt::format(
+          "doubles cannot tell the orbit of particle {} at time {:.9g}: it passes particle {} at a distance of "
+          "{:.3g}, which is lost in the rounding of positions; use 'gauss_8', which steps relative to that one, "
+          "or put the origin there",
+          scales.lost, t, scales.neighbor[at], scales.length[at])};
 }
 
 }  // namespace noether

@@ -155,7 +155,8 @@ template <class Real> class VectorField {
   /// What errors of particles are measured by in a step from y, without particles for any other field; found anew where
   /// y or `rtol` is not that of the call before.
   const ParticleScales& scales(const Vector<Real>& y, double rtol) {
-    if (particles() == 0 || (measured_ == y && measured_for_ == rtol)) return scales_;
+    const bool known = measured_.size() == y.size() && measured_ == y && measured_for_ == rtol;
+    if (particles() == 0 || known) return scales_;
     measure_particles(y, rtol, scales_);
     measured_ = y;
     measured_for_ = rtol;

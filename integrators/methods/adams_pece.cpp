@@ -42,7 +42,7 @@ template <class Real> StepResult AdamsPece<Real>::step(VectorField<Real>& f, con
   failed_ = 0;
   while (true) {
     made.h = next_step(f, t, y, h);
-    made.failure = underflow(static_cast<double>(t), made.h);
+    made.failure = underflow(static_cast<double>(t), made.h, f.scales(y, tolerance_.rtol));
     if (made.failure) return made;
     prepare(made.h);
     predict(y, made.h);

@@ -204,7 +204,7 @@ template <class Real> StepResult Bdf<Real>::step(VectorField<Real>& f, const Rea
   double norm = 0;
   for (int failed = 0;; ++made.rejected) {
     made.h = h_;
-    made.failure = underflow(static_cast<double>(t), h_);
+    made.failure = underflow(static_cast<double>(t), h_, *scales_);
     if (made.failure) return made;
     const Real end = t + Real(h_);
     predict_from(d_, order_, predicted_, past_);

@@ -14,6 +14,8 @@ namespace noether {
 namespace {
 
 constexpr auto lanes = static_cast<Index>(lane_count);
+/// Steps that are so many times shorter than the longest one may be deep in the field of a body.
+constexpr double short_step = 64;
 /// A step is made again if the one that meets the tolerance is shorter by more than this factor.
 constexpr double accepted = 0.6;
 
@@ -123,7 +125,7 @@ template <class Real> void Collocation<Real>::bind(const VectorField<Real>& f) {
   n_ = second_order_ ? f.size() / 2 : f.size();
   particles_ = second_order_ ? f.particles() : 0;
   any_origin_ = adaptive_ && claims.any_origin && std::is_same_v<Real, double>;
-  follows_ = false;
+  longest_ = 0;
   const auto padded = static_cast<std::size_t>((n_ + 7) / 8 * 8);
   for (auto* all : {&rates_, &previous_, &trial_, &q_, &v_}) all->assign(lane_count * padded, Real(0));
   for (auto* all : {&last_, &largest_}) all->assign(padded, Real(0));
@@ -149,7 +151,7 @@ double Collocation<Real>::next_step(VectorField<Real>& f, const Real& t, const V
 template <class Real>
 StepResult Collocation<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
   StepResult made;
-  if (follows_) follow(f, y);
+  if (any_origin_ && std::abs(next_) < longest_ / short_step) follow(f, y);
   while (true) {
     made.h = adaptive_ ? next_step(f, t, y, h) : h;
     predict(f, t, y, made.h);
@@ -169,11 +171,11 @@ StepResult Collocation<Real>::step(VectorField<Real>& f, const Real& t, Vector<R
     const double room = std::clamp(target_ / rough, 1e-300, 1e300);
     const double factor = near_root(room, std::max(table_.stages - 1, 1));
     next_ = made.h * (converged ? std::clamp(factor, 0.2, 3.0) : 0.5);
+    if (std::abs(next_) > longest_) longest_ = std::abs(next_);
     if (converged && factor > accepted) break;
     ++made.rejected;
     made.failure = underflow(static_cast<double>(t), next_);
     if (made.failure) break;
-    if (any_origin_ && !follows_) follow(f, y);
   }
   if (!made.failure) finish(y, made.h);
   if constexpr (std::is_same_v<Real, double>) {
@@ -182,11 +184,10 @@ StepResult Collocation<Real>::step(VectorField<Real>& f, const Real& t, Vector<R
   return made;
 }
 
-/// From here on steps are made relative to a body, where it is worth it.
+/// Makes the next step relative to a body, where that is worth it.
 template <class Real> void Collocation<Real>::follow(VectorField<Real>& f, Vector<Real>& y) {
   if constexpr (std::is_same_v<Real, double>) {
-    follows_ = origin_.is_worth_it(f.scales(y, rtol_), y);
-    if (follows_) origin_.enter(y, low_.data());
+    if (origin_.is_worth_it(f.scales(y, rtol_), y)) origin_.enter(y, low_.data());
   }
 }
 
@@ -464,7 +465,7 @@ template <class Real> void Collocation<Real>::save(SavedState& saved, const std:
   save_value(saved, prefix + "next", next_);
   save_value(saved, prefix + "h", h_);
   save_value(saved, prefix + "swept", std::int64_t{swept_});
-  if (follows_) save_value(saved, prefix + "follows", true);
+  save_value(saved, prefix + "longest", longest_);
   save_value(saved, prefix + "low", std::vector<Real>(low_.begin(), low_.end()));
   save_value(saved, prefix + "previous", std::vector<Real>(previous_.begin(), previous_.end()));
 }
@@ -475,7 +476,7 @@ template <class Real> void Collocation<Real>::load(const SavedState& saved, cons
   std::int64_t swept = 0;
   load_value(saved, prefix + "swept", swept);
   swept_ = static_cast<int>(swept);
-  follows_ = saved.contains(prefix + "follows");
+  if (saved.contains(prefix + "longest")) load_value(saved, prefix + "longest", longest_);
   const auto load_all = [&](const std::string& name, AlignedVector<Real>& into) {
     std::vector<Real> read;
     load_value(saved, prefix + name, read);

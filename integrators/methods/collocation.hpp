@@ -102,8 +102,9 @@ template <class Real> class Collocation final : public Method<Real> {
   double weights_h_ = 0, weights_h_old_ = 0;
   double next_ = 0, h_ = 0;  ///< to be tried; of `previous_`, 0 for none
   MovingOrigin origin_;
-  bool any_origin_ = false, follows_ = false;  ///< whether steps may follow a body; whether the next one begins so
-  int swept_ = 0;  ///< sweeps of the last step; 0: it was made by Newton's iteration, or there is none
+  bool any_origin_ = false;  ///< whether the field allows that
+  double longest_ = 0;       ///< of all steps so far, or the next one
+  int swept_ = 0;            ///< sweeps of the last step; 0: it was made by Newton's iteration, or there is none
 
   std::optional<StageSystem<Real>> system_;  ///< once a step has asked for it
   Vector<Real> update_, moved_, from_;       ///< of rates; of positions or velocities of a stage, and where from

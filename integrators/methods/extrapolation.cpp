@@ -50,7 +50,7 @@ StepResult Extrapolation<Real>::step(VectorField<Real>& f, const Real& t, Vector
   }
   while (true) {
     made.h = next_step(f, t, y, h);
-    made.failure = underflow(static_cast<double>(t), made.h);
+    made.failure = underflow(static_cast<double>(t), made.h, f.scales(y, tolerance_.rtol));
     if (made.failure) return made;
     const Verdict verdict = trial(f, t, y, made.h);
     if (verdict == Verdict::passed) break;

@@ -38,7 +38,7 @@ StepResult NystromPair<Real>::step(VectorField<Real>& f, const Real& t, Vector<R
   while (true) {
     made.h = adaptive_ ? next_step(f, t, y, h) : h;
     if (adaptive_) {
-      made.failure = underflow(static_cast<double>(t), made.h);
+      made.failure = underflow(static_cast<double>(t), made.h, f.scales(y, tolerance_.rtol));
       if (made.failure) return made;
     }
     trial(f, t, y, made.h);

@@ -77,7 +77,7 @@ StepResult Rosenbrock<Real>::step(VectorField<Real>& f, const Real& t, Vector<Re
   jacobian_.evaluate(f, t, y);
   jacobian_.time_derivative(f, t, y, made.h, slope_);
   while (true) {
-    if (adaptive_) made.failure = underflow(static_cast<double>(t), made.h);
+    if (adaptive_) made.failure = underflow(static_cast<double>(t), made.h, f.scales(y, tolerance_.rtol));
     if (made.failure) return made;
     std::optional<Failure> failure = trial(f, t, y, made.h);
     if (!adaptive_) {

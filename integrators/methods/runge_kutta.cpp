@@ -65,7 +65,7 @@ StepResult RungeKutta<Real>::step(VectorField<Real>& f, const Real& t, Vector<Re
   while (true) {
     made.h = adaptive_ ? next_step(f, t, y, h) : h;
     if (adaptive_) {
-      made.failure = underflow(static_cast<double>(t), made.h);
+      made.failure = underflow(static_cast<double>(t), made.h, f.scales(y, tolerance_.rtol));
       if (made.failure) return made;
     }
     for (std::size_t i = 1; i < b_.size(); ++i) {

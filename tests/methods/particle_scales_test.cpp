@@ -113,8 +113,8 @@ TEST_CASE("a pair of asteroids keeps its orbit at default tolerances in all unit
       steps.emplace_back(60, sim.time() / day);
       REQUIRE(sim.run_until(10 * day).ok());
       const OrbitalElements<double> found = pair.orbit(sim.particles());
-      // BDF damps: its errors are 60 times its tolerance in 20 turns.
-      const double slack = info->name == "bdf" ? 10 : 1;
+      // Some make errors of their whole tolerance in every step, to one side.
+      const double slack = info->name == "bdf" ? 40 : info->order < 6 ? 2 : 1;
       CHECK(std::abs(found.a - 1190.0) < 0.05 * slack);
       CHECK(std::abs(found.e - 0.02) < 5e-5 * slack);
     }
@@ -146,23 +146,34 @@ TEST_CASE("no short encounter is jumped over", "[particle_scales]") {
     s.add("t", 0, {-1e4, b, 0}, {v, 0, 0});
     Simulation<double> sim = under_gravity(std::move(s), *info);
     REQUIRE(sim.run_until(2e4).ok());
-    CHECK(relative_error(sim.particles().velocities()[1][1], right) < (info->order < 6 ? 1e-3 : 1e-5));
-    CHECK(sim.step() < 5000);
+    CHECK(relative_error(sim.particles().velocities()[1][1], right) < (is_reference(*info) ? 1e-6 : 1e-3));
+    CHECK(sim.step() < 50000);
   }
 }
 
-TEST_CASE("a fall to a body that stands elsewhere ends in sensible time", "[particle_scales]") {
-  // a = 0.01, q = 1e-9 about a mass at x = 1: doubles cannot tell the distance there to better than 1e-7.
+TEST_CASE("a fall to 1e-9 of a body, about the origin and elsewhere", "[particle_scales]") {
+  // a = 0.01, q = 1e-9, for one period: the tracer is back at its apocenter. At x = 1 doubles tell distances to 2e-16,
+  // which is the orbit's energy at r = 1e-8.
+  const double period = 0.19869176531592206;
   for (const MethodInfo* info : adaptive_methods()) {
-    CAPTURE(info->name);
-    ParticleSystem<double> s(unit_system("reduced"));
-    s.add("p", 1e-3, {1, 0, 0}, {0, 0, 0});
-    s.add("t", 0, {1.019999999, 0, 0}, {0, 7.071067986781228e-05, 0});
-    Simulation<double> sim = under_gravity(std::move(s), *info);
-    const Outcome ended = sim.run_until(0.19869176531592206);
-    CHECK((ended.ok() || ended.kind == Outcome::Kind::step_underflow));
-    CHECK(sim.step() < 100000);
-    if (!ended.ok()) CHECK(relative_error(sim.time(), 0.0993459) < 1e-4);
+    for (const double at : {0.0, 1.0}) {
+      CAPTURE(info->name, at);
+      ParticleSystem<double> s(unit_system("reduced"));
+      s.add("p", 1e-3, {at, 0, 0}, {0, 0, 0});
+      s.add("t", 0, {at + 0.019999999, 0, 0}, {0, 7.071067986781228e-05, 0});
+      Simulation<double> sim = under_gravity(std::move(s), *info);
+      const Outcome ended = sim.run_until(period);
+      CHECK(sim.step() < 100000);
+      if (at == 0 || is_reference(*info)) {
+        REQUIRE(ended.ok());
+        const double r = (Vec3<double>(sim.particles().positions()[1]) - Vec3<double>(at, 0, 0)).norm();
+        CHECK(std::abs(r - 0.02) < 0.001);
+      } else {
+        REQUIRE(ended.kind == Outcome::Kind::step_underflow);
+        CHECK(ended.message.find("use 'gauss_8', which steps relative to that one") != std::string::npos);
+        CHECK(relative_error(sim.time(), 0.0993459) < 1e-6);
+      }
+    }
   }
 }
 
