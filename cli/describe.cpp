@@ -177,7 +177,7 @@ void describe_scheme(const Scheme& scheme, bool json) {
 
 /// How a classical method takes its steps.
 std::string steps_text(const MethodInfo& info) {
-  const std::string tolerances = fmt::format("rtol {:g} and atol {:g} unless told", info.rtol, info.atol);
+  const std::string tolerances = fmt::format("rtol {:g} unless told, atol of a system {:g}", info.rtol, info.atol);
   if (info.adaptive && info.fixed) return "chooses its steps, " + tolerances + "; fixed ones with adaptive = false";
   return info.adaptive ? "chooses its steps, " + tolerances : "takes steps of one length";
 }

@@ -187,6 +187,8 @@ struct ForceClaims {
   bool periodic = false;                ///< it knows periodic boxes
   bool sets = false;                    ///< alone, in lanes, it can write accelerations instead of adding to them
   bool kepler = false;                  ///< two bodies under it alone move on Kepler orbits
+  std::optional<double> G = {};         ///< of `kepler` [length^3/mass/time^2]; default: the unit system's own
+  double softening = 0;                 ///< of `kepler` [length]
   bool bonded = false;                  ///< it acts on the bonds, angles and dihedrals of the structure
   bool pair_coefficients = false;       ///< it takes the coefficients that a structure has for pairs of types
   std::optional<bool> charges = {};     ///< it looks at charges; empty: it does not say

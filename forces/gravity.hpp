@@ -44,7 +44,9 @@ struct Gravity {
 
   /// Why it does not stand twice in a scene.
   static constexpr std::string_view only_once = "so every pair would attract twice; take one out";
-  static ForceClaims claims() { return {.sets = true, .kepler = true, .charges = false, .exclusions = false}; }
+  ForceClaims claims() const {
+    return {.sets = true, .kepler = true, .G = G, .softening = softening, .charges = false, .exclusions = false};
+  }
 
   template <class Real> Real constant(const ParticleSystem<Real>& s) const { return Real(G ? *G : s.units().G); }
 

@@ -27,7 +27,11 @@ inline void merge(ForceClaims& all, const ForceClaims& one) {
   all.keeps_angular_momentum = all.keeps_angular_momentum && one.keeps_angular_momentum;
   all.periodic = all.periodic && one.periodic;
   all.sets = all.sets && one.sets;
-  all.kepler = all.kepler || one.kepler;
+  if (one.kepler) {
+    all.kepler = true;
+    all.G = one.G;
+    all.softening = std::max(all.softening, one.softening);
+  }
   all.bonded = all.bonded || one.bonded;
   all.pair_coefficients = all.pair_coefficients || one.pair_coefficients;
   all.charges = one_says_so(all.charges, one.charges);

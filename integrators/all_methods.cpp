@@ -74,7 +74,7 @@ MethodOptions MethodInfo::resolved(const MethodOptions& options_given) const {
   const bool chooses = is_adaptive(options_given);
   all.adaptive = adaptive && fixed ? std::optional(chooses) : std::nullopt;
   all.rtol = chooses ? std::optional(all.rtol.value_or(rtol)) : std::nullopt;
-  all.atol = chooses ? std::optional(all.atol.value_or(atol)) : std::nullopt;
+  if (!chooses) all.atol.reset();
   return all;
 }
 
@@ -118,7 +118,7 @@ void check_tolerances(const MethodInfo& info, const MethodOptions& options, doub
                     "such as 'gauss_8'",
                     rounding < 1e-20 ? "extended precision" : "doubles", 4 * rounding));
   }
-  if (info.is_adaptive(options) && options.rtol.value_or(info.rtol) == 0 && options.atol.value_or(info.atol) == 0) {
+  if (info.is_adaptive(options) && options.rtol.value_or(info.rtol) == 0 && options.atol.value_or(0) == 0) {
     refuse_option("rtol", "rtol and atol are both 0, so no step could pass; give one of them above 0");
   }
 }

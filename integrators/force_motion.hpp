@@ -38,6 +38,8 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
             .time_dependent = forces.time_dependent,
             .energy = forces.energy,
             .dissipative = forces.dissipative,
+            .any_origin = forces.keeps_momentum && !forces.velocity_dependent && !forces.time_dependent &&
+                          !work_.box().is_periodic(),
             .keeps_momentum = forces.keeps_momentum,
             .keeps_angular_momentum = forces.keeps_angular_momentum && !work_.box().is_periodic()};
   }
@@ -55,6 +57,8 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
     if (in_lanes_) bind_lanes(s);
     along_.reset();
     other_.reset();
+    coupling_ = Coupling::of(claims_of(forces_), s.units().G);
+    this->forget_scales();
   }
   Index size() const override { return 6 * work_.size(); }
   Index particles() const override { return work_.size(); }
@@ -152,6 +156,11 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
   }
 
  protected:
+  void measure_particles(const Vector<Real>& y, double rtol, ParticleScales& scales) override {
+    scatter(y, work_);
+    work_.wrap();
+    measure(work_, coupling_, workspace_.find<NeighborList>(), rtol, scales);
+  }
   void evaluate(const Real& t, const Vector<Real>& y, Vector<Real>& dy) override {
     const Index half = 3 * work_.size();
     sum(t, y);
@@ -292,6 +301,7 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
 
   F forces_;
   std::string name_;
+  Coupling coupling_;
   Workspace workspace_;
   ParticleSystem<Real> work_;
   std::optional<ParticleSystem<Real>> other_;  ///< where secants begin; made by the first of them

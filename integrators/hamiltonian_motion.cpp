@@ -10,8 +10,9 @@
 namespace noether {
 
 template <class Real>
-HamiltonianMotion<Real>::HamiltonianMotion(AnyHamiltonian<Real> hamiltonian, ForceField<Real> beside)
-    : hamiltonian_(std::move(hamiltonian)), beside_(std::move(beside)) {
+HamiltonianMotion<Real>::HamiltonianMotion(AnyHamiltonian<Real> hamiltonian, ForceField<Real> beside,
+                                           ForceClaims inside)
+    : hamiltonian_(std::move(hamiltonian)), beside_(std::move(beside)), inside_(std::move(inside)) {
   const HamiltonianClaims claims = hamiltonian_.claims();
   if (!claims.inertial) {
     throw SchemeMismatch(
@@ -68,8 +69,10 @@ template <class Real> void HamiltonianMotion<Real>::bind(const ParticleSystem<Re
   hamiltonian_.bind(work_);
   bind_force(beside_, work_);
   workspace_ = Workspace();
-  workspace_.put(NeighborList(beside_.claims().range));
+  workspace_.put(NeighborList(std::max(beside_.claims().range, inside_.range)));
   a_ = beside_a_ = VectorColumn<Real>(s.size());
+  coupling_ = Coupling::of(inside_, s.units().G);
+  this->forget_scales();
 }
 
 template <class Real>
@@ -90,6 +93,13 @@ template <class Real> void HamiltonianMotion<Real>::sum(const Real& t, const Vec
   if (!failure) return;
   this->note(failure);
   for (int k = 0; k < 3; ++k) std::fill_n(a_.component(k), a_.size(), Real(std::numeric_limits<double>::quiet_NaN()));
+}
+
+template <class Real>
+void HamiltonianMotion<Real>::measure_particles(const Vector<Real>& y, double rtol, ParticleScales& scales) {
+  scatter(y, work_);
+  work_.wrap();
+  measure(work_, coupling_, workspace_.find<NeighborList>(), rtol, scales);
 }
 
 template <class Real> void HamiltonianMotion<Real>::evaluate(const Real& t, const Vector<Real>& y, Vector<Real>& dy) {

@@ -19,7 +19,8 @@ namespace noether {
 template <class Real> class HamiltonianMotion final : public VectorField<Real> {
  public:
   /// @throws SchemeMismatch  for a Hamiltonian in coordinates of its own, with columns that move, or with constraints
-  explicit HamiltonianMotion(AnyHamiltonian<Real> hamiltonian, ForceField<Real> beside = {});
+  /// @param inside  what the forces within the Hamiltonian claim; errors of particles are measured by it
+  explicit HamiltonianMotion(AnyHamiltonian<Real> hamiltonian, ForceField<Real> beside = {}, ForceClaims inside = {});
 
   std::unique_ptr<VectorField<Real>> clone() const override { return std::make_unique<HamiltonianMotion>(*this); }
   FieldClaims claims() const override;
@@ -36,6 +37,7 @@ template <class Real> class HamiltonianMotion final : public VectorField<Real> {
   void load(const SavedState& saved, const std::string& prefix) override { hamiltonian_.load(saved, prefix); }
 
  protected:
+  void measure_particles(const Vector<Real>& y, double rtol, ParticleScales& scales) override;
   void evaluate(const Real& t, const Vector<Real>& y, Vector<Real>& dy) override;
   void accelerate(const Real& t, const Vector<Real>& y, Vector<Real>& a) override;
 
@@ -46,6 +48,8 @@ template <class Real> class HamiltonianMotion final : public VectorField<Real> {
 
   AnyHamiltonian<Real> hamiltonian_;
   ForceField<Real> beside_;
+  ForceClaims inside_;
+  Coupling coupling_;
   ParticleSystem<Real> work_;
   VectorColumn<Real> a_, beside_a_;
   Workspace workspace_;  ///< of the forces beside

@@ -90,7 +90,7 @@ struct MethodInfo {
   int evaluations = 0;                  ///< forces a fixed step, after the start; 0: it iterates, so it depends
   int printed_digits = 34;              ///< significant digits of the shortest coefficient in the source
   bool fixed = true, adaptive = false;  ///< what it can do; adaptive wins where both are possible
-  double rtol = 1e-6, atol = 1e-9;      ///< defaults
+  double rtol = 1e-6, atol = 1e-9;      ///< defaults; the second of systems of first order
   /// First h omega on the oscillator that is unstable with fixed steps; 0: every one is, infinity: none is, NaN: it
   /// does not say.
   double stability_limit = std::numeric_limits<double>::quiet_NaN();
@@ -102,6 +102,7 @@ struct MethodInfo {
   /// Whether it takes options of a group.
   bool takes(const OptionGroup& group) const;
   /// Options with the defaults of this method in the place of what is not said; what it does not look at is left out.
+  /// (The default of atol depends on what is stepped: see `Tolerance`.)
   MethodOptions resolved(const MethodOptions& options_given) const;
   /// Whether it runs with adaptive steps when asked like this.
   bool is_adaptive(const MethodOptions& options_given) const {

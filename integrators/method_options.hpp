@@ -100,7 +100,7 @@ class OwnOptions {
 /// What a user may set of a method; a method takes what it knows and refuses the rest.
 struct MethodOptions {
   std::optional<double> rtol = {};      ///< relative tolerance of adaptive methods [1]
-  std::optional<double> atol = {};      ///< absolute tolerance, in the units of each variable
+  std::optional<double> atol = {};      ///< absolute tolerance, in the units of each variable; default: see `Tolerance`
   std::optional<bool> adaptive = {};    ///< for methods that can do both
   std::optional<double> first = {};     ///< length of the first step of adaptive methods [time]; default: by the method
   std::optional<double> max_step = {};  ///< longest step of adaptive methods [time]; default: any
@@ -123,7 +123,9 @@ struct ErrorControl {
     return part<MethodOptions>("error_control", "how a method chooses its steps",
                                field<&MethodOptions::adaptive>("adaptive", "1", "false: steps of one length"),
                                field<&MethodOptions::rtol>("rtol", "1", "relative tolerance"),
-                               field<&MethodOptions::atol>("atol", "1", "absolute tolerance, of each variable"),
+                               field<&MethodOptions::atol>("atol", "1",
+                                                           "absolute tolerance, of each variable; default: 0 for "
+                                                           "particles, of a [system] 1e-9"),
                                field<&MethodOptions::max_step>("max_step", "time", "longest step; default: any"));
   }
 };

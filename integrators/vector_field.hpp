@@ -4,6 +4,7 @@
 #include "engine/concepts.hpp"
 #include "engine/description.hpp"
 #include "engine/sums.hpp"
+#include "integrators/particle_scales.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -51,7 +52,8 @@ struct FieldClaims {
   bool time_dependent = false;
   bool energy = false;  ///< an energy exists
   bool dissipative = false;
-  bool symplectic = true;           ///< the exact motion is; of particles under forces of a potential it is
+  bool any_origin = false;  ///< it is the same about any origin that moves evenly: only differences of positions count
+  bool symplectic = true;   ///< the exact motion is; of particles under forces of a potential it is
   std::string_view no_action = "";  ///< why no action tells the motion; empty: the Lagrangian gives one
   bool keeps_momentum = false;
   bool keeps_angular_momentum = false;
@@ -150,6 +152,17 @@ template <class Real> class VectorField {
   const std::optional<Failure>& failure() const { return failure_; }
   void forget_failure() { failure_.reset(); }
 
+  /// What errors of particles are measured by in a step from y, without particles for any other field; found anew where
+  /// y or `rtol` is not that of the call before.
+  const ParticleScales& scales(const Vector<Real>& y, double rtol) {
+    const bool known = measured_.size() == y.size() && measured_ == y && measured_for_ == rtol;
+    if (particles() == 0 || known) return scales_;
+    measure_particles(y, rtol, scales_);
+    measured_ = y;
+    measured_for_ = rtol;
+    return scales_;
+  }
+
   Evaluations& evaluations() { return evaluations_; }
   const Evaluations& evaluations() const { return evaluations_; }
 
@@ -160,6 +173,11 @@ template <class Real> class VectorField {
   }
   /// One stage after the other, unless a field knows better.
   virtual const Real* evaluate_stages(const StageStates<Real>& states, Real* out);
+  virtual void measure_particles(const Vector<Real>& /*y*/, double /*rtol*/, ParticleScales& /*scales*/) {
+    throw LogicError("a vector field of particles does not measure them");
+  }
+  /// To be called by `bind`: other masses make other scales.
+  void forget_scales() { measured_.resize(0); }
   void note(const std::optional<Failure>& failure) {
     if (failure && !failure_) failure_ = failure;
   }
@@ -167,6 +185,9 @@ template <class Real> class VectorField {
  private:
   Evaluations evaluations_;
   std::optional<Failure> failure_;
+  ParticleScales scales_;
+  Vector<Real> measured_;
+  double measured_for_ = 0;
   Vector<Real> stage_, stage_rate_;
   Vector<Real> direction_, column_;  ///< work of `jacobian`
 };

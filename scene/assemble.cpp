@@ -120,7 +120,8 @@ std::unique_ptr<VectorField<double>> field_of(const Scene& scene) {
   }
   ForceField<double> kicks, letters;
   for (const SceneForce& force : scene.hamiltonian.forces) (force.letter ? letters : kicks).add(force.force);
-  return std::make_unique<HamiltonianMotion<double>>(splitting.make(std::move(kicks)), std::move(letters));
+  return std::make_unique<HamiltonianMotion<double>>(splitting.make(std::move(kicks)), std::move(letters),
+                                                     forces_of(scene).claims());
 }
 
 Clock<double> clock_of(const SceneIntegrator& integrator) {

@@ -42,8 +42,9 @@ std::vector<Candidate> default_opponents(const Scene& scene);
 /// @throws Error  if the method cannot serve it
 Scene variant(const Scene& scene, const Candidate& who, const Setting& setting);
 
-/// The absolute tolerance that goes with a relative one: in the ratio of the scene's own, else a thousandth.
-double absolute_tolerance(const Scene& scene, double relative);
+/// The absolute tolerance that goes with a relative one, in the ratio of the scene's own; where a scene gives none,
+/// none for particles, and of a system the method's own ratio or a thousandth.
+std::optional<double> absolute_tolerance(const Scene& scene, double relative);
 
 /// Evaluations of forces that one step of about `step` takes, measured on a few; adaptive methods: 0.
 double evaluations_per_step(const Scene& scene, const Candidate& who, double step);

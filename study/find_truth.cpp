@@ -115,8 +115,10 @@ std::vector<Way> ways_of(const WideScene& wide, const TruthOptions& options) {
   field->gather(wide.start, y);
   const auto [x, v] = sizes(y, field->claims().second_order);
   const double size = v > 0 && x > 0 ? std::min(x, v) : std::max(x, v), scale = size > 0 ? 0.1 * size : 1;
+  const bool particles = field->particles() > 0;
   const auto choice = [&](std::string_view name, double rtol) {
-    return MethodChoice{methods::find(name), {.rtol = rtol, .atol = rtol * scale}};
+    return MethodChoice{methods::find(name),
+                        {.rtol = rtol, .atol = particles ? std::nullopt : std::optional(rtol * scale)}};
   };
   std::vector<Way> all;
   for (const auto& [name, coarse] : {std::pair("gragg_bulirsch_stoer", 1e-20), std::pair("dop853", 1e-18)}) {

@@ -289,7 +289,8 @@ class Page {
                      "the start where there is no truth",
                      lost_beyond_truth, lost_beyond_start));
     line("tolerances",
-         "rtol as given, atol in the scene's own ratio to it, else a thousandth, in the units of the scene");
+         "rtol as given; atol in the scene's own ratio to it, if it gives one, and of a system else a thousandth, in "
+         "the units of the scene");
     return out + "</dl>\n";
   }
 

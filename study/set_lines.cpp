@@ -45,7 +45,8 @@ std::vector<std::string> wanted(const Scene& scene, const Candidate& who, const 
   lines.push_back("integrator.method=" + who.method);
   if (who.adaptive) {
     lines.push_back("integrator.rtol=" + format_number(setting.tolerance));
-    lines.push_back("integrator.atol=" + format_number(absolute_tolerance(scene, setting.tolerance)));
+    if (const std::optional<double> least = absolute_tolerance(scene, setting.tolerance))
+      lines.push_back("integrator.atol=" + format_number(*least));
     if (counts_steps) lines.push_back("integrator.until=" + time_text(scene.integrator.start + end, *scene.units));
     return lines;
   }

@@ -57,7 +57,8 @@ WideScene wide_scene(const Scene& scene) {
   } else if (h.splitting.claims.columns) {
     wide.splitting = h.splitting.make_wide(std::move(kicks));
   } else {
-    wide.field = std::make_unique<HamiltonianMotion<Quad>>(h.splitting.make_wide(std::move(kicks)), std::move(letters));
+    wide.field = std::make_unique<HamiltonianMotion<Quad>>(h.splitting.make_wide(std::move(kicks)), std::move(letters),
+                                                           all.claims());
   }
   return wide;
 }

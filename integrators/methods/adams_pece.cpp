@@ -8,9 +8,7 @@ namespace noether {
 
 template <class Real>
 AdamsPece<Real>::AdamsPece(const MethodInfo& info, const MethodOptions& options)
-    : name_(info.name),
-      tolerance_{options.rtol.value_or(info.rtol), options.atol.value_or(info.atol)},
-      first_(options.first.value_or(0)) {
+    : name_(info.name), tolerance_(info, options), first_(options.first.value_or(0)) {
   const std::vector<Quad> coefficients = differences::adams_moulton(static_cast<int>(most));
   for (std::size_t j = 0; j < most; ++j) moulton_[j] = std::abs(static_cast<double>(coefficients[j]));
 }
@@ -30,7 +28,7 @@ template <class Real> void AdamsPece<Real>::bind(const VectorField<Real>& f) {
 template <class Real>
 double AdamsPece<Real>::next_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h) {
   if (next_ == 0) next_ = first_ > 0 ? std::copysign(first_, h) : first_step(f, t, y, 1, tolerance_, h);
-  return shorter(next_, h);
+  return shorter(next_, h, f.scales(y, tolerance_.rtol));
 }
 
 template <class Real> StepResult AdamsPece<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
@@ -40,10 +38,11 @@ template <class Real> StepResult AdamsPece<Real>::step(VectorField<Real>& f, con
     known_ = 1;
   }
   y0_ = y;
+  scales_ = &f.scales(y, tolerance_.rtol);
   failed_ = 0;
   while (true) {
     made.h = next_step(f, t, y, h);
-    made.failure = underflow(static_cast<double>(t), made.h);
+    made.failure = underflow(static_cast<double>(t), made.h, f.scales(y, tolerance_.rtol));
     if (made.failure) return made;
     prepare(made.h);
     predict(y, made.h);

@@ -55,7 +55,7 @@ template <class Real> class AdamsPece final : public Method<Real> {
   void reject(double h, const Errors& errors);
   void accept(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h, const Errors& errors);
   void choose(double h, Errors errors);
-  double norm(const Vector<Real>& e) const { return tolerance_.norm(e, y0_, y1_); }
+  double norm(const Vector<Real>& e) const { return tolerance_.norm(*scales_, e, y0_, y1_); }
   Real integral(std::size_t j, const Real& s) const;
 
   std::string_view name_;
@@ -76,6 +76,7 @@ template <class Real> class AdamsPece final : public Method<Real> {
   std::array<std::array<Real, most>, most> basis_;  ///< B_j by powers of s
   std::array<Real, most> g_, since_;                ///< integrals of B_j; h + t_n - t_(n-i)
   std::vector<Vector<Real>> star_, trial_;          ///< d*, and the differences at the new point
+  const ParticleScales* scales_ = nullptr;          ///< of the field, at y0
   Vector<Real> y0_, y1_, last_;                     ///< both ends, and d_k of the step
   double h_ = 0;
   std::size_t used_ = 0;  ///< its order

@@ -102,7 +102,7 @@ void predict_from(const BackwardDifferences<Real>& d, std::size_t last, Vector<R
 template <class Real>
 Bdf<Real>::Bdf(const MethodInfo& info, const MethodOptions& options)
     : name_(info.name),
-      tolerance_{options.rtol.value_or(info.rtol), options.atol.value_or(info.atol)},
+      tolerance_(info, options),
       form_(options.jacobian),
       first_(options.first.value_or(0)),
       newton_tolerance_(newton_tolerance(tolerance_, static_cast<double>(std::numeric_limits<Real>::epsilon()))) {
@@ -124,7 +124,7 @@ template <class Real> void Bdf<Real>::bind(const VectorField<Real>& f) {
 template <class Real>
 double Bdf<Real>::next_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h) {
   if (next_h_ == 0) next_h_ = first_ > 0 ? std::copysign(first_, h) : first_step(f, t, y, 1, tolerance_, h);
-  return shorter(next_h_, h);
+  return shorter(next_h_, h, f.scales(y, tolerance_.rtol));
 }
 
 /// Puts the differences at distances `h`.
@@ -154,7 +154,7 @@ template <class Real> typename Bdf<Real>::Solved Bdf<Real>::iterate(VectorField<
       update_[i] = weight * update_[i] - past_[i] / harmonic_[order_] - correction_[i];
     }
     if (!jacobian_.solve(f, update_)) return Solved::slowly;
-    const double now = tolerance_.norm(update_, predicted_, y1_);
+    const double now = tolerance_.norm(*scales_, update_, predicted_, y1_);
     if (!std::isfinite(now)) return Solved::slowly;
     for (Index i = 0; i < y1_.size(); ++i) {
       correction_[i] += update_[i];
@@ -184,11 +184,12 @@ template <class Real> bool Bdf<Real>::solve(VectorField<Real>& f, const Real& en
 /// Norm of the error that a step of `order` makes, by the difference beyond it.
 template <class Real> double Bdf<Real>::error(std::size_t order, const Vector<Real>& y) {
   const Vector<Real>& d = d_[order + 1];
-  return tolerance_.norm(d, y, y1_) / static_cast<double>(order + 1);
+  return tolerance_.norm(*scales_, d, y, y1_) / static_cast<double>(order + 1);
 }
 
 template <class Real> StepResult Bdf<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
   StepResult made;
+  scales_ = &f.scales(y, tolerance_.rtol);
   const double tried = next_step(f, t, y, h);
   if (!started_) {
     h_ = next_h_;
@@ -203,7 +204,7 @@ template <class Real> StepResult Bdf<Real>::step(VectorField<Real>& f, const Rea
   double norm = 0;
   for (int failed = 0;; ++made.rejected) {
     made.h = h_;
-    made.failure = underflow(static_cast<double>(t), h_);
+    made.failure = underflow(static_cast<double>(t), h_, *scales_);
     if (made.failure) return made;
     const Real end = t + Real(h_);
     predict_from(d_, order_, predicted_, past_);
@@ -211,7 +212,7 @@ template <class Real> StepResult Bdf<Real>::step(VectorField<Real>& f, const Rea
       space(0.3 * h_);
       continue;
     }
-    norm = tolerance_.norm(correction_, y, y1_) / static_cast<double>(order_ + 1);
+    norm = tolerance_.norm(*scales_, correction_, y, y1_) / static_cast<double>(order_ + 1);
     if (norm <= 1) break;
     const double factor = 0.9 * std::pow(norm, -1.0 / static_cast<double>(order_ + 1));
     // What does not look like the past is followed at a lower order.

@@ -67,6 +67,7 @@ template <class Real> class Bdf final : public Method<Real> {
 
   std::string_view name_;
   Tolerance tolerance_;
+  const ParticleScales* scales_ = nullptr;  ///< of the field, where a step begins
   std::optional<JacobianForm> form_;
   double first_, newton_tolerance_;
   std::array<Real, highest + 1> harmonic_{};  ///< 1 + 1/2 + ... + 1/q

@@ -14,6 +14,8 @@ namespace noether {
 namespace {
 
 constexpr auto lanes = static_cast<Index>(lane_count);
+/// Steps that are so many times shorter than the longest one may be deep in the field of a body.
+constexpr double short_step = 64;
 /// A step is made again if the one that meets the tolerance is shorter by more than this factor.
 constexpr double accepted = 0.6;
 
@@ -122,6 +124,8 @@ template <class Real> void Collocation<Real>::bind(const VectorField<Real>& f) {
   with_velocities_ = second_order_ && claims.velocity_dependent;
   n_ = second_order_ ? f.size() / 2 : f.size();
   particles_ = second_order_ ? f.particles() : 0;
+  any_origin_ = adaptive_ && claims.any_origin && std::is_same_v<Real, double>;
+  longest_ = 0;
   const auto padded = static_cast<std::size_t>((n_ + 7) / 8 * 8);
   for (auto* all : {&rates_, &previous_, &trial_, &q_, &v_}) all->assign(lane_count * padded, Real(0));
   for (auto* all : {&last_, &largest_}) all->assign(padded, Real(0));
@@ -139,13 +143,15 @@ template <class Real> void Collocation<Real>::bind(const VectorField<Real>& f) {
 template <class Real>
 double Collocation<Real>::next_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h) {
   if (next_ == 0)
-    next_ = first_ > 0 ? std::copysign(first_, h) : first_step(f, t, y, order_, {std::max(rtol_, 1e-14), 1e-300}, h);
+    next_ = first_ > 0 ? std::copysign(first_, h)
+                       : first_step(f, t, y, order_, Tolerance(std::max(rtol_, 1e-14), 1e-300), h);
   return shorter(next_, h);
 }
 
 template <class Real>
 StepResult Collocation<Real>::step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) {
   StepResult made;
+  if (any_origin_ && std::abs(next_) < longest_ / short_step) follow(f, y);
   while (true) {
     made.h = adaptive_ ? next_step(f, t, y, h) : h;
     predict(f, t, y, made.h);
@@ -165,13 +171,24 @@ StepResult Collocation<Real>::step(VectorField<Real>& f, const Real& t, Vector<R
     const double room = std::clamp(target_ / rough, 1e-300, 1e300);
     const double factor = near_root(room, std::max(table_.stages - 1, 1));
     next_ = made.h * (converged ? std::clamp(factor, 0.2, 3.0) : 0.5);
+    if (std::abs(next_) > longest_) longest_ = std::abs(next_);
     if (converged && factor > accepted) break;
     ++made.rejected;
     made.failure = underflow(static_cast<double>(t), next_);
-    if (made.failure) return made;
+    if (made.failure) break;
   }
-  finish(y, made.h);
+  if (!made.failure) finish(y, made.h);
+  if constexpr (std::is_same_v<Real, double>) {
+    if (origin_.in_use()) origin_.leave(made.failure ? 0 : made.h, y, low_.data());
+  }
   return made;
+}
+
+/// Makes the next step relative to a body, where that is worth it.
+template <class Real> void Collocation<Real>::follow(VectorField<Real>& f, Vector<Real>& y) {
+  if constexpr (std::is_same_v<Real, double>) {
+    if (origin_.is_worth_it(f.scales(y, rtol_), y)) origin_.enter(y, low_.data());
+  }
 }
 
 /// Stages begin where the polynomial of the last step leads; without one, with the rates at hand.
@@ -448,6 +465,7 @@ template <class Real> void Collocation<Real>::save(SavedState& saved, const std:
   save_value(saved, prefix + "next", next_);
   save_value(saved, prefix + "h", h_);
   save_value(saved, prefix + "swept", std::int64_t{swept_});
+  save_value(saved, prefix + "longest", longest_);
   save_value(saved, prefix + "low", std::vector<Real>(low_.begin(), low_.end()));
   save_value(saved, prefix + "previous", std::vector<Real>(previous_.begin(), previous_.end()));
 }
@@ -458,6 +476,7 @@ template <class Real> void Collocation<Real>::load(const SavedState& saved, cons
   std::int64_t swept = 0;
   load_value(saved, prefix + "swept", swept);
   swept_ = static_cast<int>(swept);
+  if (saved.contains(prefix + "longest")) load_value(saved, prefix + "longest", longest_);
   const auto load_all = [&](const std::string& name, AlignedVector<Real>& into) {
     std::vector<Real> read;
     load_value(saved, prefix + name, read);

@@ -3,6 +3,7 @@
 /// order 15.
 
 #include "integrators/methods/collocation_table.hpp"
+#include "integrators/methods/moving_origin.hpp"
 #include "integrators/methods/newton.hpp"
 #include "integrators/methods/stage_arithmetic.hpp"
 #include "integrators/methods/stage_system.hpp"
@@ -77,6 +78,7 @@ template <class Real> class Collocation final : public Method<Real> {
   std::uint8_t stages_to_evaluate(int round, const Real* q);
   void finish(Vector<Real>& y, double h);
   double roughness(const Vector<Real>& y, double h);
+  void follow(VectorField<Real>& f, Vector<Real>& y);
   bool is_rounding(const Vector<Real>& y, double h, double change) const;
 
   std::string_view name_;
@@ -99,6 +101,9 @@ template <class Real> class Collocation final : public Method<Real> {
   bool has_twice_ahead_ = false;                          ///< of the weights at hand
   double weights_h_ = 0, weights_h_old_ = 0;
   double next_ = 0, h_ = 0;  ///< to be tried; of `previous_`, 0 for none
+  MovingOrigin origin_;
+  bool any_origin_ = false;  ///< whether the field allows that
+  double longest_ = 0;       ///< of all steps so far, or the next one
   int swept_ = 0;            ///< sweeps of the last step; 0: it was made by Newton's iteration, or there is none
 
   std::optional<StageSystem<Real>> system_;  ///< once a step has asked for it

@@ -9,7 +9,7 @@ namespace noether {
 template <class Real>
 Extrapolation<Real>::Extrapolation(const MethodInfo& info, const MethodOptions& options)
     : name_(info.name),
-      tolerance_{options.rtol.value_or(info.rtol), options.atol.value_or(info.atol)},
+      tolerance_(info, options),
       first_(options.first.value_or(0)),
       length_(most + 1, 0),
       per_time_(most + 1, 0) {}
@@ -37,7 +37,7 @@ double Extrapolation<Real>::next_step(VectorField<Real>& f, const Real& t, const
   if (next_ == 0)
     next_ =
         first_ > 0 ? std::copysign(first_, h) : first_step(f, t, y, 2 * static_cast<int>(target_) - 2, tolerance_, h);
-  return shorter(next_, h);
+  return shorter(next_, h, f.scales(y, tolerance_.rtol));
 }
 
 template <class Real>
@@ -50,7 +50,7 @@ StepResult Extrapolation<Real>::step(VectorField<Real>& f, const Real& t, Vector
   }
   while (true) {
     made.h = next_step(f, t, y, h);
-    made.failure = underflow(static_cast<double>(t), made.h);
+    made.failure = underflow(static_cast<double>(t), made.h, f.scales(y, tolerance_.rtol));
     if (made.failure) return made;
     const Verdict verdict = trial(f, t, y, made.h);
     if (verdict == Verdict::passed) break;
@@ -117,7 +117,7 @@ double Extrapolation<Real>::add_row(VectorField<Real>& f, const Real& t, const V
     y1_[i] = y[i] + t_[1][i];
     sum_[i] = t_[1][i] - t_[2][i];
   }
-  const double error = tolerance_.norm(sum_, y, y1_);
+  const double error = tolerance_.norm(f.scales(y, tolerance_.rtol), sum_, y, y1_);
   const double power = 1.0 / static_cast<double>(2 * row - 1), least = std::pow(0.02, power);
   const double factor = std::clamp(0.94 * std::pow(0.65 / error, power), least / 4, 1 / least);
   length_[row] = h * factor;

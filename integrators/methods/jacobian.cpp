@@ -302,7 +302,7 @@ template <class Real> void Jacobian<Real>::set_scale() {
   scale_.setOnes(size_);
   if (!tolerance_) return;
   for (Index i = 0; i < size_; ++i) {
-    scale_[i] = Real(tolerance_->atol + tolerance_->rtol * std::abs(static_cast<double>(point_[i])));
+    scale_[i] = Real(tolerance_->absolute(false) + tolerance_->rtol * std::abs(static_cast<double>(point_[i])));
   }
   const Real least = scale_.maxCoeff() * Real(std::numeric_limits<double>::epsilon());
   if (least > Real(0) && std::isfinite(static_cast<double>(least))) {

@@ -8,7 +8,7 @@ template <class Real>
 NystromPair<Real>::NystromPair(const MethodInfo& info, const MethodOptions& options)
     : name_(info.name),
       adaptive_(info.is_adaptive(options)),
-      tolerance_{options.rtol.value_or(info.rtol), options.atol.value_or(info.atol)},
+      tolerance_(info, options),
       first_(options.first.value_or(0)),
       a_(as_real<Real>(tableaus::dprkn_12().a)),
       c_(as_real<Real>(tableaus::dprkn_12().c)),
@@ -28,7 +28,7 @@ template <class Real>
 double NystromPair<Real>::next_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h) {
   if (control_.next() == 0)
     control_.start(first_ > 0 ? std::copysign(first_, h) : first_step(f, t, y, order, tolerance_, h));
-  return shorter(control_.next(), h);
+  return shorter(control_.next(), h, f.scales(y, tolerance_.rtol));
 }
 
 template <class Real>
@@ -38,11 +38,11 @@ StepResult NystromPair<Real>::step(VectorField<Real>& f, const Real& t, Vector<R
   while (true) {
     made.h = adaptive_ ? next_step(f, t, y, h) : h;
     if (adaptive_) {
-      made.failure = underflow(static_cast<double>(t), made.h);
+      made.failure = underflow(static_cast<double>(t), made.h, f.scales(y, tolerance_.rtol));
       if (made.failure) return made;
     }
     trial(f, t, y, made.h);
-    if (!adaptive_ || control_.accept(made.h, error(y, made.h))) break;
+    if (!adaptive_ || control_.accept(made.h, error(f.scales(y, tolerance_.rtol), y, made.h))) break;
     ++made.rejected;
   }
   y = y1_;
@@ -72,14 +72,14 @@ void NystromPair<Real>::trial(VectorField<Real>& f, const Real& t, const Vector<
   }
 }
 
-template <class Real> double NystromPair<Real>::error(const Vector<Real>& y, double h) {
+template <class Real> double NystromPair<Real>::error(const ParticleScales& scales, const Vector<Real>& y, double h) {
   const Index half = y.size() / 2;
   const Real step(h);
   for (Index i = 0; i < half; ++i) {
     e_[i] = step * step * sum(e_q_, i);
     e_[half + i] = step * sum(e_v_, i);
   }
-  return tolerance_.norm(e_, y, y1_);
+  return tolerance_.norm(scales, e_, y, y1_);
 }
 
 template class NystromPair<double>;

@@ -28,7 +28,7 @@ template <class Real> class NystromPair final : public Method<Real> {
 
   Real sum(const std::vector<Real>& weights, Index i) const;
   void trial(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h);
-  double error(const Vector<Real>& y, double h);
+  double error(const ParticleScales& scales, const Vector<Real>& y, double h);
 
   std::string_view name_;
   bool adaptive_;

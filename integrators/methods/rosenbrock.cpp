@@ -15,7 +15,7 @@ Rosenbrock<Real>::Rosenbrock(const MethodInfo& info, const MethodOptions& option
       order_(table.order),
       adaptive_(info.is_adaptive(options)),
       form_(options.jacobian),
-      tolerance_{options.rtol.value_or(info.rtol), options.atol.value_or(info.atol)},
+      tolerance_(info, options),
       first_(options.first.value_or(0)),
       g_(table.g),
       a_(as_real<Real>(table.a)),
@@ -38,7 +38,7 @@ template <class Real>
 double Rosenbrock<Real>::next_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h) {
   if (control_.next() == 0)
     control_.start(first_ > 0 ? std::copysign(first_, h) : first_step(f, t, y, order_, tolerance_, h));
-  return shorter(control_.next(), h);
+  return shorter(control_.next(), h, f.scales(y, tolerance_.rtol));
 }
 
 /// Leaves the stages of a step in `u_` and its end in `y1_`. @return nothing, or why it failed
@@ -77,14 +77,15 @@ StepResult Rosenbrock<Real>::step(VectorField<Real>& f, const Real& t, Vector<Re
   jacobian_.evaluate(f, t, y);
   jacobian_.time_derivative(f, t, y, made.h, slope_);
   while (true) {
-    if (adaptive_) made.failure = underflow(static_cast<double>(t), made.h);
+    if (adaptive_) made.failure = underflow(static_cast<double>(t), made.h, f.scales(y, tolerance_.rtol));
     if (made.failure) return made;
     std::optional<Failure> failure = trial(f, t, y, made.h);
     if (!adaptive_) {
       made.failure = std::move(failure);
       break;
     }
-    const double error = failure ? std::numeric_limits<double>::infinity() : tolerance_.norm(u_.back(), y, y1_);
+    const double error = failure ? std::numeric_limits<double>::infinity()
+                                 : tolerance_.norm(f.scales(y, tolerance_.rtol), u_.back(), y, y1_);
     if (control_.accept(made.h, error)) break;
     ++made.rejected;
     made.h = shorter(control_.next(), h);

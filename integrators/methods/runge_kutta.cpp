@@ -13,7 +13,7 @@ RungeKutta<Real>::RungeKutta(const MethodInfo& info, const MethodOptions& option
       order_(table.order),
       adaptive_(info.is_adaptive(options)),
       first_same_as_last_(table.first_same_as_last),
-      tolerance_{options.rtol.value_or(info.rtol), options.atol.value_or(info.atol)},
+      tolerance_(info, options),
       first_(options.first.value_or(0)),
       a_(as_real<Real>(table.a)),
       b_(as_real<Real>(table.b)),
@@ -36,7 +36,7 @@ template <class Real>
 double RungeKutta<Real>::next_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y, double h) {
   if (control_.next() == 0)
     control_.start(first_ > 0 ? std::copysign(first_, h) : first_step(f, t, y, order_, tolerance_, h));
-  return shorter(control_.next(), h);
+  return shorter(control_.next(), h, f.scales(y, tolerance_.rtol));
 }
 
 template <class Real>
@@ -65,7 +65,7 @@ StepResult RungeKutta<Real>::step(VectorField<Real>& f, const Real& t, Vector<Re
   while (true) {
     made.h = adaptive_ ? next_step(f, t, y, h) : h;
     if (adaptive_) {
-      made.failure = underflow(static_cast<double>(t), made.h);
+      made.failure = underflow(static_cast<double>(t), made.h, f.scales(y, tolerance_.rtol));
       if (made.failure) return made;
     }
     for (std::size_t i = 1; i < b_.size(); ++i) {
@@ -74,7 +74,7 @@ StepResult RungeKutta<Real>::step(VectorField<Real>& f, const Real& t, Vector<Re
     }
     // With FSAL the last stage stands at the new point already.
     if (!first_same_as_last_) combine(b_, made.h, y, y1_);
-    if (!adaptive_ || control_.accept(made.h, error(made.h, y))) break;
+    if (!adaptive_ || control_.accept(made.h, error(f.scales(y, tolerance_.rtol), made.h, y))) break;
     ++made.rejected;
   }
   y0_ = y;
@@ -86,14 +86,14 @@ StepResult RungeKutta<Real>::step(VectorField<Real>& f, const Real& t, Vector<Re
   return made;
 }
 
-template <class Real> double RungeKutta<Real>::error(double h, const Vector<Real>& y) {
+template <class Real> double RungeKutta<Real>::error(const ParticleScales& scales, double h, const Vector<Real>& y) {
   e1_.setZero();
   for (std::size_t j = 0; j < e_.size(); ++j) {
     if (e_[j] == Real(0)) continue;
     for (Index i = 0; i < y.size(); ++i) e1_[i] += e_[j] * k_[j][i];
   }
   for (Index i = 0; i < y.size(); ++i) e1_[i] *= Real(h);
-  return tolerance_.norm(e1_, y, y1_);
+  return tolerance_.norm(scales, e1_, y, y1_);
 }
 
 template <class Real> void RungeKutta<Real>::save(SavedState& saved, const std::string& prefix) const {
@@ -155,14 +155,14 @@ template <class Real> StepResult Dop853<Real>::step(VectorField<Real>& f, const 
   return RungeKutta<Real>::step(f, t, y, h);
 }
 
-template <class Real> double Dop853<Real>::error(double h, const Vector<Real>& y) {
+template <class Real> double Dop853<Real>::error(const ParticleScales& scales, double h, const Vector<Real>& y) {
   const auto norm = [&](const std::vector<Real>& weights) {
     this->e1_.setZero();
     for (std::size_t j = 0; j < weights.size(); ++j) {
       if (weights[j] == Real(0)) continue;
       for (Index i = 0; i < y.size(); ++i) this->e1_[i] += weights[j] * this->k_[j][i];
     }
-    return this->tolerance_.norm(this->e1_, y, this->y1_);
+    return this->tolerance_.norm(scales, this->e1_, y, this->y1_);
   };
   const double five = norm(this->e_), three = norm(e3_);
   const double both = five * five + 0.01 * three * three;

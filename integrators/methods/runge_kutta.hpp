@@ -26,7 +26,7 @@ template <class Real> class RungeKutta : public Method<Real> {
 
  protected:
   /// Norm of the error of the trial step in `y1_`.
-  virtual double error(double h, const Vector<Real>& y);
+  virtual double error(const ParticleScales& scales, double h, const Vector<Real>& y);
   /// out = y + h sum w_j k_j over the first `w.size()` stages.
   void combine(const std::vector<Real>& w, double h, const Vector<Real>& y, Vector<Real>& out) const;
 
@@ -70,7 +70,7 @@ template <class Real> class Dop853 final : public RungeKutta<Real> {
   void interpolate(VectorField<Real>& f, const Real& theta, Vector<Real>& y) override;
 
  private:
-  double error(double h, const Vector<Real>& y) override;
+  double error(const ParticleScales& scales, double h, const Vector<Real>& y) override;
 
   std::vector<Real> e3_;
   std::vector<std::vector<Real>> more_a_, d_;

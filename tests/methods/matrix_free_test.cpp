@@ -167,7 +167,7 @@ TEST_CASE("a matrix-free Jacobian solves what a dense one solves, by dual number
     field.gather(s, y);
     Jacobian<double> first, second;
     first.bind(field, {.form = dense});
-    second.bind(field, {.form = matrix_free, .tolerance = Tolerance{}, .rounding = true});
+    second.bind(field, {.form = matrix_free, .tolerance = Tolerance(1e-6, 1e-9), .rounding = true});
     for (Jacobian<double>* J : {&first, &second}) {
       J->evaluate(field, 0.3, y);
       REQUIRE(J->factorize(2, 0.03));
