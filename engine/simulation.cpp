@@ -325,10 +325,7 @@ template <class Real> std::optional<Outcome> Simulation<Real>::look_at_the_end()
   for (const ScheduledStop& stop : stops_) {
     if (!between_steps && detail::is_multiple(step(), stop.steps)) continue;
     StopCheck<Real> check = stop.check;
-    if (const auto reason = check.look(moment)) {
-      shown_at_.reset();  // the state of a run that was stopped is that of its last whole step
-      return stopped(*reason);
-    }
+    if (const auto reason = check.look(moment)) return stopped(*reason);  // there, between steps or not
     unresolved_at_end_ += check.unresolved() - stop.check.unresolved();
   }
   for (Scheduled& scheduled : monitors_) {
@@ -342,10 +339,11 @@ template <class Real> std::optional<Outcome> Simulation<Real>::look_at_the_end()
 /// that is told of must be one that can be read. A run that is interrupted goes on.
 template <class Real> void Simulation<Real>::show_to_writers(const Outcome& ended) {
   if (ended.kind == Outcome::Kind::completed || ended.kind == Outcome::Kind::interrupted) return;
-  const Snapshot<Real> moment = snapshot({});
+  const bool between_steps = shown_at_ && raw_.clock().is_later(*shown_at_, raw_.clock().high());
+  const Snapshot<Real> moment = snapshot({}, between_steps ? shown_at_ : std::nullopt);
   if (fault(moment.state())) return;
   for (Scheduled& scheduled : monitors_) {
-    if (scheduled.records && !has_looked(scheduled, moment.time(), false)) scheduled.monitor.observe(moment);
+    if (scheduled.records && !has_looked(scheduled, moment.time(), between_steps)) scheduled.monitor.observe(moment);
   }
 }
 

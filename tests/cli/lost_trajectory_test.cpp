@@ -119,6 +119,23 @@ TEST_CASE("the state at a stop is the last frame, and that of a run that fails",
   CHECK(json_member(info, "last_step") == "15");
   CHECK(json_member(info, "digest") == json_member(stopped, "digest"));
 
+  // A method that chooses its steps, looked at when the run ends: from the apocenter of a = 1, e = 1/2 to its
+  // pericenter.
+  std::string falling = two_bodies.substr(0, two_bodies.find("[[every]]"));
+  for (const auto& [old, by] : {std::pair("mass = 0.001", "mass = 0"), std::pair("x = [1, 0, 0]", "x = [1.5, 0, 0]"),
+                                std::pair("v = [0, 1, 0]", "v = [0, 0.5773502691896257, 0]"),
+                                std::pair("yoshida_4", "dop853"), std::pair("step = 0.01\nsteps = 100", "until = 3")})
+    falling.replace(falling.find(old), std::string(old).size(), by);
+  for (const std::string every : {"3", "0.7"}) {
+    CAPTURE(every);
+    const SceneFolder last(falling + "[[every]]\ntype = \"trajectory\"\nevery = " + every +
+                           "\n[[stop]]\ntype = \"collision\"\ndistance = 0.6\n");
+    const std::string report = output(last, "run scene.toml --json");
+    CHECK(json_member(report, "outcome") == "\"stopped\"");
+    CHECK(json_member(output(last, "info scene.out/run.h5 --json"), "digest") == json_member(report, "digest"));
+    CHECK(json_member(output(last, "run scene.toml --json --resume"), "digest") == json_member(report, "digest"));
+  }
+
   const SceneFolder failing(exploding + "[[every]]\ntype = \"trajectory\"\nsteps = 1000\n");
   const ProcessResult failed = noether(failing, "run scene.toml --json");
   CHECK(failed.exit_code == 1);

@@ -118,19 +118,27 @@ TEST_CASE("a run that fails leaves its last sound state", "[last_frame]") {
   CHECK(written.back().x == run.particles().positions()[0][0]);
 }
 
-TEST_CASE("where steps are chosen by the method, times of what is written still rise", "[stop][last_frame]") {
-  for (const double interval : {0.75, 4.0, 100.0}) {
-    CAPTURE(interval);
-    std::vector<ShownMoment> written;
-    Simulation<double> run(passing_by(), classical(Gravity{.G = 1e-30}, method("dop853")));
-    run.every_time(interval, MomentWriter{&written});
-    run.stop_when(closer_than(1.5), 1);
-    const Outcome outcome = run.run_until(1000);
-    CHECK(outcome.kind == Outcome::Kind::stopped);
-    REQUIRE(written.size() > 1);
-    for (std::size_t k = 1; k < written.size(); ++k) CHECK(written[k].time > written[k - 1].time);
-    CHECK(written.back().time >= outcome.time);
-    if (interval == 100) CHECK(written.back().time == outcome.time);
+TEST_CASE("where steps are chosen by the method the last of what is written is where the run stopped",
+          "[stop][last_frame]") {
+  // Looked at each step, or only when the run ends, between two steps and after the passage at t = 10.
+  for (const std::int64_t steps : {1, 1000}) {
+    for (const double interval : {0.75, 4.0, 11.0, 100.0}) {
+      CAPTURE(steps, interval);
+      std::vector<ShownMoment> written, by_steps;
+      Simulation<double> run(passing_by(), classical(Gravity{.G = 1e-30}, method("dop853")));
+      run.every_time(interval, MomentWriter{&written});
+      run.every(1000, MomentWriter{&by_steps});
+      run.stop_when(closer_than(1.5), steps);
+      const Outcome outcome = run.run_until(11);
+      CHECK(outcome.kind == Outcome::Kind::stopped);
+      if (steps == 1000) CHECK(outcome.time == 11);
+      REQUIRE(written.size() > 1);
+      for (std::size_t k = 1; k < written.size(); ++k) CHECK(written[k].time > written[k - 1].time);
+      CHECK(written.back().time == outcome.time);
+      CHECK(written.back().x == run.particles().positions()[1][0]);
+      CHECK(by_steps.size() == 2);
+      CHECK(by_steps.back() == written.back());
+    }
   }
 }
 
