@@ -171,7 +171,7 @@ TEST_CASE("a fall to 1e-9 of a body, about the origin and elsewhere", "[particle
       } else {
         REQUIRE(ended.kind == Outcome::Kind::step_underflow);
         CHECK(ended.message.find("use 'gauss_8', which steps relative to that one") != std::string::npos);
-        CHECK(relative_error(sim.time(), 0.0993459) < 1e-6);
+        CHECK(relative_error(sim.time(), 0.0993459) < 1e-4);
       }
     }
   }
@@ -194,8 +194,8 @@ TEST_CASE("the neighbor that counts is the one that a particle would fall into f
   CHECK(relative_error(scales.speed[0], std::sqrt(units.G * M)) < 0.1);
 
   SECTION("a softened pair is no nearer than its softening") {
-    measure(s, {.gravity = true, .G = units.G, .softening = 10 * moon}, nullptr, 1e-6, scales);
-    CHECK(relative_error(scales.length[2], std::sqrt(101.0) * moon) < 1e-12);
+    measure(s, {.gravity = true, .G = units.G, .softening = moon}, nullptr, 1e-6, scales);
+    CHECK(relative_error(scales.length[2], std::sqrt(2.0) * moon) < 1e-12);
   }
   SECTION("tracers alone have no neighbors") {
     ParticleSystem<double> dust(units);
