@@ -225,6 +225,7 @@ void check_digests(const Hdf5File& file, std::vector<std::string>& damaged) {
     if (!there) damaged.push_back("there is no digest of " + what + ", which stands in every such file");
   };
   expect(file.has_attribute("/noether", constants_attribute), "what particles have once");
+  if (!file.has("/noether/scene")) damaged.emplace_back("there is no scene, which stands in every such file");
   for (const std::string& path : {particles_path + "/position/value", system_path + "/value"})
     if (file.has(path) && file.open(path).rows() > 0) expect(file.has(frame_digests_path), "the frames");
   for (const std::string& name : file.children(monitors_path)) {
@@ -235,9 +236,8 @@ void check_digests(const Hdf5File& file, std::vector<std::string>& damaged) {
   }
 }
 
-/// Everything that can be reached is looked at, and attributes that never change are those that were written.
+/// Attributes that never change are those that were written.
 void check_headers(const Hdf5File& file, std::vector<std::string>& damaged) {
-  read_headers(file);
   if (!file.has_attribute("/noether", headers_attribute)) return;
   check_digests(file, damaged);
   if (file.text_attribute("/noether", headers_attribute) == headers_digest(file)) return;
@@ -290,6 +290,7 @@ FileInfo untried_verify(const std::filesystem::path& file) {
     result.kind = kind == Kind::trajectory ? "trajectory" : "checkpoint";
     result = untried_info(file);
     if (kind == Kind::checkpoint) return result;
+    read_headers(Hdf5File::open_to_read(file));  // by a handle of its own: others have parts of the file in memory
     const TrajectoryReader reader(file);
     check_frames(reader, result.complete, result.damaged);
     check_monitors(reader.file(), result.complete, result.damaged);
