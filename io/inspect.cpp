@@ -226,6 +226,7 @@ void check_digests(const Hdf5File& file, std::vector<std::string>& damaged) {
   };
   expect(file.has_attribute("/noether", constants_attribute), "what particles have once");
   if (!file.has("/noether/scene")) damaged.emplace_back("there is no scene, which stands in every such file");
+  if (!file.has(monitors_path)) damaged.emplace_back("there is no group of monitors, which every such file has");
   for (const std::string& path : {particles_path + "/position/value", system_path + "/value"})
     if (file.has(path) && file.open(path).rows() > 0) expect(file.has(frame_digests_path), "the frames");
   for (const std::string& name : file.children(monitors_path)) {
