@@ -74,7 +74,7 @@ MethodOptions MethodInfo::resolved(const MethodOptions& options_given) const {
   const bool chooses = is_adaptive(options_given);
   all.adaptive = adaptive && fixed ? std::optional(chooses) : std::nullopt;
   all.rtol = chooses ? std::optional(all.rtol.value_or(rtol)) : std::nullopt;
-  if (!chooses) all.atol.reset();
+  all.atol = chooses ? std::optional(all.atol.value_or(atol)) : std::nullopt;
   return all;
 }
 

@@ -102,7 +102,7 @@ struct MethodInfo {
   /// Whether it takes options of a group.
   bool takes(const OptionGroup& group) const;
   /// Options with the defaults of this method in the place of what is not said; what it does not look at is left out.
-  /// (The default of atol depends on what is stepped: see `Tolerance`.)
+  /// (The default of atol is that of a system of first order; of particles it is 0.)
   MethodOptions resolved(const MethodOptions& options_given) const;
   /// Whether it runs with adaptive steps when asked like this.
   bool is_adaptive(const MethodOptions& options_given) const {

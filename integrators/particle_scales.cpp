@@ -4,8 +4,6 @@
 #include "neighbors/neighbor_list.hpp"
 #include "numbers/parallel.hpp"
 
-#include <Eigen/Geometry>
-
 #include <algorithm>
 #include <cmath>
 
@@ -13,26 +11,29 @@ namespace noether {
 
 namespace {
 
-using Vec = Eigen::Vector3d;
-
-template <class Real> Vec in_doubles(const Vec3<Real>& x) {
+template <class Real> Eigen::Vector3d in_doubles(const Vec3<Real>& x) {
   return {static_cast<double>(x[0]), static_cast<double>(x[1]), static_cast<double>(x[2])};
 }
 
-/// Half the time until two bodies are nearest along a straight line, and twice what it takes to go as far as they are
-/// apart then; infinity where they do not come nearer, or deflect each other by less than `rtol`.
-double time_to_passage(const Vec& d, const Vec& v, double GM, double soft2, double rtol) {
-  const double along = d.dot(v), v2 = v.squaredNorm();
-  if (!(along < 0)) return std::numeric_limits<double>::infinity();
-  const double nearest = std::sqrt(d.cross(v).squaredNorm() / v2 + soft2);
-  if (2 * GM < rtol * nearest * v2) return std::numeric_limits<double>::infinity();
-  return -0.5 * along / v2 + 2 * nearest / std::sqrt(v2);
-}
+/// The state of one particle in doubles, or differences of two.
+struct Point {
+  double x, y, z, vx, vy, vz;
+
+  double distance2() const { return x * x + y * y + z * z; }
+  double speed2() const { return vx * vx + vy * vy + vz * vz; }
+  /// How fast the square of the distance grows, halved.
+  double along() const { return x * vx + y * vy + z * vz; }
+  /// |x cross v|^2.
+  double swept2() const {
+    const double a = y * vz - z * vy, b = z * vx - x * vz, c = x * vy - y * vx;
+    return a * a + b * b + c * c;
+  }
+};
 
 template <class Real> class Measuring {
  public:
   Measuring(const ParticleSystem<Real>& s, const Coupling& coupling, double rtol, ParticleScales& out)
-      : s_(s), coupling_(coupling), rtol_(rtol), out_(out) {}
+      : s_(s), coupling_(coupling), rtol_(rtol), out_(out), soft2_(coupling.softening * coupling.softening) {}
 
   void gravity() {
     const Index n = s_.size();
@@ -40,46 +41,46 @@ template <class Real> class Measuring {
     massive.clear();
     for (Index j = 0; j < n; ++j) {
       if (s_.masses()[j] != Real(0)) massive.push_back(j);
+      mass_unit_ = std::max(mass_unit_, mass(j));
     }
-    std::vector<double>& longest = out_.work.longest;
-    longest.resize(static_cast<std::size_t>(n));
+    length_unit_ = out_.size > 0 ? out_.size : 1;
+    for (auto* all : {&out_.work.forward, &out_.work.backward})
+      all->assign(static_cast<std::size_t>(n), std::numeric_limits<double>::infinity());
     for_blocks(n, [&](Index begin, Index end) {
-      for (Index i = begin; i < end; ++i) longest[static_cast<std::size_t>(i)] = attract(i);
+      for (Index i = begin; i < end; ++i) attract(i);
     });
-    out_.longest = *std::min_element(longest.begin(), longest.end());
-    for (Index i = 0; i < n && out_.lost < 0; ++i) {
-      if (is_lost(i)) out_.lost = i;
-    }
+    const auto least = [](const std::vector<double>& all) { return *std::min_element(all.begin(), all.end()); };
+    out_.forward.longest = least(out_.work.forward);
+    out_.backward.longest = least(out_.work.backward);
+    for (Index i = 0; i < n; ++i) note_if_lost(i);
   }
 
   void all_pairs() {
     for_blocks(s_.size(), [&](Index begin, Index end) {
       for (Index i = begin; i < end; ++i) {
         for (Index j = 0; j < s_.size(); ++j) {
-          if (j != i) pair(i, j);
+          if (j != i) pair(i, j, coupling_.range);
         }
       }
     });
   }
 
+  /// Distances are taken from the positions: those of records, and who stands in the skin, depend on the last search.
   void listed(NeighborList& list) requires std::is_same_v<Real, double> {
     list.update(s_);
-    const double* const records = list.records();
     const std::vector<std::int32_t>& particles = list.particles_of_records();
-    const auto nobody = static_cast<Index>(particles.size()) - 1;
+    const auto nobody = static_cast<Index>(particles.size());  // the record behind the last one
     for_blocks(list.groups(), [&](Index begin, Index end) {
       for (Index g = begin; g < end; ++g) {
         const NeighborList::Group group = list.group(g);
         for (Index lane = 0; lane < NeighborList::group_size; ++lane) {
           const Index i = group.particles[lane];
           if (i < 0) continue;
-          const double* const own = records + group.records[lane];
           for (Index row = 0; row < group.rows; ++row) {
-            const Index entry = group.entries[NeighborList::group_size * row + lane], record = entry / 4;
-            if (record == nobody) continue;
-            const double* const other = records + entry;
-            take(i, particles[static_cast<std::size_t>(record)],
-                 Vec(own[0] - other[0], own[1] - other[1], own[2] - other[2]).norm());
+            const Index record = group.entries[NeighborList::group_size * row + lane] / 4;
+            if (record >= nobody) continue;
+            const Index j = particles[static_cast<std::size_t>(record)];
+            if (j != i) pair(i, j, coupling_.range);
           }
         }
       }
@@ -89,65 +90,99 @@ template <class Real> class Measuring {
   void bonds() {
     if (s_.topology() == nullptr) return;
     for (const BondedTerm<2>& bond : s_.topology()->bonds) {
-      pair(bond.particles[0], bond.particles[1]);
-      pair(bond.particles[1], bond.particles[0]);
+      pair(bond.particles[0], bond.particles[1], std::numeric_limits<double>::infinity());
+      pair(bond.particles[1], bond.particles[0], std::numeric_limits<double>::infinity());
     }
   }
 
  private:
   double mass(Index i) const { return static_cast<double>(s_.masses()[i]); }
-  Vec relative_velocity(Index i, Index j) const {
-    return in_doubles(Vec3<Real>(s_.velocities()[i] - s_.velocities()[j]));
+  /// State of i less that of j.
+  Point difference(Index i, Index j) const {
+    const auto& x = s_.positions();
+    const auto& v = s_.velocities();
+    const auto less = [&](const VectorColumn<Real>& column, int k) {
+      return static_cast<double>(column.component(k)[i] - column.component(k)[j]);
+    };
+    return {less(x, 0), less(x, 1), less(x, 2), less(v, 0), less(v, 1), less(v, 2)};
   }
 
   /// Of a tracer massive bodies alone are neighbors; of a body all are, for what goes round it may have no mass.
-  /// @return how far a step may go on its account
-  double attract(Index i) {
+  void attract(Index i) {
     const bool tracer = s_.masses()[i] == Real(0);
     const std::vector<Index>& massive = out_.work.massive;
-    const double soft2 = coupling_.softening * coupling_.softening;
     const Index n = tracer ? static_cast<Index>(massive.size()) : s_.size();
-    double longest = std::numeric_limits<double>::infinity();
+    const auto at = static_cast<std::size_t>(i);
+    const double own = mass(i), per_length2 = 1 / (length_unit_ * length_unit_), per_mass = 1 / mass_unit_;
+    // (m_i + m_j)^2 and r^6 of the neighbor so far, in units in which both stay in the range of doubles.
+    double best_masses2 = 0, best_r6 = 1;
+    Index best = -1;
     for (Index k = 0; k < n; ++k) {
       const Index j = tracer ? massive[static_cast<std::size_t>(k)] : k;
       if (j == i) continue;
-      const Vec d = in_doubles(Vec3<Real>(s_.positions()[i] - s_.positions()[j])), v = relative_velocity(i, j);
-      const double M = mass(i) + mass(j), GM = coupling_.G * M, r = std::sqrt(d.squaredNorm() + soft2);
-      if (is_nearest(i, M, r)) {
-        const double v2 = v.squaredNorm();
-        set(i, j, r, std::sqrt(std::max(v2, GM / r)));
-        out_.work.binding[static_cast<std::size_t>(i)] = std::abs(v2 * r / GM - 2);
+      const Point d = difference(i, j);
+      const double masses = (own + mass(j)) * per_mass, masses2 = masses * masses;
+      const double r2 = (d.distance2() + soft2_) * per_length2, r6 = r2 * r2 * r2;
+      if (masses2 * best_r6 > best_masses2 * r6) {
+        best_masses2 = masses2;
+        best_r6 = r6;
+        best = j;
       }
-      longest = std::min(longest, time_to_passage(d, v, GM, soft2, rtol_));
+      const double along = d.along();
+      if (along == 0) continue;
+      double& longest = along < 0 ? out_.work.forward[at] : out_.work.backward[at];
+      const double v2 = d.speed2();
+      if (0.5 * std::abs(along) < longest * v2) {
+        longest = std::min(longest, time_to_passage(d, v2, coupling_.G * (own + mass(j))));
+      }
     }
-    double& part = out_.part[static_cast<std::size_t>(i)];
-    if (out_.length[static_cast<std::size_t>(i)] > 0)
-      part = std::clamp(out_.work.binding[static_cast<std::size_t>(i)], ParticleScales::least_part, 1.0);
-    return longest;
+    if (best >= 0) set_orbit(i, best);
   }
-  /// Whether rounding of its position is a tenth of its energy about its neighbor. Near the origin it never is: an
-  /// orbit about the origin may be a parabola, whose energy is 0.
-  bool is_lost(Index i) const {
+  /// Half the time until two bodies are nearest along a straight line, and twice what it takes to go as far as they are
+  /// apart then; infinity where they deflect each other by less than `rtol`.
+  double time_to_passage(const Point& d, double v2, double GM) const {
+    const double nearest = std::sqrt(d.swept2() / v2 + soft2_);
+    if (2 * GM < rtol_ * nearest * v2) return std::numeric_limits<double>::infinity();
+    return 0.5 * std::abs(d.along()) / v2 + 2 * nearest / std::sqrt(v2);
+  }
+  void set_orbit(Index i, Index j) {
+    const auto at = static_cast<std::size_t>(i);
+    const Point d = difference(i, j);
+    const double GM = coupling_.G * (mass(i) + mass(j)), r = std::sqrt(d.distance2() + soft2_), v2 = d.speed2();
+    if (!(r > 0)) return;
+    set(i, j, r, std::sqrt(std::max(v2, GM / r)));
+    out_.work.binding[at] = std::abs(v2 * r / GM - 2);
+    out_.work.along[at] = d.along();
+    out_.part[at] = std::clamp(out_.work.binding[at], ParticleScales::least_part, 1.0);
+  }
+  /// Near the origin no orbit is lost: there it may be a parabola, whose energy is 0.
+  void note_if_lost(Index i) {
     constexpr double rounding = 4 * static_cast<double>(std::numeric_limits<Real>::epsilon());
     const auto at = static_cast<std::size_t>(i);
-    if (out_.length[at] == 0) return false;
+    if (out_.length[at] == 0) return;
     const double far = in_doubles(Vec3<Real>(s_.positions()[i])).norm() / out_.length[at];
-    return far > 1000 && rounding * far > 0.1 * std::min(out_.work.binding[at], 1.0);
+    if (!(far > 1000 && rounding * far > 0.1 * out_.part[at])) return;
+    ParticleScales::Lost& lost = out_.work.along[at] < 0 ? out_.forward.lost : out_.backward.lost;
+    const Index j = out_.neighbor[at];
+    if (lost.particle >= 0 || out_.work.along[at] == 0) return;
+    const bool lighter = mass(i) <= mass(j);
+    lost.particle = lighter ? i : j;
+    lost.neighbor = lighter ? j : i;
+    lost.name = s_.name(lost.particle);
+    lost.neighbor_name = s_.name(lost.neighbor);
+    lost.distance = out_.length[at];
   }
 
-  void pair(Index i, Index j) {
-    take(i, j, in_doubles(s_.box().minimum_image(Vec3<Real>(s_.positions()[i] - s_.positions()[j]))).norm());
-  }
-  void take(Index i, Index j, double r) {
-    if (is_nearest(i, mass(i) + mass(j), r)) set(i, j, r, relative_velocity(i, j).norm());
-  }
-  /// Whether nobody before has had a larger (m_i + m_j) / r^3.
-  bool is_nearest(Index i, double masses, double r) {
+  void pair(Index i, Index j, double most) {
+    const double r = in_doubles(s_.box().minimum_image(Vec3<Real>(s_.positions()[i] - s_.positions()[j]))).norm();
+    if (!(r <= most)) return;
     double& strongest = out_.work.strength[static_cast<std::size_t>(i)];
-    const double strength = masses / (r * r * r);
-    if (!(strength > strongest)) return false;
+    const double strength = (mass(i) + mass(j)) / (r * r * r);
+    // Of two that are as strong the first counts, in whatever order they come.
+    const bool first = strength == strongest && j < out_.neighbor[static_cast<std::size_t>(i)];
+    if (!(strength > strongest || (first && strength > 0))) return;
     strongest = strength;
-    return true;
+    set(i, j, r, std::sqrt(difference(i, j).speed2()));
   }
   void set(Index i, Index j, double r, double speed) {
     const auto at = static_cast<std::size_t>(i);
@@ -160,6 +195,7 @@ template <class Real> class Measuring {
   const Coupling& coupling_;
   double rtol_;
   ParticleScales& out_;
+  double soft2_, length_unit_ = 1, mass_unit_ = 0;
 };
 
 /// So many particles are compared with each other sooner than sorted.
@@ -175,11 +211,10 @@ void measure(const ParticleSystem<Real>& s, const Coupling& coupling, NeighborLi
   out.speed.assign(n, 0.0);
   out.neighbor.assign(n, 0);
   out.part.assign(n, 1.0);
-  out.lost = -1;
-  for (auto* all : {&out.work.strength, &out.work.binding}) all->assign(n, 0.0);
+  for (auto* all : {&out.work.strength, &out.work.binding, &out.work.along}) all->assign(n, 0.0);
   out.size = out.fastest = 0;
   out.gravity = coupling.gravity;
-  out.longest = std::numeric_limits<double>::infinity();
+  out.forward = out.backward = {};
   for (Index i = 0; i < s.size(); ++i) {
     out.size = std::max(out.size, in_doubles(Vec3<Real>(s.positions()[i])).norm());
     out.fastest = std::max(out.fastest, in_doubles(Vec3<Real>(s.velocities()[i])).norm());
@@ -192,7 +227,8 @@ void measure(const ParticleSystem<Real>& s, const Coupling& coupling, NeighborLi
     if constexpr (std::is_same_v<Real, double>) {
       if (coupling.range > 0 && list != nullptr && s.size() > few) measuring.listed(*list);
     }
-    if (coupling.range > 0 && (list == nullptr || s.size() <= few)) measuring.all_pairs();
+    const bool sorted = std::is_same_v<Real, double> && list != nullptr && s.size() > few;
+    if (coupling.range > 0 && !sorted) measuring.all_pairs();
     if (coupling.bonded) measuring.bonds();
   }
 }

@@ -5,6 +5,7 @@
 #include "numbers/types.hpp"
 
 #include <limits>
+#include <string>
 #include <vector>
 
 namespace noether {
@@ -47,17 +48,27 @@ struct ParticleScales {
   std::vector<double> part;
   double size = 0, fastest = 0;  ///< largest |x|, |v| of all
   bool gravity = false;
-  /// A particle whose orbit cannot be told: its position, rounded far from the origin, leaves the energy about its
-  /// neighbor open; -1: there is none.
-  Index lost = -1;
-  /// How far a step may go: half the time until a particle is nearest to a massive one that will deflect it, and what
-  /// it takes to pass by. A long way without forces must not end in a step over a short encounter [time].
-  double longest = std::numeric_limits<double>::infinity();
+  /// Two particles that fall towards each other where doubles cannot tell: rounding of their positions, far from the
+  /// origin, is a tenth of the energy of their orbit.
+  struct Lost {
+    Index particle = -1, neighbor = -1;  ///< -1: there are none
+    std::string name, neighbor_name;
+    double distance = 0;  ///< [length]
+  };
+  /// What differs between the two ways that time can go.
+  struct Ahead {
+    /// How far a step may go: half the time until a particle is nearest to a massive one that will deflect it, and what
+    /// it takes to pass by. A long way without forces must not end in a step over a short encounter [time].
+    double longest = std::numeric_limits<double>::infinity();
+    Lost lost = {};
+  };
+  Ahead forward, backward;
+  const Ahead& ahead(double h) const { return h < 0 ? backward : forward; }
 
-  /// Of `measure`, kept from step to step so that it allocates nothing: (m_i + m_j) / r^3 of the neighbor, the bound
-  /// that each particle sets to the step, r / a about the neighbor, and who has mass.
+  /// Of `measure`, kept from step to step so that it allocates nothing: r / a about the neighbor, how fast that comes
+  /// nearer [length^2/time], the bounds that each particle sets to a step either way, and who has mass.
   struct Work {
-    std::vector<double> strength, longest, binding;
+    std::vector<double> strength, binding, along, forward, backward;
     std::vector<Index> massive;
   } work = {};
 
@@ -69,7 +80,7 @@ struct ParticleScales {
 /// @param s     wrapped into their box
 /// @param list  looks for neighbors in range; null: all pairs are looked at
 /// @param rtol  deflections by less than this are none
-/// @cost O(n m) under gravity, m massive bodies; else O(n) with a list, O(n^2) without one
+/// @cost O(n m) under gravity, m massive bodies, some 5 ns for each pair; else O(n) with a list, O(n^2) without one
 template <class Real>
 void measure(const ParticleSystem<Real>& s, const Coupling& coupling, NeighborList* list, double rtol,
              ParticleScales& out);

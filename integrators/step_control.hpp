@@ -59,14 +59,19 @@ struct Tolerance {
                   const Vector<Real>& y1) const;
 };
 
+/// The length of a vector; squares of it may leave the range of doubles.
+inline double length_of(double x, double y, double z) {
+  const double squares = x * x + y * y + z * z;
+  return squares > 1e-280 && squares < 1e300 ? std::sqrt(squares) : std::hypot(x, y, z);
+}
 /// |y_i|, or |y_i - z_i|, of vector i among n: component k stands at k n + i.
 template <class Real> double length_of(const Vector<Real>& y, Index i, Index n) {
   const auto x = [&](Index k) { return static_cast<double>(y[k * n + i]); };
-  return std::sqrt(x(0) * x(0) + x(1) * x(1) + x(2) * x(2));
+  return length_of(x(0), x(1), x(2));
 }
 template <class Real> double length_of(const Vector<Real>& y, const Vector<Real>& z, Index i, Index n) {
   const auto x = [&](Index k) { return static_cast<double>(y[k * n + i] - z[k * n + i]); };
-  return std::sqrt(x(0) * x(0) + x(1) * x(1) + x(2) * x(2));
+  return length_of(x(0), x(1), x(2));
 }
 
 template <class Real>
@@ -78,21 +83,24 @@ double Tolerance::of_worst(const ParticleScales& scales, const Vector<Real>& e, 
   double worst = 0;
   const auto count = [&](double error, double tolerable) {
     const double one = error > 0 ? error / tolerable : error;
-    if (!(one <= worst)) worst = one;  // what is no number is larger than any
+    if (one > worst || std::isnan(one)) worst = one;
   };
   for (Index i = 0; i < n; ++i) {
     const double x = length_of(y0, i, n), v = length_of(y0, i + 3 * n, n);
     double length = scales.length[static_cast<std::size_t>(i)], speed = scales.speed[static_cast<std::size_t>(i)];
+    double least_x = least, least_v = least;
     if (length == 0) {
       length = std::max({x, length_of(y1, i, n), 1e-3 * scales.size});
       speed = std::max({v, length_of(y1, i + 3 * n, n), 1e-3 * scales.fastest});
+      if (!atol && scales.size == 0) least_x = of_variables;  // nothing has a size yet
+      if (!atol && scales.fastest == 0) least_v = of_variables;
     } else if (!scales.gravity) {
       speed = std::max({speed, length_of(y0, y1, i + 3 * n, n), 1e-3 * scales.fastest});
     }
     // Forces are as right as the distances that they are computed from.
     const double lost = length > 0 ? x / length : 0, relative = rtol * scales.part[static_cast<std::size_t>(i)];
-    count(length_of(e, i, n), least + relative * length + rounding * x);
-    count(length_of(e, i + 3 * n, n), least + relative * speed + rounding * (v + lost * speed));
+    count(length_of(e, i, n), least_x + relative * length + rounding * x);
+    count(length_of(e, i + 3 * n, n), least_v + relative * speed + rounding * (v + lost * speed));
   }
   return worst;
 }
@@ -155,7 +163,7 @@ class StepController {
 inline double shorter(double h, double most) { return std::abs(most) < std::abs(h) ? most : h; }
 /// A step that jumps over no encounter of particles.
 inline double shorter(double h, double most, const ParticleScales& scales) {
-  return shorter(shorter(h, most), std::copysign(scales.longest, h));
+  return shorter(shorter(h, most), std::copysign(scales.ahead(h).longest, h));
 }
 
 /// The shortest time in which a particle falls on its neighbor or goes round it, or in which its own coordinates
@@ -192,9 +200,12 @@ double first_step(VectorField<Real>& f, const Real& t, const Vector<Real>& y, in
   f.rate(t, y, f0);
   const ParticleScales& scales = f.scales(y, tolerance.rtol);
   if (scales.particles() > 0) {
+    // Where nothing tells, or a force may change sooner than its present value says.
+    const double blind = std::max(1e-6, 1e-12 * std::abs(static_cast<double>(t)));
     const double shortest = shortest_time(scales, y, f0), accuracy = std::clamp(tolerance.rtol, 1e-30, 1.0);
-    const double h = shortest * std::pow(accuracy / 100, 1.0 / (order + 1));
-    if (std::isfinite(h) && h > 0) return std::copysign(h, towards);
+    double h = shortest * std::pow(accuracy / 100, 1.0 / (order + 1));
+    if (!std::isfinite(h) || !(h > 0)) h = blind;
+    return std::copysign(f.claims().time_dependent ? std::min(h, blind) : h, towards);
   }
   const double d0 = tolerance.norm(scales, y, y, y), d1 = tolerance.norm(scales, f0, y, y);
   double h0 = d0 < 1e-5 || d1 < 1e-5 ? 1e-6 : 0.01 * d0 / d1;
@@ -225,15 +236,13 @@ inline std::optional<Failure> underflow(double t, double h) {
 /// The same, and where the tolerance cannot be met at any length, since no step of doubles tells the orbit of a
 /// particle.
 inline std::optional<Failure> underflow(double t, double h, const ParticleScales& scales) {
-  if (scales.lost < 0) return underflow(t, h);
-  const auto at = static_cast<std::size_t>(scales.lost);
-  return Failure{
-      Outcome::Kind::step_underflow, scales.lost, "step",
-      fmt::format(
-          "doubles cannot tell the orbit of particle {} at time {:.9g}: it passes particle {} at a distance of "
-          "{:.3g}, which is lost in the rounding of positions; use 'gauss_8', which steps relative to that one, "
-          "or put the origin there",
-          scales.lost, t, scales.neighbor[at], scales.length[at])};
+  const ParticleScales::Lost& lost = scales.ahead(h).lost;
+  if (lost.particle < 0) return underflow(t, h);
+  return Failure{Outcome::Kind::step_underflow, lost.particle, "step",
+                 fmt::format("doubles cannot tell the orbit of {} about {} at time {:.9g}: their distance of {:.3g} is "
+                             "lost in the rounding of positions; use 'gauss_8', which steps relative to such a body, "
+                             "or put the origin there",
+                             lost.name, lost.neighbor_name, t, lost.distance)};
 }
 
 }  // namespace noether

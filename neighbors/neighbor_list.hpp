@@ -73,7 +73,7 @@ class NeighborList {
   /// Records, shape (records, 4): x, y, z [length] relative to the middle of the box, and in the
   /// place of a fourth number the type as std::int64_t.
   const double* records() const { return records_.data(); }
-  /// Of a record the index of its particle; the last of the records is nobody's.
+  /// Of a record the index of its particle; the record behind the last of these is nobody's.
   const std::vector<std::int32_t>& particles_of_records() const { return source_; }
 
   /// Records of the same entries in whole numbers, shape (records, 4): x, y, z in whole numbers of `whole_spacing`,

@@ -107,6 +107,7 @@ class SceneReader {
     effective.put("type", SceneValue::of(type, reader.line("type")));
     for (auto& [key, value] : *system.effective.get<SceneValue::Table>()) effective.put(key, value);
     scene_.particles = system.start;
+    context_.of_system = true;
     scene_.system = std::move(system);
     refuse_scheme(SceneReader::table(top, "integrator"));
   }

@@ -162,7 +162,9 @@ void read_method_options(TableReader& reader, const Parts& parts, SceneIntegrato
   } catch (const Error& error) {
     reader.refuse(error);
   }
-  const MethodOptions resolved = info.resolved(options);
+  MethodOptions resolved = info.resolved(options);
+  const bool default_is_zero = !reader.context().of_system;
+  if (default_is_zero && !options.atol && info.atol > 0) resolved.atol.reset();
   for (const OptionGroup* group : info.option_groups()) put_options(reader, *group, resolved, effective);
 }
 

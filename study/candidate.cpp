@@ -165,11 +165,11 @@ Scene variant(const Scene& scene, const Candidate& who, const Setting& setting) 
 
 std::optional<double> absolute_tolerance(const Scene& scene, double relative) {
   double ratio = 1e-3;
-  const bool given = scene.integrator.adaptive() && scene.integrator.classical->options.atol;
+  const bool given = scene.integrator.adaptive() && scene.integrator.classical->options.atol.value_or(0) > 0;
   if (!scene.system && !given) return {};
   if (scene.integrator.adaptive()) {
     const MethodOptions own = scene.integrator.classical->resolved();
-    const double rtol = *own.rtol, atol = own.atol.value_or(scene.integrator.classical->info->atol);
+    const double rtol = *own.rtol, atol = *own.atol;
     if (rtol > 0 && atol > 0) ratio = atol / rtol;
   }
   return ratio * relative;
