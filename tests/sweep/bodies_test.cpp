@@ -237,7 +237,7 @@ TEST_CASE("moons, minor planets and planets of Horizons have JPL's masses", "[sw
     CHECK(it.refusal == "");
     CHECK(near(it.energy.potential, row.potential, 1e-11));
   }
-  // A center that is a moon or a minor planet: 5959.915466180539 and 62.62888644409933 km^3/s^2 over k^2.
+  // A center that is a moon or a minor planet: 5959.915466180539 and 62.62888864440993 km^3/s^2 over k^2.
   for (const auto& [center, mass] : std::vector<std::pair<std::string, double>>{
            {"Io (501)", 4.490849135391605e-08}, {"1 Ceres (A801 AA)", 4.719142276686204e-10}}) {
     CAPTURE(center);
