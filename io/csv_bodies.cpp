@@ -406,11 +406,12 @@ class CsvBodies {
     const std::string& word = fields[column.field];
     const double value = read(text_, line, word, fmt::format("column '{}'", name));
     if (column.julian && is_modified_beside(value - *epoch_)) {
-      text_.fail(line,
-                 fmt::format("column '{}' is JD {}, {:.9g} days from the epoch, JD {}: one of them looks like a modified "
-                             "Julian day; add 2400000.5 to it",
-                             name, word, std::abs(value - *epoch_), format_number(*epoch_)),
-                 word);
+      text_.fail(
+          line,
+          fmt::format("column '{}' is JD {}, {:.9g} days from the epoch, JD {}: one of them looks like a modified "
+                      "Julian day; add 2400000.5 to it",
+                      name, word, std::abs(value - *epoch_), format_number(*epoch_)),
+          word);
     }
     if (column.julian) return column.unit->times(value - *epoch_);
     if (column.in_days && looks_like_julian_day(value)) {

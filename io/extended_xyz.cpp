@@ -112,9 +112,8 @@ class ExtendedXyzReader {
       text_.fail(first, fmt::format("the second column {}, where XYZ has x; take that column out", what));
     }
     const bool one = found == columns_ + 1;
-    note(options_,
-         fmt::format("x, y, z of the structure are taken from columns 2 to 4; column{} {} not read",
-                     one ? " 5" : fmt::format("s 5 to {}", found), one ? "is" : "are"));
+    note(options_, fmt::format("x, y, z of the structure are taken from columns 2 to 4; column{} {} not read",
+                               one ? " 5" : fmt::format("s 5 to {}", found), one ? "is" : "are"));
     columns_ = found;
   }
 
@@ -139,8 +138,8 @@ class ExtendedXyzReader {
     const bool whole = !has_point(words_[1]) && number == std::floor(number);
     const auto steps = static_cast<double>(k);
     if (k == 0) second.begin = number;
-    second.atom_number = second.atom_number && whole && (second.begin == 0 || second.begin == 1) &&
-                         number == second.begin + steps;
+    second.atom_number =
+        second.atom_number && whole && (second.begin == 0 || second.begin == 1) && number == second.begin + steps;
     second.label = second.label && whole && has_point(words_[2]) && has_point(words_[3]) && has_point(words_[4]);
   }
 

@@ -103,9 +103,10 @@ std::optional<double> time_of_pericenter(TableReader& body, const std::optional<
   }
   const double days = day->julian_day - epoch->julian_day;
   if (io::is_modified_beside(days)) {
-    body.fail("T", fmt::format("T = {} is {:.9g} days from the epoch, {}: one of them looks like a modified Julian day; "
-                               "add 2400000.5 to it",
-                               to_text(*value), std::abs(days), text_of(*epoch)));
+    body.fail("T",
+              fmt::format("T = {} is {:.9g} days from the epoch, {}: one of them looks like a modified Julian day; "
+                          "add 2400000.5 to it",
+                          to_text(*value), std::abs(days), text_of(*epoch)));
   }
   return days * unit_value("day", units);
 }
