@@ -100,7 +100,7 @@ TEST_CASE("a number behind a number is no power and no factor", "[sweep][units][
                                                                                 {"2 12 au", "2"},
                                                                                 {"2 1-2 au", "-"}}) {
     CAPTURE(a);
-    CHECK(refusal(a, "") == "scene.toml:8: a: " + unexpected(what, a));
+    CHECK(refusal(a, "") == "scene.toml:9: a: " + unexpected(what, a));
   }
   CHECK(has(refusal("2 au", "e = '1/10'\n"), unexpected("0", "1/10")));
   CHECK(has(refusal("2 au",
