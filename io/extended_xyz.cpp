@@ -97,10 +97,12 @@ class ExtendedXyzReader {
     split_words(text_.lines()[first - 1], words_);
     if (words_.size() <= columns_) return;
     const std::size_t found = words_.size();
+    const bool one = found == columns_ + 1;
+    columns_ = found;
     SecondColumn second;
     for (std::size_t k = 0; k < frame.atoms; ++k) {
       split_words(text_.lines()[first + k - 1], words_);
-      if (words_.size() != found) break;  // told where atoms are read
+      if (words_.size() != found) return;  // refused where atoms are read
       judge(second, k, number_in(text_, first + k, words_[1], "pos"));
     }
     std::string_view what;
@@ -111,10 +113,8 @@ class ExtendedXyzReader {
     if (!what.empty()) {
       text_.fail(first, fmt::format("the second column {}, where XYZ has x; take that column out", what));
     }
-    const bool one = found == columns_ + 1;
     note(options_, fmt::format("x, y, z of the structure are taken from columns 2 to 4; column{} {} not read",
                                one ? " 5" : fmt::format("s 5 to {}", found), one ? "is" : "are"));
-    columns_ = found;
   }
 
   /// What the number in the second column of atom k, whose words these are, may be in the place of x.

@@ -179,6 +179,8 @@ TEST_CASE("a column before x of plain XYZ is told, whatever it has", "[sweep][st
     CHECK(seen(structure_scene("a.xyz"), "a.xyz", "2\n\n" + atoms).refusal ==
           "a.xyz:3: the second column " + what + ", where XYZ has x; take that column out");
   }
+  CHECK(seen(structure_scene("a.xyz"), "a.xyz", "2\n\nAr 0 0 0 1\nAr 0 0 4\n").refusal ==
+        "a.xyz:4: this atom has 4 columns; expected 5, as the first atom has");
   // One atom elsewhere is enough for a position.
   for (const std::string atoms : {"Ar 18 0 0 0\nAr 18.5 0 0 4.0\n", "Ar 39.948 0 0 0\nAr 39 0 0 4.0\n",
                                   "Ar 1 0 0 0\nAr 3 4.0 0 0\n", "Ar 7 0.0 0.0 0.0\nAr 7.0 4.0 0.0 0.0\n"}) {
