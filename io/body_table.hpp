@@ -35,6 +35,11 @@ struct BodyEpoch {
 /// @throws never
 constexpr bool looks_like_julian_day(double days) { return days > 2.2e6 && days < 2.6e6; }
 
+/// Whether a Julian day is so many days from the epoch that one of the two is a modified Julian day, which counts from
+/// 2400000.5.
+/// @throws never
+constexpr bool is_modified_beside(double days) { return days > 2e6 || days < -2e6; }
+
 /// Bodies, and what a table says of them.
 struct BodyTable {
   ParticleSystem<double> particles;

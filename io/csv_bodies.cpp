@@ -11,6 +11,7 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 #include <map>
 #include <set>
 #include <unordered_map>
@@ -201,7 +202,9 @@ class CsvBodies {
     separator_ = separator_of(content);
     const std::string whole = with_whole_units(content);
     const auto fields = fields_of(text_, line, separator_ == Separator::blank ? whole : content, separator_);
-    if (!fields.empty()) read_headings(line, fields);
+    // Spreadsheets write rows that are empty above the names too.
+    const bool empty = std::all_of(fields.begin(), fields.end(), [](const std::string& one) { return one.empty(); });
+    if (!empty) read_headings(line, fields);
   }
 
   void read_headings(std::size_t line, const std::vector<std::string>& fields) {
@@ -402,6 +405,14 @@ class CsvBodies {
     const auto read = name == "mass" ? mass_number_in : number_in;
     const std::string& word = fields[column.field];
     const double value = read(text_, line, word, fmt::format("column '{}'", name));
+    if (column.julian && is_modified_beside(value - *epoch_)) {
+      text_.fail(
+          line,
+          fmt::format("column '{}' is JD {}, {:.9g} days from the epoch, JD {}: one of them looks like a modified "
+                      "Julian day; add 2400000.5 to it",
+                      name, word, std::abs(value - *epoch_), format_number(*epoch_)),
+          word);
+    }
     if (column.julian) return column.unit->times(value - *epoch_);
     if (column.in_days && looks_like_julian_day(value)) {
       text_.fail(

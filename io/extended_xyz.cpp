@@ -83,25 +83,64 @@ class ExtendedXyzReader {
     return frames[0];
   }
 
-  /// Of plain XYZ: columns behind the position, charges or velocities or anything else, are passed over. An atomic
-  /// number before the position would pass for x.
+  /// What the second column of plain XYZ may be in the place of x; every atom takes some of it away.
+  struct SecondColumn {
+    bool atomic_number = true, weight = true, atom_number = true, label = true;
+    bool any_number = false, any_weight = false;  ///< of an element, not of atoms that are none
+    double begin = 0;                             ///< of the first atom
+  };
+
+  /// Of plain XYZ: columns behind the position, charges or velocities or anything else, are passed over. One before
+  /// the position, an atomic number, a mass or a number of atoms, would pass for x.
   void pass_over_further_columns(const XyzFrame& frame) {
     const std::size_t first = frame.line + 2;
     split_words(text_.lines()[first - 1], words_);
     if (words_.size() <= columns_) return;
     const std::size_t found = words_.size();
-    bool numbered = true;
-    for (std::size_t line = first; line < first + frame.atoms && numbered; ++line) {
-      split_words(text_.lines()[line - 1], words_);
-      const int number = words_.empty() ? 0 : number_of_element(words_[0]);
-      numbered = number > 0 && words_.size() > 1 && number_in(text_, line, words_[1], "pos") == number;
-    }
-    if (numbered) {
-      text_.fail(first, "the second column has the atomic number of each atom, where XYZ has x; take that column out");
-    }
-    note(options_,
-         fmt::format("the columns behind x, y, z of the structure are not read; there are {}", found - columns_));
+    const bool one = found == columns_ + 1;
     columns_ = found;
+    SecondColumn second;
+    for (std::size_t k = 0; k < frame.atoms; ++k) {
+      split_words(text_.lines()[first + k - 1], words_);
+      if (words_.size() != found) return;  // refused where atoms are read
+      judge(second, k, number_in(text_, first + k, words_[1], "pos"));
+    }
+    std::string_view what;
+    if (second.atomic_number && second.any_number) what = "has the atomic number of each atom";
+    if (second.weight && second.any_weight) what = "has the mass of each atom";
+    if (second.atom_number && frame.atoms > 1) what = "counts the atoms";
+    if (what.empty() && second.label) what = "has whole numbers before three numbers with a point";
+    if (!what.empty()) {
+      text_.fail(first, fmt::format("the second column {}, where XYZ has x; take that column out", what));
+    }
+    note(options_, fmt::format("x, y, z of the structure are taken from columns 2 to 4; column{} {} not read",
+                               one ? " 5" : fmt::format("s 5 to {}", found), one ? "is" : "are"));
+  }
+
+  /// What the number in the second column of atom k, whose words these are, may be in the place of x.
+  void judge(SecondColumn& second, std::size_t k, double number) const {
+    const std::string meant = element_meant_by(words_[0]);
+    // CA is calcium, or carbon of a protein; what is no element at all is a dummy, of number and mass 0.
+    const std::string_view initial = words_[0].substr(0, 1);
+    const bool dummy = meant.empty() && number == 0;
+    bool is_number = false, is_weight = false;
+    for (const std::string_view element : {std::string_view(meant), initial}) {
+      const int expected = number_of_element(element);
+      if (expected == 0) continue;
+      is_number = is_number || number == expected;
+      is_weight = is_weight || std::abs(number - standard_atomic_weight(element)) <= 0.1;
+    }
+    second.atomic_number = second.atomic_number && (is_number || dummy);
+    second.any_number = second.any_number || is_number;
+    second.weight = second.weight && (is_weight || dummy);
+    second.any_weight = second.any_weight || is_weight;
+    const auto has_point = [](std::string_view word) { return word.find('.') != std::string_view::npos; };
+    const bool whole = !has_point(words_[1]) && number == std::floor(number);
+    const auto steps = static_cast<double>(k);
+    if (k == 0) second.begin = number;
+    second.atom_number =
+        second.atom_number && whole && (second.begin == 0 || second.begin == 1) && number == second.begin + steps;
+    second.label = second.label && whole && has_point(words_[2]) && has_point(words_[3]) && has_point(words_[4]);
   }
 
   /// QUIP writes masses in eV fs^2/angstrom^2 where others write u: all of them are then 103.64 times too large.
@@ -119,6 +158,10 @@ class ExtendedXyzReader {
     }
     if (judged == 0) return;
     for (double& mass : structure_.masses) mass /= factor;
+    // Velocities of momenta have been divided by the mass as it stands in the file.
+    if (momentum_) {
+      for (Vec3<double>& velocity : structure_.v) velocity *= factor;
+    }
     note(options_,
          "the masses of the structure are 103.64 times the atomic weights: they are taken as eV fs^2/angstrom^2, as "
          "QUIP writes them");
@@ -150,7 +193,12 @@ class ExtendedXyzReader {
     }
     velocity_ = property({"velo", "vel", "velocities", "velocity"}, 3);
     momentum_ = property({"momenta"}, 3);
-    charge_ = property({"charge", "initial_charges", "charges", "q"}, 1);
+    charge_ = property({"charge", "initial_charges"}, 1);
+    // Of other counts these are something else, such as quaternions.
+    for (const char* const name : {"charges", "q"}) {
+      const auto found = properties_.find(name);
+      if (!charge_ && found != properties_.end() && found->second.count == 1) charge_ = property({name}, 1);
+    }
     mass_ = property({"mass", "masses"}, 1);
     for (const auto& [name, one] : properties_) {
       // Forces are computed anew.

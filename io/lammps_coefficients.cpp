@@ -333,7 +333,7 @@ class PairReader {
     const std::vector<CoefficientRow> rows = rows_.of("pair", "atom", types);
     std::map<std::pair<int, int>, const CoefficientRow*> from;
     for (const CoefficientRow& row : rows) {
-      structure.pair_style_assumed = structure.pair_style_assumed || row.style.empty();
+      structure.pair_style_assumed = structure.pair_style_assumed || row.style.empty() || is_hybrid(row.style);
       const auto [pair, ends] = pair_of(row);
       for (int a = row.types[0].first; a <= row.types[0].second; ++a) {
         for (int b = row.types[1].first; b <= row.types[1].second; ++b) {

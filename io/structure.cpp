@@ -97,21 +97,6 @@ ParticleSystem<double> particles_of(const Structure& structure, const UnitSystem
   return s;
 }
 
-/// The element that a label or a number may mean: C1, AR, ar, 18; empty where it is none.
-std::string element_meant_by(std::string_view label) {
-  int number = 0;
-  const auto [end, problem] = std::from_chars(label.data(), label.data() + label.size(), number);
-  if (problem == std::errc() && end == label.data() + label.size()) return std::string(symbol_of_element(number));
-  const auto is_letter_of_element = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
-  std::string letters(label.begin(), std::find_if_not(label.begin(), label.end(), is_letter_of_element));
-  if (number_of_element(letters) > 0) return letters;
-  for (std::size_t k = 0; k < letters.size(); ++k) {
-    const auto c = static_cast<unsigned char>(letters[k]);
-    letters[k] = static_cast<char>(k == 0 ? std::toupper(c) : std::tolower(c));
-  }
-  return number_of_element(letters) > 0 ? letters : "";
-}
-
 void check_masses(const ParticleSystem<double>& s, const Structure& structure, const TextFile& text) {
   const Topology& topology = structure.topology;
   for (Index i = 0; i < s.size(); ++i) {
@@ -142,6 +127,20 @@ void check_positions(const ParticleSystem<double>& s, const std::filesystem::pat
 }
 
 }  // namespace
+
+std::string element_meant_by(std::string_view label) {
+  int number = 0;
+  const auto [end, problem] = std::from_chars(label.data(), label.data() + label.size(), number);
+  if (problem == std::errc() && end == label.data() + label.size()) return std::string(symbol_of_element(number));
+  const auto is_letter_of_element = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
+  std::string letters(label.begin(), std::find_if_not(label.begin(), label.end(), is_letter_of_element));
+  if (number_of_element(letters) > 0) return letters;
+  for (std::size_t k = 0; k < letters.size(); ++k) {
+    const auto c = static_cast<unsigned char>(letters[k]);
+    letters[k] = static_cast<char>(k == 0 ? std::toupper(c) : std::tolower(c));
+  }
+  return number_of_element(letters) > 0 ? letters : "";
+}
 
 void split_words(std::string_view line, std::vector<std::string_view>& words) {
   words.clear();

@@ -76,6 +76,10 @@ std::string_view symbol_of_element(int number);
 /// @throws never
 int number_of_element(std::string_view symbol);
 
+/// The element that a label or a number may mean: "C1", "AR", "ar", "18"; empty where it is none.
+/// @throws std::bad_alloc
+std::string element_meant_by(std::string_view label);
+
 /// Parts a line at blanks, and leaves out what stands behind `#`.
 void split_words(std::string_view line, std::vector<std::string_view>& words);
 

@@ -72,12 +72,14 @@ class TermReader {
     return term;
   }
 
-  /// "^-1", "**-1", or the number alone, as catalogs of stars have it: "km s-1".
+  /// "^-1", "**-1", or the number alone, as catalogs of stars have it: "km s-1". Behind "1" and behind the sign of
+  /// degrees a number alone is no power: "1/12 yr" would be a year, and minutes of arc would be lost.
   void read_power(Term& term) {
     const std::size_t mark = rest_.starts_with("**") ? 2 : rest_.starts_with('^') ? 1 : 0;
     const std::string_view behind = rest_.substr(mark);
     const std::size_t sign = behind.starts_with('-') ? 1 : 0;
-    if (mark == 0 && (behind.size() <= sign || !is_digit(behind[sign]))) return;
+    const bool has_bare_powers = term.word != "1" && term.word != "\xC2\xB0";
+    if (mark == 0 && (!has_bare_powers || behind.size() <= sign || !is_digit(behind[sign]))) return;
     rest_.remove_prefix(mark);
     int power = 0;
     const auto [end, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), power);

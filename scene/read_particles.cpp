@@ -62,6 +62,19 @@ std::string text_of(const io::BodyEpoch& epoch) {
   return fmt::format("JD {}{}{}", format_number(epoch.julian_day), epoch.scale.empty() ? "" : " ", epoch.scale);
 }
 
+/// Whether a text is a number of days, however it spells them: "3 day", "3d", "3 days ".
+bool is_in_days(std::string_view text, const UnitSystem& units) {
+  if (units.is_reduced()) return false;
+  const std::size_t begin = text.find_first_not_of(" \t+");
+  if (begin == std::string_view::npos) return false;
+  double number = 0;
+  const char* const last = text.data() + text.size();
+  const auto [end, problem] = std::from_chars(text.data() + begin, last, number);
+  if (problem != std::errc() || end == last) return false;
+  const double one = unit_value("1 " + std::string(end, last), units), day = unit_value("day", units);
+  return std::abs(one - day) <= 1e-12 * day;
+}
+
 /// T of a body: a time from the start, or a Julian day beside the epoch of the start [time]. @throws SceneError
 std::optional<double> time_of_pericenter(TableReader& body, const std::optional<io::BodyEpoch>& epoch) {
   const SceneValue* value = body.find("T");
@@ -69,8 +82,7 @@ std::optional<double> time_of_pericenter(TableReader& body, const std::optional<
   if (!day) {
     const auto T = body.quantity("T", "time");
     const std::string* text = value != nullptr ? value->get<std::string>() : nullptr;
-    const bool in_days =
-        text != nullptr && (text->ends_with("day") || text->ends_with("days") || text->ends_with(" d"));
+    const bool in_days = text != nullptr && is_in_days(*text, *body.context().units);
     if (in_days && io::looks_like_julian_day(*T / unit_value("day", *body.context().units))) {
       body.fail("T", fmt::format("T = {0} is counted from the start, and looks like a Julian day; give T = \"JD ...\" "
                                  "and the epoch in [particles], or a time in yr if it is meant so",
@@ -89,7 +101,14 @@ std::optional<double> time_of_pericenter(TableReader& body, const std::optional<
   if (!day->scale.empty() && !epoch->scale.empty() && day->scale != epoch->scale) {
     body.fail("T", fmt::format("T = {} is not in the time scale of the epoch, {}", to_text(*value), epoch->scale));
   }
-  return (day->julian_day - epoch->julian_day) * unit_value("day", units);
+  const double days = day->julian_day - epoch->julian_day;
+  if (io::is_modified_beside(days)) {
+    body.fail("T",
+              fmt::format("T = {} is {:.9g} days from the epoch, {}: one of them looks like a modified Julian day; "
+                          "add 2400000.5 to it",
+                          to_text(*value), std::abs(days), text_of(*epoch)));
+  }
+  return days * unit_value("day", units);
 }
 
 /// Types and charges of the bodies of `[[particles.body]]`.
@@ -428,9 +447,7 @@ ParticleSystem<double> from_frame(TableReader& reader, const std::filesystem::pa
 ParticleSystem<double> from_bodies(TableReader& reader, const std::filesystem::path& folder, SceneValue& effective,
                                    std::vector<std::string>& warnings) {
   const bool file = reader.has("bodies"), frame = are_of_a_frame(reader, folder);
-  if (frame) {
-    reader.expect_only({"bodies", "bodies_sha256", "elements", "body", "frame", "box", "exclusions"});
-  } else if (file) {
+  if (frame || file) {
     reader.expect_only({"bodies", "bodies_sha256", "epoch", "elements", "body", "frame", "box", "exclusions"});
   } else {
     reader.expect_only({"body", "epoch", "elements", "frame", "box", "type", "pair", "mixing", "exclusions"});

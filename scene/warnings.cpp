@@ -171,7 +171,7 @@ std::string unmoved_tracers(const Scene& scene) {
       count == 1 ? "1 particle" : fmt::format("{} particles", count), s.name(first), count == 1 ? "is" : "are");
 }
 
-/// A constant of gravitation that is not the one of the units, given as a bare number; empty where it is. Names the
+/// A constant of gravitation that is not the one of the units, however it is given; empty where it is. Names the
 /// units that it has, where they are known.
 std::string other_gravitation(const Scene& scene) {
   const UnitSystem& units = *scene.units;

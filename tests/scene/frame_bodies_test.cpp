@@ -141,6 +141,13 @@ TEST_CASE("planets start from a frame, in their order, and may be moved to their
       "bodies = 'run.h5'\nframe = 3\n[[particles.body]]\nname = 'comet'\nmass = '0 Msun'\na = '5 au'\ne = 0.9\n",
       gravity_rest);
   CHECK(three.particles.names() == std::vector<std::string>{"Sun", "Earth", "comet"});
+  // 2451600 - 2451545 = 55 days.
+  const std::string comet = "[[particles.body]]\nname = 'comet'\nmass = '0 Msun'\na = '5 au'\ne = 0.9\n";
+  const Scene by_day =
+      run.scene("bodies = 'run.h5'\nepoch = 'JD 2451545'\n" + comet + "T = 'JD 2451600'\n", gravity_rest);
+  const Scene by_time = run.scene("bodies = 'run.h5'\n" + comet + "T = '55 day'\n", gravity_rest);
+  CHECK(io::digest(by_day.particles) == io::digest(by_time.particles));
+  CHECK(by_day.effective_toml.find("epoch = \"JD 2451545\"") != std::string::npos);
 }
 
 TEST_CASE("the table and the file of one frame are the same start as the frame", "[scene][bodies]") {

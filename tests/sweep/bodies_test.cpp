@@ -33,6 +33,7 @@ TEST_CASE("tables of spreadsheets and of Fortran have the energy of Sun and Eart
       {"empty columns at the end of every line", with_each_line(sun_and_earth, ",,")},
       {"a separator at the end of the rows", replaced(with_each_line(sun_and_earth, ","), "vz,\n", "vz\n")},
       {"empty rows below the table", sun_and_earth + ",,,,,,,\n,,,,,,,\n"},
+      {"empty rows above the table", ",,,,,,,\n,,,,\n" + sun_and_earth},
       {"Fortran's exponents", replaced(replaced(sun_and_earth, "3e-6", "3.0D-06"), "0.017202098", "1.7202098d-2")},
       {"semicolons, DOS ends and a byte order mark of Excel", dos}};
   for (const auto& [what, table] : tables) {
@@ -146,6 +147,11 @@ TEST_CASE("a column of passages in Julian days is beside the epoch", "[sweep][bo
   CHECK(seen(gravity_scene("bodies = 'b.csv'\n"), "b.csv", table).refusal ==
         "b.csv:1: column 'T' is in Julian days, and nobody says which the start is; give epoch = \"JD ...\" in "
         "[particles]");
+  CHECK(
+      seen(gravity_scene("bodies = 'b.csv'\nepoch = 'JD 2451545'\n"), "b.csv", replaced(table, "2446470.5", "46470.5"))
+          .refusal ==
+      "b.csv:3: column 'T' is JD 46470.5, 2405074.5 days from the epoch, JD 2451545: one of them looks like a modified "
+      "Julian day; add 2400000.5 to it");
   CHECK(seen(gravity_scene("bodies = 'b.csv'\n"), "b.csv", replaced(table, "T [JD]", "T [day]")).refusal ==
         "b.csv:3: column 'T' is 2446470.5, counted from the start, which looks like a Julian day; name the column 'T "
         "[JD]' and give the epoch in [particles], or a time in yr if it is meant so");
@@ -160,7 +166,21 @@ TEST_CASE("a Julian day in the place of a time is told", "[sweep][bodies][messag
         "scene.toml:11: T = \"2446470.5 day\" is counted from the start, and looks like a Julian day; give T = \"JD "
         "...\" "
         "and the epoch in [particles], or a time in yr if it is meant so");
+  for (const std::string day :
+       {"2446470.5d", "2446470.5 d", "2446470.5 day ", " +2.4464705e6 days", "2446470.5*day", "2446470.5/day^-1"}) {
+    CAPTURE(day);
+    CHECK(has(refusal("", day), "looks like a Julian day; give T = \"JD"));
+  }
+  for (const std::string day : {"2446470.5 s", "2e6 day", "-2446470.5 day", "30d"}) {
+    CAPTURE(day);
+    CHECK(refusal("", day) == "");
+  }
   CHECK(refusal("", "6698 yr") == "");
+  // A modified Julian day, JD - 2400000.5, under the name of the Julian day, here or in the epoch.
+  CHECK(refusal("epoch = 'JD 2451545 TDB'\n", "JD 46470.5") ==
+        "scene.toml:12: T = \"JD 46470.5\" is 2405074.5 days from the epoch, JD 2451545 TDB: one of them looks like a "
+        "modified Julian day; add 2400000.5 to it");
+  CHECK(has(refusal("epoch = 'JD 51544.5'\n", "JD 2446470.5"), "is 2394926 days from the epoch, JD 51544.5: one of"));
   CHECK(refusal("", "JD 2446470.5") ==
         "scene.toml:11: T = \"JD 2446470.5\" is a Julian day, and nobody says which the start is; give epoch = \"JD "
         "...\" in [particles]");
@@ -237,7 +257,7 @@ TEST_CASE("moons, minor planets and planets of Horizons have JPL's masses", "[sw
     CHECK(it.refusal == "");
     CHECK(near(it.energy.potential, row.potential, 1e-11));
   }
-  // A center that is a moon or a minor planet: 5959.915466180539 and 62.62888644409933 km^3/s^2 over k^2.
+  // A center that is a moon or a minor planet: 5959.915466180539 and 62.62888864440993 km^3/s^2 over k^2.
   for (const auto& [center, mass] : std::vector<std::pair<std::string, double>>{
            {"Io (501)", 4.490849135391605e-08}, {"1 Ceres (A801 AA)", 4.719142276686204e-10}}) {
     CAPTURE(center);

@@ -67,6 +67,20 @@ const std::vector<Row> argon_rows = {
      "2\nProperties=species:S:1:pos:R:3:mass:R:1:velo:R:3\nAr 0 0 0 4140.318440852808 0.001 0 0\n"
      "Ar 0 0 4.0 4140.318440852808 -0.001 0 0\n",
      "", 0.39948, pair_of_argon},
+    // ASE's kinetic energy of the same momenta, as above: masses of QUIP are the same masses.
+    {"masses of QUIP beside momenta", "a.xyz",
+     "2\nProperties=species:S:1:pos:R:3:mass:R:1:momenta:R:3\nAr 0 0 0 4140.318440852808 1 0 0.5\n"
+     "Ar 0 0 4.0 4140.318440852808 -1 0 0\n",
+     "", 2.717182302961944, pair_of_argon},
+    // Of four columns `q` and `charges` are no charges; atomic numbers beside species say nothing new.
+    {"quaternions", "a.xyz", "2\nProperties=species:S:1:pos:R:3:q:R:4\nAr 0 0 0 1 0 0 0\nAr 0 0 4.0 1 0 0 0\n", "", 0,
+     pair_of_argon},
+    {"charges of several populations", "a.xyz",
+     "2\nProperties=species:S:1:pos:R:3:charges:R:2\nAr 0 0 0 1 0\nAr 0 0 4.0 1 0\n", "", 0, pair_of_argon},
+    {"atomic numbers beside species", "a.xyz",
+     "2\nProperties=species:S:1:pos:R:3:Z:I:1:numbers:I:1:atomic_numbers:I:2\nAr 0 0 0 18 18 18 18\n"
+     "Ar 0 0 4.0 18 18 18 18\n",
+     "", 0, pair_of_argon},
     {"masses of ASE", "a.xyz",
      "2\nProperties=species:S:1:pos:R:3:masses:R:1:velo:R:3\nAr 0 0 0 39.948 0.001 0 0\nAr 0 0 4.0 39.948 -0.001 0 0\n",
      "", 0.39948, pair_of_argon},
@@ -148,10 +162,40 @@ TEST_CASE("charges of XYZ are read by each of their names", "[sweep][structure]"
   }
 }
 
+TEST_CASE("a column before x of plain XYZ is told, whatever it has", "[sweep][structure][messages]") {
+  for (const auto& [atoms, what] : std::vector<std::pair<std::string, std::string>>{
+           {"Ar 18 0 0 0\nAr 18 0 0 4.0\n", "has the atomic number of each atom"},
+           {"Ar1 18.0 0 0 0\nAr2 18.0 0 0 4.0\n", "has the atomic number of each atom"},
+           {"AR 18 0 0 0\nAR 18 0 0 4.0\n", "has the atomic number of each atom"},
+           {"CA 6 0 0 0\nHB2 1 0 0 1.1\n", "has the atomic number of each atom"},
+           {"Ar 18.0 0 0 0\nX 0.0 0 0 4.0\n", "has the atomic number of each atom"},
+           {"Ar 39.948 0 0 0\nAr 39.948 0 0 4.0\n", "has the mass of each atom"},
+           {"Ar 39.95 0 0 0\nXX 0.0 0 0 4.0\n", "has the mass of each atom"},
+           {"Ar 1 0 0 0\nAr 2 4.0 0 0\n", "counts the atoms"},
+           {"Ar 0 0 0 0\nAr 1 4.0 0 0\n", "counts the atoms"},
+           {"Ar 7 0.0 0.0 0.0\nAr 7 4.0 0.0 0.0\n", "has whole numbers before three numbers with a point"},
+           {"Ar 4 0.0 0.0 0.0 0.5\nAr -2 4.0 0.0 0.0 0.5\n", "has whole numbers before three numbers with a point"}}) {
+    CAPTURE(atoms);
+    CHECK(seen(structure_scene("a.xyz"), "a.xyz", "2\n\n" + atoms).refusal ==
+          "a.xyz:3: the second column " + what + ", where XYZ has x; take that column out");
+  }
+  CHECK(seen(structure_scene("a.xyz"), "a.xyz", "2\n\nAr 0 0 0 1\nAr 0 0 4\n").refusal ==
+        "a.xyz:4: this atom has 4 columns; expected 5, as the first atom has");
+  // One atom elsewhere is enough for a position.
+  for (const std::string atoms : {"Ar 18 0 0 0\nAr 18.5 0 0 4.0\n", "Ar 39.948 0 0 0\nAr 39 0 0 4.0\n",
+                                  "Ar 1 0 0 0\nAr 3 4.0 0 0\n", "Ar 7 0.0 0.0 0.0\nAr 7.0 4.0 0.0 0.0\n"}) {
+    CAPTURE(atoms);
+    CHECK(seen(structure_scene("a.xyz"), "a.xyz", "2\n\n" + atoms).refusal == "");
+  }
+}
+
 TEST_CASE("what passes for something else in a structure is told", "[sweep][structure][messages]") {
   const auto xyz = [](const std::string& content) { return seen(structure_scene("a.xyz"), "a.xyz", content); };
   CHECK(xyz("2\nenergy: 1.0\nAr 0 0 0 0.25\nAr 0 0 4.0 -0.25\n").warnings ==
-        std::vector<std::string>{"the columns behind x, y, z of the structure are not read; there are 1"});
+        std::vector<std::string>{"x, y, z of the structure are taken from columns 2 to 4; column 5 is not read"});
+  CHECK(
+      xyz(argon_rows[2].content).warnings ==
+      std::vector<std::string>{"x, y, z of the structure are taken from columns 2 to 4; columns 5 to 8 are not read"});
   CHECK(
       xyz(argon_rows[12].content).warnings ==
       std::vector<std::string>{"the masses of the structure are 103.64 times the atomic weights: they are taken as eV "
@@ -179,6 +223,12 @@ TEST_CASE("what passes for something else in a structure is told", "[sweep][stru
       std::vector<std::string>{
           "nobody says the style of the structure's pair coefficients: they are taken as epsilon and sigma of lj/cut; "
           "write it behind the section, 'Pair Coeffs # lj/cut', if they are"});
+  // Rows of a hybrid section that name no style have none either.
+  CHECK(lammps(replaced(metal_pairs, "# lj/cut", "# hybrid")).warnings ==
+        lammps(replaced(metal_pairs, " # lj/cut", "")).warnings);
+  CHECK(
+      lammps(replaced(replaced(metal_pairs, "# lj/cut\n\n1 ", "# hybrid\n\n1 lj/cut "), "2 0.0140", "2 lj/cut 0.0140"))
+          .warnings.empty());
   CHECK(lammps(metal_pairs).warnings.empty());
   CHECK(lammps(replaced(metal_pairs, "0 30 xlo xhi\n", "30 0 0 avec\n")).refusal ==
         "a.data:6: '30 0 0 avec' is of a general triclinic box; boxes are orthogonal, given by xlo xhi, ylo yhi, zlo "

@@ -81,6 +81,55 @@ TEST_CASE("exponents of Fortran in quantities are told, and are no days", "[swee
   CHECK(refusal("3 d") == "scene.toml:5: mass: '3 d' is a time; a mass is expected, such as '3 Msun'");
 }
 
+TEST_CASE("a number behind a number is no power and no factor", "[sweep][units][messages]") {
+  const auto refusal = [](const std::string& a, const std::string& e) {
+    return seen(gravity_scene("[[particles.body]]\nname = 'Sun'\nmass = '1 Msun'\n[[particles.body]]\nname = 'c'\n"
+                              "mass = '0 kg'\na = '" +
+                              a + "'\n" + e),
+                "", "")
+        .refusal;
+  };
+  const auto unexpected = [](const std::string& what, const std::string& in) {
+    return "unexpected '" + what + "' in '" + in + "'; units are joined by '*', '/' or a space, as in 'kg m/s^2'";
+  };
+  REQUIRE(refusal("2 au", "e = 0.1\n") == "");
+  for (const auto& [a, what] : std::vector<std::pair<std::string, std::string>>{{"2/10 au", "0"},
+                                                                                {"5*10 au", "0"},
+                                                                                {"5 * 1000 au", "0"},
+                                                                                {"1 100 au", "0"},
+                                                                                {"2 12 au", "2"},
+                                                                                {"2 1-2 au", "-"}}) {
+    CAPTURE(a);
+    CHECK(refusal(a, "") == "scene.toml:9: a: " + unexpected(what, a));
+  }
+  CHECK(has(refusal("2 au", "e = '1/10'\n"), unexpected("0", "1/10")));
+  CHECK(has(refusal("2 au",
+                    "inc = '5\xC2\xB0"
+                    "3'\n"),
+            unexpected("3",
+                       "5\xC2\xB0"
+                       "3")));
+  CHECK(has(
+      seen(replaced(gravity_scene("[[particles.body]]\nname = 'Sun'\nmass = '1 Msun'\n"), "1 day", "1/12 yr"), "", "")
+          .refusal,
+      unexpected("2", "1/12 yr")));
+  CHECK(has(
+      seen(structure_scene("a.xyz", "", "epsilon = '1/12 kJ/mol'\nsigma = '0.34 nm'\n"), "a.xyz", two_argon).refusal,
+      unexpected("2", "1/12 kJ/mol")));
+  for (const auto& [mass, x, vx, wrong] : std::vector<std::tuple<std::string, std::string, std::string, std::string>>{
+           {"1000 kg", "km", "km/s", "1000 kg"},
+           {"kg", "100 km", "km/s", "100 km"},
+           {"kg", "km", "10 km/s", "10 km/s"}}) {
+    CAPTURE(wrong);
+    const std::string told =
+        seen(gravity_scene("bodies = 'b.csv'\n"), "b.csv",
+             "name,mass [" + mass + "],x [" + x + "],y,z,vx [" + vx + "],vy,vz\nSun,1,0,0,0,0,0,0\n")
+            .refusal;
+    CHECK(has(told, unexpected("0", wrong)));
+    CHECK(told.starts_with("b.csv:1: "));
+  }
+}
+
 TEST_CASE("angles in degrees, minutes and seconds of arc", "[sweep][units]") {
   // z/r of a body 90 degrees past its node is the sine of the inclination, worked out by Python.
   for (const auto& [angle, sine] : std::vector<std::pair<std::string, double>>{{"5\xC2\xB0", 0.08715574274765817},
