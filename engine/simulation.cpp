@@ -150,7 +150,8 @@ template <class Real> void Simulation<Real>::stop_when(const StopRule& rule, std
 
 template <class Real> void Simulation<Real>::schedule_at_times(Scheduled& added) {
   const Clock<Real>& clock = raw_.clock();
-  const std::vector<double>& times = added.schedule.times;
+  std::vector<double>& times = added.schedule.times;
+  if (!times.empty()) times[0] = detail::at_start_if_rounded(times[0], clock.start());
   detail::check_times(times, clock.start(), clock.sign(), added.name);
   if (added.monitor.needs_equal_intervals()) detail::check_equal_intervals(times, added.name);
   if (clock.mode() == ClockMode::fixed) {
@@ -347,12 +348,12 @@ template <class Real> void Simulation<Real>::show_to_writers(const Outcome& ende
   }
 }
 
-/// Whether a monitor has seen the end of the run already.
+/// Whether a monitor has seen the end of the run already. Looks within a step that then fails are of later times.
 template <class Real>
 bool Simulation<Real>::has_looked(const Scheduled& scheduled, double end, bool between_steps) const {
   if (scheduled.schedule.by_steps()) return !between_steps && scheduled.schedule.due(step());
   if (!scheduled.schedule.by_time() || scheduled.observed == 0) return false;
-  return !raw_.clock().is_later(end, look_of(scheduled, scheduled.observed - 1));
+  return look_of(scheduled, scheduled.observed - 1) == end;
 }
 
 template <class Real> std::int64_t Simulation<Real>::unresolved() const {
@@ -370,7 +371,7 @@ template <class Real> bool Simulation<Real>::due(const Scheduled& scheduled) con
 template <class Real> void Simulation<Real>::show_start() {
   for (auto& scheduled : monitors_) {
     if (std::exchange(scheduled.begun, true) || scheduled.schedule.times.empty()) continue;
-    scheduled.monitor.at_start(snapshot({}));
+    scheduled.monitor.at_start(snapshot({.energy = scheduled.wanted.energy}));
   }
 }
 
@@ -583,6 +584,10 @@ template <class Real> void Simulation<Real>::restore(const SavedRun& saved) {
   load_value(part("simulation"), "observed_through", observed_through_);
   load_value(part("simulation"), "shown_at", shown_at_);
   for (auto& scheduled : monitors_) {
+    detail::Looks& looks = scheduled.schedule;
+    const Clock<Real>& clock = raw_.clock();  // of the saved run, which may have begun at another time
+    if (!looks.at_steps.empty())
+      looks.at_steps = detail::steps_at(looks.times, clock.start(), clock.dt(), scheduled.name);
     load_value(part(scheduled.name), "observed", scheduled.observed);
     scheduled.monitor.load(part(scheduled.name), "state");
   }
