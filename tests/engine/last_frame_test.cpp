@@ -142,4 +142,27 @@ TEST_CASE("where steps are chosen by the method the last of what is written is w
   }
 }
 
+TEST_CASE("looks within a step that then fails do not stand for the state before it", "[last_frame]") {
+  // x = cosh(100 t) leaves the range of doubles when t = 7.1.
+  for (const std::string name : {"dop853", "rodas_5p"}) {
+    CAPTURE(name);
+    ParticleSystem<double> s;
+    s.add("ball", 1, {1, 0, 0}, {0, 0, 0});
+    std::vector<ShownMoment> written, watched;
+    Simulation<double> run(std::move(s), classical(HarmonicField{.k = -10'000}, method(name)));
+    run.every_time(0.001, MomentWriter{&written});
+    run.every_time(0.001, MomentWatcher{&watched});
+    const Outcome outcome = run.run_until(50);
+    REQUIRE_FALSE(outcome.ok());
+    CHECK(outcome.time > 6.9);
+    CHECK(outcome.time < 7.2);
+    REQUIRE(written.size() > 6000);
+    CHECK(written.back().time == outcome.time);
+    CHECK(written.back().step == outcome.step);
+    CHECK(written.back().x == run.particles().positions()[0][0]);
+    CHECK(written.size() <= watched.size() + 1);
+    for (std::size_t k = 1; k < written.size(); ++k) CHECK(written[k].step >= written[k - 1].step);
+  }
+}
+
 }  // namespace noether::test
