@@ -326,6 +326,8 @@ RunComparison compare_runs(const std::filesystem::path& first, const std::filesy
         fmt::format("units are '{}' and '{}', so nothing can be compared", mine.units, theirs.units));
     return result;
   }
+  // Before the frames: both paths may name one file, of which HDF5 keeps one descriptor.
+  const std::vector<MonitorSeries> monitors = read_monitors(first), others = read_monitors(second);
   const TrajectoryReader a(first), b(second);
   compare_constants(a.file(), b.file(), result);
   if (a.shared().variable_names.size() != b.shared().variable_names.size()) {
@@ -340,7 +342,6 @@ RunComparison compare_runs(const std::filesystem::path& first, const std::filesy
   } else {
     result.rows.push_back({.name = "frames", .only_first = a.frames(), .only_second = b.frames()});
   }
-  const std::vector<MonitorSeries> monitors = read_monitors(first), others = read_monitors(second);
   std::vector<std::string> names, other_names;
   for (const MonitorSeries& one : monitors) names.push_back(one.name);
   for (const MonitorSeries& one : others) other_names.push_back(one.name);

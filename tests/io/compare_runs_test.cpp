@@ -62,6 +62,17 @@ TEST_CASE("runs of one scene at other cadences are the same at the moments that 
   CHECK(energy.only_second == 8);
 }
 
+TEST_CASE("a run is the same as itself", "[compare runs]") {
+  const ScratchFolder folder;
+  write_planets(folder / "a.h5", 4, 3);
+  for (const io::MatchBy by : {io::MatchBy::time, io::MatchBy::step}) {
+    const io::RunComparison found = io::compare_runs(folder / "a.h5", folder / "a.h5", by);
+    CHECK(found.same());
+    CHECK(rows_of(found, "frames").equal == 16);
+    CHECK(rows_of(found, "energy").equal == 21);
+  }
+}
+
 TEST_CASE("the first frame and the first sample that differ are named, to the number", "[compare runs]") {
   const ScratchFolder folder;
   write_planets(folder / "a.h5", 4, 3);
