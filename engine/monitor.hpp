@@ -52,11 +52,12 @@ struct MonitorReport {
 /// `report()`, `record(Sample)` (receives every monitor's samples: writers, who look where a run stops or fails too),
 /// `flush()`, `finish(Outcome)`,
 /// `at_start(snapshot)` (the state that a run goes on from, where a list of times tells when to look: writers make
-/// their files), `at_end(snapshot)` (the end of a run that is no look of its own, to be forgotten at the next one),
-/// `steps_in_a_row()` (looks at so many steps from each multiple of its cadence on), `forget()` (somebody has edited
-/// the run), `check(state)` (throws for a state that it cannot watch), a static `looks_last` for what must see a moment
-/// after all others (checkpoints), a static `needs_equal_intervals` for what counts lags in looks, and a static
-/// `needs_particles` for what makes no sense of a system that has variables instead.
+/// their files, errors of what is conserved are measured from there), `at_end(snapshot)` (the end of a run that is no
+/// look of its own, to be forgotten at the next one), `steps_in_a_row()` (looks at so many steps from each multiple of
+/// its cadence on), `forget()` (somebody has edited the run), `check(state)` (throws for a state that it cannot watch),
+/// a static `looks_last` for what must see a moment after all others (checkpoints), a static `needs_equal_intervals`
+/// for what counts lags in looks, and a static `needs_particles` for what makes no sense of a system that has variables
+/// instead.
 template <class M, class Real>
 concept Monitor = requires(M& m, const Snapshot<Real>& snapshot) {
   m.observe(snapshot);

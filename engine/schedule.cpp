@@ -80,6 +80,11 @@ std::int64_t steps_to(double time, double start, double dt) {
   return static_cast<std::int64_t>(std::abs(whole));
 }
 
+double at_start_if_rounded(double time, double start) {
+  const double rounding = 4 * std::numeric_limits<double>::epsilon() * std::abs(start);
+  return std::abs(time - start) <= rounding ? start : time;
+}
+
 void check_times(const std::vector<double>& times, double start, double sign, const std::string& monitor) {
   for (std::size_t k = 0; k < times.size(); ++k) {
     const auto refuse = [&](const std::string& why) {

@@ -34,6 +34,8 @@ std::int64_t steps_of(double duration, double dt);
 /// How many lead from `start` to `time` [time]; both may be rounded.
 /// @throws Error  unless it is a whole number, with the two nearest times
 std::int64_t steps_to(double time, double start, double dt);
+/// `start` for a time [time] that is it but for rounding, as after a change of units: 4 eps of it; others as they are.
+double at_start_if_rounded(double time, double start);
 /// @throws Error  unless times [time] are finite, none before `start`, each later than the one before as time runs
 /// @param sign  1 where time rises, -1 where it falls
 void check_times(const std::vector<double>& times, double start, double sign, const std::string& monitor);

@@ -150,7 +150,8 @@ template <class Real> void Simulation<Real>::stop_when(const StopRule& rule, std
 
 template <class Real> void Simulation<Real>::schedule_at_times(Scheduled& added) {
   const Clock<Real>& clock = raw_.clock();
-  const std::vector<double>& times = added.schedule.times;
+  std::vector<double>& times = added.schedule.times;
+  if (!times.empty()) times[0] = detail::at_start_if_rounded(times[0], clock.start());
   detail::check_times(times, clock.start(), clock.sign(), added.name);
   if (added.monitor.needs_equal_intervals()) detail::check_equal_intervals(times, added.name);
   if (clock.mode() == ClockMode::fixed) {
@@ -241,7 +242,10 @@ template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double 
     }
     if (done.at_limit) {
       const double reached = next_time(limit);
-      observe_times(reached);
+      if (!observe_times(reached)) {
+        result = fail_before(reached);
+        break;
+      }
       if (!raw_.clock().is_later(limit, reached)) {
         shown_at_ = limit;
         break;
@@ -347,12 +351,12 @@ template <class Real> void Simulation<Real>::show_to_writers(const Outcome& ende
   }
 }
 
-/// Whether a monitor has seen the end of the run already.
+/// Whether a monitor has seen the end of the run already. Looks within a step that then fails are of later times.
 template <class Real>
 bool Simulation<Real>::has_looked(const Scheduled& scheduled, double end, bool between_steps) const {
   if (scheduled.schedule.by_steps()) return !between_steps && scheduled.schedule.due(step());
   if (!scheduled.schedule.by_time() || scheduled.observed == 0) return false;
-  return !raw_.clock().is_later(end, look_of(scheduled, scheduled.observed - 1));
+  return look_of(scheduled, scheduled.observed - 1) == end;
 }
 
 template <class Real> std::int64_t Simulation<Real>::unresolved() const {
@@ -370,7 +374,7 @@ template <class Real> bool Simulation<Real>::due(const Scheduled& scheduled) con
 template <class Real> void Simulation<Real>::show_start() {
   for (auto& scheduled : monitors_) {
     if (std::exchange(scheduled.begun, true) || scheduled.schedule.times.empty()) continue;
-    scheduled.monitor.at_start(snapshot({}));
+    scheduled.monitor.at_start(snapshot({.energy = scheduled.wanted.energy}));
   }
 }
 
@@ -424,7 +428,8 @@ template <class Real> void Simulation<Real>::show(const Snapshot<Real>& moment) 
   }
 }
 
-template <class Real> void Simulation<Real>::observe_times(double until) {
+/// Whether the run comes to that time: a method that chooses its steps may fail on the way from the last whole one.
+template <class Real> bool Simulation<Real>::observe_times(double until) {
   looking_.clear();
   Request wanted;
   for (auto& scheduled : monitors_) {
@@ -433,7 +438,19 @@ template <class Real> void Simulation<Real>::observe_times(double until) {
     looking_.push_back(&scheduled);
     wanted.energy = wanted.energy || scheduled.wanted.energy;
   }
-  if (!looking_.empty()) show(snapshot(wanted, until));
+  const Snapshot<Real> moment = snapshot(wanted, until);
+  if (fault(moment.state())) return false;
+  if (!looking_.empty()) show(moment);
+  return true;
+}
+
+/// Makes the steps that lead to a time which the run does not reach.
+template <class Real> Outcome Simulation<Real>::fail_before(double unreached) {
+  const Span one{.steps = 1, .limit = raw_.clock().never()};
+  while (integrator_.advance(raw_, one).failure == nullptr && !fault(raw_)) {
+    if (raw_.clock().is_later(raw_.clock().high(), unreached)) throw LogicError("a look failed where the run does not");
+  }
+  return fall_back();
 }
 
 template <class Real> std::int64_t Simulation<Real>::next_cut(std::int64_t end) const {
@@ -526,67 +543,6 @@ template <class Real> void Simulation<Real>::change_step(double dt) {
   const double now = time();
   raw_.clock() = Clock<Real>::fixed(now - static_cast<double>(step()) * dt, dt, step());
   end_edit();
-}
-
-template <class Real> SavedRun Simulation<Real>::save() const {
-  SavedRun saved;
-  saved.particles = save_particles(raw_);
-  SavedState& run = saved.parts["simulation"];
-  save_value(run, "observed_through", observed_through_);
-  save_value(run, "shown_at", shown_at_);
-  integrator_.save(saved.parts["integrator"], "");
-  for (const auto& scheduled : monitors_) {
-    SavedState& state = saved.parts[scheduled.name];
-    save_value(state, "observed", scheduled.observed);
-    scheduled.monitor.save(state, "state");
-  }
-  for (std::size_t k = 0; k < stops_.size(); ++k) stops_[k].check.save(saved.parts[fmt::format("stop_{}", k)], "state");
-  return saved;
-}
-
-template <class Real> void Simulation<Real>::check_columns(const ParticleSystem<Real>& saved) const {
-  for (const auto& column : raw_.columns()) {
-    if (!column.info.moves()) continue;
-    const auto* found = saved.columns().find(column.info.name);
-    if (found != nullptr && found->info == column.info) continue;
-    throw Error(fmt::format("the saved run has no column '{}' of {} numbers a particle, which this one moves",
-                            column.info.name, column.info.width));
-  }
-}
-
-template <class Real> void Simulation<Real>::restore(const SavedRun& saved) {
-  const auto part = [&](const std::string& name) -> const SavedState& {
-    const auto found = saved.parts.find(name);
-    if (found == saved.parts.end()) throw Error("the saved run has no part '" + name + "'; it was made by other parts");
-    return found->second;
-  };
-  ParticleSystem<Real> particles = load_particles<Real>(saved.particles);
-  particles.set_topology(raw_.shared_topology());
-  if (particles.ids() != raw_.ids()) throw Error("the saved run has other particles than this one");
-  if (particles.variables().size() != raw_.variables().size()) {
-    throw Error(fmt::format("the saved run has {} variables, this one {}", particles.variables().size(),
-                            raw_.variables().size()));
-  }
-  if (particles.clock().dt() != raw_.clock().dt()) {
-    throw Error(
-        fmt::format("the saved run has a step of {}, this one of {}", particles.clock().dt(), raw_.clock().dt()));
-  }
-  if (particles.clock().direction() != raw_.clock().direction()) {
-    const bool back = raw_.clock().direction() == Direction::backward;
-    throw Error(fmt::format("the saved run goes {} in time, this one {}", back ? "forward" : "back",
-                            back ? "back" : "forward"));
-  }
-  check_columns(particles);
-  integrator_.bind(particles);  // the masses may have been edited
-  integrator_.load(part("integrator"), "");
-  raw_ = std::move(particles);
-  load_value(part("simulation"), "observed_through", observed_through_);
-  load_value(part("simulation"), "shown_at", shown_at_);
-  for (auto& scheduled : monitors_) {
-    load_value(part(scheduled.name), "observed", scheduled.observed);
-    scheduled.monitor.load(part(scheduled.name), "state");
-  }
-  for (std::size_t k = 0; k < stops_.size(); ++k) stops_[k].check.load(part(fmt::format("stop_{}", k)), "state");
 }
 
 template class Simulation<double>;

@@ -166,7 +166,8 @@ template <class Real = double> class Simulation {
   /// Shows the state to those that a list of times makes wait for their first look.
   void show_start();
   std::optional<Outcome> observe_due();
-  void observe_times(double until);
+  bool observe_times(double until);
+  Outcome fail_before(double unreached);
   bool due(const Scheduled& scheduled) const;
   void show(const Snapshot<Real>& moment);
   std::int64_t next_cut(std::int64_t end) const;

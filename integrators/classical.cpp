@@ -3,6 +3,7 @@
 #include "integrators/step_control.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace noether {
 
@@ -132,7 +133,7 @@ template <class Real> double Classical<Real>::longest_step(const Clock<Real>& cl
   return choice_.options.max_step ? std::copysign(*choice_.options.max_step, clock.never()) : clock.never();
 }
 
-/// Leaves y at time `at` in `y_`, from the last whole step of the run.
+/// Leaves y at time `at` in `y_`, from the last whole step of the run; no numbers where a step on the way fails.
 template <class Real> void Classical<Real>::look_ahead(const ParticleSystem<Real>& raw, double at) {
   const bool dense = method_->dense();
   const Clock<Real>& clock = raw.clock();
@@ -151,7 +152,11 @@ template <class Real> void Classical<Real>::look_ahead(const ParticleSystem<Real
     if (!dense && clock.is_later(ahead_->t + most, at)) most = at - ahead_->t;
     const StepResult made = ahead_->method->step(*field_, t, ahead_->y, most);
     // What fails here fails in the run as well, and is told there.
-    if (made.failure || !(std::abs(made.h) > 0)) return;
+    if (made.failure || !(std::abs(made.h) > 0)) {
+      y_.setConstant(Real(std::numeric_limits<double>::quiet_NaN()));
+      ahead_.reset();
+      return;
+    }
     ahead_->h = made.h;
     y_ = ahead_->y;
   }

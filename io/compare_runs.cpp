@@ -3,6 +3,7 @@
 #include "io/inspect.hpp"
 #include "io/trajectory_layout.hpp"
 #include "io/trajectory_reader.hpp"
+#include "io/trajectory_topology.hpp"
 #include "numbers/error.hpp"
 
 #include <fmt/format.h>
@@ -12,7 +13,6 @@
 #include <cmath>
 #include <functional>
 #include <map>
-#include <set>
 #include <string_view>
 #include <utility>
 
@@ -38,26 +38,25 @@ Moments moments_of_frames(const TrajectoryReader& reader) {
   return moments;
 }
 
-/// The rows by what they are matched by; those that share it with another are left out.
-std::map<std::int64_t, std::size_t> rows_by(const Moments& moments, MatchBy by) {
-  std::map<std::int64_t, std::size_t> rows;
-  std::set<std::int64_t> twice;
+/// The rows by what they are matched by, in their order: steps of a method's own length may have several.
+std::map<std::int64_t, std::vector<std::size_t>> rows_by(const Moments& moments, MatchBy by) {
+  std::map<std::int64_t, std::vector<std::size_t>> rows;
   for (std::size_t k = 0; k < moments.step.size(); ++k) {
     const double time = moments.time[k] == 0 ? 0.0 : moments.time[k];  // 0 has two signs
-    const std::int64_t key = by == MatchBy::step ? moments.step[k] : std::bit_cast<std::int64_t>(time);
-    if (!rows.emplace(key, k).second) twice.insert(key);
+    rows[by == MatchBy::step ? moments.step[k] : std::bit_cast<std::int64_t>(time)].push_back(k);
   }
-  for (const std::int64_t key : twice) rows.erase(key);
   return rows;
 }
 
-/// Pairs of rows, in the order of the first file.
+/// Pairs of rows, in the order of the first file. Rows that share a step are matched one by one, if both files have it
+/// equally often; else nothing tells which belong together, and they are left out.
 std::vector<std::pair<std::size_t, std::size_t>> matched(const Moments& a, const Moments& b, MatchBy by) {
   const auto rows = rows_by(a, by), others = rows_by(b, by);
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
-  for (const auto& [key, row] : rows) {
+  for (const auto& [key, mine] : rows) {
     const auto found = others.find(key);
-    if (found != others.end()) pairs.emplace_back(row, found->second);
+    if (found == others.end() || found->second.size() != mine.size()) continue;
+    for (std::size_t k = 0; k < mine.size(); ++k) pairs.emplace_back(mine[k], found->second[k]);
   }
   std::sort(pairs.begin(), pairs.end());
   return pairs;
@@ -212,12 +211,15 @@ template <class Map> std::vector<std::string> names_in(const Map& map) {
   return names;
 }
 
-/// Numbers and texts that do not grow, by path.
-std::map<std::string, std::vector<std::string>> constants_in(const Hdf5File& file) {
+/// Numbers and texts that do not grow, by name: of particles or a system, of their types, molecules and bonded terms.
+/// Left out is in which order the particles stood in memory. @param types  false: without what tells types and bonds
+std::map<std::string, std::vector<std::string>> constants_in(const Hdf5File& file, bool types) {
   std::map<std::string, std::vector<std::string>> all;
-  for (const std::string& group : {particles_path, system_path}) {
+  for (const std::string& group : {particles_path, system_path, connectivity_path, topology_path}) {
     for (const std::string& name : file.children(group)) {
-      if (file.is_group(group + "/" + name)) continue;
+      if (file.is_group(group + "/" + name) || group + "/" + name == topology_path + "/order") continue;
+      const bool of_types = group != system_path && (group != particles_path || name == "species" || name == "charge");
+      if (of_types && !types) continue;
       const Hdf5Dataset dataset = file.open(group + "/" + name);
       if (dataset.grows()) continue;
       std::vector<std::string>& values = all[name];
@@ -233,8 +235,23 @@ std::map<std::string, std::vector<std::string>> constants_in(const Hdf5File& fil
   return all;
 }
 
-void compare_constants(const Hdf5File& a, const Hdf5File& b, std::vector<std::string>& told) {
-  const auto mine = constants_in(a), theirs = constants_in(b);
+/// Whether a file is from before types, molecules, bonds and charges stood in such files: its species are numbers of
+/// names.
+bool knows_no_types(const Hdf5File& file) {
+  return file.has(particles_path + "/species") && !file.has(topology_path + "/type_name");
+}
+
+void compare_constants(const Hdf5File& a, const Hdf5File& b, RunComparison& result) {
+  const bool types = !knows_no_types(a) && !knows_no_types(b);
+  if (!types) {
+    result.notes.push_back(
+        fmt::format("types, molecules, bonds and charges are not compared: {} from before they stood in such files",
+                    !knows_no_types(b)   ? "the first is"
+                    : !knows_no_types(a) ? "the second is"
+                                         : "both are"));
+  }
+  const auto mine = constants_in(a, types), theirs = constants_in(b, types);
+  std::vector<std::string>& told = result.constants;
   compare_names(names_in(mine), names_in(theirs), "dataset", told);
   for (const auto& [name, values] : mine) {
     const auto found = theirs.find(name);
@@ -245,7 +262,8 @@ void compare_constants(const Hdf5File& a, const Hdf5File& b, std::vector<std::st
       continue;
     }
     const auto at = std::mismatch(values.begin(), values.end(), others.begin());
-    told.push_back(fmt::format("'{}' is {} and {} in row {}", name, *at.first, *at.second, at.first - values.begin()));
+    told.push_back(
+        fmt::format("'{}' is {} and {} in entry {}", name, *at.first, *at.second, at.first - values.begin()));
   }
 }
 
@@ -308,8 +326,10 @@ RunComparison compare_runs(const std::filesystem::path& first, const std::filesy
         fmt::format("units are '{}' and '{}', so nothing can be compared", mine.units, theirs.units));
     return result;
   }
+  // Before the frames: both paths may name one file, of which HDF5 keeps one descriptor.
+  const std::vector<MonitorSeries> monitors = read_monitors(first), others = read_monitors(second);
   const TrajectoryReader a(first), b(second);
-  compare_constants(a.file(), b.file(), result.constants);
+  compare_constants(a.file(), b.file(), result);
   if (a.shared().variable_names.size() != b.shared().variable_names.size()) {
     result.constants.push_back(fmt::format("there are {} variables and {}", a.shared().variable_names.size(),
                                            b.shared().variable_names.size()));
@@ -322,7 +342,6 @@ RunComparison compare_runs(const std::filesystem::path& first, const std::filesy
   } else {
     result.rows.push_back({.name = "frames", .only_first = a.frames(), .only_second = b.frames()});
   }
-  const std::vector<MonitorSeries> monitors = read_monitors(first), others = read_monitors(second);
   std::vector<std::string> names, other_names;
   for (const MonitorSeries& one : monitors) names.push_back(one.name);
   for (const MonitorSeries& one : others) other_names.push_back(one.name);

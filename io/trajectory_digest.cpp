@@ -103,7 +103,8 @@ std::string headers_digest(const Hdf5File& file) {
   RunningDigest hash;
   hash.add(std::string_view("noether-attributes-1\n"));
   const auto add = [&](const std::string& one) { hash.add(one + '\n'); };
-  for (const std::string& group : {std::string("/h5md"), particles_path, system_path}) {
+  for (const std::string& group :
+       {std::string("/h5md"), particles_path, system_path, connectivity_path, topology_path}) {
     if (file.has(group)) HeaderWalk(file, add).at(group);
   }
   for (const char* name : {"commit", "simd", "units", "version"}) add(file.attribute_bytes("/noether", name));

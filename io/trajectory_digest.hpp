@@ -40,9 +40,10 @@ RowDigest sample_digest(std::int64_t step, double time,
 /// @throws FileError  for what HDF5 cannot read
 std::string constants_digest(const Hdf5File& file);
 
-/// SHA-256 of the attributes that a file is made with: all of /h5md, of the particles or the system with everything
-/// below, in the order of their paths and names, and of /noether commit, simd, units and version. All of these must be
-/// there before the first frame. Texts of variable length count by their names alone. 64 hexadecimal digits.
+/// SHA-256 of the attributes that a file is made with: all of /h5md, of the particles or the system, of /connectivity
+/// and of /noether/topology with everything below, in the order of their paths and names, and of /noether commit, simd,
+/// units and version. All of these must be there before the first frame. Texts of variable length count by their names
+/// alone. 64 hexadecimal digits.
 /// @throws FileError  for what HDF5 cannot read
 std::string headers_digest(const Hdf5File& file);
 

@@ -74,27 +74,31 @@ template <class Real> AtomCount atoms_of(const ParticleSystem<Real>& s, const In
 
 }  // namespace
 
-template <class Real> void Energy::observe(const Snapshot<Real>& now) {
-  const EnergyTerms<Real>& energy = now.energy();
-  if (!begun_) {
-    begun_ = true;
-    const Quad total = wide(energy.total());
-    reference_ = total;
-    first_ = static_cast<double>(total);
-    const double t = static_cast<double>(energy.kinetic), u = static_cast<double>(energy.potential);
-    scale_ = std::max(std::abs(static_cast<double>(total)), 1e-3 * (t + std::abs(u)));
-    if (scale_ == 0) scale_ = 1;
-    const IntegratorClaims claims = now.claims();
-    if (claims.dissipative) {
-      why_not_ = "the run is dissipative: its energy changes by itself, so there is no error of it";
-    } else if (claims.time_dependent) {
-      why_not_ = "a force depends on time: the energy changes by itself, so there is no error of it";
-    }
-    time_unit_ = std::string(now.units().time);
-    const AtomCount count = atoms_of(now.state(), claims);
-    atoms_ = count.atoms;
-    freedom_ = count.freedom;
+template <class Real> void Energy::at_start(const Snapshot<Real>& start) {
+  if (begun_) return;
+  begun_ = true;
+  const EnergyTerms<Real>& energy = start.energy();
+  const Quad total = wide(energy.total());
+  reference_ = total;
+  first_ = static_cast<double>(total);
+  const double t = static_cast<double>(energy.kinetic), u = static_cast<double>(energy.potential);
+  scale_ = std::max(std::abs(static_cast<double>(total)), 1e-3 * (t + std::abs(u)));
+  if (scale_ == 0) scale_ = 1;
+  const IntegratorClaims claims = start.claims();
+  if (claims.dissipative) {
+    why_not_ = "the run is dissipative: its energy changes by itself, so there is no error of it";
+  } else if (claims.time_dependent) {
+    why_not_ = "a force depends on time: the energy changes by itself, so there is no error of it";
   }
+  time_unit_ = std::string(start.units().time);
+  const AtomCount count = atoms_of(start.state(), claims);
+  atoms_ = count.atoms;
+  freedom_ = count.freedom;
+}
+
+template <class Real> void Energy::observe(const Snapshot<Real>& now) {
+  at_start(now);
+  const EnergyTerms<Real>& energy = now.energy();
   Real reference;
   if constexpr (std::is_same_v<Real, double>) {
     reference = first_;
@@ -260,43 +264,51 @@ void VectorInvariant::load_series(const SavedState& saved, const std::string& pr
   refer_to(reference);
 }
 
+template <class Real> void Momentum::at_start(const Snapshot<Real>& start) {
+  if (begun()) return;
+  const ParticleSystem<Real>& s = start.state();
+  const auto size = [&](Index i) { return wide(s.masses()[i]) * sqrt(norm2(wide(s.velocities()[i]))); };
+  begin(wide(weighted_sum(s, s.velocities())), sum_over<Quad>(s.size(), size), start.claims().keeps_momentum);
+  time_unit_ = std::string(start.units().time);
+}
+
 template <class Real> void Momentum::observe(const Snapshot<Real>& now) {
-  const ParticleSystem<Real>& s = now.state();
-  const auto sum = weighted_sum(s, s.velocities());
-  if (!begun()) {
-    const auto size = [&](Index i) { return wide(s.masses()[i]) * sqrt(norm2(wide(s.velocities()[i]))); };
-    begin(wide(sum), sum_over<Quad>(s.size(), size), now.claims().keeps_momentum);
-    time_unit_ = std::string(now.units().time);
-  }
-  add(now.time(), sum);
+  at_start(now);
+  add(now.time(), weighted_sum(now.state(), now.state().velocities()));
+}
+
+template <class Real> void AngularMomentum::at_start(const Snapshot<Real>& start) {
+  if (begun()) return;
+  const ParticleSystem<Real>& s = start.state();
+  const auto size = [&](Index i) {
+    return wide(s.masses()[i]) * sqrt(norm2(wide(s.positions()[i])) * norm2(wide(s.velocities()[i])));
+  };
+  begin(wide(angular_momentum(s)), sum_over<Quad>(s.size(), size), start.claims().keeps_angular_momentum);
+  time_unit_ = std::string(start.units().time);
 }
 
 template <class Real> void AngularMomentum::observe(const Snapshot<Real>& now) {
-  const ParticleSystem<Real>& s = now.state();
-  const auto sum = angular_momentum(s);
-  if (!begun()) {
-    const auto size = [&](Index i) {
-      return wide(s.masses()[i]) * sqrt(norm2(wide(s.positions()[i])) * norm2(wide(s.velocities()[i])));
-    };
-    begin(wide(sum), sum_over<Quad>(s.size(), size), now.claims().keeps_angular_momentum);
-    time_unit_ = std::string(now.units().time);
-  }
-  add(now.time(), sum);
+  at_start(now);
+  add(now.time(), angular_momentum(now.state()));
+}
+
+template <class Real> void CenterOfMass::at_start(const Snapshot<Real>& start) {
+  if (begun_) return;
+  begun_ = true;
+  const ParticleSystem<Real>& s = start.state();
+  const Vec3<Quad> first = wide(weighted_positions(s)), speed = wide(weighted_sum(s, s.velocities()));
+  start_ = {first[0], first[1], first[2], speed[0], speed[1], speed[2]};
+  start_time_ = start.time();
+  refer_to_start();
+  slope_unit_ = per_time(start.units().length, std::string(start.units().time));
 }
 
 template <class Real> void CenterOfMass::observe(const Snapshot<Real>& now) {
+  at_start(now);
   const ParticleSystem<Real>& s = now.state();
   const WideVector<Real> x = weighted_positions(s), v = weighted_sum(s, s.velocities());
   // 0 with tracers alone, who have no center: 0/0, which the report explains.
   const double mass = sum_over<double>(s.size(), [&](Index i) { return static_cast<double>(s.masses()[i]); });
-  if (!begun_) {
-    begun_ = true;
-    const Vec3<Quad> first = wide(x), speed = wide(v);
-    start_ = {first[0], first[1], first[2], speed[0], speed[1], speed[2]};
-    start_time_ = now.time();
-    refer_to_start();
-    slope_unit_ = per_time(now.units().length, std::string(now.units().time));
-  }
   mass_ = mass;
   const DoubleDouble t = DoubleDouble::sum(now.time(), -start_time_);
   std::array<double, 3> away{};

@@ -33,6 +33,8 @@ class Energy {
   }
 
   static Request wanted() { return {.energy = true}; }
+  /// What errors are measured from: the start, where a list of times looks later; else the first look.
+  template <class Real> void at_start(const Snapshot<Real>& start);
   template <class Real> void observe(const Snapshot<Real>& now);
   std::vector<Series> series() const;
   std::optional<double> scale() const { return scale_; }
@@ -123,6 +125,8 @@ class Momentum : public VectorInvariant {
                           quantities("value[3] [mass length/time], relative_error [1]"),
                           source("HairerLubichWanner2006"));
   }
+  /// What errors are measured from: the start, where a list of times looks later; else the first look.
+  template <class Real> void at_start(const Snapshot<Real>& start);
   template <class Real> void observe(const Snapshot<Real>& now);
   void save(SavedState& saved, const std::string& prefix) const { save_series(saved, prefix); }
   void load(const SavedState& saved, const std::string& prefix) { load_series(saved, prefix); }
@@ -140,6 +144,8 @@ class AngularMomentum : public VectorInvariant {
                                  quantities("value[3] [mass length^2/time], relative_error, direction_error [1]"),
                                  source("HairerLubichWanner2006"));
   }
+  /// What errors are measured from: the start, where a list of times looks later; else the first look.
+  template <class Real> void at_start(const Snapshot<Real>& start);
   template <class Real> void observe(const Snapshot<Real>& now);
   void save(SavedState& saved, const std::string& prefix) const { save_series(saved, prefix); }
   void load(const SavedState& saved, const std::string& prefix) { load_series(saved, prefix); }
@@ -156,6 +162,8 @@ class CenterOfMass {
                               quantities("position[3] [length], velocity[3] [length/time]"),
                               source("HairerLubichWanner2006"));
   }
+  /// What errors are measured from: the start, where a list of times looks later; else the first look.
+  template <class Real> void at_start(const Snapshot<Real>& start);
   template <class Real> void observe(const Snapshot<Real>& now);
   std::vector<Series> series() const;
   MonitorReport report() const;

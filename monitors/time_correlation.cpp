@@ -194,6 +194,10 @@ std::vector<Series> TimeCorrelation::table(const char* dimension) const {
           {"diffusion_coefficient", "length^2/time", {}, {D}}};
 }
 
+template <class Real> void MeanSquareDisplacement::at_start(const Snapshot<Real>& start) {
+  if (start_.empty()) start_ = chosen(start.state(), Kind::displacement);
+}
+
 template <class Real> void MeanSquareDisplacement::observe(const Snapshot<Real>& now) {
   const std::vector<double> rows = chosen(now.state(), Kind::displacement);
   if (start_.empty()) start_ = rows;

@@ -112,16 +112,17 @@ class MeanSquareDisplacement : public TimeCorrelation {
         state<&Self::since_start_>("since_start"));
   }
 
+  template <class Real> void at_start(const Snapshot<Real>& start);
   template <class Real> void observe(const Snapshot<Real>& now);
   std::vector<Series> series() const;
   MonitorReport report() const;
   void forget();
   void load(const SavedState& saved, const std::string& prefix);
-  /// From the first look to the last [length^2].
+  /// From the start (after an edit, the next look) to the last look [length^2].
   double since_start() const { return since_start_; }
 
  private:
-  std::vector<double> start_;  ///< what the first look saw, shape (n, 3)
+  std::vector<double> start_;  ///< what since_start is from, shape (n, 3)
   double since_start_ = 0;
 };
 

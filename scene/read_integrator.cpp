@@ -1,5 +1,6 @@
 #include "scene/read_integrator.hpp"
 
+#include "engine/schedule.hpp"
 #include "integrators/all_methods.hpp"
 #include "integrators/all_schemes.hpp"
 #include "io/text_table.hpp"
@@ -338,6 +339,7 @@ void read_times(TableReader& reader, const SceneValue& value, const SceneIntegra
   if (all.empty() && file) file->fail(0, "there is no time in it; one a line is expected");
   if (all.empty()) reader.fail(&value, "times", "times = [] holds no time; give some, or take the table out");
   const double sign = integrator.direction() == Direction::forward ? 1 : -1;
+  if (!all.empty()) all[0].time = detail::at_start_if_rounded(all[0].time, integrator.start);
   std::int64_t last = -1;
   for (std::size_t k = 0; k < all.size(); ++k) {
     const ListedTime& one = all[k];

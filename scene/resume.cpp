@@ -39,12 +39,33 @@ void flatten(const SceneValue& value, const std::string& path, std::map<std::str
       fmt::format("{} {}; a resumed run takes only a later end: undo this, or start over with --fresh", key, change));
 }
 
+/// The bodies of another run's last frame, which has got later ones since.
+void check_frame(const Scene& scene, const std::map<std::string, Leaf>& before,
+                 const std::map<std::string, Leaf>& now) {
+  const std::string key = "particles.frame";
+  const auto old = before.find(key), found = now.find(key);
+  if (old == before.end() || found == now.end() || old->second.text == found->second.text) return;
+  const auto bodies = now.find("particles.bodies");
+  if (bodies == now.end() || before.count("particles.bodies_sha256") == 0) return;
+  throw scene_error(scene.source, found->second.line, key, found->second.text,
+                    fmt::format("the run began with frame {} of {}, and this would be frame {}; give frame = {} in "
+                                "[particles], or start over with --fresh",
+                                old->second.text, bodies->second.text, found->second.text, old->second.text));
+}
+
+/// Whether a key that is gone stood there only because it had a default: the absolute tolerance of particles.
+bool was_default(const std::string& key, const std::string& text) {
+  return key == "integrator.atol" && (text == to_text(SceneValue::of(1e-9)) || text == to_text(SceneValue::of(0.0)));
+}
+
 }  // namespace
 
-void check_same_scene(const io::Checkpoint& checkpoint, const Scene& scene) {
+std::vector<std::string> check_same_scene(const io::Checkpoint& checkpoint, const Scene& scene) {
+  std::vector<std::string> warnings;
   std::map<std::string, Leaf> before, now;
   flatten(parse_toml(checkpoint.scene_toml, "the scene in the checkpoint"), "", before);
   flatten(scene.effective, "", now);
+  check_frame(scene, before, now);
   for (const auto& [key, leaf] : now) {
     const auto old = before.find(key);
     if (old == before.end()) refuse(scene, key, leaf, fmt::format("= {} is new", leaf.text));
@@ -52,8 +73,14 @@ void check_same_scene(const io::Checkpoint& checkpoint, const Scene& scene) {
       refuse(scene, key, leaf, fmt::format("= {} was {}", leaf.text, old->second.text));
   }
   for (const auto& [key, leaf] : before) {
-    if (now.find(key) == now.end()) refuse(scene, key, {leaf.text, 0}, fmt::format("= {} is gone", leaf.text));
+    if (now.find(key) != now.end()) continue;
+    if (!was_default(key, leaf.text)) refuse(scene, key, {leaf.text, 0}, fmt::format("= {} is gone", leaf.text));
+    warnings.push_back(
+        fmt::format("the run was begun with {} = {}, the default of an earlier version; from here on errors of "
+                    "particles are measured in another way, without it (docs/theory/adaptive_steps.md)",
+                    key, leaf.text));
   }
+  return warnings;
 }
 
 void save_ending(SavedRun& run, const Ending& ending) {

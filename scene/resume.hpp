@@ -4,13 +4,18 @@
 #include "io/checkpoint.hpp"
 #include "scene/scene.hpp"
 
+#include <string>
+#include <vector>
+
 namespace noether {
 
 /// Compares the scene in a checkpoint with this one, key by key.
 ///
-/// Title, expectations and the end of the run may differ.
+/// Title, expectations and the end of the run may differ. So may `atol` of particles, where it was the default that it
+/// had once and is none now.
+/// @returns  warnings, one line each
 /// @throws SceneError  naming the first other key that differs
-void check_same_scene(const io::Checkpoint& checkpoint, const Scene& scene);
+std::vector<std::string> check_same_scene(const io::Checkpoint& checkpoint, const Scene& scene);
 
 /// How a run ended, kept beside the state in its last checkpoint.
 struct Ending {

@@ -168,8 +168,8 @@ class Runner {
     report_.simd = name(simd_level());
   }
 
-  void check_resume(const io::Checkpoint& checkpoint) const {
-    check_same_scene(checkpoint, scene_);
+  void check_resume(const io::Checkpoint& checkpoint) {
+    report_.warnings = check_same_scene(checkpoint, scene_);
     if (ends_in_time()) {
       const double end = *scene_.integrator.until;
       const double start = scene_.integrator.start;
@@ -210,7 +210,19 @@ class Runner {
     sim.for_each_monitor([&](const std::string&, AnyMonitor<double>& monitor) {
       if (auto* writer = monitor.get<io::TrajectoryWriter>()) writer->begin(sim.particles());
     });
+    count_on_new_file(checkpoint, sim);
     return sim;
+  }
+
+  /// The checkpoints on disk count on rows of the file that is gone, which must not come a second time. Both
+  /// generations are replaced; a failure between the two leaves one that begins a new file again.
+  void count_on_new_file(const io::Checkpoint& checkpoint, Simulation<double>& sim) const {
+    if (files_.checkpoint.empty()) return;
+    io::Checkpoint anew = checkpoint;
+    sim.for_each_monitor([](const std::string&, AnyMonitor<double>& monitor) { monitor.flush(); });
+    anew.run = sim.save();
+    anew.outcome.clear();
+    for (int generation = 0; generation < 2; ++generation) io::write_checkpoint(files_.checkpoint, anew);
   }
 
   /// Nothing of a trajectory that cannot be gone on with is lost: it stays beside the new one.

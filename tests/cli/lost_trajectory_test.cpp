@@ -82,6 +82,22 @@ TEST_CASE("a run.h5 of fewer frames than the checkpoint counts on, or none at al
   CHECK(output(gone.folder, "verify scene.out/run.h5") == "scene.out/run.h5: sound and complete, last step 100\n");
 }
 
+TEST_CASE("a run that is killed again before its next checkpoint writes nothing twice", "[cli][resume][lost]") {
+  const KilledRun run;
+  fs::remove(run.file());
+  check_same_run(output(run.folder, "run scene.toml --json --resume"), run.whole);
+  for (int kill = 0; kill < 2; ++kill) {  // each falls back by one generation of checkpoints
+    make_unfinished(run.folder / "scene.out");
+    const std::string again = output(run.folder, "run scene.toml --json --resume");
+    check_same_run(again, run.whole);
+    CHECK(json_member(again, "resumed_from_step") == "80");
+    CHECK(json_member(again, "warnings").empty());
+    CHECK(json_member(output(run.folder, "info scene.out/run.h5 --json"), "frames") == "1");
+    CHECK(output(run.folder, "verify scene.out/run.h5") == "scene.out/run.h5: sound and complete, last step 100\n");
+  }
+  CHECK_FALSE(fs::exists(run.folder / "scene.out/run.h5.damaged"));
+}
+
 TEST_CASE("a run that writes samples alone goes on with a new run.h5 too", "[cli][resume][lost]") {
   std::string text = two_bodies;
   const std::string frames = "[[every]]\ntype = \"trajectory\"\nsteps = 20\n";
@@ -199,6 +215,24 @@ TEST_CASE("frames that are not there are exit 2 with their range", "[cli][bodies
   const ProcessResult alone = noether(folder, "convert scene.out/run.h5 start.csv --frame 6");
   CHECK(alone.exit_code == 2);
   CHECK(has(alone.err, "--bodies"));
+}
+
+TEST_CASE("a run that began with the last frame of one that has gone on since names the frame",
+          "[cli][resume][bodies]") {
+  const SceneFolder folder;
+  output(folder, "run scene.toml --json");
+  write_text(folder / "next.toml", "units = \"reduced\"\n[particles]\nbodies = \"scene.out/run.h5\"\n" +
+                                       two_bodies.substr(two_bodies.find("[hamiltonian]")));
+  const std::string whole = output(folder, "run next.toml --json");
+  output(folder, "run scene.toml --json --resume --until 1.4");
+  make_unfinished(folder / "next.out");
+  const ProcessResult refused = noether(folder, "run next.toml --resume");
+  CHECK(refused.exit_code == 2);
+  CHECK(line_count(refused.err) == 1);
+  CHECK(has(refused.err,
+            "the run began with frame 5 of \"scene.out/run.h5\", and this would be frame 7; give frame = 5 "
+            "in [particles], or start over with --fresh\n"));
+  check_same_run(output(folder, "run next.toml --json --resume --set particles.frame=5"), whole);
 }
 
 }  // namespace noether::test

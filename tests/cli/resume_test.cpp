@@ -1,5 +1,6 @@
 // `noether run --resume`: from which checkpoint, to which end, and what it refuses.
 
+#include "io/checkpoint.hpp"
 #include "numbers/simd.hpp"
 #include "tests/cli/support.hpp"
 
@@ -145,6 +146,39 @@ TEST_CASE("a SIMD level that the processor lacks is refused", "[cli][run][messag
   CHECK(result.exit_code == 2);
   CHECK(result.err == "SIMD level 'avx512' is not to be had on this processor; its best is '" +
                           std::string(name(simd_level())) + "'\n");
+}
+
+TEST_CASE("a run begun when particles had an absolute tolerance by default goes on, and says so",
+          "[cli][resume][messages]") {
+  std::string scene = two_bodies;
+  const std::string fixed = "method = \"yoshida_4\"\nstep = 0.01\nsteps = 100\n";
+  scene.replace(scene.find(fixed), fixed.size(), "method = \"dop853\"\nuntil = 1\n");
+  const auto begun_with = [&](const SceneFolder& folder, const std::string& line) {
+    CHECK(noether(folder, "run scene.toml --quiet").exit_code == 0);
+    const fs::path file = folder / "scene.out/checkpoint.h5";
+    io::Checkpoint checkpoint = io::read_checkpoint(file);
+    const std::string head = "[integrator]\n";
+    const std::size_t at = checkpoint.scene_toml.find(head);
+    REQUIRE(at != std::string::npos);
+    REQUIRE_FALSE(has(checkpoint.scene_toml, "atol"));
+    checkpoint.scene_toml.insert(at + head.size(), line);
+    io::write_checkpoint(file, checkpoint);
+    return noether(folder, "run scene.toml --json --resume --until 2");
+  };
+  const SceneFolder folder, other;
+  write_text(folder / "scene.toml", scene);
+  write_text(other / "scene.toml", scene);
+  const ProcessResult on = begun_with(folder, "atol = 1e-09\n");
+  INFO(on.err);
+  CHECK(on.exit_code == 0);
+  CHECK(json_member(on.out, "time") == "2");
+  CHECK(has(on.out,
+            "the run was begun with integrator.atol = 1e-09, the default of an earlier version; from here on "
+            "errors of particles are measured in another way, without it (docs/theory/adaptive_steps.md)"));
+  CHECK_FALSE(has(noether(folder, "run scene.toml --json --resume --until 3").out, "earlier version"));
+  const ProcessResult refused = begun_with(other, "atol = 1e-07\n");
+  CHECK(refused.exit_code == 2);
+  CHECK(has(refused.err, "integrator.atol = 1e-07 is gone; a resumed run takes only a later end"));
 }
 
 }  // namespace

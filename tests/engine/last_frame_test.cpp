@@ -142,4 +142,49 @@ TEST_CASE("where steps are chosen by the method the last of what is written is w
   }
 }
 
+TEST_CASE("no look shows a state of another time where a step on the way to it fails", "[last_frame]") {
+  // x = cosh(100 t): its squares leave the range of doubles when t = 3.556.
+  for (const std::string name : {"dop853", "rodas_5p", "dormand_prince_5"}) {
+    for (const bool by_list : {false, true}) {
+      CAPTURE(name, by_list);
+      ParticleSystem<double> s;
+      s.add("ball", 1, {1, 0, 0}, {0, 0, 0});
+      std::vector<ShownMoment> written;
+      Simulation<double> run(std::move(s), classical(HarmonicField{.k = -10'000}, method(name)));
+      std::vector<double> times;
+      for (int k = 1; k <= 50'000; ++k) times.push_back(0.001 * k);
+      if (by_list) run.at_times(times, MomentWriter{&written});
+      if (!by_list) run.every_time(0.001, MomentWriter{&written});
+      const Outcome outcome = run.run_until(50);
+      REQUIRE_FALSE(outcome.ok());
+      REQUIRE(outcome.time > 1);
+      REQUIRE(written.size() > 1000);
+      CHECK(written.back().time == outcome.time);
+      CHECK(written.back().step == outcome.step);
+      CHECK(written.back().x == run.particles().positions()[0][0]);
+      int wrong = 0, back = 0;
+      for (std::size_t k = 1; k < written.size(); ++k) {
+        const double t = written[k].time, exact = 100 * t + std::log1p(std::exp(-200 * t)) - std::log(2.0);
+        wrong += std::abs(std::log(written[k].x) - exact) < 1e-3 ? 0 : 1;
+        back += written[k].time > written[k - 1].time ? 0 : 1;
+      }
+      CHECK(wrong == 0);
+      CHECK(back == 0);
+    }
+  }
+}
+
+TEST_CASE("a run that fails before its end in time does not end there", "[last_frame]") {
+  for (const double until : {3.5559, 3.557, 3.6}) {
+    CAPTURE(until);
+    ParticleSystem<double> s;
+    s.add("ball", 1, {1, 0, 0}, {0, 0, 0});
+    Simulation<double> run(std::move(s), classical(HarmonicField{.k = -10'000}, method("dop853")));
+    const Outcome outcome = run.run_until(until);
+    REQUIRE_FALSE(outcome.ok());
+    CHECK(outcome.time < until);
+    CHECK(std::abs(std::log(run.particles().positions()[0][0]) - (100 * outcome.time - std::log(2.0))) < 1e-3);
+  }
+}
+
 }  // namespace noether::test

@@ -285,4 +285,88 @@ TEST_CASE("lists of times that cannot be are refused", "[start time][times][mess
                     "shift; attach it by steps");
 }
 
+TEST_CASE("errors of what is conserved are measured from the start, not from the first time of a list",
+          "[start time][times][monitors]") {
+  // Two steps of 1/2 of x'' = -x from rest at 1, by hand: x = 17/32, v = -105/128; all are numbers of doubles.
+  ParticleSystem<double> ball;
+  ball.add("ball", 1, {1, 0, 0}, {0, 0, 0});
+  Simulation<double> spring(ball, compose(test::kinetic_potential(HarmonicField{.k = 1}), schemes::verlet), 0.5);
+  auto& listed = spring.at_times({1}, Energy{});
+  auto& regular = spring.every(2, Energy{});
+  auto& pushed = spring.at_times({1}, Momentum{});
+  REQUIRE(spring.run(2).ok());
+  CHECK(listed.worst() == 0.04486083984375);  // 1 - x^2 - v^2
+  CHECK(regular.worst() == listed.worst());
+  CHECK(listed.report().samples == 1);
+  CHECK(listed.report().first == 0.5);
+  CHECK(pushed.worst() == 0.8203125);  // of nothing, so relative to 1
+
+  // Falling from (1, 0) with v = (1, 0): velocity Verlet has the parabola.
+  ParticleSystem<double> stone;
+  stone.add("stone", 1, {1, 0, 0}, {1, 0, 0});
+  const UniformField down{.acceleration = {0, -1, 0}};
+  Simulation<double> fall(stone, compose(test::kinetic_potential(down), schemes::verlet), 0.5);
+  auto& turn = fall.at_times({1}, AngularMomentum{});
+  auto& push = fall.at_times({1}, Momentum{});
+  auto& center = fall.at_times({1}, CenterOfMass{});
+  REQUIRE(fall.run(2).ok());
+  CHECK(turn.worst() == 1.5);    // |(1 + t) t - t^2 / 2| / (|x| |v|)
+  CHECK(push.worst() == 1);      // t / |v|
+  CHECK(center.worst() == 0.5);  // t^2 / 2
+
+  ParticleSystem<double> pair;
+  pair.add("left", 1, {-1, 0, 0}, {-2, 0, 0});
+  pair.add("right", 1, {1, 0, 0}, {2, 0, 0});
+  for (const bool again : {false, true}) {
+    const auto made = [&] {
+      return Simulation<double>(pair, compose(test::kinetic_potential(UniformField{}), schemes::verlet), 0.5);
+    };
+    auto first = made(), other = made();
+    first.at_times({1, 2}, MeanSquareDisplacement(2, 1));
+    auto& away = other.at_times({1, 2}, MeanSquareDisplacement(2, 1));
+    if (again) {  // saved between the start and the first look
+      REQUIRE(first.run(1).ok());
+      other.restore(first.save());
+    }
+    REQUIRE(other.run_until(1).ok());
+    CHECK(away.since_start() == 4);
+    REQUIRE(other.run_until(2).ok());
+    CHECK(away.since_start() == 16);
+  }
+}
+
+TEST_CASE("a first time that is the start but for rounding is the start", "[start time][times]") {
+  for (const std::string name : {"verlet", "dop853"}) {
+    for (const double off : {-1.0, 1.0}) {
+      CAPTURE(name, off);
+      const double start = 1024;
+      Pages pages;
+      auto run = planets_from(start, name);
+      run.at_times({std::nextafter(start, start + off), start + 64}, StateDiary{&pages});
+      REQUIRE(run.run_until(start + 64).ok());
+      REQUIRE(pages.size() == 2);
+      CHECK(pages[0].first == start);
+      CHECK(test::same_bits(pages[0].second, test::outer_planets()));
+    }
+  }
+  auto run = planets_from(1024, "verlet");
+  CHECK_THROWS_WITH(run.at_times({1024 - 1e-9, 1056}, Energy{}), Catch::Contains("it lies before the start at 1024"));
+}
+
+TEST_CASE("a restored run that began at another time looks at the times of its list", "[start time][times][restart]") {
+  Pages pages, other_pages;
+  auto begun = planets_from(1024, "verlet"), other = planets_from(0, "verlet");
+  begun.at_times({1344, 1376}, StateDiary{&pages});
+  other.at_times({1344, 1376}, StateDiary{&other_pages});  // by its own clock steps 42 and 43
+  REQUIRE(begun.run(5).ok());
+  other.restore(begun.save());
+  REQUIRE(begun.run_until(3200).ok());
+  REQUIRE(other.run_until(3200).ok());
+  REQUIRE(pages.size() == 2);
+  REQUIRE(other_pages.size() == 2);
+  CHECK(other_pages[0].first == 1344);
+  CHECK(other_pages[1].first == 1376);
+  CHECK(test::same_bits(other_pages[0].second, pages[0].second));
+}
+
 }  // namespace noether

@@ -2,6 +2,7 @@
 
 #include "engine/charge.hpp"
 #include "io/bodies.hpp"
+#include "io/compare_runs.hpp"
 #include "io/digest.hpp"
 #include "io/frame_particles.hpp"
 #include "io/hdf5_file.hpp"
@@ -363,6 +364,7 @@ TEST_CASE("a file from before types stood in it is read, verified, repaired, con
     const io::Hdf5File file = io::Hdf5File::open_to_append(folder / "run.h5");
     file.write("/particles/system/species", std::vector<std::int64_t>{0, 1, 2, 3, 4, 5}, {6});
     file.set_attribute("/noether", io::constants_attribute, io::constants_digest(file));
+    file.set_attribute("/noether", io::headers_attribute, io::headers_digest(file));
     file.flush();
   }
   CHECK(io::verify(folder / "run.h5").damaged.empty());
@@ -380,6 +382,53 @@ TEST_CASE("a file from before types stood in it is read, verified, repaired, con
   CHECK(io::digest(resumed.simulation.particles()) == io::digest(whole.simulation.particles()));
   CHECK(io::verify(folder / "run.h5").damaged.empty());
   CHECK(io::info(folder / "run.h5").frames == 13);
+  whole.writer->finish(Outcome{});
+  const io::RunComparison found = io::compare_runs(folder / "run.h5", folder / "whole.h5");
+  CHECK(found.same());
+  CHECK(found.notes ==
+        std::vector<std::string>{"types, molecules, bonds and charges are not compared: the first is from before they "
+                                 "stood in such files"});
+}
+
+TEST_CASE("verify --against compares types, molecules, bonds and pairs", "[trajectory][compare runs]") {
+  const ScratchFolder folder;
+  io::write_one_frame(folder / "a.h5", molecule(), 0, 0);
+  io::write_one_frame(folder / "same.h5", molecule(), 0, 0);
+  CHECK(io::compare_runs(folder / "a.h5", folder / "same.h5").same());
+  const auto told = [&](auto change) {
+    ParticleSystem<double> s = molecule();
+    Topology changed = *s.topology();
+    change(changed);
+    s.set_topology(std::make_shared<const Topology>(std::move(changed)));
+    io::write_one_frame(folder / "b.h5", s, 0, 0);
+    const io::RunComparison found = io::compare_runs(folder / "a.h5", folder / "b.h5");
+    CHECK_FALSE(found.same());
+    CHECK(found.rows.at(0).equal == 1);  // the frames are the same
+    return found.constants;
+  };
+  CHECK(told([](Topology& t) { t.bonds[1].type = 1; }) ==
+        std::vector<std::string>{"'bonds_kind' is 0 and 1 in entry 1"});
+  CHECK(told([](Topology& t) { std::swap(t.bonds[0].particles[0], t.bonds[0].particles[1]); }) ==
+        std::vector<std::string>{"'bonds' is 40 and 12 in entry 0"});
+  CHECK(told([](Topology& t) { t.molecules[4] = 8; }).size() == 1);
+  CHECK(told([](Topology& t) { t.type_names[2] = "K+"; }) ==
+        std::vector<std::string>{"'type_name' is Na+ and K+ in entry 2"});
+  CHECK(told([](Topology& t) {
+          t.explicit_pairs[{0, 2}].epsilon = 0.3;
+        }) == std::vector<std::string>{"'pair_parameters' is 0.2 and 0.3 in entry 0"});
+}
+
+TEST_CASE("an attribute of bonds that has changed is found", "[trajectory][inspect][flips]") {
+  const ScratchFolder folder;
+  io::write_one_frame(folder / "run.h5", molecule(), 0, 0);
+  REQUIRE(io::verify(folder / "run.h5").damaged.empty());
+  {
+    const io::Hdf5File file = io::Hdf5File::open_to_append(folder / "run.h5");
+    file.set_reference("/connectivity/bonds", "particles_group", "/connectivity");
+    file.flush();
+  }
+  CHECK(io::verify(folder / "run.h5").damaged ==
+        std::vector<std::string>{"the units or other attributes of the particles are not those that were written"});
 }
 
 }  // namespace noether::test

@@ -187,4 +187,20 @@ TEST_CASE("a time between two steps is refused with the nearest times of the clo
                      "whole numbers are \"1010 day\" (20 steps) and \"1010.5 day\" (21 steps)"));
 }
 
+TEST_CASE("a list may begin with the start in another unit", "[scene][times]") {
+  // 1.1 yr of 365.25 days is 401.775 days, but for the last bit.
+  const Scene scene = clocked({"integrator.start_time=1.1 yr", "integrator.until=601.775 day",
+                               "every.0.times=[\"401.775 day\", \"411.775 day\"]"});
+  CHECK(scene.watches[0].cadence.times.at(0) == scene.integrator.start);
+  std::vector<double> seen;
+  Simulation<double> run = assemble(scene);
+  run.at_times(scene.watches[0].cadence.times, TimesSeen{&seen});
+  REQUIRE(run.run_until(601.775).ok());
+  REQUIRE(seen.size() == 2);
+  CHECK(seen[0] == scene.integrator.start);
+  CHECK(refusal_of([] {
+          clocked({"integrator.start_time=1.1 yr", "integrator.until=601.775 day", "every.0.times=[\"401 day\"]"});
+        }).find("times holds \"401 day\", which the run does not come to") != std::string::npos);
+}
+
 }  // namespace noether::test
