@@ -175,7 +175,7 @@ TEST_CASE("a fall to 1e-9 of a body, about the origin and elsewhere", "[particle
         CHECK(std::abs(r - 0.02) < 0.001);
       } else {
         REQUIRE(ended.kind == Outcome::Kind::step_underflow);
-        CHECK(ended.message.find("use 'gauss_8', which steps relative to that one") != std::string::npos);
+        CHECK(ended.message.find("use 'gauss_8', which steps relative to such a body") != std::string::npos);
         CHECK(relative_error(sim.time(), 0.0993459) < 1e-4);
       }
     }
@@ -279,10 +279,11 @@ TEST_CASE("runs begin where nothing tells how long a step is", "[particle_scales
     Simulation<double> swings(std::move(swing), classical(HarmonicField{.k = 1}, MethodChoice{info, {}}));
     REQUIRE(falls.run_until(2).ok());
     CHECK(relative_error(falls.particles().positions()[0][2], -2) < 1e-3);
-    CHECK(falls.step() < 1000);
+    // From rest at the origin everything is relative to next to nothing: at order 1 steps are rtol^(1/2) of the time.
+    CHECK(falls.step() < (info->name == "bdf" ? 50000 : 1000));
     REQUIRE(swings.run_until(10).ok());
     CHECK(relative_error(swings.particles().positions()[0][0], std::sin(10.0)) < 0.01);
-    CHECK(swings.step() < 3000);
+    CHECK(swings.step() < (is_reference(*info) ? 30000 : 3000));
   }
 }
 
