@@ -286,10 +286,10 @@ TEST_CASE("what is no table is a file error, in one line", "[bodies][messages]")
         (folder / "missing.csv").string() + ": cannot be read: No such file or directory");
   CHECK(error_of([&] { io::read_bodies(folder.path()); }) ==
         folder.path().string() + ": cannot be read: Is a directory");
-  for (const std::string& garbage :
-       {std::string("\x01\x02\x03,\xff\n"), std::string("\x89PNG\r\n\x1a\n"), std::string(",")}) {
+  for (const std::string& garbage : {std::string("\x01\x02\x03,\xff\n"), std::string("\x89PNG\r\n\x1a\n")}) {
     const std::string message = csv_refusal(garbage);
     CHECK(message.starts_with("b.csv:1: "));
     CHECK(message.find('\n') == std::string::npos);
   }
+  CHECK(csv_refusal(",").starts_with("b.csv: the table is empty; expected a line of column names"));
 }
