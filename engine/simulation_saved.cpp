@@ -73,6 +73,8 @@ template <class Real> void Simulation<Real>::restore(const SavedRun& saved) {
   for (std::size_t k = 0; k < stops_.size(); ++k) stops_[k].check.load(part(fmt::format("stop_{}", k)), "state");
 }
 
+template void Simulation<double>::check_columns(const ParticleSystem<double>& saved) const;
+template void Simulation<Quad>::check_columns(const ParticleSystem<Quad>& saved) const;
 template SavedRun Simulation<double>::save() const;
 template void Simulation<double>::restore(const SavedRun& saved);
 template SavedRun Simulation<Quad>::save() const;
