@@ -110,32 +110,42 @@ template <class Real> class Measuring {
   /// Of a tracer massive bodies alone are neighbors; of a body all are, for what goes round it may have no mass.
   void attract(Index i) {
     const bool tracer = s_.masses()[i] == Real(0);
-    const std::vector<Index>& massive = out_.work.massive;
-    const Index n = tracer ? static_cast<Index>(massive.size()) : s_.size();
-    const auto at = static_cast<std::size_t>(i);
+    const Index* const massive = out_.work.massive.data();
+    const Index n = tracer ? static_cast<Index>(out_.work.massive.size()) : s_.size();
+    const auto& positions = s_.positions();
+    const auto& velocities = s_.velocities();
+    const Real *x = positions.component(0), *y = positions.component(1), *z = positions.component(2);
+    const Real *vx = velocities.component(0), *vy = velocities.component(1), *vz = velocities.component(2);
+    const Real* const m = s_.masses().data();
+    const Real x_i = x[i], y_i = y[i], z_i = z[i], vx_i = vx[i], vy_i = vy[i], vz_i = vz[i];
     const double own = mass(i), per_length2 = 1 / (length_unit_ * length_unit_), per_mass = 1 / mass_unit_;
+    const double soft2 = soft2_;
     // (m_i + m_j)^2 and r^6 of the neighbor so far, in units in which both stay in the range of doubles.
     double best_masses2 = 0, best_r6 = 1;
+    double forward = std::numeric_limits<double>::infinity(), backward = forward;
     Index best = -1;
     for (Index k = 0; k < n; ++k) {
-      const Index j = tracer ? massive[static_cast<std::size_t>(k)] : k;
+      const Index j = tracer ? massive[k] : k;
       if (j == i) continue;
-      const Point d = difference(i, j);
-      const double masses = (own + mass(j)) * per_mass, masses2 = masses * masses;
-      const double r2 = (d.distance2() + soft2_) * per_length2, r6 = r2 * r2 * r2;
+      const Point d{static_cast<double>(x_i - x[j]),   static_cast<double>(y_i - y[j]),
+                    static_cast<double>(z_i - z[j]),   static_cast<double>(vx_i - vx[j]),
+                    static_cast<double>(vy_i - vy[j]), static_cast<double>(vz_i - vz[j])};
+      const double both = own + static_cast<double>(m[j]), masses = both * per_mass, masses2 = masses * masses;
+      const double r2 = (d.distance2() + soft2) * per_length2, r6 = r2 * r2 * r2;
       if (masses2 * best_r6 > best_masses2 * r6) {
         best_masses2 = masses2;
         best_r6 = r6;
         best = j;
       }
-      const double along = d.along();
-      if (along == 0) continue;
-      double& longest = along < 0 ? out_.work.forward[at] : out_.work.backward[at];
-      const double v2 = d.speed2();
-      if (0.5 * std::abs(along) < longest * v2) {
-        longest = std::min(longest, time_to_passage(d, v2, coupling_.G * (own + mass(j))));
+      const double along = d.along(), v2 = d.speed2(), half = 0.5 * std::abs(along);
+      if (along < 0 && half < forward * v2) {
+        forward = std::min(forward, time_to_passage(d, v2, coupling_.G * both));
+      } else if (along > 0 && half < backward * v2) {
+        backward = std::min(backward, time_to_passage(d, v2, coupling_.G * both));
       }
     }
+    out_.work.forward[static_cast<std::size_t>(i)] = forward;
+    out_.work.backward[static_cast<std::size_t>(i)] = backward;
     if (best >= 0) set_orbit(i, best);
   }
   /// Half the time until two bodies are nearest along a straight line, and twice what it takes to go as far as they are

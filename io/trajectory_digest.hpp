@@ -15,7 +15,7 @@ namespace noether::io {
 
 /// Where they stand: rows of four whole numbers, one for each frame, and one for each sample of a monitor.
 inline const std::string digests_path = "/noether/digests";
-inline const std::string frame_digests_path = digests_path + "/frames";
+inline const std::string frame_digests_path = "/noether/digests/frames";
 inline std::string sample_digests_path(std::string_view monitor) {
   return digests_path + "/monitors/" + std::string(monitor);
 }

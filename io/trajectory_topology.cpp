@@ -15,8 +15,8 @@ namespace noether::io {
 
 namespace {
 
-const std::string species_path = particles_path + "/species";
-const std::string order_path = topology_path + "/order";
+// Texts of their own: nobody says which variable of several files is made first.
+const std::string species_path = "/particles/system/species", order_path = "/noether/topology/order";
 
 [[noreturn]] void refuse_topology(const Hdf5File& file, const std::string& what) {
   throw FileError("damaged: " + what, {.file = file.name()});
