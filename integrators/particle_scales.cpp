@@ -138,11 +138,11 @@ template <class Real> class Measuring {
         best = j;
       }
       const double along = d.along(), v2 = d.speed2(), half = 0.5 * std::abs(along);
-      if (along < 0 && half < forward * v2) {
-        forward = std::min(forward, time_to_passage(d, v2, coupling_.G * both));
-      } else if (along > 0 && half < backward * v2) {
-        backward = std::min(backward, time_to_passage(d, v2, coupling_.G * both));
-      }
+      // Neither part of the time alone may be longer than the bound at hand: most pairs end here, without a root.
+      double& longest = along < 0 ? forward : backward;
+      const double reach = longest * v2;
+      if (along == 0 || !(half < reach) || !(4 * d.swept2() < reach * reach)) continue;
+      longest = std::min(longest, time_to_passage(d, v2, coupling_.G * both));
     }
     out_.work.forward[static_cast<std::size_t>(i)] = forward;
     out_.work.backward[static_cast<std::size_t>(i)] = backward;

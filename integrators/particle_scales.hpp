@@ -80,7 +80,7 @@ struct ParticleScales {
 /// @param s     wrapped into their box
 /// @param list  looks for neighbors in range; null: all pairs are looked at
 /// @param rtol  deflections by less than this are none
-/// @cost O(n m) under gravity, m massive bodies, some 5 ns for each pair; else O(n) with a list, O(n^2) without one
+/// @cost O(n m) under gravity, m massive bodies, some 25 ns for each pair; else O(n) with a list, O(n^2) without one
 template <class Real>
 void measure(const ParticleSystem<Real>& s, const Coupling& coupling, NeighborList* list, double rtol,
              ParticleScales& out);
