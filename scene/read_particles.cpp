@@ -447,7 +447,9 @@ ParticleSystem<double> from_frame(TableReader& reader, const std::filesystem::pa
 ParticleSystem<double> from_bodies(TableReader& reader, const std::filesystem::path& folder, SceneValue& effective,
                                    std::vector<std::string>& warnings) {
   const bool file = reader.has("bodies"), frame = are_of_a_frame(reader, folder);
-  if (frame || file) {
+  if (frame && !reader.has("body")) {  // so nobody has a passage at a date
+    reader.expect_only({"bodies", "bodies_sha256", "elements", "frame", "box", "exclusions"});
+  } else if (frame || file) {
     reader.expect_only({"bodies", "bodies_sha256", "epoch", "elements", "body", "frame", "box", "exclusions"});
   } else {
     reader.expect_only({"body", "epoch", "elements", "frame", "box", "type", "pair", "mixing", "exclusions"});
