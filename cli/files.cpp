@@ -2,6 +2,7 @@
 
 #include "io/compare_runs.hpp"
 #include "io/inspect.hpp"
+#include "io/near_file.hpp"
 #include "io/repair.hpp"
 #include "numbers/error.hpp"
 #include "numbers/text.hpp"
@@ -66,7 +67,8 @@ void print_text(const std::string& file, const io::FileInfo& info) {
 
 /// Mends a file in a folder that nobody else writes to.
 io::Repair repair_alone(const std::filesystem::path& file) {
-  if (!std::filesystem::exists(file)) throw FileError("there is no such file", {.file = file.string()});
+  if (!std::filesystem::exists(file))
+    throw FileError("there is no such file" + io::near_file(file, "run.h5"), {.file = file.string()});
   const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
   std::optional<OutputFolder> locked;
   try {

@@ -2,6 +2,7 @@
 
 #include "io/files.hpp"
 #include "io/hdf5_handle.hpp"
+#include "io/near_file.hpp"
 #include "io/ordered_file.hpp"
 #include "io/padded_texts.hpp"
 #include "numbers/error.hpp"
@@ -290,8 +291,10 @@ std::shared_ptr<Hdf5Handle> open_file(const std::filesystem::path& file, bool wr
   const Hdf5Handle access = access_list(file);
   if (writing && !use_ordered_driver(access)) fail(access.file(), "cannot prepare the file");
   std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) refuse(access.file(), "there is no such file");
-  if (!std::filesystem::is_regular_file(file, ignored)) refuse(access.file(), "this is no file");
+  if (!std::filesystem::exists(file, ignored))
+    refuse(access.file(), "there is no such file" + near_file(file, "run.h5"));
+  if (!std::filesystem::is_regular_file(file, ignored))
+    refuse(access.file(), "is not a file" + near_file(file, "run.h5"));
   const hid_t id = H5Fopen(file.c_str(), writing ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access);
   const std::uintmax_t size = id < 0 ? std::filesystem::file_size(file, ignored) : 0;
   if (id < 0 && size < expected_size(file))

@@ -26,7 +26,8 @@ const std::vector<Wrong> wrong_lines = {
     {"-x run scene.toml", 2, "unknown option '-x' before a command; known are: --help, --version"},
     {"run", 2, "scene is required; see `noether run --help`"},
     {"run nothing.toml", 3, "nothing.toml: cannot be read: No such file or directory"},
-    {"run .", 3, ".: cannot be read: Is a directory"},
+    {"run secne.toml", 3, "secne.toml: cannot be read: No such file or directory; did you mean 'scene.toml'?"},
+    {"run .", 3, ".: cannot be read: Is a directory; did you mean './scene.toml'?"},
     {"run table.csv", 2, "table.csv:1: this is not TOML: expected '=', saw ',' (in a key-value pair)"},
     {"run scene.toml other.toml", 2, "unexpected argument 'other.toml' of 'run'"},
     {"run scene.toml --thread 2", 2, "unknown option '--thread' of 'run'; did you mean '--threads'?"},
@@ -85,7 +86,7 @@ const std::vector<Wrong> wrong_lines = {
     {"describe qqqqqq", 2, "there is nothing called 'qqqqqq'; see `noether list`"},
 #if NOETHER_HDF5
     {"info nothing.h5", 3, "nothing.h5: there is no such file"},
-    {"info .", 3, ".: this is no file"},
+    {"info .", 3, ".: is not a file"},
     {"info scene.toml", 3, "scene.toml: cannot be opened as an HDF5 file: file signature not found"},
     {"verify nothing.h5", 3, "nothing.h5: there is no such file"},
     {"convert scene.toml frames.xyz", 3, "scene.toml: cannot be opened as an HDF5 file: file signature not found"},

@@ -76,7 +76,7 @@ TEST_CASE("info refuses what is no file of noether", "[inspect][messages]") {
   const test::ScratchFolder folder;
   const std::string file = (folder / "x.h5").string();
   CHECK(error_of([&] { io::info(file); }) == file + ": there is no such file");
-  CHECK(error_of([&] { io::info(folder.path()); }) == folder.path().string() + ": this is no file");
+  CHECK(error_of([&] { io::info(folder.path()); }) == folder.path().string() + ": is not a file");
   test::write_text(file, "hello");
   CHECK(error_of([&] { io::info(file); }).starts_with(file + ": cannot be opened as an HDF5 file"));
   test::write_text(folder / "checkpoint.h5", "hello");
