@@ -142,7 +142,7 @@ void check_options(const MethodInfo& info, const MethodOptions& options, double 
   check_groups(info, options);
   if (options.first && !(*options.first > 0 && std::isfinite(*options.first))) {
     refuse_option("step",
-                  fmt::format("a first step of {} is no step; a finite time above 0 is expected", *options.first));
+                  fmt::format("a first step of {} is not valid; a finite time above 0 is expected", *options.first));
   }
 }
 

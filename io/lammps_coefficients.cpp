@@ -111,7 +111,7 @@ bool begins_with_letter(std::string_view word) { return std::isalpha(static_cast
 
 /// Names that are read; nothing else stands in for a potential, so no other one is proposed.
 std::string those_read(const std::vector<std::string>& names) {
-  return fmt::format("; known are: {}", fmt::join(names, ", "));
+  return fmt::format("; expected one of: {}", fmt::join(names, ", "));
 }
 
 /// One row of coefficients, in a section or in a command.

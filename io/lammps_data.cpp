@@ -177,7 +177,8 @@ class LammpsDataReader {
       throw Error(fmt::format("atom style '{}' is not read{}", name, did_you_mean(name, known)),
                   {.key = "atom_style", .value = name});
     }
-    const std::string message = fmt::format("atom style '{}' is not read; known are: {}", name, fmt::join(known, ", "));
+    const std::string message =
+        fmt::format("atom style '{}' is not read; expected one of: {}", name, fmt::join(known, ", "));
     if (own.empty()) throw Error(message, {.key = "atom_style", .value = name});
     text_.fail(section.line, message, name);
   }

@@ -135,7 +135,8 @@ class SceneReader {
     if (G == nullptr) return read_constant_of_force(hamiltonian);
     scene_.hamiltonian.G = reader.number(*G, "G", "length^3/mass/time^2");
     if (!(*scene_.hamiltonian.G > 0)) {
-      reader.fail("G", fmt::format("G = {} is no constant of gravitation; a number above 0 is expected", to_text(*G)));
+      reader.fail(
+          "G", fmt::format("G = {} is not a valid gravitational constant; a number above 0 is expected", to_text(*G)));
     }
     context_.G = *G;
   }
@@ -220,7 +221,7 @@ class SceneReader {
   void check_splitting(const TableReader& reader, const std::vector<const SceneValue*>& constraints) const {
     const SceneSplitting& splitting = scene_.hamiltonian.splitting;
     if (!splitting.claims.periodic && scene_.particles.box().is_periodic()) {
-      reader.fail("type", fmt::format("{} knows open space only; take the box out", splitting.name));
+      reader.fail("type", fmt::format("{} does not support a periodic box; take the box out", splitting.name));
     }
     if (!splitting.make_constrained && !constraints.empty()) {
       reader.fail(constraints.front(), "constraint",

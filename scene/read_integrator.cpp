@@ -207,7 +207,7 @@ void read_step(TableReader& reader, SceneIntegrator& made, SceneValue& effective
   made.step = reader.number(*step, "step", "time");
   made.step_text = to_text(*step);
   if (made.step == 0)
-    reader.fail("step", fmt::format("a step of {} is no step; a time other than 0 is expected", made.step_text));
+    reader.fail("step", fmt::format("a step of {} is not valid; a time other than 0 is expected", made.step_text));
   if (made.adaptive()) made.classical->options.first = std::abs(made.step);
   effective.put("step", *step);
 }

@@ -104,10 +104,9 @@ void TableReader::expect_same_constant(double G) const {
   std::string where = "of the units";
   if (context_.G && context_.G->line > 0) where = fmt::format("in line {}", context_.G->line);
   if (context_.G && context_.G->line == 0) where = "of the scene";
-  fail("G",
-       fmt::format("G = {} differs from the G = {} {}; there is one constant of gravitation: give it once, as G in "
-                   "[hamiltonian]",
-                   format_number(G), format_number(known), where));
+  fail("G", fmt::format("G = {} differs from the G = {} {}; a scene has only one gravitational constant: give it once, "
+                        "as G in [hamiltonian]",
+                        format_number(G), format_number(known), where));
 }
 
 double TableReader::number(const SceneValue& value, std::string_view key, std::string_view dimension) const {

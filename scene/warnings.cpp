@@ -184,7 +184,7 @@ std::string other_gravitation(const Scene& scene) {
     const double same = unit_value(unit, units) * G / units.G;
     if (std::abs(same - 1) < 0.01) meant = fmt::format(", and is that of {0}: give it as \"{1:.12g} {0}\"", unit, G);
   }
-  return fmt::format("G = {:.6g} is {:.3g} times the constant of gravitation in these units, {:.6g} {}{}", G,
+  return fmt::format("G = {:.6g} is {:.3g} times the gravitational constant in these units, {:.6g} {}{}", G,
                      G / units.G, units.G, unit_of(parse_dimension("length^3/mass/time^2"), units), meant);
 }
 

@@ -62,7 +62,7 @@ std::vector<double> ladder(const Scene& scene, const Candidate& who, const Sampl
 void check(const CompareOptions& options, const Sampling& sampling) {
   for (const double step : options.steps) {
     if (!(step > 0) || !std::isfinite(step))
-      throw Error(fmt::format("a step of {} is no step; a time above 0 is expected", step));
+      throw Error(fmt::format("a step of {} is not valid; a time above 0 is expected", step));
     if (step > sampling.interval * (1 + 1e-9)) {
       throw Error(
           fmt::format("a step of {:.6g} is longer than the {:.6g} between two of the {} moments at which runs are "

@@ -209,8 +209,8 @@ TEST_CASE("what a decorator cannot do is refused by name", "[cli][own_decorator]
   CHECK(has(refused(" --set integrator.decorator.0.step=3"),
             "unknown key 'step' in decorator 'energy_projection'; did you mean 'steps'?"));
   CHECK(has(refused(" --set integrator.decorator.0.steps=0"), "steps = 0 is too few; at least 1 is expected"));
-  CHECK(
-      has(refused(" --set integrator.decorator.0.type="), "this decorator has no type; known are: energy_projection"));
+  CHECK(has(refused(" --set integrator.decorator.0.type="),
+            "this decorator has no type; expected one of: energy_projection"));
   CHECK(has(refused(" --set integrator.decorator=7"), "tables headed [[integrator.decorator]] are expected"));
   CHECK(has(refused(" --set every.0.type=shadow_hamiltonian"), "velocities are scaled by energy_projection"));
   CHECK(has(noether(folder, "explain scene.toml").err,

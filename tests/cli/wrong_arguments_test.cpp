@@ -20,10 +20,11 @@ const std::vector<Wrong> wrong_lines = {
     {"", 2, "no command is given; see `noether --help`"},
     {"rnu scene.toml", 2, "unknown command 'rnu'; did you mean 'run'?"},
     {"integrate scene.toml", 2,
-     "unknown command 'integrate'; known are: run, evaluate, explain, compare, advise, stability, list, describe, "
+     "unknown command 'integrate'; expected one of: run, evaluate, explain, compare, advise, stability, list, "
+     "describe, "
      "info, verify, convert, plot"},
     {"--vresion", 2, "unknown option '--vresion' before a command; did you mean '--version'?"},
-    {"-x run scene.toml", 2, "unknown option '-x' before a command; known are: --help, --version"},
+    {"-x run scene.toml", 2, "unknown option '-x' before a command; expected one of: --help, --version"},
     {"run", 2, "scene is required; see `noether run --help`"},
     {"run nothing.toml", 3, "nothing.toml: cannot be read: No such file or directory"},
     {"run .", 3, ".: cannot be read: Is a directory"},
@@ -42,12 +43,12 @@ const std::vector<Wrong> wrong_lines = {
     {"run scene.toml --out", 2, "--out needs a value; see `noether run --help`", false},
     {"run scene.toml --out ''", 2, "--out: the name of the folder is empty; see `noether run --help`"},
     {"run --version", 2,
-     "unknown option '--version' of 'run'; known are: --help, --out, --threads, --simd, --until, --set, "
+     "unknown option '--version' of 'run'; expected one of: --help, --out, --threads, --simd, --until, --set, "
      "--resume, --fresh, --quiet, --json"},
     {"run --foo", 2,
-     "unknown option '--foo' of 'run'; known are: --help, --out, --threads, --simd, --until, --set, "
+     "unknown option '--foo' of 'run'; expected one of: --help, --out, --threads, --simd, --until, --set, "
      "--resume, --fresh, --quiet, --json"},
-    {"run scene.toml --simd ''", 2, "unknown SIMD level ''; known are: base, avx2, avx512"},
+    {"run scene.toml --simd ''", 2, "unknown SIMD level ''; expected one of: base, avx2, avx512"},
     {"run scene.toml --simd avx3", 2, "unknown SIMD level 'avx3'; did you mean 'avx2'?"},
     {"run scene.toml --set integrator.steps", 2,
      "--set integrator.steps: expected key=value, such as integrator.step=\"50 day\""},
@@ -67,19 +68,21 @@ const std::vector<Wrong> wrong_lines = {
     {"run scene.toml --until ''", 2,
      "--until: the time is empty; give one, such as \"1 Myr\"; see `noether run --help`"},
     {"run scene.toml --until '3 day'", 2,
-     "--until 3 day: until: '3 day' has a unit; the reduced system takes bare numbers, such as '3'"},
+     "--until 3 day: until: '3 day' has a unit; the reduced unit system has plain numbers without units, such as '3'"},
     {"run scene.toml --until 0.505", 2,
      "--until 0.505: until = \"0.505\" is 50.5 steps of 0.01; the nearest whole numbers are "
      "0.5 (50 steps) and 0.51 (51 steps)"},
     {"evaluate scene.toml --forces nowhere/forces.csv", 3, "nowhere/forces.csv: the forces could not be written"},
     {"evaluate scene.toml --forces scene.toml", 2, "the table of forces 'scene.toml' must end in .csv"},
     {"evaluate nothing.toml", 3, "nothing.toml: cannot be read: No such file or directory"},
-    {"explain scene.toml --threads 2", 2, "unknown option '--threads' of 'explain'; known are: --help, --set, --json"},
+    {"explain scene.toml --threads 2", 2,
+     "unknown option '--threads' of 'explain'; expected one of: --help, --set, --json"},
     {"list", 2, "what is required; see `noether list --help`"},
     {"list forces --measured", 2, "only methods are measured, not forces; leave --measured out"},
     {"list method", 2, "there is no list of 'method'; did you mean 'methods'?"},
     {"list everything", 2,
-     "there is no list of 'everything'; known are: methods, hamiltonians, forces, thermostats, constraints, systems, "
+     "there is no list of 'everything'; expected one of: methods, hamiltonians, forces, thermostats, constraints, "
+     "systems, "
      "decorators, monitors, builders, units"},
     {"describe yoshda_4", 2, "there is nothing called 'yoshda_4'; did you mean 'yoshida_4'?"},
     {"describe qqqqqq", 2, "there is nothing called 'qqqqqq'; see `noether list`"},
@@ -90,7 +93,7 @@ const std::vector<Wrong> wrong_lines = {
     {"verify nothing.h5", 3, "nothing.h5: there is no such file"},
     {"convert scene.toml frames.xyz", 3, "scene.toml: cannot be opened as an HDF5 file: file signature not found"},
     {"convert scene.toml frames.pdb", 2,
-     "cannot convert to 'frames.pdb': unknown extension '.pdb'; known are: .xyz, .csv"},
+     "cannot convert to 'frames.pdb': unknown extension '.pdb'; expected one of: .xyz, .csv"},
     {"convert scene.toml frames.xyz --unwraped", 2,
      "unknown option '--unwraped' of 'convert'; did you mean '--unwrapped'?"},
     {"plot nothing.h5", 3, "nothing.h5: there is no such file"},

@@ -337,8 +337,8 @@ TEST_CASE("surfaces hold particles where they are unwrapped, and pressure says t
   Simulation<double> sim(m.particles, compose(hamiltonian_of(m, sites), schemes::verlet), 0.004);
   const auto& residual = sim.every(10, ConstraintResidual{m.constraints});
   CHECK(refusal_of([&] { sim.every(1, Pressure{}); }) ==
-        "monitor 'pressure' needs the virial, but a force or a constraint of this run tells none: what holds particles "
-        "in place has no part in a pressure");
+        "monitor 'pressure' needs the virial, but a force or constraint of this run has none: what holds particles in "
+        "place does not contribute to the pressure");
   REQUIRE(sim.run(2000).ok());
   CHECK(residual.worst() < 100 * 0x1p-53);
   const ParticleSystem<double>& s = sim.particles();

@@ -196,7 +196,8 @@ TEST_CASE("a wrong heading is refused with what is wrong and what to write", "[b
   // An unknown column comes before missing ones.
   CHECK(csv_refusal("name,mas [Msun],x [au]\nSun,1,0\n") == "b.csv:1: unknown column 'mas'; did you mean 'mass'?");
   CHECK(csv_refusal("name,mass [Msun],position [au]\n") ==
-        "b.csv:1: unknown column 'position'; known are: name, id, mass, x, y, z, vx, vy, vz, about, a, P, q, e, inc, "
+        "b.csv:1: unknown column 'position'; expected one of: name, id, mass, x, y, z, vx, vy, vz, about, a, P, q, e, "
+        "inc, "
         "Omega, omega, pomega, M, f, l, T");
   CHECK(csv_refusal("name,,mass [Msun]\n") == "b.csv:1: column 2 has no name");
   CHECK(csv_refusal("mass [Msun],x [au],x [au]\n") == "b.csv:1: column 'x' stands twice");
@@ -229,7 +230,8 @@ TEST_CASE("a broken row is refused with its line", "[bodies][messages]") {
   CHECK(csv_refusal(head + "Sun,1,0,0,1 2,0,0,0\n") == "b.csv:2: column 'z' is '1 2', which is no number");
   CHECK(csv_refusal("mass [kg];x [m];y;z;vx [m/s];vy;vz\n1;0;0;0,5;0;0;0\n") ==
         "b.csv:2: column 'z' is '0,5', which is no number; decimals have a point");
-  CHECK(csv_refusal("Sun,1,0,0,0,0,0,0\n").starts_with("b.csv:1: unknown column 'Sun'; known are: name, id, mass"));
+  CHECK(
+      csv_refusal("Sun,1,0,0,0,0,0,0\n").starts_with("b.csv:1: unknown column 'Sun'; expected one of: name, id, mass"));
   CHECK(
       csv_refusal("1,0,0,0,0,0,0\n") ==
       "b.csv:1: '1' is a number where a column name is expected; the first line names the columns, such as 'name,mass "
@@ -270,7 +272,7 @@ TEST_CASE("elements that are no orbit are refused", "[bodies][messages]") {
   CHECK(csv_refusal("mass [Msun],a [au],P [yr],e,inc [deg],Omega,omega,M\n1,,,,,,,\n0,,,0,0,0,0,0\n") ==
         "b.csv:3: the orbit has no size; give a, P or q");
   CHECK(csv_refusal("mass [Msun],a [au],P [yr],e,inc [deg],Omega,omega,M\n1,,,,,,,\n0,1,1.5,0,0,0,0,0\n") ==
-        "b.csv:3: P = 1.5 stands beside a; give one of a, P or q");
+        "b.csv:3: P = 1.5 is given together with a; give only one of a, P or q");
   CHECK(csv_refusal(by_elements + sun + "Earth,0,,0.5,0,0,0,0\n") == "b.csv:3: column 'a' is empty; expected a number");
   CHECK(csv_refusal(by_elements + "Sun,1,0,0,0,0,0,0\n").empty());
 }

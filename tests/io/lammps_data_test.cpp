@@ -150,13 +150,13 @@ TEST_CASE("parameters of types add to those of the file, or replace them", "[str
   const auto refusal = [](const io::StructureOptions& options) {
     return data_refusal(two_atoms + pair_atoms, options);
   };
-  CHECK(refusal({.units = &reduced, .types = {{.type = "3"}}}) == "there is no type '3'; known are: 1, 2");
+  CHECK(refusal({.units = &reduced, .types = {{.type = "3"}}}) == "there is no type '3'; expected one of: 1, 2");
   CHECK(refusal({.units = &reduced, .types = {{.type = "1", .mass = -1}}}) ==
         "the mass of type '1' is -1; 0 or more is expected");
   CHECK(refusal({.units = &reduced, .types = {{.type = "1", .epsilon = 1}}}) ==
-        "type '1' has epsilon and no sigma; give both or none");
+        "type '1' has epsilon but no sigma; give both or neither");
   CHECK(refusal({.units = &reduced, .types = {{.type = "1", .epsilon = 1, .sigma = 1}}}) ==
-        "type '2' has no epsilon and sigma, and others have; give epsilon = 0 where there is no Lennard-Jones force");
+        "type '2' has no epsilon and sigma, but others do; give epsilon = 0 where there is no Lennard-Jones force");
   CHECK(refusal({.units = &reduced, .pairs = {{"1", "2", 1, -2}}}) == "sigma is -2; 0 or more is expected");
 }
 
@@ -252,7 +252,7 @@ TEST_CASE("rows that are wrong are refused with their line", "[structure][messag
         "m.data:17: this row of section 'Atoms' has 4 words; style 'atomic' has 5, or 8 with images, in every row");
   CHECK(atoms("0 1 0 0 0") == "m.data:17: the id of an atom is '0'; a whole number is expected, 1 to 9007199254740992");
   CHECK(atoms("2 1 0 0 0", "sphere") ==
-        "m.data:14: atom style 'sphere' is not read; known are: atomic, charge, bond, angle, molecular, full");
+        "m.data:14: atom style 'sphere' is not read; expected one of: atomic, charge, bond, angle, molecular, full");
   CHECK(
       atoms("2 1 0 0 0", "hybrid atomic sphere").starts_with("m.data:14: atom style 'hybrid' is not read; known are"));
   CHECK(data_refusal(two_atoms + "\nAtoms # atomic\n\n1 1 0 1 0 0 0 0\n2 1 0 1 0 0 0.5 0\n") ==
@@ -281,9 +281,9 @@ TEST_CASE("terms that are wrong are refused with their line", "[structure][messa
   CHECK(
       bond(good, "Bond Coeffs\n\n1 10 1\n") ==
       "m.data:27: the style of these coefficients is not said; write it behind the name of the section, 'Bond Coeffs # "
-      "STYLE'; known are: harmonic, morse, fene");
+      "STYLE'; expected one of: harmonic, morse, fene");
   CHECK(bond(good, "Bond Coeffs # class2\n\n1 1 1 1 1\n") ==
-        "m.data:27: style 'class2' of section 'Bond Coeffs' is not read; known are: harmonic, morse, fene");
+        "m.data:27: style 'class2' of section 'Bond Coeffs' is not read; expected one of: harmonic, morse, fene");
   CHECK(bond(good, "Bond Coeffs # harmonic\n\n1 1\n") ==
         "m.data:27: style 'harmonic' of section 'Bond Coeffs' takes 2 coefficients; this row has 1");
   CHECK(bond(good, "Bond Coeffs # harmonic\n\n1 1 one\n") ==
@@ -306,7 +306,7 @@ TEST_CASE("terms that are wrong are refused with their line", "[structure][messa
   CHECK(dihedral("charmm", "1 1.5 0 0") ==
         "m.data:23: coefficient 2 of style 'charmm' is 1.5; a whole number is expected, 0 to 100");
   CHECK(data_refusal(two_atoms + pair_atoms + "\nPair Coeffs # buck\n\n1 1 1 1\n2 1 1 1\n")
-            .starts_with("m.data:21: pair style 'buck' is not read; known are: lj/cut"));
+            .starts_with("m.data:21: pair style 'buck' is not read; expected one of: lj/cut"));
 }
 
 TEST_CASE("four numbers of a pair need a style that has them", "[structure][messages]") {
@@ -318,7 +318,7 @@ TEST_CASE("four numbers of a pair need a style that has them", "[structure][mess
 
 TEST_CASE("no other potential is proposed in the place of one that is not read", "[structure][messages]") {
   CHECK(data_refusal(two_atoms + pair_atoms + "\nPair Coeffs # lj/cuts\n\n1 1 1\n2 1 1\n") ==
-        "m.data:21: pair style 'lj/cuts' is not read; known are: lj/cut, lj, lj/cut/coul/cut, lj/cut/coul/long, "
+        "m.data:21: pair style 'lj/cuts' is not read; expected one of: lj/cut, lj, lj/cut/coul/cut, lj/cut/coul/long, "
         "lj/cut/coul/dsf, lj/cut/coul/debye, lj/cut/coul/msm, lj/charmm/coul/charmm, lj/charmm/coul/long, "
         "lj/charmm/coul/msm");
   const auto angle = [](const std::string& style) {
@@ -326,7 +326,7 @@ TEST_CASE("no other potential is proposed in the place of one that is not read",
                                           "Angle Coeffs # " + style + "\n\n1 1 1 1\n\nAngles\n\n1 1 1 2 3\n"));
   };
   CHECK(angle("cosine/delta") ==
-        "m.data:23: style 'cosine/delta' of section 'Angle Coeffs' is not read; known are: "
+        "m.data:23: style 'cosine/delta' of section 'Angle Coeffs' is not read; expected one of: "
         "harmonic, cosine, cosine/squared, charmm");
   CHECK(data_refusal(with_coefficients("1 bonds\n1 bond types\n", "BondBond Coeffs\n\n1 1 1 1\n")) ==
         "m.data:21: section 'BondBond Coeffs' is not read: nothing here acts by it");

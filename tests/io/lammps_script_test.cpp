@@ -103,19 +103,19 @@ TEST_CASE("what says more than coefficients is refused by name", "[structure][me
         "m.in.0:19: 'include other.in' is not followed; list both files: coefficients = [\"a\", \"b\"]");
   CHECK(script_refusal("boundary p p f").starts_with("m.in.0:19: 'boundary' says more than coefficients"));
   CHECK(script_refusal("pair_style hybrid/overlay lj/cut 2.5 coul/long 2.5")
-            .starts_with("m.in.0:19: pair style 'hybrid/overlay' is not read; known are: lj/cut, "));
-  CHECK(
-      script_refusal("pair_coeff 1 1 buck 1 1 1").starts_with("m.in.0:19: pair style 'buck' is not read; known are: "));
+            .starts_with("m.in.0:19: pair style 'hybrid/overlay' is not read; expected one of: lj/cut, "));
+  CHECK(script_refusal("pair_coeff 1 1 buck 1 1 1")
+            .starts_with("m.in.0:19: pair style 'buck' is not read; expected one of: "));
   CHECK(script_refusal("mass 2*3 1") == "m.in.0:19: the type is '3'; a whole number is expected, 1 to 2");
   CHECK(script_refusal("pair_coeff 1 3 1 1") == "m.in.0:19: the type is '3'; a whole number is expected, 1 to 2");
   CHECK(
       script_refusal("pair_coeff 1 2 1 1 3.5") ==
       "m.in.0:19: the cutoffs of pairs differ: 3.5 here, 2.5 at line 14; a force has one cutoff, give it in the scene "
       "and take these out");
-  CHECK(
-      script_refusal("bond_coeff 1 30.0 1.0") ==
-      "m.in.0:19: the style of these coefficients is not said; give a line bond_style too; known are: harmonic, morse, "
-      "fene");
+  CHECK(script_refusal("bond_coeff 1 30.0 1.0") ==
+        "m.in.0:19: the style of these coefficients is not said; give a line bond_style too; expected one of: "
+        "harmonic, morse, "
+        "fene");
   CHECK(script_refusal("pair_modify mix sixthpower") ==
         "m.in.0:19: pair_modify mix sixthpower is not read; geometric and arithmetic are");
   CHECK(script_refusal("pair_modify compute no") ==

@@ -236,7 +236,7 @@ TEST_CASE("what elements cannot be about is refused", "[scene][bodies][messages]
   CHECK(reduced_scene(a + body_table("C", "mass = 0\na = 1\nabout = 'a'\n")).refusal() ==
         "scene.toml:10: about = \"a\": there is no 'a' above body 'C'; did you mean 'A'?");
   CHECK(reduced_scene(a + body_table("C", "mass = 0\na = 1\nabout = 'C'\n")).refusal() ==
-        "scene.toml:10: about = \"C\": there is no 'C' above body 'C'; known are: A");
+        "scene.toml:10: about = \"C\": there is no 'C' above body 'C'; expected one of: A");
   CHECK(reduced_scene(a + b + body_table("C", "mass = 0\na = 1\nabout = ['A', 'A']\n")).refusal() ==
         "scene.toml:14: about = [\"A\", \"A\"] names no barycenter; different bodies are expected");
   CHECK(reduced_scene(a + b + body_table("C", "mass = 0\na = 1\nabout = 3\n")).refusal() ==
@@ -248,7 +248,7 @@ TEST_CASE("what elements cannot be about is refused", "[scene][bodies][messages]
   CHECK(reduced_scene(a + b + body_table("C", "mass = 0\na = 1\nabout = 'B'\n")).refusal() ==
         "scene.toml:14: about = \"B\" has no mass to move about; a body with a mass is expected");
   CHECK(reduced_scene(a + body_table("C", "mass = 0\na = 1\nP = 3\n")).refusal() ==
-        "scene.toml:10: P = 3 stands beside a; give one of a, P or q");
+        "scene.toml:10: P = 3 is given together with a; give only one of a, P or q");
   CHECK(
       reduced_scene(a + body_table("C", "mass = 0\ne = 0.5\n")).refusal() ==
       "scene.toml:6: the elements of body 'C' say no size; give the semi-major axis a, the period P or the distance of "

@@ -163,7 +163,7 @@ TEST_CASE("a builder refuses what cannot be built", "[builders]") {
   CHECK(refusal_to_build(Lattice{.cells = {2, 2, 2}, .mass = 1}) ==
         "there is neither a density nor a constant; give one of them");
   CHECK(refusal_to_build(Lattice{.cells = {2, 2, 2}, .density = 1, .constant = 2, .mass = 1}) ==
-        "constant = 2 stands beside a density; give one of them");
+        "constant = 2 is given together with a density; give only one of them");
   CHECK(refusal_to_build(Lattice{.cells = {2, 2, 2}, .density = -1, .mass = 1}) ==
         "density = -1 is no density; a number above 0 is expected");
   CHECK(refusal_to_build(Lattice{.cells = {2, 2, 2}, .density = 1}) ==

@@ -263,9 +263,8 @@ TEST_CASE("bodies by elements go round by the G of the force", "[scene]") {
   CHECK(std::abs(std::sqrt(norm2(apart)) - 1) < 1e-12);
   const std::string watched = "[[every]]\ntype = 'elements'\nevery = 0.5\nG = 1\n";
   CHECK(refusal(circle + watched)
-            .ends_with("G = 1 differs from the G = 39.47841760435743 in line 14; there is one constant of gravitation: "
-                       "give it once, as G "
-                       "in [hamiltonian]"));
+            .ends_with("G = 1 differs from the G = 39.47841760435743 in line 14; a scene has only one gravitational "
+                       "constant: give it once, as G in [hamiltonian]"));
   CHECK(refusal(circle + watched, {"hamiltonian.force.0.G="}) == "");
 }
 

@@ -24,7 +24,7 @@ template <class Part> std::string part_refusal(const Part& part) {
 TEST_CASE("a part refuses fields that make no sense", "[parts]") {
   CHECK(part_refusal(Gravity{}).empty());
   CHECK(part_refusal(Gravity{.softening = -1}) == "softening = -1 is no length; 0 (point masses) or more is expected");
-  CHECK(part_refusal(Gravity{.G = 0.0}) == "G = 0 is no constant of gravitation; a number above 0 is expected");
+  CHECK(part_refusal(Gravity{.G = 0.0}) == "G = 0 is not a valid gravitational constant; a number above 0 is expected");
   CHECK(part_refusal(LinearDrag{.rate = -0.5}) == "rate = -0.5 drives instead of damping; 0 or more is expected");
   CHECK(part_refusal(Oblateness{.J2 = 0.1, .radius = 1}).empty());
   CHECK(part_refusal(Oblateness{.radius = 1}) == "oblateness has neither J2 nor J4, so it would do nothing; give one");

@@ -236,12 +236,12 @@ TEST_CASE("keys of structures that are wrong are refused at their lines", "[scen
   CHECK(structure_refusal("structure = 'chains.data'\nframe = 'barycenter'\n") ==
         "scene.toml:4: a periodic box has no centre of mass; take frame = \"barycenter\" out");
   CHECK(structure_refusal("structure = 'chains.data'\nmixing = 'arithmetic'\n") ==
-        "scene.toml:4: unknown mixing 'arithmetic'; known are: lorentz_berthelot, geometric");
+        "scene.toml:4: unknown mixing 'arithmetic'; expected one of: lorentz_berthelot, geometric");
   CHECK(structure_refusal("structure = 'chains.data'\nseed = 3\n") ==
         "scene.toml:4: seed has nothing to be drawn; give a temperature too");
   CHECK(structure_refusal(
             "structure = 'chains.data'\n[[particles.type]]\nname = '1'\n[[particles.type]]\nname = '3'\n") ==
-        "scene.toml:6: there is no type '3'; known are: 1, 2");
+        "scene.toml:6: there is no type '3'; expected one of: 1, 2");
   CHECK(structure_refusal("structure = 'chains.data'\n[[particles.type]]\nmass = 1\n") ==
         "scene.toml:4: this [[particles.type]] has no name; give that of a type");
   CHECK(structure_refusal("structure = 'chains.data'\n[[particles.pair]]\ntypes = ['1']\n") ==
@@ -268,7 +268,7 @@ TEST_CASE("particles come from one place, and its keys are the only ones", "[sce
         "scene.toml:3: mixing is of types, and there are none; give [[particles.type]] tables");
   CHECK(structure_refusal(
             "body = [{type = 'C', mass = 1, x = [0, 0, 0], v = [0, 0, 0]}]\n[[particles.type]]\nname = 'A'\n") ==
-        "scene.toml:3: there is no type 'C'; known are: A");
+        "scene.toml:3: there is no type 'C'; expected one of: A");
 }
 
 }  // namespace

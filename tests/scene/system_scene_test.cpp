@@ -99,7 +99,7 @@ steps = 8
   CHECK(system_refusal(without, parts) ==
         "scene.toml:2: system 'hunt' does not say where to start; give start = [...]");
   CHECK(system_refusal(text, standard_parts())
-            .starts_with("scene.toml:3: unknown system 'hunt'; known are: robertson, "));
+            .starts_with("scene.toml:3: unknown system 'hunt'; expected one of: robertson, "));
 }
 
 TEST_CASE("a start of the scene's own takes the place of the system's, and of its closed solution", "[scene]") {

@@ -77,8 +77,8 @@ TEST_CASE("what a table of bodies has wrong is told with what is meant", "[sweep
            {"L", "; did you mean 'l'?"},
            {"per", "; did you mean 'P'?"},
            {"tp", "; did you mean 'T'?"},
-           {"n", "; a mean motion n is not read: give the period P = 360 deg / n, or a"},
-           {"E", "; an eccentric anomaly E is not read: give M = E - e sin E, or f"}}) {
+           {"n", "; a mean motion n is not supported: give the period P = 360 deg / n, or a"},
+           {"E", "; an eccentric anomaly E is not supported: give M = E - e sin E, or f"}}) {
     CAPTURE(other);
     CHECK(refusal("name,mass [Msun],a [au],e," + other + "\nSun,1,,,\n") ==
           "b.csv:1: unknown column '" + other + "'" + told);
@@ -196,7 +196,7 @@ TEST_CASE("a constant of gravitation of other units is warned of", "[sweep][bodi
   };
   // One constant in the units that people have it in, by CODATA 2018 and the IAU's parsec: 4.30091727e-3 pc km^2/s^2
   // per Msun, 4 pi^2 au^3/yr^2 per Msun.
-  const std::string here = " times the constant of gravitation in these units, 0.000295912 au^3/Msun/day^2",
+  const std::string here = " times the gravitational constant in these units, 0.000295912 au^3/Msun/day^2",
                     that = here + ", and is that of ";
   CHECK(warned("6.6743e-11") == std::vector<std::string>{"G = 6.6743e-11 is 2.26e-07" + that +
                                                          "m^3/kg/s^2: give it as \"6.6743e-11 m^3/kg/s^2\""});
