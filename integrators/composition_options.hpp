@@ -23,7 +23,7 @@ struct CompositionOptions {
   void check_with_constraints() const {
     if (compensated) {
       refuse_field("compensated", "true",
-                   "does not go with constraints, which are solved to the rounding of plain sums");
+                   "does not work with constraints, which are solved to the rounding of plain sums");
     }
   }
 };

@@ -37,7 +37,7 @@ struct LangevinOptions {
     if (!(temperature >= 0 && std::isfinite(temperature)))
       refuse_field("temperature", temperature, "is no temperature; 0 or more is expected");
     if (!(friction >= 0 && std::isfinite(friction)))
-      refuse_field("friction", friction, "drives instead of damping; 0 or more is expected");
+      refuse_field("friction", friction, "would drive the motion instead of damping it; 0 or more is expected");
   }
 };
 

@@ -18,7 +18,7 @@ void MinimizeOptions::check() const {
     refuse_field("max_force", max_force, "is never reached; a force above 0 is expected");
   if (steps < 1) refuse_field("steps", static_cast<double>(steps), "leaves nothing to do; 1 or more is expected");
   if (!(max_displacement >= 0))
-    refuse_field("max_displacement", max_displacement, "is no length; 0 or more is expected");
+    refuse_field("max_displacement", max_displacement, "is not a valid length; 0 or more is expected");
 }
 
 namespace {

@@ -309,7 +309,7 @@ class SceneReader {
     }
     if (!kind.only_once.empty() && std::any_of(made.forces.begin(), made.forces.end(), is_it)) {
       const std::string_view mark = kind.only_once.starts_with("so ") ? "," : ";";
-      reader.fail("type", fmt::format("{} stands twice in the scene{} {}", kind.info.name, mark, kind.only_once));
+      reader.fail("type", fmt::format("{} appears twice in the scene{} {}", kind.info.name, mark, kind.only_once));
     }
     if (!(force.force.claims().range > 0)) return;
     const std::set<std::string> types = types_between(table);
@@ -317,10 +317,11 @@ class SceneReader {
       const std::set<std::string> theirs = types_between(other.effective);
       if (!is_it(other) || !(types.empty() || theirs.empty() || types == theirs)) continue;
       const std::set<std::string>& twice = types.empty() ? theirs : types;
-      reader.fail("type",
-                  fmt::format("{} stands twice in the scene, so {} would count twice; take one out", kind.info.name,
-                              twice.empty() ? "every pair"
-                                            : fmt::format("pairs of '{}' and '{}'", *twice.begin(), *twice.rbegin())));
+      reader.fail(
+          "type",
+          fmt::format(
+              "{} appears twice in the scene, so {} would count twice; take one of them out", kind.info.name,
+              twice.empty() ? "every pair" : fmt::format("pairs of '{}' and '{}'", *twice.begin(), *twice.rbegin())));
     }
   }
   /// The types whose pairs a force acts between; empty: all pairs.
@@ -354,7 +355,7 @@ class SceneReader {
       reader.finish();
       for (const SceneWatch& other : scene_.watches) {
         if (type == "trajectory" && other.kind == watch.kind) {
-          reader.fail("type", "trajectory stands twice in the scene; there is one run.h5, so give one cadence");
+          reader.fail("type", "trajectory appears twice in the scene, but there is one run.h5; give one cadence");
         }
       }
       watch.cadence = read_cadence(reader, type == "checkpoint", scene_.integrator, effective);

@@ -209,7 +209,8 @@ TEST_CASE("what a LAMMPS data file leaves out is asked for, at the force that wa
   };
   for (const char* command : {"run", "evaluate", "explain"}) {
     CHECK(refused(command + std::string(" scene.toml")) ==
-          "scene.toml:8: there is a bond and no parameters of any; give those of each kind in section 'Bond Coeffs' of "
+          "scene.toml:8: there is a bond, but no parameters for its kind; give the parameters of each kind in section "
+          "'Bond Coeffs' of "
           "the structure \"chain.data\"\n");
   }
   const std::string liquid = " --set 'hamiltonian.force=[{type=\"lennard_jones\", cutoff=2.5}]'";

@@ -305,8 +305,8 @@ TEST_CASE("bonds that reach half of an edge are refused, and those below are not
     });
   };
   CHECK(bind({3}) ==
-        "distance of 'a' and 'b', 3 apart, reaches half of an edge of the periodic box, 2.5: nearest images are no "
-        "longer those that are tied; enlarge the box");
+        "distance of 'a' and 'b', 3 apart, reaches half of an edge of the periodic box, 2.5: the nearest images would "
+        "no longer be the tied ones; enlarge the box");
   CHECK(bind({2.5}) != "");
   CHECK(bind({}) == "");  // the nearest images are 2 apart
   CHECK(bind({2}) == "");

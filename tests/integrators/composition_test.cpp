@@ -317,7 +317,7 @@ TEST_CASE("drag without forces is exact for any step", "[composition]") {
     CHECK(std::abs(run.particles().velocities()[0][0] - expected) < 2 * 81 * ulp * expected);
   }
   CHECK_THROWS_WITH(test::damped(gravity(), {.rate = -1}),
-                    "a drag rate of -1.000000 drives instead of damping; give 0 or more");
+                    "a drag rate of -1.000000 would drive the motion instead of damping it; give 0 or more");
 }
 
 TEST_CASE("compensated sums are right to half an ulp after any number of steps", "[composition]") {

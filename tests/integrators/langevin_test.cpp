@@ -287,7 +287,7 @@ TEST_CASE("baths that cannot be are refused by name", "[langevin]") {
   CHECK(test::refusal_of([&] { Langevin(field, {.temperature = -1, .friction = 1}); }) ==
         "temperature = -1 is no temperature; 0 or more is expected");
   CHECK(test::refusal_of([&] { Langevin(field, {.temperature = 1, .friction = -2}); }) ==
-        "friction = -2 drives instead of damping; 0 or more is expected");
+        "friction = -2 would drive the motion instead of damping it; 0 or more is expected");
   const Langevin bath(field, {.temperature = 1, .friction = 1});
   CHECK(test::refusal_of([&] { compose(bath, schemes::yoshida_4); }).find("part O of 'langevin' is irreversible") !=
         std::string::npos);

@@ -75,10 +75,10 @@ TEST_CASE("a pair force may stand in a scene for each pair of types, and once fo
   };
   CHECK(refused("first = '1'\nsecond = '1'\n", "first = '1'\nsecond = '2'\n").empty());
   CHECK(refused("first = '2'\nsecond = '1'\n", "first = '1'\nsecond = '2'\n") ==
-        "wca stands twice in the scene, so pairs of '1' and '2' would count twice; take one out");
+        "wca appears twice in the scene, so pairs of '1' and '2' would count twice; take one of them out");
   CHECK(refused("first = '2'\nsecond = '2'\n", "") ==
-        "wca stands twice in the scene, so pairs of '2' and '2' would count twice; take one out");
-  CHECK(refused("", "") == "wca stands twice in the scene, so every pair would count twice; take one out");
+        "wca appears twice in the scene, so pairs of '2' and '2' would count twice; take one of them out");
+  CHECK(refused("", "") == "wca appears twice in the scene, so every pair would count twice; take one of them out");
 }
 
 TEST_CASE("particles without mass that no force can move are warned of", "[scene][warnings]") {
