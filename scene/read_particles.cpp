@@ -84,8 +84,8 @@ std::optional<double> time_of_pericenter(TableReader& body, const std::optional<
     const std::string* text = value != nullptr ? value->get<std::string>() : nullptr;
     const bool in_days = text != nullptr && is_in_days(*text, *body.context().units);
     if (in_days && io::looks_like_julian_day(*T / unit_value("day", *body.context().units))) {
-      body.fail("T", fmt::format("T = {0} is counted from the start, and looks like a Julian day; give T = \"JD ...\" "
-                                 "and the epoch in [particles], or a time in yr if it is meant so",
+      body.fail("T", fmt::format("T = {0} is counted from the start, but looks like a Julian day; give T = \"JD ...\" "
+                                 "and the epoch in [particles], or give the time in yr if it is a time",
                                  to_text(*value)));
     }
     return T;
@@ -94,9 +94,10 @@ std::optional<double> time_of_pericenter(TableReader& body, const std::optional<
   if (units.is_reduced())
     body.fail("T", fmt::format("T = {} is a Julian day; the reduced system has none", to_text(*value)));
   if (!epoch) {
-    body.fail("T", fmt::format("T = {} is a Julian day, and nobody says which the start is; give epoch = \"JD ...\" in "
-                               "[particles]",
-                               to_text(*value)));
+    body.fail("T",
+              fmt::format("T = {} is a Julian day, but the epoch of the start is not given; give epoch = \"JD ...\" in "
+                          "[particles]",
+                          to_text(*value)));
   }
   if (!day->scale.empty() && !epoch->scale.empty() && day->scale != epoch->scale) {
     body.fail("T", fmt::format("T = {} is not in the time scale of the epoch, {}", to_text(*value), epoch->scale));

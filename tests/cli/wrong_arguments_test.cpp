@@ -88,7 +88,7 @@ const std::vector<Wrong> wrong_lines = {
     {"describe qqqqqq", 2, "there is nothing called 'qqqqqq'; see `noether list`"},
 #if NOETHER_HDF5
     {"info nothing.h5", 3, "nothing.h5: there is no such file"},
-    {"info .", 3, ".: this is no file"},
+    {"info .", 3, ".: this is not a regular file"},
     {"info scene.toml", 3, "scene.toml: cannot be opened as an HDF5 file: file signature not found"},
     {"verify nothing.h5", 3, "nothing.h5: there is no such file"},
     {"convert scene.toml frames.xyz", 3, "scene.toml: cannot be opened as an HDF5 file: file signature not found"},
@@ -202,10 +202,11 @@ TEST_CASE("files that are cut off are told apart from sound ones", "[cli][messag
   }
   const ProcessResult plot = noether(folder, "plot scene.out/checkpoint.h5");
   CHECK(plot.exit_code == 2);
-  CHECK(plot.err == "scene.out/checkpoint.h5 is a checkpoint, which holds one moment; plot the run.h5 beside it\n");
+  CHECK(plot.err ==
+        "scene.out/checkpoint.h5 is a checkpoint, which contains one moment only; plot the run.h5 beside it\n");
   const ProcessResult convert = noether(folder, "convert scene.out/checkpoint.h5 a.csv");
   CHECK(convert.exit_code == 3);
-  CHECK(convert.err.starts_with("scene.out/checkpoint.h5: this is no trajectory of noether: "));
+  CHECK(convert.err.starts_with("scene.out/checkpoint.h5: this is not a trajectory of noether: "));
 }
 
 #endif

@@ -199,7 +199,7 @@ TEST_CASE("a start that a run.h5 does not have is refused in one line", "[scene]
   CHECK(said("bodies = 'run.h5'\nframe = 'baricenter'\n") ==
         "2 scene.toml:4: unknown frame 'baricenter'; did you mean 'barycenter'?");
   CHECK(said("structure = 'run.h5'\n") ==
-        "2 scene.toml:3: 'run.h5' is no structure; particles of a run go on by bodies = \"run.h5\"");
+        "2 scene.toml:3: 'run.h5' is not a structure; to start from the particles of a run give bodies = \"run.h5\"");
   CHECK(said("bodies = 'nosuch.h5'\n") == "3 scene.toml:3: nosuch.h5: there is no such file");
   CHECK(said("bodies = 'run.h5'\nepoch = 'JD 2451545'\n").starts_with("2 scene.toml:4: unknown key 'epoch'"));
   CHECK(

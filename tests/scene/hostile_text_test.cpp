@@ -146,11 +146,11 @@ TEST_CASE("bytes that are no text are refused as a scene", "[scene][hostile]") {
 }
 
 TEST_CASE("a device is no scene, and no table of bodies", "[scene][hostile]") {
-  CHECK(load_refusal("/dev/zero").ends_with("zero: is a device; a file is expected"));
+  CHECK(load_refusal("/dev/zero").ends_with("zero: is a device, not a file"));
   const ScratchFolder folder;
   write_text(folder / "x.toml",
              "units = \"reduced\"\nhamiltonian.type = \"wisdom_holman\"\nparticles.bodies = \"/dev/zero\"\n");
-  CHECK(load_refusal(folder / "x.toml").ends_with("zero: is a device; a file is expected"));
+  CHECK(load_refusal(folder / "x.toml").ends_with("zero: is a device, not a file"));
 }
 
 }  // namespace
