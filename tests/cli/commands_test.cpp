@@ -224,10 +224,10 @@ TEST_CASE("what a LAMMPS data file leaves out is asked for, at the force that wa
 TEST_CASE("charges that no force looks at are warned of", "[cli][messages]") {
   const SceneFolder pair(close_pair);
   const std::string run = "run scene.toml --fresh --set integrator.step=0.0001 --set particles.body.a.charge=";
-  const std::string warning = "\nwarning: the particles have charges that no force looks at\n";
+  const std::string warning = "\nwarning: the particles have charges that no force uses\n";
   const std::string field = " --set 'hamiltonian.force.1={type=\"reaction_field\", cutoff=1}'";
   CHECK(has(output(pair, run + "0.5"), warning));
-  CHECK(has(output(pair, run + "0.5 --json"), R"("warnings":["the particles have charges that no force looks at"])"));
+  CHECK(has(output(pair, run + "0.5 --json"), R"("warnings":["the particles have charges that no force uses"])"));
   CHECK_FALSE(has(output(pair, run + "0"), "warning"));
   CHECK_FALSE(has(output(pair, run + "0.5" + field), "warning"));
 }
@@ -238,7 +238,8 @@ TEST_CASE("exclusions that no force leaves out are warned of", "[cli][messages]"
   const std::string springs =
       " --set 'hamiltonian.force=[{type=\"harmonic_bond\", pairs=[[\"a\",\"c\"]], k=1, length=1}]'";
   CHECK(has(output(pair, run + springs),
-            "\nwarning: exclusions change nothing: no force leaves pairs out; those that do are lennard_jones, wca, "
+            "\nwarning: exclusions have no effect: no force of this scene leaves pairs out; forces that do are "
+            "lennard_jones, wca, "
             "morse, buckingham, reaction_field\n"));
   CHECK_FALSE(has(output(pair, run), "warning"));
 }
@@ -368,7 +369,7 @@ TEST_CASE("list and describe tell orders, evaluations and limits as docs/methods
   CHECK(json_member(json_output(folder, "describe gbs", "describe"), "order_in_quad") == "24");
   CHECK(has(read_text(std::filesystem::path(NOETHER_SOURCE_DIR) / "docs/methods.md"),
             "\n| gragg_bulirsch_stoer | varies, to 16, in Quad to 24 ("));
-  CHECK(has(output(folder, "describe rk4"), "\n  4 evaluations a step of given length\n"));
+  CHECK(has(output(folder, "describe rk4"), "\n  4 evaluations per step of given length\n"));
 }
 
 TEST_CASE("whatever is listed can be described", "[cli][describe][slow]") {

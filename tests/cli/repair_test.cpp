@@ -141,7 +141,7 @@ TEST_CASE("what a run is writing is not repaired, and what is not there cannot b
     const ProcessResult refused = noether(folder, "verify scene.out/run.h5 --repair");
     CHECK(refused.exit_code == 2);
     CHECK(refused.out.empty());
-    CHECK(refused.err == "scene.out: a run is writing here; wait for it, then repair\n");
+    CHECK(refused.err == "scene.out: a run is writing to this file; wait for it, then repair\n");
   }
   const ProcessResult missing = noether(folder, "verify nowhere/run.h5 --repair");
   CHECK(missing.exit_code == 3);

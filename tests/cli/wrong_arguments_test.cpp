@@ -32,13 +32,14 @@ const std::vector<Wrong> wrong_lines = {
     {"run scene.toml other.toml", 2, "unexpected argument 'other.toml' of 'run'"},
     {"run scene.toml --thread 2", 2, "unknown option '--thread' of 'run'; did you mean '--threads'?"},
     {"run scene.toml --threads 0", 2,
-     "--threads: '0' is no number of threads; give one from 1 to 65536; see `noether run --help`"},
+     "--threads: '0' is not a valid number of threads; give one from 1 to 65536; see `noether run --help`"},
     {"run scene.toml --threads two", 2,
-     "--threads: 'two' is no number of threads; give one from 1 to 65536; see `noether run --help`"},
+     "--threads: 'two' is not a valid number of threads; give one from 1 to 65536; see `noether run --help`"},
     {"run scene.toml --threads 1.5", 2,
-     "--threads: '1.5' is no number of threads; give one from 1 to 65536; see `noether run --help`"},
+     "--threads: '1.5' is not a valid number of threads; give one from 1 to 65536; see `noether run --help`"},
     {"run scene.toml --threads 99999999999999999999", 2,
-     "--threads: '99999999999999999999' is no number of threads; give one from 1 to 65536; see `noether run --help`"},
+     "--threads: '99999999999999999999' is not a valid number of threads; give one from 1 to 65536; see `noether run "
+     "--help`"},
     {"run scene.toml --threads 1 --threads 2", 2, "--threads can be given only once; see `noether run --help`"},
     {"run scene.toml --out", 2, "--out needs a value; see `noether run --help`", false},
     {"run scene.toml --out ''", 2, "--out: the name of the folder is empty; see `noether run --help`"},
@@ -59,7 +60,7 @@ const std::vector<Wrong> wrong_lines = {
      "--set integrator.method=yoshda_4: unknown method 'yoshda_4'; did you mean 'yoshida_4'?"},
     {"info ''", 2, "file: the name of the file is empty; see `noether info --help`"},
     {"run scene.toml --set every.9.steps=3", 2,
-     "--set every.9.steps=3: there is no number 9; there are 4, counted from 0"},
+     "--set every.9.steps=3: there is no element 9; there are 4, counted from 0"},
     {"run scene.toml --resume --fresh", 2, "--resume excludes --fresh; see `noether run --help`"},
     {"run scene.toml --quiet --json", 2, "--quiet excludes --json; see `noether run --help`"},
     {"run scene.toml --quiet=7", 2, "--quiet takes no value; see `noether run --help`"},
@@ -198,7 +199,8 @@ TEST_CASE("files that are cut off are told apart from sound ones", "[cli][messag
     const bool verified = std::string(line).starts_with("verify");
     CHECK(result.err ==
           "cut.h5: cut short: 3000 of " + std::to_string(whole.size()) + " bytes are there" +
-              (verified ? "; 'noether verify --repair cut.h5' mends it if no more than frames is missing\n" : "\n"));
+              (verified ? "; 'noether verify --repair cut.h5' repairs it if only frames or samples are missing\n"
+                        : "\n"));
   }
   const ProcessResult plot = noether(folder, "plot scene.out/checkpoint.h5");
   CHECK(plot.exit_code == 2);

@@ -174,7 +174,7 @@ TEST_CASE("settling completes a copy and leaves the run alone", "[composition]")
   CHECK(s.phase() == raw.phase());
   CHECK(copy.phase() == Phase{});
   CHECK_FALSE(test::same_bits(s, copy));
-  CHECK_THROWS_WITH(composition.settle(s, copy, {}, 1.0, true), "a composition stands at whole steps only");
+  CHECK_THROWS_WITH(composition.settle(s, copy, {}, 1.0, true), "a composition can stop at whole steps only");
 }
 
 TEST_CASE("a look and the next kick share one evaluation of the forces", "[composition]") {

@@ -116,7 +116,7 @@ TEST_CASE("a tree of values is held to what texts grant: keys once, UTF-8, no en
     return std::string();
   };
   CHECK(message([](SceneValue& root) { root.get<SceneValue::Table>()->emplace_back("units", SceneValue::of(true)); }) ==
-        "scene: the key 'units' stands twice; give it once");
+        "scene: the key 'units' appears twice; give it once");
   CHECK(message([](SceneValue& root) { root.put("title", SceneValue::of(std::string("\xFF"))); }) ==
         "scene: title is not UTF-8; give text in that encoding");
   CHECK(message([](SceneValue& root) {
@@ -210,7 +210,7 @@ TEST_CASE("--set with nothing behind the sign takes a key out, or a table of a l
   CHECK(read(two_bodies, {"every="}).watches.empty());
   CHECK(refusal(two_bodies, {"integrator.stp="}) ==
         "--set integrator.stp=: there is no 'stp' to take out of the scene; did you mean 'step'?");
-  CHECK(refusal(two_bodies, {"every.9="}) == "--set every.9=: there is no number 9; there are 2, counted from 0");
+  CHECK(refusal(two_bodies, {"every.9="}) == "--set every.9=: there is no element 9; there are 2, counted from 0");
   CHECK(refusal(two_bodies, {"integrator.method="}).find("method") != std::string::npos);
 }
 

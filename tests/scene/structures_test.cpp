@@ -111,7 +111,7 @@ TEST_CASE("exclusions by id have the bits of those that a program names by index
   CHECK(end_of(named) != end_of(plain));
   check_effective(named);
   CHECK(structure_refusal("structure = 'chains.data'\nexclusions = [[1, 2],\n [3, 99]]\n") ==
-        "scene.toml:5: exclusions holds [3, 99], but there is no particle with id 99");
+        "scene.toml:5: exclusions contains [3, 99], but there is no particle with id 99");
 }
 
 TEST_CASE("a structure runs in its box, and has changed where its hash has", "[scene][structure]") {
@@ -223,8 +223,8 @@ TEST_CASE("keys of structures that are wrong are refused at their lines", "[scen
   CHECK(structure_refusal("structure = 'chains.data'\nspecial = [0, 2, 1]\n") ==
         "scene.toml:4: special contains 2; factors from 0 to 1 are expected");
   CHECK(structure_refusal("structure = 'chains.data'\nspecial = [0, 1]\n") ==
-        "scene.toml:4: special = [0, 1] is no list of three; what is left of the forces of pairs one, two and three "
-        "bonds apart is expected: [s12, s13, s14]");
+        "scene.toml:4: special = [0, 1] is not a list of three numbers; the factors of the forces between particles "
+        "one, two and three bonds apart are expected: [s12, s13, s14]");
   CHECK(structure_refusal("structure = 'chains.data'\natom_style = 'full'\n") ==
         "chains.data:32: the file says atom style 'molecular', but the scene says 'full'; take atom_style out");
   CHECK(structure_refusal("structure = 'chains.data'\nbox = [1, 2, 3]\n") ==
@@ -236,12 +236,12 @@ TEST_CASE("keys of structures that are wrong are refused at their lines", "[scen
   CHECK(structure_refusal("structure = 'chains.data'\nmixing = 'arithmetic'\n") ==
         "scene.toml:4: unknown mixing 'arithmetic'; expected one of: lorentz_berthelot, geometric");
   CHECK(structure_refusal("structure = 'chains.data'\nseed = 3\n") ==
-        "scene.toml:4: seed has nothing to be drawn; give a temperature too");
+        "scene.toml:4: seed has no effect without a temperature; give a temperature too");
   CHECK(structure_refusal(
             "structure = 'chains.data'\n[[particles.type]]\nname = '1'\n[[particles.type]]\nname = '3'\n") ==
         "scene.toml:6: there is no type '3'; expected one of: 1, 2");
   CHECK(structure_refusal("structure = 'chains.data'\n[[particles.type]]\nmass = 1\n") ==
-        "scene.toml:4: this [[particles.type]] has no name; give that of a type");
+        "scene.toml:4: this [[particles.type]] has no name; give the name of the type");
   CHECK(structure_refusal("structure = 'chains.data'\n[[particles.pair]]\ntypes = ['1']\n") ==
         "scene.toml:5: a pair has two types; give them as types = [\"A\", \"B\"]");
   CHECK(structure_refusal("structure = 'chains.data'\n[[particles.pair]]\ntypes = ['1', '2']\nsigma = 1\n") ==
@@ -257,13 +257,13 @@ TEST_CASE("particles come from one place, and its keys are the only ones", "[sce
   CHECK(structure_refusal("type = 'lattice'\nmass = 1\ndensity = 1\n")
             .starts_with("scene.toml:2: builder 'lattice' has no cells"));
   CHECK(structure_refusal("type = 'lattice'\nmass = 1\ndensity = 1\ncells = [1, 2]\n") ==
-        "scene.toml:6: cells = [1, 2] is no list of three; cells along x, y and z are expected");
+        "scene.toml:6: cells = [1, 2] is not a list of three numbers; the cells along x, y and z are expected");
   CHECK(structure_refusal("type = 'liquid'\nmass = 1\ndensity = 1\nparticles = 9\ncells = 3\n")
             .starts_with("scene.toml:7: unknown key 'cells' in builder 'liquid'"));
   CHECK(structure_refusal("body = [{type = 'A', mass = 1, x = [0, 0, 0], v = [0, 0, 0]}]\n") ==
-        "scene.toml:3: body 'body_1' has a type, and there are none; give [[particles.type]] tables");
+        "scene.toml:3: body 'body_1' has a type, but there are no types; give [[particles.type]] tables");
   CHECK(structure_refusal("mixing = 'geometric'\nbody = [{mass = 1, x = [0, 0, 0], v = [0, 0, 0]}]\n") ==
-        "scene.toml:3: mixing is of types, and there are none; give [[particles.type]] tables");
+        "scene.toml:3: mixing needs types, but there are none; give [[particles.type]] tables");
   CHECK(structure_refusal(
             "body = [{type = 'C', mass = 1, x = [0, 0, 0], v = [0, 0, 0]}]\n[[particles.type]]\nname = 'A'\n") ==
         "scene.toml:3: there is no type 'C'; expected one of: A");

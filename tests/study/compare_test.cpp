@@ -472,8 +472,8 @@ TEST_CASE("what cannot be compared is refused in words", "[compare]") {
   }
   CHECK(refusal({.methods = {"verlet"}, .until = 1e300}) ==
         "a run of 1e+300 has more steps of 0.4 than can be counted; give steps of at least 1.2e+284");
-  CHECK(refusal({.tolerances = {2}}) == "2 is no tolerance; a number between 0 and 1 is expected");
-  CHECK(refusal({.repeats = 0}) == "0 repeats measure nothing; 1 or more is expected");
+  CHECK(refusal({.tolerances = {2}}) == "2 is not a valid tolerance; a number between 0 and 1 is expected");
+  CHECK(refusal({.repeats = 0}) == "0 repeats are too few; 1 or more is expected");
 }
 
 }  // namespace
