@@ -168,7 +168,8 @@ class TypedBodies {
   int type_of(TableReader& body) {
     const SceneValue* value = body.find("type");
     if (value == nullptr && types_.size() > 1) {
-      body.fail(nullptr, "type", fmt::format("{} has no type, but there are {} types; give one", body.what(), types_.size()));
+      body.fail(nullptr, "type",
+                fmt::format("{} has no type, but there are {} types; give one", body.what(), types_.size()));
     }
     const std::string name = value == nullptr ? types_[0].type : body.text("type");
     try {
