@@ -56,7 +56,7 @@ std::string first_line(const std::filesystem::path& file) {
   while (std::getline(in, line)) {
     if (line.find_first_not_of(" \t^") != std::string::npos) return line;
   }
-  return "it said nothing";
+  return "it printed no message";
 }
 
 /// Runs `gnuplot script` with its output in `log`.

@@ -144,7 +144,7 @@ template <class I> bool has_action(const I& integrator) {
 template <class I, class Real>
 Advance advance_with_action(I& integrator, ParticleSystem<Real>& s, const Span& span, Real& action) {
   if constexpr (GivesAction<I>) return integrator.advance_with_action(s, span, action);
-  throw LogicError("a method that gives no action was asked for it");
+  throw LogicError("the action was requested from a method that does not compute it");
 }
 /// Completes a copy. @return the action of the flows that do, if wanted; 0 for a method that gives none
 template <class I, class Real>

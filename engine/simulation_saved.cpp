@@ -29,7 +29,7 @@ template <class Real> void Simulation<Real>::check_columns(const ParticleSystem<
     if (!column.info.moves()) continue;
     const auto* found = saved.columns().find(column.info.name);
     if (found != nullptr && found->info == column.info) continue;
-    throw Error(fmt::format("the saved run has no column '{}' of {} numbers a particle, which this one moves",
+    throw Error(fmt::format("the saved run has no column '{}' of {} numbers per particle, which this one moves",
                             column.info.name, column.info.width));
   }
 }

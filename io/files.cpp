@@ -47,7 +47,7 @@ class Descriptor {
 std::string read_bytes(const std::filesystem::path& file, std::size_t most) {
   std::error_code unknown;
   if (std::filesystem::is_character_file(file, unknown)) {
-    throw FileError("is a device; a file is expected", {.file = file.string()});
+    throw FileError("is a device, not a file", {.file = file.string()});
   }
   const Descriptor source(file, O_RDONLY);
   if (source < 0) cannot_be_read(file, errno);

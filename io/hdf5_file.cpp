@@ -175,7 +175,7 @@ ElementType Hdf5Dataset::type() const {
 
 void Hdf5Dataset::require(ElementType expected) const {
   if (type() != expected)
-    refuse(handle_->file(), fmt::format("'{}' has an unexpected type; was the file written by noether?", path_));
+    refuse(handle_->file(), fmt::format("'{}' has an unexpected type; the file may not be written by noether", path_));
 }
 
 std::vector<Index> Hdf5Dataset::growing_shape() const {
@@ -294,11 +294,11 @@ std::shared_ptr<Hdf5Handle> open_file(const std::filesystem::path& file, bool wr
   if (!std::filesystem::exists(file, ignored))
     refuse(access.file(), "there is no such file" + near_file(file, "run.h5"));
   if (!std::filesystem::is_regular_file(file, ignored))
-    refuse(access.file(), "is not a file" + near_file(file, "run.h5"));
+    refuse(access.file(), "this is not a regular file" + near_file(file, "run.h5"));
   const hid_t id = H5Fopen(file.c_str(), writing ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access);
   const std::uintmax_t size = id < 0 ? std::filesystem::file_size(file, ignored) : 0;
   if (id < 0 && size < expected_size(file))
-    refuse(access.file(), fmt::format("cut short: {} of {} bytes are there", size, expected_size(file)));
+    refuse(access.file(), fmt::format("cut short: only {} of {} bytes are there", size, expected_size(file)));
   auto handle = share(id, H5Fclose, access.file(), "cannot be opened as an HDF5 file");
   if (writing) access.file()->ordered = ordered_file(id);
   return handle;

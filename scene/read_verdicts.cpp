@@ -27,7 +27,7 @@ std::vector<std::string> texts(TableReader& reader, std::string_view key, std::s
 std::optional<double> figure(TableReader& reader, std::string_view key) {
   const auto value = reader.quantity(key, "1");
   if (value && !(*value > 0)) {
-    reader.fail(key, fmt::format("{} = {} is no bound of an error; a number above 0 is expected", key,
+    reader.fail(key, fmt::format("{} = {} is not a valid bound of an error; a number above 0 is expected", key,
                                  to_text(*reader.find(key))));
   }
   return value;

@@ -228,8 +228,7 @@ Truth find_truth(const Scene& scene, const Sampling& sampling, const TruthOption
   }
   if (truth.error) {
     truth.note = fmt::format(
-        "two runs in extended precision differ by {:.1e}: the motion is too irregular to have a "
-        "truth over this time",
+        "two runs in extended precision differ by {:.1e}: the motion is too irregular for a reference over this time",
         *truth.error);
   }
   return Truth{.name = std::string(no_truth), .note = truth.note, .seconds = truth.seconds};

@@ -421,7 +421,7 @@ std::span<const MethodInfo> methods::bdf_list() {
        .summary =
            "backward differentiation of variable step and order 1 to 5 (6 at steps of one length only: bdf_6), with "
            "kept Jacobians; dense output",
-       .use = "large stiff systems: Jacobians are kept, one solution a step",
+       .use = "large stiff systems: Jacobians are kept, one solution per step",
        .source = "ShampineReichelt1997",
        .family = "multistep",
        .options = {linear_solver},

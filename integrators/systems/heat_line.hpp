@@ -46,11 +46,12 @@ struct HeatLine {
     if (points > most) {
       refuse_field("points", static_cast<double>(points), fmt::format("is too many; at most {} are expected", most));
     }
-    if (points < 1) refuse_field("points", static_cast<double>(points), "leaves no point; 1 or more is expected");
-    if (!(length > 0)) refuse_field("length", length, "is no length of a line; one above 0 is expected");
+    if (points < 1) refuse_field("points", static_cast<double>(points), "is too few; 1 or more is expected");
+    if (!(length > 0)) refuse_field("length", length, "is not a valid length of a line; a length above 0 is expected");
     if (!(diffusivity >= 0)) refuse_field("diffusivity", diffusivity, "is negative; 0 or more is expected");
     if (mode < 1 || mode > points) {
-      refuse_field("mode", static_cast<double>(mode), "cannot be told by the points; 1 to points is expected");
+      refuse_field("mode", static_cast<double>(mode),
+                   "cannot be resolved by the points; 1 to the number of points is expected");
     }
   }
 

@@ -44,10 +44,13 @@ struct RcLadder {
     if (stages > most) {
       refuse_field("stages", static_cast<double>(stages), fmt::format("is too many; at most {} are expected", most));
     }
-    if (stages < 1) refuse_field("stages", static_cast<double>(stages), "is no ladder; 1 or more is expected");
-    if (!(resistance > 0)) refuse_field("resistance", resistance, "is no resistance; a number above 0 is expected");
-    if (!(capacitance > 0)) refuse_field("capacitance", capacitance, "is no capacitance; a time above 0 is expected");
-    if (!(spread > 0)) refuse_field("spread", spread, "is no ratio of capacitances; a number above 0 is expected");
+    if (stages < 1) refuse_field("stages", static_cast<double>(stages), "is too few; 1 or more is expected");
+    if (!(resistance > 0))
+      refuse_field("resistance", resistance, "is not a valid resistance; a number above 0 is expected");
+    if (!(capacitance > 0))
+      refuse_field("capacitance", capacitance, "is not a valid capacitance; a time above 0 is expected");
+    if (!(spread > 0))
+      refuse_field("spread", spread, "is not a valid ratio of capacitances; a number above 0 is expected");
   }
 
   static constexpr std::int64_t most = 1'000'000;  ///< of them, so that memory is not asked for in vain

@@ -32,7 +32,7 @@ struct Robertson {
   /// @throws Error  for a negative rate
   void check() const {
     for (const auto& [key, rate] : {std::pair{"k1", k1}, std::pair{"k2", k2}, std::pair{"k3", k3}}) {
-      if (!(rate >= 0) || !std::isfinite(rate)) refuse_field(key, rate, "is no rate; 0 or a number above is expected");
+      if (!(rate >= 0) || !std::isfinite(rate)) refuse_field(key, rate, "is not a valid rate; 0 or more is expected");
     }
   }
 

@@ -209,7 +209,8 @@ TEST_CASE("what a LAMMPS data file leaves out is asked for, at the force that wa
   };
   for (const char* command : {"run", "evaluate", "explain"}) {
     CHECK(refused(command + std::string(" scene.toml")) ==
-          "scene.toml:8: there is a bond and no parameters of any; give those of each kind in section 'Bond Coeffs' of "
+          "scene.toml:8: there is a bond, but no parameters for its kind; give the parameters of each kind in section "
+          "'Bond Coeffs' of "
           "the structure \"chain.data\"\n");
   }
   const std::string liquid = " --set 'hamiltonian.force=[{type=\"lennard_jones\", cutoff=2.5}]'";
@@ -223,10 +224,10 @@ TEST_CASE("what a LAMMPS data file leaves out is asked for, at the force that wa
 TEST_CASE("charges that no force looks at are warned of", "[cli][messages]") {
   const SceneFolder pair(close_pair);
   const std::string run = "run scene.toml --fresh --set integrator.step=0.0001 --set particles.body.a.charge=";
-  const std::string warning = "\nwarning: the particles have charges that no force looks at\n";
+  const std::string warning = "\nwarning: the particles have charges that no force uses\n";
   const std::string field = " --set 'hamiltonian.force.1={type=\"reaction_field\", cutoff=1}'";
   CHECK(has(output(pair, run + "0.5"), warning));
-  CHECK(has(output(pair, run + "0.5 --json"), R"("warnings":["the particles have charges that no force looks at"])"));
+  CHECK(has(output(pair, run + "0.5 --json"), R"("warnings":["the particles have charges that no force uses"])"));
   CHECK_FALSE(has(output(pair, run + "0"), "warning"));
   CHECK_FALSE(has(output(pair, run + "0.5" + field), "warning"));
 }
@@ -237,7 +238,8 @@ TEST_CASE("exclusions that no force leaves out are warned of", "[cli][messages]"
   const std::string springs =
       " --set 'hamiltonian.force=[{type=\"harmonic_bond\", pairs=[[\"a\",\"c\"]], k=1, length=1}]'";
   CHECK(has(output(pair, run + springs),
-            "\nwarning: exclusions change nothing: no force leaves pairs out; those that do are lennard_jones, wca, "
+            "\nwarning: exclusions have no effect: no force of this scene leaves pairs out; forces that do are "
+            "lennard_jones, wca, "
             "morse, buckingham, reaction_field\n"));
   CHECK_FALSE(has(output(pair, run), "warning"));
 }
@@ -367,7 +369,7 @@ TEST_CASE("list and describe tell orders, evaluations and limits as docs/methods
   CHECK(json_member(json_output(folder, "describe gbs", "describe"), "order_in_quad") == "24");
   CHECK(has(read_text(std::filesystem::path(NOETHER_SOURCE_DIR) / "docs/methods.md"),
             "\n| gragg_bulirsch_stoer | varies, to 16, in Quad to 24 ("));
-  CHECK(has(output(folder, "describe rk4"), "\n  4 evaluations a step of given length\n"));
+  CHECK(has(output(folder, "describe rk4"), "\n  4 evaluations per step of given length\n"));
 }
 
 TEST_CASE("whatever is listed can be described", "[cli][describe][slow]") {

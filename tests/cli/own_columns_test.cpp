@@ -191,12 +191,12 @@ TEST_CASE("what cannot move columns refuses them by name", "[cli][own_columns]")
   const auto refused = [&](const std::string& sets) { return own(folder, "run scene.toml" + sets).err; };
   CHECK(has(refused(" --set integrator.method=dop853 --set integrator.steps=10"),
             "'tops' moves more than positions and velocities, so methods for y' = f cannot step it"));
-  CHECK(has(refused(" --set particles.body.0.orientation=[1,0,0]"), "orientation = [1, 0, 0] is no list of 4"));
+  CHECK(has(refused(" --set particles.body.0.orientation=[1,0,0]"), "orientation = [1, 0, 0] is not a list of 4"));
   CHECK(has(refused(" --set particles.body.0.orientatoin=[1,0,0,0]"), "did you mean 'orientation'?"));
   CHECK(has(refused(" --set hamiltonian.type=kinetic_potential"), "orientation"));
   CHECK(has(refused(" --set every.0.type=shadow_hamiltonian"), "no motion of positions and momenta"));
   CHECK(has(refused(" --set hamiltonian.force.0.kick=C"),
-            "force 'mesh_field' is in the kick C, and 'tops' has only B; take its kick out"));
+            "force 'mesh_field' is in the kick C, but 'tops' has only B; take its kick out"));
 }
 
 }  // namespace noether::test

@@ -174,7 +174,7 @@ TEST_CASE("settling completes a copy and leaves the run alone", "[composition]")
   CHECK(s.phase() == raw.phase());
   CHECK(copy.phase() == Phase{});
   CHECK_FALSE(test::same_bits(s, copy));
-  CHECK_THROWS_WITH(composition.settle(s, copy, {}, 1.0, true), "a composition stands at whole steps only");
+  CHECK_THROWS_WITH(composition.settle(s, copy, {}, 1.0, true), "a composition can stop at whole steps only");
 }
 
 TEST_CASE("a look and the next kick share one evaluation of the forces", "[composition]") {
@@ -317,7 +317,7 @@ TEST_CASE("drag without forces is exact for any step", "[composition]") {
     CHECK(std::abs(run.particles().velocities()[0][0] - expected) < 2 * 81 * ulp * expected);
   }
   CHECK_THROWS_WITH(test::damped(gravity(), {.rate = -1}),
-                    "a drag rate of -1.000000 drives instead of damping; give 0 or more");
+                    "a drag rate of -1.000000 would drive the motion instead of damping it; give 0 or more");
 }
 
 TEST_CASE("compensated sums are right to half an ulp after any number of steps", "[composition]") {

@@ -138,12 +138,12 @@ TEST_CASE("runs that keep no shadow are refused by name", "[shadow]") {
   };
   CHECK_THROWS_WITH(
       attach(test::damped(test::kinetic_potential(HarmonicField{.k = 1}), LinearDrag{.rate = 0.1}), schemes::verlet),
-      "monitor 'shadow_hamiltonian' needs the action of every step: a force of this run is dissipative, "
-      "so no action tells its motion");
+      "monitor 'shadow_hamiltonian' needs the action of every step: a force of this run is dissipative, so its motion "
+      "has no action");
   CHECK_THROWS_WITH(
       attach(test::kinetic_potential(OscillatingField{.acceleration = {1, 0, 0}, .omega = 2}), schemes::verlet),
-      "monitor 'shadow_hamiltonian' needs the action of every step: a force of this run depends on time, "
-      "so no energy is kept, the exact one neither");
+      "monitor 'shadow_hamiltonian' needs the action of every step: a force of this run depends on time, so no energy "
+      "is conserved, not even the exact one");
   Simulation<double> simulation = field();
   CHECK_THROWS_WITH(simulation.every_wall(1, ShadowHamiltonian<>()), Contains("attach it by steps, not by wall time"));
 }

@@ -459,10 +459,10 @@ TEST_CASE("what cannot be compared is refused in words", "[compare]") {
   };
   CHECK(refusal({.methods = {"verlt"}}) == "unknown method 'verlt'; did you mean 'verlet'?");
   CHECK(refusal({.methods = {"verlet@kinetic"}}) ==
-        "unknown hamiltonian 'kinetic'; known are: kinetic_potential, wisdom_holman");
+        "unknown hamiltonian 'kinetic'; expected one of: kinetic_potential, wisdom_holman");
   CHECK(refusal({.methods = {"verlet@wisdom_holman"}}) ==
         "'verlet@wisdom_holman': the scene has no splitting 'wisdom_holman'; leave '@wisdom_holman' out");
-  CHECK(refusal({.steps = {-1}}) == "a step of -1 is no step; a time above 0 is expected");
+  CHECK(refusal({.steps = {-1}}) == "a step of -1 is not valid; a time above 0 is expected");
   CHECK(refusal({.steps = {5}}) ==
         "a step of 5 is longer than the 0.2 between two of the 200 moments at which runs are compared; give shorter "
         "steps, or a longer --until");
@@ -472,8 +472,8 @@ TEST_CASE("what cannot be compared is refused in words", "[compare]") {
   }
   CHECK(refusal({.methods = {"verlet"}, .until = 1e300}) ==
         "a run of 1e+300 has more steps of 0.4 than can be counted; give steps of at least 1.2e+284");
-  CHECK(refusal({.tolerances = {2}}) == "2 is no tolerance; a number between 0 and 1 is expected");
-  CHECK(refusal({.repeats = 0}) == "0 repeats measure nothing; 1 or more is expected");
+  CHECK(refusal({.tolerances = {2}}) == "2 is not a valid tolerance; a number between 0 and 1 is expected");
+  CHECK(refusal({.repeats = 0}) == "0 repeats are too few; 1 or more is expected");
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ Simulation<double> lorenz() { return {initial_state(Lorenz{}), classical(Lorenz{
 TEST_CASE("monitors and stops of particles are refused for a system, before the first step", "[system_run]") {
   auto run = lorenz("rk4", 0.01);
   const auto refusal = [](const std::string& name) {
-    return "monitor '" + name + "' watches particles, but system 'lorenz' has variables and none of them";
+    return "monitor '" + name + "' watches particles, but system 'lorenz' has only variables";
   };
   CHECK_THROWS_WITH(run.every(1, Energy{}), refusal("energy"));
   CHECK_THROWS_WITH(run.every(1, Momentum{}), refusal("momentum"));
@@ -64,10 +64,9 @@ TEST_CASE("monitors and stops of particles are refused for a system, before the 
   CHECK_THROWS_WITH(run.every(1, Temperature{}), refusal("temperature"));
   CHECK_THROWS_WITH(run.every(1, ShadowHamiltonian<double>{}), refusal("shadow_hamiltonian"));
   CHECK_THROWS_WITH(run.stop_when(farther_than(1), 1),
-                    "stop 'escape' watches distances of particles, but system 'lorenz' has variables and no particles");
+                    "stop 'escape' watches distances of particles, but system 'lorenz' has only variables");
   CHECK_THROWS_WITH(run.stop_when(closer_than(1), 1),
-                    "stop 'collision' watches distances of particles, but system 'lorenz' has variables and no "
-                    "particles");
+                    "stop 'collision' watches distances of particles, but system 'lorenz' has only variables");
   int monitors = 0;
   run.for_each_monitor([&](const std::string&, AnyMonitor<double>&) { ++monitors; });
   CHECK(monitors == 0);
