@@ -142,7 +142,7 @@ TEST_CASE("a run that was decorated in another way is not gone on with", "[cli][
     return own(folder, "run scene.toml --quiet --out a --resume" + sets).err;
   };
   CHECK(has(refused(" --set integrator.decorator.0.steps=5"), "integrator.decorator.0.steps = 5 was 10"));
-  CHECK(has(refused(without), "is gone"));
+  CHECK(has(refused(without), "is missing now"));
 }
 
 TEST_CASE("several decorators stand around each other in their order", "[cli][own_decorator]") {

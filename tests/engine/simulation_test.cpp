@@ -265,9 +265,8 @@ TEST_CASE("the step changes, time and step count go on", "[simulation]") {
   CHECK(outcome.time == 700);
   CHECK_THROWS_WITH(run.change_step(0), "a step of 0 is not valid; a finite time other than 0 is expected");
   run.every_time(300, Energy{});
-  CHECK_THROWS_WITH(
-      run.change_step(10),
-      "monitor 'energy' samples every 300 of time, at times that a new step would shift; attach it by steps");
+  CHECK_THROWS_WITH(run.change_step(10),
+                    "monitor 'energy' samples every 300 of time, which a new step would shift; attach it by steps");
 }
 
 TEST_CASE("a collision that the forces cannot bear ends the run by name", "[simulation]") {

@@ -172,13 +172,14 @@ TEST_CASE("a builder refuses what cannot be built", "[builders]") {
         "epsilon = 1 is given without sigma; give both or neither");
   CHECK(refusal_to_build(Lattice{.cells = {2, 2, 2}, .density = 1, .mass = 1, .temperature = -3}) ==
         "temperature = -3 is not a valid temperature; 0 or more is expected");
-  CHECK(refusal_to_build(Liquid{.density = 1, .mass = 1}) == "particles = 0 is not from 1 to 100000000");
+  CHECK(refusal_to_build(Liquid{.density = 1, .mass = 1}) ==
+        "particles = 0 is out of range; 1 to 100000000 is expected");
   CHECK(refusal_to_build(Liquid{.particles = 9, .density = 1, .mass = 1, .displacement = 0.5}) ==
         "displacement = 0.5 is out of range; 0 to below 0.5 is expected, so that particles cannot meet");
   CHECK(refusal_to_build(PolymerChains{.chains = 2, .beads = 3, .density = 1, .mass = 1, .bond_length = 0.5}) ==
         "bond_length = 0.5 is out of range; 0.6 to below 1.5 is expected, where a FENE bond breaks");
   CHECK(refusal_to_build(PolymerChains{.chains = 20000, .beads = 30000, .density = 1, .mass = 1}) ==
-        "chains = 20000 of 30000 beads are more than 100000000 particles");
+        "chains = 20000 of 30000 beads each are more than 100000000 particles");
 }
 
 }  // namespace
