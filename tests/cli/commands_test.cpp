@@ -194,7 +194,8 @@ TEST_CASE("small boxes, bonds and neighbors are spoken of", "[cli][messages]") {
     return result.err;
   };
   CHECK(has(refused("--set hamiltonian.neighbors.skin=1e99"), "skin=1e99: skin = 1e+99 reaches so far beyond the box"));
-  CHECK(has(refused("--set hamiltonian.force.0.cutoff=250"), "scene.toml:3: the box of 3 x 3 x 3 is so small beside"));
+  CHECK(has(refused("--set hamiltonian.force.0.cutoff=250"),
+            "scene.toml:3: the box of 3 x 3 x 3 is so small compared with"));
 }
 
 TEST_CASE("what a LAMMPS data file leaves out is asked for, at the force that wants it", "[cli][messages]") {

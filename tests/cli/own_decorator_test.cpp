@@ -71,7 +71,7 @@ std::vector<double> numbers_of(const std::string& json, const std::string& key) 
 TEST_CASE("a decorator from outside the library is listed, described and explained", "[cli][own_decorator]") {
   const SceneFolder folder(orbit);
   CHECK(has(own_output(folder, "list decorators"), "energy_projection  scales velocities back to the energy"));
-  CHECK(output(folder, "list decorators") == "there are no decorators yet\n");
+  CHECK(output(folder, "list decorators") == "this program has no decorators\n");
   const std::string described = own_output(folder, "describe energy_projection");
   CHECK(has(described, "energy_projection (decorator): scales velocities back"));
   CHECK(has(described, "  belongs in [[integrator.decorator]]"));
