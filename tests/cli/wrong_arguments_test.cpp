@@ -69,7 +69,7 @@ const std::vector<Wrong> wrong_lines = {
     {"run scene.toml --until ''", 2,
      "--until: the time is empty; give one, such as \"1 Myr\"; see `noether run --help`"},
     {"run scene.toml --until '3 day'", 2,
-     "--until 3 day: until: '3 day' has a unit; the reduced unit system has plain numbers without units, such as '3'"},
+     "--until 3 day: until: '3 day' has a unit; reduced units are plain numbers, such as '3'"},
     {"run scene.toml --until 0.505", 2,
      "--until 0.505: until = \"0.505\" is 50.5 steps of 0.01; the nearest whole numbers are "
      "0.5 (50 steps) and 0.51 (51 steps)"},
