@@ -144,7 +144,7 @@ TEST_CASE("what it cannot do is refused by name", "[cli][own_parts]") {
             "scheme 'aba_10_6_4' has no letter R, which is a part of 'gyration'; use a composition of its steps ARBRA, "
             "such as 'yoshida_4', or a word with all of its letters"));
   CHECK(has(refused(" --set integrator.method=srkn14a"), "'srkn14a'"));
-  CHECK(has(refused(" --set every.0.type=shadow_hamiltonian"), "no canonical maps"));
+  CHECK(has(refused(" --set every.0.type=shadow_hamiltonian"), "not canonical maps"));
 }
 
 }  // namespace noether::test
