@@ -198,7 +198,7 @@ TEST_CASE("files that are cut off are told apart from sound ones", "[cli][messag
     CHECK(result.exit_code == 3);
     const bool verified = std::string(line).starts_with("verify");
     CHECK(result.err ==
-          "cut.h5: cut short: 3000 of " + std::to_string(whole.size()) + " bytes are there" +
+          "cut.h5: cut short: only 3000 of " + std::to_string(whole.size()) + " bytes are there" +
               (verified ? "; 'noether verify --repair cut.h5' repairs it if only frames or samples are missing\n"
                         : "\n"));
   }

@@ -159,15 +159,15 @@ TEST_CASE("a builder refuses what cannot be built", "[builders]") {
   CHECK(refusal_to_build(Lattice{.cells = {2, 0, 2}, .density = 1, .mass = 1}) ==
         "cells = [2, 0, 2] contains a number below 1; whole numbers from 1 are expected");
   CHECK(refusal_to_build(Lattice{.cells = {1000, 1000, 1000}, .density = 1, .mass = 1}) ==
-        "cells = [1000, 1000, 1000] are 4e+09 particles; at most 100000000 are expected");
+        "cells = [1000, 1000, 1000] give 4e+09 particles; at most 100000000 are expected");
   CHECK(refusal_to_build(Lattice{.cells = {2, 2, 2}, .mass = 1}) ==
         "neither a density nor a constant is given; give one of them");
   CHECK(refusal_to_build(Lattice{.cells = {2, 2, 2}, .density = 1, .constant = 2, .mass = 1}) ==
         "constant = 2 is given together with a density; give only one of them");
   CHECK(refusal_to_build(Lattice{.cells = {2, 2, 2}, .density = -1, .mass = 1}) ==
-        "density = -1 is no density; a number above 0 is expected");
+        "density = -1 is not a valid density; a number above 0 is expected");
   CHECK(refusal_to_build(Lattice{.cells = {2, 2, 2}, .density = 1}) ==
-        "mass = 0 is no mass; a number above 0 is expected");
+        "mass = 0 is not a valid mass; a number above 0 is expected");
   CHECK(refusal_to_build(Lattice{.cells = {2, 2, 2}, .density = 1, .mass = 1, .epsilon = 1}) ==
         "epsilon = 1 is given without sigma; give both or neither");
   CHECK(refusal_to_build(Lattice{.cells = {2, 2, 2}, .density = 1, .mass = 1, .temperature = -3}) ==
