@@ -193,8 +193,8 @@ template <class Real> struct IntegratorBase {
 template <class I> struct IntegratorModel final : IntegratorBase<typename I::real> {
   using Real = typename I::real;
   static_assert(action_follows<I>(),
-                "what stands around an integrator and has an `advance` of its own has an `advance_with_action` of its "
-                "own too, or a `has_action` that says no");
+                "a wrapper of an integrator that has its own `advance` needs its own `advance_with_action` too, or a "
+                "`has_action` that returns false");
   explicit IntegratorModel(I i) : integrator(std::move(i)) {}
   std::unique_ptr<IntegratorBase<Real>> clone() const override { return std::make_unique<IntegratorModel>(integrator); }
   IntegratorClaims claims() const override { return integrator.claims(); }

@@ -19,10 +19,10 @@ void refuse_elements(const OrbitalElements<double>& o, double mu) {
   if (o.a == 0)
     refuse_field("a", o.a, "is not a valid semi-major axis; expected a > 0 for an ellipse, a < 0 for a hyperbola");
   if (o.a > 0 && o.e > 1) {
-    refuse_field("e", o.e, "does not fit a > 0, which is an ellipse; expected 0 <= e < 1, or a < 0 for a hyperbola");
+    refuse_field("e", o.e, "does not fit a > 0, which means an ellipse; expected 0 <= e < 1, or a < 0 for a hyperbola");
   }
   if (o.a < 0 && o.e >= 0 && o.e < 1) {
-    refuse_field("a", o.a, "does not fit e < 1, which is an ellipse; expected a > 0, or e > 1 for a hyperbola");
+    refuse_field("a", o.a, "does not fit e < 1, which means an ellipse; expected a > 0, or e > 1 for a hyperbola");
   }
   refuse_field("e", o.e, "is neither an ellipse nor a hyperbola; expected 0 <= e < 1 with a > 0, or e > 1 with a < 0");
 }

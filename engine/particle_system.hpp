@@ -408,7 +408,8 @@ template <class Real> void move_to_barycenter(ParticleSystem<Real>& s) {
     v += c.masses()[i] * c.velocities()[i];
     total += c.masses()[i];
   }
-  if (!(total > Real(0))) throw Error("there is no centre of mass: every particle is a tracer of mass 0");
+  if (!(total > Real(0)))
+    throw Error("there is no centre of mass, because every particle is a tracer of mass 0; give one of them a mass");
   x /= total;
   v /= total;
   for (Index i = 0; i < s.size(); ++i) {

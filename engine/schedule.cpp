@@ -54,7 +54,8 @@ std::int64_t steps_of(double duration, double dt) {
     throw Error(fmt::format("a duration of {} cannot be counted in steps of {}", duration, dt));
   }
   if (exact < 0)
-    throw Error(fmt::format("a duration of {} lies in the past; steps of {} go the other way", duration, dt));
+    throw Error(
+        fmt::format("a duration of {} lies in the past; steps of {} go in the opposite direction", duration, dt));
   // Beside 1e-9 of a step, the rounding of a long duration.
   if (std::abs(exact - whole) > 1e-9 + 16 * std::numeric_limits<double>::epsilon() * exact) {
     throw Error(fmt::format("a duration of {} is {} steps of {}; the nearest whole numbers are {} ({}) and {} ({})",

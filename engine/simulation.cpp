@@ -537,8 +537,8 @@ template <class Real> void Simulation<Real>::change_step(double dt) {
   }
   for (const auto& scheduled : monitors_) {
     if (scheduled.schedule.interval == 0 && scheduled.schedule.times.empty()) continue;
-    throw Error(fmt::format("monitor '{}' samples {}, at times that a new step would shift; attach it by steps",
-                            scheduled.name, detail::when_in_time(scheduled.schedule)));
+    throw Error(fmt::format("monitor '{}' samples {}, which a new step would shift; attach it by steps", scheduled.name,
+                            detail::when_in_time(scheduled.schedule)));
   }
   begin_edit();
   const double now = time();

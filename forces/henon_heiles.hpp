@@ -18,7 +18,7 @@ struct HenonHeiles {
   double length = 1.0;  ///< l, from the well to each saddle [length]
 
   static constexpr auto describe() {
-    return part<HenonHeiles>("henon_heiles", "a well in the plane with three saddles, for every particle by itself",
+    return part<HenonHeiles>("henon_heiles", "a well in the plane with three saddles, for each particle separately",
                              formula("U = sum_i m_i omega^2 [ (x^2 + y^2)/2 + (x^2 y - y^3/3)/length ]"),
                              source("HenonHeiles1964"),
                              field<&HenonHeiles::omega>("omega", "1/time", "angular frequency of small oscillations"),

@@ -82,7 +82,7 @@ void LennardJonesForce::check_types(const Topology* topology, const Box& box) co
         "out");
   if (precision == PairPrecision::mixed && !box.is_periodic())
     throw Error(
-        "lennard_jones: precision = \"mixed\" needs a periodic box, and there is none; add a box or leave precision "
+        "lennard_jones: precision = \"mixed\" needs a periodic box, but there is none; add a box or leave precision "
         "out");
   if (epsilon) return;
   if (topology == nullptr || topology->pair_kinds.empty()) {

@@ -45,7 +45,7 @@ void Buckingham::check() const {
     refuse_field(
         "C", C,
         fmt::format(
-            "is so strong that these pairs attract at every distance; less than {:.6g} A rho^6 leaves a barrier",
+            "is so strong that these pairs attract at every distance; less than {:.6g} A rho^6 is needed for a barrier",
             std::pow(7.0, 7) * std::exp(-7.0) / 6));
   }
 }

@@ -197,7 +197,7 @@ template <class Real> void Classical<Real>::load(const SavedState& saved, const 
   const auto check = [&](const std::string& name, const std::string& now) {
     std::string before;
     load_value(saved, prefix + name, before);
-    if (before != now) throw Error(fmt::format("the saved run was made with {}, this one has {}", before, now));
+    if (before != now) throw Error(fmt::format("the saved run was made with {}, but this one has {}", before, now));
   };
   check("method", signature());
   check("field", field_->signature());

@@ -16,7 +16,7 @@ struct CompositionOptions {
 
   static constexpr auto describe() {
     return part<CompositionOptions>(
-        "composition", "what a splitting takes beside its scheme",
+        "composition", "options of splittings in addition to the scheme",
         field<&CompositionOptions::compensated>("compensated", "1",
                                                 "keeps the rounding errors of sums and adds them again later"));
   }

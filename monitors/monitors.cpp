@@ -230,7 +230,7 @@ MonitorReport VectorInvariant::report() const {
   report.scale = scale_;
   fill_line(report, errors_, per_time("1", time_unit_));
   if (has_direction()) report.note = fmt::format("direction within {:.2g} rad", worst_direction_);
-  if (!kept_) report.note += fmt::format("{}not kept by the forces of this run", report.note.empty() ? "" : "; ");
+  if (!kept_) report.note += fmt::format("{}not conserved by the forces of this run", report.note.empty() ? "" : "; ");
   return report;
 }
 

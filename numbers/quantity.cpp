@@ -450,9 +450,7 @@ double read_quantity(std::string_view text, const Expected& wanted, const UnitSy
   }
   const std::vector<Term> terms = unit_terms(whole.substr(number.length), whole, true);
   if (system.is_reduced() && !all_plain(terms)) {
-    fail(fmt::format("'{}' has a unit; the reduced unit system has plain numbers without units, such as '{}'", whole,
-                     digits),
-         whole);
+    fail(fmt::format("'{}' has a unit; reduced units are plain numbers, such as '{}'", whole, digits), whole);
   }
   const Unit unit = unit_from(terms, whole, system);
   if (unit.dimension != wanted.dimension || (wanted.angle && !std::any_of(terms.begin(), terms.end(), is_angle))) {

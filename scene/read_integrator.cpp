@@ -59,12 +59,12 @@ std::int64_t whole_steps(const TableReader& reader, std::string_view key, const 
   const std::string origin = from == 0 ? "0" : time_text(from, units);
   if (exact < 0) {
     fail(fmt::format("lies {}; the step is {}, so give a time {} {}",
-                     from == 0 ? "in the opposite direction" : "on the other side of the start_time",
+                     from == 0 ? "in the opposite direction" : "on the wrong side of the start_time",
                      integrator.step_text, integrator.step > 0 ? "above" : "below", origin));
   }
   if (!(exact > 0)) {
     fail(fmt::format("leaves no time for a step; the step is {}{}", integrator.step_text,
-                     from == 0 ? "" : fmt::format(", from the start_time {} on", origin)));
+                     from == 0 ? "" : fmt::format(", and the start_time is {}", origin)));
   }
   const auto found = steps_to(integrator, units, time, from);
   if (const auto* wrong = std::get_if<std::string>(&found)) fail(*wrong);

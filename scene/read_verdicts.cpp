@@ -15,10 +15,10 @@ std::vector<std::string> texts(TableReader& reader, std::string_view key, std::s
   const SceneValue* value = reader.find(key);
   if (value == nullptr) return all;
   const auto* list = value->get<SceneValue::Array>();
-  if (list == nullptr) reader.wrong_kind(*value, key, fmt::format("a list of texts such as {}", example));
+  if (list == nullptr) reader.wrong_kind(*value, key, fmt::format("a list of texts, such as {},", example));
   for (const SceneValue& one : *list) {
     const std::string* text = one.get<std::string>();
-    if (text == nullptr) reader.wrong_kind(*value, key, fmt::format("a list of texts such as {}", example));
+    if (text == nullptr) reader.wrong_kind(*value, key, fmt::format("a list of texts, such as {},", example));
     all.push_back(*text);
   }
   return all;

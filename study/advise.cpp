@@ -161,7 +161,7 @@ void check_measured(const Comparison& c, Metric metric) {
   const auto done = [](const Row& row) { return row.completed(); };
   const auto told = [](const Row& row) { return row.completed() && row.energy_error_max; };
   if (std::any_of(c.rows.begin(), c.rows.end(), done) && std::none_of(c.rows.begin(), c.rows.end(), told)) {
-    throw Error("the energy cannot be measured here: not every force tells its own; try --metric position");
+    throw Error("the energy cannot be measured here: not every force computes its own; try --metric position");
   }
 }
 

@@ -87,13 +87,13 @@ void check_use(const Scene& scene, const std::vector<Candidate>& methods, const 
   const auto adaptive = [](const Candidate& who) { return who.adaptive; };
   if (!options.steps.empty() && std::all_of(methods.begin(), methods.end(), adaptive)) {
     throw Error(
-        "--steps is for methods of fixed steps, and all of those compared choose theirs by a tolerance; leave "
-        "it out, or add such a method, as 'rk4'");
+        "--steps is for methods of fixed steps, but all the methods compared choose theirs by a tolerance; leave it "
+        "out, or add such a method, such as 'rk4'");
   }
   if (!options.tolerances.empty() && std::none_of(methods.begin(), methods.end(), adaptive)) {
     throw Error(
-        "--tolerances is for methods that choose their steps, and all of those compared take fixed ones; leave "
-        "it out, or add such a method, as 'dop853'");
+        "--tolerances is for methods that choose their steps, but all the methods compared take fixed ones; leave it "
+        "out, or add such a method, such as 'dop853'");
   }
   for (const Candidate& who : methods) {
     if (!who.adaptive) continue;

@@ -158,7 +158,7 @@ Truth drive(const WideScene& wide, const Way& way, const Sampling& sampling, Pos
     return made;
   };
   const auto told = [&](const MethodChoice& finest, const MethodChoice& beside) {
-    truth.note = fmt::format("{} in extended precision, rtol {:.0e}, beside {} at {:.0e}", finest.info->name,
+    truth.note = fmt::format("{} in extended precision, rtol {:.0e}, checked against {} at {:.0e}", finest.info->name,
                              *finest.options.rtol, beside.info == finest.info ? "itself" : beside.info->name,
                              *beside.options.rtol);
   };

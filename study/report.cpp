@@ -285,7 +285,7 @@ class Page {
          "(E - E0)/max(|E0|, 1e-3 (T0 + |U0|)); where the equations change the energy themselves, E* of the reference "
          "stands for E0");
     line("diverged",
-         fmt::format("not finite, or {:.0e} times as large as the truth ever is; {:.0e} times as large as at "
+         fmt::format("not finite, or {:.0e} times as large as the reference ever is; {:.0e} times as large as at "
                      "the start where there is no truth",
                      lost_beyond_truth, lost_beyond_start));
     line("tolerances",

@@ -31,10 +31,10 @@ struct ForcedDampedOscillator {
         quantities("x [length], v [length/time]"),
         field<&ForcedDampedOscillator::omega0>("omega0", "1/time", "angular frequency of the spring"),
         field<&ForcedDampedOscillator::gamma>("gamma", "1/time", "half the rate of the drag"),
-        field<&ForcedDampedOscillator::amplitude>("amplitude", "length/time^2", "of the drive"),
-        field<&ForcedDampedOscillator::omega>("omega", "1/time", "of the drive"),
-        field<&ForcedDampedOscillator::position>("position", "length", "at the start"),
-        field<&ForcedDampedOscillator::velocity>("velocity", "length/time", "at the start"));
+        field<&ForcedDampedOscillator::amplitude>("amplitude", "length/time^2", "amplitude of the drive"),
+        field<&ForcedDampedOscillator::omega>("omega", "1/time", "angular frequency of the drive"),
+        field<&ForcedDampedOscillator::position>("position", "length", "position at the start"),
+        field<&ForcedDampedOscillator::velocity>("velocity", "length/time", "velocity at the start"));
   }
   /// @throws Error  for a spring that is none, or a drag that drives
   void check() const {

@@ -25,9 +25,9 @@ struct Robertson {
     return part<Robertson>("robertson", "chemical kinetics of three substances, rates nine decades apart",
                            formula("A' = -k1 A + k3 B C,  B' = k1 A - k2 B^2 - k3 B C,  C' = k2 B^2"),
                            source("Robertson1966 HairerWanner1996"), quantities("A, B, C [1]"),
-                           field<&Robertson::k1>("k1", "1/time", "of A -> B"),
-                           field<&Robertson::k2>("k2", "1/time", "of B + B -> C + B"),
-                           field<&Robertson::k3>("k3", "1/time", "of B + C -> A + C"));
+                           field<&Robertson::k1>("k1", "1/time", "rate of A -> B"),
+                           field<&Robertson::k2>("k2", "1/time", "rate of B + B -> C + B"),
+                           field<&Robertson::k3>("k3", "1/time", "rate of B + C -> A + C"));
   }
   /// @throws Error  for a negative rate
   void check() const {

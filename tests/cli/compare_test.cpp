@@ -78,11 +78,11 @@ TEST_CASE("wrong requests to compare and advise are told in one line", "[cli][co
         "rounding, such as 'gauss_8'");
   wrong("compare scene.toml --tolerances 0", "0 is not a valid tolerance; a number between 0 and 1 is expected");
   wrong("compare scene.toml --methods dop853,gauss_8 --steps 0.1",
-        "--steps is for methods of fixed steps, and all of those compared choose theirs by a tolerance; leave it out, "
-        "or add such a method, as 'rk4'");
+        "--steps is for methods of fixed steps, but all the methods compared choose theirs by a tolerance; leave it "
+        "out, or add such a method, such as 'rk4'");
   wrong("compare scene.toml --methods verlet,rk4 --tolerances 1e-6",
-        "--tolerances is for methods that choose their steps, and all of those compared take fixed ones; leave it out, "
-        "or add such a method, as 'dop853'");
+        "--tolerances is for methods that choose their steps, but all the methods compared take fixed ones; leave it "
+        "out, or add such a method, such as 'dop853'");
   wrong("compare scene.toml --repeat 2000000", "--repeat: '2000000' is more than 1000000" + see);
   wrong("compare scene.toml --repeat 1.5", "--repeat: '1.5' is not a whole number above 0" + see);
   wrong("compare scene.toml --repeat 0", "--repeat: '0' is not a whole number above 0" + see);

@@ -71,13 +71,13 @@ TEST_CASE("a run.h5 of fewer frames than the checkpoint counts on, or none at al
   fs::copy_file(shorter / "scene.out/run.h5", other.file(), fs::copy_options::overwrite_existing);
   const std::string resumed = output(other.folder, "run scene.toml --json --resume");
   check_same_run(resumed, other.whole);
-  CHECK(has(resumed, "rows where the saved run counts on "));
+  CHECK(has(resumed, "rows where the saved run expects "));
 
   const KilledRun gone;
   fs::remove(gone.file());
   const std::string anew = output(gone.folder, "run scene.toml --json --resume");
   check_same_run(anew, gone.whole);
-  CHECK(has(anew, "the trajectory that the saved run counts on is missing"));
+  CHECK(has(anew, "the trajectory that the saved run continues is missing"));
   CHECK(has(anew, "; a new one begins at step 80\""));
   CHECK(output(gone.folder, "verify scene.out/run.h5") == "scene.out/run.h5: sound and complete, last step 100\n");
 }

@@ -71,7 +71,7 @@ std::vector<double> numbers_of(const std::string& json, const std::string& key) 
 TEST_CASE("a decorator from outside the library is listed, described and explained", "[cli][own_decorator]") {
   const SceneFolder folder(orbit);
   CHECK(has(own_output(folder, "list decorators"), "energy_projection  scales velocities back to the energy"));
-  CHECK(output(folder, "list decorators") == "there are no decorators yet\n");
+  CHECK(output(folder, "list decorators") == "this program has no decorators\n");
   const std::string described = own_output(folder, "describe energy_projection");
   CHECK(has(described, "energy_projection (decorator): scales velocities back"));
   CHECK(has(described, "  belongs in [[integrator.decorator]]"));
@@ -142,7 +142,7 @@ TEST_CASE("a run that was decorated in another way is not gone on with", "[cli][
     return own(folder, "run scene.toml --quiet --out a --resume" + sets).err;
   };
   CHECK(has(refused(" --set integrator.decorator.0.steps=5"), "integrator.decorator.0.steps = 5 was 10"));
-  CHECK(has(refused(without), "is gone"));
+  CHECK(has(refused(without), "is missing now"));
 }
 
 TEST_CASE("several decorators stand around each other in their order", "[cli][own_decorator]") {

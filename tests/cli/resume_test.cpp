@@ -145,7 +145,7 @@ TEST_CASE("a SIMD level that the processor lacks is refused", "[cli][run][messag
   const SceneFolder folder;
   const ProcessResult result = noether(folder, "run scene.toml --simd avx512");
   CHECK(result.exit_code == 2);
-  CHECK(result.err == "SIMD level 'avx512' is not to be had on this processor; its best is '" +
+  CHECK(result.err == "SIMD level 'avx512' is not supported by this processor; its highest is '" +
                           std::string(name(simd_level())) + "'\n");
 }
 
@@ -179,7 +179,7 @@ TEST_CASE("a run begun when particles had an absolute tolerance by default goes 
   CHECK_FALSE(has(noether(folder, "run scene.toml --json --resume --until 3").out, "earlier version"));
   const ProcessResult refused = begun_with(other, "atol = 1e-07\n");
   CHECK(refused.exit_code == 2);
-  CHECK(has(refused.err, "integrator.atol = 1e-07 is gone; a resumed run takes only a later end"));
+  CHECK(has(refused.err, "integrator.atol = 1e-07 is missing now; a resumed run may change only its end"));
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ const std::vector<Wrong> wrong_lines = {
     {"run scene.toml --until ''", 2,
      "--until: the time is empty; give one, such as \"1 Myr\"; see `noether run --help`"},
     {"run scene.toml --until '3 day'", 2,
-     "--until 3 day: until: '3 day' has a unit; the reduced unit system has plain numbers without units, such as '3'"},
+     "--until 3 day: until: '3 day' has a unit; reduced units are plain numbers, such as '3'"},
     {"run scene.toml --until 0.505", 2,
      "--until 0.505: until = \"0.505\" is 50.5 steps of 0.01; the nearest whole numbers are "
      "0.5 (50 steps) and 0.51 (51 steps)"},
@@ -102,7 +102,7 @@ const std::vector<Wrong> wrong_lines = {
 #endif
     {"convert run.h5", 2, "out is required; see `noether convert --help`"},
     {"plot ''", 2, "FILE: the name of the file is empty; see `noether plot --help`"},
-    {"plot run.h5 --out a.jpg", 2, "a picture 'a.jpg' is of no known format; give a name that ends in .svg or .png"},
+    {"plot run.h5 --out a.jpg", 2, "a picture 'a.jpg' has no supported format; give a name that ends in .svg or .png"},
 };
 
 /// The message in the JSON of an error.
@@ -199,7 +199,7 @@ TEST_CASE("files that are cut off are told apart from sound ones", "[cli][messag
     CHECK(result.exit_code == 3);
     const bool verified = std::string(line).starts_with("verify");
     CHECK(result.err ==
-          "cut.h5: cut short: 3000 of " + std::to_string(whole.size()) + " bytes are there" +
+          "cut.h5: cut short: only 3000 of " + std::to_string(whole.size()) + " bytes are there" +
               (verified ? "; 'noether verify --repair cut.h5' repairs it if only frames or samples are missing\n"
                         : "\n"));
   }

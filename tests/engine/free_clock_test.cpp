@@ -272,7 +272,7 @@ TEST_CASE("the end that was asked for is shown on a copy; the run stands at the 
 
   CHECK(run.run_until(3.25).ok());
   CHECK_THROWS_WITH(run.run_until(3),
-                    "time 3 has passed: the run is already at 3.25, and method 'adaptive_test' knows no way back");
+                    "time 3 has passed: the run is already at 3.25, and method 'adaptive_test' cannot go back in time");
   CHECK_THROWS(run.run_until(std::numeric_limits<double>::quiet_NaN()));
 }
 

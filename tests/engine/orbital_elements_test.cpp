@@ -153,11 +153,12 @@ TEST_CASE("elements that are no orbit are refused", "[orbital_elements]") {
   const std::string none =
       " is neither an ellipse nor a hyperbola; expected 0 <= e < 1 with a > 0, or e > 1 with a < 0";
   CHECK(refused(1, 1.5) ==
-        "e = 1.5 does not fit a > 0, which is an ellipse; expected 0 <= e < 1, or a < 0 for a hyperbola");
+        "e = 1.5 does not fit a > 0, which means an ellipse; expected 0 <= e < 1, or a < 0 for a hyperbola");
   CHECK(refused(1, 1) == "e = 1" + none);
   CHECK(refused(-1, 1) == "e = 1" + none);
   CHECK(refused(1, -0.1) == "e = -0.1" + none);
-  CHECK(refused(-1, 0.5) == "a = -1 does not fit e < 1, which is an ellipse; expected a > 0, or e > 1 for a hyperbola");
+  CHECK(refused(-1, 0.5) ==
+        "a = -1 does not fit e < 1, which means an ellipse; expected a > 0, or e > 1 for a hyperbola");
   CHECK(refused(0, 0.5) ==
         "a = 0 is not a valid semi-major axis; expected a > 0 for an ellipse, a < 0 for a hyperbola");
   CHECK(refused(1, 0.1, 0) == "an orbit about G m = 0 is impossible; a mass above 0 is expected");

@@ -195,7 +195,7 @@ TEST_CASE("looks too far apart for an approach say so, and count only what was s
   CHECK(often.run(230).ok());
   CHECK(guess.distance() > 0.5);
   CHECK(guess.unresolved() == 1);
-  CHECK(guess.report().note.find("; 1 times a pair may have been nearer between two looks") != std::string::npos);
+  CHECK(guess.report().note.find("; 1 times a pair may have come nearer between two samples") != std::string::npos);
   CHECK(known.distance() < 0.01);
 }
 

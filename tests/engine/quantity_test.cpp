@@ -145,7 +145,7 @@ TEST_CASE("a missing or wrong unit is refused and the right one shown", "[quanti
   CHECK(refusal("1 kJ/mol", parse_dimension("length^3/time^2"), si) ==
         "'1 kJ/mol' is an energy; a quantity of dimension length^3/time^2 is expected, such as '1 m^3/s^2'");
   CHECK(refusal("100 day", dimensions::time, reduced) ==
-        "'100 day' has a unit; the reduced unit system has plain numbers without units, such as '100'");
+        "'100 day' has a unit; reduced units are plain numbers, such as '100'");
 }
 
 TEST_CASE("an unknown unit is refused with a proposal", "[quantity]") {

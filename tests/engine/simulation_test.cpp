@@ -91,7 +91,7 @@ TEST_CASE("a duration that is no whole number of steps is refused with the two n
       "a duration of 4010 is 100.25 steps of 40; the nearest whole numbers are 4000 (100) and 4040 (101)");
   CHECK_THROWS_WITH(run.steps_in(10),
                     "a duration of 10 is 0.25 steps of 40; the nearest whole numbers are 0 (0) and 40 (1)");
-  CHECK_THROWS_WITH(run.steps_in(-40), "a duration of -40 lies in the past; steps of 40 go the other way");
+  CHECK_THROWS_WITH(run.steps_in(-40), "a duration of -40 lies in the past; steps of 40 go in the opposite direction");
   CHECK_THROWS_WITH(run.steps_in(1e300), "a duration of 1e+300 cannot be counted in steps of 40");
   CHECK_THROWS(run.steps_in(std::numeric_limits<double>::quiet_NaN()));
 }
@@ -265,9 +265,8 @@ TEST_CASE("the step changes, time and step count go on", "[simulation]") {
   CHECK(outcome.time == 700);
   CHECK_THROWS_WITH(run.change_step(0), "a step of 0 is not valid; a finite time other than 0 is expected");
   run.every_time(300, Energy{});
-  CHECK_THROWS_WITH(
-      run.change_step(10),
-      "monitor 'energy' samples every 300 of time, at times that a new step would shift; attach it by steps");
+  CHECK_THROWS_WITH(run.change_step(10),
+                    "monitor 'energy' samples every 300 of time, which a new step would shift; attach it by steps");
 }
 
 TEST_CASE("a collision that the forces cannot bear ends the run by name", "[simulation]") {

@@ -275,12 +275,11 @@ TEST_CASE("lists of times that cannot be are refused", "[start time][times][mess
   CHECK(refusal({1, 2, 3, 4}).empty());
   run.at_times({7, 9}, Energy{});
   REQUIRE(run.run_until(10).ok());
-  CHECK_THROWS_WITH(run.run_until(5), Catch::Contains("looks at times of a list, so it cannot turn"));
+  CHECK_THROWS_WITH(run.run_until(5), Catch::Contains("samples at times of a list, so the run cannot turn back"));
   auto fixed = planets_from(0, "verlet");
   fixed.at_times({64}, Energy{});
-  CHECK_THROWS_WITH(
-      fixed.change_step(16),
-      "monitor 'energy' samples at times of a list, at times that a new step would shift; attach it by steps");
+  CHECK_THROWS_WITH(fixed.change_step(16),
+                    "monitor 'energy' samples at times of a list, which a new step would shift; attach it by steps");
 }
 
 TEST_CASE("errors of what is conserved are measured from the start, not from the first time of a list",

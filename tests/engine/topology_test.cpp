@@ -77,5 +77,5 @@ TEST_CASE("a bond to a particle that is not there is refused by name", "[topolog
   Topology topology;
   topology.bonds.push_back({{0, 9}, 0});
   CHECK_THROWS_WITH(topology.scale_by_bonds(2, {0, 0, 1}),
-                    "a bond joins particles 0 and 9, but there are only  particles2");
+                    "a bond joins particles 0 and 9, but there are only 2 particles");
 }

@@ -142,7 +142,7 @@ TEST_CASE("mixed precision is refused where places have no box", "[lennard_jones
   s.set_box(Box::open());
   CHECK_THROWS_WITH(
       mixed_argon(Cutoff::plain, 2.2).check(s),
-      "lennard_jones: precision = \"mixed\" needs a periodic box, and there is none; add a box or leave precision out");
+      "lennard_jones: precision = \"mixed\" needs a periodic box, but there is none; add a box or leave precision out");
 }
 
 }  // namespace noether

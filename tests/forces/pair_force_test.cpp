@@ -277,7 +277,8 @@ TEST_CASE("pair potentials that make no sense are refused", "[pair_force][messag
   CHECK(refusal(pair_force(MorsePair{-1, 2, 1}, 2, Cutoff::plain)) ==
         "depth = -1 is not a valid depth of a well; an energy above 0 is expected");
   CHECK(refusal(pair_force(Buckingham{100, 0.1, 5}, 2, Cutoff::plain)) ==
-        "C = 5 is so strong that these pairs attract at every distance; less than 125.162 A rho^6 leaves a barrier");
+        "C = 5 is so strong that these pairs attract at every distance; less than 125.162 A rho^6 is needed for a "
+        "barrier");
   CHECK(refusal(pair_force(Buckingham{100, 0.1, 125.17e-4}, 2, Cutoff::plain)).find("C = 0.012517 is so") == 0);
   CHECK(refusal(pair_force(Buckingham{100, 0.1, 125.16e-4}, 2, Cutoff::plain)).empty());
   for (const Cutoff style : {Cutoff::plain, Cutoff::shifted, Cutoff::shifted_force}) {

@@ -251,7 +251,7 @@ TEST_CASE("schemes that do not fit a Hamiltonian are refused by name", "[composi
         "use 'verlet', a composition of its steps such as 'yoshida_4', or a scheme made for it such as 'abah_8_6_4'");
   CHECK(refusal(democratic, schemes::srkn14a) ==
         "scheme 'srkn14a' is a Runge-Kutta-Nystroem splitting and keeps its order only where {B,{B,{B,A}}} = 0, which "
-        "'wisdom_holman' does not grant; use a general scheme such as 'blanes_moan_s10'");
+        "'wisdom_holman' does not guarantee; use a general scheme such as 'blanes_moan_s10'");
   const auto damped = test::damped(gravity(), {.rate = 0.1});
   CHECK(refusal(damped, schemes::yoshida_4) ==
         "scheme 'yoshida_4' steps backwards, but part D of 'damped' is irreversible; use a scheme with forward steps "
@@ -288,7 +288,7 @@ TEST_CASE("a Hamiltonian with quadratic kinetic energy only is demanded by Nystr
   const Quartic quartic(Gravity{.G = outer_G});
   CHECK(refusal(quartic, schemes::srkn14a) ==
         "scheme 'srkn14a' is a Runge-Kutta-Nystroem splitting and keeps its order only where {B,{B,{B,A}}} = 0, which "
-        "'quartic' does not grant; use a general scheme such as 'blanes_moan_s10'");
+        "'quartic' does not guarantee; use a general scheme such as 'blanes_moan_s10'");
   CHECK(refusal(quartic, schemes::blanes_moan_s10) == "accepted");
 }
 

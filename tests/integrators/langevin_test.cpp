@@ -300,7 +300,7 @@ TEST_CASE("baths that cannot be are refused by name", "[langevin]") {
   const Langevin planets(test::wisdom_holman({.G = test::outer_G}), {.temperature = 1, .friction = 1});
   CHECK(test::refusal_of([&] {
           Simulation<double>(test::outer_planets(), compose(planets, schemes::verlet), 10);
-        }).find("'wisdom_holman' moves in coordinates of its own") == 0);
+        }).find("'wisdom_holman' uses its own coordinates") == 0);
   const auto hanging = test::hamiltonian_of(test::hanging_chain(2));
   CHECK(
       test::refusal_of([&] { Langevin(AnyHamiltonian<double>(hanging), {.temperature = 1, .friction = 1}); }).empty());

@@ -92,7 +92,7 @@ TEST_CASE("the style of atoms is deduced from the columns where only one fits", 
   CHECK(data_refusal(atoms("1 1 1 0 1 0\n2 1 2 1 1 0\n")) ==
         "m.data:14: rows of 6 words could be of several styles; write 'Atoms # molecular', or give atom_style = "
         "\"molecular\" or another one");
-  CHECK(data_refusal(atoms("1 1 0\n2 1 2\n")).find("rows of 3 words may be of several styles") != std::string::npos);
+  CHECK(data_refusal(atoms("1 1 0\n2 1 2\n")).find("rows of 3 words could be of several styles") != std::string::npos);
 }
 
 TEST_CASE("coefficients of LAMMPS become parameters of noether's kinds", "[structure]") {
@@ -216,7 +216,7 @@ TEST_CASE("a header that is wrong is refused with its line", "[structure][messag
         "m.data:7: the box is triclinic, with tilt factors xy xz yz = 0.5 0 0; only orthogonal boxes are supported");
   CHECK(data_refusal("#\n0 atoms\n" + box) == "m.data: the file has 0 atoms; 1 or more are expected");
   CHECK(data_refusal("#\n2 atoms\n3 ellipsoids\n" + box)
-            .starts_with("m.data:3: '3 ellipsoids' is no line of the header"));
+            .starts_with("m.data:3: '3 ellipsoids' is not a supported line of the header"));
 }
 
 TEST_CASE("sections that are unknown, missing, cut or twice there are refused", "[structure][messages]") {

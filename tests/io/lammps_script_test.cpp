@@ -84,7 +84,7 @@ TEST_CASE("special and mixing of the scene agree with the script, or one of them
   CHECK(script_refusal("", {.mixing = Mixing::geometric}) ==
         "m.in.0:7: pair_modify and mixing give different mixing rules; take one of them out");
   CHECK(script_refusal("", {.file_units = "real"}) ==
-        "m.in.0:1: units lj stands here, but elsewhere the file's units is 'real'; take one of them out");
+        "m.in.0:1: units lj is given here, but the file's units is 'real' elsewhere; take one of them out");
   for (const auto& [line, factor] : {std::pair("fene", 1.0), std::pair("dreiding", 1.0), std::pair("charmm", 0.0),
                                      std::pair("lj 0 0 0.25 coul 0 0 0.25 angle no", 0.25)}) {
     const auto s = read_scripts({init + settings + "special_bonds " + line + "\n"});
@@ -102,7 +102,7 @@ TEST_CASE("what says more than coefficients is refused by name", "[structure][me
   CHECK(script_refusal("include other.in") ==
         "m.in.0:19: 'include other.in' is not followed to the other file; list both files: coefficients = [\"a\", "
         "\"b\"]");
-  CHECK(script_refusal("boundary p p f").starts_with("m.in.0:19: 'boundary' says more than coefficients"));
+  CHECK(script_refusal("boundary p p f").starts_with("m.in.0:19: 'boundary' does more than give coefficients"));
   CHECK(script_refusal("pair_style hybrid/overlay lj/cut 2.5 coul/long 2.5")
             .starts_with("m.in.0:19: pair style 'hybrid/overlay' is not supported; expected one of: lj/cut, "));
   CHECK(script_refusal("pair_coeff 1 1 buck 1 1 1")
@@ -124,7 +124,7 @@ TEST_CASE("what says more than coefficients is refused by name", "[structure][me
         "m.in.0:20: special_bonds keeps [0, 0, 1] of Lennard-Jones forces and [0, 0.5, 1] of forces of charges; only "
         "the third factor may differ");
   CHECK(script_refusal("special_bonds lj/coul 0 0 0.5 angle yes")
-            .starts_with("m.in.0:19: 'angle yes' of special_bonds is not read"));
+            .starts_with("m.in.0:19: 'angle yes' of special_bonds is not supported"));
   CHECK(error_of([] {
           read_scripts({init + "mass * 1\nbond_coeff 1 harmonic 1 1\n"});
         }).find("m.in.0:12: bond type 2 of 2 has no coefficients; give them as well") != std::string::npos);

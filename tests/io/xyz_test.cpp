@@ -119,7 +119,7 @@ TEST_CASE("extended XYZ that is wrong is refused with its line", "[structure][me
   CHECK(xyz_refusal("1\nLattice=\"1 0 0\"\nO 0 0 0\n") == "m.xyz:2: Lattice has 3 numbers; 9 are expected");
   CHECK(xyz_refusal("1\nLattice=\"1 0 0 0 0 0 0 0 1\"\nO 0 0 0\n") ==
         "m.xyz:2: an edge of the box is 0; a length above 0 is expected");
-  CHECK(xyz_refusal("1\nLattice=\"1 0 0\nO 0 0 0\n") == "m.xyz:2: a double quote behind 'Lattice=' is not closed");
+  CHECK(xyz_refusal("1\nLattice=\"1 0 0\nO 0 0 0\n") == "m.xyz:2: a double quote after 'Lattice=' is not closed");
   CHECK(xyz_refusal("1\n" + cubic + "pbc=\"T T F\"\nO 0 0 0\n") ==
         "m.xyz:2: pbc=\"T T F\" is periodic in 2 of 3 directions; all or none are expected");
   CHECK(xyz_refusal("1\n" + cubic + "pbc=yes\nO 0 0 0\n") ==
@@ -231,7 +231,7 @@ TEST_CASE("a comment of XYZ is read however it is written", "[structure]") {
         "m.xyz:2: after 'pbc=' comes nothing; a value is expected, in quotes if it has spaces or '='");
   CHECK(refused("Lattice='1 0 0 0 1 0 0 0 1'pbc=F") ==
         "m.xyz:2: after the value of 'Lattice=' comes 'pbc=F'; a space is expected");
-  CHECK(refused("Lattice={1 0 0 0 1 0 0 0 1") == "m.xyz:2: a brace behind 'Lattice=' is not closed");
+  CHECK(refused("Lattice={1 0 0 0 1 0 0 0 1") == "m.xyz:2: a brace after 'Lattice=' is not closed");
   CHECK(refused("step=1 step=2") == "m.xyz:2: 'step' appears twice in the comment");
   CHECK(refused("Latice=\"20 0 0 0 30 0 0 0 40\"") ==
         "m.xyz:2: 'Latice=' is not supported; the box is given as Lattice=\"ax 0 0 0 by 0 0 0 cz\"");

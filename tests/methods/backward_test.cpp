@@ -300,8 +300,8 @@ TEST_CASE("what looks the other way is refused, and what knows no way back", "[b
                     "monitor 'energy' cannot sample every 1 of time; a finite time below 0 is expected");
   REQUIRE(back.run(3).ok());
   REQUIRE(forward.run(3).ok());
-  CHECK_THROWS_WITH(back.restore(forward.save()), "the saved run goes forward in time, this one back");
-  CHECK_THROWS_WITH(forward.restore(back.save()), "the saved run goes back in time, this one forward");
+  CHECK_THROWS_WITH(back.restore(forward.save()), "the saved run goes forward in time, but this one goes back");
+  CHECK_THROWS_WITH(forward.restore(back.save()), "the saved run goes back in time, but this one goes forward");
   forward.every_time(1, Energy{});
   REQUIRE(forward.run_until(1000).ok());
   CHECK_THROWS_WITH(forward.run_until(50),

@@ -239,7 +239,7 @@ TEST_CASE("a saved run goes on by the same method with the same tolerances only"
   REQUIRE(run.run(3).ok());
   CHECK_THROWS_WITH(wrong.restore(run.save()),
                     "the saved run was made with dop853(adaptive = true, rtol = 1e-08, atol = default, first = "
-                    "default), this one has "
+                    "default), but this one has "
                     "dop853(adaptive = true, rtol = 1e-09, atol = default, first = default)");
 }
 

@@ -323,7 +323,7 @@ TEST_CASE("matrix-free methods go on from a saved run with the same bits") {
   CHECK_THROWS_WITH(
       other.load(saved_by({}), ""),
       "the saved run was made with bdf(adaptive = true, rtol = default, atol = default, jacobian = default, "
-      "first = default), this one has bdf(adaptive = true, rtol = default, atol = default, jacobian = "
+      "first = default), but this one has bdf(adaptive = true, rtol = default, atol = default, jacobian = "
       "matrix_free, first = default)");
 }
 

@@ -185,7 +185,7 @@ TEST_CASE("a frame that has changed since is told", "[scene][bodies][messages]")
     read_scene(text, scene.file);
     FAIL("the hash is another one");
   } catch (const SceneError& error) {
-    CHECK(error.message().starts_with("'run.h5' is no longer the file this scene was run with: its hash is "));
+    CHECK(error.message().starts_with("'run.h5' differs from the file this scene was run with: its hash is now "));
   }
 }
 

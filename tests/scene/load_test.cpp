@@ -123,7 +123,7 @@ TEST_CASE("a tree of values is held to what texts grant: keys once, UTF-8, no en
           SceneValue deep = SceneValue::of(true);
           for (int k = 0; k < 100; ++k) deep = SceneValue::of(SceneValue::Array{deep});
           root.put("expect", deep);
-        }).find("more than 64 deep") != std::string::npos);
+        }).find("more than 64 levels deep") != std::string::npos);
 }
 
 TEST_CASE("a scene and a program end in the same digest", "[scene][determinism]") {

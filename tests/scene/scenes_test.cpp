@@ -157,7 +157,7 @@ TEST_CASE("a body table that has changed since is refused by its hash", "[scene]
     FAIL("the scene was taken");
   } catch (const SceneError& error) {
     CHECK(error.key() == "particles.bodies_sha256");
-    CHECK(error.message().find("is no longer the file this scene was run with") != std::string::npos);
+    CHECK(error.message().find("differs from the file this scene was run with") != std::string::npos);
   }
 }
 

@@ -124,7 +124,7 @@ TEST_CASE("a structure runs in its box, and has changed where its hash has", "[s
   const auto at = text.find("structure_sha256 = \"") + 20;
   text[at] = text[at] == '0' ? '1' : '0';
   CHECK_THROWS_WITH(read_scene(text, scene.file),
-                    Catch::Matchers::Contains("'argon.data' is no longer the file this scene was run with"));
+                    Catch::Matchers::Contains("'argon.data' differs from the file this scene was run with"));
 }
 
 TEST_CASE("coefficients of an input script are kept with their hash", "[scene][structure]") {
@@ -138,8 +138,9 @@ TEST_CASE("coefficients of an input script are kept with their hash", "[scene][s
       scene_of("structure = 'charmm.data'\ncoefficients = ['charmm.in']\nspecial = [0, 0, 0]\n", "molecular"));
   CHECK(structure_refusal(charmm + "special = [0, 0, 1]\n", "molecular") ==
         "charmm.in:11: special_bonds keeps [0, 0, 0], but special says [0, 0, 1]; take one of them out");
-  CHECK(structure_refusal(charmm + "coefficients_sha256 = '12'\n", "molecular")
-            .starts_with("scene.toml:5: the coefficients are no longer those this scene was run with: their hash is "));
+  CHECK(
+      structure_refusal(charmm + "coefficients_sha256 = '12'\n", "molecular")
+          .starts_with("scene.toml:5: the coefficients differ from those this scene was run with: their hash is now "));
   CHECK(structure_refusal("structure = 'charmm.data'\ncoefficients = []\ncoefficients_sha256 = ''\n", "molecular") ==
         "scene.toml:4: coefficients = [] names no file; give one, such as \"system.in.settings\", or a list");
   CHECK(structure_refusal("structure = 'charmm.data'\ncoefficients = ['charmm.in', 3]\n", "molecular") ==
@@ -172,7 +173,7 @@ TEST_CASE("a scene takes one frame of several, and is told of columns that nobod
       Catch::Matchers::Contains("scene.toml:4: frame = 2, but the file has 2 frames: 0 to 1, or -1 for the "
                                 "last"));
   CHECK_THROWS_WITH(with("frame = 'barycenter'\n"),
-                    Catch::Matchers::Contains("run.xyz:4: there is more behind the 1 atoms"));
+                    Catch::Matchers::Contains("run.xyz:4: there is more text after the 1 atoms"));
 }
 
 TEST_CASE("a builder is asked for by its name, and its scene is the same again", "[scene][builders]") {

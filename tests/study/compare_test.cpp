@@ -138,7 +138,7 @@ TEST_CASE("a run far beyond its limit has diverged, though its numbers are still
   CHECK(std::abs(lost.track.y.back()[0]) > 1e100);
   CHECK(lost.outcome == "diverged");
   CHECK(lost.outcome_time < 0.5);
-  CHECK(lost.message.find(" times as large as the truth ever is at t = ") != std::string::npos);
+  CHECK(lost.message.find(" times as large as the reference ever is at t = ") != std::string::npos);
   CHECK_FALSE(lost.position_error_end);
   CHECK_FALSE(lost.pareto_time);
   CHECK_FALSE(lost.pareto_evaluations);
