@@ -95,12 +95,15 @@ bare_system() {
   }
 }
 
-in_bare() { env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C DEBIAN_FRONTEND=noninteractive chroot "$bare" "$@"; }
+in_bare() {
+  env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C DEBIAN_FRONTEND=noninteractive \
+    ${http_proxy:+http_proxy="$http_proxy"} ${https_proxy:+https_proxy="$https_proxy"} chroot "$bare" "$@"
+}
 
 if bare_system; then
   echo "on a bare system"
   cp "$program" "$library" "$bare/tmp/"
-  cp /etc/apt/apt.conf.d/*proxy* "$bare/etc/apt/apt.conf.d/" 2>/dev/null || true
+  apt-config dump | grep -E '^Acquire::https?::.*Proxy' >"$bare/etc/apt/apt.conf.d/90proxy" || true
   mount -t proc proc "$bare/proc" 2>/dev/null || true
   in_bare apt-get install -y --no-install-recommends "/tmp/$(basename "$program")" >"$scratch/apt.log" 2>&1 || {
     tail -n 20 "$scratch/apt.log"
