@@ -24,6 +24,12 @@ namespace noether::io {
 
 bool has_hdf5() noexcept { return true; }
 
+std::string hdf5_version() {
+  unsigned major = 0, minor = 0, patch = 0;
+  H5get_libversion(&major, &minor, &patch);
+  return fmt::format("{}.{}.{}", major, minor, patch);
+}
+
 using namespace hdf5;
 
 namespace {
