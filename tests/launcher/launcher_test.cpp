@@ -47,8 +47,10 @@ mkdir -p build/release && echo "CMAKE_HOME_DIRECTORY:INTERNAL=$PWD" >build/relea
 [ -z "${BROKEN:-}" ] || { echo "FAILED: sums.o"; echo "sums.cpp:1: error: no"; exit 1; }
 echo "[0/3] Re-checking globbed directories..."
 for k in 1 2 3; do echo "[$k/3] Building CXX object sums.o"; done
-[ -x "$2/cli/noether" ] || { mkdir -p "$2/cli" "$2/bench"; printf '%s\n' '#!/bin/sh' 'echo "program $*"' >"$2/cli/noether"
-  chmod +x "$2/cli/noether"; cp "$2/cli/noether" "$2/bench/kepler"; }
+[ ! -x "$2/cli/noether" ] || exit 0
+mkdir -p "$2/cli"
+printf '%s\n' '#!/bin/sh' 'echo "program $*"' >"$2/cli/noether"
+chmod +x "$2/cli/noether"
 )");
     write_tool(path() / "bin/ctest", R"(case " $* " in *" -N "*) echo "Total Tests: 7" ;; *) echo "ctest ${*:3}" ;; esac
 )");
