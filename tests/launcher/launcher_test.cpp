@@ -90,7 +90,7 @@ chmod +x "$2/cli/noether"
 TEST_CASE("the launcher's help is answered at once: nothing is built, and nothing installed", "[launcher]") {
   const Checkout checkout;
   for (const char* line : {"build --help", "test --help", "bench --help", "help build", "help test", "help bench",
-                           "test forces -h", "build asan --help", "--help", "-h", "help", "help run"}) {
+                           "test forces -h", "build asan --help", "--help", "-h", "help", "help run", "bench kepler --help"}) {
     const ProcessResult result = checkout.launch(line);
     INFO(line << "\n" << result.out << result.err);
     CHECK(result.exit_code == 0);
