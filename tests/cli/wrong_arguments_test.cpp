@@ -20,9 +20,18 @@ const std::vector<Wrong> wrong_lines = {
     {"", 2, "no command is given; see `noether --help`"},
     {"rnu scene.toml", 2, "unknown command 'rnu'; did you mean 'run'?"},
     {"integrate scene.toml", 2,
-     "unknown command 'integrate'; expected one of: run, evaluate, explain, compare, advise, stability, list, "
-     "describe, "
-     "info, verify, convert, plot"},
+     "unknown command 'integrate'; expected one of: run, evaluate, explain, compare, advise, stability, list, describe, "
+     "info, verify, convert, plot, help, version"},
+    {"build", 2, "'build' is a command of the launcher in a checkout: ./noether build"},
+    {"test forces", 2, "'test' is a command of the launcher in a checkout: ./noether test"},
+    {"help rnu", 2, "there is no command 'rnu'; did you mean 'run'?", false},
+    {"help yoshida_4", 2,
+     "there is no command 'yoshida_4'; `noether help` lists the commands, and `noether describe yoshida_4` describes a "
+     "method or a part of that name",
+     false},
+    {"help run plot", 2, "unexpected argument 'plot' of 'help'", false},
+    {"version 2", 2, "unexpected argument '2' of 'version'"},
+    {"version --jsn", 2, "unknown option '--jsn' of 'version'; did you mean '--json'?"},
     {"--vresion", 2, "unknown option '--vresion' before a command; did you mean '--version'?"},
     {"-x run scene.toml", 2, "unknown option '-x' before a command; expected one of: --help, --version"},
     {"run", 2, "scene is required; see `noether run --help`"},

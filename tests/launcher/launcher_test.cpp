@@ -47,8 +47,10 @@ mkdir -p build/release && echo "CMAKE_HOME_DIRECTORY:INTERNAL=$PWD" >build/relea
 [ -z "${BROKEN:-}" ] || { echo "FAILED: sums.o"; echo "sums.cpp:1: error: no"; exit 1; }
 echo "[0/3] Re-checking globbed directories..."
 for k in 1 2 3; do echo "[$k/3] Building CXX object sums.o"; done
-[ -x "$2/cli/noether" ] || { mkdir -p "$2/cli" "$2/bench"; printf '%s\n' '#!/bin/sh' 'echo "program $*"' >"$2/cli/noether"
-  chmod +x "$2/cli/noether"; cp "$2/cli/noether" "$2/bench/kepler"; }
+[ ! -x "$2/cli/noether" ] || exit 0
+mkdir -p "$2/cli"
+printf '%s\n' '#!/bin/sh' 'echo "program $*"' >"$2/cli/noether"
+chmod +x "$2/cli/noether"
 )");
     write_tool(path() / "bin/ctest", R"(case " $* " in *" -N "*) echo "Total Tests: 7" ;; *) echo "ctest ${*:3}" ;; esac
 )");
@@ -88,7 +90,7 @@ for k in 1 2 3; do echo "[$k/3] Building CXX object sums.o"; done
 TEST_CASE("the launcher's help is answered at once: nothing is built, and nothing installed", "[launcher]") {
   const Checkout checkout;
   for (const char* line : {"build --help", "test --help", "bench --help", "help build", "help test", "help bench",
-                           "test forces -h", "build asan --help", "--help", "-h", "help", "help run"}) {
+                           "test forces -h", "build asan --help", "--help", "-h", "help", "help run", "bench kepler --help"}) {
     const ProcessResult result = checkout.launch(line);
     INFO(line << "\n" << result.out << result.err);
     CHECK(result.exit_code == 0);
