@@ -36,9 +36,10 @@ class SceneReader {
 
   void read() {
     TableReader top(context_, root_, "", "");
-    top.expect_only({"title", "units", "particles", "hamiltonian", "system", "minimize", "integrator", "every", "stop",
-                     "expect", "verdict"});
+    top.expect_only({"title", "program", "units", "particles", "hamiltonian", "system", "minimize", "integrator",
+                     "every", "stop", "expect", "verdict"});
     scene_.title = top.text("title");
+    context_.program = top.text("program");
     read_units(top);
     scene_.effective = SceneValue::table();
     scene_.effective.put("title", SceneValue::of(scene_.title));

@@ -34,6 +34,7 @@ struct SceneContext {
   bool of_system = false;                ///< it has a system of first order in the place of a Hamiltonian
   bool gravitates = false;               ///< the Hamiltonian, as far as it has been read, has a constant of gravitation
   std::vector<ColumnInfo> columns = {};  ///< that the Hamiltonian and the forces of the scene declare
+  std::string program = {};              ///< how to run the program that has the parts of this scene, where it has own
   /// Where notes go, each with its place: what is taken otherwise than written. Null: nobody wants them.
   std::vector<std::string>* notes = nullptr;
 };

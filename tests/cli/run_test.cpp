@@ -200,6 +200,8 @@ TEST_CASE("a run whose numbers run away exits 1, with a whole report", "[cli][ru
   CHECK(json_member(json_member(result.out, "energy"), "worst") == "null");
   const ProcessResult text = noether(folder, "run scene.toml --out text");
   CHECK(text.exit_code == 1);
+  CHECK(text.err == result.err);
+  CHECK(text.out.starts_with("diverged at step " + step + ", time " + step + "\n"));  // the reason is told once
   CHECK(text.out.find("nan") == std::string::npos);
 }
 
