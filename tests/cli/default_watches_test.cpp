@@ -27,7 +27,7 @@ Scene read(const std::string& text, const std::vector<std::string>& sets = {}) {
 }
 
 TEST_CASE("a scene without [[every]] is stored with its default watches, and every = [] without", "[cli][scene]") {
-  const Scene scene = read(unwatched, {"integrator.steps=3653"});
+  const Scene scene = read(unwatched, {"integrator.steps=3659"});
   CHECK(scene.default_watches);
   const std::string cadence = "steps = 18\n";
   CHECK(has(scene.effective_toml, "[[every]]\ntype = \"energy\"\n" + cadence));
