@@ -46,13 +46,13 @@ std::size_t terminal_columns() {
 }  // namespace
 
 std::string progress_text(const ProgressState& state, std::size_t columns) {
-  constexpr std::size_t shortest_bar = 10, longest_bar = 40;
+  constexpr std::size_t shortest_bar = 8, longest_bar = 40;
   const double share = std::isfinite(state.share) ? std::clamp(state.share, 0.0, 1.0) : 0;
   std::string text = fmt::format(" {:4.1f} %", 100 * share);
-  std::vector<std::string> parts = {fmt::format("time {:.4g}{}{}", state.time, state.time_unit == "1" ? "" : " ",
+  std::vector<std::string> parts = {fmt::format("time {:>9.4g}{}{}", state.time, state.time_unit == "1" ? "" : " ",
                                                 state.time_unit == "1" ? "" : state.time_unit)};
   if (state.seconds_left) parts.push_back(duration_text(*state.seconds_left) + " left");
-  if (state.energy_error) parts.push_back(fmt::format("energy error {:.0e}", *state.energy_error));
+  if (state.energy_error) parts.push_back(fmt::format("dE/E {:.0e}", *state.energy_error));
   if (state.rate > 0) parts.push_back(rate_text(state.rate) + " steps/s");
   std::size_t room = columns > shortest_bar + 2 ? columns - shortest_bar - 2 : 0;
   for (const std::string& part : parts) {

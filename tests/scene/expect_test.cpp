@@ -82,7 +82,7 @@ TEST_CASE("a part that is not known here points to the program of the scene", "[
       read_scene(text, std::string(NOETHER_SOURCE_DIR) + "/" + folder + "/scene.toml");
       FAIL("it is not refused");
     } catch (const SceneError& error) {
-      CHECK(has(error.what(), "; the program of this scene has parts of its own: run `cd " + folder +
+      CHECK(has(error.what(), "; the program of this scene has parts of its own: run `./noether build && cd " + folder +
                                   " && ../../build/release/examples/example_" + example + "_from_scene`"));
     }
   }

@@ -24,7 +24,7 @@ ProgressState half_way() {
 TEST_CASE("a bar with share, time, time left, worst energy error and rate has room in 80 columns",
           "[scene][progress]") {
   const std::string line = progress_text(half_way(), 79);
-  CHECK(line == "[######------] 50.0 %  time 1.826e+05 day  13 min left  energy error 1e-12  12.3k steps/s");
+  CHECK(line == "[#####-----] 50.0 %  time 1.826e+05 day  13 min left  dE/E 1e-12  12.3k steps/s");
 }
 
 TEST_CASE("the line is never longer than the terminal, and leaves out the last parts first", "[scene][progress]") {
@@ -46,7 +46,7 @@ TEST_CASE("what is not known is left out, and reduced times have no unit", "[sce
   ProgressState state;
   state.time = 3;
   const std::string line = progress_text(state, 79);
-  CHECK(line.ends_with("] 0.0 %  time 3"));
+  CHECK(line.ends_with("]  0.0 %  time         3"));
 }
 
 }  // namespace
