@@ -12,8 +12,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string unwatched = two_bodies.substr(0, two_bodies.find("[[every]]"));
-const std::string kinetics = R"(units = "reduced"
+const std::string unwatched_orbit = two_bodies.substr(0, two_bodies.find("[[every]]"));
+const std::string lorenz_until_two = R"(units = "reduced"
 [system]
 type = "lorenz"
 [integrator]
@@ -22,21 +22,21 @@ rtol = 1e-7
 until = 2
 )";
 
-Scene read(const std::string& text, const std::vector<std::string>& sets = {}) {
+Scene read_unwatched(const std::string& text, const std::vector<std::string>& sets = {}) {
   return read_scene(text, "scene.toml", standard_parts(), sets);
 }
 
 TEST_CASE("a scene without [[every]] is stored with its default watches, and every = [] without", "[cli][scene]") {
-  const Scene scene = read(unwatched, {"integrator.steps=3659"});
+  const Scene scene = read_unwatched(unwatched_orbit, {"integrator.steps=3659"});
   CHECK(scene.default_watches);
   const std::string cadence = "steps = 18\n";
   CHECK(has(scene.effective_toml, "[[every]]\ntype = \"energy\"\n" + cadence));
   if (NOETHER_HDF5 != 0) CHECK(has(scene.effective_toml, "[[every]]\ntype = \"trajectory\"\n" + cadence));
   CHECK(read_scene(scene.effective_toml, "scene.toml").effective_toml == scene.effective_toml);
-  const Scene divided = read(unwatched, {"integrator.steps=3660"});
+  const Scene divided = read_unwatched(unwatched_orbit, {"integrator.steps=3660"});
   CHECK(divided.watches.front().cadence.steps == 20);  // 3660 / 20 = 183 frames, the last at the end
-  CHECK(read(unwatched, {"integrator.steps=100"}).watches.front().cadence.steps == 1);
-  const Scene bare = read(unwatched, {"every=[]"});
+  CHECK(read_unwatched(unwatched_orbit, {"integrator.steps=100"}).watches.front().cadence.steps == 1);
+  const Scene bare = read_unwatched(unwatched_orbit, {"every=[]"});
   CHECK(bare.watches.empty());
   CHECK_FALSE(bare.default_watches);
   CHECK(has(bare.effective_toml, "every = []\n"));
@@ -44,21 +44,21 @@ TEST_CASE("a scene without [[every]] is stored with its default watches, and eve
 }
 
 TEST_CASE("default watches change neither the trajectory nor what a program assembles", "[cli][scene]") {
-  const SceneFolder folder(unwatched);
+  const SceneFolder folder(unwatched_orbit);
   const std::string watched = noether(folder, "run scene.toml --json").out;
   const std::string bare = noether(folder, "run scene.toml --json --out b --set every=[]").out;
   CHECK(json_member(watched, "digest") == json_member(bare, "digest"));
   CHECK(json_member(watched, "digest").size() > 64);
   CHECK(json_member(json_member(watched, "energy"), "samples") == "101");
   CHECK(json_member(bare, "monitors") == "{}");
-  Simulation<double> sim = assemble(read(unwatched));
+  Simulation<double> sim = assemble(read_unwatched(unwatched_orbit));
   int attached = 0;
   sim.for_each_monitor([&](const std::string&, AnyMonitor<double>&) { ++attached; });
   CHECK(attached == 0);
 }
 
 TEST_CASE("explain tells default watches, and systems have no energy", "[cli][explain]") {
-  const SceneFolder folder(unwatched), system(kinetics);
+  const SceneFolder folder(unwatched_orbit), system(lorenz_until_two);
   CHECK(has(output(folder, "explain scene.toml"), "\n  monitor energy, every 1 step, by default\n"));
   const std::string text = output(system, "explain scene.toml");
   CHECK_FALSE(has(text, "monitor energy, every"));
@@ -68,7 +68,7 @@ TEST_CASE("explain tells default watches, and systems have no energy", "[cli][ex
 #if NOETHER_HDF5
 
 TEST_CASE("a scene without [[every]] leaves frames, of fixed steps and of free ones", "[cli][run]") {
-  const SceneFolder folder(unwatched), system(kinetics);
+  const SceneFolder folder(unwatched_orbit), system(lorenz_until_two);
   output(folder, "run scene.toml --quiet");
   CHECK(io::info(folder / "scene.out/run.h5").frames == 101);
   output(folder, "plot scene.out/run.h5");
@@ -81,7 +81,7 @@ TEST_CASE("a scene without [[every]] leaves frames, of fixed steps and of free o
 }
 
 TEST_CASE("a run with default watches goes on to a later end with the cadence it began with", "[cli][resume]") {
-  const SceneFolder folder(unwatched);
+  const SceneFolder folder(unwatched_orbit);
   output(folder, "run scene.toml --quiet --set integrator.steps=400");
   CHECK(io::info(folder / "scene.out/run.h5").frames == 201);
   const std::string longer = output(folder, "run scene.toml --json --resume --set integrator.steps=2000");

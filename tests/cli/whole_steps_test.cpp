@@ -9,7 +9,7 @@ namespace noether::test {
 namespace {
 
 /// Two bodies in days: an end and cadences that are no whole numbers of steps.
-const std::string between = R"(title = "Between steps"
+const std::string between_steps = R"(title = "Between steps"
 units = "solar"
 [[particles.body]]
 name = "Sun"
@@ -46,7 +46,7 @@ const std::string every_note =
     "note: scene.toml:23: every = \"10.4 day\" is 10.4 steps of \"1 day\"; the nearest whole number of steps is taken, "
     "\"10 day\" (10 steps)\n";
 TEST_CASE("a run whose end lies between two steps ends at the later one, and says so", "[cli][run][messages]") {
-  const SceneFolder folder(between);
+  const SceneFolder folder(between_steps);
   const ProcessResult result = noether(folder, "run scene.toml --json");
   INFO(result.err);
   CHECK(result.exit_code == 0);
@@ -65,7 +65,7 @@ TEST_CASE("a run whose end lies between two steps ends at the later one, and say
 }
 
 TEST_CASE("every command that reads a scene takes whole steps, and notes each once", "[cli][messages]") {
-  const SceneFolder folder(between);
+  const SceneFolder folder(between_steps);
   for (const char* line :
        {"explain scene.toml", "evaluate scene.toml", "evaluate scene.toml --json",
         "compare scene.toml --methods verlet,yoshida_4 --steps '1 day,2 day' --repeat 1 --quiet --json",

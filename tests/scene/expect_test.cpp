@@ -10,7 +10,7 @@
 namespace noether::test {
 namespace {
 
-const std::string spring = R"(units = "reduced"
+const std::string expected_spring = R"(units = "reduced"
 [particles]
 body = [{ name = "ball", mass = 1, x = [1, 0, 0], v = [0, 0, 0] }]
 [hamiltonian]
@@ -28,31 +28,31 @@ steps = 1
 )";
 
 /// The one thing that is wrong with what a scene expects; "" if nothing.
-std::string wrong(const std::string& lines) {
-  const Scene scene = read_scene(spring + lines, "scene.toml");
+std::string wrong_expectation_of(const std::string& lines) {
+  const Scene scene = read_scene(expected_spring + lines, "scene.toml");
   CHECK(scene.unread == warnings_of(scene));
   return scene.unread.empty() ? "" : scene.unread.at(0);
 }
 
 TEST_CASE("what [expect] says wrongly is a warning with its line, and ends no run", "[scene][messages]") {
-  CHECK(wrong("[expect]\nenergy.worst = 1e-3\n").empty());
-  CHECK(wrong("[expect]\nenergy.worst = 1\n").empty());
-  CHECK(wrong("[expect]\nenergy.worst = \"small\"\n") ==
+  CHECK(wrong_expectation_of("[expect]\nenergy.worst = 1e-3\n").empty());
+  CHECK(wrong_expectation_of("[expect]\nenergy.worst = 1\n").empty());
+  CHECK(wrong_expectation_of("[expect]\nenergy.worst = \"small\"\n") ==
         "scene.toml:17: energy.worst = \"small\" is a text; a number is expected");
-  CHECK(wrong("[expect]\nenergy.wurst = 1e-3\n") ==
+  CHECK(wrong_expectation_of("[expect]\nenergy.wurst = 1e-3\n") ==
         "scene.toml:17: [expect] names 'wurst' of 'energy', which is no figure; did you mean 'worst'?");
-  CHECK(wrong("[expect]\nenrgy.worst = 1e-3\n") ==
+  CHECK(wrong_expectation_of("[expect]\nenrgy.worst = 1e-3\n") ==
         "scene.toml:17: [expect] names 'enrgy', which is no monitor of this scene; did you mean 'energy'?");
-  CHECK(wrong("[expect]\nenergy = 1e-3\n") ==
+  CHECK(wrong_expectation_of("[expect]\nenergy = 1e-3\n") ==
         "scene.toml:17: [expect] names no figure of 'energy'; expected one, such as energy.worst");
-  const Scene scene = read_scene("expect = 3\n" + spring, "scene.toml");
+  const Scene scene = read_scene("expect = 3\n" + expected_spring, "scene.toml");
   CHECK(scene.unread == std::vector<std::string>{"scene.toml:1: expect = 3 is a whole number; a table is expected"});
   Simulation<double> sim = assemble(scene);
   CHECK(sim.run(10).ok());
 }
 
 TEST_CASE("the energy of a scene without [[every]] can be expected", "[scene]") {
-  const std::string unwatched = spring.substr(0, spring.find("[[every]]"));
+  const std::string unwatched = expected_spring.substr(0, expected_spring.find("[[every]]"));
   CHECK(read_scene(unwatched + "[expect]\nenergy.worst = 1e-3\n", "scene.toml").unread.empty());
 }
 
@@ -65,7 +65,7 @@ TEST_CASE("a part that is not known here points to the program of the scene", "[
     }
     return "";
   };
-  const std::string own = "program = \"./springs\"\n" + spring;
+  const std::string own = "program = \"./springs\"\n" + expected_spring;
   CHECK(refusal(own).empty());
   CHECK(refusal(replaced(own, "\"harmonic_field\"", "\"cubic_well\"")) ==
         "scene.toml:8: unknown force 'cubic_well'; the program of this scene has parts of its own: run `./springs`");
