@@ -4,6 +4,7 @@
 #include "numbers/error.hpp"
 #include "numbers/suggest.hpp"
 #include "scene/scene.hpp"
+#include "scene/warnings.hpp"
 #include "study/advise.hpp"
 
 #include <fmt/format.h>
@@ -36,6 +37,7 @@ void advise_scene(const AdviseArguments& given, const Parts& parts) {
   if (given.methods) options.methods = texts_in(*given.methods, "--methods");
   options.row_budget = given.budget;
   const Scene scene = load_scene(given.scene, parts, given.sets);
+  tell_notes(scene.notes);
   const bool shows = !given.json && ::isatty(STDERR_FILENO) == 1;
   if (shows) {
     options.progress = [](const std::string& what) {

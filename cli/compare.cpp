@@ -1,8 +1,11 @@
 #include "cli/commands.hpp"
 
 #include "cli/comma_lists.hpp"
+#include "cli/shell_text.hpp"
 #include "numbers/error.hpp"
+#include "scene/output_folder.hpp"
 #include "scene/scene.hpp"
+#include "scene/warnings.hpp"
 #include "study/compare_files.hpp"
 #include "study/report.hpp"
 
@@ -32,16 +35,9 @@ struct CompareArguments {
 
 /// The command as it can be typed again.
 std::string command_line(const CompareArguments& given) {
-  const auto quoted = [](const std::string& value) {
-    constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-";
-    if (value.find_first_not_of(plain) == std::string::npos) return value;
-    std::string text;
-    for (const char c : value) text += c == '\'' ? "'\\''" : std::string(1, c);
-    return "'" + text + "'";
-  };
-  std::string line = "noether compare " + quoted(given.scene);
+  std::string line = "noether compare " + shell_quoted(given.scene);
   const auto add = [&](const char* option, const std::string& value) {
-    line += fmt::format(" {} {}", option, quoted(value));
+    line += fmt::format(" {} {}", option, shell_quoted(value));
   };
   if (given.methods) add("--methods", *given.methods);
   if (given.steps) add("--steps", *given.steps);
@@ -54,13 +50,12 @@ std::string command_line(const CompareArguments& given) {
 
 std::filesystem::path folder_of(const CompareArguments& given) {
   if (!given.out.empty()) return given.out;
-  std::filesystem::path name = std::filesystem::path(given.scene).filename();
-  if (name.extension() == ".toml") name.replace_extension();
-  return name.string() + ".out";
+  return default_output_folder(given.scene);
 }
 
 void compare_scene(const CompareArguments& given, const Parts& parts) {
   const Scene scene = load_scene(given.scene, parts, given.sets);
+  if (!given.quiet) tell_notes(scene.notes);
   CompareOptions options;
   if (given.methods) options.methods = texts_in(*given.methods, "--methods");
   if (given.steps) options.steps = times_in(*given.steps, "--steps", *scene.units);
@@ -115,7 +110,7 @@ void add_compare_command(CLI::App& app, const Parts& parts, int& exit_code) {
   command->add_option("--truth-budget", given->truth_budget, "seconds of wall time for the reference")
       ->check(wrong_seconds)
       ->type_name("SECONDS");
-  command->add_option("--out", given->out, "output folder; default: SCENE.out here")
+  command->add_option("--out", given->out, "output folder; default: SCENE.out here, or NAME.out for NAME/scene.toml")
       ->check(wrong_folder)
       ->type_name("DIR");
   command->add_option("--set", given->sets, "change a key of the scene: key.path=value")

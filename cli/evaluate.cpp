@@ -96,12 +96,13 @@ void print_text(const Scene& scene, const Evaluation& e) {
   if (!e.gradient_error) return;
   const Index particles = scene.particles.size(), asked = e.gradient_asked;
   fmt::print("{:<22}{:.2g} of the largest force{}\n", "force against -grad U", *e.gradient_error,
-             asked < particles ? fmt::format(", checked at {} of {} particles", asked, particles) : "");
+             asked < particles ? fmt::format(", checked at {} of {}", asked, counted(particles, "particle")) : "");
 }
 
 int evaluate_scene(const EvaluateArguments& given, const Parts& parts) {
   if (given.threads != 0) set_thread_count(given.threads);
   const Scene scene = load_scene(given.scene, parts, given.sets);
+  tell_notes(scene.notes);
   if (!given.forces.empty() && !scene.system) check_forces_file(given.forces, scene);
   const Evaluation result = evaluate(scene, given.check);
   const bool failed = !result.outcome.ok();

@@ -107,7 +107,8 @@ void sort_parts(const Scene& scene, Explanation& e) {
     e.in.push_back("thermostat " + bath->name + keys_text(bath->effective));
   }
   for (const SceneConstraint& constraint : scene.hamiltonian.constraints) {
-    e.in.push_back(fmt::format("constraint {}, {} times", constraint.name, constraint.tied.size()));
+    e.in.push_back(fmt::format("constraint {}, {}", constraint.name,
+                               counted(static_cast<std::int64_t>(constraint.tied.size()), "time")));
   }
   for (const SceneDecorator& decorator : scene.integrator.decorators) {
     e.in.push_back("decorator " + decorator.name + keys_text(decorator.effective));
@@ -118,19 +119,20 @@ void sort_parts(const Scene& scene, Explanation& e) {
                              : watch.kind == SceneWatch::Kind::trajectory ? "writer trajectory"
                                                                           : "writer checkpoint";
     const std::size_t listed = watch.cadence.times.size();
-    const std::string when = listed > 0 ? fmt::format("at {} {} of a list", listed, listed == 1 ? "time" : "times")
+    const std::string when = listed > 0
+                                 ? fmt::format("at {} of a list", counted(static_cast<std::int64_t>(listed), "time"))
                              : watch.cadence.wall > 0      ? fmt::format("every {} s of wall time", watch.cadence.wall)
                              : watch.cadence.interval != 0 ? fmt::format("every {} of time", watch.cadence.interval)
-                                                           : fmt::format("every {} steps", watch.cadence.steps);
+                                                           : "every " + counted(watch.cadence.steps, "step");
     const std::string cost =
         watch.monitor.cost && listed == 0 ? watch.monitor.cost(scene.particles.size(), watch.cadence.steps) : "";
-    e.in.push_back(name + ", " + when + (cost.empty() ? "" : ": " + cost));
+    e.in.push_back(name + ", " + when + (scene.default_watches ? ", by default" : "") +
+                   (cost.empty() ? "" : ": " + cost));
   }
   for (const SceneStop& stop : scene.stops) {
     const bool escape = stop.rule.kind == StopRule::Kind::escape;
-    e.in.push_back(fmt::format("stop {}, {} {}, every {} {}", stop.name, escape ? "beyond" : "below",
-                               length_text(stop.rule.distance, *scene.units), stop.steps,
-                               stop.steps == 1 ? "step" : "steps"));
+    e.in.push_back(fmt::format("stop {}, {} {}, every {}", stop.name, escape ? "beyond" : "below",
+                               length_text(stop.rule.distance, *scene.units), counted(stop.steps, "step")));
   }
   const auto leave_out = [&](const std::string& what) {
     const bool used = std::any_of(e.in.begin(), e.in.end(),
@@ -250,17 +252,17 @@ std::string meaning(char letter, const Scene& scene, const Explanation& e) {
   const std::string flow = flow_of(letter, scene, e.kicks);
   if (e.constraints > 0 && e.inexact.find(letter) != std::string::npos) {
     return fmt::format(
-        "{}, each with {} equations of constraints solved for positions and for velocities; {} "
-        "degrees of freedom are left",
-        flow, e.constraints, 3 * e.particles - e.constraints);
+        "{}, each with {} of constraints solved for positions and for velocities; degrees of freedom left: {}", flow,
+        counted(e.constraints, "equation"), 3 * e.particles - e.constraints);
   }
   if (e.kicks.find(letter) == std::string::npos) return flow;
   int kicks = 0;
   for (const char one : e.kicks) kicks += e.flows.contains(one) ? e.flows.at(one) : 0;
   if (e.evaluations == kicks) return flow + ", one force evaluation each";
-  if (e.kicks.size() > 1) return fmt::format("{}, {} force evaluations of all kicks together", flow, e.evaluations);
-  return fmt::format("{}, {} force {}: a kick where nothing has moved uses the forces again", flow, e.evaluations,
-                     e.evaluations == 1 ? "evaluation" : "evaluations");
+  if (e.kicks.size() > 1)
+    return fmt::format("{}, {} of all kicks together", flow, counted(e.evaluations, "force evaluation"));
+  return fmt::format("{}, {}: a kick where nothing has moved uses the forces again", flow,
+                     counted(e.evaluations, "force evaluation"));
 }
 
 void print_stiffness(const Scene& scene, const Explanation& e) {
@@ -273,8 +275,8 @@ void print_stiffness(const Scene& scene, const Explanation& e) {
     const double length = length_of(scene.integrator);
     const double begin = scene.integrator.start;
     const bool whole = std::abs((along.reached - begin) / length - 1) < 1e-9;
-    fmt::print("  seen at {} {} of a rough run to t = {:.3g}{}\n", along.places, along.places == 1 ? "place" : "places",
-               along.reached, whole ? "" : fmt::format(" of {:.3g}; what comes later is not known", begin + length));
+    fmt::print("  seen at {} of a rough run to t = {:.3g}{}\n", counted(along.places, "place"), along.reached,
+               whole ? "" : fmt::format(" of {:.3g}; what comes later is not known", begin + length));
     fmt::print("  fastest rate {:.3g}, at t = {:.3g}; at the start {:.3g}\n", along.fastest, along.at, start.fastest);
   }
   if (start.spread() > 1) {
@@ -283,21 +285,57 @@ void print_stiffness(const Scene& scene, const Explanation& e) {
   }
 }
 
-void print_text(const Scene& scene, const Explanation& e) {
-  fmt::print("{}{}{} over {}, {} {}\n", plain_line(scene.title), scene.title.empty() ? "" : ": ", e.method,
-             e.hamiltonian, scene.system ? e.variables : e.particles, scene.system ? "variables" : "particles");
-  fmt::print("in:\n");
-  for (const std::string& one : e.in) fmt::print("  {}\n", one);
-  if (!e.out.empty()) fmt::print("left out:\n");
-  for (const std::string& one : e.out) fmt::print("  {}\n", one);
-  if (!scene.system) {
-    fmt::print("columns: {}; {} bytes per particle\n", fmt::join(e.columns, ", "), e.bytes_per_particle);
+/// The step, and the one that is recommended.
+void print_step(const Scene& scene, const Explanation& e) {
+  const std::string unit = scene.units->is_reduced() ? "" : " " + std::string(scene.units->time);
+  fmt::print("step: {}", scene.integrator.adaptive() ? "of the method's own choice" : scene.integrator.step_text);
+  if (e.kepler) {
+    fmt::print("; at most {:.3g}{} is recommended, a twentieth of the time {} needs around its pericenter",
+               e.kepler->recommended(), unit, e.kepler->passage_of);
   }
+  if (const auto& steps = scene.integrator.steps) fmt::print("; {} in all", counted(*steps, "step"));
+  fmt::print("\n");
+}
+
+/// What a step costs.
+void print_cost(const Scene& scene, const Explanation& e) {
   fmt::print("each step:\n");
   for (const auto& [letter, count] : e.flows) fmt::print("  {} x {}: {}\n", count, letter, meaning(letter, scene, e));
-  if (scene.integrator.classical) {
-    fmt::print("  {} evaluations of {}, on the average of the first steps\n", e.evaluations,
-               scene.system ? "all rates" : "all forces together");
+  if (!scene.integrator.classical) return;
+  fmt::print("  {} of {}, on the average of the first steps\n", counted(e.evaluations, "evaluation"),
+             scene.system ? "all rates" : "all forces together");
+}
+
+/// The parts that are left out, each in a line, or how many of each kind.
+void print_left_out(const Explanation& e, bool all) {
+  if (e.out.empty()) return;
+  if (all) {
+    fmt::print("left out:\n");
+    for (const std::string& one : e.out) fmt::print("  {}\n", one);
+    return;
+  }
+  std::vector<std::pair<std::string, std::int64_t>> kinds;
+  for (const std::string& one : e.out) {
+    const std::string kind = one.substr(0, one.find(' '));
+    if (kinds.empty() || kinds.back().first != kind) kinds.emplace_back(kind, 0);
+    ++kinds.back().second;
+  }
+  std::vector<std::string> counts;
+  for (const auto& [kind, count] : kinds) counts.push_back(counted(count, kind));
+  fmt::print("left out: {}; --all names them\n", fmt::join(counts, ", "));
+}
+
+void print_text(const Scene& scene, const Explanation& e, bool all) {
+  fmt::print("{}{}{} over {}, {}\n", plain_line(scene.title), scene.title.empty() ? "" : ": ", e.method, e.hamiltonian,
+             scene.system ? counted(e.variables, "variable") : counted(e.particles, "particle"));
+  print_step(scene, e);
+  print_cost(scene, e);
+  fmt::print("in:\n");
+  for (const std::string& one : e.in) fmt::print("  {}\n", one);
+  print_left_out(e, all);
+  if (!scene.system) {
+    fmt::print("columns: {}; {} per particle\n", fmt::join(e.columns, ", "),
+               counted(static_cast<std::int64_t>(e.bytes_per_particle), "byte"));
   }
   if (e.neighbors) {
     fmt::print("neighbors: {:.3g} listed for each particle with a skin of {:.3g}, {:.0f} bytes per particle\n",
@@ -323,13 +361,6 @@ void print_text(const Scene& scene, const Explanation& e) {
   if (e.stiffness) print_stiffness(scene, e);
   if (!e.why_no_stiffness.empty()) fmt::print("stiffness: not known: {}\n", e.why_no_stiffness);
   fmt::print("SIMD level: {}\n", name(simd_level()));
-  const std::string unit = scene.units->is_reduced() ? "" : " " + std::string(scene.units->time);
-  fmt::print("step: {}", scene.integrator.adaptive() ? "of the method's own choice" : scene.integrator.step_text);
-  if (e.kepler) {
-    fmt::print("; at most {:.3g}{} is recommended, a twentieth of the time {} needs around its pericenter",
-               e.kepler->recommended(), unit, e.kepler->passage_of);
-  }
-  fmt::print("\n");
 }
 
 Json::Members members_of(const Stiffness& stiffness) {
@@ -392,7 +423,7 @@ void add_explain_command(CLI::App& app, const Parts& parts, int& exit_code) {
   struct Arguments {
     std::string scene;
     std::vector<std::string> sets;
-    bool json = false;
+    bool all = false, json = false;
   };
   const auto given = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("explain", "which parts a scene uses and leaves out, and what a step costs");
@@ -400,14 +431,16 @@ void add_explain_command(CLI::App& app, const Parts& parts, int& exit_code) {
   command->add_option("--set", given->sets, "change a key of the scene: key.path=value")
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
+  command->add_flag("--all", given->all, "name every part that is left out");
   command->add_flag("--json", given->json, "as one line of JSON");
   command->callback([given, &parts, &exit_code] {
     const Scene scene = load_scene(given->scene, parts, given->sets);
+    tell_notes(scene.notes);
     const Explanation e = explained(scene);
     if (given->json) {
       fmt::print("{}\n", json_of(scene, e).text());
     } else {
-      print_text(scene, e);
+      print_text(scene, e, given->all);
     }
     exit_code = 0;
   });

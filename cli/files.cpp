@@ -54,12 +54,12 @@ void print_text(const std::string& file, const io::FileInfo& info) {
   if (checkpoint) state = info.outcome.empty() ? "of an unfinished run" : "of a run that is " + info.outcome;
   fmt::print("{}: {}, {}\n", file, info.kind, state);
   const bool of_system = info.variables > 0;
-  fmt::print("  {} {}, step {}, time {:.9g}{}\n", of_system ? info.variables : info.particles,
-             of_system ? "variables" : "particles", info.last_step, info.last_time,
-             info.time_unit.empty() || info.time_unit == "1" ? "" : " " + info.time_unit);
-  if (!checkpoint) fmt::print("  {} frames\n", info.frames);
+  fmt::print("  {}, step {}, time {:.9g}{}\n",
+             of_system ? counted(info.variables, "variable") : counted(info.particles, "particle"), info.last_step,
+             info.last_time, info.time_unit.empty() || info.time_unit == "1" ? "" : " " + info.time_unit);
+  if (!checkpoint) fmt::print("  {}\n", counted(info.frames, "frame"));
   for (const io::MonitorSummary& one : info.monitors) {
-    fmt::print("  {}: {} samples of {}\n", one.name, one.samples, fmt::join(one.quantities, ", "));
+    fmt::print("  {}: {} of {}\n", one.name, counted(one.samples, "sample"), fmt::join(one.quantities, ", "));
   }
   fmt::print("  written by noether {} ({}), simd {}\n", info.version, info.commit, info.simd);
   if (!info.digest.empty()) fmt::print("  {}\n", info.digest);

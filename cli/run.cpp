@@ -1,5 +1,6 @@
 #include "cli/commands.hpp"
 
+#include "cli/shell_text.hpp"
 #include "numbers/error.hpp"
 #include "numbers/parallel.hpp"
 #include "numbers/text.hpp"
@@ -8,7 +9,9 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <cerrno>
 #include <charconv>
+#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
@@ -38,22 +41,44 @@ std::string wrong_threads(const std::string& text) {
   return fmt::format("'{}' is not a valid number of threads; give one from 1 to 65536", text);
 }
 
+/// The command that goes on with an interrupted run, as it can be typed.
+std::string resume_command(const RunArguments& given) {
+  std::string line = fmt::format("{} run {}", shell_quoted(program_invocation_name), shell_quoted(given.scene));
+  const auto add = [&](const char* option, const std::string& value) {
+    line += fmt::format(" {} {}", option, shell_quoted(value));
+  };
+  if (!given.out.empty()) add("--out", given.out);
+  if (given.threads != 0) add("--threads", std::to_string(given.threads));
+  if (given.simd) add("--simd", *given.simd);
+  if (given.until) add("--until", *given.until);
+  for (const std::string& set : given.sets) add("--set", set);
+  return line + " --resume";
+}
+
 int run_scene(const RunArguments& given, const Parts& parts) {
   if (given.threads != 0) set_thread_count(given.threads);
   std::vector<std::string> sets = given.sets;
   if (given.until) sets.push_back(as_set(*given.until));
   const Scene scene = load_scene(given.scene, parts, sets);
   RunOptions options;
+  options.notes = !given.quiet;
   options.out = given.out;
   options.existing = given.resume ? Existing::resume : given.fresh ? Existing::fresh : Existing::keep;
   if (given.simd) options.simd = simd_level_named(*given.simd);
   options.progress = !given.quiet && !given.json;
   const RunReport report = run(scene, options);
-  if (report.exit_code() == 1) fmt::print(stderr, "{}\n", escaped(to_text(report.outcome)));
+  const bool failed = report.exit_code() == 1;
+  if (failed) fmt::print(stderr, "{}\n", escaped(to_text(report.outcome)));
   if (given.json) {
     fmt::print("{}\n", to_json(report));
   } else if (!given.quiet) {
-    fmt::print("{}", to_text(report));
+    // What has gone wrong is told once: on stderr.
+    fmt::print("{}\n{}", headline_of(report, !failed), details_of(report));
+  }
+  const bool interrupted = report.outcome.kind == Outcome::Kind::interrupted && !report.checkpoint.empty();
+  if (interrupted && !given.json && !given.quiet) {
+    std::fflush(stdout);
+    fmt::print(stderr, "go on with: {}\n", escaped(resume_command(given)));
   }
   return report.exit_code();
 }
@@ -70,7 +95,7 @@ void add_run_command(CLI::App& app, const Parts& parts, int& exit_code) {
   const auto given = std::make_shared<RunArguments>();
   CLI::App* command = app.add_subcommand("run", "integrate a scene");
   command->add_option("scene", given->scene, "scene file")->required()->type_name("SCENE");
-  command->add_option("--out", given->out, "output folder; default: SCENE.out here")
+  command->add_option("--out", given->out, "output folder; default: SCENE.out here, or NAME.out for NAME/scene.toml")
       ->check(
           [](const std::string& name) { return std::string(name.empty() ? "the name of the folder is empty" : ""); })
       ->type_name("DIR");

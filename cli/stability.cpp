@@ -4,6 +4,7 @@
 #include "io/files.hpp"
 #include "numbers/error.hpp"
 #include "scene/scene.hpp"
+#include "scene/warnings.hpp"
 #include "study/stability.hpp"
 #include "study/suite.hpp"
 
@@ -52,6 +53,7 @@ std::string write_report(const std::filesystem::path& folder, const char* json_n
 
 void search_scene(const StabilityArguments& given, const Parts& parts) {
   const Scene scene = load_scene(given.scene, parts, given.sets);
+  tell_notes(scene.notes);
   const bool shows = !given.json && ::isatty(STDERR_FILENO) == 1;
   StabilityOptions options;
   if (given.methods) options.methods = texts_in(*given.methods, "--methods");

@@ -81,6 +81,11 @@ std::vector<std::string> words_of(std::string_view text) {
   return words;
 }
 
+std::string counted(std::int64_t n, std::string_view one, std::string_view many) {
+  if (n == 1) return fmt::format("1 {}", one);
+  return many.empty() ? fmt::format("{} {}s", n, one) : fmt::format("{} {}", n, many);
+}
+
 bool is_utf8(std::string_view text) noexcept {
   bool valid = true;
   for_each_character(text, [&](const Character& one) { valid = valid && one.valid; });

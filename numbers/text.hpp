@@ -1,6 +1,7 @@
 #pragma once
 /// Text from outside: what may be a name, and what can be shown on one line.
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,11 @@ std::string wrong_name(std::string_view name);
 /// The words of a text, parted by blanks.
 /// @throws std::bad_alloc
 std::vector<std::string> words_of(std::string_view text);
+
+/// A number and its noun: "1 step", "2 steps", "0 bodies".
+/// @param many  the noun of any other number than 1; "": `one` with an s
+/// @throws std::bad_alloc
+std::string counted(std::int64_t n, std::string_view one, std::string_view many = "");
 
 /// Whether all of a text is UTF-8: no stray bytes, no overlong forms, no surrogates.
 /// @throws never

@@ -144,11 +144,13 @@ AnyIntegrator<double> integrator_of(const Scene& scene, std::size_t decorators) 
 
 Simulation<double> assemble(const Scene& scene, const SceneFiles& files) {
   Simulation<double> sim(scene.particles, integrator_of(scene), clock_of(scene.integrator));
-  const ConstraintSet constraints = constraints_of(scene);
-  for (const SceneWatch& watch : scene.watches) {
-    if (watch.kind == SceneWatch::Kind::monitor) watch.monitor.attach(sim, watch.cadence, constraints);
+  if (!scene.default_watches || files.by_default) {
+    const ConstraintSet constraints = constraints_of(scene);
+    for (const SceneWatch& watch : scene.watches) {
+      if (watch.kind == SceneWatch::Kind::monitor) watch.monitor.attach(sim, watch.cadence, constraints);
+    }
+    attach_writers(sim, scene, files);
   }
-  attach_writers(sim, scene, files);
   for (const SceneStop& stop : scene.stops) sim.stop_when(stop.rule, stop.steps);
   attach_checkpoints(sim, scene, files);
   return sim;

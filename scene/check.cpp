@@ -134,7 +134,7 @@ class SceneCheck {
   /// is wrong, else at its type.
   void refuse_monitor(TableReader& top) const {
     const auto tables = tables_of(top, "every");
-    for (std::size_t k = 0; k < scene_.watches.size(); ++k) {
+    for (std::size_t k = 0; k < tables.size() && k < scene_.watches.size(); ++k) {
       Scene alone = scene_;
       alone.watches = {scene_.watches[k]};
       try {

@@ -1,6 +1,7 @@
 #include "scene/fields.hpp"
 
 #include "numbers/quantity.hpp"
+#include "numbers/suggest.hpp"
 #include "numbers/text.hpp"
 
 namespace noether::detail {
@@ -28,6 +29,14 @@ void add_field(PartInfo& info, const FieldTexts& texts, std::string_view kind, c
   info.fields.push_back({std::string(texts.name), std::string(texts.dimension), std::string(texts.help),
                          std::string(kind), has_default ? to_text(*value) : "", std::string(texts.example),
                          std::move(choices)});
+}
+
+std::string who_knows(const SceneContext& context, const std::string& type, const std::vector<std::string>& known) {
+  if (context.program.empty()) return did_you_mean(type, known);
+  const std::string near = suggest(type, known);
+  return (near.empty() ? "" : "; did you mean '" + near + "'?") +
+         fmt::format("{} the program of this scene has parts of its own: run `{}`", near.empty() ? ";" : " If not,",
+                     context.program);
 }
 
 void require_field(TableReader& reader, const FieldTexts& texts) {

@@ -242,6 +242,11 @@ template <class Kinds> std::vector<std::string> names_of(const Kinds& kinds) {
   return names;
 }
 
+namespace detail {
+/// What to do about a part that nobody knows: the name that was meant, the program of the scene, or those there are.
+std::string who_knows(const SceneContext& context, const std::string& type, const std::vector<std::string>& known);
+}  // namespace detail
+
 /// The kind a table names in its `type`, and that type; no kind for one of the names in `others`.
 /// @throws SceneError  for a type that nobody knows
 template <class Kind>
@@ -262,7 +267,7 @@ std::pair<const Kind*, std::string> kind_of_part(const SceneContext& context, co
   if (!reader.has("type")) {
     reader.fail(nullptr, "type", fmt::format("this {} has no type; expected one of: {}", what, fmt::join(known, ", ")));
   }
-  reader.fail("type", fmt::format("unknown {} '{}'{}", what, type, did_you_mean(type, known)));
+  reader.fail("type", fmt::format("unknown {} '{}'{}", what, type, detail::who_knows(context, type, known)));
 }
 
 }  // namespace noether

@@ -4,6 +4,7 @@
 #include "io/files.hpp"
 #include "numbers/suggest.hpp"
 #include "scene/check.hpp"
+#include "scene/default_watches.hpp"
 #include "scene/minimize.hpp"
 #include "scene/read_constraints.hpp"
 #include "scene/read_integrator.hpp"
@@ -30,13 +31,15 @@ class SceneReader {
  public:
   SceneReader(const SceneValue& root, const Parts& parts, Scene& scene) : root_(root), parts_(parts), scene_(scene) {
     context_.source = scene.source;
+    context_.notes = &scene.notes;
   }
 
   void read() {
     TableReader top(context_, root_, "", "");
-    top.expect_only({"title", "units", "particles", "hamiltonian", "system", "minimize", "integrator", "every", "stop",
-                     "expect", "verdict"});
+    top.expect_only({"title", "program", "units", "particles", "hamiltonian", "system", "minimize", "integrator",
+                     "every", "stop", "expect", "verdict"});
     scene_.title = top.text("title");
+    context_.program = top.text("program");
     read_units(top);
     scene_.effective = SceneValue::table();
     scene_.effective.put("title", SceneValue::of(scene_.title));
@@ -60,15 +63,14 @@ class SceneReader {
                         scene_.effective.put("integrator", SceneValue::table()));
     read_watches(top);
     read_stops(top);
-    if (const SceneValue* expect = top.find("expect")) {
-      read_expectations(*expect, "");
-      for (const auto& [key, value] : scene_.expect) check_expectation(key, value);
-      scene_.effective.put("expect", *expect);
-    }
+    const SceneValue* expect = top.find("expect");
+    if (expect != nullptr) scene_.effective.put("expect", *expect);
     const auto verdicts = tables_of(top, "verdict");
     scene_.verdicts = read_verdicts(context_, verdicts);
     if (!verdicts.empty()) scene_.effective.put("verdict", *top.find("verdict"));
     check_scene(context_, root_, scene_);
+    if (!top.has("every")) add_default_watches(context_, scene_);
+    if (expect != nullptr) read_expectations(*expect);
     scene_.effective_toml = print_toml(scene_.effective);
   }
 
@@ -367,7 +369,7 @@ class SceneReader {
       list.push_back(std::move(effective));
       scene_.watches.push_back(std::move(watch));
     }
-    if (!list.empty()) scene_.effective.put("every", SceneValue::of(std::move(list)));
+    scene_.effective.put("every", SceneValue::of(std::move(list), top.line("every")));  // defaults take this place
   }
 
   void read_stops(TableReader& top) {
@@ -407,13 +409,26 @@ class SceneReader {
     if (!list.empty()) scene_.effective.put("stop", SceneValue::of(std::move(list)));
   }
 
-  void read_expectations(const SceneValue& value, const std::string& path) {
+  /// Only who tests a scene reads what it expects: what is wrong there ends no run.
+  void read_expectations(const SceneValue& expect) {
+    const auto keep = [&](const std::string& path, const SceneValue& value, const std::string& wrong) {
+      if (wrong.empty()) return;
+      scene_.unread.push_back(scene_error(scene_.source, value.line, "expect." + path, "", wrong).what());
+    };
+    if (!expect.is_table()) {
+      return keep("", expect, fmt::format("expect = {} is {}; a table is expected", to_text(expect), kind_of(expect)));
+    }
+    flatten_expectations(expect, "");
+    for (const auto& [path, value] : scene_.expect) keep(path, value, wrong_expectation(path, value));
+  }
+
+  void flatten_expectations(const SceneValue& value, const std::string& path) {
     const auto* table = value.get<SceneValue::Table>();
     if (table == nullptr) {
       scene_.expect[path] = value;
       return;
     }
-    for (const auto& [key, entry] : *table) read_expectations(entry, path.empty() ? key : path + "." + key);
+    for (const auto& [key, entry] : *table) flatten_expectations(entry, path.empty() ? key : path + "." + key);
   }
 
   /// The monitors by the names the run gives them: equal ones are numbered.
@@ -430,29 +445,27 @@ class SceneReader {
     return names;
   }
 
-  /// Refuses an expectation that no run of this scene could be compared with.
-  void check_expectation(const std::string& path, const SceneValue& value) const {
-    const auto fail = [&](const std::string& message) {
-      throw scene_error(scene_.source, value.line, "expect." + path, to_text(value), message);
-    };
+  /// Why no run of this scene could be compared with an expectation; "" where one can.
+  std::string wrong_expectation(const std::string& path, const SceneValue& value) const {
     const std::size_t dot = path.rfind('.');
     const std::string monitor = path.substr(0, dot), figure = dot == std::string::npos ? "" : path.substr(dot + 1);
     const std::vector<std::string> names = monitor_names();
     if (std::find(names.begin(), names.end(), monitor) == names.end()) {
-      fail(fmt::format("[expect] names '{}', which is not a monitor of this scene{}", monitor,
-                       names.empty() ? "; it has no monitors" : did_you_mean(monitor, names)));
+      return fmt::format("[expect] names '{}', which is not a monitor of this scene{}", monitor,
+                         names.empty() ? "; it has no monitors" : did_you_mean(monitor, names));
     }
     if (figure.empty()) {
-      fail(fmt::format("[expect] names no figure of '{0}'; expected one, such as {0}.worst", monitor));
+      return fmt::format("[expect] names no figure of '{0}'; expected one, such as {0}.worst", monitor);
     }
     const std::vector<std::string> figures = {"first", "last", "worst", "rms", "slope", "slope_error"};
     if (std::find(figures.begin(), figures.end(), figure) == figures.end()) {
-      fail(fmt::format("[expect] names '{}' of '{}', which is not a figure{}", figure, monitor,
-                       did_you_mean(figure, figures)));
+      return fmt::format("[expect] names '{}' of '{}', which is not a figure{}", figure, monitor,
+                         did_you_mean(figure, figures));
     }
     if (value.get<double>() == nullptr && value.get<std::int64_t>() == nullptr) {
-      fail(fmt::format("{} = {} is {}; a number is expected", path, to_text(value), kind_of(value)));
+      return fmt::format("{} = {} is {}; a number is expected", path, to_text(value), kind_of(value));
     }
+    return "";
   }
 
   const SceneValue& root_;

@@ -32,6 +32,20 @@ io::FoundCheckpoint find_checkpoint(const fs::path& folder) {
 
 }  // namespace
 
+fs::path default_output_folder(const fs::path& scene) {
+  fs::path name = scene.filename();
+  if (name == "scene.toml") {
+    std::error_code error;
+    name = scene.parent_path().lexically_normal().filename();
+    if (name.empty() || name == "." || name == "..")
+      name = fs::weakly_canonical(fs::absolute(scene), error).parent_path().filename();
+    if (name.empty()) name = "scene";
+    return name.string() + ".out";
+  }
+  if (name.extension() == ".toml") name.replace_extension();
+  return name.string() + ".out";
+}
+
 OutputFolder::OutputFolder(fs::path path) : path_(std::move(path)) {
   std::error_code error;
   fs::create_directories(path_, error);
@@ -75,7 +89,7 @@ void OutputFolder::discard() const {
   }
 }
 
-void OutputFolder::move_away() const {
+void OutputFolder::move_away() {
   std::error_code error;
   fs::path base = fs::weakly_canonical(path_, error);
   if (error) base = path_;
@@ -87,6 +101,7 @@ void OutputFolder::move_away() const {
     throw FileError(fmt::format("a finished run cannot be moved here: {}", error.message()), {.file = target.string()});
   for (const char* name : run_files) io::rename_if_there(path_ / name, target / name);
   io::sync_folder(target);
+  moved_to_ = path_.is_absolute() ? target : fs::proximate(target, error);
 }
 
 std::optional<io::Checkpoint> OutputFolder::prepare(Existing existing) {

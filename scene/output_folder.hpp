@@ -15,6 +15,10 @@ enum class Existing : std::uint8_t {
   fresh,   ///< discard an unfinished run
 };
 
+/// The folder that a scene writes to unless told, in the working directory: NAME.out, where NAME is the scene's file
+/// without `.toml`, or its folder where the file is called `scene.toml`.
+std::filesystem::path default_output_folder(const std::filesystem::path& scene);
+
 /// The output folder of one run. It is locked from construction to destruction.
 class OutputFolder {
  public:
@@ -30,15 +34,19 @@ class OutputFolder {
   /// @throws SceneError for an unfinished run with `keep`; FileError if there are only damaged checkpoints to resume
   std::optional<io::Checkpoint> prepare(Existing existing);
 
+  /// Where `prepare` has moved a finished run; empty if there was none.
+  const std::filesystem::path& moved_to() const { return moved_to_; }
+  const std::filesystem::path& path() const { return path_; }
+
   std::filesystem::path trajectory() const { return path_ / "run.h5"; }
   std::filesystem::path checkpoint() const { return path_ / "checkpoint.h5"; }
 
  private:
   bool has_files() const;
-  void move_away() const;
+  void move_away();
   void discard() const;
 
-  std::filesystem::path path_;
+  std::filesystem::path path_, moved_to_;
   int lock_ = -1;
 };
 

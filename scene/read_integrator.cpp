@@ -5,6 +5,7 @@
 #include "integrators/all_schemes.hpp"
 #include "io/text_table.hpp"
 #include "numbers/suggest.hpp"
+#include "numbers/text.hpp"
 #include "scene/read_options.hpp"
 
 #include <fmt/format.h>
@@ -13,11 +14,14 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <variant>
+#include <optional>
 
 namespace noether {
 
 namespace {
+
+/// More than can be counted in doubles.
+constexpr double most_steps = 9e15;
 
 /// A time as scenes of these units write it.
 std::string time_text(double time, const UnitSystem& units) {
@@ -25,34 +29,55 @@ std::string time_text(double time, const UnitSystem& units) {
   return unit == "1" ? number : "\"" + number + " " + unit + "\"";
 }
 
-/// The whole number of steps that a time is, counted from `from`; else what is wrong, with the two nearest times.
-std::variant<std::int64_t, std::string> steps_to(const SceneIntegrator& integrator, const UnitSystem& units,
-                                                 double time, double from) {
+/// How many steps a time is: as it is, and as a whole number where it is one but for rounding.
+struct StepCount {
+  double exact = 0;
+  std::optional<std::int64_t> whole;
+};
+
+/// Counts the steps from `from` to a time.
+StepCount steps_to(const SceneIntegrator& integrator, double time, double from) {
   const double exact = (time - from) / integrator.step, whole = std::round(exact);
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
-  if (std::abs(exact) > 9e15)
-    return fmt::format("is {:.3g} steps of {}, more than can be counted", exact, integrator.step_text);
   // Beside 1e-9 of a step, the rounding of a long duration, and of times far from 0.
   const double far = from == 0 ? 0 : 4 * epsilon * std::max(std::abs(time), std::abs(from)) / std::abs(integrator.step);
-  if (std::abs(exact - whole) <= 1e-9 + 16 * epsilon * std::abs(exact) + std::min(far, 0.01))
-    return static_cast<std::int64_t>(whole);
-  const auto nearest = [&](double steps) {
-    return fmt::format("{} ({} {})", time_text(from + steps * integrator.step, units), format_number(steps),
-                       steps == 1 ? "step" : "steps");
-  };
-  const std::string is = fmt::format("is {:.12g} steps of {}{}", exact, integrator.step_text,
-                                     from == 0 ? "" : " after " + time_text(from, units));
+  if (std::abs(exact) <= most_steps &&
+      std::abs(exact - whole) <= 1e-9 + 16 * epsilon * std::abs(exact) + std::min(far, 0.01))
+    return {exact, static_cast<std::int64_t>(whole)};
+  return {exact, {}};
+}
+
+/// A number of steps from `from` on, as a time: "\"3653 day\" (3653 steps)".
+std::string step_text(const SceneIntegrator& integrator, const UnitSystem& units, double steps, double from) {
+  return fmt::format("{} ({} {})", time_text(from + steps * integrator.step, units), format_number(steps),
+                     steps == 1 ? "step" : "steps");
+}
+
+/// A time that is no whole number of steps, in words: "is 3652.5 steps of \"1 day\"".
+std::string is_steps(const SceneIntegrator& integrator, const UnitSystem& units, double exact, double from) {
+  return fmt::format("is {:.12g} steps of {}{}", exact, integrator.step_text,
+                     from == 0 ? "" : " after " + time_text(from, units));
+}
+
+/// What is wrong with a time that is no whole number of steps, where it must be one: the two nearest are told.
+std::string not_whole(const SceneIntegrator& integrator, const UnitSystem& units, double exact, double from) {
+  const auto nearest = [&](double steps) { return step_text(integrator, units, steps, from); };
+  const std::string is = is_steps(integrator, units, exact, from);
   if (exact < 1) return fmt::format("{}; the shortest time is {}", is, nearest(1));
   return fmt::format("{}; the nearest whole numbers are {} and {}", is, nearest(std::floor(exact)),
                      nearest(std::ceil(exact)));
 }
 
-/// How many steps lead from `from`, the start of a run or 0 for a duration, to the time that a key gives.
-/// @throws SceneError  unless it is a whole number, with the two nearest
+/// Where a time between two steps goes.
+enum class Between : std::uint8_t { later, nearest };
+
+/// How many steps lead from `from`, the start of a run or 0 for a duration, to the time that a key gives: at least 1.
+/// A time between two steps goes to one of them, which is noted.
+/// @throws SceneError  for a time that lies behind; with `exact` for one between two steps, too, with the nearest two
 std::int64_t whole_steps(const TableReader& reader, std::string_view key, const SceneValue& value,
-                         const SceneIntegrator& integrator, double from = 0) {
+                         const SceneIntegrator& integrator, Between between, double from = 0) {
   const UnitSystem& units = *reader.context().units;
-  const double time = reader.number(value, key, "time"), exact = (time - from) / integrator.step;
+  const auto [exact, whole] = steps_to(integrator, reader.number(value, key, "time"), from);
   const auto fail = [&](const std::string& message) {
     reader.fail(&value, key, fmt::format("{} = {} {}", key, to_text(value), message));
   };
@@ -66,9 +91,16 @@ std::int64_t whole_steps(const TableReader& reader, std::string_view key, const 
     fail(fmt::format("leaves no time for a step; the step is {}{}", integrator.step_text,
                      from == 0 ? "" : fmt::format(", and the start_time is {}", origin)));
   }
-  const auto found = steps_to(integrator, units, time, from);
-  if (const auto* wrong = std::get_if<std::string>(&found)) fail(*wrong);
-  return std::get<std::int64_t>(found);
+  if (exact > most_steps)
+    fail(fmt::format("is {:.3g} steps of {}, more than can be counted", exact, integrator.step_text));
+  if (whole) return *whole;
+  if (integrator.exact) fail(not_whole(integrator, units, exact, from));
+  const double taken = std::max(between == Between::later ? std::ceil(exact) : std::round(exact), 1.0);
+  reader.note(value, fmt::format("{} = {} {}; {} {}", key, to_text(value), is_steps(integrator, units, exact, from),
+                                 between == Between::later ? "the run ends at the first whole step after it,"
+                                                           : "the nearest whole number of steps is taken,",
+                                 step_text(integrator, units, taken, from)));
+  return static_cast<std::int64_t>(taken);
 }
 
 std::int64_t counted_steps(TableReader& reader, std::string_view key) {
@@ -251,7 +283,7 @@ void read_end(TableReader& reader, SceneIntegrator& made, SceneValue& effective)
                       to_text(*until), made.step_text, side, origin, other));
     }
   } else if (until != nullptr) {
-    made.steps = whole_steps(reader, "until", *until, made, made.start);
+    made.steps = whole_steps(reader, "until", *until, made, Between::later, made.start);
   }
   if (until != nullptr) effective.put("until", *until);
   if (reader.has("steps")) made.steps = reader.integer("steps");
@@ -323,6 +355,52 @@ std::vector<ListedTime> times_in_file(const TableReader& reader, const SceneValu
   return all;
 }
 
+/// Takes the times of a list to whole steps, one after the other.
+class StepsOfList {
+ public:
+  StepsOfList(const SceneIntegrator& integrator, const UnitSystem& units) : integrator_(integrator), units_(units) {}
+
+  /// Moves a time to its step. @return false for one that has come to the step of the time before
+  template <class Refuse> bool take(ListedTime& one, const std::string& before, const Refuse& refuse) {
+    const double start = integrator_.start;
+    const auto [exact, whole] = steps_to(integrator_, one.time, start);
+    if (exact > most_steps)
+      refuse(one, fmt::format("is {:.3g} steps of {}, more than can be counted", exact, integrator_.step_text));
+    if (!whole && integrator_.exact) refuse(one, not_whole(integrator_, units_, exact, start));
+    const std::int64_t step = whole ? *whole : std::llround(exact);
+    const bool same = step == last_, may_be_same = !whole || last_moved_;
+    if (same && !may_be_same) refuse(one, fmt::format("is at the step of {} too", before));
+    if (!whole) {
+      ++moved_;
+      one.time = start + static_cast<double>(step) * integrator_.step;
+    }
+    left_out_ += same ? 1 : 0;
+    last_ = step;
+    last_moved_ = !whole || (same && last_moved_);
+    return !same;
+  }
+
+  /// What was done, in words; "" where all times are at whole steps.
+  std::string note(std::size_t times) const {
+    if (moved_ == 0) return "";
+    std::string text = fmt::format("{} of {} lie between steps of {}; the nearest whole steps are taken", moved_,
+                                   counted(static_cast<std::int64_t>(times), "time"), integrator_.step_text);
+    if (moved_ == 1)
+      text = fmt::format("1 of {} lies between steps of {}; the nearest whole step is taken",
+                         counted(static_cast<std::int64_t>(times), "time"), integrator_.step_text);
+    if (left_out_ == 0) return text;
+    return text + fmt::format(", and {} left out where two come to one step",
+                              left_out_ == 1 ? "1 is" : fmt::format("{} are", left_out_));
+  }
+
+ private:
+  const SceneIntegrator& integrator_;
+  const UnitSystem& units_;
+  std::int64_t last_ = -1;
+  bool last_moved_ = false;
+  std::int64_t moved_ = 0, left_out_ = 0;
+};
+
 /// Reads the times of a list, or of a file with one a line: each later than the one before, none before the start.
 void read_times(TableReader& reader, const SceneValue& value, const SceneIntegrator& integrator, Cadence& cadence,
                 SceneValue& effective) {
@@ -345,9 +423,9 @@ void read_times(TableReader& reader, const SceneValue& value, const SceneIntegra
   if (all.empty()) reader.fail(&value, "times", "times = [] is an empty list; give some times, or take the table out");
   const double sign = integrator.direction() == Direction::forward ? 1 : -1;
   if (!all.empty()) all[0].time = detail::at_start_if_rounded(all[0].time, integrator.start);
-  std::int64_t last = -1;
+  StepsOfList steps(integrator, units);
   for (std::size_t k = 0; k < all.size(); ++k) {
-    const ListedTime& one = all[k];
+    ListedTime one = all[k];
     if (sign * (one.time - integrator.start) < 0) {
       refuse(one, fmt::format("the run does not reach: it goes {} in time from {}", sign > 0 ? "forward" : "back",
                               time_text(integrator.start, units)));
@@ -357,15 +435,10 @@ void read_times(TableReader& reader, const SceneValue& value, const SceneIntegra
       refuse(one, fmt::format("is listed after {}, which the run reaches later; put the times in the order of the run",
                               all[k - 1].text));
     }
-    if (!integrator.adaptive()) {
-      const auto found = steps_to(integrator, units, one.time, integrator.start);
-      if (const auto* wrong = std::get_if<std::string>(&found)) refuse(one, *wrong);
-      if (std::get<std::int64_t>(found) == last)
-        refuse(one, fmt::format("falls on the same step as {}", all[k - 1].text));
-      last = std::get<std::int64_t>(found);
-    }
+    if (!integrator.adaptive() && !steps.take(one, k > 0 ? all[k - 1].text : "", refuse)) continue;
     cadence.times.push_back(one.time);
   }
+  if (const std::string note = steps.note(all.size()); !note.empty()) reader.note(value, note);
   SceneValue::Array written;
   for (ListedTime& one : all) written.push_back(std::move(one.value));
   effective.put("times", SceneValue::of(std::move(written), value.line));
@@ -373,7 +446,7 @@ void read_times(TableReader& reader, const SceneValue& value, const SceneIntegra
 
 /// A misspelt key is told before a missing one.
 void know_keys(TableReader& reader, const Parts& parts) {
-  for (const char* key : {"method", "step", "start_time", "until", "steps", "decorator"}) reader.find(key);
+  for (const char* key : {"method", "step", "start_time", "until", "steps", "exact", "decorator"}) reader.find(key);
   for_each_field<CompositionOptions>([&](const auto& field) { reader.find(field.name); });
   for (const OptionGroup* group : parts.method_options()) {
     for (const OptionValue& one : group->values({})) reader.find(one.name);
@@ -394,6 +467,8 @@ SceneIntegrator read_integrator(const SceneContext& context, const SceneValue& t
   if (made.classical) read_method_options(reader, parts, made, constrained, options);
   read_step(reader, made, effective);
   read_start_time(reader, made, effective);
+  made.exact = reader.flag("exact", false);
+  if (made.exact) effective.put("exact", SceneValue::of(true, reader.line("exact")));
   read_end(reader, made, effective);
   if (!made.classical) read_scheme_options(reader, parts, made, constrained, options);
   for (auto& [key, value] : *options.get<SceneValue::Table>()) effective.put(key, value);
@@ -424,7 +499,7 @@ Cadence read_cadence(TableReader& reader, bool may_be_wall, const SceneIntegrato
                               to_text(*every), forward ? "forward" : "back", forward ? "above" : "below"));
     }
   } else if (every != nullptr) {
-    cadence.steps = whole_steps(reader, "every", *every, integrator);
+    cadence.steps = whole_steps(reader, "every", *every, integrator, Between::nearest);
   }
   if (steps != nullptr) cadence.steps = counted_steps(reader, "steps");
   if (wall != nullptr) cadence.wall = wall_seconds(reader, *wall);

@@ -54,6 +54,11 @@ void TableReader::fail(const SceneValue* at, std::string_view key, const std::st
                     at != nullptr ? to_text(*at) : "", message);
 }
 
+void TableReader::note(const SceneValue& value, const std::string& message) const {
+  if (context_.notes == nullptr) return;
+  context_.notes->push_back(scene_error(context_.source, value.line, "", "", message).what());
+}
+
 void TableReader::refuse(const Error& error) const {
   const SceneValue* written = error.key().empty() ? nullptr : table_.find(error.key());
   const std::string start = error.key() + " = " + error.value();

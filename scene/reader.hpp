@@ -34,6 +34,9 @@ struct SceneContext {
   bool of_system = false;                ///< it has a system of first order in the place of a Hamiltonian
   bool gravitates = false;               ///< the Hamiltonian, as far as it has been read, has a constant of gravitation
   std::vector<ColumnInfo> columns = {};  ///< that the Hamiltonian and the forces of the scene declare
+  std::string program = {};              ///< how to run the program that has the parts of this scene, where it has own
+  /// Where notes go, each with its place: what is taken otherwise than written. Null: nobody wants them.
+  std::vector<std::string>* notes = nullptr;
 };
 
 /// Reads one table; remembers which keys were asked for.
@@ -85,6 +88,8 @@ class TableReader {
   }
   /// Ends reading with what a part says of a field: at the key the error names, and with the value as it was written.
   [[noreturn]] void refuse(const Error& error) const;
+  /// Notes that a value is taken otherwise than written.
+  void note(const SceneValue& value, const std::string& message) const;
   /// A value of the wrong kind.
   [[noreturn]] void wrong_kind(const SceneValue& value, std::string_view key, std::string_view expected) const;
 

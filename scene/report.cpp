@@ -1,6 +1,7 @@
 #include "scene/json.hpp"
 #include "scene/run.hpp"
 
+#include "numbers/text.hpp"
 #include "numbers/version.hpp"
 
 #include <fmt/format.h>
@@ -109,6 +110,7 @@ std::string to_json(const RunReport& r) {
   if (!r.epoch.empty()) members.emplace_back("epoch", r.epoch);
   if (r.start_time != 0) members.emplace_back("start_time", r.start_time);
   if (!r.warnings.empty()) members.emplace_back("warnings", Json::list_of(r.warnings));
+  if (!r.notes.empty()) members.emplace_back("notes", Json::list_of(r.notes));
   return Json::object(members).text();
 }
 
@@ -145,18 +147,27 @@ std::string figures(const MonitorReport& m) {
 
 }  // namespace
 
-std::string to_text(const RunReport& r) {
+std::string to_text(const RunReport& r) { return headline_of(r) + "\n" + details_of(r); }
+
+std::string headline_of(const RunReport& r, bool why) {
   const std::string unit = r.time_unit == "1" ? "" : " " + r.time_unit;
-  std::string text = fmt::format("{}, time {:.9g}{}\n", to_text(r.outcome), r.outcome.time, unit);
+  const std::string how = why ? to_text(r.outcome) : fmt::format("{} at step {}", name(r.outcome.kind), r.outcome.step);
+  return fmt::format("{}, time {:.9g}{}", how, r.outcome.time, unit);
+}
+
+std::string details_of(const RunReport& r) {
+  const std::string unit = r.time_unit == "1" ? "" : " " + r.time_unit;
+  std::string text;
   if (r.minimized) {
-    text += fmt::format("minimized: largest force {:.3g}{}{} after {} force evaluations\n", r.minimized->force,
-                        r.force_unit == "1" ? "" : " ", r.force_unit == "1" ? "" : r.force_unit, r.minimized->steps);
+    text += fmt::format("minimized: largest force {:.3g}{}{} after {}\n", r.minimized->force,
+                        r.force_unit == "1" ? "" : " ", r.force_unit == "1" ? "" : r.force_unit,
+                        counted(r.minimized->steps, "force evaluation"));
   }
   if (r.outcome.unresolved > 0) {
     text += fmt::format(
-        "stop: {} times a pair may have met between two checks that were too far apart to tell; check more often, or "
-        "take shorter steps\n",
-        r.outcome.unresolved);
+        "stop: {} a pair may have met between two checks that were too far apart to tell; check more often, or take "
+        "shorter steps\n",
+        counted(r.outcome.unresolved, "time"));
   }
   const std::string begun = r.start_time == 0 ? "" : fmt::format("time {:.9g}{}", r.start_time, unit);
   if (!r.epoch.empty()) text += fmt::format("bodies: as of {}{}\n", r.epoch, begun.empty() ? "" : ", at " + begun);
@@ -164,27 +175,28 @@ std::string to_text(const RunReport& r) {
   for (const std::string& warning : r.warnings) text += fmt::format("warning: {}\n", warning);
   if (r.resumed_from_step) text += fmt::format("resumed from step {}\n", *r.resumed_from_step);
   for (const auto& [name, monitor] : r.monitors) {
-    text += fmt::format("{}: {} ({} samples)\n", name, figures(monitor), monitor.samples);
+    text += fmt::format("{}: {} ({})\n", name, figures(monitor), counted(monitor.samples, "sample"));
   }
   if (r.wall_s > 0 && r.steps_made > 0) {
-    text += fmt::format("{} steps of {} over {} in {:.3g} s: {:.3g} steps/s on {} {}", r.steps_made, r.method,
-                        r.hamiltonian, r.wall_s, static_cast<double>(r.steps_made) / r.wall_s, r.threads,
-                        r.threads == 1 ? "thread" : "threads");
+    text += fmt::format("{} of {} over {} in {:.3g} s: {:.3g} steps/s on {}", counted(r.steps_made, "step"), r.method,
+                        r.hamiltonian, r.wall_s, static_cast<double>(r.steps_made) / r.wall_s,
+                        counted(r.threads, "thread"));
     if (const auto& list = r.evaluations.neighbors) {
-      text += fmt::format(", {:.2g} s of it in searches for neighbors, with {} {} into cells in {:.2g} s",
-                          list->search_seconds, list->sorts, list->sorts == 1 ? "sort" : "sorts", list->sort_seconds);
+      text += fmt::format(", {:.2g} s of it in searches for neighbors, with {} into cells in {:.2g} s",
+                          list->search_seconds, counted(list->sorts, "sort"), list->sort_seconds);
     }
     text += "\n";
   }
   if (r.evaluations.constraint > 0) {
-    text +=
-        fmt::format("constraints: {} iterations in all, {:.3g} for each force evaluation\n", r.evaluations.constraint,
-                    static_cast<double>(r.evaluations.constraint) /
-                        static_cast<double>(std::max<std::int64_t>(r.evaluations.force, 1)));
+    text += fmt::format("constraints: {} in all, {:.3g} for each force evaluation\n",
+                        counted(r.evaluations.constraint, "iteration"),
+                        static_cast<double>(r.evaluations.constraint) /
+                            static_cast<double>(std::max<std::int64_t>(r.evaluations.force, 1)));
   }
   if (const auto& list = r.evaluations.neighbors) {
-    text += fmt::format("neighbors: {} {} in {} evaluations, {:.3g} listed for each particle\n", list->searches,
-                        list->searches == 1 ? "search" : "searches", list->updates, list->pairs);
+    text +=
+        fmt::format("neighbors: {} in {}, {:.3g} listed for each particle\n",
+                    counted(list->searches, "search", "searches"), counted(list->updates, "evaluation"), list->pairs);
   }
   for (const std::filesystem::path& file : {r.trajectory, r.checkpoint}) {
     if (!file.empty()) text += fmt::format("wrote {}\n", file.string());

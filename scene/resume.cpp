@@ -10,7 +10,8 @@ namespace noether {
 
 namespace {
 
-constexpr std::array<std::string_view, 4> free_keys = {"title", "expect", "integrator.until", "integrator.steps"};
+constexpr std::array<std::string_view, 5> free_keys = {"title", "expect", "integrator.until", "integrator.steps",
+                                                       "integrator.exact"};
 
 struct Leaf {
   std::string text;
@@ -28,7 +29,7 @@ void flatten(const SceneValue& value, const std::string& path, std::map<std::str
     std::size_t k = 0;
     for (const SceneValue& entry : std::get<SceneValue::Array>(value.data))
       flatten(entry, below(std::to_string(k++)), leaves);
-  } else {
+  } else if (path != "every") {  // `every = []` is a scene without watches, as those without the key once were
     leaves[path] = {to_text(value), value.line};
   }
 }

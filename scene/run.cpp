@@ -6,34 +6,29 @@
 #include "monitors/monitors.hpp"
 #include "numbers/parallel.hpp"
 #include "numbers/quantity.hpp"
+#include "scene/default_watches.hpp"
 #include "scene/minimize.hpp"
+#include "scene/progress_line.hpp"
 #include "scene/read_particles.hpp"
 #include "scene/resume.hpp"
 #include "scene/signals.hpp"
+#include "scene/toml.hpp"
 #include "scene/warnings.hpp"
 
 #include <fmt/format.h>
 
-#include <unistd.h>
-
 #include <cmath>
-#include <cstdio>
 
 namespace noether {
 
 namespace {
-
-std::filesystem::path default_folder(const Scene& scene) {
-  std::filesystem::path name = scene.file.filename();
-  if (name.extension() == ".toml") name.replace_extension();
-  return name.string() + ".out";
-}
 
 /// Whether this build can write HDF5 files.
 constexpr bool has_files = NOETHER_HDF5 != 0;
 
 SceneFiles files_of(const Scene& scene, const OutputFolder& folder, const RunOptions& options) {
   SceneFiles files;
+  files.by_default = true;
   bool asks = false;
   for (const SceneWatch& watch : scene.watches) asks = asks || watch.kind != SceneWatch::Kind::monitor;
   // Without HDF5 a run can still be watched; a scene that asks for files is told that there are none.
@@ -51,69 +46,26 @@ bool writes_trajectory(const Scene& scene) {
   return false;
 }
 
-std::string duration_text(double seconds) {
-  if (seconds < 100) return fmt::format("{:.0f} s", seconds);
-  if (seconds < 6000) return fmt::format("{:.0f} min", seconds / 60);
-  return fmt::format("{:.1f} h", seconds / 3600);
-}
-
-/// The line a terminal shows while the run goes on.
-class ProgressLine {
- public:
-  explicit ProgressLine(bool wanted) : shows_(wanted && ::isatty(STDERR_FILENO) == 1) {}
-  ~ProgressLine() {
-    if (shown_) std::fputs("\r\033[K", stderr);
-  }
-  ProgressLine(const ProgressLine&) = delete;
-  ProgressLine& operator=(const ProgressLine&) = delete;
-
-  /// @param begin  what the clock showed at step 0 [time]
-  void attach(Simulation<double>& sim, double begin) {
-    if (!shows_) return;
-    Energy* energy = nullptr;
-    sim.for_each_monitor([&](const std::string&, AnyMonitor<double>& monitor) {
-      if (auto* found = monitor.get<Energy>()) energy = found;
-    });
-    const std::int64_t first = sim.step();
-    const double from = sim.time();
-    sim.on_progress([=, this](const Progress& now) { show(now, first, from, begin, energy); });
-  }
-
- private:
-  void show(const Progress& now, std::int64_t first, double from, double begin, const Energy* energy) {
-    shown_ = true;
-    const auto made = static_cast<double>(now.step - first);
-    const bool in_time = std::isfinite(now.until);
-    const double done = in_time ? now.time - begin : static_cast<double>(now.step);
-    const double end = in_time ? now.until - begin : static_cast<double>(now.end);
-    const double gone = in_time ? now.time - from : made;
-    const double rate = now.seconds > 0 ? made / now.seconds : 0;
-    std::string line = fmt::format("{:5.1f} %  {:.3g} steps/s", 100 * done / end, rate);
-    if (gone != 0) line += fmt::format("  {} left", duration_text((end - done) / gone * now.seconds));
-    if (energy != nullptr && std::isfinite(energy->worst()))
-      line += fmt::format("  energy error {:.1e}", energy->worst());
-    fmt::print(stderr, "\r\033[K{}", line);
-    std::fflush(stderr);
-  }
-
-  bool shows_, shown_ = false;
-};
-
 /// One run of one scene.
 class Runner {
  public:
   Runner(const Scene& scene, const RunOptions& options)
-      : scene_(scene),
+      : given_(scene),
         options_(options),
-        folder_(options.out.empty() ? default_folder(scene) : options.out),
-        files_(files_of(scene, folder_, options)) {}
+        folder_(options.out.empty() ? default_output_folder(scene.file) : options.out) {}
 
   RunReport go() {
     const std::optional<io::Checkpoint> checkpoint = folder_.prepare(options_.existing);
+    tell_notes();
+    if (checkpoint && scene().default_watches) {
+      kept_ = given_;
+      keep_default_watches(parse_toml(checkpoint->scene_toml, "the scene in the checkpoint"), *kept_);
+    }
+    files_ = files_of(scene(), folder_, options_);
     choose_simd(checkpoint);
-    if (scene_.minimize && !checkpoint) minimize();
+    if (scene().minimize && !checkpoint) minimize();
     if (checkpoint) check_resume(*checkpoint);
-    Simulation<double> sim = checkpoint ? restored(*checkpoint) : assemble(start_ ? *start_ : scene_, files_);
+    Simulation<double> sim = checkpoint ? restored(*checkpoint) : assemble(start_ ? *start_ : scene(), files_);
     if (checkpoint) {
       report_.resumed_from_step = checkpoint->step;
       if (is_over(*checkpoint)) return finished(sim, *checkpoint);
@@ -127,11 +79,22 @@ class Runner {
   }
 
  private:
+  const Scene& scene() const { return kept_ ? *kept_ : given_; }
+
+  void tell_notes() {
+    report_.notes = scene().notes;
+    if (!folder_.moved_to().empty()) {
+      report_.notes.push_back(
+          fmt::format("the finished run in {} was moved to {}", folder_.path().string(), folder_.moved_to().string()));
+    }
+    if (options_.notes) noether::tell_notes(report_.notes);
+  }
+
   /// Finds the particles the run begins with; where there are none, the run is over before its first step.
   void minimize() {
-    start_ = scene_;
+    start_ = scene();
     report_.minimized = minimize_start(*start_);
-    const UnitSystem& units = *scene_.units;
+    const UnitSystem& units = *scene().units;
     report_.force_unit = units.is_reduced() ? "1" : fmt::format("{}/{}", units.energy, units.length);
     const std::optional<Failure>& failure = report_.minimized->failure;
     if (!failure) return;
@@ -144,8 +107,8 @@ class Runner {
   }
 
   /// The end, in time where the method chooses its steps, else in steps.
-  bool ends_in_time() const { return scene_.integrator.until.has_value(); }
-  std::int64_t target() const { return *scene_.integrator.steps; }
+  bool ends_in_time() const { return scene().integrator.until.has_value(); }
+  std::int64_t target() const { return *scene().integrator.steps; }
 
   /// A run goes on at the level it began with: another would round in other ways.
   void choose_simd(const std::optional<io::Checkpoint>& checkpoint) {
@@ -155,13 +118,13 @@ class Runner {
       if (options_.simd) {
         throw SceneError(fmt::format("the run was made at SIMD level '{}', not '{}'; leave --simd out, or give --fresh",
                                      name(level), name(*options_.simd)),
-                         {.file = scene_.source.file});
+                         {.file = scene().source.file});
       }
       if (!has_simd_level(level)) {
         throw SceneError(fmt::format("the run was made at SIMD level '{}', which this processor does not support; "
                                      "resume on one that does, or give --fresh",
                                      name(level)),
-                         {.file = scene_.source.file});
+                         {.file = scene().source.file});
       }
       set_simd_level(level);
     }
@@ -169,43 +132,43 @@ class Runner {
   }
 
   void check_resume(const io::Checkpoint& checkpoint) {
-    report_.warnings = check_same_scene(checkpoint, scene_);
+    report_.warnings = check_same_scene(checkpoint, scene());
     if (ends_in_time()) {
-      const double end = *scene_.integrator.until;
-      const double start = scene_.integrator.start;
-      const auto clock = clock_of(scene_.integrator);
+      const double end = *scene().integrator.until;
+      const double start = scene().integrator.start;
+      const auto clock = clock_of(scene().integrator);
       if (clock.is_later(start, checkpoint.time)) {
         throw SceneError(
             fmt::format("the end at time {} lies in the opposite direction: the checkpoint is at time {}; give a "
                         "time {} {}, or --fresh",
                         end, checkpoint.time, end > start ? "below" : "above", start),
-            {.file = scene_.source.file, .key = "integrator.until"});
+            {.file = scene().source.file, .key = "integrator.until"});
       }
       if (!clock.is_later(checkpoint.time, end)) return;
       throw SceneError(
           fmt::format("the end at time {} lies before the checkpoint at time {}; give a later one, or --fresh", end,
                       checkpoint.time),
-          {.file = scene_.source.file, .key = "integrator.until"});
+          {.file = scene().source.file, .key = "integrator.until"});
     }
     if (target() < checkpoint.step) {
       throw SceneError(
           fmt::format("the end at step {} lies before the checkpoint at step {}; give a later one, or --fresh",
                       target(), checkpoint.step),
-          {.file = scene_.source.file, .key = "integrator.until"});
+          {.file = scene().source.file, .key = "integrator.until"});
     }
   }
 
   /// The run as the checkpoint has it; with a new trajectory where the old one is not what the checkpoint counts on.
   Simulation<double> restored(const io::Checkpoint& checkpoint) {
     try {
-      Simulation<double> sim = assemble(scene_, files_);
+      Simulation<double> sim = assemble(scene(), files_);
       sim.restore(checkpoint.run);
       return sim;
     } catch (const io::TrajectoryLost& lost) {
       set_aside(checkpoint, lost.message());
     }
     files_.lost = true;
-    Simulation<double> sim = assemble(scene_, files_);
+    Simulation<double> sim = assemble(scene(), files_);
     sim.restore(checkpoint.run);
     if (is_over(checkpoint)) return sim;
     sim.for_each_monitor([&](const std::string&, AnyMonitor<double>& monitor) {
@@ -254,7 +217,7 @@ class Runner {
   bool is_over(const io::Checkpoint& checkpoint) const {
     if (checkpoint.outcome.empty()) return false;
     if (checkpoint.outcome != name(Outcome::Kind::completed)) return true;
-    return ends_in_time() ? *scene_.integrator.until == checkpoint.time : target() == checkpoint.step;
+    return ends_in_time() ? *scene().integrator.until == checkpoint.time : target() == checkpoint.step;
   }
 
   RunReport finished(Simulation<double>& sim, const io::Checkpoint& checkpoint) {
@@ -267,8 +230,8 @@ class Runner {
     std::optional<StopOnSignals> signals;
     if (options_.handle_signals) sim.stop_on(signals.emplace().flag());
     ProgressLine line(options_.progress);
-    line.attach(sim, scene_.integrator.start);
-    return ends_in_time() ? sim.run_until(*scene_.integrator.until) : sim.run(target() - sim.step());
+    line.attach(sim, scene().integrator.start, scene().units->time);
+    return ends_in_time() ? sim.run_until(*scene().integrator.until) : sim.run(target() - sim.step());
   }
 
   /// Puts everything on disk: writers first, then the checkpoint that counts on them, then the mark of completeness.
@@ -280,7 +243,7 @@ class Runner {
       const bool over = ending_.outcome.kind != Outcome::Kind::interrupted;
       if (over) save_ending(checkpoint.run, ending_);
       if (over) checkpoint.outcome = name(ending_.outcome.kind);
-      checkpoint.scene_toml = scene_.effective_toml;
+      checkpoint.scene_toml = scene().effective_toml;
       checkpoint.digest = io::digest(sim.particles());
       checkpoint.simd = report_.simd;
       checkpoint.step = sim.step();
@@ -298,17 +261,17 @@ class Runner {
     RunReport r = report_;
     const IntegratorClaims claims = sim.claims();
     r.outcome = ending_.outcome;
-    const std::vector<std::string> of_scene = warnings_of(scene_);
+    const std::vector<std::string> of_scene = warnings_of(scene());
     r.warnings.insert(r.warnings.end(), of_scene.begin(), of_scene.end());
-    r.epoch = epoch_of(scene_.effective);
-    r.scene = scene_.source.file;
-    r.scene_sha256 = io::sha256(scene_.effective_toml);
+    r.epoch = epoch_of(scene().effective);
+    r.scene = scene().source.file;
+    r.scene_sha256 = io::sha256(scene().effective_toml);
     r.method = claims.method;
     r.hamiltonian = claims.hamiltonian;
-    r.time_unit = scene_.units->time;
+    r.time_unit = scene().units->time;
     r.digest = io::digest(sim.particles());
-    r.dt = scene_.integrator.step;
-    r.start_time = scene_.integrator.start;
+    r.dt = scene().integrator.step;
+    r.start_time = scene().integrator.start;
     r.particles = sim.particles().size();
     r.threads = thread_count();
     r.steps_made = ending_.steps_made;
@@ -317,12 +280,13 @@ class Runner {
     sim.for_each_monitor([&](const std::string& name, AnyMonitor<double>& monitor) {
       if (auto one = monitor.report()) r.monitors.emplace_back(name, *one);
     });
-    if (!files_.trajectory.empty() && writes_trajectory(scene_)) r.trajectory = files_.trajectory;
+    if (!files_.trajectory.empty() && writes_trajectory(scene())) r.trajectory = files_.trajectory;
     if (has_files) r.checkpoint = files_.checkpoint;
     return r;
   }
 
-  const Scene& scene_;
+  const Scene& given_;
+  std::optional<Scene> kept_;  ///< the scene with the default watches of the run that it goes on with
   const RunOptions& options_;
   std::optional<Scene> start_;  ///< the scene with other particles, if it asks for a minimum
   OutputFolder folder_;
@@ -342,7 +306,7 @@ RunReport run(const Scene& scene, const RunOptions& options) {
 }
 
 Outcome run(const Scene& scene) {
-  const RunReport report = run(scene, {.progress = true});
+  const RunReport report = run(scene, {.progress = true, .notes = true});
   fmt::print("{}", to_text(report));
   return report.outcome;
 }

@@ -14,10 +14,11 @@
 namespace noether {
 
 struct RunOptions {
-  std::filesystem::path out = {};  ///< empty: SCENE.out in the working folder
+  std::filesystem::path out = {};  ///< empty: `default_output_folder` of the scene
   Existing existing = Existing::keep;
   bool handle_signals = true;    ///< SIGINT and SIGTERM end the run after its step
   bool progress = false;         ///< a line on stderr, if that is a terminal
+  bool notes = false;            ///< what is done otherwise than written, and what is moved away, told on stderr
   double checkpoint_wall = 300;  ///< seconds between checkpoints
   /// Level of the lane kernels, set for the whole process; default: that of a run gone on with, else the highest.
   std::optional<SimdLevel> simd = {};
@@ -36,6 +37,7 @@ struct RunReport {
   std::optional<Minimized> minimized;  ///< how the start was found, where the scene asks for it
   std::string force_unit;
   std::vector<std::string> warnings;  ///< what the scene brings and nothing looks at
+  std::vector<std::string> notes;     ///< what was taken otherwise than written, and what was moved away
   std::int64_t steps_made = 0;        ///< in `wall_s`
   double wall_s = 0;                  ///< from the first step to the last
   Evaluations evaluations;
@@ -47,8 +49,12 @@ struct RunReport {
 
 /// The report as one line of JSON: the schema noether.run/1.
 std::string to_json(const RunReport& report);
-/// The report for people, several lines.
+/// The report for people, several lines: `headline_of` and `details_of`.
 std::string to_text(const RunReport& report);
+/// How the run ended, in a line: "completed at step 100, time 1". @param why  with what ended it
+std::string headline_of(const RunReport& report, bool why = true);
+/// The other lines.
+std::string details_of(const RunReport& report);
 
 /// Runs a scene to its end, or goes on with an interrupted run.
 /// @throws SceneError for what cannot be done, FileError for what cannot be read or written

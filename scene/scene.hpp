@@ -45,6 +45,7 @@ struct SceneIntegrator {
   double start = 0;                        ///< what the clock shows at the first step [time]
   std::optional<std::int64_t> steps;       ///< of the whole run; empty if the scene has no end, or one in time
   std::optional<double> until;             ///< [time] by the clock: the end, where the method chooses its steps
+  bool exact = false;                      ///< times between two steps are refused; else they go to one of the two
   CompositionOptions composition;          ///< of the scheme
   std::vector<SceneDecorator> decorators;  ///< the first stands around the method, each further one around all before
 
@@ -92,6 +93,7 @@ struct Scene {
   std::optional<MinimizeOptions> minimize;  ///< before the first step
   SceneIntegrator integrator;
   std::vector<SceneWatch> watches;
+  bool default_watches = false;  ///< the scene has no [[every]], so these are those of `default_watches_of`
   std::vector<SceneStop> stops;
   std::map<std::string, SceneValue> expect;  ///< dotted key below [expect]
   std::vector<SceneVerdict> verdicts;
@@ -99,6 +101,8 @@ struct Scene {
   SceneValue effective;               ///< the scene with every default, as a tree
   std::string effective_toml;         ///< the same as text: what files store
   std::vector<std::string> warnings;  ///< of its reading; `warnings_of` has all
+  std::vector<std::string> notes;     ///< what was taken otherwise than written, with its place; `tell_notes` tells it
+  std::vector<std::string> unread;    ///< of [expect]: what no run could be compared with, with its place
 };
 
 /// Reads a scene and checks all that can be checked before the first step.
@@ -121,6 +125,7 @@ struct SceneFiles {
   std::filesystem::path trajectory, checkpoint;
   double checkpoint_wall = 0;  ///< seconds between checkpoints beside those of the scene; 0: none
   bool lost = false;           ///< the trajectory of the run that is gone on with is gone: it begins anew
+  bool by_default = false;     ///< what a scene without [[every]] is given watches too
 };
 
 /// The scheme of a scene; its name lives as long as `integrator`.

@@ -2,6 +2,7 @@
 
 #include "engine/charge.hpp"
 #include "numbers/quantity.hpp"
+#include "numbers/text.hpp"
 
 #include <fmt/format.h>
 
@@ -167,7 +168,7 @@ std::string unmoved_tracers(const Scene& scene) {
   return fmt::format(
       "{} of mass 0, such as '{}', {} not moved by any force of this scene, because forces between molecules act on "
       "masses only; give masses",
-      count == 1 ? "1 particle" : fmt::format("{} particles", count), s.name(first), count == 1 ? "is" : "are");
+      counted(count, "particle"), s.name(first), count == 1 ? "is" : "are");
 }
 
 /// A constant of gravitation that is not the one of the units, however it is given; empty where it is. Names the
@@ -201,14 +202,16 @@ std::string times_after_the_end(const SceneWatch& watch, const Scene& scene) {
   const std::string name = watch.kind == SceneWatch::Kind::monitor      ? watch.monitor.name
                            : watch.kind == SceneWatch::Kind::trajectory ? "trajectory"
                                                                         : "checkpoint";
-  return fmt::format("{} of {} times of '{}' lie after the end at {:.12g}{}, so it does not sample then", count,
-                     times.size(), name, start + *length, unit);
+  return fmt::format("{} of {} of '{}' {} after the end at {:.12g}{}, so it does not sample then", count,
+                     counted(static_cast<std::int64_t>(times.size()), "time"), name, count == 1 ? "lies" : "lie",
+                     start + *length, unit);
 }
 
 }  // namespace
 
 std::vector<std::string> warnings_of(const Scene& scene) {
   std::vector<std::string> warnings = scene.warnings;
+  warnings.insert(warnings.end(), scene.unread.begin(), scene.unread.end());
   const auto add = [&](std::string warning) {
     if (!warning.empty()) warnings.push_back(std::move(warning));
   };
@@ -218,8 +221,8 @@ std::vector<std::string> warnings_of(const Scene& scene) {
       t != nullptr && scene.hamiltonian.constraints.empty() && !some(scene, &ForceClaims::bonded)) {
     const std::size_t terms = t->bonds.size() + t->angles.size() + t->dihedrals.size() + t->impropers.size();
     if (terms > 0) {
-      add(fmt::format("the structure has {} bonded {} that nothing acts on: there is no force 'bonded'", terms,
-                      terms == 1 ? "term" : "terms"));
+      add(fmt::format("the structure has {} that nothing acts on: there is no force 'bonded'",
+                      counted(static_cast<std::int64_t>(terms), "bonded term")));
     }
   }
   if (!forces.empty() && scene.hamiltonian.splitting.only_forces && none_does(scene, &ForceClaims::charges) &&
@@ -238,6 +241,10 @@ std::vector<std::string> warnings_of(const Scene& scene) {
   add(unmoved_tracers(scene));
   for (const SceneWatch& watch : scene.watches) add(times_after_the_end(watch, scene));
   return warnings;
+}
+
+void tell_notes(const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", escaped(note));
 }
 
 }  // namespace noether

@@ -14,4 +14,7 @@ namespace noether {
 /// @cost O(bonds)
 std::vector<std::string> warnings_of(const Scene& scene);
 
+/// Tells notes on stderr, one line each: what of a scene was taken otherwise than written (`Scene::notes`).
+void tell_notes(const std::vector<std::string>& notes);
+
 }  // namespace noether

@@ -168,7 +168,7 @@ void check_measured(const Comparison& c, Metric metric) {
 /// Times that must be whole numbers of steps: the end, and what the scene asks for by time.
 std::vector<double> times_to_meet(const Scene& scene, double end) {
   std::vector<double> times = {end};
-  const SceneValue* every = scene.effective.find("every");
+  const SceneValue* every = scene.default_watches ? nullptr : scene.effective.find("every");
   const auto* tables = every == nullptr ? nullptr : every->get<SceneValue::Array>();
   for (std::size_t k = 0; tables != nullptr && k < tables->size() && k < scene.watches.size(); ++k) {
     for (const double time : scene.watches[k].cadence.times) {

@@ -8,8 +8,6 @@
 
 namespace noether {
 
-std::string counted(std::size_t n, std::string_view what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); }
-
 std::vector<bool> pareto_front(const std::vector<std::optional<double>>& cost,
                                const std::vector<std::optional<double>>& error) {
   std::vector<bool> front(cost.size(), false);

@@ -1,6 +1,7 @@
 #pragma once
 /// What the rows of a comparison say together: who is ahead, and by which order errors fall.
 
+#include "numbers/text.hpp"
 #include "study/comparison.hpp"
 
 #include <optional>
@@ -39,8 +40,5 @@ void analyse(Comparison& comparison);
 /// The finest of the runs as the reference where extended precision has none: that of the method whose two finest runs
 /// agree best. Stays as it is where they differ by more than 1e-3.
 void use_finest_run(Comparison& comparison, const PositionError& error);
-
-/// "1 run", "2 runs".
-std::string counted(std::size_t n, std::string_view what);
 
 }  // namespace noether

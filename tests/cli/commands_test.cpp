@@ -125,7 +125,10 @@ TEST_CASE("a force that cannot be computed is named by run and evaluate, with ex
   const std::string close = "particles 'a' and 'b' are ", broken = "the bond of 'atom_2' and 'atom_3' is 1.6 long";
   const auto check = [](const ScratchFolder& folder, const std::string& line, const std::string& name,
                         const std::string& message) {
-    const ProcessResult text = noether(folder, line), json = noether(folder, line + " --json");
+    const ProcessResult text = noether(folder, line);
+    std::filesystem::remove_all(folder / "scene.out");
+    const ProcessResult json = noether(folder, line + " --json");
+    std::filesystem::remove_all(folder / "scene.out");
     INFO(line << "\n" << text.out << text.err << json.out);
     for (const ProcessResult& result : {text, json}) {
       CHECK(result.exit_code == 1);
@@ -184,7 +187,7 @@ TEST_CASE("small boxes, bonds and neighbors are spoken of", "[cli][messages]") {
   const std::string text = output(chain, "run scene.toml --fresh" + forces);
   CHECK(has(text, "\nwarning: the structure has 2 bonded terms that nothing acts on: there is no force 'bonded'\n"));
   CHECK(has(text, " s of it in searches for neighbors, with 1 sort into cells in "));
-  const std::string json = output(chain, "run scene.toml --fresh --json" + forces);
+  const std::string json = output(chain, "run scene.toml --out again --json" + forces);
   CHECK(json_member(json_member(json, "neighbors"), "sorts") == "1");
   CHECK(std::stod(json_member(json_member(json, "neighbors"), "sort_seconds")) > 0);
   CHECK(has(json, "\"warnings\":[\"the structure has 2 bonded terms"));
@@ -253,16 +256,22 @@ TEST_CASE("forces are written with all their digits", "[cli][evaluate]") {
 
 TEST_CASE("explain tells what is in and what is left out", "[cli][explain]") {
   const SceneFolder folder;
-  const std::string text = output(folder, "explain scene.toml");
-  for (const char* line : {"Two bodies: yoshida_4 over kinetic_potential, 2 particles\n", "\n  force gravity\n",
-                           "\n  monitor energy, every 10 steps\n", "\n  writer trajectory, every 20 steps\n",
-                           "\n  writer checkpoint, every 40 steps\n", "\n  monitor momentum\n", "\n  stop escape\n",
-                           "\n  3 x B: kicks, one force evaluation each\n", "\nSIMD level: "}) {
+  const std::string text = output(folder, "explain scene.toml --all");
+  for (const char* line :
+       {"Two bodies: yoshida_4 over kinetic_potential, 2 particles\nstep: 0.01; at most ", "\n  force gravity\n",
+        "\n  monitor energy, every 10 steps\n", "\n  writer trajectory, every 20 steps\n",
+        "\n  writer checkpoint, every 40 steps\n", "\n  monitor momentum\n", "\n  stop escape\n",
+        "\n  3 x B: kicks, one force evaluation each\n", "\nSIMD level: "}) {
     INFO(line << "\n" << text);
     CHECK(has(text, line));
   }
   CHECK(text.find("\nleft out:\n") < text.find("\n  monitor momentum\n"));
   CHECK(text.find("\n  monitor energy") < text.find("\nleft out:\n"));
+  CHECK(text.find("\neach step:\n") < text.find("\nin:\n"));
+  const std::string brief = output(folder, "explain scene.toml");
+  CHECK_FALSE(has(brief, "\n  monitor momentum\n"));
+  CHECK(has(brief, " monitors, 2 stops; --all names them\n"));
+  CHECK(has(output(folder, "explain scene.toml --set integrator.steps=1"), "; 1 step in all\n"));
   const std::string json = json_output(folder, "explain scene.toml", "explain");
   CHECK(json_member(json, "flows_per_step") == R"({"A":3,"B":3})");
   CHECK(json_member(json, "bytes_per_particle") == "64");

@@ -121,6 +121,20 @@ TEST_CASE("SIGTERM ends a Wisdom-Holman run with a checkpoint; it resumes as if 
   check_interrupt_and_resume(kepler_arcs, SIGTERM);
 }
 
+TEST_CASE("an interrupted run says with which command it goes on", "[cli][resume][slow]") {
+  const SceneFolder folder(fourth_order);
+  const ProcessResult result =
+      stop_midway(folder, "run scene.toml --fresh --threads 1 --set 'title=Do not stop'", SIGINT);
+  CHECK(result.exit_code == 130);
+  CHECK(result.out.starts_with("interrupted at step "));
+  const std::string command =
+      std::string(NOETHER_PROGRAM) + " run scene.toml --threads 1 --set 'title=Do not stop' --resume";
+  REQUIRE(result.err == "go on with: " + command + "\n");
+  const ProcessResult resumed = run_process({"/bin/sh", "-c", command}, folder.path());
+  CHECK(resumed.exit_code == 0);
+  CHECK(has(resumed.out, "\nresumed from step "));
+}
+
 TEST_CASE("a run that is interrupted twice resumes twice", "[cli][resume][slow]") {
   const SceneFolder folder(fourth_order);
   const std::string first = check_interrupted(stop_midway(folder, "run scene.toml --json", SIGINT));

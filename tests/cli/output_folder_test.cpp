@@ -1,5 +1,6 @@
 // `noether run`: where its files stand, and what becomes of those that stand there already.
 
+#include "scene/output_folder.hpp"
 #include "tests/cli/support.hpp"
 
 #include <fcntl.h>
@@ -43,19 +44,26 @@ TEST_CASE("a folder that cannot be made exits 3", "[cli][run][messages]") {
 
 #if NOETHER_HDF5
 
-TEST_CASE("files stand in SCENE.out of the working folder, or where --out says", "[cli][run]") {
+TEST_CASE("files stand in NAME.out of the working folder, or where --out says", "[cli][run]") {
   const SceneFolder folder;
   fs::create_directory(folder / "below");
   fs::rename(folder / "scene.toml", folder / "below/scene.toml");
+  fs::copy_file(folder / "below/scene.toml", folder / "below/orbit.toml");
   const std::string json = noether(folder, "run below/scene.toml --json").out;
-  CHECK(json_member(json, "files") == R"({"trajectory":"scene.out/run.h5","checkpoint":"scene.out/checkpoint.h5"})");
+  CHECK(json_member(json, "files") == R"({"trajectory":"below.out/run.h5","checkpoint":"below.out/checkpoint.h5"})");
+  const std::string other = noether(folder, "run below/orbit.toml --json").out;
+  CHECK(json_member(other, "files") == R"({"trajectory":"orbit.out/run.h5","checkpoint":"orbit.out/checkpoint.h5"})");
   CHECK(noether(folder, "run below/scene.toml --quiet --out deep/er/").exit_code == 0);
-  for (const char* out : {"scene.out", "deep/er"}) {
+  for (const char* out : {"below.out", "orbit.out", "deep/er"}) {
     for (const char* file : {"run.h5", "checkpoint.h5", "checkpoint.previous.h5"}) {
       CHECK(fs::file_size(folder / out / file) > 0);
     }
   }
-  CHECK(std::distance(fs::directory_iterator(folder / "below"), {}) == 1);
+  CHECK(std::distance(fs::directory_iterator(folder / "below"), {}) == 2);
+  CHECK(default_output_folder("below/../kepler/scene.toml") == "kepler.out");
+  CHECK(default_output_folder((folder / "scene.toml").string()) == "scene.out");
+  CHECK(default_output_folder("scene.toml") == fs::current_path().filename().string() + ".out");
+  CHECK(default_output_folder("../a/own.scene") == "own.scene.out");
 }
 
 TEST_CASE("a finished run is moved away, also one that was stopped or diverged", "[cli][run]") {
@@ -69,6 +77,22 @@ TEST_CASE("a finished run is moved away, also one that was stopped or diverged",
   CHECK(noether(folder, "info scene.out.2/run.h5 --json").out.find(json_member(first, "digest")) != std::string::npos);
   CHECK(json_member(noether(folder, "info scene.out.3/run.h5 --json").out, "last_step") == "200");
   CHECK(json_member(noether(folder, "info scene.out/run.h5 --json").out, "last_step") == "100");
+}
+
+TEST_CASE("that a finished run was moved is told in one line, unless nothing is to be said", "[cli][run][messages]") {
+  const SceneFolder folder;
+  CHECK(noether(folder, "run scene.toml").err.empty());
+  const std::string moved = "note: the finished run in scene.out was moved to scene.out.";
+  CHECK(noether(folder, "run scene.toml").err == moved + "1\n");
+  const ProcessResult json = noether(folder, "run scene.toml --json");
+  CHECK(json.err == moved + "2\n");
+  CHECK(has(json.out, R"("notes":["the finished run in scene.out was moved to scene.out.2"])"));
+  CHECK(noether(folder, "run scene.toml --quiet").err.empty());
+  CHECK(fs::exists(folder / "scene.out.3/run.h5"));
+  const std::string absolute = (folder / "b").string();
+  CHECK(noether(folder, "run scene.toml --quiet --out " + absolute).exit_code == 0);
+  CHECK(noether(folder, "run scene.toml --out " + absolute).err ==
+        "note: the finished run in " + absolute + " was moved to " + absolute + ".1\n");
 }
 
 TEST_CASE("an unfinished run is kept until --fresh discards it", "[cli][run][messages]") {

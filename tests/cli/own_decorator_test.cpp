@@ -77,8 +77,8 @@ TEST_CASE("a decorator from outside the library is listed, described and explain
   CHECK(has(described, "  belongs in [[integrator.decorator]]"));
   CHECK(has(described, "\n  steps          whole number [1], default 10: steps between two projections\n"));
   CHECK(has(own_output(folder, "explain scene.toml"), "\n  decorator energy_projection, steps 10\n"));
-  CHECK(has(own_output(folder, "explain scene.toml" + without), "left out:\n"));
-  CHECK(has(own_output(folder, "explain scene.toml" + without), "\n  decorator energy_projection\n"));
+  CHECK(has(own_output(folder, "explain scene.toml --all" + without), "left out:\n"));
+  CHECK(has(own_output(folder, "explain scene.toml --all" + without), "\n  decorator energy_projection\n"));
 }
 
 TEST_CASE("it holds the energy of a splitting and of methods for y' = f", "[cli][own_decorator]") {

@@ -96,6 +96,33 @@ TEST_CASE("--json is one line with every key, in one order", "[cli][run][json]")
   CHECK(json_member(json_member(result.out, "angular_momentum"), "samples") == "15");
 }
 
+TEST_CASE("evaluate and explain warn as run does, also of an [expect] that ends no run", "[cli][run][evaluate]") {
+  const SceneFolder folder(unwritten + "[expect]\nenrgy.worst = 1\n");
+  const std::string warning =
+      "scene.toml:28: [expect] names 'enrgy', which is no monitor of this scene; did you mean 'energy'?";
+  for (const char* command : {"run", "evaluate", "explain"}) {
+    INFO(command);
+    const ProcessResult result = noether(folder, std::string(command) + " scene.toml");
+    CHECK(result.exit_code == 0);
+    CHECK(has(result.out, "\nwarning: " + warning + "\n"));
+  }
+  for (const char* line : {"run scene.toml --json --out b", "evaluate scene.toml --json"}) {
+    CHECK(json_member(noether(folder, line).out, "warnings") == "[\"" + warning + "\"]");
+  }
+}
+
+TEST_CASE("one is not many", "[cli][run]") {
+  const SceneFolder folder(exploding);
+  const ProcessResult result = noether(folder, "run scene.toml --threads 1 --set integrator.steps=1");
+  INFO(result.out);
+  CHECK(has(result.out, "(1 sample)\n"));
+  CHECK(has(result.out, "\n1 step of verlet over kinetic_potential in "));
+  CHECK(has(result.out, " on 1 thread\n"));
+  CHECK(has(noether(folder, "explain scene.toml").out, "verlet over kinetic_potential, 1 particle\n"));
+  if (NOETHER_HDF5 == 0) return;
+  CHECK(has(noether(folder, "info scene.out/checkpoint.h5").out, "\n  1 particle, step 1, "));
+}
+
 TEST_CASE("--quiet prints nothing", "[cli][run]") {
   const SceneFolder folder(unwritten);
   const ProcessResult result = noether(folder, "run scene.toml --quiet");
@@ -200,6 +227,8 @@ TEST_CASE("a run whose numbers run away exits 1, with a whole report", "[cli][ru
   CHECK(json_member(json_member(result.out, "energy"), "worst") == "null");
   const ProcessResult text = noether(folder, "run scene.toml --out text");
   CHECK(text.exit_code == 1);
+  CHECK(text.err == result.err);
+  CHECK(text.out.starts_with("diverged at step " + step + ", time " + step + "\n"));  // the reason is told once
   CHECK(text.out.find("nan") == std::string::npos);
 }
 

@@ -66,7 +66,7 @@ TEST_CASE("a list whose times all come later leaves a whole file from the first 
   const ProcessResult run = noether(folder, never);
   CHECK(run.exit_code == 0);
   CHECK(json_member(run.out, "warnings") ==
-        "[\"1 of 1 times of 'trajectory' lie after the end at 1, so it does not sample then\"]");
+        "[\"1 of 1 time of 'trajectory' lies after the end at 1, so it does not sample then\"]");
   const io::FileInfo info = io::verify(folder / "scene.out/run.h5");
   CHECK(info.damaged == std::vector<std::string>{});
   CHECK(info.frames == 0);

@@ -114,6 +114,7 @@ void check_expectations(const noether::Scene& scene, const noether::RunReport& r
     figures[name + ".rms"] = monitor.rms;
   }
   CHECK(!scene.expect.empty());
+  CHECK(scene.unread.empty());
   for (const auto& [key, value] : scene.expect) {
     CAPTURE(key);
     const double* expected = value.get<double>();

@@ -207,7 +207,8 @@ TEST_CASE("--set with nothing behind the sign takes a key out, or a table of a l
   const auto watches = read(two_bodies).watches.size();
   CHECK(read(two_bodies, {"every.energy="}).watches.size() == watches - 1);
   CHECK(read(two_bodies, {"every.0=", "every.0="}).watches.size() == watches - 2);
-  CHECK(read(two_bodies, {"every="}).watches.empty());
+  CHECK(read(two_bodies, {"every=[]"}).watches.empty());
+  CHECK(read(two_bodies, {"every="}).default_watches);
   CHECK(refusal(two_bodies, {"integrator.stp="}) ==
         "--set integrator.stp=: there is no 'stp' to take out of the scene; did you mean 'step'?");
   CHECK(refusal(two_bodies, {"every.9="}) == "--set every.9=: there is no element 9; there are 2, counted from 0");
@@ -269,8 +270,11 @@ TEST_CASE("bodies by elements go round by the G of the force", "[scene]") {
 }
 
 TEST_CASE("until is a whole number of steps to 1e-9, and not to 1e-8", "[scene]") {
-  CHECK(read(two_bodies, {"integrator.until=\"1000.000000004 day\""}).integrator.steps == 200);
-  CHECK(refusal(two_bodies, {"integrator.until=\"1000.00000005 day\""}) ==
+  const Scene whole = read(two_bodies, {"integrator.until=\"1000.000000004 day\""});
+  CHECK(whole.integrator.steps == 200);
+  CHECK(whole.notes.empty());
+  CHECK(read(two_bodies, {"integrator.until=\"1000.00000005 day\""}).integrator.steps == 201);
+  CHECK(refusal(two_bodies, {"integrator.exact=true", "integrator.until=\"1000.00000005 day\""}) ==
         "--set integrator.until=\"1000.00000005 day\": until = \"1000.00000005 day\" is 200.00000001 steps of \"5 "
         "day\"; the "
         "nearest whole numbers are \"1000 day\" (200 steps) and \"1005 day\" (201 steps)");

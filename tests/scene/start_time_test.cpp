@@ -167,7 +167,8 @@ TEST_CASE("a list of times is read from the scene or a file, and kept as a list"
 TEST_CASE("times after the end are warned of, and of a moved end they are seen", "[scene][times]") {
   const std::string set = "every.0.times=[\"10 day\", \"200 day\", \"201 day\"]";
   CHECK(warnings_of(clocked({set})) ==
-        std::vector<std::string>{"1 of 3 times of 'energy' lie after the end at 200 day, so it does not sample then"});
+        std::vector<std::string>{
+            "1 of 3 times of 'energy' lies after the end at 200 day, so it does not sample then"});
   CHECK(warnings_of(clocked({set, "integrator.until=201 day"})).empty());
   CHECK(warnings_of(clocked({set, "integrator.until=", "integrator.steps=402"})).empty());
   CHECK(warnings_of(clocked({set, "integrator.until="})).empty());  // no end is known
@@ -175,12 +176,15 @@ TEST_CASE("times after the end are warned of, and of a moved end they are seen",
                                              "integrator.step=", "every.0.times=[\"1005 day\", \"1011.25 day\"]",
                                              "integrator.start_time=1000 day", "integrator.until=1010 day"};
   CHECK(warnings_of(clocked(adaptive)) ==
-        std::vector<std::string>{"1 of 2 times of 'energy' lie after the end at 1010 day, so it does not sample then"});
+        std::vector<std::string>{
+            "1 of 2 times of 'energy' lies after the end at 1010 day, so it does not sample then"});
 }
 
-TEST_CASE("a time between two steps is refused with the nearest times of the clock", "[scene][times][messages]") {
+TEST_CASE("where times are exact, one between two steps is refused with the nearest of the clock",
+          "[scene][times][messages]") {
   CHECK(refusal_of([] {
-          clocked({"integrator.start_time=1000 day", "integrator.until=1200 day", "every.0.times=[\"1010.25 day\"]"});
+          clocked({"integrator.exact=true", "integrator.start_time=1000 day", "integrator.until=1200 day",
+                   "every.0.times=[\"1010.25 day\"]"});
         })
             .ends_with(
                 "times contains \"1010.25 day\", which is 20.5 steps of \"0.5 day\" after \"1000 day\"; the nearest "

@@ -14,13 +14,13 @@ namespace noether::test {
 ScratchFolder::ScratchFolder() {
   static std::atomic<int> count{0};
   const auto base = std::filesystem::temp_directory_path();
-  path_ = base / ("noether-test-" + std::to_string(::getpid()) + "-" + std::to_string(count++));
+  path_ = base / ("noether-test-" + std::to_string(::getpid()) + "-" + std::to_string(count++)) / "scene";
   std::filesystem::create_directories(path_);
 }
 
 ScratchFolder::~ScratchFolder() {
   std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
+  std::filesystem::remove_all(path_.parent_path(), ignored);
 }
 
 std::string read_text(const std::filesystem::path& file) {

@@ -7,7 +7,8 @@
 
 namespace noether::test {
 
-/// A new folder for one test, removed with everything in it.
+/// A new folder for one test, removed with everything in it. It is called `scene`: runs of a scene.toml there write to
+/// scene.out.
 class ScratchFolder {
  public:
   ScratchFolder();

@@ -1,0 +1,151 @@
+#include "scene/default_watches.hpp"
+
+#include "monitors/monitors.hpp"
+#include "scene/toml.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace noether {
+
+namespace {
+
+constexpr std::int64_t most_frames = 200;
+constexpr double most_bytes = 2e9;
+
+std::int64_t frames_of(const ParticleSystem<double>& s) {
+  const auto numbers = static_cast<double>(6 * s.size()) + static_cast<double>(s.variables().size());
+  const double fit = most_bytes / (8 * std::max(numbers, 1.0));
+  return std::clamp(static_cast<std::int64_t>(fit), std::int64_t{2}, most_frames);
+}
+
+/// A divisor of all steps where there is one near, so that the last frame is the end.
+std::int64_t steps_between(std::int64_t steps, std::int64_t frames) {
+  const std::int64_t wanted = std::max<std::int64_t>((steps + frames / 2) / frames, 1);
+  const std::int64_t farthest = std::min<std::int64_t>(wanted / 3, 100'000);
+  for (std::int64_t off = 0; off <= farthest; ++off) {
+    for (const std::int64_t one : {wanted - off, wanted + off}) {
+      if (steps % one == 0) return one;
+    }
+  }
+  return wanted;
+}
+
+/// When default watches look, and how a scene says it.
+struct DefaultCadence {
+  Cadence cadence;
+  std::string key;
+  SceneValue value;
+};
+
+/// A cadence as a stored table has it; empty if it has none of steps or time.
+std::optional<DefaultCadence> read_cadence(const SceneContext& context, const SceneValue& table) {
+  DefaultCadence made;
+  const TableReader reader(context, table, "[[every]]", "every");
+  if (const SceneValue* steps = table.find("steps"); steps != nullptr && steps->get<std::int64_t>() != nullptr) {
+    made.cadence.steps = *steps->get<std::int64_t>();
+    made.key = "steps";
+    made.value = *steps;
+    return made;
+  }
+  const SceneValue* every = table.find("every");
+  if (every == nullptr) return {};
+  made.cadence.interval = reader.number(*every, "every", "time");
+  made.key = "every";
+  made.value = *every;
+  return made;
+}
+
+/// The cadence of about so many frames over a whole run; empty where it has no end.
+std::optional<DefaultCadence> cadence_of(const SceneContext& context, const Scene& scene) {
+  const std::int64_t frames = frames_of(scene.particles);
+  SceneValue table = SceneValue::table();
+  if (scene.integrator.steps) {
+    table.put("steps", SceneValue::of(steps_between(*scene.integrator.steps, frames)));
+  } else if (const auto length = scene.integrator.length()) {
+    table.put("every", detail::quantity_value(*length / static_cast<double>(frames), "time", *scene.units));
+  } else {
+    return {};
+  }
+  return read_cadence(context, table);  // from the text that is stored, so that both are one to the bit
+}
+
+SceneValue table_of(const SceneWatch& watch, const std::string& type, const DefaultCadence& when) {
+  SceneValue table = SceneValue::table();
+  table.put("type", SceneValue::of(type));
+  table.put(when.key, when.value);
+  if (watch.kind != SceneWatch::Kind::monitor) return table;
+  for (const auto& [key, value] : *watch.monitor.effective.get<SceneValue::Table>()) table.put(key, value);
+  return table;
+}
+
+/// Whether the energy of a run is known: every force tells its own.
+bool has_energy(const Scene& scene) { return !scene.system && integrator_of(scene).claims().energy; }
+
+/// The monitor of the energy, as a scene's parts read it; empty where they know none.
+std::optional<SceneMonitor> energy_monitor(const SceneContext& context, const Parts& parts) {
+  const SceneValue nothing = SceneValue::table();
+  for (const Parts::MonitorKind& kind : parts.monitors()) {
+    if (kind.info.name != part_name<Energy>()) continue;
+    TableReader reader(context, nothing, "[[every]]", "every");
+    return kind.read(reader);
+  }
+  return {};
+}
+
+void put_watches(Scene& scene, SceneValue::Array tables) {
+  if (tables.empty()) {
+    scene.effective.erase("every");
+  } else {
+    scene.effective.put("every", SceneValue::of(std::move(tables)));
+  }
+}
+
+}  // namespace
+
+void add_default_watches(const SceneContext& context, Scene& scene) {
+  scene.default_watches = true;
+  SceneValue::Array tables;
+  const std::optional<DefaultCadence> when = cadence_of(context, scene);
+  if (when && has_energy(scene)) {
+    if (auto energy = energy_monitor(context, *scene.parts)) {
+      SceneWatch watch{SceneWatch::Kind::monitor, std::move(*energy), when->cadence};
+      tables.push_back(table_of(watch, watch.monitor.name, *when));
+      scene.watches.push_back(std::move(watch));
+    }
+  }
+  if (when && NOETHER_HDF5 != 0) {
+    const SceneWatch watch{SceneWatch::Kind::trajectory, {}, when->cadence};
+    tables.push_back(table_of(watch, "trajectory", *when));
+    scene.watches.push_back(watch);
+  }
+  put_watches(scene, std::move(tables));
+}
+
+void keep_default_watches(const SceneValue& stored, Scene& scene) {
+  const SceneValue* list = stored.find("every");
+  const auto* tables = list != nullptr ? list->get<SceneValue::Array>() : nullptr;
+  SceneValue::Array kept;
+  std::vector<SceneWatch> watches;
+  if (tables != nullptr && !tables->empty()) {  // a run begun before there were defaults goes on without
+    if (tables->size() != scene.watches.size()) return;
+    SceneContext context;
+    context.units = scene.units;
+    for (std::size_t k = 0; k < tables->size(); ++k) {
+      SceneWatch watch = scene.watches[k];
+      const std::string type = watch.kind == SceneWatch::Kind::monitor ? watch.monitor.name : "trajectory";
+      const SceneValue* written = (*tables)[k].find("type");
+      const auto when = read_cadence(context, (*tables)[k]);
+      if (written == nullptr || to_text(*written) != to_text(SceneValue::of(type)) || !when) return;
+      watch.cadence = when->cadence;
+      kept.push_back(table_of(watch, type, *when));
+      watches.push_back(std::move(watch));
+    }
+  }
+  scene.watches = std::move(watches);
+  put_watches(scene, std::move(kept));
+  scene.effective_toml = print_toml(scene.effective);
+}
+
+}  // namespace noether
