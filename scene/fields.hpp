@@ -3,6 +3,7 @@
 
 #include "engine/description.hpp"
 #include "numbers/suggest.hpp"
+#include "scene/foreign_names.hpp"
 #include "scene/reader.hpp"
 
 #include <fmt/format.h>
@@ -262,7 +263,7 @@ std::pair<const Kind*, std::string> kind_of_part(const SceneContext& context, co
   if (!reader.has("type")) {
     reader.fail(nullptr, "type", fmt::format("this {} has no type; known are: {}", what, fmt::join(known, ", ")));
   }
-  reader.fail("type", fmt::format("unknown {} '{}'{}", what, type, did_you_mean(type, known)));
+  reader.fail("type", fmt::format("unknown {} '{}'{}", what, type, proposal(type, known)));
 }
 
 }  // namespace noether

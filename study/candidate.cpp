@@ -3,6 +3,7 @@
 #include "integrators/all_schemes.hpp"
 #include "numbers/suggest.hpp"
 #include "scene/fields.hpp"
+#include "scene/foreign_names.hpp"
 
 #include <fmt/format.h>
 
@@ -70,9 +71,8 @@ Candidate candidate(const Scene& scene, std::string_view name) {
   const MethodInfo* info = scene.parts->find_method(method);
   const Scheme* scheme = schemes::find(method);
   if (info == nullptr && scheme == nullptr && !is_word(method)) {
-    const std::string near = suggest(method, scene.parts->method_names());
-    throw Error(fmt::format("unknown method '{}'; {}", method,
-                            near.empty() ? "see `noether list methods`" : "did you mean '" + near + "'?"),
+    throw Error(fmt::format("unknown method '{}'{}", method,
+                            proposal(method, scene.parts->method_names(), "; see `noether list methods`")),
                 {.value = method});
   }
   if (info != nullptr && scheme == nullptr) {
