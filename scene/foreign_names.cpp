@@ -245,12 +245,18 @@ std::string proposal(std::string_view word, const std::vector<std::string>& know
   return proposal(word, known, fmt::format("; known are: {}", fmt::join(known, ", ")));
 }
 
-std::string key_proposal(std::string_view word, const std::vector<std::string>& known) {
+std::vector<std::string> keys_here(std::string_view word) {
   const std::string text = as_in_table(word);
+  std::vector<std::string> keys;
   for (const ForeignName& row : names_of_others) {
-    if (row.place == NamePlace::key && has_word(row, text) && is_one_of(row.here, known)) {
-      return fmt::format("; did you mean '{}'?", row.here);
-    }
+    if (row.place == NamePlace::key && has_word(row, text)) keys.emplace_back(row.here);
+  }
+  return keys;
+}
+
+std::string key_proposal(std::string_view word, const std::vector<std::string>& known) {
+  for (const std::string& here : keys_here(word)) {
+    if (is_one_of(here, known)) return fmt::format("; did you mean '{}'?", here);
   }
   return did_you_mean(word, known);
 }

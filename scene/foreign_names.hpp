@@ -32,6 +32,9 @@ std::string proposal(std::string_view word, const std::vector<std::string>& know
 /// The same, but `otherwise` where the list of what is known would be too long: "; see `noether list methods`".
 std::string proposal(std::string_view word, const std::vector<std::string>& known, std::string_view otherwise);
 
+/// Keys that there are here for one that other programs have.
+std::vector<std::string> keys_here(std::string_view word);
+
 /// The end of a message about an unknown key of a table with these keys.
 std::string key_proposal(std::string_view key, const std::vector<std::string>& known);
 
