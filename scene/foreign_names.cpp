@@ -1,5 +1,6 @@
 #include "scene/foreign_names.hpp"
 
+#include "integrators/all_schemes.hpp"
 #include "numbers/suggest.hpp"
 
 #include <fmt/format.h>
@@ -233,7 +234,10 @@ std::string foreign_proposal(std::string_view word, const std::vector<std::strin
 std::span<const ForeignName> foreign_names() { return names_of_others; }
 
 std::string proposal(std::string_view word, const std::vector<std::string>& known, std::string_view otherwise) {
-  const std::string near = suggest(word, known);
+  std::string near = suggest(word, known);
+  if (const Scheme* scheme = schemes::find(near)) {
+    if (is_one_of(scheme->name, known)) near = scheme->name;  // not its short name
+  }
   const bool same = !near.empty() && squeezed(word) == squeezed(near);
   const std::string foreign = same ? "" : foreign_proposal(word, known);
   if (!foreign.empty()) return foreign;

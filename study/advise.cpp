@@ -232,6 +232,15 @@ bool tells_energy(const Scene& scene) {
   return !scene.system && scene.particles.size() > 0 && assemble(scene).claims().energy;
 }
 
+/// Energy errors of a chaotic motion, as that of a liquid, are soon what they are all along: no row of the trials has
+/// to take more than a quarter of its budget. @return when the trials end, by the clock; none: as comparisons do
+std::optional<double> energy_trials_end(const Scene& scene, const AdviseOptions& options) {
+  const Sampling whole = sampling_of(scene, {});
+  const double end = chaotic_energy_end(scene, whole, options.row_budget / 4);
+  if (end >= whole.end()) return {};
+  return whole.start + end;
+}
+
 /// Takes the metric that was asked for, or the one that can be held over the whole run.
 void choose_metric(Advice& advice, const Scene& scene, const AdviseOptions& options) {
   advice.metric = options.metric.value_or(Metric::position);
@@ -240,6 +249,7 @@ void choose_metric(Advice& advice, const Scene& scene, const AdviseOptions& opti
   const auto motion = predictability(scene, sampling_of(scene, {}).end(), 4 * options.row_budget);
   if (!motion || !motion->chaotic || motion->rounding(advice.end) < 0.1 * options.error) return;
   advice.metric = Metric::energy;
+  advice.trials_until = energy_trials_end(scene, options);
   advice.metric_reason = fmt::format(
       "errors are those of the energy: the motion is chaotic, small differences of positions grow tenfold "
       "in {}, so no run holds an error of {:g} of positions beyond a time of {} (--metric position tries)",
@@ -313,7 +323,8 @@ CompareOptions trials_of(const Advice& advice, const AdviseOptions& options) {
   trials.truth = options.truth;
   trials.progress = options.progress;
   trials.positions = advice.metric == Metric::position;
-  trials.shadow = false;
+  trials.quick = true;
+  trials.until = advice.trials_until;
   trials.repeats = 1;
   return trials;
 }

@@ -47,6 +47,7 @@ struct Advice {
   std::vector<std::string> left_out = {};  ///< methods that hold the error and that no lines can set, and why
   std::string reason = {};                 ///< why there is no proposal
   Metric metric = Metric::position;
+  std::optional<double> trials_until = {};  ///< when the trials end, by the clock [time]; default: as comparisons do
   std::string metric_reason = {};           ///< why this metric was taken, where nobody chose one
   std::optional<Proposal> best = {};        ///< without a proposal: the run with the smallest error that was measured
   double best_error = 0;                    ///< its error over the trial

@@ -273,7 +273,8 @@ class Comparer {
     const MeasureOptions how{.repeats = options_.repeats,
                              .budget = options_.row_budget,
                              .states = known && scene_.particles.size() <= most_particles,
-                             .shadow = options_.shadow};
+                             .quick = options_.quick,
+                             .shadow = !options_.quick};
     for (std::size_t i = 0; i < c_.methods.size(); ++i) {
       for (std::size_t k = 0; k < settings_[i].size(); ++k) {
         tell_row(i, k);

@@ -27,6 +27,14 @@ double own_cost(const Scene& scene, const Sampling& sampling) {
 
 }  // namespace
 
+double chaotic_energy_end(const Scene& scene, const Sampling& sampling, double seconds) {
+  const double cost = own_cost(scene, sampling);
+  const double least = scene.integrator.step > 0 ? 200 * scene.integrator.step : sampling.end() / 64;
+  double end = sampling.end();
+  while (8 * cost * end > seconds && end / 2 >= least) end /= 2;
+  return end;
+}
+
 std::string time_in_words(double time, const Scene& scene) {
   return scene.units->is_reduced() ? fmt::format("{:.3g}", time) : fmt::format("{:.3g} {}", time, scene.units->time);
 }

@@ -30,6 +30,10 @@ Horizon affordable_horizon(const Scene& scene, const Sampling& sampling, bool ma
 Horizon predictable_horizon(const Scene& scene, const Sampling& sampling, bool may_shorten,
                             const Predictability& motion);
 
+/// Half as far until a run of eight times the cost of the scene's own takes no more than so many seconds, but at least
+/// 200 steps of the scene.
+double chaotic_energy_end(const Scene& scene, const Sampling& sampling, double seconds);
+
 /// "0.5 ps", "0.5" in the reduced system.
 std::string time_in_words(double time, const Scene& scene);
 

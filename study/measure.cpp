@@ -145,6 +145,8 @@ double median(std::vector<double> values) {
 constexpr double soon_over = 0.05;
 /// Runs as long as that together are not repeated: their time is known well enough [s].
 constexpr double long_enough = 2;
+/// Of a run as long as that what watches it takes little, where a rough time will do [s].
+constexpr double long_enough_watched = 0.1;
 
 /// The same run with nobody watching, as often as asked for or as the budget allows.
 void timed_runs(Row& row, const Scene& alone, const Sampling& sampling, const MeasureOptions& options) {
@@ -229,11 +231,10 @@ Row measure(const Scene& scene, const Candidate& who, const Setting& setting, co
     row.setting.step = sampling.interval / static_cast<double>(sampling.steps_for(setting.step));
   }
   const Scene alone = variant(scene, who, row.setting);
-  if (watched_run(row, alone, sampling, options)) {
-    timed_runs(row, alone, sampling, options);
-  } else {
-    row.repeats = 0;
-  }
+  const bool whole = watched_run(row, alone, sampling, options);
+  const bool timed = whole && options.quick && row.wall_s.value_or(0) > long_enough_watched;
+  row.repeats = timed ? 1 : 0;
+  if (whole && !timed) timed_runs(row, alone, sampling, options);
   return row;
 }
 

@@ -62,6 +62,7 @@ struct MeasureOptions {
   int repeats = 3;     ///< of the timed run; more for short ones, fewer where the budget does not allow them
   double budget = 10;  ///< seconds of wall time for one run
   bool states = true;  ///< whether the states of more than `most_bodies` are kept
+  bool quick = false;  ///< whether the time of the watched run is enough where it is long
   bool shadow = true;  ///< whether the shadow Hamiltonian is watched, which takes several evaluations at each moment
 };
 

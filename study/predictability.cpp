@@ -24,14 +24,17 @@ double shake(Index i) {
 /// Root mean square of the coordinates of a state: those about their mean where there are several particles.
 double size_of_state(const Vector<double>& y, Index particles) {
   const Index count = particles > 0 ? 3 * particles : y.size();
-  const Index group = particles > 1 ? particles : 1;
-  double squares = 0;
-  for (Index k = 0; k < count; k += group) {
-    const double mean =
-        particles > 1 ? sum_over<double>(group, [&](Index i) { return y[k + i]; }) / static_cast<double>(group) : 0;
-    squares += sum_over<double>(group, [&](Index i) { return (y[k + i] - mean) * (y[k + i] - mean); });
+  const bool about_mean = particles > 1;
+  std::vector<double> means(3, 0.0);
+  for (Index k = 0; k < 3 && about_mean; ++k) {
+    const double all = sum_over<double>(particles, [&](Index i) { return y[k * particles + i]; });
+    means[static_cast<std::size_t>(k)] = all / static_cast<double>(particles);
   }
-  return std::sqrt(squares / static_cast<double>(std::max<Index>(count, 1)));
+  const double all = sum_over<double>(count, [&](Index i) {
+    const double x = y[i] - (about_mean ? means[static_cast<std::size_t>(i / particles)] : 0);
+    return x * x;
+  });
+  return std::sqrt(all / static_cast<double>(std::max<Index>(count, 1)));
 }
 
 double distance_of_states(const Vector<double>& a, const Vector<double>& b, Index particles) {
