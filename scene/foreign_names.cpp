@@ -156,11 +156,11 @@ constexpr std::array names_of_others = {
     ForeignName{" z qe charges ", NamePlace::key, "charge"},
     ForeignName{" g grav gravitational_constant g_const ", NamePlace::key, "G"},
     ForeignName{" spring_constant force_constant stiffness ", NamePlace::key, "k"},
-    ForeignName{" when nsteps cadence ", NamePlace::key, "steps"},
-    ForeignName{" kind class name ", NamePlace::key, "type"},
+    ForeignName{" when cadence ", NamePlace::key, "steps"},
+    ForeignName{" kind class ", NamePlace::key, "type"},
     ForeignName{" forces potential potentials pair_style interactions ", NamePlace::key, "force"},
     ForeignName{" monitors outputs observables writers ", NamePlace::key, "every"},
-    ForeignName{" description name comment ", NamePlace::key, "title"},
+    ForeignName{" description comment ", NamePlace::key, "title"},
     ForeignName{" unit unit_system ", NamePlace::key, "units"},
 };
 

@@ -15,19 +15,26 @@ namespace {
 
 std::vector<std::string> accepted_at(NamePlace place, const Parts& parts) {
   switch (place) {
-    case NamePlace::method: return parts.method_names();
-    case NamePlace::hamiltonian: return names_of(parts.hamiltonians());
-    case NamePlace::force: return names_of(parts.forces());
-    case NamePlace::thermostat: return names_of(parts.thermostats());
-    case NamePlace::constraint: return names_of(parts.constraints());
-    case NamePlace::builder: return names_of(builders());
+    case NamePlace::method:
+      return parts.method_names();
+    case NamePlace::hamiltonian:
+      return names_of(parts.hamiltonians());
+    case NamePlace::force:
+      return names_of(parts.forces());
+    case NamePlace::thermostat:
+      return names_of(parts.thermostats());
+    case NamePlace::constraint:
+      return names_of(parts.constraints());
+    case NamePlace::builder:
+      return names_of(builders());
     case NamePlace::monitor: {
       std::vector<std::string> all = names_of(parts.monitors());
       all.insert(all.end(), {"trajectory", "checkpoint"});
       return all;
     }
     case NamePlace::key:
-    case NamePlace::none: break;
+    case NamePlace::none:
+      break;
   }
   return {};
 }
@@ -78,7 +85,8 @@ TEST_CASE("names of other programs get what there is here", "[proposals]") {
   CHECK(method("Bulirsch Stoer") == "; did you mean 'gragg_bulirsch_stoer'?");
   CHECK(method("saba") == "; did you mean 'saba_4'? (on the Hamiltonian 'wisdom_holman')");
   CHECK(method("mercurius").starts_with("; did you mean 'gauss_radau_15'? ("));
-  CHECK(method("whfast").starts_with("; in its place there is type = \"wisdom_holman\" in [hamiltonian] (with method = "));
+  CHECK(method("whfast").starts_with(
+      "; in its place there is type = \"wisdom_holman\" in [hamiltonian] (with method = "));
   CHECK(method("nose_hoover").starts_with("; in its place there is type = \"langevin\" in [hamiltonian.thermostat]"));
   CHECK(method("npt").starts_with("; there is no barostat here"));
   CHECK(method("verlett") == "; did you mean 'verlet'?");
