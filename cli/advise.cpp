@@ -2,6 +2,7 @@
 
 #include "cli/comma_lists.hpp"
 #include "numbers/error.hpp"
+#include "numbers/progress.hpp"
 #include "numbers/suggest.hpp"
 #include "scene/scene.hpp"
 #include "scene/warnings.hpp"
@@ -9,8 +10,6 @@
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
-
-#include <unistd.h>
 
 #include <cstdio>
 #include <memory>
@@ -23,7 +22,7 @@ namespace noether {
 namespace {
 
 struct AdviseArguments {
-  std::string scene, error, metric = "position";
+  std::string scene, error, metric;
   std::optional<std::string> methods;
   std::vector<std::string> sets;
   double budget = 2;
@@ -34,19 +33,15 @@ void advise_scene(const AdviseArguments& given, const Parts& parts) {
   AdviseOptions options;
   options.error = numbers_in(given.error, "--error").front();
   if (given.metric == "energy") options.metric = Metric::energy;
+  if (given.metric == "position") options.metric = Metric::position;
   if (given.methods) options.methods = texts_in(*given.methods, "--methods");
   options.row_budget = given.budget;
   const Scene scene = load_scene(given.scene, parts, given.sets);
   tell_notes(scene.notes);
-  const bool shows = !given.json && ::isatty(STDERR_FILENO) == 1;
-  if (shows) {
-    options.progress = [](const std::string& what) {
-      fmt::print(stderr, "\r\033[K{}", what);
-      std::fflush(stderr);
-    };
-  }
+  TerminalLine line(!given.json);
+  options.progress = line.teller();
   const Advice advice = advise(scene, options);
-  if (shows) std::fputs("\r\033[K", stderr);
+  line.clear();
   if (given.json) {
     fmt::print("{}\n", to_json(advice, scene));
   } else {
@@ -66,7 +61,9 @@ void add_advise_command(CLI::App& app, const Parts& parts, int& exit_code) {
         return std::string(text.find(',') == std::string::npos ? "" : "'" + text + "' is not a number; give one error");
       })
       ->type_name("E");
-  command->add_option("--metric", given->metric, "position or energy; default: position")
+  command
+      ->add_option("--metric", given->metric,
+                   "position or energy; default: position where it can be held over the run, else energy")
       ->check([](const std::string& text) {
         if (text == "position" || text == "energy") return std::string();
         return fmt::format("unknown metric '{}'{}", text, did_you_mean(text, {"position", "energy"}));

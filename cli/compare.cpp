@@ -3,6 +3,7 @@
 #include "cli/comma_lists.hpp"
 #include "cli/shell_text.hpp"
 #include "numbers/error.hpp"
+#include "numbers/progress.hpp"
 #include "scene/output_folder.hpp"
 #include "scene/scene.hpp"
 #include "scene/warnings.hpp"
@@ -11,8 +12,6 @@
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
-
-#include <unistd.h>
 
 #include <cstdio>
 #include <filesystem>
@@ -64,17 +63,12 @@ void compare_scene(const CompareArguments& given, const Parts& parts) {
   options.repeats = static_cast<int>(given.repeat);
   options.row_budget = given.budget;
   options.truth.budget = given.truth_budget;
-  const bool shows = !given.quiet && !given.json && ::isatty(STDERR_FILENO) == 1;
-  if (shows) {
-    options.progress = [](const std::string& what) {
-      fmt::print(stderr, "\r\033[K{}", what);
-      std::fflush(stderr);
-    };
-  }
+  TerminalLine line(!given.quiet && !given.json);
+  options.progress = line.teller();
   Comparison comparison = compare(scene, options);
   comparison.command = command_line(given);
   const std::string report = report_html(comparison, solution_of(scene, comparison));
-  if (shows) std::fputs("\r\033[K", stderr);
+  line.clear();
   const CompareFiles files = write_files(comparison, folder_of(given), report);
   if (given.json) {
     fmt::print("{}\n", to_json(comparison, files));

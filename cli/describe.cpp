@@ -6,8 +6,8 @@
 #include "integrators/composition_options.hpp"
 #include "numbers/error.hpp"
 #include "numbers/quantity.hpp"
-#include "numbers/suggest.hpp"
 #include "numbers/text.hpp"
+#include "scene/foreign_names.hpp"
 #include "scene/json.hpp"
 #include "scene/parts.hpp"
 #include "scene/read_builder.hpp"
@@ -286,9 +286,7 @@ void describe(const std::string& name, const Parts& parts, bool json) {
   }
   const std::vector<std::string> methods_too = parts.method_names();
   known.insert(known.end(), methods_too.begin(), methods_too.end());
-  const std::string near = suggest(name, known);
-  throw Error(fmt::format("there is nothing called '{}'; {}", name,
-                          near.empty() ? "see `noether list`" : "did you mean '" + near + "'?"));
+  throw Error(fmt::format("there is nothing called '{}'{}", name, proposal(name, known, "; see `noether list`")));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "cli/comma_lists.hpp"
 #include "io/files.hpp"
 #include "numbers/error.hpp"
+#include "numbers/progress.hpp"
 #include "scene/scene.hpp"
 #include "scene/warnings.hpp"
 #include "study/stability.hpp"
@@ -11,11 +12,8 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include <unistd.h>
-
 #include <cstdio>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -34,15 +32,6 @@ struct StabilityArguments {
   bool suite = false, nightly = false, json = false;
 };
 
-/// A line on a terminal that tells what is being done; nothing elsewhere.
-std::function<void(const std::string&)> progress_line(bool shows) {
-  if (!shows) return {};
-  return [](const std::string& what) {
-    fmt::print(stderr, "\r\033[K{}", what);
-    std::fflush(stderr);
-  };
-}
-
 /// Writes a result into a folder that is there, for machines and for people. @return what was written, a line each
 std::string write_report(const std::filesystem::path& folder, const char* json_name, const std::string& json,
                          const std::string& html) {
@@ -54,15 +43,15 @@ std::string write_report(const std::filesystem::path& folder, const char* json_n
 void search_scene(const StabilityArguments& given, const Parts& parts) {
   const Scene scene = load_scene(given.scene, parts, given.sets);
   tell_notes(scene.notes);
-  const bool shows = !given.json && ::isatty(STDERR_FILENO) == 1;
+  TerminalLine line(!given.json);
   StabilityOptions options;
   if (given.methods) options.methods = texts_in(*given.methods, "--methods");
   options.confirm_steps = static_cast<std::int64_t>(given.steps);
   if (given.budget) options.row_budget = *given.budget;
-  options.progress = progress_line(shows);
+  options.progress = line.teller();
   if (given.out) io::make_folder(*given.out);
   const Stability found = find_stability(scene, options);
-  if (shows) std::fputs("\r\033[K", stderr);
+  line.clear();
   std::string written;
   if (given.out) written = write_report(*given.out, "stability.json", to_json(found), to_html(found));
   fmt::print("{}", given.json ? to_json(found) + "\n" : to_text(found) + written);
@@ -76,15 +65,15 @@ void run_verdicts(const StabilityArguments& given, const Parts& parts) {
   std::vector<std::filesystem::path> files = {given.scene};
   if (given.scene.empty()) files = suite_files(suite_folder());
   if (std::filesystem::is_directory(given.scene)) files = suite_files(given.scene);
-  const bool shows = !given.json && ::isatty(STDERR_FILENO) == 1;
+  TerminalLine line(!given.json);
   SuiteOptions options;
   options.nightly = given.nightly;
   if (given.budget) options.row_budget = *given.budget;
-  options.progress = progress_line(shows);
+  options.progress = line.teller();
   const std::filesystem::path folder = given.out.value_or("stability.out");
   io::make_folder(folder);
   const Suite suite = run_suite(files, options, parts);
-  if (shows) std::fputs("\r\033[K", stderr);
+  line.clear();
   const std::string written = write_report(folder, "suite.json", to_json(suite), to_html(suite));
   fmt::print("{}", given.json ? to_json(suite) + "\n" : to_text(suite) + written);
 }

@@ -8,6 +8,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <functional>
 #include <system_error>
 #include <utility>
 
@@ -253,24 +254,39 @@ std::string_view symbol_of(std::string_view word) {
   return word;
 }
 
-[[noreturn]] void unknown_unit(std::string_view word, std::string_view whole) {
+std::vector<std::string> symbols_of_units() {
   std::vector<std::string> known;
   for (const units::Definition& unit : units::definitions) known.emplace_back(unit.symbol);
   for (const units::Definition& unit : text_units) known.emplace_back(unit.symbol);
+  return known;
+}
+std::vector<std::string> words_for_units() {
+  std::vector<std::string> words;
+  for (const Alias& alias : aliases) words.emplace_back(alias.word);
+  for (const units::Definition& unit : units::definitions) {
+    if (unit.constant.find('_') == std::string_view::npos) words.emplace_back(unit.constant);
+  }
+  return words;
+}
+
+/// The words with which the whole text has the dimension it should have; all where `fits` is null.
+std::vector<std::string> fitting(std::vector<std::string> words, const std::function<bool(std::string_view)>& fits) {
+  if (fits) std::erase_if(words, [&](const std::string& word) { return !fits(word); });
+  return words;
+}
+
+[[noreturn]] void unknown_unit(std::string_view word, std::string_view whole,
+                               const std::function<bool(std::string_view)>& fits) {
+  const std::vector<std::string> all = symbols_of_units(), known = fitting(all, fits);
   const std::string in = word == whole ? "" : fmt::format(" in '{}'", whole);
   // Half of a quotient has one answer, however far it is in letters.
   for (const std::string& symbol : known) {
     if (!symbol.starts_with(word) || !std::string_view(symbol).substr(word.size()).starts_with('/')) continue;
     fail(fmt::format("unknown unit '{}'{}; did you mean '{}'?", word, in, symbol), whole);
   }
-  std::vector<std::string> names;
-  for (const Alias& alias : aliases) names.emplace_back(alias.word);
-  for (const units::Definition& unit : units::definitions) {
-    if (unit.constant.find('_') == std::string_view::npos) names.emplace_back(unit.constant);
-  }
-  const std::string name = suggest(word, known).empty() ? suggest(word, names) : "";
+  const std::string name = suggest(word, known).empty() ? suggest(word, fitting(words_for_units(), fits)) : "";
   if (!name.empty()) fail(fmt::format("unknown unit '{}'{}; did you mean '{}'?", word, in, name), whole);
-  fail(fmt::format("unknown unit '{}'{}{}", word, in, did_you_mean(word, known)), whole);
+  fail(fmt::format("unknown unit '{}'{}{}", word, in, did_you_mean(word, known.empty() ? all : known)), whole);
 }
 
 /// The unit made of two words, "kJ/mol", "kJ mol^-1" or "g/cm^3", where the terms at i spell one.
@@ -297,13 +313,31 @@ void append(Unit& unit, const units::Definition& definition, const Term& term, c
   unit.factors.push_back({value, term.divides != (term.power < 0)});
 }
 
-Unit unit_from(const std::vector<Term>& terms, std::string_view whole, const UnitSystem& system) {
+/// Whether a word in the place of the unknown one at `i` gives the expected dimension; null where that is not known.
+std::function<bool(std::string_view)> fits_at(const std::vector<Term>& terms, std::size_t i, const UnitSystem& system,
+                                              const std::optional<Dimension>& expected) {
+  const auto is_known = [](const Term& term) { return term.word == "1" || find_unit(term.word) != nullptr; };
+  if (!expected || !std::all_of(terms.begin() + static_cast<std::ptrdiff_t>(i) + 1, terms.end(), is_known)) return {};
+  return [&terms, i, &system, wanted = *expected](std::string_view word) {
+    std::vector<Term> with = terms;
+    with[i].word = symbol_of(word);
+    Unit whole;
+    for (const Term& term : with) {
+      if (const units::Definition* const one = find_unit(term.word)) append(whole, *one, term, system);
+    }
+    return whole.dimension == wanted;
+  };
+}
+
+/// @param expected  the dimension of the whole, where it is known: no unit of another one is proposed
+Unit unit_from(const std::vector<Term>& terms, std::string_view whole, const UnitSystem& system,
+               const std::optional<Dimension>& expected = {}) {
   Unit unit;
   for (std::size_t i = 0; i < terms.size(); ++i) {
     if (terms[i].word == "1") continue;
     const units::Definition* const quotient = find_quotient(terms, i);
     const units::Definition* const definition = quotient ? quotient : find_unit(terms[i].word);
-    if (!definition) unknown_unit(terms[i].word, whole);
+    if (!definition) unknown_unit(terms[i].word, whole, fits_at(terms, i, system, expected));
     append(unit, *definition, terms[i], system);
     if (quotient) ++i;
   }
@@ -452,7 +486,7 @@ double read_quantity(std::string_view text, const Expected& wanted, const UnitSy
   if (system.is_reduced() && !all_plain(terms)) {
     fail(fmt::format("'{}' has a unit; reduced units are plain numbers, such as '{}'", whole, digits), whole);
   }
-  const Unit unit = unit_from(terms, whole, system);
+  const Unit unit = unit_from(terms, whole, system, wanted.dimension);
   if (unit.dimension != wanted.dimension || (wanted.angle && !std::any_of(terms.begin(), terms.end(), is_angle))) {
     fail(fmt::format("'{}' is {}; {}", whole, kind_of(terms, unit.dimension), expectation(wanted, digits, system)),
          whole);

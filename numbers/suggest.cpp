@@ -53,13 +53,25 @@ long number_distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
+std::string squeezed(std::string_view word) {
+  std::string text;
+  for (const char c : lower_case(word)) {
+    if (c != '_' && c != '-' && c != '/' && c != ' ') text += c;
+  }
+  if (text.size() > 4 && text.ends_with("ies")) return text.substr(0, text.size() - 3) + 'y';
+  if (text.size() > 3 && text.ends_with('s') && !text.ends_with("ss")) text.pop_back();
+  return text;
+}
+
 std::string suggest(std::string_view word, const std::vector<std::string>& known) {
   const std::string lower = lower_case(word);
   const std::size_t near = std::max<std::size_t>(2, word.size() / 3);
+  const std::string core = squeezed(word);
   std::string best;
   std::tuple<std::size_t, std::size_t, long> best_distance{near + 1, 0, 0};
   for (const std::string& candidate : known) {
-    const std::size_t distance = edit_distance(lower, lower_case(candidate));
+    const bool same = core.size() > 1 && squeezed(candidate) == core;
+    const std::size_t distance = same ? 0 : edit_distance(lower, lower_case(candidate));
     if (distance > near || distance >= std::max(word.size(), candidate.size())) continue;
     const std::tuple measured{distance, edit_distance(word, candidate), number_distance(lower, lower_case(candidate))};
     if (measured < best_distance) {

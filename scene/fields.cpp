@@ -1,8 +1,8 @@
 #include "scene/fields.hpp"
 
 #include "numbers/quantity.hpp"
-#include "numbers/suggest.hpp"
 #include "numbers/text.hpp"
+#include "scene/foreign_names.hpp"
 
 namespace noether::detail {
 
@@ -32,11 +32,10 @@ void add_field(PartInfo& info, const FieldTexts& texts, std::string_view kind, c
 }
 
 std::string who_knows(const SceneContext& context, const std::string& type, const std::vector<std::string>& known) {
-  if (context.program.empty()) return did_you_mean(type, known);
-  const std::string near = suggest(type, known);
-  return (near.empty() ? "" : "; did you mean '" + near + "'?") +
-         fmt::format("{} the program of this scene has parts of its own: run `{}`", near.empty() ? ";" : " If not,",
-                     context.program);
+  if (context.program.empty()) return proposal(type, known);
+  const std::string near = proposal(type, known, "");
+  return near + fmt::format("{} the program of this scene has more parts: run `{}`",
+                            near.ends_with('?') ? " If not," : ";", context.program);
 }
 
 void require_field(TableReader& reader, const FieldTexts& texts) {

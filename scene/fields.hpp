@@ -3,6 +3,7 @@
 
 #include "engine/description.hpp"
 #include "numbers/suggest.hpp"
+#include "scene/foreign_names.hpp"
 #include "scene/reader.hpp"
 
 #include <fmt/format.h>

@@ -483,7 +483,7 @@ Scene read_scene(SceneValue root, const std::filesystem::path& file, const Parts
   scene.parts = std::make_shared<const Parts>(parts);
   scene.source = {file.string(), sets};
   check_tree(root, scene.source);
-  apply_sets(root, scene.source);
+  apply_sets(root, scene.source, parts);
   SceneReader(root, *scene.parts, scene).read();
   return scene;
 }

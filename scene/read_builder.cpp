@@ -1,6 +1,7 @@
 #include "scene/read_builder.hpp"
 
 #include "scene/builders.hpp"
+#include "scene/foreign_names.hpp"
 
 #include <fmt/format.h>
 
@@ -38,7 +39,7 @@ ParticleSystem<double> build_particles(TableReader& reader, SceneValue& effectiv
     effective.put("type", SceneValue::of(type, reader.line("type")));
     return kind.build(fields, effective);
   }
-  reader.fail("type", fmt::format("unknown builder '{}'{}", type, did_you_mean(type, names_of(builders()))));
+  reader.fail("type", fmt::format("unknown builder '{}'{}", type, proposal(type, names_of(builders()))));
 }
 
 }  // namespace noether

@@ -4,8 +4,8 @@
 #include "integrators/all_methods.hpp"
 #include "integrators/all_schemes.hpp"
 #include "io/text_table.hpp"
-#include "numbers/suggest.hpp"
 #include "numbers/text.hpp"
+#include "scene/foreign_names.hpp"
 #include "scene/read_options.hpp"
 
 #include <fmt/format.h>
@@ -110,9 +110,8 @@ std::int64_t counted_steps(TableReader& reader, std::string_view key) {
 }
 
 void unknown_method(TableReader& reader, const std::string& name, const Parts& parts) {
-  const std::string near = suggest(name, parts.method_names());
-  reader.fail("method", fmt::format("unknown method '{}'; {}", name,
-                                    near.empty() ? "see `noether list methods`" : "did you mean '" + near + "'?"));
+  reader.fail("method", fmt::format("unknown method '{}'{}", name,
+                                    proposal(name, parts.method_names(), "; see `noether list methods`")));
 }
 
 void read_method(TableReader& reader, const Parts& parts, SceneIntegrator& made) {

@@ -1,7 +1,7 @@
 #include "scene/reader.hpp"
 
-#include "numbers/suggest.hpp"
 #include "numbers/text.hpp"
+#include "scene/foreign_names.hpp"
 
 #include <fmt/format.h>
 
@@ -164,7 +164,7 @@ void TableReader::finish() const {
   for (const auto& [key, value] : std::get<SceneValue::Table>(table_.data)) {
     if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
     const std::string in = what_.empty() ? "" : " in " + what_;
-    fail(&value, key, fmt::format("unknown key '{}'{}{}", key, in, did_you_mean(key, known_)));
+    fail(&value, key, fmt::format("unknown key '{}'{}{}", key, in, key_proposal(key, known_)));
   }
 }
 

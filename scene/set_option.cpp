@@ -2,6 +2,7 @@
 
 #include "numbers/suggest.hpp"
 #include "numbers/text.hpp"
+#include "scene/key_paths.hpp"
 #include "scene/toml.hpp"
 
 #include <fmt/format.h>
@@ -19,24 +20,14 @@ constexpr std::array<std::string_view, 5> known_tables = {"particles", "hamilton
 /// The same of tables in [hamiltonian].
 constexpr std::array<std::string_view, 2> known_of_hamiltonian = {"neighbors", "thermostat"};
 
+/// Keys that stand in no table.
+constexpr std::array<std::string_view, 11> top_keys = {"title",  "units",    "particles",  "hamiltonian",
+                                                       "system", "minimize", "integrator", "every",
+                                                       "stop",   "expect",   "verdict"};
+
 /// Keys of one table of which at most one is given.
 constexpr std::array<std::array<std::string_view, 4>, 3> alternatives = {
     {{"steps", "until", "", ""}, {"steps", "every", "wall", "times"}, {"density", "constant", "", ""}}};
-
-std::vector<std::string> split(std::string_view path) {
-  std::vector<std::string> keys(1);
-  bool quoted = false;
-  for (const char c : path) {
-    if (c == '"') {
-      quoted = !quoted;
-    } else if (c == '.' && !quoted) {
-      keys.emplace_back();
-    } else {
-      keys.back() += c;
-    }
-  }
-  return keys;
-}
 
 std::string text_of(const SceneValue& table, std::string_view key) {
   const SceneValue* value = table.find(key);
@@ -51,10 +42,11 @@ void add_new(std::vector<std::string>& names, std::string_view name) {
 /// One `--set` at work.
 class Setter {
  public:
-  Setter(const SceneSource& source, std::size_t index)
-      : source_(source), line_(-static_cast<int>(index) - 1), text_(source.sets[index]) {}
+  Setter(const SceneSource& source, const Parts& parts, std::size_t index)
+      : source_(source), parts_(parts), line_(-static_cast<int>(index) - 1), text_(source.sets[index]) {}
 
   void apply(SceneValue& scene) {
+    scene_ = &scene;
     if (!is_utf8(text_)) fail("this is not UTF-8; give text in that encoding");
     if (text_.starts_with(until_option)) {
       path_ = "integrator.until";
@@ -72,16 +64,17 @@ class Setter {
 
  private:
   void put(SceneValue& scene, SceneValue value) {
-    const std::vector<std::string> keys = split(path_);
+    const std::vector<std::string> keys = keys_of_path(path_);
     SceneValue& at = holder_of(scene, keys);
     if (SceneValue::Array* list = at.get<SceneValue::Array>()) return put_element(*list, keys.back(), std::move(value));
     if (keys.size() == 1) check_top(at, keys[0], value);
+    if (keys.size() == 1) refuse_short_path(at, keys[0]);
     drop_alternatives(at, keys.back());
     at.put(keys.back(), std::move(value));
   }
 
   void take_out(SceneValue& scene) {
-    const std::vector<std::string> keys = split(path_);
+    const std::vector<std::string> keys = keys_of_path(path_);
     SceneValue& at = holder_of(scene, keys);
     const std::string& key = keys.back();
     if (SceneValue::Array* list = at.get<SceneValue::Array>()) {
@@ -91,7 +84,7 @@ class Setter {
     if (at.find(key) == nullptr) {
       std::vector<std::string> written;
       for (const auto& [name, value] : *at.get<SceneValue::Table>()) add_new(written, name);
-      fail(fmt::format("there is no '{}' to take out of the scene{}", key, did_you_mean(key, written)));
+      fail(fmt::format("there is no '{}' to take out of the scene{}", key, elsewhere(did_you_mean(key, written))));
     }
     at.erase(key);
   }
@@ -152,7 +145,25 @@ class Setter {
     for (const std::string_view known : known_of_hamiltonian) {
       if (hamiltonian) add_new(keys, known);
     }
-    fail(fmt::format("there is no '{}' in the scene{}", key, did_you_mean(key, keys)));
+    fail(fmt::format("there is no '{}' in the scene{}", key, elsewhere(did_you_mean(key, keys))));
+  }
+
+  /// Refuses a key of a table that is given without its table: "step" instead of "integrator.step".
+  void refuse_short_path(const SceneValue& scene, const std::string& key) const {
+    if (scene.find(key) != nullptr || std::find(top_keys.begin(), top_keys.end(), key) != top_keys.end()) return;
+    const std::string where = elsewhere("");
+    if (!where.empty()) fail(fmt::format("unknown key '{}'{}", key, where));
+  }
+
+  /// The end of a message: whole paths that the one given may be the end of; `otherwise` where there is none.
+  std::string elsewhere(const std::string& otherwise) const {
+    constexpr std::size_t most = 3;
+    const std::vector<std::string> meant = paths_meant(path_, key_paths(*scene_, parts_));
+    if (meant.empty()) return otherwise;
+    const std::size_t shown = std::min(meant.size(), most);
+    std::string all = fmt::format("'{}'", meant[0]);
+    for (std::size_t k = 1; k < shown; ++k) all += fmt::format("{}'{}'", k + 1 < shown ? ", " : " or ", meant[k]);
+    return fmt::format("; did you mean {}{}?", all, shown < meant.size() ? ", among others" : "");
   }
 
   SceneValue& element(SceneValue::Array& list, const std::string& key) {
@@ -189,6 +200,8 @@ class Setter {
   }
 
   const SceneSource& source_;
+  const Parts& parts_;
+  const SceneValue* scene_ = nullptr;  ///< whole
   int line_;
   const std::string& text_;
   std::string path_;
@@ -197,8 +210,8 @@ class Setter {
 
 }  // namespace
 
-void apply_sets(SceneValue& scene, const SceneSource& source) {
-  for (std::size_t k = 0; k < source.sets.size(); ++k) Setter(source, k).apply(scene);
+void apply_sets(SceneValue& scene, const SceneSource& source, const Parts& parts) {
+  for (std::size_t k = 0; k < source.sets.size(); ++k) Setter(source, parts, k).apply(scene);
 }
 
 }  // namespace noether

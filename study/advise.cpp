@@ -1,9 +1,8 @@
 #include "study/advise.hpp"
 
-#include "numbers/quantity.hpp"
-#include "scene/json.hpp"
 #include "study/analysis.hpp"
 #include "study/compare.hpp"
+#include "study/horizon.hpp"
 #include "study/set_lines.hpp"
 #include "study/wide_scene.hpp"
 
@@ -19,6 +18,7 @@ namespace {
 
 constexpr double margin = 0.7;      ///< of the error that was asked for: fits scatter
 constexpr double rounding = 1e-14;  ///< no fit is believed below
+constexpr double most_steps = 1e15;
 
 /// From the start on [time].
 double end_of(const Scene& scene) {
@@ -68,16 +68,26 @@ class Fit {
     const double floor = std::max(rounding, 3 * (metric == Metric::position ? trials.truth.error.value_or(0) : 0));
     law_ = asymptotic_fit(errors, floor, 0.5);
     if (!rows_.empty()) growth_ = growth(scene, trials, metric);
+    chaos_ = metric == Metric::position && trials.motion && trials.motion->chaotic ? &*trials.motion : nullptr;
+    if (chaos_ != nullptr) {
+      growth_ = {
+          0, fmt::format("the motion is chaotic: errors grow tenfold in {}", time_in_words(chaos_->tenfold(), scene))};
+    }
   }
 
   /// Whether the trials show how the error depends on the step or the tolerance.
   bool tells() const { return law_.has_value(); }
+  /// How many times as large as in the trials errors are at the end.
+  double longer(double trial_end, double end) const {
+    if (chaos_ != nullptr) return chaos_->factor(end) / chaos_->factor(trial_end);
+    return std::pow(end / trial_end, growth_.exponent);
+  }
   /// What holds an error over the whole run; empty where nothing tried tells.
-  std::optional<Proposal> propose(double error, double trial_end, double end) const {
+  /// @param beyond  whether much finer settings count than those that were tried
+  std::optional<Proposal> propose(double error, double trial_end, double end, bool beyond = false) const {
     if (!law_) return {};
-    const double longer = std::pow(end / trial_end, growth_.exponent);
-    const double wanted = margin * error / longer;
-    if (wanted < rounding) return {};
+    const double wanted = margin * error / longer(trial_end, end);
+    if (wanted < rounding || (chaos_ != nullptr && chaos_->rounding(end) > margin * error)) return {};
     double x = std::exp((std::log(wanted) - law_->log_factor) / law_->exponent);
     double most = 0, least = std::numeric_limits<double>::infinity();
     for (const Row* row : rows_) {
@@ -85,18 +95,34 @@ class Fit {
       least = std::min(least, x_of(*row));
     }
     x = std::min(x, most);  // longer steps than any that was tried may be unstable
-    if (x < least / 4 || (who_.adaptive && x < 1e-15)) return {};
+    if ((x < least / 4 && !beyond) || (who_.adaptive && x < 1e-15)) return {};
+    if (!(end / x < most_steps) && !who_.adaptive) return {};
     if (who_.adaptive) x = two_digits(x);
-    Proposal p{.who = who_, .growth = growth_};
+    Proposal p{.who = who_, .growth = growth_, .order = law_->exponent};
     (who_.adaptive ? p.setting.tolerance : p.setting.step) = x;
-    set_prediction(p, longer, trial_end, end);
+    set_prediction(p, trial_end, end);
     return p;
   }
 
+  /// The run with the smallest error, as a proposal for the whole run; none where nothing was measured.
+  std::optional<std::pair<Proposal, double>> best(Metric metric, double trial_end, double end) const {
+    const Row* least = nullptr;
+    for (const Row* row : rows_) {
+      if (least == nullptr || *error_of(*row, metric) < *error_of(*least, metric)) least = row;
+    }
+    if (least == nullptr) return {};
+    const double error = *error_of(*least, metric), times = end / trial_end;
+    Proposal p{.who = who_, .setting = least->setting, .growth = growth_, .order = law_ ? law_->exponent : 0};
+    p.predicted_error = error * longer(trial_end, end);
+    p.predicted_wall_s = least->wall_s.value_or(0) * times;
+    p.predicted_evaluations = static_cast<double>(least->evaluations.force) * times;
+    return std::pair(p, error);
+  }
+
   /// Error and cost of a setting, over the whole run.
-  void set_prediction(Proposal& p, double longer, double trial_end, double end) const {
+  void set_prediction(Proposal& p, double trial_end, double end) const {
     const double x = who_.adaptive ? p.setting.tolerance : p.setting.step;
-    p.predicted_error = (*law_)(x)*longer;
+    p.predicted_error = (*law_)(x)*longer(trial_end, end);
     const Row* near = rows_.front();
     for (const Row* row : rows_) {
       if (std::abs(std::log(x_of(*row) / x)) < std::abs(std::log(x_of(*near) / x))) near = row;
@@ -150,12 +176,14 @@ class Fit {
   std::vector<const Row*> rows_;
   std::optional<PowerLaw> law_;
   Growth growth_;
+  const Predictability* chaos_ = nullptr;  ///< of positions of a chaotic motion
 };
 
 /// @throws Error  where the trials tell no error of the metric
 void check_measured(const Comparison& c, Metric metric) {
   if (metric == Metric::position && !c.position_measured) {
-    throw Error(fmt::format("positions cannot be measured here: {}; try --metric energy", c.truth.note));
+    const std::string limits = c.limits.empty() ? "" : c.limits + "; ";
+    throw Error(fmt::format("positions cannot be measured here: {}{}; try --metric energy", limits, c.truth.note));
   }
   if (metric == Metric::position) return;
   const auto done = [](const Row& row) { return row.completed(); };
@@ -198,7 +226,110 @@ double fitted_step(const Scene& scene, double step, double end) {
 
 }  // namespace
 
-Advice advise(const Scene& scene, const AdviseOptions& options) {
+namespace {
+
+bool tells_energy(const Scene& scene) {
+  return !scene.system && scene.particles.size() > 0 && assemble(scene).claims().energy;
+}
+
+/// Energy errors of a chaotic motion, as that of a liquid, are soon what they are all along: no row of the trials has
+/// to take more than a quarter of its budget. @return when the trials end, by the clock; none: as comparisons do
+std::optional<double> energy_trials_end(const Scene& scene, const AdviseOptions& options) {
+  const Sampling whole = sampling_of(scene, {});
+  const double end = chaotic_energy_end(scene, whole, options.row_budget / 4);
+  if (end >= whole.end()) return {};
+  return whole.start + end;
+}
+
+/// Takes the metric that was asked for, or the one that can be held over the whole run.
+void choose_metric(Advice& advice, const Scene& scene, const AdviseOptions& options) {
+  advice.metric = options.metric.value_or(Metric::position);
+  if (options.metric || !tells_energy(scene)) return;
+  if (options.progress) options.progress({.what = "how fast small differences grow"});
+  const auto motion = predictability(scene, sampling_of(scene, {}).end(), 4 * options.row_budget);
+  if (!motion || !motion->chaotic || motion->rounding(advice.end) < 0.1 * options.error) return;
+  advice.metric = Metric::energy;
+  advice.trials_until = energy_trials_end(scene, options);
+  advice.metric_reason = fmt::format(
+      "errors are those of the energy: the motion is chaotic, small differences of positions grow tenfold "
+      "in {}, so no run holds an error of {:g} of positions beyond a time of {} (--metric position tries)",
+      time_in_words(motion->tenfold(), scene), options.error,
+      time_in_words(std::min(motion->time_of(0.1 * options.error / one_rounding), advice.end), scene));
+}
+
+/// Says why positions cannot be held, where the motion is why.
+void tell_chaos(Advice& advice, const Scene& scene, const AdviseOptions& options) {
+  const auto& motion = advice.trials.motion;
+  if (advice.metric != Metric::position || !motion || !motion->chaotic) return;
+  const double told = motion->time_of(margin * options.error / one_rounding);
+  if (told >= advice.end) return;
+  std::string hint = fmt::format(
+      "no trajectory of this motion holds an error of {:g} of positions over {}: it is chaotic, small differences grow "
+      "tenfold in {}, and roundings alone come to {:g} at a time of {}",
+      options.error, time_in_words(advice.end, scene), time_in_words(motion->tenfold(), scene), options.error,
+      time_in_words(told, scene));
+  if (tells_energy(scene)) hint += "; the energy can be held: --metric energy";
+  advice.hints.push_back(std::move(hint));
+}
+
+/// Names forces whose end at the cutoff no method of high order can be accurate over.
+void tell_cutoffs(Advice& advice, const Scene& scene) {
+  for (const SceneForce& force : scene.hamiltonian.forces) {
+    const SceneValue* style = force.effective.find("cutoff_style");
+    const std::string* text = style != nullptr ? style->get<std::string>() : nullptr;
+    if (text == nullptr || *text == "switch_c4" || !(force.force.claims().range > 0)) continue;
+    advice.hints.push_back(
+        fmt::format("force '{0}' ends at its cutoff by \"{1}\", which is not smooth, and limits the order of every "
+                    "method; try --set 'hamiltonian.force.{0}.cutoff_style=switch_c4'",
+                    force.name, *text));
+  }
+}
+
+/// What is there where nothing that was tried holds the error.
+void tell_best(Advice& advice, const Scene& scene, const AdviseOptions& options, const std::vector<Fit>& fits) {
+  for (const Fit& fit : fits) {
+    const auto best = fit.best(advice.metric, advice.trial_end, advice.end);
+    if (best && (!advice.best || best->first.predicted_error < advice.best->predicted_error)) {
+      advice.best = best->first;
+      advice.best_error = best->second;
+    }
+    auto beyond = fit.propose(options.error, advice.trial_end, advice.end, true);
+    if (beyond && (!advice.would_hold || beyond->predicted_wall_s < advice.would_hold->predicted_wall_s))
+      advice.would_hold = std::move(beyond);
+  }
+  tell_chaos(advice, scene, options);
+  tell_cutoffs(advice, scene);
+}
+
+std::string reason_of(const Advice& advice, const AdviseOptions& options, bool tells) {
+  const Comparison& c = advice.trials;
+  if (!advice.left_out.empty()) return advice.left_out.front();
+  if (!tells) {
+    const bool vague = advice.metric == Metric::position && c.truth.error.value_or(0) > 10 * rounding;
+    return "the trials do not tell how errors depend on the step; " +
+           (vague ? fmt::format("the solution that they are measured against, {}, is known to {:.1e} only",
+                                c.truth.name, *c.truth.error)
+                  : std::string("a longer run would tell more"));
+  }
+  const std::string tried = c.methods.size() == 1 ? "the one method tried does not hold"
+                                                  : fmt::format("none of the {} methods tried holds", c.methods.size());
+  return fmt::format("{} an error of {:g} over the whole run", tried, options.error);
+}
+
+CompareOptions trials_of(const Advice& advice, const AdviseOptions& options) {
+  CompareOptions trials;
+  trials.methods = options.methods;
+  trials.row_budget = options.row_budget;
+  trials.truth = options.truth;
+  trials.progress = options.progress;
+  trials.positions = advice.metric == Metric::position;
+  trials.quick = true;
+  trials.until = advice.trials_until;
+  trials.repeats = 1;
+  return trials;
+}
+
+void check_request(const Scene& scene, const AdviseOptions& options) {
   refuse_noise(scene);
   if (!(options.error > 0 && options.error < 1)) {
     throw Error(fmt::format("an error of {} cannot be held; a number between 0 and 1 is expected", options.error));
@@ -207,27 +338,27 @@ Advice advise(const Scene& scene, const AdviseOptions& options) {
     throw Error(fmt::format("the energy cannot be measured here: system '{}' has none; try --metric position",
                             scene.system->name));
   }
+}
+
+}  // namespace
+
+Advice advise(const Scene& scene, const AdviseOptions& options) {
+  check_request(scene, options);
   Advice advice;
   advice.end = end_of(scene);
-  CompareOptions trials;
-  trials.methods = options.methods;
-  trials.row_budget = options.row_budget;
-  trials.truth = options.truth;
-  trials.progress = options.progress;
-  advice.trials = compare(scene, trials);
-  const Comparison& c = advice.trials;
-  advice.trial_end = c.end;
-  check_measured(c, options.metric);
-  bool tells = false;
-  for (const Candidate& who : c.methods) {
-    const Fit fit(scene, c, who, options.metric);
-    tells = tells || fit.tells();
+  choose_metric(advice, scene, options);
+  advice.trials = compare(scene, trials_of(advice, options));
+  advice.trial_end = advice.trials.end;
+  check_measured(advice.trials, advice.metric);
+  std::vector<Fit> fits;
+  for (const Candidate& who : advice.trials.methods) fits.emplace_back(scene, advice.trials, who, advice.metric);
+  for (const Fit& fit : fits) {
     auto proposal = fit.propose(options.error, advice.trial_end, advice.end);
     if (!proposal) continue;
+    const Candidate& who = proposal->who;
     if (!who.adaptive) {
       proposal->setting.step = fitted_step(scene, proposal->setting.step, advice.end);
-      fit.set_prediction(*proposal, std::pow(advice.end / advice.trial_end, proposal->growth.exponent),
-                         advice.trial_end, advice.end);
+      fit.set_prediction(*proposal, advice.trial_end, advice.end);
     }
     SetLines lines = set_lines(scene, who, proposal->setting, advice.end);
     if (lines.refusal.empty()) {
@@ -242,75 +373,12 @@ Advice advise(const Scene& scene, const AdviseOptions& options) {
                    [](const Proposal& a, const Proposal& b) { return a.predicted_wall_s < b.predicted_wall_s; });
   if (!advice.proposals.empty()) {
     advice.sets = advice.proposals.front().sets;
-  } else if (!advice.left_out.empty()) {
-    advice.reason = advice.left_out.front();
-  } else if (!tells) {
-    const bool vague = options.metric == Metric::position && c.truth.error.value_or(0) > 10 * rounding;
-    advice.reason = "the trials do not tell how errors depend on the step; " +
-                    (vague ? fmt::format("the solution that they are measured against, {}, is known to {:.1e} only",
-                                         c.truth.name, *c.truth.error)
-                           : std::string("a longer run would tell more"));
-  } else {
-    const std::string tried = c.methods.size() == 1
-                                  ? "the one method tried does not hold"
-                                  : fmt::format("none of the {} methods tried holds", c.methods.size());
-    advice.reason = fmt::format("{} an error of {:g} over the whole run", tried, options.error);
+    return advice;
   }
+  const bool tells = std::any_of(fits.begin(), fits.end(), [](const Fit& fit) { return fit.tells(); });
+  advice.reason = reason_of(advice, options, tells);
+  if (advice.left_out.empty()) tell_best(advice, scene, options, fits);
   return advice;
-}
-
-std::string to_json(const Advice& a, const Scene& scene) {
-  const bool any = !a.proposals.empty();
-  const Proposal best = any ? a.proposals.front() : Proposal{};
-  const auto number = [&](double x) { return any && x > 0 ? Json(x) : Json(); };
-  std::vector<Json> others;
-  for (const Proposal& p : a.proposals) {
-    others.push_back(Json::object({{"method", p.who.label},
-                                   {"step", p.who.adaptive ? Json() : Json(p.setting.step)},
-                                   {"tolerance", p.who.adaptive ? Json(p.setting.tolerance) : Json()},
-                                   {"predicted_error", p.predicted_error},
-                                   {"predicted_wall_s", p.predicted_wall_s},
-                                   {"predicted_evaluations", p.predicted_evaluations},
-                                   {"growth_exponent", p.growth.exponent},
-                                   {"assumption", p.growth.assumption}}));
-  }
-  return Json::object({{"schema", "noether.advise/1"},
-                       {"scene", scene.source.file},
-                       {"method", any ? Json(best.who.method) : Json()},
-                       {"step", number(best.setting.step)},
-                       {"step_unit", scene.units->time},
-                       {"tolerance", number(best.setting.tolerance)},
-                       {"predicted_error", number(best.predicted_error)},
-                       {"predicted_wall_s", number(best.predicted_wall_s)},
-                       {"predicted_evaluations", number(best.predicted_evaluations)},
-                       {"assumption", any ? Json(best.growth.assumption) : Json()},
-                       {"set", Json::list_of(a.sets)},
-                       {"end", a.end},
-                       {"trial_end", a.trial_end},
-                       {"reason", a.reason.empty() ? Json() : Json(a.reason)},
-                       {"left_out", Json::list_of(a.left_out)},
-                       {"proposals", Json::list(others)}})
-      .text();
-}
-
-std::string to_text(const Advice& a, const Scene& scene) {
-  const std::string unit = scene.units->is_reduced() ? "" : " " + std::string(scene.units->time);
-  std::string out =
-      fmt::format("tried {}, {} over {:.6g}{}; the whole run is {:.6g}{}\n", counted(a.trials.methods.size(), "method"),
-                  counted(a.trials.rows.size(), "run"), a.trial_end, unit, a.end, unit);
-  if (a.proposals.empty()) return out + a.reason + "\n";
-  out += fmt::format("{:<32} {:>12} {:>10} {:>12} {:>14}\n", "method", "step/rtol", "error", "time [s]", "evaluations");
-  for (const Proposal& p : a.proposals) {
-    out +=
-        fmt::format("{:<32} {:>12} {:>10.1e} {:>12.3g} {:>14.4g}\n", p.who.label,
-                    p.who.adaptive ? fmt::format("{:.1e}", p.setting.tolerance) : fmt::format("{:.5g}", p.setting.step),
-                    p.predicted_error, p.predicted_wall_s, p.predicted_evaluations);
-  }
-  const Proposal& best = a.proposals.front();
-  out += fmt::format("cheapest: {}; {}\n", best.who.label, best.growth.assumption);
-  for (const std::string& one : a.left_out) out += one + "\n";
-  for (const std::string& set : a.sets) out += fmt::format("--set '{}'\n", set);
-  return out;
 }
 
 }  // namespace noether

@@ -3,6 +3,8 @@
 #include "integrators/all_schemes.hpp"
 #include "numbers/suggest.hpp"
 #include "scene/fields.hpp"
+#include "scene/foreign_names.hpp"
+#include "study/sampling.hpp"
 
 #include <fmt/format.h>
 
@@ -70,9 +72,8 @@ Candidate candidate(const Scene& scene, std::string_view name) {
   const MethodInfo* info = scene.parts->find_method(method);
   const Scheme* scheme = schemes::find(method);
   if (info == nullptr && scheme == nullptr && !is_word(method)) {
-    const std::string near = suggest(method, scene.parts->method_names());
-    throw Error(fmt::format("unknown method '{}'; {}", method,
-                            near.empty() ? "see `noether list methods`" : "did you mean '" + near + "'?"),
+    throw Error(fmt::format("unknown method '{}'{}", method,
+                            proposal(method, scene.parts->method_names(), "; see `noether list methods`")),
                 {.value = method});
   }
   if (info != nullptr && scheme == nullptr) {
@@ -106,8 +107,13 @@ std::vector<Candidate> default_opponents(const Scene& scene) {
     if (!split) names.insert(names.end(), {"verlet", "yoshida_4"});
     const std::string plainly = scene.hamiltonian.splitting.only_forces ? "@" + plain(scene).info.name : "";
     for (const char* name : {"blanes_moan_s6", "srkn14a", "kahan_li_8_s17"}) names.push_back(name + plainly);
-    names.insert(names.end(), {"rk4", "dormand_prince_5", "dop853", "gauss_8", "gauss_radau_15", "gragg_bulirsch_stoer",
-                               "stormer_cowell_13"});
+    const bool liquid = scene.particles.box().is_periodic() || scene.particles.size() > most_bodies;
+    if (liquid) {  // the others are for few bodies and errors near rounding
+      names.insert(names.end(), {"rk4", "dop853"});
+    } else {
+      names.insert(names.end(), {"rk4", "dormand_prince_5", "dop853", "gauss_8", "gauss_radau_15",
+                                 "gragg_bulirsch_stoer", "stormer_cowell_13"});
+    }
   }
   std::vector<Candidate> all;
   for (const std::string& name : names) {

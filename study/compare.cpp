@@ -6,6 +6,8 @@
 #include "numbers/version.hpp"
 #include "study/analysis.hpp"
 #include "study/find_truth.hpp"
+#include "study/horizon.hpp"
+#include "study/truth_in_double.hpp"
 #include "study/wide_scene.hpp"
 
 #include <fmt/chrono.h>
@@ -186,41 +188,141 @@ std::vector<Setting> settings_of(const Scene& scene, const Candidate& who, const
   return settings;
 }
 
-Comparison compare(const Scene& scene, const CompareOptions& options) {
-  refuse_noise(scene);
-  const Sampling sampling = sampling_of(scene, options.until);
-  check(options, sampling);
-  const auto tell = [&](const std::string& what) {
-    if (options.progress) options.progress(what);
-  };
-  Comparison c = headed(scene, sampling);
-  c.methods = opponents_of(scene, options);
-  check_use(scene, c.methods, options);
-  std::vector<std::vector<Setting>> settings;  // all before anything runs: one that cannot be is told at once
-  for (const Candidate& who : c.methods) settings.push_back(settings_of(scene, who, sampling, options));
-  tell("reference in extended precision");
-  c.truth = find_truth(scene, sampling, options.truth);
-  for (std::size_t i = 0; i < c.methods.size(); ++i) {
-    const Candidate& who = c.methods[i];
-    for (const Setting& setting : settings[i]) {
-      const std::string with =
-          who.adaptive ? fmt::format("rtol {:.0e}", setting.tolerance) : fmt::format("step {:.4g}", setting.step);
-      tell(fmt::format("{}, {}", who.label, with));
-      c.rows.push_back(
-          measure(scene, who, setting, sampling, {.repeats = options.repeats, .budget = options.row_budget}));
+namespace {
+
+/// Whether the equations keep an energy, so that no truth is needed to tell its error.
+bool keeps_energy(const Scene& scene) {
+  const IntegratorClaims claims = assemble(scene).claims();
+  return claims.energy && !claims.dissipative && !claims.time_dependent && scene.particles.size() > 0;
+}
+
+/// A comparison on its way.
+class Comparer {
+ public:
+  Comparer(const Scene& scene, const CompareOptions& options)
+      : scene_(scene), options_(options), error_(scene.particles, about_center(scene)) {}
+
+  Comparison run() {
+    const Sampling asked = sampling_of(scene_, options_.until);
+    check(options_, asked);
+    const Horizon paid = affordable_horizon(scene_, asked, !options_.until, options_.row_budget);
+    c_ = headed(scene_, paid.sampling);
+    c_.limits = paid.told;
+    c_.methods = opponents_of(scene_, options_);
+    check_use(scene_, c_.methods, options_);
+    choose_settings();  // before anything runs: one that cannot be is told at once
+    find_reference();
+    measure_rows();
+    conclude();
+    return std::move(c_);
+  }
+
+ private:
+  bool many() const { return scene_.particles.size() > most_bodies; }
+  void tell(const std::string& what, int row = 0, double done = 0) const {
+    if (options_.progress) options_.progress({row, rows(), done, what});
+  }
+  int rows() const {
+    std::size_t all = 0;
+    for (const auto& of_one : settings_) all += of_one.size();
+    return static_cast<int>(all);
+  }
+
+  void choose_settings() {
+    settings_.clear();
+    for (const Candidate& who : c_.methods) settings_.push_back(settings_of(scene_, who, c_.sampling, options_));
+  }
+
+  /// A truth in extended precision; where there is none, and the motion is chaotic or of many, one in double precision,
+  /// over the time for which there can be one.
+  void find_reference() {
+    c_.truth = {.name = "invariants", .note = "positions are not asked for"};
+    if (!options_.positions && keeps_energy(scene_)) return;
+    tell("reference in extended precision");
+    c_.truth = find_truth(scene_, c_.sampling, options_.truth);
+    if (c_.truth.has_states() || scene_.particles.size() > most_particles) return;
+    const double left = std::max(options_.truth.budget - c_.truth.seconds, options_.truth.budget / 2);
+    tell("how fast small differences grow");
+    c_.motion = predictability(scene_, c_.sampling.end(), left / 4);
+    Horizon told{.sampling = c_.sampling};
+    if (c_.motion) told = predictable_horizon(scene_, c_.sampling, !options_.until, *c_.motion);
+    if (!many() && told.told.empty()) return;
+    shorten(told);
+    if (options_.until && c_.motion && c_.motion->rounding(c_.end) > 1e-3) return;  // nothing tells positions there
+    tell("reference in double precision");
+    const std::string why = c_.truth.note;
+    c_.truth = truth_in_double(scene_, c_.sampling, left, error_);
+    c_.truth.note += fmt::format("; {}", why);
+  }
+
+  void shorten(const Horizon& told) {
+    if (told.told.empty()) return;
+    c_.limits += (c_.limits.empty() ? "" : "; ") + told.told;
+    if (told.sampling.interval == c_.sampling.interval) return;
+    const Comparison before = std::move(c_);
+    c_ = headed(scene_, told.sampling);
+    c_.limits = before.limits;
+    c_.methods = before.methods;
+    c_.motion = before.motion;
+    c_.truth = before.truth;
+    choose_settings();
+  }
+
+  void measure_rows() {
+    error_.set_scale(c_.truth.y);
+    const bool known = c_.truth.has_states();
+    const MeasureOptions how{.repeats = options_.repeats,
+                             .budget = options_.row_budget,
+                             .states = known && scene_.particles.size() <= most_particles,
+                             .quick = options_.quick,
+                             .shadow = !options_.quick};
+    for (std::size_t i = 0; i < c_.methods.size(); ++i) {
+      for (std::size_t k = 0; k < settings_[i].size(); ++k) {
+        tell_row(i, k);
+        Row row = measure(scene_, c_.methods[i], settings_[i][k], c_.sampling, how);
+        if (known) set_errors(row, c_.truth, c_.sampling, error_);
+        if (known && many()) row.track.y = {};  // those of all rows would not fit into memory
+        c_.rows.push_back(std::move(row));
+      }
     }
   }
-  PositionError error(scene.particles, about_center(scene));
-  error.set_scale(c.truth.y);
-  if (!c.truth.has_states()) use_finest_run(c, error);
-  error.set_scale(c.truth.y);
-  for (std::size_t i = 0; i < c.rows.size(); ++i) {
-    const Truth none{.name = c.truth.name, .energy = c.truth.energy};
-    set_errors(c.rows[i], c.reference == i ? none : c.truth, sampling, error);
+
+  /// The rows of a method cost about twice as much one after the other, and each method about the same.
+  void tell_row(std::size_t i, std::size_t k) const {
+    const Candidate& who = c_.methods[i];
+    const Setting& setting = settings_[i][k];
+    const std::string with =
+        who.adaptive ? fmt::format("rtol {:.0e}", setting.tolerance) : fmt::format("step {:.4g}", setting.step);
+    const auto up_to = [](std::size_t n) { return std::exp2(static_cast<double>(n)) - 1; };
+    const double done =
+        (static_cast<double>(i) + up_to(k) / up_to(settings_[i].size())) / static_cast<double>(c_.methods.size());
+    tell(fmt::format("{}, {}", who.label, with), static_cast<int>(c_.rows.size()) + 1, done);
   }
-  c.position_measured = c.truth.has_states();
-  analyse(c);
-  return c;
+
+  void conclude() {
+    const bool known = c_.truth.has_states();
+    if (!known && options_.positions) use_finest_run(c_, error_);
+    error_.set_scale(c_.truth.y);
+    for (std::size_t i = 0; i < c_.rows.size() && !known; ++i) {
+      const Truth none{.name = c_.truth.name, .energy = c_.truth.energy};
+      set_errors(c_.rows[i], c_.reference == i ? none : c_.truth, c_.sampling, error_);
+    }
+    c_.position_measured = c_.truth.has_states();
+    analyse(c_);
+  }
+
+  const Scene& scene_;
+  const CompareOptions& options_;
+  PositionError error_;
+  Comparison c_;
+  std::vector<std::vector<Setting>> settings_;  ///< method by method
+};
+
+}  // namespace
+
+Comparison compare(const Scene& scene, const CompareOptions& options) {
+  refuse_noise(scene);
+  return Comparer(scene, options).run();
 }
 
 }  // namespace noether

@@ -1,9 +1,9 @@
 #pragma once
 /// `noether compare`: what accuracy costs on a scene, method by method.
 
+#include "numbers/progress.hpp"
 #include "study/comparison.hpp"
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,13 +18,19 @@ struct CompareOptions {
   int repeats = 3;
   double row_budget = 10;  ///< seconds of wall time for one run
   TruthOptions truth = {};
-  std::function<void(const std::string&)> progress = {};  ///< told what is being done
+  bool positions = true;    ///< else errors are those of the energy, and no truth is looked for where that is kept
+  bool shadow = true;       ///< whether the shadow Hamiltonian is watched
+  TellShare progress = {};  ///< told what is being done
 };
 
 /// A comparison over a scene's own length would take hours for long runs: it looks at so many of its steps.
 inline constexpr std::int64_t longest_steps = 10'000;
 
 /// Runs every method with every step or tolerance.
+///
+/// More than `most_bodies` particles are compared at 40 moments instead of 200, and half as far until runs fit their
+/// budget; where roundings would grow beyond 1e-8, as in every liquid, up to where they have not; unless `until` is
+/// given. `Comparison::limits` says so. There the reference is one in double precision.
 /// @throws Error  for methods that are not known or cannot serve the scene, and for steps and tolerances that are none,
 /// or that no method takes
 Comparison compare(const Scene& scene, const CompareOptions& options = {});

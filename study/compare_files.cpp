@@ -125,6 +125,7 @@ std::string to_json(const Comparison& c, const CompareFiles& files) {
                        {"end", c.end},
                        {"scene_end", c.scene_end},
                        {"samples", c.sampling.samples},
+                       {"limits", text_or_null(c.limits)},
                        {"truth", Json::object({{"name", c.truth.name},
                                                {"error", c.truth.error},
                                                {"note", c.truth.note},
@@ -144,6 +145,7 @@ std::string to_text(const Comparison& c) {
                                 counted(c.rows.size(), "run"), c.end, unit);
   if (c.scene_end)
     out += fmt::format(" (the scene itself: {:.6g}{}; --until compares another time)", *c.scene_end, unit);
+  if (!c.limits.empty()) out += "\n" + c.limits;
   out += fmt::format("\ntruth: {}", c.truth.name);
   if (c.truth.error) out += fmt::format(", good to {:.1e}", *c.truth.error);
   if (!c.truth.note.empty()) out += fmt::format(" ({})", c.truth.note);

@@ -2,6 +2,7 @@
 /// A finished comparison of methods on a scene.
 
 #include "study/measure.hpp"
+#include "study/predictability.hpp"
 
 #include <optional>
 #include <string>
@@ -27,6 +28,8 @@ struct Comparison {
   double end = 0;                        ///< of every run [time]
   std::optional<double> scene_end = {};  ///< of the scene itself, where it is longer
   Sampling sampling = {};
+  std::string limits = {};  ///< why the runs are shorter than the scene, or what positions are worth, in words
+  std::optional<Predictability> motion = {};  ///< where it was asked for
   Truth truth = {};
   std::optional<std::size_t> reference = {};  ///< the row that is the truth, where that is the finest run
   bool position_measured = false;             ///< else the energy decides

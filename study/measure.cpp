@@ -19,15 +19,15 @@ namespace {
 /// Keeps every state it sees.
 class Recorder {
  public:
-  Recorder(std::shared_ptr<Track> kept, bool with_energy, double step, double start)
-      : track_(std::move(kept)), energy_(with_energy), dt_(step), start_(start) {}
+  Recorder(std::shared_ptr<Track> kept, bool with_energy, bool states, double step, double start)
+      : track_(std::move(kept)), energy_(with_energy), states_(states), dt_(step), start_(start) {}
 
   static constexpr auto describe() { return part<Recorder>("recorder", "states for a comparison"); }
   Request wanted() const { return {.energy = energy_}; }
   void observe(const Snapshot<double>& now) {
     const ParticleSystem<double>& s = now.state();
     track_->times.push_back(dt_ != 0 ? Quad(dt_) * Quad(now.step()) : Quad(now.time()) - Quad(start_));
-    if (s.size() <= most_bodies) keep(s);
+    if (states_) track_->y.push_back(state_of(s));
     if (energy_) track_->energy.push_back(now.energy().total());
     if (energy_ && track_->energy_scale == 0) {
       const EnergyTerms<double>& e = now.energy();
@@ -36,19 +36,8 @@ class Recorder {
   }
 
  private:
-  void keep(const ParticleSystem<double>& s) const {
-    const auto n = s.size();
-    Vector<double> y(n > 0 ? 6 * n : static_cast<Index>(s.variables().size()));
-    for (int k = 0; k < 3 && n > 0; ++k) {
-      for (Index i = 0; i < n; ++i) y[k * n + i] = s.unwrapped(i)[k];
-      std::copy_n(s.velocities().component(k), n, y.data() + (3 + k) * n);
-    }
-    if (n == 0) std::copy(s.variables().begin(), s.variables().end(), y.data());
-    track_->y.push_back(std::move(y));
-  }
-
   std::shared_ptr<Track> track_;
-  bool energy_;
+  bool energy_, states_;
   double dt_;     ///< of a fixed clock [time]; 0: the time of the snapshot
   double start_;  ///< what the clock shows at step 0 [time]
 };
@@ -112,7 +101,9 @@ bool watched_run(Row& row, const Scene& alone, const Sampling& sampling, const M
   const IntegratorClaims claims = sim.claims();
   const bool particles = alone.particles.size() > 0, energy = claims.energy && particles;
   auto track = std::make_shared<Track>();
-  watch(sim, row.setting, sampling, Recorder(track, energy, row.setting.step, sampling.start));
+  watch(sim, row.setting, sampling,
+        Recorder(track, energy, options.states || alone.particles.size() <= most_bodies, row.setting.step,
+                 sampling.start));
   const Energy* watched = energy ? watch(sim, row.setting, sampling, Energy()) : nullptr;
   const Momentum* momentum =
       particles && claims.keeps_momentum ? watch(sim, row.setting, sampling, Momentum()) : nullptr;
@@ -124,7 +115,8 @@ bool watched_run(Row& row, const Scene& alone, const Sampling& sampling, const M
     kept = kept && force.force.claims().keeps_angular_momentum;
   }
   if (kept && alone.hamiltonian.constraints.empty()) spin = watch(sim, row.setting, sampling, AngularMomentum());
-  const ShadowHamiltonian<double>* fluctuation = watch_shadow(sim, alone, row.setting, sampling);
+  const ShadowHamiltonian<double>* fluctuation =
+      options.shadow ? watch_shadow(sim, alone, row.setting, sampling) : nullptr;
   const Budget budget(sim, options.budget);
   const Outcome outcome = run_whole(sim, row.setting, sampling);
   const bool over = outcome.kind == Outcome::Kind::interrupted;  // nothing else ends it early
@@ -151,6 +143,10 @@ double median(std::vector<double> values) {
 
 /// Runs that are over sooner are repeated up to five times as often: one interruption must not decide their median [s].
 constexpr double soon_over = 0.05;
+/// Runs as long as that together are not repeated: their time is known well enough [s].
+constexpr double long_enough = 2;
+/// Of a run as long as that what watches it takes little, where a rough time will do [s].
+constexpr double long_enough_watched = 0.1;
 
 /// The same run with nobody watching, as often as asked for or as the budget allows.
 void timed_runs(Row& row, const Scene& alone, const Sampling& sampling, const MeasureOptions& options) {
@@ -158,7 +154,8 @@ void timed_runs(Row& row, const Scene& alone, const Sampling& sampling, const Me
   double spent = 0;
   const auto again = [&](int done) {
     if (done == 0) return true;
-    return spent < options.budget && (done < options.repeats || (spent < soon_over && done < 5 * options.repeats));
+    return spent < std::min(options.budget, long_enough) &&
+           (done < options.repeats || (spent < soon_over && done < 5 * options.repeats));
   };
   for (int k = 0; again(k); ++k) {
     Simulation<double> sim = assemble(alone);
@@ -209,6 +206,17 @@ void mark_diverged(Row& row, const Truth& truth, const Sampling& sampling, const
 
 }  // namespace
 
+Vector<double> state_of(const ParticleSystem<double>& s) {
+  const auto n = s.size();
+  Vector<double> y(n > 0 ? 6 * n : static_cast<Index>(s.variables().size()));
+  for (int k = 0; k < 3 && n > 0; ++k) {
+    for (Index i = 0; i < n; ++i) y[k * n + i] = s.unwrapped(i)[k];
+    std::copy_n(s.velocities().component(k), n, y.data() + (3 + k) * n);
+  }
+  if (n == 0) std::copy(s.variables().begin(), s.variables().end(), y.data());
+  return y;
+}
+
 Spread spread_of(std::vector<double> values) {
   Spread spread{.median = median(values)};
   for (double& one : values) one = std::abs(one - spread.median);
@@ -223,11 +231,10 @@ Row measure(const Scene& scene, const Candidate& who, const Setting& setting, co
     row.setting.step = sampling.interval / static_cast<double>(sampling.steps_for(setting.step));
   }
   const Scene alone = variant(scene, who, row.setting);
-  if (watched_run(row, alone, sampling, options)) {
-    timed_runs(row, alone, sampling, options);
-  } else {
-    row.repeats = 0;
-  }
+  const bool whole = watched_run(row, alone, sampling, options);
+  const bool timed = whole && options.quick && row.wall_s.value_or(0) > long_enough_watched;
+  row.repeats = timed ? 1 : 0;
+  if (whole && !timed) timed_runs(row, alone, sampling, options);
   return row;
 }
 

@@ -54,9 +54,16 @@ struct Spread {
 /// @param values  at least one
 Spread spread_of(std::vector<double> values);
 
+/// All coordinates of a run as they are compared: positions as if never wrapped, x then y then z, and velocities, or
+/// the variables of a first-order system.
+Vector<double> state_of(const ParticleSystem<double>& s);
+
 struct MeasureOptions {
   int repeats = 3;     ///< of the timed run; more for short ones, fewer where the budget does not allow them
   double budget = 10;  ///< seconds of wall time for one run
+  bool states = true;  ///< whether the states of more than `most_bodies` are kept
+  bool quick = false;  ///< whether the time of the watched run is enough where it is long
+  bool shadow = true;  ///< whether the shadow Hamiltonian is watched, which takes several evaluations at each moment
 };
 
 /// Runs one candidate with one setting: once watched, then `repeats` times alone, for the time.

@@ -55,10 +55,11 @@ class Page {
                     counted(c_.methods.size(), "method"), counted(c_.rows.size(), "run"), c_.end, html_text(unit_));
     if (c_.scene_end) out += fmt::format(", the first part of the scene's {:.6g}{}", *c_.scene_end, html_text(unit_));
     out += fmt::format(". Every run is compared at the same {} moments.</p>\n<p>", c_.sampling.samples);
-    if (c_.truth.kind == TruthKind::quad) {
-      out += fmt::format(
-          "The reference is computed in extended precision (113 bits) by two runs that agree to {:.1e}: {}.",
-          c_.truth.error.value_or(0), html_text(c_.truth.note));
+    if (c_.truth.kind == TruthKind::quad || c_.truth.kind == TruthKind::doubles) {
+      out += fmt::format("The reference is computed in {} by two runs that agree to {:.1e}: {}.",
+                         c_.truth.kind == TruthKind::quad ? "extended precision (113 bits)" : "double precision",
+                         c_.truth.error.value_or(0), html_text(c_.truth.note));
+      if (!c_.limits.empty()) out += " " + html_text(c_.limits) + ".";
     } else if (c_.truth.kind == TruthKind::finest_run) {
       out += fmt::format("There is no reference in extended precision: {}.", html_text(c_.truth.note));
     } else {

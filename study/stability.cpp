@@ -27,8 +27,13 @@ double scale_of(const Scene& scene, const Mode& mode) {
 class Search {
  public:
   Search(const Scene& scene, const Stability& all, const StabilityOptions& options, SolutionGrowth& growth,
-         StabilityRow& row)
-      : scene_(scene), options_(options), growth_(growth), row_(row), begin_(std::chrono::steady_clock::now()) {
+         StabilityRow& row, Share place)
+      : scene_(scene),
+        options_(options),
+        growth_(growth),
+        row_(row),
+        place_(std::move(place)),
+        begin_(std::chrono::steady_clock::now()) {
     scale_ = scale_of(scene, all.mode);
     oscillates_ = all.mode.scale() > 0;
     bounds_ = {.frequency = scale_, .linear = all.linear};
@@ -52,8 +57,16 @@ class Search {
   double spent() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
   double left() const { return options_.row_budget - spent(); }
 
+  void tell(double z) const {
+    if (!options_.progress) return;
+    // A row that goes through its whole budget is over; one that has scanned all of h omega is half over.
+    const double of_row = std::clamp(std::max(spent() / options_.row_budget, 0.5 * z / end_of_scan()), 0.0, 1.0);
+    const double done = (static_cast<double>(place_.row - 1) + of_row) / static_cast<double>(place_.rows);
+    options_.progress({place_.row, place_.rows, done, fmt::format("{}, h omega = {:.3f}", row_.who.label, z)});
+  }
+
   Trial attempt(double z, std::int64_t steps) {
-    if (options_.progress) options_.progress(fmt::format("{}, h omega = {:.3f}", row_.who.label, z));
+    tell(z);
     const double step = z / scale_;
     Trial trial = try_step(scene_, row_.who, step, steps, bounds_, std::max(left(), 0.01));
     row_.steps += trial.steps;
@@ -239,6 +252,7 @@ class Search {
   const StabilityOptions& options_;
   SolutionGrowth& growth_;
   StabilityRow& row_;
+  Share place_;  ///< which row of how many
   std::chrono::steady_clock::time_point begin_;
   Trial failed_;  ///< the last run that was not bounded
   double scale_ = 1;
@@ -351,7 +365,8 @@ Stability find_stability(const Scene& scene, const StabilityOptions& options) {
     if (along_arcs && !found.kepler) found.kepler = kepler_steps(scene);
     const std::optional<KeplerSteps> kepler = along_arcs ? found.kepler : std::nullopt;
     if (kepler) row.theory.resonances = resonances_of(*kepler, found.mode.scale());
-    Search(scene, found, options, growth, row).run();
+    const Share place{static_cast<int>(found.rows.size()) + 1, static_cast<int>(methods.size())};
+    Search(scene, found, options, growth, row, place).run();
     found.solution_leaves = growth.leaves();
     const double scale = found.mode.scale();
     if (scale > 0) {

@@ -1,6 +1,7 @@
 #pragma once
 /// `noether stability`: the largest step at which a method stays bounded on a scene, beside what linear theory says.
 
+#include "numbers/progress.hpp"
 #include "study/candidate.hpp"
 #include "study/kepler_steps.hpp"
 #include "study/linear_stability.hpp"
@@ -8,7 +9,6 @@
 #include "study/stability_trial.hpp"
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,7 +20,7 @@ struct StabilityOptions {
   std::vector<std::string> methods = {};  ///< names as `candidate` reads them; empty: `default_stability_methods`
   std::int64_t confirm_steps = 100'000;   ///< of the runs that settle a limit
   double row_budget = 20;                 ///< seconds of wall time for one method
-  std::function<void(const std::string&)> progress = {};
+  TellShare progress = {};
 };
 
 /// One method.

@@ -125,8 +125,12 @@ bool is_accurate(const std::optional<double>& error, const std::optional<double>
 /// One verdict on one scene, method by method.
 class Judge {
  public:
-  Judge(const Scene& scene, const SceneVerdict& verdict, const SuiteOptions& options)
-      : scene_(scene), verdict_(verdict), options_(options), spectrum_(spectrum_at(scene, scene.particles)) {
+  Judge(const Scene& scene, const SceneVerdict& verdict, const SuiteOptions& options, Share place)
+      : scene_(scene),
+        verdict_(verdict),
+        options_(options),
+        place_(std::move(place)),
+        spectrum_(spectrum_at(scene, scene.particles)) {
     if (!scene.hamiltonian.constraints.empty()) spectrum_ = {};
     bounds_.linear = scene.hamiltonian.constraints.empty() && is_linear(scene);
     if (spectrum_.fastest > 0) bounds_.frequency = spectrum_.fastest;
@@ -141,7 +145,8 @@ class Judge {
       row.sets = verdict_.sets;
       row.why = verdict_.why;
       if (options_.progress)
-        options_.progress(fmt::format("{}, {} {}", row.title, row.method, fmt::join(row.sets, " ")));
+        options_.progress({place_.row, place_.rows, place_.done,
+                           fmt::format("{}, {} {}", row.title, row.method, fmt::join(row.sets, " "))});
       std::string outcome = verdict_.outcome;
       if (outcome == "theory") outcome = expected_by_theory(scene_, who, scene_.integrator.step);
       if (outcome.empty()) {
@@ -195,6 +200,7 @@ class Judge {
   const Scene& scene_;
   const SceneVerdict& verdict_;
   const SuiteOptions& options_;
+  Share place_;  ///< which scene of how many
   Spectrum spectrum_;
   Bounds bounds_;
   std::optional<Sharing> reference_;
@@ -249,7 +255,9 @@ std::vector<std::filesystem::path> suite_files(const std::filesystem::path& fold
 
 Suite run_suite(const std::vector<std::filesystem::path>& scenes, const SuiteOptions& options, const Parts& parts) {
   Suite suite;
+  Share place{.rows = static_cast<int>(scenes.size())};
   for (const std::filesystem::path& file : scenes) {
+    place.done = place.row++ / static_cast<double>(scenes.size());
     const Scene scene = load_scene(file, parts);
     if (scene.verdicts.empty()) {
       throw SceneError("the scene has no verdict; give [[verdict]] tables", {.file = file.string(), .key = "verdict"});
@@ -257,7 +265,7 @@ Suite run_suite(const std::vector<std::filesystem::path>& scenes, const SuiteOpt
     for (const SceneVerdict& verdict : scene.verdicts) {
       if (verdict.nightly && !options.nightly) continue;
       const Scene changed = verdict.sets.empty() ? scene : load_scene(file, *scene.parts, verdict.sets);
-      Judge(changed, verdict, options).run(suite.rows);
+      Judge(changed, verdict, options, place).run(suite.rows);
     }
   }
   return suite;

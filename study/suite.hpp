@@ -4,7 +4,6 @@
 #include "study/stability.hpp"
 
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,7 +29,7 @@ struct SuiteRow {
 struct SuiteOptions {
   bool nightly = false;    ///< the verdicts of long runs too
   double row_budget = 60;  ///< seconds of wall time for one run; ten times as much for long ones
-  std::function<void(const std::string&)> progress = {};
+  TellShare progress = {};
 };
 
 /// A finished suite.

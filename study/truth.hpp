@@ -14,6 +14,7 @@ namespace noether {
 /// How the reference was made.
 enum class TruthKind : std::uint8_t {
   quad,        ///< in extended precision, by two runs that agree
+  doubles,     ///< in double precision, by two runs that agree: of liquids, and of more bodies than 113 bits can do
   finest_run,  ///< the finest of the runs compared; its error is its distance from the next
   invariants,  ///< none: only what the equations keep tells errors
 };

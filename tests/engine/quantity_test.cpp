@@ -150,6 +150,11 @@ TEST_CASE("a missing or wrong unit is refused and the right one shown", "[quanti
 
 TEST_CASE("an unknown unit is refused with a proposal", "[quantity]") {
   CHECK(refusal("100 dya", dimensions::time, solar) == "unknown unit 'dya' in '100 dya'; did you mean 'day'?");
+  // Never a unit of another dimension: 'm', 'mas' and 'min' are as near as 'ms'.
+  CHECK(refusal("10 ma", dimensions::time, solar) == "unknown unit 'ma' in '10 ma'; did you mean 'ms'?");
+  CHECK(refusal("10 ma", dimensions::length, solar) == "unknown unit 'ma' in '10 ma'; did you mean 'm'?");
+  CHECK(refusal("3 km/dya", dimensions::velocity, solar) == "unknown unit 'dya' in '3 km/dya'; did you mean 'day'?");
+  CHECK(refusal("3 kmm/day", dimensions::velocity, solar) == "unknown unit 'kmm' in '3 kmm/day'; did you mean 'km'?");
   CHECK(refusal("2 MSUN", dimensions::mass, solar) == "unknown unit 'MSUN' in '2 MSUN'; did you mean 'Msun'?");
   CHECK(refusal("2 secnods", dimensions::time, si) == "unknown unit 'secnods' in '2 secnods'; did you mean 'second'?");
   CHECK(refusal("2 kJ", dimensions::energy, si) == "unknown unit 'kJ' in '2 kJ'; did you mean 'kJ/mol'?");

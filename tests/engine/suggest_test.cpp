@@ -48,6 +48,17 @@ TEST_CASE("among equally near words the case decides, then the number at the end
   CHECK(suggest("xyr", {"kyr", "myr"}) == "kyr");
 }
 
+TEST_CASE("a word that differs in its joints or its plural alone is the nearest", "[suggest]") {
+  CHECK(squeezed("Aba-10_6 4") == "aba1064");
+  CHECK(squeezed("energies") == "energy");
+  CHECK(squeezed("masses") == "masse");
+  CHECK(squeezed("gauss") == "gauss");
+  CHECK(squeezed("us") == "us");
+  CHECK(suggest("aba_1064", {"aba_10_4", "aba_10_6_4"}) == "aba_10_6_4");
+  CHECK(suggest("energies", {"elements", "energy"}) == "energy");
+  CHECK(suggest("velocityverlet", {"velocity_verlet"}) == "velocity_verlet");
+}
+
 TEST_CASE("a message ends with a proposal, or with what is known", "[suggest]") {
   CHECK(did_you_mean("cuttoff", {"cutoff", "charge"}) == "; did you mean 'cutoff'?");
   CHECK(did_you_mean("pressure", {"a", "b", "c"}) == "; expected one of: a, b, c");

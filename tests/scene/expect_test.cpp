@@ -68,11 +68,11 @@ TEST_CASE("a part that is not known here points to the program of the scene", "[
   const std::string own = "program = \"./springs\"\n" + expected_spring;
   CHECK(refusal(own).empty());
   CHECK(refusal(replaced(own, "\"harmonic_field\"", "\"cubic_well\"")) ==
-        "scene.toml:8: unknown force 'cubic_well'; the program of this scene has parts of its own: run `./springs`");
+        "scene.toml:8: unknown force 'cubic_well'; the program of this scene has more parts: run `./springs`");
   CHECK(
       refusal(replaced(own, "\"harmonic_field\"", "\"harmonic_feild\"")) ==
       "scene.toml:8: unknown force 'harmonic_feild'; did you mean 'harmonic_field'? If not, the program of this scene "
-      "has parts of its own: run `./springs`");
+      "has more parts: run `./springs`");
   CHECK_FALSE(has(read_scene(own, "scene.toml").effective_toml, "springs"));
   for (const std::string example : {"bead_on_wire", "beads_on_sphere", "oblate_saturn", "robertson"}) {
     INFO(example);
@@ -82,7 +82,7 @@ TEST_CASE("a part that is not known here points to the program of the scene", "[
       read_scene(text, std::string(NOETHER_SOURCE_DIR) + "/" + folder + "/scene.toml");
       FAIL("it is not refused");
     } catch (const SceneError& error) {
-      CHECK(has(error.what(), "; the program of this scene has parts of its own: run `./noether build && cd " + folder +
+      CHECK(has(error.what(), "; the program of this scene has more parts: run `./noether build && cd " + folder +
                                   " && ../../build/release/examples/example_" + example + "_from_scene`"));
     }
   }

@@ -1,0 +1,61 @@
+#include "numbers/progress.hpp"
+
+#include <fmt/format.h>
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace noether {
+
+std::string spoken_duration(double seconds) {
+  if (seconds < 100) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 6000) return fmt::format("{:.0f} min", seconds / 60);
+  return fmt::format("{:.1f} h", seconds / 3600);
+}
+
+std::string progress_bar(double share, int width) {
+  const auto full = static_cast<std::size_t>(std::floor(std::clamp(share, 0.0, 1.0) * width + 1e-9));
+  return "[" + std::string(full, '#') + std::string(static_cast<std::size_t>(width) - full, '.') + "]";
+}
+
+std::string progress_text(const Share& share, double seconds) {
+  if (share.row == 0 || share.rows == 0) return share.what;
+  const double done = std::clamp(share.done, 0.0, 1.0);
+  std::string line =
+      fmt::format("{} {:3.0f} %  {} of {}  {}", progress_bar(done), 100 * done, share.row, share.rows, share.what);
+  if (done > 0 && seconds > 0) line += fmt::format("  {} left", spoken_duration(seconds / done * (1 - done)));
+  return line;
+}
+
+TerminalLine::TerminalLine(bool wanted) : shows_(wanted && ::isatty(STDERR_FILENO) == 1) {}
+
+TerminalLine::~TerminalLine() { clear(); }
+
+void TerminalLine::show(std::string_view text) {
+  if (!shows_) return;
+  shown_ = true;
+  fmt::print(stderr, "\r\033[K{}", text);
+  std::fflush(stderr);
+}
+
+void TerminalLine::clear() {
+  if (shown_) std::fputs("\r\033[K", stderr);
+  shown_ = false;
+}
+
+TellShare TerminalLine::teller() {
+  if (!shows_) return {};
+  return [this](const Share& share) {
+    const auto now = std::chrono::steady_clock::now();
+    if (share.row > 0 && !counting_) begin_ = now;
+    counting_ = share.row > 0;
+    if (shown_ && counting_ && std::chrono::duration<double>(now - last_).count() < 0.1) return;
+    last_ = now;
+    show(progress_text(share, std::chrono::duration<double>(now - begin_).count()));
+  };
+}
+
+}  // namespace noether

@@ -1,0 +1,165 @@
+#include "study/predictability.hpp"
+
+#include "engine/sums.hpp"
+#include "study/measure.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+namespace noether {
+
+namespace {
+
+constexpr double first_distance = 1e-10, last_distance = 1e-3;
+constexpr int moments_followed = 128;
+
+/// A number from -1 to 1 that looks like chance.
+double shake(Index i) {
+  const double x = std::sin(static_cast<double>(i + 1) * 12.9898) * 43758.5453;
+  return 2 * (x - std::floor(x)) - 1;
+}
+
+/// Root mean square of the coordinates of a state: those about their mean where there are several particles.
+double size_of_state(const Vector<double>& y, Index particles) {
+  const Index count = particles > 0 ? 3 * particles : y.size();
+  const bool about_mean = particles > 1;
+  std::vector<double> means(3, 0.0);
+  for (Index k = 0; k < 3 && about_mean; ++k) {
+    const double all = sum_over<double>(particles, [&](Index i) { return y[k * particles + i]; });
+    means[static_cast<std::size_t>(k)] = all / static_cast<double>(particles);
+  }
+  const double all = sum_over<double>(count, [&](Index i) {
+    const double x = y[i] - (about_mean ? means[static_cast<std::size_t>(i / particles)] : 0);
+    return x * x;
+  });
+  return std::sqrt(all / static_cast<double>(std::max<Index>(count, 1)));
+}
+
+double distance_of_states(const Vector<double>& a, const Vector<double>& b, Index particles) {
+  const Index count = particles > 0 ? 3 * particles : a.size();
+  const double squares = sum_over<double>(count, [&](Index i) { return (a[i] - b[i]) * (a[i] - b[i]); });
+  return std::sqrt(squares / static_cast<double>(std::max<Index>(count, 1)));
+}
+
+/// The scene with another start: coordinates moved a little; with constraints, which positions must obey, all
+/// velocities scaled.
+Scene moved_scene(const Scene& scene, double by) {
+  Scene moved = scene;
+  ParticleSystem<double>& s = moved.particles;
+  for (double& y : s.variables()) y += by * shake(&y - s.variables().data());
+  if (s.size() == 0) return moved;
+  const bool constrained = !scene.hamiltonian.constraints.empty();
+  for (Index i = 0; i < s.size(); ++i) {
+    const Vec3<double> noise(shake(3 * i), shake(3 * i + 1), shake(3 * i + 2));
+    if (constrained) {
+      s.velocities().set(i, (1 + first_distance) * Vec3<double>(s.velocities()[i]));
+    } else {
+      s.positions().set(i, Vec3<double>(s.positions()[i]) + by * noise);
+    }
+  }
+  if (!constrained) s.wrap();
+  return moved;
+}
+
+/// Two runs side by side.
+class TwoRuns {
+ public:
+  TwoRuns(const Scene& scene, double end, double size)
+      : particles_(scene.particles.size()), start_(scene.integrator.start), adaptive_(scene.integrator.adaptive()) {
+    const Candidate who{adaptive_ ? "dop853" : scene.integrator.method, adaptive_ ? "dop853" : scene.integrator.method,
+                        false, adaptive_};
+    const double step = scene.integrator.step;
+    interval_ = end / moments_followed;
+    steps_ = adaptive_ ? 0 : std::max<std::int64_t>(1, std::llround(interval_ / step));
+    const Setting setting{.step = adaptive_ ? 0 : step, .tolerance = adaptive_ ? 1e-12 : 0};
+    if (!adaptive_) interval_ = static_cast<double>(steps_) * step;
+    one_.emplace(assemble(variant(scene, who, setting)));
+    other_.emplace(assemble(variant(moved_scene(scene, first_distance * size), who, setting)));
+  }
+
+  double time() const { return interval_ * done_; }
+  /// @return whether both came to the next moment
+  bool advance() {
+    ++done_;
+    for (auto* sim : {&one_, &other_}) {
+      const Outcome outcome = adaptive_ ? (**sim).run_until(start_ + interval_ * done_) : (**sim).run(steps_);
+      if (!outcome.ok()) return false;
+    }
+    return true;
+  }
+  double distance() {
+    return distance_of_states(state_of(one_->particles()), state_of(other_->particles()), particles_);
+  }
+
+ private:
+  Index particles_;
+  double start_, interval_ = 0;
+  bool adaptive_;
+  std::int64_t steps_ = 0;
+  int done_ = 0;
+  std::optional<Simulation<double>> one_, other_;
+};
+
+/// Calls it chaotic where the difference has grown much, and more in the second half of the time than any power does.
+void judge_growth(Predictability& p) {
+  if (p.times.size() < 8) return;
+  const std::size_t last = p.times.size() - 1, half = last / 2;
+  const double all = p.growth[last], second = all / std::max(p.growth[half], 1.0);
+  if (!(all >= 1e3) || !(second > 20)) return;
+  p.chaotic = true;
+  p.rate = std::log(second) / (p.times[last] - p.times[half]);
+}
+
+}  // namespace
+
+double Predictability::factor(double time) const {
+  if (times.empty()) return 1;
+  const auto at = std::lower_bound(times.begin(), times.end(), time);
+  if (at != times.end()) return std::max(1.0, growth[static_cast<std::size_t>(at - times.begin())]);
+  const double later = time / times.back();
+  const double more = chaotic ? std::exp(std::min(700.0, rate * (time - times.back()))) : later * later;
+  return std::max(1.0, growth.back() * more);
+}
+
+double Predictability::time_of(double wanted) const {
+  if (!chaotic) return std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    if (growth[k] >= wanted) return times[k];
+  }
+  return times.back() + std::log(wanted / growth.back()) / rate;
+}
+
+double Predictability::tenfold() const { return std::log(10.0) / rate; }
+
+std::optional<Predictability> predictability(const Scene& scene, double end, double budget) {
+  const double size = size_of_state(state_of(scene.particles), scene.particles.size());
+  if (!(size > 0) || !(end > 0)) return {};
+  const auto begin = std::chrono::steady_clock::now();
+  Predictability found;
+  try {
+    TwoRuns both(scene, end, size);
+    const bool constrained = !scene.hamiltonian.constraints.empty();
+    double first = constrained ? 0 : both.distance(), largest = 0;
+    while (both.time() < end * (1 - 1e-9)) {
+      if (!both.advance()) break;
+      const double distance = both.distance();
+      if (!std::isfinite(distance)) break;
+      if (first == 0) first = distance;
+      if (first == 0) return {};
+      largest = std::max(largest, distance);
+      found.times.push_back(both.time());
+      found.growth.push_back(largest / first);
+      const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+      if (distance > last_distance * size || spent > budget) break;
+    }
+  } catch (const Error&) {
+    return {};
+  }
+  if (found.times.empty()) return {};
+  judge_growth(found);
+  return found;
+}
+
+}  // namespace noether

@@ -1,0 +1,39 @@
+#pragma once
+/// How long the motion of a scene can be told: how fast small differences grow.
+
+#include "scene/scene.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace noether {
+
+/// What rounding in double precision alone does to a position, relative.
+inline constexpr double one_rounding = 2.2e-16;
+
+/// How a small difference of the start grows along a run: as some power of time where the motion is regular,
+/// exponentially where it is chaotic, as in every liquid.
+struct Predictability {
+  std::vector<double> times = {};   ///< from the start on [time]
+  std::vector<double> growth = {};  ///< the largest difference so far, over that at the start
+  bool chaotic = false;
+  double rate = 0;  ///< of its logarithm, where it is chaotic [1/time]
+
+  /// How many times a difference has grown after a time; beyond what was followed by the rate, or as its square.
+  double factor(double time) const;
+  /// What rounding alone comes to.
+  double rounding(double time) const { return one_rounding * factor(time); }
+  /// When a difference has grown so many times [time]; infinity where the motion is regular.
+  double time_of(double factor) const;
+  /// In which time a difference grows tenfold [time]. @pre chaotic
+  double tenfold() const;
+};
+
+/// Follows two runs that begin 1e-10 apart, relative, by the scene's own method where it has fixed steps, else by
+/// dop853; until they are 1e-3 apart. Empty where they cannot be made, or nothing can be moved.
+/// @param end  from the start on [time]
+/// @param budget  seconds of wall time
+/// @cost two runs of the scene, or less
+std::optional<Predictability> predictability(const Scene& scene, double end, double budget);
+
+}  // namespace noether
