@@ -57,7 +57,7 @@ Melt melt(std::string name, ParticleSystem<double> atoms, H hamiltonian, const S
 inline void add_peer(std::vector<Melt>& peers, const std::string& name, const std::string& command, Index size) {
   const auto program = std::make_shared<PeerProgram>(command);
   if (!program->version()) {
-    fmt::print(stderr, "{} is not here: nothing stands beside it\n", name);
+    fmt::print(stderr, "{} is not installed: it is left out of the comparison\n", name);
     return;
   }
   const auto seconds = [program, name](int steps) {

@@ -259,7 +259,7 @@ int main(int count, char** arguments) {
     if (program.version()) {
       peers.emplace(peer, std::move(program));
     } else {
-      fmt::print(stderr, "{} is not here: nothing stands beside it\n", peer);
+      fmt::print(stderr, "{} is not installed: it is left out of the comparison\n", peer);
     }
   }
   for (const Case& one : cases()) {

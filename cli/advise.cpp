@@ -61,7 +61,7 @@ void add_advise_command(CLI::App& app, const Parts& parts, int& exit_code) {
   command->add_option("--error", given->error, "largest relative error over the whole run, such as 1e-9")
       ->required()
       ->check([](const std::string& text) {
-        return std::string(text.find(',') == std::string::npos ? "" : "'" + text + "' is no number; give one error");
+        return std::string(text.find(',') == std::string::npos ? "" : "'" + text + "' is not a number; give one error");
       })
       ->type_name("E");
   command->add_option("--metric", given->metric, "position or energy; default: position")
@@ -70,7 +70,7 @@ void add_advise_command(CLI::App& app, const Parts& parts, int& exit_code) {
         return fmt::format("unknown metric '{}'{}", text, did_you_mean(text, {"position", "energy"}));
       })
       ->type_name("METRIC");
-  command->add_option("--methods", given->methods, "methods to choose from; default: those worth it on this scene")
+  command->add_option("--methods", given->methods, "methods to choose from; default: those suited to this scene")
       ->type_name("A,B,...");
   command->add_option("--budget", given->budget, "seconds of wall time for one trial run")
       ->check(wrong_seconds)

@@ -47,7 +47,7 @@ std::vector<double> times_in(const std::string& list, const std::string& option,
     } catch (const Error& error) {
       throw Error(fmt::format("{}: {}", option, error.message()));
     }
-    if (!(time > 0)) throw Error(fmt::format("{} '{}' is no time above 0", option, part));
+    if (!(time > 0)) throw Error(fmt::format("{} '{}' is not a time above 0", option, part));
     times.push_back(time);
   }
   return times;
@@ -57,7 +57,7 @@ std::vector<double> numbers_in(const std::string& list, const std::string& optio
   std::vector<double> numbers;
   for (const std::string& part : texts_in(list, option)) {
     const auto number = number_in(part);
-    if (!number) throw Error(fmt::format("{}: '{}' is no number", option, part));
+    if (!number) throw Error(fmt::format("{}: '{}' is not a number", option, part));
     numbers.push_back(*number);
   }
   return numbers;
@@ -66,7 +66,7 @@ std::vector<double> numbers_in(const std::string& list, const std::string& optio
 std::string wrong_count(const std::string& text) {
   const auto number = number_in(text);
   if (!number || *number < 1 || *number != std::floor(*number)) {
-    return fmt::format("'{}' is no whole number above 0", text);
+    return fmt::format("'{}' is not a whole number above 0", text);
   }
   return *number > 1e6 ? fmt::format("'{}' is more than 1000000", text) : "";
 }
@@ -74,7 +74,7 @@ std::string wrong_count(const std::string& text) {
 std::string wrong_seconds(const std::string& text) {
   const auto number = number_in(text);
   if (number && *number > 0) return "";
-  return fmt::format("'{}' is no number of seconds above 0", text);
+  return fmt::format("'{}' is not a number of seconds above 0", text);
 }
 
 std::string wrong_folder(const std::string& text) { return text.empty() ? "the name of the folder is empty" : ""; }

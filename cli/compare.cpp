@@ -95,19 +95,21 @@ void add_compare_command(CLI::App& app, const Parts& parts, int& exit_code) {
   const auto given = std::make_shared<CompareArguments>();
   CLI::App* command = app.add_subcommand("compare", "error against run time, method by method");
   command->add_option("scene", given->scene, "scene file")->required()->type_name("SCENE");
-  command->add_option("--methods", given->methods, "methods to compare; default: those worth it on this scene")
+  command->add_option("--methods", given->methods, "methods to compare; default: those suited to this scene")
       ->type_name("A,B,...");
   command->add_option("--steps", given->steps, "steps of methods with fixed steps, such as \"50 day,100 day\"")
       ->type_name("H,...");
   command->add_option("--tolerances", given->tolerances, "relative tolerances of adaptive methods")->type_name("E,...");
   command
       ->add_option("--until", given->until,
-                   "when each run ends, by the clock; default: the scene's end, or 10000 of its steps")
+                   "time at which each run ends; default: the scene's end, or 10000 of its steps")
       ->type_name("T");
-  command->add_option("--repeat", given->repeat, "timed runs of each row; their median counts")
+  command->add_option("--repeat", given->repeat, "timed runs of each row; their median is reported")
       ->check(wrong_count)
       ->type_name("K");
-  command->add_option("--budget", given->budget, "seconds of wall time for one run; what is not done then is a row too")
+  command
+      ->add_option("--budget", given->budget,
+                   "seconds of wall time for one run; a run that is not finished then is reported as such")
       ->check(wrong_seconds)
       ->type_name("SECONDS");
   command->add_option("--truth-budget", given->truth_budget, "seconds of wall time for the reference")

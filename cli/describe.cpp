@@ -55,7 +55,7 @@ void describe_part(const std::string& kind, const PartInfo& info, bool json) {
   fmt::print("{} ({}): {}\n", info.name, kind, info.help);
   if (!info.formula.empty()) fmt::print("\n    {}\n", info.formula);
   if (!info.quantities.empty()) fmt::print("\n  quantities: {}\n", info.quantities);
-  if (const std::string table = table_of(kind); !table.empty()) fmt::print("\n  stands in {}\n", table);
+  if (const std::string table = table_of(kind); !table.empty()) fmt::print("\n  belongs in {}\n", table);
   print_fields(info.fields);
   const std::string entries = entries_of(info.source);
   if (!entries.empty()) fmt::print("\n{}", entries);
@@ -114,7 +114,7 @@ void describe_scheme(const Scheme& scheme, bool json) {
 
 /// How a classical method takes its steps.
 std::string steps_text(const MethodInfo& info) {
-  const std::string tolerances = fmt::format("rtol {:g} unless told, atol of a system {:g}", info.rtol, info.atol);
+  const std::string tolerances = fmt::format("rtol {:g} by default, atol of a system {:g}", info.rtol, info.atol);
   if (info.adaptive && info.fixed) return "chooses its steps, " + tolerances + "; fixed ones with adaptive = false";
   return info.adaptive ? "chooses its steps, " + tolerances : "takes steps of one length";
 }
@@ -127,15 +127,13 @@ struct Served {
 Served served_by(const MethodClaims& claims) {
   if (claims.positions_only) {
     return {"q'' = a(t, q)",
-            "it takes all forces together, but none that depends on velocities, and no system of first "
-            "order"};
+            "it supports forces that depend on positions and time, but not on velocities, and no first-order system"};
   }
   if (claims.second_order_only) {
     return {"q'' = a(t, q, q')",
-            "it takes all forces together, velocity-dependent ones too, but no system of first "
-            "order"};
+            "it supports all forces, also those that depend on velocities, but no first-order system"};
   }
-  return {"y' = f(t, y)", "it takes all forces together, velocity-dependent ones too"};
+  return {"y' = f(t, y)", "it supports all forces, also those that depend on velocities"};
 }
 
 /// What a method takes beside step and error control.
@@ -178,13 +176,13 @@ void describe_method(const MethodInfo& info, bool json) {
   if (!aliases.empty()) fmt::print("also called {}\n", fmt::join(aliases, ", "));
   fmt::print("\n  order {}, {}\n  for {}: {}\n", order_text(info), steps_text(info), served.equation, served.in_words);
   if (info.evaluations > 0) {
-    fmt::print("  {} {} a step of given length\n", info.evaluations,
+    fmt::print("  {} {} per step of given length\n", info.evaluations,
                info.evaluations == 1 ? "evaluation" : "evaluations");
   }
   if (std::isinf(info.stability_limit)) {
     fmt::print("  stable on the oscillator at any step\n");
   } else if (info.stability_limit == 0) {
-    fmt::print("  on the oscillator it grows at every step\n");
+    fmt::print("  unstable on the oscillator at any step\n");
   } else if (info.stability_limit > 0) {
     fmt::print("  stable on the oscillator up to h omega = {:.6g}\n", info.stability_limit);
   }

@@ -20,7 +20,7 @@ std::vector<FieldInfo> particle_keys(std::size_t particles) {
   if (particles == 2) {
     return {
         key("pairs", of_pairs, "pairs of names, or \"bonds\" for every bond of a structure"),
-        key("chain", "", "in place of pairs: [\"FIRST\", \"LAST\"], each particle with the next from first to last")};
+        key("chain", "", "instead of pairs: [\"FIRST\", \"LAST\"], each particle with the next from first to last")};
   }
   if (particles == 3) return {key("triples", of_triples, "triples of names, or \"angles\" for every angle of one")};
   return {key("groups", "[[\"NAME\", ...], ...]", "groups of names")};
@@ -64,14 +64,15 @@ std::string table_of(const std::string& kind) {
            "iterations)";
   }
   if (kind == "system") {
-    return "[system], in place of [particles] and [hamiltonian]; start = [...] begins elsewhere";
+    return "[system], instead of [particles] and [hamiltonian]; start = [...] sets another start";
   }
-  if (kind == "decorator") return "[[integrator.decorator]]; the first stands around the method, others around it";
+  if (kind == "decorator")
+    return "[[integrator.decorator]]; the first wraps the method, each further one wraps the one before";
   if (kind == "monitor") return "[[every]], with every = \"TIME\", steps = N or times = [...]";
   if (kind == "writer") {
     return "[[every]], with every = \"TIME\", steps = N or times = [...] (checkpoint also: wall = \"5 min\")";
   }
-  if (kind == "stop") return "[[stop]]; every = \"TIME\" may stand in place of steps = N";
+  if (kind == "stop") return "[[stop]]; every = \"TIME\" may be given instead of steps = N";
   return "";
 }
 

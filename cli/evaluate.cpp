@@ -96,7 +96,7 @@ void print_text(const Scene& scene, const Evaluation& e) {
   if (!e.gradient_error) return;
   const Index particles = scene.particles.size(), asked = e.gradient_asked;
   fmt::print("{:<22}{:.2g} of the largest force{}\n", "force against -grad U", *e.gradient_error,
-             asked < particles ? fmt::format(", asked at {} of {} particles", asked, particles) : "");
+             asked < particles ? fmt::format(", checked at {} of {} particles", asked, particles) : "");
 }
 
 int evaluate_scene(const EvaluateArguments& given, const Parts& parts) {

@@ -101,7 +101,7 @@ void sort_parts(const Scene& scene, Explanation& e) {
   if (scene.system) e.in.push_back("system " + scene.system->name);
   for (const SceneForce& force : scene.hamiltonian.forces) {
     const bool wide = force.force.in_quad().has_value();
-    e.in.push_back("force " + force.name + (wide ? "" : ", for doubles only: compare has no truth for it"));
+    e.in.push_back("force " + force.name + (wide ? "" : ", in double precision only: compare has no reference for it"));
   }
   if (const auto& bath = scene.hamiltonian.thermostat) {
     e.in.push_back("thermostat " + bath->name + keys_text(bath->effective));

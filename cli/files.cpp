@@ -2,6 +2,7 @@
 
 #include "io/compare_runs.hpp"
 #include "io/inspect.hpp"
+#include "io/near_file.hpp"
 #include "io/repair.hpp"
 #include "numbers/error.hpp"
 #include "numbers/text.hpp"
@@ -66,13 +67,14 @@ void print_text(const std::string& file, const io::FileInfo& info) {
 
 /// Mends a file in a folder that nobody else writes to.
 io::Repair repair_alone(const std::filesystem::path& file) {
-  if (!std::filesystem::exists(file)) throw FileError("there is no such file", {.file = file.string()});
+  if (!std::filesystem::exists(file))
+    throw FileError("there is no such file" + io::near_file(file, "run.h5"), {.file = file.string()});
   const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
   std::optional<OutputFolder> locked;
   try {
     locked.emplace(folder);
   } catch (const SceneError&) {
-    throw SceneError("a run is writing here; wait for it, then repair", {.file = folder.string()});
+    throw SceneError("a run is writing to this file; wait for it, then repair", {.file = folder.string()});
   }
   return io::repair(file);
 }
@@ -98,7 +100,7 @@ int report_verified(const std::string& file, const io::Repair& found, bool asked
   for (const std::string& line : info.damaged) {
     const bool cut = !asked && line.starts_with("cut short: ");
     const std::string way =
-        cut ? fmt::format("; 'noether verify --repair {}' mends it if no more than frames is missing", file) : "";
+        cut ? fmt::format("; 'noether verify --repair {}' repairs it if only frames or samples are missing", file) : "";
     fmt::print(stderr, "{}\n", escaped(file + ": " + line + way));
   }
   return ok ? 0 : 3;
@@ -159,14 +161,14 @@ int report_compared(const std::string& file, const std::string& other, const io:
     return same ? 0 : 3;
   }
   const std::string unit = info.time_unit.empty() || info.time_unit == "1" ? "" : " " + info.time_unit;
-  const std::string verdict = same                   ? "the same to the bit wherever both have something"
+  const std::string verdict = same                   ? "identical bit for bit wherever both have data"
                               : found.compared() > 0 ? "they differ"
-                                                     : "there is nothing that both have";
+                                                     : "the two have nothing in common to compare";
   fmt::print("{} and {}: {}\n", file, other, verdict);
   for (const io::RowComparison& one : found.rows) {
     fmt::print("  {}: {} compared, {} of them equal", one.name, one.compared, one.equal);
-    if (one.only_first > 0) fmt::print("; {} of the first alone", one.only_first);
-    if (one.only_second > 0) fmt::print("; {} of the second alone", one.only_second);
+    if (one.only_first > 0) fmt::print("; {} only in the first", one.only_first);
+    if (one.only_second > 0) fmt::print("; {} only in the second", one.only_second);
     fmt::print("\n");
   }
   for (const std::string& note : found.notes) fmt::print("  {}\n", escaped(note));
@@ -252,7 +254,8 @@ void add_convert_command(CLI::App& app, const Parts& /*parts*/, int& exit_code) 
   command->add_option("out", given->out, "FILE.xyz or FILE.csv; of bodies FILE.h5 or FILE.csv")
       ->required()
       ->type_name("OUT");
-  command->add_flag("--unwrapped", given->unwrapped, "positions as if a periodic box had never taken them in");
+  command->add_flag("--unwrapped", given->unwrapped,
+                    "unwrapped positions, as if the periodic box had never wrapped them");
   CLI::Option* bodies = command->add_flag("--bodies", given->bodies, "one frame, for bodies = \"OUT\" of a new scene");
   command->add_option("--frame", given->frame, "which frame, from 0; default: the last, -1")
       ->needs(bodies)

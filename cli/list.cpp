@@ -148,7 +148,7 @@ void print_json(const std::string& what, const Listing& list) {
 
 void print_text(const std::string& what, const Listing& list) {
   if (list.rows.empty()) {
-    fmt::print("there are no {} yet\n", what);
+    fmt::print("this program has no {}\n", what);
     return;
   }
   std::vector<std::vector<std::string>> rows = list.rows;

@@ -56,7 +56,7 @@ std::string first_line(const std::filesystem::path& file) {
   while (std::getline(in, line)) {
     if (line.find_first_not_of(" \t^") != std::string::npos) return line;
   }
-  return "it said nothing";
+  return "it printed no message";
 }
 
 /// Runs `gnuplot script` with its output in `log`.
@@ -86,7 +86,7 @@ PictureFormat format_of(const std::filesystem::path& picture) {
   if (ending == ".svg") return PictureFormat::svg;
   if (ending == ".png") return PictureFormat::png;
   throw Error(
-      fmt::format("a picture '{}' is of no known format; give a name that ends in .svg or .png", picture.string()));
+      fmt::format("a picture '{}' has no supported format; give a name that ends in .svg or .png", picture.string()));
 }
 
 /// @return the picture

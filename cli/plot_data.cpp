@@ -399,8 +399,8 @@ std::pair<double, double> span_of(const io::Frames& frames, const std::vector<io
 PlotData read_plot_data(const std::filesystem::path& file, const Parts& parts) {
   const io::FileInfo about = io::info(file);
   if (about.kind != "trajectory") {
-    throw Error(
-        fmt::format("{} is a {}, which holds one moment; plot the run.h5 beside it", file.string(), about.kind));
+    throw Error(fmt::format("{} is a {}, which contains one moment only; plot the run.h5 beside it", file.string(),
+                            about.kind));
   }
   const SceneValue scene = stored_scene(about.scene_toml, file);
   const io::Frames frames = io::read_frames(file);

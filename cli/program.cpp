@@ -16,6 +16,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <filesystem>
@@ -54,6 +55,15 @@ std::string in_our_words(std::string text) {
   return text;
 }
 
+/// The launcher of a checkout, `./noether`, has commands of its own, and says that it is there.
+bool under_launcher() { return std::getenv("NOETHER_LAUNCHER") != nullptr; }
+const std::vector<std::string> launcher_commands = {"build", "test", "bench"};
+constexpr const char* launcher_help =
+    "In a checkout:\n"
+    "  ./noether build             build everything, or for another preset\n"
+    "  ./noether test              build and run the tests, all or those of some folders\n"
+    "  ./noether bench             build and run one benchmark, or all\n";
+
 std::vector<std::string> command_names(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
@@ -77,9 +87,13 @@ std::string unknown_argument(const CLI::App& app, const std::string& argument) {
 /// What is wrong with the first argument; "" if it is a command or an option of the program itself.
 std::string wrong_first_argument(const CLI::App& app, const std::string& first) {
   if (first.empty()) return "no command is given; see `noether --help`";
+  if (std::find(launcher_commands.begin(), launcher_commands.end(), first) != launcher_commands.end()) {
+    return fmt::format("'{}' is a command of the launcher in a checkout: ./noether {}", first, first);
+  }
   const bool option = first[0] == '-';
   std::vector<std::string> known = {"--help", "--version"};
   if (!option) known = command_names(app);
+  if (!option && under_launcher()) known.insert(known.end(), launcher_commands.begin(), launcher_commands.end());
   if (first == "-h" || std::find(known.begin(), known.end(), first) != known.end()) return "";
   return fmt::format("unknown {} '{}'{}{}", option ? "option" : "command", first, option ? " before a command" : "",
                      did_you_mean(first, known));
@@ -124,18 +138,22 @@ int parse(CLI::App& app, int argc, char** argv, int& exit_code, bool json) {
   }
 }
 
+/// In the order of the help.
+constexpr void (*all_commands[])(CLI::App&, const Parts&, int&) = {
+    add_run_command,       add_evaluate_command, add_explain_command,  add_compare_command, add_advise_command,
+    add_stability_command, add_list_command,     add_describe_command, add_info_command,    add_verify_command,
+    add_convert_command,   add_plot_command,     add_help_command,     add_version_command,
+};
+
 int run_command(int argc, char** argv, const Parts& parts, bool json) {
   try {
     CLI::App app("Long, honest integrations of mechanical systems", "noether");
+    if (under_launcher()) app.footer(launcher_help);
     app.set_version_flag("--version", "");
     app.require_subcommand(1);
     app.option_defaults()->disable_flag_override();
     int exit_code = 0;
-    for (const auto add : {add_run_command, add_evaluate_command, add_explain_command, add_compare_command,
-                           add_advise_command, add_stability_command, add_list_command, add_describe_command,
-                           add_info_command, add_verify_command, add_convert_command, add_plot_command}) {
-      add(app, parts, exit_code);
-    }
+    for (const auto add : all_commands) add(app, parts, exit_code);
     return parse(app, argc, argv, exit_code, json);
   } catch (const Error& error) {
     return complain(error.location(), error.message(), error.what(), error.exit_code(), json);

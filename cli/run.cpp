@@ -35,7 +35,7 @@ std::string wrong_threads(const std::string& text) {
   const char* end = text.data() + text.size();
   const auto [read, error] = std::from_chars(text.data(), end, threads);
   if (error == std::errc() && read == end && threads >= 1 && threads <= 65536) return "";
-  return fmt::format("'{}' is no number of threads; give one from 1 to 65536", text);
+  return fmt::format("'{}' is not a valid number of threads; give one from 1 to 65536", text);
 }
 
 int run_scene(const RunArguments& given, const Parts& parts) {
@@ -86,7 +86,7 @@ void add_run_command(CLI::App& app, const Parts& parts, int& exit_code) {
   command->add_option("--set", given->sets, "change a key of the scene: key.path=value")
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
-  CLI::Option* resume = command->add_flag("--resume", given->resume, "go on from the newest checkpoint");
+  CLI::Option* resume = command->add_flag("--resume", given->resume, "continue from the newest checkpoint");
   command->add_flag("--fresh", given->fresh, "discard an unfinished run in the output folder")->excludes(resume);
   CLI::Option* quiet = command->add_flag("--quiet", given->quiet, "print nothing");
   command->add_flag("--json", given->json, "report as one line of JSON")->excludes(quiet);

@@ -48,6 +48,7 @@ SceneTable top() {
       "The keys above the first table. A scene has [particles] and [hamiltonian], or [system], and [integrator]; all "
       "other tables may be missing.",
       fields({{"title", "text", "1", "", "what the run is called in reports, files and pictures"},
+              {"program", "text", "1", "", "how to run a program that has parts of this scene which noether lacks"},
               {"units",
                "choice",
                "1",
@@ -64,10 +65,10 @@ SceneTable particles() {
       "`structure`, or from a builder (`type`).",
       fields({
           {"bodies", "text", "1", "", "file of bodies: CSV, vector tables of JPL Horizons, or the run.h5 of a run"},
-          {"bodies_sha256", "text", "1", "", "hash that the file must have; every effective scene has it"},
+          {"bodies_sha256", "text", "1", "", "the SHA-256 of the file; another file is refused"},
           {"structure", "text", "1", "", "file of a structure: LAMMPS data, (extended) XYZ or .gro"},
-          {"structure_sha256", "text", "1", "", "hash that the file must have"},
-          {"type", "text", "1", "", "a builder; its keys stand in this table too"},
+          {"structure_sha256", "text", "1", "", "the SHA-256 of the file; another file is refused"},
+          {"type", "text", "1", "", "a builder; its keys are in this table too"},
           {"frame",
            "choice",
            "1",
@@ -97,7 +98,7 @@ SceneTable particles() {
           {"file_units", "choice", "1", "", "units of a structure that does not say them", "", {"lj", "real", "metal"}},
           {"atom_style", "text", "1", "", "style of `Atoms` in a LAMMPS data file that does not say it"},
           {"coefficients", "text", "1", "", "LAMMPS input script with coefficients, or a list of them"},
-          {"coefficients_sha256", "text", "1", "", "hash that these must have"},
+          {"coefficients_sha256", "text", "1", "", "the SHA-256 of these files; others are refused"},
           {"temperature", "number", "temperature", "", "draws the velocities of a structure anew"},
           {"seed", "whole number", "1", "1", "of these velocities"},
       })};
@@ -149,7 +150,7 @@ SceneTable pair() {
 
 SceneTable hamiltonian() {
   return {
-      "[hamiltonian]", "What moves the particles. The keys of the Hamiltonian itself stand here too.",
+      "[hamiltonian]", "What moves the particles. The keys of the Hamiltonian itself are here too.",
       fields({{"type", "text", "1", "", "a Hamiltonian", "\"kinetic_potential\""},
               {"G", "number", "length^3/mass/time^2", "",
                "the constant of gravitation, a bare number in the units of the scene; default: that of the units"}})};
@@ -198,27 +199,28 @@ SceneTable integrator(const Parts& parts) {
                       {one.choices.begin(), one.choices.end()}});
     }
   }
-  return {
-      "[integrator]",
-      "The method and the length of the run. Which method takes which of the later keys stands below, under Methods.",
-      keys};
+  return {"[integrator]",
+          "The method and the length of the run. The section Methods below says which method takes which of the later "
+          "keys.",
+          keys};
 }
 
 SceneTable every() {
-  return {"[[every]]",
-          "A monitor or a writer, and when it looks: one of `every`, `steps` and `times`. Without any such table a run "
-          "has `energy` and about 200 frames; `every = []`, above all tables, leaves both out.",
-          fields({{"type", "text", "1", "", "a monitor or a writer", "\"energy\""},
-                  {"every", "number", "time", "", "time between two looks, to the nearest whole number of steps"},
-                  {"steps", "whole number", "1", "", "steps between two looks"},
-                  {"times", "list", "time", "", "looks at these times alone; or the name of a file with one a line"},
-                  {"wall", "text", "1", "", "of `checkpoint`: time of the day between two, such as \"5 min\""}})};
+  return {
+      "[[every]]",
+      "A monitor or a writer, and its times: one of `every`, `steps` and `times`. Without any such table a run "
+      "has `energy` and about 200 frames; `every = []`, above all tables, leaves both out.",
+      fields({{"type", "text", "1", "", "a monitor or a writer", "\"energy\""},
+              {"every", "number", "time", "", "time between two samples, rounded to a whole number of steps"},
+              {"steps", "whole number", "1", "", "steps between two samples"},
+              {"times", "list", "time", "", "samples at these times only; or the name of a file with one time a line"},
+              {"wall", "text", "1", "", "of `checkpoint`: wall time between two checkpoints, such as \"5 min\""}})};
 }
 
 SceneTable stop() {
   return {"[[stop]]", "A condition that ends the run.",
           fields({{"type", "text", "1", "", "a stop", "\"collision\""},
-                  {"every", "number", "time", "", "time between two looks, in place of the steps of the stop"}})};
+                  {"every", "number", "time", "", "time between two checks, instead of the steps of the stop"}})};
 }
 
 SceneTable verdict() {
@@ -257,8 +259,8 @@ std::vector<SceneTable> scene_tables(const Parts& parts) {
                       and_of<MinimizeOptions>({})));
   all.push_back(integrator(parts));
   all.push_back(named("[[integrator.decorator]]",
-                      "Something that stands around the method; the first table stands next to it. `noether` has none "
-                      "of its own.",
+                      "Something around the method; the first table is next to it. `noether` "
+                      "itself has none.",
                       fields({{"type", "text", "1", "", "a decorator", "\"NAME\""}})));
   all.push_back(every());
   all.push_back(stop());

@@ -90,7 +90,7 @@ void run_verdicts(const StabilityArguments& given, const Parts& parts) {
 void answer(const StabilityArguments& given, const Parts& parts) {
   if (given.suite) return run_verdicts(given, parts);
   if (given.nightly) throw Error("--nightly belongs to --suite; give both, or leave it out");
-  if (given.scene.empty()) throw Error("no scene is given; give one, or --suite for those that noether brings");
+  if (given.scene.empty()) throw Error("no scene is given; give one, or --suite for the scenes that come with noether");
   search_scene(given, parts);
 }
 
@@ -100,20 +100,20 @@ void add_stability_command(CLI::App& app, const Parts& parts, int& exit_code) {
   const auto given = std::make_shared<StabilityArguments>();
   CLI::App* command = app.add_subcommand("stability", "the largest stable step, method by method, against theory");
   command->add_option("scene", given->scene, "scene file")->type_name("SCENE");
-  command->add_option("--methods", given->methods, "methods to ask; default: those worth it on this scene")
+  command->add_option("--methods", given->methods, "methods to test; default: those suited to this scene")
       ->type_name("A,B,...");
   command->add_option("--steps", given->steps, "steps of the runs that settle a limit; default: 100000")
       ->check(wrong_count)
       ->type_name("N");
   command
-      ->add_option("--budget", given->budget, "seconds of wall time for one method; what is not settled then says so")
+      ->add_option("--budget", given->budget, "seconds of wall time for one method; what is not settled then is marked")
       ->check(wrong_seconds)
       ->type_name("SECONDS");
   command->add_option("--set", given->sets, "change a key of the scene: key.path=value")
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
   command->add_flag("--suite", given->suite,
-                    "run the verdicts of the scene, or of the stiff and extreme scenes noether brings");
+                    "run the verdicts of the scene, or of the stiff and extreme scenes that come with noether");
   command->add_flag("--nightly", given->nightly, "with --suite: the long runs too");
   command
       ->add_option("--out", given->out,

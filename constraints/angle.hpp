@@ -22,15 +22,16 @@ struct Angle {
   static constexpr std::size_t particles = 3;
   static constexpr bool keeps_momentum = true, keeps_angular_momentum = true;
   static constexpr auto describe() {
-    return part<Angle>("angle", "the angle at the second of three particles stays as it is",
+    return part<Angle>("angle", "keeps the angle at the second of three particles",
                        formula("cos(angle) = a . b / (|a| |b|) = cos(theta)"), source("Allen2017"),
-                       field<&Angle::theta>("theta", "angle", "as at the start unless given"));
+                       field<&Angle::theta>("theta", "angle", "the angle; default: as at the start"));
   }
 
   /// @throws Error  for an angle outside 0 to 180 degrees, these two excluded
   void check() const {
     if (theta && !(*theta > 0 && *theta < std::numbers::pi)) {
-      refuse_field("theta", *theta, "is no angle that forces can keep; one between 0 and 180 degrees is expected");
+      refuse_field("theta", *theta,
+                   "is not an angle that forces can hold; an angle between 0 and 180 degrees is expected");
     }
   }
   Angle at_start(const Points<double, 3>& x) const {

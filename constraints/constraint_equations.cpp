@@ -40,7 +40,7 @@ template <class Real> void ConstraintEquations<Real>::lay_out(const ParticleSyst
         for (Index k = 0; k < group->particles(); ++k) {
           const Index i = group->particle(c, k);
           if (i >= s.size() || !(s.masses()[i] > Real(0))) {
-            throw BadConstraints(fmt::format("{} is tied by '{}', which needs a particle with a mass there",
+            throw BadConstraints(fmt::format("{} has no mass, but constraint '{}' ties it; give it a mass",
                                              i < s.size() ? "'" + s.name(i) + "'" : fmt::format("particle {}", i),
                                              group->name()));
           }
@@ -75,10 +75,10 @@ template <class Real> void ConstraintEquations<Real>::check_reach(const Particle
   for (const auto& group : set_.groups()) {
     for (Index c = 0; c < group->size(); ++c, equation += group->equations()) {
       if (group->reach(c) < half) continue;
-      throw BadConstraints(fmt::format(
-          "{}, {:.6g} apart, reaches half of an edge of the periodic box, {:.6g}: nearest images are no longer those "
-          "that are tied; enlarge the box",
-          set_.words(equation, s), group->reach(c), half));
+      throw BadConstraints(
+          fmt::format("{}, {:.6g} apart, reaches half of an edge of the periodic box, {:.6g}: the nearest images would "
+                      "no longer be the tied ones; enlarge the box",
+                      set_.words(equation, s), group->reach(c), half));
     }
   }
 }

@@ -58,7 +58,7 @@ static_assert(
       }
       return true;
     }(),
-    "solvers stand in the order of ConstraintMethod");
+    "solvers must be in the order of ConstraintMethod");
 
 template <> struct EnumNames<ConstraintMethod> {
   static constexpr auto values = [] {

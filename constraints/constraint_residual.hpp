@@ -17,7 +17,7 @@ class ConstraintResidual {
 
   static constexpr auto describe() {
     return part<ConstraintResidual>(
-        "constraint_residual", "the largest violation of a constraint, and whose it is",
+        "constraint_residual", "the largest violation of a constraint, and which constraint it is",
         formula("max over constraints of ||r| - d| / d, or |g| / scale"), quantities("worst [1], index [1]"),
         source("RyckaertCiccottiBerendsen1977"), state<&ConstraintResidual::now_>("now"),
         state<&ConstraintResidual::index_>("index"), state<&ConstraintResidual::residuals_>("residuals"));

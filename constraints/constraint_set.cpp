@@ -9,10 +9,11 @@ namespace noether {
 
 void ConstraintOptions::check() const {
   if (!(tolerance > 0 && tolerance < 1)) {
-    refuse_field("tolerance", tolerance, "is no relative violation; a number between 0 and 1 is expected");
+    refuse_field("tolerance", tolerance, "is not a valid relative violation; a number between 0 and 1 is expected");
   }
   if (iterations < 1) {
-    refuse_field("iterations", static_cast<double>(iterations), "is no number of sweeps; at least 1 is expected");
+    refuse_field("iterations", static_cast<double>(iterations),
+                 "is not a valid number of sweeps; at least 1 is expected");
   }
 }
 
@@ -100,8 +101,7 @@ void ConstraintSet::check_particles(const ParticleSystem<double>& s, const std::
 
 ConstraintSet& add_rigid_bar(ConstraintSet& set, const ParticleSystem<double>& s, const std::vector<Index>& particles) {
   if (particles.size() < 2) {
-    throw BadConstraints(
-        fmt::format("a rigid bar of {} particles has no two ends; 2 or more are expected", particles.size()));
+    throw BadConstraints(fmt::format("a rigid bar ties 2 or more particles, not {}", particles.size()));
   }
   set.add(s, Distance{}, {particles.front(), particles.back()});
   for (std::size_t k = 1; k + 1 < particles.size(); ++k) {

@@ -21,8 +21,9 @@ struct ConstraintOptions {
     return part<ConstraintOptions>(
         "constraint_solver", "how constraints are solved",
         field<&ConstraintOptions::solver>("solver", "1", "newton: to rounding; rattle: by sweeps to a tolerance"),
-        field<&ConstraintOptions::tolerance>("tolerance", "1", "of rattle: largest relative violation left"),
-        field<&ConstraintOptions::iterations>("iterations", "1", "of rattle: most sweeps of a stage"));
+        field<&ConstraintOptions::tolerance>("tolerance", "1",
+                                             "for rattle: largest relative violation that may remain"),
+        field<&ConstraintOptions::iterations>("iterations", "1", "for rattle: largest number of sweeps per stage"));
   }
   /// @throws Error  for a tolerance that is not above 0, a number of sweeps below 1
   void check() const;

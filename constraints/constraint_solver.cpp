@@ -41,7 +41,7 @@ ConstraintSolver<Real>::ConstraintSolver(const ConstraintSolver& other)
 template <class Real> void ConstraintSolver<Real>::bind(ParticleSystem<Real>& s) {
   if (s.low_words() != nullptr) {
     throw BadConstraints(
-        "constraints are solved to the rounding of plain sums; they do not go with compensated = true");
+        "constraints are solved to the rounding of plain sums; they do not work with compensated = true");
   }
   equations_.lay_out(s);
   stages_ = stages_for(equations_);
@@ -112,7 +112,7 @@ template <class Real> void ConstraintSolver<Real>::check_start(const ParticleSys
     worst_residual = residual;
   }
   if (worst_equation < 0) return;
-  throw BadConstraints(fmt::format("{} is violated at the start, by {:.3g} of its scale; up to {} is moved into place",
+  throw BadConstraints(fmt::format("{} is violated at the start, by {:.3g} of its scale; only up to {} is corrected",
                                    set().words(worst_equation, s), worst_residual, largest_start_violation));
 }
 

@@ -66,8 +66,7 @@ std::string dependent_words(const ConstraintSet& set, const ParticleSystem<Real>
     for (Index e = 0; e < matrix.rows(); ++e) {
       if (matrix(e, e) > 0) continue;
       return set.words(e, s) +
-             " has no direction to act in there: its gradient vanishes; particles in line on a "
-             "rigid_bar are held otherwise";
+             " cannot act there, because its gradient vanishes; use rigid_bar for particles on a line";
     }
     const Eigen::VectorXd scale = matrix.diagonal().cwiseSqrt().cwiseInverse();
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(scale.asDiagonal() * matrix * scale.asDiagonal());

@@ -22,14 +22,15 @@ struct Distance {
   static constexpr std::size_t particles = 2;
   static constexpr bool keeps_momentum = true, keeps_angular_momentum = true;
   static constexpr auto describe() {
-    return part<Distance>("distance", "two particles stay at a distance", formula("|x_1 - x_2| = d"),
+    return part<Distance>("distance", "keeps the distance of two particles", formula("|x_1 - x_2| = d"),
                           source("RyckaertCiccottiBerendsen1977"),
-                          field<&Distance::length>("length", "length", "d; as at the start unless given"));
+                          field<&Distance::length>("length", "length", "d; default: as at the start"));
   }
 
   /// @throws Error  for a length that is not above 0
   void check() const {
-    if (length && !(*length > 0)) refuse_field("length", *length, "is no length of a bar; one above 0 is expected");
+    if (length && !(*length > 0))
+      refuse_field("length", *length, "is not a valid length of a bar; a length above 0 is expected");
   }
   Distance at_start(const Points<double, 2>& x) const {
     return length ? *this : Distance{std::sqrt(norm2(Vec3<double>(x[0] - x[1])))};

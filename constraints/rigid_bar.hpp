@@ -19,9 +19,9 @@ struct OnBar {
   static constexpr std::size_t particles = 3;
   static constexpr bool keeps_momentum = true, keeps_angular_momentum = true;
   static constexpr auto describe() {
-    return part<OnBar>("on_bar", "the second of three particles stays in its place on the line of the others",
+    return part<OnBar>("on_bar", "keeps the second of three particles in its place on the line of the others",
                        formula("x_2 = (1 - f) x_1 + f x_3"), source("CiccottiFerrarioRyckaert1982"),
-                       field<&OnBar::fraction>("fraction", "1", "f; as at the start unless given"));
+                       field<&OnBar::fraction>("fraction", "1", "f; default: as at the start"));
   }
   OnBar at_start(const Points<double, 3>& x) const {
     if (fraction) return *this;

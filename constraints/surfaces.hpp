@@ -19,7 +19,7 @@ inline void check_direction(std::string_view key, const std::array<double, 3>& v
   if (!(length_of(v) > 0)) refuse_field(key, v, "has no direction; a vector other than 0 is expected");
 }
 inline void check_radius(const std::optional<double>& radius) {
-  if (radius && !(*radius > 0)) refuse_field("radius", *radius, "is no radius; a length above 0 is expected");
+  if (radius && !(*radius > 0)) refuse_field("radius", *radius, "is not a valid radius; a length above 0 is expected");
 }
 /// The part of x across a direction; `axis` of any length.
 template <class Real> Vec3<Real> across(const Vec3<Real>& x, const std::array<double, 3>& axis) {
@@ -36,8 +36,8 @@ struct Fixed {
 
   static constexpr std::size_t particles = 1;
   static constexpr auto describe() {
-    return part<Fixed>("fixed", "a particle stays where it is", formula("x = p"),
-                       field<&Fixed::point>("point", "length", "p; as at the start unless given"));
+    return part<Fixed>("fixed", "keeps a particle where it is", formula("x = p"),
+                       field<&Fixed::point>("point", "length", "p; default: as at the start"));
   }
   Fixed at_start(const Points<double, 1>& x) const {
     return point ? *this : Fixed{std::array{x[0][0], x[0][1], x[0][2]}};
@@ -56,9 +56,9 @@ struct OnSphere {
 
   static constexpr std::size_t particles = 1;
   static constexpr auto describe() {
-    return part<OnSphere>("on_sphere", "a particle stays on a sphere, or at the end of a rod from a point",
+    return part<OnSphere>("on_sphere", "keeps a particle on a sphere, or at the end of a rod from a point",
                           formula("|x - center| = radius"), field<&OnSphere::center>("center", "length"),
-                          field<&OnSphere::radius>("radius", "length", "as at the start unless given"));
+                          field<&OnSphere::radius>("radius", "length", "default: as at the start"));
   }
   /// @throws Error  for a radius that is not above 0
   void check() const { detail::check_radius(radius); }
@@ -83,8 +83,8 @@ struct OnPlane {
 
   static constexpr std::size_t particles = 1;
   static constexpr auto describe() {
-    return part<OnPlane>("on_plane", "a particle stays in a plane", formula("normal . (x - point) = 0"),
-                         field<&OnPlane::point>("point", "length", "where the particle starts unless given"),
+    return part<OnPlane>("on_plane", "keeps a particle in a plane", formula("normal . (x - point) = 0"),
+                         field<&OnPlane::point>("point", "length", "default: where the particle starts"),
                          field<&OnPlane::normal>("normal", "1"));
   }
   /// @throws Error  for a normal of length 0
@@ -109,11 +109,11 @@ struct OnCylinder {
 
   static constexpr std::size_t particles = 1;
   static constexpr auto describe() {
-    return part<OnCylinder>("on_cylinder", "a particle stays at a distance from an axis",
+    return part<OnCylinder>("on_cylinder", "keeps a particle at a distance from an axis",
                             formula("|r - (n . r) n| = radius,  r = x - point, n along the axis"),
-                            field<&OnCylinder::point>("point", "length", "on the axis"),
+                            field<&OnCylinder::point>("point", "length", "a point on the axis"),
                             field<&OnCylinder::axis>("axis", "1"),
-                            field<&OnCylinder::radius>("radius", "length", "as at the start unless given"));
+                            field<&OnCylinder::radius>("radius", "length", "default: as at the start"));
   }
   /// @throws Error  for an axis of length 0, a radius that is not above 0
   void check() const {
@@ -141,10 +141,10 @@ struct OnCircle {
 
   static constexpr std::size_t particles = 1;
   static constexpr auto describe() {
-    return part<OnCircle>("on_circle", "a particle stays on a circle",
+    return part<OnCircle>("on_circle", "keeps a particle on a circle",
                           formula("normal . (x - center) = 0, |x - center| = radius"),
                           field<&OnCircle::center>("center", "length"), field<&OnCircle::normal>("normal", "1"),
-                          field<&OnCircle::radius>("radius", "length", "as at the start unless given"));
+                          field<&OnCircle::radius>("radius", "length", "default: as at the start"));
   }
   /// @throws Error  for a normal of length 0, a radius that is not above 0
   void check() const {
@@ -170,8 +170,8 @@ struct OnLine {
 
   static constexpr std::size_t particles = 1;
   static constexpr auto describe() {
-    return part<OnLine>("on_line", "a particle stays on a straight line", formula("x - point is along the direction"),
-                        field<&OnLine::point>("point", "length", "where the particle starts unless given"),
+    return part<OnLine>("on_line", "keeps a particle on a straight line", formula("x - point is along the direction"),
+                        field<&OnLine::point>("point", "length", "default: where the particle starts"),
                         field<&OnLine::direction>("direction", "1"));
   }
   /// @throws Error  for a direction of length 0

@@ -121,8 +121,8 @@ void SweepConstraints<Real>::fail(ConstraintEquations<Real>& equations, const Pa
   } else {
     const ConstraintOptions& options = equations.options();
     equations.fail(s, worst.equation,
-                   fmt::format("is not solved after {} sweeps: violation {:.3g}, {} asked", options.iterations,
-                               worst.violation, options.tolerance));
+                   fmt::format("is not solved after {} sweeps: its violation is {:.3g}, but at most {} is allowed",
+                               options.iterations, worst.violation, options.tolerance));
   }
 }
 
@@ -151,9 +151,11 @@ void SweepConstraints<Real>::project_velocities(ConstraintEquations<Real>& equat
     equations.count_iteration();
     if (!std::isfinite(worst.violation)) break;
   }
-  equations.fail(s, worst.equation,
-                 fmt::format("keeps a velocity across it after {} sweeps: {:.3g} of its scale in a step, {} asked",
-                             options.iterations, worst.violation, options.tolerance));
+  equations.fail(
+      s, worst.equation,
+      fmt::format(
+          "still has a velocity across it after {} sweeps: {:.3g} of its scale in a step, but at most {} is allowed",
+          options.iterations, worst.violation, options.tolerance));
 }
 
 }  // namespace

@@ -121,17 +121,17 @@ template <class F, class Real> struct ForceModel final : ForceBase<Real> {
   void add_secant_to(ForceSink<Real>& out, const ParticleSystem<Real>& from,
                      const ParticleSystem<Real>& to) const override {
     if constexpr (requires { force.add_secant_to(out, from, to); }) return force.add_secant_to(out, from, to);
-    throw LogicError("a force without secants was asked for them");
+    throw LogicError("secants were requested from a force that has none");
   }
   bool has_lanes() const override { return noether::has_lanes(force); }
   void add_to(ForceSink<Pack>& out, const ParticleSystem<Pack>& s) const override {
     if constexpr (Force<F, Pack>) return add_in_lanes(force, out, s);
-    throw LogicError("a force without lanes was asked for them");
+    throw LogicError("evaluation in lanes was requested from a force that has none");
   }
   bool has_derivative() const override { return noether::has_derivative<Real>(force); }
   void add_to(ForceSink<Dual<Real, 1>>& out, const ParticleSystem<Dual<Real, 1>>& s) const override {
     if constexpr (Force<F, Dual<Real, 1>>) return force.add_to(out, s);
-    throw LogicError("a force without derivatives was asked for them");
+    throw LogicError("derivatives were requested from a force that has none");
   }
   ForceClaims claims() const override { return claims_of(force); }
   void check(const ParticleSystem<Real>& s) const override { check_named(s); }
@@ -153,7 +153,7 @@ template <class F, class Real> struct ForceModel final : ForceBase<Real> {
  private:
   void check_named(const ParticleSystem<Real>& s) const {
     if (s.box().is_periodic() && !claims_of(force).periodic) {
-      throw Error("the force '" + name_of(force) + "' knows open space only; take it out, or the periodic box");
+      throw Error("the force '" + name_of(force) + "' does not support a periodic box; take out the force or the box");
     }
     check_force(force, s);
   }

@@ -128,7 +128,7 @@ template <class Real> class Columns {
     if (width == 3) return VectorColumn<Real>(n);
     if (width == 4) return RowColumn<Real, 4>(n);
     if (width == 9) return RowColumn<Real, 9>(n);
-    throw Error("a column has " + std::to_string(width) + " numbers a particle; 1, 3, 4 or 9 are expected");
+    throw Error("a column has " + std::to_string(width) + " numbers per particle; 1, 3, 4 or 9 are expected");
   }
   /// Puts back a column of a file or a copy, or takes one of the same name away first. References to other columns
   /// hold.
@@ -151,7 +151,7 @@ template <class Real> class Columns {
     const auto* values = std::get_if<typename Tag::template type<Real>>(&found->values);
     if (values == nullptr) {
       throw MissingColumn("column '" + std::string(Tag::name) + "' has " + std::to_string(found->info.width) +
-                          " numbers a particle where " + std::to_string(Tag::template type<double>::width) +
+                          " numbers per particle where " + std::to_string(Tag::template type<double>::width) +
                           " are expected");
     }
     return *values;

@@ -22,7 +22,7 @@ void refuse_field(std::string_view key, const std::array<double, 3>& value, cons
 }
 
 void check_constant_of_gravitation(const std::optional<double>& G) {
-  if (G && !(*G > 0)) refuse_field("G", *G, "is no constant of gravitation; a number above 0 is expected");
+  if (G && !(*G > 0)) refuse_field("G", *G, "is not a valid gravitational constant; a number above 0 is expected");
 }
 
 namespace detail {

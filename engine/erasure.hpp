@@ -144,7 +144,7 @@ template <class I> bool has_action(const I& integrator) {
 template <class I, class Real>
 Advance advance_with_action(I& integrator, ParticleSystem<Real>& s, const Span& span, Real& action) {
   if constexpr (GivesAction<I>) return integrator.advance_with_action(s, span, action);
-  throw LogicError("a method that gives no action was asked for it");
+  throw LogicError("the action was requested from a method that does not compute it");
 }
 /// Completes a copy. @return the action of the flows that do, if wanted; 0 for a method that gives none
 template <class I, class Real>
@@ -193,8 +193,8 @@ template <class Real> struct IntegratorBase {
 template <class I> struct IntegratorModel final : IntegratorBase<typename I::real> {
   using Real = typename I::real;
   static_assert(action_follows<I>(),
-                "what stands around an integrator and has an `advance` of its own has an `advance_with_action` of its "
-                "own too, or a `has_action` that says no");
+                "a wrapper of an integrator that has its own `advance` needs its own `advance_with_action` too, or a "
+                "`has_action` that returns false");
   explicit IntegratorModel(I i) : integrator(std::move(i)) {}
   std::unique_ptr<IntegratorBase<Real>> clone() const override { return std::make_unique<IntegratorModel>(integrator); }
   IntegratorClaims claims() const override { return integrator.claims(); }

@@ -213,7 +213,7 @@ template <class F> ForceClaims claims_of(const F& force) {
 /// @throws Error  naming what is missing
 template <class F, class Real> void check_force(const F& force, const ParticleSystem<Real>& s) {
   if (s.box().is_periodic() && !claims_of(force).periodic) {
-    throw Error("a periodic box needs forces between nearest images; one of the forces knows open space only");
+    throw Error("a periodic box needs forces between nearest images; one of the forces does not support it");
   }
   if constexpr (requires { force.check(s); }) force.check(s);
 }

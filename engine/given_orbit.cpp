@@ -36,23 +36,23 @@ void check_choices(const GivenOrbit& orbit) {
     for (const OrbitKey& other : orbit_keys) {
       if (other.name == key.name) break;
       if (other.choice != key.choice || !(orbit.*other.value)) continue;
-      refuse_field(key.name, *value, fmt::format("stands beside {}; give one of {}", other.name, names_of(key.choice)));
+      refuse_field(key.name, *value,
+                   fmt::format("is given together with {}; give only one of {}", other.name, names_of(key.choice)));
     }
   }
   if (!orbit.a && !orbit.P && !orbit.q)
     throw Error("the orbit has no size; give " + names_of(Choice::size), {.key = "a"});
-  if (orbit.P && !(*orbit.P > 0)) refuse_field("P", *orbit.P, "is no period; a time above 0 is expected");
+  if (orbit.P && !(*orbit.P > 0)) refuse_field("P", *orbit.P, "is not a valid period; a time above 0 is expected");
   if (orbit.q && !(*orbit.q > 0))
-    refuse_field("q", *orbit.q, "is no distance of a pericenter; one above 0 is expected");
+    refuse_field("q", *orbit.q, "is not a valid pericenter distance; a length above 0 is expected");
 }
 
 /// What an eccentricity allows.
 void check_shape(const GivenOrbit& orbit, double e) {
-  if (e < 0) refuse_field("e", e, "is no eccentricity; 0 or more is expected");
-  if (orbit.P && e >= 1) refuse_field("P", *orbit.P, "is a period, and only an ellipse, e < 1, has one; give a or q");
+  if (e < 0) refuse_field("e", e, "is not a valid eccentricity; 0 or more is expected");
+  if (orbit.P && e >= 1) refuse_field("P", *orbit.P, "is a period, but only an ellipse, e < 1, has one; give a or q");
   if (e != 1) return;
-  if (!orbit.q)
-    refuse_field("e", e, "is a parabola, which has no semi-major axis; give q, the distance of its pericenter");
+  if (!orbit.q) refuse_field("e", e, "is a parabola, which has no semi-major axis; give q, its pericenter distance");
   for (const char* key : {"M", "l"}) {
     const auto value = key[0] == 'M' ? orbit.M : orbit.l;
     if (value) refuse_field(key, *value, "has no meaning on a parabola, e = 1; give f or T");
@@ -114,10 +114,10 @@ OtherName other_name_of(std::string_view name) {
       Meaning{" nu ta true_anomaly trueanomaly ", "f", "; did you mean 'f'?"},
       Meaning{" L lambda mean_longitude meanlongitude ", "l", "; did you mean 'l'?"},
       Meaning{" tp tperi t_peri time_of_perihelion ", "T", "; did you mean 'T'?"},
-      Meaning{" n N mean_motion ", "", "; a mean motion n is not read: give the period P = 360 deg / n, or a"},
-      Meaning{" E eccentric_anomaly ", "", "; an eccentric anomaly E is not read: give M = E - e sin E, or f"},
-      Meaning{" Q ad aphelion ", "", "; the distance of the apocenter is not read: give a or q"},
-      Meaning{" theta true_longitude ", "", "; a true longitude is not read: give f, or the mean longitude l"},
+      Meaning{" n N mean_motion ", "", "; a mean motion n is not supported: give the period P = 360 deg / n, or a"},
+      Meaning{" E eccentric_anomaly ", "", "; an eccentric anomaly E is not supported: give M = E - e sin E, or f"},
+      Meaning{" Q ad aphelion ", "", "; the apocenter distance is not supported: give a or q"},
+      Meaning{" theta true_longitude ", "", "; a true longitude is not supported: give f, or the mean longitude l"},
   };
   std::string word(name);
   if (word.find(' ') != std::string::npos || word.empty()) return {};

@@ -19,19 +19,21 @@ struct NeighborOptions {
   static constexpr auto describe() {
     return part<NeighborOptions>(
         "neighbors", "how neighbors of pair forces are found",
-        field<&NeighborOptions::skin>("skin", "length", "listed beyond the range; 0: chosen by cost"),
-        field<&NeighborOptions::renewal>("renewal", "1", "steps between searches, even if pairs are missed; 0: safe"),
-        field<&NeighborOptions::verify>("verify", "1", "compare with all pairs at every step, slowly"));
+        field<&NeighborOptions::skin>("skin", "length",
+                                      "distance beyond the range that is still listed; 0: chosen for the lowest cost"),
+        field<&NeighborOptions::renewal>(
+            "renewal", "1", "steps between searches, even if pairs are missed; 0: whenever needed, so none is missed"),
+        field<&NeighborOptions::verify>("verify", "1", "compare the list with all pairs at every step; slow"));
   }
   /// @throws Error  for what is negative, and for a comparison of lists that may miss pairs
   void check() const {
-    if (!(skin >= 0 && skin < 1e100)) refuse_field("skin", skin, "is no width; 0 or more is expected");
+    if (!(skin >= 0 && skin < 1e100)) refuse_field("skin", skin, "is not a valid width; 0 or more is expected");
     if (renewal < 0)
-      refuse_field("renewal", static_cast<double>(renewal), "is no number of steps; 0 or more is expected");
+      refuse_field("renewal", static_cast<double>(renewal), "is not a valid number of steps; 0 or more is expected");
     if (verify && renewal > 1) {
       refuse_field(
           "verify", "true",
-          fmt::format("ends the run where a pair is missing, and renewal = {} may miss some; take one of them out",
+          fmt::format("ends the run where a pair is missing, but renewal = {} may miss some; take one of them out",
                       renewal));
     }
   }

@@ -39,7 +39,7 @@ template <class Real = double> class ParticleSystem {
   /// Appends one particle and returns its index; in the columns that parts declared it starts as these say.
   /// @param x, v  inertial [length], [length/time]
   Index add(std::string name, const Real& mass, const Vec3<Real>& x, const Vec3<Real>& v) {
-    NOETHER_EXPECTS(!low_, "particles are added before an integrator is bound, or in Simulation::edit");
+    NOETHER_EXPECTS(!low_, "particles can be added only before an integrator is bound, or in Simulation::edit");
     ids_.push_back(next_id_++);
     names_.push_back(std::move(name));
     m_.append(mass);
@@ -57,8 +57,8 @@ template <class Real = double> class ParticleSystem {
 
   /// Takes particle `i` out; the others keep their ids.
   void remove(Index i) {
-    NOETHER_EXPECTS(!low_, "particles are removed in Simulation::edit");
-    NOETHER_EXPECTS(!topology_, "who is bonded to whom is known by index: no particle is removed");
+    NOETHER_EXPECTS(!low_, "particles can be removed only in Simulation::edit");
+    NOETHER_EXPECTS(!topology_, "bonds refer to particles by index, so no particle can be removed");
     ids_.erase(ids_.begin() + i);
     names_.erase(names_.begin() + i);
     m_.erase(i);
@@ -309,7 +309,7 @@ template <class Real = double> class ParticleSystem {
   void restore_ids(const std::vector<std::int64_t>& ids) {
     for (const std::int64_t id : ids) {
       if (id >= 0 && id <= largest_id) continue;
-      throw Error("the id " + std::to_string(id) + " cannot be kept; 0 to " + std::to_string(largest_id) +
+      throw Error("the id " + std::to_string(id) + " cannot be stored; 0 to " + std::to_string(largest_id) +
                   " (2^53) is expected");
     }
     if (ids_ != ids) members_ = detail::fresh_version();
@@ -408,7 +408,8 @@ template <class Real> void move_to_barycenter(ParticleSystem<Real>& s) {
     v += c.masses()[i] * c.velocities()[i];
     total += c.masses()[i];
   }
-  if (!(total > Real(0))) throw Error("there is no centre of mass: every particle is a tracer of mass 0");
+  if (!(total > Real(0)))
+    throw Error("there is no centre of mass, because every particle is a tracer of mass 0; give one of them a mass");
   x /= total;
   v /= total;
   for (Index i = 0; i < s.size(); ++i) {

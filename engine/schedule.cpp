@@ -37,7 +37,7 @@ double positive_cadence(double seconds) {
 
 double checked_step(double dt) {
   if (!std::isfinite(dt) || dt == 0)
-    throw Error(fmt::format("a step of {} is no step; a finite time other than 0 is expected", dt));
+    throw Error(fmt::format("a step of {} is not valid; a finite time other than 0 is expected", dt));
   return dt;
 }
 
@@ -51,9 +51,11 @@ std::int64_t steps_of(double duration, double dt) {
   const double exact = duration / dt;
   const double whole = std::round(exact);
   if (!std::isfinite(exact) || std::abs(exact) > 9e15) {
-    throw Error(fmt::format("a duration of {} is no number of steps of {}", duration, dt));
+    throw Error(fmt::format("a duration of {} cannot be counted in steps of {}", duration, dt));
   }
-  if (exact < 0) throw Error(fmt::format("a duration of {} lies behind; steps of {} lead the other way", duration, dt));
+  if (exact < 0)
+    throw Error(
+        fmt::format("a duration of {} lies in the past; steps of {} go in the opposite direction", duration, dt));
   // Beside 1e-9 of a step, the rounding of a long duration.
   if (std::abs(exact - whole) > 1e-9 + 16 * std::numeric_limits<double>::epsilon() * exact) {
     throw Error(fmt::format("a duration of {} is {} steps of {}; the nearest whole numbers are {} ({}) and {} ({})",
@@ -66,7 +68,7 @@ std::int64_t steps_of(double duration, double dt) {
 std::int64_t steps_to(double time, double start, double dt) {
   if (start == 0) return steps_of(time, dt);
   const double exact = (time - start) / dt, whole = std::round(exact);
-  if (!(std::abs(exact) <= 9e15)) throw Error(fmt::format("time {} is no number of steps of {}", time, dt));
+  if (!(std::abs(exact) <= 9e15)) throw Error(fmt::format("time {} cannot be counted in steps of {}", time, dt));
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
   const double rounding = std::min(4 * epsilon * std::max(std::abs(time), std::abs(start)) / std::abs(dt), 0.01);
   if (exact < -rounding) throw Error(fmt::format("time {} lies before the start at {}", time, start));
@@ -88,14 +90,14 @@ double at_start_if_rounded(double time, double start) {
 void check_times(const std::vector<double>& times, double start, double sign, const std::string& monitor) {
   for (std::size_t k = 0; k < times.size(); ++k) {
     const auto refuse = [&](const std::string& why) {
-      throw Error(fmt::format("monitor '{}' cannot look at time {}: {}", monitor, times[k], why));
+      throw Error(fmt::format("monitor '{}' cannot sample at time {}: {}", monitor, times[k], why));
     };
     if (!std::isfinite(times[k])) refuse("a finite time is expected");
     if (sign * (times[k] - start) < 0) refuse(fmt::format("it lies before the start at {}", start));
     if (k == 0) continue;
-    if (times[k] == times[k - 1]) refuse("it stands twice in its list");
+    if (times[k] == times[k - 1]) refuse("it is listed twice");
     if (sign * (times[k] - times[k - 1]) < 0)
-      refuse(fmt::format("it stands after {}, where the run comes later", times[k - 1]));
+      refuse(fmt::format("it is listed after {}, which the run reaches later", times[k - 1]));
   }
 }
 
@@ -105,8 +107,8 @@ void check_equal_intervals(const std::vector<double>& times, const std::string& 
     const double rounding = 4 * std::numeric_limits<double>::epsilon() * std::abs(times[k]);
     if (std::abs(now - first) <= 1e-9 * std::abs(first) + rounding) continue;
     throw Error(
-        fmt::format("monitor '{}' counts lags in looks, so it looks at equal distances: after {} comes {} in "
-                    "its list, but {} apart are the first two; attach it by steps or an interval of time",
+        fmt::format("monitor '{}' counts lags in samples, so it needs equal intervals: its list goes from {} to {}, "
+                    "but its first two times are {} apart; attach it by steps or by an interval of time",
                     monitor, times[k - 1], times[k], first));
   }
 }
@@ -118,11 +120,11 @@ std::vector<std::int64_t> steps_at(const std::vector<double>& times, double star
     try {
       steps.push_back(steps_to(time, start, dt));
     } catch (const Error& error) {
-      throw Error(fmt::format("monitor '{}' cannot look at time {}: {}", monitor, time, error.message()));
+      throw Error(fmt::format("monitor '{}' cannot sample at time {}: {}", monitor, time, error.message()));
     }
     if (steps.size() > 1 && steps.back() == steps[steps.size() - 2]) {
-      throw Error(fmt::format("monitor '{}' cannot look at time {}: it stands twice in its list, at step {}", monitor,
-                              time, steps.back()));
+      throw Error(fmt::format("monitor '{}' cannot sample at time {}: it is listed twice, at step {}", monitor, time,
+                              steps.back()));
     }
   }
   return steps;

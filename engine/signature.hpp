@@ -70,7 +70,7 @@ template <class T> void check_signature(const SavedState& saved, const std::stri
   load_value(saved, prefix + "signature", before);
   const std::string now = signature_of(value);
   if (before != now) {
-    throw Error(fmt::format("the saved run was made with {}, this one has {}", before, now));
+    throw Error(fmt::format("the saved run was made with {}, but this one has {}", before, now));
   }
 }
 

@@ -44,7 +44,7 @@ Simulation<Real>::Simulation(ParticleSystem<Real> particles, AnyIntegrator<Real>
                                 : "chooses its steps itself; leave out the step after the integrator"));
   }
   if (clock.mode() == ClockMode::free && clock.direction() == Direction::backward && !claims.backward) {
-    throw Error(fmt::format("method '{}' knows no way back; give it a clock that goes forward", claims.method));
+    throw Error(fmt::format("method '{}' cannot go back in time; give it a clock that goes forward", claims.method));
   }
   detail::check_start(clock.start());
   raw_.trim();
@@ -106,8 +106,8 @@ template <class Real> void Simulation<Real>::schedule(Scheduled& added) {
 template <class Real> void Simulation<Real>::check_wanted(const Scheduled& added) const {
   const IntegratorClaims claims = integrator_.claims();
   if (claims.variables && (added.monitor.needs_particles() || added.wanted.energy || added.wanted.action)) {
-    throw Error(fmt::format("monitor '{}' watches particles, but system '{}' has variables and none of them",
-                            added.name, claims.hamiltonian));
+    throw Error(fmt::format("monitor '{}' watches particles, but system '{}' has only variables", added.name,
+                            claims.hamiltonian));
   }
   added.monitor.check(raw_);
   // A copy is asked: the run itself must not know.
@@ -121,7 +121,7 @@ template <class Real> void Simulation<Real>::schedule_by_time(Scheduled& added) 
   const double interval = added.schedule.interval;
   const bool forward = raw_.clock().direction() == Direction::forward;
   if (!std::isfinite(interval) || interval == 0 || (interval > 0) != forward) {
-    throw Error(fmt::format("monitor '{}' cannot look every {} of time; a finite time {} 0 is expected", added.name,
+    throw Error(fmt::format("monitor '{}' cannot sample every {} of time; a finite time {} 0 is expected", added.name,
                             interval, forward ? "above" : "below"));
   }
   if (raw_.clock().mode() == ClockMode::free) {
@@ -133,7 +133,7 @@ template <class Real> void Simulation<Real>::schedule_by_time(Scheduled& added) 
   }
   const std::int64_t steps = steps_in(interval);
   if (steps == 0) {
-    throw Error(fmt::format("monitor '{}' cannot look every {} of time; a step is {}", added.name, interval,
+    throw Error(fmt::format("monitor '{}' cannot sample every {} of time; a step is {}", added.name, interval,
                             raw_.clock().dt()));
   }
   added.schedule.steps = steps;
@@ -142,7 +142,7 @@ template <class Real> void Simulation<Real>::schedule_by_time(Scheduled& added) 
 template <class Real> void Simulation<Real>::stop_when(const StopRule& rule, std::int64_t steps) {
   const IntegratorClaims claims = integrator_.claims();
   if (claims.variables) {
-    throw Error(fmt::format("stop '{}' watches distances of particles, but system '{}' has variables and no particles",
+    throw Error(fmt::format("stop '{}' watches distances of particles, but system '{}' has only variables",
                             rule.kind == StopRule::Kind::escape ? "escape" : "collision", claims.hamiltonian));
   }
   stops_.push_back({detail::positive_cadence(steps), StopCheck<Real>(rule)});
@@ -173,26 +173,26 @@ template <class Real> Outcome Simulation<Real>::run(std::int64_t steps) {
 }
 
 template <class Real> Outcome Simulation<Real>::run_until(double until) {
-  if (std::isnan(until)) throw Error("time nan is no end of a run; a finite time is expected");
+  if (std::isnan(until)) throw Error("time nan is not a valid end of a run; a finite time is expected");
   const Clock<Real>& clock = raw_.clock();
   const bool free = clock.mode() == ClockMode::free;
   // Half a step of grace: a time that has been reached may be rounded differently.
   const bool passed = clock.is_later(time() - clock.dt() / 2, until);
   if (free && passed) turn_back(until);
   if (free) return run_to(std::numeric_limits<std::int64_t>::max(), until);
-  if (passed) throw Error(fmt::format("time {} has passed: the run stands at {}", until, time()));
+  if (passed) throw Error(fmt::format("time {} has passed: the run is already at {}", until, time()));
   return run_to(detail::steps_to(until, clock.start(), clock.dt()), clock.never());
 }
 
 template <class Real> void Simulation<Real>::turn_back(double until) {
   const auto refuse = [&](const std::string& why) {
-    throw Error(fmt::format("time {} has passed: the run stands at {}, and {}", until, time(), why));
+    throw Error(fmt::format("time {} has passed: the run is already at {}, and {}", until, time(), why));
   };
   const IntegratorClaims claims = integrator_.claims();
-  if (!claims.backward) refuse(fmt::format("method '{}' knows no way back", claims.method));
+  if (!claims.backward) refuse(fmt::format("method '{}' cannot go back in time", claims.method));
   for (const auto& scheduled : monitors_) {
     if (!scheduled.schedule.by_time()) continue;
-    refuse(fmt::format("monitor '{}' looks {}, so it cannot turn; attach it by steps", scheduled.name,
+    refuse(fmt::format("monitor '{}' samples {}, so the run cannot turn back; attach it by steps", scheduled.name,
                        detail::when_in_time(scheduled.schedule)));
   }
   begin_edit(shown_at_);
@@ -316,7 +316,7 @@ template <class Real> Outcome Simulation<Real>::fall_back() {
       reason->time = time();
       return *reason;
     }
-    if (step() > failing) throw LogicError("a step that had failed went well when it was made again");
+    if (step() > failing) throw LogicError("a step that failed succeeded when it was repeated");
     keep();
   }
 }
@@ -448,7 +448,8 @@ template <class Real> bool Simulation<Real>::observe_times(double until) {
 template <class Real> Outcome Simulation<Real>::fail_before(double unreached) {
   const Span one{.steps = 1, .limit = raw_.clock().never()};
   while (integrator_.advance(raw_, one).failure == nullptr && !fault(raw_)) {
-    if (raw_.clock().is_later(raw_.clock().high(), unreached)) throw LogicError("a look failed where the run does not");
+    if (raw_.clock().is_later(raw_.clock().high(), unreached))
+      throw LogicError("a sample failed where the run itself does not");
   }
   return fall_back();
 }
@@ -536,8 +537,8 @@ template <class Real> void Simulation<Real>::change_step(double dt) {
   }
   for (const auto& scheduled : monitors_) {
     if (scheduled.schedule.interval == 0 && scheduled.schedule.times.empty()) continue;
-    throw Error(fmt::format("monitor '{}' looks {}, at steps that a new step would shift; attach it by steps",
-                            scheduled.name, detail::when_in_time(scheduled.schedule)));
+    throw Error(fmt::format("monitor '{}' samples {}, which a new step would shift; attach it by steps", scheduled.name,
+                            detail::when_in_time(scheduled.schedule)));
   }
   begin_edit();
   const double now = time();

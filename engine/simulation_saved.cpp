@@ -29,7 +29,7 @@ template <class Real> void Simulation<Real>::check_columns(const ParticleSystem<
     if (!column.info.moves()) continue;
     const auto* found = saved.columns().find(column.info.name);
     if (found != nullptr && found->info == column.info) continue;
-    throw Error(fmt::format("the saved run has no column '{}' of {} numbers a particle, which this one moves",
+    throw Error(fmt::format("the saved run has no column '{}' of {} numbers per particle, which this one moves",
                             column.info.name, column.info.width));
   }
 }
@@ -37,23 +37,24 @@ template <class Real> void Simulation<Real>::check_columns(const ParticleSystem<
 template <class Real> void Simulation<Real>::restore(const SavedRun& saved) {
   const auto part = [&](const std::string& name) -> const SavedState& {
     const auto found = saved.parts.find(name);
-    if (found == saved.parts.end()) throw Error("the saved run has no part '" + name + "'; it was made by other parts");
+    if (found == saved.parts.end())
+      throw Error("the saved run has no part '" + name + "'; it was made with other parts");
     return found->second;
   };
   ParticleSystem<Real> particles = load_particles<Real>(saved.particles);
   particles.set_topology(raw_.shared_topology());
-  if (particles.ids() != raw_.ids()) throw Error("the saved run has other particles than this one");
+  if (particles.ids() != raw_.ids()) throw Error("the saved run has different particles from this one");
   if (particles.variables().size() != raw_.variables().size()) {
-    throw Error(fmt::format("the saved run has {} variables, this one {}", particles.variables().size(),
+    throw Error(fmt::format("the saved run has {} variables, but this one has {}", particles.variables().size(),
                             raw_.variables().size()));
   }
   if (particles.clock().dt() != raw_.clock().dt()) {
     throw Error(
-        fmt::format("the saved run has a step of {}, this one of {}", particles.clock().dt(), raw_.clock().dt()));
+        fmt::format("the saved run has a step of {}, but this one has {}", particles.clock().dt(), raw_.clock().dt()));
   }
   if (particles.clock().direction() != raw_.clock().direction()) {
     const bool back = raw_.clock().direction() == Direction::backward;
-    throw Error(fmt::format("the saved run goes {} in time, this one {}", back ? "forward" : "back",
+    throw Error(fmt::format("the saved run goes {} in time, but this one goes {}", back ? "forward" : "back",
                             back ? "back" : "forward"));
   }
   check_columns(particles);

@@ -92,7 +92,7 @@ void SeriesStatistics::save(SavedState& saved, const std::string& prefix) const 
 void SeriesStatistics::load(const SavedState& saved, const std::string& prefix) {
   load_part(saved, prefix, *this);
   if (times_.size() != means_.size() || times_.size() >= most_blocks || block_ < 1) {
-    throw Error("the figures of a series were saved in parts that do not fit");
+    throw Error("the saved figures of a series are inconsistent");
   }
 }
 

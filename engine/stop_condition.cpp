@@ -152,8 +152,7 @@ template <class Real> void StopCheck<Real>::load(const SavedState& saved, const 
   load_value(saved, prefix + "/a", a_);
   unresolved_ = 0;  // of runs that were saved before these were counted
   if (saved.contains(prefix + "/unresolved")) load_value(saved, prefix + "/unresolved", unresolved_);
-  if (x_.size() != v_.size() || x_.size() != a_.size())
-    throw Error("what a stop saw last was saved in parts that do not fit");
+  if (x_.size() != v_.size() || x_.size() != a_.size()) throw Error("the saved state of a stop is inconsistent");
 }
 
 template class StopCheck<double>;

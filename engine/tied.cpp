@@ -13,8 +13,8 @@ void find_tied(const std::vector<std::int64_t>& ids, std::vector<Index>& places,
     Index& place = places[k];
     const bool there = place >= 0 && place < std::ssize(ids);
     if (first && !there) {
-      throw Error(
-          fmt::format("particle {} is tied, but there are {}, counted from 0; give one of them", place, ids.size()));
+      throw Error(fmt::format("particle {} is tied, but there are only {} particles, counted from 0; give one of them",
+                              place, ids.size()));
     }
     if (first) known.push_back(ids[static_cast<std::size_t>(place)]);
     if (there && ids[static_cast<std::size_t>(place)] == known[k]) continue;

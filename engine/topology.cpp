@@ -18,7 +18,7 @@ Neighbors neighbors_of(const std::vector<BondedTerm<2>>& bonds, Index n) {
   for (const auto& bond : bonds) {
     const auto [i, j] = bond.particles;
     NOETHER_EXPECTS(i >= 0 && j >= 0 && i < n && j < n && i != j,
-                    fmt::format("a bond joins particles {} and {}, but there are {}", i, j, n));
+                    fmt::format("a bond joins particles {} and {}, but there are only {} particles", i, j, n));
     neighbors[static_cast<std::size_t>(i)].push_back(j);
     neighbors[static_cast<std::size_t>(j)].push_back(i);
   }

@@ -57,7 +57,7 @@ void set_one(ParticleSystem<double>& s, Topology& topology, const TypeParameters
   if (one.mass) set_mass(s, topology, type, *one.mass);
   if (one.charge) set_charge(s, topology, type, *one.charge);
   if (one.epsilon.has_value() != one.sigma.has_value()) {
-    refuse_parameters(key, fmt::format("type '{}' has {} and no {}; give both or none", one.type,
+    refuse_parameters(key, fmt::format("type '{}' has {} but no {}; give both or neither", one.type,
                                        one.epsilon ? "epsilon" : "sigma", one.epsilon ? "sigma" : "epsilon"));
   }
   if (!one.epsilon) return;
@@ -83,7 +83,7 @@ void set_type_parameters(ParticleSystem<double>& s, Topology& topology, const st
   const auto missing = std::find(known.begin(), known.end(), false);
   if (missing != known.end() && !topology.pair_kinds.empty()) {
     const auto type = static_cast<std::size_t>(missing - known.begin());
-    refuse_parameters("type", fmt::format("type '{}' has no epsilon and sigma, and others have; give epsilon = 0 where "
+    refuse_parameters("type", fmt::format("type '{}' has no epsilon and sigma, but others do; give epsilon = 0 where "
                                           "there is no Lennard-Jones force",
                                           topology.type_names[type]));
   }

@@ -14,7 +14,7 @@ const BondedTerms& Bonded::terms_of(const std::shared_ptr<const Topology>& topol
   if (topology == nullptr ||
       topology->bonds.size() + topology->angles.size() + topology->dihedrals.size() + topology->impropers.size() == 0) {
     throw Error(
-        "force 'bonded' has nothing to act on: the particles come without bonded terms; give a structure with "
+        "force 'bonded' has nothing to act on: the particles have no bonded terms; give a structure with "
         "bonds, or take the force out");
   }
   terms_ = std::make_shared<const BondedTerms>(topology, n);
@@ -81,8 +81,8 @@ Failure detail::overstretch(const BondedTerms& terms, Index bond, double length,
   return {.kind = Outcome::Kind::overstretch,
           .particle = term.particles[0],
           .quantity = "bond",
-          .message = fmt::format("the bond of {} and {} is {:.6g} long, and a fene bond is shorter than {:.6g}; take a "
-                                 "smaller step, or begin with shorter bonds",
+          .message = fmt::format("the bond of {} and {} is {:.6g} long, but a fene bond must be shorter than {:.6g}; "
+                                 "take a smaller step, or begin with shorter bonds",
                                  told(term.particles[0]), told(term.particles[1]), length, longest)};
 }
 

@@ -52,7 +52,7 @@ struct Bonded {
                                 "U(chi)"),
                         source("Allen2017"));
   }
-  static constexpr std::string_view only_once = "so every bond would count twice; take one out";
+  static constexpr std::string_view only_once = "so every bond would count twice; take one of them out";
   ForceClaims claims() const { return {.periodic = true, .bonded = true, .charges = false, .exclusions = false}; }
 
   /// @throws Error  if the particles have no bonded terms, or terms of a potential or with parameters unknown to it

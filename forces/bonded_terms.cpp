@@ -126,10 +126,10 @@ void check_terms(const std::vector<BondedTerm<size>>& terms, std::size_t kinds, 
                  const char* section) {
   for (const BondedTerm<size>& term : terms) {
     if (kinds == 0) {
-      throw Error(
-          fmt::format("there is {} and no parameters of any; give those of each kind in section '{}' of the structure",
-                      one, section),
-          {.key = "structure"});
+      throw Error(fmt::format("there is {}, but no parameters for its kind; give the parameters of each kind in "
+                              "section '{}' of the structure",
+                              one, section),
+                  {.key = "structure"});
     }
     if (term.type < 0 || static_cast<std::size_t>(term.type) >= kinds) {
       throw Error(fmt::format("{} is of kind {}, but there are {} kinds", one, term.type, kinds));

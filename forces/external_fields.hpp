@@ -23,9 +23,10 @@ struct UniformField {
   std::array<double, 3> acceleration = {0, 0, 0};  ///< g [length/time^2]
 
   static constexpr auto describe() {
-    return part<UniformField>("uniform_field", "the same acceleration everywhere", formula("U = - sum_i m_i g . x_i"),
-                              field<&UniformField::acceleration>("acceleration", "length/time^2", "g = [x, y, z]")
-                                  .required("[\"0 m/s^2\", \"0 m/s^2\", \"-9.81 m/s^2\"]"));
+    return part<UniformField>(
+        "uniform_field", "the same acceleration everywhere", formula("U = - sum_i m_i g . x_i"),
+        field<&UniformField::acceleration>("acceleration", "length/time^2", "the acceleration, g = [x, y, z]")
+            .required("[\"0 m/s^2\", \"0 m/s^2\", \"-9.81 m/s^2\"]"));
   }
   static ForceClaims claims() {
     return {.keeps_momentum = false,
@@ -56,7 +57,8 @@ struct OscillatingField {
     return part<OscillatingField>(
         "oscillating_field", "a uniform acceleration that oscillates in time",
         formula("U = - sum_i m_i g . x_i cos(omega t + phase)"),
-        field<&OscillatingField::acceleration>("acceleration", "length/time^2", "amplitude g = [x, y, z]")
+        field<&OscillatingField::acceleration>("acceleration", "length/time^2",
+                                               "amplitude of the acceleration, g = [x, y, z]")
             .required("[\"0 m/s^2\", \"0 m/s^2\", \"-9.81 m/s^2\"]"),
         field<&OscillatingField::omega>("omega", "1/time", "angular frequency").required("\"0.1/day\""),
         field<&OscillatingField::phase>("phase", "angle"));

@@ -26,8 +26,8 @@ struct FermiPastaUlam {
         "fermi_pasta_ulam", "a row of particles between walls, soft quartic springs and stiff ones in turn, along x",
         formula("U = sum_{even l} quartic d_l^4 + sum_{odd l} k d_l^2 / 2,  d_l = q_{l+1} - q_l,  q_0 = q_{n+1} = 0"),
         source("HairerLubichWanner2006"),
-        field<&FermiPastaUlam::k>("k", "mass/time^2", "of the stiff springs").required("\"1 kg/s^2\""),
-        field<&FermiPastaUlam::quartic>("quartic", "mass/length^2/time^2", "of the soft springs"));
+        field<&FermiPastaUlam::k>("k", "mass/time^2", "stiffness of the stiff springs").required("\"1 kg/s^2\""),
+        field<&FermiPastaUlam::quartic>("quartic", "mass/length^2/time^2", "stiffness of the soft springs"));
   }
   static ForceClaims claims() {
     return {.keeps_momentum = false, .keeps_angular_momentum = false, .charges = false, .exclusions = false};

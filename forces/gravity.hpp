@@ -29,21 +29,22 @@ struct Gravity {
   double softening = 0.0;        ///< [length]
 
   static constexpr auto describe() {
-    return part<Gravity>("gravity", "Newtonian gravity by direct summation, with softening and tracers",
-                         formula("U = - sum_{i<j} G m_i m_j / sqrt(r_ij^2 + softening^2)"),
-                         source("Newton1687, Plummer1911"),
-                         field<&Gravity::G>("G", "length^3/mass/time^2", "default: the unit system's own"),
-                         field<&Gravity::softening>("softening", "length", "Plummer's length; 0 is a point mass"));
+    return part<Gravity>(
+        "gravity", "Newtonian gravity by direct summation, with softening and tracers",
+        formula("U = - sum_{i<j} G m_i m_j / sqrt(r_ij^2 + softening^2)"), source("Newton1687, Plummer1911"),
+        field<&Gravity::G>("G", "length^3/mass/time^2", "default: the unit system's own"),
+        field<&Gravity::softening>("softening", "length", "Plummer softening length; 0 is a point mass"));
   }
 
   /// @throws Error  for a negative softening, or a G that is not above 0
   void check() const {
     check_constant_of_gravitation(G);
-    if (!(softening >= 0)) refuse_field("softening", softening, "is no length; 0 (point masses) or more is expected");
+    if (!(softening >= 0))
+      refuse_field("softening", softening, "is not a valid length; 0 (point masses) or more is expected");
   }
 
   /// Why it does not stand twice in a scene.
-  static constexpr std::string_view only_once = "so every pair would attract twice; take one out";
+  static constexpr std::string_view only_once = "so every pair would attract twice; take one of them out";
   ForceClaims claims() const {
     return {.sets = true, .kepler = true, .G = G, .softening = softening, .charges = false, .exclusions = false};
   }

@@ -18,11 +18,11 @@ struct HenonHeiles {
   double length = 1.0;  ///< l, from the well to each saddle [length]
 
   static constexpr auto describe() {
-    return part<HenonHeiles>("henon_heiles", "a well in the plane with three saddles, for every particle by itself",
+    return part<HenonHeiles>("henon_heiles", "a well in the plane with three saddles, for each particle separately",
                              formula("U = sum_i m_i omega^2 [ (x^2 + y^2)/2 + (x^2 y - y^3/3)/length ]"),
                              source("HenonHeiles1964"),
-                             field<&HenonHeiles::omega>("omega", "1/time", "of small oscillations"),
-                             field<&HenonHeiles::length>("length", "length", "from the well to each saddle"));
+                             field<&HenonHeiles::omega>("omega", "1/time", "angular frequency of small oscillations"),
+                             field<&HenonHeiles::length>("length", "length", "distance from the well to each saddle"));
   }
 
   static ForceClaims claims() {
@@ -31,7 +31,8 @@ struct HenonHeiles {
 
   /// @throws Error  for a length that is not above 0
   void check() const {
-    if (!(length > 0)) refuse_field("length", length, "is no distance of the saddles; a length above 0 is expected");
+    if (!(length > 0))
+      refuse_field("length", length, "is not a valid distance to the saddles; a length above 0 is expected");
   }
 
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {

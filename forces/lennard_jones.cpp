@@ -66,19 +66,24 @@ void LennardJonesForce::check() const {
   detail::check_cutoff(cutoff, cutoff_style, switch_from);
   if (epsilon.has_value() != sigma.has_value())
     refuse_field(epsilon ? "epsilon" : "sigma", epsilon ? *epsilon : *sigma,
-                 "stands alone; give epsilon and sigma, or none");
-  if (epsilon && !(*epsilon >= 0)) refuse_field("epsilon", *epsilon, "is no depth; 0 or more is expected");
-  if (sigma && !(*sigma > 0)) refuse_field("sigma", *sigma, "is no length above 0");
+                 "is given alone; give both epsilon and sigma, or neither");
+  if (epsilon && !(*epsilon >= 0)) refuse_field("epsilon", *epsilon, "is not a valid depth; 0 or more is expected");
+  if (sigma && !(*sigma > 0)) refuse_field("sigma", *sigma, "is not a valid length; a length above 0 is expected");
   if (tail && cutoff_style != Cutoff::plain)
-    refuse_field("tail", 1, "belongs to a plain cutoff; other ends change the energy within it too");
+    refuse_field("tail", 1,
+                 "is for a plain cutoff only; the other cutoff styles also change the energy within the cutoff");
 }
 
 void LennardJonesForce::check_types(const Topology* topology, const Box& box) const {
   check();
   if (tail && !box.is_periodic())
-    throw Error("lennard_jones: a tail is the mean of an endless liquid; it needs a periodic box");
+    throw Error(
+        "lennard_jones: tail = true is for a liquid without end, so it needs a periodic box; add a box or leave tail "
+        "out");
   if (precision == PairPrecision::mixed && !box.is_periodic())
-    throw Error("lennard_jones: mixed precision measures places in parts of a periodic box; there is none");
+    throw Error(
+        "lennard_jones: precision = \"mixed\" needs a periodic box, but there is none; add a box or leave precision "
+        "out");
   if (epsilon) return;
   if (topology == nullptr || topology->pair_kinds.empty()) {
     throw Error(

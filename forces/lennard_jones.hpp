@@ -108,12 +108,14 @@ struct LennardJonesForce {
         "lennard_jones", "Lennard-Jones pairs up to a cutoff",
         formula("U = sum_{i<j} 4 epsilon ((sigma/r_ij)^12 - (sigma/r_ij)^6), r_ij < cutoff"),
         source("LennardJones1931, Verlet1967"),
-        field<&LennardJonesForce::cutoff>("cutoff", "length", "pairs feel each other up to here").required("\"1 nm\""),
-        field<&LennardJonesForce::cutoff_style>("cutoff_style", "1", "how pairs end at the cutoff"),
-        field<&LennardJonesForce::switch_from>("switch_from", "length", "of the switches; default: 0.9 cutoff"),
-        field<&LennardJonesForce::tail>("tail", "1", "energy and pressure of pairs beyond the cutoff, g(r) = 1"),
-        field<&LennardJonesForce::epsilon>("epsilon", "energy", "depth of all pairs; default: by types"),
-        field<&LennardJonesForce::sigma>("sigma", "length", "of all pairs; default: by types"),
+        field<&LennardJonesForce::cutoff>("cutoff", "length", "largest distance at which pairs interact")
+            .required("\"1 nm\""),
+        field<&LennardJonesForce::cutoff_style>("cutoff_style", "1", "how the potential ends at the cutoff"),
+        field<&LennardJonesForce::switch_from>("switch_from", "length", "where a switch begins; default: 0.9 cutoff"),
+        field<&LennardJonesForce::tail>("tail", "1",
+                                        "adds the energy and pressure of pairs beyond the cutoff, for g(r) = 1"),
+        field<&LennardJonesForce::epsilon>("epsilon", "energy", "depth for all pairs; default: by types"),
+        field<&LennardJonesForce::sigma>("sigma", "length", "length for all pairs; default: by types"),
         field<&LennardJonesForce::precision>("precision", "1", "mixed: forces of pairs in single precision"));
   }
   ForceClaims claims() const {

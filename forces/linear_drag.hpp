@@ -17,15 +17,16 @@ struct LinearDrag {
 
   static constexpr auto describe() {
     return part<LinearDrag>("linear_drag", "friction proportional to velocity: the dissipative letter D",
-                            formula("a = - rate v;  flow D: v -> exp(-rate h) v"), letter('D', "flows of the drag"),
+                            formula("a = - rate v;  flow D: v -> exp(-rate h) v"),
+                            letter('D', "exact flow of the drag"),
                             field<&LinearDrag::rate>("rate", "1/time").required("\"0.01/day\""));
   }
   /// Why it does not stand twice in a scene.
-  static constexpr std::string_view only_once = "add the rates up";
+  static constexpr std::string_view only_once = "combine them, with the sum of the rates";
 
   /// @throws Error  for a negative rate
   void check() const {
-    if (!(rate >= 0)) refuse_field("rate", rate, "drives instead of damping; 0 or more is expected");
+    if (!(rate >= 0)) refuse_field("rate", rate, "would drive the motion instead of damping it; 0 or more is expected");
   }
 };
 

@@ -41,7 +41,7 @@ struct Oblateness {
   void check() const {
     check_constant_of_gravitation(G);
     if (J2 == 0 && J4 == 0) throw Error("oblateness has neither J2 nor J4, so it would do nothing; give one");
-    if (!(radius > 0)) refuse_field("radius", radius, "is no radius; a length above 0 is expected");
+    if (!(radius > 0)) refuse_field("radius", radius, "is not a valid radius; a length above 0 is expected");
     if (axis[0] == 0 && axis[1] == 0 && axis[2] == 0) {
       refuse_field("axis", axis, "has no direction; expected one such as [0, 0, 1]");
     }

@@ -21,8 +21,9 @@ int type_named(const Topology* topology, const std::string& name, std::string_vi
   const std::vector<std::string>& names = topology != nullptr ? topology->type_names : std::vector<std::string>{};
   const auto found = std::find(names.begin(), names.end(), name);
   if (found != names.end()) return static_cast<int>(found - names.begin());
-  throw Error(fmt::format("{} = \"{}\" names no type of the particles; {}", key, name,
-                          names.empty() ? "they have no types" : fmt::format("there are {}", fmt::join(names, ", "))));
+  throw Error(
+      fmt::format("{} = \"{}\" names no type of the particles; {}", key, name,
+                  names.empty() ? "they have no types" : fmt::format("expected one of: {}", fmt::join(names, ", "))));
 }
 
 /// Charges in the order of the records; of nobody 0. Kept until this thread asks again.
@@ -44,7 +45,7 @@ const double* charges_of_records(const ParticleSystem<double>& s, const Neighbor
 std::array<int, 2> pair_types(const Topology* topology, const std::string& first, const std::string& second) {
   if (first.empty() && second.empty()) return {-1, -1};
   if (first.empty() || second.empty()) {
-    throw Error(fmt::format("{} = \"{}\" stands alone; give first and second, or neither",
+    throw Error(fmt::format("{} = \"{}\" is given alone; give both first and second, or neither",
                             first.empty() ? "second" : "first", first.empty() ? second : first));
   }
   return {type_named(topology, first, "first"), type_named(topology, second, "second")};
@@ -59,10 +60,8 @@ void check_pair_scale(double scale) {
 
 void check_charges(bool there, std::string_view name) {
   if (there) return;
-  throw Error(
-      fmt::format("force '{}' acts between charges, and the particles have none; give charges, or take the "
-                  "force out",
-                  name));
+  throw Error(fmt::format(
+      "force '{}' acts between charges, but the particles have none; give charges, or take the force out", name));
 }
 
 double strongest_product(const ParticleSystem<double>& s) {

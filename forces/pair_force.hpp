@@ -215,17 +215,19 @@ template <PairPotential P> struct PairForce : P {
   {
     constexpr auto potential = P::describe();
     constexpr auto first_type =
-        field<&PairForce::first>("first", "1", "a type: only its pairs with `second`; default: all");
-    constexpr auto second_type = field<&PairForce::second>("second", "1", "a type: only its pairs with `first`");
+        field<&PairForce::first>("first", "1", "a type: only its pairs with `second`; default: all types");
+    constexpr auto second_type =
+        field<&PairForce::second>("second", "1", "a type: only its pairs with `first`; default: all types");
     if constexpr (ends_by_itself) {
       return part<PairForce>(potential, first_type, second_type);
     } else {
       return part<PairForce>(
           potential,
-          field<&PairForce::cutoff>("cutoff", "length", "pairs feel each other up to here").required("\"1 nm\""),
-          field<&PairForce::cutoff_style>("cutoff_style", "1", "how pairs end at the cutoff"),
-          field<&PairForce::switch_from>("switch_from", "length", "of the switches; default: 0.9 cutoff"), first_type,
-          second_type);
+          field<&PairForce::cutoff>("cutoff", "length", "largest distance at which pairs interact")
+              .required("\"1 nm\""),
+          field<&PairForce::cutoff_style>("cutoff_style", "1", "how the potential ends at the cutoff"),
+          field<&PairForce::switch_from>("switch_from", "length", "where a switch begins; default: 0.9 cutoff"),
+          first_type, second_type);
     }
   }
   ForceClaims claims() const { return {.periodic = true, .charges = charged, .exclusions = true, .range = reach()}; }

@@ -15,37 +15,37 @@ double excess(const Buckingham& b, double r) {
 }  // namespace
 
 void LennardJonesPair::check() const {
-  if (!(epsilon > 0)) refuse_field("epsilon", epsilon, "is no strength; an energy above 0 is expected");
-  if (!(sigma > 0)) refuse_field("sigma", sigma, "is no length above 0");
+  if (!(epsilon > 0)) refuse_field("epsilon", epsilon, "is not a valid strength; an energy above 0 is expected");
+  if (!(sigma > 0)) refuse_field("sigma", sigma, "is not a valid length; a length above 0 is expected");
 }
 
 void ReactionField::check() const {
-  if (!(radius > 0)) refuse_field("cutoff", radius, "is no length above 0");
+  if (!(radius > 0)) refuse_field("cutoff", radius, "is not a valid length; a length above 0 is expected");
   if (dielectric && !(*dielectric >= 1)) {
-    refuse_field("dielectric", *dielectric, "is no relative permittivity; 1 or more is expected");
+    refuse_field("dielectric", *dielectric, "is not a valid relative permittivity; 1 or more is expected");
   }
 }
 
 void Wca::check() const {
-  if (!(epsilon > 0)) refuse_field("epsilon", epsilon, "is no strength; an energy above 0 is expected");
-  if (!(sigma > 0)) refuse_field("sigma", sigma, "is no length above 0");
+  if (!(epsilon > 0)) refuse_field("epsilon", epsilon, "is not a valid strength; an energy above 0 is expected");
+  if (!(sigma > 0)) refuse_field("sigma", sigma, "is not a valid length; a length above 0 is expected");
 }
 
 void MorsePair::check() const {
-  if (!(depth > 0)) refuse_field("depth", depth, "is no depth of a well; an energy above 0 is expected");
-  if (!(a > 0)) refuse_field("a", a, "is no inverse width above 0");
-  if (!(length >= 0)) refuse_field("length", length, "is no length; 0 or more is expected");
+  if (!(depth > 0)) refuse_field("depth", depth, "is not a valid depth of a well; an energy above 0 is expected");
+  if (!(a > 0)) refuse_field("a", a, "is not a valid inverse width; a number above 0 is expected");
+  if (!(length >= 0)) refuse_field("length", length, "is not a valid length; 0 or more is expected");
 }
 
 void Buckingham::check() const {
-  if (!(A > 0)) refuse_field("A", A, "is no repulsion; an energy above 0 is expected");
-  if (!(rho > 0)) refuse_field("rho", rho, "is no length above 0");
-  if (!(C >= 0)) refuse_field("C", C, "is no dispersion; 0 or more is expected");
+  if (!(A > 0)) refuse_field("A", A, "is not a valid repulsion; an energy above 0 is expected");
+  if (!(rho > 0)) refuse_field("rho", rho, "is not a valid length; a length above 0 is expected");
+  if (!(C >= 0)) refuse_field("C", C, "is not a valid dispersion; 0 or more is expected");
   if (C > 0 && !(excess(*this, 7 * rho) > 0)) {
     refuse_field(
         "C", C,
         fmt::format(
-            "is so strong that these pairs attract at every distance; less than {:.6g} A rho^6 leaves a barrier",
+            "is so strong that these pairs attract at every distance; less than {:.6g} A rho^6 is needed for a barrier",
             std::pow(7.0, 7) * std::exp(-7.0) / 6));
   }
 }

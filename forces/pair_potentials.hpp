@@ -21,8 +21,9 @@ struct Wca {
   static constexpr auto describe() {
     return part<Wca>("wca", "the repulsive half of Lennard-Jones",
                      formula("U = 4 epsilon ((sigma/r)^12 - (sigma/r)^6) + epsilon, r < 2^(1/6) sigma"),
-                     source("Weeks1971"), field<&Wca::epsilon>("epsilon", "energy", "of all pairs").required("1"),
-                     field<&Wca::sigma>("sigma", "length", "of all pairs").required("1"));
+                     source("Weeks1971"),
+                     field<&Wca::epsilon>("epsilon", "energy", "depth for all pairs").required("1"),
+                     field<&Wca::sigma>("sigma", "length", "length for all pairs").required("1"));
   }
   void check() const;
   double scale() const { return 24 * epsilon / sigma; }
@@ -47,7 +48,7 @@ struct MorsePair {
   static constexpr auto describe() {
     return part<MorsePair>("morse", "a well with a soft core, between pairs that are not bonded",
                            formula("U = depth ((1 - exp(-a (r - length)))^2 - 1), r < cutoff"), source("Morse1929"),
-                           field<&MorsePair::depth>("depth", "energy", "of the well").required("1"),
+                           field<&MorsePair::depth>("depth", "energy", "depth of the well").required("1"),
                            field<&MorsePair::a>("a", "1/length", "inverse width of the well").required("2"),
                            field<&MorsePair::length>("length", "length", "where the well is deepest").required("1"));
   }
@@ -75,9 +76,9 @@ struct Buckingham {
   static constexpr auto describe() {
     return part<Buckingham>("buckingham", "exponential repulsion and dispersion",
                             formula("U = A exp(-r/rho) - C / r^6, r < cutoff"), source("Buckingham1938"),
-                            field<&Buckingham::A>("A", "energy", "of the repulsion").required("1000"),
-                            field<&Buckingham::rho>("rho", "length", "of the repulsion").required("0.3"),
-                            field<&Buckingham::C>("C", "energy*length^6", "of the dispersion").required("1"));
+                            field<&Buckingham::A>("A", "energy", "strength of the repulsion").required("1000"),
+                            field<&Buckingham::rho>("rho", "length", "range of the repulsion").required("0.3"),
+                            field<&Buckingham::C>("C", "energy*length^6", "strength of the dispersion").required("1"));
   }
   /// @throws Error  for a potential without a barrier, which attracts at every distance
   void check() const;

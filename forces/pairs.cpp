@@ -9,13 +9,14 @@
 namespace noether::detail {
 
 void check_cutoff(double cutoff, Cutoff style, std::optional<double> switch_from) {
-  if (!(cutoff > 0 && cutoff < 1e100)) refuse_field("cutoff", cutoff, "is no cutoff; a length above 0 is expected");
+  if (!(cutoff > 0 && cutoff < 1e100))
+    refuse_field("cutoff", cutoff, "is not a valid cutoff; a length above 0 is expected");
   if (switch_from && !(*switch_from > 0 && *switch_from < cutoff)) {
     refuse_field("switch_from", *switch_from, fmt::format("does not lie between 0 and the cutoff {}", cutoff));
   }
   if (switch_from && style != Cutoff::switch_c2 && style != Cutoff::switch_c4) {
     refuse_field("switch_from", *switch_from,
-                 "belongs to a switch; take it out, or add cutoff_style = \"switch_c2\" or \"switch_c4\"");
+                 "is for a switched cutoff only; take it out, or add cutoff_style = \"switch_c2\" or \"switch_c4\"");
   }
 }
 
@@ -46,7 +47,7 @@ Failure overlap_of(Index i, std::string message) {
   return {.kind = Outcome::Kind::overlap, .particle = i, .quantity = "distance", .message = std::move(message)};
 }
 
-constexpr std::string_view help = "; begin with [minimize], or take a smaller step";
+constexpr std::string_view help = "; start with [minimize], or take a smaller step";
 
 std::string too_close(const std::string& pair, std::string_view force, std::string_view what_helps) {
   return fmt::format("{}, too close for their {} force{}", pair, force, what_helps);

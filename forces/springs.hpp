@@ -31,7 +31,7 @@ template <class Real> struct Spring {
 };
 
 inline void check_length(double length) {
-  if (!(length >= 0)) refuse_field("length", length, "is no rest length; 0 or a length above is expected");
+  if (!(length >= 0)) refuse_field("length", length, "is not a valid rest length; 0 or more is expected");
 }
 }  // namespace detail
 
@@ -56,7 +56,7 @@ struct HarmonicBond {
         "harmonic_bond", "springs between pairs of particles",
         formula("U = sum over pairs k (|x_i - x_j| - length)^2 / 2"), source("Hooke1678"),
         field<&HarmonicBond::k>("k", "mass/time^2", "stiffness of each spring").required("\"1 kg/s^2\""),
-        field<&HarmonicBond::length>("length", "length", "at rest"));
+        field<&HarmonicBond::length>("length", "length", "length at rest"));
   }
   static ForceClaims claims() { return {.periodic = true, .charges = false, .exclusions = false}; }
 
@@ -91,11 +91,11 @@ struct Tether {
   static constexpr std::size_t particles = 1;  ///< that each spring ties
 
   static constexpr auto describe() {
-    return part<Tether>("tether", "springs from a point that stands still to particles",
+    return part<Tether>("tether", "springs from a fixed point to particles",
                         formula("U = sum over bodies k (|x_i - point| - length)^2 / 2"), source("Hooke1678"),
-                        field<&Tether::point>("point", "length", "where the springs end"),
+                        field<&Tether::point>("point", "length", "the fixed point where the springs end"),
                         field<&Tether::k>("k", "mass/time^2", "stiffness of each spring").required("\"1 kg/s^2\""),
-                        field<&Tether::length>("length", "length", "at rest"));
+                        field<&Tether::length>("length", "length", "length at rest"));
   }
   ForceClaims claims() const {
     return {.virial = false,

@@ -101,25 +101,24 @@ void check_tolerances(const MethodInfo& info, const MethodOptions& options, doub
     if (value == nullptr) continue;
     if (!info.is_adaptive(options)) {
       refuse_option(one.name,
-                    fmt::format("method '{}' takes steps of one length here, so {} means nothing to it; take it out",
+                    fmt::format("method '{}' takes steps of one length here, so {} has no effect; take it out",
                                 info.name, one.name));
     }
     const bool is_length = one.name == "max_step";
     if (is_length && !(*value > 0 && std::isfinite(*value)))
-      refuse_field(one.name, fmt::format("{}", *value), "is no longest step; a time above 0 is expected");
+      refuse_field(one.name, fmt::format("{}", *value), "is not a valid longest step; a time above 0 is expected");
     if (!is_length && !(*value >= 0 && std::isfinite(*value)))
-      refuse_field(one.name, fmt::format("{}", *value), "is no tolerance; a number of at least 0 is expected");
+      refuse_field(one.name, fmt::format("{}", *value), "is not a valid tolerance; 0 or more is expected");
   }
   // The references take 1e-16 for "to rounding"; others would shorten their steps without end.
   if (options.rtol && *options.rtol > 0 && *options.rtol < 4 * rounding && info.rtol > 1e-15) {
-    refuse_field(
-        "rtol", fmt::format("{}", *options.rtol),
-        fmt::format("is more than {} can tell; at least {:.1g} is expected, or a method that goes to rounding, "
-                    "such as 'gauss_8'",
-                    rounding < 1e-20 ? "extended precision" : "doubles", 4 * rounding));
+    refuse_field("rtol", fmt::format("{}", *options.rtol),
+                 fmt::format("is below the rounding of {}; at least {:.1g} is expected, or a method that solves to "
+                             "rounding, such as 'gauss_8'",
+                             rounding < 1e-20 ? "extended precision" : "doubles", 4 * rounding));
   }
   if (info.is_adaptive(options) && options.rtol.value_or(info.rtol) == 0 && options.atol.value_or(0) == 0) {
-    refuse_option("rtol", "rtol and atol are both 0, so no step could pass; give one of them above 0");
+    refuse_option("rtol", "rtol and atol are both 0, so no step could be accepted; give one of them above 0");
   }
 }
 
@@ -127,7 +126,7 @@ void check_tolerances(const MethodInfo& info, const MethodOptions& options, doub
 
 std::string lacks_option(std::string_view name, const OptionGroup& group, std::string_view key) {
   if (group.lacks.empty()) return fmt::format("method '{}' has no {}; take it out", name, key);
-  return fmt::format("method '{}' {}, so {} means nothing to it; take it out", name, group.lacks, key);
+  return fmt::format("method '{}' {}, so {} has no effect here; take it out", name, group.lacks, key);
 }
 
 void check_options(const MethodInfo& info, const MethodOptions& options, double rounding) {
@@ -142,7 +141,7 @@ void check_options(const MethodInfo& info, const MethodOptions& options, double 
   check_groups(info, options);
   if (options.first && !(*options.first > 0 && std::isfinite(*options.first))) {
     refuse_option("step",
-                  fmt::format("a first step of {} is no step; a finite time above 0 is expected", *options.first));
+                  fmt::format("a first step of {} is not valid; a finite time above 0 is expected", *options.first));
   }
 }
 

@@ -32,13 +32,13 @@ template <class Real> void Classical<Real>::bind(ParticleSystem<Real>& s) {
   const FieldClaims field = field_->claims();
   if (method.second_order_only && !field.second_order) {
     throw SchemeMismatch(
-        fmt::format("method '{}' serves q'' = a only; '{}' is a system of first order; use a method "
+        fmt::format("method '{}' is for q'' = a only, but '{}' is a first-order system; use a method "
                     "for y' = f, such as 'dormand_prince_5'",
                     method.name, field.name));
   }
   if (method.positions_only && field.velocity_dependent) {
     throw SchemeMismatch(
-        fmt::format("method '{}' serves q'' = a(t, q) only, but a force depends on velocities; use a "
+        fmt::format("method '{}' is for q'' = a(t, q) only, but a force depends on velocities; use a "
                     "method for y' = f, such as 'dop853' or 'gauss_8'",
                     method.name));
   }
@@ -197,7 +197,7 @@ template <class Real> void Classical<Real>::load(const SavedState& saved, const 
   const auto check = [&](const std::string& name, const std::string& now) {
     std::string before;
     load_value(saved, prefix + name, before);
-    if (before != now) throw Error(fmt::format("the saved run was made with {}, this one has {}", before, now));
+    if (before != now) throw Error(fmt::format("the saved run was made with {}, but this one has {}", before, now));
   };
   check("method", signature());
   check("field", field_->signature());

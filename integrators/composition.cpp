@@ -47,11 +47,10 @@ void check_class(const Scheme& scheme, const HamiltonianClaims& claims, const st
                       "'abah_8_6_4'"));
   }
   if (scheme.scheme_class == SchemeClass::rkn && !claims.quadratic_kinetic) {
-    throw SchemeMismatch(
-        fmt::format("scheme '{}' is a Runge-Kutta-Nystroem splitting and keeps its order only where "
-                    "{{B,{{B,{{B,A}}}}}} = 0, which '{}' does not grant; use a general scheme such as "
-                    "'blanes_moan_s10'",
-                    scheme.name, hamiltonian));
+    throw SchemeMismatch(fmt::format(
+        "scheme '{}' is a Runge-Kutta-Nystroem splitting and keeps its order only where {{B,{{B,{{B,A}}}}}} = 0, which "
+        "'{}' does not guarantee; use a general scheme such as 'blanes_moan_s10'",
+        scheme.name, hamiltonian));
   }
 }
 
@@ -92,7 +91,7 @@ void check_basic(const HamiltonianClaims& claims, const std::string& hamiltonian
       basic.find_first_not_of(claims.alphabet) == std::string::npos) {
     return;
   }
-  throw LogicError(fmt::format("the basic word '{}' of '{}' is no palindrome of its letters {}", basic, hamiltonian,
+  throw LogicError(fmt::format("the basic word '{}' of '{}' is not a palindrome of its letters {}", basic, hamiltonian,
                                claims.alphabet));
 }
 

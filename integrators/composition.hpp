@@ -86,8 +86,8 @@ template <SplitHamiltonian H> class Composition {
     hamiltonian_.bind(s);
     const HamiltonianClaims claims = hamiltonian_.claims();
     if (s.phase().coordinates != 0 && s.phase().coordinates != claims.coordinates) {
-      throw Error("the particles stand in coordinates of another Hamiltonian than '" + detail::name_of(hamiltonian_) +
-                  "'; begin with inertial ones");
+      throw Error("the particles are in the coordinates of another Hamiltonian than '" + detail::name_of(hamiltonian_) +
+                  "'; start with inertial coordinates");
     }
     if constexpr (std::is_same_v<real, double>) {
       double longest = 0;
@@ -110,7 +110,7 @@ template <SplitHamiltonian H> class Composition {
   /// @return the action of the pending stage, if wanted
   real settle(const ParticleSystem<real>& raw, ParticleSystem<real>& out, Request wanted, std::optional<double> at,
               bool corrected) {
-    NOETHER_EXPECTS(!at, "a composition stands at whole steps only");
+    NOETHER_EXPECTS(!at, "a composition can stop at whole steps only");
     out.assign_state(raw);
     real action(0);
     if (!raw.phase().opened && (corrected || before_.empty())) return action;
@@ -151,12 +151,12 @@ template <SplitHamiltonian H> class Composition {
     std::string method;
     load_value(saved, prefix + "method", method);
     if (method != name_)
-      throw Error("the saved run was made by method '" + method + "', this one uses '" + name_ + "'");
+      throw Error("the saved run was made by method '" + method + "', but this one uses '" + name_ + "'");
     bool compensated = false;
     load_value(saved, prefix + "compensated", compensated);
     if (compensated != options_.compensated) {
-      throw Error(compensated ? "the saved run sums with compensation, this one without"
-                              : "the saved run sums without compensation, this one with it");
+      throw Error(compensated ? "the saved run sums with compensation, but this one without"
+                              : "the saved run sums without compensation, but this one with it");
     }
     detail::load_any(saved, prefix + "hamiltonian/", hamiltonian_);
   }

@@ -24,7 +24,8 @@ template <SplitHamiltonian H> class Damped : public Wrapped<H> {
 
   Damped(H hamiltonian, LinearDrag drag) : Wrapped<H>(std::move(hamiltonian)), drag_(drag) {
     if (!(drag.rate >= 0))
-      throw Error("a drag rate of " + std::to_string(drag.rate) + " drives instead of damping; give 0 or more");
+      throw Error("a drag rate of " + std::to_string(drag.rate) +
+                  " would drive the motion instead of damping it; give 0 or more");
   }
 
   std::string name() const { return "damped"; }

@@ -16,7 +16,7 @@ HamiltonianMotion<Real>::HamiltonianMotion(AnyHamiltonian<Real> hamiltonian, For
   const HamiltonianClaims claims = hamiltonian_.claims();
   if (!claims.inertial) {
     throw SchemeMismatch(
-        fmt::format("'{}' moves in coordinates of its own, so methods for y' = f cannot step it; use a "
+        fmt::format("'{}' uses its own coordinates, so methods for y' = f cannot step it; use a "
                     "splitting scheme, such as 'verlet_aba'",
                     hamiltonian_.name()));
   }
@@ -28,7 +28,7 @@ HamiltonianMotion<Real>::HamiltonianMotion(AnyHamiltonian<Real> hamiltonian, For
   }
   if (claims.constraints > 0) {
     throw SchemeMismatch(
-        fmt::format("'{}' has constraints, which methods for y' = f do not know; use a splitting scheme, such as "
+        fmt::format("'{}' has constraints, which methods for y' = f do not support; use a splitting scheme, such as "
                     "'verlet'",
                     hamiltonian_.name()));
   }
@@ -45,7 +45,7 @@ template <class Real> FieldClaims HamiltonianMotion<Real>::claims() const {
           .dissipative = own.dissipative || beside.dissipative,
           .symplectic = own.symplectic,
           .no_action = own.no_action.empty()
-                           ? "methods for y' = f know no action of a Hamiltonian that is more than forces"
+                           ? "methods for y' = f have no action for a Hamiltonian that is more than forces"
                            : own.no_action,
           .keeps_momentum = own.keeps_momentum && beside.keeps_momentum,
           .keeps_angular_momentum = own.keeps_angular_momentum && beside.keeps_angular_momentum};

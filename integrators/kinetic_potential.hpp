@@ -55,8 +55,8 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
       : forces_(std::move(forces)), constraints_(std::move(constraints)) {
     if (claims_of(forces_).velocity_dependent) {
       throw SchemeMismatch(
-          "a force depends on velocities, so kicks by it are no exact flow; "
-          "give it as a letter of its own (drag: linear_drag), or use a method for q'' = f(q, v, t)");
+          "a force depends on velocities, so kicks by it are not an exact flow; give it as a letter of its own (drag: "
+          "linear_drag), or use a method for q'' = f(q, v, t)");
     }
   }
 

@@ -23,21 +23,22 @@ struct LangevinOptions {
 
   static constexpr auto describe() {
     return part<LangevinOptions>(
-        "langevin", "a bath of one temperature for every particle: the irreversible letter O",
+        "langevin", "a heat bath of one temperature for every particle: the irreversible letter O",
         formula("O: v -> c v + sqrt(k_B T/m (1 - c^2)) xi,  c = exp(-friction h)"), source("LeimkuhlerMatthews2013"),
         letter('O', "flows of the bath: friction and noise, exact"),
-        field<&LangevinOptions::temperature>("temperature", "temperature", "of the bath").required("\"300 K\""),
-        field<&LangevinOptions::friction>("friction", "1/time", "how fast velocities are forgotten")
+        field<&LangevinOptions::temperature>("temperature", "temperature", "temperature of the bath")
+            .required("\"300 K\""),
+        field<&LangevinOptions::friction>("friction", "1/time", "rate at which velocities forget their past")
             .required("\"1/ps\""),
-        field<&LangevinOptions::seed>("seed", "1", "of the noise: runs with another one are independent"));
+        field<&LangevinOptions::seed>("seed", "1", "seed of the noise: runs with different seeds are independent"));
   }
 
   /// @throws Error  for a negative temperature or friction
   void check() const {
     if (!(temperature >= 0 && std::isfinite(temperature)))
-      refuse_field("temperature", temperature, "is no temperature; 0 or more is expected");
+      refuse_field("temperature", temperature, "is not a valid temperature; 0 or more is expected");
     if (!(friction >= 0 && std::isfinite(friction)))
-      refuse_field("friction", friction, "drives instead of damping; 0 or more is expected");
+      refuse_field("friction", friction, "would drive the motion instead of damping it; 0 or more is expected");
   }
 };
 
@@ -65,7 +66,7 @@ template <SplitHamiltonian H> class Langevin : public Wrapped<H> {
     options_.check();
     if (hamiltonian_.claims().constraints > 0 && !detail::can_project(hamiltonian_)) {
       throw Error("noise would push velocities off the constraints of '" + detail::name_of(hamiltonian_) +
-                  "', which does not offer project_velocities; put the bath around kinetic_potential itself");
+                  "', which does not offer project_velocities; put the thermostat around kinetic_potential itself");
     }
   }
 
@@ -76,7 +77,7 @@ template <SplitHamiltonian H> class Langevin : public Wrapped<H> {
     claims.irreversible += 'O';
     claims.dissipative = true;
     claims.symplectic = false;
-    claims.no_action = "a thermostat gives and takes energy, so no action tells the motion";
+    claims.no_action = "a thermostat exchanges energy with the particles, so the motion has no action";
     claims.keeps_momentum = claims.keeps_angular_momentum = false;
     return claims;
   }
@@ -86,13 +87,14 @@ template <SplitHamiltonian H> class Langevin : public Wrapped<H> {
   void bind(ParticleSystem<real>& s) {
     for (Index i = 0; i < s.size(); ++i) {
       if (s.masses()[i] != real(0)) continue;
-      throw Error("'" + s.name(i) + "' has no mass, so it has no temperature; give it one, or take the bath out");
+      throw Error("'" + s.name(i) +
+                  "' has no mass, so it has no temperature; give it a mass, or take the thermostat out");
     }
-    if (s.clock().dt() < 0) throw Error("a bath knows no way back; a step above 0 is expected");
+    if (s.clock().dt() < 0) throw Error("a thermostat cannot go back in time; a step above 0 is expected");
     hamiltonian_.bind(s);
     if (!hamiltonian_.claims().inertial) {
       throw Error("'" + detail::name_of(hamiltonian_) +
-                  "' moves in coordinates of its own, where noise is not that of particles; put the bath around "
+                  "' uses its own coordinates, where noise is not that of particles; put the thermostat around "
                   "kinetic_potential");
     }
   }
@@ -114,7 +116,7 @@ template <SplitHamiltonian H> class Langevin : public Wrapped<H> {
   /// A letter by itself: of the O's the pending one, which completes the last step.
   void flow(char letter, ParticleSystem<real>& s, const real& h) {
     if (letter != 'O') return hamiltonian_.flow(letter, s, h);
-    NOETHER_EXPECTS(s.phase().pending, "noise is walked by whole steps: which O of its step this is, is not known");
+    NOETHER_EXPECTS(s.phase().pending, "noise is drawn by whole steps: it is not known which O of its step this is");
     mix(s, h, s.clock().step() - 1, last_stage);
   }
   /// @throws LogicError  for O: noise has no action

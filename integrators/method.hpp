@@ -62,7 +62,7 @@ template <class Real> class Method {
   virtual bool dense() const { return false; }
   /// y at t + theta h of the last step, theta in [0, 1].
   virtual void interpolate(VectorField<Real>& /*f*/, const Real& /*theta*/, Vector<Real>& /*y*/) {
-    throw LogicError("a method without dense output was asked for it");
+    throw LogicError("dense output was requested from a method that has none");
   }
 
   /// Whether `action` knows what a step is the stationary point of: a symplectic method over particles may.
@@ -70,7 +70,7 @@ template <class Real> class Method {
   /// The integral of the Lagrangian over the last step, which began at y(t), as the method itself approximates it.
   /// @cost as many evaluations, not counted, as the method has stages
   virtual Real action(VectorField<Real>& /*f*/, const Real& /*t*/, const Vector<Real>& /*y*/) {
-    throw LogicError("a method that gives no action was asked for it");
+    throw LogicError("the action was requested from a method that does not compute it");
   }
 
   virtual void save(SavedState& saved, const std::string& prefix) const = 0;

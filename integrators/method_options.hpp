@@ -126,20 +126,20 @@ struct ErrorControl {
                                field<&MethodOptions::atol>("atol", "1",
                                                            "absolute tolerance, of each variable; default: 0 for "
                                                            "particles, of a [system] 1e-9"),
-                               field<&MethodOptions::max_step>("max_step", "time", "longest step; default: any"));
+                               field<&MethodOptions::max_step>("max_step", "time", "longest step; default: no limit"));
   }
 };
 
 /// The key of methods that solve linear systems.
 struct LinearSolver {
-  static constexpr std::string_view lacks = "solves no linear systems";
+  static constexpr std::string_view lacks = "does not solve linear systems";
 
   static constexpr auto describe() {
     return part<MethodOptions>(
         "linear_solver", "how linear systems are solved",
         field<&MethodOptions::jacobian>("jacobian", "1",
-                                        "how df/dy is kept; unless told sparse where the system knows its zeros, else "
-                                        "dense, of Gauss matrix_free where it is large"));
+                                        "how df/dy is stored; default: sparse if the system declares its zeros, else "
+                                        "dense; for Gauss methods matrix_free if it is large"));
   }
 };
 

@@ -15,10 +15,10 @@ namespace noether {
 
 void MinimizeOptions::check() const {
   if (!(max_force > 0 && std::isfinite(max_force)))
-    refuse_field("max_force", max_force, "is never reached; a force above 0 is expected");
-  if (steps < 1) refuse_field("steps", static_cast<double>(steps), "leaves nothing to do; 1 or more is expected");
+    refuse_field("max_force", max_force, "can never be reached; a force above 0 is expected");
+  if (steps < 1) refuse_field("steps", static_cast<double>(steps), "is too few; 1 or more is expected");
   if (!(max_displacement >= 0))
-    refuse_field("max_displacement", max_displacement, "is no length; 0 or more is expected");
+    refuse_field("max_displacement", max_displacement, "is not a valid length; 0 or more is expected");
 }
 
 namespace {
@@ -287,7 +287,7 @@ Minimized minimize(ParticleSystem<double>& s, const AnyForce<double>& forces, co
   options.check();
   const ForceClaims claims = forces.claims();
   if (claims.velocity_dependent || claims.time_dependent || claims.dissipative) {
-    throw Error("a force depends on velocities or time, so there is no minimum to go to; leave it out");
+    throw Error("a force depends on velocities or time, so there is no minimum to move to; leave it out");
   }
   return Descent(s, forces, options, along).run();
 }

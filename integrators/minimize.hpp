@@ -21,11 +21,13 @@ struct MinimizeOptions {
     return part<MinimizeOptions>(
         "minimize", "moves the particles to a minimum of the energy before the first step",
         formula("v -> (1 - alpha) v + alpha |v| f/|f| along f.v > 0, v -> 0 against it"), source("BitzekEtAl2006"),
-        field<&MinimizeOptions::max_force>("max_force", "force", "the largest force on a particle that is small enough")
+        field<&MinimizeOptions::max_force>("max_force", "force",
+                                           "the minimization ends when no particle has a larger force")
             .required("\"10 kJ/mol/nm\""),
-        field<&MinimizeOptions::steps>("steps", "1", "force evaluations at most"),
-        field<&MinimizeOptions::max_displacement>("max_displacement", "length",
-                                                  "of a particle in one step; 0: a twentieth of the mean distance"));
+        field<&MinimizeOptions::steps>("steps", "1", "largest number of force evaluations"),
+        field<&MinimizeOptions::max_displacement>(
+            "max_displacement", "length",
+            "largest displacement of a particle in one step; 0: a twentieth of the mean distance"));
   }
   /// @throws Error  for what is no force, number of steps or length
   void check() const;

@@ -26,7 +26,7 @@ Scheme word(std::string_view letters) {
   if (letters.empty() || letters.size() > Word::capacity || !capitals || letters.find('A') == letters.npos ||
       letters.find('B') == letters.npos) {
     throw SchemeMismatch(
-        fmt::format("'{}' is no word: 1 to {} capital letters are expected, A and B among them, such as "
+        fmt::format("'{}' is not a valid word: 1 to {} capital letters are expected, A and B among them, such as "
                     "'BAB'",
                     letters, Word::capacity));
   }

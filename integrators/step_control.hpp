@@ -228,7 +228,7 @@ inline std::optional<Failure> underflow(double t, double h) {
     return {};
   }
   return Failure{Outcome::Kind::step_underflow, -1, "step",
-                 fmt::format("the tolerance asks for a step of {:.3g} at time {:.9g}, below the resolution of time; "
+                 fmt::format("the tolerance needs a step of {:.3g} at time {:.9g}, below the resolution of time; "
                              "two bodies may have collided, or the tolerance is below rounding",
                              h, t)};
 }
@@ -238,11 +238,12 @@ inline std::optional<Failure> underflow(double t, double h) {
 inline std::optional<Failure> underflow(double t, double h, const ParticleScales& scales) {
   const ParticleScales::Lost& lost = scales.ahead(h).lost;
   if (lost.particle < 0) return underflow(t, h);
-  return Failure{Outcome::Kind::step_underflow, lost.particle, "step",
-                 fmt::format("doubles cannot tell the orbit of {} about {} at time {:.9g}: their distance of {:.3g} is "
-                             "lost in the rounding of positions; use 'gauss_8', which steps relative to such a body, "
-                             "or put the origin there",
-                             lost.name, lost.neighbor_name, t, lost.distance)};
+  return Failure{
+      Outcome::Kind::step_underflow, lost.particle, "step",
+      fmt::format(
+          "doubles cannot resolve the orbit of {} about {} at time {:.9g}: their distance of {:.3g} is lost in the "
+          "rounding of positions; use 'gauss_8', which steps relative to such a body, or put the origin there",
+          lost.name, lost.neighbor_name, t, lost.distance)};
 }
 
 }  // namespace noether

@@ -149,18 +149,19 @@ StiffnessAlong stiffness_along(VectorField<double>& f, const Vector<double>& sta
 }
 
 std::string Stiffness::verdict() const {
-  if (fastest == 0) return turning > 0 ? "not stiff: nothing decays, it oscillates" : "not stiff: nothing decays";
+  if (fastest == 0)
+    return turning > 0 ? "not stiff: nothing decays, the system oscillates" : "not stiff: nothing decays";
   if (std::isnan(ratio)) {
     return fmt::format("the fastest rate is {:.3g}; how stiff a run is depends on its length, which is not given",
                        fastest);
   }
   const std::string s = fmt::format("S = {:.3g}", ratio);
   if (fastest < apart * std::max(growth, turning)) {
-    return fmt::format("not stiff: {}, but what {} is about as fast, and asks for as many steps", s,
+    return fmt::format("not stiff: {}, but what {} is about as fast, and needs as many steps", s,
                        growth > turning ? "grows" : "oscillates");
   }
   const double steps = ratio / explicit_limit;
-  if (ratio < mild) return fmt::format("not stiff: {}; an explicit method such as dop853 will do", s);
+  if (ratio < mild) return fmt::format("not stiff: {}; an explicit method such as dop853 is enough", s);
   if (ratio < stiff) {
     return fmt::format(
         "mildly stiff: {}; an explicit method needs at least about {:.2g} steps; compare dop853 with "

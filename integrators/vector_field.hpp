@@ -107,7 +107,7 @@ template <class Real> class VectorField {
   /// out = df/dt dt + df/dy dy, exact, not counted. @throws LogicError  where `has_derivative` is false
   virtual void derivative(const Real& /*t*/, const Vector<Real>& /*y*/, const Real& /*dt*/, const Vector<Real>& /*dy*/,
                           Vector<Real>& /*out*/) {
-    throw LogicError("a vector field without derivatives was asked for them");
+    throw LogicError("derivatives were requested from a vector field that has none");
   }
   /// J = df/dy, shape (size, size), not counted; false where it has to be found by differences.
   /// @cost `derivative` for each column, unless a field knows better
@@ -124,10 +124,10 @@ template <class Real> class VectorField {
   virtual bool has_potential() const { return false; }
   /// U(t, q) at y = (q, v), not counted [energy]. @throws LogicError  where `has_potential` is false
   virtual Real potential(const Real& /*t*/, const Vector<Real>& /*y*/) {
-    throw LogicError("a vector field without a potential was asked for it");
+    throw LogicError("the potential was requested from a vector field that has none");
   }
   /// The mass of each q, shape (size / 2) [mass]. @throws LogicError  as `potential`
-  virtual Vector<Real> masses() const { throw LogicError("a vector field without masses was asked for them"); }
+  virtual Vector<Real> masses() const { throw LogicError("masses were requested from a vector field that has none"); }
   /// Kinetic less potential energy at y = (q, v), not counted [energy]. @throws LogicError  as `potential`
   virtual Real lagrangian(const Real& t, const Vector<Real>& y) {
     const Vector<Real> m = masses();
@@ -140,7 +140,7 @@ template <class Real> class VectorField {
   /// Accelerations a, shape (size / 2), for which m a . (q1 - q0) = U(t, q0) - U(t, q1) to rounding, counted.
   /// @throws LogicError  where `has_secant` is false
   virtual void secant(const Real& /*t*/, const Vector<Real>& /*y0*/, const Vector<Real>& /*y1*/, Vector<Real>& /*a*/) {
-    throw LogicError("a vector field without secants was asked for them");
+    throw LogicError("secants were requested from a vector field that has none");
   }
 
   /// What of it is to be checked when a saved run goes on, beside its signature.

@@ -74,7 +74,7 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
 
   explicit WisdomHolman(WisdomHolmanOptions options, F forces = F()) : options_(options), forces_(std::move(forces)) {
     if (claims_of(forces_).velocity_dependent) {
-      throw SchemeMismatch("a force depends on velocities, so kicks by it are no exact flow of wisdom_holman");
+      throw SchemeMismatch("a force depends on velocities, so kicks by it are not an exact flow of wisdom_holman");
     }
   }
 

@@ -15,7 +15,7 @@ template <class Real, class F> HamiltonianClaims WisdomHolman<Real, F>::claims()
   const ForceClaims forces = claims_of(forces_);
   if (forces.kicks.find_first_not_of('B') != std::string::npos) {
     throw SchemeMismatch(
-        "wisdom_holman has kicks of the letter B alone; take the letter of the force out, or use "
+        "wisdom_holman has only kicks of the letter B; take the letter of the force out, or use "
         "kinetic_potential");
   }
   return {.alphabet = "AB",
@@ -50,7 +50,7 @@ template <class Real, class F> void WisdomHolman<Real, F>::bind(ParticleSystem<R
     const Real m = c.masses()[i];
     masses_[static_cast<std::size_t>(i)] = m;
     if (m > Real(0) && c.masses()[i - 1] == Real(0)) {
-      throw Error(fmt::format("'{}' has mass but stands after the tracer '{}'; put tracers after all massive bodies",
+      throw Error(fmt::format("'{}' has mass but comes after the tracer '{}'; put tracers after all massive bodies",
                               s.name(i), s.name(i - 1)));
     }
     const Real r = sqrt(norm2(c.positions()[i] - c.positions()[0]));
@@ -115,7 +115,7 @@ void WisdomHolman<Real, F>::load_within(const SavedState& saved, const std::stri
     const std::int64_t w = within[static_cast<std::size_t>(at(k))], own = jacobi() ? static_cast<std::int64_t>(k) : 0;
     fits = k < massive() ? w == own : w >= 0 && w < static_cast<std::int64_t>(massive());
   }
-  if (!fits) throw Error("the saved places of tracers among the bodies do not fit these particles");
+  if (!fits) throw Error("the saved places of tracers among the bodies do not match these particles");
   within_ = std::move(within);
 }
 
@@ -130,7 +130,7 @@ void WisdomHolman<Real, F>::load_order(const SavedState& saved, const std::strin
   };
   const auto massive = [&](std::int64_t i) { return masses_[static_cast<std::size_t>(i)] != Real(0); };
   if (sorted(order) != sorted(order_) || order[0] != 0 || !std::is_partitioned(order.begin(), order.end(), massive)) {
-    throw Error("the saved order of Jacobi coordinates does not fit these particles");
+    throw Error("the saved order of Jacobi coordinates does not match these particles");
   }
   order_ = std::move(order);
 }

@@ -22,7 +22,7 @@ TextFile::TextFile(std::filesystem::path file, std::string_view expected) : file
   }
   const std::size_t zero = bytes.find('\0');
   if (zero != std::string::npos) {
-    throw FileError(fmt::format("this is no text: byte {} is zero; expected {}", zero, expected),
+    throw FileError(fmt::format("this is not a text file: byte {} is zero; expected {}", zero, expected),
                     {.file = file_.string()});
   }
   std::string_view rest = bytes;
@@ -99,11 +99,11 @@ std::string with_exponent_of_c(std::string_view word) {
 
 /// Ends the refusal of what is no number with what it may be meant as.
 std::string_view meant_by(std::string_view word) {
-  if (word.find(',') != std::string_view::npos) return "; decimals have a point";
+  if (word.find(',') != std::string_view::npos) return "; use a decimal point";
   static constexpr std::array<std::string_view, 4> minus_signs = {"\xE2\x88\x92", "\xE2\x80\x93", "\xE2\x80\x92",
                                                                   "\xE2\x80\x90"};
   for (const std::string_view sign : minus_signs) {
-    if (word.find(sign) != std::string_view::npos) return "; a minus is written '-'";
+    if (word.find(sign) != std::string_view::npos) return "; write a minus as '-'";
   }
   return "";
 }
@@ -118,10 +118,10 @@ double number_in(const TextFile& text, std::size_t line, std::string_view word, 
   double number = 0;
   const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
   if (problem == std::errc::result_out_of_range) {
-    text.fail(line, fmt::format("{} is {}, which no double can hold", what, shown), shown);
+    text.fail(line, fmt::format("{} is {}, which is outside the range of doubles", what, shown), shown);
   }
   if (problem != std::errc() || end != digits.data() + digits.size() || digits.front() == '+') {
-    text.fail(line, fmt::format("{} is '{}', which is no number{}", what, shown, meant_by(word)), shown);
+    text.fail(line, fmt::format("{} is '{}', which is not a number{}", what, shown, meant_by(word)), shown);
   }
   if (!std::isfinite(number)) text.fail(line, fmt::format("{} is {}; expected a finite number", what, shown), shown);
   return number;
@@ -140,7 +140,7 @@ void BodyList::add(std::size_t line, const std::string& name, double mass, const
     if (!std::isfinite(number)) text_.fail(line, fmt::format("the state of {} is not finite in these units", name));
   }
   if (!names_.insert(name).second)
-    text_.fail(line, fmt::format("the name '{}' is taken; names must differ", name), name);
+    text_.fail(line, fmt::format("the name '{}' is already used; names must differ", name), name);
   particles_.add(name, mass, x, v);
 }
 

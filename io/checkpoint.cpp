@@ -73,7 +73,7 @@ SavedArray read_array(const Hdf5Dataset& dataset) {
 void read_state(const Hdf5File& file, const std::string& group, const std::string& below, SavedState& state) {
   static constexpr int deepest = 64;
   if (std::count(below.begin(), below.end(), '/') > deepest)
-    throw FileError(fmt::format("damaged: the groups below '{}' are nested more than {} deep", group, deepest),
+    throw FileError(fmt::format("damaged: the groups below '{}' are nested more than {} levels deep", group, deepest),
                     {.file = file.name()});
   for (const std::string& child : file.children(group + below)) {
     const std::string name = below + "/" + child;
@@ -112,7 +112,7 @@ std::string to_bytes(const Checkpoint& checkpoint, const std::filesystem::path& 
 Checkpoint from_bytes(const std::string& bytes, const std::filesystem::path& name) {
   const Hdf5File file = Hdf5File::open_bytes(bytes, name);
   if (file.integer_attribute("/noether", "complete") != 1) {
-    throw FileError("this is no complete checkpoint", {.file = name.string()});
+    throw FileError("this is not a complete checkpoint", {.file = name.string()});
   }
   Checkpoint checkpoint;
   read_state(file, "/state", "", checkpoint.run.particles);
@@ -161,12 +161,12 @@ Checkpoint read_checkpoint(const std::filesystem::path& file) {
   const std::string_view all = bytes;
   if (content == 0 || !all.substr(content).starts_with(trailer_head)) {
     throw FileError(
-        fmt::format("damaged, or no checkpoint: the line 'sha256:...' at the end of its {} bytes is missing",
+        fmt::format("damaged, or not a checkpoint: the line 'sha256:...' at the end of its {} bytes is missing",
                     bytes.size()),
         {.file = file.string()});
   }
   if (trailer_of(all.substr(0, content)) != all.substr(content)) {
-    throw FileError("damaged: its bytes do not fit the SHA-256 at its end", {.file = file.string()});
+    throw FileError("damaged: its contents do not match the SHA-256 at its end", {.file = file.string()});
   }
   bytes.resize(content);
   return from_bytes(bytes, file);

@@ -197,11 +197,11 @@ void compare_names(const std::vector<std::string>& a, const std::vector<std::str
                    std::vector<std::string>& told) {
   for (const std::string& name : a) {
     if (std::find(b.begin(), b.end(), name) == b.end())
-      told.push_back(fmt::format("{} '{}' is in the first only", what, name));
+      told.push_back(fmt::format("{} '{}' is only in the first", what, name));
   }
   for (const std::string& name : b) {
     if (std::find(a.begin(), a.end(), name) == a.end())
-      told.push_back(fmt::format("{} '{}' is in the second only", what, name));
+      told.push_back(fmt::format("{} '{}' is only in the second", what, name));
   }
 }
 
@@ -245,7 +245,7 @@ void compare_constants(const Hdf5File& a, const Hdf5File& b, RunComparison& resu
   const bool types = !knows_no_types(a) && !knows_no_types(b);
   if (!types) {
     result.notes.push_back(
-        fmt::format("types, molecules, bonds and charges are not compared: {} from before they stood in such files",
+        fmt::format("types, molecules, bonds and charges are not compared: {} from a version that did not store them",
                     !knows_no_types(b)   ? "the first is"
                     : !knows_no_types(a) ? "the second is"
                                          : "both are"));
@@ -296,10 +296,9 @@ void compare_origins(const FileInfo& a, const FileInfo& b, std::vector<std::stri
 FileInfo info_of_trajectory(const std::filesystem::path& path) {
   FileInfo found = info(path);
   if (found.kind != "trajectory") {
-    throw Error(
-        fmt::format("{} is a {}, which holds one moment; two run.h5 are compared, and `noether info` shows its "
-                    "digest",
-                    path.string(), found.kind));
+    throw Error(fmt::format(
+        "{} is a {}, which contains one moment only; compare two run.h5, or see its digest with `noether info`",
+        path.string(), found.kind));
   }
   return found;
 }

@@ -172,7 +172,8 @@ void write_text_file(const std::filesystem::path& out, const std::function<void(
   std::ofstream target(out, std::ios::binary);
   const auto written = [&] {
     if (!target)
-      throw FileError("cannot be written; is the folder there, and the disk not full?", {.file = out.string()});
+      throw FileError("cannot be written; check that the folder exists and the disk is not full",
+                      {.file = out.string()});
   };
   written();
   write(target);
@@ -207,16 +208,16 @@ void convert_to_bodies(const std::filesystem::path& file, const std::filesystem:
                        const ConvertOptions& options) {
   const bool table = out.extension() == ".csv";
   if (!table && out.extension() != ".h5") {
-    throw Error(fmt::format("cannot write bodies to '{}': give a name that ends in .h5, or in .csv where there are no "
-                            "types, bonds, charges or boxes",
+    throw Error(fmt::format("cannot write bodies to '{}': give a name that ends in .h5, or in .csv if there are no "
+                            "types, bonds, charges or box",
                             out.string()),
                 {.value = out.extension().string()});
   }
-  if (options.unwrapped) throw Error("bodies stay in their box; leave out --unwrapped");
+  if (options.unwrapped) throw Error("--bodies keeps the particles in their box; leave out --unwrapped");
   const FrameParticles start = read_frame_particles(file, {.frame = options.frame});
   const std::string beyond = table ? beyond_a_table(start.particles) : "";
   if (!beyond.empty()) {
-    throw Error(fmt::format("cannot write bodies to '{}': a table has no room for {}; give a name that ends in .h5",
+    throw Error(fmt::format("cannot write bodies to '{}': a table cannot store {}; give a name that ends in .h5",
                             out.string(), beyond),
                 {.value = out.extension().string()});
   }
@@ -232,8 +233,7 @@ void convert_to_bodies(const std::filesystem::path& file, const std::filesystem:
 Index convert(const std::filesystem::path& file, const std::filesystem::path& out, const ConvertOptions& options) {
   std::error_code none;
   if (std::filesystem::equivalent(file, out, none)) {
-    throw Error(fmt::format("'{}' would be written over itself; give another name", out.string()),
-                {.value = out.string()});
+    throw Error(fmt::format("'{}' would overwrite itself; give another name", out.string()), {.value = out.string()});
   }
   if (options.bodies) {
     convert_to_bodies(file, out, options);
@@ -241,8 +241,8 @@ Index convert(const std::filesystem::path& file, const std::filesystem::path& ou
   }
   const std::string extension = out.extension().string();
   if (extension == ".h5") {
-    throw Error(fmt::format("cannot convert to '{}': one frame becomes a file for a new scene by --bodies; all frames "
-                            "become .xyz or .csv",
+    throw Error(fmt::format("cannot convert to '{}': give --bodies to write one frame for a new scene, or a name that "
+                            "ends in .xyz or .csv for all frames",
                             out.string()),
                 {.value = extension});
   }
@@ -259,16 +259,14 @@ Index convert(const std::filesystem::path& file, const std::filesystem::path& ou
   if (reader.frames() == 0) throw FileError("there are no frames to convert", {.file = file.string()});
   const bool of_system = !reader.shared().variable_names.empty();
   if (of_system && extension == ".xyz") {
-    throw Error(fmt::format("cannot convert to '{}': a system of variables has no particles; give a name that ends in "
+    throw Error(fmt::format("cannot convert to '{}': a first-order system has no particles; give a name that ends in "
                             ".csv",
                             out.string()),
                 {.value = extension});
   }
   if (options.unwrapped && reader.frame(0).images.empty()) {
-    throw Error(
-        fmt::format("cannot unwrap the positions of '{}': its frames have no images, because there is no "
-                    "periodic box; convert it as it is",
-                    file.string()));
+    throw Error(fmt::format(
+        "cannot unwrap the positions of '{}': its frames have no periodic box; leave out --unwrapped", file.string()));
   }
   const Write write = of_system ? write_system : extension == ".csv" ? write_csv : write_xyz;
   write_text_file(out, [&](std::ofstream& target) {

@@ -138,8 +138,7 @@ std::vector<std::string> fields_of(const TextFile& text, std::size_t line, std::
     }
     if (c == '"') {
       if (was_quoted || !trimmed(fields.back()).empty()) {
-        text.fail(line,
-                  "a double quote stands inside a field; quote the whole field, and write \"\" for a quote in it");
+        text.fail(line, "a double quote is inside a field; quote the whole field, and write \"\" for a quote in it");
       }
       fields.back().clear();
       quoted = was_quoted = true;
@@ -217,9 +216,9 @@ class CsvBodies {
       const Heading heading = parse_heading(fields[k]);
       const KnownColumn& known = known_column(line, k, heading.name);
       const bool is_new = columns_.try_emplace(heading.name, Column{k}).second;
-      if (!is_new) text_.fail(line, fmt::format("column '{}' stands twice", heading.name), heading.name);
+      if (!is_new) text_.fail(line, fmt::format("column '{}' appears twice", heading.name), heading.name);
       if (known.dimension.empty() && heading.unit) {
-        text_.fail(line, fmt::format("column '{}' takes no unit, not '{}'", heading.name, *heading.unit),
+        text_.fail(line, fmt::format("column '{}' has no unit; take '{}' out", heading.name, *heading.unit),
                    *heading.unit);
       }
       headings.emplace_back(&known, heading);
@@ -248,15 +247,16 @@ class CsvBodies {
       names.emplace_back(known.name);
     }
     if (name.empty()) {
-      text_.fail(line, fmt::format("column {} has no name{}", field + 1,
-                                   field == 0 ? "; take a column of row numbers out, by index=False in pandas" : ""));
+      text_.fail(line, fmt::format(
+                           "column {} has no name{}", field + 1,
+                           field == 0 ? "; if it is the row numbers of pandas, write the table with index=False" : ""));
     }
     double number = 0;
     const auto [end, problem] = std::from_chars(name.data(), name.data() + name.size(), number);
     if (problem == std::errc() && end == name.data() + name.size()) {
       text_.fail(line,
                  fmt::format("'{}' is a number where a column name is expected; the first line names the columns, such "
-                             "as 'name,mass [Msun],x [au],...', and is no comment",
+                             "as 'name,mass [Msun],x [au],...', and must not be a comment",
                              name),
                  name);
     }
@@ -280,7 +280,7 @@ class CsvBodies {
         for (const KnownColumn& column : known_columns()) known += column.name == word ? 1 : 0;
       }
       if (known < 3) continue;
-      text_.fail(above, "the names of the columns stand in a comment; take the '#' before them out");
+      text_.fail(above, "the column names are in a comment; take out the '#' before them");
     }
   }
 
@@ -308,7 +308,7 @@ class CsvBodies {
     if (units_.is_reduced()) text_.fail(line, "column 'T' is in Julian days; the reduced system has none", "JD");
     if (!epoch_) {
       text_.fail(line,
-                 "column 'T' is in Julian days, and nobody says which the start is; give epoch = \"JD ...\" in "
+                 "column 'T' is in Julian days, but the epoch of the start is not given; give epoch = \"JD ...\" in "
                  "[particles]",
                  "JD");
     }
@@ -325,7 +325,7 @@ class CsvBodies {
     }
     if (unit.dimension == expected) return unit;
     text_.fail(line,
-               fmt::format("column '{}' is in '{}', which is of dimension {}; expected {}", column, text,
+               fmt::format("column '{}' is in '{}', which has the dimension {}; expected {}", column, text,
                            to_text(unit.dimension), words),
                text);
   }
@@ -337,8 +337,10 @@ class CsvBodies {
     const auto x = std::find_if(cartesian.begin(), cartesian.end(), present);
     const auto a = std::find_if(orbit_keys.begin(), orbit_keys.end(), [&](const auto& key) { return has(key.name); });
     if (x != cartesian.end() && a != orbit_keys.end()) {
-      text_.fail(line, fmt::format("columns '{}' and '{}' are of two kinds; give positions and velocities, or elements",
-                                   *x, a->name));
+      text_.fail(
+          line,
+          fmt::format("columns '{}' and '{}' do not go together; give either positions and velocities, or elements", *x,
+                      a->name));
     }
     by_elements_ = a != orbit_keys.end();
     std::vector<std::string> missing;
@@ -396,7 +398,8 @@ class CsvBodies {
     if (problem != std::errc() || end != word.data() + word.size() || id < 0 || id > largest) {
       text_.fail(line, fmt::format("column 'id' is '{}'; expected a whole number from 0 to {}", word, largest), word);
     }
-    if (!known_ids_.insert(id).second) text_.fail(line, fmt::format("the id {} is taken; ids must differ", id), word);
+    if (!known_ids_.insert(id).second)
+      text_.fail(line, fmt::format("the id {} is already used; ids must differ", id), word);
     ids_.push_back(id);
   }
 
@@ -417,8 +420,8 @@ class CsvBodies {
     if (column.in_days && looks_like_julian_day(value)) {
       text_.fail(
           line,
-          fmt::format("column '{}' is {}, counted from the start, which looks like a Julian day; name the column "
-                      "'T [JD]' and give the epoch in [particles], or a time in yr if it is meant so",
+          fmt::format("column '{}' is {}, counted from the start, which looks like a Julian day; name the column 'T "
+                      "[JD]' and give the epoch in [particles], or give the time in yr if it is a time",
                       name, word),
           word);
     }
@@ -438,7 +441,7 @@ class CsvBodies {
     const OrbitCenter center = jacobi ? before_ : center_at(line, about.empty() ? std::vector<Index>{0} : about);
     if (center.mass() + mass == 0) {
       const std::string& word = fields[columns_.at("about").field];
-      text_.fail(line, fmt::format("column 'about' is '{}', which has no mass to move about", word), word);
+      text_.fail(line, fmt::format("column 'about' is '{}', which has no mass, so nothing can orbit it", word), word);
     }
     const State state = state_by_elements(line, fields, G_ * (center.mass() + mass));
     // The first body rests in the origin.
@@ -475,8 +478,9 @@ class CsvBodies {
     const auto found = index_.find(name);
     if (found != index_.end()) return found->second;
     const std::vector<std::string>& names = bodies_.particles().names();
-    if (names.empty()) text_.fail(line, "column 'about' of the first body names another; leave it empty", name);
-    text_.fail(line, fmt::format("there is no '{}' above this body{}", name, did_you_mean(name, names)), name);
+    if (names.empty())
+      text_.fail(line, "column 'about' of the first body must be empty, because no body is above it", name);
+    text_.fail(line, fmt::format("there is no body '{}' above this one{}", name, did_you_mean(name, names)), name);
   }
 
   OrbitCenter center_at(std::size_t line, const std::vector<Index>& about) const {
@@ -495,11 +499,12 @@ class CsvBodies {
       if (word.empty() || number(line, fields, key.name) == 0) continue;
       text_.fail(
           line,
-          fmt::format("column '{}' of the first body is '{}'; the elements are about this body: leave them empty",
+          fmt::format("column '{}' of the first body is '{}', but elements are relative to this body; leave them empty",
                       key.name, word),
           word);
     }
-    if (!(mass > 0)) text_.fail(line, fmt::format("{} has no mass; the elements are about this body", name));
+    if (!(mass > 0))
+      text_.fail(line, fmt::format("{} has no mass, but elements are relative to this body; give it a mass", name));
     return {Vec3<double>::Zero(), Vec3<double>::Zero()};
   }
 
@@ -516,8 +521,10 @@ class CsvBodies {
     }
     const double e = orbit.e.value_or(0);
     if (orbit.a && !orbit.P && !orbit.q && !(*orbit.a > 0 && e >= 0 && e < 1) && !(*orbit.a < 0 && e > 1)) {
-      text_.fail(line, fmt::format("a = {} and e = {} are no orbit; expected a > 0 and 0 <= e < 1, or a < 0 and e > 1",
-                                   fields[columns_.at("a").field], fields[columns_.at("e").field]));
+      text_.fail(
+          line,
+          fmt::format("a = {} and e = {} do not describe an orbit; expected a > 0 and 0 <= e < 1, or a < 0 and e > 1",
+                      fields[columns_.at("a").field], fields[columns_.at("e").field]));
     }
     try {
       return state_of_orbit(orbit, mu);

@@ -25,7 +25,7 @@ void RunningDigest::Free::operator()(Context* context) const { delete context; }
 namespace {
 
 void expect_done(bool done) {
-  if (!done) throw Error("the cryptographic library gives no SHA-256; is it a restricted build of OpenSSL?");
+  if (!done) throw Error("the cryptographic library does not provide SHA-256; it may be a restricted build of OpenSSL");
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ void add_end_pairs(const TextFile& text, const Structure& structure, const Parti
   ends.mixing = topology.mixing;
   if (ends.pair_kinds.empty()) {
     text.fail(0,
-              "the ends of dihedrals have a pair force of their own, and types have no epsilon and sigma; give both in "
+              "the ends of dihedrals interact as pairs, but types have no epsilon and sigma for them; give both in "
               "section 'Pair Coeffs' or [[particles.type]]");
   }
   std::map<std::array<double, 3>, int> known;

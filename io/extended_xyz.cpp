@@ -54,7 +54,7 @@ class ExtendedXyzReader {
         static_cast<std::size_t>(whole_number_in(text_, line, count, "the number of atoms", 1, most_particles));
     const std::size_t left = text_.lines().size() - line;
     if (left < atoms + 1) {
-      text_.fail(line, fmt::format("{} atoms are announced, but the file ends after {} of them", atoms,
+      text_.fail(line, fmt::format("{} atoms are declared, but the file ends after {} of them", atoms,
                                    std::max<std::size_t>(left, 1) - 1));
     }
     return {line, atoms};
@@ -75,10 +75,11 @@ class ExtendedXyzReader {
       return frames[frame_of(options_, frames.size())];
     }
     if (const std::size_t next = line_behind(frames[0])) {
-      text_.fail(next,
-                 fmt::format("there is more behind the {} atoms of the first frame; a structure is one frame: give "
-                             "frame = 0, or frame = -1 for the last",
-                             frames[0].atoms));
+      text_.fail(
+          next,
+          fmt::format("there is more text after the {} atoms of the first frame, but a structure is one frame: give "
+                      "frame = 0, or frame = -1 for the last",
+                      frames[0].atoms));
     }
     return frames[0];
   }
@@ -108,12 +109,12 @@ class ExtendedXyzReader {
     std::string_view what;
     if (second.atomic_number && second.any_number) what = "has the atomic number of each atom";
     if (second.weight && second.any_weight) what = "has the mass of each atom";
-    if (second.atom_number && frame.atoms > 1) what = "counts the atoms";
+    if (second.atom_number && frame.atoms > 1) what = "numbers the atoms";
     if (what.empty() && second.label) what = "has whole numbers before three numbers with a point";
     if (!what.empty()) {
       text_.fail(first, fmt::format("the second column {}, where XYZ has x; take that column out", what));
     }
-    note(options_, fmt::format("x, y, z of the structure are taken from columns 2 to 4; column{} {} not read",
+    note(options_, fmt::format("x, y, z of the structure are taken from columns 2 to 4; column{} {} ignored",
                                one ? " 5" : fmt::format("s 5 to {}", found), one ? "is" : "are"));
   }
 
@@ -180,7 +181,7 @@ class ExtendedXyzReader {
       const auto count = static_cast<std::size_t>(whole_number_in(
           text_, comment_line_, words[k + 2], fmt::format("the columns of property '{}'", words[k]), 1, 1000));
       if (!properties_.try_emplace(words[k], XyzProperty{columns_, count}).second) {
-        fail(fmt::format("property '{}' stands twice", words[k]), words[k]);
+        fail(fmt::format("property '{}' appears twice", words[k]), words[k]);
       }
       columns_ += count;
     }
@@ -203,13 +204,13 @@ class ExtendedXyzReader {
     for (const auto& [name, one] : properties_) {
       // Forces are computed anew.
       if (one.read || name == "forces" || name == "force" || (name == "Z" && species_)) continue;
-      note(options_, fmt::format("the columns '{}' of the structure are not read", name));
+      note(options_, fmt::format("the columns '{}' of the structure are ignored", name));
     }
   }
 
   /// Refuses velocities of which nobody says what they count.
   void check_units_of_velocities(const XyzComment& comment) {
-    if (velocity_ && momentum_) fail("there are both velocities and momenta; one of them is expected");
+    if (velocity_ && momentum_) fail("both velocities and momenta are given; only one of them is expected");
     const std::string* temperature = comment.find("Temperature");
     if (temperature != nullptr && (velocity_ || momentum_)) {
       const double stated = mass_number_in(text_, comment_line_, *temperature, "Temperature");
@@ -217,8 +218,9 @@ class ExtendedXyzReader {
     }
     static constexpr std::string_view remedy = "give file_units = \"real\" (angstrom/fs) or \"metal\" (angstrom/ps)";
     if (momentum_ && !options_.file_units.empty() && options_.file_units != "lj") {
-      fail(fmt::format("momenta are in sqrt(eV u), as ASE writes them, whatever file_units = \"{}\" says; take it out",
-                       options_.file_units));
+      fail(fmt::format(
+          "momenta are in sqrt(eV u), as ASE writes them, whatever file_units = \"{}\" says; take file_units out",
+          options_.file_units));
     }
     if (!velocity_ || !options_.file_units.empty()) return;
     structure_.velocity_units_assumed = true;
@@ -226,8 +228,9 @@ class ExtendedXyzReader {
       fail(fmt::format("'{}' may be in any units; {}", name, remedy), name);
     }
     if (temperature == nullptr && comment.find("Timestep") != nullptr) {
-      fail(fmt::format("velocities that LAMMPS writes are in the units of its run, and the file does not say which; {}",
-                       remedy));
+      fail(fmt::format(
+          "velocities that LAMMPS writes are in the units of its run, but the file does not say which they are; {}",
+          remedy));
     }
   }
 
@@ -279,7 +282,8 @@ class ExtendedXyzReader {
   Vec3<double> velocity(std::size_t line, double mass, const std::string& species) const {
     if (velocity_) return vector(line, *velocity_, "velo") * units_.velocity;
     if (!momentum_) return Vec3<double>::Zero();
-    if (!(mass > 0)) text_.fail(line, fmt::format("momenta are given, but no mass of '{}'", species), species);
+    if (!(mass > 0))
+      text_.fail(line, fmt::format("momenta are given, but there is no mass for '{}'", species), species);
     return vector(line, *momentum_, "momenta") * (units_.momentum_velocity / mass);
   }
 

@@ -1,5 +1,6 @@
 #include "io/files.hpp"
 
+#include "io/near_file.hpp"
 #include "numbers/error.hpp"
 
 #include <fcntl.h>
@@ -17,6 +18,13 @@ namespace {
 
 [[noreturn]] void fail(const std::filesystem::path& file, std::string_view what, int error) {
   throw FileError(fmt::format("{}: {}", what, std::generic_category().message(error)), {.file = file.string()});
+}
+
+[[noreturn]] void cannot_be_read(const std::filesystem::path& file, int error) {
+  const bool named_wrongly = error == ENOENT || error == EISDIR;
+  throw FileError(fmt::format("cannot be read: {}{}", std::generic_category().message(error),
+                              named_wrongly ? near_file(file, "scene.toml") : ""),
+                  {.file = file.string()});
 }
 
 /// A file descriptor that closes itself.
@@ -39,10 +47,10 @@ class Descriptor {
 std::string read_bytes(const std::filesystem::path& file, std::size_t most) {
   std::error_code unknown;
   if (std::filesystem::is_character_file(file, unknown)) {
-    throw FileError("is a device; a file is expected", {.file = file.string()});
+    throw FileError("is a device, not a file", {.file = file.string()});
   }
   const Descriptor source(file, O_RDONLY);
-  if (source < 0) fail(file, "cannot be read", errno);
+  if (source < 0) cannot_be_read(file, errno);
   std::string bytes;
   const auto size = std::filesystem::file_size(file, unknown);
   std::size_t filled = 0;
@@ -50,7 +58,7 @@ std::string read_bytes(const std::filesystem::path& file, std::size_t most) {
   while (filled < most) {
     const ssize_t got = ::read(source, bytes.data() + filled, bytes.size() - filled);
     if (got < 0 && errno == EINTR) continue;
-    if (got < 0) fail(file, "cannot be read", errno);
+    if (got < 0) cannot_be_read(file, errno);
     if (got == 0) break;
     filled += static_cast<std::size_t>(got);
     if (filled == bytes.size()) bytes.resize(std::min(2 * filled, most));

@@ -65,7 +65,7 @@ std::map<std::string, StoredColumn> stored_columns(const TrajectoryReader& reade
     const std::vector<Index> shape = dataset.shape();
     const Index width = shape.size() == 2 ? shape[1] : 1;
     if (shape.empty() || shape.size() > 2 || shape[0] != rows || width < 1 || width > 9)
-      throw FileError(fmt::format("damaged: '{}' is no column of {} particles", path, rows), {.file = file.name()});
+      throw FileError(fmt::format("damaged: '{}' is not a column for {} particles", path, rows), {.file = file.name()});
     StoredColumn column{info_of(file, path, name, width), {}};
     if (dataset.type() == ElementType::integer) {
       for (const std::int64_t number : dataset.read_integers()) column.values.push_back(static_cast<double>(number));
@@ -79,7 +79,8 @@ std::map<std::string, StoredColumn> stored_columns(const TrajectoryReader& reade
 
 void check_stored(const TrajectoryReader& reader, const StoredFrame& stored, const std::filesystem::path& path) {
   const auto refuse_frame = [&](const std::string& what) {
-    throw FileError(fmt::format("{}; 'noether verify' says what is sound in this file", what), {.file = path.string()});
+    throw FileError(fmt::format("{}; see 'noether verify' for what is intact in this file", what),
+                    {.file = path.string()});
   };
   const auto written = reader.digest(stored.number);
   if (written && *written != frame_digest(stored.frame)) {
@@ -89,7 +90,7 @@ void check_stored(const TrajectoryReader& reader, const StoredFrame& stored, con
   const Hdf5File& file = reader.file();
   if (file.has_attribute("/noether", constants_attribute) &&
       file.text_attribute("/noether", constants_attribute) != constants_digest(file))
-    refuse_frame("damaged: the ids, names, masses, types, bonds or parameters are not those that were written");
+    refuse_frame("damaged: the ids, names, masses, types, bonds or parameters differ from those that were written");
   for (const std::vector<double>* numbers :
        {&stored.frame.positions, &stored.frame.velocities, &stored.shared.masses}) {
     if (!std::all_of(numbers->begin(), numbers->end(), [](double x) { return std::isfinite(x); }))
@@ -101,14 +102,14 @@ void check_stored(const TrajectoryReader& reader, const StoredFrame& stored, con
 StoredFrame stored_frame(const std::filesystem::path& path, std::int64_t wanted) {
   const TrajectoryReader reader(path);
   if (!reader.shared().variable_names.empty()) {
-    throw FileError("this is the run of a system of variables, which has no particles; its variables go into [system]",
+    throw FileError("this is the run of a first-order system, which has no particles; give its variables in [system]",
                     {.file = path.string()});
   }
   StoredFrame stored;
   stored.frames = reader.frames();
   if (stored.frames == 0) {
     throw FileError(
-        "there are no frames to start from; a run writes them where its scene has [[every]] type = "
+        "there are no frames to start from; a run writes frames if its scene has [[every]] type = "
         "\"trajectory\"",
         {.file = path.string()});
   }

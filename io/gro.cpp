@@ -20,7 +20,8 @@ class GroReader {
 
   Structure read() {
     const auto& lines = text_.lines();
-    if (lines.size() < 2) text_.fail(0, "the file has no second line; .gro has a title, then the number of atoms");
+    if (lines.size() < 2)
+      text_.fail(0, "the file has no second line; a .gro file begins with a title, then the number of atoms");
     const GroFrame frame = chosen();
     const std::size_t first = frame.line + 1;
     count_line_ = frame.line;
@@ -42,15 +43,15 @@ class GroReader {
     const auto atoms = static_cast<std::size_t>(
         whole_number_in(text_, line, trimmed(lines[line - 1]), "the number of atoms", 1, most_particles));
     if (lines.size() < line + atoms + 1) {
-      text_.fail(line, fmt::format("{} atoms are announced, but the file ends after {} lines; expected {}", atoms,
+      text_.fail(line, fmt::format("{} atoms are declared, but the file ends after {} lines; expected {}", atoms,
                                    lines.size(), line + atoms + 1));
     }
     const std::size_t box = line + atoms + 1;
     std::size_t more = 0;
     while (box + more <= lines.size() && is_atom(box + more)) ++more;
     if (more > 0) {
-      text_.fail(box, fmt::format("line {} says {} atoms, but {} stand there; is the number wrong?", line, atoms,
-                                  atoms + more));
+      text_.fail(
+          box, fmt::format("line {} says {} atoms, but the file has {}; check the number", line, atoms, atoms + more));
     }
     return {line, atoms};
   }
@@ -72,10 +73,11 @@ class GroReader {
     }
     const std::size_t next = line_behind(frames[0]);
     if (next != 0) {
-      text_.fail(next,
-                 fmt::format("there is more behind the {} atoms of the first frame; a structure is one frame: give "
-                             "frame = 0, or frame = -1 for the last",
-                             frames[0].atoms));
+      text_.fail(
+          next,
+          fmt::format("there is more text after the {} atoms of the first frame, but a structure is one frame: give "
+                      "frame = 0, or frame = -1 for the last",
+                      frames[0].atoms));
     }
     return frames[0];
   }
@@ -103,7 +105,7 @@ class GroReader {
     const std::string& content = text_.lines()[line - 1];
     const std::size_t first = content.find('.', numbers_begin), second = content.find('.', first + 1);
     if (first == std::string::npos || second == std::string::npos) {
-      text_.fail(line, "there are no two numbers with decimal points behind column 20, where positions stand");
+      text_.fail(line, "there are not two numbers with decimal points after column 20, where positions are expected");
     }
     return second - first;
   }
@@ -137,14 +139,14 @@ class GroReader {
   /// some.
   void refuse_missing(std::size_t line, std::string_view content) const {
     if (content.find_first_not_of(" \t0123456789.+-") == std::string_view::npos && !is_atom(line)) {
-      text_.fail(line, fmt::format("line {} says {} atoms, but the box stands here, behind {}; is the number wrong?",
-                                   count_line_, trimmed(text_.lines()[count_line_ - 1]), structure_.ids.size()));
+      text_.fail(line, fmt::format("line {} says {} atoms, but the box follows after {}; check the number", count_line_,
+                                   trimmed(text_.lines()[count_line_ - 1]), structure_.ids.size()));
     }
     for (const bool own : {false, true}) {
       if (own == velocities_ || content.size() != numbers_begin + (own ? 6 : 3) * width_) continue;
-      text_.fail(line, fmt::format("this atom has {}, and the first one has {}; give velocities to all of them, or to "
-                                   "none",
-                                   own ? "a velocity" : "no velocity", own ? "none" : "one"));
+      text_.fail(line,
+                 fmt::format("this atom has {}, but the first one has {}; give velocities for all atoms or for none",
+                             own ? "a velocity" : "no velocity", own ? "none" : "one"));
     }
   }
 
@@ -184,8 +186,8 @@ class GroReader {
     const Vec3<double> edges(numbers[0], numbers[1], numbers[2]);
     for (std::size_t k = 3; k < words.size(); ++k) {
       if (is_rounding_beside(numbers[k], edges)) continue;
-      text_.fail(
-          line, fmt::format("the box is triclinic: its 9 numbers are {}; boxes are orthogonal", fmt::join(words, " ")));
+      text_.fail(line, fmt::format("the box is triclinic, with the 9 numbers {}; only orthogonal boxes are supported",
+                                   fmt::join(words, " ")));
     }
     if (edges != Vec3<double>::Zero()) structure_.box = box_in(text_, line, edges * units_.length);
   }

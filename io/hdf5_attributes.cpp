@@ -39,7 +39,8 @@ Hdf5Handle find_attribute(const Hdf5Handle& file, const std::string& path, const
   const hssize_t values = H5Sget_simple_extent_npoints(space);
   if (element_type(type) != expected || values < 1 || values > most) {
     refuse(file.file(),
-           fmt::format("attribute '{}' of '{}' has an unexpected type; was the file written by noether?", name, path));
+           fmt::format("attribute '{}' of '{}' has an unexpected type; the file may not be written by noether", name,
+                       path));
   }
   return attribute;
 }

@@ -2,6 +2,7 @@
 
 #include "io/files.hpp"
 #include "io/hdf5_handle.hpp"
+#include "io/near_file.hpp"
 #include "io/ordered_file.hpp"
 #include "io/padded_texts.hpp"
 #include "numbers/error.hpp"
@@ -22,6 +23,12 @@
 namespace noether::io {
 
 bool has_hdf5() noexcept { return true; }
+
+std::string hdf5_version() {
+  unsigned major = 0, minor = 0, patch = 0;
+  H5get_libversion(&major, &minor, &patch);
+  return fmt::format("{}.{}.{}", major, minor, patch);
+}
 
 using namespace hdf5;
 
@@ -174,7 +181,7 @@ ElementType Hdf5Dataset::type() const {
 
 void Hdf5Dataset::require(ElementType expected) const {
   if (type() != expected)
-    refuse(handle_->file(), fmt::format("'{}' has an unexpected type; was the file written by noether?", path_));
+    refuse(handle_->file(), fmt::format("'{}' has an unexpected type; the file may not be written by noether", path_));
 }
 
 std::vector<Index> Hdf5Dataset::growing_shape() const {
@@ -290,12 +297,14 @@ std::shared_ptr<Hdf5Handle> open_file(const std::filesystem::path& file, bool wr
   const Hdf5Handle access = access_list(file);
   if (writing && !use_ordered_driver(access)) fail(access.file(), "cannot prepare the file");
   std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) refuse(access.file(), "there is no such file");
-  if (!std::filesystem::is_regular_file(file, ignored)) refuse(access.file(), "this is no file");
+  if (!std::filesystem::exists(file, ignored))
+    refuse(access.file(), "there is no such file" + near_file(file, "run.h5"));
+  if (!std::filesystem::is_regular_file(file, ignored))
+    refuse(access.file(), "this is not a regular file" + near_file(file, "run.h5"));
   const hid_t id = H5Fopen(file.c_str(), writing ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access);
   const std::uintmax_t size = id < 0 ? std::filesystem::file_size(file, ignored) : 0;
   if (id < 0 && size < expected_size(file))
-    refuse(access.file(), fmt::format("cut short: {} of {} bytes are there", size, expected_size(file)));
+    refuse(access.file(), fmt::format("cut short: only {} of {} bytes are there", size, expected_size(file)));
   auto handle = share(id, H5Fclose, access.file(), "cannot be opened as an HDF5 file");
   if (writing) access.file()->ordered = ordered_file(id);
   return handle;

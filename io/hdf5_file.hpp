@@ -19,6 +19,9 @@ namespace noether::io {
 /// Whether this build reads and writes HDF5 files.
 bool has_hdf5() noexcept;
 
+/// The version of HDF5 in use, such as "1.10.8"; empty in a build without it.
+std::string hdf5_version();
+
 /// One HDF5 object, closed with its last owner.
 class Hdf5Handle;
 

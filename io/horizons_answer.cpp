@@ -48,7 +48,7 @@ class JsonTexts {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& message) const { text_.fail(line_, "this is no JSON: " + message); }
+  [[noreturn]] void fail(const std::string& message) const { text_.fail(line_, "this is not JSON: " + message); }
 
   char step() {
     if (at_ == bytes_.size()) fail("its end is missing");
@@ -82,7 +82,7 @@ class JsonTexts {
       const char c = step();
       if (c == '{' || c == '[') ++depth;
       if (c != '}' && c != ']') continue;
-      if (depth == 0) fail(fmt::format("'{}' closes nothing", c));
+      if (depth == 0) fail(fmt::format("'{}' has no opening bracket", c));
       --depth;
     }
   }
@@ -109,7 +109,7 @@ class JsonTexts {
     } else if (c == 'u') {
       add_code_point(text);
     } else {
-      fail(fmt::format("'\\{}' means nothing in a text", c));
+      fail(fmt::format("'\\{}' is not a valid escape in a text", c));
     }
   }
 
@@ -118,7 +118,8 @@ class JsonTexts {
     for (int k = 0; k < 4; ++k) digits += step();
     std::uint32_t unit = 0;
     const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), unit, 16);
-    if (problem != std::errc() || end != digits.data() + digits.size()) fail("'\\u' is followed by no four digits");
+    if (problem != std::errc() || end != digits.data() + digits.size())
+      fail("'\\u' is not followed by four hexadecimal digits");
     return unit;
   }
 
@@ -127,10 +128,10 @@ class JsonTexts {
     if (code >= 0xD800 && code < 0xDC00) {
       const bool more = step() == '\\' && step() == 'u';
       const std::uint32_t low = more ? read_code_unit() : 0;
-      if (low < 0xDC00 || low > 0xDFFF) fail("half of a character stands alone");
+      if (low < 0xDC00 || low > 0xDFFF) fail("half of a surrogate pair is missing");
       code = 0x10000 + ((code - 0xD800) << 10) + (low - 0xDC00);
     } else if (code >= 0xDC00 && code < 0xE000) {
-      fail("half of a character stands alone");
+      fail("half of a surrogate pair is missing");
     }
     const auto add = [&](std::uint32_t byte) { text += static_cast<char>(static_cast<unsigned char>(byte)); };
     if (code < 0x80) {
@@ -172,7 +173,7 @@ bool is_of_horizons(const TextFile& text) {
 }
 
 [[noreturn]] void refuse_answer(const TextFile& text, std::size_t line, const std::string& words) {
-  text.fail(line, fmt::format("this answer of Horizons holds no table: '$$SOE' is missing; it says '{}'", words));
+  text.fail(line, fmt::format("this answer of Horizons has no table: '$$SOE' is missing; it says '{}'", words));
 }
 
 }  // namespace

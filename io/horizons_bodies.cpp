@@ -145,9 +145,9 @@ class HorizonsBodies {
     for (const Body& body : bodies_) {
       if (body.object != center) continue;
       if (body.x == Vec3<double>::Zero() && body.v == Vec3<double>::Zero()) return;
-      text_.fail(body.line, fmt::format("{} is not at rest in the origin, and all states are about it; take this "
-                                        "table out",
-                                        center.text));
+      text_.fail(body.line,
+                 fmt::format("{} is not at rest at the origin, but all states are relative to it; take this table out",
+                             center.text));
     }
     const auto is_member = [&](const Body& body) { return system_of(body.object) == center.number; };
     const auto member = std::find_if(bodies_.begin(), bodies_.end(), is_member);
@@ -163,7 +163,7 @@ class HorizonsBodies {
     const auto mass = center_mass_ ? center_mass_ : known_mass(center);
     if (!mass) {
       text_.fail(first_->target_line,
-                 fmt::format("the states are about '{}', whose mass is not built in; put a line 'center mass [kg] = "
+                 fmt::format("the states are about '{}', whose mass is not known; put a line 'center mass [kg] = "
                              "...' before '$$SOE', or ask Horizons for states about the Solar System Barycenter "
                              "(CENTER = '500@0')",
                              center.text));
@@ -207,10 +207,10 @@ class HorizonsBodies {
   double mass_of(const HorizonsTable& table) const {
     if (const auto mass = known_mass(table.target)) return *mass;
     if (table.target.number == solar_system) {
-      text_.fail(table.target_line, fmt::format("{} is a place and no body; take its table out", table.target.name));
+      text_.fail(table.target_line, fmt::format("{} is a place, not a body; take its table out", table.target.name));
     }
     text_.fail(table.target_line,
-               fmt::format("the mass of {} is not built in, and Horizons gives none; put a line 'mass "
+               fmt::format("the mass of {} is not known, and Horizons does not give it; put a line 'mass "
                            "[kg] = ...' (0 for a tracer) before '$$SOE'",
                            table.target.name));
   }

@@ -108,7 +108,7 @@ class HeadReader {
     if (std::find(centers.begin(), centers.end(), site) != centers.end()) return;
     text_.fail(
         line,
-        fmt::format("the states of {} are about the site '{}', which turns with its body; ask Horizons for "
+        fmt::format("the states of {} are about the site '{}', which rotates with its body; ask Horizons for "
                     "the center of the body (CENTER = '500@{}')",
                     table_.target.name, site, table_.center.number ? std::to_string(*table_.center.number) : "0"),
         site);
@@ -148,7 +148,7 @@ std::optional<HorizonsTable> next_horizons_table(const TextFile& text, const Uni
   while (line <= lines.size() && trimmed(lines[line - 1]) != table_end) ++line;
   if (line > lines.size()) text.fail(table.start, "the table that begins here has no end: '$$EOE' is missing");
   table.end = line;
-  if (table.target_line == 0) text.fail(table.start, "the head of this table has no line 'Target body name'");
+  if (table.target_line == 0) text.fail(table.start, "the header of this table has no line 'Target body name'");
   if (last_text.find(',') != std::string_view::npos) table.headings = split_at_commas(last_text);
   return table;
 }

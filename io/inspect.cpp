@@ -216,16 +216,16 @@ void check_constants(const Hdf5File& file, std::vector<std::string>& damaged) {
   if (!file.has_attribute("/noether", constants_attribute)) return;
   if (file.text_attribute("/noether", constants_attribute) == constants_digest(file)) return;
   damaged.emplace_back(
-      "the ids, names, masses, types, bonds or parameters of the particles are not those that were written");
+      "the ids, names, masses, types, bonds or parameters of the particles differ from those that were written");
 }
 
 /// What a file that has digests must have of them: without one a change would pass unseen.
 void check_digests(const Hdf5File& file, std::vector<std::string>& damaged) {
   const auto expect = [&](bool there, const std::string& what) {
-    if (!there) damaged.push_back("there is no digest of " + what + ", which stands in every such file");
+    if (!there) damaged.push_back("there is no digest of " + what + ", which every such file has");
   };
-  expect(file.has_attribute("/noether", constants_attribute), "what particles have once");
-  if (!file.has("/noether/scene")) damaged.emplace_back("there is no scene, which stands in every such file");
+  expect(file.has_attribute("/noether", constants_attribute), "the constant data of the particles");
+  if (!file.has("/noether/scene")) damaged.emplace_back("there is no scene, which every such file has");
   if (!file.has(monitors_path)) damaged.emplace_back("there is no group of monitors, which every such file has");
   for (const std::string& path : {particles_path + "/position/value", system_path + "/value"})
     if (file.has(path) && file.open(path).rows() > 0) expect(file.has(frame_digests_path), "the frames");
@@ -242,7 +242,7 @@ void check_headers(const Hdf5File& file, std::vector<std::string>& damaged) {
   if (!file.has_attribute("/noether", headers_attribute)) return;
   check_digests(file, damaged);
   if (file.text_attribute("/noether", headers_attribute) == headers_digest(file)) return;
-  damaged.emplace_back("the units or other attributes of the particles are not those that were written");
+  damaged.emplace_back("the units or other attributes of the particles differ from those that were written");
 }
 
 std::vector<MonitorSeries> untried_monitors(const std::filesystem::path& path) {

@@ -111,7 +111,7 @@ bool begins_with_letter(std::string_view word) { return std::isalpha(static_cast
 
 /// Names that are read; nothing else stands in for a potential, so no other one is proposed.
 std::string those_read(const std::vector<std::string>& names) {
-  return fmt::format("; known are: {}", fmt::join(names, ", "));
+  return fmt::format("; expected one of: {}", fmt::join(names, ", "));
 }
 
 /// One row of coefficients, in a section or in a command.
@@ -236,14 +236,15 @@ class CoefficientReader {
       for (int type = row.types[0].first; type <= row.types[0].second; ++type) {
         const CoefficientRow*& own = of_type[static_cast<std::size_t>(type)];
         if (own != nullptr && !row.of_script) {
-          row.fail(fmt::format("type {} stands twice in {}", type + 1, row.where));
+          row.fail(fmt::format("type {} appears twice in {}", type + 1, row.where));
         }
         own = &row;
       }
     }
     for (std::size_t type = 0; type < of_type.size(); ++type) {
       if (of_type[type] == nullptr) {
-        rows.back().fail(fmt::format("{} type {} of {} has no coefficients; give them too", family, type + 1, types));
+        rows.back().fail(
+            fmt::format("{} type {} of {} has no coefficients; give them as well", family, type + 1, types));
       }
       add(*of_type[type], family, result);
     }
@@ -259,13 +260,13 @@ class CoefficientReader {
       known.emplace_back(style.name);
     }
     if (row.style.empty() || is_hybrid(row.style)) {
-      row.fail(fmt::format("the style of these coefficients is not said; {}{}",
+      row.fail(fmt::format("the style of these coefficients is not given; {}{}",
                            row.of_script ? fmt::format("give a line {}_style too", family)
-                                         : fmt::format("write it behind the name of the section, '{} # STYLE'",
+                                         : fmt::format("write it after the name of the section, '{} # STYLE'",
                                                        CoefficientRows::title_of(family)),
                            those_read(known)));
     }
-    row.fail(fmt::format("style '{}' of {} is not read{}", row.style, row.where, those_read(known)), row.style);
+    row.fail(fmt::format("style '{}' of {} is not supported{}", row.style, row.where, those_read(known)), row.style);
   }
 
   void add(const CoefficientStyle& style, const CoefficientRow& row, LammpsKinds& kinds) const {
@@ -280,7 +281,7 @@ class CoefficientReader {
                                                        std::max<std::int64_t>(most, 1)));
     }
     if (row.words.size() != letters.size() * times + (sum ? 1 : 0)) {
-      row.fail(fmt::format("style '{}' of {} takes {} coefficients{}; this row has {}", style.name, row.where,
+      row.fail(fmt::format("style '{}' of {} has {} coefficients{}; this row has {}", style.name, row.where,
                            letters.size() * times + (sum ? 1 : 0),
                            sum ? fmt::format(" for {} terms", times) : std::string(), row.words.size()));
     }
@@ -349,7 +350,8 @@ class PairReader {
     if (rows.empty()) return;
     for (int type = 0; type < types; ++type) {
       if (pairs_.contains({type, type})) continue;
-      rows.back().fail(fmt::format("type {0} has no epsilon and sigma: no row is of the pair {0} {0}", type + 1));
+      rows.back().fail(
+          fmt::format("type {0} has no epsilon and sigma: there is no row for the pair {0} {0}", type + 1));
     }
     give(types, pairs_, structure.topology.pair_kinds, structure.topology.explicit_pairs);
     if (four_numbers_) give(types, ends_, structure.end_kinds, structure.explicit_end_kinds);
@@ -369,7 +371,7 @@ class PairReader {
   static std::string not_read(std::string_view style) {
     std::vector<std::string> known;
     for (const PairStyle& one : pair_styles) known.emplace_back(one.name);
-    return fmt::format("pair style '{}' is not read{}", style, those_read(known));
+    return fmt::format("pair style '{}' is not supported{}", style, those_read(known));
   }
 
   /// Cutoffs by pair_style: "lj/cut 10", "hybrid lj/cut 10 lj/cut/coul/long 12".
@@ -393,13 +395,13 @@ class PairReader {
   }
 
   [[noreturn]] static void refuse_twice(const CoefficientRow& row, const std::pair<int, int>& key) {
-    if (key.first == key.second) row.fail(fmt::format("type {} stands twice in {}", key.first + 1, row.where));
-    row.fail(fmt::format("the pair of types {} {} stands twice", key.first + 1, key.second + 1));
+    if (key.first == key.second) row.fail(fmt::format("type {} appears twice in {}", key.first + 1, row.where));
+    row.fail(fmt::format("the pair of types {} {} appears twice", key.first + 1, key.second + 1));
   }
 
   /// Epsilon and sigma, those of the ends of dihedrals, and cutoffs that must be one.
   std::pair<PairKind, PairKind> pair_of(const CoefficientRow& row) {
-    if (is_hybrid(row.style) && row.of_script) row.fail("the style of these coefficients is not said; write it there");
+    if (is_hybrid(row.style) && row.of_script) row.fail("the style of these coefficients is not given; write it there");
     const std::string name = row.style.empty() || is_hybrid(row.style) ? "lj/cut" : row.style;
     const PairStyle* style = find(name);
     if (style == nullptr) row.fail(not_read(name), name);
@@ -407,9 +409,9 @@ class PairReader {
     if (count < 2 || count > (style->charmm ? 4 : 3) || (style->charmm && count == 3)) {
       const bool unsaid = row.style.empty() && count == 4;
       row.fail(fmt::format(
-          "this pair has {} coefficients; epsilon and sigma are expected, and perhaps {}{}", count,
+          "this pair has {} coefficients; epsilon and sigma are expected, and optionally {}{}", count,
           style->charmm ? "both again for the ends of dihedrals" : "a cutoff",
-          unsaid ? ", or the style behind the name of the section: 'Pair Coeffs # lj/charmm/coul/long'" : ""));
+          unsaid ? ", or the style after the name of the section: 'Pair Coeffs # lj/charmm/coul/long'" : ""));
     }
     static constexpr std::array<std::string_view, 4> names = {"epsilon", "sigma", "epsilon of ends", "sigma of ends"};
     std::array<double, 4> c{};
@@ -428,7 +430,7 @@ class PairReader {
 
   void check_style(const CoefficientRow& row, const PairStyle& style) {
     if (style_line_ != 0 && style.charmm != charmm_) {
-      row.fail(fmt::format("pairs of style '{}' are mixed otherwise than those at line {}; one style is expected",
+      row.fail(fmt::format("pairs of style '{}' are mixed differently from those at line {}; one style is expected",
                            style.name, style_line_));
     }
     charmm_ = style.charmm;
@@ -438,8 +440,8 @@ class PairReader {
   void check_cutoff(const CoefficientRow& row, double cutoff) {
     if (cutoff_line_ != 0 && cutoff != cutoff_) {
       row.fail(
-          fmt::format("the cutoffs of pairs differ: {} here, {} at line {}; a force has one cutoff, give it in the "
-                      "scene and take these out",
+          fmt::format("the cutoffs of pairs differ: {} here, {} at line {}; a force has one cutoff; give it in the "
+                      "scene, and take these out",
                       cutoff, cutoff_, cutoff_line_));
     }
     cutoff_ = cutoff, cutoff_line_ = row.line;

@@ -85,12 +85,12 @@ class LammpsDataReader {
       for (const std::size_t line : section->rows) {
         words_of_row(*section, line, 2);
         double& mass = masses_[static_cast<std::size_t>(type_in(line, words_[0], "the type"))];
-        if (mass == mass) text_.fail(line, fmt::format("the mass of type {} stands twice", words_[0]));
+        if (mass == mass) text_.fail(line, fmt::format("the mass of type {} appears twice", words_[0]));
         mass = mass_number_in(text_, line, words_[1], "the mass");
       }
     }
     for (const LammpsCommand* command : script_.all("mass")) {
-      if (command->words.size() != 3) command->fail("a type and its mass are expected behind 'mass'");
+      if (command->words.size() != 3) command->fail("a type and its mass are expected after 'mass'");
       const double mass = mass_number_in(*command->text, command->line, command->words[2], "the mass");
       const auto [from, to] = data_.labels().types_in(*command->text, command->line, command->words[1], "atom", types);
       for (std::int64_t type = from; type <= to; ++type) masses_[static_cast<std::size_t>(type - 1)] = mass;
@@ -132,7 +132,7 @@ class LammpsDataReader {
     const auto twice = std::adjacent_find(atoms_.begin(), atoms_.end(),
                                           [](const LammpsAtom& a, const LammpsAtom& b) { return a.id == b.id; });
     if (twice == atoms_.end()) return;
-    text_.fail((twice + 1)->line, fmt::format("atom {} stands twice, also at line {}", twice->id, twice->line),
+    text_.fail((twice + 1)->line, fmt::format("atom {} appears twice, also at line {}", twice->id, twice->line),
                fmt::format("{}", twice->id));
   }
 
@@ -164,7 +164,7 @@ class LammpsDataReader {
     const std::string own = is_atom_style(section.style) ? section.style : "";
     if (!said.empty() && !own.empty() && said != own) {
       text_.fail(section.line,
-                 fmt::format("the file says atom style '{}', the scene says '{}'; take atom_style out", own, said));
+                 fmt::format("the file says atom style '{}', but the scene says '{}'; take atom_style out", own, said));
     }
     const std::string& name = own.empty() ? said : own;
     if (name.empty()) return deduced_style(section);
@@ -174,10 +174,11 @@ class LammpsDataReader {
       known.emplace_back(style.name);
     }
     if (own.empty() && !is_atom_style(name)) {
-      throw Error(fmt::format("atom style '{}' is not read{}", name, did_you_mean(name, known)),
+      throw Error(fmt::format("atom style '{}' is not supported{}", name, did_you_mean(name, known)),
                   {.key = "atom_style", .value = name});
     }
-    const std::string message = fmt::format("atom style '{}' is not read; known are: {}", name, fmt::join(known, ", "));
+    const std::string message =
+        fmt::format("atom style '{}' is not supported; expected one of: {}", name, fmt::join(known, ", "));
     if (own.empty()) throw Error(message, {.key = "atom_style", .value = name});
     text_.fail(section.line, message, name);
   }
@@ -202,10 +203,11 @@ class LammpsDataReader {
         if (words_.size() == columns && !is_whole(words_[2])) return atom_styles[1];
       }
     }
-    text_.fail(section.line,
-               fmt::format("rows of {} words may be of several styles{}; write 'Atoms # molecular', or give "
-                           "atom_style = \"molecular\" or another one",
-                           columns, section.style.empty() ? "" : fmt::format(", and '{}' is none", section.style)));
+    text_.fail(
+        section.line,
+        fmt::format("rows of {} words could be of several styles{}; write 'Atoms # molecular', or give "
+                    "atom_style = \"molecular\" or another one",
+                    columns, section.style.empty() ? "" : fmt::format(", but '{}' is not one of them", section.style)));
   }
 
   std::size_t index_of(std::int64_t id) const {
@@ -220,8 +222,9 @@ class LammpsDataReader {
       words_of_row(section, line, 4);
       const std::size_t i =
           index_of(whole_number_in(text_, line, words_[0], "the id of an atom", 1, ParticleSystem<double>::largest_id));
-      if (i == atoms_.size()) text_.fail(line, fmt::format("there is no atom {} to have a velocity", words_[0]));
-      if (seen[i]) text_.fail(line, fmt::format("the velocity of atom {} stands twice", words_[0]));
+      if (i == atoms_.size())
+        text_.fail(line, fmt::format("a velocity is given for atom {}, which does not exist", words_[0]));
+      if (seen[i]) text_.fail(line, fmt::format("the velocity of atom {} appears twice", words_[0]));
       seen[i] = true;
       for (std::size_t k = 0; k < 3; ++k) {
         const std::string name = std::string("v") + static_cast<char>('x' + k);
@@ -264,7 +267,7 @@ class LammpsDataReader {
         whole_number_in(text_, line, word, "the id of an atom", 1, ParticleSystem<double>::largest_id);
     const std::size_t i = index_of(id);
     if (i == atoms_.size())
-      text_.fail(line, fmt::format("{} {} joins atom {}, which is not there", term, words_[0], id));
+      text_.fail(line, fmt::format("{} {} joins atom {}, which does not exist", term, words_[0], id));
     return static_cast<Index>(i);
   }
 

@@ -61,8 +61,8 @@ std::pair<Factors, Factors> factors_of(const LammpsCommand& command) {
       ++k;
     } else {
       command.fail(
-          fmt::format("'{}' of special_bonds is not read; fene, charmm, amber, dreiding, and three factors behind lj, "
-                      "coul or lj/coul are",
+          fmt::format("'{}' of special_bonds is not supported; expected fene, charmm, amber, dreiding, or three "
+                      "factors after lj, coul or lj/coul",
                       fmt::join(words.begin() + static_cast<std::ptrdiff_t>(k), words.end(), " ")));
     }
   }
@@ -77,7 +77,7 @@ std::string factors_told(const Factors& factors) {
 void complete_option(std::string& option, const LammpsCommand* command, const std::string& said, std::string_view key) {
   if (command == nullptr || said.empty()) return;
   if (!option.empty() && option != said) {
-    command->fail(fmt::format("{} {} stands here, but elsewhere the file's {} is '{}'; take one of them out",
+    command->fail(fmt::format("{} {} is given here, but the file's {} is '{}' elsewhere; take one of them out",
                               command->words[0], said, key, option),
                   said);
   }
@@ -114,24 +114,26 @@ void LammpsScript::read(const TextFile& text, const StructureOptions& options) {
 void LammpsScript::check(const LammpsCommand& command, const StructureOptions& options) const {
   const std::string name(command.words[0]), line = fmt::format("{}", fmt::join(command.words, " "));
   if (line.find('$') != std::string::npos) {
-    command.fail(fmt::format("'{}' has a variable; write its value in its place", line), line);
+    command.fail(fmt::format("'{}' uses a variable; write its value instead", line), line);
   }
   if (name == "include") {
-    command.fail(fmt::format("'{}' is not followed; list both files: coefficients = [\"a\", \"b\"]", line), line);
+    command.fail(
+        fmt::format("'{}' is not followed to the other file; list both files: coefficients = [\"a\", \"b\"]", line),
+        line);
   }
   const bool plain = line == "dimension 3" || line == "boundary p p p";
   if (!plain && !is_command_of(commands_read, name) && !is_command_of(commands_passed_over, name)) {
     std::vector<std::string> known(commands_read.begin(), commands_read.end());
     const std::string meant = suggest(name, known);
-    command.fail(fmt::format("'{}' says more than coefficients, and is not read{}", name,
-                             meant.empty() ? "; keep in a file of their own mass, *_coeff, *_style, special_bonds and "
-                                             "pair_modify"
-                                           : fmt::format("; did you mean '{}'?", meant)),
+    command.fail(fmt::format("'{}' does more than give coefficients, which is not supported{}", name,
+                             meant.empty()
+                                 ? "; keep mass, *_coeff, *_style, special_bonds and pair_modify in a file of their own"
+                                 : fmt::format("; did you mean '{}'?", meant)),
                  name);
   }
   if (name != "pair_modify") {
     if (is_command_of(commands_read, name) && command.words.size() < 2)
-      command.fail(fmt::format("'{}' says nothing", name));
+      command.fail(fmt::format("'{}' has no value", name));
     return;
   }
   for (std::size_t k = 1; k < command.words.size(); k += 2) {
@@ -140,9 +142,9 @@ void LammpsScript::check(const LammpsCommand& command, const StructureOptions& o
       continue;
     }
     if (value != "yes" || (key != "shift" && key != "tail")) {
-      command.fail(fmt::format("'{} {}' of pair_modify is not read; mix, shift and tail are", key, value));
+      command.fail(fmt::format("'{} {}' of pair_modify is not supported; only mix, shift and tail are", key, value));
     }
-    note(options, fmt::format("pair_modify {} yes is for the scene to say: {}", key,
+    note(options, fmt::format("pair_modify {} yes has no effect here; give it in the scene: {}", key,
                               key == "shift" ? "cutoff_style = \"shifted\"" : "tail = true"));
   }
 }
@@ -174,10 +176,9 @@ std::optional<LammpsScript::EndFactors> LammpsScript::end_factors() const {
       pairs == nullptr || fmt::format("{}", fmt::join(pairs->words, " ")).find("coul") != std::string::npos;
   if (!has_charges || lennard_jones == charges) return {};
   if (lennard_jones[0] == charges[0] && lennard_jones[1] == charges[1]) return EndFactors{lennard_jones[2], charges[2]};
-  command->fail(
-      fmt::format("special_bonds leaves {} of Lennard-Jones forces and {} of those of charges; they may differ "
-                  "in the third factor only",
-                  factors_told(lennard_jones), factors_told(charges)));
+  command->fail(fmt::format(
+      "special_bonds keeps {} of Lennard-Jones forces and {} of forces of charges; only the third factor may differ",
+      factors_told(lennard_jones), factors_told(charges)));
 }
 
 std::optional<Factors> LammpsScript::special() const {
@@ -195,7 +196,7 @@ std::optional<Mixing> LammpsScript::mixing() const {
       if (command->words[k] != "mix") continue;
       const std::string rule(command->words[k + 1]);
       if (rule != "geometric" && rule != "arithmetic") {
-        command->fail(fmt::format("pair_modify mix {} is not read; geometric and arithmetic are", rule), rule);
+        command->fail(fmt::format("pair_modify mix {} is not supported; expected geometric or arithmetic", rule), rule);
       }
       mixing = rule == "geometric" ? Mixing::geometric : Mixing::lorentz_berthelot;
     }
@@ -213,14 +214,14 @@ StructureOptions LammpsScript::completed(StructureOptions options) const {
   if (const auto factors = special()) {
     if (options.special && *options.special != *factors) {
       find("special_bonds")
-          ->fail(fmt::format("special_bonds leaves {}, special says {}; take one of them out", factors_told(*factors),
-                             factors_told(*options.special)));
+          ->fail(fmt::format("special_bonds keeps {}, but special says {}; take one of them out",
+                             factors_told(*factors), factors_told(*options.special)));
     }
     options.special = factors;
   }
   if (const auto rule = mixing()) {
     if (options.mixing && *options.mixing != *rule) {
-      find("pair_modify")->fail("pair_modify mixes in another way than mixing says; take one of them out");
+      find("pair_modify")->fail("pair_modify and mixing give different mixing rules; take one of them out");
     }
     options.mixing = rule;
   }

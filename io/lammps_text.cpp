@@ -85,7 +85,7 @@ void TypeLabels::add(const TextFile& text, std::size_t line, const std::string& 
   const bool again = std::any_of(types.begin(), types.end(), [&](const auto& known) { return known.second == type; });
   if (!again && types.try_emplace(label, type).second) return;
   text.fail(line,
-            fmt::format("{} of {} types stands twice", again ? fmt::format("type {}", type) : "'" + label + "'", kind),
+            fmt::format("{} of {} types appears twice", again ? fmt::format("type {}", type) : "'" + label + "'", kind),
             label);
 }
 
@@ -100,9 +100,10 @@ std::int64_t TypeLabels::type_in(const TextFile& text, std::size_t line, std::st
   if (found != known->second.end()) return found->second;
   std::vector<std::string> labels;
   for (const auto& [one, type] : known->second) labels.push_back(one);
-  text.fail(line,
-            fmt::format("{} is '{}', which is no label of {} types{}", what, label, kind, did_you_mean(label, labels)),
-            label);
+  text.fail(
+      line,
+      fmt::format("{} is '{}', which is not a label of {} types{}", what, label, kind, did_you_mean(label, labels)),
+      label);
 }
 
 std::pair<std::int64_t, std::int64_t> TypeLabels::types_in(const TextFile& text, std::size_t line,
@@ -170,7 +171,8 @@ void LammpsText::read_labels() {
       }
       const std::string label(words[1]);
       if (std::isdigit(static_cast<unsigned char>(label[0])) != 0) {
-        text_.fail(line, fmt::format("the label '{}' begins with a digit, as numbers of types do", label), label);
+        text_.fail(line, fmt::format("the label '{}' begins with a digit, so it could be the number of a type", label),
+                   label);
       }
       labels_.add(text_, line, kind, whole_number_in(text_, line, words[0], "the type", 1, count(counter)), label);
     }
@@ -185,7 +187,7 @@ void LammpsText::read_header_line(std::size_t line, const std::vector<std::strin
     const std::int64_t most = key.ends_with("types") ? most_types : most_particles;
     const bool fresh =
         counts_.try_emplace(key, Count{whole_number_in(text_, line, words[0], key, 0, most), line}).second;
-    if (!fresh) text_.fail(line, fmt::format("'{}' stands twice, also at line {}", key, counts_.at(key).line), key);
+    if (!fresh) text_.fail(line, fmt::format("'{}' appears twice, also at line {}", key, counts_.at(key).line), key);
   } else if ((key == "xlo xhi" || key == "ylo yhi" || key == "zlo zhi") && numbers == 2) {
     read_bounds(line, words, key);
   } else if (key == "xy xz yz" && numbers == 3) {
@@ -194,17 +196,17 @@ void LammpsText::read_header_line(std::size_t line, const std::vector<std::strin
       if (tilt != 0) tilts_[static_cast<int>(k)] = tilt, tilt_line_ = line;
     }
   } else if (key == "avec" || key == "bvec" || key == "cvec" || key == "abc origin") {
-    text_.fail(
-        line,
-        fmt::format("'{}' is of a general triclinic box; boxes are orthogonal, given by xlo xhi, ylo yhi, zlo zhi",
-                    fmt::join(words, " ")),
-        key);
+    text_.fail(line,
+               fmt::format("'{}' belongs to a general triclinic box; only orthogonal boxes are supported, given by xlo "
+                           "xhi, ylo yhi, zlo zhi",
+                           fmt::join(words, " ")),
+               key);
   } else if (!(numbers == 1 && (stands_in(passed_over, key) || words[0] == "0"))) {
     std::vector<std::string> known(counted.begin(), counted.end());
     known.insert(known.end(), {"xlo xhi", "ylo yhi", "zlo zhi"});
     text_.fail(
         line,
-        fmt::format("'{}' is no line of the header that is read{}", fmt::join(words, " "), did_you_mean(key, known)),
+        fmt::format("'{}' is not a supported line of the header{}", fmt::join(words, " "), did_you_mean(key, known)),
         key);
   }
 }
@@ -213,7 +215,7 @@ void LammpsText::read_bounds(std::size_t line, const std::vector<std::string_vie
   const int k = axis.front() - 'x';
   low_[k] = number_in(text_, line, words[0], axis.substr(0, 3));
   edges_[k] = number_in(text_, line, words[1], axis.substr(4)) - low_[k];
-  if (!bounds_.try_emplace(axis, line).second) text_.fail(line, fmt::format("'{}' stands twice", axis), axis);
+  if (!bounds_.try_emplace(axis, line).second) text_.fail(line, fmt::format("'{}' appears twice", axis), axis);
   if (!(edges_[k] > 0)) {
     text_.fail(line,
                fmt::format("{} = {} is not above {} = {}", axis.substr(4), words[1], axis.substr(0, 3), words[0]));
@@ -227,9 +229,10 @@ void LammpsText::check_bounds() const {
   }
   for (int k = 0; k < 3; ++k) {
     if (is_rounding_beside(tilts_[k], edges_)) continue;
-    text_.fail(tilt_line_,
-               fmt::format("the box is triclinic, with tilt factors xy xz yz = {} {} {}; boxes are orthogonal",
-                           tilts_[0], tilts_[1], tilts_[2]));
+    text_.fail(
+        tilt_line_,
+        fmt::format("the box is triclinic, with tilt factors xy xz yz = {} {} {}; only orthogonal boxes are supported",
+                    tilts_[0], tilts_[1], tilts_[2]));
   }
 }
 
@@ -240,14 +243,14 @@ void LammpsText::begin_section(std::size_t line) {
   split_words(content, words);
   const std::string name = fmt::format("{}", fmt::join(words, " "));
   if (stands_in(other_sections, name)) {
-    text_.fail(line, fmt::format("section '{}' is not read: nothing here acts by it", name), name);
+    text_.fail(line, fmt::format("section '{}' is not supported: no force here uses it", name), name);
   }
   if (!stands_in(section_names, name)) {
     const std::vector<std::string> known(section_names.begin(), section_names.end());
-    text_.fail(line, fmt::format("'{}' is no section that is read{}", name, did_you_mean(name, known)), name);
+    text_.fail(line, fmt::format("'{}' is not a supported section{}", name, did_you_mean(name, known)), name);
   }
   if (const LammpsSection* other = find(name)) {
-    text_.fail(line, fmt::format("section '{}' stands twice, also at line {}", name, other->line), name);
+    text_.fail(line, fmt::format("section '{}' appears twice, also at line {}", name, other->line), name);
   }
   if (mark < content.size()) split_words(std::string_view(content).substr(mark + 1), words);
   sections_.push_back({name, mark < content.size() && !words.empty() ? without_suffix(words.front()) : "", line});
@@ -271,9 +274,9 @@ const LammpsSection* LammpsText::section(const std::string& name, const std::str
   const LammpsSection* found = find(name);
   if (found == nullptr) {
     if (expected > 0 && needed) {
-      text_.fail(
-          counted_at->second.line,
-          fmt::format("{} {} are announced, but there is no section '{}'; is the file cut?", expected, what, name));
+      text_.fail(counted_at->second.line,
+                 fmt::format("{} {} are declared, but there is no section '{}'; the file may be cut short", expected,
+                             what, name));
     }
     return nullptr;
   }

@@ -9,6 +9,8 @@ namespace noether::io {
 
 bool has_hdf5() noexcept { return false; }
 
+std::string hdf5_version() { return ""; }
+
 class Hdf5Handle {};
 
 std::uint64_t expected_size(const std::filesystem::path&) { return 0; }

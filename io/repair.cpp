@@ -76,7 +76,7 @@ std::vector<std::string> cuts(const Plan& plan) {
   for (const Together& together : plan) {
     for (const auto& [path, rows] : together.rows) {
       if (rows > together.whole)
-        lines.push_back(fmt::format("'{}' cut from {} rows to {}, as many as all of {} have", path, rows,
+        lines.push_back(fmt::format("'{}' cut from {} rows to {}, the number that all parts of {} have", path, rows,
                                     together.whole, together.owner));
     }
   }
@@ -147,8 +147,8 @@ struct Temporary {
 
 std::string beyond_repair(std::uint64_t size, std::uint64_t expected) {
   return fmt::format(
-      "cut short: {} of {} bytes are there, and more than frames and samples is missing: it cannot be "
-      "mended. A run whose checkpoint is sound goes on without it by 'noether run SCENE --resume'",
+      "cut short: only {} of {} bytes are there, and more than frames and samples is missing, so it cannot be "
+      "repaired. If the checkpoint is intact, 'noether run SCENE --resume' continues the run without it",
       size, expected);
 }
 
@@ -156,7 +156,7 @@ std::string beyond_repair(std::uint64_t size, std::uint64_t expected) {
 void repair_end(const fs::path& file, std::uint64_t size, std::uint64_t expected, Repair& result) {
   const fs::path kept = with_ending(file, ".damaged");
   if (fs::exists(kept)) {
-    throw FileError("the file before an earlier repair is in the way; move or remove it, then repair again",
+    throw FileError("a copy from an earlier repair is in the way; move or remove it, then repair again",
                     {.file = kept.string()});
   }
   const Temporary copy(with_ending(file, ".repaired"));
@@ -184,8 +184,8 @@ void repair_end(const fs::path& file, std::uint64_t size, std::uint64_t expected
   result.info = mended;
   result.repaired = cuts(found);
   result.repaired.insert(result.repaired.begin(),
-                         fmt::format("the last {} of {} bytes are missing; the file as it was is '{}'", expected - size,
-                                     expected, kept.filename().string()));
+                         fmt::format("the last {} of {} bytes are missing; the file before the repair is kept as '{}'",
+                                     expected - size, expected, kept.filename().string()));
 }
 
 }  // namespace

@@ -30,11 +30,11 @@ StructureFormat format_of(const std::filesystem::path& file) {
   if (extension == ".gro") return StructureFormat::gro;
   if (file.filename().string().starts_with("data.")) return StructureFormat::lammps_data;
   if (extension == ".h5" || extension == ".hdf5") {
-    throw Error(fmt::format("'{}' is no structure; particles of a run go on by bodies = \"{}\"",
+    throw Error(fmt::format("'{}' is not a structure; to start from the particles of a run give bodies = \"{}\"",
                             file.filename().string(), file.filename().string()),
                 {.key = "structure", .value = file.string()});
   }
-  throw Error(fmt::format("'{}' is of no kind that is read; a structure is a .data or .lmp file or data.NAME (LAMMPS), "
+  throw Error(fmt::format("'{}' has no supported format; a structure is a .data or .lmp file or data.NAME (LAMMPS), "
                           ".xyz or .extxyz, or .gro",
                           file.filename().string()),
               {.key = "structure", .value = file.string()});
@@ -49,7 +49,7 @@ constexpr std::string_view expected_of(StructureFormat format) {
 void check_special(const std::array<double, 3>& special) {
   for (const double factor : special) {
     if (factor >= 0 && factor <= 1) continue;
-    throw Error(fmt::format("special holds {}; factors from 0 to 1 are expected", format_number(factor)),
+    throw Error(fmt::format("special contains {}; factors from 0 to 1 are expected", format_number(factor)),
                 {.key = "special"});
   }
 }
@@ -58,10 +58,10 @@ Box box_of(const Box& of_file, const StructureOptions& options) {
   if (!options.box) return of_file;
   if (options.box->is_periodic() && of_file.is_periodic()) {
     const Vec3<double>& e = of_file.edges();
-    throw Error(fmt::format("the file has a box of its own, {} x {} x {}; leave box out, or give box = \"open\" to "
-                            "take it away",
-                            format_number(e[0]), format_number(e[1]), format_number(e[2])),
-                {.key = "box"});
+    throw Error(
+        fmt::format("the file has its own box, {} x {} x {}; leave box out, or give box = \"open\" to remove it",
+                    format_number(e[0]), format_number(e[1]), format_number(e[2])),
+        {.key = "box"});
   }
   return *options.box;
 }
@@ -121,7 +121,7 @@ void check_positions(const ParticleSystem<double>& s, const std::filesystem::pat
   for (Index i = 0; i < s.images().size(); ++i) {
     const Vec3<std::int32_t> image = s.images()[i];
     if (Vec3<double>(s.positions()[i]).allFinite() && image.cwiseAbs().maxCoeff() <= most_cells) continue;
-    throw SceneError(fmt::format("'{}' stands more than 2^29 boxes away from the origin", s.name(i)),
+    throw SceneError(fmt::format("'{}' is more than 2^29 boxes away from the origin", s.name(i)),
                      {.file = file.string()});
   }
 }
@@ -215,21 +215,20 @@ ParticleSystem<double> read_structure(const std::filesystem::path& file, const S
                                                                : read_extended_xyz(text, units, told);
   if (structure.pair_style_assumed) {
     note(options,
-         "nobody says the style of the structure's pair coefficients: they are taken as epsilon and sigma of lj/cut; "
-         "write it behind the section, 'Pair Coeffs # lj/cut', if they are");
+         "the style of the structure's pair coefficients is not given: they are taken as epsilon and sigma of lj/cut; "
+         "if that is right, write it after the section, 'Pair Coeffs # lj/cut'");
   }
   const auto ends = script.end_factors();
   if (ends && !structure.end_pairs.empty()) {
     text.fail(0,
-              "dihedrals give their ends a pair force by weights, and special_bonds gives them another one; make the "
-              "weights 0 or take special_bonds out");
+              "the weights of dihedrals and special_bonds both give the ends of dihedrals a pair force; set the "
+              "weights to 0 or take special_bonds out");
   }
   if (!structure.end_pairs.empty() && special[2] != 0) {
-    throw Error(
-        fmt::format("special leaves {} of the force between particles three bonds apart, which dihedrals of this "
-                    "file give by their weights; 0 is expected there",
-                    format_number(special[2])),
-        {.key = "special"});
+    throw Error(fmt::format("special keeps {} of the force between particles three bonds apart, but the weights of "
+                            "dihedrals in this file already give that force; 0 is expected there",
+                            format_number(special[2])),
+                {.key = "special"});
   }
   const Box box = box_of(structure.box, options);
   if (structure.box.is_periodic() && !box.is_periodic()) unwrap(structure);

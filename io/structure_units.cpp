@@ -36,11 +36,11 @@ class UnitsCheck {
     check_file_units();
     if (system_.is_reduced()) return check_reduced();
     if (said_ == "lj") {
-      refuse("file_units", fmt::format("numbers in lj belong to units = \"reduced\", not \"{}\"", system_.name));
+      refuse("file_units", fmt::format("numbers in lj need units = \"reduced\", not \"{}\"", system_.name));
     }
     if (system_.name != "molecular") {
       refuse("structure",
-             fmt::format("a structure is read in units = \"molecular\" or \"reduced\", not \"{}\"", system_.name));
+             fmt::format("a structure needs units = \"molecular\" or \"reduced\", not \"{}\"", system_.name));
     }
     if (is_lammps() && said_.empty()) {
       refuse("file_units", "this LAMMPS data file does not say its units; give file_units = \"real\" or \"metal\"");
@@ -56,9 +56,8 @@ class UnitsCheck {
              fmt::format("unknown file_units '{}'{}", said_, did_you_mean(said_, {"lj", "real", "metal"})));
     }
     if (!said_.empty() && format_ == StructureFormat::gro) {
-      refuse(
-          "file_units",
-          fmt::format("file_units = \"{}\" is not for a .gro file, which has units of its own; leave it out", said_));
+      refuse("file_units",
+             fmt::format("file_units = \"{}\" is not for a .gro file, which has fixed units; leave it out", said_));
     }
   }
 
@@ -124,13 +123,13 @@ StructureOptions with_units_of_file(const TextFile& text, StructureFormat format
   const std::size_t line = lammps ? 1 : 2;
   if (units.empty()) return options;
   if (units != "lj" && units != "real" && units != "metal") {
-    text.fail(line, fmt::format("the file is in units {}; lj, real and metal are read", units), units);
+    text.fail(line, fmt::format("the file is in units {}; only lj, real and metal are supported", units), units);
   }
   if (!options.file_units.empty() && options.file_units != units) {
-    text.fail(
-        line,
-        fmt::format("the file says units = {}, file_units says '{}'; take file_units out", units, options.file_units),
-        units);
+    text.fail(line,
+              fmt::format("the file says units = {}, but file_units says '{}'; take file_units out", units,
+                          options.file_units),
+              units);
   }
   options.file_units = units;
   return options;
@@ -143,10 +142,9 @@ void check_stated_temperature(const TextFile& text, const Structure& structure, 
   const double found = energy / (3 * n - 3) / k_B;
   if (!structure.temperature) {
     if (found < 1e4) return;
-    return note(options,
-                fmt::format("the structure's velocities, taken as angstrom/fs, make {:.3g} K; give file_units if "
-                            "they are in others",
-                            found));
+    return note(options, fmt::format("the structure's velocities, taken as angstrom/fs, give a temperature of {:.3g} "
+                                     "K; give file_units if they are in other units",
+                                     found));
   }
   const auto& [stated_here, line, of_momenta] = *structure.temperature;
   const double stated = stated_here;  // lambdas of some compilers see no part of a structure

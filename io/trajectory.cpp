@@ -101,7 +101,7 @@ class TrajectoryWriter::File {
     close();
     if (!created || options_.lost) return;
     if (!std::filesystem::exists(path_)) {
-      throw TrajectoryLost("the trajectory that the saved run counts on is missing; bring it back, or start afresh",
+      throw TrajectoryLost("the trajectory that the saved run continues is missing; bring it back, or start over",
                            {.file = path_.string()});
     }
     try {
@@ -327,11 +327,10 @@ class TrajectoryWriter::File {
       Hdf5Dataset dataset = hdf5_->open(paths[k]);
       const Index held = dataset.rows(), wanted = rows.at(k);
       if (held < wanted) {
-        throw FileError(
-            fmt::format("'{}' holds {} rows where the saved run counts on {}; the file was cut or replaced: "
-                        "bring it back, or start afresh",
-                        paths[k], held, wanted),
-            {.file = path_.string()});
+        throw FileError(fmt::format("'{}' holds {} rows where the saved run expects {}; the file was cut or replaced: "
+                                    "bring it back, or start over",
+                                    paths[k], held, wanted),
+                        {.file = path_.string()});
       }
       if (held > wanted) dataset.resize(wanted);
     }
@@ -369,19 +368,19 @@ class TrajectoryWriter::File {
   /// The particles must be those of the file, in any order, or there are as many variables as in the file.
   void match(const ParticleSystem<double>& state) {
     if (static_cast<Index>(state.variables().size()) != variables_) {
-      throw FileError(fmt::format("the file holds {} variables, the run now has {}: a trajectory is of one system",
-                                  variables_, state.variables().size()),
-                      {.file = path_.string()});
+      throw FileError(
+          fmt::format("the file has {} variables, but the run now has {}: a trajectory can contain only one system",
+                      variables_, state.variables().size()),
+          {.file = path_.string()});
     }
     if (state.ids() == ids_) return;
     const std::vector<std::int64_t> expected = sorted_ids_;
     match_order(state);
     if (sorted_ids_ == expected) return;
-    throw FileError(
-        fmt::format("the file holds {} particles, the run now has {}, or others: a trajectory is of one set of "
-                    "particles; after an edit write another file",
-                    expected.size(), ids_.size()),
-        {.file = path_.string()});
+    throw FileError(fmt::format("the file has {} particles, but the run now has {}, or others: a trajectory can "
+                                "contain only one set of particles; after an edit write another file",
+                                expected.size(), ids_.size()),
+                    {.file = path_.string()});
   }
 
   template <class Number, class Column> void gather(const Column& column, std::vector<Number>& row) const {
@@ -424,10 +423,11 @@ class TrajectoryWriter::File {
     for (const auto& [name, values] : now_.columns) {
       const auto found = frame_.columns.find(name);
       if (found == frame_.columns.end() || now_.columns.size() != frame_.columns.size()) {
-        throw FileError(fmt::format("the file does not have the columns that the run moves, such as '{}': a trajectory "
-                                    "is of one kind of particles; after an edit write another file",
-                                    name),
-                        {.file = path_.string()});
+        throw FileError(
+            fmt::format("the file does not have the columns that the run changes, such as '{}': a trajectory can "
+                        "contain only one kind of particles; after an edit write another file",
+                        name),
+            {.file = path_.string()});
       }
       found->second.append(values);
     }

@@ -27,7 +27,7 @@ std::string unit_at(const Hdf5File& file, const std::string& path, const Dimensi
 TrajectoryReader::TrajectoryReader(const std::filesystem::path& path) : file_(Hdf5File::open_to_read(path)) {
   of_system_ = file_.has(system_path);
   if (!file_.has("/h5md") || !file_.has("/noether") || !(of_system_ || file_.has(particles_path + "/id"))) {
-    throw FileError("this is no trajectory of noether: '/h5md', '/particles/system' and '/noether' are expected",
+    throw FileError("this is not a trajectory of noether: '/h5md', '/particles/system' and '/noether' are expected",
                     {.file = path.string()});
   }
   shared_.units = file_.text_attribute("/noether", "units");

@@ -162,7 +162,7 @@ class TopologyReader {
   }
   std::int64_t below(std::int64_t number, std::size_t most, const std::string& what) const {
     if (number >= 0 && number < static_cast<std::int64_t>(most)) return number;
-    refuse_topology(file_, fmt::format("'{}' holds {} where there are {}", what, number, most));
+    refuse_topology(file_, fmt::format("'{}' contains {} where there are {}", what, number, most));
   }
 
  private:
@@ -171,7 +171,7 @@ class TopologyReader {
     if (!file_.has(path)) return {};
     std::vector<double> values = file_.open(path).read_reals();
     if (std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); })) return values;
-    refuse_topology(file_, fmt::format("'{}' holds what is not finite", path));
+    refuse_topology(file_, fmt::format("'{}' contains a value that is not finite", path));
   }
   std::vector<std::int64_t> rows_of(const std::string& path, std::size_t width) const {
     const Hdf5Dataset dataset = file_.open(path);
@@ -263,7 +263,7 @@ std::vector<std::string> read_type_names(const Hdf5File& file, Index rows) {
   const std::vector<std::string> known = file.open(topology_path + "/type_name").read_texts();
   for (const std::int64_t type : types) {
     if (type < 0 || type >= static_cast<std::int64_t>(known.size()))
-      refuse_topology(file, fmt::format("the species {} is of none of the {} types", type + 1, known.size()));
+      refuse_topology(file, fmt::format("the species {} is not one of the {} types", type + 1, known.size()));
     names.push_back(known[static_cast<std::size_t>(type)]);
   }
   return names;

@@ -68,7 +68,7 @@ XyzComment::XyzComment(const TextFile& text, std::size_t line) : text_(text), li
     // As i-PI writes it, with units of its own.
     if (rest.find("CELL(") == std::string_view::npos && rest.find("CELL{") == std::string_view::npos) return;
     fail(
-        "the cell of i-PI in this comment is not read; give Lattice=\"ax 0 0 0 by 0 0 0 cz\", and positions in "
+        "the cell of i-PI in this comment is not supported; give Lattice=\"ax 0 0 0 by 0 0 0 cz\", and positions in "
         "angstrom");
   }
   const bool extended = has_key(rest, "properties") || has_key(rest, "lattice");
@@ -81,7 +81,7 @@ XyzComment::XyzComment(const TextFile& text, std::size_t line) : text_(text), li
     }
     const std::string small = in_small_letters(name);
     if (!values_.try_emplace(small, std::move(said)).second) {
-      fail(fmt::format("'{}' stands twice in the comment", name), name);
+      fail(fmt::format("'{}' appears twice in the comment", name), name);
     }
     spelt_[small] = name;
   }
@@ -122,8 +122,8 @@ std::string XyzComment::key(std::string_view& rest) const {
   }
   skip_blanks(rest);
   if (name.empty() || !rest.starts_with('=')) {
-    fail(fmt::format("'{}' is not understood: a comment with '=' is read as key=value; put quotes about values with "
-                     "blanks, or take the '=' out of a comment that is only a text",
+    fail(fmt::format("'{}' is not understood: a comment with '=' is read as key=value; put quotes around values with "
+                     "spaces, or take the '=' out of a comment that is only a text",
                      name.empty() ? "=" : name),
          name);
   }
@@ -137,18 +137,18 @@ std::string XyzComment::value(std::string_view& rest, const std::string& key) co
   std::string said;
   static constexpr std::string_view openings = "\"'{[";
   if (!rest.empty() && openings.find(rest.front()) != std::string_view::npos) {
-    said = enclosed(rest, fmt::format("behind '{}='", key));
+    said = enclosed(rest, fmt::format("after '{}='", key));
     if (rest.starts_with(',')) rest.remove_prefix(1);
     if (rest.empty() || is_blank_of_comment(rest.front())) return said;
     const std::string_view glued = rest.substr(0, rest.find_first_of(" \t"));
-    fail(fmt::format("behind the value of '{}=' stands '{}'; a blank is expected", key, glued), std::string(glued));
+    fail(fmt::format("after the value of '{}=' comes '{}'; a space is expected", key, glued), std::string(glued));
   }
   const std::size_t end = std::min(rest.find_first_of(" \t"), rest.size());
   said = rest.substr(0, end);
   rest.remove_prefix(end);
   if (said.ends_with(',')) said.pop_back();
   if (said.empty() || said.find('=') != std::string::npos) {
-    fail(fmt::format("behind '{}=' stands {}; a value is expected, in quotes if it has blanks or '='", key,
+    fail(fmt::format("after '{}=' comes {}; a value is expected, in quotes if it has spaces or '='", key,
                      said.empty() ? "nothing" : fmt::format("'{}'", said)),
          said);
   }
@@ -192,7 +192,7 @@ void XyzComment::check_keys() const {
       if (small == other) meant = expected;
     }
     if (meant.empty() || find(meant) != nullptr) continue;
-    fail(fmt::format("'{}=' is not read; {}", spelt,
+    fail(fmt::format("'{}=' is not supported; {}", spelt,
                      meant == "Lattice" ? "the box is given as Lattice=\"ax 0 0 0 by 0 0 0 cz\""
                      : meant == "pbc"   ? "write pbc=\"T T T\" or pbc=\"F F F\""
                                         : "columns are given as Properties=species:S:1:pos:R:3"),
@@ -238,7 +238,8 @@ Box XyzComment::box(double length) const {
   const Vec3<double> edges(numbers[0], numbers[4], numbers[8]);
   for (std::size_t k = 0; k < 9; ++k) {
     if (k % 4 == 0 || is_rounding_beside(numbers[k], edges)) continue;
-    fail(fmt::format("Lattice=\"{}\" is not orthogonal along the axes; boxes are", *find("Lattice")));
+    fail(fmt::format("Lattice=\"{}\" is not orthogonal along the axes; only orthogonal boxes are supported",
+                     *find("Lattice")));
   }
   return box_in(text_, line_, edges * length);
 }

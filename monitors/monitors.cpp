@@ -86,9 +86,9 @@ template <class Real> void Energy::at_start(const Snapshot<Real>& start) {
   if (scale_ == 0) scale_ = 1;
   const IntegratorClaims claims = start.claims();
   if (claims.dissipative) {
-    why_not_ = "the run is dissipative: its energy changes by itself, so there is no error of it";
+    why_not_ = "the run is dissipative: its energy changes, so it has no energy error";
   } else if (claims.time_dependent) {
-    why_not_ = "a force depends on time: the energy changes by itself, so there is no error of it";
+    why_not_ = "a force depends on time: the energy changes, so it has no energy error";
   }
   time_unit_ = std::string(start.units().time);
   const AtomCount count = atoms_of(start.state(), claims);
@@ -133,7 +133,7 @@ MonitorReport Energy::report() const {
   report.worst = errors_.worst();
   report.rms = errors_.rms();
   if (first_ == 0 && kinetic_sum_ == 0 && report.worst == 0) {
-    report.note = "nothing that has mass moves or is pulled, so it says nothing of tracers: watch elements";
+    report.note = "no massive particle moves or is pulled, so the energy says nothing about tracers: watch elements";
   }
   fill_line(report, errors_, per_time("1", time_unit_));
   fill_drift(report);
@@ -230,7 +230,7 @@ MonitorReport VectorInvariant::report() const {
   report.scale = scale_;
   fill_line(report, errors_, per_time("1", time_unit_));
   if (has_direction()) report.note = fmt::format("direction within {:.2g} rad", worst_direction_);
-  if (!kept_) report.note += fmt::format("{}not kept by the forces of this run", report.note.empty() ? "" : "; ");
+  if (!kept_) report.note += fmt::format("{}not conserved by the forces of this run", report.note.empty() ? "" : "; ");
   return report;
 }
 
@@ -371,7 +371,7 @@ MonitorReport CenterOfMass::report() const {
   report.last = departures_.last();
   report.worst = departures_.worst();
   report.rms = departures_.rms();
-  report.note = "distance from the straight line of the start";
+  report.note = "distance from the initial straight line";
   fill_line(report, departures_, slope_unit_);
   return report;
 }

@@ -33,7 +33,7 @@ template <class Real> Index Elements::primary_of(const ParticleSystem<Real>& s) 
   for (Index i = 0; i < s.size(); ++i) {
     if (s.name(i) == about) return i;
   }
-  throw Error(fmt::format("about = \"{}\" names no particle{}", about, did_you_mean(about, s.names())),
+  throw Error(fmt::format("about = \"{}\" is not a particle{}", about, did_you_mean(about, s.names())),
               {.key = "about"});
 }
 
@@ -173,7 +173,7 @@ void ClosestApproach::load(const SavedState& saved, const std::string& prefix) {
   load_part(whole, prefix, *this);
   const bool has_pair = pair_.size() == 2 && names_.size() == 2;
   if (seen_.size() != 9 * seen_ids_.size() || !(has_pair || (pair_.empty() && names_.empty()))) {
-    throw Error("what closest_approach saw last was saved in parts that do not fit");
+    throw Error("the saved state of closest_approach is inconsistent");
   }
 }
 
@@ -196,9 +196,9 @@ MonitorReport ClosestApproach::report() const {
   report.note =
       fmt::format("{} and {} at time {:.9g}{}{}", names_[0], names_[1], at_time_, tracers_ > 1 ? "; " : "", left_out);
   if (unresolved_ > 0) {
-    report.note +=
-        fmt::format("; {} times a pair may have been nearer between two looks, too far apart to tell: look more often",
-                    unresolved_);
+    report.note += fmt::format(
+        "; {} times a pair may have come nearer between two samples, too far apart to tell: sample more often",
+        unresolved_);
   }
   return report;
 }

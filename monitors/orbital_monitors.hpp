@@ -30,13 +30,14 @@ class Elements {
   static constexpr bool needs_particles = true;
 
   static constexpr auto describe() {
-    return part<Elements>("elements", "osculating elements a, e, inc, Omega, omega, M about a body",
-                          formula("x, v relative to the body;  mu = G (m_0 + m_i), m_0 of the body"),
-                          quantities("value[n][6], columns a, e, inc, Omega, omega, M"), source("MurrayDermott1999"),
-                          field<&Elements::G>("G", "length^3/mass/time^2", "default: the unit system's own"),
-                          field<&Elements::about>("about", "1", "name of the body; default: the first"),
-                          state<&Elements::samples_>("samples"), state<&Elements::primary_>("primary"),
-                          state<&Elements::heaviest_>("heaviest"));
+    return part<Elements>(
+        "elements", "osculating elements a, e, inc, Omega, omega, M about a body",
+        formula("x, v relative to the body;  mu = G (m_0 + m_i), m_0 of the body"),
+        quantities("value[n][6], columns a, e, inc, Omega, omega, M"), source("MurrayDermott1999"),
+        field<&Elements::G>("G", "length^3/mass/time^2", "default: the unit system's own"),
+        field<&Elements::about>("about", "1", "name of the body that the elements are about; default: the first"),
+        state<&Elements::samples_>("samples"), state<&Elements::primary_>("primary"),
+        state<&Elements::heaviest_>("heaviest"));
   }
 
   /// @throws Error  for a G that is not above 0
@@ -83,8 +84,8 @@ class ClosestApproach {
 
   static constexpr auto describe() {
     return part<ClosestApproach>(
-        "closest_approach", "smallest distance of two particles so far, and when it was",
-        formula("min |x_i - x_j| along quintic Hermite paths between two looks"),
+        "closest_approach", "smallest distance of two particles so far, and its time",
+        formula("min |x_i - x_j| along quintic Hermite paths between two samples"),
         quantities("distance [length], pair[2] (ids), at_time [time]"), state<&ClosestApproach::distance_>("distance"),
         state<&ClosestApproach::at_time_>("at_time"), state<&ClosestApproach::first_>("first"),
         state<&ClosestApproach::pair_>("pair"), state<&ClosestApproach::names_>("names"),

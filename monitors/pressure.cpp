@@ -33,13 +33,13 @@ template <class Real> Mat3<Real> pressure_tensor(const ParticleSystem<Real>& s, 
 
 void Pressure::check_box(const Box& box) {
   if (box.is_periodic()) return;
-  throw Error("monitor 'pressure' needs a periodic box, whose volume it divides by; give the particles a box");
+  throw Error("monitor 'pressure' needs a periodic box, because it divides by the volume; give the particles a box");
 }
 
 template <class Real> void Pressure::observe(const Snapshot<Real>& now) {
   const ParticleSystem<Real>& s = now.state();
   const std::optional<Mat3<Real>>& virial = now.virial();
-  NOETHER_EXPECTS(virial.has_value(), "the virial was there when the monitor was attached");
+  NOETHER_EXPECTS(virial.has_value(), "the virial was available when the monitor was attached");
   const Mat3<Real> tensor = pressure_tensor(s, *virial);
   for (int a = 0; a < 3; ++a) {
     for (int b = 0; b < 3; ++b) now_[static_cast<std::size_t>(3 * a + b)] = static_cast<double>(tensor(a, b));

@@ -107,20 +107,23 @@ std::string known_types(const Topology* topology, const std::string& type) {
 void RadialDistribution::check() const {
   if (bins < 1 || bins > most_bins) {
     refuse_field("bins", std::to_string(bins),
-                 fmt::format("is no number of intervals; 1 to {} is expected", most_bins));
+                 fmt::format("is not a valid number of intervals; 1 to {} is expected", most_bins));
   }
   if (range && !(*range > 0 && std::isfinite(*range))) {
-    refuse_field("range", *range, "is no range; a length above 0 is expected");
+    refuse_field("range", *range, "is not a valid range; a length above 0 is expected");
   }
   if (!types.empty() && types.size() != 2) {
-    refuse_field("types", fmt::format("[{}]", fmt::join(types, ", ")), "is no pair; give two types, or none for all");
+    refuse_field("types", fmt::format("[{}]", fmt::join(types, ", ")),
+                 "is not a pair of types; give two types, or none for all pairs");
   }
 }
 
 void RadialDistribution::check_in(const Box& box, const Topology* topology) const {
   check();
   if (!box.is_periodic()) {
-    throw Error("monitor 'radial_distribution' needs a periodic box, by whose density it divides; give one");
+    throw Error(
+        "monitor 'radial_distribution' needs a periodic box, because it divides by the density; give the particles a "
+        "box");
   }
   const double half = box.edges().minCoeff() / 2;
   if (range && *range > half) {
@@ -212,7 +215,7 @@ MonitorReport RadialDistribution::report() const {
   report.samples = samples_;
   if (samples_ == 0) return report;
   if (!(expected_ > 0)) {
-    report.reason = "there is no pair of these types";
+    report.reason = "there are no pairs of these types";
     return report;
   }
   const std::vector<double> g = values();

@@ -38,7 +38,7 @@ class RadialDistribution {
 
   static constexpr auto describe() {
     return part<RadialDistribution>(
-        "radial_distribution", "radial distribution function g(r) of a periodic box, averaged over the looks",
+        "radial_distribution", "radial distribution function g(r) of a periodic box, averaged over the samples",
         formula("g(r) = <n(r)> / (N_a N_b 4 pi r^2 dr / V),  N_a (N_a - 1) pairs of one type"),
         quantities("distance[bins] [length], value[bins], coordination[bins] [1]"), source("Allen2017"),
         field<&RadialDistribution::bins>("bins", "1", "intervals of distance"),

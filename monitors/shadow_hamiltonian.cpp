@@ -23,9 +23,7 @@ double binomial(std::int64_t n, std::int64_t k) {
   return result;
 }
 
-[[noreturn]] void refuse_saved() {
-  throw Error("the window of a shadow Hamiltonian was saved in parts that do not fit");
-}
+[[noreturn]] void refuse_saved() { throw Error("the saved window of a shadow Hamiltonian is inconsistent"); }
 
 /// (q' - q) . (p' + p) of one particle without its mass, in differences.
 template <class Real> struct Difference {
@@ -53,11 +51,11 @@ template <class Real> void ShadowHamiltonian<Real>::check() const {
       before = order;
       continue;
     }
-    refuse_field(
-        "orders", static_cast<double>(order),
-        fmt::format("does not belong there; even numbers from 2 to {}, ascending, are expected", highest_order));
+    refuse_field("orders", static_cast<double>(order),
+                 fmt::format("is not a valid list of orders; even numbers from 2 to {}, ascending, are expected",
+                             highest_order));
   }
-  if (orders.empty()) refuse_field("orders", "[]", "names no order; even numbers such as [4, 8, 12] are expected");
+  if (orders.empty()) refuse_field("orders", "[]", "is an empty list; even numbers such as [4, 8, 12] are expected");
 }
 
 template <class Real> std::string ShadowHamiltonian<Real>::cost(Index particles, std::int64_t cadence) const {
@@ -277,7 +275,7 @@ template <class Real> std::string ShadowHamiltonian<Real>::verdict() const {
   const double least = fluctuation(best()), last = fluctuation(orders.size() - 1);
   const std::string best_of = fmt::format("order {} fluctuates by {:.1e}", orders[best()], least);
   if (gradient_error_ > largest_gradient_error) {
-    return fmt::format("force is no gradient: it differs from that of its energy by {:.1e} of its size",
+    return fmt::format("force is not a gradient: it differs from that of its energy by {:.1e} of its size",
                        gradient_error_);
   }
   if (!std::isfinite(least)) return "step too large: the values left the range of double precision";

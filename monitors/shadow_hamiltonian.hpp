@@ -37,7 +37,7 @@ template <class Real = double> class ShadowHamiltonian {
 
   static constexpr auto describe() {
     return part<ShadowHamiltonian>(
-        "shadow_hamiltonian", "the energy that a symplectic method itself keeps, to several orders",
+        "shadow_hamiltonian", "the energy that a symplectic method itself conserves, to several orders",
         formula("H_[2k] = 1/(h C(2k,k)) sum (-1)^(b-a+1) C(k,a) C(k,b)/(b-a) w(y_(n-a), y_(n-b)),  "
                 "w(y', y) = (q' - q).(p' + p) - 2 S"),
         source("SkeelHardy2001, EngleSkeelDrees2005"),

@@ -35,7 +35,7 @@ MonitorReport Temperature::report() const {
   report.samples = values_.samples();
   if (report.samples == 0) return report;
   if (freedom_ <= 0) {
-    report.reason = "no degree of freedom is left to have a temperature";
+    report.reason = "there is no degree of freedom left to have a temperature";
     return report;
   }
   report.first = values_.first();

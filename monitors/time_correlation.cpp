@@ -42,10 +42,11 @@ double slope_of(const double* sums) {
 void TimeCorrelation::check() const {
   if (length < 2 || length > longest_length) {
     refuse_field("length", std::to_string(length),
-                 fmt::format("is no longest lag; 2 to {} looks are expected", longest_length));
+                 fmt::format("is not a valid longest lag; 2 to {} samples are expected", longest_length));
   }
   if (origins < 1) {
-    refuse_field("origins", std::to_string(origins), "is no number of looks between origins; at least 1 is expected");
+    refuse_field("origins", std::to_string(origins),
+                 "is not a valid number of samples between origins; at least 1 is expected");
   }
 }
 
@@ -75,8 +76,7 @@ void TimeCorrelation::check_loaded() const {
   // Origins begin at multiples of `origins`; the oldest has not been followed to the end.
   bool known = true;
   for (const std::int64_t begun : begun_) known = known && begun >= looks_ - length && begun < looks_;
-  if (!origins_fit || !tables_fit || !known)
-    throw Error("the origins of a time correlation were saved in parts that do not fit");
+  if (!origins_fit || !tables_fit || !known) throw Error("the saved origins of a time correlation are inconsistent");
 }
 
 template <class Real> std::vector<double> TimeCorrelation::chosen(const ParticleSystem<Real>& s, Kind kind) const {
@@ -112,7 +112,7 @@ void TimeCorrelation::look(double time, const std::vector<double>& now, Kind kin
   sums_.resize(lags);
   times_.resize(lags);
   counts_.resize(lags);
-  if (held_.size() != begun_.size() * now.size()) throw Error("a time correlation was saved for other particles");
+  if (held_.size() != begun_.size() * now.size()) throw Error("the saved time correlation is of other particles");
   if (looks_ % origins == 0) begin_origin(time, now);
   for (std::size_t origin = 0; origin < begun_.size(); ++origin) {
     const std::int64_t lag = looks_ - begun_[origin];
@@ -201,7 +201,7 @@ template <class Real> void MeanSquareDisplacement::at_start(const Snapshot<Real>
 template <class Real> void MeanSquareDisplacement::observe(const Snapshot<Real>& now) {
   const std::vector<double> rows = chosen(now.state(), Kind::displacement);
   if (start_.empty()) start_ = rows;
-  if (start_.size() != rows.size()) throw Error("a mean square displacement was saved for other particles");
+  if (start_.size() != rows.size()) throw Error("the saved mean square displacement is of other particles");
   since_start_ = average(rows, start_.data(), Kind::displacement);
   slope_unit_ = unit_of(power(dimensions::length, 2) / dimensions::time, now.units());
   unit_ = now.units().is_reduced() ? "" : " " + slope_unit_;
@@ -220,7 +220,7 @@ MonitorReport MeanSquareDisplacement::report() const {
   if (looks_ == 0) return report;
   report.last = since_start_;
   if (ended_ == 0) {
-    report.reason = fmt::format("no diffusion coefficient: no origin has been followed for {} looks", length);
+    report.reason = fmt::format("no diffusion coefficient: no origin has been followed for {} samples", length);
     return report;
   }
   report.slope = 6 * mean_;
@@ -252,7 +252,7 @@ MonitorReport VelocityAutocorrelation::report() const {
   if (looks_ == 0) return report;
   report.first = values()[0];
   if (ended_ == 0) {
-    report.reason = fmt::format("no diffusion coefficient: no origin has been followed for {} looks", length);
+    report.reason = fmt::format("no diffusion coefficient: no origin has been followed for {} samples", length);
     return report;
   }
   report.last = values().back();

@@ -10,7 +10,7 @@ namespace noether {
 
 template <class Real> std::size_t Variables::place_in(const ParticleSystem<Real>& s) const {
   const std::size_t n = s.variables().size();
-  if (n == 0) throw Error("monitor 'variables' watches a first-order system, but this run is of particles");
+  if (n == 0) throw Error("monitor 'variables' watches a first-order system, but this run has particles");
   if (variable.empty()) return 0;
   const auto& known = s.variable_names();
   const auto named = std::find(known.begin(), known.end(), variable);
@@ -18,10 +18,10 @@ template <class Real> std::size_t Variables::place_in(const ParticleSystem<Real>
   for (std::size_t i = 0; i < n; ++i) {
     if (variable == fmt::format("y[{}]", i)) return i;
   }
-  throw Error(
-      fmt::format("monitor 'variables' is asked for '{}', which is no variable{}", variable,
-                  known.empty() ? fmt::format("; there are y[0] to y[{}]", n - 1) : did_you_mean(variable, known)),
-      {.key = "variable", .value = variable});
+  throw Error(fmt::format("monitor 'variables' names '{}', which is not a variable of the system{}", variable,
+                          known.empty() ? fmt::format("; the variables are y[0] to y[{}]", n - 1)
+                                        : did_you_mean(variable, known)),
+              {.key = "variable", .value = variable});
 }
 
 template <class Real> void Variables::observe(const Snapshot<Real>& now) {

@@ -24,7 +24,7 @@ class Variables {
     return part<Variables>(
         "variables", "the variables of a first-order system, and the figures of one of them", formula("value_i = y_i"),
         quantities("value[n]"), source("HairerNoersettWanner1993"),
-        field<&Variables::variable>("variable", "1", "whose figures are reported; default: the first"),
+        field<&Variables::variable>("variable", "1", "variable whose figures are reported; default: the first"),
         state<&Variables::figures_>("figures"), state<&Variables::slope_unit_>("slope_unit"),
         state<&Variables::shown_>("shown"));
   }

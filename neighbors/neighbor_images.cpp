@@ -19,7 +19,7 @@ void check_images(const Box& box, double range, double skin) {
   const Vec3<double>& edges = box.edges();
   if (images(range) > most) {
     throw Error(
-        fmt::format("the box of {:.6g} x {:.6g} x {:.6g} is so small beside the range {:.6g} of the pair forces "
+        fmt::format("the box of {:.6g} x {:.6g} x {:.6g} is so small compared with the range {:.6g} of the pair forces "
                     "that each particle would see {:.3g} images; repeat the cell, or take a shorter cutoff",
                     edges[0], edges[1], edges[2], range, images(range)),
         {.key = "box"});

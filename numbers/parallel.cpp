@@ -175,7 +175,7 @@ void detail::share_blocks(Index blocks, void (*run)(const void* body, Index bloc
 #endif
 
 void set_thread_count(int threads) {
-  if (threads < 1) throw Error(fmt::format("{} threads were asked for; at least 1 is needed", threads));
+  if (threads < 1) throw Error(fmt::format("{} threads were requested; at least 1 is needed", threads));
 #ifdef _OPENMP
   threads_in_use().store(std::min(threads, most_threads), std::memory_order_relaxed);
 #endif

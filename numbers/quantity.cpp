@@ -434,7 +434,7 @@ void refuse_exponent_of_fortran(std::string_view whole, const Number& number) {
   if (!behind.starts_with('D') && !behind.starts_with('d')) return;
   const std::size_t digit = behind.size() > 1 && (behind[1] == '-' || behind[1] == '+') ? 2 : 1;
   if (behind.size() <= digit || !is_digit(behind[digit])) return;
-  fail(fmt::format("'{}' has an exponent as Fortran writes it; write '{}e{}'", whole, whole.substr(0, number.length),
+  fail(fmt::format("'{}' has a Fortran-style exponent; write '{}e{}'", whole, whole.substr(0, number.length),
                    behind.substr(1)),
        whole);
 }
@@ -450,7 +450,7 @@ double read_quantity(std::string_view text, const Expected& wanted, const UnitSy
   }
   const std::vector<Term> terms = unit_terms(whole.substr(number.length), whole, true);
   if (system.is_reduced() && !all_plain(terms)) {
-    fail(fmt::format("'{}' has a unit; the reduced system takes bare numbers, such as '{}'", whole, digits), whole);
+    fail(fmt::format("'{}' has a unit; reduced units are plain numbers, such as '{}'", whole, digits), whole);
   }
   const Unit unit = unit_from(terms, whole, system);
   if (unit.dimension != wanted.dimension || (wanted.angle && !std::any_of(terms.begin(), terms.end(), is_angle))) {
@@ -474,7 +474,7 @@ Unit parse_unit(std::string_view text, const UnitSystem& system) {
   if (whole.empty()) fail("empty unit; expected one such as 'km/s', or '1' for a plain number", text);
   const std::vector<Term> terms = unit_terms(whole, whole, false);
   if (system.is_reduced() && !all_plain(terms)) {
-    fail(fmt::format("unit '{}' in the reduced system, which takes bare numbers; leave the unit out, or choose "
+    fail(fmt::format("unit '{}' in the reduced unit system, where numbers have no units; leave the unit out, or choose "
                      "solar, molecular or si",
                      whole),
          whole);

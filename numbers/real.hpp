@@ -127,7 +127,7 @@ constexpr Quad operator""_q(const char* text) {
       after_point = true;
       continue;
     }
-    if (*text < '0' || *text > '9') throw "a _q literal holds digits and a point only";
+    if (*text < '0' || *text > '9') throw "a _q literal may contain only digits and a decimal point";
     if (in_group == group && after_point) {
       result += digits / detail::power_of_ten(decimals);
       digits = 0;

@@ -72,8 +72,8 @@ bool has_simd_level(SimdLevel level) {
 
 void set_simd_level(SimdLevel level) {
   if (!has_simd_level(level)) {
-    throw Error(
-        fmt::format("SIMD level '{}' is not to be had on this processor; its best is '{}'", name(level), name(best())));
+    throw Error(fmt::format("SIMD level '{}' is not supported by this processor; its highest is '{}'", name(level),
+                            name(best())));
   }
   detail::level_in_use.store(static_cast<int>(level), std::memory_order_relaxed);
 }

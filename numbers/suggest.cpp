@@ -74,7 +74,7 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
   if (known.empty()) return "";
   const std::string nearest = suggest(word, known);
   if (!nearest.empty()) return fmt::format("; did you mean '{}'?", nearest);
-  return fmt::format("; known are: {}", fmt::join(known, ", "));
+  return fmt::format("; expected one of: {}", fmt::join(known, ", "));
 }
 
 }  // namespace noether

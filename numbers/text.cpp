@@ -65,10 +65,11 @@ std::string wrong_name(std::string_view name) {
   std::string wrong;
   for_each_character(name, [&](const Character& one) {
     if (!wrong.empty() || (one.valid && !one.controls())) return;
-    wrong = one.valid ? fmt::format("the name '{}' holds the control character {}; only what can be printed is allowed",
-                                    escaped(name), escape_of(one))
-                      : fmt::format("the name '{}' holds the byte {}, which is not UTF-8; save the text as UTF-8",
-                                    escaped(name), escape_of(one));
+    wrong = one.valid
+                ? fmt::format("the name '{}' contains the control character {}; only printable characters are allowed",
+                              escaped(name), escape_of(one))
+                : fmt::format("the name '{}' contains the byte {}, which is not UTF-8; save the text as UTF-8",
+                              escaped(name), escape_of(one));
   });
   return wrong;
 }

@@ -79,7 +79,7 @@ AnyHamiltonian<double> with_part(AnyHamiltonian<double> hamiltonian, const Scene
   for (const char one : made.claims().alphabet.substr(before.size())) {
     if (before.find(one) == std::string::npos) continue;
     throw SchemeMismatch(
-        fmt::format("the letter {} of '{}' stands in the Hamiltonian already; take one of the two out", one, name));
+        fmt::format("the letter {} of '{}' is already in the Hamiltonian; take one of the two out", one, name));
   }
   return made;
 }

@@ -43,24 +43,24 @@ std::vector<Site> all_sites(LatticeKind kind, const std::vector<std::int64_t>& c
 
 void check_above_zero(std::string_view key, double value, const char* what) {
   if (value > 0 && std::isfinite(value)) return;
-  refuse_field(key, value, fmt::format("is no {}; a number above 0 is expected", what));
+  refuse_field(key, value, fmt::format("is not a valid {}; a number above 0 is expected", what));
 }
 
 void check_count(std::string_view key, std::int64_t value, std::int64_t least) {
   if (value >= least && value <= most_built) return;
-  refuse_field(key, fmt::format("{}", value), fmt::format("is not from {} to {}", least, most_built));
+  refuse_field(key, fmt::format("{}", value), fmt::format("is out of range; {} to {} is expected", least, most_built));
 }
 
 void check_temperature(const std::optional<double>& temperature) {
   if (temperature && !(*temperature >= 0)) {
-    refuse_field("temperature", *temperature, "is no temperature; 0 or more is expected");
+    refuse_field("temperature", *temperature, "is not a valid temperature; 0 or more is expected");
   }
 }
 
 void check_lennard_jones(const std::optional<double>& epsilon, const std::optional<double>& sigma) {
   if (epsilon.has_value() != sigma.has_value()) {
     const char *given = epsilon ? "epsilon" : "sigma", *missing = epsilon ? "sigma" : "epsilon";
-    refuse_field(given, epsilon ? *epsilon : *sigma, fmt::format("has no {} beside it; give both or none", missing));
+    refuse_field(given, epsilon ? *epsilon : *sigma, fmt::format("is given without {}; give both or neither", missing));
   }
   if (epsilon && !(*epsilon >= 0)) refuse_field("epsilon", *epsilon, "is negative; 0 or more is expected");
   if (sigma && !(*sigma >= 0)) refuse_field("sigma", *sigma, "is negative; 0 or more is expected");
@@ -145,7 +145,7 @@ void set_temperature(ParticleSystem<double>& s, double temperature, std::uint64_
         i, heavy ? Vec3<double>(Vec3<double>(a, b, c) / std::sqrt(masses[i])) : Vec3<double>(Vec3<double>::Zero()));
   }
   if (massive < 2) {
-    if (temperature > 0) refuse_field("temperature", temperature, "is for two particles with mass, or more");
+    if (temperature > 0) refuse_field("temperature", temperature, "needs two or more particles with mass");
     s.velocities().set_zero();
     return;
   }
@@ -156,18 +156,20 @@ void set_temperature(ParticleSystem<double>& s, double temperature, std::uint64_
 
 void Lattice::check() const {
   const std::string shown = fmt::format("[{}]", fmt::join(cells, ", "));
-  if (cells.size() != 3) refuse_field("cells", shown, "is no list of three; cells along x, y and z are expected");
+  if (cells.size() != 3)
+    refuse_field("cells", shown, "is not a list of three numbers; the cells along x, y and z are expected");
   double count = static_cast<double>(sites_of(lattice).size());
   for (const std::int64_t n : cells) {
-    if (n < 1) refuse_field("cells", shown, "holds a number below 1");
+    if (n < 1) refuse_field("cells", shown, "contains a number below 1; whole numbers from 1 are expected");
     count *= static_cast<double>(n);
   }
   if (count > static_cast<double>(most_built)) {
-    refuse_field("cells", shown, fmt::format("are {:.3g} particles; at most {} are expected", count, most_built));
+    refuse_field("cells", shown, fmt::format("give {:.3g} particles; at most {} are expected", count, most_built));
   }
-  if (density && constant) refuse_field("constant", *constant, "stands beside a density; give one of them");
+  if (density && constant)
+    refuse_field("constant", *constant, "is given together with a density; give only one of them");
   if (!density && !constant) {
-    throw Error("there is neither a density nor a constant; give one of them", {.key = "density"});
+    throw Error("neither a density nor a constant is given; give one of them", {.key = "density"});
   }
   if (density) check_above_zero("density", *density, "density");
   if (constant) check_above_zero("constant", *constant, "length");
@@ -194,7 +196,8 @@ void Liquid::check() const {
   check_above_zero("density", density, "density");
   check_above_zero("mass", mass, "mass");
   if (!(displacement >= 0 && displacement < 0.5)) {
-    refuse_field("displacement", displacement, "is not from 0 to below 0.5; particles could meet");
+    refuse_field("displacement", displacement,
+                 "is out of range; 0 to below 0.5 is expected, so that particles cannot meet");
   }
   check_lennard_jones(epsilon, sigma);
   check_temperature(temperature);
@@ -229,12 +232,12 @@ void PolymerChains::check() const {
   check_count("beads", beads, 1);
   if (chains > most_built / beads) {
     refuse_field("chains", fmt::format("{}", chains),
-                 fmt::format("of {} beads are more than {} particles", beads, most_built));
+                 fmt::format("of {} beads each are more than {} particles", beads, most_built));
   }
   check_above_zero("density", density, "density");
   check_above_zero("mass", mass, "mass");
   if (!(bond_length >= 0.6 && bond_length < 1.5)) {
-    refuse_field("bond_length", bond_length, "is not from 0.6 to below 1.5, where a bond of FENE breaks");
+    refuse_field("bond_length", bond_length, "is out of range; 0.6 to below 1.5 is expected, where a FENE bond breaks");
   }
   check_above_zero("epsilon", epsilon, "energy");
   check_above_zero("sigma", sigma, "length");

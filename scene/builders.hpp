@@ -52,15 +52,16 @@ struct Lattice {
     return part<Lattice>(
         "lattice", "a crystal in a periodic box of whole cubic cells",
         formula("sc, bcc and fcc have 1, 2 and 4 particles in a cell"),
-        field<&Lattice::lattice>("lattice", "1", "of Bravais"),
+        field<&Lattice::lattice>("lattice", "1", "the Bravais lattice"),
         field<&Lattice::cells>("cells", "1", "number of cells along x, y and z").required("[10, 10, 10]"),
-        field<&Lattice::density>("density", "density", "mass by volume"),
+        field<&Lattice::density>("density", "density", "mass per volume"),
         field<&Lattice::constant>("constant", "length", "edge of the cubic cell, instead of the density"),
-        field<&Lattice::mass>("mass", "mass", "of a particle").required("\"39.948 u\""),
-        field<&Lattice::epsilon>("epsilon", "energy", "of Lennard-Jones"),
-        field<&Lattice::sigma>("sigma", "length", "of Lennard-Jones"),
-        field<&Lattice::temperature>("temperature", "temperature", "of the velocities; they are 0 without it"),
-        field<&Lattice::seed>("seed", "1", "of the velocities"));
+        field<&Lattice::mass>("mass", "mass", "mass of a particle").required("\"39.948 u\""),
+        field<&Lattice::epsilon>("epsilon", "energy", "Lennard-Jones parameter of all particles"),
+        field<&Lattice::sigma>("sigma", "length", "Lennard-Jones parameter of all particles"),
+        field<&Lattice::temperature>("temperature", "temperature",
+                                     "temperature of the velocities; without it they are 0"),
+        field<&Lattice::seed>("seed", "1", "seed of the velocities"));
   }
   void check() const;
   /// @throws Error  as `check`
@@ -84,16 +85,17 @@ struct Liquid {
   std::int64_t seed = 1;
 
   static constexpr auto describe() {
-    return part<Liquid>(
-        "liquid", "a disordered start in a cubic periodic box, without overlaps",
-        field<&Liquid::particles>("particles", "1", "how many").required("1000"),
-        field<&Liquid::density>("density", "density", "mass by volume").required("\"1.374 g/cm^3\""),
-        field<&Liquid::mass>("mass", "mass", "of a particle").required("\"39.948 u\""),
-        field<&Liquid::displacement>("displacement", "1", "from a site, in distances of neighboring sites"),
-        field<&Liquid::epsilon>("epsilon", "energy", "of Lennard-Jones"),
-        field<&Liquid::sigma>("sigma", "length", "of Lennard-Jones"),
-        field<&Liquid::temperature>("temperature", "temperature", "of the velocities; they are 0 without it"),
-        field<&Liquid::seed>("seed", "1", "of positions and velocities"));
+    return part<Liquid>("liquid", "a disordered start in a cubic periodic box, without overlaps",
+                        field<&Liquid::particles>("particles", "1", "number of particles").required("1000"),
+                        field<&Liquid::density>("density", "density", "mass per volume").required("\"1.374 g/cm^3\""),
+                        field<&Liquid::mass>("mass", "mass", "mass of a particle").required("\"39.948 u\""),
+                        field<&Liquid::displacement>(
+                            "displacement", "1", "largest displacement from a site, in distances of neighboring sites"),
+                        field<&Liquid::epsilon>("epsilon", "energy", "Lennard-Jones parameter of all particles"),
+                        field<&Liquid::sigma>("sigma", "length", "Lennard-Jones parameter of all particles"),
+                        field<&Liquid::temperature>("temperature", "temperature",
+                                                    "temperature of the velocities; without it they are 0"),
+                        field<&Liquid::seed>("seed", "1", "seed of positions and velocities"));
   }
   void check() const;
   /// @throws Error  as `check`
@@ -121,16 +123,17 @@ struct PolymerChains {
     return part<PolymerChains>(
         "polymer_chains", "a melt of bead-spring chains as random walks that do not fold back",
         formula("|b_i| = bond_length sigma, |b_i + b_(i+1)| >= 1.02 sigma"), source("KremerGrest1990"),
-        field<&PolymerChains::chains>("chains", "1", "how many").required("100"),
-        field<&PolymerChains::beads>("beads", "1", "of each chain").required("50"),
-        field<&PolymerChains::density>("density", "density", "mass by volume").required("0.85"),
-        field<&PolymerChains::mass>("mass", "mass", "of a bead").required("1"),
-        field<&PolymerChains::bond_length>("bond_length", "1", "in sigma"),
-        field<&PolymerChains::epsilon>("epsilon", "energy", "of beads and bonds"),
-        field<&PolymerChains::sigma>("sigma", "length", "of beads and bonds"),
+        field<&PolymerChains::chains>("chains", "1", "number of chains").required("100"),
+        field<&PolymerChains::beads>("beads", "1", "number of beads in each chain").required("50"),
+        field<&PolymerChains::density>("density", "density", "mass per volume").required("0.85"),
+        field<&PolymerChains::mass>("mass", "mass", "mass of a bead").required("1"),
+        field<&PolymerChains::bond_length>("bond_length", "1", "bond length, in sigma"),
+        field<&PolymerChains::epsilon>("epsilon", "energy", "Lennard-Jones parameter of beads and bonds"),
+        field<&PolymerChains::sigma>("sigma", "length", "Lennard-Jones parameter of beads and bonds"),
         field<&PolymerChains::bending>("bending", "energy", "k of angles k (1 + cos theta); 0: chains are flexible"),
-        field<&PolymerChains::temperature>("temperature", "temperature", "of the velocities; they are 0 without it"),
-        field<&PolymerChains::seed>("seed", "1", "of walks and velocities"));
+        field<&PolymerChains::temperature>("temperature", "temperature",
+                                           "temperature of the velocities; without it they are 0"),
+        field<&PolymerChains::seed>("seed", "1", "seed of walks and velocities"));
   }
   void check() const;
   /// @throws Error  as `check`

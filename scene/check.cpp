@@ -93,21 +93,23 @@ class SceneCheck {
       hamiltonian.fail("type", error.message());
     }
     if (scene_.hamiltonian.neighbors && scene_.integrator.classical) {
-      integrator.fail("method",
-                      fmt::format("method '{}' keeps a neighbor list of its own; [hamiltonian.neighbors] is for "
-                                  "splittings",
-                                  scene_.integrator.method));
+      integrator.fail(
+          "method",
+          fmt::format(
+              "method '{}' uses its own neighbor list; [hamiltonian.neighbors] is for splittings, so take it out",
+              scene_.integrator.method));
     }
     if (scene_.hamiltonian.thermostat && scene_.integrator.classical) {
-      integrator.fail("method", fmt::format("method '{}' knows no noise: a thermostat is the letter O of a word; use "
-                                            "\"BAOAB\", or a scheme such as 'verlet'",
-                                            scene_.integrator.method));
+      integrator.fail(
+          "method",
+          fmt::format("method '{}' does not support a thermostat; use \"BAOAB\", or a scheme such as 'verlet'",
+                      scene_.integrator.method));
     }
     if (scene_.hamiltonian.thermostat && scene_.integrator.step < 0) {
-      integrator.fail("step",
-                      fmt::format("step = {} leads backwards, and a thermostat knows no way back; a step above 0 "
-                                  "is expected",
-                                  scene_.integrator.step_text));
+      integrator.fail(
+          "step",
+          fmt::format("step = {} goes back in time, which a thermostat does not support; a step above 0 is expected",
+                      scene_.integrator.step_text));
     }
     std::optional<AnyIntegrator<double>> made;
     try {
@@ -123,7 +125,7 @@ class SceneCheck {
     for (const SceneForce& force : scene_.hamiltonian.forces) {
       const std::string own = force.force.claims().kicks;
       if (force.letter || own.find_first_not_of(kicks) == std::string::npos) continue;
-      hamiltonian.fail("type", fmt::format("force '{}' is in the kick {}, and '{}' has only {}; take its kick out",
+      hamiltonian.fail("type", fmt::format("force '{}' is in the kick {}, but '{}' has only {}; take its kick out",
                                            force.name, own, scene_.hamiltonian.splitting.name, kicks));
     }
   }
@@ -187,10 +189,10 @@ class SceneCheck {
       line = std::get<SceneValue::Array>(bodies->data)[static_cast<std::size_t>(pair->second)].line;
     throw scene_error(
         scene_.source, line, "particles", "",
-        fmt::format("'{}' and '{}' stand in one place, where {}", s.name(pair->first), s.name(pair->second),
+        fmt::format("'{}' and '{}' are in the same place, where {}", s.name(pair->first), s.name(pair->second),
                     scene_.hamiltonian.is_keplerian() ? "their attraction is infinite; move one, or give gravity a "
                                                         "softening"
-                                                      : "a force between them is no number; move one"));
+                                                      : "a force between them is not a number; move one"));
   }
 
   /// Ends the refusal of a word with noise where there is none.
@@ -213,8 +215,7 @@ class SceneCheck {
 void check_value(const SceneValue& value, const std::string& path, int depth, const SceneSource& source) {
   const auto fail = [&](const std::string& message) { throw scene_error(source, value.line, path, "", message); };
   if (depth > deepest_table) {
-    fail(
-        fmt::format("tables and lists stand more than {} deep in one another; a scene needs far fewer", deepest_table));
+    fail(fmt::format("tables and lists are nested more than {} levels deep; a scene needs far fewer", deepest_table));
   }
   if (const auto* text = value.get<std::string>(); text != nullptr && !is_utf8(*text)) {
     fail(fmt::format("{} is not UTF-8; give text in that encoding", path));
@@ -229,7 +230,7 @@ void check_value(const SceneValue& value, const std::string& path, int depth, co
   for (const auto& [key, entry] : *table) {
     const std::string below = path.empty() ? key : path + "." + key;
     if (!is_utf8(key)) fail(fmt::format("a key below '{}' is not UTF-8; give text in that encoding", path));
-    if (!keys.insert(key).second) fail(fmt::format("the key '{}' stands twice; give it once", below));
+    if (!keys.insert(key).second) fail(fmt::format("the key '{}' appears twice; give it once", below));
     check_value(entry, below, depth + 1, source);
   }
 }

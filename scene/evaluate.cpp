@@ -55,7 +55,7 @@ void add_hamiltonian(const Scene& scene, ParticleSystem<double>& s, Evaluation& 
 Evaluation evaluate(const Scene& scene, bool check) {
   if (scene.system) {
     throw SceneError(fmt::format("there is nothing to evaluate: system '{}' has neither energy nor forces; `noether "
-                                 "explain` tells how stiff it is",
+                                 "explain` shows how stiff it is",
                                  scene.system->name),
                      {.file = scene.source.file, .key = "system"});
   }

@@ -260,7 +260,7 @@ std::pair<const Kind*, std::string> kind_of_part(const SceneContext& context, co
   std::vector<std::string> known = names_of(kinds);
   known.insert(known.end(), others.begin(), others.end());
   if (!reader.has("type")) {
-    reader.fail(nullptr, "type", fmt::format("this {} has no type; known are: {}", what, fmt::join(known, ", ")));
+    reader.fail(nullptr, "type", fmt::format("this {} has no type; expected one of: {}", what, fmt::join(known, ", ")));
   }
   reader.fail("type", fmt::format("unknown {} '{}'{}", what, type, did_you_mean(type, known)));
 }

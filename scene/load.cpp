@@ -94,7 +94,7 @@ class SceneReader {
   void read_system(TableReader& top, const SceneValue& table) {
     for (const char* other : {"particles", "hamiltonian", "minimize"}) {
       if (!top.has(other)) continue;
-      top.fail(other, fmt::format("[{}] stands beside [system]; a run is of particles under a Hamiltonian or of a "
+      top.fail(other, fmt::format("[{}] and [system] are both given; a run has either particles and a Hamiltonian or a "
                                   "first-order system: take one out",
                                   other));
     }
@@ -124,7 +124,7 @@ class SceneReader {
     const std::string method = integrator.text("method");
     const bool letters = !method.empty() && method.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ") == std::string::npos;
     if (schemes::find(method) == nullptr && !letters) return;
-    integrator.fail("method", fmt::format("'{}' splits a Hamiltonian, and system '{}' has none; use a method for "
+    integrator.fail("method", fmt::format("'{}' splits a Hamiltonian, but system '{}' has none; use a method for "
                                           "y' = f, such as 'dop853', or 'rodas_5p' where it is stiff",
                                           method, scene_.system->name));
   }
@@ -135,7 +135,8 @@ class SceneReader {
     if (G == nullptr) return read_constant_of_force(hamiltonian);
     scene_.hamiltonian.G = reader.number(*G, "G", "length^3/mass/time^2");
     if (!(*scene_.hamiltonian.G > 0)) {
-      reader.fail("G", fmt::format("G = {} is no constant of gravitation; a number above 0 is expected", to_text(*G)));
+      reader.fail(
+          "G", fmt::format("G = {} is not a valid gravitational constant; a number above 0 is expected", to_text(*G)));
     }
     context_.G = *G;
   }
@@ -220,11 +221,11 @@ class SceneReader {
   void check_splitting(const TableReader& reader, const std::vector<const SceneValue*>& constraints) const {
     const SceneSplitting& splitting = scene_.hamiltonian.splitting;
     if (!splitting.claims.periodic && scene_.particles.box().is_periodic()) {
-      reader.fail("type", fmt::format("{} knows open space only; take the box out", splitting.name));
+      reader.fail("type", fmt::format("{} does not support a periodic box; take the box out", splitting.name));
     }
     if (!splitting.make_constrained && !constraints.empty()) {
       reader.fail(constraints.front(), "constraint",
-                  fmt::format("{} has no constraints; use {}", splitting.name, plain_hamiltonian()));
+                  fmt::format("{} does not support constraints; use {}", splitting.name, plain_hamiltonian()));
     }
   }
   const std::string& plain_hamiltonian() const { return parts_.hamiltonians().front().info.name; }
@@ -239,7 +240,8 @@ class SceneReader {
                                  [](const SceneForce& force) { return force.force.claims().range > 0; });
     if (!any || !made.splitting.claims.neighbors) {
       reader.fail(nullptr, "neighbors",
-                  fmt::format("no force of {} has a range, so nobody looks for neighbors", plain_hamiltonian()));
+                  fmt::format("no force of {} has a cutoff, so [hamiltonian.neighbors] has no effect; take it out",
+                              plain_hamiltonian()));
     }
     scene_.hamiltonian.neighbors = options;
     SceneValue effective = SceneValue::table();
@@ -287,12 +289,13 @@ class SceneReader {
   static void set_kick(TableReader& reader, SceneForce& force, const std::string& kick) {
     if (!reader.has("kick")) return;
     if (force.letter) {
-      reader.fail("kick",
-                  fmt::format("{} is a letter of its own and takes part in no kick; take the key out", force.name));
+      reader.fail("kick", fmt::format("{} is a separate letter, not part of any kick; take the key out", force.name));
     }
     if (kick.size() != 1 || kick[0] < 'B' || kick[0] > 'Z') {
-      reader.fail("kick",
-                  fmt::format("kick = \"{}\" is no letter of kicks; one from B to Z is expected, such as \"C\"", kick));
+      reader.fail(
+          "kick",
+          fmt::format("kick = \"{}\" is not a letter of a kick; a letter from B to Z is expected, such as \"C\"",
+                      kick));
     }
     force.force.in_kick(kick[0]);
   }
@@ -303,12 +306,12 @@ class SceneReader {
     const SceneHamiltonian& made = scene_.hamiltonian;
     const auto is_it = [&](const SceneForce& other) { return other.name == kind.info.name; };
     if (std::any_of(made.splitting.own.begin(), made.splitting.own.end(), is_it)) {
-      reader.fail("type", fmt::format("{} has {} in itself; take this force out, or use {}", made.splitting.name,
+      reader.fail("type", fmt::format("{} already includes {}; take this force out, or use {}", made.splitting.name,
                                       kind.info.name, plain_hamiltonian()));
     }
     if (!kind.only_once.empty() && std::any_of(made.forces.begin(), made.forces.end(), is_it)) {
       const std::string_view mark = kind.only_once.starts_with("so ") ? "," : ";";
-      reader.fail("type", fmt::format("{} stands twice in the scene{} {}", kind.info.name, mark, kind.only_once));
+      reader.fail("type", fmt::format("{} appears twice in the scene{} {}", kind.info.name, mark, kind.only_once));
     }
     if (!(force.force.claims().range > 0)) return;
     const std::set<std::string> types = types_between(table);
@@ -316,10 +319,11 @@ class SceneReader {
       const std::set<std::string> theirs = types_between(other.effective);
       if (!is_it(other) || !(types.empty() || theirs.empty() || types == theirs)) continue;
       const std::set<std::string>& twice = types.empty() ? theirs : types;
-      reader.fail("type",
-                  fmt::format("{} stands twice in the scene, so {} would count twice; take one out", kind.info.name,
-                              twice.empty() ? "every pair"
-                                            : fmt::format("pairs of '{}' and '{}'", *twice.begin(), *twice.rbegin())));
+      reader.fail(
+          "type",
+          fmt::format(
+              "{} appears twice in the scene, so {} would count twice; take one of them out", kind.info.name,
+              twice.empty() ? "every pair" : fmt::format("pairs of '{}' and '{}'", *twice.begin(), *twice.rbegin())));
     }
   }
   /// The types whose pairs a force acts between; empty: all pairs.
@@ -353,7 +357,7 @@ class SceneReader {
       reader.finish();
       for (const SceneWatch& other : scene_.watches) {
         if (type == "trajectory" && other.kind == watch.kind) {
-          reader.fail("type", "trajectory stands twice in the scene; there is one run.h5, so give one cadence");
+          reader.fail("type", "trajectory appears twice in the scene, but there is one run.h5; give one cadence");
         }
       }
       watch.cadence = read_cadence(reader, type == "checkpoint", scene_.integrator, effective);
@@ -371,12 +375,11 @@ class SceneReader {
     SceneValue::Array list;
     if (scene_.system && !tables.empty()) {
       top.fail(tables.front(), "stop",
-               fmt::format("a stop watches distances of particles, and system '{}' has none; take it out",
+               fmt::format("a stop watches distances of particles, but system '{}' has none; take it out",
                            scene_.system->name));
     }
     if (scene_.particles.box().is_periodic() && !tables.empty()) {
-      top.fail(tables.front(), "stop",
-               "a stop follows the paths of particles through open space; in a periodic box take it out");
+      top.fail(tables.front(), "stop", "a stop does not support a periodic box; take the stop out");
     }
     for (const SceneValue* table : tables) {
       const std::string path = fmt::format("stop.{}", list.size());
@@ -392,8 +395,11 @@ class SceneReader {
         stop.steps = read_cadence(reader, false, scene_.integrator, effective).steps;
       }
       if (stop.steps == 0) {
-        reader.fail("every", fmt::format("stop '{}' looks at whole steps, and method '{}' chooses them; give steps",
-                                         type, scene_.integrator.method));
+        reader.fail(
+            "every",
+            fmt::format(
+                "stop '{}' is checked at whole steps, but method '{}' chooses them; give steps instead of every", type,
+                scene_.integrator.method));
       }
       list.push_back(std::move(effective));
       scene_.stops.push_back(std::move(stop));
@@ -433,15 +439,15 @@ class SceneReader {
     const std::string monitor = path.substr(0, dot), figure = dot == std::string::npos ? "" : path.substr(dot + 1);
     const std::vector<std::string> names = monitor_names();
     if (std::find(names.begin(), names.end(), monitor) == names.end()) {
-      fail(fmt::format("[expect] names '{}', which is no monitor of this scene{}", monitor,
-                       names.empty() ? "; it has none" : did_you_mean(monitor, names)));
+      fail(fmt::format("[expect] names '{}', which is not a monitor of this scene{}", monitor,
+                       names.empty() ? "; it has no monitors" : did_you_mean(monitor, names)));
     }
     if (figure.empty()) {
       fail(fmt::format("[expect] names no figure of '{0}'; expected one, such as {0}.worst", monitor));
     }
     const std::vector<std::string> figures = {"first", "last", "worst", "rms", "slope", "slope_error"};
     if (std::find(figures.begin(), figures.end(), figure) == figures.end()) {
-      fail(fmt::format("[expect] names '{}' of '{}', which is no figure{}", figure, monitor,
+      fail(fmt::format("[expect] names '{}' of '{}', which is not a figure{}", figure, monitor,
                        did_you_mean(figure, figures)));
     }
     if (value.get<double>() == nullptr && value.get<std::int64_t>() == nullptr) {
@@ -480,7 +486,8 @@ Scene load_scene(const std::filesystem::path& file, const Parts& parts, const st
   const std::string text = io::read_bytes(file, largest + 1);
   if (text.size() > largest) {
     throw SceneError(
-        "this is too large for a scene; at most 64 MB are expected: bodies go into a table, bodies = \"FILE.csv\"",
+        "the file is too large for a scene; at most 64 MB are expected: put the bodies into a table, bodies = "
+        "\"FILE.csv\"",
         {.file = file.string()});
   }
   return read_scene(text, file, parts, sets);

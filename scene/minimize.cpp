@@ -15,20 +15,18 @@ SceneValue read_minimize(const SceneContext& context, const SceneValue& table, S
   if (!scene.hamiltonian.splitting.claims.inertial) {
     reader.fail(
         nullptr, "",
-        fmt::format("planets of {} have no minimum to go to; take [minimize] out", scene.hamiltonian.splitting.name));
+        fmt::format("planets of {} have no minimum to move to; take [minimize] out", scene.hamiltonian.splitting.name));
   }
   if (!scene.hamiltonian.splitting.only_forces) {
     reader.fail(nullptr, "",
-                fmt::format("{} is more than forces, so a minimum of their energy is no rest of it; take [minimize] "
-                            "out",
+                fmt::format("{} is more than forces, so a minimum of their energy is not at rest; take [minimize] out",
                             scene.hamiltonian.splitting.name));
   }
   for (const SceneForce& force : scene.hamiltonian.terms()) {
     if (!force.force.claims().time_dependent) continue;
-    reader.fail(nullptr, "",
-                fmt::format("force '{}' depends on time, so there is no minimum to go to; take [minimize] "
-                            "out",
-                            force.name));
+    reader.fail(
+        nullptr, "",
+        fmt::format("force '{}' depends on time, so there is no minimum to move to; take [minimize] out", force.name));
   }
   scene.minimize = options;
   SceneValue effective = SceneValue::table();

@@ -50,7 +50,7 @@ OutputFolder::OutputFolder(fs::path path) : path_(std::move(path)) {
       throw FileError(fmt::format("the output folder cannot be locked: {}", std::strerror(reason)),
                       {.file = path_.string()});
     }
-    throw SceneError("another run is writing here; wait for it, or give another folder with --out",
+    throw SceneError("another run is writing to this folder; wait for it, or give another folder with --out",
                      {.file = path_.string()});
   }
 }
@@ -108,7 +108,7 @@ std::optional<io::Checkpoint> OutputFolder::prepare(Existing existing) {
   } else {
     const std::string where = found.checkpoint ? fmt::format(" at step {}", found.checkpoint->step) : "";
     throw SceneError(
-        fmt::format("an unfinished run stands here{}; go on with --resume, or start over with --fresh", where),
+        fmt::format("there is an unfinished run here{}; continue it with --resume, or start over with --fresh", where),
         {.file = path_.string()});
   }
   return {};

@@ -64,8 +64,8 @@ ParticleSystem<double> particles_in_file(
   ParticleSystem<double> s = told_of_line(reader, key, file, read);
   const std::string hash = hash_of ? hash_of() : io::sha256(io::read_bytes(file));
   if (reader.text(hash_key, hash) != hash) {
-    reader.fail(hash_key, fmt::format("'{}' is no longer the file this scene was run with: its hash is {}; take the "
-                                      "key out to use the new one",
+    reader.fail(hash_key, fmt::format("'{}' differs from the file this scene was run with: its hash is now {}; take "
+                                      "the key out to use the new file",
                                       name, hash));
   }
   effective.put(key, SceneValue::of(name, reader.line(key)));
@@ -110,8 +110,8 @@ std::array<double, 3> read_special(TableReader& reader, SceneValue& effective) {
     const auto* factors = value->get<SceneValue::Array>();
     if (factors == nullptr || factors->size() != 3) {
       reader.fail("special",
-                  fmt::format("special = {} is no list of three; what is left of the forces of pairs one, two "
-                              "and three bonds apart is expected: [s12, s13, s14]",
+                  fmt::format("special = {} is not a list of three numbers; the factors of the forces between "
+                              "particles one, two and three bonds apart are expected: [s12, s13, s14]",
                               to_text(*value)));
     }
   }
@@ -127,16 +127,18 @@ void read_exclusions(TableReader& reader, ParticleSystem<double>& s, SceneValue&
   if (value == nullptr) return;
   const auto* list = value->get<SceneValue::Array>();
   if (list == nullptr) {
-    reader.fail("exclusions", fmt::format("exclusions = {} lists no pairs; ids of particles are expected, such as "
-                                          "[[1, 5], [2, 7]]",
-                                          to_text(*value)));
+    reader.fail(
+        "exclusions",
+        fmt::format("exclusions = {} is not a list of pairs; pairs of ids are expected, such as [[1, 5], [2, 7]]",
+                    to_text(*value)));
   }
   std::unordered_map<std::int64_t, Index> index;
   for (Index i = 0; i < s.size(); ++i) index.emplace(s.ids()[static_cast<std::size_t>(i)], i);
   std::set<Topology::Pair> pairs;
   for (const SceneValue& one : *list) {
     const auto refuse = [&](const std::string& why) {
-      reader.fail(one.line != 0 ? &one : value, "exclusions", fmt::format("exclusions holds {}{}", to_text(one), why));
+      reader.fail(one.line != 0 ? &one : value, "exclusions",
+                  fmt::format("exclusions contains {}{}", to_text(one), why));
     };
     const auto* ids = one.get<SceneValue::Array>();
     if (ids == nullptr || ids->size() != 2) refuse("; two ids are expected, such as [1, 5]");
@@ -148,8 +150,8 @@ void read_exclusions(TableReader& reader, ParticleSystem<double>& s, SceneValue&
       if (found == index.end()) refuse(fmt::format(", but there is no particle with id {}", *id));
       pair[k] = found->second;
     }
-    if (pair[0] == pair[1]) refuse(", a particle beside itself; ids of two are expected");
-    if (!pairs.insert(std::minmax(pair[0], pair[1])).second) refuse(", a pair that stands there already; take one out");
+    if (pair[0] == pair[1]) refuse(", which is the same particle twice; two different ids are expected");
+    if (!pairs.insert(std::minmax(pair[0], pair[1])).second) refuse(", a pair that is already listed; take one out");
   }
   Topology topology = s.topology() != nullptr ? *s.topology() : Topology{};
   topology.exclude({pairs.begin(), pairs.end()});
@@ -163,7 +165,7 @@ std::vector<TypeParameters> read_types(TableReader& reader, SceneValue& effectiv
     TableReader table(reader.context(), *one, "[[particles.type]]", fmt::format("particles.type.{}", types.size()));
     table.expect_only({"name", "mass", "charge", "epsilon", "sigma"});
     const SceneValue* name = table.find("name");
-    if (name == nullptr) table.fail(nullptr, "name", "this [[particles.type]] has no name; give that of a type");
+    if (name == nullptr) table.fail(nullptr, "name", "this [[particles.type]] has no name; give the name of the type");
     TypeParameters type{.type = type_name(table, "name", *name)};
     type.mass = table.quantity("mass", "mass");
     type.charge = table.quantity("charge", "charge");
@@ -207,7 +209,7 @@ void read_temperature(TableReader& reader, ParticleSystem<double>& s, SceneValue
   const auto temperature = reader.quantity("temperature", "temperature");
   const std::int64_t seed = reader.integer("seed").value_or(1);
   if (!temperature) {
-    if (reader.has("seed")) reader.fail("seed", "seed has nothing to be drawn; give a temperature too");
+    if (reader.has("seed")) reader.fail("seed", "seed has no effect without a temperature; give a temperature too");
     return;
   }
   try {

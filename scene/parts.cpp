@@ -49,7 +49,7 @@ namespace {
 struct RigidBar {
   static constexpr auto describe() {
     return part<RigidBar>("rigid_bar",
-                          "particles on a rigid bar: its two ends, and others in their places between them",
+                          "keeps particles on a rigid bar: its two ends, and others in their places between them",
                           formula("|x_n - x_1| = d,  x_k = (1 - f_k) x_1 + f_k x_n, as at the start"),
                           source("CiccottiFerrarioRyckaert1982"));
   }
@@ -60,7 +60,7 @@ struct RigidBar {
 };
 
 void check_distance(double distance) {
-  if (!(distance > 0)) refuse_field("distance", distance, "cannot stop a run; a length above 0 is expected");
+  if (!(distance > 0)) refuse_field("distance", distance, "is not a valid distance; a length above 0 is expected");
 }
 void check_steps(std::int64_t steps) {
   if (steps < 1) refuse_field("steps", std::to_string(steps), "is too few; at least 1 is expected");
@@ -76,7 +76,7 @@ struct Escape {
                         formula("|x_i - X| > distance,  X = sum m_j x_j / sum m_j"),
                         quantities("the particle and, by interpolation, since when"),
                         field<&Escape::distance>("distance", "length").required("\"100 au\""),
-                        field<&Escape::steps>("steps", "1", "steps between two looks"));
+                        field<&Escape::steps>("steps", "1", "steps between two checks"));
   }
   void check() const {
     check_distance(distance);
@@ -92,10 +92,10 @@ struct Collision {
 
   static constexpr auto describe() {
     return part<Collision>("collision", "ends the run when two particles, one of them massive, come near each other",
-                           formula("|x_i - x_j| < distance along quintic Hermite paths between two looks"),
-                           quantities("the pair, its least distance, since when"),
+                           formula("|x_i - x_j| < distance along quintic Hermite paths between two checks"),
+                           quantities("the pair, its smallest distance, and since when"),
                            field<&Collision::distance>("distance", "length").required("\"0.001 au\""),
-                           field<&Collision::steps>("steps", "1", "steps between two looks"));
+                           field<&Collision::steps>("steps", "1", "steps between two checks"));
   }
   void check() const {
     check_distance(distance);

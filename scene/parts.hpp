@@ -407,7 +407,7 @@ class Parts {
         if (there) made.exact = [system](double t) { return system.exact(t); };
       }
     } else {
-      reader.fail(nullptr, "start", fmt::format("{} does not say where to start; give start = [...]", reader.what()));
+      reader.fail(nullptr, "start", fmt::format("{} has no start; give start = [...]", reader.what()));
     }
     made.start = initial_state(system, std::move(values), *reader.context().units);
     made.field = [system] { return std::make_unique<SystemMotion<S, double>>(system); };

@@ -36,8 +36,10 @@ ConstraintOptions read_options(const SceneContext& context, const std::vector<co
       if (value == nullptr) continue;
       const auto [before, is_new] = given.emplace(key, value);
       if (is_new || to_text(*before->second) == to_text(*value)) continue;
-      reader.fail(key, fmt::format("{} = {} differs from {} before; all constraints are solved together", key,
-                                   to_text(*value), to_text(*before->second)));
+      reader.fail(
+          key,
+          fmt::format("{} = {} differs from {} before; all constraints are solved together, so give the same value",
+                      key, to_text(*value), to_text(*before->second)));
     }
     read_fields(reader, options);
     try {
@@ -52,7 +54,7 @@ ConstraintOptions read_options(const SceneContext& context, const std::vector<co
     TableReader reader(context, *tables[k], "[[hamiltonian.constraint]]", path_of(k));
     for (const char* key : {"tolerance", "iterations"}) {
       if (!reader.has(key)) continue;
-      reader.fail(key, fmt::format("{} belongs to solver = {}; {} solves to rounding", key, solvers_to_a_tolerance(),
+      reader.fail(key, fmt::format("{} is for solver = {} only; {} solves to rounding", key, solvers_to_a_tolerance(),
                                    info_of(options.solver).name));
     }
   }

@@ -58,13 +58,13 @@ std::int64_t whole_steps(const TableReader& reader, std::string_view key, const 
   };
   const std::string origin = from == 0 ? "0" : time_text(from, units);
   if (exact < 0) {
-    fail(fmt::format("lies {}; steps are of {}, so give a time {} {}",
-                     from == 0 ? "the other way" : "on the other side of the start_time", integrator.step_text,
-                     integrator.step > 0 ? "above" : "below", origin));
+    fail(fmt::format("lies {}; the step is {}, so give a time {} {}",
+                     from == 0 ? "in the opposite direction" : "on the wrong side of the start_time",
+                     integrator.step_text, integrator.step > 0 ? "above" : "below", origin));
   }
   if (!(exact > 0)) {
-    fail(fmt::format("is no time ahead; steps are of {}{}", integrator.step_text,
-                     from == 0 ? "" : fmt::format(", from the start_time {} on", origin)));
+    fail(fmt::format("leaves no time for a step; the step is {}{}", integrator.step_text,
+                     from == 0 ? "" : fmt::format(", and the start_time is {}", origin)));
   }
   const auto found = steps_to(integrator, units, time, from);
   if (const auto* wrong = std::get_if<std::string>(&found)) fail(*wrong);
@@ -143,8 +143,8 @@ void read_method_options(TableReader& reader, const Parts& parts, SceneIntegrato
   const MethodInfo& info = *made.classical->info;
   MethodOptions& options = made.classical->options;
   if (constrained) {
-    reader.fail("method", fmt::format("method '{}' knows no constraints; use 'verlet', which is RATTLE with them, or a "
-                                      "composition of it such as 'yoshida_4'",
+    reader.fail("method", fmt::format("method '{}' does not support constraints; use 'verlet', which is RATTLE with "
+                                      "them, or a composition of it such as 'yoshida_4'",
                                       made.method));
   }
   refuse_scheme_options(reader, made);
@@ -175,7 +175,8 @@ void read_decorators(TableReader& integrator, const Parts& parts, SceneIntegrato
   SceneValue::Array list;
   for (const SceneValue* table : tables_of(integrator, "decorator")) {
     if (parts.decorators().empty()) {
-      integrator.fail(table, "decorator", "this program knows no decorators; its `parts.add_decorator` adds them");
+      integrator.fail(table, "decorator",
+                      "this program has no decorators; a program of your own can add them with `parts.add_decorator`");
     }
     const std::string path = fmt::format("integrator.decorator.{}", list.size());
     const auto [kind, type] = kind_of_part(context, *table, path, "decorator", parts.decorators(), {});
@@ -207,7 +208,7 @@ void read_step(TableReader& reader, SceneIntegrator& made, SceneValue& effective
   made.step = reader.number(*step, "step", "time");
   made.step_text = to_text(*step);
   if (made.step == 0)
-    reader.fail("step", fmt::format("a step of {} is no step; a time other than 0 is expected", made.step_text));
+    reader.fail("step", fmt::format("a step of {} is not valid; a time other than 0 is expected", made.step_text));
   if (made.adaptive()) made.classical->options.first = std::abs(made.step);
   effective.put("step", *step);
 }
@@ -218,10 +219,11 @@ void read_start_time(TableReader& reader, SceneIntegrator& made, SceneValue& eff
   made.start = reader.number(*start, "start_time", "time");
   if (made.start == 0) return;  // as if nobody had said it
   if (made.step != 0 && std::abs(made.step) < 4 * std::numeric_limits<double>::epsilon() * std::abs(made.start)) {
-    reader.fail(start, "start_time",
-                fmt::format("start_time = {} is too far from 0: a step of {} is lost in its rounding; count time from "
-                            "another moment",
-                            to_text(*start), made.step_text));
+    reader.fail(
+        start, "start_time",
+        fmt::format(
+            "start_time = {} is too far from 0: a step of {} is lost in its rounding; choose another origin of time",
+            to_text(*start), made.step_text));
   }
   effective.put("start_time", *start);
 }
@@ -229,22 +231,24 @@ void read_start_time(TableReader& reader, SceneIntegrator& made, SceneValue& eff
 void read_end(TableReader& reader, SceneIntegrator& made, SceneValue& effective) {
   const SceneValue* until = reader.find("until");
   if (until != nullptr && reader.has("steps")) {
-    reader.fail(until, "until", "until and steps stand both in [integrator]; give one of them");
+    reader.fail(until, "until", "until and steps are both given in [integrator]; give only one of them");
   }
   if (until != nullptr && made.adaptive()) {
     made.until = reader.number(*until, "until", "time");
     const double length = *made.until - made.start;
     const std::string origin = made.start == 0 ? "0" : time_text(made.start, *reader.context().units);
     if (length == 0) {
-      reader.fail("until", fmt::format("until = {} is no time ahead; give a time above {}, or one below {} to go back",
-                                       to_text(*until), origin, made.start == 0 ? "0" : "it"));
+      reader.fail("until",
+                  fmt::format("until = {} leaves no time to run; give a time above {}, or one below {} to go back",
+                              to_text(*until), origin, made.start == 0 ? "0" : "it"));
     }
     if (made.step != 0 && (length > 0) != (made.step > 0)) {
       const std::string_view side = made.step > 0 ? "above" : "below", other = made.step > 0 ? "below" : "above";
-      reader.fail("until",
-                  fmt::format("until = {} lies the other way; the first step is {}, so give a time {} {}, or a "
-                              "first step {} 0",
-                              to_text(*until), made.step_text, side, origin, other));
+      reader.fail(
+          "until",
+          fmt::format("until = {} lies in the opposite direction; the first step is {}, so give a time {} {}, or a "
+                      "first step {} 0",
+                      to_text(*until), made.step_text, side, origin, other));
     }
   } else if (until != nullptr) {
     made.steps = whole_steps(reader, "until", *until, made, made.start);
@@ -258,14 +262,15 @@ void read_end(TableReader& reader, SceneIntegrator& made, SceneValue& effective)
 
 double wall_seconds(const TableReader& reader, const SceneValue& wall) {
   const std::string* text = wall.get<std::string>();
-  if (text == nullptr) reader.wrong_kind(wall, "wall", "a time in quotes, such as \"5 min\"");
+  if (text == nullptr) reader.wrong_kind(wall, "wall", "a time in quotes, such as \"5 min\",");
   double seconds = 0;
   try {
     seconds = parse_quantity(*text, dimensions::time, unit_system("si"));
   } catch (const Error& error) {
     reader.fail(&wall, "wall", fmt::format("wall: {}", error.message()));
   }
-  if (!(seconds > 0)) reader.fail(&wall, "wall", fmt::format("wall = \"{}\" is no time ahead", *text));
+  if (!(seconds > 0))
+    reader.fail(&wall, "wall", fmt::format("wall = \"{}\" is not a valid interval; a time above 0 is expected", *text));
   return seconds;
 }
 
@@ -295,7 +300,7 @@ std::vector<ListedTime> times_in_file(const TableReader& reader, const SceneValu
   if (given.empty()) reader.fail(&name, "times", "times = \"\" names no file; give one, such as \"times.txt\"");
   const std::filesystem::path path = std::filesystem::path(reader.context().source.file).parent_path() / given;
   try {
-    file.emplace(path, "a list of times, one a line");
+    file.emplace(path, "a list of times, one per line");
   } catch (const FileError& error) {
     if (name.line <= 0) throw;
     throw FileError(error.what(), {.file = reader.context().source.file,
@@ -329,33 +334,34 @@ void read_times(TableReader& reader, const SceneValue& value, const SceneIntegra
   } else if (value.get<std::string>() != nullptr) {
     all = times_in_file(reader, value, file);
   } else {
-    reader.wrong_kind(value, "times", "a list of times, or the name of a file that has one a line,");
+    reader.wrong_kind(value, "times", "a list of times, or the name of a file with one per line,");
   }
   const auto refuse = [&](const ListedTime& one, const std::string& why) {
     if (file) file->fail(one.line, fmt::format("time {} {}", one.text, why), one.text);
     reader.fail(one.value.line != 0 ? &one.value : &value, "times",
-                fmt::format("times holds {}, which {}", one.text, why));
+                fmt::format("times contains {}, which {}", one.text, why));
   };
-  if (all.empty() && file) file->fail(0, "there is no time in it; one a line is expected");
-  if (all.empty()) reader.fail(&value, "times", "times = [] holds no time; give some, or take the table out");
+  if (all.empty() && file) file->fail(0, "there is no time in this file; one per line is expected");
+  if (all.empty()) reader.fail(&value, "times", "times = [] is an empty list; give some times, or take the table out");
   const double sign = integrator.direction() == Direction::forward ? 1 : -1;
   if (!all.empty()) all[0].time = detail::at_start_if_rounded(all[0].time, integrator.start);
   std::int64_t last = -1;
   for (std::size_t k = 0; k < all.size(); ++k) {
     const ListedTime& one = all[k];
     if (sign * (one.time - integrator.start) < 0) {
-      refuse(one, fmt::format("the run does not come to: it goes {} in time from {}", sign > 0 ? "forward" : "back",
+      refuse(one, fmt::format("the run does not reach: it goes {} in time from {}", sign > 0 ? "forward" : "back",
                               time_text(integrator.start, units)));
     }
-    if (k > 0 && one.time == all[k - 1].time) refuse(one, "stands there twice");
+    if (k > 0 && one.time == all[k - 1].time) refuse(one, "is listed twice");
     if (k > 0 && sign * (one.time - all[k - 1].time) < 0) {
-      refuse(one, fmt::format("stands behind {}, to which the run comes later; put them in the order of the run",
+      refuse(one, fmt::format("is listed after {}, which the run reaches later; put the times in the order of the run",
                               all[k - 1].text));
     }
     if (!integrator.adaptive()) {
       const auto found = steps_to(integrator, units, one.time, integrator.start);
       if (const auto* wrong = std::get_if<std::string>(&found)) refuse(one, *wrong);
-      if (std::get<std::int64_t>(found) == last) refuse(one, fmt::format("is at the step of {} too", all[k - 1].text));
+      if (std::get<std::int64_t>(found) == last)
+        refuse(one, fmt::format("falls on the same step as {}", all[k - 1].text));
       last = std::get<std::int64_t>(found);
     }
     cadence.times.push_back(one.time);
@@ -400,19 +406,22 @@ Cadence read_cadence(TableReader& reader, bool may_be_wall, const SceneIntegrato
   const SceneValue* wall = may_be_wall ? reader.find("wall") : nullptr;
   const int given = (every != nullptr) + (steps != nullptr) + (wall != nullptr) + (times != nullptr);
   const std::string_view choices = may_be_wall ? "every, steps, wall or times" : "every, steps or times";
-  if (given == 0) reader.fail(nullptr, "steps", fmt::format("{} does not say when; give {}", reader.what(), choices));
+  if (given == 0) reader.fail(nullptr, "steps", fmt::format("{} has no cadence; give {}", reader.what(), choices));
   if (given > 1) {
     const std::string_view key = every != nullptr ? "every" : wall != nullptr ? "wall" : "times";
-    reader.fail(key, fmt::format("{} says twice when; give one of {}", reader.what(), choices));
+    reader.fail(key, fmt::format("{} has two cadences; give only one of {}", reader.what(), choices));
   }
   Cadence cadence;
   if (every != nullptr && integrator.adaptive()) {
     cadence.interval = reader.number(*every, "every", "time");
     const bool forward = integrator.direction() == Direction::forward;
-    if (cadence.interval == 0) reader.fail("every", fmt::format("every = {} is no time ahead", to_text(*every)));
+    if (cadence.interval == 0)
+      reader.fail("every",
+                  fmt::format("every = {} is not a valid interval; a time other than 0 is expected", to_text(*every)));
     if ((cadence.interval > 0) != forward) {
-      reader.fail("every", fmt::format("every = {} lies the other way; the run goes {} in time, so give a time {} 0",
-                                       to_text(*every), forward ? "forward" : "back", forward ? "above" : "below"));
+      reader.fail("every",
+                  fmt::format("every = {} lies in the opposite direction; the run goes {} in time, so give a time {} 0",
+                              to_text(*every), forward ? "forward" : "back", forward ? "above" : "below"));
     }
   } else if (every != nullptr) {
     cadence.steps = whole_steps(reader, "every", *every, integrator);

@@ -53,7 +53,7 @@ std::optional<io::BodyEpoch> read_epoch(TableReader& reader) {
   const SceneValue* value = reader.find("epoch");
   if (value == nullptr) return {};
   if (const auto epoch = julian_day_of(*value)) return epoch;
-  reader.fail("epoch", fmt::format("epoch = {} is no Julian day; one is expected, such as \"JD 2451545\" or \"JD "
+  reader.fail("epoch", fmt::format("epoch = {} is not a Julian day; one is expected, such as \"JD 2451545\" or \"JD "
                                    "2451545 TDB\"",
                                    to_text(*value)));
 }
@@ -84,8 +84,8 @@ std::optional<double> time_of_pericenter(TableReader& body, const std::optional<
     const std::string* text = value != nullptr ? value->get<std::string>() : nullptr;
     const bool in_days = text != nullptr && is_in_days(*text, *body.context().units);
     if (in_days && io::looks_like_julian_day(*T / unit_value("day", *body.context().units))) {
-      body.fail("T", fmt::format("T = {0} is counted from the start, and looks like a Julian day; give T = \"JD ...\" "
-                                 "and the epoch in [particles], or a time in yr if it is meant so",
+      body.fail("T", fmt::format("T = {0} is counted from the start, but looks like a Julian day; give T = \"JD ...\" "
+                                 "and the epoch in [particles], or give the time in yr if it is a time",
                                  to_text(*value)));
     }
     return T;
@@ -94,9 +94,10 @@ std::optional<double> time_of_pericenter(TableReader& body, const std::optional<
   if (units.is_reduced())
     body.fail("T", fmt::format("T = {} is a Julian day; the reduced system has none", to_text(*value)));
   if (!epoch) {
-    body.fail("T", fmt::format("T = {} is a Julian day, and nobody says which the start is; give epoch = \"JD ...\" in "
-                               "[particles]",
-                               to_text(*value)));
+    body.fail("T",
+              fmt::format("T = {} is a Julian day, but the epoch of the start is not given; give epoch = \"JD ...\" in "
+                          "[particles]",
+                          to_text(*value)));
   }
   if (!day->scale.empty() && !epoch->scale.empty() && day->scale != epoch->scale) {
     body.fail("T", fmt::format("T = {} is not in the time scale of the epoch, {}", to_text(*value), epoch->scale));
@@ -122,7 +123,7 @@ class TypedBodies {
     const auto mixing = read_mixing(reader, effective);
     if (types_.empty() && (mixing || !pairs_.empty())) {
       const char* key = mixing ? "mixing" : "pair";
-      reader.fail(key, fmt::format("{} is of types, and there are none; give [[particles.type]] tables", key));
+      reader.fail(key, fmt::format("{} needs types, but there are none; give [[particles.type]] tables", key));
     }
     topology_.mixing = mixing.value_or(Mixing::lorentz_berthelot);
     for (const TypeParameters& type : types_) topology_.type_names.push_back(type.type);
@@ -137,7 +138,8 @@ class TypedBodies {
       if (!charge) charge = type.charge;
       mass = type.mass;
     } else if (body.has("type")) {
-      body.fail("type", fmt::format("{} has a type, and there are none; give [[particles.type]] tables", body.what()));
+      body.fail("type",
+                fmt::format("{} has a type, but there are no types; give [[particles.type]] tables", body.what()));
     }
     charges_.push_back(charge);
     return mass;
@@ -166,7 +168,8 @@ class TypedBodies {
   int type_of(TableReader& body) {
     const SceneValue* value = body.find("type");
     if (value == nullptr && types_.size() > 1) {
-      body.fail(nullptr, "type", fmt::format("{} has no type, and there are {}; give one", body.what(), types_.size()));
+      body.fail(nullptr, "type",
+                fmt::format("{} has no type, but there are {} types; give one", body.what(), types_.size()));
     }
     const std::string name = value == nullptr ? types_[0].type : body.text("type");
     try {
@@ -232,7 +235,7 @@ class BodyTables {
     if (const std::string wrong = wrong_name(name); !wrong.empty()) body.fail("name", wrong);
     const std::optional<double> of_type = typed_.add(body);
     const auto given = body.quantity("mass", "mass"), mass = given ? given : of_type;
-    if (!mass) body.fail(nullptr, "mass", fmt::format("{} has no mass; 0 marks a tracer", body.what()));
+    if (!mass) body.fail(nullptr, "mass", fmt::format("{} has no mass; give one, or 0 for a tracer", body.what()));
     if (given) check_mass(body, name, *mass);
     if (index_.count(name) != 0) {
       body.fail("name", fmt::format("two bodies are named '{}'; names must differ", name));
@@ -288,21 +291,21 @@ class BodyTables {
       orbit.*key.value = key.name == "T" ? time_of_pericenter(body, epoch_) : body.quantity(key.name, key.dimension);
     }
     if (s_.size() == 0) {
-      body.fail(first_key,
-                "the first body has no other to move about; give its x and v, or nothing to put it at rest in the "
-                "origin");
+      body.fail(
+          first_key,
+          "the first body has no other body to orbit; give its x and v, or neither to put it at rest at the origin");
     }
     if (!orbit.a && !orbit.P && !orbit.q) {
       body.fail(nullptr, "a",
-                fmt::format("the elements of {} say no size; give the semi-major axis a, the period P or the distance "
-                            "of the pericenter q",
+                fmt::format("the elements of {} do not give a size; give the semi-major axis a, the period P or the "
+                            "pericenter distance q",
                             body.what()));
     }
     const bool jacobi = about.empty() && elements_ == io::ElementsAbout::all_before_it;
     const OrbitCenter center = jacobi ? before_ : center_at(body, about.empty() ? std::vector<Index>{0} : about);
     if (!about.empty() && center.mass() + mass == 0) {
-      body.fail("about", fmt::format("about = {} has no mass to move about; a body with a mass is expected",
-                                     to_text(*body.find("about"))));
+      body.fail("about",
+                fmt::format("about = {} has no mass; a body with a mass is expected", to_text(*body.find("about"))));
     }
     try {
       return moved(state_of_orbit(orbit, gravitation(body) * (center.mass() + mass)), center);
@@ -320,8 +323,8 @@ class BodyTables {
       if (name == nullptr) body.wrong_kind(*value, "about", "the name of a body, or a list of names,");
       const auto found = index_.find(*name);
       if (found == index_.end()) {
-        body.fail("about", fmt::format("about = {}: there is no '{}' above {}{}", to_text(*value), *name, body.what(),
-                                       did_you_mean(*name, s_.names())));
+        body.fail("about", fmt::format("about = {}: there is no body '{}' above {}{}", to_text(*value), *name,
+                                       body.what(), did_you_mean(*name, s_.names())));
       }
       return found->second;
     };
@@ -332,7 +335,8 @@ class BodyTables {
     std::vector<Index> sorted = found;
     std::sort(sorted.begin(), sorted.end());
     if (found.empty() || std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
-      body.fail("about", fmt::format("about = {} names no barycenter; different bodies are expected", to_text(*value)));
+      body.fail("about",
+                fmt::format("about = {} is not a valid barycenter; different bodies are expected", to_text(*value)));
     }
     return found;
   }
@@ -390,8 +394,7 @@ ParticleSystem<double> from_file(TableReader& reader, const std::filesystem::pat
   }
   if (table.without_sun && alone) {
     warnings.push_back(
-        fmt::format("the states in {} are about the Solar System Barycenter, and the Sun is not among "
-                    "them",
+        fmt::format("the states in {} are about the Solar System Barycenter, but the Sun is not among them",
                     reader.text("bodies")));
   }
   return s;
@@ -426,13 +429,12 @@ ParticleSystem<double> from_frame(TableReader& reader, const std::filesystem::pa
     effective.put("frame", SceneValue::of(found.frame, reader.line("frame")));
   if (!found.knows_types) {
     warnings.push_back(
-        fmt::format("{} is from before types, molecules and bonds stood in such files: its particles "
-                    "have none here",
+        fmt::format("{} is from a version that did not store types, molecules and bonds: its particles have none here",
                     reader.text("bodies")));
   }
   for (const std::string& name : found.left_out) {
     warnings.push_back(
-        fmt::format("no part of this scene has the column '{}' of {}: it is left out", name, reader.text("bodies")));
+        fmt::format("no part of this scene uses the column '{}' of {}: it is left out", name, reader.text("bodies")));
   }
   if (reader.has("body") && (s.topology() != nullptr || s.has<Charge>())) {
     reader.fail("body",
@@ -522,7 +524,7 @@ void read_frame(TableReader& reader, ParticleSystem<double>& s, bool of_a_frame,
   }
   if (of_a_frame && (has_frame_number(reader) || !reader.has("frame"))) return;
   if (has_frame_number(reader)) {
-    reader.fail("frame", fmt::format("frame = {} is the number of a frame, and {} has none; \"barycenter\" or "
+    reader.fail("frame", fmt::format("frame = {} is the number of a frame, but {} has no frames; \"barycenter\" or "
                                      "\"as_given\" is expected",
                                      to_text(*reader.find("frame")),
                                      reader.has("bodies") ? "a table of bodies" : "[[particles.body]]"));

@@ -26,7 +26,7 @@ std::vector<std::filesystem::path> read_coefficients(TableReader& reader, const 
   static constexpr std::string_view key = "coefficients", hash_key = "coefficients_sha256";
   const SceneValue* value = reader.find(key);
   if (value == nullptr) {
-    if (reader.has(hash_key)) reader.fail(hash_key, "there are no coefficients that could have this hash; take it out");
+    if (reader.has(hash_key)) reader.fail(hash_key, "there are no coefficients for this hash; take it out");
     return {};
   }
   const auto* list = value->get<SceneValue::Array>();
@@ -52,8 +52,8 @@ std::vector<std::filesystem::path> read_coefficients(TableReader& reader, const 
   }
   const std::string hash = io::sha256(bytes);
   if (reader.text(hash_key, hash) != hash) {
-    reader.fail(hash_key, fmt::format("the coefficients are no longer those this scene was run with: their hash is {}; "
-                                      "take the key out to use the new ones",
+    reader.fail(hash_key, fmt::format("the coefficients differ from those this scene was run with: their hash is now "
+                                      "{}; take the key out to use the new ones",
                                       hash));
   }
   effective.put(std::string(key), *value);

@@ -15,12 +15,13 @@ SceneValue read_thermostat(const SceneContext& context, const SceneValue& table,
   reader.find("type");
   SceneThermostat made = kind->read(reader);
   if (!scene.hamiltonian.splitting.claims.inertial) {
-    bare.fail("type", fmt::format("{} has no thermostat: noise is that of inertial velocities; use {}",
+    bare.fail("type", fmt::format("{} does not support a thermostat, whose noise acts on inertial velocities; use {}",
                                   scene.hamiltonian.splitting.name, parts.hamiltonians().front().info.name));
   }
   for (const SceneForce& force : scene.hamiltonian.forces) {
     if (force.force.claims().drag == 0) continue;
-    bare.fail("type", fmt::format("a thermostat beside {} would be colder than it says; add the rate to its friction",
+    bare.fail("type", fmt::format("a thermostat together with {} would be colder than its temperature; take the force "
+                                  "out, and add its rate to the friction of the thermostat",
                                   force.name));
   }
   SceneValue effective = SceneValue::table();

@@ -35,16 +35,17 @@ TiedParticles TiedReader::read(SceneValue& effective) {
   const SceneValue* value = reader_.find(key_);
   const SceneValue* chain = particles_ == 2 ? reader_.find("chain") : nullptr;
   if (value != nullptr && chain != nullptr) {
-    reader_.fail(chain, "chain", fmt::format("{} and chain stand both in {}; give one of them", key_, reader_.what()));
+    reader_.fail(chain, "chain",
+                 fmt::format("{} and chain are both given in {}; give only one of them", key_, reader_.what()));
   }
   if (chain != nullptr) {
     effective.put("chain", *chain);
     return links(*chain);
   }
   if (value == nullptr) {
-    reader_.fail(
-        nullptr, key_,
-        fmt::format("{} does not say whom it ties; give {} = {}", reader_.what(), key_, example_of(particles_)));
+    reader_.fail(nullptr, key_,
+                 fmt::format("{} does not say which particles it ties; give {} = {}", reader_.what(), key_,
+                             example_of(particles_)));
   }
   effective.put(key_, *value);
   if (particles_ == 1 && value->get<std::string>() != nullptr && *value->get<std::string>() == "all") return all();
@@ -68,7 +69,7 @@ TiedParticles TiedReader::read(SceneValue& effective) {
 void TiedReader::wrong(const SceneValue& value) const {
   const std::string tuples = particles_ < 2 ? "names" : key_ + " of names";
   reader_.fail(&value, key_,
-               fmt::format("{} = {} does not list {}; such as {} is expected", key_, to_text(value), tuples,
+               fmt::format("{} = {} is not a list of {}; a list such as {} is expected", key_, to_text(value), tuples,
                            example_of(particles_)));
 }
 
@@ -85,7 +86,7 @@ Index TiedReader::particle(const SceneValue& at, const SceneValue& name) const {
   if (found != index_.end()) return found->second;
   reader_.fail(
       &at, key_,
-      fmt::format("{} ties '{}', which is no particle{}", reader_.what(), *text, did_you_mean(*text, s_.names())));
+      fmt::format("{} ties '{}', which is not a particle{}", reader_.what(), *text, did_you_mean(*text, s_.names())));
 }
 
 TiedParticles TiedReader::all() const {
@@ -98,9 +99,10 @@ TiedParticles TiedReader::all() const {
 TiedParticles TiedReader::of_structure(const SceneValue& value) const {
   const std::string terms = particles_ == 2 ? "bonds" : "angles";
   if (*value.get<std::string>() != terms) {
-    reader_.fail(&value, key_,
-                 fmt::format("{} = {} is not understood; {} of names are expected, or \"{}\" for all of a structure",
-                             key_, to_text(value), key_, terms));
+    reader_.fail(
+        &value, key_,
+        fmt::format("{} = {} is not understood; {} of names are expected, or \"{}\" for all those of the structure",
+                    key_, to_text(value), key_, terms));
   }
   TiedParticles tied;
   const Topology none, &topology = s_.topology() != nullptr ? *s_.topology() : none;
@@ -111,10 +113,10 @@ TiedParticles TiedReader::of_structure(const SceneValue& value) const {
     if (particles_ == 3) tied.emplace_back(angle.particles.begin(), angle.particles.end());
   }
   if (tied.empty()) {
-    reader_.fail(&value, key_,
-                 fmt::format("{} = \"{}\" ties nobody: the particles have no {}, which a structure or a builder would "
-                             "bring; name the particles",
-                             key_, terms, terms));
+    reader_.fail(
+        &value, key_,
+        fmt::format("{} = \"{}\" ties no particles: there are no {} from a structure or a builder; name the particles",
+                    key_, terms, terms));
   }
   return tied;
 }
@@ -123,14 +125,13 @@ TiedParticles TiedReader::of_structure(const SceneValue& value) const {
 TiedParticles TiedReader::links(const SceneValue& chain) const {
   const auto* ends = chain.get<SceneValue::Array>();
   if (ends == nullptr || ends->size() != 2) {
-    reader_.wrong_kind(chain, "chain", "the names of its first and last particle such as [\"a\", \"z\"]");
+    reader_.wrong_kind(chain, "chain", "the names of its first and last particle, such as [\"a\", \"z\"]");
   }
   const Index first = particle(chain, ends->front()), last = particle(chain, ends->back());
   if (first >= last)
-    reader_.fail(&chain, "chain",
-                 fmt::format("chain = {} goes backwards; particles stand in the "
-                             "order of their table",
-                             to_text(chain)));
+    reader_.fail(
+        &chain, "chain",
+        fmt::format("chain = {} goes backwards; give the particles in the order of their table", to_text(chain)));
   TiedParticles tied;
   for (Index i = first; i < last; ++i) tied.push_back({i, i + 1});
   return tied;

@@ -15,10 +15,10 @@ std::vector<std::string> texts(TableReader& reader, std::string_view key, std::s
   const SceneValue* value = reader.find(key);
   if (value == nullptr) return all;
   const auto* list = value->get<SceneValue::Array>();
-  if (list == nullptr) reader.wrong_kind(*value, key, fmt::format("a list of texts such as {}", example));
+  if (list == nullptr) reader.wrong_kind(*value, key, fmt::format("a list of texts, such as {},", example));
   for (const SceneValue& one : *list) {
     const std::string* text = one.get<std::string>();
-    if (text == nullptr) reader.wrong_kind(*value, key, fmt::format("a list of texts such as {}", example));
+    if (text == nullptr) reader.wrong_kind(*value, key, fmt::format("a list of texts, such as {},", example));
     all.push_back(*text);
   }
   return all;
@@ -27,7 +27,7 @@ std::vector<std::string> texts(TableReader& reader, std::string_view key, std::s
 std::optional<double> figure(TableReader& reader, std::string_view key) {
   const auto value = reader.quantity(key, "1");
   if (value && !(*value > 0)) {
-    reader.fail(key, fmt::format("{} = {} is no bound of an error; a number above 0 is expected", key,
+    reader.fail(key, fmt::format("{} = {} is not a valid bound of an error; a number above 0 is expected", key,
                                  to_text(*reader.find(key))));
   }
   return value;

@@ -104,10 +104,9 @@ void TableReader::expect_same_constant(double G) const {
   std::string where = "of the units";
   if (context_.G && context_.G->line > 0) where = fmt::format("in line {}", context_.G->line);
   if (context_.G && context_.G->line == 0) where = "of the scene";
-  fail("G",
-       fmt::format("G = {} differs from the G = {} {}; there is one constant of gravitation: give it once, as G in "
-                   "[hamiltonian]",
-                   format_number(G), format_number(known), where));
+  fail("G", fmt::format("G = {} differs from the G = {} {}; a scene has only one gravitational constant: give it once, "
+                        "as G in [hamiltonian]",
+                        format_number(G), format_number(known), where));
 }
 
 double TableReader::number(const SceneValue& value, std::string_view key, std::string_view dimension) const {
@@ -120,7 +119,7 @@ double TableReader::number(const SceneValue& value, std::string_view key, std::s
   if (integer == nullptr && number == nullptr && text == nullptr) {
     const std::string example = angle ? "1 deg" : example_of(expected, "1", units);
     const bool bare = units.is_reduced() || (expected == dimensions::none && !angle);
-    wrong_kind(value, key, bare ? "a number" : fmt::format("a quantity in quotes, such as \"{}\"", example));
+    wrong_kind(value, key, bare ? "a number" : fmt::format("a quantity in quotes, such as \"{}\",", example));
   }
   if (text == nullptr) {
     const double bare = integer != nullptr ? static_cast<double>(*integer) : *number;
@@ -148,7 +147,8 @@ std::optional<std::array<double, 3>> TableReader::vector(std::string_view key, s
   if (value == nullptr) return {};
   const auto* list = value->get<SceneValue::Array>();
   if (list == nullptr || list->size() != 3) {
-    fail(value, key, fmt::format("{} = {} is no vector; a list of three is expected: [x, y, z]", key, to_text(*value)));
+    fail(value, key,
+         fmt::format("{} = {} is not a vector; a list of three numbers is expected: [x, y, z]", key, to_text(*value)));
   }
   std::array<double, 3> result{};
   for (std::size_t k = 0; k < 3; ++k) result[k] = number((*list)[k], key, dimension);
@@ -169,7 +169,7 @@ std::optional<std::vector<double>> TableReader::row(const ColumnInfo& column) {
   if (column.width == 1) return std::vector<double>{number(*value, column.name, column.dimension)};
   const auto* list = value->get<SceneValue::Array>();
   if (list == nullptr || list->size() != static_cast<std::size_t>(column.width)) {
-    fail(value, column.name, fmt::format("{} = {} is no list of {}", column.name, to_text(*value), column.width));
+    fail(value, column.name, fmt::format("{} = {} is not a list of {}", column.name, to_text(*value), column.width));
   }
   std::vector<double> numbers;
   for (const SceneValue& one : *list) numbers.push_back(number(one, column.name, column.dimension));
@@ -188,7 +188,7 @@ std::vector<const SceneValue*> tables_of(TableReader& reader, std::string_view k
   for (const SceneValue& element : *list) {
     if (!element.is_table()) {
       reader.fail(&element, key,
-                  fmt::format("{} holds {}; tables headed [[{}]] are expected", name, kind_of(element), name));
+                  fmt::format("{} contains {}; tables headed [[{}]] are expected", name, kind_of(element), name));
     }
     tables.push_back(&element);
   }

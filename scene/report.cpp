@@ -136,7 +136,7 @@ std::string figures(const MonitorReport& m) {
   if (m.slope && m.slope_error && !std::isnan(*m.slope_error)) text += fmt::format(" +- {:.1g}", *m.slope_error);
   if (!m.worst) add("last", m.last, "");
   if (!m.verdict.empty()) text += fmt::format("{}{}", text.empty() ? "" : "; ", m.verdict);
-  if (text.empty() && saw_only_nan(m)) text = "nothing finite was seen";
+  if (text.empty() && saw_only_nan(m)) text = "no finite value was recorded";
   for (const std::string& words : {m.reason, m.note}) {
     if (!words.empty()) text += fmt::format("{}{}", text.empty() ? "" : "; ", words);
   }
@@ -154,9 +154,8 @@ std::string to_text(const RunReport& r) {
   }
   if (r.outcome.unresolved > 0) {
     text += fmt::format(
-        "stop: {} times a pair may have met between two looks that were too far apart to tell; look more often, or "
-        "take "
-        "shorter steps\n",
+        "stop: {} times a pair may have met between two checks that were too far apart to tell; check more often, or "
+        "take shorter steps\n",
         r.outcome.unresolved);
   }
   const std::string begun = r.start_time == 0 ? "" : fmt::format("time {:.9g}{}", r.start_time, unit);

@@ -36,7 +36,8 @@ void flatten(const SceneValue& value, const std::string& path, std::map<std::str
 [[noreturn]] void refuse(const Scene& scene, const std::string& key, const Leaf& leaf, const std::string& change) {
   throw scene_error(
       scene.source, leaf.line, key, leaf.text,
-      fmt::format("{} {}; a resumed run takes only a later end: undo this, or start over with --fresh", key, change));
+      fmt::format("{} {}; a resumed run may change only its end, to a later one: undo this, or start over with --fresh",
+                  key, change));
 }
 
 /// The bodies of another run's last frame, which has got later ones since.
@@ -48,7 +49,7 @@ void check_frame(const Scene& scene, const std::map<std::string, Leaf>& before,
   const auto bodies = now.find("particles.bodies");
   if (bodies == now.end() || before.count("particles.bodies_sha256") == 0) return;
   throw scene_error(scene.source, found->second.line, key, found->second.text,
-                    fmt::format("the run began with frame {} of {}, and this would be frame {}; give frame = {} in "
+                    fmt::format("the run began with frame {} of {}, but this would be frame {}; give frame = {} in "
                                 "[particles], or start over with --fresh",
                                 old->second.text, bodies->second.text, found->second.text, old->second.text));
 }
@@ -74,10 +75,10 @@ std::vector<std::string> check_same_scene(const io::Checkpoint& checkpoint, cons
   }
   for (const auto& [key, leaf] : before) {
     if (now.find(key) != now.end()) continue;
-    if (!was_default(key, leaf.text)) refuse(scene, key, {leaf.text, 0}, fmt::format("= {} is gone", leaf.text));
+    if (!was_default(key, leaf.text)) refuse(scene, key, {leaf.text, 0}, fmt::format("= {} is missing now", leaf.text));
     warnings.push_back(
         fmt::format("the run was begun with {} = {}, the default of an earlier version; from here on errors of "
-                    "particles are measured in another way, without it (docs/theory/adaptive_steps.md)",
+                    "particles are measured in a different way, without it (docs/theory/adaptive_steps.md)",
                     key, leaf.text));
   }
   return warnings;

@@ -158,8 +158,8 @@ class Runner {
                          {.file = scene_.source.file});
       }
       if (!has_simd_level(level)) {
-        throw SceneError(fmt::format("the run was made at SIMD level '{}', which this processor does not have; go on "
-                                     "where there is one, or give --fresh",
+        throw SceneError(fmt::format("the run was made at SIMD level '{}', which this processor does not support; "
+                                     "resume on one that does, or give --fresh",
                                      name(level)),
                          {.file = scene_.source.file});
       }
@@ -175,10 +175,11 @@ class Runner {
       const double start = scene_.integrator.start;
       const auto clock = clock_of(scene_.integrator);
       if (clock.is_later(start, checkpoint.time)) {
-        throw SceneError(fmt::format("the end at time {} lies the other way: the checkpoint stands at time {}; give a "
-                                     "time {} {}, or --fresh",
-                                     end, checkpoint.time, end > start ? "below" : "above", start),
-                         {.file = scene_.source.file, .key = "integrator.until"});
+        throw SceneError(
+            fmt::format("the end at time {} lies in the opposite direction: the checkpoint is at time {}; give a "
+                        "time {} {}, or --fresh",
+                        end, checkpoint.time, end > start ? "below" : "above", start),
+            {.file = scene_.source.file, .key = "integrator.until"});
       }
       if (!clock.is_later(checkpoint.time, end)) return;
       throw SceneError(
@@ -231,8 +232,8 @@ class Runner {
     const std::string wrong = fmt::format("{}: {}", file.string(), why);
     if (is_over(checkpoint)) {
       report_.warnings.push_back(fmt::format(
-          "{}; the run is finished: 'noether verify --repair {}' mends it if no more than frames is missing", wrong,
-          file.string()));
+          "{}; the run is finished: 'noether verify --repair {}' repairs it if only frames or samples are missing",
+          wrong, file.string()));
       return;
     }
     std::filesystem::path kept;
@@ -241,13 +242,12 @@ class Runner {
         kept = file.string() + (k == 0 ? ".damaged" : fmt::format(".damaged.{}", k));
       io::rename_if_there(file, kept);
     }
-    report_.warnings.push_back(fmt::format(
-        "{}; a new one begins at step {}{}", wrong, checkpoint.step,
-        kept.empty()
-            ? std::string()
-            : fmt::format(
-                  ", and the old one is {}: 'noether verify --repair {}' mends it if no more than frames is missing",
-                  kept.string(), kept.string())));
+    report_.warnings.push_back(fmt::format("{}; a new one begins at step {}{}", wrong, checkpoint.step,
+                                           kept.empty()
+                                               ? std::string()
+                                               : fmt::format(", and the old one is {}: 'noether verify --repair {}' "
+                                                             "repairs it if only frames or samples are missing",
+                                                             kept.string(), kept.string())));
   }
 
   /// A completed run goes on if its end has been moved; one that has stopped or failed does not.

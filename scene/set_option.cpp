@@ -160,7 +160,7 @@ class Setter {
     const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), index);
     if (error == std::errc() && end == key.data() + key.size()) {
       if (index >= list.size())
-        fail(fmt::format("there is no number {}; there are {}, counted from 0", index, list.size()));
+        fail(fmt::format("there is no element {}; there are {}, counted from 0", index, list.size()));
       return list[index];
     }
     std::vector<SceneValue*> found;
@@ -172,7 +172,7 @@ class Setter {
     }
     if (found.empty()) fail(fmt::format("there is no '{}' in the scene{}", key, did_you_mean(key, names)));
     if (found.size() > 1) {
-      fail(fmt::format("'{}' stands {} times in the scene; give its number, counted from 0", key, found.size()));
+      fail(fmt::format("'{}' appears {} times in the scene; give its number, counted from 0", key, found.size()));
     }
     return *found.front();
   }

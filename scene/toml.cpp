@@ -62,7 +62,7 @@ SceneValue converted(const toml::node& node, int line, const std::string& file) 
   if (const auto* integer = node.as_integer()) return SceneValue::of(std::int64_t{integer->get()}, line);
   if (const auto* number = node.as_floating_point()) return SceneValue::of(number->get(), line);
   if (const auto* flag = node.as_boolean()) return SceneValue::of(flag->get(), line);
-  throw SceneError("dates and times of day have no place in a scene; write a time as text, such as \"100 day\"",
+  throw SceneError("dates and times of day are not supported in a scene; write a time as text, such as \"100 day\"",
                    {.file = file, .line = line});
 }
 
@@ -213,7 +213,7 @@ void print_table(std::string& out, const SceneValue& table, const std::string& p
 SceneValue parse_toml(std::string_view text, const std::string& file) {
   if (const int line = DepthScan(text).too_deep(); line > 0) {
     throw SceneError(
-        fmt::format("tables and lists stand more than {} deep in one another; a scene needs far fewer", deepest_table),
+        fmt::format("tables and lists are nested more than {} levels deep; a scene needs far fewer", deepest_table),
         {.file = file, .line = line});
   }
   try {
@@ -248,7 +248,7 @@ std::string print_toml(const SceneValue& table) {
 }
 
 std::string_view kind_of(const SceneValue& value) {
-  constexpr std::string_view words[] = {"true or false", "a whole number", "a number", "a text", "a list", "a table"};
+  constexpr std::string_view words[] = {"a flag", "a whole number", "a number", "a text", "a list", "a table"};
   return words[value.data.index()];
 }
 

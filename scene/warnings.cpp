@@ -114,7 +114,7 @@ std::string too_stiff(const Scene& scene) {
   const std::string remedy = bearable > 0.01 ? fmt::format("take a step below {:.2g}{}", bearable / bond.omega, unit)
                                              : "take another method, such as 'verlet'";
   return fmt::format(
-      "the bond of '{}' and '{}' swings with h omega = {:.3g}, where no motion by '{}' stays bounded; {}{}",
+      "the bond of '{}' and '{}' oscillates with h omega = {:.3g}, which '{}' cannot keep bounded; {}{}",
       scene.particles.name(bond.first), scene.particles.name(bond.second), z, scene.integrator.method, remedy,
       scene.hamiltonian.thermostat ? "" : ", or constraints");
 }
@@ -129,9 +129,8 @@ std::string other_cutoff(const Scene& scene) {
     if (!claims.pair_coefficients || std::abs(stated - claims.range) <= 1e-9 * stated) continue;
     const std::string unit = scene.units->length == "1" ? "" : fmt::format(" {}", scene.units->length);
     return fmt::format(
-        "the structure's pairs have a cutoff of {:.6g}{}, the force {} one of {:.6g}{}, which is "
-        "taken",
-        stated, unit, force.name, claims.range, unit);
+        "the structure's pairs have a cutoff of {:.6g}{}, but the force {} has one of {:.6g}{}, which is used", stated,
+        unit, force.name, claims.range, unit);
   }
   return "";
 }
@@ -166,8 +165,8 @@ std::string unmoved_tracers(const Scene& scene) {
   }
   if (count == 0) return "";
   return fmt::format(
-      "{} of mass 0, such as '{}', {} pushed by no force of this scene: forces between molecules move nothing without "
-      "mass, which flies straight on; give masses",
+      "{} of mass 0, such as '{}', {} not moved by any force of this scene, because forces between molecules act on "
+      "masses only; give masses",
       count == 1 ? "1 particle" : fmt::format("{} particles", count), s.name(first), count == 1 ? "is" : "are");
 }
 
@@ -184,7 +183,7 @@ std::string other_gravitation(const Scene& scene) {
     const double same = unit_value(unit, units) * G / units.G;
     if (std::abs(same - 1) < 0.01) meant = fmt::format(", and is that of {0}: give it as \"{1:.12g} {0}\"", unit, G);
   }
-  return fmt::format("G = {:.6g} is {:.3g} times the constant of gravitation in these units, {:.6g} {}{}", G,
+  return fmt::format("G = {:.6g} is {:.3g} times the gravitational constant in these units, {:.6g} {}{}", G,
                      G / units.G, units.G, unit_of(parse_dimension("length^3/mass/time^2"), units), meant);
 }
 
@@ -202,7 +201,7 @@ std::string times_after_the_end(const SceneWatch& watch, const Scene& scene) {
   const std::string name = watch.kind == SceneWatch::Kind::monitor      ? watch.monitor.name
                            : watch.kind == SceneWatch::Kind::trajectory ? "trajectory"
                                                                         : "checkpoint";
-  return fmt::format("{} of {} times of '{}' lie after the end at {:.12g}{}, so it does not look then", count,
+  return fmt::format("{} of {} times of '{}' lie after the end at {:.12g}{}, so it does not sample then", count,
                      times.size(), name, start + *length, unit);
 }
 
@@ -225,11 +224,11 @@ std::vector<std::string> warnings_of(const Scene& scene) {
   }
   if (!forces.empty() && scene.hamiltonian.splitting.only_forces && none_does(scene, &ForceClaims::charges) &&
       has_charges(scene.particles)) {
-    add("the particles have charges that no force looks at");
+    add("the particles have charges that no force uses");
   }
   const SceneValue* particles = scene.effective.find("particles");
   if (none_does(scene, &ForceClaims::exclusions) && particles != nullptr && particles->find("exclusions") != nullptr) {
-    add(fmt::format("exclusions change nothing: no force leaves pairs out; those that do are {}",
+    add(fmt::format("exclusions have no effect: no force of this scene leaves pairs out; forces that do are {}",
                     fmt::join(with_exclusions(*scene.parts), ", ")));
   }
   add(other_cutoff(scene));

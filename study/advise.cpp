@@ -25,7 +25,7 @@ double end_of(const Scene& scene) {
   const SceneIntegrator& own = scene.integrator;
   if (own.until) return *own.until - own.start;
   if (own.steps && own.step != 0) return static_cast<double>(*own.steps) * own.step;
-  throw SceneError("the scene has no end, so nothing can be said of its whole run; give until or steps in [integrator]",
+  throw SceneError("the scene has no end, so its whole run cannot be judged; give until or steps in [integrator]",
                    {.file = scene.source.file, .key = "integrator.until"});
 }
 
@@ -139,7 +139,7 @@ class Fit {
       if (const auto one = measured_exponent(*row, trials.truth, metric)) exponents.push_back(*one);
     }
     if (exponents.empty())
-      return {metric == Metric::energy ? 1.0 : 2.0, "no growth could be measured; the usual one is taken"};
+      return {metric == Metric::energy ? 1.0 : 2.0, "no growth could be measured; the usual growth is assumed"};
     std::sort(exponents.begin(), exponents.end());
     const double exponent = exponents[exponents.size() / 2];
     if (exponent < 1) return {1, fmt::format("errors grow at least linearly (measured: t^{:.2f})", exponent)};
@@ -161,7 +161,7 @@ void check_measured(const Comparison& c, Metric metric) {
   const auto done = [](const Row& row) { return row.completed(); };
   const auto told = [](const Row& row) { return row.completed() && row.energy_error_max; };
   if (std::any_of(c.rows.begin(), c.rows.end(), done) && std::none_of(c.rows.begin(), c.rows.end(), told)) {
-    throw Error("the energy cannot be measured here: not every force tells its own; try --metric position");
+    throw Error("the energy cannot be measured here: not every force computes its own; try --metric position");
   }
 }
 

@@ -65,7 +65,7 @@ Candidate candidate(const Scene& scene, std::string_view name) {
     throw Error(fmt::format("'{}': the scene has no splitting '{}'; leave '@{}' out", name, over, over));
   }
   if (over == plain_name && !scene.system && !is_plain(scene) && !may_be_joined(scene)) {
-    throw Error(fmt::format("'{}': '{}' has parts that are no forces; leave '@{}' out", name, own_name, over));
+    throw Error(fmt::format("'{}': '{}' has parts that are not forces; leave '@{}' out", name, own_name, over));
   }
   const MethodInfo* info = scene.parts->find_method(method);
   const Scheme* scheme = schemes::find(method);
@@ -135,7 +135,7 @@ Scene variant(const Scene& scene, const Candidate& who, const Setting& setting) 
   integrator.until.reset();
   if (scene.particles.size() == 0 && scene.parts->find_method(who.method) == nullptr) {
     throw Error(
-        fmt::format("'{}' splits a Hamiltonian, and a system of first order has none; use a method for y' = f, "
+        fmt::format("'{}' splits a Hamiltonian, but a first-order system has none; use a method for y' = f, "
                     "such as 'dop853' or 'rodas_5p'",
                     who.method));
   }
@@ -143,8 +143,8 @@ Scene variant(const Scene& scene, const Candidate& who, const Setting& setting) 
     integrator.scheme = *scheme;
   } else if (const MethodInfo* info = scene.parts->find_method(who.method)) {
     if (!scene.hamiltonian.constraints.empty()) {
-      throw Error(
-          fmt::format("method '{}' knows no constraints; use a splitting scheme, such as 'verlet'", who.method));
+      throw Error(fmt::format("method '{}' does not support constraints; use a splitting scheme, such as 'verlet'",
+                              who.method));
     }
     MethodOptions options;
     if (own && before) options = before->options.without_error_control();

@@ -62,7 +62,7 @@ std::vector<double> ladder(const Scene& scene, const Candidate& who, const Sampl
 void check(const CompareOptions& options, const Sampling& sampling) {
   for (const double step : options.steps) {
     if (!(step > 0) || !std::isfinite(step))
-      throw Error(fmt::format("a step of {} is no step; a time above 0 is expected", step));
+      throw Error(fmt::format("a step of {} is not valid; a time above 0 is expected", step));
     if (step > sampling.interval * (1 + 1e-9)) {
       throw Error(
           fmt::format("a step of {:.6g} is longer than the {:.6g} between two of the {} moments at which runs are "
@@ -73,13 +73,12 @@ void check(const CompareOptions& options, const Sampling& sampling) {
   }
   for (const double tolerance : options.tolerances) {
     if (!(tolerance > 0 && tolerance < 1)) {
-      throw Error(fmt::format("{} is no tolerance; a number between 0 and 1 is expected", tolerance));
+      throw Error(fmt::format("{} is not a valid tolerance; a number between 0 and 1 is expected", tolerance));
     }
   }
-  if (options.repeats < 1)
-    throw Error(fmt::format("{} repeats measure nothing; 1 or more is expected", options.repeats));
+  if (options.repeats < 1) throw Error(fmt::format("{} repeats are too few; 1 or more is expected", options.repeats));
   if (!(options.row_budget > 0)) {
-    throw Error(fmt::format("a budget of {} s is no time; a number above 0 is expected", options.row_budget));
+    throw Error(fmt::format("a budget of {} s is not valid; a number above 0 is expected", options.row_budget));
   }
 }
 
@@ -88,13 +87,13 @@ void check_use(const Scene& scene, const std::vector<Candidate>& methods, const 
   const auto adaptive = [](const Candidate& who) { return who.adaptive; };
   if (!options.steps.empty() && std::all_of(methods.begin(), methods.end(), adaptive)) {
     throw Error(
-        "--steps is for methods of fixed steps, and all of those compared choose theirs by a tolerance; leave "
-        "it out, or add such a method, as 'rk4'");
+        "--steps is for methods of fixed steps, but all the methods compared choose theirs by a tolerance; leave it "
+        "out, or add such a method, such as 'rk4'");
   }
   if (!options.tolerances.empty() && std::none_of(methods.begin(), methods.end(), adaptive)) {
     throw Error(
-        "--tolerances is for methods that choose their steps, and all of those compared take fixed ones; leave "
-        "it out, or add such a method, as 'dop853'");
+        "--tolerances is for methods that choose their steps, but all the methods compared take fixed ones; leave it "
+        "out, or add such a method, such as 'dop853'");
   }
   for (const Candidate& who : methods) {
     if (!who.adaptive) continue;
@@ -148,7 +147,9 @@ Sampling sampling_of(const Scene& scene, const std::optional<double>& until) {
   }
   if (!until && !own.until && !(end > 0)) {
     throw SceneError(
-        fmt::format("a step of {} leads back; methods are compared forward, so a step above 0 is expected", own.step),
+        fmt::format(
+            "a step of {} goes back in time; methods are compared forward in time, so a step above 0 is expected",
+            own.step),
         {.file = scene.source.file, .key = "integrator.step", .value = fmt::format("{}", own.step)});
   }
   if (!(end > 0) || !std::isfinite(end)) {

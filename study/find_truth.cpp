@@ -158,7 +158,7 @@ Truth drive(const WideScene& wide, const Way& way, const Sampling& sampling, Pos
     return made;
   };
   const auto told = [&](const MethodChoice& finest, const MethodChoice& beside) {
-    truth.note = fmt::format("{} in extended precision, rtol {:.0e}, beside {} at {:.0e}", finest.info->name,
+    truth.note = fmt::format("{} in extended precision, rtol {:.0e}, checked against {} at {:.0e}", finest.info->name,
                              *finest.options.rtol, beside.info == finest.info ? "itself" : beside.info->name,
                              *beside.options.rtol);
   };
@@ -228,8 +228,7 @@ Truth find_truth(const Scene& scene, const Sampling& sampling, const TruthOption
   }
   if (truth.error) {
     truth.note = fmt::format(
-        "two runs in extended precision differ by {:.1e}: the motion is too irregular to have a "
-        "truth over this time",
+        "two runs in extended precision differ by {:.1e}: the motion is too irregular for a reference over this time",
         *truth.error);
   }
   return Truth{.name = std::string(no_truth), .note = truth.note, .seconds = truth.seconds};

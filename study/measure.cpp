@@ -202,7 +202,7 @@ void mark_diverged(Row& row, const Truth& truth, const Sampling& sampling, const
     row.outcome = name(Outcome::Kind::diverged);
     row.outcome_time = static_cast<double>(Quad(sampling.start) + track.times[j]);
     row.message = fmt::format("{:.2g} times as large as {} at t = {:.6g}", times,
-                              truth.has_states() ? "the truth ever is" : "at the start", row.outcome_time);
+                              truth.has_states() ? "the reference ever is" : "at the start", row.outcome_time);
     return;
   }
 }

@@ -62,7 +62,7 @@ class Page {
     } else if (c_.truth.kind == TruthKind::finest_run) {
       out += fmt::format("There is no reference in extended precision: {}.", html_text(c_.truth.note));
     } else {
-      out += fmt::format("There is no reference: {}. Methods are compared by the energy they keep.",
+      out += fmt::format("There is no reference: {}. Methods are compared by how well they conserve energy.",
                          html_text(c_.truth.note));
     }
     if (c_.particles == 0) {
@@ -277,7 +277,7 @@ class Page {
     line("machine", fmt::format("{}; {} {}, SIMD level {}", c_.machine, c_.threads,
                                 c_.threads == 1 ? "thread" : "threads", c_.simd));
     line("date", c_.date);
-    line("times", "medians of the runs alone, nobody watching; errors come from runs of their own, of the same bits");
+    line("times", "medians of the runs alone, without monitors; errors come from runs of their own, of the same bits");
     line("positions",
          "norm(x - x*)/norm(x*) over all bodies about the centre of mass; bodies in an outer field where they stand, "
          "relative to the rms of norm(x*)");
@@ -285,7 +285,7 @@ class Page {
          "(E - E0)/max(|E0|, 1e-3 (T0 + |U0|)); where the equations change the energy themselves, E* of the reference "
          "stands for E0");
     line("diverged",
-         fmt::format("not finite, or {:.0e} times as large as the truth ever is; {:.0e} times as large as at "
+         fmt::format("not finite, or {:.0e} times as large as the reference ever is; {:.0e} times as large as at "
                      "the start where there is no truth",
                      lost_beyond_truth, lost_beyond_start));
     line("tolerances",

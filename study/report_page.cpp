@@ -132,7 +132,7 @@ if (holder) {
     const E = (x) => (low + bottom) / 2 - Math.max(-1, Math.min(1, x / (1.1 * most))) * (bottom - low) / 2;
     out += frame(low, bottom, X, E, xs, e.length ? [-most, 0, most] : [], "energy error");
     if (run.refused) {
-      const words = data.methods[m] + " takes no friction";
+      const words = data.methods[m] + " does not support friction";
       out += `<text x="${width / 2}" y="${(top + middle) / 2}" text-anchor="middle">${words}</text>`;
     }
     if (e.length) out += line(run.t.slice(0, e.length), e, E, 'stroke="var(--c0)" stroke-width="1.4"');

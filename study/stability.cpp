@@ -83,7 +83,7 @@ class Search {
     row_.reason = "not_settled";
     row_.bounded_until = bounded_until;
     row_.bounded_step = bounded_until / scale_;
-    row_.message = fmt::format("the budget was over at {}, bounded until there", told(bounded_until));
+    row_.message = fmt::format("the budget ran out at {}, bounded until there", told(bounded_until));
   }
 
   /// Where the search ends without having found anything.
@@ -174,7 +174,7 @@ class Search {
     row_.limit_h_omega = unstable;
     row_.message = failed_.message;
     if (!row_.settled) {
-      row_.message = fmt::format("the budget was over between {} and {}", told(stable), told(unstable));
+      row_.message = fmt::format("the budget ran out between {} and {}", told(stable), told(unstable));
     }
     explain(failed_, unstable);
     if (row_.settled && failed_.verdict == Bounded::unbounded) find_gap_end(unstable);
@@ -268,9 +268,9 @@ std::optional<double> recommended(const StabilityRow& row, double scale, const s
 
 void check(const StabilityOptions& options) {
   if (!(options.row_budget > 0))
-    throw Error(fmt::format("a budget of {} s is no time; a number above 0 is expected", options.row_budget));
+    throw Error(fmt::format("a budget of {} s is not valid; a number above 0 is expected", options.row_budget));
   if (options.confirm_steps < 1000)
-    throw Error(fmt::format("{} steps confirm nothing; 1000 or more are expected", options.confirm_steps));
+    throw Error(fmt::format("{} steps are too few; 1000 or more are expected", options.confirm_steps));
 }
 
 /// @throws Error  for a scene in which nothing could grow
@@ -289,8 +289,8 @@ Candidate fixed_candidate(const Scene& scene, const std::string& name) {
   const MethodInfo* info = scene.parts->find_method(who.method);
   if (info != nullptr && !info->fixed) {
     throw Error(
-        fmt::format("method '{}' chooses its steps by a tolerance, so it has no largest step; ask for one of fixed "
-                    "steps, such as 'rk4'",
+        fmt::format("method '{}' chooses its steps by a tolerance, so it has no largest step; give one of fixed steps, "
+                    "such as 'rk4'",
                     who.method));
   }
   who.adaptive = false;

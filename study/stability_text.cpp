@@ -114,12 +114,12 @@ std::string to_text(const Stability& found) {
                        reduced ? "" : " 1/" + found.time_unit, found.spectrum.shortest_period(), unit,
                        found.linear ? ", linear" : "");
   } else {
-    out += "no oscillation is known; steps alone are told\n";
+    out += "no oscillation is known; only steps are given\n";
   }
   for (const std::string& line : kepler_lines(found)) out += plain_line(line) + "\n";
   for (const std::string& line : growth_lines(found)) out += line + "\n";
   if (!found.decorators.empty()) {
-    out += fmt::format("around every method stands {}, so linear theory, which is of bare methods, is left out\n",
+    out += fmt::format("every method is wrapped by {}, so linear theory, which is for bare methods, is left out\n",
                        fmt::join(found.decorators, ", "));
   }
   out += fmt::format("{:<28} {:>12} {:>10} {:>10} {:<18} {:>10} {:>13} {:>7}\n", "method", "limit step", "h omega",
@@ -132,8 +132,8 @@ std::string to_text(const Stability& found) {
   }
   if (found.linear && found.spectrum.fastest > 0) {
     out += fmt::format(
-        "limits: from {:.2g} a step on growth counts, in theory from {:.2g}; symplectic methods grow by none below "
-        "theirs\n",
+        "limits: growth from {:.2g} per step counts, in theory from {:.2g}; symplectic methods do not grow below their "
+        "limits\n",
         found.growth_told, growth_threshold);
   }
   for (const StabilityRow& row : found.rows) {

@@ -94,14 +94,14 @@ Trial follow(Simulation<double>& sim, const RunLength& length, const Amplitude& 
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
     if (spent.count() < budget || done(looks)) continue;
     trial.verdict = Bounded::unsettled;
-    trial.message = fmt::format("time was over after {} steps", trial.steps);
+    trial.message = fmt::format("time ran out after {} steps", trial.steps);
     return trial;
   }
   if (!creeps || largest.size() < 10) return trial;
   fit_growth(largest, static_cast<double>(cut * looks_a_block), trial);
   if (trial.growth - 3 * trial.growth_error > growth_threshold && trial.growth > told_growth(trial.steps)) {
     trial.verdict = Bounded::unbounded;
-    trial.message = fmt::format("grows by {:.2g} a step", trial.growth);
+    trial.message = fmt::format("grows by {:.2g} per step", trial.growth);
   }
   return trial;
 }

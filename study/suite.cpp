@@ -51,13 +51,14 @@ RunLength length_of(const Scene& scene, const Candidate& who) {
   if (who.adaptive) {
     if (!own.until) throw Error("a method that chooses its steps needs until in [integrator]");
     if (*own.until < own.start) {
-      throw SceneError(fmt::format("a verdict is of a run that goes forward; this one would end at {}", *own.until),
-                       {.file = scene.source.file, .key = "integrator.until"});
+      throw SceneError(
+          fmt::format("a verdict needs a run that goes forward in time; this one would end at {}", *own.until),
+          {.file = scene.source.file, .key = "integrator.until"});
     }
     return {.steps = 0, .until = *own.until - own.start};
   }
   if (!own.steps || *own.steps < RunLength::looks) {
-    throw Error(fmt::format("a verdict is of a run of {} steps or more; give until or steps in [integrator]",
+    throw Error(fmt::format("a verdict needs a run of {} steps or more; give until or steps in [integrator]",
                             RunLength::looks));
   }
   return {.steps = *own.steps, .until = 0};
@@ -145,7 +146,7 @@ class Judge {
       if (outcome == "theory") outcome = expected_by_theory(scene_, who, scene_.integrator.step);
       if (outcome.empty()) {
         throw SceneError(
-            fmt::format("theory says nothing of '{}' here; give bounded, unbounded or solver for it", row.method),
+            fmt::format("theory does not predict '{}' here; give bounded, unbounded or solver for it", row.method),
             {.file = scene_.source.file, .key = "verdict.outcome", .value = "theory"});
       }
       row.expected = expectation(verdict_, outcome);
@@ -233,8 +234,7 @@ std::filesystem::path suite_folder() {
     }
     if (at == at.root_path()) break;
   }
-  throw Error(
-      "the scenes of the suite are not there; they stand in study/suite, or in share/noether/suite once installed");
+  throw Error("the scenes of the suite are missing; they are in study/suite, or in share/noether/suite once installed");
 }
 
 std::vector<std::filesystem::path> suite_files(const std::filesystem::path& folder) {

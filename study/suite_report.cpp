@@ -48,7 +48,7 @@ std::string short_changes(const std::vector<std::string>& sets) {
     const bool alone = std::count_if(sets.begin(), sets.end(), same) == 1;
     text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", tail(set, alone ? 1 : 2), set.substr(set.find('=') + 1));
   }
-  return text.empty() ? "as the scene stands" : text;
+  return text.empty() ? "as in the scene" : text;
 }
 
 /// The rows of one scene as a picture: a column for every change, or more where a method is asked twice under it.

@@ -83,8 +83,9 @@ Truth truth_by_splitting(const WideScene& wide, const Sampling& sampling, const 
     const double apart = distance(run, beside, error);
     if (truth.error && !(apart < *truth.error)) break;
     truth.error = apart;
-    truth.note = fmt::format("{} of the splitting itself in extended precision, {} steps a moment, beside {}",
-                             first_scheme, steps, other_scheme);
+    truth.note =
+        fmt::format("{} of the splitting itself in extended precision, {} steps per moment, checked against {}",
+                    first_scheme, steps, other_scheme);
     truth.y = std::move(run.y);
     truth.rate = std::move(run.rate);
     truth.energy = std::move(run.energy);

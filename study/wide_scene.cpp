@@ -50,10 +50,10 @@ WideScene wide_scene(const Scene& scene) {
     wide.reason = fmt::format("hamiltonian '{}' is written for doubles only", h.splitting.name);
   } else if (!h.splitting.claims.inertial) {
     wide.reason =
-        fmt::format("hamiltonian '{}' moves in coordinates of its own, which no reference does", h.splitting.name);
+        fmt::format("hamiltonian '{}' uses its own coordinates, which a reference does not support", h.splitting.name);
   } else if (h.splitting.claims.columns && !letters.terms().empty()) {
     wide.reason =
-        fmt::format("hamiltonian '{}' has a letter beside it that is known in double precision only", h.splitting.name);
+        fmt::format("hamiltonian '{}' has an additional letter that exists in double precision only", h.splitting.name);
   } else if (h.splitting.claims.columns) {
     wide.splitting = h.splitting.make_wide(std::move(kicks));
   } else {
@@ -66,7 +66,7 @@ WideScene wide_scene(const Scene& scene) {
 void refuse_noise(const Scene& scene) {
   if (!scene.hamiltonian.thermostat) return;
   throw SceneError(
-      "the scene has a thermostat, whose noise no reference shares, so errors and limits of steps cannot "
+      "the scene has a thermostat, whose noise a reference cannot reproduce, so errors and limits of steps cannot "
       "be told; take [hamiltonian.thermostat] out",
       {.file = scene.source.file, .key = "hamiltonian.thermostat"});
 }

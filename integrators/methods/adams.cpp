@@ -124,8 +124,8 @@ Failure Adams<Real>::not_solved(double t, double h, double change, int iteration
                                  : std::string("a shorter step");
   return {Outcome::Kind::solver_failure, -1, "step",
           fmt::format("'{}' could not solve its implicit step of {:.6g} at time {:.9g}: fixed-point iteration still "
-                      "moved the solution by {:.2g} of its size after {} times; take {}, or an implicit method that "
-                      "solves by Newton's iteration",
+                      "changed the solution by {:.2g} of its size after {} iterations; take {}, or an implicit method "
+                      "that solves by Newton's iteration",
                       name_, h, t, change, iterations, advice)};
 }
 

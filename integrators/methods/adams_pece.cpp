@@ -214,7 +214,7 @@ template <class Real> void AdamsPece<Real>::load(const SavedState& saved, const 
   load_value(saved, prefix + "next", next_);
   load_value(saved, prefix + "rising", rising_);
   if (known_ > most || k_ < 1 || k_ > most_order || past_.size() >= most) {
-    throw Error("a saved Adams method has more past than the method can hold");
+    throw Error("a saved Adams method has a longer past than the method can keep");
   }
   past_.reserve(most);
   for (std::size_t j = 0; j < known_; ++j) load_vector(saved, prefix + "difference/" + std::to_string(j), d_[j]);

@@ -418,10 +418,9 @@ std::span<const MethodInfo> methods::bdf_list() {
   static const MethodInfo list[] = {
       {.name = "bdf",
        .aliases = "bdf_variable gear",
-       .summary =
-           "backward differentiation of variable step and order 1 to 5 (6 at steps of one length only: bdf_6), with "
-           "kept Jacobians; dense output",
-       .use = "large stiff systems: Jacobians are kept, one solution a step",
+       .summary = "backward differentiation of variable step and order 1 to 5 (6 at steps of one length only: bdf_6), "
+                  "with Jacobians kept over steps; dense output",
+       .use = "large stiff systems: Jacobians are kept, one solution per step",
        .source = "ShampineReichelt1997",
        .family = "multistep",
        .options = {linear_solver},

@@ -125,7 +125,7 @@ std::span<const MethodInfo> methods::diagonally_implicit_list() {
   static const MethodInfo list[] = {
       {.name = "backward_euler",
        .aliases = "implicit_euler bdf_1",
-       .summary = "backward Euler: L-stable, damps every oscillation by (1 + z^2)^(-1/2) a step",
+       .summary = "backward Euler: L-stable, damps every oscillation by (1 + z^2)^(-1/2) per step",
        .use = "stiff decay to a rest state, at any step",
        .source = "HairerWanner1996",
        .family = "implicit",

@@ -220,7 +220,7 @@ template <class Real> void Extrapolation<Real>::load(const SavedState& saved, co
   load_value(saved, prefix + "target", target_);
   load_value(saved, prefix + "begun", begun_);
   load_value(saved, prefix + "rejected", rejected_);
-  if (target_ < 2 || target_ >= most) throw Error("a saved extrapolation aims at a row that is not there");
+  if (target_ < 2 || target_ >= most) throw Error("a saved extrapolation refers to a row that does not exist");
 }
 
 template class Extrapolation<double>;
@@ -241,8 +241,8 @@ std::span<const MethodInfo> extrapolation_list() {
   static const MethodInfo list[] = {
       {.name = "gragg_bulirsch_stoer",
        .aliases = "gbs bulirsch_stoer odex",
-       .summary = "extrapolated midpoint rule, or leapfrog where forces depend on positions only; steps and orders of "
-                  "its own choice, up to 16 in double and 24 in Quad",
+       .summary = "extrapolated midpoint rule, or leapfrog where forces depend on positions only; steps and orders "
+                  "chosen by the method, up to 16 in double and 24 in Quad",
        .use = "errors near rounding over short times, extended precision above all",
        .source = "HairerNoersettWanner1993",
        .family = "extrapolation",

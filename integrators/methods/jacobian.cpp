@@ -50,7 +50,7 @@ template <class Real> void Jacobian<Real>::bind(const VectorField<Real>& f, cons
   const bool known = !pattern_.empty() && !second_order_;
   form_ = use.form.value_or(known ? JacobianForm::sparse : JacobianForm::dense);
   if (sparse() && !known) {
-    throw SchemeMismatch(fmt::format("'{}' does not say where its Jacobian can be other than 0, so it has no sparse "
+    throw SchemeMismatch(fmt::format("'{}' does not declare where its Jacobian can be nonzero, so it has no sparse "
                                      "one; use jacobian = \"matrix_free\" or \"dense\"",
                                      claims.name),
                          {.key = "jacobian"});

@@ -48,7 +48,7 @@ constexpr MethodInfo stormer_cowell(std::string_view name, std::string_view alia
       .aliases = alias,
       .summary =
           "Stoermer's explicit predictor in summed form, Cowell's corrector in the start only, velocities by Adams's "
-          "sums, for q'' = a(t, q); the number is the order; one evaluation a step after the start",
+          "sums, for q'' = a(t, q); the number is the order; one evaluation per step after the start",
       .use = "planets on nearly circular orbits, errors at rounding, short steps of one length",
       .source = "HairerNoersettWanner1993",
       .family = "multistep",
@@ -68,19 +68,19 @@ std::span<const MethodInfo> multistep_list() {
                                        "Adams-Bashforth, order 1, one step: explicit Euler",
                                        "teaching: it is explicit Euler", 0),
       adams_info<AdamsKind::bashforth>("adams_bashforth_2", "ab2", 2,
-                                       "Adams-Bashforth, order 2, two steps: one evaluation a step",
-                                       "dear forces with damping: oscillations grow", 0),
-      adams_info<AdamsKind::bashforth>("adams_bashforth_3", "ab3", 3,
-                                       "Adams-Bashforth, order 3, three steps: one evaluation a step",
-                                       "dear forces, one evaluation a step, oscillations well resolved", 0.72363),
-      adams_info<AdamsKind::bashforth>("adams_bashforth_4", "ab4", 4,
-                                       "Adams-Bashforth, order 4, four steps: one evaluation a step",
-                                       "dear forces, one evaluation a step, oscillations well resolved", 0.42999),
+                                       "Adams-Bashforth, order 2, two steps: one evaluation per step",
+                                       "expensive forces with damping: oscillations grow", 0),
+      adams_info<AdamsKind::bashforth>(
+          "adams_bashforth_3", "ab3", 3, "Adams-Bashforth, order 3, three steps: one evaluation per step",
+          "expensive forces, one evaluation per step, oscillations well resolved", 0.72363),
+      adams_info<AdamsKind::bashforth>(
+          "adams_bashforth_4", "ab4", 4, "Adams-Bashforth, order 4, four steps: one evaluation per step",
+          "expensive forces, one evaluation per step, oscillations well resolved", 0.42999),
       adams_info<AdamsKind::bashforth>("adams_bashforth_5", "ab5", 5,
-                                       "Adams-Bashforth, order 5, five steps: one evaluation a step",
+                                       "Adams-Bashforth, order 5, five steps: one evaluation per step",
                                        "comparison: oscillations grow, if slowly", 0),
       adams_info<AdamsKind::bashforth>("adams_bashforth_6", "ab6", 6,
-                                       "Adams-Bashforth, order 6, six steps: one evaluation a step",
+                                       "Adams-Bashforth, order 6, six steps: one evaluation per step",
                                        "comparison: oscillations grow, if slowly", 0),
       adams_info<AdamsKind::moulton>(
           "adams_moulton_1", "am1", 1,
@@ -103,9 +103,9 @@ std::span<const MethodInfo> multistep_list() {
                                      "comparison: implicit order 6 without Jacobians", 1.37636),
       {.name = "adams_pece",
        .aliases = "adams abm shampine_gordon",
-       .summary = "Adams predictor and corrector with steps and orders (1 to 12) of its own choice, two evaluations a "
-                  "step, dense output; with adaptive = false order 4 and fixed steps",
-       .use = "dear forces that are not stiff, at any accuracy, with steps of its own",
+       .summary = "Adams predictor and corrector with steps and orders (1 to 12) chosen by the method, two evaluations "
+                  "per step, dense output; with adaptive = false order 4 and fixed steps",
+       .use = "expensive forces that are not stiff, at any accuracy, with steps chosen by the method",
        .source = "ShampineGordon1975",
        .family = "multistep",
        .order = 12,

@@ -9,9 +9,9 @@ namespace noether {
 
 void NewmarkOptions::check() const {
   if (!(beta >= 0 && std::isfinite(beta)))
-    refuse_field("beta", beta, "is none of Newmark's method; 0 or more is expected, 0.25 by default");
+    refuse_field("beta", beta, "is not valid in Newmark's method; 0 or more is expected, 0.25 by default");
   if (!std::isfinite(gamma))
-    refuse_field("gamma", gamma, "is none of Newmark's method; a number is expected, 0.5 by default");
+    refuse_field("gamma", gamma, "is not valid in Newmark's method; a number is expected, 0.5 by default");
 }
 
 template <class Real>
@@ -35,7 +35,7 @@ template <class Real> void Newmark<Real>::bind(const VectorField<Real>& f) {
   const FieldClaims field = f.claims();
   if (!field.second_order) {
     throw SchemeMismatch(
-        fmt::format("method '{}' serves q'' = a only; '{}' is a system of first order; use "
+        fmt::format("method '{}' is for q'' = a only, but '{}' is a first-order system; use "
                     "'trapezoidal' instead",
                     name_, field.name));
   }
@@ -110,8 +110,8 @@ std::span<const MethodInfo> methods::newmark_list() {
   static const MethodInfo list[] = {
       {.name = "newmark",
        .aliases = "newmark_beta",
-       .summary = "Newmark's method for q'' = a: average acceleration unless beta and gamma say otherwise",
-       .use = "structures: stiff springs with steps set by what is to be seen",
+       .summary = "Newmark's method for q'' = a: average acceleration unless beta and gamma are given",
+       .use = "structures: stiff springs with steps chosen for the slow motion of interest",
        .source = "Newmark1959",
        .family = "implicit",
        .options = {&own_options<NewmarkOptions>, linear_solver},

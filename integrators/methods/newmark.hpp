@@ -15,7 +15,8 @@ struct NewmarkOptions {
     return part<NewmarkOptions>(
         "newmark", "the weights of Newmark's method",
         field<&NewmarkOptions::beta>("beta", "1", "weight of the new acceleration in the positions, 0 or more"),
-        field<&NewmarkOptions::gamma>("gamma", "1", "and in the velocities; above 0.5 it damps"));
+        field<&NewmarkOptions::gamma>("gamma", "1",
+                                      "weight of the new acceleration in the velocities; above 0.5 it damps"));
   }
   void check() const;
 };

@@ -100,7 +100,7 @@ std::span<const MethodInfo> nystrom_list() {
       {.name = "dprkn_12",
        .aliases = "dormand_prince_nystrom_12 rkn_12_10",
        .summary =
-           "Runge-Kutta-Nystroem 12(10) of Dormand, El-Mikkawy and Prince for q'' = a(t, q): 17 evaluations a step",
+           "Runge-Kutta-Nystroem 12(10) of Dormand, El-Mikkawy and Prince for q'' = a(t, q): 17 evaluations per step",
        .use = "forces of positions, errors near rounding over short times",
        .source = "DormandElMikkawyPrince1987",
        .family = "runge-kutta-nystroem",

@@ -12,7 +12,7 @@ namespace noether::schemes {
 
 inline constexpr Scheme symplectic_euler_a = alternating(
     {.name = "symplectic_euler_a", .aliases = "symplectic_euler", .summary = "order 1: kick, then drift",
-     .use = "teaching, and where one kick and one drift is all there may be",
+     .use = "teaching, and where a step may have only one kick and one drift",
      .source = "DeVogelaere1956", .order = {1}, .stability_limit = 2.0}, 'B', list(1_q), list(1_q));
 
 inline constexpr Scheme symplectic_euler_b = alternating(
@@ -32,14 +32,14 @@ inline constexpr Scheme verlet = symmetric_composition(
 inline constexpr Scheme verlet_aba = palindrome(
     {.name = "verlet_aba", .aliases = "position_verlet leapfrog_aba",
      .summary = "order 2, one kick: position Verlet, drift first",
-     .use = "Wisdom-Holman as it was first printed; elsewhere as verlet",
+     .use = "Wisdom-Holman as first published; otherwise as verlet",
      .source = "Verlet1967", .order = {2},
      .exact = "A",  // neighbouring steps join their drifts
      .stability_limit = 2.0}, 'A', list(rest), list(rest));
 
 inline constexpr Scheme ruth_3 = alternating(
     {.name = "ruth_3", .aliases = "ruth3", .summary = "order 3, 3 kicks, not symmetric",
-     .use = "history; pefrl costs one kick more and gains an order",
+     .use = "history; pefrl costs one more kick and gains an order",
      .source = "Ruth1983",
      .order = {3}, .exact = "AB", .stability_limit = 2.50748}, 'B',
     list(7_q / 24_q, 3_q / 4_q, -1_q / 24_q),

@@ -12,7 +12,7 @@ namespace noether::schemes {
 
 inline constexpr Scheme mclachlan_sb3a_m4 = palindrome(
     {.name = "mclachlan_sb3a_m4", .summary = "order 4, 4 kicks, drift first",
-     .use = "forces of positions, four kicks; srkn6b is more accurate a kick",
+     .use = "forces of positions, four kicks; srkn6b is more accurate per kick",
      .source = "McLachlan1995",
      .order = {4}, .scheme_class = SchemeClass::rkn, .exact = "AB", .stability_limit = 2.96781,
      .printed_digits = 20}, 'A',
@@ -21,7 +21,7 @@ inline constexpr Scheme mclachlan_sb3a_m4 = palindrome(
 
 inline constexpr Scheme mclachlan_sb3a_m5 = palindrome(
     {.name = "mclachlan_sb3a_m5", .summary = "order 4, 5 kicks, drift first",
-     .use = "forces of positions, five kicks; srkn6b is more accurate a kick",
+     .use = "forces of positions, five kicks; srkn6b is more accurate per kick",
      .source = "McLachlan1995",
      .order = {4}, .scheme_class = SchemeClass::rkn, .exact = "AB", .stability_limit = 2.92184,
      .printed_digits = 20}, 'A',
@@ -38,7 +38,7 @@ inline constexpr Scheme srkn6b = palindrome(
 
 inline constexpr Scheme srkn11b = palindrome(
     {.name = "srkn11b", .aliases = "blanes_moan_srkn11b", .summary = "order 6, 11 kicks, kick first",
-     .use = "forces of positions, from 1e-5 to 1e-13: hardly behind srkn14a",
+     .use = "forces of positions, errors from 1e-5 to 1e-13: nearly as good as srkn14a",
      .source = "BlanesMoan2002", .order = {.classical = 6, .outside_class = 4},
      .scheme_class = SchemeClass::rkn, .exact = "AB", .stability_limit = 3.14143, .printed_digits = 15}, 'B',
     list(0.0414649985182624_q, 0.198128671918067_q, -0.0400061921041533_q, 0.0752539843015807_q,
@@ -48,7 +48,7 @@ inline constexpr Scheme srkn11b = palindrome(
 
 inline constexpr Scheme srkn14a = palindrome(
     {.name = "srkn14a", .aliases = "blanes_moan_srkn14a", .summary = "order 6, 14 kicks, drift first",
-     .use = "forces of positions, from 1e-5 to 1e-13: the least work of all",
+     .use = "forces of positions, errors from 1e-5 to 1e-13: the least work of all",
      .source = "BlanesMoan2002", .order = {.classical = 6, .outside_class = 4},
      .scheme_class = SchemeClass::rkn, .exact = "AB", .stability_limit = 3.14093, .printed_digits = 15}, 'A',
     list(0.0378593198406116_q, 0.102635633102435_q, -0.0258678882665587_q, 0.314241403071447_q, -0.130144459517415_q,
@@ -58,7 +58,7 @@ inline constexpr Scheme srkn14a = palindrome(
 
 inline constexpr Scheme okunbor_skeel_6_13 = palindrome(
     {.name = "okunbor_skeel_6_13", .aliases = "okunbor_skeel6_13", .summary = "order 6, 7 kicks, drift first",
-     .use = "order 6 at seven kicks; srkn11b is more accurate a kick",
+     .use = "order 6 at seven kicks; srkn11b is more accurate per kick",
      .source = "OkunborSkeel1994", .order = {.classical = 6, .outside_class = 4},
      .scheme_class = SchemeClass::rkn, .exact = "AB", .stability_limit = 3.0674, .printed_digits = 17}, 'A',
     list(-1.0130879789171747298_q, 1.1874295737325427070_q, -0.018335852096460590340_q, rest),

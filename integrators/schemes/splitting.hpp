@@ -35,7 +35,7 @@ inline constexpr Scheme mclachlan_s5 = palindrome(
 
 inline constexpr Scheme pefrl = palindrome(
     {.name = "pefrl", .summary = "order 4, 4 kicks, drift first",
-     .use = "moderate accuracy for any splitting, at four kicks a step",
+     .use = "moderate accuracy for any splitting, at four kicks per step",
      .source = "OmelyanMryglodFolk2002",
      .order = {4}, .exact = "AB", .stability_limit = 2.98945, .printed_digits = 16}, 'A',
     list(0.1786178958448091_q, -0.06626458266981849_q, rest),

@@ -13,7 +13,7 @@ namespace noether::schemes {
 inline constexpr Scheme yoshida_4 = symmetric_composition(
     {.name = "yoshida_4", .aliases = "yoshida4_forest_ruth forest_ruth candy_rozmus_4",
      .summary = "order 4, symmetric composition of 3 steps",
-     .use = "comparison with published runs; pefrl and blanes_moan_s6 are far more accurate a kick",
+     .use = "comparison with published runs; pefrl and blanes_moan_s6 are far more accurate per kick",
      .source = "ForestRuth1990", .order = {4},
      .stability_limit = 1.5734, .printed_digits = 32},
     list(1.3512071919596576340476878089715_q, rest));
@@ -35,7 +35,7 @@ inline constexpr Scheme mclachlan_ss5 = symmetric_composition(
 inline constexpr Scheme yoshida_6 = symmetric_composition(
     {.name = "yoshida_6", .aliases = "yoshida6_a yoshida_6_a",
      .summary = "order 6, symmetric composition of 7 steps",
-     .use = "comparison with published runs; blanes_moan_s10 is more accurate a kick",
+     .use = "comparison with published runs; blanes_moan_s10 is more accurate per kick",
      .source = "Yoshida1990", .order = {6},
      .stability_limit = 2.26906},
     list(0.7845136104775572638194976338663498757768_q, 0.2355732133593581336847931829785346016865_q,
@@ -71,7 +71,7 @@ inline constexpr Scheme mclachlan_ss9 = symmetric_composition(
 inline constexpr Scheme sofroniou_spaletta_6_s11 = symmetric_composition(
     {.name = "sofroniou_spaletta_6_s11", .aliases = "sofroniou_spaletta6_s11",
      .summary = "order 6, symmetric composition of 11 steps",
-     .use = "order 6 from any step of order 2, smaller errors a kick than nine steps",
+     .use = "order 6 from any step of order 2, smaller errors per kick than nine steps",
      .source = "SofroniouSpaletta2005", .order = {6},
      .stability_limit = 2.95729, .printed_digits = 32},
     list(0.21375583945878254555518066964857_q, 0.18329381407425713911385974425217_q,

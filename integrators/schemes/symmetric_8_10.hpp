@@ -50,7 +50,7 @@ inline constexpr Scheme yoshida_8_e = symmetric_composition(
 inline constexpr Scheme suzuki_umeno_8_s15 = symmetric_composition(
     {.name = "suzuki_umeno_8_s15", .aliases = "suzuki_umeno8_s15 mclachlan_ss15",
      .summary = "order 8, symmetric composition of 15 steps",
-     .use = "order 8 with the fewest kicks that are of use",
+     .use = "order 8 with the fewest kicks that are useful",
      .source = "SuzukiUmeno1993", .order = {8},
      .stability_limit = 3.39323},
     list(0.7416703643506129534482278017838063156035_q, -0.4091008258000315939973000958935634173099_q,
@@ -102,7 +102,7 @@ inline constexpr Scheme sofroniou_spaletta_8_s21 = symmetric_composition(
 inline constexpr Scheme kahan_li_10_s33 = symmetric_composition(
     {.name = "kahan_li_10_s33", .aliases = "kahan_li10_s33",
      .summary = "order 10, symmetric composition of 33 steps",
-     .use = "errors at rounding in extended precision; in double order 8 does it for less",
+     .use = "errors at rounding in extended precision; in double precision order 8 does it with less work",
      .source = "KahanLi1997", .order = {10},
      .stability_limit = 2.96727, .printed_digits = 20},
     list(0.12313526870982994083_q, 0.77644981696937310520_q, 0.14905490079567045613_q, -0.17250761219393744420_q,

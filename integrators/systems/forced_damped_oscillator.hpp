@@ -29,17 +29,18 @@ struct ForcedDampedOscillator {
         "forced_damped_oscillator", "a spring with drag, driven by a cosine",
         formula("x' = v,  v' = -omega0^2 x - 2 gamma v + amplitude cos(omega t)"), source("LandauLifshitz1976"),
         quantities("x [length], v [length/time]"),
-        field<&ForcedDampedOscillator::omega0>("omega0", "1/time", "of the spring"),
+        field<&ForcedDampedOscillator::omega0>("omega0", "1/time", "angular frequency of the spring"),
         field<&ForcedDampedOscillator::gamma>("gamma", "1/time", "half the rate of the drag"),
-        field<&ForcedDampedOscillator::amplitude>("amplitude", "length/time^2", "of the drive"),
-        field<&ForcedDampedOscillator::omega>("omega", "1/time", "of the drive"),
-        field<&ForcedDampedOscillator::position>("position", "length", "at the start"),
-        field<&ForcedDampedOscillator::velocity>("velocity", "length/time", "at the start"));
+        field<&ForcedDampedOscillator::amplitude>("amplitude", "length/time^2", "amplitude of the drive"),
+        field<&ForcedDampedOscillator::omega>("omega", "1/time", "angular frequency of the drive"),
+        field<&ForcedDampedOscillator::position>("position", "length", "position at the start"),
+        field<&ForcedDampedOscillator::velocity>("velocity", "length/time", "velocity at the start"));
   }
   /// @throws Error  for a spring that is none, or a drag that drives
   void check() const {
-    if (!(omega0 > 0)) refuse_field("omega0", omega0, "is no frequency of a spring; one above 0 is expected");
-    if (!(gamma >= 0)) refuse_field("gamma", gamma, "is no drag; 0 or more is expected");
+    if (!(omega0 > 0))
+      refuse_field("omega0", omega0, "is not a valid frequency of a spring; a frequency above 0 is expected");
+    if (!(gamma >= 0)) refuse_field("gamma", gamma, "is not a valid drag; 0 or more is expected");
   }
 
   Index size() const { return 2; }

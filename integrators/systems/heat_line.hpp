@@ -34,8 +34,8 @@ struct HeatLine {
     return part<HeatLine>("heat_line", "the heat equation on a line, by the method of lines",
                           formula("u_i' = D (u_(i-1) - 2 u_i + u_(i+1)) / d^2,  d = length / (points + 1)"),
                           source("HairerWanner1996"), quantities("u[points] [1]"),
-                          field<&HeatLine::points>("points", "1", "between the ends"),
-                          field<&HeatLine::length>("length", "length", "of the line"),
+                          field<&HeatLine::points>("points", "1", "number of points between the ends"),
+                          field<&HeatLine::length>("length", "length", "length of the line"),
                           field<&HeatLine::diffusivity>("diffusivity", "length^2/time", "D"),
                           field<&HeatLine::left>("left", "1", "temperature of the left end"),
                           field<&HeatLine::right>("right", "1", "temperature of the right end"),
@@ -46,11 +46,12 @@ struct HeatLine {
     if (points > most) {
       refuse_field("points", static_cast<double>(points), fmt::format("is too many; at most {} are expected", most));
     }
-    if (points < 1) refuse_field("points", static_cast<double>(points), "leaves no point; 1 or more is expected");
-    if (!(length > 0)) refuse_field("length", length, "is no length of a line; one above 0 is expected");
+    if (points < 1) refuse_field("points", static_cast<double>(points), "is too few; 1 or more is expected");
+    if (!(length > 0)) refuse_field("length", length, "is not a valid length of a line; a length above 0 is expected");
     if (!(diffusivity >= 0)) refuse_field("diffusivity", diffusivity, "is negative; 0 or more is expected");
     if (mode < 1 || mode > points) {
-      refuse_field("mode", static_cast<double>(mode), "cannot be told by the points; 1 to points is expected");
+      refuse_field("mode", static_cast<double>(mode),
+                   "cannot be resolved by the points; 1 to the number of points is expected");
     }
   }
 

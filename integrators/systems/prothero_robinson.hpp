@@ -19,11 +19,11 @@ struct ProtheroRobinson {
   double omega = 1;      ///< of the solution [1/time]
 
   static constexpr auto describe() {
-    return part<ProtheroRobinson>("prothero_robinson", "one variable that follows a sine, held to it by a stiff rate",
-                                  formula("y' = lambda (y - g(t)) + g'(t),  g(t) = sin(omega t + pi/4)"),
-                                  source("ProtheroRobinson1974"), quantities("y [1]"),
-                                  field<&ProtheroRobinson::lambda>("lambda", "1/time", "below 0: stable"),
-                                  field<&ProtheroRobinson::omega>("omega", "1/time", "of the solution"));
+    return part<ProtheroRobinson>(
+        "prothero_robinson", "one variable that follows a sine, pulled to it at a stiff rate",
+        formula("y' = lambda (y - g(t)) + g'(t),  g(t) = sin(omega t + pi/4)"), source("ProtheroRobinson1974"),
+        quantities("y [1]"), field<&ProtheroRobinson::lambda>("lambda", "1/time", "below 0: stable"),
+        field<&ProtheroRobinson::omega>("omega", "1/time", "angular frequency of the solution"));
   }
 
   Index size() const { return 1; }

@@ -33,21 +33,24 @@ struct RcLadder {
         "rc_ladder", "resistors and capacitors in a row, with time constants decades apart",
         formula("R C_k v_k' = v_(k-1) - 2 v_k + v_(k+1),  C_k = C spread^(-(k - 1)/(n - 1)),  v_0 = V cos(omega t)"),
         source("HairerWanner1996"), quantities("v[stages] [1]"), field<&RcLadder::stages>("stages", "1", "n"),
-        field<&RcLadder::resistance>("resistance", "1", "of every stage"),
-        field<&RcLadder::capacitance>("capacitance", "time", "of the first stage"),
+        field<&RcLadder::resistance>("resistance", "1", "resistance of every stage"),
+        field<&RcLadder::capacitance>("capacitance", "time", "time constant of the first stage"),
         field<&RcLadder::spread>("spread", "1", "capacitance of the first stage over that of the last"),
         field<&RcLadder::voltage>("voltage", "1", "amplitude of the source"),
-        field<&RcLadder::omega>("omega", "1/time", "of the source; 0: direct current"));
+        field<&RcLadder::omega>("omega", "1/time", "angular frequency of the source; 0: direct current"));
   }
   /// @throws Error  for what is no ladder
   void check() const {
     if (stages > most) {
       refuse_field("stages", static_cast<double>(stages), fmt::format("is too many; at most {} are expected", most));
     }
-    if (stages < 1) refuse_field("stages", static_cast<double>(stages), "is no ladder; 1 or more is expected");
-    if (!(resistance > 0)) refuse_field("resistance", resistance, "is no resistance; a number above 0 is expected");
-    if (!(capacitance > 0)) refuse_field("capacitance", capacitance, "is no capacitance; a time above 0 is expected");
-    if (!(spread > 0)) refuse_field("spread", spread, "is no ratio of capacitances; a number above 0 is expected");
+    if (stages < 1) refuse_field("stages", static_cast<double>(stages), "is too few; 1 or more is expected");
+    if (!(resistance > 0))
+      refuse_field("resistance", resistance, "is not a valid resistance; a number above 0 is expected");
+    if (!(capacitance > 0))
+      refuse_field("capacitance", capacitance, "is not a valid capacitance; a time above 0 is expected");
+    if (!(spread > 0))
+      refuse_field("spread", spread, "is not a valid ratio of capacitances; a number above 0 is expected");
   }
 
   static constexpr std::int64_t most = 1'000'000;  ///< of them, so that memory is not asked for in vain

@@ -25,14 +25,14 @@ struct Robertson {
     return part<Robertson>("robertson", "chemical kinetics of three substances, rates nine decades apart",
                            formula("A' = -k1 A + k3 B C,  B' = k1 A - k2 B^2 - k3 B C,  C' = k2 B^2"),
                            source("Robertson1966 HairerWanner1996"), quantities("A, B, C [1]"),
-                           field<&Robertson::k1>("k1", "1/time", "of A -> B"),
-                           field<&Robertson::k2>("k2", "1/time", "of B + B -> C + B"),
-                           field<&Robertson::k3>("k3", "1/time", "of B + C -> A + C"));
+                           field<&Robertson::k1>("k1", "1/time", "rate of A -> B"),
+                           field<&Robertson::k2>("k2", "1/time", "rate of B + B -> C + B"),
+                           field<&Robertson::k3>("k3", "1/time", "rate of B + C -> A + C"));
   }
   /// @throws Error  for a negative rate
   void check() const {
     for (const auto& [key, rate] : {std::pair{"k1", k1}, std::pair{"k2", k2}, std::pair{"k3", k3}}) {
-      if (!(rate >= 0) || !std::isfinite(rate)) refuse_field(key, rate, "is no rate; 0 or a number above is expected");
+      if (!(rate >= 0) || !std::isfinite(rate)) refuse_field(key, rate, "is not a valid rate; 0 or more is expected");
     }
   }
 

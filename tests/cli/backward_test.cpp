@@ -47,7 +47,7 @@ TEST_CASE("comparisons, advice and verdicts go forward, and say so", "[cli][back
   const SceneFolder judged(bodies_back + "\n[[verdict]]\nmethods = [\"dop853\"]\noutcome = \"bounded\"\n");
   const ProcessResult result = noether(judged, "stability scene.toml --suite");
   CHECK(result.exit_code == 2);
-  CHECK(result.err == "scene.toml: a verdict is of a run that goes forward; this one would end at -10\n");
+  CHECK(result.err == "scene.toml: a verdict needs a run that goes forward in time; this one would end at -10\n");
   CHECK(noether(folder, "compare scene.toml --until 1 --methods verlet,dop853 --repeat 1").exit_code == 0);
 }
 
@@ -83,7 +83,8 @@ TEST_CASE("a run that has gone back takes an earlier end only", "[cli][backward]
   CHECK(refusal("--until -5") ==
         "scene.toml: the end at time -5 lies before the checkpoint at time -10; give a later one, or --fresh\n");
   CHECK(refusal("--until 5") ==
-        "scene.toml: the end at time 5 lies the other way: the checkpoint stands at time -10; give a time below 0, or "
+        "scene.toml: the end at time 5 lies in the opposite direction: the checkpoint is at time -10; give a time "
+        "below 0, or "
         "--fresh\n");
 }
 

@@ -194,7 +194,8 @@ TEST_CASE("small boxes, bonds and neighbors are spoken of", "[cli][messages]") {
     return result.err;
   };
   CHECK(has(refused("--set hamiltonian.neighbors.skin=1e99"), "skin=1e99: skin = 1e+99 reaches so far beyond the box"));
-  CHECK(has(refused("--set hamiltonian.force.0.cutoff=250"), "scene.toml:3: the box of 3 x 3 x 3 is so small beside"));
+  CHECK(has(refused("--set hamiltonian.force.0.cutoff=250"),
+            "scene.toml:3: the box of 3 x 3 x 3 is so small compared with"));
 }
 
 TEST_CASE("what a LAMMPS data file leaves out is asked for, at the force that wants it", "[cli][messages]") {
@@ -209,7 +210,8 @@ TEST_CASE("what a LAMMPS data file leaves out is asked for, at the force that wa
   };
   for (const char* command : {"run", "evaluate", "explain"}) {
     CHECK(refused(command + std::string(" scene.toml")) ==
-          "scene.toml:8: there is a bond and no parameters of any; give those of each kind in section 'Bond Coeffs' of "
+          "scene.toml:8: there is a bond, but no parameters for its kind; give the parameters of each kind in section "
+          "'Bond Coeffs' of "
           "the structure \"chain.data\"\n");
   }
   const std::string liquid = " --set 'hamiltonian.force=[{type=\"lennard_jones\", cutoff=2.5}]'";
@@ -223,10 +225,10 @@ TEST_CASE("what a LAMMPS data file leaves out is asked for, at the force that wa
 TEST_CASE("charges that no force looks at are warned of", "[cli][messages]") {
   const SceneFolder pair(close_pair);
   const std::string run = "run scene.toml --fresh --set integrator.step=0.0001 --set particles.body.a.charge=";
-  const std::string warning = "\nwarning: the particles have charges that no force looks at\n";
+  const std::string warning = "\nwarning: the particles have charges that no force uses\n";
   const std::string field = " --set 'hamiltonian.force.1={type=\"reaction_field\", cutoff=1}'";
   CHECK(has(output(pair, run + "0.5"), warning));
-  CHECK(has(output(pair, run + "0.5 --json"), R"("warnings":["the particles have charges that no force looks at"])"));
+  CHECK(has(output(pair, run + "0.5 --json"), R"("warnings":["the particles have charges that no force uses"])"));
   CHECK_FALSE(has(output(pair, run + "0"), "warning"));
   CHECK_FALSE(has(output(pair, run + "0.5" + field), "warning"));
 }
@@ -237,7 +239,8 @@ TEST_CASE("exclusions that no force leaves out are warned of", "[cli][messages]"
   const std::string springs =
       " --set 'hamiltonian.force=[{type=\"harmonic_bond\", pairs=[[\"a\",\"c\"]], k=1, length=1}]'";
   CHECK(has(output(pair, run + springs),
-            "\nwarning: exclusions change nothing: no force leaves pairs out; those that do are lennard_jones, wca, "
+            "\nwarning: exclusions have no effect: no force of this scene leaves pairs out; forces that do are "
+            "lennard_jones, wca, "
             "morse, buckingham, reaction_field\n"));
   CHECK_FALSE(has(output(pair, run), "warning"));
 }
@@ -305,7 +308,7 @@ TEST_CASE("describe tells formula, order, fields and source", "[cli][describe]")
   CHECK(json_member(json_output(folder, "describe gravity", "describe"), "kind") == "\"force\"");
   const std::string newmark = output(folder, "describe newmark"), dop853 = output(folder, "describe dop853");
   CHECK(has(newmark, "\n  beta           number [1], default 0.25: weight of the new acceleration in the positions"));
-  CHECK(has(newmark, "\n  jacobian       choice [1], one of dense, sparse, matrix_free: how df/dy is kept; "));
+  CHECK(has(newmark, "\n  jacobian       choice [1], one of dense, sparse, matrix_free: how df/dy is stored; "));
   CHECK_FALSE(has(newmark, "\n  rtol "));
   CHECK(json_member(json_output(folder, "describe newmark", "describe"), "options") ==
         R"(["beta","gamma","jacobian"])");
@@ -324,17 +327,17 @@ TEST_CASE("describe says of a method what it serves, as it claims itself", "[cli
   const ScratchFolder folder;
   const auto says = [&](const std::string& name, const std::string& line, const std::string& equation) {
     INFO(name);
-    CHECK(has(output(folder, "describe " + name),
-              "\n  for " + equation + ": it takes all forces together" + line + "\n"));
+    CHECK(has(output(folder, "describe " + name), "\n  for " + equation + ": it supports " + line + "\n"));
     CHECK(json_member(json_output(folder, "describe " + name, "describe"), "serves") == "\"" + equation + "\"");
   };
   for (const char* name : {"rk4", "gauss_8", "adams_bashforth_3", "rodas_5p"}) {
-    says(name, ", velocity-dependent ones too", "y' = f(t, y)");
+    says(name, "all forces, also those that depend on velocities", "y' = f(t, y)");
   }
   for (const char* name : {"stormer_cowell_12", "stormer_cowell_13", "stormer_cowell_14", "dprkn_12"}) {
-    says(name, ", but none that depends on velocities, and no system of first order", "q'' = a(t, q)");
+    says(name, "forces that depend on positions and time, but not on velocities, and no first-order system",
+         "q'' = a(t, q)");
   }
-  says("newmark", ", velocity-dependent ones too, but no system of first order", "q'' = a(t, q, q')");
+  says("newmark", "all forces, also those that depend on velocities, but no first-order system", "q'' = a(t, q, q')");
 }
 
 TEST_CASE("list and describe tell orders, evaluations and limits as docs/methods.md does", "[cli][list][describe]") {
@@ -367,7 +370,7 @@ TEST_CASE("list and describe tell orders, evaluations and limits as docs/methods
   CHECK(json_member(json_output(folder, "describe gbs", "describe"), "order_in_quad") == "24");
   CHECK(has(read_text(std::filesystem::path(NOETHER_SOURCE_DIR) / "docs/methods.md"),
             "\n| gragg_bulirsch_stoer | varies, to 16, in Quad to 24 ("));
-  CHECK(has(output(folder, "describe rk4"), "\n  4 evaluations a step of given length\n"));
+  CHECK(has(output(folder, "describe rk4"), "\n  4 evaluations per step of given length\n"));
 }
 
 TEST_CASE("whatever is listed can be described", "[cli][describe][slow]") {
@@ -441,7 +444,7 @@ TEST_CASE("convert writes extended XYZ and CSV", "[cli][convert]") {
   CHECK(output(folder, "convert scene.out/run.h5 frames.csv").empty());
   const ProcessResult open = noether(folder, "convert scene.out/run.h5 unwrapped.csv --unwrapped");
   CHECK(open.exit_code == 2);
-  CHECK(has(open.err, "cannot unwrap the positions of 'scene.out/run.h5': its frames have no images"));
+  CHECK(has(open.err, "cannot unwrap the positions of 'scene.out/run.h5': its frames have no periodic box"));
   const std::string json = json_output(folder, "convert scene.out/run.h5 again.csv", "convert");
   CHECK(json_member(json, "frames") == "6");
   CHECK(read_text(folder / "again.csv") == read_text(folder / "frames.csv"));

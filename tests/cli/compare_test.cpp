@@ -69,31 +69,30 @@ TEST_CASE("wrong requests to compare and advise are told in one line", "[cli][co
   wrong("compare scene.toml --methods verlet,,rk4", "--methods 'verlet,,rk4': a part of the list is empty");
   wrong("compare scene.toml --steps soon",
         "--steps: 'soon' does not begin with a number; a time is expected, such as '1'");
-  wrong("compare scene.toml --steps 0.1,-1", "--steps '-1' is no time above 0");
+  wrong("compare scene.toml --steps 0.1,-1", "--steps '-1' is not a time above 0");
   wrong("compare scene.toml --methods verlet --steps 1e-200",
         "a run of 20 has more steps of 1e-200 than can be counted; give steps of at least 2.4e-15");
-  wrong("compare scene.toml --tolerances 1e-6,x", "--tolerances: 'x' is no number");
-  wrong(
-      "compare scene.toml --methods dop853 --tolerances 1e-8,1e-20",
-      "rtol = 1e-20 is more than doubles can tell; at least 9e-16 is expected, or a method that goes to rounding, such "
-      "as 'gauss_8'");
-  wrong("compare scene.toml --tolerances 0", "0 is no tolerance; a number between 0 and 1 is expected");
+  wrong("compare scene.toml --tolerances 1e-6,x", "--tolerances: 'x' is not a number");
+  wrong("compare scene.toml --methods dop853 --tolerances 1e-8,1e-20",
+        "rtol = 1e-20 is below the rounding of doubles; at least 9e-16 is expected, or a method that solves to "
+        "rounding, such as 'gauss_8'");
+  wrong("compare scene.toml --tolerances 0", "0 is not a valid tolerance; a number between 0 and 1 is expected");
   wrong("compare scene.toml --methods dop853,gauss_8 --steps 0.1",
-        "--steps is for methods of fixed steps, and all of those compared choose theirs by a tolerance; leave it out, "
-        "or add such a method, as 'rk4'");
+        "--steps is for methods of fixed steps, but all the methods compared choose theirs by a tolerance; leave it "
+        "out, or add such a method, such as 'rk4'");
   wrong("compare scene.toml --methods verlet,rk4 --tolerances 1e-6",
-        "--tolerances is for methods that choose their steps, and all of those compared take fixed ones; leave it out, "
-        "or add such a method, as 'dop853'");
+        "--tolerances is for methods that choose their steps, but all the methods compared take fixed ones; leave it "
+        "out, or add such a method, such as 'dop853'");
   wrong("compare scene.toml --repeat 2000000", "--repeat: '2000000' is more than 1000000" + see);
-  wrong("compare scene.toml --repeat 1.5", "--repeat: '1.5' is no whole number above 0" + see);
-  wrong("compare scene.toml --repeat 0", "--repeat: '0' is no whole number above 0" + see);
-  wrong("compare scene.toml --budget -1", "--budget: '-1' is no number of seconds above 0" + see);
-  wrong("compare scene.toml --until 0", "--until '0' is no time above 0");
+  wrong("compare scene.toml --repeat 1.5", "--repeat: '1.5' is not a whole number above 0" + see);
+  wrong("compare scene.toml --repeat 0", "--repeat: '0' is not a whole number above 0" + see);
+  wrong("compare scene.toml --budget -1", "--budget: '-1' is not a number of seconds above 0" + see);
+  wrong("compare scene.toml --until 0", "--until '0' is not a time above 0");
   wrong("compare scene.toml --out ''", "--out: the name of the folder is empty" + see);
   wrong("advise scene.toml", "--error is required; see `noether advise --help`");
   wrong("advise scene.toml --error 0", "an error of 0 cannot be held; a number between 0 and 1 is expected");
   wrong("advise scene.toml --error -1e-3", "an error of -0.001 cannot be held; a number between 0 and 1 is expected");
-  wrong("advise scene.toml --error small", "--error: 'small' is no number");
+  wrong("advise scene.toml --error small", "--error: 'small' is not a number");
   wrong("advise scene.toml --error 1e-3 --metric engery", "--metric: unknown metric 'engery'; did you mean 'energy'?");
 }
 

@@ -78,8 +78,8 @@ TEST_CASE("explain counts constraints and what they leave; describe and list kno
   CHECK(has(output(folder, "explain scene.toml --json"), "\"constraints\":"));
   CHECK(has(output(folder, "list constraints"), "rigid_bar"));
   const std::string described = output(folder, "describe distance");
-  CHECK(has(described, "distance (constraint): two particles stay at a distance\n"));
-  CHECK(has(described, "stands in [[hamiltonian.constraint]], with the particles"));
+  CHECK(has(described, "distance (constraint): keeps the distance of two particles\n"));
+  CHECK(has(described, "belongs in [[hamiltonian.constraint]], with the particles"));
   CHECK(has(described, "@article{RyckaertCiccottiBerendsen1977"));
 }
 

@@ -45,7 +45,7 @@ TEST_CASE("a run goes on beside a run.h5 that was cut short, wherever, and keeps
     CHECK(json_member(resumed, "resumed_from_step") == "80");
     CHECK(has(resumed,
               "; a new one begins at step 80, and the old one is scene.out/run.h5.damaged: 'noether verify "
-              "--repair scene.out/run.h5.damaged' mends it if no more than frames is missing"));
+              "--repair scene.out/run.h5.damaged' repairs it if only frames or samples are missing"));
     const bool untouched = read_text(run.folder / "scene.out/run.h5.damaged") == kept;
     CHECK(untouched);
     CHECK(output(run.folder, "verify scene.out/run.h5") == "scene.out/run.h5: sound and complete, last step 100\n");
@@ -71,13 +71,13 @@ TEST_CASE("a run.h5 of fewer frames than the checkpoint counts on, or none at al
   fs::copy_file(shorter / "scene.out/run.h5", other.file(), fs::copy_options::overwrite_existing);
   const std::string resumed = output(other.folder, "run scene.toml --json --resume");
   check_same_run(resumed, other.whole);
-  CHECK(has(resumed, "rows where the saved run counts on "));
+  CHECK(has(resumed, "rows where the saved run expects "));
 
   const KilledRun gone;
   fs::remove(gone.file());
   const std::string anew = output(gone.folder, "run scene.toml --json --resume");
   check_same_run(anew, gone.whole);
-  CHECK(has(anew, "the trajectory that the saved run counts on is missing"));
+  CHECK(has(anew, "the trajectory that the saved run continues is missing"));
   CHECK(has(anew, "; a new one begins at step 80\""));
   CHECK(output(gone.folder, "verify scene.out/run.h5") == "scene.out/run.h5: sound and complete, last step 100\n");
 }
@@ -118,8 +118,8 @@ TEST_CASE("a finished run with a damaged run.h5 prints its report, and names the
   const std::string again = output(folder, "run scene.toml --json --resume");
   check_same_run(again, whole);
   CHECK(has(again,
-            "; the run is finished: 'noether verify --repair scene.out/run.h5' mends it if no more than frames is "
-            "missing\""));
+            "; the run is finished: 'noether verify --repair scene.out/run.h5' repairs it if only frames or samples "
+            "are missing\""));
   CHECK(has(output(folder, "verify --repair scene.out/run.h5"), "scene.out/run.h5: sound, not complete"));
 }
 
@@ -230,7 +230,7 @@ TEST_CASE("a run that began with the last frame of one that has gone on since na
   CHECK(refused.exit_code == 2);
   CHECK(line_count(refused.err) == 1);
   CHECK(has(refused.err,
-            "the run began with frame 5 of \"scene.out/run.h5\", and this would be frame 7; give frame = 5 "
+            "the run began with frame 5 of \"scene.out/run.h5\", but this would be frame 7; give frame = 5 "
             "in [particles], or start over with --fresh\n"));
   check_same_run(output(folder, "run next.toml --json --resume --set particles.frame=5"), whole);
 }

@@ -25,7 +25,8 @@ TEST_CASE("a folder in use is refused", "[cli][run][messages]") {
   const ProcessResult result = noether(folder, "run scene.toml");
   ::close(lock);
   CHECK(result.exit_code == 2);
-  CHECK(result.err == "scene.out: another run is writing here; wait for it, or give another folder with --out\n");
+  CHECK(result.err ==
+        "scene.out: another run is writing to this folder; wait for it, or give another folder with --out\n");
   CHECK(noether(folder, "run scene.toml --quiet").exit_code == 0);
 }
 
@@ -78,8 +79,9 @@ TEST_CASE("an unfinished run is kept until --fresh discards it", "[cli][run][mes
   const ProcessResult refused = noether(folder, "run scene.toml");
   CHECK(refused.exit_code == 2);
   CHECK(refused.out.empty());
-  CHECK(refused.err ==
-        "scene.out: an unfinished run stands here at step 80; go on with --resume, or start over with --fresh\n");
+  CHECK(
+      refused.err ==
+      "scene.out: there is an unfinished run here at step 80; continue it with --resume, or start over with --fresh\n");
   CHECK(read_text(folder / "scene.out/run.h5") == before);
   const ProcessResult fresh = noether(folder, "run scene.toml --fresh --json");
   CHECK(fresh.exit_code == 0);

@@ -180,7 +180,7 @@ TEST_CASE("errors of tops are measured against their own splitting in 113 bits",
 TEST_CASE("limits, advice and energies of tops are told", "[cli][own_columns]") {
   const SceneFolder folder(wave);
   CHECK(
-      has(own_output(folder, "stability scene.toml --methods verlet --steps 2000 --budget 3"), "steps alone are told"));
+      has(own_output(folder, "stability scene.toml --methods verlet --steps 2000 --budget 3"), "only steps are given"));
   CHECK(has(own_output(folder, "advise scene.toml --error 1e-6 --methods yoshida_4,verlet"), "cheapest: yoshida_4"));
   const std::string energies = own_output(folder, "evaluate scene.toml");
   CHECK(has(energies, "mesh_field"));
@@ -191,12 +191,12 @@ TEST_CASE("what cannot move columns refuses them by name", "[cli][own_columns]")
   const auto refused = [&](const std::string& sets) { return own(folder, "run scene.toml" + sets).err; };
   CHECK(has(refused(" --set integrator.method=dop853 --set integrator.steps=10"),
             "'tops' moves more than positions and velocities, so methods for y' = f cannot step it"));
-  CHECK(has(refused(" --set particles.body.0.orientation=[1,0,0]"), "orientation = [1, 0, 0] is no list of 4"));
+  CHECK(has(refused(" --set particles.body.0.orientation=[1,0,0]"), "orientation = [1, 0, 0] is not a list of 4"));
   CHECK(has(refused(" --set particles.body.0.orientatoin=[1,0,0,0]"), "did you mean 'orientation'?"));
   CHECK(has(refused(" --set hamiltonian.type=kinetic_potential"), "orientation"));
-  CHECK(has(refused(" --set every.0.type=shadow_hamiltonian"), "no motion of positions and momenta"));
+  CHECK(has(refused(" --set every.0.type=shadow_hamiltonian"), "are not a motion of positions and momenta"));
   CHECK(has(refused(" --set hamiltonian.force.0.kick=C"),
-            "force 'mesh_field' is in the kick C, and 'tops' has only B; take its kick out"));
+            "force 'mesh_field' is in the kick C, but 'tops' has only B; take its kick out"));
 }
 
 }  // namespace noether::test

@@ -71,10 +71,10 @@ std::vector<double> numbers_of(const std::string& json, const std::string& key) 
 TEST_CASE("a decorator from outside the library is listed, described and explained", "[cli][own_decorator]") {
   const SceneFolder folder(orbit);
   CHECK(has(own_output(folder, "list decorators"), "energy_projection  scales velocities back to the energy"));
-  CHECK(output(folder, "list decorators") == "there are no decorators yet\n");
+  CHECK(output(folder, "list decorators") == "this program has no decorators\n");
   const std::string described = own_output(folder, "describe energy_projection");
   CHECK(has(described, "energy_projection (decorator): scales velocities back"));
-  CHECK(has(described, "  stands in [[integrator.decorator]]"));
+  CHECK(has(described, "  belongs in [[integrator.decorator]]"));
   CHECK(has(described, "\n  steps          whole number [1], default 10: steps between two projections\n"));
   CHECK(has(own_output(folder, "explain scene.toml"), "\n  decorator energy_projection, steps 10\n"));
   CHECK(has(own_output(folder, "explain scene.toml" + without), "left out:\n"));
@@ -142,7 +142,7 @@ TEST_CASE("a run that was decorated in another way is not gone on with", "[cli][
     return own(folder, "run scene.toml --quiet --out a --resume" + sets).err;
   };
   CHECK(has(refused(" --set integrator.decorator.0.steps=5"), "integrator.decorator.0.steps = 5 was 10"));
-  CHECK(has(refused(without), "is gone"));
+  CHECK(has(refused(without), "is missing now"));
 }
 
 TEST_CASE("several decorators stand around each other in their order", "[cli][own_decorator]") {
@@ -185,7 +185,7 @@ TEST_CASE("limits are those of decorated steps, of which linear theory says noth
       "'hamiltonian.force=[{type=\"harmonic_field\", k=1}]' --set particles.body.planet.mass=1";
   const std::string held = own_output(folder, line);
   CHECK(has(held,
-            "around every method stands energy_projection, so linear theory, which is of bare methods, is left out"));
+            "every method is wrapped by energy_projection, so linear theory, which is for bare methods, is left out"));
   const std::string free = own_output(folder, line + without);
   CHECK_FALSE(has(free, "energy_projection"));
   CHECK(json_member(own_output(folder, line + " --json"), "theory_known") == "false");
@@ -209,12 +209,13 @@ TEST_CASE("what a decorator cannot do is refused by name", "[cli][own_decorator]
   CHECK(has(refused(" --set integrator.decorator.0.step=3"),
             "unknown key 'step' in decorator 'energy_projection'; did you mean 'steps'?"));
   CHECK(has(refused(" --set integrator.decorator.0.steps=0"), "steps = 0 is too few; at least 1 is expected"));
-  CHECK(
-      has(refused(" --set integrator.decorator.0.type="), "this decorator has no type; known are: energy_projection"));
+  CHECK(has(refused(" --set integrator.decorator.0.type="),
+            "this decorator has no type; expected one of: energy_projection"));
   CHECK(has(refused(" --set integrator.decorator=7"), "tables headed [[integrator.decorator]] are expected"));
   CHECK(has(refused(" --set every.0.type=shadow_hamiltonian"), "velocities are scaled by energy_projection"));
-  CHECK(has(noether(folder, "explain scene.toml").err,
-            "scene.toml:21: this program knows no decorators; its `parts.add_decorator` adds them"));
+  CHECK(has(
+      noether(folder, "explain scene.toml").err,
+      "scene.toml:21: this program has no decorators; a program of your own can add them with `parts.add_decorator`"));
 
   const SceneFolder kinetics(R"(title = "No energy"
 units = "reduced"

@@ -29,16 +29,16 @@ TEST_CASE("a repaired run.h5 is sound, and the run goes on from its checkpoint",
   const SceneFolder folder, other;
   CHECK(noether(other, "run scene.toml --quiet").exit_code == 0);
   leave_half_a_frame(folder);
-  CHECK(
-      output(folder, "verify scene.out/run.h5 --repair") ==
-      "scene.out/run.h5: repaired: '/particles/system/velocity/value' cut from 6 rows to 5, as many as all of the "
-      "frames have\n"
-      "scene.out/run.h5: repaired: '/particles/system/position/step' cut from 6 rows to 5, as many as all of the "
-      "frames have\n"
-      "scene.out/run.h5: repaired: '/particles/system/position/time' cut from 6 rows to 5, as many as all of the "
-      "frames have\n"
-      "scene.out/run.h5: repaired: '/noether/digests/frames' cut from 6 rows to 5, as many as all of the frames have\n"
-      "scene.out/run.h5: sound, not complete, last step 80\n");
+  CHECK(output(folder, "verify scene.out/run.h5 --repair") ==
+        "scene.out/run.h5: repaired: '/particles/system/velocity/value' cut from 6 rows to 5, the number that all "
+        "parts of the frames have\n"
+        "scene.out/run.h5: repaired: '/particles/system/position/step' cut from 6 rows to 5, the number that all "
+        "parts of the frames have\n"
+        "scene.out/run.h5: repaired: '/particles/system/position/time' cut from 6 rows to 5, the number that all "
+        "parts of the frames have\n"
+        "scene.out/run.h5: repaired: '/noether/digests/frames' cut from 6 rows to 5, the number that all "
+        "parts of the frames have\n"
+        "scene.out/run.h5: sound, not complete, last step 80\n");
   CHECK(output(folder, "verify scene.out/run.h5") == "scene.out/run.h5: sound, not complete, last step 80\n");
   CHECK(noether(folder, "run scene.toml --quiet --resume").exit_code == 0);
   check_same_content(folder / "scene.out/run.h5", other / "scene.out/run.h5");
@@ -53,7 +53,7 @@ TEST_CASE("a repair is told as JSON too", "[cli][repair]") {
   CHECK(json_member(json, "complete") == "false");
   CHECK(json_member(json, "last_step") == "80");
   CHECK(has(json, "\"damaged\":[]"));
-  CHECK(has(json, "\"repaired\":[\"'/particles/system/velocity/value' cut from 6 rows to 5, as many "));
+  CHECK(has(json, "\"repaired\":[\"'/particles/system/velocity/value' cut from 6 rows to 5, the number "));
   CHECK(has(output(folder, "verify scene.out/run.h5 --json"), "\"repaired\":[],"));
 }
 
@@ -65,8 +65,8 @@ TEST_CASE("a run.h5 that has lost its end is mended, and the file as it was stay
   write_text(file, whole.substr(0, whole.size() - 1));
   CHECK(noether(folder, "verify scene.out/run.h5").exit_code == 3);
   const std::string said = output(folder, "verify scene.out/run.h5 --repair");
-  CHECK(has(said, fmt::format("scene.out/run.h5: repaired: the last 1 of {} bytes are missing; the file as it was is "
-                              "'run.h5.damaged'\n",
+  CHECK(has(said, fmt::format("scene.out/run.h5: repaired: the last 1 of {} bytes are missing; the file before the "
+                              "repair is kept as 'run.h5.damaged'\n",
                               whole.size())));
   CHECK(has(said, "scene.out/run.h5: sound, not complete, last step "));
   CHECK(read_text(folder / "scene.out/run.h5.damaged").size() == whole.size() - 1);
@@ -141,7 +141,7 @@ TEST_CASE("what a run is writing is not repaired, and what is not there cannot b
     const ProcessResult refused = noether(folder, "verify scene.out/run.h5 --repair");
     CHECK(refused.exit_code == 2);
     CHECK(refused.out.empty());
-    CHECK(refused.err == "scene.out: a run is writing here; wait for it, then repair\n");
+    CHECK(refused.err == "scene.out: a run is writing to this file; wait for it, then repair\n");
   }
   const ProcessResult missing = noether(folder, "verify nowhere/run.h5 --repair");
   CHECK(missing.exit_code == 3);

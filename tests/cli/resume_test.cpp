@@ -51,7 +51,8 @@ TEST_CASE("a changed key is named and refused", "[cli][resume][messages]") {
   const SceneFolder folder;
   CHECK(noether(folder, "run scene.toml --quiet").exit_code == 0);
   make_unfinished(folder / "scene.out");
-  const std::string advice = "; a resumed run takes only a later end: undo this, or start over with --fresh\n";
+  const std::string advice =
+      "; a resumed run may change only its end, to a later one: undo this, or start over with --fresh\n";
   const auto refusal = [&](const std::string& set) {
     const ProcessResult result = noether(folder, "run scene.toml --resume " + set);
     CHECK(result.exit_code == 2);
@@ -144,7 +145,7 @@ TEST_CASE("a SIMD level that the processor lacks is refused", "[cli][run][messag
   const SceneFolder folder;
   const ProcessResult result = noether(folder, "run scene.toml --simd avx512");
   CHECK(result.exit_code == 2);
-  CHECK(result.err == "SIMD level 'avx512' is not to be had on this processor; its best is '" +
+  CHECK(result.err == "SIMD level 'avx512' is not supported by this processor; its highest is '" +
                           std::string(name(simd_level())) + "'\n");
 }
 
@@ -174,11 +175,11 @@ TEST_CASE("a run begun when particles had an absolute tolerance by default goes 
   CHECK(json_member(on.out, "time") == "2");
   CHECK(has(on.out,
             "the run was begun with integrator.atol = 1e-09, the default of an earlier version; from here on "
-            "errors of particles are measured in another way, without it (docs/theory/adaptive_steps.md)"));
+            "errors of particles are measured in a different way, without it (docs/theory/adaptive_steps.md)"));
   CHECK_FALSE(has(noether(folder, "run scene.toml --json --resume --until 3").out, "earlier version"));
   const ProcessResult refused = begun_with(other, "atol = 1e-07\n");
   CHECK(refused.exit_code == 2);
-  CHECK(has(refused.err, "integrator.atol = 1e-07 is gone; a resumed run takes only a later end"));
+  CHECK(has(refused.err, "integrator.atol = 1e-07 is missing now; a resumed run may change only its end"));
 }
 
 }  // namespace

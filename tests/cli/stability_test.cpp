@@ -93,20 +93,20 @@ TEST_CASE("wrong requests to stability are told in one line", "[cli][stability][
     CHECK(result.out.empty());
   };
   const std::string see = "; see `noether stability --help`";
-  wrong("stability", "no scene is given; give one, or --suite for those that noether brings");
+  wrong("stability", "no scene is given; give one, or --suite for the scenes that come with noether");
   wrong("stability scene.toml --nightly", "--nightly belongs to --suite; give both, or leave it out");
   wrong("stability --suite scene.toml --methods rk4",
         "--suite runs the methods and changes of its verdicts; leave --methods and --set out");
   wrong("stability --suite scene.toml", "scene.toml: the scene has no verdict; give [[verdict]] tables");
   wrong("stability scene.toml --methods verlt", "unknown method 'verlt'; did you mean 'verlet'?");
   wrong("stability scene.toml --methods bdf",
-        "method 'bdf' chooses its steps by a tolerance, so it has no largest step; ask for one of fixed steps, such as "
+        "method 'bdf' chooses its steps by a tolerance, so it has no largest step; give one of fixed steps, such as "
         "'rk4'");
   wrong("stability scene.toml --methods ''", "--methods '': a part of the list is empty");
-  wrong("stability scene.toml --budget 0", "--budget: '0' is no number of seconds above 0" + see);
-  wrong("stability scene.toml --steps 1e4.5", "--steps: '1e4.5' is no whole number above 0" + see);
+  wrong("stability scene.toml --budget 0", "--budget: '0' is not a number of seconds above 0" + see);
+  wrong("stability scene.toml --steps 1e4.5", "--steps: '1e4.5' is not a whole number above 0" + see);
   wrong("stability scene.toml --steps 1e4 --methods rk5", "unknown method 'rk5'; did you mean 'rk4'?");
-  wrong("stability scene.toml --steps 10", "10 steps confirm nothing; 1000 or more are expected");
+  wrong("stability scene.toml --steps 10", "10 steps are too few; 1000 or more are expected");
   wrong("stability --suite scene.toml --out ''", "--out: the name of the folder is empty" + see);
   CHECK(noether(folder, "stability --suite nowhere.toml").exit_code == 3);
 }

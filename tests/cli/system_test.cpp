@@ -45,8 +45,8 @@ TEST_CASE("explain tells in plain words how stiff a system is", "[cli][explain][
   CHECK(json_member(json, "variables") == "3");
   CHECK(std::abs(std::stod(json_member(json, "fastest")) - 0.04) < 1e-15);
   CHECK(std::abs(std::stod(json_member(json, "S")) - 0.0004) < 1e-15);
-  CHECK(
-      has(json, "\"verdict\":\"not stiff: S = 20.5; an explicit method such as dop853 will do\",\"along\":{\"S\":20."));
+  CHECK(has(json,
+            "\"verdict\":\"not stiff: S = 20.5; an explicit method such as dop853 is enough\",\"along\":{\"S\":20."));
 }
 
 TEST_CASE("list and describe know systems, and evaluate says that they have no forces", "[cli][system]") {
@@ -57,14 +57,14 @@ TEST_CASE("list and describe know systems, and evaluate says that they have no f
     CHECK(has(list, std::string("\n") + name + " "));
     const std::string text = output(folder, std::string("describe ") + name);
     CHECK(text.starts_with(std::string(name) + " (system): "));
-    CHECK(has(text, "\n  stands in [system]"));
+    CHECK(has(text, "\n  belongs in [system]"));
     CHECK(has(text, "\n@"));
   }
   const ProcessResult result = noether(folder, "evaluate scene.toml --forces forces.csv");
   CHECK(result.exit_code == 2);
   CHECK(result.err ==
         "scene.toml: there is nothing to evaluate: system 'robertson' has neither energy nor forces; `noether explain` "
-        "tells how stiff it is\n");
+        "shows how stiff it is\n");
 }
 
 #if NOETHER_HDF5
@@ -101,8 +101,8 @@ TEST_CASE("a system's run that was killed goes on as one that was not", "[cli][r
   const ProcessResult changed = noether(folder, "run scene.toml --resume --until 0.02 --set system.k1=0.05");
   CHECK(changed.exit_code == 2);
   CHECK(changed.err ==
-        "--set system.k1=0.05: system.k1 = 0.05 was 0.04; a resumed run takes only a later end: undo this, or start "
-        "over with --fresh\n");
+        "--set system.k1=0.05: system.k1 = 0.05 was 0.04; a resumed run may change only its end, to a later one: undo "
+        "this, or start over with --fresh\n");
 }
 
 TEST_CASE("a system that leaves all bounds ends with the variable's name", "[cli][run][system]") {

@@ -31,8 +31,8 @@ TEST_CASE("frames stand at the times of a list and nowhere else, with the bits o
   CHECK(output(folder, "verify listed/run.h5") == "listed/run.h5: sound and complete, last step 100\n");
   const std::string compared = output(folder, "verify listed/run.h5 --against every/run.h5");
   CHECK(
-      compared.starts_with("listed/run.h5 and every/run.h5: the same to the bit wherever both have something\n"
-                           "  frames: 4 compared, 4 of them equal; 97 of the second alone\n"
+      compared.starts_with("listed/run.h5 and every/run.h5: identical bit for bit wherever both have data\n"
+                           "  frames: 4 compared, 4 of them equal; 97 only in the second\n"
                            "  angular_momentum: 15 compared, 15 of them equal\n"
                            "  energy: 11 compared, 11 of them equal\n"
                            "  scenes differ first in the lines 'times = [0.25, 0.26, 0.8, 1]' and 'steps = 1'\n"));
@@ -66,7 +66,7 @@ TEST_CASE("a list whose times all come later leaves a whole file from the first 
   const ProcessResult run = noether(folder, never);
   CHECK(run.exit_code == 0);
   CHECK(json_member(run.out, "warnings") ==
-        "[\"1 of 1 times of 'trajectory' lie after the end at 1, so it does not look then\"]");
+        "[\"1 of 1 times of 'trajectory' lie after the end at 1, so it does not sample then\"]");
   const io::FileInfo info = io::verify(folder / "scene.out/run.h5");
   CHECK(info.damaged == std::vector<std::string>{});
   CHECK(info.frames == 0);
@@ -91,8 +91,8 @@ TEST_CASE("a run from another time is the same run with another clock", "[cli][t
   const ProcessResult by_time = noether(folder, "verify moved/run.h5 --against bare/run.h5");
   CHECK(by_time.exit_code == 3);
   CHECK(
-      by_time.out.starts_with("moved/run.h5 and bare/run.h5: there is nothing that both have\n"
-                              "  frames: 0 compared, 0 of them equal; 6 of the first alone; 6 of the second alone\n"));
+      by_time.out.starts_with("moved/run.h5 and bare/run.h5: the two have nothing in common to compare\n"
+                              "  frames: 0 compared, 0 of them equal; 6 only in the first; 6 only in the second\n"));
   make_unfinished(folder / "moved");
   check_same_run(output(folder, moved + "--resume"), report);
   make_unfinished(folder / "moved");
@@ -110,7 +110,7 @@ TEST_CASE("verify names the first frame, sample and number in which two runs dif
   CHECK(noether(folder, "run scene.toml --quiet --out b").exit_code == 0);
   CHECK(noether(folder, "run scene.toml --quiet --out c --set particles.body.Planet.v=[0,1,1e-12]").exit_code == 0);
   CHECK(output(folder, "verify a/run.h5 --against b/run.h5")
-            .starts_with("a/run.h5 and b/run.h5: the same to the bit wherever both have something\n"
+            .starts_with("a/run.h5 and b/run.h5: identical bit for bit wherever both have data\n"
                          "  frames: 6 compared, 6 of them equal\n"));
   const ProcessResult differ = noether(folder, "verify a/run.h5 --against c/run.h5");
   CHECK(differ.exit_code == 3);
@@ -126,7 +126,8 @@ TEST_CASE("verify names the first frame, sample and number in which two runs dif
   CHECK(json_member(output(folder, "verify a/run.h5 --against b/run.h5 --json"), "ok") == "true");
   const ProcessResult checkpoint = noether(folder, "verify a/run.h5 --against b/checkpoint.h5");
   CHECK(checkpoint.exit_code == 2);
-  CHECK(checkpoint.err.starts_with("b/checkpoint.h5 is a checkpoint, which holds one moment; two run.h5 are compared"));
+  CHECK(checkpoint.err.starts_with(
+      "b/checkpoint.h5 is a checkpoint, which contains one moment only; compare two run.h5"));
   CHECK(noether(folder, "verify a/run.h5 --against nothing.h5").exit_code == 3);
   CHECK(noether(folder, "verify a/run.h5 --by step").exit_code == 2);
   write_text(folder / "b/run.h5", read_text(folder / "b/run.h5").substr(0, 5000));

@@ -20,34 +20,37 @@ const std::vector<Wrong> wrong_lines = {
     {"", 2, "no command is given; see `noether --help`"},
     {"rnu scene.toml", 2, "unknown command 'rnu'; did you mean 'run'?"},
     {"integrate scene.toml", 2,
-     "unknown command 'integrate'; known are: run, evaluate, explain, compare, advise, stability, list, describe, "
+     "unknown command 'integrate'; expected one of: run, evaluate, explain, compare, advise, stability, list, "
+     "describe, "
      "info, verify, convert, plot"},
     {"--vresion", 2, "unknown option '--vresion' before a command; did you mean '--version'?"},
-    {"-x run scene.toml", 2, "unknown option '-x' before a command; known are: --help, --version"},
+    {"-x run scene.toml", 2, "unknown option '-x' before a command; expected one of: --help, --version"},
     {"run", 2, "scene is required; see `noether run --help`"},
     {"run nothing.toml", 3, "nothing.toml: cannot be read: No such file or directory"},
-    {"run .", 3, ".: cannot be read: Is a directory"},
+    {"run secne.toml", 3, "secne.toml: cannot be read: No such file or directory; did you mean 'scene.toml'?"},
+    {"run .", 3, ".: cannot be read: Is a directory; did you mean './scene.toml'?"},
     {"run table.csv", 2, "table.csv:1: this is not TOML: expected '=', saw ',' (in a key-value pair)"},
     {"run scene.toml other.toml", 2, "unexpected argument 'other.toml' of 'run'"},
     {"run scene.toml --thread 2", 2, "unknown option '--thread' of 'run'; did you mean '--threads'?"},
     {"run scene.toml --threads 0", 2,
-     "--threads: '0' is no number of threads; give one from 1 to 65536; see `noether run --help`"},
+     "--threads: '0' is not a valid number of threads; give one from 1 to 65536; see `noether run --help`"},
     {"run scene.toml --threads two", 2,
-     "--threads: 'two' is no number of threads; give one from 1 to 65536; see `noether run --help`"},
+     "--threads: 'two' is not a valid number of threads; give one from 1 to 65536; see `noether run --help`"},
     {"run scene.toml --threads 1.5", 2,
-     "--threads: '1.5' is no number of threads; give one from 1 to 65536; see `noether run --help`"},
+     "--threads: '1.5' is not a valid number of threads; give one from 1 to 65536; see `noether run --help`"},
     {"run scene.toml --threads 99999999999999999999", 2,
-     "--threads: '99999999999999999999' is no number of threads; give one from 1 to 65536; see `noether run --help`"},
+     "--threads: '99999999999999999999' is not a valid number of threads; give one from 1 to 65536; see `noether run "
+     "--help`"},
     {"run scene.toml --threads 1 --threads 2", 2, "--threads can be given only once; see `noether run --help`"},
     {"run scene.toml --out", 2, "--out needs a value; see `noether run --help`", false},
     {"run scene.toml --out ''", 2, "--out: the name of the folder is empty; see `noether run --help`"},
     {"run --version", 2,
-     "unknown option '--version' of 'run'; known are: --help, --out, --threads, --simd, --until, --set, "
+     "unknown option '--version' of 'run'; expected one of: --help, --out, --threads, --simd, --until, --set, "
      "--resume, --fresh, --quiet, --json"},
     {"run --foo", 2,
-     "unknown option '--foo' of 'run'; known are: --help, --out, --threads, --simd, --until, --set, "
+     "unknown option '--foo' of 'run'; expected one of: --help, --out, --threads, --simd, --until, --set, "
      "--resume, --fresh, --quiet, --json"},
-    {"run scene.toml --simd ''", 2, "unknown SIMD level ''; known are: base, avx2, avx512"},
+    {"run scene.toml --simd ''", 2, "unknown SIMD level ''; expected one of: base, avx2, avx512"},
     {"run scene.toml --simd avx3", 2, "unknown SIMD level 'avx3'; did you mean 'avx2'?"},
     {"run scene.toml --set integrator.steps", 2,
      "--set integrator.steps: expected key=value, such as integrator.step=\"50 day\""},
@@ -58,7 +61,7 @@ const std::vector<Wrong> wrong_lines = {
      "--set integrator.method=yoshda_4: unknown method 'yoshda_4'; did you mean 'yoshida_4'?"},
     {"info ''", 2, "file: the name of the file is empty; see `noether info --help`"},
     {"run scene.toml --set every.9.steps=3", 2,
-     "--set every.9.steps=3: there is no number 9; there are 4, counted from 0"},
+     "--set every.9.steps=3: there is no element 9; there are 4, counted from 0"},
     {"run scene.toml --resume --fresh", 2, "--resume excludes --fresh; see `noether run --help`"},
     {"run scene.toml --quiet --json", 2, "--quiet excludes --json; see `noether run --help`"},
     {"run scene.toml --quiet=7", 2, "--quiet takes no value; see `noether run --help`"},
@@ -67,37 +70,39 @@ const std::vector<Wrong> wrong_lines = {
     {"run scene.toml --until ''", 2,
      "--until: the time is empty; give one, such as \"1 Myr\"; see `noether run --help`"},
     {"run scene.toml --until '3 day'", 2,
-     "--until 3 day: until: '3 day' has a unit; the reduced system takes bare numbers, such as '3'"},
+     "--until 3 day: until: '3 day' has a unit; reduced units are plain numbers, such as '3'"},
     {"run scene.toml --until 0.505", 2,
      "--until 0.505: until = \"0.505\" is 50.5 steps of 0.01; the nearest whole numbers are "
      "0.5 (50 steps) and 0.51 (51 steps)"},
     {"evaluate scene.toml --forces nowhere/forces.csv", 3, "nowhere/forces.csv: the forces could not be written"},
     {"evaluate scene.toml --forces scene.toml", 2, "the table of forces 'scene.toml' must end in .csv"},
     {"evaluate nothing.toml", 3, "nothing.toml: cannot be read: No such file or directory"},
-    {"explain scene.toml --threads 2", 2, "unknown option '--threads' of 'explain'; known are: --help, --set, --json"},
+    {"explain scene.toml --threads 2", 2,
+     "unknown option '--threads' of 'explain'; expected one of: --help, --set, --json"},
     {"list", 2, "what is required; see `noether list --help`"},
     {"list forces --measured", 2, "only methods are measured, not forces; leave --measured out"},
     {"list method", 2, "there is no list of 'method'; did you mean 'methods'?"},
     {"list everything", 2,
-     "there is no list of 'everything'; known are: methods, hamiltonians, forces, thermostats, constraints, systems, "
+     "there is no list of 'everything'; expected one of: methods, hamiltonians, forces, thermostats, constraints, "
+     "systems, "
      "decorators, monitors, builders, units"},
     {"describe yoshda_4", 2, "there is nothing called 'yoshda_4'; did you mean 'yoshida_4'?"},
     {"describe qqqqqq", 2, "there is nothing called 'qqqqqq'; see `noether list`"},
 #if NOETHER_HDF5
     {"info nothing.h5", 3, "nothing.h5: there is no such file"},
-    {"info .", 3, ".: this is no file"},
+    {"info .", 3, ".: this is not a regular file"},
     {"info scene.toml", 3, "scene.toml: cannot be opened as an HDF5 file: file signature not found"},
     {"verify nothing.h5", 3, "nothing.h5: there is no such file"},
     {"convert scene.toml frames.xyz", 3, "scene.toml: cannot be opened as an HDF5 file: file signature not found"},
     {"convert scene.toml frames.pdb", 2,
-     "cannot convert to 'frames.pdb': unknown extension '.pdb'; known are: .xyz, .csv"},
+     "cannot convert to 'frames.pdb': unknown extension '.pdb'; expected one of: .xyz, .csv"},
     {"convert scene.toml frames.xyz --unwraped", 2,
      "unknown option '--unwraped' of 'convert'; did you mean '--unwrapped'?"},
     {"plot nothing.h5", 3, "nothing.h5: there is no such file"},
 #endif
     {"convert run.h5", 2, "out is required; see `noether convert --help`"},
     {"plot ''", 2, "FILE: the name of the file is empty; see `noether plot --help`"},
-    {"plot run.h5 --out a.jpg", 2, "a picture 'a.jpg' is of no known format; give a name that ends in .svg or .png"},
+    {"plot run.h5 --out a.jpg", 2, "a picture 'a.jpg' has no supported format; give a name that ends in .svg or .png"},
 };
 
 /// The message in the JSON of an error.
@@ -194,15 +199,17 @@ TEST_CASE("files that are cut off are told apart from sound ones", "[cli][messag
     CHECK(result.exit_code == 3);
     const bool verified = std::string(line).starts_with("verify");
     CHECK(result.err ==
-          "cut.h5: cut short: 3000 of " + std::to_string(whole.size()) + " bytes are there" +
-              (verified ? "; 'noether verify --repair cut.h5' mends it if no more than frames is missing\n" : "\n"));
+          "cut.h5: cut short: only 3000 of " + std::to_string(whole.size()) + " bytes are there" +
+              (verified ? "; 'noether verify --repair cut.h5' repairs it if only frames or samples are missing\n"
+                        : "\n"));
   }
   const ProcessResult plot = noether(folder, "plot scene.out/checkpoint.h5");
   CHECK(plot.exit_code == 2);
-  CHECK(plot.err == "scene.out/checkpoint.h5 is a checkpoint, which holds one moment; plot the run.h5 beside it\n");
+  CHECK(plot.err ==
+        "scene.out/checkpoint.h5 is a checkpoint, which contains one moment only; plot the run.h5 beside it\n");
   const ProcessResult convert = noether(folder, "convert scene.out/checkpoint.h5 a.csv");
   CHECK(convert.exit_code == 3);
-  CHECK(convert.err.starts_with("scene.out/checkpoint.h5: this is no trajectory of noether: "));
+  CHECK(convert.err.starts_with("scene.out/checkpoint.h5: this is not a trajectory of noether: "));
 }
 
 #endif

@@ -305,8 +305,8 @@ TEST_CASE("bonds that reach half of an edge are refused, and those below are not
     });
   };
   CHECK(bind({3}) ==
-        "distance of 'a' and 'b', 3 apart, reaches half of an edge of the periodic box, 2.5: nearest images are no "
-        "longer those that are tied; enlarge the box");
+        "distance of 'a' and 'b', 3 apart, reaches half of an edge of the periodic box, 2.5: the nearest images would "
+        "no longer be the tied ones; enlarge the box");
   CHECK(bind({2.5}) != "");
   CHECK(bind({}) == "");  // the nearest images are 2 apart
   CHECK(bind({2}) == "");
@@ -337,8 +337,8 @@ TEST_CASE("surfaces hold particles where they are unwrapped, and pressure says t
   Simulation<double> sim(m.particles, compose(hamiltonian_of(m, sites), schemes::verlet), 0.004);
   const auto& residual = sim.every(10, ConstraintResidual{m.constraints});
   CHECK(refusal_of([&] { sim.every(1, Pressure{}); }) ==
-        "monitor 'pressure' needs the virial, but a force or a constraint of this run tells none: what holds particles "
-        "in place has no part in a pressure");
+        "monitor 'pressure' needs the virial, but a force or constraint of this run has none: what holds particles in "
+        "place does not contribute to the pressure");
   REQUIRE(sim.run(2000).ok());
   CHECK(residual.worst() < 100 * 0x1p-53);
   const ParticleSystem<double>& s = sim.particles();

@@ -45,15 +45,14 @@ TEST_CASE("a constraint is refused where it is added: tracers, one particle twic
   CHECK(refusal_of([&] { set.add(s, Distance{}, {0, 7}); }) == "distance names particle 7, but there are 3");
   CHECK(refusal_of([&] {
           set.add(s, Distance{0}, {0, 1});
-        }) == "length = 0 is no length of a bar; one above 0 is expected");
+        }) == "length = 0 is not a valid length of a bar; a length above 0 is expected");
   CHECK(refusal_of([&] { set.add(s, Distance{-1}, {0, 1}); }) != "");
   CHECK(refusal_of([&] { set.add(particles_at({{1, 1, 1}, {1, 1, 1}}), Distance{}, {0, 1}); }) != "");
   CHECK(refusal_of([&] { set.add(s, Angle{4}, {0, 1, 0}); }) != "");
   CHECK(refusal_of([&] {
           set.add(s, OnPlane{.normal = {0, 0, 0}}, {0});
         }) == "normal = [0, 0, 0] has no direction; a vector other than 0 is expected");
-  CHECK(refusal_of([&] { add_rigid_bar(set, s, {0}); }) ==
-        "a rigid bar of 1 particles has no two ends; 2 or more are expected");
+  CHECK(refusal_of([&] { add_rigid_bar(set, s, {0}); }) == "a rigid bar ties 2 or more particles, not 1");
   CHECK(set.empty());
 }
 
@@ -63,8 +62,7 @@ TEST_CASE("a start that violates a constraint names the worst one; a printed tab
   ConstraintSet set;
   set.add(s, Distance{1.001}, {0, 1}).add(s, Distance{1.2}, {1, 2});
   CHECK(refusal(s, set) ==
-        "distance of 'b' and 'c' is violated at the start, by 0.167 of its scale; up to 1e-06 is "
-        "moved into place");
+        "distance of 'b' and 'c' is violated at the start, by 0.167 of its scale; only up to 1e-06 is corrected");
   ConstraintSet near;
   near.add(s, Distance{1 + 3e-8}, {0, 1});
   auto moved = s;

@@ -138,7 +138,7 @@ TEST_CASE("saved states carry columns of every width with what they are", "[engi
   CHECK(again.column<Stress>().component(8)[1] == 0.1);
   SavedState broken = save_particles(s);
   broken["columns/kind"] = std::vector<std::int64_t>{1, 5, 0, 2, 3, 0, 0, 9, 0};
-  CHECK_THROWS_WITH(load_particles<double>(broken), "a column has 5 numbers a particle; 1, 3, 4 or 9 are expected");
+  CHECK_THROWS_WITH(load_particles<double>(broken), "a column has 5 numbers per particle; 1, 3, 4 or 9 are expected");
 }
 
 TEST_CASE("a number of a column that is not finite is found, and only where it moves", "[engine][columns]") {

@@ -272,7 +272,7 @@ TEST_CASE("the end that was asked for is shown on a copy; the run stands at the 
 
   CHECK(run.run_until(3.25).ok());
   CHECK_THROWS_WITH(run.run_until(3),
-                    "time 3 has passed: the run stands at 3.25, and method 'adaptive_test' knows no way back");
+                    "time 3 has passed: the run is already at 3.25, and method 'adaptive_test' cannot go back in time");
   CHECK_THROWS(run.run_until(std::numeric_limits<double>::quiet_NaN()));
 }
 
@@ -356,11 +356,11 @@ TEST_CASE("steps of a free clock can be neither given nor changed", "[free clock
                     "method 'adaptive_test' chooses its steps itself; leave out the step after the integrator");
   CHECK_THROWS_WITH(
       Simulation<double>(ellipse(), AdaptiveTest(Gravity{.G = 1}, 0.01), Clock<double>::free(0, Direction::backward)),
-      "method 'adaptive_test' knows no way back; give it a clock that goes forward");
+      "method 'adaptive_test' cannot go back in time; give it a clock that goes forward");
   auto run = make_run();
   CHECK_THROWS_WITH(run.change_step(0.5), "method 'adaptive_test' chooses its steps itself; they cannot be set");
   CHECK_THROWS_WITH(run.every_time(-1, Energy{}),
-                    "monitor 'energy' cannot look every -1 of time; a finite time above 0 is expected");
+                    "monitor 'energy' cannot sample every -1 of time; a finite time above 0 is expected");
 }
 
 }  // namespace noether

@@ -171,16 +171,16 @@ std::string refusal(const GivenOrbit& orbit, double mu = 1) {
 
 TEST_CASE("orbits that are given twice, not at all or not in this way are refused", "[orbital_elements][messages]") {
   CHECK(refusal({.e = 0.5}) == "a: the orbit has no size; give a, P or q");
-  CHECK(refusal({.a = 1, .P = 2}) == "P: P = 2 stands beside a; give one of a, P or q");
+  CHECK(refusal({.a = 1, .P = 2}) == "P: P = 2 is given together with a; give only one of a, P or q");
   CHECK(refusal({.a = 1, .omega = 1, .pomega = 2}) ==
-        "pomega: pomega = 2 stands beside omega; give one of omega or pomega");
-  CHECK(refusal({.a = 1, .M = 1, .T = 3}) == "T: T = 3 stands beside M; give one of M, f, l or T");
-  CHECK(refusal({.P = -1}) == "P: P = -1 is no period; a time above 0 is expected");
-  CHECK(refusal({.q = 0}) == "q: q = 0 is no distance of a pericenter; one above 0 is expected");
-  CHECK(refusal({.q = 1, .e = -0.5}) == "e: e = -0.5 is no eccentricity; 0 or more is expected");
-  CHECK(refusal({.P = 1, .e = 1.5}) == "P: P = 1 is a period, and only an ellipse, e < 1, has one; give a or q");
+        "pomega: pomega = 2 is given together with omega; give only one of omega or pomega");
+  CHECK(refusal({.a = 1, .M = 1, .T = 3}) == "T: T = 3 is given together with M; give only one of M, f, l or T");
+  CHECK(refusal({.P = -1}) == "P: P = -1 is not a valid period; a time above 0 is expected");
+  CHECK(refusal({.q = 0}) == "q: q = 0 is not a valid pericenter distance; a length above 0 is expected");
+  CHECK(refusal({.q = 1, .e = -0.5}) == "e: e = -0.5 is not a valid eccentricity; 0 or more is expected");
+  CHECK(refusal({.P = 1, .e = 1.5}) == "P: P = 1 is a period, but only an ellipse, e < 1, has one; give a or q");
   CHECK(refusal({.a = 1, .e = 1}) ==
-        "e: e = 1 is a parabola, which has no semi-major axis; give q, the distance of its pericenter");
+        "e: e = 1 is a parabola, which has no semi-major axis; give q, its pericenter distance");
   CHECK(refusal({.q = 1, .e = 1, .M = 0.5}) == "M: M = 0.5 has no meaning on a parabola, e = 1; give f or T");
   CHECK(refusal({.q = 1, .e = 1, .l = 0.5}) == "l: l = 0.5 has no meaning on a parabola, e = 1; give f or T");
   CHECK(refusal({.q = 1, .e = 2, .f = 2.25}) ==

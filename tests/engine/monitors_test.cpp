@@ -188,7 +188,7 @@ TEST_CASE("a direction that turns is told, as the closed form says", "[monitors]
   const Quad change = sqrt(Quad(0.3125));  // of (1/4, -1/2, 0); every number before it is a double
   CHECK(angular.worst_direction() == static_cast<double>(atan2(change, Quad(1))));
   CHECK(angular.worst() == static_cast<double>(change));
-  CHECK(angular.report().note == "direction within 0.51 rad; not kept by the forces of this run");
+  CHECK(angular.report().note == "direction within 0.51 rad; not conserved by the forces of this run");
 }
 
 TEST_CASE("an energy that is 0 because nothing has mass says nothing, and says so", "[monitors]") {
@@ -200,7 +200,8 @@ TEST_CASE("an energy that is 0 because nothing has mass says nothing, and says s
   CHECK(sim.run(20).ok());
   const MonitorReport report = energy.report();
   CHECK(report.worst == 0);
-  CHECK(report.note == "nothing that has mass moves or is pulled, so it says nothing of tracers: watch elements");
+  CHECK(report.note ==
+        "no massive particle moves or is pulled, so the energy says nothing about tracers: watch elements");
   s.velocities().set(0, {0.1, 0, 0});
   Simulation moving(s, compose(test::kinetic_potential(Gravity{}), schemes::verlet), 0.1);
   const auto& told = moving.every(1, Energy{});
@@ -217,7 +218,7 @@ TEST_CASE("a dissipative run has an energy but no error of it, and says why", "[
   CHECK(*report.last < *report.first);
   CHECK(report.samples == 81);
   CHECK((!report.worst && !report.rms && !report.slope && !report.slope_error));
-  CHECK(report.reason == "the run is dissipative: its energy changes by itself, so there is no error of it");
+  CHECK(report.reason == "the run is dissipative: its energy changes, so it has no energy error");
   CHECK(std::isnan(energy.worst()));
 }
 
@@ -226,7 +227,7 @@ TEST_CASE("a driven run has an energy but no error of it, and says why", "[monit
   Simulation sim(oscillator(), compose(test::kinetic_potential(drive), schemes::verlet), 0.125);
   auto& energy = sim.every(1, Energy{});
   CHECK(sim.run(8).ok());
-  CHECK(energy.report().reason == "a force depends on time: the energy changes by itself, so there is no error of it");
+  CHECK(energy.report().reason == "a force depends on time: the energy changes, so it has no energy error");
   CHECK(!energy.report().worst);
 }
 

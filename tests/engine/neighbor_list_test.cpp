@@ -112,7 +112,7 @@ TEST_CASE("a list of a fixed schedule is searched by it alone, and misses who ha
     if (update > 5) s.advance_positions(0.01);
     if (update == 5) s.advance_positions(0.01);
   }
-  CHECK_THROWS_WITH((NeighborOptions{.renewal = -1}.check()), Catch::Contains("is no number of steps"));
+  CHECK_THROWS_WITH((NeighborOptions{.renewal = -1}.check()), Catch::Contains("is not a valid number of steps"));
 }
 
 TEST_CASE("searches between two sorts find everybody", "[neighbors]") {

@@ -150,14 +150,17 @@ TEST_CASE("elements that are no orbit are refused", "[orbital_elements]") {
     }
     return std::string("accepted");
   };
-  const std::string none = " is no ellipse and no hyperbola; expected 0 <= e < 1 with a > 0, or e > 1 with a < 0";
+  const std::string none =
+      " is neither an ellipse nor a hyperbola; expected 0 <= e < 1 with a > 0, or e > 1 with a < 0";
   CHECK(refused(1, 1.5) ==
-        "e = 1.5 is no ellipse, which a > 0 asks for; expected 0 <= e < 1, or a < 0 for a hyperbola");
+        "e = 1.5 does not fit a > 0, which means an ellipse; expected 0 <= e < 1, or a < 0 for a hyperbola");
   CHECK(refused(1, 1) == "e = 1" + none);
   CHECK(refused(-1, 1) == "e = 1" + none);
   CHECK(refused(1, -0.1) == "e = -0.1" + none);
-  CHECK(refused(-1, 0.5) == "a = -1 is no ellipse, which e < 1 asks for; expected a > 0, or e > 1 for a hyperbola");
-  CHECK(refused(0, 0.5) == "a = 0 is no orbit; expected a > 0 for an ellipse, a < 0 for a hyperbola");
+  CHECK(refused(-1, 0.5) ==
+        "a = -1 does not fit e < 1, which means an ellipse; expected a > 0, or e > 1 for a hyperbola");
+  CHECK(refused(0, 0.5) ==
+        "a = 0 is not a valid semi-major axis; expected a > 0 for an ellipse, a < 0 for a hyperbola");
   CHECK(refused(1, 0.1, 0) == "an orbit about G m = 0 is impossible; a mass above 0 is expected");
   CHECK(refused(1, std::nan("")) == "e = nan is not finite; a finite number is expected");
 }

@@ -96,7 +96,7 @@ TEST_CASE("elements are about the body that is named, wherever it stands", "[orb
                            "\"sun\"");
   Elements nobody;
   nobody.about = "sum";
-  CHECK_THROWS_WITH(sun_first.every(1, nobody), "about = \"sum\" names no particle; did you mean 'sun'?");
+  CHECK_THROWS_WITH(sun_first.every(1, nobody), "about = \"sum\" is not a particle; did you mean 'sun'?");
   nobody.about = "moon";
   CHECK_THROWS_WITH(sun_first.every(1, nobody),
                     "elements are about 'moon', whose mass is 0; give about = \"NAME\" of a body that has mass");
@@ -195,7 +195,7 @@ TEST_CASE("looks too far apart for an approach say so, and count only what was s
   CHECK(often.run(230).ok());
   CHECK(guess.distance() > 0.5);
   CHECK(guess.unresolved() == 1);
-  CHECK(guess.report().note.find("; 1 times a pair may have been nearer between two looks") != std::string::npos);
+  CHECK(guess.report().note.find("; 1 times a pair may have come nearer between two samples") != std::string::npos);
   CHECK(known.distance() < 0.01);
 }
 
@@ -205,7 +205,7 @@ TEST_CASE("the end of a run is looked at whatever the cadence, and a run that go
   auto cut = start(), whole = start();
   auto& closest = cut.every(40, ClosestApproach{});
   auto& uncut = whole.every(40, ClosestApproach{});
-  CHECK(cut.run(75).ok());  // the pericenter is passed at 50, the last look was at 40
+  CHECK(cut.run(75).ok());                           // the pericenter is passed at 50, the last look was at 40
   CHECK(std::abs(closest.distance() - 0.5) < 1e-3);  // by the path from 40 to 75
   CHECK(closest.report().samples == 2);
   CHECK(closest.report().last == closest.distance());

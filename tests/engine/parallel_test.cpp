@@ -107,8 +107,8 @@ TEST_CASE("a sum in another order has other bits, so the equality above means so
 }
 
 TEST_CASE("fewer than one thread are refused", "[parallel]") {
-  CHECK_THROWS_WITH(set_thread_count(0), "0 threads were asked for; at least 1 is needed");
-  CHECK_THROWS_WITH(set_thread_count(-3), "-3 threads were asked for; at least 1 is needed");
+  CHECK_THROWS_WITH(set_thread_count(0), "0 threads were requested; at least 1 is needed");
+  CHECK_THROWS_WITH(set_thread_count(-3), "-3 threads were requested; at least 1 is needed");
 }
 
 }  // namespace noether

@@ -191,7 +191,9 @@ TEST_CASE("after the move to the barycenter the center of mass rests in the orig
 
   ParticleSystem<double> tracers;
   tracers.add("a", 0, {1, 0, 0}, {0, 0, 0});
-  CHECK_THROWS_WITH(move_to_barycenter(tracers), "there is no centre of mass: every particle is a tracer of mass 0");
+  CHECK_THROWS_WITH(
+      move_to_barycenter(tracers),
+      "there is no centre of mass, because every particle is a tracer of mass 0; give one of them a mass");
 }
 
 }  // namespace noether

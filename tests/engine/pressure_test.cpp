@@ -137,11 +137,11 @@ TEST_CASE("a pressure that cannot be known is refused before the first step", "[
   pair.add("a", 1, {0, 0, 0}, {0, 0, 0});
   pair.add("b", 1, {0, 1, 0}, {0, 0, 0});
   CHECK(refusal_of_pressure([&] { return fluid_run(pair, Sum<>{}); }) ==
-        "monitor 'pressure' needs a periodic box, whose volume it divides by; give the particles a box");
+        "monitor 'pressure' needs a periodic box, because it divides by the volume; give the particles a box");
   pair.set_box(Box::periodic({4, 4, 4}));
   CHECK(refusal_of_pressure([&] { return fluid_run(pair, Sum<>{}); }).empty());
   CHECK(refusal_of_pressure([&] { return fluid_run(pair, Sum(Sum<>{}, Secretive{})); }) ==
-        "monitor 'pressure' needs the virial, but 'kinetic_potential' tells none, or one of its forces does not");
+        "monitor 'pressure' needs the virial, but 'kinetic_potential' or one of its forces does not compute it");
 }
 
 }  // namespace noether

@@ -145,7 +145,7 @@ TEST_CASE("a missing or wrong unit is refused and the right one shown", "[quanti
   CHECK(refusal("1 kJ/mol", parse_dimension("length^3/time^2"), si) ==
         "'1 kJ/mol' is an energy; a quantity of dimension length^3/time^2 is expected, such as '1 m^3/s^2'");
   CHECK(refusal("100 day", dimensions::time, reduced) ==
-        "'100 day' has a unit; the reduced system takes bare numbers, such as '100'");
+        "'100 day' has a unit; reduced units are plain numbers, such as '100'");
 }
 
 TEST_CASE("an unknown unit is refused with a proposal", "[quantity]") {
@@ -154,7 +154,8 @@ TEST_CASE("an unknown unit is refused with a proposal", "[quantity]") {
   CHECK(refusal("2 secnods", dimensions::time, si) == "unknown unit 'secnods' in '2 secnods'; did you mean 'second'?");
   CHECK(refusal("2 kJ", dimensions::energy, si) == "unknown unit 'kJ' in '2 kJ'; did you mean 'kJ/mol'?");
   CHECK(refusal("2 furlongs", dimensions::length, si) ==
-        "unknown unit 'furlongs' in '2 furlongs'; known are: s, min, hour, day, yr, kyr, Myr, Gyr, fs, ps, ns, m, cm, "
+        "unknown unit 'furlongs' in '2 furlongs'; expected one of: s, min, hour, day, yr, kyr, Myr, Gyr, fs, ps, ns, "
+        "m, cm, "
         "km, au, nm, angstrom, kg, g, Msun, u, K, deg, rad, kJ/mol, J, e, C, g/cm^3, Mearth, Mjup, Rsun, Rearth, Rjup, "
         "pc, kpc, Mpc, ly, mm, um, pm, bohr, ms, us, arcmin, arcsec, mas, kcal/mol, eV, meV, hartree, erg, N, Pa, bar, "
         "atm");
@@ -237,9 +238,10 @@ TEST_CASE("a bad unit of a column is refused", "[quantity]") {
   CHECK_THROWS_WITH(parse_unit("au/dya", solar), "unknown unit 'dya' in 'au/dya'; did you mean 'day'?");
   CHECK_THROWS_WITH(parse_unit("dya", solar), "unknown unit 'dya'; did you mean 'day'?");
   CHECK_THROWS_WITH(parse_unit("", solar), "empty unit; expected one such as 'km/s', or '1' for a plain number");
-  CHECK_THROWS_WITH(parse_unit("au", reduced),
-                    "unit 'au' in the reduced system, which takes bare numbers; leave the unit out, or choose solar, "
-                    "molecular or si");
+  CHECK_THROWS_WITH(
+      parse_unit("au", reduced),
+      "unit 'au' in the reduced unit system, where numbers have no units; leave the unit out, or choose solar, "
+      "molecular or si");
   CHECK(parse_unit("1", reduced).dimension == dimensions::none);
   CHECK(unit_value("1/day", si) == 1.0 / 86400.0);
 }

@@ -116,7 +116,7 @@ TEST_CASE("an ideal gas has g = 1, for pairs of one type, of two, and of all", "
   }
 }
 
-TEST_CASE("g(r) is averaged over the looks, and goes on from a saved run bit for bit",
+TEST_CASE("g(r) is averaged over the samples, and goes on from a saved run bit for bit",
           "[radial_distribution][restart]") {
   const auto make = [] {
     return Simulation<double>(
@@ -163,15 +163,17 @@ TEST_CASE("g(r) is refused where it makes no sense", "[radial_distribution][mess
   CHECK(refusal(s, RadialDistribution(200, 1.5)).empty());
   CHECK(refusal(s, RadialDistribution(200, 1.6)) ==
         "range = 1.6 is beyond half of the shortest edge of the box; at most 1.5 is expected");
-  CHECK(refusal(s, RadialDistribution(200, -1.0)) == "range = -1 is no range; a length above 0 is expected");
-  CHECK(refusal(s, RadialDistribution(0)) == "bins = 0 is no number of intervals; 1 to 100000 is expected");
-  CHECK(refusal(s, RadialDistribution(200, {}, {"A"})) == "types = [A] is no pair; give two types, or none for all");
+  CHECK(refusal(s, RadialDistribution(200, -1.0)) == "range = -1 is not a valid range; a length above 0 is expected");
+  CHECK(refusal(s, RadialDistribution(0)) == "bins = 0 is not a valid number of intervals; 1 to 100000 is expected");
+  CHECK(refusal(s, RadialDistribution(200, {}, {"A"})) ==
+        "types = [A] is not a pair of types; give two types, or none for all pairs");
   CHECK(refusal(s, RadialDistribution(200, {}, {"A", "C"})).find("unknown type 'C' in monitor 'radial_distribution'") ==
         0);
   ParticleSystem<double> open = s;
   open.set_box(Box::open());
   CHECK(refusal(open, {}) ==
-        "monitor 'radial_distribution' needs a periodic box, by whose density it divides; give one");
+        "monitor 'radial_distribution' needs a periodic box, because it divides by the density; give the particles a "
+        "box");
 }
 
 }  // namespace noether

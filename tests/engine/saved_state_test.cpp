@@ -159,7 +159,7 @@ TEST_CASE("an order that names no particle, or one twice, is refused", "[saved]"
        {std::vector<std::int64_t>{0, 1, 2, 3, 4, 6}, {0, 1, 2, 3, 4, 4}, {0, 1, 2, 3, 4}, {1, 0, 2, 3, 4, 5}, {}}) {
     SavedRun changed = whole;
     changed.parts.at("integrator").at("hamiltonian/order") = order;
-    CHECK_THROWS_WITH(run.restore(changed), "the saved order of Jacobi coordinates does not fit these particles");
+    CHECK_THROWS_WITH(run.restore(changed), "the saved order of Jacobi coordinates does not match these particles");
   }
 }
 

@@ -91,8 +91,8 @@ TEST_CASE("a duration that is no whole number of steps is refused with the two n
       "a duration of 4010 is 100.25 steps of 40; the nearest whole numbers are 4000 (100) and 4040 (101)");
   CHECK_THROWS_WITH(run.steps_in(10),
                     "a duration of 10 is 0.25 steps of 40; the nearest whole numbers are 0 (0) and 40 (1)");
-  CHECK_THROWS_WITH(run.steps_in(-40), "a duration of -40 lies behind; steps of 40 lead the other way");
-  CHECK_THROWS_WITH(run.steps_in(1e300), "a duration of 1e+300 is no number of steps of 40");
+  CHECK_THROWS_WITH(run.steps_in(-40), "a duration of -40 lies in the past; steps of 40 go in the opposite direction");
+  CHECK_THROWS_WITH(run.steps_in(1e300), "a duration of 1e+300 cannot be counted in steps of 40");
   CHECK_THROWS(run.steps_in(std::numeric_limits<double>::quiet_NaN()));
 }
 
@@ -113,8 +113,8 @@ TEST_CASE("a run ends at the time it is given, and cannot go back", "[simulation
   CHECK(outcome.time == 4000);
   CHECK(run.step() == 100);
   CHECK(run.run_until(4000).step == 100);
-  CHECK_THROWS_WITH(run.run_until(3960), "time 3960 has passed: the run stands at 4000");
-  CHECK_THROWS_WITH(run.run_until(-40), "time -40 has passed: the run stands at 4000");
+  CHECK_THROWS_WITH(run.run_until(3960), "time 3960 has passed: the run is already at 4000");
+  CHECK_THROWS_WITH(run.run_until(-40), "time -40 has passed: the run is already at 4000");
   CHECK_THROWS_WITH(
       run.run_until(4030),
       "a duration of 4030 is 100.75 steps of 40; the nearest whole numbers are 4000 (100) and 4040 (101)");
@@ -127,7 +127,7 @@ TEST_CASE("with a negative step a run leads back to where it came from", "[simul
   CHECK(there.run_until(4000).ok());
   Simulation back(there.particles(), verlet(), -40);
   CHECK(back.run_until(-4000).step == 100);
-  CHECK_THROWS_WITH(back.run_until(40), "time 40 has passed: the run stands at -4000");
+  CHECK_THROWS_WITH(back.run_until(40), "time 40 has passed: the run is already at -4000");
   const auto start = test::outer_planets();
   const auto& end = back.particles();
   for (Index i = 0; i < start.size(); ++i) {
@@ -137,9 +137,9 @@ TEST_CASE("with a negative step a run leads back to where it came from", "[simul
 }
 
 TEST_CASE("impossible runs are refused before the first step", "[simulation]") {
-  CHECK_THROWS_WITH(planets(0), "a step of 0 is no step; a finite time other than 0 is expected");
+  CHECK_THROWS_WITH(planets(0), "a step of 0 is not valid; a finite time other than 0 is expected");
   CHECK_THROWS_WITH(planets(std::numeric_limits<double>::infinity()),
-                    "a step of inf is no step; a finite time other than 0 is expected");
+                    "a step of inf is not valid; a finite time other than 0 is expected");
   CHECK_THROWS_WITH(Simulation(ParticleSystem<double>(), verlet(), 1.0),
                     "there are no particles; a run needs at least one");
   CHECK_THROWS_WITH(Simulation(test::outer_planets(), verlet()),
@@ -151,10 +151,10 @@ TEST_CASE("impossible cadences are refused, and leave no monitor behind", "[simu
   CHECK_THROWS_WITH(run.every(0, Energy{}), "a cadence of 0 steps is impossible; at least 1 is expected");
   CHECK_THROWS_WITH(run.every_wall(0, Energy{}), "a cadence of 0 s is impossible; a finite time above 0 is expected");
   CHECK_THROWS_WITH(run.every_time(0, Energy{}),
-                    "monitor 'energy' cannot look every 0 of time; a finite time above 0 is expected");
+                    "monitor 'energy' cannot sample every 0 of time; a finite time above 0 is expected");
   CHECK_THROWS_WITH(run.every_time(-40, Energy{}),
-                    "monitor 'energy' cannot look every -40 of time; a finite time above 0 is expected");
-  CHECK_THROWS_WITH(run.every_time(1e-9, Energy{}), "monitor 'energy' cannot look every 1e-09 of time; a step is 40");
+                    "monitor 'energy' cannot sample every -40 of time; a finite time above 0 is expected");
+  CHECK_THROWS_WITH(run.every_time(1e-9, Energy{}), "monitor 'energy' cannot sample every 1e-09 of time; a step is 40");
   CHECK_THROWS_WITH(run.every_time(60, Energy{}),
                     "a duration of 60 is 1.5 steps of 40; the nearest whole numbers are 40 (1) and 80 (2)");
   CHECK_THROWS_WITH(run.stop_when(farther_than(1), -1), "a cadence of -1 steps is impossible; at least 1 is expected");
@@ -166,7 +166,8 @@ TEST_CASE("impossible cadences are refused, and leave no monitor behind", "[simu
 
 TEST_CASE("a monitor of the energy is refused where a force reports none", "[simulation]") {
   Simulation run(test::outer_planets(), compose(test::kinetic_potential(Push{}), schemes::verlet), 1.0);
-  CHECK_THROWS_WITH(run.every(1, Energy{}), "monitor 'energy' needs the energy, but a force of this run reports none");
+  CHECK_THROWS_WITH(run.every(1, Energy{}),
+                    "monitor 'energy' needs the energy, but a force of this run does not compute one");
   run.every(1, Momentum{});
   CHECK(run.run(1).ok());
 }
@@ -262,11 +263,10 @@ TEST_CASE("the step changes, time and step count go on", "[simulation]") {
   const Outcome outcome = run.run_until(700);
   CHECK(outcome.step == 20);
   CHECK(outcome.time == 700);
-  CHECK_THROWS_WITH(run.change_step(0), "a step of 0 is no step; a finite time other than 0 is expected");
+  CHECK_THROWS_WITH(run.change_step(0), "a step of 0 is not valid; a finite time other than 0 is expected");
   run.every_time(300, Energy{});
-  CHECK_THROWS_WITH(
-      run.change_step(10),
-      "monitor 'energy' looks every 300 of time, at steps that a new step would shift; attach it by steps");
+  CHECK_THROWS_WITH(run.change_step(10),
+                    "monitor 'energy' samples every 300 of time, which a new step would shift; attach it by steps");
 }
 
 TEST_CASE("a collision that the forces cannot bear ends the run by name", "[simulation]") {

@@ -119,7 +119,7 @@ TEST_CASE("run_until is a time of the clock, and a start far from 0 rounds", "[s
   CHECK(run.step() == 307);
   CHECK_THROWS_WITH(run.run_until(2460031.25),
                     Catch::Contains("of 0.1 after the start at 2460000.5; the nearest whole numbers are"));
-  CHECK_THROWS_WITH(run.run_until(100), "time 100 has passed: the run stands at 2460031.2");
+  CHECK_THROWS_WITH(run.run_until(100), "time 100 has passed: the run is already at 2460031.2");
   CHECK_THROWS_WITH(planets_from(std::numeric_limits<double>::quiet_NaN(), "verlet"),
                     "a run cannot begin at time nan; a finite time is expected");
   CHECK_THROWS_WITH(planets_from(std::numeric_limits<double>::infinity(), "dop853"),
@@ -243,15 +243,15 @@ TEST_CASE("lists of times that cannot be are refused", "[start time][times][mess
     }
     return std::string();
   };
-  const std::string cannot = "monitor 'energy' cannot look at time ";
+  const std::string cannot = "monitor 'energy' cannot sample at time ";
   for (const std::string name : {"verlet", "dop853"}) {
     CAPTURE(name);
     CHECK(refused(name, {}).starts_with("monitor 'energy' has 0 cadences; give one: "));
     CHECK(refused(name, {32, std::nan("")}) == cannot + "nan: a finite time is expected");
     CHECK(refused(name, {-32, 32}) == cannot + "-32: it lies before the start at 0");
     CHECK(refused(name, {32, 64}, 40) == cannot + "32: it lies before the start at 40");
-    CHECK(refused(name, {32, 32}) == cannot + "32: it stands twice in its list");
-    CHECK(refused(name, {64, 32}) == cannot + "32: it stands after 64, where the run comes later");
+    CHECK(refused(name, {32, 32}) == cannot + "32: it is listed twice");
+    CHECK(refused(name, {64, 32}) == cannot + "32: it is listed after 64, which the run reaches later");
     CHECK(refused(name, {32, 64}).empty());
   }
   CHECK(refused("verlet", {32, 72}) ==
@@ -259,8 +259,7 @@ TEST_CASE("lists of times that cannot be are refused", "[start time][times][mess
   CHECK(refused("verlet", {40, 88}, 8) ==
         cannot +
             "88: time 88 is 2.5 steps of 32 after the start at 8; the nearest whole numbers are at 72 (2) and 104 (3)");
-  CHECK(refused("verlet", {32, 32 * (1 + 1e-14)}) ==
-        cannot + "32.00000000000032: it stands twice in its list, at step 1");
+  CHECK(refused("verlet", {32, 32 * (1 + 1e-14)}) == cannot + "32.00000000000032: it is listed twice, at step 1");
   auto run = planets_from(0, "dop853");
   const auto refusal = [&](std::vector<double> times) {
     try {
@@ -270,19 +269,17 @@ TEST_CASE("lists of times that cannot be are refused", "[start time][times][mess
     }
     return std::string();
   };
-  CHECK(
-      refusal({1, 2, 4}) ==
-      "monitor 'mean_square_displacement' counts lags in looks, so it looks at equal distances: after 2 comes 4 in its "
-      "list, but 1 apart are the first two; attach it by steps or an interval of time");
+  CHECK(refusal({1, 2, 4}) ==
+        "monitor 'mean_square_displacement' counts lags in samples, so it needs equal intervals: its list goes from 2 "
+        "to 4, but its first two times are 1 apart; attach it by steps or by an interval of time");
   CHECK(refusal({1, 2, 3, 4}).empty());
   run.at_times({7, 9}, Energy{});
   REQUIRE(run.run_until(10).ok());
-  CHECK_THROWS_WITH(run.run_until(5), Catch::Contains("looks at times of a list, so it cannot turn"));
+  CHECK_THROWS_WITH(run.run_until(5), Catch::Contains("samples at times of a list, so the run cannot turn back"));
   auto fixed = planets_from(0, "verlet");
   fixed.at_times({64}, Energy{});
   CHECK_THROWS_WITH(fixed.change_step(16),
-                    "monitor 'energy' looks at times of a list, at steps that a new step would "
-                    "shift; attach it by steps");
+                    "monitor 'energy' samples at times of a list, which a new step would shift; attach it by steps");
 }
 
 TEST_CASE("errors of what is conserved are measured from the start, not from the first time of a list",

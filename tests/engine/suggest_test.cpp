@@ -50,7 +50,7 @@ TEST_CASE("among equally near words the case decides, then the number at the end
 
 TEST_CASE("a message ends with a proposal, or with what is known", "[suggest]") {
   CHECK(did_you_mean("cuttoff", {"cutoff", "charge"}) == "; did you mean 'cutoff'?");
-  CHECK(did_you_mean("pressure", {"a", "b", "c"}) == "; known are: a, b, c");
+  CHECK(did_you_mean("pressure", {"a", "b", "c"}) == "; expected one of: a, b, c");
   CHECK(did_you_mean("pressure", {}) == "");
 }
 

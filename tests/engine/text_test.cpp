@@ -14,13 +14,15 @@ TEST_CASE("a name is printable UTF-8", "[text]") {
     CHECK(wrong_name(good).empty());
   }
   CHECK(wrong_name("") == "the name is empty");
-  CHECK(wrong_name("a\nb") == "the name 'a\\nb' holds the control character \\n; only what can be printed is allowed");
+  CHECK(wrong_name("a\nb") ==
+        "the name 'a\\nb' contains the control character \\n; only printable characters are allowed");
   CHECK(wrong_name(std::string("a\0b", 3)) ==
-        "the name 'a\\u0000b' holds the control character \\u0000; only what can be printed is allowed");
+        "the name 'a\\u0000b' contains the control character \\u0000; only printable characters are allowed");
   CHECK(wrong_name("a\x7F").find("control character \\u007f") != std::string::npos);
   CHECK(wrong_name("a\xC2\x9B").find("control character \\u009b") != std::string::npos);
   CHECK(wrong_name("a\xE2\x80\xA8").find("control character \\u2028") != std::string::npos);
-  CHECK(wrong_name("S\xF6l") == "the name 'S\\xf6l' holds the byte \\xf6, which is not UTF-8; save the text as UTF-8");
+  CHECK(wrong_name("S\xF6l") ==
+        "the name 'S\\xf6l' contains the byte \\xf6, which is not UTF-8; save the text as UTF-8");
 }
 
 TEST_CASE("what only looks like UTF-8 is told apart", "[text]") {
@@ -46,8 +48,8 @@ TEST_CASE("ids run from 0 to 2^53", "[particles]") {
   s.restore_ids({ParticleSystem<double>::largest_id});
   CHECK(s.next_id() == 9007199254740993);
   CHECK_THROWS_WITH(s.restore_ids({9223372036854775807}),
-                    "the id 9223372036854775807 cannot be kept; 0 to 9007199254740992 (2^53) is expected");
-  CHECK_THROWS_WITH(s.restore_ids({-1}), "the id -1 cannot be kept; 0 to 9007199254740992 (2^53) is expected");
+                    "the id 9223372036854775807 cannot be stored; 0 to 9007199254740992 (2^53) is expected");
+  CHECK_THROWS_WITH(s.restore_ids({-1}), "the id -1 cannot be stored; 0 to 9007199254740992 (2^53) is expected");
   CHECK(s.ids().front() == ParticleSystem<double>::largest_id);
 }
 

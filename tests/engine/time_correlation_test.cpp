@@ -208,10 +208,10 @@ TEST_CASE("what was saved of correlations must fit", "[time_correlation][restart
   CHECK(loads(saved).empty());
   SavedState shorter = saved;
   shorter["m/sums"] = std::vector<double>(3);
-  CHECK(loads(shorter) == "the origins of a time correlation were saved in parts that do not fit");
+  CHECK(loads(shorter) == "the saved origins of a time correlation are inconsistent");
   SavedState later = saved;
   later["m/looks"] = std::vector<std::int64_t>{1000};
-  CHECK(loads(later) == "the origins of a time correlation were saved in parts that do not fit");
+  CHECK(loads(later) == "the saved origins of a time correlation are inconsistent");
 }
 
 TEST_CASE("before an origin has been followed to the end there is no diffusion coefficient", "[time_correlation]") {
@@ -219,7 +219,7 @@ TEST_CASE("before an origin has been followed to the end there is no diffusion c
   auto& msd = sim.every(1, MeanSquareDisplacement(20, 5));
   REQUIRE(sim.run(10).ok());
   CHECK_FALSE(msd.diffusion_coefficient());
-  CHECK(msd.report().reason == "no diffusion coefficient: no origin has been followed for 20 looks");
+  CHECK(msd.report().reason == "no diffusion coefficient: no origin has been followed for 20 samples");
   CHECK(std::isnan(msd.values()[11]));
   CHECK(msd.values()[10] > 0);
   const std::vector<Series> series = msd.series();
@@ -242,9 +242,10 @@ TEST_CASE("correlations of nobody, or to no lag, are refused", "[time_correlatio
   const auto refusal = [](const MeanSquareDisplacement& asked) {
     return test::refusal_of([&] { flying().every(1, asked); });
   };
-  CHECK(refusal(MeanSquareDisplacement(1, 1)) == "length = 1 is no longest lag; 2 to 1000000 looks are expected");
+  CHECK(refusal(MeanSquareDisplacement(1, 1)) ==
+        "length = 1 is not a valid longest lag; 2 to 1000000 samples are expected");
   CHECK(refusal(MeanSquareDisplacement(5, 0)) ==
-        "origins = 0 is no number of looks between origins; at least 1 is expected");
+        "origins = 0 is not a valid number of samples between origins; at least 1 is expected");
   CHECK(refusal(MeanSquareDisplacement(5, 1, {"fats"})) == "unknown type 'fats' to average over; did you mean 'fast'?");
 }
 

@@ -76,5 +76,6 @@ TEST_CASE("parameters of a pair of types are mixed by the rule, unless they were
 TEST_CASE("a bond to a particle that is not there is refused by name", "[topology]") {
   Topology topology;
   topology.bonds.push_back({{0, 9}, 0});
-  CHECK_THROWS_WITH(topology.scale_by_bonds(2, {0, 0, 1}), "a bond joins particles 0 and 9, but there are 2");
+  CHECK_THROWS_WITH(topology.scale_by_bonds(2, {0, 0, 1}),
+                    "a bond joins particles 0 and 9, but there are only 2 particles");
 }

@@ -147,7 +147,7 @@ std::string message_of(std::string_view name) {
 
 TEST_CASE("an unknown unit system is refused with a proposal", "[units]") {
   CHECK(message_of("solr") == "unknown unit system 'solr'; did you mean 'solar'?");
-  CHECK(message_of("imperial") == "unknown unit system 'imperial'; known are: solar, molecular, si, reduced");
+  CHECK(message_of("imperial") == "unknown unit system 'imperial'; expected one of: solar, molecular, si, reduced");
 }
 
 TEST_CASE("dimensions multiply, divide and take powers", "[units]") {

@@ -183,10 +183,9 @@ TEST_CASE("a scaled pair too close ends the run as an unscaled one does, and bot
       const Outcome outcome = end_of_row(row_with_ends(apart, factor), argon(), 0.005, 1000);
       CHECK(outcome.kind == Outcome::Kind::overlap);
       CHECK(outcome.step == 0);
-      CHECK(outcome.message ==
-            fmt::format("particles 'a' and 'd' are {:.3g} apart, too close for their Lennard-Jones force; begin with "
-                        "[minimize], or take a smaller step",
-                        apart));
+      CHECK(outcome.message == fmt::format("particles 'a' and 'd' are {:.3g} apart, too close for their Lennard-Jones "
+                                           "force; start with [minimize], or take a smaller step",
+                                           apart));
       REQUIRE(outcome.particle);
       CHECK(outcome.particle->name == "a");
     }
@@ -201,10 +200,10 @@ TEST_CASE("a scaled pair too close for the step is named with the way it would g
   const Outcome outcome = end_of_row(row_with_ends(apart, 0.5), argon(), step, 1000);
   CHECK(outcome.kind == Outcome::Kind::overlap);
   CHECK(outcome.step == 0);
-  CHECK(outcome.message == fmt::format("particles 'a' and 'd' are 0.6 apart: their Lennard-Jones force would move 'a' "
-                                       "by {} in one step, further than a step can follow; begin with [minimize], or "
-                                       "take a smaller step",
-                                       way));
+  CHECK(outcome.message ==
+        fmt::format("particles 'a' and 'd' are 0.6 apart: their Lennard-Jones force would move 'a' by {} in one step, "
+                    "further than a step can follow; start with [minimize], or take a smaller step",
+                    way));
   CHECK(end_of_row(row_with_ends(apart, 0.5), argon(), 1e-4, 1000).ok());  // a step that can follow them
   CHECK(end_of_row(row_with_ends(apart, 1e-3), argon(), step, 100).ok());  // a force that it can follow
   ParticleSystem<double> s = row_with_ends(0.72, 0.5);

@@ -224,7 +224,7 @@ TEST_CASE("the program runs head-on falls to a name, stops them, and tells a sin
   CHECK(json_member(diverged.out, "step") == "3");
   CHECK(has(diverged.err, "diverged at step 3: velocity of left is not finite"));
   meet.bodies[1] = "mass = 1, x = [-1, 0, 0], v = [0, 0, 0]";
-  CHECK(has(run_scene(SceneFolder(meet.text())).err, "stand in one place, where their attraction is infinite"));
+  CHECK(has(run_scene(SceneFolder(meet.text())).err, "are in the same place, where their attraction is infinite"));
   meet.hamiltonian = "type = \"kinetic_potential\"\nforce = [{ type = \"gravity\", softening = 0.1 }]\n";
   CHECK(outcome_of(run_scene(SceneFolder(meet.text()))) == "\"completed\"");
 }

@@ -457,7 +457,7 @@ TEST_CASE("a fene bond of its greatest length is overstretched, and its particle
   CHECK(broken.failure->particle == 1);
   CHECK(broken.failure->quantity == "bond");
   CHECK(broken.failure->message.find(
-            "the bond of 'two' and particle 2 is 1.5 long, and a fene bond is shorter than 1.5") == 0);
+            "the bond of 'two' and particle 2 is 1.5 long, but a fene bond must be shorter than 1.5") == 0);
   s.positions().set(2, {2.499, 0, 0});
   CHECK_FALSE(evaluate(Bonded{}, s).failure.has_value());
 

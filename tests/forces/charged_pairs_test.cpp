@@ -125,12 +125,13 @@ TEST_CASE("charged pairs that make no sense are refused by name", "[charged_pair
   CHECK(refusal(ReactionFieldForce{{2.0}}, charged(neutral)).empty());
   CHECK(
       refusal(ReactionFieldForce{{2.0}}, neutral) ==
-      "force 'reaction_field' acts between charges, and the particles have none; give charges, or take the force out");
-  CHECK(refusal(ReactionFieldForce{{0}}, charged(neutral)) == "cutoff = 0 is no length above 0");
+      "force 'reaction_field' acts between charges, but the particles have none; give charges, or take the force out");
+  CHECK(refusal(ReactionFieldForce{{0}}, charged(neutral)) ==
+        "cutoff = 0 is not a valid length; a length above 0 is expected");
   CHECK(refusal(ReactionFieldForce{{2, 0.5}}, charged(neutral)) ==
-        "dielectric = 0.5 is no relative permittivity; 1 or more is expected");
+        "dielectric = 0.5 is not a valid relative permittivity; 1 or more is expected");
   CHECK(refusal(Salt{{{0, 1}, {2}}, 2}, charged(neutral)) ==
-        "epsilon = 0 is no strength; an energy above 0 is expected");
+        "epsilon = 0 is not a valid strength; an energy above 0 is expected");
   // All of them 0: nothing acts, and nothing is divided by.
   auto none = neutral;
   none.add_column<Charge>();

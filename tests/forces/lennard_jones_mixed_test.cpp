@@ -140,8 +140,9 @@ TEST_CASE("no skin is too wide for mixed precision", "[lennard_jones][mixed]") {
 TEST_CASE("mixed precision is refused where places have no box", "[lennard_jones][mixed]") {
   ParticleSystem<double> s = liquid(3, 0.85, 1);
   s.set_box(Box::open());
-  CHECK_THROWS_WITH(mixed_argon(Cutoff::plain, 2.2).check(s),
-                    "lennard_jones: mixed precision measures places in parts of a periodic box; there is none");
+  CHECK_THROWS_WITH(
+      mixed_argon(Cutoff::plain, 2.2).check(s),
+      "lennard_jones: precision = \"mixed\" needs a periodic box, but there is none; add a box or leave precision out");
 }
 
 }  // namespace noether

@@ -244,11 +244,12 @@ TEST_CASE("what a Lennard-Jones force cannot do is refused by name", "[lennard_j
   ParticleSystem<double> open = s;
   open.set_box(Box::open());
   CHECK_THROWS_WITH(open_tail.check(open),
-                    "lennard_jones: a tail is the mean of an endless liquid; it needs a periodic box");
+                    "lennard_jones: tail = true is for a liquid without end, so it needs a periodic box; add a box or "
+                    "leave tail out");
   CHECK_THROWS_WITH((LennardJonesForce{.cutoff = 2.5, .epsilon = 1.0}.check()),
-                    Catch::Contains("stands alone; give epsilon and sigma, or none"));
+                    Catch::Contains("is given alone; give both epsilon and sigma, or neither"));
   CHECK_THROWS_WITH((LennardJonesForce{.cutoff = -1, .epsilon = 1.0, .sigma = 1.0}.check()),
-                    Catch::Contains("is no cutoff; a length above 0 is expected"));
+                    Catch::Contains("is not a valid cutoff; a length above 0 is expected"));
 }
 
 }  // namespace noether

@@ -268,27 +268,29 @@ TEST_CASE("pair potentials that make no sense are refused", "[pair_force][messag
   MorseForce morse = pair_force(MorsePair{1, 2, 1}, 2.0, Cutoff::plain);
   CHECK(refusal(morse).empty());
   morse.first = "A";
-  CHECK(refusal(morse) == "first = \"A\" stands alone; give first and second, or neither");
+  CHECK(refusal(morse) == "first = \"A\" is given alone; give both first and second, or neither");
   morse.second = "C";
-  CHECK(refusal(morse) == "second = \"C\" names no type of the particles; there are A, B");
-  CHECK(refusal(morse, test::liquid(1, 0.5, 1)) == "first = \"A\" names no type of the particles; they have no types");
+  CHECK(refusal(morse) == "second = \"C\" is not a type of the particles; expected one of: A, B");
+  CHECK(refusal(morse, test::liquid(1, 0.5, 1)) == "first = \"A\" is not a type of the particles; they have no types");
   CHECK(refusal(pair_force(MorsePair{1, 2, 1}, 0, Cutoff::plain)) ==
-        "cutoff = 0 is no cutoff; a length above 0 is expected");
+        "cutoff = 0 is not a valid cutoff; a length above 0 is expected");
   CHECK(refusal(pair_force(MorsePair{-1, 2, 1}, 2, Cutoff::plain)) ==
-        "depth = -1 is no depth of a well; an energy above 0 is expected");
+        "depth = -1 is not a valid depth of a well; an energy above 0 is expected");
   CHECK(refusal(pair_force(Buckingham{100, 0.1, 5}, 2, Cutoff::plain)) ==
-        "C = 5 is so strong that these pairs attract at every distance; less than 125.162 A rho^6 leaves a barrier");
+        "C = 5 is so strong that these pairs attract at every distance; less than 125.162 A rho^6 is needed for a "
+        "barrier");
   CHECK(refusal(pair_force(Buckingham{100, 0.1, 125.17e-4}, 2, Cutoff::plain)).find("C = 0.012517 is so") == 0);
   CHECK(refusal(pair_force(Buckingham{100, 0.1, 125.16e-4}, 2, Cutoff::plain)).empty());
   for (const Cutoff style : {Cutoff::plain, Cutoff::shifted, Cutoff::shifted_force}) {
     morse = pair_force(MorsePair{1, 2, 1}, 2.0, style);
     morse.switch_from = 1.5;
     CHECK(refusal(morse) ==
-          "switch_from = 1.5 belongs to a switch; take it out, or add cutoff_style = \"switch_c2\" or \"switch_c4\"");
+          "switch_from = 1.5 is for a switched cutoff only; take it out, or add cutoff_style = \"switch_c2\" or "
+          "\"switch_c4\"");
   }
   morse.cutoff_style = Cutoff::switch_c2;
   CHECK(refusal(morse).empty());
-  CHECK(refusal(WcaForce{{1, 0}}) == "sigma = 0 is no length above 0");
+  CHECK(refusal(WcaForce{{1, 0}}) == "sigma = 0 is not a valid length; a length above 0 is expected");
 }
 
 }  // namespace noether

@@ -148,7 +148,7 @@ TEST_CASE("a spring to a particle that is not there is refused", "[springs][mess
     return Simulation<double>(four_bodies(), compose(test::kinetic_potential(bond), schemes::verlet), 0x1p-6);
   };
   CHECK_THROWS_WITH(bound({.k = 1, .tied = {{0, 4}}}),
-                    "particle 4 is tied, but there are 4, counted from 0; give one of them");
+                    "particle 4 is tied, but there are only 4 particles, counted from 0; give one of them");
   auto run = bound({.k = 1, .tied = {{1, 3}}});
   CHECK_THROWS_WITH(run.edit([](ParticleSystem<double>& all) { all.remove(1); }),
                     "the particle with id 1 is tied to others or to a place, but has been taken out; keep it");

@@ -8,7 +8,7 @@ shift $(($# < 2 ? $# : 2))
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
 if ! [ -f "tests/fuzz/${target}_fuzz.cpp" ]; then
-  echo "there is no target '$target'; known are:" tests/fuzz/*_fuzz.cpp >&2
+  echo "there is no target '$target'; expected one of:" tests/fuzz/*_fuzz.cpp >&2
   exit 2
 fi
 if ! command -v clang++ >/dev/null ||

@@ -174,7 +174,7 @@ TEST_CASE("settling completes a copy and leaves the run alone", "[composition]")
   CHECK(s.phase() == raw.phase());
   CHECK(copy.phase() == Phase{});
   CHECK_FALSE(test::same_bits(s, copy));
-  CHECK_THROWS_WITH(composition.settle(s, copy, {}, 1.0, true), "a composition stands at whole steps only");
+  CHECK_THROWS_WITH(composition.settle(s, copy, {}, 1.0, true), "a composition can stop at whole steps only");
 }
 
 TEST_CASE("a look and the next kick share one evaluation of the forces", "[composition]") {
@@ -251,7 +251,7 @@ TEST_CASE("schemes that do not fit a Hamiltonian are refused by name", "[composi
         "use 'verlet', a composition of its steps such as 'yoshida_4', or a scheme made for it such as 'abah_8_6_4'");
   CHECK(refusal(democratic, schemes::srkn14a) ==
         "scheme 'srkn14a' is a Runge-Kutta-Nystroem splitting and keeps its order only where {B,{B,{B,A}}} = 0, which "
-        "'wisdom_holman' does not grant; use a general scheme such as 'blanes_moan_s10'");
+        "'wisdom_holman' does not guarantee; use a general scheme such as 'blanes_moan_s10'");
   const auto damped = test::damped(gravity(), {.rate = 0.1});
   CHECK(refusal(damped, schemes::yoshida_4) ==
         "scheme 'yoshida_4' steps backwards, but part D of 'damped' is irreversible; use a scheme with forward steps "
@@ -288,7 +288,7 @@ TEST_CASE("a Hamiltonian with quadratic kinetic energy only is demanded by Nystr
   const Quartic quartic(Gravity{.G = outer_G});
   CHECK(refusal(quartic, schemes::srkn14a) ==
         "scheme 'srkn14a' is a Runge-Kutta-Nystroem splitting and keeps its order only where {B,{B,{B,A}}} = 0, which "
-        "'quartic' does not grant; use a general scheme such as 'blanes_moan_s10'");
+        "'quartic' does not guarantee; use a general scheme such as 'blanes_moan_s10'");
   CHECK(refusal(quartic, schemes::blanes_moan_s10) == "accepted");
 }
 
@@ -317,7 +317,7 @@ TEST_CASE("drag without forces is exact for any step", "[composition]") {
     CHECK(std::abs(run.particles().velocities()[0][0] - expected) < 2 * 81 * ulp * expected);
   }
   CHECK_THROWS_WITH(test::damped(gravity(), {.rate = -1}),
-                    "a drag rate of -1.000000 drives instead of damping; give 0 or more");
+                    "a drag rate of -1.000000 would drive the motion instead of damping it; give 0 or more");
 }
 
 TEST_CASE("compensated sums are right to half an ulp after any number of steps", "[composition]") {

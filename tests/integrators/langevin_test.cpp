@@ -285,22 +285,22 @@ TEST_CASE("constraints hold in a bath, and what is left of the velocities has it
 TEST_CASE("baths that cannot be are refused by name", "[langevin]") {
   const KineticPotential field(test::field_of(HarmonicField{.k = 1}));
   CHECK(test::refusal_of([&] { Langevin(field, {.temperature = -1, .friction = 1}); }) ==
-        "temperature = -1 is no temperature; 0 or more is expected");
+        "temperature = -1 is not a valid temperature; 0 or more is expected");
   CHECK(test::refusal_of([&] { Langevin(field, {.temperature = 1, .friction = -2}); }) ==
-        "friction = -2 drives instead of damping; 0 or more is expected");
+        "friction = -2 would drive the motion instead of damping it; 0 or more is expected");
   const Langevin bath(field, {.temperature = 1, .friction = 1});
   CHECK(test::refusal_of([&] { compose(bath, schemes::yoshida_4); }).find("part O of 'langevin' is irreversible") !=
         std::string::npos);
   auto tracers = bodies<double>(2);
   tracers.add("dust", 0, {1, 0, 0}, {0, 0, 0});
   CHECK(test::refusal_of([&] { Simulation<double>(tracers, compose(bath, word("BAOAB")), 0.1); }) ==
-        "'dust' has no mass, so it has no temperature; give it one, or take the bath out");
+        "'dust' has no mass, so it has no temperature; give it a mass, or take the thermostat out");
   CHECK(test::refusal_of([&] { Simulation<double>(bodies<double>(2), compose(bath, word("BAOAB")), -0.1); }) ==
-        "a bath knows no way back; a step above 0 is expected");
+        "a thermostat cannot go back in time; a step above 0 is expected");
   const Langevin planets(test::wisdom_holman({.G = test::outer_G}), {.temperature = 1, .friction = 1});
   CHECK(test::refusal_of([&] {
           Simulation<double>(test::outer_planets(), compose(planets, schemes::verlet), 10);
-        }).find("'wisdom_holman' moves in coordinates of its own") == 0);
+        }).find("'wisdom_holman' uses its own coordinates") == 0);
   const auto hanging = test::hamiltonian_of(test::hanging_chain(2));
   CHECK(
       test::refusal_of([&] { Langevin(AnyHamiltonian<double>(hanging), {.temperature = 1, .friction = 1}); }).empty());

@@ -205,7 +205,7 @@ TEST_CASE("massless primaries and tracers before massive bodies are refused", "[
   auto mixed = test::outer_planets();
   mixed.masses()[2] = 0;
   CHECK_THROWS_WITH(Simulation(mixed, compose(splitting(), schemes::verlet), 40.0),
-                    "'Uranus' has mass but stands after the tracer 'Saturn'; put tracers after all massive bodies");
+                    "'Uranus' has mass but comes after the tracer 'Saturn'; put tracers after all massive bodies");
   auto tracers = test::outer_planets();
   for (Index i = 1; i < tracers.size(); ++i) tracers.masses()[i] = 0;
   CHECK(Simulation(tracers, compose(splitting(), schemes::verlet), 40.0).run(1).ok());
@@ -219,7 +219,7 @@ TEST_CASE("forces that depend on velocities are no part of a kick", "[wisdom_hol
     }
   };
   CHECK_THROWS_WITH((WisdomHolman<double, Headwind>({.G = outer_G}, Headwind{})),
-                    "a force depends on velocities, so kicks by it are no exact flow of wisdom_holman");
+                    "a force depends on velocities, so kicks by it are not an exact flow of wisdom_holman");
 }
 
 TEST_CASE("two bodies in Jacobi coordinates move on their exact orbit, whatever the step", "[wisdom_holman]") {
@@ -320,7 +320,7 @@ TEST_CASE("what a tracer goes round is state; runs saved without it go on as the
                              Ranks{0, 1, 2, 3, 4, 5, 0, -1, 0}, Ranks{0, 2, 1, 3, 4, 5, 0, 0, 0}}) {
     saved["within"] = wrong;
     CHECK_THROWS_WITH(second.load(saved, ""),
-                      "the saved places of tracers among the bodies do not fit these particles");
+                      "the saved places of tracers among the bodies do not match these particles");
   }
 }
 

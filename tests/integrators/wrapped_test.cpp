@@ -146,7 +146,7 @@ TEST_CASE("state and fields around an integrator are saved as they are described
   CHECK(std::get<std::vector<std::int64_t>>(resumed.save().parts.at("integrator").at("count")) ==
         std::vector<std::int64_t>{20});
   CHECK_THROWS_WITH(other.restore(saved),
-                    "the saved run was made with counting(by = 2), this one has counting(by = 3)");
+                    "the saved run was made with counting(by = 2), but this one has counting(by = 3)");
 }
 
 TEST_CASE("state around a Hamiltonian is saved as it is described", "[integrators][wrapped]") {

@@ -178,14 +178,15 @@ TEST_CASE("a damaged checkpoint gives way to the one before, and only damaged on
   io::FoundCheckpoint found = io::newest_checkpoint(folder.path());
   REQUIRE(found.checkpoint);
   CHECK(found.checkpoint->step == 15);
-  CHECK(found.damaged == std::vector<std::string>{newest + ": damaged: its bytes do not fit the SHA-256 at its end"});
+  CHECK(found.damaged ==
+        std::vector<std::string>{newest + ": damaged: its contents do not match the SHA-256 at its end"});
 
   test::write_text(before, "");
   found = io::newest_checkpoint(folder.path());
   CHECK_FALSE(found.checkpoint);
   REQUIRE(found.damaged.size() == 2);
   CHECK(found.damaged[1] ==
-        before + ": damaged, or no checkpoint: the line 'sha256:...' at the end of its 0 bytes is missing");
+        before + ": damaged, or not a checkpoint: the line 'sha256:...' at the end of its 0 bytes is missing");
 }
 
 TEST_CASE("a process killed between the two renames leaves a valid checkpoint", "[checkpoint]") {

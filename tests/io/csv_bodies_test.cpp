@@ -180,11 +180,11 @@ TEST_CASE("elements and vectors may be about another body, a barycenter, or all 
   CHECK(vectors.positions()[1] == Vec3<double>(1.5, 2, 3));
   CHECK(vectors.velocities()[1] == Vec3<double>(4, 5.25, 6));
   CHECK(csv_refusal(heads + "C,0,BB,1,0,0,0,0,0\n", "reduced") ==
-        "b.csv:4: there is no 'BB' above this body; did you mean 'B'?");
+        "b.csv:4: there is no body 'BB' above this one; did you mean 'B'?");
   CHECK(csv_refusal(heads + "C,0,,1,0,0,0,0,0\nD,0,C,1,0,0,0,0,0\n", "reduced") ==
-        "b.csv:5: column 'about' is 'C', which has no mass to move about");
+        "b.csv:5: column 'about' is 'C', which has no mass, so nothing can orbit it");
   CHECK(csv_refusal("name,mass,about,x,y,z,vx,vy,vz\nA,1,B,0,0,0,0,0,0\n", "reduced") ==
-        "b.csv:2: column 'about' of the first body names another; leave it empty");
+        "b.csv:2: column 'about' of the first body must be empty, because no body is above it");
 }
 
 TEST_CASE("a wrong heading is refused with what is wrong and what to write", "[bodies][messages]") {
@@ -196,10 +196,11 @@ TEST_CASE("a wrong heading is refused with what is wrong and what to write", "[b
   // An unknown column comes before missing ones.
   CHECK(csv_refusal("name,mas [Msun],x [au]\nSun,1,0\n") == "b.csv:1: unknown column 'mas'; did you mean 'mass'?");
   CHECK(csv_refusal("name,mass [Msun],position [au]\n") ==
-        "b.csv:1: unknown column 'position'; known are: name, id, mass, x, y, z, vx, vy, vz, about, a, P, q, e, inc, "
+        "b.csv:1: unknown column 'position'; expected one of: name, id, mass, x, y, z, vx, vy, vz, about, a, P, q, e, "
+        "inc, "
         "Omega, omega, pomega, M, f, l, T");
   CHECK(csv_refusal("name,,mass [Msun]\n") == "b.csv:1: column 2 has no name");
-  CHECK(csv_refusal("mass [Msun],x [au],x [au]\n") == "b.csv:1: column 'x' stands twice");
+  CHECK(csv_refusal("mass [Msun],x [au],x [au]\n") == "b.csv:1: column 'x' appears twice");
   CHECK(csv_refusal("mass [Msun],x,y\n") ==
         "b.csv:1: column 'x' has no unit; write 'x [au]' or another unit of length");
   CHECK(csv_refusal("mass [Msun],vx\n") ==
@@ -207,8 +208,8 @@ TEST_CASE("a wrong heading is refused with what is wrong and what to write", "[b
   CHECK(csv_refusal("mass [Msun],a [au],e,inc\n") ==
         "b.csv:1: column 'inc' has no unit; write 'inc [deg]' or another unit of angle");
   CHECK(csv_refusal("mass [Msun],x [day]\n") ==
-        "b.csv:1: column 'x' is in 'day', which is of dimension time; expected length");
-  CHECK(csv_refusal("name [au]\n") == "b.csv:1: column 'name' takes no unit, not 'au'");
+        "b.csv:1: column 'x' is in 'day', which has the dimension time; expected length");
+  CHECK(csv_refusal("name [au]\n") == "b.csv:1: column 'name' has no unit; take 'au' out");
   CHECK(csv_refusal("mass [Msun],x [au],y [au],z [au],vx [au/day]\n") ==
         "b.csv:1: there is no column vy, vz; expected mass and x, y, z, vx, vy, vz, or the elements a, e, inc, Omega, "
         "omega, M");
@@ -217,7 +218,7 @@ TEST_CASE("a wrong heading is refused with what is wrong and what to write", "[b
       "b.csv:1: there is no column mass, M; expected mass and a (or P, q), e, inc, Omega, omega (or pomega), M (or f, "
       "l, T)");
   CHECK(csv_refusal("mass [Msun],x [au],a [au]\n") ==
-        "b.csv:1: columns 'x' and 'a' are of two kinds; give positions and velocities, or elements");
+        "b.csv:1: columns 'x' and 'a' do not go together; give either positions and velocities, or elements");
   CHECK(csv_refusal("mass [Msun],x [furlong]\n").starts_with("b.csv:1: column 'x': unknown unit 'furlong'"));
 }
 
@@ -225,32 +226,33 @@ TEST_CASE("a broken row is refused with its line", "[bodies][messages]") {
   const std::string sun = "Sun,1,0,0,0,0,0,0\n";
   CHECK(csv_refusal("#\n" + head + sun + "\nEarth,1,2\n") ==
         "b.csv:5: this row has 3 fields; expected 8, as line 2 names");
-  CHECK(csv_refusal(head + "Sun,1,0,0,O,0,0,0\n") == "b.csv:2: column 'z' is 'O', which is no number");
-  CHECK(csv_refusal(head + "Sun,1,0,0,1 2,0,0,0\n") == "b.csv:2: column 'z' is '1 2', which is no number");
+  CHECK(csv_refusal(head + "Sun,1,0,0,O,0,0,0\n") == "b.csv:2: column 'z' is 'O', which is not a number");
+  CHECK(csv_refusal(head + "Sun,1,0,0,1 2,0,0,0\n") == "b.csv:2: column 'z' is '1 2', which is not a number");
   CHECK(csv_refusal("mass [kg];x [m];y;z;vx [m/s];vy;vz\n1;0;0;0,5;0;0;0\n") ==
-        "b.csv:2: column 'z' is '0,5', which is no number; decimals have a point");
-  CHECK(csv_refusal("Sun,1,0,0,0,0,0,0\n").starts_with("b.csv:1: unknown column 'Sun'; known are: name, id, mass"));
+        "b.csv:2: column 'z' is '0,5', which is not a number; use a decimal point");
   CHECK(
-      csv_refusal("1,0,0,0,0,0,0\n") ==
-      "b.csv:1: '1' is a number where a column name is expected; the first line names the columns, such as 'name,mass "
-      "[Msun],x [au],...', and is no comment");
+      csv_refusal("Sun,1,0,0,0,0,0,0\n").starts_with("b.csv:1: unknown column 'Sun'; expected one of: name, id, mass"));
+  CHECK(csv_refusal("1,0,0,0,0,0,0\n") ==
+        "b.csv:1: '1' is a number where a column name is expected; the first line names the columns, such as "
+        "'name,mass [Msun],x [au],...', and must not be a comment");
   CHECK(csv_refusal(head + "Sun,1,0,0,,0,0,0\n") == "b.csv:2: column 'z' is empty; expected a number");
   CHECK(csv_refusal(head + "Sun,1,nan,0,0,0,0,0\n") == "b.csv:2: column 'x' is nan; expected a finite number");
   CHECK(csv_refusal(head + "Sun,inf,0,0,0,0,0,0\n") == "b.csv:2: column 'mass' is inf; expected a finite number");
-  CHECK(csv_refusal(head + "Sun,1e999,0,0,0,0,0,0\n") == "b.csv:2: column 'mass' is 1e999, which no double can hold");
+  CHECK(csv_refusal(head + "Sun,1e999,0,0,0,0,0,0\n") ==
+        "b.csv:2: column 'mass' is 1e999, which is outside the range of doubles");
   CHECK(csv_refusal(head + "Sun,-1,0,0,0,0,0,0\n") == "b.csv:2: column 'mass' is -1; expected 0 or more");
-  CHECK(csv_refusal(head + "Sun,++1,0,0,0,0,0,0\n") == "b.csv:2: column 'mass' is '++1', which is no number");
-  CHECK(csv_refusal(head + sun + sun) == "b.csv:3: the name 'Sun' is taken; names must differ");
+  CHECK(csv_refusal(head + "Sun,++1,0,0,0,0,0,0\n") == "b.csv:2: column 'mass' is '++1', which is not a number");
+  CHECK(csv_refusal(head + sun + sun) == "b.csv:3: the name 'Sun' is already used; names must differ");
   CHECK(csv_refusal(head + ",1,0,0,0,0,0,0\n") == "b.csv:2: the name is empty");
   CHECK(csv_refusal("id," + bare_head + "1,1,0,0,0,0,0,0\n1,1,1,0,0,0,0,0\n", "reduced") ==
-        "b.csv:3: the id 1 is taken; ids must differ");
+        "b.csv:3: the id 1 is already used; ids must differ");
   CHECK(csv_refusal("id," + bare_head + "-1,1,0,0,0,0,0,0\n", "reduced") ==
         "b.csv:2: column 'id' is '-1'; expected a whole number from 0 to 9007199254740992");
   CHECK(csv_refusal(head + "\"Sun,1,0,0,0,0,0,0\n") == "b.csv:2: a double quote is not closed on this line");
   CHECK(csv_refusal(head + "\"Sun\"s,1,0,0,0,0,0,0\n") ==
         "b.csv:2: 's' follows the double quote that ends a field; expected a comma");
   CHECK(csv_refusal(head + "the \"Sun\",1,0,0,0,0,0,0\n") ==
-        "b.csv:2: a double quote stands inside a field; quote the whole field, and write \"\" for a quote in it");
+        "b.csv:2: a double quote is inside a field; quote the whole field, and write \"\" for a quote in it");
   CHECK(csv_refusal("name,mass [Msun],x [Gyr]\n").starts_with("b.csv:1: column 'x' is in 'Gyr'"));
   CHECK(csv_refusal("mass [kg],x [au],y [au],z [au],vx [au/fs],vy [au/day],vz [au/day]\n1,0,0,0,1e300,0,0\n") ==
         "b.csv:2: the state of body_1 is not finite in these units");
@@ -259,18 +261,19 @@ TEST_CASE("a broken row is refused with its line", "[bodies][messages]") {
 TEST_CASE("elements that are no orbit are refused", "[bodies][messages]") {
   const std::string sun = "Sun,1,,,,,,\n";
   CHECK(csv_refusal(by_elements + "Sun,1,5,,,,,\n") ==
-        "b.csv:2: column 'a' of the first body is '5'; the elements are about this body: leave them empty");
-  CHECK(csv_refusal(by_elements + "Sun,0,,,,,,\n") == "b.csv:2: Sun has no mass; the elements are about this body");
+        "b.csv:2: column 'a' of the first body is '5', but elements are relative to this body; leave them empty");
+  CHECK(csv_refusal(by_elements + "Sun,0,,,,,,\n") ==
+        "b.csv:2: Sun has no mass, but elements are relative to this body; give it a mass");
   CHECK(csv_refusal(by_elements + sun + "Earth,0,1,1,0,0,0,0\n") ==
-        "b.csv:3: a = 1 and e = 1 are no orbit; expected a > 0 and 0 <= e < 1, or a < 0 and e > 1");
+        "b.csv:3: a = 1 and e = 1 do not describe an orbit; expected a > 0 and 0 <= e < 1, or a < 0 and e > 1");
   CHECK(csv_refusal(by_elements + sun + "Earth,0,-1,0.5,0,0,0,0\n") ==
-        "b.csv:3: a = -1 and e = 0.5 are no orbit; expected a > 0 and 0 <= e < 1, or a < 0 and e > 1");
+        "b.csv:3: a = -1 and e = 0.5 do not describe an orbit; expected a > 0 and 0 <= e < 1, or a < 0 and e > 1");
   CHECK(csv_refusal("name,mass [Msun],q [au],e,inc [deg],Omega,omega,M\n" + sun + "c,0,2,1,0,0,0,3\n") ==
         "b.csv:3: M = 3 has no meaning on a parabola, e = 1; give f or T");
   CHECK(csv_refusal("mass [Msun],a [au],P [yr],e,inc [deg],Omega,omega,M\n1,,,,,,,\n0,,,0,0,0,0,0\n") ==
         "b.csv:3: the orbit has no size; give a, P or q");
   CHECK(csv_refusal("mass [Msun],a [au],P [yr],e,inc [deg],Omega,omega,M\n1,,,,,,,\n0,1,1.5,0,0,0,0,0\n") ==
-        "b.csv:3: P = 1.5 stands beside a; give one of a, P or q");
+        "b.csv:3: P = 1.5 is given together with a; give only one of a, P or q");
   CHECK(csv_refusal(by_elements + sun + "Earth,0,,0.5,0,0,0,0\n") == "b.csv:3: column 'a' is empty; expected a number");
   CHECK(csv_refusal(by_elements + "Sun,1,0,0,0,0,0,0\n").empty());
 }
@@ -279,7 +282,7 @@ TEST_CASE("what is no table is a file error, in one line", "[bodies][messages]")
   CHECK(csv_refusal(std::string("\x7f"
                                 "ELF\0\0\1",
                                 7)) ==
-        "b.csv: this is no text: byte 4 is zero; expected CSV or a vector table of Horizons");
+        "b.csv: this is not a text file: byte 4 is zero; expected CSV or a vector table of Horizons");
   const test::ScratchFolder folder;
   CHECK_THROWS_AS(io::read_bodies(folder / "missing.csv"), FileError);
   CHECK(error_of([&] { io::read_bodies(folder / "missing.csv"); }) ==

@@ -164,9 +164,10 @@ TEST_CASE("any bit of a sample, or of what particles have once, is found", "[ins
     }
   }
   for (const double mass : run.frames().masses) {
-    CHECK(run.damaged(mass, random() % 52) ==
-          std::vector<std::string>{
-              "the ids, names, masses, types, bonds or parameters of the particles are not those that were written"});
+    CHECK(
+        run.damaged(mass, random() % 52) ==
+        std::vector<std::string>{
+            "the ids, names, masses, types, bonds or parameters of the particles differ from those that were written"});
   }
 }
 

@@ -93,22 +93,22 @@ TEST_CASE("Horizons tables that do not fit are refused with the line", "[bodies]
         "2 or 3)");
   const std::string without_mass = test::replaced(table("asteroid.txt"), "mass [kg] = 9.3839e20\n", "");
   CHECK(horizons_refusal(without_mass).empty());
-  CHECK(
-      horizons_refusal(test::replaced(without_mass, "1 Ceres (A801 AA)", "5 Astraea (A845 XA)")) ==
-      "h.txt:4: the mass of 5 Astraea (A845 XA) is not built in, and Horizons gives none; put a line 'mass [kg] = ...' "
-      "(0 for a tracer) before '$$SOE'");
+  CHECK(horizons_refusal(test::replaced(without_mass, "1 Ceres (A801 AA)", "5 Astraea (A845 XA)")) ==
+        "h.txt:4: the mass of 5 Astraea (A845 XA) is not known, and Horizons does not give it; put a line 'mass [kg] = "
+        "...' "
+        "(0 for a tracer) before '$$SOE'");
   CHECK(horizons_refusal(test::replaced(table("asteroid.txt"), "9.3839e20", "-1")) ==
         "h.txt:20: the mass is -1; expected 0 or more");
   CHECK(horizons_refusal(test::replaced(table("asteroid.txt"), "[kg]", "[km]")) ==
         "h.txt:20: the mass is in 'km'; expected a unit of mass, such as 'mass [kg]'");
   CHECK(horizons_refusal(test::replaced(table("asteroid.txt"), "9.3839e20", "much")) ==
-        "h.txt:20: the mass is 'much', which is no number");
+        "h.txt:20: the mass is 'much', which is not a number");
   CHECK(horizons_refusal(test::replaced(table("plain.txt"), "$$EOE\n", "")) ==
         "h.txt:25: the table that begins here has no end: '$$EOE' is missing");
-  CHECK(horizons_refusal("$$SOE\n$$EOE\n") == "h.txt:1: the head of this table has no line 'Target body name'");
+  CHECK(horizons_refusal("$$SOE\n$$EOE\n") == "h.txt:1: the header of this table has no line 'Target body name'");
   CHECK(horizons_refusal(test::replaced(table("plain.txt"), "KM-D", "PC-D")) ==
         "h.txt:4: the output units of Jupiter Barycenter are 'PC-D'; expected AU-D, KM-S or KM-D");
-  CHECK(horizons_refusal(labels + labels) == "h.txt:144: the name 'Sun' is taken; names must differ");
+  CHECK(horizons_refusal(labels + labels) == "h.txt:144: the name 'Sun' is already used; names must differ");
   CHECK(
       horizons_refusal(labels + test::replaced(table("commas.txt"), "Solar System Barycenter (0)", "Sun (10)")) ==
       "h.txt:132: the table of Saturn Barycenter is about 'Sun (10)', that of Sun about 'Solar System Barycenter (0)'; "
@@ -120,7 +120,7 @@ TEST_CASE("Horizons tables that do not fit are refused with the line", "[bodies]
   CHECK(horizons_refusal(test::replaced(table("plain.txt"), "cartesian states", "osculating elements")) ==
         "h.txt:17: this is a table of elements; ask Horizons for vectors (EPHEM_TYPE = VECTORS)");
   CHECK(horizons_refusal(test::replaced(table("plain.txt"), "5.968955040929999E+08", "5.968955040929999F+08")) ==
-        "h.txt:27: X is '5.968955040929999F+08', which is no number");
+        "h.txt:27: X is '5.968955040929999F+08', which is not a number");
   CHECK(horizons_refusal(table("plain.txt"), {.units = &unit_system("reduced")}) ==
         "h.txt: a Horizons table has units; expected the unit system solar, si or molecular, not reduced");
 }
@@ -164,7 +164,7 @@ TEST_CASE("a barycenter that tables are about is a place, and no body", "[bodies
 TEST_CASE("a center without a known mass is refused, unless a line gives it", "[bodies][horizons][messages]") {
   const std::string moon = vector_table("Dactyl (120000243)", "243 Ida (A884 SB)", jupiter_state, "mass [kg] = 0\n");
   CHECK(horizons_refusal(moon) ==
-        "h.txt:1: the states are about '243 Ida (A884 SB)', whose mass is not built in; put a line 'center mass [kg] = "
+        "h.txt:1: the states are about '243 Ida (A884 SB)', whose mass is not known; put a line 'center mass [kg] = "
         "...' before '$$SOE', or ask Horizons for states about the Solar System Barycenter (CENTER = '500@0')");
   const auto s = read_horizons(test::replaced(moon, "mass [kg] = 0\n", "mass [kg] = 0\ncenter mass [kg] = 4.2e16\n"));
   CHECK(s.names() == std::vector<std::string>{"243 Ida (A884 SB)", "Dactyl"});
@@ -174,7 +174,7 @@ TEST_CASE("a center without a known mass is refused, unless a line gives it", "[
   const std::string planet = vector_table("Jupiter Barycenter (5)", "Sun (10)", jupiter_state);
   CHECK(read_horizons(planet + vector_table("Sun (10)", "Sun (10)", at_rest)).size() == 2);
   CHECK(horizons_refusal(vector_table("Sun (10)", "Sun (10)", jupiter_state)) ==
-        "h.txt:1: Sun (10) is not at rest in the origin, and all states are about it; take this table out");
+        "h.txt:1: Sun (10) is not at rest at the origin, but all states are relative to it; take this table out");
 }
 
 TEST_CASE("states that are not geometric, or about a site on a body, are refused", "[bodies][horizons][messages]") {
@@ -187,7 +187,7 @@ TEST_CASE("states that are not geometric, or about a site on a body, are refused
   }
   CHECK(horizons_refusal(
             test::replaced(vector_table("Moon (301)", "Earth (399)", jupiter_state), "BODY CENTER", "Greenwich")) ==
-        "h.txt:3: the states of Moon are about the site 'Greenwich', which turns with its body; ask Horizons for the "
+        "h.txt:3: the states of Moon are about the site 'Greenwich', which rotates with its body; ask Horizons for the "
         "center of the body (CENTER = '500@399')");
 }
 
@@ -213,7 +213,7 @@ TEST_CASE("no mass counts twice", "[bodies][horizons][messages]") {
             .size() == 2);
   CHECK(read_horizons(two("Jupiter Barycenter (5)", "Moon (301)")).size() == 2);
   CHECK(horizons_refusal(two("Jupiter Barycenter (5)", "Solar System Barycenter (0)")) ==
-        "h.txt:15: Solar System Barycenter is a place and no body; take its table out");
+        "h.txt:15: Solar System Barycenter is a place, not a body; take its table out");
 }
 
 TEST_CASE("the plane of old tables is compared, by whatever words it is called", "[bodies][horizons][messages]") {
@@ -320,11 +320,11 @@ TEST_CASE("an answer of Horizons without a table, or broken JSON, is named", "[b
   CHECK(horizons_refusal("{\n\"result\": " +
                          json_text("API VERSION: 1.2\nAPI SOURCE: NASA/JPL Horizons API\n\n***\nNo matches found.\n") +
                          "}") ==
-        "h.txt:2: this answer of Horizons holds no table: '$$SOE' is missing; it says 'No matches found.'");
+        "h.txt:2: this answer of Horizons has no table: '$$SOE' is missing; it says 'No matches found.'");
   CHECK(horizons_refusal("{\"signature\": {}, \"error\": \"Cannot find central body\"}") ==
-        "h.txt:1: this answer of Horizons holds no table: '$$SOE' is missing; it says 'Cannot find central body'");
+        "h.txt:1: this answer of Horizons has no table: '$$SOE' is missing; it says 'Cannot find central body'");
   CHECK(horizons_refusal("API VERSION: 1.2\nAPI SOURCE: NASA/JPL Horizons API\n\nNo ephemeris for target\n") ==
-        "h.txt:1: this answer of Horizons holds no table: '$$SOE' is missing; it says 'No ephemeris for target'");
+        "h.txt:1: this answer of Horizons has no table: '$$SOE' is missing; it says 'No ephemeris for target'");
   CHECK(
       horizons_refusal("{\"a\": 1}") ==
       "h.txt:1: this JSON has no \"result\", as answers of Horizons have; expected CSV or a vector table of Horizons");
@@ -334,11 +334,12 @@ TEST_CASE("an answer of Horizons without a table, or broken JSON, is named", "[b
   CHECK(horizons_refusal("[{\"result\": 1}]") ==
         "h.txt:1: this is a list in JSON; expected answers of Horizons, {...}, one after the other");
   CHECK(horizons_refusal("{\"result\": " + json_text(table("plain.txt")) + "} x") ==
-        "h.txt:1: this is no JSON: '{' is expected");
-  CHECK(horizons_refusal("{\"result\": \"abc") == "h.txt:1: this is no JSON: its end is missing");
-  CHECK(horizons_refusal("{\"result\" \"abc\"}") == "h.txt:1: this is no JSON: ':' is expected");
-  CHECK(horizons_refusal("{\"a\": 1]}") == "h.txt:1: this is no JSON: ']' closes nothing");
-  CHECK(horizons_refusal("{\"a\": \"\\q\"}") == "h.txt:1: this is no JSON: '\\q' means nothing in a text");
-  CHECK(horizons_refusal("{\"a\": \"\\u12g4\"}") == "h.txt:1: this is no JSON: '\\u' is followed by no four digits");
+        "h.txt:1: this is not JSON: '{' is expected");
+  CHECK(horizons_refusal("{\"result\": \"abc") == "h.txt:1: this is not JSON: its end is missing");
+  CHECK(horizons_refusal("{\"result\" \"abc\"}") == "h.txt:1: this is not JSON: ':' is expected");
+  CHECK(horizons_refusal("{\"a\": 1]}") == "h.txt:1: this is not JSON: ']' has no opening bracket");
+  CHECK(horizons_refusal("{\"a\": \"\\q\"}") == "h.txt:1: this is not JSON: '\\q' is not a valid escape in a text");
+  CHECK(horizons_refusal("{\"a\": \"\\u12g4\"}") ==
+        "h.txt:1: this is not JSON: '\\u' is not followed by four hexadecimal digits");
   CHECK(horizons_refusal("\xFF\xFE{") == "h.txt: this is text in UTF-16; save it as UTF-8");
 }

@@ -76,13 +76,13 @@ TEST_CASE("info refuses what is no file of noether", "[inspect][messages]") {
   const test::ScratchFolder folder;
   const std::string file = (folder / "x.h5").string();
   CHECK(error_of([&] { io::info(file); }) == file + ": there is no such file");
-  CHECK(error_of([&] { io::info(folder.path()); }) == folder.path().string() + ": this is no file");
+  CHECK(error_of([&] { io::info(folder.path()); }) == folder.path().string() + ": this is not a regular file");
   test::write_text(file, "hello");
   CHECK(error_of([&] { io::info(file); }).starts_with(file + ": cannot be opened as an HDF5 file"));
   test::write_text(folder / "checkpoint.h5", "hello");
   CHECK(error_of([&] { io::info(folder / "checkpoint.h5"); }) ==
         (folder / "checkpoint.h5").string() +
-            ": damaged, or no checkpoint: the line 'sha256:...' at the end of its 5 bytes is missing");
+            ": damaged, or not a checkpoint: the line 'sha256:...' at the end of its 5 bytes is missing");
 }
 
 TEST_CASE("verify finds nothing wrong with a good file, and names what is wrong with a bad one", "[inspect]") {
@@ -223,7 +223,7 @@ TEST_CASE("a conversion that cannot be is refused", "[inspect][messages]") {
   CHECK(error_of([&] { io::convert(folder / "run.h5", "out.xyzz"); }) ==
         "cannot convert to 'out.xyzz': unknown extension '.xyzz'; did you mean '.xyz'?");
   CHECK(error_of([&] { io::convert(folder / "run.h5", "out.pdb"); }) ==
-        "cannot convert to 'out.pdb': unknown extension '.pdb'; known are: .xyz, .csv");
+        "cannot convert to 'out.pdb': unknown extension '.pdb'; expected one of: .xyz, .csv");
   CHECK(error_of([&] { io::convert(folder / "run.h5", folder / "out.csv"); }) ==
         (folder / "run.h5").string() + ": there is no such file");
   {
@@ -232,10 +232,11 @@ TEST_CASE("a conversion that cannot be is refused", "[inspect][messages]") {
   }
   CHECK(error_of([&] { io::convert(folder / "run.h5", folder / "out.csv", {.unwrapped = true}); }) ==
         "cannot unwrap the positions of '" + (folder / "run.h5").string() +
-            "': its frames have no images, because there is no periodic box; convert it as it is");
+            "': its frames have no periodic box; leave out --unwrapped");
   CHECK_FALSE(std::filesystem::exists(folder / "out.csv"));
   CHECK(error_of([&] { io::convert(folder / "run.h5", folder / "none/out.csv"); }) ==
-        (folder / "none/out.csv").string() + ": cannot be written; is the folder there, and the disk not full?");
+        (folder / "none/out.csv").string() +
+            ": cannot be written; check that the folder exists and the disk is not full");
 }
 
 #endif

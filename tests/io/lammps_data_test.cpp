@@ -90,9 +90,9 @@ TEST_CASE("the style of atoms is deduced from the columns where only one fits", 
             .topology()
             ->molecules[1] == 5);
   CHECK(data_refusal(atoms("1 1 1 0 1 0\n2 1 2 1 1 0\n")) ==
-        "m.data:14: rows of 6 words may be of several styles; write 'Atoms # molecular', or give atom_style = "
+        "m.data:14: rows of 6 words could be of several styles; write 'Atoms # molecular', or give atom_style = "
         "\"molecular\" or another one");
-  CHECK(data_refusal(atoms("1 1 0\n2 1 2\n")).find("rows of 3 words may be of several styles") != std::string::npos);
+  CHECK(data_refusal(atoms("1 1 0\n2 1 2\n")).find("rows of 3 words could be of several styles") != std::string::npos);
 }
 
 TEST_CASE("coefficients of LAMMPS become parameters of noether's kinds", "[structure]") {
@@ -132,7 +132,7 @@ TEST_CASE("pairs are mixed as LAMMPS does, unless they are given", "[structure]"
   CHECK(given.topology()->pair_kind(1, 0) == PairKind{3, 2});
   CHECK(given.topology()->pair_kind(1, 1) == PairKind{5, 3});
   CHECK(data_refusal(two_atoms + pair_atoms + "\nPair Coeffs\n\n1 1 1 2.5\n2 1 1 3\n") ==
-        "m.data:22: the cutoffs of pairs differ: 3 here, 2.5 at line 21; a force has one cutoff, give it in the scene "
+        "m.data:22: the cutoffs of pairs differ: 3 here, 2.5 at line 21; a force has one cutoff; give it in the scene, "
         "and take these out");
 }
 
@@ -150,13 +150,13 @@ TEST_CASE("parameters of types add to those of the file, or replace them", "[str
   const auto refusal = [](const io::StructureOptions& options) {
     return data_refusal(two_atoms + pair_atoms, options);
   };
-  CHECK(refusal({.units = &reduced, .types = {{.type = "3"}}}) == "there is no type '3'; known are: 1, 2");
+  CHECK(refusal({.units = &reduced, .types = {{.type = "3"}}}) == "there is no type '3'; expected one of: 1, 2");
   CHECK(refusal({.units = &reduced, .types = {{.type = "1", .mass = -1}}}) ==
         "the mass of type '1' is -1; 0 or more is expected");
   CHECK(refusal({.units = &reduced, .types = {{.type = "1", .epsilon = 1}}}) ==
-        "type '1' has epsilon and no sigma; give both or none");
+        "type '1' has epsilon but no sigma; give both or neither");
   CHECK(refusal({.units = &reduced, .types = {{.type = "1", .epsilon = 1, .sigma = 1}}}) ==
-        "type '2' has no epsilon and sigma, and others have; give epsilon = 0 where there is no Lennard-Jones force");
+        "type '2' has no epsilon and sigma, but others do; give epsilon = 0 where there is no Lennard-Jones force");
   CHECK(refusal({.units = &reduced, .pairs = {{"1", "2", 1, -2}}}) == "sigma is -2; 0 or more is expected");
 }
 
@@ -166,26 +166,24 @@ TEST_CASE("the box of a file can be taken away, and images are honored", "[struc
   CHECK_FALSE(s.box().is_periodic());
   CHECK(s.positions()[1] == Vec3<double>(7, 0.5, 0));
   CHECK(data_refusal(two_atoms + pair_atoms, {.units = &reduced, .box = Box::periodic({1, 1, 1})}) ==
-        "the file has a box of its own, 5 x 6 x 7; leave box out, or give box = \"open\" to take it away");
+        "the file has its own box, 5 x 6 x 7; leave box out, or give box = \"open\" to remove it");
 }
 
 TEST_CASE("units that do not fit are refused", "[structure][messages]") {
   const std::string content = two_atoms + pair_atoms;
   CHECK(data_refusal(content, {}) ==
         "this LAMMPS data file does not say its units; give file_units = \"real\" or \"metal\"");
-  CHECK(data_refusal(content, {.file_units = "lj"}) ==
-        "numbers in lj belong to units = \"reduced\", not \"molecular\"");
+  CHECK(data_refusal(content, {.file_units = "lj"}) == "numbers in lj need units = \"reduced\", not \"molecular\"");
   CHECK(data_refusal(content, {.units = &reduced, .file_units = "real"}) ==
         "a LAMMPS data file in real needs units = \"molecular\", not \"reduced\"");
   CHECK(data_refusal(content, {.file_units = "metals"}) == "unknown file_units 'metals'; did you mean 'metal'?");
   CHECK(data_refusal(content, {.units = &unit_system("solar"), .file_units = "real"}) ==
-        "a structure is read in units = \"molecular\" or \"reduced\", not \"solar\"");
+        "a structure needs units = \"molecular\" or \"reduced\", not \"solar\"");
   CHECK(data_refusal(content, {.units = &reduced, .special = {{0, 0, 2}}}) ==
-        "special holds 2; factors from 0 to 1 are expected");
-  CHECK(
-      error_of([] { io::read_structure("m.pdb"); }) ==
-      "'m.pdb' is of no kind that is read; a structure is a .data or .lmp file or data.NAME (LAMMPS), .xyz or .extxyz, "
-      "or .gro");
+        "special contains 2; factors from 0 to 1 are expected");
+  CHECK(error_of([] { io::read_structure("m.pdb"); }) ==
+        "'m.pdb' has no supported format; a structure is a .data or .lmp file or data.NAME (LAMMPS), .xyz or .extxyz, "
+        "or .gro");
 }
 
 TEST_CASE("the units that LAMMPS writes into its first line are taken", "[structure]") {
@@ -197,8 +195,9 @@ TEST_CASE("the units that LAMMPS writes into its first line are taken", "[struct
   CHECK(read_data(said("lj")).box().edges()[0] == 5);
   CHECK(data_refusal(said("real")) == "a LAMMPS data file in real needs units = \"molecular\", not \"reduced\"");
   CHECK(data_refusal(said("real"), {.file_units = "metal"}) ==
-        "m.data:1: the file says units = real, file_units says 'metal'; take file_units out");
-  CHECK(data_refusal(said("electron"), {}) == "m.data:1: the file is in units electron; lj, real and metal are read");
+        "m.data:1: the file says units = real, but file_units says 'metal'; take file_units out");
+  CHECK(data_refusal(said("electron"), {}) ==
+        "m.data:1: the file is in units electron; only lj, real and metal are supported");
 }
 
 TEST_CASE("a header that is wrong is refused with its line", "[structure][messages]") {
@@ -208,63 +207,64 @@ TEST_CASE("a header that is wrong is refused with its line", "[structure][messag
   CHECK(data_refusal("#\n2 atoms\n") ==
         "m.data: there is no line 'xlo xhi'; the header gives the box by xlo xhi, ylo yhi and zlo zhi");
   CHECK(data_refusal("#\n2 atom\n" + box) ==
-        "m.data:2: '2 atom' is no line of the header that is read; did you mean 'atoms'?");
+        "m.data:2: '2 atom' is not a supported line of the header; did you mean 'atoms'?");
   CHECK(data_refusal("#\n2.5 atoms\n" + box) ==
         "m.data:2: atoms is '2.5'; a whole number is expected, 0 to 1000000000");
-  CHECK(data_refusal("#\n2 atoms\n3 atoms\n" + box) == "m.data:3: 'atoms' stands twice, also at line 2");
+  CHECK(data_refusal("#\n2 atoms\n3 atoms\n" + box) == "m.data:3: 'atoms' appears twice, also at line 2");
   CHECK(data_refusal("#\n2 atoms\n1 1 xlo xhi\n") == "m.data:3: xhi = 1 is not above xlo = 1");
   CHECK(data_refusal("#\n2 atoms\n" + box + "0 0 0 xy xz yz\n0.5 0 0 xy xz yz\n") ==
-        "m.data:7: the box is triclinic, with tilt factors xy xz yz = 0.5 0 0; boxes are orthogonal");
+        "m.data:7: the box is triclinic, with tilt factors xy xz yz = 0.5 0 0; only orthogonal boxes are supported");
   CHECK(data_refusal("#\n0 atoms\n" + box) == "m.data: the file has 0 atoms; 1 or more are expected");
   CHECK(data_refusal("#\n2 atoms\n3 ellipsoids\n" + box)
-            .starts_with("m.data:3: '3 ellipsoids' is no line of the header"));
+            .starts_with("m.data:3: '3 ellipsoids' is not a supported line of the header"));
 }
 
 TEST_CASE("sections that are unknown, missing, cut or twice there are refused", "[structure][messages]") {
   CHECK(
-      data_refusal(two_atoms + "\nAtom\n\n").starts_with("m.data:14: 'Atom' is no section that is read; did you mean"));
+      data_refusal(two_atoms + "\nAtom\n\n").starts_with("m.data:14: 'Atom' is not a supported section; did you mean"));
   CHECK(data_refusal(two_atoms) ==
-        "m.data:3: 2 atoms are announced, but there is no section 'Atoms'; is the file cut?");
+        "m.data:3: 2 atoms are declared, but there is no section 'Atoms'; the file may be cut short");
   CHECK(data_refusal(two_atoms + "\nAtoms # atomic\n\n1 1 0 1 0\n") ==
         "m.data:14: section 'Atoms' has 1 rows, but line 3 says 2 atoms");
   CHECK(data_refusal(two_atoms + pair_atoms + pair_atoms) ==
-        "m.data:19: section 'Atoms' stands twice, also at line 14");
+        "m.data:19: section 'Atoms' appears twice, also at line 14");
   CHECK(data_refusal(two_atoms + pair_atoms + "\nBonds\n\n1 1 1 2\n") ==
         "m.data:19: section 'Bonds' has 1 rows, but the header has no line 'bonds'");
   CHECK(data_refusal("#\n2 atoms\n1 bonds\n2 atom types\n" + box + masses + pair_atoms) ==
-        "m.data:3: 1 bonds are announced, but there is no section 'Bonds'; is the file cut?");
+        "m.data:3: 1 bonds are declared, but there is no section 'Bonds'; the file may be cut short");
   CHECK(data_refusal("#\n2 atoms\n2 atom types\n" + box + pair_atoms) ==
         "m.data: particles of type '1' have no mass; give it in [[particles.type]]: name = \"1\", mass = ...");
   CHECK(data_refusal(two_atoms + "\n\x01\xff\xfe garbage\n").starts_with("m.data:14: "));
   CHECK(data_refusal(std::string("#\0\n", 3)) ==
-        "m.data: this is no text: byte 1 is zero; expected a LAMMPS data file");
+        "m.data: this is not a text file: byte 1 is zero; expected a LAMMPS data file");
 }
 
 TEST_CASE("rows that are wrong are refused with their line", "[structure][messages]") {
   const auto atoms = [](const std::string& row, const std::string& style = "atomic") {
     return data_refusal(two_atoms + "\nAtoms # " + style + "\n\n1 1 0 1 0\n" + row + "\n");
   };
-  CHECK(atoms("1 2 0 0 0") == "m.data:17: atom 1 stands twice, also at line 16");
+  CHECK(atoms("1 2 0 0 0") == "m.data:17: atom 1 appears twice, also at line 16");
   CHECK(atoms("2 3 0 0 0") == "m.data:17: the type of an atom is '3'; a whole number is expected, 1 to 2");
-  CHECK(atoms("2 1 0 0 zero") == "m.data:17: z is 'zero', which is no number");
+  CHECK(atoms("2 1 0 0 zero") == "m.data:17: z is 'zero', which is not a number");
   CHECK(atoms("2 1 0 nan 0") == "m.data:17: y is nan; expected a finite number");
   CHECK(atoms("2 1 0 0") ==
         "m.data:17: this row of section 'Atoms' has 4 words; style 'atomic' has 5, or 8 with images, in every row");
   CHECK(atoms("0 1 0 0 0") == "m.data:17: the id of an atom is '0'; a whole number is expected, 1 to 9007199254740992");
-  CHECK(atoms("2 1 0 0 0", "sphere") ==
-        "m.data:14: atom style 'sphere' is not read; known are: atomic, charge, bond, angle, molecular, full");
   CHECK(
-      atoms("2 1 0 0 0", "hybrid atomic sphere").starts_with("m.data:14: atom style 'hybrid' is not read; known are"));
+      atoms("2 1 0 0 0", "sphere") ==
+      "m.data:14: atom style 'sphere' is not supported; expected one of: atomic, charge, bond, angle, molecular, full");
+  CHECK(atoms("2 1 0 0 0", "hybrid atomic sphere")
+            .starts_with("m.data:14: atom style 'hybrid' is not supported; expected one of: "));
   CHECK(data_refusal(two_atoms + "\nAtoms # atomic\n\n1 1 0 1 0 0 0 0\n2 1 0 1 0 0 0.5 0\n") ==
         "m.data:17: an image is '0.5'; a whole number is expected, -536870912 to 536870912");
   CHECK(data_refusal(two_atoms + pair_atoms + "\nVelocities\n\n1 0 0 0\n3 0 0 0\n") ==
-        "m.data:22: there is no atom 3 to have a velocity");
+        "m.data:22: a velocity is given for atom 3, which does not exist");
   CHECK(data_refusal(two_atoms + pair_atoms + "\nVelocities\n\n1 0 0 0\n1 0 0 0\n") ==
-        "m.data:22: the velocity of atom 1 stands twice");
+        "m.data:22: the velocity of atom 1 appears twice");
   CHECK(data_refusal(two_atoms + "\nAtoms # atomic\n\n1 1 0 1 0\n2 1 0 1e300 0\n") ==
-        "m.data: 'atom_2' stands more than 2^29 boxes away from the origin");
+        "m.data: 'atom_2' is more than 2^29 boxes away from the origin");
   CHECK(data_refusal("#\n2 atoms\n2 atom types\n" + box + "\nMasses\n\n1 1\n1 2\n" + pair_atoms) ==
-        "m.data:11: the mass of type 1 stands twice");
+        "m.data:11: the mass of type 1 appears twice");
   CHECK(data_refusal("#\n2 atoms\n2 atom types\n" + box + "\nMasses\n\n1 1\n2 -2\n" + pair_atoms) ==
         "m.data:11: the mass is -2; expected 0 or more");
 }
@@ -273,52 +273,51 @@ TEST_CASE("terms that are wrong are refused with their line", "[structure][messa
   const auto bond = [](const std::string& row, const std::string& coefficients = "") {
     return data_refusal(with_coefficients("1 bonds\n1 bond types\n", "Bonds\n\n" + row + "\n\n" + coefficients));
   };
-  CHECK(bond("1 1 1 9") == "m.data:23: bond 1 joins atom 9, which is not there");
+  CHECK(bond("1 1 1 9") == "m.data:23: bond 1 joins atom 9, which does not exist");
   CHECK(bond("1 1 2 2") == "m.data:23: bond 1 joins an atom to itself");
   CHECK(bond("1 2 1 2") == "m.data:23: the type of this bond is '2'; a whole number is expected, 1 to 1");
   CHECK(bond("1 1 1") == "m.data:23: this row of section 'Bonds' has 3 words; expected 4");
   const std::string good = "1 1 1 2";
-  CHECK(
-      bond(good, "Bond Coeffs\n\n1 10 1\n") ==
-      "m.data:27: the style of these coefficients is not said; write it behind the name of the section, 'Bond Coeffs # "
-      "STYLE'; known are: harmonic, morse, fene");
+  CHECK(bond(good, "Bond Coeffs\n\n1 10 1\n") ==
+        "m.data:27: the style of these coefficients is not given; write it after the name of the section, 'Bond "
+        "Coeffs # "
+        "STYLE'; expected one of: harmonic, morse, fene");
   CHECK(bond(good, "Bond Coeffs # class2\n\n1 1 1 1 1\n") ==
-        "m.data:27: style 'class2' of section 'Bond Coeffs' is not read; known are: harmonic, morse, fene");
+        "m.data:27: style 'class2' of section 'Bond Coeffs' is not supported; expected one of: harmonic, morse, fene");
   CHECK(bond(good, "Bond Coeffs # harmonic\n\n1 1\n") ==
-        "m.data:27: style 'harmonic' of section 'Bond Coeffs' takes 2 coefficients; this row has 1");
+        "m.data:27: style 'harmonic' of section 'Bond Coeffs' has 2 coefficients; this row has 1");
   CHECK(bond(good, "Bond Coeffs # harmonic\n\n1 1 one\n") ==
-        "m.data:27: coefficient 2 of style 'harmonic' is 'one', which is no number");
+        "m.data:27: coefficient 2 of style 'harmonic' is 'one', which is not a number");
   const auto dihedral = [](const std::string& style, const std::string& numbers) {
     return data_refusal(
         with_coefficients("1 dihedrals\n1 dihedral types\n",
                           "Dihedral Coeffs # " + style + "\n\n1 " + numbers + "\n\nDihedrals\n\n1 1 1 2 3 4\n"));
   };
   CHECK(dihedral("charmm", "1 1 0 1.5") == "m.data:23: the weight of a charmm dihedral is 1.5; 0 to 1 is expected");
-  CHECK(
-      dihedral("charmm", "1 1 0 0.5") ==
-      "m.data: the ends of dihedrals have a pair force of their own, and types have no epsilon and sigma; give both in "
-      "section 'Pair Coeffs' or [[particles.type]]");
+  CHECK(dihedral("charmm", "1 1 0 0.5") ==
+        "m.data: the ends of dihedrals interact as pairs, but types have no epsilon and sigma for them; give both in "
+        "section 'Pair Coeffs' or [[particles.type]]");
   CHECK(dihedral("fourier", "2 1 1 0") ==
         "m.data:23: the number of terms of style 'fourier' is '2'; a whole number is expected, 1 to 1");
   CHECK(dihedral("fourier", "2 1 1 0 1 1 0 5") ==
-        "m.data:23: style 'fourier' of section 'Dihedral Coeffs' takes 7 coefficients for 2 terms; this row has 8");
+        "m.data:23: style 'fourier' of section 'Dihedral Coeffs' has 7 coefficients for 2 terms; this row has 8");
   CHECK(dihedral("harmonic", "1 0.5 1") == "m.data:23: coefficient 2 of style 'harmonic' is 0.5; 1 or -1 is expected");
   CHECK(dihedral("charmm", "1 1.5 0 0") ==
         "m.data:23: coefficient 2 of style 'charmm' is 1.5; a whole number is expected, 0 to 100");
   CHECK(data_refusal(two_atoms + pair_atoms + "\nPair Coeffs # buck\n\n1 1 1 1\n2 1 1 1\n")
-            .starts_with("m.data:21: pair style 'buck' is not read; known are: lj/cut"));
+            .starts_with("m.data:21: pair style 'buck' is not supported; expected one of: lj/cut"));
 }
 
 TEST_CASE("four numbers of a pair need a style that has them", "[structure][messages]") {
   CHECK(data_refusal(two_atoms + pair_atoms + "\nPair Coeffs\n\n1 1 1 1 1\n2 1 1 1 1\n") ==
-        "m.data:21: this pair has 4 coefficients; epsilon and sigma are expected, and perhaps a cutoff, or the style "
-        "behind "
-        "the name of the section: 'Pair Coeffs # lj/charmm/coul/long'");
+        "m.data:21: this pair has 4 coefficients; epsilon and sigma are expected, and optionally a cutoff, or the "
+        "style after the name of the section: 'Pair Coeffs # lj/charmm/coul/long'");
 }
 
 TEST_CASE("no other potential is proposed in the place of one that is not read", "[structure][messages]") {
   CHECK(data_refusal(two_atoms + pair_atoms + "\nPair Coeffs # lj/cuts\n\n1 1 1\n2 1 1\n") ==
-        "m.data:21: pair style 'lj/cuts' is not read; known are: lj/cut, lj, lj/cut/coul/cut, lj/cut/coul/long, "
+        "m.data:21: pair style 'lj/cuts' is not supported; expected one of: lj/cut, lj, lj/cut/coul/cut, "
+        "lj/cut/coul/long, "
         "lj/cut/coul/dsf, lj/cut/coul/debye, lj/cut/coul/msm, lj/charmm/coul/charmm, lj/charmm/coul/long, "
         "lj/charmm/coul/msm");
   const auto angle = [](const std::string& style) {
@@ -326,10 +325,10 @@ TEST_CASE("no other potential is proposed in the place of one that is not read",
                                           "Angle Coeffs # " + style + "\n\n1 1 1 1\n\nAngles\n\n1 1 1 2 3\n"));
   };
   CHECK(angle("cosine/delta") ==
-        "m.data:23: style 'cosine/delta' of section 'Angle Coeffs' is not read; known are: "
+        "m.data:23: style 'cosine/delta' of section 'Angle Coeffs' is not supported; expected one of: "
         "harmonic, cosine, cosine/squared, charmm");
   CHECK(data_refusal(with_coefficients("1 bonds\n1 bond types\n", "BondBond Coeffs\n\n1 1 1 1\n")) ==
-        "m.data:21: section 'BondBond Coeffs' is not read: nothing here acts by it");
+        "m.data:21: section 'BondBond Coeffs' is not supported: no force here uses it");
 }
 
 TEST_CASE("styles are those of LAMMPS whatever package computes them", "[structure]") {
@@ -359,7 +358,8 @@ TEST_CASE("a word behind Atoms that is no style is a remark where the columns te
   CHECK(std::abs(4 * (six * six - six) + 0.05142787991644582) < 1e-12);
   const std::string rows = "\n\n1 1 1 0 1 0\n2 1 2 1 1 0\n";
   CHECK(data_refusal(two_atoms + "\nAtoms # my atoms" + rows) ==
-        "m.data:14: rows of 6 words may be of several styles, and 'my' is none; write 'Atoms # molecular', or give "
+        "m.data:14: rows of 6 words could be of several styles, but 'my' is not one of them; write 'Atoms # "
+        "molecular', or give "
         "atom_style = \"molecular\" or another one");
   CHECK(read_data(two_atoms + "\nAtoms # my atoms" + rows, {.units = &reduced, .atom_style = "molecular"}).size() == 2);
 }
@@ -394,9 +394,9 @@ TEST_CASE("labels stand for types", "[structure]") {
                 {.units = &reduced, .types = {{.type = "OH", .mass = 17}}});
   CHECK(typed.masses()[1] == 17);
   CHECK(data_refusal(labelled + "\nAtoms # bond\n\n1 1 CH 0 1 0\n2 1 OH 1 1 0\n3 2 2 2 2 2\n\nBonds\n\n1 1 1 2\n") ==
-        "m.data:35: the type of an atom is 'CH', which is no label of atom types; did you mean 'CT'?");
+        "m.data:35: the type of an atom is 'CH', which is not a label of atom types; did you mean 'CT'?");
   CHECK(data_refusal("#\n1 atoms\n2 atom types\n" + box + "\nAtom Type Labels\n\n1 A\n2 A\n") ==
-        "m.data:11: 'A' of atom types stands twice");
+        "m.data:11: 'A' of atom types appears twice");
   CHECK(data_refusal("#\n1 atoms\n1 atom types\n" + box + "\nAtom Type Labels\n\n1 1A\n") ==
-        "m.data:10: the label '1A' begins with a digit, as numbers of types do");
+        "m.data:10: the label '1A' begins with a digit, so it could be the number of a type");
 }

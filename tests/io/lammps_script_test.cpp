@@ -80,11 +80,11 @@ TEST_CASE("commands of scripts come behind the sections of the data file", "[str
 TEST_CASE("special and mixing of the scene agree with the script, or one of them goes", "[structure]") {
   CHECK(read_scripts({init + settings}, {.special = {{0, 0, 0.5}}, .mixing = Mixing::lorentz_berthelot}).size() == 4);
   CHECK(script_refusal("", {.special = {{0, 0, 0}}}) ==
-        "m.in.0:6: special_bonds leaves [0, 0, 0.5], special says [0, 0, 0]; take one of them out");
+        "m.in.0:6: special_bonds keeps [0, 0, 0.5], but special says [0, 0, 0]; take one of them out");
   CHECK(script_refusal("", {.mixing = Mixing::geometric}) ==
-        "m.in.0:7: pair_modify mixes in another way than mixing says; take one of them out");
+        "m.in.0:7: pair_modify and mixing give different mixing rules; take one of them out");
   CHECK(script_refusal("", {.file_units = "real"}) ==
-        "m.in.0:1: units lj stands here, but elsewhere the file's units is 'real'; take one of them out");
+        "m.in.0:1: units lj is given here, but the file's units is 'real' elsewhere; take one of them out");
   for (const auto& [line, factor] : {std::pair("fene", 1.0), std::pair("dreiding", 1.0), std::pair("charmm", 0.0),
                                      std::pair("lj 0 0 0.25 coul 0 0 0.25 angle no", 0.25)}) {
     const auto s = read_scripts({init + settings + "special_bonds " + line + "\n"});
@@ -94,46 +94,45 @@ TEST_CASE("special and mixing of the scene agree with the script, or one of them
 
 TEST_CASE("what says more than coefficients is refused by name", "[structure][messages]") {
   CHECK(script_refusal("fix 1 all nve") ==
-        "m.in.0:19: 'fix' says more than coefficients, and is not read; keep in a file of their own mass, *_coeff, "
-        "*_style, special_bonds and pair_modify");
+        "m.in.0:19: 'fix' does more than give coefficients, which is not supported; keep mass, *_coeff, *_style, "
+        "special_bonds and pair_modify in a file of their own");
   CHECK(script_refusal("bond_coef 1 1 1") ==
-        "m.in.0:19: 'bond_coef' says more than coefficients, and is not read; did you mean 'bond_coeff'?");
-  CHECK(script_refusal("mass 1 ${m}") == "m.in.0:19: 'mass 1 ${m}' has a variable; write its value in its place");
+        "m.in.0:19: 'bond_coef' does more than give coefficients, which is not supported; did you mean 'bond_coeff'?");
+  CHECK(script_refusal("mass 1 ${m}") == "m.in.0:19: 'mass 1 ${m}' uses a variable; write its value instead");
   CHECK(script_refusal("include other.in") ==
-        "m.in.0:19: 'include other.in' is not followed; list both files: coefficients = [\"a\", \"b\"]");
-  CHECK(script_refusal("boundary p p f").starts_with("m.in.0:19: 'boundary' says more than coefficients"));
+        "m.in.0:19: 'include other.in' is not followed to the other file; list both files: coefficients = [\"a\", "
+        "\"b\"]");
+  CHECK(script_refusal("boundary p p f").starts_with("m.in.0:19: 'boundary' does more than give coefficients"));
   CHECK(script_refusal("pair_style hybrid/overlay lj/cut 2.5 coul/long 2.5")
-            .starts_with("m.in.0:19: pair style 'hybrid/overlay' is not read; known are: lj/cut, "));
-  CHECK(
-      script_refusal("pair_coeff 1 1 buck 1 1 1").starts_with("m.in.0:19: pair style 'buck' is not read; known are: "));
+            .starts_with("m.in.0:19: pair style 'hybrid/overlay' is not supported; expected one of: lj/cut, "));
+  CHECK(script_refusal("pair_coeff 1 1 buck 1 1 1")
+            .starts_with("m.in.0:19: pair style 'buck' is not supported; expected one of: "));
   CHECK(script_refusal("mass 2*3 1") == "m.in.0:19: the type is '3'; a whole number is expected, 1 to 2");
   CHECK(script_refusal("pair_coeff 1 3 1 1") == "m.in.0:19: the type is '3'; a whole number is expected, 1 to 2");
-  CHECK(
-      script_refusal("pair_coeff 1 2 1 1 3.5") ==
-      "m.in.0:19: the cutoffs of pairs differ: 3.5 here, 2.5 at line 14; a force has one cutoff, give it in the scene "
-      "and take these out");
-  CHECK(
-      script_refusal("bond_coeff 1 30.0 1.0") ==
-      "m.in.0:19: the style of these coefficients is not said; give a line bond_style too; known are: harmonic, morse, "
-      "fene");
+  CHECK(script_refusal("pair_coeff 1 2 1 1 3.5") ==
+        "m.in.0:19: the cutoffs of pairs differ: 3.5 here, 2.5 at line 14; a force has one cutoff; give it in the "
+        "scene, and take these out");
+  CHECK(script_refusal("bond_coeff 1 30.0 1.0") ==
+        "m.in.0:19: the style of these coefficients is not given; give a line bond_style too; expected one of: "
+        "harmonic, morse, "
+        "fene");
   CHECK(script_refusal("pair_modify mix sixthpower") ==
-        "m.in.0:19: pair_modify mix sixthpower is not read; geometric and arithmetic are");
+        "m.in.0:19: pair_modify mix sixthpower is not supported; expected geometric or arithmetic");
   CHECK(script_refusal("pair_modify compute no") ==
-        "m.in.0:19: 'compute no' of pair_modify is not read; mix, shift and "
-        "tail are");
-  CHECK(
-      script_refusal("pair_style lj/cut/coul/cut 2.5\nspecial_bonds coul 0 0.5 1 lj 0 0 1") ==
-      "m.in.0:20: special_bonds leaves [0, 0, 1] of Lennard-Jones forces and [0, 0.5, 1] of those of charges; they may "
-      "differ in the third factor only");
+        "m.in.0:19: 'compute no' of pair_modify is not supported; only mix, shift and tail are");
+  CHECK(script_refusal("pair_style lj/cut/coul/cut 2.5\nspecial_bonds coul 0 0.5 1 lj 0 0 1") ==
+        "m.in.0:20: special_bonds keeps [0, 0, 1] of Lennard-Jones forces and [0, 0.5, 1] of forces of charges; only "
+        "the third factor may differ");
   CHECK(script_refusal("special_bonds lj/coul 0 0 0.5 angle yes")
-            .starts_with("m.in.0:19: 'angle yes' of special_bonds is not read"));
+            .starts_with("m.in.0:19: 'angle yes' of special_bonds is not supported"));
   CHECK(error_of([] {
           read_scripts({init + "mass * 1\nbond_coeff 1 harmonic 1 1\n"});
-        }).find("m.in.0:12: bond type 2 of 2 has no coefficients; give them too") != std::string::npos);
+        }).find("m.in.0:12: bond type 2 of 2 has no coefficients; give them as well") != std::string::npos);
   std::vector<std::string> notes;
   CHECK(script_refusal("pair_modify shift yes tail yes", {.notes = &notes}).empty());
-  CHECK(notes == std::vector<std::string>{"pair_modify shift yes is for the scene to say: cutoff_style = \"shifted\"",
-                                          "pair_modify tail yes is for the scene to say: tail = true"});
+  CHECK(notes == std::vector<std::string>{
+                     "pair_modify shift yes has no effect here; give it in the scene: cutoff_style = \"shifted\"",
+                     "pair_modify tail yes has no effect here; give it in the scene: tail = true"});
 }
 
 TEST_CASE("special_bonds may leave of charges another part than of Lennard-Jones forces", "[structure]") {
@@ -185,10 +184,9 @@ TEST_CASE("ends of dihedrals have the pair force that weights leave them", "[str
   // What the scene says of types counts where the file has no other numbers for the ends.
   const auto given = with("", "", {.types = {{.type = "1", .charge = 1, .epsilon = 4, .sigma = 1}}});
   CHECK(given.topology()->dihedral_kinds[1] == TermKind{"one_four", {0.5 * 4, 2, 0.5 * -0.25}});
-  CHECK(
-      error_of([&] {
-        with("", "", {.special = {{0, 0, 0.5}}});
-      }) ==
-      "special leaves 0.5 of the force between particles three bonds apart, which dihedrals of this file give by their "
-      "weights; 0 is expected there");
+  CHECK(error_of([&] {
+          with("", "", {.special = {{0, 0, 0.5}}});
+        }) ==
+        "special keeps 0.5 of the force between particles three bonds apart, but the weights of dihedrals in this file "
+        "already give that force; 0 is expected there");
 }

@@ -21,12 +21,13 @@ const std::string columns = "id,name,mass,x,y,z,vx,vy,vz\n";
 }  // namespace
 
 TEST_CASE("names with control characters or foreign bytes are refused at their line", "[bodies][messages]") {
-  CHECK(name_refusal(columns + "0,Sun,1,0,0,0,0,0,0\n1,a\x1B[2J,1,1,0,0,0,0,0\n") ==
-        "b.txt:3: the name 'a\\u001b[2J' holds the control character \\u001b; only what can be printed is allowed");
+  CHECK(
+      name_refusal(columns + "0,Sun,1,0,0,0,0,0,0\n1,a\x1B[2J,1,1,0,0,0,0,0\n") ==
+      "b.txt:3: the name 'a\\u001b[2J' contains the control character \\u001b; only printable characters are allowed");
   CHECK(name_refusal(columns + "0,\"tab\there\",1,0,0,0,0,0,0\n") ==
-        "b.txt:2: the name 'tab\\there' holds the control character \\t; only what can be printed is allowed");
+        "b.txt:2: the name 'tab\\there' contains the control character \\t; only printable characters are allowed");
   CHECK(name_refusal(columns + "0,S\xF6l,1,0,0,0,0,0,0\n") ==
-        "b.txt:2: the name 'S\\xf6l' holds the byte \\xf6, which is not UTF-8; save the text as UTF-8");
+        "b.txt:2: the name 'S\\xf6l' contains the byte \\xf6, which is not UTF-8; save the text as UTF-8");
   CHECK(name_refusal(columns + "0,S\xC3\xB6l,1,0,0,0,0,0,0\n").empty());
 
   std::string horizons =
@@ -34,7 +35,7 @@ TEST_CASE("names with control characters or foreign bytes are refused at their l
   REQUIRE(name_refusal(horizons, "solar").empty());
   horizons.replace(horizons.find("Ceres"), 5, "C\xE9r\x07s");
   CHECK(name_refusal(horizons, "solar") ==
-        "b.txt:4: the name '1 C\\xe9r\\u0007s (A801 AA)' holds the byte \\xe9, which is not UTF-8; save the text as "
+        "b.txt:4: the name '1 C\\xe9r\\u0007s (A801 AA)' contains the byte \\xe9, which is not UTF-8; save the text as "
         "UTF-8");
 }
 

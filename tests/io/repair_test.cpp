@@ -140,18 +140,23 @@ TEST_CASE("rows that a dead run has left are cut off, and the run goes on as if 
     resize(folder / "run.h5", name, 12);
   }
   const io::Repair done = io::repair(folder / "run.h5");
-  CHECK(done.repaired ==
-        std::vector<std::string>{
-            "'/particles/system/velocity/value' cut from 13 rows to 12, as many as all of the frames have",
-            "'/particles/system/position/step' cut from 13 rows to 12, as many as all of the frames have",
-            "'/particles/system/position/time' cut from 13 rows to 12, as many as all of the frames have",
-            "'/noether/digests/frames' cut from 13 rows to 12, as many as all of the frames have",
-            "'/noether/monitors/energy/kinetic' cut from 21 rows to 12, as many as all of monitor 'energy' have",
-            "'/noether/monitors/energy/potential' cut from 21 rows to 12, as many as all of monitor 'energy' have",
-            "'/noether/monitors/energy/relative_error' cut from 21 rows to 12, as many as all of monitor 'energy' have",
-            "'/noether/monitors/energy/time' cut from 21 rows to 12, as many as all of monitor 'energy' have",
-            "'/noether/monitors/energy/total' cut from 21 rows to 12, as many as all of monitor 'energy' have",
-            "'/noether/digests/monitors/energy' cut from 21 rows to 12, as many as all of monitor 'energy' have"});
+  CHECK(
+      done.repaired ==
+      std::vector<std::string>{
+          "'/particles/system/velocity/value' cut from 13 rows to 12, the number that all parts of the frames have",
+          "'/particles/system/position/step' cut from 13 rows to 12, the number that all parts of the frames have",
+          "'/particles/system/position/time' cut from 13 rows to 12, the number that all parts of the frames have",
+          "'/noether/digests/frames' cut from 13 rows to 12, the number that all parts of the frames have",
+          "'/noether/monitors/energy/kinetic' cut from 21 rows to 12, the number that all parts of monitor 'energy' "
+          "have",
+          "'/noether/monitors/energy/potential' cut from 21 rows to 12, the number that all parts of monitor 'energy' "
+          "have",
+          "'/noether/monitors/energy/relative_error' cut from 21 rows to 12, the number that all parts of monitor "
+          "'energy' have",
+          "'/noether/monitors/energy/time' cut from 21 rows to 12, the number that all parts of monitor 'energy' have",
+          "'/noether/monitors/energy/total' cut from 21 rows to 12, the number that all parts of monitor 'energy' have",
+          "'/noether/digests/monitors/energy' cut from 21 rows to 12, the number that all parts of monitor 'energy' "
+          "have"});
   CHECK(done.info.damaged.empty());
   CHECK(done.info.frames == 12);
   CHECK(done.info.last_step == 55);
@@ -208,7 +213,7 @@ TEST_CASE("a file of an earlier repair is never replaced", "[repair][messages]")
   test::write_text(folder / "run.h5.damaged", "precious");
   CHECK(test::error_of([&] { io::repair(folder / "run.h5"); }) ==
         (folder / "run.h5.damaged").string() +
-            ": the file before an earlier repair is in the way; move or remove it, then repair again");
+            ": a copy from an earlier repair is in the way; move or remove it, then repair again");
   CHECK(test::read_text(folder / "run.h5.damaged") == "precious");
 }
 
@@ -256,7 +261,7 @@ TEST_CASE("groups of a checkpoint that stand within themselves are an error of t
   content.link("/state", "/state/a/b");
   write_hashed(file, content);
   CHECK(test::error_of([&] { io::read_checkpoint(file); }) ==
-        file + ": damaged: the groups below '/state' are nested more than 64 deep");
+        file + ": damaged: the groups below '/state' are nested more than 64 levels deep");
   CHECK(io::verify(file).damaged.size() == 1);
 }
 

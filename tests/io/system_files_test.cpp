@@ -7,7 +7,6 @@
 #include "io/repair.hpp"
 #include "tests/io/support.hpp"
 
-
 using namespace noether;
 using test::error_of;
 using test::LorenzRun;
@@ -31,8 +30,7 @@ TEST_CASE("h5py finds the frames of a system, and Python's digest of the last on
   REQUIRE(run.simulation.run(100).ok());
   run.writer->finish(Outcome{});
   const std::string digest = io::digest(run.simulation.particles());
-  const auto read =
-      test::python_output("read_system.py", {(folder / "run.h5").string(), "21", "5", "0.0025", "x,y,z"});
+  const auto read = test::python_output("read_system.py", {(folder / "run.h5").string(), "21", "5", "0.0025", "x,y,z"});
   if (read) CHECK(*read == digest + "\n");
   const io::FileInfo info = io::verify(folder / "run.h5");
   CHECK(info.damaged.empty());
@@ -119,9 +117,9 @@ TEST_CASE("frames of a system convert to CSV, and are refused as XYZ", "[system_
   const std::string xyz = (folder / "run.xyz").string();
   CHECK(error_of([&] { io::convert(folder / "run.h5", folder / "run.csv", {.unwrapped = true}); }) ==
         "cannot unwrap the positions of '" + (folder / "run.h5").string() +
-            "': its frames have no images, because there is no periodic box; convert it as it is");
+            "': its frames have no periodic box; leave out --unwrapped");
   CHECK(error_of([&] { io::convert(folder / "run.h5", xyz); }) ==
-        "cannot convert to '" + xyz + "': a system of variables has no particles; give a name that ends in .csv");
+        "cannot convert to '" + xyz + "': a first-order system has no particles; give a name that ends in .csv");
 }
 
 TEST_CASE("rows that a dead run of a system has left are cut off", "[system_files][repair]") {
@@ -156,7 +154,8 @@ TEST_CASE("a system of another size does not go on with a file", "[system_files]
   writer.load(saved.parts.at("trajectory"), "state");
   CHECK(error_of([&] {
           static_cast<void>(other.run(5));
-        }).find("the file holds 3 variables, the run now has 4: a trajectory is of one system") != std::string::npos);
+        }).find("the file has 3 variables, but the run now has 4: a trajectory can contain only one system") !=
+        std::string::npos);
 }
 
 #endif

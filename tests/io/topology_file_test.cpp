@@ -286,11 +286,11 @@ TEST_CASE("types and bonds that have changed are found", "[topology][flips][mess
   change_bytes(file, 987654321, 987654323);  // in ids and in bonds alike: all of it still fits together
   CHECK(io::verify(file).damaged ==
         std::vector<std::string>{
-            "the ids, names, masses, types, bonds or parameters of the particles are not those that were written"});
+            "the ids, names, masses, types, bonds or parameters of the particles differ from those that were written"});
   CHECK(error_of([&] { io::read_frame_particles(file); }) ==
         file.string() +
-            ": damaged: the ids, names, masses, types, bonds or parameters are not those that were written; 'noether "
-            "verify' says what is sound in this file");
+            ": damaged: the ids, names, masses, types, bonds or parameters differ from those that were written; see "
+            "'noether verify' for what is intact in this file");
 }
 
 TEST_CASE("a bond of nobody, a type of no name and an order that is none are damage", "[topology][messages]") {
@@ -313,7 +313,7 @@ TEST_CASE("a bond of nobody, a type of no name and an order that is none are dam
   CHECK(error_with("/connectivity/bonds", {0, 77}, {1, 2}) ==
         "a bond or a pair names the id 77, which no particle has");
   CHECK(error_with("/connectivity/bonds", {0, 1, 2}, {1, 3}) == "'/connectivity/bonds' does not have the shape (m, 2)");
-  CHECK(error_with("/particles/system/species", {1, 1, 1, 1, 1, 3}, {6}) == "the species 3 is of none of the 2 types");
+  CHECK(error_with("/particles/system/species", {1, 1, 1, 1, 1, 3}, {6}) == "the species 3 is not one of the 2 types");
   CHECK(error_with("/particles/system/species", {1, 1}, {2}) == "ids and species differ in number");
   CHECK(error_with("/noether/topology/order", {0, 1, 2, 3, 4, 4}, {6}) ==
         "'/noether/topology/order' does not name each particle once");
@@ -332,21 +332,21 @@ TEST_CASE("what is no start is refused", "[bodies][messages]") {
         name + ": the particles of 'run.h5' are in the units 'molecular', not 'si'; give units = \"molecular\"");
   CHECK(error_of([&] { io::convert(file, folder / "start.csv", {.bodies = true}); }) ==
         "cannot write bodies to '" + (folder / "start.csv").string() +
-            "': a table has no room for a periodic box; give a name that ends in .h5");
+            "': a table cannot store a periodic box; give a name that ends in .h5");
   CHECK(error_of([&] { io::convert(file, folder / "start.xyz", {.bodies = true}); }) ==
         "cannot write bodies to '" + (folder / "start.xyz").string() +
-            "': give a name that ends in .h5, or in .csv where there are no types, bonds, charges or boxes");
+            "': give a name that ends in .h5, or in .csv if there are no types, bonds, charges or box");
   CHECK(error_of([&] { io::convert(file, file, {.bodies = true}); }) ==
-        "'" + name + "' would be written over itself; give another name");
+        "'" + name + "' would overwrite itself; give another name");
   CHECK(error_of([&] { io::convert(file, folder / "all.h5"); }) ==
         "cannot convert to '" + (folder / "all.h5").string() +
-            "': one frame becomes a file for a new scene by --bodies; all frames become .xyz or .csv");
+            "': give --bodies to write one frame for a new scene, or a name that ends in .xyz or .csv for all frames");
   LorenzRun lorenz(folder / "lorenz.h5");
   REQUIRE(lorenz.simulation.run(5).ok());
   lorenz.writer->finish(Outcome{});
   CHECK(error_of([&] { io::read_frame_particles(folder / "lorenz.h5"); }) ==
         (folder / "lorenz.h5").string() +
-            ": this is the run of a system of variables, which has no particles; its variables go into [system]");
+            ": this is the run of a first-order system, which has no particles; give its variables in [system]");
 }
 
 TEST_CASE("a file from before types stood in it is read, verified, repaired, converted and gone on with",
@@ -385,9 +385,10 @@ TEST_CASE("a file from before types stood in it is read, verified, repaired, con
   whole.writer->finish(Outcome{});
   const io::RunComparison found = io::compare_runs(folder / "run.h5", folder / "whole.h5");
   CHECK(found.same());
-  CHECK(found.notes ==
-        std::vector<std::string>{"types, molecules, bonds and charges are not compared: the first is from before they "
-                                 "stood in such files"});
+  CHECK(
+      found.notes ==
+      std::vector<std::string>{
+          "types, molecules, bonds and charges are not compared: the first is from a version that did not store them"});
 }
 
 TEST_CASE("verify --against compares types, molecules, bonds and pairs", "[trajectory][compare runs]") {
@@ -428,7 +429,7 @@ TEST_CASE("an attribute of bonds that has changed is found", "[trajectory][inspe
     file.flush();
   }
   CHECK(io::verify(folder / "run.h5").damaged ==
-        std::vector<std::string>{"the units or other attributes of the particles are not those that were written"});
+        std::vector<std::string>{"the units or other attributes of the particles differ from those that were written"});
 }
 
 }  // namespace noether::test

@@ -262,11 +262,11 @@ TEST_CASE("a trajectory that cannot be gone on with is refused, in one line", "[
   run.simulation.restore(early);  // cuts the file back
   CHECK(error_of([&] { WritingRun(file).simulation.restore(saved); }) ==
         file +
-            ": '/particles/system/position/step' holds 3 rows where the saved run counts on 5; the file was cut or "
-            "replaced: bring it back, or start afresh");
+            ": '/particles/system/position/step' holds 3 rows where the saved run expects 5; the file was cut or "
+            "replaced: bring it back, or start over");
   std::filesystem::remove(file);
   CHECK(error_of([&] { WritingRun(file).simulation.restore(saved); }) ==
-        file + ": the trajectory that the saved run counts on is missing; bring it back, or start afresh");
+        file + ": the trajectory that the saved run continues is missing; bring it back, or start over");
   test::write_text(file, "no HDF5");
   CHECK(error_of([&] {
           WritingRun(file).simulation.restore(saved);
@@ -290,8 +290,8 @@ TEST_CASE("particles taken out of a run do not fit its trajectory any more", "[t
   run.simulation.edit([](ParticleSystem<double>& s) { s.remove(5); });
   CHECK(error_of([&] { static_cast<void>(run.simulation.run(5)); }) ==
         (folder / "run.h5").string() +
-            ": the file holds 6 particles, the run now has 5, or others: a trajectory is of one "
-            "set of particles; after an edit write another file");
+            ": the file has 6 particles, but the run now has 5, or others: a trajectory can contain only one set of "
+            "particles; after an edit write another file");
 }
 
 TEST_CASE("a full disk ends the run with the file's name, and the program still ends well", "[trajectory][messages]") {

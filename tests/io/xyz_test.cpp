@@ -105,19 +105,21 @@ TEST_CASE("plain XYZ is read in open space, or in a box that is given", "[struct
 TEST_CASE("extended XYZ that is wrong is refused with its line", "[structure][messages]") {
   CHECK(xyz_refusal("") == "m.xyz: the file is empty; XYZ begins with the number of atoms");
   CHECK(xyz_refusal("two\n") == "m.xyz:1: the number of atoms is 'two'; a whole number is expected, 1 to 1000000000");
-  CHECK(xyz_refusal("3\n\nO 0 0 0\nO 1 0 0\n") == "m.xyz:1: 3 atoms are announced, but the file ends after 2 of them");
+  CHECK(xyz_refusal("3\n\nO 0 0 0\nO 1 0 0\n") == "m.xyz:1: 3 atoms are declared, but the file ends after 2 of them");
   CHECK(xyz_refusal("1\n\nO 0 0\n") ==
         "m.xyz:3: this atom has 3 columns; expected 4, as there are a species and x, y, z");
-  CHECK(xyz_refusal("1\n\nO 0 0 zero\n") == "m.xyz:3: pos is 'zero', which is no number");
+  CHECK(xyz_refusal("1\n\nO 0 0 zero\n") == "m.xyz:3: pos is 'zero', which is not a number");
   CHECK(xyz_refusal("1\n\nO 0 0 0\n1\n\nO 0 0 1\n") ==
-        "m.xyz:4: there is more behind the 1 atoms of the first frame; a structure is one frame: give frame = 0, or "
+        "m.xyz:4: there is more text after the 1 atoms of the first frame, but a structure is one frame: give frame = "
+        "0, or "
         "frame = -1 for the last");
-  CHECK(xyz_refusal("1\nLattice=\"1 0 0 0 1 0 0.5 0 1\"\nO 0 0 0\n") ==
-        "m.xyz:2: Lattice=\"1 0 0 0 1 0 0.5 0 1\" is not orthogonal along the axes; boxes are");
+  CHECK(
+      xyz_refusal("1\nLattice=\"1 0 0 0 1 0 0.5 0 1\"\nO 0 0 0\n") ==
+      "m.xyz:2: Lattice=\"1 0 0 0 1 0 0.5 0 1\" is not orthogonal along the axes; only orthogonal boxes are supported");
   CHECK(xyz_refusal("1\nLattice=\"1 0 0\"\nO 0 0 0\n") == "m.xyz:2: Lattice has 3 numbers; 9 are expected");
   CHECK(xyz_refusal("1\nLattice=\"1 0 0 0 0 0 0 0 1\"\nO 0 0 0\n") ==
         "m.xyz:2: an edge of the box is 0; a length above 0 is expected");
-  CHECK(xyz_refusal("1\nLattice=\"1 0 0\nO 0 0 0\n") == "m.xyz:2: a double quote behind 'Lattice=' is not closed");
+  CHECK(xyz_refusal("1\nLattice=\"1 0 0\nO 0 0 0\n") == "m.xyz:2: a double quote after 'Lattice=' is not closed");
   CHECK(xyz_refusal("1\n" + cubic + "pbc=\"T T F\"\nO 0 0 0\n") ==
         "m.xyz:2: pbc=\"T T F\" is periodic in 2 of 3 directions; all or none are expected");
   CHECK(xyz_refusal("1\n" + cubic + "pbc=yes\nO 0 0 0\n") ==
@@ -132,7 +134,7 @@ TEST_CASE("extended XYZ that is wrong is refused with its line", "[structure][me
   CHECK(xyz_refusal("1\nProperties=species:S:1:pos:R:2\nO 0 0\n") ==
         "m.xyz:2: property 'pos' has 2 columns; expected 3");
   CHECK(xyz_refusal("1\nProperties=species:S:1:pos:R:3:pos:R:3\nO 0 0 0 0 0 0\n") ==
-        "m.xyz:2: property 'pos' stands twice");
+        "m.xyz:2: property 'pos' appears twice");
   CHECK(xyz_refusal("1\n\nCW 0 0 0\n") ==
         "m.xyz:3: particles of type 'CW' have no mass; give it in [[particles.type]]: name = \"CW\", mass = ...");
   CHECK(xyz_refusal("1\n\nO 0 0 0\n", {.units = &unit_system("reduced")}) ==
@@ -164,8 +166,8 @@ TEST_CASE("velocities of XYZ are in the units that file_units says", "[structure
     return std::string(dump).replace(dump.find(what), what.size(), with);
   };
   CHECK(xyz_refusal(without(" Temperature=99.99999999999997")) ==
-        "m.xyz:2: velocities that LAMMPS writes are in the units of its run, and the file does not say which; give "
-        "file_units = \"real\" (angstrom/fs) or \"metal\" (angstrom/ps)");
+        "m.xyz:2: velocities that LAMMPS writes are in the units of its run, but the file does not say which they are; "
+        "give file_units = \"real\" (angstrom/fs) or \"metal\" (angstrom/ps)");
   CHECK(xyz_refusal(without(":vel:", ":velocities:")) ==
         "m.xyz:2: 'velocities' may be in any units; give file_units = \"real\" (angstrom/fs) or \"metal\" "
         "(angstrom/ps)");
@@ -180,7 +182,8 @@ TEST_CASE("velocities of XYZ are in the units that file_units says", "[structure
       "2\nTemperature=3 Properties=species:S:1:pos:R:3:momenta:R:3\nAr 0 0 0 1 0 0\n"
       "Ar 4 0 0 -1 0 0\n";
   CHECK(xyz_refusal(momenta, {.file_units = "metal"}) ==
-        "m.xyz:2: momenta are in sqrt(eV u), as ASE writes them, whatever file_units = \"metal\" says; take it out");
+        "m.xyz:2: momenta are in sqrt(eV u), as ASE writes them, whatever file_units = \"metal\" says; take file_units "
+        "out");
   CHECK(xyz_refusal(momenta) ==
         "m.xyz:2: Temperature=3, but the momenta make 193.7; momenta are expected in sqrt(eV u), "
         "as ASE writes them");
@@ -195,13 +198,13 @@ TEST_CASE("columns of XYZ that nobody reads are named, and velocities that are h
   REQUIRE(notes.size() == 1);
   // 2 m v^2 / (3 k_B) with m = 39.948 u and v = sqrt(3.05) angstrom/fs
   CHECK(notes[0] ==
-        "the structure's velocities, taken as angstrom/fs, make 9.77e+07 K; give file_units if they are in "
-        "others");
+        "the structure's velocities, taken as angstrom/fs, give a temperature of 9.77e+07 K; give file_units if they "
+        "are in other units");
   notes.clear();
   read_as("m.xyz", "1\nProperties=species:S:1:pos:R:3:magmom:R:3:forces:R:3:move_mask:L:1\nO 0 0 0 1 2 3 4 5 6 T\n",
           {.notes = &notes});
-  CHECK(notes == std::vector<std::string>{"the columns 'magmom' of the structure are not read",
-                                          "the columns 'move_mask' of the structure are not read"});
+  CHECK(notes == std::vector<std::string>{"the columns 'magmom' of the structure are ignored",
+                                          "the columns 'move_mask' of the structure are ignored"});
 }
 
 TEST_CASE("a comment of XYZ is read however it is written", "[structure]") {
@@ -219,23 +222,23 @@ TEST_CASE("a comment of XYZ is read however it is written", "[structure]") {
   CHECK(edges("no mark of a key at all, Lattice 1 2 3") == Vec3<double>(0, 0, 0));
   const auto refused = [](const std::string& comment) { return xyz_refusal("1\n" + comment + "\nO 1 2 3\n"); };
   CHECK(refused("Lattice \"20 0 0 0 30 0 0 0 40\" pbc=T") ==
-        "m.xyz:2: 'Lattice' is not understood: a comment with '=' is read as key=value; put quotes about values with "
-        "blanks, or take the '=' out of a comment that is only a text");
+        "m.xyz:2: 'Lattice' is not understood: a comment with '=' is read as key=value; put quotes around values with "
+        "spaces, or take the '=' out of a comment that is only a text");
   CHECK(refused("a = 5.26 angstrom").starts_with("m.xyz:2: 'angstrom' is not understood"));
   CHECK(refused("energy= pbc=T") ==
-        "m.xyz:2: behind 'energy=' stands 'pbc=T'; a value is expected, in quotes if it has blanks or '='");
+        "m.xyz:2: after 'energy=' comes 'pbc=T'; a value is expected, in quotes if it has spaces or '='");
   CHECK(refused("pbc=") ==
-        "m.xyz:2: behind 'pbc=' stands nothing; a value is expected, in quotes if it has blanks or '='");
+        "m.xyz:2: after 'pbc=' comes nothing; a value is expected, in quotes if it has spaces or '='");
   CHECK(refused("Lattice='1 0 0 0 1 0 0 0 1'pbc=F") ==
-        "m.xyz:2: behind the value of 'Lattice=' stands 'pbc=F'; a blank is expected");
-  CHECK(refused("Lattice={1 0 0 0 1 0 0 0 1") == "m.xyz:2: a brace behind 'Lattice=' is not closed");
-  CHECK(refused("step=1 step=2") == "m.xyz:2: 'step' stands twice in the comment");
+        "m.xyz:2: after the value of 'Lattice=' comes 'pbc=F'; a space is expected");
+  CHECK(refused("Lattice={1 0 0 0 1 0 0 0 1") == "m.xyz:2: a brace after 'Lattice=' is not closed");
+  CHECK(refused("step=1 step=2") == "m.xyz:2: 'step' appears twice in the comment");
   CHECK(refused("Latice=\"20 0 0 0 30 0 0 0 40\"") ==
-        "m.xyz:2: 'Latice=' is not read; the box is given as Lattice=\"ax 0 0 0 by 0 0 0 cz\"");
-  CHECK(refused("cell=\"20 30 40\"").starts_with("m.xyz:2: 'cell=' is not read; the box is given as Lattice="));
+        "m.xyz:2: 'Latice=' is not supported; the box is given as Lattice=\"ax 0 0 0 by 0 0 0 cz\"");
+  CHECK(refused("cell=\"20 30 40\"").starts_with("m.xyz:2: 'cell=' is not supported; the box is given as Lattice="));
   CHECK(refused("# CELL(abcABC): 35.2 35.2 35.2 90.0 90.0 90.0 Traj: positions{atomic_unit} Step: 0")
-            .starts_with("m.xyz:2: the cell of i-PI in this comment is not read; give Lattice="));
-  CHECK(refused("units=bohr") == "m.xyz:2: the file is in units bohr; lj, real and metal are read");
+            .starts_with("m.xyz:2: the cell of i-PI in this comment is not supported; give Lattice="));
+  CHECK(refused("units=bohr") == "m.xyz:2: the file is in units bohr; only lj, real and metal are supported");
   CHECK(read_as("m.xyz", "1\nunits=reduced\nO 1 2 3\n", {.units = &unit_system("reduced")}).positions()[0][2] == 3);
 }
 
@@ -278,7 +281,7 @@ TEST_CASE("one frame of several is taken by its number", "[structure]") {
   CHECK(xyz_refusal(frames, {.frame = 3}) == "frame = 3, but the file has 3 frames: 0 to 2, or -1 for the last");
   CHECK(xyz_refusal(frames, {.frame = -4}) == "frame = -4, but the file has 3 frames: 0 to 2, or -1 for the last");
   CHECK(xyz_refusal(frames + "5\n", {.frame = 0}) ==
-        "m.xyz:13: 5 atoms are announced, but the file ends after 0 of them");
+        "m.xyz:13: 5 atoms are declared, but the file ends after 0 of them");
   CHECK(xyz_refusal("1\nstep=1\nO 0 0 0\n1\nstep 1 =\nO 0 0\n", {.frame = 1}).starts_with("m.xyz:5: 'step' is not"));
   const std::string two = water + water_box + "\n    1\n    1SOL     OW    1   0.500   1.624   1.679\n   3.0 3.0 3.0\n";
   CHECK(read_as("m.gro", two, {.types = water_masses.types, .frame = 0}).size() == 4);
@@ -311,23 +314,25 @@ TEST_CASE("a .gro file gives particles, residues and a box", "[structure]") {
 }
 
 TEST_CASE("a .gro file that is wrong is refused with its line", "[structure][messages]") {
-  CHECK(gro_refusal("") == "m.gro: the file has no second line; .gro has a title, then the number of atoms");
-  CHECK(gro_refusal(water) == "m.gro:2: 4 atoms are announced, but the file ends after 6 lines; expected 7");
+  CHECK(gro_refusal("") ==
+        "m.gro: the file has no second line; a .gro file begins with a title, then the number of atoms");
+  CHECK(gro_refusal(water) == "m.gro:2: 4 atoms are declared, but the file ends after 6 lines; expected 7");
   CHECK(gro_refusal(water + water_box) ==
         "m.gro:3: particles of type 'OW' have no mass; give it in [[particles.type]]: name = \"OW\", mass = ...");
   CHECK(gro_refusal(water + "   1.82060   1.82060\n", water_masses) ==
         "m.gro:7: the box has 2 numbers; 3 are expected, or 9");
   CHECK(gro_refusal(water + "1 1 1 0 0 0.5 0 0 0\n", water_masses) ==
-        "m.gro:7: the box is triclinic: its 9 numbers are 1 1 1 0 0 0.5 0 0 0; boxes are orthogonal");
+        "m.gro:7: the box is triclinic, with the 9 numbers 1 1 1 0 0 0.5 0 0 0; only orthogonal boxes are supported");
   CHECK(gro_refusal(water + water_box + water, water_masses) ==
-        "m.gro:8: there is more behind the 4 atoms of the first frame; a structure is one frame: give frame = 0, or "
+        "m.gro:8: there is more text after the 4 atoms of the first frame, but a structure is one frame: give frame = "
+        "0, or "
         "frame = -1 for the last");
   const std::string atom = "\n1\n    1SOL     OW    1   0.126   1.624";
   CHECK(gro_refusal(atom + "   1.6\n0 0 0\n") ==
         "m.gro:3: this atom ends at column 42; expected 44, as its numbers have 8 columns each");
-  CHECK(gro_refusal(atom + "   1x679\n0 0 0\n") == "m.gro:3: z is '1x679', which is no number");
+  CHECK(gro_refusal(atom + "   1x679\n0 0 0\n") == "m.gro:3: z is '1x679', which is not a number");
   CHECK(gro_refusal("\n1\n    1SOL     OW    1\n0 0 0\n") ==
-        "m.gro:3: there are no two numbers with decimal points behind column 20, where positions stand");
+        "m.gro:3: there are not two numbers with decimal points after column 20, where positions are expected");
   CHECK(gro_refusal(atom + "   1.679\n0 0 0\n", {.units = &unit_system("reduced")}) ==
         "a .gro file in nm and ps needs units = \"molecular\", not \"reduced\"");
 }
@@ -350,17 +355,17 @@ TEST_CASE("a wrong number of atoms in a .gro file, and velocities that are missi
     return "title\n" + std::to_string(atoms) + water.substr(water.find("\n    1SOL"));
   };
   CHECK(gro_refusal(counted(3) + water_box, water_masses) ==
-        "m.gro:6: line 2 says 3 atoms, but 4 stand there; is the number wrong?");
+        "m.gro:6: line 2 says 3 atoms, but the file has 4; check the number");
   CHECK(gro_refusal(counted(2) + water_box, water_masses) ==
-        "m.gro:5: line 2 says 2 atoms, but 4 stand there; is the number wrong?");
+        "m.gro:5: line 2 says 2 atoms, but the file has 4; check the number");
   CHECK(gro_refusal(counted(5) + water_box + "\n", water_masses) ==
-        "m.gro:7: line 2 says 5 atoms, but the box stands here, behind 4; is the number wrong?");
+        "m.gro:7: line 2 says 5 atoms, but the box follows after 4; check the number");
   const std::string still = "    1SOL    HW1    2   0.190   1.661   1.747\n",
                     moved = "    1SOL     OW    1   0.126   1.624   1.679  0.1227 -0.0580  0.0434\n";
   CHECK(gro_refusal("title\n2\n" + moved + still + water_box) ==
-        "m.gro:4: this atom has no velocity, and the first one has one; give velocities to all of them, or to none");
+        "m.gro:4: this atom has no velocity, but the first one has one; give velocities for all atoms or for none");
   CHECK(gro_refusal("title\n2\n" + still + moved + water_box) ==
-        "m.gro:4: this atom has a velocity, and the first one has none; give velocities to all of them, or to none");
+        "m.gro:4: this atom has a velocity, but the first one has none; give velocities for all atoms or for none");
 }
 
 TEST_CASE("a structure that is not there is an error of files", "[structure]") {

@@ -13,6 +13,7 @@ import sizes
 import sources
 import sums
 import text
+import words
 
 CLEAN_HEADER = """#pragma once
 #include <vector>
@@ -70,6 +71,14 @@ SAMPLES = [
     ("io/a.cpp", 'void f() { NOETHER_EXPECTS(n > 0, "No particles"); }\n', messages.problems, "starts with a capital"),
     ("io/a.cpp", 'void f() { throw Error("\'J2\' is " + x + ", it is wrong"); }\n', messages.problems, ""),
     ("io/a.cpp", 'void f() { throw Error("J2", "HDF5 says no", "unknown: " + a + ". B"); }\n', messages.problems, ""),
+    ("io/a.cpp", 'void f() { throw Error("a step of 0 is no step"); }\n', words.problems, '"is no s" in a message'),
+    ("io/a.cpp", 'void f() { throw Error("rk4 knows "\n "no noise"); }\n', words.problems, '1: "knows no" in a message'),
+    ("cli/a.cpp", 'auto s = "pairs = \\"bonds\\" ties nobody: name them";\n', words.problems, '"nobody" in a message'),
+    ("forces/a.hpp", 'f("rate", "1/time", "flows of the drag"); g("it means nothing to it");\n', words.problems, "has no effect"),
+    ("tests/scenes/bad/scenes.txt", "= x = 0  #! 'a' and 'b' stand in one place\n", words.problems, '1: "stand in one"'),
+    ("io/a.cpp", 'f("there is no step", "x = 0 is no longer right", "`wanted()`", "nobody");  // nobody knows no step\n',
+     words.problems, ""),
+    ("tests/a.cpp", 'TEST_CASE("nobody is in range") {}\n', words.problems, ""),
     ("engine/a.hpp", "int x;\n", headers.pragma_problems, "no #pragma once"),
     ("engine/a.cpp", "/// @source Nobody1999, table 1\n", sources.problems, "'Nobody1999' is not in"),
     ("engine/a.cpp", "/// @source Author2001 and Nobody1999\n", sources.problems, "'Nobody1999' is not in"),

@@ -44,7 +44,7 @@ TEST_CASE("the error of the variable-order Adams method follows its tolerance", 
   CHECK(static_cast<double>(fine.evaluations) < 2.5 * static_cast<double>(coarse.evaluations));
 }
 
-TEST_CASE("the variable-order Adams method climbs to order 12 and takes two evaluations a step", "[methods]") {
+TEST_CASE("the variable-order Adams method climbs to order 12 and takes two evaluations per step", "[methods]") {
   auto f = test::oscillator<double>();
   AdamsPece<double> method(adamspece_info(), {.rtol = 1e-12, .atol = 1e-12});
   method.bind(f);

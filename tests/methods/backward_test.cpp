@@ -297,16 +297,16 @@ TEST_CASE("what looks the other way is refused, and what knows no way back", "[b
   const MethodChoice dop853 = method("dop853");
   auto back = planets(dop853, Direction::backward), forward = planets(dop853, Direction::forward);
   CHECK_THROWS_WITH(back.every_time(1, Energy{}),
-                    "monitor 'energy' cannot look every 1 of time; a finite time below 0 is expected");
+                    "monitor 'energy' cannot sample every 1 of time; a finite time below 0 is expected");
   REQUIRE(back.run(3).ok());
   REQUIRE(forward.run(3).ok());
-  CHECK_THROWS_WITH(back.restore(forward.save()), "the saved run goes forward in time, this one back");
-  CHECK_THROWS_WITH(forward.restore(back.save()), "the saved run goes back in time, this one forward");
+  CHECK_THROWS_WITH(back.restore(forward.save()), "the saved run goes forward in time, but this one goes back");
+  CHECK_THROWS_WITH(forward.restore(back.save()), "the saved run goes back in time, but this one goes forward");
   forward.every_time(1, Energy{});
   REQUIRE(forward.run_until(1000).ok());
   CHECK_THROWS_WITH(forward.run_until(50),
-                    "time 50 has passed: the run stands at 1000, and monitor 'energy' looks "
-                    "every 1 of time, so it cannot turn; attach it by steps");
+                    "time 50 has passed: the run is already at 1000, and monitor 'energy' samples every 1 of time, so "
+                    "the run cannot turn back; attach it by steps");
   CHECK_THROWS(make_method<double>(*dop853.info, {.first = -0.1}));
 }
 

@@ -211,9 +211,9 @@ TEST_CASE("no step is longer than max_step, and an encounter is not jumped over"
     CHECK(std::abs(run.particles().velocities()[1][1] + 0.0399) < 2e-4);
   }
   CHECK_THROWS_WITH(test::classical_over(Gravity{}, method("dop853", {.max_step = 0})),
-                    "max_step = 0 is no longest step; a time above 0 is expected");
+                    "max_step = 0 is not a valid longest step; a time above 0 is expected");
   CHECK_THROWS_WITH(test::classical_over(Gravity{}, method("rk4", {.max_step = 1})),
-                    "method 'rk4' takes steps of one length here, so max_step means nothing to it; take it out");
+                    "method 'rk4' takes steps of one length here, so max_step has no effect; take it out");
 }
 
 TEST_CASE("a fall into a point of mass ends by the references: it is passed, or steps become too short for time",
@@ -239,7 +239,7 @@ TEST_CASE("a saved run goes on by the same method with the same tolerances only"
   REQUIRE(run.run(3).ok());
   CHECK_THROWS_WITH(wrong.restore(run.save()),
                     "the saved run was made with dop853(adaptive = true, rtol = 1e-08, atol = default, first = "
-                    "default), this one has "
+                    "default), but this one has "
                     "dop853(adaptive = true, rtol = 1e-09, atol = default, first = default)");
 }
 

@@ -323,7 +323,7 @@ TEST_CASE("matrix-free methods go on from a saved run with the same bits") {
   CHECK_THROWS_WITH(
       other.load(saved_by({}), ""),
       "the saved run was made with bdf(adaptive = true, rtol = default, atol = default, jacobian = default, "
-      "first = default), this one has bdf(adaptive = true, rtol = default, atol = default, jacobian = "
+      "first = default), but this one has bdf(adaptive = true, rtol = default, atol = default, jacobian = "
       "matrix_free, first = default)");
 }
 
@@ -358,12 +358,12 @@ TEST_CASE("forms that a method or a field does not know are refused") {
     return "";
   };
   CHECK(refusal([] { classical(Kinetics{}, method("rk4", {.jacobian = matrix_free})); }) ==
-        "method 'rk4' solves no linear systems, so jacobian means nothing to it; take it out");
+        "method 'rk4' does not solve linear systems, so jacobian has no effect here; take it out");
   CHECK(refusal([] {
           ParticleSystem<double> s;
           s.variables() = {1, 0, 0};
           classical(Kinetics{}, method("bdf_2", {.jacobian = sparse})).bind(s);
         }) ==
-        "'kinetics' does not say where its Jacobian can be other than 0, so it has no sparse one; use jacobian = "
+        "'kinetics' does not declare where its Jacobian can be nonzero, so it has no sparse one; use jacobian = "
         "\"matrix_free\" or \"dense\"");
 }

@@ -127,9 +127,9 @@ TEST_CASE("Newmark's method is of order 2 with gamma = 1/2, of order 1 else, vel
 
 TEST_CASE("Newmark's method refuses what it cannot do") {
   CHECK_THROWS_WITH(classical_over(RoughSpring{}, method("newmark", NewmarkOptions{.beta = -0.1})),
-                    "beta = -0.1 is none of Newmark's method; 0 or more is expected, 0.25 by default");
+                    "beta = -0.1 is not valid in Newmark's method; 0 or more is expected, 0.25 by default");
   CHECK_THROWS_WITH(classical_over(RoughSpring{}, method("newmark", NewmarkOptions{.gamma = NAN})),
-                    "gamma = nan is none of Newmark's method; a number is expected, 0.5 by default");
+                    "gamma = nan is not valid in Newmark's method; a number is expected, 0.5 by default");
   CHECK_THROWS_WITH(classical_over(RoughSpring{}, method("trapezoidal", NewmarkOptions{})),
                     "method 'trapezoidal' has no options of 'newmark'; take them out");
   auto integrator = classical(Linear{}, method("newmark"));

@@ -89,7 +89,7 @@ TEST_CASE("the embedded formula of the Nystroem pair is of order 10", "[methods]
   CHECK(std::abs(test::fitted_slope(lower) - 11) < 0.4);
 }
 
-TEST_CASE("the error of the Nystroem pair follows its tolerance, 17 evaluations a step", "[methods]") {
+TEST_CASE("the error of the Nystroem pair follows its tolerance, 17 evaluations per step", "[methods]") {
   std::vector<test::ErrorPoint> points;
   std::int64_t rejected = 0;
   for (const double tolerance : {1e-8, 1e-12, 1e-16, 1e-20, 1e-24}) {

@@ -108,7 +108,7 @@ TEST_CASE("at 40 days Stoermer of order 14 loses the outer Solar System, of orde
   CHECK(worst12 < 1e-10);
 }
 
-TEST_CASE("Stoermer-Cowell takes one evaluation a step after a start of 193 a step", "[methods]") {
+TEST_CASE("Stoermer-Cowell takes one evaluation per step after a start of 193 a step", "[methods]") {
   for (const int order : stormer_orders) {
     auto f = test::henon_heiles<double>();
     StormerCowell<double> method("stormer", order);

@@ -307,8 +307,8 @@ TEST_CASE("a run in which two atoms collide head on ends as overlap, and names t
   CHECK(outcome.kind == Outcome::Kind::overlap);
   CHECK(exit_code(outcome) == 1);
   CHECK(outcome.message ==
-        "particles 'left' and 'right' are 0.4 apart, too close for their Lennard-Jones force; begin "
-        "with [minimize], or take a smaller step");
+        "particles 'left' and 'right' are 0.4 apart, too close for their Lennard-Jones force; start with [minimize], "
+        "or take a smaller step");
 }
 
 TEST_CASE("no atoms, one atom and extreme densities run or stop with a name", "[melts][extremes]") {

@@ -59,7 +59,7 @@ TEST_CASE("every Nystroem scheme is refused where the kinetic energy is not quad
     CHECK(refusal(*scheme, exact) ==
           "scheme '" + std::string(scheme->name) +
               "' is a Runge-Kutta-Nystroem splitting and keeps its order only where {B,{B,{B,A}}} = 0, which 'test' "
-              "does not grant; use a general scheme such as 'blanes_moan_s10'");
+              "does not guarantee; use a general scheme such as 'blanes_moan_s10'");
     CHECK(refusal(democratic_arcs, *scheme) != "");
     CHECK(refusal(WisdomHolman<double>({}), *scheme) == "");
     ++tested;

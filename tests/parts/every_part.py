@@ -262,7 +262,7 @@ def known_after(program, *arguments):
     try:
         program(*arguments)
     except Refusal as refusal:
-        return str(refusal).partition("known are: ")[2].split(", ")
+        return str(refusal).partition("expected one of: ")[2].split(", ")
     raise Fault(f"`noether {' '.join(arguments)}` is not refused")
 
 

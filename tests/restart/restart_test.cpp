@@ -115,22 +115,22 @@ TEST_CASE("a restored run of another scheme, step or set of particles is refused
 
   Simulation other_scheme(test::outer_planets(), compose(gravity, schemes::verlet_aba), 40.0);
   CHECK_THROWS_WITH(other_scheme.restore(saved),
-                    "the saved run was made by method 'verlet', this one uses 'verlet_aba'");
+                    "the saved run was made by method 'verlet', but this one uses 'verlet_aba'");
   Simulation other_force(
       test::outer_planets(),
       compose(test::kinetic_potential(Gravity{.G = test::outer_G, .softening = 0.5}), schemes::verlet), 40.0);
   CHECK_THROWS_WITH(other_force.restore(saved),
-                    "the saved run was made with gravity(G = 0.000295912208286, softening = 0), this one has "
+                    "the saved run was made with gravity(G = 0.000295912208286, softening = 0), but this one has "
                     "gravity(G = 0.000295912208286, softening = 0.5)");
   Simulation compensated(test::outer_planets(), compose(gravity, schemes::verlet, {.compensated = true}), 40.0);
-  CHECK_THROWS_WITH(compensated.restore(saved), "the saved run sums without compensation, this one with it");
+  CHECK_THROWS_WITH(compensated.restore(saved), "the saved run sums without compensation, but this one with it");
   Simulation other_step(test::outer_planets(), compose(gravity, schemes::verlet), 20.0);
-  CHECK_THROWS_WITH(other_step.restore(saved), "the saved run has a step of 40, this one of 20");
+  CHECK_THROWS_WITH(other_step.restore(saved), "the saved run has a step of 40, but this one has 20");
   auto fewer = test::outer_planets();
   fewer.remove(5);
   Simulation other_particles(std::move(fewer), compose(gravity, schemes::verlet), 40.0);
-  CHECK_THROWS_WITH(other_particles.restore(saved), "the saved run has other particles than this one");
+  CHECK_THROWS_WITH(other_particles.restore(saved), "the saved run has different particles from this one");
   Simulation more_monitors(test::outer_planets(), compose(gravity, schemes::verlet), 40.0);
   more_monitors.every(1, Energy{});
-  CHECK_THROWS_WITH(more_monitors.restore(saved), "the saved run has no part 'energy'; it was made by other parts");
+  CHECK_THROWS_WITH(more_monitors.restore(saved), "the saved run has no part 'energy'; it was made with other parts");
 }

@@ -91,9 +91,9 @@ TEST_CASE("the epoch of Horizons tables stands in the effective scene, and is a 
   }
   CHECK(BodyScene("bodies = 'bodies.txt'\nepoch = 'JD 2451546.5 UT'\n", jupiter_table).refusal() ==
         "scene.toml:4: epoch = \"JD 2451546.5 UT\" is not in the time scale of the tables, TDB");
-  CHECK(
-      BodyScene("bodies = 'bodies.txt'\nepoch = 2451545\n", jupiter_table).refusal() ==
-      "scene.toml:4: epoch = 2451545 is no Julian day; one is expected, such as \"JD 2451545\" or \"JD 2451545 TDB\"");
+  CHECK(BodyScene("bodies = 'bodies.txt'\nepoch = 2451545\n", jupiter_table).refusal() ==
+        "scene.toml:4: epoch = 2451545 is not a Julian day; one is expected, such as \"JD 2451545\" or \"JD 2451545 "
+        "TDB\"");
   CHECK(BodyScene("bodies = 'bodies.txt'\nepoch = 'JD 2451547'\n", jupiter_table).refusal() ==
         "bodies.txt:8: the table of Jupiter Barycenter has no record of JD 2451547; it has 2, from JD 2451545 to JD "
         "2451546.5");
@@ -106,7 +106,7 @@ TEST_CASE("states about the Solar System Barycenter without the Sun are warned o
   const std::string about_all = replaced(jupiter_table, "Sun (10)", "Solar System Barycenter (0)");
   CHECK(warnings_of(BodyScene("bodies = 'bodies.txt'\n", about_all).scene()) ==
         std::vector<std::string>{
-            "the states in bodies.txt are about the Solar System Barycenter, and the Sun is not among them"});
+            "the states in bodies.txt are about the Solar System Barycenter, but the Sun is not among them"});
   CHECK(warnings_of(BodyScene("bodies = 'bodies.txt'\n", jupiter_table).scene()).empty());
   const std::string sun =
       "[[particles.body]]\nname = 'Sun'\nmass = '1 Msun'\nx = ['0 au', '0 au', '0 au']\nv = ['0 km/s', '0 km/s', '0 "
@@ -234,11 +234,11 @@ TEST_CASE("elements are about the first body, another, a barycenter, or all befo
 TEST_CASE("what elements cannot be about is refused", "[scene][bodies][messages]") {
   const std::string a = body_table("A", "mass = 1\n"), b = body_table("B", "mass = 0\na = 2\n");
   CHECK(reduced_scene(a + body_table("C", "mass = 0\na = 1\nabout = 'a'\n")).refusal() ==
-        "scene.toml:10: about = \"a\": there is no 'a' above body 'C'; did you mean 'A'?");
+        "scene.toml:10: about = \"a\": there is no body 'a' above body 'C'; did you mean 'A'?");
   CHECK(reduced_scene(a + body_table("C", "mass = 0\na = 1\nabout = 'C'\n")).refusal() ==
-        "scene.toml:10: about = \"C\": there is no 'C' above body 'C'; known are: A");
+        "scene.toml:10: about = \"C\": there is no body 'C' above body 'C'; expected one of: A");
   CHECK(reduced_scene(a + b + body_table("C", "mass = 0\na = 1\nabout = ['A', 'A']\n")).refusal() ==
-        "scene.toml:14: about = [\"A\", \"A\"] names no barycenter; different bodies are expected");
+        "scene.toml:14: about = [\"A\", \"A\"] is not a valid barycenter; different bodies are expected");
   CHECK(reduced_scene(a + b + body_table("C", "mass = 0\na = 1\nabout = 3\n")).refusal() ==
         "scene.toml:14: about = 3 is a whole number; the name of a body, or a list of names, is expected");
   CHECK(reduced_scene(a + b + body_table("C", "mass = 0\na = 2\n") +
@@ -246,13 +246,12 @@ TEST_CASE("what elements cannot be about is refused", "[scene][bodies][messages]
             .refusal() ==
         "scene.toml:18: about = [\"B\", \"C\"]: these bodies have no mass, so they have no barycenter");
   CHECK(reduced_scene(a + b + body_table("C", "mass = 0\na = 1\nabout = 'B'\n")).refusal() ==
-        "scene.toml:14: about = \"B\" has no mass to move about; a body with a mass is expected");
+        "scene.toml:14: about = \"B\" has no mass; a body with a mass is expected");
   CHECK(reduced_scene(a + body_table("C", "mass = 0\na = 1\nP = 3\n")).refusal() ==
-        "scene.toml:10: P = 3 stands beside a; give one of a, P or q");
-  CHECK(
-      reduced_scene(a + body_table("C", "mass = 0\ne = 0.5\n")).refusal() ==
-      "scene.toml:6: the elements of body 'C' say no size; give the semi-major axis a, the period P or the distance of "
-      "the pericenter q");
+        "scene.toml:10: P = 3 is given together with a; give only one of a, P or q");
+  CHECK(reduced_scene(a + body_table("C", "mass = 0\ne = 0.5\n")).refusal() ==
+        "scene.toml:6: the elements of body 'C' do not give a size; give the semi-major axis a, the period P or the "
+        "pericenter distance q");
   CHECK(reduced_scene("elements = 'jacoby'\n" + a).refusal() ==
         "scene.toml:3: unknown elements 'jacoby'; did you mean 'jacobi'?");
 }

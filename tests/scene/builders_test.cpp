@@ -106,7 +106,7 @@ TEST_CASE("a tracer has no temperature", "[builders]") {
   one.add("one", 1, {0, 0, 0}, {1, 0, 0});
   set_temperature(one, 0, 1);
   CHECK(one.velocities()[0] == Vec3<double>(0, 0, 0));
-  CHECK_THROWS_WITH(set_temperature(one, 1, 1), "temperature = 1 is for two particles with mass, or more");
+  CHECK_THROWS_WITH(set_temperature(one, 1, 1), "temperature = 1 needs two or more particles with mass");
 }
 
 TEST_CASE("a liquid has any number of particles, none too near", "[builders]") {
@@ -155,30 +155,31 @@ TEST_CASE("chains have the bonds of Kremer and Grest, and do not fold back", "[b
 
 TEST_CASE("a builder refuses what cannot be built", "[builders]") {
   CHECK(refusal_to_build(Lattice{.cells = {2, 2}, .density = 1, .mass = 1}) ==
-        "cells = [2, 2] is no list of three; cells along x, y and z are expected");
+        "cells = [2, 2] is not a list of three numbers; the cells along x, y and z are expected");
   CHECK(refusal_to_build(Lattice{.cells = {2, 0, 2}, .density = 1, .mass = 1}) ==
-        "cells = [2, 0, 2] holds a number below 1");
+        "cells = [2, 0, 2] contains a number below 1; whole numbers from 1 are expected");
   CHECK(refusal_to_build(Lattice{.cells = {1000, 1000, 1000}, .density = 1, .mass = 1}) ==
-        "cells = [1000, 1000, 1000] are 4e+09 particles; at most 100000000 are expected");
+        "cells = [1000, 1000, 1000] give 4e+09 particles; at most 100000000 are expected");
   CHECK(refusal_to_build(Lattice{.cells = {2, 2, 2}, .mass = 1}) ==
-        "there is neither a density nor a constant; give one of them");
+        "neither a density nor a constant is given; give one of them");
   CHECK(refusal_to_build(Lattice{.cells = {2, 2, 2}, .density = 1, .constant = 2, .mass = 1}) ==
-        "constant = 2 stands beside a density; give one of them");
+        "constant = 2 is given together with a density; give only one of them");
   CHECK(refusal_to_build(Lattice{.cells = {2, 2, 2}, .density = -1, .mass = 1}) ==
-        "density = -1 is no density; a number above 0 is expected");
+        "density = -1 is not a valid density; a number above 0 is expected");
   CHECK(refusal_to_build(Lattice{.cells = {2, 2, 2}, .density = 1}) ==
-        "mass = 0 is no mass; a number above 0 is expected");
+        "mass = 0 is not a valid mass; a number above 0 is expected");
   CHECK(refusal_to_build(Lattice{.cells = {2, 2, 2}, .density = 1, .mass = 1, .epsilon = 1}) ==
-        "epsilon = 1 has no sigma beside it; give both or none");
+        "epsilon = 1 is given without sigma; give both or neither");
   CHECK(refusal_to_build(Lattice{.cells = {2, 2, 2}, .density = 1, .mass = 1, .temperature = -3}) ==
-        "temperature = -3 is no temperature; 0 or more is expected");
-  CHECK(refusal_to_build(Liquid{.density = 1, .mass = 1}) == "particles = 0 is not from 1 to 100000000");
+        "temperature = -3 is not a valid temperature; 0 or more is expected");
+  CHECK(refusal_to_build(Liquid{.density = 1, .mass = 1}) ==
+        "particles = 0 is out of range; 1 to 100000000 is expected");
   CHECK(refusal_to_build(Liquid{.particles = 9, .density = 1, .mass = 1, .displacement = 0.5}) ==
-        "displacement = 0.5 is not from 0 to below 0.5; particles could meet");
+        "displacement = 0.5 is out of range; 0 to below 0.5 is expected, so that particles cannot meet");
   CHECK(refusal_to_build(PolymerChains{.chains = 2, .beads = 3, .density = 1, .mass = 1, .bond_length = 0.5}) ==
-        "bond_length = 0.5 is not from 0.6 to below 1.5, where a bond of FENE breaks");
+        "bond_length = 0.5 is out of range; 0.6 to below 1.5 is expected, where a FENE bond breaks");
   CHECK(refusal_to_build(PolymerChains{.chains = 20000, .beads = 30000, .density = 1, .mass = 1}) ==
-        "chains = 20000 of 30000 beads are more than 100000000 particles");
+        "chains = 20000 of 30000 beads each are more than 100000000 particles");
 }
 
 }  // namespace

@@ -185,7 +185,7 @@ TEST_CASE("a frame that has changed since is told", "[scene][bodies][messages]")
     read_scene(text, scene.file);
     FAIL("the hash is another one");
   } catch (const SceneError& error) {
-    CHECK(error.message().starts_with("'run.h5' is no longer the file this scene was run with: its hash is "));
+    CHECK(error.message().starts_with("'run.h5' differs from the file this scene was run with: its hash is now "));
   }
 }
 
@@ -199,7 +199,7 @@ TEST_CASE("a start that a run.h5 does not have is refused in one line", "[scene]
   CHECK(said("bodies = 'run.h5'\nframe = 'baricenter'\n") ==
         "2 scene.toml:4: unknown frame 'baricenter'; did you mean 'barycenter'?");
   CHECK(said("structure = 'run.h5'\n") ==
-        "2 scene.toml:3: 'run.h5' is no structure; particles of a run go on by bodies = \"run.h5\"");
+        "2 scene.toml:3: 'run.h5' is not a structure; to start from the particles of a run give bodies = \"run.h5\"");
   CHECK(said("bodies = 'nosuch.h5'\n") == "3 scene.toml:3: nosuch.h5: there is no such file");
   CHECK(said("bodies = 'run.h5'\nepoch = 'JD 2451545'\n").starts_with("2 scene.toml:4: unknown key 'epoch'"));
   CHECK(
@@ -212,7 +212,7 @@ TEST_CASE("a start that a run.h5 does not have is refused in one line", "[scene]
         "\"solar\"");
   write_text(planets.folder / "b.csv", "name,mass [Msun],x [au],y,z,vx [au/day],vy,vz\nSun,1,0,0,0,0,0,0\n");
   CHECK(planets.refusal("bodies = 'b.csv'\nframe = 3\n", gravity_rest) ==
-        "2 scene.toml:4: frame = 3 is the number of a frame, and a table of bodies has none; \"barycenter\" or "
+        "2 scene.toml:4: frame = 3 is the number of a frame, but a table of bodies has no frames; \"barycenter\" or "
         "\"as_given\" is expected");
   // A file that has lost its end is one of damage, whatever is asked of it.
   const std::string bytes = read_text(run.folder / "run.h5");

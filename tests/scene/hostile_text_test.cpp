@@ -30,7 +30,7 @@ std::string toml_refusal(const std::string& text) {
   return "";
 }
 
-const std::string too_deep = "tables and lists stand more than 64 deep in one another; a scene needs far fewer";
+const std::string too_deep = "tables and lists are nested more than 64 levels deep; a scene needs far fewer";
 
 TEST_CASE("TOML that is nested too deeply is refused before it is parsed", "[scene][toml]") {
   CHECK(toml_refusal("x = 1\n" + repeated("a.", 20000) + "b = 1\n") == "x.toml:2: " + too_deep);
@@ -120,7 +120,7 @@ TEST_CASE("a scene of a gigabyte is refused before it is read", "[scene][hostile
   write_text(file, "units = \"reduced\"\n");
   std::filesystem::resize_file(file, std::uintmax_t{1} << 30U);
   CHECK(load_refusal(file) ==
-        "large.toml: this is too large for a scene; at most 64 MB are expected: bodies go into a table, "
+        "large.toml: the file is too large for a scene; at most 64 MB are expected: put the bodies into a table, "
         "bodies = \"FILE.csv\"");
 }
 
@@ -146,11 +146,11 @@ TEST_CASE("bytes that are no text are refused as a scene", "[scene][hostile]") {
 }
 
 TEST_CASE("a device is no scene, and no table of bodies", "[scene][hostile]") {
-  CHECK(load_refusal("/dev/zero").ends_with("zero: is a device; a file is expected"));
+  CHECK(load_refusal("/dev/zero").ends_with("zero: is a device, not a file"));
   const ScratchFolder folder;
   write_text(folder / "x.toml",
              "units = \"reduced\"\nhamiltonian.type = \"wisdom_holman\"\nparticles.bodies = \"/dev/zero\"\n");
-  CHECK(load_refusal(folder / "x.toml").ends_with("zero: is a device; a file is expected"));
+  CHECK(load_refusal(folder / "x.toml").ends_with("zero: is a device, not a file"));
 }
 
 }  // namespace

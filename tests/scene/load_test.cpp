@@ -116,14 +116,14 @@ TEST_CASE("a tree of values is held to what texts grant: keys once, UTF-8, no en
     return std::string();
   };
   CHECK(message([](SceneValue& root) { root.get<SceneValue::Table>()->emplace_back("units", SceneValue::of(true)); }) ==
-        "scene: the key 'units' stands twice; give it once");
+        "scene: the key 'units' appears twice; give it once");
   CHECK(message([](SceneValue& root) { root.put("title", SceneValue::of(std::string("\xFF"))); }) ==
         "scene: title is not UTF-8; give text in that encoding");
   CHECK(message([](SceneValue& root) {
           SceneValue deep = SceneValue::of(true);
           for (int k = 0; k < 100; ++k) deep = SceneValue::of(SceneValue::Array{deep});
           root.put("expect", deep);
-        }).find("more than 64 deep") != std::string::npos);
+        }).find("more than 64 levels deep") != std::string::npos);
 }
 
 TEST_CASE("a scene and a program end in the same digest", "[scene][determinism]") {
@@ -210,7 +210,7 @@ TEST_CASE("--set with nothing behind the sign takes a key out, or a table of a l
   CHECK(read(two_bodies, {"every="}).watches.empty());
   CHECK(refusal(two_bodies, {"integrator.stp="}) ==
         "--set integrator.stp=: there is no 'stp' to take out of the scene; did you mean 'step'?");
-  CHECK(refusal(two_bodies, {"every.9="}) == "--set every.9=: there is no number 9; there are 2, counted from 0");
+  CHECK(refusal(two_bodies, {"every.9="}) == "--set every.9=: there is no element 9; there are 2, counted from 0");
   CHECK(refusal(two_bodies, {"integrator.method="}).find("method") != std::string::npos);
 }
 
@@ -254,9 +254,8 @@ TEST_CASE("bodies by elements go round by the G of the force", "[scene]") {
   CHECK(std::abs(std::sqrt(norm2(apart)) - 1) < 1e-12);
   const std::string watched = "[[every]]\ntype = 'elements'\nevery = 0.5\nG = 1\n";
   CHECK(refusal(circle + watched)
-            .ends_with("G = 1 differs from the G = 39.47841760435743 in line 14; there is one constant of gravitation: "
-                       "give it once, as G "
-                       "in [hamiltonian]"));
+            .ends_with("G = 1 differs from the G = 39.47841760435743 in line 14; a scene has only one gravitational "
+                       "constant: give it once, as G in [hamiltonian]"));
   CHECK(refusal(circle + watched, {"hamiltonian.force.0.G="}) == "");
 }
 

@@ -23,12 +23,14 @@ template <class Part> std::string part_refusal(const Part& part) {
 
 TEST_CASE("a part refuses fields that make no sense", "[parts]") {
   CHECK(part_refusal(Gravity{}).empty());
-  CHECK(part_refusal(Gravity{.softening = -1}) == "softening = -1 is no length; 0 (point masses) or more is expected");
-  CHECK(part_refusal(Gravity{.G = 0.0}) == "G = 0 is no constant of gravitation; a number above 0 is expected");
-  CHECK(part_refusal(LinearDrag{.rate = -0.5}) == "rate = -0.5 drives instead of damping; 0 or more is expected");
+  CHECK(part_refusal(Gravity{.softening = -1}) ==
+        "softening = -1 is not a valid length; 0 (point masses) or more is expected");
+  CHECK(part_refusal(Gravity{.G = 0.0}) == "G = 0 is not a valid gravitational constant; a number above 0 is expected");
+  CHECK(part_refusal(LinearDrag{.rate = -0.5}) ==
+        "rate = -0.5 would drive the motion instead of damping it; 0 or more is expected");
   CHECK(part_refusal(Oblateness{.J2 = 0.1, .radius = 1}).empty());
   CHECK(part_refusal(Oblateness{.radius = 1}) == "oblateness has neither J2 nor J4, so it would do nothing; give one");
-  CHECK(part_refusal(Oblateness{.J4 = 0.1}) == "radius = 0 is no radius; a length above 0 is expected");
+  CHECK(part_refusal(Oblateness{.J4 = 0.1}) == "radius = 0 is not a valid radius; a length above 0 is expected");
   CHECK(part_refusal(Oblateness{.J4 = 0.1, .radius = 1, .axis = {0, 0, 0}}) ==
         "axis = [0, 0, 0] has no direction; expected one such as [0, 0, 1]");
   CHECK(part_refusal(UniformField{}).empty());  // it has no check of its own
@@ -40,7 +42,7 @@ TEST_CASE("check_gradient asks the force for its fields first", "[parts]") {
   s.add("other", 1, {1, 0, 0}, {0, 0, 0});
   check_gradient(Gravity{.softening = 0.1}, s);
   CHECK_THROWS_WITH(check_gradient(Gravity{.softening = -0.1}, s),
-                    "softening = -0.1 is no length; 0 (point masses) or more is expected");
+                    "softening = -0.1 is not a valid length; 0 (point masses) or more is expected");
 }
 
 TEST_CASE("fields that a scene must give have an example instead of a default", "[parts]") {

@@ -61,7 +61,7 @@ TEST_CASE("a monitor that saw nothing finite says so", "[scene][report]") {
   monitor.samples = 2;
   CHECK(has(to_text(report_with("energy", monitor)), "energy: watched (2 samples)\n"));
   monitor.first = monitor.last = monitor.worst = monitor.rms = nan;
-  CHECK(has(to_text(report_with("energy", monitor)), "energy: nothing finite was seen (2 samples)\n"));
+  CHECK(has(to_text(report_with("energy", monitor)), "energy: no finite value was recorded (2 samples)\n"));
   monitor.worst = 0.5;
   CHECK(has(to_text(report_with("energy", monitor)), "energy: worst 0.5 (2 samples)\n"));
 }

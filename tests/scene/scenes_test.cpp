@@ -121,7 +121,7 @@ TEST_CASE("a row of the table changes what it names, in order", "[scene]") {
   CHECK(wrong_row("- b = 2\n  a = 1\n") == "line 8: '  a = 1' " + lost);
   CHECK(wrong_row("  b = 2\n") == "line 6: '== bad' changes nothing");
   CHECK(wrong_row("b = 3\n") == "line 7: 'b = 3' begins with none of '+', '-', '=' and ' '");
-  CHECK(wrong_row("- b = 2\n== good\n") == "line 8: '== good' stands twice");
+  CHECK(wrong_row("- b = 2\n== good\n") == "line 8: '== good' appears twice");
 }
 
 Outcome run_to_its_end(Simulation<double>& sim, const Scene& scene) {
@@ -157,7 +157,7 @@ TEST_CASE("a body table that has changed since is refused by its hash", "[scene]
     FAIL("the scene was taken");
   } catch (const SceneError& error) {
     CHECK(error.key() == "particles.bodies_sha256");
-    CHECK(error.message().find("is no longer the file this scene was run with") != std::string::npos);
+    CHECK(error.message().find("differs from the file this scene was run with") != std::string::npos);
   }
 }
 

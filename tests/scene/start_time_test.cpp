@@ -156,7 +156,7 @@ TEST_CASE("a list of times is read from the scene or a file, and kept as a list"
                     Catch::Contains("when.txt:2: '30.5' has no unit"));
   write_text(folder / "when.txt", "# nothing\n");
   CHECK_THROWS_WITH(read_scene(sun_and_comet, folder / "scene.toml", standard_parts(), {"every.0.times=when.txt"}),
-                    Catch::Contains("there is no time in it; one a line is expected"));
+                    Catch::Contains("there is no time in this file; one per line is expected"));
   std::vector<double> seen;
   Simulation<double> run = assemble(listed);
   run.at_times(listed.watches[0].cadence.times, TimesSeen{&seen});
@@ -167,7 +167,7 @@ TEST_CASE("a list of times is read from the scene or a file, and kept as a list"
 TEST_CASE("times after the end are warned of, and of a moved end they are seen", "[scene][times]") {
   const std::string set = "every.0.times=[\"10 day\", \"200 day\", \"201 day\"]";
   CHECK(warnings_of(clocked({set})) ==
-        std::vector<std::string>{"1 of 3 times of 'energy' lie after the end at 200 day, so it does not look then"});
+        std::vector<std::string>{"1 of 3 times of 'energy' lie after the end at 200 day, so it does not sample then"});
   CHECK(warnings_of(clocked({set, "integrator.until=201 day"})).empty());
   CHECK(warnings_of(clocked({set, "integrator.until=", "integrator.steps=402"})).empty());
   CHECK(warnings_of(clocked({set, "integrator.until="})).empty());  // no end is known
@@ -175,16 +175,16 @@ TEST_CASE("times after the end are warned of, and of a moved end they are seen",
                                              "integrator.step=", "every.0.times=[\"1005 day\", \"1011.25 day\"]",
                                              "integrator.start_time=1000 day", "integrator.until=1010 day"};
   CHECK(warnings_of(clocked(adaptive)) ==
-        std::vector<std::string>{"1 of 2 times of 'energy' lie after the end at 1010 day, so it does not look then"});
+        std::vector<std::string>{"1 of 2 times of 'energy' lie after the end at 1010 day, so it does not sample then"});
 }
 
 TEST_CASE("a time between two steps is refused with the nearest times of the clock", "[scene][times][messages]") {
-  CHECK(
-      refusal_of([] {
-        clocked({"integrator.start_time=1000 day", "integrator.until=1200 day", "every.0.times=[\"1010.25 day\"]"});
-      })
-          .ends_with("times holds \"1010.25 day\", which is 20.5 steps of \"0.5 day\" after \"1000 day\"; the nearest "
-                     "whole numbers are \"1010 day\" (20 steps) and \"1010.5 day\" (21 steps)"));
+  CHECK(refusal_of([] {
+          clocked({"integrator.start_time=1000 day", "integrator.until=1200 day", "every.0.times=[\"1010.25 day\"]"});
+        })
+            .ends_with(
+                "times contains \"1010.25 day\", which is 20.5 steps of \"0.5 day\" after \"1000 day\"; the nearest "
+                "whole numbers are \"1010 day\" (20 steps) and \"1010.5 day\" (21 steps)"));
 }
 
 TEST_CASE("a list may begin with the start in another unit", "[scene][times]") {
@@ -200,7 +200,7 @@ TEST_CASE("a list may begin with the start in another unit", "[scene][times]") {
   CHECK(seen[0] == scene.integrator.start);
   CHECK(refusal_of([] {
           clocked({"integrator.start_time=1.1 yr", "integrator.until=601.775 day", "every.0.times=[\"401 day\"]"});
-        }).find("times holds \"401 day\", which the run does not come to") != std::string::npos);
+        }).find("times contains \"401 day\", which the run does not reach") != std::string::npos);
 }
 
 }  // namespace noether::test

@@ -111,7 +111,7 @@ TEST_CASE("exclusions by id have the bits of those that a program names by index
   CHECK(end_of(named) != end_of(plain));
   check_effective(named);
   CHECK(structure_refusal("structure = 'chains.data'\nexclusions = [[1, 2],\n [3, 99]]\n") ==
-        "scene.toml:5: exclusions holds [3, 99], but there is no particle with id 99");
+        "scene.toml:5: exclusions contains [3, 99], but there is no particle with id 99");
 }
 
 TEST_CASE("a structure runs in its box, and has changed where its hash has", "[scene][structure]") {
@@ -124,7 +124,7 @@ TEST_CASE("a structure runs in its box, and has changed where its hash has", "[s
   const auto at = text.find("structure_sha256 = \"") + 20;
   text[at] = text[at] == '0' ? '1' : '0';
   CHECK_THROWS_WITH(read_scene(text, scene.file),
-                    Catch::Matchers::Contains("'argon.data' is no longer the file this scene was run with"));
+                    Catch::Matchers::Contains("'argon.data' differs from the file this scene was run with"));
 }
 
 TEST_CASE("coefficients of an input script are kept with their hash", "[scene][structure]") {
@@ -137,9 +137,10 @@ TEST_CASE("coefficients of an input script are kept with their hash", "[scene][s
   check_effective(
       scene_of("structure = 'charmm.data'\ncoefficients = ['charmm.in']\nspecial = [0, 0, 0]\n", "molecular"));
   CHECK(structure_refusal(charmm + "special = [0, 0, 1]\n", "molecular") ==
-        "charmm.in:11: special_bonds leaves [0, 0, 0], special says [0, 0, 1]; take one of them out");
-  CHECK(structure_refusal(charmm + "coefficients_sha256 = '12'\n", "molecular")
-            .starts_with("scene.toml:5: the coefficients are no longer those this scene was run with: their hash is "));
+        "charmm.in:11: special_bonds keeps [0, 0, 0], but special says [0, 0, 1]; take one of them out");
+  CHECK(
+      structure_refusal(charmm + "coefficients_sha256 = '12'\n", "molecular")
+          .starts_with("scene.toml:5: the coefficients differ from those this scene was run with: their hash is now "));
   CHECK(structure_refusal("structure = 'charmm.data'\ncoefficients = []\ncoefficients_sha256 = ''\n", "molecular") ==
         "scene.toml:4: coefficients = [] names no file; give one, such as \"system.in.settings\", or a list");
   CHECK(structure_refusal("structure = 'charmm.data'\ncoefficients = ['charmm.in', 3]\n", "molecular") ==
@@ -165,14 +166,14 @@ TEST_CASE("a scene takes one frame of several, and is told of columns that nobod
   CHECK(last.particles.size() == 2);
   CHECK(last.effective_toml.find("frame = -1\n") != std::string::npos);
   check_effective(last);
-  CHECK(warnings_of(last) == std::vector<std::string>{"the columns 'magmom' of the structure are not read"});
+  CHECK(warnings_of(last) == std::vector<std::string>{"the columns 'magmom' of the structure are ignored"});
   CHECK(with("frame = 0\n").particles.size() == 1);
   CHECK_THROWS_WITH(
       with("frame = 2\n"),
       Catch::Matchers::Contains("scene.toml:4: frame = 2, but the file has 2 frames: 0 to 1, or -1 for the "
                                 "last"));
   CHECK_THROWS_WITH(with("frame = 'barycenter'\n"),
-                    Catch::Matchers::Contains("run.xyz:4: there is more behind the 1 atoms"));
+                    Catch::Matchers::Contains("run.xyz:4: there is more text after the 1 atoms"));
 }
 
 TEST_CASE("a builder is asked for by its name, and its scene is the same again", "[scene][builders]") {
@@ -213,37 +214,35 @@ TEST_CASE("keys of structures that are wrong are refused at their lines", "[scen
   CHECK(structure_refusal("structure = 'molecule.data'\n") ==
         "scene.toml:2: a LAMMPS data file in real needs units = \"molecular\", not \"reduced\"");
   CHECK(structure_refusal("structure = 'molecule.data'\nfile_units = 'reel'\n", "molecular") ==
-        "molecule.data:1: the file says units = real, file_units says 'reel'; take file_units out");
-  CHECK(
-      structure_refusal("structure = 'make.py'\n") ==
-      "scene.toml:3: 'make.py' is of no kind that is read; a structure is a .data or .lmp file or data.NAME (LAMMPS), "
-      ".xyz or .extxyz, or .gro");
+        "molecule.data:1: the file says units = real, but file_units says 'reel'; take file_units out");
+  CHECK(structure_refusal("structure = 'make.py'\n") ==
+        "scene.toml:3: 'make.py' has no supported format; a structure is a .data or .lmp file or data.NAME (LAMMPS), "
+        ".xyz or .extxyz, or .gro");
   CHECK(structure_refusal("structure = 'none.data'\n").starts_with("scene.toml:3: none.data: "));
   CHECK(structure_refusal("structure = ''\n") ==
         "scene.toml:3: structure = \"\" names no file; give one, such as \"water.data\"");
   CHECK(structure_refusal("structure = 'chains.data'\nspecial = [0, 2, 1]\n") ==
-        "scene.toml:4: special holds 2; factors from 0 to 1 are expected");
+        "scene.toml:4: special contains 2; factors from 0 to 1 are expected");
   CHECK(structure_refusal("structure = 'chains.data'\nspecial = [0, 1]\n") ==
-        "scene.toml:4: special = [0, 1] is no list of three; what is left of the forces of pairs one, two and three "
-        "bonds apart is expected: [s12, s13, s14]");
+        "scene.toml:4: special = [0, 1] is not a list of three numbers; the factors of the forces between particles "
+        "one, two and three bonds apart are expected: [s12, s13, s14]");
   CHECK(structure_refusal("structure = 'chains.data'\natom_style = 'full'\n") ==
-        "chains.data:32: the file says atom style 'molecular', the scene says 'full'; take atom_style out");
-  CHECK(
-      structure_refusal("structure = 'chains.data'\nbox = [1, 2, 3]\n") ==
-      "scene.toml:4: the file has a box of its own, 5 x 6 x 7; leave box out, or give box = \"open\" to take it away");
+        "chains.data:32: the file says atom style 'molecular', but the scene says 'full'; take atom_style out");
+  CHECK(structure_refusal("structure = 'chains.data'\nbox = [1, 2, 3]\n") ==
+        "scene.toml:4: the file has its own box, 5 x 6 x 7; leave box out, or give box = \"open\" to remove it");
   CHECK(structure_refusal("structure = 'chains.data'\nbox = 'closed'\n") ==
         "scene.toml:4: box = \"closed\" is not understood; three lengths are expected, or \"open\"");
   CHECK(structure_refusal("structure = 'chains.data'\nframe = 'barycenter'\n") ==
         "scene.toml:4: a periodic box has no centre of mass; take frame = \"barycenter\" out");
   CHECK(structure_refusal("structure = 'chains.data'\nmixing = 'arithmetic'\n") ==
-        "scene.toml:4: unknown mixing 'arithmetic'; known are: lorentz_berthelot, geometric");
+        "scene.toml:4: unknown mixing 'arithmetic'; expected one of: lorentz_berthelot, geometric");
   CHECK(structure_refusal("structure = 'chains.data'\nseed = 3\n") ==
-        "scene.toml:4: seed has nothing to be drawn; give a temperature too");
+        "scene.toml:4: seed has no effect without a temperature; give a temperature too");
   CHECK(structure_refusal(
             "structure = 'chains.data'\n[[particles.type]]\nname = '1'\n[[particles.type]]\nname = '3'\n") ==
-        "scene.toml:6: there is no type '3'; known are: 1, 2");
+        "scene.toml:6: there is no type '3'; expected one of: 1, 2");
   CHECK(structure_refusal("structure = 'chains.data'\n[[particles.type]]\nmass = 1\n") ==
-        "scene.toml:4: this [[particles.type]] has no name; give that of a type");
+        "scene.toml:4: this [[particles.type]] has no name; give the name of the type");
   CHECK(structure_refusal("structure = 'chains.data'\n[[particles.pair]]\ntypes = ['1']\n") ==
         "scene.toml:5: a pair has two types; give them as types = [\"A\", \"B\"]");
   CHECK(structure_refusal("structure = 'chains.data'\n[[particles.pair]]\ntypes = ['1', '2']\nsigma = 1\n") ==
@@ -259,16 +258,16 @@ TEST_CASE("particles come from one place, and its keys are the only ones", "[sce
   CHECK(structure_refusal("type = 'lattice'\nmass = 1\ndensity = 1\n")
             .starts_with("scene.toml:2: builder 'lattice' has no cells"));
   CHECK(structure_refusal("type = 'lattice'\nmass = 1\ndensity = 1\ncells = [1, 2]\n") ==
-        "scene.toml:6: cells = [1, 2] is no list of three; cells along x, y and z are expected");
+        "scene.toml:6: cells = [1, 2] is not a list of three numbers; the cells along x, y and z are expected");
   CHECK(structure_refusal("type = 'liquid'\nmass = 1\ndensity = 1\nparticles = 9\ncells = 3\n")
             .starts_with("scene.toml:7: unknown key 'cells' in builder 'liquid'"));
   CHECK(structure_refusal("body = [{type = 'A', mass = 1, x = [0, 0, 0], v = [0, 0, 0]}]\n") ==
-        "scene.toml:3: body 'body_1' has a type, and there are none; give [[particles.type]] tables");
+        "scene.toml:3: body 'body_1' has a type, but there are no types; give [[particles.type]] tables");
   CHECK(structure_refusal("mixing = 'geometric'\nbody = [{mass = 1, x = [0, 0, 0], v = [0, 0, 0]}]\n") ==
-        "scene.toml:3: mixing is of types, and there are none; give [[particles.type]] tables");
+        "scene.toml:3: mixing needs types, but there are none; give [[particles.type]] tables");
   CHECK(structure_refusal(
             "body = [{type = 'C', mass = 1, x = [0, 0, 0], v = [0, 0, 0]}]\n[[particles.type]]\nname = 'A'\n") ==
-        "scene.toml:3: there is no type 'C'; known are: A");
+        "scene.toml:3: there is no type 'C'; expected one of: A");
 }
 
 }  // namespace

@@ -96,10 +96,9 @@ steps = 8
   CHECK(!scene.system->wide_field);
   CHECK(!scene.system->exact);
   const std::string without = text.substr(0, text.find("start")) + text.substr(text.find("[integrator]"));
-  CHECK(system_refusal(without, parts) ==
-        "scene.toml:2: system 'hunt' does not say where to start; give start = [...]");
+  CHECK(system_refusal(without, parts) == "scene.toml:2: system 'hunt' has no start; give start = [...]");
   CHECK(system_refusal(text, standard_parts())
-            .starts_with("scene.toml:3: unknown system 'hunt'; known are: robertson, "));
+            .starts_with("scene.toml:3: unknown system 'hunt'; expected one of: robertson, "));
 }
 
 TEST_CASE("a start of the scene's own takes the place of the system's, and of its closed solution", "[scene]") {
@@ -139,7 +138,7 @@ TEST_CASE("a system has no forces to evaluate", "[scene][messages]") {
   const Scene scene = read_scene(lorenz, "scene.toml");
   CHECK_THROWS_WITH(evaluate(scene, false),
                     "scene.toml: there is nothing to evaluate: system 'lorenz' has neither energy nor forces; `noether "
-                    "explain` tells how stiff it is");
+                    "explain` shows how stiff it is");
 }
 
 TEST_CASE("the monitor of variables follows one of them by name or by number", "[scene]") {

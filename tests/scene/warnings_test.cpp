@@ -75,10 +75,10 @@ TEST_CASE("a pair force may stand in a scene for each pair of types, and once fo
   };
   CHECK(refused("first = '1'\nsecond = '1'\n", "first = '1'\nsecond = '2'\n").empty());
   CHECK(refused("first = '2'\nsecond = '1'\n", "first = '1'\nsecond = '2'\n") ==
-        "wca stands twice in the scene, so pairs of '1' and '2' would count twice; take one out");
+        "wca appears twice in the scene, so pairs of '1' and '2' would count twice; take one of them out");
   CHECK(refused("first = '2'\nsecond = '2'\n", "") ==
-        "wca stands twice in the scene, so pairs of '2' and '2' would count twice; take one out");
-  CHECK(refused("", "") == "wca stands twice in the scene, so every pair would count twice; take one out");
+        "wca appears twice in the scene, so pairs of '2' and '2' would count twice; take one of them out");
+  CHECK(refused("", "") == "wca appears twice in the scene, so every pair would count twice; take one of them out");
 }
 
 TEST_CASE("particles without mass that no force can move are warned of", "[scene][warnings]") {
@@ -95,9 +95,8 @@ TEST_CASE("particles without mass that no force can move are warned of", "[scene
   const std::string argon = "type = 'lennard_jones'\ncutoff = 2.5\nepsilon = 1\nsigma = 1\n";
   CHECK(of(1, argon).empty());
   CHECK(of(0, argon) ==
-        std::vector<std::string>{
-            "2 particles of mass 0, such as 'ghost', are pushed by no force of this scene: forces between "
-            "molecules move nothing without mass, which flies straight on; give masses"});
+        std::vector<std::string>{"2 particles of mass 0, such as 'ghost', are not moved by any force of this scene, "
+                                 "because forces between molecules act on masses only; give masses"});
   CHECK(of(0, "type = 'uniform_field'\nacceleration = [0, 0, -1]\n").empty());
 }
 
@@ -105,10 +104,9 @@ TEST_CASE("a bond that the step cannot follow is warned of, from the limit of th
   CHECK(warnings(harmonic(1.99), verlet).empty());
   const auto told = warnings(harmonic(2.01), verlet);
   REQUIRE(told.size() == 1);
-  CHECK(
-      told[0] ==
-      "the bond of 'atom_1' and 'atom_2' swings with h omega = 2.01, where no motion by 'verlet' stays bounded; take a "
-      "step below 0.01, or constraints");
+  CHECK(told[0] ==
+        "the bond of 'atom_1' and 'atom_2' oscillates with h omega = 2.01, which 'verlet' cannot keep bounded; take a "
+        "step below 0.01, or constraints");
   struct Case {
     std::string method;
     double limit;
@@ -142,7 +140,8 @@ TEST_CASE("a cutoff in the structure that is not that of the force is warned of"
   CHECK(warnings(harmonic(0.1), verlet, "", "1 1 2.5").empty());
   const auto told = warnings(harmonic(0.1), verlet, "", "1 1 3");
   REQUIRE(told.size() == 1);
-  CHECK(told[0] == "the structure's pairs have a cutoff of 3, the force lennard_jones one of 2.5, which is taken");
+  CHECK(told[0] ==
+        "the structure's pairs have a cutoff of 3, but the force lennard_jones has one of 2.5, which is used");
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ TEST_CASE("a force that is no gradient is named, a gradient is not", "[shadow]")
     const auto shadow = test::shadow_of(compose(test::kinetic_potential(Swirl{strength}), schemes::verlet),
                                         test::henon_heiles_start(), 0.1, 2000, test::shadow_orders);
     CAPTURE(strength, shadow.verdict());
-    CHECK_THAT(shadow.verdict(), StartsWith("force is no gradient: it differs from that of its energy by "));
+    CHECK_THAT(shadow.verdict(), StartsWith("force is not a gradient: it differs from that of its energy by "));
   }
   const auto straight = test::shadow_of(compose(test::kinetic_potential(Swirl{0}), schemes::verlet),
                                         test::henon_heiles_start(), 0.1, 2000, test::shadow_orders);

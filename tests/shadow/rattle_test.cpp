@@ -110,5 +110,5 @@ TEST_CASE("a force that is no gradient is named under constraints too", "[shadow
   const test::Mechanism mechanism = test::spherical_pendulum();
   const auto shadow = test::shadow_of(compose(test::hamiltonian_of(mechanism, SwirlingWeight{}), schemes::verlet),
                                       mechanism.particles, 0.01, 2000, test::shadow_orders);
-  CHECK_THAT(shadow.verdict(), StartsWith("force is no gradient"));
+  CHECK_THAT(shadow.verdict(), StartsWith("force is not a gradient"));
 }

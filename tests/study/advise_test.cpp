@@ -211,7 +211,7 @@ steps = 100
                                 "mute.toml", parts);
   options.methods = {"verlet"};
   CHECK_THROWS_WITH(advise(mute, options),
-                    "the energy cannot be measured here: not every force tells its own; try --metric position");
+                    "the energy cannot be measured here: not every force computes its own; try --metric position");
 }
 
 }  // namespace

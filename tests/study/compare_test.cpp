@@ -138,7 +138,7 @@ TEST_CASE("a run far beyond its limit has diverged, though its numbers are still
   CHECK(std::abs(lost.track.y.back()[0]) > 1e100);
   CHECK(lost.outcome == "diverged");
   CHECK(lost.outcome_time < 0.5);
-  CHECK(lost.message.find(" times as large as the truth ever is at t = ") != std::string::npos);
+  CHECK(lost.message.find(" times as large as the reference ever is at t = ") != std::string::npos);
   CHECK_FALSE(lost.position_error_end);
   CHECK_FALSE(lost.pareto_time);
   CHECK_FALSE(lost.pareto_evaluations);
@@ -459,10 +459,10 @@ TEST_CASE("what cannot be compared is refused in words", "[compare]") {
   };
   CHECK(refusal({.methods = {"verlt"}}) == "unknown method 'verlt'; did you mean 'verlet'?");
   CHECK(refusal({.methods = {"verlet@kinetic"}}) ==
-        "unknown hamiltonian 'kinetic'; known are: kinetic_potential, wisdom_holman");
+        "unknown hamiltonian 'kinetic'; expected one of: kinetic_potential, wisdom_holman");
   CHECK(refusal({.methods = {"verlet@wisdom_holman"}}) ==
         "'verlet@wisdom_holman': the scene has no splitting 'wisdom_holman'; leave '@wisdom_holman' out");
-  CHECK(refusal({.steps = {-1}}) == "a step of -1 is no step; a time above 0 is expected");
+  CHECK(refusal({.steps = {-1}}) == "a step of -1 is not valid; a time above 0 is expected");
   CHECK(refusal({.steps = {5}}) ==
         "a step of 5 is longer than the 0.2 between two of the 200 moments at which runs are compared; give shorter "
         "steps, or a longer --until");
@@ -472,8 +472,8 @@ TEST_CASE("what cannot be compared is refused in words", "[compare]") {
   }
   CHECK(refusal({.methods = {"verlet"}, .until = 1e300}) ==
         "a run of 1e+300 has more steps of 0.4 than can be counted; give steps of at least 1.2e+284");
-  CHECK(refusal({.tolerances = {2}}) == "2 is no tolerance; a number between 0 and 1 is expected");
-  CHECK(refusal({.repeats = 0}) == "0 repeats measure nothing; 1 or more is expected");
+  CHECK(refusal({.tolerances = {2}}) == "2 is not a valid tolerance; a number between 0 and 1 is expected");
+  CHECK(refusal({.repeats = 0}) == "0 repeats are too few; 1 or more is expected");
 }
 
 }  // namespace

@@ -528,10 +528,10 @@ TEST_CASE("a search along Kepler arcs tells resonances and the rule of the peric
 TEST_CASE("what cannot be asked is refused", "[stability]") {
   const Scene scene = ball();
   CHECK_THROWS_WITH(row_of(scene, "bdf"),
-                    "method 'bdf' chooses its steps by a tolerance, so it has no largest step; ask for one of fixed "
+                    "method 'bdf' chooses its steps by a tolerance, so it has no largest step; give one of fixed "
                     "steps, such as 'rk4'");
   CHECK_THROWS_WITH(row_of(scene, "verlt"), "unknown method 'verlt'; did you mean 'verlet'?");
-  CHECK_THROWS_WITH(row_of(scene, "verlet", 0), "a budget of 0 s is no time; a number above 0 is expected");
+  CHECK_THROWS_WITH(row_of(scene, "verlet", 0), "a budget of 0 s is not valid; a number above 0 is expected");
 }
 
 }  // namespace

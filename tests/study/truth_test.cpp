@@ -78,7 +78,7 @@ TEST_CASE("the truth of a damped oscillator is the closed form", "[truth]") {
 TEST_CASE("a truth stands beside that of a method of another family, and says so", "[truth]") {
   const Scene orbit = kepler(0.6, "method = \"verlet\"\nstep = 0.01\nsteps = 100");
   const Truth two = find_truth(orbit, {0.0625, 200});
-  CHECK(two.note == "gragg_bulirsch_stoer in extended precision, rtol 3e-22, beside gauss_8 at 1e-18");
+  CHECK(two.note == "gragg_bulirsch_stoer in extended precision, rtol 3e-22, checked against gauss_8 at 1e-18");
   CHECK(two.error.value() > 0);
   CHECK(two.error.value() < 1e-18);
 }
@@ -100,7 +100,7 @@ until = 0.01
   const Truth truth = find_truth(scene, sampling);
   INFO(truth.note);
   REQUIRE(truth.kind == TruthKind::quad);
-  CHECK(truth.note == "gragg_bulirsch_stoer in extended precision, rtol 3e-22, beside itself at 1e-20");
+  CHECK(truth.note == "gragg_bulirsch_stoer in extended precision, rtol 3e-22, checked against itself at 1e-20");
   REQUIRE(truth.error);
   CHECK(*truth.error > 0);
   CHECK(*truth.error < 1e-17);

@@ -42,7 +42,7 @@ template <Integrator I> class EnergyProjected : public Wrapped<I>, public Energy
   IntegratorClaims claims() const {
     IntegratorClaims claims = Wrapped<I>::claims();
     claims.symplectic = claims.reversible = false;
-    claims.no_action = "velocities are scaled by energy_projection, so no action tells the motion";
+    claims.no_action = "velocities are scaled by energy_projection, so the motion has no action";
     claims.keeps_momentum = claims.keeps_angular_momentum = false;
     return claims;
   }

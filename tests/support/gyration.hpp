@@ -34,7 +34,7 @@ template <class F, class Real = double> class Gyrating {
             .energy = forces.energy,
             .time_dependent = forces.time_dependent,
             .dissipative = forces.dissipative,
-            .no_action = "drifts of charges in a field are no canonical maps, so no action tells the motion",
+            .no_action = "drifts of charges in a field are not canonical maps, so the motion has no action",
             .keeps_momentum = false,
             .keeps_angular_momentum = false};
   }

@@ -123,7 +123,7 @@ SceneTable scene_table(const std::string& text) {
   for (const Section& section : sections_of(text)) {
     const bool is_good = section.heading.text.starts_with("==== ");
     const std::string name = section.heading.text.substr(is_good ? 5 : 3);
-    if (!names.insert(name).second) refuse(section.heading, "stands twice");
+    if (!names.insert(name).second) refuse(section.heading, "appears twice");
     if (is_good) {
       good.clear();
       for (const Line& line : section.lines) good.push_back(line.text);

@@ -50,17 +50,16 @@ TEST_CASE("what a table of bodies has wrong is told with what is meant", "[sweep
   const auto refusal = [](const std::string& table) {
     return seen(gravity_scene("bodies = 'b.csv'\n"), "b.csv", table).refusal;
   };
-  CHECK(refusal("# " + sun_and_earth) ==
-        "b.csv:1: the names of the columns stand in a comment; take the '#' before them out");
+  CHECK(refusal("# " + sun_and_earth) == "b.csv:1: the column names are in a comment; take out the '#' before them");
   CHECK(refusal(",name,mass [Msun],x [au],y,z,vx [au/day],vy,vz\n0,Sun,1,0,0,0,0,0,0\n") ==
-        "b.csv:1: column 1 has no name; take a column of row numbers out, by index=False in pandas");
+        "b.csv:1: column 1 has no name; if it is the row numbers of pandas, write the table with index=False");
   CHECK(refusal(replaced(sun_and_earth, "mass [Msun]", "m [Msun]")) ==
         "b.csv:1: unknown column 'm'; did you mean 'mass'?");
   CHECK(refusal(replaced(sun_and_earth, "0.017",
                          "\xE2\x88\x92"
                          "0.017")) ==
         "b.csv:3: column 'vy' is '\xE2\x88\x92"
-        "0.017202098', which is no number; a minus is written '-'");
+        "0.017202098', which is not a number; write a minus as '-'");
   CHECK(refusal(replaced(sun_and_earth, "vz\nSun,1,0,0,0,0,0,0\n", "vz,\nSun,1,0,0,0,0,0,0,7\n")) ==
         "b.csv:2: this row has 9 fields; expected 8, as line 1 names");
   // What JPL, the Minor Planet Center and textbooks call elements, which nearness of letters would take for others.
@@ -77,8 +76,8 @@ TEST_CASE("what a table of bodies has wrong is told with what is meant", "[sweep
            {"L", "; did you mean 'l'?"},
            {"per", "; did you mean 'P'?"},
            {"tp", "; did you mean 'T'?"},
-           {"n", "; a mean motion n is not read: give the period P = 360 deg / n, or a"},
-           {"E", "; an eccentric anomaly E is not read: give M = E - e sin E, or f"}}) {
+           {"n", "; a mean motion n is not supported: give the period P = 360 deg / n, or a"},
+           {"E", "; an eccentric anomaly E is not supported: give M = E - e sin E, or f"}}) {
     CAPTURE(other);
     CHECK(refusal("name,mass [Msun],a [au],e," + other + "\nSun,1,,,\n") ==
           "b.csv:1: unknown column '" + other + "'" + told);
@@ -145,7 +144,7 @@ TEST_CASE("a column of passages in Julian days is beside the epoch", "[sweep][bo
   CHECK(is_at(it.particles, 1, orbit_rows[5].state, 1e-12));
   CHECK(is_at(it.particles, 2, orbit_rows[6].state, 1e-12));
   CHECK(seen(gravity_scene("bodies = 'b.csv'\n"), "b.csv", table).refusal ==
-        "b.csv:1: column 'T' is in Julian days, and nobody says which the start is; give epoch = \"JD ...\" in "
+        "b.csv:1: column 'T' is in Julian days, but the epoch of the start is not given; give epoch = \"JD ...\" in "
         "[particles]");
   CHECK(
       seen(gravity_scene("bodies = 'b.csv'\nepoch = 'JD 2451545'\n"), "b.csv", replaced(table, "2446470.5", "46470.5"))
@@ -154,7 +153,7 @@ TEST_CASE("a column of passages in Julian days is beside the epoch", "[sweep][bo
       "Julian day; add 2400000.5 to it");
   CHECK(seen(gravity_scene("bodies = 'b.csv'\n"), "b.csv", replaced(table, "T [JD]", "T [day]")).refusal ==
         "b.csv:3: column 'T' is 2446470.5, counted from the start, which looks like a Julian day; name the column 'T "
-        "[JD]' and give the epoch in [particles], or a time in yr if it is meant so");
+        "[JD]' and give the epoch in [particles], or give the time in yr if it is a time");
 }
 
 TEST_CASE("a Julian day in the place of a time is told", "[sweep][bodies][messages]") {
@@ -163,9 +162,8 @@ TEST_CASE("a Julian day in the place of a time is told", "[sweep][bodies][messag
         .refusal;
   };
   CHECK(refusal("", "2446470.5 day") ==
-        "scene.toml:11: T = \"2446470.5 day\" is counted from the start, and looks like a Julian day; give T = \"JD "
-        "...\" "
-        "and the epoch in [particles], or a time in yr if it is meant so");
+        "scene.toml:11: T = \"2446470.5 day\" is counted from the start, but looks like a Julian day; give T = \"JD "
+        "...\" and the epoch in [particles], or give the time in yr if it is a time");
   for (const std::string day :
        {"2446470.5d", "2446470.5 d", "2446470.5 day ", " +2.4464705e6 days", "2446470.5*day", "2446470.5/day^-1"}) {
     CAPTURE(day);
@@ -181,9 +179,10 @@ TEST_CASE("a Julian day in the place of a time is told", "[sweep][bodies][messag
         "scene.toml:12: T = \"JD 46470.5\" is 2405074.5 days from the epoch, JD 2451545 TDB: one of them looks like a "
         "modified Julian day; add 2400000.5 to it");
   CHECK(has(refusal("epoch = 'JD 51544.5'\n", "JD 2446470.5"), "is 2394926 days from the epoch, JD 51544.5: one of"));
-  CHECK(refusal("", "JD 2446470.5") ==
-        "scene.toml:11: T = \"JD 2446470.5\" is a Julian day, and nobody says which the start is; give epoch = \"JD "
-        "...\" in [particles]");
+  CHECK(
+      refusal("", "JD 2446470.5") ==
+      "scene.toml:11: T = \"JD 2446470.5\" is a Julian day, but the epoch of the start is not given; give epoch = \"JD "
+      "...\" in [particles]");
   CHECK(refusal("epoch = 'JD 2451545 TDB'\n", "JD 2446470.5 UT") ==
         "scene.toml:12: T = \"JD 2446470.5 UT\" is not in the time scale of the epoch, TDB");
 }
@@ -196,7 +195,7 @@ TEST_CASE("a constant of gravitation of other units is warned of", "[sweep][bodi
   };
   // One constant in the units that people have it in, by CODATA 2018 and the IAU's parsec: 4.30091727e-3 pc km^2/s^2
   // per Msun, 4 pi^2 au^3/yr^2 per Msun.
-  const std::string here = " times the constant of gravitation in these units, 0.000295912 au^3/Msun/day^2",
+  const std::string here = " times the gravitational constant in these units, 0.000295912 au^3/Msun/day^2",
                     that = here + ", and is that of ";
   CHECK(warned("6.6743e-11") == std::vector<std::string>{"G = 6.6743e-11 is 2.26e-07" + that +
                                                          "m^3/kg/s^2: give it as \"6.6743e-11 m^3/kg/s^2\""});
@@ -279,11 +278,11 @@ TEST_CASE("moons, minor planets and planets of Horizons have JPL's masses", "[sw
       seen(gravity_scene("bodies = 'h.txt'\n"), "h.txt", barycenter + moon).refusal ==
       "h.txt:19: the mass of Io (501) would count twice, because Jupiter Barycenter (5) includes it; take one of them "
       "out");
-  CHECK(
-      seen(gravity_scene("bodies = 'h.txt'\n"), "h.txt", TableOfHorizons{"5 Astraea (A845 XA)", "Sun (10)"}.text())
-          .refusal ==
-      "h.txt:2: the mass of 5 Astraea (A845 XA) is not built in, and Horizons gives none; put a line 'mass [kg] = ...' "
-      "(0 for a tracer) before '$$SOE'");
+  CHECK(seen(gravity_scene("bodies = 'h.txt'\n"), "h.txt", TableOfHorizons{"5 Astraea (A845 XA)", "Sun (10)"}.text())
+            .refusal ==
+        "h.txt:2: the mass of 5 Astraea (A845 XA) is not known, and Horizons does not give it; put a line 'mass [kg] = "
+        "...' "
+        "(0 for a tracer) before '$$SOE'");
 }
 
 }  // namespace

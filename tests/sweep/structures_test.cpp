@@ -171,8 +171,8 @@ TEST_CASE("a column before x of plain XYZ is told, whatever it has", "[sweep][st
            {"Ar 18.0 0 0 0\nX 0.0 0 0 4.0\n", "has the atomic number of each atom"},
            {"Ar 39.948 0 0 0\nAr 39.948 0 0 4.0\n", "has the mass of each atom"},
            {"Ar 39.95 0 0 0\nXX 0.0 0 0 4.0\n", "has the mass of each atom"},
-           {"Ar 1 0 0 0\nAr 2 4.0 0 0\n", "counts the atoms"},
-           {"Ar 0 0 0 0\nAr 1 4.0 0 0\n", "counts the atoms"},
+           {"Ar 1 0 0 0\nAr 2 4.0 0 0\n", "numbers the atoms"},
+           {"Ar 0 0 0 0\nAr 1 4.0 0 0\n", "numbers the atoms"},
            {"Ar 7 0.0 0.0 0.0\nAr 7 4.0 0.0 0.0\n", "has whole numbers before three numbers with a point"},
            {"Ar 4 0.0 0.0 0.0 0.5\nAr -2 4.0 0.0 0.0 0.5\n", "has whole numbers before three numbers with a point"}}) {
     CAPTURE(atoms);
@@ -192,10 +192,9 @@ TEST_CASE("a column before x of plain XYZ is told, whatever it has", "[sweep][st
 TEST_CASE("what passes for something else in a structure is told", "[sweep][structure][messages]") {
   const auto xyz = [](const std::string& content) { return seen(structure_scene("a.xyz"), "a.xyz", content); };
   CHECK(xyz("2\nenergy: 1.0\nAr 0 0 0 0.25\nAr 0 0 4.0 -0.25\n").warnings ==
-        std::vector<std::string>{"x, y, z of the structure are taken from columns 2 to 4; column 5 is not read"});
-  CHECK(
-      xyz(argon_rows[2].content).warnings ==
-      std::vector<std::string>{"x, y, z of the structure are taken from columns 2 to 4; columns 5 to 8 are not read"});
+        std::vector<std::string>{"x, y, z of the structure are taken from columns 2 to 4; column 5 is ignored"});
+  CHECK(xyz(argon_rows[2].content).warnings ==
+        std::vector<std::string>{"x, y, z of the structure are taken from columns 2 to 4; columns 5 to 8 are ignored"});
   CHECK(
       xyz(argon_rows[12].content).warnings ==
       std::vector<std::string>{"the masses of the structure are 103.64 times the atomic weights: they are taken as eV "
@@ -218,11 +217,10 @@ TEST_CASE("what passes for something else in a structure is told", "[sweep][stru
   const auto lammps = [](const std::string& content) {
     return seen(structure_scene("a.data", "file_units = 'metal'\n", ""), "a.data", content);
   };
-  CHECK(
-      lammps(replaced(metal_pairs, " # lj/cut", "")).warnings ==
-      std::vector<std::string>{
-          "nobody says the style of the structure's pair coefficients: they are taken as epsilon and sigma of lj/cut; "
-          "write it behind the section, 'Pair Coeffs # lj/cut', if they are"});
+  CHECK(lammps(replaced(metal_pairs, " # lj/cut", "")).warnings ==
+        std::vector<std::string>{
+            "the style of the structure's pair coefficients is not given: they are taken as epsilon and sigma of "
+            "lj/cut; if that is right, write it after the section, 'Pair Coeffs # lj/cut'"});
   // Rows of a hybrid section that name no style have none either.
   CHECK(lammps(replaced(metal_pairs, "# lj/cut", "# hybrid")).warnings ==
         lammps(replaced(metal_pairs, " # lj/cut", "")).warnings);
@@ -231,19 +229,19 @@ TEST_CASE("what passes for something else in a structure is told", "[sweep][stru
           .warnings.empty());
   CHECK(lammps(metal_pairs).warnings.empty());
   CHECK(lammps(replaced(metal_pairs, "0 30 xlo xhi\n", "30 0 0 avec\n")).refusal ==
-        "a.data:6: '30 0 0 avec' is of a general triclinic box; boxes are orthogonal, given by xlo xhi, ylo yhi, zlo "
-        "zhi");
+        "a.data:6: '30 0 0 avec' belongs to a general triclinic box; only orthogonal boxes are supported, given by xlo "
+        "xhi, ylo yhi, zlo zhi");
   // Directions whose quotes are lost are no keys of their own.
-  CHECK(xyz("1\nLattice=\"20 0 0 0 20 0 0 0 20\" pbc=T F T\nAr 0 0 0\n").refusal ==
-        "a.xyz:2: 'F' is not understood: a comment with '=' is read as key=value; put quotes about values with blanks, "
-        "or "
-        "take the '=' out of a comment that is only a text");
+  CHECK(
+      xyz("1\nLattice=\"20 0 0 0 20 0 0 0 20\" pbc=T F T\nAr 0 0 0\n").refusal ==
+      "a.xyz:2: 'F' is not understood: a comment with '=' is read as key=value; put quotes around values with spaces, "
+      "or "
+      "take the '=' out of a comment that is only a text");
   CHECK(seen(structure_scene("a.gro", argon_mass), "a.gro",
              gro_atoms + "   2.00000   2.00000   2.00000   0.00000   0.00000   0.50000   0.00000   0.00000   0.00000\n")
             .refusal ==
-        "a.gro:5: the box is triclinic: its 9 numbers are 2.00000 2.00000 2.00000 0.00000 0.00000 0.50000 0.00000 "
-        "0.00000 "
-        "0.00000; boxes are orthogonal");
+        "a.gro:5: the box is triclinic, with the 9 numbers 2.00000 2.00000 2.00000 0.00000 0.00000 0.50000 0.00000 "
+        "0.00000 0.00000; only orthogonal boxes are supported");
 }
 
 }  // namespace

@@ -75,9 +75,9 @@ TEST_CASE("exponents of Fortran in quantities are told, and are no days", "[swee
     return seen(gravity_scene("[[particles.body]]\nname = 'Sun'\nmass = '" + mass + "'\n"), "", "").refusal;
   };
   CHECK(refusal("1.989D30 kg") ==
-        "scene.toml:5: mass: '1.989D30 kg' has an exponent as Fortran writes it; write '1.989e30 kg'");
+        "scene.toml:5: mass: '1.989D30 kg' has a Fortran-style exponent; write '1.989e30 kg'");
   CHECK(refusal("1.989d+30 kg") ==
-        "scene.toml:5: mass: '1.989d+30 kg' has an exponent as Fortran writes it; write '1.989e+30 kg'");
+        "scene.toml:5: mass: '1.989d+30 kg' has a Fortran-style exponent; write '1.989e+30 kg'");
   CHECK(refusal("3 d") == "scene.toml:5: mass: '3 d' is a time; a mass is expected, such as '3 Msun'");
 }
 

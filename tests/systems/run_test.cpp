@@ -53,7 +53,7 @@ Simulation<double> lorenz() { return {initial_state(Lorenz{}), classical(Lorenz{
 TEST_CASE("monitors and stops of particles are refused for a system, before the first step", "[system_run]") {
   auto run = lorenz("rk4", 0.01);
   const auto refusal = [](const std::string& name) {
-    return "monitor '" + name + "' watches particles, but system 'lorenz' has variables and none of them";
+    return "monitor '" + name + "' watches particles, but system 'lorenz' has only variables";
   };
   CHECK_THROWS_WITH(run.every(1, Energy{}), refusal("energy"));
   CHECK_THROWS_WITH(run.every(1, Momentum{}), refusal("momentum"));
@@ -64,10 +64,9 @@ TEST_CASE("monitors and stops of particles are refused for a system, before the 
   CHECK_THROWS_WITH(run.every(1, Temperature{}), refusal("temperature"));
   CHECK_THROWS_WITH(run.every(1, ShadowHamiltonian<double>{}), refusal("shadow_hamiltonian"));
   CHECK_THROWS_WITH(run.stop_when(farther_than(1), 1),
-                    "stop 'escape' watches distances of particles, but system 'lorenz' has variables and no particles");
+                    "stop 'escape' watches distances of particles, but system 'lorenz' has only variables");
   CHECK_THROWS_WITH(run.stop_when(closer_than(1), 1),
-                    "stop 'collision' watches distances of particles, but system 'lorenz' has variables and no "
-                    "particles");
+                    "stop 'collision' watches distances of particles, but system 'lorenz' has only variables");
   int monitors = 0;
   run.for_each_monitor([&](const std::string&, AnyMonitor<double>&) { ++monitors; });
   CHECK(monitors == 0);
@@ -129,11 +128,12 @@ TEST_CASE("a system's run that is saved and restored goes on with the same bits"
 TEST_CASE("a saved run of another system is refused", "[system_run]") {
   auto run = lorenz("rk4", 0.01);
   Simulation other(initial_state(HeatLine{.points = 4}), classical(HeatLine{.points = 4}, method("rk4")), 0.01);
-  CHECK_THROWS_WITH(other.restore(run.save()), "the saved run has 3 variables, this one 4");
+  CHECK_THROWS_WITH(other.restore(run.save()), "the saved run has 3 variables, but this one has 4");
   Simulation changed(initial_state(Lorenz{}), classical(Lorenz{.rho = 27}, method("rk4")), 0.01);
-  CHECK_THROWS_WITH(changed.restore(run.save()),
-                    "the saved run was made with lorenz(sigma = 10, rho = 28, beta = 2.6666666666666665), this one has "
-                    "lorenz(sigma = 10, rho = 27, beta = 2.6666666666666665)");
+  CHECK_THROWS_WITH(
+      changed.restore(run.save()),
+      "the saved run was made with lorenz(sigma = 10, rho = 28, beta = 2.6666666666666665), but this one has "
+      "lorenz(sigma = 10, rho = 27, beta = 2.6666666666666665)");
 }
 
 TEST_CASE("saved states carry variables and their names exactly; those of particles are as they were", "[system_run]") {

@@ -123,8 +123,7 @@ TEST_CASE("a run of too many steps is seen in part, and the rest taken to be lik
   CHECK(found.reached < 1e5);
   CHECK(found.reached > 100);
   CHECK(std::abs(found.mean.ratio / 1e6 - 1) < 1e-6);
-  CHECK(found.mean.verdict() ==
-        "not stiff: S = 1e+06, but what oscillates is about as fast, and asks for as many steps");
+  CHECK(found.mean.verdict() == "not stiff: S = 1e+06, but what oscillates is about as fast, and needs as many steps");
 }
 
 TEST_CASE("the verdict on stiffness is in plain words", "[stiffness]") {
@@ -133,12 +132,13 @@ TEST_CASE("the verdict on stiffness is in plain words", "[stiffness]") {
   CHECK(stiffness(ProtheroRobinson{.lambda = -1e3}, 10).verdict() ==
         "mildly stiff: S = 1e+04; an explicit method needs at least about 3.6e+03 steps; compare dop853 with rodas_5p");
   CHECK(stiffness(ProtheroRobinson{.lambda = -2}, 10).verdict() ==
-        "not stiff: S = 20; an explicit method such as dop853 will do");
+        "not stiff: S = 20; an explicit method such as dop853 is enough");
   CHECK(stiffness(ForcedDampedOscillator{.gamma = 0.1}, 1e7).verdict() ==
-        "not stiff: S = 1e+06, but what oscillates is about as fast, and asks for as many steps");
+        "not stiff: S = 1e+06, but what oscillates is about as fast, and needs as many steps");
   CHECK(stiffness_of(eigenvalues(Lorenz{}, {0, 0, 0}), 1e6).verdict() ==
-        "not stiff: S = 2.28e+07, but what grows is about as fast, and asks for as many steps");
-  CHECK(stiffness(ForcedDampedOscillator{.gamma = 0}, 1e7).verdict() == "not stiff: nothing decays, it oscillates");
+        "not stiff: S = 2.28e+07, but what grows is about as fast, and needs as many steps");
+  CHECK(stiffness(ForcedDampedOscillator{.gamma = 0}, 1e7).verdict() ==
+        "not stiff: nothing decays, the system oscillates");
   CHECK(stiffness(Robertson{}, std::numeric_limits<double>::infinity()).verdict() ==
         "the fastest rate is 0.04; how stiff a run is depends on its length, which is not given");
 }

@@ -196,9 +196,11 @@ TEST_CASE("systems refuse fields that make no sense, by name", "[systems]") {
     }
     return std::string();
   };
-  CHECK(refusal(HeatLine{.points = 0}) == "points = 0 leaves no point; 1 or more is expected");
-  CHECK(refusal(HeatLine{.points = 3, .mode = 4}) == "mode = 4 cannot be told by the points; 1 to points is expected");
-  CHECK(refusal(RcLadder{.capacitance = -1}) == "capacitance = -1 is no capacitance; a time above 0 is expected");
-  CHECK(refusal(Robertson{.k2 = -3}) == "k2 = -3 is no rate; 0 or a number above is expected");
-  CHECK(refusal(ForcedDampedOscillator{.gamma = -1}) == "gamma = -1 is no drag; 0 or more is expected");
+  CHECK(refusal(HeatLine{.points = 0}) == "points = 0 is too few; 1 or more is expected");
+  CHECK(refusal(HeatLine{.points = 3, .mode = 4}) ==
+        "mode = 4 cannot be resolved by the points; 1 to the number of points is expected");
+  CHECK(refusal(RcLadder{.capacitance = -1}) ==
+        "capacitance = -1 is not a valid capacitance; a time above 0 is expected");
+  CHECK(refusal(Robertson{.k2 = -3}) == "k2 = -3 is not a valid rate; 0 or more is expected");
+  CHECK(refusal(ForcedDampedOscillator{.gamma = -1}) == "gamma = -1 is not a valid drag; 0 or more is expected");
 }

@@ -1,0 +1,278 @@
+// The launcher, in a tree of its own with a cmake, a ninja and a ctest that only note down how they were called.
+
+#include "tests/support/catch.hpp"
+#include "tests/support/process.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace noether::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Makes what stands in for a tool.
+void write_tool(const fs::path& file, const std::string& script) {
+  write_text(file, "#!/bin/bash\n" + script);
+  fs::permissions(file, fs::perms::owner_all);
+}
+
+/// A checkout of three sources, nothing built, on a system where all packages are installed.
+struct Checkout : ScratchFolder {
+  Checkout() {
+    for (const char* folder :
+         {"tree/cli", "tree/numbers", "tree/cmake", "tree/docs", "tree/bench", "tree/examples/kepler", "tree/tests/io",
+          "tree/tests/forces", "tree/tests/lint", "bin"}) {
+      fs::create_directories(path() / folder);
+    }
+    fs::copy_file(NOETHER_SOURCE_DIR "/noether", tree("noether"));
+    fs::copy_file(NOETHER_SOURCE_DIR "/cli/commands.hpp", tree("cli/commands.hpp"));
+    write_text(tree("CMakeLists.txt"), "noether_library(numbers)\n  noether_library(cli ROOMS numbers)\n");
+    write_text(tree("tests/CMakeLists.txt"),
+               "  add_test(NAME lint.${name} COMMAND true)\nadd_test(NAME tsan COMMAND)\n");
+    for (const char* file :
+         {"CMakePresets.json", "cmake/compiler.cmake", "docs/references.bib", "numbers/sums.cpp", "numbers/sums.hpp",
+          "bench/CMakeLists.txt", "bench/lj_melt.cpp", "bench/kepler.cpp", "examples/CMakeLists.txt",
+          "examples/kepler/scene.toml", "tests/io/files_test.cpp", "tests/forces/gravity_test.cpp", "README.md"}) {
+      write_text(tree(file), "\n");
+    }
+    write_tool(path() / "bin/cmake", R"(echo "cmake $*" >>"$CALLS"
+mkdir -p build/release && echo "CMAKE_HOME_DIRECTORY:INTERNAL=$PWD" >build/release/CMakeCache.txt
+)");
+    write_tool(path() / "bin/ninja", R"(echo "ninja ${*:3}" >>"$CALLS"
+[ -z "${BROKEN:-}" ] || { echo "FAILED: sums.o"; echo "sums.cpp:1: error: no"; exit 1; }
+echo "[0/3] Re-checking globbed directories..."
+for k in 1 2 3; do echo "[$k/3] Building CXX object sums.o"; done
+[ -x "$2/cli/noether" ] || { mkdir -p "$2/cli" "$2/bench"; printf '%s\n' '#!/bin/sh' 'echo "program $*"' >"$2/cli/noether"
+  chmod +x "$2/cli/noether"; cp "$2/cli/noether" "$2/bench/kepler"; }
+)");
+    write_tool(path() / "bin/ctest", R"(case " $* " in *" -N "*) echo "Total Tests: 7" ;; *) echo "ctest ${*:3}" ;; esac
+)");
+    write_tool(path() / "bin/dpkg-query", "echo installed\n");
+    write_tool(path() / "bin/apt-get", "echo \"apt-get $*\" >>\"$CALLS\"; exit 1\n");
+  }
+
+  fs::path tree(const std::string& name = "") const { return path() / "tree" / name; }
+
+  std::vector<std::string> command(const std::string& line, const std::vector<std::string>& settings = {}) const {
+    std::vector<std::string> all{"env", "-u", "NOETHER_WERROR", "-u", "NOETHER_UNITY", "-u", "NOETHER_TELL_EVERY"};
+    all.push_back("PATH=" + (path() / "bin").string() + ":/usr/sbin:/usr/bin:/sbin:/bin");
+    all.push_back("CALLS=" + (path() / "calls").string());
+    all.insert(all.end(), settings.begin(), settings.end());
+    all.insert(all.end(), {"bash", "-c", "exec timeout 60 \"$0\" " + line, tree("noether").string()});
+    return all;
+  }
+  ProcessResult launch(const std::string& line, const std::vector<std::string>& settings = {}) const {
+    return run_process(command(line, settings), path());
+  }
+  std::string calls() const { return fs::exists(path() / "calls") ? read_text(path() / "calls") : ""; }
+
+  /// What cmake and ninja were called for by one more `./noether run`, which must become the program.
+  std::string built(const std::vector<std::string>& settings = {}) const {
+    fs::remove(path() / "calls");
+    const ProcessResult result = launch("run scene.toml", settings);
+    INFO(result.err);
+    CHECK(result.exit_code == 0);
+    CHECK(result.out == "program run scene.toml\n");
+    return calls();
+  }
+  std::string git(const std::string& line) const {
+    return run_process({"bash", "-c", "cd tree && git -c user.name=a -c user.email=a@b.c " + line}, path()).out;
+  }
+};
+
+TEST_CASE("the launcher's help is answered at once: nothing is built, and nothing installed", "[launcher]") {
+  const Checkout checkout;
+  for (const char* line : {"build --help", "test --help", "bench --help", "help build", "help test", "help bench",
+                           "test forces -h", "build asan --help", "--help", "-h", "help", "help run"}) {
+    const ProcessResult result = checkout.launch(line);
+    INFO(line << "\n" << result.out << result.err);
+    CHECK(result.exit_code == 0);
+    CHECK(result.out.starts_with("Usage: ./noether "));
+    CHECK(result.err.empty());
+  }
+  CHECK(has(checkout.launch("test --help").out, "Folders: forces io lint tsan\n"));
+  CHECK(has(checkout.launch("bench --help").out, "Benchmarks: kepler lj_melt\n"));
+  const std::string help = checkout.launch("--help").out;
+  for (const char* part : {"\n  build ", "\n  test ", "\n  bench ", " run ", " explain ", "about eight minutes"}) {
+    CHECK(has(help, part));
+  }
+  CHECK_FALSE(fs::exists(checkout.tree("build")));
+  CHECK(checkout.calls().empty());
+}
+
+TEST_CASE("what the launcher cannot serve is refused before anything is built", "[launcher]") {
+  const Checkout checkout;
+  const std::vector<std::pair<std::string, std::string>> wrong = {
+      {"build relase", "unknown preset 'relase'; did you mean 'release'?"},
+      {"build fast", "unknown preset 'fast'; known are: release, dev, asan, minimal"},
+      {"build dev asan", "build takes one preset, not 'dev asan'; see ./noether build --help"},
+      {"test force", "there is no folder of tests 'force'; did you mean 'forces'?"},
+      {"test io engine", "there is no folder of tests 'engine'; known are: forces, io, lint, tsan"},
+      {"test --nigthly", "unknown option '--nigthly' of test; known are: --nightly, --failed, --help"},
+      {"test --failed", "--failed goes with --nightly: ./noether test --nightly --failed"},
+      {"test --nightly --failed io", "--failed takes no folders; it runs what docs/nightly.md lists"},
+      {"bench lj_metl", "unknown benchmark 'lj_metl'; did you mean 'lj_melt'?"},
+      {"rnu scene.toml", "unknown command 'rnu'; did you mean 'run'?"},
+      {"tset", "unknown command 'tset'; did you mean 'test'?"},
+      {"--vresion", "unknown option '--vresion' before a command; did you mean '--version'?"},
+  };
+  for (const auto& [line, message] : wrong) {
+    const ProcessResult result = checkout.launch(line);
+    CHECK(result.exit_code == 2);
+    CHECK(result.out.empty());
+    CHECK(result.err == "noether: " + message + "\n");
+  }
+  const ProcessResult nothing = checkout.launch("");
+  CHECK(nothing.exit_code == 2);
+  CHECK(nothing.err.starts_with("Usage: ./noether "));
+  CHECK_FALSE(fs::exists(checkout.tree("build")));
+  CHECK(checkout.calls().empty());
+}
+
+TEST_CASE("where nothing is to be built the launcher takes no lock and calls neither cmake nor ninja", "[launcher]") {
+  const Checkout checkout;
+  CHECK(checkout.built() == "cmake --preset release\nninja noether\n");
+  const fs::path lock = checkout.tree("build/release.lock");
+  const Process holder({"flock", lock.string(), "sleep", "120"}, checkout.path());
+  REQUIRE(wait_until([&] {
+    return run_process({"flock", "-n", lock.string(), "true"}, checkout.path()).exit_code != 0;
+  }));
+  CHECK(checkout.built() == "");
+  CHECK(checkout.launch("version").err.empty());
+}
+
+TEST_CASE("whatever may change the program is built again, once, and nothing else", "[launcher]") {
+  const Checkout checkout;
+  checkout.built();
+  const auto again = [&](const char* what, const std::vector<std::string>& settings = {}) {
+    INFO(what);
+    CHECK(has(checkout.built(settings), "ninja noether\n"));
+    CHECK(checkout.built(settings) == "");
+  };
+  const fs::path source = checkout.tree("numbers/sums.cpp");
+  write_text(source, "// longer\n");
+  again("a source is edited");
+  const auto before = fs::last_write_time(source);
+  write_text(source, "// another\n");
+  fs::last_write_time(source, before);
+  again("a source is replaced, with the time of the old one");
+  write_text(checkout.tree("numbers/new.cpp"), "\n");
+  again("a source is new");
+  fs::rename(checkout.tree("numbers/new.cpp"), checkout.tree("numbers/newer.cpp"));
+  again("a source has another name");
+  fs::remove(checkout.tree("numbers/newer.cpp"));
+  again("a source is gone");
+  fs::last_write_time(checkout.tree("CMakePresets.json"), fs::file_time_type::clock::now());
+  again("the presets are touched");
+  again("an option is given", {"NOETHER_WERROR=OFF"});
+  again("the option is gone");
+  fs::remove(checkout.tree("build/release/cli/noether"));
+  again("the program is gone");
+  write_text(checkout.tree("build/release/CMakeCache.txt"), "other\n");
+  again("the build is configured otherwise");
+
+  fs::create_directories(checkout.tree("numbers/scene.out"));
+  write_text(checkout.tree("numbers/scene.out/copy.cpp"), "\n");
+  fs::create_directories(checkout.tree("examples/kepler/kepler.out"));
+  write_text(checkout.tree("examples/kepler/scene.toml"), "title = \"mine\"\n");
+  write_text(checkout.tree("tests/io/files_test.cpp"), "// longer\n");
+  write_text(checkout.tree("README.md"), "longer\n");
+  CHECK(checkout.built() == "");
+}
+
+TEST_CASE("a commit is built again, for the program tells it", "[launcher]") {
+  const Checkout checkout;
+  if (run_process({"git", "--version"}, checkout.path()).exit_code != 0) {
+    WARN("skipped: there is no git");
+    return;
+  }
+  checkout.built();
+  checkout.git("init -q");
+  write_text(checkout.tree(".gitignore"), "/build/\n");
+  checkout.git("add -A");
+  for (const char* line : {"commit -q -m one", "commit -q --allow-empty -m two", "reset -q --hard HEAD~1"}) {
+    checkout.git(line);
+    INFO(line);
+    CHECK(has(checkout.built(), "ninja noether\n"));
+    CHECK(checkout.built() == "");
+  }
+}
+
+TEST_CASE("of programs that start together one builds, and the others wait for it", "[launcher]") {
+  const Checkout checkout;
+  std::vector<std::unique_ptr<Process>> jobs;
+  for (int k = 0; k < 5; ++k) jobs.push_back(std::make_unique<Process>(checkout.command("list"), checkout.path()));
+  for (const auto& job : jobs) CHECK(job->wait().out == "program list\n");
+  CHECK(checkout.calls() == "cmake --preset release\nninja noether\n");
+}
+
+TEST_CASE("a build that failed is told, and is tried again", "[launcher]") {
+  const Checkout checkout;
+  checkout.built();
+  write_text(checkout.tree("numbers/sums.cpp"), "no\n");
+  for (int k = 0; k < 2; ++k) {
+    const ProcessResult result = checkout.launch("run scene.toml", {"BROKEN=1"});
+    CHECK(result.exit_code == 4);
+    CHECK(has(result.err, "sums.cpp:1: error: no\n"));
+    CHECK(has(result.err, "noether: the build of release failed; everything it said is in "));
+  }
+  CHECK(has(checkout.built(), "ninja noether\n"));
+}
+
+TEST_CASE("a build says how far it is: now and then in a pipe, in one line on a terminal", "[launcher]") {
+  const Checkout checkout;
+  const std::string said = checkout.launch("version", {"NOETHER_TELL_EVERY=0"}).err;
+  CHECK(said ==
+        "noether: configuring release\nnoether: building release: 3 steps\nnoether: building release: 1/3, 0 s\n"
+        "noether: building release: 2/3, 0 s\nnoether: building release: 3/3, 0 s\n");
+  fs::remove_all(checkout.tree("build"));
+  CHECK(checkout.launch("version").err == "noether: configuring release\nnoether: building release: 3 steps\n");
+
+  if (run_process({"script", "--version"}, checkout.path()).exit_code != 0) return;
+  write_text(checkout.tree("numbers/sums.cpp"), "// longer\n");
+  const std::string terminal = "-qec '" + checkout.tree("noether").string() + " version' /dev/null";
+  std::vector<std::string> words = checkout.command("version");
+  words.back() = "/usr/bin/script";
+  words[words.size() - 2] = "exec timeout 60 \"$0\" " + terminal;
+  const std::string shown = run_process(words, checkout.path()).out;
+  INFO(shown);
+  CHECK(has(shown, "\r\033[Knoether: building release: 1/3, 0 s\r\033[Knoether: building release: 2/3, 0 s"));
+  CHECK(has(shown, "\r\033[Kprogram version"));
+}
+
+TEST_CASE("a folder's tests are run alone, and only what they need is built", "[launcher]") {
+  const Checkout checkout;
+  const ProcessResult two = checkout.launch("test tests/forces/ io");
+  INFO(two.err);
+  CHECK(two.exit_code == 0);
+  CHECK(has(checkout.calls(), "ninja test_forces test_io\n"));
+  CHECK(two.out == "ctest --output-on-failure -j2 --no-tests=error -LE nightly -R ^(forces|io)(\\.|$)\n");
+  CHECK(has(two.err, "noether: running 7 tests\n"));
+  CHECK(has(checkout.launch("test forces io").err, "noether: running 7 tests, 0 s the last time\n"));
+
+  const ProcessResult nightly = checkout.launch("test --nightly io");
+  CHECK(nightly.exit_code == 0);
+  CHECK(lines_of(nightly.out) ==
+        std::vector<std::string>{"ctest --output-on-failure -j2 --no-tests=error -LE nightly -R ^(io)(\\.|$)",
+                                 "ctest --output-on-failure -j2 --no-tests=error -L nightly -R ^(io)(\\.|$)"});
+  CHECK_FALSE(fs::exists(checkout.tree("docs/nightly.md")));
+
+  write_tool(checkout.path() / "bin/ctest",
+             "case \" $* \" in *\" -LE \"*) echo 'Total Tests: 0' ;; *' -N '*) "
+             "echo 'Total Tests: 1' ;; *) exit 8 ;; esac\n");
+  const ProcessResult slow = checkout.launch("test tsan");
+  CHECK(slow.exit_code == 2);
+  CHECK(has(slow.err, "noether: all tests of tsan are nightly; run ./noether test tsan --nightly\n"));
+  CHECK(checkout.launch("test tsan --nightly").exit_code == 1);
+
+  checkout.launch("test");
+  CHECK(has(checkout.calls(), "ninja all\n"));
+}
+
+}  // namespace
+}  // namespace noether::test
