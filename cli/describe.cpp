@@ -1,5 +1,7 @@
 #include "cli/commands.hpp"
 
+#include "cli/describe_all.hpp"
+#include "cli/described_parts.hpp"
 #include "cli/method_text.hpp"
 #include "integrators/all_methods.hpp"
 #include "integrators/all_schemes.hpp"
@@ -8,11 +10,8 @@
 #include "numbers/quantity.hpp"
 #include "numbers/text.hpp"
 #include "scene/foreign_names.hpp"
-#include "scene/json.hpp"
 #include "scene/parts.hpp"
-#include "scene/read_builder.hpp"
 #include "scene/read_options.hpp"
-#include "scene/references.hpp"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -26,68 +25,6 @@
 namespace noether {
 
 namespace {
-
-/// Entries of several sources "A, B", one below the other.
-std::string entries_of(std::string_view sources) {
-  std::string all;
-  while (!sources.empty()) {
-    const std::size_t end = sources.find_first_of(", ");
-    const std::string entry = bibtex(sources.substr(0, end));
-    if (!entry.empty()) all += entry + "\n";
-    sources = end == std::string_view::npos ? "" : sources.substr(end + 1);
-  }
-  return all;
-}
-
-std::vector<std::pair<std::string, PartInfo>> all_parts(const Parts& parts) {
-  std::vector<std::pair<std::string, PartInfo>> all;
-  for (const auto& kind : parts.hamiltonians()) all.emplace_back("hamiltonian", kind.info);
-  for (const auto& kind : parts.thermostats()) all.emplace_back("thermostat", kind.info);
-  for (auto& part : other_parts()) all.push_back(std::move(part));
-  for (const BuilderKind& kind : builders()) all.emplace_back("builder", kind.info);
-  for (const auto& kind : parts.forces()) all.emplace_back("force", kind.info);
-  for (const auto& kind : parts.constraints()) all.emplace_back("constraint", kind.info);
-  for (const auto& kind : parts.systems()) all.emplace_back("system", kind.info);
-  for (const auto& kind : parts.decorators()) all.emplace_back("decorator", kind.info);
-  for (const auto& kind : parts.monitors()) all.emplace_back("monitor", kind.info);
-  for (const PartInfo& info : writer_parts()) all.emplace_back("writer", info);
-  for (const auto& kind : parts.stops()) all.emplace_back("stop", kind.info);
-  return all;
-}
-
-/// Where in a scene parts of a kind stand, and when they look.
-std::string table_of(const std::string& kind) {
-  if (kind == "builder") return "[particles], as type = \"NAME\"";
-  if (kind == "force") return "[[hamiltonian.force]]";
-  if (kind == "thermostat") return "[hamiltonian.thermostat]";
-  if (kind == "start") return "[minimize]";
-  if (kind == "constraint") {
-    return "[[hamiltonian.constraint]], with the particles: bodies, pairs or triples of names, or \"bonds\", "
-           "\"angles\" of a structure; solver = \"newton\" or \"rattle\" (with tolerance, iterations)";
-  }
-  if (kind == "system") return "[system], instead of [particles] and [hamiltonian]; start = [...] sets another start";
-  if (kind == "decorator")
-    return "[[integrator.decorator]]; the first wraps the method, each further one wraps the one before";
-  if (kind == "monitor") return "[[every]], with every = \"TIME\" or steps = N";
-  if (kind == "writer") return "[[every]], with every = \"TIME\" or steps = N (checkpoint also: wall = \"5 min\")";
-  if (kind == "stop") return "[[stop]]; every = \"TIME\" may be given instead of steps = N";
-  return "";
-}
-
-Json json_of(const std::vector<FieldInfo>& fields) {
-  std::vector<Json> all;
-  for (const FieldInfo& f : fields) {
-    all.push_back(Json::object({{"name", f.name},
-                                {"kind", f.kind},
-                                {"dimension", f.dimension},
-                                {"required", !f.example.empty()},
-                                {"example", f.example.empty() ? Json() : Json(f.example)},
-                                {"default", f.default_value.empty() ? Json() : Json(f.default_value)},
-                                {"choices", Json::list_of(f.choices)},
-                                {"help", f.help}}));
-  }
-  return Json::list(all);
-}
 
 void print_fields(const std::vector<FieldInfo>& fields) {
   if (!fields.empty()) fmt::print("\n");
@@ -275,7 +212,7 @@ void describe_unit(const UnitRow& row, bool json) {
 
 void describe(const std::string& name, const Parts& parts, bool json) {
   std::vector<std::string> known;
-  for (const auto& [kind, info] : all_parts(parts)) {
+  for (const auto& [kind, info] : described_parts(parts)) {
     if (info.name == name) return describe_part(kind, info, json);
     known.push_back(info.name);
   }
@@ -293,12 +230,18 @@ void describe(const std::string& name, const Parts& parts, bool json) {
 
 void add_describe_command(CLI::App& app, const Parts& parts, int& exit_code) {
   const auto name = std::make_shared<std::string>();
-  const auto json = std::make_shared<bool>(false);
+  const auto json = std::make_shared<bool>(false), all = std::make_shared<bool>(false);
   CLI::App* command = app.add_subcommand("describe", "formula, order, fields and source of a part or method");
-  command->add_option("name", *name, "as `noether list` shows it")->required()->type_name("NAME");
+  CLI::Option* one = command->add_option("name", *name, "as `noether list` shows it")->type_name("NAME");
+  command->add_flag("--all", *all, "every key of a scene, of its tables and of every part, as Markdown")->excludes(one);
   command->add_flag("--json", *json, "as one line of JSON");
-  command->callback([name, json, &parts, &exit_code] {
-    describe(*name, parts, *json);
+  command->callback([name, json, all, &parts, &exit_code] {
+    if (!*all && name->empty()) throw CLI::RequiredError("NAME or --all");
+    if (*all) {
+      describe_all(parts, *json);
+    } else {
+      describe(*name, parts, *json);
+    }
     exit_code = 0;
   });
 }

@@ -78,7 +78,7 @@ int run_scene(const RunArguments& given, const Parts& parts) {
   const bool interrupted = report.outcome.kind == Outcome::Kind::interrupted && !report.checkpoint.empty();
   if (interrupted && !given.json && !given.quiet) {
     std::fflush(stdout);
-    fmt::print(stderr, "go on with: {}\n", escaped(resume_command(given)));
+    fmt::print(stderr, "to continue: {}\n", escaped(resume_command(given)));
   }
   return report.exit_code();
 }

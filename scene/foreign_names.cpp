@@ -49,7 +49,7 @@ constexpr std::array names_of_others = {
                 NamePlace::method, "gauss_radau_15",
                 "its steps shrink in close encounters, and so do those of 'dop853'"},
     ForeignName{" hermite hermite4 hermite_4 hermite6 ahmad_cohen ", NamePlace::method, "gauss_radau_15",
-                "of high order, with steps of its own; 'dop853' is another one"},
+                "of high order that chooses its own steps; 'dop853' is another one"},
     // Classical methods.
     ForeignName{" ias15 ias radau15 radau_15 ra15 everhart rada27 ", NamePlace::method, "gauss_radau_15"},
     ForeignName{" rk runge_kutta rungekutta runge_kutta_4 rungekutta4 rk_4 classical_rk ", NamePlace::method, "rk4"},

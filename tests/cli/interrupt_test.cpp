@@ -129,7 +129,7 @@ TEST_CASE("an interrupted run says with which command it goes on", "[cli][resume
   CHECK(result.out.starts_with("interrupted at step "));
   const std::string command =
       std::string(NOETHER_PROGRAM) + " run scene.toml --threads 1 --set 'title=Do not stop' --resume";
-  REQUIRE(result.err == "go on with: " + command + "\n");
+  REQUIRE(result.err == "to continue: " + command + "\n");
   const ProcessResult resumed = run_process({"/bin/sh", "-c", command}, folder.path());
   CHECK(resumed.exit_code == 0);
   CHECK(has(resumed.out, "\nresumed from step "));

@@ -215,15 +215,6 @@ TEST_CASE("--set with nothing behind the sign takes a key out, or a table of a l
   CHECK(refusal(two_bodies, {"integrator.method="}).find("method") != std::string::npos);
 }
 
-TEST_CASE("the scene of docs/scenes.md can be run", "[scene]") {
-  const std::filesystem::path page = std::filesystem::path(NOETHER_SOURCE_DIR) / "docs" / "scenes.md";
-  const std::string text = test::read_text(page), begin = "```toml\n";
-  const std::size_t from = text.find(begin) + begin.size();
-  const Scene scene = read_scene(text.substr(from, text.find("```", from) - from), page);
-  CHECK(scene.integrator.steps == 730'500);
-  CHECK(assemble(scene).run(100).ok());
-}
-
 TEST_CASE("a value of --set is TOML, or else a text", "[scene][set]") {
   CHECK(read(two_bodies, {"integrator.compensated=true"}).integrator.composition.compensated);
   CHECK(read(two_bodies, {"integrator.step=10 day"}).integrator.step == 10);
