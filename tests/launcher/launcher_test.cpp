@@ -89,8 +89,9 @@ chmod +x "$2/cli/noether"
 
 TEST_CASE("the launcher's help is answered at once: nothing is built, and nothing installed", "[launcher]") {
   const Checkout checkout;
-  for (const char* line : {"build --help", "test --help", "bench --help", "help build", "help test", "help bench",
-                           "test forces -h", "build asan --help", "--help", "-h", "help", "help run", "bench kepler --help"}) {
+  for (const char* line :
+       {"build --help", "test --help", "bench --help", "help build", "help test", "help bench", "test forces -h",
+        "build asan --help", "--help", "-h", "help", "help run", "bench kepler --help"}) {
     const ProcessResult result = checkout.launch(line);
     INFO(line << "\n" << result.out << result.err);
     CHECK(result.exit_code == 0);
@@ -160,7 +161,7 @@ TEST_CASE("whatever may change the program is built again, once, and nothing els
   write_text(source, "// longer\n");
   again("a source is edited");
   const auto before = fs::last_write_time(source);
-  write_text(source, "// another\n");
+  write_text(source, "// others\n");
   fs::last_write_time(source, before);
   again("a source is replaced, with the time of the old one");
   write_text(checkout.tree("numbers/new.cpp"), "\n");
