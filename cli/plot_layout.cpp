@@ -116,9 +116,11 @@ double PlotLayout::place_space(const PlotData& data, double left, double top) {
     orbits_.push_back(std::move(areas));
     left = right + panel_gap;
   }
-  for (PlotArea& area : boxes_) area = {left, top - square_size, square_size, square_size}, left += square_size + panel_gap;
+  for (PlotArea& area : boxes_)
+    area = {left, top - square_size, square_size, square_size}, left += square_size + panel_gap;
   for (std::size_t k = 0; k < panels_.size(); ++k) {
-    if (data.panels[k].large) panels_[k] = {left, top - square_size, square_size, square_size}, left += square_size + panel_gap;
+    if (data.panels[k].large)
+      panels_[k] = {left, top - square_size, square_size, square_size}, left += square_size + panel_gap;
   }
   return left;
 }

@@ -4,6 +4,8 @@
 #include "engine/orbital_elements.hpp"
 #include "engine/sums.hpp"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -110,8 +112,8 @@ std::pair<PlotPlace, PlotPlace> corners_of(const std::vector<PlotOrbit>& orbits)
   return {low, high};
 }
 
-/// The views of a picture: the plane where most happens as a widest_view, others beside it on the same scale. One that is
-/// flat is left out.
+/// The views of a picture: the plane where most happens as a widest_view, others beside it on the same scale. One that
+/// is flat is left out.
 void choose_views(PlotOrbits& picture, bool centered, const std::string& projection, const std::string& about,
                   const std::string& unit) {
   auto [low, high] = corners_of(picture.orbits);
