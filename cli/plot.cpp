@@ -1,5 +1,6 @@
 /// `noether plot`: a picture of a run, drawn by gnuplot.
 
+#include "cli/comma_lists.hpp"
 #include "cli/commands.hpp"
 #include "cli/plot_data.hpp"
 #include "cli/plot_script.hpp"
@@ -7,6 +8,7 @@
 #include "scene/json.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include <fcntl.h>
@@ -15,10 +17,12 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <system_error>
 
@@ -85,15 +89,17 @@ PictureFormat format_of(const std::filesystem::path& picture) {
   const std::string ending = picture.extension().string();
   if (ending == ".svg") return PictureFormat::svg;
   if (ending == ".png") return PictureFormat::png;
-  throw Error(
-      fmt::format("a picture '{}' has no supported format; give a name that ends in .svg or .png", picture.string()));
+  if (ending == ".pdf") return PictureFormat::pdf;
+  throw Error(fmt::format("a picture '{}' has no supported format; give a name that ends in .svg, .png or .pdf",
+                          picture.string()));
 }
 
 /// @return the picture
-std::filesystem::path plot(const std::filesystem::path& file, std::filesystem::path picture, const Parts& parts) {
+std::filesystem::path plot(const std::filesystem::path& file, std::filesystem::path picture, const Parts& parts,
+                           const PlotOptions& wanted) {
   if (picture.empty()) picture = std::filesystem::path(file).replace_extension(".svg");
   const PictureFormat format = format_of(picture);
-  const PlotData data = read_plot_data(file, parts);
+  const PlotData data = read_plot_data(file, parts, wanted);
   const ScratchFolder scratch;
   const std::filesystem::path script = scratch / "script.gp", drawn = scratch / "picture";
   std::ofstream(script) << plot_script(data, format, drawn.string());
@@ -111,18 +117,27 @@ std::filesystem::path plot(const std::filesystem::path& file, std::filesystem::p
 
 void add_plot_command(CLI::App& app, const Parts& parts, int& exit_code) {
   struct Options {
-    std::string file, out;
+    std::string file, out, what, projection;
+    std::optional<std::int64_t> frame;
     bool json = false;
   };
-  CLI::App* command = app.add_subcommand("plot", "draw the orbits and errors of a run (needs gnuplot)");
+  CLI::App* command =
+      app.add_subcommand("plot", "draw a run: orbits or a liquid, errors, elements, g(r) ... (needs gnuplot)");
   const auto options = std::make_shared<Options>();
   command->add_option("FILE", options->file, "a run.h5")->required()->check([](const std::string& file) {
     return std::string(file.empty() ? "the name of the file is empty" : "");
   });
-  command->add_option("--out", options->out, "the picture, .svg or .png; default: FILE with .svg");
+  command->add_option("--out", options->out, "the picture, .svg, .png or .pdf; default: FILE with .svg");
+  command->add_option("--what", options->what,
+                      fmt::format("a list of {}; default: what fits the run", fmt::join(plot_subjects(), ", ")));
+  command->add_option("--projection", options->projection,
+                      "xy, xz, yz or all three; default: the plane where bodies move, and the side of a thick one");
+  command->add_option("--frame", options->frame, "the frame that is shown, from 0; -1, the default, is the last");
   command->add_flag("--json", options->json, "report as one line of JSON");
   command->callback([options, &parts, &exit_code] {
-    const std::string picture = plot(options->file, options->out, parts).string();
+    PlotOptions wanted{.frame = options->frame, .what = {}, .projection = options->projection};
+    if (!options->what.empty()) wanted.what = texts_in(options->what, "--what");
+    const std::string picture = plot(options->file, options->out, parts, wanted).string();
     if (options->json) {
       fmt::print("{}\n", Json::object({{"schema", "noether.plot/1"}, {"file", picture}}).text());
     } else {

@@ -1,5 +1,6 @@
 #include "cli/plot_script.hpp"
 
+#include "cli/plot_layout.hpp"
 #include "numbers/text.hpp"
 
 #include <fmt/format.h>
@@ -7,30 +8,45 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 namespace noether {
 
 namespace {
 
-/// Sizes in points; a PNG has two pixels per point.
-constexpr double panel = 430, error_width = 470, title_height = 62, legend_row = 20;
-constexpr double least_error_height = 176, between_errors = 78;
-constexpr double left_margin = 74, right_margin = 20, bottom_margin = 58, gap = 74;
-
 /// Colors that people with any color vision tell apart (P. Tol, "vibrant" and "bright").
-constexpr std::array<const char*, 12> palette = {"#0077BB", "#EE7733", "#009988", "#CC3311", "#AA3377", "#33BBEE",
-                                                 "#997700", "#228833", "#EE3377", "#4477AA", "#66443F", "#777777"};
-constexpr const char* primary_color = "#E0A800";
+constexpr std::array<std::uint32_t, 12> palette = {0x0077BB, 0xEE7733, 0x009988, 0xCC3311, 0xAA3377, 0x33BBEE,
+                                                   0x997700, 0x228833, 0xEE3377, 0x4477AA, 0x66443F, 0x777777};
+constexpr std::uint32_t central = 0xE0A800;
+/// Bonds are drawn between particles of so many layers of depth.
+constexpr int layers = 24;
+/// More particles than this are plain dots: their edges and lights could not be seen.
+constexpr std::size_t most_spheres = 8'000;
+
+std::uint32_t rgb_of(std::size_t color) { return color == primary_color ? central : palette[color % palette.size()]; }
+
+std::string color_of(std::size_t color) { return fmt::format("#{:06X}", rgb_of(color)); }
+
+/// A color on its way to another one: 0 stays, 1 arrives.
+std::uint32_t mixed(std::uint32_t from, std::uint32_t to, double part) {
+  std::uint32_t result = 0;
+  for (const int shift : {16, 8, 0}) {
+    const double a = (from >> shift) & 0xFFU, b = (to >> shift) & 0xFFU;
+    result |= static_cast<std::uint32_t>(std::lround(a + (b - a) * part)) << shift;
+  }
+  return result;
+}
+
+/// What is far away is paler, in a few shades.
+std::uint32_t shaded(std::size_t color, double depth) {
+  return mixed(rgb_of(color), 0xFFFFFF, 0.6 * std::round(depth * 12) / 12);
+}
 
 std::string quoted(const std::string& text) {
   std::string result = "'";
   for (const char c : plain_line(text)) result += c == '\'' ? "''" : std::string(1, c);
   return result + "'";
-}
-
-const char* color_of(const PlotOrbit& orbit) {
-  return orbit.primary ? primary_color : palette[orbit.color % palette.size()];
 }
 
 std::string block(const std::string& name, const std::vector<PlotPoint>& points) {
@@ -39,179 +55,280 @@ std::string block(const std::string& name, const std::vector<PlotPoint>& points)
   return text + "EOD\n";
 }
 
-/// Where the panels stand: everything in points, origin at the lower left.
-class Layout {
- public:
-  explicit Layout(const PlotData& data) : orbit_panels_(data.orbits.size()), error_panels_(data.errors.size()) {
-    if (data.orbits.empty()) return;
-    double x = 0;
-    for (const PlotOrbit& orbit : data.orbits[0].orbits) {
-      if (legend_.size() == palette.size()) break;
-      const double wide = 40 + 7.2 * static_cast<double>(orbit.name.size());
-      if (x > 0 && x + wide > orbits_width()) x = 0, ++legend_rows_;
-      legend_.push_back({x, static_cast<double>(legend_rows_)});
-      x += wide;
-    }
-    ++legend_rows_;
-  }
-  double width() const {
-    const double between = orbit_panels_ > 0 && error_panels_ > 0 ? gap + 12 : 0;
-    return left_margin + orbits_width() + between + (error_panels_ > 0 ? error_width : 0) + right_margin;
-  }
-  double height() const { return bottom() + tall() + title_height; }
+std::string block(const std::string& name, const std::vector<PlotPlace>& points) {
+  std::string text = "$" + name + " << EOD\n";
+  for (const PlotPlace& p : points) text += fmt::format("{:.9g} {:.9g} {:.9g}\n", p[0], p[1], p[2]);
+  return text + "EOD\n";
+}
 
-  std::string orbit_margins(std::size_t k) const {
-    return margins(left_margin + static_cast<double>(k) * (panel + gap), bottom() + tall() - panel, panel, panel);
-  }
-  std::string error_margins(std::size_t k) const {
-    const auto rows = static_cast<double>(error_panels_);
-    const double high = (tall() - (rows - 1) * between_errors) / rows;
-    const double low = bottom() + (rows - 1 - static_cast<double>(k)) * (high + between_errors);
-    return margins(width() - right_margin - error_width, low, error_width, high);
-  }
-  /// The legend under the orbits, a dot and a name for each body.
-  std::string legend(const PlotOrbits& picture) const {
-    std::string text;
-    for (std::size_t k = 0; k < legend_.size(); ++k) {
-      const double x = left_margin + 6 + legend_[k].x;
-      const double y = tall() - panel + legend_row * (static_cast<double>(legend_rows_) - 0.4 - legend_[k].y);
-      text += fmt::format("set label {} {} at {} left noenhanced tc rgb '#202020'", 10 + k,
-                          quoted(picture.orbits[k].name), at(x, y));
-      text += fmt::format(" point pt 7 ps 0.9 lc rgb '{}' offset 0.9,-0.2\n", color_of(picture.orbits[k]));
-    }
-    return text;
-  }
-  std::string at(double x, double y) const {
-    return fmt::format("screen {:.5f}, screen {:.5f}", x / width(), y / height());
+class Script {
+ public:
+  Script(const PlotData& data, PictureFormat format) : data_(data), layout_(data), format_(format) {}
+
+  std::string whole(const std::string& picture) {
+    text_ = opening(picture);
+    for (std::size_t k = 0; k < data_.orbits.size(); ++k) add_orbits(k);
+    for (std::size_t k = 0; k < data_.boxes.size(); ++k) add_box(k);
+    for (std::size_t k = 0; k < data_.panels.size(); ++k) add_panel(k);
+    return text_ + "unset multiplot\nunset output\n";
   }
 
  private:
-  double orbits_width() const {
-    const auto panels = static_cast<double>(orbit_panels_);
-    return panels * panel + std::max(0.0, panels - 1) * gap;
+  std::string at(double x, double y) const {
+    return fmt::format("screen {:.5f}, screen {:.5f}", x / layout_.width(), y / layout_.height());
   }
-  /// Height of all panels: that of the orbits, or more where more than two errors stand one above the other.
-  double tall() const {
-    const auto rows = static_cast<double>(error_panels_);
-    return std::max(panel, rows * least_error_height + (rows - 1) * between_errors);
-  }
-  double bottom() const { return bottom_margin + static_cast<double>(legend_rows_) * legend_row; }
-  std::string margins(double left, double low, double wide, double high) const {
+  std::string margins(const PlotArea& area) const {
     return fmt::format(
         "set lmargin at screen {:.5f}\nset rmargin at screen {:.5f}\nset bmargin at screen {:.5f}\n"
         "set tmargin at screen {:.5f}\n",
-        left / width(), (left + wide) / width(), low / height(), (low + high) / height());
+        area.left / layout_.width(), (area.left + area.wide) / layout_.width(), area.low / layout_.height(),
+        (area.low + area.high) / layout_.height());
   }
 
-  std::size_t orbit_panels_, error_panels_;
-  std::vector<PlotPoint> legend_;  ///< x, and the number of the row
-  int legend_rows_ = 0;
-};
-
-std::string opening(const PlotData& data, const Layout& layout, PictureFormat format, const std::string& picture) {
-  const double scale = format == PictureFormat::png ? 2 : 1;
-  std::string text = fmt::format(
-      "set encoding utf8\nset terminal {} enhanced size {:.0f},{:.0f} font 'sans,{:.0f}' linewidth {} "
-      "background 'white'",
-      format == PictureFormat::png ? "pngcairo" : "svg", layout.width() * scale, layout.height() * scale, 11 * scale,
-      scale);
-  text += format == PictureFormat::png ? fmt::format(" pointscale {}\n", scale) : "\n";
-  text += "set output " + quoted(picture) + "\nset multiplot\n";
-  text += fmt::format("set label 1 {} at {} left noenhanced font ',{:.0f}' tc rgb '#202020'\n", quoted(data.title),
-                      layout.at(24, layout.height() - 20), 15 * scale);
-  text += fmt::format("set label 2 {} at {} right noenhanced font ',{:.0f}' tc rgb '#707070'\n", quoted(data.subtitle),
-                      layout.at(layout.width() - right_margin, layout.height() - 20), 10 * scale);
-  return text +
-         "set border 3 lw 0.8 lc rgb '#505050'\nset tics out nomirror scale 0.6 tc rgb '#303030'\n"
-         "set grid back lt 1 lw 0.5 lc rgb '#E4E4E4'\nunset key\n";
-}
-
-std::string orbit_panel(const PlotOrbits& picture, std::size_t index, const Layout& layout) {
-  std::string data, curves;
-  const auto curve = [&](const std::string& text) { curves += (curves.empty() ? "plot " : ", \\\n     ") + text; };
-  for (std::size_t k = 0; k < picture.orbits.size(); ++k) {
-    const PlotOrbit& orbit = picture.orbits[k];
-    const std::string name = fmt::format("o{}_{}", index, k), rgb = fmt::format("rgb '{}'", color_of(orbit));
-    if (!orbit.samples.empty()) {
-      data += block(name + "s", orbit.samples);
-      curve(fmt::format("${}s with points pt 7 ps 0.25 lc rgb '#90{}'", name, color_of(orbit) + 1));
+  std::string terminal() const {
+    const double wide = layout_.width(), high = layout_.height();
+    if (format_ == PictureFormat::pdf) {
+      return fmt::format("pdfcairo enhanced size {:.4f}in,{:.4f}in font 'sans,11' linewidth 1 background 'white'",
+                         wide / 72, high / 72);
     }
-    if (!orbit.path.empty()) {
-      data += block(name + "p", orbit.path);
-      curve(fmt::format("${}p with lines lw 1.3 lc {}", name, rgb));
+    // A PNG has two pixels per point.
+    if (format_ == PictureFormat::png) {
+      return fmt::format(
+          "pngcairo enhanced size {:.0f},{:.0f} font 'sans,22' linewidth 2 background 'white' pointscale 2", 2 * wide,
+          2 * high);
     }
+    return fmt::format("svg enhanced size {:.0f},{:.0f} font 'sans,11' linewidth 1 background 'white'", wide, high);
   }
-  for (std::size_t k = 0; k < picture.orbits.size(); ++k) {
-    const PlotOrbit& orbit = picture.orbits[k];
-    data += block(fmt::format("o{}_{}e", index, k), {orbit.end});
-    const double dot = orbit.primary ? 1.1 : 0.9;
-    curve(fmt::format("$o{}_{}e with points pt 7 ps {} lc rgb '{}'", index, k, dot, color_of(orbit)));
-  }
-  std::string text = data + layout.orbit_margins(index);
-  text += fmt::format("set xrange [{:.9g}:{:.9g}]\nset yrange [{:.9g}:{:.9g}]\n", picture.low.x, picture.high.x,
-                      picture.low.y, picture.high.y);
-  text += "unset logscale\nset format '%g'\nset xtics autofreq\nset ytics autofreq\n";
-  text += fmt::format("set title {} offset 0,-0.6 noenhanced tc rgb '#303030'\n", quoted(picture.title));
-  text += fmt::format("set xlabel {} offset 0,0.3 noenhanced\nset ylabel {} offset 0.8,0 noenhanced\n",
-                      quoted(picture.x_label), quoted(picture.y_label));
-  if (index == 0) text += layout.legend(picture);
-  return text + curves + "\nunset label\n";
-}
 
-/// The curves of a panel, their names in a key where there are several.
-std::string error_curves(const PlotError& error, std::size_t panel_number) {
-  std::string data, plot;
-  for (std::size_t c = 0; c < error.curves.size(); ++c) {
-    const PlotCurve& curve = error.curves[c];
-    if (curve.points.empty()) continue;
-    const std::string name = fmt::format("e{}_{}", panel_number, c);
-    data += block(name, curve.points);
+  std::string opening(const std::string& picture) const {
+    const double scale = format_ == PictureFormat::png ? 2 : 1;
+    std::string text = "set encoding utf8\nset terminal " + terminal() + "\n";
+    text += "set output " + quoted(picture) + "\nset multiplot\n";
+    text += fmt::format("set label 1 {} at {} left noenhanced font ',{:.0f}' tc rgb '#202020'\n", quoted(data_.title),
+                        at(24, layout_.height() - 20), 15 * scale);
+    const std::string& method = data_.subtitle;
+    // Beside the title where there is room, below it elsewhere.
+    const double room = layout_.width() - 60 - 10.5 * static_cast<double>(data_.title.size());
+    const bool beside = room > 7 * static_cast<double>(method.size());
+    text += fmt::format("set label 2 {} at {} {} noenhanced font ',{:.0f}' tc rgb '#707070'\n", quoted(method),
+                        beside ? at(layout_.width() - 20, layout_.height() - 20) : at(24, layout_.height() - 38),
+                        beside ? "right" : "left", 10 * scale);
+    for (std::size_t k = 0; k < data_.legend.size(); ++k) {
+      text += fmt::format(
+          "set label {} {} at {} left noenhanced tc rgb '#202020' point pt 7 ps 0.9 lc rgb '{}' "
+          "offset 0.9,-0.2\n",
+          10 + k, quoted(data_.legend[k].name), at(layout_.legend()[k].x, layout_.legend()[k].y),
+          color_of(data_.legend[k].color));
+    }
+    return text + frame();
+  }
+  static std::string frame() {
+    return "set border 3 lw 0.8 lc rgb '#505050'\nset tics out nomirror scale 0.6 tc rgb '#303030'\n"
+           "set grid back lt 1 lw 0.5 lc rgb '#E4E4E4'\nunset key\n";
+  }
+
+  /// Ends a panel: gnuplot refuses to draw nothing, so an empty one draws a point outside of it.
+  void plot(const std::vector<std::string>& curves) {
+    std::string all;
+    for (const std::string& curve : curves) all += (all.empty() ? "plot " : ", \\\n     ") + curve;
+    text_ += (all.empty() ? "plot NaN notitle" : all) + "\nunset label\n";
+  }
+
+  void add_titles(const std::string& title, const std::string& x, const std::string& y) {
+    text_ += fmt::format("set title {} offset 0,-0.6 noenhanced tc rgb '#303030'\n", quoted(title));
+    text_ += fmt::format("set xlabel {} offset 0,0.3 noenhanced\nset ylabel {} offset 0.8,0 noenhanced\n", quoted(x),
+                         quoted(y));
+  }
+
+  void add_orbits(std::size_t index) {
+    const PlotOrbits& picture = data_.orbits[index];
+    for (std::size_t k = 0; k < picture.orbits.size(); ++k) {
+      const PlotOrbit& orbit = picture.orbits[k];
+      const std::string name = fmt::format("o{}_{}", index, k);
+      if (!orbit.samples.empty()) text_ += block(name + "s", orbit.samples);
+      if (!orbit.path.empty()) text_ += block(name + "p", orbit.path);
+      text_ += block(name + "e", std::vector<PlotPlace>{orbit.end});
+    }
+    for (std::size_t v = 0; v < picture.views.size(); ++v) add_view(index, v);
+  }
+
+  void add_view(std::size_t index, std::size_t v) {
+    const PlotOrbits& picture = data_.orbits[index];
+    const PlotView& view = picture.views[v];
+    const PlotArea& area = layout_.orbits(index, v);
+    text_ += margins(area);
+    text_ += fmt::format("set xrange [{:.9g}:{:.9g}]\nset yrange [{:.9g}:{:.9g}]\n", view.low.x, view.high.x,
+                         view.low.y, view.high.y);
+    text_ += "unset logscale\nset format '%g'\n";
+    text_ += fmt::format("set xtics {}\nset ytics {}\n", tics(view.low.x, view.high.x, area.wide),
+                         tics(view.low.y, view.high.y, area.high));
+    add_titles(v == 0 ? picture.title : "", view.across_label, view.up_label);
+    std::vector<std::string> curves;
+    const std::string columns = fmt::format("using {}:{}", view.across + 1, view.up + 1);
+    for (std::size_t k = 0; k < picture.orbits.size(); ++k) {
+      const PlotOrbit& orbit = picture.orbits[k];
+      const std::string name = fmt::format("$o{}_{}", index, k), color = color_of(orbit.color);
+      if (!orbit.samples.empty()) {
+        curves.push_back(fmt::format("{}s {} with points pt 7 ps 0.25 lc rgb '#90{}'", name, columns, color.substr(1)));
+      }
+      if (!orbit.path.empty())
+        curves.push_back(fmt::format("{}p {} with lines lw 1.3 lc rgb '{}'", name, columns, color));
+    }
+    for (std::size_t k = 0; k < picture.orbits.size(); ++k) {
+      const PlotOrbit& orbit = picture.orbits[k];
+      curves.push_back(fmt::format("$o{}_{}e {} with points pt 7 ps {} lc rgb '{}'", index, k, columns,
+                                   orbit.primary ? 1.1 : 0.9, color_of(orbit.color)));
+    }
+    plot(curves);
+  }
+
+  /// Few marks on a short axis, those of gnuplot elsewhere.
+  static std::string tics(double low, double high, double points) {
+    if (points > 200) return "autofreq";
+    const double step = (high - low) / 3, power = std::pow(10.0, std::floor(std::log10(step)));
+    const double digit = step / power;
+    return fmt::format("{:.6g}", power * (digit < 1.5 ? 1 : digit < 3.5 ? 2 : digit < 7.5 ? 5 : 10));
+  }
+
+  static std::string edges_block(const std::string& name, const std::vector<std::pair<PlotPoint, PlotPoint>>& edges) {
+    std::string text = "$" + name + " << EOD\n";
+    for (const auto& [a, b] : edges) text += fmt::format("{:.5g} {:.5g}\n{:.5g} {:.5g}\n\n", a.x, a.y, b.x, b.y);
+    return text + "EOD\n";
+  }
+
+  /// A disc as rows of a block: a dark edge, its color, and a light where it is lit.
+  std::string rows_of(const PlotDisc& disc, bool sphere, double unit) const {
+    const std::uint32_t color = shaded(disc.color, disc.depth);
+    std::string rows;
+    const auto row = [&](double dx, double dy, double part, std::uint32_t rgb) {
+      rows += fmt::format("{:.5g} {:.5g} {:.4g} {}\n", disc.x + dx * disc.radius, disc.y + dy * disc.radius,
+                          part * disc.radius * unit, rgb);
+    };
+    if (!sphere) {
+      row(0, 0, 1, color);
+      return rows;
+    }
+    row(0, 0, 1, mixed(color, 0x101820, 0.45));
+    row(-0.04, 0.04, 0.88, color);
+    row(-0.3, 0.32, 0.3, mixed(color, 0xFFFFFF, 0.5));
+    return rows;
+  }
+
+  void add_box(std::size_t index) {
+    const PlotBox& picture = data_.boxes[index];
+    const PlotArea& area = layout_.box(index);
+    const double points = area.wide / (picture.high.x - picture.low.x);
+    // SVG has circles as marks of a size in points; elsewhere they are drawn in units of the axis.
+    const bool marks = format_ == PictureFormat::svg;
+    const double unit = marks ? points / 4.125 : 1;
+    const bool spheres = picture.discs.size() <= most_spheres;
+    text_ += margins(area);
+    text_ += fmt::format("set xrange [{:.9g}:{:.9g}]\nset yrange [{:.9g}:{:.9g}]\nunset logscale\n", picture.low.x,
+                         picture.high.x, picture.low.y, picture.high.y);
+    text_ += "unset border\nunset tics\nunset grid\n";
+    add_titles(picture.title, "", "");
+    text_ += edges_block(fmt::format("b{}f", index), picture.far_edges);
+    text_ += edges_block(fmt::format("b{}n", index), picture.near_edges);
+    std::vector<std::string> curves;
+    if (!picture.far_edges.empty()) curves.push_back(fmt::format("$b{}f with lines lw 0.8 lc rgb '#A0A0A0'", index));
     const std::string style =
-        curve.points.size() > 400 ? "with points pt 7 ps 0.2" : "with linespoints lw 1 pt 7 ps 0.35";
-    plot += fmt::format("{}${} {} lc rgb '{}'", plot.empty() ? "plot " : ", ", name, style,
-                        palette[(panel_number + c) % palette.size()]);
-    // In the key a dot that can be seen.
-    plot += curve.name.empty() ? " notitle"
-                               : fmt::format(" notitle, NaN with points pt 7 ps 0.8 lc rgb '{}' title {}",
-                                             palette[(panel_number + c) % palette.size()], quoted(curve.name));
+        marks ? "with points pt 7 ps variable lc rgb variable" : "with circles fill solid noborder lc rgb variable";
+    const int count = picture.sticks.empty() ? 1 : layers;
+    for (int layer = count - 1; layer >= 0; --layer) {
+      const auto inside = [&](double depth) {
+        return std::clamp(static_cast<int>(depth * count), 0, count - 1) == layer;
+      };
+      std::string sticks, discs;
+      for (const PlotStick& stick : picture.sticks) {
+        if (!inside(stick.depth)) continue;
+        sticks += fmt::format("{:.5g} {:.5g} {:.5g} {:.5g} {}\n", stick.from.x, stick.from.y, stick.to.x - stick.from.x,
+                              stick.to.y - stick.from.y, mixed(shaded(stick.color, stick.depth), 0x101820, 0.15));
+      }
+      for (const PlotDisc& disc : picture.discs) {
+        if (inside(disc.depth)) discs += rows_of(disc, spheres, unit);
+      }
+      if (!sticks.empty()) {
+        const double wide = std::clamp(0.7 * picture.discs.back().radius * points, 0.6, 6.0);
+        text_ += fmt::format("$b{}s{} << EOD\n{}EOD\n", index, layer, sticks);
+        curves.push_back(
+            fmt::format("$b{}s{} using 1:2:3:4:5 with vectors nohead lw {:.2f} lc rgb variable", index, layer, wide));
+      }
+      if (!discs.empty()) {
+        text_ += fmt::format("$b{}d{} << EOD\n{}EOD\n", index, layer, discs);
+        curves.push_back(fmt::format("$b{}d{} using 1:2:3:4 {}", index, layer, style));
+      }
+    }
+    if (!picture.near_edges.empty()) curves.push_back(fmt::format("$b{}n with lines lw 0.8 lc rgb '#606060'", index));
+    plot(curves);
+    text_ += frame();
   }
-  // gnuplot refuses to draw nothing: an empty panel draws a point outside of it.
-  return data + (plot.empty() ? "plot NaN" : plot) + "\nunset label\n";
-}
 
-std::string error_panel(const PlotData& all, std::size_t k, const Layout& layout) {
-  const PlotError& error = all.errors[k];
-  double low = INFINITY, high = 0;
-  for (const PlotCurve& curve : error.curves) {
-    for (const PlotPoint& p : curve.points) low = std::min(low, p.y), high = std::max(high, p.y);
+  void add_axis(const PlotAxis& axis, char name, double points) {
+    text_ += fmt::format("set {}range [{:.9g}:{:.9g}]\n", name, axis.low, axis.high);
+    if (!axis.logarithmic) {
+      text_ += fmt::format("unset logscale {0}\nset format {0} '%g'\nset {0}tics autofreq\n", name);
+      return;
+    }
+    const double decades = std::log10(axis.high / axis.low);
+    // Every second decade, or third, where labels would meet.
+    const double most = std::max(2.0, points / (name == 'x' ? 44 : 26));
+    const double step = std::max(1.0, std::ceil(decades / most));
+    text_ += fmt::format("set logscale {}\n", name);
+    if (decades < 2) {
+      text_ += fmt::format("set format {0} '%g'\nset {0}tics autofreq\n", name);
+    } else {
+      text_ += fmt::format("set format {0} '10^{{%T}}'\nset {0}tics 1e-30,{1:g}\n", name, std::pow(10.0, step));
+    }
   }
-  const bool empty = !(high > 0), several = error.curves.size() > 1;
-  // Rare dips of an error that changes sign would stretch the axis: few decades below the worst are enough.
-  const double most = empty ? -14 : std::ceil(std::log10(high) + 0.1);
-  const double bottom = empty ? -17 : std::max(std::floor(std::log10(low)), several ? -17.0 : most - 5);
-  const double top = several ? most + std::ceil((most - bottom) / 4) : most;  // room for the key
-  std::string text = layout.error_margins(k);
-  text += fmt::format("set xrange [{:.9g}:{:.9g}]\nset yrange [1e{:.0f}:1e{:.0f}]\nset logscale y\n", all.begin,
-                      all.end > all.begin ? all.end : all.begin + 1, std::min(bottom, top - 2), top);
-  text +=
-      fmt::format("set format x '%g'\nset format y '10^{{%T}}'\nset ytics {}\n", several ? "1e-18,1e3" : "autofreq");
-  const std::string worst = empty ? "exactly zero" : fmt::format("worst {:.1e}", error.worst);
-  const std::string whose = several ? " of " + error.curves.back().name : "";
-  text += fmt::format("set title {} offset 0,-0.6 noenhanced tc rgb '#303030'\n",
-                      quoted(error.title + ": " + error.label + ", " + worst + whose));
-  text += fmt::format("set xlabel {} offset 0,0.3 noenhanced\nunset ylabel\n", quoted(all.time_label));
-  text += several ? "set key inside top right horizontal samplen 0.3 width -1\n" : "unset key\n";
-  return text + error_curves(error, k);
-}
+
+  void add_panel(std::size_t k) {
+    const PlotPanel& panel = data_.panels[k];
+    const PlotArea& area = layout_.panel(k);
+    text_ += margins(area);
+    add_axis(panel.x, 'x', area.wide);
+    add_axis(panel.y, 'y', area.high);
+    add_titles(panel.title, panel.x.label, panel.y.label);
+    const bool key =
+        std::any_of(panel.curves.begin(), panel.curves.end(), [](const auto& c) { return !c.name.empty(); });
+    text_ += key ? "set key inside top right horizontal samplen 0.3 width -1 noenhanced\n" : "unset key\n";
+    std::vector<std::string> curves;
+    for (std::size_t c = 0; c < panel.curves.size(); ++c) {
+      const PlotCurve& curve = panel.curves[c];
+      if (curve.points.empty()) continue;
+      const std::string name = fmt::format("p{}_{}", k, c);
+      const std::string color = color_of(curve.color == automatic_color ? k + c : curve.color);
+      text_ += block(name, curve.points);
+      const std::string style = style_of(curve, panel);
+      curves.push_back(fmt::format("${} {} lc rgb '{}' notitle", name, style, color));
+      if (panel.large) {
+        text_ += block(name + "e", std::vector<PlotPoint>{curve.points.back()});
+        curves.push_back(fmt::format("${}e with points pt 7 ps 0.9 lc rgb '{}' notitle", name, color));
+      }
+      // In the key a dot that can be seen.
+      if (!curve.name.empty()) {
+        curves.push_back(fmt::format("NaN with points pt 7 ps 0.8 lc rgb '{}' title {}", color, quoted(curve.name)));
+      }
+    }
+    plot(curves);
+  }
+
+  static std::string style_of(const PlotCurve& curve, const PlotPanel& panel) {
+    if (panel.large) return "with lines lw 1.3";
+    const std::size_t count = curve.points.size();
+    if (curve.separate && count > 400) return "with points pt 7 ps 0.2";
+    return count > 120 ? "with lines lw 1" : "with linespoints lw 1 pt 7 ps 0.35";
+  }
+
+  const PlotData& data_;
+  PlotLayout layout_;
+  PictureFormat format_;
+  std::string text_;
+};
 
 }  // namespace
 
 std::string plot_script(const PlotData& data, PictureFormat format, const std::string& picture) {
-  const Layout layout(data);
-  std::string text = opening(data, layout, format, picture);
-  for (std::size_t k = 0; k < data.orbits.size(); ++k) text += orbit_panel(data.orbits[k], k, layout);
-  for (std::size_t k = 0; k < data.errors.size(); ++k) text += error_panel(data, k, layout);
-  return text + "unset multiplot\nunset output\n";
+  return Script(data, format).whole(picture);
 }
 
 }  // namespace noether

@@ -7,9 +7,9 @@
 
 namespace noether {
 
-enum class PictureFormat { svg, png };
+enum class PictureFormat { svg, png, pdf };
 
-/// The script that draws `data` into `picture`, a path; one panel per scale of orbits and one per error.
+/// The script that draws `data` into `picture`, a path.
 std::string plot_script(const PlotData& data, PictureFormat format, const std::string& picture);
 
 }  // namespace noether

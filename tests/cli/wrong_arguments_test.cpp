@@ -111,7 +111,8 @@ const std::vector<Wrong> wrong_lines = {
 #endif
     {"convert run.h5", 2, "out is required; see `noether convert --help`"},
     {"plot ''", 2, "FILE: the name of the file is empty; see `noether plot --help`"},
-    {"plot run.h5 --out a.jpg", 2, "a picture 'a.jpg' has no supported format; give a name that ends in .svg or .png"},
+    {"plot run.h5 --out a.jpg", 2,
+     "a picture 'a.jpg' has no supported format; give a name that ends in .svg, .png or .pdf"},
 };
 
 /// The message in the JSON of an error.

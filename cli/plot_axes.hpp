@@ -1,0 +1,42 @@
+#pragma once
+/// Axes of pictures: time in a unit that people read, and ranges that hold what is drawn.
+
+#include "cli/plot_data.hpp"
+
+#include <string>
+#include <vector>
+
+namespace noether {
+
+/// "time (yr)"; without brackets where there is no unit.
+std::string with_unit(const std::string& text, const std::string& unit);
+
+/// The time axis that all panels of a run share.
+struct PlotTime {
+  std::string unit;   ///< its name
+  double length = 1;  ///< of the unit, in the unit of the file
+  PlotAxis axis;      ///< from the first to the last moment, in the unit
+};
+
+/// Whether moments are spaced so that each is a multiple of the one before, as far as more of them fit on a logarithmic
+/// axis than on a linear one: two decades at least, and half of them in the first tenth. A first moment 0 is left out.
+bool is_spaced_by_ratios(const std::vector<double>& times);
+
+/// The time axis of moments in a unit of the file, such as "day". @param frames  those that choose its kind
+PlotTime time_axis(const std::string& unit, const std::vector<double>& frames, double begin, double end);
+
+/// Makes the axis of the values hold all curves, with some air: logarithmic where it must be.
+void fit_values(PlotPanel& panel);
+
+/// The same of sizes of errors: logarithmic where they span a decade, few decades below the largest.
+void fit_errors(PlotPanel& panel);
+
+/// At most `most` points, at equal distances, the first among them.
+template <class Point> std::vector<Point> thinned(const std::vector<Point>& points, std::size_t most) {
+  const std::size_t stride = points.size() <= most ? 1 : (points.size() + most - 1) / most;
+  std::vector<Point> kept;
+  for (std::size_t k = 0; k < points.size(); k += stride) kept.push_back(points[k]);
+  return kept;
+}
+
+}  // namespace noether
