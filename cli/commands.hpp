@@ -25,5 +25,6 @@ void add_info_command(CLI::App& app, const Parts& parts, int& exit_code);
 void add_verify_command(CLI::App& app, const Parts& parts, int& exit_code);
 void add_convert_command(CLI::App& app, const Parts& parts, int& exit_code);
 void add_plot_command(CLI::App& app, const Parts& parts, int& exit_code);
+void add_view_command(CLI::App& app, const Parts& parts, int& exit_code);
 
 }  // namespace noether

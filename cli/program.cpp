@@ -133,7 +133,8 @@ int run_command(int argc, char** argv, const Parts& parts, bool json) {
     int exit_code = 0;
     for (const auto add : {add_run_command, add_evaluate_command, add_explain_command, add_compare_command,
                            add_advise_command, add_stability_command, add_list_command, add_describe_command,
-                           add_info_command, add_verify_command, add_convert_command, add_plot_command}) {
+                           add_info_command, add_verify_command, add_convert_command, add_plot_command,
+                           add_view_command}) {
       add(app, parts, exit_code);
     }
     return parse(app, argc, argv, exit_code, json);
