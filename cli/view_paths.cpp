@@ -23,7 +23,9 @@ Vec3<double> of_body(const ViewData& data, const std::vector<float>& rows, std::
   return {row[0], row[1], row[2]};
 }
 
-double angle_between(const Vec3<double>& a, const Vec3<double>& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+double angle_between(const Vec3<double>& a, const Vec3<double>& b) {
+  return std::atan2(std::sqrt(norm2(cross(a, b))), dot(a, b));
+}
 
 /// Numbers of the frames whose intervals to the next are looked at.
 std::vector<std::size_t> intervals_of(const ViewData& data) {

@@ -21,7 +21,7 @@ const std::vector<Wrong> wrong_lines = {
     {"rnu scene.toml", 2, "unknown command 'rnu'; did you mean 'run'?"},
     {"integrate scene.toml", 2,
      "unknown command 'integrate'; known are: run, evaluate, explain, compare, advise, stability, list, describe, "
-     "info, verify, convert, plot"},
+     "info, verify, convert, plot, view"},
     {"--vresion", 2, "unknown option '--vresion' before a command; did you mean '--version'?"},
     {"-x run scene.toml", 2, "unknown option '-x' before a command; known are: --help, --version"},
     {"run", 2, "scene is required; see `noether run --help`"},
