@@ -76,7 +76,7 @@ class Look {
     return Float32Array.from({ length: this.n }, (_, i) => {
       if (!(masses[i] > 0)) return 3 * small;
       const part = high > low ? (Math.log(masses[i]) - low) / (high - low) : 0.6;
-      const star = i === this.about.primary ? 1.15 : 1;
+      const star = i === this.about.primary ? 0.8 : 1;  // its halo adds to it
       return (3.4 + 6.2 * part) * small * star;
     });
   }

@@ -101,7 +101,7 @@ void main() {
   way = size > 1e-6 ? way / size : vec2(1, 0);
   float z = last ? q.z : p.z, half_width = 0.5 * max(u_width, u_thick * pixels(z)), reach = half_width + 1.0;
   float side = (gl_VertexID & 1) == 0 ? -1.0 : 1.0;
-  vec2 off = vec2(-way.y, way.x) * side * reach + way * (last ? 0.35 : -0.35);
+  vec2 off = vec2(-way.y, way.x) * side * reach;
   v_across = vec3(side * reach / half_width, half_width, z);
   v_paint = last ? b_paint : a_paint;
   v_paint.a *= faded(last ? end.w : begin.w);

@@ -92,7 +92,7 @@ class View {
       camera.target = about.edges.slice(0, 3).map((edge) => edge / 2);
       camera.reach = Math.hypot(...camera.target);
     } else {
-      const axes = this.sampled_places(), part = this.n < 30 ? 0.985 : 0.995;
+      const axes = this.sampled_places(), part = about.anchors.length > 0 || this.n === 1 ? 1 : this.n < 30 ? 0.94 : 0.995;
       const middle = typeof this.follow === "number" && this.follow === about.primary;
       camera.target = middle ? [0, 0, 0] : axes.map((all) => (quantile(all, 1 - part) + quantile(all, part)) / 2 || 0);
       const reaches = axes.map((all, axis) => Math.max(quantile(all, part) - camera.target[axis], camera.target[axis] - quantile(all, 1 - part)) || 0);
@@ -103,7 +103,7 @@ class View {
     const below = 110 / height, above = 30 / height;
     camera.shift = [0, below - above];
     const free = Math.min(1 - below - above, width / height);
-    camera.distance = (camera.reach * (about.edges ? 0.88 : 1.06) * camera.lens) / free + (about.edges ? 0.3 * camera.reach : 0);
+    camera.distance = (camera.reach * (about.edges ? 0.88 : about.primary >= 0 ? 0.74 : 1.06) * camera.lens) / free + (about.edges ? 0.3 * camera.reach : 0);
     camera.home = camera.distance;
     const zoom = parseFloat(this.wish.get("zoom"));
     if (zoom > 0) camera.distance /= zoom;
@@ -242,7 +242,7 @@ class View {
     picture.begin(camera);
     picture.draw_spheres(rows, camera, look.in_pixels ? devicePixelRatio : 0, 0);
     const { bonds, crossing } = this.draw_links(off), trails = this.draw_trails(off), box = this.draw_box();
-    if (primary >= 0 && look.in_pixels) picture.draw_spheres(rows, camera, devicePixelRatio, 5.5);
+    if (primary >= 0 && look.in_pixels) picture.draw_spheres(rows, camera, devicePixelRatio, 4.5);
     const labels = this.controls.place_labels(rows);
     this.controls.tell();
     Object.assign(document.body.dataset, { ready: 1, frame: motion.nearest(), step: this.about.steps[motion.nearest()], time: motion.time,
@@ -255,6 +255,7 @@ class View {
     this.make_paths();
     const frame = parseFloat(this.wish.get("frame"));
     if (this.wish.has("paused")) this.playing = false;
+    this.controls.tell_state();
     this.go_to_frame(isFinite(frame) ? frame : 0);
     let last = performance.now();
     const tick = (now) => {
