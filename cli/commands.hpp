@@ -27,5 +27,6 @@ void add_convert_command(CLI::App& app, const Parts& parts, int& exit_code);
 void add_plot_command(CLI::App& app, const Parts& parts, int& exit_code);
 void add_help_command(CLI::App& app, const Parts& parts, int& exit_code);
 void add_version_command(CLI::App& app, const Parts& parts, int& exit_code);
+void add_view_command(CLI::App& app, const Parts& parts, int& exit_code);
 
 }  // namespace noether

@@ -21,7 +21,7 @@ const std::vector<Wrong> wrong_lines = {
     {"rnu scene.toml", 2, "unknown command 'rnu'; did you mean 'run'?"},
     {"integrate scene.toml", 2,
      "unknown command 'integrate'; expected one of: run, evaluate, explain, compare, advise, stability, list, describe, "
-     "info, verify, convert, plot, help, version"},
+     "info, verify, convert, plot, view, help, version"},
     {"build", 2, "'build' is a command of the launcher in a checkout: ./noether build"},
     {"test forces", 2, "'test' is a command of the launcher in a checkout: ./noether test"},
     {"help rnu", 2, "there is no command 'rnu'; did you mean 'run'?", false},

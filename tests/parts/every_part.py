@@ -42,7 +42,7 @@ that `noether list` names again and fails where one differs from this page. Each
 `tests/parts/scenes.py`. A number stands where the program refuses, with exit code 2, and leads to its message below,
 with NAME in the place of the part's own.
 
-- **run**: the run itself, and `explain`, `info`, `verify`, `convert` and `plot` of it.
+- **run**: the run itself, and `explain`, `info`, `verify`, `convert`, `plot` and `view` of it.
 - **threads, cadences**: the same bits, by digest, with two threads, and with other cadences of whatever looks on.
 - **restart**: the same bits, and the same reports of monitors, after a stop half way and `--resume`.
 - **y' = f**: the same forces under a method that chooses its steps (`dop853`; `bdf` where the system is stiff), with
@@ -156,6 +156,7 @@ class Walk:
         self.program("convert", "whole/run.h5", "run.csv", "--json")
         if self.case.particles:
             self.program("convert", "whole/run.h5", "run.xyz", "--json")
+            self.program("view", "whole/run.h5", "--out", "run.html", "--json")
         if shutil.which("gnuplot"):
             self.program("plot", "whole/run.h5", "--out", "run.svg", "--json")
         return "yes"

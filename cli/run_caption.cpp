@@ -1,0 +1,79 @@
+#include "cli/run_caption.hpp"
+
+#include "numbers/error.hpp"
+#include "numbers/units.hpp"
+#include "scene/parts.hpp"
+#include "scene/toml.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+namespace noether {
+
+namespace {
+
+const SceneValue* caption_value(const SceneValue& scene, const std::vector<std::string_view>& keys) {
+  const SceneValue* value = &scene;
+  for (const std::string_view key : keys) {
+    if (value != nullptr) value = value->find(key);
+  }
+  return value;
+}
+
+std::string caption_text(const SceneValue& scene, const std::vector<std::string_view>& keys) {
+  const SceneValue* value = caption_value(scene, keys);
+  if (value == nullptr) return "";
+  const std::string* text = value->get<std::string>();
+  return text != nullptr ? *text : to_text(*value);
+}
+
+/// Whether a force takes energy away or depends on time.
+bool is_driven(const SceneValue& force, const Parts& parts) {
+  const std::string type = caption_text(force, {"type"});
+  return std::any_of(parts.forces().begin(), parts.forces().end(), [&](const Parts::ForceKind& kind) {
+    return kind.info.name == type && (kind.claims.dissipative || kind.claims.time_dependent);
+  });
+}
+
+}  // namespace
+
+SceneValue scene_in_file(const std::string& toml, const std::filesystem::path& file) {
+  try {
+    return parse_toml(toml, "stored");
+  } catch (const Error& error) {
+    throw FileError(fmt::format("damaged: its scene cannot be read: {}", error.message()), {.file = file.string()});
+  }
+}
+
+RunCaption caption_of(const SceneValue& scene, const std::filesystem::path& file, const std::string& time_unit,
+                      double longest, const Parts& parts) {
+  RunCaption caption;
+  caption.title = caption_text(scene, {"title"});
+  if (caption.title.empty()) caption.title = file.filename().string();
+  const std::string step = caption_text(scene, {"integrator", "step"});
+  for (const std::string& part :
+       {caption_text(scene, {"hamiltonian", "type"}), caption_text(scene, {"integrator", "method"}),
+        step.empty() ? step : "step " + step}) {
+    if (!part.empty()) caption.method += (caption.method.empty() ? "" : ", ") + part;
+  }
+  caption.time_unit = time_unit == "1" ? "" : time_unit;
+  if (time_unit == "day") {
+    namespace solar = units::solar;
+    for (const auto& [name, length, from] :
+         {std::tuple{"yr", solar::year, 2 * solar::year}, std::tuple{"kyr", solar::kyr, 5 * solar::kyr},
+          std::tuple{"Myr", solar::Myr, 0.5 * solar::Myr}}) {
+      if (longest >= from) caption.time_unit = name, caption.time_length = length;
+    }
+  }
+  caption.energy_changes = caption_value(scene, {"hamiltonian", "thermostat"}) != nullptr;
+  const SceneValue* forces = caption_value(scene, {"hamiltonian", "force"});
+  if (forces == nullptr || !forces->is_table_list()) return caption;
+  for (const SceneValue& force : *forces->get<SceneValue::Array>()) caption.energy_changes |= is_driven(force, parts);
+  return caption;
+}
+
+}  // namespace noether
