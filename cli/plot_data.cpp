@@ -145,7 +145,7 @@ std::string box_title(const PlotSource& source, std::size_t number) {
   std::string title = fmt::format("Frame {}, t = {:.4g}{}", number, frame.time / source.time.length, time);
   if (frame.edges.size() == 3) {
     const std::string& unit = source.frames.length_unit;
-    title += fmt::format(", box {:.4g} × {:.4g} × {:.4g}{}", frame.edges[0], frame.edges[1], frame.edges[2],
+    title += fmt::format(", box {:.4g} x {:.4g} x {:.4g}{}", frame.edges[0], frame.edges[1], frame.edges[2],
                          unit == "1" || unit.empty() ? "" : " " + unit);
   }
   return title;

@@ -114,10 +114,9 @@ std::string too_stiff(const Scene& scene) {
   const std::string unit = scene.units->time == "1" ? "" : fmt::format(" {}", scene.units->time);
   const std::string remedy = bearable > 0.01 ? fmt::format("take a step below {:.2g}{}", bearable / bond.omega, unit)
                                              : "take another method, such as 'verlet'";
-  return fmt::format(
-      "the bond of '{}' and '{}' oscillates with h omega = {:.3g}, which '{}' cannot keep bounded; {}{}",
-      scene.particles.name(bond.first), scene.particles.name(bond.second), z, scene.integrator.method, remedy,
-      scene.hamiltonian.thermostat ? "" : ", or constraints");
+  return fmt::format("the bond of '{}' and '{}' oscillates with h omega = {:.3g}, which '{}' cannot keep bounded; {}{}",
+                     scene.particles.name(bond.first), scene.particles.name(bond.second), z, scene.integrator.method,
+                     remedy, scene.hamiltonian.thermostat ? "" : ", or constraints");
 }
 
 /// A file that names another cutoff than the force has; empty if it does not.

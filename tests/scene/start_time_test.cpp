@@ -167,17 +167,16 @@ TEST_CASE("a list of times is read from the scene or a file, and kept as a list"
 TEST_CASE("times after the end are warned of, and of a moved end they are seen", "[scene][times]") {
   const std::string set = "every.0.times=[\"10 day\", \"200 day\", \"201 day\"]";
   CHECK(warnings_of(clocked({set})) ==
-        std::vector<std::string>{
-            "1 of 3 times of 'energy' lies after the end at 200 day, so it does not sample then"});
+        std::vector<std::string>{"1 of 3 times of 'energy' lies after the end at 200 day, so it does not sample then"});
   CHECK(warnings_of(clocked({set, "integrator.until=201 day"})).empty());
   CHECK(warnings_of(clocked({set, "integrator.until=", "integrator.steps=402"})).empty());
   CHECK(warnings_of(clocked({set, "integrator.until="})).empty());  // no end is known
   const std::vector<std::string> adaptive = {"integrator.method=dop853",
                                              "integrator.step=", "every.0.times=[\"1005 day\", \"1011.25 day\"]",
                                              "integrator.start_time=1000 day", "integrator.until=1010 day"};
-  CHECK(warnings_of(clocked(adaptive)) ==
-        std::vector<std::string>{
-            "1 of 2 times of 'energy' lies after the end at 1010 day, so it does not sample then"});
+  CHECK(
+      warnings_of(clocked(adaptive)) ==
+      std::vector<std::string>{"1 of 2 times of 'energy' lies after the end at 1010 day, so it does not sample then"});
 }
 
 TEST_CASE("where times are exact, one between two steps is refused with the nearest of the clock",

@@ -50,13 +50,17 @@ class Change {
     const std::string argument = text.size() > 2 ? text.substr(2) : "";
     changed_ = changed_ || text[0] != ' ';
     switch (text[0]) {
-      case '+': return lines_.push_back(argument);
-      case '-': return take_until(line, [&](const std::string& other) { return other == argument; }, {});
-      case ' ': return take_until(line, [&](const std::string& other) { return other == argument; }, {argument});
+      case '+':
+        return lines_.push_back(argument);
+      case '-':
+        return take_until(line, [&](const std::string& other) { return other == argument; }, {});
+      case ' ':
+        return take_until(line, [&](const std::string& other) { return other == argument; }, {argument});
       case '=':
-        return take_until(
-            line, [&](const std::string& other) { return key_of(other) == key_of(argument); }, {argument});
-      default: refuse(line, "begins with none of '+', '-', '=' and ' '");
+        return take_until(line, [&](const std::string& other) { return key_of(other) == key_of(argument); },
+                          {argument});
+      default:
+        refuse(line, "begins with none of '+', '-', '=' and ' '");
     }
   }
   /// @return the scene; empty if nothing was changed
