@@ -35,7 +35,9 @@ std::string instead_of_proposals(const Advice& a, const Scene& scene) {
     out += fmt::format("best found: {}: {} error {:.1e} over {}", with_setting(*a.best, scene),
                        a.metric == Metric::energy ? "energy" : "position", a.best_error,
                        time_in_words(a.trial_end, scene));
-    if (longer) out += fmt::format(", about {:.1e} over the whole run", a.best->predicted_error);
+    if (longer && a.best->predicted_error < 0.1)
+      out += fmt::format(", about {:.1e} over the whole run", a.best->predicted_error);
+    if (longer && a.best->predicted_error >= 0.1) out += ", as large as what is computed over the whole run";
     out += fmt::format("; the whole run takes about {:.3g} s and {:.4g} evaluations\n", a.best->predicted_wall_s,
                        a.best->predicted_evaluations);
   }

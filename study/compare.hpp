@@ -19,7 +19,7 @@ struct CompareOptions {
   double row_budget = 10;  ///< seconds of wall time for one run
   TruthOptions truth = {};
   bool positions = true;    ///< else errors are those of the energy, and no truth is looked for where that is kept
-  bool shadow = true;       ///< whether the shadow Hamiltonian is watched
+  bool quick = false;       ///< for advice: no shadow Hamiltonian, rough times of longer runs
   TellShare progress = {};  ///< told what is being done
 };
 
