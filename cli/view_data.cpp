@@ -98,8 +98,9 @@ void take_frame(ViewData& data, const io::Frame& frame, const std::vector<std::s
       orbits ? row_of(frame.positions, static_cast<std::size_t>(data.primary)) : center_of(frame.positions, masses);
   taken.velocity =
       orbits ? row_of(frame.velocities, static_cast<std::size_t>(data.primary)) : center_of(frame.velocities, masses);
-  if (!taken.center.allFinite()) taken.center.setZero();
-  if (!taken.velocity.allFinite()) taken.velocity.setZero();
+  const bool alone = masses.size() == 1;  // relative to itself it would not move
+  if (alone || !taken.center.allFinite()) taken.center.setZero();
+  if (alone || !taken.velocity.allFinite()) taken.velocity.setZero();
   const bool few = rows.size() <= few_bodies;
   for (const std::size_t i : rows) {
     for (std::size_t k = 0; k < 3; ++k) {

@@ -98,12 +98,12 @@ std::pair<Json, Json> types_of(const ViewData& data) {
   return {Json::list_of(names), Json::list_of(types)};
 }
 
-/// What identifies few bodies: their names, unless these are mere numbers.
+/// What identifies few bodies in open space: their names, unless these are mere numbers.
 Json names_of(const ViewData& data) {
   const bool plain = std::all_of(data.names.begin(), data.names.end(), [](const std::string& name) {
     return name.find_first_not_of("0123456789") == std::string::npos;
   });
-  return data.particles() > most_names || plain ? Json() : Json::list_of(data.names);
+  return data.periodic() || data.particles() > most_names || plain ? Json() : Json::list_of(data.names);
 }
 
 Json energy_of(const ViewData& data) {

@@ -86,7 +86,7 @@ class Motion {
     if (this.fractions) {
       this.go_in_box();
     } else {
-      this.center = [0, 1, 2].map((axis) => this.mixed(this.about.centers, 3, axis));
+      this.center = this.velocities && this.frames > 1 ? this.center_on_cubic() : [0, 1, 2].map((axis) => this.mixed(this.about.centers, 3, axis));
       if (this.velocities) this.go_few();
       else this.go_many();
     }
@@ -133,12 +133,15 @@ class Motion {
     return path === "arcs" ? this.on_arc(i, mu) : this.on_cubic(i);
   }
   // The cubic that meets places and velocities at both frames; a velocity that would lead far beyond both is shortened.
-  on_cubic(i) {
+  on_cubic(i) { return this.cubic(this.positions, this.velocities, (k) => 3 * (k * this.n + i)); }
+  center_on_cubic() { return this.cubic(this.about.centers, this.about.center_velocities, (k) => 3 * k); }
+  cubic(places, velocities, first) {
     const { k, u } = this, h = this.about.times[k + 1] - this.about.times[k], w = 1 - u;
-    const a = this.row(this.positions, k, i), b = this.row(this.positions, k + 1, i);
+    const at_frame = (rows, frame) => [0, 1, 2].map((axis) => rows[first(frame) + axis]);
+    const a = at_frame(places, k), b = at_frame(places, k + 1);
     const chord = Math.hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
     const slope = (at) => {
-      const v = this.row(this.velocities, at, i), size = h * Math.hypot(...v);
+      const v = at_frame(velocities, at), size = h * Math.hypot(...v);
       const part = size > 2.5 * chord ? 2.5 * chord / size : 1;
       return v.map((one) => one * h * part);
     };

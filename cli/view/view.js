@@ -103,7 +103,7 @@ class View {
     const below = 110 / height, above = 30 / height;
     camera.shift = [0, below - above];
     const free = Math.min(1 - below - above, width / height);
-    camera.distance = (camera.reach * (about.edges ? 0.88 : about.primary >= 0 ? 0.74 : 1.06) * camera.lens) / free + (about.edges ? 0.3 * camera.reach : 0);
+    camera.distance = (camera.reach * (about.edges ? 0.88 : about.primary >= 0 ? 0.84 : 1.06) * camera.lens) / free + (about.edges ? 0.3 * camera.reach : 0);
     camera.home = camera.distance;
     const zoom = parseFloat(this.wish.get("zoom"));
     if (zoom > 0) camera.distance /= zoom;
