@@ -240,9 +240,10 @@ std::string text_at(const SceneValue& scene, const std::vector<std::string_view>
 const io::MonitorSeries* find_monitor(const std::vector<io::MonitorSeries>& monitors, std::string_view name) {
   for (const bool exact : {true, false}) {
     for (const io::MonitorSeries& monitor : monitors) {
-      const std::string_view rest = std::string_view(monitor.name).substr(std::min(name.size(), monitor.name.size()));
-      const bool numbered = rest.size() > 1 && rest[0] == '_' && rest.find_first_not_of("0123456789", 1) == rest.npos;
-      if (monitor.name.starts_with(name) && (exact ? rest.empty() : numbered)) return &monitor;
+      const std::string_view ending = std::string_view(monitor.name).substr(std::min(name.size(), monitor.name.size()));
+      const bool numbered =
+          ending.size() > 1 && ending[0] == '_' && ending.find_first_not_of("0123456789", 1) == ending.npos;
+      if (monitor.name.starts_with(name) && (exact ? ending.empty() : numbered)) return &monitor;
     }
   }
   return nullptr;
