@@ -95,6 +95,7 @@ std::string wrong_first_argument(const CLI::App& app, const std::string& first) 
   if (!option) known = command_names(app);
   if (!option && under_launcher()) known.insert(known.end(), launcher_commands.begin(), launcher_commands.end());
   if (first == "-h" || std::find(known.begin(), known.end(), first) != known.end()) return "";
+  if (first.ends_with(".toml")) return fmt::format("'{0}' is not a command; did you mean `noether run {0}`?", first);
   return fmt::format("unknown {} '{}'{}{}", option ? "option" : "command", first, option ? " before a command" : "",
                      did_you_mean(first, known));
 }

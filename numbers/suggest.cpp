@@ -63,6 +63,9 @@ std::string squeezed(std::string_view word) {
   return text;
 }
 
+/// So many letters of a word are enough where the rest is missing.
+constexpr std::size_t least_begun = 5;
+
 std::string suggest(std::string_view word, const std::vector<std::string>& known) {
   const std::string lower = lower_case(word);
   const std::size_t near = std::max<std::size_t>(2, word.size() / 3);
@@ -71,7 +74,8 @@ std::string suggest(std::string_view word, const std::vector<std::string>& known
   std::tuple<std::size_t, std::size_t, long> best_distance{near + 1, 0, 0};
   for (const std::string& candidate : known) {
     const bool same = core.size() > 1 && squeezed(candidate) == core;
-    const std::size_t distance = same ? 0 : edit_distance(lower, lower_case(candidate));
+    const bool begun = word.size() >= least_begun && lower_case(candidate).starts_with(lower);
+    const std::size_t distance = same ? 0 : begun ? near : edit_distance(lower, lower_case(candidate));
     if (distance > near || distance >= std::max(word.size(), candidate.size())) continue;
     const std::tuple measured{distance, edit_distance(word, candidate), number_distance(lower, lower_case(candidate))};
     if (measured < best_distance) {

@@ -21,13 +21,13 @@ std::string squeezed(std::string_view word);
 
 /// The nearest known word, or nothing where none is near.
 ///
-/// Near is at most max(2, length / 3) edits, case aside, and fewer than the longer word has letters; nearest is one
-/// that is the same when both are squeezed. Among equals the one that agrees better in case wins, then the one whose
-/// number at the end is nearer, then the first.
+/// Near is at most max(2, length / 3) edits, case aside, and fewer than the longer word has letters; so is one
+/// that begins with the word, if that has 5 letters. Nearest is one that is the same when both are squeezed. Among
+/// equals the one that agrees better in case wins, then the one whose number at the end is nearer, then the first.
 /// @throws std::bad_alloc
 std::string suggest(std::string_view word, const std::vector<std::string>& known);
 
-/// The end of a message: "; did you mean 'cutoff'?", or "; known are: a, b, c" where nothing is near.
+/// The end of a message: "; did you mean 'cutoff'?", or "; expected one of: a, b, c" where nothing is near.
 ///
 /// Empty if nothing is known.
 /// @throws std::bad_alloc

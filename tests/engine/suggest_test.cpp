@@ -56,6 +56,8 @@ TEST_CASE("a word that differs in its joints or its plural alone is the nearest"
   CHECK(squeezed("us") == "us");
   CHECK(suggest("aba_1064", {"aba_10_4", "aba_10_6_4"}) == "aba_10_6_4");
   CHECK(suggest("energies", {"elements", "energy"}) == "energy");
+  CHECK(suggest("hamilton", {"title", "hamiltonian"}) == "hamiltonian");  // the rest is missing
+  CHECK(suggest("hami", {"title", "hamiltonian"}) == "");
   CHECK(suggest("velocityverlet", {"velocity_verlet"}) == "velocity_verlet");
 }
 
