@@ -71,7 +71,7 @@ TEST_CASE("a step too large ends the run by name, at a state that is written and
 
 TEST_CASE("explain counts constraints and what they leave; describe and list know them", "[cli][constraints]") {
   const PendulumFolder folder;
-  const std::string text = output(folder, "explain scene.toml");
+  const std::string text = output(folder, "explain scene.toml --all");
   CHECK(has(text, "constraint distance, "));
   CHECK(has(text, "equations of constraints solved for positions and for velocities; "));
   CHECK(has(text, "  constraint angle\n"));
