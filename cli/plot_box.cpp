@@ -92,8 +92,10 @@ Kinds kinds_of(const ParticleSystem<double>& s, const std::string& mass_unit) {
   for (std::size_t i = 0; i < n; ++i) {
     const auto at = static_cast<Index>(i);
     const std::string type = typed ? topology->type_names[static_cast<std::size_t>(topology->type(at))] : "";
+    const bool numbered = typed && type.find_first_not_of("0123456789") == std::string::npos;
     const std::string unit = mass_unit == "1" || mass_unit.empty() ? "" : " " + mass_unit;
-    const std::string name = fmt::format("{}{}mass {:.5g}{}", type, typed ? ", " : "", s.masses()[at], unit);
+    const std::string name =
+        fmt::format("{}{}{}mass {:.5g}{}", numbered ? "type " : "", type, typed ? ", " : "", s.masses()[at], unit);
     const auto [found, added] = numbers.try_emplace(name, counts.size());
     if (added) counts.push_back(0), kinds.legend.push_back({name, found->second});
     kinds.of[i] = found->second;

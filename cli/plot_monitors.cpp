@@ -255,14 +255,14 @@ std::optional<PlotPanel> plot_temperature(const PlotSource& source) {
       .name = "temperature", .step = {}, .time = {}, .quantities = {}, .units = {}, .scale = {}, .orders = {}};
   std::vector<double>& values = made.quantities["value"].second;
   for (const io::Frame& frame : frames.frames) {
-    double twice = 0;
+    std::array<double, 3> squares{};  // twice the kinetic energy along each axis
     for (std::size_t k = 0; k < 3; ++k) {
       const auto v = [&](Index i) { return frame.velocities[3 * static_cast<std::size_t>(i) + k]; };
       const double drift = sum_over<double>(n, [&](Index i) { return mass(i) * v(i); }) / total;
-      twice += sum_over<double>(n, [&](Index i) { return mass(i) * (v(i) - drift) * (v(i) - drift); });
+      squares[k] = sum_over<double>(n, [&](Index i) { return mass(i) * (v(i) - drift) * (v(i) - drift); });
     }
     made.time.push_back(frame.time);
-    values.push_back(twice / (static_cast<double>(3 * massive - 3) * *source.k_B));
+    values.push_back((squares[0] + squares[1] + squares[2]) / (static_cast<double>(3 * massive - 3) * *source.k_B));
   }
   PlotSource computed{.file = {}, .scene = {}, .frames = {}, .monitors = {made}, .time = source.time};
   return value_panel(computed, "temperature", "Temperature", source.temperature_unit, 1);
