@@ -214,7 +214,7 @@ void fit_square(PlotBox& picture) {
 }  // namespace
 
 bool is_crowd(const io::Frames& frames) {
-  static constexpr std::size_t most_orbits = 60, few_in_box = 8;
+  static constexpr std::size_t most_orbits = 150, few_in_box = 8;
   if (frames.frames.empty() || frames.masses.empty()) return false;
   const std::size_t n = frames.masses.size();
   return !frames.frames.front().edges.empty() ? n > few_in_box : n > most_orbits;

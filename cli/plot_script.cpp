@@ -141,7 +141,7 @@ class Script {
     text_ += fmt::format("set xlabel {} offset 0,0.3 noenhanced\nunset ylabel\n", quoted(x));
     if (y.empty()) return;
     text_ += fmt::format("set label 3 {} at {} center rotate by 90 noenhanced\n", quoted(y),
-                         at(area.left - 58, area.low + area.high / 2));
+                         at(area.left - 66, area.low + area.high / 2));
   }
 
   void add_orbits(std::size_t index) {
