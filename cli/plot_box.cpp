@@ -92,8 +92,10 @@ Kinds kinds_of(const ParticleSystem<double>& s, const std::string& mass_unit) {
   for (std::size_t i = 0; i < n; ++i) {
     const auto at = static_cast<Index>(i);
     const std::string type = typed ? topology->type_names[static_cast<std::size_t>(topology->type(at))] : "";
+    const bool numbered = typed && type.find_first_not_of("0123456789") == std::string::npos;
     const std::string unit = mass_unit == "1" || mass_unit.empty() ? "" : " " + mass_unit;
-    const std::string name = fmt::format("{}{}mass {:.5g}{}", type, typed ? ", " : "", s.masses()[at], unit);
+    const std::string name =
+        fmt::format("{}{}{}mass {:.5g}{}", numbered ? "type " : "", type, typed ? ", " : "", s.masses()[at], unit);
     const auto [found, added] = numbers.try_emplace(name, counts.size());
     if (added) counts.push_back(0), kinds.legend.push_back({name, found->second});
     kinds.of[i] = found->second;
@@ -212,7 +214,7 @@ void fit_square(PlotBox& picture) {
 }  // namespace
 
 bool is_crowd(const io::Frames& frames) {
-  static constexpr std::size_t most_orbits = 60, few_in_box = 8;
+  static constexpr std::size_t most_orbits = 150, few_in_box = 8;
   if (frames.frames.empty() || frames.masses.empty()) return false;
   const std::size_t n = frames.masses.size();
   return !frames.frames.front().edges.empty() ? n > few_in_box : n > most_orbits;

@@ -97,6 +97,24 @@ std::size_t take_out_failed(io::Frames& frames, std::size_t shown, bool wanted) 
   return place;
 }
 
+/// Of the frames, or of the monitors where there are none.
+std::string time_unit_of(const PlotSource& source, const io::FileInfo& about) {
+  if (!source.frames.time_unit.empty()) return source.frames.time_unit;
+  for (const io::MonitorSeries& monitor : source.monitors) {
+    const auto found = monitor.units.find("time");
+    if (found != monitor.units.end()) return found->second;
+  }
+  return about.time_unit;
+}
+
+/// What frames would have told of elements: the unit of the first of them.
+void add_units_of_monitors(PlotSource& source) {
+  const io::MonitorSeries* elements = find_monitor(source.monitors, "elements");
+  if (!source.frames.length_unit.empty() || elements == nullptr || !elements->units.contains("value")) return;
+  const std::string& units = elements->units.at("value");
+  source.frames.length_unit = units.substr(0, units.find(','));
+}
+
 PlotSource read_source(const std::filesystem::path& file, const PlotOptions& options, std::size_t& number) {
   const io::FileInfo about = io::info(file);
   if (about.kind != "trajectory") {
@@ -121,8 +139,9 @@ PlotSource read_source(const std::filesystem::path& file, const PlotOptions& opt
       if (monitor.time.size() > times.size()) times = monitor.time;
     }
   }
-  const std::string unit = source.frames.time_unit.empty() ? about.time_unit : source.frames.time_unit;
+  const std::string unit = time_unit_of(source, about);
   source.time = time_axis(unit, times, begin, end);
+  add_units_of_monitors(source);
 
   const SceneValue* given = value_at(source.scene, {"hamiltonian", "G"});
   if (given != nullptr && given->get<double>() != nullptr) source.G = *given->get<double>();

@@ -8,7 +8,8 @@ namespace noether {
 namespace {
 
 constexpr double square_size = 430, title_height = 62, legend_row = 20;
-constexpr double alone_width = 470, column_width = 330, least_height = 150, between_rows = 78, between_views = 62;
+constexpr double large_box = 560, alone_width = 470, column_width = 330, least_height = 150, between_rows = 78,
+                 between_views = 62;
 constexpr double left_margin = 74, right_margin = 20, bottom_margin = 58, panel_gap = 74, column_gap = 76;
 
 /// Width and height of everything that is seen in space.
@@ -32,7 +33,7 @@ Extent extent_of(const PlotOrbits& picture) {
   return size;
 }
 
-Extent space_of(const PlotData& data) {
+Extent space_of(const PlotData& data, double box) {
   Extent all;
   std::size_t count = 0;
   const auto add = [&](const Extent& one) {
@@ -40,7 +41,7 @@ Extent space_of(const PlotData& data) {
     all.high = std::max(all.high, one.high);
   };
   for (const PlotOrbits& picture : data.orbits) add(extent_of(picture));
-  for (std::size_t k = 0; k < data.boxes.size(); ++k) add({square_size, square_size});
+  for (std::size_t k = 0; k < data.boxes.size(); ++k) add({box, box});
   for (const PlotPanel& panel : data.panels) {
     if (panel.large) add({square_size, square_size});
   }
@@ -56,9 +57,10 @@ double rows_height(std::size_t rows) {
 PlotLayout::PlotLayout(const PlotData& data) : boxes_(data.boxes.size()), panels_(data.panels.size()) {
   const auto small = static_cast<std::size_t>(
       std::count_if(data.panels.begin(), data.panels.end(), [](const PlotPanel& p) { return !p.large; }));
-  const Extent space = space_of(data);
-  const bool nothing = !(space.wide > 0), below = space.wide > 1.5 * square_size && small > 2;
-  std::size_t columns = small > (nothing ? 4 : 3) ? 2 : 1;
+  box_size_ = small > 4 ? large_box : square_size;  // beside three rows of panels
+  const Extent space = space_of(data, box_size_);
+  const bool nothing = !(space.wide > 0), below = space.wide > 1.5 * square_size && data.boxes.empty() && small > 2;
+  std::size_t columns = small > 3 ? 2 : 1;
   if (below) columns = 3;
   columns = std::min(columns, std::max<std::size_t>(small, 1));
   const std::size_t rows = (small + columns - 1) / columns;
@@ -72,7 +74,8 @@ PlotLayout::PlotLayout(const PlotData& data) : boxes_(data.boxes.size()), panels
   place_legend(data);
   const double bottom = bottom_margin + legend_height_;
   const double tall = below ? space.high + between_rows + grid_height : std::max(space.high, grid_height);
-  height_ = bottom + tall + title_height;
+  beside_ = width_ - 60 - 10.5 * static_cast<double>(data.title.size()) > 7 * static_cast<double>(data.subtitle.size());
+  height_ = bottom + tall + title_height + (beside_ ? 0 : 18);
   const double top = bottom + tall;
   place_space(data, left_margin, top);
   if (below) {
@@ -116,8 +119,7 @@ double PlotLayout::place_space(const PlotData& data, double left, double top) {
     orbits_.push_back(std::move(areas));
     left = right + panel_gap;
   }
-  for (PlotArea& area : boxes_)
-    area = {left, top - square_size, square_size, square_size}, left += square_size + panel_gap;
+  for (PlotArea& area : boxes_) area = {left, top - box_size_, box_size_, box_size_}, left += box_size_ + panel_gap;
   for (std::size_t k = 0; k < panels_.size(); ++k) {
     if (data.panels[k].large)
       panels_[k] = {left, top - square_size, square_size, square_size}, left += square_size + panel_gap;

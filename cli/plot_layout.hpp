@@ -22,6 +22,8 @@ class PlotLayout {
 
   double width() const { return width_; }
   double height() const { return height_; }
+  /// Whether the method has room beside the title; it stands below it elsewhere.
+  bool method_beside_title() const { return beside_; }
   /// Where view `v` of picture `k` of orbits stands.
   const PlotArea& orbits(std::size_t k, std::size_t v) const { return orbits_[k][v]; }
   const PlotArea& box(std::size_t k) const { return boxes_[k]; }
@@ -35,6 +37,8 @@ class PlotLayout {
   void place_grid(const PlotData& data, const PlotArea& room, std::size_t columns);
 
   double width_ = 0, height_ = 0;
+  bool beside_ = true;
+  double box_size_ = 0;
   std::vector<std::vector<PlotArea>> orbits_;
   std::vector<PlotArea> boxes_, panels_;
   std::vector<PlotPoint> legend_;

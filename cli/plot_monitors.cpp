@@ -255,17 +255,14 @@ std::optional<PlotPanel> plot_temperature(const PlotSource& source) {
       .name = "temperature", .step = {}, .time = {}, .quantities = {}, .units = {}, .scale = {}, .orders = {}};
   std::vector<double>& values = made.quantities["value"].second;
   for (const io::Frame& frame : frames.frames) {
-    const auto v = [&](Index i, std::size_t k) { return frame.velocities[3 * static_cast<std::size_t>(i) + k]; };
-    std::array<double, 3> drift{};
+    std::array<double, 3> squares{};  // twice the kinetic energy along each axis
     for (std::size_t k = 0; k < 3; ++k) {
-      drift[k] = sum_over<double>(n, [&](Index i) { return mass(i) * v(i, k); }) / total;
+      const auto v = [&](Index i) { return frame.velocities[3 * static_cast<std::size_t>(i) + k]; };
+      const double drift = sum_over<double>(n, [&](Index i) { return mass(i) * v(i); }) / total;
+      squares[k] = sum_over<double>(n, [&](Index i) { return mass(i) * (v(i) - drift) * (v(i) - drift); });
     }
-    const double twice = sum_over<double>(n, [&](Index i) {
-      const double x = v(i, 0) - drift[0], y = v(i, 1) - drift[1], z = v(i, 2) - drift[2];
-      return mass(i) * (x * x + y * y + z * z);
-    });
     made.time.push_back(frame.time);
-    values.push_back(twice / (static_cast<double>(3 * massive - 3) * *source.k_B));
+    values.push_back((squares[0] + squares[1] + squares[2]) / (static_cast<double>(3 * massive - 3) * *source.k_B));
   }
   PlotSource computed{.file = {}, .scene = {}, .frames = {}, .monitors = {made}, .time = source.time};
   return value_panel(computed, "temperature", "Temperature", source.temperature_unit, 1);

@@ -139,7 +139,9 @@ void choose_views(PlotOrbits& picture, bool centered, const std::string& project
     planes = {{0, 1}, {0, 2}};
   }
   const auto label = [&](std::size_t axis) {
-    return with_unit(std::string(1, static_cast<char>('x' + axis)) + about, unit);
+    // A side view has no room for more than the name of its axis.
+    const std::string origin = picture.views.empty() ? about : "";
+    return with_unit(std::string(1, static_cast<char>('x' + axis)) + origin, unit);
   };
   double widest_view = 0;
   for (std::size_t n = 0; n < planes.size(); ++n) {

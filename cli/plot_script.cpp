@@ -107,9 +107,7 @@ class Script {
     text += fmt::format("set label 1 {} at {} left noenhanced font ',{:.0f}' tc rgb '#202020'\n", quoted(data_.title),
                         at(24, layout_.height() - 20), 15 * scale);
     const std::string& method = data_.subtitle;
-    // Beside the title where there is room, below it elsewhere.
-    const double room = layout_.width() - 60 - 10.5 * static_cast<double>(data_.title.size());
-    const bool beside = room > 7 * static_cast<double>(method.size());
+    const bool beside = layout_.method_beside_title();
     text += fmt::format("set label 2 {} at {} {} noenhanced font ',{:.0f}' tc rgb '#707070'\n", quoted(method),
                         beside ? at(layout_.width() - 20, layout_.height() - 20) : at(24, layout_.height() - 38),
                         beside ? "right" : "left", 10 * scale);
@@ -134,10 +132,16 @@ class Script {
     text_ += (all.empty() ? "plot NaN notitle" : all) + "\nunset label\n";
   }
 
-  void add_titles(const std::string& title, const std::string& x, const std::string& y) {
-    text_ += fmt::format("set title {} offset 0,-0.6 noenhanced tc rgb '#303030'\n", quoted(title));
-    text_ += fmt::format("set xlabel {} offset 0,0.3 noenhanced\nset ylabel {} offset 0.8,0 noenhanced\n", quoted(x),
-                         quoted(y));
+  /// Title and names of the axes; that of the values stands at a fixed distance, clear of the numbers.
+  void add_titles(const PlotArea& area, const std::string& title, const std::string& x, const std::string& y) {
+    const double scale = format_ == PictureFormat::png ? 2 : 1;
+    const bool narrow = 6.9 * static_cast<double>(title.size()) > area.wide + 30;
+    text_ += fmt::format("set title {} offset 0,-0.6 noenhanced font ',{:.1f}' tc rgb '#303030'\n", quoted(title),
+                         (narrow ? 9 : 11) * scale);
+    text_ += fmt::format("set xlabel {} offset 0,0.3 noenhanced\nunset ylabel\n", quoted(x));
+    if (y.empty()) return;
+    text_ += fmt::format("set label 3 {} at {} center rotate by 90 noenhanced\n", quoted(y),
+                         at(area.left - 66, area.low + area.high / 2));
   }
 
   void add_orbits(std::size_t index) {
@@ -160,9 +164,10 @@ class Script {
     text_ += fmt::format("set xrange [{:.9g}:{:.9g}]\nset yrange [{:.9g}:{:.9g}]\n", view.low.x, view.high.x,
                          view.low.y, view.high.y);
     text_ += "unset logscale\nset format '%g'\n";
-    text_ += fmt::format("set xtics {}\nset ytics {}\n", tics(view.low.x, view.high.x, area.wide),
-                         tics(view.low.y, view.high.y, area.high));
-    add_titles(v == 0 ? picture.title : "", view.across_label, view.up_label);
+    text_ +=
+        fmt::format("set xtics nomirror {}\nset ytics nomirror {}\n", tics(view.low.x, view.high.x, area.wide, true),
+                    tics(view.low.y, view.high.y, area.high, false));
+    add_titles(area, v == 0 ? picture.title : "", view.across_label, view.up_label);
     std::vector<std::string> curves;
     const std::string columns = fmt::format("using {}:{}", view.across + 1, view.up + 1);
     for (std::size_t k = 0; k < picture.orbits.size(); ++k) {
@@ -182,12 +187,22 @@ class Script {
     plot(curves);
   }
 
-  /// Few marks on a short axis, those of gnuplot elsewhere.
-  static std::string tics(double low, double high, double points) {
-    if (points > 200) return "autofreq";
-    const double step = (high - low) / 3, power = std::pow(10.0, std::floor(std::log10(step)));
-    const double digit = step / power;
+  /// The distance of marks that leaves room for their numbers.
+  static std::string tics(double low, double high, double points, bool across) {
+    const double step = (high - low) / std::clamp(points / (across ? 58 : 30), 2.0, 7.0);
+    const double power = std::pow(10.0, std::floor(std::log10(step))), digit = step / power;
     return fmt::format("{:.6g}", power * (digit < 1.5 ? 1 : digit < 3.5 ? 2 : digit < 7.5 ? 5 : 10));
+  }
+
+  /// Marks at 1, 2 and 5 times the powers of ten of a short logarithmic axis.
+  static std::string decade_tics(const PlotAxis& axis) {
+    std::string list;
+    for (double power = std::pow(10.0, std::floor(std::log10(axis.low))); power <= axis.high; power *= 10) {
+      for (const double mark : {power, 2 * power, 5 * power}) {
+        if (mark >= axis.low && mark <= axis.high) list += fmt::format("{}{:.6g}", list.empty() ? "" : ", ", mark);
+      }
+    }
+    return list.empty() ? "autofreq" : "(" + list + ")";
   }
 
   static std::string edges_block(const std::string& name, const std::vector<std::pair<PlotPoint, PlotPoint>>& edges) {
@@ -226,7 +241,7 @@ class Script {
     text_ += fmt::format("set xrange [{:.9g}:{:.9g}]\nset yrange [{:.9g}:{:.9g}]\nunset logscale\n", picture.low.x,
                          picture.high.x, picture.low.y, picture.high.y);
     text_ += "unset border\nunset tics\nunset grid\n";
-    add_titles(picture.title, "", "");
+    add_titles(area, picture.title, "", "");
     text_ += edges_block(fmt::format("b{}f", index), picture.far_edges);
     text_ += edges_block(fmt::format("b{}n", index), picture.near_edges);
     std::vector<std::string> curves;
@@ -266,7 +281,8 @@ class Script {
   void add_axis(const PlotAxis& axis, char name, double points) {
     text_ += fmt::format("set {}range [{:.9g}:{:.9g}]\n", name, axis.low, axis.high);
     if (!axis.logarithmic) {
-      text_ += fmt::format("unset logscale {0}\nset format {0} '%g'\nset {0}tics autofreq\n", name);
+      text_ += fmt::format("unset logscale {0}\nset format {0} '%g'\nset {0}tics nomirror {1}\n", name,
+                           tics(axis.low, axis.high, points, name == 'x'));
       return;
     }
     const double decades = std::log10(axis.high / axis.low);
@@ -275,9 +291,10 @@ class Script {
     const double step = std::max(1.0, std::ceil(decades / most));
     text_ += fmt::format("set logscale {}\n", name);
     if (decades < 2) {
-      text_ += fmt::format("set format {0} '%g'\nset {0}tics autofreq\n", name);
+      text_ += fmt::format("set format {0} '%g'\nset {0}tics nomirror {1}\n", name, decade_tics(axis));
     } else {
-      text_ += fmt::format("set format {0} '10^{{%T}}'\nset {0}tics 1e-30,{1:g}\n", name, std::pow(10.0, step));
+      text_ +=
+          fmt::format("set format {0} '10^{{%T}}'\nset {0}tics nomirror 1e-30,{1:g}\n", name, std::pow(10.0, step));
     }
   }
 
@@ -287,10 +304,10 @@ class Script {
     text_ += margins(area);
     add_axis(panel.x, 'x', area.wide);
     add_axis(panel.y, 'y', area.high);
-    add_titles(panel.title, panel.x.label, panel.y.label);
+    add_titles(area, panel.title, panel.x.label, panel.y.label);
     const bool key =
         std::any_of(panel.curves.begin(), panel.curves.end(), [](const auto& c) { return !c.name.empty(); });
-    text_ += key ? "set key inside top right horizontal samplen 0.3 width -1 noenhanced\n" : "unset key\n";
+    text_ += key ? "set key inside top right horizontal samplen 0.3 width 1 Left reverse noenhanced\n" : "unset key\n";
     std::vector<std::string> curves;
     for (std::size_t c = 0; c < panel.curves.size(); ++c) {
       const PlotCurve& curve = panel.curves[c];

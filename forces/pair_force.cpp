@@ -22,7 +22,7 @@ int type_named(const Topology* topology, const std::string& name, std::string_vi
   const auto found = std::find(names.begin(), names.end(), name);
   if (found != names.end()) return static_cast<int>(found - names.begin());
   throw Error(
-      fmt::format("{} = \"{}\" names no type of the particles; {}", key, name,
+      fmt::format("{} = \"{}\" is not a type of the particles; {}", key, name,
                   names.empty() ? "they have no types" : fmt::format("expected one of: {}", fmt::join(names, ", "))));
 }
 

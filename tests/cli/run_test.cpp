@@ -99,7 +99,7 @@ TEST_CASE("--json is one line with every key, in one order", "[cli][run][json]")
 TEST_CASE("evaluate and explain warn as run does, also of an [expect] that ends no run", "[cli][run][evaluate]") {
   const SceneFolder folder(unwritten + "[expect]\nenrgy.worst = 1\n");
   const std::string warning =
-      "scene.toml:28: [expect] names 'enrgy', which is no monitor of this scene; did you mean 'energy'?";
+      "scene.toml:28: [expect] names 'enrgy', which is not a monitor of this scene; did you mean 'energy'?";
   for (const char* command : {"run", "evaluate", "explain"}) {
     INFO(command);
     const ProcessResult result = noether(folder, std::string(command) + " scene.toml");

@@ -68,7 +68,7 @@ TEST_CASE("every command that reads a scene takes whole steps, and notes each on
   const SceneFolder folder(between_steps);
   for (const char* line :
        {"explain scene.toml", "evaluate scene.toml", "evaluate scene.toml --json",
-        "compare scene.toml --methods verlet,yoshida_4 --steps '1 day,2 day' --repeat 1 --quiet --json",
+        "compare scene.toml --methods verlet,yoshida_4 --steps '0.5 day,1 day' --repeat 1 --quiet --json",
         "stability scene.toml --methods verlet --steps 1000 --budget 1",
         "advise scene.toml --error 1e-2 --methods verlet --budget 1"}) {
     INFO(line);
@@ -115,7 +115,7 @@ TEST_CASE("times of a list between steps go to the nearest, those that meet ther
             "where two come to one step\n"));
   const ProcessResult refused = noether(folder, "run scene.toml --set integrator.exact=true");
   CHECK(refused.exit_code == 2);
-  CHECK(has(refused.err, "times holds 0.101, which is 10.1 steps of 0.01"));
+  CHECK(has(refused.err, "times contains 0.101, which is 10.1 steps of 0.01"));
 }
 
 #if NOETHER_HDF5

@@ -158,12 +158,10 @@ TEST_CASE("an unknown unit is refused with a proposal", "[quantity]") {
   CHECK(refusal("2 MSUN", dimensions::mass, solar) == "unknown unit 'MSUN' in '2 MSUN'; did you mean 'Msun'?");
   CHECK(refusal("2 secnods", dimensions::time, si) == "unknown unit 'secnods' in '2 secnods'; did you mean 'second'?");
   CHECK(refusal("2 kJ", dimensions::energy, si) == "unknown unit 'kJ' in '2 kJ'; did you mean 'kJ/mol'?");
-  CHECK(refusal("2 furlongs", dimensions::length, si) ==
-        "unknown unit 'furlongs' in '2 furlongs'; expected one of: s, min, hour, day, yr, kyr, Myr, Gyr, fs, ps, ns, "
-        "m, cm, "
-        "km, au, nm, angstrom, kg, g, Msun, u, K, deg, rad, kJ/mol, J, e, C, g/cm^3, Mearth, Mjup, Rsun, Rearth, Rjup, "
-        "pc, kpc, Mpc, ly, mm, um, pm, bohr, ms, us, arcmin, arcsec, mas, kcal/mol, eV, meV, hartree, erg, N, Pa, bar, "
-        "atm");
+  CHECK(
+      refusal("2 furlongs", dimensions::length, si) ==
+      "unknown unit 'furlongs' in '2 furlongs'; expected one of: m, cm, km, au, nm, angstrom, Rsun, Rearth, Rjup, pc, "
+      "kpc, Mpc, ly, mm, um, pm, bohr");
 }
 
 TEST_CASE("names of units in English, plurals and AU are the units that they name", "[quantity]") {

@@ -81,7 +81,7 @@ def compare(page, run):
                         speed = velocities[j] + about["center_velocities"][3 * k + axis]
                         worst["velocity"] = max(worst["velocity"], abs(speed - v[i][axis]) / (abs(v).max() or 1.0))
     print(json.dumps({**worst, "frames": len(about["times"]), "particles": particles, "links": len(about["links"]) // 2,
-                      "paths": about["paths"], "types": about["type_names"], "energies": len((about["energy"] or {"times": []})["times"])}))
+                      "paths": about["paths"], "types": about["type_names"], "energies": len((about["energy"] or {"times": []})["times"])}, separators=(",", ":")))
     return 0
 
 
@@ -159,7 +159,7 @@ def shot(page, fragment):
             print(f"Chromium does not run here: {dom.stderr[-300:]}")
             return SKIPPED
         seen = seen_in(pixels_of(pathlib.Path(picture).read_bytes()))
-    print(json.dumps({**body.data, **seen}))
+    print(json.dumps({**body.data, **seen}, separators=(",", ":")))
     return 0
 
 

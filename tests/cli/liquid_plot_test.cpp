@@ -1,0 +1,233 @@
+// What a picture of a liquid is made of: g(r) against lattices and ideal gases, displacements across the box's edge,
+// the discs, bonds and legend of a box.
+
+#include "cli/plot_script.hpp"
+#include "cli/plot_source.hpp"
+#include "tests/cli/support.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#if NOETHER_HDF5
+
+namespace noether::test {
+namespace {
+
+/// Frames of particles of mass 1 in a cube.
+io::Frames frames_in_cube(std::size_t n, double edge, std::size_t count) {
+  io::Frames frames;
+  frames.length_unit = frames.time_unit = "1";
+  frames.masses.assign(n, 1.0);
+  frames.names.assign(n, "atom");
+  for (std::size_t k = 0; k < count; ++k) {
+    io::Frame frame;
+    frame.time = 0.5 * static_cast<double>(k);
+    frame.positions.assign(3 * n, 0.0);
+    frame.velocities.assign(3 * n, 0.0);
+    frame.images.assign(3 * n, 0);
+    frame.edges = {edge, edge, edge};
+    frames.frames.push_back(std::move(frame));
+  }
+  return frames;
+}
+
+/// A simple cubic lattice of unit spacing, six sites along an edge.
+io::Frames cubic_lattice() {
+  io::Frames frames = frames_in_cube(216, 6, 1);
+  std::vector<double>& x = frames.frames[0].positions;
+  for (std::size_t i = 0; i < 216; ++i) {
+    x[3 * i] = static_cast<double>(i % 6), x[3 * i + 1] = static_cast<double>(i / 6 % 6);
+    x[3 * i + 2] = static_cast<double>(i / 36);
+  }
+  return frames;
+}
+
+/// How many neighbors g(r) has between two distances: density times the integral over the shells.
+double neighbors(const PlotCurve& g, double from, double to, double others, double volume) {
+  const double width = 2 * g.points[0].x;
+  double count = 0;
+  for (const PlotPoint& p : g.points) {
+    const double inner = p.x - width / 2, outer = p.x + width / 2;
+    if (p.x < from || p.x > to) continue;
+    count += p.y * others / volume * 4 * M_PI / 3 * (outer * outer * outer - inner * inner * inner);
+  }
+  return count;
+}
+
+TEST_CASE("g(r) of a simple cubic lattice has 6, 12, 8 and 6 neighbors at 1, sqrt 2, sqrt 3 and 2", "[cli][plot]") {
+  const auto curves = radial_distributions(cubic_lattice(), {0});
+  REQUIRE(curves.size() == 1);
+  const PlotCurve& g = curves[0];
+  CHECK(std::abs(g.points.back().x + g.points[0].x - 3) < 1e-12);  // half of the edge
+  CHECK(std::abs(neighbors(g, 0.8, 1.2, 215, 216) - 6) < 1e-9);
+  CHECK(std::abs(neighbors(g, 1.25, 1.6, 215, 216) - 12) < 1e-9);
+  CHECK(std::abs(neighbors(g, 1.6, 1.85, 215, 216) - 8) < 1e-9);
+  CHECK(std::abs(neighbors(g, 1.85, 2.15, 215, 216) - 6) < 1e-9);
+  CHECK(neighbors(g, 0, 0.9, 215, 216) == 0);
+}
+
+TEST_CASE("g(r) by pair of types counts neighbors of each type", "[cli][plot]") {
+  io::Frames frames = cubic_lattice();
+  for (std::size_t i = 0; i < 216; ++i) frames.types.push_back((i % 6 + i / 6 + i / 36) % 2 == 0 ? "Na" : "Cl");
+  const auto curves = radial_distributions(frames, {0});
+  REQUIRE(curves.size() == 3);
+  CHECK(curves[0].name == "Cl-Cl");
+  CHECK(curves[1].name == "Cl-Na");
+  CHECK(curves[2].name == "Na-Na");
+  CHECK(std::abs(neighbors(curves[1], 0.8, 1.2, 108, 216) - 6) < 1e-9);  // the nearest are all of the other type
+  CHECK(neighbors(curves[0], 0.8, 1.2, 107, 216) == 0);
+  CHECK(std::abs(neighbors(curves[2], 1.25, 1.6, 107, 216) - 12) < 1e-9);
+}
+
+TEST_CASE("g(r) of an ideal gas is 1", "[cli][plot]") {
+  io::Frames frames = frames_in_cube(400, 5, 8);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> anywhere(0, 5);
+  std::vector<std::size_t> chosen;
+  for (io::Frame& frame : frames.frames) {
+    for (double& x : frame.positions) x = anywhere(random);
+    chosen.push_back(chosen.size());
+  }
+  const auto curves = radial_distributions(frames, chosen);
+  REQUIRE(curves.size() == 1);
+  for (const PlotPoint& p : curves[0].points) {
+    const double width = 2 * curves[0].points[0].x;
+    const double pairs = 8 * 400 * 399.0 / 2 * 4 * M_PI * p.x * p.x * width / 125;
+    CAPTURE(p.x, pairs);
+    CHECK(std::abs(p.y - 1) < 5 / std::sqrt(pairs) + 0.05 * (p.x < 0.1));
+  }
+}
+
+TEST_CASE("displacements are those of unwrapped positions about the center of mass", "[cli][plot]") {
+  io::Frames frames = frames_in_cube(2, 2, 9);
+  for (io::Frame& frame : frames.frames) {  // +-3 along x, and a drift of 5 along y that is no diffusion
+    for (const std::size_t i : {0U, 1U}) {
+      const double x = (i == 0 ? 3 : -3) * frame.time + 0.5, y = 5 * frame.time;
+      frame.images[3 * i] = static_cast<std::int32_t>(std::floor(x / 2));
+      frame.images[3 * i + 1] = static_cast<std::int32_t>(std::floor(y / 2));
+      frame.positions[3 * i] = x - 2 * std::floor(x / 2);
+      frame.positions[3 * i + 1] = y - 2 * std::floor(y / 2);
+    }
+  }
+  const std::vector<PlotPoint> points = mean_square_displacement(frames);
+  REQUIRE(points.size() == 8);
+  for (const PlotPoint& p : points) CHECK(std::abs(p.y - 9 * p.x * p.x) < 1e-10);
+  CHECK(points[0].x == 0.5);
+  CHECK(points[7].x == 4);
+
+  PlotSource source{.file = {}, .scene = {}, .frames = frames, .monitors = {}, .time = time_axis("1", {}, 0, 4)};
+  const auto panel = plot_mean_square_displacement(source);
+  REQUIRE(panel);
+  CHECK(panel->title == "Mean square displacement: grows as t^2");  // no diffusion coefficient is told
+}
+
+/// A chain of three across the edge of the box, and one particle alone.
+ParticleSystem<double> chain_in_box() {
+  ParticleSystem<double> s;
+  for (const double x : {0.2, 1.2, 9.2, 5.0}) s.add("bead", 2, Vec3<double>(x, 5, 5), Vec3<double>::Zero());
+  s.set_box(Box::periodic({10, 10, 10}));
+  auto topology = std::make_shared<Topology>();
+  topology->type_names = {"A", "B"};
+  topology->types = {0, 0, 0, 1};
+  topology->bonds = {{.particles = {0, 1}, .type = 0}, {.particles = {0, 2}, .type = 0}};
+  s.set_topology(std::move(topology));
+  return s;
+}
+
+TEST_CASE("a box shows types as its legend, and bonds that do not cross it", "[cli][plot]") {
+  std::vector<PlotLegend> legend;
+  const PlotBox box = plot_box(chain_in_box(), "u", legend);
+  CHECK(box.discs.size() == 4);
+  CHECK(box.sticks.size() == 2);  // the two halves of one bond; the other one crosses
+  CHECK(box.far_edges.size() == 3);
+  CHECK(box.near_edges.size() == 9);
+  REQUIRE(legend.size() == 2);
+  CHECK(legend[0].name == "3 of A, mass 2 u");
+  CHECK(legend[1].name == "1 of B, mass 2 u");
+  for (std::size_t k = 1; k < box.discs.size(); ++k) CHECK(box.discs[k - 1].depth >= box.discs[k].depth);
+  for (const PlotDisc& disc : box.discs) {
+    CHECK((disc.x > box.low.x && disc.x < box.high.x && disc.y > box.low.y && disc.y < box.high.y));
+  }
+}
+
+TEST_CASE("particles that others hide are not drawn, and many have one line of legend", "[cli][plot]") {
+  ParticleSystem<double> s;
+  for (int i = 0; i < 8000; ++i) {
+    s.add("p" + std::to_string(i), 1, Vec3<double>(i % 20 + 0.5, i / 20 % 20 + 0.5, i / 400 + 0.5),
+          Vec3<double>::Zero());
+  }
+  s.set_box(Box::periodic({20, 20, 20}));
+  std::vector<PlotLegend> legend;
+  const PlotBox box = plot_box(s, "1", legend);
+  CHECK(legend.size() == 1);
+  CHECK(box.discs.size() < 4000);
+  CHECK(box.discs.size() >= 1141);  // three faces of the cube
+}
+
+const std::string melt = R"(title = "A melt"
+units = "reduced"
+[particles]
+type = "lattice"
+cells = [3, 3, 3]
+density = 0.8
+mass = 1
+temperature = 1
+[hamiltonian]
+type = "kinetic_potential"
+[[hamiltonian.force]]
+type = "lennard_jones"
+cutoff = 1.8
+cutoff_style = "shifted"
+epsilon = 1
+sigma = 1
+[integrator]
+method = "verlet"
+step = 0.005
+steps = 40
+[[every]]
+type = "energy"
+steps = 10
+[[every]]
+type = "trajectory"
+steps = 10
+)";
+
+TEST_CASE("plot draws a melt: particles, temperature, g(r) and displacements, no legend of atoms",
+          "[cli][plot][slow]") {
+  const SceneFolder folder(melt);
+  if (run_process({"gnuplot", "--version"}, folder.path()).exit_code != 0) {
+    WARN("gnuplot is not installed: nothing is drawn");
+    return;
+  }
+  output(folder, "run scene.toml --quiet --out out");
+  output(folder, "plot out/run.h5 --out melt.svg");
+  const std::string svg = read_text(folder / "melt.svg");
+  for (const char* text : {"Frame 4, t = 0.2, box ", "Temperature: mean ",
+                           "Radial distribution function, mean of 3 frames", "Mean square displacement", "108 of "}) {
+    CAPTURE(text);
+    CHECK(has(svg, text));
+  }
+  output(folder, "plot out/run.h5 --out melt.png");
+  output(folder, "plot out/run.h5 --out melt.pdf --what rdf --frame 0");
+  CHECK(read_text(folder / "melt.png").size() > 50'000);
+  CHECK(read_text(folder / "melt.pdf").starts_with("%PDF"));
+  const ProcessResult frame = noether(folder, "plot out/run.h5 --frame 5");
+  CHECK(frame.exit_code == 2);
+  CHECK(frame.err == "--frame 5: out/run.h5 has the frames 0 to 4; -1 is the last\n");
+  const ProcessResult what = noether(folder, "plot out/run.h5 --what rfd");
+  CHECK(what.exit_code == 2);
+  CHECK(what.err == "--what 'rfd' is nothing that plot draws; did you mean 'rdf'?\n");
+  CHECK(noether(folder, "plot out/run.h5 --what pressure").err ==
+        "out/run.h5 has no pressure to draw; it needs the monitor pressure\n");
+  CHECK(noether(folder, "plot out/run.h5 --projection zz").err ==
+        "--projection 'zz' is not one of xy, xz, yz and all\n");
+}
+
+}  // namespace
+}  // namespace noether::test
+
+#endif
