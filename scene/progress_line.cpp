@@ -54,9 +54,10 @@ std::string progress_text(const ProgressState& state, std::size_t columns) {
   if (state.seconds_left) parts.push_back(duration_text(*state.seconds_left) + " left");
   if (state.energy_error) parts.push_back(fmt::format("dE/E {:.0e}", *state.energy_error));
   if (state.rate > 0) parts.push_back(rate_text(state.rate) + " steps/s");
-  std::size_t room = columns > shortest_bar + 2 ? columns - shortest_bar - 2 : 0;
+  const std::size_t room = columns > shortest_bar + 2 ? columns - shortest_bar - 2 : 0;
   for (const std::string& part : parts) {
-    if (text.size() + 2 + part.size() <= room) text += "  " + part;
+    if (text.size() + 2 + part.size() > room) break;
+    text += "  " + part;
   }
   const std::size_t left = columns > text.size() + 2 ? columns - text.size() - 2 : 0;
   return (bar_text(share, std::min(left, longest_bar)) + text).substr(0, columns);

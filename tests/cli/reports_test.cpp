@@ -98,7 +98,7 @@ TEST_CASE("explain knows what is inside, what is used again, and when a run is s
   const SceneFolder arcs(text +
                          "[[stop]]\ntype = \"escape\"\ndistance = 50\n[[stop]]\ntype = \"collision\"\ndistance = "
                          "0.5\nsteps = 7\n");
-  const std::string inside = output(arcs, "explain scene.toml");
+  const std::string inside = output(arcs, "explain scene.toml --all");
   CHECK_FALSE(has(inside, "force gravity"));
   CHECK_FALSE(has(inside, "order 2"));
   CHECK(has(inside, "\n  force oblateness\n"));
