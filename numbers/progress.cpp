@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,12 +14,14 @@ namespace noether {
 std::string spoken_duration(double seconds) {
   if (seconds < 100) return fmt::format("{:.0f} s", seconds);
   if (seconds < 6000) return fmt::format("{:.0f} min", seconds / 60);
-  return fmt::format("{:.1f} h", seconds / 3600);
+  if (seconds < 360'000) return fmt::format("{:.1f} h", seconds / 3600);
+  return fmt::format("{:.0f} days", seconds / 86400);
 }
 
-std::string progress_bar(double share, int width) {
-  const auto full = static_cast<std::size_t>(std::floor(std::clamp(share, 0.0, 1.0) * width + 1e-9));
-  return "[" + std::string(full, '#') + std::string(static_cast<std::size_t>(width) - full, '.') + "]";
+std::string progress_bar(double share, std::size_t width) {
+  const double known = std::isfinite(share) ? std::clamp(share, 0.0, 1.0) : 0;
+  const auto full = static_cast<std::size_t>(std::lround(known * static_cast<double>(width)));
+  return "[" + std::string(full, '#') + std::string(width - full, '-') + "]";
 }
 
 std::string progress_text(const Share& share, double seconds) {
@@ -34,10 +37,16 @@ TerminalLine::TerminalLine(bool wanted) : shows_(wanted && ::isatty(STDERR_FILEN
 
 TerminalLine::~TerminalLine() { clear(); }
 
+std::size_t TerminalLine::room() const {
+  winsize size{};
+  const bool known = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return known ? size.ws_col - 1U : 79U;
+}
+
 void TerminalLine::show(std::string_view text) {
   if (!shows_) return;
   shown_ = true;
-  fmt::print(stderr, "\r\033[K{}", text);
+  fmt::print(stderr, "\r\033[K{}", text.substr(0, room()));
   std::fflush(stderr);
 }
 

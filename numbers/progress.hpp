@@ -2,6 +2,7 @@
 /// How far a long task is, on one line of a terminal.
 
 #include <chrono>
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -19,20 +20,20 @@ struct Share {
 /// What is told while a task goes on.
 using TellShare = std::function<void(const Share&)>;
 
-/// A time as people say it: "12 s", "3 min", "2.5 h".
+/// A time as people say it: "12 s", "3 min", "2.5 h", "5 days".
 /// @throws std::bad_alloc
 std::string spoken_duration(double seconds);
 
-/// A bar, such as "[######..............]" for a share of 0.3.
+/// A bar, such as "[######--------------]" for a share of 0.3; none of it is full where the share is not a number.
 /// @throws std::bad_alloc
-std::string progress_bar(double share, int width = 20);
+std::string progress_bar(double share, std::size_t width = 20);
 
-/// The line of a share after so many seconds: "[######..............]  30 %  run 4 of 12  verlet, step 0.01  7 s left".
+/// The line of a share after so many seconds: "[######--------------]  30 %  run 4 of 12  verlet, step 0.01  7 s left".
 /// @throws std::bad_alloc
 std::string progress_text(const Share& share, double seconds);
 
-/// One line on a terminal, written over again and again, and gone at the end. Shows nothing where standard error is no
-/// terminal.
+/// One line on a terminal, written over again and again, never longer than the terminal is wide, and gone at the end.
+/// Shows nothing where standard error is not a terminal.
 class TerminalLine {
  public:
   explicit TerminalLine(bool wanted);
@@ -41,6 +42,8 @@ class TerminalLine {
   TerminalLine& operator=(const TerminalLine&) = delete;
 
   bool shows() const { return shows_; }
+  /// Characters that have room: all columns but the last, where the text may wrap.
+  std::size_t room() const;
   void show(std::string_view text);
   void clear();
   /// Shows shares, at most ten times a second; null where nothing shows. The line must live as long.

@@ -2,6 +2,7 @@
 /// The line that a terminal shows while a run goes on.
 
 #include "engine/simulation.hpp"
+#include "numbers/progress.hpp"
 
 #include <optional>
 #include <string>
@@ -16,7 +17,7 @@ struct ProgressState {
   std::string_view time_unit = "1";
   double rate = 0;                     ///< [steps/s]
   std::optional<double> seconds_left;  ///< empty where nothing tells yet
-  std::optional<double> energy_error;  ///< the worst so far; empty where nobody looks at the energy
+  std::optional<double> energy_error;  ///< the worst so far; empty where the energy is not watched
 };
 
 /// One line: a bar, and as much of share, simulated time, time left, rate and worst relative error of the energy, in
@@ -27,18 +28,13 @@ std::string progress_text(const ProgressState& state, std::size_t columns);
 /// The line on stderr, where that is a terminal; it is gone at the end.
 class ProgressLine {
  public:
-  explicit ProgressLine(bool wanted);
-  ~ProgressLine();
-  ProgressLine(const ProgressLine&) = delete;
-  ProgressLine& operator=(const ProgressLine&) = delete;
+  explicit ProgressLine(bool wanted) : line_(wanted) {}
 
   /// @param begin  what the clock showed at step 0 [time]
   void attach(Simulation<double>& sim, double begin, std::string_view time_unit);
 
  private:
-  void show(const ProgressState& state);
-
-  bool shows_, shown_ = false;
+  TerminalLine line_;
 };
 
 }  // namespace noether

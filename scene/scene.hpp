@@ -158,7 +158,7 @@ AnyIntegrator<double> integrator_of(const Scene& scene,
 /// Monitors carry the names of their types; without a trajectory file there are no writers and no checkpoints.
 Simulation<double> assemble(const Scene& scene, const SceneFiles& files = {});
 
-/// Runs a scene as `noether run SCENE` does: into `SCENE.out`, with checkpoints and a report on stdout.
+/// Runs a scene as `noether run SCENE` does: into `default_output_folder`, with checkpoints and a report on stdout.
 ///
 ///     return exit_code(run(load_scene("saturn.toml", parts)));
 ///

@@ -23,12 +23,6 @@ struct OrbitFolder : ScratchFolder {
   explicit OrbitFolder(const std::string& scene = five_lines) { write_text(*this / "orbit.toml", scene); }
 };
 
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  const std::size_t at = text.find(what);
-  REQUIRE(at != std::string::npos);
-  return text.replace(at, what.size(), by);
-}
-
 /// A command that must be refused: its exit code, and the one line on stderr.
 void check_refused(const ScratchFolder& folder, const std::string& line, int exit_code, const std::string& message) {
   const ProcessResult result = noether(folder, line);

@@ -68,7 +68,7 @@ TEST_CASE("every command that reads a scene takes whole steps, and notes each on
   const SceneFolder folder(between_steps);
   for (const char* line :
        {"explain scene.toml", "evaluate scene.toml", "evaluate scene.toml --json",
-        "compare scene.toml --methods verlet,yoshida_4 --steps '0.5 day,1 day' --repeat 1 --quiet --json",
+        "compare scene.toml --methods verlet,yoshida_4 --steps '1 day,0.5 day' --repeat 1 --quiet --json",
         "stability scene.toml --methods verlet --steps 1000 --budget 1",
         "advise scene.toml --error 1e-2 --methods verlet --budget 1"}) {
     INFO(line);

@@ -81,8 +81,8 @@ TEST_CASE("names of other programs get what there is here", "[proposals]") {
   const auto method = [&](const char* word) { return proposal(word, parts.method_names(), "; see the list"); };
   CHECK(method("aba_1064") == "; did you mean 'aba_10_6_4'?");
   CHECK(method("Velocity-Verlet") == "; did you mean 'verlet'?");
-  CHECK(method("rk45") == "; did you mean 'dormand_prince_5'?");
-  CHECK(method("Bulirsch Stoer") == "; did you mean 'gragg_bulirsch_stoer'?");
+  CHECK(method("dopri5").starts_with("; did you mean 'dormand_prince_5'?"));
+  CHECK(method("Bulirsch Stoer") == "; did you mean 'bulirsch_stoer'?");  // another name of gragg_bulirsch_stoer
   CHECK(method("saba") == "; did you mean 'saba_4'? (on the Hamiltonian 'wisdom_holman')");
   CHECK(method("mercurius").starts_with("; did you mean 'gauss_radau_15'? ("));
   CHECK(method("whfast").starts_with(
@@ -100,7 +100,7 @@ TEST_CASE("names of other programs get what there is here", "[proposals]") {
   CHECK(force("gravitty") == "; did you mean 'gravity'?");
   CHECK(proposal("energies", names_of(parts.monitors())) == "; did you mean 'energy'?");
   CHECK(proposal("shake", names_of(parts.constraints())).starts_with("; did you mean 'distance'?"));
-  CHECK(proposal("zzzz", {"a", "b"}) == "; known are: a, b");
+  CHECK(proposal("zzzz", {"a", "b"}) == "; expected one of: a, b");
 }
 
 TEST_CASE("a key of another program gets the one of the table it stands in", "[proposals]") {
@@ -108,7 +108,7 @@ TEST_CASE("a key of another program gets the one of the table it stands in", "[p
   CHECK(key_proposal("eps", {"softening", "G"}) == "; did you mean 'softening'?");
   CHECK(key_proposal("eps", {"epsilon", "sigma"}) == "; did you mean 'epsilon'?");
   CHECK(key_proposal("m", {"name", "mass", "x"}) == "; did you mean 'mass'?");
-  CHECK(key_proposal("dt", {"cutoff"}) == "; known are: cutoff");
+  CHECK(key_proposal("dt", {"cutoff"}) == "; expected one of: cutoff");
 }
 
 }  // namespace
