@@ -10,7 +10,7 @@ namespace {
 constexpr double square_size = 430, title_height = 62, legend_row = 20;
 constexpr double large_box = 560, alone_width = 470, column_width = 330, least_height = 150, between_rows = 78,
                  between_views = 62;
-constexpr double left_margin = 74, right_margin = 20, bottom_margin = 58, panel_gap = 74, column_gap = 76;
+constexpr double left_margin = 74, right_margin = 30, bottom_margin = 58, panel_gap = 74, column_gap = 76;
 
 /// Width and height of everything that is seen in space.
 struct Extent {

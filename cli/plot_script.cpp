@@ -109,7 +109,7 @@ class Script {
     const std::string& method = data_.subtitle;
     const bool beside = layout_.method_beside_title();
     text += fmt::format("set label 2 {} at {} {} noenhanced font ',{:.0f}' tc rgb '#707070'\n", quoted(method),
-                        beside ? at(layout_.width() - 20, layout_.height() - 20) : at(24, layout_.height() - 38),
+                        beside ? at(layout_.width() - 30, layout_.height() - 20) : at(24, layout_.height() - 38),
                         beside ? "right" : "left", 10 * scale);
     for (std::size_t k = 0; k < data_.legend.size(); ++k) {
       text += fmt::format(
