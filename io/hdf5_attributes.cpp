@@ -15,13 +15,28 @@ using namespace hdf5;
 
 namespace {
 
+/// Writes an attribute where it is, if it is there with this type and shape. A new one may move others between the
+/// blocks of a header, and a process can be killed between two blocks.
+bool write_in_place(const Hdf5Handle& file, const Hdf5Handle& object, const std::string& name, hid_t stored,
+                    hid_t memory, const Hdf5Handle& space, const void* data, const std::string& what) {
+  const Hdf5Handle attribute = own(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose, file.file(), what);
+  const Hdf5Handle type = own(H5Aget_type(attribute), H5Tclose, file.file(), what);
+  const Hdf5Handle extent = own(H5Aget_space(attribute), H5Sclose, file.file(), what);
+  if (H5Tequal(type, stored) <= 0 || H5Sextent_equal(extent, space) <= 0) return false;
+  check(H5Awrite(attribute, memory, data), file, what);
+  return true;
+}
+
 /// Sets an attribute, replacing one of the same name.
 void write_attribute(const Hdf5Handle& file, const std::string& path, const std::string& name, hid_t stored,
                      hid_t memory, const std::vector<Index>& shape, const void* data) {
   const std::string what = fmt::format("cannot write attribute '{}' of '{}'", name, path);
   const Hdf5Handle object = own(H5Oopen(file, path.c_str(), H5P_DEFAULT), H5Oclose, file.file(), what);
-  if (H5Aexists(object, name.c_str()) > 0) check(H5Adelete(object, name.c_str()), file, what);
   const Hdf5Handle space = space_of(shape, file.file());
+  if (H5Aexists(object, name.c_str()) > 0) {
+    if (write_in_place(file, object, name, stored, memory, space, data, what)) return;
+    check(H5Adelete(object, name.c_str()), file, what);
+  }
   const Hdf5Handle attribute =
       own(H5Acreate2(object, name.c_str(), stored, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, file.file(), what);
   check(H5Awrite(attribute, memory, data), file, what);

@@ -312,6 +312,31 @@ TEST_CASE("a run that dies before or within any write goes on, and its file is t
   die_at_writes(100);
 }
 
+TEST_CASE("a run that dies at any of its first writes to a file that it goes on with leaves what the file held",
+          "[trajectory][kill]") {
+  const test::ScratchFolder folder;
+  const Reference reference(folder / "whole.h5");
+  constexpr std::int64_t step = steps / 2;
+  {
+    test::WritingRun run(folder / "half.h5");
+    REQUIRE(run.simulation.run(step).ok());
+    run.writer->flush();
+  }
+  for (const bool half : {false, true}) {
+    for (long fatal = 1; fatal <= 40; ++fatal) {
+      CAPTURE(half, fatal);
+      const std::filesystem::path file = folder / "run.h5";
+      std::filesystem::copy_file(folder / "half.h5", file, std::filesystem::copy_options::overwrite_existing);
+      Victim victim(file, reference, step, [&] {
+        die_at(fatal);
+        torn = half;
+      });
+      CHECK_FALSE(victim.end().first);
+      check_frames(file, reference.frames, step / steps_between_flushes + 1);
+    }
+  }
+}
+
 TEST_CASE("so does a run killed at any moment", "[trajectory][kill]") { die_at_moments(20); }
 
 TEST_CASE("a run that dies between its first call and its last, checkpoints among them, ends as one that never died",
