@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
+#include <string>
 
 namespace noether {
 
@@ -39,6 +41,12 @@ std::int64_t steps_between(std::int64_t steps, const FrameRoom& room) {
     }
   }
   return std::max<std::int64_t>((steps + wanted / 2) / wanted, 1);
+}
+
+/// A length divided into so many parts, without what rounding alone has added: 0.036, not 0.036000000000000004.
+double part_of(double length, std::int64_t parts) {
+  const double part = length / static_cast<double>(parts), written = std::stod(fmt::format("{:.15g}", part));
+  return std::abs(written - part) <= std::numeric_limits<double>::epsilon() * std::abs(part) ? written : part;
 }
 
 /// When default watches look, and how a scene says it.
@@ -73,7 +81,7 @@ std::optional<DefaultCadence> cadence_of(const SceneContext& context, const Scen
   if (scene.integrator.steps) {
     table.put("steps", SceneValue::of(steps_between(*scene.integrator.steps, room)));
   } else if (const auto length = scene.integrator.length()) {
-    table.put("every", detail::quantity_value(*length / static_cast<double>(room.wanted), "time", *scene.units));
+    table.put("every", detail::quantity_value(part_of(*length, room.wanted), "time", *scene.units));
   } else {
     return {};
   }

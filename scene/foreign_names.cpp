@@ -76,8 +76,8 @@ constexpr std::array names_of_others = {
                 true},
     ForeignName{" ode113 adams abm adams_bashforth_moulton predictor_corrector pece ", NamePlace::method, "adams_pece"},
     ForeignName{" cowell stormer stoermer ", NamePlace::method, "stormer_cowell_13"},
-    ForeignName{" gauss_jackson gj8 ", NamePlace::method, "stormer_cowell_13", "a multistep method for y'' = f too",
-                true},
+    ForeignName{" gauss_jackson gj8 ", NamePlace::method, "stormer_cowell_13",
+                "a multistep method of second-order systems too", true},
     // Baths.
     ForeignName{" nvt nose_hoover nosehoover nose_hoover_chain nhc berendsen v_rescale vrescale velocity_rescale "
                 "bussi csvr andersen andersen_massive rescale thermostat obabo gjf sd bd brownian tdamp dpd ",

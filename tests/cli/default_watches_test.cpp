@@ -72,7 +72,7 @@ TEST_CASE("default watches follow the run: another start, time that falls, one p
 body = [{mass = 1, x = [1, 0, 0], v = [0, 0, 0]}]
 [hamiltonian]
 type = "kinetic_potential"
-force = [{type = "harmonic", k = 1}]
+force = [{type = "harmonic_field", k = 1}]
 [integrator]
 method = "verlet"
 step = 0.01
@@ -122,7 +122,7 @@ TEST_CASE("a run with default watches goes on to a later end with the cadence it
   const SceneFolder folder(unwatched_orbit);
   output(folder, "run scene.toml --quiet --set integrator.steps=400");
   CHECK(io::info(folder / "scene.out/run.h5").frames == 201);
-  const std::string longer = output(folder, "run scene.toml --json --resume --set integrator.steps=2000");
+  const std::string longer = noether(folder, "run scene.toml --json --resume --set integrator.steps=2000").out;
   CHECK(json_member(longer, "step") == "2000");
   CHECK(io::info(folder / "scene.out/run.h5").frames == 1001);
   CHECK(json_member(json_member(longer, "energy"), "samples") == "1001");

@@ -106,12 +106,12 @@ TEST_CASE("names of other programs get what there is here", "[proposals]") {
 TEST_CASE("a name of another program is proposed only where it may be meant", "[proposals]") {
   const Parts parts = standard_parts();
   const auto force = [&](const char* word) { return proposal(word, names_of(parts.forces()), "; see the list"); };
-  CHECK(force("random") == "; see the list");  // no particles at random
-  CHECK(force("cg") == "; see the list");      // no minimizer
+  CHECK(force("random") == "; see the list");            // no particles at random
+  CHECK(force("steepest_descent") == "; see the list");  // no minimizer
   CHECK(force("shake").starts_with("; in its place there is type = \"distance\" in [[hamiltonian.constraint]]"));
   CHECK(proposal("random", names_of(builders())) == "; did you mean 'liquid'?");
   CHECK(proposal("steep", parts.method_names(), "").find("[minimize]") != std::string::npos);  // "integrator = steep"
-  CHECK(proposal("npt", names_of(parts.monitors()), "; see the list") == "; see the list");
+  CHECK(proposal("npt", accepted_at(NamePlace::monitor, parts), "; see the list") == "; see the list");
   std::vector<std::string> all = names_of(parts.forces());  // a list of several places has room for all
   for (const std::string& name : parts.method_names()) all.push_back(name);
   CHECK(proposal("cg", all, "").find("[minimize]") != std::string::npos);

@@ -17,8 +17,11 @@ namespace {
 const std::string liquid = R"(units = "reduced"
 [particles]
 type = "liquid"
-molecules = [{name = "A", number = 32, atoms = [{type = "A", mass = 1}]}]
+particles = 64
+density = 0.8
+mass = 1
 [minimize]
+max_force = 1
 [hamiltonian]
 type = "kinetic_potential"
 force = [{type = "lennard_jones", epsilon = 1, sigma = 1, cutoff = 2}]
@@ -52,6 +55,7 @@ std::vector<std::string> keys_read(const std::string& text, const std::string& t
     const std::string mark = "expected one of: ";
     const std::size_t at = list.find(mark);
     INFO(list);
+    REQUIRE(list.find("unknown key 'qqqqwwwwqqqq'") != std::string::npos);  // everything before it can be read
     REQUIRE(at != std::string::npos);
     list = list.substr(at + mark.size());
     std::replace(list.begin(), list.end(), ',', ' ');
