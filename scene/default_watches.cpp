@@ -75,17 +75,33 @@ std::optional<DefaultCadence> read_cadence(const SceneContext& context, const Sc
 }
 
 /// The cadence of about so many frames over a whole run; empty where it has no end.
-std::optional<DefaultCadence> cadence_of(const SceneContext& context, const Scene& scene) {
+std::optional<DefaultCadence> cadence_of(const SceneContext& context, const Scene& scene,
+                                         const SceneIntegrator& integrator) {
   const FrameRoom room = room_for_frames(scene.particles);
   SceneValue table = SceneValue::table();
-  if (scene.integrator.steps) {
-    table.put("steps", SceneValue::of(steps_between(*scene.integrator.steps, room)));
-  } else if (const auto length = scene.integrator.length()) {
+  if (integrator.steps) {
+    table.put("steps", SceneValue::of(steps_between(*integrator.steps, room)));
+  } else if (const auto length = integrator.length()) {
     table.put("every", detail::quantity_value(part_of(*length, room.wanted), "time", *scene.units));
   } else {
     return {};
   }
   return read_cadence(context, table);  // from the text that is stored, so that both are one to the bit
+}
+
+/// The integrator of a scene with the end that the stored one had.
+SceneIntegrator with_end_of(const SceneContext& context, const SceneValue& stored, SceneIntegrator integrator) {
+  const SceneValue* table = stored.find("integrator");
+  if (table == nullptr) return integrator;
+  TableReader reader(context, *table, "[integrator]", "integrator");
+  if (reader.has("steps")) integrator.steps = reader.integer("steps");
+  const std::optional<double> until = reader.quantity("until", "time");
+  if (until && integrator.until) integrator.until = until;
+  if (until && !integrator.until && integrator.step != 0) {
+    const double exact = (*until - integrator.start) / integrator.step, whole = std::round(exact);
+    integrator.steps = static_cast<std::int64_t>(std::abs(exact - whole) < 1e-6 ? whole : std::ceil(exact));
+  }
+  return integrator;
 }
 
 SceneValue table_of(const SceneWatch& watch, const std::string& type, const DefaultCadence& when) {
@@ -129,7 +145,7 @@ void put_watches(Scene& scene, SceneValue::Array tables) {
 void add_default_watches(const SceneContext& context, Scene& scene) {
   scene.default_watches = true;
   SceneValue::Array tables;
-  const std::optional<DefaultCadence> when = cadence_of(context, scene);
+  const std::optional<DefaultCadence> when = cadence_of(context, scene, scene.integrator);
   if (when && has_energy(scene)) {
     if (auto energy = energy_monitor(context, *scene.parts)) {
       SceneWatch watch{SceneWatch::Kind::monitor, std::move(*energy), when->cadence};
@@ -155,15 +171,16 @@ std::string keep_default_watches(const SceneValue& stored, Scene& scene) {
     if (tables->size() != scene.watches.size()) return "";
     SceneContext context;
     context.units = scene.units;
+    const auto begun = cadence_of(context, scene, with_end_of(context, stored, scene.integrator));
     for (std::size_t k = 0; k < tables->size(); ++k) {
       SceneWatch watch = scene.watches[k];
       const std::string type = watch.kind == SceneWatch::Kind::monitor ? watch.monitor.name : "trajectory";
       const SceneValue* written = (*tables)[k].find("type");
       const auto when = read_cadence(context, (*tables)[k]);
       if (written == nullptr || to_text(*written) != to_text(SceneValue::of(type)) || !when) return "";
-      if (watch.cadence.steps != when->cadence.steps || watch.cadence.interval != when->cadence.interval) {
-        add_cadence(changed, type, *when);
-      }
+      const bool same =
+          begun && begun->cadence.steps == when->cadence.steps && begun->cadence.interval == when->cadence.interval;
+      if (!same) add_cadence(changed, type, *when);
       watch.cadence = when->cadence;
       kept.push_back(table_of(watch, type, *when));
       watches.push_back(std::move(watch));
