@@ -12,9 +12,13 @@
 #include <cerrno>
 #include <charconv>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 namespace noether {
@@ -41,9 +45,20 @@ std::string wrong_threads(const std::string& text) {
   return fmt::format("'{}' is not a valid number of threads; give one from 1 to 65536", text);
 }
 
+/// How this program was called: by the launcher of a checkout, whose path is given from here where that is shorter.
+std::string called_program() {
+  const char* launcher = std::getenv("NOETHER_LAUNCHER");
+  if (launcher == nullptr || *launcher == '\0') return program_invocation_name;
+  std::error_code error;
+  const std::filesystem::path from_here = std::filesystem::proximate(launcher, error);
+  if (error || from_here.empty()) return launcher;
+  const std::string near = from_here.has_parent_path() ? from_here.string() : "./" + from_here.string();
+  return near.size() < std::strlen(launcher) ? near : launcher;
+}
+
 /// The command that goes on with an interrupted run, as it can be typed.
 std::string resume_command(const RunArguments& given) {
-  std::string line = fmt::format("{} run {}", shell_quoted(program_invocation_name), shell_quoted(given.scene));
+  std::string line = fmt::format("{} run {}", shell_quoted(called_program()), shell_quoted(given.scene));
   const auto add = [&](const char* option, const std::string& value) {
     line += fmt::format(" {} {}", option, shell_quoted(value));
   };

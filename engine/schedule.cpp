@@ -87,6 +87,22 @@ double at_start_if_rounded(double time, double start) {
   return std::abs(time - start) <= rounding ? start : time;
 }
 
+double rounding_of(double time, double start) {
+  return 4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(time), std::abs(start));
+}
+
+double look_by_interval(double start, std::int64_t k, double interval) {
+  const double time = start + static_cast<double>(k) * interval, rounding = rounding_of(time, start);
+  if (time == 0 || !(std::abs(interval) > 8 * rounding)) return time;  // looks stay apart
+  // 15 digits are a whole number over a power of 10; as long as both are exact, so is the text's number.
+  const int places = 14 - static_cast<int>(std::floor(std::log10(std::abs(time))));
+  if (places < 0 || places > 22) return time;
+  double power = 1;
+  for (int digit = 0; digit < places; ++digit) power *= 10;
+  const double written = std::round(time * power) / power;
+  return std::abs(written - time) <= rounding ? written : time;
+}
+
 void check_times(const std::vector<double>& times, double start, double sign, const std::string& monitor) {
   for (std::size_t k = 0; k < times.size(); ++k) {
     const auto refuse = [&](const std::string& why) {

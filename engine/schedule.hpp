@@ -36,6 +36,11 @@ std::int64_t steps_of(double duration, double dt);
 std::int64_t steps_to(double time, double start, double dt);
 /// `start` for a time [time] that is it but for rounding, as after a change of units: 4 eps of it; others as they are.
 double at_start_if_rounded(double time, double start);
+/// How far from each other two times [time] of a run from `start` on may be and still be one but for rounding.
+double rounding_of(double time, double start);
+/// `start + k * interval` [time] as it would be written: the decimal of 15 digits where it is that but for rounding,
+/// 0.3 and not 0.30000000000000004. It depends on nothing else, above all not on the end of the run.
+double look_by_interval(double start, std::int64_t k, double interval);
 /// @throws Error  unless times [time] are finite, none before `start`, each later than the one before as time runs
 /// @param sign  1 where time rises, -1 where it falls
 void check_times(const std::vector<double>& times, double start, double sign, const std::string& monitor);

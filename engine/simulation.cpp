@@ -247,6 +247,7 @@ template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double 
         break;
       }
       if (!raw_.clock().is_later(limit, reached)) {
+        observe_rounded(limit);
         shown_at_ = limit;
         break;
       }
@@ -356,7 +357,8 @@ template <class Real>
 bool Simulation<Real>::has_looked(const Scheduled& scheduled, double end, bool between_steps) const {
   if (scheduled.schedule.by_steps()) return !between_steps && scheduled.schedule.due(step());
   if (!scheduled.schedule.by_time() || scheduled.observed == 0) return false;
-  return look_of(scheduled, scheduled.observed - 1) == end;
+  const double start = raw_.clock().start();
+  return std::abs(look_of(scheduled, scheduled.observed - 1) - end) <= detail::rounding_of(end, start);
 }
 
 template <class Real> std::int64_t Simulation<Real>::unresolved() const {
@@ -442,6 +444,16 @@ template <class Real> bool Simulation<Real>::observe_times(double until) {
   if (fault(moment.state())) return false;
   if (!looking_.empty()) show(moment);
   return true;
+}
+
+template <class Real> void Simulation<Real>::observe_rounded(double limit) {
+  const Clock<Real>& clock = raw_.clock();
+  const double end = limit + clock.sign() * detail::rounding_of(limit, clock.start());
+  for (double look = next_time(clock.never()); !clock.is_later(look, end); look = next_time(clock.never())) {
+    if (observe_times(look)) continue;
+    for (Scheduled* one : looking_) --one->observed;  // it fails behind the end; a longer run will tell
+    return;
+  }
 }
 
 /// Makes the steps that lead to a time which the run does not reach.

@@ -155,7 +155,7 @@ template <class Real = double> class Simulation {
   /// When a monitor by time takes its look `k`; one that a list does not have is never taken.
   double look_of(const Scheduled& s, std::int64_t k) const {
     const std::vector<double>& listed = s.schedule.times;
-    if (listed.empty()) return raw_.clock().start() + static_cast<double>(k) * s.schedule.interval;
+    if (listed.empty()) return detail::look_by_interval(raw_.clock().start(), k, s.schedule.interval);
     return k < std::ssize(listed) ? listed[static_cast<std::size_t>(k)] : raw_.clock().never();
   }
   double next_look(const Scheduled& s) const { return look_of(s, s.observed); }
@@ -167,6 +167,8 @@ template <class Real = double> class Simulation {
   void show_start();
   std::optional<Outcome> observe_due();
   bool observe_times(double until);
+  /// Takes the looks that are due at the end `limit` but for rounding, at their own times: those of a longer run.
+  void observe_rounded(double limit);
   Outcome fail_before(double unreached);
   bool due(const Scheduled& scheduled) const;
   void show(const Snapshot<Real>& moment);

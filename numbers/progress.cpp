@@ -1,5 +1,7 @@
 #include "numbers/progress.hpp"
 
+#include "numbers/text.hpp"
+
 #include <fmt/format.h>
 
 #include <sys/ioctl.h>
@@ -46,7 +48,7 @@ std::size_t TerminalLine::room() const {
 void TerminalLine::show(std::string_view text) {
   if (!shows_) return;
   shown_ = true;
-  fmt::print(stderr, "\r\033[K{}", text.substr(0, room()));
+  fmt::print(stderr, "\r\033[K{}", first_characters(text, room()));
   std::fflush(stderr);
 }
 

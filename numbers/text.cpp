@@ -86,6 +86,12 @@ std::string counted(std::int64_t n, std::string_view one, std::string_view many)
   return many.empty() ? fmt::format("{} {}s", n, one) : fmt::format("{} {}", n, many);
 }
 
+std::string_view first_characters(std::string_view text, std::size_t count) noexcept {
+  std::string_view rest = text;
+  for (; count > 0 && !rest.empty(); --count) rest.remove_prefix(first_of(rest).bytes.size());
+  return text.substr(0, text.size() - rest.size());
+}
+
 bool is_utf8(std::string_view text) noexcept {
   bool valid = true;
   for_each_character(text, [&](const Character& one) { valid = valid && one.valid; });

@@ -1,6 +1,7 @@
 #pragma once
 /// Text from outside: what may be a name, and what can be shown on one line.
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -26,6 +27,10 @@ std::string counted(std::int64_t n, std::string_view one, std::string_view many 
 /// Whether all of a text is UTF-8: no stray bytes, no overlong forms, no surrogates.
 /// @throws never
 bool is_utf8(std::string_view text) noexcept;
+
+/// So many characters of a text from its beginning, or all of it; a byte that is not UTF-8 counts as one.
+/// @throws never
+std::string_view first_characters(std::string_view text, std::size_t count) noexcept;
 
 /// A text that keeps to its line and leaves a terminal alone: "\n", "\u001b", "\xff" instead of control characters and
 /// bytes that are not UTF-8.

@@ -3,33 +3,50 @@
 #include "monitors/monitors.hpp"
 #include "scene/toml.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
+#include <string>
 
 namespace noether {
 
 namespace {
 
-constexpr std::int64_t most_frames = 200;
+constexpr std::int64_t wanted_frames = 200;
 constexpr double most_bytes = 2e9;
 
-std::int64_t frames_of(const ParticleSystem<double>& s) {
+/// So many frames are wanted, and so many more are allowed.
+struct FrameRoom {
+  std::int64_t wanted, most;
+};
+
+FrameRoom room_for_frames(const ParticleSystem<double>& s) {
   const auto numbers = static_cast<double>(6 * s.size()) + static_cast<double>(s.variables().size());
   const double fit = most_bytes / (8 * std::max(numbers, 1.0));
-  return std::clamp(static_cast<std::int64_t>(fit), std::int64_t{2}, most_frames);
+  const std::int64_t most = std::clamp(static_cast<std::int64_t>(fit), std::int64_t{2}, 2 * wanted_frames);
+  return {std::min(wanted_frames, most), most};
 }
 
-/// A divisor of all steps where there is one near, so that the last frame is the end.
-std::int64_t steps_between(std::int64_t steps, std::int64_t frames) {
-  const std::int64_t wanted = std::max<std::int64_t>((steps + frames / 2) / frames, 1);
-  const std::int64_t farthest = std::min<std::int64_t>(wanted / 3, 100'000);
-  for (std::int64_t off = 0; off <= farthest; ++off) {
-    for (const std::int64_t one : {wanted - off, wanted + off}) {
-      if (steps % one == 0) return one;
+/// A divisor of all steps where one gives half to twice the frames that are wanted, so that the last frame is the end.
+/// It must not be made a frame where it is not due: a run that goes on from there would have a frame too many.
+std::int64_t steps_between(std::int64_t steps, const FrameRoom& room) {
+  const std::int64_t wanted = room.wanted;
+  for (std::int64_t off = 0; off <= std::max(wanted / 2, room.most - wanted); ++off) {
+    for (const std::int64_t frames : {wanted + off, wanted - off}) {
+      const bool near = frames >= std::max<std::int64_t>(wanted / 2, 1) && frames <= room.most;
+      if (near && steps >= frames && steps % frames == 0) return steps / frames;
     }
   }
-  return wanted;
+  return std::max<std::int64_t>((steps + wanted / 2) / wanted, 1);
+}
+
+/// A length divided into so many parts, without what rounding alone has added: 0.036, not 0.036000000000000004.
+double part_of(double length, std::int64_t parts) {
+  const double part = length / static_cast<double>(parts), written = std::stod(fmt::format("{:.15g}", part));
+  return std::abs(written - part) <= std::numeric_limits<double>::epsilon() * std::abs(part) ? written : part;
 }
 
 /// When default watches look, and how a scene says it.
@@ -58,17 +75,33 @@ std::optional<DefaultCadence> read_cadence(const SceneContext& context, const Sc
 }
 
 /// The cadence of about so many frames over a whole run; empty where it has no end.
-std::optional<DefaultCadence> cadence_of(const SceneContext& context, const Scene& scene) {
-  const std::int64_t frames = frames_of(scene.particles);
+std::optional<DefaultCadence> cadence_of(const SceneContext& context, const Scene& scene,
+                                         const SceneIntegrator& integrator) {
+  const FrameRoom room = room_for_frames(scene.particles);
   SceneValue table = SceneValue::table();
-  if (scene.integrator.steps) {
-    table.put("steps", SceneValue::of(steps_between(*scene.integrator.steps, frames)));
-  } else if (const auto length = scene.integrator.length()) {
-    table.put("every", detail::quantity_value(*length / static_cast<double>(frames), "time", *scene.units));
+  if (integrator.steps) {
+    table.put("steps", SceneValue::of(steps_between(*integrator.steps, room)));
+  } else if (const auto length = integrator.length()) {
+    table.put("every", detail::quantity_value(part_of(*length, room.wanted), "time", *scene.units));
   } else {
     return {};
   }
   return read_cadence(context, table);  // from the text that is stored, so that both are one to the bit
+}
+
+/// The integrator of a scene with the end that the stored one had.
+SceneIntegrator with_end_of(const SceneContext& context, const SceneValue& stored, SceneIntegrator integrator) {
+  const SceneValue* table = stored.find("integrator");
+  if (table == nullptr) return integrator;
+  TableReader reader(context, *table, "[integrator]", "integrator");
+  if (reader.has("steps")) integrator.steps = reader.integer("steps");
+  const std::optional<double> until = reader.quantity("until", "time");
+  if (until && integrator.until) integrator.until = until;
+  if (until && !integrator.until && integrator.step != 0) {
+    const double exact = (*until - integrator.start) / integrator.step, whole = std::round(exact);
+    integrator.steps = static_cast<std::int64_t>(std::abs(exact - whole) < 1e-6 ? whole : std::ceil(exact));
+  }
+  return integrator;
 }
 
 SceneValue table_of(const SceneWatch& watch, const std::string& type, const DefaultCadence& when) {
@@ -94,6 +127,11 @@ std::optional<SceneMonitor> energy_monitor(const SceneContext& context, const Pa
   return {};
 }
 
+/// Adds "energy at steps = 18" to a list in words.
+void add_cadence(std::string& list, const std::string& type, const DefaultCadence& when) {
+  list += fmt::format("{}{} at {} = {}", list.empty() ? "" : ", ", type, when.key, to_text(when.value));
+}
+
 void put_watches(Scene& scene, SceneValue::Array tables) {
   if (tables.empty()) {
     scene.effective.erase("every");
@@ -107,7 +145,7 @@ void put_watches(Scene& scene, SceneValue::Array tables) {
 void add_default_watches(const SceneContext& context, Scene& scene) {
   scene.default_watches = true;
   SceneValue::Array tables;
-  const std::optional<DefaultCadence> when = cadence_of(context, scene);
+  const std::optional<DefaultCadence> when = cadence_of(context, scene, scene.integrator);
   if (when && has_energy(scene)) {
     if (auto energy = energy_monitor(context, *scene.parts)) {
       SceneWatch watch{SceneWatch::Kind::monitor, std::move(*energy), when->cadence};
@@ -123,21 +161,26 @@ void add_default_watches(const SceneContext& context, Scene& scene) {
   put_watches(scene, std::move(tables));
 }
 
-void keep_default_watches(const SceneValue& stored, Scene& scene) {
+std::string keep_default_watches(const SceneValue& stored, Scene& scene) {
   const SceneValue* list = stored.find("every");
   const auto* tables = list != nullptr ? list->get<SceneValue::Array>() : nullptr;
   SceneValue::Array kept;
   std::vector<SceneWatch> watches;
+  std::string changed;
   if (tables != nullptr && !tables->empty()) {  // a run begun before there were defaults goes on without
-    if (tables->size() != scene.watches.size()) return;
+    if (tables->size() != scene.watches.size()) return "";
     SceneContext context;
     context.units = scene.units;
+    const auto begun = cadence_of(context, scene, with_end_of(context, stored, scene.integrator));
     for (std::size_t k = 0; k < tables->size(); ++k) {
       SceneWatch watch = scene.watches[k];
       const std::string type = watch.kind == SceneWatch::Kind::monitor ? watch.monitor.name : "trajectory";
       const SceneValue* written = (*tables)[k].find("type");
       const auto when = read_cadence(context, (*tables)[k]);
-      if (written == nullptr || to_text(*written) != to_text(SceneValue::of(type)) || !when) return;
+      if (written == nullptr || to_text(*written) != to_text(SceneValue::of(type)) || !when) return "";
+      const bool same =
+          begun && begun->cadence.steps == when->cadence.steps && begun->cadence.interval == when->cadence.interval;
+      if (!same) add_cadence(changed, type, *when);
       watch.cadence = when->cadence;
       kept.push_back(table_of(watch, type, *when));
       watches.push_back(std::move(watch));
@@ -146,6 +189,8 @@ void keep_default_watches(const SceneValue& stored, Scene& scene) {
   scene.watches = std::move(watches);
   put_watches(scene, std::move(kept));
   scene.effective_toml = print_toml(scene.effective);
+  if (changed.empty()) return "";
+  return fmt::format("the scene has no [[every]], so the run keeps the cadence it began with: {}", changed);
 }
 
 }  // namespace noether

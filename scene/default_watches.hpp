@@ -7,13 +7,15 @@ namespace noether {
 
 /// Gives a scene that has been read without [[every]] its watches, in its effective tree too.
 ///
-/// Both look at equal distances: whole numbers of steps, a divisor of all of them where one is near, or of time where
-/// the method chooses its steps. Frames are fewer than 200 where they would fill more than 2 GB, and none where this
-/// build can write no files. A scene without an end gets nothing: it cannot be run.
+/// Both look at equal distances: whole numbers of steps, a divisor of all of them where one gives 100 to 400 frames, or
+/// of time where the method chooses its steps. Frames are fewer than 200 where they would fill more than 2 GB, and none
+/// where this build can write no files. A scene without an end gets nothing: it cannot be run.
 void add_default_watches(const SceneContext& context, Scene& scene);
 
 /// Gives a scene with default watches the cadences of the run that it goes on with, whose end may have been another.
 /// @param stored  the scene of that run; where it has other watches, nothing is done
-void keep_default_watches(const SceneValue& stored, Scene& scene);
+/// @return a note where that run had other cadences than the default ones of its end, as where [[every]] tables have been
+///         taken out since it began; else ""
+std::string keep_default_watches(const SceneValue& stored, Scene& scene);
 
 }  // namespace noether

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <string>
 
 namespace noether {
@@ -26,13 +27,14 @@ constexpr std::array names_of_others = {
     ForeignName{" omelyan omf ", NamePlace::method, "pefrl"},
     ForeignName{" mclachlan mclachlan_4 ", NamePlace::method, "mclachlan_s4"},
     ForeignName{" eos embedded_operator_splitting ", NamePlace::method, "blanes_moan_s6",
-                "it splits kinetic and potential energy, without a Kepler solver"},
+                "it splits kinetic and potential energy, without a Kepler solver", true},
     ForeignName{" janus ", NamePlace::method, "kahan_li_8_s17",
-                "symmetric and of order 8; its arithmetic is not in whole numbers"},
+                "symmetric and of order 8; its arithmetic is not in whole numbers", true},
     ForeignName{
         " respa rrespa r_respa mts multiple_timestep multiple_time_step ", NamePlace::method, "verlet",
         "multiple time steps are a word such as method = \"CBABABC\", with kick = \"C\" in the table of the slow "
-        "force"},
+        "force",
+        true},
     // Along Kepler arcs.
     ForeignName{" whfast whfast512 wh wisdomholman wisdom_holman mvs rmvs swift helio ", NamePlace::hamiltonian,
                 "wisdom_holman", "with method = 'verlet', or 'aba_10_6_4' for more accuracy"},
@@ -44,37 +46,44 @@ constexpr std::array names_of_others = {
     ForeignName{" saba864 saba_864 saba_8_6_4 ", NamePlace::method, "aba_8_6_4", "on the Hamiltonian 'wisdom_holman'"},
     ForeignName{" sabac sabac4 sabacl sabacl4 sabacm4 corrector correctors symplectic_corrector whckl whckm whckc ",
                 NamePlace::method, "aba_10_6_4",
-                "on the Hamiltonian 'wisdom_holman': it reaches such an accuracy without a corrector"},
+                "on the Hamiltonian 'wisdom_holman': it reaches such an accuracy without a corrector", true},
     ForeignName{" mercurius mercury mercury6 trace symba hybrid bs_hybrid close_encounter close_encounters ",
                 NamePlace::method, "gauss_radau_15",
-                "its steps shrink in close encounters, and so do those of 'dop853'"},
+                "its steps shrink in close encounters, and so do those of 'dop853'", true},
     ForeignName{" hermite hermite4 hermite_4 hermite6 ahmad_cohen ", NamePlace::method, "gauss_radau_15",
-                "of high order that chooses its own steps; 'dop853' is another one"},
+                "of high order that chooses its own steps; 'dop853' is another one", true},
     // Classical methods.
     ForeignName{" ias15 ias radau15 radau_15 ra15 everhart rada27 ", NamePlace::method, "gauss_radau_15"},
     ForeignName{" rk runge_kutta rungekutta runge_kutta_4 rungekutta4 rk_4 classical_rk ", NamePlace::method, "rk4"},
-    ForeignName{" rk2 midpoint explicit_midpoint modified_euler ", NamePlace::method, "heun"},
+    ForeignName{" modified_euler ", NamePlace::method, "heun"},
+    ForeignName{" rk2 midpoint explicit_midpoint ", NamePlace::method, "heun", "of order 2 too", true},
     ForeignName{" forward_euler explicit_euler ", NamePlace::method, "euler"},
     ForeignName{" implicit_euler euler_implicit ", NamePlace::method, "backward_euler"},
     ForeignName{" crank_nicolson cn trapezoid ", NamePlace::method, "trapezoidal"},
-    ForeignName{" rk45 dopri dopri5 dopri45 dp5 dp45 rkdp ode45 tsit5 rkf45 rkf fehlberg dormand_prince dormandprince ",
-                NamePlace::method, "dormand_prince_5"},
+    ForeignName{" rk45 dopri dopri5 dopri45 dp5 dp45 rkdp ode45 dormand_prince dormandprince ", NamePlace::method,
+                "dormand_prince_5"},
+    ForeignName{" tsit5 rkf45 rkf fehlberg ", NamePlace::method, "dormand_prince_5", "of order 5 too", true},
     ForeignName{" rkck cashkarp cash_karp ck45 ", NamePlace::method, "cash_karp_5"},
-    ForeignName{" rk78 rk8 rkf78 dopri8 dopri853 dp8 dp853 rk853 vern8 vern9 fehlberg78 ode78 ode87 ",
-                NamePlace::method, "dop853"},
+    ForeignName{" dopri8 dopri853 dp8 dp853 rk853 ", NamePlace::method, "dop853"},
+    ForeignName{" rk78 rk8 rkf78 vern8 vern9 fehlberg78 ode78 ode87 ", NamePlace::method, "dop853", "of order 8", true},
     ForeignName{" nystrom rkn rkn12 rkn1210 dprkn12 ", NamePlace::method, "dprkn_12"},
     ForeignName{" bs bulirsch_stoer bulirschstoer burlisch_stoer gbs odex bulsto ", NamePlace::method,
                 "gragg_bulirsch_stoer"},
     ForeignName{" gauss_legendre irk gl irkgl16 ", NamePlace::method, "gauss_8"},
-    ForeignName{" lsoda vode cvode ode15s gear ndf lsode ", NamePlace::method, "bdf"},
-    ForeignName{" radau radau5 radau_iia ode23s rosenbrock ros4 rodas stiff ", NamePlace::method, "rodas_5p"},
+    ForeignName{" lsoda vode cvode ode15s gear ndf lsode ", NamePlace::method, "bdf", "for stiff systems too", true},
+    ForeignName{" rosenbrock rodas ", NamePlace::method, "rodas_5p"},
+    ForeignName{" radau radau5 radau_iia ode23s ros4 stiff ", NamePlace::method, "rodas_5p", "for stiff systems too",
+                true},
     ForeignName{" ode113 adams abm adams_bashforth_moulton predictor_corrector pece ", NamePlace::method, "adams_pece"},
-    ForeignName{" cowell stormer stoermer gauss_jackson gj8 ", NamePlace::method, "stormer_cowell_13"},
+    ForeignName{" cowell stormer stoermer ", NamePlace::method, "stormer_cowell_13"},
+    ForeignName{" gauss_jackson gj8 ", NamePlace::method, "stormer_cowell_13",
+                "a multistep method of second-order systems too", true},
     // Baths.
     ForeignName{" nvt nose_hoover nosehoover nose_hoover_chain nhc berendsen v_rescale vrescale velocity_rescale "
-                "bussi csvr andersen andersen_massive rescale thermostat langevin_integrator langevinintegrator "
-                "langevin_middle langevinmiddleintegrator langevinmiddle baoab_langevin obabo gjf sd bd brownian "
-                "tdamp dpd ",
+                "bussi csvr andersen andersen_massive rescale thermostat obabo gjf sd bd brownian tdamp dpd ",
+                NamePlace::thermostat, "langevin", "the bath there is; method = \"BAOAB\" goes with it", true},
+    ForeignName{" langevin_integrator langevinintegrator langevin_middle langevinmiddleintegrator langevinmiddle "
+                "baoab_langevin ",
                 NamePlace::thermostat, "langevin", "the bath there is; method = \"BAOAB\" goes with it"},
     ForeignName{" npt nph barostat parrinello_rahman mtk mttk c_rescale monte_carlo_barostat press_berendsen ",
                 NamePlace::none, "",
@@ -87,17 +96,17 @@ constexpr std::array names_of_others = {
     // Forces.
     ForeignName{" lj lj_cut lj126 lj_12_6 12_6 twelve_six vdw vdwaals lennardjones van_der_waals ", NamePlace::force,
                 "lennard_jones"},
-    ForeignName{
-        " coulomb coul coul_cut lj_cut_coul_cut electrostatic electrostatics charges charge dsf coul_dsf wolf rf "
-        "reactionfield cutoff_coulomb ",
-        NamePlace::force, "reaction_field"},
+    ForeignName{" rf reactionfield ", NamePlace::force, "reaction_field"},
+    ForeignName{" coulomb coul coul_cut lj_cut_coul_cut electrostatic electrostatics charges charge dsf coul_dsf wolf "
+                "cutoff_coulomb ",
+                NamePlace::force, "reaction_field", "charges beyond its cutoff are a dielectric", true},
     ForeignName{" pme spme ewald pppm p3m coul_long lj_cut_coul_long kspace particle_mesh_ewald ", NamePlace::force,
-                "reaction_field", "charges beyond its cutoff are a dielectric; there are no sums over a lattice"},
+                "reaction_field", "charges beyond its cutoff are a dielectric; there are no sums over a lattice", true},
     ForeignName{" harmonic bond bonds bond_harmonic harmonic_bonds harmonicbondforce angle angles angle_harmonic "
                 "harmonic_angle dihedral dihedrals torsion torsions periodic_torsion improper impropers fene opls "
                 "charmm amber gaff morse_bond bond_morse class2 ryckaert_bellemans ",
                 NamePlace::force, "bonded",
-                "terms of a structure file; springs between named particles are 'harmonic_bond'"},
+                "terms of a structure file; springs between named particles are 'harmonic_bond'", true},
     ForeignName{" spring springs harmonic_spring ", NamePlace::force, "harmonic_bond"},
     ForeignName{" posre position_restraint position_restraints restraint restraints spring_self ", NamePlace::force,
                 "tether"},
@@ -106,11 +115,12 @@ constexpr std::array names_of_others = {
     ForeignName{" drag friction damping viscous modify_orbits_forces ", NamePlace::force, "linear_drag"},
     ForeignName{" efield electric_field constant_force addforce constant_field ", NamePlace::force, "uniform_field"},
     ForeignName{" buck born born_mayer exp6 exp_6 ", NamePlace::force, "buckingham"},
-    ForeignName{" soft repulsive lj_repulsive weeks_chandler_andersen ", NamePlace::force, "wca"},
+    ForeignName{" lj_repulsive weeks_chandler_andersen ", NamePlace::force, "wca"},
+    ForeignName{" soft repulsive ", NamePlace::force, "wca", "it only repels", true},
     ForeignName{" fput fpu ", NamePlace::force, "fermi_pasta_ulam"},
     // Constraints.
     ForeignName{" shake rattle lincs settle hbonds h_bonds all_bonds rigid_bonds bond_constraint ",
-                NamePlace::constraint, "distance", "constraints are tables [[hamiltonian.constraint]]"},
+                NamePlace::constraint, "distance", "constraints are tables [[hamiltonian.constraint]]", true},
     ForeignName{" rod bar rigid rigid_rod ", NamePlace::constraint, "rigid_bar"},
     ForeignName{" freeze frozen setforce ", NamePlace::constraint, "fixed"},
     // Monitors and files.
@@ -212,12 +222,53 @@ std::string as_scene_text(const ForeignName& row) {
   return std::string(row.here);
 }
 
+/// Where a list of names stands: at the one place whose names of the table are all in it; empty: at none, or at
+/// several.
+std::optional<NamePlace> place_of(const std::vector<std::string>& known) {
+  using enum NamePlace;
+  std::optional<NamePlace> found;
+  for (const NamePlace place : {method, hamiltonian, force, thermostat, constraint, monitor, builder}) {
+    const auto fits = [&](const ForeignName& row) { return row.place != place || is_one_of(row.here, known); };
+    if (!std::all_of(names_of_others.begin(), names_of_others.end(), fits)) continue;
+    if (found) return {};
+    found = place;
+  }
+  return found;
+}
+
+/// Whether people who write a word at one place may mean what stands at the other: a method that is a Hamiltonian here,
+/// or a bath; a force that is a constraint. What is at no place stands in for methods, as minimizers and barostats do.
+bool are_related(NamePlace written, NamePlace meant) {
+  using enum NamePlace;
+  if (written == meant) return true;
+  switch (written) {
+    case method:
+      return meant == hamiltonian || meant == thermostat || meant == none;
+    case hamiltonian:
+      return meant == method || meant == force || meant == none;
+    case force:
+      return meant == hamiltonian || meant == thermostat || meant == constraint;
+    case thermostat:
+      return meant == method || meant == none;
+    case constraint:
+      return meant == force;
+    case monitor:
+    case builder:
+    case key:
+    case none:
+      break;
+  }
+  return false;
+}
+
 /// What there is for a name of another program; empty for a word that is none.
 std::string foreign_proposal(std::string_view word, const std::vector<std::string>& known) {
   const std::string text = as_in_table(word);
+  const std::optional<NamePlace> place = place_of(known);
   const ForeignName* found = nullptr;
   for (const ForeignName& row : names_of_others) {
     if (row.place == NamePlace::key || !has_word(row, text)) continue;
+    if (place && !are_related(*place, row.place)) continue;
     const bool fits = is_one_of(row.here, known);
     if (found == nullptr || fits) found = &row;
     if (fits) break;
@@ -225,6 +276,8 @@ std::string foreign_proposal(std::string_view word, const std::vector<std::strin
   if (found == nullptr) return "";
   if (found->here.empty()) return fmt::format("; {}", found->how);
   const std::string more = found->how.empty() ? "" : fmt::format(" ({})", found->how);
+  if (found->other && is_one_of(found->here, known))
+    return fmt::format("; in its place there is '{}'{}", found->here, more);
   if (is_one_of(found->here, known)) return fmt::format("; did you mean '{}'?{}", found->here, more);
   return fmt::format("; in its place there is {}{}", as_scene_text(*found), more);
 }

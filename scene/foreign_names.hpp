@@ -19,6 +19,8 @@ struct ForeignName {
   std::string_view here = {};  ///< the name in this program; empty: there is none
   /// More about it, to go on the message; of those without a name all of it. Names of parts stand in quotes.
   std::string_view how = {};
+  /// Whether it is something else that serves in its place, and not the same thing under another name.
+  bool other = false;
 };
 
 /// All of them: parts and methods, then keys.

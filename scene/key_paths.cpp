@@ -1,6 +1,8 @@
 #include "scene/key_paths.hpp"
 
+#include "engine/neighbor_options.hpp"
 #include "integrators/composition_options.hpp"
+#include "integrators/minimize.hpp"
 #include "scene/foreign_names.hpp"
 #include "scene/read_builder.hpp"
 
@@ -79,8 +81,17 @@ class PathCollector {
     const std::string type = text_at(at, "type");
     if (key == "integrator") add_integrator(keys);
     if (key == "particles") add_fields(keys, builders(), type);
-    if (key == "hamiltonian") add_fields(keys, parts_.hamiltonians(), type);
-    if (key == "force") add_fields(keys, parts_.forces(), type);
+    if (key == "hamiltonian") {
+      add_fields(keys, parts_.hamiltonians(), type);
+      keys.insert(keys.end(), {"type", "G", "force", "constraint", "thermostat", "neighbors"});
+    }
+    if (key == "force") {
+      add_fields(keys, parts_.forces(), type);
+      keys.insert(keys.end(), {"type", "kick"});
+    }
+    if (key == "minimize") for_each_field<MinimizeOptions>([&](const auto& f) { keys.emplace_back(f.name); });
+    if (key == "neighbors") for_each_field<NeighborOptions>([&](const auto& f) { keys.emplace_back(f.name); });
+    if (key == "stop") keys.emplace_back("every");
     if (key == "thermostat") add_fields(keys, parts_.thermostats(), type);
     if (key == "constraint") add_fields(keys, parts_.constraints(), type);
     if (key == "system") add_fields(keys, parts_.systems(), type);
@@ -91,7 +102,7 @@ class PathCollector {
   }
 
   void add_integrator(std::vector<std::string>& keys) const {
-    keys.insert(keys.end(), {"method", "step", "start_time", "until", "steps"});
+    keys.insert(keys.end(), {"method", "step", "start_time", "until", "steps", "exact", "decorator"});
     for_each_field<CompositionOptions>([&](const auto& field) { keys.emplace_back(field.name); });
     for (const OptionGroup* group : parts_.method_options()) {
       for (const OptionValue& one : group->values({})) keys.emplace_back(one.name);

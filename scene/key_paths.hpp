@@ -4,11 +4,17 @@
 #include "scene/parts.hpp"
 #include "scene/value.hpp"
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace noether {
+
+/// The keys of a scene that stand in no table.
+inline constexpr std::array<std::string_view, 12> top_keys = {"title",       "program", "units",    "particles",
+                                                              "hamiltonian", "system",  "minimize", "integrator",
+                                                              "every",       "stop",    "expect",   "verdict"};
 
 /// Paths as `--set` takes them, of the keys that are written, and of those that the parts and the integrator of the
 /// scene have beside them.

@@ -5,6 +5,7 @@
 #include "numbers/suggest.hpp"
 #include "scene/check.hpp"
 #include "scene/default_watches.hpp"
+#include "scene/key_paths.hpp"
 #include "scene/minimize.hpp"
 #include "scene/read_constraints.hpp"
 #include "scene/read_integrator.hpp"
@@ -36,8 +37,8 @@ class SceneReader {
 
   void read() {
     TableReader top(context_, root_, "", "");
-    top.expect_only({"title", "program", "units", "particles", "hamiltonian", "system", "minimize", "integrator",
-                     "every", "stop", "expect", "verdict"});
+    for (const std::string_view key : top_keys) top.find(key);
+    top.finish();
     scene_.title = top.text("title");
     context_.program = top.text("program");
     read_units(top);

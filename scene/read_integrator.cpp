@@ -47,9 +47,17 @@ StepCount steps_to(const SceneIntegrator& integrator, double time, double from) 
   return {exact, {}};
 }
 
+/// The time after so many steps, as it would be written, without what rounding has added to it, where that reads back
+/// as the same whole step.
+double written_time(const SceneIntegrator& integrator, double steps, double from) {
+  const double time = from + steps * integrator.step, written = std::stod(fmt::format("{:.15g}", time));
+  const StepCount read = steps_to(integrator, written, from);
+  return read.whole && static_cast<double>(*read.whole) == steps ? written : time;
+}
+
 /// A number of steps from `from` on, as a time: "\"3653 day\" (3653 steps)".
 std::string step_text(const SceneIntegrator& integrator, const UnitSystem& units, double steps, double from) {
-  return fmt::format("{} ({} {})", time_text(from + steps * integrator.step, units), format_number(steps),
+  return fmt::format("{} ({} {})", time_text(written_time(integrator, steps, from), units), format_number(steps),
                      steps == 1 ? "step" : "steps");
 }
 

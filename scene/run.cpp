@@ -56,11 +56,13 @@ class Runner {
 
   RunReport go() {
     const std::optional<io::Checkpoint> checkpoint = folder_.prepare(options_.existing);
-    tell_notes();
     if (checkpoint && scene().default_watches) {
       kept_ = given_;
-      keep_default_watches(parse_toml(checkpoint->scene_toml, "the scene in the checkpoint"), *kept_);
+      const std::string note =
+          keep_default_watches(parse_toml(checkpoint->scene_toml, "the scene in the checkpoint"), *kept_);
+      if (!note.empty()) kept_->notes.push_back(note);
     }
+    tell_notes();
     files_ = files_of(scene(), folder_, options_);
     choose_simd(checkpoint);
     if (scene().minimize && !checkpoint) minimize();

@@ -93,7 +93,7 @@ struct Scene {
   std::optional<MinimizeOptions> minimize;  ///< before the first step
   SceneIntegrator integrator;
   std::vector<SceneWatch> watches;
-  bool default_watches = false;  ///< the scene has no [[every]], so these are those of `default_watches_of`
+  bool default_watches = false;  ///< the scene has no [[every]], so these are those of `add_default_watches`
   std::vector<SceneStop> stops;
   std::map<std::string, SceneValue> expect;  ///< dotted key below [expect]
   std::vector<SceneVerdict> verdicts;

@@ -20,11 +20,6 @@ constexpr std::array<std::string_view, 5> known_tables = {"particles", "hamilton
 /// The same of tables in [hamiltonian].
 constexpr std::array<std::string_view, 2> known_of_hamiltonian = {"neighbors", "thermostat"};
 
-/// Keys that stand in no table.
-constexpr std::array<std::string_view, 11> top_keys = {"title",  "units",    "particles",  "hamiltonian",
-                                                       "system", "minimize", "integrator", "every",
-                                                       "stop",   "expect",   "verdict"};
-
 /// Keys of one table of which at most one is given.
 constexpr std::array<std::array<std::string_view, 4>, 3> alternatives = {
     {{"steps", "until", "", ""}, {"steps", "every", "wall", "times"}, {"density", "constant", "", ""}}};
@@ -124,6 +119,18 @@ class Setter {
     }
   }
 
+  /// A list of tables that the scene does not have has no element to set; the message tells what that means.
+  void refuse_missing_list(const std::string& key) const {
+    if (key == "every") {
+      fail("the scene has no [[every]], so it is watched by default; write [[every]] tables to choose");
+    }
+    if (key == "stop") {
+      fail("the scene has no [[stop]], so nothing but its end stops it; write [[stop]] tables to choose");
+    }
+    if (key == "verdict") fail("the scene has no [[verdict]]; write such a table to have runs judged");
+    if (key == "minimize") fail("the scene has no [minimize], so it begins as it is; write that table to choose");
+  }
+
   /// @param top  whether this is the scene itself  @param hamiltonian  whether it is its [hamiltonian]
   SceneValue& enter(SceneValue& at, const std::string& key, bool top, bool hamiltonian) {
     if (SceneValue::Array* list = at.get<SceneValue::Array>()) return element(*list, key);
@@ -135,11 +142,12 @@ class Setter {
     for (const std::string_view known : known_of_hamiltonian) {
       if (hamiltonian && key == known) return at.put(key, SceneValue::table(line_));
     }
+    if (top) refuse_missing_list(key);
     std::vector<std::string> keys;
     for (const auto& [name, value] : *at.get<SceneValue::Table>()) {
       if (value.is_table() || value.is_table_list()) add_new(keys, name);
     }
-    for (const std::string_view known : known_tables) {
+    for (const std::string_view known : top_keys) {
       if (top) add_new(keys, known);
     }
     for (const std::string_view known : known_of_hamiltonian) {

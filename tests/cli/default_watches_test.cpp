@@ -43,6 +43,44 @@ TEST_CASE("a scene without [[every]] is stored with its default watches, and eve
   CHECK(read_scene(bare.effective_toml, "scene.toml").effective_toml == bare.effective_toml);
 }
 
+TEST_CASE("default watches divide the steps where 100 to 400 frames do", "[cli][scene]") {
+  const auto every = [](std::int64_t steps) {
+    const Scene scene = read_unwatched(unwatched_orbit, {"integrator.steps=" + std::to_string(steps)});
+    return scene.watches.front().cadence.steps;
+  };
+  CHECK(every(3653) == 13);  // 281 frames
+  CHECK(every(20000) == 100);
+  CHECK(every(9286) == 46);  // twice a prime: the last frame is not the end
+  CHECK(every(1) == 1);
+  CHECK(every(250) == 1);
+  CHECK(every(0) == 1);
+  for (const std::int64_t steps : {400, 1010, 1030, 12'300, 399'000}) CHECK(steps % every(steps) == 0);
+}
+
+TEST_CASE("default watches follow the run: another start, time that falls, one particle", "[cli][scene]") {
+  const auto interval = [](const std::vector<std::string>& sets) {
+    return read_unwatched(lorenz_until_two, sets).watches.front().cadence.interval;
+  };
+  CHECK(interval({"integrator.start_time=1"}) == 0.005);
+  CHECK(interval({"integrator.until=-2"}) == -0.01);
+  CHECK(read_unwatched(unwatched_orbit, {"integrator.start_time=5", "integrator.until=9"})
+            .watches.front()
+            .cadence.steps == 2);
+  CHECK(read_unwatched(unwatched_orbit, {"integrator.step=-0.01"}).watches.front().cadence.steps == 1);
+  const Scene alone = read_unwatched(R"(units = "reduced"
+[particles]
+body = [{mass = 1, x = [1, 0, 0], v = [0, 0, 0]}]
+[hamiltonian]
+type = "kinetic_potential"
+force = [{type = "harmonic_field", k = 1}]
+[integrator]
+method = "verlet"
+step = 0.01
+steps = 1000
+)");
+  CHECK(alone.watches.front().cadence.steps == 5);
+}
+
 TEST_CASE("default watches change neither the trajectory nor what a program assembles", "[cli][scene]") {
   const SceneFolder folder(unwatched_orbit);
   const std::string watched = noether(folder, "run scene.toml --json").out;
@@ -92,7 +130,76 @@ TEST_CASE("a run with default watches goes on to a later end with the cadence it
         2);
 }
 
+TEST_CASE("default frames of an adaptive method reach the end, and those of a resumed run are those of an unbroken one",
+          "[cli][resume]") {
+  const auto sets = [](const std::string& start, const std::string& until) {
+    return " --set integrator.start_time=" + start + " --set integrator.until=" + until;
+  };
+  const SceneFolder folder(lorenz_until_two);
+  output(folder, "run scene.toml --quiet" + sets("0.1", "7.3"));
+  const io::FileInfo info = io::info(folder / "scene.out/run.h5");
+  CHECK(info.frames == 201);
+  CHECK(info.last_time == 7.3);
+  output(folder, "run scene.toml --quiet --resume" + sets("0.1", "9.7"));
+  const std::string every = " --set 'every=[{type=\"trajectory\", every=0.036}]'";
+  output(folder, "run scene.toml --quiet --out whole" + sets("0.1", "9.7") + every);
+  check_same_content(folder / "scene.out/run.h5", folder / "whole/run.h5");
+  output(folder, "run scene.toml --quiet --out back" + sets("0.1", "-0.7"));
+  CHECK(io::info(folder / "back/run.h5").last_time == -0.7);
+}
+
+TEST_CASE("an adaptive run looks at its end where rounding alone says that the look is later", "[cli][resume]") {
+  const SceneFolder folder(lorenz_until_two);
+  const std::string every = " --set 'every=[{type=\"trajectory\", every=0.1}]' --set integrator.until=";
+  for (const auto& [until, frames] : {std::pair{"0.3", 4}, std::pair{"0.6", 7}, std::pair{"0.7", 8},
+                                      std::pair{"1.2", 13}, std::pair{"1.8", 19}, std::pair{"56", 561}}) {
+    output(folder, "run scene.toml --quiet --resume" + every + until);  // each goes on from the one before
+    const io::FileInfo info = io::info(folder / "scene.out/run.h5");
+    INFO(until);
+    CHECK(info.frames == frames);
+    CHECK(info.last_time == std::stod(until));
+  }
+  output(folder, "run scene.toml --quiet --out whole" + every + "56");
+  check_same_content(folder / "scene.out/run.h5", folder / "whole/run.h5");
+  const std::string times = " --set 'every=[{type=\"trajectory\", times=[0.30000000000000004, 1]}]' --out t";
+  output(folder, "run scene.toml --quiet --set integrator.until=0.3" + times);  // the look keeps its own time
+  CHECK(io::info(folder / "t/run.h5").last_time == 0.30000000000000004);
+  output(folder, "run scene.toml --quiet --resume --set integrator.until=1" + times);
+  output(folder, "run scene.toml --quiet --set integrator.until=1 --out u" + times.substr(0, times.find(" --out")));
+  check_same_content(folder / "t/run.h5", folder / "u/run.h5");
+}
+
+TEST_CASE("[[every]] taken out between run and resume is told, and the run keeps its cadence", "[cli][resume]") {
+  const SceneFolder folder(lorenz_until_two);
+  const std::string watched = " --set 'every=[{type=\"trajectory\", every=0.25}]'";
+  output(folder, "run scene.toml --quiet" + watched);
+  const ProcessResult resumed = noether(folder, "run scene.toml --resume --set integrator.until=3");
+  CHECK(resumed.exit_code == 0);
+  CHECK(
+      has(resumed.err,
+          "note: the scene has no [[every]], so the run keeps the cadence it began with: trajectory at every = 0.25"));
+  CHECK(io::info(folder / "scene.out/run.h5").frames == 13);
+}
+
+TEST_CASE("a proposal knows files of nearly the same extension, and folders of runs", "[cli]") {
+  const SceneFolder folder(unwatched_orbit);
+  CHECK(has(noether(folder, "run scene.tml").err, "; did you mean 'scene.toml'?"));
+  CHECK_FALSE(has(noether(folder, "run scene.csv").err, "did you mean"));
+  output(folder, "run scene.toml --quiet --out kk");
+  CHECK(has(noether(folder, "run kk").err, "; the folder holds a run, 'kk/run.h5'"));
+  output(folder, "run scene.toml --quiet --out bare --set every=[]");
+  CHECK(has(noether(folder, "info bare").err, "; the folder holds a checkpoint, 'bare/checkpoint.h5'"));
+}
+
 #endif
+
+TEST_CASE("--set on a table of a list that is not there says what that means", "[cli]") {
+  const SceneFolder folder(unwatched_orbit);
+  for (const char* set : {"every.0.type=energies", "every.0.steps=10"}) {
+    CHECK(has(noether(folder, std::string("run scene.toml --set ") + set).err,
+              "the scene has no [[every]], so it is watched by default; write [[every]] tables to choose"));
+  }
+}
 
 }  // namespace
 }  // namespace noether::test

@@ -3,6 +3,7 @@
 #include "tests/cli/support.hpp"
 
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -133,6 +134,20 @@ TEST_CASE("an interrupted run says with which command it goes on", "[cli][resume
   const ProcessResult resumed = run_process({"/bin/sh", "-c", command}, folder.path());
   CHECK(resumed.exit_code == 0);
   CHECK(has(resumed.out, "\nresumed from step "));
+}
+
+TEST_CASE("under the launcher of a checkout the command is the launcher's, by the shorter of its paths",
+          "[cli][resume][slow]") {
+  const SceneFolder folder(fourth_order);
+  const auto told = [&](const std::string& launcher) {
+    ::setenv("NOETHER_LAUNCHER", launcher.c_str(), 1);
+    const ProcessResult result = stop_midway(folder, "run scene.toml --fresh", SIGINT);
+    ::unsetenv("NOETHER_LAUNCHER");
+    return result.err;
+  };
+  CHECK(told((folder / "noether").string()) == "to continue: ./noether run scene.toml --resume\n");
+  CHECK(told((folder / "a b/noether").string()) == "to continue: 'a b/noether' run scene.toml --resume\n");
+  CHECK(told("/n") == "to continue: /n run scene.toml --resume\n");
 }
 
 TEST_CASE("a run that is interrupted twice resumes twice", "[cli][resume][slow]") {

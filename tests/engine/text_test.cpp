@@ -25,6 +25,15 @@ TEST_CASE("a name is printable UTF-8", "[text]") {
         "the name 'S\\xf6l' contains the byte \\xf6, which is not UTF-8; save the text as UTF-8");
 }
 
+TEST_CASE("a text is cut between characters", "[text]") {
+  CHECK(first_characters("abc", 2) == "ab");
+  CHECK(first_characters("abc", 9) == "abc");
+  CHECK(first_characters("abc", 0).empty());
+  CHECK(first_characters("\xC3\x96pik", 1) == "\xC3\x96");
+  CHECK(first_characters("a\xF0\x9F\xAA\x90z", 2) == "a\xF0\x9F\xAA\x90");
+  CHECK(first_characters("\xF6l", 1) == "\xF6");
+}
+
 TEST_CASE("what only looks like UTF-8 is told apart", "[text]") {
   CHECK(is_utf8("plain"));
   CHECK(is_utf8("\xF4\x8F\xBF\xBF"));

@@ -83,7 +83,7 @@ TEST_CASE("names of other programs get what there is here", "[proposals]") {
   CHECK(method("Velocity-Verlet") == "; did you mean 'verlet'?");
   CHECK(method("Bulirsch Stoer") == "; did you mean 'bulirsch_stoer'?");  // another name of gragg_bulirsch_stoer
   CHECK(method("saba") == "; did you mean 'saba_4'? (on the Hamiltonian 'wisdom_holman')");
-  CHECK(method("mercurius").starts_with("; did you mean 'gauss_radau_15'? ("));
+  CHECK(method("mercurius").starts_with("; in its place there is 'gauss_radau_15' ("));
   CHECK(method("whfast").starts_with(
       "; in its place there is type = \"wisdom_holman\" in [hamiltonian] (with method = "));
   CHECK(method("nose_hoover").starts_with("; in its place there is type = \"langevin\" in [hamiltonian.thermostat]"));
@@ -93,13 +93,28 @@ TEST_CASE("names of other programs get what there is here", "[proposals]") {
 
   const auto force = [&](const char* word) { return proposal(word, names_of(parts.forces())); };
   CHECK(force("lj/cut") == "; did you mean 'lennard_jones'?");
-  CHECK(force("coulomb") == "; did you mean 'reaction_field'?");
-  CHECK(force("pme").starts_with("; did you mean 'reaction_field'? ("));
-  CHECK(force("morse_bond").starts_with("; did you mean 'bonded'?"));
+  CHECK(force("rf") == "; did you mean 'reaction_field'?");
+  CHECK(force("coulomb").starts_with("; in its place there is 'reaction_field' ("));
+  CHECK(force("pme").starts_with("; in its place there is 'reaction_field' ("));
+  CHECK(force("morse_bond").starts_with("; in its place there is 'bonded' ("));
   CHECK(force("gravitty") == "; did you mean 'gravity'?");
   CHECK(proposal("energies", names_of(parts.monitors())) == "; did you mean 'energy'?");
-  CHECK(proposal("shake", names_of(parts.constraints())).starts_with("; did you mean 'distance'?"));
+  CHECK(proposal("shake", names_of(parts.constraints())).starts_with("; in its place there is 'distance' ("));
   CHECK(proposal("zzzz", {"a", "b"}) == "; expected one of: a, b");
+}
+
+TEST_CASE("a name of another program is proposed only where it may be meant", "[proposals]") {
+  const Parts parts = standard_parts();
+  const auto force = [&](const char* word) { return proposal(word, names_of(parts.forces()), "; see the list"); };
+  CHECK(force("random") == "; see the list");            // no particles at random
+  CHECK(force("steepest_descent") == "; see the list");  // no minimizer
+  CHECK(force("shake").starts_with("; in its place there is type = \"distance\" in [[hamiltonian.constraint]]"));
+  CHECK(proposal("random", names_of(builders())) == "; did you mean 'liquid'?");
+  CHECK(proposal("steep", parts.method_names(), "").find("[minimize]") != std::string::npos);  // "integrator = steep"
+  CHECK(proposal("npt", accepted_at(NamePlace::monitor, parts), "; see the list") == "; see the list");
+  std::vector<std::string> all = names_of(parts.forces());  // a list of several places has room for all
+  for (const std::string& name : parts.method_names()) all.push_back(name);
+  CHECK(proposal("cg", all, "").find("[minimize]") != std::string::npos);
 }
 
 TEST_CASE("a key of another program gets the one of the table it stands in", "[proposals]") {
