@@ -14,8 +14,8 @@ void add_default_watches(const SceneContext& context, Scene& scene);
 
 /// Gives a scene with default watches the cadences of the run that it goes on with, whose end may have been another.
 /// @param stored  the scene of that run; where it has other watches, nothing is done
-/// @return a note where that run had other cadences than the default ones of its end, as where [[every]] tables have been
-///         taken out since it began; else ""
+/// @return a note where that run had other cadences than the default ones of its end, such as where [[every]] tables
+///         have been taken out since it began; else ""
 std::string keep_default_watches(const SceneValue& stored, Scene& scene);
 
 }  // namespace noether
