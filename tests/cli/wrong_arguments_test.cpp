@@ -26,9 +26,7 @@ const std::vector<Wrong> wrong_lines = {
     {"test forces", 2, "'test' is a command of the launcher in a checkout: ./noether test"},
     {"help rnu", 2, "there is no command 'rnu'; did you mean 'run'?", false},
     {"help yoshida_4", 2,
-     "there is no command 'yoshida_4'; `noether help` lists the commands, and `noether describe yoshida_4` describes a "
-     "method or a part of that name",
-     false},
+     "there is no command 'yoshida_4'; `noether describe yoshida_4` describes the method of that name", false},
     {"help run plot", 2, "unexpected argument 'plot' of 'help'", false},
     {"version 2", 2, "unexpected argument '2' of 'version'"},
     {"version --jsn", 2, "unknown option '--jsn' of 'version'; did you mean '--json'?"},
