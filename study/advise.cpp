@@ -247,6 +247,15 @@ void choose_metric(Advice& advice, const Scene& scene, const AdviseOptions& opti
   if (options.metric || !tells_energy(scene)) return;
   if (options.progress) options.progress({.what = "how fast small differences grow"});
   const auto motion = predictability(scene, sampling_of(scene, {}).end(), 4 * options.row_budget);
+  const bool liquid = scene.particles.box().is_periodic() || scene.particles.size() > most_bodies;
+  if (motion && !motion->judged && liquid) {
+    advice.metric = Metric::energy;
+    advice.trials_until = energy_trials_end(scene, options);
+    advice.metric_reason =
+        "errors are those of the energy: the budget does not tell how long positions can be held (--metric position "
+        "tries)";
+    return;
+  }
   if (!motion || !motion->chaotic || motion->rounding(advice.end) < 0.1 * options.error) return;
   advice.metric = Metric::energy;
   advice.trials_until = energy_trials_end(scene, options);
@@ -349,6 +358,10 @@ Advice advise(const Scene& scene, const AdviseOptions& options) {
   choose_metric(advice, scene, options);
   advice.trials = compare(scene, trials_of(advice, options));
   advice.trial_end = advice.trials.end;
+  if (!options.metric && advice.metric == Metric::position && !advice.trials.position_measured && tells_energy(scene)) {
+    advice.metric = Metric::energy;
+    advice.metric_reason = "errors are those of the energy: nothing that was tried tells positions here";
+  }
   check_measured(advice.trials, advice.metric);
   std::vector<Fit> fits;
   for (const Candidate& who : advice.trials.methods) fits.emplace_back(scene, advice.trials, who, advice.metric);
@@ -377,7 +390,7 @@ Advice advise(const Scene& scene, const AdviseOptions& options) {
   }
   const bool tells = std::any_of(fits.begin(), fits.end(), [](const Fit& fit) { return fit.tells(); });
   advice.reason = reason_of(advice, options, tells);
-  if (advice.left_out.empty()) tell_best(advice, scene, options, fits);
+  tell_best(advice, scene, options, fits);
   return advice;
 }
 

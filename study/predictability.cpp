@@ -13,7 +13,8 @@ namespace noether {
 namespace {
 
 constexpr double first_distance = 1e-10, last_distance = 1e-3;
-constexpr int moments_followed = 128;
+constexpr double moment_growth = 1.1;     ///< of the time from one moment to the next
+constexpr double first_moment = 0x1p-24;  ///< of the whole time, where steps are chosen by a tolerance
 
 /// A number from -1 to 1 that looks like chance.
 double shake(Index i) {
@@ -71,20 +72,24 @@ class TwoRuns {
     const Candidate who{adaptive_ ? "dop853" : scene.integrator.method, adaptive_ ? "dop853" : scene.integrator.method,
                         false, adaptive_};
     const double step = scene.integrator.step;
-    interval_ = end / moments_followed;
-    steps_ = adaptive_ ? 0 : std::max<std::int64_t>(1, std::llround(interval_ / step));
     const Setting setting{.step = adaptive_ ? 0 : step, .tolerance = adaptive_ ? 1e-12 : 0};
-    if (!adaptive_) interval_ = static_cast<double>(steps_) * step;
+    step_ = step;
+    next_ = adaptive_ ? first_moment * end : 1;
+    end_ = end;
     one_.emplace(assemble(variant(scene, who, setting)));
     other_.emplace(assemble(variant(moved_scene(scene, first_distance * size), who, setting)));
   }
 
-  double time() const { return interval_ * done_; }
+  double time() const { return adaptive_ ? done_ : done_ * step_; }
+  bool at_end() const { return done_ >= (adaptive_ ? end_ : std::max(1.0, std::round(end_ / step_))); }
   /// @return whether both came to the next moment
   bool advance() {
-    ++done_;
+    const double before = done_;
+    done_ = std::min(next_, adaptive_ ? end_ : std::max(1.0, std::round(end_ / step_)));
+    next_ = adaptive_ ? next_ * moment_growth : std::max(next_ + 1, std::floor(next_ * moment_growth));
     for (auto* sim : {&one_, &other_}) {
-      const Outcome outcome = adaptive_ ? (**sim).run_until(start_ + interval_ * done_) : (**sim).run(steps_);
+      const Outcome outcome =
+          adaptive_ ? (**sim).run_until(start_ + done_) : (**sim).run(static_cast<std::int64_t>(done_ - before));
       if (!outcome.ok()) return false;
     }
     return true;
@@ -95,17 +100,18 @@ class TwoRuns {
 
  private:
   Index particles_;
-  double start_, interval_ = 0;
+  double start_, end_ = 0, step_ = 0;
   bool adaptive_;
-  std::int64_t steps_ = 0;
-  int done_ = 0;
+  double done_ = 0, next_ = 1;  ///< moments: whole steps, or times from the start on [time]
   std::optional<Simulation<double>> one_, other_;
 };
 
 /// Calls it chaotic where the difference has grown much, and more in the second half of the time than any power does.
 void judge_growth(Predictability& p) {
   if (p.times.size() < 8) return;
-  const std::size_t last = p.times.size() - 1, half = last / 2;
+  const std::size_t last = p.times.size() - 1;
+  const auto middle = std::lower_bound(p.times.begin(), p.times.end(), p.times[last] / 2);
+  const auto half = static_cast<std::size_t>(middle - p.times.begin());
   const double all = p.growth[last], second = all / std::max(p.growth[half], 1.0);
   if (!(all >= 1e3) || !(second > 20)) return;
   p.chaotic = true;
@@ -138,11 +144,12 @@ std::optional<Predictability> predictability(const Scene& scene, double end, dou
   if (!(size > 0) || !(end > 0)) return {};
   const auto begin = std::chrono::steady_clock::now();
   Predictability found;
+  bool both_came_to_the_end = false;
   try {
     TwoRuns both(scene, end, size);
     const bool constrained = !scene.hamiltonian.constraints.empty();
     double first = constrained ? 0 : both.distance(), largest = 0;
-    while (both.time() < end * (1 - 1e-9)) {
+    while (!both.at_end()) {
       if (!both.advance()) break;
       const double distance = both.distance();
       if (!std::isfinite(distance)) break;
@@ -154,10 +161,12 @@ std::optional<Predictability> predictability(const Scene& scene, double end, dou
       const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
       if (distance > last_distance * size || spent > budget) break;
     }
+    both_came_to_the_end = both.at_end();
   } catch (const Error&) {
     return {};
   }
   if (found.times.empty()) return {};
+  found.judged = found.growth.back() >= 1e3 || both_came_to_the_end;
   judge_growth(found);
   return found;
 }

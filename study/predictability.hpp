@@ -17,7 +17,8 @@ struct Predictability {
   std::vector<double> times = {};   ///< from the start on [time]
   std::vector<double> growth = {};  ///< the largest difference so far, over that at the start
   bool chaotic = false;
-  double rate = 0;  ///< of its logarithm, where it is chaotic [1/time]
+  bool judged = true;  ///< whether it was followed to the end, or until differences had grown a thousandfold
+  double rate = 0;     ///< of its logarithm, where it is chaotic [1/time]
 
   /// How many times a difference has grown after a time; beyond what was followed by the rate, or as its square.
   double factor(double time) const;
