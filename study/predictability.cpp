@@ -13,7 +13,7 @@ namespace noether {
 namespace {
 
 constexpr double first_distance = 1e-10, last_distance = 1e-3;
-constexpr double moment_growth = 1.1;     ///< of the time from one moment to the next
+constexpr double moment_growth = 1.05;     ///< of the time from one moment to the next
 constexpr double first_moment = 0x1p-24;  ///< of the whole time, where steps are chosen by a tolerance
 
 /// A number from -1 to 1 that looks like chance.

@@ -165,7 +165,10 @@ TEST_CASE("whatever may change the program is built again, once, and nothing els
   fs::last_write_time(source, before);
   again("a source is replaced, with the time of the old one");
   write_text(checkout.tree("numbers/new.cpp"), "\n");
+  fs::create_directories(checkout.tree("numbers/view"));
   again("a source is new");
+  write_text(checkout.tree("numbers/view/view.js"), "// shorter\n");
+  again("a file of the page of view is edited");
   fs::rename(checkout.tree("numbers/new.cpp"), checkout.tree("numbers/newer.cpp"));
   again("a source has another name");
   fs::remove(checkout.tree("numbers/newer.cpp"));
