@@ -4,6 +4,7 @@
 #include "cli/view_data.hpp"
 #include "cli/view_page.hpp"
 #include "numbers/error.hpp"
+#include "numbers/text.hpp"
 #include "scene/json.hpp"
 
 #include <fmt/format.h>
@@ -47,6 +48,11 @@ void tell_what_is_left_out(const ViewData& data, const ViewPage& page) {
     left += fmt::format("{}{} of {} particles", left.empty() ? "" : " and ", data.particles(), data.particles_in_file);
   }
   if (!left.empty()) fmt::print(stderr, "{} are shown\n", left);
+  if (data.failed_frames > 0) {
+    fmt::print(stderr, "{} left out, because a number in {} is not finite\n",
+               counted(static_cast<std::int64_t>(data.failed_frames), "frame is", "frames are"),
+               data.failed_frames == 1 ? "it" : "them");
+  }
 }
 
 void view(const ViewOptions& options, const Parts& parts) {

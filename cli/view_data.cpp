@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t most_energies = 1200;
 /// Numbers of frames that are read at most: more could not stand in a page.
-constexpr std::size_t most_coordinates = 60'000'000;
+constexpr std::size_t most_coordinates = 15'000'000;
 
 Vec3<double> row_of(const std::vector<double>& rows, std::size_t i) {
   return {rows[3 * i], rows[3 * i + 1], rows[3 * i + 2]};
@@ -73,10 +73,13 @@ template <class Value> std::vector<Value> picked(const std::vector<Value>& all, 
   return result;
 }
 
+bool is_finite(const std::vector<double>& numbers) {
+  return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
+}
+
 /// A coordinate as a fraction of the edge, in units of 2^-16 and modulo 1.
 std::uint16_t fraction_of(double x, double edge) {
   const double fraction = x / edge;
-  if (!std::isfinite(fraction)) return 0;
   return static_cast<std::uint16_t>(
       static_cast<std::int64_t>(std::nearbyint((fraction - std::floor(fraction)) * 65536)) & 0xffff);
 }
@@ -157,8 +160,17 @@ ViewData read_frames_to_view(const std::filesystem::path& file, const SceneValue
     for (const double mass : data.masses)
       data.mu.push_back(G * (data.masses[static_cast<std::size_t>(data.primary)] + mass));
   }
-  for (const std::size_t k : chosen_frames(data.frames_in_file, shown, wish))
-    take_frame(data, reader.frame(static_cast<Index>(k)), rows, shared.masses);
+  for (const std::size_t k : chosen_frames(data.frames_in_file, shown, wish)) {
+    const io::Frame frame = reader.frame(static_cast<Index>(k));
+    if (is_finite(frame.positions) && is_finite(frame.velocities)) {
+      take_frame(data, frame, rows, shared.masses);
+    } else {
+      ++data.failed_frames;
+    }
+  }
+  if (data.frames.empty()) {
+    throw Error(fmt::format("{} has no frame to view: in each of them a number is not finite", file.string()));
+  }
   return data;
 }
 

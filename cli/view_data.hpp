@@ -51,6 +51,7 @@ struct ViewData {
   RunCaption caption;
   std::string length_unit;
   std::size_t frames_in_file = 0, particles_in_file = 0;
+  std::size_t failed_frames = 0;  ///< left out, because a number in them is not finite
 
   std::vector<std::string> names, types;  ///< by particle; types empty where there are none
   std::vector<double> masses;             ///< [mass]

@@ -232,7 +232,7 @@ class Controls {
     const color = (name) => style.getPropertyValue(name).trim();
     line(color("--soft") + "88", now, width);
     line(color("--accent"), 0, now);
-    let k = energy.times.findIndex((time) => time > view.motion.time);
+    let k = energy.times.findIndex((time) => view.is_later(time, view.motion.time));
     k = k < 0 ? energy.times.length - 1 : Math.max(0, k - 1);
     pen.fillStyle = color("--accent");
     pen.beginPath();

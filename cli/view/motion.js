@@ -141,7 +141,7 @@ class Motion {
     const a = at_frame(places, k), b = at_frame(places, k + 1);
     const chord = Math.hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
     const slope = (at) => {
-      const v = at_frame(velocities, at), size = h * Math.hypot(...v);
+      const v = at_frame(velocities, at), size = Math.abs(h) * Math.hypot(...v);
       const part = size > 2.5 * chord ? 2.5 * chord / size : 1;
       return v.map((one) => one * h * part);
     };

@@ -19,9 +19,11 @@ class View {
     this.picture = new Picture(element("scene"));
     this.look = new Look(about, this.motion);
     this.wish = new URLSearchParams(location.hash.slice(1));
-    const times = about.times, gaps = times.slice(1).map((t, k) => t - times[k]);
-    this.by_frame = gaps.length > 0 && Math.max(...gaps) > 50 * Math.min(...gaps);  // logarithmic times, stops
+    const times = about.times, gaps = times.slice(1).map((t, k) => Math.abs(t - times[k]));
+    const longest = gaps.reduce((a, b) => Math.max(a, b), 0), shortest = gaps.reduce((a, b) => Math.min(a, b), Infinity);
+    this.by_frame = gaps.length > 0 && longest > 50 * shortest;  // logarithmic times, stops
     this.span = this.frames > 1 ? times[this.frames - 1] - times[0] : 0;
+    this.sign = this.span < 0 ? -1 : 1;  // runs may go back in time
     this.duration = clamp(this.frames / 30, 8, 40);  // seconds at speed 1
     this.part = 0, this.speed = 1, this.playing = this.frames > 1, this.looped = true, this.turning = false;
     this.show = { names: true, box: true };
@@ -117,15 +119,16 @@ class View {
     let low = 0, high = last;
     while (high - low > 1) {
       const middle = (low + high) >> 1;
-      if (times[middle] <= time) low = middle; else high = middle;
+      if (this.sign * times[middle] <= this.sign * time) low = middle; else high = middle;
     }
     return clamp(low + (time - times[low]) / (times[high] - times[low] || 1), 0, last);
   }
+  is_later(a, b) { return this.sign * (a - b) > 0; }
   part_of_time(time) {
     const { times } = this.about, last = this.frames - 1;
     if (last < 1) return 0;
     if (!this.by_frame) return (time - times[0]) / this.span;
-    let k = times.findIndex((t) => t > time);
+    let k = times.findIndex((t) => this.is_later(t, time));
     if (k < 0) k = last;
     return clamp((k - 1 + (time - times[k - 1]) / (times[k] - times[k - 1])) / last, 0, 1);
   }
@@ -135,7 +138,7 @@ class View {
     this.draw();
   }
   time_text(time) {
-    const { time_unit, time_length } = this.about, span = Math.max(this.span, Math.abs(time)) / time_length || 1;
+    const { time_unit, time_length } = this.about, span = Math.max(Math.abs(this.span), Math.abs(time)) / time_length || 1;
     const decimals = clamp(3 - Math.ceil(Math.log10(span)), 0, 12), value = time / time_length;
     const text = span >= 1e7 || span < 1e-4 ? value.toExponential(3) : value.toFixed(decimals);
     return text + (time_unit ? " " + time_unit : "");

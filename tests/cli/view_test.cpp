@@ -65,6 +65,30 @@ TEST_CASE("a page holds the frames of open space to the precision of a float", "
   CHECK(has(*seen, "\"paths\":[\"smooth\",\"arcs\"]"));  // the heavy body, and what orbits it
 }
 
+TEST_CASE("frames with a number that is not finite are left out, and that is told", "[cli][view]") {
+  const SceneFolder folder(small_melt);
+  output(folder, "run scene.toml --quiet");
+  const auto spoil = [&](const std::string& rows) {
+    const std::string code =
+        "import h5py; f = h5py.File('scene.out/run.h5', 'r+'); "
+        "f['/particles/system/position/value'][" +
+        rows + ", 3, 0] = float('nan')";
+    return run_process({NOETHER_PYTHON, "-c", code}, folder.path()).exit_code == 0;
+  };
+  if (std::string(NOETHER_PYTHON).empty() || !spoil("4:6")) {
+    WARN("there is no Python with h5py: the frames are not spoiled");
+    return;
+  }
+  const ProcessResult some = noether(folder, "view scene.out/run.h5 --json");
+  CHECK(some.exit_code == 0);
+  CHECK(json_member(some.out, "frames") == "19");
+  CHECK(some.err == "19 of 21 frames are shown\n2 frames are left out, because a number in them is not finite\n");
+  REQUIRE(spoil(":"));
+  const ProcessResult none = noether(folder, "view scene.out/run.h5");
+  CHECK(none.exit_code == 2);
+  CHECK(none.err == "scene.out/run.h5 has no frame to view: in each of them a number is not finite\n");
+}
+
 TEST_CASE("a page holds the frames of a periodic box to half of 2^-16 of its edge", "[cli][view]") {
   const SceneFolder folder(small_melt);
   output(folder, "run scene.toml --quiet");
