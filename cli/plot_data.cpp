@@ -1,6 +1,8 @@
 #include "cli/plot_data.hpp"
 
 #include "cli/plot_source.hpp"
+#include "cli/run_caption.hpp"
+#include "cli/view_links.hpp"
 #include "io/frame_particles.hpp"
 #include "io/trajectory_layout.hpp"
 #include "numbers/error.hpp"
@@ -17,40 +19,6 @@
 namespace noether {
 
 namespace {
-
-/// Whether the energy is meant to change: drag, a bath, or a force that depends on time.
-bool changes_energy(const SceneValue& scene, const Parts& parts) {
-  if (value_at(scene, {"hamiltonian", "thermostat"}) != nullptr) return true;
-  const SceneValue* forces = value_at(scene, {"hamiltonian", "force"});
-  if (forces == nullptr || !forces->is_table_list()) return false;
-  const auto changes = [&](const SceneValue& force) {
-    const std::string type = text_at(force, {"type"});
-    return std::any_of(parts.forces().begin(), parts.forces().end(), [&](const Parts::ForceKind& kind) {
-      return kind.info.name == type && (kind.claims.dissipative || kind.claims.time_dependent);
-    });
-  };
-  return std::any_of(forces->get<SceneValue::Array>()->begin(), forces->get<SceneValue::Array>()->end(), changes);
-}
-
-/// "wisdom_holman, aba_10_6_4, step 100 day".
-std::string method_line(const SceneValue& scene) {
-  std::string line;
-  const std::string step = text_at(scene, {"integrator", "step"});
-  for (const std::string& part : {text_at(scene, {"hamiltonian", "type"}), text_at(scene, {"system", "type"}),
-                                  text_at(scene, {"integrator", "method"}), step.empty() ? step : "step " + step}) {
-    if (!part.empty()) line += (line.empty() ? "" : ", ") + part;
-  }
-  return line;
-}
-
-/// The scene that a file was made from. @throws FileError if it is damaged
-SceneValue stored_scene(const std::string& toml, const std::filesystem::path& file) {
-  try {
-    return parse_toml(toml, "stored");
-  } catch (const Error& error) {
-    throw FileError(fmt::format("damaged: its scene cannot be read: {}", error.message()), {.file = file.string()});
-  }
-}
 
 /// The least and the largest time at which something was seen.
 std::pair<double, double> span_of(const io::Frames& frames, const std::vector<io::MonitorSeries>& monitors) {
@@ -79,8 +47,11 @@ std::size_t shown_frame(const io::Frames& frames, std::optional<std::int64_t> wa
   return static_cast<std::size_t>(std::max<std::int64_t>(number, 0));
 }
 
-/// Takes out frames with numbers that are not finite, such as of a run that failed. @return the place of the shown one
-std::size_t take_out_failed(io::Frames& frames, std::size_t shown, bool wanted) {
+/// Takes out frames with numbers that are not finite, such as of a run that failed.
+/// @param number  of the frame that is shown in the file; becomes that of the one that is shown instead
+/// @return its place among those that are left
+std::size_t take_out_failed(io::Frames& frames, std::size_t& number, bool wanted) {
+  const std::size_t shown = number;
   if (frames.frames.empty()) return 0;
   if (wanted && !is_finite(frames.frames[shown])) {
     throw Error(
@@ -90,7 +61,7 @@ std::size_t take_out_failed(io::Frames& frames, std::size_t shown, bool wanted) 
   std::size_t place = 0;
   for (std::size_t k = 0; k < frames.frames.size(); ++k) {
     if (!is_finite(frames.frames[k])) continue;
-    if (k <= shown) place = left.size();
+    if (k <= shown || left.empty()) place = left.size(), number = k;
     left.push_back(std::move(frames.frames[k]));
   }
   frames.frames = std::move(left);
@@ -122,14 +93,12 @@ PlotSource read_source(const std::filesystem::path& file, const PlotOptions& opt
                             about.kind));
   }
   PlotSource source{.file = file,
-                    .scene = stored_scene(about.scene_toml, file),
+                    .scene = scene_in_file(about.scene_toml, file),
                     .frames = io::read_frames(file),
                     .monitors = io::read_monitors(file),
                     .time = {}};
   number = shown_frame(source.frames, options.frame, file.string());
-  const std::size_t all = source.frames.frames.size();
   source.shown = take_out_failed(source.frames, number, options.frame.has_value());
-  if (source.frames.frames.size() < all) number -= std::min(number, all - source.frames.frames.size());
 
   const auto [begin, end] = span_of(source.frames, source.monitors);
   std::vector<double> times;
@@ -143,12 +112,12 @@ PlotSource read_source(const std::filesystem::path& file, const PlotOptions& opt
   source.time = time_axis(unit, times, begin, end);
   add_units_of_monitors(source);
 
-  const SceneValue* given = value_at(source.scene, {"hamiltonian", "G"});
-  if (given != nullptr && given->get<double>() != nullptr) source.G = *given->get<double>();
+  const bool attract = has_gravity(source.scene);
+  if (const double G = constant_of_gravity(source.scene, NAN); attract && !std::isnan(G)) source.G = G;
   const std::string system = source.frames.units.empty() ? about.units : source.frames.units;
   if (!source.frames.frames.empty() || !system.empty()) {
     const UnitSystem& units = io::known_units(system, file);
-    if (!source.G) source.G = units.G;
+    if (attract && !source.G) source.G = units.G;
     source.k_B = units.k_B;
     source.temperature_unit = std::string(units.temperature);
   }
@@ -280,9 +249,9 @@ PlotData read_plot_data(const std::filesystem::path& file, const Parts& parts, c
   const PlotSource source = read_source(file, options, number);
   const bool periodic = !source.frames.frames.empty() && !source.frames.frames.front().edges.empty();
   PlotData data;
-  data.title = text_at(source.scene, {"title"});
-  if (data.title.empty()) data.title = file.filename().string();
-  data.subtitle = method_line(source.scene);
+  const RunCaption caption = caption_of(source.scene, file, source.time.unit, 0, parts);
+  data.title = caption.title;
+  data.subtitle = caption.method;
 
   Page page(data, source, options);
   if (page.wants("positions", true)) {
@@ -290,18 +259,18 @@ PlotData read_plot_data(const std::filesystem::path& file, const Parts& parts, c
     if (!options.what.empty() && source.frames.frames.empty()) page.refuse("positions", "frames (a trajectory writer)");
   }
   if (page.wants("errors", true)) {
-    page.add("errors", plot_errors(source.monitors, source.time, changes_energy(source.scene, parts)),
+    page.add("errors", plot_errors(source.monitors, source.time, caption.energy_changes),
              "a monitor of energy, momenta or constraints");
   }
   const bool orbits = find_monitor(source.monitors, "elements") != nullptr ||
-                      (has_primary(source.frames) && !periodic && !is_crowd(source.frames));
+                      (source.G && has_primary(source.frames) && !periodic && !is_crowd(source.frames));
   if (page.wants("elements", orbits)) {
     page.add("elements", plot_elements(source), "the monitor elements, or frames about a body with most of the mass");
     if (data.legend.empty() && data.boxes.empty()) data.legend = body_legend(source.frames);
   }
   const bool heat = periodic || find_monitor(source.monitors, "temperature") != nullptr;
   if (page.wants("temperature", heat)) {
-    page.add("temperature", plot_temperature(source), "the monitor temperature, or frames without constraints");
+    page.add("temperature", plot_temperature(source), "the monitor temperature, or two frames and no constraints");
   }
   if (page.wants("pressure", true)) page.add("pressure", plot_pressure(source), "the monitor pressure");
   const bool crowd = periodic && is_crowd(source.frames);

@@ -56,7 +56,10 @@ void count_pairs(PairCounts& all, const io::Frame& frame, const ByType& types) {
   const Box box = Box::periodic({frame.edges[0], frame.edges[1], frame.edges[2]});
   const std::vector<double>& x = frame.positions;
   std::vector<double> centers(all.types, 0);
-  for (std::size_t i = 0; i < n; i += stride) {
+  std::vector<std::size_t> seen(all.types, 0);
+  for (std::size_t i = 0; i < n; ++i) {
+    // Every type has its own stride: types that follow each other in a cycle would be missed by one over all.
+    if (seen[types.of[i]]++ % stride != 0) continue;
     ++centers[types.of[i]];
     for (std::size_t j = 0; j < n; ++j) {
       if (j == i) continue;
@@ -137,10 +140,10 @@ std::string diffusion(const std::vector<PlotPoint>& points, const io::Frames& fr
   const std::size_t half = points.size() / 2;
   if (points.size() < half + 3) return "";
   const double power = slope_of(points, half, true);
-  if (!(std::abs(power - 1) < 0.3)) return std::isfinite(power) ? fmt::format(": grows as t^{:.2g}", power) : "";
+  if (!(std::abs(power - 1) <= 0.1)) return std::isfinite(power) ? fmt::format(": grows as t^{:.2g}", power) : "";
   const bool plain = frames.length_unit == "1" || frames.length_unit.empty();
   const std::string unit = plain ? "" : fmt::format(" {}^2/{}", frames.length_unit, frames.time_unit);
-  return fmt::format(": D = {:.3g}{}", slope_of(points, half, false) / 6, unit);
+  return fmt::format(": D = {:.2g}{}", slope_of(points, half, false) / 6, unit);
 }
 
 std::vector<PlotPoint> displacement_of_monitor(const io::MonitorSeries& monitor) {

@@ -42,9 +42,46 @@ std::vector<double> scaled_times(const io::MonitorSeries& monitor, const PlotTim
   return times;
 }
 
+/// A number with so many digits that count: plain from 0.01 to 1000, with a power of ten elsewhere.
+std::string told_number(double value, int digits) {
+  const double size = std::abs(value);
+  if (!(size >= 0.01) || size >= 1000) return fmt::format("{:.{}e}", value, digits - 1);
+  const int decimals = digits - 1 - static_cast<int>(std::floor(std::log10(size)));
+  const double power = std::pow(10.0, -decimals);
+  return decimals >= 0 ? fmt::format("{:.{}f}", value, decimals)
+                       : fmt::format("{:.0f}", std::round(value / power) * power);
+}
+
+/// "299.7 +- 0.4": a mean with as many digits as its error, which ten blocks tell; of few numbers the mean alone.
+std::string told_mean(const std::vector<double>& values, std::size_t first) {
+  constexpr std::size_t blocks = 10;
+  const auto mean_of = [&](std::size_t from, std::size_t count) {
+    const auto value = [&](Index k) { return values[from + static_cast<std::size_t>(k)]; };
+    return sum_over<double>(static_cast<Index>(count), value) / static_cast<double>(count);
+  };
+  const std::size_t count = values.size() - first, length = count / blocks;
+  const double mean = mean_of(first, count);
+  if (length < 2) return fmt::format("{:.4g}", mean);
+  const std::size_t start = values.size() - blocks * length;
+  const double middle = mean_of(start, blocks * length);
+  const double squares = sum_over<double>(static_cast<Index>(blocks), [&](Index b) {
+    const double off = mean_of(start + static_cast<std::size_t>(b) * length, length) - middle;
+    return off * off;
+  });
+  const double error = std::sqrt(squares / (blocks * (blocks - 1)));
+  if (!(error > 1e-12 * std::abs(mean))) return fmt::format("{:.4g}", mean);
+  const double digits = mean == 0 ? 1 : std::floor(std::log10(std::abs(mean))) - std::floor(std::log10(error)) + 1;
+  const int shown = std::clamp(static_cast<int>(digits), 1, 12);
+  const bool plain = std::abs(mean) >= 1000 && std::abs(mean) < 1e6;
+  const std::string text =
+      plain ? fmt::format("{:.{}f}", mean, std::max(0, -static_cast<int>(std::floor(std::log10(error)))))
+            : told_number(mean, shown);
+  return fmt::format("{} +- {:.1g}", text, error);
+}
+
 /// What an error panel says above its curves.
 std::string error_title(const std::string& title, const std::string& label, double worst, const PlotPanel& panel) {
-  const std::string told = worst > 0 ? fmt::format("worst {:.1e}", worst) : "exactly zero";
+  const std::string told = worst > 0 ? "worst " + told_number(worst, 2) : "exactly zero";
   const bool several = panel.curves.size() > 1;
   return title + ": " + label + ", " + told + (several ? " of " + panel.curves.back().name : "");
 }
@@ -108,10 +145,8 @@ std::optional<PlotPanel> value_panel(const PlotSource& source, std::string_view 
   if (values.empty()) return {};
   // The second half has forgotten the start.
   const std::size_t half = values.size() / 2;
-  const auto count = static_cast<Index>(values.size() - half);
-  const double mean = sum_over<double>(count, [&](Index k) { return values[half + static_cast<std::size_t>(k)]; }) /
-                      static_cast<double>(count);
-  panel.title = fmt::format("{}: mean {:.4g}{} in the second half", title, mean, unit == "1" ? "" : " " + unit);
+  panel.title =
+      fmt::format("{}: mean {}{} in the second half", title, told_mean(values, half), unit == "1" ? "" : " " + unit);
   panel.y.label = with_unit(title, unit);
   panel.curves = {std::move(curve)};
   panel.curves[0].points = thinned(panel.curves[0].points, most_panel_samples);

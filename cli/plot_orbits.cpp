@@ -24,7 +24,7 @@ constexpr double scale_gap = 8;
 /// A motion is flat where it goes this little out of a plane, of its size.
 constexpr double flatness = 2e-3;
 
-/// What one body does in all frames, relative to the primary if there is one.
+/// What one body does in all frames, as if never wrapped into a periodic box, relative to the primary if there is one.
 struct Track {
   std::vector<PlotPlace> x, v;
   std::vector<double> time;
@@ -32,13 +32,18 @@ struct Track {
 
 Track track_of(const io::Frames& all, std::size_t body, bool relative) {
   Track track;
-  const auto place = [&](const std::vector<double>& rows) {
+  const auto place = [&](const auto& rows) {
     PlotPlace result;
     for (std::size_t k = 0; k < 3; ++k) result[k] = rows[3 * body + k] - (relative ? rows[k] : 0);
     return result;
   };
   for (const io::Frame& frame : all.frames) {
-    track.x.push_back(place(frame.positions));
+    PlotPlace x = place(frame.positions);
+    if (frame.edges.size() == 3 && !frame.images.empty()) {
+      const PlotPlace crossings = place(frame.images);
+      for (std::size_t k = 0; k < 3; ++k) x[k] += crossings[k] * frame.edges[k];
+    }
+    track.x.push_back(x);
     track.v.push_back(place(frame.velocities));
     track.time.push_back(frame.time);
   }
@@ -135,9 +140,14 @@ void choose_views(PlotOrbits& picture, bool centered, const std::string& project
     planes = {{0, 2}};
   } else if (half[0] < flatness * widest) {
     planes = {{1, 2}};
-  } else {
+  } else if (half[2] <= std::max(half[0], half[1])) {
     planes = {{0, 1}, {0, 2}};
+  } else if (half[0] >= half[1]) {
+    planes = {{0, 2}, {0, 1}};
+  } else {
+    planes = {{1, 2}, {1, 0}};
   }
+  const std::size_t aside = 3 - planes[0].first - planes[0].second;  // the axis that the first view does not have
   const auto label = [&](std::size_t axis) {
     // A side view has no room for more than the name of its axis.
     const std::string origin = picture.views.empty() ? about : "";
@@ -147,11 +157,11 @@ void choose_views(PlotOrbits& picture, bool centered, const std::string& project
   for (std::size_t n = 0; n < planes.size(); ++n) {
     const auto [across, up] = planes[n];
     if (n == 0) widest_view = 1.08 * std::max(half[across], half[up]);
-    if (!(widest_view > 0)) widest_view = 1.08 * widest;
+    if (!(widest_view > 0) || projection == "all") widest_view = 1.08 * widest;
     // A side view is as high as what it shows, and a seventh of the widest_view at least.
     const auto reach = [&](std::size_t axis) {
-      const bool thin = n > 0 && axis == 2;
-      return thin ? std::clamp(1.15 * half[2], widest_view / 7, std::max(widest_view, 1.08 * half[2])) : widest_view;
+      const bool thin = n > 0 && axis == aside;
+      return thin ? std::clamp(1.15 * half[aside], widest_view / 7, widest_view) : widest_view;
     };
     picture.views.push_back({.across = across,
                              .up = up,

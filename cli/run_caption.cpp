@@ -39,6 +39,14 @@ bool is_driven(const SceneValue& force, const Parts& parts) {
   });
 }
 
+/// The name of the folder without ".out": "orbit" of orbit.out/run.h5; of a file of another name that name.
+std::string name_of_run(const std::filesystem::path& file) {
+  if (file.stem() != "run") return file.stem().string();
+  const std::filesystem::path folder = std::filesystem::absolute(file).lexically_normal().parent_path().filename();
+  const std::string name = (folder.extension() == ".out" ? folder.stem() : folder).string();
+  return name.empty() ? file.filename().string() : name;
+}
+
 }  // namespace
 
 SceneValue scene_in_file(const std::string& toml, const std::filesystem::path& file) {
@@ -53,11 +61,11 @@ RunCaption caption_of(const SceneValue& scene, const std::filesystem::path& file
                       double longest, const Parts& parts) {
   RunCaption caption;
   caption.title = caption_text(scene, {"title"});
-  if (caption.title.empty()) caption.title = file.filename().string();
+  if (caption.title.empty()) caption.title = name_of_run(file);
   const std::string step = caption_text(scene, {"integrator", "step"});
   for (const std::string& part :
-       {caption_text(scene, {"hamiltonian", "type"}), caption_text(scene, {"integrator", "method"}),
-        step.empty() ? step : "step " + step}) {
+       {caption_text(scene, {"hamiltonian", "type"}), caption_text(scene, {"system", "type"}),
+        caption_text(scene, {"integrator", "method"}), step.empty() ? step : "step " + step}) {
     if (!part.empty()) caption.method += (caption.method.empty() ? "" : ", ") + part;
   }
   caption.time_unit = time_unit == "1" ? "" : time_unit;

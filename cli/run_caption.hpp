@@ -11,7 +11,7 @@ namespace noether {
 class Parts;
 
 struct RunCaption {
-  std::string title;            ///< of the scene, or the name of the file
+  std::string title;            ///< of the scene, or the name of the folder of the run
   std::string method;           ///< "wisdom_holman, aba_10_6_4, step 100 day"
   std::string time_unit;        ///< "kyr"; empty in reduced units
   double time_length = 1;       ///< of that unit [time]

@@ -83,6 +83,31 @@ TEST_CASE("g(r) by pair of types counts neighbors of each type", "[cli][plot]") 
   CHECK(std::abs(neighbors(curves[2], 1.25, 1.6, 107, 216) - 12) < 1e-9);
 }
 
+TEST_CASE("g(r) of more particles than are counted has every type, in whatever order they stand", "[cli][plot]") {
+  io::Frames frames = frames_in_cube(6912, 10, 1);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> anywhere(0, 10);
+  for (double& x : frames.frames[0].positions) x = anywhere(random);
+  for (std::size_t i = 0; i < 6912; ++i) frames.types.push_back(i % 3 == 0 ? "O" : "H");
+  const auto curves = radial_distributions(frames, {0});
+  REQUIRE(curves.size() == 3);
+  for (const PlotCurve& g : curves) CHECK(std::abs(g.points.back().y - 1) < 0.1);
+}
+
+TEST_CASE("a pressure about zero is told with its error", "[cli][plot]") {
+  io::MonitorSeries pressure{
+      .name = "pressure", .step = {}, .time = {}, .quantities = {}, .units = {}, .scale = {}, .orders = {}};
+  for (int k = 0; k < 400; ++k) {
+    pressure.time.push_back(k);
+    pressure.quantities["value"].second.push_back((k / 20 % 2 == 0 ? 12.0 : -12.0) - 0.1234);
+  }
+  PlotSource source{.file = {}, .scene = {}, .frames = {}, .monitors = {pressure}, .time = time_axis("1", {}, 0, 400)};
+  source.pressure_unit = "bar";
+  const auto panel = plot_pressure(source);
+  REQUIRE(panel);
+  CHECK(panel->title == "Pressure: mean -0.1 +- 4 bar in the second half");
+}
+
 TEST_CASE("g(r) of an ideal gas is 1", "[cli][plot]") {
   io::Frames frames = frames_in_cube(400, 5, 8);
   std::mt19937 random(7);

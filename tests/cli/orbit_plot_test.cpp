@@ -83,6 +83,42 @@ TEST_CASE("orbits are seen from the side where they are inclined, and are circle
   CHECK(plot_orbits(circles(1, 0.5, 200, 0.05), 0, 1.0, "yz")[0].views[0].across == 1);
 }
 
+TEST_CASE("no view is wider or higher than the first where bodies move along z", "[cli][plot]") {
+  for (const std::string projection : {"", "all"}) {
+    io::Frames frames = circles(1, 0.5, 200, 0.05);
+    for (io::Frame& frame : frames.frames) {
+      frame.positions[5] *= 1000, frame.velocities[5] *= 1000;
+    }
+    PlotData data;
+    data.orbits = plot_orbits(frames, 199, 1.0, projection);
+    for (const PlotView& view : data.orbits[0].views) {
+      CHECK(view.high.x <= data.orbits[0].views[0].high.x);
+      CHECK(view.high.y <= data.orbits[0].views[0].high.y);
+    }
+    CHECK(PlotLayout(data).height() < 1500);
+  }
+}
+
+TEST_CASE("the path of a particle goes on where it leaves its periodic box", "[cli][plot]") {
+  io::Frames frames = circles(1, 0, 30, 0.1);
+  frames.masses = {1, 1};
+  for (io::Frame& frame : frames.frames) {
+    frame.edges = {2, 2, 2};
+    const double x = 1.5 * frame.time;
+    const auto crossed = static_cast<std::int32_t>(std::floor(x / 2));
+    frame.images = {0, 0, 0, crossed, 0, 0};
+    frame.positions = {1, 0, 0, x - 2 * crossed, 0, 0};
+    frame.velocities = {0, 0, 0, 1.5, 0, 0};
+  }
+  const auto line = plot_line_positions(frames, time_axis("1", {}, 0, 2.9));
+  REQUIRE(line);
+  for (const PlotPoint& p : line->curves[1].points) CHECK(std::abs(p.y - 1.5 * p.x) < 1e-9);
+  const auto pictures = plot_orbits(frames, 29, {}, "xy");
+  for (std::size_t k = 1; k < pictures[0].orbits[1].path.size(); ++k) {
+    CHECK(pictures[0].orbits[1].path[k][0] >= pictures[0].orbits[1].path[k - 1][0]);
+  }
+}
+
 TEST_CASE("an orbit seen seldom is drawn as the ellipse of its elements", "[cli][plot]") {
   const auto seldom = plot_orbits(circles(1, 0.3, 30, 10), 29, 1.0, "");
   const PlotOrbit& orbit = seldom[0].orbits[1];
