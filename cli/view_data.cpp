@@ -73,8 +73,14 @@ template <class Value> std::vector<Value> picked(const std::vector<Value>& all, 
   return result;
 }
 
+/// Whether a page can hold the numbers, which are floats there.
 bool is_finite(const std::vector<double>& numbers) {
-  return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
+  return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::abs(x) < 1e38; });
+}
+
+bool can_be_shown(const io::Frame& frame) {
+  const bool has_room = std::all_of(frame.edges.begin(), frame.edges.end(), [](double edge) { return edge > 0; });
+  return has_room && is_finite(frame.edges) && is_finite(frame.positions) && is_finite(frame.velocities);
 }
 
 /// A coordinate as a fraction of the edge, in units of 2^-16 and modulo 1.
@@ -129,7 +135,7 @@ ViewEnergy energy_of(const std::vector<io::MonitorSeries>& monitors) {
     const std::size_t end = std::min(k + stretch, samples);
     std::size_t worst = k;
     for (std::size_t j = k; j < end; ++j) {
-      if (std::abs(errors[j]) > std::abs(errors[worst])) worst = j;
+      if (!(std::abs(errors[j]) <= std::abs(errors[worst])) && std::isfinite(errors[j])) worst = j;
     }
     if (!std::isfinite(errors[worst])) continue;
     energy.time.push_back(found->time[worst]);
@@ -162,7 +168,7 @@ ViewData read_frames_to_view(const std::filesystem::path& file, const SceneValue
   }
   for (const std::size_t k : chosen_frames(data.frames_in_file, shown, wish)) {
     const io::Frame frame = reader.frame(static_cast<Index>(k));
-    if (is_finite(frame.positions) && is_finite(frame.velocities)) {
+    if (can_be_shown(frame)) {
       take_frame(data, frame, rows, shared.masses);
     } else {
       ++data.failed_frames;

@@ -129,7 +129,7 @@ class View {
     if (last < 1) return 0;
     if (!this.by_frame) return (time - times[0]) / this.span;
     let k = times.findIndex((t) => this.is_later(t, time));
-    if (k < 0) k = last;
+    k = k < 0 ? last : Math.max(1, k);
     return clamp((k - 1 + (time - times[k - 1]) / (times[k] - times[k - 1])) / last, 0, 1);
   }
   go_to_frame(k) {
