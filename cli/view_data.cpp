@@ -175,7 +175,7 @@ ViewData read_frames_to_view(const std::filesystem::path& file, const SceneValue
     }
   }
   if (data.frames.empty()) {
-    throw Error(fmt::format("{} has no frame to view: in each of them a number is not finite", file.string()));
+    throw Error("there is no frame to view: in each of them a number is not finite");
   }
   return data;
 }

@@ -85,8 +85,8 @@ TEST_CASE("frames with a number that is not finite are left out, and that is tol
   CHECK(some.err == "19 of 21 frames are shown\n2 frames are left out, because a number in them is not finite\n");
   REQUIRE(spoil(":"));
   const ProcessResult none = noether(folder, "view scene.out/run.h5");
-  CHECK(none.exit_code == 2);
-  CHECK(none.err == "scene.out/run.h5 has no frame to view: in each of them a number is not finite\n");
+  CHECK(none.exit_code == 3);
+  CHECK(none.err == "scene.out/run.h5: there is no frame to view: in each of them a number is not finite\n");
 }
 
 TEST_CASE("a page holds the frames of a periodic box to half of 2^-16 of its edge", "[cli][view]") {

@@ -40,9 +40,9 @@ TEST_CASE("what [expect] says wrongly is a warning with its line, and ends no ru
   CHECK(wrong_expectation_of("[expect]\nenergy.worst = \"small\"\n") ==
         "scene.toml:17: energy.worst = \"small\" is a text; a number is expected");
   CHECK(wrong_expectation_of("[expect]\nenergy.wurst = 1e-3\n") ==
-        "scene.toml:17: [expect] names 'wurst' of 'energy', which is no figure; did you mean 'worst'?");
+        "scene.toml:17: [expect] names 'wurst' of 'energy', which is not a figure; did you mean 'worst'?");
   CHECK(wrong_expectation_of("[expect]\nenrgy.worst = 1e-3\n") ==
-        "scene.toml:17: [expect] names 'enrgy', which is no monitor of this scene; did you mean 'energy'?");
+        "scene.toml:17: [expect] names 'enrgy', which is not a monitor of this scene; did you mean 'energy'?");
   CHECK(wrong_expectation_of("[expect]\nenergy = 1e-3\n") ==
         "scene.toml:17: [expect] names no figure of 'energy'; expected one, such as energy.worst");
   const Scene scene = read_scene("expect = 3\n" + expected_spring, "scene.toml");
