@@ -66,7 +66,7 @@ TEST_CASE("a run back in time that was cut ends as one that was not, files and a
     check_same_run(resumed.out, straight.out);
     check_same_content(cut / "scene.out/run.h5", whole / "scene.out/run.h5");
     CHECK(io::info(whole / "scene.out/run.h5").frames == 15);
-    CHECK(io::info(whole / "scene.out/run.h5").last_time == -14 * 0.7);
+    CHECK(io::info(whole / "scene.out/run.h5").last_time == -9.8);
     CHECK(io::info(whole / "scene.out/checkpoint.h5").last_time == -10);
     CHECK(noether(whole, "verify scene.out/run.h5").exit_code == 0);
   }

@@ -182,7 +182,7 @@ TEST_CASE("monitors by time look at exact times that the steps of the run do not
   REQUIRE(timed.size() == 29);
   const std::vector<double> steps = steps_of(stepped);
   for (std::size_t k = 0; k < timed.size(); ++k) {
-    CHECK(timed[k].time == static_cast<double>(k) * 0.7);
+    CHECK(timed[k].time == static_cast<double>(7 * k) / 10);
     CHECK(timed[k].label == timed[k].time);
     // It was reached from the last whole step before it.
     CHECK(steps[static_cast<std::size_t>(timed[k].step)] <= timed[k].time);
