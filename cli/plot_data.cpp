@@ -210,21 +210,6 @@ void check(const PlotOptions& options) {
 
 }  // namespace
 
-const SceneValue* value_at(const SceneValue& scene, const std::vector<std::string_view>& keys) {
-  const SceneValue* value = &scene;
-  for (const std::string_view key : keys) {
-    if (value != nullptr) value = value->find(key);
-  }
-  return value;
-}
-
-std::string text_at(const SceneValue& scene, const std::vector<std::string_view>& keys) {
-  const SceneValue* value = value_at(scene, keys);
-  if (value == nullptr) return "";
-  const std::string* text = value->get<std::string>();
-  return text != nullptr ? *text : to_text(*value);
-}
-
 const io::MonitorSeries* find_monitor(const std::vector<io::MonitorSeries>& monitors, std::string_view name) {
   for (const bool exact : {true, false}) {
     for (const io::MonitorSeries& monitor : monitors) {

@@ -3,6 +3,7 @@
 
 #include "cli/plot_axes.hpp"
 #include "cli/plot_data.hpp"
+#include "cli/run_caption.hpp"
 #include "engine/particle_system.hpp"
 #include "io/inspect.hpp"
 #include "scene/value.hpp"
@@ -23,15 +24,10 @@ struct PlotSource {
   std::vector<io::MonitorSeries> monitors;
   PlotTime time;
   std::size_t shown = 0;           ///< the frame that is shown
-  std::optional<double> G = {};    ///< constant of gravitation; nothing where the file names no unit system
+  std::optional<double> G = {};    ///< constant of gravitation; nothing where the scene has no gravity
   std::optional<double> k_B = {};  ///< Boltzmann's constant
   std::string temperature_unit = {}, pressure_unit = {};
 };
-
-/// The value of a dotted key of the stored scene; null if it is not there.
-const SceneValue* value_at(const SceneValue& scene, const std::vector<std::string_view>& keys);
-/// The same as text; "" if it is not there.
-std::string text_at(const SceneValue& scene, const std::vector<std::string_view>& keys);
 
 /// The first monitor of a name, one with a number behind it too; null if there is none.
 const io::MonitorSeries* find_monitor(const std::vector<io::MonitorSeries>& monitors, std::string_view name);

@@ -14,9 +14,7 @@
 
 namespace noether {
 
-namespace {
-
-const SceneValue* caption_value(const SceneValue& scene, const std::vector<std::string_view>& keys) {
+const SceneValue* value_at(const SceneValue& scene, const std::vector<std::string_view>& keys) {
   const SceneValue* value = &scene;
   for (const std::string_view key : keys) {
     if (value != nullptr) value = value->find(key);
@@ -24,16 +22,18 @@ const SceneValue* caption_value(const SceneValue& scene, const std::vector<std::
   return value;
 }
 
-std::string caption_text(const SceneValue& scene, const std::vector<std::string_view>& keys) {
-  const SceneValue* value = caption_value(scene, keys);
+std::string text_at(const SceneValue& scene, const std::vector<std::string_view>& keys) {
+  const SceneValue* value = value_at(scene, keys);
   if (value == nullptr) return "";
   const std::string* text = value->get<std::string>();
   return text != nullptr ? *text : to_text(*value);
 }
 
+namespace {
+
 /// Whether a force takes energy away or depends on time.
 bool is_driven(const SceneValue& force, const Parts& parts) {
-  const std::string type = caption_text(force, {"type"});
+  const std::string type = text_at(force, {"type"});
   return std::any_of(parts.forces().begin(), parts.forces().end(), [&](const Parts::ForceKind& kind) {
     return kind.info.name == type && (kind.claims.dissipative || kind.claims.time_dependent);
   });
@@ -60,12 +60,11 @@ SceneValue scene_in_file(const std::string& toml, const std::filesystem::path& f
 RunCaption caption_of(const SceneValue& scene, const std::filesystem::path& file, const std::string& time_unit,
                       double longest, const Parts& parts) {
   RunCaption caption;
-  caption.title = caption_text(scene, {"title"});
+  caption.title = text_at(scene, {"title"});
   if (caption.title.empty()) caption.title = name_of_run(file);
-  const std::string step = caption_text(scene, {"integrator", "step"});
-  for (const std::string& part :
-       {caption_text(scene, {"hamiltonian", "type"}), caption_text(scene, {"system", "type"}),
-        caption_text(scene, {"integrator", "method"}), step.empty() ? step : "step " + step}) {
+  const std::string step = text_at(scene, {"integrator", "step"});
+  for (const std::string& part : {text_at(scene, {"hamiltonian", "type"}), text_at(scene, {"system", "type"}),
+                                  text_at(scene, {"integrator", "method"}), step.empty() ? step : "step " + step}) {
     if (!part.empty()) caption.method += (caption.method.empty() ? "" : ", ") + part;
   }
   caption.time_unit = time_unit == "1" ? "" : time_unit;
@@ -77,8 +76,8 @@ RunCaption caption_of(const SceneValue& scene, const std::filesystem::path& file
       if (longest >= from) caption.time_unit = name, caption.time_length = length;
     }
   }
-  caption.energy_changes = caption_value(scene, {"hamiltonian", "thermostat"}) != nullptr;
-  const SceneValue* forces = caption_value(scene, {"hamiltonian", "force"});
+  caption.energy_changes = value_at(scene, {"hamiltonian", "thermostat"}) != nullptr;
+  const SceneValue* forces = value_at(scene, {"hamiltonian", "force"});
   if (forces == nullptr || !forces->is_table_list()) return caption;
   for (const SceneValue& force : *forces->get<SceneValue::Array>()) caption.energy_changes |= is_driven(force, parts);
   return caption;

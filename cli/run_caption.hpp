@@ -5,6 +5,8 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace noether {
 
@@ -20,6 +22,11 @@ struct RunCaption {
 
 /// The scene that a file was made from. @throws FileError  if it cannot be read
 SceneValue scene_in_file(const std::string& toml, const std::filesystem::path& file);
+
+/// The value of a dotted key of the stored scene; null if it is not there.
+const SceneValue* value_at(const SceneValue& scene, const std::vector<std::string_view>& keys);
+/// The same as text; "" if it is not there.
+std::string text_at(const SceneValue& scene, const std::vector<std::string_view>& keys);
 
 /// @param longest  the largest time that is shown [time]
 RunCaption caption_of(const SceneValue& scene, const std::filesystem::path& file, const std::string& time_unit,
