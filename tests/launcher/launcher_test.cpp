@@ -31,6 +31,7 @@ struct Checkout : ScratchFolder {
     }
     fs::copy_file(NOETHER_SOURCE_DIR "/noether", tree("noether"));
     fs::copy_file(NOETHER_SOURCE_DIR "/cli/commands.hpp", tree("cli/commands.hpp"));
+    fs::copy_file(NOETHER_SOURCE_DIR "/cmake/nightly.py", tree("cmake/nightly.py"));
     write_text(tree("CMakeLists.txt"), "noether_library(numbers)\n  noether_library(cli ROOMS numbers)\n");
     write_text(tree("tests/CMakeLists.txt"),
                "  add_test(NAME lint.${name} COMMAND true)\nadd_test(NAME tsan COMMAND)\n");
@@ -41,6 +42,7 @@ struct Checkout : ScratchFolder {
       write_text(tree(file), "\n");
     }
     write_tool(path() / "bin/cmake", R"(echo "cmake $*" >>"$CALLS"
+[ -z "${MISCONFIGURED:-}" ] || { echo "CMake Error: no compiler"; exit 1; }
 mkdir -p build/release && echo "CMAKE_HOME_DIRECTORY:INTERNAL=$PWD" >build/release/CMakeCache.txt
 )");
     write_tool(path() / "bin/ninja", R"(echo "ninja ${*:3}" >>"$CALLS"
@@ -54,7 +56,9 @@ chmod +x "$2/cli/noether"
 )");
     write_tool(path() / "bin/ctest", R"(case " $* " in *" -N "*) echo "Total Tests: 7" ;; *) echo "ctest ${*:3}" ;; esac
 )");
-    write_tool(path() / "bin/dpkg-query", "echo installed\n");
+    write_tool(path() / "bin/dpkg-query", "[ -n \"${BARE:-}\" ] || echo installed\n");
+    write_tool(path() / "bin/apt-cache", "exit 0\n");
+    write_tool(path() / "bin/sudo", "exec \"$@\"\n");
     write_tool(path() / "bin/apt-get", "echo \"apt-get $*\" >>\"$CALLS\"; exit 1\n");
   }
 
@@ -225,9 +229,58 @@ TEST_CASE("a build that failed is told, and is tried again", "[launcher]") {
     const ProcessResult result = checkout.launch("run scene.toml", {"BROKEN=1"});
     CHECK(result.exit_code == 4);
     CHECK(has(result.err, "sums.cpp:1: error: no\n"));
-    CHECK(has(result.err, "noether: the build of release failed; everything it said is in "));
+    CHECK(has(result.err, "noether: the build of release failed; its whole output is in "));
   }
   CHECK(has(checkout.built(), "ninja noether\n"));
+}
+
+TEST_CASE("where packages cannot be installed, or cmake fails, that is told and the code is that of a fault",
+          "[launcher]") {
+  const Checkout checkout;
+  for (const char* line : {"run scene.toml", "build", "test io"}) {
+    INFO(line);
+    const ProcessResult bare = checkout.launch(line, {"BARE=1"});
+    CHECK(bare.exit_code == 4);
+    CHECK(bare.out.empty());
+    CHECK(has(bare.err, "noether: installing with apt: g++ cmake ninja-build "));
+    CHECK(has(bare.err, "noether: apt could not install: g++ cmake ninja-build "));
+    CHECK(has(checkout.calls(), "apt-get install -y --no-install-recommends g++ cmake "));
+    CHECK_FALSE(has(checkout.calls(), "cmake --preset"));
+  }
+  for (int k = 0; k < 2; ++k) {
+    const ProcessResult result = checkout.launch("run scene.toml", {"MISCONFIGURED=1"});
+    CHECK(result.exit_code == 4);
+    CHECK(has(result.err, "CMake Error: no compiler\nnoether: cmake failed; its output is above and in "));
+    CHECK_FALSE(has(checkout.calls(), "ninja noether"));
+  }
+  CHECK(has(checkout.built(), "ninja noether\n"));
+}
+
+TEST_CASE("a checkout that was copied with its build is configured and built where it now is", "[launcher]") {
+  const Checkout checkout;
+  checkout.built();
+  CHECK(run_process({"cp", "-a", "tree", "original"}, checkout.path()).exit_code == 0);
+  fs::remove_all(checkout.tree());
+  fs::create_directories(checkout.path() / "elsewhere");
+  fs::rename(checkout.path() / "original", checkout.path() / "elsewhere/tree");
+  fs::remove(checkout.path() / "calls");
+  const auto launch = [&](const fs::path& tree) {
+    std::vector<std::string> words = checkout.command("run scene.toml");
+    words.back() = (tree / "noether").string();
+    const ProcessResult result = run_process(words, checkout.path());
+    INFO(result.err);
+    CHECK(result.out == "program run scene.toml\n");
+    const std::string calls = checkout.calls();
+    fs::remove(checkout.path() / "calls");
+    return calls;
+  };
+  const std::string anew = "cmake --preset release --fresh\nninja noether\n";
+  CHECK(launch(checkout.path() / "elsewhere/tree") == anew);
+  CHECK(launch(checkout.path() / "elsewhere/tree") == "");
+  // Back at the old place, where the build was for the new one.
+  fs::rename(checkout.path() / "elsewhere/tree", checkout.tree());
+  CHECK(launch(checkout.tree()) == anew);
+  CHECK(launch(checkout.tree()) == "");
 }
 
 TEST_CASE("a build says how far it is: now and then in a pipe, in one line on a terminal", "[launcher]") {
@@ -278,6 +331,58 @@ TEST_CASE("a folder's tests are run alone, and only what they need is built", "[
 
   checkout.launch("test");
   CHECK(has(checkout.calls(), "ninja all\n"));
+}
+
+TEST_CASE("--nightly --failed runs what the page does not list as passed, and leaves out tests that are gone",
+          "[launcher]") {
+  const Checkout checkout;
+  write_tool(checkout.path() / "bin/ctest", R"(case " $* " in
+  *" -N -L nightly ") printf '  Test  #%s\n' '3: cli.nightly' '14: fuzz.scene' '15: package' '7: tsan (Disabled)' ;;
+  *" -N "*"-R ^$ "*) echo "Total Tests: 0" ;;
+  *" -N "*) echo "Total Tests: 3" ;;
+  *" -L nightly "*)
+    echo "ctest $*"
+    while [ "$1" != --output-junit ]; do shift; done
+    printf '<testsuite>%s%s</testsuite>' '<testcase name="package" time="2.5" status="run"/>' \
+      '<testcase name="fuzz.scene" time="1" status="fail"/>' >"$2"
+    exit 8 ;;
+esac
+)");
+  const std::string head = "| test | result | seconds | commit | date |\n|---|---|---|---|---|\n";
+  const std::string passed = "| cli.nightly | passed | 9.0 | abc | 2026-01-01 |\n";
+  const std::string tsan = "| tsan | passed | 9.0 | abc | 2026-01-01 |\n";
+  const auto rows = [&] {
+    const std::string page = read_text(checkout.tree("docs/nightly.md"));
+    return page.substr(page.find(head) + head.size());
+  };
+  const std::string gone = "| fuzz.scenes | FAILED | 1.0 | abc | 2026-01-01 |\n";
+  write_text(checkout.tree("docs/nightly.md"),
+             head + passed + "| fuzz.scene | FAILED | 1.0 | abc | 2026-01-01 |\n" + gone + tsan);
+  const ProcessResult failed = checkout.launch("test --nightly --failed");
+  INFO(failed.out << failed.err);
+  CHECK(failed.exit_code == 1);
+  CHECK(has(failed.out, "-L nightly -R ^(fuzz\\.scene|package)$ --output-junit "));
+  CHECK(has(failed.err,
+            "noether: docs/nightly.md: left out the row of fuzz.scenes, which is not a nightly test any more\n"));
+  CHECK(rows().starts_with(passed + "| fuzz.scene | FAILED | 1.0 | "));
+  CHECK(has(rows(), "\n| package | passed | 2.5 | "));
+  CHECK(rows().ends_with(tsan));
+  CHECK_FALSE(has(rows(), "fuzz.scenes"));
+
+  // All that there are have passed; a row of one that is gone is left out, and nothing is run.
+  const std::string others = passed + "| fuzz.scene | passed | 1.0 | abc | 2026-01-01 |\n" +
+                             "| package | passed | 2.0 | abc | 2026-01-01 |\n" + tsan;
+  write_text(checkout.tree("docs/nightly.md"), head + gone + others);
+  const ProcessResult left = checkout.launch("test --nightly --failed");
+  CHECK(left.exit_code == 0);
+  CHECK_FALSE(has(left.out, "-L nightly"));
+  CHECK(has(left.err, "left out the row of fuzz.scenes"));
+  CHECK(rows() == others);
+  const ProcessResult none = checkout.launch("test --nightly --failed");
+  CHECK(none.exit_code == 2);
+  CHECK(has(
+      none.err,
+      "noether: docs/nightly.md lists every nightly test as passed; ./noether test --nightly runs them all again\n"));
 }
 
 }  // namespace
