@@ -101,7 +101,8 @@ TEST_CASE("the README answers what a new user asks first", "[examples][docs]") {
   }
   // How right and how fast is it beside what I use?
   const std::string beside = section(page, "How right, how fast?");
-  for (const char* part : {"worst energy error", "REBOUND ", "heyoka ", "LAMMPS ", "| other programs |", "same core of that processor", "not fast yet"}) {
+  for (const char* part : {"worst energy error", "REBOUND ", "heyoka ", "LAMMPS ", "| other programs |",
+                           "same core of that processor", "not fast yet"}) {
     CAPTURE(part);
     CHECK(beside.find(part) != std::string::npos);
   }
