@@ -29,13 +29,22 @@ def commit(root):
     return (git("rev-parse", "--short=12", "HEAD") or "unknown") + ("-dirty" if changed else "")
 
 
+def result_of(case):
+    """The result of one test, and what the test says it has tried, where that depends on the machine."""
+    results = {"run": "passed", "fail": "FAILED"}
+    tried = re.search(r"^tried: (.+)$", case.findtext("system-out") or "", re.MULTILINE)
+    return results.get(case.get("status"), case.get("status")) + (f", {tried.group(1)}" if tried else "")
+
+
+def passed(cells):
+    return cells[0].split(",")[0] == "passed"
+
+
 def ran(report, root):
     """{name: cells} of the tests that ran: result, seconds, commit, date."""
-    results = {"run": "passed", "fail": "FAILED"}
     cases = ElementTree.parse(report).iter("testcase") if pathlib.Path(report).exists() else []
     when = [commit(root), datetime.date.today().isoformat()]
-    return {case.get("name"): [results.get(case.get("status"), case.get("status")),
-                               f"{float(case.get('time')):.1f}", *when] for case in cases}
+    return {case.get("name"): [result_of(case), f"{float(case.get('time')):.1f}", *when] for case in cases}
 
 
 def told(root):
@@ -47,11 +56,10 @@ def told(root):
 
 
 def print_page(tests):
-    passed = sum(cells[0] == "passed" for cells in tests.values())
     print("# Nightly tests\n")
     print("Written by `./noether test --nightly`; rows of later commits by `./noether test --nightly --failed`.\n")
     print(f"- cpu: {cpu()}")
-    print(f"- result: {passed} of {len(tests)} passed\n")
+    print(f"- result: {sum(map(passed, tests.values()))} of {len(tests)} passed\n")
     print("| test | result | seconds | commit | date |\n|---|---|---|---|---|")
     for name, cells in sorted(tests.items()):
         print(f"| {' | '.join([name, *cells])} |")
@@ -68,7 +76,7 @@ def again(report, root, *names):
 def not_passed(root, *names):
     """A regular expression of the tests that the page does not list as passed: failed, skipped, or new since it was written."""
     tests = told(root)
-    again = [re.escape(name) for name in names if tests.get(name, [""])[0] != "passed"]
+    again = [re.escape(name) for name in names if not passed(tests.get(name, [""]))]
     if not again:
         return "^$" if tests.keys() - set(names) else ""
     return f"^({'|'.join(again)})$"

@@ -48,7 +48,9 @@ gives the same bits on any number of threads and across a restart.")
 
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME noether-dev)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "g++, cmake (>= 3.25), libeigen3-dev (>= 3.4), libfmt-dev, libssl-dev")
+# What cmake/noetherConfig.cmake.in looks for, and a compiler. toml++, CLI11 and Highway are in no installed header.
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS
+    "g++, cmake (>= 3.25), libeigen3-dev (>= 3.4), libfmt-dev, libssl-dev, zlib1g-dev")
 if(NOETHER_HDF5)
   string(APPEND CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS ", libhdf5-dev")
 endif()

@@ -343,7 +343,9 @@ TEST_CASE("--nightly --failed runs what the page does not list as passed, and le
   *" -L nightly "*)
     echo "ctest $*"
     while [ "$1" != --output-junit ]; do shift; done
-    printf '<testsuite>%s%s</testsuite>' '<testcase name="package" time="2.5" status="run"/>' \
+    printf '<testsuite>%s%s</testsuite>' '<testcase name="package" time="2.5" status="run"><system-out>
+tried: unpacked into a folder
+both packages work</system-out></testcase>' \
       '<testcase name="fuzz.scene" time="1" status="fail"/>' >"$2"
     exit 8 ;;
 esac
@@ -365,13 +367,13 @@ esac
   CHECK(has(failed.err,
             "noether: docs/nightly.md: left out the row of fuzz.scenes, which is not a nightly test any more\n"));
   CHECK(rows().starts_with(passed + "| fuzz.scene | FAILED | 1.0 | "));
-  CHECK(has(rows(), "\n| package | passed | 2.5 | "));
+  CHECK(has(rows(), "\n| package | passed, unpacked into a folder | 2.5 | "));
   CHECK(rows().ends_with(tsan));
   CHECK_FALSE(has(rows(), "fuzz.scenes"));
 
   // All that there are have passed; a row of one that is gone is left out, and nothing is run.
   const std::string others = passed + "| fuzz.scene | passed | 1.0 | abc | 2026-01-01 |\n" +
-                             "| package | passed | 2.0 | abc | 2026-01-01 |\n" + tsan;
+                             "| package | passed, installed on a bare system | 2.0 | abc | 2026-01-01 |\n" + tsan;
   write_text(checkout.tree("docs/nightly.md"), head + gone + others);
   const ProcessResult left = checkout.launch("test --nightly --failed");
   CHECK(left.exit_code == 0);

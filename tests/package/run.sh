@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Makes Debian packages of a build folder and tries them where nothing else is: on a bare system made by debootstrap, where
-# apt installs them with what they depend on; without root, debootstrap or a network, unpacked into a folder.
+# apt installs them with what they depend on; without root, debootstrap or a network, unpacked into a folder. The line that
+# begins with "tried:" says which of the two it was; docs/nightly.md repeats it.
 #     run.sh BUILD_FOLDER VERSION
 set -eu
 build=$1 version=$2
@@ -10,7 +11,7 @@ skip() {
   exit 77
 }
 fail() {
-  echo "failed: $1"
+  echo "failed: $*"
   exit 1
 }
 for tool in cpack dpkg-deb dpkg-shlibdeps dpkg-query; do
@@ -65,6 +66,27 @@ for command in $("$build/cli/noether" help | sed -n '/^Subcommands/,$s/^  \([a-z
 done
 grep -q 'threads to use; the bits do not depend on it' <<<"$page" || fail "the manual page lacks the options of run"
 
+# noether-dev depends on a package for everything that its own noetherConfig.cmake looks for, and on nothing else.
+dpkg-deb -x "$library" "$scratch/library"
+config=$scratch/library/usr/lib/cmake/noether/noetherConfig.cmake
+needed=$({
+  echo g++ cmake
+  awk '/if\((OFF|0|FALSE)\)/ { off = 1 } /endif/ { off = 0 } !off' "$config" |
+    sed -nE 's/^ *find_dependency\(([A-Za-z0-9]+).*/\1/p' | while read -r name; do
+    case $name in
+      Eigen3) echo libeigen3-dev ;;
+      fmt) echo libfmt-dev ;;
+      Threads | OpenMP) ;;  # the compiler has them
+      ZLIB) echo zlib1g-dev ;;
+      OpenSSL) echo libssl-dev ;;
+      HDF5) echo libhdf5-dev ;;
+      *) echo "no-package-of-$name" ;;
+    esac
+  done
+} | tr ' ' '\n' | sort -u)
+named=$(dpkg-deb -f "$library" Depends | tr ',' '\n' | sed 's/^ *//; s/ .*//' | sort -u)
+[ "$named" = "$needed" ] || fail "noether-dev depends on" $named "where its noetherConfig.cmake needs" $needed
+
 # ---- on a bare system ---------------------------------------------------------------------------------------------
 
 # What is run there, as root of a system, or below a folder: the program in a scene, and the template built against it.
@@ -101,7 +123,7 @@ in_bare() {
 }
 
 if bare_system; then
-  echo "on a bare system"
+  echo "tried: installed on a bare system"
   cp "$program" "$library" "$bare/tmp/"
   apt-config dump | grep -E '^Acquire::https?::.*Proxy' >"$bare/etc/apt/apt.conf.d/90proxy" || true
   mount -t proc proc "$bare/proc" 2>/dev/null || true
@@ -118,7 +140,8 @@ if bare_system; then
     cmake --build /tmp/template >>/tmp/log 2>&1 || { cat /tmp/log; exit 1; }
     /tmp/template/my_orbits" | grep -xF "$template" || fail "the template project against the installed library"
 else
-  echo "unpacked into a folder: there is no root, no debootstrap or no network for a bare system"
+  echo "tried: unpacked into a folder"
+  echo "a bare system needs root, debootstrap and a network"
   unpacked=$scratch/unpacked
   dpkg-deb -x "$library" "$unpacked"
   # Every library that the program loads belongs to a package that the control file names, or that comes with one.
