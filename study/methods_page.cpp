@@ -18,9 +18,9 @@ measures all of them again and fails where one differs from this page, or from w
 cells differ from its claims ends with them in square brackets.
 
 - **order**: p of an error O(h^p) at t = 6 on two orbits of Henon and Heiles, the smaller one, in 113 bits, with steps
-  of one length. "4, to 12": with steps of its own the order varies up to 12. "varies, to 16, in Quad to 24 (18)": there
-  are no steps of one length; in double precision orders go up to 16, in 113 bits (Quad) up to 24, and there errors fall
-  as the 18th power of the work, between tolerances of 1e-9 and 1e-13.
+  of one length. "4, to 12": where it chooses its steps, the order varies up to 12. "varies, to 16, in Quad to 24 (18)":
+  the method always chooses its steps; in double precision orders go up to 16, in 113 bits (Quad) up to 24,
+  and there errors fall as the 18th power of the work, between tolerances of 1e-9 and 1e-13.
 - **forces**: evaluations per step of given length, after the start, counted, Jacobians not among them. "iterates": as
   many as its equations take.
 - **S**, symplectic: M^T J M = J for the Jacobian M of 24 steps. **R**, reversible: 24 steps, velocities turned, 24

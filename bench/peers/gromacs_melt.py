@@ -3,7 +3,7 @@
     gromacs_melt.py gmx_d|gmx     in double, in mixed precision
 
 A list every 20 steps with a buffer of 0.3 sigma, a plain cutoff at 2.5 sigma, energies every 100 steps. Greets with version
-and SIMD instructions, which packages choose with care for old processors; then reads numbers of steps, one a line, and
+and SIMD instructions, which packages choose with care for old processors; then reads numbers of steps, one per line, and
 answers with the processor seconds of so many, as the system counts them for the process, less those of a run of no steps;
 each time from the same melt, 200 steps after the lattice. (The log cannot be asked: its "Core t" of one thread is wall time
 in the packages of Debian.) Ends at once without GROMACS."""

@@ -104,7 +104,7 @@ class Look {
     const { groups, count } = groups_of(n, about.links);
     if (about.links.length > 0 && count > 1 && n > 12) {
       const color = (i) => rgb(palette[groups[i] % (palette.length - 1)]);
-      schemes.push({ label: "molecules", color, legend: [[null, `each molecule in a color of its own (${count.toLocaleString("en")})`]] });
+      schemes.push({ label: "molecules", color, legend: [[null, `each molecule in its own color (${count.toLocaleString("en")})`]] });
     }
     if (n > 12) {
       const linked = about.links.length > 0 && count < 3, start = Float64Array.from(motion.places);

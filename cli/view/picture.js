@@ -121,7 +121,7 @@ void main() {
 class Picture {
   constructor(canvas) {
     const gl = canvas.getContext("webgl2", { antialias: true, alpha: false });
-    if (!gl) throw new Error("This browser shows no WebGL 2, which draws the picture. Switch on its hardware acceleration, or try a newer one.");
+    if (!gl) throw new Error("This browser does not support WebGL 2, which draws the picture. Switch on its hardware acceleration, or try a newer browser.");
     this.gl = gl, this.canvas = canvas;
     this.sky = this.program(sky_sources), this.spheres = this.program(sphere_sources), this.lines = this.program(line_sources);
     this.empty = gl.createVertexArray();

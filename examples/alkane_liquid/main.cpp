@@ -42,7 +42,7 @@ int main() {
   sim.every(500, io::TrajectoryWriter{"run.h5"});
 
   const Outcome outcome = sim.run(10'000);
-  fmt::print("{}: temperature {:.1f} K, energy {:.2f} kJ/mol a molecule\n", outcome, temperature.value(),
+  fmt::print("{}: temperature {:.1f} K, energy {:.2f} kJ/mol per molecule\n", outcome, temperature.value(),
              energy.total() / 64);
   fmt::print("the start was found in {} steps downhill, to a largest force of {:.1f} kJ/mol/nm\n", start.steps,
              start.force);

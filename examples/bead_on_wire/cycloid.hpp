@@ -21,7 +21,7 @@ struct OnCycloid {
   }
 
   void check() const {
-    if (!(radius > 0)) noether::refuse_field("radius", radius, "rolls no circle; a length above 0 is expected");
+    if (!(radius > 0)) noether::refuse_field("radius", radius, "is not a valid radius; a length above 0 is expected");
   }
 
   template <class Real> std::array<Real, 2> value(const noether::Points<Real, 1>& x) const {

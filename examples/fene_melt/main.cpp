@@ -33,7 +33,7 @@ int main() {
   auto& temperature = sim.every(50, Temperature{});
 
   const Outcome outcome = sim.run(2'000);
-  fmt::print("{}: temperature {:.3f}, energy {:.3f} a bead\n", outcome, temperature.value(), energy.total() / 1'000);
+  fmt::print("{}: temperature {:.3f}, energy {:.3f} per bead\n", outcome, temperature.value(), energy.total() / 1'000);
   fmt::print("the start was found in {} steps downhill, to a largest force of {:.1f}\n", start.steps, start.force);
   fmt::print("{}\n", io::digest(sim.particles()));
   return exit_code(outcome);
