@@ -37,7 +37,7 @@ void advise_scene(const AdviseArguments& given, const Parts& parts) {
   if (given.methods) options.methods = texts_in(*given.methods, "--methods");
   options.row_budget = given.budget;
   const Scene scene = load_scene(given.scene, parts, given.sets);
-  tell_notes(scene.notes);
+  tell_notes_and_warnings(scene);
   TerminalLine line(!given.json);
   options.progress = line.teller();
   const Advice advice = advise(scene, options);

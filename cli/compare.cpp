@@ -54,7 +54,7 @@ std::filesystem::path folder_of(const CompareArguments& given) {
 
 void compare_scene(const CompareArguments& given, const Parts& parts) {
   const Scene scene = load_scene(given.scene, parts, given.sets);
-  if (!given.quiet) tell_notes(scene.notes);
+  if (!given.quiet) tell_notes_and_warnings(scene);
   CompareOptions options;
   if (given.methods) options.methods = texts_in(*given.methods, "--methods");
   if (given.steps) options.steps = times_in(*given.steps, "--steps", *scene.units);

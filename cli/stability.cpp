@@ -42,7 +42,7 @@ std::string write_report(const std::filesystem::path& folder, const char* json_n
 
 void search_scene(const StabilityArguments& given, const Parts& parts) {
   const Scene scene = load_scene(given.scene, parts, given.sets);
-  tell_notes(scene.notes);
+  tell_notes_and_warnings(scene);
   TerminalLine line(!given.json);
   StabilityOptions options;
   if (given.methods) options.methods = texts_in(*given.methods, "--methods");

@@ -456,12 +456,19 @@ template <class Real> void Simulation<Real>::observe_rounded(double limit) {
   }
 }
 
-/// Makes the steps that lead to a time which the run does not reach.
+/// Makes the steps that lead to a time which cannot be shown. Mostly the run fails on the way there; where it does not,
+/// as where a shorter step that ends there cannot be made, it ends at the last whole step before that time.
 template <class Real> Outcome Simulation<Real>::fail_before(double unreached) {
+  keep();
   const Span one{.steps = 1, .limit = raw_.clock().never()};
   while (integrator_.advance(raw_, one).failure == nullptr && !fault(raw_)) {
-    if (raw_.clock().is_later(raw_.clock().high(), unreached))
-      throw LogicError("a sample failed where the run itself does not");
+    if (!raw_.clock().is_later(raw_.clock().high(), unreached)) continue;
+    raw_.assign_state(good_->particles);
+    integrator_.load(good_->integrator, "");
+    return outcome(Outcome::Kind::solver_failure,
+                   fmt::format("no step of '{}' that ends at time {:.9g} succeeds, where the state is to be shown, "
+                               "though the run itself steps past it; choose other times",
+                               integrator_.claims().method, unreached));
   }
   return fall_back();
 }

@@ -135,6 +135,7 @@ template <class Real> double Classical<Real>::longest_step(const Clock<Real>& cl
 
 /// Leaves y at time `at` in `y_`, from the last whole step of the run; no numbers where a step on the way fails.
 template <class Real> void Classical<Real>::look_ahead(const ParticleSystem<Real>& raw, double at) {
+  constexpr double resolution = 4 * std::numeric_limits<double>::epsilon();  // as in `underflow`
   const bool dense = method_->dense();
   const Clock<Real>& clock = raw.clock();
   const double begin = clock.high();
@@ -151,7 +152,10 @@ template <class Real> void Classical<Real>::look_ahead(const ParticleSystem<Real
     double most = longest_step(clock);
     if (!dense && clock.is_later(ahead_->t + most, at)) most = at - ahead_->t;
     const StepResult made = ahead_->method->step(*field_, t, ahead_->y, most);
-    // What fails here fails in the run as well, and is told there.
+    // A sum of times is rounded: what that leaves may be shorter than any step, and the state is the one after the
+    // last.
+    if (made.failure && !dense && std::abs(at - ahead_->t) <= resolution * std::abs(at)) break;
+    // What fails here fails in the run as well, or ends it here.
     if (made.failure || !(std::abs(made.h) > 0)) {
       y_.setConstant(Real(std::numeric_limits<double>::quiet_NaN()));
       ahead_.reset();

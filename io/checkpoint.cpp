@@ -192,6 +192,7 @@ FoundCheckpoint newest_checkpoint(const std::filesystem::path& folder) {
 void CheckpointWriter::observe(const Snapshot<double>& now) {
   Checkpoint checkpoint;
   checkpoint.run = now.saved_run();
+  checkpoint.run.parts.insert(beside_.begin(), beside_.end());
   checkpoint.scene_toml = scene_toml_;
   checkpoint.digest = digest(now.state());
   checkpoint.step = now.step();

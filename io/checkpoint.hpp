@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -56,8 +57,10 @@ FoundCheckpoint newest_checkpoint(const std::filesystem::path& folder);
 /// Writes checkpoints of a run: `sim.every(1'000, io::CheckpointWriter{"checkpoint.h5"})`.
 class CheckpointWriter {
  public:
-  explicit CheckpointWriter(std::filesystem::path file, std::string scene_toml = {})
-      : file_(std::move(file)), scene_toml_(std::move(scene_toml)) {}
+  /// @param beside  parts that are kept with those of the run, by name
+  explicit CheckpointWriter(std::filesystem::path file, std::string scene_toml = {},
+                            std::map<std::string, SavedState> beside = {})
+      : file_(std::move(file)), scene_toml_(std::move(scene_toml)), beside_(std::move(beside)) {}
 
   static constexpr auto describe() {
     return part<CheckpointWriter>("checkpoint", "the whole run, so that it can be resumed",
@@ -71,6 +74,7 @@ class CheckpointWriter {
  private:
   std::filesystem::path file_;
   std::string scene_toml_;
+  std::map<std::string, SavedState> beside_;
 };
 
 }  // namespace noether::io

@@ -6,6 +6,7 @@
 #include "integrators/hamiltonian_motion.hpp"
 #include "io/checkpoint.hpp"
 #include "io/trajectory.hpp"
+#include "scene/default_watches.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -34,7 +35,7 @@ void attach_writers(Simulation<double>& sim, const Scene& scene, const SceneFile
 
 void attach_checkpoints(Simulation<double>& sim, const Scene& scene, const SceneFiles& files) {
   if (files.checkpoint.empty()) return;
-  const io::CheckpointWriter writer(files.checkpoint, scene.effective_toml);
+  const io::CheckpointWriter writer(files.checkpoint, scene.effective_toml, mark_of_kept_watches(scene));
   for (const SceneWatch& watch : scene.watches) {
     if (watch.kind == SceneWatch::Kind::checkpoint) detail::attach(sim, watch.cadence, writer);
   }

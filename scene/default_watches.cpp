@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::int64_t wanted_frames = 200;
 constexpr double most_bytes = 2e9;
+const std::string kept_watches_part = "kept_watches";
 
 /// So many frames are wanted, and so many more are allowed.
 struct FrameRoom {
@@ -188,9 +189,18 @@ std::string keep_default_watches(const SceneValue& stored, Scene& scene) {
   }
   scene.watches = std::move(watches);
   put_watches(scene, std::move(kept));
+  scene.kept_watches = true;
   scene.effective_toml = print_toml(scene.effective);
   if (changed.empty()) return "";
   return fmt::format("the scene has no [[every]], so the run keeps the cadence it began with: {}", changed);
 }
+
+std::map<std::string, SavedState> mark_of_kept_watches(const Scene& scene) {
+  std::map<std::string, SavedState> mark;
+  if (scene.kept_watches) save_value(mark[kept_watches_part], "kept", true);
+  return mark;
+}
+
+bool told_of_kept_watches(const SavedRun& run) { return run.parts.contains(kept_watches_part); }
 
 }  // namespace noether

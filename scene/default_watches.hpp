@@ -1,7 +1,11 @@
 #pragma once
 /// What watches the run of a scene without [[every]]: the energy, where there is one, and about 200 frames.
 
+#include "engine/saved_state.hpp"
 #include "scene/scene.hpp"
+
+#include <map>
+#include <string>
 
 namespace noether {
 
@@ -17,5 +21,11 @@ void add_default_watches(const SceneContext& context, Scene& scene);
 /// @return a note where that run had other cadences than the default ones of its end, such as where [[every]] tables
 ///         have been taken out since it began; else ""
 std::string keep_default_watches(const SceneValue& stored, Scene& scene);
+
+/// What the checkpoints of a run with kept watches carry beside its parts, so that its next resume does not note them
+/// once more; nothing for other runs.
+std::map<std::string, SavedState> mark_of_kept_watches(const Scene& scene);
+/// Whether a saved run has such a mark.
+bool told_of_kept_watches(const SavedRun& run);
 
 }  // namespace noether

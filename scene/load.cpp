@@ -66,9 +66,8 @@ class SceneReader {
     read_stops(top);
     const SceneValue* expect = top.find("expect");
     if (expect != nullptr) scene_.effective.put("expect", *expect);
-    const auto verdicts = tables_of(top, "verdict");
-    scene_.verdicts = read_verdicts(context_, verdicts);
-    if (!verdicts.empty()) scene_.effective.put("verdict", *top.find("verdict"));
+    scene_.verdicts = read_verdicts(context_, top, scene_.wrong_verdicts);
+    if (const SceneValue* verdicts = top.find("verdict")) scene_.effective.put("verdict", *verdicts);
     check_scene(context_, root_, scene_);
     if (!top.has("every")) add_default_watches(context_, scene_);
     if (expect != nullptr) read_expectations(*expect);

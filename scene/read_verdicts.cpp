@@ -33,32 +33,46 @@ std::optional<double> figure(TableReader& reader, std::string_view key) {
   return value;
 }
 
+SceneVerdict read_verdict(const SceneContext& context, const SceneValue& table, std::size_t index) {
+  const std::vector<std::string> outcomes = {"bounded", "unbounded", "solver", "theory"};
+  TableReader reader(context, table, "[[verdict]]", fmt::format("verdict.{}", index));
+  reader.expect_only({"methods", "set", "outcome", "energy_below", "energy_above", "sharing_below", "sharing_above",
+                      "nightly", "why"});
+  SceneVerdict one;
+  const SceneValue* methods = reader.find("methods");
+  one.every_method = methods != nullptr && methods->get<std::string>() != nullptr && reader.text("methods") == "all";
+  if (!one.every_method) one.methods = texts(reader, "methods", "[\"verlet\"], or \"all\"");
+  one.sets = texts(reader, "set", "[\"integrator.step=0.1\"]");
+  one.outcome = reader.text("outcome", "bounded");
+  if (std::find(outcomes.begin(), outcomes.end(), one.outcome) == outcomes.end()) {
+    reader.fail("outcome", fmt::format("unknown outcome '{}'{}", one.outcome, did_you_mean(one.outcome, outcomes)));
+  }
+  one.energy_below = figure(reader, "energy_below");
+  one.energy_above = figure(reader, "energy_above");
+  one.sharing_below = figure(reader, "sharing_below");
+  one.sharing_above = figure(reader, "sharing_above");
+  one.nightly = reader.flag("nightly", false);
+  one.why = reader.text("why");
+  return one;
+}
+
 }  // namespace
 
-std::vector<SceneVerdict> read_verdicts(const SceneContext& context, const std::vector<const SceneValue*>& tables) {
-  const std::vector<std::string> outcomes = {"bounded", "unbounded", "solver", "theory"};
+std::vector<SceneVerdict> read_verdicts(const SceneContext& context, TableReader& top, std::vector<SceneError>& wrong) {
   std::vector<SceneVerdict> all;
-  for (const SceneValue* table : tables) {
-    TableReader reader(context, *table, "[[verdict]]", fmt::format("verdict.{}", all.size()));
-    reader.expect_only({"methods", "set", "outcome", "energy_below", "energy_above", "sharing_below", "sharing_above",
-                        "nightly", "why"});
-    SceneVerdict one;
-    const SceneValue* methods = reader.find("methods");
-    one.every_method = methods != nullptr && methods->get<std::string>() != nullptr && reader.text("methods") == "all";
-    if (!one.every_method) one.methods = texts(reader, "methods", "[\"verlet\"], or \"all\"");
-    one.sets = texts(reader, "set", "[\"integrator.step=0.1\"]");
-    one.outcome = reader.text("outcome", "bounded");
-    if (std::find(outcomes.begin(), outcomes.end(), one.outcome) == outcomes.end()) {
-      reader.fail("outcome", fmt::format("unknown outcome '{}'{}", one.outcome, did_you_mean(one.outcome, outcomes)));
+  std::size_t index = 0;
+  const auto keeping_faults = [&](const auto& read) {
+    try {
+      read();
+    } catch (const SceneError& error) {
+      wrong.push_back(error);
     }
-    one.energy_below = figure(reader, "energy_below");
-    one.energy_above = figure(reader, "energy_above");
-    one.sharing_below = figure(reader, "sharing_below");
-    one.sharing_above = figure(reader, "sharing_above");
-    one.nightly = reader.flag("nightly", false);
-    one.why = reader.text("why");
-    all.push_back(std::move(one));
-  }
+  };
+  keeping_faults([&] {
+    for (const SceneValue* table : tables_of(top, "verdict")) {
+      keeping_faults([&] { all.push_back(read_verdict(context, *table, index++)); });
+    }
+  });
   return all;
 }
 

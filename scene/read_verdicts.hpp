@@ -5,7 +5,8 @@
 
 namespace noether {
 
-/// Reads the verdicts of a scene. @throws SceneError
-std::vector<SceneVerdict> read_verdicts(const SceneContext& context, const std::vector<const SceneValue*>& tables);
+/// Reads the verdicts of a scene. Only who judges runs reads them, so what is wrong there ends no run.
+/// @param wrong  gets what is wrong in a verdict, which is then left out
+std::vector<SceneVerdict> read_verdicts(const SceneContext& context, TableReader& top, std::vector<SceneError>& wrong);
 
 }  // namespace noether

@@ -10,8 +10,8 @@ namespace noether {
 
 namespace {
 
-constexpr std::array<std::string_view, 5> free_keys = {"title", "expect", "integrator.until", "integrator.steps",
-                                                       "integrator.exact"};
+constexpr std::array<std::string_view, 6> free_keys = {
+    "title", "expect", "verdict", "integrator.until", "integrator.steps", "integrator.exact"};
 
 struct Leaf {
   std::string text;

@@ -11,7 +11,7 @@ namespace noether {
 
 /// Compares the scene in a checkpoint with this one, key by key.
 ///
-/// Title, expectations and the end of the run may differ. So may `atol` of particles, where it was the default that it
+/// Title, expectations, verdicts and the end of the run may differ. So may `atol` of particles, where it was the default that it
 /// had once and is none now.
 /// @returns  warnings, one line each
 /// @throws SceneError  naming the first other key that differs

@@ -60,7 +60,8 @@ class Runner {
       kept_ = given_;
       const std::string note =
           keep_default_watches(parse_toml(checkpoint->scene_toml, "the scene in the checkpoint"), *kept_);
-      if (!note.empty()) kept_->notes.push_back(note);
+      const bool told = told_of_kept_watches(checkpoint->run) || is_over(*checkpoint);
+      if (!note.empty() && !told) kept_->notes.push_back(note);
     }
     tell_notes();
     files_ = files_of(scene(), folder_, options_);
@@ -187,6 +188,7 @@ class Runner {
     io::Checkpoint anew = checkpoint;
     sim.for_each_monitor([](const std::string&, AnyMonitor<double>& monitor) { monitor.flush(); });
     anew.run = sim.save();
+    anew.run.parts.merge(mark_of_kept_watches(scene()));
     anew.outcome.clear();
     for (int generation = 0; generation < 2; ++generation) io::write_checkpoint(files_.checkpoint, anew);
   }
@@ -242,6 +244,7 @@ class Runner {
     if (has_files && !files_.checkpoint.empty()) {
       io::Checkpoint checkpoint;
       checkpoint.run = sim.save();
+      checkpoint.run.parts.merge(mark_of_kept_watches(scene()));
       const bool over = ending_.outcome.kind != Outcome::Kind::interrupted;
       if (over) save_ending(checkpoint.run, ending_);
       if (over) checkpoint.outcome = name(ending_.outcome.kind);

@@ -94,15 +94,17 @@ struct Scene {
   SceneIntegrator integrator;
   std::vector<SceneWatch> watches;
   bool default_watches = false;  ///< the scene has no [[every]], so these are those of `add_default_watches`
+  bool kept_watches = false;     ///< they look as often as in the run that this one goes on with
   std::vector<SceneStop> stops;
   std::map<std::string, SceneValue> expect;  ///< dotted key below [expect]
   std::vector<SceneVerdict> verdicts;
-  SceneSource source;                 ///< where errors point
-  SceneValue effective;               ///< the scene with every default, as a tree
-  std::string effective_toml;         ///< the same as text: what files store
-  std::vector<std::string> warnings;  ///< of its reading; `warnings_of` has all
-  std::vector<std::string> notes;     ///< what was taken otherwise than written, with its place; `tell_notes` tells it
-  std::vector<std::string> unread;    ///< of [expect]: what no run could be compared with, with its place
+  std::vector<SceneError> wrong_verdicts;  ///< what is wrong in [[verdict]], which ends no run
+  SceneSource source;                      ///< where errors point
+  SceneValue effective;                    ///< the scene with every default, as a tree
+  std::string effective_toml;              ///< the same as text: what files store
+  std::vector<std::string> warnings;       ///< of its reading; `warnings_of` has all
+  std::vector<std::string> notes;   ///< what was taken otherwise than written, with its place; `tell_notes` tells it
+  std::vector<std::string> unread;  ///< of [expect]: what no run could be compared with, with its place
 };
 
 /// Reads a scene and checks all that can be checked before the first step.

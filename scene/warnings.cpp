@@ -211,6 +211,7 @@ std::string times_after_the_end(const SceneWatch& watch, const Scene& scene) {
 std::vector<std::string> warnings_of(const Scene& scene) {
   std::vector<std::string> warnings = scene.warnings;
   warnings.insert(warnings.end(), scene.unread.begin(), scene.unread.end());
+  for (const SceneError& wrong : scene.wrong_verdicts) warnings.emplace_back(wrong.what());
   const auto add = [&](std::string warning) {
     if (!warning.empty()) warnings.push_back(std::move(warning));
   };
@@ -244,6 +245,11 @@ std::vector<std::string> warnings_of(const Scene& scene) {
 
 void tell_notes(const std::vector<std::string>& notes) {
   for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", escaped(note));
+}
+
+void tell_notes_and_warnings(const Scene& scene) {
+  tell_notes(scene.notes);
+  for (const std::string& warning : warnings_of(scene)) fmt::print(stderr, "warning: {}\n", escaped(warning));
 }
 
 }  // namespace noether

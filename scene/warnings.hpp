@@ -17,4 +17,7 @@ std::vector<std::string> warnings_of(const Scene& scene);
 /// Tells notes on stderr, one line each: what of a scene was taken otherwise than written (`Scene::notes`).
 void tell_notes(const std::vector<std::string>& notes);
 
+/// Tells the notes of a scene on stderr, and its warnings: for questions about a scene whose reports do not have them.
+void tell_notes_and_warnings(const Scene& scene);
+
 }  // namespace noether

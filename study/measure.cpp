@@ -231,15 +231,7 @@ Row measure(const Scene& scene, const Candidate& who, const Setting& setting, co
     row.setting.step = sampling.interval / static_cast<double>(sampling.steps_for(setting.step));
   }
   const Scene alone = variant(scene, who, row.setting);
-  bool whole = false;
-  try {
-    whole = watched_run(row, alone, sampling, options);
-  } catch (const LogicError& e) {  // a moment on the way could not be reached though the run itself goes on
-    row.outcome = name(Outcome::Kind::solver_failure);
-    row.message = e.what();
-    row.outcome_time = sampling.start;
-    return row;
-  }
+  const bool whole = watched_run(row, alone, sampling, options);
   const bool timed = whole && options.quick && row.wall_s.value_or(0) > long_enough_watched;
   row.repeats = timed ? 1 : 0;
   if (whole && !timed) timed_runs(row, alone, sampling, options);

@@ -259,6 +259,7 @@ Suite run_suite(const std::vector<std::filesystem::path>& scenes, const SuiteOpt
   for (const std::filesystem::path& file : scenes) {
     place.done = place.row++ / static_cast<double>(scenes.size());
     const Scene scene = load_scene(file, parts);
+    if (!scene.wrong_verdicts.empty()) throw scene.wrong_verdicts.front();
     if (scene.verdicts.empty()) {
       throw SceneError("the scene has no verdict; give [[verdict]] tables", {.file = file.string(), .key = "verdict"});
     }

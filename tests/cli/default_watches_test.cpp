@@ -1,5 +1,7 @@
 // Scenes without [[every]]: the energy and about 200 frames, kept when the run goes on to another end.
 
+#include "scene/default_watches.hpp"
+#include "io/checkpoint.hpp"
 #include "io/inspect.hpp"
 #include "scene/scene.hpp"
 #include "tests/cli/support.hpp"
@@ -179,6 +181,36 @@ TEST_CASE("[[every]] taken out between run and resume is told, and the run keeps
       has(resumed.err,
           "note: the scene has no [[every]], so the run keeps the cadence it began with: trajectory at every = 0.25"));
   CHECK(io::info(folder / "scene.out/run.h5").frames == 13);
+  for (const char* until : {"3", "4", "5"}) {  // told once, and not of a run that is over
+    CHECK(noether(folder, std::string("run scene.toml --resume --set integrator.until=") + until).err.empty());
+  }
+  CHECK(io::info(folder / "scene.out/run.h5").frames == 21);
+}
+
+TEST_CASE("a run that only ever had the default cadence goes on twice without a note on it", "[cli][resume]") {
+  const SceneFolder folder(lorenz_until_two);
+  output(folder, "run scene.toml --quiet");
+  for (const char* until : {"3", "4", "5"}) {
+    CHECK(noether(folder, std::string("run scene.toml --resume --set integrator.until=") + until).err.empty());
+  }
+  CHECK(io::info(folder / "scene.out/run.h5").frames == 501);
+}
+
+TEST_CASE("a kept cadence is told once, also where the run that told it was killed", "[cli][resume]") {
+  const SceneFolder folder(lorenz_until_two);
+  output(folder, "run scene.toml --quiet --set 'every=[{type=\"trajectory\", every=0.25}]'");
+  CHECK_FALSE(noether(folder, "run scene.toml --resume --set integrator.until=3").err.empty());
+  make_unfinished(folder / "scene.out");  // the checkpoint before is the one that had not been told yet
+  CHECK_FALSE(noether(folder, "run scene.toml --resume --set integrator.until=3").err.empty());
+  CHECK(noether(folder, "run scene.toml --resume --set integrator.until=4").err.empty());
+  // So does one that wrote a checkpoint on its way and was killed after it.
+  Scene going_on = read_unwatched(unwatched_orbit);
+  for (const bool kept : {false, true}) {
+    going_on.kept_watches = kept;
+    const fs::path file = folder / (kept ? "kept.h5" : "new.h5");
+    REQUIRE(assemble(going_on, {.checkpoint = file, .checkpoint_wall = 1e-9}).run(100).ok());
+    CHECK(told_of_kept_watches(io::read_checkpoint(file).run) == kept);
+  }
 }
 
 TEST_CASE("a proposal knows files of nearly the same extension, and folders of runs", "[cli]") {

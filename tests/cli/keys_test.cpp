@@ -28,11 +28,11 @@ std::set<std::string> keys_below(const std::string& page, const std::string& hea
   return keys;
 }
 
-/// What the reader says of a scene; empty if it reads it.
+/// What the reader says of a scene, be it a warning of its verdicts; empty if it reads it.
 std::string refusal_of(const std::string& scene) {
   try {
-    read_scene(scene, root / "scene.toml");
-    return "";
+    const Scene read = read_scene(scene, root / "scene.toml");
+    return read.wrong_verdicts.empty() ? "" : read.wrong_verdicts.front().message();
   } catch (const Error& error) {
     return error.message();
   }

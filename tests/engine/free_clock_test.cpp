@@ -363,4 +363,41 @@ TEST_CASE("steps of a free clock can be neither given nor changed", "[free clock
                     "monitor 'energy' cannot sample every -1 of time; a finite time above 0 is expected");
 }
 
+namespace {
+
+/// The same, but no state between its steps can be shown in a stretch of time.
+class UnshownTest : public AdaptiveTest {
+ public:
+  using AdaptiveTest::AdaptiveTest;
+
+  void settle(const System& raw, System& out, Request wanted, std::optional<double> at, bool corrected) {
+    AdaptiveTest::settle(raw, out, wanted, at, corrected);
+    if (at && *at > 2 && *at < 3) out.positions().set(1, {std::numeric_limits<double>::quiet_NaN(), 0, 0});
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a run whose state cannot be shown at a time ends at the whole step before, and says so", "[free clock]") {
+  Simulation<double> run(ellipse(), UnshownTest(Gravity{.G = 1}, 0.01));
+  std::vector<Moment> timed, stepped;
+  run.every_time(0.7, Diary{&timed});
+  const Outcome outcome = run.run_until(20);
+  CHECK(outcome.kind == Outcome::Kind::solver_failure);
+  CHECK(outcome.message ==
+        "no step of 'adaptive_test' that ends at time 2.1 succeeds, where the state is to be shown, though the run "
+        "itself steps past it; choose other times");
+  REQUIRE(timed.size() == 3);
+  CHECK(timed.back().time == 1.4);
+  auto bare = make_run();
+  bare.every(1, Diary{&stepped});
+  CHECK(bare.run(outcome.step + 1).ok());
+  const std::vector<double> steps = steps_of(stepped);
+  const auto last = static_cast<std::size_t>(outcome.step);
+  CHECK(steps[last] == outcome.time);
+  CHECK(steps[last] < 2.1);
+  CHECK(steps[last + 1] > 2.1);
+  CHECK(run.particles().positions()[1] == stepped[last].x);
+}
+
 }  // namespace noether

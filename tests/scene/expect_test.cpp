@@ -1,4 +1,5 @@
-// What ends no run: an [expect] that no run can be compared with. And what names its way out: parts of other programs.
+// What ends no run: an [expect] that no run can be compared with, a [[verdict]] that judges none. And what names its
+// way out: parts of other programs.
 
 #include "scene/scene.hpp"
 #include "scene/warnings.hpp"
@@ -49,6 +50,34 @@ TEST_CASE("what [expect] says wrongly is a warning with its line, and ends no ru
   CHECK(scene.unread == std::vector<std::string>{"scene.toml:1: expect = 3 is a whole number; a table is expected"});
   Simulation<double> sim = assemble(scene);
   CHECK(sim.run(10).ok());
+}
+
+/// The one thing that is wrong with a verdict; "" if nothing.
+std::string wrong_verdict_of(const std::string& lines) {
+  const Scene scene =
+      read_scene(expected_spring + "[[verdict]]\n" + lines + "\n[[verdict]]\noutcome = \"unbounded\"\n", "scene.toml");
+  Simulation<double> sim = assemble(scene);
+  CHECK(sim.run(10).ok());
+  REQUIRE_FALSE(scene.verdicts.empty());
+  CHECK(scene.verdicts.back().outcome == "unbounded");  // the others are read all the same
+  const std::vector<std::string> warnings = warnings_of(scene);
+  CHECK(scene.verdicts.size() + warnings.size() == 2);
+  return warnings.empty() ? "" : warnings.at(0);
+}
+
+TEST_CASE("what a [[verdict]] says wrongly is a warning with its line, and ends no run", "[scene][messages]") {
+  CHECK(wrong_verdict_of("energy_below = 1e-3").empty());
+  CHECK(wrong_verdict_of("energy_below = -1") ==
+        "scene.toml:17: energy_below = -1 is not a valid bound of an error; a number above 0 is expected");
+  CHECK(
+      wrong_verdict_of("methods = \"verlet\"") ==
+      "scene.toml:17: methods = \"verlet\" is a text; a list of texts, such as [\"verlet\"], or \"all\", is expected");
+  CHECK(wrong_verdict_of("energy_bellow = 1") ==
+        "scene.toml:17: unknown key 'energy_bellow' in [[verdict]]; did you mean 'energy_below'?");
+  CHECK(wrong_verdict_of("outcome = \"bounde\"") == "scene.toml:17: unknown outcome 'bounde'; did you mean 'bounded'?");
+  const Scene scene = read_scene("verdict = 3\n" + expected_spring, "scene.toml");
+  CHECK(warnings_of(scene) ==
+        std::vector<std::string>{"scene.toml:1: verdict is a whole number; tables headed [[verdict]] are expected"});
 }
 
 TEST_CASE("the energy of a scene without [[every]] can be expected", "[scene]") {
