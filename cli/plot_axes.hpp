@@ -35,7 +35,7 @@ struct PlotMarks {
   int power = 0;
 };
 
-/// Marks of a linear axis. @param most  so many at most; power: nothing: what makes numbers short
+/// Marks of a linear axis, about `most`. @param power  of ten; nothing: one that makes numbers short
 PlotMarks marks_of(double low, double high, double most, std::optional<int> power = {});
 /// Marks at 1, 2 and 5 times the powers of ten of a short logarithmic axis.
 PlotMarks decade_marks_of(double low, double high);

@@ -292,7 +292,7 @@ std::vector<PlotPoint> mean_square_displacement(const PlotFrames& frames, std::s
   const std::size_t n = frames.bodies();
   if (frames.size() < 2 || n == 0) return {};
   const std::vector<std::size_t> particles = looked_at(n, most_numbers / 3 / frames.size());
-  const std::size_t held = std::max<std::size_t>(most_numbers / 3 / particles.size(), 3);
+  const std::size_t held = std::max<std::size_t>(most_numbers / 3 / particles.size() + 1, 3);
   const std::size_t apart = (frames.size() + held - 1) / held;
   std::vector<std::vector<double>> x;
   std::vector<double> times;

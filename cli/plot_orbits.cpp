@@ -380,10 +380,9 @@ std::vector<PlotOrbits> plot_orbits_of_elements(const PlotSource& source) {
   const bool fits = shape.size() == 2 && shape[0] == static_cast<Index>(n) && shape[1] == Index{columns};
   if (!fits || values.size() < n * columns) return {};
   const double* last = &values[values.size() - n * columns];
-  PlotOrbits picture{
-      .title = fmt::format("Orbits at the end, t = {:.4g}{}{}", monitor->time.back() / source.time.length,
-                           source.time.unit.empty() ? "" : " ", source.time.unit),
-      .orbits = {}};
+  PlotOrbits picture{.title = fmt::format("Orbits at t = {:.4g}{}{}", monitor->time.back() / source.time.length,
+                                          source.time.unit.empty() ? "" : " ", source.time.unit),
+                     .orbits = {}};
   std::optional<std::string> center;
   for (std::size_t i = 0; i < n; ++i) {
     const double* o = last + i * columns;

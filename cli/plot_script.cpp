@@ -136,7 +136,7 @@ class Script {
   /// Title and names of the axes; that of the values stands at a fixed distance, clear of the numbers.
   void add_titles(const PlotArea& area, const std::string& title, const std::string& x, const std::string& y) {
     const double scale = format_ == PictureFormat::png ? 2 : 1;
-    const bool narrow = 6.9 * static_cast<double>(title.size()) > area.wide + 30;
+    const bool narrow = 7.8 * static_cast<double>(title.size()) > area.wide + 40;
     text_ += fmt::format("set title {} offset 0,-0.6 noenhanced font ',{:.1f}' tc rgb '#303030'\n", quoted(title),
                          (narrow ? 9 : 11) * scale);
     text_ += fmt::format("set xlabel {} offset 0,0.3 noenhanced\nunset ylabel\n", quoted(x));

@@ -84,7 +84,7 @@ TEST_CASE("g(r) by pair of types counts neighbors of each type", "[cli][plot]") 
 }
 
 /// An ideal gas of molecules of two atoms at a distance of 0.3.
-io::Frames dumbbells(std::size_t molecules, ParticleLinks& links) {
+io::Frames gas_of_pairs(std::size_t molecules, ParticleLinks& links) {
   io::Frames frames = frames_in_cube(2 * molecules, 5, 8);
   std::mt19937 random(11);
   std::uniform_real_distribution<double> anywhere(0, 5);
@@ -106,7 +106,7 @@ io::Frames dumbbells(std::size_t molecules, ParticleLinks& links) {
 
 TEST_CASE("g(r) of molecules leaves out the pairs within one, and is 1 for an ideal gas of them", "[cli][plot]") {
   ParticleLinks links;
-  const io::Frames frames = dumbbells(200, links);
+  const io::Frames frames = gas_of_pairs(200, links);
   PlotSource source{.file = {}, .scene = {}, .frames = frames, .monitors = {}, .time = time_axis("1", {}, 0, 4)};
   source.links = links;
   const auto between = plot_radial_distribution(source, false);

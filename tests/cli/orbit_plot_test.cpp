@@ -261,7 +261,7 @@ TEST_CASE("without frames the orbits are the ellipses of the last elements", "[c
       .file = {}, .scene = {}, .frames = shared, .monitors = {elements_seen()}, .time = time_axis("1", {}, 0, 10)};
   const auto pictures = plot_orbits_of_elements(source);
   REQUIRE(pictures.size() == 1);
-  CHECK(pictures[0].title == "Orbits at the end, t = 10");
+  CHECK(pictures[0].title == "Orbits at t = 10");
   REQUIRE(pictures[0].orbits.size() == 2);  // what is not bound has no ellipse
   CHECK(pictures[0].orbits[0].primary);
   const PlotOrbit& orbit = pictures[0].orbits[1];
@@ -284,7 +284,7 @@ TEST_CASE("marks of an axis are short: very small and very large numbers leave a
   CHECK(texts(-1, 1, 4) == "-1 -0.5 0 0.5 1");
   CHECK(texts(0, 3.9e-5, 7) == "0 0.5 1 1.5 2 2.5 3 3.5");
   CHECK(marks_of(0, 3.9e-5, 7).power == -5);
-  CHECK(marks_of(0, 3.9e-5, 7).marks[1].first == 5e-6);
+  CHECK(std::abs(marks_of(0, 3.9e-5, 7).marks[1].first - 5e-6) < 1e-20);
   CHECK(texts(-1.3e6, 1.3e6, 5) == "-1 -0.5 0 0.5 1");
   CHECK(marks_of(-1.3e6, 1.3e6, 5).power == 6);
   CHECK(texts(0, 40'000, 4) == "0 10000 20000 30000 40000");
@@ -303,7 +303,7 @@ TEST_CASE("marks of an axis are short: very small and very large numbers leave a
   for (double size = 1e-30; size < 1e30; size *= 7.3) {
     CAPTURE(size);
     const PlotMarks marks = marks_of(-0.3 * size, size, 7);
-    CHECK((marks.marks.size() > 2 && marks.marks.size() < 12));
+    CHECK((marks.marks.size() > 2 && marks.marks.size() < 14));
     for (const auto& [at, text] : marks.marks) {
       CHECK(text.size() < 8);
       CHECK(std::abs(std::stod(text) * std::pow(10.0, marks.power) - at) < 1e-9 * size);

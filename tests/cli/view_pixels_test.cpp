@@ -14,9 +14,9 @@
 namespace noether::test {
 namespace {
 
-const std::filesystem::path examples = NOETHER_SOURCE_DIR "/examples";
+const std::filesystem::path examples_folder = NOETHER_SOURCE_DIR "/examples";
 
-double number_at(const std::string& json, const std::string& key) { return std::stod(json_member(json, key)); }
+double counted_in(const std::string& json, const std::string& key) { return std::stod(json_member(json, key)); }
 
 /// What tests/io/view_page.py finds in the screenshot of a page beside the run it shows.
 std::optional<std::string> pixels_of(const std::string& what, const ScratchFolder& folder, const std::string& page,
@@ -30,11 +30,11 @@ void check_bodies(const ScratchFolder& folder, const std::string& moment, double
   const auto seen = pixels_of("bodies", folder, "page.html", moment);
   if (!seen) return;
   INFO(moment << ": " << *seen);
-  CHECK(number_at(*seen, "expected") >= least);
-  CHECK(number_at(*seen, "spots") == number_at(*seen, "expected"));  // each body has a spot of its own
-  CHECK(number_at(*seen, "primary") >= 1);
-  CHECK(number_at(*seen, "off") < 4);
-  CHECK(number_at(*seen, "hue") < 0.06);
+  CHECK(counted_in(*seen, "expected") >= least);
+  CHECK(counted_in(*seen, "spots") == counted_in(*seen, "expected"));  // each body has a spot of its own
+  CHECK(counted_in(*seen, "primary") >= 1);
+  CHECK(counted_in(*seen, "off") < 4);
+  CHECK(counted_in(*seen, "hue") < 0.06);
 }
 
 /// The Solar System with frames in which Mercury is seen four times a period. @param sign  of the step
@@ -50,7 +50,7 @@ TEST_CASE("a thousand frames of the Solar System show its bodies in their places
   for (const int sign : {1, -1}) {  // back in time too
     CAPTURE(sign);
     const SceneFolder folder(solar_system(1000, sign));
-    std::filesystem::copy(examples / "solar_system/planets.csv", folder.path());
+    std::filesystem::copy(examples_folder / "solar_system/planets.csv", folder.path());
     output(folder, "run scene.toml --quiet");
     const std::string report = output(folder, "view scene.out/run.h5 --out page.html --json");
     CHECK(json_member(report, "frames") == "1001");
@@ -62,7 +62,7 @@ TEST_CASE("a thousand frames of the Solar System show its bodies in their places
 
 TEST_CASE("a thousand frames of a melt of 4000 atoms show their discs, in the colors of where they were",
           "[cli][view][nightly]") {
-  const SceneFolder folder(read_text(examples / "lj_melt/scene.toml"));
+  const SceneFolder folder(read_text(examples_folder / "lj_melt/scene.toml"));
   std::string scene = read_text(folder / "scene.toml");
   const std::size_t every = scene.rfind("steps = 500");
   REQUIRE(every != std::string::npos);
@@ -75,14 +75,14 @@ TEST_CASE("a thousand frames of a melt of 4000 atoms show their discs, in the co
     const auto seen = pixels_of("atoms", folder, "page.html", moment);
     if (!seen) return;
     INFO(moment << ": " << *seen);
-    CHECK(number_at(*seen, "fit") > 0.85);  // most lit pixels are those of discs of atoms, and most of these are lit
-    CHECK(number_at(*seen, "wide") > 0.3);
-    CHECK(number_at(*seen, "wide") < 0.5);
-    CHECK(number_at(*seen, "share") > 0.2);
-    CHECK(number_at(*seen, "share") < 0.35);
-    CHECK(number_at(*seen, "colors") > 0.8);  // from blue to orange, as the atoms stood at first
-    CHECK(number_at(*seen, "warm") > 0.2);
-    CHECK(number_at(*seen, "cold") > 0.15);
+    CHECK(counted_in(*seen, "fit") > 0.85);  // most lit pixels are those of discs of atoms, and most of these are lit
+    CHECK(counted_in(*seen, "wide") > 0.3);
+    CHECK(counted_in(*seen, "wide") < 0.5);
+    CHECK(counted_in(*seen, "share") > 0.2);
+    CHECK(counted_in(*seen, "share") < 0.35);
+    CHECK(counted_in(*seen, "colors") > 0.8);  // from blue to orange, as the atoms stood at first
+    CHECK(counted_in(*seen, "warm") > 0.2);
+    CHECK(counted_in(*seen, "cold") > 0.15);
   }
 }
 
