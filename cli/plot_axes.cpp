@@ -1,9 +1,14 @@
 #include "cli/plot_axes.hpp"
 
+#include "cli/run_caption.hpp"
 #include "numbers/units.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 
 namespace noether {
 
@@ -28,10 +33,67 @@ void whole_decades(PlotAxis& axis, double low, double high) {
   if (axis.high <= axis.low) axis.high = 10 * axis.low;
 }
 
+/// The power of ten that numbers leave to the name of their axis: 0 from 0.001 to 99 999, as they are read anyway.
+int power_of(double largest) {
+  if (largest >= 1e-3 && largest < 1e5) return 0;
+  return static_cast<int>(std::floor(std::log10(largest) + 1e-9));
+}
+
 }  // namespace
 
 std::string with_unit(const std::string& text, const std::string& unit) {
   return unit.empty() || unit == "1" ? text : text + " (" + unit + ")";
+}
+
+PlotLength readable_length(const std::string& unit, double size) {
+  static constexpr double planetary = 0.01;
+  if (unit == "au" && size > 0 && size < planetary) return {"km", units::solar::km};
+  return {unit, 1};
+}
+
+PlotMarks marks_of(double low, double high, double most, std::optional<int> power) {
+  const double raw = (high - low) / most, largest = std::max(std::abs(low), std::abs(high));
+  if (!(raw > 0) || !std::isfinite(raw) || !(raw > 1e-13 * largest)) return {};
+  const double decade = std::pow(10.0, std::floor(std::log10(raw))), digit = raw / decade;
+  const double step = decade * (digit < 1.5 ? 1 : digit < 3.5 ? 2 : digit < 7.5 ? 5 : 10);
+  PlotMarks result{.marks = {}, .power = power.value_or(power_of(largest))};
+  const double unit = std::pow(10.0, result.power);
+  const int decimals = std::clamp(-static_cast<int>(std::floor(std::log10(step / unit) + 1e-9)), 0, 15);
+  const auto first = static_cast<std::int64_t>(std::ceil(low / step - 1e-9));
+  const auto last = static_cast<std::int64_t>(std::floor(high / step + 1e-9));
+  for (std::int64_t k = first; k <= last; ++k) {
+    const double at = static_cast<double>(k) * step;
+    std::string text = fmt::format("{:.{}f}", at / unit, decimals);
+    if (text.find('.') != std::string::npos) {
+      text.erase(text.find_last_not_of('0') + 1);
+      if (text.back() == '.') text.pop_back();
+    }
+    result.marks.emplace_back(at, k == 0 ? "0" : text);
+  }
+  return result;
+}
+
+PlotMarks decade_marks_of(double low, double high) {
+  PlotMarks result{.marks = {}, .power = power_of(high)};
+  const double unit = std::pow(10.0, result.power);
+  for (double power = std::pow(10.0, std::floor(std::log10(low))); power <= high; power *= 10) {
+    for (const double mark : {power, 2 * power, 5 * power}) {
+      if (mark >= low && mark <= high) result.marks.emplace_back(mark, fmt::format("{:.6g}", mark / unit));
+    }
+  }
+  return result;
+}
+
+std::string with_power(const std::string& label, int power) {
+  if (power == 0) return label;
+  static constexpr std::array<const char*, 10> figures = {"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074",
+                                                          "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
+  std::string text = power < 0 ? "10\u207b" : "10";
+  for (const char digit : std::to_string(std::abs(power))) text += figures[static_cast<std::size_t>(digit - '0')];
+  if (label.empty()) return "in " + text;
+  if (label.back() != ')') return label + " (" + text + ")";
+  std::string result = label;
+  return result.insert(result.rfind('(') + 1, text + " ");
 }
 
 bool is_spaced_by_ratios(const std::vector<double>& times) {
@@ -52,21 +114,8 @@ bool is_spaced_by_ratios(const std::vector<double>& times) {
 }
 
 PlotTime time_axis(const std::string& unit, const std::vector<double>& frames, double begin, double end) {
-  PlotTime time{.unit = unit == "1" ? "" : unit, .length = 1, .axis = {}};
-  const double longest = std::max(std::abs(begin), std::abs(end));
-  namespace solar = units::solar;
-  const auto take = [&](const char* name, double length) { time.unit = name, time.length = length; };
-  if (unit == "day") {
-    if (longest >= 0.5 * solar::Myr) {
-      take("Myr", solar::Myr);
-    } else if (longest >= 5 * solar::kyr) {
-      take("kyr", solar::kyr);
-    } else if (longest >= 2 * solar::year) {
-      take("yr", solar::year);
-    }
-  } else if (unit == "ps" && longest >= 2000) {
-    take("ns", 1000);
-  }
+  const ReadableTime readable = readable_time(unit, std::max(std::abs(begin), std::abs(end)));
+  PlotTime time{.unit = readable.unit, .length = readable.length, .axis = {}};
   time.axis = {.label = with_unit("time", time.unit), .low = begin / time.length, .high = end / time.length};
   if (is_spaced_by_ratios(frames)) {
     double first = INFINITY;

@@ -3,7 +3,9 @@
 
 #include "cli/plot_data.hpp"
 
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace noether {
@@ -17,6 +19,29 @@ struct PlotTime {
   double length = 1;  ///< of the unit, in the unit of the file
   PlotAxis axis;      ///< from the first to the last moment, in the unit
 };
+
+/// A unit in which people read a length.
+struct PlotLength {
+  std::string unit;   ///< its name
+  double length = 1;  ///< of the unit, in the unit of the file
+};
+
+/// The unit of orbits of a size: kilometers instead of astronomical units about a planet.
+PlotLength readable_length(const std::string& unit, double size);
+
+/// Marks of an axis, and the power of ten that their numbers leave to its name.
+struct PlotMarks {
+  std::vector<std::pair<double, std::string>> marks;
+  int power = 0;
+};
+
+/// Marks of a linear axis, about `most`. @param power  of ten; nothing: one that makes numbers short
+PlotMarks marks_of(double low, double high, double most, std::optional<int> power = {});
+/// Marks at 1, 2 and 5 times the powers of ten of a short logarithmic axis.
+PlotMarks decade_marks_of(double low, double high);
+
+/// "y (10^-5 m)" with the power in small figures; the label as it is for the power 0.
+std::string with_power(const std::string& label, int power);
 
 /// Whether moments are spaced so that each is a multiple of the one before, as far as more of them fit on a logarithmic
 /// axis than on a linear one: two decades at least, and half of them in the first tenth. A first moment 0 is left out.

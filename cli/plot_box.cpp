@@ -213,11 +213,9 @@ void fit_square(PlotBox& picture) {
 
 }  // namespace
 
-bool is_crowd(const io::Frames& frames) {
+bool is_crowd(const PlotFrames& frames) {
   static constexpr std::size_t most_orbits = 150, few_in_box = 8;
-  if (frames.frames.empty() || frames.masses.empty()) return false;
-  const std::size_t n = frames.masses.size();
-  return !frames.frames.front().edges.empty() ? n > few_in_box : n > most_orbits;
+  return !frames.empty() && frames.bodies() > (frames.periodic ? few_in_box : most_orbits);
 }
 
 PlotBox plot_box(const ParticleSystem<double>& s, const std::string& mass_unit, std::vector<PlotLegend>& legend) {

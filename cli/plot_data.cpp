@@ -2,8 +2,9 @@
 
 #include "cli/plot_source.hpp"
 #include "cli/run_caption.hpp"
-#include "cli/view_links.hpp"
+#include "cli/run_gravity.hpp"
 #include "io/frame_particles.hpp"
+#include "io/sandbox.hpp"
 #include "io/trajectory_layout.hpp"
 #include "numbers/error.hpp"
 #include "numbers/suggest.hpp"
@@ -15,62 +16,97 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 
 namespace noether {
 
 namespace {
 
 /// The least and the largest time at which something was seen.
-std::pair<double, double> span_of(const io::Frames& frames, const std::vector<io::MonitorSeries>& monitors) {
+std::pair<double, double> span_of(const PlotFrames& frames, const std::vector<io::MonitorSeries>& monitors) {
   double low = INFINITY, high = -INFINITY;
   const auto take = [&](double time) { low = std::min(low, time), high = std::max(high, time); };
-  for (const io::Frame& frame : frames.frames) take(frame.time);
+  std::for_each(frames.times.begin(), frames.times.end(), take);
   for (const io::MonitorSeries& monitor : monitors) std::for_each(monitor.time.begin(), monitor.time.end(), take);
   return low <= high ? std::pair(low, high) : std::pair(0.0, 0.0);
 }
 
-bool is_finite(const io::Frame& frame) {
-  const auto finite = [](const std::vector<double>& numbers) {
-    return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
-  };
-  return finite(frame.positions) && finite(frame.velocities) && finite(frame.variables);
-}
-
-/// The frame that is shown. @throws Error if there is none of the number, or its numbers are not finite
-std::size_t shown_frame(const io::Frames& frames, std::optional<std::int64_t> wanted, const std::string& file) {
-  const auto count = static_cast<std::int64_t>(frames.frames.size());
-  const std::int64_t last = count - 1, number = wanted.value_or(-1) == -1 ? last : *wanted;
+/// The place of the frame that is shown: the last one that can be drawn up to the one that is wanted.
+/// @throws Error if there is none of the number, or its numbers are not finite
+std::size_t shown_frame(const FramesInFile& found, std::optional<std::int64_t> wanted, const std::string& file) {
+  const auto last = static_cast<std::int64_t>(found.all) - 1;
+  const std::int64_t number = wanted.value_or(-1) == -1 ? last : *wanted;
   if (wanted && (number < 0 || number > last)) {
-    throw Error(count == 0 ? fmt::format("--frame {}: {} has no frames", *wanted, file)
-                           : fmt::format("--frame {}: {} has the frames 0 to {}; -1 is the last", *wanted, file, last));
+    throw Error(found.all == 0
+                    ? fmt::format("--frame {}: {} has no frames", *wanted, file)
+                    : fmt::format("--frame {}: {} has the frames 0 to {}; -1 is the last", *wanted, file, last));
   }
-  return static_cast<std::size_t>(std::max<std::int64_t>(number, 0));
+  const std::vector<std::size_t>& numbers = found.frames.numbers;
+  const auto after =
+      std::upper_bound(numbers.begin(), numbers.end(), static_cast<std::size_t>(std::max<std::int64_t>(number, 0)));
+  const std::size_t place = after == numbers.begin() ? 0 : static_cast<std::size_t>(after - numbers.begin()) - 1;
+  // Nothing, as -1, asks for the last one that can be drawn.
+  const bool there = !numbers.empty() && numbers[place] == static_cast<std::size_t>(number);
+  if (wanted.value_or(-1) != -1 && !there) {
+    throw Error(fmt::format("--frame {} has numbers that are not finite: the run failed before it; choose another one",
+                            number));
+  }
+  return place;
 }
 
-/// Takes out frames with numbers that are not finite, such as of a run that failed.
-/// @param number  of the frame that is shown in the file; becomes that of the one that is shown instead
-/// @return its place among those that are left
-std::size_t take_out_failed(io::Frames& frames, std::size_t& number, bool wanted) {
-  const std::size_t shown = number;
-  if (frames.frames.empty()) return 0;
-  if (wanted && !is_finite(frames.frames[shown])) {
-    throw Error(
-        fmt::format("--frame {} has numbers that are not finite: the run failed before it; choose another one", shown));
+/// What the picture takes from monitors: without the numbers that nothing draws.
+std::vector<io::MonitorSeries> drawn_monitors(const std::filesystem::path& file) {
+  static const std::vector<std::string> names = {
+      "energy",   "shadow_hamiltonian", "momentum", "angular_momentum",    "constraint_residual",
+      "elements", "temperature",        "pressure", "radial_distribution", "mean_square_displacement"};
+  const auto drawn = [](const std::string& monitor, const std::string& quantity) {
+    const auto name =
+        std::find_if(names.begin(), names.end(), [&](const auto& one) { return monitor.starts_with(one); });
+    if (name == names.end()) return false;
+    const bool error = *name == "energy" || name->ends_with("momentum");
+    return quantity == "relative_error" || quantity == "worst" ||
+           (!error && (quantity == "value" || quantity == "lag" || quantity == "distance"));
+  };
+  return io::read_monitors(file, {.wanted = drawn, .most_numbers = 20'000'000});
+}
+
+ParticleLinks links_in(const std::filesystem::path& file, const PlotSource& source, const UnitSystem& units) {
+  const io::Frames& shared = source.frames.shared;
+  std::vector<std::size_t> rows(shared.ids.size());
+  std::iota(rows.begin(), rows.end(), std::size_t{0});
+  return io::try_first(file,
+                       [&] { return read_links(io::Hdf5File::open_to_read(file), source.scene, units, shared, rows); });
+}
+
+/// The unit of orbits: by how far bodies are from the primary at the frame that is shown, or by their largest orbit.
+PlotLength length_of(const PlotSource& source) {
+  const PlotFrames& frames = source.frames;
+  double size = 0;
+  if (!frames.empty() && frames.primary && !is_crowd(frames)) {
+    const io::Frame frame = frames.frame(source.shown);
+    for (std::size_t i = 0; i < frames.bodies(); ++i) {
+      const auto off = [&](std::size_t k) {
+        return frame.positions[3 * i + k] - frame.positions[3 * *frames.primary + k];
+      };
+      size = std::max(size, std::hypot(off(0), off(1), off(2)));
+    }
+  } else if (const io::MonitorSeries* elements = find_monitor(source.monitors, "elements"); elements != nullptr) {
+    const auto found = elements->quantities.find("value");
+    if (found != elements->quantities.end() && found->second.first.size() == 2) {
+      const auto columns = static_cast<std::size_t>(found->second.first[1]);
+      const std::vector<double>& values = found->second.second;
+      const std::size_t row = columns * static_cast<std::size_t>(found->second.first[0]);
+      for (std::size_t k = values.size() - std::min(row, values.size()); k < values.size(); k += columns) {
+        if (values[k] > size) size = values[k];
+      }
+    }
   }
-  std::vector<io::Frame> left;
-  std::size_t place = 0;
-  for (std::size_t k = 0; k < frames.frames.size(); ++k) {
-    if (!is_finite(frames.frames[k])) continue;
-    if (k <= shown || left.empty()) place = left.size(), number = k;
-    left.push_back(std::move(frames.frames[k]));
-  }
-  frames.frames = std::move(left);
-  return place;
+  return readable_length(frames.shared.length_unit, size);
 }
 
 /// Of the frames, or of the monitors where there are none.
 std::string time_unit_of(const PlotSource& source, const io::FileInfo& about) {
-  if (!source.frames.time_unit.empty()) return source.frames.time_unit;
+  if (!source.frames.shared.time_unit.empty()) return source.frames.shared.time_unit;
   for (const io::MonitorSeries& monitor : source.monitors) {
     const auto found = monitor.units.find("time");
     if (found != monitor.units.end()) return found->second;
@@ -81,28 +117,27 @@ std::string time_unit_of(const PlotSource& source, const io::FileInfo& about) {
 /// What frames would have told of elements: the unit of the first of them.
 void add_units_of_monitors(PlotSource& source) {
   const io::MonitorSeries* elements = find_monitor(source.monitors, "elements");
-  if (!source.frames.length_unit.empty() || elements == nullptr || !elements->units.contains("value")) return;
+  if (!source.frames.shared.length_unit.empty() || elements == nullptr || !elements->units.contains("value")) return;
   const std::string& units = elements->units.at("value");
-  source.frames.length_unit = units.substr(0, units.find(','));
+  source.frames.shared.length_unit = units.substr(0, units.find(','));
 }
 
-PlotSource read_source(const std::filesystem::path& file, const PlotOptions& options, std::size_t& number) {
+PlotSource read_source(const std::filesystem::path& file, const PlotOptions& options) {
   const io::FileInfo about = io::info(file);
   if (about.kind != "trajectory") {
     throw Error(fmt::format("{} is a {}, which contains one moment only; plot the run.h5 beside it", file.string(),
                             about.kind));
   }
+  FramesInFile found = open_frames(file);
+  const std::size_t shown = shown_frame(found, options.frame, file.string());
   PlotSource source{.file = file,
                     .scene = scene_in_file(about.scene_toml, file),
-                    .frames = io::read_frames(file),
-                    .monitors = io::read_monitors(file),
-                    .time = {}};
-  number = shown_frame(source.frames, options.frame, file.string());
-  source.shown = take_out_failed(source.frames, number, options.frame.has_value());
-
+                    .frames = std::move(found.frames),
+                    .monitors = drawn_monitors(file),
+                    .time = {},
+                    .shown = shown};
   const auto [begin, end] = span_of(source.frames, source.monitors);
-  std::vector<double> times;
-  for (const io::Frame& frame : source.frames.frames) times.push_back(frame.time);
+  std::vector<double> times = source.frames.times;
   if (times.size() < 3) {
     for (const io::MonitorSeries& monitor : source.monitors) {
       if (monitor.time.size() > times.size()) times = monitor.time;
@@ -114,25 +149,29 @@ PlotSource read_source(const std::filesystem::path& file, const PlotOptions& opt
 
   const bool attract = has_gravity(source.scene);
   if (const double G = constant_of_gravity(source.scene, NAN); attract && !std::isnan(G)) source.G = G;
-  const std::string system = source.frames.units.empty() ? about.units : source.frames.units;
-  if (!source.frames.frames.empty() || !system.empty()) {
+  if (!attract || source.frames.periodic) source.frames.primary = {};
+  const std::string system = source.frames.shared.units.empty() ? about.units : source.frames.shared.units;
+  if (!source.frames.empty() || !system.empty()) {
     const UnitSystem& units = io::known_units(system, file);
+    source.links = links_in(file, source, units);
     if (attract && !source.G) source.G = units.G;
     source.k_B = units.k_B;
     source.temperature_unit = std::string(units.temperature);
   }
   const io::MonitorSeries* pressure = find_monitor(source.monitors, "pressure");
+  source.length = length_of(source);
   if (pressure != nullptr && pressure->units.contains("value")) source.pressure_unit = pressure->units.at("value");
   return source;
 }
 
 /// "frame 3, t = 10 ps, box 6.1 x 6.1 x 6.1 nm".
-std::string box_title(const PlotSource& source, std::size_t number) {
-  const io::Frame& frame = source.frames.frames[source.shown];
+std::string box_title(const PlotSource& source) {
+  const io::Frame frame = source.frames.frame(source.shown);
   const std::string time = source.time.unit.empty() ? "" : " " + source.time.unit;
-  std::string title = fmt::format("Frame {}, t = {:.4g}{}", number, frame.time / source.time.length, time);
+  std::string title =
+      fmt::format("Frame {}, t = {:.4g}{}", source.frames.numbers[source.shown], frame.time / source.time.length, time);
   if (frame.edges.size() == 3) {
-    const std::string& unit = source.frames.length_unit;
+    const std::string& unit = source.frames.shared.length_unit;
     title += fmt::format(", box {:.4g} x {:.4g} x {:.4g}{}", frame.edges[0], frame.edges[1], frame.edges[2],
                          unit == "1" || unit.empty() ? "" : " " + unit);
   }
@@ -140,10 +179,12 @@ std::string box_title(const PlotSource& source, std::size_t number) {
 }
 
 /// Orbits, variables, or particles in their box.
-void add_positions(PlotData& data, const PlotSource& source, const PlotOptions& options, std::size_t number) {
-  const io::Frames& frames = source.frames;
-  if (frames.frames.empty()) return;
-  if (!frames.variable_names.empty()) {
+void add_positions(PlotData& data, const PlotSource& source, const PlotOptions& options) {
+  const PlotFrames& frames = source.frames;
+  if (frames.empty()) {
+    data.orbits = plot_orbits_of_elements(source);
+    if (!data.orbits.empty()) data.legend = body_legend(frames);
+  } else if (!frames.shared.variable_names.empty()) {
     for (PlotPanel& panel : plot_variables(frames, source.time)) {
       if (data.legend.empty()) {
         for (const PlotCurve& curve : panel.curves) data.legend.push_back({curve.name, curve.color});
@@ -152,16 +193,18 @@ void add_positions(PlotData& data, const PlotSource& source, const PlotOptions& 
       data.panels.push_back(std::move(panel));
     }
   } else if (is_crowd(frames) && options.projection.empty()) {
-    const auto shown = io::read_frame_particles(source.file, {.frame = static_cast<std::int64_t>(number)});
-    const UnitSystem& units = io::known_units(frames.units, source.file);
+    const auto number = static_cast<std::int64_t>(frames.numbers[source.shown]);
+    frames.close_file();
+    const auto shown = io::read_frame_particles(source.file, {.frame = number});
+    const UnitSystem& units = io::known_units(frames.shared.units, source.file);
     data.boxes.push_back(plot_box(shown.particles, std::string(units.mass), data.legend));
-    data.boxes.back().title = box_title(source, number);
+    data.boxes.back().title = box_title(source);
   } else {
     auto line = options.projection.empty() ? plot_line_positions(frames, source.time) : std::nullopt;
     if (line) {
       data.panels.push_back(std::move(*line));
     } else {
-      data.orbits = plot_orbits(frames, source.shown, source.G, options.projection);
+      data.orbits = plot_orbits(frames, source.shown, source.G, options.projection, source.links, source.length);
     }
     data.legend = body_legend(frames);
   }
@@ -230,9 +273,8 @@ const std::vector<std::string>& plot_subjects() {
 
 PlotData read_plot_data(const std::filesystem::path& file, const Parts& parts, const PlotOptions& options) {
   check(options);
-  std::size_t number = 0;
-  const PlotSource source = read_source(file, options, number);
-  const bool periodic = !source.frames.frames.empty() && !source.frames.frames.front().edges.empty();
+  const PlotSource source = read_source(file, options);
+  const bool periodic = source.frames.periodic;
   PlotData data;
   const RunCaption caption = caption_of(source.scene, file, source.time.unit, 0, parts);
   data.title = caption.title;
@@ -240,15 +282,16 @@ PlotData read_plot_data(const std::filesystem::path& file, const Parts& parts, c
 
   Page page(data, source, options);
   if (page.wants("positions", true)) {
-    add_positions(data, source, options, number);
-    if (!options.what.empty() && source.frames.frames.empty()) page.refuse("positions", "frames (a trajectory writer)");
+    add_positions(data, source, options);
+    if (!options.what.empty() && source.frames.empty() && data.orbits.empty())
+      page.refuse("positions", "frames (a trajectory writer)");
   }
   if (page.wants("errors", true)) {
     page.add("errors", plot_errors(source.monitors, source.time, caption.energy_changes),
              "a monitor of energy, momenta or constraints");
   }
   const bool orbits = find_monitor(source.monitors, "elements") != nullptr ||
-                      (source.G && has_primary(source.frames) && !periodic && !is_crowd(source.frames));
+                      (source.G && source.frames.primary && !is_crowd(source.frames));
   if (page.wants("elements", orbits)) {
     page.add("elements", plot_elements(source), "the monitor elements, or frames about a body with most of the mass");
     if (data.legend.empty() && data.boxes.empty()) data.legend = body_legend(source.frames);

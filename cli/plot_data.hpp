@@ -45,11 +45,19 @@ struct PlotView {
   PlotPoint low = {-1, -1}, high = {1, 1};  ///< corners of the picture
 };
 
+/// Lines between bodies that are held together, at one moment.
+struct PlotLinks {
+  std::vector<std::pair<PlotPlace, PlotPlace>> lines;
+  double age = 0;  ///< 0 at the frame that is shown, 1 long before
+};
+
 /// Paths that share one scale, seen from one to three sides: the first view is the large one.
 struct PlotOrbits {
   std::string title;
   std::vector<PlotOrbit> orbits;
-  std::vector<PlotView> views;
+  std::vector<PlotLinks> links = {};  ///< the oldest first
+  std::vector<PlotView> views = {};
+  double size_of_bodies = 1;  ///< beside that of few
 };
 
 /// A particle as it is seen: farther ones come first.

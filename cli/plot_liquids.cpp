@@ -9,6 +9,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
 
 namespace noether {
 
@@ -28,7 +29,7 @@ struct ByType {
   std::vector<std::size_t> of, counts;
 };
 
-ByType by_type(const io::Frames& frames) {
+ByType by_type(const io::Frames& frames) {  // what they share is enough
   const std::size_t n = frames.masses.size();
   ByType types{.names = {}, .of = std::vector<std::size_t>(n, 0), .counts = {n}};
   if (frames.types.size() != n) return types;
@@ -49,31 +50,50 @@ struct PairCounts {
   std::vector<double> expected;  ///< pairs in a volume 1 of an ideal gas, by types
 };
 
-void count_pairs(PairCounts& all, const io::Frame& frame, const ByType& types) {
+/// The molecule of each particle, and how many particles of each type it has.
+struct Molecules {
+  std::vector<std::size_t> of;
+  std::vector<std::size_t> counts;  ///< by molecule and type
+};
+
+/// @param molecules  by particle; empty: each particle is one
+Molecules counted_molecules(const ByType& types, const std::vector<std::size_t>& molecules) {
+  Molecules result{.of = molecules, .counts = {}};
+  if (molecules.empty()) {
+    result.of.resize(types.of.size());
+    std::iota(result.of.begin(), result.of.end(), std::size_t{0});
+  }
+  const std::size_t kinds = types.counts.size();
+  for (std::size_t i = 0; i < types.of.size(); ++i) {
+    const std::size_t at = result.of[i] * kinds;
+    if (result.counts.size() < at + kinds) result.counts.resize(at + kinds, 0);
+    ++result.counts[at + types.of[i]];
+  }
+  return result;
+}
+
+void count_pairs(PairCounts& all, const io::Frame& frame, const ByType& types, const Molecules& molecules) {
   const std::size_t n = types.of.size();
   const double distances = static_cast<double>(n) * static_cast<double>(n);
   const auto stride = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(distances / most_distances)));
   const Box box = Box::periodic({frame.edges[0], frame.edges[1], frame.edges[2]});
   const std::vector<double>& x = frame.positions;
-  std::vector<double> centers(all.types, 0);
   std::vector<std::size_t> seen(all.types, 0);
   for (std::size_t i = 0; i < n; ++i) {
     // Every type has its own stride: types that follow each other in a cycle would be missed by one over all.
     if (seen[types.of[i]]++ % stride != 0) continue;
-    ++centers[types.of[i]];
+    const std::size_t a = types.of[i], own = molecules.of[i];
+    for (std::size_t b = 0; b < all.types; ++b) {
+      const std::size_t others = types.counts[b] - molecules.counts[own * all.types + b];
+      all.expected[a * all.types + b] += static_cast<double>(others) / box.volume();
+    }
     for (std::size_t j = 0; j < n; ++j) {
-      if (j == i) continue;
+      if (molecules.of[j] == own) continue;
       const double r =
           box.minimum_image(Vec3<double>(x[3 * i] - x[3 * j], x[3 * i + 1] - x[3 * j + 1], x[3 * i + 2] - x[3 * j + 2]))
               .norm();
       const auto bin = static_cast<std::size_t>(r / all.reach * static_cast<double>(all.bins));
-      if (r < all.reach && bin < all.bins) ++all.counts[(types.of[i] * all.types + types.of[j]) * all.bins + bin];
-    }
-  }
-  for (std::size_t a = 0; a < all.types; ++a) {
-    for (std::size_t b = 0; b < all.types; ++b) {
-      const double others = static_cast<double>(types.counts[b]) - (a == b ? 1 : 0);
-      all.expected[a * all.types + b] += centers[a] * others / box.volume();
+      if (r < all.reach && bin < all.bins) ++all.counts[(a * all.types + types.of[j]) * all.bins + bin];
     }
   }
 }
@@ -90,20 +110,34 @@ std::vector<std::size_t> frames_of_second_half(std::size_t frames) {
   return chosen;
 }
 
-/// Positions of a frame as if never wrapped, about the center of mass, shape (n, 3).
-std::vector<double> unwrapped(const io::Frames& all, const io::Frame& frame) {
+/// Particles whose displacements are looked at: all of `n`, or about `most` of them, a thousand at least. Their numbers
+/// follow the golden ratio: types that follow each other in a cycle are all among them.
+std::vector<std::size_t> looked_at(std::size_t n, std::size_t most) {
+  static constexpr std::size_t least = 1000;
+  const double part = static_cast<double>(std::max(most, least)) / static_cast<double>(n);
+  std::vector<std::size_t> particles;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double turn = static_cast<double>(i) * std::numbers::phi;
+    if (part >= 1 || turn - std::floor(turn) < part) particles.push_back(i);
+  }
+  return particles;
+}
+
+/// Positions of particles in a frame as if never wrapped, about the center of mass of all, shape (particles, 3).
+std::vector<double> unwrapped(const io::Frames& all, const io::Frame& frame,
+                              const std::vector<std::size_t>& particles) {
   std::vector<double> x = frame.positions;
   for (std::size_t k = 0; k < x.size() && !frame.images.empty(); ++k) x[k] += frame.images[k] * frame.edges[k % 3];
   const auto n = static_cast<Index>(all.masses.size());
   const auto mass = [&](Index i) { return all.masses[static_cast<std::size_t>(i)]; };
   const double total = sum_over<double>(n, mass);
-  if (!(total > 0)) return x;
+  std::vector<double> seen(3 * particles.size());
   for (std::size_t k = 0; k < 3; ++k) {
-    const double middle =
-        sum_over<double>(n, [&](Index i) { return mass(i) * x[3 * static_cast<std::size_t>(i) + k]; }) / total;
-    for (std::size_t i = k; i < x.size(); i += 3) x[i] -= middle;
+    const auto moment = [&](Index i) { return mass(i) * x[3 * static_cast<std::size_t>(i) + k]; };
+    const double middle = total > 0 ? sum_over<double>(n, moment) / total : 0;
+    for (std::size_t j = 0; j < particles.size(); ++j) seen[3 * j + k] = x[3 * particles[j] + k] - middle;
   }
-  return x;
+  return seen;
 }
 
 double mean_square(const std::vector<double>& a, const std::vector<double>& b) {
@@ -116,10 +150,10 @@ double mean_square(const std::vector<double>& a, const std::vector<double>& b) {
   return sum / static_cast<double>(n);
 }
 
-bool at_equal_distances(const std::vector<io::Frame>& frames) {
-  const double first = frames[1].time - frames[0].time;
-  for (std::size_t k = 2; k < frames.size(); ++k) {
-    if (std::abs(frames[k].time - frames[k - 1].time - first) > 1e-6 * std::abs(first)) return false;
+bool at_equal_distances(const std::vector<double>& times) {
+  const double first = times[1] - times[0];
+  for (std::size_t k = 2; k < times.size(); ++k) {
+    if (std::abs(times[k] - times[k - 1] - first) > 1e-6 * std::abs(first)) return false;
   }
   return true;
 }
@@ -161,6 +195,21 @@ std::vector<PlotPoint> displacement_of_monitor(const io::MonitorSeries& monitor)
   return points;
 }
 
+/// Numbers of molecules whose pairs tell nothing of a liquid; nothing where no particles are linked, or where more than
+/// half of them hang together, as in a network or a crystal.
+std::vector<std::size_t> separate_molecules(std::size_t n, const ParticleLinks& links) {
+  if (links.pairs.empty()) return {};
+  std::vector<std::size_t> molecules = molecules_of(n, links), sizes(n, 0);
+  for (const std::size_t molecule : molecules) ++sizes[molecule];
+  if (2 * *std::max_element(sizes.begin(), sizes.end()) > n) return {};
+  return molecules;
+}
+
+std::string told_distribution(bool bonded, bool between_molecules, const std::string& mean) {
+  const std::string pairs = between_molecules ? " between molecules" : bonded ? ", bonded pairs too" : "";
+  return fmt::format("{}{}, {}", bonded ? "g(r)" : "Radial distribution function", pairs, mean);
+}
+
 std::vector<PlotCurve> distribution_of_monitor(const io::MonitorSeries& monitor) {
   const auto at = monitor.quantities.find("distance"), values = monitor.quantities.find("value");
   if (at == monitor.quantities.end() || values == monitor.quantities.end() || at->second.first.size() != 1) return {};
@@ -176,21 +225,23 @@ std::vector<PlotCurve> distribution_of_monitor(const io::MonitorSeries& monitor)
 
 }  // namespace
 
-std::vector<PlotCurve> radial_distributions(const io::Frames& frames, const std::vector<std::size_t>& chosen) {
-  const ByType types = by_type(frames);
+std::vector<PlotCurve> radial_distributions(const PlotFrames& frames, const std::vector<std::size_t>& chosen,
+                                            const std::vector<std::size_t>& molecules) {
+  const ByType types = by_type(frames.shared);
+  const Molecules whole = counted_molecules(types, molecules);
   PairCounts all;
   all.types = types.counts.size();
   all.reach = INFINITY;
   for (const std::size_t k : chosen) {
-    const std::vector<double>& edges = frames.frames[k].edges;
+    const std::vector<double> edges = frames.frame(k).edges;
     if (edges.size() != 3) return {};
     all.reach = std::min(all.reach, 0.5 * *std::min_element(edges.begin(), edges.end()));
   }
-  const double distances = static_cast<double>(frames.masses.size() * frames.masses.size() * chosen.size());
+  const double distances = static_cast<double>(frames.bodies() * frames.bodies() * chosen.size());
   all.bins = static_cast<std::size_t>(std::clamp(std::sqrt(distances) / 10, 40.0, 150.0));
   all.counts.assign(all.types * all.types * all.bins, 0);
   all.expected.assign(all.types * all.types, 0);
-  for (const std::size_t k : chosen) count_pairs(all, frames.frames[k], types);
+  for (const std::size_t k : chosen) count_pairs(all, frames.frame(k), types, whole);
   std::vector<PlotCurve> curves;
   const double width = all.reach / static_cast<double>(all.bins);
   for (std::size_t a = 0; a < all.types; ++a) {
@@ -211,25 +262,25 @@ std::vector<PlotCurve> radial_distributions(const io::Frames& frames, const std:
 }
 
 std::optional<PlotPanel> plot_radial_distribution(const PlotSource& source, bool one_frame) {
-  const io::Frames& frames = source.frames;
+  const PlotFrames& frames = source.frames;
+  const bool bonded = !source.links.pairs.empty();
   PlotPanel panel;
-  panel.title = "Radial distribution function";
   const io::MonitorSeries* monitor = find_monitor(source.monitors, "radial_distribution");
   if (monitor != nullptr && !one_frame) {
     panel.curves = distribution_of_monitor(*monitor);
-    panel.title += ", mean of the run";
+    panel.title = told_distribution(bonded, false, "mean of the run");
   }
   if (panel.curves.empty()) {
-    if (frames.frames.empty() || frames.masses.size() < 2) return {};
-    const auto chosen =
-        one_frame ? std::vector<std::size_t>{source.shown} : frames_of_second_half(frames.frames.size());
-    panel.curves = radial_distributions(frames, chosen);
-    panel.title = chosen.size() > 1 ? fmt::format("Radial distribution function, mean of {} frames", chosen.size())
-                                    : "Radial distribution function, one frame";
+    if (frames.empty() || frames.bodies() < 2) return {};
+    const auto chosen = one_frame ? std::vector<std::size_t>{source.shown} : frames_of_second_half(frames.size());
+    const std::vector<std::size_t> molecules = separate_molecules(frames.bodies(), source.links);
+    panel.curves = radial_distributions(frames, chosen, molecules);
+    panel.title = told_distribution(bonded, !molecules.empty(),
+                                    chosen.size() > 1 ? fmt::format("mean of {} frames", chosen.size()) : "one frame");
   }
   if (panel.curves.empty() || panel.curves[0].points.empty()) return {};
   const std::vector<PlotPoint>& first = panel.curves[0].points;
-  panel.x = {.label = with_unit("r", frames.length_unit), .low = 0, .high = first.back().x + first.front().x};
+  panel.x = {.label = with_unit("r", frames.shared.length_unit), .low = 0, .high = first.back().x + first.front().x};
   panel.y.label = "g(r)";
   fit_values(panel);
   panel.y.low = 0;
@@ -237,16 +288,25 @@ std::optional<PlotPanel> plot_radial_distribution(const PlotSource& source, bool
   return panel;
 }
 
-std::vector<PlotPoint> mean_square_displacement(const io::Frames& frames) {
-  const std::size_t count = frames.frames.size(), n = frames.masses.size();
-  if (count < 2 || n == 0) return {};
+std::vector<PlotPoint> mean_square_displacement(const PlotFrames& frames, std::size_t most_numbers) {
+  const std::size_t n = frames.bodies();
+  if (frames.size() < 2 || n == 0) return {};
+  const std::vector<std::size_t> particles = looked_at(n, most_numbers / 3 / frames.size());
+  const std::size_t held = std::max<std::size_t>(most_numbers / 3 / particles.size() + 1, 3);
+  const std::size_t apart = (frames.size() + held - 1) / held;
   std::vector<std::vector<double>> x;
-  for (const io::Frame& frame : frames.frames) x.push_back(unwrapped(frames, frame));
+  std::vector<double> times;
+  for (std::size_t k = 0; k < frames.size(); k += apart) {
+    x.push_back(unwrapped(frames.shared, frames.frame(k), particles));
+    times.push_back(frames.times[k]);
+  }
+  const std::size_t count = x.size();
+  if (count < 2) return {};
   std::vector<PlotPoint> points;
-  const bool all_origins = at_equal_distances(frames.frames);
+  const bool all_origins = at_equal_distances(times);
   // The longest lags have few origins: of many frames the second half of the lags is left out.
   const std::size_t longest = all_origins && count > 12 ? (count - 1) / 2 : count - 1;
-  const double per_lag = most_displacements / static_cast<double>(n) / static_cast<double>(longest);
+  const double per_lag = most_displacements / static_cast<double>(particles.size()) / static_cast<double>(longest);
   for (std::size_t lag = 1; lag <= longest; ++lag) {
     const std::size_t origins = all_origins ? count - lag : 1;
     const auto stride = static_cast<std::size_t>(std::max(1.0, std::ceil(static_cast<double>(origins) / per_lag)));
@@ -254,8 +314,7 @@ std::vector<PlotPoint> mean_square_displacement(const io::Frames& frames) {
     for (std::size_t from = 0; from < origins; from += stride) means.push_back(mean_square(x[from + lag], x[from]));
     const auto looks = static_cast<Index>(means.size());
     const double mean = sum_over<double>(looks, [&](Index k) { return means[static_cast<std::size_t>(k)]; });
-    const double time = std::abs(frames.frames[lag].time - frames.frames[0].time);
-    points.push_back({time, mean / static_cast<double>(looks)});
+    points.push_back({std::abs(times[lag] - times[0]), mean / static_cast<double>(looks)});
   }
   return points;
 }
@@ -268,10 +327,10 @@ std::optional<PlotPanel> plot_mean_square_displacement(const PlotSource& source)
   std::erase_if(points, [](const PlotPoint& p) { return !(p.x > 0) || !(p.y > 0); });
   if (points.size() < 2) return {};
   PlotPanel panel;
-  panel.title = "Mean square displacement" + diffusion(points, source.frames);
-  panel.y.label = with_unit("msd", source.frames.length_unit == "1" || source.frames.length_unit.empty()
+  panel.title = "Mean square displacement" + diffusion(points, source.frames.shared);
+  panel.y.label = with_unit("msd", source.frames.shared.length_unit == "1" || source.frames.shared.length_unit.empty()
                                        ? ""
-                                       : source.frames.length_unit + "^2");
+                                       : source.frames.shared.length_unit + "^2");
   for (PlotPoint& p : points) p.x /= source.time.length;
   const bool decades = points.back().x > 30 * points.front().x;
   panel.x = {.label = with_unit("lag", source.time.unit),

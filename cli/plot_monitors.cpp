@@ -180,17 +180,19 @@ ElementSeries elements_of_monitor(const io::MonitorSeries& monitor) {
   return series;
 }
 
-ElementSeries elements_of_frames(const io::Frames& frames, double G) {
+ElementSeries elements_of_frames(const PlotFrames& all, std::size_t primary, double G) {
   ElementSeries series;
+  const io::Frames frames = kept_frames(all, most_panel_samples, all.size() - 1).frames;
   for (const io::Frame& frame : frames.frames) {
     ElementRows rows(frames.masses.size(), {NAN, NAN, NAN});
-    for (std::size_t i = 1; i < rows.size(); ++i) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
       const auto relative = [&](const std::vector<double>& x) {
-        return Vec3<double>(x[3 * i] - x[0], x[3 * i + 1] - x[1], x[3 * i + 2] - x[2]);
+        return Vec3<double>(x[3 * i] - x[3 * primary], x[3 * i + 1] - x[3 * primary + 1],
+                            x[3 * i + 2] - x[3 * primary + 2]);
       };
-      const double mu = G * (frames.masses[0] + frames.masses[i]);
+      const double mu = G * (frames.masses[primary] + frames.masses[i]);
       const Vec3<double> x = relative(frame.positions);
-      if (!(x.norm() > 0)) continue;
+      if (!(x.norm() > 0)) continue;  // the primary too
       const auto o = elements_from_state<double>(x, relative(frame.velocities), mu);
       rows[i] = {o.a, o.e, o.inc};
     }
@@ -216,14 +218,13 @@ PlotPanel element_panel(const PlotSource& source, const ElementSeries& series, s
   PlotPanel panel;
   panel.title = titles[column];
   panel.x = source.time.axis;
-  panel.y.label = column == 0   ? with_unit("a", source.frames.length_unit)
-                  : column == 1 ? std::string("e")
-                                : std::string("inc (deg)");
+  const PlotLength length = source.length.value_or(PlotLength{source.frames.shared.length_unit, 1});
+  panel.y.label = column == 0 ? with_unit("a", length.unit) : column == 1 ? std::string("e") : std::string("inc (deg)");
   double low = INFINITY, high = 0;
-  for (const std::size_t i : drawn_bodies(source.frames, series.rows.front().size())) {
+  for (const std::size_t i : drawn_bodies(source.frames.shared, series.rows.front().size())) {
     PlotCurve curve{.name = "", .points = {}, .color = body_color(source.frames, i)};
     for (std::size_t k = 0; k < series.time.size(); ++k) {
-      const double value = series.rows[k][i][column] / (column == 2 ? one_degree : 1);
+      const double value = series.rows[k][i][column] / (column == 0 ? length.length : column == 2 ? one_degree : 1);
       if (!std::isfinite(value)) continue;
       curve.points.push_back({series.time[k] / source.time.length, value});
       low = std::min(low, value), high = std::max(high, value);
@@ -258,8 +259,8 @@ std::vector<PlotPanel> plot_elements(const PlotSource& source) {
   const io::MonitorSeries* monitor = find_monitor(source.monitors, "elements");
   ElementSeries series;
   if (monitor != nullptr) series = elements_of_monitor(*monitor);
-  if (series.time.size() < 2 && source.G && has_primary(source.frames)) {
-    series = elements_of_frames(source.frames, *source.G);
+  if (series.time.size() < 2 && source.G && source.frames.primary && !source.frames.empty()) {
+    series = elements_of_frames(source.frames, *source.frames.primary, *source.G);
   }
   if (series.time.size() < 2) return {};
   std::vector<PlotPanel> panels;
@@ -276,20 +277,21 @@ std::vector<PlotPanel> plot_elements(const PlotSource& source) {
 
 std::optional<PlotPanel> plot_temperature(const PlotSource& source) {
   auto panel = value_panel(source, "temperature", "Temperature", source.temperature_unit, 1);
-  if (panel || !source.k_B || source.frames.frames.size() < 2) return panel;
+  if (panel || !source.k_B || source.frames.size() < 2) return panel;
   // Constraints take away degrees of freedom, and the frames do not tell how many.
   if (value_at(source.scene, {"hamiltonian", "constraint"}) != nullptr) return {};
-  const io::Frames& frames = source.frames;
+  const PlotFrames& frames = source.frames;
   Index massive = 0;
-  for (const double m : frames.masses) massive += m > 0 ? 1 : 0;
+  for (const double m : frames.shared.masses) massive += m > 0 ? 1 : 0;
   if (massive < 2) return {};
-  const auto n = static_cast<Index>(frames.masses.size());
-  const auto mass = [&](Index i) { return frames.masses[static_cast<std::size_t>(i)]; };
+  const auto n = static_cast<Index>(frames.bodies());
+  const auto mass = [&](Index i) { return frames.shared.masses[static_cast<std::size_t>(i)]; };
   const double total = sum_over<double>(n, mass);
   io::MonitorSeries made{
       .name = "temperature", .step = {}, .time = {}, .quantities = {}, .units = {}, .scale = {}, .orders = {}};
   std::vector<double>& values = made.quantities["value"].second;
-  for (const io::Frame& frame : frames.frames) {
+  for (std::size_t at = 0; at < frames.size(); ++at) {
+    const io::Frame frame = frames.frame(at);
     std::array<double, 3> squares{};  // twice the kinetic energy along each axis
     for (std::size_t k = 0; k < 3; ++k) {
       const auto v = [&](Index i) { return frame.velocities[3 * static_cast<std::size_t>(i) + k]; };

@@ -4,17 +4,22 @@
 #include "engine/orbital_elements.hpp"
 #include "engine/sums.hpp"
 
+#include <fmt/format.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 namespace noether {
 
 namespace {
 
-constexpr std::size_t most_path_points = 20'000, most_orbit_samples = 2'000;
+constexpr std::size_t most_path_points = 20'000, least_path_points = 2, most_orbit_samples = 2'000;
+/// Bodies that a legend tells apart, beside a primary: so many as there are colors.
+constexpr std::size_t most_named = 12;
 /// Points of all paths together: more bodies have coarser ones.
 constexpr std::size_t most_orbit_points = 120'000;
 /// Frames are joined where the path turns by less than this between two of them [rad].
@@ -30,21 +35,31 @@ struct Track {
   std::vector<double> time;
 };
 
-Track track_of(const io::Frames& all, std::size_t body, bool relative) {
+/// The body that places are relative to; nothing: they are those of the file.
+using Center = std::optional<std::size_t>;
+
+template <class Number> PlotPlace relative_row(const std::vector<Number>& rows, std::size_t body, Center center) {
+  PlotPlace result;
+  for (std::size_t k = 0; k < 3; ++k) {
+    result[k] = static_cast<double>(rows[3 * body + k]) - (center ? static_cast<double>(rows[3 * *center + k]) : 0);
+  }
+  return result;
+}
+
+PlotPlace place_of(const io::Frame& frame, std::size_t body, Center center) {
+  PlotPlace x = relative_row(frame.positions, body, center);
+  if (frame.edges.size() == 3 && !frame.images.empty()) {
+    const PlotPlace crossings = relative_row(frame.images, body, center);
+    for (std::size_t k = 0; k < 3; ++k) x[k] += crossings[k] * frame.edges[k];
+  }
+  return x;
+}
+
+Track track_of(const io::Frames& all, std::size_t body, Center center) {
   Track track;
-  const auto place = [&](const auto& rows) {
-    PlotPlace result;
-    for (std::size_t k = 0; k < 3; ++k) result[k] = rows[3 * body + k] - (relative ? rows[k] : 0);
-    return result;
-  };
   for (const io::Frame& frame : all.frames) {
-    PlotPlace x = place(frame.positions);
-    if (frame.edges.size() == 3 && !frame.images.empty()) {
-      const PlotPlace crossings = place(frame.images);
-      for (std::size_t k = 0; k < 3; ++k) x[k] += crossings[k] * frame.edges[k];
-    }
-    track.x.push_back(x);
-    track.v.push_back(place(frame.velocities));
+    track.x.push_back(place_of(frame, body, center));
+    track.v.push_back(relative_row(frame.velocities, body, center));
     track.time.push_back(frame.time);
   }
   return track;
@@ -84,13 +99,8 @@ std::vector<PlotPlace> path_through(const Track& track) {
   return points;
 }
 
-/// The Kepler ellipse a body follows about particle 0 at one frame; empty if it is not bound.
-std::vector<PlotPlace> ellipse(const io::Frames& all, const io::Frame& frame, std::size_t body, double G) {
-  const auto relative = [&](const std::vector<double>& rows) {
-    return Vec3<double>(rows[3 * body] - rows[0], rows[3 * body + 1] - rows[1], rows[3 * body + 2] - rows[2]);
-  };
-  const double mu = G * (all.masses[0] + all.masses[body]);
-  OrbitalElements<double> o = elements_from_state<double>(relative(frame.positions), relative(frame.velocities), mu);
+/// An ellipse about the center; empty for a body that is not bound.
+std::vector<PlotPlace> ellipse_of(OrbitalElements<double> o) {
   if (!(o.a > 0) || !(o.e < 1) || !std::isfinite(o.inc)) return {};
   std::vector<PlotPlace> points;
   constexpr int pieces = 360;
@@ -98,21 +108,35 @@ std::vector<PlotPlace> ellipse(const io::Frames& all, const io::Frame& frame, st
     // Equal steps of the eccentric anomaly: round where the orbit is.
     const double E = 2 * std::numbers::pi * k / pieces;
     o.M = E - o.e * std::sin(E);
-    const Vec3<double> x = state_from_elements<double>(o, mu).first;
+    const Vec3<double> x = state_from_elements<double>(o, 1.0).first;
     points.push_back({x[0], x[1], x[2]});
   }
   return points;
 }
 
+/// The Kepler ellipse a body follows about the primary at one frame; empty if it is not bound.
+std::vector<PlotPlace> ellipse(const io::Frames& all, const io::Frame& frame, std::size_t body, std::size_t primary,
+                               double G) {
+  const auto relative = [&](const std::vector<double>& rows) {
+    return Vec3<double>(rows[3 * body] - rows[3 * primary], rows[3 * body + 1] - rows[3 * primary + 1],
+                        rows[3 * body + 2] - rows[3 * primary + 2]);
+  };
+  const double mu = G * (all.masses[primary] + all.masses[body]);
+  return ellipse_of(elements_from_state<double>(relative(frame.positions), relative(frame.velocities), mu));
+}
+
 /// The corners of the smallest cuboid that holds every path.
-std::pair<PlotPlace, PlotPlace> corners_of(const std::vector<PlotOrbit>& orbits) {
+std::pair<PlotPlace, PlotPlace> corners_of(const PlotOrbits& picture) {
   PlotPlace low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
   const auto take = [&](const PlotPlace& p) {
     for (std::size_t k = 0; k < 3; ++k) low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
   };
-  for (const PlotOrbit& orbit : orbits) {
+  for (const PlotOrbit& orbit : picture.orbits) {
     for (const auto* points : {&orbit.path, &orbit.samples}) std::for_each(points->begin(), points->end(), take);
     take(orbit.end);
+  }
+  for (const PlotLinks& links : picture.links) {
+    for (const auto& [a, b] : links.lines) take(a), take(b);
   }
   return {low, high};
 }
@@ -121,7 +145,7 @@ std::pair<PlotPlace, PlotPlace> corners_of(const std::vector<PlotOrbit>& orbits)
 /// is flat is left out.
 void choose_views(PlotOrbits& picture, bool centered, const std::string& projection, const std::string& about,
                   const std::string& unit) {
-  auto [low, high] = corners_of(picture.orbits);
+  auto [low, high] = corners_of(picture);
   PlotPlace middle{}, half{};
   for (std::size_t k = 0; k < 3; ++k) {
     middle[k] = centered ? 0 : (low[k] + high[k]) / 2;
@@ -185,28 +209,118 @@ std::optional<PlotOrbits> inner_part(const PlotOrbits& all) {
   for (std::size_t k = 2; k < sizes.size(); ++k) {
     if (sizes[k] / sizes[k - 1] > sizes[first_outer] / sizes[first_outer - 1]) first_outer = k;
   }
-  PlotOrbits inner{.title = "Inner orbits", .orbits = all.orbits, .views = {}};
+  PlotOrbits inner{.title = "Inner orbits", .orbits = all.orbits};
   std::erase_if(inner.orbits, [&](const PlotOrbit& o) { return !o.primary && o.extent >= sizes[first_outer]; });
   if (inner.orbits.size() < 3) return {};
   return inner;
 }
 
-PlotOrbit orbit_of(const io::Frames& all, std::size_t body, std::size_t shown, std::optional<double> G) {
-  const bool relative = has_primary(all);
-  PlotOrbit orbit{.name = all.names[body], .color = body_color(all, body)};
-  const Track track = track_of(all, body, relative);
-  orbit.primary = relative && body == 0;
-  orbit.end = track.x[shown];
+/// Whether links say more than paths: there are many bodies, and most are linked.
+bool shows_links_alone(std::size_t bodies, const ParticleLinks& links) {
+  return bodies > most_named && 2 * links.pairs.size() >= bodies;
+}
+
+PlotOrbit orbit_of(const KeptFrames& kept, const PlotFrames& frames, std::size_t body, Center center,
+                   std::optional<double> G) {
+  const io::Frames& all = kept.frames;
+  PlotOrbit orbit{.name = all.names[body], .color = body_color(frames, body)};
+  const Track track = track_of(all, body, center);
+  orbit.primary = center == body;
+  orbit.end = track.x[kept.shown];
   for (const PlotPlace& p : track.x) orbit.extent = std::max(orbit.extent, std::hypot(p[0], p[1], p[2]));
   if (orbit.primary) return orbit;
-  const std::size_t most = std::min(most_path_points, most_orbit_points / all.masses.size());
+  const std::size_t most =
+      std::clamp<std::size_t>(most_orbit_points / all.masses.size(), least_path_points, most_path_points);
   if (is_dense(track)) {
     orbit.path = thinned(path_through(track), most);
   } else {
     orbit.samples = thinned(track.x, std::min(most_orbit_samples, most));
-    if (relative && G) orbit.path = ellipse(all, all.frames[shown], body, *G);
+    if (center && G) orbit.path = ellipse(all, all.frames[kept.shown], body, *center, *G);
   }
   return orbit;
+}
+
+/// Links at one moment. One through the wall of a box is left out.
+PlotLinks links_at(const io::Frame& frame, const ParticleLinks& links, Center center) {
+  PlotLinks seen;
+  const auto add = [&](const PlotPlace& a, const PlotPlace& b) {
+    bool crosses = false;
+    for (std::size_t k = 0; k < frame.edges.size(); ++k) {
+      crosses = crosses || std::abs(a[k] - b[k]) > 0.5 * frame.edges[k];
+    }
+    if (!crosses) seen.lines.emplace_back(a, b);
+  };
+  for (const auto& [i, j] : links.pairs) add(place_of(frame, i, center), place_of(frame, j, center));
+  for (const Anchor& anchor : links.anchors) {
+    PlotPlace point = {anchor.point[0], anchor.point[1], anchor.point[2]};
+    for (std::size_t k = 0; k < 3 && center; ++k) point[k] -= frame.positions[3 * *center + k];
+    add(point, place_of(frame, anchor.body, center));
+  }
+  return seen;
+}
+
+/// Links at the frame that is shown, and where they stand for paths at moments before it.
+std::vector<PlotLinks> links_seen(const KeptFrames& kept, const ParticleLinks& links, Center center) {
+  static constexpr std::size_t moments = 14;
+  std::vector<PlotLinks> all;
+  if (links.empty()) return all;
+  const std::size_t before = shows_links_alone(kept.frames.masses.size(), links) ? std::min(kept.shown, moments) : 0;
+  for (std::size_t k = before + 1; k-- > 0;) {
+    const std::size_t frame = kept.shown - (before == 0 ? 0 : k * kept.shown / before);
+    all.push_back(links_at(kept.frames.frames[frame], links, center));
+    all.back().age = before == 0 ? 0 : static_cast<double>(k) / static_cast<double>(before);
+  }
+  return all;
+}
+
+/// All places in another unit.
+void rescale(PlotOrbits& picture, double unit) {
+  const auto scale = [unit](PlotPlace& p) {
+    for (double& x : p) x /= unit;
+  };
+  for (PlotOrbit& orbit : picture.orbits) {
+    std::for_each(orbit.path.begin(), orbit.path.end(), scale);
+    std::for_each(orbit.samples.begin(), orbit.samples.end(), scale);
+    scale(orbit.end);
+    orbit.extent /= unit;
+  }
+  for (PlotLinks& links : picture.links) {
+    for (auto& [a, b] : links.lines) scale(a), scale(b);
+  }
+}
+
+/// Chooses the views, and parts the picture where small orbits need a scale of their own.
+std::vector<PlotOrbits> as_seen(PlotOrbits picture, const std::optional<std::string>& center,
+                                const std::string& projection, const PlotLength& length) {
+  if (length.length != 1) rescale(picture, length.length);
+  const bool centered = center.has_value();
+  choose_views(picture, centered, projection, centered ? " from " + *center : "", length.unit);
+  std::optional<PlotOrbits> inner = centered ? inner_part(picture) : std::nullopt;
+  if (!inner) return {std::move(picture)};
+  picture.title = "All orbits";
+  choose_views(*inner, true, projection, "", length.unit);
+  return {std::move(picture), std::move(*inner)};
+}
+
+/// The palette's number of a color by its English name.
+std::optional<std::size_t> color_called(std::string name) {
+  static const std::map<std::string, std::size_t> colors = {
+      {"blue", 0},   {"orange", 1}, {"teal", 2}, {"red", 3},    {"purple", 4}, {"violet", 4}, {"cyan", 5},
+      {"yellow", 6}, {"green", 7},  {"pink", 8}, {"brown", 10}, {"gray", 11},  {"grey", 11}};
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const auto found = colors.find(name);
+  return found == colors.end() ? std::nullopt : std::optional(found->second);
+}
+
+/// Whether all bodies but the primary are called by colors, such as red, green and blue.
+bool called_by_colors(const PlotFrames& frames) {
+  const std::vector<std::string>& names = frames.shared.names;
+  if (names.empty() || names.size() > most_named) return false;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (frames.primary != i && !color_called(names[i])) return false;
+  }
+  return true;
 }
 
 bool all_on_one_line(const io::Frames& all) {
@@ -222,58 +336,95 @@ bool all_on_one_line(const io::Frames& all) {
 
 }  // namespace
 
-bool has_primary(const io::Frames& frames) {
-  if (frames.masses.size() < 2) return false;
-  const double others = sum_over<double>(static_cast<Index>(frames.masses.size()) - 1,
-                                         [&](Index i) { return frames.masses[static_cast<std::size_t>(i) + 1]; });
-  return frames.masses[0] > 10 * others;
+std::size_t body_color(const PlotFrames& frames, std::size_t body) {
+  if (frames.primary == body) return primary_color;
+  if (called_by_colors(frames)) return *color_called(frames.shared.names[body]);
+  return frames.primary && *frames.primary < body ? body - 1 : body;
 }
 
-std::size_t body_color(const io::Frames& frames, std::size_t body) {
-  if (!has_primary(frames)) return body;
-  return body == 0 ? primary_color : body - 1;
-}
-
-std::vector<PlotLegend> body_legend(const io::Frames& frames) {
-  static constexpr std::size_t most = 13;  // the colors of the palette, and the one in the center
+std::vector<PlotLegend> body_legend(const PlotFrames& frames) {
+  const std::vector<std::string>& names = frames.shared.names;
   std::vector<PlotLegend> legend;
-  if (frames.names.size() > most - (has_primary(frames) ? 0 : 1)) return legend;
-  for (std::size_t i = 0; i < frames.names.size(); ++i) legend.push_back({frames.names[i], body_color(frames, i)});
+  if (names.size() > most_named + (frames.primary ? 1 : 0)) return legend;
+  for (std::size_t i = 0; i < names.size(); ++i) legend.push_back({names[i], body_color(frames, i)});
   return legend;
 }
 
-std::vector<PlotOrbits> plot_orbits(const io::Frames& frames, std::size_t shown, std::optional<double> G,
-                                    const std::string& projection) {
-  if (frames.frames.empty() || frames.masses.empty()) return {};
-  const bool relative = has_primary(frames);
+std::vector<PlotOrbits> plot_orbits(const PlotFrames& frames, std::size_t shown, std::optional<double> G,
+                                    const std::string& projection, const ParticleLinks& links,
+                                    const std::optional<PlotLength>& length) {
+  if (frames.empty() || frames.bodies() == 0) return {};
+  const std::size_t n = frames.bodies();
+  const KeptFrames kept = kept_frames(frames, most_frames_of_paths(n), shown);
+  const Center center = frames.primary;
   PlotOrbits picture;
-  for (std::size_t i = 0; i < frames.masses.size(); ++i) picture.orbits.push_back(orbit_of(frames, i, shown, G));
-  const std::string about = relative ? " from " + frames.names[0] : "";
-  choose_views(picture, relative, projection, about, frames.length_unit);
-  std::optional<PlotOrbits> inner = relative ? inner_part(picture) : std::nullopt;
-  if (!inner) return {std::move(picture)};
-  picture.title = "All orbits";
-  choose_views(*inner, true, projection, "", frames.length_unit);
-  return {std::move(picture), std::move(*inner)};
+  const bool links_alone = shows_links_alone(n, links);
+  for (std::size_t i = 0; i < n; ++i) {
+    picture.orbits.push_back(orbit_of(kept, frames, i, center, G));
+    if (!links_alone) continue;
+    picture.orbits.back().path.clear(), picture.orbits.back().samples.clear();
+    picture.orbits.back().color = 0;
+  }
+  if (links_alone) picture.size_of_bodies = 0.5;
+  picture.links = links_seen(kept, links, center);
+  return as_seen(std::move(picture), center ? std::optional(frames.shared.names[*center]) : std::nullopt, projection,
+                 length.value_or(PlotLength{frames.shared.length_unit, 1}));
 }
 
-std::optional<PlotPanel> plot_line_positions(const io::Frames& frames, const PlotTime& time) {
-  if (frames.frames.empty() || frames.masses.empty() || !all_on_one_line(frames)) return {};
+std::vector<PlotOrbits> plot_orbits_of_elements(const PlotSource& source) {
+  static constexpr std::size_t columns = 6, most_bodies = 150;
+  const io::MonitorSeries* monitor = find_monitor(source.monitors, "elements");
+  const std::size_t n = source.frames.bodies();
+  if (monitor == nullptr || !monitor->quantities.contains("value") || n > most_bodies) return {};
+  const auto& [shape, values] = monitor->quantities.at("value");
+  const bool fits = shape.size() == 2 && shape[0] == static_cast<Index>(n) && shape[1] == Index{columns};
+  if (!fits || values.size() < n * columns) return {};
+  const double* last = &values[values.size() - n * columns];
+  PlotOrbits picture{.title = fmt::format("Orbits at t = {:.4g}{}{}", monitor->time.back() / source.time.length,
+                                          source.time.unit.empty() ? "" : " ", source.time.unit),
+                     .orbits = {}};
+  std::optional<std::string> center;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double* o = last + i * columns;
+    PlotOrbit orbit{.name = source.frames.shared.names[i], .color = body_color(source.frames, i)};
+    orbit.primary = std::isnan(o[0]) && !center;
+    if (orbit.primary) center = orbit.name;
+    const OrbitalElements<double> elements{o[0], o[1], o[2], o[3], o[4], o[5]};
+    orbit.path = ellipse_of(elements);
+    if (!orbit.primary && orbit.path.empty()) continue;  // not bound: its path has no end
+    if (!orbit.primary) {
+      const Vec3<double> x = state_from_elements<double>(elements, 1.0).first;
+      orbit.end = {x[0], x[1], x[2]};
+    }
+    for (const PlotPlace& p : orbit.path) orbit.extent = std::max(orbit.extent, std::hypot(p[0], p[1], p[2]));
+    picture.orbits.push_back(std::move(orbit));
+  }
+  if (picture.orbits.size() < 2 || !center) return {};
+  return as_seen(std::move(picture), center, "",
+                 source.length.value_or(PlotLength{source.frames.shared.length_unit, 1}));
+}
+
+std::optional<PlotPanel> plot_line_positions(const PlotFrames& frames, const PlotTime& time) {
+  if (frames.empty() || frames.bodies() == 0) return {};
+  const std::size_t n = frames.bodies();
+  const io::Frames all = kept_frames(frames, most_frames_of_paths(n), frames.size() - 1).frames;
+  if (!all_on_one_line(all)) return {};
   PlotPanel panel;
   panel.title = "Positions";
   panel.large = true;
   panel.x = time.axis;
-  panel.y.label = with_unit("x", frames.length_unit);
-  const std::size_t n = frames.masses.size();
+  panel.y.label = with_unit("x", all.length_unit);
   for (std::size_t i = 0; i < n; ++i) {
-    Track track = track_of(frames, i, false);
+    Track track = track_of(all, i, {});
     // Paths in the plane of time and x: the cubic of both passes through the frames as they are.
     for (std::size_t k = 0; k < track.x.size(); ++k) {
       track.x[k] = {track.time[k] / time.length, track.x[k][0], 0};
       track.v[k] = {1 / time.length, track.v[k][0], 0};
     }
     PlotCurve curve{.name = "", .points = {}, .color = body_color(frames, i)};
-    for (const PlotPlace& p : thinned(path_through(track), std::min(most_path_points, most_orbit_points / n))) {
+    for (const PlotPlace& p :
+         thinned(path_through(track),
+                 std::clamp<std::size_t>(most_orbit_points / n, least_path_points, most_path_points))) {
       curve.points.push_back({p[0], p[1]});
     }
     panel.curves.push_back(std::move(curve));

@@ -1,5 +1,6 @@
 #include "cli/plot_script.hpp"
 
+#include "cli/plot_axes.hpp"
 #include "cli/plot_layout.hpp"
 #include "numbers/text.hpp"
 
@@ -51,7 +52,7 @@ std::string quoted(const std::string& text) {
 
 std::string block(const std::string& name, const std::vector<PlotPoint>& points) {
   std::string text = "$" + name + " << EOD\n";
-  for (const PlotPoint& p : points) text += fmt::format("{:.9g} {:.9g}\n", p.x, p.y);
+  for (const PlotPoint& p : points) text += fmt::format("{:.12g} {:.12g}\n", p.x, p.y);
   return text + "EOD\n";
 }
 
@@ -135,7 +136,7 @@ class Script {
   /// Title and names of the axes; that of the values stands at a fixed distance, clear of the numbers.
   void add_titles(const PlotArea& area, const std::string& title, const std::string& x, const std::string& y) {
     const double scale = format_ == PictureFormat::png ? 2 : 1;
-    const bool narrow = 6.9 * static_cast<double>(title.size()) > area.wide + 30;
+    const bool narrow = 7.8 * static_cast<double>(title.size()) > area.wide + 40;
     text_ += fmt::format("set title {} offset 0,-0.6 noenhanced font ',{:.1f}' tc rgb '#303030'\n", quoted(title),
                          (narrow ? 9 : 11) * scale);
     text_ += fmt::format("set xlabel {} offset 0,0.3 noenhanced\nunset ylabel\n", quoted(x));
@@ -153,6 +154,9 @@ class Script {
       if (!orbit.path.empty()) text_ += block(name + "p", orbit.path);
       text_ += block(name + "e", std::vector<PlotPlace>{orbit.end});
     }
+    for (std::size_t k = 0; k < picture.links.size(); ++k) {
+      text_ += lines_block(fmt::format("l{}_{}", index, k), picture.links[k].lines);
+    }
     for (std::size_t v = 0; v < picture.views.size(); ++v) add_view(index, v);
   }
 
@@ -163,11 +167,14 @@ class Script {
     text_ += margins(area);
     text_ += fmt::format("set xrange [{:.9g}:{:.9g}]\nset yrange [{:.9g}:{:.9g}]\n", view.low.x, view.high.x,
                          view.low.y, view.high.y);
-    text_ += "unset logscale\nset format '%g'\n";
-    text_ +=
-        fmt::format("set xtics nomirror {}\nset ytics nomirror {}\n", tics(view.low.x, view.high.x, area.wide, true),
-                    tics(view.low.y, view.high.y, area.high, false));
-    add_titles(area, v == 0 ? picture.title : "", view.across_label, view.up_label);
+    // All views have one scale, and so one power of ten.
+    const PlotView& first = picture.views[0];
+    const int power = marks_of(first.low.x, first.high.x, 7).power;
+    text_ += "unset logscale\n";
+    set_tics('x', marks_of(view.low.x, view.high.x, most_marks('x', area.wide), power));
+    set_tics('y', marks_of(view.low.y, view.high.y, most_marks('y', area.high), power));
+    add_titles(area, v == 0 ? picture.title : "", with_power(view.across_label, power),
+               with_power(view.up_label, power));
     std::vector<std::string> curves;
     const std::string columns = fmt::format("using {}:{}", view.across + 1, view.up + 1);
     for (std::size_t k = 0; k < picture.orbits.size(); ++k) {
@@ -179,30 +186,43 @@ class Script {
       if (!orbit.path.empty())
         curves.push_back(fmt::format("{}p {} with lines lw 1.3 lc rgb '{}'", name, columns, color));
     }
+    for (std::size_t k = 0; k < picture.links.size(); ++k) {
+      const double age = picture.links[k].age;
+      const std::uint32_t rgb = age > 0 ? mixed(rgb_of(0), 0xFFFFFF, 0.35 + 0.5 * age) : 0x404040;
+      curves.push_back(
+          fmt::format("$l{}_{} {} with lines lw {} lc rgb '#{:06X}'", index, k, columns, age > 0 ? 1.0 : 1.8, rgb));
+    }
     for (std::size_t k = 0; k < picture.orbits.size(); ++k) {
       const PlotOrbit& orbit = picture.orbits[k];
-      curves.push_back(fmt::format("$o{}_{}e {} with points pt 7 ps {} lc rgb '{}'", index, k, columns,
-                                   orbit.primary ? 1.1 : 0.9, color_of(orbit.color)));
+      curves.push_back(fmt::format("$o{}_{}e {} with points pt 7 ps {:.2g} lc rgb '{}'", index, k, columns,
+                                   (orbit.primary ? 1.1 : 0.9) * picture.size_of_bodies, color_of(orbit.color)));
     }
     plot(curves);
   }
 
-  /// The distance of marks that leaves room for their numbers.
-  static std::string tics(double low, double high, double points, bool across) {
-    const double step = (high - low) / std::clamp(points / (across ? 58 : 30), 2.0, 7.0);
-    const double power = std::pow(10.0, std::floor(std::log10(step))), digit = step / power;
-    return fmt::format("{:.6g}", power * (digit < 1.5 ? 1 : digit < 3.5 ? 2 : digit < 7.5 ? 5 : 10));
+  /// Sets the marks of an axis, with room for their numbers.
+  void set_tics(char name, const PlotMarks& marks) {
+    std::string list;
+    std::size_t longest = 0;
+    for (const auto& [at, text] : marks.marks) {
+      list += fmt::format("{}'{}' {:.15g}", list.empty() ? "" : ", ", text, at);
+      longest = std::max(longest, text.size());
+    }
+    // Long numbers are small, so that they do not touch the name of the axis.
+    const double scale = format_ == PictureFormat::png ? 2 : 1;
+    text_ += fmt::format("set format {0} '%g'\nset {0}tics nomirror {1} font ',{2:.0f}'\n", name,
+                         list.empty() ? "autofreq" : "(" + list + ")", (longest > 6 ? 9 : 11) * scale);
   }
 
-  /// Marks at 1, 2 and 5 times the powers of ten of a short logarithmic axis.
-  static std::string decade_tics(const PlotAxis& axis) {
-    std::string list;
-    for (double power = std::pow(10.0, std::floor(std::log10(axis.low))); power <= axis.high; power *= 10) {
-      for (const double mark : {power, 2 * power, 5 * power}) {
-        if (mark >= axis.low && mark <= axis.high) list += fmt::format("{}{:.6g}", list.empty() ? "" : ", ", mark);
-      }
+  /// So many marks have room on an axis.
+  static double most_marks(char name, double points) { return std::clamp(points / (name == 'x' ? 58 : 30), 2.0, 7.0); }
+
+  static std::string lines_block(const std::string& name, const std::vector<std::pair<PlotPlace, PlotPlace>>& lines) {
+    std::string text = "$" + name + " << EOD\n";
+    for (const auto& [a, b] : lines) {
+      text += fmt::format("{:.6g} {:.6g} {:.6g}\n{:.6g} {:.6g} {:.6g}\n\n", a[0], a[1], a[2], b[0], b[1], b[2]);
     }
-    return list.empty() ? "autofreq" : "(" + list + ")";
+    return text + "EOD\n";
   }
 
   static std::string edges_block(const std::string& name, const std::vector<std::pair<PlotPoint, PlotPoint>>& edges) {
@@ -278,33 +298,35 @@ class Script {
     text_ += frame();
   }
 
-  void add_axis(const PlotAxis& axis, char name, double points) {
-    text_ += fmt::format("set {}range [{:.9g}:{:.9g}]\n", name, axis.low, axis.high);
+  /// @return what the axis is called
+  std::string add_axis(const PlotAxis& axis, char name, double points) {
+    text_ += fmt::format("set {}range [{:.12g}:{:.12g}]\n", name, axis.low, axis.high);
     if (!axis.logarithmic) {
-      text_ += fmt::format("unset logscale {0}\nset format {0} '%g'\nset {0}tics nomirror {1}\n", name,
-                           tics(axis.low, axis.high, points, name == 'x'));
-      return;
+      const PlotMarks marks = marks_of(axis.low, axis.high, most_marks(name, points));
+      text_ += fmt::format("unset logscale {}\n", name);
+      set_tics(name, marks);
+      return with_power(axis.label, marks.power);
     }
     const double decades = std::log10(axis.high / axis.low);
     // Every second decade, or third, where labels would meet.
     const double most = std::max(2.0, points / (name == 'x' ? 44 : 26));
     const double step = std::max(1.0, std::ceil(decades / most));
-    text_ += fmt::format("set logscale {}\n", name);
+    text_ += fmt::format("set logscale {0}\nset {0}tics font ',{1}'\n", name, format_ == PictureFormat::png ? 22 : 11);
     if (decades < 2) {
-      text_ += fmt::format("set format {0} '%g'\nset {0}tics nomirror {1}\n", name, decade_tics(axis));
-    } else {
-      text_ +=
-          fmt::format("set format {0} '10^{{%T}}'\nset {0}tics nomirror 1e-30,{1:g}\n", name, std::pow(10.0, step));
+      const PlotMarks marks = decade_marks_of(axis.low, axis.high);
+      set_tics(name, marks);
+      return with_power(axis.label, marks.power);
     }
+    text_ += fmt::format("set format {0} '10^{{%T}}'\nset {0}tics nomirror 1e-30,{1:g}\n", name, std::pow(10.0, step));
+    return axis.label;
   }
 
   void add_panel(std::size_t k) {
     const PlotPanel& panel = data_.panels[k];
     const PlotArea& area = layout_.panel(k);
     text_ += margins(area);
-    add_axis(panel.x, 'x', area.wide);
-    add_axis(panel.y, 'y', area.high);
-    add_titles(area, panel.title, panel.x.label, panel.y.label);
+    const std::string across = add_axis(panel.x, 'x', area.wide), up = add_axis(panel.y, 'y', area.high);
+    add_titles(area, panel.title, across, up);
     const bool key =
         std::any_of(panel.curves.begin(), panel.curves.end(), [](const auto& c) { return !c.name.empty(); });
     text_ += key ? "set key inside top right horizontal samplen 0.3 width 1 Left reverse noenhanced\n" : "unset key\n";

@@ -1,8 +1,10 @@
 #pragma once
 /// A run as it was read for a picture, and the parts of the picture that are made from it.
 
+#include "cli/particle_links.hpp"
 #include "cli/plot_axes.hpp"
 #include "cli/plot_data.hpp"
+#include "cli/plot_frames.hpp"
 #include "cli/run_caption.hpp"
 #include "engine/particle_system.hpp"
 #include "io/inspect.hpp"
@@ -20,35 +22,39 @@ namespace noether {
 struct PlotSource {
   std::filesystem::path file;
   SceneValue scene;
-  io::Frames frames;  ///< those whose numbers are all finite
+  PlotFrames frames;
   std::vector<io::MonitorSeries> monitors;
   PlotTime time;
-  std::size_t shown = 0;           ///< the frame that is shown
+  std::size_t shown = 0;           ///< the place of the frame that is shown
   std::optional<double> G = {};    ///< constant of gravitation; nothing where the scene has no gravity
   std::optional<double> k_B = {};  ///< Boltzmann's constant
   std::string temperature_unit = {}, pressure_unit = {};
+  ParticleLinks links = {};               ///< by rows of frames
+  std::optional<PlotLength> length = {};  ///< the unit of orbits; nothing: that of the file
 };
 
 /// The first monitor of a name, one with a number behind it too; null if there is none.
 const io::MonitorSeries* find_monitor(const std::vector<io::MonitorSeries>& monitors, std::string_view name);
 
-/// Whether the first body has more than ten times the mass of all others.
-bool has_primary(const io::Frames& frames);
-/// The color of a body in orbits and in elements.
-std::size_t body_color(const io::Frames& frames, std::size_t body);
+/// The color of a body in orbits and in elements: that of its name where all bodies are called by colors.
+std::size_t body_color(const PlotFrames& frames, std::size_t body);
 /// Names with their colors; nothing where there are more than people can tell apart.
-std::vector<PlotLegend> body_legend(const io::Frames& frames);
+std::vector<PlotLegend> body_legend(const PlotFrames& frames);
 
 /// Whether particles are shown as a heap of dots at one moment, not as orbits: in a periodic box, or very many.
-bool is_crowd(const io::Frames& frames);
+bool is_crowd(const PlotFrames& frames);
 
-/// The paths of few bodies, about the first where it has most of the mass.
-std::vector<PlotOrbits> plot_orbits(const io::Frames& frames, std::size_t shown, std::optional<double> G,
-                                    const std::string& projection);
+/// The paths of few bodies, about the primary where there is one and `G` tells of gravity, and what links bodies. Many
+/// bodies that are linked have no paths; their links are drawn at some moments before too.
+std::vector<PlotOrbits> plot_orbits(const PlotFrames& frames, std::size_t shown, std::optional<double> G,
+                                    const std::string& projection, const ParticleLinks& links = {},
+                                    const std::optional<PlotLength>& length = {});
+/// Where there are no frames: the ellipses of the last sample of the monitor `elements`; nothing without it.
+std::vector<PlotOrbits> plot_orbits_of_elements(const PlotSource& source);
 /// Where every body stays on one line: x against time; nothing elsewhere.
-std::optional<PlotPanel> plot_line_positions(const io::Frames& frames, const PlotTime& time);
+std::optional<PlotPanel> plot_line_positions(const PlotFrames& frames, const PlotTime& time);
 /// The variables of a system against time.
-std::vector<PlotPanel> plot_variables(const io::Frames& frames, const PlotTime& time);
+std::vector<PlotPanel> plot_variables(const PlotFrames& frames, const PlotTime& time);
 
 /// Particles and bonds in perspective. @param legend  gets the kinds of particles
 PlotBox plot_box(const ParticleSystem<double>& particles, const std::string& mass_unit,
@@ -65,12 +71,14 @@ std::optional<PlotPanel> plot_temperature(const PlotSource& source);
 std::optional<PlotPanel> plot_pressure(const PlotSource& source);
 
 /// g(r) by pair of types where there are few types, each a mean of frames, up to half of the shortest edge.
-std::vector<PlotCurve> radial_distributions(const io::Frames& frames, const std::vector<std::size_t>& chosen);
+/// @param molecules  the number of each particle's; pairs within one are left out. Empty: all pairs count
+std::vector<PlotCurve> radial_distributions(const PlotFrames& frames, const std::vector<std::size_t>& chosen,
+                                            const std::vector<std::size_t>& molecules = {});
 std::optional<PlotPanel> plot_radial_distribution(const PlotSource& source, bool one_frame);
 
 /// Mean square displacement by lag, about the center of mass, unwrapped. Where frames are at equal distances in time, a
-/// mean of all origins.
-std::vector<PlotPoint> mean_square_displacement(const io::Frames& frames);
+/// mean of all origins. Of many particles in many frames some are looked at, so many as `most_numbers` coordinates.
+std::vector<PlotPoint> mean_square_displacement(const PlotFrames& frames, std::size_t most_numbers = 20'000'000);
 std::optional<PlotPanel> plot_mean_square_displacement(const PlotSource& source);
 
 }  // namespace noether

@@ -21,24 +21,28 @@ double size_of(const PlotCurve& curve) {
 
 }  // namespace
 
-std::vector<PlotPanel> plot_variables(const io::Frames& frames, const PlotTime& time) {
+std::vector<PlotPanel> plot_variables(const PlotFrames& frames, const PlotTime& time) {
   PlotPanel panel;
   panel.title = "Variables";
   panel.large = true;
   panel.x = time.axis;
   panel.y.label = "y";
-  const std::size_t n = frames.variable_names.size(), shown = std::min(n, most_variables);
-  double largest = 0;
+  const std::vector<std::string>& names = frames.shared.variable_names;
+  const std::size_t n = names.size(), shown = std::min(n, most_variables);
+  std::vector<std::size_t> chosen;
   for (std::size_t k = 0; k < shown; ++k) {
-    const std::size_t i = shown < 2 ? 0 : k * (n - 1) / (shown - 1);
-    PlotCurve curve{.name = frames.variable_names[i], .points = {}, .color = k};
-    for (const io::Frame& frame : frames.frames) {
-      curve.points.push_back({frame.time / time.length, frame.variables[i]});
-    }
-    curve.points = thinned(curve.points, most_variable_points);
-    largest = std::max(largest, size_of(curve));
-    panel.curves.push_back(std::move(curve));
+    chosen.push_back(shown < 2 ? 0 : k * (n - 1) / (shown - 1));
+    panel.curves.push_back({.name = names[chosen.back()], .points = {}, .color = k});
   }
+  const std::size_t stride = (frames.size() + most_variable_points - 1) / most_variable_points;
+  for (std::size_t k = 0; k < frames.size(); k += stride) {
+    const io::Frame frame = frames.frame(k);
+    for (std::size_t c = 0; c < shown; ++c) {
+      panel.curves[c].points.push_back({frame.time / time.length, frame.variables[chosen[c]]});
+    }
+  }
+  double largest = 0;
+  for (const PlotCurve& curve : panel.curves) largest = std::max(largest, size_of(curve));
   PlotPanel small = panel;
   small.title = "Small variables";
   std::erase_if(small.curves, [&](const PlotCurve& c) { return size_of(c) == 0 || size_of(c) * small_gap > largest; });

@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <string_view>
-#include <tuple>
 #include <vector>
 
 namespace noether {
@@ -27,6 +27,31 @@ std::string text_at(const SceneValue& scene, const std::vector<std::string_view>
   if (value == nullptr) return "";
   const std::string* text = value->get<std::string>();
   return text != nullptr ? *text : to_text(*value);
+}
+
+std::vector<const SceneValue*> tables_at(const SceneValue& scene, const std::vector<std::string_view>& keys) {
+  std::vector<const SceneValue*> tables;
+  const SceneValue* found = value_at(scene, keys);
+  if (found == nullptr || !found->is_table_list()) return tables;
+  for (const SceneValue& one : *found->get<SceneValue::Array>()) tables.push_back(&one);
+  return tables;
+}
+
+ReadableTime readable_time(const std::string& unit, double longest) {
+  namespace solar = units::solar;
+  struct Choice {
+    const char *of, *name;
+    double length, from;
+  };
+  static constexpr std::array<Choice, 4> choices = {{{"day", "yr", solar::year, 2 * solar::year},
+                                                     {"day", "kyr", solar::kyr, 5 * solar::kyr},
+                                                     {"day", "Myr", solar::Myr, 0.5 * solar::Myr},
+                                                     {"ps", "ns", 1000, 2000}}};
+  ReadableTime time{unit == "1" ? "" : unit, 1};
+  for (const Choice& choice : choices) {
+    if (unit == choice.of && longest >= choice.from) time = {choice.name, choice.length};
+  }
+  return time;
 }
 
 namespace {
@@ -67,19 +92,11 @@ RunCaption caption_of(const SceneValue& scene, const std::filesystem::path& file
                                   text_at(scene, {"integrator", "method"}), step.empty() ? step : "step " + step}) {
     if (!part.empty()) caption.method += (caption.method.empty() ? "" : ", ") + part;
   }
-  caption.time_unit = time_unit == "1" ? "" : time_unit;
-  if (time_unit == "day") {
-    namespace solar = units::solar;
-    for (const auto& [name, length, from] :
-         {std::tuple{"yr", solar::year, 2 * solar::year}, std::tuple{"kyr", solar::kyr, 5 * solar::kyr},
-          std::tuple{"Myr", solar::Myr, 0.5 * solar::Myr}}) {
-      if (longest >= from) caption.time_unit = name, caption.time_length = length;
-    }
-  }
+  caption.time = readable_time(time_unit, longest);
   caption.energy_changes = value_at(scene, {"hamiltonian", "thermostat"}) != nullptr;
-  const SceneValue* forces = value_at(scene, {"hamiltonian", "force"});
-  if (forces == nullptr || !forces->is_table_list()) return caption;
-  for (const SceneValue& force : *forces->get<SceneValue::Array>()) caption.energy_changes |= is_driven(force, parts);
+  for (const SceneValue* force : tables_at(scene, {"hamiltonian", "force"})) {
+    caption.energy_changes |= is_driven(*force, parts);
+  }
   return caption;
 }
 

@@ -12,11 +12,16 @@ namespace noether {
 
 class Parts;
 
+/// A unit in which people read a time.
+struct ReadableTime {
+  std::string unit;   ///< its name; empty in reduced units
+  double length = 1;  ///< of the unit, in the unit of the file
+};
+
 struct RunCaption {
   std::string title;            ///< of the scene, or the name of the folder of the run
   std::string method;           ///< "wisdom_holman, aba_10_6_4, step 100 day"
-  std::string time_unit;        ///< "kyr"; empty in reduced units
-  double time_length = 1;       ///< of that unit [time]
+  ReadableTime time;            ///< "kyr" and its length
   bool energy_changes = false;  ///< the scene has drag, a bath, or a force that depends on time
 };
 
@@ -27,6 +32,12 @@ SceneValue scene_in_file(const std::string& toml, const std::filesystem::path& f
 const SceneValue* value_at(const SceneValue& scene, const std::vector<std::string_view>& keys);
 /// The same as text; "" if it is not there.
 std::string text_at(const SceneValue& scene, const std::vector<std::string_view>& keys);
+
+/// The tables of a list such as `[[hamiltonian.force]]`; none where it is not there.
+std::vector<const SceneValue*> tables_at(const SceneValue& scene, const std::vector<std::string_view>& keys);
+
+/// The unit for times up to `longest` in a unit of the file: yr, kyr or Myr instead of days, ns instead of ps.
+ReadableTime readable_time(const std::string& unit, double longest);
 
 /// @param longest  the largest time that is shown [time]
 RunCaption caption_of(const SceneValue& scene, const std::filesystem::path& file, const std::string& time_unit,

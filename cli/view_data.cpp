@@ -1,6 +1,6 @@
 #include "cli/view_data.hpp"
 
-#include "cli/view_links.hpp"
+#include "cli/run_gravity.hpp"
 #include "cli/view_paths.hpp"
 #include "engine/sums.hpp"
 #include "io/inspect.hpp"
@@ -40,15 +40,6 @@ Vec3<double> center_of(const std::vector<double>& rows, const std::vector<double
                   : sum_over<double>(n, [&](Index i) { return rows[3 * at(i) + k]; }) / static_cast<double>(n);
   }
   return center;
-}
-
-/// The heaviest body, if it is more than ten times as heavy as all others together; -1 otherwise.
-std::int64_t primary_of(const std::vector<double>& masses) {
-  if (masses.size() < 2 || masses.size() > few_bodies) return -1;
-  const auto heaviest = std::max_element(masses.begin(), masses.end());
-  const double total =
-      sum_over<double>(static_cast<Index>(masses.size()), [&](Index i) { return masses[static_cast<std::size_t>(i)]; });
-  return *heaviest > 10 * (total - *heaviest) ? heaviest - masses.begin() : -1;
 }
 
 /// Which frames of the file are shown before anybody knows how large the page becomes.
@@ -157,10 +148,12 @@ ViewData read_frames_to_view(const std::filesystem::path& file, const SceneValue
   data.names = picked(shared.names, rows);
   data.masses = picked(shared.masses, rows);
   if (!shared.types.empty()) data.types = picked(shared.types, rows);
-  read_links(data, reader.file(), scene, io::known_units(shared.units, file), shared, rows);
+  data.links = read_links(reader.file(), scene, io::known_units(shared.units, file), shared, rows);
 
   const bool periodic = reader.file().has(io::image_path + "/value");
-  if (!periodic && has_gravity(scene)) data.primary = primary_of(data.masses);
+  if (!periodic && shown <= few_bodies && has_gravity(scene)) {
+    if (const auto primary = primary_of(data.masses)) data.primary = static_cast<std::int64_t>(*primary);
+  }
   if (data.primary >= 0) {
     const double G = constant_of_gravity(scene, io::known_units(shared.units, file).G);
     for (const double mass : data.masses)
@@ -230,7 +223,10 @@ ViewData read_view_data(const std::filesystem::path& file, const ViewWish& wish,
   ViewData data = io::try_first(file, [&] { return read_frames_to_view(file, scene, wish); });
   const auto [first, last] = std::pair(data.frames.front().time, data.frames.back().time);
   data.caption = caption_of(scene, file, about.time_unit, std::max(std::abs(first), std::abs(last)), parts);
-  data.energy = energy_of(io::read_monitors(file));
+  const auto drawn = [](const std::string& monitor, const std::string& quantity) {
+    return monitor == "energy" && quantity == "relative_error";
+  };
+  data.energy = energy_of(io::read_monitors(file, {.wanted = drawn}));
   choose_paths(data);
   return data;
 }

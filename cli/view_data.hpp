@@ -1,6 +1,7 @@
 #pragma once
 /// What a page shows of a run: its frames as small numbers, and what its particles are.
 
+#include "cli/particle_links.hpp"
 #include "cli/run_caption.hpp"
 #include "numbers/types.hpp"
 
@@ -35,12 +36,6 @@ struct ViewFrame {
   Vec3<double> edges = Vec3<double>::Zero();     ///< of the periodic box [length]; 0 without one
 };
 
-/// A body at the end of a rod that hangs at a point.
-struct ViewAnchor {
-  std::size_t body = 0;
-  Vec3<double> point = Vec3<double>::Zero();  ///< [length]
-};
-
 /// The size of the relative error of the energy, or of its change.
 struct ViewEnergy {
   std::vector<double> time;  ///< [time]
@@ -55,9 +50,8 @@ struct ViewData {
 
   std::vector<std::string> names, types;  ///< by particle; types empty where there are none
   std::vector<double> masses;             ///< [mass]
-  std::vector<std::size_t> links;         ///< two particles each: bonds, and distances that are constrained
-  std::vector<ViewAnchor> anchors;
-  std::int64_t primary = -1;    ///< the body that the others orbit; -1: none
+  ParticleLinks links;                    ///< bonds, and distances that are constrained
+  std::int64_t primary = -1;              ///< the body that the others orbit; -1: none
   std::vector<double> mu;       ///< G (primary + body), by particle; empty without a primary [length^3/time^2]
   std::vector<ViewPath> paths;  ///< by particle, or one for all of many
   double spacing = 0;           ///< between neighbors in a periodic box [length]

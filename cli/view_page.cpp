@@ -115,7 +115,7 @@ Json energy_of(const ViewData& data) {
 
 Json anchors_of(const ViewData& data) {
   std::vector<Json> anchors;
-  for (const ViewAnchor& one : data.anchors) {
+  for (const Anchor& one : data.links.anchors) {
     anchors.push_back(Json::list({static_cast<std::int64_t>(one.body), one.point[0], one.point[1], one.point[2]}));
   }
   return Json::list(anchors);
@@ -126,7 +126,9 @@ std::string about(const ViewData& data) {
   std::vector<double> times;
   std::vector<std::int64_t> steps, links;
   for (const ViewFrame& frame : data.frames) times.push_back(frame.time), steps.push_back(frame.step);
-  for (const std::size_t i : data.links) links.push_back(static_cast<std::int64_t>(i));
+  for (const auto& [i, j] : data.links.pairs) {
+    links.push_back(static_cast<std::int64_t>(i)), links.push_back(static_cast<std::int64_t>(j));
+  }
   std::vector<Json> paths;
   for (const ViewPath path : data.paths) paths.emplace_back(name_of(path));
   const bool few = data.particles() <= few_bodies;
@@ -135,8 +137,8 @@ std::string about(const ViewData& data) {
   return Json::object({{"schema", "noether.page/1"},
                        {"title", data.caption.title},
                        {"method", data.caption.method},
-                       {"time_unit", data.caption.time_unit},
-                       {"time_length", data.caption.time_length},
+                       {"time_unit", data.caption.time.unit},
+                       {"time_length", data.caption.time.length},
                        {"length_unit", data.length_unit},
                        {"particles", static_cast<std::int64_t>(data.particles())},
                        {"particles_in_file", static_cast<std::int64_t>(data.particles_in_file)},

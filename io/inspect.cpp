@@ -245,37 +245,73 @@ void check_headers(const Hdf5File& file, std::vector<std::string>& damaged) {
   damaged.emplace_back("the units or other attributes of the particles differ from those that were written");
 }
 
-std::vector<MonitorSeries> untried_monitors(const std::filesystem::path& path) {
+Index numbers_in(const std::vector<Index>& shape) {
+  return std::accumulate(shape.begin(), shape.end(), Index{1}, std::multiplies<>());
+}
+
+/// Every `stride`-th of the first `samples` rows, the last among them.
+template <class Value>
+std::vector<Value> kept_rows(const std::vector<Value>& all, std::size_t samples, std::size_t stride) {
+  std::vector<Value> kept;
+  for (std::size_t k = samples == 0 ? 0 : (samples - 1) % stride; k < samples; k += stride) kept.push_back(all[k]);
+  return kept;
+}
+
+/// The same of a dataset, without the others in memory.
+std::vector<double> kept_rows(const Hdf5Dataset& dataset, std::size_t samples, std::size_t stride) {
+  if (stride == 1) return dataset.read_reals(0, static_cast<Index>(samples));
+  std::vector<double> kept;
+  for (std::size_t k = (samples - 1) % stride; k < samples; k += stride) {
+    const std::vector<double> row = dataset.read_reals(static_cast<Index>(k), 1);
+    kept.insert(kept.end(), row.begin(), row.end());
+  }
+  return kept;
+}
+
+/// The samples of one monitor; nothing where none of its quantities is wanted.
+std::optional<MonitorSeries> untried_monitor(const Hdf5File& file, const std::string& name,
+                                             const MonitorChoice& choice) {
+  const std::string group = monitors_path + "/" + name;
+  MonitorSeries series;
+  series.name = name;
+  series.step = file.open(group + "/step").read_integers();
+  series.time = file.open(group + "/time").read_reals();
+  // A killed writer may have been a row ahead in some of the datasets.
+  std::size_t samples = std::min(series.step.size(), series.time.size()), stride = 1;
+  std::map<std::string, Hdf5Dataset> datasets;
+  for (const std::string& quantity : file.children(group)) {
+    if (quantity == "step") continue;
+    series.units[quantity] = file.text_attribute(group + "/" + quantity, "noether_unit");
+    if (quantity == "time" || (choice.wanted && !choice.wanted(name, quantity))) continue;
+    const Hdf5Dataset& dataset = datasets[quantity] = file.open(group + "/" + quantity);
+    std::vector<Index> shape = dataset.growing_shape();
+    samples = std::min(samples, static_cast<std::size_t>(shape[0]));
+    shape.erase(shape.begin());
+    series.quantities[quantity].first = std::move(shape);
+  }
+  if (datasets.empty() && choice.wanted) return {};
+  for (const auto& [quantity, content] : series.quantities) {
+    if (choice.most_numbers == 0 || content.first.empty()) continue;
+    const std::size_t numbers = samples * static_cast<std::size_t>(numbers_in(content.first));
+    stride = std::max(stride, (numbers + choice.most_numbers - 1) / choice.most_numbers);
+  }
+  stride = std::clamp<std::size_t>(stride, 1, std::max<std::size_t>(samples, 1));
+  for (auto& [quantity, content] : series.quantities) {
+    content.second = kept_rows(datasets.at(quantity), samples, stride);
+  }
+  series.step = kept_rows(series.step, samples, stride);
+  series.time = kept_rows(series.time, samples, stride);
+  if (file.has_attribute(group, "scale")) series.scale = file.real_attribute(group, "scale");
+  if (series.quantities.count("value") != 0) series.orders = file.integers_attribute(group + "/value", "orders");
+  return series;
+}
+
+std::vector<MonitorSeries> untried_monitors(const std::filesystem::path& path, const MonitorChoice& choice = {}) {
   const Hdf5File file = Hdf5File::open_to_read(path);
   std::vector<MonitorSeries> result;
   for (const std::string& name : file.children(monitors_path)) {
-    const std::string group = monitors_path + "/" + name;
-    MonitorSeries series;
-    series.name = name;
-    series.step = file.open(group + "/step").read_integers();
-    series.time = file.open(group + "/time").read_reals();
-    std::size_t samples = std::min(series.step.size(), series.time.size());
-    for (const std::string& quantity : file.children(group)) {
-      if (quantity == "step") continue;
-      series.units[quantity] = file.text_attribute(group + "/" + quantity, "noether_unit");
-      if (quantity == "time") continue;
-      const Hdf5Dataset dataset = file.open(group + "/" + quantity);
-      std::vector<Index> shape = dataset.growing_shape();
-      samples = std::min(samples, static_cast<std::size_t>(shape[0]));
-      shape.erase(shape.begin());
-      series.quantities[quantity] = {std::move(shape), dataset.read_reals()};
-    }
-    if (file.has_attribute(group, "scale")) series.scale = file.real_attribute(group, "scale");
-    if (series.quantities.count("value") != 0) series.orders = file.integers_attribute(group + "/value", "orders");
-    // A killed writer may have been a row ahead in some of the datasets.
-    series.step.resize(samples);
-    series.time.resize(samples);
-    for (auto& [quantity, content] : series.quantities) {
-      const auto& shape = content.first;
-      const Index values = std::accumulate(shape.begin(), shape.end(), Index{1}, std::multiplies<>());
-      content.second.resize(samples * static_cast<std::size_t>(values));
-    }
-    result.push_back(std::move(series));
+    auto series = untried_monitor(file, name, choice);
+    if (series) result.push_back(std::move(*series));
   }
   return result;
 }
@@ -329,8 +365,8 @@ FileInfo verify(const std::filesystem::path& file) {
   }
 }
 
-std::vector<MonitorSeries> read_monitors(const std::filesystem::path& file) {
-  return try_first(file, [&] { return untried_monitors(file); });
+std::vector<MonitorSeries> read_monitors(const std::filesystem::path& file, const MonitorChoice& choice) {
+  return try_first(file, [&] { return untried_monitors(file, choice); });
 }
 
 Frames read_frames(const std::filesystem::path& file) {

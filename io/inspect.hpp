@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -78,9 +79,18 @@ struct ConvertOptions {
 ///   read or written
 Index convert(const std::filesystem::path& file, const std::filesystem::path& out, const ConvertOptions& options = {});
 
-/// The samples of all monitors, in the order of their names.
+/// Which samples of monitors a reader of a file keeps in memory.
+struct MonitorChoice {
+  /// Whether a quantity of a monitor is read; nothing: all are. Monitors without such a quantity are left out.
+  std::function<bool(const std::string& monitor, const std::string& quantity)> wanted = {};
+  /// Where a quantity of several numbers has more than these in all, samples at equal distances are kept, the last
+  /// among them; 0: all are.
+  std::size_t most_numbers = 0;
+};
+
+/// The samples of monitors, in the order of their names.
 /// @throws FileError
-std::vector<MonitorSeries> read_monitors(const std::filesystem::path& file);
+std::vector<MonitorSeries> read_monitors(const std::filesystem::path& file, const MonitorChoice& choice = {});
 
 /// All frames, in memory.
 /// @throws FileError

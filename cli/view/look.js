@@ -3,7 +3,9 @@
 const palette = ["#66ccee", "#ee8866", "#7bd389", "#e6c84f", "#c58bea", "#ff7b8a", "#77aaff", "#44bb99", "#ffaabb", "#bbcc33",
   "#b8a48f", "#dddddd"];
 const named_colors = { sun: "#ffd35a", mercury: "#b9aca4", venus: "#ecc988", earth: "#5fa8ff", moon: "#cfcfcf", mars: "#ee6b48",
-  jupiter: "#e0b184", saturn: "#ecdba6", uranus: "#9be5e8", neptune: "#6b8cff", pluto: "#cdb79e" };
+  jupiter: "#e0b184", saturn: "#ecdba6", uranus: "#9be5e8", neptune: "#6b8cff", pluto: "#cdb79e",
+  red: "#ff6258", green: "#5fd38a", blue: "#5a8dff", orange: "#ff9f40", yellow: "#f0d94c", purple: "#c58bea", violet: "#c58bea", cyan: "#66ddee",
+  pink: "#ffaabb", brown: "#c08a5a", teal: "#44bb99", gray: "#b4b4b4", grey: "#b4b4b4", white: "#f2f2f2" };
 const element_colors = { H: "#f2f2f2", He: "#d9ffff", C: "#8c96a3", N: "#6b86ff", O: "#ff5b52", F: "#90e050", Na: "#ab7bf2",
   Mg: "#8aff00", P: "#ff9f40", S: "#f2e14c", Cl: "#5fdc5f", Ar: "#80d1e3", K: "#9f60e0", Ca: "#5fff3d", Fe: "#e08a55", Cu: "#d98a4b",
   Si: "#f0c8a0", Br: "#c0503f", I: "#b060c0", Xe: "#60b8d0", Kr: "#5cb8d1", Ne: "#b3e3f5" };

@@ -26,8 +26,8 @@ class View {
     this.sign = this.span < 0 ? -1 : 1;  // runs may go back in time
     this.duration = clamp(this.frames / 30, 8, 40);  // seconds at speed 1
     this.part = 0, this.speed = 1, this.playing = this.frames > 1, this.looped = true, this.turning = false;
-    this.show = { names: true, box: true };
-    this.trails = this.with_trails() ? 2 : 0;
+    this.show = { names: this.wish.get("names") !== "off", box: this.wish.get("box") !== "off" };
+    this.trails = !this.with_trails() ? 0 : trail_modes.includes(this.wish.get("trails")) ? trail_modes.indexOf(this.wish.get("trails")) : 2;
     this.paths = [];
     this.follow = this.first_to_follow();
     this.camera = { turn: this.first_turn(), target: [0, 0, 0], distance: 1, reach: 1, shift: [0, 0], lens: 1 / Math.tan(Math.PI / 11.25),

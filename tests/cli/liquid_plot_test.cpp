@@ -83,6 +83,95 @@ TEST_CASE("g(r) by pair of types counts neighbors of each type", "[cli][plot]") 
   CHECK(std::abs(neighbors(curves[2], 1.25, 1.6, 107, 216) - 12) < 1e-9);
 }
 
+/// An ideal gas of molecules of two atoms at a distance of 0.3.
+io::Frames gas_of_pairs(std::size_t molecules, ParticleLinks& links) {
+  io::Frames frames = frames_in_cube(2 * molecules, 5, 8);
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> anywhere(0, 5);
+  std::normal_distribution<double> normal;
+  for (io::Frame& frame : frames.frames) {
+    for (std::size_t m = 0; m < molecules; ++m) {
+      Vec3<double> way(normal(random), normal(random), normal(random));
+      way *= 0.3 / way.norm();
+      for (Index k = 0; k < 3; ++k) {
+        const double x = anywhere(random), y = x + way[k];
+        const std::size_t at = 6 * m + static_cast<std::size_t>(k);
+        frame.positions[at] = x, frame.positions[at + 3] = y - 5 * std::floor(y / 5);
+      }
+    }
+  }
+  for (std::size_t m = 0; m < molecules; ++m) links.pairs.emplace_back(2 * m, 2 * m + 1);
+  return frames;
+}
+
+TEST_CASE("g(r) of molecules leaves out the pairs within one, and is 1 for an ideal gas of them", "[cli][plot]") {
+  ParticleLinks links;
+  const io::Frames frames = gas_of_pairs(200, links);
+  PlotSource source{.file = {}, .scene = {}, .frames = frames, .monitors = {}, .time = time_axis("1", {}, 0, 4)};
+  source.links = links;
+  const auto between = plot_radial_distribution(source, false);
+  REQUIRE(between);
+  CHECK(has(between->title, "g(r) between molecules, mean of "));
+  const auto worst_near = [](const PlotCurve& g) {
+    double worst = 0;
+    for (const PlotPoint& p : g.points) {
+      if (std::abs(p.x - 0.3) < 0.1) worst = std::max(worst, p.y);
+    }
+    return worst;
+  };
+  CHECK(worst_near(between->curves.at(0)) < 2);
+  const auto all = radial_distributions(frames, {0, 1, 2, 3, 4, 5, 6, 7});
+  CHECK(worst_near(all.at(0)) > 4);  // the bonds
+  const auto some = radial_distributions(frames, {0, 1, 2, 3, 4, 5, 6, 7}, molecules_of(400, links));
+  double sum = 0, weights = 0;
+  for (const PlotPoint& p : some.at(0).points) sum += p.y * p.x * p.x, weights += p.x * p.x;
+  CHECK(std::abs(sum / weights - 1) < 0.01);
+
+  // One molecule of all: nothing would be left, so that all pairs count, and the title says so.
+  for (std::size_t i = 0; i + 1 < 400; ++i) source.links.pairs.emplace_back(i, i + 1);
+  const auto network = plot_radial_distribution(source, false);
+  REQUIRE(network);
+  CHECK(has(network->title, "g(r), bonded pairs too, mean of "));
+  CHECK(worst_near(network->curves.at(0)) > 4);
+}
+
+TEST_CASE("molecules are what links join", "[cli][plot]") {
+  ParticleLinks links;
+  links.pairs = {{4, 1}, {1, 2}, {5, 0}};
+  CHECK(molecules_of(6, links) == std::vector<std::size_t>{0, 1, 1, 2, 1, 0});
+}
+
+TEST_CASE("a diffusion coefficient is told where displacements grow as time, within 0.1 of its first power",
+          "[cli][plot]") {
+  const auto title_of = [](double power) {
+    io::MonitorSeries monitor{.name = "mean_square_displacement",
+                              .step = {},
+                              .time = {},
+                              .quantities = {},
+                              .units = {},
+                              .scale = {},
+                              .orders = {}};
+    for (const char* quantity : {"lag", "value"}) monitor.quantities[quantity].first = {40};
+    for (const double worse : {3.0, 1.0}) {  // the last look counts
+      for (int k = 0; k < 40; ++k) {
+        const double lag = 0.1 * k;
+        monitor.quantities["lag"].second.push_back(lag);
+        monitor.quantities["value"].second.push_back(worse * 3 * std::pow(lag, power));
+      }
+    }
+    PlotSource source{.file = {}, .scene = {}, .frames = {}, .monitors = {monitor}, .time = time_axis("1", {}, 0, 4)};
+    const auto panel = plot_mean_square_displacement(source);
+    REQUIRE(panel);
+    return panel->title;
+  };
+  CHECK(title_of(1) == "Mean square displacement: D = 0.5");
+  CHECK(has(title_of(1.09), ": D = "));
+  CHECK(has(title_of(0.91), ": D = "));
+  CHECK(title_of(1.12) == "Mean square displacement: grows as t^1.1");
+  CHECK(title_of(0.88) == "Mean square displacement: grows as t^0.88");
+  CHECK(title_of(2) == "Mean square displacement: grows as t^2");
+}
+
 TEST_CASE("g(r) of more particles than are counted has every type, in whatever order they stand", "[cli][plot]") {
   io::Frames frames = frames_in_cube(6912, 10, 1);
   std::mt19937 random(7);

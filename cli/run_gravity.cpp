@@ -1,0 +1,40 @@
+#include "cli/run_gravity.hpp"
+
+#include "cli/run_caption.hpp"
+#include "engine/sums.hpp"
+
+#include <algorithm>
+#include <string>
+
+namespace noether {
+
+bool has_gravity(const SceneValue& scene) {
+  const std::string type = text_at(scene, {"hamiltonian", "type"});
+  if (type == "wisdom_holman" || type == "hybrid") return true;
+  const auto forces = tables_at(scene, {"hamiltonian", "force"});
+  return std::any_of(forces.begin(), forces.end(),
+                     [](const SceneValue* force) { return text_at(*force, {"type"}).starts_with("gravity"); });
+}
+
+double constant_of_gravity(const SceneValue& scene, double of_units) {
+  std::vector<const SceneValue*> tables = tables_at(scene, {"hamiltonian", "force"});
+  if (const SceneValue* hamiltonian = scene.find("hamiltonian")) tables.push_back(hamiltonian);
+  for (const SceneValue* table : tables) {
+    const SceneValue* G = table->find("G");
+    if (G == nullptr) continue;
+    if (const double* number = G->get<double>()) return *number;
+    if (const std::int64_t* whole = G->get<std::int64_t>()) return static_cast<double>(*whole);
+  }
+  return of_units;
+}
+
+std::optional<std::size_t> primary_of(const std::vector<double>& masses) {
+  if (masses.size() < 2) return {};
+  const auto heaviest = std::max_element(masses.begin(), masses.end());
+  const double total =
+      sum_over<double>(static_cast<Index>(masses.size()), [&](Index i) { return masses[static_cast<std::size_t>(i)]; });
+  if (!(*heaviest > 10 * (total - *heaviest))) return {};
+  return static_cast<std::size_t>(heaviest - masses.begin());
+}
+
+}  // namespace noether

@@ -1,0 +1,21 @@
+#pragma once
+/// Whether bodies of a run attract each other as masses do, and which of them the others orbit.
+
+#include "scene/value.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace noether {
+
+/// Whether bodies of a scene attract each other as masses do.
+bool has_gravity(const SceneValue& scene);
+
+/// G of a scene; `of_units` where it gives none.
+double constant_of_gravity(const SceneValue& scene, double of_units);
+
+/// The heaviest body, if it is more than ten times as heavy as all others together.
+std::optional<std::size_t> primary_of(const std::vector<double>& masses);
+
+}  // namespace noether
