@@ -4,6 +4,7 @@
 #include "numbers/error.hpp"
 #include "numbers/progress.hpp"
 #include "numbers/suggest.hpp"
+#include "scene/reader.hpp"
 #include "scene/scene.hpp"
 #include "scene/warnings.hpp"
 #include "study/advise.hpp"
@@ -23,7 +24,7 @@ namespace {
 
 struct AdviseArguments {
   std::string scene, error, metric;
-  std::optional<std::string> methods;
+  std::optional<std::string> methods, until;
   std::vector<std::string> sets;
   double budget = 2;
   bool json = false;
@@ -36,7 +37,9 @@ void advise_scene(const AdviseArguments& given, const Parts& parts) {
   if (given.metric == "position") options.metric = Metric::position;
   if (given.methods) options.methods = texts_in(*given.methods, "--methods");
   options.row_budget = given.budget;
-  const Scene scene = load_scene(given.scene, parts, given.sets);
+  std::vector<std::string> sets = given.sets;
+  if (given.until) sets.push_back(std::string(until_option) + *given.until);
+  const Scene scene = load_scene(given.scene, parts, sets);
   tell_notes_and_warnings(scene);
   TerminalLine line(!given.json);
   options.progress = line.teller();
@@ -71,6 +74,11 @@ void add_advise_command(CLI::App& app, const Parts& parts, int& exit_code) {
       ->type_name("METRIC");
   command->add_option("--methods", given->methods, "methods to choose from; default: those suited to this scene")
       ->type_name("A,B,...");
+  command->add_option("--until", given->until, "end of the run that is to hold the error; default: the scene's end")
+      ->check([](const std::string& time) {
+        return std::string(time.empty() ? "the time is empty; give one, such as \"1 Myr\"" : "");
+      })
+      ->type_name("T");
   command->add_option("--budget", given->budget, "seconds of wall time for one trial run")
       ->check(wrong_seconds)
       ->type_name("SECONDS");

@@ -27,11 +27,12 @@ std::string progress_bar(double share, std::size_t width) {
 }
 
 std::string progress_text(const Share& share, double seconds) {
-  if (share.row == 0 || share.rows == 0) return share.what;
-  const double done = std::clamp(share.done, 0.0, 1.0);
-  std::string line =
-      fmt::format("{} {:3.0f} %  {} of {}  {}", progress_bar(done), 100 * done, share.row, share.rows, share.what);
-  if (done > 0 && seconds > 0) line += fmt::format("  {} left", spoken_duration(seconds / done * (1 - done)));
+  if (share.rows == 0) return share.what;
+  const double done = std::isfinite(share.done) ? std::clamp(share.done, 0.0, 1.0) : 0;
+  const std::string row = share.row > 0 ? fmt::format("{} of {}  ", share.row, share.rows) : "";
+  std::string line = fmt::format("{} {:3.0f} %  {}{}", progress_bar(done), 100 * done, row, share.what);
+  if (share.row > 0 && done > 0 && seconds > 0)
+    line += fmt::format("  {} left", spoken_duration(seconds / done * (1 - done)));
   return line;
 }
 
@@ -63,7 +64,7 @@ TellShare TerminalLine::teller() {
     const auto now = std::chrono::steady_clock::now();
     if (share.row > 0 && !counting_) begin_ = now;
     counting_ = share.row > 0;
-    if (shown_ && counting_ && std::chrono::duration<double>(now - last_).count() < 0.1) return;
+    if (shown_ && (counting_ || share.done > 0) && std::chrono::duration<double>(now - last_).count() < 0.1) return;
     last_ = now;
     show(progress_text(share, std::chrono::duration<double>(now - begin_).count()));
   };

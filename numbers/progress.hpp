@@ -13,7 +13,7 @@ namespace noether {
 struct Share {
   int row = 0;         ///< the one at work, counted from 1; 0: preparations
   int rows = 0;        ///< all of them; 0: not known yet
-  double done = 0;     ///< of the whole work, from 0 to 1
+  double done = 0;     ///< of the whole work, from 0 to 1; of preparations, of the one at work
   std::string what{};  ///< what is being done: "verlet, step 0.01"
 };
 

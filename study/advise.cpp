@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace noether {
@@ -70,8 +71,7 @@ class Fit {
     if (!rows_.empty()) growth_ = growth(scene, trials, metric);
     chaos_ = metric == Metric::position && trials.motion && trials.motion->chaotic ? &*trials.motion : nullptr;
     if (chaos_ != nullptr) {
-      growth_ = {
-          0, fmt::format("the motion is chaotic: errors grow tenfold in {}", time_in_words(chaos_->tenfold(), scene))};
+      growth_ = {0, fmt::format("the motion is chaotic: errors grow tenfold in {}", tenfold_in_words(*chaos_, scene))};
     }
   }
 
@@ -234,23 +234,29 @@ bool tells_energy(const Scene& scene) {
 
 /// Energy errors of a chaotic motion, as that of a liquid, are soon what they are all along: no row of the trials has
 /// to take more than a quarter of its budget. @return when the trials end, by the clock; none: as comparisons do
-std::optional<double> energy_trials_end(const Scene& scene, const AdviseOptions& options) {
+std::optional<double> energy_trials_end(const Scene& scene, const AdviseOptions& options, Allowance& work) {
   const Sampling whole = sampling_of(scene, {});
-  const double end = chaotic_energy_end(scene, whole, options.row_budget / 4);
+  const double end = chaotic_energy_end(scene, whole, options.row_budget / 4, work);
   if (end >= whole.end()) return {};
   return whole.start + end;
 }
 
 /// Takes the metric that was asked for, or the one that can be held over the whole run.
-void choose_metric(Advice& advice, const Scene& scene, const AdviseOptions& options) {
+void choose_metric(Advice& advice, const Scene& scene, const AdviseOptions& options, Allowance& work) {
   advice.metric = options.metric.value_or(Metric::position);
   if (options.metric || !tells_energy(scene)) return;
-  if (options.progress) options.progress({.what = "how fast small differences grow"});
-  const auto motion = predictability(scene, sampling_of(scene, {}).end(), 4 * options.row_budget);
+  std::function<void(double)> tell;
+  if (options.progress) {
+    tell = [&](double done) { options.progress({0, 1, done, "how fast small differences grow"}); };
+    tell(0);
+  }
+  const auto motion =
+      predictability(scene, sampling_of(scene, {}).end(), 4 * options.row_budget, work.left() / 4, tell);
+  if (motion) work.spent += motion->evaluations;
   const bool liquid = scene.particles.box().is_periodic() || scene.particles.size() > most_bodies;
   if (motion && !motion->judged && liquid) {
     advice.metric = Metric::energy;
-    advice.trials_until = energy_trials_end(scene, options);
+    advice.trials_until = energy_trials_end(scene, options, work);
     advice.metric_reason =
         "errors are those of the energy: the budget does not tell how long positions can be held (--metric position "
         "tries)";
@@ -258,11 +264,11 @@ void choose_metric(Advice& advice, const Scene& scene, const AdviseOptions& opti
   }
   if (!motion || !motion->chaotic || motion->rounding(advice.end) < 0.1 * options.error) return;
   advice.metric = Metric::energy;
-  advice.trials_until = energy_trials_end(scene, options);
+  advice.trials_until = energy_trials_end(scene, options, work);
   advice.metric_reason = fmt::format(
       "errors are those of the energy: the motion is chaotic, small differences of positions grow tenfold "
       "in {}, so no run holds an error of {:g} of positions beyond a time of {} (--metric position tries)",
-      time_in_words(motion->tenfold(), scene), options.error,
+      tenfold_in_words(*motion, scene), options.error,
       time_in_words(std::min(motion->time_of(0.1 * options.error / one_rounding), advice.end), scene));
 }
 
@@ -275,7 +281,7 @@ void tell_chaos(Advice& advice, const Scene& scene, const AdviseOptions& options
   std::string hint = fmt::format(
       "no trajectory of this motion holds an error of {:g} of positions over {}: it is chaotic, small differences grow "
       "tenfold in {}, and roundings alone come to {:g} at a time of {}",
-      options.error, time_in_words(advice.end, scene), time_in_words(motion->tenfold(), scene), options.error,
+      options.error, time_in_words(advice.end, scene), tenfold_in_words(*motion, scene), options.error,
       time_in_words(told, scene));
   if (tells_energy(scene)) hint += "; the energy can be held: --metric energy";
   advice.hints.push_back(std::move(hint));
@@ -325,7 +331,7 @@ std::string reason_of(const Advice& advice, const AdviseOptions& options, bool t
   return fmt::format("{} an error of {:g} over the whole run", tried, options.error);
 }
 
-CompareOptions trials_of(const Advice& advice, const AdviseOptions& options) {
+CompareOptions trials_of(const Advice& advice, const AdviseOptions& options, const Allowance& work) {
   CompareOptions trials;
   trials.methods = options.methods;
   trials.row_budget = options.row_budget;
@@ -334,6 +340,8 @@ CompareOptions trials_of(const Advice& advice, const AdviseOptions& options) {
   trials.positions = advice.metric == Metric::position;
   trials.quick = true;
   trials.until = advice.trials_until;
+  trials.until_at_most = true;
+  trials.work = work;
   trials.repeats = 1;
   return trials;
 }
@@ -355,8 +363,9 @@ Advice advise(const Scene& scene, const AdviseOptions& options) {
   check_request(scene, options);
   Advice advice;
   advice.end = end_of(scene);
-  choose_metric(advice, scene, options);
-  advice.trials = compare(scene, trials_of(advice, options));
+  Allowance work = allowance_of(scene, sampling_of(scene, {}));
+  choose_metric(advice, scene, options, work);
+  advice.trials = compare(scene, trials_of(advice, options, work));
   advice.trial_end = advice.trials.end;
   if (!options.metric && advice.metric == Metric::position && !advice.trials.position_measured && tells_energy(scene)) {
     advice.metric = Metric::energy;

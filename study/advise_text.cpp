@@ -75,6 +75,7 @@ std::string to_json(const Advice& a, const Scene& scene) {
                        {"set", Json::list_of(a.sets)},
                        {"end", a.end},
                        {"trial_end", a.trial_end},
+                       {"trial_evaluations", a.trials.work.spent},
                        {"reason", a.reason.empty() ? Json() : Json(a.reason)},
                        {"best", a.best ? json_of(*a.best) : Json()},
                        {"best_error", a.best ? Json(a.best_error) : Json()},

@@ -181,14 +181,19 @@ std::optional<double> absolute_tolerance(const Scene& scene, double relative) {
   return ratio * relative;
 }
 
-double evaluations_per_step(const Scene& scene, const Candidate& who, double step) {
+double evaluations_per_step(const Scene& scene, const Candidate& who, double step, double* spent) {
   if (who.adaptive) return 0;
-  constexpr std::int64_t begin = 20, count = 20;  // multistep methods start in other ways
+  // Multistep methods start in other ways, and implicit ones do not always take as many iterations.
+  const MethodInfo* info = scene.parts->find_method(who.method);
+  const bool the_same = info == nullptr || info->family.starts_with("runge-kutta");
+  const std::int64_t begin = the_same ? 1 : 20, count = the_same ? 2 : 20;
   Simulation<double> sim = assemble(variant(scene, who, {.step = step, .tolerance = 0}));
-  if (!sim.run(begin).ok()) return 0;
+  const bool begun = sim.run(begin).ok();
   const std::int64_t before = sim.evaluations().force;
-  if (!sim.run(count).ok()) return 0;
-  return static_cast<double>(sim.evaluations().force - before) / static_cast<double>(count);
+  const bool ok = begun && sim.run(count).ok();
+  const std::int64_t all = sim.evaluations().force;
+  if (spent != nullptr) *spent += static_cast<double>(all);
+  return ok ? static_cast<double>(all - before) / static_cast<double>(count) : 0;
 }
 
 }  // namespace noether

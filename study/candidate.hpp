@@ -47,6 +47,7 @@ Scene variant(const Scene& scene, const Candidate& who, const Setting& setting);
 std::optional<double> absolute_tolerance(const Scene& scene, double relative);
 
 /// Evaluations of forces that one step of about `step` takes, measured on a few; adaptive methods: 0.
-double evaluations_per_step(const Scene& scene, const Candidate& who, double step);
+/// @param spent  is increased by the evaluations that this takes
+double evaluations_per_step(const Scene& scene, const Candidate& who, double step, double* spent = nullptr);
 
 }  // namespace noether

@@ -17,6 +17,8 @@
 #include <cmath>
 #include <ctime>
 #include <fstream>
+#include <functional>
+#include <limits>
 
 namespace noether {
 
@@ -32,32 +34,36 @@ std::string processor() {
 }
 
 /// The step a scene takes, or the mean one of a method that chooses.
-double own_step(const Scene& scene, const Sampling& sampling) {
+/// @param spent  is increased by the evaluations that this takes
+double own_step(const Scene& scene, const Sampling& sampling, double& spent) {
   if (!scene.integrator.adaptive()) return scene.integrator.step;
   Scene alone = scene;
   alone.watches.clear();
   alone.stops.clear();
   Simulation<double> sim = assemble(alone);
   static_cast<void>(sim.run_until(sampling.start + sampling.interval));
+  spent += static_cast<double>(sim.evaluations().force);
   return sim.step() > 0 ? sampling.interval / static_cast<double>(sim.step()) : sampling.interval;
 }
 
-/// Steps of an candidate that cost as much as the scene's own: four times as long to eight times as short, by twos.
-std::vector<double> ladder(const Scene& scene, const Candidate& who, const Sampling& sampling) {
-  const double own = own_step(scene, sampling);
+/// Steps of a candidate that cost as much as the scene's own: four times as long to eight times as short, by twos.
+/// @param few  only twice as long to half as long
+std::vector<double> ladder(const Scene& scene, const Candidate& who, const Sampling& sampling, double own,
+                           StepCosts& costs, bool few) {
   const double measured_at = std::min(own, sampling.interval);
   double factor = 1;
   if (!scene.integrator.adaptive()) {
     const Candidate self{scene.integrator.method, scene.integrator.method, false, false};
-    const double mine = evaluations_per_step(scene, self, measured_at);
-    const double other = evaluations_per_step(scene, who, measured_at);
+    const double mine = costs.of(self, measured_at);
+    const double other = costs.of(who, measured_at);
     if (mine > 0 && other > 0) factor = other / mine;
   } else {
-    const double other = evaluations_per_step(scene, who, measured_at);
+    const double other = costs.of(who, measured_at);
     if (other > 0) factor = other / 12;
   }
   std::vector<double> steps;
-  for (double step = 4 * own * factor; steps.size() < 6; step /= 2) steps.push_back(step);
+  const std::size_t count = few ? fewest_rows : 6;
+  for (double step = (few ? 2 : 4) * own * factor; steps.size() < count; step /= 2) steps.push_back(step);
   return steps;
 }
 
@@ -166,17 +172,22 @@ Sampling sampling_of(const Scene& scene, const std::optional<double>& until) {
   return sampling;
 }
 
-std::vector<Setting> settings_of(const Scene& scene, const Candidate& who, const Sampling& sampling,
-                                 const CompareOptions& options) {
+namespace {
+
+/// @param own  step of the scene
+/// @param few  so few that they just tell an order
+std::vector<Setting> settings_with(const Scene& scene, const Candidate& who, const Sampling& sampling,
+                                   const CompareOptions& options, double own, StepCosts& costs, bool few) {
   std::vector<Setting> settings;
   if (who.adaptive) {
     std::vector<double> tolerances = options.tolerances;
     if (tolerances.empty()) tolerances = {1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14};
+    if (options.tolerances.empty() && few) tolerances.resize(fewest_rows);
     std::sort(tolerances.rbegin(), tolerances.rend());
     for (const double one : tolerances) settings.push_back({.step = 0, .tolerance = one});
     return settings;
   }
-  std::vector<double> steps = options.steps.empty() ? ladder(scene, who, sampling) : options.steps;
+  std::vector<double> steps = options.steps.empty() ? ladder(scene, who, sampling, own, costs, few) : options.steps;
   std::sort(steps.rbegin(), steps.rend());
   std::int64_t last = 0;
   for (const double step : steps) {
@@ -186,6 +197,15 @@ std::vector<Setting> settings_of(const Scene& scene, const Candidate& who, const
     settings.push_back({.step = sampling.interval / static_cast<double>(count), .tolerance = 0});
   }
   return settings;
+}
+
+}  // namespace
+
+std::vector<Setting> settings_of(const Scene& scene, const Candidate& who, const Sampling& sampling,
+                                 const CompareOptions& options) {
+  StepCosts costs(scene);
+  double spent = 0;
+  return settings_with(scene, who, sampling, options, own_step(scene, sampling, spent), costs, false);
 }
 
 namespace {
@@ -200,27 +220,37 @@ bool keeps_energy(const Scene& scene) {
 class Comparer {
  public:
   Comparer(const Scene& scene, const CompareOptions& options)
-      : scene_(scene), options_(options), error_(scene.particles, about_center(scene)) {}
+      : scene_(scene), options_(options), costs_(scene), error_(scene.particles, about_center(scene)) {}
 
   Comparison run() {
     const Sampling asked = sampling_of(scene_, options_.until);
     check(options_, asked);
-    const Horizon paid = affordable_horizon(scene_, asked, !options_.until, options_.row_budget);
+    work_ = options_.work ? *options_.work : may_shorten() ? allowance_of(scene_, asked) : Allowance{};
+    const Horizon paid = affordable_horizon(scene_, asked, !options_.until, options_.row_budget, work_);
     c_ = headed(scene_, paid.sampling);
     c_.limits = paid.told;
     c_.methods = opponents_of(scene_, options_);
     check_use(scene_, c_.methods, options_);
     choose_settings();  // before anything runs: one that cannot be is told at once
+    if (may_shorten()) fit_to_work();
     find_reference();
     measure_rows();
     conclude();
+    c_.work = work_;
     return std::move(c_);
   }
 
  private:
   bool many() const { return scene_.particles.size() > most_bodies; }
+  bool may_shorten() const { return !options_.until || options_.until_at_most; }
   void tell(const std::string& what, int row = 0, double done = 0) const {
     if (options_.progress) options_.progress({row, rows(), done, what});
+  }
+  /// Tells shares of a preparation.
+  std::function<void(double)> teller(const std::string& what) const {
+    if (!options_.progress) return {};
+    tell(what);
+    return [this, what](double done) { tell(what, 0, done); };
   }
   int rows() const {
     std::size_t all = 0;
@@ -230,37 +260,90 @@ class Comparer {
 
   void choose_settings() {
     settings_.clear();
-    for (const Candidate& who : c_.methods) settings_.push_back(settings_of(scene_, who, c_.sampling, options_));
+    own_step_ = own_step(scene_, c_.sampling, work_.spent);
+    for (const Candidate& who : c_.methods)
+      settings_.push_back(settings_with(scene_, who, c_.sampling, options_, own_step_, costs_, few_rows_));
+    work_.spent += costs_.take_spent();
   }
 
-  /// A truth in extended precision; where there is none, and the motion is chaotic or of many, one in double precision,
-  /// over the time for which there can be one.
-  void find_reference() {
-    c_.truth = {.name = "invariants", .note = "positions are not asked for"};
-    if (!options_.positions && keeps_energy(scene_)) return;
-    tell("reference in extended precision");
-    c_.truth = find_truth(scene_, c_.sampling, options_.truth);
-    if (c_.truth.has_states() || scene_.particles.size() > most_particles) return;
-    const double left = std::max(options_.truth.budget - c_.truth.seconds, options_.truth.budget / 2);
-    tell("how fast small differences grow");
-    c_.motion = predictability(scene_, c_.sampling.end(), left / 4);
-    Horizon told{.sampling = c_.sampling};
-    if (c_.motion) told = predictable_horizon(scene_, c_.sampling, !options_.until, *c_.motion);
-    if (!many() && told.told.empty()) return;
-    shorten(told);
-    if (options_.until && c_.motion && c_.motion->rounding(c_.end) > 1e-3) return;  // nothing tells positions there
-    tell("reference in double precision");
-    const std::string why = c_.truth.note;
-    c_.truth = truth_in_double(scene_, c_.sampling, left, error_);
-    c_.truth.note += fmt::format("; {}", why);
+  /// Evaluations of a row: those of adaptive methods are not known before, and taken to be those of the scene's own
+  /// run.
+  double expected(std::size_t i, const Setting& setting) {
+    const Candidate& who = c_.methods[i];
+    const auto length = scene_.integrator.length();
+    if (!std::isfinite(work_.most)) return 0;  // nobody needs to know
+    if (who.adaptive) return length ? 2 * work_.own_run * c_.end / *length : 0;
+    const double step = setting.step > 0 ? setting.step : c_.sampling.interval;
+    const double each = costs_.of(who, std::min(own_step_, c_.sampling.interval));
+    work_.spent += costs_.take_spent();
+    return (each > 0 ? each : 1) * c_.end / step;
+  }
+  double expected(std::size_t i) {
+    double all = 0;
+    for (const Setting& setting : settings_[i]) all += expected(i, setting);
+    return all;
+  }
+  double expected_from(std::size_t first) {
+    double all = 0;
+    for (std::size_t i = first; i < settings_.size(); ++i) all += expected(i);
+    return all;
   }
 
-  void shorten(const Horizon& told) {
-    if (told.told.empty()) return;
-    c_.limits += (c_.limits.empty() ? "" : "; ") + told.told;
-    if (told.sampling.interval == c_.sampling.interval) return;
+  /// What all rows together may take: where positions are compared, their reference takes as much.
+  double room_for_rows() const { return options_.positions ? work_.left() / 2 : work_.left(); }
+  bool too_much() { return expected_from(0) > room_for_rows(); }
+
+  /// Ends the runs earlier, until measuring takes no more than the scene's own run; as far as runs still tell
+  /// something.
+  void fit_to_work() {
+    if (!std::isfinite(work_.most) || !too_much()) return;
+    const double least = (options_.quick ? 200 : 80) * own_step_, whole = c_.end;
+    Sampling shorter = c_.sampling;
+    while (too_much() && c_.end / 2 >= least) take(shorter, c_.end / 2);
+    if (options_.quick && too_much()) {
+      constexpr int few_moments = 10;  // steps of methods with many stages have to fit between them
+      shorter.samples = std::min(shorter.samples, few_moments);
+      few_rows_ = true;
+      take(shorter, std::min(c_.end, 100 * own_step_));
+      leave_out_methods();
+    }
+    tell_limits(whole);
+  }
+
+  void tell_limits(double whole) {
+    const std::string most =
+        work_.most > work_.own_run
+            ? fmt::format("{:.3g} evaluations of forces", work_.most)
+            : fmt::format("the {:.5g} evaluations of forces of the scene's own run", work_.own_run);
+    const auto add = [&](const std::string& told) { c_.limits += (c_.limits.empty() ? "" : "; ") + told; };
+    if (c_.end < whole) {
+      add(fmt::format("runs are compared over {} of {}, so that measuring stays within {}",
+                      time_in_words(c_.end, scene_), time_in_words(whole, scene_), most));
+    }
+    if (left_out_.empty()) return;
+    add(fmt::format("left out {}: {}", c_.end < whole ? "for the same reason" : "to stay within " + most, left_out_));
+  }
+
+  void take(Sampling& sampling, double end) {
+    sampling.interval = end / sampling.samples;
+    start_over(sampling);
+  }
+
+  /// Keeps the methods, from the first on, that there is work for.
+  void leave_out_methods() {
+    std::size_t kept = 1;
+    double all = expected(0);
+    while (kept < c_.methods.size() && all + expected(kept) <= room_for_rows()) all += expected(kept++);
+    for (std::size_t i = kept; i < c_.methods.size(); ++i)
+      left_out_ += (left_out_.empty() ? "" : ", ") + c_.methods[i].label;
+    c_.methods.resize(kept);
+    settings_.resize(kept);
+  }
+
+  /// The same comparison with other moments.
+  void start_over(const Sampling& sampling) {
     const Comparison before = std::move(c_);
-    c_ = headed(scene_, told.sampling);
+    c_ = headed(scene_, sampling);
     c_.limits = before.limits;
     c_.methods = before.methods;
     c_.motion = before.motion;
@@ -268,23 +351,74 @@ class Comparer {
     choose_settings();
   }
 
+  /// What a way to find the reference may take: half of what the rows leave, but as much as half of the rows in any
+  /// case.
+  double room_for_reference() {
+    const double rows = expected_from(0);
+    return std::max(work_.left() - rows, rows) / 2;
+  }
+
+  /// A truth in extended precision; where there is none, and the motion is chaotic or of many, one in double precision,
+  /// over the time for which there can be one.
+  void find_reference() {
+    c_.truth = {.name = "invariants", .note = "positions are not asked for"};
+    if (!options_.positions && keeps_energy(scene_)) return;
+    TruthOptions how = options_.truth;
+    how.most_evaluations = room_for_reference();
+    how.tell = teller("reference in extended precision");
+    c_.truth = find_truth(scene_, c_.sampling, how);
+    work_.spent += c_.truth.evaluations;
+    if (c_.truth.has_states() || scene_.particles.size() > most_particles) return;
+    const double left = std::max(options_.truth.budget - c_.truth.seconds, options_.truth.budget / 2);
+    c_.motion = predictability(scene_, c_.sampling.end(), left / 4, room_for_reference() / 2,
+                               teller("how fast small differences grow"));
+    if (c_.motion) work_.spent += c_.motion->evaluations;
+    Horizon told{.sampling = c_.sampling};
+    if (c_.motion) told = predictable_horizon(scene_, c_.sampling, !options_.until, *c_.motion);
+    if (!many() && told.told.empty()) return;
+    shorten(told);
+    if (options_.until && c_.motion && c_.motion->rounding(c_.end) > 1e-3) return;  // nothing tells positions there
+    const std::string why = c_.truth.note;
+    how.budget = left;
+    how.most_evaluations = room_for_reference();
+    how.tell = teller("reference in double precision");
+    c_.truth = truth_in_double(scene_, c_.sampling, how, error_);
+    work_.spent += c_.truth.evaluations;
+    c_.truth.note += fmt::format("; {}", why);
+  }
+
+  void shorten(const Horizon& told) {
+    if (told.told.empty()) return;
+    c_.limits += (c_.limits.empty() ? "" : "; ") + told.told;
+    if (told.sampling.interval != c_.sampling.interval) start_over(told.sampling);
+  }
+
   void measure_rows() {
     error_.set_scale(c_.truth.y);
     const bool known = c_.truth.has_states();
-    const MeasureOptions how{.repeats = options_.repeats,
-                             .budget = options_.row_budget,
-                             .states = known && scene_.particles.size() <= most_particles,
-                             .quick = options_.quick,
-                             .shadow = !options_.quick};
+    MeasureOptions how{.repeats = options_.repeats,
+                       .budget = options_.row_budget,
+                       .states = known && scene_.particles.size() <= most_particles,
+                       .quick = options_.quick,
+                       .shadow = !options_.quick};
     for (std::size_t i = 0; i < c_.methods.size(); ++i) {
+      const double reserved = expected_from(i + 1);
       for (std::size_t k = 0; k < settings_[i].size(); ++k) {
         tell_row(i, k);
+        if (may_shorten()) how.most_evaluations = most_of_row(i, k, reserved);
         Row row = measure(scene_, c_.methods[i], settings_[i][k], c_.sampling, how);
+        work_.spent += row.work;
         if (known) set_errors(row, c_.truth, c_.sampling, error_);
         if (known && many()) row.track.y = {};  // those of all rows would not fit into memory
         c_.rows.push_back(std::move(row));
       }
     }
+  }
+
+  /// What a row may take: all that later ones, which are known, leave; and what it is expected to take in any case.
+  double most_of_row(std::size_t i, std::size_t k, double reserved) {
+    for (std::size_t later = k + 1; later < settings_[i].size(); ++later) reserved += expected(i, settings_[i][later]);
+    return std::max(work_.left() - reserved, 1.05 * expected(i, settings_[i][k]) + c_.sampling.samples);
   }
 
   /// The rows of a method cost about twice as much one after the other, and each method about the same.
@@ -313,6 +447,11 @@ class Comparer {
 
   const Scene& scene_;
   const CompareOptions& options_;
+  StepCosts costs_;
+  Allowance work_;
+  double own_step_ = 0;
+  bool few_rows_ = false;
+  std::string left_out_;  ///< methods that there is no work for, in words
   PositionError error_;
   Comparison c_;
   std::vector<std::vector<Setting>> settings_;  ///< method by method

@@ -1,6 +1,7 @@
 #pragma once
 /// A finished comparison of methods on a scene.
 
+#include "study/allowance.hpp"
 #include "study/measure.hpp"
 #include "study/predictability.hpp"
 
@@ -33,6 +34,7 @@ struct Comparison {
   Truth truth = {};
   std::optional<std::size_t> reference = {};  ///< the row that is the truth, where that is the finest run
   bool position_measured = false;             ///< else the energy decides
+  Allowance work = {};  ///< evaluations of forces: of the scene's own run, and those taken by the comparison
   std::vector<Candidate> methods = {};
   std::vector<Row> rows = {};  ///< method by method, from coarse to fine
   std::vector<OrderFit> orders = {};

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -49,8 +50,9 @@ std::string too_slow(double reached, double seconds, double budget) {
 }
 
 /// @param most  evaluations, beyond which it is no use
+/// @param tell  is told which share of the sampling is done, if there is one
 WideRun run_wide(const WideScene& wide, const Sampling& sampling, const MethodChoice& choice, double budget,
-                 std::int64_t most = std::numeric_limits<std::int64_t>::max()) {
+                 double most, const std::function<void(double)>& tell) {
   WideRun run;
   const auto field = wide.field->clone();
   const auto method = make_method<Quad>(*choice.info, choice.options);
@@ -86,11 +88,12 @@ WideRun run_wide(const WideScene& wide, const Sampling& sampling, const MethodCh
       }
       t += Quad(made.h);
       run.evaluations = field->evaluations().force;
-      if (run.evaluations > most) {
+      if (static_cast<double>(run.evaluations) > most) {
         run.failure = "it takes too many evaluations";
         return run;
       }
       const double reached = static_cast<double>(t - Quad(sampling.start)) / sampling.end(), spent = since(begin);
+      if (tell) tell(std::max(reached, spent / budget));
       if (spent > budget || (spent > 0.1 * budget && spent > 2 * reached * budget)) {
         run.failure = too_slow(reached, spent, budget);
         return run;
@@ -148,12 +151,16 @@ double distance(const WideRun& a, const WideRun& b, PositionError& error) {
 
 /// States by one way, with their distance from what another method finds, or, where that does not come to the end, the
 /// same at another tolerance; without an error where two runs have not come to the end.
-Truth drive(const WideScene& wide, const Way& way, const Sampling& sampling, PositionError& error, double budget) {
+Truth drive(const WideScene& wide, const Way& way, const Sampling& sampling, PositionError& error, double budget,
+            const TruthOptions& options) {
   Truth truth{.name = std::string(no_truth)};
   const auto begin = std::chrono::steady_clock::now();
-  const auto run = [&](const MethodChoice& choice, std::int64_t most = std::numeric_limits<std::int64_t>::max()) {
-    WideRun made = run_wide(wide, sampling, choice, budget - since(begin), most);
+  constexpr double any = std::numeric_limits<double>::infinity();
+  const auto run = [&](const MethodChoice& choice, double most = any) {
+    most = std::min(most, options.most_evaluations - truth.evaluations);
+    WideRun made = run_wide(wide, sampling, choice, budget - since(begin), most, options.tell);
     truth.seconds = since(begin);
+    truth.evaluations += static_cast<double>(made.evaluations);
     if (!made.failure.empty() && !truth.error) truth.note = made.failure;
     return made;
   };
@@ -165,7 +172,7 @@ Truth drive(const WideScene& wide, const Way& way, const Sampling& sampling, Pos
   WideRun finest = run(way.finest);
   if (!finest.failure.empty()) return truth;
   for (const MethodChoice& other : way.others) {
-    const WideRun beside = run(other, patience * finest.evaluations);
+    const WideRun beside = run(other, static_cast<double>(patience * finest.evaluations));
     if (!beside.failure.empty()) break;
     truth.error = distance(finest, beside, error);
     told(way.finest, other);
@@ -213,10 +220,13 @@ Truth find_truth(const Scene& scene, const Sampling& sampling, const TruthOption
   if (wide.field == nullptr && !wide.splitting) return truth;
   PositionError error(scene.particles, about_center(scene));
   if (wide.splitting) return truth_by_splitting(wide, sampling, options, error);
-  double spent = 0;
+  double spent = 0, evaluations = 0;
   for (const Way& way : ways_of(wide, options)) {
-    truth = drive(wide, way, sampling, error, options.budget - spent);
+    TruthOptions left = options;
+    left.most_evaluations -= evaluations;
+    truth = drive(wide, way, sampling, error, options.budget - spent, left);
     truth.seconds = spent += truth.seconds;
+    truth.evaluations = evaluations += truth.evaluations;
     if (truth.error) truth.kind = TruthKind::quad, truth.name = fmt::format("{} in quad", way.finest.info->name);
     if (truth.error || spent > options.budget / 2) break;
   }
@@ -231,7 +241,8 @@ Truth find_truth(const Scene& scene, const Sampling& sampling, const TruthOption
         "two runs in extended precision differ by {:.1e}: the motion is too irregular for a reference over this time",
         *truth.error);
   }
-  return Truth{.name = std::string(no_truth), .note = truth.note, .seconds = truth.seconds};
+  return Truth{
+      .name = std::string(no_truth), .note = truth.note, .seconds = truth.seconds, .evaluations = truth.evaluations};
 }
 
 }  // namespace noether

@@ -13,7 +13,7 @@ namespace {
 constexpr int moments_of_many = 40;
 
 /// Wall time that the scene's own run takes for a time of its own, measured on a few steps [s/time]; 0: not known.
-double own_cost(const Scene& scene, const Sampling& sampling) {
+double own_cost(const Scene& scene, const Sampling& sampling, Allowance& work) {
   Scene alone = scene;
   alone.watches.clear();
   alone.stops.clear();
@@ -22,13 +22,14 @@ double own_cost(const Scene& scene, const Sampling& sampling) {
   const bool ok = scene.integrator.adaptive() ? sim.run_until(sampling.start + 0.01 * sampling.end()).ok()
                                               : sim.run(20).ok();  // the list of neighbors is built once or twice
   const double gone = sim.time() - before;
+  work.spent += static_cast<double>(sim.evaluations().force);
   return ok && gone > 0 ? sim.seconds() / gone : 0;
 }
 
 }  // namespace
 
-double chaotic_energy_end(const Scene& scene, const Sampling& sampling, double seconds) {
-  const double cost = own_cost(scene, sampling);
+double chaotic_energy_end(const Scene& scene, const Sampling& sampling, double seconds, Allowance& work) {
+  const double cost = own_cost(scene, sampling, work);
   const double least = scene.integrator.step > 0 ? 200 * scene.integrator.step : sampling.end() / 64;
   double end = sampling.end();
   while (8 * cost * end > seconds && end / 2 >= least) end /= 2;
@@ -39,12 +40,18 @@ std::string time_in_words(double time, const Scene& scene) {
   return scene.units->is_reduced() ? fmt::format("{:.3g}", time) : fmt::format("{:.3g} {}", time, scene.units->time);
 }
 
-Horizon affordable_horizon(const Scene& scene, const Sampling& sampling, bool may_shorten, double row_budget) {
+std::string tenfold_in_words(const Predictability& motion, const Scene& scene) {
+  const std::string time = time_in_words(motion.tenfold(), scene);
+  return motion.e_foldings > 0 ? fmt::format("{} (fitted over {:.0f} e-foldings)", time, motion.e_foldings) : time;
+}
+
+Horizon affordable_horizon(const Scene& scene, const Sampling& sampling, bool may_shorten, double row_budget,
+                           Allowance& work) {
   Horizon horizon{.sampling = sampling};
   if (scene.particles.size() <= most_bodies) return horizon;
   horizon.sampling.samples = moments_of_many;
   double end = sampling.end();
-  const double cost = may_shorten ? own_cost(scene, sampling) : 0;
+  const double cost = may_shorten ? own_cost(scene, sampling, work) : 0;
   const double least = scene.integrator.step > 0 ? 2 * moments_of_many * scene.integrator.step : end / 64;
   while (8 * cost * end > row_budget && end / 2 >= least) end /= 2;
   if (end < sampling.end()) {
@@ -61,8 +68,8 @@ Horizon predictable_horizon(const Scene& scene, const Sampling& sampling, bool m
   Horizon horizon{.sampling = sampling};
   double end = sampling.end();
   if (!motion.chaotic || motion.rounding(end) <= rounding_compared) return horizon;
-  const std::string why = fmt::format("the motion is chaotic: small differences grow tenfold in {}",
-                                      time_in_words(motion.tenfold(), scene));
+  const std::string why =
+      fmt::format("the motion is chaotic: small differences grow tenfold in {}", tenfold_in_words(motion, scene));
   if (!may_shorten) {
     horizon.told =
         fmt::format("{}, so roundings alone move positions by {:.0e} at the end; --until {} can be compared", why,

@@ -42,6 +42,22 @@ class Recorder {
   double start_;  ///< what the clock shows at step 0 [time]
 };
 
+/// Raises a flag when a run has made so many evaluations.
+class Meter {
+ public:
+  Meter(const Simulation<double>& run, double most, std::atomic<bool>& over) : run_(&run), over_(&over), most_(most) {}
+
+  static constexpr auto describe() { return part<Meter>("meter", "evaluations of a comparison"); }
+  void observe(const Snapshot<double>& /*now*/) {
+    if (static_cast<double>(run_->evaluations().force) > most_) *over_ = true;
+  }
+
+ private:
+  const Simulation<double>* run_;
+  std::atomic<bool>* over_;
+  double most_;
+};
+
 /// Ends a run at the end of its budget.
 class Budget {
  public:
@@ -51,6 +67,7 @@ class Budget {
       if (now.seconds > seconds) over_ = true;
     });
   }
+  std::atomic<bool>& flag() { return over_; }
 
  private:
   std::atomic<bool> over_{false};
@@ -117,7 +134,9 @@ bool watched_run(Row& row, const Scene& alone, const Sampling& sampling, const M
   if (kept && alone.hamiltonian.constraints.empty()) spin = watch(sim, row.setting, sampling, AngularMomentum());
   const ShadowHamiltonian<double>* fluctuation =
       options.shadow ? watch_shadow(sim, alone, row.setting, sampling) : nullptr;
-  const Budget budget(sim, options.budget);
+  Budget budget(sim, options.budget);
+  if (std::isfinite(options.most_evaluations))
+    watch(sim, row.setting, sampling, Meter(sim, options.most_evaluations, budget.flag()));
   const Outcome outcome = run_whole(sim, row.setting, sampling);
   const bool over = outcome.kind == Outcome::Kind::interrupted;  // nothing else ends it early
   row.outcome = over ? "over_budget" : std::string(name(outcome.kind));
@@ -125,6 +144,7 @@ bool watched_run(Row& row, const Scene& alone, const Sampling& sampling, const M
   row.outcome_time = outcome.time;
   row.steps = sim.step();
   row.evaluations = sim.evaluations();
+  row.work = static_cast<double>(row.evaluations.force);
   row.wall_s = sim.seconds();
   row.digest = io::digest(sim.particles());
   if (watched != nullptr) track->energy_report = watched->report();
@@ -153,6 +173,7 @@ void timed_runs(Row& row, const Scene& alone, const Sampling& sampling, const Me
   std::vector<double> seconds;
   double spent = 0;
   const auto again = [&](int done) {
+    if (row.work + static_cast<double>(row.evaluations.force) > options.most_evaluations) return false;
     if (done == 0) return true;
     return spent < std::min(options.budget, long_enough) &&
            (done < options.repeats || (spent < soon_over && done < 5 * options.repeats));
@@ -160,10 +181,12 @@ void timed_runs(Row& row, const Scene& alone, const Sampling& sampling, const Me
   for (int k = 0; again(k); ++k) {
     Simulation<double> sim = assemble(alone);
     static_cast<void>(run_whole(sim, row.setting, sampling));
+    row.work += static_cast<double>(sim.evaluations().force);
     seconds.push_back(sim.seconds());
     spent += seconds.back();
   }
-  row.repeats = static_cast<int>(seconds.size());
+  row.repeats = std::max(1, static_cast<int>(seconds.size()));
+  if (seconds.empty()) return;  // the watched run has told its time
   const Spread spread = spread_of(seconds);
   row.wall_s = spread.median;
   row.wall_mad_s = spread.mad;

@@ -6,6 +6,7 @@
 #include "study/sampling.hpp"
 #include "study/truth.hpp"
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,6 +32,7 @@ struct Row {
   double outcome_time = 0;  ///< by the clock [time]
   std::int64_t steps = 0;
   Evaluations evaluations = {};
+  double work = 0;  ///< evaluations of forces by all runs of the row, the timed ones too
   std::optional<double> wall_s = {}, wall_mad_s = {};  ///< of the run alone, nobody watching
   int repeats = 0;
   std::optional<double> position_error_max = {}, position_error_rms = {}, position_error_end = {};
@@ -63,6 +65,7 @@ struct MeasureOptions {
   double budget = 10;  ///< seconds of wall time for one run
   bool states = true;  ///< whether the states of more than `most_bodies` are kept
   bool quick = false;  ///< whether the time of the watched run is enough where it is long
+  double most_evaluations = std::numeric_limits<double>::infinity();  ///< of forces, by all runs of the row
   bool shadow = true;  ///< whether the shadow Hamiltonian is watched, which takes several evaluations at each moment
 };
 

@@ -13,8 +13,10 @@ namespace noether {
 namespace {
 
 constexpr double first_distance = 1e-10, last_distance = 1e-3;
+constexpr double fewest_e_foldings = 3;    ///< that a rate is fitted over
+constexpr std::size_t fewest_moments = 5;  ///< the same
 constexpr double moment_growth = 1.05;     ///< of the time from one moment to the next
-constexpr double first_moment = 0x1p-24;  ///< of the whole time, where steps are chosen by a tolerance
+constexpr double first_moment = 0x1p-24;   ///< of the whole time, where steps are chosen by a tolerance
 
 /// A number from -1 to 1 that looks like chance.
 double shake(Index i) {
@@ -94,6 +96,9 @@ class TwoRuns {
     }
     return true;
   }
+  double evaluations() const { return static_cast<double>(one_->evaluations().force + other_->evaluations().force); }
+  /// The same at the next moment, if steps go on as long.
+  double evaluations_soon() const { return evaluations() * next_ / std::max(done_, 1e-300); }
   double distance() {
     return distance_of_states(state_of(one_->particles()), state_of(other_->particles()), particles_);
   }
@@ -106,6 +111,40 @@ class TwoRuns {
   std::optional<Simulation<double>> one_, other_;
 };
 
+/// A straight line through the logarithm of the growth, each moment weighed by the time that it stands for.
+/// @return its slope [1/time]
+double fitted_rate(const Predictability& p, std::size_t first, std::size_t last) {
+  const auto weight = [&](std::size_t k) {
+    return (p.times[std::min(k + 1, last)] - p.times[std::max(k, first + 1) - 1]) / 2;
+  };
+  const auto mean = [&](const auto& value) {
+    const auto count = static_cast<Index>(last - first + 1);
+    const auto at = [&](Index k) { return first + static_cast<std::size_t>(k); };
+    const double all = sum_over<double>(count, [&](Index k) { return weight(at(k)); });
+    return sum_over<double>(count, [&](Index k) { return weight(at(k)) * value(at(k)); }) / all;
+  };
+  const double time = mean([&](std::size_t k) { return p.times[k]; });
+  const double height = mean([&](std::size_t k) { return std::log(p.moment[k]); });
+  const double common = mean([&](std::size_t k) { return (p.times[k] - time) * (std::log(p.moment[k]) - height); });
+  const double square = mean([&](std::size_t k) { return (p.times[k] - time) * (p.times[k] - time); });
+  return common / square;
+}
+
+/// The rate of an exponential growth, fitted from where the difference is ten times what it was at the start, when it
+/// has turned into the direction that grows fastest, to where it is half of the largest it ever is: it saturates there,
+/// or was followed no further. Leaves it alone where this stretch tells too little.
+void fit_rate(Predictability& p) {
+  const auto reached = [&](double wanted) {  // growth is the largest so far, so it never falls
+    return static_cast<std::size_t>(std::lower_bound(p.growth.begin(), p.growth.end(), wanted) - p.growth.begin());
+  };
+  const std::size_t first = reached(10), last = reached(p.growth.back() / 2);
+  if (last < first + fewest_moments - 1) return;
+  const double e_foldings = std::log(p.growth[last] / p.growth[first]), rate = fitted_rate(p, first, last);
+  if (e_foldings < fewest_e_foldings || !(rate > 0)) return;
+  p.rate = rate;
+  p.e_foldings = e_foldings;
+}
+
 /// Calls it chaotic where the difference has grown much, and more in the second half of the time than any power does.
 void judge_growth(Predictability& p) {
   if (p.times.size() < 8) return;
@@ -116,6 +155,7 @@ void judge_growth(Predictability& p) {
   if (!(all >= 1e3) || !(second > 20)) return;
   p.chaotic = true;
   p.rate = std::log(second) / (p.times[last] - p.times[half]);
+  fit_rate(p);
 }
 
 }  // namespace
@@ -139,7 +179,8 @@ double Predictability::time_of(double wanted) const {
 
 double Predictability::tenfold() const { return std::log(10.0) / rate; }
 
-std::optional<Predictability> predictability(const Scene& scene, double end, double budget) {
+std::optional<Predictability> predictability(const Scene& scene, double end, double budget, double most,
+                                             const std::function<void(double)>& tell) {
   const double size = size_of_state(state_of(scene.particles), scene.particles.size());
   if (!(size > 0) || !(end > 0)) return {};
   const auto begin = std::chrono::steady_clock::now();
@@ -158,8 +199,14 @@ std::optional<Predictability> predictability(const Scene& scene, double end, dou
       largest = std::max(largest, distance);
       found.times.push_back(both.time());
       found.growth.push_back(largest / first);
+      found.moment.push_back(distance / first);
       const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-      if (distance > last_distance * size || spent > budget) break;
+      found.evaluations = both.evaluations();
+      if (distance > last_distance * size || spent > budget || both.evaluations_soon() > most) break;
+      if (tell) {
+        const double grown = std::log(largest / first) / std::log(last_distance / first_distance);
+        tell(std::max({spent / budget, both.time() / end, grown, found.evaluations / most}));
+      }
     }
     both_came_to_the_end = both.at_end();
   } catch (const Error&) {

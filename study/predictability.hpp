@@ -3,6 +3,8 @@
 
 #include "scene/scene.hpp"
 
+#include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -16,9 +18,13 @@ inline constexpr double one_rounding = 2.2e-16;
 struct Predictability {
   std::vector<double> times = {};   ///< from the start on [time]
   std::vector<double> growth = {};  ///< the largest difference so far, over that at the start
+  std::vector<double> moment = {};  ///< the difference at the time itself, over that at the start
   bool chaotic = false;
   bool judged = true;  ///< whether it was followed to the end, or until differences had grown a thousandfold
-  double rate = 0;     ///< of its logarithm, where it is chaotic [1/time]
+  double rate = 0;     ///< of its logarithm, where it is chaotic: the largest Lyapunov exponent, roughly [1/time]
+  /// Of its growth, so many the rate was fitted over; 0 where they were too few, and the rate is that of the last half.
+  double e_foldings = 0;
+  double evaluations = 0;  ///< of forces that following it took
 
   /// How many times a difference has grown after a time; beyond what was followed by the rate, or as its square.
   double factor(double time) const;
@@ -34,7 +40,11 @@ struct Predictability {
 /// dop853; until they are 1e-3 apart. Empty where they cannot be made, or nothing can be moved.
 /// @param end  from the start on [time]
 /// @param budget  seconds of wall time
+/// @param most  evaluations of forces by both runs together, beyond which they end
+/// @param tell  is told how far it is, from 0 to 1
 /// @cost two runs of the scene, or less
-std::optional<Predictability> predictability(const Scene& scene, double end, double budget);
+std::optional<Predictability> predictability(const Scene& scene, double end, double budget,
+                                             double most = std::numeric_limits<double>::infinity(),
+                                             const std::function<void(double)>& tell = {});
 
 }  // namespace noether

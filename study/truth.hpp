@@ -5,6 +5,8 @@
 #include "numbers/types.hpp"
 
 #include <cstdint>
+#include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,6 +28,7 @@ struct Truth {
   std::string note = {};             ///< how it was made, or why there is no better one
   std::optional<double> error = {};  ///< largest distance between two ways to find it, relative as position errors are
   double seconds = 0;                ///< wall time it took
+  double evaluations = 0;            ///< of forces that it took, with those of what stands beside it
   std::vector<Vector<Quad>> y = {}, rate = {};  ///< rate: dy/dt, for moments that differ by a rounding error
   std::vector<double> energy = {};              ///< total [energy]; empty where nothing tells it
 
@@ -34,8 +37,10 @@ struct Truth {
 
 /// How far a truth is driven.
 struct TruthOptions {
-  double budget = 120;              ///< seconds of wall time for all settings together
-  std::optional<double> rtol = {};  ///< of the coarsest run of the first method; default: by the method
+  double budget = 120;  ///< seconds of wall time for all settings together
+  double most_evaluations = std::numeric_limits<double>::infinity();  ///< of forces, likewise
+  std::optional<double> rtol = {};        ///< of the coarsest run of the first method; default: by the method
+  std::function<void(double)> tell = {};  ///< is told which share of the budget is gone, from 0 to 1
 };
 
 }  // namespace noether

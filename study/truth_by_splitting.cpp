@@ -25,9 +25,11 @@ struct SplitRun {
   bool whole = false;  ///< it came to the end in time
 };
 
+/// @param evaluations  of forces, of all runs; they are counted on
 SplitRun run_along(const WideScene& wide, const Sampling& sampling, std::string_view scheme, std::int64_t steps,
-                   std::chrono::steady_clock::time_point deadline) {
+                   std::chrono::steady_clock::time_point deadline, double most, double& evaluations) {
   SplitRun run;
+  const double before = evaluations;
   Composition<AnyHamiltonian<Quad>> along(*wide.splitting, *schemes::find(scheme));
   ParticleSystem<Quad> s = wide.start;
   s.clock() = Clock<Quad>::fixed(sampling.start, sampling.interval / static_cast<double>(steps));
@@ -51,7 +53,8 @@ SplitRun run_along(const WideScene& wide, const Sampling& sampling, std::string_
   for (int j = 1; j <= sampling.samples; ++j) {
     for (std::int64_t k = 0; k < steps; ++k) {
       if (along.advance(s, {.steps = 1}).failure != nullptr) return run;
-      if (std::chrono::steady_clock::now() > deadline) return run;
+      evaluations = before + static_cast<double>(along.evaluations().force);
+      if (evaluations > most || std::chrono::steady_clock::now() > deadline) return run;
     }
     keep();
   }
@@ -76,9 +79,14 @@ Truth truth_by_splitting(const WideScene& wide, const Sampling& sampling, const 
   const auto deadline = begin + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                                     std::chrono::duration<double>(options.budget));
   for (std::int64_t steps = 2;; steps *= 2) {
-    SplitRun run = run_along(wide, sampling, first_scheme, steps, deadline);
+    const auto along = [&](std::string_view scheme) {
+      return run_along(wide, sampling, scheme, steps, deadline, options.most_evaluations, truth.evaluations);
+    };
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
+    if (options.tell) options.tell(spent.count() / options.budget);
+    SplitRun run = along(first_scheme);
     if (!run.whole) break;
-    const SplitRun beside = run_along(wide, sampling, other_scheme, steps, deadline);
+    const SplitRun beside = along(other_scheme);
     if (!beside.whole) break;
     const double apart = distance(run, beside, error);
     if (truth.error && !(apart < *truth.error)) break;
@@ -93,7 +101,7 @@ Truth truth_by_splitting(const WideScene& wide, const Sampling& sampling, const 
   }
   truth.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   if (!truth.error || !(*truth.error < 1e-3)) {
-    return {.name = truth.name, .note = truth.note, .seconds = truth.seconds};
+    return {.name = truth.name, .note = truth.note, .seconds = truth.seconds, .evaluations = truth.evaluations};
   }
   truth.kind = TruthKind::quad;
   truth.name = fmt::format("{} in quad", first_scheme);

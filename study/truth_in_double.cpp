@@ -15,17 +15,32 @@ namespace {
 
 using States = std::vector<Vector<double>>;
 
-/// States at the moments of a sampling; empty where the run has failed, or was not over in time.
+using Clock = std::chrono::steady_clock;
+
+/// What one run may take, and what all have taken.
+struct RunLimits {
+  Clock::time_point deadline;
+  double most = 0;         ///< evaluations of forces of all runs
+  double evaluations = 0;  ///< made so far
+};
+
+/// States at the moments of a sampling; empty where the run has failed, or would take more than it may.
 States states_along(const Scene& scene, const Candidate& who, const Setting& setting, const Sampling& sampling,
-                    std::chrono::steady_clock::time_point deadline) {
+                    RunLimits& limits) {
   Simulation<double> sim = assemble(variant(scene, who, setting));
   const std::int64_t steps = who.adaptive ? 0 : sampling.steps_for(setting.step);
   States states = {state_of(sim.particles())};
   for (int j = 1; j <= sampling.samples; ++j) {
     const Outcome outcome = who.adaptive ? sim.run_until(sampling.start + sampling.time(j)) : sim.run(steps);
-    if (!outcome.ok() || std::chrono::steady_clock::now() > deadline) return {};
+    const auto made = static_cast<double>(sim.evaluations().force);
+    const bool too_many = limits.evaluations + made * sampling.samples / j > limits.most;
+    if (!outcome.ok() || too_many || Clock::now() > limits.deadline) {
+      limits.evaluations += made;
+      return {};
+    }
     states.push_back(state_of(sim.particles()));
   }
+  limits.evaluations += static_cast<double>(sim.evaluations().force);
   return states;
 }
 
@@ -73,20 +88,23 @@ std::string text_of_setting(const Candidate& who, const Setting& setting) {
 
 }  // namespace
 
-Truth truth_in_double(const Scene& scene, const Sampling& sampling, double budget, PositionError& error) {
+Truth truth_in_double(const Scene& scene, const Sampling& sampling, const TruthOptions& options, PositionError& error) {
   Truth truth{.name = "invariants", .note = "two runs in double precision take longer than the budget"};
   const auto who = reference_method(scene);
   if (!who) return truth;
-  using Clock = std::chrono::steady_clock;
+  const double budget = options.budget;
   const auto begin = Clock::now();
-  const auto deadline = begin + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(budget));
+  RunLimits limits{
+      .deadline = begin + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(budget)),
+      .most = options.most_evaluations};
   const auto spent = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
   States before;
   double last_took = 0;
   for (const Setting& setting : refinements(scene, *who, sampling)) {
     if (spent() + 1.5 * last_took > budget) break;
     const double at = spent();
-    States run = states_along(scene, *who, setting, sampling, deadline);
+    if (options.tell) options.tell(at / budget);
+    States run = states_along(scene, *who, setting, sampling, limits);
     if (run.empty()) break;
     last_took = spent() - at;
     if (!before.empty()) {
@@ -102,6 +120,7 @@ Truth truth_in_double(const Scene& scene, const Sampling& sampling, double budge
     before = std::move(run);
   }
   truth.seconds = spent();
+  truth.evaluations = limits.evaluations;
   if (truth.error && *truth.error < 1e-3) {
     truth.kind = TruthKind::doubles;
     truth.name = who->label + " in double";
@@ -110,7 +129,7 @@ Truth truth_in_double(const Scene& scene, const Sampling& sampling, double budge
   const std::string why =
       truth.error ? fmt::format("two runs in double precision, by {}, differ by {:.1e}", who->label, *truth.error)
                   : truth.note;
-  return {.name = truth.name, .note = why, .seconds = truth.seconds};
+  return {.name = truth.name, .note = why, .seconds = truth.seconds, .evaluations = truth.evaluations};
 }
 
 }  // namespace noether

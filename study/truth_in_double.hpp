@@ -14,7 +14,6 @@ inline constexpr Index most_particles = 20'000;
 /// by a composition of order 8, or the scene's own method, with steps that are halved; its error is the distance
 /// between the two finest runs that fit the budget. The kind is `invariants` where two do not, or they differ by 1e-3
 /// or more.
-/// @param budget  seconds of wall time
-Truth truth_in_double(const Scene& scene, const Sampling& sampling, double budget, PositionError& error);
+Truth truth_in_double(const Scene& scene, const Sampling& sampling, const TruthOptions& options, PositionError& error);
 
 }  // namespace noether

@@ -66,6 +66,14 @@ TEST_CASE("stability --suite refuses a wrong verdict, which is what it judges by
   CHECK(refused.out.empty());
 }
 
+TEST_CASE("advise --until asks about a run to another end, by the clock", "[cli][advise]") {
+  const SceneFolder folder(wary_spring.substr(0, wary_spring.find("[[every]]")));
+  const std::string line = "advise scene.toml --error 1e-3 --methods verlet --json --set integrator.start_time=10";
+  CHECK(json_member(output(folder, line), "end") == "20");
+  CHECK(json_member(output(folder, line + " --until 40"), "end") == "30");
+  CHECK(noether(folder, line + " --until ''").exit_code == 2);
+}
+
 #if NOETHER_HDF5
 
 TEST_CASE("a run goes on with other verdicts", "[cli][resume]") {

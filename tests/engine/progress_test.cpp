@@ -21,6 +21,8 @@ TEST_CASE("a share tells its row, the method and the time that is left", "[progr
         "[#####---------------]  25 %  4 of 12  verlet, step 0.01  30 s left");
   CHECK(progress_text({.row = 1, .rows = 12, .done = 0, .what = "verlet"}, 10) ==
         "[--------------------]   0 %  1 of 12  verlet");
+  CHECK(progress_text({.row = 0, .rows = 12, .done = 0.25, .what = "reference"}, 10) ==
+        "[#####---------------]  25 %  reference");  // what is prepared does not tell when all is done
   CHECK(spoken_duration(99) == "99 s");
   CHECK(spoken_duration(600) == "10 min");
   CHECK(spoken_duration(9000) == "2.5 h");

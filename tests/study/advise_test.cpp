@@ -169,6 +169,31 @@ TEST_CASE("advice that cannot be given is refused, or says why there is none", "
   CHECK(untold.reason == "the trials do not tell how errors depend on the step; a longer run would tell more");
 }
 
+TEST_CASE("lines of advice meet the end and the listed times of a run from another start", "[advise]") {
+  for (const auto& [start, times] : {std::pair(100.0, "[101, 105.5, 119.95]"), std::pair(-7.3, "[-7.3, -1, 3.2]")}) {
+    for (const char* method : {"method = \"verlet\"\nstep = 0.05\n", "method = \"dop853\"\nrtol = 1e-9\n"}) {
+      const SceneFile file(spring +
+                           fmt::format("[[every]]\ntype = \"energy\"\ntimes = {}\n[integrator]\n{}start_time = "
+                                       "{}\nuntil = {}\n",
+                                       times, method, start, start + 20));
+      AdviseOptions options;
+      options.error = 1e-5;
+      options.methods = {"verlet", "dop853"};
+      const Advice advice = advise(file.load(), options);
+      INFO(to_text(advice, file.load()));
+      CHECK(advice.end == 20);
+      REQUIRE(advice.proposals.size() == 2);
+      for (const Proposal& p : advice.proposals) {
+        Simulation<double> sim = assemble(file.load(p.sets));
+        REQUIRE(sim.run_until(start + 20).ok());
+        CHECK(std::abs(sim.particles().positions()[0][0] - std::cos(20.0)) < 2e-5);
+        sim.for_each_monitor(
+            [](const std::string&, AnyMonitor<double>& monitor) { CHECK(monitor.report()->samples == 3); });
+      }
+    }
+  }
+}
+
 /// A spring that tells no energy.
 struct MuteSpring {
   static constexpr auto describe() { return part<MuteSpring>("mute_spring", "a spring without an energy"); }

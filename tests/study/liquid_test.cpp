@@ -104,6 +104,44 @@ TEST_CASE("advice on a liquid is about its energy, and names the best where noth
   CHECK(to_text(none, scene).find("best found: verlet with a step of ") != std::string::npos);
 }
 
+TEST_CASE("advice on a liquid takes no more evaluations of forces than the run that it is about, and names a method",
+          "[advise]") {
+  const Scene scene = melt(7, 3000);  // 1372 atoms: the run itself takes 3000 evaluations
+  AdviseOptions options;
+  options.error = 1e-3;
+  options.row_budget = 600;  // the clock decides nothing
+  const Advice advice = advise(scene, options);
+  INFO(to_text(advice, scene));
+  const Allowance& work = advice.trials.work;
+  CHECK(work.own_run == 3000);
+  CHECK(work.most == 3000);
+  CHECK(work.spent <= 3000);
+  CHECK(work.spent > 500);
+  double rows = 0;
+  for (const Row& row : advice.trials.rows) rows += row.work;
+  CHECK(rows > 300);
+  CHECK(rows < work.spent);  // what is tried before the rows is counted too
+  CHECK_FALSE(advice.proposals.empty());
+  const std::string text = to_text(advice, scene);
+  CHECK(text.find(" of 15, so that measuring stays within the 3000 evaluations of forces of the scene's own run") !=
+        std::string::npos);
+  CHECK(text.find("left out for the same reason: ") != std::string::npos);
+}
+
+TEST_CASE("few bodies are measured as before: their evaluations cost next to nothing", "[compare][advise]") {
+  const Scene scene = kepler(0.2, "method = \"verlet\"\nstep = 0.02\nsteps = 1000");
+  CompareOptions options;
+  options.methods = {"verlet", "blanes_moan_s6", "dop853"};
+  options.repeats = 1;
+  const Comparison c = compare(scene, options);
+  CHECK(c.end == 20);
+  CHECK(c.limits.empty());
+  CHECK(c.work.own_run == 1000);
+  CHECK(c.work.spent > 10 * c.work.own_run);
+  CHECK(c.work.spent < c.work.most);
+  CHECK(c.truth.kind == TruthKind::quad);
+}
+
 TEST_CASE("positions of a liquid that nothing can hold are refused with the reason", "[advise][predictability]") {
   const Scene scene = melt(2, 8000);
   AdviseOptions options;

@@ -1,0 +1,63 @@
+// How fast small differences grow: the rate of a chaotic motion against exponents that are known.
+
+#include "study/predictability.hpp"
+#include "study/horizon.hpp"
+#include "tests/study/scenes.hpp"
+#include "tests/support/catch.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace noether::test {
+namespace {
+
+Scene lorenz_from(double x, double y, double z) {
+  return read_scene(fmt::format(R"(units = "reduced"
+[system]
+type = "lorenz"
+start = [{}, {}, {}]
+[integrator]
+method = "dop853"
+rtol = 1e-9
+until = 60
+)",
+                                x, y, z),
+                    "lorenz.toml");
+}
+
+TEST_CASE("the rate of Lorenz's system is its Lyapunov exponent, 0.906, however long it is asked for",
+          "[predictability]") {
+  double sum = 0;
+  int count = 0;
+  for (int k = 0; k < 6; ++k) {
+    const Scene scene = lorenz_from(1 + 0.7 * k, 1 - 0.3 * k, 20 + k);
+    for (const double end : {60.0, 30.0, 20.0}) {
+      const auto motion = predictability(scene, end, 600);
+      REQUIRE(motion);
+      CAPTURE(k, end, motion->rate, motion->e_foldings);
+      REQUIRE(motion->chaotic);
+      // From ten times the start to half of the end: of a growth of 1e7 or more.
+      CHECK(motion->e_foldings > 12);
+      CHECK(std::abs(motion->e_foldings - std::log(motion->growth.back() / 20)) < 1.5);
+      // The exponent of a stretch of 15 e-foldings scatters by about 0.1; that of the last half alone by 0.25.
+      CHECK(std::abs(motion->rate - 0.906) < 0.2);
+      sum += motion->rate;
+      ++count;
+    }
+  }
+  CHECK(std::abs(sum / count - 0.906) < 0.06);
+}
+
+TEST_CASE("a rate is told with the e-foldings that it is fitted over, if it is", "[predictability]") {
+  const Scene scene = lorenz_from(1, 1, 20);
+  Predictability motion{.chaotic = true, .rate = std::log(10.0) / 2, .e_foldings = 13.4};
+  CHECK(tenfold_in_words(motion, scene) == "2 (fitted over 13 e-foldings)");
+  motion.e_foldings = 0;
+  CHECK(tenfold_in_words(motion, scene) == "2");
+}
+
+}  // namespace
+}  // namespace noether::test
