@@ -1,11 +1,13 @@
 /// Many particles at one moment: spheres in their box, in perspective.
 
 #include "cli/plot_source.hpp"
+#include "numbers/text.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <numbers>
 
@@ -15,7 +17,7 @@ namespace {
 
 constexpr std::size_t most_kinds = 6;
 /// Where the eye is: turned about the vertical, raised, and away from the middle in diagonals of the box.
-constexpr double turned = 0.55, raised = 0.38, away = 2.6;
+constexpr double eye_turned = 0.55, eye_raised = 0.38, eye_away = 2.6;
 
 /// A place as the eye sees it: x to the right, y up, z away from the eye; scale: how large things look there.
 struct Seen {
@@ -24,13 +26,13 @@ struct Seen {
 
 class Camera {
  public:
-  Camera(const PlotPlace& middle, double diagonal) : middle_(middle), distance_(away * diagonal) {}
+  Camera(const PlotPlace& middle, double diagonal) : middle_(middle), distance_(eye_away * diagonal) {}
   Seen see(const PlotPlace& p) const {
     const double x = p[0] - middle_[0], y = p[1] - middle_[1], z = p[2] - middle_[2];
-    const double right = std::cos(turned) * x + std::sin(turned) * y;
-    const double behind = -std::sin(turned) * x + std::cos(turned) * y;
-    const double up = std::cos(raised) * z + std::sin(raised) * behind;
-    const double depth = std::cos(raised) * behind - std::sin(raised) * z;
+    const double right = std::cos(eye_turned) * x + std::sin(eye_turned) * y;
+    const double behind = -std::sin(eye_turned) * x + std::cos(eye_turned) * y;
+    const double up = std::cos(eye_raised) * z + std::sin(eye_raised) * behind;
+    const double depth = std::cos(eye_raised) * behind - std::sin(eye_raised) * z;
     const double scale = distance_ / (distance_ + depth);
     return {right * scale, up * scale, depth, scale};
   }
@@ -78,10 +80,6 @@ struct Kinds {
   std::vector<PlotLegend> legend;
 };
 
-std::string counted(std::size_t count, const std::string& what) {
-  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
-}
-
 Kinds kinds_of(const ParticleSystem<double>& s, const std::string& mass_unit) {
   const Topology* topology = s.topology();
   const auto n = static_cast<std::size_t>(s.size());
@@ -103,7 +101,7 @@ Kinds kinds_of(const ParticleSystem<double>& s, const std::string& mass_unit) {
   }
   for (PlotLegend& entry : kinds.legend) entry.name = fmt::format("{} of {}", counts[entry.color], entry.name);
   if (kinds.legend.size() > most_kinds) {  // a heap of kinds is told as one
-    kinds.legend = {{counted(n, "particle"), 0}};
+    kinds.legend = {{counted(s.size(), "particle"), 0}};
     kinds.of.assign(n, 0);
   }
   if (topology == nullptr || topology->molecules.empty() || topology->bonds.empty() || kinds.legend.size() > 1) {
@@ -114,7 +112,8 @@ Kinds kinds_of(const ParticleSystem<double>& s, const std::string& mass_unit) {
   for (std::size_t i = 0; i < n; ++i) {
     kinds.of[i] = molecules.try_emplace(topology->molecules[i], molecules.size()).first->second;
   }
-  kinds.legend[0].name += fmt::format(" in {}, each of a color", counted(molecules.size(), "molecule"));
+  kinds.legend[0].name +=
+      fmt::format(" in {}, each of a color", counted(static_cast<std::int64_t>(molecules.size()), "molecule"));
   return kinds;
 }
 

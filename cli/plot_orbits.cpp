@@ -23,14 +23,14 @@ constexpr std::size_t most_named = 12;
 /// Points of all paths together: more bodies have coarser ones.
 constexpr std::size_t most_orbit_points = 120'000;
 /// Frames are joined where the path turns by less than this between two of them [rad].
-constexpr double smooth_turn = 0.4;
+constexpr double joined_turn = 0.4;
 /// Inner bodies get a picture of their own where they are this much smaller than the outermost.
 constexpr double scale_gap = 8;
 /// A motion is flat where it goes this little out of a plane, of its size.
 constexpr double flatness = 2e-3;
 
 /// What one body does in all frames, as if never wrapped into a periodic box, relative to the primary if there is one.
-struct Track {
+struct BodyTrack {
   std::vector<PlotPlace> x, v;
   std::vector<double> time;
 };
@@ -55,8 +55,8 @@ PlotPlace place_of(const io::Frame& frame, std::size_t body, Center center) {
   return x;
 }
 
-Track track_of(const io::Frames& all, std::size_t body, Center center) {
-  Track track;
+BodyTrack track_of(const io::Frames& all, std::size_t body, Center center) {
+  BodyTrack track;
   for (const io::Frame& frame : all.frames) {
     track.x.push_back(place_of(frame, body, center));
     track.v.push_back(relative_row(frame.velocities, body, center));
@@ -69,19 +69,19 @@ Vec3<double> vector_of(const PlotPlace& place) { return {place[0], place[1], pla
 
 /// Whether frames are dense enough to join them: from one to the next the path turns little, and the body comes as far
 /// as its velocity says (a body seen once in many periods does not).
-bool is_dense(const Track& track) {
+bool is_dense(const BodyTrack& track) {
   std::size_t rough = 0;
   for (std::size_t k = 1; k < track.x.size(); ++k) {
     const Vec3<double> a = vector_of(track.v[k - 1]) * (track.time[k] - track.time[k - 1]);
     const Vec3<double> b = vector_of(track.x[k]) - vector_of(track.x[k - 1]);
     const double turn = std::atan2(a.cross(b).norm(), a.dot(b));
-    if (turn > smooth_turn || b.norm() < 0.7 * a.norm()) ++rough;
+    if (turn > joined_turn || b.norm() < 0.7 * a.norm()) ++rough;
   }
   return track.x.size() > 2 && 10 * rough < track.x.size();
 }
 
 /// The path through all frames: between two of them the cubic that meets positions and velocities.
-std::vector<PlotPlace> path_through(const Track& track) {
+std::vector<PlotPlace> path_through(const BodyTrack& track) {
   const std::size_t frames = track.x.size(), pieces = std::clamp<std::size_t>(most_path_points / frames, 1, 12);
   std::vector<PlotPlace> points = {track.x.front()};
   for (std::size_t k = 1; k < frames; ++k) {
@@ -224,7 +224,7 @@ PlotOrbit orbit_of(const KeptFrames& kept, const PlotFrames& frames, std::size_t
                    std::optional<double> G) {
   const io::Frames& all = kept.frames;
   PlotOrbit orbit{.name = all.names[body], .color = body_color(frames, body)};
-  const Track track = track_of(all, body, center);
+  const BodyTrack track = track_of(all, body, center);
   orbit.primary = center == body;
   orbit.end = track.x[kept.shown];
   for (const PlotPlace& p : track.x) orbit.extent = std::max(orbit.extent, std::hypot(p[0], p[1], p[2]));
@@ -372,10 +372,10 @@ std::vector<PlotOrbits> plot_orbits(const PlotFrames& frames, std::size_t shown,
 }
 
 std::vector<PlotOrbits> plot_orbits_of_elements(const PlotSource& source) {
-  static constexpr std::size_t columns = 6, most_bodies = 150;
+  static constexpr std::size_t columns = 6, most_ellipses = 150;
   const io::MonitorSeries* monitor = find_monitor(source.monitors, "elements");
   const std::size_t n = source.frames.bodies();
-  if (monitor == nullptr || !monitor->quantities.contains("value") || n > most_bodies) return {};
+  if (monitor == nullptr || !monitor->quantities.contains("value") || n > most_ellipses) return {};
   const auto& [shape, values] = monitor->quantities.at("value");
   const bool fits = shape.size() == 2 && shape[0] == static_cast<Index>(n) && shape[1] == Index{columns};
   if (!fits || values.size() < n * columns) return {};
@@ -415,7 +415,7 @@ std::optional<PlotPanel> plot_line_positions(const PlotFrames& frames, const Plo
   panel.x = time.axis;
   panel.y.label = with_unit("x", all.length_unit);
   for (std::size_t i = 0; i < n; ++i) {
-    Track track = track_of(all, i, {});
+    BodyTrack track = track_of(all, i, {});
     // Paths in the plane of time and x: the cubic of both passes through the frames as they are.
     for (std::size_t k = 0; k < track.x.size(); ++k) {
       track.x[k] = {track.time[k] / time.length, track.x[k][0], 0};

@@ -151,6 +151,14 @@ class Body(html.parser.HTMLParser):
             self.data = {name.removeprefix("data-"): value for name, value in attributes if name.startswith("data-")}
 
 
+def run_twice_at_most(command):
+    """Runs a browser. On a busy machine one hangs at times, and another does not."""
+    try:
+        return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    except subprocess.TimeoutExpired:
+        return subprocess.run(command, capture_output=True, text=True, timeout=240, check=False)
+
+
 def screenshot(page, fragment):
     """What the page says of itself, and the rows of its picture; None where there is no Chromium that runs."""
     browser = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
@@ -163,10 +171,10 @@ def screenshot(page, fragment):
                   "--virtual-time-budget=4000", "--host-resolver-rules=MAP * ~NOTFOUND"]
         address = pathlib.Path(page).resolve().as_uri() + "#" + fragment
         picture = f"{folder}/picture.png"
-        dom = subprocess.run([*common, "--dump-dom", address], capture_output=True, text=True, timeout=240, check=False)
+        dom = run_twice_at_most([*common, "--dump-dom", address])
         body = Body()
         body.feed(dom.stdout)
-        subprocess.run([*common, f"--screenshot={picture}", address], capture_output=True, timeout=240, check=False)
+        run_twice_at_most([*common, f"--screenshot={picture}", address])
         if "ready" not in body.data and "failed" not in body.data:
             print(f"Chromium does not run here: {dom.stderr[-300:]}")
             return None
