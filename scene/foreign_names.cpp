@@ -38,7 +38,7 @@ constexpr std::array names_of_others = {
     // Along Kepler arcs.
     ForeignName{" whfast whfast512 wh wisdomholman wisdom_holman mvs rmvs swift helio ", NamePlace::hamiltonian,
                 "wisdom_holman", "with method = 'verlet', or 'aba_10_6_4' for more accuracy"},
-    ForeignName{" democratic democratic_heliocentric whds jacobi ", NamePlace::hamiltonian, "wisdom_holman",
+    ForeignName{" democratic democratic_heliocentric whds jacobi barycentric ", NamePlace::hamiltonian, "wisdom_holman",
                 "its key coordinates chooses among them"},
     ForeignName{" saba saba4 laskar_robutel ", NamePlace::method, "saba_4", "on the Hamiltonian 'wisdom_holman'"},
     ForeignName{" saba1064 saba_1064 saba_10_6_4 sabah1064 ", NamePlace::method, "aba_10_6_4",

@@ -19,6 +19,7 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 
 using namespace noether;
 
@@ -82,6 +83,13 @@ template <class Real> void check_all_hamiltonians(const Scheme& scheme, std::int
     const auto democratic = test::wisdom_holman<Real>({.G = test::outer_G, .coordinates = Coordinates::democratic});
     if (scheme.scheme_class != SchemeClass::rkn) {
       check_restart<Real>(compose(democratic, scheme, {.compensated = compensated}), n);
+    }
+    if (scheme.is_composition() || scheme.exact.find('B') == std::string_view::npos) {
+      for (const Coordinates coordinates : {Coordinates::whds, Coordinates::barycentric}) {
+        if (scheme.scheme_class == SchemeClass::rkn) continue;
+        const auto scaled = test::wisdom_holman<Real>({.G = test::outer_G, .coordinates = coordinates});
+        check_restart<Real>(compose(scaled, scheme, {.compensated = compensated}), n);
+      }
     }
     const auto driven = test::wisdom_holman<Real>({.G = test::outer_G}, UniformField{.acceleration = {1e-8, 0, 2e-8}},
                                                   OscillatingField{.acceleration = {1e-7, 0, 2e-7}, .omega = 0.03});
