@@ -117,6 +117,10 @@ constexpr std::array names_of_others = {
     ForeignName{" buck born born_mayer exp6 exp_6 ", NamePlace::force, "buckingham"},
     ForeignName{" lj_repulsive weeks_chandler_andersen ", NamePlace::force, "wca"},
     ForeignName{" soft repulsive ", NamePlace::force, "wca", "it only repels", true},
+    ForeignName{" gr relativity general_relativity gr_correction schwarzschild ", NamePlace::force, "gr_potential",
+                "which gives the right advance of pericentres, or 'post_newtonian' for methods of y' = f"},
+    ForeignName{" gr_full eih pn post_newton 1pn pn1 ", NamePlace::force, "post_newtonian",
+                "for methods of y' = f such as 'gauss_radau_15'; it knows the field of particle 0 only", true},
     ForeignName{" fput fpu ", NamePlace::force, "fermi_pasta_ulam"},
     // Constraints.
     ForeignName{" shake rattle lincs settle hbonds h_bonds all_bonds rigid_bonds bond_constraint ",
