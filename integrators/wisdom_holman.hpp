@@ -5,6 +5,8 @@
 #include "engine/signature.hpp"
 #include "forces/gravity.hpp"
 #include "forces/sum.hpp"
+#include "integrators/encounters.hpp"
+#include "integrators/jacobi_derivatives.hpp"
 #include "integrators/kepler.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "numbers/parallel.hpp"
@@ -46,6 +48,8 @@ struct WisdomHolmanOptions {
         "wisdom_holman", "Kepler arcs A about particle 0 and kicks B by the interaction",
         formula("H = sum [p'^2/2m' - G m' M/r'] + [sum G m' M/r' - sum G m_i m_j/r_ij]"), source("WisdomHolman1991"),
         letter('A', "Kepler arcs of every body"), letter('B', "kicks by the interaction"),
+        letter('G', "kicks by the gradient of the square of that of B, for kernels"),
+        letter('L', "kicks by the interaction a little further along itself, for kernels"),
         field<&WisdomHolmanOptions::G>("G", "length^3/mass/time^2", "default: the unit system's own"),
         field<&WisdomHolmanOptions::coordinates>("coordinates", "1",
                                                  "in which H is split; democratic and whds are heliocentric"));
@@ -104,7 +108,11 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
 
   void observe(std::optional<Request> wanted) { observing_ = wanted.has_value(); }
   const std::optional<Failure>& failure() const { return failure_; }
-  Evaluations evaluations() const { return evaluations_; }
+  Evaluations evaluations() const {
+    Evaluations all = evaluations_;
+    all.encounter = encounters_.closest();
+    return all;
+  }
   void save(SavedState& saved, const std::string& prefix) const {
     detail::save_signature(saved, prefix + "options/", options_);
     detail::save_signature(saved, prefix + "forces/", forces_);
@@ -112,6 +120,7 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
     save_value(saved, prefix + "within", within_);
     save_value(saved, prefix + "kicks", evaluations_.force);
     save_value(saved, prefix + "arcs", evaluations_.kepler);
+    encounters_.save(saved, prefix + "encounter/");
   }
   void load(const SavedState& saved, const std::string& prefix) {
     detail::check_signature(saved, prefix + "options/", options_);
@@ -119,6 +128,7 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
     load_order(saved, prefix);
     load_value(saved, prefix + "kicks", evaluations_.force);
     load_value(saved, prefix + "arcs", evaluations_.kepler);
+    encounters_.load(saved, prefix + "encounter/");
     failure_.reset();
     gather_masses();
     load_within(saved, prefix);
@@ -149,16 +159,19 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
   void to_barycentric(ParticleSystem<Real>& s) const;
   void from_barycentric(ParticleSystem<Real>& s) const;
   void scale(VectorColumn<Real>& column, bool back) const;
-  void inertial_positions(const ParticleSystem<Real>& s, const Vec3<Real>& center, VectorColumn<Real>& to) const;
+  void inertial_positions(const VectorColumn<Real>& from, const Vec3<Real>& center, VectorColumn<Real>& to) const;
 
   Real arcs(ParticleSystem<Real>& s, const Real& h, bool action);
   Real kick(ParticleSystem<Real>& s, const Real& h, bool action);
+  Real gradient_kick(ParticleSystem<Real>& s, const Real& h, bool action);
+  void lazy_kick(ParticleSystem<Real>& s, const Real& h);
+  Real accelerate(const VectorColumn<Real>& x, const Clock<Real>& clock, bool energy);
   Real jump(ParticleSystem<Real>& s, const Real& h);
   Real interaction(const VectorColumn<Real>& x, bool skip_inner, Index first, bool energy);
-  Real indirect(const ParticleSystem<Real>& s, bool energy);
-  Real without_arcs(const ParticleSystem<Real>& s, bool energy);
+  Real indirect(const VectorColumn<Real>& x, bool energy);
+  Real without_arcs(const VectorColumn<Real>& x, bool energy);
   void about_center();
-  Real other_forces(const ParticleSystem<Real>& s, bool energy);
+  Real other_forces(const VectorColumn<Real>& x, const Clock<Real>& clock, bool energy);
   Real newton(const ParticleSystem<Real>& s, VectorColumn<Real>& a, Request wanted);
 
   WisdomHolmanOptions options_;
@@ -170,12 +183,14 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
   std::vector<Real> interior_;               ///< M_k, mass of the first k + 1 bodies in order
   std::vector<Real> circled_;                ///< by particle, the mass that its Kepler arc goes round
   std::vector<Real> reduced_;                ///< by particle, the mass that makes its velocity a momentum
+  double moment_ = 0;                        ///< time of the kick
   std::vector<Real> scale_;                  ///< by particle, of its velocity: m_i over the reduced mass
   mutable std::vector<Vec3<Real>> centers_;  ///< of these, as the last change of coordinates met them
-  VectorColumn<Real> scratch_, positions_, acceleration_, other_;
+  VectorColumn<Real> scratch_, positions_, acceleration_, other_, along_;
   std::optional<ParticleSystem<Real>> inertial_;  ///< positions for other forces
   std::optional<Failure> failure_;
   Evaluations evaluations_;
+  EncounterWatch encounters_;
   bool observing_ = false;
 };
 

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -105,6 +106,7 @@ template <class H, class MassesOf> void check_actions(H hamiltonian, const Masse
   hamiltonian.open(s);
   const Masses m = masses_of(s, hamiltonian);
   for (const char letter : hamiltonian.claims().alphabet) {
+    if (hamiltonian.claims().lazy.find(letter) != std::string_view::npos) continue;  // not symplectic
     for (const double h : {0.37, -0.2}) {
       INFO("letter " << letter << " for " << h);
       CHECK(action_defect(hamiltonian, std::as_const(s), m, letter, Quad(h)) < 1e-16);

@@ -104,6 +104,23 @@ TEST_CASE("every scheme over Kepler arcs is symplectic in the inertial momenta, 
   }
 }
 
+TEST_CASE("corrected steps and kernels are symplectic, the lazy kernel only nearly", "[conservation][symplectic]") {
+  const auto start = planets(0.1, 2).as<Quad>();
+  const auto arcs = wisdom_holman<Quad>({});
+  const auto made = [&](const Scheme& scheme, const CompositionOptions& options) {
+    return defect(arcs, processed(scheme, options), start, 0.2, 1);
+  };
+  CHECK(made(schemes::verlet, {.corrector = 5}) < 1e-16);
+  CHECK(made(schemes::verlet_aba, {.corrector = 5, .kernel = StepKernel::modified}) < 1e-16);
+  CHECK(made(schemes::verlet_aba, {.corrector = 5, .kernel = StepKernel::composed, .second_corrector = true}) < 1e-16);
+  CHECK(made(schemes::saba_3, {.kernel = StepKernel::modified}) < 1e-16);
+  const CompositionOptions lazy{.corrector = 5, .kernel = StepKernel::lazy};
+  CHECK(made(schemes::verlet_aba, lazy) > 1e-12);
+  CHECK(made(schemes::verlet_aba, lazy) < 1e-4);
+  CHECK_FALSE(compose(arcs, schemes::verlet_aba, lazy).claims().symplectic);
+  CHECK(compose(arcs, schemes::verlet_aba, {.corrector = 5, .kernel = StepKernel::modified}).claims().symplectic);
+}
+
 TEST_CASE("Kepler arcs with further forces are symplectic", "[conservation][symplectic]") {
   const auto start = planets(0.1, 2).as<Quad>();
   ForceField<Quad> field;

@@ -115,6 +115,30 @@ TEST_CASE("the same in Quad", "[restart]") {
   }
 }
 
+TEST_CASE("runs with correctors and kernels go on bit for bit", "[restart]") {
+  const StepKernel kernels[] = {StepKernel::plain, StepKernel::modified, StepKernel::composed, StepKernel::lazy};
+  for (const StepKernel kernel : kernels) {
+    for (const bool compensated : {false, true}) {
+      CAPTURE(static_cast<int>(kernel), compensated);
+      const CompositionOptions options{.compensated = compensated,
+                                       .corrector = 17,
+                                       .kernel = kernel,
+                                       .second_corrector = kernel != StepKernel::plain};
+      const auto arcs = test::wisdom_holman({.G = test::outer_G});
+      check_restart<double>(compose(arcs, schemes::verlet_aba, options), 20);
+      check_restart<double>(compose(arcs, schemes::verlet, options), 20);
+    }
+  }
+  const auto arcs = test::wisdom_holman({.G = test::outer_G});
+  check_restart<double>(compose(arcs, schemes::saba_3, {.kernel = StepKernel::modified}), 20);
+  Simulation plain(test::outer_planets(), compose(arcs, schemes::verlet_aba), 40.0);
+  Simulation corrected(test::outer_planets(), compose(arcs, schemes::verlet_aba, {.corrector = 7}), 40.0);
+  CHECK_THROWS_WITH(corrected.restore(plain.save()),
+                    "the saved run has no corrector or kernel, but this one has corrector = 7");
+  CHECK_THROWS_WITH(plain.restore(corrected.save()),
+                    "the saved run has corrector = 7, but this one has no corrector or kernel");
+}
+
 TEST_CASE("a restored run of another scheme, step or set of particles is refused", "[restart]") {
   const auto gravity = test::kinetic_potential(Gravity{.G = test::outer_G});
   Simulation run(test::outer_planets(), compose(gravity, schemes::verlet), 40.0);
