@@ -35,6 +35,8 @@ struct Explanation {
   Index particles = 0, constraints = 0;
   std::map<char, int> flows;                    ///< stages of one step, by letter, the last joined to the next first
   std::string kicks, inexact;                   ///< letters that evaluate forces, and those that are no exact flows
+  int of_kernel = 0;                            ///< of the forces in one step, by the letters G and L
+  int corrector = 0;                            ///< flows before the run, and for every look at it
   int evaluations = 0;                          ///< of the forces in one step: kicks between which something has moved
   std::optional<KeplerSteps> kepler;            ///< of gravity
   Index variables = 0;                          ///< of a system without particles
@@ -156,9 +158,14 @@ void sort_parts(const Scene& scene, Explanation& e) {
 void explain_scheme(const Scene& scene, Explanation& e) {
   const AnyHamiltonian<double> hamiltonian = hamiltonian_of(scene);
   e.constraints = hamiltonian.claims().constraints;
-  count_flows(fitted_word(scheme_of(scene.integrator), hamiltonian.claims(), e.hamiltonian), e.flows);
+  const CompositionOptions& options = scene.integrator.composition;
+  const Scheme scheme = processed(scheme_of(scene.integrator), options);
+  count_flows(fitted_word(scheme, hamiltonian.claims(), e.hamiltonian, options), e.flows);
+  for (const auto& [letter, count] : e.flows) e.of_kernel += letter == 'G' ? count : letter == 'L' ? 2 * count : 0;
+  e.corrector = static_cast<int>(scheme.before.size());
   e.kicks = hamiltonian.claims().kicks;
   for (const char letter : e.kicks) e.evaluations += e.flows.contains(letter) ? e.flows.at(letter) : 0;
+  e.evaluations += e.of_kernel;
   e.inexact = hamiltonian.claims().inexact;
 }
 
@@ -258,11 +265,11 @@ std::string meaning(char letter, const Scene& scene, const Explanation& e) {
   if (e.kicks.find(letter) == std::string::npos) return flow;
   int kicks = 0;
   for (const char one : e.kicks) kicks += e.flows.contains(one) ? e.flows.at(one) : 0;
-  if (e.evaluations == kicks) return flow + ", one force evaluation each";
-  if (e.kicks.size() > 1)
-    return fmt::format("{}, {} of all kicks together", flow, counted(e.evaluations, "force evaluation"));
+  const int own = e.evaluations - e.of_kernel;
+  if (own == kicks) return flow + ", one force evaluation each";
+  if (e.kicks.size() > 1) return fmt::format("{}, {} of all kicks together", flow, counted(own, "force evaluation"));
   return fmt::format("{}, {}: a kick where nothing has moved uses the forces again", flow,
-                     counted(e.evaluations, "force evaluation"));
+                     counted(own, "force evaluation"));
 }
 
 void print_stiffness(const Scene& scene, const Explanation& e) {
@@ -301,6 +308,8 @@ void print_step(const Scene& scene, const Explanation& e) {
 void print_cost(const Scene& scene, const Explanation& e) {
   fmt::print("each step:\n");
   for (const auto& [letter, count] : e.flows) fmt::print("  {} x {}: {}\n", count, letter, meaning(letter, scene, e));
+  if (e.corrector > 0)
+    fmt::print("  before the first and for every look: {} of the corrector\n", counted(e.corrector, "flow"));
   if (!scene.integrator.classical) return;
   fmt::print("  {} of {}, on the average of the first steps\n", counted(e.evaluations, "evaluation"),
              scene.system ? "all rates" : "all forces together");

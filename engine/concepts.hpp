@@ -21,12 +21,21 @@ template <class Real> struct EnergyTerms {
   Real total() const { return kinetic + potential; }
 };
 
+/// Two bodies nearer to each other than a splitting about a primary allows.
+struct Encounter {
+  std::int64_t first = 0, second = 0;  ///< ids
+  double hill_radii = 0;               ///< the smallest distance seen, in mutual Hill radii about the primary
+  double time = 0;                     ///< when it was seen
+  double since = 0;                    ///< when an encounter was seen for the first time in the run
+};
+
 /// Work done so far, counted where it is done.
 struct Evaluations {
   std::int64_t force = 0, kepler = 0, jacobian = 0;
   std::int64_t constraint = 0;                       ///< iterations or sweeps over all constraints
   std::int64_t rejected = 0;                         ///< trial steps that an error controller threw away
   std::optional<NeighborStatistics> neighbors = {};  ///< of this process, where some force has a range
+  std::optional<Encounter> encounter = {};           ///< the closest one that the splitting should not have met
 };
 
 /// What a split Hamiltonian says of its parts; tests verify it, `Composition` refuses by it.
@@ -37,6 +46,7 @@ struct HamiltonianClaims {
   std::string_view timed = "A";   ///< letters that carry time: stages see what these have covered of a step
   std::string basic = "BAB";      ///< palindrome of order 2 that symmetric compositions are made of
   std::string kicks = "B";        ///< letters that evaluate the forces
+  std::string_view lazy = "";     ///< letters whose maps are symplectic only nearly, by finite differences
   bool quadratic_kinetic = true;  ///< {B,{B,{B,A}}} = 0: Runge-Kutta-Nystroem tables keep their order
   bool symplectic = true;         ///< every flow is
   bool energy = true;             ///< every force reports its potential

@@ -16,10 +16,30 @@ bool uses(const std::vector<Stage>& word, char letter) {
   return std::any_of(word.begin(), word.end(), [&](const Stage& stage) { return stage.letter == letter; });
 }
 
+/// @throws SchemeMismatch  why a Hamiltonian lacks the kick of a kernel
+[[noreturn]] void refuse_kernel(char letter, const std::string& hamiltonian) {
+  const bool modified = letter == 'G';
+  throw SchemeMismatch(
+      fmt::format("kernel = \"{}\" is for wisdom_holman in Jacobi coordinates{}, not for this '{}'; use {}",
+                  modified ? "modified" : "lazy", modified ? " without other forces" : "", hamiltonian,
+                  modified ? "kernel = \"lazy\" or \"composed\"" : "kernel = \"plain\""),
+      {.key = "kernel"});
+}
+
+/// Correctors and kernels take away errors that are small because B is small beside A.
+void check_kepler(const CompositionOptions& options, const HamiltonianClaims& claims, const std::string& hamiltonian) {
+  if (!options.changes_scheme() || claims.kepler) return;
+  throw SchemeMismatch(fmt::format("{} is for kicks between Kepler arcs, but '{}' has none; use the Hamiltonian "
+                                   "'wisdom_holman', or take it out",
+                                   options.processing_text(), hamiltonian),
+                       {.key = options.corrector != 0 ? "corrector" : "kernel"});
+}
+
 void check_letters(const Scheme& scheme, const std::vector<Stage>& stages, const HamiltonianClaims& claims,
                    const std::string& hamiltonian) {
   const auto check = [&](const Stage& stage) {
     if (claims.alphabet.find(stage.letter) != std::string::npos) return;
+    if (stage.letter == 'G' || stage.letter == 'L') refuse_kernel(stage.letter, hamiltonian);
     throw SchemeMismatch(fmt::format("scheme '{}' uses the letter {}, but '{}' has only {}", scheme.name, stage.letter,
                                      hamiltonian, claims.alphabet));
   };
@@ -27,7 +47,7 @@ void check_letters(const Scheme& scheme, const std::vector<Stage>& stages, const
   std::for_each(scheme.before.begin(), scheme.before.end(), check);
   std::for_each(scheme.after.begin(), scheme.after.end(), check);
   for (const char letter : claims.basic) {
-    if (uses(stages, letter)) continue;
+    if (uses(stages, letter) || (letter == 'B' && uses(stages, 'L'))) continue;  // L is a kick too
     throw SchemeMismatch(
         fmt::format("scheme '{}' has no letter {}, which is a part of '{}'; use a composition of its steps {}, such as "
                     "'yoshida_4', or a word with all of its letters",
@@ -97,7 +117,9 @@ void check_basic(const HamiltonianClaims& claims, const std::string& hamiltonian
 
 }  // namespace
 
-FittedWord fitted_word(const Scheme& scheme, const HamiltonianClaims& claims, const std::string& hamiltonian) {
+FittedWord fitted_word(const Scheme& scheme, const HamiltonianClaims& claims, const std::string& hamiltonian,
+                       const CompositionOptions& options) {
+  check_kepler(options, claims, hamiltonian);
   check_basic(claims, hamiltonian);
   FittedWord word{{scheme.word.begin(), scheme.word.end()}};
   if (scheme.is_composition()) {

@@ -5,6 +5,7 @@
 #include "engine/erasure.hpp"
 #include "engine/word.hpp"
 #include "integrators/composition_options.hpp"
+#include "integrators/processing.hpp"
 #include "integrators/scheme.hpp"
 
 #include <algorithm>
@@ -31,9 +32,11 @@ struct FittedWord {
 /// are not: of a map of order 2 two halves are no whole. (From step to step a scheme of order 2 may join them: it stays
 /// one.) A word without a D gets half a D at both ends; a word of two stages
 /// (`symplectic_euler_a`, `_b`) one D between them.
+/// @param options  those that made the scheme what it is (`processed`)
 /// @throws SchemeMismatch  naming the scheme and what it lacks: a letter, an exact part, quadratic kinetic energy,
-///         forward steps
-FittedWord fitted_word(const Scheme& scheme, const HamiltonianClaims& claims, const std::string& hamiltonian);
+///         forward steps, Kepler arcs
+FittedWord fitted_word(const Scheme& scheme, const HamiltonianClaims& claims, const std::string& hamiltonian,
+                       const CompositionOptions& options = {});
 
 /// Advances a split Hamiltonian along a scheme.
 ///
@@ -47,28 +50,18 @@ template <SplitHamiltonian H> class Composition {
  public:
   using real = typename H::real;
 
-  /// @throws SchemeMismatch  see `fitted_word`
+  /// @throws SchemeMismatch  see `fitted_word` and `processed`
   Composition(H hamiltonian, const Scheme& scheme, CompositionOptions options = {})
-      : hamiltonian_(std::move(hamiltonian)),
-        options_(options),
-        name_(scheme.name),
-        order_(scheme.order.classical),
-        word_(timed(fitted_word(scheme, hamiltonian_.claims(), detail::name_of(hamiltonian_)),
-                    hamiltonian_.claims().timed)) {
-    symmetric_ = scheme.is_symmetric() && scheme.before.size() == 0 && is_palindrome(word_.stages());
-    for (const Stage& stage : scheme.before)
-      before_.push_back({stage.letter, detail::weight_in<real>(stage.weight), real(0)});
-    for (const Stage& stage : scheme.after)
-      after_.push_back({stage.letter, detail::weight_in<real>(stage.weight), real(0)});
-  }
+      : Composition(options, std::move(hamiltonian), processed(scheme, options)) {}
 
   IntegratorClaims claims() const {
     const HamiltonianClaims claims = hamiltonian_.claims();
     return {.method = name_,
             .hamiltonian = detail::name_of(hamiltonian_),
             .order = order_,
-            .symplectic = claims.symplectic && !claims.dissipative,
-            .no_action = claims.no_action,
+            .symplectic = claims.symplectic && !claims.dissipative && !lazy_,
+            .no_action =
+                lazy_ ? "its lazy kernel is symplectic only nearly, so the motion has no action" : claims.no_action,
             .reversible = symmetric_ && !claims.dissipative,
             .energy = claims.energy,
             .dissipative = claims.dissipative,
@@ -144,6 +137,7 @@ template <SplitHamiltonian H> class Composition {
   void save(SavedState& saved, const std::string& prefix) const {
     save_value(saved, prefix + "method", name_);
     save_value(saved, prefix + "compensated", options_.compensated);
+    save_value(saved, prefix + "processing", options_.processing_text());
     detail::save_any(saved, prefix + "hamiltonian/", hamiltonian_);
   }
   /// @throws Error  if the saved run was made by another scheme, or with other rounding
@@ -158,10 +152,41 @@ template <SplitHamiltonian H> class Composition {
       throw Error(compensated ? "the saved run sums with compensation, but this one without"
                               : "the saved run sums without compensation, but this one with it");
     }
+    std::string processing;
+    if (saved.contains(prefix + "processing")) load_value(saved, prefix + "processing", processing);
+    if (processing != options_.processing_text()) {
+      throw Error("the saved run has " + (processing.empty() ? "no corrector or kernel" : processing) +
+                  ", but this one has " +
+                  (options_.changes_scheme() ? options_.processing_text() : "no corrector or kernel"));
+    }
     detail::load_any(saved, prefix + "hamiltonian/", hamiltonian_);
   }
 
  private:
+  Composition(const CompositionOptions& options, H hamiltonian, const Scheme& scheme)
+      : hamiltonian_(std::move(hamiltonian)),
+        options_(options),
+        name_(scheme.name),
+        order_(scheme.order.classical),
+        word_(timed(fitted_word(scheme, hamiltonian_.claims(), detail::name_of(hamiltonian_), options_),
+                    hamiltonian_.claims().timed)) {
+    symmetric_ = scheme.is_symmetric() && scheme.before.size() == 0 && is_palindrome(word_.stages());
+    const HamiltonianClaims claims = hamiltonian_.claims();
+    before_ = around(scheme.before, claims.timed);
+    after_ = around(scheme.after, claims.timed);
+    for (const Stage& stage : scheme.word) lazy_ = lazy_ || claims.lazy.find(stage.letter) != std::string_view::npos;
+  }
+
+  /// The word before or after the run; after it the time that letters carry comes back to where it was.
+  static std::vector<TimedStage<real>> around(const Word& word, std::string_view with_time) {
+    std::vector<TimedStage<real>> stages;
+    real fraction(0);
+    for (const Stage& stage : word) {
+      stages.push_back({stage.letter, detail::weight_in<real>(stage.weight), fraction});
+      if (with_time.find(stage.letter) != std::string_view::npos) fraction += stages.back().weight;
+    }
+    return stages;
+  }
   /// The word in the weights of `real`, each stage with the time at which it begins.
   static TimedWord<real> timed(const FittedWord& fitted, std::string_view with_time) {
     const std::vector<Stage>& word = fitted.stages;
@@ -187,7 +212,13 @@ template <SplitHamiltonian H> class Composition {
     hamiltonian_.flow(stage.letter, s, stage.weight * dt);
   }
   void flow_all(const std::vector<TimedStage<real>>& stages, ParticleSystem<real>& s, const real& dt) {
-    for (const TimedStage<real>& stage : stages) flow(stage, s, dt);
+    if (stages.empty()) return;
+    const real at = s.clock().fraction();
+    for (const TimedStage<real>& stage : stages) {
+      s.clock().set_fraction(at + stage.fraction);
+      flow(stage, s, dt);
+    }
+    s.clock().set_fraction(at);
   }
 
   H hamiltonian_;
@@ -195,6 +226,7 @@ template <SplitHamiltonian H> class Composition {
   std::string name_;
   int order_;
   bool symmetric_ = false;
+  bool lazy_ = false;  ///< a letter of the word is symplectic only nearly
   TimedWord<real> word_;
   std::vector<TimedStage<real>> before_, after_;
 };

@@ -5,6 +5,8 @@
 #include "engine/signature.hpp"
 #include "forces/gravity.hpp"
 #include "forces/sum.hpp"
+#include "integrators/encounters.hpp"
+#include "integrators/jacobi_derivatives.hpp"
 #include "integrators/kepler.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "numbers/parallel.hpp"
@@ -22,27 +24,35 @@ namespace noether {
 
 /// What the position and velocity columns hold while the splitting runs; 0 is inertial, as everywhere.
 enum class Coordinates : std::uint8_t {
-  jacobi = 1,  ///< row 0: centre of mass; others relative to the centre of mass of all bodies further in
-  democratic,  ///< row 0: centre of mass; positions relative to particle 0, velocities to the centre of mass
+  jacobi = 1,   ///< row 0: centre of mass; others relative to the centre of mass of all bodies further in
+  democratic,   ///< row 0: centre of mass; positions relative to particle 0, velocities to the centre of mass
+  whds,         ///< as democratic, velocities times (m_0 + m_i)/m_0
+  barycentric,  ///< row 0: centre of mass; positions relative to it, velocities to particle 0 times (M - m_i)/M
 };
 
 template <> struct EnumNames<Coordinates> {
-  static constexpr std::array<std::pair<Coordinates, std::string_view>, 2> values = {
-      {{Coordinates::jacobi, "jacobi"}, {Coordinates::democratic, "democratic"}}};
+  static constexpr std::array<std::pair<Coordinates, std::string_view>, 4> values = {
+      {{Coordinates::jacobi, "jacobi"},
+       {Coordinates::democratic, "democratic"},
+       {Coordinates::whds, "whds"},
+       {Coordinates::barycentric, "barycentric"}}};
 };
 
 /// Parameters of a Wisdom-Holman splitting.
 struct WisdomHolmanOptions {
   std::optional<double> G = {};                   ///< [length^3/mass/time^2]; default: the unit system's own
-  Coordinates coordinates = Coordinates::jacobi;  ///< jacobi or democratic
+  Coordinates coordinates = Coordinates::jacobi;  ///< in which H is split
 
   static constexpr auto describe() {
     return part<WisdomHolmanOptions>(
         "wisdom_holman", "Kepler arcs A about particle 0 and kicks B by the interaction",
         formula("H = sum [p'^2/2m' - G m' M/r'] + [sum G m' M/r' - sum G m_i m_j/r_ij]"), source("WisdomHolman1991"),
         letter('A', "Kepler arcs of every body"), letter('B', "kicks by the interaction"),
+        letter('G', "kicks by the gradient of the square of that of B, for kernels"),
+        letter('L', "kicks by the interaction a little further along itself, for kernels"),
         field<&WisdomHolmanOptions::G>("G", "length^3/mass/time^2", "default: the unit system's own"),
-        field<&WisdomHolmanOptions::coordinates>("coordinates", "1", "jacobi or democratic (heliocentric)"));
+        field<&WisdomHolmanOptions::coordinates>("coordinates", "1",
+                                                 "in which H is split; democratic and whds are heliocentric"));
   }
 
   /// What it has in itself, beside the motion p^2/2m: methods that do not split take it as a force.
@@ -51,7 +61,7 @@ struct WisdomHolmanOptions {
   template <class Real> AnyHamiltonian<Real> split(ForceField<Real> others) const;
 };
 
-/// The Wisdom-Holman splitting in Jacobi or democratic heliocentric coordinates.
+/// The Wisdom-Holman splitting in Jacobi coordinates, or in others that know no order of the bodies.
 ///
 /// Particle 0 is the primary; massive bodies come before tracers. Jacobi coordinates take the bodies by semi-major axis
 /// at the start, and a tracer goes round those whose orbits are smaller than its own; that order is state. With M_k the
@@ -61,13 +71,16 @@ struct WisdomHolmanOptions {
 ///                 B = sum_{k>1} G m'_k M_k/r'_k - sum_{pairs but the innermost} G m_i m_j/r_ij (+ other forces)
 ///     democratic  A = P^2/2M + sum_i [p_i^2/2m_i - G m_0 m_i/Q_i],   Q_i = x_i - x_0, p_i = m_i (v_i - V)
 ///                 B = J/2 K J/2 with J = |sum p_i|^2/2m_0 and K = - sum_{0<i<j} G m_i m_j/Q_ij (+ other forces)
+///     whds        A = P^2/2M + sum_i [p_i^2 (m_0 + m_i)/2m_0 m_i - G m_0 m_i/Q_i],   J = sum_{i<j} p_i p_j/m_0
+///     barycentric A = P^2/2M + sum_i [p_i^2 (M - m_i)/2M m_i - G m_0^2 m_i/(m_0 + m_i)R_i],  J = - sum_{i<j} p_i p_j/M
+///                 with R_i = x_i - X, p_i = m_i (v_i - v_0), and K = U - (the potential in A)
 ///
-/// Both parts are exact; only the democratic B becomes a symmetric map of order 2 where other forces join it, which J
-/// does not commute with. Other forces must depend
-/// on positions (and stage time) only. Action increments: Kepler arc h E + 2 mu s times the reduced mass (s the
+/// Both parts of the first two are exact. J does not commute with other forces, nor with K in the last two: B is then a
+/// symmetric map of order 2. Two bodies alone are followed exactly in all but the democratic ones. Other forces must
+/// depend on positions (and stage time) only. Action increments: Kepler arc h E + 2 mu s times the reduced mass (s the
 /// universal variable), free motion h T, jump h J, kick - h U.
 /// @cost one Kepler arc per body and A, one sum over pairs per B; no allocation after `bind`
-/// @source WisdomHolman1991, DuncanLevisonLee1998, ReinTamayo2015
+/// @source WisdomHolman1991, DuncanLevisonLee1998, ReinTamayo2015, HernandezDehnen2017
 template <class Real = double, class F = Sum<>> class WisdomHolman {
  public:
   using real = Real;
@@ -95,7 +108,11 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
 
   void observe(std::optional<Request> wanted) { observing_ = wanted.has_value(); }
   const std::optional<Failure>& failure() const { return failure_; }
-  Evaluations evaluations() const { return evaluations_; }
+  Evaluations evaluations() const {
+    Evaluations all = evaluations_;
+    all.encounter = encounters_.closest();
+    return all;
+  }
   void save(SavedState& saved, const std::string& prefix) const {
     detail::save_signature(saved, prefix + "options/", options_);
     detail::save_signature(saved, prefix + "forces/", forces_);
@@ -103,6 +120,7 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
     save_value(saved, prefix + "within", within_);
     save_value(saved, prefix + "kicks", evaluations_.force);
     save_value(saved, prefix + "arcs", evaluations_.kepler);
+    encounters_.save(saved, prefix + "encounter/");
   }
   void load(const SavedState& saved, const std::string& prefix) {
     detail::check_signature(saved, prefix + "options/", options_);
@@ -110,18 +128,24 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
     load_order(saved, prefix);
     load_value(saved, prefix + "kicks", evaluations_.force);
     load_value(saved, prefix + "arcs", evaluations_.kepler);
+    encounters_.load(saved, prefix + "encounter/");
     failure_.reset();
     gather_masses();
     load_within(saved, prefix);
+    gather_arcs();
   }
   /// Particles in the order of Jacobi coordinates, massive bodies first.
   const std::vector<std::int64_t>& order() const { return order_; }
 
  private:
   bool jacobi() const { return options_.coordinates == Coordinates::jacobi; }
+  bool barycentric() const { return options_.coordinates == Coordinates::barycentric; }
+  /// Whether velocities are scaled: what each body has of |sum p_i|^2 is part of A, and J is what they have together.
+  bool scaled() const { return options_.coordinates == Coordinates::whds || barycentric(); }
   static constexpr bool has_forces = !std::is_same_v<F, Sum<>>;
   void gather_masses();
   void place_within(const std::vector<double>& axis);
+  void gather_arcs();
   void load_order(const SavedState& saved, const std::string& prefix);
   void load_within(const SavedState& saved, const std::string& prefix);
   std::size_t massive() const { return interior_.size(); }
@@ -132,13 +156,22 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
   void from_jacobi(const VectorColumn<Real>& from, VectorColumn<Real>& to, const Vec3<Real>& center) const;
   void to_democratic(ParticleSystem<Real>& s) const;
   void from_democratic(ParticleSystem<Real>& s) const;
+  void to_barycentric(ParticleSystem<Real>& s) const;
+  void from_barycentric(ParticleSystem<Real>& s) const;
+  void scale(VectorColumn<Real>& column, bool back) const;
+  void inertial_positions(const VectorColumn<Real>& from, const Vec3<Real>& center, VectorColumn<Real>& to) const;
 
   Real arcs(ParticleSystem<Real>& s, const Real& h, bool action);
   Real kick(ParticleSystem<Real>& s, const Real& h, bool action);
+  Real gradient_kick(ParticleSystem<Real>& s, const Real& h, bool action);
+  void lazy_kick(ParticleSystem<Real>& s, const Real& h);
+  Real accelerate(const VectorColumn<Real>& x, const Clock<Real>& clock, bool energy);
   Real jump(ParticleSystem<Real>& s, const Real& h);
   Real interaction(const VectorColumn<Real>& x, bool skip_inner, Index first, bool energy);
-  Real indirect(const ParticleSystem<Real>& s, bool energy);
-  Real other_forces(const ParticleSystem<Real>& s, bool energy);
+  Real indirect(const VectorColumn<Real>& x, bool energy);
+  Real without_arcs(const VectorColumn<Real>& x, bool energy);
+  void about_center();
+  Real other_forces(const VectorColumn<Real>& x, const Clock<Real>& clock, bool energy);
   Real newton(const ParticleSystem<Real>& s, VectorColumn<Real>& a, Request wanted);
 
   WisdomHolmanOptions options_;
@@ -148,11 +181,16 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
   std::vector<std::int64_t> within_;         ///< by particle, k of the mass M_k that its Kepler arc goes round
   std::vector<Real> masses_;                 ///< by particle
   std::vector<Real> interior_;               ///< M_k, mass of the first k + 1 bodies in order
+  std::vector<Real> circled_;                ///< by particle, the mass that its Kepler arc goes round
+  std::vector<Real> reduced_;                ///< by particle, the mass that makes its velocity a momentum
+  double moment_ = 0;                        ///< time of the kick
+  std::vector<Real> scale_;                  ///< by particle, of its velocity: m_i over the reduced mass
   mutable std::vector<Vec3<Real>> centers_;  ///< of these, as the last change of coordinates met them
-  VectorColumn<Real> scratch_, positions_, acceleration_, other_;
+  VectorColumn<Real> scratch_, positions_, acceleration_, other_, along_;
   std::optional<ParticleSystem<Real>> inertial_;  ///< positions for other forces
   std::optional<Failure> failure_;
   Evaluations evaluations_;
+  EncounterWatch encounters_;
   bool observing_ = false;
 };
 

@@ -258,6 +258,13 @@ struct UnitSystem {
   bool is_reduced() const noexcept { return !scale.has_value(); }
 };
 
+/// The speed of light 299792458 m/s, exact [length/time]; none in the reduced system.
+/// @throws never
+inline std::optional<double> speed_of_light(const UnitSystem& system) noexcept {
+  if (!system.scale) return {};
+  return (units::decimal(299792458, 0) * system.scale->time / system.scale->length).rounded();
+}
+
 /// The unit system of a name: solar, molecular, si or reduced (G = k_B = 1). The reference stays valid.
 /// @throws Error if there is none, with a proposal
 const UnitSystem& unit_system(std::string_view name);

@@ -91,7 +91,14 @@ AnyHamiltonian<double> hamiltonian_of(const Scene& scene) {
   const SceneHamiltonian& made = scene.hamiltonian;
   ForceField<double> forces;
   for (const SceneForce& force : made.forces) {
-    if (!force.letter) forces.add(force.force);
+    if (force.letter) continue;
+    if (force.force.claims().velocity_dependent) {
+      throw SchemeMismatch(
+          fmt::format("force '{}' depends on velocities, so no kick is its exact flow; use a method for "
+                      "y' = f, such as 'gauss_radau_15' or 'dop853'",
+                      force.name));
+    }
+    forces.add(force.force);
   }
   AnyHamiltonian<double> hamiltonian = made.constraints.empty()
                                            ? made.splitting.make(std::move(forces))
@@ -120,7 +127,10 @@ std::unique_ptr<VectorField<double>> field_of(const Scene& scene) {
     return std::make_unique<ForceMotion<ForceField<double>, double>>(forces_of(scene), splitting.name);
   }
   ForceField<double> kicks, letters;
-  for (const SceneForce& force : scene.hamiltonian.forces) (force.letter ? letters : kicks).add(force.force);
+  for (const SceneForce& force : scene.hamiltonian.forces) {
+    const bool beside = force.letter || force.force.claims().velocity_dependent;  // no part of the splitting
+    (beside ? letters : kicks).add(force.force);
+  }
   return std::make_unique<HamiltonianMotion<double>>(splitting.make(std::move(kicks)), std::move(letters),
                                                      forces_of(scene).claims());
 }

@@ -7,11 +7,13 @@
 #include "forces/bonded.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/fermi_pasta_ulam.hpp"
+#include "forces/gr_potential.hpp"
 #include "forces/gravity.hpp"
 #include "forces/henon_heiles.hpp"
 #include "forces/lennard_jones.hpp"
 #include "forces/oblateness.hpp"
 #include "forces/pair_potentials.hpp"
+#include "forces/post_newtonian.hpp"
 #include "forces/springs.hpp"
 #include "forces/sum.hpp"
 #include "integrators/all_methods.hpp"
@@ -113,6 +115,8 @@ Parts standard_parts() {
   parts.add_thermostat<LangevinOptions>();
   parts.add_force<Gravity>();
   parts.add_force<Oblateness>();
+  parts.add_force<GrPotential>();
+  parts.add_force<PostNewtonian>();
   parts.add_force<UniformField>();
   parts.add_force<OscillatingField>();
   parts.add_force<HarmonicField>();

@@ -172,7 +172,7 @@ void refuse_scheme_options(TableReader& reader, const SceneIntegrator& made) {
     if (given.*(field.member) == defaults.*(field.member)) return;
     reader.fail(field.name,
                 fmt::format("method '{}' {}; {} = {} is for splitting schemes such as 'verlet'", made.method,
-                            CompositionOptions::elsewhere, field.name, to_text(*reader.find(field.name))));
+                            CompositionOptions::elsewhere(field.name), field.name, to_text(*reader.find(field.name))));
   });
 }
 

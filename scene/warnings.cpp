@@ -1,6 +1,7 @@
 #include "scene/warnings.hpp"
 
 #include "engine/charge.hpp"
+#include "integrators/encounters.hpp"
 #include "numbers/quantity.hpp"
 #include "numbers/text.hpp"
 
@@ -241,6 +242,24 @@ std::vector<std::string> warnings_of(const Scene& scene) {
   add(unmoved_tracers(scene));
   for (const SceneWatch& watch : scene.watches) add(times_after_the_end(watch, scene));
   return warnings;
+}
+
+std::string warning_of(const Encounter& encounter, const ParticleSystem<double>& particles, const UnitSystem& units) {
+  const auto name = [&](std::int64_t id) {
+    for (Index i = 0; i < particles.size(); ++i) {
+      if (particles.ids()[static_cast<std::size_t>(i)] == id) return fmt::format("'{}'", particles.name(i));
+    }
+    return fmt::format("a body that is gone (id {})", id);
+  };
+  const std::string unit = units.time == "1" ? "" : fmt::format(" {}", units.time);
+  const std::string first = encounter.since == encounter.time
+                                ? ""
+                                : fmt::format(", and bodies within {} for the first time at time {:.6g}{}",
+                                              encounter_hill_radii, encounter.since, unit);
+  return fmt::format(
+      "{} and {} came within {:.2g} Hill radii of each other at time {:.6g}{}{}; wisdom_holman does not follow such "
+      "encounters, so use a method whose steps shrink in them, such as 'gauss_radau_15'",
+      name(encounter.first), name(encounter.second), encounter.hill_radii, encounter.time, unit, first);
 }
 
 void tell_notes(const std::vector<std::string>& notes) {

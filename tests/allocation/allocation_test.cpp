@@ -96,7 +96,12 @@ TEST_CASE("nothing is allocated inside advance, nor by settling", "[allocation]"
     check_none(compose(AnyHamiltonian<double>(KineticPotential<ForceField<double>>{forces}), scheme));
     check_none(AnyIntegrator<double>(compose(WisdomHolman({.G = G}), scheme)));
   }
-  check_none(compose(WisdomHolman({.G = G, .coordinates = Coordinates::democratic}), schemes::verlet_aba));
+  for (const Coordinates coordinates : {Coordinates::democratic, Coordinates::whds, Coordinates::barycentric}) {
+    check_none(compose(WisdomHolman({.G = G, .coordinates = coordinates}), schemes::verlet_aba));
+  }
+  for (const StepKernel kernel : {StepKernel::plain, StepKernel::modified, StepKernel::composed, StepKernel::lazy}) {
+    check_none(compose(WisdomHolman({.G = G}), schemes::verlet_aba, {.corrector = 17, .kernel = kernel}));
+  }
   check_none(compose(Damped(KineticPotential(Gravity{.G = G}), {.rate = 1e-6}), schemes::verlet));
   const Langevin bath(KineticPotential(Gravity{.G = G}), {.temperature = 300, .friction = 1e-6});
   for (const char* letters : {"BAOAB", "OBABO"}) check_none(compose(bath, word(letters)));

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -38,6 +39,17 @@ Masses democratic_masses(const ParticleSystem<Quad>& s) {
   Quad total(0);
   for (const Quad& one : m) total += one;
   m[0] = total;
+  return m;
+}
+
+/// m_0 m_i / (m_0 + m_i) and m_i M / (M - m_i), which make momenta of scaled velocities.
+Masses scaled_masses(const ParticleSystem<Quad>& s, Coordinates coordinates) {
+  const Masses inertial = inertial_masses(s);
+  Masses m = democratic_masses(s);
+  const Quad star = inertial[0], total = m[0];
+  for (std::size_t k = 1; k < m.size(); ++k) {
+    m[k] = coordinates == Coordinates::whds ? star * m[k] / (star + m[k]) : m[k] * total / (total - m[k]);
+  }
   return m;
 }
 
@@ -94,6 +106,7 @@ template <class H, class MassesOf> void check_actions(H hamiltonian, const Masse
   hamiltonian.open(s);
   const Masses m = masses_of(s, hamiltonian);
   for (const char letter : hamiltonian.claims().alphabet) {
+    if (hamiltonian.claims().lazy.find(letter) != std::string_view::npos) continue;  // not symplectic
     for (const double h : {0.37, -0.2}) {
       INFO("letter " << letter << " for " << h);
       CHECK(action_defect(hamiltonian, std::as_const(s), m, letter, Quad(h)) < 1e-16);
@@ -130,6 +143,17 @@ TEST_CASE("the actions of Kepler arcs and interaction kicks are those of their f
   check_actions(wisdom_holman<Quad>(options), democratic);
   check_actions(wisdom_holman_over(options, further_forces()), democratic);
   check_actions(wisdom_holman<Quad>(options, HarmonicField{0.3}), democratic);
+}
+
+TEST_CASE("the actions of Kepler arcs and interaction kicks are those of their flows where velocities are scaled",
+          "[conservation][action]") {
+  for (const Coordinates coordinates : {Coordinates::whds, Coordinates::barycentric}) {
+    CAPTURE(static_cast<int>(coordinates));
+    const WisdomHolmanOptions options{.coordinates = coordinates};
+    const auto scaled = [&](const auto& s, const auto& /*hamiltonian*/) { return scaled_masses(s, coordinates); };
+    check_actions(wisdom_holman<Quad>(options), scaled);
+    check_actions(wisdom_holman_over(options, further_forces()), scaled);
+  }
 }
 
 TEST_CASE("erased Hamiltonians give the same actions and the same bits", "[conservation][action]") {

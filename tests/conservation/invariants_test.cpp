@@ -64,10 +64,17 @@ TEST_CASE("every scheme keeps momentum and angular momentum to rounding", "[cons
   for (const Scheme* scheme : schemes::all()) check_momenta(hamiltonian, *scheme, four_bodies(), 0.01, 400);
 }
 
-TEST_CASE("every scheme keeps momenta over Kepler arcs to rounding, in both coordinates", "[conservation]") {
-  for (const Coordinates coordinates : {Coordinates::jacobi, Coordinates::democratic}) {
+constexpr Coordinates each[] = {Coordinates::jacobi, Coordinates::democratic, Coordinates::whds,
+                                Coordinates::barycentric};
+
+TEST_CASE("every scheme keeps momenta over Kepler arcs to rounding, in all coordinates", "[conservation]") {
+  for (const Coordinates coordinates : each) {
+    const HamiltonianClaims claims = wisdom_holman({.coordinates = coordinates}).claims();
     for (const Scheme* scheme : schemes::all()) {
-      if (coordinates == Coordinates::democratic && scheme->scheme_class == SchemeClass::rkn) continue;
+      if (!claims.quadratic_kinetic && scheme->scheme_class == SchemeClass::rkn) continue;
+      if (!claims.inexact.empty() && !scheme->is_composition() && scheme->exact.find('B') != std::string_view::npos) {
+        continue;
+      }
       check_momenta(wisdom_holman({.coordinates = coordinates}), *scheme, planets(1e-3), 0.05, 200);
     }
   }
@@ -108,9 +115,9 @@ TEST_CASE("symmetric schemes return to where they started, the others visibly do
   }
 }
 
-TEST_CASE("symmetric schemes over Kepler arcs return to where they started, in both coordinates",
+TEST_CASE("symmetric schemes over Kepler arcs return to where they started, in all coordinates",
           "[conservation][reversibility]") {
-  for (const Coordinates coordinates : {Coordinates::jacobi, Coordinates::democratic}) {
+  for (const Coordinates coordinates : each) {
     const auto hamiltonian = wisdom_holman({.coordinates = coordinates});
     for (const Scheme* scheme : {&schemes::verlet, &schemes::verlet_aba, &schemes::yoshida_6, &schemes::abah_10_6_4}) {
       INFO(scheme->name);

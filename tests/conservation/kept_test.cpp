@@ -93,7 +93,8 @@ TEST_CASE("every method keeps what it claims, and no more, over drifts and kicks
 }
 
 TEST_CASE("every method keeps what it claims, and no more, over Kepler arcs", "[conservation][claims]") {
-  for (const Coordinates coordinates : {Coordinates::jacobi, Coordinates::democratic}) {
+  for (const Coordinates coordinates :
+       {Coordinates::jacobi, Coordinates::democratic, Coordinates::whds, Coordinates::barycentric}) {
     check_kept(wisdom_holman<Quad>({.coordinates = coordinates}), planets(0.01, 2), 0.3);
     // Weak, as the planets are light: bodies keep their order, by which Jacobi coordinates go.
     const HarmonicField around{0.01};

@@ -91,22 +91,42 @@ TEST_CASE("every scheme over kinetic and potential energy is symplectic", "[cons
   }
 }
 
-TEST_CASE("every scheme over Kepler arcs is symplectic in the inertial momenta, in both coordinates",
+TEST_CASE("every scheme over Kepler arcs is symplectic in the inertial momenta, in all coordinates",
           "[conservation][symplectic][slow]") {
   const auto start = planets(0.1, 2).as<Quad>();
   for (const Scheme* scheme : schemes::all()) {
     INFO(scheme->name);
     CHECK(defect(wisdom_holman<Quad>({.coordinates = Coordinates::jacobi}), *scheme, start, 0.2, 1) < 1e-16);
     if (!takes_inexact_kicks(*scheme)) continue;
-    CHECK(defect(wisdom_holman<Quad>({.coordinates = Coordinates::democratic}), *scheme, start, 0.2, 1) < 1e-16);
+    for (const Coordinates coordinates : {Coordinates::democratic, Coordinates::whds, Coordinates::barycentric}) {
+      CHECK(defect(wisdom_holman<Quad>({.coordinates = coordinates}), *scheme, start, 0.2, 1) < 1e-16);
+    }
   }
+}
+
+TEST_CASE("corrected steps and kernels are symplectic, the lazy kernel only nearly", "[conservation][symplectic]") {
+  const auto start = planets(0.1, 2).as<Quad>();
+  const auto arcs = wisdom_holman<Quad>({});
+  const auto made = [&](const Scheme& scheme, const CompositionOptions& options) {
+    return defect(arcs, processed(scheme, options), start, 0.2, 1);
+  };
+  CHECK(made(schemes::verlet, {.corrector = 5}) < 1e-16);
+  CHECK(made(schemes::verlet_aba, {.corrector = 5, .kernel = StepKernel::modified}) < 1e-16);
+  CHECK(made(schemes::verlet_aba, {.corrector = 5, .kernel = StepKernel::composed, .second_corrector = true}) < 1e-16);
+  CHECK(made(schemes::saba_3, {.kernel = StepKernel::modified}) < 1e-16);
+  const CompositionOptions lazy{.corrector = 5, .kernel = StepKernel::lazy};
+  CHECK(made(schemes::verlet_aba, lazy) > 1e-12);
+  CHECK(made(schemes::verlet_aba, lazy) < 1e-4);
+  CHECK_FALSE(compose(arcs, schemes::verlet_aba, lazy).claims().symplectic);
+  CHECK(compose(arcs, schemes::verlet_aba, {.corrector = 5, .kernel = StepKernel::modified}).claims().symplectic);
 }
 
 TEST_CASE("Kepler arcs with further forces are symplectic", "[conservation][symplectic]") {
   const auto start = planets(0.1, 2).as<Quad>();
   ForceField<Quad> field;
   field.add(HarmonicField{0.3}).add(OscillatingField{{0.1, 0.2, -0.1}, 2.0, 0.4});
-  for (const Coordinates coordinates : {Coordinates::jacobi, Coordinates::democratic}) {
+  for (const Coordinates coordinates :
+       {Coordinates::jacobi, Coordinates::democratic, Coordinates::whds, Coordinates::barycentric}) {
     const auto hamiltonian = wisdom_holman_over({.coordinates = coordinates}, field);
     CHECK(defect(hamiltonian, schemes::verlet, start, 0.2, 2) < 1e-16);
     CHECK(defect(hamiltonian, schemes::abah_8_6_4, start, 0.2, 1) < 1e-16);

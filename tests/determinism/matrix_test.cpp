@@ -162,13 +162,14 @@ std::vector<Twin> force_twins() {
 }
 
 std::vector<Twin> wisdom_holman_twins(Coordinates coordinates) {
-  const bool jacobi = coordinates == Coordinates::jacobi;
+  std::string in;
+  for (const auto& [value, name] : EnumNames<Coordinates>::values) in = value == coordinates ? name : in;
   const auto hamiltonian = test::wisdom_holman({.G = test::outer_G, .coordinates = coordinates});
-  const std::string scene = fmt::format("[hamiltonian]\ntype='wisdom_holman'\nG={}\ncoordinates='{}'\n", test::outer_G,
-                                        jacobi ? "jacobi" : "democratic");
+  const std::string scene =
+      fmt::format("[hamiltonian]\ntype='wisdom_holman'\nG={}\ncoordinates='{}'\n", test::outer_G, in);
   std::vector<Twin> twins;
-  for (const char* method : {"verlet_aba", "abah_8_6_4", jacobi ? "aba_10_6_4" : "abah_10_6_4"}) {
-    twins.push_back({.name = fmt::format("{} in {}", method, jacobi ? "jacobi" : "democratic"),
+  for (const char* method : {"verlet_aba", "abah_8_6_4", in == "jacobi" ? "aba_10_6_4" : "abah_10_6_4"}) {
+    twins.push_back({.name = fmt::format("{} in {}", method, in),
                      .bodies = test::planets_with_tracers(300),
                      .program = compose(hamiltonian, *schemes::find(method)),
                      .step = 20,
@@ -227,7 +228,8 @@ std::vector<Twin> turning_twins() {
 
 void check_all_twins(std::size_t stride) {
   for (const auto& twins : {gravity_twins(), force_twins(), liquid_twins(), decorated_twins(), turning_twins(),
-                            wisdom_holman_twins(Coordinates::jacobi), wisdom_holman_twins(Coordinates::democratic)}) {
+                            wisdom_holman_twins(Coordinates::jacobi), wisdom_holman_twins(Coordinates::democratic),
+                            wisdom_holman_twins(Coordinates::whds), wisdom_holman_twins(Coordinates::barycentric)}) {
     for (const Twin& twin : twins) check_ways(twin, stride);
   }
 }

@@ -183,6 +183,9 @@ HAMILTONIANS = {
 FORCES = {
     "gravity": Case(PLANETS, forces("type = 'gravity'; G = 1; softening = 0.01")),
     "oblateness": Case(PLANETS, forces(GRAVITY, "type = 'oblateness'; J2 = 0.01; J4 = -0.001; radius = 0.1; G = 1")),
+    "gr_potential": Case(PLANETS, forces(GRAVITY, "type = 'gr_potential'; c = 30; G = 1")),
+    "post_newtonian": Case(PLANETS, forces(GRAVITY, "type = 'post_newtonian'; c = 30; G = 1"), method="rk4",
+                           rivals=("rk4", "heun"), energy=False),
     "uniform_field": Case(PAIR, forces(WEIGHT, SPRING)),
     "oscillating_field": Case(PAIR, forces(
         "type = 'oscillating_field'; acceleration = [0.1, 0.0, 0.2]; omega = 3.0; phase = 0.2", SPRING)),

@@ -19,6 +19,7 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 
 using namespace noether;
 
@@ -83,6 +84,13 @@ template <class Real> void check_all_hamiltonians(const Scheme& scheme, std::int
     if (scheme.scheme_class != SchemeClass::rkn) {
       check_restart<Real>(compose(democratic, scheme, {.compensated = compensated}), n);
     }
+    if (scheme.is_composition() || scheme.exact.find('B') == std::string_view::npos) {
+      for (const Coordinates coordinates : {Coordinates::whds, Coordinates::barycentric}) {
+        if (scheme.scheme_class == SchemeClass::rkn) continue;
+        const auto scaled = test::wisdom_holman<Real>({.G = test::outer_G, .coordinates = coordinates});
+        check_restart<Real>(compose(scaled, scheme, {.compensated = compensated}), n);
+      }
+    }
     const auto driven = test::wisdom_holman<Real>({.G = test::outer_G}, UniformField{.acceleration = {1e-8, 0, 2e-8}},
                                                   OscillatingField{.acceleration = {1e-7, 0, 2e-7}, .omega = 0.03});
     check_restart<Real>(compose(driven, scheme, {.compensated = compensated}), n);
@@ -105,6 +113,30 @@ TEST_CASE("the same in Quad", "[restart]") {
   for (const char* name : {"verlet", "symplectic_euler_a", "aba_10_6_4", "abah_8_6_4"}) {
     check_all_hamiltonians<Quad>(*schemes::find(name), 8);
   }
+}
+
+TEST_CASE("runs with correctors and kernels go on bit for bit", "[restart]") {
+  const StepKernel kernels[] = {StepKernel::plain, StepKernel::modified, StepKernel::composed, StepKernel::lazy};
+  for (const StepKernel kernel : kernels) {
+    for (const bool compensated : {false, true}) {
+      CAPTURE(static_cast<int>(kernel), compensated);
+      const CompositionOptions options{.compensated = compensated,
+                                       .corrector = 17,
+                                       .kernel = kernel,
+                                       .second_corrector = kernel != StepKernel::plain};
+      const auto arcs = test::wisdom_holman({.G = test::outer_G});
+      check_restart<double>(compose(arcs, schemes::verlet_aba, options), 20);
+      check_restart<double>(compose(arcs, schemes::verlet, options), 20);
+    }
+  }
+  const auto arcs = test::wisdom_holman({.G = test::outer_G});
+  check_restart<double>(compose(arcs, schemes::saba_3, {.kernel = StepKernel::modified}), 20);
+  Simulation plain(test::outer_planets(), compose(arcs, schemes::verlet_aba), 40.0);
+  Simulation corrected(test::outer_planets(), compose(arcs, schemes::verlet_aba, {.corrector = 7}), 40.0);
+  CHECK_THROWS_WITH(corrected.restore(plain.save()),
+                    "the saved run has no corrector or kernel, but this one has corrector = 7");
+  CHECK_THROWS_WITH(plain.restore(corrected.save()),
+                    "the saved run has corrector = 7, but this one has no corrector or kernel");
 }
 
 TEST_CASE("a restored run of another scheme, step or set of particles is refused", "[restart]") {

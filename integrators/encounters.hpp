@@ -1,0 +1,44 @@
+#pragma once
+/// Encounters that a splitting about a primary should not meet.
+
+#include "engine/concepts.hpp"
+#include "engine/saved_state.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace noether {
+
+/// Bodies nearer to each other than this many mutual Hill radii pull at each other as strongly as the primary's tide.
+inline constexpr double encounter_hill_radii = 2;
+
+/// Keeps the closest encounter of bodies about a primary, particle 0, by r ((m_i + m_j)/3 m_0)^(1/3), r the distance of
+/// the later one from the primary.
+class EncounterWatch {
+ public:
+  /// @param masses, ids  by particle
+  void bind(const std::vector<double>& masses, const std::vector<std::int64_t>& ids);
+
+  /// Whether two bodies, none of them the primary, may be too near: one product and one comparison.
+  template <class Real> bool near(Index i, Index j, const Real& r2, const Real& from_primary2) const {
+    const double reach = reach_[static_cast<std::size_t>(i)] + reach_[static_cast<std::size_t>(j)];
+    return j > 0 && r2 < Real(reach * reach) * from_primary2;
+  }
+  /// Takes down two bodies at a moment; from several threads. What is kept depends on the bodies only.
+  void note(Index i, Index j, double r2, double from_primary2, double time);
+
+  const std::optional<Encounter>& closest() const { return closest_; }
+  void save(SavedState& saved, const std::string& prefix) const;
+  /// @throws Error  if what was saved is damaged
+  void load(const SavedState& saved, const std::string& prefix);
+
+ private:
+  std::vector<double> masses_, reach_;  ///< the latter over the distance from the primary, no shorter than it must be
+  std::vector<std::int64_t> ids_;
+  std::optional<Encounter> closest_;
+};
+
+}  // namespace noether

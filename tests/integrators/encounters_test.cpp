@@ -1,0 +1,118 @@
+/// Encounters that a Wisdom-Holman splitting should not meet: seen at the kicks, and state of the run.
+
+#include "engine/simulation.hpp"
+#include "integrators/all_schemes.hpp"
+#include "integrators/composition.hpp"
+#include "integrators/wisdom_holman.hpp"
+#include "monitors/monitors.hpp"
+#include "scene/warnings.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/drivers.hpp"
+#include "tests/support/planets.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace noether {
+namespace {
+
+constexpr Coordinates in_turn[] = {Coordinates::jacobi, Coordinates::democratic, Coordinates::whds,
+                                   Coordinates::barycentric};
+
+/// Two planets of 1e-5 on circles at 1 and 1.04 about a star, and a tracer that passes the second one.
+ParticleSystem<double> crowd() {
+  ParticleSystem<double> s;
+  s.add("star", 1, {0, 0, 0}, {0, 0, 0});
+  s.add("inner", 1e-5, {1, 0, 0}, {0, 1, 0});
+  const double outer = 1.04, angle = 0.05, speed = 1 / std::sqrt(outer);
+  s.add("outer", 1e-5, {outer * std::cos(angle), outer * std::sin(angle), 0},
+        {-speed * std::sin(angle), speed * std::cos(angle), 0});
+  s.add("dust", 0, {0, 0.5, 0}, {-std::sqrt(2.0), 0, 0});
+  return s;
+}
+
+Simulation<double> meeting(Coordinates coordinates) {
+  return Simulation<double>(crowd(),
+                            compose(test::wisdom_holman({.G = 1, .coordinates = coordinates}), schemes::verlet), 0.05);
+}
+
+/// The smallest distance of the two planets over their Hill radius, at all whole steps, which kicks of Verlet see.
+double closest(Simulation<double>& simulation, std::int64_t steps) {
+  double least = 1e300;
+  for (std::int64_t n = 0; n < steps; ++n) {
+    REQUIRE(simulation.run(1).ok());
+    const auto& x = simulation.particles().positions();
+    const double apart = std::sqrt(norm2(Vec3<double>(x[2] - x[1])));
+    const double hill = std::cbrt(2e-5 / 3) * std::sqrt(norm2(Vec3<double>(x[2] - x[0])));
+    least = std::min(least, apart / hill);
+  }
+  return least;
+}
+
+TEST_CASE("the closest meeting of two planets is kept, with their ids and its time", "[encounter]") {
+  for (const Coordinates coordinates : in_turn) {
+    CAPTURE(static_cast<int>(coordinates));
+    auto simulation = meeting(coordinates);
+    const double least = closest(simulation, 1500);
+    const auto encounter = simulation.evaluations().encounter;
+    REQUIRE(encounter.has_value());
+    CHECK(least < 2);
+    CHECK(std::fabs(encounter->hill_radii / least - 1) < 1e-3);
+    CHECK(std::minmax(encounter->first, encounter->second) ==
+          std::minmax(simulation.particles().ids()[1], simulation.particles().ids()[2]));
+    CHECK(encounter->since < encounter->time);
+    CHECK(encounter->since > 0);
+    CHECK(encounter->time < 75);
+  }
+}
+
+TEST_CASE("a tracer near a planet is seen as well, and the outer planets never", "[encounter]") {
+  auto s = crowd();
+  s.positions().set(3, {1.01, 0.012, 0});  // within 2 Hill radii of the inner planet
+  s.velocities().set(3, {0, 1, 0});
+  Simulation<double> near(std::move(s), compose(test::wisdom_holman({.G = 1}), schemes::verlet), 0.05);
+  REQUIRE(near.run(2).ok());
+  REQUIRE(near.evaluations().encounter.has_value());
+  CHECK(near.evaluations().encounter->second == near.particles().ids()[3]);
+  Simulation<double> quiet(test::planets_with_tracers(30),
+                           compose(test::wisdom_holman({.G = test::outer_G}), schemes::verlet_aba), 100.0);
+  REQUIRE(quiet.run(500).ok());
+  CHECK_FALSE(quiet.evaluations().encounter.has_value());
+}
+
+TEST_CASE("an encounter is state of the run, and observers do not add to it", "[encounter][restart]") {
+  auto whole = meeting(Coordinates::jacobi), first = meeting(Coordinates::jacobi),
+       second = meeting(Coordinates::jacobi);
+  whole.every(1, Energy());
+  REQUIRE(whole.run(1500).ok());
+  REQUIRE(first.run(900).ok());
+  second.restore(first.save());
+  REQUIRE(second.run(600).ok());
+  const auto a = whole.evaluations().encounter, b = second.evaluations().encounter;
+  REQUIRE((a.has_value() && b.has_value()));
+  CHECK(a->hill_radii == b->hill_radii);
+  CHECK(a->time == b->time);
+  CHECK(a->since == b->since);
+  CHECK(a->first == b->first);
+}
+
+TEST_CASE("a run says in one line who met whom, when, and how closely", "[encounter]") {
+  const auto s = crowd();
+  const Encounter once{.first = s.ids()[1], .second = s.ids()[2], .hill_radii = 0.4213, .time = 12.5, .since = 12.5};
+  CHECK(
+      warning_of(once, s, unit_system("reduced")) ==
+      "'inner' and 'outer' came within 0.42 Hill radii of each other at time 12.5; wisdom_holman does not follow such "
+      "encounters, so use a method whose steps shrink in them, such as 'gauss_radau_15'");
+  Encounter later = once;
+  later.since = 3.25;
+  later.second = 77;
+  CHECK(
+      warning_of(later, s, unit_system("solar")) ==
+      "'inner' and a body that is gone (id 77) came within 0.42 Hill radii of each other at time 12.5 day, and bodies "
+      "within 2 for the first time at time 3.25 day; wisdom_holman does not follow such encounters, so use a method "
+      "whose steps shrink in them, such as 'gauss_radau_15'");
+}
+
+}  // namespace
+}  // namespace noether
