@@ -100,6 +100,8 @@ inline DoubleDouble floor(const DoubleDouble& x) {
   const double high = std::floor(x.high);
   return high == x.high ? DoubleDouble::ordered_sum(high, std::floor(x.low)) : DoubleDouble(high);
 }
+/// log(1 + x), by way of Quad.
+inline DoubleDouble log1p(const DoubleDouble& x) { return DoubleDouble(log1p(Quad(x))); }
 inline bool isfinite(const DoubleDouble& x) { return std::isfinite(x.high); }
 
 }  // namespace noether
