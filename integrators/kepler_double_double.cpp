@@ -38,7 +38,7 @@ template <> struct WiderType<DoubleDouble> { using type = Quad; };
 
 namespace {
 
-Vec3<double> high_of(const Vec3<DoubleDouble>& a) { return {a[0].high, a[1].high, a[2].high}; }
+Vec3<double> high_vector(const Vec3<DoubleDouble>& a) { return {a[0].high, a[1].high, a[2].high}; }
 
 /// The rest of a step that is a rounding error of doubles long: its products need no low words.
 void shift_slightly(UniversalFunctions<DoubleDouble>& g, double beta, double d) {
@@ -52,7 +52,7 @@ void shift_slightly(UniversalFunctions<DoubleDouble>& g, double beta, double d) 
 /// The arc from the s of doubles. @return whether it was good enough
 bool arc_from_doubles(const Vec3<DoubleDouble>& x, const Vec3<DoubleDouble>& v, const DoubleDouble& mu,
                       const DoubleDouble& h, KeplerArc<DoubleDouble>& arc) {
-  const KeplerArc<double> rough = kepler_arc(high_of(x), high_of(v), mu.high, h.high);
+  const KeplerArc<double> rough = kepler_arc(high_vector(x), high_vector(v), mu.high, h.high);
   if (rough.status != KeplerStatus::converged || rough.s == 0) return false;
   const DoubleDouble r0 = sqrt(norm2(x)), inverse = 1.0 / r0, eta0 = dot(x, v), v2 = norm2(v);
   const DoubleDouble twice = mu * inverse, beta = 2.0 * twice - v2, zeta0 = r0 * v2 - mu;
@@ -88,8 +88,8 @@ namespace noether {
 template <>
 KeplerArc<DoubleDouble> kepler_arc(const Vec3<DoubleDouble>& x, const Vec3<DoubleDouble>& v, DoubleDouble mu,
                                    DoubleDouble h) {
-  const double most = 1e30, least = 1e-30, longest = 1e20, r2 = norm2(detail::high_of(x));
-  const bool ordinary = r2 > least && r2 < most && norm2(detail::high_of(v)) < most && std::abs(mu.high) < most &&
+  const double most = 1e30, least = 1e-30, longest = 1e20, r2 = norm2(detail::high_vector(x));
+  const bool ordinary = r2 > least && r2 < most && norm2(detail::high_vector(v)) < most && std::abs(mu.high) < most &&
                         std::abs(h.high) < longest;
   if (!ordinary) return detail::scaled_arc(x, v, mu, h);
   KeplerArc<DoubleDouble> arc;

@@ -3,6 +3,7 @@
 #include "integrators/all_methods.hpp"
 #include "integrators/kepler_double_double.hpp"
 #include "integrators/methods/collocation_table.hpp"
+#include "integrators/methods/last_polynomial.hpp"
 
 #include <fmt/format.h>
 
@@ -16,50 +17,29 @@ namespace noether {
 namespace {
 
 /// Sweeps end when the next one is expected to change perturbations by no more than this part of them.
-constexpr double settled = 1e-16;
+constexpr double settled_departures = 1e-16;
 /// Changes below may be rounding, where bodies are so near to each other that doubles hardly tell their distance.
-constexpr double may_be_rounding = 1e-9;
-constexpr int most_sweeps = 60;
+constexpr double departures_may_round = 1e-9;
+constexpr int most_departure_sweeps = 60;
 
-Vec3<double> high_of(const Vec3<DoubleDouble>& a) { return {a[0].high, a[1].high, a[2].high}; }
+Vec3<double> high_words(const Vec3<DoubleDouble>& a) { return {a[0].high, a[1].high, a[2].high}; }
 
-double split(const Quad& x, double& low) {
+double split_in_two(const Quad& x, double& low) {
   const auto high = static_cast<double>(x);
   low = static_cast<double>(x - Quad(high));
   return high;
 }
 
-/// Lagrange's polynomials through the nodes c at 1 + c_i: where the last step leads.
-std::vector<std::vector<Quad>> extrapolation(const std::vector<Quad>& c) {
-  std::vector<std::vector<Quad>> weights;
-  for (const Quad& at : c) {
-    std::vector<Quad> row;
-    for (std::size_t j = 0; j < c.size(); ++j) {
-      Quad product(1);
-      for (std::size_t k = 0; k < c.size(); ++k) {
-        if (k != j) product *= (Quad(1) + at - c[k]) / (c[j] - c[k]);
-      }
-      row.push_back(product);
-    }
-    weights.push_back(std::move(row));
-  }
-  return weights;
-}
-
 }  // namespace
 
-EnckeGauss::EnckeGauss(std::string_view name) : name_(name) {
+EnckeGauss::EnckeGauss(std::string_view name) : name_(name), ahead_(last_polynomial(gauss_table(stages))) {
   const CollocationTable& table = gauss_table(stages);
-  const auto ahead = extrapolation(table.c);
   const auto twice = table.twice_end();
   for (std::size_t i = 0; i < stages; ++i) {
     c_[i] = static_cast<double>(table.c[i]);
-    b_[i] = split(table.b[i], b_low_[i]);
-    twice_[0][i] = split(twice[i], twice_[1][i]);
-    for (std::size_t j = 0; j < stages; ++j) {
-      a_[i][j] = static_cast<double>(table.a[i][j]);
-      ahead_[i][j] = static_cast<double>(ahead[i][j]);
-    }
+    b_[i] = split_in_two(table.b[i], b_low_[i]);
+    twice_[0][i] = split_in_two(twice[i], twice_[1][i]);
+    for (std::size_t j = 0; j < stages; ++j) a_[i][j] = static_cast<double>(table.a[i][j]);
   }
 }
 
@@ -140,14 +120,14 @@ std::optional<Failure> EnckeGauss::open(const Vector<double>& y, double h) {
   for (Body& body : bodies_) {
     body.x = wide(y, body.particle, 0) - x;
     body.v = wide(y, body.particle, 3 * n_) - v;
-    body.x0 = high_of(body.x);
-    body.v0 = high_of(body.v);
+    body.x0 = high_words(body.x);
+    body.v0 = high_words(body.v);
     if (auto failure = find_orbits(body, h)) return failure;
     body.rates.fill({Vec3<double>::Zero(), Vec3<double>::Zero()});
     if (h != h_) body.perturbation = {};
   }
   if (!beside_) return {};
-  center_ = {high_of(x), high_of(v)};
+  center_ = {high_words(x), high_words(v)};
   for (const Body& body : bodies_) {
     center_.x += body.share.high * body.x0;
     center_.v += body.share.high * body.v0;
@@ -300,7 +280,7 @@ double EnckeGauss::take_perturbations() {
 /// @return whether perturbations stand still
 bool EnckeGauss::sweep(VectorField<double>& f, double t, double h) {
   double before = std::numeric_limits<double>::infinity();
-  for (int round = 1; round <= most_sweeps; ++round) {
+  for (int round = 1; round <= most_departure_sweeps; ++round) {
     depart(h);
     add_gravity();
     f.evaluations().force += stages;
@@ -308,9 +288,9 @@ bool EnckeGauss::sweep(VectorField<double>& f, double t, double h) {
     const double change = take_perturbations();
     if (!std::isfinite(change)) return false;
     const double shrinks = round > 1 ? change / before : 1;
-    if (change * std::min(shrinks, 1.0) <= settled) return true;
+    if (change * std::min(shrinks, 1.0) <= settled_departures) return true;
     if (round > 2 && shrinks >= 1) {
-      if (change < may_be_rounding) return true;
+      if (change < departures_may_round) return true;
       if (round > 12) return false;
     }
     before = change;

@@ -82,9 +82,9 @@ class EnckeGauss final : public Method<double> {
 
   std::string_view name_;
   Lanes c_{}, b_{}, b_low_{};
-  std::array<Lanes, stages> a_{};      ///< a_[i][j]
-  std::array<Lanes, stages> ahead_{};  ///< ahead_[i][j]: weights of the last stages in the polynomial at 1 + c_i
-  std::array<Lanes, 2> twice_{};       ///< b a, and what rounding has taken
+  std::array<Lanes, stages> a_{};    ///< a_[i][j]
+  std::array<Lanes, stages> ahead_;  ///< ahead_[i][j]: weights of the last stages in the polynomial at 1 + c_i
+  std::array<Lanes, 2> twice_{};     ///< b a, and what rounding has taken
   Index n_ = 0, primary_ = 0;
   bool beside_ = false;
   std::vector<Body> bodies_;
