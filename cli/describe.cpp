@@ -125,6 +125,10 @@ struct Served {
 };
 
 Served served_by(const MethodClaims& claims) {
+  if (claims.gravity_only) {
+    return {"gravity of point masses",
+            "it supports gravity without softening, and beside it forces that depend on positions and time"};
+  }
   if (claims.positions_only) {
     return {"q'' = a(t, q)",
             "it supports forces that depend on positions and time, but not on velocities, and no first-order system"};

@@ -44,6 +44,13 @@ template <class T, class Real> std::optional<Mat3<Real>> virial_of(T& moves, con
   return {};
 }
 
+/// The energy of particles with all digits of their second words; empty where nobody computes it.
+template <class T, class Real>
+std::optional<EnergyTerms<Quad>> wide_energy_of(T& moves, const ParticleSystem<Real>& s) {
+  if constexpr (requires { moves.wide_energy(s); }) return moves.wide_energy(s);
+  return {};
+}
+
 /// Asks a Hamiltonian to look for neighbors in its own way. @return whether it does
 template <class H> bool set_neighbor_options(H& hamiltonian, const NeighborOptions& options) {
   if constexpr (requires { hamiltonian.set_neighbor_options(options); }) {
@@ -184,6 +191,7 @@ template <class Real> struct IntegratorBase {
   virtual Real settle(const ParticleSystem<Real>&, ParticleSystem<Real>&, Request, const std::optional<double>&,
                       bool) = 0;
   virtual EnergyTerms<Real> energy(const ParticleSystem<Real>&) = 0;
+  virtual std::optional<EnergyTerms<Quad>> wide_energy(const ParticleSystem<Real>&) = 0;
   virtual std::optional<Mat3<Real>> virial(const ParticleSystem<Real>&) = 0;
   virtual void accelerations(const ParticleSystem<Real>&, VectorColumn<Real>&) = 0;
   virtual Evaluations evaluations() const = 0;
@@ -209,6 +217,9 @@ template <class I> struct IntegratorModel final : IntegratorBase<typename I::rea
     return detail::settle(integrator, raw, out, wanted, at, corrected);
   }
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) override { return integrator.energy(s); }
+  std::optional<EnergyTerms<Quad>> wide_energy(const ParticleSystem<Real>& s) override {
+    return wide_energy_of(integrator, s);
+  }
   std::optional<Mat3<Real>> virial(const ParticleSystem<Real>& s) override { return virial_of(integrator, s); }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) override { integrator.accelerations(s, a); }
   Evaluations evaluations() const override { return integrator.evaluations(); }
@@ -280,6 +291,9 @@ template <class Real = double> class AnyIntegrator : private detail::Erased<deta
     return this->held_->settle(raw, out, wanted, at, corrected);
   }
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) { return this->held_->energy(s); }
+  /// The same with all digits of particles that keep second words; empty for others, and where a force is in doubles
+  /// only.
+  std::optional<EnergyTerms<Quad>> wide_energy(const ParticleSystem<Real>& s) { return this->held_->wide_energy(s); }
   /// The virial of the forces, sum x (x) f [energy]; empty where it is not known.
   std::optional<Mat3<Real>> virial(const ParticleSystem<Real>& s) { return this->held_->virial(s); }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) { this->held_->accelerations(s, a); }

@@ -60,6 +60,13 @@ template <class Real> class Snapshot {
     have_energy_ = true;
     return energy_;
   }
+  /// The same in 113 bits, of runs whose particles keep second words: errors below the rounding of doubles show in it.
+  /// Empty for others, and where a force is in doubles only.
+  const std::optional<EnergyTerms<Quad>>& wide_energy() const {
+    if (!have_wide_energy_) wide_energy_ = integrator_.wide_energy(state());
+    have_wide_energy_ = true;
+    return wide_energy_;
+  }
   /// Virial of the forces at `state()`, sum x (x) f [energy]; empty where a force or a constraint does not tell.
   const std::optional<Mat3<Real>>& virial() const {
     if (!have_virial_) virial_ = integrator_.virial(state());
@@ -101,6 +108,8 @@ template <class Real> class Snapshot {
   RunSource run_;
   mutable Real settling_action_ = Real(0);
   mutable bool have_state_ = false, have_mapped_ = false, have_energy_ = false, have_virial_ = false;
+  mutable bool have_wide_energy_ = false;
+  mutable std::optional<EnergyTerms<Quad>> wide_energy_;
   mutable std::optional<Mat3<Real>> virial_;
   mutable EnergyTerms<Real> energy_{};
   mutable std::optional<VectorColumn<Real>> accelerations_;

@@ -73,6 +73,10 @@ template <class... Fs> class Sum {
     };
     std::apply([&](auto&... force) { (one(force), ...); }, forces_);
   }
+  /// Calls `visit` with one force after the other.
+  template <class Visit> void for_each(const Visit& visit) const {
+    std::apply([&](const auto&... force) { (visit(force), ...); }, forces_);
+  }
   bool has_lanes() const {
     return std::apply([](const auto&... force) { return (noether::has_lanes(force) && ...); }, forces_);
   }

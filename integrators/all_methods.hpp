@@ -28,6 +28,7 @@ std::vector<std::string> known_names();
 // The families, each in a file of its own below integrators/methods/.
 std::span<const MethodInfo> runge_kutta_list();
 std::span<const MethodInfo> collocation_list();
+std::span<const MethodInfo> encke_list();
 std::span<const MethodInfo> nystrom_list();
 std::span<const MethodInfo> extrapolation_list();
 std::span<const MethodInfo> multistep_list();

@@ -1,5 +1,6 @@
 #include "integrators/classical.hpp"
 
+#include "integrators/particle_vector.hpp"
 #include "integrators/step_control.hpp"
 
 #include <cmath>
@@ -42,7 +43,14 @@ template <class Real> void Classical<Real>::bind(ParticleSystem<Real>& s) {
                     "method for y' = f, such as 'dop853' or 'gauss_8'",
                     method.name));
   }
+  if (method.gravity_only && !field_->gravity_of_points()) {
+    throw SchemeMismatch(fmt::format(
+        "method '{}' is for masses without softening that attract each other, but '{}' has no such gravity; "
+        "use 'gauss_8'",
+        method.name, field.name));
+  }
   method_->bind(*field_);
+  if (method_->low_words() != nullptr) s.keep_low_words(true);
   y_.resize(field_->size());
   before_.resize(field_->size());
   ahead_.reset();
@@ -53,6 +61,8 @@ template <class Real> Advance Classical<Real>::advance(ParticleSystem<Real>& s, 
   const bool fixed = s.clock().mode() == ClockMode::fixed;
   const double most = fixed ? s.clock().dt() : longest_step(s.clock());
   field_->gather(s, y_);
+  Vector<Real>* const low = method_->low_words();
+  if (low != nullptr) detail::gather_low_words(s, *low);
   while (done.steps < span.steps) {
     const Real t = s.clock().time();
     if (!fixed) {
@@ -87,6 +97,7 @@ template <class Real> Advance Classical<Real>::advance(ParticleSystem<Real>& s, 
     if (span.asked_to_stop()) break;
   }
   if (done.steps > 0) field_->scatter(y_, s);
+  if (done.steps > 0 && low != nullptr) detail::scatter_low_words(*low, s);
   return done;
 }
 
@@ -192,7 +203,7 @@ template <class Real> void Classical<Real>::save(SavedState& saved, const std::s
   save_value(saved, prefix + "field", field_->signature());
   const Evaluations& counted = field_->evaluations();
   save_value(saved, prefix + "evaluations",
-             std::vector<std::int64_t>{counted.force, counted.jacobian, counted.rejected});
+             std::vector<std::int64_t>{counted.force, counted.jacobian, counted.rejected, counted.kepler});
   field_->save(saved, prefix + "field/");
   method_->save(saved, prefix + "state/");
 }
@@ -209,6 +220,7 @@ template <class Real> void Classical<Real>::load(const SavedState& saved, const 
   std::vector<std::int64_t> counted;
   load_value(saved, prefix + "evaluations", counted);
   field_->evaluations() = {.force = detail::element(counted, 0),
+                           .kepler = counted.size() > 3 ? counted[3] : 0,
                            .jacobian = detail::element(counted, 1),
                            .rejected = detail::element(counted, 2)};
   method_->load(saved, prefix + "state/");

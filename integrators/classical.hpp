@@ -43,6 +43,8 @@ template <class Real> class Classical {
   Real settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Request wanted, std::optional<double> at,
               bool corrected);
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) { return field_->energy(s); }
+  /// With all digits of particles that keep second words; empty for others.
+  std::optional<EnergyTerms<Quad>> wide_energy(const ParticleSystem<Real>& s) { return field_->wide_energy(s); }
   std::optional<Mat3<Real>> virial(const ParticleSystem<Real>& s) { return field_->virial(s); }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) { field_->accelerations(s, a); }
   Evaluations evaluations() const { return field_->evaluations(); }

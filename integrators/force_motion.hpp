@@ -19,6 +19,45 @@
 
 namespace noether {
 
+namespace detail {
+
+/// A force as the terms that it is a sum of.
+template <class Real, class F> std::vector<AnyForce<Real>> terms_of(const F& force) {
+  if constexpr (std::is_same_v<F, ForceField<Real>>) {
+    return force.terms();
+  } else if constexpr (requires { force.for_each([](const auto&) {}); }) {
+    std::vector<AnyForce<Real>> terms;
+    force.for_each([&](const auto& term) { terms.emplace_back(term); });
+    return terms;
+  } else {
+    return {AnyForce<Real>(force)};
+  }
+}
+
+/// The energy of particles in 113 bits, second words included; empty where a force is in doubles only.
+std::optional<EnergyTerms<Quad>> wide_energy(const std::vector<AnyForce<double>>& forces,
+                                             const ParticleSystem<double>& s);
+
+/// Gravity of masses without softening among forces, and what acts beside it.
+template <class Real> struct PointGravity {
+  std::optional<double> G;
+  ForceField<Real> beside;
+
+  PointGravity() = default;
+  PointGravity(const std::vector<AnyForce<Real>>& terms, const ParticleSystem<Real>& s) {
+    for (const AnyForce<Real>& term : terms) {
+      const ForceClaims claims = term.claims();
+      if (claims.kepler && claims.softening == 0 && !G) {
+        G = claims.G.value_or(s.units().G);
+      } else {
+        beside.add(term);
+      }
+    }
+  }
+};
+
+}  // namespace detail
+
 /// x' = v, v' = a(t, x, v): what forces, the velocity-dependent ones among them, do to particles.
 ///
 /// y holds all x, then all y, then all z, then the velocities likewise, shape (6 n).
@@ -58,6 +97,10 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
     along_.reset();
     other_.reset();
     coupling_ = Coupling::of(claims_of(forces_), s.units().G);
+    gravity_ = {detail::terms_of<Real>(forces_), s};
+    bind_force(gravity_.beside, s);
+    beside_workspace_ = Workspace();
+    beside_workspace_.put(NeighborList(claims_of(forces_).range));
     this->forget_scales();
   }
   Index size() const override { return 6 * work_.size(); }
@@ -94,6 +137,22 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
   Real lagrangian(const Real& t, const Vector<Real>& y) override {
     const Real u = potential(t, y);
     return kinetic_energy(work_) - u;
+  }
+  std::optional<double> gravity_of_points() const override { return gravity_.G; }
+  bool has_forces_beside_gravity() const override { return !gravity_.beside.terms().empty(); }
+  void accelerations_beside_gravity(const Real& t, const Vector<Real>& y, Vector<Real>& a) override {
+    scatter(y, work_);
+    work_.clock().set_stage_offset(t);
+    work_.wrap();
+    ForceSink<Real> sink(a_, work_, {}, &beside_workspace_);
+    gravity_.beside.add_to(sink, work_);
+    this->note(sink.failure());
+    a.resize(3 * work_.size());
+    write(a.data());
+  }
+  std::optional<EnergyTerms<Quad>> wide_energy(const ParticleSystem<Real>& s) override {
+    if constexpr (std::is_same_v<Real, double>) return detail::wide_energy(detail::terms_of<Real>(forces_), s);
+    return {};
   }
   bool has_secant() const override { return noether::has_secant<Real>(forces_); }
   void secant(const Real& t, const Vector<Real>& y0, const Vector<Real>& y1, Vector<Real>& a) override {
@@ -302,7 +361,8 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
   F forces_;
   std::string name_;
   Coupling coupling_;
-  Workspace workspace_;
+  detail::PointGravity<Real> gravity_;
+  Workspace workspace_, beside_workspace_;
   ParticleSystem<Real> work_;
   std::optional<ParticleSystem<Real>> other_;  ///< where secants begin; made by the first of them
   VectorColumn<Real> a_;

@@ -27,6 +27,7 @@ struct MethodClaims {
   bool keeps_angular_momentum = false;  ///< and every quadratic invariant of the field; linear ones all methods keep
   bool second_order_only = false;       ///< serves q'' = a only
   bool positions_only = false;          ///< serves q'' = a(t, q) only, no velocity-dependent forces
+  bool gravity_only = false;            ///< serves masses of no size that attract each other, and what acts beside that
 };
 
 /// A step that was made, or why none was.
@@ -57,6 +58,10 @@ template <class Real> class Method {
   }
   /// Goes from y(t) to y(t + h) in place. On failure y and the method's state are void.
   virtual StepResult step(VectorField<Real>& f, const Real& t, Vector<Real>& y, double h) = 0;
+
+  /// Second words of y, which particles keep beside the first ones from step to step (`ParticleSystem::LowWords`); null
+  /// for a method whose state is y alone, with whatever else it saves.
+  virtual Vector<Real>* low_words() { return nullptr; }
 
   /// Whether `interpolate` knows the solution inside the last step as well as the method itself does.
   virtual bool dense() const { return false; }
@@ -90,6 +95,7 @@ struct MethodInfo {
   int evaluations = 0;                  ///< forces a fixed step, after the start; 0: it iterates, so it depends
   int printed_digits = 34;              ///< significant digits of the shortest coefficient in the source
   bool fixed = true, adaptive = false;  ///< what it can do; adaptive wins where both are possible
+  bool gravity_only = false;            ///< see `MethodClaims`
   double rtol = 1e-6, atol = 1e-9;      ///< defaults; the second of systems of first order
   /// First h omega on the oscillator that is unstable with fixed steps; 0: every one is, infinity: none is, NaN: it
   /// does not say.

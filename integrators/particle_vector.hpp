@@ -23,4 +23,26 @@ template <class Real> void scatter_particles(const Vector<Real>& y, ParticleSyst
   }
 }
 
+/// Second words of y, where particles have them.
+template <class Real> void gather_low_words(const ParticleSystem<Real>& s, Vector<Real>& low) {
+  const auto* words = s.low_words();
+  if (words == nullptr) {
+    low.setZero();
+    return;
+  }
+  for (int k = 0; k < 3; ++k) {
+    std::copy_n(words->x.component(k), s.size(), low.data() + k * s.size());
+    std::copy_n(words->v.component(k), s.size(), low.data() + (3 + k) * s.size());
+  }
+}
+
+template <class Real> void scatter_low_words(const Vector<Real>& low, ParticleSystem<Real>& s) {
+  s.keep_low_words(true);
+  auto* words = s.low_words();
+  for (int k = 0; k < 3; ++k) {
+    std::copy_n(low.data() + k * s.size(), s.size(), words->x.component(k));
+    std::copy_n(low.data() + (3 + k) * s.size(), s.size(), words->v.component(k));
+  }
+}
+
 }  // namespace noether::detail

@@ -58,6 +58,8 @@ template <class Real> struct StumpffSeries {
 
 template <class Real> inline constexpr StumpffSeries<Real> stumpff_2(2);
 template <class Real> inline constexpr StumpffSeries<Real> stumpff_3(3);
+template <class Real> inline constexpr StumpffSeries<Real> stumpff_4(4);
+template <class Real> inline constexpr StumpffSeries<Real> stumpff_5(5);
 
 /// G_n(s) = s^n c_n(beta s^2): cosine and sine of the universal variable and their integrals.
 template <class Real> struct UniversalFunctions {

@@ -135,6 +135,18 @@ template <class Real> class VectorField {
         sum_over<Real>(m.size(), [&](Index i) { return m[i] * y[m.size() + i] * y[m.size() + i] / Real(2); });
     return kinetic - potential(t, y);
   }
+  /// Newton's constant, where masses of no size attract each other [length^3/mass/time^2]; empty where they do not.
+  virtual std::optional<double> gravity_of_points() const { return {}; }
+  /// Whether anything else acts on them.
+  virtual bool has_forces_beside_gravity() const { return false; }
+  /// Accelerations by what acts beside that gravity, shape (size / 2), not counted. @throws LogicError  where nothing
+  /// does
+  virtual void accelerations_beside_gravity(const Real& /*t*/, const Vector<Real>& /*y*/, Vector<Real>& /*a*/) {
+    throw LogicError("forces beside gravity were requested from a vector field that has none");
+  }
+  /// The energy of particles with all digits that their second words have, empty where a force is in doubles only
+  /// [energy]. @cost that of 113 bits
+  virtual std::optional<EnergyTerms<Quad>> wide_energy(const ParticleSystem<Real>& /*s*/) { return {}; }
   /// Whether all forces know their secants (engine/force_sink.hpp).
   virtual bool has_secant() const { return false; }
   /// Accelerations a, shape (size / 2), for which m a . (q1 - q0) = U(t, q0) - U(t, q1) to rounding, counted.

@@ -74,6 +74,9 @@ template <Integrator I> class Wrapped<I> {
     return detail::settle(integrator_, raw, out, wanted, at, corrected);
   }
   EnergyTerms<real> energy(const ParticleSystem<real>& s) { return integrator_.energy(s); }
+  std::optional<EnergyTerms<Quad>> wide_energy(const ParticleSystem<real>& s) {
+    return detail::wide_energy_of(integrator_, s);
+  }
   std::optional<Mat3<real>> virial(const ParticleSystem<real>& s) { return detail::virial_of(integrator_, s); }
   void accelerations(const ParticleSystem<real>& s, VectorColumn<real>& a) { integrator_.accelerations(s, a); }
   Evaluations evaluations() const { return integrator_.evaluations(); }

@@ -78,7 +78,8 @@ template <class Real> void Energy::at_start(const Snapshot<Real>& start) {
   if (begun_) return;
   begun_ = true;
   const EnergyTerms<Real>& energy = start.energy();
-  const Quad total = wide(energy.total());
+  const auto& with_all_digits = start.wide_energy();
+  const Quad total = with_all_digits ? with_all_digits->total() : wide(energy.total());
   reference_ = total;
   first_ = static_cast<double>(total);
   const double t = static_cast<double>(energy.kinetic), u = static_cast<double>(energy.potential);
@@ -99,15 +100,15 @@ template <class Real> void Energy::at_start(const Snapshot<Real>& start) {
 template <class Real> void Energy::observe(const Snapshot<Real>& now) {
   at_start(now);
   const EnergyTerms<Real>& energy = now.energy();
-  Real reference;
-  if constexpr (std::is_same_v<Real, double>) {
-    reference = first_;
-  } else {
-    reference = reference_;
-  }
-  const Real change = energy.total() - reference;
   now_ = {static_cast<double>(energy.total()), static_cast<double>(energy.kinetic),
-          static_cast<double>(energy.potential), static_cast<double>(change / Real(scale_))};
+          static_cast<double>(energy.potential), 0};
+  if (const auto& with_all_digits = now.wide_energy()) {
+    now_[3] = static_cast<double>((with_all_digits->total() - reference_) / Quad(scale_));
+  } else if constexpr (std::is_same_v<Real, double>) {
+    now_[3] = (energy.total() - first_) / scale_;
+  } else {
+    now_[3] = static_cast<double>((energy.total() - reference_) / Real(scale_));
+  }
   finite_ = finite_ && std::isfinite(now_[0]);
   kinetic_sum_ += now_[1];
   errors_.add(now.time(), now_[3]);

@@ -239,7 +239,7 @@ std::optional<StepMatrix> step_matrix(const Scene& scene, const Candidate& who, 
   const Scene made = variant(scene, who, {.step = 1, .tolerance = 0});
   if (made.integrator.classical) {
     const MethodChoice& choice = *made.integrator.classical;
-    if (remembers(*choice.info)) return {};
+    if (remembers(*choice.info) || choice.info->gravity_only) return {};
     return classical_step(choice, mode);
   }
   HamiltonianClaims claims{.alphabet = "AB"};

@@ -348,6 +348,8 @@ TEST_CASE("describe says of a method what it serves, as it claims itself", "[cli
     says(name, "forces that depend on positions and time, but not on velocities, and no first-order system",
          "q'' = a(t, q)");
   }
+  says("encke_gauss_8", "gravity without softening, and beside it forces that depend on positions and time",
+       "gravity of point masses");
   says("newmark", "all forces, also those that depend on velocities, but no first-order system", "q'' = a(t, q, q')");
 }
 

@@ -52,6 +52,44 @@ TEST_CASE("sums of two doubles are right to 2^-104 of the larger one, products w
   }
 }
 
+TEST_CASE("products, quotients and roots are right to 2^-101 of themselves", "[double_double]") {
+  Numbers numbers;
+  const auto one = [&] {
+    const double high = numbers.next();
+    return DoubleDouble::ordered_sum(high, high * numbers.next() * 0x1p-84);
+  };
+  const Quad bound = Quad(0x1p-101);
+  for (int n = 0; n < 10000; ++n) {
+    const DoubleDouble a = one(), b = one();
+    REQUIRE(abs(Quad(a * b) - Quad(a) * Quad(b)) <= bound * abs(Quad(a) * Quad(b)));
+    REQUIRE(abs(Quad(a / b) - Quad(a) / Quad(b)) <= bound * abs(Quad(a) / Quad(b)));
+    const Quad root = sqrt(Quad(abs(a)));
+    REQUIRE(abs(Quad(sqrt(abs(a))) - root) <= bound * root);
+    REQUIRE(std::abs((a / b).low) <= 0x1p-53 * std::abs((a / b).high));
+    REQUIRE(Quad(floor(1e20 * a)) == floor(Quad(1e20 * a)));
+    REQUIRE(Quad(floor(a)) == floor(Quad(a)));
+  }
+}
+
+TEST_CASE("of what is no ordinary number, double-doubles make what doubles do", "[double_double]") {
+  const double infinite = std::numeric_limits<double>::infinity();
+  CHECK(sqrt(DoubleDouble(0.0)) == DoubleDouble(0.0));
+  CHECK(sqrt(DoubleDouble(infinite)).high == infinite);
+  CHECK(std::isnan(sqrt(DoubleDouble(-1.0)).high));
+  CHECK((DoubleDouble(1.0) / DoubleDouble(0.0)).high == infinite);
+  CHECK((DoubleDouble(1.0) / DoubleDouble(infinite)) == DoubleDouble(0.0));
+  CHECK(std::isnan((DoubleDouble(0.0) / DoubleDouble(0.0)).high));
+  CHECK_FALSE(isfinite(DoubleDouble(infinite)));
+}
+
+TEST_CASE("double-doubles are ordered by both words", "[double_double]") {
+  const DoubleDouble below(1, -0x1p-80), one(1.0), above(1, 0x1p-80);
+  CHECK((below < one && one < above && above > below));
+  CHECK((one <= one && one >= one && !(one < one)));
+  CHECK((below != one && one == DoubleDouble(1, 0)));
+  CHECK(abs(DoubleDouble(-1, 0x1p-80)) == DoubleDouble(1, -0x1p-80));
+}
+
 TEST_CASE("what two numbers have in common cancels to the last bit", "[double_double]") {
   const DoubleDouble a(1, 0x1p-80), b(1, -0x1p-70);
   CHECK(static_cast<double>(a - b) == 0x1p-80 + 0x1p-70);

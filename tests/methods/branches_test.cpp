@@ -86,6 +86,7 @@ struct Way {
 std::vector<Way> every_way() {
   std::vector<Way> ways;
   for (const MethodInfo* info : methods::all()) {
+    if (info->gravity_only) continue;
     MethodOptions options;
     if (info->fixed && info->adaptive) options.adaptive = false;
     if (info->fixed) ways.push_back({info, options});

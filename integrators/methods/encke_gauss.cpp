@@ -1,0 +1,392 @@
+#include "integrators/methods/encke_gauss.hpp"
+
+#include "integrators/all_methods.hpp"
+#include "integrators/kepler_double_double.hpp"
+#include "integrators/methods/collocation_table.hpp"
+#include "integrators/methods/last_polynomial.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace noether {
+
+namespace {
+
+/// Sweeps end when the next one is expected to change perturbations by no more than this part of them.
+constexpr double settled_departures = 1e-16;
+/// Changes below may be rounding, where bodies are so near to each other that doubles hardly tell their distance.
+constexpr double departures_may_round = 1e-9;
+constexpr int most_departure_sweeps = 60;
+
+Vec3<double> high_words(const Vec3<DoubleDouble>& a) { return {a[0].high, a[1].high, a[2].high}; }
+
+double split_in_two(const Quad& x, double& low) {
+  const auto high = static_cast<double>(x);
+  low = static_cast<double>(x - Quad(high));
+  return high;
+}
+
+}  // namespace
+
+EnckeGauss::EnckeGauss(std::string_view name) : name_(name), ahead_(last_polynomial(gauss_table(stages))) {
+  const CollocationTable& table = gauss_table(stages);
+  const auto twice = table.twice_end();
+  for (std::size_t i = 0; i < stages; ++i) {
+    c_[i] = static_cast<double>(table.c[i]);
+    b_[i] = split_in_two(table.b[i], b_low_[i]);
+    twice_[0][i] = split_in_two(twice[i], twice_[1][i]);
+    for (std::size_t j = 0; j < stages; ++j) a_[i][j] = static_cast<double>(table.a[i][j]);
+  }
+}
+
+void EnckeGauss::bind(const VectorField<double>& f) {
+  const std::optional<double> G = f.gravity_of_points();
+  if (!G) throw SchemeMismatch(fmt::format("method '{}' is for gravity; use 'gauss_8'", name_));
+  n_ = f.particles();
+  masses_ = f.masses().head(n_);
+  masses_.maxCoeff(&primary_);
+  const double heaviest = masses_[primary_];
+  if (!(heaviest > 0)) {
+    throw SchemeMismatch(fmt::format(
+        "method '{}' follows orbits about the heaviest body, but no body has a mass; use 'gauss_8'", name_));
+  }
+  beside_ = f.has_forces_beside_gravity();
+  bodies_.clear();
+  DoubleDouble total;
+  for (Index i = 0; i < n_; ++i) total += DoubleDouble(masses_[i]);
+  for (Index i = 0; i < n_; ++i) {
+    if (i == primary_) continue;
+    Body body;
+    body.particle = i;
+    body.gm = *G * masses_[i];
+    body.mu = *G * DoubleDouble::sum(heaviest, masses_[i]);
+    body.share = DoubleDouble(masses_[i]) / total;
+    bodies_.push_back(body);
+  }
+  stage_.setZero(f.size());
+  stage_push_.setZero(f.size() / 2);
+  low_.setZero(f.size());
+  h_ = 0;
+}
+
+EnckeGauss::WideVector EnckeGauss::wide(const Vector<double>& y, Index particle, Index half) const {
+  WideVector made;
+  for (Index k = 0; k < 3; ++k) {
+    const Index at = half + k * n_ + particle;
+    made[k] = DoubleDouble::sum(y[at], low_[at]);
+  }
+  return made;
+}
+
+void EnckeGauss::put(const WideVector& value, Vector<double>& y, Index particle, Index half) {
+  for (Index k = 0; k < 3; ++k) {
+    const Index at = half + k * n_ + particle;
+    y[at] = value[k].high;
+    low_[at] = value[k].low;
+  }
+}
+
+StepResult EnckeGauss::step(VectorField<double>& f, const double& t, Vector<double>& y, double h) {
+  StepResult made{.h = h};
+  made.failure = open(y, h);
+  if (made.failure) return made;
+  if (h == h_) predict();
+  if (!sweep(f, t, h)) {
+    made.failure =
+        Failure{Outcome::Kind::solver_failure, -1, "departures",
+                fmt::format("the departures from Kepler orbits do not converge with a step of {:.6g}; give a "
+                            "shorter one, or use 'gauss_8'",
+                            h)};
+    return made;
+  }
+  made.failure = close(y, h);
+  h_ = h;
+  f.evaluations().kepler += static_cast<std::int64_t>((stages + 1) * bodies_.size());
+  return made;
+}
+
+Failure EnckeGauss::no_arc(const Body& body, double h) const {
+  return {Outcome::Kind::solver_failure, body.particle, "position",
+          fmt::format("no Kepler orbit about the heaviest body was found over a step of {:.6g}", h)};
+}
+
+/// Orbits of all bodies at the beginning of the step; no departures from them yet.
+std::optional<Failure> EnckeGauss::open(const Vector<double>& y, double h) {
+  const WideVector x = wide(y, primary_, 0), v = wide(y, primary_, 3 * n_);
+  for (Body& body : bodies_) {
+    body.x = wide(y, body.particle, 0) - x;
+    body.v = wide(y, body.particle, 3 * n_) - v;
+    body.x0 = high_words(body.x);
+    body.v0 = high_words(body.v);
+    if (auto failure = find_orbits(body, h)) return failure;
+    body.rates.fill({Vec3<double>::Zero(), Vec3<double>::Zero()});
+    if (h != h_) body.perturbation = {};
+  }
+  if (!beside_) return {};
+  center_ = {high_words(x), high_words(v)};
+  for (const Body& body : bodies_) {
+    center_.x += body.share.high * body.x0;
+    center_.v += body.share.high * body.v0;
+  }
+  return {};
+}
+
+std::optional<Failure> EnckeGauss::find_orbits(Body& body, double h) const {
+  for (std::size_t i = 0; i < stages; ++i) {
+    const double tau = c_[i] * h;
+    const KeplerArc<double> arc = kepler_arc(body.x0, body.v0, body.mu.high, tau);
+    if (arc.status != KeplerStatus::converged) return no_arc(body, h);
+    body.tangents[i] = KeplerTangent(body.x0, body.v0, body.mu.high, tau, arc.s);
+    const Vec3<double> x = body.x0 + arc.dx;
+    const double r2 = norm2(x);
+    for (std::size_t k = 0; k < 3; ++k) body.orbit[k][i] = x[static_cast<Index>(k)];
+    body.inverse_r2[i] = 1 / r2;
+    body.mu_r3[i] = body.mu.high / (r2 * std::sqrt(r2));
+  }
+  return {};
+}
+
+/// Perturbations as the polynomial of the last step has them in this one.
+void EnckeGauss::predict() {
+  for (Body& body : bodies_) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      Lanes& p = body.fresh[k];
+      p.fill(0);
+      for (std::size_t i = 0; i < stages; ++i) {
+        for (std::size_t j = 0; j < stages; ++j) p[i] += ahead_[i][j] * body.perturbation[k][j];
+      }
+    }
+  }
+  take_perturbations();
+}
+
+/// Departures and places at all stages from the rates.
+void EnckeGauss::depart(double h) {
+  for (Body& body : bodies_) {
+    for (std::size_t i = 0; i < stages; ++i) {
+      KeplerChange y{Vec3<double>::Zero(), Vec3<double>::Zero()};
+      for (std::size_t j = 0; j < stages; ++j) {
+        y.x += a_[i][j] * body.rates[j].x;
+        y.v += a_[i][j] * body.rates[j].v;
+      }
+      const Vec3<double> d = h * body.tangents[i].position(y);
+      double r2 = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        body.away[k][i] = d[static_cast<Index>(k)];
+        body.place[k][i] = body.orbit[k][i] + body.away[k][i];
+        r2 += body.place[k][i] * body.place[k][i];
+      }
+      const double pull = body.gm / (r2 * std::sqrt(r2));
+      for (std::size_t k = 0; k < 3; ++k) body.pull[k][i] = pull * body.place[k][i];
+    }
+  }
+}
+
+/// What bodies add to each other's motion about the heaviest one, directly and by moving it, and what the attraction by
+/// the heaviest one has beyond the tangent of the orbit.
+void EnckeGauss::add_gravity() {
+  for (Body& body : bodies_) {
+    for (std::size_t i = 0; i < stages; ++i) {
+      // (1 + e)^(-3/2) - 1 with e = |k + d|^2 / |k|^2 - 1, without cancellation.
+      double along = 0, square = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        along += body.orbit[k][i] * body.away[k][i];
+        square += body.away[k][i] * body.away[k][i];
+      }
+      along *= body.inverse_r2[i];
+      square *= body.inverse_r2[i];
+      const double e = 2 * along + square, root = (1 + e) * std::sqrt(1 + e);
+      const double fall = -e * (3 + e * (3 + e)) / (root * (1 + root)), beyond = fall + 3 * along;
+      for (std::size_t k = 0; k < 3; ++k)
+        body.fresh[k][i] = -body.mu_r3[i] * (beyond * body.orbit[k][i] + fall * body.away[k][i]);
+    }
+  }
+  for (std::size_t m = 1; m < bodies_.size(); ++m) {
+    Body& one = bodies_[m];
+    for (std::size_t n = 0; n < m; ++n) {
+      Body& other = bodies_[n];
+      if (one.gm == 0 && other.gm == 0) continue;
+      for (std::size_t i = 0; i < stages; ++i) {
+        const double x = other.place[0][i] - one.place[0][i], y = other.place[1][i] - one.place[1][i],
+                     z = other.place[2][i] - one.place[2][i];
+        const double r2 = x * x + y * y + z * z, r3 = r2 * std::sqrt(r2);
+        const double by_other = other.gm / r3, by_one = one.gm / r3;
+        one.fresh[0][i] += by_other * x - other.pull[0][i];
+        one.fresh[1][i] += by_other * y - other.pull[1][i];
+        one.fresh[2][i] += by_other * z - other.pull[2][i];
+        other.fresh[0][i] -= by_one * x + one.pull[0][i];
+        other.fresh[1][i] -= by_one * y + one.pull[1][i];
+        other.fresh[2][i] -= by_one * z + one.pull[2][i];
+      }
+    }
+  }
+}
+
+/// Forces that are not gravity of points, at all stages; positions alone count, relative to the centre of mass and its
+/// even motion.
+void EnckeGauss::add_forces_beside(VectorField<double>& f, double t, double h) {
+  for (std::size_t i = 0; i < stages; ++i) {
+    Vec3<double> x = center_.x + c_[i] * h * center_.v;
+    for (const Body& body : bodies_) {
+      for (std::size_t k = 0; k < 3; ++k) x[static_cast<Index>(k)] -= body.share.high * body.place[k][i];
+    }
+    for (Index k = 0; k < 3; ++k) stage_[k * n_ + primary_] = x[k];
+    for (const Body& body : bodies_) {
+      for (Index k = 0; k < 3; ++k) stage_[k * n_ + body.particle] = x[k] + body.place[static_cast<std::size_t>(k)][i];
+    }
+    f.accelerations_beside_gravity(t + c_[i] * h, stage_, stage_push_);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double* const push = stage_push_.data() + static_cast<Index>(k) * n_;
+      double mean = push[primary_];
+      for (Body& body : bodies_) {
+        const double relative = push[body.particle] - push[primary_];
+        body.fresh[k][i] += relative;
+        mean += body.share.high * relative;
+      }
+      drift_[k][i] = mean;
+    }
+  }
+}
+
+/// The fresh perturbations become those at hand, and the rates follow. @return the largest change, relative to the
+/// perturbations of all bodies at their largest
+double EnckeGauss::take_perturbations() {
+  double worst = 0;
+  for (Body& body : bodies_) {
+    double change = 0, size = 0;
+    for (std::size_t i = 0; i < stages; ++i) {
+      double change2 = 0, size2 = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double p = body.fresh[k][i], difference = p - body.perturbation[k][i];
+        body.perturbation[k][i] = p;
+        change2 += difference * difference;
+        size2 += p * p;
+      }
+      change = std::max(change, change2);
+      if (!(size2 <= size)) size = size2;
+      body.rates[i] =
+          body.tangents[i].start_of({body.perturbation[0][i], body.perturbation[1][i], body.perturbation[2][i]});
+    }
+    const double relative = change > 0 ? change / size : change;
+    if (!(relative <= worst)) worst = relative;
+  }
+  return std::sqrt(worst);
+}
+
+/// @return whether perturbations stand still
+bool EnckeGauss::sweep(VectorField<double>& f, double t, double h) {
+  double before = std::numeric_limits<double>::infinity();
+  for (int round = 1; round <= most_departure_sweeps; ++round) {
+    depart(h);
+    add_gravity();
+    f.evaluations().force += stages;
+    if (beside_) add_forces_beside(f, t, h);
+    const double change = take_perturbations();
+    if (!std::isfinite(change)) return false;
+    const double shrinks = round > 1 ? change / before : 1;
+    if (change * std::min(shrinks, 1.0) <= settled_departures) return true;
+    if (round > 2 && shrinks >= 1) {
+      if (change < departures_may_round) return true;
+      if (round > 12) return false;
+    }
+    before = change;
+  }
+  return false;
+}
+
+/// The arcs in double-double, the departures at the end, and the centre of mass.
+std::optional<Failure> EnckeGauss::close(Vector<double>& y, double h) {
+  const DoubleDouble step(h);
+  WideVector dx = WideVector::Zero(), dv = WideVector::Zero(), center_v = wide(y, primary_, 3 * n_);
+  for (Body& body : bodies_) {
+    const KeplerArc<DoubleDouble> arc = kepler_arc(body.x, body.v, body.mu, step);
+    if (arc.status != KeplerStatus::converged) return no_arc(body, h);
+    const KeplerTangent tangent(body.x0, body.v0, body.mu.high, h, arc.s.high);
+    KeplerChange sum{Vec3<double>::Zero(), Vec3<double>::Zero()};
+    for (std::size_t i = 0; i < stages; ++i) {
+      sum.x += b_[i] * body.rates[i].x + b_low_[i] * body.rates[i].x;
+      sum.v += b_[i] * body.rates[i].v + b_low_[i] * body.rates[i].v;
+    }
+    const Vec3<double> away = h * tangent.position(sum), faster = h * tangent.velocity(sum);
+    for (Index k = 0; k < 3; ++k) {
+      center_v[k] += body.share * body.v[k];
+      body.x[k] = arc.dx[k] + DoubleDouble(away[k]);
+      body.v[k] = arc.dv[k] + DoubleDouble(faster[k]);
+      dx[k] -= body.share * body.x[k];
+      dv[k] -= body.share * body.v[k];
+    }
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto axis = static_cast<Index>(k);
+    dx[axis] += step * center_v[axis];
+    if (!beside_) continue;
+    double way = 0, speed = 0;
+    for (std::size_t i = 0; i < stages; ++i) {
+      way += twice_[0][i] * drift_[k][i] + twice_[1][i] * drift_[k][i];
+      speed += b_[i] * drift_[k][i] + b_low_[i] * drift_[k][i];
+    }
+    dx[axis] += DoubleDouble(h * h * way);
+    dv[axis] += DoubleDouble(h * speed);
+  }
+  for (const Body& body : bodies_) {
+    put(wide(y, body.particle, 0) + body.x + dx, y, body.particle, 0);
+    put(wide(y, body.particle, 3 * n_) + body.v + dv, y, body.particle, 3 * n_);
+  }
+  put(wide(y, primary_, 0) + dx, y, primary_, 0);
+  put(wide(y, primary_, 3 * n_) + dv, y, primary_, 3 * n_);
+  return {};
+}
+
+void EnckeGauss::save(SavedState& saved, const std::string& prefix) const {
+  save_value(saved, prefix + "h", h_);
+  std::vector<double> perturbations;
+  for (const Body& body : bodies_) {
+    for (const Lanes& p : body.perturbation) perturbations.insert(perturbations.end(), p.begin(), p.end());
+  }
+  save_value(saved, prefix + "perturbations", perturbations);
+}
+
+void EnckeGauss::load(const SavedState& saved, const std::string& prefix) {
+  load_value(saved, prefix + "h", h_);
+  std::vector<double> perturbations;
+  load_value(saved, prefix + "perturbations", perturbations);
+  std::size_t at = 0;
+  for (Body& body : bodies_) {
+    for (Lanes& p : body.perturbation) {
+      for (double& x : p) x = detail::element(perturbations, at++);
+    }
+  }
+}
+
+namespace methods {
+
+namespace {
+
+std::unique_ptr<Method<double>> encke_gauss(const MethodInfo& info, const MethodOptions& /*options*/) {
+  return std::make_unique<EnckeGauss>(info.name);
+}
+
+}  // namespace
+
+std::span<const MethodInfo> encke_list() {
+  static const MethodInfo list[] = {
+      {.name = "encke_gauss_8",
+       .summary = "departures from Kepler orbits by Gauss's collocation with 8 stages, on states of double-doubles",
+       .use = "planets about one star with errors below the rounding of doubles, for as long as it takes",
+       .source = "Encke1852",
+       .family = "collocation",
+       .order = 16,
+       .gravity_only = true,
+       .make = encke_gauss,
+       .make_quad = nullptr},
+  };
+  return list;
+}
+
+}  // namespace methods
+
+}  // namespace noether
