@@ -11,8 +11,8 @@ namespace noether {
 
 /// Compares the scene in a checkpoint with this one, key by key.
 ///
-/// Title, expectations, verdicts and the end of the run may differ. So may `atol` of particles, where it was the default
-/// that it had once and is none now.
+/// Title, expectations, verdicts and the end of the run may differ. So may `atol` of particles, where it was the
+/// default that it had once and is none now.
 /// @returns  warnings, one line each
 /// @throws SceneError  naming the first other key that differs
 std::vector<std::string> check_same_scene(const io::Checkpoint& checkpoint, const Scene& scene);
