@@ -318,7 +318,7 @@ class Comparer {
     const auto add = [&](const std::string& told) { c_.limits += (c_.limits.empty() ? "" : "; ") + told; };
     if (c_.end < whole) {
       add(fmt::format("runs are compared over {} of {}, so that measuring stays within {}",
-                      time_in_words(c_.end, scene_), time_in_words(whole, scene_), most));
+                      time_in_words(c_.end, scene_), time_in_words(c_.scene_end.value_or(whole), scene_), most));
     }
     if (left_out_.empty()) return;
     add(fmt::format("left out {}: {}", c_.end < whole ? "for the same reason" : "to stay within " + most, left_out_));

@@ -155,8 +155,7 @@ Truth drive(const WideScene& wide, const Way& way, const Sampling& sampling, Pos
             const TruthOptions& options) {
   Truth truth{.name = std::string(no_truth)};
   const auto begin = std::chrono::steady_clock::now();
-  constexpr double any = std::numeric_limits<double>::infinity();
-  const auto run = [&](const MethodChoice& choice, double most = any) {
+  const auto run = [&](const MethodChoice& choice, double most = std::numeric_limits<double>::infinity()) {
     most = std::min(most, options.most_evaluations - truth.evaluations);
     WideRun made = run_wide(wide, sampling, choice, budget - since(begin), most, options.tell);
     truth.seconds = since(begin);

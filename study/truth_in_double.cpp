@@ -15,11 +15,11 @@ namespace {
 
 using States = std::vector<Vector<double>>;
 
-using Clock = std::chrono::steady_clock;
+using SteadyClock = std::chrono::steady_clock;
 
 /// What one run may take, and what all have taken.
 struct RunLimits {
-  Clock::time_point deadline;
+  SteadyClock::time_point deadline;
   double most = 0;         ///< evaluations of forces of all runs
   double evaluations = 0;  ///< made so far
 };
@@ -34,7 +34,7 @@ States states_along(const Scene& scene, const Candidate& who, const Setting& set
     const Outcome outcome = who.adaptive ? sim.run_until(sampling.start + sampling.time(j)) : sim.run(steps);
     const auto made = static_cast<double>(sim.evaluations().force);
     const bool too_many = limits.evaluations + made * sampling.samples / j > limits.most;
-    if (!outcome.ok() || too_many || Clock::now() > limits.deadline) {
+    if (!outcome.ok() || too_many || SteadyClock::now() > limits.deadline) {
       limits.evaluations += made;
       return {};
     }
@@ -93,11 +93,11 @@ Truth truth_in_double(const Scene& scene, const Sampling& sampling, const TruthO
   const auto who = reference_method(scene);
   if (!who) return truth;
   const double budget = options.budget;
-  const auto begin = Clock::now();
+  const auto begin = SteadyClock::now();
   RunLimits limits{
-      .deadline = begin + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(budget)),
+      .deadline = begin + std::chrono::duration_cast<SteadyClock::duration>(std::chrono::duration<double>(budget)),
       .most = options.most_evaluations};
-  const auto spent = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+  const auto spent = [&] { return std::chrono::duration<double>(SteadyClock::now() - begin).count(); };
   States before;
   double last_took = 0;
   for (const Setting& setting : refinements(scene, *who, sampling)) {
