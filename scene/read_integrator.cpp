@@ -161,6 +161,12 @@ void read_scheme_options(TableReader& reader, const Parts& parts, SceneIntegrato
     reader.refuse(error);
   }
   put_fields(reader, made.composition, effective);
+  // Scenes without them are stored as they always were, so that runs begun before these keys existed can be resumed.
+  for_each_field<CompositionOptions>([&](const auto& field) {
+    const bool plain = made.composition.*(field.member) == CompositionOptions().*(field.member);
+    const bool changes_scheme = field.name != "compensated";
+    if (plain && changes_scheme) effective.erase(field.name);
+  });
 }
 
 /// Refuses what only a splitting takes, where it is more than its default.
