@@ -145,7 +145,7 @@ Scene variant(const Scene& scene, const Candidate& who, const Setting& setting) 
                     "such as 'dop853' or 'rodas_5p'",
                     who.method));
   }
-  if (!own) integrator.composition = integrator.composition.as_written();
+  if (!own || who.joined) integrator.composition = integrator.composition.as_written();
   if (const Scheme* scheme = schemes::find(who.method)) {
     integrator.scheme = *scheme;
   } else if (const MethodInfo* info = scene.parts->find_method(who.method)) {

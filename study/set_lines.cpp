@@ -35,6 +35,14 @@ std::string all_forces(const Scene& scene, const SceneValue& hamiltonian) {
   return to_text(SceneValue::of(std::move(all)));
 }
 
+/// Takes away what changes the scene's own scheme, and was not tried with another one.
+void leave_processing_out(const Scene& scene, std::vector<std::string>& lines) {
+  const SceneValue& written = *scene.effective.find("integrator");
+  for (const char* key : {"corrector", "kernel", "second_corrector"}) {
+    if (written.find(key) != nullptr) lines.push_back(fmt::format("integrator.{}=", key));
+  }
+}
+
 std::vector<std::string> wanted(const Scene& scene, const Candidate& who, const Setting& setting, double end) {
   std::vector<std::string> lines;
   if (who.joined) {
@@ -43,6 +51,7 @@ std::vector<std::string> wanted(const Scene& scene, const Candidate& who, const 
   }
   const bool counts_steps = scene.effective.find("integrator")->find("steps") != nullptr;
   lines.push_back("integrator.method=" + who.method);
+  if (who.method != scene.integrator.method || who.joined) leave_processing_out(scene, lines);
   if (who.adaptive) {
     lines.push_back("integrator.rtol=" + format_number(setting.tolerance));
     if (const std::optional<double> least = absolute_tolerance(scene, setting.tolerance))
