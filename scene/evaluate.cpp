@@ -38,8 +38,12 @@ Outcome outcome_of(const Failure& failure, const ParticleSystem<double>& s) {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// What a Hamiltonian has beside forces: its own energy as one more term, and all that it does to the particles.
+/// Forces that depend on velocities are no part of it, and are added to that.
 void add_hamiltonian(const Scene& scene, ParticleSystem<double>& s, Evaluation& result) {
-  AnyHamiltonian<double> hamiltonian = hamiltonian_of(scene);
+  Scene split = scene;
+  std::erase_if(split.hamiltonian.forces,
+                [](const SceneForce& force) { return !force.letter && force.force.claims().velocity_dependent; });
+  AnyHamiltonian<double> hamiltonian = hamiltonian_of(split);
   hamiltonian.bind(s);
   const EnergyTerms<double> energy = hamiltonian.energy(s);
   result.kinetic = energy.kinetic;
@@ -47,6 +51,13 @@ void add_hamiltonian(const Scene& scene, ParticleSystem<double>& s, Evaluation& 
   result.potential = energy.potential;
   VectorColumn<double> a(s.size());
   hamiltonian.accelerations(s, a);
+  for (const SceneForce& force : scene.hamiltonian.forces) {
+    if (force.letter || !force.force.claims().velocity_dependent) continue;
+    VectorColumn<double> more(s.size());
+    ForceSink<double> sink(more, s, Request{});
+    force.force.add_to(sink, s);
+    for (Index i = 0; i < s.size(); ++i) a.add(i, std::as_const(more)[i]);
+  }
   for (Index i = 0; i < s.size(); ++i) result.forces.set(i, std::as_const(s).masses()[i] * std::as_const(a)[i]);
 }
 

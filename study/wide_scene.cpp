@@ -28,12 +28,12 @@ WideScene wide_scene(const Scene& scene) {
     wide.start = scene.particles.as<Quad>();
     return wide;
   }
-  ForceField<Quad> all, kicks, letters;
+  ForceField<Quad> all, kicks, beside;  // as `field_of` parts them: what depends on velocities is no kick
   const auto widen = [&](const SceneForce& force) {
     const auto in_quad = force.force.in_quad();
     if (!in_quad) return false;
     all.add(*in_quad);
-    (force.letter ? letters : kicks).add(*in_quad);
+    (force.letter || force.force.claims().velocity_dependent ? beside : kicks).add(*in_quad);
     return true;
   };
   for (const std::vector<SceneForce>* list : {&h.splitting.own, &h.forces}) {
@@ -51,13 +51,13 @@ WideScene wide_scene(const Scene& scene) {
   } else if (!h.splitting.claims.inertial) {
     wide.reason =
         fmt::format("hamiltonian '{}' uses its own coordinates, which a reference does not support", h.splitting.name);
-  } else if (h.splitting.claims.columns && !letters.terms().empty()) {
-    wide.reason =
-        fmt::format("hamiltonian '{}' has an additional letter that exists in double precision only", h.splitting.name);
+  } else if (h.splitting.claims.columns && !beside.terms().empty()) {
+    wide.reason = fmt::format("hamiltonian '{}' has forces beside its kicks, which exist in double precision only",
+                              h.splitting.name);
   } else if (h.splitting.claims.columns) {
     wide.splitting = h.splitting.make_wide(std::move(kicks));
   } else {
-    wide.field = std::make_unique<HamiltonianMotion<Quad>>(h.splitting.make_wide(std::move(kicks)), std::move(letters),
+    wide.field = std::make_unique<HamiltonianMotion<Quad>>(h.splitting.make_wide(std::move(kicks)), std::move(beside),
                                                            all.claims());
   }
   return wide;
