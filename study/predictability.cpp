@@ -83,11 +83,11 @@ class TwoRuns {
   }
 
   double time() const { return adaptive_ ? done_ : done_ * step_; }
-  bool at_end() const { return done_ >= (adaptive_ ? end_ : std::max(1.0, std::round(end_ / step_))); }
+  bool at_end() const { return done_ >= last(); }
   /// @return whether both came to the next moment
   bool advance() {
     const double before = done_;
-    done_ = std::min(next_, adaptive_ ? end_ : std::max(1.0, std::round(end_ / step_)));
+    done_ = std::min(next_, last());
     next_ = adaptive_ ? next_ * moment_growth : std::max(next_ + 1, std::floor(next_ * moment_growth));
     for (auto* sim : {&one_, &other_}) {
       const Outcome outcome =
@@ -98,12 +98,14 @@ class TwoRuns {
   }
   double evaluations() const { return static_cast<double>(one_->evaluations().force + other_->evaluations().force); }
   /// The same at the next moment, if steps go on as long.
-  double evaluations_soon() const { return evaluations() * next_ / std::max(done_, 1e-300); }
+  double evaluations_soon() const { return evaluations() * std::min(next_, last()) / std::max(done_, 1e-300); }
   double distance() {
     return distance_of_states(state_of(one_->particles()), state_of(other_->particles()), particles_);
   }
 
  private:
+  double last() const { return adaptive_ ? end_ : std::max(1.0, std::round(end_ / step_)); }
+
   Index particles_;
   double start_, end_ = 0, step_ = 0;
   bool adaptive_;
@@ -180,40 +182,41 @@ double Predictability::time_of(double wanted) const {
 double Predictability::tenfold() const { return std::log(10.0) / rate; }
 
 std::optional<Predictability> predictability(const Scene& scene, double end, double budget, double most,
-                                             const std::function<void(double)>& tell) {
+                                             const std::function<void(double)>& tell, double* spent) {
   const double size = size_of_state(state_of(scene.particles), scene.particles.size());
   if (!(size > 0) || !(end > 0)) return {};
   const auto begin = std::chrono::steady_clock::now();
   Predictability found;
-  bool both_came_to_the_end = false;
+  bool failed = false;
+  std::optional<TwoRuns> both;
   try {
-    TwoRuns both(scene, end, size);
+    both.emplace(scene, end, size);
     const bool constrained = !scene.hamiltonian.constraints.empty();
-    double first = constrained ? 0 : both.distance(), largest = 0;
-    while (!both.at_end()) {
-      if (!both.advance()) break;
-      const double distance = both.distance();
+    double first = constrained ? 0 : both->distance(), largest = 0;
+    while (!both->at_end()) {
+      if (!both->advance()) break;
+      const double distance = both->distance();
       if (!std::isfinite(distance)) break;
       if (first == 0) first = distance;
-      if (first == 0) return {};
+      if (first == 0) break;
       largest = std::max(largest, distance);
-      found.times.push_back(both.time());
+      found.times.push_back(both->time());
       found.growth.push_back(largest / first);
       found.moment.push_back(distance / first);
-      const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-      found.evaluations = both.evaluations();
-      if (distance > last_distance * size || spent > budget || both.evaluations_soon() > most) break;
+      const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+      if (distance > last_distance * size || seconds > budget || both->evaluations_soon() > most) break;
       if (tell) {
         const double grown = std::log(largest / first) / std::log(last_distance / first_distance);
-        tell(std::max({spent / budget, both.time() / end, grown, found.evaluations / most}));
+        tell(std::max({seconds / budget, both->time() / end, grown, both->evaluations() / most}));
       }
     }
-    both_came_to_the_end = both.at_end();
   } catch (const Error&) {
-    return {};
+    failed = true;
   }
-  if (found.times.empty()) return {};
-  found.judged = found.growth.back() >= 1e3 || both_came_to_the_end;
+  if (both) found.evaluations = both->evaluations();
+  if (spent != nullptr) *spent += found.evaluations;
+  if (failed || found.times.empty()) return {};
+  found.judged = found.growth.back() >= 1e3 || both->at_end();
   judge_growth(found);
   return found;
 }

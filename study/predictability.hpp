@@ -42,9 +42,10 @@ struct Predictability {
 /// @param budget  seconds of wall time
 /// @param most  evaluations of forces by both runs together, beyond which they end
 /// @param tell  is told how far it is, from 0 to 1
+/// @param spent  is increased by the evaluations that this takes, whether or not anything is found
 /// @cost two runs of the scene, or less
 std::optional<Predictability> predictability(const Scene& scene, double end, double budget,
                                              double most = std::numeric_limits<double>::infinity(),
-                                             const std::function<void(double)>& tell = {});
+                                             const std::function<void(double)>& tell = {}, double* spent = nullptr);
 
 }  // namespace noether
