@@ -38,7 +38,8 @@ std::optional<double> error_of(const Row& row, Metric metric) {
 /// Exponent of the growth of the largest error so far, over the last half of the logarithm of a trial.
 std::optional<double> measured_exponent(const Row& row, const Truth& truth, Metric metric) {
   const std::vector<double> errors = metric == Metric::position ? row.position_errors : energy_errors(row.track, truth);
-  if (errors.size() < 41) return {};
+  constexpr std::size_t fewest = 9;  // moments, the start among them: an eighth of the others is one
+  if (errors.size() < fewest) return {};
   const std::size_t last = errors.size() - 1, first = last / 8;
   double early = 0, late = 0;
   for (std::size_t j = 1; j <= last; ++j) {
@@ -251,8 +252,7 @@ void choose_metric(Advice& advice, const Scene& scene, const AdviseOptions& opti
     tell(0);
   }
   const auto motion =
-      predictability(scene, sampling_of(scene, {}).end(), 4 * options.row_budget, work.left() / 4, tell);
-  if (motion) work.spent += motion->evaluations;
+      predictability(scene, sampling_of(scene, {}).end(), 4 * options.row_budget, work.left() / 4, tell, &work.spent);
   const bool liquid = scene.particles.box().is_periodic() || scene.particles.size() > most_bodies;
   if (motion && !motion->judged && liquid) {
     advice.metric = Metric::energy;

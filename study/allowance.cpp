@@ -40,7 +40,7 @@ Allowance allowance_of(const Scene& scene, const Sampling& sampling) {
 }
 
 double StepCosts::of(const Candidate& who, double step) {
-  const auto [at, is_new] = known_.try_emplace({who.label, step}, 0.0);
+  const auto [at, is_new] = known_.try_emplace(who.label, 0.0);
   if (is_new) at->second = evaluations_per_step(scene_, who, step, &spent_);
   return at->second;
 }

@@ -31,19 +31,19 @@ struct Allowance {
 /// @cost a few steps of the scene; they are counted as spent
 Allowance allowance_of(const Scene& scene, const Sampling& sampling);
 
-/// Evaluations per step of methods; each is measured once.
+/// Evaluations per step of methods; each is measured once, at the first step that is asked for.
 class StepCosts {
  public:
   explicit StepCosts(const Scene& scene) : scene_(scene) {}
 
-  /// As `evaluations_per_step`.
+  /// As `evaluations_per_step`; implicit methods take about as many at other steps.
   double of(const Candidate& who, double step);
   /// Evaluations that measuring took since the last call.
   double take_spent() { return std::exchange(spent_, 0.0); }
 
  private:
   const Scene& scene_;
-  std::map<std::pair<std::string, double>, double> known_;  ///< by label and step
+  std::map<std::string, double> known_;  ///< by label
   double spent_ = 0;
 };
 

@@ -190,12 +190,16 @@ std::vector<Setting> settings_with(const Scene& scene, const Candidate& who, con
   std::vector<double> steps = options.steps.empty() ? ladder(scene, who, sampling, own, costs, few) : options.steps;
   std::sort(steps.rbegin(), steps.rend());
   std::int64_t last = 0;
-  for (const double step : steps) {
+  const auto add = [&](double step) {
     const std::int64_t count = sampling.steps_for(step);
-    if (count == last) continue;  // one division of the interval stands for both
+    if (count == last) return;  // one division of the interval stands for both
     last = count;
     settings.push_back({.step = sampling.interval / static_cast<double>(count), .tolerance = 0});
-  }
+  };
+  for (const double step : steps) add(step);
+  // Where the first ones were longer than the interval, finer ones tell the order of the method.
+  const std::size_t fewest = options.steps.empty() ? static_cast<std::size_t>(few ? fewest_rows : 4) : 0;
+  while (settings.size() < fewest) add(settings.back().step / 2);
   return settings;
 }
 
@@ -215,6 +219,9 @@ bool keeps_energy(const Scene& scene) {
   const IntegratorClaims claims = assemble(scene).claims();
   return claims.energy && !claims.dissipative && !claims.time_dependent && scene.particles.size() > 0;
 }
+
+/// Moments of the shortest comparison.
+constexpr int fewest_samples = 4;
 
 /// A comparison on its way.
 class Comparer {
@@ -266,17 +273,18 @@ class Comparer {
     work_.spent += costs_.take_spent();
   }
 
-  /// Evaluations of a row: those of adaptive methods are not known before, and taken to be those of the scene's own
-  /// run.
+  /// Evaluations of the runs that a row needs. Those of an adaptive method are not known before, and taken to be twice
+  /// those of the scene's own run.
   double expected(std::size_t i, const Setting& setting) {
     const Candidate& who = c_.methods[i];
     const auto length = scene_.integrator.length();
     if (!std::isfinite(work_.most)) return 0;  // nobody needs to know
-    if (who.adaptive) return length ? 2 * work_.own_run * c_.end / *length : 0;
+    const int runs = needed_runs(options_.quick);
+    if (who.adaptive) return length ? runs * 2 * work_.own_run * c_.end / *length : 0;
     const double step = setting.step > 0 ? setting.step : c_.sampling.interval;
     const double each = costs_.of(who, std::min(own_step_, c_.sampling.interval));
     work_.spent += costs_.take_spent();
-    return (each > 0 ? each : 1) * c_.end / step;
+    return runs * (each > 0 ? each : 1) * c_.end / step;
   }
   double expected(std::size_t i) {
     double all = 0;
@@ -293,38 +301,67 @@ class Comparer {
   double room_for_rows() const { return options_.positions ? work_.left() / 2 : work_.left(); }
   bool too_much() { return expected_from(0) > room_for_rows(); }
 
+  /// The longest step of all rows as they are now [time]; 0 where none are fixed.
+  double longest_step() const {
+    double longest = 0;
+    for (const auto& of_one : settings_) longest = std::max(longest, of_one.front().step);
+    return longest;
+  }
+
   /// Ends the runs earlier, until measuring takes no more than the scene's own run; as far as runs still tell
   /// something.
   void fit_to_work() {
     if (!std::isfinite(work_.most) || !too_much()) return;
-    const double least = (options_.quick ? 200 : 80) * own_step_, whole = c_.end;
-    Sampling shorter = c_.sampling;
-    while (too_much() && c_.end / 2 >= least) take(shorter, c_.end / 2);
-    if (options_.quick && too_much()) {
-      constexpr int few_moments = 10;  // steps of methods with many stages have to fit between them
-      shorter.samples = std::min(shorter.samples, few_moments);
-      few_rows_ = true;
-      take(shorter, std::min(c_.end, 100 * own_step_));
-      leave_out_methods();
-    }
-    tell_limits(whole);
+    const double whole = c_.end, longest = longest_step();
+    double least = (options_.quick ? 200 : 80) * own_step_;
+    if (!options_.steps.empty()) least = std::max(least, fewest_samples * longest);  // they are run as they are given
+    const int samples = c_.sampling.samples;
+    while (too_much() && c_.end / 2 >= least) take(c_.end / 2, longest, samples);
+    if (options_.quick && too_much()) take_few_rows(std::min(samples, 10));
+    tell_limits(whole, least);
   }
 
-  void tell_limits(double whole) {
+  /// Three rows over 100 steps by as many methods as there is work for.
+  void take_few_rows(int samples) {
+    few_rows_ = true;
+    const double end = std::min(c_.end, 100 * own_step_);
+    take(end, end / fewest_samples, samples);
+    leave_out_methods();
+    take(end, longest_step(), samples);  // as many moments as the steps of those that are left allow
+  }
+
+  void tell_limits(double whole, double least) {
     const std::string most =
         work_.most > work_.own_run
             ? fmt::format("{:.3g} evaluations of forces", work_.most)
             : fmt::format("the {:.5g} evaluations of forces of the scene's own run", work_.own_run);
     const auto add = [&](const std::string& told) { c_.limits += (c_.limits.empty() ? "" : "; ") + told; };
+    const bool more = too_much();
     if (c_.end < whole) {
-      add(fmt::format("runs are compared over {} of {}, so that measuring stays within {}",
-                      time_in_words(c_.end, scene_), time_in_words(c_.scene_end.value_or(whole), scene_), most));
+      add(fmt::format("runs are compared over {} of {}{}", time_in_words(c_.end, scene_),
+                      time_in_words(c_.scene_end.value_or(whole), scene_),
+                      more ? "" : ", so that measuring stays within " + most));
+    }
+    if (more) {
+      add(
+          fmt::format("runs end after no fewer than {:.0f} steps of the scene, so measuring takes about {:.2g} "
+                      "evaluations of forces, more than {}",
+                      std::min(least, c_.end) / own_step_, expected_work(), most));
     }
     if (left_out_.empty()) return;
-    add(fmt::format("left out {}: {}", c_.end < whole ? "for the same reason" : "to stay within " + most, left_out_));
+    add(fmt::format("left out {}: {}", c_.end < whole && !more ? "for the same reason" : "to stay within " + most,
+                    left_out_));
   }
 
-  void take(Sampling& sampling, double end) {
+  /// Evaluations of all that is measured; the reference of positions takes as much as the rows.
+  double expected_work() { return work_.spent + (options_.positions ? 2 : 1) * expected_from(0); }
+
+  /// Ends the runs at another time, with as many moments as leave room for the longest step between two of them, so
+  /// that every row keeps its step.
+  void take(double end, double longest, int samples) {
+    Sampling sampling = c_.sampling;
+    const double room = longest > 0 ? std::floor(end / longest * (1 + 1e-9)) : samples;
+    sampling.samples = static_cast<int>(std::clamp<double>(room, fewest_samples, samples));
     sampling.interval = end / sampling.samples;
     start_over(sampling);
   }
@@ -371,8 +408,7 @@ class Comparer {
     if (c_.truth.has_states() || scene_.particles.size() > most_particles) return;
     const double left = std::max(options_.truth.budget - c_.truth.seconds, options_.truth.budget / 2);
     c_.motion = predictability(scene_, c_.sampling.end(), left / 4, room_for_reference() / 2,
-                               teller("how fast small differences grow"));
-    if (c_.motion) work_.spent += c_.motion->evaluations;
+                               teller("how fast small differences grow"), &work_.spent);
     Horizon told{.sampling = c_.sampling};
     if (c_.motion) told = predictable_horizon(scene_, c_.sampling, !options_.until, *c_.motion);
     if (!many() && told.told.empty()) return;
@@ -401,13 +437,19 @@ class Comparer {
                        .states = known && scene_.particles.size() <= most_particles,
                        .quick = options_.quick,
                        .shadow = !options_.quick};
+    const RowShares shares = shares_of_rows();
+    double left = shares.room;
     for (std::size_t i = 0; i < c_.methods.size(); ++i) {
       const double reserved = expected_from(i + 1);
       for (std::size_t k = 0; k < settings_[i].size(); ++k) {
         tell_row(i, k);
-        if (may_shorten()) how.most_evaluations = most_of_row(i, k, reserved);
+        if (may_shorten() && std::isfinite(work_.most)) {
+          how.most_evaluations = most_of_run(i, k, left - reserved);
+          how.repeat_evaluations = shares.repeats_each * expected(i, settings_[i][k]);
+        }
         Row row = measure(scene_, c_.methods[i], settings_[i][k], c_.sampling, how);
         work_.spent += row.work;
+        left -= static_cast<double>(row.evaluations.force) * needed_runs(options_.quick);
         if (known) set_errors(row, c_.truth, c_.sampling, error_);
         if (known && many()) row.track.y = {};  // those of all rows would not fit into memory
         c_.rows.push_back(std::move(row));
@@ -415,10 +457,21 @@ class Comparer {
     }
   }
 
-  /// What a row may take: all that later ones, which are known, leave; and what it is expected to take in any case.
-  double most_of_row(std::size_t i, std::size_t k, double reserved) {
-    for (std::size_t later = k + 1; later < settings_[i].size(); ++later) reserved += expected(i, settings_[i][later]);
-    return std::max(work_.left() - reserved, 1.05 * expected(i, settings_[i][k]) + c_.sampling.samples);
+  /// What rows may take. Timed repeats have a share of their own, so that it does not depend on the clock what other
+  /// rows find left.
+  struct RowShares {
+    double room = 0;          ///< evaluations of the runs that all rows need
+    double repeats_each = 0;  ///< of further repeats, for each evaluation that a row is expected to need
+  };
+  RowShares shares_of_rows() {
+    const double all = expected_from(0), spare = std::max(0.0, work_.left() - all) / 2;
+    return {work_.left() - spare, all > 0 ? spare / all : 0};
+  }
+
+  /// What one run of a row may take: all that later rows leave; and what it is expected to take in any case.
+  double most_of_run(std::size_t i, std::size_t k, double left) {
+    for (std::size_t later = k + 1; later < settings_[i].size(); ++later) left -= expected(i, settings_[i][later]);
+    return std::max(left, 1.05 * expected(i, settings_[i][k])) / needed_runs(options_.quick) + c_.sampling.samples;
   }
 
   /// The rows of a method cost about twice as much one after the other, and each method about the same.

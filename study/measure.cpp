@@ -42,19 +42,21 @@ class Recorder {
   double start_;  ///< what the clock shows at step 0 [time]
 };
 
-/// Raises a flag when a run has made so many evaluations.
+/// Raises a flag, which ends the run, and one that says why, when a run has made so many evaluations.
 class Meter {
  public:
-  Meter(const Simulation<double>& run, double most, std::atomic<bool>& over) : run_(&run), over_(&over), most_(most) {}
+  Meter(const Simulation<double>& run, double most, std::atomic<bool>& over, bool& why)
+      : run_(&run), over_(&over), why_(&why), most_(most) {}
 
   static constexpr auto describe() { return part<Meter>("meter", "evaluations of a comparison"); }
   void observe(const Snapshot<double>& /*now*/) {
-    if (static_cast<double>(run_->evaluations().force) > most_) *over_ = true;
+    if (static_cast<double>(run_->evaluations().force) > most_) *over_ = *why_ = true;
   }
 
  private:
   const Simulation<double>* run_;
   std::atomic<bool>* over_;
+  bool* why_;
   double most_;
 };
 
@@ -112,6 +114,11 @@ ShadowHamiltonian<double>* watch_shadow(Simulation<double>& sim, const Scene& al
   return watch(sim, setting, sampling, monitor);
 }
 
+std::string too_many_evaluations(bool quick) {
+  return quick ? "it takes more evaluations of forces than advice may"
+               : "it takes more evaluations of forces than measuring may; --until compares without that limit";
+}
+
 /// The run as others are compared with it. @return whether it was within the budget
 bool watched_run(Row& row, const Scene& alone, const Sampling& sampling, const MeasureOptions& options) {
   Simulation<double> sim = assemble(alone);
@@ -135,12 +142,13 @@ bool watched_run(Row& row, const Scene& alone, const Sampling& sampling, const M
   const ShadowHamiltonian<double>* fluctuation =
       options.shadow ? watch_shadow(sim, alone, row.setting, sampling) : nullptr;
   Budget budget(sim, options.budget);
+  bool too_many = false;
   if (std::isfinite(options.most_evaluations))
-    watch(sim, row.setting, sampling, Meter(sim, options.most_evaluations, budget.flag()));
+    watch(sim, row.setting, sampling, Meter(sim, options.most_evaluations, budget.flag(), too_many));
   const Outcome outcome = run_whole(sim, row.setting, sampling);
   const bool over = outcome.kind == Outcome::Kind::interrupted;  // nothing else ends it early
   row.outcome = over ? "over_budget" : std::string(name(outcome.kind));
-  row.message = over ? "" : outcome.message;
+  row.message = !over ? outcome.message : too_many ? too_many_evaluations(options.quick) : "";
   row.outcome_time = outcome.time;
   row.steps = sim.step();
   row.evaluations = sim.evaluations();
@@ -168,12 +176,15 @@ constexpr double long_enough = 2;
 /// Of a run as long as that what watches it takes little, where a rough time will do [s].
 constexpr double long_enough_watched = 0.1;
 
-/// The same run with nobody watching, as often as asked for or as the budget allows.
+/// The same run with nobody watching, as often as asked for or as the budgets allow: what other rows leave is not
+/// touched, so that no row depends on how often the ones before it were timed.
 void timed_runs(Row& row, const Scene& alone, const Sampling& sampling, const MeasureOptions& options) {
   std::vector<double> seconds;
-  double spent = 0;
+  double spent = 0, drawn = 0;
+  const int needed = needed_runs(options.quick) - 1;
   const auto again = [&](int done) {
-    if (row.work + static_cast<double>(row.evaluations.force) > options.most_evaluations) return false;
+    if (done < needed) return true;
+    if (drawn + static_cast<double>(row.evaluations.force) > options.repeat_evaluations) return false;
     if (done == 0) return true;
     return spent < std::min(options.budget, long_enough) &&
            (done < options.repeats || (spent < soon_over && done < 5 * options.repeats));
@@ -181,7 +192,9 @@ void timed_runs(Row& row, const Scene& alone, const Sampling& sampling, const Me
   for (int k = 0; again(k); ++k) {
     Simulation<double> sim = assemble(alone);
     static_cast<void>(run_whole(sim, row.setting, sampling));
-    row.work += static_cast<double>(sim.evaluations().force);
+    const auto made = static_cast<double>(sim.evaluations().force);
+    row.work += made;
+    if (k >= needed) drawn += made;
     seconds.push_back(sim.seconds());
     spent += seconds.back();
   }

@@ -65,13 +65,20 @@ struct MeasureOptions {
   double budget = 10;  ///< seconds of wall time for one run
   bool states = true;  ///< whether the states of more than `most_bodies` are kept
   bool quick = false;  ///< whether the time of the watched run is enough where it is long
-  double most_evaluations = std::numeric_limits<double>::infinity();  ///< of forces, by all runs of the row
+  double most_evaluations = std::numeric_limits<double>::infinity();    ///< of forces, by one run; beyond, it ends
+  double repeat_evaluations = std::numeric_limits<double>::infinity();  ///< by all runs beyond the `needed_runs`
   bool shadow = true;  ///< whether the shadow Hamiltonian is watched, which takes several evaluations at each moment
 };
 
-/// Runs one candidate with one setting: once watched, then `repeats` times alone, for the time.
+/// Runs of every row: the one that is watched, and one for its time, unless a rough time will do. How many there are
+/// beyond these depends on the clock.
+constexpr int needed_runs(bool quick) { return quick ? 1 : 2; }
+
+/// Runs one candidate with one setting: once watched, then `repeats` times alone, for the time, as far as
+/// `repeat_evaluations` go.
 ///
-/// A run that fails is a row as any other. One beyond the budget ends there, outcome "over_budget". One that comes to
+/// A run that fails is a row as any other. One beyond the budget, or beyond `most_evaluations`, ends there, outcome
+/// "over_budget"; of the latter the message says so. One that comes to
 /// its end, but has left the motion behind, is told by `set_errors`.
 Row measure(const Scene& scene, const Candidate& who, const Setting& setting, const Sampling& sampling,
             const MeasureOptions& options = {});
