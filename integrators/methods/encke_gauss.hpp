@@ -57,13 +57,13 @@ class EnckeGauss final : public Method<double> {
     double gm = 0;
     DoubleDouble mu, share;  ///< G (M + m), and m / (sum of all masses)
     WideVector x, v;         ///< relative to the heaviest body, at the beginning of the step
-    Vec3<double> x0, v0;     ///< the same, rounded
-    std::array<KeplerTangent, stages> tangents;
-    LaneVector orbit;                    ///< k at the stages
+    Vec3<double> x0 = Vec3<double>::Zero(), v0 = Vec3<double>::Zero();  ///< the same, rounded
+    std::array<KeplerTangent, stages> tangents{};
+    LaneVector orbit{};                  ///< k at the stages
     Lanes mu_r3{}, inverse_r2{};         ///< mu / |k|^3, 1 / |k|^2
     LaneVector away{}, place{}, pull{};  ///< d; q; G m q / |q|^3
     LaneVector perturbation{}, fresh{};  ///< p, as at hand, and by the sweep that goes on
-    std::array<KeplerChange, stages> rates;
+    std::array<KeplerChange, stages> rates{};
   };
 
   std::optional<Failure> open(const Vector<double>& y, double h);
