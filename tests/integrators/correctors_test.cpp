@@ -65,7 +65,7 @@ TEST_CASE("with a corrector it does not matter whether steps begin with a drift 
 }
 
 /// Keeps the times at which it is asked.
-struct Clocked {
+struct CorrectorClock {
   std::vector<double>* times;
   static ForceClaims claims() { return {.time_dependent = true}; }
   std::string name() const { return "clocked"; }
@@ -76,7 +76,7 @@ struct Clocked {
 
 TEST_CASE("forces see the time of their place in the words around a run", "[corrector]") {
   std::vector<double> times;
-  const WisdomHolman<double, Clocked> arcs({.G = test::outer_G}, Clocked{&times});
+  const WisdomHolman<double, CorrectorClock> arcs({.G = test::outer_G}, CorrectorClock{&times});
   Simulation<double> simulation(test::outer_planets(), compose(arcs, schemes::verlet_aba, {.corrector = 3}), step);
   REQUIRE(simulation.run(1).ok());
   // Z(-a, b) Z(a, b) of the corrector, whose kicks at a are one, then the kick in the middle of the step.
