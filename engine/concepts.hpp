@@ -111,6 +111,7 @@ struct IntegratorClaims {
   Index constraints = 0;            ///< degrees of freedom they take
   double constraint_tolerance = 0;  ///< relative violation that is left on purpose; 0: rounding
   bool variables = false;           ///< it advances the variables of a first-order system, not particles
+  bool second_words = false;        ///< of settled particles they are further digits of x and v
 };
 
 /// How far to go: so many steps, and with a free clock not past `limit` [time], which lies on the way of that clock.

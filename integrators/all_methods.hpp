@@ -29,6 +29,7 @@ std::vector<std::string> known_names();
 std::span<const MethodInfo> runge_kutta_list();
 std::span<const MethodInfo> collocation_list();
 std::span<const MethodInfo> encke_list();
+std::span<const MethodInfo> wide_gauss_list();
 std::span<const MethodInfo> nystrom_list();
 std::span<const MethodInfo> extrapolation_list();
 std::span<const MethodInfo> multistep_list();

@@ -24,7 +24,8 @@ template <class Real> IntegratorClaims Classical<Real>::claims() const {
           .time_dependent = field.time_dependent,
           .keeps_momentum = field.keeps_momentum,
           .keeps_angular_momentum = field.keeps_angular_momentum && method.keeps_angular_momentum,
-          .variables = field.variables};
+          .variables = field.variables,
+          .second_words = method.second_words};
 }
 
 template <class Real> void Classical<Real>::bind(ParticleSystem<Real>& s) {

@@ -9,7 +9,7 @@ namespace noether {
 
 /// A vector of the tangent space: a small change of position and velocity.
 struct KeplerChange {
-  Vec3<double> x, v;
+  Vec3<double> x = Vec3<double>::Zero(), v = Vec3<double>::Zero();
 };
 
 /// The derivative of a Kepler arc by its start, the symplectic matrix

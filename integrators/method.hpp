@@ -28,6 +28,7 @@ struct MethodClaims {
   bool second_order_only = false;       ///< serves q'' = a only
   bool positions_only = false;          ///< serves q'' = a(t, q) only, no velocity-dependent forces
   bool gravity_only = false;            ///< serves masses of no size that attract each other, and what acts beside that
+  bool second_words = false;            ///< its state is `low_words` too
 };
 
 /// A step that was made, or why none was.

@@ -28,6 +28,35 @@ Vec3<Quad> wide(const WideSums& sums) {
   return {axis(0), axis(1), axis(2)};
 }
 
+/// Second words that are further digits of positions and velocities; null where particles have none.
+template <class Real> const typename ParticleSystem<Real>::LowWords* second_words(const Snapshot<Real>& now) {
+  const auto* low = now.state().low_words();
+  return low != nullptr && now.claims().second_words ? low : nullptr;
+}
+
+/// Sums over particles in 113 bits, of vectors that `term(i)` gives.
+template <class Term> Vec3<Quad> wide_sum(Index n, const Term& term) {
+  const auto sums = sums_over<Quad, 3>(n, [&](Index i) {
+    const Vec3<Quad> one = term(i);
+    return std::array<Quad, 3>{one[0], one[1], one[2]};
+  });
+  return {sums[0], sums[1], sums[2]};
+}
+
+/// Momentum and angular momentum of both words.
+template <class Real>
+Vec3<Quad> wide_momentum(const ParticleSystem<Real>& s, const typename ParticleSystem<Real>::LowWords& low) {
+  return wide_sum(
+      s.size(), [&](Index i) { return Vec3<Quad>(wide(s.masses()[i]) * (wide(s.velocities()[i]) + wide(low.v[i]))); });
+}
+template <class Real>
+Vec3<Quad> wide_angular_momentum(const ParticleSystem<Real>& s, const typename ParticleSystem<Real>::LowWords& low) {
+  return wide_sum(s.size(), [&](Index i) {
+    const Vec3<Quad> x = wide(s.positions()[i]) + wide(low.x[i]), v = wide(s.velocities()[i]) + wide(low.v[i]);
+    return Vec3<Quad>(wide(s.masses()[i]) * cross(x, v));
+  });
+}
+
 /// x - start - t speed; the difference of the large parts is exact where x lies near that line.
 double departure(const DoubleDouble& x, const DoubleDouble& start, const DoubleDouble& t, const DoubleDouble& speed) {
   const DoubleDouble way = DoubleDouble::product(t.high, speed.high), change = DoubleDouble::sum(x.high, -start.high);
@@ -269,12 +298,15 @@ template <class Real> void Momentum::at_start(const Snapshot<Real>& start) {
   if (begun()) return;
   const ParticleSystem<Real>& s = start.state();
   const auto size = [&](Index i) { return wide(s.masses()[i]) * sqrt(norm2(wide(s.velocities()[i]))); };
-  begin(wide(weighted_sum(s, s.velocities())), sum_over<Quad>(s.size(), size), start.claims().keeps_momentum);
+  const auto* low = second_words(start);
+  begin(low != nullptr ? wide_momentum(s, *low) : wide(weighted_sum(s, s.velocities())), sum_over<Quad>(s.size(), size),
+        start.claims().keeps_momentum);
   time_unit_ = std::string(start.units().time);
 }
 
 template <class Real> void Momentum::observe(const Snapshot<Real>& now) {
   at_start(now);
+  if (const auto* low = second_words(now)) return add(now.time(), wide_momentum(now.state(), *low));
   add(now.time(), weighted_sum(now.state(), now.state().velocities()));
 }
 
@@ -284,12 +316,15 @@ template <class Real> void AngularMomentum::at_start(const Snapshot<Real>& start
   const auto size = [&](Index i) {
     return wide(s.masses()[i]) * sqrt(norm2(wide(s.positions()[i])) * norm2(wide(s.velocities()[i])));
   };
-  begin(wide(angular_momentum(s)), sum_over<Quad>(s.size(), size), start.claims().keeps_angular_momentum);
+  const auto* low = second_words(start);
+  begin(low != nullptr ? wide_angular_momentum(s, *low) : wide(angular_momentum(s)), sum_over<Quad>(s.size(), size),
+        start.claims().keeps_angular_momentum);
   time_unit_ = std::string(start.units().time);
 }
 
 template <class Real> void AngularMomentum::observe(const Snapshot<Real>& now) {
   at_start(now);
+  if (const auto* low = second_words(now)) return add(now.time(), wide_angular_momentum(now.state(), *low));
   add(now.time(), angular_momentum(now.state()));
 }
 

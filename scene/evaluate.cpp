@@ -90,7 +90,7 @@ Evaluation evaluate(const Scene& scene, bool check) {
     result.virial += failed ? Mat3<double>(Mat3<double>::Constant(nan)) : sink.virial();
     has_pressure = has_pressure && term.force.claims().virial && !failed;
     for (Index i = 0; i < s.size(); ++i) result.forces.add(i, std::as_const(s).masses()[i] * a[i]);
-    if (check && !failed)
+    if (check && !failed && term.force.claims().energy)  // else it is the gradient of nothing
       result.gradient_error = std::max(result.gradient_error.value_or(0), gradient_error(term.force, s));
   }
   if (!scene.hamiltonian.splitting.only_forces) {

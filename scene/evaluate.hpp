@@ -17,7 +17,7 @@ struct Evaluation {
   std::optional<double> pressure;                     ///< of a periodic box, where every force tells its virial
   VectorColumn<double> forces;                        ///< m a, shape (n, 3); drag is not among them
   double force_max = 0;                               ///< largest |m a|
-  std::optional<double> gradient_error;               ///< worst of all forces, where it was asked for
+  std::optional<double> gradient_error;               ///< worst of those with a potential, where it was asked for
   Index gradient_asked = 0;                           ///< at how many particles
   Outcome outcome;  ///< `completed`, or why a force cannot be computed: what it has a part in is no number then
 };

@@ -21,6 +21,8 @@ constexpr double settled_departures = 1e-16;
 /// Changes below may be rounding, where bodies are so near to each other that doubles hardly tell their distance.
 constexpr double departures_may_round = 1e-9;
 constexpr int most_departure_sweeps = 60;
+/// A last Legendre coefficient above this part of the largest perturbation leaves errors of its square.
+constexpr double rough_perturbations = 0.03;
 
 Vec3<double> high_words(const Vec3<DoubleDouble>& a) { return {a[0].high, a[1].high, a[2].high}; }
 
@@ -34,10 +36,11 @@ double split_in_two(const Quad& x, double& low) {
 
 EnckeGauss::EnckeGauss(std::string_view name) : name_(name), ahead_(last_polynomial(gauss_table(stages))) {
   const CollocationTable& table = gauss_table(stages);
-  const auto twice = table.twice_end();
+  const auto twice = table.twice_end(), last = table.last_coefficient();
   for (std::size_t i = 0; i < stages; ++i) {
     c_[i] = static_cast<double>(table.c[i]);
     b_[i] = split_in_two(table.b[i], b_low_[i]);
+    last_[i] = static_cast<double>(last[i]);
     twice_[0][i] = split_in_two(twice[i], twice_[1][i]);
     for (std::size_t j = 0; j < stages; ++j) a_[i][j] = static_cast<double>(table.a[i][j]);
   }
@@ -103,7 +106,9 @@ StepResult EnckeGauss::step(VectorField<double>& f, const double& t, Vector<doub
                             h)};
     return made;
   }
-  made.failure = close(y, h);
+  made.failure = unresolved(h);
+  if (!made.failure) made.failure = close(y, h);
+  if (made.failure) return made;
   h_ = h;
   f.evaluations().kepler += static_cast<std::int64_t>((stages + 1) * bodies_.size());
   return made;
@@ -296,6 +301,33 @@ bool EnckeGauss::sweep(VectorField<double>& f, double t, double h) {
     before = change;
   }
   return false;
+}
+
+/// Perturbations that a polynomial of degree 7 does not follow, unless they are too small to matter.
+std::optional<Failure> EnckeGauss::unresolved(double h) const {
+  for (const Body& body : bodies_) {
+    double last2 = 0, largest2 = 0, nearest2 = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < 3; ++k) {
+      double last = 0;
+      for (std::size_t i = 0; i < stages; ++i) last += last_[i] * body.perturbation[k][i];
+      last2 += last * last;
+    }
+    for (std::size_t i = 0; i < stages; ++i) {
+      double size2 = 0;
+      for (std::size_t k = 0; k < 3; ++k) size2 += body.perturbation[k][i] * body.perturbation[k][i];
+      largest2 = std::max(largest2, size2);
+      nearest2 = std::min(nearest2, 1 / body.inverse_r2[i]);
+    }
+    constexpr double negligible = 1e-14;
+    const bool matters = h * h * std::sqrt(last2) > negligible * std::sqrt(nearest2);
+    if (!matters || last2 <= rough_perturbations * rough_perturbations * largest2) continue;
+    return Failure{
+        Outcome::Kind::solver_failure, body.particle, "departure",
+        fmt::format("perturbations change too fast to be followed with a step of {:.6g}; give a shorter one, "
+                    "or use 'gauss_8'",
+                    h)};
+  }
+  return {};
 }
 
 /// The arcs in double-double, the departures at the end, and the centre of mass.

@@ -26,6 +26,9 @@ namespace noether {
 /// arc is added in double-double. Everything else is smaller than the motion by that ratio, and computed in doubles: so
 /// the state, of double-doubles, has errors far below the rounding of doubles, and they do not add up to a drift.
 ///
+/// A step that perturbations are too rough for, as in an encounter that it jumps over, ends the run: their last
+/// Legendre coefficient tells.
+///
 /// The centre of mass goes on evenly, or as the forces beside gravity push it. State: both words of y, which particles
 /// keep; the perturbations of the last step, where the next one begins its sweeps.
 /// @cost per step and body 9 Kepler arcs in doubles and one in double-double; 8 sums over pairs for each of 3 to 6
@@ -37,7 +40,12 @@ class EnckeGauss final : public Method<double> {
 
   std::unique_ptr<Method<double>> clone() const override { return std::make_unique<EnckeGauss>(*this); }
   MethodClaims claims() const override {
-    return {.name = name_, .order = 16, .second_order_only = true, .positions_only = true, .gravity_only = true};
+    return {.name = name_,
+            .order = 16,
+            .second_order_only = true,
+            .positions_only = true,
+            .gravity_only = true,
+            .second_words = true};
   }
   void bind(const VectorField<double>& f) override;
   StepResult step(VectorField<double>& f, const double& t, Vector<double>& y, double h) override;
@@ -57,13 +65,13 @@ class EnckeGauss final : public Method<double> {
     double gm = 0;
     DoubleDouble mu, share;  ///< G (M + m), and m / (sum of all masses)
     WideVector x, v;         ///< relative to the heaviest body, at the beginning of the step
-    Vec3<double> x0, v0;     ///< the same, rounded
-    std::array<KeplerTangent, stages> tangents;
-    LaneVector orbit;                    ///< k at the stages
+    Vec3<double> x0 = Vec3<double>::Zero(), v0 = Vec3<double>::Zero();  ///< the same, rounded
+    std::array<KeplerTangent, stages> tangents{};
+    LaneVector orbit{};                  ///< k at the stages
     Lanes mu_r3{}, inverse_r2{};         ///< mu / |k|^3, 1 / |k|^2
     LaneVector away{}, place{}, pull{};  ///< d; q; G m q / |q|^3
     LaneVector perturbation{}, fresh{};  ///< p, as at hand, and by the sweep that goes on
-    std::array<KeplerChange, stages> rates;
+    std::array<KeplerChange, stages> rates{};
   };
 
   std::optional<Failure> open(const Vector<double>& y, double h);
@@ -74,6 +82,7 @@ class EnckeGauss final : public Method<double> {
   void add_forces_beside(VectorField<double>& f, double t, double h);
   double take_perturbations();
   bool sweep(VectorField<double>& f, double t, double h);
+  std::optional<Failure> unresolved(double h) const;
   std::optional<Failure> close(Vector<double>& y, double h);
   Failure no_arc(const Body& body, double h) const;
 
@@ -82,6 +91,7 @@ class EnckeGauss final : public Method<double> {
 
   std::string_view name_;
   Lanes c_{}, b_{}, b_low_{};
+  Lanes last_{};                     ///< weights of the last Legendre coefficient
   std::array<Lanes, stages> a_{};    ///< a_[i][j]
   std::array<Lanes, stages> ahead_;  ///< ahead_[i][j]: weights of the last stages in the polynomial at 1 + c_i
   std::array<Lanes, 2> twice_{};     ///< b a, and what rounding has taken

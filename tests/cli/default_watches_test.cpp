@@ -208,7 +208,10 @@ TEST_CASE("a kept cadence is told once, also where the run that told it was kill
   for (const bool kept : {false, true}) {
     going_on.kept_watches = kept;
     const fs::path file = folder / (kept ? "kept.h5" : "new.h5");
-    REQUIRE(assemble(going_on, {.checkpoint = file, .checkpoint_wall = 1e-9}).run(100).ok());
+    SceneFiles files;
+    files.checkpoint = file;
+    files.checkpoint_wall = 1e-9;
+    REQUIRE(assemble(going_on, files).run(100).ok());
     CHECK(told_of_kept_watches(io::read_checkpoint(file).run) == kept);
   }
 }

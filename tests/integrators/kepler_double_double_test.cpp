@@ -8,7 +8,7 @@ using namespace noether::kepler_test;
 
 namespace {
 
-using Pairs = State<DoubleDouble>;
+using Pairs = kepler_test::State<DoubleDouble>;
 
 constexpr double pair_unit = 0x1p-104;  // what sums of double-doubles are right to
 
