@@ -35,10 +35,11 @@ inline constexpr int fewest_rows = 3;
 /// Runs every method with every step or tolerance.
 ///
 /// Unless `until` is given, runs end earlier where all of them together would take more evaluations of forces than the
-/// scene's own run (`allowance_of`), but not before 80 of its steps; for advice, where 200 are too many, three rows
-/// over 100 steps are made of as many methods as there is work for, one at least. More than `most_bodies` particles are
-/// compared at 40 moments instead of 200, and half as far until runs fit their budget; where roundings would grow
-/// beyond 1e-8, as in every liquid, up to where they have not; unless `until` is given. `Comparison::limits` says so.
+/// scene's own run (`allowance_of`), but not before 80 of its steps, and are looked at fewer times, so that every row
+/// keeps its step; for advice, where 200 are too many, three rows over 100 steps are made of as many methods as there
+/// is work for, one at least. More than `most_bodies` particles are compared at 40 moments instead of 200, and half as
+/// far until runs fit their budget; where roundings would grow beyond 1e-8, as in every liquid, up to where they have
+/// not; unless `until` is given. `Comparison::limits` says so.
 /// There the reference is one in double precision.
 /// @throws Error  for methods that are not known or cannot serve the scene, and for steps and tolerances that are none,
 /// or that no method takes

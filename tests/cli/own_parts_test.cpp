@@ -126,6 +126,24 @@ TEST_CASE("its errors are measured against a truth in 113 bits, by splittings an
   CHECK(std::stod(json_member(errors, "position_error_max")) > 1e-6);
 }
 
+TEST_CASE("a force that depends on velocities stands beside it: in evaluate, and in the truth", "[cli][own_parts]") {
+  std::string relative = trap;
+  const std::string fixed = "method = \"yoshida_4\"\nstep = 0.02\nsteps = 500\n";
+  relative.replace(relative.find(fixed), fixed.size(), "method = \"dop853\"\nuntil = 2\n");
+  relative.replace(relative.find("[integrator]"), 0, "[[hamiltonian.force]]\ntype = \"post_newtonian\"\nc = 5\n");
+  const std::string counted = "steps = ", timed = "every = 0.";
+  for (auto at = relative.find(counted); at != std::string::npos; at = relative.find(counted, at))
+    relative.replace(at, counted.size(), timed);
+  const SceneFolder folder(relative), without(trap);
+  const auto force_of = [](const SceneFolder& in) {
+    return std::stod(json_member(own_output(in, "evaluate scene.toml --json"), "force_max"));
+  };
+  CHECK(std::abs(force_of(folder) - force_of(without)) > 1e-4);
+  const std::string table = own_output(folder, "compare scene.toml --json --methods dop853 --tolerances 1e-10");
+  CHECK(has(table, "in quad"));
+  CHECK(std::stod(json_member(table, "position_error_max")) < 1e-7);
+}
+
 TEST_CASE("its largest stable steps are found, and advice is given", "[cli][own_parts]") {
   const SceneFolder folder(trap);
   // Steps that nobody knows a scale for are tried from small ones on; none of them is called unstable.

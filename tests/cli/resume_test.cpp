@@ -149,6 +149,21 @@ TEST_CASE("a SIMD level that the processor lacks is refused", "[cli][run][messag
                           std::string(name(simd_level())) + "'\n");
 }
 
+TEST_CASE("a run begun before correctors and kernels existed goes on, for scenes without them are stored as before",
+          "[cli][resume]") {
+  const SceneFolder folder;
+  CHECK(noether(folder, "run scene.toml --quiet").exit_code == 0);
+  const std::string stored = io::read_checkpoint(folder / "scene.out/checkpoint.h5").scene_toml;
+  CHECK(has(stored, "compensated"));
+  for (const char* key : {"corrector", "kernel"}) CHECK_FALSE(has(stored, key));
+  const std::string plain =
+      " --set integrator.corrector=0 --set integrator.kernel=plain --set integrator.second_corrector=false";
+  const ProcessResult on = noether(folder, "run scene.toml --json --resume --set integrator.steps=200" + plain);
+  INFO(on.err);
+  CHECK(on.exit_code == 0);
+  CHECK(json_member(on.out, "time") == "2");
+}
+
 TEST_CASE("a run begun when particles had an absolute tolerance by default goes on, and says so",
           "[cli][resume][messages]") {
   std::string scene = two_bodies;

@@ -56,7 +56,8 @@ chmod +x "$2/cli/noether"
 )");
     write_tool(path() / "bin/ctest", R"(case " $* " in *" -N "*) echo "Total Tests: 7" ;; *) echo "ctest ${*:3}" ;; esac
 )");
-    write_tool(path() / "bin/dpkg-query", "[ -n \"${BARE:-}\" ] || echo installed\n");
+    write_tool(path() / "bin/dpkg-query",
+               "[ -n \"${BARE:-}\" ] || [ \"${!#}\" = \"${LACKED:-}\" ] || echo installed\n");
     write_tool(path() / "bin/apt-cache", "exit 0\n");
     write_tool(path() / "bin/sudo", "exec \"$@\"\n");
     write_tool(path() / "bin/apt-get", "echo \"apt-get $*\" >>\"$CALLS\"; exit 1\n");
@@ -302,6 +303,17 @@ TEST_CASE("a build says how far it is: now and then in a pipe, in one line on a 
   INFO(shown);
   CHECK(has(shown, "\r\033[Knoether: building release: 1/3, 0 s\r\033[Knoether: building release: 2/3, 0 s"));
   CHECK(has(shown, "\r\033[Kprogram version"));
+}
+
+TEST_CASE("nightly tests run where the bare system of the packages cannot be had", "[launcher]") {
+  const Checkout checkout;
+  const ProcessResult result = checkout.launch("test --nightly io", {"LACKED=debootstrap"});
+  INFO(result.err);
+  CHECK(result.exit_code == 0);
+  CHECK(has(result.err, "noether: apt could not install: debootstrap\n"));
+  CHECK(has(result.err, "noether: the packages will be tried in a folder, not on a bare system\n"));
+  CHECK(has(result.out, " -L nightly -R ^(io)"));
+  CHECK(checkout.launch("test --nightly io", {"LACKED=ccache"}).exit_code == 4);  // nothing is built without it
 }
 
 TEST_CASE("a folder's tests are run alone, and only what they need is built", "[launcher]") {

@@ -151,6 +151,31 @@ TEST_CASE("lines of advice take out what means nothing to the method", "[advise]
   CHECK(refused.left_out == std::vector<std::string>{refused.reason});
 }
 
+TEST_CASE("lines of advice take out a corrector and a kernel that the method was not tried with", "[advise]") {
+  const Scene scene = outer_solar_system({"integrator.method=verlet_aba", "integrator.corrector=17",
+                                          "integrator.kernel=composed", "integrator.second_corrector=true"});
+  const SceneValue& written = *scene.effective.find("integrator");
+  REQUIRE(written.find("corrector") != nullptr);
+  REQUIRE(written.find("second_corrector") != nullptr);
+  for (const char* name : {"verlet", "aba_10_6_4", "verlet_aba@kinetic_potential", "dop853"}) {
+    INFO(name);
+    const Candidate who = candidate(scene, name);
+    const Setting setting{.step = who.adaptive ? 0 : scene.integrator.step, .tolerance = who.adaptive ? 1e-9 : 0};
+    const SetLines lines = set_lines(scene, who, setting, 1000 * scene.integrator.step);
+    CHECK(lines.refusal == "");
+    std::vector<std::string> all = scene.source.sets;
+    all.insert(all.end(), lines.lines.begin(), lines.lines.end());
+    const Scene changed = load_scene(scene.file, *scene.parts, all), tried = variant(scene, who, setting);
+    CHECK_FALSE(changed.integrator.composition.changes_scheme());
+    CHECK_FALSE(tried.integrator.composition.changes_scheme());
+    CHECK(changed.effective.find("integrator")->find("corrector") == nullptr);
+  }
+  const Candidate own = candidate(scene, "verlet_aba");
+  CHECK(variant(scene, own, {.step = scene.integrator.step, .tolerance = 0}).integrator.composition.corrector == 17);
+  const SetLines kept = set_lines(scene, own, {.step = scene.integrator.step, .tolerance = 0}, 1000);
+  for (const std::string& line : kept.lines) CHECK_FALSE(line.starts_with("integrator.corrector"));
+}
+
 TEST_CASE("advice that cannot be given is refused, or says why there is none", "[advise]") {
   const Scene scene = oscillator("method = \"verlet\"\nstep = 0.1\nsteps = 400");
   CHECK_THROWS_WITH(advise(scene, {.error = 0}), "an error of 0 cannot be held; a number between 0 and 1 is expected");
