@@ -197,8 +197,10 @@ std::vector<Setting> settings_with(const Scene& scene, const Candidate& who, con
     settings.push_back({.step = sampling.interval / static_cast<double>(count), .tolerance = 0});
   };
   for (const double step : steps) add(step);
-  // Where the first ones were longer than the interval, finer ones tell the order of the method.
-  const std::size_t fewest = options.steps.empty() ? static_cast<std::size_t>(few ? fewest_rows : 4) : 0;
+  // Where the first ones were longer than the interval, finer ones tell the order of the method; but of a run that is
+  // itself shorter than that many of its steps, nothing tells much.
+  const bool may_add = options.steps.empty() && own <= sampling.interval * (1 + 1e-9);
+  const auto fewest = static_cast<std::size_t>(!may_add ? 0 : few ? fewest_rows : 4);
   while (settings.size() < fewest) add(settings.back().step / 2);
   return settings;
 }
@@ -301,8 +303,9 @@ class Comparer {
   double room_for_rows() const { return options_.positions ? work_.left() / 2 : work_.left(); }
   bool too_much() { return expected_from(0) > room_for_rows(); }
 
-  /// The longest step of all rows as they are now [time]; 0 where none are fixed.
+  /// The longest step that was asked for, else of all rows as they are now [time]; 0 where none are fixed.
   double longest_step() const {
+    if (!options_.steps.empty()) return *std::max_element(options_.steps.begin(), options_.steps.end());
     double longest = 0;
     for (const auto& of_one : settings_) longest = std::max(longest, of_one.front().step);
     return longest;

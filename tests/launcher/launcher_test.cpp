@@ -313,7 +313,8 @@ TEST_CASE("nightly tests run where the bare system of the packages cannot be had
   CHECK(has(result.err, "noether: apt could not install: debootstrap\n"));
   CHECK(has(result.err, "noether: the packages will be tried in a folder, not on a bare system\n"));
   CHECK(has(result.out, " -L nightly -R ^(io)"));
-  CHECK(checkout.launch("test --nightly io", {"LACKED=ccache"}).exit_code == 4);  // nothing is built without it
+  const Checkout other;
+  CHECK(other.launch("test --nightly io", {"LACKED=ccache"}).exit_code == 4);  // nothing is built without it
 }
 
 TEST_CASE("a folder's tests are run alone, and only what they need is built", "[launcher]") {
