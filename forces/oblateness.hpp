@@ -4,6 +4,7 @@
 #include "engine/any_force.hpp"
 #include "engine/description.hpp"
 #include "engine/force_sink.hpp"
+#include "forces/primary.hpp"
 
 #include <array>
 #include <cmath>
@@ -46,6 +47,9 @@ struct Oblateness {
       refuse_field("axis", axis, "has no direction; expected one such as [0, 0, 1]");
     }
   }
+
+  /// @throws Error  for a particle 0 without mass
+  template <class Real> void check(const ParticleSystem<Real>& s) const { check_primary_has_mass(s, "oblateness"); }
 
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     using std::sqrt;

@@ -4,6 +4,7 @@
 #include "engine/any_force.hpp"
 #include "engine/description.hpp"
 #include "engine/force_sink.hpp"
+#include "forces/primary.hpp"
 #include "forces/speed_of_light.hpp"
 
 #include <optional>
@@ -47,8 +48,11 @@ struct PostNewtonian {
     check_constant_of_gravitation(G);
     check_speed_of_light(c);
   }
-  /// @throws Error  where neither the force nor the units say what c is
-  template <class Real> void check(const ParticleSystem<Real>& s) const { speed_of_light_in(s, c, "post_newtonian"); }
+  /// @throws Error  where neither the force nor the units say what c is, and for a particle 0 without mass
+  template <class Real> void check(const ParticleSystem<Real>& s) const {
+    speed_of_light_in(s, c, "post_newtonian");
+    check_primary_has_mass(s, "post_newtonian");
+  }
 
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     using std::sqrt;

@@ -47,7 +47,8 @@ void check_letters(const Scheme& scheme, const std::vector<Stage>& stages, const
   std::for_each(scheme.before.begin(), scheme.before.end(), check);
   std::for_each(scheme.after.begin(), scheme.after.end(), check);
   for (const char letter : claims.basic) {
-    if (uses(stages, letter) || (letter == 'B' && uses(stages, 'L'))) continue;  // L is a kick too
+    if (uses(stages, letter)) continue;
+    if (letter == 'B' && claims.lazy.find('L') != std::string::npos && uses(stages, 'L')) continue;  // a kick too
     throw SchemeMismatch(
         fmt::format("scheme '{}' has no letter {}, which is a part of '{}'; use a composition of its steps {}, such as "
                     "'yoshida_4', or a word with all of its letters",

@@ -65,20 +65,14 @@ Word kernel_word(StepKernel kernel) {
   return word;
 }
 
-/// Half a kick and half a drift lie between the points of `verlet` and those of `verlet_aba`.
-Scheme corrected(const Scheme& scheme, const CompositionOptions& options, bool kick_first) {
+/// Always drift first: words around the run must not drift as a whole, or forces that depend on time see it displaced.
+Scheme corrected(const Scheme& scheme, const CompositionOptions& options) {
   Scheme made = scheme;
-  if (options.kernel != StepKernel::plain || !kick_first) {
-    made.word = kernel_word(options.kernel);
-    made.substep_count = 0;
-    made.exact = "A";
-  }
+  made.word = kernel_word(options.kernel);
+  made.substep_count = 0;
+  made.exact = "A";
   Word before = schemes::corrector_word(options.corrector);
   if (options.second_corrector) before = joined(before, schemes::second_corrector_word());
-  if (options.kernel == StepKernel::plain && kick_first) {
-    before.push_back({'A', -0.5_q});
-    before.push_back({'B', -0.5_q});
-  }
   made.before = before;
   made.after = schemes::inverse(before);
   const bool kernel = options.kernel != StepKernel::plain;
@@ -118,14 +112,14 @@ std::string CompositionOptions::processing_text() const {
 Scheme processed(const Scheme& scheme, const CompositionOptions& options) {
   if (!options.changes_scheme()) return scheme;
   check_orders(options);
-  const bool kick_first = same(scheme.word, schemes::verlet.word);
   if (options.kernel == StepKernel::modified && options.corrector == 0) {
     const std::array saba = {&schemes::saba_1, &schemes::saba_2, &schemes::saba_3, &schemes::saba_4};
     for (std::size_t n = 1; n <= saba.size(); ++n) {
       if (scheme.name == saba[n - 1]->name) return with_gradient(scheme, n);
     }
   }
-  if (kick_first || same(scheme.word, schemes::verlet_aba.word)) return corrected(scheme, options, kick_first);
+  const bool kick_first = same(scheme.word, schemes::verlet.word);
+  if (kick_first || same(scheme.word, schemes::verlet_aba.word)) return corrected(scheme, options);
   const std::string_view remedy = options.corrector == 0 && options.kernel == StepKernel::modified
                                       ? "use 'verlet_aba', or one of 'saba_1' to 'saba_4'"
                                       : "use 'verlet_aba'";

@@ -5,6 +5,7 @@
 #include "forces/check_gradient.hpp"
 #include "forces/gr_potential.hpp"
 #include "forces/gravity.hpp"
+#include "forces/oblateness.hpp"
 #include "forces/post_newtonian.hpp"
 #include "integrators/all_methods.hpp"
 #include "integrators/all_schemes.hpp"
@@ -15,6 +16,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <utility>
 
 namespace noether {
@@ -143,6 +145,17 @@ TEST_CASE("the speed of light comes from the units, or is asked for", "[relativi
   CHECK_THROWS_WITH(GrPotential{.c = -1.0}.check(),
                     "c = -1 is not a valid speed of light; a speed above 0 is expected");
   CHECK_NOTHROW(GrPotential{.c = 3.0}.check(tracer({1, 0, 0}, {0, 1, 0})));
+}
+
+TEST_CASE("forces about particle 0 refuse one that has no mass", "[relativity]") {
+  ParticleSystem<double> s;
+  s.add("dust", 0, {1, 0, 0}, {0, 1, 0});
+  s.add("star", 1, {0, 0, 0}, {0, 0, 0});
+  const std::string rest = " is about particle 0, but 'dust' has no mass; put the star first";
+  CHECK_THROWS_WITH(GrPotential{.c = 3.0}.check(s), "gr_potential" + rest);
+  CHECK_THROWS_WITH(PostNewtonian{.c = 3.0}.check(s), "post_newtonian" + rest);
+  CHECK_THROWS_WITH(Oblateness{}.check(s), "oblateness" + rest);
+  CHECK_NOTHROW(Oblateness{}.check(tracer({1, 0, 0}, {0, 1, 0})));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "tests/support/settings.hpp"
 
 #include <cmath>
+#include <string>
 
 namespace noether {
 namespace {
@@ -90,6 +91,21 @@ TEST_CASE("saved runs go on with kicks of several letters", "[integrators][kicks
   REQUIRE(second.run(23).ok());
   CHECK(second.particles().positions().all() == whole.particles().positions().all());
   CHECK(second.evaluations().force == whole.evaluations().force);
+}
+
+TEST_CASE("a kick by another letter is no kick B, whatever its letter", "[integrators][kicks]") {
+  for (const char letter : {'C', 'L'}) {
+    CAPTURE(letter);
+    ForceField<double> field;
+    field.add(Gravity{.G = 1});
+    field.add(AnyForce<double>(HarmonicField{.k = 1e-3}).in_kick(letter));
+    Scheme only = word("BAB");  // a word of letters must have a B; schemes of programs may be any
+    only.word = Word();
+    for (const Stage& stage : {Stage{letter, 0.5_q}, Stage{'A', 1_q}, Stage{letter, 0.5_q}}) only.word.push_back(stage);
+    CHECK_THROWS_WITH(compose(KineticPotential(field), only), Catch::Matchers::Contains("has no letter B"));
+    const std::string both = {letter, 'B', 'A', 'B', letter};
+    CHECK_NOTHROW(compose(KineticPotential(field), word(both)));
+  }
 }
 
 TEST_CASE("a Hamiltonian with kicks of one letter refuses forces of others", "[integrators][kicks]") {

@@ -89,6 +89,15 @@ TEST_CASE("the word after a run undoes the one before it, and both carry no time
     CHECK(abs(time) < Quad(1e-32));
     CHECK(made.before.size() > 60);
   }
+  for (const Scheme* scheme : {&schemes::verlet, &schemes::verlet_aba}) {
+    for (const std::int64_t order : schemes::corrector_orders) {
+      CAPTURE(std::string(scheme->name), order);
+      Quad time = 0;
+      for (const Stage& stage : processed(*scheme, {.corrector = order}).before)
+        time += stage.letter == 'A' ? stage.weight : Quad(0);
+      CHECK(abs(time) < Quad(1e-32));
+    }
+  }
 }
 
 TEST_CASE("the composed kernel is right to order 4 in the second power of B, the plain one to order 2", "[schemes]") {
