@@ -34,7 +34,11 @@ void whole_decades(PlotAxis& axis, double low, double high) {
 }
 
 /// The power of ten that numbers leave to the name of their axis: 0 from 0.001 to 99 999, as they are read anyway.
-int power_of(double largest) {
+/// Numbers of one size that differ little have it for no use: 2451545 and 2451546 are told apart, 2.451545 and 2.451546
+/// times 10^6 are not read more easily.
+int power_of(double largest, double span) {
+  static constexpr double little = 1e-2, longest = 1e12;
+  if (largest >= 1e5 && largest < longest && span < little * largest) return 0;
   if (largest >= 1e-3 && largest < 1e5) return 0;
   return static_cast<int>(std::floor(std::log10(largest) + 1e-9));
 }
@@ -56,7 +60,7 @@ PlotMarks marks_of(double low, double high, double most, std::optional<int> powe
   if (!(raw > 0) || !std::isfinite(raw) || !(raw > 1e-13 * largest)) return {};
   const double decade = std::pow(10.0, std::floor(std::log10(raw))), digit = raw / decade;
   const double step = decade * (digit < 1.5 ? 1 : digit < 3.5 ? 2 : digit < 7.5 ? 5 : 10);
-  PlotMarks result{.marks = {}, .power = power.value_or(power_of(largest))};
+  PlotMarks result{.marks = {}, .power = power.value_or(power_of(largest, high - low))};
   const double unit = std::pow(10.0, result.power);
   const int decimals = std::clamp(-static_cast<int>(std::floor(std::log10(step / unit) + 1e-9)), 0, 15);
   const auto first = static_cast<std::int64_t>(std::ceil(low / step - 1e-9));
@@ -74,7 +78,7 @@ PlotMarks marks_of(double low, double high, double most, std::optional<int> powe
 }
 
 PlotMarks decade_marks_of(double low, double high) {
-  PlotMarks result{.marks = {}, .power = power_of(high)};
+  PlotMarks result{.marks = {}, .power = power_of(high, high - low)};
   const double unit = std::pow(10.0, result.power);
   for (double power = std::pow(10.0, std::floor(std::log10(low))); power <= high; power *= 10) {
     for (const double mark : {power, 2 * power, 5 * power}) {
@@ -114,7 +118,7 @@ bool is_spaced_by_ratios(const std::vector<double>& times) {
 }
 
 PlotTime time_axis(const std::string& unit, const std::vector<double>& frames, double begin, double end) {
-  const ReadableTime readable = readable_time(unit, std::max(std::abs(begin), std::abs(end)));
+  const ReadableTime readable = readable_time(unit, shown_time(begin, end));
   PlotTime time{.unit = readable.unit, .length = readable.length, .axis = {}};
   time.axis = {.label = with_unit("time", time.unit), .low = begin / time.length, .high = end / time.length};
   if (is_spaced_by_ratios(frames)) {
@@ -127,6 +131,13 @@ PlotTime time_axis(const std::string& unit, const std::vector<double>& frames, d
   }
   if (!(time.axis.high > time.axis.low)) time.axis.high = time.axis.low + 1;
   return time;
+}
+
+std::string told_time(const PlotTime& time, double t) {
+  const double shown = t / time.length, span = time.axis.high - time.axis.low;
+  const double more = shown != 0 && span > 0 ? std::floor(std::log10(std::abs(shown) / span)) : 0;
+  const int digits = std::isfinite(more) ? std::clamp(4 + static_cast<int>(more), 4, 15) : 4;
+  return fmt::format("{:.{}g}{}{}", shown, digits, time.unit.empty() ? "" : " ", time.unit);
 }
 
 void fit_values(PlotPanel& panel) {

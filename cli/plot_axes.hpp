@@ -50,6 +50,10 @@ bool is_spaced_by_ratios(const std::vector<double>& times);
 /// The time axis of moments in a unit of the file, such as "day". @param frames  those that choose its kind
 PlotTime time_axis(const std::string& unit, const std::vector<double>& frames, double begin, double end);
 
+/// A moment in the axis' unit, "6712.3 yr", with digits that tell it from others of the axis. @param t  in the file's
+/// unit
+std::string told_time(const PlotTime& time, double t);
+
 /// Makes the axis of the values hold all curves, with some air: logarithmic where it must be.
 void fit_values(PlotPanel& panel);
 

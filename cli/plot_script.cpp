@@ -52,13 +52,13 @@ std::string quoted(const std::string& text) {
 
 std::string block(const std::string& name, const std::vector<PlotPoint>& points) {
   std::string text = "$" + name + " << EOD\n";
-  for (const PlotPoint& p : points) text += fmt::format("{:.12g} {:.12g}\n", p.x, p.y);
+  for (const PlotPoint& p : points) text += fmt::format("{:.15g} {:.15g}\n", p.x, p.y);
   return text + "EOD\n";
 }
 
 std::string block(const std::string& name, const std::vector<PlotPlace>& points) {
   std::string text = "$" + name + " << EOD\n";
-  for (const PlotPlace& p : points) text += fmt::format("{:.9g} {:.9g} {:.9g}\n", p[0], p[1], p[2]);
+  for (const PlotPlace& p : points) text += fmt::format("{:.15g} {:.15g} {:.15g}\n", p[0], p[1], p[2]);
   return text + "EOD\n";
 }
 
@@ -165,7 +165,7 @@ class Script {
     const PlotView& view = picture.views[v];
     const PlotArea& area = layout_.orbits(index, v);
     text_ += margins(area);
-    text_ += fmt::format("set xrange [{:.9g}:{:.9g}]\nset yrange [{:.9g}:{:.9g}]\n", view.low.x, view.high.x,
+    text_ += fmt::format("set xrange [{:.15g}:{:.15g}]\nset yrange [{:.15g}:{:.15g}]\n", view.low.x, view.high.x,
                          view.low.y, view.high.y);
     // All views have one scale, and so one power of ten.
     const PlotView& first = picture.views[0];
@@ -220,7 +220,7 @@ class Script {
   static std::string lines_block(const std::string& name, const std::vector<std::pair<PlotPlace, PlotPlace>>& lines) {
     std::string text = "$" + name + " << EOD\n";
     for (const auto& [a, b] : lines) {
-      text += fmt::format("{:.6g} {:.6g} {:.6g}\n{:.6g} {:.6g} {:.6g}\n\n", a[0], a[1], a[2], b[0], b[1], b[2]);
+      text += fmt::format("{:.15g} {:.15g} {:.15g}\n{:.15g} {:.15g} {:.15g}\n\n", a[0], a[1], a[2], b[0], b[1], b[2]);
     }
     return text + "EOD\n";
   }
@@ -300,7 +300,7 @@ class Script {
 
   /// @return what the axis is called
   std::string add_axis(const PlotAxis& axis, char name, double points) {
-    text_ += fmt::format("set {}range [{:.12g}:{:.12g}]\n", name, axis.low, axis.high);
+    text_ += fmt::format("set {}range [{:.15g}:{:.15g}]\n", name, axis.low, axis.high);
     if (!axis.logarithmic) {
       const PlotMarks marks = marks_of(axis.low, axis.high, most_marks(name, points));
       text_ += fmt::format("unset logscale {}\n", name);
@@ -352,7 +352,7 @@ class Script {
   }
 
   static std::string style_of(const PlotCurve& curve, const PlotPanel& panel) {
-    if (panel.large) return "with lines lw 1.3";
+    if (panel.large) return curve.dotted ? "with linespoints lw 1.3 pt 7 ps 0.35" : "with lines lw 1.3";
     const std::size_t count = curve.points.size();
     if (curve.separate && count > 400) return "with points pt 7 ps 0.2";
     return count > 120 ? "with lines lw 1" : "with linespoints lw 1 pt 7 ps 0.35";
