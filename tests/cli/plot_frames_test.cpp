@@ -166,6 +166,64 @@ TEST_CASE("of samples at equal distances the first is kept too: changes are coun
   }
 }
 
+/// A small melt with every monitor of liquids that a picture has a panel for, and without frames.
+const std::string watched_melt = R"(units = "reduced"
+[particles]
+type = "lattice"
+cells = [2, 2, 2]
+density = 0.8442
+mass = 1
+temperature = 1.44
+[hamiltonian]
+type = "kinetic_potential"
+[[hamiltonian.force]]
+type = "lennard_jones"
+cutoff = 1.5
+epsilon = 1
+sigma = 1
+[integrator]
+method = "verlet"
+step = 0.005
+steps = 60
+[[every]]
+type = "temperature"
+steps = 10
+[[every]]
+type = "pressure"
+steps = 10
+[[every]]
+type = "radial_distribution"
+steps = 10
+[[every]]
+type = "mean_square_displacement"
+steps = 2
+length = 20
+[[every]]
+type = "momentum"
+steps = 10
+[[every]]
+type = "energy"
+steps = 10
+)";
+
+TEST_CASE("the monitors that pictures are drawn from are read, each with what its panel needs", "[cli][plot]") {
+  const SceneFolder folder(watched_melt);
+  output(folder, "run scene.toml --quiet");
+  const auto panels_of = [&](const std::string& what) {
+    const PlotOptions options{.frame = {}, .what = {what}, .projection = {}};
+    return read_plot_data(folder / "scene.out/run.h5", standard_parts(), options).panels;
+  };
+  for (const char* what : {"errors", "temperature", "pressure", "rdf", "msd"}) {
+    CAPTURE(what);
+    const std::vector<PlotPanel> panels = panels_of(what);
+    REQUIRE(panels.size() == (what == std::string("errors") ? 2 : 1));  // energy and momentum
+    for (const PlotPanel& panel : panels) {
+      REQUIRE_FALSE(panel.curves.empty());
+      CHECK(panel.curves[0].points.size() > 2);
+    }
+  }
+}
+
 /// Titles of the panels of a run's picture.
 std::vector<std::string> titles_of(const PlotData& data) {
   std::vector<std::string> titles;
