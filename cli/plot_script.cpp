@@ -171,10 +171,11 @@ class Script {
     const PlotView& first = picture.views[0];
     const int power = marks_of(first.low.x, first.high.x, 7).power;
     text_ += "unset logscale\n";
-    set_tics('x', marks_of(view.low.x, view.high.x, most_marks('x', area.wide), power));
-    set_tics('y', marks_of(view.low.y, view.high.y, most_marks('y', area.high), power));
-    add_titles(area, v == 0 ? picture.title : "", with_power(view.across_label, power),
-               with_power(view.up_label, power));
+    const PlotMarks across = marks_of(view.low.x, view.high.x, most_marks('x', area.wide), power);
+    const PlotMarks up = marks_of(view.low.y, view.high.y, most_marks('y', area.high), power);
+    set_tics('x', across);
+    set_tics('y', up);
+    add_titles(area, v == 0 ? picture.title : "", axis_name(view.across_label, across), axis_name(view.up_label, up));
     std::vector<std::string> curves;
     const std::string columns = fmt::format("using {}:{}", view.across + 1, view.up + 1);
     for (std::size_t k = 0; k < picture.orbits.size(); ++k) {
@@ -305,7 +306,7 @@ class Script {
       const PlotMarks marks = marks_of(axis.low, axis.high, most_marks(name, points));
       text_ += fmt::format("unset logscale {}\n", name);
       set_tics(name, marks);
-      return with_power(axis.label, marks.power);
+      return axis_name(axis.label, marks);
     }
     const double decades = std::log10(axis.high / axis.low);
     // Every second decade, or third, where labels would meet.
@@ -315,7 +316,7 @@ class Script {
     if (decades < 2) {
       const PlotMarks marks = decade_marks_of(axis.low, axis.high);
       set_tics(name, marks);
-      return with_power(axis.label, marks.power);
+      return axis_name(axis.label, marks);
     }
     text_ += fmt::format("set format {0} '10^{{%T}}'\nset {0}tics nomirror 1e-30,{1:g}\n", name, std::pow(10.0, step));
     return axis.label;

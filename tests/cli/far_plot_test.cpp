@@ -106,6 +106,17 @@ TEST_CASE("the unit of time and its digits go by how long a run is, wherever its
   CHECK(marks_of(0, 2'451'945, 5).power == 6);
   CHECK(marks_of(1e20, 1.0001e20, 5).power == 20);  // nobody reads twenty figures
 
+  // Long numbers leave what they share to the name of the axis.
+  const PlotMarks far = marks_of(9'999'999.6, 10'000'001.4, 5);
+  CHECK(far.offset == 9'999'990);
+  REQUIRE(far.marks.size() > 2);
+  CHECK(far.marks[0] == std::pair(10'000'000.0, std::string("10")));
+  CHECK(far.marks[1] == std::pair(10'000'000.5, std::string("10.5")));
+  CHECK(axis_name("y (m)", far) == "y - 9999990 (m)");
+  CHECK(axis_name("y", marks_of(-10'000'001.4, -9'999'999.6, 5)) == "y + 10000010");
+  CHECK(axis_name("time (day)", marks) == "time (day)");
+  CHECK(axis_name("x (km)", marks_of(-1.3e6, 1.3e6, 5)) == "x (10\u2076 km)");
+
   const ScratchFolder folder;
   ParticleSystem<double> bodies(unit_system("solar"));
   bodies.add("Pluto", 6.6e-9, {0, 0, 0}, {0, 0, 0});
