@@ -28,6 +28,7 @@ class Shown {
       by_name_.emplace(shared.names[rows[k]], k);
     }
   }
+  std::size_t size() const { return by_id_.size(); }
   std::optional<std::size_t> id(std::int64_t id) const { return found(by_id_, id); }
   std::optional<std::size_t> name(const SceneValue& value) const {
     const std::string* text = value.get<std::string>();
@@ -81,10 +82,12 @@ void add_bar(ParticleLinks& links, const SceneValue& constraint, const Shown& sh
 
 void add_rods(ParticleLinks& links, const SceneValue& constraint, const Shown& shown, const UnitSystem& units) {
   const SceneValue::Array& bodies = list_at(constraint, "bodies");
-  if (bodies.size() > most_rods) return;
+  const bool all = text_at(constraint, {"bodies"}) == "all";
+  if ((all ? shown.size() : bodies.size()) > most_rods) return;
   const SceneValue::Array& center = list_at(constraint, "center");
   Vec3<double> point = Vec3<double>::Zero();
   for (std::size_t k = 0; k < 3 && center.size() == 3; ++k) point[static_cast<Index>(k)] = length_of(center[k], units);
+  for (std::size_t i = 0; all && i < shown.size(); ++i) links.anchors.push_back({i, point});
   for (const SceneValue& body : bodies) {
     if (const auto i = shown.name(body)) links.anchors.push_back({*i, point});
   }

@@ -33,10 +33,37 @@ void whole_decades(PlotAxis& axis, double low, double high) {
   if (axis.high <= axis.low) axis.high = 10 * axis.low;
 }
 
+/// Numbers of an axis differ little where its length is less than this beside their size.
+constexpr double little = 1e-2;
+/// So many characters of a mark have room beside the others.
+constexpr std::size_t longest_mark = 8;
+
 /// The power of ten that numbers leave to the name of their axis: 0 from 0.001 to 99 999, as they are read anyway.
-int power_of(double largest) {
+/// Numbers of one size that differ little have it for no use: 2451545 and 2451546 are told apart, 2.451545 and 2.451546
+/// times 10^6 are not read more easily.
+int power_of(double largest, double span) {
+  static constexpr double longest = 1e12;
+  if (largest >= 1e5 && largest < longest && span < little * largest) return 0;
   if (largest >= 1e-3 && largest < 1e5) return 0;
   return static_cast<int>(std::floor(std::log10(largest) + 1e-9));
+}
+
+/// The marks at multiples of `step`, as numbers beside the offset in units of the power of ten.
+void write_marks(PlotMarks& result, double low, double high, double step) {
+  result.marks.clear();
+  const double unit = std::pow(10.0, result.power);
+  const int decimals = std::clamp(-static_cast<int>(std::floor(std::log10(step / unit) + 1e-9)), 0, 15);
+  const auto first = static_cast<std::int64_t>(std::ceil(low / step - 1e-9));
+  const auto last = static_cast<std::int64_t>(std::floor(high / step + 1e-9));
+  for (std::int64_t k = first; k <= last; ++k) {
+    const double at = static_cast<double>(k) * step;
+    std::string text = fmt::format("{:.{}f}", (at - result.offset) / unit, decimals);
+    if (text.find('.') != std::string::npos) {
+      text.erase(text.find_last_not_of('0') + 1);
+      if (text.back() == '.') text.pop_back();
+    }
+    result.marks.emplace_back(at, k == 0 ? "0" : text);
+  }
 }
 
 }  // namespace
@@ -52,29 +79,24 @@ PlotLength readable_length(const std::string& unit, double size) {
 }
 
 PlotMarks marks_of(double low, double high, double most, std::optional<int> power) {
-  const double raw = (high - low) / most, largest = std::max(std::abs(low), std::abs(high));
+  const double span = high - low, raw = span / most, largest = std::max(std::abs(low), std::abs(high));
   if (!(raw > 0) || !std::isfinite(raw) || !(raw > 1e-13 * largest)) return {};
   const double decade = std::pow(10.0, std::floor(std::log10(raw))), digit = raw / decade;
   const double step = decade * (digit < 1.5 ? 1 : digit < 3.5 ? 2 : digit < 7.5 ? 5 : 10);
-  PlotMarks result{.marks = {}, .power = power.value_or(power_of(largest))};
-  const double unit = std::pow(10.0, result.power);
-  const int decimals = std::clamp(-static_cast<int>(std::floor(std::log10(step / unit) + 1e-9)), 0, 15);
-  const auto first = static_cast<std::int64_t>(std::ceil(low / step - 1e-9));
-  const auto last = static_cast<std::int64_t>(std::floor(high / step + 1e-9));
-  for (std::int64_t k = first; k <= last; ++k) {
-    const double at = static_cast<double>(k) * step;
-    std::string text = fmt::format("{:.{}f}", at / unit, decimals);
-    if (text.find('.') != std::string::npos) {
-      text.erase(text.find_last_not_of('0') + 1);
-      if (text.back() == '.') text.pop_back();
-    }
-    result.marks.emplace_back(at, k == 0 ? "0" : text);
-  }
+  PlotMarks result{.marks = {}, .power = power.value_or(power_of(largest, span))};
+  write_marks(result, low, high, step);
+  const bool is_long = std::any_of(result.marks.begin(), result.marks.end(),
+                                   [](const auto& mark) { return mark.second.size() > longest_mark; });
+  if (!is_long || !(span < little * largest)) return result;
+  const double round = std::pow(10.0, std::ceil(std::log10(span)));
+  result.offset = std::floor(low / round) * round;
+  result.power = power.value_or(power_of(high - result.offset, span));
+  write_marks(result, low, high, step);
   return result;
 }
 
 PlotMarks decade_marks_of(double low, double high) {
-  PlotMarks result{.marks = {}, .power = power_of(high)};
+  PlotMarks result{.marks = {}, .power = power_of(high, high - low)};
   const double unit = std::pow(10.0, result.power);
   for (double power = std::pow(10.0, std::floor(std::log10(low))); power <= high; power *= 10) {
     for (const double mark : {power, 2 * power, 5 * power}) {
@@ -96,6 +118,16 @@ std::string with_power(const std::string& label, int power) {
   return result.insert(result.rfind('(') + 1, text + " ");
 }
 
+std::string axis_name(const std::string& label, const PlotMarks& marks) {
+  std::string name = label;
+  if (marks.offset != 0) {
+    const std::string taken_off = fmt::format(" {} {:.15g}", marks.offset > 0 ? "-" : "+", std::abs(marks.offset));
+    const bool has_unit = !name.empty() && name.back() == ')';
+    name.insert(has_unit ? name.rfind(" (") : name.size(), taken_off);
+  }
+  return with_power(name, marks.power);
+}
+
 bool is_spaced_by_ratios(const std::vector<double>& times) {
   static constexpr double least_ratio = 100, crowded = 0.1;
   std::vector<double> positive;
@@ -114,7 +146,7 @@ bool is_spaced_by_ratios(const std::vector<double>& times) {
 }
 
 PlotTime time_axis(const std::string& unit, const std::vector<double>& frames, double begin, double end) {
-  const ReadableTime readable = readable_time(unit, std::max(std::abs(begin), std::abs(end)));
+  const ReadableTime readable = readable_time(unit, shown_time(begin, end));
   PlotTime time{.unit = readable.unit, .length = readable.length, .axis = {}};
   time.axis = {.label = with_unit("time", time.unit), .low = begin / time.length, .high = end / time.length};
   if (is_spaced_by_ratios(frames)) {
@@ -127,6 +159,13 @@ PlotTime time_axis(const std::string& unit, const std::vector<double>& frames, d
   }
   if (!(time.axis.high > time.axis.low)) time.axis.high = time.axis.low + 1;
   return time;
+}
+
+std::string told_time(const PlotTime& time, double t) {
+  const double shown = t / time.length, span = time.axis.high - time.axis.low;
+  const double more = shown != 0 && span > 0 ? std::floor(std::log10(std::abs(shown) / span)) : 0;
+  const int digits = std::isfinite(more) ? std::clamp(4 + static_cast<int>(more), 4, 15) : 4;
+  return fmt::format("{:.{}g}{}{}", shown, digits, time.unit.empty() ? "" : " ", time.unit);
 }
 
 void fit_values(PlotPanel& panel) {

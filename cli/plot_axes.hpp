@@ -29,10 +29,12 @@ struct PlotLength {
 /// The unit of orbits of a size: kilometers instead of astronomical units about a planet.
 PlotLength readable_length(const std::string& unit, double size);
 
-/// Marks of an axis, and the power of ten that their numbers leave to its name.
+/// Marks of an axis, and what their numbers leave to its name: a power of ten, and a round number that is taken off
+/// where they would be long and differ little.
 struct PlotMarks {
   std::vector<std::pair<double, std::string>> marks;
   int power = 0;
+  double offset = 0;
 };
 
 /// Marks of a linear axis, about `most`. @param power  of ten; nothing: one that makes numbers short
@@ -42,6 +44,8 @@ PlotMarks decade_marks_of(double low, double high);
 
 /// "y (10^-5 m)" with the power in small figures; the label as it is for the power 0.
 std::string with_power(const std::string& label, int power);
+/// What the axis is called: "y - 9999990 (m)" beside marks that have an offset, with their power as `with_power`.
+std::string axis_name(const std::string& label, const PlotMarks& marks);
 
 /// Whether moments are spaced so that each is a multiple of the one before, as far as more of them fit on a logarithmic
 /// axis than on a linear one: two decades at least, and half of them in the first tenth. A first moment 0 is left out.
@@ -49,6 +53,10 @@ bool is_spaced_by_ratios(const std::vector<double>& times);
 
 /// The time axis of moments in a unit of the file, such as "day". @param frames  those that choose its kind
 PlotTime time_axis(const std::string& unit, const std::vector<double>& frames, double begin, double end);
+
+/// A moment in the axis' unit, "6712.3 yr", with digits that tell it from others of the axis. @param t  in the file's
+/// unit
+std::string told_time(const PlotTime& time, double t);
 
 /// Makes the axis of the values hold all curves, with some air: logarithmic where it must be.
 void fit_values(PlotPanel& panel);

@@ -113,7 +113,7 @@ Kinds kinds_of(const ParticleSystem<double>& s, const std::string& mass_unit) {
     kinds.of[i] = molecules.try_emplace(topology->molecules[i], molecules.size()).first->second;
   }
   kinds.legend[0].name +=
-      fmt::format(" in {}, each of a color", counted(static_cast<std::int64_t>(molecules.size()), "molecule"));
+      fmt::format(" in {}, colored by molecule", counted(static_cast<std::int64_t>(molecules.size()), "molecule"));
   return kinds;
 }
 

@@ -3,11 +3,13 @@
 #include "cli/plot_source.hpp"
 #include "cli/run_caption.hpp"
 #include "cli/run_gravity.hpp"
+#include "engine/sums.hpp"
 #include "io/frame_particles.hpp"
 #include "io/sandbox.hpp"
 #include "io/trajectory_layout.hpp"
 #include "numbers/error.hpp"
 #include "numbers/suggest.hpp"
+#include "numbers/text.hpp"
 #include "scene/parts.hpp"
 #include "scene/toml.hpp"
 
@@ -78,16 +80,31 @@ ParticleLinks links_in(const std::filesystem::path& file, const PlotSource& sour
                        [&] { return read_links(io::Hdf5File::open_to_read(file), source.scene, units, shared, rows); });
 }
 
-/// The unit of orbits: by how far bodies are from the primary at the frame that is shown, or by their largest orbit.
+/// The center of mass of a frame; of bodies without mass their mean.
+PlotPlace center_of(const PlotFrames& frames, const io::Frame& frame) {
+  const std::vector<double>& masses = frames.shared.masses;
+  const auto n = static_cast<Index>(frames.bodies());
+  const auto at = [](Index i) { return static_cast<std::size_t>(i); };
+  const double total = sum_over<double>(n, [&](Index i) { return masses[at(i)]; });
+  PlotPlace center{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto weighted = [&](Index i) { return (total > 0 ? masses[at(i)] : 1) * frame.positions[3 * at(i) + k]; };
+    center[k] = sum_over<double>(n, weighted) / (total > 0 ? total : static_cast<double>(n));
+  }
+  return center;
+}
+
+/// The unit of orbits: by how far bodies are from the primary, or without one from the center of mass, at the frame
+/// that is shown; where there are no frames by their largest orbit.
 PlotLength length_of(const PlotSource& source) {
   const PlotFrames& frames = source.frames;
   double size = 0;
-  if (!frames.empty() && frames.primary && !is_crowd(frames)) {
+  if (!frames.empty() && frames.bodies() > 0 && !is_crowd(frames)) {
     const io::Frame frame = frames.frame(source.shown);
+    PlotPlace center = center_of(frames, frame);
+    for (std::size_t k = 0; k < 3 && frames.primary; ++k) center[k] = frame.positions[3 * *frames.primary + k];
     for (std::size_t i = 0; i < frames.bodies(); ++i) {
-      const auto off = [&](std::size_t k) {
-        return frame.positions[3 * i + k] - frame.positions[3 * *frames.primary + k];
-      };
+      const auto off = [&](std::size_t k) { return frame.positions[3 * i + k] - center[k]; };
       size = std::max(size, std::hypot(off(0), off(1), off(2)));
     }
   } else if (const io::MonitorSeries* elements = find_monitor(source.monitors, "elements"); elements != nullptr) {
@@ -149,7 +166,7 @@ PlotSource read_source(const std::filesystem::path& file, const PlotOptions& opt
 
   const bool attract = has_gravity(source.scene);
   if (const double G = constant_of_gravity(source.scene, NAN); attract && !std::isnan(G)) source.G = G;
-  if (!attract || source.frames.periodic) source.frames.primary = {};
+  if (!may_have_gravity(source.scene) || source.frames.periodic) source.frames.primary = {};
   const std::string system = source.frames.shared.units.empty() ? about.units : source.frames.shared.units;
   if (!source.frames.empty() || !system.empty()) {
     const UnitSystem& units = io::known_units(system, file);
@@ -167,9 +184,8 @@ PlotSource read_source(const std::filesystem::path& file, const PlotOptions& opt
 /// "frame 3, t = 10 ps, box 6.1 x 6.1 x 6.1 nm".
 std::string box_title(const PlotSource& source) {
   const io::Frame frame = source.frames.frame(source.shown);
-  const std::string time = source.time.unit.empty() ? "" : " " + source.time.unit;
   std::string title =
-      fmt::format("Frame {}, t = {:.4g}{}", source.frames.numbers[source.shown], frame.time / source.time.length, time);
+      fmt::format("Frame {}, t = {}", source.frames.numbers[source.shown], told_time(source.time, frame.time));
   if (frame.edges.size() == 3) {
     const std::string& unit = source.frames.shared.length_unit;
     title += fmt::format(", box {:.4g} x {:.4g} x {:.4g}{}", frame.edges[0], frame.edges[1], frame.edges[2],
@@ -182,7 +198,7 @@ std::string box_title(const PlotSource& source) {
 void add_positions(PlotData& data, const PlotSource& source, const PlotOptions& options) {
   const PlotFrames& frames = source.frames;
   if (frames.empty()) {
-    data.orbits = plot_orbits_of_elements(source);
+    data.orbits = plot_orbits_of_elements(source, options.projection);
     if (!data.orbits.empty()) data.legend = body_legend(frames);
   } else if (!frames.shared.variable_names.empty()) {
     for (PlotPanel& panel : plot_variables(frames, source.time)) {
@@ -206,7 +222,13 @@ void add_positions(PlotData& data, const PlotSource& source, const PlotOptions& 
     } else {
       data.orbits = plot_orbits(frames, source.shown, source.G, options.projection, source.links, source.length);
     }
-    data.legend = body_legend(frames);
+    const bool links_alone = !data.orbits.empty() && data.orbits.front().links_alone;
+    if (!links_alone) data.legend = body_legend(frames);
+    if (!data.orbits.empty() && data.orbits.front().links.size() > 1) {
+      data.orbits.front().title =
+          fmt::format("At t = {}, and {} before", told_time(source.time, frames.times[source.shown]),
+                      counted(static_cast<std::int64_t>(data.orbits.front().links.size()) - 1, "moment"));
+    }
   }
 }
 

@@ -58,6 +58,7 @@ struct PlotOrbits {
   std::vector<PlotLinks> links = {};  ///< the oldest first
   std::vector<PlotView> views = {};
   double size_of_bodies = 1;  ///< beside that of few
+  bool links_alone = false;   ///< links stand for paths, and bodies have one color
 };
 
 /// A particle as it is seen: farther ones come first.
@@ -88,6 +89,7 @@ struct PlotCurve {
   std::vector<PlotPoint> points;
   std::size_t color = automatic_color;
   bool separate = false;  ///< points that are not joined
+  bool dotted = false;    ///< points are dots on the line
 };
 
 struct PlotAxis {

@@ -103,6 +103,7 @@ std::optional<PlotPanel> error_panel(const io::MonitorSeries& monitor, const Plo
                                          : "relative error",
                               worst, panel);
     fit_errors(panel);
+    if (!panel.y.logarithmic) panel.y.label = changes ? "change" : residual ? "violation" : "error";
     return panel;
   }
   const auto found = monitor.quantities.find("value");

@@ -212,6 +212,17 @@ std::optional<PlotOrbits> inner_part(const PlotOrbits& all) {
   PlotOrbits inner{.title = "Inner orbits", .orbits = all.orbits};
   std::erase_if(inner.orbits, [&](const PlotOrbit& o) { return !o.primary && o.extent >= sizes[first_outer]; });
   if (inner.orbits.size() < 3) return {};
+  // Ends of links are places of bodies; those beyond the inner bodies' are of outer ones.
+  const auto is_inner = [reach = sizes[first_outer - 1] * (1 + 1e-9)](const PlotPlace& p) {
+    return std::hypot(p[0], p[1], p[2]) <= reach;
+  };
+  for (const PlotLinks& links : all.links) {
+    PlotLinks kept{.lines = {}, .age = links.age};
+    for (const auto& [a, b] : links.lines) {
+      if (is_inner(a) && is_inner(b)) kept.lines.emplace_back(a, b);
+    }
+    if (!kept.lines.empty()) inner.links.push_back(std::move(kept));
+  }
   return inner;
 }
 
@@ -220,8 +231,38 @@ bool shows_links_alone(std::size_t bodies, const ParticleLinks& links) {
   return bodies > most_named && 2 * links.pairs.size() >= bodies;
 }
 
-PlotOrbit orbit_of(const KeptFrames& kept, const PlotFrames& frames, std::size_t body, Center center,
-                   std::optional<double> G) {
+/// Frames that follow each other in the file, up to the one that is shown: of a long run those that are kept stand too
+/// far apart to tell whether the body was seen often enough. Read once, where they are asked for.
+class RecentFrames {
+ public:
+  RecentFrames(const PlotFrames& all, const KeptFrames& kept, std::size_t shown)
+      : all_(all), thinned_(kept.frames.frames.size() < all.size()), shown_(shown) {}
+
+  /// Nothing where all frames are kept.
+  const io::Frames* frames() {
+    if (!thinned_) return nullptr;
+    if (!read_) read();
+    return &*read_;
+  }
+
+ private:
+  void read() {
+    static constexpr std::size_t most_recent = 500;
+    const std::size_t count =
+        std::min({all_.size(), most_recent, std::max<std::size_t>(most_frames_of_paths(all_.bodies()), 3)});
+    const std::size_t begin = shown_ + 1 > count ? shown_ + 1 - count : 0;
+    read_ = all_.shared;
+    for (std::size_t k = begin; k < begin + count; ++k) read_->frames.push_back(all_.frame(k));
+  }
+
+  const PlotFrames& all_;
+  bool thinned_;
+  std::size_t shown_;
+  std::optional<io::Frames> read_;
+};
+
+PlotOrbit orbit_of(const KeptFrames& kept, RecentFrames& recent, const PlotFrames& frames, std::size_t body,
+                   Center center, std::optional<double> G) {
   const io::Frames& all = kept.frames;
   PlotOrbit orbit{.name = all.names[body], .color = body_color(frames, body)};
   const BodyTrack track = track_of(all, body, center);
@@ -235,7 +276,11 @@ PlotOrbit orbit_of(const KeptFrames& kept, const PlotFrames& frames, std::size_t
     orbit.path = thinned(path_through(track), most);
   } else {
     orbit.samples = thinned(track.x, std::min(most_orbit_samples, most));
-    if (center && G) orbit.path = ellipse(all, all.frames[kept.shown], body, *center, *G);
+    if (const io::Frames* close = recent.frames()) {
+      const BodyTrack way = track_of(*close, body, center);
+      if (is_dense(way)) orbit.path = thinned(path_through(way), most);
+    }
+    if (orbit.path.empty() && center && G) orbit.path = ellipse(all, all.frames[kept.shown], body, *center, *G);
   }
   return orbit;
 }
@@ -357,21 +402,22 @@ std::vector<PlotOrbits> plot_orbits(const PlotFrames& frames, std::size_t shown,
   const std::size_t n = frames.bodies();
   const KeptFrames kept = kept_frames(frames, most_frames_of_paths(n), shown);
   const Center center = frames.primary;
+  RecentFrames recent(frames, kept, shown);
   PlotOrbits picture;
   const bool links_alone = shows_links_alone(n, links);
   for (std::size_t i = 0; i < n; ++i) {
-    picture.orbits.push_back(orbit_of(kept, frames, i, center, G));
+    picture.orbits.push_back(orbit_of(kept, recent, frames, i, center, G));
     if (!links_alone) continue;
     picture.orbits.back().path.clear(), picture.orbits.back().samples.clear();
     picture.orbits.back().color = 0;
   }
-  if (links_alone) picture.size_of_bodies = 0.5;
+  if (links_alone) picture.size_of_bodies = 0.5, picture.links_alone = true;
   picture.links = links_seen(kept, links, center);
   return as_seen(std::move(picture), center ? std::optional(frames.shared.names[*center]) : std::nullopt, projection,
                  length.value_or(PlotLength{frames.shared.length_unit, 1}));
 }
 
-std::vector<PlotOrbits> plot_orbits_of_elements(const PlotSource& source) {
+std::vector<PlotOrbits> plot_orbits_of_elements(const PlotSource& source, const std::string& projection) {
   static constexpr std::size_t columns = 6, most_ellipses = 150;
   const io::MonitorSeries* monitor = find_monitor(source.monitors, "elements");
   const std::size_t n = source.frames.bodies();
@@ -380,9 +426,7 @@ std::vector<PlotOrbits> plot_orbits_of_elements(const PlotSource& source) {
   const bool fits = shape.size() == 2 && shape[0] == static_cast<Index>(n) && shape[1] == Index{columns};
   if (!fits || values.size() < n * columns) return {};
   const double* last = &values[values.size() - n * columns];
-  PlotOrbits picture{.title = fmt::format("Orbits at t = {:.4g}{}{}", monitor->time.back() / source.time.length,
-                                          source.time.unit.empty() ? "" : " ", source.time.unit),
-                     .orbits = {}};
+  PlotOrbits picture{.title = "Orbits at t = " + told_time(source.time, monitor->time.back()), .orbits = {}};
   std::optional<std::string> center;
   for (std::size_t i = 0; i < n; ++i) {
     const double* o = last + i * columns;
@@ -400,7 +444,7 @@ std::vector<PlotOrbits> plot_orbits_of_elements(const PlotSource& source) {
     picture.orbits.push_back(std::move(orbit));
   }
   if (picture.orbits.size() < 2 || !center) return {};
-  return as_seen(std::move(picture), center, "",
+  return as_seen(std::move(picture), center, projection,
                  source.length.value_or(PlotLength{source.frames.shared.length_unit, 1}));
 }
 

@@ -52,13 +52,13 @@ std::string quoted(const std::string& text) {
 
 std::string block(const std::string& name, const std::vector<PlotPoint>& points) {
   std::string text = "$" + name + " << EOD\n";
-  for (const PlotPoint& p : points) text += fmt::format("{:.12g} {:.12g}\n", p.x, p.y);
+  for (const PlotPoint& p : points) text += fmt::format("{:.15g} {:.15g}\n", p.x, p.y);
   return text + "EOD\n";
 }
 
 std::string block(const std::string& name, const std::vector<PlotPlace>& points) {
   std::string text = "$" + name + " << EOD\n";
-  for (const PlotPlace& p : points) text += fmt::format("{:.9g} {:.9g} {:.9g}\n", p[0], p[1], p[2]);
+  for (const PlotPlace& p : points) text += fmt::format("{:.15g} {:.15g} {:.15g}\n", p[0], p[1], p[2]);
   return text + "EOD\n";
 }
 
@@ -165,16 +165,17 @@ class Script {
     const PlotView& view = picture.views[v];
     const PlotArea& area = layout_.orbits(index, v);
     text_ += margins(area);
-    text_ += fmt::format("set xrange [{:.9g}:{:.9g}]\nset yrange [{:.9g}:{:.9g}]\n", view.low.x, view.high.x,
+    text_ += fmt::format("set xrange [{:.15g}:{:.15g}]\nset yrange [{:.15g}:{:.15g}]\n", view.low.x, view.high.x,
                          view.low.y, view.high.y);
     // All views have one scale, and so one power of ten.
     const PlotView& first = picture.views[0];
     const int power = marks_of(first.low.x, first.high.x, 7).power;
     text_ += "unset logscale\n";
-    set_tics('x', marks_of(view.low.x, view.high.x, most_marks('x', area.wide), power));
-    set_tics('y', marks_of(view.low.y, view.high.y, most_marks('y', area.high), power));
-    add_titles(area, v == 0 ? picture.title : "", with_power(view.across_label, power),
-               with_power(view.up_label, power));
+    const PlotMarks across = marks_of(view.low.x, view.high.x, most_marks('x', area.wide), power);
+    const PlotMarks up = marks_of(view.low.y, view.high.y, most_marks('y', area.high), power);
+    set_tics('x', across);
+    set_tics('y', up);
+    add_titles(area, v == 0 ? picture.title : "", axis_name(view.across_label, across), axis_name(view.up_label, up));
     std::vector<std::string> curves;
     const std::string columns = fmt::format("using {}:{}", view.across + 1, view.up + 1);
     for (std::size_t k = 0; k < picture.orbits.size(); ++k) {
@@ -220,7 +221,7 @@ class Script {
   static std::string lines_block(const std::string& name, const std::vector<std::pair<PlotPlace, PlotPlace>>& lines) {
     std::string text = "$" + name + " << EOD\n";
     for (const auto& [a, b] : lines) {
-      text += fmt::format("{:.6g} {:.6g} {:.6g}\n{:.6g} {:.6g} {:.6g}\n\n", a[0], a[1], a[2], b[0], b[1], b[2]);
+      text += fmt::format("{:.15g} {:.15g} {:.15g}\n{:.15g} {:.15g} {:.15g}\n\n", a[0], a[1], a[2], b[0], b[1], b[2]);
     }
     return text + "EOD\n";
   }
@@ -300,12 +301,12 @@ class Script {
 
   /// @return what the axis is called
   std::string add_axis(const PlotAxis& axis, char name, double points) {
-    text_ += fmt::format("set {}range [{:.12g}:{:.12g}]\n", name, axis.low, axis.high);
+    text_ += fmt::format("set {}range [{:.15g}:{:.15g}]\n", name, axis.low, axis.high);
     if (!axis.logarithmic) {
       const PlotMarks marks = marks_of(axis.low, axis.high, most_marks(name, points));
       text_ += fmt::format("unset logscale {}\n", name);
       set_tics(name, marks);
-      return with_power(axis.label, marks.power);
+      return axis_name(axis.label, marks);
     }
     const double decades = std::log10(axis.high / axis.low);
     // Every second decade, or third, where labels would meet.
@@ -315,7 +316,7 @@ class Script {
     if (decades < 2) {
       const PlotMarks marks = decade_marks_of(axis.low, axis.high);
       set_tics(name, marks);
-      return with_power(axis.label, marks.power);
+      return axis_name(axis.label, marks);
     }
     text_ += fmt::format("set format {0} '10^{{%T}}'\nset {0}tics nomirror 1e-30,{1:g}\n", name, std::pow(10.0, step));
     return axis.label;
@@ -352,7 +353,7 @@ class Script {
   }
 
   static std::string style_of(const PlotCurve& curve, const PlotPanel& panel) {
-    if (panel.large) return "with lines lw 1.3";
+    if (panel.large) return curve.dotted ? "with linespoints lw 1.3 pt 7 ps 0.35" : "with lines lw 1.3";
     const std::size_t count = curve.points.size();
     if (curve.separate && count > 400) return "with points pt 7 ps 0.2";
     return count > 120 ? "with lines lw 1" : "with linespoints lw 1 pt 7 ps 0.35";

@@ -50,7 +50,7 @@ std::vector<PlotOrbits> plot_orbits(const PlotFrames& frames, std::size_t shown,
                                     const std::string& projection, const ParticleLinks& links = {},
                                     const std::optional<PlotLength>& length = {});
 /// Where there are no frames: the ellipses of the last sample of the monitor `elements`; nothing without it.
-std::vector<PlotOrbits> plot_orbits_of_elements(const PlotSource& source);
+std::vector<PlotOrbits> plot_orbits_of_elements(const PlotSource& source, const std::string& projection = "");
 /// Where every body stays on one line: x against time; nothing elsewhere.
 std::optional<PlotPanel> plot_line_positions(const PlotFrames& frames, const PlotTime& time);
 /// The variables of a system against time.

@@ -12,6 +12,8 @@ namespace {
 constexpr std::size_t most_variable_points = 20'000, most_variables = 8;
 /// Variables have a panel of their own where they are this much smaller than the largest.
 constexpr double small_gap = 100;
+/// So many frames are dots too, so that a corner between two of them is seen to be none of the curve's.
+constexpr std::size_t most_dots = 200;
 
 double size_of(const PlotCurve& curve) {
   double size = 0;
@@ -29,10 +31,11 @@ std::vector<PlotPanel> plot_variables(const PlotFrames& frames, const PlotTime& 
   panel.y.label = "y";
   const std::vector<std::string>& names = frames.shared.variable_names;
   const std::size_t n = names.size(), shown = std::min(n, most_variables);
+  const bool dotted = frames.size() <= most_dots;
   std::vector<std::size_t> chosen;
   for (std::size_t k = 0; k < shown; ++k) {
     chosen.push_back(shown < 2 ? 0 : k * (n - 1) / (shown - 1));
-    panel.curves.push_back({.name = names[chosen.back()], .points = {}, .color = k});
+    panel.curves.push_back({.name = names[chosen.back()], .points = {}, .color = k, .dotted = dotted});
   }
   const std::size_t stride = (frames.size() + most_variable_points - 1) / most_variable_points;
   for (std::size_t k = 0; k < frames.size(); k += stride) {

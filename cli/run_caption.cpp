@@ -54,6 +54,11 @@ ReadableTime readable_time(const std::string& unit, double longest) {
   return time;
 }
 
+double shown_time(double begin, double end) {
+  const double span = std::abs(end - begin);
+  return span > 0 ? span : std::abs(end);
+}
+
 namespace {
 
 /// Whether a force takes energy away or depends on time.

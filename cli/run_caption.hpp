@@ -39,7 +39,10 @@ std::vector<const SceneValue*> tables_at(const SceneValue& scene, const std::vec
 /// The unit for times up to `longest` in a unit of the file: yr, kyr or Myr instead of days, ns instead of ps.
 ReadableTime readable_time(const std::string& unit, double longest);
 
-/// @param longest  the largest time that is shown [time]
+/// What chooses the unit of times from `begin` to `end`: how long that is; of one moment how far it is from 0. [time]
+double shown_time(double begin, double end);
+
+/// @param longest  what chooses the unit: `shown_time` of what is shown [time]
 RunCaption caption_of(const SceneValue& scene, const std::filesystem::path& file, const std::string& time_unit,
                       double longest, const Parts& parts);
 

@@ -16,6 +16,11 @@ bool has_gravity(const SceneValue& scene) {
                      [](const SceneValue* force) { return text_at(*force, {"type"}).starts_with("gravity"); });
 }
 
+bool may_have_gravity(const SceneValue& scene) {
+  const bool told = value_at(scene, {"hamiltonian"}) != nullptr || value_at(scene, {"system"}) != nullptr;
+  return !told || has_gravity(scene);
+}
+
 double constant_of_gravity(const SceneValue& scene, double of_units) {
   std::vector<const SceneValue*> tables = tables_at(scene, {"hamiltonian", "force"});
   if (const SceneValue* hamiltonian = scene.find("hamiltonian")) tables.push_back(hamiltonian);

@@ -12,6 +12,10 @@ namespace noether {
 /// Whether bodies of a scene attract each other as masses do.
 bool has_gravity(const SceneValue& scene);
 
+/// Whether they do as far as a scene tells: one that says nothing of forces, such as that of a program of its own, does
+/// not tell that they do not.
+bool may_have_gravity(const SceneValue& scene);
+
 /// G of a scene; `of_units` where it gives none.
 double constant_of_gravity(const SceneValue& scene, double of_units);
 

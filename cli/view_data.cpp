@@ -151,7 +151,7 @@ ViewData read_frames_to_view(const std::filesystem::path& file, const SceneValue
   data.links = read_links(reader.file(), scene, io::known_units(shared.units, file), shared, rows);
 
   const bool periodic = reader.file().has(io::image_path + "/value");
-  if (!periodic && shown <= few_bodies && has_gravity(scene)) {
+  if (!periodic && shown <= few_bodies && may_have_gravity(scene)) {
     if (const auto primary = primary_of(data.masses)) data.primary = static_cast<std::int64_t>(*primary);
   }
   if (data.primary >= 0) {
@@ -222,7 +222,7 @@ ViewData read_view_data(const std::filesystem::path& file, const ViewWish& wish,
   const SceneValue scene = scene_in_file(about.scene_toml, file);
   ViewData data = io::try_first(file, [&] { return read_frames_to_view(file, scene, wish); });
   const auto [first, last] = std::pair(data.frames.front().time, data.frames.back().time);
-  data.caption = caption_of(scene, file, about.time_unit, std::max(std::abs(first), std::abs(last)), parts);
+  data.caption = caption_of(scene, file, about.time_unit, shown_time(first, last), parts);
   const auto drawn = [](const std::string& monitor, const std::string& quantity) {
     return monitor == "energy" && quantity == "relative_error";
   };

@@ -249,21 +249,37 @@ Index numbers_in(const std::vector<Index>& shape) {
   return std::accumulate(shape.begin(), shape.end(), Index{1}, std::multiplies<>());
 }
 
-/// Every `stride`-th of the first `samples` rows, the last among them.
-template <class Value>
-std::vector<Value> kept_rows(const std::vector<Value>& all, std::size_t samples, std::size_t stride) {
-  std::vector<Value> kept;
-  for (std::size_t k = samples == 0 ? 0 : (samples - 1) % stride; k < samples; k += stride) kept.push_back(all[k]);
+/// Every `stride`-th of the first `samples` rows back from the last, and the first, from which changes are counted.
+std::vector<std::size_t> kept_numbers(std::size_t samples, std::size_t stride) {
+  std::vector<std::size_t> kept;
+  if (samples > 0 && (samples - 1) % stride != 0) kept.push_back(0);
+  for (std::size_t k = samples == 0 ? 0 : (samples - 1) % stride; k < samples; k += stride) kept.push_back(k);
   return kept;
 }
 
-/// The same of a dataset, without the others in memory.
-std::vector<double> kept_rows(const Hdf5Dataset& dataset, std::size_t samples, std::size_t stride) {
-  if (stride == 1) return dataset.read_reals(0, static_cast<Index>(samples));
+template <class Value>
+std::vector<Value> kept_rows(const std::vector<Value>& all, const std::vector<std::size_t>& numbers) {
+  std::vector<Value> kept;
+  for (const std::size_t k : numbers) kept.push_back(all[k]);
+  return kept;
+}
+
+/// The same of a dataset of rows of so many `columns`: read in blocks, so that it is never in memory as a whole.
+std::vector<double> kept_rows(const Hdf5Dataset& dataset, const std::vector<std::size_t>& numbers,
+                              std::size_t columns) {
+  static constexpr std::size_t most_read = 1U << 18U;
+  const std::size_t block = std::max<std::size_t>(1, most_read / std::max<std::size_t>(columns, 1));
   std::vector<double> kept;
-  for (std::size_t k = (samples - 1) % stride; k < samples; k += stride) {
-    const std::vector<double> row = dataset.read_reals(static_cast<Index>(k), 1);
-    kept.insert(kept.end(), row.begin(), row.end());
+  kept.reserve(numbers.size() * columns);
+  for (std::size_t from = 0, to = 0; from < numbers.size(); from = to) {
+    const std::size_t first = numbers[from];
+    while (to < numbers.size() && numbers[to] < first + block) ++to;
+    const auto rows = static_cast<Index>(numbers[to - 1] - first + 1);
+    const std::vector<double> read = dataset.read_reals(static_cast<Index>(first), rows);
+    for (std::size_t k = from; k < to; ++k) {
+      const auto row = read.begin() + static_cast<std::ptrdiff_t>((numbers[k] - first) * columns);
+      kept.insert(kept.end(), row, row + static_cast<std::ptrdiff_t>(columns));
+    }
   }
   return kept;
 }
@@ -274,10 +290,9 @@ std::optional<MonitorSeries> untried_monitor(const Hdf5File& file, const std::st
   const std::string group = monitors_path + "/" + name;
   MonitorSeries series;
   series.name = name;
-  series.step = file.open(group + "/step").read_integers();
-  series.time = file.open(group + "/time").read_reals();
+  const Hdf5Dataset steps = file.open(group + "/step"), times = file.open(group + "/time");
   // A killed writer may have been a row ahead in some of the datasets.
-  std::size_t samples = std::min(series.step.size(), series.time.size()), stride = 1;
+  std::size_t samples = static_cast<std::size_t>(std::min(steps.rows(), times.rows())), stride = 1;
   std::map<std::string, Hdf5Dataset> datasets;
   for (const std::string& quantity : file.children(group)) {
     if (quantity == "step") continue;
@@ -292,15 +307,16 @@ std::optional<MonitorSeries> untried_monitor(const Hdf5File& file, const std::st
   if (datasets.empty() && choice.wanted) return {};
   for (const auto& [quantity, content] : series.quantities) {
     if (choice.most_numbers == 0 || content.first.empty()) continue;
-    const std::size_t numbers = samples * static_cast<std::size_t>(numbers_in(content.first));
-    stride = std::max(stride, (numbers + choice.most_numbers - 1) / choice.most_numbers);
+    const std::size_t count = samples * static_cast<std::size_t>(numbers_in(content.first));
+    stride = std::max(stride, (count + choice.most_numbers - 1) / choice.most_numbers);
   }
   stride = std::clamp<std::size_t>(stride, 1, std::max<std::size_t>(samples, 1));
+  const std::vector<std::size_t> numbers = kept_numbers(samples, stride);
   for (auto& [quantity, content] : series.quantities) {
-    content.second = kept_rows(datasets.at(quantity), samples, stride);
+    content.second = kept_rows(datasets.at(quantity), numbers, static_cast<std::size_t>(numbers_in(content.first)));
   }
-  series.step = kept_rows(series.step, samples, stride);
-  series.time = kept_rows(series.time, samples, stride);
+  series.step = kept_rows(steps.read_integers(), numbers);
+  series.time = kept_rows(times.read_reals(), numbers);
   if (file.has_attribute(group, "scale")) series.scale = file.real_attribute(group, "scale");
   if (series.quantities.count("value") != 0) series.orders = file.integers_attribute(group + "/value", "orders");
   return series;

@@ -83,8 +83,8 @@ Index convert(const std::filesystem::path& file, const std::filesystem::path& ou
 struct MonitorChoice {
   /// Whether a quantity of a monitor is read; nothing: all are. Monitors without such a quantity are left out.
   std::function<bool(const std::string& monitor, const std::string& quantity)> wanted = {};
-  /// Where a quantity of several numbers has more than these in all, samples at equal distances are kept, the last
-  /// among them; 0: all are.
+  /// Where a quantity of several numbers has more than these in all, samples at equal distances are kept, back
+  /// from the last, and the first; 0: all are.
   std::size_t most_numbers = 0;
 };
 

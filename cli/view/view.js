@@ -138,9 +138,10 @@ class View {
     this.draw();
   }
   time_text(time) {
-    const { time_unit, time_length } = this.about, span = Math.max(Math.abs(this.span), Math.abs(time)) / time_length || 1;
-    const decimals = clamp(3 - Math.ceil(Math.log10(span)), 0, 12), value = time / time_length;
-    const text = span >= 1e7 || span < 1e-4 ? value.toExponential(3) : value.toFixed(decimals);
+    const { time_unit, time_length } = this.about, value = time / time_length;
+    const span = Math.abs(this.span) / time_length || Math.abs(value) || 1, size = Math.abs(value);  // digits tell moments of the run apart
+    const decimals = clamp(3 - Math.ceil(Math.log10(span)), 0, 12), more = clamp(Math.ceil(Math.log10(size / span)), 0, 12);
+    const text = span >= 1e7 || (span < 1e-4 && size < 1) ? value.toExponential(3 + more) : value.toFixed(decimals);
     return text + (time_unit ? " " + time_unit : "");
   }
 

@@ -133,6 +133,35 @@ TEST_CASE("an orbit seen seldom is drawn as the ellipse of its elements", "[cli]
   }
 }
 
+TEST_CASE("an orbit seen often in too many frames to join them all is a line through the last ones", "[cli][plot]") {
+  const std::size_t count = 60'001;  // of which each fourth is kept: 6 a turn
+  const double spacing = 2 * M_PI / 25;
+  for (const std::size_t shown : {count - 1, std::size_t{0}}) {
+    const auto pictures = plot_orbits(circles(1, 0, count, spacing), shown, {}, "xy");
+    const PlotOrbit& orbit = pictures[0].orbits[1];
+    CHECK(orbit.path.size() > 1000);
+    CHECK(orbit.samples.size() > 500);  // all of the run
+    for (const PlotPlace& p : orbit.path) CHECK(std::abs(std::hypot(p[0], p[1]) - 1) < 1e-4);
+  }
+  // 2.5 frames a turn are not joined, however many there are.
+  CHECK(plot_orbits(circles(1, 0, count, 10 * spacing), count - 1, {}, "xy")[0].orbits[1].path.empty());
+}
+
+TEST_CASE("the picture of inner orbits has the links of inner bodies", "[cli][plot]") {
+  io::Frames frames = circles(5, 0, 3, 0.01);
+  for (io::Frame& frame : frames.frames) {
+    for (std::size_t k = 12; k < 18; ++k) frame.positions[k] *= 20;
+  }
+  ParticleLinks links;
+  links.pairs = {{1, 2}, {2, 4}, {4, 5}};
+  const auto pictures = plot_orbits(frames, 2, 1.0, "xy", links);
+  REQUIRE(pictures.size() == 2);
+  CHECK(pictures[0].links.at(0).lines.size() == 3);
+  REQUIRE(pictures[1].links.size() == 1);
+  REQUIRE(pictures[1].links[0].lines.size() == 1);
+  CHECK(pictures[1].links[0].lines[0].first == pictures[1].orbits[1].end);
+}
+
 TEST_CASE("bodies that are called by colors are drawn in them", "[cli][plot]") {
   io::Frames frames = circles(2, 0, 3, 1);
   frames.masses = {1, 1, 1};
@@ -180,6 +209,7 @@ TEST_CASE("of many linked bodies the links are drawn, at the frame that is shown
   links.anchors.push_back({0, {0, 0, 0}});
   const auto many = plot_orbits(rising_chain(40, 57), 56, {}, "xy", links);
   REQUIRE(many.size() == 1);
+  CHECK(many[0].links_alone);
   for (const PlotOrbit& orbit : many[0].orbits) CHECK((orbit.path.empty() && orbit.samples.empty()));
   REQUIRE(many[0].links.size() == 15);
   CHECK(many[0].links.front().age == 1);
@@ -191,6 +221,7 @@ TEST_CASE("of many linked bodies the links are drawn, at the frame that is shown
 
   links.pairs = {{0, 1}};
   const auto few = plot_orbits(rising_chain(2, 57), 56, {}, "xy", links);
+  CHECK_FALSE(few[0].links_alone);
   CHECK_FALSE(few[0].orbits[0].path.empty());
   REQUIRE(few[0].links.size() == 1);  // at the frame that is shown alone
   CHECK(few[0].links[0].lines.size() == 2);
@@ -223,6 +254,44 @@ TEST_CASE("plot draws what a scene's constraints and a structure's bonds hold to
   CHECK(std::abs(length(lines[1]) - 1) < 1e-9);
   CHECK(lines[0].second == data.orbits[0].orbits[1].end);
   CHECK(lines[1].first == PlotPlace{0, 0, 0});
+}
+
+/// Bodies p0, p1, ... one meter apart along x, at rest, with lines of a scene after them.
+std::string row_of_bodies(std::size_t n, const std::string& rest) {
+  std::string scene = "units = \"si\"\n";
+  for (std::size_t i = 0; i < n; ++i) {
+    scene += "[[particles.body]]\nname = \"p" + std::to_string(i) + "\"\nmass = \"1 kg\"\nx = [\"" +
+             std::to_string(i + 1) + " m\", \"0 m\", \"0 m\"]\nv = [\"0 m/s\", \"0 m/s\", \"0 m/s\"]\n";
+  }
+  return scene + "[hamiltonian]\ntype = \"kinetic_potential\"\n[[hamiltonian.force]]\ntype = \"uniform_field\"\n" +
+         "acceleration = [\"0 m/s^2\", \"-9.8 m/s^2\", \"0 m/s^2\"]\n[[hamiltonian.constraint]]\n" + rest +
+         "[integrator]\nmethod = \"verlet\"\nstep = \"0.01 s\"\nsteps = 50\n[[every]]\ntype = "
+         "\"trajectory\"\nsteps = 1\n";
+}
+
+TEST_CASE("all bodies at the ends of rods hang at their point, unless they are many", "[cli][plot]") {
+  for (const std::size_t n : {std::size_t{2}, std::size_t{4}}) {
+    const SceneFolder folder(row_of_bodies(n, "type = \"on_sphere\"\nbodies = \"all\"\n"));
+    output(folder, "run scene.toml --quiet");
+    const PlotData data = read_plot_data(folder / "scene.out/run.h5", standard_parts());
+    REQUIRE(data.orbits.size() == 1);
+    if (n == 4) {
+      CHECK(data.orbits[0].links.empty());
+      continue;
+    }
+    REQUIRE(data.orbits[0].links.size() == 1);
+    REQUIRE(data.orbits[0].links[0].lines.size() == 2);
+    for (const auto& [point, end] : data.orbits[0].links[0].lines) CHECK(point == PlotPlace{0, 0, 0});
+  }
+}
+
+TEST_CASE("a chain's picture says when its links are shown", "[cli][plot]") {
+  const SceneFolder folder(row_of_bodies(14, "type = \"distance\"\nchain = [\"p0\", \"p13\"]\n"));
+  output(folder, "run scene.toml --quiet");
+  const PlotData data = read_plot_data(folder / "scene.out/run.h5", standard_parts());
+  REQUIRE(data.orbits.size() == 1);
+  CHECK(data.orbits[0].title == "At t = 0.5 s, and 14 moments before");
+  CHECK(data.legend.empty());
 }
 
 TEST_CASE("orbits about a planet are in kilometers, those about a star in astronomical units", "[cli][plot]") {
@@ -269,6 +338,9 @@ TEST_CASE("without frames the orbits are the ellipses of the last elements", "[c
   const auto [nearest, farthest] = std::minmax_element(orbit.path.begin(), orbit.path.end());
   CHECK(std::abs((*nearest)[0] + 0.003) < 1e-12);
   CHECK(std::abs((*farthest)[0] - 0.001) < 1e-12);
+  REQUIRE(plot_orbits_of_elements(source, "yz")[0].views.size() == 1);
+  CHECK(plot_orbits_of_elements(source, "yz")[0].views[0].across == 1);
+  CHECK(plot_orbits_of_elements(source, "all")[0].views.size() == 3);
   source.monitors.clear();
   CHECK(plot_orbits_of_elements(source).empty());
 }

@@ -136,6 +136,94 @@ TEST_CASE("of monitors the samples that are wanted are read, and of too many som
   }
 }
 
+TEST_CASE("of samples at equal distances the first is kept too: changes are counted from it", "[cli][plot]") {
+  std::string scene = two_bodies + "[[every]]\ntype = \"elements\"\nsteps = 1\n";
+  scene.replace(scene.find("steps = 100"), 11, "steps = 30000");  // more numbers than one block of rows has
+  const SceneFolder folder(scene);
+  output(folder, "run scene.toml --quiet");
+  const auto elements = [](const std::string& monitor, const std::string&) { return monitor == "elements"; };
+  const auto all = io::read_monitors(folder / "scene.out/run.h5", {.wanted = elements});
+  REQUIRE(all.size() == 1);
+  REQUIRE(all[0].time.size() == 30'001);
+  const auto& values = all[0].quantities.at("value").second;
+  for (const std::size_t stride : {std::size_t{7}, std::size_t{6924}}) {
+    CAPTURE(stride);
+    const std::size_t most = (30'001 * 12 + stride - 1) / stride;
+    const auto some = io::read_monitors(folder / "scene.out/run.h5", {.wanted = elements, .most_numbers = most});
+    const std::vector<std::int64_t>& steps = some.at(0).step;
+    CHECK(steps.size() == 2 + (30'000 / stride));
+    CHECK(steps[0] == 0);
+    CHECK(steps[1] == static_cast<std::int64_t>(30'000 % stride));
+    CHECK(steps.back() == 30'000);
+    const auto& kept = some[0].quantities.at("value").second;
+    REQUIRE(kept.size() == steps.size() * 12);
+    for (std::size_t k = 0; k < steps.size(); ++k) {
+      CHECK(some[0].time[k] == all[0].time[static_cast<std::size_t>(steps[k])]);
+      const std::size_t planet = 12 * static_cast<std::size_t>(steps[k]) + 6;
+      CHECK(kept[12 * k + 6] == values[planet]);
+      CHECK(kept[12 * k + 11] == values[planet + 5]);
+    }
+  }
+}
+
+/// A small melt with every monitor of liquids that a picture has a panel for, and without frames.
+const std::string watched_melt = R"(units = "reduced"
+[particles]
+type = "lattice"
+cells = [2, 2, 2]
+density = 0.8442
+mass = 1
+temperature = 1.44
+[hamiltonian]
+type = "kinetic_potential"
+[[hamiltonian.force]]
+type = "lennard_jones"
+cutoff = 1.5
+epsilon = 1
+sigma = 1
+[integrator]
+method = "verlet"
+step = 0.005
+steps = 60
+[[every]]
+type = "temperature"
+steps = 10
+[[every]]
+type = "pressure"
+steps = 10
+[[every]]
+type = "radial_distribution"
+steps = 10
+[[every]]
+type = "mean_square_displacement"
+steps = 2
+length = 20
+[[every]]
+type = "momentum"
+steps = 10
+[[every]]
+type = "energy"
+steps = 10
+)";
+
+TEST_CASE("the monitors that pictures are drawn from are read, each with what its panel needs", "[cli][plot]") {
+  const SceneFolder folder(watched_melt);
+  output(folder, "run scene.toml --quiet");
+  const auto panels_of = [&](const std::string& what) {
+    const PlotOptions options{.frame = {}, .what = {what}, .projection = {}};
+    return read_plot_data(folder / "scene.out/run.h5", standard_parts(), options).panels;
+  };
+  for (const char* what : {"errors", "temperature", "pressure", "rdf", "msd"}) {
+    CAPTURE(what);
+    const std::vector<PlotPanel> panels = panels_of(what);
+    REQUIRE(panels.size() == (what == std::string("errors") ? 2 : 1));  // energy and momentum
+    for (const PlotPanel& panel : panels) {
+      REQUIRE_FALSE(panel.curves.empty());
+      CHECK(panel.curves[0].points.size() > 2);
+    }
+  }
+}
+
 /// Titles of the panels of a run's picture.
 std::vector<std::string> titles_of(const PlotData& data) {
   std::vector<std::string> titles;

@@ -11,7 +11,7 @@
                                       screenshot's edges they reach, and how the colors go with the places at the first frame
 
 What a page says of itself counts for nothing in the last two: their numbers are from the pixels and from the run alone, and only the
-distance of the eye is fitted.
+distance of the eye and the row of pixels in the middle of the picture are fitted.
 """
 
 import base64
