@@ -14,12 +14,11 @@ void EncounterWatch::bind(const std::vector<double>& masses, const std::vector<s
   reach_.clear();
   // The sum of two is at least the reach of both masses together, by which `note` goes.
   for (const double m : masses) reach_.push_back(encounter_hill_radii * std::cbrt(m / masses[0] / 3));
-  closest_.reset();
 }
 
-void EncounterWatch::note(Index i, Index j, double r2, double from_primary2, double time) {
+void EncounterWatch::note(Index i, Index j, double r2, double nearer_to_primary2, double time) {
   const auto first = static_cast<std::size_t>(j), second = static_cast<std::size_t>(i);
-  const double hill = std::cbrt((masses_[first] + masses_[second]) / masses_[0] / 3) * std::sqrt(from_primary2);
+  const double hill = std::cbrt((masses_[first] + masses_[second]) / masses_[0] / 3) * std::sqrt(nearer_to_primary2);
   Encounter seen{ids_[first], ids_[second], std::sqrt(r2) / hill, time, time};
   if (!(seen.hill_radii < encounter_hill_radii)) return;
   static std::mutex mutex;

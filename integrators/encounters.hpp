@@ -15,20 +15,22 @@ namespace noether {
 /// Bodies nearer to each other than this many mutual Hill radii pull at each other as strongly as the primary's tide.
 inline constexpr double encounter_hill_radii = 2;
 
-/// Keeps the closest encounter of bodies about a primary, particle 0, by r ((m_i + m_j)/3 m_0)^(1/3), r the distance of
-/// the later one from the primary.
+/// Keeps the closest encounter of bodies about a primary, particle 0, by r ((m_i + m_j)/3 m_0)^(1/3), r the distance
+/// from the primary of the one that is nearer to it. It keeps that through edits of the particles.
 class EncounterWatch {
  public:
   /// @param masses, ids  by particle
   void bind(const std::vector<double>& masses, const std::vector<std::int64_t>& ids);
 
-  /// Whether two bodies, none of them the primary, may be too near: one product and one comparison.
+  /// Whether two bodies, none of them the primary, may be too near, by the distance of one of them from the primary:
+  /// one product and one comparison. It misses none, as the distance of the nearer one, by which `note` goes, is no
+  /// longer.
   template <class Real> bool near(Index i, Index j, const Real& r2, const Real& from_primary2) const {
     const double reach = reach_[static_cast<std::size_t>(i)] + reach_[static_cast<std::size_t>(j)];
     return j > 0 && r2 < Real(reach * reach) * from_primary2;
   }
   /// Takes down two bodies at a moment; from several threads. What is kept depends on the bodies only.
-  void note(Index i, Index j, double r2, double from_primary2, double time);
+  void note(Index i, Index j, double r2, double nearer_to_primary2, double time);
 
   const std::optional<Encounter>& closest() const { return closest_; }
   void save(SavedState& saved, const std::string& prefix) const;

@@ -461,17 +461,18 @@ Real WisdomHolman<Real, F>::interaction(const VectorColumn<Real>& x, bool skip_i
   Real potential(0);
   const auto bodies = static_cast<Index>(massive());
   const Index inner = skip_inner && bodies > 1 ? at(1) : -1;
-  const auto note = [&](Index i, Index j, const Real& r2, const Real& from_primary2) {
-    if (!observing_) encounters_.note(i, j, static_cast<double>(r2), static_cast<double>(from_primary2), moment_);
-  };
   const Vec3<Real> primary = first == 0 ? x[0] : Vec3<Real>(Vec3<Real>::Zero());
+  const auto note = [&](Index i, Index j, const Real& r2) {
+    const Real nearer2 = std::min(norm2(x[i] - primary), norm2(x[j] - primary));
+    if (!observing_) encounters_.note(i, j, static_cast<double>(r2), static_cast<double>(nearer2), moment_);
+  };
   for (Index i = first + 1; i < bodies; ++i) {
     const Real from_primary2 = norm2(x[i] - primary);
     for (Index j = first; j < i; ++j) {
       if (j == 0 && i == inner) continue;  // exactly the innermost Kepler arc
       const Vec3<Real> d = x[i] - x[j];
       const Real r2 = norm2(d), r = sqrt(r2);
-      if (encounters_.near(i, j, r2, from_primary2)) note(i, j, r2, from_primary2);
+      if (encounters_.near(i, j, r2, from_primary2)) note(i, j, r2);
       const Real k = g_ / (r2 * r);
       const Real mi = masses_[static_cast<std::size_t>(i)], mj = masses_[static_cast<std::size_t>(j)];
       acceleration_.add(i, -(k * mj) * d);
@@ -486,7 +487,7 @@ Real WisdomHolman<Real, F>::interaction(const VectorColumn<Real>& x, bool skip_i
       for (Index j = jacobi() && within(i) == 0 ? 1 : first; j < bodies; ++j) {  // else its arc has done it exactly
         const Vec3<Real> d = x[i] - x[j];
         const Real r2 = norm2(d);
-        if (encounters_.near(i, j, r2, from_primary2)) note(i, j, r2, from_primary2);
+        if (encounters_.near(i, j, r2, from_primary2)) note(i, j, r2);
         pull -= g_ * masses_[static_cast<std::size_t>(j)] / (r2 * sqrt(r2)) * d;
       }
       acceleration_.set(i, pull);

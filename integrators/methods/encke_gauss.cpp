@@ -23,6 +23,8 @@ constexpr double departures_may_round = 1e-9;
 constexpr int most_departure_sweeps = 60;
 /// A last Legendre coefficient above this part of the largest perturbation leaves errors of its square.
 constexpr double rough_perturbations = 0.03;
+/// A second mass above this part of the heaviest one perturbs orbits so much that doubles limit the departures.
+constexpr double dominated = 0.1;
 
 Vec3<double> high_words(const Vec3<DoubleDouble>& a) { return {a[0].high, a[1].high, a[2].high}; }
 
@@ -57,6 +59,7 @@ void EnckeGauss::bind(const VectorField<double>& f) {
     throw SchemeMismatch(fmt::format(
         "method '{}' follows orbits about the heaviest body, but no body has a mass; use 'gauss_8'", name_));
   }
+  refuse_equals();
   beside_ = f.has_forces_beside_gravity();
   bodies_.clear();
   DoubleDouble total;
@@ -74,6 +77,19 @@ void EnckeGauss::bind(const VectorField<double>& f) {
   stage_push_.setZero(f.size() / 2);
   low_.setZero(f.size());
   h_ = 0;
+}
+
+/// Of two bodies alone the orbit is exact, whatever their masses.
+void EnckeGauss::refuse_equals() const {
+  Index second = -1;
+  for (Index i = 0; i < n_; ++i) {
+    if (i != primary_ && (second < 0 || masses_[i] > masses_[second])) second = i;
+  }
+  if (n_ < 3 || masses_[second] <= dominated * masses_[primary_]) return;
+  throw SchemeMismatch(
+      fmt::format("method '{}' follows orbits about one body that dominates, but particle {} has {:.3g} of the mass of "
+                  "the heaviest one, particle {}; use 'wide_gauss_8'",
+                  name_, second, masses_[second] / masses_[primary_], primary_));
 }
 
 EnckeGauss::WideVector EnckeGauss::wide(const Vector<double>& y, Index particle, Index half) const {
@@ -264,20 +280,21 @@ double EnckeGauss::take_perturbations() {
   for (Body& body : bodies_) {
     double change = 0, size = 0;
     for (std::size_t i = 0; i < stages; ++i) {
-      double change2 = 0, size2 = 0;
+      double change2 = 0, size2 = 0, old2 = 0;
       for (std::size_t k = 0; k < 3; ++k) {
-        const double p = body.fresh[k][i], difference = p - body.perturbation[k][i];
+        const double p = body.fresh[k][i], old = body.perturbation[k][i];
         body.perturbation[k][i] = p;
-        change2 += difference * difference;
+        change2 += (p - old) * (p - old);
         size2 += p * p;
+        old2 += old * old;
       }
-      change = std::max(change, change2);
-      if (!(size2 <= size)) size = size2;
+      if (!(change2 <= change)) change = change2;  // a NaN stays
+      size = std::max({size, size2, old2});
       body.rates[i] =
           body.tangents[i].start_of({body.perturbation[0][i], body.perturbation[1][i], body.perturbation[2][i]});
     }
-    const double relative = change > 0 ? change / size : change;
-    if (!(relative <= worst)) worst = relative;
+    if (!std::isfinite(change)) return change;
+    if (change > 0) worst = std::max(worst, change / size);
   }
   return std::sqrt(worst);
 }

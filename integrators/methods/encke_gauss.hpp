@@ -74,6 +74,7 @@ class EnckeGauss final : public Method<double> {
     std::array<KeplerChange, stages> rates{};
   };
 
+  void refuse_equals() const;
   std::optional<Failure> open(const Vector<double>& y, double h);
   std::optional<Failure> find_orbits(Body& body, double h) const;
   void predict();

@@ -44,7 +44,8 @@ double closest(Simulation<double>& simulation, std::int64_t steps) {
     REQUIRE(simulation.run(1).ok());
     const auto& x = simulation.particles().positions();
     const double apart = std::sqrt(norm2(Vec3<double>(x[2] - x[1])));
-    const double hill = std::cbrt(2e-5 / 3) * std::sqrt(norm2(Vec3<double>(x[2] - x[0])));
+    const double nearer2 = std::min(norm2(Vec3<double>(x[1] - x[0])), norm2(Vec3<double>(x[2] - x[0])));
+    const double hill = std::cbrt(2e-5 / 3) * std::sqrt(nearer2);
     least = std::min(least, apart / hill);
   }
   return least;
@@ -79,6 +80,44 @@ TEST_CASE("a tracer near a planet is seen as well, and the outer planets never",
                            compose(test::wisdom_holman({.G = test::outer_G}), schemes::verlet_aba), 100.0);
   REQUIRE(quiet.run(500).ok());
   CHECK_FALSE(quiet.evaluations().encounter.has_value());
+}
+
+TEST_CASE("a companion star is no encounter, wherever it stands in the file", "[encounter]") {
+  const auto body = [](double distance) { return Vec3<double>(distance, 0, 0); };
+  const auto speed = [](double distance, double mass) { return Vec3<double>(0, std::sqrt(mass / distance), 0); };
+  // A planet about the inner two of three, and one about the inner star of two, each listed before and after the star.
+  for (const auto& [star, planet] : {std::pair(1.0, 10.0), std::pair(20.0, 1.0)}) {
+    for (const bool star_first : {true, false}) {
+      CAPTURE(star, planet, star_first);
+      ParticleSystem<double> s;
+      s.add("primary", 1, {0, 0, 0}, {0, 0, 0});
+      if (star_first) s.add("star", 1, body(star), speed(star, 2));
+      s.add("planet", 1e-6, body(planet), speed(planet, planet > star ? 2 : 1));
+      if (!star_first) s.add("star", 1, body(star), speed(star, 2));
+      Simulation<double> run(std::move(s), compose(test::wisdom_holman({.G = 1}), schemes::verlet), 0.01);
+      REQUIRE(run.run(50).ok());
+      CHECK_FALSE(run.evaluations().encounter.has_value());
+    }
+  }
+}
+
+TEST_CASE("an encounter does not depend on the order of the bodies, and an edit does not forget it", "[encounter]") {
+  const auto seen = [](bool outer_first) {
+    ParticleSystem<double> s;
+    s.add("star", 1, {0, 0, 0}, {0, 0, 0});
+    if (outer_first) s.add("outer", 1e-5, {1.02, 0, 0}, {0, 1, 0});
+    s.add("inner", 1e-5, {1, 0, 0}, {0, 1, 0});
+    if (!outer_first) s.add("outer", 1e-5, {1.02, 0, 0}, {0, 1, 0});
+    Simulation<double> run(std::move(s), compose(test::wisdom_holman({.G = 1}), schemes::verlet), 0.001);
+    REQUIRE(run.run(1).ok());
+    run.edit([](ParticleSystem<double>& p) { p.positions().set(2, Vec3<double>(0, 3, 0)); });
+    REQUIRE(run.run(1).ok());
+    return run.evaluations().encounter;
+  };
+  const auto a = seen(true), b = seen(false);
+  REQUIRE((a.has_value() && b.has_value()));
+  CHECK(std::fabs(a->hill_radii / b->hill_radii - 1) < 1e-9);
+  CHECK(std::fabs(a->hill_radii - 0.02 / std::cbrt(2e-5 / 3)) < 1e-3);
 }
 
 TEST_CASE("an encounter is state of the run, and observers do not add to it", "[encounter][restart]") {
