@@ -13,7 +13,7 @@ namespace noether::test {
 namespace {
 
 /// A planet on an eccentric orbit; every tenth step its energy is put back to that of the start.
-const std::string orbit = R"(title = "A planet whose energy is held"
+const std::string held_orbit = R"(title = "A planet whose energy is held"
 units = "reduced"
 [[particles.body]]
 name = "sun"
@@ -69,7 +69,7 @@ std::vector<double> numbers_of(const std::string& json, const std::string& key) 
 }  // namespace
 
 TEST_CASE("a decorator from outside the library is listed, described and explained", "[cli][own_decorator]") {
-  const SceneFolder folder(orbit);
+  const SceneFolder folder(held_orbit);
   CHECK(has(own_output(folder, "list decorators"), "energy_projection  scales velocities back to the energy"));
   CHECK(output(folder, "list decorators") == "this program has no decorators\n");
   const std::string described = own_output(folder, "describe energy_projection");
@@ -82,7 +82,7 @@ TEST_CASE("a decorator from outside the library is listed, described and explain
 }
 
 TEST_CASE("it holds the energy of a splitting and of methods for y' = f", "[cli][own_decorator]") {
-  const SceneFolder folder(orbit);
+  const SceneFolder folder(held_orbit);
   const auto worst = [&](const std::string& sets) {
     const std::string report = own_output(folder, "run scene.toml --json --fresh --out a" + sets);
     return number(json_member(json_member(report, "energy"), "worst"));
@@ -104,7 +104,7 @@ TEST_CASE("decorated runs have the same bits on any threads, at any cadence and 
   for (const std::string& sets : {std::string(), std::string(" --set integrator.method=stormer_cowell_12"),
                                   std::string(" --set integrator.compensated=true"), adaptive}) {
     CAPTURE(sets);
-    const SceneFolder folder(orbit);
+    const SceneFolder folder(held_orbit);
     const std::string digest = own_digest(folder, "a" + sets);
     CHECK(own_digest(folder, "b --threads 2" + sets) == digest);
     CHECK(own_digest(folder, "c --set every.0.steps=1" + sets) == digest);
@@ -118,7 +118,7 @@ TEST_CASE("decorated runs have the same bits on any threads, at any cadence and 
 }
 
 TEST_CASE("its runs can be verified, drawn and converted, and tell the scene with it", "[cli][own_decorator]") {
-  const SceneFolder folder(orbit);
+  const SceneFolder folder(held_orbit);
   own_output(folder, "run scene.toml --quiet --out a --set integrator.decorator.0.steps=5");
   CHECK(own(folder, "verify a/run.h5").exit_code == 0);
   own_output(folder, "plot a/run.h5 --out picture.svg");
@@ -136,7 +136,7 @@ TEST_CASE("its runs can be verified, drawn and converted, and tell the scene wit
 }
 
 TEST_CASE("a run that was decorated in another way is not gone on with", "[cli][own_decorator]") {
-  const SceneFolder folder(orbit);
+  const SceneFolder folder(held_orbit);
   own_output(folder, "run scene.toml --quiet --out a --until 3.3");
   const auto refused = [&](const std::string& sets) {
     return own(folder, "run scene.toml --quiet --out a --resume" + sets).err;
@@ -146,7 +146,7 @@ TEST_CASE("a run that was decorated in another way is not gone on with", "[cli][
 }
 
 TEST_CASE("several decorators stand around each other in their order", "[cli][own_decorator]") {
-  const SceneFolder folder(orbit);
+  const SceneFolder folder(held_orbit);
   const std::string two = " --set 'integrator.decorator.1={type=\"energy_projection\", steps=15}'";
   const std::string digest = own_digest(folder, "a" + two);
   CHECK(own_digest(folder, "b") != digest);
@@ -157,7 +157,7 @@ TEST_CASE("several decorators stand around each other in their order", "[cli][ow
 }
 
 TEST_CASE("whatever method is compared is decorated, and the truth says that it is not", "[cli][own_decorator]") {
-  const SceneFolder folder(orbit);
+  const SceneFolder folder(held_orbit);
   const std::string line =
       "compare scene.toml --methods verlet,yoshida_4,rk4,dop853 --steps 0.02,0.01 --tolerances 1e-8 --repeat 1 --json";
   const std::string table = own_output(folder, line + " --set integrator.decorator.0.steps=1");
@@ -179,7 +179,7 @@ TEST_CASE("whatever method is compared is decorated, and the truth says that it 
 
 TEST_CASE("limits are those of decorated steps, of which linear theory says nothing", "[cli][own_decorator]") {
   // An oscillator: the bare method is bounded up to h omega = 2.
-  const SceneFolder folder(orbit);
+  const SceneFolder folder(held_orbit);
   const std::string line =
       "stability scene.toml --methods verlet --steps 1000 --budget 3 --set "
       "'hamiltonian.force=[{type=\"harmonic_field\", k=1}]' --set particles.body.planet.mass=1";
@@ -193,7 +193,7 @@ TEST_CASE("limits are those of decorated steps, of which linear theory says noth
 }
 
 TEST_CASE("advice keeps the decorator, and evaluations are those of its forces", "[cli][own_decorator]") {
-  const SceneFolder folder(orbit);
+  const SceneFolder folder(held_orbit);
   const std::string advice = own_output(folder, "advise scene.toml --error 1e-4 --methods yoshida_4,dop853");
   CHECK(has(advice, "cheapest: "));
   CHECK(has(advice, "--set 'integrator.method="));
@@ -202,7 +202,7 @@ TEST_CASE("advice keeps the decorator, and evaluations are those of its forces",
 }
 
 TEST_CASE("what a decorator cannot do is refused by name", "[cli][own_decorator]") {
-  const SceneFolder folder(orbit);
+  const SceneFolder folder(held_orbit);
   const auto refused = [&](const std::string& sets) { return own(folder, "run scene.toml" + sets).err; };
   CHECK(has(refused(" --set integrator.decorator.0.type=energy_projectoin"),
             "unknown decorator 'energy_projectoin'; did you mean 'energy_projection'?"));
