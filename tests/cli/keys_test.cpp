@@ -43,25 +43,25 @@ struct Host {
   std::string heading, before, after;  ///< of the page; the scene before and behind the key
 };
 
-const std::string two_bodies = "[particles]\nbody = [{name='A', mass=1}, {name='B', mass=1, x=[1,0,0], v=[0,1,0]}]\n";
+const std::string attracted = "[particles]\nbody = [{name='A', mass=1}, {name='B', mass=1, x=[1,0,0], v=[0,1,0]}]\n";
 const std::string gravity = "[hamiltonian]\ntype='kinetic_potential'\n[[hamiltonian.force]]\ntype='gravity'\n";
 const std::string reduced = "units = 'reduced'\n";
 const std::string verlet = "[integrator]\nmethod='verlet'\nstep=0.01\nsteps=10\n";
-const std::string whole_scene = reduced + two_bodies + gravity + verlet;
+const std::string whole_scene = reduced + attracted + gravity + verlet;
 
 const std::vector<Host> hosts = {
     {"## Above all tables", "", "\n" + whole_scene},
     {"## `[particles]`", reduced + "[particles]\n", "\n" + gravity + verlet},
     {"## `[[particles.body]]`", reduced + "[[particles.body]]\n", "\n" + gravity + verlet},
-    {"## `[[particles.type]]`", reduced + two_bodies + "[[particles.type]]\n", "\n" + gravity + verlet},
-    {"## `[[particles.pair]]`", reduced + two_bodies + "[[particles.type]]\nname='X'\n[[particles.pair]]\n",
+    {"## `[[particles.type]]`", reduced + attracted + "[[particles.type]]\n", "\n" + gravity + verlet},
+    {"## `[[particles.pair]]`", reduced + attracted + "[[particles.type]]\nname='X'\n[[particles.pair]]\n",
      "\n" + gravity + verlet},
-    {"## `[hamiltonian]`", reduced + two_bodies + "[hamiltonian]\ntype='kinetic_potential'\n", "\n" + verlet},
+    {"## `[hamiltonian]`", reduced + attracted + "[hamiltonian]\ntype='kinetic_potential'\n", "\n" + verlet},
     {"## `[[hamiltonian.force]]`", whole_scene + "[[hamiltonian.force]]\ntype='uniform_field'\n", ""},
     {"## `[[hamiltonian.constraint]]`", whole_scene + "[[hamiltonian.constraint]]\ntype='distance'\n", ""},
     {"## `[hamiltonian.neighbors]`", whole_scene + "[hamiltonian.neighbors]\n", ""},
     {"## `[minimize]`", whole_scene + "[minimize]\n", ""},
-    {"## `[integrator]`", reduced + two_bodies + gravity + "[integrator]\n", ""},
+    {"## `[integrator]`", reduced + attracted + gravity + "[integrator]\n", ""},
     {"## `[[every]]`", whole_scene + "[[every]]\ntype='checkpoint'\n", ""},
     {"## `[[stop]]`", whole_scene + "[[stop]]\ntype='escape'\n", ""},
     {"## `[[verdict]]`", whole_scene + "[[verdict]]\n", ""},
