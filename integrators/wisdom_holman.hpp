@@ -9,6 +9,7 @@
 #include "integrators/jacobi_derivatives.hpp"
 #include "integrators/kepler.hpp"
 #include "integrators/kinetic_potential.hpp"
+#include "numbers/dual.hpp"
 #include "numbers/parallel.hpp"
 
 #include <array>
@@ -76,8 +77,9 @@ struct WisdomHolmanOptions {
 ///                 with R_i = x_i - X, p_i = m_i (v_i - v_0), and K = U - (the potential in A)
 ///
 /// Both parts of the first two are exact. J does not commute with other forces, nor with K in the last two: B is then a
-/// symmetric map of order 2. Two bodies alone are followed exactly in all but the democratic ones. Other forces must
-/// depend on positions (and stage time) only. Action increments: Kepler arc h E + 2 mu s times the reduced mass (s the
+/// symmetric map of order 2. Two bodies alone are followed exactly in all but the democratic ones. Where other forces
+/// depend on velocities, B is a step of the implicit midpoint rule over fixed positions, a symmetric map of order 2
+/// that is not symplectic and has no action. Action increments: Kepler arc h E + 2 mu s times the reduced mass (s the
 /// universal variable), free motion h T, jump h J, kick - h U.
 /// @cost one Kepler arc per body and A, one sum over pairs per B; no allocation after `bind`
 /// @source WisdomHolman1991, DuncanLevisonLee1998, ReinTamayo2015, HernandezDehnen2017
@@ -85,11 +87,8 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
  public:
   using real = Real;
 
-  explicit WisdomHolman(WisdomHolmanOptions options, F forces = F()) : options_(options), forces_(std::move(forces)) {
-    if (claims_of(forces_).velocity_dependent) {
-      throw SchemeMismatch("a force depends on velocities, so kicks by it are not an exact flow of wisdom_holman");
-    }
-  }
+  explicit WisdomHolman(WisdomHolmanOptions options, F forces = F())
+      : options_(options), forces_(std::move(forces)), velocity_dependent_(claims_of(forces_).velocity_dependent) {}
 
   std::string name() const { return "wisdom_holman"; }
   HamiltonianClaims claims() const;
@@ -106,7 +105,10 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
   }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) { newton(s, a, {}); }
 
-  void observe(std::optional<Request> wanted) { observing_ = wanted.has_value(); }
+  void observe(std::optional<Request> wanted) {
+    observing_ = wanted.has_value();
+    pulled_.reset();
+  }
   const std::optional<Failure>& failure() const { return failure_; }
   Evaluations evaluations() const {
     Evaluations all = evaluations_;
@@ -160,22 +162,48 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
   void from_barycentric(ParticleSystem<Real>& s) const;
   void scale(VectorColumn<Real>& column, bool back) const;
   void inertial_positions(const VectorColumn<Real>& from, const Vec3<Real>& center, VectorColumn<Real>& to) const;
+  void inertial_velocities(const VectorColumn<Real>& from, VectorColumn<Real>& to) const;
 
   Real arcs(ParticleSystem<Real>& s, const Real& h, bool action);
   Real kick(ParticleSystem<Real>& s, const Real& h, bool action);
   Real gradient_kick(ParticleSystem<Real>& s, const Real& h, bool action);
   void lazy_kick(ParticleSystem<Real>& s, const Real& h);
+  void velocity_kick(ParticleSystem<Real>& s, const Real& h);
+  void add_force_derivatives(const Clock<Real>& clock);
+  std::string no_kernel() const;
+  /// Encounters are noted where a run goes, not on the way through the word before it.
+  void begin_kick(const ParticleSystem<Real>& s) { noting_ = !observing_ && s.phase().opened; }
+  void note_failure(const std::optional<Failure>& failure) {
+    if (failure && !failure_ && !observing_) failure_ = failure;
+  }
   Real accelerate(const VectorColumn<Real>& x, const Clock<Real>& clock, bool energy);
   Real jump(ParticleSystem<Real>& s, const Real& h);
   Real interaction(const VectorColumn<Real>& x, bool skip_inner, Index first, bool energy);
   Real indirect(const VectorColumn<Real>& x, bool energy);
   Real without_arcs(const VectorColumn<Real>& x, bool energy);
-  void about_center();
+  void about_center(VectorColumn<Real>& column) const;
   Real other_forces(const VectorColumn<Real>& x, const Clock<Real>& clock, bool energy);
   Real newton(const ParticleSystem<Real>& s, VectorColumn<Real>& a, Request wanted);
 
+  /// A moment of a run at which something stands still.
+  struct Place {
+    std::uint64_t version;
+    std::int64_t step;
+    Real fraction;
+    bool operator==(const Place&) const = default;
+  };
+  /// The particles on their way along a direction, under other forces.
+  struct Along {
+    explicit Along(const ParticleSystem<Real>& s) : particles(s.template as<Dual<Real, 1>>()), a(s.size()) {
+      particles.clock() = Clock<Dual<Real, 1>>::free(0);
+    }
+    ParticleSystem<Dual<Real, 1>> particles;
+    VectorColumn<Dual<Real, 1>> a;
+  };
+
   WisdomHolmanOptions options_;
   F forces_;
+  bool velocity_dependent_ = false;
   Real g_ = Real(0);
   std::vector<std::int64_t> order_;
   std::vector<std::int64_t> within_;         ///< by particle, k of the mass M_k that its Kepler arc goes round
@@ -187,11 +215,13 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
   std::vector<Real> scale_;                  ///< by particle, of its velocity: m_i over the reduced mass
   mutable std::vector<Vec3<Real>> centers_;  ///< of these, as the last change of coordinates met them
   VectorColumn<Real> scratch_, positions_, acceleration_, other_, along_;
-  std::optional<ParticleSystem<Real>> inertial_;  ///< positions for other forces
+  std::optional<ParticleSystem<Real>> inertial_;  ///< for other forces
+  std::optional<Along> forces_along_;             ///< made by the first derivative
+  std::optional<Place> pulled_;                   ///< where `acceleration_` is that of B
   std::optional<Failure> failure_;
   Evaluations evaluations_;
   EncounterWatch encounters_;
-  bool observing_ = false;
+  bool observing_ = false, noting_ = false;
 };
 
 template <class Real> AnyHamiltonian<Real> WisdomHolmanOptions::split(ForceField<Real> others) const {
@@ -210,4 +240,5 @@ extern template struct detail::HamiltonianModel<WisdomHolman<Quad, ForceField<Qu
 
 }  // namespace noether
 
-#include "integrators/wisdom_holman_impl.hpp"  // IWYU pragma: keep
+#include "integrators/wisdom_holman_impl.hpp"        // IWYU pragma: keep
+#include "integrators/wisdom_holman_kicks_impl.hpp"  // IWYU pragma: keep

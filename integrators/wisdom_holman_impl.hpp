@@ -18,17 +18,26 @@ template <class Real, class F> HamiltonianClaims WisdomHolman<Real, F>::claims()
         "wisdom_holman has only kicks of the letter B; take the letter of the force out, or use "
         "kinetic_potential");
   }
-  return {.alphabet = !jacobi()    ? "AB"
-                      : has_forces ? "ABL"
-                                   : "ABGL",
-          .inexact = jacobi() || (!scaled() && !has_forces) ? "" : "B",
-          .lazy = jacobi() ? "L" : "",
-          .quadratic_kinetic = jacobi(),
+  const bool by_positions = !forces.velocity_dependent, lazy = jacobi() && by_positions;
+  const bool gradient = lazy && has_derivative<Real>(forces_);
+  return {.alphabet = gradient ? "ABGL"
+                      : lazy   ? "ABL"
+                               : "AB",
+          .inexact = by_positions && (jacobi() || (!scaled() && !has_forces)) ? "" : "B",
+          .kernels = gradient ? "GL"
+                     : lazy   ? "L"
+                              : "",
+          .no_kernel = no_kernel(),
+          .lazy = lazy ? "L" : "",
+          .quadratic_kinetic = jacobi() && by_positions,
+          .symplectic = by_positions,
           .energy = forces.energy,
           .time_dependent = forces.time_dependent,
           .dissipative = forces.dissipative,
+          .no_action = by_positions ? "" : "a force depends on velocities, so the motion has no action",
           .coordinates = static_cast<std::uint8_t>(options_.coordinates),
           .inertial = false,
+          .velocity_forces = true,
           .kepler = true,
           .keeps_momentum = forces.keeps_momentum,
           .keeps_angular_momentum = forces.keeps_angular_momentum};
@@ -78,6 +87,8 @@ template <class Real, class F> void WisdomHolman<Real, F>::bind(ParticleSystem<R
   for (auto* column : {&scratch_, &positions_, &acceleration_, &other_, &along_})
     *column = VectorColumn<Real>(s.size());
   if constexpr (has_forces) inertial_ = s;
+  forces_along_.reset();
+  pulled_.reset();
   failure_.reset();
 }
 
@@ -338,6 +349,7 @@ Real WisdomHolman<Real, F>::flow_with_action(char letter, ParticleSystem<Real>& 
   if (letter == 'A') return arcs(s, h, true);
   if (letter == 'G') return gradient_kick(s, h, true);
   if (letter == 'L') throw LogicError("the letter L has no action");
+  NOETHER_EXPECTS(!velocity_dependent_, "a kick by forces that depend on velocities has no action");
   Real action(0);
   if (!jacobi()) action += jump(s, h / Real(2));
   action += kick(s, h, true);
@@ -388,51 +400,11 @@ template <class Real, class F> Real WisdomHolman<Real, F>::arcs(ParticleSystem<R
   return sum;
 }
 
-template <class Real, class F> Real WisdomHolman<Real, F>::kick(ParticleSystem<Real>& s, const Real& h, bool action) {
-  const Real potential = accelerate(std::as_const(s).positions(), s.clock(), action);
-  s.advance_velocities(h, acceleration_);
-  return -h * potential;
-}
-
-/// The flow of G = - dt^2 sum m' a^2, where dt is the step of the run and a the accelerations of B: a kick by
-/// 2 dt^2 (a . grad) a.
-/// @source WisdomHolmanTouma1996, ReinTamayoBrown2019
-template <class Real, class F>
-Real WisdomHolman<Real, F>::gradient_kick(ParticleSystem<Real>& s, const Real& h, bool action) {
-  const auto& c = std::as_const(s);
-  accelerate(c.positions(), s.clock(), false);
-  along_ = acceleration_;
-  from_jacobi(std::as_const(along_), scratch_, Vec3<Real>::Zero());
-  const JacobiBodies<Real> bodies{masses_, order_, within_, circled_, static_cast<Index>(massive()), g_};
-  acceleration_.set_zero();
-  add_pair_derivatives<Real>(bodies, positions_, scratch_, acceleration_);
-  to_jacobi(acceleration_);
-  acceleration_.set(0, Vec3<Real>::Zero());
-  add_arc_derivatives<Real>(bodies, c.positions(), along_, acceleration_);
-  const Real dt(s.clock().dt()), factor = h * dt * dt;
-  s.advance_velocities(Real(2) * factor, acceleration_);
-  Real square(0);
-  for (std::size_t k = 1; action && k < massive(); ++k)
-    square += reduced_[static_cast<std::size_t>(at(k))] * norm2(std::as_const(along_)[at(k)]);
-  return factor * square;
-}
-
-/// A kick by the acceleration at x + dt^2 a(x)/12, in the place of that by a + dt^2 (a . grad) a/12.
-/// @source WisdomHolmanTouma1996
-template <class Real, class F> void WisdomHolman<Real, F>::lazy_kick(ParticleSystem<Real>& s, const Real& h) {
-  const auto& c = std::as_const(s);
-  const Real dt(s.clock().dt());
-  accelerate(c.positions(), s.clock(), false);
-  for (Index i = 0; i < s.size(); ++i)
-    along_.set(i, c.positions()[i] + dt * dt / Real(12) * std::as_const(acceleration_)[i]);
-  accelerate(std::as_const(along_), s.clock(), false);
-  s.advance_velocities(h, acceleration_);
-}
-
 /// Accelerations of the working velocities at working positions. @return the potential, if wanted
 template <class Real, class F>
 Real WisdomHolman<Real, F>::accelerate(const VectorColumn<Real>& x, const Clock<Real>& clock, bool energy) {
   if (!observing_) ++evaluations_.force;
+  pulled_.reset();
   moment_ = static_cast<double>(clock.time());
   acceleration_.set_zero();
   Real potential(0);
@@ -442,12 +414,12 @@ Real WisdomHolman<Real, F>::accelerate(const VectorColumn<Real>& x, const Clock<
   } else {
     potential += interaction(x, false, 1, energy);
   }
-  if constexpr (has_forces) potential += other_forces(x, clock, energy);
+  if constexpr (has_forces) potential += velocity_dependent_ ? Real(0) : other_forces(x, clock, energy);
   if (jacobi()) {
     to_jacobi(acceleration_);
     potential += indirect(x, energy);
   } else {
-    about_center();
+    about_center(acceleration_);
     if (scaled()) scale(acceleration_, false);
     if (barycentric()) potential += without_arcs(x, energy);
   }
@@ -464,7 +436,7 @@ Real WisdomHolman<Real, F>::interaction(const VectorColumn<Real>& x, bool skip_i
   const Vec3<Real> primary = first == 0 ? x[0] : Vec3<Real>(Vec3<Real>::Zero());
   const auto note = [&](Index i, Index j, const Real& r2) {
     const Real nearer2 = std::min(norm2(x[i] - primary), norm2(x[j] - primary));
-    if (!observing_) encounters_.note(i, j, static_cast<double>(r2), static_cast<double>(nearer2), moment_);
+    if (noting_) encounters_.note(i, j, static_cast<double>(r2), static_cast<double>(nearer2), moment_);
   };
   for (Index i = first + 1; i < bodies; ++i) {
     const Real from_primary2 = norm2(x[i] - primary);
@@ -524,19 +496,19 @@ template <class Real, class F> Real WisdomHolman<Real, F>::indirect(const Vector
 
 /// Accelerations of inertial positions become those of the working velocities, which are relative to the centre of
 /// mass, in barycentric coordinates to the primary.
-template <class Real, class F> void WisdomHolman<Real, F>::about_center() {
-  const auto& a = std::as_const(acceleration_);
+template <class Real, class F> void WisdomHolman<Real, F>::about_center(VectorColumn<Real>& column) const {
+  const auto& a = std::as_const(column);
   Vec3<Real> mean = Vec3<Real>::Zero();
   if constexpr (has_forces) {
     for (std::size_t k = 0; k < massive(); ++k) mean += masses_[k] / interior_.back() * a[static_cast<Index>(k)];
   }
   if (barycentric()) {
     const Vec3<Real> of_primary = a[0];
-    for (Index i = 1; i < acceleration_.size(); ++i) acceleration_.add(i, -of_primary);
+    for (Index i = 1; i < column.size(); ++i) column.add(i, -of_primary);
   } else if constexpr (has_forces) {
-    for (Index i = 1; i < acceleration_.size(); ++i) acceleration_.add(i, -mean);
+    for (Index i = 1; i < column.size(); ++i) column.add(i, -mean);
   }
-  acceleration_.set(0, mean);
+  column.set(0, mean);
 }
 
 /// What the Kepler arcs of barycentric coordinates have done already.
@@ -559,6 +531,7 @@ Real WisdomHolman<Real, F>::other_forces(const VectorColumn<Real>& x, const Cloc
   inertial_positions(x, x[0], inertial_->positions());
   ForceSink<Real> sink(other_, *inertial_, {.energy = energy});
   forces_.add_to(sink, *inertial_);
+  note_failure(sink.failure());
   acceleration_.all() += other_.all();
   return sink.potential();
 }
