@@ -171,6 +171,7 @@ class Parts {
     std::vector<ColumnInfo> columns = {};  ///< that it gives particles
     ForceClaims claims = {};               ///< of the force with its defaults
     std::string only_once = {};            ///< why it does not stand twice in a scene; empty: it may
+    bool about_heaviest = false;           ///< it takes particle 0 for the heaviest one
   };
   struct ConstraintKind {
     PartInfo info;
@@ -235,6 +236,7 @@ class Parts {
                    [](TableReader& reader, const TiedParticles& tied) { return read_force<F>(reader, tied); },
                    particles, columns_of<F>(), claims_of(force_of(F{}))};
     if constexpr (requires { F::only_once; }) kind.only_once = F::only_once;
+    if constexpr (requires { F::about_heaviest; }) kind.about_heaviest = F::about_heaviest;
     put(forces_, std::move(kind));
     return *this;
   }

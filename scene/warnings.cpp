@@ -136,17 +136,29 @@ std::string other_cutoff(const Scene& scene) {
   return "";
 }
 
-/// That a splitting into Kepler arcs goes round a body that is not the heaviest; empty where it is.
+/// The first force that takes particle 0 for the heaviest one; empty where there is none.
+std::string about_heaviest(const Scene& scene) {
+  for (const SceneForce& force : scene.hamiltonian.forces) {
+    for (const Parts::ForceKind& kind : scene.parts->forces()) {
+      if (kind.about_heaviest && kind.info.name == force.name) return force.name;
+    }
+  }
+  return "";
+}
+
+/// That a splitting into Kepler arcs, or relativity, is about a body that is not the heaviest; empty where it is.
 std::string other_primary(const Scene& scene) {
   const ParticleSystem<double>& s = scene.particles;
-  if (!scene.hamiltonian.splitting.claims.kepler || s.size() == 0) return "";
+  const bool arcs = scene.hamiltonian.splitting.claims.kepler;
+  const std::string force = about_heaviest(scene);
+  if ((!arcs && force.empty()) || s.size() == 0) return "";
   Index heaviest = 0;
   for (Index i = 1; i < s.size(); ++i) heaviest = s.masses()[i] > s.masses()[heaviest] ? i : heaviest;
   if (heaviest == 0) return "";
-  return fmt::format(
-      "'{}' comes first, so the Kepler arcs of {} go round it, but '{}' has {:.3g} times its mass; put '{}' first",
-      s.name(0), scene.hamiltonian.splitting.name, s.name(heaviest), s.masses()[heaviest] / s.masses()[0],
-      s.name(heaviest));
+  const std::string what = arcs ? fmt::format("so the Kepler arcs of {} go round it", scene.hamiltonian.splitting.name)
+                                : fmt::format("so {} is about it", force);
+  return fmt::format("'{}' comes first, {}, but '{}' has {:.3g} times its mass; put '{}' first", s.name(0), what,
+                     s.name(heaviest), s.masses()[heaviest] / s.masses()[0], s.name(heaviest));
 }
 
 /// Particles that no force moves for want of mass, where pair forces are all there is; empty if there are none.

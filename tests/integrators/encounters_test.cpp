@@ -82,6 +82,49 @@ TEST_CASE("a tracer near a planet is seen as well, and the outer planets never",
   CHECK_FALSE(quiet.evaluations().encounter.has_value());
 }
 
+TEST_CASE("bodies that meet in the word before a run only have not met", "[encounter][corrector]") {
+  // A tracer on the other way round meets the planet when the word before the run has drifted by eight nodes.
+  const double step = 0.05, node = std::sqrt(7.0 / 40), angle = 2 * 8 * node * step;
+  for (const Coordinates coordinates : in_turn) {
+    CAPTURE(static_cast<int>(coordinates));
+    const auto seen = [&](std::int64_t corrector, std::int64_t steps) {
+      ParticleSystem<double> s;
+      s.add("star", 1, {0, 0, 0}, {0, 0, 0});
+      s.add("planet", 1e-5, {1, 0, 0}, {0, 1, 0});
+      s.add("dust", 0, {std::cos(angle), std::sin(angle), 0}, {std::sin(angle), -std::cos(angle), 0});
+      Simulation<double> run(std::move(s),
+                             compose(test::wisdom_holman({.G = 1, .coordinates = coordinates}), schemes::verlet_aba,
+                                     {.corrector = corrector}),
+                             step);
+      REQUIRE(run.run(steps).ok());
+      return run.evaluations().encounter.has_value();
+    };
+    CHECK_FALSE(seen(17, 1));
+    CHECK(seen(17, 6));
+    CHECK(seen(0, 6));
+  }
+}
+
+TEST_CASE("the place to which a lazy kick looks ahead is none where bodies meet", "[encounter][kernel]") {
+  // Two planets a little more than two Hill radii from each other, which their attraction would bring nearer.
+  const double mass = 1e-3, hill = std::cbrt(2 * mass / 3);
+  const auto seen = [&](double hill_radii) {
+    ParticleSystem<double> s;
+    s.add("star", 1, {0, 0, 0}, {0, 0, 0});
+    s.add("inner", mass, {1, 0, 0}, {0, 1, 0});
+    s.add("outer", mass, {1 + hill_radii * hill, 0, 0}, {0, 0.9, 0});
+    s.clock() = Clock<double>::fixed(0, 0.5);
+    WisdomHolman<double> arcs({.G = 1});
+    arcs.bind(s);
+    arcs.open(s);
+    s.phase().opened = true;
+    arcs.flow('L', s, 0.5);
+    return arcs.evaluations().encounter.has_value();
+  };
+  CHECK_FALSE(seen(2.005));
+  CHECK(seen(1.995));
+}
+
 TEST_CASE("a companion star is no encounter, wherever it stands in the file", "[encounter]") {
   const auto body = [](double distance) { return Vec3<double>(distance, 0, 0); };
   const auto speed = [](double distance, double mass) { return Vec3<double>(0, std::sqrt(mass / distance), 0); };

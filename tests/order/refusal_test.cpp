@@ -85,7 +85,7 @@ TEST_CASE("a letter that the Hamiltonian does not have is refused", "[refusal]")
   CHECK(refusal(damped, word("BAOAB")) == "scheme 'BAOAB' uses the letter O, but 'damped' has only ABD");
 }
 
-TEST_CASE("a force that depends on velocities is refused as a kick", "[refusal]") {
+TEST_CASE("a force that depends on velocities is refused as an exact kick", "[refusal]") {
   struct Friction {
     static ForceClaims claims() { return {.velocity_dependent = true}; }
     void add_to(ForceSink<double>& out, const ParticleSystem<double>& s) const {
@@ -94,7 +94,13 @@ TEST_CASE("a force that depends on velocities is refused as a kick", "[refusal]"
   };
   CHECK_THROWS_AS(KineticPotential(Friction{}), SchemeMismatch);
   CHECK_THROWS_AS(KineticPotential(Sum(HarmonicField{.k = 1}, Friction{})), SchemeMismatch);
-  CHECK_THROWS_AS((WisdomHolman<double, Friction>({}, Friction{})), SchemeMismatch);
+  const WisdomHolman<double, Friction> arcs({}, Friction{});
+  for (const Scheme* scheme : {&schemes::verlet, &schemes::abah_10_6_4, &schemes::yoshida_4})
+    CHECK(refusal(arcs, *scheme) == "");
+  CHECK(refusal(arcs, schemes::saba_4) ==
+        "scheme 'saba_4' needs exact flows, but part B of 'wisdom_holman' is a symmetric map of order 2; use 'verlet', "
+        "a composition of its steps such as 'yoshida_4', or a scheme made for it such as 'abah_8_6_4'");
+  CHECK(refusal(arcs, schemes::srkn6b) != "");
 }
 
 TEST_CASE("a drag that drives is refused", "[refusal]") {

@@ -40,19 +40,34 @@ std::string harmonic(double z) { return fmt::format("harmonic\n\n1 {:.17g} 1.1",
 const std::string verlet = "method = 'verlet'\nstep = 0.01\n";
 
 TEST_CASE("Kepler arcs about a body that is not the heaviest are warned of", "[scene][warnings]") {
-  const auto of = [](const std::string& hamiltonian, const std::string& first, const std::string& second) {
+  const auto with = [](const std::string& more, const std::string& first) {
     const std::string body = "[[particles.body]]\n";
     const std::string sun = body + "name = 'Sun'\nmass = 1\nx = [0, 0, 0]\nv = [0, 0, 0]\n";
     const std::string earth = body + "name = 'Earth'\nmass = 3e-6\nx = [1, 0, 0]\nv = [0, 1, 0]\n";
-    return warnings_of(read_scene("units = 'reduced'\n" + (first == "Sun" ? sun + earth : earth + sun) +
-                                      "[hamiltonian]\ntype = '" + hamiltonian +
-                                      "'\n[integrator]\nmethod = 'verlet'\nstep = 0.01\nsteps = 10\n" + second,
-                                  "scene.toml"));
+    return warnings_of(
+        read_scene("units = 'reduced'\n" + (first == "Sun" ? sun + earth : earth + sun) + more, "scene.toml"));
+  };
+  const auto of = [&](const std::string& hamiltonian, const std::string& first, const std::string& second) {
+    return with("[hamiltonian]\ntype = '" + hamiltonian +
+                    "'\n[integrator]\nmethod = 'verlet'\nstep = 0.01\nsteps = 10\n" + second,
+                first);
   };
   CHECK(of("wisdom_holman", "Sun", "").empty());
   CHECK(of("wisdom_holman", "Earth", "") ==
         std::vector<std::string>{"'Earth' comes first, so the Kepler arcs of wisdom_holman go round it, but 'Sun' has "
                                  "3.33e+05 times its mass; put 'Sun' first"});
+  for (const std::string name : {"gr_potential", "post_newtonian"}) {
+    const std::string classical =
+        "[hamiltonian]\ntype = 'kinetic_potential'\n[[hamiltonian.force]]\ntype = 'gravity'\n"
+        "[[hamiltonian.force]]\ntype = '" +
+        name +
+        "'\nc = 1e4\n[integrator]\nmethod = "
+        "'gauss_radau_15'\nuntil = 1\n";
+    CHECK(with(classical, "Sun").empty());
+    CHECK(with(classical, "Earth") ==
+          std::vector<std::string>{"'Earth' comes first, so " + name +
+                                   " is about it, but 'Sun' has 3.33e+05 times its mass; put 'Sun' first"});
+  }
 }
 
 TEST_CASE("a pair force may stand in a scene for each pair of types, and once for each", "[scene][messages]") {
