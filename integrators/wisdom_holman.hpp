@@ -241,4 +241,4 @@ extern template struct detail::HamiltonianModel<WisdomHolman<Quad, ForceField<Qu
 }  // namespace noether
 
 #include "integrators/wisdom_holman_impl.hpp"        // IWYU pragma: keep
-#include "integrators/wisdom_holman_kicks_impl.hpp"  // IWYU pragma: keep
+#include "integrators/wisdom_holman_impl_kicks.hpp"  // IWYU pragma: keep

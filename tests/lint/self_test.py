@@ -54,6 +54,7 @@ SAMPLES = [
     ("forces/a.cpp", '#include "engine/clean.hpp"\n', layering.problems, ""),
     ("engine/clean.cpp", '#include "engine/above.hpp"\n', layering.problems, "includes lead round: "),
     ("engine/clean_impl.hpp", '#include "engine/clean.hpp"\n', layering.problems, ""),
+    ("engine/clean_impl_part.hpp", '#include "engine/clean.hpp"\n', layering.problems, ""),
     ("engine/a.cpp", "int x;\n" * 601, sizes.problems, "601 lines"),
     ("engine/a.cpp", "int x;\n" * 600, sizes.problems, ""),
     ("engine/a.cpp", long_function(81), sizes.problems, "'f' has 81 lines"),
