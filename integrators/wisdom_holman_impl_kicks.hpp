@@ -135,7 +135,7 @@ template <class Real, class F> void WisdomHolman<Real, F>::velocity_kick(Particl
     settled = change <= rounding * size;
   }
   if (!settled) {
-    note_failure(Failure{Outcome::Kind::solver_failure, 0, "velocity",
+    note_failure(Failure{Outcome::Kind::solver_failure, -1, "velocity",
                          "a kick by forces that depend on velocities did not converge; take a smaller step"});
   }
   s.advance_velocities(h, acceleration_);

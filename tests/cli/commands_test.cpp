@@ -182,7 +182,7 @@ TEST_CASE("explain counts the evaluations of kernels, and kicks of forces that h
   }
   const auto kernel = [&](const std::string& of, const std::string& coordinates) {
     return output(folder,
-                  "explain scene.toml --set 'hamiltonian.force=[]' --set hamiltonian.type=wisdom_holman --set "
+                  "explain scene.toml --set hamiltonian.force= --set hamiltonian.type=wisdom_holman --set "
                   "hamiltonian.coordinates=" +
                       coordinates +
                       " --set integrator.method=verlet_aba --set integrator.corrector=17 --set "
