@@ -84,9 +84,7 @@ struct CorrectorClock {
   std::vector<double>* times;
   static ForceClaims claims() { return {.time_dependent = true}; }
   std::string name() const { return "clocked"; }
-  template <class Real> void add_to(ForceSink<Real>& /*out*/, const ParticleSystem<Real>& s) const {
-    times->push_back(static_cast<double>(s.clock().time()));
-  }
+  void add_to(ForceSink<double>& /*out*/, const ParticleSystem<double>& s) const { times->push_back(s.clock().time()); }
 };
 
 TEST_CASE("forces see the time of their place in the words around a run", "[corrector]") {
