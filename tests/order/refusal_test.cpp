@@ -97,8 +97,9 @@ TEST_CASE("a force that depends on velocities is refused as an exact kick", "[re
   const WisdomHolman<double, Friction> arcs({}, Friction{});
   for (const Scheme* scheme : {&schemes::verlet, &schemes::abah_10_6_4, &schemes::yoshida_4})
     CHECK(refusal(arcs, *scheme) == "");
-  CHECK(refusal(arcs, schemes::saba_4) ==
-        "scheme 'saba_4' needs exact flows, but part B of 'wisdom_holman' is a symmetric map of order 2; use 'verlet', "
+  CHECK(refusal(arcs, schemes::aba_10_6_4) ==
+        "scheme 'aba_10_6_4' needs exact flows, but part B of 'wisdom_holman' is a symmetric map of order 2; use "
+        "'verlet', "
         "a composition of its steps such as 'yoshida_4', or a scheme made for it such as 'abah_8_6_4'");
   CHECK(refusal(arcs, schemes::srkn6b) != "");
 }
