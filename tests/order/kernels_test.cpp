@@ -55,8 +55,8 @@ TEST_CASE("the composed kernel has the order that it claims over each kind of co
 }
 
 TEST_CASE("kernels keep their order beside strong forces, by the derivatives of these", "[order][slow]") {
-  const GrPotential relativity{.c = 4};
-  const Oblateness oblate{.J2 = 0.05, .J4 = -0.02, .radius = 0.5, .axis = {0.1, 0.2, 1}};
+  const GrPotential relativity{.c = 10};
+  const Oblateness oblate{.J2 = 0.02, .J4 = -0.01, .radius = 0.3, .axis = {0.1, 0.2, 1}};
   const HarmonicField field{.k = 0.05};
   const auto exact = reference(relativity, oblate, field);
   const auto arcs = wisdom_holman<Quad>({}, relativity, oblate, field);
