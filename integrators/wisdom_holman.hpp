@@ -3,12 +3,15 @@
 
 #include "engine/concepts.hpp"
 #include "engine/signature.hpp"
+#include "engine/word.hpp"
+#include "forces/gr_potential.hpp"
 #include "forces/gravity.hpp"
 #include "forces/sum.hpp"
 #include "integrators/encounters.hpp"
 #include "integrators/jacobi_derivatives.hpp"
 #include "integrators/kepler.hpp"
 #include "integrators/kinetic_potential.hpp"
+#include "integrators/wisdom_holman_lanes.hpp"
 #include "numbers/parallel.hpp"
 
 #include <array>
@@ -17,7 +20,9 @@
 #include <optional>
 #include <string>
 #include <tuple>
+#include <type_traits>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace noether {
@@ -84,6 +89,10 @@ struct WisdomHolmanOptions {
 template <class Real = double, class F = Sum<>> class WisdomHolman {
  public:
   using real = Real;
+  /// Whether forces of this type leave the planets to lanes: none, or `gr_potential` alone, and no others in a field.
+  static constexpr bool may_have_lanes =
+      std::is_same_v<Real, double> && (std::is_same_v<F, Sum<>> || std::is_same_v<F, GrPotential> ||
+                                       std::is_same_v<F, Sum<GrPotential>> || std::is_same_v<F, ForceField<double>>);
 
   explicit WisdomHolman(WisdomHolmanOptions options, F forces = F()) : options_(options), forces_(std::move(forces)) {
     if (claims_of(forces_).velocity_dependent) {
@@ -100,6 +109,7 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
   void close(ParticleSystem<Real>& s);
   void flow(char letter, ParticleSystem<Real>& s, const Real& h);
   Real flow_with_action(char letter, ParticleSystem<Real>& s, const Real& h);
+  Advance run(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span);
 
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) {
     return {kinetic_energy(s), newton(s, scratch_, {.energy = true})};
@@ -121,6 +131,7 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
     save_value(saved, prefix + "kicks", evaluations_.force);
     save_value(saved, prefix + "arcs", evaluations_.kepler);
     encounters_.save(saved, prefix + "encounter/");
+    if constexpr (may_have_lanes) lanes_.save(saved, prefix + "lanes/");
   }
   void load(const SavedState& saved, const std::string& prefix) {
     detail::check_signature(saved, prefix + "options/", options_);
@@ -133,9 +144,16 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
     gather_masses();
     load_within(saved, prefix);
     gather_arcs();
+    if constexpr (may_have_lanes) {
+      bind_lanes();
+      if (lanes_.bound()) lanes_.load(saved, prefix + "lanes/");
+    }
   }
   /// Particles in the order of Jacobi coordinates, massive bodies first.
   const std::vector<std::int64_t>& order() const { return order_; }
+
+  /// The planets in lanes; not bound where they go letter by letter.
+  const PlanetLanes& lanes() const requires may_have_lanes { return lanes_; }
 
  private:
   bool jacobi() const { return options_.coordinates == Coordinates::jacobi; }
@@ -154,6 +172,7 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
 
   void to_jacobi(VectorColumn<Real>& column) const;
   void from_jacobi(const VectorColumn<Real>& from, VectorColumn<Real>& to, const Vec3<Real>& center) const;
+  Vec3<Real> mean_of(const VectorColumn<Real>& column) const;
   void to_democratic(ParticleSystem<Real>& s) const;
   void from_democratic(ParticleSystem<Real>& s) const;
   void to_barycentric(ParticleSystem<Real>& s) const;
@@ -161,7 +180,19 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
   void scale(VectorColumn<Real>& column, bool back) const;
   void inertial_positions(const VectorColumn<Real>& from, const Vec3<Real>& center, VectorColumn<Real>& to) const;
 
-  Real arcs(ParticleSystem<Real>& s, const Real& h, bool action);
+  bool has_tracers() const { return massive() < order_.size(); }
+  bool forces_in_lanes(const ParticleSystem<Real>& s) requires may_have_lanes;
+  void bind_lanes() requires may_have_lanes;
+  void watch_for_encounters() requires may_have_lanes;
+  void flow_of_lanes(char letter, ParticleSystem<Real>& s, const Real& h) requires may_have_lanes;
+  void flow_in_lanes(char letter, ParticleSystem<Real>& s, const Real& h) requires may_have_lanes;
+  Real action_in_lanes(char letter, ParticleSystem<Real>& s, const Real& h) requires may_have_lanes;
+  void kick_tracers(ParticleSystem<Real>& s, const Real& h);
+  Vec3<Real> half_jump(const ParticleSystem<Real>& s, const Real& h) const;
+  const VectorColumn<Real>& middle_of_kick(const ParticleSystem<Real>& s, const Real& h);
+
+  Real arcs(ParticleSystem<Real>& s, const Real& h, bool action, Index first = 1);
+  void fail(const ParticleSystem<Real>& s, Index i);
   Real kick(ParticleSystem<Real>& s, const Real& h, bool action);
   Real gradient_kick(ParticleSystem<Real>& s, const Real& h, bool action);
   void lazy_kick(ParticleSystem<Real>& s, const Real& h);
@@ -192,6 +223,9 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
   Evaluations evaluations_;
   EncounterWatch encounters_;
   bool observing_ = false;
+  PlanetSystem planets_;            ///< as the lanes have them
+  bool lanes_have_forces_ = false;  ///< all of those beside gravity
+  std::conditional_t<may_have_lanes, PlanetLanes, std::monostate> lanes_;
 };
 
 template <class Real> AnyHamiltonian<Real> WisdomHolmanOptions::split(ForceField<Real> others) const {
@@ -210,4 +244,6 @@ extern template struct detail::HamiltonianModel<WisdomHolman<Quad, ForceField<Qu
 
 }  // namespace noether
 
-#include "integrators/wisdom_holman_impl.hpp"  // IWYU pragma: keep
+#include "integrators/wisdom_holman_coordinates.hpp"  // IWYU pragma: keep
+#include "integrators/wisdom_holman_impl.hpp"         // IWYU pragma: keep
+#include "integrators/wisdom_holman_in_lanes.hpp"     // IWYU pragma: keep

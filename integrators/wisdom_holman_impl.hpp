@@ -47,6 +47,7 @@ template <class Real, class F> void WisdomHolman<Real, F>::bind(ParticleSystem<R
                     s.name(0)));
   }
   std::vector<double> axis(n, 0.0);
+  double size = 0;
   order_.assign(1, 0);
   masses_.assign(n, c.masses()[0]);
   for (Index i = 1; i < s.size(); ++i) {
@@ -61,6 +62,7 @@ template <class Real, class F> void WisdomHolman<Real, F>::bind(ParticleSystem<R
     // Unbound bodies come last, by distance.
     axis[static_cast<std::size_t>(i)] =
         inverse > Real(0) ? static_cast<double>(Real(1) / inverse) : 1e300 * (1 + static_cast<double>(r));
+    size = std::max(size, static_cast<double>(r));
     order_.push_back(i);
   }
   std::stable_sort(order_.begin() + 1, order_.end(), [&](std::int64_t i, std::int64_t j) {
@@ -79,6 +81,44 @@ template <class Real, class F> void WisdomHolman<Real, F>::bind(ParticleSystem<R
     *column = VectorColumn<Real>(s.size());
   if constexpr (has_forces) inertial_ = s;
   failure_.reset();
+  if constexpr (may_have_lanes) {
+    planets_ = {.G = g_, .jacobi = jacobi(), .masses = masses_, .bend = {}, .size = size};
+    lanes_have_forces_ = forces_in_lanes(c);
+    bind_lanes();
+  }
+}
+
+/// Whether the planets in lanes have all forces beside their own: none, or `gr_potential` alone.
+template <class Real, class F>
+bool WisdomHolman<Real, F>::forces_in_lanes(const ParticleSystem<Real>& s) requires may_have_lanes {
+  const GrPotential* relativity = nullptr;
+  if constexpr (std::is_same_v<F, GrPotential>) relativity = &forces_;
+  if constexpr (std::is_same_v<F, Sum<GrPotential>>) {
+    forces_.for_each([&](const GrPotential& one) { relativity = &one; });
+  }
+  if constexpr (std::is_same_v<F, ForceField<double>>) {
+    if (forces_.terms().size() == 1) relativity = forces_.terms()[0].template as<GrPotential>();
+    if (relativity == nullptr) return forces_.terms().empty();
+  }
+  if (relativity != nullptr) {
+    const double G = relativity->G ? *relativity->G : s.units().G;
+    const double ratio = G * s.masses()[0] / speed_of_light_in(s, relativity->c, "gr_potential");
+    planets_.bend = 6 * ratio * ratio;
+  }
+  return true;
+}
+
+/// Puts the planets into lanes where they can be, in the present order.
+template <class Real, class F> void WisdomHolman<Real, F>::bind_lanes() requires may_have_lanes {
+  lanes_ = {};
+  planets_.order.assign(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(massive()));
+  if (scaled() || !lanes_have_forces_ || !PlanetLanes::can_take(planets_)) return;
+  lanes_.bind(planets_);
+  watch_for_encounters();
+}
+
+template <class Real, class F> void WisdomHolman<Real, F>::watch_for_encounters() requires may_have_lanes {
+  lanes_.watch([&](Index i, Index j) { return encounters_.square_of_news(i, j); });
 }
 
 template <class Real, class F> void WisdomHolman<Real, F>::gather_masses() {
@@ -169,153 +209,13 @@ void WisdomHolman<Real, F>::load_order(const SavedState& saved, const std::strin
   order_ = std::move(order);
 }
 
-template <class Real, class F> void WisdomHolman<Real, F>::open(ParticleSystem<Real>& s) {
-  if (jacobi()) {
-    to_jacobi(s.positions());
-    to_jacobi(s.velocities());
-  } else if (barycentric()) {
-    to_barycentric(s);
-  } else {
-    to_democratic(s);
-  }
-  if (scaled()) scale(s.velocities(), false);
-  s.phase().coordinates = static_cast<std::uint8_t>(options_.coordinates);
-}
-
-template <class Real, class F> void WisdomHolman<Real, F>::close(ParticleSystem<Real>& s) {
-  if (scaled()) scale(s.velocities(), true);
-  if (jacobi()) {
-    from_jacobi(s.positions(), s.positions(), std::as_const(s).positions()[0]);
-    from_jacobi(s.velocities(), s.velocities(), std::as_const(s).velocities()[0]);
-  } else if (barycentric()) {
-    from_barycentric(s);
-  } else {
-    from_democratic(s);
-  }
-  s.phase().coordinates = 0;
-}
-
-/// x'_k = x_k - X_{k-1},  X_k = X_{k-1} + (m_k/M_k) x'_k, of a tracer x - X of the bodies within its orbit; row 0
-/// becomes X of all.
-template <class Real, class F> void WisdomHolman<Real, F>::to_jacobi(VectorColumn<Real>& column) const {
-  const auto& read = std::as_const(column);
-  Vec3<Real> center = read[0];
-  centers_[0] = center;
-  for (std::size_t k = 1; k < massive(); ++k) {
-    const Vec3<Real> relative = read[at(k)] - center;
-    column.set(at(k), relative);
-    centers_[k] = center += masses_[static_cast<std::size_t>(at(k))] / interior_[k] * relative;
-  }
-  for (std::size_t k = massive(); k < order_.size(); ++k) column.set(at(k), read[at(k)] - centers_[within(at(k))]);
-  column.set(0, center);
-}
-
-/// The inverse, from the outermost body inwards; `from` and `to` may be the same column.
-template <class Real, class F>
-void WisdomHolman<Real, F>::from_jacobi(const VectorColumn<Real>& from, VectorColumn<Real>& to,
-                                        const Vec3<Real>& center_of_all) const {
-  Vec3<Real> center = center_of_all;
-  for (std::size_t k = massive() - 1; k > 0; --k) {
-    const Vec3<Real> relative = from[at(k)];
-    centers_[k] = center;
-    center -= masses_[static_cast<std::size_t>(at(k))] / interior_[k] * relative;
-    to.set(at(k), center + relative);
-  }
-  centers_[0] = center;
-  for (std::size_t k = massive(); k < order_.size(); ++k) to.set(at(k), centers_[within(at(k))] + from[at(k)]);
-  to.set(0, center);
-}
-
-template <class Real, class F> void WisdomHolman<Real, F>::to_democratic(ParticleSystem<Real>& s) const {
-  const auto& c = std::as_const(s);
-  Vec3<Real> x = Vec3<Real>::Zero(), v = Vec3<Real>::Zero();
-  for (std::size_t k = 0; k < massive(); ++k) {
-    x += masses_[k] * c.positions()[static_cast<Index>(k)];
-    v += masses_[k] * c.velocities()[static_cast<Index>(k)];
-  }
-  x /= interior_.back();
-  v /= interior_.back();
-  const Vec3<Real> primary = c.positions()[0];
-  for (Index i = 1; i < s.size(); ++i) {
-    s.positions().set(i, c.positions()[i] - primary);
-    s.velocities().set(i, c.velocities()[i] - v);
-  }
-  s.positions().set(0, x);
-  s.velocities().set(0, v);
-}
-
-template <class Real, class F> void WisdomHolman<Real, F>::from_democratic(ParticleSystem<Real>& s) const {
-  const auto& c = std::as_const(s);
-  Vec3<Real> x = Vec3<Real>::Zero(), v = Vec3<Real>::Zero();
-  for (std::size_t k = 1; k < massive(); ++k) {
-    x += masses_[k] * c.positions()[static_cast<Index>(k)];
-    v += masses_[k] * c.velocities()[static_cast<Index>(k)];
-  }
-  const Vec3<Real> center_v = c.velocities()[0];
-  const Vec3<Real> primary_x = c.positions()[0] - x / interior_.back();
-  for (Index i = 1; i < s.size(); ++i) {
-    s.positions().set(i, primary_x + c.positions()[i]);
-    s.velocities().set(i, center_v + c.velocities()[i]);
-  }
-  s.positions().set(0, primary_x);
-  s.velocities().set(0, center_v - v / masses_[0]);
-}
-
-/// R_i = x_i - X and v_i - v_0, which are scaled afterwards.
-template <class Real, class F> void WisdomHolman<Real, F>::to_barycentric(ParticleSystem<Real>& s) const {
-  const auto& c = std::as_const(s);
-  Vec3<Real> x = Vec3<Real>::Zero(), v = Vec3<Real>::Zero();
-  for (std::size_t k = 0; k < massive(); ++k) {
-    x += masses_[k] * c.positions()[static_cast<Index>(k)];
-    v += masses_[k] * c.velocities()[static_cast<Index>(k)];
-  }
-  x /= interior_.back();
-  v /= interior_.back();
-  const Vec3<Real> of_primary = c.velocities()[0];
-  for (Index i = 1; i < s.size(); ++i) {
-    s.positions().set(i, c.positions()[i] - x);
-    s.velocities().set(i, c.velocities()[i] - of_primary);
-  }
-  s.positions().set(0, x);
-  s.velocities().set(0, v);
-}
-
-template <class Real, class F> void WisdomHolman<Real, F>::from_barycentric(ParticleSystem<Real>& s) const {
-  const auto& c = std::as_const(s);
-  Vec3<Real> v = Vec3<Real>::Zero();
-  for (std::size_t k = 1; k < massive(); ++k) v += masses_[k] * c.velocities()[static_cast<Index>(k)];
-  const Vec3<Real> of_primary = c.velocities()[0] - v / interior_.back();
-  inertial_positions(c.positions(), c.positions()[0], s.positions());
-  for (Index i = 1; i < s.size(); ++i) s.velocities().set(i, of_primary + c.velocities()[i]);
-  s.velocities().set(0, of_primary);
-}
-
-/// Velocities, or accelerations, times `scale_`, or back.
-template <class Real, class F> void WisdomHolman<Real, F>::scale(VectorColumn<Real>& column, bool back) const {
-  for (std::size_t k = 1; k < massive(); ++k) {
-    const auto i = static_cast<Index>(k);
-    const Vec3<Real> v = std::as_const(column)[i];
-    column.set(i, back ? Vec3<Real>(v / scale_[k]) : Vec3<Real>(scale_[k] * v));
-  }
-}
-
-/// Inertial positions of all, for a centre of mass at `center`; `to` may be the positions themselves.
-template <class Real, class F>
-void WisdomHolman<Real, F>::inertial_positions(const VectorColumn<Real>& from, const Vec3<Real>& center,
-                                               VectorColumn<Real>& to) const {
-  if (jacobi()) {
-    from_jacobi(from, to, center);
-    return;
-  }
-  Vec3<Real> x = Vec3<Real>::Zero();
-  for (std::size_t k = 1; k < massive(); ++k) x += masses_[k] * from[static_cast<Index>(k)];
-  const Vec3<Real> primary = center - x / (barycentric() ? masses_[0] : interior_.back());
-  const Vec3<Real> origin = barycentric() ? center : primary;
-  for (Index i = 1; i < from.size(); ++i) to.set(i, origin + from[i]);
-  to.set(0, primary);
-}
-
 template <class Real, class F> void WisdomHolman<Real, F>::flow(char letter, ParticleSystem<Real>& s, const Real& h) {
+  if constexpr (may_have_lanes) {
+    if (lanes_.bound() && (letter == 'A' || letter == 'B')) {
+      flow_in_lanes(letter, s, h);
+      return;
+    }
+  }
   if (letter == 'A') {
     arcs(s, h, false);
     return;
@@ -335,6 +235,9 @@ template <class Real, class F> void WisdomHolman<Real, F>::flow(char letter, Par
 
 template <class Real, class F>
 Real WisdomHolman<Real, F>::flow_with_action(char letter, ParticleSystem<Real>& s, const Real& h) {
+  if constexpr (may_have_lanes) {
+    if (lanes_.bound() && (letter == 'A' || letter == 'B')) return action_in_lanes(letter, s, h);
+  }
   if (letter == 'A') return arcs(s, h, true);
   if (letter == 'G') return gradient_kick(s, h, true);
   if (letter == 'L') throw LogicError("the letter L has no action");
@@ -345,16 +248,17 @@ Real WisdomHolman<Real, F>::flow_with_action(char letter, ParticleSystem<Real>& 
   return action;
 }
 
-template <class Real, class F> Real WisdomHolman<Real, F>::arcs(ParticleSystem<Real>& s, const Real& h, bool action) {
+template <class Real, class F>
+Real WisdomHolman<Real, F>::arcs(ParticleSystem<Real>& s, const Real& h, bool action, Index first) {
   using std::sqrt;
   const auto& c = std::as_const(s);
   const Index n = s.size();
   const Vec3<Real> center_v = c.velocities()[0];
-  s.shift(0, h * center_v, Vec3<Real>::Zero());
+  if (first == 1) s.shift(0, h * center_v, Vec3<Real>::Zero());
   std::atomic<Index> failed{n};
   const auto advance = [&](Index begin, Index end) {
     Real sum(0);
-    for (Index k = std::max<Index>(begin, 1); k < end; ++k) {
+    for (Index k = std::max(begin, first); k < end; ++k) {
       const auto rank = static_cast<std::size_t>(k);
       const Index i = at(rank);
       const Real mu = g_ * circled_[static_cast<std::size_t>(i)];
@@ -380,12 +284,14 @@ template <class Real, class F> Real WisdomHolman<Real, F>::arcs(ParticleSystem<R
   }
   s.moved();
   if (observing_) return sum;
-  evaluations_.kepler += n - 1;
-  if (const Index i = failed.load(); i < n) {
-    failure_ = Failure{Outcome::Kind::solver_failure, i, "position",
-                       fmt::format("the Kepler solver did not converge for {}", s.name(i))};
-  }
+  evaluations_.kepler += n - first;
+  if (const Index i = failed.load(); i < n) fail(s, i);
   return sum;
+}
+
+template <class Real, class F> void WisdomHolman<Real, F>::fail(const ParticleSystem<Real>& s, Index i) {
+  failure_ = Failure{Outcome::Kind::solver_failure, i, "position",
+                     fmt::format("the Kepler solver did not converge for {}", s.name(i))};
 }
 
 template <class Real, class F> Real WisdomHolman<Real, F>::kick(ParticleSystem<Real>& s, const Real& h, bool action) {
