@@ -20,16 +20,21 @@ struct EightTrials {
 /// The largest |beta s^2| within which the series below are good.
 constexpr double widest_series = 2.5;
 
+#if !defined(NOETHER_SERIES_BITS)
+#define NOETHER_SERIES_BITS 53  // a test has fewer of 1/4! and 1/5!, to see that it would notice
+#endif
+
 constexpr double one_over_factorial(int n) {
-  double f = 1;  // whole up to 22!, rounded at 23! and 24!, where it does not matter
+  double f = 1;  // exact up to 22!
   for (int k = 2; k <= n; ++k) f *= k;
-  return 1 / f;
+  const double split = static_cast<double>(1LL << (53 - NOETHER_SERIES_BITS)) / f;
+  return n == 4 || n == 5 ? (1 / f + split) - split : 1 / f;
 }
 /// What rounding takes from 1/n!. Constants always rounded the same way would make energies drift.
 constexpr double one_over_factorial_low(int n) {
   __extension__ __float128 f = 1;
   for (int k = 2; k <= n; ++k) f *= k;
-  return double(1 / f - one_over_factorial(n));
+  return double(1 / f - 1 / double(f));
 }
 
 /// Coefficients k to 10 of c_n(z) = sum_k (-z)^k/(2k + n)!, by pairs.
@@ -91,34 +96,24 @@ NOETHER_EIGHT_INLINE Eight first_guess(const Eight& h, const Eight& r_inverse, c
   return d + d * (low_order + Eight(1.0 / 24) * (p * third + fourth));
 }
 
-/// Arcs of single lanes by the solver for all cases.
+/// Arcs of single lanes by the solver for all cases, and where they begin.
 struct ExactArcs {
   unsigned lanes = 0;
-  alignas(64) double dx[3][8], dv[3][8], s[8];
+  double dx[3][8], dv[3][8], s[8];
+  double x[3][8], v[3][8], x_low[3][8], v_low[3][8];
 };
 
-NOETHER_EIGHT_INLINE void replace(Eight& a, const double* by, unsigned lanes) {
-  alignas(64) double own[8];
+/// Takes the lanes of `lanes` from another one.
+void take_lanes(Eight& a, const Eight& from, unsigned lanes) {
+  alignas(64) double own[8], other[8];
   store_eight(a, own);
-  for (int k = 0; k < 8; ++k) own[k] = (lanes >> k & 1) != 0 ? by[k] : own[k];
+  store_eight(from, other);
+  for (unsigned k = 0; k < 8; ++k) own[k] = (lanes >> k & 1) != 0 ? other[k] : own[k];
   a = load_eight(own);
 }
-NOETHER_EIGHT_INLINE void replace(Eights& a, const double (*by)[8], unsigned lanes) {
-  replace(a.x, by[0], lanes);
-  replace(a.y, by[1], lanes);
-  replace(a.z, by[2], lanes);
-}
-NOETHER_EIGHT_INLINE void replace(Eight& a, const Eight& by, unsigned lanes) {
-  alignas(64) double other[8];
-  store_eight(by, other);
-  replace(a, other, lanes);
-}
 
-/// Further passes for the lanes of `bad`, the others left as they are; what does not come to an end goes to the exact
-/// solver.
-[[gnu::noinline, gnu::cold]] void further_passes(const PlanetRows& planets, const PlanetRow& row, EightOrbits& o,
-                                                 EightTrials& t, unsigned bad, ExactArcs& exact, ArcReport& report) {
-  ++report.second;
+/// Further passes for the lanes of `bad`, the others left as they are. @return lanes that are hopeless
+[[gnu::noinline, gnu::cold]] unsigned further_passes(const EightOrbits& o, EightTrials& t, unsigned bad) {
   alignas(64) double beta[8], s[8], step[8], h[8];
   store_eight(o.beta, beta);
   store_eight(o.h, h);
@@ -157,20 +152,35 @@ NOETHER_EIGHT_INLINE void replace(Eight& a, const Eight& by, unsigned lanes) {
     Eight* const to[] = {&t.s, &t.g0, &t.g1, &t.g2, &t.g3, &t.eta, &t.zeta, &t.step, &t.more, &t.turn};
     const Eight* const from[] = {&again.s,   &again.g0,   &again.g1,   &again.g2,   &again.g3,
                                  &again.eta, &again.zeta, &again.step, &again.more, &again.turn};
-    for (int k = 0; k < 10; ++k) replace(*to[k], *from[k], bad);
+    for (int k = 0; k < 10; ++k) take_lanes(*to[k], *from[k], bad);
     bad &= not_final(again);
   }
-  exact.lanes = bad | hopeless;
+  return bad | hopeless;
+}
+
+/// What the solver for all cases says of the arcs of `exact.lanes`, which have not begun to move.
+[[gnu::noinline, gnu::cold]] void solve_exactly(const PlanetRows& planets, const PlanetRow& row, double h,
+                                                ExactArcs& exact, ArcReport& report) {
   for (int k = 0; k < 8; ++k) {
     if ((exact.lanes >> k & 1) == 0) continue;
     ++report.exact;
-    const double x[3] = {row.x[0][k], row.x[1][k], row.x[2][k]}, v[3] = {row.v[0][k], row.v[1][k], row.v[2][k]};
-    double dx[3], dv[3];
-    if (!planets.exact(x, v, row.mu[k], h[k], dx, dv, &exact.s[k])) report.failed = 8 * (&row - planets.row) + k;
-    for (int c = 0; c < 3; ++c) exact.dx[c][k] = dx[c], exact.dv[c][k] = dv[c];
+    double x[3], v[3], dx[3], dv[3];
+    for (int c = 0; c < 3; ++c) x[c] = row.x[c][k], v[c] = row.v[c][k];
+    if (!planets.exact(x, v, row.mu[k], h, dx, dv, &exact.s[k])) report.failed = 8 * (&row - planets.row) + k;
+    for (int c = 0; c < 3; ++c) {
+      exact.dx[c][k] = dx[c], exact.dv[c][k] = dv[c], exact.x[c][k] = x[c], exact.v[c][k] = v[c];
+      exact.x_low[c][k] = row.x_low[c][k], exact.v_low[c][k] = row.v_low[c][k];
+    }
   }
 }
 
+/// value += change, with what rounding takes of it where that is kept.
+void add_number(bool compensated, double value, double change, double lost, double& sum, double& low) {
+  const double d = compensated ? change + lost : change;
+  sum = value + d;
+  const double back = sum - value;
+  low = compensated ? (value - (sum - back)) + (d - back) : 0;
+}
 /// value += change, with what rounding takes of it where that is kept.
 template <bool compensated>
 NOETHER_EIGHT_INLINE Eight add_change(const Eight& value, const Eight& change, double* low) {
@@ -196,6 +206,26 @@ NOETHER_EIGHT_INLINE Eight set_distance(const Eights& x, PlanetRow& row) {
   return r_inverse;
 }
 
+/// Moves the lanes of `exact.lanes` from where they began; the others are where they are to be.
+[[gnu::noinline, gnu::cold]] void place_exactly(const ExactArcs& exact, bool compensated, const ArcTask& task,
+                                                PlanetRow& row) {
+  for (int k = 0; k < 8; ++k) {
+    if ((exact.lanes >> k & 1) == 0) continue;
+    for (int c = 0; c < 3; ++c) {
+      add_number(compensated, exact.x[c][k], exact.dx[c][k], exact.x_low[c][k], row.x[c][k], row.x_low[c][k]);
+      add_number(compensated, exact.v[c][k], exact.dv[c][k], exact.v_low[c][k], row.v[c][k], row.v_low[c][k]);
+    }
+    row.arc[k] = exact.s[k];
+  }
+  const Eights x = load_eights(row.x), v = load_eights(row.v);
+  set_distance(x, row);  // of the other lanes as it is
+  const Eight r_inverse = load_eight(row.r_inverse), mu = load_eight(row.mu);
+  const Eight eta = dot(x, v), beta = (mu + mu) * r_inverse - dot(v, v);
+  Eight s = load_eight(row.s);
+  take_lanes(s, first_guess(Eight(task.h), r_inverse, eta, mu - beta * load_eight(row.r), beta), exact.lanes);
+  if (task.predict) store_eight(s, row.s);
+}
+
 template <bool compensated>
 NOETHER_EIGHT_INLINE void advance_arcs(const PlanetRows& planets, PlanetRow& row, const ArcTask& task,
                                        ArcReport& report) {
@@ -210,7 +240,14 @@ NOETHER_EIGHT_INLINE void advance_arcs(const PlanetRows& planets, PlanetRow& row
   look_at(o, t);
   ExactArcs exact;
   const unsigned bad = not_final(t) | exceeding(absolute(o.beta * (s * s)), Eight(widest_series));
-  if (__builtin_expect(bad != 0, 0)) further_passes(planets, row, o, t, bad, exact, report);
+  if (__builtin_expect(bad != 0, 0)) {
+    ++report.second;
+    const EightOrbits orbits = o;  // copies, so that those of the common way stay in registers
+    EightTrials trials = t;
+    exact.lanes = further_passes(orbits, trials, bad);
+    t = trials;
+    if (exact.lanes != 0) solve_exactly(planets, row, task.h, exact, report);
+  }
 
   // The last step is made in the functions. Its parts are summed before they meet G: one that is often less than half
   // a rounding of G would always be lost.
@@ -219,31 +256,22 @@ NOETHER_EIGHT_INLINE void advance_arcs(const PlanetRows& planets, PlanetRow& row
   const Eight g2 = t.g2 + (t.more * (d * t.g0 + t.g1) + d * (half * (t.g0 - third * bent) + t.g1));
   const Eight g1 = t.g1 + (t.more * (t.g0 - d * bent) + d * (t.g0 - half * (third * (o.beta * t.g0) + bent)));
   const Eight falling = Eight(0.0) - o.mu * g2;
-  Eights dx = (falling * o.r_inverse) * x + (o.h - o.mu * g3) * v;
-  if (__builtin_expect(exact.lanes != 0, 0)) replace(dx, exact.dx, exact.lanes);
+  const Eights dx = (falling * o.r_inverse) * x + (o.h - o.mu * g3) * v;
   const Eights new_x = add_change<compensated>(x, dx, row.x_low);
   store_eights(new_x, row.x);
   const Eight r_inverse = set_distance(new_x, row);
   const Eight turning = (Eight(0.0) - o.mu * g1) * o.r_inverse;
-  Eights dv = (turning * r_inverse) * x + (falling * r_inverse) * v;
-  if (__builtin_expect(exact.lanes != 0, 0)) replace(dv, exact.dv, exact.lanes);
-  const Eights new_v = add_change<compensated>(v, dv, row.v_low);
-  store_eights(new_v, row.v);
-  Eight arc = t.s + (d + t.more);
+  const Eights dv = (turning * r_inverse) * x + (falling * r_inverse) * v;
+  store_eights(add_change<compensated>(v, dv, row.v_low), row.v);
+  store_eight(t.s + (d + t.more), row.arc);
   if (task.predict) {
     // In an arc back over h at the mirrored point s would miss by -2 eta G2(s), if there were no kick.
-    const Eight twice = t.eta + t.zeta * d, eta2 = twice + twice;
-    const Eight inverse = Eight(1.0) / (eta2 * g1 + o.r), back = (eta2 * inverse) * g2;
-    const Eight turn = (eta2 * t.g0 - o.eta) * (back * inverse);
-    Eight next = (t.s + d) - (back * (Eight(0.5) * turn * turn + Eight(0.5) * turn) + back);
-    if (__builtin_expect(exact.lanes != 0, 0)) {
-      const Eight eta = dot(new_x, new_v), beta = (o.mu + o.mu) * r_inverse - dot(new_v, new_v);
-      replace(next, first_guess(o.h, r_inverse, eta, o.mu - beta * load_eight(row.r), beta), exact.lanes);
-    }
-    store_eight(next, row.s);
+    const Eight last = t.eta + t.zeta * d, twice = last + last;
+    const Eight inverse = Eight(1.0) / (twice * g1 + o.r), back = (twice * inverse) * g2;
+    const Eight turn = (twice * t.g0 - o.eta) * (back * inverse);
+    store_eight((t.s + d) - (back * (Eight(0.5) * turn * turn + Eight(0.5) * turn) + back), row.s);
   }
-  if (__builtin_expect(exact.lanes != 0, 0)) replace(arc, exact.s, exact.lanes);
-  store_eight(arc, row.arc);
+  if (__builtin_expect(exact.lanes != 0, 0)) place_exactly(exact, compensated, task, row);
 }
 
 }  // namespace
