@@ -1,7 +1,7 @@
 #pragma once
 /// Kepler arcs of eight planets side by side; for `*_simd.cpp` alone. docs/theory/kepler.md has the formulae.
 
-#include "integrators/planet_rows.hpp"
+#include "integrators/planet_row.hpp"
 #include "numbers/eight_simd.hpp"
 
 namespace noether::NOETHER_SIMD_LEVEL {
@@ -104,7 +104,7 @@ struct ExactArcs {
 };
 
 /// Takes the lanes of `lanes` from another one.
-void take_lanes(Eight& a, const Eight& from, unsigned lanes) {
+[[maybe_unused]] void take_lanes(Eight& a, const Eight& from, unsigned lanes) {
   alignas(64) double own[8], other[8];
   store_eight(a, own);
   store_eight(from, other);
@@ -113,7 +113,7 @@ void take_lanes(Eight& a, const Eight& from, unsigned lanes) {
 }
 
 /// Further passes for the lanes of `bad`, the others left as they are. @return lanes that are hopeless
-[[gnu::noinline, gnu::cold]] unsigned further_passes(const EightOrbits& o, EightTrials& t, unsigned bad) {
+[[gnu::noinline, gnu::cold, maybe_unused]] unsigned further_passes(const EightOrbits& o, EightTrials& t, unsigned bad) {
   alignas(64) double beta[8], s[8], step[8], h[8];
   store_eight(o.beta, beta);
   store_eight(o.h, h);
@@ -159,8 +159,8 @@ void take_lanes(Eight& a, const Eight& from, unsigned lanes) {
 }
 
 /// What the solver for all cases says of the arcs of `exact.lanes`, which have not begun to move.
-[[gnu::noinline, gnu::cold]] void solve_exactly(const PlanetRows& planets, const PlanetRow& row, double h,
-                                                ExactArcs& exact, ArcReport& report) {
+[[gnu::noinline, gnu::cold, maybe_unused]] void solve_exactly(const PlanetRows& planets, const PlanetRow& row, double h,
+                                                              ExactArcs& exact, ArcReport& report) {
   for (int k = 0; k < 8; ++k) {
     if ((exact.lanes >> k & 1) == 0) continue;
     ++report.exact;
@@ -175,7 +175,7 @@ void take_lanes(Eight& a, const Eight& from, unsigned lanes) {
 }
 
 /// value += change, with what rounding takes of it where that is kept.
-void add_number(bool compensated, double value, double change, double lost, double& sum, double& low) {
+[[maybe_unused]] void add_number(bool compensated, double value, double change, double lost, double& sum, double& low) {
   const double d = compensated ? change + lost : change;
   sum = value + d;
   const double back = sum - value;
@@ -207,8 +207,8 @@ NOETHER_EIGHT_INLINE Eight set_distance(const Eights& x, PlanetRow& row) {
 }
 
 /// Moves the lanes of `exact.lanes` from where they began; the others are where they are to be.
-[[gnu::noinline, gnu::cold]] void place_exactly(const ExactArcs& exact, bool compensated, const ArcTask& task,
-                                                PlanetRow& row) {
+[[gnu::noinline, gnu::cold, maybe_unused]] void place_exactly(const ExactArcs& exact, bool compensated,
+                                                              const ArcTask& task, PlanetRow& row) {
   for (int k = 0; k < 8; ++k) {
     if ((exact.lanes >> k & 1) == 0) continue;
     for (int c = 0; c < 3; ++c) {

@@ -11,6 +11,7 @@
 #include "integrators/jacobi_derivatives.hpp"
 #include "integrators/kepler.hpp"
 #include "integrators/kinetic_potential.hpp"
+#include "integrators/wisdom_holman_coordinates.hpp"
 #include "integrators/wisdom_holman_lanes.hpp"
 #include "numbers/parallel.hpp"
 
@@ -26,22 +27,6 @@
 #include <vector>
 
 namespace noether {
-
-/// What the position and velocity columns hold while the splitting runs; 0 is inertial, as everywhere.
-enum class Coordinates : std::uint8_t {
-  jacobi = 1,   ///< row 0: centre of mass; others relative to the centre of mass of all bodies further in
-  democratic,   ///< row 0: centre of mass; positions relative to particle 0, velocities to the centre of mass
-  whds,         ///< as democratic, velocities times (m_0 + m_i)/m_0
-  barycentric,  ///< row 0: centre of mass; positions relative to it, velocities to particle 0 times (M - m_i)/M
-};
-
-template <> struct EnumNames<Coordinates> {
-  static constexpr std::array<std::pair<Coordinates, std::string_view>, 4> values = {
-      {{Coordinates::jacobi, "jacobi"},
-       {Coordinates::democratic, "democratic"},
-       {Coordinates::whds, "whds"},
-       {Coordinates::barycentric, "barycentric"}}};
-};
 
 /// Parameters of a Wisdom-Holman splitting.
 struct WisdomHolmanOptions {
@@ -86,7 +71,7 @@ struct WisdomHolmanOptions {
 /// universal variable), free motion h T, jump h J, kick - h U.
 /// @cost one Kepler arc per body and A, one sum over pairs per B; no allocation after `bind`
 /// @source WisdomHolman1991, DuncanLevisonLee1998, ReinTamayo2015, HernandezDehnen2017
-template <class Real = double, class F = Sum<>> class WisdomHolman {
+template <class Real = double, class F = Sum<>> class WisdomHolman : private detail::AboutPrimary<Real> {
  public:
   using real = Real;
   /// Whether forces of this type leave the planets to lanes: none, or `gr_potential` alone, and no others in a field.
@@ -94,7 +79,8 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
       std::is_same_v<Real, double> && (std::is_same_v<F, Sum<>> || std::is_same_v<F, GrPotential> ||
                                        std::is_same_v<F, Sum<GrPotential>> || std::is_same_v<F, ForceField<double>>);
 
-  explicit WisdomHolman(WisdomHolmanOptions options, F forces = F()) : options_(options), forces_(std::move(forces)) {
+  explicit WisdomHolman(WisdomHolmanOptions options, F forces = F())
+      : Base(options.coordinates), options_(options), forces_(std::move(forces)) {
     if (claims_of(forces_).velocity_dependent) {
       throw SchemeMismatch("a force depends on velocities, so kicks by it are not an exact flow of wisdom_holman");
     }
@@ -156,31 +142,16 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
   const PlanetLanes& lanes() const requires may_have_lanes { return lanes_; }
 
  private:
-  bool jacobi() const { return options_.coordinates == Coordinates::jacobi; }
-  bool barycentric() const { return options_.coordinates == Coordinates::barycentric; }
-  /// Whether velocities are scaled: what each body has of |sum p_i|^2 is part of A, and J is what they have together.
-  bool scaled() const { return options_.coordinates == Coordinates::whds || barycentric(); }
+  using Base = detail::AboutPrimary<Real>;
+  using Base::at, Base::barycentric, Base::from_jacobi, Base::gather_masses, Base::has_tracers;
+  using Base::centers_, Base::interior_, Base::masses_, Base::order_, Base::scale_, Base::within_;
+  using Base::half_jump, Base::load_order, Base::load_within, Base::within;
+  using Base::inertial_positions, Base::jacobi, Base::massive, Base::place_within, Base::scale, Base::scaled;
+  using Base::to_jacobi, Base::from_democratic, Base::to_democratic, Base::from_barycentric, Base::to_barycentric;
+
   static constexpr bool has_forces = !std::is_same_v<F, Sum<>>;
-  void gather_masses();
-  void place_within(const std::vector<double>& axis);
   void gather_arcs();
-  void load_order(const SavedState& saved, const std::string& prefix);
-  void load_within(const SavedState& saved, const std::string& prefix);
-  std::size_t massive() const { return interior_.size(); }
-  Index at(std::size_t k) const { return static_cast<Index>(order_[k]); }
-  std::size_t within(Index i) const { return static_cast<std::size_t>(within_[static_cast<std::size_t>(i)]); }
 
-  void to_jacobi(VectorColumn<Real>& column) const;
-  void from_jacobi(const VectorColumn<Real>& from, VectorColumn<Real>& to, const Vec3<Real>& center) const;
-  Vec3<Real> mean_of(const VectorColumn<Real>& column) const;
-  void to_democratic(ParticleSystem<Real>& s) const;
-  void from_democratic(ParticleSystem<Real>& s) const;
-  void to_barycentric(ParticleSystem<Real>& s) const;
-  void from_barycentric(ParticleSystem<Real>& s) const;
-  void scale(VectorColumn<Real>& column, bool back) const;
-  void inertial_positions(const VectorColumn<Real>& from, const Vec3<Real>& center, VectorColumn<Real>& to) const;
-
-  bool has_tracers() const { return massive() < order_.size(); }
   bool forces_in_lanes(const ParticleSystem<Real>& s) requires may_have_lanes;
   void bind_lanes() requires may_have_lanes;
   void watch_for_encounters() requires may_have_lanes;
@@ -188,7 +159,6 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
   void flow_in_lanes(char letter, ParticleSystem<Real>& s, const Real& h) requires may_have_lanes;
   Real action_in_lanes(char letter, ParticleSystem<Real>& s, const Real& h) requires may_have_lanes;
   void kick_tracers(ParticleSystem<Real>& s, const Real& h);
-  Vec3<Real> half_jump(const ParticleSystem<Real>& s, const Real& h) const;
   const VectorColumn<Real>& middle_of_kick(const ParticleSystem<Real>& s, const Real& h);
 
   Real arcs(ParticleSystem<Real>& s, const Real& h, bool action, Index first = 1);
@@ -208,15 +178,9 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
   WisdomHolmanOptions options_;
   F forces_;
   Real g_ = Real(0);
-  std::vector<std::int64_t> order_;
-  std::vector<std::int64_t> within_;         ///< by particle, k of the mass M_k that its Kepler arc goes round
-  std::vector<Real> masses_;                 ///< by particle
-  std::vector<Real> interior_;               ///< M_k, mass of the first k + 1 bodies in order
-  std::vector<Real> circled_;                ///< by particle, the mass that its Kepler arc goes round
-  std::vector<Real> reduced_;                ///< by particle, the mass that makes its velocity a momentum
-  double moment_ = 0;                        ///< time of the kick
-  std::vector<Real> scale_;                  ///< by particle, of its velocity: m_i over the reduced mass
-  mutable std::vector<Vec3<Real>> centers_;  ///< of these, as the last change of coordinates met them
+  std::vector<Real> circled_;  ///< by particle, the mass that its Kepler arc goes round
+  std::vector<Real> reduced_;  ///< by particle, the mass that makes its velocity a momentum
+  double moment_ = 0;          ///< time of the kick
   VectorColumn<Real> scratch_, positions_, acceleration_, other_, along_;
   std::optional<ParticleSystem<Real>> inertial_;  ///< positions for other forces
   std::optional<Failure> failure_;
@@ -244,6 +208,4 @@ extern template struct detail::HamiltonianModel<WisdomHolman<Quad, ForceField<Qu
 
 }  // namespace noether
 
-#include "integrators/wisdom_holman_coordinates.hpp"  // IWYU pragma: keep
-#include "integrators/wisdom_holman_impl.hpp"         // IWYU pragma: keep
-#include "integrators/wisdom_holman_in_lanes.hpp"     // IWYU pragma: keep
+#include "integrators/wisdom_holman_impl.hpp"  // IWYU pragma: keep

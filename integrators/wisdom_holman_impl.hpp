@@ -121,33 +121,6 @@ template <class Real, class F> void WisdomHolman<Real, F>::watch_for_encounters(
   lanes_.watch([&](Index i, Index j) { return encounters_.square_of_news(i, j); });
 }
 
-template <class Real, class F> void WisdomHolman<Real, F>::gather_masses() {
-  interior_.clear();
-  Real total(0);
-  for (const std::int64_t i : order_) {
-    const Real m = masses_[static_cast<std::size_t>(i)];
-    if (m == Real(0)) break;
-    interior_.push_back(total += m);
-  }
-}
-
-/// Tracers go round the bodies whose orbits about the primary are smaller than theirs, as bodies do.
-template <class Real, class F> void WisdomHolman<Real, F>::place_within(const std::vector<double>& axis) {
-  within_.assign(order_.size(), 0);
-  centers_.assign(massive(), Vec3<Real>::Zero());
-  if (!jacobi()) return;
-  for (std::size_t k = 1; k < order_.size(); ++k) {
-    const auto i = static_cast<std::size_t>(at(k));
-    std::size_t inner = 0;
-    if (k < massive()) {
-      inner = k;
-    } else {
-      while (inner + 1 < massive() && axis[static_cast<std::size_t>(at(inner + 1))] < axis[i]) ++inner;
-    }
-    within_[i] = static_cast<std::int64_t>(inner);
-  }
-}
-
 /// What the arcs need of each particle. The mass of the star that a barycentric arc goes round is such that two bodies
 /// alone stay on it.
 template <class Real, class F> void WisdomHolman<Real, F>::gather_arcs() {
@@ -174,39 +147,33 @@ template <class Real, class F> void WisdomHolman<Real, F>::gather_arcs() {
   }
 }
 
-/// @throws Error if the saved places are none of these particles'
-template <class Real, class F>
-void WisdomHolman<Real, F>::load_within(const SavedState& saved, const std::string& prefix) {
-  std::vector<std::int64_t> within(order_.size(), 0);
-  if (saved.contains(prefix + "within")) {
-    load_value(saved, prefix + "within", within);
-  } else if (jacobi()) {  // written when tracers went round all bodies, wherever they were
-    for (std::size_t k = 1; k < order_.size(); ++k)
-      within[static_cast<std::size_t>(at(k))] = static_cast<std::int64_t>(std::min(k, massive() - 1));
+template <class Real, class F> void WisdomHolman<Real, F>::open(ParticleSystem<Real>& s) {
+  if (jacobi()) {
+    to_jacobi(s.positions());
+    to_jacobi(s.velocities());
+  } else if (barycentric()) {
+    to_barycentric(s);
+  } else {
+    to_democratic(s);
   }
-  bool fits = within.size() == order_.size();
-  for (std::size_t k = 0; fits && k < order_.size(); ++k) {
-    const std::int64_t w = within[static_cast<std::size_t>(at(k))], own = jacobi() ? static_cast<std::int64_t>(k) : 0;
-    fits = k < massive() ? w == own : w >= 0 && w < static_cast<std::int64_t>(massive());
+  if (scaled()) scale(s.velocities(), false);
+  if constexpr (may_have_lanes) {
+    if (!observing_) lanes_.forget();
   }
-  if (!fits) throw Error("the saved places of tracers among the bodies do not match these particles");
-  within_ = std::move(within);
+  s.phase().coordinates = static_cast<std::uint8_t>(options_.coordinates);
 }
 
-/// @throws Error if the saved order does not name each particle once, the primary first and tracers last
-template <class Real, class F>
-void WisdomHolman<Real, F>::load_order(const SavedState& saved, const std::string& prefix) {
-  std::vector<std::int64_t> order;
-  load_value(saved, prefix + "order", order);
-  const auto sorted = [](std::vector<std::int64_t> ranks) {
-    std::sort(ranks.begin(), ranks.end());
-    return ranks;
-  };
-  const auto massive = [&](std::int64_t i) { return masses_[static_cast<std::size_t>(i)] != Real(0); };
-  if (sorted(order) != sorted(order_) || order[0] != 0 || !std::is_partitioned(order.begin(), order.end(), massive)) {
-    throw Error("the saved order of Jacobi coordinates does not match these particles");
+template <class Real, class F> void WisdomHolman<Real, F>::close(ParticleSystem<Real>& s) {
+  if (scaled()) scale(s.velocities(), true);
+  if (jacobi()) {
+    from_jacobi(s.positions(), s.positions(), std::as_const(s).positions()[0]);
+    from_jacobi(s.velocities(), s.velocities(), std::as_const(s).velocities()[0]);
+  } else if (barycentric()) {
+    from_barycentric(s);
+  } else {
+    from_democratic(s);
   }
-  order_ = std::move(order);
+  s.phase().coordinates = 0;
 }
 
 template <class Real, class F> void WisdomHolman<Real, F>::flow(char letter, ParticleSystem<Real>& s, const Real& h) {
@@ -499,6 +466,110 @@ Real WisdomHolman<Real, F>::newton(const ParticleSystem<Real>& s, VectorColumn<R
   Gravity{.G = options_.G}.add_to(sink, s);
   forces_.add_to(sink, s);
   return sink.potential();
+}
+
+/// Whole steps. Planets stay in lanes meanwhile where all bodies are there and have no other letters.
+template <class Real, class F>
+Advance WisdomHolman<Real, F>::run(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span) {
+  if constexpr (may_have_lanes) {
+    const auto in_lanes = [](const TimedStage<Real>& stage) { return stage.letter == 'A' || stage.letter == 'B'; };
+    const auto& stages = word.stages();
+    if (lanes_.bound() && !has_tracers() && std::all_of(stages.begin(), stages.end(), in_lanes)) {
+      lanes_.load(s);
+      const Advance done =
+          walk_letters(*this, word, s, span, [&](char letter, const Real& h) { flow_of_lanes(letter, s, h); });
+      lanes_.store(s);
+      return done;
+    }
+  }
+  return walk_letters(*this, word, s, span, [&](char letter, const Real& h) { flow(letter, s, h); });
+}
+
+/// One flow of the planets that the lanes hold already, and of the center of mass.
+template <class Real, class F>
+void WisdomHolman<Real, F>::flow_of_lanes(char letter, ParticleSystem<Real>& s, const Real& h) requires may_have_lanes {
+  if (letter == 'A') {
+    s.shift(0, h * std::as_const(s).velocities()[0], Vec3<Real>::Zero());
+    const Index failed = lanes_.drift(h, observing_);
+    if (observing_) return;
+    evaluations_.kepler += static_cast<Index>(massive()) - 1;
+    if (failed >= 0) fail(s, failed);
+    return;
+  }
+  const bool near = lanes_.kick(h, observing_);
+  if (observing_) return;
+  if (!has_tracers()) ++evaluations_.force;
+  if (!near) return;
+  moment_ = static_cast<double>(s.clock().time());
+  lanes_.for_pairs([&](Index i, Index j, double r2, double nearer2) {
+    encounters_.note(std::max(i, j), std::min(i, j), r2, nearer2, moment_);
+  });
+  watch_for_encounters();
+}
+
+/// The same of planets in the columns; tracers go letter by letter.
+template <class Real, class F>
+void WisdomHolman<Real, F>::flow_in_lanes(char letter, ParticleSystem<Real>& s, const Real& h) requires may_have_lanes {
+  if (has_tracers() && letter == 'A') arcs(s, h, false, static_cast<Index>(massive()));
+  if (has_tracers() && letter == 'B') kick_tracers(s, h);
+  lanes_.load(s);
+  flow_of_lanes(letter, s, h);
+  lanes_.store(s, letter == 'A' || !jacobi());
+  if (has_tracers() && letter == 'B' && !jacobi()) {
+    const Vec3<Real> shift = half_jump(s, h);
+    for (Index i = static_cast<Index>(massive()); i < s.size(); ++i) s.shift(i, shift, Vec3<Real>::Zero());
+  }
+}
+
+/// Positions in the middle of a kick, behind the first half of the jump; in Jacobi coordinates those there are.
+template <class Real, class F>
+const VectorColumn<Real>& WisdomHolman<Real, F>::middle_of_kick(const ParticleSystem<Real>& s, const Real& h) {
+  if (jacobi()) return s.positions();
+  const Vec3<Real> shift = half_jump(s, h);
+  along_ = s.positions();
+  for (Index i = 1; i < s.size(); ++i) along_.add(i, shift);
+  return along_;
+}
+
+/// Half a jump and the kick of tracers, before the planets have theirs.
+template <class Real, class F> void WisdomHolman<Real, F>::kick_tracers(ParticleSystem<Real>& s, const Real& h) {
+  const auto& c = std::as_const(s);
+  accelerate(middle_of_kick(c, h), s.clock(), false);
+  const Vec3<Real> shift = jacobi() ? Vec3<Real>(Vec3<Real>::Zero()) : half_jump(c, h);
+  for (Index i = static_cast<Index>(massive()); i < s.size(); ++i)
+    s.shift(i, shift, h * std::as_const(acceleration_)[i]);
+}
+
+/// A flow with its action: that of arcs from their universal variables, that of kicks from the potential letter by
+/// letter.
+template <class Real, class F>
+Real WisdomHolman<Real, F>::action_in_lanes(char letter, ParticleSystem<Real>& s,
+                                            const Real& h) requires may_have_lanes {
+  using std::sqrt;
+  const auto& c = std::as_const(s);
+  Real action(0);
+  if (letter == 'A') {
+    for (std::size_t k = 1; k < massive(); ++k) {
+      const auto i = static_cast<std::size_t>(at(k));
+      const Real speed2 = norm2(c.velocities()[at(k)]), r = sqrt(norm2(c.positions()[at(k)]));
+      action += reduced_[i] * h * (speed2 / Real(2) - g_ * circled_[i] / r);
+    }
+    action += h * interior_.back() * norm2(c.velocities()[0]) / Real(2);
+    flow(letter, s, h);
+    for (std::size_t k = 1; k < massive(); ++k) {
+      const auto i = static_cast<std::size_t>(at(k));
+      action += Real(2) * reduced_[i] * g_ * circled_[i] * lanes_.arc(k - 1);
+    }
+    return action;
+  }
+  const bool observing = std::exchange(observing_, true);  // this look at the forces is not counted
+  action -= h * accelerate(middle_of_kick(c, h), s.clock(), true);
+  observing_ = observing;
+  // J is momentum^2/2 m_0, and half a jump h/2 momentum/m_0.
+  const auto jump_action = [&] { return jacobi() || h == Real(0) ? Real(0) : masses_[0] * norm2(half_jump(c, h)) / h; };
+  action += jump_action();
+  flow(letter, s, h);
+  return action + jump_action();
 }
 
 }  // namespace noether

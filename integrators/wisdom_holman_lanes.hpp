@@ -3,7 +3,7 @@
 
 #include "engine/particle_system.hpp"
 #include "engine/saved_state.hpp"
-#include "integrators/planet_rows.hpp"
+#include "integrators/planet_row.hpp"
 
 #include <algorithm>
 #include <cstddef>

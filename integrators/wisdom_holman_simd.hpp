@@ -1,7 +1,7 @@
 #pragma once
 /// The flows of Wisdom-Holman with the planets in lanes: the interface of `wisdom_holman_simd.cpp`.
 
-#include "integrators/planet_rows.hpp"
+#include "integrators/planet_row.hpp"
 #include "numbers/kernels_simd.hpp"
 
 namespace noether {
