@@ -144,9 +144,9 @@ template <class Real = double, class F = Sum<>> class WisdomHolman : private det
  private:
   using Base = detail::AboutPrimary<Real>;
   using Base::at, Base::barycentric, Base::from_jacobi, Base::gather_masses, Base::has_tracers;
-  using Base::centers_, Base::interior_, Base::masses_, Base::order_, Base::scale_, Base::within_;
   using Base::half_jump, Base::load_order, Base::load_within, Base::within;
   using Base::inertial_positions, Base::jacobi, Base::massive, Base::place_within, Base::scale, Base::scaled;
+  using Base::interior_, Base::masses_, Base::order_, Base::scale_, Base::within_;
   using Base::to_jacobi, Base::from_democratic, Base::to_democratic, Base::from_barycentric, Base::to_barycentric;
 
   static constexpr bool has_forces = !std::is_same_v<F, Sum<>>;

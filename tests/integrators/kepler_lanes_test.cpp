@@ -11,12 +11,27 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <random>
+#include <utility>
+#include <vector>
 
 // The same code with constants of 28 bits.
 #define NOETHER_SIMD_LEVEL with_short_constants
 #define NOETHER_SERIES_BITS 28
 #include "integrators/kepler_simd.hpp"
+
+namespace noether::base_at_O0 {
+extern const PlanetKernels planet_kernels;
+}
+#if NOETHER_SIMD_LEVELS
+namespace noether::avx2_at_O0 {
+extern const PlanetKernels planet_kernels;
+}
+namespace noether::avx512_at_O0 {
+extern const PlanetKernels planet_kernels;
+}
+#endif
 
 namespace noether {
 namespace {
@@ -163,6 +178,71 @@ TEST_CASE("arcs in lanes are those of the solver of single arcs, of any shape an
     CHECK(second > 100);
     CHECK(exact > 100);
     CHECK(exact < 4000 * 4);
+  }
+}
+
+TEST_CASE("planets in lanes have the same bits without optimization", "[kepler]") {
+  struct Level {
+    SimdLevel level;
+    const PlanetKernels& at_O0;
+  };
+  std::vector<Level> levels{{SimdLevel::base, base_at_O0::planet_kernels}};
+#if NOETHER_SIMD_LEVELS
+  if (has_simd_level(SimdLevel::avx2)) levels.push_back({SimdLevel::avx2, avx2_at_O0::planet_kernels});
+  if (has_simd_level(SimdLevel::avx512)) levels.push_back({SimdLevel::avx512, avx512_at_O0::planet_kernels});
+#endif
+  const auto numbers_after = [](const PlanetKernels& kernels, bool jacobi, bool compensated) {
+    std::mt19937_64 random(29);
+    std::vector<PlanetRow> row(2);
+    std::vector<PlanetPairs> pairs(3);
+    for (int k = 0; k < 16; ++k) {
+      PlanetRow& own = row[static_cast<std::size_t>(k / 8)];
+      place(own, k % 8, std::exp(0.4 * k), k % 3 == 0 ? 0.5 : 0.1, random);
+      for (auto* constant : {own.share, own.star, own.without_arc, own.relativity})
+        constant[k % 8] = 1e-4 * uniform(random);
+      for (auto* constant : {own.rest, own.one_over_m, own.one_over_M, own.moves}) constant[k % 8] = 1;
+    }
+    for (PlanetPairs& of : pairs) {
+      for (auto& line : of.attraction) {
+        for (double& one : line) one = 1e-5 * uniform(random);
+      }
+    }
+    const PlanetRows planets{.row = row.data(),
+                             .rows = 2,
+                             .pairs = pairs.data(),
+                             .jacobi = jacobi,
+                             .compensated = compensated,
+                             .relativity = compensated,
+                             .exact = solved_exactly};
+    kernels.prepare(planets);
+    for (int k = 0; k < 30; ++k) {
+      kernels.kick(planets, 0.5, k > 2);
+      kernels.drift(planets, {.h = 0.5, .predicted = k > 1, .predict = k > 0});
+    }
+    std::vector<double> numbers;
+    for (const PlanetRow& own : row) {
+      for (int c = 0; c < 3; ++c) {
+        numbers.insert(numbers.end(), own.x[c], own.x[c] + 8);
+        numbers.insert(numbers.end(), own.v[c], own.v[c] + 8);
+        numbers.insert(numbers.end(), own.x_low[c], own.x_low[c] + 8);
+      }
+      numbers.insert(numbers.end(), own.s, own.s + 8);
+    }
+    return numbers;
+  };
+  for (const bool jacobi : {false, true}) {
+    for (const bool compensated : {false, true}) {
+      std::optional<std::vector<double>> first;
+      for (const Level& level : levels) {
+        const test::AtLevel at(level.level);
+        const auto numbers = numbers_after(planet_kernels(), jacobi, compensated);
+        if (!first) first = numbers;
+        CAPTURE(name(level.level), jacobi, compensated);
+        CHECK(std::isfinite(numbers[0]));
+        CHECK(numbers == *first);
+        CHECK(numbers == numbers_after(level.at_O0, jacobi, compensated));
+      }
+    }
   }
 }
 
