@@ -202,6 +202,11 @@ template <class Real = double> class AnyForce : private detail::Erased<detail::F
   void check(const ParticleSystem<Real>& s) const { this->held_->check(s); }
   std::string name() const { return this->held_->name(); }
   std::string signature() const { return this->held_->signature(); }
+  /// The force itself where it is of this type, or null.
+  template <class F> const F* as() const {
+    const auto* model = dynamic_cast<const detail::ForceModel<F, Real>*>(this->held_.get());
+    return model != nullptr ? &model->force : nullptr;
+  }
   /// The same force in extended precision, or what it names as its `reference()` for truth; empty for one that is
   /// written for doubles only.
   std::optional<AnyForce<Quad>> in_quad() const {
