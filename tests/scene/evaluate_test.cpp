@@ -55,7 +55,7 @@ TEST_CASE("the virial is unknown where a force or a Hamiltonian has none", "[sce
   const std::string plain = "type = \"kinetic_potential\"\n";
   CHECK(evaluated(plain + gravity).virial(0, 0) == -0.001);
   CHECK(std::isnan(evaluated(plain + gravity + tether).virial(0, 0)));
-  CHECK(evaluated(plain + gravity + tether).potential == -0.001 + 0.001);
+  CHECK(evaluated(plain + gravity + tether).potential == -0.001 + 1);
   CHECK(std::isnan(evaluated("type = \"gyration\"\nomega = 2\n" + gravity).virial(0, 0)));
 }
 
