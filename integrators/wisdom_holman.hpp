@@ -188,6 +188,7 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
   mutable std::vector<Vec3<Real>> centers_;  ///< of these, as the last change of coordinates met them
   VectorColumn<Real> scratch_, positions_, acceleration_, other_, along_;
   std::optional<ParticleSystem<Real>> inertial_;  ///< positions for other forces
+  Workspace workspace_;                           ///< of other forces: no list of neighbors in it
   std::optional<Failure> failure_;
   Evaluations evaluations_;
   EncounterWatch encounters_;

@@ -62,7 +62,9 @@ void add_hamiltonian(const Scene& scene, ParticleSystem<double>& s, Evaluation& 
     if (force.letter || !force.force.claims().velocity_dependent) continue;
     VectorColumn<double> more(s.size());
     ForceSink<double> sink(more, s, Request{});
-    force.force.add_to(sink, s);
+    AnyForce<double> bound = force.force;
+    bound.bind(s);
+    bound.add_to(sink, s);
     for (Index i = 0; i < s.size(); ++i) a.add(i, std::as_const(more)[i]);
   }
   for (Index i = 0; i < s.size(); ++i) result.forces.set(i, std::as_const(s).masses()[i] * std::as_const(a)[i]);
@@ -88,7 +90,9 @@ Evaluation evaluate(const Scene& scene, bool check) {
   bool has_pressure = s.box().is_periodic() && scene.hamiltonian.constraints.empty();
   for (const SceneForce& term : scene.hamiltonian.terms()) {
     ForceSink<double> sink(a, s, {.energy = true, .virial = true});
-    term.force.add_to(sink, s);
+    AnyForce<double> bound = term.force;
+    bound.bind(s);
+    bound.add_to(sink, s);
     const ForceClaims claims = term.force.claims();
     const bool failed = sink.failure().has_value();
     if (failed && result.outcome.ok()) result.outcome = outcome_of(*sink.failure(), s);
