@@ -24,6 +24,7 @@ namespace noether {
 struct GrPotential {
   std::optional<double> c = {};  ///< speed of light [length/time]; default: by the unit system
   std::optional<double> G = {};  ///< [length^3/mass/time^2]; default: the unit system's own
+  Primary primary = {};          ///< particle 0 of the run
 
   static constexpr auto describe() {
     return part<GrPotential>(
@@ -45,7 +46,7 @@ struct GrPotential {
   /// @throws Error  where neither the force nor the units say what c is, and for a particle 0 without mass
   template <class Real> void check(const ParticleSystem<Real>& s) const {
     speed_of_light_in(s, c, "gr_potential");
-    check_primary_has_mass(s, "gr_potential");
+    primary.check(s, "gr_potential");
   }
 
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {

@@ -94,7 +94,8 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
   std::string name() const { return "wisdom_holman"; }
   HamiltonianClaims claims() const;
 
-  /// @throws Error  if particle 0 has no mass, or a tracer stands before a massive body
+  /// @throws Error  if particle 0 has no mass or is not that of the first call, or a tracer stands before a massive
+  /// body
   void bind(ParticleSystem<Real>& s);
   void open(ParticleSystem<Real>& s);
   void close(ParticleSystem<Real>& s);
@@ -189,6 +190,7 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
   VectorColumn<Real> scratch_, positions_, acceleration_, other_, along_;
   std::optional<ParticleSystem<Real>> inertial_;  ///< positions for other forces
   Workspace workspace_;                           ///< of other forces: no list of neighbors in it
+  std::optional<std::int64_t> primary_id_;        ///< of particle 0 when it was first bound
   std::optional<Failure> failure_;
   Evaluations evaluations_;
   EncounterWatch encounters_;
