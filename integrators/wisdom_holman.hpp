@@ -4,6 +4,7 @@
 #include "engine/concepts.hpp"
 #include "engine/signature.hpp"
 #include "forces/gravity.hpp"
+#include "forces/primary.hpp"
 #include "forces/sum.hpp"
 #include "integrators/encounters.hpp"
 #include "integrators/jacobi_derivatives.hpp"
@@ -190,7 +191,7 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
   VectorColumn<Real> scratch_, positions_, acceleration_, other_, along_;
   std::optional<ParticleSystem<Real>> inertial_;  ///< positions for other forces
   Workspace workspace_;                           ///< of other forces: no list of neighbors in it
-  std::optional<std::int64_t> primary_id_;        ///< of particle 0 when it was first bound
+  Primary primary_;
   std::optional<Failure> failure_;
   Evaluations evaluations_;
   EncounterWatch encounters_;

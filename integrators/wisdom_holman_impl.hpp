@@ -37,17 +37,11 @@ template <class Real, class F> HamiltonianClaims WisdomHolman<Real, F>::claims()
 template <class Real, class F> void WisdomHolman<Real, F>::bind(ParticleSystem<Real>& s) {
   using std::sqrt;
   const auto& c = std::as_const(s);
-  if constexpr (has_forces) {
-    bind_force(forces_, s);
-    workspace_ = Workspace();
-  }
+  if constexpr (has_forces) bind_force(forces_, s);
+  workspace_ = Workspace();
   g_ = Real(options_.G ? *options_.G : s.units().G);
   const auto n = static_cast<std::size_t>(s.size());
-  if (primary_id_ && *primary_id_ != c.ids()[0]) {
-    throw Error(fmt::format("the particle with id {}, the primary of wisdom_holman, has been taken out; keep it",
-                            *primary_id_));
-  }
-  primary_id_ = c.ids()[0];
+  primary_.keep(c, "wisdom_holman");
   if (!(c.masses()[0] > Real(0))) {
     throw Error(
         fmt::format("'{}' comes first, so it is the primary of wisdom_holman, but its mass is 0; put the most "

@@ -174,8 +174,7 @@ TEST_CASE("no other particle becomes the primary when that is taken out of a run
   const auto oblate = test::kinetic_potential(Gravity{}, Oblateness{.J2 = 0.01, .radius = 0.1});
   CHECK_THROWS_WITH(edited(potential, 0), of("gr_potential"));
   CHECK_THROWS_WITH(edited(oblate, 0), of("oblateness"));
-  CHECK_THROWS_WITH(edited(test::wisdom_holman({.G = 1}), 0),
-                    "the particle with id 0, the primary of wisdom_holman, has been taken out; keep it");
+  CHECK_THROWS_WITH(edited(test::wisdom_holman({.G = 1}), 0), of("wisdom_holman"));
   for (const auto& hamiltonian : {potential, oblate, test::wisdom_holman({.G = 1})}) {
     CHECK_NOTHROW(edited(hamiltonian, 1));
     CHECK_NOTHROW(edited(hamiltonian, 2));
