@@ -2,15 +2,29 @@
 
 #include "cli/run_caption.hpp"
 #include "engine/sums.hpp"
+#include "numbers/error.hpp"
 
 #include <algorithm>
 #include <string>
 
 namespace noether {
 
+namespace {
+
+/// Whether pairs move on Kepler orbits under a Hamiltonian alone, as far as its defaults make one.
+bool is_keplerian(const Parts::HamiltonianKind& kind) {
+  try {
+    return kind.claims().kepler;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+}  // namespace
+
 bool has_gravity(const SceneValue& scene, const Parts& parts) {
   for (const Parts::HamiltonianKind& kind : parts.hamiltonians()) {
-    if (kind.info.name == text_at(scene, {"hamiltonian", "type"}) && kind.claims().kepler) return true;
+    if (kind.info.name == text_at(scene, {"hamiltonian", "type"}) && is_keplerian(kind)) return true;
   }
   const auto attracts = [&](const SceneValue* force) {
     return std::any_of(parts.forces().begin(), parts.forces().end(), [&](const Parts::ForceKind& kind) {
