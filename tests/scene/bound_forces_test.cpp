@@ -12,6 +12,7 @@
 #include "scene/scene.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"
+#include "tests/support/gyration.hpp"
 
 #include <cmath>
 #include <string>
@@ -109,6 +110,10 @@ TEST_CASE("evaluate binds forces, and so do checks of their gradients and minimi
   CHECK(e.force_max == 0.5);
   CHECK(*e.gradient_error < 1e-12);
   CHECK_NOTHROW(check_gradient(Leash{}, sun_and_planet()));
+  parts.add_hamiltonian<Gyration>();
+  std::string turning = scene_with_leash;
+  turning.replace(turning.find("kinetic_potential\""), 18, "gyration\"\nomega = 2");
+  CHECK(evaluate(read_scene(turning, "scene.toml", parts)).potential == 0.5);
   ParticleSystem<double> s = sun_and_planet();
   CHECK(minimize(s, Leash{}, {.max_force = 1e-6}).converged());
   CHECK(std::abs(std::as_const(s).positions()[1][0]) < 1e-5);
