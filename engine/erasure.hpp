@@ -6,6 +6,7 @@
 #include "engine/concepts.hpp"
 #include "engine/word.hpp"
 
+#include <concepts>
 #include <memory>
 #include <optional>
 #include <string>

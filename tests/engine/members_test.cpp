@@ -4,6 +4,7 @@
 #include "engine/monitor.hpp"
 #include "forces/bonded.hpp"
 #include "forces/gravity.hpp"
+#include "forces/sum.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "monitors/monitors.hpp"
 #include "tests/support/catch.hpp"

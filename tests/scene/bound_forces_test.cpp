@@ -16,6 +16,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 
 namespace noether::test {
 namespace {
@@ -93,7 +94,8 @@ TEST_CASE("other forces of a Wisdom-Holman splitting are bound, and find their c
   const auto arcs = test::wisdom_holman({.G = 1}, Leash{});
   const auto kicks = test::kinetic_potential(Gravity{.G = 1}, Leash{});
   const auto far = [&](const auto& hamiltonian, double step, std::int64_t steps) {
-    return test::run(hamiltonian, schemes::yoshida_4, s, step, steps).positions()[1];
+    const ParticleSystem<double> end = test::run(hamiltonian, schemes::yoshida_4, s, step, steps);
+    return Vec3<double>(end.positions()[1]);
   };
   const Vec3<double> one = far(arcs, 0.01, 200), other = far(kicks, 0.01, 200);
   CHECK(std::sqrt(norm2(Vec3<double>(one - other))) < 1e-6);
