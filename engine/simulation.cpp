@@ -47,6 +47,7 @@ Simulation<Real>::Simulation(ParticleSystem<Real> particles, AnyIntegrator<Real>
     throw Error(fmt::format("method '{}' cannot go back in time; give it a clock that goes forward", claims.method));
   }
   detail::check_start(clock.start());
+  if (clock.mode() == ClockMode::fixed) detail::checked_step(clock.dt());
   raw_.trim();
   raw_.clock() = clock;
   raw_.keep_low_words(false);  // those of another run belong to its working coordinates

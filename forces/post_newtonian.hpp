@@ -23,6 +23,7 @@ namespace noether {
 struct PostNewtonian {
   std::optional<double> c = {};  ///< speed of light [length/time]; default: by the unit system
   std::optional<double> G = {};  ///< [length^3/mass/time^2]; default: the unit system's own
+  Primary primary = {};          ///< particle 0 of the run
 
   static constexpr auto describe() {
     return part<PostNewtonian>(

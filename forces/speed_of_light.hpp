@@ -49,7 +49,7 @@ template <class F> void check_relativity(const F& force) {
 /// @throws Error  where neither the force nor the units say what c is, and for a particle 0 without mass
 template <class F, class Real> void check_relativity(const F& force, const ParticleSystem<Real>& s, const char* name) {
   speed_of_light_in(s, force.c, name);
-  check_primary_has_mass(s, name);
+  force.primary.check(s, name);
 }
 
 /// G m_0 [length^3/time^2]

@@ -6,6 +6,7 @@
 #include "engine/word.hpp"
 #include "forces/gr_potential.hpp"
 #include "forces/gravity.hpp"
+#include "forces/primary.hpp"
 #include "forces/sum.hpp"
 #include "integrators/encounters.hpp"
 #include "integrators/jacobi_derivatives.hpp"
@@ -90,7 +91,8 @@ template <class Real = double, class F = Sum<>> class WisdomHolman : private det
   std::string name() const { return "wisdom_holman"; }
   HamiltonianClaims claims() const;
 
-  /// @throws Error  if particle 0 has no mass, or a tracer stands before a massive body
+  /// @throws Error  if particle 0 has no mass or is not that of the first call, or a tracer stands before a massive
+  /// body
   void bind(ParticleSystem<Real>& s);
   void open(ParticleSystem<Real>& s);
   void close(ParticleSystem<Real>& s);
@@ -215,6 +217,8 @@ template <class Real = double, class F = Sum<>> class WisdomHolman : private det
   std::optional<ParticleSystem<Real>> inertial_;  ///< for other forces
   std::optional<Along> forces_along_;             ///< made by the first derivative
   std::optional<Place> pulled_;                   ///< where `acceleration_` is that of B
+  Workspace workspace_;                           ///< of other forces: no list of neighbors in it
+  Primary primary_;
   std::optional<Failure> failure_;
   Evaluations evaluations_;
   EncounterWatch encounters_;

@@ -46,9 +46,11 @@ template <class Real, class F> HamiltonianClaims WisdomHolman<Real, F>::claims()
 template <class Real, class F> void WisdomHolman<Real, F>::bind(ParticleSystem<Real>& s) {
   using std::sqrt;
   const auto& c = std::as_const(s);
-  if constexpr (has_forces) check_force(forces_, s);
+  if constexpr (has_forces) bind_force(forces_, s);
+  workspace_ = Workspace();
   g_ = Real(options_.G ? *options_.G : s.units().G);
   const auto n = static_cast<std::size_t>(s.size());
+  primary_.keep(c, "wisdom_holman");
   if (!(c.masses()[0] > Real(0))) {
     throw Error(
         fmt::format("'{}' comes first, so it is the primary of wisdom_holman, but its mass is 0; put the most "
@@ -402,7 +404,7 @@ template <class Real, class F>
 Real WisdomHolman<Real, F>::other_forces(const VectorColumn<Real>& x, const Clock<Real>& clock, bool energy) {
   inertial_->clock() = clock;
   inertial_positions(x, x[0], inertial_->positions());
-  ForceSink<Real> sink(other_, *inertial_, {.energy = energy});
+  ForceSink<Real> sink(other_, *inertial_, {.energy = energy}, &workspace_);
   forces_.add_to(sink, *inertial_);
   note_failure(sink.failure());
   acceleration_.all() += other_.all();
@@ -435,7 +437,7 @@ template <class Real, class F> Real WisdomHolman<Real, F>::jump(ParticleSystem<R
 template <class Real, class F>
 Real WisdomHolman<Real, F>::newton(const ParticleSystem<Real>& s, VectorColumn<Real>& a, Request wanted) {
   if (a.size() != s.size()) a = VectorColumn<Real>(s.size());
-  ForceSink<Real> sink(a, s, wanted);
+  ForceSink<Real> sink(a, s, wanted, &workspace_);
   Gravity{.G = options_.G}.add_to(sink, s);
   forces_.add_to(sink, s);
   return sink.potential();

@@ -114,7 +114,7 @@ template <class Real, class F> void WisdomHolman<Real, F>::velocity_kick(Particl
   bool settled = false;
   for (int round = 0; round < most_rounds && !settled; ++round) {
     inertial_velocities(std::as_const(scratch_), inertial_->velocities());
-    ForceSink<Real> sink(other_, *inertial_, {});
+    ForceSink<Real> sink(other_, *inertial_, {}, &workspace_);
     forces_.add_to(sink, *inertial_);
     note_failure(sink.failure());
     if (jacobi()) {

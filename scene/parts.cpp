@@ -132,7 +132,7 @@ Parts standard_parts() {
   parts.add_force<Bonded>();
   parts.add_force<LinearDrag>();
   parts.add_constraint<Distance>();
-  parts.add_constraint({part_info<RigidBar>(), 0, RigidBar::read});
+  parts.add_constraint({part_info<RigidBar>(), 0, RigidBar::read, Drawn::chain});
   parts.add_constraint<Angle>();
   parts.add_constraint<Fixed>();
   parts.add_constraint<OnSphere>();

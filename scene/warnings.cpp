@@ -256,7 +256,8 @@ std::vector<std::string> warnings_of(const Scene& scene) {
   return warnings;
 }
 
-std::string warning_of(const Encounter& encounter, const ParticleSystem<double>& particles, const UnitSystem& units) {
+std::string warning_of(const Encounter& encounter, const std::string& hamiltonian,
+                       const ParticleSystem<double>& particles, const UnitSystem& units) {
   const auto name = [&](std::int64_t id) {
     for (Index i = 0; i < particles.size(); ++i) {
       if (particles.ids()[static_cast<std::size_t>(i)] == id) return fmt::format("'{}'", particles.name(i));
@@ -269,9 +270,9 @@ std::string warning_of(const Encounter& encounter, const ParticleSystem<double>&
                                 : fmt::format(", and bodies within {} for the first time at time {:.6g}{}",
                                               encounter_hill_radii, encounter.since, unit);
   return fmt::format(
-      "{} and {} came within {:.2g} Hill radii of each other at time {:.6g}{}{}; wisdom_holman does not follow such "
+      "{} and {} came within {:.2g} Hill radii of each other at time {:.6g}{}{}; {} does not follow such "
       "encounters, so use a method whose steps shrink in them, such as 'gauss_radau_15'",
-      name(encounter.first), name(encounter.second), encounter.hill_radii, encounter.time, unit, first);
+      name(encounter.first), name(encounter.second), encounter.hill_radii, encounter.time, unit, first, hamiltonian);
 }
 
 void tell_notes(const std::vector<std::string>& notes) {

@@ -15,7 +15,9 @@ namespace noether {
 std::vector<std::string> warnings_of(const Scene& scene);
 
 /// What a run under a splitting about a primary says of bodies that came too near to each other for it.
-std::string warning_of(const Encounter& encounter, const ParticleSystem<double>& particles, const UnitSystem& units);
+/// @param hamiltonian  its name
+std::string warning_of(const Encounter& encounter, const std::string& hamiltonian,
+                       const ParticleSystem<double>& particles, const UnitSystem& units);
 
 /// Tells notes on stderr, one line each: what of a scene was taken otherwise than written (`Scene::notes`).
 void tell_notes(const std::vector<std::string>& notes);

@@ -221,5 +221,28 @@ TEST_CASE("forces about particle 0 refuse one that has no mass", "[relativity]")
   CHECK_NOTHROW(Oblateness{}.check(tracer({1, 0, 0}, {0, 1, 0})));
 }
 
+TEST_CASE("no other particle becomes the primary when that is taken out of a run", "[relativity]") {
+  const auto edited = [](const AnyHamiltonian<double>& hamiltonian, Index removed) {
+    ParticleSystem<double> s = tracer({1, 0, 0}, {0, 1, 0});
+    s.add("outer", 0, {2, 0, 0}, {0, 0.7, 0});
+    s.masses()[1] = 0.001;
+    Simulation<double> run(s, compose(hamiltonian, schemes::verlet), 0.01);
+    run.edit([&](ParticleSystem<double>& particles) { particles.remove(removed); });
+  };
+  const auto of = [](const std::string& force) {
+    return force + " is about the particle with id 0, which has been taken out; keep it, or start a new run without " +
+           force;
+  };
+  const auto potential = test::kinetic_potential(Gravity{}, GrPotential{.c = 3.0});
+  const auto oblate = test::kinetic_potential(Gravity{}, Oblateness{.J2 = 0.01, .radius = 0.1});
+  CHECK_THROWS_WITH(edited(potential, 0), of("gr_potential"));
+  CHECK_THROWS_WITH(edited(oblate, 0), of("oblateness"));
+  CHECK_THROWS_WITH(edited(test::wisdom_holman({.G = 1}), 0), of("wisdom_holman"));
+  for (const auto& hamiltonian : {potential, oblate, test::wisdom_holman({.G = 1})}) {
+    CHECK_NOTHROW(edited(hamiltonian, 1));
+    CHECK_NOTHROW(edited(hamiltonian, 2));
+  }
+}
+
 }  // namespace
 }  // namespace noether

@@ -183,16 +183,16 @@ TEST_CASE("a run says in one line who met whom, when, and how closely", "[encoun
   const auto s = crowd();
   const Encounter once{.first = s.ids()[1], .second = s.ids()[2], .hill_radii = 0.4213, .time = 12.5, .since = 12.5};
   CHECK(
-      warning_of(once, s, unit_system("reduced")) ==
+      warning_of(once, "wisdom_holman", s, unit_system("reduced")) ==
       "'inner' and 'outer' came within 0.42 Hill radii of each other at time 12.5; wisdom_holman does not follow such "
       "encounters, so use a method whose steps shrink in them, such as 'gauss_radau_15'");
   Encounter later = once;
   later.since = 3.25;
   later.second = 77;
   CHECK(
-      warning_of(later, s, unit_system("solar")) ==
+      warning_of(later, "democrat", s, unit_system("solar")) ==
       "'inner' and a body that is gone (id 77) came within 0.42 Hill radii of each other at time 12.5 day, and bodies "
-      "within 2 for the first time at time 3.25 day; wisdom_holman does not follow such encounters, so use a method "
+      "within 2 for the first time at time 3.25 day; democrat does not follow such encounters, so use a method "
       "whose steps shrink in them, such as 'gauss_radau_15'");
 }
 
