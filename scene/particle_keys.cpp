@@ -91,6 +91,8 @@ std::optional<Box> read_box(TableReader& reader, SceneValue& effective) {
 
 bool has_frame_number(TableReader& reader) {
   const SceneValue* frame = reader.find("frame");
+  if (frame != nullptr && frame->get<std::int64_t>() == nullptr && frame->get<std::string>() == nullptr)
+    reader.wrong_kind(*frame, "frame", "\"barycenter\", or the number of a frame, such as 0 or -1 for the last,");
   return frame != nullptr && frame->get<std::int64_t>() != nullptr;
 }
 
