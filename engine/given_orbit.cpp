@@ -184,8 +184,7 @@ std::string about_a_light_body(const ParticleSystem<double>& s, Index count, con
   if (heaviest == 0) return "";
   return fmt::format(
       "the elements of '{0}' are about '{1}', which comes first, but '{2}' has {3:.3g} times its mass; put '{2}' "
-      "first, "
-      "or say what they are about: about = \"{2}\" or \"{1}\"",
+      "first, or say what they are about: about = \"{2}\" or \"{1}\"",
       body, s.name(0), s.name(heaviest), s.masses()[heaviest] / s.masses()[0]);
 }
 

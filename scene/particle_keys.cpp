@@ -96,6 +96,12 @@ bool has_frame_number(TableReader& reader) {
   return frame != nullptr && frame->get<std::int64_t>() != nullptr;
 }
 
+std::string no_such_frame(const std::string& frame, bool has_frames) {
+  std::string told = fmt::format("unknown frame '{}'{}", frame, did_you_mean(frame, {"barycenter", "as_given"}));
+  if (has_frames && !told.ends_with('?')) told += ", or the number of a frame, such as 0 or -1 for the last";
+  return told;
+}
+
 std::optional<Mixing> read_mixing(TableReader& reader, SceneValue& effective) {
   const SceneValue* value = reader.find("mixing");
   if (value == nullptr) return {};

@@ -532,9 +532,7 @@ void read_frame(TableReader& reader, ParticleSystem<double>& s, bool of_a_frame,
   }
   const std::string frame = reader.text("frame", "as_given");
   if (frame != "as_given" && frame != "barycenter") {
-    const char* number = of_a_frame || reader.has("structure") ? "; frames have numbers, -1 is the last" : "";
-    reader.fail("frame",
-                fmt::format("unknown frame '{}'{}{}", frame, did_you_mean(frame, {"barycenter", "as_given"}), number));
+    reader.fail("frame", no_such_frame(frame, of_a_frame || reader.has("structure")));
   }
   if (frame == "barycenter" && s.box().is_periodic()) {
     reader.fail("frame", "a periodic box has no centre of mass; take frame = \"barycenter\" out");

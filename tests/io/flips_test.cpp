@@ -8,6 +8,7 @@
 
 #include <map>
 #include <random>
+#include <set>
 
 #if NOETHER_HDF5
 
@@ -176,14 +177,17 @@ TEST_CASE("a bit of an attribute that never changes is found", "[inspect][flips]
 TEST_CASE("a bit of the scene, of the attributes of monitors or of the name of a digest is found", "[inspect][flips]") {
   const Finished run;
   const std::string bytes = read_text(run.file());
+  // What verify says where a byte of a text is changed; HDF5 may leave copies of it in space that is not used any more.
   const auto said = [&](const std::string& text, std::size_t byte) {
-    CAPTURE(text);
-    const std::size_t at = bytes.find(text);
-    REQUIRE(at != std::string::npos);
-    REQUIRE(bytes.find(text, at + 1) == std::string::npos);
-    return run.damaged_at(at + byte, 0);
+    std::set<std::vector<std::string>> told;
+    for (std::size_t at = bytes.find(text); at != std::string::npos; at = bytes.find(text, at + 1))
+      told.insert(run.damaged_at(at + byte, 0));
+    told.erase(std::vector<std::string>{});
+    return told;
   };
-  const auto one = [](const std::string& message) { return std::vector<std::string>{message}; };
+  const auto one = [](const std::string& message) {
+    return std::set<std::vector<std::string>>{std::vector<std::string>{message}};
+  };
   CHECK(said("outer planets", 0) == one("the scene differs from the one that was written"));
   CHECK(said("scene_sha256", 1) == one("there is no digest of the scene, which every such file has"));
   CHECK(said("complete", 0) == one("it does not say whether it is complete, as every such file does"));
@@ -191,9 +195,9 @@ TEST_CASE("a bit of the scene, of the attributes of monitors or of the name of a
         one("there is no digest of the constant data of the particles, which every such file has"));
   const io::MonitorSeries& monitor = run.monitors().front();
   REQUIRE(monitor.scale);
-  CHECK(
-      run.damaged(*monitor.scale, 20) ==
-      one(fmt::format("monitor {}: its units or other attributes differ from those that were written", monitor.name)));
+  const std::set<std::vector<std::string>> found = {run.damaged(*monitor.scale, 20)};
+  CHECK(found == one(fmt::format("monitor {}: its units or other attributes differ from those that were written",
+                                 monitor.name)));
 }
 
 TEST_CASE("a bit that flips anywhere is found, or nothing that is held has changed", "[inspect][flips]") {
