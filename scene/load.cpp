@@ -311,9 +311,18 @@ class SceneReader {
       reader.fail("type", fmt::format("{} already includes {}; take this force out, or use {}", made.splitting.name,
                                       kind.info.name, plain_hamiltonian()));
     }
-    if (!kind.only_once.empty() && std::any_of(made.forces.begin(), made.forces.end(), is_it)) {
+    // Forces of several names that must not stand twice for one reason are one effect.
+    const auto has_its_effect = [&](const SceneForce& other) {
+      return std::any_of(parts_.forces().begin(), parts_.forces().end(), [&](const Parts::ForceKind& known) {
+        return known.info.name == other.name && known.only_once == kind.only_once;
+      });
+    };
+    const auto same = std::find_if(made.forces.begin(), made.forces.end(), has_its_effect);
+    if (!kind.only_once.empty() && same != made.forces.end()) {
+      const std::string who = is_it(*same) ? kind.info.name + " appears twice in the scene"
+                                           : fmt::format("{} and {} are one effect", same->name, kind.info.name);
       const std::string_view mark = kind.only_once.starts_with("so ") ? "," : ";";
-      reader.fail("type", fmt::format("{} appears twice in the scene{} {}", kind.info.name, mark, kind.only_once));
+      reader.fail("type", fmt::format("{}{} {}", who, mark, kind.only_once));
     }
     if (!(force.force.claims().range > 0)) return;
     const std::set<std::string> types = types_between(table);
