@@ -398,6 +398,11 @@ class SceneReader {
       TableReader reader(context_, *table, fmt::format("stop '{}'", type), path);
       for (const char* key : {"type", "every"}) reader.find(key);
       SceneStop stop = kind->read(reader);
+      // A step that a method chooses may be a large part of an orbit, and a hundred of them the whole run.
+      if (scene_.integrator.adaptive() && !reader.has("steps")) {
+        stop.steps = 1;
+        stop.effective.put("steps", SceneValue::of(stop.steps, reader.line("steps")));
+      }
       SceneValue effective = SceneValue::table();
       effective.put("type", SceneValue::of(type, reader.line("type")));
       for (auto& [key, value] : *stop.effective.get<SceneValue::Table>()) effective.put(key, value);
