@@ -417,10 +417,23 @@ class SceneReader {
                 "stop '{}' is checked at whole steps, but method '{}' chooses them; give steps instead of every", type,
                 scene_.integrator.method));
       }
+      note_pairs_left_out(reader, stop);
       list.push_back(std::move(effective));
       scene_.stops.push_back(std::move(stop));
     }
     if (!list.empty()) scene_.effective.put("stop", SceneValue::of(std::move(list)));
+  }
+
+  /// Tells that pairs without mass do not meet, where there are any.
+  void note_pairs_left_out(const TableReader& reader, const SceneStop& stop) {
+    const auto& masses = scene_.particles.masses();
+    Index tracers = 0;
+    for (Index i = 0; i < scene_.particles.size(); ++i) tracers += masses[i] == 0 ? 1 : 0;
+    if (stop.rule.kind != StopRule::Kind::collision || tracers < 2) return;
+    reader.note(
+        reader.table(),
+        fmt::format("pairs of the {} tracers, whose mass is 0, do not stop the run; give them masses if they may",
+                    tracers));
   }
 
   /// Only who tests a scene reads what it expects: what is wrong there ends no run.

@@ -266,6 +266,23 @@ TEST_CASE("an escape is looked for at every step that a method chooses", "[scene
   CHECK(read(orbit + "[integrator]\nmethod = 'verlet'\nstep = 0.1\nuntil = 30\n" + stop).stops.at(0).steps == 100);
 }
 
+TEST_CASE("a collision is said to leave out pairs of tracers", "[scene][stop]") {
+  const auto notes = [](const std::string& third) {
+    return read(
+               "units = 'reduced'\n[particles]\n[[particles.body]]\nname = 'S'\nmass = 1\n[[particles.body]]\n"
+               "name = 't'\nmass = 0\na = 1\n[[particles.body]]\nname = 'u'\nmass = " +
+               third +
+               "\na = 2\n[hamiltonian]\ntype = 'kinetic_potential'\n[[hamiltonian.force]]\ntype = 'gravity'\n"
+               "[integrator]\nmethod = 'verlet'\nstep = 0.1\nsteps = 2\n[[stop]]\ntype = 'collision'\ndistance = "
+               "0.1\n")
+        .notes;
+  };
+  CHECK(notes("1e-6").empty());
+  REQUIRE(notes("0").size() == 1);
+  CHECK(notes("0")[0].ends_with(
+      ":22: pairs of the 2 tracers, whose mass is 0, do not stop the run; give them masses if they may"));
+}
+
 TEST_CASE("bodies by elements go round by the G of the force", "[scene]") {
   // Half a turn of a circle in 4 pi^2 = G M takes half a year.
   const std::string circle =
