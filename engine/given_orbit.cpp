@@ -178,4 +178,14 @@ OrbitCenter center_of(const ParticleSystem<double>& s, const std::vector<Index>&
   return center;
 }
 
+std::string about_a_light_body(const ParticleSystem<double>& s, Index count, const std::string& body) {
+  Index heaviest = 0;
+  for (Index i = 1; i < count; ++i) heaviest = s.masses()[i] > s.masses()[heaviest] ? i : heaviest;
+  if (heaviest == 0) return "";
+  return fmt::format(
+      "the elements of '{0}' are about '{1}', which comes first, but '{2}' has {3:.3g} times its mass; put '{2}' "
+      "first, or say what they are about: about = \"{2}\" or \"{1}\"",
+      body, s.name(0), s.name(heaviest), s.masses()[heaviest] / s.masses()[0]);
+}
+
 }  // namespace noether

@@ -91,7 +91,15 @@ std::optional<Box> read_box(TableReader& reader, SceneValue& effective) {
 
 bool has_frame_number(TableReader& reader) {
   const SceneValue* frame = reader.find("frame");
+  if (frame != nullptr && frame->get<std::int64_t>() == nullptr && frame->get<std::string>() == nullptr)
+    reader.wrong_kind(*frame, "frame", "\"barycenter\", or the number of a frame, such as 0 or -1 for the last,");
   return frame != nullptr && frame->get<std::int64_t>() != nullptr;
+}
+
+std::string no_such_frame(const std::string& frame, bool has_frames) {
+  std::string told = fmt::format("unknown frame '{}'{}", frame, did_you_mean(frame, {"barycenter", "as_given"}));
+  if (has_frames && !told.ends_with('?')) told += ", or the number of a frame, such as 0 or -1 for the last";
+  return told;
 }
 
 std::optional<Mixing> read_mixing(TableReader& reader, SceneValue& effective) {

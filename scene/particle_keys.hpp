@@ -31,6 +31,9 @@ std::optional<Box> read_box(TableReader& reader, SceneValue& effective);
 /// Whether `frame` is the number of a frame of a file, and not "barycenter" or "as_given".
 bool has_frame_number(TableReader& reader);
 
+/// What is wrong with a text as `frame`, of particles that come from a file with frames or not.
+std::string no_such_frame(const std::string& frame, bool has_frames);
+
 /// `mixing`; empty where the scene says nothing. @throws SceneError
 std::optional<Mixing> read_mixing(TableReader& reader, SceneValue& effective);
 

@@ -1,6 +1,7 @@
 #include "scene/warnings.hpp"
 
 #include "engine/charge.hpp"
+#include "engine/given_orbit.hpp"
 #include "integrators/encounters.hpp"
 #include "numbers/quantity.hpp"
 #include "numbers/text.hpp"
@@ -161,6 +162,28 @@ std::string other_primary(const Scene& scene) {
                      s.name(heaviest), s.masses()[heaviest] / s.masses()[0], s.name(heaviest));
 }
 
+/// The first body of the scene's own tables whose elements are about a first body that is not the heaviest above it;
+/// empty if there is none. (Tables in files tell their own.)
+std::string other_center(const Scene& scene) {
+  const SceneValue* particles = scene.effective.find("particles");
+  const SceneValue* bodies = particles == nullptr ? nullptr : particles->find("body");
+  const auto* tables = bodies == nullptr ? nullptr : bodies->get<SceneValue::Array>();
+  const SceneValue* elements = particles == nullptr ? nullptr : particles->find("elements");
+  if (tables == nullptr || (elements != nullptr && *elements->get<std::string>() == "jacobi")) return "";
+  Index i = scene.particles.size() - static_cast<Index>(tables->size());
+  for (const SceneValue& table : *tables) {
+    const bool orbit = std::any_of(orbit_keys.begin(), orbit_keys.end(), [&](const OrbitKey& key) {
+      return key.choice == OrbitKey::Choice::size && table.find(key.name) != nullptr;
+    });
+    if (orbit && table.find("about") == nullptr) {
+      std::string told = about_a_light_body(scene.particles, i, scene.particles.name(i));
+      if (!told.empty()) return told;
+    }
+    ++i;
+  }
+  return "";
+}
+
 /// Particles that no force moves for want of mass, where pair forces are all there is; empty if there are none.
 std::string unmoved_tracers(const Scene& scene) {
   const ParticleSystem<double>& s = scene.particles;
@@ -250,6 +273,7 @@ std::vector<std::string> warnings_of(const Scene& scene) {
   add(other_cutoff(scene));
   add(too_stiff(scene));
   add(other_primary(scene));
+  add(other_center(scene));
   add(other_gravitation(scene));
   add(unmoved_tracers(scene));
   for (const SceneWatch& watch : scene.watches) add(times_after_the_end(watch, scene));

@@ -70,6 +70,43 @@ TEST_CASE("Kepler arcs about a body that is not the heaviest are warned of", "[s
   }
 }
 
+TEST_CASE("elements about a first body that is not the heaviest above are warned of", "[scene][warnings]") {
+  const std::string earth = "[[particles.body]]\nname = 'Earth'\nmass = 3e-6\n";
+  const std::string sun = "[[particles.body]]\nname = 'Sun'\nmass = 1\nx = [1, 0, 0]\nv = [0, 1, 0]\n";
+  const std::string moon = "[[particles.body]]\nname = 'Moon'\nmass = 4e-8\na = 0.0026\n";
+  const auto of = [](const std::string& particles) {
+    return warnings_of(read_scene("units = 'reduced'\n[particles]\n" + particles +
+                                      "[hamiltonian]\ntype = 'kinetic_potential'\n[[hamiltonian.force]]\ntype = "
+                                      "'gravity'\n[integrator]\nmethod = 'gauss_8'\nuntil = 1\n",
+                                  "scene.toml"));
+  };
+  const auto told = [](const std::string& body) {
+    return std::vector<std::string>{"the elements of '" + body +
+                                    "' are about 'Earth', which comes first, but 'Sun' has 3.33e+05 times its mass; "
+                                    "put 'Sun' first, or say what they are about: about = \"Sun\" or \"Earth\""};
+  };
+  const std::string jupiter = "[[particles.body]]\nname = 'Jupiter'\nmass = 1e-3\na = 5.2\n";
+  CHECK(of(earth + sun + jupiter) == told("Jupiter"));
+  CHECK(of(earth + sun + jupiter + "about = 'Sun'\n").empty());
+  CHECK(of(earth + sun + moon + "about = 'Earth'\n").empty());
+  CHECK(of(earth + moon + sun).empty());
+  CHECK(of("elements = 'jacobi'\n" + earth + sun + jupiter).empty());
+  CHECK(of(sun + earth + "a = 1\n" + jupiter).empty());
+  const ScratchFolder folder;
+  const auto of_table = [&](const std::string& table) {
+    write_text(folder / "b.csv", table);
+    return of("bodies = '" + (folder / "b.csv").string() + "'\n");
+  };
+  CHECK(of_table("name,mass,a,e,inc,Omega,omega,M\nEarth,3e-6,,,,,,\nSun,1,1,0,0,0,0,0\nJupiter,1e-3,5.2,0,0,0,0,0\n"
+                 "Saturn,3e-4,9.5,0,0,0,0,0\n") == told("Jupiter"));
+  CHECK(of_table("name,mass,a,e,inc,Omega,omega,M,about\nEarth,3e-6,,,,,,,\nSun,1,1,0,0,0,0,0,\n"
+                 "Jupiter,1e-3,5.2,0,0,0,0,0,Sun\n")
+            .empty());
+  // Bodies of the scene behind those of a file.
+  write_text(folder / "b.csv", "name,mass,x,y,z,vx,vy,vz\nEarth,3e-6,0,0,0,0,0,0\nSun,1,1,0,0,0,1,0\n");
+  CHECK(of("bodies = '" + (folder / "b.csv").string() + "'\n" + jupiter) == told("Jupiter"));
+}
+
 TEST_CASE("a pair force may stand in a scene for each pair of types, and once for each", "[scene][messages]") {
   const ScratchFolder folder;
   write_text(folder / "two.data",
