@@ -202,7 +202,7 @@ class Setter {
                               : list.size() == 1 ? "the only one is number 0"
                                                  : fmt::format("the last one is number {}", list.size() - 1);
     fail(
-        fmt::format("there is no element {}; {}, and {}{}={{type=\"...\"}} adds one", index, there, head, list.size()));
+        fmt::format("there is no element {}; {}, and {}{}={{...}} adds one", index, there, head, list.size()));
   }
 
   static void drop_alternatives(SceneValue& table, const std::string& key) {

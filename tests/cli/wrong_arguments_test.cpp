@@ -68,7 +68,7 @@ const std::vector<Wrong> wrong_lines = {
      "--set integrator.method=yoshda_4: unknown method 'yoshda_4'; did you mean 'yoshida_4'?"},
     {"info ''", 2, "file: the name of the file is empty; see `noether info --help`"},
     {"run scene.toml --set every.9.steps=3", 2,
-     "--set every.9.steps=3: there is no element 9; the last one is number 3, and every.4={type=\"...\"} adds one"},
+     "--set every.9.steps=3: there is no element 9; the last one is number 3, and every.4={...} adds one"},
     {"run scene.toml --resume --fresh", 2, "--resume excludes --fresh; see `noether run --help`"},
     {"run scene.toml --quiet --json", 2, "--quiet excludes --json; see `noether run --help`"},
     {"run scene.toml --quiet=7", 2, "--quiet takes no value; see `noether run --help`"},
