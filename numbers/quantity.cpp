@@ -229,7 +229,7 @@ std::string expectation(const Expected& wanted, std::string_view number, const U
 }
 
 /// What a unit is read for. `told` is how messages say it: "a time is expected, such as '1 day'".
-struct Purpose {
+struct UnitPurpose {
   Expected expected;
   std::string told;
 };
@@ -243,13 +243,18 @@ bool is_part_of(const Dimension& factor, const Dimension& whole) {
          in(factor.time, whole.time) && in(factor.charge, whole.charge) && in(factor.temperature, whole.temperature);
 }
 
+/// Whether the words behind the unknown one at `i`, which is the first, are units.
+bool others_are_known(const std::vector<Term>& terms, std::size_t i) {
+  const auto is_known = [](const Term& term) { return term.word == "1" || find_unit(term.word) != nullptr; };
+  return std::all_of(terms.begin() + static_cast<std::ptrdiff_t>(i) + 1, terms.end(), is_known);
+}
+
 /// Whether a word in the place of the unknown one at `i` may be meant: the whole then has the expected dimension, or
 /// may have it where other words are unknown too. All may be where nothing is expected. Angles change no dimension, so
 /// that they would fit everywhere: they may be meant only where an angle is expected.
 std::function<bool(std::string_view)> fits_at(const std::vector<Term>& terms, std::size_t i,
-                                              const std::optional<Purpose>& purpose) {
-  const auto is_known = [](const Term& term) { return term.word == "1" || find_unit(term.word) != nullptr; };
-  const bool last = std::all_of(terms.begin() + static_cast<std::ptrdiff_t>(i) + 1, terms.end(), is_known);
+                                              const std::optional<UnitPurpose>& purpose) {
+  const bool last = others_are_known(terms, i);
   return [&terms, i, last, wanted = purpose ? std::optional(purpose->expected) : std::nullopt](std::string_view word) {
     if (!wanted) return true;
     const auto dimension_of = [](std::string_view one, const Term& term) {
@@ -268,7 +273,7 @@ std::function<bool(std::string_view)> fits_at(const std::vector<Term>& terms, st
 }
 
 [[noreturn]] void unknown_unit(const std::vector<Term>& terms, std::size_t i, std::string_view whole,
-                               const std::optional<Purpose>& purpose) {
+                               const std::optional<UnitPurpose>& purpose) {
   const std::string_view word = terms[i].word;
   const auto fits = fits_at(terms, i, purpose);
   const std::vector<std::string> known = fitting(symbols_of_units(), fits);
@@ -283,13 +288,13 @@ std::function<bool(std::string_view)> fits_at(const std::vector<Term>& terms, st
     const std::string near = suggest(word, words);
     if (!near.empty()) say(fmt::format("did you mean '{}'?", near));
   }
-  const bool all_fit = !known.empty() && (!purpose || (terms.size() == 1 || purpose->expected.angle));
+  const bool all_fit = !known.empty() && (!purpose || others_are_known(terms, i));
   say(all_fit ? fmt::format("expected one of: {}", fmt::join(known, ", ")) : purpose->told);
 }
 
 /// @param purpose  what it is read for, where that is known: no unit of another dimension is proposed
 Unit unit_from(const std::vector<Term>& terms, std::string_view whole, const UnitSystem& system,
-               const std::optional<Purpose>& purpose) {
+               const std::optional<UnitPurpose>& purpose) {
   Unit unit;
   for (std::size_t i = 0; i < terms.size(); ++i) {
     if (terms[i].word == "1") continue;
@@ -360,7 +365,7 @@ double read_quantity(std::string_view text, const Expected& wanted, const UnitSy
   if (system.is_reduced() && !all_plain(terms)) {
     fail(fmt::format("'{}' has a unit; reduced units are plain numbers, such as '{}'", whole, digits), whole);
   }
-  const Unit unit = unit_from(terms, whole, system, Purpose{wanted, expectation(wanted, digits, system)});
+  const Unit unit = unit_from(terms, whole, system, UnitPurpose{wanted, expectation(wanted, digits, system)});
   if (unit.dimension != wanted.dimension || (wanted.angle && !std::any_of(terms.begin(), terms.end(), is_angle))) {
     fail(fmt::format("'{}' is {}; {}", whole, kind_of(terms, unit.dimension), expectation(wanted, digits, system)),
          whole);
@@ -379,7 +384,7 @@ double Unit::times(double number) const noexcept {
 
 namespace {
 
-Unit read_unit(std::string_view text, const UnitSystem& system, const std::optional<Purpose>& purpose) {
+Unit unit_for(std::string_view text, const UnitSystem& system, const std::optional<UnitPurpose>& purpose) {
   const std::string_view whole = trimmed(text);
   if (whole.empty()) fail("empty unit; expected one such as 'km/s', or '1' for a plain number", text);
   const std::vector<Term> terms = unit_terms(whole, whole, false);
@@ -394,13 +399,16 @@ Unit read_unit(std::string_view text, const UnitSystem& system, const std::optio
 
 }  // namespace
 
-Unit parse_unit(std::string_view text, const UnitSystem& system) { return read_unit(text, system, {}); }
+Unit parse_unit(std::string_view text, const UnitSystem& system) { return unit_for(text, system, {}); }
 
 Unit parse_unit(std::string_view text, std::string_view dimension, const UnitSystem& system) {
   const Expected wanted{.dimension = parse_dimension(dimension), .angle = dimension == "angle"};
   const std::string example = wanted.angle ? "deg" : unit_of(wanted.dimension, system);
-  return read_unit(text, system,
-                   Purpose{wanted, fmt::format("a unit of {} is expected, such as '{}'", dimension, example)});
+  const bool plain = wanted.dimension == dimensions::none && !wanted.angle;
+  return unit_for(
+      text, system,
+      UnitPurpose{wanted, plain ? "a plain number is expected"
+                                : fmt::format("a unit of {} is expected, such as '{}'", dimension, example)});
 }
 
 double unit_value(std::string_view unit, const UnitSystem& system) { return parse_unit(unit, system).times(1.0); }

@@ -126,7 +126,7 @@ class SceneCheck {
   /// What a word may have been meant as, if it is the name of a method: "SABA" has the letters A and B too.
   std::string name_in_capitals() const {
     const std::string& method = scene_.integrator.method;
-    if (!scene_.integrator.scheme || schemes::find(method) != nullptr) return "";
+    if (scene_.integrator.classical || schemes::find(method) != nullptr) return "";
     return proposal_by_name(method, scene_.parts->method_names());
   }
 

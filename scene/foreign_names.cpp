@@ -304,11 +304,10 @@ std::string foreign_proposal(std::string_view word, const std::vector<std::strin
   return fmt::format("; in its place there is {}{}", as_scene_text(*found), more);
 }
 
-/// The nearest of the known names; of a scheme not its short name.
-std::string nearest(std::string_view word, const std::vector<std::string>& known) {
-  const std::string near = suggest(word, known);
-  const Scheme* scheme = schemes::find(near);
-  return scheme != nullptr && is_one_of(scheme->name, known) ? std::string(scheme->name) : near;
+/// A known name; of a scheme not one of its other names.
+std::string first_name_of(const std::string& known_name, const std::vector<std::string>& known) {
+  const Scheme* scheme = schemes::find(known_name);
+  return scheme != nullptr && is_one_of(scheme->name, known) ? std::string(scheme->name) : known_name;
 }
 
 }  // namespace
@@ -318,8 +317,10 @@ std::span<const ForeignName> foreign_names() { return names_of_others; }
 std::string proposal_by_name(std::string_view word, const std::vector<std::string>& known) {
   for (const std::string& one : {std::string(word), without_kind(word)}) {
     if (one.empty()) continue;
-    const std::string near = nearest(one, known);
-    if (!near.empty() && squeezed(one) == squeezed(near)) return fmt::format("; did you mean '{}'?", near);
+    const std::string near = suggest(one, known);
+    if (!near.empty() && squeezed(one) == squeezed(near)) {
+      return fmt::format("; did you mean '{}'?", first_name_of(near, known));
+    }
     std::string foreign = foreign_proposal(one, known);
     if (!foreign.empty()) return foreign;
   }
@@ -327,7 +328,7 @@ std::string proposal_by_name(std::string_view word, const std::vector<std::strin
 }
 
 std::string proposal(std::string_view word, const std::vector<std::string>& known, std::string_view otherwise) {
-  const std::string near = nearest(word, known);
+  const std::string near = first_name_of(suggest(word, known), known);
   const std::string other = proposal_by_name(word, known);
   if (!other.empty()) return other;
   return near.empty() ? std::string(otherwise) : fmt::format("; did you mean '{}'?", near);

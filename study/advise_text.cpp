@@ -29,7 +29,7 @@ std::string with_setting(const Proposal& p, const Scene& scene) {
 }
 
 /// "1 evaluation", "3.907e+05 evaluations".
-std::string evaluations(double count) {
+std::string evaluations_in_words(double count) {
   return count == 1 ? counted(1, "evaluation") : fmt::format("{:.4g} evaluations", count);
 }
 
@@ -45,14 +45,14 @@ std::string instead_of_proposals(const Advice& a, const Scene& scene) {
       out += fmt::format(", about {:.1e} over the whole run", a.best->predicted_error);
     if (longer && a.best->predicted_error >= 0.1) out += ", as large as what is computed over the whole run";
     out += fmt::format("; the whole run takes about {:.3g} s and {}\n", a.best->predicted_wall_s,
-                       evaluations(a.best->predicted_evaluations));
+                       evaluations_in_words(a.best->predicted_evaluations));
   }
   if (a.would_hold) {
     const Proposal& p = *a.would_hold;
     out += fmt::format(
         "what should hold it: {}, finer than any that was tried: errors fall as its power {:.2g}; about "
         "{:.3g} s and {}\n",
-        with_setting(p, scene), p.order, p.predicted_wall_s, evaluations(p.predicted_evaluations));
+        with_setting(p, scene), p.order, p.predicted_wall_s, evaluations_in_words(p.predicted_evaluations));
   }
   for (const std::string& hint : a.hints) out += hint + "\n";
   return out;

@@ -184,7 +184,7 @@ TEST_CASE("no unit of another dimension is proposed, and angles only where an an
   CHECK_THROWS_WITH(parse_unit("Mj", "mass", solar), "unknown unit 'Mj'; did you mean 'Mjup'?");
   CHECK_THROWS_WITH(parse_unit("solar mass", "mass", solar),
                     "unknown unit 'solar' in 'solar mass'; a unit of mass is expected, such as 'Msun'");
-  CHECK_THROWS_WITH(parse_unit("dgr", "angle", solar), "unknown unit 'dgr'; did you mean 'deg'?");
+  CHECK_THROWS_WITH(parse_unit("dge", "angle", solar), "unknown unit 'dge'; did you mean 'deg'?");
   CHECK_THROWS_WITH(parse_unit("ma", "length", solar), "unknown unit 'ma'; did you mean 'm'?");
   CHECK_THROWS_WITH(parse_unit("ma", "time", solar), "unknown unit 'ma'; did you mean 'ms'?");
   CHECK(parse_unit("km", "mass", solar).dimension == dimensions::length);  // for the caller to refuse
