@@ -98,9 +98,11 @@ const std::vector<Wrong> wrong_lines = {
 #if NOETHER_HDF5
     {"info nothing.h5", 3, "nothing.h5: there is no such file"},
     {"info .", 3, ".: this is not a regular file"},
-    {"info scene.toml", 3, "scene.toml: cannot be opened as an HDF5 file: file signature not found"},
+    {"info scene.toml", 3,
+     "scene.toml: this is a scene, and a file of a run is expected; `noether run scene.toml` makes a run of it"},
     {"verify nothing.h5", 3, "nothing.h5: there is no such file"},
-    {"convert scene.toml frames.xyz", 3, "scene.toml: cannot be opened as an HDF5 file: file signature not found"},
+    {"convert scene.toml frames.xyz", 3,
+     "scene.toml: this is a scene, and a file of a run is expected; `noether run scene.toml` makes a run of it"},
     {"convert scene.toml frames.pdb", 2,
      "cannot convert to 'frames.pdb': unknown extension '.pdb'; expected one of: .xyz, .csv"},
     {"convert scene.toml frames.xyz --unwraped", 2,
