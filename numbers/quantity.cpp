@@ -277,19 +277,20 @@ std::function<bool(std::string_view)> fits_at(const std::vector<Term>& terms, st
   const std::string_view word = terms[i].word;
   const auto fits = fits_at(terms, i, purpose);
   const std::vector<std::string> known = fitting(symbols_of_units(), fits);
-  const std::string in = word == whole ? "" : fmt::format(" in '{}'", whole);
-  const auto say = [&](const std::string& end) { fail(fmt::format("unknown unit '{}'{}; {}", word, in, end), whole); };
+  std::string near;
   // Half of a quotient has one answer, however far it is in letters.
   for (const std::string& symbol : known) {
-    if (!symbol.starts_with(word) || !std::string_view(symbol).substr(word.size()).starts_with('/')) continue;
-    say(fmt::format("did you mean '{}'?", symbol));
+    const bool half = symbol.starts_with(word) && std::string_view(symbol).substr(word.size()).starts_with('/');
+    if (half && near.empty()) near = symbol;
   }
-  for (const std::vector<std::string>& words : {known, fitting(words_for_units(), fits)}) {
-    const std::string near = suggest(word, words);
-    if (!near.empty()) say(fmt::format("did you mean '{}'?", near));
-  }
+  if (near.empty()) near = suggest(word, known);
+  if (near.empty()) near = suggest(word, fitting(words_for_units(), fits));
   const bool all_fit = !known.empty() && (!purpose || others_are_known(terms, i));
-  say(all_fit ? fmt::format("expected one of: {}", fmt::join(known, ", ")) : purpose->told);
+  const std::string end = !near.empty() ? fmt::format("did you mean '{}'?", near)
+                          : all_fit     ? fmt::format("expected one of: {}", fmt::join(known, ", "))
+                                        : purpose->told;
+  const std::string in = word == whole ? "" : fmt::format(" in '{}'", whole);
+  fail(fmt::format("unknown unit '{}'{}; {}", word, in, end), whole);
 }
 
 /// @param purpose  what it is read for, where that is known: no unit of another dimension is proposed
