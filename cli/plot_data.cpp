@@ -265,7 +265,7 @@ void check(const PlotOptions& options) {
   for (const std::string& subject : options.what) {
     const std::vector<std::string>& known = plot_subjects();
     if (std::find(known.begin(), known.end(), subject) != known.end()) continue;
-    throw Error(fmt::format("--what '{}' is nothing that plot draws{}", subject, did_you_mean(subject, known)));
+    throw Error(fmt::format("--what '{}' is not one of the panels{}", subject, did_you_mean(subject, known)));
   }
   const std::vector<std::string> projections = {"xy", "xz", "yz", "all"};
   if (!options.projection.empty() &&

@@ -319,14 +319,15 @@ class CsvBodies {
                  std::string_view words) const {
     Unit unit;
     try {
-      unit = parse_unit(text, units_);
+      unit = parse_unit(text, words, units_);
     } catch (const Error& error) {
       text_.fail(line, fmt::format("column '{}': {}", column, error.message()), text);
     }
     if (unit.dimension == expected) return unit;
+    const bool meant = column == "M" && unit.dimension == dimensions::mass;  // the mean anomaly
     text_.fail(line,
-               fmt::format("column '{}' is in '{}', which has the dimension {}; expected {}", column, text,
-                           to_text(unit.dimension), words),
+               fmt::format("column '{}' is in '{}', which has the dimension {}; expected {}{}", column, text,
+                           to_text(unit.dimension), words, meant ? "; did you mean 'mass'?" : ""),
                text);
   }
 

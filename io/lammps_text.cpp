@@ -1,6 +1,7 @@
 #include "io/lammps_text.hpp"
 
 #include "numbers/suggest.hpp"
+#include "numbers/text.hpp"
 
 #include <fmt/format.h>
 
@@ -284,7 +285,10 @@ const LammpsSection* LammpsText::section(const std::string& name, const std::str
   const std::string source = counted_at == counts_.end()
                                  ? fmt::format("the header has no line '{}'", what)
                                  : fmt::format("line {} says {} {}", counted_at->second.line, expected, what);
-  text_.fail(found->line, fmt::format("section '{}' has {} rows, but {}", name, found->rows.size(), source), name);
+  text_.fail(found->line,
+             fmt::format("section '{}' has {}, but {}", name,
+                         counted(static_cast<std::int64_t>(found->rows.size()), "row"), source),
+             name);
 }
 
 }  // namespace noether::io

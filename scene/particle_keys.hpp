@@ -47,6 +47,9 @@ void read_exclusions(TableReader& reader, ParticleSystem<double>& s, SceneValue&
 std::vector<TypeParameters> read_types(TableReader& reader, SceneValue& effective);
 std::vector<PairParameters> read_pairs(TableReader& reader, SceneValue& effective);
 
+/// Ends reading at a body without a mass, or at its M if that is one.
+[[noreturn]] void refuse_without_mass(TableReader& body);
+
 /// Ends reading with what is wrong with a key, or with table k of `[[particles.type]]` or `[[particles.pair]]`: an
 /// error at key "special", "type.<k>", "pair.<k>".
 [[noreturn]] void refuse_particle_key(TableReader& reader, const Error& error);

@@ -235,7 +235,7 @@ class BodyTables {
     if (const std::string wrong = wrong_name(name); !wrong.empty()) body.fail("name", wrong);
     const std::optional<double> of_type = typed_.add(body);
     const auto given = body.quantity("mass", "mass"), mass = given ? given : of_type;
-    if (!mass) body.fail(nullptr, "mass", fmt::format("{} has no mass; give one, or 0 for a tracer", body.what()));
+    if (!mass) refuse_without_mass(body);
     if (given) check_mass(body, name, *mass);
     if (index_.count(name) != 0) {
       body.fail("name", fmt::format("two bodies are named '{}'; names must differ", name));

@@ -213,7 +213,8 @@ TEST_CASE("--set with nothing behind the sign takes a key out, or a table of a l
   CHECK(read(two_bodies, {"every="}).default_watches);
   CHECK(refusal(two_bodies, {"integrator.stp="}) ==
         "--set integrator.stp=: there is no 'stp' to take out of the scene; did you mean 'step'?");
-  CHECK(refusal(two_bodies, {"every.9="}) == "--set every.9=: there is no element 9; there are 2, counted from 0");
+  CHECK(refusal(two_bodies, {"every.9="}) ==
+        "--set every.9=: there is no element 9; the last one is number 1, and every.2={...} adds one");
   CHECK(refusal(two_bodies, {"integrator.method="}).find("method") != std::string::npos);
 }
 
