@@ -134,6 +134,7 @@ Real Classical<Real>::settle(const ParticleSystem<Real>& raw, ParticleSystem<Rea
   const Evaluations counted = field_->evaluations();
   look_ahead(raw, *at);
   field_->scatter(y_, out);
+  if (Vector<Real>* const low = ahead_ ? ahead_->method->low_words() : nullptr) detail::scatter_low_words(*low, out);
   out.wrap();
   field_->evaluations() = counted;
   out.clock().move_to(*at);
@@ -155,6 +156,7 @@ template <class Real> void Classical<Real>::look_ahead(const ParticleSystem<Real
   if (!known) {
     ahead_ = Ahead{method_->clone(), clock.step(), begin, 0, {}};
     field_->gather(raw, ahead_->y);
+    if (Vector<Real>* const low = ahead_->method->low_words()) detail::gather_low_words(raw, *low);
     y_ = ahead_->y;
   }
   // The first step begins at the double-double time of the run, later ones where the one before has ended.
@@ -163,6 +165,7 @@ template <class Real> void Classical<Real>::look_ahead(const ParticleSystem<Real
     const Real t = ahead_->t == begin ? clock.time() : Real(ahead_->t);
     double most = longest_step(clock);
     if (!dense && clock.is_later(ahead_->t + most, at)) most = at - ahead_->t;
+    field_->forget_failure();
     const StepResult made = ahead_->method->step(*field_, t, ahead_->y, most);
     // A sum of times is rounded: what that leaves may be shorter than any step, and the state is the one after the
     // last.

@@ -18,9 +18,15 @@ namespace {
 
 /// Sweeps end when the next one is expected to change perturbations by no more than this part of them.
 constexpr double settled_departures = 1e-16;
-/// Changes below may be rounding, where bodies are so near to each other that doubles hardly tell their distance.
-constexpr double departures_may_round = 1e-9;
+/// Where bodies are so near to each other that doubles hardly tell their distance, sweeps end at what rounding leaves.
+/// What moves positions by no more than this part of the distance from the heaviest body is below the errors of a step;
+/// beyond the rounding of doubles the method has no use.
+constexpr double departures_stand = 1e-19, departures_lost = 1e-16;
+/// So many sweeps are made before one that changes more than the one before it ends the step.
+constexpr int patient_departures = 12;
 constexpr int most_departure_sweeps = 60;
+constexpr std::string_view ways_out =
+    "give a shorter one, or use 'wide_gauss_8', or 'gauss_8', which chooses its steps";
 /// A last Legendre coefficient above this part of the largest perturbation leaves errors of its square.
 constexpr double rough_perturbations = 0.03;
 /// A second mass above this part of the heaviest one perturbs orbits so much that doubles limit the departures.
@@ -51,6 +57,7 @@ EnckeGauss::EnckeGauss(std::string_view name) : name_(name), ahead_(last_polynom
 void EnckeGauss::bind(const VectorField<double>& f) {
   const std::optional<double> G = f.gravity_of_points();
   if (!G) throw SchemeMismatch(fmt::format("method '{}' is for gravity; use 'gauss_8'", name_));
+  unsettled_ = 0;
   n_ = f.particles();
   masses_ = f.masses().head(n_);
   masses_.maxCoeff(&primary_);
@@ -114,15 +121,8 @@ StepResult EnckeGauss::step(VectorField<double>& f, const double& t, Vector<doub
   made.failure = open(y, h);
   if (made.failure) return made;
   if (h == h_) predict();
-  if (!sweep(f, t, h)) {
-    made.failure =
-        Failure{Outcome::Kind::solver_failure, -1, "departures",
-                fmt::format("the departures from Kepler orbits do not converge with a step of {:.6g}; give a "
-                            "shorter one, or use 'gauss_8'",
-                            h)};
-    return made;
-  }
-  made.failure = unresolved(h);
+  made.failure = sweep(f, t, h);
+  if (!made.failure) made.failure = unresolved(h);
   if (!made.failure) made.failure = close(y, h);
   if (made.failure) return made;
   h_ = h;
@@ -182,7 +182,7 @@ void EnckeGauss::predict() {
       }
     }
   }
-  take_perturbations();
+  take_perturbations(h_);
 }
 
 /// Departures and places at all stages from the rates.
@@ -273,12 +273,11 @@ void EnckeGauss::add_forces_beside(VectorField<double>& f, double t, double h) {
   }
 }
 
-/// The fresh perturbations become those at hand, and the rates follow. @return the largest change, relative to the
-/// perturbations of all bodies at their largest
-double EnckeGauss::take_perturbations() {
-  double worst = 0;
+/// The fresh perturbations become those at hand, and the rates follow.
+EnckeGauss::Change EnckeGauss::take_perturbations(double h) {
+  Change worst;
   for (Body& body : bodies_) {
-    double change = 0, size = 0;
+    double change = 0, size = 0, nearest2 = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < stages; ++i) {
       double change2 = 0, size2 = 0, old2 = 0;
       for (std::size_t k = 0; k < 3; ++k) {
@@ -290,34 +289,44 @@ double EnckeGauss::take_perturbations() {
       }
       if (!(change2 <= change)) change = change2;  // a NaN stays
       size = std::max({size, size2, old2});
+      nearest2 = std::min(nearest2, 1 / body.inverse_r2[i]);
       body.rates[i] =
           body.tangents[i].start_of({body.perturbation[0][i], body.perturbation[1][i], body.perturbation[2][i]});
     }
-    if (!std::isfinite(change)) return change;
-    if (change > 0) worst = std::max(worst, change / size);
+    if (!std::isfinite(change)) return {change, change};
+    if (change == 0) continue;
+    worst.relative = std::max(worst.relative, std::sqrt(change / size));
+    worst.moves = std::max(worst.moves, h * h * std::sqrt(change / nearest2));
   }
-  return std::sqrt(worst);
+  return worst;
 }
 
-/// @return whether perturbations stand still
-bool EnckeGauss::sweep(VectorField<double>& f, double t, double h) {
+/// @return why perturbations do not stand still, if they do not
+std::optional<Failure> EnckeGauss::sweep(VectorField<double>& f, double t, double h) {
   double before = std::numeric_limits<double>::infinity();
   for (int round = 1; round <= most_departure_sweeps; ++round) {
     depart(h);
     add_gravity();
     f.evaluations().force += stages;
     if (beside_) add_forces_beside(f, t, h);
-    const double change = take_perturbations();
-    if (!std::isfinite(change)) return false;
-    const double shrinks = round > 1 ? change / before : 1;
-    if (change * std::min(shrinks, 1.0) <= settled_departures) return true;
+    if (beside_ && f.failure()) return f.failure();
+    const Change change = take_perturbations(h);
+    if (!std::isfinite(change.relative)) break;
+    const double shrinks = round > 1 ? change.relative / before : 1;
+    if (change.relative * std::min(shrinks, 1.0) <= settled_departures) return {};
     if (round > 2 && shrinks >= 1) {
-      if (change < departures_may_round) return true;
-      if (round > 12) return false;
+      if (change.moves <= departures_stand) return {};
+      if (round > patient_departures && change.moves <= departures_lost) {
+        ++unsettled_;
+        return {};
+      }
+      if (round > patient_departures) break;
     }
-    before = change;
+    before = change.relative;
   }
-  return false;
+  return Failure{
+      Outcome::Kind::solver_failure, -1, "departures",
+      fmt::format("the departures from Kepler orbits do not converge with a step of {:.6g}; {}", h, ways_out)};
 }
 
 /// Perturbations that a polynomial of degree 7 does not follow, unless they are too small to matter.
@@ -338,11 +347,8 @@ std::optional<Failure> EnckeGauss::unresolved(double h) const {
     constexpr double negligible = 1e-14;
     const bool matters = h * h * std::sqrt(last2) > negligible * std::sqrt(nearest2);
     if (!matters || last2 <= rough_perturbations * rough_perturbations * largest2) continue;
-    return Failure{
-        Outcome::Kind::solver_failure, body.particle, "departure",
-        fmt::format("perturbations change too fast to be followed with a step of {:.6g}; give a shorter one, "
-                    "or use 'gauss_8'",
-                    h)};
+    return Failure{Outcome::Kind::solver_failure, body.particle, "departure",
+                   fmt::format("perturbations change too fast to be followed with a step of {:.6g}; {}", h, ways_out)};
   }
   return {};
 }
@@ -397,12 +403,15 @@ void EnckeGauss::save(SavedState& saved, const std::string& prefix) const {
     for (const Lanes& p : body.perturbation) perturbations.insert(perturbations.end(), p.begin(), p.end());
   }
   save_value(saved, prefix + "perturbations", perturbations);
+  save_value(saved, prefix + "unsettled", unsettled_);
 }
 
 void EnckeGauss::load(const SavedState& saved, const std::string& prefix) {
   load_value(saved, prefix + "h", h_);
   std::vector<double> perturbations;
   load_value(saved, prefix + "perturbations", perturbations);
+  unsettled_ = 0;  // of runs that were saved before these were counted
+  if (saved.contains(prefix + "unsettled")) load_value(saved, prefix + "unsettled", unsettled_);
   std::size_t at = 0;
   for (Body& body : bodies_) {
     for (Lanes& p : body.perturbation) {

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -74,6 +75,12 @@ class EnckeGauss final : public Method<double> {
     std::array<KeplerChange, stages> rates{};
   };
 
+  /// The largest change of perturbations by a sweep: relative to the largest of the body, and how far it moves the
+  /// body, relative to its distance from the heaviest one.
+  struct Change {
+    double relative = 0, moves = 0;
+  };
+
   void refuse_equals() const;
   std::optional<Failure> open(const Vector<double>& y, double h);
   std::optional<Failure> find_orbits(Body& body, double h) const;
@@ -81,8 +88,8 @@ class EnckeGauss final : public Method<double> {
   void depart(double h);
   void add_gravity();
   void add_forces_beside(VectorField<double>& f, double t, double h);
-  double take_perturbations();
-  bool sweep(VectorField<double>& f, double t, double h);
+  Change take_perturbations(double h);
+  std::optional<Failure> sweep(VectorField<double>& f, double t, double h);
   std::optional<Failure> unresolved(double h) const;
   std::optional<Failure> close(Vector<double>& y, double h);
   Failure no_arc(const Body& body, double h) const;
@@ -104,6 +111,7 @@ class EnckeGauss final : public Method<double> {
   Vector<double> stage_, stage_push_;  ///< a stage as fields see it, and what forces beside gravity add to it
   Vector<double> low_;                 ///< second words of y
   double h_ = 0;                       ///< of the perturbations at hand; 0: there are none
+  std::int64_t unsettled_ = 0;         ///< steps whose sweeps ended above the errors of the method
   Vector<double> masses_;
 };
 
