@@ -54,7 +54,8 @@ MethodTraits claimed_traits(const KnownMethod& known);
 /// - symplectic: |M^T J M - J| of the map of 24 steps there, by differences; reversible: 24 steps, velocities turned,
 /// 24;
 /// - momentum, angular momentum: 24 steps of three bodies, to rounding;
-/// - energy: 100 periods of a regular orbit of Henon and Heiles;
+/// - energy: 100 periods of a regular orbit of Henon and Heiles; methods for gravity alone: see
+/// `measured_gravity_traits`;
 /// - stability: see `stability_limit_of`.
 /// @throws never  what a method cannot do is found to fail
 /// @cost half a second on average, some seconds for the multistep methods that iterate
