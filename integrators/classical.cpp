@@ -206,8 +206,9 @@ template <class Real> void Classical<Real>::save(SavedState& saved, const std::s
   save_value(saved, prefix + "method", signature());
   save_value(saved, prefix + "field", field_->signature());
   const Evaluations& counted = field_->evaluations();
-  save_value(saved, prefix + "evaluations",
-             std::vector<std::int64_t>{counted.force, counted.jacobian, counted.rejected, counted.kepler});
+  save_value(
+      saved, prefix + "evaluations",
+      std::vector<std::int64_t>{counted.force, counted.jacobian, counted.rejected, counted.kepler, counted.unsettled});
   field_->save(saved, prefix + "field/");
   method_->save(saved, prefix + "state/");
 }
@@ -226,7 +227,8 @@ template <class Real> void Classical<Real>::load(const SavedState& saved, const 
   field_->evaluations() = {.force = detail::element(counted, 0),
                            .kepler = counted.size() > 3 ? counted[3] : 0,
                            .jacobian = detail::element(counted, 1),
-                           .rejected = detail::element(counted, 2)};
+                           .rejected = detail::element(counted, 2),
+                           .unsettled = counted.size() > 4 ? counted[4] : 0};
   method_->load(saved, prefix + "state/");
   ahead_.reset();
 }

@@ -18,10 +18,12 @@ namespace {
 
 /// Sweeps end when the next one is expected to change perturbations by no more than this part of them.
 constexpr double settled_departures = 1e-16;
-/// Where bodies are so near to each other that doubles hardly tell their distance, sweeps end at what rounding leaves.
-/// What moves positions by no more than this part of the distance from the heaviest body is below the errors of a step;
-/// beyond the rounding of doubles the method has no use.
-constexpr double departures_stand = 1e-19, departures_lost = 1e-16;
+/// Where bodies are so near to each other that doubles hardly tell their distance, sweeps end at what rounding leaves:
+/// at changes that move positions by no more than this part of the distance from the heaviest body.
+constexpr double departures_may_round = 1e-16;
+/// Rounding of distances r moves two bodies by some 1e-16 h^2 G (m + m') / r^3 of their distance from the heaviest one.
+/// Steps in which that factor is larger have errors above 1e-18.
+constexpr double strong_pull = 0.01;
 /// So many sweeps are made before one that changes more than the one before it ends the step.
 constexpr int patient_departures = 12;
 constexpr int most_departure_sweeps = 60;
@@ -57,7 +59,6 @@ EnckeGauss::EnckeGauss(std::string_view name) : name_(name), ahead_(last_polynom
 void EnckeGauss::bind(const VectorField<double>& f) {
   const std::optional<double> G = f.gravity_of_points();
   if (!G) throw SchemeMismatch(fmt::format("method '{}' is for gravity; use 'gauss_8'", name_));
-  unsettled_ = 0;
   n_ = f.particles();
   masses_ = f.masses().head(n_);
   masses_.maxCoeff(&primary_);
@@ -126,6 +127,7 @@ StepResult EnckeGauss::step(VectorField<double>& f, const double& t, Vector<doub
   if (!made.failure) made.failure = close(y, h);
   if (made.failure) return made;
   h_ = h;
+  if (h * h * strongest_ > strong_pull) ++f.evaluations().unsettled;
   f.evaluations().kepler += static_cast<std::int64_t>((stages + 1) * bodies_.size());
   return made;
 }
@@ -226,6 +228,7 @@ void EnckeGauss::add_gravity() {
         body.fresh[k][i] = -body.mu_r3[i] * (beyond * body.orbit[k][i] + fall * body.away[k][i]);
     }
   }
+  strongest_ = 0;
   for (std::size_t m = 1; m < bodies_.size(); ++m) {
     Body& one = bodies_[m];
     for (std::size_t n = 0; n < m; ++n) {
@@ -236,6 +239,7 @@ void EnckeGauss::add_gravity() {
                      z = other.place[2][i] - one.place[2][i];
         const double r2 = x * x + y * y + z * z, r3 = r2 * std::sqrt(r2);
         const double by_other = other.gm / r3, by_one = one.gm / r3;
+        strongest_ = std::max(strongest_, by_other + by_one);
         one.fresh[0][i] += by_other * x - other.pull[0][i];
         one.fresh[1][i] += by_other * y - other.pull[1][i];
         one.fresh[2][i] += by_other * z - other.pull[2][i];
@@ -315,11 +319,7 @@ std::optional<Failure> EnckeGauss::sweep(VectorField<double>& f, double t, doubl
     const double shrinks = round > 1 ? change.relative / before : 1;
     if (change.relative * std::min(shrinks, 1.0) <= settled_departures) return {};
     if (round > 2 && shrinks >= 1) {
-      if (change.moves <= departures_stand) return {};
-      if (round > patient_departures && change.moves <= departures_lost) {
-        ++unsettled_;
-        return {};
-      }
+      if (change.moves <= departures_may_round) return {};
       if (round > patient_departures) break;
     }
     before = change.relative;
@@ -403,15 +403,12 @@ void EnckeGauss::save(SavedState& saved, const std::string& prefix) const {
     for (const Lanes& p : body.perturbation) perturbations.insert(perturbations.end(), p.begin(), p.end());
   }
   save_value(saved, prefix + "perturbations", perturbations);
-  save_value(saved, prefix + "unsettled", unsettled_);
 }
 
 void EnckeGauss::load(const SavedState& saved, const std::string& prefix) {
   load_value(saved, prefix + "h", h_);
   std::vector<double> perturbations;
   load_value(saved, prefix + "perturbations", perturbations);
-  unsettled_ = 0;  // of runs that were saved before these were counted
-  if (saved.contains(prefix + "unsettled")) load_value(saved, prefix + "unsettled", unsettled_);
   std::size_t at = 0;
   for (Body& body : bodies_) {
     for (Lanes& p : body.perturbation) {

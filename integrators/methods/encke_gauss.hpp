@@ -7,7 +7,6 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,7 +27,8 @@ namespace noether {
 /// the state, of double-doubles, has errors far below the rounding of doubles, and they do not add up to a drift.
 ///
 /// A step that perturbations are too rough for, as in an encounter that it jumps over, ends the run: their last
-/// Legendre coefficient tells.
+/// Legendre coefficient tells. One in which bodies are so near to each other that doubles do not tell their pull well
+/// enough is counted (`Evaluations::unsettled`).
 ///
 /// The centre of mass goes on evenly, or as the forces beside gravity push it. State: both words of y, which particles
 /// keep; the perturbations of the last step, where the next one begins its sweeps.
@@ -111,7 +111,7 @@ class EnckeGauss final : public Method<double> {
   Vector<double> stage_, stage_push_;  ///< a stage as fields see it, and what forces beside gravity add to it
   Vector<double> low_;                 ///< second words of y
   double h_ = 0;                       ///< of the perturbations at hand; 0: there are none
-  std::int64_t unsettled_ = 0;         ///< steps whose sweeps ended above the errors of the method
+  double strongest_ = 0;               ///< largest G (m + m') / r^3 of two bodies in the last sweep
   Vector<double> masses_;
 };
 
