@@ -82,15 +82,15 @@ struct SixFunctions {
     g1 = Row(2) * g0 * g1;
     g0 = Row(1) - Row(beta) * g2;
   }
-  /// The same functions at s + d for d as small as the rounding of half the digits.
+  /// The same functions at s + d, to the second order in d.
   HWY_INLINE void shift(double beta, Row d) {
-    g5 = g5 + d * g4;
-    g4 = g4 + d * g3;
-    g3 = g3 + d * g2;
-    const Row before = g1;
-    g2 = g2 + d * (g1 + Row(0.5) * d * g0);
-    g1 = g1 + d * (g0 - Row(0.5 * beta) * d * before);
-    g0 = g0 - Row(beta) * d * before;
+    const Row half = Row(0.5) * d, before = g1;
+    g5 = g5 + d * (g4 + half * g3);
+    g4 = g4 + d * (g3 + half * g2);
+    g3 = g3 + d * (g2 + half * g1);
+    g2 = g2 + d * (g1 + half * g0);
+    g1 = g1 + d * (g0 - half * (Row(beta) * before));
+    g0 = g0 - d * (Row(beta) * (before + half * g0));
   }
 };
 
@@ -140,11 +140,16 @@ std::uint8_t orbits(EnckeBody& body, const double* tau) {
     Row s = correction(t, r0, eta0, zeta0, a.beta);
     const SixFunctions near(a.beta, s);
     const Row near_r = r0 + (eta0 * near.g1 + zeta0 * near.g2);
-    s = s + correction((t - r0 * s) - (eta0 * near.g2 + zeta0 * near.g3), near_r, eta0 * near.g0 + zeta0 * near.g1,
-                       Row(a.mu) - Row(a.beta) * near_r, a.beta);
+    // The last step begins where the lower half of the digits is cut off, so that it is many roundings long and of
+    // either sign: a fraction of one would be rounded off, always to the same side.
+    const Row next = s + correction((t - r0 * s) - (eta0 * near.g2 + zeta0 * near.g3), near_r,
+                                    eta0 * near.g0 + zeta0 * near.g1, Row(a.mu) - Row(a.beta) * near_r, a.beta);
+    const Row wide = Row(0x1p27 + 1) * next;
+    s = wide - (wide - next);
     SixFunctions g(a.beta, s);
-    const Row missing = (t - r0 * s) - (eta0 * g.g2 + zeta0 * g.g3);
-    const Row d = missing / (r0 + (eta0 * g.g1 + zeta0 * g.g2));
+    const Row missing = (t - r0 * s) - (eta0 * g.g2 + zeta0 * g.g3),
+              over = Row(1) / (r0 + (eta0 * g.g1 + zeta0 * g.g2));
+    const Row first = missing * over, d = first - Row(0.5) * (eta0 * g.g0 + zeta0 * g.g1) * over * first * first;
     g.shift(a.beta, d);
     s = s + d;
     const Row r = r0 + (eta0 * g.g1 + zeta0 * g.g2);
@@ -158,9 +163,9 @@ std::uint8_t orbits(EnckeBody& body, const double* tau) {
     const Row r2 = norm2(place);
     (Row(1) / r2).store(body.inverse_r2 + i);
     (Row(a.mu) / (r2 * root(r2))).store(body.mu_r3 + i);
-    // What is left by a shift over d is d^2 (eta / r), and beyond |beta s^2| = 4 the series is not good.
+    // What a shift leaves is of the order d^3, and beyond |beta s^2| = 4 the series is not good.
     const Row few = hn::Abs((Row(a.beta) * s * s).v), rest = hn::Abs(d.v);
-    const auto found = hn::And(hn::Le(few.v, Row(4).v), hn::Le(rest.v, (Row(1e-10) * Row(hn::Abs(s.v))).v));
+    const auto found = hn::And(hn::Le(few.v, Row(4).v), hn::Le(rest.v, (Row(0x1p-23) * Row(hn::Abs(s.v))).v));
     std::uint8_t bits[8] = {};
     hn::StoreMaskBits(Tag(), hn::Not(found), bits);
     missed |= (bits[0] & ((1U << lanes) - 1)) << i;
