@@ -15,10 +15,10 @@ using namespace noether;
 
 namespace {
 
-constexpr std::array<double, 8> parts = {0.02, 0.1, 0.24, 0.41, 0.59, 0.76, 0.9, 0.98};
+constexpr std::array<double, 8> stage_parts = {0.02, 0.1, 0.24, 0.41, 0.59, 0.76, 0.9, 0.98};
 
 /// At pericenter of an orbit of semi-major axis 1 (below 0: a hyperbola) about mu = 1.25, turned out of the plane.
-EnckeBody body_of(double e) {
+EnckeBody encke_body(double e) {
   EnckeBody body;
   body.mu = 1.25;
   const double q = std::abs(1 - e), v = std::sqrt(body.mu * (1 + e) / q);
@@ -30,7 +30,7 @@ EnckeBody body_of(double e) {
   return body;
 }
 
-template <class Check> void at_every_level(const Check& check) {
+template <class Check> void at_each_level(const Check& check) {
   for (const SimdLevel level : {SimdLevel::base, SimdLevel::avx2, SimdLevel::avx512}) {
     if (!has_simd_level(level)) continue;
     const test::AtLevel at(level);
@@ -42,13 +42,13 @@ template <class Check> void at_every_level(const Check& check) {
 }  // namespace
 
 TEST_CASE("arcs in lanes are those of the solver, forth and back, or say that they are not", "[encke][lanes]") {
-  at_every_level([] {
+  at_each_level([] {
     int found = 0;
     for (const double e : {0.0, 0.3, 0.7, 1.4}) {
       for (const double h : {0.05, 0.4, -0.4, 1.2, 5.0}) {
-        EnckeBody body = body_of(e);
+        EnckeBody body = encke_body(e);
         std::array<double, 8> tau{};
-        for (std::size_t i = 0; i < 8; ++i) tau[i] = h * parts[i];
+        for (std::size_t i = 0; i < 8; ++i) tau[i] = h * stage_parts[i];
         const unsigned missed = encke_kernels().orbits(body, tau.data());
         const Vec3<double> x(body.x0[0], body.x0[1], body.x0[2]), v(body.v0[0], body.v0[1], body.v0[2]);
         for (std::size_t i = 0; i < 8; ++i) {
@@ -76,23 +76,24 @@ TEST_CASE("arcs in lanes are those of the solver, forth and back, or say that th
 }
 
 TEST_CASE("a body at the centre has no arc in lanes", "[encke][lanes]") {
-  at_every_level([] {
-    EnckeBody body = body_of(0.2);
+  at_each_level([] {
+    EnckeBody body = encke_body(0.2);
     for (double& x : body.x0) x = 0;
-    std::array<double, 8> tau = parts;
+    std::array<double, 8> tau = stage_parts;
     CHECK(encke_kernels().orbits(body, tau.data()) == 0xff);
   });
 }
 
 TEST_CASE("attraction in lanes is Newton's, and pulls of both bodies cancel", "[encke][lanes]") {
-  at_every_level([] {
-    std::array<EnckeBody, 2> bodies = {body_of(0.1), body_of(0.1)};
+  at_each_level([] {
+    std::array<EnckeBody, 2> bodies = {encke_body(0.1), encke_body(0.1)};
     const std::array<double, 2> gm = {1e-3, 2e-3};
     for (std::size_t m = 0; m < 2; ++m) {
       EnckeBody& body = bodies[m];
       body.gm = gm[m];
       for (std::size_t k = 0; k < 3; ++k) {
-        for (std::size_t i = 0; i < 8; ++i) body.orbit[k][i] = body.x0[k] + static_cast<double>(m * (k + 1)) + parts[i];
+        for (std::size_t i = 0; i < 8; ++i)
+          body.orbit[k][i] = body.x0[k] + static_cast<double>(m * (k + 1)) + stage_parts[i];
       }
       for (std::size_t i = 0; i < 8; ++i) {
         const double r2 = body.orbit[0][i] * body.orbit[0][i] + body.orbit[1][i] * body.orbit[1][i] +
