@@ -34,6 +34,7 @@ struct Evaluations {
   std::int64_t force = 0, kepler = 0, jacobian = 0;
   std::int64_t constraint = 0;                       ///< iterations or sweeps over all constraints
   std::int64_t rejected = 0;                         ///< trial steps that an error controller threw away
+  std::int64_t unsettled = 0;                        ///< steps that have errors above those that their method is for
   std::optional<NeighborStatistics> neighbors = {};  ///< of this process, where some force has a range
   std::optional<Encounter> encounter = {};           ///< the closest one that the splitting should not have met
 };

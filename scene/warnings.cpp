@@ -299,6 +299,13 @@ std::string warning_of(const Encounter& encounter, const std::string& hamiltonia
       name(encounter.first), name(encounter.second), encounter.hill_radii, encounter.time, unit, first, hamiltonian);
 }
 
+std::string warning_of(const Evaluations& evaluations, std::string_view method) {
+  return fmt::format(
+      "in {} of '{}' two bodies were so near to each other that doubles do not tell their pull well enough for errors "
+      "below 1e-18; use 'wide_gauss_8'",
+      counted(evaluations.unsettled, "step"), method);
+}
+
 void tell_notes(const std::vector<std::string>& notes) {
   for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", escaped(note));
 }

@@ -4,6 +4,7 @@
 #include "scene/scene.hpp"
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace noether {
@@ -18,6 +19,9 @@ std::vector<std::string> warnings_of(const Scene& scene);
 /// @param hamiltonian  its name
 std::string warning_of(const Encounter& encounter, const std::string& hamiltonian,
                        const ParticleSystem<double>& particles, const UnitSystem& units);
+
+/// What a run says of steps whose errors are above those that its method is for.
+std::string warning_of(const Evaluations& evaluations, std::string_view method);
 
 /// Tells notes on stderr, one line each: what of a scene was taken otherwise than written (`Scene::notes`).
 void tell_notes(const std::vector<std::string>& notes);
