@@ -83,15 +83,18 @@ TEST_CASE("a tracer near a planet is seen as well, and the outer planets never",
 }
 
 TEST_CASE("bodies that meet in the word before a run only have not met", "[encounter][corrector]") {
-  // A tracer on the other way round meets the planet when the word before the run has drifted by eight nodes.
-  const double step = 0.05, node = std::sqrt(7.0 / 40), angle = 2 * 8 * node * step;
+  // A tracer on the other way round passes the planet, 1.5 Hill radii outside, when the word before the run has drifted
+  // by eight nodes.
+  const double step = 0.05, node = std::sqrt(7.0 / 40), r = 1.0224, speed = 1 / std::sqrt(r);
+  const double angle = (1 + speed / r) * 8 * node * step;
   for (const Coordinates coordinates : in_turn) {
     CAPTURE(static_cast<int>(coordinates));
     const auto seen = [&](std::int64_t corrector, std::int64_t steps) {
       ParticleSystem<double> s;
       s.add("star", 1, {0, 0, 0}, {0, 0, 0});
       s.add("planet", 1e-5, {1, 0, 0}, {0, 1, 0});
-      s.add("dust", 0, {std::cos(angle), std::sin(angle), 0}, {std::sin(angle), -std::cos(angle), 0});
+      s.add("dust", 0, {r * std::cos(angle), r * std::sin(angle), 0},
+            {speed * std::sin(angle), -speed * std::cos(angle), 0});
       Simulation<double> run(std::move(s),
                              compose(test::wisdom_holman({.G = 1, .coordinates = coordinates}), schemes::verlet_aba,
                                      {.corrector = corrector}),
