@@ -36,6 +36,7 @@ struct Explanation {
   std::map<char, int> flows;                    ///< stages of one step, by letter, the last joined to the next first
   std::string kicks, inexact;                   ///< letters that evaluate forces, and those that are no exact flows
   std::map<char, int> of_kernel;                ///< evaluations of the forces in one step, by letters of kernels
+  int behind_kicks = 0;                         ///< of these, those that G may take from a kick B before it
   std::string processing;                       ///< what a corrector or a kernel makes of the scheme
   int corrector = 0;                            ///< flows before the run, and for every look at it
   int evaluations = 0;                          ///< of the forces in one step: kicks between which something has moved
@@ -54,15 +55,18 @@ void count_flows(const FittedWord& word, std::map<char, int>& flows) {
   if (word.joins && stages.size() > 1 && stages.front().letter == stages.back().letter) --flows[stages.front().letter];
 }
 
-/// Letters of kernels evaluate forces twice, but once behind a kick B, whose forces they take.
-void count_of_kernel(const FittedWord& word, std::string_view kernels, std::map<char, int>& evaluations) {
+/// Letters of kernels evaluate forces twice.
+/// @return how many of these behind a kick B, whose forces they take where they can
+int count_of_kernel(const FittedWord& word, std::string_view kernels, std::map<char, int>& evaluations) {
   const std::vector<Stage>& stages = word.stages;
   const bool joined = word.joins && stages.size() > 1 && stages.front().letter == stages.back().letter;
+  int behind = 0;
   for (std::size_t k = joined ? 1 : 0; k < stages.size(); ++k) {
     if (kernels.find(stages[k].letter) == std::string_view::npos) continue;
-    const bool known = stages[k].letter == 'G' && k > 0 && stages[k - 1].letter == 'B';
-    evaluations[stages[k].letter] += known ? 1 : 2;
+    evaluations[stages[k].letter] += 2;
+    behind += stages[k].letter == 'G' && k > 0 && stages[k - 1].letter == 'B' ? 1 : 0;
   }
+  return behind;
 }
 
 /// A value as a sentence has it: texts without their quotes.
@@ -174,7 +178,7 @@ void explain_scheme(const Scene& scene, Explanation& e) {
   const Scheme scheme = processed(scheme_of(scene.integrator), options);
   const FittedWord fitted = fitted_word(scheme, hamiltonian.claims(), e.hamiltonian, options);
   count_flows(fitted, e.flows);
-  count_of_kernel(fitted, hamiltonian.claims().kernels, e.of_kernel);
+  e.behind_kicks = count_of_kernel(fitted, hamiltonian.claims().kernels, e.of_kernel);
   if (options.changes_scheme()) {
     const Order order = order_over(scheme, hamiltonian.claims());
     e.processing =
@@ -203,8 +207,10 @@ void count_evaluations(const Scene& scene, Explanation& e) {
   }
   const std::int64_t made = sim.run(steps).step - before;
   if (made < steps) return;  // a step that fails is made again and again: the word alone tells
+  const int by_word = e.evaluations;
   e.evaluations =
       static_cast<int>(std::lround(static_cast<double>(sim.evaluations().force - known) / static_cast<double>(made)));
+  if (e.behind_kicks > 0 && e.evaluations == by_word - e.behind_kicks) e.of_kernel['G'] -= e.behind_kicks;
 }
 
 /// The list of the first step.

@@ -83,19 +83,22 @@ TEST_CASE("a tracer near a planet is seen as well, and the outer planets never",
 }
 
 TEST_CASE("bodies that meet in the word before a run only have not met", "[encounter][corrector]") {
-  // A tracer on the other way round meets the planet when the word before the run has drifted by eight nodes.
-  const double step = 0.05, node = std::sqrt(7.0 / 40), angle = 2 * 8 * node * step;
+  // A tracer on the other way round passes the planet, 1.5 Hill radii outside, when the word before the run has drifted
+  // by eight nodes.
+  const double dt = 0.05, node = std::sqrt(7.0 / 40), r = 1.0224, speed = 1 / std::sqrt(r);
+  const double angle = (1 + speed / r) * 8 * node * dt;
   for (const Coordinates coordinates : in_turn) {
     CAPTURE(static_cast<int>(coordinates));
     const auto seen = [&](std::int64_t corrector, std::int64_t steps) {
       ParticleSystem<double> s;
       s.add("star", 1, {0, 0, 0}, {0, 0, 0});
       s.add("planet", 1e-5, {1, 0, 0}, {0, 1, 0});
-      s.add("dust", 0, {std::cos(angle), std::sin(angle), 0}, {std::sin(angle), -std::cos(angle), 0});
+      s.add("dust", 0, {r * std::cos(angle), r * std::sin(angle), 0},
+            {speed * std::sin(angle), -speed * std::cos(angle), 0});
       Simulation<double> run(std::move(s),
                              compose(test::wisdom_holman({.G = 1, .coordinates = coordinates}), schemes::verlet_aba,
                                      {.corrector = corrector}),
-                             step);
+                             dt);
       REQUIRE(run.run(steps).ok());
       return run.evaluations().encounter.has_value();
     };
@@ -107,12 +110,12 @@ TEST_CASE("bodies that meet in the word before a run only have not met", "[encou
 
 TEST_CASE("the place to which a lazy kick looks ahead is none where bodies meet", "[encounter][kernel]") {
   // Two planets a little more than two Hill radii from each other, which their attraction would bring nearer.
-  const double mass = 1e-3, hill = std::cbrt(2 * mass / 3);
+  const double m = 1e-3, hill = std::cbrt(2 * m / 3);
   const auto seen = [&](double hill_radii) {
     ParticleSystem<double> s;
     s.add("star", 1, {0, 0, 0}, {0, 0, 0});
-    s.add("inner", mass, {1, 0, 0}, {0, 1, 0});
-    s.add("outer", mass, {1 + hill_radii * hill, 0, 0}, {0, 0.9, 0});
+    s.add("inner", m, {1, 0, 0}, {0, 1, 0});
+    s.add("outer", m, {1 + hill_radii * hill, 0, 0}, {0, 0.9, 0});
     s.clock() = Clock<double>::fixed(0, 0.5);
     WisdomHolman<double> arcs({.G = 1});
     arcs.bind(s);

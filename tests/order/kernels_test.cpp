@@ -16,21 +16,21 @@ namespace {
 
 using namespace noether::test;
 
-constexpr double duration = 1.5;
+constexpr double span_of_kernels = 1.5;
 
 ParticleSystem<Quad> heavy_planets() { return planets(0.2, 2).as<Quad>(); }
 
 /// The other splitting of the same Hamiltonian, into kinetic and potential energy, in steps short enough.
-template <class... Fs> ParticleSystem<Quad> reference(const Fs&... forces) {
+template <class... Fs> ParticleSystem<Quad> in_short_steps(const Fs&... forces) {
   const auto hamiltonian = kinetic_potential<Quad>(Gravity{}, forces...);
-  return run(hamiltonian, schemes::sofroniou_spaletta_10_s35, heavy_planets(), duration / 384, 384);
+  return run(hamiltonian, schemes::sofroniou_spaletta_10_s35, heavy_planets(), span_of_kernels / 384, 384);
 }
 
 double measured(const AnyHamiltonian<Quad>& hamiltonian, const Scheme& scheme, const CompositionOptions& options,
                 const ParticleSystem<Quad>& exact) {
   std::vector<ErrorPoint> points;
   for (const long n : ladder(32, 192)) {
-    const double dt = duration / static_cast<double>(n);
+    const double dt = span_of_kernels / static_cast<double>(n);
     points.push_back({dt, distance(run(hamiltonian, scheme, heavy_planets(), dt, n, options), exact)});
   }
   const auto used = finest(points, 1e-15, 1e-2);
@@ -40,7 +40,7 @@ double measured(const AnyHamiltonian<Quad>& hamiltonian, const Scheme& scheme, c
 }
 
 TEST_CASE("the composed kernel has the order that it claims over each kind of coordinates", "[order][slow]") {
-  const auto exact = reference();
+  const auto exact = in_short_steps();
   const CompositionOptions options{.corrector = 7, .kernel = StepKernel::composed};
   const auto check = [&](Coordinates coordinates, int order) {
     CAPTURE(static_cast<int>(coordinates));
@@ -58,7 +58,7 @@ TEST_CASE("kernels keep their order beside strong forces, by the derivatives of 
   const GrPotential relativity{.c = 10};
   const Oblateness oblate{.J2 = 0.02, .J4 = -0.01, .radius = 0.3, .axis = {0.1, 0.2, 1}};
   const HarmonicField field{.k = 0.05};
-  const auto exact = reference(relativity, oblate, field);
+  const auto exact = in_short_steps(relativity, oblate, field);
   const auto arcs = wisdom_holman<Quad>({}, relativity, oblate, field);
   const auto check = [&](const Scheme& scheme, const CompositionOptions& options) {
     INFO(scheme.name << " with " << options.processing_text());
