@@ -213,7 +213,7 @@ class Parts {
     HamiltonianKind kind{part_info<H>(), [](TableReader& reader) { return read_splitting<H>(reader); },
                          columns_of<H>()};
     if constexpr (requires { H{}.forces(); }) kind.needs_forces = std::tuple_size_v<decltype(H{}.forces())> == 0;
-    kind.claims = [] { return AnyHamiltonian<double>(H{}.template split<double>({})).claims(); };
+    kind.claims = [] { return AnyHamiltonian<double>(H{}.template split<double>(ForceField<double>{})).claims(); };
     put(hamiltonians_, std::move(kind));
     return *this;
   }
