@@ -171,7 +171,7 @@ TEST_CASE("a step in lanes is the step of 113 bits to rounding, for 1 to 20 plan
               letters.sum / letters.count);
       CHECK(lanes.sum < 2 * letters.sum);
       CHECK(lanes.worst < 10 * letters.worst);
-      CHECK(lanes.worst < 3000);
+      CHECK(lanes.worst < 500);
     }
   }
 }
