@@ -1,5 +1,5 @@
-#include "study/gravity_traits.hpp"
-
+#include "engine/sums.hpp"
+#include "study/method_traits.hpp"
 #include "study/trait_problems.hpp"
 
 #include <algorithm>
@@ -219,15 +219,16 @@ Momenta momenta_of(const Phase& z) {
 }
 Quad energy_of(const Phase& z) {
   const ParticleSystem<double> bodies = star_and_planets();
-  const auto mass = [&](std::size_t at) { return Quad(bodies.masses()[static_cast<Index>(at / 6)]); };
-  Quad sum(0);
-  for (std::size_t i = 0; i < z.size(); i += 6) {
-    const Vec3<Quad> x(z[i], z[i + 1], z[i + 2]), p(z[i + 3], z[i + 4], z[i + 5]);
-    sum += norm2(p) / (Quad(2) * mass(i));
-    for (std::size_t j = 0; j < i; j += 6)
-      sum -= mass(i) * mass(j) / sqrt(norm2(Vec3<Quad>(x - Vec3<Quad>(z[j], z[j + 1], z[j + 2]))));
-  }
-  return sum;
+  const auto part = [&](Index i, std::size_t first) {
+    const std::size_t at = 6 * static_cast<std::size_t>(i) + first;
+    return Vec3<Quad>(z[at], z[at + 1], z[at + 2]);
+  };
+  return sum_over<Quad>(bodies.size(), [&](Index i) {
+    const Quad m = Quad(bodies.masses()[i]), kinetic = norm2(part(i, 3)) / (Quad(2) * m);
+    const Quad pull = sum_over<Quad>(
+        i, [&](Index j) { return m * Quad(bodies.masses()[j]) / sqrt(norm2(Vec3<Quad>(part(i, 0) - part(j, 0)))); });
+    return kinetic - pull;
+  });
 }
 
 /// Relative changes of momentum and angular momentum over some steps.

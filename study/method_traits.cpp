@@ -1,6 +1,5 @@
 #include "study/method_traits.hpp"
 
-#include "study/gravity_traits.hpp"
 #include "study/stability_limit.hpp"
 #include "study/trait_problems.hpp"
 

@@ -153,5 +153,12 @@ TEST_CASE("a run says in one line who met whom, when, and how closely", "[encoun
       "whose steps shrink in them, such as 'gauss_radau_15'");
 }
 
+TEST_CASE("a run says how many steps had bodies too near to each other for their method", "[encounter]") {
+  CHECK(warning_of(Evaluations{.unsettled = 1}, "encke_gauss_8") ==
+        "in 1 step of 'encke_gauss_8' two bodies were so near to each other that doubles do not tell their pull well "
+        "enough for errors below 1e-18; use 'wide_gauss_8'");
+  CHECK(warning_of(Evaluations{.unsettled = 20}, "encke_gauss_8").starts_with("in 20 steps of 'encke_gauss_8'"));
+}
+
 }  // namespace
 }  // namespace noether

@@ -124,9 +124,9 @@ struct WideTotal {
   void observe(const Snapshot<double>& now) const { seen->push_back(now.wide_energy()->total()); }
 };
 
-bool same(const Vec3<Quad>& a, const Vec3<Quad>& b) { return a == b; }
+bool same_words(const Vec3<Quad>& a, const Vec3<Quad>& b) { return a == b; }
 
-Vec3<Quad> position_of(Simulation<double>& run, Index i) { return words_of(run.particles(), i).x; }
+Vec3<Quad> wide_position(Simulation<double>& run, Index i) { return words_of(run.particles(), i).x; }
 
 }  // namespace
 
@@ -151,18 +151,18 @@ TEST_CASE("edits leave the second words of what they do not change", "[wide_gaus
     auto run = planets();
     REQUIRE(run.run(20).ok());
     const ParticleSystem<double> before = run.particles();
-    REQUIRE(!same(words_of(before, 2).x, before.positions()[2].cast<Quad>()));
+    REQUIRE(!same_words(words_of(before, 2).x, before.positions()[2].cast<Quad>()));
     run.edit([](ParticleSystem<double>& s) {
       s.positions().set(1, s.positions()[1] + Vec3<double>(1e-3, 0, 0));
       s.remove(5);
     });
     const ParticleSystem<double>& after = run.particles();
     REQUIRE(after.size() == before.size() - 1);
-    CHECK(same(words_of(after, 1).x, after.positions()[1].cast<Quad>()));
-    CHECK(same(words_of(after, 1).v, words_of(before, 1).v));
+    CHECK(same_words(words_of(after, 1).x, after.positions()[1].cast<Quad>()));
+    CHECK(same_words(words_of(after, 1).v, words_of(before, 1).v));
     for (const Index i : {0, 2, 3, 4}) {
-      CHECK(same(words_of(after, i).x, words_of(before, i).x));
-      CHECK(same(words_of(after, i).v, words_of(before, i).v));
+      CHECK(same_words(words_of(after, i).x, words_of(before, i).x));
+      CHECK(same_words(words_of(after, i).v, words_of(before, i).v));
     }
     CHECK(run.run(3).ok());
   }
@@ -178,7 +178,7 @@ TEST_CASE("steps back lead to where steps forth began, far below the rounding of
     REQUIRE(run.run(50).ok());
     CHECK(std::abs(run.time()) < 1e-9);
     for (Index i = 0; i < run.particles().size(); ++i) {
-      const Vec3<Quad> off = position_of(run, i) - outer_planets().positions()[i].cast<Quad>();
+      const Vec3<Quad> off = wide_position(run, i) - outer_planets().positions()[i].cast<Quad>();
       CHECK(static_cast<double>(sqrt(norm2(off))) < 1e-17);
     }
   }
@@ -196,7 +196,7 @@ TEST_CASE("where and when a run begins does not change its motion", "[wide_gauss
     REQUIRE(zero.run(50).ok());
     REQUIRE(later.run(50).ok());
     for (Index i = 0; i < zero.particles().size(); ++i) {
-      const Vec3<Quad> off = position_of(zero, i) - position_of(later, i);
+      const Vec3<Quad> off = wide_position(zero, i) - wide_position(later, i);
       CHECK(static_cast<double>(sqrt(norm2(off))) < 1e-17);
     }
   }
