@@ -51,7 +51,7 @@ std::string refusal(const Scene& scene, const Candidate& who) {
 Candidate make(const Scene& scene, const std::string& method, bool joined, bool adaptive) {
   Candidate who{method, method, joined, adaptive};
   const MethodInfo* info = scene.parts->find_method(method);
-  who.below_rounding = info != nullptr && info->make(*info, {})->claims().second_words;
+  who.below_rounding = info != nullptr && make_method<double>(*info, {})->claims().second_words;
   if (joined) who.label = fmt::format("{}@{}", method, plain(scene).info.name);
   return who;
 }
@@ -137,7 +137,7 @@ std::vector<Candidate> default_opponents(const Scene& scene) {
 std::vector<Candidate> opponents_below_rounding(const Scene& scene) {
   std::vector<std::string> names;
   for (const MethodInfo* info : methods::all()) {
-    if (info->make(*info, {})->claims().second_words) names.emplace_back(info->name);
+    if (make_method<double>(*info, {})->claims().second_words) names.emplace_back(info->name);
   }
   return those_that_serve(scene, names);
 }
