@@ -36,7 +36,7 @@ struct SameHeight {
   double scale() const { return 1; }
 };
 
-std::string two_bodies(const std::string& hamiltonian) {
+std::string bodies_of_two_parts(const std::string& hamiltonian) {
   return "units = \"reduced\"\n[particles]\nbody = [{ name = \"heavy\", mass = 1, x = [0, 0, 0], v = [0, 0, 0] }, { "
          "name = \"light\", mass = 0.001, x = [1, 0, 0], v = [0, 1, 0] }]\n[hamiltonian]\n" +
          hamiltonian +
@@ -59,8 +59,9 @@ std::size_t links_of(const std::filesystem::path& run, const Parts& parts) {
 
 TEST_CASE("orbits are drawn where a force claims to move pairs on them, whatever its name", "[cli][plot]") {
   const std::string free = "type = \"kinetic_potential\"\n[[hamiltonian.force]]\ntype = ";
-  const SceneFolder pulled(two_bodies(free + "\"gravity\"\n")), held(two_bodies(free + "\"harmonic_field\"\nk = 1\n"));
-  const SceneFolder arcs(two_bodies("type = \"wisdom_holman\"\n"));
+  const SceneFolder pulled(bodies_of_two_parts(free + "\"gravity\"\n")),
+      held(bodies_of_two_parts(free + "\"harmonic_field\"\nk = 1\n"));
+  const SceneFolder arcs(bodies_of_two_parts("type = \"wisdom_holman\"\n"));
   for (const SceneFolder* folder : {&pulled, &held, &arcs}) output(*folder, "run scene.toml --quiet");
   Parts others = standard_parts();
   others.add_force<Pull>();
@@ -74,8 +75,8 @@ TEST_CASE("orbits are drawn where a force claims to move pairs on them, whatever
 
 TEST_CASE("rods are drawn where a constraint says that it is one, whatever its name", "[cli][plot]") {
   const SceneFolder folder(
-      two_bodies("type = \"kinetic_potential\"\n[[hamiltonian.constraint]]\ntype = \"distance\"\n"
-                 "pairs = [[\"heavy\", \"light\"]]\n"));
+      bodies_of_two_parts("type = \"kinetic_potential\"\n[[hamiltonian.constraint]]\ntype = \"distance\"\n"
+                          "pairs = [[\"heavy\", \"light\"]]\n"));
   output(folder, "run scene.toml --quiet");
   Parts others = standard_parts();
   CHECK(links_of(folder / "scene.out/run.h5", others) == 1);

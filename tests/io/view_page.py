@@ -31,6 +31,15 @@ import zlib
 SKIPPED = 77
 
 
+def h5py_or_skip():
+    try:
+        import h5py
+    except ImportError:
+        print("there is no Python with h5py")
+        sys.exit(SKIPPED)
+    return h5py
+
+
 def parts_of(page):
     text = pathlib.Path(page).read_text(encoding="utf-8")
     found = re.findall(r'<script id="(\w+)" type="[\w/]+">(.*?)</script>', text, re.DOTALL)
@@ -63,11 +72,7 @@ def frames_of(page):
 
 
 def compare(page, run):
-    try:
-        import h5py
-    except ImportError:
-        print("there is no Python with h5py")
-        return SKIPPED
+    h5py = h5py_or_skip()
     about, places, velocities = frames_of(page)
     particles, worst = about["particles"], {"position": 0.0, "velocity": 0.0, "time": 0.0}
     with h5py.File(run) as file:
@@ -242,7 +247,7 @@ def hue_between(a, b):
 
 
 def bodies(page, run, fragment):
-    import h5py
+    h5py = h5py_or_skip()
     taken = screenshot(page, fragment)
     if taken is None:
         return SKIPPED
@@ -323,7 +328,7 @@ def discs_of(seen, distance, radius, width, height, middle):
 
 
 def atoms(page, run, fragment):
-    import h5py
+    h5py = h5py_or_skip()
     import numpy
     taken = screenshot(page, fragment)
     if taken is None:
