@@ -29,7 +29,8 @@ struct alignas(64) PlanetRow {
   double force[3][8];     ///< of the kick, while rows are summed
 };
 
-/// Constants of the pairs of two rows, or of one row with itself: line n is of lane i and lane i + n in a ring.
+/// Constants of the pairs of two rows, or of one row with itself: line n is of lane i and lane i + n in a ring,
+/// so that of one row with itself line 4 has each pair twice.
 struct alignas(64) PlanetPairs {
   double attraction[8][8];  ///< G m_0 m_i m_j, masses in those of the star
   double near[8][8];        ///< r_ij^2 over the squared distance from the star below which the two are to be noted

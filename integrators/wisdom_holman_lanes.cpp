@@ -12,6 +12,7 @@ namespace noether {
 namespace {
 
 constexpr std::size_t lanes = 8;
+constexpr std::size_t most_planets = 256;  // constants of pairs stay below a megabyte
 
 /// The solver for all cases, as the kernels call it.
 bool exact_arc(const double* x, const double* v, double mu, double h, double* dx, double* dv, double* s) {
@@ -26,7 +27,8 @@ bool exact_arc(const double* x, const double* v, double mu, double h, double* dx
 bool PlanetLanes::can_take(const PlanetSystem& system) {
   constexpr double least = 1e-60, most = 1e60;
   const double star = system.masses[0], mu = system.G * star;
-  if (system.order.size() < 2 || !(mu > least && mu < most) || !(system.size < most)) return false;
+  if (system.order.size() < 2 || system.order.size() > most_planets + 1) return false;
+  if (!(mu > least && mu < most) || !(system.size < most)) return false;
   return std::all_of(system.order.begin() + 1, system.order.end(), [&](std::int64_t i) {
     const double m = system.masses[static_cast<std::size_t>(i)] / star;
     return m > least && m < most;

@@ -32,7 +32,8 @@ struct PlanetSystem {
 /// arc before: that is state. `docs/theory/wisdom_holman.md` has the formulae.
 class PlanetLanes {
  public:
-  /// Whether planets of such masses can be moved in lanes: products of two of them must be normal numbers.
+  /// Whether these planets can be moved in lanes: products of two masses must be normal numbers, and there are
+  /// constants of each pair, so that there may be 256 planets.
   static bool can_take(const PlanetSystem& system);
 
   /// Takes over constants, and forgets the prediction.

@@ -206,6 +206,7 @@ TEST_CASE("planets in lanes have the same bits without optimization", "[kepler]"
       for (auto& line : of.attraction) {
         for (double& one : line) one = 1e-5 * uniform(random);
       }
+      for (int k = 0; k < 4; ++k) of.attraction[4][k + 4] = of.attraction[4][k];  // the same pairs
     }
     const PlanetRows planets{.row = row.data(),
                              .rows = 2,

@@ -189,6 +189,13 @@ TEST_CASE("planets are in lanes where their forces are there, and letter by lett
   CHECK(bound(WisdomHolman<double, ForceField<double>>({}, test::field_of(GrPotential{}))));
   CHECK_FALSE(bound(WisdomHolman<double, ForceField<double>>({}, test::field_of(GrPotential{}, no_field))));
   CHECK_FALSE(bound(WisdomHolman<double, ForceField<double>>({}, test::field_of(no_field))));
+  for (const int planets : {256, 257}) {
+    s = ParticleSystem<double>();
+    s.add("star", 1, {0, 0, 0}, {0, 0, 0});
+    for (int k = 0; k < planets; ++k) s.add("planet " + std::to_string(k), 1e-9, {1 + 0.1 * k, 0, 0}, {0, 1, 0});
+    CHECK(bound(WisdomHolman({.G = 1})) == (planets == 256));
+  }
+  s = test::outer_planets();
   s.masses()[5] = 1e-70;  // products of masses would not be normal numbers
   CHECK_FALSE(bound(WisdomHolman({.G = test::outer_G})));
 }
