@@ -34,7 +34,7 @@ std::string refusal(const Scheme& scheme, const HamiltonianClaims& claims) {
 const WisdomHolman<double> democratic_arcs({.coordinates = Coordinates::democratic});
 const WisdomHolman<double, Sum<HarmonicField>> arcs_in_field({.coordinates = Coordinates::democratic},
                                                              Sum(HarmonicField{.k = 0.3}));
-const Damped<KineticPotential<HarmonicField>> damped(KineticPotential(HarmonicField{.k = 1}), {.rate = 0.1});
+const Damped<KineticPotential<HarmonicField>> damped_spring(KineticPotential(HarmonicField{.k = 1}), {.rate = 0.1});
 
 TEST_CASE("a scheme that needs exact kicks is refused where other forces join democratic coordinates", "[refusal]") {
   for (const Scheme* scheme : {&schemes::aba_10_6_4, &schemes::blanes_moan_s6}) {
@@ -68,21 +68,21 @@ TEST_CASE("every Nystroem scheme is refused where the kinetic energy is not quad
 }
 
 TEST_CASE("a scheme with negative steps is refused on an irreversible part", "[refusal]") {
-  CHECK(refusal(damped, schemes::yoshida_4) ==
+  CHECK(refusal(damped_spring, schemes::yoshida_4) ==
         "scheme 'yoshida_4' steps backwards, but part D of 'damped' is irreversible; use a scheme with forward steps "
         "only, such as 'verlet' or 'mclachlan_2_s2'");
   for (const Scheme* scheme : schemes::all()) {
     bool backwards = false;
     for (const Stage& stage : scheme->word) backwards = backwards || stage.weight < Quad(0);
-    CHECK((refusal(damped, *scheme) != "") == backwards);
+    CHECK((refusal(damped_spring, *scheme) != "") == backwards);
   }
 }
 
 TEST_CASE("a letter that the Hamiltonian does not have is refused", "[refusal]") {
   CHECK(refusal(KineticPotential(HarmonicField{.k = 1}), word("BADAB")) ==
         "scheme 'BADAB' uses the letter D, but 'kinetic_potential' has only AB");
-  CHECK(refusal(damped, word("BADAB")) == "");
-  CHECK(refusal(damped, word("BAOAB")) == "scheme 'BAOAB' uses the letter O, but 'damped' has only ABD");
+  CHECK(refusal(damped_spring, word("BADAB")) == "");
+  CHECK(refusal(damped_spring, word("BAOAB")) == "scheme 'BAOAB' uses the letter O, but 'damped' has only ABD");
 }
 
 TEST_CASE("a force that depends on velocities is refused as an exact kick", "[refusal]") {

@@ -51,7 +51,7 @@ struct Forgetful {
     bool known = false;
   };
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& /*s*/) const {
-    Kept& kept = out.workspace().get<Kept>();
+    Kept& kept = out.workspace().template get<Kept>();
     if (!kept.known) ++begun;
     kept.known = true;
   }

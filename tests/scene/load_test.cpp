@@ -247,7 +247,7 @@ TEST_CASE("G of the Hamiltonian is the G of its forces and of elements", "[scene
 
 TEST_CASE("an escape is looked for at every step that a method chooses", "[scene][stop]") {
   // a = 1, e = 1/2 from the pericenter: beyond 1.4 from cos E = -4/5 on, back within it before the end.
-  const std::string orbit =
+  const std::string eccentric =
       "units = 'reduced'\n[particles]\n[[particles.body]]\nname = 'S'\nmass = 1\n[[particles.body]]\nname = 't'\n"
       "mass = 0\na = 1\ne = 0.5\n[hamiltonian]\ntype = 'kinetic_potential'\n[[hamiltonian.force]]\ntype = "
       "'gravity'\n";
@@ -255,7 +255,7 @@ TEST_CASE("an escape is looked for at every step that a method chooses", "[scene
   const double E = std::acos(-0.8), since = E - 0.5 * std::sin(E);
   for (const std::string method : {"dop853", "gauss_8", "dormand_prince_5"}) {
     CAPTURE(method);
-    const Scene scene = read(orbit + "[integrator]\nmethod = '" + method + "'\nuntil = 30\n" + stop);
+    const Scene scene = read(eccentric + "[integrator]\nmethod = '" + method + "'\nuntil = 30\n" + stop);
     CHECK(scene.stops.at(0).steps == 1);
     Simulation<double> sim = assemble(scene);
     const Outcome outcome = sim.run_until(30);
@@ -263,8 +263,8 @@ TEST_CASE("an escape is looked for at every step that a method chooses", "[scene
     CHECK(outcome.time < 4);  // it is beyond 1.4 until 2 pi - since = 4.08
     CHECK(std::abs(test::number_after(outcome.message, "since time ") - since) < 1e-3);
   }
-  CHECK(read(orbit + "[integrator]\nmethod = 'dop853'\nuntil = 30\n" + stop + "steps = 7\n").stops.at(0).steps == 7);
-  CHECK(read(orbit + "[integrator]\nmethod = 'verlet'\nstep = 0.1\nuntil = 30\n" + stop).stops.at(0).steps == 100);
+  CHECK(read(eccentric + "[integrator]\nmethod = 'dop853'\nuntil = 30\n" + stop + "steps = 7\n").stops.at(0).steps == 7);
+  CHECK(read(eccentric + "[integrator]\nmethod = 'verlet'\nstep = 0.1\nuntil = 30\n" + stop).stops.at(0).steps == 100);
 }
 
 TEST_CASE("a collision is said to leave out pairs of tracers", "[scene][stop]") {
