@@ -2,9 +2,10 @@
 
 #include "integrators/all_methods.hpp"
 #include "integrators/methods/dense_factors.hpp"
+#include "integrators/methods/gravity_gauss.hpp"
+#include "integrators/methods/step_ladder.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -18,17 +19,6 @@ constexpr auto lanes = static_cast<Index>(lane_count);
 constexpr double short_step = 64;
 /// A step is made again if the one that meets the tolerance is shorter by more than this factor.
 constexpr double accepted = 0.6;
-
-/// x^(1/n) to a part in a thousand, which is all that the length of a step asks for, for normal x > 0: a straight line
-/// through the exponents, then a step of Halley's. It takes a third of the time of a power, and has the same bits
-/// whatever library that comes from.
-double near_root(double x, int n) {
-  const auto one = std::bit_cast<std::int64_t>(1.0);
-  const auto y = std::bit_cast<double>((std::bit_cast<std::int64_t>(x) - one) / n + one);
-  double power = 1;
-  for (int k = 0; k < n; ++k) power *= y;
-  return y * ((n - 1) * power + (n + 1) * x) / ((n + 1) * power + (n - 1) * x);
-}
 
 template <class Real> Real rounded(const Quad& x, Real& low) {
   const Real high = static_cast<Real>(x);
@@ -461,6 +451,14 @@ template <class Real> double Collocation<Real>::roughness(const Vector<Real>& y,
   return std::sqrt(worst);
 }
 
+template <class Real>
+void Collocation<Real>::go_on_from(const AlignedVector<Real>& low, const AlignedVector<Real>& rates, double h) {
+  std::copy(low.begin(), low.end(), low_.begin());
+  std::copy(rates.begin(), rates.end(), previous_.begin());
+  h_ = h;
+  swept_ = 0;
+}
+
 template <class Real> void Collocation<Real>::save(SavedState& saved, const std::string& prefix) const {
   save_value(saved, prefix + "next", next_);
   save_value(saved, prefix + "h", h_);
@@ -498,6 +496,10 @@ int stages_of(std::string_view name) { return name == "implicit_midpoint" ? 1 : 
 template <class Real> std::unique_ptr<Method<Real>> gauss(const MethodInfo& info, const MethodOptions& options) {
   return std::make_unique<Collocation<Real>>(info, options, gauss_table(stages_of(info.name)), true);
 }
+/// Eight stages have a form of their own for gravity.
+std::unique_ptr<Method<double>> gauss_8(const MethodInfo& info, const MethodOptions& options) {
+  return std::make_unique<GravityGauss>(info, options);
+}
 template <class Real> std::unique_ptr<Method<Real>> radau(const MethodInfo& info, const MethodOptions& options) {
   return std::make_unique<Collocation<Real>>(info, options, radau_left_table(), false);
 }
@@ -515,7 +517,7 @@ MethodInfo gauss_info(std::string_view name, std::string_view summary, std::stri
           .rtol = 1e-16,
           .atol = 0,
           .stability_limit = std::numeric_limits<double>::infinity(),
-          .make = gauss<double>,
+          .make = stages == lane_count ? gauss_8 : gauss<double>,
           .make_quad = gauss<Quad>};
 }
 
