@@ -15,7 +15,7 @@ namespace {
 constexpr Index most_bodies = 64;
 /// A sweep that changes a rate by this part of itself is followed by changes of a hundredth of it, and what these leave
 /// in the step is a hundredth again.
-constexpr double settled = 1e-14;
+constexpr double settled_change = 1e-14;
 constexpr int most_sweeps = 40;
 /// Sweeps after which a change that is rounding of the parts of a rate, but not of their sum, is looked for.
 constexpr int many_sweeps = 12;
@@ -37,9 +37,8 @@ AlignedVector<double> two_steps_ahead(const CollocationTable& table) {
   constexpr std::size_t stages = lane_count, rows = 2 * stages, columns = 13;
   std::vector<std::vector<Quad>> basis;
   for (std::size_t r = 0; r < rows; ++r) {
-    // The three steps begin at -3, -1 and 1 in the variable of the polynomials.
-    const Quad at = Quad(2) * table.c[r % stages] - Quad(r < stages ? 1 : 3);
-    basis.push_back(legendre_polynomials(columns - 1, (at + Quad(1)) / Quad(2)));
+    // The three steps begin at -1, 0 and 1.
+    basis.push_back(legendre_polynomials(columns - 1, table.c[r % stages] - Quad(r < stages ? 0 : 1)));
   }
   Matrix<Quad> normal(columns, columns), fit(columns, rows);
   for (std::size_t a = 0; a < columns; ++a) {
@@ -89,7 +88,7 @@ GravityGauss::GravityGauss(const MethodInfo& info, const MethodOptions& options)
       adaptive_(info.is_adaptive(options)),
       rtol_(options.rtol.value_or(info.rtol)),
       first_(options.first.value_or(0)),
-      tolerance_(adaptive_ ? std::max(settled, 1e-2 * rtol_) : settled),
+      tolerance_(adaptive_ ? std::max(settled_change, 1e-2 * rtol_) : settled_change),
       control_(gauss_table(lane_count), rtol_) {
   static const Numbers ahead = two_steps_ahead(gauss_table(lane_count));
   ahead_ = ahead;
@@ -355,7 +354,7 @@ bool GravityGauss::is_rounding() {
         const double change = component(now_, body, axis) - component(before_, body, axis);
         change2 += change * change;
       }
-      if (!(std::sqrt(change2) <= settled * sizes_[i])) return false;
+      if (!(std::sqrt(change2) <= settled_change * sizes_[i])) return false;
     }
   }
   return true;

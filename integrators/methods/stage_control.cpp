@@ -13,7 +13,7 @@ namespace noether {
 
 namespace {
 
-constexpr std::size_t stages = 8;
+constexpr std::size_t control_stages = 8;
 
 /// Value, first and second derivative at t of the Lagrange polynomial of node j.
 std::array<Quad, 3> derivatives_of(const CollocationTable& table, std::size_t j, const Quad& t) {
@@ -35,13 +35,13 @@ StageControl::StageControl(const CollocationTable& table, double rtol) {
   const double wider = std::pow(std::max(rtol, 1e-16) / 1e-16, 1.0 / 16);
   eta_ = 0.38 * wider;
   target_ = 1e-9 * std::pow(wider, 7);
-  weights_.assign(6 * stages, 0);
+  weights_.assign(6 * control_stages, 0);
   const std::vector<Quad> legendre = table.last_coefficient();
-  for (std::size_t j = 0; j < stages; ++j) {
+  for (std::size_t j = 0; j < control_stages; ++j) {
     const std::array<Quad, 3> middle = derivatives_of(table, j, Quad(0.5)), end = derivatives_of(table, j, Quad(1));
     for (std::size_t q = 0; q < 3; ++q) {
-      weights_[stages * q + j] = static_cast<double>(middle[q]);
-      weights_[stages * (3 + q) + j] = static_cast<double>(end[q]);
+      weights_[control_stages * q + j] = static_cast<double>(middle[q]);
+      weights_[control_stages * (3 + q) + j] = static_cast<double>(end[q]);
     }
     last_.push_back(static_cast<double>(legendre[j]));
   }
