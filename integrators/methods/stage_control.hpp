@@ -26,7 +26,7 @@ namespace noether {
 /// @source PhamReinSpiegel2024
 class StageControl {
  public:
-  /// A step that is longer than what it may be by less than this is kept.
+  /// A step is made again if it may have no more than this part of its length.
   static constexpr double kept = 0.8;
 
   StageControl(const CollocationTable& table, double rtol);
