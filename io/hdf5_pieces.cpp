@@ -127,8 +127,8 @@ Node read_node(Pieces& pieces, const TreeKind& kind, std::uint64_t at, std::uint
   return node;
 }
 
-/// Where a node was divided and its writer was killed before it wrote the left half, that half still has what now stands
-/// at the beginning of its right neighbor. No reader looks there: the node above leads to the neighbor.
+/// Where a node was divided and its writer was killed before it wrote the left half, that half still has what now
+/// stands at the beginning of its right neighbor. No reader looks there: the node above leads to the neighbor.
 void forget_divided(Node& node, const Node& next) {
   const auto same = std::find(node.children.begin(), node.children.end(), next.children.front());
   if (same == node.children.end()) return;
@@ -165,9 +165,9 @@ std::vector<Node> walk_tree(Pieces& pieces, const TreeKind& kind, std::uint64_t 
   std::vector<Node> row = {read_node(pieces, kind, root, pointer)};
   while (true) {
     for (std::size_t k = 0; k < row.size(); ++k) {
-      expect(row[k].level == row[0].level, row[k].at + 5,
-             fmt::format("a node of {} is of level {} among others of level {}", kind.what, row[k].level,
-                         row[0].level));
+      expect(
+          row[k].level == row[0].level, row[k].at + 5,
+          fmt::format("a node of {} is of level {} among others of level {}", kind.what, row[k].level, row[0].level));
       expect(!row[k].children.empty() || row[k].at == root, row[k].at + 6,
              fmt::format("a node of {} has no children", kind.what));
       if (k > 0) forget_divided(row[k - 1], row[k]);
@@ -216,7 +216,8 @@ void walk_chunks(Pieces& pieces, const Chunks& chunks, const std::string& path) 
       const std::string what = fmt::format("chunk {} of '{}'", number, path);
       expect(key[0] == bytes, leaf.key_place(k), fmt::format("{} has {} bytes instead of {}", what, key[0], bytes));
       expect(key[1] == 0, leaf.key_place(k) + 4, fmt::format("{} has the filter mask {} instead of 0", what, key[1]));
-      expect(is_number(key, number), leaf.key_place(k) + 8, fmt::format("{} does not begin at row {}", what, number * chunks.chunk[0]));
+      expect(is_number(key, number), leaf.key_place(k) + 8,
+             fmt::format("{} does not begin at row {}", what, number * chunks.chunk[0]));
       pieces.claim(leaf.children[k], bytes, what, leaf.place(k));
     }
   }
@@ -322,7 +323,8 @@ void walk_names(Pieces& pieces, std::uint64_t at, std::uint64_t pointer, Names& 
            fmt::format("the names of '{}' are not in order: '{}' follows '{}'", path, member.name,
                        members.empty() ? "" : members.back().name));
     const std::uint64_t kind = block.number(offset + 16, 4);
-    expect(kind <= 1, block.place(offset + 16), fmt::format("the entry '{}' of '{}' is of kind {}, 0 and 1 are known", member.name, path, kind));
+    expect(kind <= 1, block.place(offset + 16),
+           fmt::format("the entry '{}' of '{}' is of kind {}, 0 and 1 are known", member.name, path, kind));
     block.expect_zeros(offset + 20, 4);
     member.cached = kind == 1;
     if (member.cached) {
@@ -351,7 +353,8 @@ std::vector<Member> walk_group(Pieces& pieces, std::uint64_t tree, std::uint64_t
       walk_names(pieces, leaf.children[k], leaf.place(k), names, path, members);
       const std::string last = names.at(leaf.keys[k + 1][0], leaf.key_place(k + 1));
       expect(before < members[first].name && (first == 0 ? before.empty() : before == members[first - 1].name),
-             leaf.key_place(k), fmt::format("a key of {} is '{}', which is not the name before the node", kind.what, before));
+             leaf.key_place(k),
+             fmt::format("a key of {} is '{}', which is not the name before the node", kind.what, before));
       expect(last == members.back().name, leaf.key_place(k + 1),
              fmt::format("a key of {} is '{}', which is not the last name of the node", kind.what, last));
     }

@@ -5,20 +5,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <deque>
-#include <new>
-#include <set>
+#include <fstream>
+#include <system_error>
 #include <utility>
 
 namespace noether::io {
 
+namespace hdf5_pieces {
+
 namespace {
 
-using namespace hdf5_pieces;
-
 /// Kinds of messages in the header of an object.
-enum Message : std::uint64_t {
+enum class Message : std::uint64_t {
   nil = 0,
   dataspace = 1,
   datatype = 3,
@@ -42,7 +41,7 @@ Type read_type(const Block& block, const std::string& owner) {
   static constexpr std::string_view integer("\x10\x08\0\0\x08\0\0\0\0\0\x40\0", 12);
   static constexpr std::string_view real("\x11\x20\x3f\0\x08\0\0\0\0\0\x40\0\x34\x0b\0\x34\xff\x03\0\0", 20);
   static constexpr std::string_view reference("\x17\0\0\0\x08\0\0\0", 8);
-  static constexpr std::string_view variable("\x19\x01\x01\0\x10\0\0\0\x10\0\0\0\x01\0\0\0\0\0\x08\0", 20);
+  static constexpr std::string_view variable("\x19\x11\x01\0\x10\0\0\0\x10\0\0\0\x01\0\0\0\0\0\x08\0", 20);
   const std::string_view bytes = block.text(0, block.size());
   const auto is = [&](std::string_view form) {
     if (!bytes.starts_with(form)) return false;
@@ -70,7 +69,8 @@ std::vector<std::uint64_t> read_extent(const Block& block, const std::string& ow
     extent.push_back(block.number(8 + 8 * k, 8));
     if (flags == 0) continue;
     const std::uint64_t offset = 8 + 8 * (axes + k), most = block.number(offset, 8);
-    expect(most >= extent[k], block.place(offset), fmt::format("{} has {} rows, at most {} were allowed", owner, extent[k], most));
+    expect(most >= extent[k], block.place(offset),
+           fmt::format("{} has {} rows, at most {} were allowed", owner, extent[k], most));
   }
   const std::uint64_t used = 8 + 8 * axes * (flags == 0 ? 1 : 2);
   block.expect_zeros(used, block.size() - used);
@@ -119,7 +119,8 @@ class Walk {
       expect(told == links, place, fmt::format("an object is said to have {} names, it has {}", told, links));
     }
     for (const auto& [target, place] : references_)
-      expect(links_.count(target) > 0, place, fmt::format("a reference leads to byte {}, where no object begins", target));
+      expect(links_.count(target) > 0, place,
+             fmt::format("a reference leads to byte {}, where no object begins", target));
   }
   std::vector<ByteRange> unused(std::uint64_t whole) const { return pieces_.unused(whole); }
 
@@ -139,7 +140,8 @@ class Walk {
     expect(end <= pieces_.size(), block.place(40),
            fmt::format("the file should end at byte {}, but has {} bytes", end, pieces_.size()));
     pieces_.end_at(end);
-    expect(end >= block.size(), block.place(40), fmt::format("the file should end at byte {}, within its superblock", end));
+    expect(end >= block.size(), block.place(40),
+           fmt::format("the file should end at byte {}, within its superblock", end));
     block.expect_zeros(56, 8);
     block.expect_number(72, 4, 1, "the kind of the root's entry");
     block.expect_zeros(76, 4);
@@ -202,11 +204,14 @@ class Walk {
                     const std::string& name) {
     block.expect_number(2, 1, extent.size() + 1, fmt::format("the number of axes of chunks of '{}'", name));
     expect(!extent.empty(), block.place(2), fmt::format("'{}' has chunks and no axis", name));
-    Chunks chunks{.tree = block.number(3, 8), .pointer = block.place(3), .extent = extent, .chunk = {}, .element = element};
+    Chunks chunks{
+        .tree = block.number(3, 8), .pointer = block.place(3), .extent = extent, .chunk = {}, .element = element};
     for (std::size_t k = 0; k < extent.size(); ++k) {
       const std::uint64_t offset = 11 + 4 * k, edge = block.number(offset, 4);
       chunks.chunk.push_back(edge);
-      if (k > 0) block.expect_number(offset, 4, std::max<std::uint64_t>(extent[k], 1), fmt::format("the edge of chunks of '{}'", name));
+      if (k > 0)
+        block.expect_number(offset, 4, std::max<std::uint64_t>(extent[k], 1),
+                            fmt::format("the edge of chunks of '{}'", name));
       expect(edge > 0, block.place(offset), fmt::format("chunks of '{}' have no rows", name));
     }
     const std::uint64_t end = 11 + 4 * extent.size();
@@ -223,7 +228,6 @@ class Walk {
     head.expect_zeros(1, 1);
     head.expect_zeros(12, 4);
     told_links_[at] = {head.number(4, 4), head.place(4)};
-    const std::uint64_t expected = head.number(2, 2);
     std::deque<Block> blocks;
     blocks.push_back(pieces_.take(at + 16, head.number(8, 4), what, head.place(8)));
     Header header;
@@ -231,12 +235,13 @@ class Walk {
     for (; !blocks.empty(); blocks.pop_front()) {
       const Block& block = blocks.front();
       for (std::uint64_t offset = 0; offset < block.size(); ++count) {
-        const std::uint64_t kind = block.number(offset, 2), size = block.number(offset + 2, 2);
+        const std::uint64_t size = block.number(offset + 2, 2);
+        const auto kind = static_cast<Message>(block.number(offset, 2));
         block.expect_zeros(offset + 5, 3);
         expect(size % 8 == 0 && size <= block.size() - offset - 8, block.place(offset + 2),
                fmt::format("a message of {} has {} bytes, {} are left", what, size, block.size() - offset - 8));
         const Block content = block.part(offset + 8, size);
-        if (kind == continuation) {
+        if (kind == Message::continuation) {
           blocks.push_back(pieces_.take(content.number(0, 8), content.number(8, 8), what, content.place(0)));
           content.expect_zeros(16, size - 16);
         }
@@ -246,37 +251,51 @@ class Walk {
       }
     }
     head.expect_number(2, 2, count, "the number of messages of " + what);
-    static_cast<void>(expected);
     return header;
   }
 
-  void take_message(Header& header, std::uint64_t kind, std::uint64_t flags, const Block& content,
-                    const std::string& name) {
+  void take_message(Header& header, Message kind, std::uint64_t flags, const Block& content, const std::string& name) {
     const std::string owner = "'" + name + "'";
+    const auto type = static_cast<std::uint64_t>(kind);
     const auto once = [&](bool there) {
-      expect(!there, content.place(0) - 8, fmt::format("the header of {} has two messages of type {}", owner, kind));
+      expect(!there, content.place(0) - 8, fmt::format("the header of {} has two messages of type {}", owner, type));
     };
-    const std::uint64_t constant = kind == datatype || kind == fill_value ? 1 : 0;
+    const std::uint64_t constant = kind == Message::datatype || kind == Message::fill_value ? 1 : 0;
     expect(flags == constant, content.place(0) - 4,
-           fmt::format("a message of type {} of {} has the flags {} instead of {}", kind, owner, flags, constant));
+           fmt::format("a message of type {} of {} has the flags {} instead of {}", type, owner, flags, constant));
     switch (kind) {
-      case nil: return pieces_.leave(content.place(0), content.place(content.size()));
-      case dataspace: once(header.extent.has_value()); header.extent = read_extent(content, owner); return;
-      case datatype: once(header.type.has_value()); header.type = read_type(content, owner); return;
-      case fill_value: once(header.fill); header.fill = true; return check_fill(content, owner);
-      case layout: once(header.layout.has_value()); header.layout = content; return;
-      case attribute: return read_attribute(content, owner);
-      case modification_time:
+      case Message::nil:
+        return pieces_.leave(content.place(0), content.place(content.size()));
+      case Message::dataspace:
+        once(header.extent.has_value());
+        header.extent = read_extent(content, owner);
+        return;
+      case Message::datatype:
+        once(header.type.has_value());
+        header.type = read_type(content, owner);
+        return;
+      case Message::fill_value:
+        once(header.fill);
+        header.fill = true;
+        return check_fill(content, owner);
+      case Message::layout:
+        once(header.layout.has_value());
+        header.layout = content;
+        return;
+      case Message::attribute:
+        return read_attribute(content, owner);
+      case Message::modification_time:
         content.expect_number(0, 1, 1, fmt::format("the version of the time of {}", owner));
         return content.expect_zeros(1, 3);
-      case continuation: return;
-      case symbol_table:
+      case Message::continuation:
+        return;
+      case Message::symbol_table:
         once(header.group.has_value());
         header.group = content;
         return content.expect_zeros(16, content.size() - 16);
       default:
         expect(false, content.place(0) - 8,
-               fmt::format("the header of {} has a message of type {}, which no such file has", owner, kind));
+               fmt::format("the header of {} has a message of type {}, which no such file has", owner, type));
     }
   }
 
@@ -330,13 +349,15 @@ class Walk {
 
   Pieces pieces_;
   std::deque<Object> waiting_;
-  std::map<std::uint64_t, std::uint64_t> links_;                                       ///< names of each header
-  std::map<std::uint64_t, std::pair<std::uint64_t, std::uint64_t>> told_links_;        ///< as it says, and where
-  std::vector<std::pair<std::uint64_t, std::uint64_t>> references_;                    ///< target, and where it stands
+  std::map<std::uint64_t, std::uint64_t> links_;                                 ///< names of each header
+  std::map<std::uint64_t, std::pair<std::uint64_t, std::uint64_t>> told_links_;  ///< as it says, and where
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> references_;              ///< target, and where it stands
   std::map<std::uint64_t, std::map<std::uint64_t, std::uint64_t>> heaps_;
 };
 
 }  // namespace
+
+}  // namespace hdf5_pieces
 
 Hdf5Walk walk_hdf5(std::istream& file, std::uint64_t size) {
   constexpr std::uint64_t version_at = 8;
@@ -344,14 +365,24 @@ Hdf5Walk walk_hdf5(std::istream& file, std::uint64_t size) {
   file.clear();
   file.seekg(static_cast<std::streamoff>(version_at));
   if (size < version_at || file.get() != 0) return result;
-  Walk walk(file, size);
+  hdf5_pieces::Walk walk(file, size);
   try {
     walk.run();
     result.unused = walk.unused(size);
-  } catch (const Damage& damage) {
+  } catch (const hdf5_pieces::Damage& damage) {
     result.fault = damage.fault;
   }
   return result;
+}
+
+std::string structural_damage(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::error_code error;
+  const std::uint64_t size = std::filesystem::file_size(file, error);
+  if (!in || error) return {};
+  const Hdf5Walk walk = walk_hdf5(in, size);
+  if (!walk.fault) return {};
+  return fmt::format("the structure of the file is damaged at byte {}: {}", walk.fault->byte, walk.fault->what);
 }
 
 }  // namespace noether::io

@@ -2,6 +2,7 @@
 /// The structure of an HDF5 file, read byte by byte and not by HDF5, which does not look at all of it.
 
 #include <cstdint>
+#include <filesystem>
 #include <istream>
 #include <optional>
 #include <string>
@@ -35,5 +36,9 @@ struct Hdf5Walk {
 /// @throws never
 /// @source HDF5 File Format Specification, version 3
 Hdf5Walk walk_hdf5(std::istream& file, std::uint64_t size);
+
+/// What a walk finds wrong with a file, in one line; nothing if it finds nothing, or cannot read the file. @throws
+/// never
+std::string structural_damage(const std::filesystem::path& file);
 
 }  // namespace noether::io
