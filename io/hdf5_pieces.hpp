@@ -1,12 +1,16 @@
 #pragma once
 /// Pieces of an HDF5 file as bytes, for those who walk through its structure.
 
-#include "io/hdf5_walk.hpp"
+#include "io/hdf5_fault.hpp"
 
 #include <cstddef>
+#include <cstdint>
+#include <istream>
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace noether::io::hdf5_pieces {
 

@@ -174,9 +174,15 @@ class Walk {
       expect(tree == object.member.tree && heap == object.member.heap, message.place(0),
              fmt::format("the header of '{}' and the entry that leads to it have different trees or heaps", name));
     for (Member& member : walk_group(pieces_, tree, heap, message.place(0), name)) {
+      if (object.path.empty() && !is_written(member.name)) continue;
       const std::string path = object.path + "/" + member.name;
       add({path, std::move(member)});
     }
+  }
+
+  /// Whether noether writes such a member of the root. Others may have added more, in other ways.
+  static bool is_written(std::string_view name) {
+    return name == "h5md" || name == "noether" || name == "particles" || name == "connectivity";
   }
 
   void walk_data(const Header& header, const std::string& name) {

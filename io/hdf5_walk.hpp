@@ -1,6 +1,8 @@
 #pragma once
 /// The structure of an HDF5 file, read byte by byte and not by HDF5, which does not look at all of it.
 
+#include "io/hdf5_fault.hpp"
+
 #include <cstdint>
 #include <filesystem>
 #include <istream>
@@ -9,17 +11,6 @@
 #include <vector>
 
 namespace noether::io {
-
-/// Bytes of a file, from `begin` to before `end`.
-struct ByteRange {
-  std::uint64_t begin = 0, end = 0;
-};
-
-/// What is wrong with the structure of a file, and where.
-struct Hdf5Fault {
-  std::uint64_t byte = 0;
-  std::string what;
-};
 
 /// What a walk through a file has found.
 struct Hdf5Walk {
@@ -32,9 +23,10 @@ struct Hdf5Walk {
 /// Counts, sizes, neighbors and reserved bytes are what the format demands, every address lies within the file, and no
 /// piece overlaps another. Numbers in datasets and attributes are not looked at. It knows the format that noether
 /// writes (superblock 0 with headers, trees and attributes of version 1); a file with another superblock is not walked.
+/// What others have added to the root of a run.h5 is not walked, and counts as unused.
 /// The states in which a killed writer may leave a tree are sound: readers find in them what was there before.
 /// @throws never
-/// @source HDF5 File Format Specification, version 3
+/// The format is that of the HDF5 File Format Specification, version 3.
 Hdf5Walk walk_hdf5(std::istream& file, std::uint64_t size);
 
 /// What a walk finds wrong with a file, in one line; nothing if it finds nothing, or cannot read the file. @throws

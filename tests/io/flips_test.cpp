@@ -294,7 +294,7 @@ TEST_CASE("trees of several levels are walked, also as a killed writer leaves th
   const std::filesystem::path file = folder / "rows.h5";
   io::Hdf5File::create(file).take_name();
   const io::Hdf5File hdf5 = io::Hdf5File::open_to_append(file);
-  io::Hdf5Dataset rows = hdf5.create_growing("/rows", io::ElementType::real, {}, 4);
+  io::Hdf5Dataset rows = hdf5.create_growing("/particles/rows", io::ElementType::real, {}, 4);
   std::vector<double> written;
   // A chunk has four rows, and a node 64 chunks.
   const auto append = [&](std::size_t chunks) {
@@ -338,7 +338,7 @@ TEST_CASE("trees of several levels are walked, also as a killed writer leaves th
     CHECK(restored == 1);
     CHECK(walk(torn).fault.value_or(io::Hdf5Fault{}).what == "");
     write_text(folder / "torn.h5", torn);
-    CHECK(io::Hdf5File::open_to_read(folder / "torn.h5").open("/rows").read_reals() == written);
+    CHECK(io::Hdf5File::open_to_read(folder / "torn.h5").open("/particles/rows").read_reals() == written);
     before = after = append(4200);
     CHECK(level(after) == 2);
     CHECK(walk(after).fault.value_or(io::Hdf5Fault{}).what == "");
