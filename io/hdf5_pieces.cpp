@@ -221,7 +221,7 @@ void walk_chunks(Pieces& pieces, const Chunks& chunks, const std::string& path) 
       pieces.claim(leaf.children[k], bytes, what, leaf.place(k));
     }
   }
-  expect((rows + chunks.chunk[0] - 1) / chunks.chunk[0] <= number, leaves.back().at + 6,
+  expect(rows / chunks.chunk[0] + (rows % chunks.chunk[0] > 0 ? 1 : 0) <= number, leaves.back().at + 6,
          fmt::format("'{}' has {} rows, but only {} chunks of {}", path, rows, number, chunks.chunk[0]));
 }
 

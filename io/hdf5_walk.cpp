@@ -195,6 +195,7 @@ class Walk {
     const std::uint64_t bytes = bytes_of(extent, header.type->size, pieces_.size(), block.place(0), owner);
     if (kind == 0) {
       block.expect_number(2, 2, bytes, fmt::format("the number of bytes of {}", owner));
+      static_cast<void>(block.text(4, bytes));  // they are there
       pieces_.leave(block.place(4 + bytes), block.place(block.size()));
       return;
     }
