@@ -35,7 +35,8 @@ class SceneReader {
     context_.notes = &scene.notes;
   }
 
-  void read() {
+  /// @return the run that was put together to check it
+  Simulation<double> read() {
     TableReader top(context_, root_, "", "");
     for (const std::string_view key : top_keys) top.find(key);
     top.finish();
@@ -68,10 +69,11 @@ class SceneReader {
     if (expect != nullptr) scene_.effective.put("expect", *expect);
     scene_.verdicts = read_verdicts(context_, top, scene_.wrong_verdicts);
     if (const SceneValue* verdicts = top.find("verdict")) scene_.effective.put("verdict", *verdicts);
-    check_scene(context_, root_, scene_);
-    if (!top.has("every")) add_default_watches(context_, scene_);
+    Simulation<double> run = check_scene(context_, root_, scene_);
+    if (!top.has("every")) add_default_watches(context_, scene_, run.claims());
     if (expect != nullptr) read_expectations(*expect);
     scene_.effective_toml = print_toml(scene_.effective);
+    return run;
   }
 
  private:
@@ -222,7 +224,7 @@ class SceneReader {
   /// Refuses a box or constraints that the splitting does not know.
   void check_splitting(const TableReader& reader, const std::vector<const SceneValue*>& constraints) const {
     const SceneSplitting& splitting = scene_.hamiltonian.splitting;
-    if (!splitting.claims.periodic && scene_.particles.box().is_periodic()) {
+    if (scene_.particles.box().is_periodic() && !splitting.claims().periodic) {
       reader.fail("type", fmt::format("{} does not support a periodic box; take the box out", splitting.name));
     }
     if (!splitting.make_constrained && !constraints.empty()) {
@@ -240,7 +242,7 @@ class SceneReader {
     const SceneHamiltonian& made = scene_.hamiltonian;
     const bool any = std::any_of(made.forces.begin(), made.forces.end(),
                                  [](const SceneForce& force) { return force.force.claims().range > 0; });
-    if (!any || !made.splitting.claims.neighbors) {
+    if (!any || !made.splitting.claims().neighbors) {
       reader.fail(nullptr, "neighbors",
                   fmt::format("no force of {} has a cutoff, so [hamiltonian.neighbors] has no effect; take it out",
                               plain_hamiltonian()));
@@ -501,17 +503,53 @@ class SceneReader {
   SceneContext context_;
 };
 
-}  // namespace
-
-Scene read_scene(SceneValue root, const std::filesystem::path& file, const Parts& parts,
-                 const std::vector<std::string>& sets) {
-  Scene scene;
+/// Reads a scene from its tree into `scene`. @return the run that was put together to check it
+Simulation<double> read_into(Scene& scene, SceneValue root, const std::filesystem::path& file, const Parts& parts,
+                             const std::vector<std::string>& sets) {
   scene.file = file;
   scene.parts = std::make_shared<const Parts>(parts);
   scene.source = {file.string(), sets};
   check_tree(root, scene.source);
   apply_sets(root, scene.source, parts);
-  SceneReader(root, *scene.parts, scene).read();
+  return SceneReader(root, *scene.parts, scene).read();
+}
+
+/// The text of a scene file. @throws SceneError, FileError
+std::string scene_text(const std::filesystem::path& file) {
+  if (file.empty()) throw SceneError("the name of the scene file is empty; give one, such as scene.toml");
+  constexpr std::size_t largest = 64U << 20U;
+  std::string text = io::read_bytes(file, largest + 1);
+  if (text.size() > largest) {
+    throw SceneError(
+        "the file is too large for a scene; at most 64 MB are expected: put the bodies into a table, bodies = "
+        "\"FILE.csv\"",
+        {.file = file.string()});
+  }
+  return text;
+}
+
+}  // namespace
+
+SceneRun read_run(SceneValue root, const std::filesystem::path& file, const Parts& parts,
+                  const std::vector<std::string>& sets) {
+  Scene scene;
+  Simulation<double> start = read_into(scene, std::move(root), file, parts, sets);
+  return {std::move(scene), std::move(start)};
+}
+
+SceneRun read_run(std::string_view text, const std::filesystem::path& file, const Parts& parts,
+                  const std::vector<std::string>& sets) {
+  return read_run(parse_toml(text, file.string()), file, parts, sets);
+}
+
+SceneRun load_run(const std::filesystem::path& file, const Parts& parts, const std::vector<std::string>& sets) {
+  return read_run(scene_text(file), file, parts, sets);
+}
+
+Scene read_scene(SceneValue root, const std::filesystem::path& file, const Parts& parts,
+                 const std::vector<std::string>& sets) {
+  Scene scene;
+  read_into(scene, std::move(root), file, parts, sets);
   return scene;
 }
 
@@ -521,16 +559,7 @@ Scene read_scene(std::string_view text, const std::filesystem::path& file, const
 }
 
 Scene load_scene(const std::filesystem::path& file, const Parts& parts, const std::vector<std::string>& sets) {
-  if (file.empty()) throw SceneError("the name of the scene file is empty; give one, such as scene.toml");
-  constexpr std::size_t largest = 64U << 20U;
-  const std::string text = io::read_bytes(file, largest + 1);
-  if (text.size() > largest) {
-    throw SceneError(
-        "the file is too large for a scene; at most 64 MB are expected: put the bodies into a table, bodies = "
-        "\"FILE.csv\"",
-        {.file = file.string()});
-  }
-  return read_scene(text, file, parts, sets);
+  return read_scene(scene_text(file), file, parts, sets);
 }
 
 }  // namespace noether
