@@ -59,6 +59,7 @@
 #include "monitors/variables.hpp"
 #include "numbers/units.hpp"
 #include "scene/builders.hpp"
+#include "scene/named_parts.hpp"
 #include "scene/parts.hpp"
 #include "scene/run.hpp"
 #include "scene/scene.hpp"

@@ -8,10 +8,10 @@
 #include "scene/key_paths.hpp"
 #include "scene/minimize.hpp"
 #include "scene/read_constraints.hpp"
+#include "scene/read_force.hpp"
 #include "scene/read_integrator.hpp"
 #include "scene/read_particles.hpp"
 #include "scene/read_thermostat.hpp"
-#include "scene/read_tied.hpp"
 #include "scene/read_verdicts.hpp"
 #include "scene/set_option.hpp"
 #include "scene/toml.hpp"
@@ -257,23 +257,10 @@ class SceneReader {
     const std::string path = fmt::format("hamiltonian.force.{}", list.size());
     const auto [kind, type] = kind_of_part(context_, table, path, "force", parts_.forces(), {});
     TableReader reader(context_, table, fmt::format("force '{}'", type), path);
-    reader.find("type");
     SceneValue effective = SceneValue::table();
-    effective.put("type", SceneValue::of(type, reader.line("type")));
-    TiedParticles tied;
-    if (kind->particles > 0) tied = TiedReader(reader, kind->particles, scene_.particles).read(effective);
-    for (std::vector<Index> particles : tied) {
-      std::sort(particles.begin(), particles.end());
-      const auto twice = std::adjacent_find(particles.begin(), particles.end());
-      if (twice == particles.end()) continue;
-      reader.fail("pairs", fmt::format("force '{}' ties '{}' to itself", type, scene_.particles.name(*twice)));
-    }
-    const std::string kick = reader.text("kick", "B");
-    if (reader.has("kick")) effective.put("kick", SceneValue::of(kick, reader.line("kick")));
-    SceneForce force = kind->read(reader, tied);
-    reader.finish();
-    check_force_beside(reader, *kind, force, table);
-    set_kick(reader, force, kick);
+    SceneForce force = noether::read_force(reader, *kind, &scene_.particles, effective);
+    check_force_beside(reader, *kind, force, scene_.hamiltonian, parts_);
+    set_kick(reader, force);
     if (!force.letter) {
       try {
         force.force.check(scene_.particles);
@@ -283,71 +270,8 @@ class SceneReader {
         reader.fail("type", error.message() + (of_file ? " " + to_text(*file) : ""));
       }
     }
-    for (auto& [key, value] : *force.effective.get<SceneValue::Table>()) effective.put(key, value);
     list.push_back(effective);
-    force.effective = std::move(effective);
     scene_.hamiltonian.forces.push_back(std::move(force));
-  }
-
-  /// Takes the letter of the kicks that the scene wants a force in.
-  static void set_kick(TableReader& reader, SceneForce& force, const std::string& kick) {
-    if (!reader.has("kick")) return;
-    if (force.letter) {
-      reader.fail("kick", fmt::format("{} is a separate letter, not part of any kick; take the key out", force.name));
-    }
-    if (kick.size() != 1 || kick[0] < 'B' || kick[0] > 'Z') {
-      reader.fail(
-          "kick",
-          fmt::format("kick = \"{}\" is not a letter of a kick; a letter from B to Z is expected, such as \"C\"",
-                      kick));
-    }
-    force.force.in_kick(kick[0]);
-  }
-
-  /// Refuses a force that the splitting has in itself, and one that stands twice where it must not.
-  void check_force_beside(const TableReader& reader, const Parts::ForceKind& kind, const SceneForce& force,
-                          const SceneValue& table) const {
-    const SceneHamiltonian& made = scene_.hamiltonian;
-    const auto is_it = [&](const SceneForce& other) { return other.name == kind.info.name; };
-    if (std::any_of(made.splitting.own.begin(), made.splitting.own.end(), is_it)) {
-      reader.fail("type", fmt::format("{} already includes {}; take this force out, or use {}", made.splitting.name,
-                                      kind.info.name, plain_hamiltonian()));
-    }
-    // Forces of several names that must not stand twice for one reason are one effect.
-    const auto has_its_effect = [&](const SceneForce& other) {
-      return std::any_of(parts_.forces().begin(), parts_.forces().end(), [&](const Parts::ForceKind& known) {
-        return known.info.name == other.name && known.only_once == kind.only_once;
-      });
-    };
-    const auto same = std::find_if(made.forces.begin(), made.forces.end(), has_its_effect);
-    if (!kind.only_once.empty() && same != made.forces.end()) {
-      const std::string who = is_it(*same) ? kind.info.name + " appears twice in the scene"
-                                           : fmt::format("{} and {} are one effect", same->name, kind.info.name);
-      const std::string_view mark = kind.only_once.starts_with("so ") ? "," : ";";
-      reader.fail("type", fmt::format("{}{} {}", who, mark, kind.only_once));
-    }
-    if (!(force.force.claims().range > 0)) return;
-    const std::set<std::string> types = types_between(table);
-    for (const SceneForce& other : made.forces) {
-      const std::set<std::string> theirs = types_between(other.effective);
-      if (!is_it(other) || !(types.empty() || theirs.empty() || types == theirs)) continue;
-      const std::set<std::string>& twice = types.empty() ? theirs : types;
-      reader.fail(
-          "type",
-          fmt::format(
-              "{} appears twice in the scene, so {} would count twice; take one of them out", kind.info.name,
-              twice.empty() ? "every pair" : fmt::format("pairs of '{}' and '{}'", *twice.begin(), *twice.rbegin())));
-    }
-  }
-  /// The types whose pairs a force acts between; empty: all pairs.
-  static std::set<std::string> types_between(const SceneValue& force) {
-    std::set<std::string> types;
-    for (const char* key : {"first", "second"}) {
-      const SceneValue* value = force.find(key);
-      const std::string* name = value != nullptr ? value->get<std::string>() : nullptr;
-      if (name != nullptr && !name->empty()) types.insert(*name);
-    }
-    return types;
   }
 
   void read_watches(TableReader& top) {
