@@ -7,6 +7,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/refusal.hpp"
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -80,13 +81,14 @@ TEST_CASE("parts by name and values make the run of the scene that names them", 
     REQUIRE(step(of_scene).ok());
     REQUIRE(step(named).ok());
     CHECK(io::digest(named.particles()) == io::digest(of_scene.particles()));
-    std::vector<double> worst;
+    std::vector<std::optional<double>> worst;
     for (Simulation<double>* sim : {&of_scene, &named}) {
       sim->for_each_monitor([&](const std::string&, AnyMonitor<double>& one) {
         if (const auto report = one.report()) worst.push_back(report->worst);
       });
     }
     REQUIRE(worst.size() == 2);
+    REQUIRE(worst[0].has_value());
     CHECK(worst[0] == worst[1]);
   }
 }
