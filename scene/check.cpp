@@ -32,10 +32,10 @@ class SceneCheck {
     std::optional<Simulation<double>> run;
     try {
       run.emplace(detail::assemble_start(scene_));
-    } catch (const SceneError&) {
-      throw;
     } catch (const Error& error) {
       find_fault(top);
+      if (dynamic_cast<const SceneError*>(&error) != nullptr) throw;
+      refuse_monitor(top);
       top.fail(nullptr, "", error.message());
     }
     if (scene_.system) {
@@ -48,7 +48,7 @@ class SceneCheck {
   }
 
  private:
-  /// Ends at what refuses to be put together.
+  /// Ends at what refuses to be put together, unless it is a monitor.
   void find_fault(TableReader& top) {
     if (scene_.system) {
       find_fault_of_system(top);
@@ -56,7 +56,6 @@ class SceneCheck {
       find_fault_of_hamiltonian(top);
     }
     check_decorators(top);
-    refuse_monitor(top);
   }
 
   /// Puts the decorators around the method one by one: each refuses what it cannot stand around.
