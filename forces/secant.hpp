@@ -2,8 +2,8 @@
 /// Secant forces: between two states, with the difference of the energies as their work.
 
 #include "engine/force_sink.hpp"
+#include "engine/sums.hpp"
 #include "forces/images.hpp"
-#include "numbers/wide_sum.hpp"
 
 #include <array>
 #include <cmath>
@@ -264,37 +264,34 @@ void add_middle_secants(const F& force, ForceSink<Real>& out, const ParticleSyst
   const auto energy_of = [&](const ParticleSystem<Real>& s) {
     ForceSink<Real> sink(own.a, s, {.energy = true});
     force.add_to(sink, s);
+    if (sink.failure()) out.fail(*sink.failure());
     return sink.potential();
   };
   const Real before = energy_of(from), after = energy_of(to);
-  WideSum<Real> mass, mean_x, mean_y, mean_z, work, strength, square;
+  const ScalarColumn<Real>& m = to.masses();
   const auto moved = [&](Index i) { return Vec3<Real>(to.unwrapped(i) - from.unwrapped(i)); };
-  for (Index i = 0; i < to.size(); ++i) {
-    const Vec3<Real> way = moved(i);
-    middle.shift(i, Vec3<Real>(way / Real(-2)), Vec3<Real>::Zero());
-    mass += to.masses()[i];
-    mean_x += to.masses()[i] * way[0];
-    mean_y += to.masses()[i] * way[1];
-    mean_z += to.masses()[i] * way[2];
-  }
+  for (Index i = 0; i < to.size(); ++i) middle.shift(i, Vec3<Real>(moved(i) / Real(-2)), Vec3<Real>::Zero());
   middle.moved();
   energy_of(middle);
   Vec3<Real> mean = Vec3<Real>::Zero();
-  if (claims_of(force).keeps_momentum && mass.value() > Real(0)) {
-    mean = Vec3<Real>(mean_x.value(), mean_y.value(), mean_z.value()) / mass.value();
+  if (claims_of(force).keeps_momentum) {
+    const auto [mass, x, y, z] = sums_over<Real, 4>(to.size(), [&](Index i) {
+      const Vec3<Real> way = moved(i);
+      return std::array<Real, 4>{m[i], m[i] * way[0], m[i] * way[1], m[i] * way[2]};
+    });
+    if (mass > Real(0)) mean = Vec3<Real>(x, y, z) / mass;
   }
-  for (Index i = 0; i < to.size(); ++i) {
+  const auto [work, strength, square] = sums_over<Real, 3>(to.size(), [&](Index i) {
     const Vec3<Real> a = std::as_const(own.a)[i], about = moved(i) - mean;
-    work += to.masses()[i] * dot(a, moved(i));
-    strength += to.masses()[i] * sqrt(norm2(a) * norm2(middle.unwrapped(i)));
-    square += to.masses()[i] * norm2(about);
-  }
-  const Real missing = before - after - work.value(), scale = abs(before) + abs(after) + strength.value();
-  const bool serves = middle_serves(Real(1), missing, scale) || !(square.value() > Real(0));
-  const Real factor = serves ? Real(0) : Real(missing / square.value());
+    return std::array<Real, 3>{m[i] * dot(a, moved(i)), m[i] * sqrt(norm2(a) * norm2(middle.unwrapped(i))),
+                               m[i] * norm2(about)};
+  });
+  const Real missing = before - after - work, scale = abs(before) + abs(after) + strength;
+  const bool serves = middle_serves(Real(1), missing, scale) || !(square > Real(0));
+  const Real factor = serves ? Real(0) : Real(missing / square);
   for (Index i = 0; i < to.size(); ++i) {
     Vec3<Real> a = std::as_const(own.a)[i];
-    if (to.masses()[i] != Real(0)) a += factor * (moved(i) - mean);
+    if (m[i] != Real(0)) a += factor * (moved(i) - mean);
     out.acceleration(i, a);
   }
 }
