@@ -8,12 +8,12 @@ namespace noether::detail {
 
 namespace {
 
-std::string told(Index i, const std::vector<std::string>& names) {
+std::string called_in(Index i, const std::vector<std::string>& names) {
   const auto k = static_cast<std::size_t>(i);
   return k >= names.size() || names[k].empty() ? fmt::format("particle {}", i) : fmt::format("'{}'", names[k]);
 }
 std::string pair_told(Index i, Index j, const std::vector<std::string>& names) {
-  return i == j ? told(i, names) : told(i, names) + " and " + told(j, names);
+  return i == j ? called_in(i, names) : called_in(i, names) + " and " + called_in(j, names);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@
 namespace noether {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+constexpr double half_turn = 3.14159265358979323846;
 
 struct NamedForce {
   std::string name;
@@ -32,7 +32,7 @@ struct NamedForce {
 };
 
 /// Every force that has secants, its variants, and for `bonded` every potential alone.
-std::vector<NamedForce> all_forces() {
+std::vector<NamedForce> forces_with_secants() {
   std::vector<NamedForce> all;
   const auto add = [&](const auto& force) { all.push_back({name_of(force), force}); };
   add(Gravity{.G = 0.7});
@@ -58,7 +58,7 @@ std::vector<NamedForce> all_forces() {
            {"harmonic", {250, 1.1}}, {"harmonic", {20, 0}}, {"morse", {3.5, 1.7, 0.9}}, {"fene", {30, 2.5, 1.2, 1.6}}})
     all.push_back({"bonded", Bonded{}, {kind}});
   for (const TermKind& kind : std::vector<TermKind>{{"harmonic", {40, 1.9}},
-                                                    {"harmonic", {40, pi}},
+                                                    {"harmonic", {40, half_turn}},
                                                     {"cosine", {7}},
                                                     {"cosine_squared", {12, 2.1}},
                                                     {"urey_bradley", {4, 2, 3, 1}}})
@@ -67,13 +67,13 @@ std::vector<NamedForce> all_forces() {
                                                     {"ryckaert_bellemans", {9.28, 12.16, -13.12, -3.06, 26.24, -31.5}},
                                                     {"one_four", {0.4, 1.2, -0.7}}})
     all.push_back({"bonded", Bonded{}, {}, {}, {kind}});
-  for (const TermKind& kind : std::vector<TermKind>{{"harmonic", {5, 0.6}}, {"periodic", {1.5, 2, pi}}})
+  for (const TermKind& kind : std::vector<TermKind>{{"harmonic", {5, 0.6}}, {"periodic", {1.5, 2, half_turn}}})
     all.push_back({"bonded", Bonded{}, {}, {}, {}, {kind}});
   return all;
 }
 
-/// A helix of seven charges, bonded along its way as a force wants it.
-ParticleSystem<double> helix(const NamedForce& of) {
+/// A charged_helix of seven charges, bonded along its way as a force wants it.
+ParticleSystem<double> charged_helix(const NamedForce& of) {
   ParticleSystem<double> s(unit_system("reduced"));
   const Index n = 7;
   for (Index k = 0; k < n; ++k) {
@@ -99,7 +99,7 @@ ParticleSystem<double> helix(const NamedForce& of) {
 }
 
 /// The same particles later: each elsewhere by `size`, all turned by four times that and carried on.
-ParticleSystem<double> later(const ParticleSystem<double>& from, double size) {
+ParticleSystem<double> one_step_later(const ParticleSystem<double>& from, double size) {
   ParticleSystem<double> to = from;
   const double c = std::cos(4 * size), s = std::sin(4 * size);
   for (Index i = 0; i < to.size(); ++i) {
@@ -113,7 +113,7 @@ ParticleSystem<double> later(const ParticleSystem<double>& from, double size) {
   return to;
 }
 
-template <class Real> Real energy_of(const AnyForce<Real>& force, const ParticleSystem<Real>& s) {
+template <class Real> Real potential_of(const AnyForce<Real>& force, const ParticleSystem<Real>& s) {
   VectorColumn<Real> a(s.size());
   ForceSink<Real> sink(a, s, {.energy = true});
   force.add_to(sink, s);
@@ -129,38 +129,38 @@ VectorColumn<Real> secants_of(const AnyForce<Real>& force, const ParticleSystem<
   return a;
 }
 template <class Real>
-Real work_of(const VectorColumn<Real>& a, const ParticleSystem<Real>& from, const ParticleSystem<Real>& to) {
+Real work_done_by(const VectorColumn<Real>& a, const ParticleSystem<Real>& from, const ParticleSystem<Real>& to) {
   Real work(0);
   for (Index i = 0; i < to.size(); ++i) {
     work += to.masses()[i] * dot(a[i], Vec3<Real>(to.unwrapped(i) - from.unwrapped(i)));
   }
   return work;
 }
-double largest(const VectorColumn<double>& a) { return a.all().cwiseAbs().maxCoeff(); }
-double largest_difference(const VectorColumn<double>& a, const VectorColumn<double>& b) {
+double most_of(const VectorColumn<double>& a) { return a.all().cwiseAbs().maxCoeff(); }
+double most_apart(const VectorColumn<double>& a, const VectorColumn<double>& b) {
   return (a.all() - b.all()).cwiseAbs().maxCoeff();
 }
 
-constexpr double sizes[] = {1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.03, 0.1};
+constexpr double step_sizes[] = {1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.03, 0.1};
 
 }  // namespace
 
 TEST_CASE("the work of the secants of every force is the difference of its energies", "[forces][secant]") {
-  for (const NamedForce& one : all_forces()) {
+  for (const NamedForce& one : forces_with_secants()) {
     REQUIRE(one.force.has_secant());
-    const ParticleSystem<double> from = helix(one);
+    const ParticleSystem<double> from = charged_helix(one);
     const AnyForce<Quad> wide = *one.force.in_quad();
     const ParticleSystem<Quad> wide_from = from.as<Quad>();
     double most = 0;
-    for (const double size : sizes) {
+    for (const double size : step_sizes) {
       INFO(one.name << ", " << size);
-      const ParticleSystem<double> to = later(from, size);
+      const ParticleSystem<double> to = one_step_later(from, size);
       const ParticleSystem<Quad> wide_to = to.as<Quad>();
-      const Quad before = energy_of(wide, wide_from), after = energy_of(wide, wide_to);
+      const Quad before = potential_of(wide, wide_from), after = potential_of(wide, wide_to);
       const double scale = 1 + std::abs(static_cast<double>(before)) + std::abs(static_cast<double>(after));
-      const double work = work_of(secants_of(one.force, from, to), from, to);
+      const double work = work_done_by(secants_of(one.force, from, to), from, to);
       CHECK(std::abs(work - static_cast<double>(before - after)) < 1e-13 * scale);
-      const Quad wide_work = work_of(secants_of(wide, wide_from, wide_to), wide_from, wide_to);
+      const Quad wide_work = work_done_by(secants_of(wide, wide_from, wide_to), wide_from, wide_to);
       CHECK(std::abs(static_cast<double>(wide_work - (before - after))) < 1e-31 * scale);
       most = std::max(most, std::abs(work) / size);
     }
@@ -170,27 +170,27 @@ TEST_CASE("the work of the secants of every force is the difference of its energ
 
 TEST_CASE("the secants of every force are the same for both directions, and forces for short steps",
           "[forces][secant]") {
-  for (const NamedForce& one : all_forces()) {
-    const ParticleSystem<double> from = helix(one);
+  for (const NamedForce& one : forces_with_secants()) {
+    const ParticleSystem<double> from = charged_helix(one);
     VectorColumn<double> force(from.size());
     ForceSink<double> sink(force, from, {});
     one.force.add_to(sink, from);
-    for (const double size : sizes) {
+    for (const double size : step_sizes) {
       INFO(one.name << ", " << size);
-      const ParticleSystem<double> to = later(from, size);
+      const ParticleSystem<double> to = one_step_later(from, size);
       const VectorColumn<double> there = secants_of(one.force, from, to), back = secants_of(one.force, to, from);
-      CHECK(largest_difference(there, back) < 1e-7 * largest(there));
-      if (size < 1e-5) CHECK(largest_difference(there, force) < (1e-6 + 300 * size) * (1 + largest(force)));
+      CHECK(most_apart(there, back) < 1e-7 * most_of(there));
+      if (size < 1e-5) CHECK(most_apart(there, force) < (1e-6 + 300 * size) * (1 + most_of(force)));
     }
     const VectorColumn<double> nowhere = secants_of(one.force, from, from);
-    CHECK(largest_difference(nowhere, force) < 1e-12 * (1 + largest(force)));
+    CHECK(most_apart(nowhere, force) < 1e-12 * (1 + most_of(force)));
   }
 }
 
 TEST_CASE("secants keep momentum and angular momentum where their forces do", "[forces][secant]") {
   int kept = 0;
-  for (const NamedForce& one : all_forces()) {
-    const ParticleSystem<double> from = helix(one), to = later(from, 0.05);
+  for (const NamedForce& one : forces_with_secants()) {
+    const ParticleSystem<double> from = charged_helix(one), to = one_step_later(from, 0.05);
     const VectorColumn<double> a = secants_of(one.force, from, to);
     Vec3<double> force = Vec3<double>::Zero(), torque = force;
     double size = 0;
@@ -211,7 +211,7 @@ TEST_CASE("secants keep momentum and angular momentum where their forces do", "[
 
 TEST_CASE("all forces of scenes with an energy have secants, but for one that depends on time", "[forces][secant]") {
   std::set<std::string> have = {"oscillating_field"};
-  for (const NamedForce& one : all_forces()) have.insert(one.name);
+  for (const NamedForce& one : forces_with_secants()) have.insert(one.name);
   const Parts parts = standard_parts();
   for (const Parts::ForceKind& kind : parts.forces()) {
     INFO(kind.info.name);
@@ -219,7 +219,7 @@ TEST_CASE("all forces of scenes with an energy have secants, but for one that de
   }
   const AnyForce<double> none = OscillatingField{{1, 0, 0}, 2, 0};
   CHECK_FALSE(none.has_secant());
-  const ParticleSystem<double> s = helix({"", none});
+  const ParticleSystem<double> s = charged_helix({"", none});
   VectorColumn<double> a(s.size());
   ForceSink<double> sink(a, s, {});
   CHECK_THROWS_WITH(none.add_secant_to(sink, s, s), Catch::Contains("'oscillating_field', which has none"));
@@ -229,11 +229,11 @@ TEST_CASE("sums of forces have secants if all of them do", "[forces][secant]") {
   const Gravity gravity{.G = 1};
   const HarmonicBond spring{.k = 25, .length = 1.2, .tied = {{0, 1}, {1, 2}}};
   const Sum sum(gravity, spring);
-  const ParticleSystem<double> from = helix({"", gravity}), to = later(from, 0.05);
+  const ParticleSystem<double> from = charged_helix({"", gravity}), to = one_step_later(from, 0.05);
   REQUIRE(sum.has_secant());
   VectorColumn<double> expected = secants_of<double>(gravity, from, to);
   expected.all() += secants_of<double>(spring, from, to).all();
-  CHECK(largest_difference(secants_of<double>(sum, from, to), expected) < 1e-14 * largest(expected));
+  CHECK(most_apart(secants_of<double>(sum, from, to), expected) < 1e-14 * most_of(expected));
   CHECK_FALSE(Sum(gravity, OscillatingField{}).has_secant());
 }
 
