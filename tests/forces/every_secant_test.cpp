@@ -34,7 +34,7 @@ struct NamedForce {
 /// Every force that has secants, its variants, and for `bonded` every potential alone.
 std::vector<NamedForce> forces_with_secants() {
   std::vector<NamedForce> all;
-  const auto add = [&](const auto& force) { all.push_back({name_of(force), force}); };
+  const auto add = [&](const AnyForce<double>& force) { all.push_back({force.name(), force}); };
   add(Gravity{.G = 0.7});
   add(Gravity{.G = 1, .softening = 0.3});
   add(GrPotential{.c = 3, .G = 1});
