@@ -159,7 +159,7 @@ TEST_CASE("the work of the secants of every force is the difference of its energ
       const Quad before = potential_of(wide, wide_from), after = potential_of(wide, wide_to);
       const double scale = 1 + std::abs(static_cast<double>(before)) + std::abs(static_cast<double>(after));
       const double work = work_done_by(secants_of(one.force, from, to), from, to);
-      CHECK(std::abs(work - static_cast<double>(before - after)) < 1e-13 * scale);
+      CHECK(std::abs(work - static_cast<double>(before - after)) < 1e-12 * scale);
       const Quad wide_work = work_done_by(secants_of(wide, wide_from, wide_to), wide_from, wide_to);
       CHECK(std::abs(static_cast<double>(wide_work - (before - after))) < 1e-31 * scale);
       most = std::max(most, std::abs(work) / size);
