@@ -8,9 +8,9 @@
 PROGRAM is noether. Python needs numpy; REBOUND and heyoka come from PyPI (`pip install rebound heyoka`, in the environment
 of `--peers PYTHON` or of this Python), and are left out where they are absent. Everything runs on one core.
 
-First every method with every step or tolerance is run over a tenth of the span. Those that are near the front of their
-program there, or at that of their family, are run over the whole span. Errors and time are measured in runs of their own;
-a run of more than two seconds is made once, for both. Timed runs of all programs alternate, and their median counts."""
+First every method with every step or tolerance is run over a tenth of the span. Those on the front of their program there, then
+those near it, then those on the front of their family are run over the whole span, as many as there is time for. Errors and times are measured in separate runs;
+a run of more than 1.5 seconds is made once, for both. Timed runs of all programs alternate, and their median counts."""
 
 import argparse
 import pathlib

@@ -15,9 +15,11 @@ from orbits import errors, systems
 from orbits.ours import ADAPTIVE_LOOKS, Failed, Program
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-LONG = 2.0  # seconds; a longer run is made once, for errors and time
+LONG = 1.5  # seconds; a longer run is made once, for errors and time
 ROUNDS = 3
-NEAR = 1.6  # times as long as the front of a program
+NEAR = 1.3  # times as long as the front of a program
+USELESS = (1e-4, 1e-1)  # errors of energy and position from which on a run is good for nothing
+OVERHEAD = 0.1  # seconds to start a run
 SCAN = 0.1  # of the span
 
 
@@ -131,20 +133,40 @@ def front(rows, error):
     return found
 
 
-def chosen(rows):
-    """The rows near the front of their program in an error, or at that of their family."""
-    kept = set()
-    good = [row for row in rows if row.outcome == "ok"]
+def by_merit(rows):
+    """Rows that are good for something: first those on the front of their program, then those near it, then those on the front of
+    their family; each class from the quickest on."""
+    good = [row for row in rows if row.outcome == "ok" and (row.energy < USELESS[0] or row.position < USELESS[1])]
+    ranks = {}
     for error in ("energy", "position"):
         for program in {row.entry.program for row in good}:
             own = [row for row in good if row.entry.program == program]
+            for row in front(own, error):
+                ranks[row] = 0
             for row in own:
                 best = min(other.seconds for other in own if getattr(other, error) <= getattr(row, error))
                 if row.seconds <= NEAR * best:
-                    kept.add(row)
+                    ranks[row] = min(ranks.get(row, 2), 1)
             for family in {row.entry.family for row in own}:
-                kept.update(front([row for row in own if row.entry.family == family], error))
-    return [row for row in rows if row in kept]
+                for row in front([row for row in own if row.entry.family == family], error):
+                    ranks.setdefault(row, 2)
+    return sorted(ranks, key=lambda row: (ranks[row], row.seconds))
+
+
+def chosen(rows, times, limits):
+    """The rows that are run over a span `times` as long as that of the scan, those that are left out for their time, and what
+    the former should take."""
+    kept, dropped, total = [], [], 0.0
+    for row in by_merit(rows):
+        expected = row.seconds * times + OVERHEAD
+        cost = expected if expected > LONG else (1 + ROUNDS) * expected
+        if expected > limits.row:
+            row.outcome = f"left out: about {expected:.0f} s"
+            dropped.append(row)
+        elif total + cost <= 0.75 * limits.system:
+            total += cost
+            kept.append(row)
+    return kept, dropped, total
 
 
 def alternating(rows):
@@ -183,20 +205,16 @@ def measure(system, programs, entries, samples, limits):
     for row in rows:
         row.measure_errors(programs, scan, limits.row * scan / samples + 5)
     failed = [row for row in rows if row.outcome != "ok"]
-    kept = chosen(rows)
-    expected = {row: row.seconds * samples / scan for row in kept}
-    tell(f"{system.name}: {len(rows)} rows over {scan} of {samples} samples, {len(failed)} without an end; {len(kept)} go on, "
-         f"about {sum(expected.values()):.0f} s a round")
+    kept, dropped, total = chosen(rows, samples / scan, limits)
+    tell(f"{system.name}: {len(rows)} rows over {scan} of {samples} samples in {time.monotonic() - begin:.0f} s, {len(failed)} without "
+         f"an end; {len(kept)} go on, about {total:.0f} s")
     for row in kept:
-        if expected[row] > limits.row:
-            row.seconds, row.outcome = None, f"left out: about {expected[row]:.0f} s"
-    going = sorted((row for row in kept if row.seconds is not None), key=lambda row: expected[row])
-    for row in going:
-        if limits.left(begin, 0.7) < expected[row]:
-            row.seconds, row.outcome = None, f"left out: the time for this system was over, about {expected[row]:.0f} s"
+        if limits.left(begin, 0.8) < 0:
+            row.outcome = "left out: the time for this system was over"
         else:
             row.measure_errors(programs, samples, 3 * limits.row + 10)
-    timed = alternating([row for row in going if row.outcome == "ok" and row.seconds < LONG])
+    going = [row for row in kept if row.outcome == "ok"]
+    timed = alternating([row for row in going if row.seconds < LONG])
     for _ in range(ROUNDS):
         for row in timed:
             if limits.left(begin) > 0:
@@ -204,7 +222,7 @@ def measure(system, programs, entries, samples, limits):
     for row in timed:
         row.seconds = statistics.median(row.times) if row.times else row.seconds
     tell(f"{system.name}: {time.monotonic() - begin:.0f} s")
-    return kept + failed
+    return kept + dropped + failed
 
 
 def start_programs(program, python):

@@ -58,18 +58,22 @@ GAUSS = 0.01720209895**2
 SYSTEMS = {
     one.name: one
     for one in (
-        System("outer", "Outer Solar System, 1e5 years", 2.95912208286e-4, 1826250, 216, True, 75),
-        System("solar", "Solar System, eight planets, 1e4 years", GAUSS, 182625, 3, True, 3),
-        System("chain", "Seven planets in a resonant chain, as of TRAPPIST-1, 7200 days", GAUSS, 360, 0.075, True, 0.06),
-        System("eccentric", "Three planets, the inner one with e = 0.9, 986 years", GAUSS, 18000, 0.15, True, 0.075),
-        System("hierarchy", "Two stars with two planets and a third star, 493 years", GAUSS, 9000, 0.75, False, 0.4),
+        System("outer", "Outer Solar System, 1e5 years", 2.95912208286e-4, 1826250, 216, True, 110),
+        System("solar", "Solar System, eight planets, 1e4 years", GAUSS, 182625, 3, True, 2.7),
+        System("chain", "Seven planets in a resonant chain, as of TRAPPIST-1, 7200 days", GAUSS, 360, 0.075, True, 0.08),
+        System("eccentric", "Three planets, the inner one with e = 0.9, 986 years", GAUSS, 18000, 0.15, True, 0.11),
+        System("hierarchy", "Two stars with two planets and a third star, 493 years", GAUSS, 9000, 0.75, False, 0.75),
     )
 }
+
+
+def truth_table(system):
+    return HERE / f"{system.name}_truth.csv"
 
 
 def read_truth(system):
     """Positions about the first body, an array of times, bodies and coordinates."""
     import numpy
 
-    rows = numpy.loadtxt(HERE / f"{system.name}_truth.csv", delimiter=",", comments="#", ndmin=2)
+    rows = numpy.loadtxt(truth_table(system), delimiter=",", comments="#", ndmin=2)
     return rows[:, 1:].reshape(len(rows), -1, 3)
