@@ -8,12 +8,13 @@
 PROGRAM is noether. Python needs numpy; REBOUND and heyoka come from PyPI (`pip install rebound heyoka`, in the environment
 of `--peers PYTHON` or of this Python), and are left out where they are absent. Everything runs on one core.
 
-First every method with every step or tolerance is run over a tenth of the span. Those on the front of their program there, then
-those near it, then those on the front of their family are run over the whole span, as many as there is time for. Errors and times are measured in separate runs;
-a run of more than 1.5 seconds is made once, for both. Timed runs of all programs alternate, and their median counts."""
+First every method with every step or tolerance is run over a twentieth of the span. Those on the front of their program there,
+then those near it, then those on the front of their family are run over the whole span, as many as there is time for. Errors
+and times are measured in separate runs; a run of more than 1.5 seconds is made once, for both. Timed runs of all programs alternate, and their median counts."""
 
 import argparse
 import pathlib
+import re
 import sys
 
 from orbits import page, systems
@@ -36,6 +37,7 @@ def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", nargs="?", help="noether")
     parser.add_argument("--systems", default=",".join(systems.SYSTEMS), help="a list; default: all")
+    parser.add_argument("--methods", default="", help="a regular expression of methods; default: all")
     parser.add_argument("--span", type=float, default=1.0, help="fraction of the span")
     parser.add_argument("--budget", type=float, default=25, help="minutes for all systems; default 25")
     parser.add_argument("--row", type=float, default=90, help="longest run that is made, in seconds; default 90")
@@ -52,11 +54,12 @@ def run(given, out):
     from orbits.methods import all_methods
 
     programs = measure.start_programs(given.program, given.peers)
+    entries = [entry for entry in all_methods(has_avx512()) if re.search(given.methods, entry.label)]
     wanted = [systems.SYSTEMS[name] for name in given.systems.split(",")]
     samples = max(1, round(systems.SAMPLES * given.span))
     for system in wanted:
         limits = measure.Limits(row=given.row, system=60 * given.budget / len(wanted))
-        rows = measure.measure(system, programs, all_methods(has_avx512()), samples, limits)
+        rows = measure.measure(system, programs, entries, samples, limits)
         page.write_data(out, system, rows, programs, samples, processor(), given.note)
     measure.stop_programs(programs)
 

@@ -20,7 +20,8 @@ ROUNDS = 3
 NEAR = 1.3  # times as long as the front of a program
 USELESS = (1e-4, 1e-1)  # errors of energy and position from which on a run is good for nothing
 OVERHEAD = 0.1  # seconds to start a run
-SCAN = 0.1  # of the span
+SCAN = 1  # samples
+COMPILING = {"heyoka": 300}  # seconds that a program may take before a run
 
 
 class Peer:
@@ -93,7 +94,7 @@ class Row:
         question = {"G": system.G, "bodies": system.bodies, "sample": system.sample, "samples": samples,
                     "divisions": self.divisions, "first": system.divisions(system.step / 20), "looks": self.looks,
                     "watched": watched, "method": self.spec()}
-        seconds, states = program.ask(question, timeout)
+        seconds, states = program.ask(question, timeout + COMPILING.get(self.entry.program, 0))
         return seconds, numpy.array(states).reshape(-1, len(system.bodies), 6), None
 
     def measure_errors(self, programs, samples, timeout):
@@ -200,7 +201,8 @@ class Limits:
 def measure(system, programs, entries, samples, limits):
     """Rows of the whole span, the refused and failed ones among them."""
     begin = time.monotonic()
-    scan = max(1, round(samples * SCAN))
+    scan = min(SCAN, samples)
+    programs["noether"].measure_setup(system)
     rows = rows_of(system, [entry for entry in entries if entry.program in programs])
     for row in rows:
         row.measure_errors(programs, scan, limits.row * scan / samples + 5)

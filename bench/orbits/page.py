@@ -217,6 +217,8 @@ def plot_script(path, rows, title):
 def draw(out):
     """Pictures, and the tables of the page."""
     for system, _, rows in all_data(out):
+        if not done(rows):
+            continue
         with tempfile.NamedTemporaryFile("w", suffix=".gp", encoding="utf-8") as script:
             script.write(plot_script(out / f"{system.name}.png", rows, system.title))
             script.flush()

@@ -77,23 +77,21 @@ class Rebound:
 
 
 class Heyoka:
-    """A method: {"tolerance": ..., "high_accuracy": ...}. What was compiled last is kept."""
+    """A method: {"tolerance": ..., "high_accuracy": ...}. What was compiled is kept."""
 
     def __init__(self, program):
         self.program = program
-        self.compiled = (None, None)
+        self.compiled = {}
 
     def integrator(self, run):
         key = json.dumps([run["G"], run["bodies"], run["method"]])
-        if self.compiled[0] != key:
-            bodies = run["bodies"]
+        if key not in self.compiled:
+            bodies, method = run["bodies"], run["method"]
             equations = self.program.model.nbody(len(bodies), masses=[body[0] for body in bodies], Gconst=run["G"])
             state = [value for body in bodies for value in body[1:]]
-            method = run["method"]
-            own = self.program.taylor_adaptive(equations, state, tol=method["tolerance"],
-                                               high_accuracy=method["high_accuracy"])
-            self.compiled = (key, own)
-        own = self.compiled[1]
+            self.compiled[key] = self.program.taylor_adaptive(equations, state, tol=method["tolerance"],
+                                                              high_accuracy=method["high_accuracy"])
+        own = self.compiled[key]
         own.state[:] = [value for body in run["bodies"] for value in body[1:]]
         own.time = 0.0
         return own
