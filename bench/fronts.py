@@ -58,7 +58,8 @@ def run(given, out):
     wanted = [systems.SYSTEMS[name] for name in given.systems.split(",")]
     samples = max(1, round(systems.SAMPLES * given.span))
     for system in wanted:
-        limits = measure.Limits(row=given.row, system=60 * given.budget / len(wanted))
+        share = system.share / sum(other.share for other in wanted)
+        limits = measure.Limits(row=given.row, system=60 * given.budget * share)
         rows = measure.measure(system, programs, entries, samples, limits)
         page.write_data(out, system, rows, programs, samples, processor(), given.note)
     measure.stop_programs(programs)

@@ -135,8 +135,8 @@ def front(rows, error):
 
 
 def by_merit(rows):
-    """Rows that are good for something: first those on the front of their program, then those near it, then those on the front of
-    their family; each class from the quickest on."""
+    """Rows that are good for something, with their ranks: 0 on the front of their program, 1 near it, 2 on the front of their
+    family; of each rank the quickest first."""
     good = [row for row in rows if row.outcome == "ok" and (row.energy < USELESS[0] or row.position < USELESS[1])]
     ranks = {}
     for error in ("energy", "position"):
@@ -151,14 +151,14 @@ def by_merit(rows):
             for family in {row.entry.family for row in own}:
                 for row in front([row for row in own if row.entry.family == family], error):
                     ranks.setdefault(row, 2)
-    return sorted(ranks, key=lambda row: (ranks[row], row.seconds))
+    return sorted(ranks.items(), key=lambda item: (item[1], item[0].seconds))
 
 
 def chosen(rows, times, limits):
     """The rows that are run over a span `times` as long as that of the scan, those that are left out for their time, and what
     the former should take."""
     kept, dropped, total = [], [], 0.0
-    for row in by_merit(rows):
+    for row, rank in by_merit(rows):
         expected = row.seconds * times + OVERHEAD
         cost = expected if expected > LONG else (1 + ROUNDS) * expected
         if expected > limits.row:
@@ -167,6 +167,9 @@ def chosen(rows, times, limits):
         elif total + cost <= 0.75 * limits.system:
             total += cost
             kept.append(row)
+        elif rank == 0:
+            row.outcome = f"left out: about {expected:.0f} s, and no time for it"
+            dropped.append(row)
     return kept, dropped, total
 
 

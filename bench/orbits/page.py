@@ -93,9 +93,10 @@ def reason(ours, theirs):
     """Why ours is not twice as fast."""
     if ours is None:
         return "no method of noether's reaches this error here"
-    return REASONS.get((ours["family"], theirs["family"]), REASONS.get(theirs["family"], "not known"))
+    return REASONS.get((ours["family"], theirs["family"]), REASONS.get(theirs["family"], UNEXPLAINED))
 
 
+UNEXPLAINED = "not explained yet"
 REASONS = {}
 
 
