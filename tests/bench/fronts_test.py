@@ -6,6 +6,7 @@ import fractions
 import importlib.util
 import pathlib
 import sys
+import types
 
 ROOT = pathlib.Path(sys.argv[1]).resolve()
 sys.path.insert(0, str(ROOT / "bench"))
@@ -86,6 +87,25 @@ def planted_errors():
         expect(abs(found / (2e-9 * kinetic / abs(total)) - 1) < 1e-5, f"{system.name}: energy error measured as {found}")
 
 
+def selection():
+    """What is on a front goes before what is near one; what is slow and wrong does not go at all."""
+    from orbits import measure
+
+    def scanned(program, family, seconds, error):
+        found = measure.Row(None, types.SimpleNamespace(program=program, family=family))
+        found.seconds, found.energy, found.position, found.outcome = seconds, error, error, "ok"
+        return found
+
+    best, close, slow = (scanned("noether", "a", seconds, 1e-9) for seconds in (0.1, 0.12, 0.5))
+    other = scanned("noether", "b", 0.4, 1e-8)
+    rough, peer = scanned("noether", "a", 0.001, 0.5), scanned("rebound", "c", 3.0, 1e-9)
+    found = dict(measure.by_merit([slow, close, best, other, rough, peer]))
+    expect(found == {best: 0, close: 1, other: 2, peer: 0}, "rows in another order than that of their merit")
+    kept, dropped, total = measure.chosen([slow, close, best, other, rough, peer], 10, measure.Limits(row=20, system=100))
+    expect(kept == [best, close, other] and dropped == [peer], "a run beyond the limit is not left out")
+    expect(abs(total - (4 * 1.1 + 4 * 1.3 + 4.1)) < 1e-9, f"expected to take {total} s")
+
+
 def real_run(program):
     """A sample of the outer planets: errors are those of the method, and the energy's that of the monitor."""
     import numpy
@@ -119,6 +139,7 @@ def main():
         print("numpy is not installed: errors are not tested")
     else:
         planted_errors()
+        selection()
         if len(sys.argv) > 2:
             real_run(sys.argv[2])
     for text in FAILED:
