@@ -100,7 +100,7 @@ class Program:
             report = json.loads(text)
             if report["exit_code"] != 0:
                 raise Failed(": ".join(report[key] for key in ("outcome", "message") if key in report))
-            seconds = min(report["wall_s"], self.used - self.setup)  # the latter where the machine is busy
+            seconds = min(report["wall_s"], max(self.used - self.setup, self.used / 10))  # the latter on a busy machine
             if not watched:
                 return report, seconds, None
             self.call(["convert", str(folder / "out" / "run.h5"), str(folder / "run.csv")])
