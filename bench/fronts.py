@@ -10,7 +10,9 @@ of `--peers PYTHON` or of this Python), and are left out where they are absent. 
 
 First every method with every step or tolerance is run over a twentieth of the span. Those on the front of their program there,
 then those near it, then those on the front of their family are run over the whole span, as many as there is time for. Errors
-and times are measured in separate runs; a run of more than 1.5 seconds is made once, for both. Timed runs of all programs alternate, and their median counts."""
+and times are measured in separate runs; a run of more than 1.5 seconds is made once, for both. Timed runs of all programs
+alternate, and their median counts. A time of noether is that of the run or of its whole process, whichever is less: where other
+work keeps the processor busy, some hundredths of a second of its start are in it, which short spans show."""
 
 import argparse
 import pathlib

@@ -205,14 +205,13 @@ def measure(system, programs, entries, samples, limits):
     """Rows of the whole span, the refused and failed ones among them."""
     begin = time.monotonic()
     scan = min(SCAN, samples)
-    programs["noether"].measure_setup(system)
     rows = rows_of(system, [entry for entry in entries if entry.program in programs])
     for row in rows:
         row.measure_errors(programs, scan, limits.row * scan / samples + 5)
     failed = [row for row in rows if row.outcome != "ok"]
     kept, dropped, total = chosen(rows, samples / scan, limits)
-    tell(f"{system.name}: {len(rows)} rows over {scan} of {samples} samples in {time.monotonic() - begin:.0f} s, {len(failed)} without "
-         f"an end; {len(kept)} go on, about {total:.0f} s")
+    tell(f"{system.name}: {len(rows)} rows over {scan} of {samples} samples in {time.monotonic() - begin:.0f} s, {len(failed)} "
+         f"without an end; {len(kept)} go on, about {total:.0f} s")
     for row in kept:
         if limits.left(begin, 0.8) < 0:
             row.outcome = "left out: the time for this system was over"

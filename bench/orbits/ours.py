@@ -62,8 +62,6 @@ class Program:
     def __init__(self, path):
         self.path = str(pathlib.Path(path).resolve())
         words = self.call(["version"])[0].split()
-        self.setup = 0.0  # processor seconds of a run of one step
-        self.used = 0.0  # those of the last run, all of it
         self.version, self.commit, self.level = words[1], words[3], words[words.index("level") + 1]
 
     def call(self, arguments, timeout=600):
@@ -79,15 +77,6 @@ class Program:
             raise Failed(errors.strip().splitlines()[-1] if errors.strip() else f"exit code {child.returncode}")
         return text, errors
 
-    def measure_setup(self, system):
-        """The shortest time of runs that are all but nothing: no run takes less for its start and its end."""
-        method = {"method": "verlet", "hamiltonian": "kinetic_potential", "divisions": 1}
-        found = []
-        for _ in range(7):
-            self.run(system, method, 1, False, 60)
-            found.append(self.used)
-        self.setup = min(found)
-
     def run(self, system, method, samples, watched, timeout):
         """The report of the run, seconds, and the states of its looks (nothing without `watched`)."""
         with tempfile.TemporaryDirectory() as folder:
@@ -96,11 +85,11 @@ class Program:
             scene.write_text(scene_text(system, method, samples, watched), encoding="utf-8")
             before = processor_seconds()
             text, _ = self.call(["run", str(scene), "--json", "--threads", "1", "--out", str(folder / "out")], timeout)
-            self.used = processor_seconds() - before
+            used = processor_seconds() - before
             report = json.loads(text)
             if report["exit_code"] != 0:
                 raise Failed(": ".join(report[key] for key in ("outcome", "message") if key in report))
-            seconds = min(report["wall_s"], max(self.used - self.setup, self.used / 10))  # the latter on a busy machine
+            seconds = min(report["wall_s"], used)  # both are at least what the run took: other work, or start and end
             if not watched:
                 return report, seconds, None
             self.call(["convert", str(folder / "out" / "run.h5"), str(folder / "run.csv")])
