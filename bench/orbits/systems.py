@@ -5,6 +5,7 @@ A system is a table of barycentric bodies, NAME.csv beside this file, and its mo
 and are written with few binary digits, so that every program is at the same moments and no error of time enters."""
 
 import csv
+import functools
 import math
 import pathlib
 from dataclasses import dataclass
@@ -12,6 +13,11 @@ from dataclasses import dataclass
 HERE = pathlib.Path(__file__).resolve().parent
 SAMPLES = 20  # times at which positions are compared
 LOOKS = 20  # at most so many looks at the energy from one sample to the next
+
+
+@functools.cache
+def odd_divisors(number):
+    return [k for k in range(1, number + 1, 2) if number % k == 0]
 
 
 @dataclass(frozen=True)
@@ -42,8 +48,7 @@ class System:
     def divisions(self, wanted):
         """Steps from one sample to the next, for steps of about the wanted length: their length has few binary digits."""
         most = math.log(self.sample / wanted)
-        odd = [k for k in range(1, self.sample + 1, 2) if self.sample % k == 0]
-        choices = [k << j for k in odd for j in range(40) if abs(math.log(k << j) - most) < 0.8]
+        choices = [k << j for k in odd_divisors(self.sample) for j in range(40) if abs(math.log(k << j) - most) < 0.8]
         if not choices:
             raise ValueError(f"{self.name}: no step near {wanted} day divides {self.sample} days")
         return min(choices, key=lambda k: abs(math.log(k) - most))
