@@ -97,7 +97,7 @@ void describe_scheme(const Scheme& scheme, bool json) {
   }
   fmt::print("{} (method): {}\n", scheme.name, scheme.summary);
   if (!aliases.empty()) fmt::print("also called {}\n", fmt::join(aliases, ", "));
-  fmt::print("\n  order {}, {} kicks per step, {}\n", scheme.order.classical, scheme.evaluations(),
+  fmt::print("\n  order {}, {} per step, {}\n", scheme.order.classical, counted(scheme.evaluations(), "kick"),
              scheme.is_symmetric() ? "symmetric" : "not symmetric");
   if (orders[0] != 0) fmt::print("  for H = A + eps B: error orders {}\n", fmt::join(orders, ", "));
   if (scheme.scheme_class == SchemeClass::rkn) {

@@ -35,7 +35,9 @@ struct Explanation {
   Index particles = 0, constraints = 0;
   std::map<char, int> flows;                    ///< stages of one step, by letter, the last joined to the next first
   std::string kicks, inexact;                   ///< letters that evaluate forces, and those that are no exact flows
-  int of_kernel = 0;                            ///< of the forces in one step, by the letters G and L
+  std::map<char, int> of_kernel;                ///< evaluations of the forces in one step, by letters of kernels
+  int behind_kicks = 0;                         ///< of these, those that G may take from a kick B before it
+  std::string processing;                       ///< what a corrector or a kernel makes of the scheme
   int corrector = 0;                            ///< flows before the run, and for every look at it
   int evaluations = 0;                          ///< of the forces in one step: kicks between which something has moved
   std::optional<KeplerSteps> kepler;            ///< of gravity
@@ -51,6 +53,20 @@ void count_flows(const FittedWord& word, std::map<char, int>& flows) {
   const std::vector<Stage>& stages = word.stages;
   for (const Stage& stage : stages) ++flows[stage.letter];
   if (word.joins && stages.size() > 1 && stages.front().letter == stages.back().letter) --flows[stages.front().letter];
+}
+
+/// Letters of kernels evaluate forces twice.
+/// @return how many of these behind a kick B, whose forces they take where they can
+int count_of_kernel(const FittedWord& word, std::string_view kernels, std::map<char, int>& evaluations) {
+  const std::vector<Stage>& stages = word.stages;
+  const bool joined = word.joins && stages.size() > 1 && stages.front().letter == stages.back().letter;
+  int behind = 0;
+  for (std::size_t k = joined ? 1 : 0; k < stages.size(); ++k) {
+    if (kernels.find(stages[k].letter) == std::string_view::npos) continue;
+    evaluations[stages[k].letter] += 2;
+    behind += stages[k].letter == 'G' && k > 0 && stages[k - 1].letter == 'B' ? 1 : 0;
+  }
+  return behind;
 }
 
 /// A value as a sentence has it: texts without their quotes.
@@ -160,26 +176,41 @@ void explain_scheme(const Scene& scene, Explanation& e) {
   e.constraints = hamiltonian.claims().constraints;
   const CompositionOptions& options = scene.integrator.composition;
   const Scheme scheme = processed(scheme_of(scene.integrator), options);
-  count_flows(fitted_word(scheme, hamiltonian.claims(), e.hamiltonian, options), e.flows);
-  for (const auto& [letter, count] : e.flows) e.of_kernel += letter == 'G' ? count : letter == 'L' ? 2 * count : 0;
+  const FittedWord fitted = fitted_word(scheme, hamiltonian.claims(), e.hamiltonian, options);
+  count_flows(fitted, e.flows);
+  e.behind_kicks = count_of_kernel(fitted, hamiltonian.claims().kernels, e.of_kernel);
+  if (options.changes_scheme()) {
+    const Order order = order_over(scheme, hamiltonian.claims());
+    e.processing =
+        fmt::format("{}: order {}, errors of dt^{} in the first power of the masses and dt^{} in the second",
+                    options.processing_text(), order.classical, order.near_integrable[0], order.near_integrable[1]);
+  }
   e.corrector = static_cast<int>(scheme.before.size());
   e.kicks = hamiltonian.claims().kicks;
   for (const char letter : e.kicks) e.evaluations += e.flows.contains(letter) ? e.flows.at(letter) : 0;
-  e.evaluations += e.of_kernel;
+  for (const auto& [letter, count] : e.of_kernel) e.evaluations += count;
   e.inexact = hamiltonian.claims().inexact;
 }
 
-/// How often forces are evaluated is counted, over the first steps.
+/// How often forces are evaluated is counted, over the first steps; of a splitting without the first one, before which
+/// a corrector may have its own.
 void count_evaluations(const Scene& scene, Explanation& e) {
-  const std::int64_t steps = scene.integrator.classical ? 64 : 4;
+  const std::int64_t steps = scene.integrator.classical ? 64 : 4, before = scene.integrator.classical ? 0 : 1;
   Scene bare = scene;
   bare.watches.clear();
   bare.stops.clear();
   Simulation<double> sim = assemble(bare);
-  const std::int64_t made = sim.run(steps).step;
+  std::int64_t known = 0;
+  if (before > 0) {
+    if (sim.run(before).step < before) return;
+    known = sim.evaluations().force;
+  }
+  const std::int64_t made = sim.run(steps).step - before;
   if (made < steps) return;  // a step that fails is made again and again: the word alone tells
+  const int by_word = e.evaluations;
   e.evaluations =
-      static_cast<int>(std::lround(static_cast<double>(sim.evaluations().force) / static_cast<double>(made)));
+      static_cast<int>(std::lround(static_cast<double>(sim.evaluations().force - known) / static_cast<double>(made)));
+  if (e.behind_kicks > 0 && e.evaluations == by_word - e.behind_kicks) e.of_kernel['G'] -= e.behind_kicks;
 }
 
 /// The list of the first step.
@@ -262,10 +293,13 @@ std::string meaning(char letter, const Scene& scene, const Explanation& e) {
         "{}, each with {} of constraints solved for positions and for velocities; degrees of freedom left: {}", flow,
         counted(e.constraints, "equation"), 3 * e.particles - e.constraints);
   }
+  if (const auto kernel = e.of_kernel.find(letter); kernel != e.of_kernel.end())
+    return flow + ", " + counted(kernel->second, "force evaluation");
   if (e.kicks.find(letter) == std::string::npos) return flow;
   int kicks = 0;
   for (const char one : e.kicks) kicks += e.flows.contains(one) ? e.flows.at(one) : 0;
-  const int own = e.evaluations - e.of_kernel;
+  int own = e.evaluations;
+  for (const auto& [one, count] : e.of_kernel) own -= count;
   if (own == kicks) return flow + ", one force evaluation each";
   if (e.kicks.size() > 1) return fmt::format("{}, {} of all kicks together", flow, counted(own, "force evaluation"));
   return fmt::format("{}, {}: a kick where nothing has moved uses the forces again", flow,
@@ -308,6 +342,7 @@ void print_step(const Scene& scene, const Explanation& e) {
 void print_cost(const Scene& scene, const Explanation& e) {
   fmt::print("each step:\n");
   for (const auto& [letter, count] : e.flows) fmt::print("  {} x {}: {}\n", count, letter, meaning(letter, scene, e));
+  if (!e.processing.empty()) fmt::print("  {}\n", e.processing);
   if (e.corrector > 0)
     fmt::print("  before the first and for every look: {} of the corrector\n", counted(e.corrector, "flow"));
   if (!scene.integrator.classical) return;

@@ -44,6 +44,13 @@ class Shown {
   std::map<std::string, std::size_t> by_name_;
 };
 
+Drawn drawn_as(const std::string& type, const Parts& parts) {
+  for (const Parts::ConstraintKind& kind : parts.constraints()) {
+    if (kind.info.name == type) return kind.drawn;
+  }
+  return Drawn::nothing;
+}
+
 const SceneValue::Array& list_at(const SceneValue& table, std::string_view key) {
   static const SceneValue::Array none;
   const SceneValue* value = table.find(key);
@@ -62,7 +69,7 @@ void add_link(ParticleLinks& links, const std::optional<std::size_t>& a, const s
   if (a && b && *a != *b) links.pairs.emplace_back(*a, *b);
 }
 
-void add_distances(ParticleLinks& links, const SceneValue& constraint, const Shown& shown) {
+void add_pairs(ParticleLinks& links, const SceneValue& constraint, const Shown& shown) {
   for (const SceneValue& pair : list_at(constraint, "pairs")) {
     const SceneValue::Array* ends = pair.get<SceneValue::Array>();
     if (ends != nullptr && ends->size() == 2) add_link(links, shown.name(ends->front()), shown.name(ends->back()));
@@ -75,7 +82,7 @@ void add_distances(ParticleLinks& links, const SceneValue& constraint, const Sho
 }
 
 /// Particles in line, each with the next.
-void add_bar(ParticleLinks& links, const SceneValue& constraint, const Shown& shown) {
+void add_chain(ParticleLinks& links, const SceneValue& constraint, const Shown& shown) {
   const SceneValue::Array& bodies = list_at(constraint, "bodies");
   for (std::size_t k = 1; k < bodies.size(); ++k) add_link(links, shown.name(bodies[k - 1]), shown.name(bodies[k]));
 }
@@ -95,7 +102,7 @@ void add_rods(ParticleLinks& links, const SceneValue& constraint, const Shown& s
 
 }  // namespace
 
-ParticleLinks read_links(const io::Hdf5File& file, const SceneValue& scene, const UnitSystem& units,
+ParticleLinks read_links(const io::Hdf5File& file, const SceneValue& scene, const Parts& parts, const UnitSystem& units,
                          const io::Frames& shared, const std::vector<std::size_t>& rows) {
   const Shown shown(shared, rows);
   ParticleLinks links;
@@ -104,10 +111,10 @@ ParticleLinks read_links(const io::Hdf5File& file, const SceneValue& scene, cons
     for (std::size_t k = 0; k + 1 < ids.size(); k += 2) add_link(links, shown.id(ids[k]), shown.id(ids[k + 1]));
   }
   for (const SceneValue* constraint : tables_at(scene, {"hamiltonian", "constraint"})) {
-    const std::string type = text_at(*constraint, {"type"});
-    if (type == "distance") add_distances(links, *constraint, shown);
-    if (type == "rigid_bar") add_bar(links, *constraint, shown);
-    if (type == "on_sphere") add_rods(links, *constraint, shown, units);
+    const Drawn drawn = drawn_as(text_at(*constraint, {"type"}), parts);
+    if (drawn == Drawn::link) add_pairs(links, *constraint, shown);
+    if (drawn == Drawn::chain) add_chain(links, *constraint, shown);
+    if (drawn == Drawn::rod) add_rods(links, *constraint, shown, units);
   }
   return links;
 }

@@ -5,7 +5,7 @@
 #include "io/hdf5_file.hpp"
 #include "numbers/types.hpp"
 #include "numbers/units.hpp"
-#include "scene/value.hpp"
+#include "scene/parts.hpp"
 
 #include <cstddef>
 #include <utility>
@@ -27,10 +27,9 @@ struct ParticleLinks {
   bool empty() const { return pairs.empty() && anchors.empty(); }
 };
 
-/// Bonds of the file, and of the scene's constraints those that keep particles at a distance (`distance`), on a bar
-/// (`rigid_bar`) or at the end of a rod (`on_sphere`).
+/// Bonds of the file, and what the scene's constraints say that pictures show of them (`Drawn`).
 /// @param rows  particles of the file that are shown
-ParticleLinks read_links(const io::Hdf5File& file, const SceneValue& scene, const UnitSystem& units,
+ParticleLinks read_links(const io::Hdf5File& file, const SceneValue& scene, const Parts& parts, const UnitSystem& units,
                          const io::Frames& shared, const std::vector<std::size_t>& rows);
 
 /// The molecule of each of `n` particles: those that pairs join have the same number, from 0.

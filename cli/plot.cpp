@@ -124,15 +124,22 @@ void add_plot_command(CLI::App& app, const Parts& parts, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("plot", "draw a run: orbits or a liquid, errors, elements, g(r) ... (needs gnuplot)");
   const auto options = std::make_shared<Options>();
-  command->add_option("FILE", options->file, "a run.h5")->required()->check([](const std::string& file) {
-    return std::string(file.empty() ? "the name of the file is empty" : "");
-  });
-  command->add_option("--out", options->out, "the picture, .svg, .png or .pdf; default: FILE with .svg");
-  command->add_option("--what", options->what,
-                      fmt::format("a list of {}; default: what fits the run", fmt::join(plot_subjects(), ", ")));
-  command->add_option("--projection", options->projection,
-                      "xy, xz, yz or all three; default: the plane where bodies move, and the side of a thick one");
-  command->add_option("--frame", options->frame, "the frame that is shown, from 0; -1, the default, is the last");
+  command->add_option("FILE", options->file, "a run.h5")
+      ->required()
+      ->check([](const std::string& file) { return std::string(file.empty() ? "the name of the file is empty" : ""); })
+      ->type_name("");
+  command->add_option("--out", options->out, "the picture, .svg, .png or .pdf; default: FILE with .svg")
+      ->type_name("PICTURE");
+  command
+      ->add_option("--what", options->what,
+                   fmt::format("a list of {}; default: what fits the run", fmt::join(plot_subjects(), ", ")))
+      ->type_name("A,B,...");
+  command
+      ->add_option("--projection", options->projection,
+                   "xy, xz, yz or all three; default: the plane where bodies move, and the side of a thick one")
+      ->type_name("PLANE");
+  command->add_option("--frame", options->frame, "the frame that is shown, from 0; -1, the default, is the last")
+      ->type_name("N");
   command->add_flag("--json", options->json, "report as one line of JSON");
   command->callback([options, &parts, &exit_code] {
     PlotOptions wanted{.frame = options->frame, .what = {}, .projection = options->projection};

@@ -72,12 +72,13 @@ std::vector<io::MonitorSeries> drawn_monitors(const std::filesystem::path& file)
   return io::read_monitors(file, {.wanted = drawn, .most_numbers = 20'000'000});
 }
 
-ParticleLinks links_in(const std::filesystem::path& file, const PlotSource& source, const UnitSystem& units) {
+ParticleLinks links_in(const std::filesystem::path& file, const PlotSource& source, const UnitSystem& units,
+                       const Parts& parts) {
   const io::Frames& shared = source.frames.shared;
   std::vector<std::size_t> rows(shared.ids.size());
   std::iota(rows.begin(), rows.end(), std::size_t{0});
-  return io::try_first(file,
-                       [&] { return read_links(io::Hdf5File::open_to_read(file), source.scene, units, shared, rows); });
+  return io::try_first(
+      file, [&] { return read_links(io::Hdf5File::open_to_read(file), source.scene, parts, units, shared, rows); });
 }
 
 /// The center of mass of a frame; of bodies without mass their mean.
@@ -139,7 +140,7 @@ void add_units_of_monitors(PlotSource& source) {
   source.frames.shared.length_unit = units.substr(0, units.find(','));
 }
 
-PlotSource read_source(const std::filesystem::path& file, const PlotOptions& options) {
+PlotSource read_source(const std::filesystem::path& file, const PlotOptions& options, const Parts& parts) {
   const io::FileInfo about = io::info(file);
   if (about.kind != "trajectory") {
     throw Error(fmt::format("{} is a {}, which contains one moment only; plot the run.h5 beside it", file.string(),
@@ -164,13 +165,13 @@ PlotSource read_source(const std::filesystem::path& file, const PlotOptions& opt
   source.time = time_axis(unit, times, begin, end);
   add_units_of_monitors(source);
 
-  const bool attract = has_gravity(source.scene);
+  const bool attract = has_gravity(source.scene, parts);
   if (const double G = constant_of_gravity(source.scene, NAN); attract && !std::isnan(G)) source.G = G;
-  if (!may_have_gravity(source.scene) || source.frames.periodic) source.frames.primary = {};
+  if (!may_have_gravity(source.scene, parts) || source.frames.periodic) source.frames.primary = {};
   const std::string system = source.frames.shared.units.empty() ? about.units : source.frames.shared.units;
   if (!source.frames.empty() || !system.empty()) {
     const UnitSystem& units = io::known_units(system, file);
-    source.links = links_in(file, source, units);
+    source.links = links_in(file, source, units, parts);
     if (attract && !source.G) source.G = units.G;
     source.k_B = units.k_B;
     source.temperature_unit = std::string(units.temperature);
@@ -264,7 +265,7 @@ void check(const PlotOptions& options) {
   for (const std::string& subject : options.what) {
     const std::vector<std::string>& known = plot_subjects();
     if (std::find(known.begin(), known.end(), subject) != known.end()) continue;
-    throw Error(fmt::format("--what '{}' is nothing that plot draws{}", subject, did_you_mean(subject, known)));
+    throw Error(fmt::format("--what '{}' is not one of the panels{}", subject, did_you_mean(subject, known)));
   }
   const std::vector<std::string> projections = {"xy", "xz", "yz", "all"};
   if (!options.projection.empty() &&
@@ -295,7 +296,7 @@ const std::vector<std::string>& plot_subjects() {
 
 PlotData read_plot_data(const std::filesystem::path& file, const Parts& parts, const PlotOptions& options) {
   check(options);
-  const PlotSource source = read_source(file, options);
+  const PlotSource source = read_source(file, options, parts);
   const bool periodic = source.frames.periodic;
   PlotData data;
   const RunCaption caption = caption_of(source.scene, file, source.time.unit, 0, parts);

@@ -2,23 +2,42 @@
 
 #include "cli/run_caption.hpp"
 #include "engine/sums.hpp"
+#include "numbers/error.hpp"
 
 #include <algorithm>
 #include <string>
 
 namespace noether {
 
-bool has_gravity(const SceneValue& scene) {
-  const std::string type = text_at(scene, {"hamiltonian", "type"});
-  if (type == "wisdom_holman" || type == "hybrid") return true;
-  const auto forces = tables_at(scene, {"hamiltonian", "force"});
-  return std::any_of(forces.begin(), forces.end(),
-                     [](const SceneValue* force) { return text_at(*force, {"type"}).starts_with("gravity"); });
+namespace {
+
+/// Whether pairs move on Kepler orbits under a Hamiltonian alone, as far as its defaults make one.
+bool is_keplerian(const Parts::HamiltonianKind& kind) {
+  try {
+    return kind.claims().kepler;
+  } catch (const Error&) {
+    return false;
+  }
 }
 
-bool may_have_gravity(const SceneValue& scene) {
+}  // namespace
+
+bool has_gravity(const SceneValue& scene, const Parts& parts) {
+  for (const Parts::HamiltonianKind& kind : parts.hamiltonians()) {
+    if (kind.info.name == text_at(scene, {"hamiltonian", "type"}) && is_keplerian(kind)) return true;
+  }
+  const auto attracts = [&](const SceneValue* force) {
+    return std::any_of(parts.forces().begin(), parts.forces().end(), [&](const Parts::ForceKind& kind) {
+      return kind.info.name == text_at(*force, {"type"}) && kind.claims.kepler;
+    });
+  };
+  const auto forces = tables_at(scene, {"hamiltonian", "force"});
+  return std::any_of(forces.begin(), forces.end(), attracts);
+}
+
+bool may_have_gravity(const SceneValue& scene, const Parts& parts) {
   const bool told = value_at(scene, {"hamiltonian"}) != nullptr || value_at(scene, {"system"}) != nullptr;
-  return !told || has_gravity(scene);
+  return !told || has_gravity(scene, parts);
 }
 
 double constant_of_gravity(const SceneValue& scene, double of_units) {

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <charconv>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -76,21 +77,32 @@ void view(const ViewOptions& options, const Parts& parts) {
                          .text());
 }
 
+/// What is wrong with a number of frames; "" if nothing.
+std::string wrong_number_of_frames(const std::string& text) {
+  constexpr std::size_t most = 1'000'000'000;
+  std::size_t frames = 0;
+  const char* end = text.data() + text.size();
+  const auto [read, error] = std::from_chars(text.data(), end, frames);
+  if (error == std::errc() && read == end && frames >= 1 && frames <= most) return "";
+  return fmt::format("'{}' is not a valid number of frames; give one from 1", text);
+}
+
 }  // namespace
 
 void add_view_command(CLI::App& app, const Parts& parts, int& exit_code) {
   CLI::App* command = app.add_subcommand("view", "make a page that plays a run in a browser, without a server");
   const auto options = std::make_shared<ViewOptions>();
-  command->add_option("FILE", options->file, "a run.h5")->required()->check([](const std::string& file) {
-    return std::string(file.empty() ? "the name of the file is empty" : "");
-  });
-  command->add_option("--out", options->out, "the page, .html; default: FILE with .html");
+  command->add_option("FILE", options->file, "a run.h5")
+      ->required()
+      ->check([](const std::string& file) { return std::string(file.empty() ? "the name of the file is empty" : ""); })
+      ->type_name("");
+  command->add_option("--out", options->out, "the page, .html; default: FILE with .html")->type_name("PAGE");
   CLI::Option* frames =
       command->add_option("--frames", options->wish.frames, "show N frames, at equal distances; default: all that fit")
-          ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000'000}))
+          ->check(wrong_number_of_frames)
           ->type_name("N");
   command->add_option("--every", options->wish.every, "show every K-th frame")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000'000}))
+      ->check(wrong_number_of_frames)
       ->type_name("K")
       ->excludes(frames);
   command->add_flag("--json", options->json, "report as one line of JSON");

@@ -136,7 +136,8 @@ ViewEnergy energy_of(const std::vector<io::MonitorSeries>& monitors) {
 }
 
 /// Everything but the caption, the energy and how bodies move.
-ViewData read_frames_to_view(const std::filesystem::path& file, const SceneValue& scene, const ViewWish& wish) {
+ViewData read_frames_to_view(const std::filesystem::path& file, const SceneValue& scene, const ViewWish& wish,
+                             const Parts& parts) {
   const io::TrajectoryReader reader(file);
   const io::Frames& shared = reader.shared();
   ViewData data;
@@ -148,10 +149,10 @@ ViewData read_frames_to_view(const std::filesystem::path& file, const SceneValue
   data.names = picked(shared.names, rows);
   data.masses = picked(shared.masses, rows);
   if (!shared.types.empty()) data.types = picked(shared.types, rows);
-  data.links = read_links(reader.file(), scene, io::known_units(shared.units, file), shared, rows);
+  data.links = read_links(reader.file(), scene, parts, io::known_units(shared.units, file), shared, rows);
 
   const bool periodic = reader.file().has(io::image_path + "/value");
-  if (!periodic && shown <= few_bodies && may_have_gravity(scene)) {
+  if (!periodic && shown <= few_bodies && may_have_gravity(scene, parts)) {
     if (const auto primary = primary_of(data.masses)) data.primary = static_cast<std::int64_t>(*primary);
   }
   if (data.primary >= 0) {
@@ -220,7 +221,7 @@ ViewData read_view_data(const std::filesystem::path& file, const ViewWish& wish,
   const io::FileInfo about = io::info(file);
   check_for_view(about, file.string());
   const SceneValue scene = scene_in_file(about.scene_toml, file);
-  ViewData data = io::try_first(file, [&] { return read_frames_to_view(file, scene, wish); });
+  ViewData data = io::try_first(file, [&] { return read_frames_to_view(file, scene, wish, parts); });
   const auto [first, last] = std::pair(data.frames.front().time, data.frames.back().time);
   data.caption = caption_of(scene, file, about.time_unit, shown_time(first, last), parts);
   const auto drawn = [](const std::string& monitor, const std::string& quantity) {

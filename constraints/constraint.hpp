@@ -7,12 +7,21 @@
 #include <array>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <type_traits>
 
 namespace noether {
 
 /// Positions of the n particles that a constraint ties.
 template <class Real, std::size_t n> using Points = std::array<Vec3<Real>, n>;
+
+/// What pictures show of a constraint.
+enum class Drawn : std::uint8_t {
+  nothing,
+  link,   ///< a line between its two particles
+  chain,  ///< a line through all of its particles, in their order
+  rod,    ///< a line from its `center` to its particle
+};
 
 /// A holonomic constraint g(q) = 0 on `particles` particles: one equation, or several as an array.
 ///
@@ -29,7 +38,7 @@ template <class Real, std::size_t n> using Points = std::array<Vec3<Real>, n>;
 /// whose `residual(g)` differs from |g| / scale says so itself; one that takes what it was not told from the particles
 /// offers `at_start(x)`; one that makes no sense throws in `check()`. `keeps_momentum` and `keeps_angular_momentum`
 /// (false unless declared; the latter may be a function) say that its forces have no sum, and no torque about the
-/// origin.
+/// origin. `static constexpr Drawn drawn` says what pictures show of it.
 ///
 /// In a periodic box each particle stands at its image nearest to the one before. One that keeps momentum sees nothing
 /// but differences; any other holds particles where they would be had they never been wrapped. One whose `reach()` says

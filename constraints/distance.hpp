@@ -21,6 +21,7 @@ struct Distance {
 
   static constexpr std::size_t particles = 2;
   static constexpr bool keeps_momentum = true, keeps_angular_momentum = true;
+  static constexpr Drawn drawn = Drawn::link;
   static constexpr auto describe() {
     return part<Distance>("distance", "keeps the distance of two particles", formula("|x_1 - x_2| = d"),
                           source("RyckaertCiccottiBerendsen1977"),

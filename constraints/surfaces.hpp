@@ -55,6 +55,7 @@ struct OnSphere {
   std::optional<double> radius = {};  ///< R; as at the start unless given [length]
 
   static constexpr std::size_t particles = 1;
+  static constexpr Drawn drawn = Drawn::rod;
   static constexpr auto describe() {
     return part<OnSphere>("on_sphere", "keeps a particle on a sphere, or at the end of a rod from a point",
                           formula("|x - center| = radius"), field<&OnSphere::center>("center", "length"),

@@ -45,11 +45,12 @@ template <class Base> class Erased {
   std::unique_ptr<Base> held_;
 };
 
-NOETHER_FINDS_MEMBER(claims)
-NOETHER_FINDS_MEMBER(check)
-NOETHER_FINDS_MEMBER(bind)
-NOETHER_FINDS_MEMBER(reference)
-NOETHER_FINDS_MEMBER(add_secant_to)
+NOETHER_FINDS_MEMBER(claims, claim, climas, calims, cliams, clamis, claism)
+NOETHER_FINDS_MEMBER(check, chekc, chcek, cehck, hceck, chekk, chek)
+NOETHER_FINDS_MEMBER(bind, bnid, bidn, ibnd, bnd, biind, bindd)
+NOETHER_FINDS_MEMBER(reference, refernece, refrence, referance, refernce, refference, referecne)
+NOETHER_FINDS_MEMBER(add_secant_to, add_secant, add_secants_to, add_secant_for, add_sceant_to, add_secnat_to,
+                     add_secent_to)
 
 template <class F>
 concept GivesClaims = requires(const F& force) {
@@ -78,11 +79,11 @@ concept GivesSecants = requires(const F& force, ForceSink<double>& out, const Pa
 
 /// Whether each optional member of a force, where there is one of its name, is what it has to be.
 template <class F> struct ForceMembers {
-  static constexpr bool claims = !finds_claims<F>() || GivesClaims<F>;
-  static constexpr bool check = !finds_check<F>() || ChecksFields<F> || ChecksParticles<F>;
-  static constexpr bool bind = !finds_bind<F>() || BindsParticles<F>;
-  static constexpr bool reference = !finds_reference<F>() || NamesReference<F>;
-  static constexpr bool secant = !finds_add_secant_to<F>() || GivesSecants<F>;
+  static constexpr bool claims = !misspells_claims<F>() && (!finds_claims<F>() || GivesClaims<F>);
+  static constexpr bool check = !misspells_check<F>() && (!finds_check<F>() || ChecksFields<F> || ChecksParticles<F>);
+  static constexpr bool bind = !misspells_bind<F>() && (!finds_bind<F>() || BindsParticles<F>);
+  static constexpr bool reference = !misspells_reference<F>() && (!finds_reference<F>() || NamesReference<F>);
+  static constexpr bool secant = !misspells_add_secant_to<F>() && (!finds_add_secant_to<F>() || GivesSecants<F>);
 };
 
 /// Built-in forces are compiled once, each in a .cpp of its own: their headers say `extern template`.
@@ -105,12 +106,19 @@ template <class Real> struct ForceBase {
 };
 template <class F, class Real> struct ForceModel final : ForceBase<Real> {
   using Members = ForceMembers<F>;
-  static_assert(Members::claims, "a force has `ForceClaims claims() const`, or no member of that name");
+  static_assert(Members::claims,
+                "a force has `ForceClaims claims() const`, or no member of that name or nearly that name");
   static_assert(Members::check,
-                "a force has `void check(const ParticleSystem<Real>&) const`, or of its fields `check()`, or none");
-  static_assert(Members::bind, "a force has `void bind(const ParticleSystem<Real>&)`, or no `bind`");
-  static_assert(Members::reference, "a force has a `reference() const` that gives another force, or none");
-  static_assert(Members::secant, "a force has `add_secant_to(ForceSink<Real>&, from, to) const`, or none of that name");
+                "a force has `void check(const ParticleSystem<Real>&) const`, or of its fields `check()`, or no member "
+                "of that name or nearly that name");
+  static_assert(Members::bind,
+                "a force has `void bind(const ParticleSystem<Real>&)`, or no member of that name or nearly that name");
+  static_assert(
+      Members::reference,
+      "a force has a `reference() const` that gives another force, or no member of that name or nearly that name");
+  static_assert(
+      Members::secant,
+      "a force has `add_secant_to(ForceSink<Real>&, from, to) const`, or no member of that name or nearly that name");
   explicit ForceModel(F f) : force(std::move(f)) {}
   std::unique_ptr<ForceBase<Real>> clone() const override { return std::make_unique<ForceModel>(force); }
   void bind(const ParticleSystem<Real>& s) override {
@@ -202,6 +210,11 @@ template <class Real = double> class AnyForce : private detail::Erased<detail::F
   void check(const ParticleSystem<Real>& s) const { this->held_->check(s); }
   std::string name() const { return this->held_->name(); }
   std::string signature() const { return this->held_->signature(); }
+  /// The force itself where it is of this type, or null.
+  template <class F> const F* as() const {
+    const auto* model = dynamic_cast<const detail::ForceModel<F, Real>*>(this->held_.get());
+    return model != nullptr ? &model->force : nullptr;
+  }
   /// The same force in extended precision, or what it names as its `reference()` for truth; empty for one that is
   /// written for doubles only.
   std::optional<AnyForce<Quad>> in_quad() const {

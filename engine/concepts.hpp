@@ -34,6 +34,7 @@ struct Evaluations {
   std::int64_t force = 0, kepler = 0, jacobian = 0;
   std::int64_t constraint = 0;                       ///< iterations or sweeps over all constraints
   std::int64_t rejected = 0;                         ///< trial steps that an error controller threw away
+  std::int64_t unsettled = 0;                        ///< steps that have errors above those that their method is for
   std::optional<NeighborStatistics> neighbors = {};  ///< of this process, where some force has a range
   std::optional<Encounter> encounter = {};           ///< the closest one that the splitting should not have met
 };
@@ -46,6 +47,8 @@ struct HamiltonianClaims {
   std::string_view timed = "A";   ///< letters that carry time: stages see what these have covered of a step
   std::string basic = "BAB";      ///< palindrome of order 2 that symmetric compositions are made of
   std::string kicks = "B";        ///< letters that evaluate the forces
+  std::string_view kernels = "";  ///< letters of kernels only; they evaluate the forces twice
+  std::string no_kernel = "";     ///< why it lacks some of these, where it knows kernels
   std::string_view lazy = "";     ///< letters whose maps are symplectic only nearly, by finite differences
   bool quadratic_kinetic = true;  ///< {B,{B,{B,A}}} = 0: Runge-Kutta-Nystroem tables keep their order
   bool symplectic = true;         ///< every flow is
@@ -56,6 +59,7 @@ struct HamiltonianClaims {
   bool columns = false;             ///< it moves columns beyond position and velocity
   std::uint8_t coordinates = 0;     ///< of the position and velocity columns while a run goes on; 0: inertial
   bool inertial = true;             ///< flows meet x and v as users see them, so that letters of velocities may join
+  bool velocity_forces = false;     ///< its kicks take forces that depend on velocities, as symmetric maps of order 2
   bool kepler = false;              ///< two bodies alone are followed exactly, along Kepler arcs
   bool periodic = false;            ///< it knows periodic boxes
   bool neighbors = false;           ///< it looks for neighbors as `NeighborOptions` say

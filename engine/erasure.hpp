@@ -6,6 +6,7 @@
 #include "engine/concepts.hpp"
 #include "engine/word.hpp"
 
+#include <concepts>
 #include <memory>
 #include <optional>
 #include <string>
@@ -79,6 +80,52 @@ template <class T> void expect_kicks(T& moves, double longest) {
   if constexpr (requires { moves.expect_kicks(longest); }) moves.expect_kicks(longest);
 }
 
+NOETHER_FINDS_MEMBER(virial, viral, viriel, virail, vrial, viiral, viriall)
+NOETHER_FINDS_MEMBER(can_project, can_porject, can_projcet, can_projects, can_proejct, can_poject, can_prject)
+NOETHER_FINDS_MEMBER(project_velocities, project_velocites, project_velocity, project_velocitys, project_velocties,
+                     project_velcities, project_velocitites)
+NOETHER_FINDS_MEMBER(expect_kicks, expect_kick, expects_kicks, expect_kciks, expcet_kicks, exepct_kicks, except_kicks)
+NOETHER_FINDS_MEMBER(set_neighbor_options, set_neighbour_options, set_neigbor_options, set_neighbor_option,
+                     set_neighbors_options, set_neigbour_options, set_neighbor_opitons)
+NOETHER_FINDS_MEMBER(has_action, has_aciton, has_actoin, has_actions, has_acton, have_action, hsa_action)
+NOETHER_FINDS_MEMBER(advance_with_action, advance_with_actions, advance_with_acton, advance_with_actoin,
+                     advance_with_aciton, advances_with_action, advance_whit_action)
+NOETHER_FINDS_MEMBER(wide_energy, wide_enregy, wide_enery, wide_energies, wide_enegry, wide_engery, wied_energy)
+
+template <class T>
+concept GivesVirial = requires(T& moves, const ParticleSystem<typename T::real>& s) {
+  { moves.virial(s) } -> std::convertible_to<std::optional<Mat3<typename T::real>>>;
+};
+template <class H>
+concept SaysWhetherItProjects = requires(const H& hamiltonian) {
+  { hamiltonian.can_project() } -> std::convertible_to<bool>;
+};
+template <class H>
+concept ProjectsVelocities = requires(H& hamiltonian, ParticleSystem<typename H::real>& s,
+                                      const typename H::real& tau) {
+  hamiltonian.project_velocities(s, tau);
+};
+template <class H>
+concept ExpectsKicks = requires(H& hamiltonian, double longest) {
+  hamiltonian.expect_kicks(longest);
+};
+template <class H>
+concept TakesNeighborOptions = requires(H& hamiltonian, const NeighborOptions& options) {
+  hamiltonian.set_neighbor_options(options);
+};
+
+/// Whether each optional member of a Hamiltonian, where there is one of its name, is what it has to be.
+template <class H> struct HamiltonianMembers {
+  static constexpr bool virial = !misspells_virial<H>() && (!finds_virial<H>() || GivesVirial<H>);
+  static constexpr bool can_project =
+      !misspells_can_project<H>() && (!finds_can_project<H>() || SaysWhetherItProjects<H>);
+  static constexpr bool project_velocities =
+      !misspells_project_velocities<H>() && (!finds_project_velocities<H>() || ProjectsVelocities<H>);
+  static constexpr bool expect_kicks = !misspells_expect_kicks<H>() && (!finds_expect_kicks<H>() || ExpectsKicks<H>);
+  static constexpr bool neighbor_options =
+      !misspells_set_neighbor_options<H>() && (!finds_set_neighbor_options<H>() || TakesNeighborOptions<H>);
+};
+
 template <class Real> struct HamiltonianBase {
   virtual ~HamiltonianBase() = default;
   virtual std::unique_ptr<HamiltonianBase> clone() const = 0;
@@ -105,6 +152,20 @@ template <class Real> struct HamiltonianBase {
 };
 template <class H> struct HamiltonianModel final : HamiltonianBase<typename H::real> {
   using Real = typename H::real;
+  using Members = HamiltonianMembers<H>;
+  static_assert(Members::virial,
+                "a Hamiltonian has `Mat3<Real> virial(const ParticleSystem<Real>&)`, which may be "
+                "optional, or no member of that name or nearly that name");
+  static_assert(Members::can_project,
+                "a Hamiltonian has `bool can_project() const`, or no member of that name or nearly that name");
+  static_assert(Members::project_velocities,
+                "a Hamiltonian has `void project_velocities(ParticleSystem<Real>&, const "
+                "Real&)`, or no member of that name or nearly that name");
+  static_assert(Members::expect_kicks,
+                "a Hamiltonian has `void expect_kicks(double)`, or no member of that name or nearly that name");
+  static_assert(Members::neighbor_options,
+                "a Hamiltonian has `void set_neighbor_options(const NeighborOptions&)`, "
+                "or no member of that name or nearly that name");
   explicit HamiltonianModel(H h) : hamiltonian(std::move(h)) {}
   std::unique_ptr<HamiltonianBase<Real>> clone() const override {
     return std::make_unique<HamiltonianModel>(hamiltonian);
@@ -180,6 +241,25 @@ template <class I> constexpr bool action_follows() {
   return true;
 }
 
+template <class I>
+concept SaysWhetherItHasAction = requires(const I& integrator) {
+  { integrator.has_action() } -> std::convertible_to<bool>;
+};
+template <class I>
+concept GivesWideEnergy = requires(I& integrator, const ParticleSystem<typename I::real>& s) {
+  { integrator.wide_energy(s) } -> std::convertible_to<std::optional<EnergyTerms<Quad>>>;
+};
+
+/// Whether each optional member of an integrator, where there is one of its name, is what it has to be.
+template <class I> struct IntegratorMembers {
+  static constexpr bool virial = !misspells_virial<I>() && (!finds_virial<I>() || GivesVirial<I>);
+  static constexpr bool has_action =
+      !misspells_has_action<I>() && (!finds_has_action<I>() || SaysWhetherItHasAction<I>);
+  static constexpr bool advance_with_action =
+      !misspells_advance_with_action<I>() && (!finds_advance_with_action<I>() || GivesAction<I>);
+  static constexpr bool wide_energy = !misspells_wide_energy<I>() && (!finds_wide_energy<I>() || GivesWideEnergy<I>);
+};
+
 template <class Real> struct IntegratorBase {
   virtual ~IntegratorBase() = default;
   virtual std::unique_ptr<IntegratorBase> clone() const = 0;
@@ -200,6 +280,18 @@ template <class Real> struct IntegratorBase {
 };
 template <class I> struct IntegratorModel final : IntegratorBase<typename I::real> {
   using Real = typename I::real;
+  using Members = IntegratorMembers<I>;
+  static_assert(Members::virial,
+                "an integrator has `Mat3<Real> virial(const ParticleSystem<Real>&)`, which may be "
+                "optional, or no member of that name or nearly that name");
+  static_assert(Members::has_action,
+                "an integrator has `bool has_action() const`, or no member of that name or nearly that name");
+  static_assert(Members::advance_with_action,
+                "an integrator has `Advance advance_with_action(ParticleSystem<Real>&, "
+                "const Span&, Real&)`, or no member of that name or nearly that name");
+  static_assert(Members::wide_energy,
+                "an integrator has `EnergyTerms<Quad> wide_energy(const ParticleSystem<Real>&)`, "
+                "which may be optional, or no member of that name or nearly that name");
   static_assert(action_follows<I>(),
                 "a wrapper of an integrator that has its own `advance` needs its own `advance_with_action` too, or a "
                 "`has_action` that returns false");

@@ -101,26 +101,36 @@ OtherName other_name_of(std::string_view name) {
   };
   // Words between blanks, in small letters but for those of one letter.
   static constexpr std::array meanings = {
-      Meaning{" m ", "mass", "; did you mean 'mass'?"},
+      Meaning{" m weight m_star mstar m_planet mplanet ", "mass", "; did you mean 'mass'?"},
+      Meaning{" gm mu standard_gravitational_parameter ", "",
+              "; a gravitational parameter G m is not supported: give the mass"},
       Meaning{" sma semimajor semimajor_axis semi_major_axis A ", "a", "; did you mean 'a'?"},
       Meaning{" per period orbital_period pr ", "P", "; did you mean 'P'?"},
       Meaning{" qr perihelion_distance periapsis_distance pericenter_distance ", "q", "; did you mean 'q'?"},
       Meaning{" ecc eccentricity ec ", "e", "; did you mean 'e'?"},
       Meaning{" i I incl incl. inclination in ", "inc", "; did you mean 'inc'?"},
-      Meaning{" om node raan lan long_node longnode asc_node ascending_node ", "Omega", "; did you mean 'Omega'?"},
-      Meaning{" w W peri peri. argp argperi arg_peri argper aop arg_pericenter ", "omega", "; did you mean 'omega'?"},
-      Meaning{" varpi longp long_peri longperi curlypi ", "pomega", "; did you mean 'pomega'?"},
+      Meaning{" om node raan lan long_node longnode asc_node ascending_node longitude_of_ascending_node "
+              "longitude_of_the_ascending_node right_ascension_of_ascending_node ",
+              "Omega", "; did you mean 'Omega'?"},
+      Meaning{" w W peri peri. argp argperi arg_peri argper aop arg_pericenter argument_of_pericenter "
+              "argument_of_periapsis argument_of_perihelion argument_of_the_pericenter ",
+              "omega", "; did you mean 'omega'?"},
+      Meaning{" varpi longp long_peri longperi curlypi longitude_of_pericenter longitude_of_perihelion "
+              "longitude_of_periapsis ",
+              "pomega", "; did you mean 'pomega'?"},
       Meaning{" ma m0 mean_anomaly meananomaly ", "M", "; did you mean 'M'?"},
       Meaning{" nu ta true_anomaly trueanomaly ", "f", "; did you mean 'f'?"},
       Meaning{" L lambda mean_longitude meanlongitude ", "l", "; did you mean 'l'?"},
-      Meaning{" tp tperi t_peri time_of_perihelion ", "T", "; did you mean 'T'?"},
+      Meaning{" tp tperi t_peri time_of_perihelion time_of_pericenter time_of_periapsis ", "T",
+              "; did you mean 'T'?"},
       Meaning{" n N mean_motion ", "", "; a mean motion n is not supported: give the period P = 360 deg / n, or a"},
       Meaning{" E eccentric_anomaly ", "", "; an eccentric anomaly E is not supported: give M = E - e sin E, or f"},
       Meaning{" Q ad aphelion ", "", "; the apocenter distance is not supported: give a or q"},
       Meaning{" theta true_longitude ", "", "; a true longitude is not supported: give f, or the mean longitude l"},
   };
   std::string word(name);
-  if (word.find(' ') != std::string::npos || word.empty()) return {};
+  if (word.empty()) return {};
+  for (char& letter : word) letter = letter == '-' || letter == ' ' ? '_' : letter;
   if (word.size() > 1) {
     for (char& letter : word) letter = letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
   }
@@ -176,6 +186,16 @@ OrbitCenter center_of(const ParticleSystem<double>& s, const std::vector<Index>&
     throw Error("these bodies have no mass, so they have no barycenter", {.key = "about"});
   }
   return center;
+}
+
+std::string about_a_light_body(const ParticleSystem<double>& s, Index count, const std::string& body) {
+  Index heaviest = 0;
+  for (Index i = 1; i < count; ++i) heaviest = s.masses()[i] > s.masses()[heaviest] ? i : heaviest;
+  if (heaviest == 0) return "";
+  return fmt::format(
+      "the elements of '{0}' are about '{1}', which comes first, but '{2}' has {3:.3g} times its mass; put '{2}' "
+      "first, or say what they are about: about = \"{2}\" or \"{1}\"",
+      body, s.name(0), s.name(heaviest), s.masses()[heaviest] / s.masses()[0]);
 }
 
 }  // namespace noether

@@ -99,4 +99,9 @@ class OrbitCenter {
 /// @throws Error  with the key "about" if several have no mass
 OrbitCenter center_of(const ParticleSystem<double>& s, const std::vector<Index>& particles);
 
+/// That the orbit of a body is about the first particle although one of the first `count`, those above it, has more
+/// mass: a warning; empty where none has.
+/// @cost O(count)
+std::string about_a_light_body(const ParticleSystem<double>& s, Index count, const std::string& body);
+
 }  // namespace noether

@@ -65,16 +65,16 @@ concept Monitor = requires(M& m, const Snapshot<Real>& snapshot) {
 
 namespace detail {
 
-NOETHER_FINDS_MEMBER(wanted)
-NOETHER_FINDS_MEMBER(series)
-NOETHER_FINDS_MEMBER(scale)
-NOETHER_FINDS_MEMBER(report)
-NOETHER_FINDS_MEMBER(record)
-NOETHER_FINDS_MEMBER(flush)
-NOETHER_FINDS_MEMBER(finish)
-NOETHER_FINDS_MEMBER(at_start)
-NOETHER_FINDS_MEMBER(at_end)
-NOETHER_FINDS_MEMBER(forget)
+NOETHER_FINDS_MEMBER(wanted, wnated, watned, wantde, wated, wantd, watend)
+NOETHER_FINDS_MEMBER(series, seires, sereis, serise, sreies, seriess, serie)
+NOETHER_FINDS_MEMBER(scale, sclae, sacle, scael, csale, scal, scalee)
+NOETHER_FINDS_MEMBER(report, reprot, repotr, rpeort, reoprt, repport, reportt)
+NOETHER_FINDS_MEMBER(record, recrod, recodr, rceord, reocrd, reccord, recordd)
+NOETHER_FINDS_MEMBER(flush, fluhs, flsuh, fulsh, lfush, flusch, flushh)
+NOETHER_FINDS_MEMBER(finish, finsih, fnish, finihs, fiinsh, finnish, finishh)
+NOETHER_FINDS_MEMBER(at_start, at_strat, at_satrt, at_statr, at_the_start, at_begin, atstart)
+NOETHER_FINDS_MEMBER(at_end, at_edn, at_ned, at_the_end, at_ends, at_finish, atend)
+NOETHER_FINDS_MEMBER(forget, froget, foregt, forgte, fogret, forgett, forgret)
 
 template <class M>
 concept SaysWhatItWants = requires(const M& monitor) {
@@ -120,14 +120,14 @@ concept LooksAtTheEnd = requires(M& monitor, const Snapshot<Real>& end) {
 
 /// Whether each optional member of a monitor, where there is one of its name, is what it has to be.
 template <class M> struct MonitorMembers {
-  static constexpr bool wanted = !finds_wanted<M>() || SaysWhatItWants<M>;
-  static constexpr bool series = !finds_series<M>() || GivesSeries<M>;
-  static constexpr bool scale = !finds_scale<M>() || GivesScale<M>;
-  static constexpr bool report = !finds_report<M>() || Reports<M>;
-  static constexpr bool record = !finds_record<M>() || Records<M>;
-  static constexpr bool flush = !finds_flush<M>() || Flushes<M>;
-  static constexpr bool finish = !finds_finish<M>() || Finishes<M>;
-  static constexpr bool forget = !finds_forget<M>() || Forgets<M>;
+  static constexpr bool wanted = !misspells_wanted<M>() && (!finds_wanted<M>() || SaysWhatItWants<M>);
+  static constexpr bool series = !misspells_series<M>() && (!finds_series<M>() || GivesSeries<M>);
+  static constexpr bool scale = !misspells_scale<M>() && (!finds_scale<M>() || GivesScale<M>);
+  static constexpr bool report = !misspells_report<M>() && (!finds_report<M>() || Reports<M>);
+  static constexpr bool record = !misspells_record<M>() && (!finds_record<M>() || Records<M>);
+  static constexpr bool flush = !misspells_flush<M>() && (!finds_flush<M>() || Flushes<M>);
+  static constexpr bool finish = !misspells_finish<M>() && (!finds_finish<M>() || Finishes<M>);
+  static constexpr bool forget = !misspells_forget<M>() && (!finds_forget<M>() || Forgets<M>);
 };
 
 template <class Real> struct MonitorBase {
@@ -157,18 +157,24 @@ template <class Real> struct MonitorBase {
 
 template <class M, class Real> struct MonitorModel final : MonitorBase<Real> {
   using Members = MonitorMembers<M>;
-  static_assert(Members::wanted, "a monitor has `Request wanted() const`, or no member of that name");
-  static_assert(Members::series, "a monitor has `std::vector<Series> series() const`, or no member of that name");
-  static_assert(Members::scale, "a monitor has `std::optional<double> scale() const`, or no member of that name");
-  static_assert(Members::report, "a monitor has `MonitorReport report() const`, or no member of that name");
-  static_assert(Members::record, "a monitor has `void record(const Sample&)`, or no member of that name");
-  static_assert(Members::flush, "a monitor has `void flush()`, or no member of that name");
-  static_assert(Members::finish, "a monitor has `void finish(const Outcome&)`, or no member of that name");
-  static_assert(!finds_at_start<M>() || LooksAtTheStart<M, Real>,
-                "a monitor has `void at_start(const Snapshot<Real>&)`, or no member of that name");
-  static_assert(!finds_at_end<M>() || LooksAtTheEnd<M, Real>,
-                "a monitor has `void at_end(const Snapshot<Real>&)`, or no member of that name");
-  static_assert(Members::forget, "a monitor has `void forget()`, or no member of that name");
+  static_assert(Members::wanted,
+                "a monitor has `Request wanted() const`, or no member of that name or nearly that name");
+  static_assert(Members::series,
+                "a monitor has `std::vector<Series> series() const`, or no member of that name or nearly that name");
+  static_assert(Members::scale,
+                "a monitor has `std::optional<double> scale() const`, or no member of that name or nearly that name");
+  static_assert(Members::report,
+                "a monitor has `MonitorReport report() const`, or no member of that name or nearly that name");
+  static_assert(Members::record,
+                "a monitor has `void record(const Sample&)`, or no member of that name or nearly that name");
+  static_assert(Members::flush, "a monitor has `void flush()`, or no member of that name or nearly that name");
+  static_assert(Members::finish,
+                "a monitor has `void finish(const Outcome&)`, or no member of that name or nearly that name");
+  static_assert(!misspells_at_start<M>() && (!finds_at_start<M>() || LooksAtTheStart<M, Real>),
+                "a monitor has `void at_start(const Snapshot<Real>&)`, or no member of that name or nearly that name");
+  static_assert(!misspells_at_end<M>() && (!finds_at_end<M>() || LooksAtTheEnd<M, Real>),
+                "a monitor has `void at_end(const Snapshot<Real>&)`, or no member of that name or nearly that name");
+  static_assert(Members::forget, "a monitor has `void forget()`, or no member of that name or nearly that name");
   explicit MonitorModel(M m) : monitor(std::move(m)) {}
   std::string name() const override { return name_of(monitor); }
   bool records() const override {

@@ -2,6 +2,7 @@
 
 #include "engine/check_wanted.hpp"
 #include "engine/not_finite.hpp"
+#include "engine/second_words.hpp"
 
 #include <fmt/format.h>
 
@@ -47,6 +48,7 @@ Simulation<Real>::Simulation(ParticleSystem<Real> particles, AnyIntegrator<Real>
     throw Error(fmt::format("method '{}' cannot go back in time; give it a clock that goes forward", claims.method));
   }
   detail::check_start(clock.start());
+  if (clock.mode() == ClockMode::fixed) detail::checked_step(clock.dt());
   raw_.trim();
   raw_.clock() = clock;
   raw_.keep_low_words(false);  // those of another run belong to its working coordinates
@@ -544,6 +546,7 @@ template <class Real> void Simulation<Real>::end_edit() {
   check_state(integrator_.claims());
   raw_.trim();
   integrator_.bind(raw_);
+  if (integrator_.claims().second_words) detail::keep_second_words(copy_, raw_);
   copy_ = mapped_ = ParticleSystem<Real>(raw_.units());  // the next look makes them anew
   for (auto& stop : stops_) stop.check.forget();
   for (auto& scheduled : monitors_) scheduled.monitor.forget();

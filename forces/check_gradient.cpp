@@ -28,9 +28,10 @@ Real potential_of(const AnyForce<Real>& force, const ParticleSystem<Real>& s, Ve
 /// @param relative_step  of the differences, in mean distances between particles
 /// @param rounding  half a unit in the last place of 1
 template <class Real>
-double error_by_differences(const AnyForce<Real>& force, ParticleSystem<Real> s, const Real& relative_step,
+double error_by_differences(AnyForce<Real> force, ParticleSystem<Real> s, const Real& relative_step,
                             const Real& rounding) {
   using std::abs, std::isfinite, std::sqrt;
+  force.bind(s);
   VectorColumn<Real> a(s.size()), scratch(s.size());
   const Real energy = abs(potential_of(force, s, a));
   Real scale = sum_over<Real>(s.size(), [&](Index i) { return norm2(std::as_const(s).positions()[i]); });

@@ -4,7 +4,6 @@
 #include "engine/any_force.hpp"
 #include "engine/description.hpp"
 #include "engine/force_sink.hpp"
-#include "forces/primary.hpp"
 #include "forces/speed_of_light.hpp"
 
 #include <optional>
@@ -24,32 +23,28 @@ namespace noether {
 struct GrPotential {
   std::optional<double> c = {};  ///< speed of light [length/time]; default: by the unit system
   std::optional<double> G = {};  ///< [length^3/mass/time^2]; default: the unit system's own
+  Primary primary = {};          ///< particle 0 of the run
 
   static constexpr auto describe() {
-    return part<GrPotential>(
-        "gr_potential", "general relativity of particle 0 as a potential: right pericentres, for every method",
-        formula("U = - sum_i 3 m_i (G m_0)^2/(c^2 r_i^2)"), source("NobiliRoxburgh1986"),
-        field<&GrPotential::c>("c", "length/time", "speed of light; default: that of the unit system"),
-        field<&GrPotential::G>("G", "length^3/mass/time^2", "default: the unit system's own"));
+    return part<GrPotential>("gr_potential",
+                             "general relativity of particle 0 as a potential: right pericentres, for every method",
+                             formula("U = - sum_i 3 m_i (G m_0)^2/(c^2 r_i^2)"), source("NobiliRoxburgh1986"),
+                             speed_of_light_field<GrPotential>(), gravitation_field<GrPotential>());
   }
   /// Why it does not stand twice in a scene.
-  static constexpr std::string_view only_once = "so pericentres would advance twice; take one of them out";
+  static constexpr std::string_view only_once = relativity_only_once;
+  /// It takes particle 0 for the heaviest one.
+  static constexpr bool about_heaviest = true;
 
   static ForceClaims claims() { return {.charges = false, .exclusions = false}; }
 
   /// @throws Error  for a G or c that is not above 0
-  void check() const {
-    check_constant_of_gravitation(G);
-    check_speed_of_light(c);
-  }
+  void check() const { check_relativity(*this); }
   /// @throws Error  where neither the force nor the units say what c is, and for a particle 0 without mass
-  template <class Real> void check(const ParticleSystem<Real>& s) const {
-    speed_of_light_in(s, c, "gr_potential");
-    check_primary_has_mass(s, "gr_potential");
-  }
+  template <class Real> void check(const ParticleSystem<Real>& s) const { check_relativity(*this, s, "gr_potential"); }
 
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
-    const Real mu = Real(G ? *G : s.units().G) * s.masses()[0], light = speed_of_light_in(s, c, "gr_potential");
+    const Real mu = mu_of_primary(*this, s), light = speed_of_light_in(s, c, "gr_potential");
     const Real k = Real(3) * (mu / light) * (mu / light);
     for (Index i = 1; i < s.size(); ++i) {
       const Vec3<Real> d = s.positions()[i] - s.positions()[0];

@@ -25,6 +25,7 @@ struct Oblateness {
   double radius = 0.0;                     ///< equatorial radius of the primary [length]
   std::array<double, 3> axis = {0, 0, 1};  ///< direction of the axis; its length does not matter
   std::optional<double> G = {};            ///< [length^3/mass/time^2]; default: the unit system's own
+  Primary primary = {};                    ///< particle 0 of the run
 
   static constexpr auto describe() {
     return part<Oblateness>(
@@ -49,7 +50,7 @@ struct Oblateness {
   }
 
   /// @throws Error  for a particle 0 without mass
-  template <class Real> void check(const ParticleSystem<Real>& s) const { check_primary_has_mass(s, "oblateness"); }
+  template <class Real> void check(const ParticleSystem<Real>& s) const { primary.check(s, "oblateness"); }
 
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     using std::sqrt;

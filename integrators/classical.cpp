@@ -134,6 +134,7 @@ Real Classical<Real>::settle(const ParticleSystem<Real>& raw, ParticleSystem<Rea
   const Evaluations counted = field_->evaluations();
   look_ahead(raw, *at);
   field_->scatter(y_, out);
+  if (Vector<Real>* const low = ahead_ ? ahead_->method->low_words() : nullptr) detail::scatter_low_words(*low, out);
   out.wrap();
   field_->evaluations() = counted;
   out.clock().move_to(*at);
@@ -155,6 +156,7 @@ template <class Real> void Classical<Real>::look_ahead(const ParticleSystem<Real
   if (!known) {
     ahead_ = Ahead{method_->clone(), clock.step(), begin, 0, {}};
     field_->gather(raw, ahead_->y);
+    if (Vector<Real>* const low = ahead_->method->low_words()) detail::gather_low_words(raw, *low);
     y_ = ahead_->y;
   }
   // The first step begins at the double-double time of the run, later ones where the one before has ended.
@@ -163,6 +165,7 @@ template <class Real> void Classical<Real>::look_ahead(const ParticleSystem<Real
     const Real t = ahead_->t == begin ? clock.time() : Real(ahead_->t);
     double most = longest_step(clock);
     if (!dense && clock.is_later(ahead_->t + most, at)) most = at - ahead_->t;
+    field_->forget_failure();
     const StepResult made = ahead_->method->step(*field_, t, ahead_->y, most);
     // A sum of times is rounded: what that leaves may be shorter than any step, and the state is the one after the
     // last.
@@ -203,8 +206,9 @@ template <class Real> void Classical<Real>::save(SavedState& saved, const std::s
   save_value(saved, prefix + "method", signature());
   save_value(saved, prefix + "field", field_->signature());
   const Evaluations& counted = field_->evaluations();
-  save_value(saved, prefix + "evaluations",
-             std::vector<std::int64_t>{counted.force, counted.jacobian, counted.rejected, counted.kepler});
+  save_value(
+      saved, prefix + "evaluations",
+      std::vector<std::int64_t>{counted.force, counted.jacobian, counted.rejected, counted.kepler, counted.unsettled});
   field_->save(saved, prefix + "field/");
   method_->save(saved, prefix + "state/");
 }
@@ -223,7 +227,8 @@ template <class Real> void Classical<Real>::load(const SavedState& saved, const 
   field_->evaluations() = {.force = detail::element(counted, 0),
                            .kepler = counted.size() > 3 ? counted[3] : 0,
                            .jacobian = detail::element(counted, 1),
-                           .rejected = detail::element(counted, 2)};
+                           .rejected = detail::element(counted, 2),
+                           .unsettled = counted.size() > 4 ? counted[4] : 0};
   method_->load(saved, prefix + "state/");
   ahead_.reset();
 }

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -16,14 +18,47 @@ bool uses(const std::vector<Stage>& word, char letter) {
   return std::any_of(word.begin(), word.end(), [&](const Stage& stage) { return stage.letter == letter; });
 }
 
+bool has(std::string_view letters, char letter) { return letters.find(letter) != std::string_view::npos; }
+
 /// @throws SchemeMismatch  why a Hamiltonian lacks the kick of a kernel
-[[noreturn]] void refuse_kernel(char letter, const std::string& hamiltonian) {
-  const bool modified = letter == 'G';
-  throw SchemeMismatch(
-      fmt::format("kernel = \"{}\" is for wisdom_holman in Jacobi coordinates{}, not for this '{}'; use {}",
-                  modified ? "modified" : "lazy", modified ? " without other forces" : "", hamiltonian,
-                  modified ? "kernel = \"lazy\" or \"composed\"" : "kernel = \"plain\""),
-      {.key = "kernel"});
+[[noreturn]] void refuse_kernel(char letter, const Scheme& scheme, const HamiltonianClaims& claims,
+                                const std::string& hamiltonian) {
+  const bool of_saba = scheme.word.front().letter == 'G';  // for which there is no other kernel
+  const char* remedy = of_saba                                      ? "take it out"
+                       : letter == 'G' && has(claims.alphabet, 'L') ? "use kernel = \"lazy\" or \"composed\""
+                                                                    : "use kernel = \"composed\"";
+  throw SchemeMismatch(fmt::format("kernel = \"{}\" is not for this '{}', {}; {}", letter == 'G' ? "modified" : "lazy",
+                                   hamiltonian, claims.no_kernel, remedy),
+                       {.key = "kernel"});
+}
+
+/// Sum of the weights of some letters.
+Quad weight_of(const std::vector<Stage>& word, std::string_view letters) {
+  Quad sum = 0;
+  for (const Stage& stage : word) sum += has(letters, stage.letter) ? stage.weight : Quad(0);
+  return sum;
+}
+
+/// The letter L is a kick in the place of B, and letters that elsewhere belong to kernels may be kicks of forces: their
+/// weights, which no table has checked, must be those of one step.
+void check_kicks(const Scheme& scheme, const std::vector<Stage>& word, const HamiltonianClaims& claims,
+                 const std::string& hamiltonian) {
+  const auto check = [&](std::string_view letters, const char* why) {
+    const auto steps = static_cast<double>(weight_of(word, letters));
+    if (std::abs(steps - 1) < 1e-9) return;
+    throw SchemeMismatch(
+        fmt::format("the kicks {} of scheme '{}' over '{}' are {:.6g} steps long in all, where 1 is "
+                    "expected{}",
+                    fmt::join(letters, " and "), scheme.name, hamiltonian, steps, why));
+  };
+  for (const char letter : {'G', 'L'}) {
+    if (!uses(word, letter)) continue;
+    if (has(claims.lazy, letter)) {
+      check(std::string({'B', letter}), ": L is a kick in the place of B; use kernel = \"lazy\"");
+    } else if (has(claims.kicks, letter)) {
+      check(std::string(1, letter), "");
+    }
+  }
 }
 
 /// Correctors and kernels take away errors that are small because B is small beside A.
@@ -36,10 +71,12 @@ void check_kepler(const CompositionOptions& options, const HamiltonianClaims& cl
 }
 
 void check_letters(const Scheme& scheme, const std::vector<Stage>& stages, const HamiltonianClaims& claims,
-                   const std::string& hamiltonian) {
+                   const std::string& hamiltonian, const CompositionOptions& options) {
   const auto check = [&](const Stage& stage) {
-    if (claims.alphabet.find(stage.letter) != std::string::npos) return;
-    if (stage.letter == 'G' || stage.letter == 'L') refuse_kernel(stage.letter, hamiltonian);
+    if (has(claims.alphabet, stage.letter)) return;
+    if (options.kernel != StepKernel::plain && !claims.no_kernel.empty() &&
+        (stage.letter == 'G' || stage.letter == 'L'))
+      refuse_kernel(stage.letter, scheme, claims, hamiltonian);
     throw SchemeMismatch(fmt::format("scheme '{}' uses the letter {}, but '{}' has only {}", scheme.name, stage.letter,
                                      hamiltonian, claims.alphabet));
   };
@@ -48,7 +85,7 @@ void check_letters(const Scheme& scheme, const std::vector<Stage>& stages, const
   std::for_each(scheme.after.begin(), scheme.after.end(), check);
   for (const char letter : claims.basic) {
     if (uses(stages, letter)) continue;
-    if (letter == 'B' && claims.lazy.find('L') != std::string::npos && uses(stages, 'L')) continue;  // a kick too
+    if (letter == 'B' && has(claims.lazy, 'L') && uses(stages, 'L')) continue;  // a kick too
     throw SchemeMismatch(
         fmt::format("scheme '{}' has no letter {}, which is a part of '{}'; use a composition of its steps {}, such as "
                     "'yoshida_4', or a word with all of its letters",
@@ -128,7 +165,8 @@ FittedWord fitted_word(const Scheme& scheme, const HamiltonianClaims& claims, co
     word.stages = composed(scheme, claims.basic, exact);
     word.joins = exact || scheme.substep_count == 1;
   }
-  check_letters(scheme, word.stages, claims, hamiltonian);
+  check_letters(scheme, word.stages, claims, hamiltonian, options);
+  check_kicks(scheme, word.stages, claims, hamiltonian);
   check_class(scheme, claims, hamiltonian);
   for (const char letter : claims.irreversible) {
     if (scheme.has_negative_steps()) {
@@ -140,6 +178,21 @@ FittedWord fitted_word(const Scheme& scheme, const HamiltonianClaims& claims, co
     if (!uses(word.stages, letter)) word.stages = with_outer(word.stages, letter);
   }
   return word;
+}
+
+Order order_over(const Scheme& scheme, const HamiltonianClaims& claims) {
+  Order order = scheme.order;
+  if (!claims.quadratic_kinetic) order.classical = order.any_splitting();
+  if (!scheme.is_composition() && order.classical > 2) {
+    // The error of a map of order 2 is that of the third power of its weight.
+    for (const char letter : claims.inexact) {
+      Quad cubes = 0;
+      for (const Stage& stage : scheme.word)
+        cubes += stage.letter == letter ? stage.weight * stage.weight * stage.weight : Quad(0);
+      if (abs(cubes) > Quad(1e-12)) order.classical = 2;
+    }
+  }
+  return order;
 }
 
 template class Composition<AnyHamiltonian<double>>;

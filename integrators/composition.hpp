@@ -38,6 +38,10 @@ struct FittedWord {
 FittedWord fitted_word(const Scheme& scheme, const HamiltonianClaims& claims, const std::string& hamiltonian,
                        const CompositionOptions& options = {});
 
+/// The order that is left of a scheme's over a Hamiltonian: some have theirs for quadratic kinetic energies only, and
+/// where a map of order 2 stands for a flow the weights of its letter must do for more.
+Order order_over(const Scheme& scheme, const HamiltonianClaims& claims);
+
 /// Advances a split Hamiltonian along a scheme.
 ///
 /// One step is the product of flows  phi_{p1}(w1 h), ..., phi_{pk}(wk h), first stage first. Where the first and the
@@ -167,7 +171,7 @@ template <SplitHamiltonian H> class Composition {
       : hamiltonian_(std::move(hamiltonian)),
         options_(options),
         name_(scheme.name),
-        order_(scheme.order.classical),
+        order_(order_over(scheme, hamiltonian_.claims()).classical),
         word_(timed(fitted_word(scheme, hamiltonian_.claims(), detail::name_of(hamiltonian_), options_),
                     hamiltonian_.claims().timed)) {
     symmetric_ = scheme.is_symmetric() && scheme.before.size() == 0 && is_palindrome(word_.stages());
@@ -205,8 +209,8 @@ template <SplitHamiltonian H> class Composition {
   }
   void open(ParticleSystem<real>& s, const real& dt) {
     hamiltonian_.open(s);
-    s.phase().opened = true;
     flow_all(before_, s, dt);
+    s.phase().opened = true;
   }
   void flow(const TimedStage<real>& stage, ParticleSystem<real>& s, const real& dt) {
     hamiltonian_.flow(stage.letter, s, stage.weight * dt);

@@ -41,8 +41,10 @@ struct CompositionOptions {
         field<&CompositionOptions::corrector>("corrector", "1",
                                               "order of a symplectic corrector: 3, 5, 7, 11 or 17; 0 for none; for "
                                               "verlet and verlet_aba on wisdom_holman"),
-        field<&CompositionOptions::kernel>(
-            "kernel", "1", "of verlet and verlet_aba on wisdom_holman; modified: also of saba_1 to saba_4"),
+        field<&CompositionOptions::kernel>("kernel", "1",
+                                           "of verlet and verlet_aba on wisdom_holman; modified: also of saba_1 to "
+                                           "saba_4; composed: in all coordinates, "
+                                           "with a corrector of order 4 in jacobi, 3 in democratic, 2 in others"),
         field<&CompositionOptions::second_corrector>("second_corrector", "1",
                                                      "beside a corrector, for kernels that are not plain"));
   }

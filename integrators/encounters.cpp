@@ -2,6 +2,7 @@
 
 #include "numbers/error.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <mutex>
 #include <tuple>
@@ -26,6 +27,14 @@ void EncounterWatch::note(Index i, Index j, double r2, double nearer_to_primary2
   if (closest_) seen.since = closest_->since;
   const auto rank = [](const Encounter& e) { return std::tuple(e.hill_radii, e.first, e.second); };
   if (!closest_ || rank(seen) < rank(*closest_)) closest_ = seen;
+}
+
+double EncounterWatch::square_of_news(Index i, Index j) const {
+  if (i == 0 || j == 0) return 0;
+  const double bound = closest_ ? std::min(closest_->hill_radii, encounter_hill_radii) : encounter_hill_radii;
+  const double masses = masses_[static_cast<std::size_t>(i)] + masses_[static_cast<std::size_t>(j)];
+  const double ratio = bound * std::cbrt(masses / masses_[0] / 3);
+  return ratio * ratio * (1 + 1e-12);
 }
 
 void EncounterWatch::save(SavedState& saved, const std::string& prefix) const {

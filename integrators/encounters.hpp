@@ -32,6 +32,10 @@ class EncounterWatch {
   /// Takes down two bodies at a moment; from several threads. What is kept depends on the bodies only.
   void note(Index i, Index j, double r2, double nearer_to_primary2, double time);
 
+  /// The square of the distance of two bodies over that of the nearer one from the primary, from which on `note` has
+  /// nothing new to take down, or a little more; 0 for the primary.
+  double square_of_news(Index i, Index j) const;
+
   const std::optional<Encounter>& closest() const { return closest_; }
   void save(SavedState& saved, const std::string& prefix) const;
   /// @throws Error  if what was saved is damaged

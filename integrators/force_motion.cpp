@@ -6,38 +6,43 @@ namespace detail {
 
 namespace {
 
-/// Particles in 113 bits, as their two words have them.
-ParticleSystem<Quad> widened(const ParticleSystem<double>& s, const ParticleSystem<double>::LowWords& low) {
-  ParticleSystem<Quad> wide = s.as<Quad>();
-  for (Index i = 0; i < s.size(); ++i) {
-    const Vec3<double> x = low.x[i], v = low.v[i];
-    wide.shift(i, x.cast<Quad>(), v.cast<Quad>());
+/// Puts particles in 113 bits to where their two words are.
+void take_words(const ParticleSystem<double>& s, const ParticleSystem<double>::LowWords& low,
+                ParticleSystem<Quad>& wide) {
+  for (int k = 0; k < 3; ++k) {
+    Quad *const x = wide.positions().component(k), *const v = wide.velocities().component(k);
+    for (Index i = 0; i < s.size(); ++i) {
+      x[i] = Quad(s.positions().component(k)[i]) + Quad(low.x.component(k)[i]);
+      v[i] = Quad(s.velocities().component(k)[i]) + Quad(low.v.component(k)[i]);
+    }
   }
   wide.moved();
-  wide.clock() = Clock<Quad>::free(0);
   wide.clock().set_stage_offset(Quad(s.time()));
-  return wide;
 }
 
 }  // namespace
 
-std::optional<EnergyTerms<Quad>> wide_energy(const std::vector<AnyForce<double>>& forces,
-                                             const ParticleSystem<double>& s) {
-  if (s.low_words() == nullptr) return {};
-  ForceField<Quad> wide_forces;
+std::optional<EnergyTerms<Quad>> WideEnergy::of(const ParticleSystem<double>& s) {
+  if (!serves_) return {};
+  ParticleSystem<Quad>& wide = *particles_;
+  take_words(s, *s.low_words(), wide);
+  ForceSink<Quad> sink(a_, wide, {.energy = true}, &workspace_);
+  forces_.add_to(sink, wide);
+  return EnergyTerms<Quad>{kinetic_energy(wide), sink.potential()};
+}
+
+void WideEnergy::begin(const std::vector<AnyForce<double>>& forces, const ParticleSystem<double>& s) {
+  particles_ = s.as<Quad>();
+  particles_->clock() = Clock<Quad>::free(0);
   for (const AnyForce<double>& force : forces) {
     auto wide = force.in_quad();
-    if (!wide) return {};
-    wide_forces.add(*std::move(wide));
+    if (!wide) return;
+    forces_.add(*std::move(wide));
   }
-  const ParticleSystem<Quad> wide = widened(s, *s.low_words());
-  bind_force(wide_forces, wide);
-  Workspace workspace;
-  workspace.put(NeighborList(wide_forces.claims().range));
-  VectorColumn<Quad> a(wide.size());
-  ForceSink<Quad> sink(a, wide, {.energy = true}, &workspace);
-  wide_forces.add_to(sink, wide);
-  return EnergyTerms<Quad>{kinetic_energy(wide), sink.potential()};
+  bind_force(forces_, *particles_);
+  workspace_.put(NeighborList(forces_.claims().range));
+  a_ = VectorColumn<Quad>(s.size());
+  serves_ = true;
 }
 
 }  // namespace detail

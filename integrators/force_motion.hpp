@@ -34,9 +34,22 @@ template <class Real, class F> std::vector<AnyForce<Real>> terms_of(const F& for
   }
 }
 
-/// The energy of particles in 113 bits, second words included; empty where a force is in doubles only.
-std::optional<EnergyTerms<Quad>> wide_energy(const std::vector<AnyForce<double>>& forces,
-                                             const ParticleSystem<double>& s);
+/// The energy of particles in 113 bits, second words included. It keeps what it works with from call to call.
+class WideEnergy {
+ public:
+  bool begun() const { return particles_.has_value(); }
+  void begin(const std::vector<AnyForce<double>>& forces, const ParticleSystem<double>& s);
+  /// @param s  of the masses that it was begun with, with second words
+  /// @return empty where a force is in doubles only
+  std::optional<EnergyTerms<Quad>> of(const ParticleSystem<double>& s);
+
+ private:
+  std::optional<ParticleSystem<Quad>> particles_;
+  ForceField<Quad> forces_;
+  Workspace workspace_;
+  VectorColumn<Quad> a_;
+  bool serves_ = false;  ///< whether all forces are known in 113 bits
+};
 
 /// Gravity of masses without softening among forces, and what acts beside it.
 template <class Real> struct PointGravity {
@@ -151,7 +164,12 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
     write(a.data());
   }
   std::optional<EnergyTerms<Quad>> wide_energy(const ParticleSystem<Real>& s) override {
-    if constexpr (std::is_same_v<Real, double>) return detail::wide_energy(detail::terms_of<Real>(forces_), s);
+    if constexpr (std::is_same_v<Real, double>) {
+      if (s.low_words() == nullptr) return {};
+      auto& wide = workspace_.get<detail::WideEnergy>();
+      if (!wide.begun()) wide.begin(detail::terms_of<Real>(forces_), s);
+      return wide.of(s);
+    }
     return {};
   }
   bool has_secant() const override { return noether::has_secant<Real>(forces_); }

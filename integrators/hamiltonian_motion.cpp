@@ -41,7 +41,7 @@ template <class Real> FieldClaims HamiltonianMotion<Real>::claims() const {
           .second_order = true,
           .velocity_dependent = true,
           .time_dependent = own.time_dependent || beside.time_dependent,
-          .energy = own.energy,
+          .energy = own.energy && beside.energy,
           .dissipative = own.dissipative || beside.dissipative,
           .symplectic = own.symplectic,
           .no_action = own.no_action.empty()

@@ -3,6 +3,7 @@
 
 #include "engine/columns.hpp"
 #include "engine/particle_system.hpp"
+#include "numbers/parallel.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -45,24 +46,28 @@ void add_pair_derivatives(const JacobiBodies<Real>& bodies, const VectorColumn<R
       out.add(j, Vec3<Real>(-bodies.mu(i) * change));
     }
   }
-  for (Index i = bodies.massive; i < x.size(); ++i) {
-    for (Index j = bodies.innermost(i) ? 1 : 0; j < bodies.massive; ++j)
-      out.add(i, change_of_pull<Real>(x[i] - x[j], along[i] - along[j], bodies.mu(j)));
-  }
+  for_blocks(x.size() - bodies.massive, [&](Index begin, Index end) {
+    for (Index i = bodies.massive + begin; i < bodies.massive + end; ++i) {
+      for (Index j = bodies.innermost(i) ? 1 : 0; j < bodies.massive; ++j)
+        out.add(i, change_of_pull<Real>(x[i] - x[j], along[i] - along[j], bodies.mu(j)));
+    }
+  });
 }
 
 /// Adds (u . grad) of what the arcs have done already and kicks take back, x and u = `along` in Jacobi coordinates.
 template <class Real>
 void add_arc_derivatives(const JacobiBodies<Real>& bodies, const VectorColumn<Real>& x, const VectorColumn<Real>& along,
                          VectorColumn<Real>& out) {
-  const auto massive = static_cast<std::size_t>(bodies.massive);
   Vec3<Real> of_primary = Vec3<Real>::Zero();
   if (const Index i = bodies.inner(); i > 0) of_primary = change_of_pull<Real>(x[i], along[i], bodies.mu(i));
-  for (std::size_t k = std::min<std::size_t>(2, massive); k < bodies.order.size(); ++k) {
-    const auto i = static_cast<Index>(bodies.order[k]);
-    const Real mu = bodies.G * bodies.circled[static_cast<std::size_t>(i)];
-    out.add(i, bodies.innermost(i) ? of_primary : Vec3<Real>(-change_of_pull<Real>(x[i], along[i], mu)));
-  }
+  const Index first = std::min<Index>(2, bodies.massive);
+  for_blocks(static_cast<Index>(bodies.order.size()) - first, [&](Index begin, Index end) {
+    for (Index k = first + begin; k < first + end; ++k) {
+      const auto i = static_cast<Index>(bodies.order[static_cast<std::size_t>(k)]);
+      const Real mu = bodies.G * bodies.circled[static_cast<std::size_t>(i)];
+      out.add(i, bodies.innermost(i) ? of_primary : Vec3<Real>(-change_of_pull<Real>(x[i], along[i], mu)));
+    }
+  });
 }
 
 }  // namespace noether

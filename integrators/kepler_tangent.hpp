@@ -3,6 +3,7 @@
 
 #include "numbers/types.hpp"
 
+#include <array>
 #include <utility>
 
 namespace noether {
@@ -29,6 +30,12 @@ class KeplerTangent {
   Vec3<double> position(const KeplerChange& start) const { return upper_.turned(start, x0_, v0_); }
   /// v1 by (x0, v0).
   Vec3<double> velocity(const KeplerChange& start) const { return lower_.turned(start, x0_, v0_); }
+  /// What x1 is made of: f, g, and their derivatives by x0 and v0 as multiples of x0 and v0, by whose symmetry
+  ///     df/dx0 = f_x x0 + f_eta v0,   df/dv0 = f_eta x0 + f_v v0,   g likewise
+  /// @return f, g, f_x, f_eta, f_v, g_x, g_eta, g_v
+  std::array<double, 8> upper() const {
+    return {upper_.f, upper_.g, upper_.f_x, upper_.f_eta, upper_.f_v, upper_.g_x, upper_.g_eta, upper_.g_v};
+  }
   /// Phi^-1 (0, a): the change of the start that changes the end by a velocity `a` alone.
   KeplerChange start_of(const Vec3<double>& a) const;
 

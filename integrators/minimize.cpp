@@ -107,6 +107,7 @@ class Descent {
           MinimizeAlong* along)
       : s_(s), forces_(forces), options_(options), along_(along), f_(s.size()), v_(s.size()) {
     if (along_ != nullptr) along_->bind(s_);
+    forces_.bind(s_);
     workspace_.put(NeighborList(forces.claims().range));
     reach_ = options.max_displacement > 0 ? options.max_displacement : usual_displacement(s, forces.claims().range);
   }
@@ -266,7 +267,7 @@ class Descent {
   }
 
   ParticleSystem<double>& s_;
-  const AnyForce<double>& forces_;
+  AnyForce<double> forces_;
   const MinimizeOptions& options_;
   MinimizeAlong* along_;
   Workspace workspace_;

@@ -118,6 +118,12 @@ Scheme processed(const Scheme& scheme, const CompositionOptions& options) {
       if (scheme.name == saba[n - 1]->name) return with_gradient(scheme, n);
     }
   }
+  if (scheme.before.size() > 0 || scheme.after.size() > 0) {
+    throw SchemeMismatch(
+        fmt::format("{} is not for scheme '{}', which has words around the run of its own; take it out",
+                    options.processing_text(), scheme.name),
+        {.key = key_of(options)});
+  }
   const bool kick_first = same(scheme.word, schemes::verlet.word);
   if (kick_first || same(scheme.word, schemes::verlet_aba.word)) return corrected(scheme, options);
   const std::string_view remedy = options.corrector == 0 && options.kernel == StepKernel::modified

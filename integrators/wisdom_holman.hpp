@@ -3,12 +3,18 @@
 
 #include "engine/concepts.hpp"
 #include "engine/signature.hpp"
+#include "engine/word.hpp"
+#include "forces/gr_potential.hpp"
 #include "forces/gravity.hpp"
+#include "forces/primary.hpp"
 #include "forces/sum.hpp"
 #include "integrators/encounters.hpp"
 #include "integrators/jacobi_derivatives.hpp"
 #include "integrators/kepler.hpp"
 #include "integrators/kinetic_potential.hpp"
+#include "integrators/wisdom_holman_coordinates.hpp"
+#include "integrators/wisdom_holman_lanes.hpp"
+#include "numbers/dual.hpp"
 #include "numbers/parallel.hpp"
 
 #include <array>
@@ -17,26 +23,12 @@
 #include <optional>
 #include <string>
 #include <tuple>
+#include <type_traits>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace noether {
-
-/// What the position and velocity columns hold while the splitting runs; 0 is inertial, as everywhere.
-enum class Coordinates : std::uint8_t {
-  jacobi = 1,   ///< row 0: centre of mass; others relative to the centre of mass of all bodies further in
-  democratic,   ///< row 0: centre of mass; positions relative to particle 0, velocities to the centre of mass
-  whds,         ///< as democratic, velocities times (m_0 + m_i)/m_0
-  barycentric,  ///< row 0: centre of mass; positions relative to it, velocities to particle 0 times (M - m_i)/M
-};
-
-template <> struct EnumNames<Coordinates> {
-  static constexpr std::array<std::pair<Coordinates, std::string_view>, 4> values = {
-      {{Coordinates::jacobi, "jacobi"},
-       {Coordinates::democratic, "democratic"},
-       {Coordinates::whds, "whds"},
-       {Coordinates::barycentric, "barycentric"}}};
-};
 
 /// Parameters of a Wisdom-Holman splitting.
 struct WisdomHolmanOptions {
@@ -76,37 +68,47 @@ struct WisdomHolmanOptions {
 ///                 with R_i = x_i - X, p_i = m_i (v_i - v_0), and K = U - (the potential in A)
 ///
 /// Both parts of the first two are exact. J does not commute with other forces, nor with K in the last two: B is then a
-/// symmetric map of order 2. Two bodies alone are followed exactly in all but the democratic ones. Other forces must
-/// depend on positions (and stage time) only. Action increments: Kepler arc h E + 2 mu s times the reduced mass (s the
+/// symmetric map of order 2. Two bodies alone are followed exactly in all but the democratic ones. Where other forces
+/// depend on velocities, B is a step of the implicit midpoint rule over fixed positions, a symmetric map of order 2
+/// that is not symplectic and has no action. Action increments: Kepler arc h E + 2 mu s times the reduced mass (s the
 /// universal variable), free motion h T, jump h J, kick - h U.
 /// @cost one Kepler arc per body and A, one sum over pairs per B; no allocation after `bind`
 /// @source WisdomHolman1991, DuncanLevisonLee1998, ReinTamayo2015, HernandezDehnen2017
-template <class Real = double, class F = Sum<>> class WisdomHolman {
+template <class Real = double, class F = Sum<>> class WisdomHolman : private detail::AboutPrimary<Real> {
  public:
   using real = Real;
+  /// Whether forces of this type leave the planets to lanes: none, or `gr_potential` alone, and no others in a field.
+  static constexpr bool may_have_lanes =
+      std::is_same_v<Real, double> && (std::is_same_v<F, Sum<>> || std::is_same_v<F, GrPotential> ||
+                                       std::is_same_v<F, Sum<GrPotential>> || std::is_same_v<F, ForceField<double>>);
 
-  explicit WisdomHolman(WisdomHolmanOptions options, F forces = F()) : options_(options), forces_(std::move(forces)) {
-    if (claims_of(forces_).velocity_dependent) {
-      throw SchemeMismatch("a force depends on velocities, so kicks by it are not an exact flow of wisdom_holman");
-    }
-  }
+  explicit WisdomHolman(WisdomHolmanOptions options, F forces = F())
+      : Base(options.coordinates),
+        options_(options),
+        forces_(std::move(forces)),
+        velocity_dependent_(claims_of(forces_).velocity_dependent) {}
 
   std::string name() const { return "wisdom_holman"; }
   HamiltonianClaims claims() const;
 
-  /// @throws Error  if particle 0 has no mass, or a tracer stands before a massive body
+  /// @throws Error  if particle 0 has no mass or is not that of the first call, or a tracer stands before a massive
+  /// body
   void bind(ParticleSystem<Real>& s);
   void open(ParticleSystem<Real>& s);
   void close(ParticleSystem<Real>& s);
   void flow(char letter, ParticleSystem<Real>& s, const Real& h);
   Real flow_with_action(char letter, ParticleSystem<Real>& s, const Real& h);
+  Advance run(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span);
 
   EnergyTerms<Real> energy(const ParticleSystem<Real>& s) {
     return {kinetic_energy(s), newton(s, scratch_, {.energy = true})};
   }
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) { newton(s, a, {}); }
 
-  void observe(std::optional<Request> wanted) { observing_ = wanted.has_value(); }
+  void observe(std::optional<Request> wanted) {
+    observing_ = wanted.has_value();
+    pulled_.reset();
+  }
   const std::optional<Failure>& failure() const { return failure_; }
   Evaluations evaluations() const {
     Evaluations all = evaluations_;
@@ -121,6 +123,7 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
     save_value(saved, prefix + "kicks", evaluations_.force);
     save_value(saved, prefix + "arcs", evaluations_.kepler);
     encounters_.save(saved, prefix + "encounter/");
+    if constexpr (may_have_lanes) lanes_.save(saved, prefix + "lanes/");
   }
   void load(const SavedState& saved, const std::string& prefix) {
     detail::check_signature(saved, prefix + "options/", options_);
@@ -133,65 +136,96 @@ template <class Real = double, class F = Sum<>> class WisdomHolman {
     gather_masses();
     load_within(saved, prefix);
     gather_arcs();
+    if constexpr (may_have_lanes) {
+      bind_lanes();
+      if (lanes_.bound()) lanes_.load(saved, prefix + "lanes/");
+    }
   }
   /// Particles in the order of Jacobi coordinates, massive bodies first.
   const std::vector<std::int64_t>& order() const { return order_; }
 
+  /// The planets in lanes; not bound where they go letter by letter.
+  const PlanetLanes& lanes() const requires may_have_lanes { return lanes_; }
+
  private:
-  bool jacobi() const { return options_.coordinates == Coordinates::jacobi; }
-  bool barycentric() const { return options_.coordinates == Coordinates::barycentric; }
-  /// Whether velocities are scaled: what each body has of |sum p_i|^2 is part of A, and J is what they have together.
-  bool scaled() const { return options_.coordinates == Coordinates::whds || barycentric(); }
+  using Base = detail::AboutPrimary<Real>;
+  using Base::at, Base::barycentric, Base::from_jacobi, Base::gather_masses, Base::has_tracers;
+  using Base::half_jump, Base::load_order, Base::load_within, Base::within;
+  using Base::inertial_positions, Base::jacobi, Base::massive, Base::place_within, Base::scale, Base::scaled;
+  using Base::interior_, Base::masses_, Base::order_, Base::scale_, Base::within_;
+  using Base::to_jacobi, Base::from_democratic, Base::to_democratic, Base::from_barycentric, Base::to_barycentric;
+
   static constexpr bool has_forces = !std::is_same_v<F, Sum<>>;
-  void gather_masses();
-  void place_within(const std::vector<double>& axis);
   void gather_arcs();
-  void load_order(const SavedState& saved, const std::string& prefix);
-  void load_within(const SavedState& saved, const std::string& prefix);
-  std::size_t massive() const { return interior_.size(); }
-  Index at(std::size_t k) const { return static_cast<Index>(order_[k]); }
-  std::size_t within(Index i) const { return static_cast<std::size_t>(within_[static_cast<std::size_t>(i)]); }
 
-  void to_jacobi(VectorColumn<Real>& column) const;
-  void from_jacobi(const VectorColumn<Real>& from, VectorColumn<Real>& to, const Vec3<Real>& center) const;
-  void to_democratic(ParticleSystem<Real>& s) const;
-  void from_democratic(ParticleSystem<Real>& s) const;
-  void to_barycentric(ParticleSystem<Real>& s) const;
-  void from_barycentric(ParticleSystem<Real>& s) const;
-  void scale(VectorColumn<Real>& column, bool back) const;
-  void inertial_positions(const VectorColumn<Real>& from, const Vec3<Real>& center, VectorColumn<Real>& to) const;
+  void inertial_velocities(const VectorColumn<Real>& from, VectorColumn<Real>& to) const;
+  bool forces_in_lanes(const ParticleSystem<Real>& s) requires may_have_lanes;
+  void bind_lanes() requires may_have_lanes;
+  void watch_for_encounters() requires may_have_lanes;
+  void flow_of_lanes(char letter, ParticleSystem<Real>& s, const Real& h) requires may_have_lanes;
+  void flow_in_lanes(char letter, ParticleSystem<Real>& s, const Real& h) requires may_have_lanes;
+  Real action_in_lanes(char letter, ParticleSystem<Real>& s, const Real& h) requires may_have_lanes;
+  void kick_tracers(ParticleSystem<Real>& s, const Real& h);
+  const VectorColumn<Real>& middle_of_kick(const ParticleSystem<Real>& s, const Real& h);
 
-  Real arcs(ParticleSystem<Real>& s, const Real& h, bool action);
+  Real arcs(ParticleSystem<Real>& s, const Real& h, bool action, Index first = 1);
+  void fail(const ParticleSystem<Real>& s, Index i);
   Real kick(ParticleSystem<Real>& s, const Real& h, bool action);
   Real gradient_kick(ParticleSystem<Real>& s, const Real& h, bool action);
   void lazy_kick(ParticleSystem<Real>& s, const Real& h);
+  void velocity_kick(ParticleSystem<Real>& s, const Real& h);
+  void add_force_derivatives(const Clock<Real>& clock);
+  std::string no_kernel() const;
+  /// Encounters are noted where a run goes, not on the way through the word before it.
+  void begin_kick(const ParticleSystem<Real>& s) { noting_ = !observing_ && s.phase().opened; }
+  void note_failure(const std::optional<Failure>& failure) {
+    if (failure && !failure_ && !observing_) failure_ = failure;
+  }
   Real accelerate(const VectorColumn<Real>& x, const Clock<Real>& clock, bool energy);
   Real jump(ParticleSystem<Real>& s, const Real& h);
   Real interaction(const VectorColumn<Real>& x, bool skip_inner, Index first, bool energy);
   Real indirect(const VectorColumn<Real>& x, bool energy);
   Real without_arcs(const VectorColumn<Real>& x, bool energy);
-  void about_center();
+  void about_center(VectorColumn<Real>& column) const;
   Real other_forces(const VectorColumn<Real>& x, const Clock<Real>& clock, bool energy);
   Real newton(const ParticleSystem<Real>& s, VectorColumn<Real>& a, Request wanted);
 
+  /// A moment of a run at which something stands still.
+  struct Place {
+    std::uint64_t version;
+    std::int64_t step;
+    Real fraction;
+    bool operator==(const Place&) const = default;
+  };
+  /// The particles on their way along a direction, under other forces.
+  struct Along {
+    explicit Along(const ParticleSystem<Real>& s) : particles(s.template as<Dual<Real, 1>>()), a(s.size()) {
+      particles.clock() = Clock<Dual<Real, 1>>::free(0);
+    }
+    ParticleSystem<Dual<Real, 1>> particles;
+    VectorColumn<Dual<Real, 1>> a;
+  };
+
   WisdomHolmanOptions options_;
   F forces_;
+  bool velocity_dependent_ = false;
   Real g_ = Real(0);
-  std::vector<std::int64_t> order_;
-  std::vector<std::int64_t> within_;         ///< by particle, k of the mass M_k that its Kepler arc goes round
-  std::vector<Real> masses_;                 ///< by particle
-  std::vector<Real> interior_;               ///< M_k, mass of the first k + 1 bodies in order
-  std::vector<Real> circled_;                ///< by particle, the mass that its Kepler arc goes round
-  std::vector<Real> reduced_;                ///< by particle, the mass that makes its velocity a momentum
-  double moment_ = 0;                        ///< time of the kick
-  std::vector<Real> scale_;                  ///< by particle, of its velocity: m_i over the reduced mass
-  mutable std::vector<Vec3<Real>> centers_;  ///< of these, as the last change of coordinates met them
+  std::vector<Real> circled_;  ///< by particle, the mass that its Kepler arc goes round
+  std::vector<Real> reduced_;  ///< by particle, the mass that makes its velocity a momentum
+  double moment_ = 0;          ///< time of the kick
   VectorColumn<Real> scratch_, positions_, acceleration_, other_, along_;
-  std::optional<ParticleSystem<Real>> inertial_;  ///< positions for other forces
+  std::optional<ParticleSystem<Real>> inertial_;  ///< for other forces
+  std::optional<Along> forces_along_;             ///< made by the first derivative
+  std::optional<Place> pulled_;                   ///< where `acceleration_` is that of B
+  Workspace workspace_;                           ///< of other forces: no list of neighbors in it
+  Primary primary_;
   std::optional<Failure> failure_;
   Evaluations evaluations_;
   EncounterWatch encounters_;
-  bool observing_ = false;
+  bool observing_ = false, noting_ = false;
+  PlanetSystem planets_;            ///< as the lanes have them
+  bool lanes_have_forces_ = false;  ///< all of those beside gravity
+  std::conditional_t<may_have_lanes, PlanetLanes, std::monostate> lanes_;
 };
 
 template <class Real> AnyHamiltonian<Real> WisdomHolmanOptions::split(ForceField<Real> others) const {
@@ -210,4 +244,5 @@ extern template struct detail::HamiltonianModel<WisdomHolman<Quad, ForceField<Qu
 
 }  // namespace noether
 
-#include "integrators/wisdom_holman_impl.hpp"  // IWYU pragma: keep
+#include "integrators/wisdom_holman_impl.hpp"        // IWYU pragma: keep
+#include "integrators/wisdom_holman_impl_kicks.hpp"  // IWYU pragma: keep

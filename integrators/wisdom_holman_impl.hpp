@@ -18,17 +18,26 @@ template <class Real, class F> HamiltonianClaims WisdomHolman<Real, F>::claims()
         "wisdom_holman has only kicks of the letter B; take the letter of the force out, or use "
         "kinetic_potential");
   }
-  return {.alphabet = !jacobi()    ? "AB"
-                      : has_forces ? "ABL"
-                                   : "ABGL",
-          .inexact = jacobi() || (!scaled() && !has_forces) ? "" : "B",
-          .lazy = jacobi() ? "L" : "",
-          .quadratic_kinetic = jacobi(),
+  const bool by_positions = !forces.velocity_dependent, lazy = jacobi() && by_positions;
+  const bool gradient = lazy && has_derivative<Real>(forces_);
+  return {.alphabet = gradient ? "ABGL"
+                      : lazy   ? "ABL"
+                               : "AB",
+          .inexact = by_positions && (jacobi() || (!scaled() && !has_forces)) ? "" : "B",
+          .kernels = gradient ? "GL"
+                     : lazy   ? "L"
+                              : "",
+          .no_kernel = no_kernel(),
+          .lazy = lazy ? "L" : "",
+          .quadratic_kinetic = jacobi() && by_positions,
+          .symplectic = by_positions,
           .energy = forces.energy,
           .time_dependent = forces.time_dependent,
           .dissipative = forces.dissipative,
+          .no_action = by_positions ? "" : "a force depends on velocities, so the motion has no action",
           .coordinates = static_cast<std::uint8_t>(options_.coordinates),
           .inertial = false,
+          .velocity_forces = true,
           .kepler = true,
           .keeps_momentum = forces.keeps_momentum,
           .keeps_angular_momentum = forces.keeps_angular_momentum};
@@ -37,9 +46,11 @@ template <class Real, class F> HamiltonianClaims WisdomHolman<Real, F>::claims()
 template <class Real, class F> void WisdomHolman<Real, F>::bind(ParticleSystem<Real>& s) {
   using std::sqrt;
   const auto& c = std::as_const(s);
-  if constexpr (has_forces) check_force(forces_, s);
+  if constexpr (has_forces) bind_force(forces_, s);
+  workspace_ = Workspace();
   g_ = Real(options_.G ? *options_.G : s.units().G);
   const auto n = static_cast<std::size_t>(s.size());
+  primary_.keep(c, "wisdom_holman");
   if (!(c.masses()[0] > Real(0))) {
     throw Error(
         fmt::format("'{}' comes first, so it is the primary of wisdom_holman, but its mass is 0; put the most "
@@ -47,6 +58,7 @@ template <class Real, class F> void WisdomHolman<Real, F>::bind(ParticleSystem<R
                     s.name(0)));
   }
   std::vector<double> axis(n, 0.0);
+  double size = 0;
   order_.assign(1, 0);
   masses_.assign(n, c.masses()[0]);
   for (Index i = 1; i < s.size(); ++i) {
@@ -61,6 +73,7 @@ template <class Real, class F> void WisdomHolman<Real, F>::bind(ParticleSystem<R
     // Unbound bodies come last, by distance.
     axis[static_cast<std::size_t>(i)] =
         inverse > Real(0) ? static_cast<double>(Real(1) / inverse) : 1e300 * (1 + static_cast<double>(r));
+    size = std::max(size, static_cast<double>(r));
     order_.push_back(i);
   }
   std::stable_sort(order_.begin() + 1, order_.end(), [&](std::int64_t i, std::int64_t j) {
@@ -78,34 +91,47 @@ template <class Real, class F> void WisdomHolman<Real, F>::bind(ParticleSystem<R
   for (auto* column : {&scratch_, &positions_, &acceleration_, &other_, &along_})
     *column = VectorColumn<Real>(s.size());
   if constexpr (has_forces) inertial_ = s;
+  forces_along_.reset();
+  pulled_.reset();
   failure_.reset();
-}
-
-template <class Real, class F> void WisdomHolman<Real, F>::gather_masses() {
-  interior_.clear();
-  Real total(0);
-  for (const std::int64_t i : order_) {
-    const Real m = masses_[static_cast<std::size_t>(i)];
-    if (m == Real(0)) break;
-    interior_.push_back(total += m);
+  if constexpr (may_have_lanes) {
+    planets_ = {.G = g_, .jacobi = jacobi(), .masses = masses_, .bend = {}, .size = size};
+    lanes_have_forces_ = forces_in_lanes(c);
+    bind_lanes();
   }
 }
 
-/// Tracers go round the bodies whose orbits about the primary are smaller than theirs, as bodies do.
-template <class Real, class F> void WisdomHolman<Real, F>::place_within(const std::vector<double>& axis) {
-  within_.assign(order_.size(), 0);
-  centers_.assign(massive(), Vec3<Real>::Zero());
-  if (!jacobi()) return;
-  for (std::size_t k = 1; k < order_.size(); ++k) {
-    const auto i = static_cast<std::size_t>(at(k));
-    std::size_t inner = 0;
-    if (k < massive()) {
-      inner = k;
-    } else {
-      while (inner + 1 < massive() && axis[static_cast<std::size_t>(at(inner + 1))] < axis[i]) ++inner;
-    }
-    within_[i] = static_cast<std::int64_t>(inner);
+/// Whether the planets in lanes have all forces beside their own: none, or `gr_potential` alone.
+template <class Real, class F>
+bool WisdomHolman<Real, F>::forces_in_lanes(const ParticleSystem<Real>& s) requires may_have_lanes {
+  const GrPotential* relativity = nullptr;
+  if constexpr (std::is_same_v<F, GrPotential>) relativity = &forces_;
+  if constexpr (std::is_same_v<F, Sum<GrPotential>>) {
+    forces_.for_each([&](const GrPotential& one) { relativity = &one; });
   }
+  if constexpr (std::is_same_v<F, ForceField<double>>) {
+    if (forces_.terms().size() == 1) relativity = forces_.terms()[0].template as<GrPotential>();
+    if (relativity == nullptr) return forces_.terms().empty();
+  }
+  if (relativity != nullptr) {
+    const double G = relativity->G ? *relativity->G : s.units().G;
+    const double ratio = G * s.masses()[0] / speed_of_light_in(s, relativity->c, "gr_potential");
+    planets_.bend = 6 * ratio * ratio;
+  }
+  return true;
+}
+
+/// Puts the planets into lanes where they can be, in the present order.
+template <class Real, class F> void WisdomHolman<Real, F>::bind_lanes() requires may_have_lanes {
+  lanes_ = {};
+  planets_.order.assign(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(massive()));
+  if (scaled() || !lanes_have_forces_ || !PlanetLanes::can_take(planets_)) return;
+  lanes_.bind(planets_);
+  watch_for_encounters();
+}
+
+template <class Real, class F> void WisdomHolman<Real, F>::watch_for_encounters() requires may_have_lanes {
+  lanes_.watch([&](Index i, Index j) { return encounters_.square_of_news(i, j); });
 }
 
 /// What the arcs need of each particle. The mass of the star that a barycentric arc goes round is such that two bodies
@@ -134,41 +160,6 @@ template <class Real, class F> void WisdomHolman<Real, F>::gather_arcs() {
   }
 }
 
-/// @throws Error if the saved places are none of these particles'
-template <class Real, class F>
-void WisdomHolman<Real, F>::load_within(const SavedState& saved, const std::string& prefix) {
-  std::vector<std::int64_t> within(order_.size(), 0);
-  if (saved.contains(prefix + "within")) {
-    load_value(saved, prefix + "within", within);
-  } else if (jacobi()) {  // written when tracers went round all bodies, wherever they were
-    for (std::size_t k = 1; k < order_.size(); ++k)
-      within[static_cast<std::size_t>(at(k))] = static_cast<std::int64_t>(std::min(k, massive() - 1));
-  }
-  bool fits = within.size() == order_.size();
-  for (std::size_t k = 0; fits && k < order_.size(); ++k) {
-    const std::int64_t w = within[static_cast<std::size_t>(at(k))], own = jacobi() ? static_cast<std::int64_t>(k) : 0;
-    fits = k < massive() ? w == own : w >= 0 && w < static_cast<std::int64_t>(massive());
-  }
-  if (!fits) throw Error("the saved places of tracers among the bodies do not match these particles");
-  within_ = std::move(within);
-}
-
-/// @throws Error if the saved order does not name each particle once, the primary first and tracers last
-template <class Real, class F>
-void WisdomHolman<Real, F>::load_order(const SavedState& saved, const std::string& prefix) {
-  std::vector<std::int64_t> order;
-  load_value(saved, prefix + "order", order);
-  const auto sorted = [](std::vector<std::int64_t> ranks) {
-    std::sort(ranks.begin(), ranks.end());
-    return ranks;
-  };
-  const auto massive = [&](std::int64_t i) { return masses_[static_cast<std::size_t>(i)] != Real(0); };
-  if (sorted(order) != sorted(order_) || order[0] != 0 || !std::is_partitioned(order.begin(), order.end(), massive)) {
-    throw Error("the saved order of Jacobi coordinates does not match these particles");
-  }
-  order_ = std::move(order);
-}
-
 template <class Real, class F> void WisdomHolman<Real, F>::open(ParticleSystem<Real>& s) {
   if (jacobi()) {
     to_jacobi(s.positions());
@@ -179,6 +170,9 @@ template <class Real, class F> void WisdomHolman<Real, F>::open(ParticleSystem<R
     to_democratic(s);
   }
   if (scaled()) scale(s.velocities(), false);
+  if constexpr (may_have_lanes) {
+    if (!observing_) lanes_.forget();
+  }
   s.phase().coordinates = static_cast<std::uint8_t>(options_.coordinates);
 }
 
@@ -195,127 +189,13 @@ template <class Real, class F> void WisdomHolman<Real, F>::close(ParticleSystem<
   s.phase().coordinates = 0;
 }
 
-/// x'_k = x_k - X_{k-1},  X_k = X_{k-1} + (m_k/M_k) x'_k, of a tracer x - X of the bodies within its orbit; row 0
-/// becomes X of all.
-template <class Real, class F> void WisdomHolman<Real, F>::to_jacobi(VectorColumn<Real>& column) const {
-  const auto& read = std::as_const(column);
-  Vec3<Real> center = read[0];
-  centers_[0] = center;
-  for (std::size_t k = 1; k < massive(); ++k) {
-    const Vec3<Real> relative = read[at(k)] - center;
-    column.set(at(k), relative);
-    centers_[k] = center += masses_[static_cast<std::size_t>(at(k))] / interior_[k] * relative;
-  }
-  for (std::size_t k = massive(); k < order_.size(); ++k) column.set(at(k), read[at(k)] - centers_[within(at(k))]);
-  column.set(0, center);
-}
-
-/// The inverse, from the outermost body inwards; `from` and `to` may be the same column.
-template <class Real, class F>
-void WisdomHolman<Real, F>::from_jacobi(const VectorColumn<Real>& from, VectorColumn<Real>& to,
-                                        const Vec3<Real>& center_of_all) const {
-  Vec3<Real> center = center_of_all;
-  for (std::size_t k = massive() - 1; k > 0; --k) {
-    const Vec3<Real> relative = from[at(k)];
-    centers_[k] = center;
-    center -= masses_[static_cast<std::size_t>(at(k))] / interior_[k] * relative;
-    to.set(at(k), center + relative);
-  }
-  centers_[0] = center;
-  for (std::size_t k = massive(); k < order_.size(); ++k) to.set(at(k), centers_[within(at(k))] + from[at(k)]);
-  to.set(0, center);
-}
-
-template <class Real, class F> void WisdomHolman<Real, F>::to_democratic(ParticleSystem<Real>& s) const {
-  const auto& c = std::as_const(s);
-  Vec3<Real> x = Vec3<Real>::Zero(), v = Vec3<Real>::Zero();
-  for (std::size_t k = 0; k < massive(); ++k) {
-    x += masses_[k] * c.positions()[static_cast<Index>(k)];
-    v += masses_[k] * c.velocities()[static_cast<Index>(k)];
-  }
-  x /= interior_.back();
-  v /= interior_.back();
-  const Vec3<Real> primary = c.positions()[0];
-  for (Index i = 1; i < s.size(); ++i) {
-    s.positions().set(i, c.positions()[i] - primary);
-    s.velocities().set(i, c.velocities()[i] - v);
-  }
-  s.positions().set(0, x);
-  s.velocities().set(0, v);
-}
-
-template <class Real, class F> void WisdomHolman<Real, F>::from_democratic(ParticleSystem<Real>& s) const {
-  const auto& c = std::as_const(s);
-  Vec3<Real> x = Vec3<Real>::Zero(), v = Vec3<Real>::Zero();
-  for (std::size_t k = 1; k < massive(); ++k) {
-    x += masses_[k] * c.positions()[static_cast<Index>(k)];
-    v += masses_[k] * c.velocities()[static_cast<Index>(k)];
-  }
-  const Vec3<Real> center_v = c.velocities()[0];
-  const Vec3<Real> primary_x = c.positions()[0] - x / interior_.back();
-  for (Index i = 1; i < s.size(); ++i) {
-    s.positions().set(i, primary_x + c.positions()[i]);
-    s.velocities().set(i, center_v + c.velocities()[i]);
-  }
-  s.positions().set(0, primary_x);
-  s.velocities().set(0, center_v - v / masses_[0]);
-}
-
-/// R_i = x_i - X and v_i - v_0, which are scaled afterwards.
-template <class Real, class F> void WisdomHolman<Real, F>::to_barycentric(ParticleSystem<Real>& s) const {
-  const auto& c = std::as_const(s);
-  Vec3<Real> x = Vec3<Real>::Zero(), v = Vec3<Real>::Zero();
-  for (std::size_t k = 0; k < massive(); ++k) {
-    x += masses_[k] * c.positions()[static_cast<Index>(k)];
-    v += masses_[k] * c.velocities()[static_cast<Index>(k)];
-  }
-  x /= interior_.back();
-  v /= interior_.back();
-  const Vec3<Real> of_primary = c.velocities()[0];
-  for (Index i = 1; i < s.size(); ++i) {
-    s.positions().set(i, c.positions()[i] - x);
-    s.velocities().set(i, c.velocities()[i] - of_primary);
-  }
-  s.positions().set(0, x);
-  s.velocities().set(0, v);
-}
-
-template <class Real, class F> void WisdomHolman<Real, F>::from_barycentric(ParticleSystem<Real>& s) const {
-  const auto& c = std::as_const(s);
-  Vec3<Real> v = Vec3<Real>::Zero();
-  for (std::size_t k = 1; k < massive(); ++k) v += masses_[k] * c.velocities()[static_cast<Index>(k)];
-  const Vec3<Real> of_primary = c.velocities()[0] - v / interior_.back();
-  inertial_positions(c.positions(), c.positions()[0], s.positions());
-  for (Index i = 1; i < s.size(); ++i) s.velocities().set(i, of_primary + c.velocities()[i]);
-  s.velocities().set(0, of_primary);
-}
-
-/// Velocities, or accelerations, times `scale_`, or back.
-template <class Real, class F> void WisdomHolman<Real, F>::scale(VectorColumn<Real>& column, bool back) const {
-  for (std::size_t k = 1; k < massive(); ++k) {
-    const auto i = static_cast<Index>(k);
-    const Vec3<Real> v = std::as_const(column)[i];
-    column.set(i, back ? Vec3<Real>(v / scale_[k]) : Vec3<Real>(scale_[k] * v));
-  }
-}
-
-/// Inertial positions of all, for a centre of mass at `center`; `to` may be the positions themselves.
-template <class Real, class F>
-void WisdomHolman<Real, F>::inertial_positions(const VectorColumn<Real>& from, const Vec3<Real>& center,
-                                               VectorColumn<Real>& to) const {
-  if (jacobi()) {
-    from_jacobi(from, to, center);
-    return;
-  }
-  Vec3<Real> x = Vec3<Real>::Zero();
-  for (std::size_t k = 1; k < massive(); ++k) x += masses_[k] * from[static_cast<Index>(k)];
-  const Vec3<Real> primary = center - x / (barycentric() ? masses_[0] : interior_.back());
-  const Vec3<Real> origin = barycentric() ? center : primary;
-  for (Index i = 1; i < from.size(); ++i) to.set(i, origin + from[i]);
-  to.set(0, primary);
-}
-
 template <class Real, class F> void WisdomHolman<Real, F>::flow(char letter, ParticleSystem<Real>& s, const Real& h) {
+  if constexpr (may_have_lanes) {
+    if (lanes_.bound() && (letter == 'A' || letter == 'B')) {
+      flow_in_lanes(letter, s, h);
+      return;
+    }
+  }
   if (letter == 'A') {
     arcs(s, h, false);
     return;
@@ -335,9 +215,13 @@ template <class Real, class F> void WisdomHolman<Real, F>::flow(char letter, Par
 
 template <class Real, class F>
 Real WisdomHolman<Real, F>::flow_with_action(char letter, ParticleSystem<Real>& s, const Real& h) {
+  if constexpr (may_have_lanes) {
+    if (lanes_.bound() && (letter == 'A' || letter == 'B')) return action_in_lanes(letter, s, h);
+  }
   if (letter == 'A') return arcs(s, h, true);
   if (letter == 'G') return gradient_kick(s, h, true);
   if (letter == 'L') throw LogicError("the letter L has no action");
+  NOETHER_EXPECTS(!velocity_dependent_, "a kick by forces that depend on velocities has no action");
   Real action(0);
   if (!jacobi()) action += jump(s, h / Real(2));
   action += kick(s, h, true);
@@ -345,16 +229,17 @@ Real WisdomHolman<Real, F>::flow_with_action(char letter, ParticleSystem<Real>& 
   return action;
 }
 
-template <class Real, class F> Real WisdomHolman<Real, F>::arcs(ParticleSystem<Real>& s, const Real& h, bool action) {
+template <class Real, class F>
+Real WisdomHolman<Real, F>::arcs(ParticleSystem<Real>& s, const Real& h, bool action, Index first) {
   using std::sqrt;
   const auto& c = std::as_const(s);
   const Index n = s.size();
   const Vec3<Real> center_v = c.velocities()[0];
-  s.shift(0, h * center_v, Vec3<Real>::Zero());
+  if (first == 1) s.shift(0, h * center_v, Vec3<Real>::Zero());
   std::atomic<Index> failed{n};
   const auto advance = [&](Index begin, Index end) {
     Real sum(0);
-    for (Index k = std::max<Index>(begin, 1); k < end; ++k) {
+    for (Index k = std::max(begin, first); k < end; ++k) {
       const auto rank = static_cast<std::size_t>(k);
       const Index i = at(rank);
       const Real mu = g_ * circled_[static_cast<std::size_t>(i)];
@@ -380,59 +265,21 @@ template <class Real, class F> Real WisdomHolman<Real, F>::arcs(ParticleSystem<R
   }
   s.moved();
   if (observing_) return sum;
-  evaluations_.kepler += n - 1;
-  if (const Index i = failed.load(); i < n) {
-    failure_ = Failure{Outcome::Kind::solver_failure, i, "position",
-                       fmt::format("the Kepler solver did not converge for {}", s.name(i))};
-  }
+  evaluations_.kepler += n - first;
+  if (const Index i = failed.load(); i < n) fail(s, i);
   return sum;
 }
 
-template <class Real, class F> Real WisdomHolman<Real, F>::kick(ParticleSystem<Real>& s, const Real& h, bool action) {
-  const Real potential = accelerate(std::as_const(s).positions(), s.clock(), action);
-  s.advance_velocities(h, acceleration_);
-  return -h * potential;
-}
-
-/// The flow of G = - dt^2 sum m' a^2, where dt is the step of the run and a the accelerations of B: a kick by
-/// 2 dt^2 (a . grad) a.
-/// @source WisdomHolmanTouma1996, ReinTamayoBrown2019
-template <class Real, class F>
-Real WisdomHolman<Real, F>::gradient_kick(ParticleSystem<Real>& s, const Real& h, bool action) {
-  const auto& c = std::as_const(s);
-  accelerate(c.positions(), s.clock(), false);
-  along_ = acceleration_;
-  from_jacobi(std::as_const(along_), scratch_, Vec3<Real>::Zero());
-  const JacobiBodies<Real> bodies{masses_, order_, within_, circled_, static_cast<Index>(massive()), g_};
-  acceleration_.set_zero();
-  add_pair_derivatives<Real>(bodies, positions_, scratch_, acceleration_);
-  to_jacobi(acceleration_);
-  acceleration_.set(0, Vec3<Real>::Zero());
-  add_arc_derivatives<Real>(bodies, c.positions(), along_, acceleration_);
-  const Real dt(s.clock().dt()), factor = h * dt * dt;
-  s.advance_velocities(Real(2) * factor, acceleration_);
-  Real square(0);
-  for (std::size_t k = 1; action && k < massive(); ++k)
-    square += reduced_[static_cast<std::size_t>(at(k))] * norm2(std::as_const(along_)[at(k)]);
-  return factor * square;
-}
-
-/// A kick by the acceleration at x + dt^2 a(x)/12, in the place of that by a + dt^2 (a . grad) a/12.
-/// @source WisdomHolmanTouma1996
-template <class Real, class F> void WisdomHolman<Real, F>::lazy_kick(ParticleSystem<Real>& s, const Real& h) {
-  const auto& c = std::as_const(s);
-  const Real dt(s.clock().dt());
-  accelerate(c.positions(), s.clock(), false);
-  for (Index i = 0; i < s.size(); ++i)
-    along_.set(i, c.positions()[i] + dt * dt / Real(12) * std::as_const(acceleration_)[i]);
-  accelerate(std::as_const(along_), s.clock(), false);
-  s.advance_velocities(h, acceleration_);
+template <class Real, class F> void WisdomHolman<Real, F>::fail(const ParticleSystem<Real>& s, Index i) {
+  failure_ = Failure{Outcome::Kind::solver_failure, i, "position",
+                     fmt::format("the Kepler solver did not converge for {}", s.name(i))};
 }
 
 /// Accelerations of the working velocities at working positions. @return the potential, if wanted
 template <class Real, class F>
 Real WisdomHolman<Real, F>::accelerate(const VectorColumn<Real>& x, const Clock<Real>& clock, bool energy) {
   if (!observing_) ++evaluations_.force;
+  pulled_.reset();
   moment_ = static_cast<double>(clock.time());
   acceleration_.set_zero();
   Real potential(0);
@@ -442,12 +289,12 @@ Real WisdomHolman<Real, F>::accelerate(const VectorColumn<Real>& x, const Clock<
   } else {
     potential += interaction(x, false, 1, energy);
   }
-  if constexpr (has_forces) potential += other_forces(x, clock, energy);
+  if constexpr (has_forces) potential += velocity_dependent_ ? Real(0) : other_forces(x, clock, energy);
   if (jacobi()) {
     to_jacobi(acceleration_);
     potential += indirect(x, energy);
   } else {
-    about_center();
+    about_center(acceleration_);
     if (scaled()) scale(acceleration_, false);
     if (barycentric()) potential += without_arcs(x, energy);
   }
@@ -464,7 +311,7 @@ Real WisdomHolman<Real, F>::interaction(const VectorColumn<Real>& x, bool skip_i
   const Vec3<Real> primary = first == 0 ? x[0] : Vec3<Real>(Vec3<Real>::Zero());
   const auto note = [&](Index i, Index j, const Real& r2) {
     const Real nearer2 = std::min(norm2(x[i] - primary), norm2(x[j] - primary));
-    if (!observing_) encounters_.note(i, j, static_cast<double>(r2), static_cast<double>(nearer2), moment_);
+    if (noting_) encounters_.note(i, j, static_cast<double>(r2), static_cast<double>(nearer2), moment_);
   };
   for (Index i = first + 1; i < bodies; ++i) {
     const Real from_primary2 = norm2(x[i] - primary);
@@ -524,19 +371,19 @@ template <class Real, class F> Real WisdomHolman<Real, F>::indirect(const Vector
 
 /// Accelerations of inertial positions become those of the working velocities, which are relative to the centre of
 /// mass, in barycentric coordinates to the primary.
-template <class Real, class F> void WisdomHolman<Real, F>::about_center() {
-  const auto& a = std::as_const(acceleration_);
+template <class Real, class F> void WisdomHolman<Real, F>::about_center(VectorColumn<Real>& column) const {
+  const auto& a = std::as_const(column);
   Vec3<Real> mean = Vec3<Real>::Zero();
   if constexpr (has_forces) {
     for (std::size_t k = 0; k < massive(); ++k) mean += masses_[k] / interior_.back() * a[static_cast<Index>(k)];
   }
   if (barycentric()) {
     const Vec3<Real> of_primary = a[0];
-    for (Index i = 1; i < acceleration_.size(); ++i) acceleration_.add(i, -of_primary);
+    for (Index i = 1; i < column.size(); ++i) column.add(i, -of_primary);
   } else if constexpr (has_forces) {
-    for (Index i = 1; i < acceleration_.size(); ++i) acceleration_.add(i, -mean);
+    for (Index i = 1; i < column.size(); ++i) column.add(i, -mean);
   }
-  acceleration_.set(0, mean);
+  column.set(0, mean);
 }
 
 /// What the Kepler arcs of barycentric coordinates have done already.
@@ -557,8 +404,9 @@ template <class Real, class F>
 Real WisdomHolman<Real, F>::other_forces(const VectorColumn<Real>& x, const Clock<Real>& clock, bool energy) {
   inertial_->clock() = clock;
   inertial_positions(x, x[0], inertial_->positions());
-  ForceSink<Real> sink(other_, *inertial_, {.energy = energy});
+  ForceSink<Real> sink(other_, *inertial_, {.energy = energy}, &workspace_);
   forces_.add_to(sink, *inertial_);
+  note_failure(sink.failure());
   acceleration_.all() += other_.all();
   return sink.potential();
 }
@@ -589,10 +437,116 @@ template <class Real, class F> Real WisdomHolman<Real, F>::jump(ParticleSystem<R
 template <class Real, class F>
 Real WisdomHolman<Real, F>::newton(const ParticleSystem<Real>& s, VectorColumn<Real>& a, Request wanted) {
   if (a.size() != s.size()) a = VectorColumn<Real>(s.size());
-  ForceSink<Real> sink(a, s, wanted);
+  ForceSink<Real> sink(a, s, wanted, &workspace_);
   Gravity{.G = options_.G}.add_to(sink, s);
   forces_.add_to(sink, s);
   return sink.potential();
+}
+
+/// Whole steps. Planets stay in lanes meanwhile where all bodies are there and have no other letters.
+template <class Real, class F>
+Advance WisdomHolman<Real, F>::run(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span) {
+  if constexpr (may_have_lanes) {
+    const auto in_lanes = [](const TimedStage<Real>& stage) { return stage.letter == 'A' || stage.letter == 'B'; };
+    const auto& stages = word.stages();
+    if (lanes_.bound() && !has_tracers() && std::all_of(stages.begin(), stages.end(), in_lanes)) {
+      lanes_.load(s);
+      const Advance done =
+          walk_letters(*this, word, s, span, [&](char letter, const Real& h) { flow_of_lanes(letter, s, h); });
+      lanes_.store(s);
+      return done;
+    }
+  }
+  return walk_letters(*this, word, s, span, [&](char letter, const Real& h) { flow(letter, s, h); });
+}
+
+/// One flow of the planets that the lanes hold already, and of the center of mass.
+template <class Real, class F>
+void WisdomHolman<Real, F>::flow_of_lanes(char letter, ParticleSystem<Real>& s, const Real& h) requires may_have_lanes {
+  if (letter == 'A') {
+    s.shift(0, h * std::as_const(s).velocities()[0], Vec3<Real>::Zero());
+    const Index failed = lanes_.drift(h, observing_);
+    if (observing_) return;
+    evaluations_.kepler += static_cast<Index>(massive()) - 1;
+    if (failed >= 0) fail(s, failed);
+    return;
+  }
+  const bool near = lanes_.kick(h, observing_);
+  if (observing_) return;
+  if (!has_tracers()) ++evaluations_.force;
+  if (!near || !s.phase().opened) return;  // noted where a run goes, not in the word before it
+  moment_ = static_cast<double>(s.clock().time());
+  lanes_.for_pairs([&](Index i, Index j, double r2, double nearer2) {
+    encounters_.note(std::max(i, j), std::min(i, j), r2, nearer2, moment_);
+  });
+  watch_for_encounters();
+}
+
+/// The same of planets in the columns; tracers go letter by letter.
+template <class Real, class F>
+void WisdomHolman<Real, F>::flow_in_lanes(char letter, ParticleSystem<Real>& s, const Real& h) requires may_have_lanes {
+  if (has_tracers() && letter == 'A') arcs(s, h, false, static_cast<Index>(massive()));
+  if (has_tracers() && letter == 'B') kick_tracers(s, h);
+  lanes_.load(s);
+  flow_of_lanes(letter, s, h);
+  lanes_.store(s, letter == 'A' || !jacobi());
+  if (has_tracers() && letter == 'B' && !jacobi()) {
+    const Vec3<Real> shift = half_jump(s, h);
+    for (Index i = static_cast<Index>(massive()); i < s.size(); ++i) s.shift(i, shift, Vec3<Real>::Zero());
+  }
+}
+
+/// Positions in the middle of a kick, behind the first half of the jump; in Jacobi coordinates those there are.
+template <class Real, class F>
+const VectorColumn<Real>& WisdomHolman<Real, F>::middle_of_kick(const ParticleSystem<Real>& s, const Real& h) {
+  if (jacobi()) return s.positions();
+  const Vec3<Real> shift = half_jump(s, h);
+  along_ = s.positions();
+  for (Index i = 1; i < s.size(); ++i) along_.add(i, shift);
+  return along_;
+}
+
+/// Half a jump and the kick of tracers, before the planets have theirs.
+template <class Real, class F> void WisdomHolman<Real, F>::kick_tracers(ParticleSystem<Real>& s, const Real& h) {
+  const auto& c = std::as_const(s);
+  begin_kick(s);
+  accelerate(middle_of_kick(c, h), s.clock(), false);
+  const Vec3<Real> shift = jacobi() ? Vec3<Real>(Vec3<Real>::Zero()) : half_jump(c, h);
+  for (Index i = static_cast<Index>(massive()); i < s.size(); ++i)
+    s.shift(i, shift, h * std::as_const(acceleration_)[i]);
+}
+
+/// A flow with its action: that of arcs from their universal variables, that of kicks from the potential letter by
+/// letter.
+template <class Real, class F>
+Real WisdomHolman<Real, F>::action_in_lanes(char letter, ParticleSystem<Real>& s,
+                                            const Real& h) requires may_have_lanes {
+  using std::sqrt;
+  const auto& c = std::as_const(s);
+  Real action(0);
+  if (letter == 'A') {
+    for (std::size_t k = 1; k < massive(); ++k) {
+      const auto i = static_cast<std::size_t>(at(k));
+      const Real speed2 = norm2(c.velocities()[at(k)]), r = sqrt(norm2(c.positions()[at(k)]));
+      action += reduced_[i] * h * (speed2 / Real(2) - g_ * circled_[i] / r);
+    }
+    action += h * interior_.back() * norm2(c.velocities()[0]) / Real(2);
+    flow(letter, s, h);
+    for (std::size_t k = 1; k < massive(); ++k) {
+      const auto i = static_cast<std::size_t>(at(k));
+      action += Real(2) * reduced_[i] * g_ * circled_[i] * lanes_.arc(k - 1);
+    }
+    return action;
+  }
+  const bool observing = std::exchange(observing_, true);  // this look at the forces is not counted
+  begin_kick(s);
+  action -= h * accelerate(middle_of_kick(c, h), s.clock(), true);
+  observing_ = observing;
+  // J is momentum^2/2 m_0, and half a jump h/2 momentum/m_0.
+  const auto jump_action = [&] { return jacobi() || h == Real(0) ? Real(0) : masses_[0] * norm2(half_jump(c, h)) / h; };
+  action += jump_action();
+  flow(letter, s, h);
+  return action + jump_action();
 }
 
 }  // namespace noether

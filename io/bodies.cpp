@@ -62,10 +62,10 @@ std::string_view trimmed(std::string_view text) {
   return first == std::string_view::npos ? "" : text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-std::vector<std::string> split_at_commas(std::string_view text) {
+std::vector<std::string> split_at(std::string_view text, char separator) {
   std::vector<std::string> fields;
   while (true) {
-    const std::size_t end = text.find(',');
+    const std::size_t end = text.find(separator);
     fields.emplace_back(trimmed(text.substr(0, end)));
     if (end == std::string_view::npos) return fields;
     text.remove_prefix(end + 1);

@@ -45,6 +45,7 @@ struct BodyTable {
   ParticleSystem<double> particles;
   std::optional<BodyEpoch> epoch = {};  ///< of Horizons, or as it was given
   bool without_sun = false;             ///< states about the Solar System Barycenter, and no Sun among them
+  std::string light_center = {};        ///< a warning: orbits about the first body, and a heavier one above
 };
 
 }  // namespace noether::io

@@ -182,7 +182,7 @@ class CsvBodies {
     if (bodies_.particles().size() == 0) text_.fail(heading_line_, "the table has column names, but no bodies");
     ParticleSystem<double> particles = bodies_.take();
     if (!ids_.empty()) particles.restore_ids(ids_);
-    BodyTable table{.particles = std::move(particles)};
+    BodyTable table{.particles = std::move(particles), .light_center = std::move(light_center_)};
     if (epoch_) table.epoch = BodyEpoch{.julian_day = *epoch_, .scale = ""};
     return table;
   }
@@ -319,14 +319,15 @@ class CsvBodies {
                  std::string_view words) const {
     Unit unit;
     try {
-      unit = parse_unit(text, units_);
+      unit = parse_unit(text, words, units_);
     } catch (const Error& error) {
       text_.fail(line, fmt::format("column '{}': {}", column, error.message()), text);
     }
     if (unit.dimension == expected) return unit;
+    const bool meant = column == "M" && unit.dimension == dimensions::mass;  // the mean anomaly
     text_.fail(line,
-               fmt::format("column '{}' is in '{}', which has the dimension {}; expected {}", column, text,
-                           to_text(unit.dimension), words),
+               fmt::format("column '{}' is in '{}', which has the dimension {}; expected {}{}", column, text,
+                           to_text(unit.dimension), words, meant ? "; did you mean 'mass'?" : ""),
                text);
   }
 
@@ -438,6 +439,8 @@ class CsvBodies {
     }
     if (bodies_.particles().size() == 0) return first_state(line, fields, name, mass);
     const bool jacobi = about.empty() && elements_about_ == ElementsAbout::all_before_it;
+    if (about.empty() && !jacobi && light_center_.empty())
+      light_center_ = about_a_light_body(bodies_.particles(), bodies_.particles().size(), name);
     const OrbitCenter center = jacobi ? before_ : center_at(line, about.empty() ? std::vector<Index>{0} : about);
     if (center.mass() + mass == 0) {
       const std::string& word = fields[columns_.at("about").field];
@@ -548,6 +551,7 @@ class CsvBodies {
   const UnitSystem& units_;
   double G_;
   ElementsAbout elements_about_;
+  std::string light_center_;  ///< what `BodyTable` tells
   std::optional<double> epoch_;
   BodyList bodies_;
   Separator separator_ = Separator::comma;

@@ -305,6 +305,9 @@ std::shared_ptr<Hdf5Handle> open_file(const std::filesystem::path& file, bool wr
   const std::uintmax_t size = id < 0 ? std::filesystem::file_size(file, ignored) : 0;
   if (id < 0 && size < expected_size(file))
     refuse(access.file(), fmt::format("cut short: only {} of {} bytes are there", size, expected_size(file)));
+  if (id < 0 && file.extension() == ".toml") {
+    refuse(access.file(), "this is a scene, and a file of a run is expected" + near_file(file, "run.h5"));
+  }
   auto handle = share(id, H5Fclose, access.file(), "cannot be opened as an HDF5 file");
   if (writing) access.file()->ordered = ordered_file(id);
   return handle;

@@ -234,7 +234,7 @@ class HorizonsBodies {
 
   double epoch_at(const HorizonsTable& table, std::size_t line) const {
     const std::string_view content = at(line);
-    const char mark = table.headings.empty() ? '=' : ',';
+    const char mark = table.headings.empty() ? '=' : table.separator;
     return number_in(text_, line, trimmed(content.substr(0, content.find(mark))), "the Julian day");
   }
 
@@ -253,13 +253,13 @@ class HorizonsBodies {
                                           format_number(epoch_at(table, lines.back()))));
     }
     const std::size_t end = found + 1 == lines.end() ? table.end : found[1];
-    return table.headings.empty() ? text_record(table, *found, end) : comma_record(table, *found);
+    return table.headings.empty() ? text_record(table, *found, end) : record_of_fields(table, *found);
   }
 
-  Record comma_record(const HorizonsTable& table, std::size_t line) const {
+  Record record_of_fields(const HorizonsTable& table, std::size_t line) const {
     Record record;
     record.line = line;
-    const std::vector<std::string> fields = split_at_commas(at(line));
+    const std::vector<std::string> fields = split_at(at(line), table.separator);
     const std::size_t count = std::min(fields.size(), table.headings.size());
     record.epoch = epoch_at(table, line);
     for (std::size_t k = 1; k < count; ++k) {

@@ -47,10 +47,10 @@ std::string frame_of(const std::string& frame, const std::string& plane) {
   return frame.empty() ? plane : frame + ", " + plane;
 }
 
-/// "TDB" of a heading "JDTDB" or "JDTDB,"; empty if a line is none. CT was the name of TDB.
+/// "TDB" of a heading "JDTDB", "JDTDB," or "JDTDB;"; empty if a line is none. CT was the name of TDB.
 std::string time_scale_of(std::string_view line) {
   line = trimmed(line);
-  line = trimmed(line.substr(0, line.find(',')));
+  line = trimmed(line.substr(0, line.find_first_of(",;\t")));
   if (!line.starts_with("JD") || line.size() < 4 || line.size() > 6) return "";
   line.remove_prefix(2);
   const auto is_capital = [](char c) { return c >= 'A' && c <= 'Z'; };
@@ -130,17 +130,36 @@ class HeadReader {
   std::string frame_, plane_;
 };
 
+/// What separates the fields of a table: commas as Horizons writes them, semicolons or tabs as spreadsheets do; nothing
+/// where records are text. `headings` is the last line before the records. @throws SceneError  for blanks
+std::optional<char> separator_of(const TextFile& text, std::size_t line, std::string_view headings) {
+  if (headings.find(',') != std::string_view::npos) return ',';
+  if (!headings.starts_with("JD")) return {};
+  for (const char separator : {';', '\t'}) {
+    if (headings.find(separator) != std::string_view::npos) return separator;
+  }
+  if (headings.find(' ') != std::string_view::npos) {
+    text.fail(line,
+              "the fields of this table are separated by blanks, but its dates contain blanks too; separate them "
+              "by commas, as Horizons does, or by semicolons or tabs");
+  }
+  return {};
+}
+
 }  // namespace
 
 std::optional<HorizonsTable> next_horizons_table(const TextFile& text, const UnitSystem& units, std::size_t line) {
   const std::vector<std::string>& lines = text.lines();
   HeadReader head(text, units);
   std::string_view last_text;
+  std::size_t last_line = 0;
   for (; line <= lines.size(); ++line) {
     const std::string_view content = trimmed(lines[line - 1]);
     if (content == table_start) break;
     head.read(line);
-    if (!content.empty() && content.front() != '*') last_text = content;
+    if (content.empty() || content.front() == '*') continue;
+    last_text = content;
+    last_line = line;
   }
   if (line > lines.size()) return {};
   HorizonsTable table = head.take();
@@ -149,7 +168,10 @@ std::optional<HorizonsTable> next_horizons_table(const TextFile& text, const Uni
   if (line > lines.size()) text.fail(table.start, "the table that begins here has no end: '$$EOE' is missing");
   table.end = line;
   if (table.target_line == 0) text.fail(table.start, "the header of this table has no line 'Target body name'");
-  if (last_text.find(',') != std::string_view::npos) table.headings = split_at_commas(last_text);
+  if (const auto separator = separator_of(text, last_line, last_text)) {
+    table.separator = *separator;
+    table.headings = split_at(last_text, *separator);
+  }
   return table;
 }
 

@@ -31,7 +31,8 @@ struct HorizonsTable {
   std::string frame;  ///< with the plane of old tables; two spellings of one frame are the same here
   std::string units, time_scale;
   std::optional<double> mass, center_mass;  ///< lines that a user has put in
-  std::vector<std::string> headings;        ///< of a table with commas
+  std::vector<std::string> headings;        ///< of a table of fields; empty where records are text
+  char separator = ',';                     ///< of these fields
   std::size_t target_line = 0, start = 0, end = 0;
 };
 

@@ -225,6 +225,8 @@ void check_digests(const Hdf5File& file, std::vector<std::string>& damaged) {
     if (!there) damaged.push_back("there is no digest of " + what + ", which every such file has");
   };
   expect(file.has_attribute("/noether", constants_attribute), "the constant data of the particles");
+  if (!file.has_attribute("/noether", "complete"))
+    damaged.emplace_back("it does not say whether it is complete, as every such file does");
   if (!file.has("/noether/scene")) damaged.emplace_back("there is no scene, which every such file has");
   if (!file.has(monitors_path)) damaged.emplace_back("there is no group of monitors, which every such file has");
   for (const std::string& path : {particles_path + "/position/value", system_path + "/value"})
@@ -237,12 +239,39 @@ void check_digests(const Hdf5File& file, std::vector<std::string>& damaged) {
   }
 }
 
-/// Attributes that never change are those that were written.
+/// The scene, and units and other attributes of monitors: what may change while a run goes on.
+void check_scene_and_monitors(const Hdf5File& file, std::vector<std::string>& damaged) {
+  if (!file.has_attribute("/noether", scene_attribute)) {
+    damaged.emplace_back("there is no digest of the scene, which every such file has");
+  } else if (file.has("/noether/scene") &&
+             file.text_attribute("/noether", scene_attribute) != sha256(file.read_text("/noether/scene"))) {
+    damaged.emplace_back("the scene differs from the one that was written");
+  }
+  for (const std::string& name : file.children(monitors_path)) {
+    const std::string digests = sample_digests_path(name);
+    if (!file.has(digests)) continue;
+    if (!file.has_attribute(digests, headers_attribute)) {
+      damaged.push_back(
+          fmt::format("monitor {}: there is no digest of its attributes, which every such file has", name));
+    } else if (file.text_attribute(digests, headers_attribute) != monitor_headers_digest(file, name)) {
+      damaged.push_back(
+          fmt::format("monitor {}: its units or other attributes differ from those that were written", name));
+    }
+  }
+}
+
+/// Attributes that never change are those that were written. A file of an earlier version has fewer digests, or none.
 void check_headers(const Hdf5File& file, std::vector<std::string>& damaged) {
-  if (!file.has_attribute("/noether", headers_attribute)) return;
+  const bool digests = file.has(digests_path) || file.has_attribute("/noether", constants_attribute);
+  if (!file.has_attribute("/noether", headers_attribute)) {
+    if (digests) damaged.emplace_back("there is no digest of its attributes, which every such file has");
+    return;
+  }
   check_digests(file, damaged);
-  if (file.text_attribute("/noether", headers_attribute) == headers_digest(file)) return;
-  damaged.emplace_back("the units or other attributes of the particles differ from those that were written");
+  const std::string written = file.text_attribute("/noether", headers_attribute);
+  if (written == headers_digest(file)) return check_scene_and_monitors(file, damaged);
+  if (written != headers_digest(file, 1))
+    damaged.emplace_back("the units or other attributes of the particles differ from those that were written");
 }
 
 Index numbers_in(const std::vector<Index>& shape) {

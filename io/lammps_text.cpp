@@ -1,6 +1,7 @@
 #include "io/lammps_text.hpp"
 
 #include "numbers/suggest.hpp"
+#include "numbers/text.hpp"
 
 #include <fmt/format.h>
 
@@ -12,9 +13,9 @@ namespace noether::io {
 
 namespace {
 
-constexpr std::array<std::string_view, 10> counted = {"atoms",          "bonds",         "angles",     "dihedrals",
-                                                      "impropers",      "atom types",    "bond types", "angle types",
-                                                      "dihedral types", "improper types"};
+constexpr std::array<std::string_view, 10> declared = {"atoms",          "bonds",         "angles",     "dihedrals",
+                                                       "impropers",      "atom types",    "bond types", "angle types",
+                                                       "dihedral types", "improper types"};
 /// Room that LAMMPS is told to set aside.
 constexpr std::array<std::string_view, 5> passed_over = {"extra bond per atom", "extra angle per atom",
                                                          "extra dihedral per atom", "extra improper per atom",
@@ -183,7 +184,7 @@ void LammpsText::read_header_line(std::size_t line, const std::vector<std::strin
   const auto number = std::find_if(words.begin(), words.end(), [](std::string_view w) { return is_letter(w.front()); });
   const std::string key = fmt::format("{}", fmt::join(number, words.end(), " "));
   const auto numbers = number - words.begin();
-  if (stands_in(counted, key) && numbers == 1) {
+  if (stands_in(declared, key) && numbers == 1) {
     const std::int64_t most = key.ends_with("types") ? most_types : most_particles;
     const bool fresh =
         counts_.try_emplace(key, Count{whole_number_in(text_, line, words[0], key, 0, most), line}).second;
@@ -202,7 +203,7 @@ void LammpsText::read_header_line(std::size_t line, const std::vector<std::strin
                            fmt::join(words, " ")),
                key);
   } else if (!(numbers == 1 && (stands_in(passed_over, key) || words[0] == "0"))) {
-    std::vector<std::string> known(counted.begin(), counted.end());
+    std::vector<std::string> known(declared.begin(), declared.end());
     known.insert(known.end(), {"xlo xhi", "ylo yhi", "zlo zhi"});
     text_.fail(
         line,
@@ -284,7 +285,10 @@ const LammpsSection* LammpsText::section(const std::string& name, const std::str
   const std::string source = counted_at == counts_.end()
                                  ? fmt::format("the header has no line '{}'", what)
                                  : fmt::format("line {} says {} {}", counted_at->second.line, expected, what);
-  text_.fail(found->line, fmt::format("section '{}' has {} rows, but {}", name, found->rows.size(), source), name);
+  text_.fail(found->line,
+             fmt::format("section '{}' has {}, but {}", name,
+                         counted(static_cast<std::int64_t>(found->rows.size()), "row"), source),
+             name);
 }
 
 }  // namespace noether::io

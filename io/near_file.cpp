@@ -38,6 +38,8 @@ std::vector<std::string> names_beside(const fs::path& file) {
   return names;
 }
 
+bool is_scene(const fs::path& file) { return file.extension() == ".toml"; }
+
 /// The nearest name, one with the same end before all others.
 fs::path near_name(const fs::path& file) {
   const std::vector<std::string> all = names_beside(file);
@@ -64,12 +66,21 @@ std::string in_folder(const fs::path& folder, std::string_view inside) {
   return "";
 }
 
+/// The run of a scene that is given in its place, or how to make one.
+std::string of_scene(const fs::path& scene, std::string_view inside) {
+  const bool named_by_folder = scene.filename() == "scene.toml" && scene.has_parent_path();
+  const fs::path name = named_by_folder ? scene.parent_path().filename() : scene.stem();
+  const fs::path run = fs::path(name.string() + ".out") / inside;
+  if (fs::is_regular_file(run)) return fmt::format("; did you mean '{}'?", run.string());
+  return fmt::format("; `noether run {}` makes a run of it", scene.string());
+}
+
 }  // namespace
 
 std::string near_file(const fs::path& file, std::string_view inside) noexcept {
   try {
     if (fs::is_directory(file)) return in_folder(file, inside);
-    if (fs::exists(file)) return "";
+    if (fs::exists(file)) return is_scene(file) && inside.ends_with(".h5") ? of_scene(file, inside) : "";
     const fs::path found = near_name(file);
     return found.empty() ? "" : fmt::format("; did you mean '{}'?", found.string());
   } catch (const std::exception&) {

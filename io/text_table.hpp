@@ -38,8 +38,8 @@ class TextFile {
 /// Without blanks at both ends.
 std::string_view trimmed(std::string_view text);
 
-/// The fields between commas, trimmed; empty ones count.
-std::vector<std::string> split_at_commas(std::string_view text);
+/// The fields between separators, trimmed; empty ones count.
+std::vector<std::string> split_at(std::string_view text, char separator);
 
 /// A heading such as "vx [au/day]" or "vx (au/day)".
 struct Heading {

@@ -245,8 +245,7 @@ class TrajectoryWriter::File {
     units_ = &known_units(hdf5_->text_attribute("/noether", "units"), path_);
     hdf5_->set_attribute("/noether", "complete", std::int64_t{0});
     // The end may have been moved.
-    if (hdf5_->read_text("/noether/scene") != options_.scene_toml)
-      hdf5_->write_text("/noether/scene", options_.scene_toml);
+    write_scene(*hdf5_, options_.scene_toml);
     if (hdf5_->has(system_path)) {
       variables_ = hdf5_->integer_attribute(system_path, "variables");
       if (options_.frames) open_system_frames();
@@ -447,6 +446,7 @@ class TrajectoryWriter::File {
     if (sample.scale && sample.scale != monitor.scale) {
       hdf5_->set_attribute(monitors_path + "/" + std::string(sample.monitor), "scale", *sample.scale);
       monitor.scale = sample.scale;
+      if (hdf5_->has(sample_digests_path(sample.monitor))) write_headers_of(sample.monitor);
     }
   }
 
@@ -472,6 +472,7 @@ class TrajectoryWriter::File {
     } else {
       monitor.digest = create_digests(digests);
       describe_monitor(group, sample);
+      write_headers_of(sample.monitor);
     }
     hdf5_->open(group + "step").write_last();
     return monitor;
@@ -484,6 +485,10 @@ class TrajectoryWriter::File {
       if (!one.columns.empty()) hdf5_->set_attribute(group + one.name, "columns", one.columns);
       if (!one.orders.empty()) hdf5_->set_attribute(group + one.name, "orders", one.orders);
     }
+  }
+
+  void write_headers_of(std::string_view monitor) const {
+    hdf5_->set_attribute(sample_digests_path(monitor), headers_attribute, monitor_headers_digest(*hdf5_, monitor));
   }
 
   /// A reader that follows the run sees it at most a second late.

@@ -1,5 +1,6 @@
 #include "io/trajectory_constants.hpp"
 
+#include "io/trajectory_digest.hpp"
 #include "io/trajectory_layout.hpp"
 #include "io/trajectory_topology.hpp"
 #include "numbers/quantity.hpp"
@@ -98,7 +99,7 @@ void write_header(const Hdf5File& file, const UnitSystem& units, const std::stri
   file.set_attribute("/noether", "simd", std::string(name(simd_level())));
   file.set_attribute("/noether", "units", std::string(units.name));
   file.set_attribute("/noether", "complete", std::int64_t{0});
-  file.write_text("/noether/scene", scene_toml);
+  write_scene(file, scene_toml);
 }
 
 void write_constants(const Hdf5File& file, const ParticleSystem<double>& state, const std::vector<Index>& order) {

@@ -99,9 +99,9 @@ template <class Take> class HeaderWalk {
 
 }  // namespace
 
-std::string headers_digest(const Hdf5File& file) {
+std::string headers_digest(const Hdf5File& file, int version) {
   RunningDigest hash;
-  hash.add(std::string_view("noether-attributes-1\n"));
+  hash.add("noether-attributes-" + std::to_string(version) + '\n');
   const auto add = [&](const std::string& one) { hash.add(one + '\n'); };
   for (const std::string& group :
        {std::string("/h5md"), particles_path, system_path, connectivity_path, topology_path}) {
@@ -109,6 +109,21 @@ std::string headers_digest(const Hdf5File& file) {
   }
   for (const char* name : {"commit", "simd", "units", "version"}) add(file.attribute_bytes("/noether", name));
   return hash.hex();
+}
+
+std::string monitor_headers_digest(const Hdf5File& file, std::string_view monitor) {
+  RunningDigest hash;
+  hash.add(std::string_view("noether-monitor-1\n"));
+  HeaderWalk(file, [&](const std::string& one) {
+    hash.add(one + '\n');
+  }).at(monitors_path + "/" + std::string(monitor));
+  return hash.hex();
+}
+
+void write_scene(const Hdf5File& file, const std::string& scene_toml) {
+  static const std::string path = "/noether/scene";
+  if (!file.has(path) || file.read_text(path) != scene_toml) file.write_text(path, scene_toml);
+  file.set_attribute("/noether", scene_attribute, sha256(scene_toml));
 }
 
 void read_headers(const Hdf5File& file) {

@@ -25,6 +25,9 @@ inline const std::string constants_attribute = "constants_sha256";
 /// The attribute of /noether that has the digest of the attributes that never change.
 inline const std::string headers_attribute = "attributes_sha256";
 
+/// The attribute of /noether that has the digest of the scene. It changes with the scene, whose end may be moved.
+inline const std::string scene_attribute = "scene_sha256";
+
 /// SHA-256 of "noether-frame-1\n", int64 step, float64 time, x and v (n, 3), variables, int64 images (n, 3), edges, and
 /// of each other column that moves its name and its values; row by row, as the file has them.
 RowDigest frame_digest(const Frame& frame);
@@ -44,8 +47,18 @@ std::string constants_digest(const Hdf5File& file);
 /// and of /noether/topology with everything below, in the order of their paths and names, and of /noether commit, simd,
 /// units and version. All of these must be there before the first frame. Texts of variable length count by their names
 /// alone. 64 hexadecimal digits.
+/// @param version  2; 1 of files whose scene and monitors have no digests of their own
 /// @throws FileError  for what HDF5 cannot read
-std::string headers_digest(const Hdf5File& file);
+std::string headers_digest(const Hdf5File& file, int version = 2);
+
+/// SHA-256 of "noether-monitor-1\n", the names of everything below the group of a monitor, and their attributes: an
+/// attribute `headers_attribute` of the digests of its samples.
+/// @throws FileError  for what HDF5 cannot read
+std::string monitor_headers_digest(const Hdf5File& file, std::string_view monitor);
+
+/// Writes the scene where the file does not have it yet, and its digest.
+/// @throws FileError  for what HDF5 cannot write
+void write_scene(const Hdf5File& file, const std::string& scene_toml);
 
 /// Reads every link and every attribute of a file. @throws FileError  for what HDF5 cannot read
 void read_headers(const Hdf5File& file);

@@ -2,6 +2,7 @@
 
 #include "numbers/error.hpp"
 #include "numbers/suggest.hpp"
+#include "numbers/unit_words.hpp"
 
 #include <fmt/format.h>
 
@@ -113,180 +114,10 @@ class TermReader {
   std::string_view rest_, whole_;
 };
 
-/// Another word for a unit of the table; plurals are made of `constant` and of these.
-struct Alias {
-  std::string_view word, symbol;
-};
-constexpr std::array aliases = {
-    Alias{"h", "hour"},
-    Alias{"hr", "hour"},
-    Alias{"hrs", "hour"},
-    Alias{"yrs", "yr"},
-    Alias{"AU", "au"},
-    Alias{"parsec", "pc"},
-    Alias{"kilometer", "km"},
-    Alias{"centimeter", "cm"},
-    Alias{"nanometer", "nm"},
-    Alias{"femtosecond", "fs"},
-    Alias{"picosecond", "ps"},
-    Alias{"nanosecond", "ns"},
-    Alias{"kilogram", "kg"},
-    Alias{"kelvin", "K"},
-    // As astropy, VizieR, catalogs and files of molecules have them.
-    Alias{"sec", "s"},
-    Alias{"d", "day"},
-    Alias{"solMass", "Msun"},
-    Alias{"M_sun", "Msun"},
-    Alias{"M_Sun", "Msun"},
-    Alias{"Msol", "Msun"},
-    Alias{"MSun", "Msun"},
-    Alias{"M\xE2\x98\x89", "Msun"},
-    Alias{"M\xE2\x8A\x99", "Msun"},
-    Alias{"earthMass", "Mearth"},
-    Alias{"M_earth", "Mearth"},
-    Alias{"M_Earth", "Mearth"},
-    Alias{"MEarth", "Mearth"},
-    Alias{"M\xE2\x8A\x95", "Mearth"},
-    Alias{"jupiterMass", "Mjup"},
-    Alias{"M_jup", "Mjup"},
-    Alias{"M_Jup", "Mjup"},
-    Alias{"MJup", "Mjup"},
-    Alias{"Mjupiter", "Mjup"},
-    Alias{"solRad", "Rsun"},
-    Alias{"R_sun", "Rsun"},
-    Alias{"R_Sun", "Rsun"},
-    Alias{"RSun", "Rsun"},
-    Alias{"earthRad", "Rearth"},
-    Alias{"R_earth", "Rearth"},
-    Alias{"jupiterRad", "Rjup"},
-    Alias{"R_jup", "Rjup"},
-    Alias{"lyr", "ly"},
-    Alias{"arcsecond", "arcsec"},
-    Alias{"arcminute", "arcmin"},
-    Alias{"\xC2\xB0", "deg"},
-    Alias{"Angstrom", "angstrom"},
-    Alias{"\xC3\x85", "angstrom"},
-    Alias{"\xE2\x84\xAB", "angstrom"},
-    Alias{"picometer", "pm"},
-    Alias{"millimeter", "mm"},
-    Alias{"Bohr", "bohr"},
-    Alias{"a_0", "bohr"},
-    Alias{"amu", "u"},
-    Alias{"Da", "u"},
-    Alias{"dalton", "u"},
-    Alias{"Dalton", "u"},
-    Alias{"mole", "mol"},
-    Alias{"Kcal", "kcal"},
-    Alias{"electronvolt", "eV"},
-    Alias{"Hartree", "hartree"},
-    Alias{"E_h", "hartree"},
-    Alias{"newton", "N"},
-    Alias{"pascal", "Pa"},
-    Alias{"millisecond", "ms"},
-    Alias{"microsecond", "us"},
-    Alias{"\xC2\xB5s", "us"},
-    Alias{"\xCE\xBCs", "us"},
-    Alias{"\xC2\xB5m", "um"},
-    Alias{"\xCE\xBCm", "um"},
-};
-
-/// GM of a planet over that of the Sun, both nominal, in solar masses.
-constexpr units::Ratio of_msun(std::int64_t digits, int exponent) {
-  return units::find("Msun")->si * units::decimal(digits, exponent) / units::decimal(13271244);
-}
-
-/// Units that texts alone have: programs ask `unit_value` for them. Masses of planets are to Msun as the nominal GM
-/// are, 3.986004e14 and 1.2668653e17 to 1.3271244e20 m^3/s^2; radii are nominal, those of planets equatorial; the
-/// parsec is 648000/pi au, the light-year one of a Julian year, the calorie the thermochemical one; bohr and hartree
-/// are CODATA 2018.
-/// @source Codata2018, IauB2of2015, IauB3of2015
-constexpr std::array text_units = {
-    units::Definition{"Mearth", "", dimensions::mass, of_msun(3986004, -5)},
-    units::Definition{"Mjup", "", dimensions::mass, of_msun(12668653, -3)},
-    units::Definition{"Rsun", "", dimensions::length, units::decimal(6957, 5)},
-    units::Definition{"Rearth", "", dimensions::length, units::decimal(63781, 2)},
-    units::Definition{"Rjup", "", dimensions::length, units::decimal(71492, 3)},
-    units::Definition{"pc", "", dimensions::length, units::Ratio{648000 * Quad(149597870700), units::pi}},
-    units::Definition{"kpc", "", dimensions::length, units::Ratio{648000000 * Quad(149597870700), units::pi}},
-    units::Definition{"Mpc", "", dimensions::length, units::Ratio{648000000000 * Quad(149597870700), units::pi}},
-    units::Definition{"ly", "", dimensions::length, units::decimal(9460730472580800)},
-    units::Definition{"mm", "", dimensions::length, units::decimal(1, -3)},
-    units::Definition{"um", "", dimensions::length, units::decimal(1, -6)},
-    units::Definition{"pm", "", dimensions::length, units::decimal(1, -12)},
-    units::Definition{"bohr", "", dimensions::length, units::decimal(529177210903, -22)},
-    units::Definition{"ms", "", dimensions::time, units::decimal(1, -3)},
-    units::Definition{"us", "", dimensions::time, units::decimal(1, -6)},
-    units::Definition{"arcmin", "", dimensions::none, units::Ratio{units::pi, Quad(10800)}},
-    units::Definition{"arcsec", "", dimensions::none, units::Ratio{units::pi, Quad(648000)}},
-    units::Definition{"mas", "", dimensions::none, units::Ratio{units::pi, Quad(648000000)}},
-    units::Definition{"kcal/mol", "", dimensions::energy, units::decimal(4184) / units::decimal(602214076, 15)},
-    units::Definition{"eV", "", dimensions::energy, units::decimal(1602176634, -28)},
-    units::Definition{"meV", "", dimensions::energy, units::decimal(1602176634, -31)},
-    units::Definition{"hartree", "", dimensions::energy, units::decimal(43597447222071, -31)},
-    units::Definition{"erg", "", dimensions::energy, units::decimal(1, -7)},
-    units::Definition{"N", "", dimensions::force, units::decimal(1)},
-    units::Definition{"Pa", "", dimensions::pressure, units::decimal(1)},
-    units::Definition{"bar", "", dimensions::pressure, units::decimal(1, 5)},
-    units::Definition{"atm", "", dimensions::pressure, units::decimal(101325)},
-};
-
-/// The unit of a symbol, or null.
-const units::Definition* find_unit(std::string_view symbol) {
-  if (const units::Definition* const unit = units::find(symbol)) return unit;
-  for (const units::Definition& unit : text_units) {
-    if (unit.symbol == symbol) return &unit;
-  }
-  return nullptr;
-}
-
-/// The symbol that a word stands for: itself, or that of a name in English, singular or plural: "days", "AU".
-std::string_view symbol_of(std::string_view word) {
-  if (find_unit(word) != nullptr) return word;
-  const bool plural = word.size() > 2 && word.ends_with('s');
-  for (const std::string_view name : {word, plural ? word.substr(0, word.size() - 1) : word}) {
-    for (const Alias& alias : aliases) {
-      if (alias.word == name) return alias.symbol;
-    }
-    for (const units::Definition& unit : units::definitions) {
-      if (unit.constant == name && name.size() > 2) return unit.symbol;
-    }
-  }
-  return word;
-}
-
-std::vector<std::string> symbols_of_units() {
-  std::vector<std::string> known;
-  for (const units::Definition& unit : units::definitions) known.emplace_back(unit.symbol);
-  for (const units::Definition& unit : text_units) known.emplace_back(unit.symbol);
-  return known;
-}
-std::vector<std::string> words_for_units() {
-  std::vector<std::string> words;
-  for (const Alias& alias : aliases) words.emplace_back(alias.word);
-  for (const units::Definition& unit : units::definitions) {
-    if (unit.constant.find('_') == std::string_view::npos) words.emplace_back(unit.constant);
-  }
-  return words;
-}
-
-/// The words with which the whole text has the dimension it should have; all where `fits` is null.
+/// Those of the words that fit.
 std::vector<std::string> fitting(std::vector<std::string> words, const std::function<bool(std::string_view)>& fits) {
-  if (fits) std::erase_if(words, [&](const std::string& word) { return !fits(word); });
+  std::erase_if(words, [&](const std::string& word) { return !fits(word); });
   return words;
-}
-
-[[noreturn]] void unknown_unit(std::string_view word, std::string_view whole,
-                               const std::function<bool(std::string_view)>& fits) {
-  const std::vector<std::string> all = symbols_of_units(), known = fitting(all, fits);
-  const std::string in = word == whole ? "" : fmt::format(" in '{}'", whole);
-  // Half of a quotient has one answer, however far it is in letters.
-  for (const std::string& symbol : known) {
-    if (!symbol.starts_with(word) || !std::string_view(symbol).substr(word.size()).starts_with('/')) continue;
-    fail(fmt::format("unknown unit '{}'{}; did you mean '{}'?", word, in, symbol), whole);
-  }
-  const std::string name = suggest(word, known).empty() ? suggest(word, fitting(words_for_units(), fits)) : "";
-  if (!name.empty()) fail(fmt::format("unknown unit '{}'{}; did you mean '{}'?", word, in, name), whole);
-  fail(fmt::format("unknown unit '{}'{}{}", word, in, did_you_mean(word, known.empty() ? all : known)), whole);
 }
 
 /// The unit made of two words, "kJ/mol", "kJ mol^-1" or "g/cm^3", where the terms at i spell one.
@@ -311,37 +142,6 @@ void append(Unit& unit, const units::Definition& definition, const Term& term, c
   double value = 1;
   for (int i = 0; i < std::abs(term.power); ++i) value *= one;
   unit.factors.push_back({value, term.divides != (term.power < 0)});
-}
-
-/// Whether a word in the place of the unknown one at `i` gives the expected dimension; null where that is not known.
-std::function<bool(std::string_view)> fits_at(const std::vector<Term>& terms, std::size_t i, const UnitSystem& system,
-                                              const std::optional<Dimension>& expected) {
-  const auto is_known = [](const Term& term) { return term.word == "1" || find_unit(term.word) != nullptr; };
-  if (!expected || !std::all_of(terms.begin() + static_cast<std::ptrdiff_t>(i) + 1, terms.end(), is_known)) return {};
-  return [&terms, i, &system, wanted = *expected](std::string_view word) {
-    std::vector<Term> with = terms;
-    with[i].word = symbol_of(word);
-    Unit whole;
-    for (const Term& term : with) {
-      if (const units::Definition* const one = find_unit(term.word)) append(whole, *one, term, system);
-    }
-    return whole.dimension == wanted;
-  };
-}
-
-/// @param expected  the dimension of the whole, where it is known: no unit of another one is proposed
-Unit unit_from(const std::vector<Term>& terms, std::string_view whole, const UnitSystem& system,
-               const std::optional<Dimension>& expected = {}) {
-  Unit unit;
-  for (std::size_t i = 0; i < terms.size(); ++i) {
-    if (terms[i].word == "1") continue;
-    const units::Definition* const quotient = find_quotient(terms, i);
-    const units::Definition* const definition = quotient ? quotient : find_unit(terms[i].word);
-    if (!definition) unknown_unit(terms[i].word, whole, fits_at(terms, i, system, expected));
-    append(unit, *definition, terms[i], system);
-    if (quotient) ++i;
-  }
-  return unit;
 }
 
 /// The terms of a unit, by their symbols.
@@ -428,6 +228,86 @@ std::string expectation(const Expected& wanted, std::string_view number, const U
                      example_of(wanted.dimension, number, system));
 }
 
+/// What a unit is read for. `told` is how messages say it: "a time is expected, such as '1 day'".
+struct UnitPurpose {
+  Expected expected;
+  std::string told;
+};
+
+/// Whether a dimension may be a factor of another one, as length is of a velocity.
+bool is_part_of(const Dimension& factor, const Dimension& whole) {
+  const auto in = [](int some, int all) {
+    return some == 0 || ((some > 0) == (all > 0) && std::abs(some) <= std::abs(all));
+  };
+  return factor != dimensions::none && in(factor.length, whole.length) && in(factor.mass, whole.mass) &&
+         in(factor.time, whole.time) && in(factor.charge, whole.charge) && in(factor.temperature, whole.temperature);
+}
+
+/// Whether the words behind the unknown one at `i`, which is the first, are units.
+bool others_are_known(const std::vector<Term>& terms, std::size_t i) {
+  const auto is_known = [](const Term& term) { return term.word == "1" || find_unit(term.word) != nullptr; };
+  return std::all_of(terms.begin() + static_cast<std::ptrdiff_t>(i) + 1, terms.end(), is_known);
+}
+
+/// Whether a word in the place of the unknown one at `i` may be meant: the whole then has the expected dimension, or
+/// may have it where other words are unknown too. All may be where nothing is expected. Angles change no dimension, so
+/// that they would fit everywhere: they may be meant only where an angle is expected.
+std::function<bool(std::string_view)> fits_at(const std::vector<Term>& terms, std::size_t i,
+                                              const std::optional<UnitPurpose>& purpose) {
+  const bool last = others_are_known(terms, i);
+  return [&terms, i, last, wanted = purpose ? std::optional(purpose->expected) : std::nullopt](std::string_view word) {
+    if (!wanted) return true;
+    const auto dimension_of = [](std::string_view one, const Term& term) {
+      const units::Definition* const unit = find_unit(one);
+      return unit ? power(unit->dimension, term.divides ? -term.power : term.power) : dimensions::none;
+    };
+    const Dimension own = dimension_of(symbol_of(word), terms[i]);
+    if (own == dimensions::none && !wanted->angle) return false;
+    if (!last) return is_part_of(own, wanted->dimension);
+    Dimension whole = own;
+    for (std::size_t k = 0; k < terms.size(); ++k) {
+      if (k != i) whole = whole * dimension_of(terms[k].word, terms[k]);
+    }
+    return whole == wanted->dimension;
+  };
+}
+
+[[noreturn]] void unknown_unit(const std::vector<Term>& terms, std::size_t i, std::string_view whole,
+                               const std::optional<UnitPurpose>& purpose) {
+  const std::string_view word = terms[i].word;
+  const auto fits = fits_at(terms, i, purpose);
+  const std::vector<std::string> known = fitting(symbols_of_units(), fits);
+  std::string near;
+  // Half of a quotient has one answer, however far it is in letters.
+  for (const std::string& symbol : known) {
+    const bool half = symbol.starts_with(word) && std::string_view(symbol).substr(word.size()).starts_with('/');
+    if (half && near.empty()) near = symbol;
+  }
+  if (near.empty()) near = suggest(word, known);
+  if (near.empty()) near = suggest(word, fitting(words_for_units(), fits));
+  const bool all_fit = !known.empty() && (!purpose || others_are_known(terms, i));
+  const std::string end = !near.empty() ? fmt::format("did you mean '{}'?", near)
+                          : all_fit     ? fmt::format("expected one of: {}", fmt::join(known, ", "))
+                                        : purpose->told;
+  const std::string in = word == whole ? "" : fmt::format(" in '{}'", whole);
+  fail(fmt::format("unknown unit '{}'{}; {}", word, in, end), whole);
+}
+
+/// @param purpose  what it is read for, where that is known: no unit of another dimension is proposed
+Unit unit_from(const std::vector<Term>& terms, std::string_view whole, const UnitSystem& system,
+               const std::optional<UnitPurpose>& purpose) {
+  Unit unit;
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    if (terms[i].word == "1") continue;
+    const units::Definition* const quotient = find_quotient(terms, i);
+    const units::Definition* const definition = quotient ? quotient : find_unit(terms[i].word);
+    if (!definition) unknown_unit(terms, i, whole, purpose);
+    append(unit, *definition, terms[i], system);
+    if (quotient) ++i;
+  }
+  return unit;
+}
+
 /// All units without a dimension are angles.
 bool is_angle(const Term& term) {
   const units::Definition* const unit = find_unit(term.word);
@@ -486,7 +366,7 @@ double read_quantity(std::string_view text, const Expected& wanted, const UnitSy
   if (system.is_reduced() && !all_plain(terms)) {
     fail(fmt::format("'{}' has a unit; reduced units are plain numbers, such as '{}'", whole, digits), whole);
   }
-  const Unit unit = unit_from(terms, whole, system, wanted.dimension);
+  const Unit unit = unit_from(terms, whole, system, UnitPurpose{wanted, expectation(wanted, digits, system)});
   if (unit.dimension != wanted.dimension || (wanted.angle && !std::any_of(terms.begin(), terms.end(), is_angle))) {
     fail(fmt::format("'{}' is {}; {}", whole, kind_of(terms, unit.dimension), expectation(wanted, digits, system)),
          whole);
@@ -503,7 +383,9 @@ double Unit::times(double number) const noexcept {
   return number;
 }
 
-Unit parse_unit(std::string_view text, const UnitSystem& system) {
+namespace {
+
+Unit unit_for(std::string_view text, const UnitSystem& system, const std::optional<UnitPurpose>& purpose) {
   const std::string_view whole = trimmed(text);
   if (whole.empty()) fail("empty unit; expected one such as 'km/s', or '1' for a plain number", text);
   const std::vector<Term> terms = unit_terms(whole, whole, false);
@@ -513,7 +395,21 @@ Unit parse_unit(std::string_view text, const UnitSystem& system) {
                      whole),
          whole);
   }
-  return unit_from(terms, whole, system);
+  return unit_from(terms, whole, system, purpose);
+}
+
+}  // namespace
+
+Unit parse_unit(std::string_view text, const UnitSystem& system) { return unit_for(text, system, {}); }
+
+Unit parse_unit(std::string_view text, std::string_view dimension, const UnitSystem& system) {
+  const Expected wanted{.dimension = parse_dimension(dimension), .angle = dimension == "angle"};
+  const std::string example = wanted.angle ? "deg" : unit_of(wanted.dimension, system);
+  const bool plain = wanted.dimension == dimensions::none && !wanted.angle;
+  return unit_for(
+      text, system,
+      UnitPurpose{wanted, plain ? "a plain number is expected"
+                                : fmt::format("a unit of {} is expected, such as '{}'", dimension, example)});
 }
 
 double unit_value(std::string_view unit, const UnitSystem& system) { return parse_unit(unit, system).times(1.0); }
@@ -587,7 +483,7 @@ std::vector<UnitRow> list_units() {
     rows.push_back(std::move(row));
   };
   for (const units::Definition& unit : units::definitions) add(unit);
-  for (const units::Definition& unit : text_units) add(unit);
+  for (const units::Definition& unit : units_of_texts()) add(unit);
   const auto add_constant = [&](const char* name, const char* dimension, double UnitSystem::*value) {
     rows.push_back({name, name, dimension, solar.*value, molecular.*value, si.*value, reduced.*value});
   };

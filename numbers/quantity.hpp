@@ -41,6 +41,12 @@ struct Unit {
 /// @throws Error for an unknown unit (with a proposal) or what is not a unit
 Unit parse_unit(std::string_view text, const UnitSystem& system);
 
+/// The same for numbers of a dimension, in words as `parse_dimension` reads them: no unit of another one is proposed.
+///
+/// The unit may have another dimension nevertheless.
+/// @throws Error as parse_unit
+Unit parse_unit(std::string_view text, std::string_view dimension, const UnitSystem& system);
+
 /// The value of one of a unit, such as 1000 for "km" in si.
 ///
 /// To convert numbers use `Unit::times`, which agrees with text to the bit: number * unit_value may round otherwise.

@@ -56,7 +56,7 @@ long number_distance(std::string_view a, std::string_view b) {
 std::string squeezed(std::string_view word) {
   std::string text;
   for (const char c : lower_case(word)) {
-    if (c != '_' && c != '-' && c != '/' && c != ' ') text += c;
+    if (std::string_view("_-/ .,()").find(c) == std::string_view::npos) text += c;
   }
   if (text.size() > 4 && text.ends_with("ies")) return text.substr(0, text.size() - 3) + 'y';
   if (text.size() > 3 && text.ends_with('s') && !text.ends_with("ss")) text.pop_back();
@@ -65,16 +65,22 @@ std::string squeezed(std::string_view word) {
 
 /// So many letters of a word are enough where the rest is missing.
 constexpr std::size_t least_begun = 5;
+/// A word of two letters or more may lack so many at its end: "Mj" for "Mjup".
+constexpr std::size_t most_missing = 2;
+/// Words of so many letters that differ in two have hardly a letter in common.
+constexpr std::size_t short_word = 3;
 
 std::string suggest(std::string_view word, const std::vector<std::string>& known) {
   const std::string lower = lower_case(word);
-  const std::size_t near = std::max<std::size_t>(2, word.size() / 3);
+  const std::size_t near = word.size() <= short_word ? 1 : std::max<std::size_t>(2, word.size() / 3);
   const std::string core = squeezed(word);
   std::string best;
   std::tuple<std::size_t, std::size_t, long> best_distance{near + 1, 0, 0};
   for (const std::string& candidate : known) {
     const bool same = core.size() > 1 && squeezed(candidate) == core;
-    const bool begun = word.size() >= least_begun && lower_case(candidate).starts_with(lower);
+    const bool enough =
+        word.size() >= least_begun || (word.size() > 1 && candidate.size() <= word.size() + most_missing);
+    const bool begun = enough && lower_case(candidate).starts_with(lower);
     const std::size_t distance = same ? 0 : begun ? near : edit_distance(lower, lower_case(candidate));
     if (distance > near || distance >= std::max(word.size(), candidate.size())) continue;
     const std::tuple measured{distance, edit_distance(word, candidate), number_distance(lower, lower_case(candidate))};

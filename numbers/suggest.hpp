@@ -14,16 +14,17 @@ namespace noether {
 /// @cost length of a times length of b
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
-/// A word in small letters, without blanks, '_', '-' and '/', and without the s of a plural: what is left of "Aba-1064"
-/// is what is left of "aba_10_6_4".
+/// A word in small letters, without blanks and "_-/.,()", and without the s of a plural: what is left of "Aba-1064" and
+/// of "ABA(10,6,4)" is what is left of "aba_10_6_4".
 /// @throws std::bad_alloc
 std::string squeezed(std::string_view word);
 
 /// The nearest known word, or nothing where none is near.
 ///
-/// Near is at most max(2, length / 3) edits, case aside, and fewer than the longer word has letters; so is one
-/// that begins with the word, if that has 5 letters. Nearest is one that is the same when both are squeezed. Among
-/// equals the one that agrees better in case wins, then the one whose number at the end is nearer, then the first.
+/// Near is at most max(2, length / 3) edits, 1 for up to 3 letters, case aside, and fewer than the longer word has
+/// letters; so is one that begins with the word, if that has 5 letters, or 2 and lacks 2 at most. Nearest is one that
+/// is the same when both are squeezed. Among equals the one that agrees better in case wins, then the one whose number
+/// at the end is nearer, then the first.
 /// @throws std::bad_alloc
 std::string suggest(std::string_view word, const std::vector<std::string>& known);
 

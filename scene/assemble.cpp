@@ -92,7 +92,7 @@ AnyHamiltonian<double> hamiltonian_of(const Scene& scene) {
   ForceField<double> forces;
   for (const SceneForce& force : made.forces) {
     if (force.letter) continue;
-    if (force.force.claims().velocity_dependent) {
+    if (force.force.claims().velocity_dependent && !made.splitting.claims.velocity_forces) {
       throw SchemeMismatch(
           fmt::format("force '{}' depends on velocities, so no kick is its exact flow; use a method for "
                       "y' = f, such as 'gauss_radau_15' or 'dop853'",

@@ -1,8 +1,10 @@
 #include "scene/check.hpp"
 
+#include "integrators/all_schemes.hpp"
 #include "integrators/composition.hpp"
 #include "neighbors/neighbor_images.hpp"
 #include "numbers/text.hpp"
+#include "scene/foreign_names.hpp"
 #include "scene/read_constraints.hpp"
 #include "scene/read_particles.hpp"
 #include "scene/toml.hpp"
@@ -115,9 +117,17 @@ class SceneCheck {
     try {
       made = integrator_of(scene_, 0);
     } catch (const SchemeMismatch& error) {
-      integrator.fail(error.key().empty() ? "method" : error.key(), error.message() + std::string(who_has_noise()));
+      integrator.fail(error.key().empty() ? "method" : error.key(),
+                      error.message() + std::string(who_has_noise()) + name_in_capitals());
     }
     check_start(hamiltonian, integrator, *made);
+  }
+
+  /// What a word may have been meant as, if it is the name of a method: "SABA" has the letters A and B too.
+  std::string name_in_capitals() const {
+    const std::string& method = scene_.integrator.method;
+    if (scene_.integrator.classical || schemes::find(method) != nullptr) return "";
+    return proposal_by_name(method, scene_.parts->method_names());
   }
 
   /// Refuses a force in a kick that the Hamiltonian does not have: it would be summed in another one.

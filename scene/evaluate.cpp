@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace noether {
 
@@ -47,15 +48,23 @@ void add_hamiltonian(const Scene& scene, ParticleSystem<double>& s, Evaluation& 
   hamiltonian.bind(s);
   const EnergyTerms<double> energy = hamiltonian.energy(s);
   result.kinetic = energy.kinetic;
-  result.terms.emplace_back(scene.hamiltonian.splitting.name, energy.potential - result.potential);
-  result.potential = energy.potential;
+  double of_forces = 0;  // as far as they have one
+  for (const auto& [name, potential] : result.terms) of_forces += std::isnan(potential) ? 0 : potential;
+  const double own = scene.hamiltonian.splitting.claims.energy ? energy.potential - of_forces : nan;
+  result.terms.emplace_back(scene.hamiltonian.splitting.name, own);
+  result.potential = std::isnan(result.potential) || std::isnan(own) ? nan : energy.potential;
+  const bool all = split.hamiltonian.forces.size() == scene.hamiltonian.forces.size();
+  const std::optional<Mat3<double>> virial = hamiltonian.virial(s);
+  result.virial = all && virial ? *virial : Mat3<double>(Mat3<double>::Constant(nan));
   VectorColumn<double> a(s.size());
   hamiltonian.accelerations(s, a);
   for (const SceneForce& force : scene.hamiltonian.forces) {
     if (force.letter || !force.force.claims().velocity_dependent) continue;
     VectorColumn<double> more(s.size());
     ForceSink<double> sink(more, s, Request{});
-    force.force.add_to(sink, s);
+    AnyForce<double> bound = force.force;
+    bound.bind(s);
+    bound.add_to(sink, s);
     for (Index i = 0; i < s.size(); ++i) a.add(i, std::as_const(more)[i]);
   }
   for (Index i = 0; i < s.size(); ++i) result.forces.set(i, std::as_const(s).masses()[i] * std::as_const(a)[i]);
@@ -81,16 +90,20 @@ Evaluation evaluate(const Scene& scene, bool check) {
   bool has_pressure = s.box().is_periodic() && scene.hamiltonian.constraints.empty();
   for (const SceneForce& term : scene.hamiltonian.terms()) {
     ForceSink<double> sink(a, s, {.energy = true, .virial = true});
-    term.force.add_to(sink, s);
+    AnyForce<double> bound = term.force;
+    bound.bind(s);
+    bound.add_to(sink, s);
+    const ForceClaims claims = term.force.claims();
     const bool failed = sink.failure().has_value();
     if (failed && result.outcome.ok()) result.outcome = outcome_of(*sink.failure(), s);
-    const double potential = failed ? nan : sink.potential();
+    const double potential = failed || !claims.energy ? nan : sink.potential();
     result.terms.emplace_back(numbered(term.name, result.terms), potential);
     result.potential += potential;
-    result.virial += failed ? Mat3<double>(Mat3<double>::Constant(nan)) : sink.virial();
-    has_pressure = has_pressure && term.force.claims().virial && !failed;
+    const bool has_virial = claims.virial && !failed;
+    result.virial += has_virial ? sink.virial() : Mat3<double>(Mat3<double>::Constant(nan));
+    has_pressure = has_pressure && has_virial;
     for (Index i = 0; i < s.size(); ++i) result.forces.add(i, std::as_const(s).masses()[i] * a[i]);
-    if (check && !failed && term.force.claims().energy)  // else it is the gradient of nothing
+    if (check && !failed && claims.energy)  // else it is the gradient of nothing
       result.gradient_error = std::max(result.gradient_error.value_or(0), gradient_error(term.force, s));
   }
   if (!scene.hamiltonian.splitting.only_forces) {

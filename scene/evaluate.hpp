@@ -11,9 +11,9 @@
 namespace noether {
 
 struct Evaluation {
-  double kinetic = 0, potential = 0;                  ///< [energy]
+  double kinetic = 0, potential = 0;                  ///< [energy]; NaN where a force has none
   std::vector<std::pair<std::string, double>> terms;  ///< potential energy of each force; equal names are numbered
-  Mat3<double> virial = Mat3<double>::Zero();         ///< sum of x (x) f [energy]
+  Mat3<double> virial = Mat3<double>::Zero();         ///< sum of x (x) f [energy]; NaN where a force has none
   std::optional<double> pressure;                     ///< of a periodic box, where every force tells its virial
   VectorColumn<double> forces;                        ///< m a, shape (n, 3); drag is not among them
   double force_max = 0;                               ///< largest |m a|

@@ -24,6 +24,7 @@ constexpr std::array names_of_others = {
     ForeignName{" euler_cromer semi_implicit_euler symplectic_euler ", NamePlace::method, "symplectic_euler_a"},
     ForeignName{" forest_ruth fr yoshida ", NamePlace::method, "yoshida_4"},
     ForeignName{" ruth ruth3 ", NamePlace::method, "ruth_3"},
+    ForeignName{" blanes_moan blanesmoan ", NamePlace::method, "blanes_moan_s6"},
     ForeignName{" omelyan omf ", NamePlace::method, "pefrl"},
     ForeignName{" mclachlan mclachlan_4 ", NamePlace::method, "mclachlan_s4"},
     ForeignName{" eos embedded_operator_splitting ", NamePlace::method, "blanes_moan_s6",
@@ -118,9 +119,10 @@ constexpr std::array names_of_others = {
                 "tether"},
     ForeignName{" newton newtonian newtonian_gravity nbody n_body self_gravity ", NamePlace::force, "gravity"},
     ForeignName{" gr relativity general_relativity gr_correction schwarzschild ", NamePlace::force, "gr_potential",
-                "which gives the right advance of pericentres, or 'post_newtonian' for methods that do not split"},
+                "which gives the right advance of pericentres, or 'post_newtonian', which has the mean motion too"},
     ForeignName{" gr_full eih pn post_newton 1pn pn1 ", NamePlace::force, "post_newtonian",
-                "for methods that do not split, such as 'gauss_radau_15'; it knows the field of particle 0 only", true},
+                "for methods such as 'gauss_radau_15' and for 'wisdom_holman'; it knows the field of particle 0 only",
+                true},
     ForeignName{" j2 j4 zonal_harmonics gravitational_harmonics oblate quadrupole ", NamePlace::force, "oblateness"},
     ForeignName{" drag friction damping viscous modify_orbits_forces ", NamePlace::force, "linear_drag"},
     ForeignName{" efield electric_field constant_force addforce constant_field ", NamePlace::force, "uniform_field"},
@@ -138,13 +140,14 @@ constexpr std::array names_of_others = {
                 "energy"},
     ForeignName{" msd diffusion ", NamePlace::monitor, "mean_square_displacement"},
     ForeignName{" vacf velocity_correlation ", NamePlace::monitor, "velocity_autocorrelation"},
-    ForeignName{" rdf g_r gofr g(r) pair_correlation ", NamePlace::monitor, "radial_distribution"},
+    ForeignName{" rdf g_r gofr pair_correlation ", NamePlace::monitor, "radial_distribution"},
     ForeignName{" temp ", NamePlace::monitor, "temperature"},
     ForeignName{" virial stress press ", NamePlace::monitor, "pressure"},
     ForeignName{" com center_of_mass_motion barycenter ", NamePlace::monitor, "center_of_mass"},
     ForeignName{" orbits orbital_elements osculating_elements orbit kepler_elements ", NamePlace::monitor, "elements"},
-    ForeignName{" dump frames xtc trr dcd traj positions output snapshots simulationarchive ", NamePlace::monitor,
-                "trajectory"},
+    ForeignName{
+        " dump frames xtc trr dcd traj positions output snapshots simulationarchive xyz extxyz extended_xyz pdb ",
+        NamePlace::monitor, "trajectory"},
     ForeignName{" restart ", NamePlace::monitor, "checkpoint"},
     ForeignName{" hamiltonian_shadow modified_energy shadow ", NamePlace::monitor, "shadow_hamiltonian"},
     // Hamiltonians and starts.
@@ -188,13 +191,22 @@ constexpr std::array names_of_others = {
 std::string as_in_table(std::string_view word) {
   std::string text;
   for (const char c : word) {
-    if (c >= 'A' && c <= 'Z') {
-      text += static_cast<char>(c - 'A' + 'a');
-    } else {
-      text += c == '-' || c == '/' || c == '.' || c == ' ' ? '_' : c;
-    }
+    const bool joint = std::string_view("_-/. (),").find(c) != std::string_view::npos;
+    if (joint && (text.empty() || text.back() == '_')) continue;
+    text += joint ? '_' : c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   }
+  if (text.ends_with('_')) text.pop_back();
   return text;
+}
+
+/// A word without the kind of thing that it names: "morse" of "morse_potential". Empty if it names none.
+std::string without_kind(std::string_view word) {
+  const std::string text = as_in_table(word);
+  for (const std::string_view kind : {"_potential", "_force", "_field", "_integrator", "_method", "_scheme", "_step",
+                                      "_hamiltonian", "_monitor", "_constraint", "_thermostat", "_bath"}) {
+    if (text.ends_with(kind) && text.size() > kind.size()) return text.substr(0, text.size() - kind.size());
+  }
+  return "";
 }
 
 bool has_word(const ForeignName& row, std::string_view word) {
@@ -247,13 +259,14 @@ std::optional<NamePlace> place_of(const std::vector<std::string>& known) {
 }
 
 /// Whether people who write a word at one place may mean what stands at the other: a method that is a Hamiltonian here,
-/// or a bath; a force that is a constraint. What is at no place stands in for methods, as minimizers and barostats do.
+/// a bath, or a solver of charges or constraints; a force that is a constraint. What is at no place stands in for
+/// methods, as minimizers and barostats do.
 bool are_related(NamePlace written, NamePlace meant) {
   using enum NamePlace;
   if (written == meant) return true;
   switch (written) {
     case method:
-      return meant == hamiltonian || meant == thermostat || meant == none;
+      return meant != monitor && meant != builder && meant != key;
     case hamiltonian:
       return meant == method || meant == force || meant == none;
     case force:
@@ -292,18 +305,33 @@ std::string foreign_proposal(std::string_view word, const std::vector<std::strin
   return fmt::format("; in its place there is {}{}", as_scene_text(*found), more);
 }
 
+/// A known name; of a scheme not one of its other names.
+std::string first_name_of(const std::string& known_name, const std::vector<std::string>& known) {
+  const Scheme* scheme = schemes::find(known_name);
+  return scheme != nullptr && is_one_of(scheme->name, known) ? std::string(scheme->name) : known_name;
+}
+
 }  // namespace
 
 std::span<const ForeignName> foreign_names() { return names_of_others; }
 
-std::string proposal(std::string_view word, const std::vector<std::string>& known, std::string_view otherwise) {
-  std::string near = suggest(word, known);
-  if (const Scheme* scheme = schemes::find(near)) {
-    if (is_one_of(scheme->name, known)) near = scheme->name;  // not its short name
+std::string proposal_by_name(std::string_view word, const std::vector<std::string>& known) {
+  for (const std::string& one : {std::string(word), without_kind(word)}) {
+    if (one.empty()) continue;
+    const std::string near = suggest(one, known);
+    if (!near.empty() && squeezed(one) == squeezed(near)) {
+      return fmt::format("; did you mean '{}'?", first_name_of(near, known));
+    }
+    std::string foreign = foreign_proposal(one, known);
+    if (!foreign.empty()) return foreign;
   }
-  const bool same = !near.empty() && squeezed(word) == squeezed(near);
-  const std::string foreign = same ? "" : foreign_proposal(word, known);
-  if (!foreign.empty()) return foreign;
+  return "";
+}
+
+std::string proposal(std::string_view word, const std::vector<std::string>& known, std::string_view otherwise) {
+  const std::string near = first_name_of(suggest(word, known), known);
+  const std::string other = proposal_by_name(word, known);
+  if (!other.empty()) return other;
   return near.empty() ? std::string(otherwise) : fmt::format("; did you mean '{}'?", near);
 }
 

@@ -26,6 +26,11 @@ struct ForeignName {
 /// All of them: parts and methods, then keys.
 std::span<const ForeignName> foreign_names();
 
+/// The end of a message about a name that is known but for capitals and joints, or from another program: "; did you
+/// mean 'aba_10_6_4'?" for "ABA(10,6,4)". Empty for others, misspelt ones too.
+/// @param known  names that are accepted where the word stands
+std::string proposal_by_name(std::string_view word, const std::vector<std::string>& known);
+
 /// The end of a message about an unknown name: "; did you mean 'verlet'?" for a misspelt one, what there is here for a
 /// name of another program, else as `did_you_mean`.
 /// @param known  names that are accepted where the word stands

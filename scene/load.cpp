@@ -311,9 +311,18 @@ class SceneReader {
       reader.fail("type", fmt::format("{} already includes {}; take this force out, or use {}", made.splitting.name,
                                       kind.info.name, plain_hamiltonian()));
     }
-    if (!kind.only_once.empty() && std::any_of(made.forces.begin(), made.forces.end(), is_it)) {
+    // Forces of several names that must not stand twice for one reason are one effect.
+    const auto has_its_effect = [&](const SceneForce& other) {
+      return std::any_of(parts_.forces().begin(), parts_.forces().end(), [&](const Parts::ForceKind& known) {
+        return known.info.name == other.name && known.only_once == kind.only_once;
+      });
+    };
+    const auto same = std::find_if(made.forces.begin(), made.forces.end(), has_its_effect);
+    if (!kind.only_once.empty() && same != made.forces.end()) {
+      const std::string who = is_it(*same) ? kind.info.name + " appears twice in the scene"
+                                           : fmt::format("{} and {} are one effect", same->name, kind.info.name);
       const std::string_view mark = kind.only_once.starts_with("so ") ? "," : ";";
-      reader.fail("type", fmt::format("{} appears twice in the scene{} {}", kind.info.name, mark, kind.only_once));
+      reader.fail("type", fmt::format("{}{} {}", who, mark, kind.only_once));
     }
     if (!(force.force.claims().range > 0)) return;
     const std::set<std::string> types = types_between(table);
@@ -389,6 +398,11 @@ class SceneReader {
       TableReader reader(context_, *table, fmt::format("stop '{}'", type), path);
       for (const char* key : {"type", "every"}) reader.find(key);
       SceneStop stop = kind->read(reader);
+      // A step that a method chooses may be a large part of an orbit, and a hundred of them the whole run.
+      if (scene_.integrator.adaptive() && !reader.has("steps")) {
+        stop.steps = 1;
+        stop.effective.put("steps", SceneValue::of(stop.steps, reader.line("steps")));
+      }
       SceneValue effective = SceneValue::table();
       effective.put("type", SceneValue::of(type, reader.line("type")));
       for (auto& [key, value] : *stop.effective.get<SceneValue::Table>()) effective.put(key, value);
@@ -403,10 +417,23 @@ class SceneReader {
                 "stop '{}' is checked at whole steps, but method '{}' chooses them; give steps instead of every", type,
                 scene_.integrator.method));
       }
+      note_pairs_left_out(reader, stop);
       list.push_back(std::move(effective));
       scene_.stops.push_back(std::move(stop));
     }
     if (!list.empty()) scene_.effective.put("stop", SceneValue::of(std::move(list)));
+  }
+
+  /// Tells that pairs without mass do not meet, where there are any.
+  void note_pairs_left_out(const TableReader& reader, const SceneStop& stop) {
+    const auto& masses = scene_.particles.masses();
+    Index tracers = 0;
+    for (Index i = 0; i < scene_.particles.size(); ++i) tracers += masses[i] == 0 ? 1 : 0;
+    if (stop.rule.kind != StopRule::Kind::collision || tracers < 2) return;
+    reader.note(
+        reader.table(),
+        fmt::format("pairs of the {} tracers, whose mass is 0, do not stop the run; give them masses if they may",
+                    tracers));
   }
 
   /// Only who tests a scene reads what it expects: what is wrong there ends no run.

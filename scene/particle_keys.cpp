@@ -2,6 +2,7 @@
 
 #include "io/digest.hpp"
 #include "io/files.hpp"
+#include "numbers/quantity.hpp"
 #include "numbers/suggest.hpp"
 #include "scene/builders.hpp"
 
@@ -91,7 +92,15 @@ std::optional<Box> read_box(TableReader& reader, SceneValue& effective) {
 
 bool has_frame_number(TableReader& reader) {
   const SceneValue* frame = reader.find("frame");
+  if (frame != nullptr && frame->get<std::int64_t>() == nullptr && frame->get<std::string>() == nullptr)
+    reader.wrong_kind(*frame, "frame", "\"barycenter\", or the number of a frame, such as 0 or -1 for the last,");
   return frame != nullptr && frame->get<std::int64_t>() != nullptr;
+}
+
+std::string no_such_frame(const std::string& frame, bool has_frames) {
+  std::string told = fmt::format("unknown frame '{}'{}", frame, did_you_mean(frame, {"barycenter", "as_given"}));
+  if (has_frames && !told.ends_with('?')) told += ", or the number of a frame, such as 0 or -1 for the last";
+  return told;
 }
 
 std::optional<Mixing> read_mixing(TableReader& reader, SceneValue& effective) {
@@ -203,6 +212,22 @@ void refuse_particle_key(TableReader& reader, const Error& error) {
   std::from_chars(key.data() + dot + 1, key.data() + key.size(), number);
   const std::string list = key.substr(0, dot);
   reader.fail(tables_of(reader, list).at(number), key, error.message());
+}
+
+void refuse_without_mass(TableReader& body) {
+  const SceneValue* anomaly = body.find("M");
+  if (const std::string* text = anomaly != nullptr ? anomaly->get<std::string>() : nullptr) {
+    bool is_mass = true;
+    try {
+      parse_quantity(*text, dimensions::mass, *body.context().units);
+    } catch (const Error&) {
+      is_mass = false;
+    }
+    if (is_mass && !body.context().units->is_reduced()) {
+      body.fail("M", fmt::format("M = \"{}\" is a mass, but M is the mean anomaly; did you mean 'mass'?", *text));
+    }
+  }
+  body.fail(nullptr, "mass", fmt::format("{} has no mass; give one, or 0 for a tracer", body.what()));
 }
 
 void read_temperature(TableReader& reader, ParticleSystem<double>& s, SceneValue& effective) {

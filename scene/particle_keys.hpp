@@ -31,6 +31,9 @@ std::optional<Box> read_box(TableReader& reader, SceneValue& effective);
 /// Whether `frame` is the number of a frame of a file, and not "barycenter" or "as_given".
 bool has_frame_number(TableReader& reader);
 
+/// What is wrong with a text as `frame`, of particles that come from a file with frames or not.
+std::string no_such_frame(const std::string& frame, bool has_frames);
+
 /// `mixing`; empty where the scene says nothing. @throws SceneError
 std::optional<Mixing> read_mixing(TableReader& reader, SceneValue& effective);
 
@@ -43,6 +46,9 @@ void read_exclusions(TableReader& reader, ParticleSystem<double>& s, SceneValue&
 /// `[[particles.type]]` and `[[particles.pair]]`. @throws SceneError
 std::vector<TypeParameters> read_types(TableReader& reader, SceneValue& effective);
 std::vector<PairParameters> read_pairs(TableReader& reader, SceneValue& effective);
+
+/// Ends reading at a body without a mass, or at its M if that is one.
+[[noreturn]] void refuse_without_mass(TableReader& body);
 
 /// Ends reading with what is wrong with a key, or with table k of `[[particles.type]]` or `[[particles.pair]]`: an
 /// error at key "special", "type.<k>", "pair.<k>".

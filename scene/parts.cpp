@@ -74,11 +74,13 @@ struct Escape {
   std::int64_t steps = 100;
 
   static constexpr auto describe() {
-    return part<Escape>("escape", "ends the run when a particle is far from the centre of mass",
-                        formula("|x_i - X| > distance,  X = sum m_j x_j / sum m_j"),
-                        quantities("the particle and, by interpolation, since when"),
-                        field<&Escape::distance>("distance", "length").required("\"100 au\""),
-                        field<&Escape::steps>("steps", "1", "steps between two checks"));
+    return part<Escape>(
+        "escape", "ends the run when a particle is far from the centre of mass",
+        formula("|x_i - X| > distance,  X = sum m_j x_j / sum m_j"),
+        quantities("the particle and, by interpolation, since when"),
+        field<&Escape::distance>("distance", "length").required("\"100 au\""),
+        field<&Escape::steps>("steps", "1",
+                              "steps between two checks; of a method that chooses its steps 1 unless given"));
   }
   void check() const {
     check_distance(distance);
@@ -132,7 +134,7 @@ Parts standard_parts() {
   parts.add_force<Bonded>();
   parts.add_force<LinearDrag>();
   parts.add_constraint<Distance>();
-  parts.add_constraint({part_info<RigidBar>(), 0, RigidBar::read});
+  parts.add_constraint({part_info<RigidBar>(), 0, RigidBar::read, Drawn::chain});
   parts.add_constraint<Angle>();
   parts.add_constraint<Fixed>();
   parts.add_constraint<OnSphere>();

@@ -1,6 +1,7 @@
 #pragma once
 /// The parts a scene may name: each is one type that describes itself.
 
+#include "constraints/constraint.hpp"
 #include "constraints/constraint_set.hpp"
 #include "engine/any_force.hpp"
 #include "engine/simulation.hpp"
@@ -159,6 +160,7 @@ class Parts {
     std::function<SceneSplitting(TableReader&)> read;  ///< its own keys, among those that all Hamiltonians have
     std::vector<ColumnInfo> columns = {};              ///< that it gives particles
     bool needs_forces = false;                         ///< without forces or constraints nothing would move
+    std::function<HamiltonianClaims()> claims = {};    ///< of the Hamiltonian with its defaults, without forces
   };
   struct ThermostatKind {
     PartInfo info;
@@ -171,11 +173,13 @@ class Parts {
     std::vector<ColumnInfo> columns = {};  ///< that it gives particles
     ForceClaims claims = {};               ///< of the force with its defaults
     std::string only_once = {};            ///< why it does not stand twice in a scene; empty: it may
+    bool about_heaviest = false;           ///< it takes particle 0 for the heaviest one
   };
   struct ConstraintKind {
     PartInfo info;
     std::size_t particles;                              ///< of each constraint; 0: any number
     std::function<SceneConstraint(TableReader&)> read;  ///< all but which particles
+    Drawn drawn = Drawn::nothing;                       ///< in pictures
   };
   struct SystemKind {
     PartInfo info;
@@ -209,6 +213,7 @@ class Parts {
     HamiltonianKind kind{part_info<H>(), [](TableReader& reader) { return read_splitting<H>(reader); },
                          columns_of<H>()};
     if constexpr (requires { H{}.forces(); }) kind.needs_forces = std::tuple_size_v<decltype(H{}.forces())> == 0;
+    kind.claims = [] { return AnyHamiltonian<double>(H{}.template split<double>(ForceField<double>{})).claims(); };
     put(hamiltonians_, std::move(kind));
     return *this;
   }
@@ -235,6 +240,7 @@ class Parts {
                    [](TableReader& reader, const TiedParticles& tied) { return read_force<F>(reader, tied); },
                    particles, columns_of<F>(), claims_of(force_of(F{}))};
     if constexpr (requires { F::only_once; }) kind.only_once = F::only_once;
+    if constexpr (requires { F::about_heaviest; }) kind.about_heaviest = F::about_heaviest;
     put(forces_, std::move(kind));
     return *this;
   }
@@ -242,8 +248,9 @@ class Parts {
   /// Makes constraint `C` known by the name it describes itself with; one of the same name is replaced.
   template <Constraint C> Parts& add_constraint() {
     static_assert(Described<C>, "a constraint in a scene describes itself: static constexpr auto describe()");
-    put(constraints_,
-        ConstraintKind{part_info<C>(), C::particles, [](TableReader& reader) { return read_constraint<C>(reader); }});
+    ConstraintKind kind{part_info<C>(), C::particles, [](TableReader& reader) { return read_constraint<C>(reader); }};
+    if constexpr (requires { C::drawn; }) kind.drawn = C::drawn;
+    put(constraints_, std::move(kind));
     return *this;
   }
   /// The same for one that ties any number of particles, by several constraints.

@@ -136,6 +136,7 @@ void read_method(TableReader& reader, const Parts& parts, SceneIntegrator& made)
     try {
       made.scheme = word(name);
     } catch (const Error& error) {
+      if (!proposal(name, parts.method_names(), "").empty()) unknown_method(reader, name, parts);  // "VERLET"
       reader.fail("method", error.message());
     }
     made.method = name;

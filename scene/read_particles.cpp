@@ -235,7 +235,7 @@ class BodyTables {
     if (const std::string wrong = wrong_name(name); !wrong.empty()) body.fail("name", wrong);
     const std::optional<double> of_type = typed_.add(body);
     const auto given = body.quantity("mass", "mass"), mass = given ? given : of_type;
-    if (!mass) body.fail(nullptr, "mass", fmt::format("{} has no mass; give one, or 0 for a tracer", body.what()));
+    if (!mass) refuse_without_mass(body);
     if (given) check_mass(body, name, *mass);
     if (index_.count(name) != 0) {
       body.fail("name", fmt::format("two bodies are named '{}'; names must differ", name));
@@ -392,6 +392,7 @@ ParticleSystem<double> from_file(TableReader& reader, const std::filesystem::pat
     epoch = table.epoch;
     if (epoch->scale.empty() && wanted) epoch->scale = wanted->scale;
   }
+  if (!table.light_center.empty()) warnings.push_back(table.light_center);
   if (table.without_sun && alone) {
     warnings.push_back(
         fmt::format("the states in {} are about the Solar System Barycenter, but the Sun is not among them",
@@ -531,7 +532,7 @@ void read_frame(TableReader& reader, ParticleSystem<double>& s, bool of_a_frame,
   }
   const std::string frame = reader.text("frame", "as_given");
   if (frame != "as_given" && frame != "barycenter") {
-    reader.fail("frame", fmt::format("unknown frame '{}'{}", frame, did_you_mean(frame, {"barycenter", "as_given"})));
+    reader.fail("frame", no_such_frame(frame, of_a_frame || reader.has("structure")));
   }
   if (frame == "barycenter" && s.box().is_periodic()) {
     reader.fail("frame", "a periodic box has no centre of mass; take frame = \"barycenter\" out");

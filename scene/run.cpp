@@ -283,8 +283,9 @@ class Runner {
     r.wall_s = ending_.wall_s;
     r.evaluations = sim.evaluations();
     if (const auto& encounter = r.evaluations.encounter) {
-      r.warnings.push_back(warning_of(*encounter, sim.particles(), *scene().units));
+      r.warnings.push_back(warning_of(*encounter, scene().hamiltonian.splitting.name, sim.particles(), *scene().units));
     }
+    if (r.evaluations.unsettled > 0) r.warnings.push_back(warning_of(r.evaluations, claims.method));
     sim.for_each_monitor([&](const std::string& name, AnyMonitor<double>& monitor) {
       if (auto one = monitor.report()) r.monitors.emplace_back(name, *one);
     });

@@ -178,8 +178,7 @@ class Setter {
     std::size_t index = 0;
     const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), index);
     if (error == std::errc() && end == key.data() + key.size()) {
-      if (index >= list.size())
-        fail(fmt::format("there is no element {}; there are {}, counted from 0", index, list.size()));
+      if (index >= list.size()) refuse_number(list, index, key);
       return list[index];
     }
     std::vector<SceneValue*> found;
@@ -194,6 +193,16 @@ class Setter {
       fail(fmt::format("'{}' appears {} times in the scene; give its number, counted from 0", key, found.size()));
     }
     return *found.front();
+  }
+
+  /// A number that a list does not have; the next one adds a table.
+  [[noreturn]] void refuse_number(const SceneValue::Array& list, std::size_t index, const std::string& key) const {
+    const std::string head = path_.substr(0, path_.find("." + key) + 1);
+    const std::string there = list.empty()       ? "the list is empty"
+                              : list.size() == 1 ? "the only one is number 0"
+                                                 : fmt::format("the last one is number {}", list.size() - 1);
+    fail(
+        fmt::format("there is no element {}; {}, and {}{}={{...}} adds one", index, there, head, list.size()));
   }
 
   static void drop_alternatives(SceneValue& table, const std::string& key) {

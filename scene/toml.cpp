@@ -219,6 +219,11 @@ SceneValue parse_toml(std::string_view text, const std::string& file) {
   try {
     return converted_table(toml::parse(text), 1, file);
   } catch (const toml::parse_error& error) {
+    if (text.starts_with("\x89HDF")) {
+      throw SceneError(
+          fmt::format("this is an HDF5 file, and a scene is expected; `noether info {}` tells what is in it", file),
+          {.file = file});
+    }
     throw SceneError("this is not TOML: " + plain(error.description()),
                      {.file = file, .line = static_cast<int>(error.source().begin.line)});
   }

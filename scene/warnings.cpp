@@ -1,6 +1,7 @@
 #include "scene/warnings.hpp"
 
 #include "engine/charge.hpp"
+#include "engine/given_orbit.hpp"
 #include "integrators/encounters.hpp"
 #include "numbers/quantity.hpp"
 #include "numbers/text.hpp"
@@ -136,17 +137,51 @@ std::string other_cutoff(const Scene& scene) {
   return "";
 }
 
-/// That a splitting into Kepler arcs goes round a body that is not the heaviest; empty where it is.
+/// The first force that takes particle 0 for the heaviest one; empty where there is none.
+std::string about_heaviest(const Scene& scene) {
+  for (const SceneForce& force : scene.hamiltonian.forces) {
+    for (const Parts::ForceKind& kind : scene.parts->forces()) {
+      if (kind.about_heaviest && kind.info.name == force.name) return force.name;
+    }
+  }
+  return "";
+}
+
+/// That a splitting into Kepler arcs, or relativity, is about a body that is not the heaviest; empty where it is.
 std::string other_primary(const Scene& scene) {
   const ParticleSystem<double>& s = scene.particles;
-  if (!scene.hamiltonian.splitting.claims.kepler || s.size() == 0) return "";
+  const bool arcs = scene.hamiltonian.splitting.claims.kepler;
+  const std::string force = about_heaviest(scene);
+  if ((!arcs && force.empty()) || s.size() == 0) return "";
   Index heaviest = 0;
   for (Index i = 1; i < s.size(); ++i) heaviest = s.masses()[i] > s.masses()[heaviest] ? i : heaviest;
   if (heaviest == 0) return "";
-  return fmt::format(
-      "'{}' comes first, so the Kepler arcs of {} go round it, but '{}' has {:.3g} times its mass; put '{}' first",
-      s.name(0), scene.hamiltonian.splitting.name, s.name(heaviest), s.masses()[heaviest] / s.masses()[0],
-      s.name(heaviest));
+  const std::string what = arcs ? fmt::format("so the Kepler arcs of {} go round it", scene.hamiltonian.splitting.name)
+                                : fmt::format("so {} is about it", force);
+  return fmt::format("'{}' comes first, {}, but '{}' has {:.3g} times its mass; put '{}' first", s.name(0), what,
+                     s.name(heaviest), s.masses()[heaviest] / s.masses()[0], s.name(heaviest));
+}
+
+/// The first body of the scene's own tables whose elements are about a first body that is not the heaviest above it;
+/// empty if there is none. (Tables in files tell their own.)
+std::string other_center(const Scene& scene) {
+  const SceneValue* particles = scene.effective.find("particles");
+  const SceneValue* bodies = particles == nullptr ? nullptr : particles->find("body");
+  const auto* tables = bodies == nullptr ? nullptr : bodies->get<SceneValue::Array>();
+  const SceneValue* elements = particles == nullptr ? nullptr : particles->find("elements");
+  if (tables == nullptr || (elements != nullptr && *elements->get<std::string>() == "jacobi")) return "";
+  Index i = scene.particles.size() - static_cast<Index>(tables->size());
+  for (const SceneValue& table : *tables) {
+    const bool orbit = std::any_of(orbit_keys.begin(), orbit_keys.end(), [&](const OrbitKey& key) {
+      return key.choice == OrbitKey::Choice::size && table.find(key.name) != nullptr;
+    });
+    if (orbit && table.find("about") == nullptr) {
+      std::string told = about_a_light_body(scene.particles, i, scene.particles.name(i));
+      if (!told.empty()) return told;
+    }
+    ++i;
+  }
+  return "";
 }
 
 /// Particles that no force moves for want of mass, where pair forces are all there is; empty if there are none.
@@ -238,13 +273,15 @@ std::vector<std::string> warnings_of(const Scene& scene) {
   add(other_cutoff(scene));
   add(too_stiff(scene));
   add(other_primary(scene));
+  add(other_center(scene));
   add(other_gravitation(scene));
   add(unmoved_tracers(scene));
   for (const SceneWatch& watch : scene.watches) add(times_after_the_end(watch, scene));
   return warnings;
 }
 
-std::string warning_of(const Encounter& encounter, const ParticleSystem<double>& particles, const UnitSystem& units) {
+std::string warning_of(const Encounter& encounter, const std::string& hamiltonian,
+                       const ParticleSystem<double>& particles, const UnitSystem& units) {
   const auto name = [&](std::int64_t id) {
     for (Index i = 0; i < particles.size(); ++i) {
       if (particles.ids()[static_cast<std::size_t>(i)] == id) return fmt::format("'{}'", particles.name(i));
@@ -257,9 +294,16 @@ std::string warning_of(const Encounter& encounter, const ParticleSystem<double>&
                                 : fmt::format(", and bodies within {} for the first time at time {:.6g}{}",
                                               encounter_hill_radii, encounter.since, unit);
   return fmt::format(
-      "{} and {} came within {:.2g} Hill radii of each other at time {:.6g}{}{}; wisdom_holman does not follow such "
+      "{} and {} came within {:.2g} Hill radii of each other at time {:.6g}{}{}; {} does not follow such "
       "encounters, so use a method whose steps shrink in them, such as 'gauss_radau_15'",
-      name(encounter.first), name(encounter.second), encounter.hill_radii, encounter.time, unit, first);
+      name(encounter.first), name(encounter.second), encounter.hill_radii, encounter.time, unit, first, hamiltonian);
+}
+
+std::string warning_of(const Evaluations& evaluations, std::string_view method) {
+  return fmt::format(
+      "in {} of '{}' two bodies were so near to each other that doubles do not tell their pull well enough for errors "
+      "below 1e-18; use 'wide_gauss_8'",
+      counted(evaluations.unsettled, "step"), method);
 }
 
 void tell_notes(const std::vector<std::string>& notes) {

@@ -4,6 +4,7 @@
 #include "scene/scene.hpp"
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace noether {
@@ -15,7 +16,12 @@ namespace noether {
 std::vector<std::string> warnings_of(const Scene& scene);
 
 /// What a run under a splitting about a primary says of bodies that came too near to each other for it.
-std::string warning_of(const Encounter& encounter, const ParticleSystem<double>& particles, const UnitSystem& units);
+/// @param hamiltonian  its name
+std::string warning_of(const Encounter& encounter, const std::string& hamiltonian,
+                       const ParticleSystem<double>& particles, const UnitSystem& units);
+
+/// What a run says of steps whose errors are above those that its method is for.
+std::string warning_of(const Evaluations& evaluations, std::string_view method);
 
 /// Tells notes on stderr, one line each: what of a scene was taken otherwise than written (`Scene::notes`).
 void tell_notes(const std::vector<std::string>& notes);

@@ -17,8 +17,11 @@ namespace noether {
 
 namespace {
 
-constexpr double margin = 0.7;      ///< of the error that was asked for: fits scatter
-constexpr double rounding = 1e-14;  ///< no fit is believed below
+constexpr double margin = 0.7;                   ///< of the error that was asked for: fits scatter
+constexpr double rounding = 1e-14;               ///< no fit is believed below
+constexpr double rounding_of_two_words = 1e-19;  ///< the same of states with more digits than doubles
+/// Where errors are asked for that doubles may not reach, methods with more digits are tried too.
+constexpr double beyond_doubles = 1e-11;
 constexpr double most_steps = 1e15;
 
 /// From the start on [time].
@@ -59,7 +62,8 @@ double two_digits(double x) {
 /// The trials of one candidate, and what they say about any step or tolerance.
 class Fit {
  public:
-  Fit(const Scene& scene, const Comparison& trials, const Candidate& who, Metric metric) : who_(who) {
+  Fit(const Scene& scene, const Comparison& trials, const Candidate& who, Metric metric)
+      : who_(who), rounding_(who.below_rounding ? rounding_of_two_words : rounding) {
     for (const Row& row : trials.rows) {
       if (row.who == who && error_of(row, metric)) rows_.push_back(&row);
     }
@@ -67,7 +71,7 @@ class Fit {
     for (const Row* row : rows_) {
       errors.emplace_back(x_of(*row), *error_of(*row, metric));
     }
-    const double floor = std::max(rounding, 3 * (metric == Metric::position ? trials.truth.error.value_or(0) : 0));
+    const double floor = std::max(rounding_, 3 * (metric == Metric::position ? trials.truth.error.value_or(0) : 0));
     law_ = asymptotic_fit(errors, floor, 0.5);
     if (!rows_.empty()) growth_ = growth(scene, trials, metric);
     chaos_ = metric == Metric::position && trials.motion && trials.motion->chaotic ? &*trials.motion : nullptr;
@@ -88,7 +92,8 @@ class Fit {
   std::optional<Proposal> propose(double error, double trial_end, double end, bool beyond = false) const {
     if (!law_) return {};
     const double wanted = margin * error / longer(trial_end, end);
-    if (wanted < rounding || (chaos_ != nullptr && chaos_->rounding(end) > margin * error)) return {};
+    if (wanted < rounding_) return {};
+    if (chaos_ != nullptr && chaos_->rounding(end) * (rounding_ / rounding) > margin * error) return {};
     double x = std::exp((std::log(wanted) - law_->log_factor) / law_->exponent);
     double most = 0, least = std::numeric_limits<double>::infinity();
     for (const Row* row : rows_) {
@@ -162,7 +167,7 @@ class Fit {
       return {0, "the energy error of a symplectic method stays bounded"};
     std::vector<double> exponents;
     for (const Row* row : rows_) {
-      if (*error_of(*row, metric) < 100 * rounding) continue;
+      if (*error_of(*row, metric) < 100 * rounding_) continue;
       if (const auto one = measured_exponent(*row, trials.truth, metric)) exponents.push_back(*one);
     }
     if (exponents.empty())
@@ -174,6 +179,7 @@ class Fit {
   }
 
   Candidate who_;
+  double rounding_;
   std::vector<const Row*> rows_;
   std::optional<PowerLaw> law_;
   Growth growth_;
@@ -331,9 +337,14 @@ std::string reason_of(const Advice& advice, const AdviseOptions& options, bool t
   return fmt::format("{} an error of {:g} over the whole run", tried, options.error);
 }
 
-CompareOptions trials_of(const Advice& advice, const AdviseOptions& options, const Allowance& work) {
+CompareOptions trials_of(const Scene& scene, const Advice& advice, const AdviseOptions& options,
+                         const Allowance& work) {
   CompareOptions trials;
   trials.methods = options.methods;
+  if (trials.methods.empty() && options.error < beyond_doubles && scene.particles.size() <= most_bodies) {
+    for (const Candidate& who : default_opponents(scene)) trials.methods.push_back(who.label);
+    for (const Candidate& who : opponents_below_rounding(scene)) trials.methods.push_back(who.label);
+  }
   trials.row_budget = options.row_budget;
   trials.truth = options.truth;
   trials.progress = options.progress;
@@ -365,7 +376,7 @@ Advice advise(const Scene& scene, const AdviseOptions& options) {
   advice.end = end_of(scene);
   Allowance work = allowance_of(scene, sampling_of(scene, {}));
   choose_metric(advice, scene, options, work);
-  advice.trials = compare(scene, trials_of(advice, options, work));
+  advice.trials = compare(scene, trials_of(scene, advice, options, work));
   advice.trial_end = advice.trials.end;
   if (!options.metric && advice.metric == Metric::position && !advice.trials.position_measured && tells_energy(scene)) {
     advice.metric = Metric::energy;

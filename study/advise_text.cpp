@@ -1,4 +1,5 @@
 #include "numbers/quantity.hpp"
+#include "numbers/text.hpp"
 #include "scene/json.hpp"
 #include "study/advise.hpp"
 #include "study/analysis.hpp"
@@ -27,6 +28,11 @@ std::string with_setting(const Proposal& p, const Scene& scene) {
                         : fmt::format("{} with a step of {}", p.who.label, time_in_words(p.setting.step, scene));
 }
 
+/// "1 evaluation", "3.907e+05 evaluations".
+std::string evaluations_in_words(double count) {
+  return count == 1 ? counted(1, "evaluation") : fmt::format("{:.4g} evaluations", count);
+}
+
 /// What was found, and what would do, where nothing that was tried holds the error.
 std::string instead_of_proposals(const Advice& a, const Scene& scene) {
   std::string out;
@@ -38,15 +44,15 @@ std::string instead_of_proposals(const Advice& a, const Scene& scene) {
     if (longer && a.best->predicted_error < 0.1)
       out += fmt::format(", about {:.1e} over the whole run", a.best->predicted_error);
     if (longer && a.best->predicted_error >= 0.1) out += ", as large as what is computed over the whole run";
-    out += fmt::format("; the whole run takes about {:.3g} s and {:.4g} evaluations\n", a.best->predicted_wall_s,
-                       a.best->predicted_evaluations);
+    out += fmt::format("; the whole run takes about {:.3g} s and {}\n", a.best->predicted_wall_s,
+                       evaluations_in_words(a.best->predicted_evaluations));
   }
   if (a.would_hold) {
     const Proposal& p = *a.would_hold;
     out += fmt::format(
         "what should hold it: {}, finer than any that was tried: errors fall as its power {:.2g}; about "
-        "{:.3g} s and {:.4g} evaluations\n",
-        with_setting(p, scene), p.order, p.predicted_wall_s, p.predicted_evaluations);
+        "{:.3g} s and {}\n",
+        with_setting(p, scene), p.order, p.predicted_wall_s, evaluations_in_words(p.predicted_evaluations));
   }
   for (const std::string& hint : a.hints) out += hint + "\n";
   return out;

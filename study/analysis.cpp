@@ -94,7 +94,7 @@ std::optional<OrderFit> order_of(const Comparison& c, const Candidate& who) {
         who.adaptive ? 1.0 / static_cast<double>(std::max<std::int64_t>(row.evaluations.force, 1)) : row.setting.step;
     points.emplace_back(x, *error);
   }
-  const double floor = std::max(1e-13, 10 * c.truth.error.value_or(0));
+  const double floor = std::max(who.below_rounding ? 1e-19 : 1e-13, 10 * c.truth.error.value_or(0));
   // Work that hardly changes with the tolerance shows no order.
   const auto law = asymptotic_fit(points, floor);
   if (law && (law->range >= 2 || !who.adaptive)) {
@@ -139,7 +139,7 @@ void use_finest_run(Comparison& c, const PositionError& error) {
     const Row &fine = *done[done.size() - 1], &next = *done[done.size() - 2];
     double worst = 0;
     for (std::size_t j = 0; j < fine.track.y.size() && j < next.track.y.size(); ++j) {
-      worst = std::max(worst, error(next.track.y[j].cast<Quad>(), fine.track.y[j].cast<Quad>()));
+      worst = std::max(worst, error(next.track.state(j), fine.track.state(j)));
     }
     if (worst < least) {
       least = worst;
@@ -154,7 +154,7 @@ void use_finest_run(Comparison& c, const PositionError& error) {
   c.truth.kind = TruthKind::finest_run;
   c.truth.name = "finest run";
   c.truth.error = least;
-  for (const Vector<double>& y : finest->track.y) c.truth.y.push_back(y.cast<Quad>());
+  for (std::size_t j = 0; j < finest->track.y.size(); ++j) c.truth.y.push_back(finest->track.state(j));
   c.truth.energy = finest->track.energy;
   c.reference = static_cast<std::size_t>(finest - c.rows.data());
   c.truth.note =

@@ -1,5 +1,6 @@
 #include "study/candidate.hpp"
 
+#include "integrators/all_methods.hpp"
 #include "integrators/all_schemes.hpp"
 #include "numbers/suggest.hpp"
 #include "scene/fields.hpp"
@@ -49,8 +50,23 @@ std::string refusal(const Scene& scene, const Candidate& who) {
 
 Candidate make(const Scene& scene, const std::string& method, bool joined, bool adaptive) {
   Candidate who{method, method, joined, adaptive};
+  const MethodInfo* info = scene.parts->find_method(method);
+  who.below_rounding = info != nullptr && make_method<double>(*info, {})->claims().second_words;
   if (joined) who.label = fmt::format("{}@{}", method, plain(scene).info.name);
   return who;
+}
+
+std::vector<Candidate> those_that_serve(const Scene& scene, const std::vector<std::string>& names) {
+  std::vector<Candidate> all;
+  for (const std::string& name : names) {
+    try {
+      Candidate who = candidate(scene, name);
+      if (std::find(all.begin(), all.end(), who) == all.end()) all.push_back(std::move(who));
+    } catch (const Error&) {
+      continue;  // it cannot serve this scene
+    }
+  }
+  return all;
 }
 
 }  // namespace
@@ -115,16 +131,15 @@ std::vector<Candidate> default_opponents(const Scene& scene) {
                                  "gragg_bulirsch_stoer", "stormer_cowell_13"});
     }
   }
-  std::vector<Candidate> all;
-  for (const std::string& name : names) {
-    try {
-      Candidate who = candidate(scene, name);
-      if (std::find(all.begin(), all.end(), who) == all.end()) all.push_back(std::move(who));
-    } catch (const Error&) {
-      continue;  // it cannot serve this scene
-    }
+  return those_that_serve(scene, names);
+}
+
+std::vector<Candidate> opponents_below_rounding(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const MethodInfo* info : methods::all()) {
+    if (make_method<double>(*info, {})->claims().second_words) names.emplace_back(info->name);
   }
-  return all;
+  return those_that_serve(scene, names);
 }
 
 Scene variant(const Scene& scene, const Candidate& who, const Setting& setting) {

@@ -16,7 +16,8 @@ struct Candidate {
   std::string label;    ///< in tables: the method, with "@kinetic_potential" where that is not the scene's Hamiltonian
   std::string method;   ///< as `[integrator]` names it
   bool joined = false;  ///< over the plain Hamiltonian with all forces, instead of the scene's own splitting
-  bool adaptive = false;  ///< it chooses its steps, by a tolerance
+  bool adaptive = false;        ///< it chooses its steps, by a tolerance
+  bool below_rounding = false;  ///< its states have further digits than doubles
 
   bool operator==(const Candidate&) const = default;
 };
@@ -37,6 +38,9 @@ Candidate candidate(const Scene& scene, std::string_view name);
 
 /// Methods worth comparing on a scene, its own first: those that can serve it.
 std::vector<Candidate> default_opponents(const Scene& scene);
+
+/// Methods that can serve a scene with errors below the rounding of doubles.
+std::vector<Candidate> opponents_below_rounding(const Scene& scene);
 
 /// The scene run by an candidate, without monitors, writers and stops: the run alone.
 /// @throws Error  if the method cannot serve it

@@ -222,6 +222,8 @@ bool keeps_energy(const Scene& scene) {
   return claims.energy && !claims.dissipative && !claims.time_dependent && scene.particles.size() > 0;
 }
 
+/// How well two references agree that tell errors of methods with more digits than doubles.
+constexpr double agreement_below_rounding = 1e-20;
 /// Moments of the shortest comparison.
 constexpr int fewest_samples = 4;
 
@@ -405,6 +407,9 @@ class Comparer {
     if (!options_.positions && keeps_energy(scene_)) return;
     TruthOptions how = options_.truth;
     how.most_evaluations = room_for_reference();
+    const auto has_more_digits = [](const Candidate& who) { return who.below_rounding; };
+    if (std::any_of(c_.methods.begin(), c_.methods.end(), has_more_digits))
+      how.agreement = std::min(how.agreement, agreement_below_rounding);
     how.tell = teller("reference in extended precision");
     c_.truth = find_truth(scene_, c_.sampling, how);
     work_.spent += c_.truth.evaluations;

@@ -134,8 +134,6 @@ std::vector<Way> ways_of(const WideScene& wide, const TruthOptions& options) {
   return all;
 }
 
-/// Two runs that agree so well need no third.
-constexpr double agreement = 2e-16;
 /// A method of another family may take so many times the evaluations of the first: where it takes more it iterates in
 /// vain, as on stiff systems.
 constexpr std::int64_t patience = 4;
@@ -175,14 +173,14 @@ Truth drive(const WideScene& wide, const Way& way, const Sampling& sampling, Pos
     if (!beside.failure.empty()) break;
     truth.error = distance(finest, beside, error);
     told(way.finest, other);
-    if (*truth.error < agreement) break;
+    if (*truth.error < options.agreement) break;
   }
   if (!truth.error) {
     const WideRun rougher = run(way.rougher);
     if (!rougher.failure.empty()) return truth;
     truth.error = distance(finest, rougher, error);
     told(way.finest, way.rougher);
-    if (*truth.error >= agreement) {
+    if (*truth.error >= options.agreement) {
       WideRun finer = run(way.finer);
       if (finer.failure.empty()) {
         truth.error = distance(finer, finest, error);
@@ -206,7 +204,7 @@ void set_energies(Truth& truth, WideScene& wide, const Sampling& sampling) {
     wide.field->scatter(y, s);
     s.wrap();
     s.clock().set_stage_offset(sampling.clock_time(static_cast<int>(j)));
-    truth.energy.push_back(static_cast<double>(wide.field->energy(s).total()));
+    truth.energy.push_back(wide.field->energy(s).total());
   }
 }
 

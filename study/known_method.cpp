@@ -6,7 +6,7 @@ std::vector<KnownMethod> all_known_methods() {
   std::vector<KnownMethod> every;
   for (const Scheme* scheme : schemes::all()) every.push_back({.scheme = scheme});
   for (const MethodInfo* info : methods::all()) {
-    if (!info->gravity_only) every.push_back({.info = info});
+    every.push_back({.info = info});
   }
   return every;
 }

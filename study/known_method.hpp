@@ -1,5 +1,5 @@
 #pragma once
-/// Every method that the library knows: schemes and classical methods alike, but for those that serve gravity alone.
+/// Every method that the library knows: schemes and classical methods alike.
 
 #include "integrators/all_methods.hpp"
 #include "integrators/all_schemes.hpp"
@@ -19,7 +19,7 @@ struct KnownMethod {
   std::string_view name() const { return scheme != nullptr ? scheme->name : info->name; }
 };
 
-/// Every scheme, then every classical method that serves the oscillator and the well on which they are measured.
+/// Every scheme, then every classical method.
 std::vector<KnownMethod> all_known_methods();
 
 }  // namespace noether

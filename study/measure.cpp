@@ -28,7 +28,12 @@ class Recorder {
     const ParticleSystem<double>& s = now.state();
     track_->times.push_back(dt_ != 0 ? Quad(dt_) * Quad(now.step()) : Quad(now.time()) - Quad(start_));
     if (states_) track_->y.push_back(state_of(s));
-    if (energy_) track_->energy.push_back(now.energy().total());
+    const auto* low = s.low_words();
+    if (states_ && low != nullptr && now.claims().second_words) track_->low.push_back(low_state_of(*low, s.size()));
+    if (energy_) {
+      const auto& with_all_digits = now.wide_energy();
+      track_->energy.push_back(with_all_digits ? with_all_digits->total() : Quad(now.energy().total()));
+    }
     if (energy_ && track_->energy_scale == 0) {
       const EnergyTerms<double>& e = now.energy();
       track_->energy_scale = std::max(std::abs(e.total()), 1e-3 * (e.kinetic + std::abs(e.potential)));
@@ -225,12 +230,12 @@ std::optional<double> rms_of(const std::vector<double>& values) {
 void mark_diverged(Row& row, const Truth& truth, const Sampling& sampling, const PositionError& error) {
   const Track& track = row.track;
   if (!row.completed() || track.y.empty()) return;
-  double scale = truth.has_states() ? 0 : error.size(track.y[0].cast<Quad>());
+  double scale = truth.has_states() ? 0 : error.size(track.state(0));
   for (const Vector<Quad>& y : truth.y) scale = std::max(scale, error.size(y));
   if (!(scale > 0)) return;
   const double most = truth.has_states() ? lost_beyond_truth : lost_beyond_start;
   for (std::size_t j = 0; j < track.y.size(); ++j) {
-    const double times = error.size(track.y[j].cast<Quad>()) / scale;
+    const double times = error.size(track.state(j)) / scale;
     if (times <= most) continue;
     row.outcome = name(Outcome::Kind::diverged);
     row.outcome_time = static_cast<double>(Quad(sampling.start) + track.times[j]);
@@ -251,6 +256,21 @@ Vector<double> state_of(const ParticleSystem<double>& s) {
   }
   if (n == 0) std::copy(s.variables().begin(), s.variables().end(), y.data());
   return y;
+}
+
+Vector<double> low_state_of(const ParticleSystem<double>::LowWords& low, Index n) {
+  Vector<double> y(6 * n);
+  for (int k = 0; k < 3; ++k) {
+    std::copy_n(low.x.component(k), n, y.data() + k * n);
+    std::copy_n(low.v.component(k), n, y.data() + (3 + k) * n);
+  }
+  return y;
+}
+
+Vector<Quad> Track::state(std::size_t j) const {
+  Vector<Quad> whole = y[j].cast<Quad>();
+  if (j < low.size()) whole += low[j].cast<Quad>();
+  return whole;
 }
 
 Spread spread_of(std::vector<double> values) {
@@ -289,7 +309,8 @@ std::vector<double> energy_errors(const Track& track, const Truth& truth) {
   if (!kept && truth.energy.empty()) return errors;
   for (std::size_t j = 0; j < track.energy.size(); ++j) {
     if (!kept && j >= truth.energy.size()) break;
-    errors.push_back((track.energy[j] - (kept ? track.energy[0] : truth.energy[j])) / track.energy_scale);
+    const Quad right = kept ? track.energy[0] : truth.energy[j];
+    errors.push_back(static_cast<double>(track.energy[j] - right) / track.energy_scale);
   }
   return errors;
 }
@@ -301,7 +322,7 @@ void set_errors(Row& row, const Truth& truth, const Sampling& sampling, const Po
   row.truth_error = truth.error;
   std::vector<double> errors;
   for (std::size_t j = 1; j < track.y.size() && j < truth.y.size(); ++j) {
-    errors.push_back(error(track.y[j].cast<Quad>(), truth_at(truth, sampling, j, track.times[j])));
+    errors.push_back(error(track.state(j), truth_at(truth, sampling, j, track.times[j])));
   }
   row.position_errors = {0.0};
   row.position_errors.insert(row.position_errors.end(), errors.begin(), errors.end());

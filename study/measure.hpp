@@ -15,12 +15,16 @@ namespace noether {
 
 /// States and invariants of a run at the moments of a sampling, the start among them.
 struct Track {
-  std::vector<Quad> times = {};        ///< of the states from the start on, exact products of the step
-  std::vector<Vector<double>> y = {};  ///< as in `Truth`
-  std::vector<double> energy = {};     ///< total [energy]; empty where no force tells it
-  double energy_scale = 0;             ///< what energy errors are relative to
+  std::vector<Quad> times = {};          ///< of the states from the start on, exact products of the step
+  std::vector<Vector<double>> y = {};    ///< as in `Truth`
+  std::vector<Vector<double>> low = {};  ///< further digits of y, of methods that have them; empty for others
+  std::vector<Quad> energy = {};         ///< total [energy]; empty where no force tells it
+  double energy_scale = 0;               ///< what energy errors are relative to
   MonitorReport energy_report = {}, momentum = {}, angular_momentum = {};
   std::optional<double> shadow_fluctuation = {};
+
+  /// The state at moment `j`, with all its digits.
+  Vector<Quad> state(std::size_t j) const;
 };
 
 /// One row of a comparison: columns as in `compare.csv`. Empty: not measured.
@@ -59,6 +63,8 @@ Spread spread_of(std::vector<double> values);
 /// All coordinates of a run as they are compared: positions as if never wrapped, x then y then z, and velocities, or
 /// the variables of a first-order system.
 Vector<double> state_of(const ParticleSystem<double>& s);
+/// Further digits of the same, of particles that have second words.
+Vector<double> low_state_of(const ParticleSystem<double>::LowWords& low, Index n);
 
 struct MeasureOptions {
   int repeats = 3;     ///< of the timed run; more for short ones, fewer where the budget does not allow them

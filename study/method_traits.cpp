@@ -269,7 +269,9 @@ std::string_view text_of(EnergyError energy) {
 }
 
 MethodTraits claimed_traits(const KnownMethod& known) {
-  const IntegratorClaims claims = traits::integrator_of<Quad>(known, Gravity{.G = 1}).claims();
+  const bool in_quad = known.info == nullptr || known.info->make_quad != nullptr;
+  const IntegratorClaims claims = in_quad ? traits::integrator_of<Quad>(known, Gravity{.G = 1}).claims()
+                                          : traits::integrator_of<double>(known, Gravity{.G = 1}).claims();
   MethodTraits traits;
   traits.order = claims.order;
   traits.symplectic = claims.symplectic;
@@ -291,6 +293,7 @@ MethodTraits claimed_traits(const KnownMethod& known) {
 }
 
 MethodTraits measured_traits(const KnownMethod& known) {
+  if (known.info != nullptr && known.info->gravity_only) return measured_gravity_traits(known);
   MethodTraits traits;
   const bool fixed = traits::integrator_of<Quad>(known, HenonHeiles{}).claims().clock == ClockMode::fixed;
   traits.fixed_steps = fixed;

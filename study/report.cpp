@@ -146,7 +146,7 @@ class Page {
     for (std::size_t begin = 1; begin + block <= values.size(); begin += block) {
       double worst = 0;
       for (std::size_t k = begin; k < begin + block; ++k) worst = std::max(worst, std::abs(values[k]));
-      points.emplace_back(static_cast<double>(track.times[begin + block - 1]), std::max(worst, 1e-18));
+      points.emplace_back(static_cast<double>(track.times[begin + block - 1]), std::max(worst, 1e-24));
     }
     return points;
   }

@@ -140,7 +140,8 @@ DisplayedRun display(const Scene& scene, const Candidate& who, double step, doub
     run.q.push_back(q);
     const std::size_t at = j * static_cast<std::size_t>(every);
     if (track.energy.empty() || track.energy_scale == 0 || (!kept && at >= truth.energy.size())) continue;
-    run.energy_error.push_back((track.energy[j] - (kept ? track.energy[0] : truth.energy[at])) / track.energy_scale);
+    const Quad right = kept ? track.energy[0] : truth.energy[at];
+    run.energy_error.push_back(static_cast<double>(track.energy[j] - right) / track.energy_scale);
   }
   return run;
 }

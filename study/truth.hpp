@@ -30,7 +30,7 @@ struct Truth {
   double seconds = 0;                ///< wall time it took
   double evaluations = 0;            ///< of forces that it took, with those of what stands beside it
   std::vector<Vector<Quad>> y = {}, rate = {};  ///< rate: dy/dt, for moments that differ by a rounding error
-  std::vector<double> energy = {};              ///< total [energy]; empty where nothing tells it
+  std::vector<Quad> energy = {};                ///< total [energy]; empty where nothing tells it
 
   bool has_states() const { return !y.empty(); }
 };
@@ -39,6 +39,7 @@ struct Truth {
 struct TruthOptions {
   double budget = 120;  ///< seconds of wall time for all settings together
   double most_evaluations = std::numeric_limits<double>::infinity();  ///< of forces, likewise
+  double agreement = 2e-16;                                           ///< two runs that agree so well need no third
   std::optional<double> rtol = {};        ///< of the coarsest run of the first method; default: by the method
   std::function<void(double)> tell = {};  ///< is told which share of the budget is gone, from 0 to 1
 };

@@ -21,7 +21,7 @@ constexpr std::string_view first_scheme = "sofroniou_spaletta_10_s35", other_sch
 /// One run that stops at every moment of a sampling.
 struct SplitRun {
   std::vector<Vector<Quad>> y, rate;
-  std::vector<double> energy;
+  std::vector<Quad> energy;
   bool whole = false;  ///< it came to the end in time
 };
 
@@ -39,7 +39,7 @@ SplitRun run_along(const WideScene& wide, const Sampling& sampling, std::string_
   const auto keep = [&] {
     along.settle(s, seen, {}, {}, true);
     along.accelerations(seen, a);
-    run.energy.push_back(static_cast<double>(along.energy(seen).total()));
+    run.energy.push_back(along.energy(seen).total());
     detail::gather_particles(seen, run.y.emplace_back());
     Vector<Quad>& rate = run.rate.emplace_back(run.y.back());
     const Index n = s.size();

@@ -99,6 +99,9 @@ class View {
       camera.target = middle ? [0, 0, 0] : axes.map((all) => (quantile(all, 1 - part) + quantile(all, part)) / 2 || 0);
       const reaches = axes.map((all, axis) => Math.max(quantile(all, part) - camera.target[axis], camera.target[axis] - quantile(all, 1 - part)) || 0);
       camera.reach = middle ? Math.max(...reaches) : Math.hypot(...reaches);
+      // All orbits about a primary are in the picture, unless a body is far outside of the others.
+      const farthest = Math.max(...axes.map((all) => Math.max(all[all.length - 1], -all[0]) || 0));
+      if (middle && farthest < 3 * camera.reach) camera.reach = farthest;
       if (!(camera.reach > 0)) camera.reach = Math.max(1e-6, ...camera.target.map(Math.abs)) || 1;
     }
     // The picture stands between the header and the timeline.

@@ -18,9 +18,17 @@ namespace {
 
 /// Sweeps end when the next one is expected to change perturbations by no more than this part of them.
 constexpr double settled_departures = 1e-16;
-/// Changes below may be rounding, where bodies are so near to each other that doubles hardly tell their distance.
-constexpr double departures_may_round = 1e-9;
+/// Where bodies are so near to each other that doubles hardly tell their distance, sweeps end at what rounding leaves:
+/// at changes that move positions by no more than this part of the distance from the heaviest body.
+constexpr double departures_may_round = 1e-16;
+/// Rounding of distances r moves two bodies by some 1e-16 h^2 G (m + m') / r^3 of their distance from the heaviest one.
+/// Steps in which that factor is larger have errors above 1e-18.
+constexpr double strong_pull = 0.01;
+/// So many sweeps are made before one that changes more than the one before it ends the step.
+constexpr int patient_departures = 12;
 constexpr int most_departure_sweeps = 60;
+constexpr std::string_view ways_out =
+    "give a shorter one, or use 'wide_gauss_8', or 'gauss_8', which chooses its steps";
 /// A last Legendre coefficient above this part of the largest perturbation leaves errors of its square.
 constexpr double rough_perturbations = 0.03;
 /// A second mass above this part of the heaviest one perturbs orbits so much that doubles limit the departures.
@@ -36,15 +44,17 @@ double split_in_two(const Quad& x, double& low) {
 
 }  // namespace
 
-EnckeGauss::EnckeGauss(std::string_view name) : name_(name), ahead_(last_polynomial(gauss_table(stages))) {
+EnckeGauss::EnckeGauss(std::string_view name) : name_(name), ahead_{} {
   const CollocationTable& table = gauss_table(stages);
   const auto twice = table.twice_end(), last = table.last_coefficient();
+  const auto ahead = last_polynomial(table);
   for (std::size_t i = 0; i < stages; ++i) {
     c_[i] = static_cast<double>(table.c[i]);
     b_[i] = split_in_two(table.b[i], b_low_[i]);
     last_[i] = static_cast<double>(last[i]);
     twice_[0][i] = split_in_two(twice[i], twice_[1][i]);
-    for (std::size_t j = 0; j < stages; ++j) a_[i][j] = static_cast<double>(table.a[i][j]);
+    for (std::size_t j = 0; j < stages; ++j) ahead_[stages * j + i] = ahead[i][j];
+    for (std::size_t j = 0; j < stages; ++j) a_[stages * j + i] = static_cast<double>(table.a[i][j]);
   }
 }
 
@@ -62,16 +72,20 @@ void EnckeGauss::bind(const VectorField<double>& f) {
   refuse_equals();
   beside_ = f.has_forces_beside_gravity();
   bodies_.clear();
+  rows_.clear();
   DoubleDouble total;
   for (Index i = 0; i < n_; ++i) total += DoubleDouble(masses_[i]);
   for (Index i = 0; i < n_; ++i) {
     if (i == primary_) continue;
     Body body;
     body.particle = i;
-    body.gm = *G * masses_[i];
     body.mu = *G * DoubleDouble::sum(heaviest, masses_[i]);
     body.share = DoubleDouble(masses_[i]) / total;
     bodies_.push_back(body);
+    EnckeBody rows;
+    rows.gm = *G * masses_[i];
+    rows.mu = body.mu.high;
+    rows_.push_back(rows);
   }
   stage_.setZero(f.size());
   stage_push_.setZero(f.size() / 2);
@@ -114,18 +128,12 @@ StepResult EnckeGauss::step(VectorField<double>& f, const double& t, Vector<doub
   made.failure = open(y, h);
   if (made.failure) return made;
   if (h == h_) predict();
-  if (!sweep(f, t, h)) {
-    made.failure =
-        Failure{Outcome::Kind::solver_failure, -1, "departures",
-                fmt::format("the departures from Kepler orbits do not converge with a step of {:.6g}; give a "
-                            "shorter one, or use 'gauss_8'",
-                            h)};
-    return made;
-  }
-  made.failure = unresolved(h);
+  made.failure = sweep(f, t, h);
+  if (!made.failure) made.failure = unresolved(h);
   if (!made.failure) made.failure = close(y, h);
   if (made.failure) return made;
   h_ = h;
+  if (h * h * strongest_ > strong_pull) ++f.evaluations().unsettled;
   f.evaluations().kepler += static_cast<std::int64_t>((stages + 1) * bodies_.size());
   return made;
 }
@@ -138,14 +146,21 @@ Failure EnckeGauss::no_arc(const Body& body, double h) const {
 /// Orbits of all bodies at the beginning of the step; no departures from them yet.
 std::optional<Failure> EnckeGauss::open(const Vector<double>& y, double h) {
   const WideVector x = wide(y, primary_, 0), v = wide(y, primary_, 3 * n_);
-  for (Body& body : bodies_) {
+  for (std::size_t m = 0; m < bodies_.size(); ++m) {
+    Body& body = bodies_[m];
+    EnckeBody& rows = rows_[m];
     body.x = wide(y, body.particle, 0) - x;
     body.v = wide(y, body.particle, 3 * n_) - v;
     body.x0 = high_words(body.x);
     body.v0 = high_words(body.v);
-    if (auto failure = find_orbits(body, h)) return failure;
-    body.rates.fill({Vec3<double>::Zero(), Vec3<double>::Zero()});
-    if (h != h_) body.perturbation = {};
+    for (std::size_t k = 0; k < 3; ++k) {
+      rows.x0[k] = body.x0[static_cast<Index>(k)];
+      rows.v0[k] = body.v0[static_cast<Index>(k)];
+      std::fill_n(rows.rate_x[k], stages, 0.0);
+      std::fill_n(rows.rate_v[k], stages, 0.0);
+      if (h != h_) std::fill_n(rows.perturbation[k], stages, 0.0);
+    }
+    if (auto failure = find_orbits(body, rows, h)) return failure;
   }
   if (!beside_) return {};
   center_ = {high_words(x), high_words(v)};
@@ -156,95 +171,30 @@ std::optional<Failure> EnckeGauss::open(const Vector<double>& y, double h) {
   return {};
 }
 
-std::optional<Failure> EnckeGauss::find_orbits(Body& body, double h) const {
+std::optional<Failure> EnckeGauss::find_orbits(const Body& body, EnckeBody& rows, double h) const {
+  Lanes tau{};
+  for (std::size_t i = 0; i < stages; ++i) tau[i] = c_[i] * h;
+  const unsigned missed = encke_kernels().orbits(rows, tau.data());
   for (std::size_t i = 0; i < stages; ++i) {
-    const double tau = c_[i] * h;
-    const KeplerArc<double> arc = kepler_arc(body.x0, body.v0, body.mu.high, tau);
+    if ((missed >> i & 1U) == 0) continue;
+    const KeplerArc<double> arc = kepler_arc(body.x0, body.v0, body.mu.high, tau[i]);
     if (arc.status != KeplerStatus::converged) return no_arc(body, h);
-    body.tangents[i] = KeplerTangent(body.x0, body.v0, body.mu.high, tau, arc.s);
+    const KeplerTangent tangent(body.x0, body.v0, body.mu.high, tau[i], arc.s);
+    const std::array<double, 8> upper = tangent.upper();
+    for (std::size_t k = 0; k < upper.size(); ++k) rows.upper[k][i] = upper[k];
     const Vec3<double> x = body.x0 + arc.dx;
     const double r2 = norm2(x);
-    for (std::size_t k = 0; k < 3; ++k) body.orbit[k][i] = x[static_cast<Index>(k)];
-    body.inverse_r2[i] = 1 / r2;
-    body.mu_r3[i] = body.mu.high / (r2 * std::sqrt(r2));
+    for (std::size_t k = 0; k < 3; ++k) rows.orbit[k][i] = x[static_cast<Index>(k)];
+    rows.inverse_r2[i] = 1 / r2;
+    rows.mu_r3[i] = body.mu.high / (r2 * std::sqrt(r2));
   }
   return {};
 }
 
 /// Perturbations as the polynomial of the last step has them in this one.
 void EnckeGauss::predict() {
-  for (Body& body : bodies_) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      Lanes& p = body.fresh[k];
-      p.fill(0);
-      for (std::size_t i = 0; i < stages; ++i) {
-        for (std::size_t j = 0; j < stages; ++j) p[i] += ahead_[i][j] * body.perturbation[k][j];
-      }
-    }
-  }
-  take_perturbations();
-}
-
-/// Departures and places at all stages from the rates.
-void EnckeGauss::depart(double h) {
-  for (Body& body : bodies_) {
-    for (std::size_t i = 0; i < stages; ++i) {
-      KeplerChange y{Vec3<double>::Zero(), Vec3<double>::Zero()};
-      for (std::size_t j = 0; j < stages; ++j) {
-        y.x += a_[i][j] * body.rates[j].x;
-        y.v += a_[i][j] * body.rates[j].v;
-      }
-      const Vec3<double> d = h * body.tangents[i].position(y);
-      double r2 = 0;
-      for (std::size_t k = 0; k < 3; ++k) {
-        body.away[k][i] = d[static_cast<Index>(k)];
-        body.place[k][i] = body.orbit[k][i] + body.away[k][i];
-        r2 += body.place[k][i] * body.place[k][i];
-      }
-      const double pull = body.gm / (r2 * std::sqrt(r2));
-      for (std::size_t k = 0; k < 3; ++k) body.pull[k][i] = pull * body.place[k][i];
-    }
-  }
-}
-
-/// What bodies add to each other's motion about the heaviest one, directly and by moving it, and what the attraction by
-/// the heaviest one has beyond the tangent of the orbit.
-void EnckeGauss::add_gravity() {
-  for (Body& body : bodies_) {
-    for (std::size_t i = 0; i < stages; ++i) {
-      // (1 + e)^(-3/2) - 1 with e = |k + d|^2 / |k|^2 - 1, without cancellation.
-      double along = 0, square = 0;
-      for (std::size_t k = 0; k < 3; ++k) {
-        along += body.orbit[k][i] * body.away[k][i];
-        square += body.away[k][i] * body.away[k][i];
-      }
-      along *= body.inverse_r2[i];
-      square *= body.inverse_r2[i];
-      const double e = 2 * along + square, root = (1 + e) * std::sqrt(1 + e);
-      const double fall = -e * (3 + e * (3 + e)) / (root * (1 + root)), beyond = fall + 3 * along;
-      for (std::size_t k = 0; k < 3; ++k)
-        body.fresh[k][i] = -body.mu_r3[i] * (beyond * body.orbit[k][i] + fall * body.away[k][i]);
-    }
-  }
-  for (std::size_t m = 1; m < bodies_.size(); ++m) {
-    Body& one = bodies_[m];
-    for (std::size_t n = 0; n < m; ++n) {
-      Body& other = bodies_[n];
-      if (one.gm == 0 && other.gm == 0) continue;
-      for (std::size_t i = 0; i < stages; ++i) {
-        const double x = other.place[0][i] - one.place[0][i], y = other.place[1][i] - one.place[1][i],
-                     z = other.place[2][i] - one.place[2][i];
-        const double r2 = x * x + y * y + z * z, r3 = r2 * std::sqrt(r2);
-        const double by_other = other.gm / r3, by_one = one.gm / r3;
-        one.fresh[0][i] += by_other * x - other.pull[0][i];
-        one.fresh[1][i] += by_other * y - other.pull[1][i];
-        one.fresh[2][i] += by_other * z - other.pull[2][i];
-        other.fresh[0][i] -= by_one * x + one.pull[0][i];
-        other.fresh[1][i] -= by_one * y + one.pull[1][i];
-        other.fresh[2][i] -= by_one * z + one.pull[2][i];
-      }
-    }
-  }
+  encke_kernels().predict(rows_.data(), std::ssize(rows_), ahead_.data());
+  take_perturbations(h_);
 }
 
 /// Forces that are not gravity of points, at all stages; positions alone count, relative to the centre of mass and its
@@ -252,97 +202,92 @@ void EnckeGauss::add_gravity() {
 void EnckeGauss::add_forces_beside(VectorField<double>& f, double t, double h) {
   for (std::size_t i = 0; i < stages; ++i) {
     Vec3<double> x = center_.x + c_[i] * h * center_.v;
-    for (const Body& body : bodies_) {
-      for (std::size_t k = 0; k < 3; ++k) x[static_cast<Index>(k)] -= body.share.high * body.place[k][i];
+    for (std::size_t m = 0; m < bodies_.size(); ++m) {
+      for (std::size_t k = 0; k < 3; ++k) x[static_cast<Index>(k)] -= bodies_[m].share.high * rows_[m].place[k][i];
     }
     for (Index k = 0; k < 3; ++k) stage_[k * n_ + primary_] = x[k];
-    for (const Body& body : bodies_) {
-      for (Index k = 0; k < 3; ++k) stage_[k * n_ + body.particle] = x[k] + body.place[static_cast<std::size_t>(k)][i];
+    for (std::size_t m = 0; m < bodies_.size(); ++m) {
+      for (Index k = 0; k < 3; ++k)
+        stage_[k * n_ + bodies_[m].particle] = x[k] + rows_[m].place[static_cast<std::size_t>(k)][i];
     }
     f.accelerations_beside_gravity(t + c_[i] * h, stage_, stage_push_);
     for (std::size_t k = 0; k < 3; ++k) {
       const double* const push = stage_push_.data() + static_cast<Index>(k) * n_;
       double mean = push[primary_];
-      for (Body& body : bodies_) {
-        const double relative = push[body.particle] - push[primary_];
-        body.fresh[k][i] += relative;
-        mean += body.share.high * relative;
+      for (std::size_t m = 0; m < bodies_.size(); ++m) {
+        const double relative = push[bodies_[m].particle] - push[primary_];
+        rows_[m].fresh[k][i] += relative;
+        mean += bodies_[m].share.high * relative;
       }
       drift_[k][i] = mean;
     }
   }
 }
 
-/// The fresh perturbations become those at hand, and the rates follow. @return the largest change, relative to the
-/// perturbations of all bodies at their largest
-double EnckeGauss::take_perturbations() {
-  double worst = 0;
-  for (Body& body : bodies_) {
-    double change = 0, size = 0;
+/// The fresh perturbations become those at hand, and the rates follow.
+EnckeGauss::Change EnckeGauss::take_perturbations(double h) {
+  encke_kernels().take(rows_.data(), std::ssize(rows_));
+  Change worst;
+  for (const EnckeBody& rows : rows_) {
+    double change = 0, size = 0, inverse = 0;
     for (std::size_t i = 0; i < stages; ++i) {
-      double change2 = 0, size2 = 0, old2 = 0;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const double p = body.fresh[k][i], old = body.perturbation[k][i];
-        body.perturbation[k][i] = p;
-        change2 += (p - old) * (p - old);
-        size2 += p * p;
-        old2 += old * old;
-      }
-      if (!(change2 <= change)) change = change2;  // a NaN stays
-      size = std::max({size, size2, old2});
-      body.rates[i] =
-          body.tangents[i].start_of({body.perturbation[0][i], body.perturbation[1][i], body.perturbation[2][i]});
+      if (!(rows.change2[i] <= change)) change = rows.change2[i];  // a NaN stays
+      size = std::max(size, rows.size2[i]);
+      inverse = std::max(inverse, rows.inverse_r2[i]);
     }
-    if (!std::isfinite(change)) return change;
-    if (change > 0) worst = std::max(worst, change / size);
+    if (!std::isfinite(change)) return {change, change};
+    if (change == 0) continue;
+    worst.relative = std::max(worst.relative, std::sqrt(change / size));
+    worst.moves = std::max(worst.moves, h * h * std::sqrt(change * inverse));
   }
-  return std::sqrt(worst);
+  return worst;
 }
 
-/// @return whether perturbations stand still
-bool EnckeGauss::sweep(VectorField<double>& f, double t, double h) {
+/// @return why perturbations do not stand still, if they do not
+std::optional<Failure> EnckeGauss::sweep(VectorField<double>& f, double t, double h) {
   double before = std::numeric_limits<double>::infinity();
   for (int round = 1; round <= most_departure_sweeps; ++round) {
-    depart(h);
-    add_gravity();
+    encke_kernels().depart(rows_.data(), std::ssize(rows_), a_.data(), h);
+    strongest_ = encke_kernels().attract(rows_.data(), std::ssize(rows_));
     f.evaluations().force += stages;
     if (beside_) add_forces_beside(f, t, h);
-    const double change = take_perturbations();
-    if (!std::isfinite(change)) return false;
-    const double shrinks = round > 1 ? change / before : 1;
-    if (change * std::min(shrinks, 1.0) <= settled_departures) return true;
+    if (beside_ && f.failure()) return f.failure();
+    const Change change = take_perturbations(h);
+    if (!std::isfinite(change.relative)) break;
+    const double shrinks = round > 1 ? change.relative / before : 1;
+    if (change.relative * std::min(shrinks, 1.0) <= settled_departures) return {};
     if (round > 2 && shrinks >= 1) {
-      if (change < departures_may_round) return true;
-      if (round > 12) return false;
+      if (change.moves <= departures_may_round) return {};
+      if (round > patient_departures) break;
     }
-    before = change;
+    before = change.relative;
   }
-  return false;
+  return Failure{
+      Outcome::Kind::solver_failure, -1, "departures",
+      fmt::format("the departures from Kepler orbits do not converge with a step of {:.6g}; {}", h, ways_out)};
 }
 
 /// Perturbations that a polynomial of degree 7 does not follow, unless they are too small to matter.
 std::optional<Failure> EnckeGauss::unresolved(double h) const {
-  for (const Body& body : bodies_) {
+  for (std::size_t m = 0; m < bodies_.size(); ++m) {
+    const EnckeBody& rows = rows_[m];
     double last2 = 0, largest2 = 0, nearest2 = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < 3; ++k) {
       double last = 0;
-      for (std::size_t i = 0; i < stages; ++i) last += last_[i] * body.perturbation[k][i];
+      for (std::size_t i = 0; i < stages; ++i) last += last_[i] * rows.perturbation[k][i];
       last2 += last * last;
     }
     for (std::size_t i = 0; i < stages; ++i) {
       double size2 = 0;
-      for (std::size_t k = 0; k < 3; ++k) size2 += body.perturbation[k][i] * body.perturbation[k][i];
+      for (std::size_t k = 0; k < 3; ++k) size2 += rows.perturbation[k][i] * rows.perturbation[k][i];
       largest2 = std::max(largest2, size2);
-      nearest2 = std::min(nearest2, 1 / body.inverse_r2[i]);
+      nearest2 = std::min(nearest2, 1 / rows.inverse_r2[i]);
     }
     constexpr double negligible = 1e-14;
     const bool matters = h * h * std::sqrt(last2) > negligible * std::sqrt(nearest2);
     if (!matters || last2 <= rough_perturbations * rough_perturbations * largest2) continue;
-    return Failure{
-        Outcome::Kind::solver_failure, body.particle, "departure",
-        fmt::format("perturbations change too fast to be followed with a step of {:.6g}; give a shorter one, "
-                    "or use 'gauss_8'",
-                    h)};
+    return Failure{Outcome::Kind::solver_failure, bodies_[m].particle, "departure",
+                   fmt::format("perturbations change too fast to be followed with a step of {:.6g}; {}", h, ways_out)};
   }
   return {};
 }
@@ -351,14 +296,19 @@ std::optional<Failure> EnckeGauss::unresolved(double h) const {
 std::optional<Failure> EnckeGauss::close(Vector<double>& y, double h) {
   const DoubleDouble step(h);
   WideVector dx = WideVector::Zero(), dv = WideVector::Zero(), center_v = wide(y, primary_, 3 * n_);
-  for (Body& body : bodies_) {
+  for (std::size_t m = 0; m < bodies_.size(); ++m) {
+    Body& body = bodies_[m];
+    const EnckeBody& rows = rows_[m];
     const KeplerArc<DoubleDouble> arc = kepler_arc(body.x, body.v, body.mu, step);
     if (arc.status != KeplerStatus::converged) return no_arc(body, h);
     const KeplerTangent tangent(body.x0, body.v0, body.mu.high, h, arc.s.high);
     KeplerChange sum{Vec3<double>::Zero(), Vec3<double>::Zero()};
-    for (std::size_t i = 0; i < stages; ++i) {
-      sum.x += b_[i] * body.rates[i].x + b_low_[i] * body.rates[i].x;
-      sum.v += b_[i] * body.rates[i].v + b_low_[i] * body.rates[i].v;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto axis = static_cast<Index>(k);
+      for (std::size_t i = 0; i < stages; ++i) {
+        sum.x[axis] += b_[i] * rows.rate_x[k][i] + b_low_[i] * rows.rate_x[k][i];
+        sum.v[axis] += b_[i] * rows.rate_v[k][i] + b_low_[i] * rows.rate_v[k][i];
+      }
     }
     const Vec3<double> away = h * tangent.position(sum), faster = h * tangent.velocity(sum);
     for (Index k = 0; k < 3; ++k) {
@@ -393,8 +343,8 @@ std::optional<Failure> EnckeGauss::close(Vector<double>& y, double h) {
 void EnckeGauss::save(SavedState& saved, const std::string& prefix) const {
   save_value(saved, prefix + "h", h_);
   std::vector<double> perturbations;
-  for (const Body& body : bodies_) {
-    for (const Lanes& p : body.perturbation) perturbations.insert(perturbations.end(), p.begin(), p.end());
+  for (const EnckeBody& rows : rows_) {
+    for (const auto& p : rows.perturbation) perturbations.insert(perturbations.end(), p, p + stages);
   }
   save_value(saved, prefix + "perturbations", perturbations);
 }
@@ -404,8 +354,8 @@ void EnckeGauss::load(const SavedState& saved, const std::string& prefix) {
   std::vector<double> perturbations;
   load_value(saved, prefix + "perturbations", perturbations);
   std::size_t at = 0;
-  for (Body& body : bodies_) {
-    for (Lanes& p : body.perturbation) {
+  for (EnckeBody& rows : rows_) {
+    for (auto& p : rows.perturbation) {
       for (double& x : p) x = detail::element(perturbations, at++);
     }
   }

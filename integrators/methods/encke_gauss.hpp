@@ -3,6 +3,7 @@
 
 #include "integrators/kepler_tangent.hpp"
 #include "integrators/method.hpp"
+#include "integrators/methods/encke_simd.hpp"
 #include "numbers/double_double.hpp"
 
 #include <array>
@@ -27,7 +28,8 @@ namespace noether {
 /// the state, of double-doubles, has errors far below the rounding of doubles, and they do not add up to a drift.
 ///
 /// A step that perturbations are too rough for, as in an encounter that it jumps over, ends the run: their last
-/// Legendre coefficient tells.
+/// Legendre coefficient tells. One in which bodies are so near to each other that doubles do not tell their pull well
+/// enough is counted (`Evaluations::unsettled`).
 ///
 /// The centre of mass goes on evenly, or as the forces beside gravity push it. State: both words of y, which particles
 /// keep; the perturbations of the last step, where the next one begins its sweeps.
@@ -62,27 +64,24 @@ class EnckeGauss final : public Method<double> {
   /// A body that moves about the heaviest one.
   struct Body {
     Index particle = 0;
-    double gm = 0;
     DoubleDouble mu, share;  ///< G (M + m), and m / (sum of all masses)
     WideVector x, v;         ///< relative to the heaviest body, at the beginning of the step
     Vec3<double> x0 = Vec3<double>::Zero(), v0 = Vec3<double>::Zero();  ///< the same, rounded
-    std::array<KeplerTangent, stages> tangents{};
-    LaneVector orbit{};                  ///< k at the stages
-    Lanes mu_r3{}, inverse_r2{};         ///< mu / |k|^3, 1 / |k|^2
-    LaneVector away{}, place{}, pull{};  ///< d; q; G m q / |q|^3
-    LaneVector perturbation{}, fresh{};  ///< p, as at hand, and by the sweep that goes on
-    std::array<KeplerChange, stages> rates{};
+  };
+
+  /// The largest change of perturbations by a sweep: relative to the largest of the body, and how far it moves the
+  /// body, relative to its distance from the heaviest one.
+  struct Change {
+    double relative = 0, moves = 0;
   };
 
   void refuse_equals() const;
   std::optional<Failure> open(const Vector<double>& y, double h);
-  std::optional<Failure> find_orbits(Body& body, double h) const;
+  std::optional<Failure> find_orbits(const Body& body, EnckeBody& rows, double h) const;
   void predict();
-  void depart(double h);
-  void add_gravity();
   void add_forces_beside(VectorField<double>& f, double t, double h);
-  double take_perturbations();
-  bool sweep(VectorField<double>& f, double t, double h);
+  Change take_perturbations(double h);
+  std::optional<Failure> sweep(VectorField<double>& f, double t, double h);
   std::optional<Failure> unresolved(double h) const;
   std::optional<Failure> close(Vector<double>& y, double h);
   Failure no_arc(const Body& body, double h) const;
@@ -92,18 +91,21 @@ class EnckeGauss final : public Method<double> {
 
   std::string_view name_;
   Lanes c_{}, b_{}, b_low_{};
-  Lanes last_{};                     ///< weights of the last Legendre coefficient
-  std::array<Lanes, stages> a_{};    ///< a_[i][j]
-  std::array<Lanes, stages> ahead_;  ///< ahead_[i][j]: weights of the last stages in the polynomial at 1 + c_i
-  std::array<Lanes, 2> twice_{};     ///< b a, and what rounding has taken
+  Lanes last_{};  ///< weights of the last Legendre coefficient
+  /// By columns: a_[8 j + i] is a_ij, ahead_[8 j + i] the weight of stage j of the last step in its polynomial at 1 +
+  /// c_i.
+  std::array<double, stages * stages> a_{}, ahead_{};
+  std::array<Lanes, 2> twice_{};  ///< b a, and what rounding has taken
   Index n_ = 0, primary_ = 0;
   bool beside_ = false;
   std::vector<Body> bodies_;
+  std::vector<EnckeBody> rows_;        ///< of the same bodies
   KeplerChange center_{};              ///< of mass, at the beginning of the step, where there are forces beside
   LaneVector drift_{};                 ///< its accelerations at the stages
   Vector<double> stage_, stage_push_;  ///< a stage as fields see it, and what forces beside gravity add to it
   Vector<double> low_;                 ///< second words of y
   double h_ = 0;                       ///< of the perturbations at hand; 0: there are none
+  double strongest_ = 0;               ///< largest G (m + m') / r^3 of two bodies in the last sweep
   Vector<double> masses_;
 };
 

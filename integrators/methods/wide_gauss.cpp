@@ -19,7 +19,9 @@ namespace {
 constexpr double settled_stages = 1e-16, settled_wide = 1e-20;
 /// Changes below may be rounding, where bodies are so near to each other that doubles hardly tell their distance.
 constexpr double stages_may_round = 1e-9;
-constexpr int most_stage_sweeps = 60, most_wide_sweeps = 12;
+/// So many sweeps are made before one that changes more than the one before it ends the step.
+constexpr int patient_sweeps = 12;
+constexpr int most_stage_sweeps = 60, most_wide_sweeps = 60;
 
 /// r^-3 from r^2; in double-double by one step of Newton's from doubles.
 double inverse_cube(double r2) { return 1 / (r2 * std::sqrt(r2)); }
@@ -45,11 +47,13 @@ template <class Coordinates> double take_rates(Index n, const Coordinates& fresh
         change2 += difference * difference;
         size2 += rate * rate;
       }
-      change = std::max(change, change2);
+      if (!(change2 <= change)) change = change2;  // a NaN stays
       if (!(size2 <= size)) size = size2;
     }
-    const double relative = change > 0 ? change / size : change;
-    if (!(relative <= worst)) worst = relative;
+    if (change == 0) continue;
+    const double relative = change / size;
+    if (!std::isfinite(relative)) return relative;
+    worst = std::max(worst, relative);
   }
   rates = fresh;
   return std::sqrt(worst);
@@ -97,6 +101,8 @@ StepResult WideGauss::step(VectorField<double>& f, const double& t, Vector<doubl
   StepResult made{.h = h};
   begin(y, h);
   if (!sweep(f, t, h) || !sweep_wide(f, h)) {
+    made.failure = f.failure();
+    if (made.failure) return made;
     made.failure =
         Failure{Outcome::Kind::solver_failure, -1, "stages",
                 fmt::format("the stages of '{}' do not converge with a step of {:.6g}; give a shorter one", name_, h)};
@@ -184,6 +190,7 @@ bool WideGauss::sweep(VectorField<double>& f, double t, double h) {
     attract(q_, fresh_);
     f.evaluations().force += stages;
     add_forces_beside(f, t, h);
+    if (f.failure()) return false;
     for (std::size_t k = 0; beside_ && k < fresh_.size(); ++k) {
       for (std::size_t s = 0; s < stages; ++s) fresh_[k][s] += pushes_[k][s];
     }
@@ -193,14 +200,14 @@ bool WideGauss::sweep(VectorField<double>& f, double t, double h) {
     if (change * std::min(shrinks, 1.0) <= settled_stages) return true;
     if (round > 2 && shrinks >= 1) {
       if (change < stages_may_round) return true;
-      if (round > 12) return false;
+      if (round > patient_sweeps) return false;
     }
     before = change;
   }
   return false;
 }
 
-/// Sweeps in double-double, from where doubles have led.
+/// Sweeps in double-double, from where doubles have led. @return whether the rates stand still
 bool WideGauss::sweep_wide(VectorField<double>& f, double h) {
   for (std::size_t k = 0; k < rates_.size(); ++k) {
     for (std::size_t s = 0; s < stages; ++s) wide_rates_[k][s] = rates_[k][s];
@@ -216,11 +223,11 @@ bool WideGauss::sweep_wide(VectorField<double>& f, double h) {
     const double change = take_rates(n_, wide_fresh_, wide_rates_);
     if (!std::isfinite(change)) return false;
     const double shrinks = round > 1 ? change / before : 1;
-    if (round > 1 && change * std::min(shrinks, 1.0) <= settled_wide) break;
-    if (round > 2 && shrinks >= 1) return change < stages_may_round;
+    if (round > 1 && change * std::min(shrinks, 1.0) <= settled_wide) return true;
+    if (round > patient_sweeps && shrinks >= 1) return false;
     before = change;
   }
-  return true;
+  return false;
 }
 
 void WideGauss::finish(Vector<double>& y, double h) {

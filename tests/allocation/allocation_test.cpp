@@ -176,3 +176,17 @@ TEST_CASE("a force that allocates is seen by the count", "[allocation]") {
   CHECK(allocations_of(compose(KineticPotential(Careless{}), schemes::verlet)).first >=
         19);  // settling shares one evaluation
 }
+
+TEST_CASE("energies in 113 bits keep what they work with", "[allocation]") {
+  auto integrator = classical(Gravity{.G = G}, method("encke_gauss_8"));
+  ParticleSystem<double> s = test::outer_planets();
+  s.clock() = Clock<double>::fixed(0, 200);
+  integrator.bind(s);
+  integrator.advance(s, {.steps = 5});
+  const auto first = integrator.wide_energy(s);
+  const long start = allocations;
+  const auto second = integrator.wide_energy(s);
+  CHECK(allocations == start);
+  REQUIRE((first && second));
+  CHECK((first->total() == second->total()));
+}

@@ -170,6 +170,42 @@ TEST_CASE("evaluate tells LAMMPS's pressure, and none where there is none", "[cl
   CHECK_FALSE(has(output(open, "evaluate scene.toml"), "pressure"));
 }
 
+TEST_CASE("explain counts the evaluations of kernels, and kicks of forces that have their letters", "[cli][explain]") {
+  const SceneFolder folder;
+  for (const std::string letter : {"L", "G"}) {
+    const std::string text =
+        output(folder, "explain scene.toml --set integrator.method=" + letter + "BAB" + letter +
+                           " --set 'hamiltonian.force=[{type=\"gravity\"}, {type=\"harmonic_field\", k=0.1, kick=\"" +
+                           letter + "\"}]'");
+    INFO(text);
+    CHECK(has(text, "\n  1 x " + letter + ": kicks by harmonic_field, 2 force evaluations of all kicks together\n"));
+  }
+  const auto kernel = [&](const std::string& of, const std::string& coordinates) {
+    return output(folder,
+                  "explain scene.toml --set hamiltonian.force= --set hamiltonian.type=wisdom_holman --set "
+                  "hamiltonian.coordinates=" +
+                      coordinates +
+                      " --set integrator.method=verlet_aba --set integrator.corrector=17 --set "
+                      "integrator.kernel=" +
+                      of);
+  };
+  const std::string plain = kernel("plain", "jacobi"), modified = kernel("modified", "jacobi"),
+                    lazy = kernel("lazy", "jacobi");
+  INFO(plain << modified << lazy);
+  for (const std::string& text : {plain, modified})
+    CHECK(has(text, "\n  1 x B: kicks by the interaction, one force evaluation each\n"));
+  CHECK((has(modified, ", for kernels, 1 force evaluation\n") ||
+         has(modified, ", for kernels, 2 force evaluations\n")));  // of its own, where kicks are in lanes
+  CHECK(has(lazy, ", for kernels, 2 force evaluations\n"));
+  CHECK(has(plain,
+            "\n  corrector = 17: order 2, errors of dt^18 in the first power of the masses and dt^2 in the "
+            "second\n"));
+  for (const auto& [coordinates, order] : {std::pair("jacobi", 4), std::pair("democratic", 3), std::pair("whds", 2)}) {
+    CHECK(has(kernel("composed", coordinates),
+              "\n  corrector = 17, kernel = \"composed\": order " + std::to_string(order) + ", errors of dt^18 in "));
+  }
+}
+
 TEST_CASE("explain says where numbers are single", "[cli][messages]") {
   const SceneFolder pair(close_pair);
   const std::string line =

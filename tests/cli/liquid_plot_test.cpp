@@ -334,7 +334,7 @@ TEST_CASE("plot draws a melt: particles, temperature, g(r) and displacements, no
   CHECK(frame.err == "--frame 5: out/run.h5 has the frames 0 to 4; -1 is the last\n");
   const ProcessResult what = noether(folder, "plot out/run.h5 --what rfd");
   CHECK(what.exit_code == 2);
-  CHECK(what.err == "--what 'rfd' is nothing that plot draws; did you mean 'rdf'?\n");
+  CHECK(what.err == "--what 'rfd' is not one of the panels; did you mean 'rdf'?\n");
   CHECK(noether(folder, "plot out/run.h5 --what pressure").err ==
         "out/run.h5 has no pressure to draw; it needs the monitor pressure\n");
   CHECK(noether(folder, "plot out/run.h5 --projection zz").err ==

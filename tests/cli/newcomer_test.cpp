@@ -103,6 +103,16 @@ TEST_CASE("five lines make a run, a picture and a page", "[cli][newcomer]") {
   CHECK(has(info, "\n  energy: "));
   check_refused(folder, "info orbit.out", 3, "orbit.out: this is not a regular file; did you mean 'orbit.out/run.h5'?");
   check_refused(folder, "view orbit.out", 3, "orbit.out: this is not a regular file; did you mean 'orbit.out/run.h5'?");
+  for (const char* command : {"info orbit.toml", "view orbit.toml", "verify orbit.toml"}) {
+    check_refused(folder, command, 3,
+                  "orbit.toml: this is a scene, and a file of a run is expected; did you mean 'orbit.out/run.h5'?");
+  }
+  check_refused(
+      folder, "run orbit.out/run.h5", 2,
+      "orbit.out/run.h5: this is an HDF5 file, and a scene is expected; `noether info orbit.out/run.h5` tells "
+      "what is in it");
+  check_refused(folder, "view orbit.out/run.h5 --frames 0", 2,
+                "--frames: '0' is not a valid number of frames; give one from 1; see `noether view --help`");
   CHECK(output(folder, "view orbit.out/run.h5 --out orbit.html") == "orbit.html\n");
   CHECK(has(read_text(folder / "orbit.html"), "Earth"));
   if (run_process({"gnuplot", "--version"}, folder.path()).exit_code != 0) {

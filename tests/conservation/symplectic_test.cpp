@@ -1,3 +1,5 @@
+#include "forces/gr_potential.hpp"
+#include "forces/oblateness.hpp"
 #include "integrators/all_schemes.hpp"
 #include "integrators/damped.hpp"
 #include "integrators/wisdom_holman.hpp"
@@ -131,6 +133,11 @@ TEST_CASE("Kepler arcs with further forces are symplectic", "[conservation][symp
     CHECK(defect(hamiltonian, schemes::verlet, start, 0.2, 2) < 1e-16);
     CHECK(defect(hamiltonian, schemes::abah_8_6_4, start, 0.2, 1) < 1e-16);
   }
+  field.add(GrPotential{.c = 5}).add(Oblateness{.J2 = 0.1, .J4 = -0.05, .radius = 0.5, .axis = {0.1, 0.2, 1}});
+  const auto arcs = wisdom_holman_over({}, field);
+  const CompositionOptions modified{.corrector = 5, .kernel = StepKernel::modified};
+  CHECK(defect(arcs, processed(schemes::verlet_aba, modified), start, 0.2, 1) < 1e-16);
+  CHECK(compose(arcs, schemes::verlet_aba, modified).claims().symplectic);
 }
 
 /// No gradient: it has a curl of 1e-9.

@@ -8,6 +8,7 @@
 #include "forces/oblateness.hpp"
 #include "forces/sum.hpp"
 #include "integrators/all_schemes.hpp"
+#include "integrators/classical.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/damped.hpp"
 #include "integrators/kinetic_potential.hpp"
@@ -81,18 +82,33 @@ Simulation<double> simulation_of(const Twin& twin, const Way& way) {
   return simulation;
 }
 
+/// The digest of the first words, and after it second ones where they are digits of the state.
+std::string bits_of(Simulation<double>& simulation, bool second_words) {
+  const ParticleSystem<double>& s = simulation.particles();
+  std::string bits = io::digest(s);
+  if (!second_words) return bits;
+  REQUIRE(s.low_words() != nullptr);
+  for (const VectorColumn<double>* column : {&s.low_words()->x, &s.low_words()->v}) {
+    for (Index i = 0; i < s.size(); ++i) {
+      for (int k = 0; k < 3; ++k) bits += fmt::format(" {:a}", column->component(k)[i]);
+    }
+  }
+  return bits;
+}
+
 std::string digest_of(const Twin& twin, const Way& way) {
+  const bool second_words = twin.program.claims().second_words;
   const test::Threads threads(way.threads);
   Simulation<double> whole = simulation_of(twin, way);
   if (!way.restarted) {
     REQUIRE(whole.run(steps).ok());
-    return io::digest(whole.particles());
+    return bits_of(whole, second_words);
   }
   REQUIRE(whole.run(2).ok());
   Simulation<double> again = simulation_of(twin, way);
   again.restore(whole.save());
   REQUIRE(again.run(steps - 2).ok());
-  return io::digest(again.particles());
+  return bits_of(again, second_words);
 }
 
 /// Every way there is: 96.
@@ -226,10 +242,31 @@ std::vector<Twin> turning_twins() {
            .method = "yoshida_4"}};
 }
 
+/// Methods on states of two words, with tracers and a force beside gravity.
+std::vector<Twin> two_word_twins() {
+  const Gravity gravity{.G = test::outer_G};
+  const OscillatingField wind{.acceleration = {1e-9, 0, 2e-9}, .omega = 0.003};
+  const std::string scene = fmt::format(
+      "[hamiltonian]\ntype='kinetic_potential'\nG={}\n[[hamiltonian.force]]\ntype='gravity'\n"
+      "[[hamiltonian.force]]\ntype='oscillating_field'\nacceleration=[1e-9,0,2e-9]\nomega=0.003\n",
+      test::outer_G);
+  std::vector<Twin> twins;
+  for (const char* name : {"encke_gauss_8", "wide_gauss_8"}) {
+    twins.push_back({.name = name,
+                     .bodies = test::planets_with_tracers(7),
+                     .program = test::classical_over(test::field_of(gravity, wind), method(name)),
+                     .step = 60,
+                     .hamiltonian = scene,
+                     .method = name});
+  }
+  return twins;
+}
+
 void check_all_twins(std::size_t stride) {
-  for (const auto& twins : {gravity_twins(), force_twins(), liquid_twins(), decorated_twins(), turning_twins(),
-                            wisdom_holman_twins(Coordinates::jacobi), wisdom_holman_twins(Coordinates::democratic),
-                            wisdom_holman_twins(Coordinates::whds), wisdom_holman_twins(Coordinates::barycentric)}) {
+  for (const auto& twins :
+       {gravity_twins(), force_twins(), liquid_twins(), decorated_twins(), turning_twins(), two_word_twins(),
+        wisdom_holman_twins(Coordinates::jacobi), wisdom_holman_twins(Coordinates::democratic),
+        wisdom_holman_twins(Coordinates::whds), wisdom_holman_twins(Coordinates::barycentric)}) {
     for (const Twin& twin : twins) check_ways(twin, stride);
   }
 }

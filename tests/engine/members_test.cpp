@@ -4,8 +4,12 @@
 #include "engine/monitor.hpp"
 #include "forces/bonded.hpp"
 #include "forces/gravity.hpp"
+#include "forces/sum.hpp"
+#include "integrators/kinetic_potential.hpp"
 #include "monitors/monitors.hpp"
 #include "tests/support/catch.hpp"
+
+#include <string>
 
 namespace noether {
 namespace {
@@ -29,17 +33,68 @@ struct SecantOfOneState : Push {
   void add_secant_to(ForceSink<double>&, const ParticleSystem<double>&) const {}
 };
 
+struct Climas : Push {
+  static ForceClaims climas() { return {}; }
+};
+struct Refernece : Push {
+  template <class Real> Push refernece(Real /*any*/) const { return {}; }
+};
+
 struct Watch {
   void observe(const Snapshot<double>&) {}
 };
 struct ChangingReport : Watch {
   MonitorReport report() { return {}; }  // not const
 };
+struct Reprot : Watch {
+  MonitorReport reprot() const { return {}; }
+};
 struct FinishOfNothing : Watch {
   void finish() {}
 };
 
+/// As far as members are looked for.
+struct Flows {
+  using real = double;
+};
+struct VirialOfNothing : Flows {
+  Mat3<double> virial() { return Mat3<double>::Zero(); }
+};
+struct Viriel : Flows {
+  Mat3<double> viriel(const ParticleSystem<double>&) { return Mat3<double>::Zero(); }
+};
+struct ProjectsWithoutTime : Flows {
+  void project_velocities(ParticleSystem<double>&) {}
+};
+struct ActionInWords : Flows {
+  std::string has_action() const { return "yes"; }
+};
+
 }  // namespace
+
+TEST_CASE("an optional member of a Hamiltonian or an integrator that is nearly right is found", "[engine][members]") {
+  using detail::HamiltonianMembers, detail::IntegratorMembers;
+  using Whole = KineticPotential<ForceField<double>>;
+  STATIC_REQUIRE(HamiltonianMembers<Flows>::virial);
+  STATIC_REQUIRE_FALSE(HamiltonianMembers<VirialOfNothing>::virial);
+  STATIC_REQUIRE_FALSE(HamiltonianMembers<Viriel>::virial);
+  STATIC_REQUIRE(HamiltonianMembers<Viriel>::project_velocities);
+  STATIC_REQUIRE_FALSE(HamiltonianMembers<ProjectsWithoutTime>::project_velocities);
+  STATIC_REQUIRE(detail::finds_virial<Whole>());
+  STATIC_REQUIRE(HamiltonianMembers<Whole>::virial);
+  STATIC_REQUIRE(HamiltonianMembers<Whole>::project_velocities);
+  STATIC_REQUIRE(IntegratorMembers<Flows>::has_action);
+  STATIC_REQUIRE_FALSE(IntegratorMembers<ActionInWords>::has_action);
+  STATIC_REQUIRE_FALSE(IntegratorMembers<VirialOfNothing>::virial);
+}
+
+TEST_CASE("an optional member whose name is misspelt is found", "[engine][members]") {
+  STATIC_REQUIRE_FALSE(detail::ForceMembers<Climas>::claims);
+  STATIC_REQUIRE_FALSE(detail::ForceMembers<Refernece>::reference);
+  STATIC_REQUIRE(detail::ForceMembers<Climas>::check);
+  STATIC_REQUIRE_FALSE(detail::MonitorMembers<Reprot>::report);
+  STATIC_REQUIRE(detail::MonitorMembers<Reprot>::record);
+}
 
 TEST_CASE("an optional member of a force that is nearly right is found", "[engine][members]") {
   using detail::ForceMembers;

@@ -164,6 +164,32 @@ TEST_CASE("an unknown unit is refused with a proposal", "[quantity]") {
       "kpc, Mpc, ly, mm, um, pm, bohr");
 }
 
+TEST_CASE("no unit of another dimension is proposed, and angles only where an angle is expected", "[quantity]") {
+  const std::string time = "; a time is expected, such as '1 day'", mass = "; a mass is expected, such as '1 Msun'";
+  // Angles have no dimension, so that they would fit beside any unit.
+  CHECK(refusal("1 solar day", dimensions::time, solar) == "unknown unit 'solar' in '1 solar day'" + time);
+  CHECK(refusal("1 kg kk", dimensions::mass, solar) == "unknown unit 'kk' in '1 kg kk'" + mass);
+  CHECK(refusal("1 kg/mass", dimensions::mass, solar) == "unknown unit 'mass' in '1 kg/mass'" + mass);
+  // Other words are unknown too: only what a mass may be made of is proposed, not solRad.
+  CHECK(refusal("1 solar mass", dimensions::mass, solar) == "unknown unit 'solar' in '1 solar mass'" + mass);
+  CHECK(refusal("1 kmm/dya", dimensions::velocity, solar) == "unknown unit 'kmm' in '1 kmm/dya'; did you mean 'km'?");
+  // No unit is a velocity: neither C nor Mpc.
+  for (const std::string word : {"c", "mph", "knots"}) {
+    CHECK(refusal("1 " + word, dimensions::velocity, solar) ==
+          "unknown unit '" + word + "' in '1 " + word + "'; a velocity is expected, such as '1 au/day'");
+  }
+  CHECK(refusal("1 dge", dimensions::none, si) ==
+        "unknown unit 'dge' in '1 dge'; a plain number is expected, such as '1'");
+  CHECK_THROWS_WITH(parse_angle("1 dge", si), "unknown unit 'dge' in '1 dge'; did you mean 'deg'?");
+  CHECK_THROWS_WITH(parse_unit("Mj", "mass", solar), "unknown unit 'Mj'; did you mean 'Mjup'?");
+  CHECK_THROWS_WITH(parse_unit("solar mass", "mass", solar),
+                    "unknown unit 'solar' in 'solar mass'; a unit of mass is expected, such as 'Msun'");
+  CHECK_THROWS_WITH(parse_unit("dge", "angle", solar), "unknown unit 'dge'; did you mean 'deg'?");
+  CHECK_THROWS_WITH(parse_unit("ma", "length", solar), "unknown unit 'ma'; did you mean 'm'?");
+  CHECK_THROWS_WITH(parse_unit("ma", "time", solar), "unknown unit 'ma'; did you mean 'ms'?");
+  CHECK(parse_unit("km", "mass", solar).dimension == dimensions::length);  // for the caller to refuse
+}
+
 TEST_CASE("names of units in English, plurals and AU are the units that they name", "[quantity]") {
   const auto same = [](std::string_view words, std::string_view symbol, const Dimension& dimension) {
     CAPTURE(words);

@@ -140,6 +140,8 @@ TEST_CASE("impossible runs are refused before the first step", "[simulation]") {
   CHECK_THROWS_WITH(planets(0), "a step of 0 is not valid; a finite time other than 0 is expected");
   CHECK_THROWS_WITH(planets(std::numeric_limits<double>::infinity()),
                     "a step of inf is not valid; a finite time other than 0 is expected");
+  CHECK_THROWS_WITH(Simulation(test::outer_planets(), verlet(), Clock<double>::fixed(0.05, 0)),
+                    "a step of 0 is not valid; a finite time other than 0 is expected");
   CHECK_THROWS_WITH(Simulation(ParticleSystem<double>(), verlet(), 1.0),
                     "there are no particles; a run needs at least one");
   CHECK_THROWS_WITH(Simulation(test::outer_planets(), verlet()),

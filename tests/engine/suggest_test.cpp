@@ -34,6 +34,9 @@ TEST_CASE("short words need a letter in common, long ones may differ by a third"
   CHECK(suggest("q", {"s", "m"}) == "");
   CHECK(suggest("zz", {"ns"}) == "");
   CHECK(suggest("nz", {"ns"}) == "ns");
+  CHECK(suggest("pme", {"am1"}) == "");  // one letter in common of three
+  CHECK(suggest("Mj", {"Mjup", "Msun"}) == "Mjup");
+  CHECK(suggest("M", {"Mjup", "Msun"}) == "");
   CHECK(suggest("yoshda_66", {"yoshida_6"}) == "yoshida_6");
   CHECK(suggest("wisdomholm", {"wisdom_holman"}) == "wisdom_holman");  // 3 edits in 10 letters
   CHECK(suggest("wisdomhol", {"wisdom_holman"}) == "");                // 4 edits in 9 letters
@@ -50,6 +53,7 @@ TEST_CASE("among equally near words the case decides, then the number at the end
 
 TEST_CASE("a word that differs in its joints or its plural alone is the nearest", "[suggest]") {
   CHECK(squeezed("Aba-10_6 4") == "aba1064");
+  CHECK(squeezed("ABA(10,6,4)") == "aba1064");
   CHECK(squeezed("energies") == "energy");
   CHECK(squeezed("masses") == "masse");
   CHECK(squeezed("gauss") == "gauss");

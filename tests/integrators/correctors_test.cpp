@@ -4,6 +4,8 @@
 #include "forces/external_fields.hpp"
 #include "forces/gr_potential.hpp"
 #include "forces/gravity.hpp"
+#include "forces/oblateness.hpp"
+#include "forces/post_newtonian.hpp"
 #include "integrators/all_schemes.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/wisdom_holman.hpp"
@@ -11,6 +13,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"
 #include "tests/support/planets.hpp"
+#include "tests/support/settings.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -81,9 +84,7 @@ struct CorrectorClock {
   std::vector<double>* times;
   static ForceClaims claims() { return {.time_dependent = true}; }
   std::string name() const { return "clocked"; }
-  template <class Real> void add_to(ForceSink<Real>& /*out*/, const ParticleSystem<Real>& s) const {
-    times->push_back(static_cast<double>(s.clock().time()));
-  }
+  void add_to(ForceSink<double>& /*out*/, const ParticleSystem<double>& s) const { times->push_back(s.clock().time()); }
 };
 
 TEST_CASE("forces see the time of their place in the words around a run", "[corrector]") {
@@ -108,13 +109,59 @@ TEST_CASE("a weak force beside the planets does not spoil a corrector", "[correc
     return worst(Simulation<double>(test::outer_planets(), compose(arcs, schemes::verlet_aba, options), step));
   };
   CHECK(with_gr({.corrector = 17}) < with_gr({}) / 300);
-  CHECK(with_gr({.corrector = 17, .kernel = StepKernel::lazy}) < with_gr({.corrector = 17}) / 8);
+  for (const StepKernel kernel : {StepKernel::lazy, StepKernel::modified})
+    CHECK(with_gr({.corrector = 17, .kernel = kernel}) < with_gr({.corrector = 17}) / 8);
 }
 
+TEST_CASE("kernels cost the evaluations of forces that they are said to cost", "[corrector]") {
+  // Beside a force that is not in lanes: kicks in lanes keep their accelerations to themselves.
+  const auto of_step = [](const Scheme& scheme, const CompositionOptions& options) {
+    const auto arcs = test::wisdom_holman({.G = test::outer_G}, Oblateness{.J2 = 1e-7, .radius = 0.005});
+    Simulation<double> run(test::outer_planets(), compose(arcs, scheme, options), step);
+    REQUIRE(run.run(5).ok());
+    const std::int64_t before = run.evaluations().force;
+    REQUIRE(run.run(10).ok());
+    return static_cast<double>(run.evaluations().force - before) / 10;
+  };
+  CHECK(of_step(schemes::verlet_aba, {}) == 1);
+  CHECK(of_step(schemes::verlet_aba, {.kernel = StepKernel::modified}) == 2);
+  CHECK(of_step(schemes::verlet_aba, {.corrector = 7, .kernel = StepKernel::modified}) == 2);
+  CHECK(of_step(schemes::verlet_aba, {.kernel = StepKernel::lazy}) == 2);
+  CHECK(of_step(schemes::verlet_aba, {.kernel = StepKernel::composed}) == 5);
+  CHECK(of_step(schemes::saba_2, {.kernel = StepKernel::modified}) == 4);
+}
+
+TEST_CASE("observers change neither the bits nor the cost of a modified kernel, nor do threads", "[corrector]") {
+  const auto made = [](const Scheme& scheme, int threads, std::int64_t cadence) {
+    const test::Threads setting(threads);
+    const auto arcs = test::wisdom_holman({.G = test::outer_G}, GrPotential{.c = 17.3, .G = test::outer_G});
+    Simulation<double> run(test::planets_with_tracers(600), compose(arcs, scheme, {.kernel = StepKernel::modified}),
+                           step);
+    if (cadence > 0) run.every(cadence, Energy());
+    REQUIRE(run.run(30).ok());
+    return std::pair(run.particles(), run.evaluations().force);
+  };
+  for (const Scheme* scheme : {&schemes::verlet_aba, &schemes::saba_3}) {
+    const auto [alone, cost] = made(*scheme, 1, 0);
+    for (const int threads : {1, 2, 3}) {
+      const auto [other, same_cost] = made(*scheme, threads, threads);
+      CHECK(test::same_bits(alone, other));
+      CHECK(cost == same_cost);
+    }
+  }
+}
+
+/// A force without derivatives.
+struct InDoubles {
+  std::string name() const { return "in_doubles"; }
+  void add_to(ForceSink<double>& /*out*/, const ParticleSystem<double>& /*s*/) const {}
+};
+
 TEST_CASE("kernels that a splitting does not have are refused, with those that it has", "[corrector]") {
-  const auto refusal = [](AnyHamiltonian<double> hamiltonian, const CompositionOptions& options) -> std::string {
+  const auto refusal = [](AnyHamiltonian<double> hamiltonian, const CompositionOptions& options,
+                          const Scheme& scheme = schemes::verlet_aba) -> std::string {
     try {
-      compose(std::move(hamiltonian), schemes::verlet_aba, options);
+      compose(std::move(hamiltonian), scheme, options);
     } catch (const SchemeMismatch& mismatch) {
       return mismatch.message();
     }
@@ -122,18 +169,63 @@ TEST_CASE("kernels that a splitting does not have are refused, with those that i
   };
   const CompositionOptions modified{.corrector = 5, .kernel = StepKernel::modified},
       lazy{.corrector = 5, .kernel = StepKernel::lazy}, composed{.corrector = 5, .kernel = StepKernel::composed};
-  CHECK(refusal(test::wisdom_holman({}, GrPotential{}), modified) ==
-        "kernel = \"modified\" is for wisdom_holman in Jacobi coordinates without other forces, not for this "
-        "'wisdom_holman'; use kernel = \"lazy\" or \"composed\"");
-  CHECK(refusal(test::wisdom_holman({}, GrPotential{}), lazy) == "");
-  CHECK(refusal(test::wisdom_holman({.coordinates = Coordinates::whds}), lazy) ==
-        "kernel = \"lazy\" is for wisdom_holman in Jacobi coordinates, not for this 'wisdom_holman'; use kernel = "
-        "\"plain\"");
+  for (const CompositionOptions& options : {modified, lazy, composed}) {
+    CHECK(refusal(test::wisdom_holman({}, GrPotential{}), options) == "");
+    CHECK(refusal(test::wisdom_holman({}, Oblateness{.J2 = 1e-3, .radius = 0.01}, GrPotential{}), options) == "");
+  }
+  CHECK(refusal(test::wisdom_holman({}, GrPotential{}, InDoubles{}), modified) ==
+        "kernel = \"modified\" is not for this 'wisdom_holman', because the force 'in_doubles' is written for doubles "
+        "only and has no derivatives; use kernel = \"lazy\" or \"composed\"");
+  CHECK(refusal(test::wisdom_holman({}, InDoubles{}), lazy) == "");
+  for (const auto& [options, name] : {std::pair(modified, "modified"), std::pair(lazy, "lazy")}) {
+    CHECK(
+        refusal(test::wisdom_holman({}, GrPotential{}, PostNewtonian{}), options) ==
+        "kernel = \"" + std::string(name) +
+            "\" is not for this 'wisdom_holman', because the force 'post_newtonian' depends on velocities; use kernel "
+            "= \"composed\"");
+    CHECK(
+        refusal(test::wisdom_holman({.coordinates = Coordinates::whds}), options) ==
+        "kernel = \"" + std::string(name) +
+            "\" is not for this 'wisdom_holman', because kernels with derivatives need Jacobi coordinates; use kernel "
+            "= \"composed\"");
+  }
   CHECK(refusal(test::wisdom_holman({.coordinates = Coordinates::whds}), composed) == "");
+  CHECK(refusal(test::wisdom_holman({}, PostNewtonian{}), composed) == "");
+  CHECK(refusal(test::wisdom_holman({.coordinates = Coordinates::democratic}), {.kernel = StepKernel::modified},
+                schemes::saba_2) ==
+        "kernel = \"modified\" is not for this 'wisdom_holman', because kernels with derivatives need Jacobi "
+        "coordinates; take it out");
   CHECK(refusal(test::kinetic_potential(Gravity{}), composed) ==
         "corrector = 5, kernel = \"composed\" is for kicks between Kepler arcs, but 'kinetic_potential' has none; use "
         "the "
         "Hamiltonian 'wisdom_holman', or take it out");
+}
+
+TEST_CASE("words that would kick for more than a step, by letters of kernels, are refused", "[corrector]") {
+  const auto refusal = [](AnyHamiltonian<double> hamiltonian, const Scheme& scheme) -> std::string {
+    try {
+      compose(std::move(hamiltonian), scheme);
+    } catch (const SchemeMismatch& mismatch) {
+      return mismatch.message();
+    }
+    return "";
+  };
+  const auto arcs = test::wisdom_holman({});
+  CHECK(refusal(arcs, word("BALAB")) ==
+        "the kicks B and L of scheme 'BALAB' over 'wisdom_holman' are 2 steps long in all, where 1 is expected: L is a "
+        "kick in the place of B; use kernel = \"lazy\"");
+  CHECK(refusal(arcs, word("BAGAB")) == "");  // a step and a term of order 2
+  CHECK(refusal(test::kinetic_potential(Gravity{}), word("BAGAB")) ==
+        "scheme 'BAGAB' uses the letter G, but 'kinetic_potential' has only AB");
+  CHECK(refusal(test::wisdom_holman({.coordinates = Coordinates::democratic}), word("BAGAB")) ==
+        "scheme 'BAGAB' uses the letter G, but 'wisdom_holman' has only AB");
+  ForceField<double> slow;
+  slow.add(Gravity{}).add(AnyForce<double>(UniformField{}).in_kick('G'));
+  const Scheme modified = processed(schemes::verlet_aba, {.kernel = StepKernel::modified});
+  CHECK(refusal(test::kinetic_potential_over(slow), modified) ==
+        "the kicks G of scheme 'verlet_aba' over 'kinetic_potential' are 0.0416667 steps long in all, where 1 is "
+        "expected");
+  CHECK(refusal(test::kinetic_potential_over(slow), word("GBABG")) == "");
 }
 
 }  // namespace

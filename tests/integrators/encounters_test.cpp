@@ -82,6 +82,52 @@ TEST_CASE("a tracer near a planet is seen as well, and the outer planets never",
   CHECK_FALSE(quiet.evaluations().encounter.has_value());
 }
 
+TEST_CASE("bodies that meet in the word before a run only have not met", "[encounter][corrector]") {
+  // A tracer on the other way round passes the planet, 1.5 Hill radii outside, when the word before the run has drifted
+  // by eight nodes.
+  const double dt = 0.05, node = std::sqrt(7.0 / 40), r = 1.0224, speed = 1 / std::sqrt(r);
+  const double angle = (1 + speed / r) * 8 * node * dt;
+  for (const Coordinates coordinates : in_turn) {
+    CAPTURE(static_cast<int>(coordinates));
+    const auto seen = [&](std::int64_t corrector, std::int64_t steps) {
+      ParticleSystem<double> s;
+      s.add("star", 1, {0, 0, 0}, {0, 0, 0});
+      s.add("planet", 1e-5, {1, 0, 0}, {0, 1, 0});
+      s.add("dust", 0, {r * std::cos(angle), r * std::sin(angle), 0},
+            {speed * std::sin(angle), -speed * std::cos(angle), 0});
+      Simulation<double> run(std::move(s),
+                             compose(test::wisdom_holman({.G = 1, .coordinates = coordinates}), schemes::verlet_aba,
+                                     {.corrector = corrector}),
+                             dt);
+      REQUIRE(run.run(steps).ok());
+      return run.evaluations().encounter.has_value();
+    };
+    CHECK_FALSE(seen(17, 1));
+    CHECK(seen(17, 6));
+    CHECK(seen(0, 6));
+  }
+}
+
+TEST_CASE("the place to which a lazy kick looks ahead is none where bodies meet", "[encounter][kernel]") {
+  // Two planets a little more than two Hill radii from each other, which their attraction would bring nearer.
+  const double m = 1e-3, hill = std::cbrt(2 * m / 3);
+  const auto seen = [&](double hill_radii) {
+    ParticleSystem<double> s;
+    s.add("star", 1, {0, 0, 0}, {0, 0, 0});
+    s.add("inner", m, {1, 0, 0}, {0, 1, 0});
+    s.add("outer", m, {1 + hill_radii * hill, 0, 0}, {0, 0.9, 0});
+    s.clock() = Clock<double>::fixed(0, 0.5);
+    WisdomHolman<double> arcs({.G = 1});
+    arcs.bind(s);
+    arcs.open(s);
+    s.phase().opened = true;
+    arcs.flow('L', s, 0.5);
+    return arcs.evaluations().encounter.has_value();
+  };
+  CHECK_FALSE(seen(2.005));
+  CHECK(seen(1.995));
+}
+
 TEST_CASE("a companion star is no encounter, wherever it stands in the file", "[encounter]") {
   const auto body = [](double distance) { return Vec3<double>(distance, 0, 0); };
   const auto speed = [](double distance, double mass) { return Vec3<double>(0, std::sqrt(mass / distance), 0); };
@@ -140,17 +186,24 @@ TEST_CASE("a run says in one line who met whom, when, and how closely", "[encoun
   const auto s = crowd();
   const Encounter once{.first = s.ids()[1], .second = s.ids()[2], .hill_radii = 0.4213, .time = 12.5, .since = 12.5};
   CHECK(
-      warning_of(once, s, unit_system("reduced")) ==
+      warning_of(once, "wisdom_holman", s, unit_system("reduced")) ==
       "'inner' and 'outer' came within 0.42 Hill radii of each other at time 12.5; wisdom_holman does not follow such "
       "encounters, so use a method whose steps shrink in them, such as 'gauss_radau_15'");
   Encounter later = once;
   later.since = 3.25;
   later.second = 77;
   CHECK(
-      warning_of(later, s, unit_system("solar")) ==
+      warning_of(later, "democrat", s, unit_system("solar")) ==
       "'inner' and a body that is gone (id 77) came within 0.42 Hill radii of each other at time 12.5 day, and bodies "
-      "within 2 for the first time at time 3.25 day; wisdom_holman does not follow such encounters, so use a method "
+      "within 2 for the first time at time 3.25 day; democrat does not follow such encounters, so use a method "
       "whose steps shrink in them, such as 'gauss_radau_15'");
+}
+
+TEST_CASE("a run says how many steps had bodies too near to each other for their method", "[encounter]") {
+  CHECK(warning_of(Evaluations{.unsettled = 1}, "encke_gauss_8") ==
+        "in 1 step of 'encke_gauss_8' two bodies were so near to each other that doubles do not tell their pull well "
+        "enough for errors below 1e-18; use 'wide_gauss_8'");
+  CHECK(warning_of(Evaluations{.unsettled = 20}, "encke_gauss_8").starts_with("in 20 steps of 'encke_gauss_8'"));
 }
 
 }  // namespace

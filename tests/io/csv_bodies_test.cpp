@@ -219,6 +219,15 @@ TEST_CASE("a wrong heading is refused with what is wrong and what to write", "[b
       "l, T)");
   CHECK(csv_refusal("mass [Msun],x [au],a [au]\n") ==
         "b.csv:1: columns 'x' and 'a' do not go together; give either positions and velocities, or elements");
+  CHECK(csv_refusal("M [Msun],x [au]\n") ==
+        "b.csv:1: column 'M' is in 'Msun', which has the dimension mass; expected angle; did you mean 'mass'?");
+  CHECK(csv_refusal("GM [Msun],x [au]\n") ==
+        "b.csv:1: unknown column 'GM'; a gravitational parameter G m is not supported: give the mass");
+  CHECK(csv_refusal("weight [Msun],x [au]\n") == "b.csv:1: unknown column 'weight'; did you mean 'mass'?");
+  CHECK(csv_refusal("mass [Msun],semi-major axis [au]\n") ==
+        "b.csv:1: unknown column 'semi-major axis'; did you mean 'a'?");
+  CHECK(csv_refusal("mass [Mo],x [au]\n") ==
+        "b.csv:1: column 'mass': unknown unit 'Mo'; expected one of: kg, g, Msun, u, Mearth, Mjup");  // not m
   CHECK(csv_refusal("mass [Msun],x [furlong]\n").starts_with("b.csv:1: column 'x': unknown unit 'furlong'"));
 }
 

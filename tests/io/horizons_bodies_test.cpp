@@ -72,6 +72,32 @@ TEST_CASE("Horizons tables without labels and in km/day are read, and G scales m
   CHECK(std::abs(si.masses()[0] / 1.8985e27 - 1) < 1e-4);
 }
 
+TEST_CASE("tables of Horizons that a spreadsheet has saved with semicolons or tabs are read", "[bodies][horizons]") {
+  const auto expected = read_horizons(table("commas.txt"));
+  const auto with = [](char separator) {
+    std::string text = table("commas.txt");
+    const std::size_t end = text.find("$$EOE");
+    for (std::size_t at = text.find("JDTDB"); at < end; ++at) text[at] = text[at] == ',' ? separator : text[at];
+    return text;
+  };
+  for (const char separator : {';', '\t'}) {
+    CAPTURE(separator);
+    const auto s = read_horizons(with(separator));
+    CHECK(s.names() == expected.names());
+    CHECK(s.positions()[0] == expected.positions()[0]);
+    CHECK(s.velocities()[0] == expected.velocities()[0]);
+    CHECK(read_horizons(with(separator), {.epoch = 2451546}).positions()[0][0] == 6.4 * units::solar::km);
+  }
+  CHECK(horizons_refusal(with(' ')) ==
+        "h.txt:21: the fields of this table are separated by blanks, but its dates contain blanks too; separate them "
+        "by commas, as Horizons does, or by semicolons or tabs");
+  // A comma for the decimal point is no separator.
+  std::string german = with(';');
+  german.replace(german.find("9.574"), 5, "9,574");
+  CHECK(horizons_refusal(german) ==
+        "h.txt:24: X is '9,574263724800000E+08', which is not a number; use a decimal point");
+}
+
 TEST_CASE("a mass that a user puts into a Horizons table is taken", "[bodies][horizons]") {
   using namespace units::solar;
   const auto line = read_horizons(table("asteroid.txt"));

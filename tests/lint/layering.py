@@ -61,8 +61,8 @@ def problems(root):
 
 
 def stem_of(path):
-    """What a header, its source and its templates (`_impl`) are together."""
-    return str(path.with_suffix("")).removesuffix("_impl")
+    """What a header, its source and its templates (`_impl`, in parts `_impl_...`) are together."""
+    return re.sub(r"_impl(_\w+)?$", "", str(path.with_suffix("")))
 
 
 def note_neighbor(beneath, path, header):

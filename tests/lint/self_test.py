@@ -8,6 +8,7 @@ import headers
 import layering
 import messages
 import named_tests
+import part_names
 import simd_symbols
 import sizes
 import sources
@@ -54,6 +55,7 @@ SAMPLES = [
     ("forces/a.cpp", '#include "engine/clean.hpp"\n', layering.problems, ""),
     ("engine/clean.cpp", '#include "engine/above.hpp"\n', layering.problems, "includes lead round: "),
     ("engine/clean_impl.hpp", '#include "engine/clean.hpp"\n', layering.problems, ""),
+    ("engine/clean_impl_part.hpp", '#include "engine/clean.hpp"\n', layering.problems, ""),
     ("engine/a.cpp", "int x;\n" * 601, sizes.problems, "601 lines"),
     ("engine/a.cpp", "int x;\n" * 600, sizes.problems, ""),
     ("engine/a.cpp", long_function(81), sizes.problems, "'f' has 81 lines"),
@@ -116,6 +118,9 @@ SAMPLES = [
     ("engine/a.cpp", "\tint x;\n", text.problems, "a tab"),
     ("engine/a.cpp", "int x; \n", text.problems, "blanks at the end"),
     ("engine/a.cpp", "// TO" "DO: later\n", text.problems, "finish it"),
+    ("cli/a.cpp", 'bool b = name == "pull";\n', part_names.problems, 'a decision by "pull", the name of a part of forces/'),
+    ("cli/a.cpp", 'bool b = text_at(f).starts_with("pull");\n', part_names.problems, 'cli/a.cpp:1: a decision by "pull"'),
+    ("cli/a.cpp", 'f("pull");  // name == "pull"\n', part_names.problems, ""),
 ]
 
 
@@ -125,6 +130,8 @@ def planted(name, content):
     root = pathlib.Path(folder.name)
     tree = {"engine/clean.hpp": CLEAN_HEADER, "engine/above.hpp": '#pragma once\n#include "engine/clean.hpp"\n',
             "docs/references.bib": "@article{Author2001,\n}\n",
+            "scene/parts.cpp": "auto p = [] { parts.add_force<Pull>(); };\n",
+            "forces/pull.hpp": '#pragma once\ninline auto d = part<Pull>("pull", "pulls", name == "pull");\n',
             "tests/lint/b_test.cpp": 'TEST_CASE("o" "ne") {}\nTEST_CASE("a|b",\n "[x]") {}\n', name: content}
     for path, text_of_file in tree.items():
         (root / path).parent.mkdir(parents=True, exist_ok=True)

@@ -147,6 +147,29 @@ TEST_CASE("what the method cannot serve is refused by name, and departures that 
                     "mass of the heaviest one, particle 0; use 'wide_gauss_8'");
 }
 
+TEST_CASE("steps with bodies too near to each other for errors below 1e-18 are counted", "[encke]") {
+  ParticleSystem<double> s;
+  s.add("star", 1, {0, 0, 0}, {0, 0, 0});
+  s.add("moonlet", 1e-17, {1, 0, 0}, {0, 1, 0});
+  s.add("other moonlet", 1e-17, {1, 0, 1.5e-6}, {0, 1, 0});
+  auto near = encke_run(s, 0.05, Gravity{.G = 1});
+  REQUIRE(near.run(3).ok());
+  CHECK(near.evaluations().unsettled == 3);
+  auto again = encke_run(s, 0.05, Gravity{.G = 1});
+  again.restore(near.save());
+  REQUIRE(again.run(1).ok());
+  CHECK(again.evaluations().unsettled == 4);
+  auto planets = encke_run(outer_planets(), 300, attraction_of_outer_planets);
+  REQUIRE(planets.run(50).ok());
+  CHECK(planets.evaluations().unsettled == 0);
+}
+
+TEST_CASE("times between two steps are refused by name", "[encke]") {
+  auto run = encke_run(outer_planets(), 300, attraction_of_outer_planets);
+  CHECK_THROWS_WITH(run.at_times({300, 750}, Energy{}),
+                    Catch::StartsWith("monitor 'energy' cannot sample at time 750: ") && Catch::Contains("2.5 steps"));
+}
+
 TEST_CASE("an encounter that steps jump over ends the run by name", "[encke]") {
   // Two planets on one circle, against each other: they pass at a thousandth of its radius.
   ParticleSystem<double> s;
@@ -157,5 +180,6 @@ TEST_CASE("an encounter that steps jump over ends the run by name", "[encke]") {
   const Outcome outcome = run.run(20);
   CAPTURE(outcome.message);
   CHECK(outcome.kind == Outcome::Kind::solver_failure);
-  CHECK(outcome.message.find("with a step of 0.5; give a shorter one, or use 'gauss_8'") != std::string::npos);
+  CHECK(outcome.message.find("with a step of 0.5; give a shorter one, or use 'wide_gauss_8', or 'gauss_8', which "
+                             "chooses its steps") != std::string::npos);
 }

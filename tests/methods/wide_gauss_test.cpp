@@ -13,6 +13,7 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 using namespace noether;
 using namespace noether::test;
@@ -100,6 +101,119 @@ TEST_CASE("a restart and looks in between leave the bits of both words", "[wide_
     CHECK(whole.evaluations().kepler == second.evaluations().kepler);
     CHECK((whole.evaluations().kepler > 0) == (name == std::string("encke_gauss_8")));
   }
+}
+
+namespace {
+
+/// A weak pull to the origin that cannot be computed beyond some time.
+struct EndingField {
+  double end = 0;
+
+  static ForceClaims claims() {
+    return {.energy = false, .time_dependent = true, .keeps_momentum = false, .keeps_angular_momentum = false};
+  }
+  template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+    if (s.time() > Real(end)) out.fail({Outcome::Kind::overlap, 1, "position", "the field has ended"});
+    for (Index i = 0; i < s.size(); ++i) out.acceleration(i, Real(-1e-12) * Vec3<Real>(s.positions()[i]));
+  }
+};
+
+/// Total energies in 113 bits.
+struct WideTotal {
+  std::vector<Quad>* seen;
+  void observe(const Snapshot<double>& now) const { seen->push_back(now.wide_energy()->total()); }
+};
+
+bool same_words(const Vec3<Quad>& a, const Vec3<Quad>& b) { return a == b; }
+
+Vec3<Quad> wide_position(Simulation<double>& run, Index i) { return words_of(run.particles(), i).x; }
+
+}  // namespace
+
+TEST_CASE("a force beside gravity that fails ends the run by its own words", "[wide_gauss][encke]") {
+  for (const char* name : {"wide_gauss_8", "encke_gauss_8"}) {
+    CAPTURE(name);
+    Simulation<double> run(outer_planets(),
+                           classical_over(field_of(Gravity{.G = outer_G}, EndingField{1000}), method(name)), 200.0);
+    const Outcome outcome = run.run(10);
+    CHECK(outcome.kind == Outcome::Kind::overlap);
+    CHECK(outcome.message == "the field has ended");
+    CHECK(run.step() == 5);
+  }
+}
+
+TEST_CASE("edits leave the second words of what they do not change", "[wide_gauss][encke]") {
+  for (const char* name : {"wide_gauss_8", "encke_gauss_8"}) {
+    CAPTURE(name);
+    const auto planets = [&] {
+      return Simulation<double>(outer_planets(), classical_over(field_of(Gravity{.G = outer_G}), method(name)), 200.0);
+    };
+    auto run = planets();
+    REQUIRE(run.run(20).ok());
+    const ParticleSystem<double> before = run.particles();
+    REQUIRE(!same_words(words_of(before, 2).x, before.positions()[2].cast<Quad>()));
+    run.edit([](ParticleSystem<double>& s) {
+      s.positions().set(1, s.positions()[1] + Vec3<double>(1e-3, 0, 0));
+      s.remove(5);
+    });
+    const ParticleSystem<double>& after = run.particles();
+    REQUIRE(after.size() == before.size() - 1);
+    CHECK(same_words(words_of(after, 1).x, after.positions()[1].cast<Quad>()));
+    CHECK(same_words(words_of(after, 1).v, words_of(before, 1).v));
+    for (const Index i : {0, 2, 3, 4}) {
+      CHECK(same_words(words_of(after, i).x, words_of(before, i).x));
+      CHECK(same_words(words_of(after, i).v, words_of(before, i).v));
+    }
+    CHECK(run.run(3).ok());
+  }
+}
+
+TEST_CASE("steps back lead to where steps forth began, far below the rounding of doubles", "[wide_gauss][encke]") {
+  for (const char* name : {"wide_gauss_8", "encke_gauss_8"}) {
+    CAPTURE(name);
+    const double h = std::string(name) == "wide_gauss_8" ? 60.0 : 150.0;
+    Simulation<double> run(outer_planets(), classical_over(field_of(Gravity{.G = outer_G}), method(name)), h);
+    REQUIRE(run.run(50).ok());
+    run.change_step(-h);
+    REQUIRE(run.run(50).ok());
+    CHECK(std::abs(run.time()) < 1e-9);
+    for (Index i = 0; i < run.particles().size(); ++i) {
+      const Vec3<Quad> off = wide_position(run, i) - outer_planets().positions()[i].cast<Quad>();
+      CHECK(static_cast<double>(sqrt(norm2(off))) < 1e-17);
+    }
+  }
+}
+
+TEST_CASE("where and when a run begins does not change its motion", "[wide_gauss][encke]") {
+  const auto at = [](const char* name, double start) {
+    const OscillatingField wind{.acceleration = {1e-12, 0, 0}, .omega = 0x1p-7, .phase = -0x1p-7 * start};
+    return Simulation<double>(outer_planets(), classical_over(field_of(Gravity{.G = outer_G}, wind), method(name)),
+                              128.0, start);
+  };
+  for (const char* name : {"wide_gauss_8", "encke_gauss_8"}) {
+    CAPTURE(name);
+    auto zero = at(name, 0), later = at(name, 2048);
+    REQUIRE(zero.run(50).ok());
+    REQUIRE(later.run(50).ok());
+    for (Index i = 0; i < zero.particles().size(); ++i) {
+      const Vec3<Quad> off = wide_position(zero, i) - wide_position(later, i);
+      CHECK(static_cast<double>(sqrt(norm2(off))) < 1e-17);
+    }
+  }
+}
+
+TEST_CASE("energies in 113 bits follow edits of masses", "[wide_gauss][encke][energy]") {
+  Simulation<double> run(outer_planets(), classical_over(field_of(Gravity{.G = outer_G}), method("encke_gauss_8")),
+                         200.0);
+  std::vector<Quad> seen;
+  run.every(1, WideTotal{&seen});
+  REQUIRE(run.run(2).ok());
+  run.edit([](ParticleSystem<double>& s) { s.masses()[2] *= 2; });
+  REQUIRE(run.run(1).ok());
+  REQUIRE(seen.size() == 4);
+  const Quad right = energy_of(run.particles(), outer_G);
+  CHECK(static_cast<double>(abs((seen.back() - right) / right)) < 1e-28);
+  CHECK(static_cast<double>(abs((seen[0] - right) / right)) > 1e-6);
 }
 
 TEST_CASE("stages that do not settle end the run", "[wide_gauss]") {

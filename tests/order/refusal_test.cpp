@@ -34,7 +34,7 @@ std::string refusal(const Scheme& scheme, const HamiltonianClaims& claims) {
 const WisdomHolman<double> democratic_arcs({.coordinates = Coordinates::democratic});
 const WisdomHolman<double, Sum<HarmonicField>> arcs_in_field({.coordinates = Coordinates::democratic},
                                                              Sum(HarmonicField{.k = 0.3}));
-const Damped<KineticPotential<HarmonicField>> damped(KineticPotential(HarmonicField{.k = 1}), {.rate = 0.1});
+const Damped<KineticPotential<HarmonicField>> damped_spring(KineticPotential(HarmonicField{.k = 1}), {.rate = 0.1});
 
 TEST_CASE("a scheme that needs exact kicks is refused where other forces join democratic coordinates", "[refusal]") {
   for (const Scheme* scheme : {&schemes::aba_10_6_4, &schemes::blanes_moan_s6}) {
@@ -68,24 +68,24 @@ TEST_CASE("every Nystroem scheme is refused where the kinetic energy is not quad
 }
 
 TEST_CASE("a scheme with negative steps is refused on an irreversible part", "[refusal]") {
-  CHECK(refusal(damped, schemes::yoshida_4) ==
+  CHECK(refusal(damped_spring, schemes::yoshida_4) ==
         "scheme 'yoshida_4' steps backwards, but part D of 'damped' is irreversible; use a scheme with forward steps "
         "only, such as 'verlet' or 'mclachlan_2_s2'");
   for (const Scheme* scheme : schemes::all()) {
     bool backwards = false;
     for (const Stage& stage : scheme->word) backwards = backwards || stage.weight < Quad(0);
-    CHECK((refusal(damped, *scheme) != "") == backwards);
+    CHECK((refusal(damped_spring, *scheme) != "") == backwards);
   }
 }
 
 TEST_CASE("a letter that the Hamiltonian does not have is refused", "[refusal]") {
   CHECK(refusal(KineticPotential(HarmonicField{.k = 1}), word("BADAB")) ==
         "scheme 'BADAB' uses the letter D, but 'kinetic_potential' has only AB");
-  CHECK(refusal(damped, word("BADAB")) == "");
-  CHECK(refusal(damped, word("BAOAB")) == "scheme 'BAOAB' uses the letter O, but 'damped' has only ABD");
+  CHECK(refusal(damped_spring, word("BADAB")) == "");
+  CHECK(refusal(damped_spring, word("BAOAB")) == "scheme 'BAOAB' uses the letter O, but 'damped' has only ABD");
 }
 
-TEST_CASE("a force that depends on velocities is refused as a kick", "[refusal]") {
+TEST_CASE("a force that depends on velocities is refused as an exact kick", "[refusal]") {
   struct Friction {
     static ForceClaims claims() { return {.velocity_dependent = true}; }
     void add_to(ForceSink<double>& out, const ParticleSystem<double>& s) const {
@@ -94,7 +94,14 @@ TEST_CASE("a force that depends on velocities is refused as a kick", "[refusal]"
   };
   CHECK_THROWS_AS(KineticPotential(Friction{}), SchemeMismatch);
   CHECK_THROWS_AS(KineticPotential(Sum(HarmonicField{.k = 1}, Friction{})), SchemeMismatch);
-  CHECK_THROWS_AS((WisdomHolman<double, Friction>({}, Friction{})), SchemeMismatch);
+  const WisdomHolman<double, Friction> arcs({}, Friction{});
+  for (const Scheme* scheme : {&schemes::verlet, &schemes::abah_10_6_4, &schemes::yoshida_4})
+    CHECK(refusal(arcs, *scheme) == "");
+  CHECK(refusal(arcs, schemes::aba_10_6_4) ==
+        "scheme 'aba_10_6_4' needs exact flows, but part B of 'wisdom_holman' is a symmetric map of order 2; use "
+        "'verlet', "
+        "a composition of its steps such as 'yoshida_4', or a scheme made for it such as 'abah_8_6_4'");
+  CHECK(refusal(arcs, schemes::srkn6b) != "");
 }
 
 TEST_CASE("a drag that drives is refused", "[refusal]") {

@@ -5,6 +5,7 @@
 #include "forces/gravity.hpp"
 #include "forces/sum.hpp"
 #include "integrators/all_schemes.hpp"
+#include "integrators/classical.hpp"
 #include "integrators/composition.hpp"
 #include "integrators/damped.hpp"
 #include "integrators/kinetic_potential.hpp"
@@ -64,6 +65,8 @@ template <class Real> void check_restart(const AnyIntegrator<Real>& integrator, 
   REQUIRE(second.simulation.run(n).ok());
 
   CHECK(test::same_bits(whole.simulation.particles(), second.simulation.particles()));
+  if (whole.simulation.claims().second_words)
+    CHECK(test::same_low_words(whole.simulation.particles(), second.simulation.particles()));
   CHECK(figures(whole.energy->report()) == figures(second.energy->report()));
   CHECK(figures(whole.angular->report()) == figures(second.angular->report()));
   CHECK(figures(whole.center->report()) == figures(second.center->report()));
@@ -137,6 +140,18 @@ TEST_CASE("runs with correctors and kernels go on bit for bit", "[restart]") {
                     "the saved run has no corrector or kernel, but this one has corrector = 7");
   CHECK_THROWS_WITH(plain.restore(corrected.save()),
                     "the saved run has corrector = 7, but this one has no corrector or kernel");
+}
+
+TEST_CASE("runs of states of two words go on with the bits of both, and with every report", "[restart][two words]") {
+  const Gravity gravity{.G = test::outer_G};
+  const OscillatingField wind{.acceleration = {1e-9, 0, 2e-9}, .omega = 0.003};
+  for (const char* name : {"encke_gauss_8", "wide_gauss_8"}) {
+    CAPTURE(name);
+    for (const std::int64_t n : {1, 23}) {
+      check_restart<double>(test::classical_over(test::field_of(gravity), method(name)), n);
+      check_restart<double>(test::classical_over(test::field_of(gravity, wind), method(name)), n);
+    }
+  }
 }
 
 TEST_CASE("a restored run of another scheme, step or set of particles is refused", "[restart]") {

@@ -89,6 +89,12 @@ TEST_CASE("names of other programs get what there is here", "[proposals]") {
   CHECK(method("nose_hoover").starts_with("; in its place there is type = \"langevin\" in [hamiltonian.thermostat]"));
   CHECK(method("npt").starts_with("; there is no barostat here"));
   CHECK(method("verlett") == "; did you mean 'verlet'?");
+  CHECK(method("VERLET") == "; did you mean 'verlet'?");
+  CHECK(method("ABA(10,6,4)") == "; did you mean 'aba_10_6_4'?");  // as README has it
+  CHECK(method("Blanes-Moan") == "; did you mean 'blanes_moan_s6'?");
+  CHECK(method("yoshida_4_integrator") == "; did you mean 'yoshida_4'?");
+  CHECK(method("PME").starts_with("; in its place there is type = \"reaction_field\" in [[hamiltonian.force]] ("));
+  CHECK(method("shake").starts_with("; in its place there is type = \"distance\" in [[hamiltonian.constraint]] ("));
   CHECK(method("qqqqqqqq") == "; see the list");
 
   const auto force = [&](const char* word) { return proposal(word, names_of(parts.forces())); };
@@ -98,6 +104,9 @@ TEST_CASE("names of other programs get what there is here", "[proposals]") {
   CHECK(force("pme").starts_with("; in its place there is 'reaction_field' ("));
   CHECK(force("morse_bond").starts_with("; in its place there is 'bonded' ("));
   CHECK(force("gravitty") == "; did you mean 'gravity'?");
+  CHECK(force("morse_potential") == "; did you mean 'morse'?");  // not gr_potential
+  CHECK(force("gravity_force") == "; did you mean 'gravity'?");
+  CHECK(force("Coulomb Force").starts_with("; in its place there is 'reaction_field' ("));
   CHECK(proposal("energies", names_of(parts.monitors())) == "; did you mean 'energy'?");
   CHECK(proposal("shake", names_of(parts.constraints())).starts_with("; in its place there is 'distance' ("));
   CHECK(proposal("zzzz", {"a", "b"}) == "; expected one of: a, b");
@@ -115,6 +124,14 @@ TEST_CASE("a name of another program is proposed only where it may be meant", "[
   std::vector<std::string> all = names_of(parts.forces());  // a list of several places has room for all
   for (const std::string& name : parts.method_names()) all.push_back(name);
   CHECK(proposal("cg", all, "").find("[minimize]") != std::string::npos);
+}
+
+TEST_CASE("a proposal by name alone is none for a misspelt word", "[proposals]") {
+  const Parts parts = standard_parts();
+  CHECK(proposal_by_name("SABA", parts.method_names()).starts_with("; did you mean 'saba_4'?"));
+  CHECK(proposal_by_name("verlett", parts.method_names()).empty());
+  CHECK(proposal_by_name("BABAB", parts.method_names()).empty());
+  CHECK(proposal_by_name("BAOAB", parts.method_names()).empty());
 }
 
 TEST_CASE("a key of another program gets the one of the table it stands in", "[proposals]") {

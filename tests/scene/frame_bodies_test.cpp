@@ -198,6 +198,13 @@ TEST_CASE("a start that a run.h5 does not have is refused in one line", "[scene]
         "2 scene.toml:4: frame = -2, but 'run.h5' has 13 frames: 0 to 12, or -1 for the last");
   CHECK(said("bodies = 'run.h5'\nframe = 'baricenter'\n") ==
         "2 scene.toml:4: unknown frame 'baricenter'; did you mean 'barycenter'?");
+  CHECK(
+      said("bodies = 'run.h5'\nframe = 'last'\n") ==
+      "2 scene.toml:4: unknown frame 'last'; expected one of: barycenter, as_given, or the number of a frame, such as "
+      "0 or -1 for the last");
+  CHECK(said("bodies = 'run.h5'\nframe = 2.5\n") ==
+        "2 scene.toml:4: frame = 2.5 is a number; \"barycenter\", or the number of a frame, such as 0 or -1 for the "
+        "last, is expected");
   CHECK(said("structure = 'run.h5'\n") ==
         "2 scene.toml:3: 'run.h5' is not a structure; to start from the particles of a run give bodies = \"run.h5\"");
   CHECK(said("bodies = 'nosuch.h5'\n") == "3 scene.toml:3: nosuch.h5: there is no such file");

@@ -10,11 +10,13 @@
 #include "scene/evaluate.hpp"
 #include "scene/scene.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/files.hpp"
 #include "tests/support/process.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -211,7 +213,8 @@ TEST_CASE("--set with nothing behind the sign takes a key out, or a table of a l
   CHECK(read(two_bodies, {"every="}).default_watches);
   CHECK(refusal(two_bodies, {"integrator.stp="}) ==
         "--set integrator.stp=: there is no 'stp' to take out of the scene; did you mean 'step'?");
-  CHECK(refusal(two_bodies, {"every.9="}) == "--set every.9=: there is no element 9; there are 2, counted from 0");
+  CHECK(refusal(two_bodies, {"every.9="}) ==
+        "--set every.9=: there is no element 9; the last one is number 1, and every.2={...} adds one");
   CHECK(refusal(two_bodies, {"integrator.method="}).find("method") != std::string::npos);
 }
 
@@ -240,6 +243,45 @@ TEST_CASE("G of the Hamiltonian is the G of its forces and of elements", "[scene
   const double* told = of_force.effective.find("hamiltonian")->find("G")->get<double>();
   REQUIRE(told != nullptr);
   CHECK(*told == 2.9e-4);
+}
+
+TEST_CASE("an escape is looked for at every step that a method chooses", "[scene][stop]") {
+  // a = 1, e = 1/2 from the pericenter: beyond 1.4 from cos E = -4/5 on, back within it before the end.
+  const std::string eccentric =
+      "units = 'reduced'\n[particles]\n[[particles.body]]\nname = 'S'\nmass = 1\n[[particles.body]]\nname = 't'\n"
+      "mass = 0\na = 1\ne = 0.5\n[hamiltonian]\ntype = 'kinetic_potential'\n[[hamiltonian.force]]\ntype = "
+      "'gravity'\n";
+  const std::string stop = "[[stop]]\ntype = 'escape'\ndistance = 1.4\n";
+  const double E = std::acos(-0.8), since = E - 0.5 * std::sin(E);
+  for (const std::string method : {"dop853", "gauss_8", "dormand_prince_5"}) {
+    CAPTURE(method);
+    const Scene scene = read(eccentric + "[integrator]\nmethod = '" + method + "'\nuntil = 30\n" + stop);
+    CHECK(scene.stops.at(0).steps == 1);
+    Simulation<double> sim = assemble(scene);
+    const Outcome outcome = sim.run_until(30);
+    REQUIRE(outcome.kind == Outcome::Kind::stopped);
+    CHECK(outcome.time < 4);  // it is beyond 1.4 until 2 pi - since = 4.08
+    CHECK(std::abs(test::number_after(outcome.message, "since time ") - since) < 1e-3);
+  }
+  CHECK(read(eccentric + "[integrator]\nmethod = 'dop853'\nuntil = 30\n" + stop + "steps = 7\n").stops.at(0).steps == 7);
+  CHECK(read(eccentric + "[integrator]\nmethod = 'verlet'\nstep = 0.1\nuntil = 30\n" + stop).stops.at(0).steps == 100);
+}
+
+TEST_CASE("a collision is said to leave out pairs of tracers", "[scene][stop]") {
+  const auto notes = [](const std::string& third) {
+    return read(
+               "units = 'reduced'\n[particles]\n[[particles.body]]\nname = 'S'\nmass = 1\n[[particles.body]]\n"
+               "name = 't'\nmass = 0\na = 1\n[[particles.body]]\nname = 'u'\nmass = " +
+               third +
+               "\na = 2\n[hamiltonian]\ntype = 'kinetic_potential'\n[[hamiltonian.force]]\ntype = 'gravity'\n"
+               "[integrator]\nmethod = 'verlet'\nstep = 0.1\nsteps = 2\n[[stop]]\ntype = 'collision'\ndistance = "
+               "0.1\n")
+        .notes;
+  };
+  CHECK(notes("1e-6").empty());
+  REQUIRE(notes("0").size() == 1);
+  CHECK(notes("0")[0].ends_with(
+      ":22: pairs of the 2 tracers, whose mass is 0, do not stop the run; give them masses if they may"));
 }
 
 TEST_CASE("bodies by elements go round by the G of the force", "[scene]") {

@@ -40,19 +40,71 @@ std::string harmonic(double z) { return fmt::format("harmonic\n\n1 {:.17g} 1.1",
 const std::string verlet = "method = 'verlet'\nstep = 0.01\n";
 
 TEST_CASE("Kepler arcs about a body that is not the heaviest are warned of", "[scene][warnings]") {
-  const auto of = [](const std::string& hamiltonian, const std::string& first, const std::string& second) {
+  const auto with = [](const std::string& more, const std::string& first) {
     const std::string body = "[[particles.body]]\n";
     const std::string sun = body + "name = 'Sun'\nmass = 1\nx = [0, 0, 0]\nv = [0, 0, 0]\n";
     const std::string earth = body + "name = 'Earth'\nmass = 3e-6\nx = [1, 0, 0]\nv = [0, 1, 0]\n";
-    return warnings_of(read_scene("units = 'reduced'\n" + (first == "Sun" ? sun + earth : earth + sun) +
-                                      "[hamiltonian]\ntype = '" + hamiltonian +
-                                      "'\n[integrator]\nmethod = 'verlet'\nstep = 0.01\nsteps = 10\n" + second,
-                                  "scene.toml"));
+    return warnings_of(
+        read_scene("units = 'reduced'\n" + (first == "Sun" ? sun + earth : earth + sun) + more, "scene.toml"));
+  };
+  const auto of = [&](const std::string& hamiltonian, const std::string& first, const std::string& second) {
+    return with("[hamiltonian]\ntype = '" + hamiltonian +
+                    "'\n[integrator]\nmethod = 'verlet'\nstep = 0.01\nsteps = 10\n" + second,
+                first);
   };
   CHECK(of("wisdom_holman", "Sun", "").empty());
   CHECK(of("wisdom_holman", "Earth", "") ==
         std::vector<std::string>{"'Earth' comes first, so the Kepler arcs of wisdom_holman go round it, but 'Sun' has "
                                  "3.33e+05 times its mass; put 'Sun' first"});
+  for (const std::string name : {"gr_potential", "post_newtonian"}) {
+    const std::string classical =
+        "[hamiltonian]\ntype = 'kinetic_potential'\n[[hamiltonian.force]]\ntype = 'gravity'\n"
+        "[[hamiltonian.force]]\ntype = '" +
+        name +
+        "'\nc = 1e4\n[integrator]\nmethod = "
+        "'gauss_radau_15'\nuntil = 1\n";
+    CHECK(with(classical, "Sun").empty());
+    CHECK(with(classical, "Earth") ==
+          std::vector<std::string>{"'Earth' comes first, so " + name +
+                                   " is about it, but 'Sun' has 3.33e+05 times its mass; put 'Sun' first"});
+  }
+}
+
+TEST_CASE("elements about a first body that is not the heaviest above are warned of", "[scene][warnings]") {
+  const std::string earth = "[[particles.body]]\nname = 'Earth'\nmass = 3e-6\n";
+  const std::string sun = "[[particles.body]]\nname = 'Sun'\nmass = 1\nx = [1, 0, 0]\nv = [0, 1, 0]\n";
+  const std::string moon = "[[particles.body]]\nname = 'Moon'\nmass = 4e-8\na = 0.0026\n";
+  const auto of = [](const std::string& particles) {
+    return warnings_of(read_scene("units = 'reduced'\n[particles]\n" + particles +
+                                      "[hamiltonian]\ntype = 'kinetic_potential'\n[[hamiltonian.force]]\ntype = "
+                                      "'gravity'\n[integrator]\nmethod = 'gauss_8'\nuntil = 1\n",
+                                  "scene.toml"));
+  };
+  const auto told = [](const std::string& body) {
+    return std::vector<std::string>{"the elements of '" + body +
+                                    "' are about 'Earth', which comes first, but 'Sun' has 3.33e+05 times its mass; "
+                                    "put 'Sun' first, or say what they are about: about = \"Sun\" or \"Earth\""};
+  };
+  const std::string jupiter = "[[particles.body]]\nname = 'Jupiter'\nmass = 1e-3\na = 5.2\n";
+  CHECK(of(earth + sun + jupiter) == told("Jupiter"));
+  CHECK(of(earth + sun + jupiter + "about = 'Sun'\n").empty());
+  CHECK(of(earth + sun + moon + "about = 'Earth'\n").empty());
+  CHECK(of(earth + moon + sun).empty());
+  CHECK(of("elements = 'jacobi'\n" + earth + sun + jupiter).empty());
+  CHECK(of(sun + earth + "a = 1\n" + jupiter).empty());
+  const ScratchFolder folder;
+  const auto of_table = [&](const std::string& table) {
+    write_text(folder / "b.csv", table);
+    return of("bodies = '" + (folder / "b.csv").string() + "'\n");
+  };
+  CHECK(of_table("name,mass,a,e,inc,Omega,omega,M\nEarth,3e-6,,,,,,\nSun,1,1,0,0,0,0,0\nJupiter,1e-3,5.2,0,0,0,0,0\n"
+                 "Saturn,3e-4,9.5,0,0,0,0,0\n") == told("Jupiter"));
+  CHECK(of_table("name,mass,a,e,inc,Omega,omega,M,about\nEarth,3e-6,,,,,,,\nSun,1,1,0,0,0,0,0,\n"
+                 "Jupiter,1e-3,5.2,0,0,0,0,0,Sun\n")
+            .empty());
+  // Bodies of the scene behind those of a file.
+  write_text(folder / "b.csv", "name,mass,x,y,z,vx,vy,vz\nEarth,3e-6,0,0,0,0,0,0\nSun,1,1,0,0,0,1,0\n");
+  CHECK(of("bodies = '" + (folder / "b.csv").string() + "'\n" + jupiter) == told("Jupiter"));
 }
 
 TEST_CASE("a pair force may stand in a scene for each pair of types, and once for each", "[scene][messages]") {

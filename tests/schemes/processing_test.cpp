@@ -176,6 +176,13 @@ TEST_CASE("what no corrector or kernel is made for is refused, with what to use"
         "second_corrector = true needs a corrector and a kernel other than \"plain\"; give both, or take it out "
         "[second_corrector]");
   CHECK(refusal(schemes::verlet, {.corrector = 5, .kernel = StepKernel::lazy, .second_corrector = true}) == "");
+  Scheme own = schemes::verlet_aba;
+  own.before.push_back({'A', 0.5_q});
+  own.after.push_back({'A', -0.5_q});
+  CHECK(refusal(own, {.kernel = StepKernel::lazy}) ==
+        "kernel = \"lazy\" is not for scheme 'verlet_aba', which has words around the run of its own; take it out "
+        "[kernel]");
+  CHECK(refusal(own, {.compensated = true}) == "");
 }
 
 }  // namespace

@@ -266,5 +266,23 @@ steps = 100
                     "the energy cannot be measured here: not every force computes its own; try --metric position");
 }
 
+TEST_CASE("errors below the rounding of doubles are held by methods of two words", "[advise][two words][slow]") {
+  const Scene scene = two_planets("method = \"gauss_8\"\nuntil = 400");
+  AdviseOptions options;
+  options.error = 1e-15;
+  options.metric = Metric::position;
+  const Advice advice = advise(scene, options);
+  INFO(advice.reason);
+  REQUIRE_FALSE(advice.proposals.empty());
+  const Proposal& best = advice.proposals.front();
+  CHECK(best.who.below_rounding);
+  CHECK(best.predicted_error <= options.error);
+  const Row row = proposed(scene, best, advice.end);
+  INFO(best.who.label << " step " << best.setting.step);
+  CHECK(row.position_error_max.value() < 2 * options.error);
+  options.error = 1e-8;  // doubles do
+  for (const Candidate& who : advise(scene, options).trials.methods) CHECK_FALSE(who.below_rounding);
+}
+
 }  // namespace
 }  // namespace noether::test

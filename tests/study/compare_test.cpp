@@ -477,5 +477,35 @@ TEST_CASE("what cannot be compared is refused in words", "[compare]") {
   CHECK(refusal({.repeats = 0}) == "0 repeats are too few; 1 or more is expected");
 }
 
+TEST_CASE("errors below the rounding of doubles are measured, with their order", "[compare][two words]") {
+  const Scene scene = two_planets("method = \"encke_gauss_8\"\nstep = 0.25\nuntil = 50");
+  CompareOptions options;
+  options.methods = {"encke_gauss_8", "wide_gauss_8", "gauss_8"};
+  options.steps = {0.25, 0.125};
+  options.tolerances = {1e-15};
+  options.repeats = 1;
+  const Comparison c = compare(scene, options);
+  REQUIRE(c.position_measured);
+  CHECK(c.truth.error.value() < 1e-19);
+  for (const Row& row : c.rows) {
+    INFO(row.who.label << " " << row.setting.step << ": position " << row.position_error_max.value_or(-1) << ", energy "
+                       << row.energy_error_max.value_or(-1));
+    REQUIRE(row.completed());
+    CHECK(row.who.below_rounding == (row.who.method != "gauss_8"));
+    if (!row.who.below_rounding) {
+      CHECK(row.position_error_max.value() > 1e-17);
+      CHECK(row.track.low.empty());
+      continue;
+    }
+    CHECK(row.track.low.size() == row.track.y.size());
+    if (row.setting.step > 0.2) continue;
+    CHECK(row.position_error_max.value() < 1e-17);
+    CHECK(row.position_error_max.value() > 1e-24);
+    CHECK(row.energy_error_max.value() < 1e-17);
+    CHECK(row.energy_error_max.value() > 1e-26);
+    CHECK(row.angular_momentum_error_max.value() < 1e-17);
+  }
+}
+
 }  // namespace
 }  // namespace noether::test

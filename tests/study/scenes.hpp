@@ -57,6 +57,23 @@ inline Scene oscillator(const std::string& integrator, double rate = 0) {
   return read_scene(text + "[integrator]\n" + integrator + "\n", "spring.toml");
 }
 
+/// A star with two planets; [integrator] is still to come.
+inline Scene two_planets(const std::string& integrator) {
+  return read_scene(R"(units = "reduced"
+[particles]
+frame = "barycenter"
+body = [{ name = "star", mass = 1, x = [0, 0, 0], v = [0, 0, 0] },
+        { name = "inner", mass = 1e-3, x = [1, 0, 0], v = [0, 1.02, 0.05] },
+        { name = "outer", mass = 5e-4, x = [0, -2.1, 0.1], v = [0.68, 0, 0] }]
+[hamiltonian]
+type = "kinetic_potential"
+[[hamiltonian.force]]
+type = "gravity"
+[integrator]
+)" + integrator + "\n",
+                    "planets.toml");
+}
+
 /// The outer Solar System of the examples.
 inline Scene outer_solar_system(const std::vector<std::string>& sets = {}) {
   return load_scene(std::string(NOETHER_SOURCE_DIR) + "/examples/outer_solar_system/scene.toml", standard_parts(),

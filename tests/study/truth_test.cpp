@@ -60,7 +60,7 @@ TEST_CASE("the truth of the outer Solar System has an error bar below 1e-15, ove
   CHECK(truth.name.ends_with(" in quad"));
   // Gravity with the scene's own constant: energies of extended precision stay where they are.
   REQUIRE(truth.energy.size() == 201);
-  CHECK(std::abs(truth.energy.back() / truth.energy.front() - 1) < 1e-15);
+  CHECK(std::abs(static_cast<double>(truth.energy.back() / truth.energy.front()) - 1) < 1e-15);
 }
 
 TEST_CASE("the truth of a damped oscillator is the closed form", "[truth]") {

@@ -39,7 +39,7 @@ template <class F, class Real = double> class Gyrating {
             .keeps_angular_momentum = false};
   }
   void bind(ParticleSystem<Real>& s) {
-    check_force(forces_, s);
+    bind_force(forces_, s);
     a_ = VectorColumn<Real>(s.size());
   }
   void open(ParticleSystem<Real>& /*inertial already*/) {}

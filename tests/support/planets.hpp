@@ -51,6 +51,19 @@ inline ParticleSystem<double> cloud(int n) {
 }
 
 /// Whether all positions and velocities are the same numbers, bit for bit (and finite).
+/// Whether second words, or that there are none, are the same.
+template <class Real> bool same_low_words(const ParticleSystem<Real>& a, const ParticleSystem<Real>& b) {
+  const auto *one = a.low_words(), *other = b.low_words();
+  if (one == nullptr || other == nullptr) return one == other;
+  for (Index i = 0; i < a.size(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      if (!(one->x.component(k)[i] == other->x.component(k)[i])) return false;
+      if (!(one->v.component(k)[i] == other->v.component(k)[i])) return false;
+    }
+  }
+  return true;
+}
+
 template <class Real> bool same_bits(const ParticleSystem<Real>& a, const ParticleSystem<Real>& b) {
   if (a.size() != b.size() || a.clock().step() != b.clock().step()) return false;
   for (Index i = 0; i < a.size(); ++i) {

@@ -1,0 +1,196 @@
+#include "integrators/wisdom_holman_simd.hpp"
+
+#include "integrators/kepler_simd.hpp"
+
+namespace noether::NOETHER_SIMD_LEVEL {
+
+namespace {
+
+void prepare(const PlanetRows& planets) {
+  for (std::ptrdiff_t k = 0; k < planets.rows; ++k) set_distance(load_eights(planets.row[k].x), planets.row[k]);
+}
+
+template <bool compensated> ArcReport drift_all(const PlanetRows& planets, const ArcTask& task) {
+  ArcReport report;
+  for (std::ptrdiff_t k = 0; k < planets.rows; ++k) advance_arcs<compensated>(planets, planets.row[k], task, report);
+  return report;
+}
+ArcReport drift(const PlanetRows& planets, const ArcTask& task) {
+  return planets.compensated ? drift_all<true>(planets, task) : drift_all<false>(planets, task);
+}
+
+/// Forces of pairs of two rows, or of one row with itself, and whether some are near.
+struct PairSums {
+  Eights force{0.0, 0.0, 0.0};  ///< on the first row
+  Eights back{0.0, 0.0, 0.0};   ///< to be taken from those on the second
+  Eight least = 0.0;            ///< below 0 where a pair is near
+};
+
+/// G m_i m_j (x_j - x_i)/r^3 of planets i and j, which is `away` lanes further in its row.
+template <int away>
+NOETHER_EIGHT_INLINE void attract(const PlanetPairs& pairs, const Eights& x, const Eight& from_star2,
+                                  const Eights& others, PairSums& sums) {
+  const Eights d = rotate<away>(others) - x;
+  const Eight r2 = dot(d, d);
+  const Eights f = (load_eight(pairs.attraction[away]) / (r2 * square_root(r2))) * d;
+  sums.least = smaller(sums.least, r2 - load_eight(pairs.near[away]) * from_star2);
+  sums.force = sums.force + f;
+  sums.back = sums.back + rotate<-away>(f);
+}
+/// The same of planets i and i + 4 of one row, in half the registers where there are several.
+NOETHER_EIGHT_INLINE void attract_opposite(const PlanetPairs& pairs, const Eights& x, const Eight& from_star2,
+                                           PairSums& sums) {
+  constexpr int half = eight_registers / 2;
+  const Eight attraction = load_eight(pairs.attraction[4]), near = load_eight(pairs.near[4]);
+  const Eights others = rotate<4>(x);
+  for (int k = 0; k < (half > 0 ? half : 1); ++k) {
+    const EightRegister dx = others.x.r[k] - x.x.r[k], dy = others.y.r[k] - x.y.r[k], dz = others.z.r[k] - x.z.r[k];
+    const EightRegister r2 = (dx * dx + dy * dy) + dz * dz, q = attraction.r[k] / (r2 * root_of(r2));
+    const EightRegister gap = r2 - near.r[k] * from_star2.r[k];
+    sums.least.r[k] = sums.least.r[k] < gap ? sums.least.r[k] : gap;
+    sums.force.x.r[k] += q * dx, sums.force.y.r[k] += q * dy, sums.force.z.r[k] += q * dz;
+    if constexpr (half > 0) {  // the other one of each pair: the same number with the other sign
+      const int m = k + half;
+      sums.force.x.r[m] -= q * dx, sums.force.y.r[m] -= q * dy, sums.force.z.r[m] -= q * dz;
+    }
+  }
+}
+NOETHER_EIGHT_INLINE PairSums within_row(const PlanetPairs& pairs, const Eights& x, const Eight& from_star2) {
+  PairSums sums;
+  attract<1>(pairs, x, from_star2, x, sums);
+  attract<2>(pairs, x, from_star2, x, sums);
+  attract<3>(pairs, x, from_star2, x, sums);
+  attract_opposite(pairs, x, from_star2, sums);
+  return sums;
+}
+[[gnu::noinline]] bool between_rows(const PlanetPairs& pairs, PlanetRow& first, PlanetRow& second) {
+  const Eights x = load_eights(first.y), others = load_eights(second.y);
+  const Eight from_star2 = dot(x, x);
+  PairSums sums;
+  attract<0>(pairs, x, from_star2, others, sums);
+  attract<1>(pairs, x, from_star2, others, sums);
+  attract<2>(pairs, x, from_star2, others, sums);
+  attract<3>(pairs, x, from_star2, others, sums);
+  attract<4>(pairs, x, from_star2, others, sums);
+  attract<5>(pairs, x, from_star2, others, sums);
+  attract<6>(pairs, x, from_star2, others, sums);
+  attract<7>(pairs, x, from_star2, others, sums);
+  store_eights(load_eights(first.force) + sums.force, first.force);
+  store_eights(load_eights(second.force) - sums.back, second.force);
+  return exceeding(Eight(0.0), sums.least) != 0;
+}
+/// Attractions between planets of different rows; `y` and the forces so far stand in the rows.
+NOETHER_EIGHT_INLINE bool between_all(const PlanetRows& planets) {
+  bool near = false;
+  const PlanetPairs* pairs = planets.pairs;
+  for (std::ptrdiff_t a = 0; a < planets.rows; ++a) {
+    ++pairs;
+    for (std::ptrdiff_t b = a + 1; b < planets.rows; ++b, ++pairs)
+      near |= between_rows(*pairs, planets.row[a], planets.row[b]);
+  }
+  return near;
+}
+
+/// Jacobi coordinates: the planets' accelerations relative to what is further in, a_k = f_k/m_k + sum_{j >= k}
+/// f_j/M_{k-1}, since the star is pulled by minus the sum of all; and what their arcs have done already.
+template <bool compensated> NOETHER_EIGHT_INLINE bool kick_jacobi(const PlanetRows& planets, double h) {
+  unsigned near = 0;
+  const PlanetPairs* pairs = planets.pairs;
+  Eights inside{0.0, 0.0, 0.0};  // sum of m_j/M_j x'_j over the rows before
+  for (std::ptrdiff_t a = 0; a < planets.rows; pairs += planets.rows - a, ++a) {
+    PlanetRow& row = planets.row[a];
+    const Eights x = load_eights(row.x);
+    const Eights moments = load_eight(row.share) * x;
+    Eights inner{sums_upward(moments.x), sums_upward(moments.y), sums_upward(moments.z)};
+    if (a > 0) inner = inner + inside;
+    if (a + 1 < planets.rows) inside = {last_lane(inner.x), last_lane(inner.y), last_lane(inner.z)};
+    const Eights y = load_eight(row.rest) * x + inner;
+    store_eights(y, row.y);
+    const Eight r2 = dot(y, y);
+    const PairSums sums = within_row(*pairs, y, r2);
+    near |= exceeding(Eight(0.0), sums.least);
+    const Eight cube = r2 * square_root(r2);
+    Eight pull;
+    if (planets.relativity) {
+      const Eight inverse = Eight(1.0) / cube;
+      pull = inverse * (load_eight(row.star) + load_eight(row.relativity) * (inverse * r2));
+    } else {
+      pull = load_eight(row.star) / cube;
+    }
+    store_eights(sums.force - (sums.back + pull * y), row.force);
+  }
+  if (planets.rows > 1) near |= unsigned(between_all(planets));
+  Eights outside{0.0, 0.0, 0.0};
+  for (std::ptrdiff_t a = planets.rows - 1; a >= 0; --a) {
+    PlanetRow& row = planets.row[a];
+    const Eights f = load_eights(row.force), x = load_eights(row.x);
+    Eights outer{sums_downward(f.x), sums_downward(f.y), sums_downward(f.z)};
+    if (a + 1 < planets.rows) outer = outer + outside;
+    if (a > 0) outside = {first_lane(outer.x), first_lane(outer.y), first_lane(outer.z)};
+    const Eight inverse = load_eight(row.r_inverse), time = h;
+    const Eight arc = (time * load_eight(row.without_arc)) * (inverse * (inverse * inverse));
+    const Eights dv = ((time * load_eight(row.one_over_m)) * f + arc * x) + (time * load_eight(row.one_over_M)) * outer;
+    store_eights(add_change<compensated>(load_eights(row.v), dv, row.v_low), row.v);
+  }
+  return near != 0;
+}
+
+/// What moves all heliocentric positions in a jump over h, |sum p|^2/2 m_0.
+NOETHER_EIGHT_INLINE Eights jump_of(const PlanetRows& planets, double h) {
+  Eights sum{0.0, 0.0, 0.0};
+  for (std::ptrdiff_t a = 0; a < planets.rows; ++a) {
+    const Eights p = load_eight(planets.row[a].share) * load_eights(planets.row[a].v);
+    const Eights total{sum_of_lanes(p.x), sum_of_lanes(p.y), sum_of_lanes(p.z)};
+    sum = a == 0 ? total : sum + total;
+  }
+  return Eight(h) * sum;
+}
+
+/// Democratic coordinates: half a jump, the kick, half a jump. Without relativity the kick leaves the momentum alone,
+/// so that both jumps are the same.
+template <bool compensated>
+NOETHER_EIGHT_INLINE bool kick_democratic(const PlanetRows& planets, double h, bool predicted) {
+  unsigned near = 0;
+  const PlanetPairs* pairs = planets.pairs;
+  const Eights jump = jump_of(planets, 0.5 * h);
+  for (std::ptrdiff_t a = 0; a < planets.rows; pairs += planets.rows - a, ++a) {
+    PlanetRow& row = planets.row[a];
+    const Eights y = load_eights(row.x) + load_eight(row.moves) * jump;
+    store_eights(y, row.y);
+    const Eight r2 = dot(y, y);
+    const PairSums sums = within_row(*pairs, y, r2);
+    near |= exceeding(Eight(0.0), sums.least);
+    Eights f = sums.force - sums.back;
+    if (planets.relativity) f = f - (load_eight(row.relativity) / (r2 * r2)) * y;
+    store_eights(f, row.force);
+  }
+  if (planets.rows > 1) near |= unsigned(between_all(planets));
+  for (std::ptrdiff_t a = 0; a < planets.rows; ++a) {
+    PlanetRow& row = planets.row[a];
+    const Eights dv = (Eight(h) * load_eight(row.one_over_m)) * load_eights(row.force);
+    store_eights(add_change<compensated>(load_eights(row.v), dv, row.v_low), row.v);
+  }
+  const Eights second = planets.relativity ? jump_of(planets, 0.5 * h) : jump;
+  for (std::ptrdiff_t a = 0; a < planets.rows; ++a) {
+    PlanetRow& row = planets.row[a];
+    const Eights dx = load_eight(row.moves) * (jump + second);
+    const Eights x = add_change<compensated>(load_eights(row.x), dx, row.x_low);
+    store_eights(x, row.x);
+    const Eight before = load_eight(row.r), inverse = set_distance(x, row);
+    if (predicted) store_eight((before * load_eight(row.s)) * inverse, row.s);
+  }
+  return near != 0;
+}
+
+bool kick(const PlanetRows& planets, double h, bool predicted) {
+  if (planets.jacobi) return planets.compensated ? kick_jacobi<true>(planets, h) : kick_jacobi<false>(planets, h);
+  return planets.compensated ? kick_democratic<true>(planets, h, predicted)
+                             : kick_democratic<false>(planets, h, predicted);
+}
+
+}  // namespace
+
+extern const PlanetKernels planet_kernels;
+const PlanetKernels planet_kernels{prepare, drift, kick};
+
+}  // namespace noether::NOETHER_SIMD_LEVEL
