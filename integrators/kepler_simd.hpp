@@ -163,10 +163,13 @@ struct ExactArcs {
                                                               ExactArcs& exact, ArcReport& report) {
   for (int k = 0; k < 8; ++k) {
     if ((exact.lanes >> k & 1) == 0) continue;
-    ++report.exact;
-    double x[3], v[3], dx[3], dv[3];
+    double x[3], v[3], dx[3] = {}, dv[3] = {};  // 0 where there is no planet
+    exact.s[k] = 0;
     for (int c = 0; c < 3; ++c) x[c] = row.x[c][k], v[c] = row.v[c][k];
-    if (!planets.exact(x, v, row.mu[k], h, dx, dv, &exact.s[k])) report.failed = 8 * (&row - planets.row) + k;
+    if (row.moves[k] != 0) {
+      ++report.exact;
+      if (!planets.exact(x, v, row.mu[k], h, dx, dv, &exact.s[k])) report.failed = 8 * (&row - planets.row) + k;
+    }
     for (int c = 0; c < 3; ++c) {
       exact.dx[c][k] = dx[c], exact.dv[c][k] = dv[c], exact.x[c][k] = x[c], exact.v[c][k] = v[c];
       exact.x_low[c][k] = row.x_low[c][k], exact.v_low[c][k] = row.v_low[c][k];

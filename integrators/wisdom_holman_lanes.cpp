@@ -28,7 +28,7 @@ bool PlanetLanes::can_take(const PlanetSystem& system) {
   constexpr double least = 1e-60, most = 1e60;
   const double star = system.masses[0], mu = system.G * star;
   if (system.order.size() < 2 || system.order.size() > most_planets + 1) return false;
-  if (!(mu > least && mu < most) || !(system.size < most)) return false;
+  if (!(mu > least && mu < most) || !(system.size > least && system.size < most)) return false;
   return std::all_of(system.order.begin() + 1, system.order.end(), [&](std::int64_t i) {
     const double m = system.masses[static_cast<std::size_t>(i)] / star;
     return m > least && m < most;
@@ -42,7 +42,7 @@ void PlanetLanes::bind(const PlanetSystem& system) {
   const std::size_t n = order_.size(), rows = (n + lanes - 1) / lanes;
   row_.assign(rows, PlanetRow{});
   pairs_.assign(rows * (rows + 1) / 2, PlanetPairs{});
-  const double star = system.masses[0], mu = system.G * star, far = system.size > 0 ? 1e3 * system.size : 1;
+  const double star = system.masses[0], mu = system.G * star, far = 1e3 * system.size;
   const double bend = system.bend.value_or(0);
   double interior = star;
   for (std::size_t k = 0; k < rows * lanes; ++k) {

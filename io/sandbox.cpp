@@ -5,18 +5,22 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <fstream>
 #include <new>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <vector>
 
 namespace noether::io {
 
@@ -59,11 +63,31 @@ void prepare_to_crash(std::uintmax_t size) {
   if (const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC); nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
 }
 
-/// Closes what the child has from its parent, but for three and the pipe: the lock of the output folder lives as long
-/// as somebody has it open, and a child may live on where its parent is killed.
-void keep_only(int pipe) {
-  ::close_range(STDERR_FILENO + 1, static_cast<unsigned>(pipe) - 1, 0);
-  ::close_range(static_cast<unsigned>(pipe) + 1, ~0U, 0);
+bool is_open_as(int descriptor, const struct stat& file) {
+  struct stat status = {};
+  return ::fstat(descriptor, &status) == 0 && status.st_dev == file.st_dev && status.st_ino == file.st_ino;
+}
+
+/// Closes what the child has from its parent, but for three, the pipe, and the file itself, which HDF5 reads through the
+/// descriptor that it has already: the lock of the output folder lives as long as somebody has it open, and a child may
+/// live on where its parent is killed.
+void keep_only(int pipe, const std::filesystem::path& file) {
+  struct stat wanted = {};
+  const bool known = ::stat(file.c_str(), &wanted) == 0;
+  std::vector<int> kept = {pipe};
+  std::error_code unknown;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd", unknown)) {
+    const int descriptor = std::atoi(entry.path().filename().c_str());
+    if (descriptor > STDERR_FILENO && known && is_open_as(descriptor, wanted)) kept.push_back(descriptor);
+  }
+  std::sort(kept.begin(), kept.end());
+  auto next = static_cast<unsigned>(STDERR_FILENO) + 1;
+  for (const int descriptor : kept) {
+    const auto stays = static_cast<unsigned>(descriptor);
+    if (stays > next) ::close_range(next, stays - 1, 0);
+    next = stays + 1;
+  }
+  ::close_range(next, ~0U, 0);
 }
 
 /// The child's report: a first byte says that it came back, what follows is the message of an error.
@@ -73,9 +97,10 @@ void tell(int pipe, std::string_view message) {
   if (::write(pipe, report.data(), report.size()) < 0) ::_exit(1);
 }
 
-[[noreturn]] void be_child(int pipe, std::uintmax_t size, const std::function<void()>& work) {
+[[noreturn]] void be_child(int pipe, const std::filesystem::path& file, std::uintmax_t size,
+                           const std::function<void()>& work) {
   trying = true;
-  keep_only(pipe);
+  keep_only(pipe, file);
   prepare_to_crash(size);
   try {
     work();
@@ -119,7 +144,7 @@ void try_in_child(const std::filesystem::path& file, const std::function<void()>
   if (trying || ::pipe2(ends.data(), O_CLOEXEC) != 0) return;
   const std::uintmax_t size = size_of(file);
   const pid_t child = ::fork();
-  if (child == 0) be_child(ends[1], size, work);
+  if (child == 0) be_child(ends[1], file, size, work);
   ::close(ends[1]);
   const std::string report = child < 0 ? "+" : read_all(ends[0]);
   ::close(ends[0]);

@@ -134,6 +134,10 @@ TEST_CASE("a force that depends on velocities stands beside it: in evaluate, and
   const std::string counted = "steps = ", timed = "every = 0.";
   for (auto at = relative.find(counted); at != std::string::npos; at = relative.find(counted, at))
     relative.replace(at, counted.size(), timed);
+  // The energy of this force is not known, so that a monitor of it is refused.
+  const std::string watched = "[[every]]\ntype = \"energy\"\nevery = 0.10\n";
+  CHECK(has(own(SceneFolder(relative), "run scene.toml").err, "monitor 'energy' needs the energy"));
+  relative.replace(relative.find(watched), watched.size(), "");
   const SceneFolder folder(relative), without(trap);
   const auto force_of = [](const SceneFolder& in) {
     return std::stod(json_member(own_output(in, "evaluate scene.toml --json"), "force_max"));

@@ -49,6 +49,7 @@ bool shows_elements(const std::filesystem::path& run, const Parts& parts) {
                      [](const PlotPanel& panel) { return panel.title == "Semi-major axis"; });
 }
 
+/// By a reader that is open while the file is opened again.
 std::size_t links_of(const std::filesystem::path& run, const Parts& parts) {
   const io::TrajectoryReader reader(run);
   const SceneValue scene = scene_in_file(io::info(run).scene_toml, run);

@@ -331,17 +331,39 @@ TEST_CASE("second passes are few at short steps, and arcs beyond them go to the 
   CHECK(coarse.second > 0);
 }
 
-TEST_CASE("two planets at one place end the run as they do letter by letter", "[wisdom_holman]") {
-  const auto outcome = [](const AnyHamiltonian<double>& hamiltonian) {
-    auto s = test::outer_planets();
-    s.positions().set(3, std::as_const(s).positions()[2]);
-    Simulation<double> run(std::move(s), Composition<AnyHamiltonian<double>>(hamiltonian, schemes::verlet), 40.0);
-    const Outcome end = run.run(10);
-    CHECK_FALSE(end.ok());
-    return to_text(end);
-  };
-  const WisdomHolmanOptions options{.G = test::outer_G, .coordinates = Coordinates::democratic};
-  CHECK(outcome(test::wisdom_holman(options)) == outcome(test::wisdom_holman(options, no_field)));
+TEST_CASE("two planets at one place end the run at the step at which it ends letter by letter", "[wisdom_holman]") {
+  for (const Coordinates coordinates : in_lanes) {
+    const auto outcome = [](const AnyHamiltonian<double>& hamiltonian) {
+      auto s = test::outer_planets();
+      s.positions().set(3, std::as_const(s).positions()[2]);
+      Simulation<double> run(std::move(s), Composition<AnyHamiltonian<double>>(hamiltonian, schemes::verlet), 40.0);
+      return run.run(10);
+    };
+    const WisdomHolmanOptions options{.G = test::outer_G, .coordinates = coordinates};
+    const Outcome lanes = outcome(test::wisdom_holman(options));
+    const Outcome letters = outcome(test::wisdom_holman(options, no_field));
+    CHECK(lanes.kind == Outcome::Kind::diverged);
+    CHECK(lanes.kind == letters.kind);
+    CHECK(lanes.step == letters.step);
+    CHECK(lanes.particle > 0);  // a planet; letter by letter a jump may have spoilt the star too
+  }
+}
+
+TEST_CASE("planets too near or too far for lanes, and none there, are never the ones that fail", "[wisdom_holman]") {
+  // In a row of eight lanes six or seven have no planet: what stands there may not end the run.
+  for (const double size : {1e-70, 1e-59, 1.0, 1e59, 1e70}) {
+    for (const double dt : {1e-150, 1.0, 1e150}) {
+      CAPTURE(size, dt);
+      ParticleSystem<double> s;
+      s.add("star", 1, {0, 0, 0}, {0, 0, 0});
+      s.add("planet", 1e-3, {size, 0, 0}, {0, 1 / std::sqrt(size), 0});
+      Simulation<double> run(std::move(s), compose(wisdom_holman({.G = 1.0}), schemes::verlet), dt);
+      const Outcome end = run.run(3);
+      if (end.ok()) continue;
+      CHECK(end.particle >= 0);
+      CHECK(end.particle < 2);
+    }
+  }
 }
 
 TEST_CASE("compensation keeps what rounding takes from planets in lanes", "[wisdom_holman]") {

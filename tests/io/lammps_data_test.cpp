@@ -225,11 +225,11 @@ TEST_CASE("sections that are unknown, missing, cut or twice there are refused", 
   CHECK(data_refusal(two_atoms) ==
         "m.data:3: 2 atoms are declared, but there is no section 'Atoms'; the file may be cut short");
   CHECK(data_refusal(two_atoms + "\nAtoms # atomic\n\n1 1 0 1 0\n") ==
-        "m.data:14: section 'Atoms' has 1 rows, but line 3 says 2 atoms");
+        "m.data:14: section 'Atoms' has 1 row, but line 3 says 2 atoms");
   CHECK(data_refusal(two_atoms + pair_atoms + pair_atoms) ==
         "m.data:19: section 'Atoms' appears twice, also at line 14");
   CHECK(data_refusal(two_atoms + pair_atoms + "\nBonds\n\n1 1 1 2\n") ==
-        "m.data:19: section 'Bonds' has 1 rows, but the header has no line 'bonds'");
+        "m.data:19: section 'Bonds' has 1 row, but the header has no line 'bonds'");
   CHECK(data_refusal("#\n2 atoms\n1 bonds\n2 atom types\n" + box + masses + pair_atoms) ==
         "m.data:3: 1 bonds are declared, but there is no section 'Bonds'; the file may be cut short");
   CHECK(data_refusal("#\n2 atoms\n2 atom types\n" + box + pair_atoms) ==

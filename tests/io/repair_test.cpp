@@ -265,10 +265,11 @@ TEST_CASE("groups of a checkpoint that stand within themselves are an error of t
   CHECK(io::verify(file).damaged.size() == 1);
 }
 
-TEST_CASE("a child that tries a file holds nothing of its parent's open: locks end with the parent", "[damage]") {
+TEST_CASE("a child that tries a file holds nothing else of its parent's open: locks end with the parent", "[damage]") {
   const test::ScratchFolder folder;
   test::write_text(folder / "file", "bytes");
-  const int held = ::open((folder / "file").c_str(), O_RDONLY | O_CLOEXEC);
+  test::write_text(folder / "lock", "");
+  const int held = ::open((folder / "lock").c_str(), O_RDONLY | O_CLOEXEC);
   struct stat file {};
   REQUIRE(::fstat(held, &file) == 0);
   CHECK_NOTHROW(io::try_in_child(folder / "file", [&] {

@@ -124,15 +124,16 @@ SAMPLES = [
 ]
 
 
-def planted(name, content):
-    """A small clean tree with one file planted in it."""
+def planted(name, content, parts=True):
+    """A small clean tree with one file planted in it; without `parts` all that stands there compiles."""
     folder = tempfile.TemporaryDirectory()
     root = pathlib.Path(folder.name)
     tree = {"engine/clean.hpp": CLEAN_HEADER, "engine/above.hpp": '#pragma once\n#include "engine/clean.hpp"\n',
             "docs/references.bib": "@article{Author2001,\n}\n",
-            "scene/parts.cpp": "auto p = [] { parts.add_force<Pull>(); };\n",
-            "forces/pull.hpp": '#pragma once\ninline auto d = part<Pull>("pull", "pulls", name == "pull");\n',
             "tests/lint/b_test.cpp": 'TEST_CASE("o" "ne") {}\nTEST_CASE("a|b",\n "[x]") {}\n', name: content}
+    if parts:
+        tree["scene/parts.cpp"] = "auto p = [] { parts.add_force<Pull>(); };\n"
+        tree["forces/pull.hpp"] = '#pragma once\ninline auto d = part<Pull>("pull", "pulls", name == "pull");\n'
     for path, text_of_file in tree.items():
         (root / path).parent.mkdir(parents=True, exist_ok=True)
         (root / path).write_text(text_of_file)
@@ -149,7 +150,7 @@ def failures():
 
 def compiler_failures(compiler):
     for name in ("engine/bad.hpp", "engine/bad.cpp"):
-        with planted(name, "#pragma once\ninline std::vector<int> f() { return {}; }\n") as root:
+        with planted(name, "#pragma once\ninline std::vector<int> f() { return {}; }\n", parts=False) as root:
             found = headers.compile_problems(root, compiler, [])
             if len(found) != 1 or f"{name}: does not compile alone" not in found[0]:
                 yield f"headers: planted {name}, which lacks <vector>, found {found}"
