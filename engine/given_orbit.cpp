@@ -192,6 +192,12 @@ std::string about_a_light_body(const ParticleSystem<double>& s, Index count, con
   Index heaviest = 0;
   for (Index i = 1; i < count; ++i) heaviest = s.masses()[i] > s.masses()[heaviest] ? i : heaviest;
   if (heaviest == 0) return "";
+  if (!(s.masses()[0] > 0)) {
+    return fmt::format(
+        "the elements of '{0}' are about '{1}', which comes first and has no mass; put '{2}' first, or say what they "
+        "are about: about = \"{2}\"",
+        body, s.name(0), s.name(heaviest));
+  }
   return fmt::format(
       "the elements of '{0}' are about '{1}', which comes first, but '{2}' has {3:.3g} times its mass; put '{2}' "
       "first, or say what they are about: about = \"{2}\" or \"{1}\"",

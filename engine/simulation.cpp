@@ -197,9 +197,7 @@ template <class Real> void Simulation<Real>::turn_back(double until) {
     refuse(fmt::format("monitor '{}' samples {}, so the run cannot turn back; attach it by steps", scheduled.name,
                        detail::when_in_time(scheduled.schedule)));
   }
-  begin_edit(shown_at_);
-  raw_.clock().turn();
-  end_edit();
+  edit_at(shown_at_, [](ParticleSystem<Real>& particles) { particles.clock().turn(); });
 }
 
 template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double limit) {
@@ -545,11 +543,16 @@ template <class Real> void Simulation<Real>::end_edit() {
   }
   check_state(integrator_.claims());
   raw_.trim();
-  integrator_.bind(raw_);
-  if (integrator_.claims().second_words) detail::keep_second_words(copy_, raw_);
+  take_edited();
   copy_ = mapped_ = ParticleSystem<Real>(raw_.units());  // the next look makes them anew
   for (auto& stop : stops_) stop.check.forget();
   for (auto& scheduled : monitors_) scheduled.monitor.forget();
+}
+
+/// Lets the integrator begin anew from where the particles stand.
+template <class Real> void Simulation<Real>::take_edited() {
+  integrator_.bind(raw_);
+  if (integrator_.claims().second_words) detail::keep_second_words(copy_, raw_);
 }
 
 template <class Real> void Simulation<Real>::change_step(double dt) {
@@ -562,10 +565,10 @@ template <class Real> void Simulation<Real>::change_step(double dt) {
     throw Error(fmt::format("monitor '{}' samples {}, which a new step would shift; attach it by steps", scheduled.name,
                             detail::when_in_time(scheduled.schedule)));
   }
-  begin_edit();
-  const double now = time();
-  raw_.clock() = Clock<Real>::fixed(now - static_cast<double>(step()) * dt, dt, step());
-  end_edit();
+  edit_at(std::nullopt, [&](ParticleSystem<Real>& particles) {
+    const double now = time();
+    particles.clock() = Clock<Real>::fixed(now - static_cast<double>(step()) * dt, dt, step());
+  });
 }
 
 template class Simulation<double>;

@@ -99,12 +99,9 @@ template <class Real = double> class Simulation {
   IntegratorClaims claims() const { return integrator_.claims(); }
   Evaluations evaluations() const { return integrator_.evaluations(); }
 
-  /// Changes particles: settles, calls `change(ParticleSystem<Real>&)` on inertial state, binds anew.
-  template <class Change> void edit(const Change& change) {
-    begin_edit();
-    change(raw_);
-    end_edit();
-  }
+  /// Changes particles: settles, calls `change(ParticleSystem<Real>&)` on inertial state, binds anew. An edit that
+  /// throws, or whose result is refused, leaves the particles as they were.
+  template <class Change> void edit(const Change& change) { edit_at(std::nullopt, change); }
   /// Changes the step [time], settling first; time and step count go on.
   /// @throws Error  if the integrator chooses its steps, or a monitor looks by time
   void change_step(double dt);
@@ -195,8 +192,21 @@ template <class Real = double> class Simulation {
   /// @throws Error  unless a saved run has the columns that this one moves
   void check_columns(const ParticleSystem<Real>& saved) const;
   /// @param at  free clock: the time to settle at, beyond the last whole step
-  void begin_edit(std::optional<double> at = std::nullopt);
+  template <class Change> void edit_at(std::optional<double> at, const Change& change) {
+    begin_edit(at);
+    const ParticleSystem<Real> before = raw_;
+    try {
+      change(raw_);
+      end_edit();
+    } catch (...) {
+      raw_ = before;
+      take_edited();
+      throw;
+    }
+  }
+  void begin_edit(std::optional<double> at);
   void end_edit();
+  void take_edited();
 
   /// A whole step to fall back to.
   struct Good {

@@ -31,7 +31,7 @@ template <class Real>
 double error_by_differences(AnyForce<Real> force, ParticleSystem<Real> s, const Real& relative_step,
                             const Real& rounding) {
   using std::abs, std::isfinite, std::sqrt;
-  force.bind(s);
+  bind_force(force, s);
   VectorColumn<Real> a(s.size()), scratch(s.size());
   const Real energy = abs(potential_of(force, s, a));
   Real scale = sum_over<Real>(s.size(), [&](Index i) { return norm2(std::as_const(s).positions()[i]); });

@@ -21,7 +21,7 @@ class Primary {
     if (!id_) id_ = s.ids()[0];
     if (*id_ == s.ids()[0]) return;
     throw Error(part + " is about the particle with id " + std::to_string(*id_) +
-                ", which has been taken out; keep it, or start a new run without " + part);
+                ", which has been taken out; keep it, or start a new run, which is about its own first particle");
   }
   /// The same for a force: its reactions on the primary are over that mass, and without one they are not numbers.
   /// @throws Error  if particle 0 has no mass, too

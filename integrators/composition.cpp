@@ -192,6 +192,12 @@ Order order_over(const Scheme& scheme, const HamiltonianClaims& claims) {
       if (abs(cubes) > Quad(1e-12)) order.classical = 2;
     }
   }
+  // An irreversible letter that the scheme does not have stands around its word.
+  for (const char letter : claims.irreversible) {
+    const bool inside = std::any_of(scheme.word.begin(), scheme.word.end(),
+                                    [&](const Stage& stage) { return stage.letter == letter; });
+    if (!scheme.is_composition() && !inside) order.classical = std::min(order.classical, 2);
+  }
   return order;
 }
 

@@ -107,9 +107,10 @@ class Descent {
           MinimizeAlong* along)
       : s_(s), forces_(forces), options_(options), along_(along), f_(s.size()), v_(s.size()) {
     if (along_ != nullptr) along_->bind(s_);
-    forces_.bind(s_);
-    workspace_.put(NeighborList(forces.claims().range));
-    reach_ = options.max_displacement > 0 ? options.max_displacement : usual_displacement(s, forces.claims().range);
+    bind_force(forces_, s_);
+    const double range = forces_.claims().range;
+    workspace_.put(NeighborList(range));
+    reach_ = options.max_displacement > 0 ? options.max_displacement : usual_displacement(s, range);
   }
 
   Minimized run() {

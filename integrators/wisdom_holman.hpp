@@ -215,7 +215,7 @@ template <class Real = double, class F = Sum<>> class WisdomHolman : private det
   double moment_ = 0;          ///< time of the kick
   VectorColumn<Real> scratch_, positions_, acceleration_, other_, along_;
   std::optional<ParticleSystem<Real>> inertial_;  ///< for other forces
-  std::optional<Along> forces_along_;             ///< made by the first derivative
+  std::optional<Along> forces_along_;             ///< where forces have derivatives and kernels ask for them
   std::optional<Place> pulled_;                   ///< where `acceleration_` is that of B
   Workspace workspace_;                           ///< of other forces: no list of neighbors in it
   Primary primary_;

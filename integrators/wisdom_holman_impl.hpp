@@ -92,6 +92,9 @@ template <class Real, class F> void WisdomHolman<Real, F>::bind(ParticleSystem<R
     *column = VectorColumn<Real>(s.size());
   if constexpr (has_forces) inertial_ = s;
   forces_along_.reset();
+  if constexpr (has_forces && Force<F, Dual<Real, 1>>) {
+    if (jacobi() && has_derivative<Real>(forces_)) forces_along_.emplace(*inertial_);
+  }
   pulled_.reset();
   failure_.reset();
   if constexpr (may_have_lanes) {
@@ -114,8 +117,7 @@ bool WisdomHolman<Real, F>::forces_in_lanes(const ParticleSystem<Real>& s) requi
     if (relativity == nullptr) return forces_.terms().empty();
   }
   if (relativity != nullptr) {
-    const double G = relativity->G ? *relativity->G : s.units().G;
-    const double ratio = G * s.masses()[0] / speed_of_light_in(s, relativity->c, "gr_potential");
+    const double ratio = mu_of_primary(*relativity, s) / speed_of_light_in(s, relativity->c, "gr_potential");
     planets_.bend = 6 * ratio * ratio;
   }
   return true;
@@ -271,8 +273,8 @@ Real WisdomHolman<Real, F>::arcs(ParticleSystem<Real>& s, const Real& h, bool ac
 }
 
 template <class Real, class F> void WisdomHolman<Real, F>::fail(const ParticleSystem<Real>& s, Index i) {
-  failure_ = Failure{Outcome::Kind::solver_failure, i, "position",
-                     fmt::format("the Kepler solver did not converge for {}", s.name(i))};
+  note_failure(Failure{Outcome::Kind::solver_failure, i, "position",
+                       fmt::format("the Kepler solver did not converge for {}", s.name(i))});
 }
 
 /// Accelerations of the working velocities at working positions. @return the potential, if wanted

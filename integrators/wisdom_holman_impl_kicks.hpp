@@ -32,7 +32,7 @@ template <class F, class Wanted> std::string first_force(const F& forces, const 
 
 /// Why there is no G or no L; empty where both are there.
 template <class Real, class F> std::string WisdomHolman<Real, F>::no_kernel() const {
-  if (!jacobi()) return "because kernels with derivatives need Jacobi coordinates";
+  if (!jacobi()) return "because kernels of modified kicks need Jacobi coordinates";
   const std::string moving =
       detail::first_force(forces_, [](const auto& f) { return claims_of(f).velocity_dependent; });
   if (!moving.empty()) return "because the force '" + moving + "' depends on velocities";
@@ -102,6 +102,7 @@ template <class Real, class F> void WisdomHolman<Real, F>::lazy_kick(ParticleSys
 /// The implicit midpoint rule over fixed positions: v_1 = v_0 + h a(x, (v_0 + v_1)/2), a symmetric map of order 2.
 /// Forces that hardly depend on velocities, as those of relativity, take three or four rounds.
 template <class Real, class F> void WisdomHolman<Real, F>::velocity_kick(ParticleSystem<Real>& s, const Real& h) {
+  using std::isfinite;
   static constexpr int most_rounds = 100;
   const auto& v = std::as_const(s).velocities();
   const auto& x = std::as_const(s).positions();
@@ -128,15 +129,17 @@ template <class Real, class F> void WisdomHolman<Real, F>::velocity_kick(Particl
     Real change(0), size(0);
     for (Index i = 0; i < s.size(); ++i) {
       const Vec3<Real> middle = v[i] + h / Real(2) * std::as_const(acceleration_)[i];
-      change = std::max(change, norm2(Vec3<Real>(middle - std::as_const(scratch_)[i])));
+      const Real moved2 = norm2(Vec3<Real>(middle - std::as_const(scratch_)[i]));
+      if (!(moved2 <= change)) change = moved2;  // what is not a number stays
       size = std::max(size, norm2(middle));
       scratch_.set(i, middle);
     }
-    settled = change <= rounding * size;
+    settled = change <= rounding * size && isfinite(size);
   }
   if (!settled) {
     note_failure(Failure{Outcome::Kind::solver_failure, -1, "velocity",
                          "a kick by forces that depend on velocities did not converge; take a smaller step"});
+    return;
   }
   s.advance_velocities(h, acceleration_);
 }
@@ -145,7 +148,6 @@ template <class Real, class F> void WisdomHolman<Real, F>::velocity_kick(Particl
 template <class Real, class F> void WisdomHolman<Real, F>::add_force_derivatives(const Clock<Real>& clock) {
   using D = Dual<Real, 1>;
   if constexpr (Force<F, D>) {
-    if (!forces_along_) forces_along_.emplace(*inertial_);
     const auto &x = std::as_const(*inertial_).positions(), &u = std::as_const(scratch_);
     auto& moving = forces_along_->particles.positions();
     for (int k = 0; k < 3; ++k) {

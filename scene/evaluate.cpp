@@ -63,7 +63,7 @@ void add_hamiltonian(const Scene& scene, ParticleSystem<double>& s, Evaluation& 
     VectorColumn<double> more(s.size());
     ForceSink<double> sink(more, s, Request{});
     AnyForce<double> bound = force.force;
-    bound.bind(s);
+    bind_force(bound, s);
     bound.add_to(sink, s);
     for (Index i = 0; i < s.size(); ++i) a.add(i, std::as_const(more)[i]);
   }
@@ -91,7 +91,7 @@ Evaluation evaluate(const Scene& scene, bool check) {
   for (const SceneForce& term : scene.hamiltonian.terms()) {
     ForceSink<double> sink(a, s, {.energy = true, .virial = true});
     AnyForce<double> bound = term.force;
-    bound.bind(s);
+    bind_force(bound, s);
     bound.add_to(sink, s);
     const ForceClaims claims = term.force.claims();
     const bool failed = sink.failure().has_value();

@@ -18,7 +18,7 @@ int main() {
   ParticleSystem planets = io::read_bodies("outer_planets.csv");  // the Sun first
   move_to_barycenter(planets);
 
-  auto integrator = compose(WisdomHolman({.G = 2.95912208286e-4}), schemes::aba_10_6_4);
+  auto integrator = compose(WisdomHolman({.G = 2.95912208286e-4}), schemes::aba_10_6_4, {.compensated = true});
   Simulation sim(std::move(planets), std::move(integrator), 100 * day);
   auto& energy = sim.every(sim.steps_in(10'000 * year), Energy{});
   auto& angular_momentum = sim.every(sim.steps_in(10'000 * year), AngularMomentum{});

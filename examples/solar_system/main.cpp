@@ -19,7 +19,8 @@ int main() {
   ParticleSystem planets = io::read_bodies("planets.csv");  // the Sun first
   move_to_barycenter(planets);
 
-  Simulation sim(std::move(planets), compose(WisdomHolman({}), schemes::aba_10_6_4), 5 * day);
+  auto integrator = compose(WisdomHolman({}), schemes::aba_10_6_4, {.compensated = true});
+  Simulation sim(std::move(planets), std::move(integrator), 5 * day);
   auto& energy = sim.every(73, Energy{});
   auto& angular_momentum = sim.every(73, AngularMomentum{});
   auto& elements = sim.every(730, Elements{});

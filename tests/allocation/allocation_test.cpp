@@ -101,6 +101,8 @@ TEST_CASE("nothing is allocated inside advance, nor by settling", "[allocation]"
   }
   for (const StepKernel kernel : {StepKernel::plain, StepKernel::modified, StepKernel::composed, StepKernel::lazy}) {
     check_none(compose(WisdomHolman({.G = G}), schemes::verlet_aba, {.corrector = 17, .kernel = kernel}));
+    check_none(compose(wisdom_holman({.G = G}, Oblateness{.J2 = 1e-7, .radius = 0.005}), schemes::verlet_aba,
+                       {.corrector = 17, .kernel = kernel}));
   }
   check_none(compose(Damped(KineticPotential(Gravity{.G = G}), {.rate = 1e-6}), schemes::verlet));
   const Langevin bath(KineticPotential(Gravity{.G = G}), {.temperature = 300, .friction = 1e-6});

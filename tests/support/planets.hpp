@@ -50,7 +50,6 @@ inline ParticleSystem<double> cloud(int n) {
   return s;
 }
 
-/// Whether all positions and velocities are the same numbers, bit for bit (and finite).
 /// Whether second words, or that there are none, are the same.
 template <class Real> bool same_low_words(const ParticleSystem<Real>& a, const ParticleSystem<Real>& b) {
   const auto *one = a.low_words(), *other = b.low_words();
@@ -64,6 +63,7 @@ template <class Real> bool same_low_words(const ParticleSystem<Real>& a, const P
   return true;
 }
 
+/// Whether all positions and velocities are the same numbers, bit for bit (and finite).
 template <class Real> bool same_bits(const ParticleSystem<Real>& a, const ParticleSystem<Real>& b) {
   if (a.size() != b.size() || a.clock().step() != b.clock().step()) return false;
   for (Index i = 0; i < a.size(); ++i) {
