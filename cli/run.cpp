@@ -19,6 +19,7 @@
 #include <optional>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 namespace noether {
@@ -74,14 +75,14 @@ int run_scene(const RunArguments& given, const Parts& parts) {
   if (given.threads != 0) set_thread_count(given.threads);
   std::vector<std::string> sets = given.sets;
   if (given.until) sets.push_back(as_set(*given.until));
-  const Scene scene = load_scene(given.scene, parts, sets);
+  SceneRun start = load_run(given.scene, parts, sets);
   RunOptions options;
   options.notes = !given.quiet;
   options.out = given.out;
   options.existing = given.resume ? Existing::resume : given.fresh ? Existing::fresh : Existing::keep;
   if (given.simd) options.simd = simd_level_named(*given.simd);
   options.progress = !given.quiet && !given.json;
-  const RunReport report = run(scene, options);
+  const RunReport report = run(std::move(start), options);
   const bool failed = report.exit_code() == 1;
   if (failed) fmt::print(stderr, "{}\n", escaped(to_text(report.outcome)));
   if (given.json) {

@@ -86,6 +86,17 @@ template <class F> struct ForceMembers {
   static constexpr bool secant = !misspells_add_secant_to<F>() && (!finds_add_secant_to<F>() || GivesSecants<F>);
 };
 
+/// @throws LogicError  if the force has no secants
+template <class F, class Real>
+void add_secant_of(const F& force, ForceSink<Real>& out, const ParticleSystem<Real>& from,
+                   const ParticleSystem<Real>& to) {
+  if constexpr (requires { force.add_secant_to(out, from, to); }) {
+    force.add_secant_to(out, from, to);
+  } else {
+    throw LogicError("secants were requested from the force '" + name_of(force) + "', which has none");
+  }
+}
+
 /// Built-in forces are compiled once, each in a .cpp of its own: their headers say `extern template`.
 template <class Real> struct ForceBase {
   virtual ~ForceBase() = default;
@@ -128,8 +139,7 @@ template <class F, class Real> struct ForceModel final : ForceBase<Real> {
   bool has_secant() const override { return noether::has_secant<Real>(force); }
   void add_secant_to(ForceSink<Real>& out, const ParticleSystem<Real>& from,
                      const ParticleSystem<Real>& to) const override {
-    if constexpr (requires { force.add_secant_to(out, from, to); }) return force.add_secant_to(out, from, to);
-    throw LogicError("secants were requested from a force that has none");
+    add_secant_of(force, out, from, to);
   }
   bool has_lanes() const override { return noether::has_lanes(force); }
   void add_to(ForceSink<Pack>& out, const ParticleSystem<Pack>& s) const override {

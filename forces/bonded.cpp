@@ -1,5 +1,6 @@
 #include "forces/bonded.hpp"
 
+#include "forces/secant.hpp"
 #include "numbers/error.hpp"
 #include "numbers/simd_loop.hpp"
 
@@ -85,6 +86,86 @@ Failure detail::overstretch(const BondedTerms& terms, Index bond, double length,
                                  "take a smaller step, or begin with shorter bonds",
                                  told(term.particles[0]), told(term.particles[1]), length, longest)};
 }
+
+namespace {
+
+template <class Potential, class Real>
+concept DependsOnDistance = requires(const Potential& potential, const Real& r2) {
+  potential.force_over_r(r2);
+};
+
+/// A bond; @return the square of a length that it cannot have, or 0.
+template <class Real, class Potential>
+Real add_secants_of(Secants<Real>& secants, const std::array<Index, 2>& p, const Potential& potential) {
+  Real too_long(0);
+  secants.pair({.i = p[0], .j = p[1]}, [&](const Real& r2) -> PairTerms<Real> {
+    if constexpr (requires { potential.holds(r2); }) {
+      const Real none(std::numeric_limits<double>::quiet_NaN());
+      if (!potential.holds(r2)) return too_long = r2, PairTerms<Real>{none, none};
+    }
+    return {potential.energy(r2), potential.force_over_r(r2)};
+  });
+  return too_long;
+}
+
+template <class Real, class Potential>
+Real add_secants_of(Secants<Real>& secants, const std::array<Index, 3>& p, const Potential& potential) {
+  if (!secants.keeps_image(p[0], p[1]) || !secants.keeps_image(p[2], p[1])) return Real(0);
+  const std::array<Vec3<Real>, 3> place = {secants.apart(p[0], p[1]), Vec3<Real>::Zero(), secants.apart(p[2], p[1])};
+  secants.group(p, place, [&](const std::array<Vec3<Real>, 3>& x) {
+    const std::array<Vec3<Real>, 2> d = {x[0] - x[1], x[2] - x[1]};
+    return detail::bonded_forces<Real>(potential, d, true);
+  });
+  return Real(0);
+}
+
+template <class Real, class Potential>
+Real add_secants_of(Secants<Real>& secants, const std::array<Index, 4>& p, const Potential& potential) {
+  for (const auto& [i, j] : {std::pair(p[0], p[1]), std::pair(p[1], p[2]), std::pair(p[3], p[2])}) {
+    if (!secants.keeps_image(i, j)) return Real(0);
+  }
+  const Vec3<Real> third = -secants.apart(p[1], p[2]);
+  const std::array<Vec3<Real>, 4> place = {secants.apart(p[0], p[1]), Vec3<Real>::Zero(), third,
+                                           third + secants.apart(p[3], p[2])};
+  if constexpr (DependsOnDistance<Potential, Real>) {
+    secants.pair_along(p[0], p[3], Vec3<Real>(place[0] - place[3]), [&](const Real& r2) {
+      return PairTerms<Real>{potential.energy(r2), potential.force_over_r(r2)};
+    });
+  } else {
+    secants.group(p, place, [&](const std::array<Vec3<Real>, 4>& x) {
+      const std::array<Vec3<Real>, 3> d = {x[0] - x[1], x[1] - x[2], x[3] - x[2]};
+      return detail::bonded_forces<Real>(potential, d, true);
+    });
+  }
+  return Real(0);
+}
+
+}  // namespace
+
+template <class Real>
+  requires(std::is_same_v<Real, double> || std::is_same_v<Real, Quad>)
+void Bonded::add_secant_to(ForceSink<Real>& out, const ParticleSystem<Real>& from,
+                           const ParticleSystem<Real>& to) const {
+  const BondedTerms& terms = terms_of(to.shared_topology(), to.size());
+  Secants<Real> secants(out, from, to);
+  const auto family = [&](const auto& list, const auto& kinds) {
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      const Real too_long = detail::with_potential<Real>(
+          kinds[static_cast<std::size_t>(list[k].type)],
+          [&](const auto& potential) { return add_secants_of<Real>(secants, list[k].particles, potential); });
+      if (too_long == Real(0)) continue;
+      out.fail(detail::overstretch(terms, static_cast<Index>(k), std::sqrt(detail::greatest(too_long)), to.names()));
+    }
+  };
+  family(terms.topology().bonds, terms.bonds);
+  family(terms.topology().angles, terms.angles);
+  family(terms.topology().dihedrals, terms.dihedrals);
+  family(terms.topology().impropers, terms.impropers);
+}
+
+template void Bonded::add_secant_to(ForceSink<double>&, const ParticleSystem<double>&,
+                                    const ParticleSystem<double>&) const;
+template void Bonded::add_secant_to(ForceSink<Quad>&, const ParticleSystem<Quad>&, const ParticleSystem<Quad>&) const;
 
 template void Bonded::add_to(ForceSink<double>&, const ParticleSystem<double>&) const;
 template struct detail::ForceModel<Bonded, double>;

@@ -61,6 +61,11 @@ struct Bonded {
   /// @throws Error  as `check`, at the first call for a topology
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const;
 
+  /// Its secants between two states, of doubles and Quad.
+  template <class Real>
+    requires(std::is_same_v<Real, double> || std::is_same_v<Real, Quad>)
+  void add_secant_to(ForceSink<Real>& out, const ParticleSystem<Real>& from, const ParticleSystem<Real>& to) const;
+
  private:
   const BondedTerms& terms_of(const std::shared_ptr<const Topology>& topology, Index n) const;
 

@@ -4,6 +4,7 @@
 #include "engine/any_force.hpp"
 #include "engine/description.hpp"
 #include "engine/force_sink.hpp"
+#include "forces/secant.hpp"
 
 #include <array>
 #include <cmath>
@@ -42,6 +43,11 @@ struct UniformField {
       out.acceleration(i, g);
       if (out.wants_energy()) out.energy(-s.masses()[i] * dot(g, s.unwrapped(i)));
     }
+  }
+  /// Its secants between two states.
+  template <class Real>
+  void add_secant_to(ForceSink<Real>& out, const ParticleSystem<Real>& from, const ParticleSystem<Real>& to) const {
+    detail::add_middle_secants(*this, out, from, to);
   }
 };
 
@@ -102,6 +108,11 @@ struct HarmonicField {
       out.force(i, -Real(k) * x);
       if (out.wants_energy() && s.masses()[i] != Real(0)) out.energy(Real(k) * norm2(x) / Real(2));
     }
+  }
+  /// Its secants between two states.
+  template <class Real>
+  void add_secant_to(ForceSink<Real>& out, const ParticleSystem<Real>& from, const ParticleSystem<Real>& to) const {
+    detail::add_middle_secants(*this, out, from, to);
   }
 };
 

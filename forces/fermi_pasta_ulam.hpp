@@ -4,6 +4,7 @@
 #include "engine/any_force.hpp"
 #include "engine/description.hpp"
 #include "engine/force_sink.hpp"
+#include "forces/secant.hpp"
 
 namespace noether {
 
@@ -44,6 +45,11 @@ struct FermiPastaUlam {
       if (l < n) out.force(l, Vec3<Real>(-pull, Real(0), Real(0)));
       if (out.wants_energy()) out.energy(stiff ? Real(k) * d * d / Real(2) : Real(quartic) * d * d * d * d);
     }
+  }
+  /// Its secants between two states.
+  template <class Real>
+  void add_secant_to(ForceSink<Real>& out, const ParticleSystem<Real>& from, const ParticleSystem<Real>& to) const {
+    detail::add_middle_secants(*this, out, from, to);
   }
 };
 

@@ -4,6 +4,7 @@
 #include "engine/any_force.hpp"
 #include "engine/description.hpp"
 #include "engine/force_sink.hpp"
+#include "forces/secant.hpp"
 #include "forces/speed_of_light.hpp"
 
 #include <optional>
@@ -53,6 +54,18 @@ struct GrPotential {
       out.acceleration(i, a);
       out.acceleration(0, Vec3<Real>(-(s.masses()[i] / s.masses()[0]) * a));
       if (out.wants_energy()) out.energy(-s.masses()[i] * k / r2);
+    }
+  }
+  /// Its secants between two states.
+  template <class Real>
+  void add_secant_to(ForceSink<Real>& out, const ParticleSystem<Real>& from, const ParticleSystem<Real>& to) const {
+    const Real mu = mu_of_primary(*this, to), light = speed_of_light_in(to, c, "gr_potential");
+    const Real k = Real(3) * (mu / light) * (mu / light) / to.masses()[0];
+    Secants<Real> secants(out, from, to);
+    for (Index i = 1; i < to.size(); ++i) {
+      secants.pair({.i = i, .j = 0, .of_masses = true}, [&](const Real& r2) {
+        return PairTerms<Real>{-k / r2, Real(-2) * k / (r2 * r2)};
+      });
     }
   }
 };

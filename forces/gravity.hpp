@@ -199,15 +199,12 @@ void Gravity::add_secant_to(ForceSink<Real>& out, const ParticleSystem<Real>& fr
     const Real r = sqrt(r2 + soft2);
     return PairTerms<Real>{-g / r, -g / (r * (r2 + soft2))};
   };
-  const auto &x0 = from.positions(), &x1 = to.positions();
+  Secants<Real> secants(out, from, to);
   const ScalarColumn<Real>& m = to.masses();
   for (Index i = 0; i < to.size(); ++i) {
     for (Index j = 0; j < i; ++j) {
       if (m[i] == Real(0) && m[j] == Real(0)) continue;
-      const Vec3<Real> d0 = x0[i] - x0[j], d1 = x1[i] - x1[j];
-      const Vec3<Real> pull = detail::secant_of(norm2(d0), norm2(d1), terms) / Real(2) * (d0 + d1);
-      out.acceleration(i, Vec3<Real>(m[j] * pull));
-      out.acceleration(j, Vec3<Real>(-m[i] * pull));
+      secants.pair({.i = i, .j = j, .of_masses = true}, terms);
     }
   }
 }

@@ -4,6 +4,7 @@
 #include "engine/any_force.hpp"
 #include "engine/description.hpp"
 #include "engine/force_sink.hpp"
+#include "forces/secant.hpp"
 
 namespace noether {
 
@@ -44,6 +45,11 @@ struct HenonHeiles {
       if (!out.wants_energy()) continue;
       out.energy(s.masses()[i] * w2 * ((x * x + y * y) / Real(2) + (x * x * y - y * y * y / Real(3)) / l));
     }
+  }
+  /// Its secants between two states.
+  template <class Real>
+  void add_secant_to(ForceSink<Real>& out, const ParticleSystem<Real>& from, const ParticleSystem<Real>& to) const {
+    detail::add_middle_secants(*this, out, from, to);
   }
 };
 

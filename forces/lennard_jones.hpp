@@ -139,6 +139,13 @@ struct LennardJonesForce {
     }
   }
 
+  /// Its secants between two states, of doubles in mixed precision too. @cost O(n^2)
+  template <class Real>
+    requires(!std::is_same_v<Real, Pack>)
+  void add_secant_to(ForceSink<Real>& out, const ParticleSystem<Real>& from, const ParticleSystem<Real>& to) const {
+    detail::add_pair_secants(out, from, to, cutoff, 0, terms_of(to));
+  }
+
  private:
   void check_types(const Topology* topology, const Box& box) const;
   const detail::LennardJonesTable& table_for(const std::shared_ptr<const Topology>& topology, Index n) const;

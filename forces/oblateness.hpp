@@ -5,6 +5,7 @@
 #include "engine/description.hpp"
 #include "engine/force_sink.hpp"
 #include "forces/primary.hpp"
+#include "forces/secant.hpp"
 
 #include <array>
 #include <cmath>
@@ -74,6 +75,11 @@ struct Oblateness {
                    (k2 * (Real(3) * c2 - Real(1)) + k4 * (Real(35) * c2 * c2 - Real(30) * c2 + Real(3))));
       }
     }
+  }
+  /// Its secants between two states.
+  template <class Real>
+  void add_secant_to(ForceSink<Real>& out, const ParticleSystem<Real>& from, const ParticleSystem<Real>& to) const {
+    detail::add_middle_secants(*this, out, from, to);
   }
 };
 

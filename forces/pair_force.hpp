@@ -248,28 +248,18 @@ template <PairPotential P> struct PairForce : P {
   template <class Real>
     requires(!std::is_same_v<Real, Pack>)  // lanes would have to agree on who is in range
   void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
-    const auto types = detail::pair_types(s.topology(), first, second);
-    const detail::PairEnd end = this->end();
-    const Real* charges = nullptr;
-    if constexpr (charged) charges = s.template column<Charge>().data();
-    const Real constant(s.units().coulomb_constant);
-    const auto terms = [&](Index i, Index j, const Real& r2, const auto& add) {
-      if (!is_between(types, s.topology(), i, j)) return;
-      if (!(r2 < Real(reach() * reach()))) return;
-      const Real product = charged ? constant * charges[i] * charges[j] : Real(0);
-      add(detail::ended<Real>(static_cast<const P&>(*this), end, r2, product));
-    };
+    const auto terms = terms_of(s);
     if constexpr (std::is_same_v<Real, double>) {
       const P& potential = *this;
       const double scale = detail::scale_of(potential, charged ? detail::strongest_product(s) : 0);
       const detail::PairPlan plan{&potential,
                                   detail::pair_loop<P>(cutoff_style),
-                                  end,
+                                  end(),
                                   reach(),
                                   nearest_pair(),
                                   scale,
-                                  charged ? constant : 0,
-                                  types,
+                                  charged ? s.units().coulomb_constant : 0,
+                                  detail::pair_types(s.topology(), first, second),
                                   name()};
       detail::add_pairs_in_lanes(out, s, plan);
       detail::add_special_pairs(out, s, terms, detail::limits_of(plan));
@@ -284,32 +274,23 @@ template <PairPotential P> struct PairForce : P {
   template <class Real>
     requires(!std::is_same_v<Real, Pack>)
   void add_secant_to(ForceSink<Real>& out, const ParticleSystem<Real>& from, const ParticleSystem<Real>& to) const {
-    const auto types = detail::pair_types(to.topology(), first, second);
-    const detail::PairEnd end = this->end();
-    const Topology* topology = to.topology();
-    const Real* charges = nullptr;
-    if constexpr (charged) charges = to.template column<Charge>().data();
-    const Real constant(to.units().coulomb_constant), reach2(reach() * reach());
-    for (Index i = 0; i < to.size(); ++i) {
-      for (Index j = 0; j < i; ++j) {
-        if (!is_between(types, topology, i, j)) continue;
-        const Real part(topology != nullptr ? topology->pair_factor(i, j) : 1);
-        const Real product = charged ? constant * charges[i] * charges[j] : Real(0);
-        const auto terms = [&](const Real& r2) -> PairTerms<Real> {
-          if (!(r2 < reach2)) return {Real(0), Real(0)};
-          return detail::ended<Real>(static_cast<const P&>(*this), end, r2, product);
-        };
-        const Vec3<Real> moved = (to.unwrapped(i) - from.unwrapped(i)) - (to.unwrapped(j) - from.unwrapped(j));
-        const double range = reach() + std::sqrt(static_cast<double>(norm2(moved)));
-        detail::for_images(from, i, j, range, [&](const Vec3<Real>& d, bool nearest) {
-          const Real of_force = nearest ? part : Real(1);  // what is special is the pair itself, and no copy of it
-          if (of_force != Real(0)) detail::add_secant_pair(out, i, j, d, Vec3<Real>(d + moved), of_force, terms);
-        });
-      }
-    }
+    detail::add_pair_secants(out, from, to, reach(), nearest_pair(), terms_of(to));
   }
 
  private:
+  /// What a pair does, for the loops over pairs.
+  template <class Real> auto terms_of(const ParticleSystem<Real>& s) const {
+    const Real* charges = nullptr;
+    if constexpr (charged) charges = s.template column<Charge>().data();
+    return [this, charges, types = detail::pair_types(s.topology(), first, second), end = this->end(),
+            topology = s.topology(),
+            constant = Real(s.units().coulomb_constant)](Index i, Index j, const Real& r2, const auto& add) {
+      if (!is_between(types, topology, i, j)) return;
+      if (!(r2 < Real(reach() * reach()))) return;
+      const Real product = charged ? constant * charges[i] * charges[j] : Real(0);
+      add(detail::ended<Real>(static_cast<const P&>(*this), end, r2, product));
+    };
+  }
   /// Whether pairs of these two particles are those of the force.
   static bool is_between(const std::array<int, 2>& types, const Topology* topology, Index i, Index j) {
     if (types[0] < 0) return true;

@@ -3,6 +3,7 @@
 
 #include "engine/description.hpp"
 #include "engine/force_sink.hpp"
+#include "forces/images.hpp"
 #include "forces/secant.hpp"
 #include "numbers/parallel.hpp"
 
@@ -55,36 +56,6 @@ template <class Real> struct Switch {
   }
 };
 
-/// Calls `act(d, nearest)` for the images of a pair that can be in range, with whether it is the nearest one; of a
-/// particle with itself for those of its copies.
-template <class Real, class Act>
-void for_images(const ParticleSystem<Real>& s, Index i, Index j, double range, const Act& act) {
-  const Box& box = s.box();
-  const Vec3<Real> near = box.minimum_image(Vec3<Real>(s.positions()[i] - s.positions()[j]));
-  std::array<int, 3> most{};  // beyond the nearest image
-  for (int k = 0; k < 3 && box.is_periodic(); ++k) {
-    most[static_cast<std::size_t>(k)] = static_cast<int>(std::max(0.0, std::ceil(range / box.edges()[k] - 0.5)));
-  }
-  for (int c = -most[2]; c <= most[2]; ++c) {
-    for (int b = -most[1]; b <= most[1]; ++b) {
-      for (int a = -most[0]; a <= most[0]; ++a) {
-        if (i == j && a == 0 && b == 0 && c == 0) continue;
-        Vec3<Real> d = near;
-        if (a != 0) d[0] += Real(a * box.edges()[0]);
-        if (b != 0) d[1] += Real(b * box.edges()[1]);
-        if (c != 0) d[2] += Real(c * box.edges()[2]);
-        act(d, a == 0 && b == 0 && c == 0);
-      }
-    }
-  }
-}
-
-/// Whether particles can feel each other's images beyond the nearest one.
-inline bool feels_far_images(const Box& box, double range) {
-  if (!box.is_periodic()) return false;
-  return std::any_of(box.edges().data(), box.edges().data() + 3, [&](double edge) { return edge < 2 * range; });
-}
-
 /// Adds `f` to the first of two particles and `-f` to the second.
 template <class Real>
 void add_pair_of(ForceSink<Real>& out, const ParticleSystem<Real>& s, const Topology::Pair& pair, const Vec3<Real>& f) {
@@ -110,6 +81,27 @@ void add_pairs_in_turn(ForceSink<Real>& out, const ParticleSystem<Real>& s, doub
           out.energy(part * found.energy);
           out.virial(part * f * d.transpose());
         });
+      });
+    }
+  }
+}
+
+/// Adds the secants of all pairs, each image that is in range in either state, but those that the topology excludes;
+/// scaled ones are scaled.
+/// @param terms  as above @param closest  see SecantPair
+/// @cost O(n^2)
+template <class Real, class Terms>
+void add_pair_secants(ForceSink<Real>& out, const ParticleSystem<Real>& from, const ParticleSystem<Real>& to,
+                      double range, double closest, const Terms& terms) {
+  Secants<Real> secants(out, from, to);
+  const Topology* topology = to.topology();
+  for (Index i = 0; i < to.size(); ++i) {
+    for (Index j = 0; j < i; ++j) {
+      const double part = topology != nullptr ? topology->pair_factor(i, j) : 1;
+      secants.pair({.i = i, .j = j, .range = range, .nearest_part = part, .closest = closest}, [&](const Real& r2) {
+        PairTerms<Real> found{Real(0), Real(0)};
+        terms(i, j, r2, [&](const PairTerms<Real>& one) { found = one; });
+        return found;
       });
     }
   }

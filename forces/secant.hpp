@@ -1,38 +1,301 @@
 #pragma once
-/// Secant forces of pairs: between two states, with the difference of the energies as their work.
+/// Secant forces: between two states, with the difference of the energies as their work.
 
 #include "engine/force_sink.hpp"
+#include "engine/sums.hpp"
+#include "forces/images.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace noether {
 
 /// Energy of a pair, and the force along its line of centres over their distance: -U'(r) / r.
 template <class Real> struct PairTerms { Real energy, force; };
 
-}  // namespace noether
+/// Two particles whose energy depends on their distance, as a force names them to `Secants`.
+struct SecantPair {
+  Index i, j;
+  double range = 0;         ///< all images within it act [length]; 0: the nearest one alone, at any distance
+  double nearest_part = 1;  ///< with `range`: of the force, that acts between the nearest images
+  double closest = 0;       ///< pairs that are closer end the run [length]
+  bool of_masses = false;   ///< energies are per product of the two masses; tracers feel the field
+};
 
-namespace noether::detail {
+namespace detail {
+
+/// Whether the force in the middle of a step does the work of the energy, as far as numbers can tell. A quotient of
+/// the differences over shorter steps would tell less than this derivative.
+/// @param part  the step over the distances @param missing  work [energy] @param scale  of the energies [energy]
+template <class Real> bool middle_serves(const Real& part, const Real& missing, const Real& scale) {
+  using std::abs, std::sqrt;
+  const Real epsilon = std::numeric_limits<Real>::epsilon();
+  return part * part <= epsilon || abs(missing) <= Real(64) * epsilon * scale;
+}
 
 /// Force over distance, k, of a pair that goes from the distance vector d0 to d1: f = k (d0 + d1) / 2 on the first of
 /// them, with f . (d1 - d0) = U0 - U1 to rounding.
 ///
-///     k = - 2 (U1 - U0) / (r1^2 - r0^2);   where both distances all but agree, -U'(r)/r in the middle
+///     k = - 2 (U1 - U0) / (r1^2 - r0^2);   -U'(r)/r in the middle where that does the same work
 ///
 /// @param terms  (r2): energy and -U'(r)/r of the pair, as `PairTerms`
+/// @param end2  square of the distance where the energy ends or jumps; 0: nowhere
 /// @source LaBuddeGreenspan1976
-template <class Real, class Terms> Real secant_of(const Real& from2, const Real& to2, const Terms& terms) {
-  using std::abs;
-  const Real step = to2 - from2, size = to2 + from2;
-  // Nearer than that a quotient of differences tells less than the derivative: either is good to about 1e-10.
-  if (!(abs(step) > Real(1e-5) * size)) return terms(size / Real(2)).force;
-  return Real(-2) * (terms(to2).energy - terms(from2).energy) / step;
-}
-
-/// Adds the secant force of a pair of particles from `d0` to `d1`, the distance vectors from j to i, times `factor`.
 template <class Real, class Terms>
-void add_secant_pair(ForceSink<Real>& out, Index i, Index j, const Vec3<Real>& d0, const Vec3<Real>& d1,
-                     const Real& factor, const Terms& terms) {
-  const Real k = factor * secant_of(norm2(d0), norm2(d1), terms);
-  out.pair(i, j, Vec3<Real>(k / Real(2) * (d0 + d1)));
+Real secant_of(const Real& from2, const Real& to2, const Terms& terms, const Real& end2 = Real(0)) {
+  using std::abs;
+  const Real step = to2 - from2, size = to2 + from2, middle = terms(size / Real(2)).force;
+  if (step == Real(0)) return middle;
+  const Real before = terms(from2).energy, after = terms(to2).energy;
+  const Real missing = before - after - middle * step / Real(2);
+  const bool crosses = (from2 < end2) != (to2 < end2);
+  if (!crosses && middle_serves(Real(step / size), missing, Real(abs(before) + abs(after) + abs(middle) * size))) {
+    return middle;
+  }
+  return Real(2) * (before - after) / step;
 }
 
-}  // namespace noether::detail
+/// Why a step has no secants. @param moves  the pair, by more than the box is long; else its nearest image changes
+Failure no_secant(Index i, Index j, const std::vector<std::string>& names, bool moves);
+/// Why a pair has no energy. @param r2  square of its distance
+Failure too_close(Index i, Index j, const std::vector<std::string>& names, double r2, double closest);
+
+}  // namespace detail
+
+/// Adds the secant forces of terms of the energy to a sink, the same mechanism for all forces.
+///
+///     template <class Real> void add_secant_to(ForceSink<Real>& out, const ParticleSystem<Real>& from,
+///                                              const ParticleSystem<Real>& to) const {
+///       Secants<Real> secants(out, from, to);
+///       for (const auto& [i, j] : springs) {
+///         secants.pair({.i = i, .j = j}, [&](const Real& r2) { return PairTerms<Real>{...}; });
+///       }
+///     }
+///
+/// The secants of a term do the work of its energy over the step to rounding, are the same for both directions of the
+/// step, add up to no force and, but for those of `middle`, to no torque about the middle of the step; they become the
+/// forces as the step becomes short. In a periodic box images are followed from the first state. Where an energy is
+/// that of the nearest image alone and another one is nearest in the second state, the sink fails.
+/// @source LaBuddeGreenspan1976, Gonzalez1996
+template <class Real> class Secants {
+ public:
+  Secants(ForceSink<Real>& out, const ParticleSystem<Real>& from, const ParticleSystem<Real>& to)
+      : out_(out), from_(from), to_(to) {}
+
+  /// A pair, its energy and force given by `terms(r2)` as `PairTerms`.
+  template <class Terms> void pair(const SecantPair& pair, const Terms& terms) {
+    const Index i = pair.i, j = pair.j;
+    const Vec3<Real> moved = displacement(i) - displacement(j), d0 = apart(i, j);
+    if (!(pair.range > 0)) {
+      const Vec3<Real> d1 = d0 + moved;
+      if (keeps_image(i, j, d1)) add(pair, d0, d1, Real(1), terms);
+      return;
+    }
+    if (!can_follow(pair, d0, moved)) return;
+    // What comes into range began no further away than it moves.
+    const double reach = pair.range + std::sqrt(static_cast<double>(norm2(moved)));
+    detail::for_images(from_, i, j, reach, [&](const Vec3<Real>& image, bool nearest) {
+      const Real part(nearest ? pair.nearest_part : 1.0);
+      if (part != Real(0)) add(pair, image, Vec3<Real>(image + moved), part, terms);
+    });
+  }
+  /// A pair whose distance vector from j to i in the first state is `d0`, along whatever images.
+  template <class Terms> void pair_along(Index i, Index j, const Vec3<Real>& d0, const Terms& terms) {
+    add({.i = i, .j = j}, d0, Vec3<Real>(d0 + displacement(i) - displacement(j)), Real(1), terms);
+  }
+
+  /// A particle and a point that stands still, likewise. Tracers have no energy and feel nothing.
+  template <class Terms> void tether(Index i, const Vec3<Real>& point, const Terms& terms) {
+    const Vec3<Real> d0 = from_.box().minimum_image(Vec3<Real>(from_.positions()[i] - point));
+    const Vec3<Real> d1 = d0 + displacement(i);
+    if (keeps_image(i, i, d1)) out_.force(i, force_of(d0, d1, terms, Real(0)));
+  }
+
+  /// Three or four particles whose energy depends on their shape: the force in the middle of the step, and what is
+  /// missing of the work along the changes of all their distances and of their volume, which exert neither a force nor
+  /// a torque.
+  /// @param place  of each particle about the second one, in the first state [length]
+  /// @param evaluate  (places): forces and energy, as members `force` and `energy`
+  template <std::size_t n, class Evaluate>
+  void group(const std::array<Index, n>& particles, const std::array<Vec3<Real>, n>& place, const Evaluate& evaluate) {
+    using std::abs, std::sqrt;
+    std::array<Vec3<Real>, n> moved, middle, last;
+    Real step2(0), size2(0), work(0), strength2(0);
+    for (std::size_t k = 0; k < n; ++k) {
+      moved[k] = displacement(particles[k]) - displacement(particles[1]);
+      last[k] = place[k] + moved[k];
+      middle[k] = (place[k] + last[k]) / Real(2);
+      step2 += norm2(moved[k]);
+      size2 += norm2(middle[k]);
+    }
+    const Real before = evaluate(place).energy, after = evaluate(last).energy;
+    std::array<Vec3<Real>, n> force = evaluate(middle).force;
+    for (std::size_t k = 0; k < n; ++k) {
+      work += dot(force[k], moved[k]);
+      strength2 += norm2(force[k]);
+    }
+    const Real missing = before - after - work, scale = abs(before) + abs(after) + sqrt(strength2 * size2);
+    if (!detail::middle_serves(Real(sqrt(step2 / size2)), missing, scale)) {
+      const std::array<Vec3<Real>, n> change = change_of_shape(place, last, middle, moved, size2);
+      Real along(0);
+      for (std::size_t k = 0; k < n; ++k) along += dot(change[k], moved[k]);
+      for (std::size_t k = 0; k < n && along > Real(0); ++k) force[k] += missing / along * change[k];
+    }
+    for (std::size_t k = 0; k < n; ++k) out_.force(particles[k], force[k]);
+  }
+
+  /// Whether the nearest image of a pair in the first state is that of the second one, too; the sink fails if not.
+  bool keeps_image(Index i, Index j) {
+    return keeps_image(i, j, Vec3<Real>(apart(i, j) + displacement(i) - displacement(j)));
+  }
+  /// Nearest image of x_i - x_j in the first state.
+  Vec3<Real> apart(Index i, Index j) const {
+    return from_.box().minimum_image(Vec3<Real>(from_.positions()[i] - from_.positions()[j]));
+  }
+
+ private:
+  bool keeps_image(Index i, Index j, const Vec3<Real>& d) {
+    if (!changes_image(d)) return true;
+    out_.fail(detail::no_secant(i, j, to_.names(), false));
+    return false;
+  }
+  Vec3<Real> displacement(Index i) const { return to_.unwrapped(i) - from_.unwrapped(i); }
+  bool changes_image(const Vec3<Real>& d) const {
+    using std::abs;
+    const Box& box = to_.box();
+    for (int k = 0; k < 3 && box.is_periodic(); ++k) {
+      if (abs(d[k]) > Real(0.5 * (1 + 1e-12) * box.edges()[k])) return true;
+    }
+    return false;
+  }
+  /// Whether the images of a pair can be told from one state to the other.
+  bool can_follow(const SecantPair& pair, const Vec3<Real>& d0, const Vec3<Real>& moved) {
+    const Box& box = from_.box();
+    if (!box.is_periodic()) return true;
+    const double longest = box.edges().maxCoeff();
+    const bool moves = !(norm2(moved) <= Real(longest * longest));
+    const Real range2(pair.range * pair.range);
+    const Vec3<Real> d1 = d0 + moved;
+    // What is special is the nearest image, so another one must not become it while either acts.
+    const bool special =
+        pair.nearest_part != 1 && changes_image(d1) && (norm2(d0) < range2 || norm2(box.minimum_image(d1)) < range2);
+    if (!moves && !special) return true;
+    out_.fail(detail::no_secant(pair.i, pair.j, to_.names(), moves));
+    return false;
+  }
+  template <class Terms>
+  Vec3<Real> force_of(const Vec3<Real>& d0, const Vec3<Real>& d1, const Terms& terms, const Real& end2) const {
+    return detail::secant_of(norm2(d0), norm2(d1), terms, end2) / Real(2) * (d0 + d1);
+  }
+  template <class Terms>
+  void add(const SecantPair& pair, const Vec3<Real>& d0, const Vec3<Real>& d1, const Real& part, const Terms& terms) {
+    const Real range2(pair.range * pair.range), from2 = norm2(d0), to2 = norm2(d1);
+    if (pair.range > 0 && !(from2 < range2) && !(to2 < range2)) return;
+    const Real least = from2 < to2 ? from2 : to2;
+    if (least < Real(pair.closest * pair.closest)) {
+      out_.fail(detail::too_close(pair.i, pair.j, to_.names(), static_cast<double>(least), pair.closest));
+    }
+    const Vec3<Real> f = part * force_of(d0, d1, terms, range2);
+    if (pair.of_masses) {
+      out_.acceleration(pair.i, Vec3<Real>(to_.masses()[pair.j] * f));
+      out_.acceleration(pair.j, Vec3<Real>(-to_.masses()[pair.i] * f));
+    } else {
+      out_.pair(pair.i, pair.j, f);
+    }
+  }
+  /// A motion of the particles about the middle of the step that changes all distances, and the volume of four, as the
+  /// step does: its product with the step is a sum of squares.
+  template <std::size_t n>
+  static std::array<Vec3<Real>, n> change_of_shape(const std::array<Vec3<Real>, n>& first,
+                                                   const std::array<Vec3<Real>, n>& last,
+                                                   const std::array<Vec3<Real>, n>& middle,
+                                                   const std::array<Vec3<Real>, n>& moved, const Real& size2) {
+    std::array<Vec3<Real>, n> change;
+    change.fill(Vec3<Real>::Zero());
+    for (std::size_t a = 0; a < n; ++a) {
+      for (std::size_t b = 0; b < a; ++b) {
+        const Real longer = norm2(Vec3<Real>(last[a] - last[b])) - norm2(Vec3<Real>(first[a] - first[b]));
+        const Vec3<Real> along = longer * (middle[a] - middle[b]);
+        change[a] += along;
+        change[b] -= along;
+      }
+    }
+    if constexpr (n == 4) {
+      const Vec3<Real> a = middle[0] - middle[1], b = middle[2] - middle[1], c = middle[3] - middle[1];
+      const std::array<Vec3<Real>, 3> normal = {cross(b, c), cross(c, a), cross(a, b)};
+      const Real larger = (dot(normal[0], moved[0]) + dot(normal[1], moved[2]) + dot(normal[2], moved[3])) / size2;
+      change[0] += larger * normal[0];
+      change[1] -= larger * (normal[0] + normal[1] + normal[2]);
+      change[2] += larger * normal[1];
+      change[3] += larger * normal[2];
+    }
+    return change;
+  }
+
+  ForceSink<Real>& out_;
+  const ParticleSystem<Real>&from_, &to_;
+};
+
+namespace detail {
+
+/// What the secants of a field are computed in.
+template <class Real> struct MiddleOfStep {
+  std::optional<ParticleSystem<Real>> particles;
+  VectorColumn<Real> a;
+};
+
+/// Adds the secants of a force whose energy depends on positions in any way: its accelerations in the middle of the
+/// step, and what is missing of the work along the displacements; about the center of mass if it keeps the momentum.
+/// @cost three evaluations and a copy of the particles
+/// @source Gonzalez1996
+template <class F, class Real>
+void add_middle_secants(const F& force, ForceSink<Real>& out, const ParticleSystem<Real>& from,
+                        const ParticleSystem<Real>& to) {
+  using std::abs, std::sqrt;
+  auto& own = out.workspace().template get<MiddleOfStep<Real>>();
+  own.particles = to;
+  ParticleSystem<Real>& middle = *own.particles;
+  if (own.a.size() != to.size()) own.a = VectorColumn<Real>(to.size());
+  const auto energy_of = [&](const ParticleSystem<Real>& s) {
+    ForceSink<Real> sink(own.a, s, {.energy = true});
+    force.add_to(sink, s);
+    if (sink.failure()) out.fail(*sink.failure());
+    return sink.potential();
+  };
+  const Real before = energy_of(from), after = energy_of(to);
+  const ScalarColumn<Real>& m = to.masses();
+  const auto moved = [&](Index i) { return Vec3<Real>(to.unwrapped(i) - from.unwrapped(i)); };
+  for (Index i = 0; i < to.size(); ++i) middle.shift(i, Vec3<Real>(moved(i) / Real(-2)), Vec3<Real>::Zero());
+  middle.moved();
+  energy_of(middle);
+  Vec3<Real> mean = Vec3<Real>::Zero();
+  if (claims_of(force).keeps_momentum) {
+    const auto [mass, x, y, z] = sums_over<Real, 4>(to.size(), [&](Index i) {
+      const Vec3<Real> way = moved(i);
+      return std::array<Real, 4>{m[i], m[i] * way[0], m[i] * way[1], m[i] * way[2]};
+    });
+    if (mass > Real(0)) mean = Vec3<Real>(x, y, z) / mass;
+  }
+  const auto [work, strength, square] = sums_over<Real, 3>(to.size(), [&](Index i) {
+    const Vec3<Real> a = std::as_const(own.a)[i], about = moved(i) - mean;
+    return std::array<Real, 3>{m[i] * dot(a, moved(i)), m[i] * sqrt(norm2(a) * norm2(middle.unwrapped(i))),
+                               m[i] * norm2(about)};
+  });
+  const Real missing = before - after - work, scale = abs(before) + abs(after) + strength;
+  const bool serves = middle_serves(Real(1), missing, scale) || !(square > Real(0));
+  const Real factor = serves ? Real(0) : Real(missing / square);
+  for (Index i = 0; i < to.size(); ++i) {
+    Vec3<Real> a = std::as_const(own.a)[i];
+    if (m[i] != Real(0)) a += factor * (moved(i) - mean);
+    out.acceleration(i, a);
+  }
+}
+
+}  // namespace detail
+
+}  // namespace noether

@@ -5,6 +5,7 @@
 #include "engine/description.hpp"
 #include "engine/force_sink.hpp"
 #include "engine/tied.hpp"
+#include "forces/secant.hpp"
 
 #include <array>
 #include <cmath>
@@ -12,23 +13,13 @@
 namespace noether {
 
 namespace detail {
-/// Force and energy of a spring along r; without rest length it has no kink at r = 0.
-template <class Real> struct Spring {
-  Vec3<Real> force;
-  Real energy;
-
-  Spring(const Vec3<Real>& r, const Real& k, const Real& length) {
-    using std::sqrt;
-    if (length == Real(0)) {
-      force = -k * r;
-      energy = k * norm2(r) / Real(2);
-      return;
-    }
-    const Real distance = sqrt(norm2(r)), stretch = distance - length;
-    force = (-k * stretch / distance) * r;
-    energy = k * stretch * stretch / Real(2);
-  }
-};
+/// Energy and force over distance of a spring; without rest length it has no kink at r = 0.
+template <class Real> PairTerms<Real> spring_terms(const Real& r2, const Real& k, const Real& length) {
+  using std::sqrt;
+  if (length == Real(0)) return {k * r2 / Real(2), -k};
+  const Real distance = sqrt(r2), stretch = distance - length;
+  return {k * stretch * stretch / Real(2), -k * stretch / distance};
+}
 
 inline void check_length(double length) {
   if (!(length >= 0)) refuse_field("length", length, "is not a valid rest length; 0 or more is expected");
@@ -68,10 +59,23 @@ struct HarmonicBond {
   template <class Real> void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
     for (const auto& [i, j] : tied) {
       const Vec3<Real> r = s.box().minimum_image(Vec3<Real>(s.positions()[i] - s.positions()[j]));
-      const detail::Spring<Real> spring(r, Real(k), Real(length));
-      out.pair(i, j, spring.force);
+      const PairTerms<Real> spring = terms<Real>(norm2(r));
+      out.pair(i, j, Vec3<Real>(spring.force * r));
       if (out.wants_energy()) out.energy(spring.energy);
     }
+  }
+  /// Its secants between two states.
+  template <class Real>
+  void add_secant_to(ForceSink<Real>& out, const ParticleSystem<Real>& from, const ParticleSystem<Real>& to) const {
+    Secants<Real> secants(out, from, to);
+    for (const auto& [i, j] : tied) {
+      secants.pair({.i = i, .j = j}, [&](const Real& r2) { return terms<Real>(r2); });
+    }
+  }
+
+ private:
+  template <class Real> PairTerms<Real> terms(const Real& r2) const {
+    return detail::spring_terms(r2, Real(k), Real(length));
   }
 };
 
@@ -115,10 +119,22 @@ struct Tether {
     const Vec3<Real> end = {Real(point[0]), Real(point[1]), Real(point[2])};
     for (const auto& [i] : tied) {
       const Vec3<Real> r = s.box().minimum_image(Vec3<Real>(s.positions()[i] - end));
-      const detail::Spring<Real> spring(r, Real(k), Real(length));
-      out.force(i, spring.force);
+      const PairTerms<Real> spring = terms<Real>(norm2(r));
+      out.force(i, Vec3<Real>(spring.force * r));
       if (out.wants_energy() && s.masses()[i] != Real(0)) out.energy(spring.energy);
     }
+  }
+  /// Its secants between two states.
+  template <class Real>
+  void add_secant_to(ForceSink<Real>& out, const ParticleSystem<Real>& from, const ParticleSystem<Real>& to) const {
+    const Vec3<Real> end = {Real(point[0]), Real(point[1]), Real(point[2])};
+    Secants<Real> secants(out, from, to);
+    for (const auto& [i] : tied) secants.tether(i, end, [&](const Real& r2) { return terms<Real>(r2); });
+  }
+
+ private:
+  template <class Real> PairTerms<Real> terms(const Real& r2) const {
+    return detail::spring_terms(r2, Real(k), Real(length));
   }
 };
 

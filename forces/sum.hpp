@@ -77,6 +77,21 @@ template <class... Fs> class Sum {
   template <class Visit> void for_each(const Visit& visit) const {
     std::apply([&](const auto&... force) { (visit(force), ...); }, forces_);
   }
+  bool has_secant() const {
+    return std::apply([](const auto&... force) { return (noether::has_secant<double>(force) && ...); }, forces_);
+  }
+  /// @throws LogicError  if one of them knows no secants
+  template <class Real>
+    requires(Force<Fs, Real>&&...)
+  void add_secant_to(ForceSink<Real>& out, const ParticleSystem<Real>& from, const ParticleSystem<Real>& to) const {
+    std::size_t term = 0;
+    const auto add = [&](const auto& force) {
+      const std::size_t k = term++;
+      if (!out.takes_all() && !out.takes(claims_of(force).kicks)) return;
+      out.in_room(k, [&] { detail::add_secant_of(force, out, from, to); });
+    };
+    std::apply([&](const auto&... force) { (add(force), ...); }, forces_);
+  }
   bool has_lanes() const {
     return std::apply([](const auto&... force) { return (noether::has_lanes(force) && ...); }, forces_);
   }

@@ -179,6 +179,8 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
       if (!other_) other_.emplace(work_);
       scatter(y0, *other_);
       scatter(y1, work_);
+      // Both in the cells of one state: what evaluations have wrapped since is no part of the way between them.
+      if (work_.box().is_periodic()) other_->restore_images(work_.images());
       other_->clock().set_stage_offset(t);
       work_.clock().set_stage_offset(t);
       ForceSink<Real> sink(a_, work_, {}, &workspace_);

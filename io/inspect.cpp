@@ -2,6 +2,7 @@
 
 #include "io/checkpoint.hpp"
 #include "io/digest.hpp"
+#include "io/hdf5_walk.hpp"
 #include "io/sandbox.hpp"
 #include "io/trajectory_digest.hpp"
 #include "io/trajectory_layout.hpp"
@@ -370,6 +371,12 @@ FileInfo untried_verify(const std::filesystem::path& file) {
   try {
     const Kind kind = kind_of(file);
     result.kind = kind == Kind::trajectory ? "trajectory" : "checkpoint";
+    if (kind == Kind::trajectory) {
+      if (std::string damage = structural_damage(file); !damage.empty()) {
+        result.damaged.push_back(std::move(damage));
+        return result;
+      }
+    }
     result = untried_info(file);
     if (kind == Kind::checkpoint) return result;
     read_headers(Hdf5File::open_to_read(file));  // by a handle of its own: others have parts of the file in memory

@@ -52,7 +52,8 @@ struct FileInfo {
 /// @throws FileError if it is neither, or damaged
 FileInfo info(const std::filesystem::path& file);
 
-/// Reads everything: lengths agree, steps and times grow, numbers are finite, hashes fit.
+/// Reads everything: the structure of the file is sound, lengths agree, steps and times grow, numbers are finite,
+/// hashes fit. Where the structure of a trajectory is damaged, nothing else is looked at.
 ///
 /// What is wrong is listed in `damaged`, also where the file cannot be opened as HDF5 at all.
 /// @throws FileError if there is no such file

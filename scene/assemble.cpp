@@ -6,6 +6,7 @@
 #include "integrators/hamiltonian_motion.hpp"
 #include "io/checkpoint.hpp"
 #include "io/trajectory.hpp"
+#include "numbers/parallel.hpp"
 #include "scene/default_watches.hpp"
 
 #include <algorithm>
@@ -17,6 +18,15 @@ namespace {
 
 /// Larger than any run: a cadence of this many steps looks at step 0 only.
 constexpr std::int64_t once = std::int64_t{1} << 62;
+
+void attach_monitors(Simulation<double>& sim, const Scene& scene) {
+  const ConstraintSet constraints = constraints_of(scene);
+  for (const SceneWatch& watch : scene.watches) {
+    if (watch.kind == SceneWatch::Kind::monitor) {
+      detail::attach(sim, watch.cadence, watch.monitor.make(constraints));
+    }
+  }
+}
 
 void attach_writers(Simulation<double>& sim, const Scene& scene, const SceneFiles& files) {
   bool frames = false, samples = false;
@@ -50,13 +60,17 @@ Scheme scheme_of(const SceneIntegrator& integrator) {
   return scheme;
 }
 
-ConstraintSet constraints_of(const Scene& scene, std::size_t tables) {
-  ConstraintSet set(scene.hamiltonian.constraint_options);
-  for (const SceneConstraint& constraint : scene.hamiltonian.constraints) {
+ConstraintSet SceneHamiltonian::constraint_set(const ParticleSystem<double>& particles, std::size_t tables) const {
+  ConstraintSet set(constraint_options);
+  for (const SceneConstraint& constraint : constraints) {
     if (tables-- == 0) break;
-    constraint.add_to(set, scene.particles);
+    constraint.add_to(set, particles);
   }
   return set;
+}
+
+ConstraintSet constraints_of(const Scene& scene, std::size_t tables) {
+  return scene.hamiltonian.constraint_set(scene.particles, tables);
 }
 
 std::vector<SceneForce> SceneHamiltonian::terms() const {
@@ -87,30 +101,40 @@ AnyHamiltonian<double> with_part(AnyHamiltonian<double> hamiltonian, const Scene
 
 }  // namespace
 
-AnyHamiltonian<double> hamiltonian_of(const Scene& scene) {
-  const SceneHamiltonian& made = scene.hamiltonian;
-  ForceField<double> forces;
-  for (const SceneForce& force : made.forces) {
+void SceneHamiltonian::check_kicks(const std::string& kicks) const {
+  for (const SceneForce& force : forces) {
+    const std::string own = force.force.claims().kicks;
+    if (force.letter || own.find_first_not_of(kicks) == std::string::npos) continue;
+    throw SchemeMismatch(fmt::format("force '{}' is in the kick {}, but '{}' has only {}; take its kick out",
+                                     force.name, own, splitting.name, kicks));
+  }
+}
+
+AnyHamiltonian<double> SceneHamiltonian::make(const ParticleSystem<double>& particles) const {
+  ForceField<double> kicking;
+  for (const SceneForce& force : forces) {
     if (force.letter) continue;
-    if (force.force.claims().velocity_dependent && !made.splitting.claims.velocity_forces) {
+    if (force.force.claims().velocity_dependent && !splitting.claims().velocity_forces) {
       throw SchemeMismatch(
           fmt::format("force '{}' depends on velocities, so no kick is its exact flow; use a method for "
                       "y' = f, such as 'gauss_radau_15' or 'dop853'",
                       force.name));
     }
-    forces.add(force.force);
+    kicking.add(force.force);
   }
-  AnyHamiltonian<double> hamiltonian = made.constraints.empty()
-                                           ? made.splitting.make(std::move(forces))
-                                           : made.splitting.make_constrained(std::move(forces), constraints_of(scene));
-  if (made.neighbors) hamiltonian.set_neighbor_options(*made.neighbors);
-  for (const SceneForce& force : made.forces) {
+  AnyHamiltonian<double> hamiltonian = constraints.empty()
+                                           ? splitting.make(std::move(kicking))
+                                           : splitting.make_constrained(std::move(kicking), constraint_set(particles));
+  if (neighbors) hamiltonian.set_neighbor_options(*neighbors);
+  for (const SceneForce& force : forces) {
     if (force.letter) hamiltonian = with_part(std::move(hamiltonian), force.letter, force.name);
   }
   // Outermost, because noise is walked by whole steps.
-  if (made.thermostat) hamiltonian = with_part(std::move(hamiltonian), made.thermostat->letter, made.thermostat->name);
+  if (thermostat) hamiltonian = with_part(std::move(hamiltonian), thermostat->letter, thermostat->name);
   return hamiltonian;
 }
+
+AnyHamiltonian<double> hamiltonian_of(const Scene& scene) { return scene.hamiltonian.make(scene.particles); }
 
 ForceField<double> forces_of(const Scene& scene) {
   ForceField<double> forces;
@@ -144,7 +168,9 @@ AnyIntegrator<double> integrator_of(const Scene& scene, std::size_t decorators) 
   const SceneIntegrator& made = scene.integrator;
   AnyIntegrator<double> integrator = [&]() -> AnyIntegrator<double> {
     if (made.classical) return Classical<double>(field_of(scene), *made.classical);
-    return Composition<AnyHamiltonian<double>>(hamiltonian_of(scene), scheme_of(made), made.composition);
+    AnyHamiltonian<double> hamiltonian = hamiltonian_of(scene);
+    scene.hamiltonian.check_kicks(hamiltonian.claims().kicks);
+    return Composition<AnyHamiltonian<double>>(std::move(hamiltonian), scheme_of(made), made.composition);
   }();
   for (const SceneDecorator& decorator : made.decorators) {
     if (decorators-- == 0) break;
@@ -153,18 +179,42 @@ AnyIntegrator<double> integrator_of(const Scene& scene, std::size_t decorators) 
   return integrator;
 }
 
-Simulation<double> assemble(const Scene& scene, const SceneFiles& files) {
+namespace detail {
+
+Simulation<double> assemble_start(const Scene& scene) {
   Simulation<double> sim(scene.particles, integrator_of(scene), clock_of(scene.integrator));
-  if (!scene.default_watches || files.by_default) {
-    const ConstraintSet constraints = constraints_of(scene);
-    for (const SceneWatch& watch : scene.watches) {
-      if (watch.kind == SceneWatch::Kind::monitor) watch.monitor.attach(sim, watch.cadence, constraints);
-    }
-    attach_writers(sim, scene, files);
-  }
+  if (!scene.default_watches) attach_monitors(sim, scene);
   for (const SceneStop& stop : scene.stops) sim.stop_when(stop.rule, stop.steps);
+  return sim;
+}
+
+}  // namespace detail
+
+namespace {
+
+/// The start of a run, with the files it writes and what a scene without [[every]] is given.
+Simulation<double> completed(Simulation<double> sim, const Scene& scene, const SceneFiles& files) {
+  if (scene.default_watches && files.by_default) attach_monitors(sim, scene);
+  if (!scene.default_watches || files.by_default) attach_writers(sim, scene, files);
   attach_checkpoints(sim, scene, files);
   return sim;
+}
+
+}  // namespace
+
+Simulation<double> assemble(const Scene& scene, const SceneFiles& files) {
+  return completed(detail::assemble_start(scene), scene, files);
+}
+
+SceneRun::SceneRun(Scene scene, Simulation<double> start)
+    : scene_(std::move(scene)), start_(std::move(start)), simd_(simd_level()), threads_(thread_count()) {}
+
+Simulation<double> SceneRun::assemble(const SceneFiles& files) {
+  // What was bound for other kernels or threads is made anew.
+  if (!start_ || simd_ != simd_level() || threads_ != thread_count()) return noether::assemble(scene_, files);
+  Simulation<double> sim = std::move(*start_);
+  start_.reset();
+  return completed(std::move(sim), scene_, files);
 }
 
 }  // namespace noether

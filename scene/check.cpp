@@ -25,22 +25,37 @@ class SceneCheck {
   SceneCheck(const SceneContext& context, const SceneValue& root, const Scene& scene)
       : context_(context), root_(root), parts_(*scene.parts), scene_(scene) {}
 
-  /// Puts the parts together once: what they refuse is told with its place in the scene.
-  void check(TableReader& top) {
-    if (scene_.system) {
-      check_system(top);
-    } else {
-      check_hamiltonian(top);
-    }
-    check_decorators(top);
+  /// Puts the parts together once, as the run has them. Only where they refuse something they are put together anew,
+  /// piece by piece, to tell its place in the scene.
+  Simulation<double> check(TableReader& top) {
+    if (!scene_.system) check_before(top);
+    std::optional<Simulation<double>> run;
     try {
-      assemble(scene_);
-    } catch (const SceneError&) {
-      throw;
+      run.emplace(detail::assemble_start(scene_));
     } catch (const Error& error) {
+      find_fault(top);
+      if (dynamic_cast<const SceneError*>(&error) != nullptr) throw;
       refuse_monitor(top);
       top.fail(nullptr, "", error.message());
     }
+    if (scene_.system) {
+      check_rates(top);
+    } else {
+      check_backward(top);
+      check_places();
+    }
+    return std::move(*run);
+  }
+
+ private:
+  /// Ends at what refuses to be put together, unless it is a monitor.
+  void find_fault(TableReader& top) {
+    if (scene_.system) {
+      find_fault_of_system(top);
+    } else {
+      find_fault_of_hamiltonian(top);
+    }
+    check_decorators(top);
   }
 
   /// Puts the decorators around the method one by one: each refuses what it cannot stand around.
@@ -62,8 +77,7 @@ class SceneCheck {
     }
   }
 
- private:
-  void check_system(TableReader& top) {
+  void find_fault_of_system(TableReader& top) {
     TableReader integrator(context_, *top.find("integrator"), "[integrator]", "integrator");
     ParticleSystem<double> s = scene_.particles;
     try {
@@ -71,6 +85,11 @@ class SceneCheck {
     } catch (const SchemeMismatch& error) {
       integrator.fail(error.key().empty() ? "method" : error.key(), error.message());
     }
+    check_rates(top);
+  }
+
+  void check_rates(TableReader& top) const {
+    const ParticleSystem<double>& s = scene_.particles;
     const std::unique_ptr<VectorField<double>> field = scene_.system->field();
     Vector<double> y, dy;
     field->gather(s, y);
@@ -82,18 +101,10 @@ class SceneCheck {
     }
   }
 
-  void check_hamiltonian(TableReader& top) {
+  /// What can be told before anything is put together.
+  void check_before(TableReader& top) const {
     check_range(top);
-    TableReader hamiltonian(context_, *top.find("hamiltonian"), "[hamiltonian]", "hamiltonian");
-    refuse_constraints(context_, tables_of(hamiltonian, "constraint"), scene_);
     TableReader integrator(context_, *top.find("integrator"), "[integrator]", "integrator");
-    try {
-      if (!scene_.integrator.classical) check_kicks(hamiltonian, hamiltonian_of(scene_).claims().kicks);
-    } catch (const SceneError&) {
-      throw;
-    } catch (const Error& error) {
-      hamiltonian.fail("type", error.message());
-    }
     if (scene_.hamiltonian.neighbors && scene_.integrator.classical) {
       integrator.fail(
           "method",
@@ -107,12 +118,26 @@ class SceneCheck {
           fmt::format("method '{}' does not support a thermostat; use \"BAOAB\", or a scheme such as 'verlet'",
                       scene_.integrator.method));
     }
-    if (scene_.hamiltonian.thermostat && scene_.integrator.step < 0) {
-      integrator.fail(
-          "step",
-          fmt::format("step = {} goes back in time, which a thermostat does not support; a step above 0 is expected",
-                      scene_.integrator.step_text));
+  }
+
+  void check_backward(TableReader& top) const {
+    if (!scene_.hamiltonian.thermostat || !(scene_.integrator.step < 0)) return;
+    TableReader(context_, *top.find("integrator"), "[integrator]", "integrator")
+        .fail("step", fmt::format("step = {} goes back in time, which a thermostat does not support; a step above 0 is "
+                                  "expected",
+                                  scene_.integrator.step_text));
+  }
+
+  void find_fault_of_hamiltonian(TableReader& top) {
+    TableReader hamiltonian(context_, *top.find("hamiltonian"), "[hamiltonian]", "hamiltonian");
+    TableReader integrator(context_, *top.find("integrator"), "[integrator]", "integrator");
+    refuse_constraints(context_, tables_of(hamiltonian, "constraint"), scene_);
+    try {
+      if (!scene_.integrator.classical) scene_.hamiltonian.check_kicks(hamiltonian_of(scene_).claims().kicks);
+    } catch (const Error& error) {
+      hamiltonian.fail("type", error.message());
     }
+    check_backward(top);
     std::optional<AnyIntegrator<double>> made;
     try {
       made = integrator_of(scene_, 0);
@@ -120,7 +145,16 @@ class SceneCheck {
       integrator.fail(error.key().empty() ? "method" : error.key(),
                       error.message() + std::string(who_has_noise()) + name_in_capitals());
     }
-    check_start(hamiltonian, integrator, *made);
+    ParticleSystem<double> s = scene_.particles;
+    s.clock() = Clock<double>::fixed(scene_.integrator.start, scene_.integrator.step);
+    try {
+      made->bind(s);
+    } catch (const SchemeMismatch& error) {
+      integrator.fail(error.key().empty() ? "method" : error.key(), error.message());
+    } catch (const Error& error) {
+      hamiltonian.fail("type", error.message());
+    }
+    check_places();
   }
 
   /// What a word may have been meant as, if it is the name of a method: "SABA" has the letters A and B too.
@@ -128,16 +162,6 @@ class SceneCheck {
     const std::string& method = scene_.integrator.method;
     if (scene_.integrator.classical || schemes::find(method) != nullptr) return "";
     return proposal_by_name(method, scene_.parts->method_names());
-  }
-
-  /// Refuses a force in a kick that the Hamiltonian does not have: it would be summed in another one.
-  void check_kicks(const TableReader& hamiltonian, const std::string& kicks) const {
-    for (const SceneForce& force : scene_.hamiltonian.forces) {
-      const std::string own = force.force.claims().kicks;
-      if (force.letter || own.find_first_not_of(kicks) == std::string::npos) continue;
-      hamiltonian.fail("type", fmt::format("force '{}' is in the kick {}, but '{}' has only {}; take its kick out",
-                                           force.name, own, scene_.hamiltonian.splitting.name, kicks));
-    }
   }
 
   /// Ends at the monitor that this run cannot serve, if one is the reason why it cannot be assembled: at the key that
@@ -176,18 +200,14 @@ class SceneCheck {
     }
   }
 
-  void check_start(const TableReader& hamiltonian, const TableReader& integrator, AnyIntegrator<double>& made) {
+  /// Refuses two bodies in one place, where the force between them is no number.
+  void check_places() const {
+    const auto pair = coincident_bodies(scene_.particles);
+    if (!pair) return;
     ParticleSystem<double> s = scene_.particles;
     s.clock() = Clock<double>::fixed(scene_.integrator.start, scene_.integrator.step);
-    try {
-      made.bind(s);
-    } catch (const SchemeMismatch& error) {
-      integrator.fail(error.key().empty() ? "method" : error.key(), error.message());
-    } catch (const Error& error) {
-      hamiltonian.fail("type", error.message());
-    }
-    const auto pair = coincident_bodies(s);
-    if (!pair) return;
+    AnyIntegrator<double> made = integrator_of(scene_, 0);  // the run must not know that it was asked
+    made.bind(s);
     VectorColumn<double> a(s.size());
     made.accelerations(s, a);
     const Vec3<double> one = a[pair->first], other = a[pair->second];
@@ -207,7 +227,7 @@ class SceneCheck {
 
   /// Ends the refusal of a word with noise where there is none.
   std::string_view who_has_noise() const {
-    if (scene_.hamiltonian.thermostat || !scene_.hamiltonian.splitting.claims.inertial) return "";
+    if (scene_.hamiltonian.thermostat || !scene_.hamiltonian.splitting.claims().inertial) return "";
     const Word& word = scene_.integrator.scheme.word;
     const bool noisy = std::any_of(word.begin(), word.end(), [&](const Stage& stage) {
       return std::any_of(parts_.thermostats().begin(), parts_.thermostats().end(),
@@ -247,9 +267,9 @@ void check_value(const SceneValue& value, const std::string& path, int depth, co
 
 }  // namespace
 
-void check_scene(const SceneContext& context, const SceneValue& root, const Scene& scene) {
+Simulation<double> check_scene(const SceneContext& context, const SceneValue& root, const Scene& scene) {
   TableReader top(context, root, "", "");
-  SceneCheck(context, root, scene).check(top);
+  return SceneCheck(context, root, scene).check(top);
 }
 
 void check_tree(const SceneValue& root, const SceneSource& source) { check_value(root, "", 0, source); }

@@ -114,9 +114,6 @@ SceneValue table_of(const SceneWatch& watch, const std::string& type, const Defa
   return table;
 }
 
-/// Whether the energy of a run is known: every force tells its own.
-bool has_energy(const Scene& scene) { return !scene.system && integrator_of(scene).claims().energy; }
-
 /// The monitor of the energy, as a scene's parts read it; empty where they know none.
 std::optional<SceneMonitor> energy_monitor(const SceneContext& context, const Parts& parts) {
   const SceneValue nothing = SceneValue::table();
@@ -143,11 +140,11 @@ void put_watches(Scene& scene, SceneValue::Array tables) {
 
 }  // namespace
 
-void add_default_watches(const SceneContext& context, Scene& scene) {
+void add_default_watches(const SceneContext& context, Scene& scene, const IntegratorClaims& claims) {
   scene.default_watches = true;
   SceneValue::Array tables;
   const std::optional<DefaultCadence> when = cadence_of(context, scene, scene.integrator);
-  if (when && has_energy(scene)) {
+  if (when && !scene.system && claims.energy) {  // every force tells its own
     if (auto energy = energy_monitor(context, *scene.parts)) {
       SceneWatch watch{SceneWatch::Kind::monitor, std::move(*energy), when->cadence};
       tables.push_back(table_of(watch, watch.monitor.name, *when));

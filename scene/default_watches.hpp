@@ -14,7 +14,8 @@ namespace noether {
 /// Both look at equal distances: whole numbers of steps, a divisor of all of them where one gives 100 to 400 frames, or
 /// of time where the method chooses its steps. Frames are fewer than 200 where they would fill more than 2 GB, and none
 /// where this build can write no files. A scene without an end gets nothing: it cannot be run.
-void add_default_watches(const SceneContext& context, Scene& scene);
+/// @param claims  of its integrator: whether the energy is known
+void add_default_watches(const SceneContext& context, Scene& scene, const IntegratorClaims& claims);
 
 /// Gives a scene with default watches the cadences of the run that it goes on with, whose end may have been another.
 /// @param stored  the scene of that run; where it has other watches, nothing is done

@@ -50,7 +50,7 @@ void add_hamiltonian(const Scene& scene, ParticleSystem<double>& s, Evaluation& 
   result.kinetic = energy.kinetic;
   double of_forces = 0;  // as far as they have one
   for (const auto& [name, potential] : result.terms) of_forces += std::isnan(potential) ? 0 : potential;
-  const double own = scene.hamiltonian.splitting.claims.energy ? energy.potential - of_forces : nan;
+  const double own = scene.hamiltonian.splitting.claims().energy ? energy.potential - of_forces : nan;
   result.terms.emplace_back(scene.hamiltonian.splitting.name, own);
   result.potential = std::isnan(result.potential) || std::isnan(own) ? nan : energy.potential;
   const bool all = split.hamiltonian.forces.size() == scene.hamiltonian.forces.size();

@@ -8,10 +8,10 @@
 #include "scene/key_paths.hpp"
 #include "scene/minimize.hpp"
 #include "scene/read_constraints.hpp"
+#include "scene/read_force.hpp"
 #include "scene/read_integrator.hpp"
 #include "scene/read_particles.hpp"
 #include "scene/read_thermostat.hpp"
-#include "scene/read_tied.hpp"
 #include "scene/read_verdicts.hpp"
 #include "scene/set_option.hpp"
 #include "scene/toml.hpp"
@@ -35,7 +35,8 @@ class SceneReader {
     context_.notes = &scene.notes;
   }
 
-  void read() {
+  /// @return the run that was put together to check it
+  Simulation<double> read() {
     TableReader top(context_, root_, "", "");
     for (const std::string_view key : top_keys) top.find(key);
     top.finish();
@@ -68,10 +69,11 @@ class SceneReader {
     if (expect != nullptr) scene_.effective.put("expect", *expect);
     scene_.verdicts = read_verdicts(context_, top, scene_.wrong_verdicts);
     if (const SceneValue* verdicts = top.find("verdict")) scene_.effective.put("verdict", *verdicts);
-    check_scene(context_, root_, scene_);
-    if (!top.has("every")) add_default_watches(context_, scene_);
+    Simulation<double> run = check_scene(context_, root_, scene_);
+    if (!top.has("every")) add_default_watches(context_, scene_, run.claims());
     if (expect != nullptr) read_expectations(*expect);
     scene_.effective_toml = print_toml(scene_.effective);
+    return run;
   }
 
  private:
@@ -222,7 +224,7 @@ class SceneReader {
   /// Refuses a box or constraints that the splitting does not know.
   void check_splitting(const TableReader& reader, const std::vector<const SceneValue*>& constraints) const {
     const SceneSplitting& splitting = scene_.hamiltonian.splitting;
-    if (!splitting.claims.periodic && scene_.particles.box().is_periodic()) {
+    if (scene_.particles.box().is_periodic() && !splitting.claims().periodic) {
       reader.fail("type", fmt::format("{} does not support a periodic box; take the box out", splitting.name));
     }
     if (!splitting.make_constrained && !constraints.empty()) {
@@ -240,7 +242,7 @@ class SceneReader {
     const SceneHamiltonian& made = scene_.hamiltonian;
     const bool any = std::any_of(made.forces.begin(), made.forces.end(),
                                  [](const SceneForce& force) { return force.force.claims().range > 0; });
-    if (!any || !made.splitting.claims.neighbors) {
+    if (!any || !made.splitting.claims().neighbors) {
       reader.fail(nullptr, "neighbors",
                   fmt::format("no force of {} has a cutoff, so [hamiltonian.neighbors] has no effect; take it out",
                               plain_hamiltonian()));
@@ -255,23 +257,10 @@ class SceneReader {
     const std::string path = fmt::format("hamiltonian.force.{}", list.size());
     const auto [kind, type] = kind_of_part(context_, table, path, "force", parts_.forces(), {});
     TableReader reader(context_, table, fmt::format("force '{}'", type), path);
-    reader.find("type");
     SceneValue effective = SceneValue::table();
-    effective.put("type", SceneValue::of(type, reader.line("type")));
-    TiedParticles tied;
-    if (kind->particles > 0) tied = TiedReader(reader, kind->particles, scene_.particles).read(effective);
-    for (std::vector<Index> particles : tied) {
-      std::sort(particles.begin(), particles.end());
-      const auto twice = std::adjacent_find(particles.begin(), particles.end());
-      if (twice == particles.end()) continue;
-      reader.fail("pairs", fmt::format("force '{}' ties '{}' to itself", type, scene_.particles.name(*twice)));
-    }
-    const std::string kick = reader.text("kick", "B");
-    if (reader.has("kick")) effective.put("kick", SceneValue::of(kick, reader.line("kick")));
-    SceneForce force = kind->read(reader, tied);
-    reader.finish();
-    check_force_beside(reader, *kind, force, table);
-    set_kick(reader, force, kick);
+    SceneForce force = noether::read_force(reader, *kind, &scene_.particles, effective);
+    check_force_beside(reader, *kind, force, scene_.hamiltonian, parts_);
+    set_kick(reader, force);
     if (!force.letter) {
       try {
         force.force.check(scene_.particles);
@@ -281,71 +270,8 @@ class SceneReader {
         reader.fail("type", error.message() + (of_file ? " " + to_text(*file) : ""));
       }
     }
-    for (auto& [key, value] : *force.effective.get<SceneValue::Table>()) effective.put(key, value);
     list.push_back(effective);
-    force.effective = std::move(effective);
     scene_.hamiltonian.forces.push_back(std::move(force));
-  }
-
-  /// Takes the letter of the kicks that the scene wants a force in.
-  static void set_kick(TableReader& reader, SceneForce& force, const std::string& kick) {
-    if (!reader.has("kick")) return;
-    if (force.letter) {
-      reader.fail("kick", fmt::format("{} is a separate letter, not part of any kick; take the key out", force.name));
-    }
-    if (kick.size() != 1 || kick[0] < 'B' || kick[0] > 'Z') {
-      reader.fail(
-          "kick",
-          fmt::format("kick = \"{}\" is not a letter of a kick; a letter from B to Z is expected, such as \"C\"",
-                      kick));
-    }
-    force.force.in_kick(kick[0]);
-  }
-
-  /// Refuses a force that the splitting has in itself, and one that stands twice where it must not.
-  void check_force_beside(const TableReader& reader, const Parts::ForceKind& kind, const SceneForce& force,
-                          const SceneValue& table) const {
-    const SceneHamiltonian& made = scene_.hamiltonian;
-    const auto is_it = [&](const SceneForce& other) { return other.name == kind.info.name; };
-    if (std::any_of(made.splitting.own.begin(), made.splitting.own.end(), is_it)) {
-      reader.fail("type", fmt::format("{} already includes {}; take this force out, or use {}", made.splitting.name,
-                                      kind.info.name, plain_hamiltonian()));
-    }
-    // Forces of several names that must not stand twice for one reason are one effect.
-    const auto has_its_effect = [&](const SceneForce& other) {
-      return std::any_of(parts_.forces().begin(), parts_.forces().end(), [&](const Parts::ForceKind& known) {
-        return known.info.name == other.name && known.only_once == kind.only_once;
-      });
-    };
-    const auto same = std::find_if(made.forces.begin(), made.forces.end(), has_its_effect);
-    if (!kind.only_once.empty() && same != made.forces.end()) {
-      const std::string who = is_it(*same) ? kind.info.name + " appears twice in the scene"
-                                           : fmt::format("{} and {} are one effect", same->name, kind.info.name);
-      const std::string_view mark = kind.only_once.starts_with("so ") ? "," : ";";
-      reader.fail("type", fmt::format("{}{} {}", who, mark, kind.only_once));
-    }
-    if (!(force.force.claims().range > 0)) return;
-    const std::set<std::string> types = types_between(table);
-    for (const SceneForce& other : made.forces) {
-      const std::set<std::string> theirs = types_between(other.effective);
-      if (!is_it(other) || !(types.empty() || theirs.empty() || types == theirs)) continue;
-      const std::set<std::string>& twice = types.empty() ? theirs : types;
-      reader.fail(
-          "type",
-          fmt::format(
-              "{} appears twice in the scene, so {} would count twice; take one of them out", kind.info.name,
-              twice.empty() ? "every pair" : fmt::format("pairs of '{}' and '{}'", *twice.begin(), *twice.rbegin())));
-    }
-  }
-  /// The types whose pairs a force acts between; empty: all pairs.
-  static std::set<std::string> types_between(const SceneValue& force) {
-    std::set<std::string> types;
-    for (const char* key : {"first", "second"}) {
-      const SceneValue* value = force.find(key);
-      const std::string* name = value != nullptr ? value->get<std::string>() : nullptr;
-      if (name != nullptr && !name->empty()) types.insert(*name);
-    }
-    return types;
   }
 
   void read_watches(TableReader& top) {
@@ -501,17 +427,53 @@ class SceneReader {
   SceneContext context_;
 };
 
-}  // namespace
-
-Scene read_scene(SceneValue root, const std::filesystem::path& file, const Parts& parts,
-                 const std::vector<std::string>& sets) {
-  Scene scene;
+/// Reads a scene from its tree into `scene`. @return the run that was put together to check it
+Simulation<double> read_into(Scene& scene, SceneValue root, const std::filesystem::path& file, const Parts& parts,
+                             const std::vector<std::string>& sets) {
   scene.file = file;
   scene.parts = std::make_shared<const Parts>(parts);
   scene.source = {file.string(), sets};
   check_tree(root, scene.source);
   apply_sets(root, scene.source, parts);
-  SceneReader(root, *scene.parts, scene).read();
+  return SceneReader(root, *scene.parts, scene).read();
+}
+
+/// The text of a scene file. @throws SceneError, FileError
+std::string scene_text(const std::filesystem::path& file) {
+  if (file.empty()) throw SceneError("the name of the scene file is empty; give one, such as scene.toml");
+  constexpr std::size_t largest = 64U << 20U;
+  std::string text = io::read_bytes(file, largest + 1);
+  if (text.size() > largest) {
+    throw SceneError(
+        "the file is too large for a scene; at most 64 MB are expected: put the bodies into a table, bodies = "
+        "\"FILE.csv\"",
+        {.file = file.string()});
+  }
+  return text;
+}
+
+}  // namespace
+
+SceneRun read_run(SceneValue root, const std::filesystem::path& file, const Parts& parts,
+                  const std::vector<std::string>& sets) {
+  Scene scene;
+  Simulation<double> start = read_into(scene, std::move(root), file, parts, sets);
+  return {std::move(scene), std::move(start)};
+}
+
+SceneRun read_run(std::string_view text, const std::filesystem::path& file, const Parts& parts,
+                  const std::vector<std::string>& sets) {
+  return read_run(parse_toml(text, file.string()), file, parts, sets);
+}
+
+SceneRun load_run(const std::filesystem::path& file, const Parts& parts, const std::vector<std::string>& sets) {
+  return read_run(scene_text(file), file, parts, sets);
+}
+
+Scene read_scene(SceneValue root, const std::filesystem::path& file, const Parts& parts,
+                 const std::vector<std::string>& sets) {
+  Scene scene;
+  read_into(scene, std::move(root), file, parts, sets);
   return scene;
 }
 
@@ -521,16 +483,7 @@ Scene read_scene(std::string_view text, const std::filesystem::path& file, const
 }
 
 Scene load_scene(const std::filesystem::path& file, const Parts& parts, const std::vector<std::string>& sets) {
-  if (file.empty()) throw SceneError("the name of the scene file is empty; give one, such as scene.toml");
-  constexpr std::size_t largest = 64U << 20U;
-  const std::string text = io::read_bytes(file, largest + 1);
-  if (text.size() > largest) {
-    throw SceneError(
-        "the file is too large for a scene; at most 64 MB are expected: put the bodies into a table, bodies = "
-        "\"FILE.csv\"",
-        {.file = file.string()});
-  }
-  return read_scene(text, file, parts, sets);
+  return read_scene(scene_text(file), file, parts, sets);
 }
 
 }  // namespace noether

@@ -12,7 +12,7 @@ SceneValue read_minimize(const SceneContext& context, const SceneValue& table, S
   if (table.get<SceneValue::Table>() == nullptr) reader.wrong_kind(table, "minimize", "a table");
   MinimizeOptions options;
   read_part(reader, options);
-  if (!scene.hamiltonian.splitting.claims.inertial) {
+  if (!scene.hamiltonian.splitting.claims().inertial) {
     reader.fail(
         nullptr, "",
         fmt::format("planets of {} have no minimum to move to; take [minimize] out", scene.hamiltonian.splitting.name));

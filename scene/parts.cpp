@@ -220,6 +220,11 @@ std::vector<std::pair<std::string, PartInfo>> other_parts() {
 
 namespace detail {
 
+void attach(Simulation<double>& sim, const Cadence& cadence, AnyMonitor<double> monitor) {
+  sim.attach(std::move(monitor),
+             {.steps = cadence.steps, .interval = cadence.interval, .wall = cadence.wall, .times = cadence.times});
+}
+
 std::vector<double> read_start(const TableReader& reader, const SceneValue& list, Index size,
                                const std::vector<std::string>& names) {
   const auto* elements = list.get<SceneValue::Array>();

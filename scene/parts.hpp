@@ -12,6 +12,8 @@
 
 #include <algorithm>
 #include <functional>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -49,11 +51,33 @@ struct SceneThermostat {
   SceneLetter letter;
 };
 
+/// The claims of a Hamiltonian without forces, which is made for them when somebody asks first. Copies share them, and
+/// threads may ask at once.
+class SplittingClaims {
+ public:
+  SplittingClaims() = default;
+  explicit SplittingClaims(std::function<HamiltonianClaims()> ask) : known_(std::make_shared<Known>()) {
+    known_->ask = std::move(ask);
+  }
+  const HamiltonianClaims& operator()() const {
+    std::call_once(known_->asked, [this] { known_->claims = known_->ask(); });
+    return known_->claims;
+  }
+
+ private:
+  struct Known {
+    std::function<HamiltonianClaims()> ask;
+    std::once_flag asked;
+    HamiltonianClaims claims;
+  };
+  std::shared_ptr<Known> known_;
+};
+
 /// What is split, as a scene asked for it: the Hamiltonian without the forces, constraints and letters of the scene.
 struct SceneSplitting {
   std::string name;
   SceneValue effective;         ///< its own keys, defaults included
-  HamiltonianClaims claims;     ///< without forces
+  SplittingClaims claims;       ///< without forces: `claims()`
   bool only_forces = false;     ///< p^2/2m and forces are all of it: methods for y' = f serve it too
   std::vector<SceneForce> own;  ///< those it has in itself, as such methods take them
   std::function<AnyHamiltonian<double>(ForceField<double>)> make;
@@ -80,7 +104,7 @@ struct SceneConstraint {
 struct SceneMonitor {
   std::string name;
   SceneValue effective;
-  std::function<void(Simulation<double>&, const Cadence&, const ConstraintSet&)> attach;
+  std::function<AnyMonitor<double>(const ConstraintSet&)> make;  ///< it may watch the constraints of the run
   /// What it costs beside the run, in words, by particles and cadence [steps]; empty for what is not worth a word.
   std::function<std::string(Index, std::int64_t)> cost;
 };
@@ -116,17 +140,8 @@ namespace detail {
 std::vector<double> read_start(const TableReader& reader, const SceneValue& list, Index size,
                                const std::vector<std::string>& names);
 
-template <class M> void attach(Simulation<double>& sim, const Cadence& cadence, const M& monitor) {
-  if (!cadence.times.empty()) {
-    sim.at_times(cadence.times, monitor);
-  } else if (cadence.wall > 0) {
-    sim.every_wall(cadence.wall, monitor);
-  } else if (cadence.interval != 0) {
-    sim.every_time(cadence.interval, monitor);
-  } else {
-    sim.every(cadence.steps, monitor);
-  }
-}
+/// Attaches a monitor or writer that looks as a scene says.
+void attach(Simulation<double>& sim, const Cadence& cadence, AnyMonitor<double> monitor);
 }  // namespace detail
 
 /// What a force part is to methods that do not split: itself, unless `as_force` (found by its argument) makes one of
@@ -340,7 +355,7 @@ class Parts {
                  part.forces());
     }
     detail::check_fields(reader, part);
-    made.claims = made.make({}).claims();
+    made.claims = SplittingClaims([make = made.make] { return make({}).claims(); });
     return made;
   }
 
@@ -429,10 +444,10 @@ class Parts {
     read_part(reader, monitor);
     SceneMonitor made{std::string(part_name<M>()), SceneValue::table(), {}, {}};
     put_fields(reader, monitor, made.effective);
-    made.attach = [monitor](Simulation<double>& sim, const Cadence& cadence, const ConstraintSet& constraints) {
-      M attached = monitor;
-      if constexpr (requires { attached.watch(constraints); }) attached.watch(constraints);
-      detail::attach(sim, cadence, attached);
+    made.make = [monitor](const ConstraintSet& constraints) {
+      M watching = monitor;
+      if constexpr (requires { watching.watch(constraints); }) watching.watch(constraints);
+      return AnyMonitor<double>(std::move(watching));
     };
     if constexpr (requires { monitor.cost(Index(1), std::int64_t{1}); }) {
       made.cost = [monitor](Index particles, std::int64_t cadence) { return monitor.cost(particles, cadence); };

@@ -459,8 +459,7 @@ void read_times(TableReader& reader, const SceneValue& value, const SceneIntegra
 }
 
 /// A misspelt key is told before a missing one.
-void know_keys(TableReader& reader, const Parts& parts) {
-  for (const char* key : {"method", "step", "start_time", "until", "steps", "exact", "decorator"}) reader.find(key);
+void know_options(TableReader& reader, const Parts& parts) {
   for_each_field<CompositionOptions>([&](const auto& field) { reader.find(field.name); });
   for (const OptionGroup* group : parts.method_options()) {
     for (const OptionValue& one : group->values({})) reader.find(one.name);
@@ -470,11 +469,28 @@ void know_keys(TableReader& reader, const Parts& parts) {
 
 }  // namespace
 
+SceneIntegrator read_method_alone(const SceneContext& context, const SceneValue& table, const Parts& parts,
+                                  SceneValue& effective) {
+  SceneIntegrator made;
+  TableReader reader(context, table, "[integrator]", "integrator");
+  reader.find("method");
+  know_options(reader, parts);
+  read_method(reader, parts, made);
+  effective.put("method", SceneValue::of(made.method, reader.line("method")));
+  if (made.classical) {
+    read_method_options(reader, parts, made, false, effective);
+  } else {
+    read_scheme_options(reader, parts, made, false, effective);
+  }
+  return made;
+}
+
 SceneIntegrator read_integrator(const SceneContext& context, const SceneValue& table, const Parts& parts,
                                 bool constrained, SceneValue& effective) {
   SceneIntegrator made;
   TableReader reader(context, table, "[integrator]", "integrator");
-  know_keys(reader, parts);
+  for (const char* key : {"method", "step", "start_time", "until", "steps", "exact", "decorator"}) reader.find(key);
+  know_options(reader, parts);
   read_method(reader, parts, made);
   effective.put("method", SceneValue::of(made.method, reader.line("method")));
   SceneValue options = SceneValue::table();

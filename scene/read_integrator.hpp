@@ -12,6 +12,11 @@ namespace noether {
 SceneIntegrator read_integrator(const SceneContext& context, const SceneValue& table, const Parts& parts,
                                 bool constrained, SceneValue& effective);
 
+/// Reads a method and its options alone, without a step or an end.
+/// @throws SceneError
+SceneIntegrator read_method_alone(const SceneContext& context, const SceneValue& table, const Parts& parts,
+                                  SceneValue& effective);
+
 /// Reads the cadence of a monitor, a writer or a stop: `every`, `steps`, `wall` or `times`.
 /// @param effective  receives what the scene wrote
 /// @throws SceneError

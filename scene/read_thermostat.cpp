@@ -14,7 +14,7 @@ SceneValue read_thermostat(const SceneContext& context, const SceneValue& table,
   TableReader reader(context, table, fmt::format("thermostat '{}'", type), "hamiltonian.thermostat");
   reader.find("type");
   SceneThermostat made = kind->read(reader);
-  if (!scene.hamiltonian.splitting.claims.inertial) {
+  if (!scene.hamiltonian.splitting.claims().inertial) {
     bare.fail("type", fmt::format("{} does not support a thermostat, whose noise acts on inertial velocities; use {}",
                                   scene.hamiltonian.splitting.name, parts.hamiltonians().front().info.name));
   }

@@ -49,8 +49,10 @@ bool writes_trajectory(const Scene& scene) {
 /// One run of one scene.
 class Runner {
  public:
-  Runner(const Scene& scene, const RunOptions& options)
+  /// @param start  of the scene, the run that was put together to check it; null: it is put together here
+  Runner(const Scene& scene, SceneRun* start, const RunOptions& options)
       : given_(scene),
+        checked_(start),
         options_(options),
         folder_(options.out.empty() ? default_output_folder(scene.file) : options.out) {}
 
@@ -68,7 +70,7 @@ class Runner {
     choose_simd(checkpoint);
     if (scene().minimize && !checkpoint) minimize();
     if (checkpoint) check_resume(*checkpoint);
-    Simulation<double> sim = checkpoint ? restored(*checkpoint) : assemble(start_ ? *start_ : scene(), files_);
+    Simulation<double> sim = checkpoint ? restored(*checkpoint) : assembled();
     if (checkpoint) {
       report_.resumed_from_step = checkpoint->step;
       if (is_over(*checkpoint)) return finished(sim, *checkpoint);
@@ -83,6 +85,12 @@ class Runner {
 
  private:
   const Scene& scene() const { return kept_ ? *kept_ : given_; }
+
+  /// The run at its first step: the one that was checked, unless it begins elsewhere or looks at other times.
+  Simulation<double> assembled() {
+    if (start_ || kept_ || checked_ == nullptr) return assemble(start_ ? *start_ : scene(), files_);
+    return checked_->assemble(files_);
+  }
 
   void tell_notes() {
     report_.notes = scene().notes;
@@ -164,7 +172,7 @@ class Runner {
   /// The run as the checkpoint has it; with a new trajectory where the old one is not what the checkpoint counts on.
   Simulation<double> restored(const io::Checkpoint& checkpoint) {
     try {
-      Simulation<double> sim = assemble(scene(), files_);
+      Simulation<double> sim = assembled();
       sim.restore(checkpoint.run);
       return sim;
     } catch (const io::TrajectoryLost& lost) {
@@ -295,6 +303,7 @@ class Runner {
   }
 
   const Scene& given_;
+  SceneRun* checked_;
   std::optional<Scene> kept_;  ///< the scene with the default watches of the run that it goes on with
   const RunOptions& options_;
   std::optional<Scene> start_;  ///< the scene with other particles, if it asks for a minimum
@@ -306,18 +315,27 @@ class Runner {
 
 }  // namespace
 
-RunReport run(const Scene& scene, const RunOptions& options) {
+namespace {
+
+RunReport run_from(const Scene& scene, SceneRun* start, const RunOptions& options) {
   if (!scene.integrator.steps && !scene.integrator.until) {
     throw SceneError("the scene has no end; give until or steps in [integrator]",
                      {.file = scene.source.file, .key = "integrator.until"});
   }
-  return Runner(scene, options).go();
+  return Runner(scene, start, options).go();
 }
 
-Outcome run(const Scene& scene) {
-  const RunReport report = run(scene, {.progress = true, .notes = true});
+Outcome told(const RunReport& report) {
   fmt::print("{}", to_text(report));
   return report.outcome;
 }
+
+}  // namespace
+
+RunReport run(SceneRun start, const RunOptions& options) { return run_from(start.scene(), &start, options); }
+RunReport run(const Scene& scene, const RunOptions& options) { return run_from(scene, nullptr, options); }
+
+Outcome run(SceneRun start) { return told(run(std::move(start), {.progress = true, .notes = true})); }
+Outcome run(const Scene& scene) { return told(run(scene, {.progress = true, .notes = true})); }
 
 }  // namespace noether

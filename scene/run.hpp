@@ -58,6 +58,8 @@ std::string details_of(const RunReport& report);
 
 /// Runs a scene to its end, or goes on with an interrupted run.
 /// @throws SceneError for what cannot be done, FileError for what cannot be read or written
+RunReport run(SceneRun start, const RunOptions& options);
+/// The same of a scene that may have been changed since it was read: its run is put together anew.
 RunReport run(const Scene& scene, const RunOptions& options);
 
 }  // namespace noether

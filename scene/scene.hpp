@@ -7,6 +7,7 @@
 #include "integrators/composition_options.hpp"
 #include "integrators/minimize.hpp"
 #include "integrators/scheme.hpp"
+#include "numbers/simd.hpp"
 #include "scene/parts.hpp"
 
 #include <filesystem>
@@ -28,6 +29,16 @@ struct SceneHamiltonian {
   ConstraintOptions constraint_options;
   std::optional<SceneThermostat> thermostat;
   std::optional<NeighborOptions> neighbors;
+
+  /// The Hamiltonian as it is walked: kicks by the forces, and every letter beside them.
+  /// @param particles  those that constraints tie
+  AnyHamiltonian<double> make(const ParticleSystem<double>& particles) const;
+  /// Refuses a force in a kick that the Hamiltonian does not have: it would be summed in another one.
+  /// @throws SchemeMismatch
+  void check_kicks(const std::string& kicks) const;
+  /// The constraints of the first `tables` tables; all of them unless told.
+  ConstraintSet constraint_set(const ParticleSystem<double>& particles,
+                               std::size_t tables = std::numeric_limits<std::size_t>::max()) const;
 
   /// Every term that pulls: what the splitting has in itself, and the scene's forces that are no letters.
   std::vector<SceneForce> terms() const;
@@ -160,12 +171,45 @@ AnyIntegrator<double> integrator_of(const Scene& scene,
 /// Monitors carry the names of their types; without a trajectory file there are no writers and no checkpoints.
 Simulation<double> assemble(const Scene& scene, const SceneFiles& files = {});
 
+namespace detail {
+/// The run of a scene without what it writes, and without watches that the scene does not name.
+Simulation<double> assemble_start(const Scene& scene);
+}  // namespace detail
+
+/// A scene, and the run that was put together to check it: nothing is made twice if that is the one that is run.
+class SceneRun {
+ public:
+  /// @param start  of this scene, by `detail::assemble_start`
+  SceneRun(Scene scene, Simulation<double> start);
+
+  const Scene& scene() const { return scene_; }
+  /// As `noether::assemble`. The first call takes the run that was checked, unless it was bound at another SIMD level
+  /// or for another number of threads.
+  Simulation<double> assemble(const SceneFiles& files = {});
+
+ private:
+  Scene scene_;
+  std::optional<Simulation<double>> start_;
+  SimdLevel simd_;
+  int threads_;
+};
+
+/// As `load_scene` and `read_scene`; the run that was put together to check the scene is kept.
+SceneRun load_run(const std::filesystem::path& file, const Parts& parts = standard_parts(),
+                  const std::vector<std::string>& sets = {});
+SceneRun read_run(std::string_view text, const std::filesystem::path& file, const Parts& parts = standard_parts(),
+                  const std::vector<std::string>& sets = {});
+SceneRun read_run(SceneValue root, const std::filesystem::path& file = "scene", const Parts& parts = standard_parts(),
+                  const std::vector<std::string>& sets = {});
+
 /// Runs a scene as `noether run SCENE` does: into `default_output_folder`, with checkpoints and a report on stdout.
 ///
-///     return exit_code(run(load_scene("saturn.toml", parts)));
+///     return exit_code(run(load_run("saturn.toml", parts)));
 ///
 /// More is in scene/run.hpp.
 /// @throws SceneError, FileError
+Outcome run(SceneRun start);
+/// The same of a scene that may have been changed since it was read: its run is put together anew.
 Outcome run(const Scene& scene);
 
 }  // namespace noether

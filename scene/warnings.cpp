@@ -150,12 +150,13 @@ std::string about_heaviest(const Scene& scene) {
 /// That a splitting into Kepler arcs, or relativity, is about a body that is not the heaviest; empty where it is.
 std::string other_primary(const Scene& scene) {
   const ParticleSystem<double>& s = scene.particles;
-  const bool arcs = scene.hamiltonian.splitting.claims.kepler;
-  const std::string force = about_heaviest(scene);
-  if ((!arcs && force.empty()) || s.size() == 0) return "";
+  if (s.size() == 0) return "";
   Index heaviest = 0;
   for (Index i = 1; i < s.size(); ++i) heaviest = s.masses()[i] > s.masses()[heaviest] ? i : heaviest;
   if (heaviest == 0) return "";
+  const bool arcs = scene.hamiltonian.splitting.claims().kepler;
+  const std::string force = about_heaviest(scene);
+  if (!arcs && force.empty()) return "";
   const std::string what = arcs ? fmt::format("so the Kepler arcs of {} go round it", scene.hamiltonian.splitting.name)
                                 : fmt::format("so {} is about it", force);
   return fmt::format("'{}' comes first, {}, but '{}' has {:.3g} times its mass; put '{}' first", s.name(0), what,

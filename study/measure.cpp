@@ -138,7 +138,7 @@ bool watched_run(Row& row, const Scene& alone, const Sampling& sampling, const M
       particles && claims.keeps_momentum ? watch(sim, row.setting, sampling, Momentum()) : nullptr;
   const AngularMomentum* spin = nullptr;
   bool kept =
-      particles && alone.hamiltonian.splitting.claims
+      particles && alone.hamiltonian.splitting.claims()
                        .keeps_angular_momentum;  // by the equations; whether the method keeps it is what is measured
   for (const SceneForce& force : alone.hamiltonian.forces) {
     kept = kept && force.force.claims().keeps_angular_momentum;

@@ -9,7 +9,7 @@ namespace noether {
 
 bool about_center(const Scene& scene) {
   if (scene.particles.size() < 2 || !scene.hamiltonian.constraints.empty()) return false;
-  if (!scene.hamiltonian.splitting.claims.keeps_momentum) return false;
+  if (!scene.hamiltonian.splitting.claims().keeps_momentum) return false;
   for (const SceneForce& force : scene.hamiltonian.forces) {
     if (!force.force.claims().keeps_momentum) return false;
   }

@@ -361,7 +361,7 @@ Stability find_stability(const Scene& scene, const StabilityOptions& options) {
     StabilityRow row;
     row.who = who;
     row.theory = linear_theory(scene, who, found.mode);
-    const bool along_arcs = !who.joined && !scene.system && scene.hamiltonian.splitting.claims.kepler;
+    const bool along_arcs = !who.joined && !scene.system && scene.hamiltonian.splitting.claims().kepler;
     if (along_arcs && !found.kepler) found.kepler = kepler_steps(scene);
     const std::optional<KeplerSteps> kepler = along_arcs ? found.kepler : std::nullopt;
     if (kepler) row.theory.resonances = resonances_of(*kepler, found.mode.scale());

@@ -48,13 +48,13 @@ WideScene wide_scene(const Scene& scene) {
     wide.field = std::make_unique<ForceMotion<ForceField<Quad>, Quad>>(std::move(all));
   } else if (!h.splitting.make_wide) {
     wide.reason = fmt::format("hamiltonian '{}' is written for doubles only", h.splitting.name);
-  } else if (!h.splitting.claims.inertial) {
+  } else if (!h.splitting.claims().inertial) {
     wide.reason =
         fmt::format("hamiltonian '{}' uses its own coordinates, which a reference does not support", h.splitting.name);
-  } else if (h.splitting.claims.columns && !beside.terms().empty()) {
+  } else if (h.splitting.claims().columns && !beside.terms().empty()) {
     wide.reason = fmt::format("hamiltonian '{}' has forces beside its kicks, which exist in double precision only",
                               h.splitting.name);
-  } else if (h.splitting.claims.columns) {
+  } else if (h.splitting.claims().columns) {
     wide.splitting = h.splitting.make_wide(std::move(kicks));
   } else {
     wide.field = std::make_unique<HamiltonianMotion<Quad>>(h.splitting.make_wide(std::move(kicks)), std::move(beside),

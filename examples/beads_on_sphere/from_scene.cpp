@@ -9,5 +9,5 @@ using namespace noether;
 int main() {
   Parts parts = standard_parts();
   parts.add_force<SphereAttraction>();
-  return exit_code(run(load_scene("scene.toml", parts)));
+  return exit_code(run(load_run("scene.toml", parts)));
 }

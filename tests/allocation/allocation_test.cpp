@@ -12,6 +12,7 @@
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/langevin.hpp"
 #include "integrators/wisdom_holman.hpp"
+#include "tests/allocation/watched.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/mechanisms.hpp"
 #include "tests/support/molecules.hpp"
@@ -21,11 +22,15 @@
 #include <cstdlib>
 #include <new>
 
+std::atomic<std::size_t> noether::test::watched_bytes{0};
+std::atomic<long> noether::test::watched_allocations{0};
+
 namespace {
 std::atomic<long> allocations{0};
 
 void* counted(std::size_t size, std::size_t alignment) {
   ++allocations;
+  if (size == noether::test::watched_bytes) ++noether::test::watched_allocations;
   void* p = alignment > alignof(std::max_align_t)
                 ? std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment)
                 : std::malloc(size > 0 ? size : 1);

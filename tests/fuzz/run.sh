@@ -41,6 +41,7 @@ case $target in
   quantity) longest=64 ;;
   checkpoint | checkpoint_content) longest=65536 ;;
   checkpoint_state) longest=128 ;;
+  hdf5) longest=16384 ;;
 esac
 
 for seed in "${seeds[@]}"; do

@@ -44,6 +44,14 @@ TEST_CASE("what once broke the reader of scenes does not", "[fuzz]") {
   }
 }
 
+TEST_CASE("what once broke the walk through HDF5 files does not", "[fuzz]") {
+  take_all("fuzz/seeds/hdf5", take_hdf5);
+  for (const auto& entry : std::filesystem::directory_iterator(NOETHER_SOURCE_DIR "/tests/fuzz/seeds/hdf5")) {
+    const std::string bytes = read_text(entry.path());
+    for (std::size_t size = 0; size < bytes.size(); size += 41) CHECK_NOTHROW(take_hdf5(bytes.substr(0, size)));
+  }
+}
+
 #if NOETHER_HDF5
 TEST_CASE("what once broke the reader of checkpoints does not", "[fuzz]") {
   take_all("fuzz/seeds/checkpoint_state", take_checkpoint_state);

@@ -10,6 +10,7 @@
 #include "io/checkpoint.hpp"
 #include "io/digest.hpp"
 #include "io/files.hpp"
+#include "io/hdf5_walk.hpp"
 #include "io/structure.hpp"
 #include "numbers/quantity.hpp"
 #include "scene/scene.hpp"
@@ -25,6 +26,7 @@
 #include <filesystem>
 #include <fstream>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -213,6 +215,20 @@ inline void take_scene(std::string_view text) {
   if (scene.particles.size() > 64) return;
   Simulation<double> simulation = assemble(scene);
   accepted([&] { static_cast<void>(simulation.run(1)); });  // however it ends
+}
+
+// ---- the structure of HDF5 files -----------------------------------------------------------------------------------
+
+/// Any bytes: the walk ends, and what it tells lies within the file.
+inline void take_hdf5(std::string_view bytes) {
+  std::istringstream file{std::string(bytes)};
+  const io::Hdf5Walk walked = io::walk_hdf5(file, bytes.size());
+  if (walked.fault) require(!walked.fault->what.empty(), "a fault is not told");
+  std::uint64_t last = 0;
+  for (const io::ByteRange& range : walked.unused) {
+    require(range.begin >= last && range.begin < range.end && range.end <= bytes.size(), "a range is outside the file");
+    last = range.begin;
+  }
 }
 
 // ---- checkpoints ---------------------------------------------------------------------------------------------------

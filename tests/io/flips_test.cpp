@@ -1,14 +1,19 @@
 // A trajectory in which a bit of a number has changed: verify says where.
 
 #include "io/hdf5_file.hpp"
+#include "io/hdf5_walk.hpp"
 #include "io/inspect.hpp"
+#include "io/repair.hpp"
 #include "tests/io/support.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
+#include <numeric>
 #include <random>
 #include <set>
+#include <sstream>
 
 #if NOETHER_HDF5
 
@@ -29,6 +34,7 @@ class Finished {
   const io::Frames& frames() const { return frames_; }
   std::filesystem::path file() const { return folder_ / "run.h5"; }
   std::size_t size() const { return bytes_.size(); }
+  const std::string& bytes() const { return bytes_; }
   const std::vector<io::MonitorSeries>& monitors() const { return monitors_; }
 
   std::vector<std::string> damaged() const { return io::verify(folder_ / "run.h5").damaged; }
@@ -39,6 +45,13 @@ class Finished {
     REQUIRE(at != std::string::npos);
     std::string changed = bytes_;
     flip(changed, at, bit);
+    return damaged();
+  }
+  /// With another value of one byte.
+  std::vector<std::string> damaged_to(std::size_t byte, char value) const {
+    std::string changed = bytes_;
+    changed[byte] = value;
+    write_text(folder_ / "run.h5", changed);
     return damaged();
   }
   /// With one bit of the file flipped.
@@ -85,17 +98,51 @@ void read_all(const io::Hdf5File& file, const std::string& path, std::map<std::s
 /// All but whether the run is complete, which verify tells as it stands in the file.
 bool is_held(const std::string& what) { return what != "/noether@complete"; }
 
-/// Flips bits anywhere in a file. Each is found, or changes nothing that can be read and is held.
+io::Hdf5Walk walk(const std::string& bytes) {
+  std::istringstream file(bytes);
+  return io::walk_hdf5(file, bytes.size());
+}
+
+bool is_unused(const io::Hdf5Walk& walked, std::size_t byte) {
+  return std::any_of(walked.unused.begin(), walked.unused.end(),
+                     [&](const io::ByteRange& range) { return range.begin <= byte && byte < range.end; });
+}
+
+/// Bytes of the structure that HDF5 1.10 does not look at, or not at all of them: the superblock, the heads of nodes,
+/// those of heaps, the beginnings of the headers of objects.
+std::vector<std::size_t> structural_bytes(const std::string& bytes) {
+  std::vector<std::size_t> found;
+  const auto add = [&](std::size_t from, std::size_t count) {
+    for (std::size_t k = 0; k < count; ++k) found.push_back(from + k);
+  };
+  add(8, 88);
+  const auto add_all = [&](const std::string& mark, std::size_t count) {
+    for (std::size_t at = bytes.find(mark); at != std::string::npos; at = bytes.find(mark, at + 1)) add(at, count);
+  };
+  add_all("TREE", 32);
+  add_all("SNOD", 8);
+  add_all(std::string("HEAP\0\0\0\0", 8), 32);
+  // A header of version 1 with one name and one block, whose first message is that of a group.
+  add_all(std::string("\x18\0\0\0\0\0\0\0\x11\0\x10\0\0\0\0\0", 16), 16);
+  return found;
+}
+
+/// Changes bytes anywhere in a file. Each change is found, or is of a byte that nobody reads, or changes nothing that
+/// can be read and is held.
 void flip_anywhere(std::uint64_t seed, int rounds) {
   const Finished run;
+  const io::Hdf5Walk walked = walk(run.bytes());
+  REQUIRE_FALSE(walked.fault);
   std::map<std::string, std::string> before;
   read_all(io::Hdf5File::open_to_read(run.file()), "/", before);
   std::mt19937_64 random(seed);
   int found = 0, harmless = 0;
   for (int round = 0; round < rounds; ++round) {
-    const std::size_t byte = random() % run.size(), bit = random() % 8;
-    CAPTURE(round, byte, bit);
-    if (!run.damaged_at(byte, bit).empty()) {
+    const std::size_t byte = random() % run.size();
+    const auto value = static_cast<char>(static_cast<unsigned char>(run.bytes()[byte]) ^ (1 + random() % 255));
+    CAPTURE(round, byte, static_cast<int>(value));
+    if (!run.damaged_to(byte, value).empty()) {
+      CHECK_FALSE(is_unused(walked, byte));
       ++found;
       continue;
     }
@@ -198,6 +245,108 @@ TEST_CASE("a bit of the scene, of the attributes of monitors or of the name of a
   const std::set<std::vector<std::string>> found = {run.damaged(*monitor.scale, 20)};
   CHECK(found == one(fmt::format("monitor {}: its units or other attributes differ from those that were written",
                                  monitor.name)));
+}
+
+TEST_CASE("a byte of the structure that has changed is found, also where HDF5 does not look", "[inspect][flips]") {
+  const Finished run;
+  const io::Hdf5Walk walked = walk(run.bytes());
+  REQUIRE_FALSE(walked.fault);
+  std::mt19937_64 random(5);
+  std::vector<std::size_t> held;
+  for (const std::size_t byte : structural_bytes(run.bytes())) {
+    if (!is_unused(walked, byte)) held.push_back(byte);
+  }
+  REQUIRE(held.size() > 1000);
+  for (const std::size_t byte : held) {
+    std::string changed = run.bytes();
+    for (const unsigned change : {1U, 1U << random() % 8, 255U}) {
+      changed[byte] = static_cast<char>(static_cast<unsigned char>(run.bytes()[byte]) ^ change);
+      CAPTURE(byte, change);
+      // The signature and the version are what HDF5 looks at first.
+      CHECK((walk(changed).fault || byte == 8));
+    }
+  }
+  for (int round = 0; round < 40; ++round) {
+    const std::size_t byte = held[random() % held.size()];
+    CAPTURE(byte);
+    CHECK(run.damaged_at(byte, random() % 8).size() == 1);
+  }
+}
+
+TEST_CASE("verify says where the structure is damaged, and repair leaves such a file alone", "[inspect][flips]") {
+  const Finished run;
+  const std::size_t tree = run.bytes().find("TREE");
+  REQUIRE(tree != std::string::npos);
+  const std::vector<std::string> expected = {fmt::format(
+      "the structure of the file is damaged at byte {}: a node of the tree of '/' has a left neighbor at byte "
+      "18446744073709551614 instead of none",
+      tree + 8)};
+  CHECK(run.damaged_at(tree + 8, 0) == expected);
+  const std::string before = read_text(run.file());
+  const io::Repair repaired = io::repair(run.file());
+  CHECK(repaired.info.damaged == expected);
+  CHECK(repaired.repaired.empty());
+  CHECK(read_text(run.file()) == before);
+}
+
+TEST_CASE("trees of several levels are walked, also as a killed writer leaves them", "[inspect][flips]") {
+  const ScratchFolder folder;
+  const std::filesystem::path file = folder / "rows.h5";
+  io::Hdf5File::create(file).take_name();
+  const io::Hdf5File hdf5 = io::Hdf5File::open_to_append(file);
+  io::Hdf5Dataset rows = hdf5.create_growing("/particles/rows", io::ElementType::real, {}, 4);
+  std::vector<double> written;
+  // A chunk has four rows, and a node 64 chunks.
+  const auto append = [&](std::size_t chunks) {
+    std::vector<double> more(4 * chunks);
+    std::iota(more.begin(), more.end(), static_cast<double>(written.size()));
+    rows.append(more);
+    hdf5.flush();
+    written.insert(written.end(), more.begin(), more.end());
+    return read_text(file);
+  };
+  const auto nodes = [](const std::string& bytes) {
+    std::vector<std::size_t> found;
+    for (std::size_t at = bytes.find("TREE"); at != std::string::npos; at = bytes.find("TREE", at + 1)) {
+      if (bytes[at + 4] == 1) found.push_back(at);
+    }
+    return found;
+  };
+  const auto level = [&](const std::string& bytes) {
+    int most = 0;
+    for (const std::size_t at : nodes(bytes)) most = std::max<int>(most, bytes[at + 5]);
+    return most;
+  };
+  std::string before = append(80), after = before;
+  REQUIRE(level(before) == 1);
+  for (const bool lower : {true, false}) {
+    CAPTURE(lower);
+    // Until a node is divided. Its writer is killed after it wrote the node above, and before it wrote this one.
+    for (std::size_t count = nodes(before).size(); nodes(after).size() == count;) {
+      before = after;
+      after = append(1);
+      CHECK(walk(after).fault.value_or(io::Hdf5Fault{}).what == "");
+    }
+    std::string torn = after;
+    constexpr std::size_t size = 24 + 64 * 32 + 24;
+    int restored = 0;
+    for (const std::size_t at : nodes(before)) {
+      if (before[at + 5] != 0 || before.compare(at, size, after, at, size) == 0) continue;
+      torn.replace(at, size, before, at, size);
+      ++restored;
+    }
+    CHECK(restored == 1);
+    CHECK(walk(torn).fault.value_or(io::Hdf5Fault{}).what == "");
+    write_text(folder / "torn.h5", torn);
+    CHECK(io::Hdf5File::open_to_read(folder / "torn.h5").open("/particles/rows").read_reals() == written);
+    before = after = append(4200);
+    CHECK(level(after) == 2);
+    CHECK(walk(after).fault.value_or(io::Hdf5Fault{}).what == "");
+  }
+  // A neighbor that is none of its own.
+  std::string changed = after;
+  changed[nodes(after).back() + 8] ^= 1;
+  CHECK(walk(changed).fault);
 }
 
 TEST_CASE("a bit that flips anywhere is found, or nothing that is held has changed", "[inspect][flips]") {

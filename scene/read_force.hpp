@@ -1,0 +1,25 @@
+#pragma once
+/// Reading one force: what `[[hamiltonian.force]]` and `make_force` have in common.
+
+#include "scene/scene.hpp"
+
+namespace noether {
+
+/// Reads what a force says of itself, whom it ties, and which kick it is in.
+/// @param s  where a force that ties some particles finds them; null where there are none to be found
+/// @param effective  receives the table with every default
+/// @throws SceneError  at the line of the key
+SceneForce read_force(TableReader& reader, const Parts::ForceKind& kind, const ParticleSystem<double>* s,
+                      SceneValue& effective);
+
+/// Moves a force into the kick that its table names. @throws SceneError  for what is no kick
+void set_kick(TableReader& reader, SceneForce& force);
+
+/// Refuses a force that the splitting has in itself, and one that stands twice where it must not.
+/// @param reader  of the table of the force
+/// @param made  the forces that stand before it
+/// @throws SceneError
+void check_force_beside(const TableReader& reader, const Parts::ForceKind& kind, const SceneForce& force,
+                        const SceneHamiltonian& made, const Parts& parts);
+
+}  // namespace noether
