@@ -97,6 +97,9 @@ void add_pair_secants(ForceSink<Real>& out, const ParticleSystem<Real>& from, co
   const Topology* topology = to.topology();
   for (Index i = 0; i < to.size(); ++i) {
     for (Index j = 0; j < i; ++j) {
+      bool acts = !(closest > 0);  // pairs that have no such energy may be as close as they like
+      if (!acts) terms(i, j, Real(range * range / 2), [&](const PairTerms<Real>&) { acts = true; });
+      if (!acts) continue;
       const double part = topology != nullptr ? topology->pair_factor(i, j) : 1;
       secants.pair({.i = i, .j = j, .range = range, .nearest_part = part, .closest = closest}, [&](const Real& r2) {
         PairTerms<Real> found{Real(0), Real(0)};

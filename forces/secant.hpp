@@ -43,13 +43,14 @@ template <class Real> bool middle_serves(const Real& part, const Real& missing, 
 ///
 ///     k = - 2 (U1 - U0) / (r1^2 - r0^2);   -U'(r)/r in the middle where that does the same work
 ///
+/// @param step  r1^2 - r0^2, as (d0 + d1) . (d1 - d0): the difference of the squares is rounded far more
 /// @param terms  (r2): energy and -U'(r)/r of the pair, as `PairTerms`
 /// @param end2  square of the distance where the energy ends or jumps; 0: nowhere
 /// @source LaBuddeGreenspan1976
 template <class Real, class Terms>
-Real secant_of(const Real& from2, const Real& to2, const Terms& terms, const Real& end2 = Real(0)) {
+Real secant_of(const Real& from2, const Real& to2, const Real& step, const Terms& terms, const Real& end2 = Real(0)) {
   using std::abs;
-  const Real step = to2 - from2, size = to2 + from2, middle = terms(size / Real(2)).force;
+  const Real size = to2 + from2, middle = terms(size / Real(2)).force;
   if (step == Real(0)) return middle;
   const Real before = terms(from2).energy, after = terms(to2).energy;
   const Real missing = before - after - middle * step / Real(2);
@@ -58,6 +59,16 @@ Real secant_of(const Real& from2, const Real& to2, const Terms& terms, const Rea
     return middle;
   }
   return Real(2) * (before - after) / step;
+}
+
+/// The way of a particle between two states; exact on the grid of a box, however many cells it has crossed.
+template <class Real>
+Vec3<Real> way_of(const ParticleSystem<Real>& from, const ParticleSystem<Real>& to, Index i) {
+  Vec3<Real> way = to.positions()[i] - from.positions()[i];
+  for (int k = 0; k < 3 && to.box().is_periodic(); ++k) {
+    way[k] += Real(to.images().component(k)[i] - from.images().component(k)[i]) * Real(to.box().edges()[k]);
+  }
+  return way;
 }
 
 /// Why a step has no secants. @param moves  the pair, by more than the box is long; else its nearest image changes
@@ -78,7 +89,7 @@ Failure too_close(Index i, Index j, const std::vector<std::string>& names, doubl
 ///     }
 ///
 /// The secants of a term do the work of its energy over the step to rounding, are the same for both directions of the
-/// step, add up to no force and, but for those of `middle`, to no torque about the middle of the step; they become the
+/// step, add up to no force and to no torque about the middle of the step, but for those of `tether`; they become the
 /// forces as the step becomes short. In a periodic box images are followed from the first state. Where an energy is
 /// that of the nearest image alone and another one is nearest in the second state, the sink fails.
 /// @source LaBuddeGreenspan1976, Gonzalez1996
@@ -92,8 +103,7 @@ template <class Real> class Secants {
     const Index i = pair.i, j = pair.j;
     const Vec3<Real> moved = displacement(i) - displacement(j), d0 = apart(i, j);
     if (!(pair.range > 0)) {
-      const Vec3<Real> d1 = d0 + moved;
-      if (keeps_image(i, j, d1)) add(pair, d0, d1, Real(1), terms);
+      if (keeps_image(i, j, Vec3<Real>(d0 + moved))) add(pair, d0, moved, Real(1), terms);
       return;
     }
     if (!can_follow(pair, d0, moved)) return;
@@ -101,19 +111,19 @@ template <class Real> class Secants {
     const double reach = pair.range + std::sqrt(static_cast<double>(norm2(moved)));
     detail::for_images(from_, i, j, reach, [&](const Vec3<Real>& image, bool nearest) {
       const Real part(nearest ? pair.nearest_part : 1.0);
-      if (part != Real(0)) add(pair, image, Vec3<Real>(image + moved), part, terms);
+      if (part != Real(0)) add(pair, image, moved, part, terms);
     });
   }
   /// A pair whose distance vector from j to i in the first state is `d0`, along whatever images.
   template <class Terms> void pair_along(Index i, Index j, const Vec3<Real>& d0, const Terms& terms) {
-    add({.i = i, .j = j}, d0, Vec3<Real>(d0 + displacement(i) - displacement(j)), Real(1), terms);
+    add({.i = i, .j = j}, d0, Vec3<Real>(displacement(i) - displacement(j)), Real(1), terms);
   }
 
   /// A particle and a point that stands still, likewise. Tracers have no energy and feel nothing.
   template <class Terms> void tether(Index i, const Vec3<Real>& point, const Terms& terms) {
     const Vec3<Real> d0 = from_.box().minimum_image(Vec3<Real>(from_.positions()[i] - point));
-    const Vec3<Real> d1 = d0 + displacement(i);
-    if (keeps_image(i, i, d1)) out_.force(i, force_of(d0, d1, terms, Real(0)));
+    const Vec3<Real> moved = displacement(i);
+    if (keeps_image(i, i, Vec3<Real>(d0 + moved))) out_.force(i, force_of(d0, moved, terms, Real(0)));
   }
 
   /// Three or four particles whose energy depends on their shape: the force in the middle of the step, and what is
@@ -164,7 +174,7 @@ template <class Real> class Secants {
     out_.fail(detail::no_secant(i, j, to_.names(), false));
     return false;
   }
-  Vec3<Real> displacement(Index i) const { return to_.unwrapped(i) - from_.unwrapped(i); }
+  Vec3<Real> displacement(Index i) const { return detail::way_of(from_, to_, i); }
   bool changes_image(const Vec3<Real>& d) const {
     using std::abs;
     const Box& box = to_.box();
@@ -188,19 +198,23 @@ template <class Real> class Secants {
     out_.fail(detail::no_secant(pair.i, pair.j, to_.names(), moves));
     return false;
   }
+  /// Of a distance vector d0 that changes by `moved`.
   template <class Terms>
-  Vec3<Real> force_of(const Vec3<Real>& d0, const Vec3<Real>& d1, const Terms& terms, const Real& end2) const {
-    return detail::secant_of(norm2(d0), norm2(d1), terms, end2) / Real(2) * (d0 + d1);
+  Vec3<Real> force_of(const Vec3<Real>& d0, const Vec3<Real>& moved, const Terms& terms, const Real& end2) const {
+    const Vec3<Real> d1 = d0 + moved, both = d0 + d1;
+    return detail::secant_of(norm2(d0), norm2(d1), Real(dot(both, moved)), terms, end2) / Real(2) * both;
   }
   template <class Terms>
-  void add(const SecantPair& pair, const Vec3<Real>& d0, const Vec3<Real>& d1, const Real& part, const Terms& terms) {
+  void add(const SecantPair& pair, const Vec3<Real>& d0, const Vec3<Real>& moved, const Real& part,
+           const Terms& terms) {
+    const Vec3<Real> d1 = d0 + moved;
     const Real range2(pair.range * pair.range), from2 = norm2(d0), to2 = norm2(d1);
     if (pair.range > 0 && !(from2 < range2) && !(to2 < range2)) return;
     const Real least = from2 < to2 ? from2 : to2;
     if (least < Real(pair.closest * pair.closest)) {
       out_.fail(detail::too_close(pair.i, pair.j, to_.names(), static_cast<double>(least), pair.closest));
     }
-    const Vec3<Real> f = part * force_of(d0, d1, terms, range2);
+    const Vec3<Real> f = part * force_of(d0, moved, terms, range2);
     if (pair.of_masses) {
       out_.acceleration(pair.i, Vec3<Real>(to_.masses()[pair.j] * f));
       out_.acceleration(pair.j, Vec3<Real>(-to_.masses()[pair.i] * f));
@@ -251,6 +265,7 @@ template <class Real> struct MiddleOfStep {
 
 /// Adds the secants of a force whose energy depends on positions in any way: its accelerations in the middle of the
 /// step, and what is missing of the work along the displacements; about the center of mass if it keeps the momentum.
+/// Angular momentum is kept only as far as the force in the middle does all the work.
 /// @cost three evaluations and a copy of the particles
 /// @source Gonzalez1996
 template <class F, class Real>
@@ -269,7 +284,7 @@ void add_middle_secants(const F& force, ForceSink<Real>& out, const ParticleSyst
   };
   const Real before = energy_of(from), after = energy_of(to);
   const ScalarColumn<Real>& m = to.masses();
-  const auto moved = [&](Index i) { return Vec3<Real>(to.unwrapped(i) - from.unwrapped(i)); };
+  const auto moved = [&](Index i) { return way_of(from, to, i); };
   for (Index i = 0; i < to.size(); ++i) middle.shift(i, Vec3<Real>(moved(i) / Real(-2)), Vec3<Real>::Zero());
   middle.moved();
   energy_of(middle);

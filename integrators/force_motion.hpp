@@ -186,6 +186,7 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
       ForceSink<Real> sink(a_, work_, {}, &workspace_);
       forces_.add_secant_to(sink, *other_, work_);
       this->note(sink.failure());
+      if (sink.failure()) spoil();  // what is there is not all of it
       a.resize(3 * work_.size());
       write(a.data());
     } else {
@@ -349,6 +350,9 @@ template <class F, class Real> class ForceMotion final : public VectorField<Real
     forces_.add_to(sink, work_);
     if (!sink.failure()) return;
     this->note(sink.failure());
+    spoil();
+  }
+  void spoil() {
     for (int k = 0; k < 3; ++k) std::fill_n(a_.component(k), a_.size(), Real(std::numeric_limits<double>::quiet_NaN()));
   }
   void write(Real* out) const {

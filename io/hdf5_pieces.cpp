@@ -108,7 +108,9 @@ Node read_node(Pieces& pieces, const TreeKind& kind, std::uint64_t at, std::uint
   expect(count <= kind.most, block.place(6), fmt::format("{} has {} children, at most {} fit", what, count, kind.most));
   node.left = block.number(8, 8);
   node.right = block.number(16, 8);
+  const bool cleared = kind.type == 0;  // what a node of names does not use
   if (count == 0) {
+    if (cleared) block.expect_zeros(node_head, block.size() - node_head);
     pieces.leave(at + node_head, at + block.size());
     return node;
   }
@@ -123,6 +125,7 @@ Node read_node(Pieces& pieces, const TreeKind& kind, std::uint64_t at, std::uint
     node.children.push_back(block.number(offset, address_size));
     offset += address_size;
   }
+  if (cleared) block.expect_zeros(offset, block.size() - offset);
   pieces.leave(at + offset, at + block.size());
   return node;
 }
@@ -197,8 +200,7 @@ void walk_chunks(Pieces& pieces, const Chunks& chunks, const std::string& path) 
   kind.key_fields.resize(2 + axes + 1, 8);
   std::uint64_t bytes = chunks.element;
   for (const std::uint64_t edge : chunks.chunk) {
-    expect(edge > 0 && bytes <= pieces.size() / edge, chunks.pointer,
-           fmt::format("chunks of '{}' would be larger than the file", path));
+    expect(edge > 0 && bytes <= nowhere / edge, chunks.pointer, fmt::format("chunks of '{}' have no size", path));
     bytes *= edge;
   }
   const std::uint64_t rows = chunks.extent[0];
@@ -285,6 +287,7 @@ class Names {
     expect(head.text(0, 4) == "HEAP", at, what_ + " does not begin with HEAP");
     head.expect_number(4, 1, 0, "the version of " + what_);
     head.expect_zeros(5, 3);
+    expect(head.number(8, 8) % 8 == 0, head.place(8), "the size of " + what_ + " is not a multiple of 8");
     free_ = head.number(16, 8);
     free_pointer_ = head.place(16);
     return pieces.take(head.number(24, 8), head.number(8, 8), "the names in " + what_, head.place(24));
@@ -304,8 +307,11 @@ class Names {
 };
 
 /// The entries of one node of names.
-void walk_names(Pieces& pieces, std::uint64_t at, std::uint64_t pointer, Names& names, const std::string& path,
-                std::vector<Member>& members) {
+/// @param last  name in the node, as the tree says; a writer that divided the node and was killed before it wrote this
+///              half has left further ones, which its neighbor has too: no reader looks for them here
+/// @return those
+std::vector<std::string> walk_names(Pieces& pieces, std::uint64_t at, std::uint64_t pointer, Names& names,
+                                    const std::string& last, const std::string& path, std::vector<Member>& members) {
   constexpr std::uint64_t most = 8, entry = 40, head = 8;
   const std::string what = fmt::format("a node of names of '{}'", path);
   const Block block = pieces.take(at, head + most * entry, what, pointer);
@@ -314,8 +320,13 @@ void walk_names(Pieces& pieces, std::uint64_t at, std::uint64_t pointer, Names& 
   block.expect_zeros(5, 1);
   const std::uint64_t count = block.number(6, 2);
   expect(count > 0 && count <= most, block.place(6), fmt::format("{} has {} names, 1 to {} fit", what, count, most));
+  std::vector<std::string> moved;
   for (std::uint64_t k = 0; k < count; ++k) {
     const std::uint64_t offset = head + k * entry;
+    if (std::string name = names.at(block.number(offset, 8), block.place(offset)); name > last) {
+      moved.push_back(std::move(name));
+      continue;
+    }
     Member member{.name = names.take(block.number(offset, 8), block.place(offset)),
                   .header = block.number(offset + 8, 8),
                   .pointer = block.place(offset + 8)};
@@ -323,6 +334,10 @@ void walk_names(Pieces& pieces, std::uint64_t at, std::uint64_t pointer, Names& 
            fmt::format("the names of '{}' are not in order: '{}' follows '{}'", path, member.name,
                        members.empty() ? "" : members.back().name));
     const std::uint64_t kind = block.number(offset + 16, 4);
+    if (kind == 2 && path == "/") {  // a link that somebody has added
+      members.push_back(std::move(member));
+      continue;
+    }
     expect(kind <= 1, block.place(offset + 16),
            fmt::format("the entry '{}' of '{}' is of kind {}, 0 and 1 are known", member.name, path, kind));
     block.expect_zeros(offset + 20, 4);
@@ -335,7 +350,9 @@ void walk_names(Pieces& pieces, std::uint64_t at, std::uint64_t pointer, Names& 
     }
     members.push_back(std::move(member));
   }
+  block.expect_zeros(head + count * entry, block.size() - head - count * entry);
   pieces.leave(block.place(head + count * entry), block.place(block.size()));
+  return moved;
 }
 
 }  // namespace
@@ -346,19 +363,28 @@ std::vector<Member> walk_group(Pieces& pieces, std::uint64_t tree, std::uint64_t
   const TreeKind kind{0, room, {8}, fmt::format("the tree of '{}'", path)};
   Names names(pieces, heap, pointer + 8, path);
   std::vector<Member> members;
+  std::vector<std::string> moved;
+  const auto is_there = [&](const std::string& name) {
+    return std::any_of(members.begin(), members.end(), [&](const Member& one) { return one.name == name; });
+  };
   for (const Node& leaf : walk_tree(pieces, kind, tree, pointer)) {
     for (std::size_t k = 0; k < leaf.children.size(); ++k) {
       const std::string before = names.at(leaf.keys[k][0], leaf.key_place(k));
-      const std::size_t first = members.size();
-      walk_names(pieces, leaf.children[k], leaf.place(k), names, path, members);
       const std::string last = names.at(leaf.keys[k + 1][0], leaf.key_place(k + 1));
-      expect(before < members[first].name && (first == 0 ? before.empty() : before == members[first - 1].name),
+      const std::size_t first = members.size();
+      std::vector<std::string> later =
+          walk_names(pieces, leaf.children[k], leaf.place(k), names, last, path, members);
+      // The key is written before the node: the last name of which it tells may be missing where a writer was killed.
+      expect(members.size() > first && before < members[first].name &&
+                 (first == 0 ? before.empty() : members[first - 1].name <= before),
              leaf.key_place(k),
-             fmt::format("a key of {} is '{}', which is not the name before the node", kind.what, before));
-      expect(last == members.back().name, leaf.key_place(k + 1),
-             fmt::format("a key of {} is '{}', which is not the last name of the node", kind.what, last));
+             fmt::format("a key of {} is '{}', which is not between the nodes on both sides", kind.what, before));
+      expect(std::all_of(moved.begin(), moved.end(), is_there), leaf.place(k),
+             fmt::format("names of '{}' stand in two nodes", path));
+      moved = std::move(later);
     }
   }
+  expect(moved.empty(), pointer, fmt::format("names of '{}' stand behind the last one of its tree", path));
   names.finish();
   return members;
 }

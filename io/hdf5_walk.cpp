@@ -20,10 +20,15 @@ namespace {
 enum class Message : std::uint64_t {
   nil = 0,
   dataspace = 1,
+  link_info = 2,
   datatype = 3,
   fill_value = 5,
+  link = 6,
   layout = 8,
+  group_info = 10,
+  filter = 11,
   attribute = 12,
+  comment = 13,
   modification_time = 18,
   continuation = 16,
   symbol_table = 17
@@ -101,6 +106,8 @@ struct Header {
   std::optional<Type> type;
   std::optional<Block> layout, group;
   bool fill = false;
+  bool filtered = false;  ///< chunks are compressed, as noether never does
+  bool links = false;     ///< members stand in messages: somebody has added one of another kind
 };
 
 class Walk {
@@ -116,13 +123,15 @@ class Walk {
     }
     for (const auto& [header, links] : links_) {
       const auto [told, place] = told_links_.at(header);
-      expect(told == links, place, fmt::format("an object is said to have {} names, it has {}", told, links));
+      expect(told == links || (others_ && told > links), place, fmt::format("an object is said to have {} names, it has {}", told, links));
     }
     for (const auto& [target, place] : references_)
       expect(links_.count(target) > 0, place,
              fmt::format("a reference leads to byte {}, where no object begins", target));
   }
   std::vector<ByteRange> unused(std::uint64_t whole) const { return pieces_.unused(whole); }
+  /// Whether another program wrote the file, as far as its root could be read.
+  bool is_foreign() const { return foreign_; }
 
  private:
   void superblock() {
@@ -132,7 +141,8 @@ class Walk {
     block.expect_number(14, 1, 8, "the size of lengths");
     block.expect_number(16, 2, 4, "the size of nodes of names");
     block.expect_number(18, 2, 16, "the size of nodes of groups");
-    block.expect_zeros(20, 4);
+    pieces_.leave(20, 21);  // set while some writers have the file open
+    block.expect_zeros(21, 3);
     block.expect_zeros(24, 8);
     block.expect_number(32, 8, nowhere, "the address of free space");
     block.expect_number(48, 8, nowhere, "the address of a driver's block");
@@ -157,6 +167,7 @@ class Walk {
   void walk(const Object& object) {
     const std::string name = object.path.empty() ? "/" : object.path;
     const Header header = read_header(object.member.header, object.member.pointer, name);
+    if (header.links) return;
     if (header.group) {
       expect(!header.layout && !header.type && !header.extent && !header.fill, object.member.header,
              fmt::format("'{}' is both a group and a dataset", name));
@@ -165,7 +176,7 @@ class Walk {
     expect(header.extent && header.type && header.layout, object.member.header,
            fmt::format("the header of '{}' has no shape, no type or no layout", name));
     expect(!object.member.cached, object.member.pointer + 8, fmt::format("'{}' is called a group, and is none", name));
-    walk_data(header, name);
+    if (!header.filtered) walk_data(header, name);
   }
 
   void walk_members(const Object& object, const Block& message, const std::string& name) {
@@ -173,12 +184,23 @@ class Walk {
     if (object.member.cached)
       expect(tree == object.member.tree && heap == object.member.heap, message.place(0),
              fmt::format("the header of '{}' and the entry that leads to it have different trees or heaps", name));
-    for (Member& member : walk_group(pieces_, tree, heap, message.place(0), name)) {
-      if (object.path.empty() && !is_written(member.name)) continue;
+    expect(name.size() <= most_of_path, object.member.pointer,
+           fmt::format("a path has more than {} bytes", most_of_path));
+    std::vector<Member> members = walk_group(pieces_, tree, heap, message.place(0), name);
+    if (object.path.empty()) {
+      foreign_ = std::none_of(members.begin(), members.end(), [](const Member& one) { return one.name == "noether"; });
+    }
+    for (Member& member : members) {
+      if (object.path.empty() && !is_written(member.name)) {
+        others_ = true;
+        continue;
+      }
       const std::string path = object.path + "/" + member.name;
       add({path, std::move(member)});
     }
   }
+
+  static constexpr std::size_t most_of_path = 1024;
 
   /// Whether noether writes such a member of the root. Others may have added more, in other ways.
   static bool is_written(std::string_view name) {
@@ -267,6 +289,10 @@ class Walk {
     const auto once = [&](bool there) {
       expect(!there, content.place(0) - 8, fmt::format("the header of {} has two messages of type {}", owner, type));
     };
+    if (name == "/" && is_added(kind)) {
+      header.links = header.links || kind == Message::link_info || kind == Message::link;
+      return pieces_.leave(content.place(0), content.place(content.size()));
+    }
     const std::uint64_t constant = kind == Message::datatype || kind == Message::fill_value ? 1 : 0;
     expect(flags == constant, content.place(0) - 4,
            fmt::format("a message of type {} of {} has the flags {} instead of {}", type, owner, flags, constant));
@@ -296,6 +322,9 @@ class Walk {
         return content.expect_zeros(1, 3);
       case Message::continuation:
         return;
+      case Message::filter:
+        header.filtered = true;
+        return pieces_.leave(content.place(0), content.place(content.size()));
       case Message::symbol_table:
         once(header.group.has_value());
         header.group = content;
@@ -304,6 +333,12 @@ class Walk {
         expect(false, content.place(0) - 8,
                fmt::format("the header of {} has a message of type {}, which no such file has", owner, type));
     }
+  }
+
+  /// Whether somebody else may have put such a message to the root, which has none of noether's attributes.
+  static bool is_added(Message kind) {
+    return kind == Message::link_info || kind == Message::link || kind == Message::group_info ||
+           kind == Message::attribute || kind == Message::comment;
   }
 
   static void check_fill(const Block& content, const std::string& owner) {
@@ -355,6 +390,7 @@ class Walk {
   }
 
   Pieces pieces_;
+  bool foreign_ = false, others_ = false;  ///< others: the root has members that are not noether's
   std::deque<Object> waiting_;
   std::map<std::uint64_t, std::uint64_t> links_;                                 ///< names of each header
   std::map<std::uint64_t, std::pair<std::uint64_t, std::uint64_t>> told_links_;  ///< as it says, and where
@@ -367,17 +403,19 @@ class Walk {
 }  // namespace hdf5_pieces
 
 Hdf5Walk walk_hdf5(std::istream& file, std::uint64_t size) {
-  constexpr std::uint64_t version_at = 8;
+  static constexpr std::string_view signature_and_version("\x89HDF\r\n\x1a\n\0", 9);
   Hdf5Walk result;
+  std::string begin(signature_and_version.size(), '\0');
   file.clear();
-  file.seekg(static_cast<std::streamoff>(version_at));
-  if (size < version_at || file.get() != 0) return result;
+  file.seekg(0);
+  file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  if (file.gcount() < static_cast<std::streamsize>(begin.size()) || begin != signature_and_version) return result;
   hdf5_pieces::Walk walk(file, size);
   try {
     walk.run();
     result.unused = walk.unused(size);
   } catch (const hdf5_pieces::Damage& damage) {
-    result.fault = damage.fault;
+    if (!walk.is_foreign()) result.fault = damage.fault;
   }
   return result;
 }

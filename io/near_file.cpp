@@ -1,5 +1,6 @@
 #include "io/near_file.hpp"
 
+#include "io/files.hpp"
 #include "numbers/suggest.hpp"
 
 #include <fmt/format.h>
@@ -68,9 +69,7 @@ std::string in_folder(const fs::path& folder, std::string_view inside) {
 
 /// The run of a scene that is given in its place, or how to make one.
 std::string of_scene(const fs::path& scene, std::string_view inside) {
-  const bool named_by_folder = scene.filename() == "scene.toml" && scene.has_parent_path();
-  const fs::path name = named_by_folder ? scene.parent_path().filename() : scene.stem();
-  const fs::path run = fs::path(name.string() + ".out") / inside;
+  const fs::path run = default_output_folder(scene) / inside;
   if (fs::is_regular_file(run)) return fmt::format("; did you mean '{}'?", run.string());
   return fmt::format("; `noether run {}` makes a run of it", scene.string());
 }

@@ -68,9 +68,9 @@ bool is_open_as(int descriptor, const struct stat& file) {
   return ::fstat(descriptor, &status) == 0 && status.st_dev == file.st_dev && status.st_ino == file.st_ino;
 }
 
-/// Closes what the child has from its parent, but for three, the pipe, and the file itself, which HDF5 reads through the
-/// descriptor that it has already: the lock of the output folder lives as long as somebody has it open, and a child may
-/// live on where its parent is killed.
+/// Closes what the child has from its parent, but for three, the pipe, and the file itself, which HDF5 reads through
+/// the descriptor that it has already: the lock of the output folder lives as long as somebody has it open, and a child
+/// may live on where its parent is killed.
 void keep_only(int pipe, const std::filesystem::path& file) {
   struct stat wanted = {};
   const bool known = ::stat(file.c_str(), &wanted) == 0;

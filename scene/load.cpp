@@ -325,9 +325,10 @@ class SceneReader {
       for (const char* key : {"type", "every"}) reader.find(key);
       SceneStop stop = kind->read(reader);
       // A step that a method chooses may be a large part of an orbit, and a hundred of them the whole run.
-      if (scene_.integrator.adaptive() && !reader.has("steps")) {
+      const bool escapes = stop.rule.kind == StopRule::Kind::escape;
+      if (escapes && scene_.integrator.adaptive() && !reader.has("steps")) {
         stop.steps = 1;
-        stop.effective.put("steps", SceneValue::of(stop.steps, reader.line("steps")));
+        stop.effective.put("steps", SceneValue::of(stop.steps));
       }
       SceneValue effective = SceneValue::table();
       effective.put("type", SceneValue::of(type, reader.line("type")));

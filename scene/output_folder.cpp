@@ -32,20 +32,6 @@ io::FoundCheckpoint find_checkpoint(const fs::path& folder) {
 
 }  // namespace
 
-fs::path default_output_folder(const fs::path& scene) {
-  fs::path name = scene.filename();
-  if (name == "scene.toml") {
-    std::error_code error;
-    name = scene.parent_path().lexically_normal().filename();
-    if (name.empty() || name == "." || name == "..")
-      name = fs::weakly_canonical(fs::absolute(scene), error).parent_path().filename();
-    if (name.empty()) name = "scene";
-    return name.string() + ".out";
-  }
-  if (name.extension() == ".toml") name.replace_extension();
-  return name.string() + ".out";
-}
-
 OutputFolder::OutputFolder(fs::path path) : path_(std::move(path)) {
   std::error_code error;
   fs::create_directories(path_, error);

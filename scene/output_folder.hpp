@@ -2,6 +2,7 @@
 /// The folder a run writes to: locked while in use, kept when finished, never overwritten by accident.
 
 #include "io/checkpoint.hpp"
+#include "io/files.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -15,9 +16,7 @@ enum class Existing : std::uint8_t {
   fresh,   ///< discard an unfinished run
 };
 
-/// The folder that a scene writes to unless told, in the working directory: NAME.out, where NAME is the scene's file
-/// without `.toml`, or its folder where the file is called `scene.toml`.
-std::filesystem::path default_output_folder(const std::filesystem::path& scene);
+using io::default_output_folder;
 
 /// The output folder of one run. It is locked from construction to destruction.
 class OutputFolder {

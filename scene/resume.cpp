@@ -60,6 +60,11 @@ bool was_default(const std::string& key, const std::string& text) {
   return key == "integrator.atol" && (text == to_text(SceneValue::of(1e-9)) || text == to_text(SceneValue::of(0.0)));
 }
 
+/// Whether a stop that the scene says no steps of is looked at more often than by an earlier version.
+bool was_seldom(const std::string& key, const Leaf& leaf, const std::string& old) {
+  return leaf.line == 0 && key.starts_with("stop.") && key.ends_with(".steps") && old == "100" && leaf.text == "1";
+}
+
 }  // namespace
 
 std::vector<std::string> check_same_scene(const io::Checkpoint& checkpoint, const Scene& scene) {
@@ -71,6 +76,11 @@ std::vector<std::string> check_same_scene(const io::Checkpoint& checkpoint, cons
   for (const auto& [key, leaf] : now) {
     const auto old = before.find(key);
     if (old == before.end()) refuse(scene, key, leaf, fmt::format("= {} is new", leaf.text));
+    if (was_seldom(key, leaf, old->second.text)) {
+      warnings.push_back(fmt::format("{} was {}, the default of an earlier version; from here on it is {}", key,
+                                     old->second.text, leaf.text));
+      continue;
+    }
     if (old->second.text != leaf.text)
       refuse(scene, key, leaf, fmt::format("= {} was {}", leaf.text, old->second.text));
   }

@@ -88,7 +88,10 @@ class Runner {
 
   /// The run at its first step: the one that was checked, unless it begins elsewhere or looks at other times.
   Simulation<double> assembled() {
-    if (start_ || kept_ || checked_ == nullptr) return assemble(start_ ? *start_ : scene(), files_);
+    if (checked_ == nullptr || start_ || kept_) {
+      if (checked_ != nullptr) checked_->forget();
+      return assemble(start_ ? *start_ : scene(), files_);
+    }
     return checked_->assemble(files_);
   }
 

@@ -186,6 +186,8 @@ class SceneRun {
   /// As `noether::assemble`. The first call takes the run that was checked, unless it was bound at another SIMD level
   /// or for another number of threads.
   Simulation<double> assemble(const SceneFiles& files = {});
+  /// Frees the run that was checked; the next one is put together anew.
+  void forget() { start_.reset(); }
 
  private:
   Scene scene_;

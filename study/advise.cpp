@@ -248,6 +248,21 @@ std::optional<double> energy_trials_end(const Scene& scene, const AdviseOptions&
   return whole.start + end;
 }
 
+/// Whether methods whose states have further digits than doubles are among the trials.
+bool tries_two_words(const Scene& scene, const AdviseOptions& options) {
+  if (options.methods.empty()) {
+    return options.error < beyond_doubles && scene.particles.size() <= most_bodies &&
+           !opponents_below_rounding(scene).empty();
+  }
+  return std::any_of(options.methods.begin(), options.methods.end(),
+                     [&](const std::string& name) { return candidate(scene, name).below_rounding; });
+}
+
+/// One rounding of the finest states that are tried.
+double finest_rounding(const Scene& scene, const AdviseOptions& options) {
+  return one_rounding * (tries_two_words(scene, options) ? rounding_of_two_words / rounding : 1);
+}
+
 /// Takes the metric that was asked for, or the one that can be held over the whole run.
 void choose_metric(Advice& advice, const Scene& scene, const AdviseOptions& options, Allowance& work) {
   advice.metric = options.metric.value_or(Metric::position);
@@ -268,21 +283,23 @@ void choose_metric(Advice& advice, const Scene& scene, const AdviseOptions& opti
         "tries)";
     return;
   }
-  if (!motion || !motion->chaotic || motion->rounding(advice.end) < 0.1 * options.error) return;
+  if (!motion || !motion->chaotic) return;
+  const double finest = finest_rounding(scene, options);
+  if (finest * motion->factor(advice.end) < 0.1 * options.error) return;
   advice.metric = Metric::energy;
   advice.trials_until = energy_trials_end(scene, options, work);
   advice.metric_reason = fmt::format(
       "errors are those of the energy: the motion is chaotic, small differences of positions grow tenfold "
       "in {}, so no run holds an error of {:g} of positions beyond a time of {} (--metric position tries)",
       tenfold_in_words(*motion, scene), options.error,
-      time_in_words(std::min(motion->time_of(0.1 * options.error / one_rounding), advice.end), scene));
+      time_in_words(std::min(motion->time_of(0.1 * options.error / finest), advice.end), scene));
 }
 
 /// Says why positions cannot be held, where the motion is why.
 void tell_chaos(Advice& advice, const Scene& scene, const AdviseOptions& options) {
   const auto& motion = advice.trials.motion;
   if (advice.metric != Metric::position || !motion || !motion->chaotic) return;
-  const double told = motion->time_of(margin * options.error / one_rounding);
+  const double told = motion->time_of(margin * options.error / finest_rounding(scene, options));
   if (told >= advice.end) return;
   std::string hint = fmt::format(
       "no trajectory of this motion holds an error of {:g} of positions over {}: it is chaotic, small differences grow "
@@ -326,7 +343,8 @@ std::string reason_of(const Advice& advice, const AdviseOptions& options, bool t
   const Comparison& c = advice.trials;
   if (!advice.left_out.empty()) return advice.left_out.front();
   if (!tells) {
-    const bool vague = advice.metric == Metric::position && c.truth.error.value_or(0) > 10 * rounding;
+    const bool vague = advice.metric == Metric::position &&
+                       c.truth.error.value_or(0) > std::min(10 * rounding, 0.1 * options.error);
     return "the trials do not tell how errors depend on the step; " +
            (vague ? fmt::format("the solution that they are measured against, {}, is known to {:.1e} only",
                                 c.truth.name, *c.truth.error)
@@ -341,7 +359,7 @@ CompareOptions trials_of(const Scene& scene, const Advice& advice, const AdviseO
                          const Allowance& work) {
   CompareOptions trials;
   trials.methods = options.methods;
-  if (trials.methods.empty() && options.error < beyond_doubles && scene.particles.size() <= most_bodies) {
+  if (trials.methods.empty() && tries_two_words(scene, options)) {
     for (const Candidate& who : default_opponents(scene)) trials.methods.push_back(who.label);
     for (const Candidate& who : opponents_below_rounding(scene)) trials.methods.push_back(who.label);
   }

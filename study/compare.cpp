@@ -53,7 +53,7 @@ std::vector<double> ladder(const Scene& scene, const Candidate& who, const Sampl
   const double measured_at = std::min(own, sampling.interval);
   double factor = 1;
   if (!scene.integrator.adaptive()) {
-    const Candidate self{scene.integrator.method, scene.integrator.method, false, false};
+    const Candidate self = candidate(scene, scene.integrator.method);
     const double mine = costs.of(self, measured_at);
     const double other = costs.of(who, measured_at);
     if (mine > 0 && other > 0) factor = other / mine;
@@ -459,7 +459,7 @@ class Comparer {
         work_.spent += row.work;
         left -= static_cast<double>(row.evaluations.force) * needed_runs(options_.quick);
         if (known) set_errors(row, c_.truth, c_.sampling, error_);
-        if (known && many()) row.track.y = {};  // those of all rows would not fit into memory
+        if (known && many()) row.track.y = row.track.low = {};  // those of all rows would not fit into memory
         c_.rows.push_back(std::move(row));
       }
     }

@@ -139,9 +139,9 @@ void flip_anywhere(std::uint64_t seed, int rounds) {
   int found = 0, harmless = 0;
   for (int round = 0; round < rounds; ++round) {
     const std::size_t byte = random() % run.size();
-    const auto value = static_cast<char>(static_cast<unsigned char>(run.bytes()[byte]) ^ (1 + random() % 255));
-    CAPTURE(round, byte, static_cast<int>(value));
-    if (!run.damaged_to(byte, value).empty()) {
+    const auto other = static_cast<char>(static_cast<unsigned char>(run.bytes()[byte]) ^ (1 + random() % 255));
+    CAPTURE(round, byte, static_cast<int>(other));
+    if (!run.damaged_to(byte, other).empty()) {
       CHECK_FALSE(is_unused(walked, byte));
       ++found;
       continue;
@@ -263,7 +263,7 @@ TEST_CASE("a byte of the structure that has changed is found, also where HDF5 do
       changed[byte] = static_cast<char>(static_cast<unsigned char>(run.bytes()[byte]) ^ change);
       CAPTURE(byte, change);
       // The signature and the version are what HDF5 looks at first.
-      CHECK((walk(changed).fault || byte == 8));
+      CHECK((walk(changed).fault || byte <= 8));
     }
   }
   for (int round = 0; round < 40; ++round) {
