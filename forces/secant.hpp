@@ -62,8 +62,7 @@ Real secant_of(const Real& from2, const Real& to2, const Real& step, const Terms
 }
 
 /// The way of a particle between two states; exact on the grid of a box, however many cells it has crossed.
-template <class Real>
-Vec3<Real> way_of(const ParticleSystem<Real>& from, const ParticleSystem<Real>& to, Index i) {
+template <class Real> Vec3<Real> way_of(const ParticleSystem<Real>& from, const ParticleSystem<Real>& to, Index i) {
   Vec3<Real> way = to.positions()[i] - from.positions()[i];
   for (int k = 0; k < 3 && to.box().is_periodic(); ++k) {
     way[k] += Real(to.images().component(k)[i] - from.images().component(k)[i]) * Real(to.box().edges()[k]);

@@ -194,8 +194,8 @@ Order order_over(const Scheme& scheme, const HamiltonianClaims& claims) {
   }
   // An irreversible letter that the scheme does not have stands around its word.
   for (const char letter : claims.irreversible) {
-    const bool inside = std::any_of(scheme.word.begin(), scheme.word.end(),
-                                    [&](const Stage& stage) { return stage.letter == letter; });
+    const bool inside =
+        std::any_of(scheme.word.begin(), scheme.word.end(), [&](const Stage& stage) { return stage.letter == letter; });
     if (!scheme.is_composition() && !inside) order.classical = std::min(order.classical, 2);
   }
   return order;

@@ -44,7 +44,7 @@ struct CompositionOptions {
         field<&CompositionOptions::kernel>("kernel", "1",
                                            "of verlet and verlet_aba on wisdom_holman; modified: also of saba_1 to "
                                            "saba_4; composed: in all coordinates; with a corrector the step is of "
-                                           "order 4 in jacobi, 3 in democratic, 2 where kicks are no exact flows"),
+                                           "order 4 in jacobi, 3 in democratic, 2 in others"),
         field<&CompositionOptions::second_corrector>("second_corrector", "1",
                                                      "beside a corrector, for kernels that are not plain"));
   }

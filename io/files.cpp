@@ -44,21 +44,6 @@ class Descriptor {
 
 }  // namespace
 
-std::filesystem::path default_output_folder(const std::filesystem::path& scene) {
-  namespace fs = std::filesystem;
-  fs::path name = scene.filename();
-  if (name == "scene.toml") {
-    std::error_code error;
-    name = scene.parent_path().lexically_normal().filename();
-    if (name.empty() || name == "." || name == "..")
-      name = fs::weakly_canonical(fs::absolute(scene), error).parent_path().filename();
-    if (name.empty()) name = "scene";
-    return name.string() + ".out";
-  }
-  if (name.extension() == ".toml") name.replace_extension();
-  return name.string() + ".out";
-}
-
 std::string read_bytes(const std::filesystem::path& file, std::size_t most) {
   std::error_code unknown;
   if (std::filesystem::is_character_file(file, unknown)) {

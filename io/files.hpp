@@ -1,5 +1,5 @@
 #pragma once
-/// Plain files: whole contents in and out, flushed to disk, with errors that name the file; and where runs write them.
+/// Plain files: whole contents in and out, flushed to disk, with errors that name the file.
 
 #include <cstddef>
 #include <filesystem>
@@ -8,10 +8,6 @@
 #include <string_view>
 
 namespace noether::io {
-
-/// The folder that a scene writes to unless told, in the working directory: NAME.out, where NAME is the scene's file
-/// without `.toml`, or its folder where the file is called `scene.toml`.
-std::filesystem::path default_output_folder(const std::filesystem::path& scene);
 
 /// The bytes of a file or a pipe, all of them or the first `most`.
 /// @throws FileError  if it cannot be read, or is a device: some of them never end

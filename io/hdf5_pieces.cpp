@@ -108,10 +108,12 @@ Node read_node(Pieces& pieces, const TreeKind& kind, std::uint64_t at, std::uint
   expect(count <= kind.most, block.place(6), fmt::format("{} has {} children, at most {} fit", what, count, kind.most));
   node.left = block.number(8, 8);
   node.right = block.number(16, 8);
-  const bool cleared = kind.type == 0;  // what a node of names does not use
+  const auto rest = [&](std::uint64_t from) {
+    if (kind.type == 0) return block.expect_zeros(from, block.size() - from);  // HDF5 clears them in trees of groups
+    pieces.leave(at + from, at + block.size());
+  };
   if (count == 0) {
-    if (cleared) block.expect_zeros(node_head, block.size() - node_head);
-    pieces.leave(at + node_head, at + block.size());
+    rest(node_head);
     return node;
   }
   std::uint64_t offset = node_head;
@@ -125,8 +127,7 @@ Node read_node(Pieces& pieces, const TreeKind& kind, std::uint64_t at, std::uint
     node.children.push_back(block.number(offset, address_size));
     offset += address_size;
   }
-  if (cleared) block.expect_zeros(offset, block.size() - offset);
-  pieces.leave(at + offset, at + block.size());
+  rest(offset);
   return node;
 }
 
@@ -351,7 +352,6 @@ std::vector<std::string> walk_names(Pieces& pieces, std::uint64_t at, std::uint6
     members.push_back(std::move(member));
   }
   block.expect_zeros(head + count * entry, block.size() - head - count * entry);
-  pieces.leave(block.place(head + count * entry), block.place(block.size()));
   return moved;
 }
 
@@ -372,19 +372,18 @@ std::vector<Member> walk_group(Pieces& pieces, std::uint64_t tree, std::uint64_t
       const std::string before = names.at(leaf.keys[k][0], leaf.key_place(k));
       const std::string last = names.at(leaf.keys[k + 1][0], leaf.key_place(k + 1));
       const std::size_t first = members.size();
-      std::vector<std::string> later =
-          walk_names(pieces, leaf.children[k], leaf.place(k), names, last, path, members);
+      std::vector<std::string> later = walk_names(pieces, leaf.children[k], leaf.place(k), names, last, path, members);
       // The key is written before the node: the last name of which it tells may be missing where a writer was killed.
       expect(members.size() > first && before < members[first].name &&
-                 (first == 0 ? before.empty() : members[first - 1].name <= before),
+                 (first == 0 ? leaf.keys[k][0] == 0 && before.empty() : members[first - 1].name <= before),
              leaf.key_place(k),
              fmt::format("a key of {} is '{}', which is not between the nodes on both sides", kind.what, before));
       expect(std::all_of(moved.begin(), moved.end(), is_there), leaf.place(k),
-             fmt::format("names of '{}' stand in two nodes", path));
+             fmt::format("a name of '{}' is missing in the next node", path));
       moved = std::move(later);
     }
   }
-  expect(moved.empty(), pointer, fmt::format("names of '{}' stand behind the last one of its tree", path));
+  expect(moved.empty(), pointer, fmt::format("a node of '{}' has names after the last one of its tree", path));
   names.finish();
   return members;
 }

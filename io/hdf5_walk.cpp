@@ -123,7 +123,8 @@ class Walk {
     }
     for (const auto& [header, links] : links_) {
       const auto [told, place] = told_links_.at(header);
-      expect(told == links || (others_ && told > links), place, fmt::format("an object is said to have {} names, it has {}", told, links));
+      expect(told == links || (others_ && told > links), place,
+             fmt::format("an object is said to have {} names, it has {}", told, links));
     }
     for (const auto& [target, place] : references_)
       expect(links_.count(target) > 0, place,

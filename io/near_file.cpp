@@ -1,6 +1,6 @@
 #include "io/near_file.hpp"
 
-#include "io/files.hpp"
+#include "io/output_folder_name.hpp"
 #include "numbers/suggest.hpp"
 
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 /// The folder a run writes to: locked while in use, kept when finished, never overwritten by accident.
 
 #include "io/checkpoint.hpp"
-#include "io/files.hpp"
+#include "io/output_folder_name.hpp"
 
 #include <filesystem>
 #include <optional>

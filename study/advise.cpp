@@ -343,8 +343,8 @@ std::string reason_of(const Advice& advice, const AdviseOptions& options, bool t
   const Comparison& c = advice.trials;
   if (!advice.left_out.empty()) return advice.left_out.front();
   if (!tells) {
-    const bool vague = advice.metric == Metric::position &&
-                       c.truth.error.value_or(0) > std::min(10 * rounding, 0.1 * options.error);
+    const bool vague =
+        advice.metric == Metric::position && c.truth.error.value_or(0) > std::min(10 * rounding, 0.1 * options.error);
     return "the trials do not tell how errors depend on the step; " +
            (vague ? fmt::format("the solution that they are measured against, {}, is known to {:.1e} only",
                                 c.truth.name, *c.truth.error)

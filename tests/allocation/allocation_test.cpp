@@ -4,6 +4,7 @@
 #include "forces/bonded.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
+#include "forces/oblateness.hpp"
 #include "forces/sum.hpp"
 #include "integrators/all_schemes.hpp"
 #include "integrators/classical.hpp"
@@ -106,7 +107,7 @@ TEST_CASE("nothing is allocated inside advance, nor by settling", "[allocation]"
   }
   for (const StepKernel kernel : {StepKernel::plain, StepKernel::modified, StepKernel::composed, StepKernel::lazy}) {
     check_none(compose(WisdomHolman({.G = G}), schemes::verlet_aba, {.corrector = 17, .kernel = kernel}));
-    check_none(compose(wisdom_holman({.G = G}, Oblateness{.J2 = 1e-7, .radius = 0.005}), schemes::verlet_aba,
+    check_none(compose(WisdomHolman<double, Oblateness>({.G = G}, {.J2 = 1e-7, .radius = 0.005}), schemes::verlet_aba,
                        {.corrector = 17, .kernel = kernel}));
   }
   check_none(compose(Damped(KineticPotential(Gravity{.G = G}), {.rate = 1e-6}), schemes::verlet));

@@ -14,6 +14,7 @@
 #include "integrators/wisdom_holman.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/drivers.hpp"
+#include "tests/support/planets.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -239,8 +240,9 @@ TEST_CASE("no other particle becomes the primary when that is taken out of a run
     }
   };
   const auto of = [](const std::string& force) {
-    return force + " is about the particle with id 0, which has been taken out; keep it, or start a new run, "
-                   "which is about its own first particle";
+    return force +
+           " is about the particle with id 0, which has been taken out; keep it, or start a new run, "
+           "which is about its own first particle";
   };
   const auto potential = test::kinetic_potential(Gravity{}, GrPotential{.c = 3.0});
   const auto oblate = test::kinetic_potential(Gravity{}, Oblateness{.J2 = 0.01, .radius = 0.1});

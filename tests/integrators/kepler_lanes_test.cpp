@@ -61,6 +61,7 @@ void place(PlanetRow& row, int lane, double a, double e, std::mt19937_64& random
   turn(x, y, row.x);
   turn(u, v, row.v);
   row.mu[lane] = 1;
+  row.moves[lane] = 1;
 }
 
 Vec3<double> vector_of(const double (*of)[8], int lane) { return {of[0][lane], of[1][lane], of[2][lane]}; }

@@ -499,7 +499,8 @@ TEST_CASE("errors below the rounding of doubles are measured, with their order",
     }
     CHECK(row.track.low.size() == row.track.y.size());
     if (row.setting.step > 0.2) continue;
-    CHECK(row.position_error_max.value() < 1e-17);
+    // Departures of a thousandth are doubles in encke_gauss_8: their rounding, 1e-19, grows along the orbits.
+    CHECK(row.position_error_max.value() < (row.who.method == "encke_gauss_8" ? 5e-17 : 1e-19));
     CHECK(row.position_error_max.value() > 1e-24);
     CHECK(row.energy_error_max.value() < 1e-17);
     CHECK(row.energy_error_max.value() > 1e-26);
