@@ -279,7 +279,9 @@ MethodTraits claimed_traits(const KnownMethod& known) {
   traits.momentum = claims.keeps_momentum;
   traits.angular_momentum = claims.keeps_angular_momentum;
   // Of a regular orbit: near-by integrals exist for symplectic maps, and for reversible ones too.
-  traits.energy = claims.symplectic || claims.reversible ? EnergyError::bounded : EnergyError::drifts;
+  // Methods for gravity alone are Gauss's, but for errors far below those of their steps.
+  const bool nearly = known.info != nullptr && known.info->gravity_only;
+  traits.energy = claims.symplectic || claims.reversible || nearly ? EnergyError::bounded : EnergyError::drifts;
   const double limit = known.scheme != nullptr ? known.scheme->stability_limit : known.info->stability_limit;
   if (!std::isnan(limit)) traits.stability_limit = limit;
   if (known.scheme != nullptr) {

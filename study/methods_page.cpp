@@ -35,7 +35,7 @@ cells differ from its claims ends with them in square brackets.
 - **best for**: what the method says of itself.
 
 Methods that serve gravity alone are measured on a star and two planets instead, on states of two doubles against 113
-bits, with steps of a twelfth of the inner planet's period, over a hundred of these for the energy.
+bits, with steps of a sixth of the inner planet's period, over a hundred of its turns for the energy.
 
 Orders (8, 6, 4) and the like, for H = A + eps B with eps small, are measured in
 `tests/order/near_integrable_test.cpp`.

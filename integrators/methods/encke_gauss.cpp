@@ -3,6 +3,7 @@
 #include "integrators/all_methods.hpp"
 #include "integrators/kepler_double_double.hpp"
 #include "integrators/methods/collocation_table.hpp"
+#include "integrators/methods/encke_simd.hpp"
 #include "integrators/methods/last_polynomial.hpp"
 
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 
 #include "integrators/kepler_tangent.hpp"
 #include "integrators/method.hpp"
-#include "integrators/methods/encke_simd.hpp"
+#include "integrators/methods/encke_row.hpp"
 #include "numbers/double_double.hpp"
 
 #include <array>

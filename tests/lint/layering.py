@@ -54,10 +54,16 @@ def problems(root):
                 found.append(f"{where}: Highway header '{header}' may be included only in *_simd.cpp and *_simd.hpp")
             if quoted and IN_LANES.search(path.name) and not FOR_LANES.search(header):
                 found.append(f"{where}: code in lanes may include only *_simd.hpp, *_row.hpp and numbers/simd.hpp, not \"{header}\"")
+            if quoted and header.endswith("_simd.hpp") and is_installed(path):
+                found.append(f"{where}: \"{header}\" is not installed, and this header is; put what it needs into a *_row.hpp")
             for pattern, name, room in GUARDED:
                 if pattern.search(header) and not (path.parts[0] == room and path.suffix == ".cpp"):
                     found.append(f"{where}: {name} header '{header}' may be included only in {room}/*.cpp")
     return found + circles(beneath)
+
+
+def is_installed(path):
+    return path.suffix == ".hpp" and not IN_LANES.search(path.name) and path.parts[0] in LIBRARIES
 
 
 def stem_of(path):

@@ -41,6 +41,7 @@ SAMPLES = [
     ("engine/a.hpp", '#include "forces/b.hpp"\n', layering.problems, "engine may not include forces"),
     ("io/a.cpp", '#include "forces/b.hpp"\n', layering.problems, "io may not include forces"),
     ("integrators/a.hpp", '#include "io/b.hpp"\n', layering.problems, "integrators may not include io"),
+    ("forces/a.hpp", '#include "forces/b_simd.hpp"\n', layering.problems, "is not installed, and this header is"),
     ("engine/a.hpp", '#include "b.hpp"\n', layering.problems, "does not start with a folder"),
     ("engine/a.hpp", '#include "engine/absent.hpp"\n', layering.problems, "there is no file"),
     ("io/a.hpp", "#include <hdf5.h>\n", layering.problems, "HDF5 header"),
