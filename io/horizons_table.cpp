@@ -13,6 +13,13 @@ namespace noether::io {
 
 namespace {
 
+/// A line without what a spreadsheet has put behind it, to give all lines as many fields.
+std::string_view without_padding(std::string_view line) {
+  line = trimmed(line);
+  while (line.ends_with(';') || line.ends_with(',')) line = trimmed(line.substr(0, line.size() - 1));
+  return line;
+}
+
 constexpr std::string_view table_start = "$$SOE", table_end = "$$EOE";
 
 /// What stands between "label :" and a remark in braces, if the line begins with the label.
@@ -64,7 +71,7 @@ class HeadReader {
   HeadReader(const TextFile& text, const UnitSystem& units) : text_(text), units_(units) {}
 
   void read(std::size_t line) {
-    const std::string& content = text_.lines()[line - 1];
+    const std::string content(without_padding(text_.lines()[line - 1]));
     if (trimmed(content).starts_with("Date__(")) {
       text_.fail(line, "this is a table of observations; ask Horizons for vectors (EPHEM_TYPE = VECTORS)");
     }
@@ -155,16 +162,16 @@ std::optional<HorizonsTable> next_horizons_table(const TextFile& text, const Uni
   std::size_t last_line = 0;
   for (; line <= lines.size(); ++line) {
     const std::string_view content = trimmed(lines[line - 1]);
-    if (content == table_start) break;
+    if (without_padding(content) == table_start) break;
     head.read(line);
-    if (content.empty() || content.front() == '*') continue;
+    if (without_padding(content).empty() || content.front() == '*') continue;
     last_text = content;
     last_line = line;
   }
   if (line > lines.size()) return {};
   HorizonsTable table = head.take();
   table.start = line;
-  while (line <= lines.size() && trimmed(lines[line - 1]) != table_end) ++line;
+  while (line <= lines.size() && without_padding(lines[line - 1]) != table_end) ++line;
   if (line > lines.size()) text.fail(table.start, "the table that begins here has no end: '$$EOE' is missing");
   table.end = line;
   if (table.target_line == 0) text.fail(table.start, "the header of this table has no line 'Target body name'");
@@ -191,7 +198,7 @@ double mass_in(const TextFile& text, const UnitSystem& units, std::size_t line, 
 
 bool is_horizons(const TextFile& text) {
   return std::any_of(text.lines().begin(), text.lines().end(),
-                     [](const std::string& line) { return trimmed(line) == table_start; });
+                     [](const std::string& line) { return without_padding(line) == table_start; });
 }
 
 }  // namespace noether::io

@@ -201,8 +201,9 @@ class Setter {
     const std::string there = list.empty()       ? "the list is empty"
                               : list.size() == 1 ? "the only one is number 0"
                                                  : fmt::format("the last one is number {}", list.size() - 1);
-    fail(
-        fmt::format("there is no element {}; {}, and {}{}={{...}} adds one", index, there, head, list.size()));
+    const bool removes = text_.ends_with('=');
+    fail(fmt::format("there is no element {}; {}{}", index, there,
+                     removes ? "" : fmt::format(", and {}{}={{...}} adds one", head, list.size())));
   }
 
   static void drop_alternatives(SceneValue& table, const std::string& key) {

@@ -66,6 +66,17 @@ TEST_CASE("files stand in NAME.out of the working folder, or where --out says", 
   CHECK(default_output_folder("../a/own.scene") == "own.scene.out");
 }
 
+TEST_CASE("a scene in the place of its run is told from the folder that it is in", "[cli][run][messages]") {
+  const SceneFolder folder("");
+  std::filesystem::create_directory(folder / "orbits");
+  write_text(folder / "orbits/scene.toml", two_bodies);
+  const auto inside = [&](std::string_view line) { return run_process(command(line), folder / "orbits"); };
+  REQUIRE(inside("run scene.toml --quiet").exit_code == 0);
+  for (const char* scene : {"scene.toml", "./scene.toml", "../orbits/scene.toml"}) {
+    CHECK(has(inside(std::string("info ") + scene).err, "did you mean 'orbits.out/run.h5'?"));
+  }
+}
+
 TEST_CASE("a finished run is moved away, also one that was stopped or diverged", "[cli][run]") {
   const SceneFolder folder(exploding);
   CHECK(noether(folder, "run scene.toml").exit_code == 1);

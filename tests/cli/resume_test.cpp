@@ -76,6 +76,20 @@ TEST_CASE("a changed key is named and refused", "[cli][resume][messages]") {
   CHECK(noether(folder, "run scene.toml --quiet --resume --set 'title=Another name'").exit_code == 0);
 }
 
+TEST_CASE("a run of an earlier version, which looked for escapes at every hundredth step, goes on", "[cli][resume]") {
+  std::string adaptive = two_bodies;
+  adaptive = adaptive.substr(0, adaptive.find("[integrator]")) +
+             "[integrator]\nmethod = \"dop853\"\nuntil = 1\n[[stop]]\ntype = \"escape\"\ndistance = 100\n";
+  const SceneFolder folder(adaptive + "steps = 100\n");
+  REQUIRE(noether(folder, "run scene.toml --quiet").exit_code == 0);
+  write_text(folder / "scene.toml", adaptive);
+  const ProcessResult result = noether(folder, "run scene.toml --resume --until 2");
+  CHECK(result.exit_code == 0);
+  CHECK(has(result.err, "stop.0.steps was 100, the default of an earlier version; from here on it is 1"));
+  write_text(folder / "scene.toml", adaptive + "steps = 1\n");
+  CHECK(noether(folder, "run scene.toml --resume --until 3").exit_code == 0);
+}
+
 TEST_CASE("without any checkpoint --resume starts afresh", "[cli][resume]") {
   const SceneFolder folder;
   const ProcessResult first = noether(folder, "run scene.toml --json --resume");

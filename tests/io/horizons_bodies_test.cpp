@@ -88,6 +88,13 @@ TEST_CASE("tables of Horizons that a spreadsheet has saved with semicolons or ta
     CHECK(s.velocities()[0] == expected.velocities()[0]);
     CHECK(read_horizons(with(separator), {.epoch = 2451546}).positions()[0][0] == 6.4 * units::solar::km);
   }
+  // A spreadsheet gives all lines as many fields as the longest has.
+  std::string padded;
+  for (const std::string& line : lines_of(with(';'))) {
+    padded += line + std::string(line.find(';') != std::string::npos ? 0 : 9, ';') + "\n";
+  }
+  CHECK(read_horizons(padded).positions()[0] == expected.positions()[0]);
+  CHECK(read_horizons(padded).names() == expected.names());
   CHECK(horizons_refusal(with(' ')) ==
         "h.txt:21: the fields of this table are separated by blanks, but its dates contain blanks too; separate them "
         "by commas, as Horizons does, or by semicolons or tabs");
