@@ -85,7 +85,7 @@ TEST_CASE("a run of an earlier version, which looked for escapes at every hundre
   write_text(folder / "scene.toml", adaptive);
   const ProcessResult result = noether(folder, "run scene.toml --resume --until 2");
   CHECK(result.exit_code == 0);
-  CHECK(has(result.err, "stop.0.steps was 100, the default of an earlier version; from here on it is 1"));
+  CHECK(has(result.out, "warning: stop.0.steps was 100, the default of an earlier version; from here on it is 1"));
   write_text(folder / "scene.toml", adaptive + "steps = 1\n");
   CHECK(noether(folder, "run scene.toml --resume --until 3").exit_code == 0);
 }

@@ -90,7 +90,7 @@ TEST_CASE("tables of Horizons that a spreadsheet has saved with semicolons or ta
   }
   // A spreadsheet gives all lines as many fields as the longest has.
   std::string padded;
-  for (const std::string& line : lines_of(with(';'))) {
+  for (const std::string& line : test::lines_of(with(';'))) {
     padded += line + std::string(line.find(';') != std::string::npos ? 0 : 9, ';') + "\n";
   }
   CHECK(read_horizons(padded).positions()[0] == expected.positions()[0]);
