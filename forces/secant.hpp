@@ -232,8 +232,8 @@ template <class Real> class Secants {
     change.fill(Vec3<Real>::Zero());
     for (std::size_t a = 0; a < n; ++a) {
       for (std::size_t b = 0; b < a; ++b) {
-        const Real longer = norm2(Vec3<Real>(last[a] - last[b])) - norm2(Vec3<Real>(first[a] - first[b]));
-        const Vec3<Real> along = longer * (middle[a] - middle[b]);
+        const Real growth = norm2(Vec3<Real>(last[a] - last[b])) - norm2(Vec3<Real>(first[a] - first[b]));
+        const Vec3<Real> along = growth * (middle[a] - middle[b]);
         change[a] += along;
         change[b] -= along;
       }

@@ -145,7 +145,7 @@ template <class Real = double, class F = Sum<>> class WisdomHolman : private det
   const std::vector<std::int64_t>& order() const { return order_; }
 
   /// The planets in lanes; not bound where they go letter by letter.
-  const PlanetLanes& lanes() const requires may_have_lanes { return lanes_; }
+  const auto& lanes() const { return lanes_; }
 
  private:
   using Base = detail::AboutPrimary<Real>;
@@ -159,12 +159,12 @@ template <class Real = double, class F = Sum<>> class WisdomHolman : private det
   void gather_arcs();
 
   void inertial_velocities(const VectorColumn<Real>& from, VectorColumn<Real>& to) const;
-  bool forces_in_lanes(const ParticleSystem<Real>& s) requires may_have_lanes;
-  void bind_lanes() requires may_have_lanes;
-  void watch_for_encounters() requires may_have_lanes;
-  void flow_of_lanes(char letter, ParticleSystem<Real>& s, const Real& h) requires may_have_lanes;
-  void flow_in_lanes(char letter, ParticleSystem<Real>& s, const Real& h) requires may_have_lanes;
-  Real action_in_lanes(char letter, ParticleSystem<Real>& s, const Real& h) requires may_have_lanes;
+  bool forces_in_lanes(const ParticleSystem<Real>& s);
+  void bind_lanes();
+  void watch_for_encounters();
+  void flow_of_lanes(char letter, ParticleSystem<Real>& s, const Real& h);
+  void flow_in_lanes(char letter, ParticleSystem<Real>& s, const Real& h);
+  Real action_in_lanes(char letter, ParticleSystem<Real>& s, const Real& h);
   void kick_tracers(ParticleSystem<Real>& s, const Real& h);
   const VectorColumn<Real>& middle_of_kick(const ParticleSystem<Real>& s, const Real& h);
 

@@ -105,35 +105,42 @@ template <class Real, class F> void WisdomHolman<Real, F>::bind(ParticleSystem<R
 }
 
 /// Whether the planets in lanes have all forces beside their own: none, or `gr_potential` alone.
-template <class Real, class F>
-bool WisdomHolman<Real, F>::forces_in_lanes(const ParticleSystem<Real>& s) requires may_have_lanes {
-  const GrPotential* relativity = nullptr;
-  if constexpr (std::is_same_v<F, GrPotential>) relativity = &forces_;
-  if constexpr (std::is_same_v<F, Sum<GrPotential>>) {
-    forces_.for_each([&](const GrPotential& one) { relativity = &one; });
+template <class Real, class F> bool WisdomHolman<Real, F>::forces_in_lanes(const ParticleSystem<Real>& s) {
+  if constexpr (may_have_lanes) {
+    const GrPotential* relativity = nullptr;
+    if constexpr (std::is_same_v<F, GrPotential>) relativity = &forces_;
+    if constexpr (std::is_same_v<F, Sum<GrPotential>>) {
+      forces_.for_each([&](const GrPotential& one) { relativity = &one; });
+    }
+    if constexpr (std::is_same_v<F, ForceField<double>>) {
+      if (forces_.terms().size() == 1) relativity = forces_.terms()[0].template as<GrPotential>();
+      if (relativity == nullptr) return forces_.terms().empty();
+    }
+    if (relativity != nullptr) {
+      const double ratio = mu_of_primary(*relativity, s) / speed_of_light_in(s, relativity->c, "gr_potential");
+      planets_.bend = 6 * ratio * ratio;
+    }
+    return true;
+  } else {
+    return false;
   }
-  if constexpr (std::is_same_v<F, ForceField<double>>) {
-    if (forces_.terms().size() == 1) relativity = forces_.terms()[0].template as<GrPotential>();
-    if (relativity == nullptr) return forces_.terms().empty();
-  }
-  if (relativity != nullptr) {
-    const double ratio = mu_of_primary(*relativity, s) / speed_of_light_in(s, relativity->c, "gr_potential");
-    planets_.bend = 6 * ratio * ratio;
-  }
-  return true;
 }
 
 /// Puts the planets into lanes where they can be, in the present order.
-template <class Real, class F> void WisdomHolman<Real, F>::bind_lanes() requires may_have_lanes {
-  lanes_ = {};
-  planets_.order.assign(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(massive()));
-  if (scaled() || !lanes_have_forces_ || !PlanetLanes::can_take(planets_)) return;
-  lanes_.bind(planets_);
-  watch_for_encounters();
+template <class Real, class F> void WisdomHolman<Real, F>::bind_lanes() {
+  if constexpr (may_have_lanes) {
+    lanes_ = {};
+    planets_.order.assign(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(massive()));
+    if (scaled() || !lanes_have_forces_ || !PlanetLanes::can_take(planets_)) return;
+    lanes_.bind(planets_);
+    watch_for_encounters();
+  }
 }
 
-template <class Real, class F> void WisdomHolman<Real, F>::watch_for_encounters() requires may_have_lanes {
-  lanes_.watch([&](Index i, Index j) { return encounters_.square_of_news(i, j); });
+template <class Real, class F> void WisdomHolman<Real, F>::watch_for_encounters() {
+  if constexpr (may_have_lanes) {
+    lanes_.watch([&](Index i, Index j) { return encounters_.square_of_news(i, j); });
+  }
 }
 
 /// What the arcs need of each particle. The mass of the star that a barycentric arc goes round is such that two bodies
@@ -464,37 +471,41 @@ Advance WisdomHolman<Real, F>::run(const TimedWord<Real>& word, ParticleSystem<R
 
 /// One flow of the planets that the lanes hold already, and of the center of mass.
 template <class Real, class F>
-void WisdomHolman<Real, F>::flow_of_lanes(char letter, ParticleSystem<Real>& s, const Real& h) requires may_have_lanes {
-  if (letter == 'A') {
-    s.shift(0, h * std::as_const(s).velocities()[0], Vec3<Real>::Zero());
-    const Index failed = lanes_.drift(h, observing_);
+void WisdomHolman<Real, F>::flow_of_lanes(char letter, ParticleSystem<Real>& s, const Real& h) {
+  if constexpr (may_have_lanes) {
+    if (letter == 'A') {
+      s.shift(0, h * std::as_const(s).velocities()[0], Vec3<Real>::Zero());
+      const Index failed = lanes_.drift(h, observing_);
+      if (observing_) return;
+      evaluations_.kepler += static_cast<Index>(massive()) - 1;
+      if (failed >= 0) fail(s, failed);
+      return;
+    }
+    const bool near = lanes_.kick(h, observing_);
     if (observing_) return;
-    evaluations_.kepler += static_cast<Index>(massive()) - 1;
-    if (failed >= 0) fail(s, failed);
-    return;
+    if (!has_tracers()) ++evaluations_.force;
+    if (!near || !s.phase().opened) return;  // noted where a run goes, not in the word before it
+    moment_ = static_cast<double>(s.clock().time());
+    lanes_.for_pairs([&](Index i, Index j, double r2, double nearer2) {
+      encounters_.note(std::max(i, j), std::min(i, j), r2, nearer2, moment_);
+    });
+    watch_for_encounters();
   }
-  const bool near = lanes_.kick(h, observing_);
-  if (observing_) return;
-  if (!has_tracers()) ++evaluations_.force;
-  if (!near || !s.phase().opened) return;  // noted where a run goes, not in the word before it
-  moment_ = static_cast<double>(s.clock().time());
-  lanes_.for_pairs([&](Index i, Index j, double r2, double nearer2) {
-    encounters_.note(std::max(i, j), std::min(i, j), r2, nearer2, moment_);
-  });
-  watch_for_encounters();
 }
 
 /// The same of planets in the columns; tracers go letter by letter.
 template <class Real, class F>
-void WisdomHolman<Real, F>::flow_in_lanes(char letter, ParticleSystem<Real>& s, const Real& h) requires may_have_lanes {
-  if (has_tracers() && letter == 'A') arcs(s, h, false, static_cast<Index>(massive()));
-  if (has_tracers() && letter == 'B') kick_tracers(s, h);
-  lanes_.load(s);
-  flow_of_lanes(letter, s, h);
-  lanes_.store(s, letter == 'A' || !jacobi());
-  if (has_tracers() && letter == 'B' && !jacobi()) {
-    const Vec3<Real> shift = half_jump(s, h);
-    for (Index i = static_cast<Index>(massive()); i < s.size(); ++i) s.shift(i, shift, Vec3<Real>::Zero());
+void WisdomHolman<Real, F>::flow_in_lanes(char letter, ParticleSystem<Real>& s, const Real& h) {
+  if constexpr (may_have_lanes) {
+    if (has_tracers() && letter == 'A') arcs(s, h, false, static_cast<Index>(massive()));
+    if (has_tracers() && letter == 'B') kick_tracers(s, h);
+    lanes_.load(s);
+    flow_of_lanes(letter, s, h);
+    lanes_.store(s, letter == 'A' || !jacobi());
+    if (has_tracers() && letter == 'B' && !jacobi()) {
+      const Vec3<Real> shift = half_jump(s, h);
+      for (Index i = static_cast<Index>(massive()); i < s.size(); ++i) s.shift(i, shift, Vec3<Real>::Zero());
+    }
   }
 }
 
@@ -521,34 +532,39 @@ template <class Real, class F> void WisdomHolman<Real, F>::kick_tracers(Particle
 /// A flow with its action: that of arcs from their universal variables, that of kicks from the potential letter by
 /// letter.
 template <class Real, class F>
-Real WisdomHolman<Real, F>::action_in_lanes(char letter, ParticleSystem<Real>& s,
-                                            const Real& h) requires may_have_lanes {
-  using std::sqrt;
-  const auto& c = std::as_const(s);
-  Real action(0);
-  if (letter == 'A') {
-    for (std::size_t k = 1; k < massive(); ++k) {
-      const auto i = static_cast<std::size_t>(at(k));
-      const Real speed2 = norm2(c.velocities()[at(k)]), r = sqrt(norm2(c.positions()[at(k)]));
-      action += reduced_[i] * h * (speed2 / Real(2) - g_ * circled_[i] / r);
+Real WisdomHolman<Real, F>::action_in_lanes(char letter, ParticleSystem<Real>& s, const Real& h) {
+  if constexpr (may_have_lanes) {
+    using std::sqrt;
+    const auto& c = std::as_const(s);
+    Real action(0);
+    if (letter == 'A') {
+      for (std::size_t k = 1; k < massive(); ++k) {
+        const auto i = static_cast<std::size_t>(at(k));
+        const Real speed2 = norm2(c.velocities()[at(k)]), r = sqrt(norm2(c.positions()[at(k)]));
+        action += reduced_[i] * h * (speed2 / Real(2) - g_ * circled_[i] / r);
+      }
+      action += h * interior_.back() * norm2(c.velocities()[0]) / Real(2);
+      flow(letter, s, h);
+      for (std::size_t k = 1; k < massive(); ++k) {
+        const auto i = static_cast<std::size_t>(at(k));
+        action += Real(2) * reduced_[i] * g_ * circled_[i] * lanes_.arc(k - 1);
+      }
+      return action;
     }
-    action += h * interior_.back() * norm2(c.velocities()[0]) / Real(2);
+    const bool observing = std::exchange(observing_, true);  // this look at the forces is not counted
+    begin_kick(s);
+    action -= h * accelerate(middle_of_kick(c, h), s.clock(), true);
+    observing_ = observing;
+    // J is momentum^2/2 m_0, and half a jump h/2 momentum/m_0.
+    const auto jump_action = [&] {
+      return jacobi() || h == Real(0) ? Real(0) : masses_[0] * norm2(half_jump(c, h)) / h;
+    };
+    action += jump_action();
     flow(letter, s, h);
-    for (std::size_t k = 1; k < massive(); ++k) {
-      const auto i = static_cast<std::size_t>(at(k));
-      action += Real(2) * reduced_[i] * g_ * circled_[i] * lanes_.arc(k - 1);
-    }
-    return action;
+    return action + jump_action();
+  } else {
+    return Real(0);
   }
-  const bool observing = std::exchange(observing_, true);  // this look at the forces is not counted
-  begin_kick(s);
-  action -= h * accelerate(middle_of_kick(c, h), s.clock(), true);
-  observing_ = observing;
-  // J is momentum^2/2 m_0, and half a jump h/2 momentum/m_0.
-  const auto jump_action = [&] { return jacobi() || h == Real(0) ? Real(0) : masses_[0] * norm2(half_jump(c, h)) / h; };
-  action += jump_action();
-  flow(letter, s, h);
-  return action + jump_action();
 }
 
 }  // namespace noether
