@@ -25,7 +25,7 @@ SceneValue values(std::vector<std::pair<std::string, SceneValue>> entries) {
 SceneValue number(double value) { return SceneValue::of(value); }
 SceneValue text(const std::string& value) { return SceneValue::of(value); }
 
-const std::string pair = R"(
+const std::string damped_pair = R"(
 units = "reduced"
 [[particles.body]]
 name = "a"
@@ -56,7 +56,7 @@ steps = 10
 )";
 
 Scene scene_of(const std::string& method) {
-  std::string scene = pair;
+  std::string scene = damped_pair;
   return read_scene(scene.replace(scene.find("METHOD"), 6, method), "pair.toml");
 }
 
