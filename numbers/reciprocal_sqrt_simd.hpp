@@ -23,9 +23,8 @@ template <class D, class V, int n> HWY_INLINE void times(D d, const V (&h)[n], d
   for (int k = 0; k < n; ++k) series[k] = hn::MulAdd(series[k], h[k], hn::Set(d, coefficient));
 }
 
-/// y_k near 1 / sqrt(x_k): by the processor's seed of 14 bits, or to 7.7e-7 by a step behind one from the exponent.
-template <class D, class V, int n> HWY_INLINE void seed(D d, const V (&x)[n], V (&y)[n]) {
-#if HWY_TARGET == HWY_AVX2
+/// y_k near 1 / sqrt(x_k), to 7.7e-7, with the same bits on every processor: a seed from the exponent, and one step.
+template <class D, class V, int n> HWY_INLINE void integer_seed(D d, const V (&x)[n], V (&y)[n]) {
   const hn::RebindToUnsigned<D> bits;
   const auto magic = hn::Set(bits, std::uint64_t{0x5FE6EB50C7B537A9});
   for (int k = 0; k < n; ++k) {
@@ -39,6 +38,12 @@ template <class D, class V, int n> HWY_INLINE void seed(D d, const V (&x)[n], V 
   times(d, h, 0.500001318508243, series);
   times(d, h, 0.9999992549645748, series);
   for (int k = 0; k < n; ++k) y[k] = hn::Mul(y[k], series[k]);
+}
+
+/// y_k near 1 / sqrt(x_k): by the processor's seed of 14 bits, or by `integer_seed`.
+template <class D, class V, int n> HWY_INLINE void seed(D d, const V (&x)[n], V (&y)[n]) {
+#if HWY_TARGET == HWY_AVX2
+  integer_seed(d, x, y);
 #else
   static_cast<void>(d);
   for (int k = 0; k < n; ++k) y[k] = V{_mm512_rsqrt14_pd(x[k].raw)};

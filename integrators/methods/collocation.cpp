@@ -1,10 +1,9 @@
 #include "integrators/methods/collocation.hpp"
 
-#include "integrators/all_methods.hpp"
 #include "integrators/methods/dense_factors.hpp"
+#include "integrators/methods/step_ladder.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -18,17 +17,6 @@ constexpr auto lanes = static_cast<Index>(lane_count);
 constexpr double short_step = 64;
 /// A step is made again if the one that meets the tolerance is shorter by more than this factor.
 constexpr double accepted = 0.6;
-
-/// x^(1/n) to a part in a thousand, which is all that the length of a step asks for, for normal x > 0: a straight line
-/// through the exponents, then a step of Halley's. It takes a third of the time of a power, and has the same bits
-/// whatever library that comes from.
-double near_root(double x, int n) {
-  const auto one = std::bit_cast<std::int64_t>(1.0);
-  const auto y = std::bit_cast<double>((std::bit_cast<std::int64_t>(x) - one) / n + one);
-  double power = 1;
-  for (int k = 0; k < n; ++k) power *= y;
-  return y * ((n - 1) * power + (n + 1) * x) / ((n + 1) * power + (n - 1) * x);
-}
 
 template <class Real> Real rounded(const Quad& x, Real& low) {
   const Real high = static_cast<Real>(x);
@@ -461,6 +449,14 @@ template <class Real> double Collocation<Real>::roughness(const Vector<Real>& y,
   return std::sqrt(worst);
 }
 
+template <class Real>
+void Collocation<Real>::go_on_from(const AlignedVector<Real>& low, const AlignedVector<Real>& rates, double h) {
+  std::copy(low.begin(), low.end(), low_.begin());
+  std::copy(rates.begin(), rates.end(), previous_.begin());
+  h_ = h;
+  swept_ = 0;
+}
+
 template <class Real> void Collocation<Real>::save(SavedState& saved, const std::string& prefix) const {
   save_value(saved, prefix + "next", next_);
   save_value(saved, prefix + "h", h_);
@@ -488,75 +484,5 @@ template <class Real> void Collocation<Real>::load(const SavedState& saved, cons
 
 template class Collocation<double>;
 template class Collocation<Quad>;
-
-namespace methods {
-
-namespace {
-
-int stages_of(std::string_view name) { return name == "implicit_midpoint" ? 1 : name.back() - '0'; }
-
-template <class Real> std::unique_ptr<Method<Real>> gauss(const MethodInfo& info, const MethodOptions& options) {
-  return std::make_unique<Collocation<Real>>(info, options, gauss_table(stages_of(info.name)), true);
-}
-template <class Real> std::unique_ptr<Method<Real>> radau(const MethodInfo& info, const MethodOptions& options) {
-  return std::make_unique<Collocation<Real>>(info, options, radau_left_table(), false);
-}
-
-MethodInfo gauss_info(std::string_view name, std::string_view summary, std::string_view use, int stages) {
-  return {.name = name,
-          .aliases = stages == 1 ? "gauss_1" : "",
-          .summary = summary,
-          .use = use,
-          .source = "Butcher1964",
-          .family = "collocation",
-          .options = {linear_solver},
-          .order = 2 * stages,
-          .adaptive = stages > 2,
-          .rtol = 1e-16,
-          .atol = 0,
-          .stability_limit = std::numeric_limits<double>::infinity(),
-          .make = gauss<double>,
-          .make_quad = gauss<Quad>};
-}
-
-}  // namespace
-
-std::span<const MethodInfo> collocation_list() {
-  static const MethodInfo list[] = {
-      gauss_info("implicit_midpoint", "the implicit midpoint rule: symplectic, symmetric, by iteration to rounding",
-                 "forces that depend on velocities and stiff springs, where a symmetric step of low order will do", 1),
-      gauss_info("gauss_2", "Gauss and Legendre's collocation with 2 stages, to rounding",
-                 "any forces at order 4, where a composition would have to split them", 2),
-      gauss_info("gauss_3", "Gauss and Legendre's collocation with 3 stages, to rounding",
-                 "any forces at order 6, where a composition would have to split them", 3),
-      gauss_info("gauss_4", "Gauss and Legendre's collocation with 4 stages, to rounding",
-                 "any forces at order 8, where a composition would have to split them", 4),
-      gauss_info("gauss_5", "Gauss and Legendre's collocation with 5 stages, to rounding",
-                 "any forces at order 10, where a composition would have to split them", 5),
-      gauss_info("gauss_6", "Gauss and Legendre's collocation with 6 stages, to rounding",
-                 "any forces at order 12, where a composition would have to split them", 6),
-      gauss_info("gauss_7", "Gauss and Legendre's collocation with 7 stages, to rounding",
-                 "any forces at order 14, where a composition would have to split them", 7),
-      gauss_info("gauss_8", "Gauss and Legendre's collocation with 8 stages in lanes: the reference, to rounding",
-                 "errors at rounding level, close encounters and eccentric orbits included", 8),
-      {.name = "gauss_radau_15",
-       .aliases = "ias15",
-       .summary = "Gauss-Radau collocation of order 15, the nodes of IAS15, to rounding",
-       .use = "runs that are to be compared with IAS15, planets for some 1e5 years; `gauss_8` is symplectic",
-       .source = "ReinSpiegel2015",
-       .family = "collocation",
-       .options = {linear_solver},
-       .order = 15,
-       .adaptive = true,
-       .rtol = 1e-16,
-       .atol = 0,
-       .stability_limit = 1.3613,
-       .make = radau<double>,
-       .make_quad = radau<Quad>},
-  };
-  return list;
-}
-
-}  // namespace methods
 
 }  // namespace noether

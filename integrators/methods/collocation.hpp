@@ -60,6 +60,10 @@ template <class Real> class Collocation final : public Method<Real> {
   void save(SavedState& saved, const std::string& prefix) const override;
   void load(const SavedState& saved, const std::string& prefix) override;
 
+  /// Goes on where the same method, computed in another way, stands: rounding errors of y, shape (size), and rates of
+  /// the step of `h` that led there, shape (n, 8); of 0 if nothing is to be taken from them.
+  void go_on_from(const AlignedVector<Real>& low, const AlignedVector<Real>& rates, double h);
+
  private:
   enum class Sweeps : std::uint8_t { converged, diverged };
 

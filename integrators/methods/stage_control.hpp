@@ -1,0 +1,57 @@
+#pragma once
+/// How long steps of Gauss's method may be under gravity, from the rates of a step just made.
+
+#include "engine/column.hpp"
+#include "integrators/methods/collocation_table.hpp"
+#include "numbers/types.hpp"
+
+#include <vector>
+
+namespace noether {
+
+/// The longer of two steps, each of which keeps errors at rounding by itself.
+///
+/// First, by the timescale of each body, from acceleration a, jerk j and snap s of the polynomial through the rates, in
+/// the middle and at the end of the step:
+///
+///     tau^-2 = max over bodies of (j^2 + a s) / (2 a^2)
+///
+/// The step made may be eta min(tau_middle, tau_end), the next one eta tau_end, less where tau shrinks. Second, by the
+/// last Legendre coefficient of the rates, relative to the rates of the same body. The second is computed only where
+/// the first would shorten the step: a body that crosses a place where forces cancel has a short timescale although
+/// nothing happens, and a coefficient vanishes now and then.
+///
+/// The rate of the heaviest body is a sum that may cancel: it counts as no smaller than that by which any other one
+/// alone would move it.
+/// @source PhamReinSpiegel2024
+class StageControl {
+ public:
+  /// A step is made again if it may have no more than this part of its length.
+  static constexpr double kept = 0.8;
+
+  StageControl(const CollocationTable& table, double rtol);
+  void bind(const std::vector<double>& masses);
+
+  struct Lengths {
+    double made = 0, next = 0;  ///< that the step just made, and the next one, may have [time], above 0
+  };
+  /// @param rates    of the step just made, shape (3 n, 8), padded to a multiple of eight variables
+  /// @param h        its length
+  /// @param at_hand  of the next step, unless it has to be shorter
+  Lengths lengths(const double* rates, double h, double at_hand);
+
+ private:
+  Lengths by_timescale(const double* rates, double h);
+  double by_last_coefficient(const double* rates, double h);
+  double timescale(std::size_t row) const;
+
+  double eta_, target_;
+  AlignedVector<double> weights_;  ///< value and derivatives in the middle and at the end, shape (6, 8)
+  AlignedVector<double> last_;     ///< of the last coefficient, shape (8)
+  Index n_ = 0;
+  std::size_t heaviest_ = 0, stride_ = 0;
+  std::vector<double> mass2_;  ///< squares of masses, that of the heaviest one is 1
+  AlignedVector<double> rows_, sums_, largest_;
+};
+
+}  // namespace noether
