@@ -242,7 +242,7 @@ inline std::optional<Failure> underflow(double t, double h, const ParticleScales
       Outcome::Kind::step_underflow, lost.particle, "step",
       fmt::format(
           "doubles cannot resolve the orbit of {} about {} at time {:.9g}: their distance of {:.3g} is lost in the "
-          "rounding of positions; use 'gauss_8', which steps relative to such a body, or put the origin there",
+          "rounding of positions; use 'gauss_8', which keeps such distances, or put the origin there",
           lost.name, lost.neighbor_name, t, lost.distance)};
 }
 

@@ -1,7 +1,6 @@
 #include "integrators/methods/gravity_gauss.hpp"
 
 #include "integrators/methods/collocation_simd.hpp"
-#include "integrators/methods/step_ladder.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +16,11 @@ constexpr Index most_bodies = 64;
 /// in the step is a hundredth again.
 constexpr double settled_change = 1e-14;
 constexpr int most_sweeps = 40;
+/// Of displacements, relative to these, by which rates of two sweeps may differ for ever.
+constexpr double rounding_of_displacements = 0x1p-50;
+/// A step becomes longer if it may have more than so many times its length: by more than a rung where it has become
+/// shorter before, or it would climb and fall with every orbit.
+constexpr double after_longer = 1.25, after_shorter = 1.5;
 /// Sweeps after which a change that is rounding of the parts of a rate, but not of their sum, is looked for.
 constexpr int many_sweeps = 12;
 
@@ -101,15 +105,18 @@ GravityGauss::GravityGauss(const MethodInfo& info, const MethodOptions& options)
 void GravityGauss::bind(const VectorField<double>& f) {
   general_.bind(f);
   n_ = f.particles();
+  pairs_ = 0;
   in_use_ = n_ >= 2 && n_ <= most_bodies && f.gravity_of_points() && !f.has_forces_beside_gravity() && bind_masses(f);
   if (!in_use_) return;
   const auto padded = static_cast<std::size_t>((3 * n_ + 7) / 8 * 8);
   for (auto* all : {&made_[0], &made_[1], &now_, &before_, &known_, &d_}) all->assign(stages * padded, 0);
   low_.assign(static_cast<std::size_t>(6 * n_), 0);
-  on_grid_.assign(padded, 0);
-  apart_.assign(static_cast<std::size_t>(3 * pairs_), 0);
+  on_grid_.assign(static_cast<std::size_t>(6 * n_), 0);
+  apart_.assign(3 * stages * static_cast<std::size_t>(pairs_), 0);
   sizes_.assign(static_cast<std::size_t>(n_), 0);
-  h_ = h_before_ = next_ = grid_ = length_ = ratio_ = 0;
+  h_ = h_before_ = next_ = length_ = ratio_ = 0;
+  grids_ = {};
+  longer_ = after_longer;
   sweeps_ = 0;
 }
 
@@ -164,7 +171,8 @@ double GravityGauss::next_step(VectorField<double>& f, const double& t, const Ve
   if (next_ == 0) {
     next_ =
         first_ > 0 ? signed_as(first_, h) : first_step(f, t, y, order_, Tolerance(std::max(rtol_, 1e-14), 1e-300), h);
-    if (first_ <= 0) next_ = signed_as(rung_below(std::abs(next_)), next_);
+    ladder_ = StepLadder::around(std::abs(next_));
+    if (first_ <= 0) next_ = signed_as(ladder_.unit(), next_);
   }
   return shorter(next_, h);
 }
@@ -196,14 +204,16 @@ StepResult GravityGauss::adaptive_step(VectorField<double>& f, const double& t, 
     if (converged) may = control_.lengths(now_.data(), h, at_hand);
     if (converged && may.made >= StageControl::kept * h) {
       double next = at_hand;
-      if (may.next < at_hand) next = rung_below(std::max(may.next, 0.2 * at_hand));
-      if (may.next > 1.25 * at_hand) next = rung_below(std::min(0.98 * may.next, 3 * at_hand));
+      if (may.next < at_hand) next = ladder_.below(std::max(may.next, 0.2 * at_hand));
+      if (may.next > longer_ * at_hand) next = ladder_.below(std::min(0.98 * may.next, 3 * at_hand));
+      if (next != at_hand) longer_ = next < at_hand ? after_shorter : after_longer;
       next_ = signed_as(next, made.h);
       finish(y);
       return made;
     }
     ++made.rejected;
-    next_ = signed_as(rung_below(h * (converged ? std::clamp(may.made / h, 0.2, 0.9) : 0.5)), made.h);
+    next_ = signed_as(ladder_.below(h * (converged ? std::clamp(may.made / h, 0.2, 0.9) : 0.5)), made.h);
+    longer_ = after_shorter;
     made.failure = underflow(t, next_);
     if (made.failure) return made;
   }
@@ -235,22 +245,26 @@ void GravityGauss::set_length(double h) {
   }
 }
 
-/// Takes a grid that reaches four times as far as the bodies, where one of them has left the one at hand.
-void GravityGauss::widen_grid(const Vector<double>& y) {
-  double most = 0;
-  for (Index k = 0; k < 3 * n_; ++k) most = std::max(most, std::abs(y[k]));
-  if (most <= grid_) return;
-  int exponent = 0;
-  static_cast<void>(std::frexp(4 * most, &exponent));
-  grid_ = std::ldexp(1.0, exponent);
+/// Takes a grid that reaches four times as far as positions, or velocities, where one of them is beyond half of the one
+/// at hand.
+void GravityGauss::widen_grids(const Vector<double>& y) {
+  for (Index half = 0; half < 2; ++half) {
+    double& grid = grids_[static_cast<std::size_t>(half)];
+    double most = 0;
+    for (Index k = 0; k < 3 * n_; ++k) most = std::max(most, std::abs(y[3 * n_ * half + k]));
+    if (2 * most <= grid) continue;
+    int exponent = 0;
+    static_cast<void>(std::frexp(4 * most, &exponent));
+    grid = std::ldexp(1.0, exponent);
+  }
 }
 
 void GravityGauss::begin(const Vector<double>& y) {
-  widen_grid(y);
-  const double* const x = y.data();
-  gravity_gauss_kernels().begin(
-      {n_, x, low_.data(), x + 3 * n_, c_h_.data(), c_h_low_.data(), grid_, on_grid_.data(), known_.data()});
-  gravity_gauss_kernels().separations(bodies(), n_, on_grid_.data(), apart_.data(), pairs_);
+  widen_grids(y);
+  const StepBeginning beginning{
+      n_, y.data(), low_.data(), c_h_.data(), c_h_low_.data(), {grids_[0], grids_[1]}, on_grid_.data(), known_.data()};
+  gravity_gauss_kernels().begin(beginning);
+  gravity_gauss_kernels().separations(bodies(), beginning, apart_.data());
 }
 
 /// The first displacements of a step.
@@ -319,7 +333,7 @@ bool GravityGauss::solve(VectorField<double>& f, const Vector<double>& y) {
 }
 
 /// Whether the last sweep has changed rates by no more than rounding of the pulls that they are sums of, which may
-/// nearly cancel.
+/// nearly cancel, and of displacements, which two bodies may have in common.
 bool GravityGauss::is_rounding() {
   const auto n = static_cast<std::size_t>(n_);
   for (std::size_t k = 0; k < stages; ++k) {
@@ -329,13 +343,14 @@ bool GravityGauss::is_rounding() {
     std::fill(sizes_.begin(), sizes_.end(), 0.0);
     std::size_t pair = 0;
     const auto pull = [&](std::ptrdiff_t i, std::ptrdiff_t j) {  // by its size
-      double r2 = 0;
+      double r2 = 0, d2 = 0;
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double apart = apart_[static_cast<std::size_t>(pairs_) * axis + pair];
+        const double apart = apart_[stages * (static_cast<std::size_t>(pairs_) * axis + pair) + k];
         const double x = (component(d_, j, axis) - component(d_, i, axis)) + apart;
         r2 += x * x;
+        d2 += component(d_, i, axis) * component(d_, i, axis);
       }
-      return weight_[pair++] / r2;
+      return weight_[pair++] / r2 * std::max(1.0, rounding_of_displacements / settled_change * std::sqrt(d2 / r2));
     };
     for (std::size_t a = 0; a < massive_.size(); ++a) {
       for (std::size_t b = a + 1; b < massive_.size(); ++b) {
@@ -384,9 +399,11 @@ void GravityGauss::save(SavedState& saved, const std::string& prefix) const {
   }
   save_value(saved, prefix + "gravity", true);
   save_value(saved, prefix + "next", next_);
+  save_value(saved, prefix + "ladder", ladder_.unit());
+  save_value(saved, prefix + "longer", longer_);
   save_value(saved, prefix + "h", h_);
   save_value(saved, prefix + "h_before", h_before_);
-  save_value(saved, prefix + "grid", grid_);
+  save_value(saved, prefix + "grids", std::vector<double>(grids_.begin(), grids_.end()));
   save_value(saved, prefix + "swept", std::int64_t{sweeps_});
   save_value(saved, prefix + "low", std::vector<double>(low_.begin(), low_.end()));
   save_value(saved, prefix + "previous", std::vector<double>(made_[0].begin(), made_[0].end()));
@@ -395,7 +412,9 @@ void GravityGauss::save(SavedState& saved, const std::string& prefix) const {
 
 /// Runs of versions without a form for gravity have the rates of one step, and no grid.
 void GravityGauss::load(const SavedState& saved, const std::string& prefix) {
-  if (saved.contains(prefix + "gravity")) load_value(saved, prefix + "gravity", in_use_);
+  bool gravity = in_use_;
+  if (saved.contains(prefix + "gravity")) load_value(saved, prefix + "gravity", gravity);
+  in_use_ = in_use_ && gravity;
   if (!in_use_) return general_.load(saved, prefix);
   load_value(saved, prefix + "next", next_);
   load_value(saved, prefix + "h", h_);
@@ -409,10 +428,19 @@ void GravityGauss::load(const SavedState& saved, const std::string& prefix) {
   };
   load_all("low", low_);
   load_all("previous", made_[0]);
-  h_before_ = grid_ = 0;
+  h_before_ = 0;
+  grids_ = {};
+  longer_ = after_longer;
+  if (next_ != 0) ladder_ = StepLadder::around(std::abs(next_));
   if (!saved.contains(prefix + "before")) return;
+  double unit = 1;
+  load_value(saved, prefix + "ladder", unit);
+  ladder_ = StepLadder(unit);
+  load_value(saved, prefix + "longer", longer_);
   load_value(saved, prefix + "h_before", h_before_);
-  load_value(saved, prefix + "grid", grid_);
+  std::vector<double> grids;
+  load_value(saved, prefix + "grids", grids);
+  for (std::size_t k = 0; k < grids_.size(); ++k) grids_[k] = detail::element(grids, k);
   load_all("before", made_[1]);
 }
 

@@ -4,6 +4,7 @@
 #include "integrators/methods/collocation.hpp"
 #include "integrators/methods/gravity_gauss_simd.hpp"
 #include "integrators/methods/stage_control.hpp"
+#include "integrators/methods/step_ladder.hpp"
 
 #include <array>
 
@@ -12,19 +13,19 @@ namespace noether {
 /// `Collocation` with eight stages in doubles; of point masses alone it computes the same map with less rounding, in
 /// fewer sweeps, and chooses its steps by `StageControl`.
 ///
-/// - Separations are kept apart from positions: a position is a number on a grid common to all bodies, so that
-///   differences are exact, and a displacement d_i, so that a pair is (d_j - d_i) + (X_j - X_i). Rounding of positions
-///   far from the origin does not enter forces.
+/// - Separations are kept apart from positions: positions X and velocities V on grids common to all bodies, so that
+///   differences are exact, and displacements d; a pair is (d_j - d_i) + (X_j - X_i) + c h (V_j - V_i). What two bodies
+///   have in common, far from the origin or in fast motion, takes no digits from what is between them.
 /// - Pairs of massive bodies have G m_i m_j in two words, and bodies 1 / m_i: both feel the same vector.
 /// - The update is that of the fourth stage and of differences from it.
 /// - Stages begin where a polynomial of degree 12 through the 16 nodes of the last two steps leads, by least squares;
 ///   after a change of the step where that of degree 7 through the last one leads.
 /// - Convergence is looked at once a step, after as many sweeps as the last step has taken: some body's rate has
-///   changed by more than 1e-14 of itself, or none has.
+///   changed by more than 1e-14 of itself (a hundredth of rtol, where that is more), or none has.
 ///
 /// Bodies up to 64. Everything else, and steps of one length in which sweeps do not converge, and all after these, are
 /// steps of `Collocation`.
-/// @cost 4 to 5 sweeps of eight evaluations in lanes
+/// @cost 3 to 7 sweeps of eight evaluations in lanes, 4 to 5 with steps of its own choice
 /// @source HairerLubichWanner2006
 class GravityGauss final : public Method<double> {
  public:
@@ -47,7 +48,7 @@ class GravityGauss final : public Method<double> {
   bool bind_masses(const VectorField<double>& f);
   StepResult adaptive_step(VectorField<double>& f, const double& t, Vector<double>& y, double most);
   void set_length(double h);
-  void widen_grid(const Vector<double>& y);
+  void widen_grids(const Vector<double>& y);
   void begin(const Vector<double>& y);
   void predict();
   bool solve(VectorField<double>& f, const Vector<double>& y);
@@ -74,7 +75,9 @@ class GravityGauss final : public Method<double> {
   std::array<Numbers, 2> made_;           ///< rates of the last two steps, shape (3 n, 8)
   double h_ = 0, h_before_ = 0;           ///< their lengths; 0 for none
   double next_ = 0;                       ///< to be tried
-  double grid_ = 0;                       ///< a power of two above all positions so far
+  StepLadder ladder_;                     ///< of the steps that follow the first one
+  double longer_ = 0;                     ///< a step becomes longer if it may have more than so many times its length
+  std::array<double, 2> grids_{};         ///< powers of two above all positions, and all velocities, so far
   int sweeps_ = 0;                        ///< asked for in the next step
   Numbers now_, before_;                  ///< rates of the last two sweeps
   Numbers known_, d_, on_grid_, apart_;   ///< of the step at hand

@@ -10,7 +10,7 @@ using Lanes = hn::CappedTag<double, 8>;
 using Vector = hn::Vec<Lanes>;
 constexpr std::ptrdiff_t stages = 8, lanes = hn::MaxLanes(Lanes());
 
-/// Accelerations and displacements of all bodies: x, y and z.
+/// Accelerations, displacements or separations, eight of each: x, y and z.
 struct Axes {
   const double *x, *y, *z;
   Axes(const double* all, std::ptrdiff_t stride) : x(all), y(all + stride), z(all + 2 * stride) {}
@@ -19,29 +19,42 @@ struct Axes {
 void begin(const StepBeginning& beginning) {
   const Lanes d;
   const StepBeginning b = beginning;
-  const double big = 1.5 * b.grid;  // its sums are multiples of 2^-52 of the grid
-  for (std::ptrdiff_t k = 0; k < 3 * b.bodies; ++k) b.on_grid[k] = (b.x[k] + big) - big;
+  const std::ptrdiff_t n = 3 * b.bodies;
+  for (int half = 0; half < 2; ++half) {
+    const double big = 1.5 * b.grids[half];  // its sums are multiples of 2^-52 of the grid
+    for (std::ptrdiff_t k = half * n; k < (half + 1) * n; ++k) b.on_grid[k] = (b.y[k] + big) - big;
+  }
   for (std::ptrdiff_t i = 0; i < stages; i += lanes) {
     const Vector c_h = hn::LoadU(d, b.c_h + i), c_h_low = hn::LoadU(d, b.c_h_low + i);
-    for (std::ptrdiff_t k = 0; k < 3 * b.bodies; ++k) {
-      const Vector v = hn::Set(d, b.v[k]), rest = hn::Set(d, (b.x[k] - b.on_grid[k]) + b.x_low[k]);
-      hn::StoreU(hn::MulAdd(c_h, v, hn::MulAdd(c_h_low, v, rest)), d, b.known + stages * k + i);
+    for (std::ptrdiff_t k = 0; k < n; ++k) {
+      const Vector x = hn::Set(d, (b.y[k] - b.on_grid[k]) + b.low[k]), most = hn::Set(d, b.on_grid[n + k]);
+      const Vector v = hn::Set(d, (b.y[n + k] - b.on_grid[n + k]) + b.low[n + k]);
+      hn::Store(hn::MulAdd(c_h, v, hn::MulAdd(c_h_low, most, x)), d, b.known + stages * k + i);
     }
   }
 }
 
-void separations(const AttractingBodies& bodies, std::ptrdiff_t n, const double* on_grid, double* out,
-                 std::ptrdiff_t pairs) {
+/// From body i to body j: (X_j - X_i) + c h (V_j - V_i), rounded once.
+HWY_INLINE void separate(const StepBeginning& b, std::ptrdiff_t i, std::ptrdiff_t j, double* out) {
+  const Lanes d;
+  const double* const v = b.on_grid + 3 * b.bodies;
+  const Vector dx = hn::Set(d, b.on_grid[j] - b.on_grid[i]), dv = hn::Set(d, v[j] - v[i]);
+  for (std::ptrdiff_t k = 0; k < stages; k += lanes) {
+    hn::Store(hn::MulAdd(hn::LoadU(d, b.c_h + k), dv, dx), d, out + k);
+  }
+}
+
+void separations(const AttractingBodies& bodies, const StepBeginning& beginning, double* out) {
   const AttractingBodies b = bodies;
-  for (std::ptrdiff_t axis = 0; axis < 3; ++axis, on_grid += n, out += pairs) {
-    double* to = out;
+  const StepBeginning at = beginning;
+  for (std::ptrdiff_t axis = 0; axis < 3 * at.bodies; axis += at.bodies) {
     for (std::ptrdiff_t k = 0; k < b.massive_count; ++k) {
-      const double from = on_grid[b.massive[k]];
-      for (std::ptrdiff_t l = k + 1; l < b.massive_count; ++l) *to++ = on_grid[b.massive[l]] - from;
+      for (std::ptrdiff_t l = k + 1; l < b.massive_count; ++l, out += stages)
+        separate(at, axis + b.massive[k], axis + b.massive[l], out);
     }
     for (std::ptrdiff_t k = 0; k < b.tracer_count; ++k) {
-      const double from = on_grid[b.tracers[k]];
-      for (std::ptrdiff_t l = 0; l < b.massive_count; ++l) *to++ = on_grid[b.massive[l]] - from;
+      for (std::ptrdiff_t l = 0; l < b.massive_count; ++l, out += stages)
+        separate(at, axis + b.tracers[k], axis + b.massive[l], out);
     }
   }
 }
@@ -85,11 +98,12 @@ struct Pull {
   Vector x, y, z;
 
   HWY_INLINE Pull(const Body& body, const Axes& d, std::ptrdiff_t at, const Axes& apart, std::ptrdiff_t pair,
-                  const AttractingBodies& b, Vector& least) {
-    const Lanes lane;
-    const Vector dx = hn::Add(hn::Sub(hn::Load(lane, d.x + at), body.x), hn::Set(lane, apart.x[pair]));
-    const Vector dy = hn::Add(hn::Sub(hn::Load(lane, d.y + at), body.y), hn::Set(lane, apart.y[pair]));
-    const Vector dz = hn::Add(hn::Sub(hn::Load(lane, d.z + at), body.z), hn::Set(lane, apart.z[pair]));
+                  std::ptrdiff_t lane, const AttractingBodies& b, Vector& least) {
+    const Lanes tag;
+    const std::ptrdiff_t by = stages * pair + lane;
+    const Vector dx = hn::Add(hn::Sub(hn::Load(tag, d.x + at), body.x), hn::Load(tag, apart.x + by));
+    const Vector dy = hn::Add(hn::Sub(hn::Load(tag, d.y + at), body.y), hn::Load(tag, apart.y + by));
+    const Vector dz = hn::Add(hn::Sub(hn::Load(tag, d.z + at), body.z), hn::Load(tag, apart.z + by));
     const Vector r2 = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
     least = hn::Min(least, r2);
     const Vector c = weighted_cube(r2, b.weight[pair], b.weight_low[pair]);
@@ -116,7 +130,7 @@ HWY_INLINE void attract_row(const AttractingBodies& b, std::ptrdiff_t k, std::pt
             felt(az, own)};
   for (std::ptrdiff_t l = k + 1; l < b.massive_count; ++l, ++pair) {
     const std::ptrdiff_t at = stages * b.massive[l] + lane;
-    const Pull pull(body, d, at, apart, pair, b, least);
+    const Pull pull(body, d, at, apart, pair, lane, b, least);
     body.ax = hn::Add(body.ax, pull.x);
     body.ay = hn::Add(body.ay, pull.y);
     body.az = hn::Add(body.az, pull.z);
@@ -134,7 +148,7 @@ double attract(const AttractingBodies& bodies, std::ptrdiff_t n, const double* d
                const double* separations_of_pairs, std::ptrdiff_t pairs, double* a) {
   const Lanes tag;
   const AttractingBodies b = bodies;
-  const Axes d(displacements, stages * n), apart(separations_of_pairs, pairs);
+  const Axes d(displacements, stages * n), apart(separations_of_pairs, stages * pairs);
   Vector least = hn::Set(tag, 1e300);
   for (std::ptrdiff_t lane = 0; lane < stages; lane += lanes) {
     std::ptrdiff_t pair = 0;
@@ -149,7 +163,7 @@ double attract(const AttractingBodies& bodies, std::ptrdiff_t n, const double* d
                 hn::Zero(tag),
                 hn::Zero(tag)};
       for (std::ptrdiff_t l = 0; l < b.massive_count; ++l, ++pair) {
-        const Pull pull(body, d, stages * b.massive[l] + lane, apart, pair, b, least);
+        const Pull pull(body, d, stages * b.massive[l] + lane, apart, pair, lane, b, least);
         body.ax = hn::Add(body.ax, pull.x);
         body.ay = hn::Add(body.ay, pull.y);
         body.az = hn::Add(body.az, pull.z);

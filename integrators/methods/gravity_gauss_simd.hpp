@@ -21,11 +21,11 @@ struct AttractingBodies {
 /// What a step of n bodies begins with. Coordinates: all x, all y, all z.
 struct StepBeginning {
   std::ptrdiff_t bodies;
-  const double *x, *x_low, *v;  ///< shape (3 n)
+  const double *y, *low;        ///< positions, then velocities, and what rounding has taken from them; shape (6 n)
   const double *c_h, *c_h_low;  ///< c_i h, shape (8)
-  double grid;                  ///< a power of two above all |x|
-  double* on_grid;              ///< positions rounded to 2^-52 of it, shape (3 n)
-  double* known;                ///< what is left of them, and c_i h v: shape (3 n, 8)
+  double grids[2];              ///< powers of two, above all |x| and all |v|
+  double* on_grid;              ///< y rounded to 2^-52 of them, shape (6 n)
+  double* known;                ///< the rest of x + c_i h v, shape (3 n, 8)
 };
 
 /// The end of a step: rates of shape (3 n, 8), padded to a multiple of eight variables.
@@ -39,9 +39,8 @@ struct StepEnd {
 
 struct GravityGaussKernels {
   void (*begin)(const StepBeginning& beginning);
-  /// Differences of positions on the grid, of all pairs: shape (3, pairs).
-  void (*separations)(const AttractingBodies& bodies, std::ptrdiff_t n, const double* on_grid, double* out,
-                      std::ptrdiff_t pairs);
+  /// Differences of positions on the grid, and c_i h times those of velocities, of all pairs: shape (3, pairs, 8).
+  void (*separations)(const AttractingBodies& bodies, const StepBeginning& beginning, double* out);
   /// Accelerations from displacements d and separations; both of shape (3 n, 8). @return the least r^2
   double (*attract)(const AttractingBodies& bodies, std::ptrdiff_t n, const double* d, const double* separations,
                     std::ptrdiff_t pairs, double* a);

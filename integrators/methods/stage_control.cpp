@@ -59,10 +59,10 @@ void StageControl::bind(const std::vector<double>& masses) {
 }
 
 StageControl::Lengths StageControl::lengths(const double* rates, double h, double at_hand) {
-  Lengths first = by_timescale(rates, h);
-  if (first.next >= at_hand && first.made >= kept * h) return first;
-  const double second = by_last_coefficient(rates, h);
-  return {std::max(first.made, second), std::max(first.next, second)};
+  const Lengths first = by_timescale(rates, h);
+  const double second = by_last_coefficient(rates, h), most = farther * second;
+  const double least = first.next >= at_hand && first.made >= kept * h ? 0 : second;
+  return {std::clamp(first.made, least, most), std::clamp(first.next, least, most)};
 }
 
 StageControl::Lengths StageControl::by_timescale(const double* rates, double h) {

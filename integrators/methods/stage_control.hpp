@@ -9,7 +9,7 @@
 
 namespace noether {
 
-/// The longer of two steps, each of which keeps errors at rounding by itself.
+/// A step by two measures.
 ///
 /// First, by the timescale of each body, from acceleration a, jerk j and snap s of the polynomial through the rates, in
 /// the middle and at the end of the step:
@@ -17,9 +17,11 @@ namespace noether {
 ///     tau^-2 = max over bodies of (j^2 + a s) / (2 a^2)
 ///
 /// The step made may be eta min(tau_middle, tau_end), the next one eta tau_end, less where tau shrinks. Second, by the
-/// last Legendre coefficient of the rates, relative to the rates of the same body. The second is computed only where
-/// the first would shorten the step: a body that crosses a place where forces cancel has a short timescale although
-/// nothing happens, and a coefficient vanishes now and then.
+/// last Legendre coefficient of the rates, relative to the rates of the same body.
+///
+/// The first counts. Where it would shorten the step, it is no less than the second: a body that crosses a place where
+/// forces cancel has a short timescale although nothing happens. And it is at most 1.5 times the second: what two
+/// bodies do to each other hardly shows in timescales where a third one pulls both harder.
 ///
 /// The rate of the heaviest body is a sum that may cancel: it counts as no smaller than that by which any other one
 /// alone would move it.
@@ -28,6 +30,8 @@ class StageControl {
  public:
   /// A step is made again if it may have no more than this part of its length.
   static constexpr double kept = 0.8;
+  /// The first measure is taken for no longer than so many times the second.
+  static constexpr double farther = 1.5;
 
   StageControl(const CollocationTable& table, double rtol);
   void bind(const std::vector<double>& masses);
@@ -37,7 +41,7 @@ class StageControl {
   };
   /// @param rates    of the step just made, shape (3 n, 8), padded to a multiple of eight variables
   /// @param h        its length
-  /// @param at_hand  of the next step, unless it has to be shorter
+  /// @param at_hand  of the next step, unless it is to become shorter or longer
   Lengths lengths(const double* rates, double h, double at_hand);
 
  private:

@@ -7,18 +7,37 @@
 
 namespace noether {
 
-/// The longest step 2^k, 1.1875 2^k, 1.4140625 2^k or 1.6796875 2^k that is not longer than h > 0.
+/// Steps of 2^k, 1.1875 2^k, 1.4140625 2^k and 1.6796875 2^k units.
 ///
 /// A method that keeps one step for long stays symplectic for as long, its errors do not add up, and what it predicts
-/// from several steps of one length holds. The few bits of such a step also leave times and squares exact.
-inline double rung_below(double h) {
-  constexpr double rungs[] = {1, 1.1875, 1.4140625, 1.6796875};
-  int exponent = 0;
-  const double part = 2 * std::frexp(h, &exponent);
-  int k = 3;
-  while (k > 0 && rungs[k] > part) --k;
-  return std::ldexp(rungs[k], exponent - 1);
-}
+/// from several steps of one length holds. The unit comes from the first step of a run, so that a scene takes the same
+/// steps in all units. It has 24 bits and a rung 8, so that a step has many fewer than 53: times are exact for long.
+class StepLadder {
+ public:
+  StepLadder() = default;
+  /// @param step  a normal number above 0 [time]; the unit differs from it by a part of 2^-25 at most
+  static StepLadder around(double step) {
+    int exponent = 0;
+    const double part = std::frexp(step, &exponent);
+    return StepLadder(std::ldexp(std::round(std::ldexp(part, 24)), exponent - 24));
+  }
+  explicit StepLadder(double unit) : unit_(unit) {}
+
+  double unit() const { return unit_; }
+
+  /// The longest step that is not longer than h > 0.
+  double below(double h) const {
+    constexpr double rungs[] = {1, 1.1875, 1.4140625, 1.6796875};
+    int exponent = 0;
+    const double part = 2 * std::frexp(h / unit_, &exponent);
+    int k = 3;
+    while (k > 0 && rungs[k] > part) --k;
+    return std::ldexp(rungs[k], exponent - 1) * unit_;
+  }
+
+ private:
+  double unit_ = 1;  ///< [time]
+};
 
 /// x^(1/n) to a part in a thousand, which is all that the length of a step asks for, for normal x > 0: a straight line
 /// through the exponents, then a step of Halley's. It takes a third of the time of a power, and has the same bits

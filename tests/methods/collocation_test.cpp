@@ -186,7 +186,8 @@ TEST_CASE("stages at rest are not evaluated again where each is evaluated by its
       CHECK(energy.worst() < 4e-15);
       return sim;
     };
-    auto lanes = run(outer_gravity), in_turn = run(InTurn{});
+    // Softening that is not felt: gauss_8 has another form for points of mass.
+    auto lanes = run(Gravity{.G = test::outer_G, .softening = 1e-30}), in_turn = run(InTurn{});
     const double all = static_cast<double>(lanes.evaluations().force) / static_cast<double>(lanes.step());
     const double asked = static_cast<double>(in_turn.evaluations().force) / static_cast<double>(in_turn.step());
     CHECK(asked < 0.98 * all);
