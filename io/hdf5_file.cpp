@@ -145,8 +145,12 @@ std::vector<Index> Hdf5Dataset::shape() const {
 }
 
 Index Hdf5Dataset::rows() const {
-  const std::vector<Index> axes = shape();
-  return axes.empty() ? 1 : axes.front();
+  const std::vector<hsize_t> axes = axes_of(*handle_, path_);
+  if (axes.empty()) return 1;
+  // Of a process that was killed within its first write to a header, half may be there: rows without data.
+  const bool is_written = axes[0] == 0 || chunk_rows(*handle_, path_) == 0 ||
+                          chunk_address(*handle_, std::vector<hsize_t>(axes.size(), 0), path_) != HADDR_UNDEF;
+  return is_written ? static_cast<Index>(axes[0]) : 0;
 }
 
 Index Hdf5Dataset::rows_within(std::uint64_t bytes) const {

@@ -70,6 +70,9 @@ class Pieces {
   void leave(std::uint64_t begin, std::uint64_t end);
   /// What is not used, in order; `whole` is the number of bytes on disk.
   std::vector<ByteRange> unused(std::uint64_t whole) const;
+  /// Rows that a header has and that were never written.
+  void note_unwritten(std::uint64_t byte, const std::string& what) { unwritten_.push_back({byte, what}); }
+  const std::vector<Hdf5Fault>& unwritten() const { return unwritten_; }
 
  private:
   void check_inside(std::uint64_t at, std::uint64_t size, const std::string& what, std::uint64_t pointer) const;
@@ -82,6 +85,7 @@ class Pieces {
   std::uint64_t size_;
   std::map<std::uint64_t, Piece> taken_;  ///< by begin
   std::vector<ByteRange> left_;
+  std::vector<Hdf5Fault> unwritten_;
 };
 
 /// How a dataset in chunks is laid out, as its header says.

@@ -131,6 +131,7 @@ class Walk {
              fmt::format("a reference leads to byte {}, where no object begins", target));
   }
   std::vector<ByteRange> unused(std::uint64_t whole) const { return pieces_.unused(whole); }
+  const std::vector<Hdf5Fault>& unwritten() const { return pieces_.unwritten(); }
   /// Whether another program wrote the file, as far as its root could be read.
   bool is_foreign() const { return foreign_; }
 
@@ -142,7 +143,7 @@ class Walk {
     block.expect_number(14, 1, 8, "the size of lengths");
     block.expect_number(16, 2, 4, "the size of nodes of names");
     block.expect_number(18, 2, 16, "the size of nodes of groups");
-    pieces_.leave(20, 21);  // set while some writers have the file open
+    expect(block.number(20, 1) <= 7, 20, "the flags of the superblock are unknown");  // of writers that have it open
     block.expect_zeros(21, 3);
     block.expect_zeros(24, 8);
     block.expect_number(32, 8, nowhere, "the address of free space");
@@ -415,20 +416,22 @@ Hdf5Walk walk_hdf5(std::istream& file, std::uint64_t size) {
   try {
     walk.run();
     result.unused = walk.unused(size);
+    result.unwritten = walk.unwritten();
   } catch (const hdf5_pieces::Damage& damage) {
     if (!walk.is_foreign()) result.fault = damage.fault;
   }
   return result;
 }
 
-std::string structural_damage(const std::filesystem::path& file) {
+Hdf5Walk walk_hdf5(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::error_code error;
   const std::uint64_t size = std::filesystem::file_size(file, error);
-  if (!in || error) return {};
-  const Hdf5Walk walk = walk_hdf5(in, size);
-  if (!walk.fault) return {};
-  return fmt::format("the structure of the file is damaged at byte {}: {}", walk.fault->byte, walk.fault->what);
+  return in && !error ? walk_hdf5(in, size) : Hdf5Walk{};
+}
+
+std::string to_text(const Hdf5Fault& fault) {
+  return fmt::format("the structure of the file is damaged at byte {}: {}", fault.byte, fault.what);
 }
 
 }  // namespace noether::io

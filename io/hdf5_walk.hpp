@@ -16,6 +16,9 @@ namespace noether::io {
 struct Hdf5Walk {
   std::optional<Hdf5Fault> fault;  ///< the first one; the walk ends there
   std::vector<ByteRange> unused;   ///< what no reader needs, in order; complete where there is no fault
+  /// Datasets whose header has rows of which none has been written. A writer that was killed within its first write to
+  /// the header leaves that; in a complete file it is a fault.
+  std::vector<Hdf5Fault> unwritten;
 };
 
 /// Follows every address from the superblock to the last piece of data: groups, headers of objects, trees, heaps.
@@ -28,9 +31,10 @@ struct Hdf5Walk {
 /// @throws never
 /// The format is that of the HDF5 File Format Specification, version 3.
 Hdf5Walk walk_hdf5(std::istream& file, std::uint64_t size);
+/// The same; nothing of a file that cannot be read.
+Hdf5Walk walk_hdf5(const std::filesystem::path& file);
 
-/// What a walk finds wrong with a file, in one line; nothing if it finds nothing, or cannot read the file. @throws
-/// never
-std::string structural_damage(const std::filesystem::path& file);
+/// A fault in one line.
+std::string to_text(const Hdf5Fault& fault);
 
 }  // namespace noether::io

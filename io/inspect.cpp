@@ -371,13 +371,15 @@ FileInfo untried_verify(const std::filesystem::path& file) {
   try {
     const Kind kind = kind_of(file);
     result.kind = kind == Kind::trajectory ? "trajectory" : "checkpoint";
-    if (kind == Kind::trajectory) {
-      if (std::string damage = structural_damage(file); !damage.empty()) {
-        result.damaged.push_back(std::move(damage));
-        return result;
-      }
+    const Hdf5Walk walk = kind == Kind::trajectory ? walk_hdf5(file) : Hdf5Walk{};
+    if (walk.fault) {
+      result.damaged.push_back(to_text(*walk.fault));
+      return result;
     }
     result = untried_info(file);
+    if (result.complete) {
+      for (const Hdf5Fault& unwritten : walk.unwritten) result.damaged.push_back(to_text(unwritten));
+    }
     if (kind == Kind::checkpoint) return result;
     read_headers(Hdf5File::open_to_read(file));  // by a handle of its own: others have parts of the file in memory
     const TrajectoryReader reader(file);

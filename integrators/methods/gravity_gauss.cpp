@@ -1,6 +1,7 @@
 #include "integrators/methods/gravity_gauss.hpp"
 
 #include "integrators/methods/collocation_simd.hpp"
+#include "integrators/methods/gravity_gauss_simd.hpp"
 
 #include <algorithm>
 #include <cmath>

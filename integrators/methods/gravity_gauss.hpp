@@ -2,13 +2,14 @@
 /// Gauss's method with eight stages, in a form of its own for gravity.
 
 #include "integrators/methods/collocation.hpp"
-#include "integrators/methods/gravity_gauss_simd.hpp"
 #include "integrators/methods/stage_control.hpp"
 #include "integrators/methods/step_ladder.hpp"
 
 #include <array>
 
 namespace noether {
+
+struct AttractingBodies;
 
 /// `Collocation` with eight stages in doubles; of point masses alone it computes the same map with less rounding, in
 /// fewer sweeps, and chooses its steps by `StageControl`.

@@ -26,7 +26,7 @@ namespace {
 /// The call to the system at which process `doomed` is to kill itself, counted from now; 0: it lives.
 long fatal_call = 0;
 pid_t doomed = 0;  // its children live
-/// Whether that call, if it writes, is begun, and torn at the border of a page.
+/// Whether that call, if it writes, is begun, and torn in its middle, or at the border of a page before.
 bool torn = false;
 
 template <class Function> Function* next(const char* name) {
@@ -247,11 +247,12 @@ const WholeRun large = [](const auto& folder) {
 const WholeRun of_system = [](const auto& folder) { go_on(test::LorenzRun(folder / "run.h5"), folder, 60, 7); };
 
 /// A process that dies at its call number `fatal` to the system, if it makes so many. @return whether it came through
-bool survives(const WholeRun& run, const std::filesystem::path& folder, long fatal) {
+bool survives(const WholeRun& run, const std::filesystem::path& folder, long fatal, bool within = false) {
   const pid_t child = ::fork();
   REQUIRE(child >= 0);
   if (child == 0) {
     die_at(fatal);
+    torn = torn || within;
     try {
       run(folder);
       ::_exit(0);
@@ -275,6 +276,23 @@ std::string check_files(const std::filesystem::path& folder, const io::Frames& w
   const std::int64_t frames = found.checkpoint ? found.checkpoint->step / 5 + 1 : 0;
   if (frames > 0 || std::filesystem::exists(file)) check_frames(file, whole, frames);
   return found.checkpoint ? found.checkpoint->digest : "";
+}
+
+/// Lets runs die in the middle of one of their calls to the system, each in another one.
+void die_within_each_write(const WholeRun& run) {
+  const test::ScratchFolder reference, scratch;
+  const test::Threads one(1);  // a process that has threads cannot be copied with them
+  run(reference.path());
+  const io::Frames whole = io::read_frames(reference / "run.h5");
+  bool through = false;
+  for (long fatal = 1; !through; ++fatal) {
+    CAPTURE(fatal);
+    const std::filesystem::path folder = scratch / std::to_string(fatal);
+    std::filesystem::create_directory(folder);
+    through = survives(run, folder, fatal, true);
+    check_files(folder, whole);
+    std::filesystem::remove_all(folder);
+  }
 }
 
 /// Lets a run die from its first call to its last, again and again, until it is through; then begins anew, until there
@@ -344,6 +362,11 @@ TEST_CASE("a run that dies between its first call and its last, checkpoints amon
   die_anywhere(small, 12);
 }
 
+TEST_CASE("a run that dies within any of its writes leaves frames of a run that never died, and no others",
+          "[trajectory][checkpoint][kill][slow]") {
+  die_within_each_write(small);
+}
+
 TEST_CASE("so does a run of a system", "[trajectory][checkpoint][kill][system]") { die_anywhere(of_system, 12); }
 
 TEST_CASE("so does a large one", "[trajectory][checkpoint][kill][slow]") { die_anywhere(large, 6); }
@@ -354,6 +377,7 @@ TEST_CASE("the same for thousands of deaths", "[trajectory][kill][.][nightly]") 
   die_anywhere(small, 600);
   die_anywhere(of_system, 600);
   die_anywhere(large, 150);
+  die_within_each_write(of_system);
 }
 
 }  // namespace noether
