@@ -4,6 +4,7 @@
 
 #include "engine/concepts.hpp"
 #include "engine/lane_by_lane.hpp"
+#include "engine/seam.hpp"
 #include "engine/signature.hpp"
 #include "numbers/members.hpp"
 #include "numbers/pack.hpp"
@@ -27,23 +28,6 @@ template <class F> bool has_lanes(const F& force) {
 }
 
 namespace detail {
-
-/// Value semantics for a polymorphic `Base` with `clone`.
-template <class Base> class Erased {
- public:
-  explicit Erased(std::unique_ptr<Base> held) : held_(std::move(held)) {}
-  Erased(const Erased& other) : held_(other.held_->clone()) {}
-  Erased(Erased&&) noexcept = default;
-  Erased& operator=(const Erased& other) {
-    held_ = other.held_->clone();
-    return *this;
-  }
-  Erased& operator=(Erased&&) noexcept = default;
-  ~Erased() = default;
-
- protected:
-  std::unique_ptr<Base> held_;
-};
 
 NOETHER_FINDS_MEMBER(claims, claim, climas, calims, cliams, clamis, claism)
 NOETHER_FINDS_MEMBER(check, chekc, chcek, cehck, hceck, chekk, chek)
@@ -97,26 +81,71 @@ void add_secant_of(const F& force, ForceSink<Real>& out, const ParticleSystem<Re
   }
 }
 
+/// How a force answers where it need not have a member of this name.
+template <class Real> struct ForceAnswers {
+  template <class F> static void bind(F& force, const ParticleSystem<Real>& s) {
+    if constexpr (requires { force.bind(s); }) force.bind(s);
+  }
+  template <class F, class Number>
+  static void add_to(const F& force, ForceSink<Number>& out, const ParticleSystem<Number>& s) {
+    if constexpr (!Force<F, Number>) {
+      throw LogicError(std::is_same_v<Number, Pack> ? "evaluation in lanes was requested from a force that has none"
+                                                    : "derivatives were requested from a force that has none");
+    } else if constexpr (std::is_same_v<Number, Pack>) {
+      add_in_lanes(force, out, s);
+    } else {
+      force.add_to(out, s);
+    }
+  }
+  template <class F> static bool has_secant(const F& force) { return noether::has_secant<Real>(force); }
+  template <class F>
+  static void add_secant_to(const F& force, ForceSink<Real>& out, const ParticleSystem<Real>& from,
+                            const ParticleSystem<Real>& to) {
+    add_secant_of(force, out, from, to);
+  }
+  template <class F> static bool has_lanes(const F& force) { return noether::has_lanes(force); }
+  template <class F> static bool has_derivative(const F& force) { return noether::has_derivative<Real>(force); }
+  template <class F> static ForceClaims own_claims(const F& force) { return claims_of(force); }
+  template <class F> static void check(const F& force, const ParticleSystem<Real>& s) {
+    if (s.box().is_periodic() && !claims_of(force).periodic) {
+      throw Error("the force '" + name_of(force) + "' does not support a periodic box; take out the force or the box");
+    }
+    check_force(force, s);
+  }
+  template <class F> static std::string name(const F& force) { return name_of(force); }
+  template <class F> static std::string signature(const F& force) { return signature_of(force); }
+};
+
+/* The members of AnyForce. `has_lanes`: it is a force over `Pack` too, so that eight stages cost little more than one;
+   `has_derivative`: over dual numbers too, so that its derivatives are exact. Without these, and without `has_secant`,
+   their sums throw LogicError. `own_claims` are those of the force, whatever kick it takes part in; `check` throws
+   Error as `check_force` does. */
+#define NOETHER_FORCE_SEAM(OWN, ANSWERED)                                                                              \
+  ANSWERED(void, bind, (const ParticleSystem<Real>& s), s)                                                             \
+  ANSWERED(void, add_to, (ForceSink<Real> & out, const ParticleSystem<Real>& s) const, out, s)                         \
+  ANSWERED(bool, has_secant, () const)                                                                                 \
+  ANSWERED(void, add_secant_to,                                                                                        \
+           (ForceSink<Real> & out, const ParticleSystem<Real>& from, const ParticleSystem<Real>& to) const, out, from, \
+           to)                                                                                                         \
+  ANSWERED(bool, has_lanes, () const)                                                                                  \
+  ANSWERED(void, add_to, (ForceSink<Pack> & out, const ParticleSystem<Pack>& s) const, out, s)                         \
+  ANSWERED(bool, has_derivative, () const)                                                                             \
+  ANSWERED(void, add_to, (ForceSink<Dual<Real, 1>> & out, const ParticleSystem<Dual<Real, 1>>& s) const, out, s)       \
+  ANSWERED(ForceClaims, own_claims, () const)                                                                          \
+  ANSWERED(void, check, (const ParticleSystem<Real>& s) const, s)                                                      \
+  ANSWERED(std::string, name, () const)                                                                                \
+  ANSWERED(std::string, signature, () const)
+
 /// Built-in forces are compiled once, each in a .cpp of its own: their headers say `extern template`.
 template <class Real> struct ForceBase {
   virtual ~ForceBase() = default;
   virtual std::unique_ptr<ForceBase> clone() const = 0;
-  virtual void bind(const ParticleSystem<Real>&) = 0;
-  virtual void add_to(ForceSink<Real>&, const ParticleSystem<Real>&) const = 0;
-  virtual bool has_secant() const = 0;
-  virtual void add_secant_to(ForceSink<Real>&, const ParticleSystem<Real>&, const ParticleSystem<Real>&) const = 0;
-  virtual bool has_lanes() const = 0;
-  virtual void add_to(ForceSink<Pack>&, const ParticleSystem<Pack>&) const = 0;
-  virtual bool has_derivative() const = 0;
-  virtual void add_to(ForceSink<Dual<Real, 1>>&, const ParticleSystem<Dual<Real, 1>>&) const = 0;
-  virtual ForceClaims claims() const = 0;
-  virtual void check(const ParticleSystem<Real>&) const = 0;
-  virtual std::string name() const = 0;
-  virtual std::string signature() const = 0;
   virtual std::unique_ptr<ForceBase<Quad>> in_quad() const = 0;
+  NOETHER_FORCE_SEAM(NOETHER_SEAM_PURE, NOETHER_SEAM_PURE)
 };
 template <class F, class Real> struct ForceModel final : ForceBase<Real> {
   using Members = ForceMembers<F>;
+  using Answers = ForceAnswers<Real>;
   static_assert(Members::claims,
                 "a force has `ForceClaims claims() const`, or no member of that name or nearly that name");
   static_assert(Members::check,
@@ -130,51 +159,21 @@ template <class F, class Real> struct ForceModel final : ForceBase<Real> {
   static_assert(
       Members::secant,
       "a force has `add_secant_to(ForceSink<Real>&, from, to) const`, or no member of that name or nearly that name");
-  explicit ForceModel(F f) : force(std::move(f)) {}
-  std::unique_ptr<ForceBase<Real>> clone() const override { return std::make_unique<ForceModel>(force); }
-  void bind(const ParticleSystem<Real>& s) override {
-    if constexpr (requires { force.bind(s); }) force.bind(s);
-  }
-  void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const override { force.add_to(out, s); }
-  bool has_secant() const override { return noether::has_secant<Real>(force); }
-  void add_secant_to(ForceSink<Real>& out, const ParticleSystem<Real>& from,
-                     const ParticleSystem<Real>& to) const override {
-    add_secant_of(force, out, from, to);
-  }
-  bool has_lanes() const override { return noether::has_lanes(force); }
-  void add_to(ForceSink<Pack>& out, const ParticleSystem<Pack>& s) const override {
-    if constexpr (Force<F, Pack>) return add_in_lanes(force, out, s);
-    throw LogicError("evaluation in lanes was requested from a force that has none");
-  }
-  bool has_derivative() const override { return noether::has_derivative<Real>(force); }
-  void add_to(ForceSink<Dual<Real, 1>>& out, const ParticleSystem<Dual<Real, 1>>& s) const override {
-    if constexpr (Force<F, Dual<Real, 1>>) return force.add_to(out, s);
-    throw LogicError("derivatives were requested from a force that has none");
-  }
-  ForceClaims claims() const override { return claims_of(force); }
-  void check(const ParticleSystem<Real>& s) const override { check_named(s); }
-  std::string name() const override { return name_of(force); }
-  std::string signature() const override { return signature_of(force); }
+  explicit ForceModel(F f) : held(std::move(f)) {}
+  std::unique_ptr<ForceBase<Real>> clone() const override { return std::make_unique<ForceModel>(held); }
   std::unique_ptr<ForceBase<Quad>> in_quad() const override {
-    if constexpr (requires { force.reference(); }) {
-      using Reference = decltype(force.reference());
+    if constexpr (requires { held.reference(); }) {
+      using Reference = decltype(held.reference());
       static_assert(Force<Reference, Quad>, "the reference of a force is one over Quad");
-      return std::make_unique<ForceModel<Reference, Quad>>(force.reference());
+      return std::make_unique<ForceModel<Reference, Quad>>(held.reference());
     } else if constexpr (Force<F, Quad>) {
-      return std::make_unique<ForceModel<F, Quad>>(force);
+      return std::make_unique<ForceModel<F, Quad>>(held);
     } else {
       return nullptr;
     }
   }
-  F force;
-
- private:
-  void check_named(const ParticleSystem<Real>& s) const {
-    if (s.box().is_periodic() && !claims_of(force).periodic) {
-      throw Error("the force '" + name_of(force) + "' does not support a periodic box; take out the force or the box");
-    }
-    check_force(force, s);
-  }
+  NOETHER_FORCE_SEAM(NOETHER_SEAM_HELD, NOETHER_SEAM_ANSWERED)
+  F held;
 };
 
 }  // namespace detail
@@ -189,25 +188,9 @@ template <class Real = double> class AnyForce : private detail::Erased<detail::F
   explicit AnyForce(std::unique_ptr<detail::ForceBase<Real>> held)
       : detail::Erased<detail::ForceBase<Real>>(std::move(held)) {}
 
-  void bind(const ParticleSystem<Real>& s) { this->held_->bind(s); }
-  void add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const { this->held_->add_to(out, s); }
-  bool has_secant() const { return this->held_->has_secant(); }
-  /// @throws LogicError  if it knows none
-  void add_secant_to(ForceSink<Real>& out, const ParticleSystem<Real>& from, const ParticleSystem<Real>& to) const {
-    this->held_->add_secant_to(out, from, to);
-  }
-  /// Whether it is a force over `Pack` too, so that eight stages cost little more than one.
-  bool has_lanes() const { return this->held_->has_lanes(); }
-  /// @throws LogicError  if it is not
-  void add_to(ForceSink<Pack>& out, const ParticleSystem<Pack>& s) const { this->held_->add_to(out, s); }
-  /// Whether it is a force over dual numbers too, so that its derivatives are exact.
-  bool has_derivative() const { return this->held_->has_derivative(); }
-  /// @throws LogicError  if it is not
-  void add_to(ForceSink<Dual<Real, 1>>& out, const ParticleSystem<Dual<Real, 1>>& s) const {
-    this->held_->add_to(out, s);
-  }
+  NOETHER_FORCE_SEAM(NOETHER_SEAM_CALL, NOETHER_SEAM_CALL)
   ForceClaims claims() const {
-    ForceClaims claims = this->held_->claims();
+    ForceClaims claims = this->own_claims();
     if (kick_letter_ != 0) claims.kicks = kick_letter_;
     return claims;
   }
@@ -216,14 +199,10 @@ template <class Real = double> class AnyForce : private detail::Erased<detail::F
     kick_letter_ = letter;
     return *this;
   }
-  /// @throws Error  see `check_force`
-  void check(const ParticleSystem<Real>& s) const { this->held_->check(s); }
-  std::string name() const { return this->held_->name(); }
-  std::string signature() const { return this->held_->signature(); }
   /// The force itself where it is of this type, or null.
   template <class F> const F* as() const {
     const auto* model = dynamic_cast<const detail::ForceModel<F, Real>*>(this->held_.get());
-    return model != nullptr ? &model->force : nullptr;
+    return model != nullptr ? &model->held : nullptr;
   }
   /// The same force in extended precision, or what it names as its `reference()` for truth; empty for one that is
   /// written for doubles only.

@@ -126,33 +126,63 @@ template <class H> struct HamiltonianMembers {
       !misspells_set_neighbor_options<H>() && (!finds_set_neighbor_options<H>() || TakesNeighborOptions<H>);
 };
 
+/// How a Hamiltonian answers where it need not have a member of this name.
+struct HamiltonianAnswers {
+  template <class H> static std::string name(const H& h) { return name_of(h); }
+  template <class H> static void expect_kicks(H& h, double longest) { detail::expect_kicks(h, longest); }
+  template <class H> static bool set_neighbor_options(H& h, const NeighborOptions& options) {
+    return detail::set_neighbor_options(h, options);
+  }
+  template <class H> static bool can_project(const H& h) { return detail::can_project(h); }
+  template <class H, class Real> static void project_velocities(H& h, ParticleSystem<Real>& s, const Real& tau) {
+    detail::project_velocities(h, s, tau);
+  }
+  template <class H, class Real>
+  static Advance run(H& h, const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span) {
+    return walk(h, word, s, span);
+  }
+  template <class H, class Real> static auto virial(H& h, const ParticleSystem<Real>& s) { return virial_of(h, s); }
+  template <class H> static void save(const H& h, SavedState& saved, const std::string& prefix) {
+    save_any(saved, prefix, h);
+  }
+  template <class H> static void load(H& h, const SavedState& saved, const std::string& prefix) {
+    load_any(saved, prefix, h);
+  }
+};
+
+/* The members of AnyHamiltonian. `set_neighbor_options` says whether the Hamiltonian looks for neighbors at all, and
+   comes before the first step; `virial` is that of the forces, sum x (x) f [energy], empty where it is not known. */
+#define NOETHER_HAMILTONIAN_SEAM(OWN, ANSWERED)                                                                   \
+  OWN(HamiltonianClaims, claims, () const)                                                                        \
+  ANSWERED(std::string, name, () const)                                                                           \
+  OWN(void, bind, (ParticleSystem<Real> & s), s)                                                                  \
+  ANSWERED(void, expect_kicks, (double longest), longest)                                                         \
+  ANSWERED(bool, set_neighbor_options, (const NeighborOptions& options), options)                                 \
+  ANSWERED(bool, can_project, () const)                                                                           \
+  ANSWERED(void, project_velocities, (ParticleSystem<Real> & s, const Real& h), s, h)                             \
+  OWN(void, open, (ParticleSystem<Real> & s), s)                                                                  \
+  OWN(void, close, (ParticleSystem<Real> & s), s)                                                                 \
+  OWN(void, flow, (char letter, ParticleSystem<Real>& s, const Real& h), letter, s, h)                            \
+  OWN(Real, flow_with_action, (char letter, ParticleSystem<Real>& s, const Real& h), letter, s, h)                \
+  ANSWERED(Advance, run, (const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span), word, s, span) \
+  OWN(EnergyTerms<Real>, energy, (const ParticleSystem<Real>& s), s)                                              \
+  ANSWERED(std::optional<Mat3<Real>>, virial, (const ParticleSystem<Real>& s), s)                                 \
+  OWN(void, accelerations, (const ParticleSystem<Real>& s, VectorColumn<Real>& a), s, a)                          \
+  OWN(void, observe, (std::optional<Request> wanted), wanted)                                                     \
+  OWN(const std::optional<Failure>&, failure, () const)                                                           \
+  OWN(Evaluations, evaluations, () const)                                                                         \
+  ANSWERED(void, save, (SavedState & saved, const std::string& prefix) const, saved, prefix)                      \
+  ANSWERED(void, load, (const SavedState& saved, const std::string& prefix), saved, prefix)
+
 template <class Real> struct HamiltonianBase {
   virtual ~HamiltonianBase() = default;
   virtual std::unique_ptr<HamiltonianBase> clone() const = 0;
-  virtual HamiltonianClaims claims() const = 0;
-  virtual std::string name() const = 0;
-  virtual void bind(ParticleSystem<Real>&) = 0;
-  virtual void expect_kicks(double) = 0;
-  virtual bool set_neighbor_options(const NeighborOptions&) = 0;
-  virtual bool can_project() const = 0;
-  virtual void project_velocities(ParticleSystem<Real>&, const Real&) = 0;
-  virtual void open(ParticleSystem<Real>&) = 0;
-  virtual void close(ParticleSystem<Real>&) = 0;
-  virtual void flow(char, ParticleSystem<Real>&, const Real&) = 0;
-  virtual Real flow_with_action(char, ParticleSystem<Real>&, const Real&) = 0;
-  virtual Advance run(const TimedWord<Real>&, ParticleSystem<Real>&, const Span&) = 0;
-  virtual EnergyTerms<Real> energy(const ParticleSystem<Real>&) = 0;
-  virtual std::optional<Mat3<Real>> virial(const ParticleSystem<Real>&) = 0;
-  virtual void accelerations(const ParticleSystem<Real>&, VectorColumn<Real>&) = 0;
-  virtual void observe(std::optional<Request>) = 0;
-  virtual const std::optional<Failure>& failure() const = 0;
-  virtual Evaluations evaluations() const = 0;
-  virtual void save(SavedState&, const std::string&) const = 0;
-  virtual void load(const SavedState&, const std::string&) = 0;
+  NOETHER_HAMILTONIAN_SEAM(NOETHER_SEAM_PURE, NOETHER_SEAM_PURE)
 };
 template <class H> struct HamiltonianModel final : HamiltonianBase<typename H::real> {
   using Real = typename H::real;
   using Members = HamiltonianMembers<H>;
+  using Answers = HamiltonianAnswers;
   static_assert(Members::virial,
                 "a Hamiltonian has `Mat3<Real> virial(const ParticleSystem<Real>&)`, which may be "
                 "optional, or no member of that name or nearly that name");
@@ -166,37 +196,10 @@ template <class H> struct HamiltonianModel final : HamiltonianBase<typename H::r
   static_assert(Members::neighbor_options,
                 "a Hamiltonian has `void set_neighbor_options(const NeighborOptions&)`, "
                 "or no member of that name or nearly that name");
-  explicit HamiltonianModel(H h) : hamiltonian(std::move(h)) {}
-  std::unique_ptr<HamiltonianBase<Real>> clone() const override {
-    return std::make_unique<HamiltonianModel>(hamiltonian);
-  }
-  HamiltonianClaims claims() const override { return hamiltonian.claims(); }
-  std::string name() const override { return name_of(hamiltonian); }
-  void bind(ParticleSystem<Real>& s) override { hamiltonian.bind(s); }
-  void expect_kicks(double longest) override { detail::expect_kicks(hamiltonian, longest); }
-  bool set_neighbor_options(const NeighborOptions& o) override { return detail::set_neighbor_options(hamiltonian, o); }
-  bool can_project() const override { return detail::can_project(hamiltonian); }
-  void project_velocities(ParticleSystem<Real>& s, const Real& h) override {
-    detail::project_velocities(hamiltonian, s, h);
-  }
-  void open(ParticleSystem<Real>& s) override { hamiltonian.open(s); }
-  void close(ParticleSystem<Real>& s) override { hamiltonian.close(s); }
-  void flow(char letter, ParticleSystem<Real>& s, const Real& h) override { hamiltonian.flow(letter, s, h); }
-  Real flow_with_action(char letter, ParticleSystem<Real>& s, const Real& h) override {
-    return hamiltonian.flow_with_action(letter, s, h);
-  }
-  Advance run(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span) override {
-    return walk(hamiltonian, word, s, span);
-  }
-  EnergyTerms<Real> energy(const ParticleSystem<Real>& s) override { return hamiltonian.energy(s); }
-  std::optional<Mat3<Real>> virial(const ParticleSystem<Real>& s) override { return virial_of(hamiltonian, s); }
-  void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) override { hamiltonian.accelerations(s, a); }
-  void observe(std::optional<Request> wanted) override { hamiltonian.observe(wanted); }
-  const std::optional<Failure>& failure() const override { return hamiltonian.failure(); }
-  Evaluations evaluations() const override { return hamiltonian.evaluations(); }
-  void save(SavedState& saved, const std::string& prefix) const override { save_any(saved, prefix, hamiltonian); }
-  void load(const SavedState& saved, const std::string& prefix) override { load_any(saved, prefix, hamiltonian); }
-  H hamiltonian;
+  explicit HamiltonianModel(H h) : held(std::move(h)) {}
+  std::unique_ptr<HamiltonianBase<Real>> clone() const override { return std::make_unique<HamiltonianModel>(held); }
+  NOETHER_HAMILTONIAN_SEAM(NOETHER_SEAM_HELD, NOETHER_SEAM_ANSWERED)
+  H held;
 };
 
 template <class I>
@@ -260,27 +263,61 @@ template <class I> struct IntegratorMembers {
   static constexpr bool wide_energy = !misspells_wide_energy<I>() && (!finds_wide_energy<I>() || GivesWideEnergy<I>);
 };
 
+/// How an integrator answers where it need not have a member of this name.
+struct IntegratorAnswers {
+  template <class I> static bool has_action(const I& i) { return detail::has_action(i); }
+  template <class I, class Real>
+  static Advance advance_with_action(I& i, ParticleSystem<Real>& s, const Span& span, Real& action) {
+    return detail::advance_with_action(i, s, span, action);
+  }
+  template <class I, class Real>
+  static Real settle(I& i, const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Request wanted,
+                     const std::optional<double>& at, bool corrected) {
+    return detail::settle(i, raw, out, wanted, at, corrected);
+  }
+  template <class I, class Real> static auto wide_energy(I& i, const ParticleSystem<Real>& s) {
+    return wide_energy_of(i, s);
+  }
+  template <class I, class Real> static auto virial(I& i, const ParticleSystem<Real>& s) { return virial_of(i, s); }
+  template <class I> static void save(const I& i, SavedState& saved, const std::string& prefix) {
+    save_any(saved, prefix, i);
+  }
+  template <class I> static void load(I& i, const SavedState& saved, const std::string& prefix) {
+    load_any(saved, prefix, i);
+  }
+};
+
+/* The members of AnyIntegrator. `advance_with_action` throws LogicError where `has_action` is false. `settle` returns
+   the action of the flows that complete the copy, if wanted; 0 for a method that gives none. `wide_energy` is the
+   energy with all digits of particles that keep second words; empty for others, and where a force is in doubles only.
+   `virial` is that of the forces, sum x (x) f [energy]; empty where it is not known. */
+#define NOETHER_INTEGRATOR_SEAM(OWN, ANSWERED)                                                                        \
+  OWN(IntegratorClaims, claims, () const)                                                                             \
+  OWN(void, bind, (ParticleSystem<Real> & s), s)                                                                      \
+  OWN(Advance, advance, (ParticleSystem<Real> & s, const Span& span), s, span)                                        \
+  ANSWERED(bool, has_action, () const)                                                                                \
+  ANSWERED(Advance, advance_with_action, (ParticleSystem<Real> & s, const Span& span, Real& action), s, span, action) \
+  ANSWERED(Real, settle,                                                                                              \
+           (const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Request wanted,                               \
+            const std::optional<double>& at, bool corrected),                                                         \
+           raw, out, wanted, at, corrected)                                                                           \
+  OWN(EnergyTerms<Real>, energy, (const ParticleSystem<Real>& s), s)                                                  \
+  ANSWERED(std::optional<EnergyTerms<Quad>>, wide_energy, (const ParticleSystem<Real>& s), s)                         \
+  ANSWERED(std::optional<Mat3<Real>>, virial, (const ParticleSystem<Real>& s), s)                                     \
+  OWN(void, accelerations, (const ParticleSystem<Real>& s, VectorColumn<Real>& a), s, a)                              \
+  OWN(Evaluations, evaluations, () const)                                                                             \
+  ANSWERED(void, save, (SavedState & saved, const std::string& prefix) const, saved, prefix)                          \
+  ANSWERED(void, load, (const SavedState& saved, const std::string& prefix), saved, prefix)
+
 template <class Real> struct IntegratorBase {
   virtual ~IntegratorBase() = default;
   virtual std::unique_ptr<IntegratorBase> clone() const = 0;
-  virtual IntegratorClaims claims() const = 0;
-  virtual void bind(ParticleSystem<Real>&) = 0;
-  virtual Advance advance(ParticleSystem<Real>&, const Span&) = 0;
-  virtual bool has_action() const = 0;
-  virtual Advance advance_with_action(ParticleSystem<Real>&, const Span&, Real&) = 0;
-  virtual Real settle(const ParticleSystem<Real>&, ParticleSystem<Real>&, Request, const std::optional<double>&,
-                      bool) = 0;
-  virtual EnergyTerms<Real> energy(const ParticleSystem<Real>&) = 0;
-  virtual std::optional<EnergyTerms<Quad>> wide_energy(const ParticleSystem<Real>&) = 0;
-  virtual std::optional<Mat3<Real>> virial(const ParticleSystem<Real>&) = 0;
-  virtual void accelerations(const ParticleSystem<Real>&, VectorColumn<Real>&) = 0;
-  virtual Evaluations evaluations() const = 0;
-  virtual void save(SavedState&, const std::string&) const = 0;
-  virtual void load(const SavedState&, const std::string&) = 0;
+  NOETHER_INTEGRATOR_SEAM(NOETHER_SEAM_PURE, NOETHER_SEAM_PURE)
 };
 template <class I> struct IntegratorModel final : IntegratorBase<typename I::real> {
   using Real = typename I::real;
   using Members = IntegratorMembers<I>;
+  using Answers = IntegratorAnswers;
   static_assert(Members::virial,
                 "an integrator has `Mat3<Real> virial(const ParticleSystem<Real>&)`, which may be "
                 "optional, or no member of that name or nearly that name");
@@ -295,29 +332,10 @@ template <class I> struct IntegratorModel final : IntegratorBase<typename I::rea
   static_assert(action_follows<I>(),
                 "a wrapper of an integrator that has its own `advance` needs its own `advance_with_action` too, or a "
                 "`has_action` that returns false");
-  explicit IntegratorModel(I i) : integrator(std::move(i)) {}
-  std::unique_ptr<IntegratorBase<Real>> clone() const override { return std::make_unique<IntegratorModel>(integrator); }
-  IntegratorClaims claims() const override { return integrator.claims(); }
-  void bind(ParticleSystem<Real>& s) override { integrator.bind(s); }
-  Advance advance(ParticleSystem<Real>& s, const Span& span) override { return integrator.advance(s, span); }
-  bool has_action() const override { return detail::has_action(integrator); }
-  Advance advance_with_action(ParticleSystem<Real>& s, const Span& span, Real& action) override {
-    return detail::advance_with_action(integrator, s, span, action);
-  }
-  Real settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Request wanted,
-              const std::optional<double>& at, bool corrected) override {
-    return detail::settle(integrator, raw, out, wanted, at, corrected);
-  }
-  EnergyTerms<Real> energy(const ParticleSystem<Real>& s) override { return integrator.energy(s); }
-  std::optional<EnergyTerms<Quad>> wide_energy(const ParticleSystem<Real>& s) override {
-    return wide_energy_of(integrator, s);
-  }
-  std::optional<Mat3<Real>> virial(const ParticleSystem<Real>& s) override { return virial_of(integrator, s); }
-  void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) override { integrator.accelerations(s, a); }
-  Evaluations evaluations() const override { return integrator.evaluations(); }
-  void save(SavedState& saved, const std::string& prefix) const override { save_any(saved, prefix, integrator); }
-  void load(const SavedState& saved, const std::string& prefix) override { load_any(saved, prefix, integrator); }
-  I integrator;
+  explicit IntegratorModel(I i) : held(std::move(i)) {}
+  std::unique_ptr<IntegratorBase<Real>> clone() const override { return std::make_unique<IntegratorModel>(held); }
+  NOETHER_INTEGRATOR_SEAM(NOETHER_SEAM_HELD, NOETHER_SEAM_ANSWERED)
+  I held;
 };
 
 }  // namespace detail
@@ -331,32 +349,7 @@ template <class Real = double> class AnyHamiltonian : private detail::Erased<det
   AnyHamiltonian(H h)  // NOLINT: erases on purpose
       : detail::Erased<detail::HamiltonianBase<Real>>(std::make_unique<detail::HamiltonianModel<H>>(std::move(h))) {}
 
-  HamiltonianClaims claims() const { return this->held_->claims(); }
-  std::string name() const { return this->held_->name(); }
-  void bind(ParticleSystem<Real>& s) { this->held_->bind(s); }
-  void expect_kicks(double longest) { this->held_->expect_kicks(longest); }
-  /// How neighbors are found; before the first step. @return whether it looks for any
-  bool set_neighbor_options(const NeighborOptions& options) { return this->held_->set_neighbor_options(options); }
-  bool can_project() const { return this->held_->can_project(); }
-  void project_velocities(ParticleSystem<Real>& s, const Real& h) { this->held_->project_velocities(s, h); }
-  void open(ParticleSystem<Real>& s) { this->held_->open(s); }
-  void close(ParticleSystem<Real>& s) { this->held_->close(s); }
-  void flow(char letter, ParticleSystem<Real>& s, const Real& h) { this->held_->flow(letter, s, h); }
-  Real flow_with_action(char letter, ParticleSystem<Real>& s, const Real& h) {
-    return this->held_->flow_with_action(letter, s, h);
-  }
-  Advance run(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span) {
-    return this->held_->run(word, s, span);
-  }
-  EnergyTerms<Real> energy(const ParticleSystem<Real>& s) { return this->held_->energy(s); }
-  /// The virial of the forces, sum x (x) f [energy]; empty where it is not known.
-  std::optional<Mat3<Real>> virial(const ParticleSystem<Real>& s) { return this->held_->virial(s); }
-  void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) { this->held_->accelerations(s, a); }
-  void observe(std::optional<Request> wanted) { this->held_->observe(wanted); }
-  const std::optional<Failure>& failure() const { return this->held_->failure(); }
-  Evaluations evaluations() const { return this->held_->evaluations(); }
-  void save(SavedState& saved, const std::string& prefix) const { this->held_->save(saved, prefix); }
-  void load(const SavedState& saved, const std::string& prefix) { this->held_->load(saved, prefix); }
+  NOETHER_HAMILTONIAN_SEAM(NOETHER_SEAM_CALL, NOETHER_SEAM_CALL)
 };
 
 /// Any integrator over one number type; one virtual call per cut of the run.
@@ -368,30 +361,7 @@ template <class Real = double> class AnyIntegrator : private detail::Erased<deta
   AnyIntegrator(I i)  // NOLINT: erases on purpose
       : detail::Erased<detail::IntegratorBase<Real>>(std::make_unique<detail::IntegratorModel<I>>(std::move(i))) {}
 
-  IntegratorClaims claims() const { return this->held_->claims(); }
-  void bind(ParticleSystem<Real>& s) { this->held_->bind(s); }
-  Advance advance(ParticleSystem<Real>& s, const Span& span) { return this->held_->advance(s, span); }
-  /// Whether the method offers `advance_with_action`.
-  bool has_action() const { return this->held_->has_action(); }
-  /// @throws LogicError  if it does not
-  Advance advance_with_action(ParticleSystem<Real>& s, const Span& span, Real& action) {
-    return this->held_->advance_with_action(s, span, action);
-  }
-  /// @return the action of the flows that complete the copy, if wanted; 0 for a method that gives none
-  Real settle(const ParticleSystem<Real>& raw, ParticleSystem<Real>& out, Request wanted,
-              const std::optional<double>& at, bool corrected) {
-    return this->held_->settle(raw, out, wanted, at, corrected);
-  }
-  EnergyTerms<Real> energy(const ParticleSystem<Real>& s) { return this->held_->energy(s); }
-  /// The same with all digits of particles that keep second words; empty for others, and where a force is in doubles
-  /// only.
-  std::optional<EnergyTerms<Quad>> wide_energy(const ParticleSystem<Real>& s) { return this->held_->wide_energy(s); }
-  /// The virial of the forces, sum x (x) f [energy]; empty where it is not known.
-  std::optional<Mat3<Real>> virial(const ParticleSystem<Real>& s) { return this->held_->virial(s); }
-  void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) { this->held_->accelerations(s, a); }
-  Evaluations evaluations() const { return this->held_->evaluations(); }
-  void save(SavedState& saved, const std::string& prefix) const { this->held_->save(saved, prefix); }
-  void load(const SavedState& saved, const std::string& prefix) { this->held_->load(saved, prefix); }
+  NOETHER_INTEGRATOR_SEAM(NOETHER_SEAM_CALL, NOETHER_SEAM_CALL)
 };
 
 }  // namespace noether

@@ -41,8 +41,8 @@ template <class Real> class Hermite {
   /// Smallest distance from the origin on the interval, and where.
   ///
   /// `resolved`: without its accelerations the polynomial would have led to the same place within a tenth of that
-  /// distance, or of the one that matters. Where it would not, the interval is too long for the motion in it, and the
-  /// distance means nothing.
+  /// distance, or of the one that matters, whatever the place of their chance agreement. Where it would not, the interval
+  /// is too long for the motion in it, and the distance means nothing.
   struct Nearest {
     Real distance2, at;
     bool resolved;
@@ -51,7 +51,10 @@ template <class Real> class Hermite {
   Nearest nearest(const Real& matters = Real(0)) const {
     Nearest best = lowest();
     const Real compared2 = std::max(best.distance2, Real(matters * matters));
-    best.resolved = norm2(position(best.at) - cubic(best.at)) <= Real(0.01) * compared2;
+    // Both polynomials differ by u^2 (1 - u)^2 (A + B u), which may vanish anywhere: the larger one of its ends counts.
+    const Real u = best.at, bump = u * u * (Real(1) - u) * (Real(1) - u);
+    const Real most2 = std::max(norm2(Vec3<Real>(c4_ + Real(2) * c5_)), norm2(Vec3<Real>(c4_ + Real(3) * c5_)));
+    best.resolved = bump * bump * most2 <= Real(0.01) * compared2;
     return best;
   }
 
@@ -78,12 +81,6 @@ template <class Real> class Hermite {
       if (const Real d2 = norm2(position(u)); d2 < best.distance2) best = {d2, u, true};
     }
     return best;
-  }
-
-  /// The polynomial of degree 3 that meets positions and velocities alone.
-  Vec3<Real> cubic(const Real& u) const {
-    const Vec3<Real> dx = position(Real(1)) - c0_, s0 = c1_, s1 = slope(Real(1));
-    return c0_ + u * (s0 + u * (Real(3) * dx - Real(2) * s0 - s1 + u * (s0 + s1 - Real(2) * dx))).eval();
   }
 
   Vec3<Real> c0_, c1_, c2_, c3_, c4_, c5_;

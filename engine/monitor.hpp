@@ -1,6 +1,7 @@
 #pragma once
 /// Monitors and writers: what watches a run. They see settled copies and cannot change the trajectory.
 
+#include "engine/seam.hpp"
 #include "engine/snapshot.hpp"
 #include "numbers/members.hpp"
 
@@ -130,33 +131,104 @@ template <class M> struct MonitorMembers {
   static constexpr bool forget = !misspells_forget<M>() && (!finds_forget<M>() || Forgets<M>);
 };
 
+/// How a monitor answers where it need not have a member of this name.
+template <class Real> struct MonitorAnswers {
+  template <class M> static std::string name(const M& m) { return name_of(m); }
+  template <class M> static bool records(const M& /*m*/) {
+    return requires(M & m, const Sample& sample) { m.record(sample); };
+  }
+  template <class M> static bool looks_last(const M& /*m*/) {
+    return requires { M::looks_last; };
+  }
+  template <class M> static bool needs_particles(const M& /*m*/) {
+    return requires { M::needs_particles; };
+  }
+  template <class M> static bool needs_equal_intervals(const M& /*m*/) {
+    return requires { M::needs_equal_intervals; };
+  }
+  template <class M> static void check(const M& m, const ParticleSystem<Real>& s) {
+    if constexpr (requires { m.check(s); }) m.check(s);
+  }
+  template <class M> static Request wanted(const M& m) {
+    if constexpr (requires { m.wanted(); }) return m.wanted();
+    return {};
+  }
+  template <class M> static void at_start(M& m, const Snapshot<Real>& start) {
+    if constexpr (LooksAtTheStart<M, Real>) m.at_start(start);
+  }
+  template <class M> static bool looks_at_the_end(const M& /*m*/) { return LooksAtTheEnd<M, Real>; }
+  template <class M> static void at_end(M& m, const Snapshot<Real>& end) {
+    if constexpr (LooksAtTheEnd<M, Real>) m.at_end(end);
+  }
+  template <class M> static std::vector<Series> series(const M& m) {
+    if constexpr (requires { m.series(); }) return m.series();
+    return {};
+  }
+  template <class M> static std::optional<double> scale(const M& m) {
+    if constexpr (requires { m.scale(); }) return m.scale();
+    return {};
+  }
+  template <class M> static std::optional<MonitorReport> report(const M& m) {
+    if constexpr (requires { m.report(); }) return m.report();
+    return {};
+  }
+  template <class M> static void record(M& m, const Sample& sample) {
+    if constexpr (requires { m.record(sample); }) m.record(sample);
+  }
+  template <class M> static void flush(M& m) {
+    if constexpr (requires { m.flush(); }) m.flush();
+  }
+  template <class M> static std::int64_t steps_in_a_row(const M& m) {
+    if constexpr (requires { m.steps_in_a_row(); }) return m.steps_in_a_row();
+    return 1;
+  }
+  template <class M> static void forget(M& m) {
+    if constexpr (requires { m.forget(); }) m.forget();
+  }
+  template <class M> static void finish(M& m, const Outcome& outcome) {
+    if constexpr (requires { m.finish(outcome); }) m.finish(outcome);
+  }
+  template <class M> static void save(const M& m, SavedState& saved, const std::string& prefix) {
+    save_any(saved, prefix, m);
+  }
+  template <class M> static void load(M& m, const SavedState& saved, const std::string& prefix) {
+    load_any(saved, prefix, m);
+  }
+};
+
+/* The members of AnyMonitor, as `Monitor` tells of them. `check` throws Error if the monitor cannot watch such a state;
+   `flush`: writers hand what they have gathered to the file, before a checkpoint counts on it. */
+#define NOETHER_MONITOR_SEAM(OWN, ANSWERED)                                                  \
+  ANSWERED(std::string, name, () const)                                                      \
+  ANSWERED(bool, records, () const)                                                          \
+  ANSWERED(bool, looks_last, () const)                                                       \
+  ANSWERED(bool, needs_particles, () const)                                                  \
+  ANSWERED(bool, needs_equal_intervals, () const)                                            \
+  ANSWERED(void, check, (const ParticleSystem<Real>& s) const, s)                            \
+  ANSWERED(Request, wanted, () const)                                                        \
+  OWN(void, observe, (const Snapshot<Real>& snapshot), snapshot)                             \
+  ANSWERED(void, at_start, (const Snapshot<Real>& start), start)                             \
+  ANSWERED(bool, looks_at_the_end, () const)                                                 \
+  ANSWERED(void, at_end, (const Snapshot<Real>& end), end)                                   \
+  ANSWERED(std::vector<Series>, series, () const)                                            \
+  ANSWERED(std::optional<double>, scale, () const)                                           \
+  ANSWERED(std::optional<MonitorReport>, report, () const)                                   \
+  ANSWERED(void, record, (const Sample& sample), sample)                                     \
+  ANSWERED(void, flush, ())                                                                  \
+  ANSWERED(std::int64_t, steps_in_a_row, () const)                                           \
+  ANSWERED(void, forget, ())                                                                 \
+  ANSWERED(void, finish, (const Outcome& outcome), outcome)                                  \
+  ANSWERED(void, save, (SavedState & saved, const std::string& prefix) const, saved, prefix) \
+  ANSWERED(void, load, (const SavedState& saved, const std::string& prefix), saved, prefix)
+
 template <class Real> struct MonitorBase {
   virtual ~MonitorBase() = default;
-  virtual std::string name() const = 0;
-  virtual bool records() const = 0;
-  virtual bool looks_last() const = 0;
-  virtual bool needs_particles() const = 0;
-  virtual bool needs_equal_intervals() const = 0;
-  virtual void check(const ParticleSystem<Real>&) const = 0;
-  virtual Request wanted() const = 0;
-  virtual void observe(const Snapshot<Real>&) = 0;
-  virtual void at_start(const Snapshot<Real>&) = 0;
-  virtual bool looks_at_the_end() const = 0;
-  virtual void at_end(const Snapshot<Real>&) = 0;
-  virtual std::vector<Series> series() const = 0;
-  virtual std::optional<double> scale() const = 0;
-  virtual std::optional<MonitorReport> report() const = 0;
-  virtual void record(const Sample&) = 0;
-  virtual void flush() = 0;
-  virtual std::int64_t steps_in_a_row() const = 0;
-  virtual void forget() = 0;
-  virtual void finish(const Outcome&) = 0;
-  virtual void save(SavedState&, const std::string&) const = 0;
-  virtual void load(const SavedState&, const std::string&) = 0;
+  NOETHER_MONITOR_SEAM(NOETHER_SEAM_PURE, NOETHER_SEAM_PURE)
 };
 
 template <class M, class Real> struct MonitorModel final : MonitorBase<Real> {
   using Members = MonitorMembers<M>;
+  using Answers = MonitorAnswers<Real>;
   static_assert(Members::wanted,
                 "a monitor has `Request wanted() const`, or no member of that name or nearly that name");
   static_assert(Members::series,
@@ -175,66 +247,9 @@ template <class M, class Real> struct MonitorModel final : MonitorBase<Real> {
   static_assert(!misspells_at_end<M>() && (!finds_at_end<M>() || LooksAtTheEnd<M, Real>),
                 "a monitor has `void at_end(const Snapshot<Real>&)`, or no member of that name or nearly that name");
   static_assert(Members::forget, "a monitor has `void forget()`, or no member of that name or nearly that name");
-  explicit MonitorModel(M m) : monitor(std::move(m)) {}
-  std::string name() const override { return name_of(monitor); }
-  bool records() const override {
-    return requires(M & m, const Sample& s) { m.record(s); };
-  }
-  bool looks_last() const override {
-    return requires { M::looks_last; };
-  }
-  bool needs_particles() const override {
-    return requires { M::needs_particles; };
-  }
-  bool needs_equal_intervals() const override {
-    return requires { M::needs_equal_intervals; };
-  }
-  void check(const ParticleSystem<Real>& s) const override {
-    if constexpr (requires { monitor.check(s); }) monitor.check(s);
-  }
-  Request wanted() const override {
-    if constexpr (requires { monitor.wanted(); }) return monitor.wanted();
-    return {};
-  }
-  void observe(const Snapshot<Real>& snapshot) override { monitor.observe(snapshot); }
-  void at_start(const Snapshot<Real>& start) override {
-    if constexpr (LooksAtTheStart<M, Real>) monitor.at_start(start);
-  }
-  bool looks_at_the_end() const override { return LooksAtTheEnd<M, Real>; }
-  void at_end(const Snapshot<Real>& end) override {
-    if constexpr (LooksAtTheEnd<M, Real>) monitor.at_end(end);
-  }
-  std::vector<Series> series() const override {
-    if constexpr (requires { monitor.series(); }) return monitor.series();
-    return {};
-  }
-  std::optional<double> scale() const override {
-    if constexpr (requires { monitor.scale(); }) return monitor.scale();
-    return {};
-  }
-  std::optional<MonitorReport> report() const override {
-    if constexpr (requires { monitor.report(); }) return monitor.report();
-    return {};
-  }
-  void record(const Sample& sample) override {
-    if constexpr (requires { monitor.record(sample); }) monitor.record(sample);
-  }
-  void flush() override {
-    if constexpr (requires { monitor.flush(); }) monitor.flush();
-  }
-  std::int64_t steps_in_a_row() const override {
-    if constexpr (requires { monitor.steps_in_a_row(); }) return monitor.steps_in_a_row();
-    return 1;
-  }
-  void forget() override {
-    if constexpr (requires { monitor.forget(); }) monitor.forget();
-  }
-  void finish(const Outcome& outcome) override {
-    if constexpr (requires { monitor.finish(outcome); }) monitor.finish(outcome);
-  }
-  void save(SavedState& saved, const std::string& prefix) const override { save_any(saved, prefix, monitor); }
-  void load(const SavedState& saved, const std::string& prefix) override { load_any(saved, prefix, monitor); }
-  M monitor;
+  explicit MonitorModel(M m) : held(std::move(m)) {}
+  NOETHER_MONITOR_SEAM(NOETHER_SEAM_HELD, NOETHER_SEAM_ANSWERED)
+  M held;
 };
 
 }  // namespace detail
@@ -247,34 +262,12 @@ template <class Real = double> class AnyMonitor {
   AnyMonitor(M monitor)  // NOLINT: erases on purpose
       : held_(std::make_unique<detail::MonitorModel<M, Real>>(std::move(monitor))) {}
 
-  std::string name() const { return held_->name(); }
-  bool records() const { return held_->records(); }
-  bool looks_last() const { return held_->looks_last(); }
-  bool needs_particles() const { return held_->needs_particles(); }
-  bool needs_equal_intervals() const { return held_->needs_equal_intervals(); }
-  /// @throws Error  if a monitor says that it cannot watch such a state
-  void check(const ParticleSystem<Real>& s) const { held_->check(s); }
-  Request wanted() const { return held_->wanted(); }
-  void observe(const Snapshot<Real>& snapshot) { held_->observe(snapshot); }
-  void at_start(const Snapshot<Real>& start) { held_->at_start(start); }
-  bool looks_at_the_end() const { return held_->looks_at_the_end(); }
-  void at_end(const Snapshot<Real>& end) { held_->at_end(end); }
-  std::vector<Series> series() const { return held_->series(); }
-  std::optional<double> scale() const { return held_->scale(); }
-  std::optional<MonitorReport> report() const { return held_->report(); }
-  void record(const Sample& sample) { held_->record(sample); }
-  /// Writers hand what they have gathered to the file, before a checkpoint counts on it.
-  void flush() { held_->flush(); }
-  std::int64_t steps_in_a_row() const { return held_->steps_in_a_row(); }
-  void forget() { held_->forget(); }
-  void finish(const Outcome& outcome) { held_->finish(outcome); }
-  void save(SavedState& saved, const std::string& prefix) const { held_->save(saved, prefix); }
-  void load(const SavedState& saved, const std::string& prefix) { held_->load(saved, prefix); }
+  NOETHER_MONITOR_SEAM(NOETHER_SEAM_CALL, NOETHER_SEAM_CALL)
 
   /// The monitor itself, when its type is known; null otherwise.
   template <class M> M* get() {
     auto* model = dynamic_cast<detail::MonitorModel<M, Real>*>(held_.get());
-    return model == nullptr ? nullptr : &model->monitor;
+    return model == nullptr ? nullptr : &model->held;
   }
 
  private:

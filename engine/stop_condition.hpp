@@ -1,7 +1,7 @@
 #pragma once
 /// Conditions that end a run: escape and collision.
 
-#include "engine/hermite.hpp"
+#include "engine/motion.hpp"
 #include "engine/snapshot.hpp"
 
 #include <cstdint>

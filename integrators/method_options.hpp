@@ -125,7 +125,8 @@ struct ErrorControl {
                                field<&MethodOptions::rtol>("rtol", "1", "relative tolerance"),
                                field<&MethodOptions::atol>("atol", "1",
                                                            "absolute tolerance, of each variable; default: 0 for "
-                                                           "particles, of a [system] 1e-9"),
+                                                           "particles, of a [system] 1e-9; Gauss's and Radau's methods "
+                                                           "do not use it"),
                                field<&MethodOptions::max_step>("max_step", "time", "longest step; default: no limit"));
   }
 };

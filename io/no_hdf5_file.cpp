@@ -29,6 +29,7 @@ Index Hdf5Dataset::rows() const { unreachable(); }
 std::vector<Index> Hdf5Dataset::shape() const { unreachable(); }
 std::vector<Index> Hdf5Dataset::growing_shape() const { unreachable(); }
 Index Hdf5Dataset::rows_within(std::uint64_t) const { unreachable(); }
+bool Hdf5Dataset::grows() const { unreachable(); }
 ElementType Hdf5Dataset::type() const { unreachable(); }
 void Hdf5Dataset::append(std::span<const double>) { unreachable(); }
 void Hdf5Dataset::append(std::span<const std::int64_t>) { unreachable(); }

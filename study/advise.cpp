@@ -275,6 +275,11 @@ void choose_metric(Advice& advice, const Scene& scene, const AdviseOptions& opti
   const auto motion =
       predictability(scene, sampling_of(scene, {}).end(), 4 * options.row_budget, work.left() / 4, tell, &work.spent);
   const bool liquid = scene.particles.box().is_periodic() || scene.particles.size() > most_bodies;
+  if (motion && motion->unstable_step > 0) {
+    advice.hints.push_back(fmt::format(
+        "the step of the scene, {}, is unstable: runs that begin side by side part by it, but not by shorter steps",
+        time_in_words(motion->unstable_step, scene)));
+  }
   if (motion && !motion->judged && liquid) {
     advice.metric = Metric::energy;
     advice.trials_until = energy_trials_end(scene, options, work);

@@ -17,6 +17,9 @@ constexpr double fewest_e_foldings = 3;    ///< that a rate is fitted over
 constexpr std::size_t fewest_moments = 5;  ///< the same
 constexpr double moment_growth = 1.05;     ///< of the time from one moment to the next
 constexpr double first_moment = 0x1p-24;   ///< of the whole time, where steps are chosen by a tolerance
+/// Growth in a step, as a logarithm, above which it may be that of an unstable step and not that of the motion.
+constexpr double doubtful_growth = 0.02;
+constexpr int finest_part = 64;  ///< of the step, that such a growth is looked at with
 
 /// A number from -1 to 1 that looks like chance.
 double shake(Index i) {
@@ -69,11 +72,12 @@ Scene moved_scene(const Scene& scene, double by) {
 /// Two runs side by side.
 class TwoRuns {
  public:
-  TwoRuns(const Scene& scene, double end, double size)
+  /// @param parts  that steps of one length are divided into
+  TwoRuns(const Scene& scene, double end, double size, int parts)
       : particles_(scene.particles.size()), start_(scene.integrator.start), adaptive_(scene.integrator.adaptive()) {
     const Candidate who{adaptive_ ? "dop853" : scene.integrator.method, adaptive_ ? "dop853" : scene.integrator.method,
                         false, adaptive_};
-    const double step = scene.integrator.step;
+    const double step = scene.integrator.step / parts;
     const Setting setting{.step = adaptive_ ? 0 : step, .tolerance = adaptive_ ? 1e-12 : 0};
     step_ = step;
     next_ = adaptive_ ? first_moment * end : 1;
@@ -160,29 +164,9 @@ void judge_growth(Predictability& p) {
   fit_rate(p);
 }
 
-}  // namespace
-
-double Predictability::factor(double time) const {
-  if (times.empty()) return 1;
-  const auto at = std::lower_bound(times.begin(), times.end(), time);
-  if (at != times.end()) return std::max(1.0, growth[static_cast<std::size_t>(at - times.begin())]);
-  const double later = time / times.back();
-  const double more = chaotic ? std::exp(std::min(700.0, rate * (time - times.back()))) : later * later;
-  return std::max(1.0, growth.back() * more);
-}
-
-double Predictability::time_of(double wanted) const {
-  if (!chaotic) return std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < times.size(); ++k) {
-    if (growth[k] >= wanted) return times[k];
-  }
-  return times.back() + std::log(wanted / growth.back()) / rate;
-}
-
-double Predictability::tenfold() const { return std::log(10.0) / rate; }
-
-std::optional<Predictability> predictability(const Scene& scene, double end, double budget, double most,
-                                             const std::function<void(double)>& tell, double* spent) {
+/// As `predictability`, with steps of one length divided into parts.
+std::optional<Predictability> follow(const Scene& scene, double end, double budget, double most, int parts,
+                                     const std::function<void(double)>& tell, double* spent) {
   const double size = size_of_state(state_of(scene.particles), scene.particles.size());
   if (!(size > 0) || !(end > 0)) return {};
   const auto begin = std::chrono::steady_clock::now();
@@ -190,7 +174,7 @@ std::optional<Predictability> predictability(const Scene& scene, double end, dou
   bool failed = false;
   std::optional<TwoRuns> both;
   try {
-    both.emplace(scene, end, size);
+    both.emplace(scene, end, size, parts);
     const bool constrained = !scene.hamiltonian.constraints.empty();
     double first = constrained ? 0 : both->distance(), largest = 0;
     while (!both->at_end()) {
@@ -219,6 +203,48 @@ std::optional<Predictability> predictability(const Scene& scene, double end, dou
   found.judged = found.growth.back() >= 1e3 || both->at_end();
   judge_growth(found);
   return found;
+}
+
+}  // namespace
+
+double Predictability::factor(double time) const {
+  if (times.empty()) return 1;
+  const auto at = std::lower_bound(times.begin(), times.end(), time);
+  if (at != times.end()) return std::max(1.0, growth[static_cast<std::size_t>(at - times.begin())]);
+  const double later = time / times.back();
+  const double more = chaotic ? std::exp(std::min(700.0, rate * (time - times.back()))) : later * later;
+  return std::max(1.0, growth.back() * more);
+}
+
+double Predictability::time_of(double wanted) const {
+  if (!chaotic) return std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    if (growth[k] >= wanted) return times[k];
+  }
+  return times.back() + std::log(wanted / growth.back()) / rate;
+}
+
+double Predictability::tenfold() const { return std::log(10.0) / rate; }
+
+std::optional<Predictability> predictability(const Scene& scene, double end, double budget, double most,
+                                             const std::function<void(double)>& tell, double* spent) {
+  double all = 0;
+  std::optional<Predictability> first;
+  for (int parts = 1;; parts *= 2) {
+    std::optional<Predictability> found = follow(scene, end, budget, most - all, parts, tell, spent);
+    if (!found) return first;
+    all += found->evaluations;
+    found->evaluations = all;
+    if (!first) first = found;
+    const double time = first->times.back(), step = scene.integrator.step / parts;
+    if (parts > 1 && std::log(found->factor(time)) < std::log(first->growth.back()) / 2) {
+      found->unstable_step = scene.integrator.step;
+      return found;
+    }
+    const double steps = scene.integrator.adaptive() ? 0 : found->times.back() / step;
+    const bool is_doubtful = found->growth.back() >= 1e3 && std::log(found->growth.back()) > doubtful_growth * steps;
+    if (steps == 0 || !is_doubtful || parts == finest_part || all >= most) return found;
+  }
 }
 
 }  // namespace noether

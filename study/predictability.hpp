@@ -25,6 +25,8 @@ struct Predictability {
   /// Of its growth, so many the rate was fitted over; 0 where they were too few, and the rate is that of the last half.
   double e_foldings = 0;
   double evaluations = 0;  ///< of forces that following it took
+  /// The step of the scene, where the growth was that of an unstable step and not of the motion; 0 else [time].
+  double unstable_step = 0;
 
   /// How many times a difference has grown after a time; beyond what was followed by the rate, or as its square.
   double factor(double time) const;
@@ -37,7 +39,8 @@ struct Predictability {
 };
 
 /// Follows two runs that begin 1e-10 apart, relative, by the scene's own method where it has fixed steps, else by
-/// dop853; until they are 1e-3 apart. Empty where they cannot be made, or nothing can be moved.
+/// dop853; until they are 1e-3 apart. Where they part by more than 2 % a step, it is tried with parts of the step whether
+/// the motion does so or the step is unstable. Empty where they cannot be made, or nothing can be moved.
 /// @param end  from the start on [time]
 /// @param budget  seconds of wall time
 /// @param most  evaluations of forces by both runs together, beyond which they end

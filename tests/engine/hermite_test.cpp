@@ -73,6 +73,14 @@ TEST_CASE("a passage in an interval too long for its motion is told to be unreso
   CHECK(!Hermite<double>(circle(-2.0), circle(2.5), 4.5).nearest().resolved);
 }
 
+TEST_CASE("a place where the polynomial agrees by chance with one of degree 3 does not resolve a passage", "[hermite]") {
+  // Off a straight line at y = 1e-3 by u^2 (1 - u)^2 (u - 1/2), which vanishes where the line is nearest.
+  const Motion<double> begin{{-1, 1e-3, 0}, {2, 0, 0}, {0, -1, 0}}, end{{1, 1e-3, 0}, {2, 0, 0}, {0, 1, 0}};
+  const auto nearest = Hermite<double>(begin, end, 1).nearest();
+  CHECK(std::abs(nearest.at - 0.5) < 1e-4);
+  CHECK(!nearest.resolved);
+}
+
 TEST_CASE("what may not come within a distance never does", "[hermite]") {
   const Hermite<double> path(passing(0), passing(8), 8);
   CHECK(path.may_come_within(1.0));

@@ -12,6 +12,7 @@ import part_names
 import simd_symbols
 import sizes
 import sources
+import stand_ins
 import sums
 import text
 import words
@@ -122,6 +123,8 @@ SAMPLES = [
     ("cli/a.cpp", 'bool b = name == "pull";\n', part_names.problems, 'a decision by "pull", the name of a part of forces/'),
     ("cli/a.cpp", 'bool b = text_at(f).starts_with("pull");\n', part_names.problems, 'cli/a.cpp:1: a decision by "pull"'),
     ("cli/a.cpp", 'f("pull");  // name == "pull"\n', part_names.problems, ""),
+    ("io/no_store.cpp", "int Store::size() const { fail(); }\n", stand_ins.problems, "does not define Store::open, which io/store.cpp"),
+    ("io/no_store.cpp", "int Store::size() { fail(); }\nvoid Store::open() { fail(); }\n", stand_ins.problems, ""),
 ]
 
 
@@ -135,6 +138,8 @@ def planted(name, content, parts=True):
     if parts:
         tree["scene/parts.cpp"] = "auto p = [] { parts.add_force<Pull>(); };\n"
         tree["forces/pull.hpp"] = '#pragma once\ninline auto d = part<Pull>("pull", "pulls", name == "pull");\n'
+        tree["io/store.hpp"] = "#pragma once\nclass Store {\n public:\n  int size();\n  void open();\n\n private:\n  void fill();\n};\n"
+        tree["io/store.cpp"] = "int Store::size() {}\nvoid Store::open() {}\nvoid Store::fill() {}\n"
     for path, text_of_file in tree.items():
         (root / path).parent.mkdir(parents=True, exist_ok=True)
         (root / path).write_text(text_of_file)

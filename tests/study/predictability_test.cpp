@@ -51,6 +51,36 @@ TEST_CASE("the rate of Lorenz's system is its Lyapunov exponent, 0.906, however 
   CHECK(std::abs(sum / count - 0.906) < 0.06);
 }
 
+TEST_CASE("an unstable step is not taken for chaos", "[predictability]") {
+  const auto spring = [](double step) {
+    return read_scene(fmt::format(R"(units = "reduced"
+[[particles.body]]
+mass = 1
+x = [1, 0, 0]
+v = [0, 1, 0]
+[hamiltonian]
+type = "kinetic_potential"
+[[hamiltonian.force]]
+type = "harmonic_field"
+k = 100
+[integrator]
+method = "verlet"
+step = {}
+until = 60
+)",
+                                  step),
+                      "spring.toml");
+  };
+  for (const double step : {0.19, 0.205, 0.6, 3.0}) {  // stable below 0.2
+    const auto motion = predictability(spring(step), 60, 60);
+    REQUIRE(motion);
+    CAPTURE(step);
+    CHECK_FALSE(motion->chaotic);
+    CHECK(motion->unstable_step == (step < 0.2 ? 0 : step));
+    CHECK(motion->factor(60) < 100);
+  }
+}
+
 TEST_CASE("a rate is told with the e-foldings that it is fitted over, if it is", "[predictability]") {
   const Scene scene = lorenz_from(1, 1, 20);
   Predictability motion{.chaotic = true, .rate = std::log(10.0) / 2, .e_foldings = 13.4};
