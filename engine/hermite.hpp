@@ -41,8 +41,8 @@ template <class Real> class Hermite {
   /// Smallest distance from the origin on the interval, and where.
   ///
   /// `resolved`: without its accelerations the polynomial would have led to the same place within a tenth of that
-  /// distance, or of the one that matters, whatever the place of their chance agreement. Where it would not, the interval
-  /// is too long for the motion in it, and the distance means nothing.
+  /// distance, or of the one that matters, and not by chance. Where it would not, the interval is too long for the
+  /// motion in it, and the distance means nothing.
   struct Nearest {
     Real distance2, at;
     bool resolved;

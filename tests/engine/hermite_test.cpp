@@ -73,7 +73,7 @@ TEST_CASE("a passage in an interval too long for its motion is told to be unreso
   CHECK(!Hermite<double>(circle(-2.0), circle(2.5), 4.5).nearest().resolved);
 }
 
-TEST_CASE("a place where the polynomial agrees by chance with one of degree 3 does not resolve a passage", "[hermite]") {
+TEST_CASE("a place where polynomials of degree 3 and 5 agree by chance does not resolve a passage", "[hermite]") {
   // Off a straight line at y = 1e-3 by u^2 (1 - u)^2 (u - 1/2), which vanishes where the line is nearest.
   const Motion<double> begin{{-1, 1e-3, 0}, {2, 0, 0}, {0, -1, 0}}, end{{1, 1e-3, 0}, {2, 0, 0}, {0, 1, 0}};
   const auto nearest = Hermite<double>(begin, end, 1).nearest();
