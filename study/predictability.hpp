@@ -39,8 +39,8 @@ struct Predictability {
 };
 
 /// Follows two runs that begin 1e-10 apart, relative, by the scene's own method where it has fixed steps, else by
-/// dop853; until they are 1e-3 apart. Where they part by more than 2 % a step, shorter steps tell whether the motion does
-/// so, or the step is unstable. Empty where they cannot be made, or nothing can be moved.
+/// dop853; until they are 1e-3 apart. Where they part by more than 2 % a step, shorter steps tell whether the motion
+/// does so, or the step is unstable. Empty where they cannot be made, or nothing can be moved.
 /// @param end  from the start on [time]
 /// @param budget  seconds of wall time
 /// @param most  evaluations of forces by both runs together, beyond which they end
