@@ -1,0 +1,82 @@
+"""Error fronts of orbits: seconds against errors, for noether's methods and those of REBOUND and heyoka.
+
+    python3 bench/fronts.py PROGRAM                     # all five systems, then pictures and docs/orbits.md
+    python3 bench/fronts.py PROGRAM --systems outer --span 0.1
+    python3 bench/fronts.py --draw                      # pictures and page from the data that is there
+    python3 bench/fronts.py --check                     # whether the page is that of the data
+
+PROGRAM is noether. Python needs numpy; REBOUND and heyoka come from PyPI (`pip install rebound heyoka`, in the environment
+of `--peers PYTHON` or of this Python), and are left out where they are absent. Everything runs on one core.
+
+First every method with every step or tolerance is run over a twentieth of the span. Those on the front of their program there,
+then those near it, then those on the front of their family are run over the whole span, as many as there is time for. Errors
+and times are measured in separate runs; a run of more than 1.5 seconds is made once, for both. Timed runs of all programs
+alternate, and their median counts. A time of noether is that of the run or of its whole process, whichever is less: where other
+work keeps the processor busy, some hundredths of a second of its start are in it, which short spans show."""
+
+import argparse
+import pathlib
+import re
+import sys
+
+from orbits import page, systems
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+
+
+def processor():
+    for line in pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
+        if line.startswith("model name"):
+            return line.split(":", 1)[1].strip()
+    return "unknown"
+
+
+def has_avx512():
+    return "avx512dq" in pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8").split()
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program", nargs="?", help="noether")
+    parser.add_argument("--systems", default=",".join(systems.SYSTEMS), help="a list; default: all")
+    parser.add_argument("--methods", default="", help="a regular expression of methods; default: all")
+    parser.add_argument("--span", type=float, default=1.0, help="fraction of the span")
+    parser.add_argument("--budget", type=float, default=25, help="minutes for all systems; default 25")
+    parser.add_argument("--row", type=float, default=90, help="longest run that is made, in seconds; default 90")
+    parser.add_argument("--peers", default=sys.executable, help="the Python that has rebound and heyoka")
+    parser.add_argument("--note", default="", help="what else to say of the machine, such as that it was busy")
+    parser.add_argument("--out", default=str(ROOT / "docs/orbits"), help="folder of the data")
+    parser.add_argument("--draw", action="store_true", help="only pictures and page")
+    parser.add_argument("--check", action="store_true", help="only whether the page is that of the data")
+    return parser.parse_args()
+
+
+def run(given, out):
+    from orbits import measure  # it needs numpy, which pictures and page do not
+    from orbits.methods import all_methods
+
+    programs = measure.start_programs(given.program, given.peers)
+    entries = [entry for entry in all_methods(has_avx512()) if re.search(given.methods, entry.label)]
+    wanted = [systems.SYSTEMS[name] for name in given.systems.split(",")]
+    samples = max(1, round(systems.SAMPLES * given.span))
+    for system in wanted:
+        share = system.share / sum(other.share for other in wanted)
+        limits = measure.Limits(row=given.row, system=60 * given.budget * share)
+        rows = measure.measure(system, programs, entries, samples, limits)
+        page.write_data(out, system, rows, programs, samples, processor(), given.note)
+    measure.stop_programs(programs)
+
+
+def main():
+    given = arguments()
+    out = pathlib.Path(given.out)
+    if given.check:
+        return page.check(out)
+    if not given.draw:
+        run(given, out)
+    page.draw(out)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
