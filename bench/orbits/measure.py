@@ -7,7 +7,6 @@ import select
 import statistics
 import subprocess
 import time
-from dataclasses import dataclass
 
 import numpy
 
@@ -15,13 +14,20 @@ from orbits import errors, systems
 from orbits.ours import ADAPTIVE_LOOKS, Failed, Program
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-LONG = 1.5  # seconds; a longer run is made once, for errors and time
+LONG = 1.5  # seconds; a longer run is timed once
 ROUNDS = 3
 NEAR = 1.3  # times as long as the front of a program
 USELESS = (1e-4, 1e-1)  # errors of energy and position from which on a run is good for nothing
 OVERHEAD = 0.1  # seconds to start a run
 SCAN = 1  # samples
+STARTING = 20  # seconds that a program may take to greet
 COMPILING = {"heyoka": 300}  # seconds that a program may take before a run
+# Parts of a system's time: the scan, the fronts of the other programs, those and noether's, all rows.
+SCANNING, OTHERS, FRONTS, ALL = 0.35, 0.55, 0.95, 0.85
+
+
+class Absent(Exception):
+    """A program that is not there, or of a version that is not known; the text says why."""
 
 
 class Peer:
@@ -29,32 +35,53 @@ class Peer:
 
     def __init__(self, python, name):
         self.command = [python, str(ROOT / "bench/peers/orbits.py"), name]
-        self.version = None
+        self.gone = ""  # why it could not be started again
         self.start()
 
     def start(self):
         environment = {**os.environ, "OMP_NUM_THREADS": "1"}
-        self.process = subprocess.Popen(self.command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, bufsize=1,
-                                        env=environment)
-        self.version = self.process.stdout.readline().strip()
+        try:
+            self.process = subprocess.Popen(self.command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+                                            bufsize=1, env=environment)
+        except OSError as error:
+            raise Absent(f"{self.command[0]} cannot be started: {error.strerror}") from error
+        try:
+            ready = select.select([self.process.stdout], [], [], STARTING)[0]
+            greeting = json.loads(self.process.stdout.readline()) if ready else {"absent": f"no word in {STARTING} s"}
+        except ValueError:
+            greeting = {"absent": "what it said first is no greeting"}
+        if "absent" in greeting:
+            self.close()
+            raise Absent(greeting["absent"])
+        self.version, self.build = greeting["version"], greeting["build"]
 
     def close(self):
         self.process.kill()
         self.process.wait()
 
+    def again(self, why):
+        """Starts anew after a failure, which is returned; where that cannot be done, each question to come fails at once."""
+        self.close()
+        try:
+            self.start()
+        except Absent as absent:
+            self.gone = f"it could not be started again: {absent}"
+        return Failed(why)
+
     def ask(self, question, timeout):
-        self.process.stdin.write(json.dumps(question) + "\n")
-        self.process.stdin.flush()
-        if not select.select([self.process.stdout], [], [], timeout)[0]:
-            self.close()
-            self.start()
-            raise Failed(f"not finished after {timeout:.0f} s")
-        line = self.process.stdout.readline()
-        if not line:
-            self.close()
-            self.start()
-            raise Failed("the program ended")
-        answer = json.loads(line)
+        if self.gone:
+            raise Failed(self.gone)
+        try:
+            self.process.stdin.write(json.dumps(question) + "\n")
+            self.process.stdin.flush()
+            if not select.select([self.process.stdout], [], [], timeout)[0]:
+                raise self.again(f"not finished after {timeout:.0f} s")
+            line = self.process.stdout.readline()
+            if not line:
+                raise self.again("the program ended")
+            answer = json.loads(line)
+        except (ValueError, OSError) as error:  # an answer that is none, or a program that has gone
+            raise self.again(f"no answer: {error}") from error
         if "error" in answer:
             raise Failed(answer["error"])
         return answer["seconds"], answer["states"]
@@ -67,6 +94,8 @@ class Row:
         self.system, self.entry, self.divisions, self.tolerance = system, entry, divisions, tolerance
         self.seconds = self.energy = self.position = None
         self.times, self.outcome = [], ""
+        self.rank = 0  # as by_merit has it
+        self.whole = False  # whether seconds and errors are those of the whole span
 
     @property
     def step(self):
@@ -82,37 +111,47 @@ class Row:
         return self.entry.with_tolerance(self.entry.spec, self.tolerance)
 
     def run(self, programs, samples, watched, timeout):
-        """Seconds, states of the looks, and the energy error that the program itself reports, if it counts."""
+        """Seconds, and states of the looks."""
         program, system = programs[self.entry.program], self.system
         if isinstance(program, Program):
             method = dict(self.spec())
             if self.divisions:
                 method["divisions"] = self.divisions
-            report, seconds, states = program.run(system, method, samples, watched, timeout)
-            own = report["monitors"]["energy"]["worst"] if watched and self.entry.family == "exact" else None
-            return seconds, states, own
+            return program.run(system, method, samples, watched, timeout)[1:]
         question = {"G": system.G, "bodies": system.bodies, "sample": system.sample, "samples": samples,
                     "divisions": self.divisions, "first": system.divisions(system.step / 20), "looks": self.looks,
                     "watched": watched, "method": self.spec()}
-        seconds, states = program.ask(question, timeout + COMPILING.get(self.entry.program, 0))
-        return seconds, numpy.array(states).reshape(-1, len(system.bodies), 6), None
+        seconds, states = program.ask(question, timeout)
+        return seconds, numpy.array(states).reshape(-1, len(system.bodies), 6)
 
     def measure_errors(self, programs, samples, timeout):
         """Errors, and the time of a run that is looked at."""
         try:
-            seconds, states, energy = self.run(programs, samples, True, timeout)
+            seconds, states = self.run(programs, samples, True, timeout)
             if len(states) != self.looks * samples + 1:
                 raise Failed(f"{len(states)} states instead of {self.looks * samples + 1}")
             if not numpy.isfinite(states).all():
                 raise Failed("states that are not finite")
             masses = numpy.array([body[0] for body in self.system.bodies])
             self.seconds = seconds
-            self.energy = energy if energy is not None else errors.energy_error(self.system.G, masses, states)
+            self.energy = errors.energy_error(self.system.G, masses, states)
             self.position = errors.position_error(states[self.looks :: self.looks], systems.read_truth(self.system)[1:])
             self.outcome = "ok"
         except Failed as failure:
             self.seconds = self.energy = self.position = None
             self.outcome = " ".join(str(failure).split())[:200]
+
+    def measure_time(self, programs, samples, timeout):
+        """One more time of a run without looks; none where it has no end in time."""
+        try:
+            self.times.append(self.run(programs, samples, False, timeout)[0])
+        except Failed as failure:
+            tell(f"{self.entry.label} has not been timed: {failure}")
+
+
+    def leave_out(self, why):
+        """It stays behind; where it is on no front, another row of its program was better in the scan."""
+        self.outcome = f"{'behind a front' if self.rank else 'left out'}: {why}"
 
 
 def rows_of(system, entries):
@@ -136,7 +175,7 @@ def front(rows, error):
 
 def by_merit(rows):
     """Rows that are good for something, with their ranks: 0 on the front of their program, 1 near it, 2 on the front of their
-    family; of each rank the quickest first."""
+    family; of each rank those of other programs first, and the quickest of them. The rest is told that it stays behind."""
     good = [row for row in rows if row.outcome == "ok" and (row.energy < USELESS[0] or row.position < USELESS[1])]
     ranks = {}
     for error in ("energy", "position"):
@@ -151,26 +190,34 @@ def by_merit(rows):
             for family in {row.entry.family for row in own}:
                 for row in front([row for row in own if row.entry.family == family], error):
                     ranks.setdefault(row, 2)
-    return sorted(ranks.items(), key=lambda item: (item[1], item[0].seconds))
+    for row in rows:
+        if row.outcome == "ok" and row not in ranks:
+            row.outcome = "not near a front"
+    return sorted(ranks.items(), key=lambda item: (item[1], item[0].entry.program == "noether", item[0].seconds))
+
+
+def cost(row, times):
+    """Seconds that a row should take, in all, over a span `times` as long as that of its scan."""
+    expected = row.seconds * times + OVERHEAD
+    return expected * (2 if expected > LONG else 1 + ROUNDS)
 
 
 def chosen(rows, times, limits):
-    """The rows that are run over a span `times` as long as that of the scan, those that are left out for their time, and what
-    the former should take."""
-    kept, dropped, total = [], [], 0.0
-    for row, rank in by_merit(rows):
+    """The rows that are run over a span `times` as long as that of the scan, in their order. The others keep the errors of the
+    scan and are told why they stay behind. The fronts of other programs come first: without them nothing can be said."""
+    kept, total = [], 0.0
+    left = limits.left()
+    for row, row.rank in by_merit(rows):
         expected = row.seconds * times + OVERHEAD
-        cost = expected if expected > LONG else (1 + ROUNDS) * expected
+        part = ALL if row.rank > 0 else FRONTS if row.entry.program == "noether" else OTHERS
         if expected > limits.row:
-            row.outcome = f"left out: about {expected:.0f} s"
-            dropped.append(row)
-        elif total + cost <= 0.75 * limits.system:
-            total += cost
+            row.leave_out("longer than the longest run that is made")
+        elif total + cost(row, times) > part * left:
+            row.leave_out("no time for it")
+        else:
+            total += cost(row, times)
             kept.append(row)
-        elif rank == 0:
-            row.outcome = f"left out: about {expected:.0f} s, and no time for it"
-            dropped.append(row)
-    return kept, dropped, total
+    return kept, total
 
 
 def alternating(rows):
@@ -190,53 +237,88 @@ def tell(text):
     print(f"{time.strftime('%H:%M:%S')} {text}", flush=True)
 
 
-@dataclass
 class Limits:
-    """Seconds."""
+    """Seconds: of the longest run that is made, and of all runs of a system from now on."""
 
-    row: float  # of the longest run that is made
-    system: float  # of all runs of a system
+    def __init__(self, row, system):
+        self.row, self.system = row, system
+        self.end = time.monotonic() + system
 
-    def left(self, begin, fraction=1.0):
-        return fraction * self.system - (time.monotonic() - begin)
+    def left(self, part=1.0):
+        """Of a part of the time for the system, from its beginning."""
+        return self.end - (1 - part) * self.system - time.monotonic()
+
+    def timeout(self, wanted):
+        """Of a run: no run outlasts the time for the system."""
+        return max(0.0, min(wanted, self.left()))
+
+
+def scan(rows, programs, samples, limits, part):
+    """Errors and times over the first samples. What there is no time for is not finished."""
+    for row in rows:
+        if limits.left(SCANNING) <= 0:
+            row.outcome = "left out: no time to look at it"
+        else:
+            compiling = COMPILING.get(row.entry.program, 0)
+            row.measure_errors(programs, part, limits.timeout(limits.row * part / samples + 5 + compiling))
+
+
+def run_over_span(kept, programs, samples, times, limits):
+    """Errors of all rows, and times of the long ones; then times of the others, where the programs take turns."""
+    longest = 3 * limits.row + 10
+    reserved = 0.0  # for the times to come
+    for row in kept:
+        expected = row.seconds * times + OVERHEAD
+        own = (ROUNDS if expected <= LONG else 1) * expected
+        if limits.left() < reserved + expected + own:
+            row.leave_out("the time was over")
+            continue
+        found = row.seconds, row.energy, row.position
+        row.measure_errors(programs, samples, limits.timeout(longest))
+        row.whole = not row.outcome.startswith("not finished")
+        if not row.whole:
+            row.seconds, row.energy, row.position = found
+            row.leave_out(row.outcome)
+        if row.outcome == "ok" and row.seconds > LONG:
+            row.measure_time(programs, samples, limits.timeout(longest))
+        elif row.outcome == "ok":
+            reserved += ROUNDS * (row.seconds + OVERHEAD)
+    for _ in range(ROUNDS):
+        for row in alternating([row for row in kept if row.outcome == "ok" and row.seconds <= LONG]):
+            if limits.left() > row.seconds + OVERHEAD:
+                row.measure_time(programs, samples, limits.timeout(longest))
+    for row in kept:
+        if row.times:
+            row.seconds = statistics.median(row.times)
+        elif row.outcome == "ok":
+            row.leave_out("not timed without looks")
 
 
 def measure(system, programs, entries, samples, limits):
-    """Rows of the whole span, the refused and failed ones among them."""
+    """All rows: those of the whole span, and those that stay behind with the errors of the scan or without any."""
     begin = time.monotonic()
-    scan = min(SCAN, samples)
+    part = min(SCAN, samples)
     rows = rows_of(system, [entry for entry in entries if entry.program in programs])
-    for row in rows:
-        row.measure_errors(programs, scan, limits.row * scan / samples + 5)
-    failed = [row for row in rows if row.outcome != "ok"]
-    kept, dropped, total = chosen(rows, samples / scan, limits)
-    tell(f"{system.name}: {len(rows)} rows over {scan} of {samples} samples in {time.monotonic() - begin:.0f} s, {len(failed)} "
+    scan(rows, programs, samples, limits, part)
+    failed = sum(row.outcome != "ok" for row in rows)
+    kept, total = chosen(rows, samples / part, limits)
+    tell(f"{system.name}: {len(rows)} rows over {part} of {samples} samples in {time.monotonic() - begin:.0f} s, {failed} "
          f"without an end; {len(kept)} go on, about {total:.0f} s")
-    for row in kept:
-        if limits.left(begin, 0.8) < 0:
-            row.outcome = "left out: the time for this system was over"
-        else:
-            row.measure_errors(programs, samples, 3 * limits.row + 10)
-    going = [row for row in kept if row.outcome == "ok"]
-    timed = alternating([row for row in going if row.seconds < LONG])
-    for _ in range(ROUNDS):
-        for row in timed:
-            if limits.left(begin) > 0:
-                row.times.append(row.run(programs, samples, False, 3 * limits.row + 10)[0])
-    for row in timed:
-        row.seconds = statistics.median(row.times) if row.times else row.seconds
-    tell(f"{system.name}: {time.monotonic() - begin:.0f} s")
-    return kept + dropped + failed
+    run_over_span(kept, programs, samples, samples / part, limits)
+    for row in rows:
+        if row.seconds is not None and not row.whole:
+            row.seconds *= samples / part
+    tell(f"{system.name}: {time.monotonic() - begin:.0f} of {limits.system:.0f} s")
+    return rows
 
 
 def start_programs(program, python):
     programs = {"noether": Program(program)}
     for name in ("rebound", "heyoka"):
-        peer = Peer(python, name)
-        if peer.version:
-            programs[name] = peer
-        else:
-            tell(f"{name} is not installed: it is left out")
+        try:
+            programs[name] = Peer(python, name)
+        except Absent as absent:
+            tell(f"{name} is left out: {absent}")
     return programs
 
 

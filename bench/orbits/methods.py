@@ -7,7 +7,9 @@ PROCESSED = (2, 1.4, 1, 0.7, 0.5, 0.25)
 HIGH = (8, 5.6, 4, 2.8, 2, 1.4, 1)
 LEAPFROG = {2: (0.5, 0.125), 4: (1, 0.5, 0.25), 6: (1, 0.5, 0.25), 8: (2, 1.4, 1, 0.7)}
 WIDE = (2.8, 2.4, 2, 1.6, 1.3, 1)
-TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14)
+EXACT = (2.4, 2, 1.6, 1.3)  # never the step of the truth, which wide_gauss_8 made
+TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14, 1e-16)  # the last is the default of noether's methods to rounding
+TAYLOR = (1e-6, 1e-8, 1e-10, 1e-12, 1e-14, 2.220446049250313e-16)  # the last is heyoka's default
 FEW_TOLERANCES = (1e-6, 1e-9, 1e-12)
 
 
@@ -49,11 +51,14 @@ def noether_methods():
                                corrector=17, kernel=kernel))
     found.append(splitting("verlet_aba corrector 17 kernel modified second_corrector", "Wisdom-Holman", "verlet_aba", PROCESSED,
                            corrector=17, kernel="modified", second_corrector=True))
+    found.append(splitting("verlet_aba corrector 17 compensated", "Wisdom-Holman", "verlet_aba", PROCESSED, corrector=17,
+                           compensated=True))
     for stages in (1, 2, 3, 4):
         found.append(splitting(f"saba_{stages}", "ABA", f"saba_{stages}", PLAIN))
         found.append(splitting(f"saba_{stages} kernel modified", "ABA", f"saba_{stages}", HIGH, kernel="modified"))
     for method in ("aba_8_4", "aba_10_4", "aba_8_6_4", "aba_10_6_4"):
         found.append(splitting(method, "ABA", method, HIGH))
+    found.append(splitting("aba_10_6_4 compensated", "ABA", "aba_10_6_4", HIGH, compensated=True))
     for method in ("abah_8_4_4", "abah_8_6_4", "abah_10_6_4"):
         found.append(splitting(f"{method} democratic", "ABA", method, HIGH, coordinates="democratic"))
     for method, ratios in (("verlet", LEAPFROG[2]), ("blanes_moan_s6", LEAPFROG[4]), ("srkn11b", LEAPFROG[8]),
@@ -64,8 +69,8 @@ def noether_methods():
     found.append(classical("gauss_6", "Gauss", WIDE, adaptive=False))
     found.append(classical("gauss_4", "Gauss", WIDE, adaptive=False))
     found.append(classical("gauss_radau_15", "Gauss", tolerances=TOLERANCES))
-    found.append(classical("encke_gauss_8", "exact", (2.4, 2, 1.6, 1.3, 1)))
-    found.append(classical("wide_gauss_8", "exact", (2.4, 2, 1.6, 1.3, 1)))
+    found.append(classical("encke_gauss_8", "exact", EXACT))
+    found.append(classical("wide_gauss_8", "exact", EXACT))
     for method in ("dop853", "dprkn_12", "gragg_bulirsch_stoer", "adams_pece"):
         found.append(classical(method, "adaptive", tolerances=FEW_TOLERANCES))
     found.append(classical("stormer_cowell_13", "multistep", (0.14, 0.1, 0.07, 0.05)))
@@ -120,8 +125,8 @@ def heyoka_methods():
     def tolerant(spec, tolerance):
         return {**spec, "tolerance": tolerance}
 
-    return [Entry("heyoka", "Taylor", "Taylor", {"high_accuracy": False}, (), (1e-8, 1e-12), tolerant),
-            Entry("heyoka", "Taylor high accuracy", "Taylor", {"high_accuracy": True}, (), (2.220446049250313e-16,), tolerant)]
+    return [Entry("heyoka", "Taylor" + (" high accuracy" if accurate else ""), "Taylor", {"high_accuracy": accurate}, (), TAYLOR,
+                  tolerant) for accurate in (False, True)]
 
 
 def all_methods(avx512):

@@ -6,11 +6,17 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+from dataclasses import dataclass
 
 from orbits import systems
 
-COLUMNS = ("program", "method", "family", "setting", "value", "seconds", "rounds", "energy_error", "position_error",
+COLUMNS = ("program", "method", "family", "setting", "value", "seconds", "rounds", "looks", "energy_error", "position_error",
            "outcome")
+HOME = pathlib.Path(__file__).resolve().parents[2] / "docs"
+OPEN = ("left out", "not finished")  # outcomes of rows that might be on a front
+BEATEN = ("not near a front", "behind a front")  # of those that another row of their program beat in the scan
+ABOVE_FLOOR = 3  # the least level of energy errors, in units of what the rounding of states to doubles makes
+SAME = 0.1  # within which errors of the same map agree
 LEVELS = [10.0**-k for k in range(6, 15)]
 SHARE = 0.5  # of the time of the best other program is asked at each error
 BEGIN, END = "<!-- begin {}: written by bench/fronts.py -->", "<!-- end {} -->"
@@ -33,11 +39,13 @@ SERIES = (
 
 
 def write_data(out, system, rows, programs, samples, processor, note):
+    """All rows. Those with 0 rounds have the errors of the scan, and the time that the whole span should take."""
     out.mkdir(parents=True, exist_ok=True)
-    versions = ", ".join(f"{name} {program.version}" for name, program in programs.items())
+    ended = [name for name in programs if any(row.outcome == "ok" and row.entry.program == name for row in rows)]
+    versions = "; ".join(f"{name} {programs[name].version} ({programs[name].build})" for name in ended)
     head = {"system": system.title, "span": f"{system.end(samples)} days, {samples} samples", "programs": versions,
-            "commit": programs["noether"].commit, "level": programs["noether"].level, "processor": processor,
-            "date": datetime.date.today().isoformat(), "note": note}
+            "commit": programs["noether"].commit, "processor": processor, "date": datetime.date.today().isoformat(),
+            "note": note}
     order = {"noether": 0, "rebound": 1, "heyoka": 2}
     rows = sorted(rows, key=lambda row: (order[row.entry.program], row.entry.label, row.tolerance or 0, row.step or 0))
     with open(out / f"{system.name}.csv", "w", encoding="utf-8", newline="") as file:
@@ -45,15 +53,13 @@ def write_data(out, system, rows, programs, samples, processor, note):
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(COLUMNS)
         for row in rows:
-            done = row.outcome == "ok"
+            figures = [f"{row.seconds:.4g}", len(row.times), row.looks * samples, f"{row.energy:.2e}", f"{row.position:.2e}"]
             writer.writerow([row.entry.program, row.entry.label, row.entry.family, "step" if row.divisions else "tolerance",
-                             repr(row.step or row.tolerance), f"{row.seconds:.4g}" if done else "",
-                             len(row.times) if done else "", f"{row.energy:.2e}" if done else "",
-                             f"{row.position:.2e}" if done else "", row.outcome])
+                             repr(row.step or row.tolerance), *(figures if row.seconds is not None else [""] * 5), row.outcome])
 
 
 def read_data(path):
-    """The head, and the rows that have figures."""
+    """The head, and the rows; what a row has no figure for is None."""
     head, lines = {}, []
     for line in path.read_text(encoding="utf-8").splitlines():
         if line.startswith("# "):
@@ -63,7 +69,7 @@ def read_data(path):
             lines.append(line)
     rows = list(csv.DictReader(lines))
     for row in rows:
-        for key in ("value", "seconds", "energy_error", "position_error"):
+        for key in ("value", "seconds", "rounds", "looks", "energy_error", "position_error"):
             row[key] = float(row[key]) if row[key] else None
     return head, rows
 
@@ -74,8 +80,25 @@ def done(rows):
 
 def best(rows, metric, level):
     """The quickest row whose error is at most the level."""
-    good = [row for row in rows if row[metric] <= level]
+    good = [row for row in done(rows) if row[metric] <= level]
     return min(good, key=lambda row: row["seconds"]) if good else None
+
+
+def unknown(rows, metric, level, measured):
+    """Rows without a measurement that might be quicker at this level than the best of those with one."""
+    found = [row for row in rows if row["outcome"].startswith(OPEN)]
+    if measured is None:
+        return [row for row in found if row[metric] is None or row[metric] <= level]
+    slower = [row for row in found if row["outcome"].startswith("not finished")]  # than the longest run that is made
+    return [row for row in found if row not in slower and
+            (row[metric] is None or row[metric] <= level and row["seconds"] < measured["seconds"])]
+
+
+def levels(system, metric):
+    """Those at which errors can be told."""
+    floor, difference = systems.resolution(system)
+    least = ABOVE_FLOOR * floor if metric == "energy_error" else difference
+    return [level for level in LEVELS if level >= least]
 
 
 def plain_number(value):
@@ -89,44 +112,57 @@ def name_of(row):
     return f"{method}, {value}"
 
 
-def reason(ours, theirs):
-    """Why ours is not twice as fast."""
+def reason(miss):
+    """What the data say of a miss."""
+    if miss.open:
+        names = sorted({row["method"] for row in miss.open})
+        return "open: not measured " + ", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
+    ours, theirs = miss.ours, miss.theirs
     if ours is None:
-        return "no method of noether's reaches this error here"
-    return REASONS.get((ours["family"], theirs["family"]), REASONS.get(theirs["family"], UNEXPLAINED))
+        return "no method of noether's that was measured reaches this error here"
+    if not ours["setting"] == theirs["setting"] == "step":
+        return f"noether's best is {name_of(ours)}"
+    step = ours["value"] / theirs["value"]
+    if step == 1 and all(abs(ours[metric] / theirs[metric] - 1) <= SAME for metric, _ in METRICS if theirs[metric]):
+        return f"the same step and, within 10 %, the same errors: a step takes {miss.ratio:.2f} times as long"
+    return f"noether's best is {name_of(ours)}: {step:.2f} times the step, {miss.ratio * step:.2f} times the time of one"
 
 
-UNEXPLAINED = "not explained yet"
-SAME_MAP = ("the same map: steps and errors agree, and its step takes less time; noether computes arcs and kicks planet by planet, "
-            "not yet in SIMD lanes")
-LONG_STEPS = "at this error a splitting with a long step is enough, and a step of noether's splittings takes more time than its own"
-# By families: ours and theirs, or theirs alone.
-REASONS = {
-    ("Wisdom-Holman", "WHFast"): SAME_MAP,
-    ("ABA", "SABA"): SAME_MAP,
-    "WHFast": LONG_STEPS,
-    "SABA": LONG_STEPS,
-    "WHFast512": "eight planets share an AVX-512 register there; noether computes them one by one",
-}
+@dataclass
+class Miss:
+    """Where half of the time is missed, or not known to be held."""
+
+    level: float
+    ratio: float  # or None
+    ours: dict  # or None
+    theirs: dict  # or None
+    open: list  # rows that were not measured and may be quicker
 
 
-def table(rows, metric):
-    """Lines of a table, and the misses: level, ratio, ours, theirs."""
-    own = [row for row in done(rows) if row["program"] == "noether"]
-    other = [row for row in done(rows) if row["program"] != "noether"]
+def cells_of(row, missing):
+    if row is None:
+        return ["not measured" if missing else "none", ""]
+    return [name_of(row), f"{row['seconds']:.3g}"]
+
+
+def table(rows, metric, at):
+    """Lines of a table for the levels `at`, and the misses."""
+    own = [row for row in rows if row["program"] == "noether"]
+    other = [row for row in rows if row["program"] != "noether"]
     lines = ["| error at most | noether | s | best other | s | ratio |", "|---|---|---|---|---|---|"]
     misses = []
-    for level in LEVELS:
+    for level in at:
         ours, theirs = best(own, metric, level), best(other, metric, level)
-        if ours is None and theirs is None:
+        hidden = unknown(other, metric, level, theirs)
+        own_hidden = unknown(own, metric, level, None) if ours is None else []
+        if ours is None and theirs is None and not hidden and not own_hidden:
             continue
         ratio = ours["seconds"] / theirs["seconds"] if ours and theirs else None
-        if theirs and (ratio is None or ratio > SHARE):
-            misses.append((level, ratio, ours, theirs))
-        cells = [f"{level:.0e}"]
-        for row in (ours, theirs):
-            cells += [name_of(row), f"{row['seconds']:.3g}"] if row else ["none", ""]
-        cells.append("" if ratio is None else f"{ratio:.2f}" if ratio <= SHARE else f"**{ratio:.2f}**")
+        known = theirs is None or (ratio is not None and ratio <= SHARE)
+        if hidden or not known:
+            misses.append(Miss(level, ratio, ours, theirs, hidden or own_hidden))
+        last = "open" if hidden or (theirs and own_hidden) else "" if ratio is None else f"{ratio:.2f}"
+        cells = [f"{level:.0e}", *cells_of(ours, own_hidden), *cells_of(theirs, hidden), last if known else f"**{last}**"]
         lines.append("| " + " | ".join(cells) + " |")
     return lines, misses
 
@@ -138,29 +174,53 @@ def all_data(out):
             yield system, *read_data(path)
 
 
+def between(values):
+    least, most = min(values), max(values)
+    return f"{least:.0f}" if least == most else f"{least:.0f} to {most:.0f}"
+
+
+def about(system, head, rows):
+    """What was run, in words."""
+    kept = done(rows)
+    counts = [(n, sum(row["rounds"] == n for row in kept)) for n in (3, 2, 1)]
+    rounds = ", ".join(f"{count} timed {('once', 'twice', 'three times')[n - 1]}" for n, count in counts if count)
+    behind = sum(row["outcome"].startswith(BEATEN) for row in rows)
+    hidden = sum(row["outcome"].startswith(OPEN) for row in rows)
+    floor, difference = systems.resolution(system)
+    return [f"{len(kept)} runs over {head['span']}: {rounds}; errors of energy from {between([row['looks'] for row in kept])} looks. "
+            f"{behind} rows were beaten in the scan, {hidden} had no time.",
+            f"{head['programs']}; noether's commit {head['commit']}; {head['processor']}, one core; {head['date']}."
+            + (f" {head['note']}." if head.get("note") else ""),
+            f"Rounding to doubles alone makes an error of energy of {floor:.1e}, and positions of the truth are known to "
+            f"{difference:.1e}.", f"All rows: [orbits/{system.name}.csv](orbits/{system.name}.csv).", ""]
+
+
 def fronts(out):
-    """Lines of the section of all systems."""
-    lines, missed = [], []
+    """Lines of the section of all systems, and the misses, each behind its system and error."""
+    lines, missed, found = [], [], set()
     for system, head, rows in all_data(out):
-        lines += [f"### {system.title}", "", f"![errors against time](orbits/{system.name}.png)", ""]
-        kept = done(rows)
-        lines += [f"{len(kept)} runs over {head['span']}; {head['programs']}, noether's commit {head['commit']} ({head['level']}); "
-                  f"{head['processor']}, one core; {head['date']}." + (f" {head['note']}." if head.get("note") else ""),
-                  f"All of them: [orbits/{system.name}.csv](orbits/{system.name}.csv).", ""]
+        if not done(rows):
+            continue
+        found.add(system.name)
+        lines += [f"### {system.title}", "", f"![errors against time](orbits/{system.name}.png)", "", *about(system, head, rows)]
         for metric, words in METRICS:
-            more, misses = table(rows, metric)
+            more, misses = table(rows, metric, levels(system, metric))
             lines += [f"Errors of {words}:", "", *more, ""]
-            missed += [(system, words, *miss) for miss in misses]
-    return lines, missed
+            missed += [(system, words, miss) for miss in misses]
+    absent = [name for name in systems.SYSTEMS if name not in found]
+    return lines + ([f"Not measured yet: {', '.join(absent)}."] if absent else []), missed
 
 
-def misses_table(missed):
+def misses_table(missed, measured):
+    if not measured:
+        return ["Not measured yet."]
     if not missed:
-        return ["At every error from 1e-6 to 1e-14 that another program reaches, noether takes at most half its time."]
+        return ["Nowhere: at every error above that another program reaches, noether takes at most half its time."]
     lines = ["| system | error of | at most | ratio | against | why |", "|---|---|---|---|---|---|"]
-    for system, words, level, ratio, ours, theirs in missed:
-        lines.append(f"| {system.name} | {words} | {level:.0e} | {'' if ratio is None else f'{ratio:.2f}'} | {name_of(theirs)} | "
-                     f"{reason(ours, theirs)} |")
+    for system, words, miss in missed:
+        ratio = "open" if miss.open else "" if miss.ratio is None else f"{miss.ratio:.2f}"
+        against = name_of(miss.theirs) if miss.theirs else "not measured"
+        lines.append(f"| {system.name} | {words} | {miss.level:.0e} | {ratio} | {against} | {reason(miss)} |")
     return lines
 
 
@@ -168,22 +228,23 @@ def refused(out):
     """What did not end, once for each method and message."""
     lines = ["| system | program | method | what it said |", "|---|---|---|---|"]
     for system, _, rows in all_data(out):
-        seen = set()
-        for row in rows:
-            key = (row["program"], row["method"], row["outcome"])
-            if row["outcome"] != "ok" and not row["outcome"].startswith(("left out", "not finished")) and key not in seen:
-                seen.add(key)
-                lines.append(f"| {system.name} | {row['program']} | {row['method']} | {row['outcome'].replace('|', '/')} |")
-    return lines
+        said = [(row["program"], row["method"], row["outcome"]) for row in rows
+                if row["outcome"] != "ok" and not row["outcome"].startswith(OPEN + BEATEN)]
+        lines += [f"| {system.name} | {program} | {method} | {text.replace('|', '/')} |"
+                  for program, method, text in dict.fromkeys(said)]
+    return lines if len(lines) > 2 else ["Nothing of the sort was seen."]
 
 
 def blocks(out):
     lines, missed = fronts(out)
-    return {"fronts": lines, "misses": misses_table(missed), "refusals": refused(out)}
+    measured = any(done(rows) for _, _, rows in all_data(out))
+    return {"fronts": lines, "misses": misses_table(missed, measured),
+            "refusals": refused(out) if measured else ["Not measured yet."]}
 
 
 def page_path(out):
-    return out.parent / "orbits.md"
+    """Data elsewhere have a page beside them."""
+    return HOME / "orbits.md" if out.resolve() == HOME / "orbits" else out / "orbits.md"
 
 
 def filled(text, parts):
@@ -238,9 +299,9 @@ def draw(out):
             except FileNotFoundError:
                 print("gnuplot is not installed: the pictures are left as they are", file=sys.stderr)
                 break
-    page = page_path(out)
-    if page.exists():
-        page.write_text(filled(page.read_text(encoding="utf-8"), blocks(out)), encoding="utf-8")
+    text = filled((HOME / "orbits.md").read_text(encoding="utf-8"), blocks(out))
+    path = page_path(out)
+    path.write_text(text if path.parent == HOME else text.replace("](orbits/", "]("), encoding="utf-8")
 
 
 def check(out):

@@ -8,6 +8,7 @@ import csv
 import functools
 import math
 import pathlib
+import re
 from dataclasses import dataclass
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -75,6 +76,16 @@ SYSTEMS = {
 
 def truth_table(system):
     return HERE / f"{system.name}_truth.csv"
+
+
+def resolution(system):
+    """What errors can be told, by the line of truth.py's `finer`: the energy error of the truth's states in doubles, and how far
+    positions of the truth are from those with finer steps."""
+    text = truth_table(system).read_text(encoding="utf-8")
+    found = re.search(r"^# wide_gauss_8, .* differs by (\S+) of .* states in doubles (\S+)\.$", text, re.MULTILINE)
+    if not found:
+        raise ValueError(f"{truth_table(system).name} has no line of `truth.py PROGRAM {system.name} finer`")
+    return float(found[2]), float(found[1])
 
 
 def read_truth(system):

@@ -1,30 +1,34 @@
-"""Orbits by other programs: orbits.py rebound | heyoka. Greets with the version of the program, then answers each line, a run,
-with one line; ends at once where the program is absent. bench/fronts.py asks.
+"""Orbits by other programs: orbits.py rebound | heyoka. Greets with one line, {"version", "build": how it was compiled} or
+{"absent": why it cannot be asked}, then answers each line, a run, with one line. bench/fronts.py asks.
 
 A run: {"G", "bodies": [[m, x, y, z, vx, vy, vz], ...], "sample": time from one sample to the next, "samples": how many,
 "divisions": steps from one sample to the next, or null where the method chooses them, "looks": how many from one sample to the
-next, "watched": whether states of looks are wanted, "method": {...}}. The answer: {"seconds": of the processor, without
-what looks take, "states": those of the looks, the start among them, in one list} or {"error": why there are none}."""
+next, "watched": whether states of looks are wanted, "method": {...}}. The answer: {"seconds": of the steps alone, by the
+clock, without what looks take, "states": those of the looks, the start among them, in one list} or {"error": why there are none}."""
 
 import importlib
+import importlib.metadata
 import json
 import sys
 import time
 
-import numpy
+try:
+    import numpy
+except ImportError:
+    numpy = None
 
 
 class Watch:
-    """Adds up the processor time of the pieces of a run."""
+    """Adds up the time of the pieces of a run."""
 
     def __init__(self):
         self.seconds = 0.0
 
     def __enter__(self):
-        self.begin = time.process_time()
+        self.begin = time.perf_counter()
 
     def __exit__(self, *_):
-        self.seconds += time.process_time() - self.begin
+        self.seconds += time.perf_counter() - self.begin
 
 
 class Rebound:
@@ -111,15 +115,37 @@ class Heyoka:
 
 
 PROGRAMS = {"rebound": Rebound, "heyoka": Heyoka}
+OLDEST = {"rebound": 5, "heyoka": 7}  # whose names and results are those used here
 
 
-def main(name):
+def build(name):
+    """How the package was compiled: a wheel for many systems serves the oldest processors."""
+    try:
+        wheel = importlib.metadata.distribution(name).read_text("WHEEL") or ""
+    except importlib.metadata.PackageNotFoundError:
+        return "of unknown build"
+    return "PyPI's wheel" if "manylinux" in wheel else "built from source"
+
+
+def greeting(name):
+    """The program, if it can be asked, and the first line."""
+    if numpy is None:
+        return None, {"absent": f"numpy is not installed for {sys.executable}"}
     try:
         program = importlib.import_module(name)
     except ImportError as error:
-        print(f"{name}: {error}", file=sys.stderr)
+        return None, {"absent": f"{name} cannot be imported: {error}"}
+    version = program.__version__
+    if int(version.split(".")[0]) < OLDEST[name]:
+        return None, {"absent": f"{name} {version} is older than {OLDEST[name]}, whose methods are asked for"}
+    return program, {"version": version, "build": build(name)}
+
+
+def main(name):
+    program, first = greeting(name)
+    print(json.dumps(first), flush=True)
+    if program is None:
         return
-    print(program.__version__, flush=True)
     peer = PROGRAMS[name](program)
     for line in sys.stdin:
         run = json.loads(line)
