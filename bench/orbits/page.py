@@ -53,9 +53,12 @@ def write_data(out, system, rows, programs, samples, processor, note):
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(COLUMNS)
         for row in rows:
-            figures = [f"{row.seconds:.4g}", len(row.times), row.looks * samples, f"{row.energy:.2e}", f"{row.position:.2e}"]
+            figures = [""] * 5
+            if row.seconds is not None:
+                figures = [f"{row.seconds:.4g}", len(row.times), row.looks * samples, f"{row.energy:.2e}",
+                           f"{row.position:.2e}"]
             writer.writerow([row.entry.program, row.entry.label, row.entry.family, "step" if row.divisions else "tolerance",
-                             repr(row.step or row.tolerance), *(figures if row.seconds is not None else [""] * 5), row.outcome])
+                             repr(row.step or row.tolerance), *figures, row.outcome])
 
 
 def read_data(path):
