@@ -14,7 +14,8 @@ of these, other programs' come first. Data have all rows: one that stays behind 
 Errors and times are measured in separate runs. Times are those of the steps alone by the clock, so the machine should have nothing
 else to do. Timed runs of all programs alternate, and the median of three counts; a run of more than 1.5 seconds is timed once.
 
-The budget holds for everything: no run outlasts what is left of it. Runs over a part of the span or by some methods are trials:
+The budget holds for everything: no run outlasts what is left of it. The systems that take longest come last, and have what the
+others leave. Runs over a part of the span or by some methods are trials:
 they need --out, and have a page of their own there."""
 
 import argparse
@@ -73,7 +74,7 @@ def run(given, out):
     end = time.monotonic() + 60 * given.budget * (1 - DRAWING)
     programs = measure.start_programs(given.program, given.peers)
     entries = [entry for entry in all_methods(has_avx512()) if re.search(given.methods, entry.label)]
-    wanted = [systems.SYSTEMS[name] for name in given.systems.split(",")]
+    wanted = sorted((systems.SYSTEMS[name] for name in given.systems.split(",")), key=lambda system: system.share)
     samples = max(1, round(systems.SAMPLES * given.span))
     for k, system in enumerate(wanted):
         share = system.share / sum(other.share for other in wanted[k:])

@@ -23,7 +23,7 @@ SCAN = 1  # samples
 STARTING = 20  # seconds that a program may take to greet
 COMPILING = {"heyoka": 300}  # seconds that a program may take before a run
 # Parts of a system's time: the scan, the fronts of the other programs, those and noether's, all rows.
-SCANNING, OTHERS, FRONTS, ALL = 0.35, 0.55, 0.95, 0.85
+SCANNING, OTHERS, FRONTS, ALL = 0.6, 0.55, 0.95, 0.85
 
 
 class Absent(Exception):
@@ -221,16 +221,12 @@ def chosen(rows, times, limits):
 
 
 def alternating(rows):
-    """The programs take turns."""
-    lists = [[row for row in rows if row.entry.program == name] for name in ("noether", "rebound", "heyoka")]
+    """The programs take turns, each as often as it has rows."""
     order = []
-    while any(lists):
-        longest = max(lists, key=len)
-        order.append(longest.pop(0))
-        for other in lists:
-            if other is not longest and other and len(other) * 2 > len(longest):
-                order.append(other.pop(0))
-    return order
+    for program in {row.entry.program: 0 for row in rows}:
+        own = [row for row in rows if row.entry.program == program]
+        order += [((k + 0.5) / len(own), row) for k, row in enumerate(own)]
+    return [row for _, row in sorted(order, key=lambda item: item[0])]
 
 
 def tell(text):
@@ -255,7 +251,7 @@ class Limits:
 
 def scan(rows, programs, samples, limits, part):
     """Errors and times over the first samples. What there is no time for is not finished."""
-    for row in rows:
+    for row in alternating(rows):
         if limits.left(SCANNING) <= 0:
             row.outcome = "left out: no time to look at it"
         else:

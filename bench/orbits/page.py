@@ -161,11 +161,11 @@ def table(rows, metric, at):
         if ours is None and theirs is None and not hidden and not own_hidden:
             continue
         ratio = ours["seconds"] / theirs["seconds"] if ours and theirs else None
-        known = theirs is None or (ratio is not None and ratio <= SHARE)
-        if hidden or not known:
+        held = not hidden and (theirs is None or (ratio is not None and ratio <= SHARE))
+        if not held:
             misses.append(Miss(level, ratio, ours, theirs, hidden or own_hidden))
         last = "open" if hidden or (theirs and own_hidden) else "" if ratio is None else f"{ratio:.2f}"
-        cells = [f"{level:.0e}", *cells_of(ours, own_hidden), *cells_of(theirs, hidden), last if known else f"**{last}**"]
+        cells = [f"{level:.0e}", *cells_of(ours, own_hidden), *cells_of(theirs, hidden), last if held else f"**{last}**"]
         lines.append("| " + " | ".join(cells) + " |")
     return lines, misses
 
