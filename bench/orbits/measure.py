@@ -49,7 +49,7 @@ class Peer:
             ready = select.select([self.process.stdout], [], [], STARTING)[0]
             greeting = json.loads(self.process.stdout.readline()) if ready else {"absent": f"no word in {STARTING} s"}
         except ValueError:
-            greeting = {"absent": "what it said first is no greeting"}
+            greeting = {"absent": "its first line cannot be read"}
         if "absent" in greeting:
             self.close()
             raise Absent(greeting["absent"])
@@ -150,8 +150,8 @@ class Row:
 
 
     def leave_out(self, why):
-        """It stays behind; where it is on no front, another row of its program was better in the scan."""
-        self.outcome = f"{'behind a front' if self.rank else 'left out'}: {why}"
+        """Not run over the whole span; where it is on no front, another row of its program was better in the scan."""
+        self.outcome = f"{'beaten in the scan' if self.rank else 'left out'}: {why}"
 
 
 def rows_of(system, entries):
@@ -175,7 +175,7 @@ def front(rows, error):
 
 def by_merit(rows):
     """Rows that are good for something, with their ranks: 0 on the front of their program, 1 near it, 2 on the front of their
-    family; of each rank those of other programs first, and the quickest of them. The rest is told that it stays behind."""
+    family; of each rank those of other programs first, and the quickest of them. The rest is marked as beaten."""
     good = [row for row in rows if row.outcome == "ok" and (row.energy < USELESS[0] or row.position < USELESS[1])]
     ranks = {}
     for error in ("energy", "position"):
@@ -204,7 +204,7 @@ def cost(row, times):
 
 def chosen(rows, times, limits):
     """The rows that are run over a span `times` as long as that of the scan, in their order. The others keep the errors of the
-    scan and are told why they stay behind. The fronts of other programs come first: without them nothing can be said."""
+    scan, and the reason. The fronts of other programs come first: without them nothing can be said."""
     kept, total = [], 0.0
     left = limits.left()
     for row, row.rank in by_merit(rows):
@@ -291,7 +291,7 @@ def run_over_span(kept, programs, samples, times, limits):
 
 
 def measure(system, programs, entries, samples, limits):
-    """All rows: those of the whole span, and those that stay behind with the errors of the scan or without any."""
+    """All rows: those of the whole span, and the others with the errors of the scan or without any."""
     begin = time.monotonic()
     part = min(SCAN, samples)
     rows = rows_of(system, [entry for entry in entries if entry.program in programs])

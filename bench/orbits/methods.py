@@ -1,6 +1,7 @@
 """The methods whose fronts are measured: noether's, and every one of REBOUND and heyoka that serves planets.
 
-Those that are on fronts come first, for what stands last is left out where there is no time. Steps are in units of a twentieth of a turn of the fastest body at its fastest (System.step)."""
+Those that are on fronts come first, for what stands last is left out where there is no time. Steps are in units of a twentieth
+of a turn of the fastest body at its fastest (System.step)."""
 
 PLAIN = (2, 1, 0.5, 0.25)
 PROCESSED = (2, 1.4, 1, 0.7, 0.5, 0.25)

@@ -56,7 +56,7 @@ class Program:
         self.path = str(pathlib.Path(path).resolve())
         words = self.call(["version"])[0].split()
         self.version, self.commit, self.level = words[1], words[3], words[words.index("level") + 1]
-        self.build = f"{self.level}, as the processor has it"
+        self.build = f"{self.level}, chosen at its start"
 
     def call(self, arguments, timeout=600):
         """Standard output and standard error."""

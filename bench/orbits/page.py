@@ -14,7 +14,7 @@ COLUMNS = ("program", "method", "family", "setting", "value", "seconds", "rounds
            "outcome")
 HOME = pathlib.Path(__file__).resolve().parents[2] / "docs"
 OPEN = ("left out", "not finished")  # outcomes of rows that might be on a front
-BEATEN = ("not near a front", "behind a front")  # of those that another row of their program beat in the scan
+BEATEN = ("not near a front", "beaten in the scan")  # of those that another row of their program beat in the scan
 ABOVE_FLOOR = 3  # the least level of energy errors, in units of what the rounding of states to doubles makes
 SAME = 0.1  # within which errors of the same map agree
 LEVELS = [10.0**-k for k in range(6, 15)]

@@ -137,7 +137,7 @@ def greeting(name):
         return None, {"absent": f"{name} cannot be imported: {error}"}
     version = program.__version__
     if int(version.split(".")[0]) < OLDEST[name]:
-        return None, {"absent": f"{name} {version} is older than {OLDEST[name]}, whose methods are asked for"}
+        return None, {"absent": f"{name} {version} is too old; expected {OLDEST[name]} or newer"}
     return program, {"version": version, "build": build(name)}
 
 
