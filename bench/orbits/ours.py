@@ -4,6 +4,7 @@ import json
 import pathlib
 import subprocess
 import tempfile
+import time
 
 import numpy
 
@@ -76,6 +77,7 @@ class Program:
         with tempfile.TemporaryDirectory() as folder:
             folder = pathlib.Path(folder)
             scene = folder / "scene.toml"
+            end = time.monotonic() + timeout
             scene.write_text(scene_text(system, method, samples, watched), encoding="utf-8")
             text, _ = self.call(["run", str(scene), "--json", "--threads", "1", "--out", str(folder / "out")], timeout)
             report = json.loads(text)
@@ -84,6 +86,7 @@ class Program:
             seconds = report["wall_s"]  # of the steps alone, as that of the other programs
             if not watched:
                 return report, seconds, None
-            self.call(["convert", str(folder / "out" / "run.h5"), str(folder / "run.csv")], timeout)
+            self.call(["convert", str(folder / "out" / "run.h5"), str(folder / "run.csv")],
+                      max(0.0, end - time.monotonic()))
             columns = numpy.loadtxt(folder / "run.csv", delimiter=",", skiprows=1, usecols=range(4, 10), ndmin=2)
             return report, seconds, columns.reshape(-1, len(system.bodies), 6)

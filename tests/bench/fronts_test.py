@@ -276,7 +276,7 @@ def other_programs():
 
         said = absent(str(folder / "nothing"))
         expect("cannot be started" in said, said)
-        said = absent(script("bare", f'exec {sys.executable} -S "$@"\n'))
+        said = absent(script("bare", f'exec {sys.executable} -I -S "$@"\n'))
         expect("numpy is not installed" in said, said)
         expect("cannot be read" in absent(script("silent", "exit 0\n")), "a program that ends at once")
         (folder / "rebound.py").write_text("__version__ = '4.4.1'\n", encoding="utf-8")
