@@ -12,8 +12,9 @@ First every method with every step or tolerance is run over a twentieth of the s
 there, then those near it, then those on the front of their family are run over the whole span, as many as there is time for; of
 each of these, other programs' come first. Data have all rows: one that is not run over the whole span has the errors of the scan,
 and the reason.
-Errors and times are measured in separate runs. Times are those of the steps alone by the clock, so the machine should have nothing
-else to do. Timed runs of all programs alternate, and the median of three counts; a run of more than 1.5 seconds is timed once.
+
+Errors and times are measured in separate runs, but for long ones whose looks cost nothing. Times are those of the steps alone by
+the clock, so the machine should have nothing else to do. Timed runs of all programs alternate, and the median of three counts; a run of more than 1.5 seconds is timed once.
 
 The budget holds for everything: no run outlasts what is left of it. The systems that take longest come last, and have what the
 others leave. Runs over a part of the span or by some methods are trials: they need --out, and their page is written there."""

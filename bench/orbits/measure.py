@@ -23,7 +23,7 @@ SCAN = 1  # samples
 STARTING = 20  # seconds that a program may take to greet
 COMPILING = {"heyoka": 300}  # seconds that a program may take before a run
 # Parts of a system's time: the scan, the fronts of the other programs, those and noether's, all rows.
-SCANNING, OTHERS, FRONTS, ALL = 0.6, 0.55, 0.95, 0.85
+SCANNING, OTHERS, FRONTS, ALL = 0.6, 0.7, 0.95, 0.85
 
 
 class Absent(Exception):
@@ -104,6 +104,12 @@ class Row:
     @property
     def looks(self):
         return systems.looks_of(self.divisions) if self.divisions else ADAPTIVE_LOOKS
+
+    @property
+    def looks_are_free(self):
+        """Whether a long run is as quick with looks as without: they are outside the time of other programs, and end few of the
+        steps that a method chooses. (Steps of one length are synchronized at looks, by correctors with many steps.)"""
+        return self.entry.program != "noether" and not self.divisions
 
     def spec(self):
         if self.tolerance is None:
@@ -199,7 +205,7 @@ def by_merit(rows):
 def cost(row, times):
     """Seconds that a row should take, in all, over a span `times` as long as that of its scan."""
     expected = row.seconds * times + OVERHEAD
-    return expected * (2 if expected > LONG else 1 + ROUNDS)
+    return expected * (1 + ROUNDS if expected <= LONG else 1 if row.looks_are_free else 2)
 
 
 def chosen(rows, times, limits):
@@ -265,8 +271,7 @@ def run_over_span(kept, programs, samples, times, limits):
     reserved = 0.0  # for the times to come
     for row in kept:
         expected = row.seconds * times + OVERHEAD
-        own = (ROUNDS if expected <= LONG else 1) * expected
-        if limits.left() < reserved + expected + own:
+        if limits.left() < reserved + cost(row, times):
             row.leave_out("the time was over")
             continue
         found = row.seconds, row.energy, row.position
@@ -276,7 +281,10 @@ def run_over_span(kept, programs, samples, times, limits):
             row.seconds, row.energy, row.position = found
             row.leave_out(row.outcome)
         if row.outcome == "ok" and row.seconds > LONG:
-            row.measure_time(programs, samples, limits.timeout(longest))
+            if row.looks_are_free:
+                row.times.append(row.seconds)
+            else:
+                row.measure_time(programs, samples, limits.timeout(longest))
         elif row.outcome == "ok":
             reserved += ROUNDS * (row.seconds + OVERHEAD)
     for _ in range(ROUNDS):

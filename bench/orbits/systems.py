@@ -65,11 +65,11 @@ GAUSS = 0.01720209895**2
 SYSTEMS = {
     one.name: one
     for one in (
-        System("outer", "Outer Solar System, 1e5 years", 2.95912208286e-4, 1826250, 216, True, 110, 0.14),
-        System("solar", "Solar System, eight planets, 1e4 years", GAUSS, 182625, 3, True, 2.7, 0.4),
-        System("chain", "Seven planets in a resonant chain, as of TRAPPIST-1, 7200 days", GAUSS, 360, 0.075, True, 0.08, 0.16),
-        System("eccentric", "Three planets, the inner one with e = 0.9, 986 years", GAUSS, 18000, 0.15, True, 0.11, 0.18),
-        System("hierarchy", "Two stars with two planets and a third star, 493 years", GAUSS, 9000, 0.75, False, 0.75, 0.12),
+        System("outer", "Outer Solar System, 1e5 years", 2.95912208286e-4, 1826250, 216, True, 110, 0.13),
+        System("solar", "Solar System, eight planets, 1e4 years", GAUSS, 182625, 3, True, 2.7, 0.45),
+        System("chain", "Seven planets in a resonant chain, as of TRAPPIST-1, 7200 days", GAUSS, 360, 0.075, True, 0.08, 0.14),
+        System("eccentric", "Three planets, the inner one with e = 0.9, 986 years", GAUSS, 18000, 0.15, True, 0.11, 0.17),
+        System("hierarchy", "Two stars with two planets and a third star, 493 years", GAUSS, 9000, 0.75, False, 0.75, 0.11),
     )
 }
 

@@ -186,7 +186,7 @@ def selection():
     from orbits import measure
 
     def scanned(program, family, seconds, error):
-        found = measure.Row(None, types.SimpleNamespace(program=program, family=family))
+        found = measure.Row(None, types.SimpleNamespace(program=program, family=family), divisions=4)
         found.seconds, found.energy, found.position, found.outcome = seconds, error, error, "ok"
         return found
 
@@ -199,6 +199,8 @@ def selection():
     expect(kept == [peer, best, close, other], "rows in another order than that of their merit")
     expect(slow.outcome == rough.outcome == "not near a front", f"{slow.outcome}, {rough.outcome}")
     expect(abs(total - (2 * 9.1 + 4 * 1.1 + 4 * 1.3 + 2 * 4.1)) < 1e-9, f"expected to take {total} s")
+    peer.divisions = None
+    expect(abs(measure.cost(peer, 10) - 9.1) < 1e-9, "a long run that no look disturbs is made twice")
     rows = slow, close, best, other, rough, peer = all_rows()
     kept, _ = measure.chosen(rows, 10, measure.Limits(row=5, system=100))
     expect(kept == [best, close, other] and peer.outcome.startswith("left out"), f"a run beyond the limit: {peer.outcome}")
