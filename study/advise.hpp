@@ -52,7 +52,7 @@ struct Advice {
   std::optional<Proposal> best = {};        ///< without a proposal: the run with the smallest error that was measured
   double best_error = 0;                    ///< its error over the trial
   std::optional<Proposal> would_hold = {};  ///< without a proposal: beyond what was tried, by the measured order
-  std::vector<std::string> hints = {};      ///< without a proposal: what else can be done, in sentences
+  std::vector<std::string> hints = {};      ///< what else there is to know, or to be done, in sentences
   double end = 0, trial_end = 0;            ///< of the full run and of the trials [time]
   Comparison trials = {};
 };

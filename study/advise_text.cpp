@@ -110,6 +110,7 @@ std::string to_text(const Advice& a, const Scene& scene) {
   const Proposal& best = a.proposals.front();
   out += fmt::format("cheapest: {}; {}\n", best.who.label, best.growth.assumption);
   for (const std::string& one : a.left_out) out += one + "\n";
+  for (const std::string& hint : a.hints) out += hint + "\n";
   for (const std::string& set : a.sets) out += fmt::format("--set '{}'\n", set);
   return out;
 }
