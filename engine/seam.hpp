@@ -17,7 +17,7 @@
 
 #define NOETHER_SEAM_PURE(RESULT, NAME, PARAMETERS, ...) virtual RESULT NAME PARAMETERS = 0;
 #define NOETHER_SEAM_HELD(RESULT, NAME, PARAMETERS, ...) \
-  RESULT NAME PARAMETERS override { return held.NAME(__VA_ARGS__); }
+  RESULT NAME PARAMETERS override { return static_cast<RESULT>(held.NAME(__VA_ARGS__)); }
 #define NOETHER_SEAM_ANSWERED(RESULT, NAME, PARAMETERS, ...) \
   RESULT NAME PARAMETERS override { return Answers::NAME(held __VA_OPT__(, ) __VA_ARGS__); }
 #define NOETHER_SEAM_CALL(RESULT, NAME, PARAMETERS, ...) \

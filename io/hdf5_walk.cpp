@@ -143,8 +143,7 @@ class Walk {
     block.expect_number(14, 1, 8, "the size of lengths");
     block.expect_number(16, 2, 4, "the size of nodes of names");
     block.expect_number(18, 2, 16, "the size of nodes of groups");
-    expect(block.number(20, 1) <= 7, 20, "the flags of the superblock are unknown");  // of writers that have it open
-    block.expect_zeros(21, 3);
+    block.expect_zeros(20, 4);
     block.expect_zeros(24, 8);
     block.expect_number(32, 8, nowhere, "the address of free space");
     block.expect_number(48, 8, nowhere, "the address of a driver's block");

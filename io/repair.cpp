@@ -195,8 +195,10 @@ Repair repair(const fs::path& file) {
   static constexpr std::uint64_t believable = 64;  // times as long as it is, a file may have been
   Repair result{verify(file), {}};
   const std::uint64_t size = fs::file_size(file), expected = expected_size(file);
-  if (result.info.kind == "trajectory" && walk_hdf5(file).fault) return result;  // HDF5 must not write to it
   if (result.info.kind == "trajectory") {
+    const Hdf5Walk walk = walk_hdf5(file);
+    // HDF5 must not write to a damaged structure; and rows without data may be all rows of one whose tree is lost.
+    if (walk.fault || !walk.unwritten.empty()) return result;
     repair_lengths(file, size, result);
   } else if (expected > size && expected / believable < size) {
     repair_end(file, size, expected, result);

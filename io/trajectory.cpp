@@ -331,7 +331,8 @@ class TrajectoryWriter::File {
                                     paths[k], held, wanted),
                         {.file = path_.string()});
       }
-      if (held > wanted) dataset.resize(wanted);
+      // A torn header may have rows that were never written, which do not count.
+      if (dataset.growing_shape().front() != wanted) dataset.resize(wanted);
     }
     flush();
   }

@@ -80,7 +80,8 @@ class TwoRuns {
     const double step = scene.integrator.step / parts;
     const Setting setting{.step = adaptive_ ? 0 : step, .tolerance = adaptive_ ? 1e-12 : 0};
     step_ = step;
-    next_ = adaptive_ ? first_moment * end : 1;
+    // With constraints the first moment is what growth is measured from: the same for all parts.
+    next_ = adaptive_ ? first_moment * end : scene.hamiltonian.constraints.empty() ? 1 : parts;
     end_ = end;
     one_.emplace(assemble(variant(scene, who, setting)));
     other_.emplace(assemble(variant(moved_scene(scene, first_distance * size), who, setting)));
@@ -228,23 +229,33 @@ double Predictability::tenfold() const { return std::log(10.0) / rate; }
 
 std::optional<Predictability> predictability(const Scene& scene, double end, double budget, double most,
                                              const std::function<void(double)>& tell, double* spent) {
-  double all = 0;
-  std::optional<Predictability> first;
+  const auto begin = std::chrono::steady_clock::now();
+  const auto seconds_left = [&] {
+    return budget - std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  std::optional<Predictability> first = follow(scene, end, budget, most, 1, tell, spent);
+  if (!first || scene.integrator.adaptive()) return first;
+  double all = first->evaluations;
+  Predictability found = *first;
   for (int parts = 1;; parts *= 2) {
-    std::optional<Predictability> found = follow(scene, end, budget, most - all, parts, tell, spent);
-    if (!found) return first;
-    all += found->evaluations;
-    found->evaluations = all;
-    if (!first) first = found;
-    const double time = first->times.back(), step = scene.integrator.step / parts;
-    if (parts > 1 && std::log(found->factor(time)) < std::log(first->growth.back()) / 2) {
-      found->unstable_step = scene.integrator.step;
-      return found;
+    const double steps = found.times.back() / (scene.integrator.step / parts);
+    const bool is_doubtful = found.growth.back() >= 1e3 && std::log(found.growth.back()) > doubtful_growth * steps;
+    if (!is_doubtful || parts == finest_part) break;
+    if (!(seconds_left() > 0) || all >= most) break;
+    const auto finer = follow(scene, end, seconds_left(), most - all, 2 * parts, {}, spent);
+    if (!finer) break;
+    all += finer->evaluations;
+    const double time = first->times.back();
+    const bool reached = finer->times.back() >= time - scene.integrator.step;
+    if (!reached && finer->growth.back() < 1e3) break;  // cut short: it tells nothing
+    found = *finer;
+    if (reached && std::log(found.factor(time)) < std::log(first->growth.back()) / 2) {
+      found.unstable_step = scene.integrator.step;
+      break;
     }
-    const double steps = scene.integrator.adaptive() ? 0 : found->times.back() / step;
-    const bool is_doubtful = found->growth.back() >= 1e3 && std::log(found->growth.back()) > doubtful_growth * steps;
-    if (steps == 0 || !is_doubtful || parts == finest_part || all >= most) return found;
   }
+  found.evaluations = all;
+  return found;
 }
 
 }  // namespace noether

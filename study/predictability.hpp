@@ -46,7 +46,8 @@ struct Predictability {
 /// @param most  evaluations of forces by both runs together, beyond which they end
 /// @param tell  is told how far it is, from 0 to 1
 /// @param spent  is increased by the evaluations that this takes, whether or not anything is found
-/// @cost two runs of the scene, or less
+/// @cost two runs of the scene, or less; where they part so fast, twice that with each halving of the step, within the
+/// same budget
 std::optional<Predictability> predictability(const Scene& scene, double end, double budget,
                                              double most = std::numeric_limits<double>::infinity(),
                                              const std::function<void(double)>& tell = {}, double* spent = nullptr);

@@ -44,7 +44,10 @@ struct AnyMeter : private detail::Erased<MeterBase> {
 struct Plain {
   double sum = 0;
   double read() const { return sum; }
-  void set(double to) { sum = to; }
+  bool set(double to) {  // what it gives is not asked for
+    sum = to;
+    return true;
+  }
 };
 struct InFeet : Plain {
   double unit() const { return 0.3048; }

@@ -289,6 +289,28 @@ TEST_CASE("verify says where the structure is damaged, and repair leaves such a 
   CHECK(read_text(run.file()) == before);
 }
 
+TEST_CASE("a dataset of a complete file that has lost its tree is damage, and repair does not cut the others",
+          "[inspect][flips]") {
+  const Finished run;
+  int tried = 0;
+  for (std::size_t tree = run.bytes().find("TREE\1"); tree != std::string::npos;
+       tree = run.bytes().find("TREE\1", tree + 1)) {
+    std::string pointer(8, '\0'), changed = run.bytes();
+    for (std::size_t k = 0; k < 8; ++k) pointer[k] = static_cast<char>(tree >> 8 * k & 255);
+    const std::size_t at = run.bytes().find(pointer);
+    REQUIRE(at != std::string::npos);
+    changed.replace(at, 8, 8, '\xff');
+    write_text(run.file(), changed);
+    const std::vector<std::string> damaged = run.damaged();
+    REQUIRE_FALSE(damaged.empty());
+    CHECK(damaged[0].find("rows and no tree of chunks") != std::string::npos);
+    CHECK(io::repair(run.file()).repaired.empty());
+    CHECK(read_text(run.file()) == changed);
+    ++tried;
+  }
+  CHECK(tried > 5);
+}
+
 TEST_CASE("trees of several levels are walked, also as a killed writer leaves them", "[inspect][flips]") {
   const ScratchFolder folder;
   const std::filesystem::path file = folder / "rows.h5";

@@ -123,7 +123,7 @@ SAMPLES = [
     ("cli/a.cpp", 'bool b = name == "pull";\n', part_names.problems, 'a decision by "pull", the name of a part of forces/'),
     ("cli/a.cpp", 'bool b = text_at(f).starts_with("pull");\n', part_names.problems, 'cli/a.cpp:1: a decision by "pull"'),
     ("cli/a.cpp", 'f("pull");  // name == "pull"\n', part_names.problems, ""),
-    ("io/no_store.cpp", "int Store::size() const { fail(); }\n", stand_ins.problems, "does not define Store::open, which io/store.cpp"),
+    ("io/no_store.cpp", "int Store::size() const { fail(); }\n", stand_ins.problems, "does not define Store::open, which other"),
     ("io/no_store.cpp", "int Store::size() { fail(); }\nvoid Store::open() { fail(); }\n", stand_ins.problems, ""),
 ]
 

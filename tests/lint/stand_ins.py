@@ -1,6 +1,6 @@
-"""Sources that stand in for others in a build without a library: ROOM/no_NAME.cpp defines every member that ROOM/NAME.cpp
-defines and that is not private. A build without the library would link wherever such a member is not used, and break
-where somebody begins to use it."""
+"""Sources that stand in for others in a build without a library: ROOM/no_NAME.cpp defines every member of the classes in
+ROOM/NAME.hpp that other sources of the room define and that is not private. (Overloads count as one.) A build without
+the library would link wherever such a member is not used, and break where somebody begins to use it."""
 
 import pathlib
 import re
@@ -32,9 +32,11 @@ def problems(root):
             continue
         text = tree.read(root, header)
         classes = set(re.findall(r"^class (\w+) {", text, re.MULTILINE))
-        for name, member in sorted(members(tree.read(root, other)) - members(tree.read(root, path))):
+        theirs = set().union(*(members(tree.read(root, file)) for file in tree.cpp_files(root)
+                               if file.parent == path.parent and file.suffix == ".cpp" and not file.name.startswith("no_")))
+        for name, member in sorted(theirs - members(tree.read(root, path))):
             if name in classes and member not in private_names(text):
-                found.append(f"{path}: does not define {name}::{member}, which {other} does")
+                found.append(f"{path}: does not define {name}::{member}, which other sources do")
     return found
 
 

@@ -81,6 +81,48 @@ until = 60
   }
 }
 
+TEST_CASE("where the work does not last for shorter steps, a chaotic motion is told by those of the scene",
+          "[predictability]") {
+  // Two pulls beside each other: a third body that falls between them, by steps that growth is fast for.
+  const Scene scene = read_scene(R"(units = "reduced"
+[[particles.body]]
+mass = 1
+x = [1, 0, 0]
+v = [0, 0.5, 0]
+[[particles.body]]
+mass = 1
+x = [-1, 0, 0]
+v = [0, -0.5, 0]
+[[particles.body]]
+mass = 0.5
+x = [0.1, 1.3, 0]
+v = [0.2, 0, 0]
+[hamiltonian]
+type = "kinetic_potential"
+[[hamiltonian.force]]
+type = "gravity"
+softening = 0.1
+[integrator]
+method = "verlet"
+step = 0.06
+until = 200
+)",
+                                 "three.toml");
+  double spent = 0;
+  const auto whole = predictability(scene, 200, 60, 1e9, {}, &spent);
+  REQUIRE(whole);
+  REQUIRE(whole->chaotic);
+  CHECK(whole->unstable_step == 0);
+  CHECK(whole->evaluations == spent);
+  for (const double most : {0.2, 0.35, 0.5, 0.8}) {
+    CAPTURE(most);
+    const auto part = predictability(scene, 200, 60, most * spent, {}, nullptr);
+    REQUIRE(part);
+    CHECK(part->unstable_step == 0);
+    CHECK(part->evaluations <= most * spent * 1.1);
+  }
+}
+
 TEST_CASE("a rate is told with the e-foldings that it is fitted over, if it is", "[predictability]") {
   const Scene scene = lorenz_from(1, 1, 20);
   Predictability motion{.chaotic = true, .rate = std::log(10.0) / 2, .e_foldings = 13.4};
