@@ -247,8 +247,8 @@ const WholeRun large = [](const auto& folder) {
 /// Frames at times of a list, the first of which comes after a checkpoint: the file is there before it has any frame.
 struct LateRun {
   explicit LateRun(const std::filesystem::path& file)
-      : simulation(test::outer_planets(), compose(kinetic_potential(Gravity{.G = test::outer_G}), schemes::verlet),
-                   40.0),
+      : simulation(test::outer_planets(),
+                   compose(test::kinetic_potential(Gravity{.G = test::outer_G}), schemes::verlet), 40.0),
         writer(&simulation.at_times({10 * 40.0, 20 * 40.0, 40 * 40.0},
                                     io::TrajectoryWriter(file, {.scene_toml = "title = \"l\"\n"}))) {}
 
