@@ -57,6 +57,10 @@ class Peer:
             self.close()
             raise Absent(greeting["absent"])
         self.version, self.build = greeting["version"], greeting["build"]
+        self.forget()
+
+    def forget(self):
+        """What was compiled is gone; what could not be compiled is not tried again."""
         self.compiled = {key: why for key, why in self.compiled.items() if why}
 
     def close(self):
