@@ -79,9 +79,9 @@ def run(given, out):
     missing = [name for name in page.PEERS if name not in programs]
     if missing and not given.out:
         measure.stop_programs(programs)
-        raise SystemExit(f"the data of docs/orbits compare with {' and '.join(page.PEERS)}, and there is no {' and no '.join(missing)}: "
-                         "install what is missing (pip install rebound heyoka, --peers PYTHON), or give a trial a folder of "
-                         "its own: --out FOLDER")
+        raise SystemExit(f"the data of docs/orbits compare with {' and '.join(page.PEERS)}, and there is no "
+                         f"{' and no '.join(missing)}: install what is missing (pip install rebound heyoka; --peers PYTHON), or "
+                         "give a trial a folder of its own: --out FOLDER")
     entries = [entry for entry in all_methods(has_avx512()) if re.search(given.methods, entry.label)]
     wanted = sorted((systems.SYSTEMS[name] for name in given.systems.split(",")), key=lambda system: system.share)
     samples = max(1, round(systems.SAMPLES * given.span))

@@ -170,7 +170,8 @@ def table(rows, metric, at):
         if not held:
             misses.append(Miss(level, ratio, ours, theirs, hidden or own_hidden))
         last = "open" if hidden or (theirs and own_hidden) else "" if ratio is None else f"{ratio:.2f}"
-        cells = [f"{level:.0e}", *cells_of(ours, own_hidden), *cells_of(theirs, hidden), last if held or not last else f"**{last}**"]
+        cells = [f"{level:.0e}", *cells_of(ours, own_hidden), *cells_of(theirs, hidden)]
+        cells.append(last if held or not last else f"**{last}**")
         lines.append("| " + " | ".join(cells) + " |")
     return lines, misses
 
