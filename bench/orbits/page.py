@@ -203,7 +203,7 @@ def about(system, head, rows):
     hidden = sum(row["outcome"].startswith(OPEN) for row in rows)
     floor, difference = systems.resolution(system)
     return [f"{len(kept)} runs over {head['span']}: {rounds}; errors of energy from {between([row['looks'] for row in kept])} looks. "
-            f"{behind} rows were beaten in the scan, {hidden} were left out.",
+            f"Rows beaten in the scan: {behind}; left out: {hidden}.",
             f"{head['programs']}; noether's commit {head['commit']}; {head['processor']}, one core; {head['date']}."
             + "".join(f" {text}." for text in (without(rows), head.get("compiled"), head.get("note")) if text),
             f"Rounding to doubles alone makes an error of energy of {floor:.1e}, and positions of the truth are known to "

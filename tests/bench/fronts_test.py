@@ -339,6 +339,13 @@ def failures():
         for failure in (ValueError("a"), KeyError("a"), TypeError("a"), OSError("a")):
             expect(outcome(failure, 100, 9).startswith(type(failure).__name__), f"{failure!r}: {outcome(failure, 100, 9)}")
 
+    for failure in ("not finished after 9 s", "left out: it could not be started again"):
+        found = measure.Row(system, Entry("rebound", "m", "f", {}), divisions=4)
+        found.seconds, found.energy, found.position, found.outcome, found.rank = 0.1, 1e-9, 1e-8, "ok", 1
+        measure.run_over_span([found], {"rebound": Other(Failed(failure))}, 20, 20, measure.Limits(90, 1000))
+        expect((found.seconds, found.energy, found.position, found.whole) == (0.1, 1e-9, 1e-8, False), f"{failure}: {vars(found)}")
+        expect(found.outcome == "beaten in the scan: " + failure.removeprefix("left out: "), found.outcome)
+
     class Compiler(measure.Peer):
         """Compiles what has an even tolerance, and is too slow with others."""
 
