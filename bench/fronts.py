@@ -6,7 +6,7 @@
     python3 bench/fronts.py --check                     # whether the page is that of the data
 
 PROGRAM is noether. Python needs numpy; REBOUND and heyoka come from PyPI (`pip install rebound heyoka`, in the environment
-of `--peers PYTHON` or of this Python), and are left out where they are absent. Everything runs on one core.
+of `--peers PYTHON` or of this Python); where one is absent only trials are made. Everything runs on one core.
 
 First every method with every step or tolerance is run over a twentieth of the span, the scan. Those on the front of their program
 there, then those near it, then those on the front of their family are run over the whole span, as many as there is time for; of
@@ -14,10 +14,13 @@ each of these, other programs' come first. Data have all rows: one that is not r
 and the reason.
 
 Errors and times are measured in separate runs, but for long ones whose looks cost nothing. Times are those of the steps alone by
-the clock, so the machine should have nothing else to do. Timed runs of all programs alternate, and the median of three counts; a run of more than 1.5 seconds is timed once.
+the clock, so the machine should have nothing else to do. Timed runs of all programs alternate, and the median of three counts; a
+run of more than 1.5 seconds is timed once.
 
-The budget holds for everything: no run outlasts what is left of it. The systems that take longest come last, and have what the
-others leave. Runs over a part of the span or by some methods are trials: they need --out, and their page is written there."""
+heyoka compiles for each system and tolerance, before the budget begins; the log and the data say how long it took. The budget holds
+for everything else: no run outlasts what is left of it. The systems that take longest come last, and have what the others leave.
+Runs over a part of the span, by some methods or without the other programs are trials: they need --out, and their page is
+written there."""
 
 import argparse
 import pathlib
@@ -72,16 +75,23 @@ def run(given, out):
     from orbits import measure  # it needs numpy, which pictures and page do not
     from orbits.methods import all_methods
 
-    end = time.monotonic() + 60 * given.budget * (1 - DRAWING)
     programs = measure.start_programs(given.program, given.peers)
+    missing = [name for name in page.PEERS if name not in programs]
+    if missing and not given.out:
+        measure.stop_programs(programs)
+        raise SystemExit(f"the data of docs/orbits compare with {' and '.join(page.PEERS)}, and there is no "
+                         f"{' and no '.join(missing)}: install what is missing (pip install rebound heyoka; --peers PYTHON), or "
+                         "give a trial a folder of its own: --out FOLDER")
     entries = [entry for entry in all_methods(has_avx512()) if re.search(given.methods, entry.label)]
     wanted = sorted((systems.SYSTEMS[name] for name in given.systems.split(",")), key=lambda system: system.share)
     samples = max(1, round(systems.SAMPLES * given.span))
+    compiled = {system.name: measure.compile_ahead(programs, system, entries) for system in wanted}
+    end = time.monotonic() + 60 * given.budget * (1 - DRAWING)
     for k, system in enumerate(wanted):
         share = system.share / sum(other.share for other in wanted[k:])
         limits = measure.Limits(given.row, (end - time.monotonic()) * share)
         rows = measure.measure(system, programs, entries, samples, limits)
-        page.write_data(out, system, rows, programs, samples, processor(), given.note)
+        page.write_data(out, system, rows, programs, samples, processor(), given.note, compiled[system.name])
     measure.stop_programs(programs)
 
 
@@ -92,8 +102,7 @@ def main():
         return page.check(out)
     if not given.draw:
         run(given, out)
-    page.draw(out)
-    return 0
+    return 1 if page.draw(out) else 0
 
 
 if __name__ == "__main__":

@@ -12,6 +12,7 @@ import numpy
 
 from orbits import errors, systems
 from orbits.ours import ADAPTIVE_LOOKS, Failed, Program
+from orbits.page import OPEN, PEERS
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 LONG = 1.5  # seconds; a longer run is timed once
@@ -21,7 +22,8 @@ USELESS = (1e-4, 1e-1)  # errors of energy and position from which on a run is g
 OVERHEAD = 0.1  # seconds to start a run
 SCAN = 1  # samples
 STARTING = 20  # seconds that a program may take to greet
-COMPILING = {"heyoka": 300}  # seconds that a program may take before a run
+COMPILING = {"heyoka": 300}  # seconds that a program may take to compile for a row
+FAILURES = (Failed, ValueError, TypeError, LookupError, OSError)  # of a run; they end no others
 # Parts of a system's time: the scan, the fronts of the other programs, those and noether's, all rows.
 SCANNING, OTHERS, FRONTS, ALL = 0.6, 0.7, 0.95, 0.85
 
@@ -36,6 +38,7 @@ class Peer:
     def __init__(self, python, name):
         self.command = [python, str(ROOT / "bench/peers/orbits.py"), name]
         self.gone = ""  # why it could not be started again
+        self.compiled = {}  # for what it has compiled, and why where it has not
         self.start()
 
     def start(self):
@@ -54,6 +57,11 @@ class Peer:
             self.close()
             raise Absent(greeting["absent"])
         self.version, self.build = greeting["version"], greeting["build"]
+        self.forget()
+
+    def forget(self):
+        """What was compiled is gone; what could not be compiled is not tried again."""
+        self.compiled = {key: why for key, why in self.compiled.items() if why}
 
     def close(self):
         self.process.kill()
@@ -65,7 +73,7 @@ class Peer:
         try:
             self.start()
         except Absent as absent:
-            self.gone = f"it could not be started again: {absent}"
+            self.gone = f"left out: it could not be started again: {absent}"
         return Failed(why)
 
     def ask(self, question, timeout):
@@ -85,6 +93,19 @@ class Peer:
         if "error" in answer:
             raise Failed(answer["error"])
         return answer["seconds"], answer["states"]
+
+    def compile(self, question, timeout):
+        """Has it compile for a question of no samples, once. A row for which there was no time is left out, not slow."""
+        key = json.dumps([question["bodies"], question["method"]])
+        if key not in self.compiled:
+            try:
+                self.ask(question, timeout)
+                self.compiled[key] = ""
+            except Failed as failure:
+                late = str(failure).startswith("not finished")
+                self.compiled[key] = f"left out: not compiled after {timeout:.0f} s" if late else str(failure)
+        if self.compiled[key]:
+            raise Failed(self.compiled[key])
 
 
 class Row:
@@ -107,14 +128,27 @@ class Row:
 
     @property
     def looks_are_free(self):
-        """Whether a long run is as quick with looks as without: they are outside the time of other programs, and end few of the
-        steps that a method chooses. (Steps of one length are synchronized at looks, by correctors with many steps.)"""
-        return self.entry.program != "noether" and not self.divisions
+        """Whether a long run is as quick with looks as without: they are outside REBOUND's time, and end few of the steps that a
+        method chooses. (Steps of one length are synchronized at looks, by correctors with many steps; heyoka's time has the
+        series that it evaluates at looks.)"""
+        return self.entry.program == "rebound" and not self.divisions
 
     def spec(self):
         if self.tolerance is None:
             return self.entry.spec
         return self.entry.with_tolerance(self.entry.spec, self.tolerance)
+
+    def question(self, samples, watched):
+        """A run, as bench/peers/orbits.py has it."""
+        system = self.system
+        return {"G": system.G, "bodies": system.bodies, "sample": system.sample, "samples": samples,
+                "divisions": self.divisions, "first": system.divisions(system.step / 20), "looks": self.looks,
+                "watched": watched, "method": self.spec()}
+
+    def compile(self, programs, timeout):
+        """What a program has to do before its first run of this row, and again where it was started again."""
+        if self.entry.program in COMPILING:
+            programs[self.entry.program].compile(self.question(0, False), timeout)
 
     def run(self, programs, samples, watched, timeout):
         """Seconds, and states of the looks."""
@@ -124,15 +158,16 @@ class Row:
             if self.divisions:
                 method["divisions"] = self.divisions
             return program.run(system, method, samples, watched, timeout)[1:]
-        question = {"G": system.G, "bodies": system.bodies, "sample": system.sample, "samples": samples,
-                    "divisions": self.divisions, "first": system.divisions(system.step / 20), "looks": self.looks,
-                    "watched": watched, "method": self.spec()}
-        seconds, states = program.ask(question, timeout)
+        seconds, states = program.ask(self.question(samples, watched), timeout)
         return seconds, numpy.array(states).reshape(-1, len(system.bodies), 6)
 
-    def measure_errors(self, programs, samples, timeout):
-        """Errors, and the time of a run that is looked at."""
+    def measure_errors(self, programs, samples, limits, wanted):
+        """Errors, and the time of a run that is looked at. One that is not finished after the `wanted` seconds is slow; one that
+        had less of them is left out, for nothing is known of it."""
+        timeout = wanted
         try:
+            self.compile(programs, limits.timeout(COMPILING.get(self.entry.program, 0)))
+            timeout = limits.timeout(wanted)
             seconds, states = self.run(programs, samples, True, timeout)
             if len(states) != self.looks * samples + 1:
                 raise Failed(f"{len(states)} states instead of {self.looks * samples + 1}")
@@ -143,21 +178,29 @@ class Row:
             self.energy = errors.energy_error(self.system.G, masses, states)
             self.position = errors.position_error(states[self.looks :: self.looks], systems.read_truth(self.system)[1:])
             self.outcome = "ok"
-        except Failed as failure:
+        except FAILURES as failure:
             self.seconds = self.energy = self.position = None
-            self.outcome = " ".join(str(failure).split())[:200]
+            self.outcome = said(failure)
+            if self.outcome.startswith("not finished") and timeout < wanted:
+                self.outcome = f"left out: {self.outcome}, when the time was over"
 
-    def measure_time(self, programs, samples, timeout):
+    def measure_time(self, programs, samples, limits, wanted):
         """One more time of a run without looks; none where it has no end in time."""
         try:
-            self.times.append(self.run(programs, samples, False, timeout)[0])
-        except Failed as failure:
-            tell(f"{self.entry.label} has not been timed: {failure}")
-
+            self.compile(programs, limits.timeout(COMPILING.get(self.entry.program, 0)))
+            self.times.append(self.run(programs, samples, False, limits.timeout(wanted))[0])
+        except FAILURES as failure:
+            tell(f"{self.entry.label} has not been timed: {said(failure)}")
 
     def leave_out(self, why):
         """Not run over the whole span; where it is on no front, another row of its program was better in the scan."""
-        self.outcome = f"{'beaten in the scan' if self.rank else 'left out'}: {why}"
+        self.outcome = f"{'beaten in the scan' if self.rank else 'left out'}: {why.removeprefix('left out: ')}"
+
+
+def said(failure):
+    """What a failure says, in one line."""
+    text = str(failure) if isinstance(failure, Failed) else f"{type(failure).__name__}: {failure}"
+    return " ".join(text.split())[:200]
 
 
 def rows_of(system, entries):
@@ -261,8 +304,7 @@ def scan(rows, programs, samples, limits, part):
         if limits.left(SCANNING) <= 0:
             row.outcome = "left out: no time to look at it"
         else:
-            compiling = COMPILING.get(row.entry.program, 0)
-            row.measure_errors(programs, part, limits.timeout(limits.row * part / samples + 5 + compiling))
+            row.measure_errors(programs, part, limits, limits.row * part / samples + 5)
 
 
 def run_over_span(kept, programs, samples, times, limits):
@@ -275,8 +317,8 @@ def run_over_span(kept, programs, samples, times, limits):
             row.leave_out("the time was over")
             continue
         found = row.seconds, row.energy, row.position
-        row.measure_errors(programs, samples, limits.timeout(longest))
-        row.whole = not row.outcome.startswith("not finished")
+        row.measure_errors(programs, samples, limits, longest)
+        row.whole = not row.outcome.startswith(OPEN)
         if not row.whole:
             row.seconds, row.energy, row.position = found
             row.leave_out(row.outcome)
@@ -284,13 +326,13 @@ def run_over_span(kept, programs, samples, times, limits):
             if row.looks_are_free:
                 row.times.append(row.seconds)
             else:
-                row.measure_time(programs, samples, limits.timeout(longest))
+                row.measure_time(programs, samples, limits, longest)
         elif row.outcome == "ok":
             reserved += ROUNDS * (row.seconds + OVERHEAD)
     for _ in range(ROUNDS):
         for row in alternating([row for row in kept if row.outcome == "ok" and row.seconds <= LONG]):
             if limits.left() > row.seconds + OVERHEAD:
-                row.measure_time(programs, samples, limits.timeout(longest))
+                row.measure_time(programs, samples, limits, longest)
     for row in kept:
         if row.times:
             row.seconds = statistics.median(row.times)
@@ -316,9 +358,27 @@ def measure(system, programs, entries, samples, limits):
     return rows
 
 
+def compile_ahead(programs, system, entries):
+    """What programs compile for a system, outside the budget. Returns what is to be said of it, or nothing."""
+    texts = []
+    for name in COMPILING:
+        rows = rows_of(system, [entry for entry in entries if entry.program == name and name in programs])
+        begin, done = time.monotonic(), 0
+        for row in rows:
+            try:
+                row.compile(programs, COMPILING[name])
+                done += 1
+            except FAILURES as failure:
+                tell(f"{system.name}: {name}: {said(failure)}")
+        if rows:
+            texts.append(f"{name} compiled {done} of {len(rows)} integrators in {time.monotonic() - begin:.0f} s")
+            tell(f"{system.name}: {texts[-1]}, outside the budget")
+    return "; ".join(texts)
+
+
 def start_programs(program, python):
     programs = {"noether": Program(program)}
-    for name in ("rebound", "heyoka"):
+    for name in PEERS:
         try:
             programs[name] = Peer(python, name)
         except Absent as absent:

@@ -116,7 +116,7 @@ def rebound_methods(avx512):
         found.append(rebound(f"EOS {outer} {inner}", "EOS", "eos", (4, 2, 1), safe_mode=0, phi0=outer, phi1=inner))
     for order in (2, 4, 6, 8, 10):
         found.append(rebound(f"JANUS {order}", "JANUS", "janus", (1.4, 0.7) if order > 4 else LEAPFROG[order], order=order))
-    found.append(rebound("Mercurius", "Mercurius", "mercurius", PLAIN))
+    found.append(rebound("Mercurius", "Mercurius", "mercurius", PLAIN, safe_mode=0))
     found.append(rebound("TRACE", "TRACE", "trace", PLAIN))
     found.append(rebound("BS", "BS", "bs", (), (1e-6, 1e-8, 1e-10, 1e-12, 1e-14), with_options("eps_abs", "eps_rel")))
     return found

@@ -2,6 +2,7 @@
 
 import csv
 import datetime
+import os
 import pathlib
 import subprocess
 import sys
@@ -12,6 +13,7 @@ from orbits import systems
 
 COLUMNS = ("program", "method", "family", "setting", "value", "seconds", "rounds", "looks", "energy_error", "position_error",
            "outcome")
+PEERS = ("rebound", "heyoka")
 HOME = pathlib.Path(__file__).resolve().parents[2] / "docs"
 OPEN = ("left out", "not finished")  # outcomes of rows that might be on a front
 BEATEN = ("not near a front", "beaten in the scan")  # of those that another row of their program beat in the scan
@@ -38,17 +40,18 @@ SERIES = (
 )
 
 
-def write_data(out, system, rows, programs, samples, processor, note):
+def write_data(out, system, rows, programs, samples, processor, note, compiled=""):
     """All rows. Those with 0 rounds have the errors of the scan, and the time that the whole span should take."""
     out.mkdir(parents=True, exist_ok=True)
     ended = [name for name in programs if any(row.outcome == "ok" and row.entry.program == name for row in rows)]
     versions = "; ".join(f"{name} {programs[name].version} ({programs[name].build})" for name in ended)
     head = {"system": system.title, "span": f"{system.end(samples)} days, {samples} samples", "programs": versions,
             "commit": programs["noether"].commit, "processor": processor, "date": datetime.date.today().isoformat(),
-            "note": note}
+            "compiled": compiled, "note": note}
     order = {"noether": 0, "rebound": 1, "heyoka": 2}
     rows = sorted(rows, key=lambda row: (order[row.entry.program], row.entry.label, row.tolerance or 0, row.step or 0))
-    with open(out / f"{system.name}.csv", "w", encoding="utf-8", newline="") as file:
+    path = out / f"{system.name}.csv"
+    with open(f"{path}.new", "w", encoding="utf-8", newline="") as file:
         file.write("".join(f"# {key}: {value}\n" for key, value in head.items() if value))
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(COLUMNS)
@@ -59,6 +62,7 @@ def write_data(out, system, rows, programs, samples, processor, note):
                            f"{row.position:.2e}"]
             writer.writerow([row.entry.program, row.entry.label, row.entry.family, "step" if row.divisions else "tolerance",
                              repr(row.step or row.tolerance), *figures, row.outcome])
+    os.replace(f"{path}.new", path)
 
 
 def read_data(path):
@@ -88,8 +92,9 @@ def best(rows, metric, level):
 
 
 def unknown(rows, metric, level, measured):
-    """Rows without a measurement that might be quicker at this level than the best of those with one."""
-    found = [row for row in rows if row["outcome"].startswith(OPEN)]
+    """Rows without a measurement that might be quicker at this level than the best of those with one. What beat a row in the scan
+    may have lost the level over the whole span, so rows that were beaten there count too."""
+    found = [row for row in rows if row["outcome"].startswith(OPEN + BEATEN)]
     if measured is None:
         return [row for row in found if row[metric] is None or row[metric] <= level]
     slower = [row for row in found if row["outcome"].startswith("not finished")]  # than the longest run that is made
@@ -165,7 +170,8 @@ def table(rows, metric, at):
         if not held:
             misses.append(Miss(level, ratio, ours, theirs, hidden or own_hidden))
         last = "open" if hidden or (theirs and own_hidden) else "" if ratio is None else f"{ratio:.2f}"
-        cells = [f"{level:.0e}", *cells_of(ours, own_hidden), *cells_of(theirs, hidden), last if held else f"**{last}**"]
+        cells = [f"{level:.0e}", *cells_of(ours, own_hidden), *cells_of(theirs, hidden)]
+        cells.append(last if held or not last else f"**{last}**")
         lines.append("| " + " | ".join(cells) + " |")
     return lines, misses
 
@@ -182,6 +188,12 @@ def between(values):
     return f"{least:.0f}" if least == most else f"{least:.0f} to {most:.0f}"
 
 
+def without(rows):
+    """Which of the other programs these rows do not compare with."""
+    absent = [name for name in PEERS if not any(row["program"] == name for row in done(rows))]
+    return f"No run of {' or '.join(absent)} ended" if absent else ""
+
+
 def about(system, head, rows):
     """What was run, in words."""
     kept = done(rows)
@@ -191,9 +203,9 @@ def about(system, head, rows):
     hidden = sum(row["outcome"].startswith(OPEN) for row in rows)
     floor, difference = systems.resolution(system)
     return [f"{len(kept)} runs over {head['span']}: {rounds}; errors of energy from {between([row['looks'] for row in kept])} looks. "
-            f"{behind} rows were beaten in the scan, {hidden} had no time.",
+            f"Rows beaten in the scan: {behind}; left out: {hidden}.",
             f"{head['programs']}; noether's commit {head['commit']}; {head['processor']}, one core; {head['date']}."
-            + (f" {head['note']}." if head.get("note") else ""),
+            + "".join(f" {text}." for text in (without(rows), head.get("compiled"), head.get("note")) if text),
             f"Rounding to doubles alone makes an error of energy of {floor:.1e}, and positions of the truth are known to "
             f"{difference:.1e}.", f"All rows: [orbits/{system.name}.csv](orbits/{system.name}.csv).", ""]
 
@@ -214,11 +226,14 @@ def fronts(out):
     return lines + ([f"Not measured yet: {', '.join(absent)}."] if absent else []), missed
 
 
-def misses_table(missed, measured):
-    if not measured:
+def misses_table(missed, data):
+    """Of `data`, the rows of all systems: where no run of another program ended, nothing was won."""
+    compared = [system.name for system, rows in data if any(row["program"] != "noether" for row in done(rows))]
+    if not compared:
         return ["Not measured yet."]
     if not missed:
-        return ["Nowhere: at every error above that another program reaches, noether takes at most half its time."]
+        return [f"Nowhere in {', '.join(compared)}: at every error above that another program reaches, noether takes at most "
+                "half its time."]
     lines = ["| system | error of | at most | ratio | against | why |", "|---|---|---|---|---|---|"]
     for system, words, miss in missed:
         ratio = "open" if miss.open else "" if miss.ratio is None else f"{miss.ratio:.2f}"
@@ -240,8 +255,9 @@ def refused(out):
 
 def blocks(out):
     lines, missed = fronts(out)
-    measured = any(done(rows) for _, _, rows in all_data(out))
-    return {"fronts": lines, "misses": misses_table(missed, measured),
+    data = [(system, rows) for system, _, rows in all_data(out)]
+    measured = any(done(rows) for _, rows in data)
+    return {"fronts": lines, "misses": misses_table(missed, data),
             "refusals": refused(out) if measured else ["Not measured yet."]}
 
 
@@ -290,21 +306,29 @@ def plot_script(path, rows, title):
 
 
 def draw(out):
-    """Pictures, and the tables of the page."""
+    """The tables of the page, then pictures; returns how many of these gnuplot did not make."""
+    text = filled((HOME / "orbits.md").read_text(encoding="utf-8"), blocks(out))
+    path = page_path(out)
+    path.write_text(text if path.parent == HOME else text.replace("](orbits/", "]("), encoding="utf-8")
+    failed = 0
     for system, _, rows in all_data(out):
         if not done(rows):
             continue
         with tempfile.NamedTemporaryFile("w", suffix=".gp", encoding="utf-8") as script:
-            script.write(plot_script(out / f"{system.name}.png", rows, system.title))
+            picture = out / f"{system.name}.png"
+            script.write(plot_script(f"{picture}.new", rows, system.title))
             script.flush()
             try:
                 subprocess.run(["gnuplot", script.name], check=True)
+                os.replace(f"{picture}.new", picture)
             except FileNotFoundError:
                 print("gnuplot is not installed: the pictures are left as they are", file=sys.stderr)
                 break
-    text = filled((HOME / "orbits.md").read_text(encoding="utf-8"), blocks(out))
-    path = page_path(out)
-    path.write_text(text if path.parent == HOME else text.replace("](orbits/", "]("), encoding="utf-8")
+            except subprocess.CalledProcessError as error:
+                pathlib.Path(f"{picture}.new").unlink(missing_ok=True)
+                print(f"gnuplot failed with {error.returncode}: {picture} is left as it is", file=sys.stderr)
+                failed += 1
+    return failed
 
 
 def check(out):

@@ -1,10 +1,11 @@
 """Orbits by other programs: orbits.py rebound | heyoka. Greets with one line, {"version", "build": how it was compiled} or
 {"absent": why it cannot be asked}, then answers each line, a run, with one line. bench/fronts.py asks.
 
-A run: {"G", "bodies": [[m, x, y, z, vx, vy, vz], ...], "sample": time from one sample to the next, "samples": how many,
-"divisions": steps from one sample to the next, or null where the method chooses them, "looks": how many from one sample to the
-next, "watched": whether states of looks are wanted, "method": {...}}. The answer: {"seconds": of the steps alone, by the
-clock, without what looks take, "states": those of the looks, the start among them, in one list} or {"error": why there are none}."""
+A run: {"G", "bodies": [[m, x, y, z, vx, vy, vz], ...], "sample": time from one sample to the next, "samples": how many (of
+none, a run is only compiled), "divisions": steps from one sample to the next, or null where the method chooses them, "looks": how
+many from one sample to the next, "watched": whether states of looks are wanted, "method": {...}}. The answer: {"seconds": of the
+steps alone, by the clock (heyoka's with its series at the looks), "states": those of the looks, the start among them, in one list}
+or {"error": why there are none}."""
 
 import importlib
 import importlib.metadata
@@ -45,6 +46,9 @@ class Rebound:
         sim.integrator = run["method"]["integrator"]
         for name, value in run["method"].get("options", {}).items():
             setattr(sim.integrator, name, value)
+        if run["watched"] and run["method"]["integrator"] == "mercurius":
+            # Without its safe mode, version 5.2.2 goes on from a synchronized state with wrong coordinates. Its steps are the same.
+            sim.integrator.safe_mode = 1
         sim.dt = run["sample"] / (run["divisions"] or run["first"])
         return sim
 
@@ -102,6 +106,8 @@ class Heyoka:
 
     def run(self, run):
         watch, own, bodies = Watch(), self.integrator(run), len(run["bodies"])
+        if not run["samples"]:  # compiled now, in time of its own
+            return 0.0, numpy.zeros(0)
         end, pieces = run["sample"] * run["samples"], run["looks"] * run["samples"]
         if run["watched"]:
             with watch:
