@@ -1,6 +1,6 @@
 #include "integrators/methods/collocation_simd.hpp"
 
-#include <hwy/highway.h>
+#include "numbers/compensated_sum_simd.hpp"
 
 namespace noether::NOETHER_SIMD_LEVEL {
 
@@ -218,41 +218,6 @@ void coefficient(std::ptrdiff_t n, const double* rates, const double* w, double*
   }
 }
 
-/// The first `count` numbers, at most as many as there are lanes; the rest is 0.
-HWY_INLINE Vector load(const double* from, std::ptrdiff_t count) {
-  const Lanes d;
-  if (count == lanes) return hn::LoadU(d, from);
-#if HWY_TARGET <= HWY_AVX2
-  return hn::MaskedLoad(hn::FirstN(d, static_cast<std::size_t>(count)), d, from);
-#else
-  double padded[lanes] = {};
-  for (std::ptrdiff_t k = 0; k < count; ++k) padded[k] = from[k];
-  return hn::LoadU(d, padded);
-#endif
-}
-HWY_INLINE void store(Vector x, double* to, std::ptrdiff_t count) {
-  const Lanes d;
-  if (count == lanes) return hn::StoreU(x, d, to);
-#if HWY_TARGET <= HWY_AVX2
-  hn::BlendedStore(x, hn::FirstN(d, static_cast<std::size_t>(count)), d, to);
-#else
-  double padded[lanes];
-  hn::StoreU(x, d, padded);
-  for (std::ptrdiff_t k = 0; k < count; ++k) to[k] = padded[k];
-#endif
-}
-
-/// value + low += high + small, where `high` may be as large as the value.
-HWY_INLINE void add_with_error(double* value, double* low, std::ptrdiff_t count, Vector high, Vector small) {
-  const Vector before = load(value, count);
-  const Vector sum = hn::Add(before, high), back = hn::Sub(sum, before);
-  const Vector lost = hn::Add(hn::Sub(before, hn::Sub(sum, back)), hn::Sub(high, back));
-  const Vector rest = hn::Add(lost, hn::Add(small, load(low, count)));
-  const Vector after = hn::Add(sum, rest);
-  store(after, value, count);
-  store(hn::Sub(rest, hn::Sub(after, sum)), low, count);
-}
-
 /// What rounding takes from a product, where the processor can tell.
 HWY_INLINE Vector rounded_off([[maybe_unused]] Vector a, [[maybe_unused]] Vector b, [[maybe_unused]] Vector product) {
 #if HWY_NATIVE_FMA
@@ -272,15 +237,15 @@ void finish(const StepSums& sums) {
     const std::ptrdiff_t count = s.n - m < lanes ? s.n - m : lanes;
     const Variables variables(s.rates + stages * m);
     if (s.q != nullptr) {
-      const Vector v = load(s.v + m, count), hv = hn::Mul(h, v);
-      const Vector lower = hn::MulAdd(h, load(s.v_low + m, count), rounded_off(h, v, hv));
+      const Vector v = load_first(d, s.v + m, count), hv = hn::Mul(h, v);
+      const Vector lower = hn::MulAdd(h, load_first(d, s.v_low + m, count), rounded_off(h, v, hv));
       const Vector sum = variables.sum(twice), small = hn::MulAdd(h2_low, sum, lower);
       const Vector bend = hn::MulAdd(h2, sum, hn::MulAdd(h2, variables.sum(twice_low), small));
-      add_with_error(s.q + m, s.q_low + m, count, hv, bend);
+      add_with_error(d, s.q + m, s.q_low + m, count, hv, bend);
     }
     const Vector slope = variables.sum(weights), kick = hn::Mul(h, slope);
     const Vector small = hn::MulAdd(h, variables.sum(weights_low), rounded_off(h, slope, kick));
-    add_with_error(s.v + m, s.v_low + m, count, kick, small);
+    add_with_error(d, s.v + m, s.v_low + m, count, kick, small);
   }
 }
 

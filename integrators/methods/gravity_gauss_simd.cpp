@@ -1,5 +1,6 @@
 #include "integrators/methods/gravity_gauss_simd.hpp"
 
+#include "numbers/compensated_sum_simd.hpp"
 #include "numbers/reciprocal_sqrt_simd.hpp"
 
 namespace noether::NOETHER_SIMD_LEVEL {
@@ -293,21 +294,6 @@ HWY_INLINE void transpose(const double* rates, Vector (&stage)[stages]) {
 #endif
 }
 
-HWY_INLINE Vector load(const double* from, std::ptrdiff_t count) {
-  const Lanes d;
-  if (count >= lanes) return hn::LoadU(d, from);
-  double padded[lanes] = {};
-  for (std::ptrdiff_t k = 0; k < count; ++k) padded[k] = from[k];
-  return hn::LoadU(d, padded);
-}
-HWY_INLINE void store(Vector x, double* to, std::ptrdiff_t count) {
-  const Lanes d;
-  if (count >= lanes) return hn::StoreU(x, d, to);
-  double padded[lanes];
-  hn::StoreU(x, d, padded);
-  for (std::ptrdiff_t k = 0; k < count; ++k) to[k] = padded[k];
-}
-
 /// What rounding takes from a product.
 HWY_INLINE Vector rounded_off(Vector a, Vector b, Vector product) {
 #if HWY_NATIVE_FMA
@@ -321,17 +307,6 @@ HWY_INLINE Vector rounded_off(Vector a, Vector b, Vector product) {
   const Vector crossed = hn::Add(hn::Add(hn::Sub(hn::Mul(a1, b1), product), hn::Mul(a1, b2)), hn::Mul(a2, b1));
   return hn::Add(crossed, hn::Mul(a2, b2));
 #endif
-}
-
-/// value + low += high + small, where `high` may be as large as the value.
-HWY_INLINE void add(double* value, double* low, std::ptrdiff_t count, Vector high, Vector small) {
-  const Vector before = load(value, count);
-  const Vector sum = hn::Add(before, high), back = hn::Sub(sum, before);
-  const Vector lost = hn::Add(hn::Sub(before, hn::Sub(sum, back)), hn::Sub(high, back));
-  const Vector rest = hn::Add(lost, hn::Add(small, load(low, count)));
-  const Vector after = hn::Add(sum, rest);
-  store(after, value, count);
-  store(hn::Sub(rest, hn::Sub(after, sum)), low, count);
 }
 
 /// w_0 a + w_1 b + w_2 c + w_3 d, in two chains.
@@ -359,13 +334,13 @@ void finish(const StepEnd& end) {
     }
     const Vector even = four(s.half_b, hn::Add(f[0], f[7]), hn::Add(f[1], f[6]), hn::Add(f[2], f[5]), f[4]);
     const Vector odd = four(s.half_odd, hn::Sub(f[0], f[7]), hn::Sub(f[1], f[6]), hn::Sub(f[2], f[5]), hn::Neg(f[4]));
-    const Vector v = load(s.v + m, count), hv = hn::Mul(h, v), bend = hn::Mul(half_h2, middle);
-    const Vector lower = hn::MulAdd(h, load(s.v_low + m, count), rounded_off(h, v, hv));
+    const Vector v = load_first(tag, s.v + m, count), hv = hn::Mul(h, v), bend = hn::Mul(half_h2, middle);
+    const Vector lower = hn::MulAdd(h, load_first(tag, s.v_low + m, count), rounded_off(h, v, hv));
     const Vector lost = hn::Add(hn::MulAdd(half_h2_low, middle, rounded_off(half_h2, middle, bend)), lower);
     const Vector small = hn::MulAdd(h2, hn::MulAdd(half, even, odd), lost);
-    add(s.x + m, s.x_low + m, count, hv, hn::Add(bend, small));
+    add_with_error(tag, s.x + m, s.x_low + m, count, hv, hn::Add(bend, small));
     const Vector kick = hn::Mul(h, middle);
-    add(s.v + m, s.v_low + m, count, kick, hn::MulAdd(h, even, rounded_off(h, middle, kick)));
+    add_with_error(tag, s.v + m, s.v_low + m, count, kick, hn::MulAdd(h, even, rounded_off(h, middle, kick)));
   }
 }
 

@@ -1,0 +1,52 @@
+#pragma once
+/// Compensated sums in lanes of doubles; for `*_simd.cpp` alone.
+
+#include <hwy/highway.h>
+
+#include <cstddef>
+
+namespace noether::NOETHER_SIMD_LEVEL {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// The first `count` numbers, or as many as there are lanes; the rest is 0.
+template <class D> HWY_INLINE hn::Vec<D> load_first(D d, const double* from, std::ptrdiff_t count) {
+  constexpr std::ptrdiff_t lanes = hn::MaxLanes(D());
+  if (count >= lanes) return hn::LoadU(d, from);
+#if HWY_TARGET <= HWY_AVX2
+  return hn::MaskedLoad(hn::FirstN(d, static_cast<std::size_t>(count)), d, from);
+#else
+  double padded[lanes] = {};
+  for (std::ptrdiff_t k = 0; k < count; ++k) padded[k] = from[k];
+  return hn::LoadU(d, padded);
+#endif
+}
+
+template <class D> HWY_INLINE void store_first(D d, hn::Vec<D> x, double* to, std::ptrdiff_t count) {
+  constexpr std::ptrdiff_t lanes = hn::MaxLanes(D());
+  if (count >= lanes) return hn::StoreU(x, d, to);
+#if HWY_TARGET <= HWY_AVX2
+  hn::BlendedStore(x, hn::FirstN(d, static_cast<std::size_t>(count)), d, to);
+#else
+  double padded[lanes];
+  hn::StoreU(x, d, padded);
+  for (std::ptrdiff_t k = 0; k < count; ++k) to[k] = padded[k];
+#endif
+}
+
+/// value + low += high + small for the first `count` numbers, where `high` may be as large as the value.
+template <class D>
+HWY_INLINE void add_with_error(D d, double* value, double* low, std::ptrdiff_t count, hn::Vec<D> high,
+                               hn::Vec<D> small) {
+  const hn::Vec<D> before = load_first(d, value, count);
+  const hn::Vec<D> sum = hn::Add(before, high), back = hn::Sub(sum, before);
+  const hn::Vec<D> lost = hn::Add(hn::Sub(before, hn::Sub(sum, back)), hn::Sub(high, back));
+  const hn::Vec<D> rest = hn::Add(lost, hn::Add(small, load_first(d, low, count)));
+  const hn::Vec<D> after = hn::Add(sum, rest);
+  store_first(d, after, value, count);
+  store_first(d, hn::Sub(rest, hn::Sub(after, sum)), low, count);
+}
+
+}  // namespace
+}  // namespace noether::NOETHER_SIMD_LEVEL
