@@ -4,10 +4,10 @@
 ///
 /// Parts, of which arguments may name some: `steps`, the eight planets at 5 days (of ABA(10,6,4) at 40 days, where a
 /// sub-step is a drift and a kick); `passes`, the share of drifts that needed a second pass, at steps of 1 to 40 days;
-/// `outer`, ABA(10,6,4) of the outer planets.
+/// `outer`, ABA(10,6,4) of the outer planets; `tracers`, ten thousand to a million of them among four giant planets.
 ///
 /// Protocol: 9 rounds of every variant and every peer in turn, each over so many steps that it takes some 20 ms, after
-/// one to warm up; medians of processor times.
+/// one to warm up; medians of processor times. Tracers: 5 rounds of two million tracer-steps or more, by the clock.
 
 #include "bench/peer_program.hpp"
 #include "bench/support.hpp"
@@ -22,6 +22,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <random>
 #include <sstream>
 
 using namespace noether;
@@ -147,10 +148,66 @@ void count_passes(const bench::Rows& rows, const ParticleSystem<double>& bodies)
   }
 }
 
+/// The Sun and the giant planets, and tracers on orbits of 2 to 4 au, of which all but the last hundredth lie within
+/// Jupiter's; those are beyond Neptune.
+ParticleSystem<double> with_tracers(const ParticleSystem<double>& outer, Index tracers) {
+  ParticleSystem<double> s(outer.units());
+  for (Index i = 0; i < 5; ++i) s.add(outer.name(i), outer.masses()[i], outer.positions()[i], outer.velocities()[i]);
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (Index k = 0; k < tracers; ++k) {
+    const double r = (k < tracers - tracers / 100 ? 2 : 40) + 2 * uniform(random), angle = 6.283 * uniform(random);
+    const double speed = std::sqrt(s.units().G * s.masses()[0] / r) * (0.9 + 0.15 * uniform(random));
+    const double tilt = 0.2 * uniform(random);
+    s.add(
+        "tracer", 0, {r * std::cos(angle), r * std::sin(angle), 0},
+        {-speed * std::sin(angle), speed * std::cos(angle) * std::cos(tilt), speed * std::cos(angle) * std::sin(tilt)});
+  }
+  return s;
+}
+
+/// Steps of tracers per second by their number and by threads.
+void measure_tracers(const bench::Rows& rows, const ParticleSystem<double>& outer, bench::PeerProgram& peer) {
+  constexpr int rounds = 5;
+  const int threads = thread_count();
+  const Variant plain{"tracers", splitting(Coordinates::jacobi), &schemes::verlet_aba, 120, {}, "whfast"};
+  for (const Index tracers : {1'000, 10'000, 100'000, 1'000'000}) {
+    const ParticleSystem<double> s = with_tracers(outer, tracers);
+    const std::int64_t steps = std::max<std::int64_t>(64, 2'000'000 / tracers);
+    const auto all = static_cast<double>(steps) * static_cast<double>(tracers);
+    Simulation<double> run(s, Composition<AnyHamiltonian<double>>(plain.hamiltonian, *plain.scheme), plain.step);
+    std::map<int, std::vector<double>> ours;
+    std::vector<double> theirs;
+    for (int round = 0; round <= rounds; ++round) {
+      for (const int by : threads > 1 ? std::vector<int>{1, threads} : std::vector<int>{1}) {
+        set_thread_count(by);
+        const double seconds = bench::seconds_of([&] {
+          if (!run.run(steps).ok()) throw Error("a run failed");
+        });
+        if (round > 0) ours[by].push_back(all / seconds);
+      }
+      if (round == 0 || tracers > 10'000 || !peer.version()) continue;
+      const std::int64_t few = std::max<std::int64_t>(1, steps / 10);
+      const auto seconds = peer_seconds(peer, s, plain, few);
+      if (seconds) theirs.push_back(static_cast<double>(few) * static_cast<double>(tracers) / *seconds);
+    }
+    for (const auto& [by, rates] : ours) {
+      std::optional<bench::Peer> beside;
+      if (by == 1 && !theirs.empty()) {
+        beside = bench::Peer{"rebound " + plain.peer, *peer.version(), bench::Measured(theirs).median};
+      }
+      rows.add(fmt::format("tracers/{}", by == 1 ? "one thread" : fmt::format("{} threads", by)), "tracer_steps_per_s",
+               bench::Measured(rates), "1/s", tracers, beside);
+    }
+  }
+  set_thread_count(1);
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
-  const bench::Rows rows("wisdom_holman", count, arguments, {"steps", "passes", "outer"});
+  const bench::Rows rows("wisdom_holman", count, arguments, {"steps", "passes", "outer", "tracers"});
+  const int threads = thread_count();
   set_thread_count(1);
   bench::PeerProgram peer("wisdom_holman.py");
   if (!peer.version()) fmt::print(stderr, "rebound is not installed: it is left out of the comparison\n");
@@ -172,5 +229,9 @@ int main(int count, char** arguments) {
       }
     }
     measure(rows, "outer", outer.particles, words, peer);
+  }
+  if (rows.wants("tracers")) {
+    set_thread_count(threads);
+    measure_tracers(rows, load_scene(examples / "outer_solar_system" / "scene.toml").particles, peer);
   }
 }

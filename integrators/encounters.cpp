@@ -17,16 +17,18 @@ void EncounterWatch::bind(const std::vector<double>& masses, const std::vector<s
   for (const double m : masses) reach_.push_back(encounter_hill_radii * std::cbrt(m / masses[0] / 3));
 }
 
-void EncounterWatch::note(Index i, Index j, double r2, double nearer_to_primary2, double time) {
+void EncounterWatch::note(Index i, Index j, double r2, double nearer_to_primary2, double time, bool backward) {
   const auto first = static_cast<std::size_t>(j), second = static_cast<std::size_t>(i);
   const double hill = std::cbrt((masses_[first] + masses_[second]) / masses_[0] / 3) * std::sqrt(nearer_to_primary2);
   Encounter seen{ids_[first], ids_[second], std::sqrt(r2) / hill, time, time};
   if (!(seen.hill_radii < encounter_hill_radii)) return;
   static std::mutex mutex;
   const std::lock_guard<std::mutex> lock(mutex);
-  if (closest_) seen.since = closest_->since;
+  if (closest_ && (closest_->since < time) != backward) seen.since = closest_->since;
   const auto rank = [](const Encounter& e) { return std::tuple(e.hill_radii, e.first, e.second); };
+  const double since = seen.since;
   if (!closest_ || rank(seen) < rank(*closest_)) closest_ = seen;
+  closest_->since = since;
 }
 
 double EncounterWatch::square_of_news(Index i, Index j) const {

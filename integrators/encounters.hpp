@@ -29,14 +29,17 @@ class EncounterWatch {
     const double reach = reach_[static_cast<std::size_t>(i)] + reach_[static_cast<std::size_t>(j)];
     return j > 0 && r2 < Real(reach * reach) * from_primary2;
   }
-  /// Takes down two bodies at a moment; from several threads. What is kept depends on the bodies only.
-  void note(Index i, Index j, double r2, double nearer_to_primary2, double time);
+  /// Takes down two bodies at a moment; from several threads and in any order. What is kept depends on the bodies only.
+  /// @param backward  whether the run goes back in time
+  void note(Index i, Index j, double r2, double nearer_to_primary2, double time, bool backward = false);
 
   /// The square of the distance of two bodies over that of the nearer one from the primary, from which on `note` has
   /// nothing new to take down, or a little more; 0 for the primary.
   double square_of_news(Index i, Index j) const;
 
   const std::optional<Encounter>& closest() const { return closest_; }
+  /// Forgets what has been noted since that was the closest one.
+  void go_back(const std::optional<Encounter>& closest) { closest_ = closest; }
   void save(SavedState& saved, const std::string& prefix) const;
   /// @throws Error  if what was saved is damaged
   void load(const SavedState& saved, const std::string& prefix);

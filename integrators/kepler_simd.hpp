@@ -1,5 +1,5 @@
 #pragma once
-/// Kepler arcs of eight planets side by side; for `*_simd.cpp` alone. docs/theory/kepler.md has the formulae.
+/// Kepler arcs of eight bodies side by side; for `*_simd.cpp` alone. docs/theory/kepler.md has the formulae.
 
 #include "integrators/planet_row.hpp"
 #include "numbers/eight_simd.hpp"
@@ -158,17 +158,25 @@ struct ExactArcs {
   return bad | hopeless;
 }
 
+/// What arcs of a row are.
+struct Arcs {
+  ArcTask task;
+  ExactArc exact;
+  std::ptrdiff_t first;  ///< number of the row's first body, for reports
+};
+
 /// What the solver for all cases says of the arcs of `exact.lanes`, which have not begun to move.
-[[gnu::noinline, gnu::cold, maybe_unused]] void solve_exactly(const PlanetRows& planets, const PlanetRow& row, double h,
-                                                              ExactArcs& exact, ArcReport& report) {
+[[gnu::noinline, gnu::cold, maybe_unused]] void solve_exactly(const Arcs& arcs, const ArcRow& row, ExactArcs& exact,
+                                                              ArcReport& report) {
   for (int k = 0; k < 8; ++k) {
     if ((exact.lanes >> k & 1) == 0) continue;
-    double x[3], v[3], dx[3] = {}, dv[3] = {};  // 0 where there is no planet
+    double x[3], v[3], dx[3] = {}, dv[3] = {};  // 0 where there is no body
     exact.s[k] = 0;
     for (int c = 0; c < 3; ++c) x[c] = row.x[c][k], v[c] = row.v[c][k];
     if (row.moves[k] != 0) {
       ++report.exact;
-      if (!planets.exact(x, v, row.mu[k], h, dx, dv, &exact.s[k])) report.failed = 8 * (&row - planets.row) + k;
+      const bool found = arcs.exact(x, v, row.mu[k], arcs.task.h, dx, dv, &exact.s[k]);
+      if (!found && report.failed < 0) report.failed = arcs.first + k;
     }
     for (int c = 0; c < 3; ++c) {
       exact.dx[c][k] = dx[c], exact.dv[c][k] = dv[c], exact.x[c][k] = x[c], exact.v[c][k] = v[c];
@@ -202,7 +210,7 @@ NOETHER_EIGHT_INLINE Eights add_change(const Eights& value, const Eights& change
 }
 
 /// r and 1/r follow from x, always in this way.
-NOETHER_EIGHT_INLINE Eight set_distance(const Eights& x, PlanetRow& row) {
+NOETHER_EIGHT_INLINE Eight set_distance(const Eights& x, ArcRow& row) {
   const Eight r = square_root(dot(x, x)), r_inverse = Eight(1.0) / r;
   store_eight(r, row.r);
   store_eight(r_inverse, row.r_inverse);
@@ -211,7 +219,7 @@ NOETHER_EIGHT_INLINE Eight set_distance(const Eights& x, PlanetRow& row) {
 
 /// Moves the lanes of `exact.lanes` from where they began; the others are where they are to be.
 [[gnu::noinline, gnu::cold, maybe_unused]] void place_exactly(const ExactArcs& exact, bool compensated,
-                                                              const ArcTask& task, PlanetRow& row) {
+                                                              const ArcTask& task, ArcRow& row) {
   for (int k = 0; k < 8; ++k) {
     if ((exact.lanes >> k & 1) == 0) continue;
     for (int c = 0; c < 3; ++c) {
@@ -229,9 +237,9 @@ NOETHER_EIGHT_INLINE Eight set_distance(const Eights& x, PlanetRow& row) {
   if (task.predict) store_eight(s, row.s);
 }
 
-template <bool compensated>
-NOETHER_EIGHT_INLINE void advance_arcs(const PlanetRows& planets, PlanetRow& row, const ArcTask& task,
-                                       ArcReport& report) {
+/// Moves eight bodies along their arcs.
+template <bool compensated> NOETHER_EIGHT_INLINE void advance_arcs(const Arcs& arcs, ArcRow& row, ArcReport& report) {
+  const ArcTask& task = arcs.task;
   const Eights x = load_eights(row.x), v = load_eights(row.v);
   EightOrbits o;
   o.r = load_eight(row.r), o.r_inverse = load_eight(row.r_inverse), o.mu = load_eight(row.mu), o.h = Eight(task.h);
@@ -249,7 +257,7 @@ NOETHER_EIGHT_INLINE void advance_arcs(const PlanetRows& planets, PlanetRow& row
     EightTrials trials = t;
     exact.lanes = further_passes(orbits, trials, bad);
     t = trials;
-    if (exact.lanes != 0) solve_exactly(planets, row, task.h, exact, report);
+    if (exact.lanes != 0) solve_exactly(arcs, row, exact, report);
   }
 
   // The last step is made in the functions. Its parts are summed before they meet G: one that is often less than half

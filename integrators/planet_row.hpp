@@ -1,23 +1,27 @@
 #pragma once
-/// Planets of a Wisdom-Holman splitting side by side: what the kernels in lanes work on.
+/// Bodies of a Wisdom-Holman splitting side by side: what the kernels in lanes work on.
 
 #include <cstddef>
 
 namespace noether {
 
-/// Eight planets: a number of each in a line. Where there is no planet, a body of mass 0 rests far outside, is
-/// attracted by nothing and attracts nothing.
-struct alignas(64) PlanetRow {
-  // In working coordinates.
+/// Eight bodies on Kepler arcs: a number of each in a line, in working coordinates. Where there is no body, one of mass
+/// 0 rests far outside, is attracted by nothing and attracts nothing.
+struct alignas(64) ArcRow {
   double x[3][8], v[3][8];
   double x_low[3][8], v_low[3][8];  ///< what rounding took from x and v, where that is kept
   double r[8], r_inverse[8];        ///< |x| and 1 / |x|: functions of x
-  double y[3][8];                   ///< relative to the star, as the last kick met them
   double s[8];                      ///< universal variable of the next arc, predicted
   double arc[8];                    ///< universal variable of the last arc
+  double mu[8];                     ///< of the arc [length^3/time^2]
+  double moves[8];                  ///< 1; 0 where there is no body
+};
 
-  // Constants. Masses are in those of the star, mu in [length^3/time^2].
-  double mu[8];           ///< of the arc
+/// Eight planets. Masses are in those of the star.
+struct alignas(64) PlanetRow : ArcRow {
+  double y[3][8];  ///< relative to the star, as the last kick met them
+
+  // Constants.
   double share[8];        ///< Jacobi: m_k/M_k; democratic: m_k
   double rest[8];         ///< Jacobi: 1 - m_k/M_k
   double one_over_m[8];   ///< 1/m_k; 0 where there is no planet
@@ -25,8 +29,7 @@ struct alignas(64) PlanetRow {
   double star[8];         ///< Jacobi: G m_0 m_k; 0 of the innermost, whose arc has it all
   double without_arc[8];  ///< Jacobi: mu_k; 0 of the innermost
   double relativity[8];   ///< 6 (G m_0/c)^2 m_k; 0 without general relativity
-  double moves[8];        ///< 1; 0 where there is no planet
-  double force[3][8];     ///< of the kick, while rows are summed
+  double force[3][8];     ///< of the last kick
 };
 
 /// Constants of the pairs of two rows, or of one row with itself: line n is of lane i and lane i + n in a ring,
@@ -38,6 +41,8 @@ struct alignas(64) PlanetPairs {
 
 /// An arc by the solver for all cases: dx, dv, and the universal variable. @return whether it is found
 using ExactArc = bool (*)(const double* x, const double* v, double mu, double h, double* dx, double* dv, double* s);
+/// That solver in doubles (`integrators/kepler.hpp`).
+bool exact_arc(const double* x, const double* v, double mu, double h, double* dx, double* dv, double* s);
 
 /// All planets, in the order of the splitting.
 struct PlanetRows {
@@ -60,7 +65,7 @@ struct ArcTask {
 struct ArcReport {
   std::ptrdiff_t second = 0;   ///< rows that a second pass was needed for
   std::ptrdiff_t exact = 0;    ///< arcs left to `ExactArc`
-  std::ptrdiff_t failed = -1;  ///< the last planet whose arc was not found; -1: none
+  std::ptrdiff_t failed = -1;  ///< the first body whose arc was not found; -1: none
 };
 
 }  // namespace noether

@@ -12,6 +12,8 @@
 #include "integrators/jacobi_derivatives.hpp"
 #include "integrators/kepler.hpp"
 #include "integrators/kinetic_potential.hpp"
+#include "integrators/planet_path.hpp"
+#include "integrators/tracer_lanes.hpp"
 #include "integrators/wisdom_holman_coordinates.hpp"
 #include "integrators/wisdom_holman_lanes.hpp"
 #include "numbers/dual.hpp"
@@ -123,7 +125,10 @@ template <class Real = double, class F = Sum<>> class WisdomHolman : private det
     save_value(saved, prefix + "kicks", evaluations_.force);
     save_value(saved, prefix + "arcs", evaluations_.kepler);
     encounters_.save(saved, prefix + "encounter/");
-    if constexpr (may_have_lanes) lanes_.save(saved, prefix + "lanes/");
+    if constexpr (may_have_lanes) {
+      lanes_.save(saved, prefix + "lanes/");
+      if (!tracers_.empty()) tracers_.save(saved, prefix + "lanes/tracers/", lanes_.predicted());
+    }
   }
   void load(const SavedState& saved, const std::string& prefix) {
     detail::check_signature(saved, prefix + "options/", options_);
@@ -139,13 +144,16 @@ template <class Real = double, class F = Sum<>> class WisdomHolman : private det
     if constexpr (may_have_lanes) {
       bind_lanes();
       if (lanes_.bound()) lanes_.load(saved, prefix + "lanes/");
+      if (lanes_.predicted() && !tracers_.empty() && !tracers_.load(saved, prefix + "lanes/tracers/", lanes_.last()))
+        lanes_.forget();  // saved when tracers went letter by letter
     }
   }
   /// Particles in the order of Jacobi coordinates, massive bodies first.
   const std::vector<std::int64_t>& order() const { return order_; }
 
-  /// The planets in lanes; not bound where they go letter by letter.
+  /// The planets in lanes; not bound where all bodies go letter by letter. And the tracers.
   const auto& lanes() const { return lanes_; }
+  const auto& tracers() const { return tracers_; }
 
  private:
   using Base = detail::AboutPrimary<Real>;
@@ -162,13 +170,16 @@ template <class Real = double, class F = Sum<>> class WisdomHolman : private det
   bool forces_in_lanes(const ParticleSystem<Real>& s);
   void bind_lanes();
   void watch_for_encounters();
-  void flow_of_lanes(char letter, ParticleSystem<Real>& s, const Real& h);
-  void flow_in_lanes(char letter, ParticleSystem<Real>& s, const Real& h);
-  Real action_in_lanes(char letter, ParticleSystem<Real>& s, const Real& h);
-  void kick_tracers(ParticleSystem<Real>& s, const Real& h);
+  void flow_of_lanes(char letter, ParticleSystem<Real>& s, const Real& h) requires may_have_lanes;
+  void flow_in_lanes(char letter, ParticleSystem<Real>& s, const Real& h) requires may_have_lanes;
+  Real action_in_lanes(char letter, ParticleSystem<Real>& s, const Real& h) requires may_have_lanes;
+  Advance run_in_lanes(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span) requires may_have_lanes;
+  void follow_planets(ParticleSystem<Real>& s, const std::optional<TracerLanes::Lost>& lost) requires may_have_lanes;
+  void keep_before_steps(const ParticleSystem<Real>& s) requires may_have_lanes;
+  void go_back(ParticleSystem<Real>& s) requires may_have_lanes;
   const VectorColumn<Real>& middle_of_kick(const ParticleSystem<Real>& s, const Real& h);
 
-  Real arcs(ParticleSystem<Real>& s, const Real& h, bool action, Index first = 1);
+  Real arcs(ParticleSystem<Real>& s, const Real& h, bool action);
   void fail(const ParticleSystem<Real>& s, Index i);
   Real kick(ParticleSystem<Real>& s, const Real& h, bool action);
   Real gradient_kick(ParticleSystem<Real>& s, const Real& h, bool action);
@@ -177,7 +188,10 @@ template <class Real = double, class F = Sum<>> class WisdomHolman : private det
   void add_force_derivatives(const Clock<Real>& clock);
   std::string no_kernel() const;
   /// Encounters are noted where a run goes, not on the way through the word before it.
-  void begin_kick(const ParticleSystem<Real>& s) { noting_ = !observing_ && s.phase().opened; }
+  void begin_kick(const ParticleSystem<Real>& s) {
+    noting_ = !observing_ && s.phase().opened;
+    backward_ = s.clock().direction() == Direction::backward;
+  }
   void note_failure(const std::optional<Failure>& failure) {
     if (failure && !failure_ && !observing_) failure_ = failure;
   }
@@ -222,10 +236,21 @@ template <class Real = double, class F = Sum<>> class WisdomHolman : private det
   std::optional<Failure> failure_;
   Evaluations evaluations_;
   EncounterWatch encounters_;
-  bool observing_ = false, noting_ = false;
+  bool observing_ = false, noting_ = false, backward_ = false;
   PlanetSystem planets_;            ///< as the lanes have them
   bool lanes_have_forces_ = false;  ///< all of those beside gravity
   std::conditional_t<may_have_lanes, PlanetLanes, std::monostate> lanes_;
+  std::conditional_t<may_have_lanes, TracerLanes, std::monostate> tracers_;
+  PlanetPath path_;  ///< for tracers, of the steps that planets are ahead
+  /// What some steps change, beside the particles; for a run that has to go back to where they began.
+  struct BeforeSteps {
+    Clock<Real> clock = Clock<Real>::fixed(0, 0);
+    Phase phase = {};
+    Evaluations evaluations = {};
+    std::optional<Encounter> closest = {};
+    std::optional<Failure> failure = {};
+    PlanetLanes::Predictions predictions = {};
+  } before_;
 };
 
 template <class Real> AnyHamiltonian<Real> WisdomHolmanOptions::split(ForceField<Real> others) const {
@@ -246,3 +271,4 @@ extern template struct detail::HamiltonianModel<WisdomHolman<Quad, ForceField<Qu
 
 #include "integrators/wisdom_holman_impl.hpp"        // IWYU pragma: keep
 #include "integrators/wisdom_holman_impl_kicks.hpp"  // IWYU pragma: keep
+#include "integrators/wisdom_holman_impl_lanes.hpp"  // IWYU pragma: keep

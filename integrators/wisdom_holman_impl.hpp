@@ -104,45 +104,6 @@ template <class Real, class F> void WisdomHolman<Real, F>::bind(ParticleSystem<R
   }
 }
 
-/// Whether the planets in lanes have all forces beside their own: none, or `gr_potential` alone.
-template <class Real, class F> bool WisdomHolman<Real, F>::forces_in_lanes(const ParticleSystem<Real>& s) {
-  if constexpr (may_have_lanes) {
-    const GrPotential* relativity = nullptr;
-    if constexpr (std::is_same_v<F, GrPotential>) relativity = &forces_;
-    if constexpr (std::is_same_v<F, Sum<GrPotential>>) {
-      forces_.for_each([&](const GrPotential& one) { relativity = &one; });
-    }
-    if constexpr (std::is_same_v<F, ForceField<double>>) {
-      if (forces_.terms().size() == 1) relativity = forces_.terms()[0].template as<GrPotential>();
-      if (relativity == nullptr) return forces_.terms().empty();
-    }
-    if (relativity != nullptr) {
-      const double ratio = mu_of_primary(*relativity, s) / speed_of_light_in(s, relativity->c, "gr_potential");
-      planets_.bend = 6 * ratio * ratio;
-    }
-    return true;
-  } else {
-    return false;
-  }
-}
-
-/// Puts the planets into lanes where they can be, in the present order.
-template <class Real, class F> void WisdomHolman<Real, F>::bind_lanes() {
-  if constexpr (may_have_lanes) {
-    lanes_ = {};
-    planets_.order.assign(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(massive()));
-    if (scaled() || !lanes_have_forces_ || !PlanetLanes::can_take(planets_)) return;
-    lanes_.bind(planets_);
-    watch_for_encounters();
-  }
-}
-
-template <class Real, class F> void WisdomHolman<Real, F>::watch_for_encounters() {
-  if constexpr (may_have_lanes) {
-    lanes_.watch([&](Index i, Index j) { return encounters_.square_of_news(i, j); });
-  }
-}
-
 /// What the arcs need of each particle. The mass of the star that a barycentric arc goes round is such that two bodies
 /// alone stay on it.
 template <class Real, class F> void WisdomHolman<Real, F>::gather_arcs() {
@@ -239,16 +200,16 @@ Real WisdomHolman<Real, F>::flow_with_action(char letter, ParticleSystem<Real>& 
 }
 
 template <class Real, class F>
-Real WisdomHolman<Real, F>::arcs(ParticleSystem<Real>& s, const Real& h, bool action, Index first) {
+Real WisdomHolman<Real, F>::arcs(ParticleSystem<Real>& s, const Real& h, bool action) {
   using std::sqrt;
   const auto& c = std::as_const(s);
   const Index n = s.size();
   const Vec3<Real> center_v = c.velocities()[0];
-  if (first == 1) s.shift(0, h * center_v, Vec3<Real>::Zero());
+  s.shift(0, h * center_v, Vec3<Real>::Zero());
   std::atomic<Index> failed{n};
   const auto advance = [&](Index begin, Index end) {
     Real sum(0);
-    for (Index k = std::max(begin, first); k < end; ++k) {
+    for (Index k = std::max<Index>(begin, 1); k < end; ++k) {
       const auto rank = static_cast<std::size_t>(k);
       const Index i = at(rank);
       const Real mu = g_ * circled_[static_cast<std::size_t>(i)];
@@ -274,7 +235,7 @@ Real WisdomHolman<Real, F>::arcs(ParticleSystem<Real>& s, const Real& h, bool ac
   }
   s.moved();
   if (observing_) return sum;
-  evaluations_.kepler += n - first;
+  evaluations_.kepler += n - 1;
   if (const Index i = failed.load(); i < n) fail(s, i);
   return sum;
 }
@@ -320,7 +281,8 @@ Real WisdomHolman<Real, F>::interaction(const VectorColumn<Real>& x, bool skip_i
   const Vec3<Real> primary = first == 0 ? x[0] : Vec3<Real>(Vec3<Real>::Zero());
   const auto note = [&](Index i, Index j, const Real& r2) {
     const Real nearer2 = std::min(norm2(x[i] - primary), norm2(x[j] - primary));
-    if (noting_) encounters_.note(i, j, static_cast<double>(r2), static_cast<double>(nearer2), moment_);
+    if (noting_) encounters_.note(i, j, static_cast<double>(r2), static_cast<double>(nearer2), moment_,
+                                   backward_);
   };
   for (Index i = first + 1; i < bodies; ++i) {
     const Real from_primary2 = norm2(x[i] - primary);
@@ -450,121 +412,6 @@ Real WisdomHolman<Real, F>::newton(const ParticleSystem<Real>& s, VectorColumn<R
   Gravity{.G = options_.G}.add_to(sink, s);
   forces_.add_to(sink, s);
   return sink.potential();
-}
-
-/// Whole steps. Planets stay in lanes meanwhile where all bodies are there and have no other letters.
-template <class Real, class F>
-Advance WisdomHolman<Real, F>::run(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span) {
-  if constexpr (may_have_lanes) {
-    const auto in_lanes = [](const TimedStage<Real>& stage) { return stage.letter == 'A' || stage.letter == 'B'; };
-    const auto& stages = word.stages();
-    if (lanes_.bound() && !has_tracers() && std::all_of(stages.begin(), stages.end(), in_lanes)) {
-      lanes_.load(s);
-      const Advance done =
-          walk_letters(*this, word, s, span, [&](char letter, const Real& h) { flow_of_lanes(letter, s, h); });
-      lanes_.store(s);
-      return done;
-    }
-  }
-  return walk_letters(*this, word, s, span, [&](char letter, const Real& h) { flow(letter, s, h); });
-}
-
-/// One flow of the planets that the lanes hold already, and of the center of mass.
-template <class Real, class F>
-void WisdomHolman<Real, F>::flow_of_lanes(char letter, ParticleSystem<Real>& s, const Real& h) {
-  if constexpr (may_have_lanes) {
-    if (letter == 'A') {
-      s.shift(0, h * std::as_const(s).velocities()[0], Vec3<Real>::Zero());
-      const Index failed = lanes_.drift(h, observing_);
-      if (observing_) return;
-      evaluations_.kepler += static_cast<Index>(massive()) - 1;
-      if (failed >= 0) fail(s, failed);
-      return;
-    }
-    const bool near = lanes_.kick(h, observing_);
-    if (observing_) return;
-    if (!has_tracers()) ++evaluations_.force;
-    if (!near || !s.phase().opened) return;  // noted where a run goes, not in the word before it
-    moment_ = static_cast<double>(s.clock().time());
-    lanes_.for_pairs([&](Index i, Index j, double r2, double nearer2) {
-      encounters_.note(std::max(i, j), std::min(i, j), r2, nearer2, moment_);
-    });
-    watch_for_encounters();
-  }
-}
-
-/// The same of planets in the columns; tracers go letter by letter.
-template <class Real, class F>
-void WisdomHolman<Real, F>::flow_in_lanes(char letter, ParticleSystem<Real>& s, const Real& h) {
-  if constexpr (may_have_lanes) {
-    if (has_tracers() && letter == 'A') arcs(s, h, false, static_cast<Index>(massive()));
-    if (has_tracers() && letter == 'B') kick_tracers(s, h);
-    lanes_.load(s);
-    flow_of_lanes(letter, s, h);
-    lanes_.store(s, letter == 'A' || !jacobi());
-    if (has_tracers() && letter == 'B' && !jacobi()) {
-      const Vec3<Real> shift = half_jump(s, h);
-      for (Index i = static_cast<Index>(massive()); i < s.size(); ++i) s.shift(i, shift, Vec3<Real>::Zero());
-    }
-  }
-}
-
-/// Positions in the middle of a kick, behind the first half of the jump; in Jacobi coordinates those there are.
-template <class Real, class F>
-const VectorColumn<Real>& WisdomHolman<Real, F>::middle_of_kick(const ParticleSystem<Real>& s, const Real& h) {
-  if (jacobi()) return s.positions();
-  const Vec3<Real> shift = half_jump(s, h);
-  along_ = s.positions();
-  for (Index i = 1; i < s.size(); ++i) along_.add(i, shift);
-  return along_;
-}
-
-/// Half a jump and the kick of tracers, before the planets have theirs.
-template <class Real, class F> void WisdomHolman<Real, F>::kick_tracers(ParticleSystem<Real>& s, const Real& h) {
-  const auto& c = std::as_const(s);
-  begin_kick(s);
-  accelerate(middle_of_kick(c, h), s.clock(), false);
-  const Vec3<Real> shift = jacobi() ? Vec3<Real>(Vec3<Real>::Zero()) : half_jump(c, h);
-  for (Index i = static_cast<Index>(massive()); i < s.size(); ++i)
-    s.shift(i, shift, h * std::as_const(acceleration_)[i]);
-}
-
-/// A flow with its action: that of arcs from their universal variables, that of kicks from the potential letter by
-/// letter.
-template <class Real, class F>
-Real WisdomHolman<Real, F>::action_in_lanes(char letter, ParticleSystem<Real>& s, const Real& h) {
-  if constexpr (may_have_lanes) {
-    using std::sqrt;
-    const auto& c = std::as_const(s);
-    Real action(0);
-    if (letter == 'A') {
-      for (std::size_t k = 1; k < massive(); ++k) {
-        const auto i = static_cast<std::size_t>(at(k));
-        const Real speed2 = norm2(c.velocities()[at(k)]), r = sqrt(norm2(c.positions()[at(k)]));
-        action += reduced_[i] * h * (speed2 / Real(2) - g_ * circled_[i] / r);
-      }
-      action += h * interior_.back() * norm2(c.velocities()[0]) / Real(2);
-      flow(letter, s, h);
-      for (std::size_t k = 1; k < massive(); ++k) {
-        const auto i = static_cast<std::size_t>(at(k));
-        action += Real(2) * reduced_[i] * g_ * circled_[i] * lanes_.arc(k - 1);
-      }
-      return action;
-    }
-    const bool observing = std::exchange(observing_, true);  // this look at the forces is not counted
-    begin_kick(s);
-    action -= h * accelerate(middle_of_kick(c, h), s.clock(), true);
-    observing_ = observing;
-    // J is momentum^2/2 m_0, and half a jump h/2 momentum/m_0.
-    const auto jump_action = [&] {
-      return jacobi() || h == Real(0) ? Real(0) : masses_[0] * norm2(half_jump(c, h)) / h;
-    };
-    action += jump_action();
-    flow(letter, s, h);
-    return action + jump_action();
-  } else {
-    return Real(0);
-  }
 }
 
 }  // namespace noether

@@ -14,15 +14,14 @@ namespace {
 constexpr std::size_t lanes = 8;
 constexpr std::size_t most_planets = 256;  // constants of pairs stay below a megabyte
 
-/// The solver for all cases, as the kernels call it.
+}  // namespace
+
 bool exact_arc(const double* x, const double* v, double mu, double h, double* dx, double* dv, double* s) {
   const KeplerArc<double> arc = kepler_arc(Vec3<double>(x[0], x[1], x[2]), Vec3<double>(v[0], v[1], v[2]), mu, h);
   for (int c = 0; c < 3; ++c) dx[c] = arc.dx[c], dv[c] = arc.dv[c];
   *s = arc.s;
   return arc.status == KeplerStatus::converged;
 }
-
-}  // namespace
 
 bool PlanetLanes::can_take(const PlanetSystem& system) {
   constexpr double least = 1e-60, most = 1e60;
@@ -44,6 +43,7 @@ void PlanetLanes::bind(const PlanetSystem& system) {
   pairs_.assign(rows * (rows + 1) / 2, PlanetPairs{});
   const double star = system.masses[0], mu = system.G * star, far = 1e3 * system.size;
   const double bend = system.bend.value_or(0);
+  star_mu_ = mu;
   double interior = star;
   for (std::size_t k = 0; k < rows * lanes; ++k) {
     PlanetRow& row = row_[k / lanes];
@@ -143,9 +143,11 @@ void PlanetLanes::store(ParticleSystem<double>& s, bool positions) const {
   }
 }
 
-Index PlanetLanes::drift(double h, bool on_copy) {
+Index PlanetLanes::drift(double h, bool on_copy, PlanetPath* path) {
   const bool again = !on_copy && h == last_;
-  const ArcReport report = planet_kernels().drift(rows(), {.h = h, .predicted = again && predicted_, .predict = again});
+  const ArcTask task{.h = h, .predicted = again && predicted_, .predict = again};
+  const ArcReport report = planet_kernels().drift(rows(), task);
+  if (path != nullptr) path->add_arc(task);
   if (!on_copy) {
     predicted_ = again;
     last_ = h;
@@ -155,31 +157,47 @@ Index PlanetLanes::drift(double h, bool on_copy) {
   return report.failed < 0 ? Index{-1} : static_cast<Index>(order_[static_cast<std::size_t>(report.failed)]);
 }
 
-bool PlanetLanes::kick(double h, bool on_copy) { return planet_kernels().kick(rows(), h, predicted_ && !on_copy); }
+bool PlanetLanes::kick(const Kick& kick, bool on_copy, PlanetPath* path) {
+  const bool predicted = predicted_ && !on_copy;
+  if (path != nullptr) path->begin_kick(rows(), order_.size(), kick.h, kick.time, predicted, kick.noting);
+  const bool near = planet_kernels().kick(rows(), kick.h, predicted);
+  if (path != nullptr) path->end_kick(rows(), order_.size(), star_mu_);
+  return near;
+}
+
+void PlanetLanes::give(Predictions& to) const {
+  to.last = last_;
+  to.s.clear();
+  for (std::size_t k = 0; predicted_ && k < order_.size(); ++k) to.s.push_back(row_[k / lanes].s[k % lanes]);
+}
+
+void PlanetLanes::take(const Predictions& from) {
+  last_ = from.last;
+  predicted_ = !from.s.empty();
+  if (!predicted_) return;
+  if (from.s.size() != order_.size()) throw Error("the saved predictions of Kepler arcs do not match these planets");
+  for (std::size_t k = 0; k < row_.size() * lanes; ++k) {
+    PlanetRow& row = row_[k / lanes];
+    const std::size_t lane = k % lanes;
+    const Vec3<double> at_rest(row.x[0][lane], row.x[1][lane], row.x[2][lane]);
+    row.s[lane] = k < from.s.size() ? from.s[k] : last_ / std::sqrt(norm2(at_rest));
+  }
+}
 
 void PlanetLanes::save(SavedState& saved, const std::string& prefix) const {
-  std::vector<double> s;
-  for (std::size_t k = 0; predicted_ && k < order_.size(); ++k) s.push_back(row_[k / lanes].s[k % lanes]);
-  save_value(saved, prefix + "last", last_);
-  save_value(saved, prefix + "predicted", s);
+  Predictions now;
+  give(now);
+  save_value(saved, prefix + "last", now.last);
+  save_value(saved, prefix + "predicted", now.s);
 }
 
 void PlanetLanes::load(const SavedState& saved, const std::string& prefix) {
   forget();
   if (!saved.contains(prefix + "last")) return;  // written when there were no lanes
-  std::vector<double> s;
-  load_value(saved, prefix + "last", last_);
-  load_value(saved, prefix + "predicted", s);
-  predicted_ = !s.empty();
-  if (predicted_ && s.size() != order_.size()) {
-    throw Error("the saved predictions of Kepler arcs do not match these planets");
-  }
-  for (std::size_t k = 0; predicted_ && k < row_.size() * lanes; ++k) {
-    PlanetRow& row = row_[k / lanes];
-    const std::size_t lane = k % lanes;
-    const Vec3<double> at_rest(row.x[0][lane], row.x[1][lane], row.x[2][lane]);
-    row.s[lane] = k < s.size() ? s[k] : last_ / std::sqrt(norm2(at_rest));
-  }
+  Predictions then;
+  load_value(saved, prefix + "last", then.last);
+  load_value(saved, prefix + "predicted", then.s);
+  take(then);
 }
 
 }  // namespace noether

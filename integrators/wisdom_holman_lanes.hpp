@@ -3,6 +3,7 @@
 
 #include "engine/particle_system.hpp"
 #include "engine/saved_state.hpp"
+#include "integrators/planet_path.hpp"
 #include "integrators/planet_row.hpp"
 
 #include <algorithm>
@@ -32,8 +33,8 @@ struct PlanetSystem {
 /// arc before: that is state. `docs/theory/wisdom_holman.md` has the formulae.
 class PlanetLanes {
  public:
-  /// Whether these planets can be moved in lanes: products of two masses must be normal numbers, and there are
-  /// constants of each pair, so that there may be 256 planets.
+  /// Whether these planets, and tracers among them, can be moved in lanes: products of two masses must be normal
+  /// numbers, and there are constants of each pair, so that there may be 256 planets.
   static bool can_take(const PlanetSystem& system);
 
   /// Takes over constants, and forgets the prediction.
@@ -56,10 +57,17 @@ class PlanetLanes {
 
   /// Kepler arcs over h [time].
   /// @param on_copy  what serves an observer uses no prediction and leaves none
+  /// @param path     takes down what tracers need of it
   /// @return the particle whose arc was not found, or -1
-  Index drift(double h, bool on_copy);
+  Index drift(double h, bool on_copy, PlanetPath* path = nullptr);
+
+  /// A kick, and when it is, for paths.
+  struct Kick {
+    double h = 0, time = 0;
+    bool noting = false;  ///< encounters count
+  };
   /// @return whether two planets are so near that they are to be noted
-  bool kick(double h, bool on_copy);
+  bool kick(const Kick& kick, bool on_copy, PlanetPath* path = nullptr);
   /// Calls note(i, j, r^2, squared distance of the nearer one from the star) for all pairs, as the last kick met them.
   template <class Note> void for_pairs(const Note& note) const {
     for (std::size_t k = 1; k < order_.size(); ++k) {
@@ -77,6 +85,16 @@ class PlanetLanes {
   std::int64_t exact_arcs() const { return exact_arcs_; }
 
   void forget() { last_ = 0, predicted_ = false; }
+  /// Predictions of the next arcs, and for which length; `s` is empty where there are none.
+  struct Predictions {
+    double last = 0;
+    std::vector<double> s = {};
+  };
+  void give(Predictions& to) const;
+  /// @throws Error  if they are not of these planets
+  void take(const Predictions& from);
+  bool predicted() const { return predicted_; }
+  double last() const { return last_; }
   void save(SavedState& saved, const std::string& prefix) const;
   /// @throws Error  if the saved prediction is not one of these planets
   void load(const SavedState& saved, const std::string& prefix);
@@ -94,6 +112,7 @@ class PlanetLanes {
   std::vector<std::int64_t> order_;  ///< particles, from the innermost planet out
   AlignedVector<PlanetRow> row_;
   AlignedVector<PlanetPairs> pairs_;
+  double star_mu_ = 0;  ///< G m_0
   bool jacobi_ = true, compensated_ = false, relativity_ = false;
   double last_ = 0;         ///< length of the last arcs; 0: none since the prediction was forgotten
   bool predicted_ = false;  ///< `s` of the rows is a prediction for arcs of that length

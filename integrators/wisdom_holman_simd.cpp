@@ -12,7 +12,8 @@ void prepare(const PlanetRows& planets) {
 
 template <bool compensated> ArcReport drift_all(const PlanetRows& planets, const ArcTask& task) {
   ArcReport report;
-  for (std::ptrdiff_t k = 0; k < planets.rows; ++k) advance_arcs<compensated>(planets, planets.row[k], task, report);
+  for (std::ptrdiff_t k = 0; k < planets.rows; ++k)
+    advance_arcs<compensated>({task, planets.exact, 8 * k}, planets.row[k], report);
   return report;
 }
 ArcReport drift(const PlanetRows& planets, const ArcTask& task) {

@@ -23,6 +23,9 @@ def start(case, rebound):
     sim.G = case["G"]
     for m, x, y, z, vx, vy, vz in case["bodies"]:
         sim.add(m=m, x=x, y=y, z=z, vx=vx, vy=vy, vz=vz)
+    massive = sum(1 for body in case["bodies"] if body[0] > 0)
+    if massive < len(case["bodies"]):
+        sim.N_active = massive
     sim.integrator = {"whfast512": "whfast512", "whfast": "whfast", "saba(10,6,4)": "saba"}[case["method"]]
     sim.dt = case["step"]
     if case["method"] == "whfast512":
