@@ -40,12 +40,12 @@ void TracerLanes::bind(const PlanetSystem& system, const std::vector<std::int64_
 }
 
 void TracerLanes::watch_from(const EncounterWatch& watch) {
-  const double closest = watch.closest() ? watch.closest()->hill_radii : encounter_hill_radii;
-  if (closest == watched_) return;
-  watched_ = closest;
   const auto first = std::find_if(particle_.begin(), particle_.end(), [](std::int64_t i) { return i >= 0; });
-  for (std::size_t j = 0; first != particle_.end() && j < planets_.size(); ++j)
-    near_[j] = watch.square_of_news(static_cast<Index>(*first), static_cast<Index>(planets_[j]));
+  for (std::size_t j = 0; first != particle_.end() && j < planets_.size(); ++j) {
+    const double near = watch.square_of_news(static_cast<Index>(*first), static_cast<Index>(planets_[j]));
+    if (near == near_[j]) return;  // nothing has been noted since
+    near_[j] = near;
+  }
 }
 
 TracerLanes::Columns TracerLanes::columns_of(ParticleSystem<double>& s) {

@@ -77,7 +77,6 @@ class TracerLanes {
   std::vector<std::int64_t> planets_;      ///< their particles
   std::vector<double> attraction_, near_;  ///< by planet: G m; see TracerTask
   std::vector<double> s_, next_s_;         ///< predictions, as `particle_`
-  double watched_ = -1;  ///< the closest encounter [Hill radii] when `near_` was worked out
   double star_mu_ = 0, relativity_ = 0, far_ = 1;
   bool jacobi_ = true;
   std::int64_t second_passes_ = 0, exact_arcs_ = 0;
