@@ -134,7 +134,7 @@ void WisdomHolman<Real, F>::follow_planets(ParticleSystem<Real>& s,
                                            const std::optional<TracerLanes::Lost>& lost) requires may_have_lanes {
   if (!observing_) {
     tracers_.keep_predictions();
-    tracers_.watch_from(encounters_);
+    if (encounters_.closest()) watch_for_encounters();
   }
   if (lost) fail(s, lost->particle);
 }
