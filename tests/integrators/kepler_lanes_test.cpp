@@ -1,6 +1,7 @@
 /// Kepler arcs in lanes against the solver of single arcs, and the drift of energy over many of them.
 
 #include "integrators/kepler.hpp"
+#include "integrators/tracers_simd.hpp"
 #include "integrators/wisdom_holman_simd.hpp"
 #include "numbers/real.hpp"
 #include "tests/support/catch.hpp"
@@ -23,13 +24,16 @@
 
 namespace noether::base_at_O0 {
 extern const PlanetKernels planet_kernels;
+extern const TracerKernels tracer_kernels;
 }
 #if NOETHER_SIMD_LEVELS
 namespace noether::avx2_at_O0 {
 extern const PlanetKernels planet_kernels;
+extern const TracerKernels tracer_kernels;
 }
 namespace noether::avx512_at_O0 {
 extern const PlanetKernels planet_kernels;
+extern const TracerKernels tracer_kernels;
 }
 #endif
 
@@ -89,7 +93,7 @@ PlanetRows rows_of(PlanetRow& row, bool compensated) {
 ArcReport drift(const PlanetRows& planets, const ArcTask& task) { return planet_kernels().drift(planets, task); }
 ArcReport drift_with_short_constants(const PlanetRows& planets, const ArcTask& task) {
   ArcReport report;
-  with_short_constants::advance_arcs<false>(planets, *planets.row, task, report);
+  with_short_constants::advance_arcs<false>({task, planets.exact, 0}, *planets.row, report);
   return report;
 }
 
@@ -238,6 +242,92 @@ TEST_CASE("planets in lanes have the same bits without optimization", "[kepler]"
       for (const Level& level : levels) {
         const test::AtLevel at(level.level);
         const auto numbers = numbers_after(planet_kernels(), jacobi, compensated);
+        if (!first) first = numbers;
+        CAPTURE(name(level.level), jacobi, compensated);
+        CHECK(std::isfinite(numbers[0]));
+        CHECK(numbers == *first);
+        CHECK(numbers == numbers_after(level.at_O0, jacobi, compensated));
+      }
+    }
+  }
+}
+
+TEST_CASE("tracers in lanes have the same bits without optimization", "[kepler]") {
+  struct Level {
+    SimdLevel level;
+    const TracerKernels& at_O0;
+  };
+  std::vector<Level> levels{{SimdLevel::base, base_at_O0::tracer_kernels}};
+#if NOETHER_SIMD_LEVELS
+  if (has_simd_level(SimdLevel::avx2)) levels.push_back({SimdLevel::avx2, avx2_at_O0::tracer_kernels});
+  if (has_simd_level(SimdLevel::avx512)) levels.push_back({SimdLevel::avx512, avx512_at_O0::tracer_kernels});
+#endif
+  const auto numbers_after = [](const TracerKernels& kernels, bool jacobi, bool compensated) {
+    std::mt19937_64 random(31);
+    constexpr std::ptrdiff_t planets = 3;
+    std::vector<PathLetter> letters;
+    std::vector<double> path;
+    for (int k = 0; k < 30; ++k) {
+      letters.push_back({.letter = 'B',
+                         .predicted = k > 2,
+                         .predict = false,
+                         .noting = true,
+                         .h = 0.5,
+                         .time = 0,
+                         .step = k,
+                         .numbers = static_cast<std::ptrdiff_t>(path.size())});
+      for (int n = 0; n < 3 * planets; ++n) path.push_back(5 + uniform(random));
+      for (int n = 0; n < 6 * (planets + 1); ++n) path.push_back(1e-4 * uniform(random));
+      letters.push_back({.letter = 'A',
+                         .predicted = k > 1,
+                         .predict = k > 0,
+                         .noting = false,
+                         .h = 0.5,
+                         .time = 0,
+                         .step = k,
+                         .numbers = 0});
+    }
+    std::vector<PlanetRow> orbits(2);
+    std::vector<ArcRow> row(2);
+    for (int k = 0; k < 16; ++k) {
+      place(orbits[static_cast<std::size_t>(k / 8)], k % 8, std::exp(0.3 * k), k % 3 == 0 ? 0.5 : 0.1, random);
+      orbits[static_cast<std::size_t>(k / 8)].moves[k % 8] = 1;
+    }
+    for (std::size_t k = 0; k < 2; ++k) row[k] = orbits[k];
+    const double attraction[planets] = {1e-3, 2e-4, 1e-5}, near[planets] = {1e-4, 1e-4, 1e-4};
+    const int levels_of_rows[] = {0, 2};
+    const TracerTask task{.letters = letters.data(),
+                          .count = static_cast<std::ptrdiff_t>(letters.size()),
+                          .numbers = path.data(),
+                          .planets = planets,
+                          .attraction = attraction,
+                          .near = near,
+                          .star = 1,
+                          .relativity = compensated ? 1e-6 : 0,
+                          .jacobi = jacobi,
+                          .compensated = compensated,
+                          .exact = solved_exactly,
+                          .note = [](void*, std::ptrdiff_t, std::ptrdiff_t, double, double, double) {},
+                          .watch = nullptr};
+    kernels.prepare(row.data(), 2);
+    kernels.follow(task, row.data(), levels_of_rows, 2, 0);
+    std::vector<double> numbers;
+    for (const ArcRow& own : row) {
+      for (int c = 0; c < 3; ++c) {
+        numbers.insert(numbers.end(), own.x[c], own.x[c] + 8);
+        numbers.insert(numbers.end(), own.v[c], own.v[c] + 8);
+        numbers.insert(numbers.end(), own.x_low[c], own.x_low[c] + 8);
+      }
+      numbers.insert(numbers.end(), own.s, own.s + 8);
+    }
+    return numbers;
+  };
+  for (const bool jacobi : {false, true}) {
+    for (const bool compensated : {false, true}) {
+      std::optional<std::vector<double>> first;
+      for (const Level& level : levels) {
+        const test::AtLevel at(level.level);
+        const auto numbers = numbers_after(tracer_kernels(), jacobi, compensated);
         if (!first) first = numbers;
         CAPTURE(name(level.level), jacobi, compensated);
         CHECK(std::isfinite(numbers[0]));
