@@ -68,8 +68,8 @@ TEST_CASE("a tracer whose arc is not found ends the run at its step for all", "[
   std::mt19937_64 random(6);
   for (const Coordinates coordinates : coordinates_in_lanes) {
     auto s = test::random_planets(3, random, true, 80);
-    // Squares of its distance leave the range of doubles after some steps.
-    s.add("lost", 0, {0, 1e152, 0}, {0, 1e153, 0});
+    // Its distance leaves the range of doubles after some steps.
+    s.add("lost", 0, {0, 1e306, 0}, {0, 1e307, 0});
     for (const CompositionOptions& options : {CompositionOptions{}, CompositionOptions{.compensated = true}}) {
       auto whole = run_of(s, coordinates, 1.0, options), parts = run_of(s, coordinates, 1.0, options);
       const Outcome end = whole.run(100);
