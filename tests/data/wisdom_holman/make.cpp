@@ -1,5 +1,5 @@
-// Writes where the starts of this folder lead by the plain Wisdom-Holman map: the same map in double-double, four starts
-// side by side in the lanes of a register.
+// Writes where the starts of this folder lead by the plain Wisdom-Holman map: the same map in double-double, four
+// starts side by side in the lanes of a register.
 //
 //     g++ -std=c++20 -O3 -march=x86-64-v3 -ffp-contract=off -o make make.cpp
 //     ./make > starts.txt        # hundreds of seconds; lines come as they are found
@@ -87,8 +87,12 @@ Wide inverse(const Wide& a) {
 struct Vector {
   Wide of[3];
 };
-Vector operator+(const Vector& a, const Vector& b) { return {{a.of[0] + b.of[0], a.of[1] + b.of[1], a.of[2] + b.of[2]}}; }
-Vector operator-(const Vector& a, const Vector& b) { return {{a.of[0] - b.of[0], a.of[1] - b.of[1], a.of[2] - b.of[2]}}; }
+Vector operator+(const Vector& a, const Vector& b) {
+  return {{a.of[0] + b.of[0], a.of[1] + b.of[1], a.of[2] + b.of[2]}};
+}
+Vector operator-(const Vector& a, const Vector& b) {
+  return {{a.of[0] - b.of[0], a.of[1] - b.of[1], a.of[2] - b.of[2]}};
+}
 Vector operator*(const Wide& a, const Vector& b) { return {{a * b.of[0], a * b.of[1], a * b.of[2]}}; }
 Wide dot(const Vector& a, const Vector& b) { return (a.of[0] * b.of[0] + a.of[1] * b.of[1]) + a.of[2] * b.of[2]; }
 
@@ -105,7 +109,7 @@ struct Factorials {
 };
 const Factorials factorials;
 
-constexpr int terms = 14;       // the next one is below 1e-33 of the first for z up to
+constexpr int terms = 14;  // the next one is below 1e-33 of the first for z up to
 constexpr double largest = 0.6;
 /// c_n(z) = sum (-z)^k/(2k + n)!
 Wide stumpff(int n, const Wide& z) {
@@ -303,7 +307,8 @@ int main(int count, char** arguments) {
   for (const auto& body : bodies) {
     for (int c = 0; c < 7; ++c) std::printf("%.17g%c", body[c], c == 6 ? '\n' : ' ');
   }
-  std::printf("# start, steps, relative change of the energy, then x and v of Mercury about the Sun in two words each\n");
+  std::printf(
+      "# start, steps, relative change of the energy, then x and v of Mercury about the Sun in two words each\n");
   for (int first = 0; first < 64; first += lanes) follow(first, {100, 10'000, 100'000});
   follow(0, {1'000'000, 10'000'000});
   for (int first = lanes; first < 64; first += lanes) follow(first, {1'000'000});
