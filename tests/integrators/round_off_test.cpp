@@ -27,34 +27,26 @@
 
 // Kernels that are wrong: `with_short_constants` has 28 bits of 1/4! and 1/5!, `without_low_parts` 53 bits of them and
 // of 1/3! and no more.
+namespace noether::base_with_short_constants {
+extern const PlanetKernels planet_kernels;
+}
+namespace noether::base_without_low_parts {
+extern const PlanetKernels planet_kernels;
+}
 #if NOETHER_SIMD_LEVELS
-#define NOETHER_WRONG_KERNELS(suffix)                                                  \
-  namespace noether::base_##suffix {                                                   \
-    extern const PlanetKernels planet_kernels;                                         \
-  }                                                                                    \
-  namespace noether::avx2_##suffix {                                                   \
-    extern const PlanetKernels planet_kernels;                                         \
-  }                                                                                    \
-  namespace noether::avx512_##suffix {                                                 \
-    extern const PlanetKernels planet_kernels;                                         \
-  }                                                                                    \
-  namespace noether {                                                                  \
-  static const PlanetKernels& kernels_##suffix() {                                     \
-    return at_simd_level(base_##suffix::planet_kernels, avx2_##suffix::planet_kernels, \
-                         avx512_##suffix::planet_kernels);                             \
-  }                                                                                    \
-  }
-#else
-#define NOETHER_WRONG_KERNELS(suffix)                                                      \
-  namespace noether::base_##suffix {                                                       \
-    extern const PlanetKernels planet_kernels;                                             \
-  }                                                                                        \
-  namespace noether {                                                                      \
-  static const PlanetKernels& kernels_##suffix() { return base_##suffix::planet_kernels; } \
-  }
+namespace noether::avx2_with_short_constants {
+extern const PlanetKernels planet_kernels;
+}
+namespace noether::avx512_with_short_constants {
+extern const PlanetKernels planet_kernels;
+}
+namespace noether::avx2_without_low_parts {
+extern const PlanetKernels planet_kernels;
+}
+namespace noether::avx512_without_low_parts {
+extern const PlanetKernels planet_kernels;
+}
 #endif
-NOETHER_WRONG_KERNELS(with_short_constants)
-NOETHER_WRONG_KERNELS(without_low_parts)
 
 namespace noether {
 namespace {
@@ -285,7 +277,22 @@ class OverKernels {
   std::int64_t done_ = 0;
 };
 
-/// RoundOff of runs from all starts whose truth is known, after each of these numbers of steps.
+/// Wrong kernels at the level in use.
+#if NOETHER_SIMD_LEVELS
+const PlanetKernels& kernels_with_short_constants() {
+  return at_simd_level(base_with_short_constants::planet_kernels, avx2_with_short_constants::planet_kernels,
+                       avx512_with_short_constants::planet_kernels);
+}
+const PlanetKernels& kernels_without_low_parts() {
+  return at_simd_level(base_without_low_parts::planet_kernels, avx2_without_low_parts::planet_kernels,
+                       avx512_without_low_parts::planet_kernels);
+}
+#else
+const PlanetKernels& kernels_with_short_constants() { return base_with_short_constants::planet_kernels; }
+const PlanetKernels& kernels_without_low_parts() { return base_without_low_parts::planet_kernels; }
+#endif
+
+/// Errors of runs from all starts whose truth is known, after each of these numbers of steps.
 template <class Begin>
 std::map<std::int64_t, RoundOff> errors_after(const Oracle& oracle, const std::vector<std::int64_t>& looks,
                                               const Begin& begin) {
