@@ -55,20 +55,20 @@ constexpr int start_count = 64;
 constexpr std::size_t planet_count = 8;
 
 /// Mercury about the Sun.
-struct Motion {
+struct MercuryState {
   Vec3<Quad> x, v;
 };
 /// Where a start is after some steps.
-struct Truth {
+struct KnownEnd {
   double energy = 0;  ///< its relative change
-  Motion mercury;
+  MercuryState mercury;
 };
 
 /// tests/data/wisdom_holman/starts.txt
 struct Oracle {
   double step = 0, G = 0;
   double bodies[planet_count + 1][7];
-  std::map<std::pair<int, std::int64_t>, Truth> truths;  ///< by start and steps
+  std::map<std::pair<int, std::int64_t>, KnownEnd> truths;  ///< by start and steps
 
   Oracle() {
     std::ifstream file(std::string(NOETHER_SOURCE_DIR) + "/tests/data/wisdom_holman/starts.txt");
@@ -85,7 +85,7 @@ struct Oracle {
     std::int64_t steps = 0;
     REQUIRE(in);
     while (in >> start >> steps) {
-      Truth& truth = truths[{start, steps}];
+      KnownEnd& truth = truths[{start, steps}];
       in >> truth.energy;
       for (Vec3<Quad>* vector : {&truth.mercury.x, &truth.mercury.v}) {
         for (int c = 0; c < 3; ++c) {
@@ -124,12 +124,12 @@ struct Oracle {
   }
 };
 
-Motion mercury_of(const ParticleSystem<Quad>& s) {
+MercuryState mercury_of(const ParticleSystem<Quad>& s) {
   return {s.positions()[1] - s.positions()[0], s.velocities()[1] - s.velocities()[0]};
 }
 
 /// With what rounding took, where that is kept.
-ParticleSystem<Quad> wide(const ParticleSystem<double>& s) {
+ParticleSystem<Quad> with_low_words(const ParticleSystem<double>& s) {
   auto particles = s.as<Quad>();
   if (const auto* low = s.low_words()) {
     for (Index i = 0; i < s.size(); ++i) {
@@ -155,17 +155,17 @@ Quad inner_energy(const ParticleSystem<Quad>& s, const Quad& G) {
 }
 
 /// Mean longitude.
-Quad longitude_of(const Motion& orbit, const Quad& mu) {
+Quad longitude_of(const MercuryState& orbit, const Quad& mu) {
   const OrbitalElements<Quad> o = elements_from_state(orbit.x, orbit.v, mu);
   return o.Omega + o.omega + o.M;
 }
 
-struct Sample {
+struct Statistics {
   double mean = 0, error = 0;  ///< error: the standard one of the mean
   double spread = 0;
   double median = 0;  ///< of sizes
 
-  explicit Sample(std::vector<double> values) {
+  explicit Statistics(std::vector<double> values) {
     const auto n = static_cast<double>(values.size());
     for (const double one : values) mean += one / n;
     for (const double one : values) spread += (one - mean) * (one - mean) / (n - 1);
@@ -179,7 +179,7 @@ struct Sample {
 
 /// What runs have beyond the truth after some steps.
 struct RoundOff {
-  Sample energy, longitude;
+  Statistics energy, longitude;
 };
 
 class Stepped {
@@ -303,7 +303,7 @@ std::map<std::int64_t, RoundOff> errors_after(const Oracle& oracle, const std::v
     auto run = begin(k);
     const Quad before = inner_energy(oracle.start(k).as<Quad>(), G);
     for (const std::int64_t steps : looks) {
-      const auto end = wide(run.after(steps));
+      const auto end = with_low_words(run.after(steps));
       const double change = static_cast<double>(inner_energy(end, G) / before - Quad(1));
       const auto truth = oracle.truths.find({k, steps}), none = oracle.truths.end();
       // Starts are so near each other that what the map does to the energy is that of start 0.
@@ -315,15 +315,15 @@ std::map<std::int64_t, RoundOff> errors_after(const Oracle& oracle, const std::v
   }
   std::map<std::int64_t, RoundOff> all;
   for (const std::int64_t steps : looks) {
-    all.emplace(steps, RoundOff{Sample(energies.at(steps)), Sample(longitudes.at(steps))});
+    all.emplace(steps, RoundOff{Statistics(energies.at(steps)), Statistics(longitudes.at(steps))});
   }
   return all;
 }
 
-bool within_errors(const Sample& sample) { return std::fabs(sample.mean) < 3 * sample.error; }
+bool within_errors(const Statistics& sample) { return std::fabs(sample.mean) < 3 * sample.error; }
 
 /// Exponent of the growth of a spread from one number of steps to another.
-double exponent(const Sample& from, const Sample& to, double steps_from, double steps_to) {
+double exponent(const Statistics& from, const Statistics& to, double steps_from, double steps_to) {
   return std::log(to.spread / from.spread) / std::log(steps_to / steps_from);
 }
 
@@ -332,7 +332,7 @@ double exponent(const Sample& from, const Sample& to, double steps_from, double 
 const double of_whfast512 = 4e-11 / std::sqrt(1.1e11);
 
 std::string told(const RoundOff& errors) {
-  const auto sample = [](const Sample& one) {
+  const auto sample = [](const Statistics& one) {
     return fmt::format("{:.3e} +- {:.1e}, spread {:.3e}, median {:.3e}", one.mean, one.error, one.spread, one.median);
   };
   return "energy " + sample(errors.energy) + "; longitude " + sample(errors.longitude);
@@ -350,8 +350,8 @@ TEST_CASE("the stored ends of the starts are those of 113 bits", "[wisdom_holman
         oracle.step);
     REQUIRE(run.run(steps).ok());
     const ParticleSystem<Quad> end = run.particles();
-    const Truth& truth = oracle.truths.at({number, steps});
-    const Motion mercury = mercury_of(end);
+    const KnownEnd& truth = oracle.truths.at({number, steps});
+    const MercuryState mercury = mercury_of(end);
     CHECK(std::sqrt(static_cast<double>(norm2(mercury.x - truth.mercury.x))) < 1e-21);
     CHECK(std::sqrt(static_cast<double>(norm2(mercury.v - truth.mercury.v))) < 1e-22);
     const double change =
