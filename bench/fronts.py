@@ -33,13 +33,6 @@ from orbits import page, systems
 DRAWING = 0.02  # of the budget, for pictures and page
 
 
-def processor():
-    for line in pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
-        if line.startswith("model name"):
-            return line.split(":", 1)[1].strip()
-    return "unknown"
-
-
 def has_avx512():
     return "avx512dq" in pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8").split()
 
@@ -91,7 +84,7 @@ def run(given, out):
         share = system.share / sum(other.share for other in wanted[k:])
         limits = measure.Limits(given.row, (end - time.monotonic()) * share)
         rows = measure.measure(system, programs, entries, samples, limits)
-        page.write_data(out, system, rows, programs, samples, processor(), given.note, compiled[system.name])
+        page.write_data(out, system, rows, programs, samples, page.processor(), given.note, compiled[system.name])
     measure.stop_programs(programs)
 
 

@@ -40,6 +40,13 @@ SERIES = (
 )
 
 
+def processor():
+    for line in pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
+        if line.startswith("model name"):
+            return line.split(":", 1)[1].strip()
+    return "unknown"
+
+
 def write_data(out, system, rows, programs, samples, processor, note, compiled=""):
     """All rows. Those with 0 rounds have the errors of the scan, and the time that the whole span should take."""
     out.mkdir(parents=True, exist_ok=True)
@@ -266,9 +273,9 @@ def page_path(out):
     return HOME / "orbits.md" if out.resolve() == HOME / "orbits" else out / "orbits.md"
 
 
-def filled(text, parts):
+def filled(text, parts, begin_mark=BEGIN, end_mark=END):
     for name, lines in parts.items():
-        begin, end = BEGIN.format(name), END.format(name)
+        begin, end = begin_mark.format(name), end_mark.format(name)
         if begin not in text or end not in text:
             raise SystemExit(f"docs/orbits.md has no lines '{begin}' and '{end}'")
         before, after = text.split(begin)[0], text.split(end)[1]
