@@ -21,7 +21,7 @@ constexpr int most_sweeps = 40;
 constexpr double rounding_of_displacements = 0x1p-50;
 /// A step becomes longer if it may have more than so many times its length: by more than two rungs, or it would climb
 /// and fall with every nearly circular orbit.
-constexpr double longer = 1.25;
+constexpr double grows_from = 1.25;
 /// Sweeps after which a change that is rounding of the parts of a rate, but not of their sum, is looked for.
 constexpr int many_sweeps = 12;
 
@@ -51,6 +51,7 @@ void GravityGauss::bind(const VectorField<double>& f) {
   pairs_ = 0;
   in_use_ = n_ >= 2 && n_ <= most_bodies && f.gravity_of_points() && !f.has_forces_beside_gravity() && bind_masses(f);
   if (!in_use_) return;
+  if (adaptive_) predictor_.reserve();
   const auto padded = static_cast<std::size_t>((3 * n_ + 7) / 8 * 8);
   for (auto* all : {&made_[0], &made_[1], &now_, &before_, &known_, &d_}) all->assign(stages * padded, 0);
   low_.assign(static_cast<std::size_t>(6 * n_), 0);
@@ -147,7 +148,7 @@ StepResult GravityGauss::adaptive_step(VectorField<double>& f, const double& t, 
     if (converged && may.made >= StageControl::kept * h) {
       double next = at_hand;
       if (may.next < at_hand) next = ladder_.below(std::max(may.next, 0.2 * at_hand));
-      if (may.next > longer * at_hand) next = ladder_.below(std::min(0.98 * may.next, 3 * at_hand));
+      if (may.next > grows_from * at_hand) next = ladder_.below(std::min(0.98 * may.next, 3 * at_hand));
       next_ = signed_as(next, made.h);
       finish(y);
       return made;

@@ -1,10 +1,10 @@
 #pragma once
 /// Where the stages of a step begin, from the rates of the last two steps.
 
-#include "engine/column.hpp"
 #include "integrators/methods/collocation_table.hpp"
 #include "integrators/methods/stage_arithmetic.hpp"
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -22,17 +22,22 @@ class StepPredictor {
   /// @param table  of Gauss with eight stages
   explicit StepPredictor(const CollocationTable& table);
 
+  /// Takes what memory `weights` needs, which else takes it when it is first asked.
+  void reserve();
   /// Shape (16, 8), in units of h^2: row 8 s + j is that of node j of the last step, s = 0, or the one before, s = 1.
   /// They depend on the lengths alone. Valid until the next call.
   const double* weights(double h, double last, double before);
   static bool serves(double h, double last, double before);
 
  private:
+  static constexpr std::size_t nodes = 2 * lane_count;
+  using Weights = std::array<double, nodes * lane_count>;
+
   /// Weights that have been asked for, each in the place that its lengths say. They are no state: a copy has none.
   struct Tables {
     struct Table {
       double next = 0, before = 0;  ///< ratios to the last step; 0 for none
-      AlignedVector<double> weights;
+      Weights weights{};
     };
     std::vector<Table> all;
 
@@ -46,7 +51,7 @@ class StepPredictor {
 
   StageLanes<double> c_{};
   StageMatrix<double> twice_{};
-  AlignedVector<double> same_;  ///< for three steps of one length
+  Weights same_;  ///< for three steps of one length
   Tables tables_;
 };
 
