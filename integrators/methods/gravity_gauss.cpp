@@ -145,7 +145,7 @@ StepResult GravityGauss::adaptive_step(VectorField<double>& f, const double& t, 
     set_length(made.h);
     const bool converged = solve(f, y);
     StageControl::Lengths may;
-    if (converged) may = control_.lengths(now_.data(), h);
+    if (converged) may = control_.lengths(now_.data(), h, at_hand);
     if (converged && may.made >= StageControl::kept * h) {
       double next = at_hand;
       if (may.next < at_hand) next = ladder_.below(std::max(may.next, 0.2 * at_hand));

@@ -58,10 +58,11 @@ void StageControl::bind(const std::vector<double>& masses) {
   largest_.assign(stride_, 0);
 }
 
-StageControl::Lengths StageControl::lengths(const double* rates, double h) {
+StageControl::Lengths StageControl::lengths(const double* rates, double h, double at_hand) {
   const Lengths first = by_timescale(rates, h);
-  const double second = by_last_coefficient(rates, h);
-  return {std::clamp(first.made, second, farther * second), std::clamp(first.next, second, farther * second)};
+  const double second = by_last_coefficient(rates, h), most = farther * second;
+  const double least = first.next >= at_hand && first.made >= kept * h ? 0 : second;
+  return {std::clamp(first.made, least, most), std::clamp(first.next, least, most)};
 }
 
 StageControl::Lengths StageControl::by_timescale(const double* rates, double h) {
