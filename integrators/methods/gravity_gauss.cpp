@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <mutex>
 #include <utility>
 
 namespace noether {
@@ -35,11 +37,11 @@ std::vector<Quad> legendre_polynomials(std::size_t degree, const Quad& x) {
   return p;
 }
 
-/// What the polynomial of degree 12 through the rates at the nodes of two steps of one length, by least squares, says
-/// of the displacements of the next step, in units of h^2: row 8 s + j is that of node j of the last step, s = 0, or
-/// the one before, s = 1; shape (16, 8).
+/// What the polynomial of degree 12 (of s stages 3 s / 2) through the rates at the nodes of two steps of one length, by
+/// least squares, says of the displacements of the next step, in units of h^2: row 8 k + j is that of node j of the
+/// last step, k = 0, or the one before, k = 1; shape (16, 8).
 AlignedVector<double> two_steps_ahead(const CollocationTable& table) {
-  constexpr std::size_t stages = lane_count, rows = 2 * stages, columns = 13;
+  const std::size_t stages = table.stages(), rows = 2 * stages, columns = 3 * stages / 2 + 1;
   std::vector<std::vector<Quad>> basis;
   for (std::size_t r = 0; r < rows; ++r) {
     // The three steps begin at -1, 0 and 1.
@@ -66,40 +68,51 @@ AlignedVector<double> two_steps_ahead(const CollocationTable& table) {
     }
   }
   const auto twice = table.twice();
-  AlignedVector<double> ahead(rows * stages, 0);
+  AlignedVector<double> ahead(2 * lane_count * lane_count, 0);
   for (std::size_t r = 0; r < rows; ++r) {
-    std::array<Quad, stages> rate{};
+    std::vector<Quad> rate(stages, Quad(0));
     for (std::size_t k = 0; k < stages; ++k) {
       const auto p = legendre_polynomials(columns - 1, Quad(1) + table.c[k]);
       for (std::size_t a = 0; a < columns; ++a) rate[k] += p[a] * fit(static_cast<Index>(a), static_cast<Index>(r));
     }
-    for (std::size_t i = 0; i < stages; ++i) {
+    for (std::size_t i = 0; i < lane_count; ++i) {  // those beyond the stages repeat the first
       Quad sum = 0;
-      for (std::size_t k = 0; k < stages; ++k) sum += twice[i][k] * rate[k];
-      ahead[stages * r + i] = static_cast<double>(sum);
+      for (std::size_t k = 0; k < stages; ++k) sum += twice[i < stages ? i : 0][k] * rate[k];
+      ahead[lane_count * (r < stages ? r : lane_count + r - stages) + i] = static_cast<double>(sum);
     }
   }
   return ahead;
+}
+
+/// The same, made once for each table.
+const AlignedVector<double>& two_steps_ahead_of(const CollocationTable& table) {
+  static std::mutex one_at_a_time;
+  static std::map<int, AlignedVector<double>> all;
+  const std::lock_guard lock(one_at_a_time);
+  const auto found = all.find(table.order);
+  return found != all.end() ? found->second : all.emplace(table.order, two_steps_ahead(table)).first->second;
 }
 
 double signed_as(double size, double sign) { return std::copysign(size, sign); }
 
 }  // namespace
 
-GravityGauss::GravityGauss(const MethodInfo& info, const MethodOptions& options)
-    : general_(info, options, gauss_table(lane_count), true),
-      table_(gauss_table(lane_count)),
+GravityGauss::GravityGauss(const MethodInfo& info, const MethodOptions& options, const CollocationTable& table,
+                           bool symplectic)
+    : general_(info, options, table, symplectic),
+      table_(table),
       order_(info.order),
+      mirrored_(symplectic && table.stages() == stages),
       adaptive_(info.is_adaptive(options)),
       rtol_(options.rtol.value_or(info.rtol)),
       first_(options.first.value_or(0)),
       tolerance_(adaptive_ ? std::max(settled_change, 1e-2 * rtol_) : settled_change),
-      control_(gauss_table(lane_count), rtol_) {
-  static const Numbers ahead = two_steps_ahead(gauss_table(lane_count));
-  ahead_ = ahead;
-  const CollocationTable& table = gauss_table(lane_count);
-  for (std::size_t j = 0; j < odd_.size(); ++j) {
-    odd_[j] = static_cast<double>(table.b[j] * (Quad(0.5) - table.c[j]));
+      control_(table, mirrored_, rtol_) {
+  ahead_ = two_steps_ahead_of(table);
+  for (std::size_t j = 0; j < table.stages(); ++j) {
+    const Quad odd = table.b[j] * (Quad(0.5) - table.c[j]);
+    odd_[j] = static_cast<double>(odd);
+    odd_low_[j] = static_cast<double>(odd - Quad(odd_[j]));
   }
 }
 
@@ -107,7 +120,8 @@ void GravityGauss::bind(const VectorField<double>& f) {
   general_.bind(f);
   n_ = f.particles();
   pairs_ = 0;
-  in_use_ = n_ >= 2 && n_ <= most_bodies && f.gravity_of_points() && !f.has_forces_beside_gravity() && bind_masses(f);
+  in_use_ = (adaptive_ || table_.stages == lane_count) && n_ >= 2 && n_ <= most_bodies && f.gravity_of_points() &&
+            !f.has_forces_beside_gravity() && bind_masses(f);
   if (!in_use_) return;
   const auto padded = static_cast<std::size_t>((3 * n_ + 7) / 8 * 8);
   for (auto* all : {&made_[0], &made_[1], &now_, &before_, &known_, &d_}) all->assign(stages * padded, 0);
@@ -282,8 +296,8 @@ void GravityGauss::predict() {
     return;
   }
   if (const double ratio = length_ / h_; ratio != ratio_) {
-    StageMatrix<double> polynomial;
-    collocation_kernels().extrapolation(table_.c.data(), table_.barycentric.data(), ratio, polynomial[0].data());
+    StageMatrix<double> polynomial{};
+    StageArithmetic<double>{}.extrapolation(table_.stages, table_.c, table_.barycentric, ratio, polynomial);
     collocation_kernels().combine({lane_count, polynomial[0].data(), nullptr, nullptr, 0, 0, 0}, table_.twice[0].data(),
                                   extrapolation_[0].data());
     ratio_ = ratio;
@@ -294,7 +308,7 @@ void GravityGauss::predict() {
 
 /// Rates of all stages at their displacements. @return whether all distances are in the range of doubles
 bool GravityGauss::attract(VectorField<double>& f, Numbers& rates) {
-  f.evaluations().force += lane_count;
+  f.evaluations().force += table_.stages;
   return gravity_gauss_kernels().attract(bodies(), n_, d_.data(), apart_.data(), pairs_, rates.data()) > 1e-200;
 }
 
@@ -379,8 +393,9 @@ bool GravityGauss::is_rounding() {
 void GravityGauss::finish(Vector<double>& y) {
   const DoubleDouble h2 = DoubleDouble::product(length_, length_);
   double *const x = y.data(), *const v = x + 3 * n_;
-  gravity_gauss_kernels().finish({3 * n_, now_.data(), table_.ends[0].data(), odd_.data(), length_, h2.high,
-                                  0.5 * h2.high, 0.5 * h2.low, x, low_.data(), v, low_.data() + 3 * n_});
+  gravity_gauss_kernels().finish({3 * n_, now_.data(), table_.ends[0].data(), table_.ends[1].data(), odd_.data(),
+                                  odd_low_.data(), mirrored_, table_.stages / 2, length_, h2.high, 0.5 * h2.high,
+                                  0.5 * h2.low, x, low_.data(), v, low_.data() + 3 * n_});
   std::swap(made_[0], made_[1]);
   std::swap(made_[0], now_);
   h_before_ = h_;

@@ -1,5 +1,5 @@
 #pragma once
-/// How long steps of Gauss's method may be under gravity, from the rates of a step just made.
+/// How long steps of collocation may be under gravity, from the rates of a step just made.
 
 #include "engine/column.hpp"
 #include "integrators/methods/collocation_table.hpp"
@@ -33,7 +33,8 @@ class StageControl {
   /// The first measure is taken for no longer than so many times the second.
   static constexpr double farther = 1.5;
 
-  StageControl(const CollocationTable& table, double rtol);
+  /// @param mirrored  eight nodes that are symmetric about the middle of a step: half the products
+  StageControl(const CollocationTable& table, bool mirrored, double rtol);
   void bind(const std::vector<double>& masses);
 
   struct Lengths {
@@ -49,6 +50,8 @@ class StageControl {
   double by_last_coefficient(const double* rates, double h);
   double timescale(std::size_t row) const;
 
+  bool mirrored_;
+  int degree_;  ///< of the polynomial
   double eta_, target_;
   AlignedVector<double> weights_;  ///< value and derivatives in the middle and at the end, shape (6, 8)
   AlignedVector<double> last_;     ///< of the last coefficient, shape (8)
