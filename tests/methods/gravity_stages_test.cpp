@@ -5,7 +5,7 @@
 #include "forces/gravity.hpp"
 #include "integrators/classical.hpp"
 #include "integrators/kepler.hpp"
-#include "monitors/energy.hpp"
+#include "monitors/monitors.hpp"
 #include "numbers/simd.hpp"
 #include "tests/methods/restarts.hpp"
 #include "tests/support/catch.hpp"
