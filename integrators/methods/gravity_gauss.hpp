@@ -4,6 +4,7 @@
 #include "integrators/methods/collocation.hpp"
 #include "integrators/methods/stage_control.hpp"
 #include "integrators/methods/step_ladder.hpp"
+#include "integrators/methods/step_predictor.hpp"
 
 #include <array>
 
@@ -19,9 +20,8 @@ struct AttractingBodies;
 ///   have in common, far from the origin or in fast motion, takes no digits from what is between them.
 /// - Pairs of massive bodies have G m_i m_j in two words, and bodies 1 / m_i: both feel the same vector.
 /// - The update is that of a stage in the middle and of differences from it.
-/// - Stages begin where a polynomial of degree 12 through the 16 nodes of the last two steps leads, by least squares;
-///   after a change of the step where that of degree 7 through the last one leads. With s stages the degrees are
-///   3 s / 2 and s - 1, and lanes beyond s repeat the first.
+/// - Stages begin where a polynomial of degree 12 through the 16 nodes of the last two steps leads, by least squares,
+///   of whatever lengths these are. With s stages its degree is 3 s / 2, and lanes beyond s repeat the first.
 /// - Convergence is looked at once a step, after as many sweeps as the last step has taken: some body's rate has
 ///   changed by more than 1e-14 of itself (a hundredth of rtol, where that is more), or none has.
 ///
@@ -66,7 +66,7 @@ class GravityGauss final : public Method<double> {
   bool mirrored_, adaptive_;
   double rtol_, first_, tolerance_;
   StageControl control_;
-  Numbers ahead_;                         ///< a a times the polynomial over two steps, shape (16, 8)
+  StepPredictor predictor_;
   StageLanes<double> odd_{}, odd_low_{};  ///< b (1/2 - c), and what rounding has taken
   bool in_use_ = false;                   ///< for the field at hand
   Index n_ = 0, pairs_ = 0;               ///< bodies, and pairs of them that attract each other
@@ -78,7 +78,6 @@ class GravityGauss final : public Method<double> {
   double h_ = 0, h_before_ = 0;           ///< their lengths; 0 for none
   double next_ = 0;                       ///< to be tried
   StepLadder ladder_;                     ///< of the steps that follow the first one
-  double longer_ = 0;                     ///< a step becomes longer if it may have more than so many times its length
   std::array<double, 2> grids_{};         ///< powers of two above all positions, and all velocities, so far
   int sweeps_ = 0;                        ///< asked for in the next step
   Numbers now_, before_;                  ///< rates of the last two sweeps

@@ -79,11 +79,10 @@ void StageControl::bind(const std::vector<double>& masses) {
   largest_.assign(stride_, 0);
 }
 
-StageControl::Lengths StageControl::lengths(const double* rates, double h, double at_hand) {
+StageControl::Lengths StageControl::lengths(const double* rates, double h) {
   const Lengths first = by_timescale(rates, h);
-  const double second = by_last_coefficient(rates, h), most = farther * second;
-  const double least = first.next >= at_hand && first.made >= kept * h ? 0 : second;
-  return {std::clamp(first.made, least, most), std::clamp(first.next, least, most)};
+  const double second = by_last_coefficient(rates, h);
+  return {std::clamp(first.made, second, farther * second), std::clamp(first.next, second, farther * second)};
 }
 
 StageControl::Lengths StageControl::by_timescale(const double* rates, double h) {
