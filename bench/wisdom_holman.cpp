@@ -4,10 +4,11 @@
 ///
 /// Parts, of which arguments may name some: `steps`, the eight planets at 5 days (of ABA(10,6,4) at 40 days, where a
 /// sub-step is a drift and a kick); `passes`, the share of drifts that needed a second pass, at steps of 1 to 40 days;
-/// `outer`, ABA(10,6,4) of the outer planets; `tracers`, ten thousand to a million of them among four giant planets.
+/// `outer`, ABA(10,6,4) of the outer planets; `tracers`, a thousand to a million of them among four giant planets.
 ///
 /// Protocol: 9 rounds of every variant and every peer in turn, each over so many steps that it takes some 20 ms, after
-/// one to warm up; medians of processor times. Tracers: 5 rounds of two million tracer-steps or more, by the clock.
+/// one to warm up; medians of processor times. Tracers: 5 rounds of two million tracer-steps or more, by the clock, of
+/// which the peer does a tenth.
 
 #include "bench/peer_program.hpp"
 #include "bench/support.hpp"

@@ -18,9 +18,8 @@ using WallClock = std::chrono::steady_clock;
 
 /// The state is looked at for finite values at least this often.
 constexpr std::int64_t longest_chunk = 1024;
-/// Steps between looks at the wall clock are chosen to last about this long, up to 16 steps longer: an integrator may
-/// make steps in a row faster than single ones [s].
-double seconds_of_chunk(std::int64_t steps) { return steps > 16 ? 0.05 : 0.5; }
+/// Steps between looks at the wall clock are chosen to last about this long [s].
+constexpr double chunk_seconds = 0.05;
 
 /// What a force has named says more than what came of it.
 bool tells_more(const Failure* failure, const std::optional<Outcome>& fault) {
@@ -231,11 +230,8 @@ template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double 
     if (chunk_is_full) {
       const auto now = WallClock::now();
       const double took = std::chrono::duration<double>(now - looked_at_clock_).count();
-      if (took < seconds_of_chunk(2 * chunk_) / 2) {
-        chunk_ = std::min(longest_chunk, chunk_ * 2);
-      } else if (took > seconds_of_chunk(chunk_) && chunk_ > 1) {
-        chunk_ /= 2;
-      }
+      if (took < chunk_seconds / 2) chunk_ = std::min(longest_chunk, chunk_ * 2);
+      if (took > chunk_seconds && chunk_ > 1) chunk_ /= 2;
       looked_at_clock_ = now;
       seconds_ = before + std::chrono::duration<double>(now - started).count();
       unclocked = 0;

@@ -15,6 +15,7 @@ void EncounterWatch::bind(const std::vector<double>& masses, const std::vector<s
   reach_.clear();
   // The sum of two is at least the reach of both masses together, by which `note` goes.
   for (const double m : masses) reach_.push_back(encounter_hill_radii * std::cbrt(m / masses[0] / 3));
+  known_ = closest_.has_value();
 }
 
 void EncounterWatch::note(Index i, Index j, double r2, double nearer_to_primary2, double time, bool backward) {
@@ -24,7 +25,7 @@ void EncounterWatch::note(Index i, Index j, double r2, double nearer_to_primary2
   if (!(seen.hill_radii < encounter_hill_radii)) return;
   static std::mutex mutex;
   const std::lock_guard<std::mutex> lock(mutex);
-  if (closest_ && (closest_->since < time) != backward) seen.since = closest_->since;
+  if (closest_ && (known_ || (closest_->since < time) != backward)) seen.since = closest_->since;
   const auto rank = [](const Encounter& e) { return std::tuple(e.hill_radii, e.first, e.second); };
   const double since = seen.since;
   if (!closest_ || rank(seen) < rank(*closest_)) closest_ = seen;
@@ -52,6 +53,7 @@ void EncounterWatch::save(SavedState& saved, const std::string& prefix) const {
 
 void EncounterWatch::load(const SavedState& saved, const std::string& prefix) {
   closest_.reset();
+  known_ = false;
   if (!saved.contains(prefix + "ids")) return;  // written before encounters were noted
   std::vector<std::int64_t> ids;
   std::vector<double> numbers;
@@ -60,6 +62,7 @@ void EncounterWatch::load(const SavedState& saved, const std::string& prefix) {
   if (ids.empty() && numbers.empty()) return;
   if (ids.size() != 2 || numbers.size() != 3) throw Error("the saved encounter of two bodies is damaged");
   closest_ = Encounter{ids[0], ids[1], numbers[0], numbers[1], numbers[2]};
+  known_ = true;
 }
 
 }  // namespace noether

@@ -48,6 +48,7 @@ class EncounterWatch {
   std::vector<double> masses_, reach_;  ///< the latter over the distance from the primary, no shorter than it must be
   std::vector<std::int64_t> ids_;
   std::optional<Encounter> closest_;
+  bool known_ = false;  ///< one was closest when the run began to go in this direction: nothing is earlier
 };
 
 }  // namespace noether

@@ -124,7 +124,7 @@ struct ExactArcs {
   for (int pass = 0; bad != 0 && pass < 4; ++pass) {
     store_eight(t.s, s);
     store_eight(t.step + t.more, step);
-    bool wide = false;
+    unsigned wide = 0;
     for (unsigned k = 0; k < 8; ++k) {
       if ((bad >> k & 1) == 0) continue;
       const double next = s[k] + step[k], size = step[k] < 0 ? -step[k] : step[k], z = beta[k] * next * next;
@@ -132,7 +132,7 @@ struct ExactArcs {
         // Half the digits: the last step must not be a fraction of a rounding, which would always be lost.
         const double split = 0x1p29 * next;
         s[k] = (next + split) - split;
-        wide = wide || z > widest_series || z < -widest_series;
+        if (z > widest_series || z < -widest_series) wide |= 1U << k;
       } else {
         hopeless |= 1U << k;
       }
@@ -140,16 +140,17 @@ struct ExactArcs {
     bad &= ~hopeless;
     if (bad == 0) break;
     const Eight next = load_eight(s);
-    EightTrials again;
-    if (wide) {  // half the argument, then doubled
-      again = functions_at(o, Eight(0.5) * next);
-      again.g3 = Eight(2.0) * (again.g3 + again.g1 * again.g2);
-      again.g2 = Eight(2.0) * (again.g1 * again.g1);
-      again.g1 = Eight(2.0) * (again.g0 * again.g1);
-      again.g0 = Eight(1.0) - o.beta * again.g2;
-      again.s = next;
-    } else {
-      again = functions_at(o, next);
+    EightTrials again = functions_at(o, next);
+    if (wide != 0) {  // half the argument, then doubled
+      EightTrials two = functions_at(o, Eight(0.5) * next);
+      two.g3 = Eight(2.0) * (two.g3 + two.g1 * two.g2);
+      two.g2 = Eight(2.0) * (two.g1 * two.g1);
+      two.g1 = Eight(2.0) * (two.g0 * two.g1);
+      two.g0 = Eight(1.0) - o.beta * two.g2;
+      take_lanes(again.g0, two.g0, wide);
+      take_lanes(again.g1, two.g1, wide);
+      take_lanes(again.g2, two.g2, wide);
+      take_lanes(again.g3, two.g3, wide);
     }
     look_at(o, again);
     Eight* const to[] = {&t.s, &t.g0, &t.g1, &t.g2, &t.g3, &t.eta, &t.zeta, &t.step, &t.more, &t.turn};

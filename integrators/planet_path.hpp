@@ -33,6 +33,11 @@ class PlanetPath {
   using Vector = std::array<double, 3>;
 
   void clear() { letters_.clear(), numbers_.clear(); }
+  void reserve(std::size_t letters, std::size_t numbers, std::size_t planets) {
+    letters_.reserve(letters);
+    numbers_.reserve(numbers);
+    levels_.reserve(planets + 1);
+  }
   /// Which step of the run the next letter is part of.
   void at_step(std::int64_t step) { step_ = step; }
 

@@ -128,6 +128,7 @@ std::optional<TracerLanes::Lost> TracerLanes::follow(ParticleSystem<double>& s, 
   std::mutex mutex;
   std::ptrdiff_t lost_at = -1, lost = -1;
   for_blocks(static_cast<Index>(particle_.size()), [&](Index begin, Index end) {
+    static_assert(rows_of_block * lanes == block_size);
     ArcRow rows[rows_of_block];
     const std::size_t first = static_cast<std::size_t>(begin) / lanes, last = static_cast<std::size_t>(end) / lanes;
     const auto count = static_cast<std::ptrdiff_t>(last - first);
@@ -135,11 +136,8 @@ std::optional<TracerLanes::Lost> TracerLanes::follow(ParticleSystem<double>& s, 
     tracer_kernels().prepare(rows, count);
     const TracerReport report = tracer_kernels().follow(task, rows, level_.data() + first, count, begin);
     for (std::size_t k = first; k < last; ++k) store_row(rows[k - first], k, columns);
-    if (report.arcs.second == 0 && report.arcs.exact == 0) return;
-    const std::lock_guard<std::mutex> lock(mutex);
-    second_passes_ += report.arcs.second;
-    exact_arcs_ += report.arcs.exact;
     if (report.lost_at < 0) return;
+    const std::lock_guard<std::mutex> lock(mutex);
     if (lost_at < 0 || report.lost_at < lost_at || (report.lost_at == lost_at && report.lost < lost))
       lost_at = report.lost_at, lost = report.lost;
   });

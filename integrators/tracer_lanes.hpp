@@ -47,10 +47,6 @@ class TracerLanes {
     return static_cast<std::int64_t>(std::clamp<std::size_t>(room / numbers, 1, most));
   }
 
-  /// Rows of tracers that needed second passes, and arcs left to the solver for all cases, since `bind`.
-  std::int64_t second_passes() const { return second_passes_; }
-  std::int64_t exact_arcs() const { return exact_arcs_; }
-
   /// @param predicted  whether there are predictions to save
   void save(SavedState& saved, const std::string& prefix, bool predicted) const;
   /// @param last  the length of the arcs that the saved predictions are for
@@ -79,7 +75,6 @@ class TracerLanes {
   std::vector<double> s_, next_s_;         ///< predictions, as `particle_`
   double star_mu_ = 0, relativity_ = 0, far_ = 1;
   bool jacobi_ = true;
-  std::int64_t second_passes_ = 0, exact_arcs_ = 0;
 };
 
 }  // namespace noether

@@ -73,7 +73,7 @@ template <class Real, class F> void WisdomHolman<Real, F>::bind(ParticleSystem<R
     // Unbound bodies come last, by distance.
     axis[static_cast<std::size_t>(i)] =
         inverse > Real(0) ? static_cast<double>(Real(1) / inverse) : 1e300 * (1 + static_cast<double>(r));
-    size = std::max(size, static_cast<double>(r));
+    if (m > Real(0)) size = std::max(size, static_cast<double>(r));
     order_.push_back(i);
   }
   std::stable_sort(order_.begin() + 1, order_.end(), [&](std::int64_t i, std::int64_t j) {

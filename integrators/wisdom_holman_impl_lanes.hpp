@@ -81,6 +81,8 @@ Advance WisdomHolman<Real, F>::run_in_lanes(const TimedWord<Real>& word, Particl
       word.stages().begin(), word.stages().end(), [](const TimedStage<Real>& stage) { return stage.letter == 'B'; }));
   const std::size_t numbers = kicks * PlanetPath::numbers_of_kick(jacobi(), massive() - 1);
   std::int64_t ahead = TracerLanes::steps_at_once(std::max<std::size_t>(numbers, 1));
+  path_.reserve(static_cast<std::size_t>(ahead) * word.stages().size(), static_cast<std::size_t>(ahead) * numbers,
+                massive() - 1);
   Advance done;
   while (done.steps < span.steps && done.failure == nullptr && !(done.steps > 0 && span.asked_to_stop())) {
     keep_before_steps(s);
@@ -134,7 +136,7 @@ void WisdomHolman<Real, F>::follow_planets(ParticleSystem<Real>& s,
                                            const std::optional<TracerLanes::Lost>& lost) requires may_have_lanes {
   if (!observing_) {
     tracers_.keep_predictions();
-    if (encounters_.closest()) watch_for_encounters();
+    tracers_.watch_from(encounters_);
   }
   if (lost) fail(s, lost->particle);
 }

@@ -168,6 +168,7 @@ bool PlanetLanes::kick(const Kick& kick, bool on_copy, PlanetPath* path) {
 void PlanetLanes::give(Predictions& to) const {
   to.last = last_;
   to.s.clear();
+  to.s.reserve(order_.size());
   for (std::size_t k = 0; predicted_ && k < order_.size(); ++k) to.s.push_back(row_[k / lanes].s[k % lanes]);
 }
 

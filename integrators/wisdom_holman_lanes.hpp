@@ -22,7 +22,7 @@ struct PlanetSystem {
   std::vector<std::int64_t> order = {};  ///< the primary and the massive bodies
   std::vector<double> masses = {};
   std::optional<double> bend = {};  ///< 6 (G m_0/c)^2 of `gr_potential` beside, if that is there
-  double size = 1;                  ///< the largest distance from the primary
+  double size = 1;                  ///< the largest distance of a massive body from the primary
 };
 
 /// A second implementation of the flows A and B in Jacobi and in democratic coordinates: eight planets to a register,

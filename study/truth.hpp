@@ -1,6 +1,7 @@
 #pragma once
 /// What the runs of a comparison are measured against.
 
+#include "integrators/vector_field.hpp"
 #include "numbers/real.hpp"
 #include "numbers/types.hpp"
 

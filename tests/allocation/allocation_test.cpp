@@ -60,8 +60,8 @@ namespace {
 constexpr double G = test::outer_G;
 
 /// Allocations of 20 steps and of settling, after a first step.
-template <class I> std::pair<long, long> allocations_of(I integrator) {
-  ParticleSystem<double> s = test::outer_planets();
+template <class I>
+std::pair<long, long> allocations_of(I integrator, ParticleSystem<double> s = test::outer_planets()) {
   s.clock() = Clock<double>::fixed(0, 30);
   integrator.bind(s);
   integrator.advance(s, {.steps = 1});
@@ -74,8 +74,8 @@ template <class I> std::pair<long, long> allocations_of(I integrator) {
   return {stepped - start, allocations - stepped};
 }
 
-template <class I> void check_none(const I& integrator) {
-  const auto [stepping, settling] = allocations_of(integrator);
+template <class I> void check_none(const I& integrator, const ParticleSystem<double>& s = test::outer_planets()) {
+  const auto [stepping, settling] = allocations_of(integrator, s);
   CHECK(stepping == 0);
   CHECK(settling == 0);
 }
@@ -101,6 +101,10 @@ TEST_CASE("nothing is allocated inside advance, nor by settling", "[allocation]"
     forces.add(Gravity{.G = G}).add(UniformField{.acceleration = {1e-9, 0, 0}});
     check_none(compose(AnyHamiltonian<double>(KineticPotential<ForceField<double>>{forces}), scheme));
     check_none(AnyIntegrator<double>(compose(WisdomHolman({.G = G}), scheme)));
+  }
+  for (const bool compensated : {false, true}) {
+    check_none(compose(WisdomHolman({.G = G}), schemes::verlet_aba, {.compensated = compensated}),
+               test::planets_with_tracers(30));
   }
   for (const Coordinates coordinates : {Coordinates::democratic, Coordinates::whds, Coordinates::barycentric}) {
     check_none(compose(WisdomHolman({.G = G, .coordinates = coordinates}), schemes::verlet_aba));

@@ -71,6 +71,10 @@ TEST_CASE("a tracer whose arc is not found ends the run at its step for all", "[
     // Its distance leaves the range of doubles after some steps.
     s.add("lost", 0, {0, 1e306, 0}, {0, 1e307, 0});
     for (const CompositionOptions& options : {CompositionOptions{}, CompositionOptions{.compensated = true}}) {
+      auto bound = s;
+      WisdomHolman<double> splitting({.coordinates = coordinates});
+      splitting.bind(bound);
+      REQUIRE(splitting.lanes().bound());
       auto whole = run_of(s, coordinates, 1.0, options), parts = run_of(s, coordinates, 1.0, options);
       const Outcome end = whole.run(100);
       Outcome step;
@@ -133,6 +137,48 @@ TEST_CASE("encounters of tracers are noted as letter by letter, in both directio
       }
     }
   }
+}
+
+TEST_CASE("a tracer has the same bits alone and beside others, however far these go in a step", "[wisdom_holman]") {
+  std::mt19937_64 random(9);
+  for (const Coordinates coordinates : coordinates_in_lanes) {
+    int apart = 0;
+    for (int trial = 0; trial < 20; ++trial) {
+      const auto s = test::random_planets(3, random, false, 8);
+      const double dt = 5 + trial;  // some pass their pericenter in a step
+      auto all = run_of(s, coordinates, dt);
+      const Outcome end = all.run(20);
+      for (Index one = 4; one < s.size(); ++one) {
+        ParticleSystem<double> alone(s.units());
+        for (Index i = 0; i < 4; ++i) alone.add(s.name(i), s.masses()[i], s.positions()[i], s.velocities()[i]);
+        alone.add(s.name(one), 0, s.positions()[one], s.velocities()[one]);
+        auto run = run_of(alone, coordinates, dt);
+        if (!end.ok() || !run.run(20).ok()) continue;
+        ++apart;
+        CAPTURE(trial, one);
+        CHECK(norm2(Vec3<double>(run.particles().positions()[4] - all.particles().positions()[one])) == 0);
+      }
+    }
+    CHECK(apart > 100);
+  }
+}
+
+TEST_CASE("the first encounter of a run stays the first when time turns", "[encounter]") {
+  ParticleSystem<double> s;
+  s.add("star", 1, {0, 0, 0}, {0, 0, 0});
+  s.add("planet", 1e-4, {1, 0, 0}, {0, 1, 0});
+  s.add("dust", 0, {1.04, 0, 0}, {0, 0.95, 0});
+  s.add("later", 0, {-1.03, 0, 0}, {0, -0.9, 0});
+  Simulation<double> run(s, Composition<AnyHamiltonian<double>>(test::wisdom_holman({.G = 1}), schemes::verlet), 0.05);
+  REQUIRE(run.run(200).ok());
+  REQUIRE(run.evaluations().encounter.has_value());
+  const Encounter before = *run.evaluations().encounter;
+  run.change_step(-0.01);  // kicks see the same passage at other times, and a nearer one
+  REQUIRE(run.run(1000).ok());
+  const Encounter after = *run.evaluations().encounter;
+  CHECK(after.hill_radii < before.hill_radii);
+  CHECK(after.time > before.since);
+  CHECK(after.since == before.since);
 }
 
 TEST_CASE("predictions of tracers are state, and runs saved without them go on", "[wisdom_holman][restart]") {
