@@ -265,7 +265,7 @@ class OverKernels {
             .jacobi = true,
             .compensated = false,
             .relativity = false,
-            .exact = nullptr};  // no arc of these planets needs it
+            .exact = exact_arc};
   }
 
   const PlanetKernels& kernels_;
@@ -395,14 +395,14 @@ TEST_CASE("constants of 28 bits in a correction of the arcs give 64 starts a tre
       errors_after(oracle, {10'000}, [&](int k) { return OverKernels(oracle, k, kernels_with_short_constants()); });
   const RoundOff& errors = found.at(10'000);
   CAPTURE(told(errors));
-  CHECK_FALSE(within_errors(errors.longitude));
-  CHECK_FALSE(within_errors(errors.energy));
+  CHECK(std::fabs(errors.longitude.mean) > 20 * errors.longitude.error);
+  CHECK(std::fabs(errors.energy.mean) > 20 * errors.energy.error);
 }
 
 TEST_CASE(
     "constants without what rounding took from them give Mercury's longitude a trend in 1e5 steps, not the energy",
     "[wisdom_holman][slow]") {
-  // A trend of 3e-19 a step in Mercury's energy, which is a 400th of the whole.
+  // A trend of 7e-19 a step in Mercury's energy, which is a 520th of the whole.
   const Oracle oracle;
   const auto found =
       errors_after(oracle, {100'000}, [&](int k) { return OverKernels(oracle, k, kernels_without_low_parts()); });
@@ -412,20 +412,21 @@ TEST_CASE(
   CHECK(within_errors(errors.energy));
 }
 
-TEST_CASE("compensated sums leave a tenth of the energy's rounding and half of the longitude's",
+TEST_CASE("compensated sums leave a hundredth of the energy's rounding and half of the longitude's",
           "[wisdom_holman][slow]") {
   const Oracle oracle;
-  const auto found = errors_after(oracle, {10'000, 100'000}, [&](int k) { return Stepped(oracle, k, true); });
+  const auto found = errors_after(oracle, {100'000}, [&](int k) { return Stepped(oracle, k, true); });
   const RoundOff& late = found.at(100'000);
   CAPTURE(told(late));
   CHECK(within_errors(late.energy));
   CHECK(within_errors(late.longitude));
-  CHECK(late.energy.spread < 0.1 * of_whfast512 * std::sqrt(1e5));
+  CHECK(late.energy.spread < 0.02 * of_whfast512 * std::sqrt(1e5));
   CHECK(late.longitude.spread < 1e-9);
 }
 
-TEST_CASE("rounding of 64 starts of 1e7 steps has no trend in the energy, and none of 1e6 in Mercury's longitude",
-          "[wisdom_holman][nightly]") {
+TEST_CASE(
+    "rounding of 64 starts of 1e7 steps has no trend in the energy, of 8 starts of 1e6 none in Mercury's longitude",
+    "[wisdom_holman][nightly]") {
   const Oracle oracle;
   REQUIRE(oracle.count(1'000'000) >= 8);
   const auto found =
@@ -435,7 +436,7 @@ TEST_CASE("rounding of 64 starts of 1e7 steps has no trend in the energy, and no
   for (const RoundOff* errors : {&early, &middle, &late}) {
     CHECK(within_errors(errors->energy));
   }
-  CHECK(within_errors(middle.longitude));
+  CHECK(std::fabs(middle.longitude.mean) < 5 * middle.longitude.error);  // 3 of so few would be missed in 2 %
   CHECK(std::fabs(late.energy.mean) / 1e7 < 5e-20);
   CHECK(late.energy.error / 1e7 < 1e-20);
   CHECK(late.energy.median < of_whfast512 * std::sqrt(1e7));
