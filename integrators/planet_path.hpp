@@ -10,20 +10,6 @@
 
 namespace noether {
 
-/// One letter of a path: arcs `A` or a kick `B`.
-struct PathLetter {
-  char letter;
-  bool predicted;          ///< tracers hold predictions: for this arc, or to be taken along by a kick
-  bool predict;            ///< arcs make one for the next
-  bool noting;             ///< encounters in the kick count
-  double h;                ///< [time]
-  double time;             ///< of the kick
-  std::int64_t step;       ///< of the run
-  std::ptrdiff_t numbers;  ///< of a kick, where they begin: y of each planet, and then
-                           ///< jacobi: of each level w center and acceleration of the innermost w + 1 bodies,
-                           ///< democratic: the first jump and the sum of both
-};
-
 /// Letters of some steps of the planets, which tracers then go one after the other: planets do not feel them.
 ///
 /// Level w of Jacobi coordinates is about the center of mass of the star and the w innermost planets. Positions are

@@ -2,6 +2,7 @@
 /// Bodies of a Wisdom-Holman splitting side by side: what the kernels in lanes work on.
 
 #include <cstddef>
+#include <cstdint>
 
 namespace noether {
 
@@ -66,6 +67,20 @@ struct ArcReport {
   std::ptrdiff_t second = 0;   ///< rows that a second pass was needed for
   std::ptrdiff_t exact = 0;    ///< arcs left to `ExactArc`
   std::ptrdiff_t failed = -1;  ///< the first body whose arc was not found; -1: none
+};
+
+/// One letter of a path (`PlanetPath`): arcs `A` or a kick `B`.
+struct PathLetter {
+  char letter;
+  bool predicted;          ///< tracers hold predictions: for this arc, or to be taken along by a kick
+  bool predict;            ///< arcs make one for the next
+  bool noting;             ///< encounters in the kick count
+  double h;                ///< [time]
+  double time;             ///< of the kick
+  std::int64_t step;       ///< of the run
+  std::ptrdiff_t numbers;  ///< of a kick, where they begin: y of each planet, and then
+                           ///< jacobi: of each level w center and acceleration of the innermost w + 1 bodies,
+                           ///< democratic: the first jump and the sum of both
 };
 
 }  // namespace noether

@@ -1,7 +1,6 @@
 #pragma once
 /// Tracers of a Wisdom-Holman splitting in lanes: the interface of `tracers_simd.cpp`.
 
-#include "integrators/planet_path.hpp"
 #include "integrators/planet_row.hpp"
 #include "numbers/kernels_simd.hpp"
 

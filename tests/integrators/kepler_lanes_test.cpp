@@ -25,16 +25,16 @@
 namespace noether::base_at_O0 {
 extern const PlanetKernels planet_kernels;
 extern const TracerKernels tracer_kernels;
-}
+}  // namespace noether::base_at_O0
 #if NOETHER_SIMD_LEVELS
 namespace noether::avx2_at_O0 {
 extern const PlanetKernels planet_kernels;
 extern const TracerKernels tracer_kernels;
-}
+}  // namespace noether::avx2_at_O0
 namespace noether::avx512_at_O0 {
 extern const PlanetKernels planet_kernels;
 extern const TracerKernels tracer_kernels;
-}
+}  // namespace noether::avx512_at_O0
 #endif
 
 namespace noether {
@@ -50,7 +50,7 @@ bool solved_exactly(const double* x, const double* v, double mu, double h, doubl
 double uniform(std::mt19937_64& random) { return std::uniform_real_distribution<double>(0, 1)(random); }
 
 /// A planet of semi-major axis a and eccentricity e, mu = 1, anywhere on its orbit.
-void place(PlanetRow& row, int lane, double a, double e, std::mt19937_64& random) {
+void place(ArcRow& row, int lane, double a, double e, std::mt19937_64& random) {
   const double E = 2 * std::numbers::pi * uniform(random), w = 2 * std::numbers::pi * uniform(random),
                tilt = 0.3 * uniform(random);
   const double rate = std::sqrt(1 / (a * a * a)) / (1 - e * std::cos(E)), flat = std::sqrt(1 - e * e);
@@ -252,6 +252,73 @@ TEST_CASE("planets in lanes have the same bits without optimization", "[kepler]"
   }
 }
 
+namespace {
+
+/// Letters of 30 steps, and their numbers.
+struct RandomPath {
+  static constexpr std::ptrdiff_t planets = 3;
+  std::vector<PathLetter> letters;
+  std::vector<double> numbers;
+
+  explicit RandomPath(std::mt19937_64& random) {
+    for (int k = 0; k < 30; ++k) {
+      const auto begin = static_cast<std::ptrdiff_t>(numbers.size());
+      const PathLetter kick{.letter = 'B',
+                            .predicted = k > 2,
+                            .predict = false,
+                            .noting = true,
+                            .h = 0.5,
+                            .time = 0,
+                            .step = k,
+                            .numbers = begin};
+      PathLetter arc = kick;
+      arc.letter = 'A', arc.predicted = k > 1, arc.predict = k > 0;
+      letters.insert(letters.end(), {kick, arc});
+      for (int n = 0; n < 3 * planets; ++n) numbers.push_back(5 + uniform(random));
+      for (int n = 0; n < 6 * (planets + 1); ++n) numbers.push_back(1e-4 * uniform(random));
+    }
+  }
+};
+
+/// Places of tracers behind such a path.
+std::vector<double> numbers_behind(const TracerKernels& kernels, bool jacobi, bool compensated) {
+  std::mt19937_64 random(31);
+  const RandomPath path(random);
+  std::vector<ArcRow> row(2);
+  for (int k = 0; k < 16; ++k) {
+    ArcRow& own = row[static_cast<std::size_t>(k / 8)];
+    place(own, k % 8, std::exp(0.3 * k), k % 3 == 0 ? 0.5 : 0.1, random);
+    own.mu[k % 8] = own.moves[k % 8] = 1;
+  }
+  const double attraction[] = {1e-3, 2e-4, 1e-5}, near[] = {1e-4, 1e-4, 1e-4};
+  const int levels[] = {0, 2};
+  const TracerTask task{.letters = path.letters.data(),
+                        .count = static_cast<std::ptrdiff_t>(path.letters.size()),
+                        .numbers = path.numbers.data(),
+                        .planets = RandomPath::planets,
+                        .attraction = attraction,
+                        .near = near,
+                        .star = 1,
+                        .relativity = compensated ? 1e-6 : 0,
+                        .jacobi = jacobi,
+                        .compensated = compensated,
+                        .exact = solved_exactly,
+                        .note = [](void*, std::ptrdiff_t, std::ptrdiff_t, double, double, double) {},
+                        .watch = nullptr};
+  kernels.prepare(row.data(), 2);
+  kernels.follow(task, row.data(), levels, 2, 0);
+  std::vector<double> numbers;
+  for (const ArcRow& own : row) {
+    for (const auto* vectors : {&own.x, &own.v, &own.x_low}) {
+      for (const auto& line : *vectors) numbers.insert(numbers.end(), line, line + 8);
+    }
+    numbers.insert(numbers.end(), own.s, own.s + 8);
+  }
+  return numbers;
+}
+
+}  // namespace
+
 TEST_CASE("tracers in lanes have the same bits without optimization", "[kepler]") {
   struct Level {
     SimdLevel level;
@@ -262,77 +329,17 @@ TEST_CASE("tracers in lanes have the same bits without optimization", "[kepler]"
   if (has_simd_level(SimdLevel::avx2)) levels.push_back({SimdLevel::avx2, avx2_at_O0::tracer_kernels});
   if (has_simd_level(SimdLevel::avx512)) levels.push_back({SimdLevel::avx512, avx512_at_O0::tracer_kernels});
 #endif
-  const auto numbers_after = [](const TracerKernels& kernels, bool jacobi, bool compensated) {
-    std::mt19937_64 random(31);
-    constexpr std::ptrdiff_t planets = 3;
-    std::vector<PathLetter> letters;
-    std::vector<double> path;
-    for (int k = 0; k < 30; ++k) {
-      letters.push_back({.letter = 'B',
-                         .predicted = k > 2,
-                         .predict = false,
-                         .noting = true,
-                         .h = 0.5,
-                         .time = 0,
-                         .step = k,
-                         .numbers = static_cast<std::ptrdiff_t>(path.size())});
-      for (int n = 0; n < 3 * planets; ++n) path.push_back(5 + uniform(random));
-      for (int n = 0; n < 6 * (planets + 1); ++n) path.push_back(1e-4 * uniform(random));
-      letters.push_back({.letter = 'A',
-                         .predicted = k > 1,
-                         .predict = k > 0,
-                         .noting = false,
-                         .h = 0.5,
-                         .time = 0,
-                         .step = k,
-                         .numbers = 0});
-    }
-    std::vector<PlanetRow> orbits(2);
-    std::vector<ArcRow> row(2);
-    for (int k = 0; k < 16; ++k) {
-      place(orbits[static_cast<std::size_t>(k / 8)], k % 8, std::exp(0.3 * k), k % 3 == 0 ? 0.5 : 0.1, random);
-      orbits[static_cast<std::size_t>(k / 8)].moves[k % 8] = 1;
-    }
-    for (std::size_t k = 0; k < 2; ++k) row[k] = orbits[k];
-    const double attraction[planets] = {1e-3, 2e-4, 1e-5}, near[planets] = {1e-4, 1e-4, 1e-4};
-    const int levels_of_rows[] = {0, 2};
-    const TracerTask task{.letters = letters.data(),
-                          .count = static_cast<std::ptrdiff_t>(letters.size()),
-                          .numbers = path.data(),
-                          .planets = planets,
-                          .attraction = attraction,
-                          .near = near,
-                          .star = 1,
-                          .relativity = compensated ? 1e-6 : 0,
-                          .jacobi = jacobi,
-                          .compensated = compensated,
-                          .exact = solved_exactly,
-                          .note = [](void*, std::ptrdiff_t, std::ptrdiff_t, double, double, double) {},
-                          .watch = nullptr};
-    kernels.prepare(row.data(), 2);
-    kernels.follow(task, row.data(), levels_of_rows, 2, 0);
-    std::vector<double> numbers;
-    for (const ArcRow& own : row) {
-      for (int c = 0; c < 3; ++c) {
-        numbers.insert(numbers.end(), own.x[c], own.x[c] + 8);
-        numbers.insert(numbers.end(), own.v[c], own.v[c] + 8);
-        numbers.insert(numbers.end(), own.x_low[c], own.x_low[c] + 8);
-      }
-      numbers.insert(numbers.end(), own.s, own.s + 8);
-    }
-    return numbers;
-  };
   for (const bool jacobi : {false, true}) {
     for (const bool compensated : {false, true}) {
       std::optional<std::vector<double>> first;
       for (const Level& level : levels) {
         const test::AtLevel at(level.level);
-        const auto numbers = numbers_after(tracer_kernels(), jacobi, compensated);
+        const auto numbers = numbers_behind(tracer_kernels(), jacobi, compensated);
         if (!first) first = numbers;
         CAPTURE(name(level.level), jacobi, compensated);
         CHECK(std::isfinite(numbers[0]));
         CHECK(numbers == *first);
-        CHECK(numbers == numbers_after(level.at_O0, jacobi, compensated));
+        CHECK(numbers == numbers_behind(level.at_O0, jacobi, compensated));
       }
     }
   }
