@@ -7,6 +7,7 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -286,8 +287,11 @@ TEST_CASE("a checkout that was copied with its build is configured and built whe
 
 TEST_CASE("a build says how far it is: now and then in a pipe, in one line on a terminal", "[launcher]") {
   const Checkout checkout;
+  const auto without_times = [](const std::string& text) {  // a busy machine takes longer
+    return std::regex_replace(text, std::regex(", [0-9]+ s"), ", 0 s");
+  };
   const std::string said = checkout.launch("version", {"NOETHER_TELL_EVERY=0"}).err;
-  CHECK(said ==
+  CHECK(without_times(said) ==
         "noether: configuring release\nnoether: building release: 3 steps\nnoether: building release: 1/3, 0 s\n"
         "noether: building release: 2/3, 0 s\nnoether: building release: 3/3, 0 s\n");
   fs::remove_all(checkout.tree("build"));
@@ -299,7 +303,7 @@ TEST_CASE("a build says how far it is: now and then in a pipe, in one line on a 
   std::vector<std::string> words = checkout.command("version");
   words.back() = "/usr/bin/script";
   words[words.size() - 2] = "exec timeout 60 \"$0\" " + terminal;
-  const std::string shown = run_process(words, checkout.path()).out;
+  const std::string shown = without_times(run_process(words, checkout.path()).out);
   INFO(shown);
   CHECK(has(shown, "\r\033[Knoether: building release: 1/3, 0 s\r\033[Knoether: building release: 2/3, 0 s"));
   CHECK(has(shown, "\r\033[Kprogram version"));
