@@ -182,15 +182,8 @@ def write_data(path, rows, head):
 
 
 def read_data(path):
-    head, lines = {}, []
-    for line in path.read_text(encoding="utf-8").splitlines():
-        if line.startswith("# "):
-            key, _, value = line[2:].partition(": ")
-            head[key] = value
-        else:
-            lines.append(line)
-    return head, [{key: value if key in ("method", "scene") else float(value) for key, value in row.items()}
-                  for row in csv.DictReader(lines)]
+    head, rows = page.read_table(path)
+    return head, [{key: value if key in ("method", "scene") else float(value) for key, value in row.items()} for row in rows]
 
 
 def carried(row):

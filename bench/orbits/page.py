@@ -72,8 +72,8 @@ def write_data(out, system, rows, programs, samples, processor, note, compiled="
     os.replace(f"{path}.new", path)
 
 
-def read_data(path):
-    """The head, and the rows; what a row has no figure for is None."""
+def read_table(path):
+    """The head, and the rows as text."""
     head, lines = {}, []
     for line in path.read_text(encoding="utf-8").splitlines():
         if line.startswith("# "):
@@ -81,7 +81,12 @@ def read_data(path):
             head[key] = value
         else:
             lines.append(line)
-    rows = list(csv.DictReader(lines))
+    return head, list(csv.DictReader(lines))
+
+
+def read_data(path):
+    """The head, and the rows; what a row has no figure for is None."""
+    head, rows = read_table(path)
     for row in rows:
         for key in ("value", "seconds", "rounds", "looks", "energy_error", "position_error"):
             row[key] = float(row[key]) if row[key] else None
