@@ -65,8 +65,8 @@ Advance WisdomHolman<Real, F>::run(const TimedWord<Real>& word, ParticleSystem<R
 }
 
 template <class Real, class F>
-Advance WisdomHolman<Real, F>::run_in_lanes(const TimedWord<Real>& word, ParticleSystem<Real>& s,
-                                            const Span& span) requires may_have_lanes {
+template <class>
+Advance WisdomHolman<Real, F>::run_in_lanes(const TimedWord<Real>& word, ParticleSystem<Real>& s, const Span& span) {
   const auto walk_planets = [&](const Span& part) {
     lanes_.load(s);
     const Advance done =
@@ -105,7 +105,8 @@ Advance WisdomHolman<Real, F>::run_in_lanes(const TimedWord<Real>& word, Particl
 
 /// Scratch columns keep the particles.
 template <class Real, class F>
-void WisdomHolman<Real, F>::keep_before_steps(const ParticleSystem<Real>& s) requires may_have_lanes {
+template <class>
+void WisdomHolman<Real, F>::keep_before_steps(const ParticleSystem<Real>& s) {
   pulled_.reset();
   positions_ = s.positions();
   along_ = s.velocities();
@@ -117,7 +118,7 @@ void WisdomHolman<Real, F>::keep_before_steps(const ParticleSystem<Real>& s) req
   before_.failure = failure_;
   lanes_.give(before_.predictions);
 }
-template <class Real, class F> void WisdomHolman<Real, F>::go_back(ParticleSystem<Real>& s) requires may_have_lanes {
+template <class Real, class F> template <class> void WisdomHolman<Real, F>::go_back(ParticleSystem<Real>& s) {
   s.positions() = positions_;
   s.velocities() = along_;
   if (auto* low = s.low_words()) low->x = acceleration_, low->v = other_;
@@ -132,8 +133,8 @@ template <class Real, class F> void WisdomHolman<Real, F>::go_back(ParticleSyste
 
 /// What is left to do where tracers have followed the planets.
 template <class Real, class F>
-void WisdomHolman<Real, F>::follow_planets(ParticleSystem<Real>& s,
-                                           const std::optional<TracerLanes::Lost>& lost) requires may_have_lanes {
+template <class>
+void WisdomHolman<Real, F>::follow_planets(ParticleSystem<Real>& s, const std::optional<TracerLanes::Lost>& lost) {
   if (!observing_) {
     tracers_.keep_predictions();
     tracers_.watch_from(encounters_);
@@ -143,7 +144,8 @@ void WisdomHolman<Real, F>::follow_planets(ParticleSystem<Real>& s,
 
 /// One flow of the planets that the lanes hold already, and of the center of mass.
 template <class Real, class F>
-void WisdomHolman<Real, F>::flow_of_lanes(char letter, ParticleSystem<Real>& s, const Real& h) requires may_have_lanes {
+template <class>
+void WisdomHolman<Real, F>::flow_of_lanes(char letter, ParticleSystem<Real>& s, const Real& h) {
   PlanetPath* const path = has_tracers() ? &path_ : nullptr;
   path_.at_step(s.clock().step());
   if (letter == 'A') {
@@ -168,7 +170,8 @@ void WisdomHolman<Real, F>::flow_of_lanes(char letter, ParticleSystem<Real>& s, 
 
 /// The same of bodies in the columns.
 template <class Real, class F>
-void WisdomHolman<Real, F>::flow_in_lanes(char letter, ParticleSystem<Real>& s, const Real& h) requires may_have_lanes {
+template <class>
+void WisdomHolman<Real, F>::flow_in_lanes(char letter, ParticleSystem<Real>& s, const Real& h) {
   path_.clear();
   lanes_.load(s);
   flow_of_lanes(letter, s, h);
@@ -189,8 +192,8 @@ const VectorColumn<Real>& WisdomHolman<Real, F>::middle_of_kick(const ParticleSy
 /// A flow with its action: that of arcs from their universal variables, that of kicks from the potential letter by
 /// letter.
 template <class Real, class F>
-Real WisdomHolman<Real, F>::action_in_lanes(char letter, ParticleSystem<Real>& s,
-                                            const Real& h) requires may_have_lanes {
+template <class>
+Real WisdomHolman<Real, F>::action_in_lanes(char letter, ParticleSystem<Real>& s, const Real& h) {
   using std::sqrt;
   const auto& c = std::as_const(s);
   Real action(0);
