@@ -47,8 +47,8 @@ std::vector<Case> cases() {
   const Scene outer = load_scene(examples / "outer_solar_system" / "scene.toml");
   const Scene all = load_scene(examples / "solar_system" / "scene.toml");
   constexpr double day = 1, year = 365.25 * day, turn = 6.283185307179586;
-  return {{"outer", outer.particles, *outer.hamiltonian.G, 1e4 * year, 10, 7425},
-          {"solar_system", all.particles, all.particles.units().G, 200 * year, 1, 8117},
+  return {{"outer", outer.particles, *outer.hamiltonian.G, 1e4 * year, 10, 8455},
+          {"solar_system", all.particles, all.particles.units().G, 200 * year, 1, 13320},
           {"kepler_0.9", ellipse(0.9), 1, 1000 * turn, 1e-3, 0},
           {"kepler_0.9999", ellipse(0.9999), 1, 100 * turn, 1e-6, 0}};
 }

@@ -19,87 +19,32 @@ constexpr double settled_change = 1e-14;
 constexpr int most_sweeps = 40;
 /// Of displacements, relative to these, by which rates of two sweeps may differ for ever.
 constexpr double rounding_of_displacements = 0x1p-50;
-/// A step becomes longer if it may have more than so many times its length: by more than a rung where it has become
-/// shorter before, or it would climb and fall with every orbit.
-constexpr double after_longer = 1.25, after_shorter = 1.5;
+/// A step becomes longer if it may have more than so many times its length: by more than two rungs, or it would climb
+/// and fall with every nearly circular orbit.
+constexpr double grows_from = 1.25;
 /// Sweeps after which a change that is rounding of the parts of a rate, but not of their sum, is looked for.
 constexpr int many_sweeps = 12;
-
-/// Legendre polynomials P_0 to P_degree at x.
-std::vector<Quad> legendre_polynomials(std::size_t degree, const Quad& x) {
-  std::vector<Quad> p = {1, x};
-  for (std::size_t k = 1; k < degree; ++k) {
-    const Quad n(static_cast<double>(k));
-    p.push_back(((Quad(2) * n + Quad(1)) * x * p[k] - n * p[k - 1]) / (n + Quad(1)));
-  }
-  return p;
-}
-
-/// What the polynomial of degree 12 through the rates at the nodes of two steps of one length, by least squares, says
-/// of the displacements of the next step, in units of h^2: row 8 s + j is that of node j of the last step, s = 0, or
-/// the one before, s = 1; shape (16, 8).
-AlignedVector<double> two_steps_ahead(const CollocationTable& table) {
-  constexpr std::size_t stages = lane_count, rows = 2 * stages, columns = 13;
-  std::vector<std::vector<Quad>> basis;
-  for (std::size_t r = 0; r < rows; ++r) {
-    // The three steps begin at -1, 0 and 1.
-    basis.push_back(legendre_polynomials(columns - 1, table.c[r % stages] - Quad(r < stages ? 0 : 1)));
-  }
-  Matrix<Quad> normal(columns, columns), fit(columns, rows);
-  for (std::size_t a = 0; a < columns; ++a) {
-    for (std::size_t b = 0; b < columns; ++b) {
-      Quad sum = 0;
-      for (std::size_t r = 0; r < rows; ++r) sum += basis[r][a] * basis[r][b];
-      normal(static_cast<Index>(a), static_cast<Index>(b)) = sum;
-    }
-    for (std::size_t r = 0; r < rows; ++r) fit(static_cast<Index>(a), static_cast<Index>(r)) = basis[r][a];
-  }
-  for (Index p = 0; p < normal.rows(); ++p) {  // Gauss and Jordan: the matrix is positive definite
-    const Quad pivot = normal(p, p);
-    normal.row(p) /= pivot;
-    fit.row(p) /= pivot;
-    for (Index a = 0; a < normal.rows(); ++a) {
-      if (a == p) continue;
-      const Quad factor = normal(a, p);
-      normal.row(a) -= factor * normal.row(p);
-      fit.row(a) -= factor * fit.row(p);
-    }
-  }
-  const auto twice = table.twice();
-  AlignedVector<double> ahead(rows * stages, 0);
-  for (std::size_t r = 0; r < rows; ++r) {
-    std::array<Quad, stages> rate{};
-    for (std::size_t k = 0; k < stages; ++k) {
-      const auto p = legendre_polynomials(columns - 1, Quad(1) + table.c[k]);
-      for (std::size_t a = 0; a < columns; ++a) rate[k] += p[a] * fit(static_cast<Index>(a), static_cast<Index>(r));
-    }
-    for (std::size_t i = 0; i < stages; ++i) {
-      Quad sum = 0;
-      for (std::size_t k = 0; k < stages; ++k) sum += twice[i][k] * rate[k];
-      ahead[stages * r + i] = static_cast<double>(sum);
-    }
-  }
-  return ahead;
-}
 
 double signed_as(double size, double sign) { return std::copysign(size, sign); }
 
 }  // namespace
 
-GravityGauss::GravityGauss(const MethodInfo& info, const MethodOptions& options)
-    : general_(info, options, gauss_table(lane_count), true),
-      table_(gauss_table(lane_count)),
+GravityGauss::GravityGauss(const MethodInfo& info, const MethodOptions& options, const CollocationTable& table,
+                           bool symplectic)
+    : general_(info, options, table, symplectic),
+      table_(table),
       order_(info.order),
+      mirrored_(symplectic && table.stages() == stages),
       adaptive_(info.is_adaptive(options)),
       rtol_(options.rtol.value_or(info.rtol)),
       first_(options.first.value_or(0)),
       tolerance_(adaptive_ ? std::max(settled_change, 1e-2 * rtol_) : settled_change),
-      control_(gauss_table(lane_count), rtol_) {
-  static const Numbers ahead = two_steps_ahead(gauss_table(lane_count));
-  ahead_ = ahead;
-  const CollocationTable& table = gauss_table(lane_count);
-  for (std::size_t j = 0; j < odd_.size(); ++j) {
-    odd_[j] = static_cast<double>(table.b[j] * (Quad(0.5) - table.c[j]));
+      control_(table, mirrored_, rtol_),
+      predictor_(table) {
+  for (std::size_t j = 0; j < table.stages(); ++j) {
+    const Quad odd = table.b[j] * (Quad(0.5) - table.c[j]);
+    odd_[j] = static_cast<double>(odd);
+    odd_low_[j] = static_cast<double>(odd - Quad(odd_[j]));
   }
 }
 
@@ -107,8 +52,10 @@ void GravityGauss::bind(const VectorField<double>& f) {
   general_.bind(f);
   n_ = f.particles();
   pairs_ = 0;
-  in_use_ = n_ >= 2 && n_ <= most_bodies && f.gravity_of_points() && !f.has_forces_beside_gravity() && bind_masses(f);
+  in_use_ = (adaptive_ || table_.stages == lane_count) && n_ >= 2 && n_ <= most_bodies && f.gravity_of_points() &&
+            !f.has_forces_beside_gravity() && bind_masses(f);
   if (!in_use_) return;
+  if (adaptive_) predictor_.reserve();
   const auto padded = static_cast<std::size_t>((3 * n_ + 7) / 8 * 8);
   for (auto* all : {&made_[0], &made_[1], &now_, &before_, &known_, &d_}) all->assign(stages * padded, 0);
   low_.assign(static_cast<std::size_t>(6 * n_), 0);
@@ -117,7 +64,6 @@ void GravityGauss::bind(const VectorField<double>& f) {
   sizes_.assign(static_cast<std::size_t>(n_), 0);
   h_ = h_before_ = next_ = length_ = ratio_ = 0;
   grids_ = {};
-  longer_ = after_longer;
   sweeps_ = 0;
 }
 
@@ -202,19 +148,17 @@ StepResult GravityGauss::adaptive_step(VectorField<double>& f, const double& t, 
     set_length(made.h);
     const bool converged = solve(f, y);
     StageControl::Lengths may;
-    if (converged) may = control_.lengths(now_.data(), h, at_hand);
+    if (converged) may = control_.lengths(now_.data(), h);
     if (converged && may.made >= StageControl::kept * h) {
       double next = at_hand;
       if (may.next < at_hand) next = ladder_.below(std::max(may.next, 0.2 * at_hand));
-      if (may.next > longer_ * at_hand) next = ladder_.below(std::min(0.98 * may.next, 3 * at_hand));
-      if (next != at_hand) longer_ = next < at_hand ? after_shorter : after_longer;
+      if (may.next > grows_from * at_hand) next = ladder_.below(std::min(0.98 * may.next, 3 * at_hand));
       next_ = signed_as(next, made.h);
       finish(y);
       return made;
     }
     ++made.rejected;
     next_ = signed_as(ladder_.below(h * (converged ? std::clamp(may.made / h, 0.2, 0.9) : 0.5)), made.h);
-    longer_ = after_shorter;
     made.failure = underflow(t, next_);
     if (made.failure) return made;
   }
@@ -276,14 +220,16 @@ void GravityGauss::predict() {
   }
   const double* const rates = made_[0].data();
   const double h2 = length_ * length_;
-  if (length_ == h_ && h_before_ == h_) {
-    gravity_gauss_kernels().first_displacements(3 * n_, rates, made_[1].data(), ahead_.data(), h2, known_.data(),
-                                                d_.data());
+  // A step shortened to be shown has a length of its own, which is not met again.
+  const bool shown = adaptive_ && length_ != next_ && length_ != h_;
+  if (!shown && StepPredictor::serves(length_, h_, h_before_)) {
+    gravity_gauss_kernels().first_displacements(
+        3 * n_, rates, made_[1].data(), predictor_.weights(length_, h_, h_before_), h2, known_.data(), d_.data());
     return;
   }
   if (const double ratio = length_ / h_; ratio != ratio_) {
-    StageMatrix<double> polynomial;
-    collocation_kernels().extrapolation(table_.c.data(), table_.barycentric.data(), ratio, polynomial[0].data());
+    StageMatrix<double> polynomial{};
+    StageArithmetic<double>{}.extrapolation(table_.stages, table_.c, table_.barycentric, ratio, polynomial);
     collocation_kernels().combine({lane_count, polynomial[0].data(), nullptr, nullptr, 0, 0, 0}, table_.twice[0].data(),
                                   extrapolation_[0].data());
     ratio_ = ratio;
@@ -294,7 +240,7 @@ void GravityGauss::predict() {
 
 /// Rates of all stages at their displacements. @return whether all distances are in the range of doubles
 bool GravityGauss::attract(VectorField<double>& f, Numbers& rates) {
-  f.evaluations().force += lane_count;
+  f.evaluations().force += table_.stages;
   return gravity_gauss_kernels().attract(bodies(), n_, d_.data(), apart_.data(), pairs_, rates.data()) > 1e-200;
 }
 
@@ -379,8 +325,9 @@ bool GravityGauss::is_rounding() {
 void GravityGauss::finish(Vector<double>& y) {
   const DoubleDouble h2 = DoubleDouble::product(length_, length_);
   double *const x = y.data(), *const v = x + 3 * n_;
-  gravity_gauss_kernels().finish({3 * n_, now_.data(), table_.ends[0].data(), odd_.data(), length_, h2.high,
-                                  0.5 * h2.high, 0.5 * h2.low, x, low_.data(), v, low_.data() + 3 * n_});
+  gravity_gauss_kernels().finish({3 * n_, now_.data(), table_.ends[0].data(), table_.ends[1].data(), odd_.data(),
+                                  odd_low_.data(), mirrored_, table_.stages / 2, length_, h2.high, 0.5 * h2.high,
+                                  0.5 * h2.low, x, low_.data(), v, low_.data() + 3 * n_});
   std::swap(made_[0], made_[1]);
   std::swap(made_[0], now_);
   h_before_ = h_;
@@ -401,7 +348,6 @@ void GravityGauss::save(SavedState& saved, const std::string& prefix) const {
   save_value(saved, prefix + "gravity", true);
   save_value(saved, prefix + "next", next_);
   save_value(saved, prefix + "ladder", ladder_.unit());
-  save_value(saved, prefix + "longer", longer_);
   save_value(saved, prefix + "h", h_);
   save_value(saved, prefix + "h_before", h_before_);
   save_value(saved, prefix + "grids", std::vector<double>(grids_.begin(), grids_.end()));
@@ -431,13 +377,11 @@ void GravityGauss::load(const SavedState& saved, const std::string& prefix) {
   load_all("previous", made_[0]);
   h_before_ = 0;
   grids_ = {};
-  longer_ = after_longer;
   if (next_ != 0) ladder_ = StepLadder::around(std::abs(next_));
   if (!saved.contains(prefix + "before")) return;
   double unit = 1;
   load_value(saved, prefix + "ladder", unit);
   ladder_ = StepLadder(unit);
-  load_value(saved, prefix + "longer", longer_);
   load_value(saved, prefix + "h_before", h_before_);
   std::vector<double> grids;
   load_value(saved, prefix + "grids", grids);

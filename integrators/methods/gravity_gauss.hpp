@@ -1,9 +1,10 @@
 #pragma once
-/// Gauss's method with eight stages, in a form of its own for gravity.
+/// Collocation with six to eight stages, in a form of its own for gravity.
 
 #include "integrators/methods/collocation.hpp"
 #include "integrators/methods/stage_control.hpp"
 #include "integrators/methods/step_ladder.hpp"
+#include "integrators/methods/step_predictor.hpp"
 
 #include <array>
 
@@ -11,26 +12,26 @@ namespace noether {
 
 struct AttractingBodies;
 
-/// `Collocation` with eight stages in doubles; of point masses alone it computes the same map with less rounding, in
-/// fewer sweeps, and chooses its steps by `StageControl`.
+/// `Collocation` with six to eight stages of Gauss, or eight of Radau, in doubles; of point masses alone it computes
+/// the same map with less rounding, in fewer sweeps, and chooses its steps by `StageControl`.
 ///
 /// - Separations are kept apart from positions: positions X and velocities V on grids common to all bodies, so that
 ///   differences are exact, and displacements d; a pair is (d_j - d_i) + (X_j - X_i) + c h (V_j - V_i). What two bodies
 ///   have in common, far from the origin or in fast motion, takes no digits from what is between them.
 /// - Pairs of massive bodies have G m_i m_j in two words, and bodies 1 / m_i: both feel the same vector.
-/// - The update is that of the fourth stage and of differences from it.
-/// - Stages begin where a polynomial of degree 12 through the 16 nodes of the last two steps leads, by least squares;
-///   after a change of the step where that of degree 7 through the last one leads.
+/// - The update is that of a stage in the middle and of differences from it.
+/// - Stages begin where a polynomial of degree 12 through the 16 nodes of the last two steps leads, by least squares,
+///   of whatever lengths these are. With s stages its degree is 3 s / 2, and lanes beyond s repeat the first.
 /// - Convergence is looked at once a step, after as many sweeps as the last step has taken: some body's rate has
 ///   changed by more than 1e-14 of itself (a hundredth of rtol, where that is more), or none has.
 ///
-/// Bodies up to 64. Everything else, and steps of one length in which sweeps do not converge, and all after these, are
-/// steps of `Collocation`.
+/// Bodies up to 64; with six or seven stages adaptive steps only. Everything else, and steps of one length in which
+/// sweeps do not converge, and all after these, are steps of `Collocation`.
 /// @cost 3 to 7 sweeps of eight evaluations in lanes, 4 to 5 with steps of its own choice
 /// @source HairerLubichWanner2006
 class GravityGauss final : public Method<double> {
  public:
-  GravityGauss(const MethodInfo& info, const MethodOptions& options);
+  GravityGauss(const MethodInfo& info, const MethodOptions& options, const CollocationTable& table, bool symplectic);
 
   std::unique_ptr<Method<double>> clone() const override { return std::make_unique<GravityGauss>(*this); }
   MethodClaims claims() const override { return general_.claims(); }
@@ -62,13 +63,13 @@ class GravityGauss final : public Method<double> {
   Collocation<double> general_;
   StageTable<double> table_;
   int order_;
-  bool adaptive_;
+  bool mirrored_, adaptive_;
   double rtol_, first_, tolerance_;
   StageControl control_;
-  Numbers ahead_;              ///< a a times the polynomial over two steps, shape (16, 8)
-  std::array<double, 4> odd_;  ///< b (1/2 - c)
-  bool in_use_ = false;        ///< for the field at hand
-  Index n_ = 0, pairs_ = 0;    ///< bodies, and pairs of them that attract each other
+  StepPredictor predictor_;
+  StageLanes<double> odd_{}, odd_low_{};  ///< b (1/2 - c), and what rounding has taken
+  bool in_use_ = false;                   ///< for the field at hand
+  Index n_ = 0, pairs_ = 0;               ///< bodies, and pairs of them that attract each other
   std::vector<std::ptrdiff_t> massive_, tracers_;
   std::vector<double> weight_, weight_low_, inverse_, inverse_low_;
 
@@ -77,7 +78,6 @@ class GravityGauss final : public Method<double> {
   double h_ = 0, h_before_ = 0;           ///< their lengths; 0 for none
   double next_ = 0;                       ///< to be tried
   StepLadder ladder_;                     ///< of the steps that follow the first one
-  double longer_ = 0;                     ///< a step becomes longer if it may have more than so many times its length
   std::array<double, 2> grids_{};         ///< powers of two above all positions, and all velocities, so far
   int sweeps_ = 0;                        ///< asked for in the next step
   Numbers now_, before_;                  ///< rates of the last two sweeps

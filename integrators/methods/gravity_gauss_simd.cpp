@@ -316,10 +316,16 @@ HWY_INLINE Vector four(const double* w, Vector a, Vector b, Vector c, Vector d) 
                  hn::MulAdd(hn::Set(tag, w[2]), c, hn::Mul(hn::Set(tag, w[3]), d)));
 }
 
-/// Weights sum to 1, so that the fourth stage with the weight 1, whose products with the step are known exactly, and
-/// differences from it leave nothing to rounding but a part of these. They are symmetric about the middle of the step:
-/// sums and differences of mirrored stages need half the products.
-void finish(const StepEnd& end) {
+/// sum_j w_j F_j
+HWY_INLINE Vector eight(const double* w, const Vector (&f)[stages]) {
+  return hn::Add(four(w, f[0], f[1], f[2], f[3]), four(w + 4, f[4], f[5], f[6], f[7]));
+}
+
+/// Weights sum to 1, so that one stage in the middle with the weight 1, whose products with the step are known exactly,
+/// and differences from it leave nothing to rounding but a part of these. Where they are symmetric about the middle of
+/// the step, sums and differences of mirrored stages need half the products, and what rounding has taken from weights
+/// is symmetric too; elsewhere it would be a drift.
+template <bool mirrored> void finish_stages(const StepEnd& end) {
   const Lanes tag;
   const StepEnd s = end;
   const Vector h = hn::Set(tag, s.h), h2 = hn::Set(tag, s.h2), half = hn::Set(tag, 0.5);
@@ -328,12 +334,18 @@ void finish(const StepEnd& end) {
     const std::ptrdiff_t count = s.n - m;
     Vector f[stages];
     transpose(s.rates + stages * m, f);
-    const Vector middle = f[3];
+    const Vector middle = f[mirrored ? 3 : s.middle];
     for (int j = 0; j < stages; ++j) {
-      if (j != 3) f[j] = hn::Sub(f[j], middle);
+      if (!mirrored || j != 3) f[j] = hn::Sub(f[j], middle);
     }
-    const Vector even = four(s.half_b, hn::Add(f[0], f[7]), hn::Add(f[1], f[6]), hn::Add(f[2], f[5]), f[4]);
-    const Vector odd = four(s.half_odd, hn::Sub(f[0], f[7]), hn::Sub(f[1], f[6]), hn::Sub(f[2], f[5]), hn::Neg(f[4]));
+    Vector even, odd;
+    if constexpr (mirrored) {
+      even = four(s.b, hn::Add(f[0], f[7]), hn::Add(f[1], f[6]), hn::Add(f[2], f[5]), f[4]);
+      odd = four(s.odd, hn::Sub(f[0], f[7]), hn::Sub(f[1], f[6]), hn::Sub(f[2], f[5]), hn::Neg(f[4]));
+    } else {
+      even = hn::Add(eight(s.b, f), eight(s.b_low, f));
+      odd = hn::Add(eight(s.odd, f), eight(s.odd_low, f));
+    }
     const Vector v = load_first(tag, s.v + m, count), hv = hn::Mul(h, v), bend = hn::Mul(half_h2, middle);
     const Vector lower = hn::MulAdd(h, load_first(tag, s.v_low + m, count), rounded_off(h, v, hv));
     const Vector lost = hn::Add(hn::MulAdd(half_h2_low, middle, rounded_off(half_h2, middle, bend)), lower);
@@ -344,7 +356,10 @@ void finish(const StepEnd& end) {
   }
 }
 
-void derivatives(std::ptrdiff_t n, const double* rates, const double* weights, double* out, std::ptrdiff_t stride) {
+void finish(const StepEnd& end) { end.mirrored ? finish_stages<true>(end) : finish_stages<false>(end); }
+
+void derivatives(std::ptrdiff_t n, const double* rates, const double* weights, bool mirrored, double* out,
+                 std::ptrdiff_t stride) {
   const Lanes tag;
   for (std::ptrdiff_t m = 0; m < n; m += lanes) {
     Vector f[stages], sum[4], difference[4];
@@ -354,12 +369,12 @@ void derivatives(std::ptrdiff_t n, const double* rates, const double* weights, d
       difference[j] = hn::Sub(f[j], f[7 - j]);
     }
     for (int q = 0; q < 3; ++q) {
-      // About the middle, weights of the first derivative are odd, the others even.
+      // About the middle of mirrored stages, weights of the first derivative are odd, the others even.
       const Vector(&half)[4] = q == 1 ? difference : sum;
-      hn::StoreU(four(weights + stages * q, half[0], half[1], half[2], half[3]), tag, out + q * stride + m);
-      const double* const w = weights + stages * (3 + q);
-      const Vector all = hn::Add(four(w, f[0], f[1], f[2], f[3]), four(w + 4, f[4], f[5], f[6], f[7]));
-      hn::StoreU(all, tag, out + (3 + q) * stride + m);
+      const double* const w = weights + stages * q;
+      const Vector middle = mirrored ? four(w, half[0], half[1], half[2], half[3]) : eight(w, f);
+      hn::StoreU(middle, tag, out + q * stride + m);
+      hn::StoreU(eight(w + 3 * stages, f), tag, out + (3 + q) * stride + m);
     }
   }
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// The arithmetic of Gauss's method with eight stages for gravity alone: the interface of `gravity_gauss_simd.cpp`.
+/// The arithmetic of collocation with eight stages for gravity alone: the interface of `gravity_gauss_simd.cpp`.
 
 #include "numbers/kernels_simd.hpp"
 
@@ -32,7 +32,10 @@ struct StepBeginning {
 struct StepEnd {
   std::ptrdiff_t n;  ///< 3 n
   const double* rates;
-  const double *half_b, *half_odd;  ///< b_j, and b_j (1/2 - c_j), j = 1 to 4
+  /// b_j and b_j (1/2 - c_j), shape (8), and what rounding has taken from them.
+  const double *b, *b_low, *odd, *odd_low;
+  bool mirrored;          ///< b_j = b_(9-j), c_j = 1 - c_(9-j)
+  std::ptrdiff_t middle;  ///< the stage r, from 0; that of mirrored ones is the fourth
   double h, h2, half_h2, half_h2_low;
   double *x, *x_low, *v, *v_low;
 };
@@ -51,11 +54,12 @@ struct GravityGaussKernels {
                               double scale, const double* known, double* d);
   /// Whether the rate of some of n bodies has changed, at some stage, by more than `tolerance` of itself, or is none.
   bool (*moved)(std::ptrdiff_t n, const double* now, const double* before, double tolerance);
-  /// x += h v + h^2 sum b (1 - c) F, v += h sum b F, from F_4 and what other stages differ from it.
+  /// x += h v + h^2 sum b (1 - c) F, v += h sum b F, from F_r and what other stages differ from it.
   void (*finish)(const StepEnd& end);
   /// Value and two derivatives of the polynomial through the rates of n variables, in the middle and at the end of a
-  /// step of length 1: out of shape (6, stride), from weights of shape (6, 8).
-  void (*derivatives)(std::ptrdiff_t n, const double* rates, const double* weights, double* out, std::ptrdiff_t stride);
+  /// step of length 1: out of shape (6, stride), from weights of shape (6, 8), of mirrored stages or others.
+  void (*derivatives)(std::ptrdiff_t n, const double* rates, const double* weights, bool mirrored, double* out,
+                      std::ptrdiff_t stride);
 };
 
 NOETHER_KERNELS(GravityGaussKernels, gravity_gauss_kernels)

@@ -1,5 +1,5 @@
 #pragma once
-/// How long steps of Gauss's method may be under gravity, from the rates of a step just made.
+/// How long steps of collocation may be under gravity, from the rates of a step just made.
 
 #include "engine/column.hpp"
 #include "integrators/methods/collocation_table.hpp"
@@ -19,9 +19,10 @@ namespace noether {
 /// The step made may be eta min(tau_middle, tau_end), the next one eta tau_end, less where tau shrinks. Second, by the
 /// last Legendre coefficient of the rates, relative to the rates of the same body.
 ///
-/// The first counts. Where it would shorten the step, it is no less than the second: a body that crosses a place where
-/// forces cancel has a short timescale although nothing happens. And it is at most 1.5 times the second: what two
-/// bodies do to each other hardly shows in timescales where a third one pulls both harder.
+/// The longer one counts: near circles the second, and where a body crosses a place where forces cancel, which makes
+/// its timescale short although nothing happens; elsewhere the first, since the last coefficient is large in some
+/// phases of an eccentric orbit. But the first is taken for at most 1.5 times the second: what two bodies do to each
+/// other hardly shows in timescales where a third one pulls both harder.
 ///
 /// The rate of the heaviest body is a sum that may cancel: it counts as no smaller than that by which any other one
 /// alone would move it.
@@ -33,22 +34,24 @@ class StageControl {
   /// The first measure is taken for no longer than so many times the second.
   static constexpr double farther = 1.5;
 
-  StageControl(const CollocationTable& table, double rtol);
+  /// @param mirrored  eight nodes that are symmetric about the middle of a step: half the products
+  StageControl(const CollocationTable& table, bool mirrored, double rtol);
   void bind(const std::vector<double>& masses);
 
   struct Lengths {
     double made = 0, next = 0;  ///< that the step just made, and the next one, may have [time], above 0
   };
-  /// @param rates    of the step just made, shape (3 n, 8), padded to a multiple of eight variables
-  /// @param h        its length
-  /// @param at_hand  of the next step, unless it is to become shorter or longer
-  Lengths lengths(const double* rates, double h, double at_hand);
+  /// @param rates  of the step just made, shape (3 n, 8), padded to a multiple of eight variables
+  /// @param h      its length
+  Lengths lengths(const double* rates, double h);
 
  private:
   Lengths by_timescale(const double* rates, double h);
   double by_last_coefficient(const double* rates, double h);
   double timescale(std::size_t row) const;
 
+  bool mirrored_;
+  int degree_;  ///< of the polynomial
   double eta_, target_;
   AlignedVector<double> weights_;  ///< value and derivatives in the middle and at the end, shape (6, 8)
   AlignedVector<double> last_;     ///< of the last coefficient, shape (8)

@@ -7,7 +7,7 @@
 
 namespace noether {
 
-/// Steps of 2^k, 1.1875 2^k, 1.4140625 2^k and 1.6796875 2^k units.
+/// Steps of 2^k units times one of eight numbers from 1 to 1.83203125, each some 1.09 times the one before.
 ///
 /// A method that keeps one step for long stays symplectic for as long, its errors do not add up, and what it predicts
 /// from several steps of one length holds. The unit comes from the first step of a run, so that a scene takes the same
@@ -27,10 +27,10 @@ class StepLadder {
 
   /// The longest step that is not longer than h > 0.
   double below(double h) const {
-    constexpr double rungs[] = {1, 1.1875, 1.4140625, 1.6796875};
+    constexpr double rungs[] = {1, 1.08984375, 1.1875, 1.296875, 1.4140625, 1.5390625, 1.6796875, 1.83203125};
     int exponent = 0;
     const double part = 2 * std::frexp(h / unit_, &exponent);
-    int k = 3;
+    int k = 7;
     while (k > 0 && rungs[k] > part) --k;
     return std::ldexp(rungs[k], exponent - 1) * unit_;
   }
