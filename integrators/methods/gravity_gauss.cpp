@@ -19,9 +19,9 @@ constexpr double settled_change = 1e-14;
 constexpr int most_sweeps = 40;
 /// Of displacements, relative to these, by which rates of two sweeps may differ for ever.
 constexpr double rounding_of_displacements = 0x1p-50;
-/// A step becomes longer if it may have more than so many times its length: by more than two rungs, or it would climb
-/// and fall with every nearly circular orbit.
-constexpr double grows_from = 1.25;
+/// A step becomes longer if it may have more than so many times its length: by more than two rungs, and by more where
+/// it has become shorter before, or it would climb and fall with every orbit.
+constexpr double after_longer = 1.25, after_shorter = 1.5;
 /// Sweeps after which a change that is rounding of the parts of a rate, but not of their sum, is looked for.
 constexpr int many_sweeps = 12;
 
@@ -64,6 +64,7 @@ void GravityGauss::bind(const VectorField<double>& f) {
   sizes_.assign(static_cast<std::size_t>(n_), 0);
   h_ = h_before_ = next_ = length_ = ratio_ = 0;
   grids_ = {};
+  longer_ = after_longer;
   sweeps_ = 0;
 }
 
@@ -148,17 +149,19 @@ StepResult GravityGauss::adaptive_step(VectorField<double>& f, const double& t, 
     set_length(made.h);
     const bool converged = solve(f, y);
     StageControl::Lengths may;
-    if (converged) may = control_.lengths(now_.data(), h);
+    if (converged) may = control_.lengths(now_.data(), h, at_hand);
     if (converged && may.made >= StageControl::kept * h) {
       double next = at_hand;
       if (may.next < at_hand) next = ladder_.below(std::max(may.next, 0.2 * at_hand));
-      if (may.next > grows_from * at_hand) next = ladder_.below(std::min(0.98 * may.next, 3 * at_hand));
+      if (may.next > longer_ * at_hand) next = ladder_.below(std::min(0.98 * may.next, 3 * at_hand));
+      if (next != at_hand) longer_ = next < at_hand ? after_shorter : after_longer;
       next_ = signed_as(next, made.h);
       finish(y);
       return made;
     }
     ++made.rejected;
     next_ = signed_as(ladder_.below(h * (converged ? std::clamp(may.made / h, 0.2, 0.9) : 0.5)), made.h);
+    longer_ = after_shorter;
     made.failure = underflow(t, next_);
     if (made.failure) return made;
   }
@@ -348,6 +351,7 @@ void GravityGauss::save(SavedState& saved, const std::string& prefix) const {
   save_value(saved, prefix + "gravity", true);
   save_value(saved, prefix + "next", next_);
   save_value(saved, prefix + "ladder", ladder_.unit());
+  save_value(saved, prefix + "longer", longer_);
   save_value(saved, prefix + "h", h_);
   save_value(saved, prefix + "h_before", h_before_);
   save_value(saved, prefix + "grids", std::vector<double>(grids_.begin(), grids_.end()));
@@ -377,11 +381,13 @@ void GravityGauss::load(const SavedState& saved, const std::string& prefix) {
   load_all("previous", made_[0]);
   h_before_ = 0;
   grids_ = {};
+  longer_ = after_longer;
   if (next_ != 0) ladder_ = StepLadder::around(std::abs(next_));
   if (!saved.contains(prefix + "before")) return;
   double unit = 1;
   load_value(saved, prefix + "ladder", unit);
   ladder_ = StepLadder(unit);
+  load_value(saved, prefix + "longer", longer_);
   load_value(saved, prefix + "h_before", h_before_);
   std::vector<double> grids;
   load_value(saved, prefix + "grids", grids);

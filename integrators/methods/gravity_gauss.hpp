@@ -78,6 +78,7 @@ class GravityGauss final : public Method<double> {
   double h_ = 0, h_before_ = 0;           ///< their lengths; 0 for none
   double next_ = 0;                       ///< to be tried
   StepLadder ladder_;                     ///< of the steps that follow the first one
+  double longer_ = 0;                     ///< a step becomes longer if it may have more than so many times its length
   std::array<double, 2> grids_{};         ///< powers of two above all positions, and all velocities, so far
   int sweeps_ = 0;                        ///< asked for in the next step
   Numbers now_, before_;                  ///< rates of the last two sweeps

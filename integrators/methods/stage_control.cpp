@@ -37,13 +37,13 @@ struct Targets {
 constexpr Targets targets_of(int order) {
   switch (order) {
     case 12:
-      return {0.16, 3e-9};
+      return {0.24, 4e-9};
     case 14:
-      return {0.24, 2e-9};
+      return {0.36, 2e-9};
     case 15:
       return {0.30, 3e-10};
     default:
-      return {0.38, 1e-9};
+      return {0.47, 1e-9};
   }
 }
 
@@ -79,10 +79,11 @@ void StageControl::bind(const std::vector<double>& masses) {
   largest_.assign(stride_, 0);
 }
 
-StageControl::Lengths StageControl::lengths(const double* rates, double h) {
+StageControl::Lengths StageControl::lengths(const double* rates, double h, double at_hand) {
   const Lengths first = by_timescale(rates, h);
-  const double second = by_last_coefficient(rates, h);
-  return {std::clamp(first.made, second, farther * second), std::clamp(first.next, second, farther * second)};
+  const double second = by_last_coefficient(rates, h), most = farther * second;
+  const double least = first.next >= at_hand && first.made >= kept * h ? 0 : second;
+  return {std::clamp(first.made, least, most), std::clamp(first.next, least, most)};
 }
 
 StageControl::Lengths StageControl::by_timescale(const double* rates, double h) {

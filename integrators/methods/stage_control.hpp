@@ -19,10 +19,9 @@ namespace noether {
 /// The step made may be eta min(tau_middle, tau_end), the next one eta tau_end, less where tau shrinks. Second, by the
 /// last Legendre coefficient of the rates, relative to the rates of the same body.
 ///
-/// The longer one counts: near circles the second, and where a body crosses a place where forces cancel, which makes
-/// its timescale short although nothing happens; elsewhere the first, since the last coefficient is large in some
-/// phases of an eccentric orbit. But the first is taken for at most 1.5 times the second: what two bodies do to each
-/// other hardly shows in timescales where a third one pulls both harder.
+/// The first counts. Where it would shorten the step, it is no less than the second: a body that crosses a place where
+/// forces cancel has a short timescale although nothing happens. And it is at most 1.5 times the second: what two
+/// bodies do to each other hardly shows in timescales where a third one pulls both harder.
 ///
 /// The rate of the heaviest body is a sum that may cancel: it counts as no smaller than that by which any other one
 /// alone would move it.
@@ -30,7 +29,7 @@ namespace noether {
 class StageControl {
  public:
   /// A step is made again if it may have no more than this part of its length.
-  static constexpr double kept = 0.8;
+  static constexpr double kept = 0.75;
   /// The first measure is taken for no longer than so many times the second.
   static constexpr double farther = 1.5;
 
@@ -41,9 +40,10 @@ class StageControl {
   struct Lengths {
     double made = 0, next = 0;  ///< that the step just made, and the next one, may have [time], above 0
   };
-  /// @param rates  of the step just made, shape (3 n, 8), padded to a multiple of eight variables
-  /// @param h      its length
-  Lengths lengths(const double* rates, double h);
+  /// @param rates    of the step just made, shape (3 n, 8), padded to a multiple of eight variables
+  /// @param h        its length
+  /// @param at_hand  of the next step, unless it is to become shorter or longer
+  Lengths lengths(const double* rates, double h, double at_hand);
 
  private:
   Lengths by_timescale(const double* rates, double h);

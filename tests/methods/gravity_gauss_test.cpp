@@ -98,8 +98,8 @@ TEST_CASE("steps of its own choice are long and take few sweeps", "[gravity_gaus
   ellipse.add("sun", 1, {0, 0, 0}, {0, 0, 0});
   ellipse.add("planet", 1e-3, {1 - e, 0, 0}, {0, std::sqrt((1 + e) / (1 - e) * 1.001), 0});
   move_to_barycenter(ellipse);
-  for (const Case& c : {Case{test::outer_planets(), pull_of_outer, 365250, 1500, 4.5},
-                        Case{ellipse, Gravity{.G = 1}, 628, 3400, 4.5}}) {
+  for (const Case& c : {Case{test::outer_planets(), pull_of_outer, 365250, 1430, 4.8},
+                        Case{ellipse, Gravity{.G = 1}, 628, 3150, 4.8}}) {
     Simulation run(c.start, by_gauss_8(c.gravity));
     REQUIRE(run.run_until(c.end).ok());
     const double sweeps = static_cast<double>(run.evaluations().force) / 8 / static_cast<double>(run.step());
@@ -142,8 +142,10 @@ TEST_CASE("the polynomial over two steps of any lengths is of degree 12", "[grav
         most = std::max(most, std::abs(static_cast<double>(right)));
       }
       CAPTURE(degree, worst, most);
-      if (degree <= 12) CHECK(worst < 1e-7);
-      if (degree > 12) CHECK(worst > 1e-7);
+      // Powers reach so far at the earliest nodes, and normal equations lose digits of them.
+      const double rounding = 1e-7 + 1e-12 * std::pow(1 + l.before / l.last, degree);
+      if (degree <= 12) CHECK(worst < rounding);
+      if (degree > 12) CHECK(worst > 10 * rounding);
     }
   }
   const std::vector<double> first(predictor.weights(1.1, 1, 1), predictor.weights(1.1, 1, 1) + 128);

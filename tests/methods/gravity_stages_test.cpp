@@ -114,7 +114,8 @@ TEST_CASE("runs with other stages go on with the same bits, whatever looks on", 
       test::check_goes_on(with_stages(name, pull_of_planets), test::outer_planets(), n, 0);
       test::check_goes_on(with_stages(name, Gravity{.G = 1}), eccentric_planets(), n, 0);
     }
-    Simulation bare(eccentric_planets(), with_stages(name, Gravity{.G = 1})), watched = bare;
+    Simulation bare(eccentric_planets(), with_stages(name, Gravity{.G = 1}));
+    Simulation watched(eccentric_planets(), with_stages(name, Gravity{.G = 1}));
     watched.every_time(0.37, Energy{});
     REQUIRE(bare.run_until(30).ok());
     REQUIRE(watched.run_until(30).ok());
