@@ -10,6 +10,7 @@ or {"error": why there are none}."""
 import importlib
 import importlib.metadata
 import json
+import math
 import sys
 import time
 
@@ -38,18 +39,25 @@ class Rebound:
     def __init__(self, program):
         self.program = program
 
+    @staticmethod
+    def unit(run):
+        """Of velocities, in those of the run: WHFast512 makes whole steps only, with G = 1, so that time is scaled for it."""
+        return math.sqrt(run["G"]) if run["method"]["integrator"] == "whfast512" else 1.0
+
     def start(self, run):
-        sim = self.program.Simulation()
+        sim, unit = self.program.Simulation(), self.unit(run)
         sim.G = run["G"]
+        if run["method"]["integrator"] == "whfast512":
+            sim.G, sim.exact_finish_time = 1.0, 0
         for m, x, y, z, vx, vy, vz in run["bodies"]:
-            sim.add(m=m, x=x, y=y, z=z, vx=vx, vy=vy, vz=vz)
+            sim.add(m=m, x=x, y=y, z=z, vx=vx / unit, vy=vy / unit, vz=vz / unit)
         sim.integrator = run["method"]["integrator"]
         for name, value in run["method"].get("options", {}).items():
             setattr(sim.integrator, name, value)
         if run["watched"] and run["method"]["integrator"] == "mercurius":
             # Without its safe mode, version 5.2.2 goes on from a synchronized state with wrong coordinates. Its steps are the same.
             sim.integrator.safe_mode = 1
-        sim.dt = run["sample"] / (run["divisions"] or run["first"])
+        sim.dt = run["sample"] / (run["divisions"] or run["first"]) * unit
         return sim
 
     def advance(self, sim, run, steps, until):
@@ -64,7 +72,7 @@ class Rebound:
         sim.synchronize()
 
     def run(self, run):
-        watch, sim, bodies = Watch(), self.start(run), len(run["bodies"])
+        watch, sim, bodies, unit = Watch(), self.start(run), len(run["bodies"]), self.unit(run)
         end, pieces = run["sample"] * run["samples"], run["looks"] * run["samples"] if run["watched"] else 1
         per_piece = (run["divisions"] or 0) * run["samples"] // pieces
         states = numpy.zeros((pieces + 1, bodies, 6))
@@ -72,6 +80,7 @@ class Rebound:
         def look(k):
             own = numpy.zeros((bodies, 6))
             sim.serialize_particle_data(xyzvxvyvz=own)
+            own[:, 3:] *= unit
             states[k] = own
 
         look(0)
@@ -79,8 +88,8 @@ class Rebound:
             with watch:
                 self.advance(sim, run, per_piece, end * k / pieces)
             look(k)
-        if abs(sim.t - end) > 1e-9 * end:
-            raise RuntimeError(f"ended at {sim.t}, not at {end}")
+        if abs(sim.t / unit - end) > 1e-9 * end:
+            raise RuntimeError(f"ended at {sim.t / unit}, not at {end}")
         return watch.seconds, states
 
 

@@ -6,6 +6,7 @@ A case: {"G": ..., "method": "whfast512" | "whfast" | "saba(10,6,4)", "relativit
 "steps": ..., "bodies": [[m, x, y, z, vx, vy, vz], ...]}."""
 
 import json
+import math
 import sys
 import time
 
@@ -20,14 +21,17 @@ def has_avx512():
 
 def start(case, rebound):
     sim = rebound.Simulation()
-    sim.G = case["G"]
+    # WHFast512 makes whole steps only, in units in which G is 1: those of length and mass stay, and time is scaled.
+    second = math.sqrt(case["G"]) if case["method"] == "whfast512" else 1.0
+    sim.exact_finish_time = 0
+    sim.G = 1.0 if case["method"] == "whfast512" else case["G"]
     for m, x, y, z, vx, vy, vz in case["bodies"]:
-        sim.add(m=m, x=x, y=y, z=z, vx=vx, vy=vy, vz=vz)
+        sim.add(m=m, x=x, y=y, z=z, vx=vx / second, vy=vy / second, vz=vz / second)
     massive = sum(1 for body in case["bodies"] if body[0] > 0)
     if massive < len(case["bodies"]):
         sim.N_active = massive
     sim.integrator = {"whfast512": "whfast512", "whfast": "whfast", "saba(10,6,4)": "saba"}[case["method"]]
-    sim.dt = case["step"]
+    sim.dt = case["step"] * second
     if case["method"] == "whfast512":
         sim.integrator.concatenate_steps = case["steps"]
         sim.integrator.gr_potential = int(case["relativity"])

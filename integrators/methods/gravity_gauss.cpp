@@ -223,7 +223,7 @@ void GravityGauss::predict() {
   }
   const double* const rates = made_[0].data();
   const double h2 = length_ * length_;
-  // A step shortened to be shown has a length of its own, which is not met again.
+  // A step that is shortened, to be shown or by `max_step`, has a length of its own, which may not be met again.
   const bool shown = adaptive_ && length_ != next_ && length_ != h_;
   if (!shown && StepPredictor::serves(length_, h_, h_before_)) {
     gravity_gauss_kernels().first_displacements(

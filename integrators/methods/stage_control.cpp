@@ -30,7 +30,7 @@ std::array<Quad, 3> derivatives_of(const CollocationTable& table, std::size_t j,
 
 /// Parts of the timescale, and sizes of the last coefficient relative to the rate, with which methods end at rounding
 /// level on the systems of tests/data/orbits. What Radau's nodes cut off is of one order lower and a drift, so that
-/// their steps are shorter than Gauss's.
+/// their steps are shorter than those of eight stages of Gauss.
 struct Targets {
   double eta, last;
 };

@@ -10,8 +10,9 @@ namespace noether {
 /// Steps of 2^k units times one of eight numbers from 1 to 1.83203125, each some 1.09 times the one before.
 ///
 /// A method that keeps one step for long stays symplectic for as long, its errors do not add up, and what it predicts
-/// from several steps of one length holds. The unit comes from the first step of a run, so that a scene takes the same
-/// steps in all units. It has 24 bits and a rung 8, so that a step has many fewer than 53: times are exact for long.
+/// by depends on few ratios of lengths. The unit comes from the first step of a run, so that a scene takes the same
+/// steps in all units. It has 24 bits and a rung at most 9, so that a step has many fewer than 53: times are exact for
+/// long.
 class StepLadder {
  public:
   StepLadder() = default;

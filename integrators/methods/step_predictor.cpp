@@ -1,5 +1,6 @@
 #include "integrators/methods/step_predictor.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -12,8 +13,9 @@ namespace {
 
 /// Of eight stages; with s of them, fits have the first 3 s / 2 + 1 terms.
 constexpr std::size_t fit_nodes = 2 * lane_count, fit_terms = 13;
-/// Orbits of any eccentricity meet fewer pairs of ratios than this on a ladder of eight rungs.
-constexpr int fit_table_bits = 7;
+/// On a ladder of eight rungs orbits of any eccentricity meet fewer pairs of ratios than there are tables.
+constexpr int fit_set_bits = 6;
+constexpr std::size_t fit_ways = 4;
 
 /// Legendre polynomials of degrees below `fit_terms` at x.
 template <class Real> std::array<Real, fit_terms> legendre_terms(const Real& x) {
@@ -81,10 +83,11 @@ std::array<double, fit_nodes * lane_count> fit_weights(std::size_t stages, const
   return weights;
 }
 
-std::size_t fit_place(double next, double before) {
+/// The first of the places that these lengths may have.
+std::size_t fit_set(double next, double before) {
   const std::uint64_t mixed = std::bit_cast<std::uint64_t>(next) * 0x9e3779b97f4a7c15U ^
                               std::rotl(std::bit_cast<std::uint64_t>(before) * 0xd6e8feb86659fd93U, 32);
-  return static_cast<std::size_t>(mixed * 0x9e3779b97f4a7c15U >> (64 - fit_table_bits));
+  return fit_ways * static_cast<std::size_t>(mixed * 0x9e3779b97f4a7c15U >> (64 - fit_set_bits));
 }
 
 }  // namespace
@@ -116,16 +119,22 @@ bool StepPredictor::serves(double h, double last, double before) {
   return last != 0 && near(h) && near(before);
 }
 
-void StepPredictor::reserve() { tables_.all.resize(std::size_t{1} << fit_table_bits); }
+void StepPredictor::reserve() { tables_.all.resize(fit_ways << fit_set_bits); }
 
 const double* StepPredictor::weights(double h, double last, double before) {
   if (h == last && before == last) return same_.data();
   reserve();
   const double next_ratio = h / last, before_ratio = before / last;
-  Tables::Table& table = tables_.all[fit_place(next_ratio, before_ratio)];
-  if (table.next != next_ratio || table.before != before_ratio)
-    table = {next_ratio, before_ratio, fit_weights<double>(stages_, c_, twice_, next_ratio, before_ratio)};
-  return table.weights.data();
+  Tables::Table* const first = tables_.all.data() + fit_set(next_ratio, before_ratio);
+  Tables::Table* const end = first + fit_ways;
+  Tables::Table* at = std::find_if(
+      first, end, [&](const Tables::Table& one) { return one.next == next_ratio && one.before == before_ratio; });
+  if (at == end) {
+    at = std::min_element(first, end, [](const Tables::Table& a, const Tables::Table& b) { return a.asked < b.asked; });
+    *at = {next_ratio, before_ratio, 0, fit_weights<double>(stages_, c_, twice_, next_ratio, before_ratio)};
+  }
+  at->asked = ++tables_.now;
+  return at->weights.data();
 }
 
 }  // namespace noether

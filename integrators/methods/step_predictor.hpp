@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace noether {
@@ -34,17 +35,23 @@ class StepPredictor {
   static constexpr std::size_t nodes = 2 * lane_count;
   using Weights = std::array<double, nodes * lane_count>;
 
-  /// Weights that have been asked for, each in the place that its lengths say. They are no state: a copy has none.
+  /// Weights that have been asked for, each in one of the four places that its lengths say. They are no state: a copy
+  /// has none.
   struct Tables {
     struct Table {
       double next = 0, before = 0;  ///< ratios to the last step; 0 for none
+      std::uint64_t asked = 0;      ///< when, for the last time
       Weights weights{};
     };
     std::vector<Table> all;
+    std::uint64_t now = 0;
 
     Tables() = default;
     Tables(const Tables&) {}
-    Tables& operator=(const Tables&) { return *this; }
+    Tables& operator=(const Tables& other) {
+      if (this != &other) all.clear();
+      return *this;
+    }
     Tables(Tables&&) = default;
     Tables& operator=(Tables&&) = default;
     ~Tables() = default;

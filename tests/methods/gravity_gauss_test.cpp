@@ -150,8 +150,10 @@ TEST_CASE("the polynomial over two steps of any lengths is of degree 12", "[grav
   }
   const std::vector<double> first(predictor.weights(1.1, 1, 1), predictor.weights(1.1, 1, 1) + 128);
   for (int k = 0; k < 3000; ++k) static_cast<void>(predictor.weights(0.5 + 1e-3 * k, 1, 1.1));
-  StepPredictor other = predictor;
-  for (StepPredictor* one : {&predictor, &other}) {
+  StepPredictor other = predictor, of_seven(gauss_table(7));
+  static_cast<void>(of_seven.weights(1.1, 1, 1));
+  of_seven = predictor;
+  for (StepPredictor* one : {&predictor, &other, &of_seven}) {
     const double* const again = one->weights(1.1, 1, 1);
     CHECK(std::equal(first.begin(), first.end(), again));
   }
