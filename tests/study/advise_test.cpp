@@ -47,11 +47,11 @@ TEST_CASE("what advice predicts for a longer run comes true", "[advise][slow]") 
       INFO(p.who.label << " step " << p.setting.step << ": predicted " << p.predicted_error << ", found " << *error);
       CHECK(p.predicted_error <= options.error);
       CHECK(*error < 2 * options.error);
-      CHECK(*error >
-            p.predicted_error / (p.who.adaptive ? 10 : 3));  // errors jump with what steps a tolerance leads to
+      // A tolerance may lead to steps 1.25 times shorter than another one near it, and those to errors of 1.25^-15.
+      CHECK(*error > p.predicted_error / (p.who.adaptive ? 28 : 3));
       CHECK(*error < p.predicted_error * 3);
       if (p.who.adaptive) {
-        CHECK(std::abs(static_cast<double>(row.evaluations.force) / p.predicted_evaluations - 1) < 0.15);
+        CHECK(std::abs(static_cast<double>(row.evaluations.force) / p.predicted_evaluations - 1) < 0.25);
         continue;
       }
       // A comparison shortens steps to divide the time between its samples.
