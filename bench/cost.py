@@ -22,8 +22,8 @@ time, or in both error and evaluations. Written by `python3 bench/cost.py build/
 the last digit, times do not. Reports with all rows, plots and orders: `noether compare SCENE`.
 
 Splittings into Kepler arcs are ahead in evaluations, by orders of magnitude over Runge-Kutta methods and leapfrog at small
-errors. In seconds they are not: an arc costs more than six bodies' gravity, so that on few bodies plain splittings are ahead at
-large errors and eight stages in lanes at small ones.
+errors. In seconds they are so in places only: an arc costs more than six bodies' gravity, so that on few bodies plain splittings
+are ahead at large errors and eight stages in lanes at most small ones.
 """
 
 
