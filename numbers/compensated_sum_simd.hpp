@@ -35,17 +35,40 @@ template <class D> HWY_INLINE void store_first(D d, hn::Vec<D> x, double* to, st
 #endif
 }
 
-/// value + low += high + small for the first `count` numbers, where `high` may be as large as the value.
+/// a + b, rounded, with what rounding takes from it.
+template <class V> struct SumWithError {
+  V sum, lost;
+
+  HWY_INLINE SumWithError(V a, V b) : sum(hn::Add(a, b)) {
+    const V back = hn::Sub(sum, a);
+    lost = hn::Add(hn::Sub(a, hn::Sub(sum, back)), hn::Sub(b, back));
+  }
+};
+
+/// value + low = sum + rest + low for the first `count` numbers, where the rest is smaller than the sum.
 template <class D>
-HWY_INLINE void add_with_error(D d, double* value, double* low, std::ptrdiff_t count, hn::Vec<D> high,
-                               hn::Vec<D> small) {
-  const hn::Vec<D> before = load_first(d, value, count);
-  const hn::Vec<D> sum = hn::Add(before, high), back = hn::Sub(sum, before);
-  const hn::Vec<D> lost = hn::Add(hn::Sub(before, hn::Sub(sum, back)), hn::Sub(high, back));
+HWY_INLINE void end_sum(D d, double* value, double* low, std::ptrdiff_t count, hn::Vec<D> sum, hn::Vec<D> lost,
+                        hn::Vec<D> small) {
   const hn::Vec<D> rest = hn::Add(lost, hn::Add(small, load_first(d, low, count)));
   const hn::Vec<D> after = hn::Add(sum, rest);
   store_first(d, after, value, count);
   store_first(d, hn::Sub(rest, hn::Sub(after, sum)), low, count);
+}
+
+/// value + low += high + small for the first `count` numbers, where `high` may be as large as the value.
+template <class D>
+HWY_INLINE void add_with_error(D d, double* value, double* low, std::ptrdiff_t count, hn::Vec<D> high,
+                               hn::Vec<D> small) {
+  const SumWithError<hn::Vec<D>> first(load_first(d, value, count), high);
+  end_sum(d, value, low, count, first.sum, first.lost, small);
+}
+
+/// The same with a second term whose rounding is kept: value + low += high + next + small.
+template <class D>
+HWY_INLINE void add_with_errors(D d, double* value, double* low, std::ptrdiff_t count, hn::Vec<D> high, hn::Vec<D> next,
+                                hn::Vec<D> small) {
+  const SumWithError<hn::Vec<D>> first(load_first(d, value, count), high), second(first.sum, next);
+  end_sum(d, value, low, count, second.sum, hn::Add(first.lost, second.lost), small);
 }
 
 }  // namespace

@@ -46,6 +46,14 @@ GravityGauss::GravityGauss(const MethodInfo& info, const MethodOptions& options,
     odd_[j] = static_cast<double>(odd);
     odd_low_[j] = static_cast<double>(odd - Quad(odd_[j]));
   }
+  const auto twice = table.twice();
+  for (std::size_t j = 0; j < table.stages(); ++j) {
+    for (std::size_t i = 0; i < stages; ++i) {
+      const Quad entry = twice[i < table.stages() ? i : 0][j];
+      unit_twice_[j][i] = static_cast<double>(entry);
+      unit_twice_low_[j][i] = static_cast<double>(entry - Quad(unit_twice_[j][i]));
+    }
+  }
 }
 
 void GravityGauss::bind(const VectorField<double>& f) {
@@ -171,26 +179,14 @@ StepResult GravityGauss::adaptive_step(VectorField<double>& f, const double& t, 
 void GravityGauss::set_length(double h) {
   if (h == length_) return;
   length_ = h;
-  const double h2 = h * h;
   for (std::size_t i = 0; i < stages; ++i) {
     const DoubleDouble both = DoubleDouble::product(table_.c[i], h);
     c_h_[i] = both.high;
     c_h_low_[i] = both.low + table_.c_low[i] * h;
   }
-  // Rows sum to (c h)^2 / 2 to the last bit; what rounding has taken goes to the stage's own entry.
-  StageLanes<double> sum{}, low{};
-  for (std::size_t j = 0; j < stages; ++j) {
-    for (std::size_t i = 0; i < stages; ++i) {
-      twice_[j][i] = h2 * table_.twice[j][i];
-      const DoubleDouble both = DoubleDouble::sum(sum[i], twice_[j][i]);
-      sum[i] = both.high;
-      low[i] += both.low;
-    }
-  }
-  for (std::size_t i = 0; i < stages; ++i) {
-    const DoubleDouble wanted = DoubleDouble::product(0.5 * c_h_[i], c_h_[i]);
-    twice_[i][i] += ((wanted.high - sum[i]) - low[i]) + (wanted.low + c_h_[i] * c_h_low_[i]);
-  }
+  const DoubleDouble h2 = DoubleDouble::product(h, h);
+  gravity_gauss_kernels().scale_table(h2.high, h2.low, unit_twice_[0].data(), unit_twice_low_[0].data(),
+                                      twice_[0].data(), twice_low_[0].data());
 }
 
 /// Takes a grid that reaches four times as far as positions, or velocities, where one of them is beyond half of the one
@@ -251,6 +247,11 @@ void GravityGauss::displace(const Numbers& rates) {
   gravity_gauss_kernels().displacements(3 * n_, rates.data(), twice_[0].data(), known_.data(), d_.data());
 }
 
+/// What rounding has taken from the table, which would be a drift: rates of the first sweep are good enough for it.
+void GravityGauss::complete_known(const Numbers& rates) {
+  gravity_gauss_kernels().displacements(3 * n_, rates.data(), twice_low_[0].data(), known_.data(), known_.data());
+}
+
 /// Sweeps, and leaves the rates in `now_`: as many as the last step has taken, then the test; one less is tried next
 /// time where it would have done. @return whether they converge
 bool GravityGauss::solve(VectorField<double>& f, const Vector<double>& y) {
@@ -260,13 +261,14 @@ bool GravityGauss::solve(VectorField<double>& f, const Vector<double>& y) {
     return gravity_gauss_kernels().moved(n_, now_.data(), before_.data(), tolerance);
   };
   const int least = h_ != 0 ? std::max(2, sweeps_) : 3;
+  attract(f, before_);
+  complete_known(before_);
+  displace(before_);
   int swept = 2;
   for (; swept < least; ++swept) {
-    attract(f, now_);
-    displace(now_);
+    attract(f, before_);
+    displace(before_);
   }
-  attract(f, before_);
-  displace(before_);
   bool far = attract(f, now_);
   if (far && !moved(tolerance_)) {
     sweeps_ = moved(0.02 * tolerance_) ? least : std::max(2, least - 1);
@@ -329,8 +331,8 @@ void GravityGauss::finish(Vector<double>& y) {
   const DoubleDouble h2 = DoubleDouble::product(length_, length_);
   double *const x = y.data(), *const v = x + 3 * n_;
   gravity_gauss_kernels().finish({3 * n_, now_.data(), table_.ends[0].data(), table_.ends[1].data(), odd_.data(),
-                                  odd_low_.data(), mirrored_, table_.stages / 2, length_, h2.high, 0.5 * h2.high,
-                                  0.5 * h2.low, x, low_.data(), v, low_.data() + 3 * n_});
+                                  odd_low_.data(), mirrored_, table_.stages / 2, length_, 0.5 * h2.high, 0.5 * h2.low,
+                                  x, low_.data(), v, low_.data() + 3 * n_});
   std::swap(made_[0], made_[1]);
   std::swap(made_[0], now_);
   h_before_ = h_;

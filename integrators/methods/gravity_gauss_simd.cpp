@@ -17,6 +17,32 @@ struct Axes {
   Axes(const double* all, std::ptrdiff_t stride) : x(all), y(all + stride), z(all + 2 * stride) {}
 };
 
+/// What rounding takes from a product.
+HWY_INLINE Vector rounded_off(Vector a, Vector b, Vector product) {
+#if HWY_NATIVE_FMA
+  return hn::MulSub(a, b, product);
+#else
+  const auto upper = [](Vector x) {  // its first 26 bits
+    const Vector far = hn::Mul(hn::Set(Lanes(), 134217729.0), x);
+    return hn::Sub(far, hn::Sub(far, x));
+  };
+  const Vector a1 = upper(a), b1 = upper(b), a2 = hn::Sub(a, a1), b2 = hn::Sub(b, b1);
+  const Vector crossed = hn::Add(hn::Add(hn::Sub(hn::Mul(a1, b1), product), hn::Mul(a1, b2)), hn::Mul(a2, b1));
+  return hn::Add(crossed, hn::Mul(a2, b2));
+#endif
+}
+
+void scale_table(double h2, double h2_low, const double* a, const double* a_low, double* out, double* out_low) {
+  const Lanes d;
+  const Vector high = hn::Set(d, h2), low = hn::Set(d, h2_low);
+  for (std::ptrdiff_t k = 0; k < stages * stages; k += lanes) {
+    const Vector entry = hn::LoadU(d, a + k), product = hn::Mul(high, entry);
+    hn::StoreU(product, d, out + k);
+    const Vector lost = hn::MulAdd(high, hn::LoadU(d, a_low + k), hn::Mul(low, entry));
+    hn::StoreU(hn::Add(rounded_off(high, entry, product), lost), d, out_low + k);
+  }
+}
+
 void begin(const StepBeginning& beginning) {
   const Lanes d;
   const StepBeginning b = beginning;
@@ -294,41 +320,38 @@ HWY_INLINE void transpose(const double* rates, Vector (&stage)[stages]) {
 #endif
 }
 
-/// What rounding takes from a product.
-HWY_INLINE Vector rounded_off(Vector a, Vector b, Vector product) {
-#if HWY_NATIVE_FMA
-  return hn::MulSub(a, b, product);
-#else
-  const auto upper = [](Vector x) {  // its first 26 bits
-    const Vector far = hn::Mul(hn::Set(Lanes(), 134217729.0), x);
-    return hn::Sub(far, hn::Sub(far, x));
-  };
-  const Vector a1 = upper(a), b1 = upper(b), a2 = hn::Sub(a, a1), b2 = hn::Sub(b, b1);
-  const Vector crossed = hn::Add(hn::Add(hn::Sub(hn::Mul(a1, b1), product), hn::Mul(a1, b2)), hn::Mul(a2, b1));
-  return hn::Add(crossed, hn::Mul(a2, b2));
-#endif
+/// first + w_0 a + w_1 b + w_2 c + w_3 d, in two chains.
+HWY_INLINE Vector four(Vector first, const double* w, Vector a, Vector b, Vector c, Vector d) {
+  const Lanes tag;
+  return hn::Add(hn::MulAdd(hn::Set(tag, w[0]), a, hn::MulAdd(hn::Set(tag, w[1]), b, first)),
+                 hn::MulAdd(hn::Set(tag, w[2]), c, hn::Mul(hn::Set(tag, w[3]), d)));
 }
 
-/// w_0 a + w_1 b + w_2 c + w_3 d, in two chains.
-HWY_INLINE Vector four(const double* w, Vector a, Vector b, Vector c, Vector d) {
-  const Lanes tag;
-  return hn::Add(hn::MulAdd(hn::Set(tag, w[0]), a, hn::Mul(hn::Set(tag, w[1]), b)),
-                 hn::MulAdd(hn::Set(tag, w[2]), c, hn::Mul(hn::Set(tag, w[3]), d)));
+/// The same with weights in two words. A sum that is rounded already is hardly ever changed by what low words add, half
+/// a last bit at most, and what they stand for would be lost at every step; so their part comes first.
+HWY_INLINE Vector four(const double* w, const double* low, Vector a, Vector b, Vector c, Vector d) {
+  return four(four(hn::Zero(Lanes()), low, a, b, c, d), w, a, b, c, d);
 }
 
 /// sum_j w_j F_j
 HWY_INLINE Vector eight(const double* w, const Vector (&f)[stages]) {
-  return hn::Add(four(w, f[0], f[1], f[2], f[3]), four(w + 4, f[4], f[5], f[6], f[7]));
+  const Vector none = hn::Zero(Lanes());
+  return hn::Add(four(none, w, f[0], f[1], f[2], f[3]), four(none, w + 4, f[4], f[5], f[6], f[7]));
+}
+HWY_INLINE Vector eight(const double* w, const double* low, const Vector (&f)[stages]) {
+  return hn::Add(four(w, low, f[0], f[1], f[2], f[3]), four(w + 4, low + 4, f[4], f[5], f[6], f[7]));
 }
 
 /// Weights sum to 1, so that one stage in the middle with the weight 1, whose products with the step are known exactly,
 /// and differences from it leave nothing to rounding but a part of these. Where they are symmetric about the middle of
-/// the step, sums and differences of mirrored stages need half the products, and what rounding has taken from weights
-/// is symmetric too; elsewhere it would be a drift.
+/// the step, sums and differences of mirrored stages need half the products.
+///
+/// Nothing here may be wrong by the same part at each step: a drift of the energy by 1e-19 a step is above the random
+/// walk after 1e5 of them. So weights have low words, and the square of the step, which has none, is the step twice.
 template <bool mirrored> void finish_stages(const StepEnd& end) {
   const Lanes tag;
   const StepEnd s = end;
-  const Vector h = hn::Set(tag, s.h), h2 = hn::Set(tag, s.h2), half = hn::Set(tag, 0.5);
+  const Vector h = hn::Set(tag, s.h), half = hn::Set(tag, 0.5);
   const Vector half_h2 = hn::Set(tag, s.half_h2), half_h2_low = hn::Set(tag, s.half_h2_low);
   for (std::ptrdiff_t m = 0; m < s.n; m += lanes) {
     const std::ptrdiff_t count = s.n - m;
@@ -340,17 +363,17 @@ template <bool mirrored> void finish_stages(const StepEnd& end) {
     }
     Vector even, odd;
     if constexpr (mirrored) {
-      even = four(s.b, hn::Add(f[0], f[7]), hn::Add(f[1], f[6]), hn::Add(f[2], f[5]), f[4]);
-      odd = four(s.odd, hn::Sub(f[0], f[7]), hn::Sub(f[1], f[6]), hn::Sub(f[2], f[5]), hn::Neg(f[4]));
+      even = four(s.b, s.b_low, hn::Add(f[0], f[7]), hn::Add(f[1], f[6]), hn::Add(f[2], f[5]), f[4]);
+      odd = four(s.odd, s.odd_low, hn::Sub(f[0], f[7]), hn::Sub(f[1], f[6]), hn::Sub(f[2], f[5]), hn::Neg(f[4]));
     } else {
-      even = hn::Add(eight(s.b, f), eight(s.b_low, f));
-      odd = hn::Add(eight(s.odd, f), eight(s.odd_low, f));
+      even = eight(s.b, s.b_low, f);
+      odd = eight(s.odd, s.odd_low, f);
     }
     const Vector v = load_first(tag, s.v + m, count), hv = hn::Mul(h, v), bend = hn::Mul(half_h2, middle);
     const Vector lower = hn::MulAdd(h, load_first(tag, s.v_low + m, count), rounded_off(h, v, hv));
     const Vector lost = hn::Add(hn::MulAdd(half_h2_low, middle, rounded_off(half_h2, middle, bend)), lower);
-    const Vector small = hn::MulAdd(h2, hn::MulAdd(half, even, odd), lost);
-    add_with_error(tag, s.x + m, s.x_low + m, count, hv, hn::Add(bend, small));
+    const Vector small = hn::MulAdd(h, hn::Mul(h, hn::MulAdd(half, even, odd)), lost);
+    add_with_errors(tag, s.x + m, s.x_low + m, count, hv, bend, small);
     const Vector kick = hn::Mul(h, middle);
     add_with_error(tag, s.v + m, s.v_low + m, count, kick, hn::MulAdd(h, even, rounded_off(h, middle, kick)));
   }
@@ -372,7 +395,7 @@ void derivatives(std::ptrdiff_t n, const double* rates, const double* weights, b
       // About the middle of mirrored stages, weights of the first derivative are odd, the others even.
       const Vector(&half)[4] = q == 1 ? difference : sum;
       const double* const w = weights + stages * q;
-      const Vector middle = mirrored ? four(w, half[0], half[1], half[2], half[3]) : eight(w, f);
+      const Vector middle = mirrored ? four(hn::Zero(tag), w, half[0], half[1], half[2], half[3]) : eight(w, f);
       hn::StoreU(middle, tag, out + q * stride + m);
       hn::StoreU(eight(w + 3 * stages, f), tag, out + (3 + q) * stride + m);
     }
@@ -382,7 +405,7 @@ void derivatives(std::ptrdiff_t n, const double* rates, const double* weights, b
 }  // namespace
 
 extern const GravityGaussKernels gravity_gauss_kernels;
-const GravityGaussKernels gravity_gauss_kernels{begin, separations, attract,    displacements, first_displacements,
-                                                moved, finish,      derivatives};
+const GravityGaussKernels gravity_gauss_kernels{scale_table,         begin, separations, attract,    displacements,
+                                                first_displacements, moved, finish,      derivatives};
 
 }  // namespace noether::NOETHER_SIMD_LEVEL

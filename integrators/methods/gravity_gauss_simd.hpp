@@ -36,11 +36,13 @@ struct StepEnd {
   const double *b, *b_low, *odd, *odd_low;
   bool mirrored;          ///< b_j = b_(9-j), c_j = 1 - c_(9-j)
   std::ptrdiff_t middle;  ///< the stage r, from 0; that of mirrored ones is the fourth
-  double h, h2, half_h2, half_h2_low;
+  double h, half_h2, half_h2_low;
   double *x, *x_low, *v, *v_low;
 };
 
 struct GravityGaussKernels {
+  /// (h2 + h2_low) (a + a_low) in two words; all of shape (8, 8)
+  void (*scale_table)(double h2, double h2_low, const double* a, const double* a_low, double* out, double* out_low);
   void (*begin)(const StepBeginning& beginning);
   /// Differences of positions on the grid, and c_i h times those of velocities, of all pairs: shape (3, pairs, 8).
   void (*separations)(const AttractingBodies& bodies, const StepBeginning& beginning, double* out);

@@ -230,27 +230,40 @@ TEST_CASE("an encounter in the field of a third body, which pulls both harder, i
   }
 }
 
-TEST_CASE("a pericentre of 1e-9 about a mass in motion at x = 1 keeps its digits", "[gravity_gauss]") {
+namespace {
+
+/// Distance from Kepler's orbit where a tracer, or a small mass, ends that has passed a mass in motion at x = 1 in the
+/// distance q.
+double error_after_pericentre(double q, double mass) {
   constexpr double a = 1e-2, M = 1e-3;
+  const double e = 1 - q / a;
+  ParticleSystem<double> s;
+  s.add("mass", M, {1, 0, 0}, {0, 1, 0});
+  s.add("tracer", mass, {1 + a * (1 + e), 0, 0}, {0, 1 + std::sqrt(M / a * (q / a) / (1 + e)), 0});
+  const double period = 2 * 3.141592653589793 * std::sqrt(a * a * a / M), end = 0.75 * period;
+  Simulation run(s, by_gauss_8(Gravity{.G = 1}));
+  REQUIRE(run.run_until(end).ok());
+  CHECK(run.step() < 3000);
+  const Vec3<Quad> x = s.positions()[1].cast<Quad>() - s.positions()[0].cast<Quad>();
+  const Vec3<Quad> v = s.velocities()[1].cast<Quad>() - s.velocities()[0].cast<Quad>();
+  const auto arc = kepler_arc<Quad>(x, v, Quad(M) + Quad(mass), Quad(end));
+  REQUIRE(arc.status == KeplerStatus::converged);
+  const Vec3<double> reached = run.particles().positions()[1] - run.particles().positions()[0];
+  const Vec3<Quad> off = reached.cast<Quad>() - x - arc.dx;
+  return std::sqrt(static_cast<double>(norm2(off)));
+}
+
+}  // namespace
+
+TEST_CASE("a pericentre of 1e-9 about a mass in motion at x = 1 keeps its digits", "[gravity_gauss]") {
   for (const double q : {1e-3, 1e-6, 1e-9}) {
     for (const double mass : {0.0, 1e-20}) {
-      ParticleSystem<double> s;
-      const double e = 1 - q / a;
-      s.add("mass", M, {1, 0, 0}, {0, 1, 0});
-      s.add("tracer", mass, {1 + a * (1 + e), 0, 0}, {0, 1 + std::sqrt(M / a * (q / a) / (1 + e)), 0});
-      const double period = 2 * 3.141592653589793 * std::sqrt(a * a * a / M), end = 0.75 * period;
-      Simulation run(s, by_gauss_8(Gravity{.G = 1}));
-      REQUIRE(run.run_until(end).ok());
-      const Vec3<Quad> x = s.positions()[1].cast<Quad>() - s.positions()[0].cast<Quad>();
-      const Vec3<Quad> v = s.velocities()[1].cast<Quad>() - s.velocities()[0].cast<Quad>();
-      const auto arc = kepler_arc<Quad>(x, v, Quad(M) + Quad(mass), Quad(end));
-      REQUIRE(arc.status == KeplerStatus::converged);
-      const Vec3<double> reached = run.particles().positions()[1] - run.particles().positions()[0];
-      const Vec3<Quad> off = reached.cast<Quad>() - x - arc.dx;
-      const double error = std::sqrt(static_cast<double>(norm2(off)));
-      CAPTURE(q, mass, run.step(), run.evaluations().rejected, fmt::format("{:.2e}", error));
-      CHECK(error < (q < 1e-8 ? 5e-12 : q < 1e-5 ? 1e-14 : 5e-16));  // 1.1e-12, 1.7e-15 and 7.5e-17
-      CHECK(run.step() < 3000);
+      std::vector<double> errors;
+      for (int k = 0; k < 9; ++k) errors.push_back(error_after_pericentre(q * (1 + 0.01 * k), mass));
+      std::sort(errors.begin(), errors.end());
+      CAPTURE(q, mass, errors);
+      // Medians of 64: 1.4e-12, 1.8e-15 and 6.1e-17; a tenth of them have 2.6 times as much.
+      CHECK(errors[4] < (q < 1e-8 ? 5e-12 : q < 1e-5 ? 5e-15 : 2e-16));
     }
   }
 }
