@@ -67,6 +67,7 @@ struct HamiltonianClaims {
   bool keeps_angular_momentum = true;
   Index constraints = 0;            ///< degrees of freedom they take
   double constraint_tolerance = 0;  ///< relative violation that is left on purpose; 0: rounding
+  std::int64_t steps_at_once = 1;   ///< where nobody looks, so many steps cost less each than one
 };
 
 /// A Hamiltonian written as parts whose flows can be computed. Parts are letters.
@@ -114,6 +115,7 @@ struct IntegratorClaims {
   bool keeps_angular_momentum = true;
   Index constraints = 0;            ///< degrees of freedom they take
   double constraint_tolerance = 0;  ///< relative violation that is left on purpose; 0: rounding
+  std::int64_t steps_at_once = 1;   ///< where nobody looks, so many steps cost less each than one
   bool variables = false;           ///< it advances the variables of a first-order system, not particles
   bool second_words = false;        ///< of settled particles they are further digits of x and v
 };
@@ -122,7 +124,7 @@ struct IntegratorClaims {
 struct Span {
   std::int64_t steps = 0;
   double limit = std::numeric_limits<double>::infinity();
-  const std::atomic<bool>* stop = nullptr;  ///< looked at after every step
+  const std::atomic<bool>* stop = nullptr;  ///< looked at after every step, or after `steps_at_once` of them
 
   bool asked_to_stop() const { return stop != nullptr && stop->load(std::memory_order_relaxed); }
 };

@@ -20,6 +20,8 @@ using WallClock = std::chrono::steady_clock;
 constexpr std::int64_t longest_chunk = 1024;
 /// Steps between looks at the wall clock are chosen to last about this long [s].
 constexpr double chunk_seconds = 0.05;
+/// So long they may last where the integrator wants some steps at once [s].
+constexpr double longest_wait = 1;
 
 /// What a force has named says more than what came of it.
 bool tells_more(const Failure* failure, const std::optional<Outcome>& fault) {
@@ -214,6 +216,8 @@ template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double 
   const double before = seconds_;
   looked_at_clock_ = started;
   auto reported = started;
+  const std::int64_t at_once = integrator_.claims().steps_at_once;
+  chunk_ = std::max(chunk_, at_once);
   std::int64_t unclocked = 0;  // steps since the last look at the wall clock, which costs as much as a short step
   while (true) {
     if ((result = observe_due())) break;
@@ -231,7 +235,7 @@ template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double 
       const auto now = WallClock::now();
       const double took = std::chrono::duration<double>(now - looked_at_clock_).count();
       if (took < chunk_seconds / 2) chunk_ = std::min(longest_chunk, chunk_ * 2);
-      if (took > chunk_seconds && chunk_ > 1) chunk_ /= 2;
+      if (took > (chunk_ > at_once ? chunk_seconds : longest_wait) && chunk_ > 1) chunk_ /= 2;
       looked_at_clock_ = now;
       seconds_ = before + std::chrono::duration<double>(now - started).count();
       unclocked = 0;

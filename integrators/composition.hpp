@@ -73,7 +73,8 @@ template <SplitHamiltonian H> class Composition {
             .keeps_momentum = claims.keeps_momentum,
             .keeps_angular_momentum = claims.keeps_angular_momentum,
             .constraints = claims.constraints,
-            .constraint_tolerance = claims.constraint_tolerance};
+            .constraint_tolerance = claims.constraint_tolerance,
+            .steps_at_once = claims.steps_at_once};
   }
   const std::vector<TimedStage<real>>& stages() const { return word_.stages(); }
   H& hamiltonian() { return hamiltonian_; }

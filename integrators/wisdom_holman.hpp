@@ -164,6 +164,8 @@ template <class Real = double, class F = Sum<>> class WisdomHolman : private det
   using Base::to_jacobi, Base::from_democratic, Base::to_democratic, Base::from_barycentric, Base::to_barycentric;
 
   static constexpr bool has_forces = !std::is_same_v<F, Sum<>>;
+  /// Of a million tracers, which do not stay in the cache, a step by itself costs 1.5 times as much.
+  static constexpr std::int64_t steps_of_tracers = 16;
   void gather_arcs();
 
   void inertial_velocities(const VectorColumn<Real>& from, VectorColumn<Real>& to) const;

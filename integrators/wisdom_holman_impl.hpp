@@ -40,7 +40,8 @@ template <class Real, class F> HamiltonianClaims WisdomHolman<Real, F>::claims()
           .velocity_forces = true,
           .kepler = true,
           .keeps_momentum = forces.keeps_momentum,
-          .keeps_angular_momentum = forces.keeps_angular_momentum};
+          .keeps_angular_momentum = forces.keeps_angular_momentum,
+          .steps_at_once = has_tracers() ? steps_of_tracers : 1};
 }
 
 template <class Real, class F> void WisdomHolman<Real, F>::bind(ParticleSystem<Real>& s) {
