@@ -98,10 +98,12 @@ template <class Real> class ConstraintEquations {
 
   const std::optional<Failure>& failure() const { return failure_; }
   void fail(const ParticleSystem<Real>& s, Index equation, const std::string& what);
+  void fail(const Failure& failure) { failure_ = failure; }
   void forget_failure() { failure_.reset(); }
   /// Steps and sweeps of solvers so far.
   std::int64_t iterations() const { return iterations_; }
   void count_iteration() { ++iterations_; }
+  void count_iterations(std::int64_t more) { iterations_ += more; }
   void restore_iterations(std::int64_t iterations) { iterations_ = iterations; }
 
  private:

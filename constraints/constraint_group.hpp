@@ -61,6 +61,8 @@ class ConstraintGroup {
  public:
   virtual ~ConstraintGroup() = default;
   virtual std::unique_ptr<ConstraintGroup> clone() const = 0;
+  /// A copy of some of them; null where it is none. @param keep  by constraint
+  virtual std::unique_ptr<ConstraintGroup> only(const std::vector<bool>& keep) const = 0;
 
   virtual std::string name() const = 0;
   /// Type, parameters and particles in text.
@@ -122,7 +124,17 @@ template <Constraint C> class ConstraintsOf final : public ConstraintGroup {
     }
   }
 
+  const C& constraint(Index k) const { return constraints_[static_cast<std::size_t>(k)]; }
+
   std::unique_ptr<ConstraintGroup> clone() const override { return std::make_unique<ConstraintsOf>(*this); }
+  std::unique_ptr<ConstraintGroup> only(const std::vector<bool>& keep) const override {
+    auto kept = std::make_unique<ConstraintsOf>();
+    for (std::size_t k = 0; k < constraints_.size(); ++k) {
+      if (keep[k]) kept->add(constraints_[k], particles_[k]);
+    }
+    if (kept->constraints_.empty()) return nullptr;
+    return kept;
+  }
   std::string name() const override {
     const std::string name = detail::name_of(constraints_.front());
     return name.empty() ? "constraint" : name;

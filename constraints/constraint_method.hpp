@@ -26,11 +26,16 @@ template <class Real> class ConstraintStages;
 template <class Real>
 using MakeConstraintStages = std::unique_ptr<ConstraintStages<Real>>(const ConstraintEquations<Real>&);
 
+struct MoleculeKernels;
+/// Kernels of the SIMD level in use.
+using MoleculeKernelsInUse = const MoleculeKernels&();
+
 /// A solver of the list.
 struct ConstraintMethodInfo {
   ConstraintMethod method;
   std::string_view name;
-  bool to_rounding;  ///< else to ConstraintOptions::tolerance in at most ConstraintOptions::iterations
+  bool to_rounding;             ///< else to ConstraintOptions::tolerance in at most ConstraintOptions::iterations
+  MoleculeKernelsInUse* lanes;  ///< for molecules held by distances alone; null: they are solved with all others
   MakeConstraintStages<double>* make;
   MakeConstraintStages<Quad>* make_quad;
 };
@@ -41,10 +46,16 @@ std::unique_ptr<ConstraintStages<Real>> newton_constraints(const ConstraintEquat
 template <class Real>
 std::unique_ptr<ConstraintStages<Real>> sweep_constraints(const ConstraintEquations<Real>& equations);
 
+// In `molecule_lanes.cpp`.
+const MoleculeKernels& newton_in_lanes();
+const MoleculeKernels& sweeps_in_lanes();
+
 /// Every solver, in the order of ConstraintMethod.
 inline constexpr std::array constraint_methods{
-    ConstraintMethodInfo{ConstraintMethod::newton, "newton", true, newton_constraints, newton_constraints},
-    ConstraintMethodInfo{ConstraintMethod::rattle, "rattle", false, sweep_constraints, sweep_constraints},
+    ConstraintMethodInfo{ConstraintMethod::newton, "newton", true, newton_in_lanes, newton_constraints,
+                         newton_constraints},
+    ConstraintMethodInfo{ConstraintMethod::rattle, "rattle", false, sweeps_in_lanes, sweep_constraints,
+                         sweep_constraints},
 };
 
 constexpr const ConstraintMethodInfo& info_of(ConstraintMethod method) {

@@ -24,6 +24,19 @@ ConstraintSet::ConstraintSet(const ConstraintSet& other) : options_(other.option
 }
 ConstraintSet& ConstraintSet::operator=(const ConstraintSet& other) { return *this = ConstraintSet(other); }
 
+ConstraintSet ConstraintSet::only(const std::vector<bool>& keep) const {
+  ConstraintSet kept(options_);
+  std::size_t equation = 0;
+  for (const auto& group : groups_) {
+    std::vector<bool> own;
+    for (Index c = 0; c < group->size(); ++c, equation += static_cast<std::size_t>(group->equations())) {
+      own.push_back(keep[equation]);
+    }
+    if (auto some = group->only(own)) kept.groups_.push_back(std::move(some));
+  }
+  return kept;
+}
+
 Index ConstraintSet::equations() const {
   Index count = 0;
   for (const auto& group : groups_) count += group->size() * group->equations();

@@ -76,6 +76,8 @@ class ConstraintSet {
   const ConstraintOptions& options() const { return options_; }
   const std::vector<std::unique_ptr<ConstraintGroup>>& groups() const { return groups_; }
   bool empty() const { return groups_.empty(); }
+  /// A set of some of its constraints, solved in the same way. @param keep  by equation
+  ConstraintSet only(const std::vector<bool>& keep) const;
   /// Number of equations: the degrees of freedom they take.
   Index equations() const;
   /// Finds its particles among those of a run, by their ids from the first time on.

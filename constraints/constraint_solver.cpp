@@ -36,21 +36,36 @@ template <class Real> std::unique_ptr<ConstraintStages<Real>> stages_for(const C
 
 template <class Real>
 ConstraintSolver<Real>::ConstraintSolver(const ConstraintSolver& other)
-    : equations_(other.equations_), stages_(other.stages_ ? stages_for(equations_) : nullptr) {}
+    : equations_(other.equations_),
+      lanes_(other.lanes_),
+      others_(other.others_ ? std::make_unique<ConstraintEquations<Real>>(*other.others_) : nullptr),
+      stages_(other.stages_ ? stages_for(moving()) : nullptr) {}
 
 template <class Real> void ConstraintSolver<Real>::bind(ParticleSystem<Real>& s) {
   if (s.low_words() != nullptr) {
     throw BadConstraints(
         "constraints are solved to the rounding of plain sums; they do not work with compensated = true");
   }
+  others_.reset();
   equations_.lay_out(s);
-  stages_ = stages_for(equations_);
+  lay_out_lanes(s);
+  stages_ = stages_for(moving());
   prepared_ = false;
   if (s.phase().opened) return;  // a run that goes on stands where it stood
   check_start(s);
   check_independent(s);
   start_on_constraints(s);
-  equations_.restore_iterations(0);
+  moving().restore_iterations(0);
+}
+
+template <class Real> void ConstraintSolver<Real>::lay_out_lanes(const ParticleSystem<Real>& s) {
+  if constexpr (std::is_same_v<Real, double>) {
+    if (info_of(equations_.options().solver).lanes == nullptr) return;
+    ConstraintSet rest = lanes_.lay_out(set(), s);
+    if (lanes_.empty()) return;
+    others_ = std::make_unique<ConstraintEquations<Real>>(std::move(rest));
+    others_->lay_out(s);
+  }
 }
 
 /// Whatever the solver: to rounding.
@@ -59,7 +74,7 @@ template <class Real> void ConstraintSolver<Real>::start_on_constraints(Particle
   if (!equations_.settled()) {
     equations_.start_here();
     VectorColumn<Real> x = equations_.start();
-    if (!exact.solve_positions(equations_, s, x, Real(0))) throw BadConstraints(failure()->message);
+    if (!exact.solve_positions(equations_, s, x, Real(0))) throw BadConstraints(equations_.failure()->message);
     equations_.move_to(s, x);
     equations_.know(s);
     check_independent(s);
@@ -125,27 +140,128 @@ template <class Real> void ConstraintSolver<Real>::check_independent(const Parti
 // ---- stages --------------------------------------------------------------------------------------------------------
 
 template <class Real> bool ConstraintSolver<Real>::prepare(const ParticleSystem<Real>& s) {
-  if (equations_.know(s)) prepared_ = false;
-  if (!prepared_) prepared_ = stages_->prepare(equations_, s);
+  if (moving().know(s)) prepared_ = false;
+  if (!prepared_) prepared_ = stages_->prepare(moving(), s);
   return prepared_;
 }
 
 template <class Real> void ConstraintSolver<Real>::advance_positions(ParticleSystem<Real>& s, const Real& h) {
   if (failure() || !prepare(s)) return;
-  VectorColumn<Real>& x = equations_.move_freely(s, h);
+  ConstraintEquations<Real>& equations = moving();
+  VectorColumn<Real>& x = equations.move_freely(s, h);
   prepared_ = false;
-  if (stages_->solve_positions(equations_, s, x, h)) {
-    equations_.arrive(s, x, h);
+  if (solve_in_lanes(s, x, h) && stages_->solve_positions(equations, s, x, h)) {
+    equations.arrive(s, x, h);
     Index turned = -1;
-    if (equations_.on_this_side(&turned)) return;
-    equations_.fail(s, turned, "would turn over: the step is too large");
+    if (equations.on_this_side(&turned)) return;
+    equations.fail(s, turned, "would turn over: the step is too large");
   }
-  equations_.turn_back(s);
+  equations.turn_back(s);
+}
+
+template <class Real>
+bool ConstraintSolver<Real>::solve_in_lanes(ParticleSystem<Real>& s, VectorColumn<Real>& x, const Real& h) {
+  if constexpr (std::is_same_v<Real, double>) {
+    if (lanes_.empty() || h == 0) return true;
+    const VectorColumn<double>& start = s.box().is_periodic() ? std::as_const(s).positions() : moving().start();
+    const MoleculeLanes::Solved solved = lanes_.solve_positions(s, start, x, s.velocities(), h);
+    moving().count_iterations(solved.sweeps);
+    return std::all_of(solved.open.begin(), solved.open.end(),
+                       [&](Index molecule) { return solve_alone(molecule, s, x, h); });
+  } else {
+    return true;
+  }
+}
+
+namespace {
+
+/// A molecule of a system by itself, and the solver of all cases for it.
+struct MoleculeAlone {
+  ParticleSystem<double> particles;
+  ConstraintEquations<double> equations;
+  std::unique_ptr<ConstraintStages<double>> stages;
+
+  MoleculeAlone(const MoleculeLanes& lanes, Index molecule, const ParticleSystem<double>& s,
+                const VectorColumn<double>& start)
+      : particles(those_of(lanes.particles(molecule), s, start)), equations(lanes.constraints(molecule, particles)) {
+    equations.lay_out(particles);
+    stages = stages_for(equations);
+    equations.know(particles);
+  }
+
+  static ParticleSystem<double> those_of(const std::vector<Index>& molecule, const ParticleSystem<double>& s,
+                                         const VectorColumn<double>& start) {
+    ParticleSystem<double> alone(s.units());
+    if (s.box().is_periodic()) alone.set_box(s.box());
+    for (const Index i : molecule) alone.add(s.name(i), s.masses()[i], start[i], s.velocities()[i]);
+    return alone;
+  }
+  /// Velocities go back, and a failure, under the numbers of the system. @return whether there is none
+  bool end(const std::vector<Index>& molecule, ParticleSystem<double>& s, ConstraintEquations<double>& all) const {
+    all.count_iterations(equations.iterations());
+    if (!equations.failure()) {
+      for (std::size_t k = 0; k < molecule.size(); ++k)
+        s.velocities().set(molecule[k], particles.velocities()[static_cast<Index>(k)]);
+      return true;
+    }
+    Failure failure = *equations.failure();
+    failure.particle = molecule[static_cast<std::size_t>(failure.particle)];
+    all.fail(failure);
+    return false;
+  }
+};
+
+}  // namespace
+
+template <class Real>
+bool ConstraintSolver<Real>::solve_alone(Index molecule, ParticleSystem<Real>& s, VectorColumn<Real>& x,
+                                         const Real& h) {
+  if constexpr (std::is_same_v<Real, double>) {
+    const std::vector<Index>& of = lanes_.particles(molecule);
+    MoleculeAlone alone(lanes_, molecule, s, s.box().is_periodic() ? std::as_const(s).positions() : moving().start());
+    if (alone.stages->prepare(alone.equations, alone.particles)) {
+      VectorColumn<double>& end = alone.equations.move_freely(alone.particles, h);
+      if (alone.stages->solve_positions(alone.equations, alone.particles, end, h)) {
+        for (Index k = 0; k < alone.particles.size(); ++k) x.set(of[at(k)], end[k]);
+        alone.equations.arrive(alone.particles, end, h);
+        Index turned = -1;
+        if (!alone.equations.on_this_side(&turned))
+          alone.equations.fail(alone.particles, turned, "would turn over: the step is too large");
+      }
+    }
+    return alone.end(of, s, moving());
+  } else {
+    return true;
+  }
+}
+
+template <class Real>
+bool ConstraintSolver<Real>::project_alone(Index molecule, ParticleSystem<Real>& s, const Real& h) {
+  if constexpr (std::is_same_v<Real, double>) {
+    MoleculeAlone alone(lanes_, molecule, s, std::as_const(s).positions());
+    if (alone.stages->prepare(alone.equations, alone.particles))
+      alone.stages->project_velocities(alone.equations, alone.particles, h);
+    return alone.end(lanes_.particles(molecule), s, moving());
+  } else {
+    return true;
+  }
+}
+
+template <class Real> bool ConstraintSolver<Real>::project_in_lanes(ParticleSystem<Real>& s, const Real& h) {
+  if constexpr (std::is_same_v<Real, double>) {
+    if (lanes_.empty()) return true;
+    const MoleculeLanes::Solved solved = lanes_.project_velocities(s, h);
+    moving().count_iterations(solved.sweeps);
+    return std::all_of(solved.open.begin(), solved.open.end(),
+                       [&](Index molecule) { return project_alone(molecule, s, h); });
+  } else {
+    return true;
+  }
 }
 
 template <class Real> void ConstraintSolver<Real>::project_velocities(ParticleSystem<Real>& s, const Real& h) {
   if (failure() || !prepare(s)) return;
-  stages_->project_velocities(equations_, s, h);
+  if (project_in_lanes(s, h)) stages_->project_velocities(moving(), s, h);
 }
 
 // ---- forces of constraints -----------------------------------------------------------------------------------------
@@ -153,7 +269,7 @@ template <class Real> void ConstraintSolver<Real>::project_velocities(ParticleSy
 template <class Real>
 std::optional<typename ConstraintSolver<Real>::Vector> ConstraintSolver<Real>::holding(const ParticleSystem<Real>& s,
                                                                                        const VectorColumn<Real>& a) {
-  if (!prepare(s)) return {};
+  equations_.know(s);
   ConstraintMatrix<Real>& matrix = equations_.matrix();
   if (!matrix.has_factors() && matrix.factorize(equations_.gradients(), Real(0)) >= 0) return {};
   Vector rhs(equations_.size());

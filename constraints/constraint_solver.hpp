@@ -3,6 +3,7 @@
 
 #include "constraints/constraint_equations.hpp"
 #include "constraints/constraint_stages.hpp"
+#include "constraints/molecule_lanes.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -16,6 +17,8 @@ namespace noether {
 ///
 ///     position stage:  x = x0 + h v - M^-1 G(x0)^T lambda,  g(x) = 0;   v -> v - M^-1 G(x0)^T lambda / h
 ///     velocity stage:  v -> v - M^-1 G(x)^T mu,             G(x) v = 0
+///
+/// Molecules held by distances alone are solved side by side in lanes (MoleculeLanes), all others together.
 ///
 /// Free motion between the two stages is RATTLE's. How their equations are solved is that of ConstraintOptions::solver
 /// (ConstraintStages); Newton's method takes the start of every run onto the constraints, to rounding. Nothing is
@@ -48,16 +51,26 @@ template <class Real> class ConstraintSolver {
   Mat3<Real> virial(const ParticleSystem<Real>& s, const VectorColumn<Real>& a);
 
   /// Why a stage could not be solved; from then on stages do nothing.
-  const std::optional<Failure>& failure() const { return equations_.failure(); }
-  void forget_failure() { equations_.forget_failure(); }
-  /// Chord and Newton steps, or sweeps, so far.
-  std::int64_t iterations() const { return equations_.iterations(); }
-  void restore_iterations(std::int64_t iterations) { equations_.restore_iterations(iterations); }
+  const std::optional<Failure>& failure() const { return moving().failure(); }
+  void forget_failure() { moving().forget_failure(); }
+  /// Chord and Newton steps, or sweeps, so far: of each stage the most that a molecule needed.
+  std::int64_t iterations() const { return moving().iterations(); }
+  void restore_iterations(std::int64_t iterations) { moving().restore_iterations(iterations); }
 
  private:
   using Vector = typename ConstraintMatrix<Real>::Vector;
 
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+  /// The equations that stages solve: all, or those that are not in lanes.
+  ConstraintEquations<Real>& moving() { return others_ ? *others_ : equations_; }
+  const ConstraintEquations<Real>& moving() const { return others_ ? *others_ : equations_; }
+  void lay_out_lanes(const ParticleSystem<Real>& s);
+  /// Stages of the molecules in lanes. @return whether all are solved
+  bool solve_in_lanes(ParticleSystem<Real>& s, VectorColumn<Real>& x, const Real& h);
+  bool project_in_lanes(ParticleSystem<Real>& s, const Real& h);
+  /// One of them by the solver of all cases.
+  bool solve_alone(Index molecule, ParticleSystem<Real>& s, VectorColumn<Real>& x, const Real& h);
+  bool project_alone(Index molecule, ParticleSystem<Real>& s, const Real& h);
   void check_start(const ParticleSystem<Real>& s);
   void check_independent(const ParticleSystem<Real>& s);
   void start_on_constraints(ParticleSystem<Real>& s);
@@ -67,9 +80,11 @@ template <class Real> class ConstraintSolver {
   /// Multipliers by which accelerations `a` become those of the motion; of a singular set none.
   std::optional<Vector> holding(const ParticleSystem<Real>& s, const VectorColumn<Real>& a);
 
-  ConstraintEquations<Real> equations_;
-  std::unique_ptr<ConstraintStages<Real>> stages_;  ///< null before `bind`
-  bool prepared_ = false;                           ///< of the known gradients
+  ConstraintEquations<Real> equations_;                     ///< all: starts, forces of constraints
+  MoleculeLanes lanes_;                                     ///< of doubles alone
+  std::unique_ptr<ConstraintEquations<Real>> others_ = {};  ///< null where nothing is in lanes
+  std::unique_ptr<ConstraintStages<Real>> stages_;          ///< null before `bind`
+  bool prepared_ = false;                                   ///< of the known gradients
 };
 
 }  // namespace noether

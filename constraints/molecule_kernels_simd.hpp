@@ -1,0 +1,14 @@
+#pragma once
+/// Solvers of constraints in lanes, each in the `*_lanes_simd.cpp` of its name.
+
+#include "constraints/molecule_row.hpp"
+#include "numbers/kernels_simd.hpp"
+
+namespace noether {
+
+/// Newton's method with chord steps, to rounding.
+NOETHER_KERNELS(MoleculeKernels, newton_lanes)
+/// Constraint after constraint in sweeps, to a tolerance: SHAKE and RATTLE.
+NOETHER_KERNELS(MoleculeKernels, sweep_lanes)
+
+}  // namespace noether

@@ -1,0 +1,186 @@
+#include "constraints/molecule_lanes.hpp"
+
+#include "constraints/distance.hpp"
+#include "constraints/molecule_kernels_simd.hpp"
+#include "constraints/partition.hpp"
+#include "numbers/parallel.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace noether {
+
+namespace {
+
+/// Constraints of which a pack of sixteen molecules still stays in the first-level cache.
+constexpr int most_of_sixteen = 32;
+/// Larger molecules are left to the sparse matrix of the whole set.
+constexpr std::size_t most_constraints = 256;
+/// Constraints that a thread takes at a time.
+constexpr Index share_of_thread = 256;
+
+const ConstraintsOf<Distance>* distances(const ConstraintGroup& group) {
+  return dynamic_cast<const ConstraintsOf<Distance>*>(&group);
+}
+
+MoleculeColumns columns_of(const ParticleSystem<double>& s, const VectorColumn<double>& start, VectorColumn<double>* x,
+                           VectorColumn<double>& v) {
+  MoleculeColumns columns{};
+  for (int k = 0; k < 3; ++k) {
+    columns.start[k] = start.component(k);
+    columns.x[k] = x != nullptr ? x->component(k) : nullptr;
+    columns.v[k] = v.component(k);
+    if (!s.box().is_periodic()) continue;
+    columns.edge[k] = s.box().edges()[k];
+    columns.magic[k] = 1.5 * 0x1p52 * s.box().spacing(k);
+  }
+  return columns;
+}
+
+}  // namespace
+
+ConstraintSet MoleculeLanes::lay_out(const ConstraintSet& set, const ParticleSystem<double>& s) {
+  *this = {};
+  options_ = set.options();
+  const Partition parts(set, s.masses());
+  std::vector<bool> left(at(set.equations()), true);
+  std::map<std::vector<double>, std::vector<Index>> kinds;  // by all that makes a molecule what it is
+  std::vector<std::vector<double>> order;
+  for (Index component = 0; component < parts.components(); ++component) {
+    const auto constraints = parts.constraints(component);
+    const auto is_distance = [&](const Partition::Member& m) {
+      return distances(*set.groups()[at(m.group)]) != nullptr;
+    };
+    if (constraints.size() > most_constraints || !std::all_of(constraints.begin(), constraints.end(), is_distance))
+      continue;
+    Molecule molecule{{parts.particles(component).begin(), parts.particles(component).end()}, {}, {}};
+    std::vector<double> what;
+    for (const Index i : molecule.particles) what.push_back(s.masses()[i]);
+    const auto places = parts.places(parts.kind(component));
+    for (std::size_t k = 0; k < constraints.size(); ++k) {
+      const Partition::Member& m = constraints[k];
+      molecule.pairs.emplace_back(static_cast<int>(places[2 * k]), static_cast<int>(places[2 * k + 1]));
+      molecule.lengths.push_back(*distances(*set.groups()[at(m.group)])->constraint(m.constraint).length);
+      what.insert(what.end(), {static_cast<double>(places[2 * k]), static_cast<double>(places[2 * k + 1])});
+      left[at(m.equation)] = false;
+    }
+    what.push_back(static_cast<double>(molecule.particles.size()));
+    auto [found, is_new] = kinds.emplace(what, std::vector<Index>{});
+    if (is_new) order.push_back(what);
+    found->second.push_back(static_cast<Index>(molecules_.size()));
+    molecules_.push_back(std::move(molecule));
+  }
+  for (const auto& what : order) add_kind(std::move(kinds[what]), s);
+  return set.only(left);
+}
+
+void MoleculeLanes::add_kind(std::vector<Index> molecules, const ParticleSystem<double>& s) {
+  const Molecule& first = molecules_[at(molecules.front())];
+  std::vector<double> inverse_masses;
+  for (const Index i : first.particles) inverse_masses.push_back(1 / s.masses()[i]);
+  Kind kind{.elimination = Elimination(first.pairs, std::move(inverse_masses)), .molecules = std::move(molecules)};
+  const EliminationLists lists = kind.elimination.lists();
+  const auto count = static_cast<Index>(kind.molecules.size());
+  if (count > 8 && lists.constraints <= most_of_sixteen) kind.lanes = 16;
+  const Index lanes = kind.lanes, n = lists.constraints, atoms = lists.atoms;
+  kind.packs = (count + lanes - 1) / lanes;
+  kind.atoms.resize(at(kind.packs * atoms * lanes));
+  kind.lengths2.resize(at(kind.packs * 2 * n * lanes));
+  for (Index slot = 0; slot < kind.packs * lanes; ++slot) {
+    const Molecule& molecule = molecules_[at(kind.molecules[at(std::min(slot, count - 1))])];
+    const Index pack = slot / lanes, lane = slot % lanes;
+    for (Index a = 0; a < atoms; ++a) {
+      const Index particle = molecule.particles[at(a)];
+      kind.atoms[at((pack * atoms + a) * lanes + lane)] = static_cast<std::int32_t>(particle);
+      kind.side_by_side = kind.side_by_side && particle == molecule.particles.front() + a;
+    }
+    for (Index k = 0; k < n; ++k) {
+      const double length = molecule.lengths[at(kind.elimination.places()[at(k)])];
+      kind.lengths2[at((pack * 2 * n + k) * lanes + lane)] = length * length;
+      kind.lengths2[at((pack * 2 * n + n + k) * lanes + lane)] = 1 / (length * length);
+    }
+  }
+  kind.first_report = static_cast<Index>(reports_.size());
+  reports_.resize(reports_.size() + at(kind.packs));
+  kinds_.push_back(std::move(kind));
+}
+
+template <class Work> void MoleculeLanes::for_packs(const Work& work) {
+  for (const Kind& kind : kinds_) {
+    const EliminationLists lists = kind.elimination.lists();
+    const Index share = std::max<Index>(1, share_of_thread / (lists.constraints * kind.lanes));
+    const Index shares = (kind.packs + share - 1) / share;
+    for_blocks(shares * block_size, [&](Index begin, Index) {
+      static thread_local AlignedVector<double> scratch;
+      const std::size_t needed = molecule_scratch(lists) * static_cast<std::size_t>(kind.lanes);
+      if (scratch.size() < needed) scratch.resize(needed);
+      const Index from = begin / block_size * share;
+      for (Index p = from; p < std::min(kind.packs, from + share); ++p) {
+        const Index molecules = std::min<Index>(kind.lanes, static_cast<Index>(kind.molecules.size()) - p * kind.lanes);
+        const MoleculePack pack{.lanes = kind.lanes,
+                                .live = (1U << molecules) - 1,
+                                .kind = &lists,
+                                .atoms = kind.atoms.data() + p * lists.atoms * kind.lanes,
+                                .side_by_side = kind.side_by_side,
+                                .lengths2 = kind.lengths2.data() + p * 2 * lists.constraints * kind.lanes,
+                                .scratch = scratch.data()};
+        work(pack, reports_[at(kind.first_report + p)]);
+      }
+    });
+  }
+}
+
+MoleculeTask MoleculeLanes::task(double h) const {
+  return {.h = h,
+          .tolerance = options_.tolerance,
+          .iterations = static_cast<int>(std::min<Index>(options_.iterations, 1 << 30))};
+}
+
+MoleculeLanes::Solved MoleculeLanes::solve_positions(const ParticleSystem<double>& s, const VectorColumn<double>& start,
+                                                     VectorColumn<double>& x, VectorColumn<double>& v, double h) {
+  const MoleculeKernels& kernels = info_of(options_.solver).lanes();
+  const MoleculeColumns columns = columns_of(s, start, &x, v);
+  for_packs([&, task = task(h)](const MoleculePack& pack, MoleculeReport& report) {
+    report = kernels.solve_positions(pack, columns, task);
+  });
+  return solved();
+}
+
+MoleculeLanes::Solved MoleculeLanes::project_velocities(ParticleSystem<double>& s, double h) {
+  const MoleculeKernels& kernels = info_of(options_.solver).lanes();
+  const MoleculeColumns columns = columns_of(s, std::as_const(s).positions(), nullptr, s.velocities());
+  for_packs([&, task = task(h)](const MoleculePack& pack, MoleculeReport& report) {
+    report = kernels.project_velocities(pack, columns, task);
+  });
+  return solved();
+}
+
+/// What the packs report.
+MoleculeLanes::Solved MoleculeLanes::solved() const {
+  Solved solved;
+  for (const Kind& kind : kinds_) {
+    for (Index p = 0; p < kind.packs; ++p) {
+      const MoleculeReport& report = reports_[at(kind.first_report + p)];
+      solved.sweeps = std::max<std::int64_t>(solved.sweeps, report.sweeps);
+      for (Index lane = 0; report.open >> lane != 0; ++lane) {
+        if ((report.open >> lane & 1U) != 0) solved.open.push_back(kind.molecules[at(p * kind.lanes + lane)]);
+      }
+    }
+  }
+  return solved;
+}
+
+const MoleculeKernels& newton_in_lanes() { return newton_lanes(); }
+const MoleculeKernels& sweeps_in_lanes() { return sweep_lanes(); }
+
+ConstraintSet MoleculeLanes::constraints(Index molecule, const ParticleSystem<double>& alone) const {
+  const Molecule& of = molecules_[at(molecule)];
+  ConstraintSet set(options_);
+  for (std::size_t k = 0; k < of.pairs.size(); ++k) {
+    set.add(alone, Distance{.length = of.lengths[k]}, {of.pairs[k].first, of.pairs[k].second});
+  }
+  return set;
+}
+
+}  // namespace noether

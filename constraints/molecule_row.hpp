@@ -1,0 +1,58 @@
+#pragma once
+/// Molecules side by side in lanes: what the kernels of constraints work on.
+
+#include "constraints/elimination_row.hpp"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace noether {
+
+/// Coordinates of particles, x, y and z. Position stages take `x` from where free motion ends onto the constraints, in
+/// a periodic box what particles have moved from `start`; velocity stages have `x` null.
+struct MoleculeColumns {
+  const double* start[3];  ///< positions to which gradients belong
+  double *x[3], *v[3];
+  double edge[3];   ///< of a periodic box; 0 in open space
+  double magic[3];  ///< adding and subtracting it rounds to the grid of the box
+};
+
+/// Some molecules of one kind, as many as there are lanes: where a kind has fewer, the last one stands several times.
+struct MoleculePack {
+  int lanes;      ///< 8 or 16
+  unsigned live;  ///< a bit for each lane that stands for a molecule of its own
+  const EliminationLists* kind;
+  const std::int32_t* atoms;  ///< particle of atom a in lane l: [lanes a + l]
+  bool side_by_side;          ///< atoms of each molecule follow each other in the columns
+  const double* lengths2;     ///< squared, in the order of elimination, then 1 / squared, shape (2, constraints, lanes)
+  double* scratch;            ///< of the thread, `molecule_scratch` doubles a lane
+};
+
+/// Doubles a lane that kernels need beside a pack.
+constexpr std::size_t molecule_scratch(const EliminationLists& kind) {
+  return static_cast<std::size_t>(9 * kind.constraints + kind.entries + 3 * kind.centers + kind.longest_row +
+                                  4 * kind.atoms + 8);
+}
+
+/// What a stage is asked for.
+struct MoleculeTask {
+  double h;          ///< duration of free motion [time]
+  double tolerance;  ///< of methods that have one: largest relative violation that is left
+  int iterations;    ///< of these, the most
+};
+
+/// How a stage went.
+struct MoleculeReport {
+  unsigned open = 0;  ///< a bit for each lane that is not solved; it is left where it was
+  int sweeps = 0;
+};
+
+/// The stages of a solver in lanes.
+struct MoleculeKernels {
+  MoleculeReport (*solve_positions)(const MoleculePack& pack, const MoleculeColumns& columns, const MoleculeTask& task);
+  /// Takes from velocities what is along gradients at `start`.
+  MoleculeReport (*project_velocities)(const MoleculePack& pack, const MoleculeColumns& columns,
+                                       const MoleculeTask& task);
+};
+
+}  // namespace noether
