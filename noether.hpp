@@ -49,6 +49,7 @@
 #include "io/digest.hpp"
 #include "io/structure.hpp"
 #include "io/trajectory.hpp"
+#include "monitors/dihedrals.hpp"
 #include "monitors/monitors.hpp"
 #include "monitors/orbital_monitors.hpp"
 #include "monitors/pressure.hpp"

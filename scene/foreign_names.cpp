@@ -142,6 +142,7 @@ constexpr std::array names_of_others = {
     ForeignName{" vacf velocity_correlation ", NamePlace::monitor, "velocity_autocorrelation"},
     ForeignName{" rdf g_r gofr pair_correlation ", NamePlace::monitor, "radial_distribution"},
     ForeignName{" temp ", NamePlace::monitor, "temperature"},
+    ForeignName{" dihedral torsion torsions dihedral_angles ", NamePlace::monitor, "dihedrals"},
     ForeignName{" virial stress press ", NamePlace::monitor, "pressure"},
     ForeignName{" com center_of_mass_motion barycenter ", NamePlace::monitor, "center_of_mass"},
     ForeignName{" orbits orbital_elements osculating_elements orbit kepler_elements ", NamePlace::monitor, "elements"},

@@ -31,6 +31,7 @@
 #include "integrators/wisdom_holman.hpp"
 #include "io/checkpoint.hpp"
 #include "io/trajectory.hpp"
+#include "monitors/dihedrals.hpp"
 #include "monitors/monitors.hpp"
 #include "monitors/orbital_monitors.hpp"
 #include "monitors/pressure.hpp"
@@ -157,6 +158,7 @@ Parts standard_parts() {
   parts.add_monitor<Temperature>();
   parts.add_monitor<Pressure>();
   parts.add_monitor<RadialDistribution>();
+  parts.add_monitor<Dihedrals>();
   parts.add_monitor<MeanSquareDisplacement>();
   parts.add_monitor<VelocityAutocorrelation>();
   parts.add_monitor<Variables>();
