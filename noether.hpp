@@ -42,6 +42,7 @@
 #include "integrators/systems/prothero_robinson.hpp"
 #include "integrators/systems/rc_ladder.hpp"
 #include "integrators/systems/robertson.hpp"
+#include "integrators/velocity_rescaling.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "integrators/wrapped.hpp"
 #include "io/bodies.hpp"

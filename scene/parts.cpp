@@ -28,6 +28,7 @@
 #include "integrators/systems/prothero_robinson.hpp"
 #include "integrators/systems/rc_ladder.hpp"
 #include "integrators/systems/robertson.hpp"
+#include "integrators/velocity_rescaling.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "io/checkpoint.hpp"
 #include "io/trajectory.hpp"
@@ -116,6 +117,7 @@ Parts standard_parts() {
   parts.add_hamiltonian<KineticPotentialOptions>();
   parts.add_hamiltonian<WisdomHolmanOptions>();
   parts.add_thermostat<LangevinOptions>();
+  parts.add_thermostat<VelocityRescalingOptions>();
   parts.add_force<Gravity>();
   parts.add_force<Oblateness>();
   parts.add_force<GrPotential>();

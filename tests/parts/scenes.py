@@ -206,6 +206,8 @@ FORCES = {
 THERMOSTATS = {
     "langevin": Case(PAIR, forces(SPRING) + "[hamiltonian.thermostat]\ntype = 'langevin'\ntemperature = 1\n"
                      "friction = 0.5\nseed = 7\n", method="BAOAB"),
+    "velocity_rescaling": Case(PAIR, forces(SPRING) + "[hamiltonian.thermostat]\ntype = 'velocity_rescaling'\n"
+                               "temperature = 1\nrelaxation_time = 0.5\nseed = 7\n"),
 }
 
 TIED = "type = 'distance'; pairs = [['one', 'two'], ['two', 'three']]"
