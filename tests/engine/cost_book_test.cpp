@@ -12,12 +12,12 @@
 namespace noether {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using Stopwatch = std::chrono::steady_clock;
 
 /// Works for so many seconds; returns how many it were.
 double work(double seconds) {
-  const auto begin = Clock::now();
-  const auto passed = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+  const auto begin = Stopwatch::now();
+  const auto passed = [&] { return std::chrono::duration<double>(Stopwatch::now() - begin).count(); };
   while (passed() < seconds) {
   }
   return passed();
@@ -34,7 +34,7 @@ double seconds_of(const CostBook& book, const std::string& kind, const std::stri
 }  // namespace
 
 TEST_CASE("each part is charged what it spends itself, and what nobody claims is the integrator's", "[cost_book]") {
-  const auto begin = Clock::now();
+  const auto begin = Stopwatch::now();
   const CostBook book;
   double force = 0, neighbors = 0, other = 0;
   for (int k = 0; k < 3; ++k) {
@@ -51,7 +51,7 @@ TEST_CASE("each part is charged what it spends itself, and what nobody claims is
     other += work(0.004);
   }
   work(0.003);
-  const double all = std::chrono::duration<double>(Clock::now() - begin).count();
+  const double all = std::chrono::duration<double>(Stopwatch::now() - begin).count();
   // A busy machine may take the processor away between the two looks at its clock, from any of them.
   const double slack = all - force - neighbors - other - 0.003 + 1e-4;
   CHECK(seconds_of(book, "force", "lennard_jones") >= force);
@@ -69,7 +69,7 @@ TEST_CASE("each part is charged what it spends itself, and what nobody claims is
     if (k > 0) CHECK(entries[k - 1].seconds >= entries[k].seconds);
   }
   CHECK(sum >= all);
-  CHECK(sum < std::chrono::duration<double>(Clock::now() - begin).count());
+  CHECK(sum < std::chrono::duration<double>(Stopwatch::now() - begin).count());
 }
 
 TEST_CASE("nothing is charged while no book is open, nor by other threads", "[cost_book]") {
@@ -92,10 +92,10 @@ TEST_CASE("nothing is charged while no book is open, nor by other threads", "[co
   CostBook again;
   CHECK(again.entries().size() == 1);
   work(0.01);
-  const auto anew = Clock::now();
+  const auto anew = Stopwatch::now();
   again.begin_anew();
   const double since = seconds_of(again, "integrator");
-  CHECK(since <= std::chrono::duration<double>(Clock::now() - anew).count());
+  CHECK(since <= std::chrono::duration<double>(Stopwatch::now() - anew).count());
 }
 
 }  // namespace noether
