@@ -31,7 +31,7 @@ struct RunArguments {
   std::optional<std::string> simd, until;
   std::vector<std::string> sets;
   int threads = 0;
-  bool resume = false, fresh = false, quiet = false, json = false;
+  bool resume = false, fresh = false, cost = false, quiet = false, json = false;
 };
 
 /// `--until T` goes where `--set integrator.until=T` would.
@@ -68,6 +68,7 @@ std::string resume_command(const RunArguments& given) {
   if (given.simd) add("--simd", *given.simd);
   if (given.until) add("--until", *given.until);
   for (const std::string& set : given.sets) add("--set", set);
+  if (given.cost) line += " --cost";
   return line + " --resume";
 }
 
@@ -82,6 +83,7 @@ int run_scene(const RunArguments& given, const Parts& parts) {
   options.existing = given.resume ? Existing::resume : given.fresh ? Existing::fresh : Existing::keep;
   if (given.simd) options.simd = simd_level_named(*given.simd);
   options.progress = !given.quiet && !given.json;
+  options.cost = given.cost;
   const RunReport report = run(std::move(start), options);
   const bool failed = report.exit_code() == 1;
   if (failed) fmt::print(stderr, "{}\n", escaped(to_text(report.outcome)));
@@ -129,6 +131,7 @@ void add_run_command(CLI::App& app, const Parts& parts, int& exit_code) {
       ->type_name("KEY=VALUE");
   CLI::Option* resume = command->add_flag("--resume", given->resume, "continue from the newest checkpoint");
   command->add_flag("--fresh", given->fresh, "discard an unfinished run in the output folder")->excludes(resume);
+  command->add_flag("--cost", given->cost, "tell the seconds that each force and every other part has taken");
   CLI::Option* quiet = command->add_flag("--quiet", given->quiet, "print nothing");
   command->add_flag("--json", given->json, "report as one line of JSON")->excludes(quiet);
   command->callback([given, &parts, &exit_code] { exit_code = run_scene(*given, parts); });

@@ -18,7 +18,10 @@ namespace noether {
 /// Energy of a system, in its unit system [energy].
 template <class Real> struct EnergyTerms {
   Real kinetic = Real(0), potential = Real(0);
+  Real heat = Real(0);  ///< that a bath has given since the start of the run, where it counts it
   Real total() const { return kinetic + potential; }
+  /// What the equations of motion keep, with a bath that counts its heat too.
+  Real conserved() const { return total() - heat; }
 };
 
 /// Two bodies nearer to each other than a splitting about a primary allows.
@@ -55,6 +58,7 @@ struct HamiltonianClaims {
   bool energy = true;             ///< every force reports its potential
   bool time_dependent = false;    ///< the energy is not conserved by the exact flow
   bool dissipative = false;
+  bool counts_heat = false;  ///< dissipative, but `EnergyTerms::heat` has all of it: energy less heat is conserved
   std::string_view no_action = "";  ///< why no action tells the motion; empty: the flows give theirs
   bool columns = false;             ///< it moves columns beyond position and velocity
   std::uint8_t coordinates = 0;     ///< of the position and velocity columns while a run goes on; 0: inertial
@@ -110,6 +114,7 @@ struct IntegratorClaims {
   bool energy_exact = false;  ///< the energy is kept at any step; no symplectic method that keeps momenta can do that
   bool energy = true;         ///< an energy exists
   bool dissipative = false;
+  bool counts_heat = false;  ///< dissipative, but `EnergyTerms::heat` has all of it: energy less heat is conserved
   bool time_dependent = false;
   bool keeps_momentum = true;
   bool keeps_angular_momentum = true;

@@ -3,6 +3,7 @@
 #include "engine/check_wanted.hpp"
 #include "engine/not_finite.hpp"
 #include "engine/second_words.hpp"
+#include "numbers/cost_book.hpp"
 
 #include <fmt/format.h>
 
@@ -212,6 +213,7 @@ template <class Real> Outcome Simulation<Real>::run_to(std::int64_t end, double 
     show_to_writers(*result);
     return *result;
   }
+  if (CostBook* const book = CostBook::of_this_thread()) book->begin_anew();
   const auto started = WallClock::now();
   const double before = seconds_;
   looked_at_clock_ = started;
@@ -418,18 +420,25 @@ template <class Real> void Simulation<Real>::show(const Snapshot<Real>& moment) 
   for (Scheduled* one : looking_) {
     last = last || one->looks_last;
     if (one->looks_last) continue;
+    const Spent spent("monitor", one->name);
     one->monitor.observe(moment);
     if (!recording) continue;
     const std::vector<Series> series = one->monitor.series();
     if (series.empty()) continue;
     const Sample sample{one->name, moment.step(), moment.time(), series, one->monitor.scale()};
     for (auto& other : monitors_) {
-      if (other.records) other.monitor.record(sample);
+      if (!other.records) continue;
+      const Spent writing("monitor", other.name);
+      other.monitor.record(sample);
     }
   }
   if (!last) return;
-  for (auto& writer : monitors_) writer.monitor.flush();
+  for (auto& writer : monitors_) {
+    const Spent spent("monitor", writer.name);
+    writer.monitor.flush();
+  }
   for (Scheduled* one : looking_) {
+    const Spent spent("monitor", one->name);
     if (one->looks_last) one->monitor.observe(moment);
   }
 }

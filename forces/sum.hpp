@@ -2,6 +2,7 @@
 /// Sums of forces: known to the compiler (`Sum`), or assembled while the program runs (`ForceField`).
 
 #include "engine/erasure.hpp"
+#include "numbers/cost_book.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -174,7 +175,9 @@ template <class Real = double> class ForceField {
  private:
   template <class Sink, class Add> void for_terms(Sink& out, const Add& add) const {
     for (std::size_t k = 0; k < terms_.size(); ++k) {
-      if (out.takes_all() || out.takes(kicks_[k])) out.in_room(k, [&] { add(terms_[k]); });
+      if (!out.takes_all() && !out.takes(kicks_[k])) continue;
+      const Spent spent("force", [&] { return terms_[k].name(); });
+      out.in_room(k, [&] { add(terms_[k]); });
     }
   }
 

@@ -69,6 +69,7 @@ template <SplitHamiltonian H> class Composition {
             .reversible = symmetric_ && !claims.dissipative,
             .energy = claims.energy,
             .dissipative = claims.dissipative,
+            .counts_heat = claims.counts_heat,
             .time_dependent = claims.time_dependent,
             .keeps_momentum = claims.keeps_momentum,
             .keeps_angular_momentum = claims.keeps_angular_momentum,

@@ -34,6 +34,7 @@ template <SplitHamiltonian H> class Damped : public Wrapped<H> {
     claims.alphabet += 'D';
     claims.irreversible.insert(claims.irreversible.begin(), 'D');
     claims.dissipative = true;
+    claims.counts_heat = false;
     claims.symplectic = false;
     claims.keeps_momentum = claims.keeps_angular_momentum = false;
     return claims;

@@ -9,6 +9,7 @@
 #include "engine/word.hpp"
 #include "forces/sum.hpp"
 #include "neighbors/neighbor_list.hpp"
+#include "numbers/cost_book.hpp"
 
 #include <limits>
 #include <optional>
@@ -290,6 +291,7 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
 
   void move(ParticleSystem<Real>& s, const Real& h) {
     if constexpr (constrained) {
+      const Spent spent("constraints");
       constraints_.advance_positions(s, h);
     } else {
       s.advance_positions(h);
@@ -298,7 +300,10 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     for (Kick& kick : kicks_) kick.moved = true;
   }
   void project(ParticleSystem<Real>& s, const Real& h) {
-    if constexpr (constrained) constraints_.project_velocities(s, h);
+    if constexpr (constrained) {
+      const Spent spent("constraints");
+      constraints_.project_velocities(s, h);
+    }
   }
   /// Counts an evaluation of the run. The first failure of a step is told: what follows from it, positions that are no
   /// numbers, may be worse.

@@ -4,7 +4,8 @@
 #include "engine/description.hpp"
 #include "engine/erasure.hpp"
 #include "integrators/kinetic_potential.hpp"
-#include "integrators/wrapped.hpp"
+#include "integrators/noisy.hpp"
+#include "numbers/cost_book.hpp"
 #include "numbers/parallel.hpp"
 #include "numbers/random.hpp"
 
@@ -56,13 +57,13 @@ struct LangevinOptions {
 /// that a copy completed for an observer has the noise of the run.
 /// @cost 12 random words, 2 logarithms and 4 sines or cosines for each particle and O
 /// @source LeimkuhlerMatthews2013, LeimkuhlerMatthews2016, Salmon2011
-template <SplitHamiltonian H> class Langevin : public Wrapped<H> {
+template <SplitHamiltonian H> class Langevin : public Noisy<Langevin<H>, H, 'O'> {
  public:
   using real = typename H::real;
 
   /// @throws Error  for a negative temperature or friction, or constraints that do not tell how to project velocities
   Langevin(H hamiltonian, LangevinOptions options)
-      : Wrapped<H>(std::move(hamiltonian)), options_(options), key_(noise_key(options.seed)) {
+      : Noisy<Langevin<H>, H, 'O'>(std::move(hamiltonian)), options_(options), key_(noise_key(options.seed)) {
     options_.check();
     if (hamiltonian_.claims().constraints > 0 && !detail::can_project(hamiltonian_)) {
       throw Error("noise would push velocities off the constraints of '" + detail::name_of(hamiltonian_) +
@@ -72,57 +73,9 @@ template <SplitHamiltonian H> class Langevin : public Wrapped<H> {
 
   std::string name() const { return "langevin"; }
   HamiltonianClaims claims() const {
-    HamiltonianClaims claims = hamiltonian_.claims();
-    claims.alphabet += 'O';
-    claims.irreversible += 'O';
-    claims.dissipative = true;
-    claims.symplectic = false;
-    claims.no_action = "a thermostat exchanges energy with the particles, so the motion has no action";
-    claims.keeps_momentum = claims.keeps_angular_momentum = false;
+    HamiltonianClaims claims = this->claims_in_bath();
+    claims.keeps_momentum = false;
     return claims;
-  }
-
-  /// @throws Error  for particles without mass, which no bath can warm, for steps backwards, and coordinates that are
-  /// not inertial
-  void bind(ParticleSystem<real>& s) {
-    for (Index i = 0; i < s.size(); ++i) {
-      if (s.masses()[i] != real(0)) continue;
-      throw Error("'" + s.name(i) +
-                  "' has no mass, so it has no temperature; give it a mass, or take the thermostat out");
-    }
-    if (s.clock().dt() < 0) throw Error("a thermostat cannot go back in time; a step above 0 is expected");
-    hamiltonian_.bind(s);
-    if (!hamiltonian_.claims().inertial) {
-      throw Error("'" + detail::name_of(hamiltonian_) +
-                  "' uses its own coordinates, where noise is not that of particles; put the thermostat around "
-                  "kinetic_potential");
-    }
-  }
-  /// Whole steps; only here the place of an O in the word is known.
-  Advance run(const TimedWord<real>& word, ParticleSystem<real>& s, const Span& span) {
-    const real dt(s.clock().dt());
-    std::int64_t step = -1;
-    std::uint32_t place = 0;
-    return walk_letters(*this, word, s, span, [&](char letter, const real& h) {
-      const std::int64_t now = s.clock().step();
-      if (std::exchange(step, now) != now) place = 0;
-      const std::uint32_t stage = place++;
-      if (letter != 'O') return hamiltonian_.flow(letter, s, h);
-      if (stage != 0 || !s.phase().pending) return mix(s, h, now, stage);
-      mix(s, word.stages().back().weight * dt, now - 1, last_stage);
-      mix(s, word.stages().front().weight * dt, now, 0);
-    });
-  }
-  /// A letter by itself: of the O's the pending one, which completes the last step.
-  void flow(char letter, ParticleSystem<real>& s, const real& h) {
-    if (letter != 'O') return hamiltonian_.flow(letter, s, h);
-    NOETHER_EXPECTS(s.phase().pending, "noise is drawn by whole steps: it is not known which O of its step this is");
-    mix(s, h, s.clock().step() - 1, last_stage);
-  }
-  /// @throws LogicError  for O: noise has no action
-  real flow_with_action(char letter, ParticleSystem<real>& s, const real& h) {
-    NOETHER_EXPECTS(letter != 'O', "the irreversible flow O has no action increment");
-    return hamiltonian_.flow_with_action(letter, s, h);
   }
   void accelerations(const ParticleSystem<real>& s, VectorColumn<real>& a) {
     hamiltonian_.accelerations(s, a);
@@ -138,12 +91,12 @@ template <SplitHamiltonian H> class Langevin : public Wrapped<H> {
   }
 
  private:
-  using Wrapped<H>::hamiltonian_;
-  /// Place of an O that ends a step and is joined with the next; above that of any other.
-  static constexpr std::uint32_t last_stage = 127;
+  friend class Noisy<Langevin<H>, H, 'O'>;
+  using Noisy<Langevin<H>, H, 'O'>::hamiltonian_;
 
   void mix(ParticleSystem<real>& s, const real& h, std::int64_t step, std::uint32_t stage) {
     using std::exp, std::expm1, std::sqrt;
+    const Spent spent("thermostat", "langevin");
     const real gamma(options_.friction), keep = exp(-gamma * h);
     const real kT = real(s.units().k_B) * real(options_.temperature), warmth = -expm1(real(-2) * gamma * h) * kT;
     const std::vector<std::int64_t>& ids = s.ids();

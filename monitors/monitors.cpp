@@ -108,14 +108,14 @@ template <class Real> void Energy::at_start(const Snapshot<Real>& start) {
   begun_ = true;
   const EnergyTerms<Real>& energy = start.energy();
   const auto& with_all_digits = start.wide_energy();
-  const Quad total = with_all_digits ? with_all_digits->total() : wide(energy.total());
-  reference_ = total;
-  first_ = static_cast<double>(total);
+  reference_ = with_all_digits ? with_all_digits->conserved() : wide(energy.conserved());
+  first_ = static_cast<double>(reference_);
   const double t = static_cast<double>(energy.kinetic), u = static_cast<double>(energy.potential);
-  scale_ = std::max(std::abs(static_cast<double>(total)), 1e-3 * (t + std::abs(u)));
+  scale_ = std::max(std::abs(first_), 1e-3 * (t + std::abs(u)));
   if (scale_ == 0) scale_ = 1;
   const IntegratorClaims claims = start.claims();
-  if (claims.dissipative) {
+  counts_heat_ = claims.counts_heat;
+  if (claims.dissipative && !counts_heat_) {
     why_not_ = "the run is dissipative: its energy changes, so it has no energy error";
   } else if (claims.time_dependent) {
     why_not_ = "a force depends on time: the energy changes, so it has no energy error";
@@ -131,12 +131,13 @@ template <class Real> void Energy::observe(const Snapshot<Real>& now) {
   const EnergyTerms<Real>& energy = now.energy();
   now_ = {static_cast<double>(energy.total()), static_cast<double>(energy.kinetic),
           static_cast<double>(energy.potential), 0};
+  heat_ = static_cast<double>(energy.heat);
   if (const auto& with_all_digits = now.wide_energy()) {
-    now_[3] = static_cast<double>((with_all_digits->total() - reference_) / Quad(scale_));
+    now_[3] = static_cast<double>((with_all_digits->conserved() - reference_) / Quad(scale_));
   } else if constexpr (std::is_same_v<Real, double>) {
-    now_[3] = (energy.total() - first_) / scale_;
+    now_[3] = (energy.conserved() - first_) / scale_;
   } else {
-    now_[3] = static_cast<double>((energy.total() - reference_) / Real(scale_));
+    now_[3] = static_cast<double>((energy.conserved() - reference_) / Real(scale_));
   }
   finite_ = finite_ && std::isfinite(now_[0]);
   kinetic_sum_ += now_[1];
@@ -144,10 +145,24 @@ template <class Real> void Energy::observe(const Snapshot<Real>& now) {
 }
 
 std::vector<Series> Energy::series() const {
-  return {{"total", "energy", {}, {now_[0]}},
-          {"kinetic", "energy", {}, {now_[1]}},
-          {"potential", "energy", {}, {now_[2]}},
-          {"relative_error", "1", {}, {now_[3]}}};
+  std::vector<Series> all = {{"total", "energy", {}, {now_[0]}},
+                             {"kinetic", "energy", {}, {now_[1]}},
+                             {"potential", "energy", {}, {now_[2]}},
+                             {"relative_error", "1", {}, {now_[3]}}};
+  if (counts_heat_) all.push_back({"conserved", "energy", {}, {conserved()}});
+  return all;
+}
+
+void Energy::save(SavedState& saved, const std::string& prefix) const {
+  save_part(saved, prefix, *this);
+  if (counts_heat_) save_value(saved, detail::key_below(prefix, "heat"), heat_);
+}
+
+void Energy::load(const SavedState& saved, const std::string& prefix) {
+  load_part(saved, prefix, *this);
+  const std::string heat = detail::key_below(prefix, "heat");
+  counts_heat_ = saved.contains(heat);
+  if (counts_heat_) load_value(saved, heat, heat_);
 }
 
 MonitorReport Energy::report() const {
@@ -155,7 +170,7 @@ MonitorReport Energy::report() const {
   report.samples = errors_.samples();
   if (report.samples == 0) return report;
   report.first = first_;
-  report.last = now_[0];
+  report.last = conserved();
   report.scale = scale_;
   report.reason = why_not_;
   if (!finite_) report.reason = "the energy is beyond the range of double precision";
@@ -167,6 +182,10 @@ MonitorReport Energy::report() const {
   }
   fill_line(report, errors_, per_time("1", time_unit_));
   fill_drift(report);
+  if (counts_heat_) {
+    report.note +=
+        fmt::format("{}of the energy less the heat that the bath has given", report.note.empty() ? "" : ", ");
+  }
   return report;
 }
 

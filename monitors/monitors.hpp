@@ -17,14 +17,18 @@ struct WideSums;
 ///     (E - E0) / max(|E0|, 1e-3 (T0 + |U0|))
 ///
 /// `worst()` and `rms()` are of the relative error, `slope()` its drift per time with an error from block means. A run
-/// that is dissipative or driven has an energy, but no error of it: these figures stay empty, with the reason.
+/// that is dissipative or driven has an energy, but no error of it: these figures stay empty, with the reason. Where a
+/// bath counts the heat that it gives, E is the energy less that heat, which is conserved, in all figures but `total`.
 /// @cost O(n) and one force evaluation, shared with the next kick
 class Energy {
  public:
   static constexpr auto describe() {
     return part<Energy>(
         "energy", "total energy and its relative error", formula("(E - E0) / max(|E0|, 1e-3 (T0 + |U0|))"),
-        source("HairerLubichWanner2006"), quantities("total, kinetic, potential [energy], relative_error [1]"),
+        source("HairerLubichWanner2006"),
+        quantities(
+            "total, kinetic, potential [energy], relative_error [1]; with a bath that counts its heat: conserved "
+            "[energy]"),
         state<&Energy::begun_>("begun"), state<&Energy::reference_>("reference"), state<&Energy::scale_>("scale"),
         state<&Energy::first_>("first"), state<&Energy::now_>("now"), state<&Energy::finite_>("finite"),
         state<&Energy::errors_>("errors"), state<&Energy::why_not_>("why_not"), state<&Energy::time_unit_>("time_unit"),
@@ -45,8 +49,13 @@ class Energy {
   double rms() const { return why_not_.empty() ? errors_.rms() : std::numeric_limits<double>::quiet_NaN(); }
   /// Drift of the relative error [1/time]; 0 before two samples.
   double slope() const { return errors_.slope().value_or(0); }
-  /// Total, kinetic and potential energy at the last look [energy].
+  /// Total energy at the last look [energy].
   double total() const { return now_[0]; }
+  /// The same less the heat that a bath has given, where it counts it [energy].
+  double conserved() const { return now_[0] - heat_; }
+
+  void save(SavedState& saved, const std::string& prefix) const;
+  void load(const SavedState& saved, const std::string& prefix);
 
  private:
   /// The drift in the terms of molecular dynamics, with its error from 20 blocks on; not of other runs, nor before two
@@ -63,6 +72,8 @@ class Energy {
   std::int64_t atoms_ = 0;    ///< particles with mass in a run of molecules; else 0
   std::int64_t freedom_ = 0;  ///< degrees of freedom; 0 in reduced units, where energies are told by themselves
   double kinetic_sum_ = 0;    ///< over all looks [energy]
+  bool counts_heat_ = false;  ///< a bath does
+  double heat_ = 0;           ///< given until the last look [energy]
 };
 
 /// Watches a vector that the flow keeps: its value and the relative error |value - value0| / scale.

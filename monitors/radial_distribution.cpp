@@ -11,6 +11,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
+#include <unordered_map>
 
 namespace noether {
 
@@ -21,11 +23,51 @@ constexpr std::int64_t most_bins = 100'000;
 /// Which particles stand at the first and at the second place of the pairs.
 struct Places {
   std::vector<Index> first, second;
-  double pairs = 0;   ///< (i, j) with i != j
-  bool same = false;  ///< both places are for the same particles
+  std::vector<Index> molecules;  ///< of each particle, whose pairs with each other do not count; empty: all pairs count
+  double pairs = 0;              ///< (i, j) with i != j that count
+  bool same = false;             ///< both places are for the same particles
 };
 
-Places places_of(const std::vector<std::string>& types, const Topology* topology, Index n) {
+/// Which molecule each of `n` particles belongs to, by the index of one of its particles: as the structure says, or by
+/// bonds.
+std::vector<Index> molecules_of(const Topology& topology, Index n) {
+  std::vector<Index> parent(static_cast<std::size_t>(n));
+  std::iota(parent.begin(), parent.end(), Index(0));
+  if (!topology.molecules.empty()) {
+    std::unordered_map<std::int64_t, Index> first;
+    for (Index i = 0; i < n; ++i) {
+      const std::int64_t molecule = topology.molecules[static_cast<std::size_t>(i)];
+      if (molecule != 0) parent[static_cast<std::size_t>(i)] = first.emplace(molecule, i).first->second;
+    }
+    return parent;
+  }
+  const auto root = [&](Index i) {
+    while (parent[static_cast<std::size_t>(i)] != i) {
+      Index& above = parent[static_cast<std::size_t>(i)];
+      i = above = parent[static_cast<std::size_t>(above)];
+    }
+    return i;
+  };
+  for (const BondedTerm<2>& bond : topology.bonds) {
+    parent[static_cast<std::size_t>(root(bond.particles[0]))] = root(bond.particles[1]);
+  }
+  for (Index i = 0; i < n; ++i) parent[static_cast<std::size_t>(i)] = root(i);
+  return parent;
+}
+
+/// How many of the pairs are of one molecule.
+double pairs_of_one_molecule(const Places& places) {
+  std::vector<double> seconds(places.molecules.size());
+  const auto molecule = [&](Index i) {
+    return static_cast<std::size_t>(places.molecules[static_cast<std::size_t>(i)]);
+  };
+  for (const Index j : places.second) ++seconds[molecule(j)];
+  double pairs = 0;
+  for (const Index i : places.first) pairs += seconds[molecule(i)] - (places.same ? 1 : 0);
+  return pairs;
+}
+
+Places places_of(const std::vector<std::string>& types, bool intramolecular, const Topology* topology, Index n) {
   Places places;
   for (Index i = 0; i < n; ++i) {
     const auto is = [&](std::size_t place) {
@@ -37,6 +79,10 @@ Places places_of(const std::vector<std::string>& types, const Topology* topology
   places.same = types.empty() || types[0] == types[1];
   const auto a = static_cast<double>(places.first.size()), b = static_cast<double>(places.second.size());
   places.pairs = a * (places.same ? b - 1 : b);
+  if (!intramolecular) {
+    places.molecules = molecules_of(*topology, n);
+    places.pairs -= pairs_of_one_molecule(places);
+  }
   return places;
 }
 
@@ -57,14 +103,14 @@ class Neighborhood {
     owner_ = sorted(owner_);
   }
 
-  /// Calls `pair(r2)` for all particles behind `last` that may be in range of `x`.
+  /// Calls `pair(j, r2)` for all particles j behind `last` that may be in range of `x`.
   template <class Pair> void around(const std::array<double, 3>& x, Index last, double range, const Pair& pair) const {
     grid_.near({x, x}, range, [&](Index begin, Index end) {
       for (Index p = begin; p < end; ++p) {
         const auto at = static_cast<std::size_t>(p);
         if (owner_[at] <= last) continue;
         const double dx = x[0] - x_[0][at], dy = x[1] - x_[1][at], dz = x[2] - x_[2][at];
-        pair(dx * dx + dy * dy + dz * dz);
+        pair(owner_[at], dx * dx + dy * dy + dz * dz);
       }
     });
   }
@@ -136,6 +182,10 @@ void RadialDistribution::check_in(const Box& box, const Topology* topology) cons
     throw Error(fmt::format("unknown type '{}' in monitor 'radial_distribution'{}", type, known_types(topology, type)),
                 {.key = "types", .value = type});
   }
+  if (!intramolecular && (topology == nullptr || (topology->molecules.empty() && topology->bonds.empty()))) {
+    refuse_field("intramolecular", "false",
+                 "has no effect, because there are neither molecules nor bonds; take it out");
+  }
 }
 
 template <class Real> void RadialDistribution::observe(const Snapshot<Real>& now) {
@@ -157,7 +207,8 @@ template <class Real> void RadialDistribution::observe(const Snapshot<Real>& now
 }
 
 void RadialDistribution::count(const Box& box, const Topology* topology, const std::array<std::vector<double>, 3>& x) {
-  const Places places = places_of(types, topology, static_cast<Index>(x[0].size()));
+  const Places places = places_of(types, intramolecular, topology, static_cast<Index>(x[0].size()));
+  const std::vector<Index>& molecules = places.molecules;
   const Neighborhood neighbors(box, x, places.second, reach_);
   const double reach2 = reach_ * reach_, width = reach_ / static_cast<double>(bins);
   for_blocks(static_cast<Index>(places.first.size()), [&](Index begin, Index end) {
@@ -165,8 +216,9 @@ void RadialDistribution::count(const Box& box, const Topology* topology, const s
     for (Index place = begin; place < end; ++place) {
       const Index i = places.first[static_cast<std::size_t>(place)];
       const auto at = static_cast<std::size_t>(i);
-      neighbors.around({x[0][at], x[1][at], x[2][at]}, places.same ? i : -1, reach_, [&](double r2) {
+      neighbors.around({x[0][at], x[1][at], x[2][at]}, places.same ? i : -1, reach_, [&](Index j, double r2) {
         if (!(r2 < reach2)) return;
+        if (!molecules.empty() && molecules[at] == molecules[static_cast<std::size_t>(j)]) return;
         ++seen[std::min(seen.size() - 1, static_cast<std::size_t>(std::sqrt(r2) / width))];
       });
     }
@@ -215,7 +267,8 @@ MonitorReport RadialDistribution::report() const {
   report.samples = samples_;
   if (samples_ == 0) return report;
   if (!(expected_ > 0)) {
-    report.reason = "there are no pairs of these types";
+    report.reason = intramolecular ? "there are no pairs of these types"
+                                   : "there are no pairs of these types in different molecules";
     return report;
   }
   const std::vector<double> g = values();

@@ -18,9 +18,11 @@ namespace noether {
 ///
 /// n_k counts the pairs (i, j), i of the first and j of the second type, whose nearest images are between r_k and
 /// r_k+1 apart; an ideal gas has g = 1. The coordination number is how many j are within r_k+1 of an i on the average.
-/// Bonded pairs count like all others.
-/// @throws Error  when attached to a run without a periodic box, with a type that is not there, or a range beyond half
-///   of the shortest edge
+/// Bonded pairs count like all others, unless `intramolecular` is false: then pairs of one molecule are left out of n_k
+/// and of N_pairs. Molecules are those that the structure names (0: none, its particle is alone), or else what bonds
+/// hold together.
+/// @throws Error  when attached to a run without a periodic box, with a type that is not there, a range beyond half
+///   of the shortest edge, or where pairs of one molecule are to be left out and there are neither molecules nor bonds
 /// @cost O(n m) a look, m the number of particles in range of one; O(n) memory
 /// @source Allen2017
 class RadialDistribution {
@@ -28,11 +30,12 @@ class RadialDistribution {
   std::int64_t bins = 200;
   std::optional<double> range = {};     ///< largest distance [length]; default: half of the shortest edge
   std::vector<std::string> types = {};  ///< of the two particles; empty: all pairs
+  bool intramolecular = true;           ///< whether pairs of one molecule count
 
   RadialDistribution() = default;
   explicit RadialDistribution(std::int64_t intervals, std::optional<double> largest = {},
-                              std::vector<std::string> pair = {})
-      : bins(intervals), range(largest), types(std::move(pair)) {}
+                              std::vector<std::string> pair = {}, bool of_one_molecule = true)
+      : bins(intervals), range(largest), types(std::move(pair)), intramolecular(of_one_molecule) {}
 
   static constexpr bool needs_particles = true;
 
@@ -44,6 +47,7 @@ class RadialDistribution {
         field<&RadialDistribution::bins>("bins", "1", "intervals of distance"),
         field<&RadialDistribution::range>("range", "length", "largest distance; default: half of the shortest edge"),
         field<&RadialDistribution::types>("types", "1", "the two types of the pairs; default: all pairs"),
+        field<&RadialDistribution::intramolecular>("intramolecular", "1", "whether pairs of one molecule count"),
         state<&RadialDistribution::counts_>("counts"), state<&RadialDistribution::expected_>("expected"),
         state<&RadialDistribution::centers_>("centers"), state<&RadialDistribution::reach_>("reach"),
         state<&RadialDistribution::samples_>("samples"), state<&RadialDistribution::unit_>("unit"));

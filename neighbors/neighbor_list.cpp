@@ -2,6 +2,7 @@
 
 #include "neighbors/neighbor_images.hpp"
 #include "neighbors/neighbor_search_simd.hpp"
+#include "numbers/cost_book.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -59,6 +60,7 @@ struct NeighborList::Scratch {
 };
 
 void NeighborList::update(const ParticleSystem<double>& s, Numbers numbers) {
+  const Spent spent("neighbors");
   if (numbers == Numbers::whole && !keep_whole_) {
     keep_whole_ = true;
     version_ = members_ = 0;  // search anew

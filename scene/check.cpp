@@ -226,14 +226,18 @@ class SceneCheck {
   }
 
   /// Ends the refusal of a word with noise where there is none.
-  std::string_view who_has_noise() const {
-    if (scene_.hamiltonian.thermostat || !scene_.hamiltonian.splitting.claims().inertial) return "";
-    const Word& word = scene_.integrator.scheme.word;
-    const bool noisy = std::any_of(word.begin(), word.end(), [&](const Stage& stage) {
-      return std::any_of(parts_.thermostats().begin(), parts_.thermostats().end(),
-                         [&](const auto& kind) { return !kind.info.meaning(stage.letter).empty(); });
-    });
-    return noisy ? "; O is the letter of a thermostat: add [hamiltonian.thermostat]" : "";
+  std::string who_has_noise() const {
+    if (!scene_.hamiltonian.splitting.claims().inertial) return "";
+    for (const Stage& stage : scene_.integrator.scheme.word) {
+      for (const auto& kind : parts_.thermostats()) {
+        if (kind.info.meaning(stage.letter).empty()) continue;
+        const auto& given = scene_.hamiltonian.thermostat;
+        if (given && given->name == kind.info.name) continue;
+        return fmt::format("; {} is the letter of the thermostat '{}': {} [hamiltonian.thermostat]", stage.letter,
+                           kind.info.name, given ? "give it as the type in" : "add");
+      }
+    }
+    return "";
   }
 
   const SceneContext& context_;

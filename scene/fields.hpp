@@ -85,6 +85,14 @@ V read_element(const TableReader& reader, const SceneValue& value, std::string_v
     const std::int64_t* whole = value.get<std::int64_t>();
     if (whole == nullptr) reader.wrong_kind(value, key, "a list of whole numbers");
     return static_cast<V>(*whole);
+  } else if constexpr (requires { typename V::value_type; }) {
+    const auto* list = value.get<SceneValue::Array>();
+    if (list == nullptr) reader.wrong_kind(value, key, "a list of lists");
+    V elements;
+    for (const SceneValue& one : *list) {
+      elements.push_back(read_element<typename V::value_type>(reader, one, key, dimension));
+    }
+    return elements;
   } else {
     return static_cast<V>(reader.number(value, key, dimension));
   }

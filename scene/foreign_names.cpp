@@ -86,12 +86,15 @@ constexpr std::array names_of_others = {
     ForeignName{" gauss_jackson gj8 ", NamePlace::method, "stormer_cowell_13",
                 "a multistep method of second-order systems too", true},
     // Baths.
-    ForeignName{" nvt nose_hoover nosehoover nose_hoover_chain nhc berendsen v_rescale vrescale velocity_rescale "
-                "bussi csvr andersen andersen_massive rescale thermostat obabo gjf sd bd brownian tdamp dpd ",
-                NamePlace::thermostat, "langevin", "the bath there is; method = \"BAOAB\" goes with it", true},
+    ForeignName{" v_rescale vrescale velocity_rescale bussi csvr temp_csvr stochastic_velocity_rescaling rescale ",
+                NamePlace::thermostat, "velocity_rescaling", "method = \"verlet\" goes with it"},
+    ForeignName{" nvt nose_hoover nosehoover nose_hoover_chain nhc berendsen andersen andersen_massive thermostat "
+                "obabo gjf sd bd brownian tdamp dpd ",
+                NamePlace::thermostat, "langevin", "a bath with friction and noise; method = \"BAOAB\" goes with it",
+                true},
     ForeignName{" langevin_integrator langevinintegrator langevin_middle langevinmiddleintegrator langevinmiddle "
                 "baoab_langevin ",
-                NamePlace::thermostat, "langevin", "the bath there is; method = \"BAOAB\" goes with it"},
+                NamePlace::thermostat, "langevin", "a bath with friction and noise; method = \"BAOAB\" goes with it"},
     ForeignName{" npt nph barostat parrinello_rahman mtk mttk c_rescale monte_carlo_barostat press_berendsen ",
                 NamePlace::none, "",
                 "there is no barostat here: the box stays as it is; a temperature is held by type = 'langevin' in "
@@ -142,6 +145,7 @@ constexpr std::array names_of_others = {
     ForeignName{" vacf velocity_correlation ", NamePlace::monitor, "velocity_autocorrelation"},
     ForeignName{" rdf g_r gofr pair_correlation ", NamePlace::monitor, "radial_distribution"},
     ForeignName{" temp ", NamePlace::monitor, "temperature"},
+    ForeignName{" dihedral torsion torsions dihedral_angles ", NamePlace::monitor, "dihedrals"},
     ForeignName{" virial stress press ", NamePlace::monitor, "pressure"},
     ForeignName{" com center_of_mass_motion barycenter ", NamePlace::monitor, "center_of_mass"},
     ForeignName{" orbits orbital_elements osculating_elements orbit kepler_elements ", NamePlace::monitor, "elements"},

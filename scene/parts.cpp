@@ -28,9 +28,11 @@
 #include "integrators/systems/prothero_robinson.hpp"
 #include "integrators/systems/rc_ladder.hpp"
 #include "integrators/systems/robertson.hpp"
+#include "integrators/velocity_rescaling.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "io/checkpoint.hpp"
 #include "io/trajectory.hpp"
+#include "monitors/dihedrals.hpp"
 #include "monitors/monitors.hpp"
 #include "monitors/orbital_monitors.hpp"
 #include "monitors/pressure.hpp"
@@ -115,6 +117,7 @@ Parts standard_parts() {
   parts.add_hamiltonian<KineticPotentialOptions>();
   parts.add_hamiltonian<WisdomHolmanOptions>();
   parts.add_thermostat<LangevinOptions>();
+  parts.add_thermostat<VelocityRescalingOptions>();
   parts.add_force<Gravity>();
   parts.add_force<Oblateness>();
   parts.add_force<GrPotential>();
@@ -157,6 +160,7 @@ Parts standard_parts() {
   parts.add_monitor<Temperature>();
   parts.add_monitor<Pressure>();
   parts.add_monitor<RadialDistribution>();
+  parts.add_monitor<Dihedrals>();
   parts.add_monitor<MeanSquareDisplacement>();
   parts.add_monitor<VelocityAutocorrelation>();
   parts.add_monitor<Variables>();

@@ -21,7 +21,7 @@ SceneValue read_thermostat(const SceneContext& context, const SceneValue& table,
   for (const SceneForce& force : scene.hamiltonian.forces) {
     if (force.force.claims().drag == 0) continue;
     bare.fail("type", fmt::format("a thermostat together with {} would be colder than its temperature; take the force "
-                                  "out, and add its rate to the friction of the thermostat",
+                                  "out, or add its rate to the friction of a thermostat 'langevin'",
                                   force.name));
   }
   SceneValue effective = SceneValue::table();

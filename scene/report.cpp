@@ -52,6 +52,24 @@ Json json_of(const std::filesystem::path& file) { return file.empty() ? Json() :
 
 Json per_second(double amount, double seconds) { return seconds > 0 ? Json(amount / seconds) : Json(); }
 
+double seconds_of(const std::vector<CostBook::Entry>& cost) {
+  double all = 0;
+  for (const CostBook::Entry& one : cost) all += one.seconds;
+  return all;
+}
+
+Json json_of(const std::vector<CostBook::Entry>& cost) {
+  const double all = seconds_of(cost);
+  std::vector<Json> entries;
+  for (const CostBook::Entry& one : cost) {
+    entries.push_back(Json::object({{"kind", one.kind},
+                                    {"name", one.name.empty() ? Json() : Json(one.name)},
+                                    {"seconds", one.seconds},
+                                    {"share", all > 0 ? Json(one.seconds / all) : Json()}}));
+  }
+  return Json::list(entries);
+}
+
 Json particle_of(const Outcome& outcome) {
   if (!outcome.particle) return {};
   return Json::object(
@@ -105,6 +123,7 @@ std::string to_json(const RunReport& r) {
                                                     {"pairs_per_particle", list->pairs},
                                                     {"skin", list->skin}}));
   }
+  if (!r.cost.empty()) members.emplace_back("cost", json_of(r.cost));
   if (r.minimized) {
     members.emplace_back("minimized", Json::object({{"force", r.minimized->force}, {"steps", r.minimized->steps}}));
   }
@@ -144,6 +163,17 @@ std::string figures(const MonitorReport& m) {
     if (!words.empty()) text += fmt::format("{}{}", text.empty() ? "" : "; ", words);
   }
   return text.empty() ? "watched" : text;
+}
+
+/// "cost: force lennard_jones 71.3 % (1.2 s), neighbors 20.1 % (0.34 s), integrator 8.6 % (0.15 s)"
+std::string cost_in_words(const std::vector<CostBook::Entry>& cost) {
+  const double all = seconds_of(cost);
+  std::string text;
+  for (const CostBook::Entry& one : cost) {
+    text += fmt::format("{}{}{} {:.1f} % ({:.3g} s)", text.empty() ? "cost: " : ", ", one.kind,
+                        one.name.empty() ? "" : " " + one.name, all > 0 ? 100 * one.seconds / all : 0, one.seconds);
+  }
+  return text.empty() ? text : text + "\n";
 }
 
 }  // namespace
@@ -188,6 +218,7 @@ std::string details_of(const RunReport& r) {
     }
     text += "\n";
   }
+  text += cost_in_words(r.cost);
   if (r.evaluations.constraint > 0) {
     text += fmt::format("constraints: {} in all, {:.3g} for each force evaluation\n",
                         counted(r.evaluations.constraint, "iteration"),

@@ -76,7 +76,7 @@ class Runner {
       if (is_over(*checkpoint)) return finished(sim, *checkpoint);
     }
     const std::int64_t first = sim.step();
-    if (ending_.outcome.ok()) ending_.outcome = advance(sim);
+    if (ending_.outcome.ok()) ending_.outcome = options_.cost ? advance_by_the_book(sim) : advance(sim);
     ending_.wall_s = sim.seconds();
     ending_.steps_made = sim.step() - first;
     close(sim);
@@ -239,6 +239,13 @@ class Runner {
     ending_ = load_ending(checkpoint);
     finish_monitors(sim);
     return report(sim);
+  }
+
+  Outcome advance_by_the_book(Simulation<double>& sim) {
+    const CostBook book;
+    const Outcome outcome = advance(sim);
+    report_.cost = book.entries();
+    return outcome;
   }
 
   Outcome advance(Simulation<double>& sim) const {

@@ -1,6 +1,7 @@
 #pragma once
 /// A scene, run as the program runs it: output folder, checkpoints, resume, signals, report.
 
+#include "numbers/cost_book.hpp"
 #include "numbers/simd.hpp"
 #include "scene/output_folder.hpp"
 #include "scene/scene.hpp"
@@ -19,6 +20,7 @@ struct RunOptions {
   bool handle_signals = true;    ///< SIGINT and SIGTERM end the run after its step
   bool progress = false;         ///< a line on stderr, if that is a terminal
   bool notes = false;            ///< what is done otherwise than written, and what is moved away, told on stderr
+  bool cost = false;             ///< the report tells what each part has cost
   double checkpoint_wall = 300;  ///< seconds between checkpoints
   /// Level of the lane kernels, set for the whole process; default: that of a run gone on with, else the highest.
   std::optional<SimdLevel> simd = {};
@@ -41,6 +43,7 @@ struct RunReport {
   std::int64_t steps_made = 0;        ///< in `wall_s`
   double wall_s = 0;                  ///< from the first step to the last
   Evaluations evaluations;
+  std::vector<CostBook::Entry> cost;  ///< seconds by part, the largest first; empty unless asked for
   std::vector<std::pair<std::string, MonitorReport>> monitors;
   std::filesystem::path trajectory, checkpoint;  ///< empty if there is none
 

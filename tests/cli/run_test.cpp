@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -24,6 +25,71 @@ TEST_CASE("a run reports in text, and in a pipe shows no progress", "[cli][run]"
   const auto last = result.out.rfind("\nsha256:");
   REQUIRE(last != std::string::npos);
   CHECK(result.out.size() == last + 1 + 7 + 64 + 1);
+}
+
+TEST_CASE("--cost tells the seconds of each part, which add up to those of the run, and changes no bit",
+          "[cli][run][json]") {
+  const SceneFolder folder(R"(units = "reduced"
+[particles]
+type = "lattice"
+lattice = "fcc"
+cells = [3, 3, 3]
+density = 0.8442
+mass = 1
+temperature = 1.44
+[hamiltonian]
+type = "kinetic_potential"
+[[hamiltonian.force]]
+type = "lennard_jones"
+cutoff = 2
+epsilon = 1
+sigma = 1
+[[hamiltonian.constraint]]
+type = "distance"
+pairs = [["atom_1", "atom_2"]]
+[hamiltonian.thermostat]
+type = "langevin"
+temperature = 1.44
+friction = 1
+[integrator]
+method = "BAOAB"
+step = 0.002
+steps = 200
+[[every]]
+type = "radial_distribution"
+steps = 5
+)");
+  const std::string told = output(folder, "run scene.toml --json --cost --out told");
+  REQUIRE(is_json_line(told));
+  const std::string plain = output(folder, "run scene.toml --json --out plain");
+  const auto digest = [](const std::string& json) {
+    return json.substr(json.find("sha256:", json.find("digest")), 71);
+  };
+  CHECK(digest(told) == digest(plain));
+  CHECK(plain.find("\"cost\"") == std::string::npos);
+  const auto number = [&](const std::string& key, std::size_t from) {
+    return std::stod(told.substr(told.find(key, from) + key.size()));
+  };
+  double sum = 0, share = 0;
+  for (const char* part : {R"("kind":"force","name":"lennard_jones")", R"("kind":"neighbors","name":null)",
+                           R"("kind":"constraints","name":null)", R"("kind":"thermostat","name":"langevin")",
+                           R"("kind":"monitor","name":"radial_distribution")", R"("kind":"integrator","name":null)"}) {
+    CAPTURE(part, told);
+    const std::size_t at = told.find(part);
+    REQUIRE(at != std::string::npos);
+    CHECK(number("\"seconds\":", at) > 0);
+  }
+  for (std::size_t at = told.find("\"kind\":"); at != std::string::npos; at = told.find("\"kind\":", at + 1)) {
+    sum += number("\"seconds\":", at);
+    share += number("\"share\":", at);
+  }
+  CHECK(std::abs(share - 1) < 1e-12);
+  // The book is open a little longer than the run is timed.
+  CHECK(sum >= number("\"wall_s\":", 0));
+  CHECK(sum < number("\"wall_s\":", 0) + 0.5);
+  const std::string text = output(folder, "run scene.toml --cost --out text");
+  CHECK(text.find("\ncost: ") != std::string::npos);
+  CHECK(text.find("force lennard_jones ") != std::string::npos);
 }
 
 TEST_CASE("--json is one line with every key, in one order", "[cli][run][json]") {

@@ -53,10 +53,10 @@ const std::vector<Wrong> wrong_lines = {
     {"run scene.toml --out ''", 2, "--out: the name of the folder is empty; see `noether run --help`"},
     {"run --version", 2,
      "unknown option '--version' of 'run'; expected one of: --help, --out, --threads, --simd, --until, --set, "
-     "--resume, --fresh, --quiet, --json"},
+     "--resume, --fresh, --cost, --quiet, --json"},
     {"run --foo", 2,
      "unknown option '--foo' of 'run'; expected one of: --help, --out, --threads, --simd, --until, --set, "
-     "--resume, --fresh, --quiet, --json"},
+     "--resume, --fresh, --cost, --quiet, --json"},
     {"run scene.toml --simd ''", 2, "unknown SIMD level ''; expected one of: base, avx2, avx512"},
     {"run scene.toml --simd avx3", 2, "unknown SIMD level 'avx3'; did you mean 'avx2'?"},
     {"run scene.toml --set integrator.steps", 2,

@@ -116,6 +116,88 @@ TEST_CASE("an ideal gas has g = 1, for pairs of one type, of two, and of all", "
   }
 }
 
+TEST_CASE("each type of a crystal has its own shells, and those of all types add up to the total",
+          "[radial_distribution]") {
+  // Rock salt, 1 apart: 6 of the other type at 1 and 8 at sqrt(3); 12 of the same at sqrt(2), 6 at 2.
+  ParticleSystem<double> s;
+  s.set_box(Box::periodic({6, 6, 6}));
+  auto topology = std::make_shared<Topology>();
+  topology->type_names = {"Na", "Cl"};
+  for (int k = 0; k < 216; ++k) {
+    const int x = k % 6, y = k / 6 % 6, z = k / 36;
+    s.add("", 1, {1.0 * x, 1.0 * y, 1.0 * z}, {0, 0, 0});
+    topology->types.push_back((x + y + z) % 2);
+  }
+  s.set_topology(topology);
+  const auto counts = [&](const std::vector<std::string>& types) {
+    return observed(s, RadialDistribution(21, 2.1, types)).counts();
+  };
+  const auto all = counts({}), same = counts({"Na", "Na"}), chlorine = counts({"Cl", "Cl"}),
+             other = counts({"Na", "Cl"});
+  std::vector<std::int64_t> of_same(21), of_other(21);
+  of_same[14] = 12 * 108;
+  of_same[20] = 6 * 108;
+  of_other[10] = 6 * 108;
+  of_other[17] = 8 * 108;
+  CHECK(same == of_same);
+  CHECK(chlorine == of_same);
+  CHECK(other == of_other);
+  CHECK(counts({"Cl", "Na"}) == of_other);
+  for (std::size_t k = 0; k < 21; ++k) CHECK(all[k] == same[k] + chlorine[k] + 2 * other[k]);
+  // Of g the sum is weighted by pairs.
+  const auto g = [&](const std::vector<std::string>& types) {
+    return observed(s, RadialDistribution(21, 2.1, types)).values();
+  };
+  const double total = 216 * 215, pairs = 108 * 107, mixed = 108 * 108;
+  for (const std::size_t k : {std::size_t(10), std::size_t(14)}) {
+    const double sum = (pairs * (g({"Na", "Na"})[k] + g({"Cl", "Cl"})[k]) + 2 * mixed * g({"Na", "Cl"})[k]) / total;
+    CHECK(std::abs(g({})[k] / sum - 1) < 1e-14);
+  }
+}
+
+TEST_CASE("pairs of one molecule can be left out, and then count nowhere", "[radial_distribution]") {
+  // An ideal gas of bent molecules B A A, 0.4 from atom to atom.
+  ParticleSystem<double> s = mixed_gas(3000);
+  auto bonded = std::make_shared<Topology>(*s.topology()), named = std::make_shared<Topology>(*s.topology());
+  for (Index i = 0; i < 3000; i += 3) {
+    const Vec3<double> first = s.positions()[i];
+    s.positions().set(i + 1, Vec3<double>(first + Vec3<double>(0.4, 0, 0)));
+    s.positions().set(i + 2, Vec3<double>(first + Vec3<double>(0.4, 0.24, 0.32)));
+    bonded->bonds.push_back({{i, i + 1}, 0});
+    bonded->bonds.push_back({{i + 2, i + 1}, 0});
+    for (int k = 0; k < 3; ++k) named->molecules.push_back(i + 7);
+  }
+  s.wrap();
+  std::vector<std::int64_t> alone(3000);
+  for (const auto& topology : {bonded, named}) {
+    s.set_topology(topology);
+    for (const std::vector<std::string>& types :
+         {std::vector<std::string>{}, std::vector<std::string>{"A", "B"}, std::vector<std::string>{"A", "A"}}) {
+      const RadialDistribution all = observed(s, RadialDistribution(15, 1.5, types));
+      const RadialDistribution between = observed(s, RadialDistribution(15, 1.5, types, false));
+      // 0.4 twice, and the root of 0.4^2 + 0.24^2 + 0.32^2 once; bonds may be rounded to either side of 0.4.
+      const std::int64_t bonds = types.empty() ? 4000 : 1000 * (types[1] == "B" ? 1 : 2);
+      const std::int64_t ends = types.size() == 2 && types[1] == "A" ? 0 : types.empty() ? 2000 : 1000;
+      CAPTURE(types.size(), bonds, ends);
+      CHECK(all.counts()[3] + all.counts()[4] - between.counts()[3] - between.counts()[4] == bonds);
+      CHECK(all.counts()[5] + all.counts()[6] + all.counts()[7] - between.counts()[5] - between.counts()[6] -
+                between.counts()[7] ==
+            ends);
+      for (const std::size_t k : {0U, 1U, 2U, 8U, 9U, 10U, 14U}) CHECK(all.counts()[k] == between.counts()[k]);
+      for (std::size_t k = 2; k < 15; ++k) {
+        // Pairs of the same two molecules are at similar distances: up to nine are one event.
+        CHECK(std::abs(between.values()[k] - 1) < 4 * std::sqrt(18 / static_cast<double>(between.counts()[k])));
+      }
+    }
+  }
+  // Molecule 0 is none.
+  auto nobody = std::make_shared<Topology>(*named);
+  nobody->molecules = alone;
+  s.set_topology(nobody);
+  CHECK(observed(s, RadialDistribution(15, 1.5, {}, false)).counts() ==
+        observed(s, RadialDistribution(15, 1.5)).counts());
+}
+
 TEST_CASE("g(r) is averaged over the samples, and goes on from a saved run bit for bit",
           "[radial_distribution][restart]") {
   const auto make = [] {
@@ -169,6 +251,8 @@ TEST_CASE("g(r) is refused where it makes no sense", "[radial_distribution][mess
         "types = [A] is not a pair of types; give two types, or none for all pairs");
   CHECK(refusal(s, RadialDistribution(200, {}, {"A", "C"})).find("unknown type 'C' in monitor 'radial_distribution'") ==
         0);
+  CHECK(refusal(s, RadialDistribution(200, {}, {}, false)) ==
+        "intramolecular = false has no effect, because there are neither molecules nor bonds; take it out");
   ParticleSystem<double> open = s;
   open.set_box(Box::open());
   CHECK(refusal(open, {}) ==

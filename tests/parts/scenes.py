@@ -206,6 +206,8 @@ FORCES = {
 THERMOSTATS = {
     "langevin": Case(PAIR, forces(SPRING) + "[hamiltonian.thermostat]\ntype = 'langevin'\ntemperature = 1\n"
                      "friction = 0.5\nseed = 7\n", method="BAOAB"),
+    "velocity_rescaling": Case(PAIR, forces(SPRING) + "[hamiltonian.thermostat]\ntype = 'velocity_rescaling'\n"
+                               "temperature = 1\nrelaxation_time = 0.5\nseed = 7\n"),
 }
 
 TIED = "type = 'distance'; pairs = [['one', 'two'], ['two', 'three']]"
@@ -256,6 +258,9 @@ MONITORS = {
     "pressure": seen("type = 'pressure'; steps = {cadence}", salt(LENNARD_JONES)),
     "radial_distribution": seen("type = 'radial_distribution'; bins = 10; types = ['A', 'B']; steps = {cadence}",
                                 salt(LENNARD_JONES)),
+    "dihedrals": seen("type = 'dihedrals'; bins = 12; quadruples = [['atom_1', 'atom_2', 'atom_3', 'atom_4']]; "
+                      "steps = {cadence}",
+                      Case(CHAIN, forces("type = 'bonded'"), step=0.01, files={"chain.data": CHAIN_FILE})),
     "mean_square_displacement": seen("type = 'mean_square_displacement'; length = 4; origins = 2; steps = {cadence}",
                                      salt(LENNARD_JONES)),
     "velocity_autocorrelation": seen("type = 'velocity_autocorrelation'; length = 4; origins = 2; steps = {cadence}",
