@@ -7,6 +7,7 @@
 #include "constraints/constraint_solver.hpp"
 #include "constraints/distance.hpp"
 #include "constraints/rigid_bar.hpp"
+#include "constraints/structure_constraints.hpp"
 #include "constraints/surfaces.hpp"
 #include "engine/given_orbit.hpp"
 #include "engine/orbital_elements.hpp"
@@ -65,5 +66,6 @@
 #include "scene/parts.hpp"
 #include "scene/run.hpp"
 #include "scene/scene.hpp"
+#include "scene/water_box.hpp"
 
 #include <fmt/format.h>

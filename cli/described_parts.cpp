@@ -44,7 +44,7 @@ std::vector<std::pair<std::string, PartInfo>> described_parts(const Parts& parts
     all.emplace_back("force", kind.particles > 0 ? with_particles(kind.info, kind.particles) : kind.info);
   }
   for (const auto& kind : parts.constraints()) {
-    all.emplace_back("constraint", with_particles(kind.info, kind.particles));
+    all.emplace_back("constraint", kind.of_structure ? kind.info : with_particles(kind.info, kind.particles));
   }
   for (const auto& kind : parts.systems()) all.emplace_back("system", kind.info);
   for (const auto& kind : parts.decorators()) all.emplace_back("decorator", kind.info);

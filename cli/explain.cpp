@@ -114,12 +114,24 @@ void measure_stiffness(const Scene& scene, Explanation& e) {
   }
 }
 
+/// ", without 80 of its 512 terms, which constraints hold"; empty for a force that has all of them.
+std::string held_terms(const SceneForce& force, const ParticleSystem<double>& s) {
+  const Topology* topology = s.topology();
+  if (!force.force.claims().bonded || topology == nullptr || topology->rigid.empty()) return "";
+  const auto terms = [](const Topology& t) {
+    return t.bonds.size() + t.angles.size() + t.dihedrals.size() + t.impropers.size();
+  };
+  const std::size_t all = terms(*topology), left = terms(topology->without_rigid_terms(s.size()));
+  return left == all ? "" : fmt::format(", without {} of its {} terms, which constraints hold", all - left, all);
+}
+
 void sort_parts(const Scene& scene, Explanation& e) {
   const Parts& parts = *scene.parts;
   if (scene.system) e.in.push_back("system " + scene.system->name);
   for (const SceneForce& force : scene.hamiltonian.forces) {
     const bool wide = force.force.in_quad().has_value();
-    e.in.push_back("force " + force.name + (wide ? "" : ", in double precision only: compare has no reference for it"));
+    e.in.push_back("force " + force.name + held_terms(force, scene.particles) +
+                   (wide ? "" : ", in double precision only: compare has no reference for it"));
   }
   if (const auto& bath = scene.hamiltonian.thermostat) {
     e.in.push_back("thermostat " + bath->name + keys_text(bath->effective));

@@ -71,6 +71,32 @@ void Topology::exclude(const std::vector<Pair>& pairs) {
   });
 }
 
+Topology Topology::without_rigid_terms(Index n) const {
+  std::vector<std::vector<std::size_t>> groups_of(static_cast<std::size_t>(n));  // ascending
+  const auto groups = [&](Index i) -> std::vector<std::size_t>& {
+    NOETHER_EXPECTS(i >= 0 && i < n, fmt::format("particle {} is held or bonded, but there are only {}", i, n));
+    return groups_of[static_cast<std::size_t>(i)];
+  };
+  for (std::size_t g = 0; g < rigid.size(); ++g) {
+    for (const Index i : rigid[g]) groups(i).push_back(g);
+  }
+  const auto is_rigid = [&](const auto& term) {
+    std::vector<std::size_t> common = groups(term.particles[0]);
+    for (std::size_t k = 1; k < term.particles.size() && !common.empty(); ++k) {
+      const std::vector<std::size_t>& others = groups(term.particles[k]);
+      std::erase_if(common, [&](std::size_t g) { return !std::binary_search(others.begin(), others.end(), g); });
+    }
+    return !common.empty();
+  };
+  Topology rest = *this;
+  rest.rigid.clear();
+  std::erase_if(rest.bonds, is_rigid);
+  std::erase_if(rest.angles, is_rigid);
+  std::erase_if(rest.dihedrals, is_rigid);
+  std::erase_if(rest.impropers, is_rigid);
+  return rest;
+}
+
 bool Topology::is_special(Index i, Index j) const { return pair_factor(i, j) != 1; }
 
 double Topology::pair_factor(Index i, Index j) const {

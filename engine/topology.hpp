@@ -58,6 +58,9 @@ struct Topology {
   std::vector<BondedTerm<3>> angles;  ///< the vertex in the middle
   std::vector<BondedTerm<4>> dihedrals, impropers;
   std::vector<TermKind> bond_kinds, angle_kinds, dihedral_kinds, improper_kinds;  ///< by type of the term
+  /// Groups of particles that constraints hold as rigid bodies, a bond among them as a group of two: a bonded term
+  /// within one of them is constant, and the force `bonded` leaves it out.
+  std::vector<std::vector<Index>> rigid;
 
   std::vector<PairKind> pair_kinds;  ///< by type of the particle; empty where nothing was said of Lennard-Jones
   Mixing mixing = Mixing::lorentz_berthelot;
@@ -102,6 +105,12 @@ struct Topology {
   void scale_by_bonds(Index n, const std::array<double, 3>& factors);
   /// Takes away the pair forces of these pairs too, whatever their bonds have left of them.
   void exclude(const std::vector<Pair>& pairs);
+
+  /// The same without the bonded terms within the groups of `rigid`, and without these groups.
+  /// @param n  number of particles; groups lie in [0, n)
+  /// @throws LogicError  if a group or a term names a particle that is not there
+  /// @cost O(n + terms g) with g groups for each particle
+  Topology without_rigid_terms(Index n) const;
 };
 
 }  // namespace noether

@@ -35,7 +35,8 @@ namespace noether {
 ///     impropers  harmonic            k, angle                    k (chi - angle)^2 / 2,  chi = |phi|
 ///                periodic            k, n, phase                 k (1 + cos(n phi - phase))
 ///
-/// with r the distance of the first and the last particle of an angle or a dihedral.
+/// with r the distance of the first and the last particle of an angle or a dihedral. A term within a group of particles
+/// that constraints hold rigid (`Topology::rigid`) is constant, and left out.
 ///
 /// Bonded particles may lie on both sides of a periodic box: the nearest image counts. A dihedral of which three
 /// particles are exactly in line has no angle and exerts no force. A `fene` bond of its greatest length or more ends

@@ -151,7 +151,8 @@ BondedTerms::BondedTerms(std::shared_ptr<const Topology> topology, Index n)
       angles(kinds_of(topology->angle_kinds, known_angles(), "angles")),
       dihedrals(kinds_of(topology->dihedral_kinds, known_dihedrals(), "dihedrals")),
       impropers(kinds_of(topology->improper_kinds, known_impropers(), "impropers")),
-      topology_(std::move(topology)) {
+      origin_(std::move(topology)),
+      topology_(origin_->rigid.empty() ? origin_ : std::make_shared<const Topology>(origin_->without_rigid_terms(n))) {
   check_terms(topology_->bonds, bonds.size(), n, "a bond", "Bond Coeffs");
   check_terms(topology_->angles, angles.size(), n, "an angle", "Angle Coeffs");
   check_terms(topology_->dihedrals, dihedrals.size(), n, "a dihedral", "Dihedral Coeffs");

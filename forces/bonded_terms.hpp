@@ -25,16 +25,17 @@ template <class Potential> struct BondedKind {
 ///
 /// Every particle of every term has a slot: bonds first, then angles, dihedrals and impropers, in the order of the
 /// topology; the two of a bond share one, that of the first, since the other feels the opposite. The force on a
-/// particle is the sum of its slots in that order.
+/// particle is the sum of its slots in that order. Terms within a group that constraints hold rigid are not among them.
 class BondedTerms {
  public:
   /// @param n  number of particles
   /// @throws Error  for a kind that nobody knows, parameters it does not take, and particles that are not there
   BondedTerms(std::shared_ptr<const Topology> topology, Index n);
 
+  /// The topology with the terms that are evaluated.
   const Topology& topology() const { return *topology_; }
   /// Whether these are the terms of that topology and so many particles.
-  bool belong_to(const Topology* topology, Index n) const { return topology == topology_.get() && n == particles(); }
+  bool belong_to(const Topology* topology, Index n) const { return topology == origin_.get() && n == particles(); }
 
   std::vector<BondedKind<BondPotential>> bonds;
   std::vector<BondedKind<AnglePotential>> angles;
@@ -59,7 +60,7 @@ class BondedTerms {
   const std::uint8_t* in_step(Index bond) const { return bonds_in_step_.data() + bond; }
 
  private:
-  std::shared_ptr<const Topology> topology_;
+  std::shared_ptr<const Topology> origin_, topology_;
   Index terms_ = 0, slots_ = 0;
   std::vector<std::uint32_t> first_, slot_;  ///< as `Places` has them
   std::vector<std::uint8_t> particles_in_step_, bonds_in_step_;

@@ -1,6 +1,7 @@
 #include "scene/builders.hpp"
 
 #include "numbers/random.hpp"
+#include "scene/builder_pieces.hpp"
 
 #include <fmt/format.h>
 
@@ -12,50 +13,9 @@ namespace noether {
 
 namespace {
 
-/// Streams of a seed: what is drawn for one purpose does not depend on another.
-enum Stream : std::uint32_t { velocity_stream = 1, vacancy_stream, displacement_stream, walk_stream };
-
-constexpr std::int64_t most_built = 100'000'000;
-
-using Site = Vec3<double>;
-
-/// Sites of a cell, in its edges.
-std::vector<Site> sites_of(LatticeKind kind) {
-  if (kind == LatticeKind::simple_cubic) return {Site(0, 0, 0)};
-  if (kind == LatticeKind::body_centered) return {Site(0, 0, 0), Site(0.5, 0.5, 0.5)};
-  return {Site(0, 0, 0), Site(0, 0.5, 0.5), Site(0.5, 0, 0.5), Site(0.5, 0.5, 0)};
-}
-
-/// All sites, cell by cell, in edges of a cell.
-std::vector<Site> all_sites(LatticeKind kind, const std::vector<std::int64_t>& cells) {
-  const std::vector<Site> basis = sites_of(kind);
-  std::vector<Site> sites;
-  for (std::int64_t i = 0; i < cells[0]; ++i) {
-    for (std::int64_t j = 0; j < cells[1]; ++j) {
-      for (std::int64_t k = 0; k < cells[2]; ++k) {
-        const Site corner(static_cast<double>(i), static_cast<double>(j), static_cast<double>(k));
-        for (const Site& site : basis) sites.emplace_back(corner + site);
-      }
-    }
-  }
-  return sites;
-}
-
-void check_above_zero(std::string_view key, double value, const char* what) {
-  if (value > 0 && std::isfinite(value)) return;
-  refuse_field(key, value, fmt::format("is not a valid {}; a number above 0 is expected", what));
-}
-
-void check_count(std::string_view key, std::int64_t value, std::int64_t least) {
-  if (value >= least && value <= most_built) return;
-  refuse_field(key, fmt::format("{}", value), fmt::format("is out of range; {} to {} is expected", least, most_built));
-}
-
-void check_temperature(const std::optional<double>& temperature) {
-  if (temperature && !(*temperature >= 0)) {
-    refuse_field("temperature", *temperature, "is not a valid temperature; 0 or more is expected");
-  }
-}
+using detail::all_sites, detail::check_above_zero, detail::check_count, detail::check_temperature, detail::cube;
+using detail::direction, detail::leave_vacancies, detail::most_built, detail::Site, detail::sites_of_cell;
+using detail::take_off_drift, detail::displacement_stream, detail::velocity_stream, detail::walk_stream;
 
 void check_lennard_jones(const std::optional<double>& epsilon, const std::optional<double>& sigma) {
   if (epsilon.has_value() != sigma.has_value()) {
@@ -87,41 +47,6 @@ Topology one_type(Index n, const std::optional<double>& epsilon, const std::opti
   topology.types.assign(static_cast<std::size_t>(n), 0);
   if (epsilon) topology.pair_kinds = {{*epsilon, *sigma}};
   return topology;
-}
-
-Box cube(double edge) { return Box::periodic(Vec3<double>(edge, edge, edge)); }
-
-/// A vector of length 1 in any direction.
-Vec3<double> direction(Philox& random) {
-  const auto bits = random.next();
-  const double z = 2 * open_uniform(bits[0], bits[1]) - 1, r = std::sqrt(1 - z * z);
-  const auto [cosine, sine] = detail::turn_by_series(open_uniform(bits[2], bits[3]));
-  return Vec3<double>(r * cosine, r * sine, z);
-}
-
-/// A whole number below `count` [count below 2^32].
-std::size_t lot(Philox& random, std::size_t count) {
-  return static_cast<std::size_t>((std::uint64_t{random.next()[0]} * count) >> 32U);
-}
-
-/// Moves the centre of mass to rest; returns twice the kinetic energy that is left. Plain sums, made once before a run
-/// begins, in the order of ids: their roundings stand in the trajectories of all runs that begin so.
-double take_off_drift(ParticleSystem<double>& s) {
-  Vec3<double> momentum = Vec3<double>::Zero();
-  double total = 0, twice = 0;
-  const auto& masses = std::as_const(s).masses();
-  for (Index i = 0; i < s.size(); ++i) {
-    total += masses[i];
-    momentum += masses[i] * std::as_const(s).velocities()[i];
-  }
-  const Vec3<double> drift = momentum / total;
-  for (Index i = 0; i < s.size(); ++i) {
-    if (!(masses[i] > 0)) continue;
-    const Vec3<double> v = std::as_const(s).velocities()[i] - drift;
-    s.velocities().set(i, v);
-    twice += masses[i] * v.squaredNorm();
-  }
-  return twice;
 }
 
 void warm(ParticleSystem<double>& s, const std::optional<double>& temperature, std::int64_t seed) {
@@ -158,7 +83,7 @@ void Lattice::check() const {
   const std::string shown = fmt::format("[{}]", fmt::join(cells, ", "));
   if (cells.size() != 3)
     refuse_field("cells", shown, "is not a list of three numbers; the cells along x, y and z are expected");
-  double count = static_cast<double>(sites_of(lattice).size());
+  double count = static_cast<double>(sites_of_cell(lattice));
   for (const std::int64_t n : cells) {
     if (n < 1) refuse_field("cells", shown, "contains a number below 1; whole numbers from 1 are expected");
     count *= static_cast<double>(n);
@@ -180,7 +105,7 @@ void Lattice::check() const {
 
 ParticleSystem<double> Lattice::build(const UnitSystem& units) const {
   check();
-  const double edge = constant ? *constant : std::cbrt(static_cast<double>(sites_of(lattice).size()) * mass / *density);
+  const double edge = constant ? *constant : std::cbrt(static_cast<double>(sites_of_cell(lattice)) * mass / *density);
   std::vector<Site> sites = all_sites(lattice, cells);
   for (Site& site : sites) site *= edge;
   const Vec3<double> counts(static_cast<double>(cells[0]), static_cast<double>(cells[1]),
@@ -209,11 +134,7 @@ ParticleSystem<double> Liquid::build(const UnitSystem& units) const {
   std::int64_t cells = 1;
   while (4 * cells * cells * cells < particles) ++cells;
   std::vector<Site> sites = all_sites(LatticeKind::face_centered, {cells, cells, cells});
-  Philox vacancies(static_cast<std::uint64_t>(seed), vacancy_stream);
-  while (sites.size() > wanted) {
-    sites[lot(vacancies, sites.size())] = sites.back();
-    sites.pop_back();
-  }
+  leave_vacancies(sites, wanted, seed);
   const double edge = std::cbrt(static_cast<double>(particles) * mass / density);
   const double cell = edge / static_cast<double>(cells), radius = displacement * cell / std::sqrt(2.0);
   Philox displacements(static_cast<std::uint64_t>(seed), displacement_stream);

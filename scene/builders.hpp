@@ -8,6 +8,7 @@
 
 #include "engine/description.hpp"
 #include "engine/particle_system.hpp"
+#include "scene/lattice_kind.hpp"
 
 #include <array>
 #include <cstdint>
@@ -28,14 +29,6 @@ namespace noether {
 /// @cost O(n)
 /// @source Allen2017
 void set_temperature(ParticleSystem<double>& s, double temperature, std::uint64_t seed);
-
-/// Cubic Bravais lattices.
-enum class LatticeKind : std::uint8_t { simple_cubic, body_centered, face_centered };
-
-template <> struct EnumNames<LatticeKind> {
-  static constexpr std::array<std::pair<LatticeKind, std::string_view>, 3> values = {
-      {{LatticeKind::simple_cubic, "sc"}, {LatticeKind::body_centered, "bcc"}, {LatticeKind::face_centered, "fcc"}}};
-};
 
 /// A crystal in a periodic box of whole cells, particles of one type.
 struct Lattice {

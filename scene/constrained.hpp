@@ -4,8 +4,14 @@
 
 #include "constraints/constraint_solver.hpp"
 #include "integrators/kinetic_potential.hpp"
+#include "integrators/minimize.hpp"
 
 namespace noether {
+
+/// Moves particles downhill along constraints (integrators/minimize.hpp).
+/// @throws Error  as without constraints; BadConstraints  where the particles do not start on them
+Minimized minimize(ParticleSystem<double>& s, const AnyForce<double>& forces, ConstraintSet constraints,
+                   const MinimizeOptions& options);
 
 using Constrained = KineticPotential<ForceField<double>, double, ConstraintSet>;
 

@@ -134,8 +134,13 @@ constexpr std::array names_of_others = {
     ForeignName{" soft repulsive ", NamePlace::force, "wca", "it only repels", true},
     ForeignName{" fput fpu ", NamePlace::force, "fermi_pasta_ulam"},
     // Constraints.
-    ForeignName{" shake rattle lincs settle hbonds h_bonds all_bonds rigid_bonds bond_constraint ",
-                NamePlace::constraint, "distance", "constraints are tables [[hamiltonian.constraint]]", true},
+    ForeignName{" shake rattle lincs bond_constraint ", NamePlace::constraint, "distance",
+                "constraints are tables [[hamiltonian.constraint]]", true},
+    ForeignName{" hbonds h_bonds hydrogens ", NamePlace::constraint, "hydrogen_bonds"},
+    ForeignName{" all_bonds allbonds rigid_bonds ", NamePlace::constraint, "bonds"},
+    ForeignName{" h_angles hangles all_angles allangles rigid_angles ", NamePlace::constraint, "bonds_and_angles"},
+    ForeignName{" settle rigid_water rigid_small rigid_molecule rigid_bodies ", NamePlace::constraint,
+                "rigid_molecules"},
     ForeignName{" rod bar rigid rigid_rod ", NamePlace::constraint, "rigid_bar"},
     ForeignName{" freeze frozen setforce ", NamePlace::constraint, "fixed"},
     // Monitors and files.

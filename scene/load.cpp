@@ -212,13 +212,14 @@ class SceneReader {
                                       "table",
                                       type));
     }
-    SceneValue::Array list;
+    // Before the forces: what is held is no longer for the force 'bonded'.
+    SceneValue::Array list, held;
+    if (!constraints.empty()) held = read_constraints(context_, constraints, parts_, scene_);
     for (const SceneValue* force : forces) read_force(*force, list);
     if (!list.empty()) effective.put("force", SceneValue::of(std::move(list)));
     if (thermostat != nullptr) effective.put("thermostat", read_thermostat(context_, *thermostat, parts_, scene_));
     if (neighbors != nullptr) effective.put("neighbors", read_neighbors(*neighbors));
-    if (constraints.empty()) return;
-    effective.put("constraint", SceneValue::of(read_constraints(context_, constraints, parts_, scene_)));
+    if (!held.empty()) effective.put("constraint", SceneValue::of(std::move(held)));
   }
 
   /// Refuses a box or constraints that the splitting does not know.

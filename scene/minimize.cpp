@@ -1,6 +1,6 @@
 #include "scene/minimize.hpp"
 
-#include "constraints/constraint_solver.hpp"
+#include "scene/constrained.hpp"
 #include "scene/fields.hpp"
 
 #include <fmt/format.h>
@@ -34,34 +34,11 @@ SceneValue read_minimize(const SceneContext& context, const SceneValue& table, S
   return effective;
 }
 
-namespace {
-
-/// The constraints of a scene, for the minimizer.
-class AlongConstraints final : public MinimizeAlong {
- public:
-  explicit AlongConstraints(ConstraintSet set) : solver_(std::move(set)) {}
-  void bind(ParticleSystem<double>& s) override { solver_.bind(s); }
-  void advance_positions(ParticleSystem<double>& s, double h) override { solver_.advance_positions(s, h); }
-  void project_velocities(ParticleSystem<double>& s, double h) override { solver_.project_velocities(s, h); }
-  void constrain(const ParticleSystem<double>& s, VectorColumn<double>& a) override { solver_.constrain(s, a); }
-  std::optional<Failure> take_failure() override {
-    std::optional<Failure> failure = solver_.failure();
-    solver_.forget_failure();
-    return failure;
-  }
-
- private:
-  ConstraintSolver<double> solver_;
-};
-
-}  // namespace
-
 Minimized minimize_start(Scene& scene) {
   ForceField<double> forces;
   for (const SceneForce& force : scene.hamiltonian.terms()) forces.add(force.force);  // drag has no part in a minimum
   if (scene.hamiltonian.constraints.empty()) return minimize(scene.particles, forces, *scene.minimize);
-  AlongConstraints along(constraints_of(scene, scene.hamiltonian.constraints.size()));
-  return minimize(scene.particles, forces, *scene.minimize, &along);
+  return minimize(scene.particles, forces, constraints_of(scene), *scene.minimize);
 }
 
 }  // namespace noether

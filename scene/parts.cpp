@@ -42,8 +42,11 @@
 #include "monitors/time_correlation.hpp"
 #include "monitors/variables.hpp"
 #include "scene/constrained.hpp"
+#include "scene/structure_parts.hpp"
 
 #include <algorithm>
+#include <map>
+#include <memory>
 
 namespace noether {
 
@@ -139,6 +142,10 @@ Parts standard_parts() {
   parts.add_constraint<Distance>();
   parts.add_constraint({part_info<RigidBar>(), 0, RigidBar::read, Drawn::chain});
   parts.add_constraint<Angle>();
+  parts.add_structure_constraint<RigidBonds>();
+  parts.add_structure_constraint<RigidHydrogenBonds>();
+  parts.add_structure_constraint<RigidBondsAndAngles>();
+  parts.add_structure_constraint<RigidMolecules>();
   parts.add_constraint<Fixed>();
   parts.add_constraint<OnSphere>();
   parts.add_constraint<OnPlane>();
@@ -223,6 +230,17 @@ std::vector<std::pair<std::string, PartInfo>> other_parts() {
 }
 
 namespace detail {
+
+void find_held(SceneConstraint& constraint, const std::vector<HeldDistance>& distances) {
+  const auto of_pair = std::make_shared<std::map<std::vector<Index>, HeldDistance>>();
+  for (const HeldDistance& one : distances) {
+    constraint.tied.push_back({one.particles[0], one.particles[1]});
+    of_pair->emplace(constraint.tied.back(), one);
+  }
+  constraint.add = [of_pair](ConstraintSet& set, const ParticleSystem<double>& s, const std::vector<Index>& pair) {
+    add_held(set, s, {of_pair->at(pair)});
+  };
+}
 
 void attach(Simulation<double>& sim, const Cadence& cadence, AnyMonitor<double> monitor) {
   sim.attach(std::move(monitor),

@@ -3,6 +3,7 @@
 
 #include "constraints/constraint.hpp"
 #include "constraints/constraint_set.hpp"
+#include "constraints/structure_constraints.hpp"
 #include "engine/any_force.hpp"
 #include "engine/simulation.hpp"
 #include "forces/sum.hpp"
@@ -94,6 +95,8 @@ struct SceneConstraint {
   SceneValue effective;
   TiedParticles tied;
   std::function<void(ConstraintSet&, const ParticleSystem<double>&, const std::vector<Index>&)> add;
+  /// Of one that finds its particles in a structure: fills in `tied` and `add`. `bonded` leaves out what it holds.
+  std::function<void(SceneConstraint&, const ParticleSystem<double>&)> find = {};
 
   void add_to(ConstraintSet& set, const ParticleSystem<double>& s) const {
     for (const std::vector<Index>& particles : tied) add(set, s, particles);
@@ -139,6 +142,9 @@ namespace detail {
 /// The values of `start = [...]`. @throws SceneError  unless there are as many as the system has variables
 std::vector<double> read_start(const TableReader& reader, const SceneValue& list, Index size,
                                const std::vector<std::string>& names);
+
+/// Ties the pairs of a structure that are held.
+void find_held(SceneConstraint& constraint, const std::vector<HeldDistance>& distances);
 
 /// Attaches a monitor or writer that looks as a scene says.
 void attach(Simulation<double>& sim, const Cadence& cadence, AnyMonitor<double> monitor);
@@ -192,9 +198,10 @@ class Parts {
   };
   struct ConstraintKind {
     PartInfo info;
-    std::size_t particles;                              ///< of each constraint; 0: any number
+    std::size_t particles;  ///< of each constraint; 0: any number, or those that the structure tells
     std::function<SceneConstraint(TableReader&)> read;  ///< all but which particles
     Drawn drawn = Drawn::nothing;                       ///< in pictures
+    bool of_structure = false;                          ///< it finds its particles itself: the table names none
   };
   struct SystemKind {
     PartInfo info;
@@ -265,6 +272,14 @@ class Parts {
     static_assert(Described<C>, "a constraint in a scene describes itself: static constexpr auto describe()");
     ConstraintKind kind{part_info<C>(), C::particles, [](TableReader& reader) { return read_constraint<C>(reader); }};
     if constexpr (requires { C::drawn; }) kind.drawn = C::drawn;
+    put(constraints_, std::move(kind));
+    return *this;
+  }
+  /// The same for one that finds its particles in a structure: a struct of parameters, `lengths` among them, with what
+  /// it holds as `static constexpr RigidTerms what` (constraints/structure_constraints.hpp).
+  template <class C> Parts& add_structure_constraint() {
+    ConstraintKind kind{part_info<C>(), 0, [](TableReader& reader) { return read_structure_constraint<C>(reader); }};
+    kind.of_structure = true;
     put(constraints_, std::move(kind));
     return *this;
   }
@@ -402,6 +417,17 @@ class Parts {
       std::array<Index, C::particles> tied{};
       std::copy(particles.begin(), particles.end(), tied.begin());
       set.add(s, constraint, tied);
+    };
+    return made;
+  }
+
+  template <class C> static SceneConstraint read_structure_constraint(TableReader& reader) {
+    C constraint{};
+    read_part(reader, constraint);
+    SceneConstraint made{std::string(part_name<C>()), SceneValue::table(), {}, {}};
+    put_fields(reader, constraint, made.effective);
+    made.find = [constraint](SceneConstraint& found, const ParticleSystem<double>& s) {
+      detail::find_held(found, held_distances(s, C::what, constraint.lengths));
     };
     return made;
   }

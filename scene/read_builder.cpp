@@ -2,6 +2,7 @@
 
 #include "scene/builders.hpp"
 #include "scene/foreign_names.hpp"
+#include "scene/water_box.hpp"
 
 #include <fmt/format.h>
 
@@ -26,7 +27,7 @@ template <class Builder> BuilderKind builder_kind() {
 
 const std::vector<BuilderKind>& builders() {
   static const std::vector<BuilderKind> all = {builder_kind<Lattice>(), builder_kind<Liquid>(),
-                                               builder_kind<PolymerChains>()};
+                                               builder_kind<PolymerChains>(), builder_kind<WaterBox>()};
   return all;
 }
 

@@ -1,6 +1,7 @@
 #include "scene/read_constraints.hpp"
 
 #include "constraints/constraint_solver.hpp"
+#include "constraints/structure_constraints.hpp"
 #include "scene/read_tied.hpp"
 
 #include <fmt/format.h>
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
 
 namespace noether {
 
@@ -68,6 +70,15 @@ void put_options(const ConstraintOptions& options, const UnitSystem& units, Scen
   effective.put("iterations", detail::field_value(options.iterations, "1", units));
 }
 
+/// Takes the bonded terms that constraints of the structure hold out of the force `bonded`.
+void leave_out_held_terms(Scene& scene) {
+  ConstraintSet held;
+  for (const SceneConstraint& constraint : scene.hamiltonian.constraints) {
+    if (constraint.find) constraint.add_to(held, scene.particles);
+  }
+  if (!held.empty()) leave_out_rigid_terms(scene.particles, held);
+}
+
 }  // namespace
 
 SceneValue::Array read_constraints(const SceneContext& context, const std::vector<const SceneValue*>& tables,
@@ -80,14 +91,16 @@ SceneValue::Array read_constraints(const SceneContext& context, const std::vecto
     const auto [kind, type] = kind_of_part(context, *table, path, "constraint", parts.constraints(), {});
     TableReader reader(context, *table, fmt::format("constraint '{}'", type), path);
     reader.find("type");
-    TiedReader tied(reader, kind->particles, scene.particles);
+    std::optional<TiedReader> tied;
+    if (!kind->of_structure) tied.emplace(reader, kind->particles, scene.particles);
     for (const char* key : {"solver", "tolerance", "iterations"}) reader.find(key);
     SceneConstraint constraint = kind->read(reader);
     SceneValue effective = SceneValue::table();
     effective.put("type", SceneValue::of(type, reader.line("type")));
-    constraint.tied = tied.read(effective);
+    if (tied) constraint.tied = tied->read(effective);
     for (auto& [key, value] : *constraint.effective.get<SceneValue::Table>()) effective.put(key, value);
     try {
+      if (constraint.find) constraint.find(constraint, scene.particles);
       ConstraintSet alone;
       constraint.add_to(alone, scene.particles);
     } catch (const Error& error) {
@@ -97,6 +110,7 @@ SceneValue::Array read_constraints(const SceneContext& context, const std::vecto
     constraint.effective = std::move(effective);
     made.constraints.push_back(std::move(constraint));
   }
+  leave_out_held_terms(scene);
   for (SceneValue& one : list) put_options(made.constraint_options, *scene.units, one);
   return list;
 }

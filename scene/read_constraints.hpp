@@ -7,7 +7,8 @@
 
 namespace noether {
 
-/// Reads the tables of constraints on the particles of a scene, which are there already, into its Hamiltonian.
+/// Reads the tables of constraints on the particles of a scene, which are there already, into its Hamiltonian. Bonded
+/// terms that constraints of the structure hold are taken out of the force `bonded`.
 /// @return the tables with every default, as files store them
 /// @throws SceneError
 SceneValue::Array read_constraints(const SceneContext& context, const std::vector<const SceneValue*>& tables,

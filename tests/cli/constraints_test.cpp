@@ -83,6 +83,15 @@ TEST_CASE("explain counts constraints and what they leave; describe and list kno
   CHECK(has(described, "@article{RyckaertCiccottiBerendsen1977"));
 }
 
+TEST_CASE("explain tells which bonded terms constraints of a structure have taken", "[cli][constraints]") {
+  const PendulumFolder folder;
+  const std::string scenes = NOETHER_SOURCE_DIR "/tests/scenes/good/";
+  const std::string text = output(folder, "explain " + scenes + "hydrogen_bonds.toml");
+  CHECK(has(text, "force bonded, without 80 of its 512 terms, which constraints hold\n"));
+  CHECK(has(text, "constraint hydrogen_bonds, 80 times\n"));
+  CHECK(has(output(folder, "explain " + scenes + "water_flexible.toml"), "force bonded\n"));
+}
+
 }  // namespace
 }  // namespace noether::test
 

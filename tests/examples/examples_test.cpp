@@ -51,6 +51,7 @@ const std::vector<Example> all = {
     {"spherical_pendulum", spherical_pendulum::program, Length::quick},
     {"template_project", template_project::program, Length::quick},
     {"two_phase_slab", two_phase_slab::program, Length::slow, Bits::of_this_machine, 100},
+    {"water_box", water_box::program, Length::nightly, Bits::of_this_machine, 50},
 };
 
 /// Programs write trajectories: without HDF5 they cannot run.

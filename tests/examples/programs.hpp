@@ -10,6 +10,7 @@
 #include "constraints/constraint_residual.hpp"
 #include "constraints/constraint_solver.hpp"
 #include "constraints/distance.hpp"
+#include "constraints/structure_constraints.hpp"
 #include "constraints/surfaces.hpp"
 #include "engine/simulation.hpp"
 #include "engine/statistics.hpp"
@@ -20,6 +21,7 @@
 #include "forces/henon_heiles.hpp"
 #include "forces/lennard_jones.hpp"
 #include "forces/linear_drag.hpp"
+#include "forces/pair_potentials.hpp"
 #include "forces/sum.hpp"
 #include "integrators/all_schemes.hpp"
 #include "integrators/composition.hpp"
@@ -36,13 +38,16 @@
 #include "monitors/monitors.hpp"
 #include "monitors/orbital_monitors.hpp"
 #include "monitors/pressure.hpp"
+#include "monitors/radial_distribution.hpp"
 #include "monitors/shadow_hamiltonian.hpp"
 #include "monitors/temperature.hpp"
 #include "monitors/time_correlation.hpp"
 #include "monitors/variables.hpp"
 #include "numbers/units.hpp"
 #include "scene/builders.hpp"
+#include "scene/constrained.hpp"
 #include "scene/run.hpp"
+#include "scene/water_box.hpp"
 
 #include <fmt/format.h>
 
@@ -53,6 +58,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace examples {
 
@@ -142,6 +148,9 @@ namespace examples::template_project {
 }
 namespace examples::two_phase_slab {
 #include "examples/two_phase_slab/main.cpp"
+}
+namespace examples::water_box {
+#include "examples/water_box/main.cpp"
 }
 #undef run_until
 #undef run

@@ -109,11 +109,11 @@ def expect(holds, message):
 def scene_text(case, cadences, method=None, steps=scenes.STEPS):
     """The scene with watchers at these cadences; `method` is one that chooses its steps."""
     look, frame, save = cadences
-    text = 'units = "reduced"\n' + case.place + case.motion
+    text = f'units = "{case.units}"\n' + case.place + case.motion
     if method:
         text += f'[integrator]\nmethod = "{method}"\nrtol = 1e-6\nsteps = {steps}\n'
     else:
-        text += f'[integrator]\nmethod = "{case.method}"\nstep = {case.step}\nsteps = {steps}\n'
+        text += f'[integrator]\nmethod = "{case.method}"\nstep = {json.dumps(case.time())}\nsteps = {steps}\n'
     watched = [("energy", look)] if case.energy else []
     watched += [("trajectory", frame), ("checkpoint", save)]
     for kind, cadence in watched:
@@ -169,8 +169,8 @@ class Walk:
         return "yes"
 
     def restart(self):
-        end = self.case.step * HALF
-        part = self.run_once("scene.toml", "half", "--until", repr(end), "--threads", "1")
+        end = str(self.case.time(HALF))
+        part = self.run_once("scene.toml", "half", "--until", end, "--threads", "1")
         expect(part["step"] == HALF, f"a run until {end} ends at step {part['step']} instead of {HALF}")
         rest = self.run_once("scene.toml", "half", "--resume", "--threads", "2")
         expect(rest["resumed_from_step"] == HALF, f"a run goes on from step {rest['resumed_from_step']}")
@@ -195,8 +195,8 @@ class Walk:
 
     def truth(self):
         case = self.case
-        found = self.study("compare", case.rivals, "--steps", f"{case.step},{case.step / 2}", "--until",
-                           repr(LONGER * case.step), "--repeat", "1", "--out", "compared")
+        found = self.study("compare", case.rivals, "--steps", f"{case.time()},{case.time(0.5)}", "--until",
+                           str(case.time(LONGER)), "--repeat", "1", "--out", "compared")
         expect(len(found["rows"]) == 2 * len(case.rivals), f"`compare` has {len(found['rows'])} rows")
         for row in found["rows"]:
             expect(row["outcome"] == "completed", f"`compare` runs {row['method']} to {row['outcome']}")

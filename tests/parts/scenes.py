@@ -1,7 +1,7 @@
 """A short scene for every part: what tests/parts/every_part.py walks through all commands.
 
 Parts are found by the program itself; one that has no scene here fails the test by name. A case is the text of its
-tables; units are reduced and times bare numbers in all of them.
+tables; units are reduced and times bare numbers in all of them but those of water.
 """
 
 import dataclasses
@@ -28,7 +28,13 @@ class Case:
     rivals: tuple = RIVALS                       # methods of `compare` and `advise`; the first is that of `stability`
     energy: bool = True
     particles: bool = True
+    units: str = "reduced"
+    unit: str = ""                               # of times, where units are not reduced
     files: dict = dataclasses.field(default_factory=dict)
+
+    def time(self, steps=1):
+        """So many steps, as a number or with its unit."""
+        return f"{self.step * steps:.12g} {self.unit}" if self.unit else self.step * steps
 
 
 def body(name, mass, x, v, more=""):
@@ -210,6 +216,76 @@ THERMOSTATS = {
                                "temperature = 1\nrelaxation_time = 0.5\nseed = 7\n"),
 }
 
+# A molecule of four that is no plane, under a weak spring: a chain whose bonds and ends of angles are held.
+BRANCH_FILE = """four beads
+
+4 atoms
+3 bonds
+2 angles
+2 atom types
+1 bond types
+1 angle types
+
+0 8 xlo xhi
+0 8 ylo yhi
+0 8 zlo zhi
+
+Masses
+
+1 1.0
+2 0.5
+
+Atoms # molecular
+
+1 1 2 3.0 3.0 3.0
+2 1 1 4.0 3.0 3.0
+3 1 1 4.0 4.0 3.0
+4 1 2 4.0 4.0 4.0
+
+Velocities
+
+1 0.1 0.0 0.2
+2 0.0 -0.1 0.1
+3 -0.1 0.1 0.0
+4 0.1 0.0 -0.1
+
+Bonds
+
+1 1 1 2
+2 1 2 3
+3 1 3 4
+
+Angles
+
+1 1 1 2 3
+2 1 2 3 4
+
+Bond Coeffs # harmonic
+
+1 20.0 1.0
+
+Angle Coeffs # harmonic
+
+1 5.0 90.0
+"""
+BRANCH = '[particles]\nstructure = "branch.data"\nfile_units = "lj"\n'
+WATER = ("[particles]\ntype = 'water_box'\nmodel = 'spc_fw'\nmolecules = 2\ndensity = '0.3 g/cm^3'\n"
+         "temperature = '100 K'\n")
+
+
+def held(what):
+    """A constraint that finds its particles in a structure, in which it leaves something to move."""
+    return Case(BRANCH, forces("type = 'bonded'") + table("hamiltonian.constraint", f"type = '{what}'"),
+                rivals=WHOLE_STEPS, step=0.01, files={"branch.data": BRANCH_FILE})
+
+
+def water(constraint=""):
+    """Flexible water, or with a constraint; in units of its own."""
+    more = table("hamiltonian.constraint", constraint) if constraint else ""
+    return Case(WATER, forces("type = 'bonded'") + more, units="molecular", step=0.2, unit="fs",
+                rivals=WHOLE_STEPS if constraint else RIVALS)
+
+
 TIED = "type = 'distance'; pairs = [['one', 'two'], ['two', 'three']]"
 
 CONSTRAINTS = {
@@ -217,6 +293,10 @@ CONSTRAINTS = {
     "rigid_bar": constrained(BAR, "type = 'rigid_bar'; bodies = ['one', 'two', 'three']"),
     "angle": constrained(BENT, "type = 'angle'; triples = [['one', 'two', 'three']]",
                          "type = 'harmonic_bond'; pairs = [['one', 'two'], ['two', 'three']]; k = 50; length = 1"),
+    "bonds": held("bonds"),
+    "hydrogen_bonds": water("type = 'hydrogen_bonds'"),
+    "bonds_and_angles": held("bonds_and_angles"),
+    "rigid_molecules": held("rigid_molecules"),
     "fixed": constrained(BEAD, "type = 'fixed'; bodies = ['bead']"),
     "on_sphere": constrained(BEAD, "type = 'on_sphere'; bodies = ['bead']"),
     "on_plane": constrained(BEAD, "type = 'on_plane'; bodies = ['bead']; normal = [1, 0, 1]"),
@@ -289,6 +369,7 @@ BUILDERS = {
                    forces(LENNARD_JONES), step=0.002),
     "polymer_chains": Case("[particles]\ntype = 'polymer_chains'\nchains = 2\nbeads = 4\ndensity = 0.1\nmass = 1\n"
                            "bending = 1\ntemperature = 0.5\n", forces("type = 'bonded'"), step=0.002),
+    "water_box": water(),
 }
 
 # A list that the program has of each kind, the table of cases for it, and what a page says of it.

@@ -109,6 +109,8 @@ TEST_CASE("names of other programs get what there is here", "[proposals]") {
   CHECK(force("Coulomb Force").starts_with("; in its place there is 'reaction_field' ("));
   CHECK(proposal("energies", names_of(parts.monitors())) == "; did you mean 'energy'?");
   CHECK(proposal("shake", names_of(parts.constraints())).starts_with("; in its place there is 'distance' ("));
+  CHECK(proposal("h-bonds", names_of(parts.constraints())) == "; did you mean 'hydrogen_bonds'?");
+  CHECK(proposal("settle", names_of(parts.constraints())) == "; did you mean 'rigid_molecules'?");
   CHECK(proposal("zzzz", {"a", "b"}) == "; expected one of: a, b");
 }
 
