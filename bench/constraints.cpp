@@ -154,6 +154,7 @@ int main(int count, char** arguments) {
   add("chain10000", chain(10'000), 1, false);
   add("chain10", chain(10), 1, true);
   add("water", water(), 512, true);
+  cases.push_back(made("water/settle", water(), 512, {.solver = ConstraintMethod::settle}));
   add("decane_united", chain(9), 256, true);
   add("decane", decane(), 256, true);
   add("cyclohexane", ring(), 256, true);

@@ -16,7 +16,8 @@ namespace noether {
 /// How the equations of constraints are solved.
 enum class ConstraintMethod : std::uint8_t {
   newton,  ///< all at once, to rounding: sparse factorisations, chord steps, fresh matrices where these are slow
-  rattle   ///< one after the other in sweeps, to a tolerance (SHAKE for positions, RATTLE for velocities)
+  rattle,  ///< one after the other in sweeps, to a tolerance (SHAKE for positions, RATTLE for velocities)
+  settle   ///< rigid molecules of three sites, two of them equal, in closed form
 };
 
 template <class Real> class ConstraintEquations;
@@ -34,8 +35,9 @@ using MoleculeKernelsInUse = const MoleculeKernels&();
 struct ConstraintMethodInfo {
   ConstraintMethod method;
   std::string_view name;
-  bool to_rounding;             ///< else to ConstraintOptions::tolerance in at most ConstraintOptions::iterations
-  MoleculeKernelsInUse* lanes;  ///< for molecules held by distances alone; null: they are solved with all others
+  bool to_rounding;                 ///< else to ConstraintOptions::tolerance in at most ConstraintOptions::iterations
+  MoleculeKernelsInUse* lanes;      ///< for molecules held by distances alone; null: for no others
+  MoleculeKernelsInUse* triangles;  ///< for rigid ones of three sites
   MakeConstraintStages<double>* make;
   MakeConstraintStages<Quad>* make_quad;
 };
@@ -49,13 +51,17 @@ std::unique_ptr<ConstraintStages<Real>> sweep_constraints(const ConstraintEquati
 // In `molecule_lanes.cpp`.
 const MoleculeKernels& newton_in_lanes();
 const MoleculeKernels& sweeps_in_lanes();
+const MoleculeKernels& triangles_in_lanes();
+const MoleculeKernels& settle_in_lanes();
 
 /// Every solver, in the order of ConstraintMethod.
 inline constexpr std::array constraint_methods{
-    ConstraintMethodInfo{ConstraintMethod::newton, "newton", true, newton_in_lanes, newton_constraints,
-                         newton_constraints},
-    ConstraintMethodInfo{ConstraintMethod::rattle, "rattle", false, sweeps_in_lanes, sweep_constraints,
+    ConstraintMethodInfo{ConstraintMethod::newton, "newton", true, newton_in_lanes, triangles_in_lanes,
+                         newton_constraints, newton_constraints},
+    ConstraintMethodInfo{ConstraintMethod::rattle, "rattle", false, sweeps_in_lanes, sweeps_in_lanes, sweep_constraints,
                          sweep_constraints},
+    ConstraintMethodInfo{ConstraintMethod::settle, "settle", true, nullptr, settle_in_lanes, newton_constraints,
+                         newton_constraints},
 };
 
 constexpr const ConstraintMethodInfo& info_of(ConstraintMethod method) {

@@ -20,7 +20,9 @@ struct ConstraintOptions {
   static constexpr auto describe() {
     return part<ConstraintOptions>(
         "constraint_solver", "how constraints are solved",
-        field<&ConstraintOptions::solver>("solver", "1", "newton: to rounding; rattle: by sweeps to a tolerance"),
+        field<&ConstraintOptions::solver>("solver", "1",
+                                          "newton: to rounding; rattle: by sweeps to a tolerance; settle: rigid "
+                                          "molecules of three sites in closed form"),
         field<&ConstraintOptions::tolerance>("tolerance", "1",
                                              "for rattle: largest relative violation that may remain"),
         field<&ConstraintOptions::iterations>("iterations", "1", "for rattle: largest number of sweeps per stage"));

@@ -60,7 +60,6 @@ template <class Real> void ConstraintSolver<Real>::bind(ParticleSystem<Real>& s)
 
 template <class Real> void ConstraintSolver<Real>::lay_out_lanes(const ParticleSystem<Real>& s) {
   if constexpr (std::is_same_v<Real, double>) {
-    if (info_of(equations_.options().solver).lanes == nullptr) return;
     ConstraintSet rest = lanes_.lay_out(set(), s);
     if (lanes_.empty()) return;
     others_ = std::make_unique<ConstraintEquations<Real>>(std::move(rest));
@@ -150,7 +149,7 @@ template <class Real> void ConstraintSolver<Real>::advance_positions(ParticleSys
   ConstraintEquations<Real>& equations = moving();
   VectorColumn<Real>& x = equations.move_freely(s, h);
   prepared_ = false;
-  if (solve_in_lanes(s, x, h) && stages_->solve_positions(equations, s, x, h)) {
+  if (stages_->solve_positions(equations, s, x, h) && solve_in_lanes(s, x, h)) {
     equations.arrive(s, x, h);
     Index turned = -1;
     if (equations.on_this_side(&turned)) return;

@@ -10,5 +10,9 @@ namespace noether {
 NOETHER_KERNELS(MoleculeKernels, newton_lanes)
 /// Constraint after constraint in sweeps, to a tolerance: SHAKE and RATTLE.
 NOETHER_KERNELS(MoleculeKernels, sweep_lanes)
+/// Newton's method for rigid molecules of three sites, whose violation is quadratic in three multipliers.
+NOETHER_KERNELS(MoleculeKernels, triangle_lanes)
+/// The closed form for those of two equal sites.
+NOETHER_KERNELS(MoleculeKernels, settle_lanes)
 
 }  // namespace noether

@@ -3,9 +3,13 @@
 #include "constraints/distance.hpp"
 #include "constraints/molecule_kernels_simd.hpp"
 #include "constraints/partition.hpp"
+#include "constraints/rigid_triangle.hpp"
 #include "numbers/parallel.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <map>
 #include <utility>
 
@@ -40,38 +44,86 @@ MoleculeColumns columns_of(const ParticleSystem<double>& s, const VectorColumn<d
 
 }  // namespace
 
+/// A component that lanes take, a lone apex of three atoms in front.
+std::optional<MoleculeLanes::Molecule> MoleculeLanes::molecule_of(const ConstraintSet& set, const Partition& parts,
+                                                                  Index component,
+                                                                  const ParticleSystem<double>& s) const {
+  const auto constraints = parts.constraints(component);
+  const auto is_distance = [&](const Partition::Member& m) { return distances(*set.groups()[at(m.group)]) != nullptr; };
+  if (constraints.size() > most_constraints || !std::all_of(constraints.begin(), constraints.end(), is_distance))
+    return {};
+  Molecule molecule{{parts.particles(component).begin(), parts.particles(component).end()}, {}, {}};
+  std::vector<int> place(molecule.particles.size());
+  for (std::size_t a = 0; a < place.size(); ++a) place[a] = static_cast<int>(a);
+  if (place.size() == 3) {
+    const auto mass = [&](std::size_t a) { return s.masses()[molecule.particles[a]]; };
+    const std::size_t apex = mass(1) == mass(2) ? 0 : mass(0) == mass(2) ? 1 : mass(0) == mass(1) ? 2 : 0;
+    std::swap(molecule.particles[0], molecule.particles[apex]);
+    std::swap(place[0], place[apex]);
+  }
+  const auto places = parts.places(parts.kind(component));
+  for (std::size_t k = 0; k < constraints.size(); ++k) {
+    const Partition::Member& m = constraints[k];
+    molecule.pairs.emplace_back(place[at(places[2 * k])], place[at(places[2 * k + 1])]);
+    molecule.lengths.push_back(*distances(*set.groups()[at(m.group)])->constraint(m.constraint).length);
+  }
+  return molecule;
+}
+
+/// What is constant of molecules of three sites, all of them alike.
+std::optional<RigidTriangle> MoleculeLanes::triangle_of(const std::vector<Index>& molecules,
+                                                        const ParticleSystem<double>& s) const {
+  const Molecule& first = molecules_[at(molecules.front())];
+  const bool alike = std::all_of(molecules.begin(), molecules.end(),
+                                 [&](Index m) { return molecules_[at(m)].lengths == first.lengths; });
+  if (first.particles.size() != 3 || first.pairs.size() != 3 || !alike) return {};
+  std::array<double, 3> inverse_masses{}, lengths2{};
+  for (std::size_t a = 0; a < 3; ++a) inverse_masses[a] = 1 / s.masses()[first.particles[a]];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto [a, b] = first.pairs[k];
+    lengths2[static_cast<std::size_t>(a + b - 1)] = first.lengths[k] * first.lengths[k];  // 0-1, 0-2, 1-2
+  }
+  return rigid_triangle(inverse_masses, lengths2);
+}
+
 ConstraintSet MoleculeLanes::lay_out(const ConstraintSet& set, const ParticleSystem<double>& s) {
   *this = {};
   options_ = set.options();
+  const bool all = info_of(options_.solver).lanes != nullptr;
   const Partition parts(set, s.masses());
   std::vector<bool> left(at(set.equations()), true);
   std::map<std::vector<double>, std::vector<Index>> kinds;  // by all that makes a molecule what it is
   std::vector<std::vector<double>> order;
   for (Index component = 0; component < parts.components(); ++component) {
-    const auto constraints = parts.constraints(component);
-    const auto is_distance = [&](const Partition::Member& m) {
-      return distances(*set.groups()[at(m.group)]) != nullptr;
-    };
-    if (constraints.size() > most_constraints || !std::all_of(constraints.begin(), constraints.end(), is_distance))
-      continue;
-    Molecule molecule{{parts.particles(component).begin(), parts.particles(component).end()}, {}, {}};
-    std::vector<double> what;
-    for (const Index i : molecule.particles) what.push_back(s.masses()[i]);
-    const auto places = parts.places(parts.kind(component));
-    for (std::size_t k = 0; k < constraints.size(); ++k) {
-      const Partition::Member& m = constraints[k];
-      molecule.pairs.emplace_back(static_cast<int>(places[2 * k]), static_cast<int>(places[2 * k + 1]));
-      molecule.lengths.push_back(*distances(*set.groups()[at(m.group)])->constraint(m.constraint).length);
-      what.insert(what.end(), {static_cast<double>(places[2 * k]), static_cast<double>(places[2 * k + 1])});
-      left[at(m.equation)] = false;
-    }
-    what.push_back(static_cast<double>(molecule.particles.size()));
+    std::optional<Molecule> molecule = molecule_of(set, parts, component, s);
+    if (!molecule) continue;
+    std::vector<double> what{static_cast<double>(molecule->particles.size())};
+    for (const Index i : molecule->particles) what.push_back(s.masses()[i]);
+    for (const auto& [a, b] : molecule->pairs)
+      what.insert(what.end(), {static_cast<double>(a), static_cast<double>(b)});
+    if (!all) what.insert(what.end(), molecule->lengths.begin(), molecule->lengths.end());
+    for (const Partition::Member& m : parts.constraints(component)) left[at(m.equation)] = false;
     auto [found, is_new] = kinds.emplace(what, std::vector<Index>{});
     if (is_new) order.push_back(what);
     found->second.push_back(static_cast<Index>(molecules_.size()));
-    molecules_.push_back(std::move(molecule));
+    molecules_.push_back(std::move(*molecule));
   }
   for (const auto& what : order) add_kind(std::move(kinds[what]), s);
+  if (all) return set.only(left);
+  const auto refuse = [&](const std::string& words) {
+    throw BadConstraints(
+        fmt::format("{} is not of a rigid molecule of three sites, two of them equal, which solver = "
+                    "\"{}\" is for; use \"newton\"",
+                    words, info_of(options_.solver).name));
+  };
+  for (std::size_t e = 0; e < left.size(); ++e) {
+    if (left[e]) refuse(set.words(static_cast<Index>(e), s));
+  }
+  for (const Kind& kind : kinds_) {
+    if (kind.triangle && kind.triangle->isosceles) continue;
+    const std::vector<Index>& tied = molecules_[at(kind.molecules.front())].particles;
+    refuse(fmt::format("distance of '{}' and '{}'", s.name(tied[0]), s.name(tied[1])));
+  }
   return set.only(left);
 }
 
@@ -101,13 +153,16 @@ void MoleculeLanes::add_kind(std::vector<Index> molecules, const ParticleSystem<
       kind.lengths2[at((pack * 2 * n + n + k) * lanes + lane)] = 1 / (length * length);
     }
   }
+  kind.triangle = triangle_of(kind.molecules, s);
   kind.first_report = static_cast<Index>(reports_.size());
   reports_.resize(reports_.size() + at(kind.packs));
   kinds_.push_back(std::move(kind));
 }
 
 template <class Work> void MoleculeLanes::for_packs(const Work& work) {
+  const ConstraintMethodInfo& info = info_of(options_.solver);
   for (const Kind& kind : kinds_) {
+    const MoleculeKernels& kernels = kind.triangle ? info.triangles() : info.lanes();
     const EliminationLists lists = kind.elimination.lists();
     const Index share = std::max<Index>(1, share_of_thread / (lists.constraints * kind.lanes));
     const Index shares = (kind.packs + share - 1) / share;
@@ -118,14 +173,19 @@ template <class Work> void MoleculeLanes::for_packs(const Work& work) {
       const Index from = begin / block_size * share;
       for (Index p = from; p < std::min(kind.packs, from + share); ++p) {
         const Index molecules = std::min<Index>(kind.lanes, static_cast<Index>(kind.molecules.size()) - p * kind.lanes);
-        const MoleculePack pack{.lanes = kind.lanes,
-                                .live = (1U << molecules) - 1,
-                                .kind = &lists,
-                                .atoms = kind.atoms.data() + p * lists.atoms * kind.lanes,
-                                .side_by_side = kind.side_by_side,
-                                .lengths2 = kind.lengths2.data() + p * 2 * lists.constraints * kind.lanes,
-                                .scratch = scratch.data()};
-        work(pack, reports_[at(kind.first_report + p)]);
+        const std::int32_t* const atoms = kind.atoms.data() + p * lists.atoms * kind.lanes;
+        const bool full = molecules == kind.lanes;
+        const MoleculePack pack{
+            .lanes = kind.lanes,
+            .live = (1U << molecules) - 1,
+            .kind = &lists,
+            .atoms = atoms,
+            .side_by_side = kind.side_by_side,
+            .in_a_row = kind.side_by_side && full && atoms[kind.lanes - 1] - atoms[0] == lists.atoms * (kind.lanes - 1),
+            .triangle = kind.triangle ? &*kind.triangle : nullptr,
+            .lengths2 = kind.lengths2.data() + p * 2 * lists.constraints * kind.lanes,
+            .scratch = scratch.data()};
+        work(kernels, pack, reports_[at(kind.first_report + p)]);
       }
     });
   }
@@ -139,18 +199,16 @@ MoleculeTask MoleculeLanes::task(double h) const {
 
 MoleculeLanes::Solved MoleculeLanes::solve_positions(const ParticleSystem<double>& s, const VectorColumn<double>& start,
                                                      VectorColumn<double>& x, VectorColumn<double>& v, double h) {
-  const MoleculeKernels& kernels = info_of(options_.solver).lanes();
   const MoleculeColumns columns = columns_of(s, start, &x, v);
-  for_packs([&, task = task(h)](const MoleculePack& pack, MoleculeReport& report) {
+  for_packs([&, task = task(h)](const MoleculeKernels& kernels, const MoleculePack& pack, MoleculeReport& report) {
     report = kernels.solve_positions(pack, columns, task);
   });
   return solved();
 }
 
 MoleculeLanes::Solved MoleculeLanes::project_velocities(ParticleSystem<double>& s, double h) {
-  const MoleculeKernels& kernels = info_of(options_.solver).lanes();
   const MoleculeColumns columns = columns_of(s, std::as_const(s).positions(), nullptr, s.velocities());
-  for_packs([&, task = task(h)](const MoleculePack& pack, MoleculeReport& report) {
+  for_packs([&, task = task(h)](const MoleculeKernels& kernels, const MoleculePack& pack, MoleculeReport& report) {
     report = kernels.project_velocities(pack, columns, task);
   });
   return solved();
@@ -173,6 +231,8 @@ MoleculeLanes::Solved MoleculeLanes::solved() const {
 
 const MoleculeKernels& newton_in_lanes() { return newton_lanes(); }
 const MoleculeKernels& sweeps_in_lanes() { return sweep_lanes(); }
+const MoleculeKernels& triangles_in_lanes() { return triangle_lanes(); }
+const MoleculeKernels& settle_in_lanes() { return settle_lanes(); }
 
 ConstraintSet MoleculeLanes::constraints(Index molecule, const ParticleSystem<double>& alone) const {
   const Molecule& of = molecules_[at(molecule)];

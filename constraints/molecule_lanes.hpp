@@ -8,9 +8,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace noether {
+
+class Partition;
 
 /// Solves the constraints of such molecules to rounding: Newton's method on a factorisation without fill, whose order
 /// of elimination is found once for each kind.
@@ -22,7 +25,7 @@ namespace noether {
 class MoleculeLanes {
  public:
   /// Takes the components of a set that consist of distances. @return what is left of the set
-  /// @throws BadConstraints  for a constraint on a particle that is not there
+  /// @throws BadConstraints  for a constraint on a particle that is not there, or one that the solver does not serve
   ConstraintSet lay_out(const ConstraintSet& set, const ParticleSystem<double>& s);
   bool empty() const { return kinds_.empty(); }
 
@@ -54,12 +57,16 @@ class MoleculeLanes {
     std::vector<std::int32_t> atoms = {};  ///< shape (packs, atoms, lanes)
     AlignedVector<double> lengths2 = {};   ///< shape (packs, 2, constraints, lanes)
     bool side_by_side = true;
+    std::optional<RigidTriangle> triangle = {};
     Index packs = 0, first_report = 0;
   };
 
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+  std::optional<Molecule> molecule_of(const ConstraintSet& set, const Partition& parts, Index component,
+                                      const ParticleSystem<double>& s) const;
+  std::optional<RigidTriangle> triangle_of(const std::vector<Index>& molecules, const ParticleSystem<double>& s) const;
   void add_kind(std::vector<Index> molecules, const ParticleSystem<double>& s);
-  /// Calls `work(pack, report)` for all packs, by threads.
+  /// Calls `work(kernels, pack, report)` for all packs, by threads.
   template <class Work> void for_packs(const Work& work);
   MoleculeTask task(double h) const;
   Solved solved() const;

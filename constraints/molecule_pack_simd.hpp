@@ -51,8 +51,14 @@ template <int P> HWY_INLINE Pack<P> operator/(const Pack<P>& a, const Pack<P>& b
 template <int P> HWY_INLINE Pack<P> absolute(const Pack<P>& a) {
   return each<P>([&](int q) HWY_ATTR { return hn::Abs(a.r[q]); });
 }
+template <int P> HWY_INLINE Pack<P> root(const Pack<P>& a) {
+  return each<P>([&](int q) HWY_ATTR { return hn::Sqrt(a.r[q]); });
+}
+/// The larger one; not a number if one of them is not.
 template <int P> HWY_INLINE Pack<P> larger(const Pack<P>& a, const Pack<P>& b) {
-  return each<P>([&](int q) HWY_ATTR { return hn::Max(a.r[q], b.r[q]); });
+  return each<P>([&](int q) HWY_ATTR {
+    return hn::Add(hn::Max(a.r[q], b.r[q]), hn::Sub(hn::Add(a.r[q], b.r[q]), hn::Add(a.r[q], b.r[q])));
+  });
 }
 /// c + a b
 template <int P> HWY_INLINE Pack<P> add_product(const Pack<P>& a, const Pack<P>& b, const Pack<P>& c) {
@@ -132,6 +138,12 @@ template <int P> HWY_INLINE Vectors<P> operator-(const Vectors<P>& a, const Vect
 template <int P> HWY_INLINE Pack<P> dot(const Vectors<P>& a, const Vectors<P>& b) {
   return add_product(a.x, b.x, add_product(a.y, b.y, a.z * b.z));
 }
+template <int P> HWY_INLINE Vectors<P> operator*(const Pack<P>& a, const Vectors<P>& b) {
+  return {a * b.x, a * b.y, a * b.z};
+}
+template <int P> HWY_INLINE Vectors<P> cross(const Vectors<P>& a, const Vectors<P>& b) {
+  return {take_product(a.z, b.y, a.y * b.z), take_product(a.x, b.z, a.z * b.x), take_product(a.y, b.x, a.x * b.y)};
+}
 template <int P> HWY_INLINE Vectors<P> add_product(const Pack<P>& a, const Vectors<P>& b, const Vectors<P>& c) {
   return {add_product(a, b.x, c.x), add_product(a, b.y, c.y), add_product(a, b.z, c.z)};
 }
@@ -184,14 +196,14 @@ HWY_INLINE void slots_to_rows(const double* slots, const std::int32_t* base, con
   const __m512d even01 = _mm512_unpacklo_pd(a0, a1), odd01 = _mm512_unpackhi_pd(a0, a1);
   const __m512d even23 = _mm512_unpacklo_pd(a2, a3), odd23 = _mm512_unpackhi_pd(a2, a3);
   const __m512i low = _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11), high = _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15);
-  const auto two = [&](__m512d rows, int first, int second) HWY_ATTR {
-    row(t, base[first], hn::Vec<decltype(t)>{_mm512_castpd512_pd256(rows)});
-    row(t, base[second], hn::Vec<decltype(t)>{_mm512_extractf64x4_pd(rows, 1)});
+  const auto four = [&](__m512d even, __m512d odd, const std::int32_t* at) HWY_ATTR {
+    row(t, at[0], hn::Vec<decltype(t)>{_mm512_castpd512_pd256(even)});
+    row(t, at[1], hn::Vec<decltype(t)>{_mm512_castpd512_pd256(odd)});
+    row(t, at[2], hn::Vec<decltype(t)>{_mm512_extractf64x4_pd(even, 1)});
+    row(t, at[3], hn::Vec<decltype(t)>{_mm512_extractf64x4_pd(odd, 1)});
   };
-  two(_mm512_permutex2var_pd(even01, low, even23), 0, 2);
-  two(_mm512_permutex2var_pd(odd01, low, odd23), 1, 3);
-  two(_mm512_permutex2var_pd(even01, high, even23), 4, 6);
-  two(_mm512_permutex2var_pd(odd01, high, odd23), 5, 7);
+  four(_mm512_permutex2var_pd(even01, low, even23), _mm512_permutex2var_pd(odd01, low, odd23), base);
+  four(_mm512_permutex2var_pd(even01, high, even23), _mm512_permutex2var_pd(odd01, high, odd23), base + 4);
 #elif HWY_TARGET == HWY_AVX2
   const hn::FixedTag<double, 4> t;
   for (int half = 0; half < 2; ++half, base += 4, slots += 4) {
@@ -215,6 +227,16 @@ HWY_INLINE void slots_to_rows(const double* slots, const std::int32_t* base, con
 /// One coordinate of the atoms of a pack into slots.
 template <int P> HWY_INLINE void load_atoms(const MoleculePack& pack, const double* from, double* slots) {
   const int atoms = pack.kind->atoms;
+  if (pack.in_a_row && atoms == 3) {
+    for (int lane = 0; lane < P; lane += width) {
+      Register a, b, c;
+      hn::LoadInterleaved3(Tag(), from + pack.atoms[lane], a, b, c);
+      hn::Store(a, Tag(), slots + lane);
+      hn::Store(b, Tag(), slots + P + lane);
+      hn::Store(c, Tag(), slots + 2 * P + lane);
+    }
+    return;
+  }
   if (!pack.side_by_side || atoms < 4) {
     for (int k = 0; k < atoms * P; ++k) slots[k] = from[pack.atoms[k]];
     return;
@@ -226,9 +248,19 @@ template <int P> HWY_INLINE void load_atoms(const MoleculePack& pack, const doub
     }
   }
 }
-/// What slots have of each atom, `row(tag, at, numbers)`; numbers of lanes that are no molecule of their own must be 0.
+/// What slots have of each atom, `row(tag, at, numbers)`, lane after lane: numbers of lanes that are no molecule of
+/// their own must be 0, and these come after the molecule that they repeat.
 template <int P, class Row> HWY_INLINE void store_atoms(const MoleculePack& pack, double* slots, const Row& row) {
   const int atoms = pack.kind->atoms;
+  if (pack.in_a_row && atoms == 3) {
+    for (int lane = 0; lane < P; lane += width) {
+      alignas(64) double rows[3 * width];
+      hn::StoreInterleaved3(hn::Load(Tag(), slots + lane), hn::Load(Tag(), slots + P + lane),
+                            hn::Load(Tag(), slots + 2 * P + lane), Tag(), rows);
+      for (int k = 0; k < 3; ++k) row(Tag(), pack.atoms[lane] + k * width, hn::Load(Tag(), rows + k * width));
+    }
+    return;
+  }
   if (!pack.side_by_side || atoms < 4) {
     const hn::CappedTag<double, 1> one;
     for (int k = 0; k < atoms * P; ++k) row(one, pack.atoms[k], hn::Set(one, slots[k]));

@@ -17,15 +17,28 @@ struct MoleculeColumns {
   double magic[3];  ///< adding and subtracting it rounds to the grid of the box
 };
 
+/// What is constant of a rigid molecule of three sites: bonds r1 from atom 0 to 1 and r2 from 0 to 2.
+struct RigidTriangle {
+  double inverse_mass[3];
+  double c11, c12, c22;  ///< r_i . r_j
+  double inverse[6];     ///< of the matrix of the bonds 0-1, 0-2, 1-2: 11 12 13 22 23 33
+  /// Of an isosceles one: from the centre of mass to atom 0, and to the middle of the others, and half their distance;
+  /// masses of these over all.
+  double apex, base, half_base, part1, part2;
+  bool isosceles;
+};
+
 /// Some molecules of one kind, as many as there are lanes: where a kind has fewer, the last one stands several times.
 struct MoleculePack {
   int lanes;      ///< 8 or 16
   unsigned live;  ///< a bit for each lane that stands for a molecule of its own
   const EliminationLists* kind;
-  const std::int32_t* atoms;  ///< particle of atom a in lane l: [lanes a + l]
-  bool side_by_side;          ///< atoms of each molecule follow each other in the columns
-  const double* lengths2;     ///< squared, in the order of elimination, then 1 / squared, shape (2, constraints, lanes)
-  double* scratch;            ///< of the thread, `molecule_scratch` doubles a lane
+  const std::int32_t* atoms;      ///< particle of atom a in lane l: [lanes a + l]
+  bool side_by_side;              ///< atoms of each molecule follow each other in the columns
+  bool in_a_row;                  ///< and molecules do
+  const RigidTriangle* triangle;  ///< of rigid molecules of three sites of equal lengths; else null
+  const double* lengths2;  ///< squared, in the order of elimination, then 1 / squared, shape (2, constraints, lanes)
+  double* scratch;         ///< of the thread, `molecule_scratch` doubles a lane
 };
 
 /// Doubles a lane that kernels need beside a pack.

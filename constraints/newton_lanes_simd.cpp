@@ -10,15 +10,19 @@ constexpr double settled = 4e-15;
 /// A molecule that free motion violates by more, or whose violation a sweep makes less than so many times smaller, is
 /// left to those who can follow a solution.
 constexpr double hard_start = 0.25, slow_sweep = 0.5;
+/// A pivot this small beside its diagonal element: the constraint depends on others.
+constexpr double least_pivot = 1000 * 0x1p-52;
 constexpr int most_sweeps = 40;
 
-/// L D L^T of G M^-1 G^T, entry by entry.
-template <int P> HWY_INLINE void factorize_bonds(const MoleculePack& pack, const Slots<P>& s) {
+/// L D L^T of G M^-1 G^T, entry by entry. @return where it is singular
+template <int P> HWY_INLINE Flags<P> factorize_bonds(const MoleculePack& pack, const Slots<P>& s) {
   const EliminationLists p = *pack.kind;
   double *const factors = s.factors, *const inverse = s.inverse;
+  Flags<P> singular = flags_of<P>(0);
   for (int k = 0; k < p.constraints; ++k) {
     const Vectors<P> r = load_vectors<P>(s.r + 3 * k * P);
-    Pack<P> diagonal = same<P>(p.inverse_mass_i[k] + p.inverse_mass_j[k]) * load<P>(pack.lengths2 + k * P);
+    const Pack<P> whole = same<P>(p.inverse_mass_i[k] + p.inverse_mass_j[k]) * load<P>(pack.lengths2 + k * P);
+    Pack<P> diagonal = whole;
     const int begin = p.row[k];
     for (int e = begin; e < p.row[k + 1]; ++e) {
       const int l = p.column[e];
@@ -32,8 +36,10 @@ template <int P> HWY_INLINE void factorize_bonds(const MoleculePack& pack, const
       store(factor, factors + e * P);
       diagonal = take_product(element, factor, diagonal);
     }
+    singular = either(singular, exceeds(same<P>(least_pivot) * whole, diagonal));
     store(same<P>(1) / diagonal, inverse + k * P);
   }
+  return singular;
 }
 
 /// y_k = g_k - sum L_kl y_l
@@ -134,12 +140,12 @@ template <int P> HWY_INLINE Pack<P> sweep(const MoleculePack& pack, const Slots<
 template <int P> MoleculeReport solve_pack(const MoleculePack& pack, const MoleculeColumns& c, double h) {
   const Slots<P> s(pack);
   find_bonds<P>(pack, c, s);
-  factorize_bonds<P>(pack, s);
+  const Flags<P> singular = factorize_bonds<P>(pack, s);
   find_differences<P>(pack, c.x, c.edge, true, s);
   MoleculeReport report;
   const Flags<P> idle = idle_lanes<P>(pack);
   Pack<P> worst = sweep<P>(pack, s, true);
-  Flags<P> hard = but_not(exceeds(worst, same<P>(hard_start)), idle);
+  Flags<P> hard = but_not(either(singular, exceeds(worst, same<P>(hard_start))), idle);
   for (int k = 0; k < pack.kind->constraints; ++k) store(same<P>(0), s.lambda + k * P);
   Flags<P> open = but_not(exceeds(worst, same<P>(settled)), either(hard, idle));
   while (any(open) && report.sweeps < most_sweeps) {
@@ -164,10 +170,10 @@ template <int P> MoleculeReport solve_pack(const MoleculePack& pack, const Molec
   return report;
 }
 
-template <int P> void project_pack(const MoleculePack& pack, const MoleculeColumns& c) {
+template <int P> MoleculeReport project_pack(const MoleculePack& pack, const MoleculeColumns& c) {
   const Slots<P> s(pack);
   find_bonds<P>(pack, c, s);
-  factorize_bonds<P>(pack, s);
+  const Flags<P> singular = factorize_bonds<P>(pack, s), idle = idle_lanes<P>(pack);
   find_differences<P>(pack, c.v, c.edge, false, s);
   for (int k = 0; k < pack.kind->constraints; ++k) {
     forward<P>(pack, s, k, same<P>(0) - dot(load_vectors<P>(s.r + 3 * k * P), load_vectors<P>(s.s + 3 * k * P)));
@@ -179,16 +185,16 @@ template <int P> void project_pack(const MoleculePack& pack, const MoleculeColum
   });
   backward<P>(pack, s,
               [&](int k, const Pack<P>& z) HWY_ATTR { store(load<P>(s.lambda + k * P) + z, s.lambda + k * P); });
-  leave_out<P>(pack, idle_lanes<P>(pack), s);
+  leave_out<P>(pack, either(singular, idle), s);
   put<P>(pack, s, [&](int a) { return VelocityRow{c.v[a]}; });
+  return {bits_of(but_not(singular, idle)), 0};
 }
 
 MoleculeReport solve_positions(const MoleculePack& pack, const MoleculeColumns& columns, const MoleculeTask& task) {
   return pack.lanes == 16 ? solve_pack<16>(pack, columns, task.h) : solve_pack<8>(pack, columns, task.h);
 }
 MoleculeReport project_velocities(const MoleculePack& pack, const MoleculeColumns& columns, const MoleculeTask&) {
-  pack.lanes == 16 ? project_pack<16>(pack, columns) : project_pack<8>(pack, columns);
-  return {};
+  return pack.lanes == 16 ? project_pack<16>(pack, columns) : project_pack<8>(pack, columns);
 }
 
 }  // namespace

@@ -13,12 +13,12 @@ template <int P> HWY_INLINE double* corrections(const MoleculePack& pack, const 
 
 /// One constraint after the other, in the order of the set, each in the lanes where `step` says how far; adds step r /
 /// m to its atoms.
-/// @return the worst violation of each lane
+/// @return where a violation is above the tolerance, or is not a number
 template <int P, class Step>
-HWY_INLINE Pack<P> sweep(const MoleculePack& pack, const Slots<P>& s, double* moved, double tolerance,
-                         const Step& step) {
+HWY_INLINE Flags<P> sweep(const MoleculePack& pack, const Slots<P>& s, double* moved, double tolerance,
+                          const Step& step) {
   const EliminationLists p = *pack.kind;
-  Pack<P> worst = same<P>(0);
+  Flags<P> over = flags_of<P>(0);
   for (int next = 0; next < p.constraints; ++next) {
     const int k = p.given[next];
     double *const i = moved + 3 * p.i[k] * P, *const j = moved + 3 * p.j[k] * P;
@@ -26,12 +26,13 @@ HWY_INLINE Pack<P> sweep(const MoleculePack& pack, const Slots<P>& s, double* mo
     const Vectors<P> at = load_vectors<P>(s.s + 3 * k * P) + (before_i - before_j);
     Pack<P> violation;
     const Pack<P> whole = step(k, r, at, violation);
-    worst = larger(worst, violation);
-    const Pack<P> part = only_where(exceeds(violation, same<P>(tolerance)), whole);
+    const Flags<P> wrong = exceeds(violation, same<P>(tolerance));
+    over = either(over, wrong);
+    const Pack<P> part = only_where(wrong, whole);
     store(add_product(same<P>(p.inverse_mass_i[k]) * part, r, before_i), i);
     store(take_product(same<P>(p.inverse_mass_j[k]) * part, r, before_j), j);
   }
-  return worst;
+  return over;
 }
 
 /// Sweeps until no violation is above the tolerance; lanes that are done wait. @return those that are not
@@ -39,7 +40,7 @@ template <int P, class Step>
 HWY_INLINE Flags<P> sweep_all(const MoleculePack& pack, const Slots<P>& s, double* moved, const MoleculeTask& task,
                               MoleculeReport& report, const Step& step) {
   while (true) {
-    const Flags<P> open = exceeds(sweep<P>(pack, s, moved, task.tolerance, step), same<P>(task.tolerance));
+    const Flags<P> open = sweep<P>(pack, s, moved, task.tolerance, step);
     if (!any(open) || report.sweeps == task.iterations) return open;
     ++report.sweeps;
   }
@@ -56,6 +57,18 @@ HWY_INLINE void put(const MoleculePack& pack, const Slots<P>& s, const double* m
   }
 }
 
+/// Where a bond points away from where it did: a root that does not go on from a step of 0.
+template <int P> HWY_INLINE Flags<P> turned_over(const MoleculePack& pack, const Slots<P>& s, const double* moved) {
+  const EliminationLists p = *pack.kind;
+  Flags<P> turned = flags_of<P>(0);
+  for (int k = 0; k < p.constraints; ++k) {
+    const Vectors<P> by = load_vectors<P>(moved + 3 * p.i[k] * P) - load_vectors<P>(moved + 3 * p.j[k] * P);
+    const Vectors<P> at = load_vectors<P>(s.s + 3 * k * P) + by;
+    turned = either(turned, exceeds(same<P>(0), dot(at, load_vectors<P>(s.r + 3 * k * P))));
+  }
+  return turned;
+}
+
 template <int P>
 MoleculeReport solve_pack(const MoleculePack& pack, const MoleculeColumns& c, const MoleculeTask& task) {
   const Slots<P> s(pack);
@@ -64,7 +77,7 @@ MoleculeReport solve_pack(const MoleculePack& pack, const MoleculeColumns& c, co
   double* const moved = corrections<P>(pack, s);
   const int n = pack.kind->constraints;
   MoleculeReport report;
-  const Flags<P> open = sweep_all<P>(
+  Flags<P> open = sweep_all<P>(
       pack, s, moved, task, report, [&](int k, const Vectors<P>& r, const Vectors<P>& at, Pack<P>& violation) HWY_ATTR {
         const Pack<P> d2 = load<P>(pack.lengths2 + k * P);
         const Pack<P> g =
@@ -72,6 +85,7 @@ MoleculeReport solve_pack(const MoleculePack& pack, const MoleculeColumns& c, co
         violation = absolute(g) * load<P>(pack.lengths2 + (n + k) * P);
         return g / (same<P>(pack.kind->inverse_mass_i[k] + pack.kind->inverse_mass_j[k]) * dot(at, r));
       });
+  open = either(open, turned_over<P>(pack, s, moved));
   const Flags<P> idle = idle_lanes<P>(pack);
   report.open = bits_of(but_not(open, idle));
   const double inverse_h = 1 / task.h;

@@ -191,6 +191,7 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     if constexpr (constrained) {
       VectorColumn<Real> a;
       sum_of_kicks(a);
+      const Spent spent("constraints");
       virial += constraints_.virial(s, a);
     }
     return virial;
@@ -198,7 +199,10 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
   void accelerations(const ParticleSystem<Real>& s, VectorColumn<Real>& a) {
     for (Kick& kick : kicks_) evaluate(kick, s, {});
     sum_of_kicks(a);
-    if constexpr (constrained) constraints_.constrain(s, a);
+    if constexpr (constrained) {
+      const Spent spent("constraints");
+      constraints_.constrain(s, a);
+    }
   }
 
   void observe(std::optional<Request> wanted) {

@@ -77,6 +77,7 @@ template <class Bath, SplitHamiltonian H, char letter> class Noisy : public Wrap
     claims.alphabet += letter;
     claims.irreversible += letter;
     claims.dissipative = true;
+    claims.counts_heat = false;
     claims.symplectic = false;
     claims.no_action = "a thermostat exchanges energy with the particles, so the motion has no action";
     claims.keeps_angular_momentum = false;

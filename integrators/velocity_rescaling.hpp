@@ -16,6 +16,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -63,7 +64,7 @@ struct VelocityRescalingOptions {
 ///
 /// R normal, S a sum of f - 1 squares of such; a has the sign of R + sqrt(c/((1 - c) q)). Where the Hamiltonian keeps
 /// momentum, K is of velocities relative to the center of mass, whose motion stays as it is, and f is 3 less;
-/// constraints take their number from f, and stay satisfied. Velocities that are all zero stay so.
+/// constraints take their number from f, and stay satisfied. Velocities that are all zero, or all the same, stay so.
 ///
 /// The heat that the flows have given is counted: energy less heat is conserved as far as the other flows conserve the
 /// energy, and `energy` tells its error. A word without a V, such as `verlet`, gets half a V at both ends. It is
@@ -95,7 +96,7 @@ template <SplitHamiltonian H> class VelocityRescaling : public Noisy<VelocityRes
     const HamiltonianClaims claims = hamiltonian_.claims();
     about_center_ = claims.keeps_momentum;
     freedom_ = 3 * s.size() - claims.constraints - (about_center_ ? 3 : 0);
-    completing_ = real(0);
+    heat_ += std::exchange(completing_, real(0));  // an edited run goes on from the copy that they completed
     if (freedom_ > 0) return;
     throw Error(std::string("no degree of freedom is left to have a temperature") +
                 (about_center_ ? " beside the motion of the center of mass" : "") + "; take the thermostat out");
@@ -103,7 +104,7 @@ template <SplitHamiltonian H> class VelocityRescaling : public Noisy<VelocityRes
   /// Of the particles, and the heat that they have been given so far.
   EnergyTerms<real> energy(const ParticleSystem<real>& s) {
     EnergyTerms<real> energy = hamiltonian_.energy(s);
-    energy.heat = heat_ + completing_;
+    if (claims().counts_heat) energy.heat = heat_ + completing_;
     return energy;
   }
   /// Between two calls flows complete a copy: its heat is not that of the run.
@@ -135,10 +136,14 @@ template <SplitHamiltonian H> class VelocityRescaling : public Noisy<VelocityRes
   void mix(ParticleSystem<real>& s, const real& h, std::int64_t step, std::uint32_t stage) {
     const Spent spent("thermostat", "velocity_rescaling");
     const Vec3<real> center = velocity_of_center(s);
-    const real twice = sum_over<real>(s.size(), [&](Index i) {
-      return std::as_const(s).masses()[i] * norm2(Vec3<real>(std::as_const(s).velocities()[i] - center));
-    });
-    if (!(twice > real(0))) return;
+    const auto twice_kinetic = [&](const Vec3<real>& about) {
+      return sum_over<real>(s.size(), [&](Index i) {
+        return std::as_const(s).masses()[i] * norm2(Vec3<real>(std::as_const(s).velocities()[i] - about));
+      });
+    };
+    const real twice = twice_kinetic(center), eps = std::numeric_limits<real>::epsilon();
+    // What rounding leaves of particles that all move alike has no direction to be scaled along.
+    if (!(twice > real(16) * eps * eps * twice_kinetic(Vec3<real>::Zero()))) return;
     const real kT = real(s.units().k_B) * real(options_.temperature);
     const real factor = factor_of(kT / twice, h, step, stage);
     (observing_ ? completing_ : heat_) += (factor * factor - real(1)) * twice / real(2);

@@ -200,8 +200,7 @@ Real WisdomHolman<Real, F>::flow_with_action(char letter, ParticleSystem<Real>& 
   return action;
 }
 
-template <class Real, class F>
-Real WisdomHolman<Real, F>::arcs(ParticleSystem<Real>& s, const Real& h, bool action) {
+template <class Real, class F> Real WisdomHolman<Real, F>::arcs(ParticleSystem<Real>& s, const Real& h, bool action) {
   using std::sqrt;
   const auto& c = std::as_const(s);
   const Index n = s.size();
@@ -282,8 +281,7 @@ Real WisdomHolman<Real, F>::interaction(const VectorColumn<Real>& x, bool skip_i
   const Vec3<Real> primary = first == 0 ? x[0] : Vec3<Real>(Vec3<Real>::Zero());
   const auto note = [&](Index i, Index j, const Real& r2) {
     const Real nearer2 = std::min(norm2(x[i] - primary), norm2(x[j] - primary));
-    if (noting_) encounters_.note(i, j, static_cast<double>(r2), static_cast<double>(nearer2), moment_,
-                                   backward_);
+    if (noting_) encounters_.note(i, j, static_cast<double>(r2), static_cast<double>(nearer2), moment_, backward_);
   };
   for (Index i = first + 1; i < bodies; ++i) {
     const Real from_primary2 = norm2(x[i] - primary);

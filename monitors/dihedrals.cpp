@@ -109,6 +109,15 @@ void Dihedrals::find_named(const std::vector<std::string>& names) const {
             {.key = "quadruples", .value = four[k]});
       }
       group[k] = found->second;
+      if (std::find(group.begin(), group.begin() + static_cast<std::ptrdiff_t>(k), group[k]) ==
+          group.begin() + static_cast<std::ptrdiff_t>(k)) {
+        continue;
+      }
+      throw Error(
+          fmt::format("particle '{}' stands twice in a quadruple of monitor 'dihedrals'; four different ones are "
+                      "expected",
+                      four[k]),
+          {.key = "quadruples", .value = four[k]});
     }
   }
   named_ = Tied<4>(std::move(groups));

@@ -28,12 +28,17 @@ struct Places {
   bool same = false;             ///< both places are for the same particles
 };
 
+/// Whether the structure says which molecules there are: number 0 is none.
+bool names_molecules(const Topology& topology) {
+  return std::any_of(topology.molecules.begin(), topology.molecules.end(), [](std::int64_t m) { return m != 0; });
+}
+
 /// Which molecule each of `n` particles belongs to, by the index of one of its particles: as the structure says, or by
 /// bonds.
 std::vector<Index> molecules_of(const Topology& topology, Index n) {
   std::vector<Index> parent(static_cast<std::size_t>(n));
   std::iota(parent.begin(), parent.end(), Index(0));
-  if (!topology.molecules.empty()) {
+  if (names_molecules(topology)) {
     std::unordered_map<std::int64_t, Index> first;
     for (Index i = 0; i < n; ++i) {
       const std::int64_t molecule = topology.molecules[static_cast<std::size_t>(i)];
@@ -182,7 +187,7 @@ void RadialDistribution::check_in(const Box& box, const Topology* topology) cons
     throw Error(fmt::format("unknown type '{}' in monitor 'radial_distribution'{}", type, known_types(topology, type)),
                 {.key = "types", .value = type});
   }
-  if (!intramolecular && (topology == nullptr || (topology->molecules.empty() && topology->bonds.empty()))) {
+  if (!intramolecular && (topology == nullptr || (!names_molecules(*topology) && topology->bonds.empty()))) {
     refuse_field("intramolecular", "false",
                  "has no effect, because there are neither molecules nor bonds; take it out");
   }

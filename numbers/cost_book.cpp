@@ -7,11 +7,11 @@
 namespace noether {
 
 CostBook::CostBook() {
-  CostBook* none = nullptr;
-  if (!open_.compare_exchange_strong(none, this)) throw LogicError("another book of costs is open");
+  if (open_ != nullptr) throw LogicError("another book of costs is open");
+  open_ = this;
 }
 
-CostBook::~CostBook() { open_.store(nullptr); }
+CostBook::~CostBook() { open_ = nullptr; }
 
 void CostBook::begin_anew() {
   for (Entry& one : entries_) one.seconds = 0;

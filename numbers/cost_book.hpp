@@ -1,21 +1,19 @@
 #pragma once
 /// Where the time of a run goes: seconds by the parts that spend them.
 
-#include <atomic>
 #include <chrono>
 #include <concepts>
 #include <cstddef>
 #include <string>
 #include <string_view>
-#include <thread>
 #include <vector>
 
 namespace noether {
 
 /// Seconds that parts of a run have spent, each without what others spent inside it, while this book is open.
 ///
-/// There is at most one open book, of the thread that opened it; `Spent` writes into it. What no part claims is the
-/// first entry, the integrator's.
+/// A thread has at most one open book, and `Spent` of that thread writes into it. What no part claims is the first
+/// entry, the integrator's. A run begins it anew.
 class CostBook {
  public:
   /// What one part has spent. The kinds: "integrator", "force", "neighbors", "constraints", "thermostat", "monitor".
@@ -24,7 +22,7 @@ class CostBook {
     double seconds = 0;
   };
 
-  /// Opens it. @throws LogicError  if another one is open
+  /// Opens it for this thread. @throws LogicError  if it has another one
   CostBook();
   ~CostBook();
   CostBook(const CostBook&) = delete;
@@ -36,10 +34,7 @@ class CostBook {
   std::vector<Entry> entries() const;
 
   /// The open book of this thread; null if there is none.
-  static CostBook* of_this_thread() {
-    CostBook* const book = open_.load(std::memory_order_relaxed);
-    return book != nullptr && book->owner_ == std::this_thread::get_id() ? book : nullptr;
-  }
+  static CostBook* of_this_thread() { return open_; }
 
  private:
   friend class Spent;
@@ -48,8 +43,7 @@ class CostBook {
   std::size_t begin(std::string_view kind, std::string_view name);
   void charge(std::size_t next);
 
-  static inline std::atomic<CostBook*> open_{nullptr};
-  std::thread::id owner_ = std::this_thread::get_id();
+  static inline thread_local CostBook* open_ = nullptr;
   std::vector<Entry> entries_{{"integrator", "", 0}};
   std::size_t current_ = 0;
   WallClock::time_point since_ = WallClock::now();

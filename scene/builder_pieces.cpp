@@ -39,9 +39,9 @@ void check_above_zero(std::string_view key, double value, const char* what) {
   refuse_field(key, value, fmt::format("is not a valid {}; a number above 0 is expected", what));
 }
 
-void check_count(std::string_view key, std::int64_t value, std::int64_t least) {
-  if (value >= least && value <= most_built) return;
-  refuse_field(key, fmt::format("{}", value), fmt::format("is out of range; {} to {} is expected", least, most_built));
+void check_count(std::string_view key, std::int64_t value, std::int64_t least, std::int64_t most) {
+  if (value >= least && value <= most) return;
+  refuse_field(key, fmt::format("{}", value), fmt::format("is out of range; {} to {} is expected", least, most));
 }
 
 void check_temperature(const std::optional<double>& temperature) {

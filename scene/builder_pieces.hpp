@@ -27,8 +27,8 @@ std::size_t sites_of_cell(LatticeKind kind);
 
 /// @throws Error  for what is not a finite number above 0. @param what  in words: "density"
 void check_above_zero(std::string_view key, double value, const char* what);
-/// @throws Error  for a number that is not from `least` to the most there is
-void check_count(std::string_view key, std::int64_t value, std::int64_t least);
+/// @throws Error  for a number that is not from `least` to `most`
+void check_count(std::string_view key, std::int64_t value, std::int64_t least, std::int64_t most = most_built);
 /// @throws Error  for one below 0
 void check_temperature(const std::optional<double>& temperature);
 

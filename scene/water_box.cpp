@@ -141,11 +141,7 @@ void warm_bodies(ParticleSystem<double>& s, double temperature, std::int64_t see
 }  // namespace
 
 void WaterBox::check() const {
-  detail::check_count("molecules", molecules, 1);
-  if (molecules > detail::most_built / 3) {
-    refuse_field("molecules", fmt::format("{}", molecules),
-                 fmt::format("of three particles are more than {} particles", detail::most_built));
-  }
+  detail::check_count("molecules", molecules, 1, detail::most_built / 3);
   detail::check_above_zero("density", density, "density");
   if (hydrogen_mass) detail::check_above_zero("hydrogen_mass", *hydrogen_mass, "mass");
   detail::check_temperature(temperature);

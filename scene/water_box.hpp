@@ -34,8 +34,8 @@ template <> struct EnumNames<WaterModel> {
 /// Water in a cubic periodic box: oxygens on sites of the cubic lattice on which they stand farthest apart, vacancies
 /// drawn by lot, each molecule turned at random.
 ///
-/// Molecules have the geometry of their model. None overlap, but hydrogens of two may be as near as 0.1 nm, so that the
-/// heat of a first run is far above the temperature: use the minimizer before.
+/// Molecules have the geometry of their model. None overlap, but hydrogens of two may be as near as 0.08 nm, so that
+/// the heat of a first run is far above the temperature: use the minimizer before.
 ///
 /// **Velocities.** Molecules of a rigid model move as rigid bodies: velocities of Maxwell and Boltzmann without what
 /// bonds would feel, which is what constraints leave of them, scaled so that momentum is 0 and

@@ -193,6 +193,7 @@ TEST_CASE("pairs of one molecule can be left out, and then count nowhere", "[rad
   // Molecule 0 is none.
   auto nobody = std::make_shared<Topology>(*named);
   nobody->molecules = alone;
+  nobody->molecules.back() = 7;
   s.set_topology(nobody);
   CHECK(observed(s, RadialDistribution(15, 1.5, {}, false)).counts() ==
         observed(s, RadialDistribution(15, 1.5)).counts());

@@ -220,6 +220,15 @@ TEST_CASE("the energy less the heat of the bath is conserved to the order of the
     CHECK(energy.series().back().name == "conserved");
     CHECK(std::abs(energy.total() - energy.conserved()) > 0.1);
   }
+  // A run whose step is changed goes on from what completed a step, and so does its heat.
+  Simulation<double> changed(movers(4), compose(bath(lively), word("VBABV")), 0.5);
+  const Energy& after = changed.every(1, Energy{});
+  for (const double step : {0.25, 0.125, 0.5}) {
+    REQUIRE(changed.run(10).ok());
+    changed.change_step(step);
+  }
+  REQUIRE(changed.run(10).ok());
+  CHECK(after.worst() < 1e-13);
   // Drag takes energy that nobody counts.
   const Bath damped(test::damped(test::kinetic_potential(), {.rate = 0.1}), lively);
   CHECK_FALSE(damped.claims().counts_heat);
@@ -277,7 +286,8 @@ TEST_CASE("a run with rescaled velocities goes on bit for bit, observed or not, 
   CHECK_THROWS_AS(other.restore(one.save()), Error);
 }
 
-TEST_CASE("rescaling that cannot be is refused by name, and particles at rest stay so", "[velocity_rescaling]") {
+TEST_CASE("rescaling that cannot be is refused by name, and particles that rest or drift together stay so",
+          "[velocity_rescaling]") {
   CHECK(test::refusal_of([&] { bath({.temperature = -1, .relaxation_time = 1}); }) ==
         "temperature = -1 is not a valid temperature; 0 or more is expected");
   CHECK(test::refusal_of([&] { bath({.temperature = 1, .relaxation_time = 0}); }) ==
@@ -304,6 +314,14 @@ TEST_CASE("rescaling that cannot be is refused by name, and particles at rest st
   Simulation<double> sim(resting, compose(bath(lively), schemes::verlet), 0.1);
   REQUIRE(sim.run(10).ok());
   for (Index i = 0; i < 3; ++i) CHECK(norm2(Vec3<double>(sim.particles().velocities()[i])) == 0);
+  // Particles that drift together have no motion of their own but rounding.
+  for (const Vec3<double>& drift : {Vec3<double>(0.3, 0.1, 0.7), Vec3<double>(1e3 / 3, -0.1, 1e-5)}) {
+    ParticleSystem<double> together;
+    for (const double mass : {12.0, 16.0, 1.1}) together.add("", mass, {mass, 0, 0}, drift);
+    Simulation<double> on(together, compose(bath(lively), schemes::verlet), 0.1);
+    REQUIRE(on.run(10).ok());
+    for (Index i = 0; i < 3; ++i) CHECK(Vec3<double>(on.particles().velocities()[i]) == drift);
+  }
 }
 
 }  // namespace

@@ -150,7 +150,7 @@ TEST_CASE("water is the same in other units, by its seed, and refused where leng
     change(bad);
     return refusal_of([&] { bad.build(); });
   };
-  CHECK(refused([](WaterBox& w) { w.molecules = 0; }) == "molecules = 0 is out of range; 1 to 100000000 is expected");
+  CHECK(refused([](WaterBox& w) { w.molecules = 0; }) == "molecules = 0 is out of range; 1 to 33333333 is expected");
   CHECK(refused([](WaterBox& w) { w.density = -1; }) ==
         "density = -1 is not a valid density; a number above 0 is expected");
   CHECK(refused([](WaterBox& w) { w.hydrogen_mass = 0; }) ==
