@@ -114,7 +114,7 @@ void Dihedrals::find_named(const std::vector<std::string>& names) const {
         continue;
       }
       throw Error(
-          fmt::format("particle '{}' stands twice in a quadruple of monitor 'dihedrals'; four different ones are "
+          fmt::format("particle '{}' appears twice in a quadruple of monitor 'dihedrals'; four different ones are "
                       "expected",
                       four[k]),
           {.key = "quadruples", .value = four[k]});

@@ -105,8 +105,11 @@ def command():
 
 def trial(program):
     with tempfile.TemporaryDirectory() as folder:
-        found = subprocess.run([sys.executable, "-B", str(ROOT / "bench/gigayear.py"), program, "--span", "0.001", "--starts", "2",
-                                "--out", folder], capture_output=True, text=True)
+        for span in ("0.001", "0.01"):  # a machine may be too quick for the shorter one, or too busy
+            found = subprocess.run([sys.executable, "-B", str(ROOT / "bench/gigayear.py"), program, "--span", span, "--starts", "2",
+                                    "--out", folder], capture_output=True, text=True)
+            if "take a longer --span" not in found.stderr:
+                break
         expect(found.returncode == 0, f"a trial: {found.stderr}")
         if found.returncode != 0:
             return

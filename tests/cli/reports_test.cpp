@@ -123,7 +123,9 @@ TEST_CASE("explain knows what is inside, what is used again, and when a run is s
 TEST_CASE("describe knows quantities, stops, required fields and the letter of drag", "[cli][describe]") {
   const ScratchFolder folder;
   CHECK(has(output(folder, "describe energy"),
-            "\n  quantities: total, kinetic, potential [energy], relative_error [1]\n"));
+            "\n  quantities: total, kinetic, potential [energy], relative_error [1]; with a bath that counts its heat: "
+            "conserved "
+            "[energy]\n"));
   CHECK(has(output(folder, "describe trajectory"), "\n@article{DeBuyl2014,"));
   CHECK(has(output(folder, "describe oblateness"), "number [length], required, such as \"60330 km\""));
   CHECK(
