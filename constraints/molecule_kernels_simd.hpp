@@ -10,9 +10,10 @@ namespace noether {
 NOETHER_KERNELS(MoleculeKernels, newton_lanes)
 /// Constraint after constraint in sweeps, to a tolerance: SHAKE and RATTLE.
 NOETHER_KERNELS(MoleculeKernels, sweep_lanes)
-/// Newton's method for rigid molecules of three sites, whose violation is quadratic in three multipliers.
+/// Newton's method for rigid molecules of three sites, whose violation is quadratic in three multipliers; packs of
+/// eight.
 NOETHER_KERNELS(MoleculeKernels, triangle_lanes)
-/// The closed form for those of two equal sites.
+/// The closed form for those of two equal sites; packs of eight.
 NOETHER_KERNELS(MoleculeKernels, settle_lanes)
 
 }  // namespace noether

@@ -134,7 +134,8 @@ void MoleculeLanes::add_kind(std::vector<Index> molecules, const ParticleSystem<
   Kind kind{.elimination = Elimination(first.pairs, std::move(inverse_masses)), .molecules = std::move(molecules)};
   const EliminationLists lists = kind.elimination.lists();
   const auto count = static_cast<Index>(kind.molecules.size());
-  if (count > 8 && lists.constraints <= most_of_sixteen) kind.lanes = 16;
+  kind.triangle = triangle_of(kind.molecules, s);
+  if (count > 8 && lists.constraints <= most_of_sixteen && !kind.triangle) kind.lanes = 16;
   const Index lanes = kind.lanes, n = lists.constraints, atoms = lists.atoms;
   kind.packs = (count + lanes - 1) / lanes;
   kind.atoms.resize(at(kind.packs * atoms * lanes));
@@ -153,7 +154,6 @@ void MoleculeLanes::add_kind(std::vector<Index> molecules, const ParticleSystem<
       kind.lengths2[at((pack * 2 * n + n + k) * lanes + lane)] = 1 / (length * length);
     }
   }
-  kind.triangle = triangle_of(kind.molecules, s);
   kind.first_report = static_cast<Index>(reports_.size());
   reports_.resize(reports_.size() + at(kind.packs));
   kinds_.push_back(std::move(kind));

@@ -207,11 +207,10 @@ template <int P> void project_pack(const MoleculePack& pack, const MoleculeColum
 
 template <bool closed_form>
 MoleculeReport solve_positions(const MoleculePack& pack, const MoleculeColumns& columns, const MoleculeTask& task) {
-  return pack.lanes == 16 ? solve_pack<16, closed_form>(pack, columns, task)
-                          : solve_pack<8, closed_form>(pack, columns, task);
+  return solve_pack<8, closed_form>(pack, columns, task);
 }
 MoleculeReport project_velocities(const MoleculePack& pack, const MoleculeColumns& columns, const MoleculeTask&) {
-  pack.lanes == 16 ? project_pack<16>(pack, columns) : project_pack<8>(pack, columns);
+  project_pack<8>(pack, columns);
   return {};
 }
 

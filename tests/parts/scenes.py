@@ -309,6 +309,7 @@ CONSTRAINTS = {
 SOLVERS = {
     "newton": constrained(BAR, TIED + "; solver = 'newton'"),
     "rattle": constrained(BAR, TIED + "; solver = 'rattle'; tolerance = 1e-12; iterations = 1000"),
+    "settle": water("type = 'rigid_molecules'; solver = 'settle'"),
 }
 
 SYSTEMS = {
