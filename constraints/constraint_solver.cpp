@@ -149,7 +149,8 @@ template <class Real> void ConstraintSolver<Real>::advance_positions(ParticleSys
   ConstraintEquations<Real>& equations = moving();
   VectorColumn<Real>& x = equations.move_freely(s, h);
   prepared_ = false;
-  if (stages_->solve_positions(equations, s, x, h) && solve_in_lanes(s, x, h)) {
+  const bool none = equations.size() == 0;  // all are in lanes
+  if ((none || stages_->solve_positions(equations, s, x, h)) && solve_in_lanes(s, x, h)) {
     equations.arrive(s, x, h);
     Index turned = -1;
     if (equations.on_this_side(&turned)) return;

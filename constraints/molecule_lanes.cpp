@@ -135,7 +135,9 @@ void MoleculeLanes::add_kind(std::vector<Index> molecules, const ParticleSystem<
   const EliminationLists lists = kind.elimination.lists();
   const auto count = static_cast<Index>(kind.molecules.size());
   kind.triangle = triangle_of(kind.molecules, s);
-  if (count > 8 && lists.constraints <= most_of_sixteen && !kind.triangle) kind.lanes = 16;
+  const ConstraintMethodInfo& info = info_of(options_.solver);
+  const bool by_triangle = kind.triangle && info.triangles != info.lanes;
+  if (count > 8 && lists.constraints <= most_of_sixteen && !by_triangle) kind.lanes = 16;
   const Index lanes = kind.lanes, n = lists.constraints, atoms = lists.atoms;
   kind.packs = (count + lanes - 1) / lanes;
   kind.atoms.resize(at(kind.packs * atoms * lanes));
