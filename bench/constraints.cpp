@@ -1,11 +1,15 @@
-/// What constraints cost: nanoseconds a constraint and step, and the violation that is left.
+/// What constraints cost by each solver: nanoseconds a constraint and step, the violation that is left, iterations.
 ///
 /// The position stage, free motion with it, and the velocity stage of molecules at 300 K without forces, 2 fs, one
-/// thread: 512 rigid waters (SPC/E), 256 decanes with all bonds rigid (united atoms, 9 bonds, and all atoms, 31), 256
-/// rings of six carbons with their hydrogens (18 bonds), chains of 10, 100 and 10 000 bonds, one of each.
+/// thread: 512 rigid waters (SPC/E), 256 decanes with all bonds rigid (united atoms, 9 bonds, and all atoms, 31) and
+/// with those of hydrogens alone (22), 256 rings of six carbons with their hydrogens (18 bonds), chains of 10, 100 and
+/// 10 000 bonds, one of each.
 ///
 /// Protocol: 20 slices of some hundred steps each, all cases in turn; medians of processor times. `cost_scaling` is the
-/// cost of a bond in the chain of 10 000 over that in the chain of 100, slice by slice.
+/// cost of a bond in the chain of 10 000 over that in the chain of 100, slice by slice. `iterations` are those of a
+/// step, both stages: of a pack the most that a molecule needs, of a series its powers. `contraction` is what one of
+/// them leaves of the violation: from the iterations of rattle and p_shake for 1e-4 and 1e-12, of LINCS from the
+/// violations of orders 4 and 5 with 4 corrections, each of which is so many powers more.
 
 #include "bench/support.hpp"
 
@@ -27,6 +31,7 @@ struct Case {
   std::int64_t steps;  ///< of a slice
   std::vector<double> cost = {};
   double violation = 0;
+  std::int64_t steps_made = 0;
 
   Index constraints() const { return solver.set().equations(); }
   /// Runs a slice. @return ns for each constraint and step
@@ -39,9 +44,11 @@ struct Case {
     });
     if (solver.failure()) throw Error("the benchmark's run failed: " + solver.failure()->message);
     violation = std::max(violation, solver.set().worst(particles).residual);
+    steps_made += steps;
     cost.push_back(1e9 * seconds / static_cast<double>(steps * constraints()));
     return cost.back();
   }
+  double iterations() const { return static_cast<double>(solver.iterations()) / static_cast<double>(steps_made); }
 };
 
 /// A molecule: where its atoms are, and what is tied.
@@ -139,25 +146,72 @@ Molecule ring() {
   return m;
 }
 
+/// The same with hydrogens held alone: clusters of two and three bonds.
+Molecule decane_hydrogens() {
+  Molecule m = decane();
+  std::erase_if(m.bonds, [&](const auto& bond) { return m.masses[static_cast<std::size_t>(bond.second)] > 2; });
+  return m;
+}
+
+/// A solver at its usual settings.
+struct Solver {
+  std::string name;
+  ConstraintOptions options;
+};
+std::vector<Solver> all_solvers() {
+  return {{"newton", {}},
+          {"m_shake", {.solver = ConstraintMethod::m_shake}},
+          {"rattle_4", {.solver = ConstraintMethod::rattle, .tolerance = 1e-4}},
+          {"rattle_7", {.solver = ConstraintMethod::rattle, .tolerance = 1e-7}},
+          {"rattle_12", {.solver = ConstraintMethod::rattle, .tolerance = 1e-12}},
+          {"p_shake_4", {.solver = ConstraintMethod::p_shake, .tolerance = 1e-4}},
+          {"p_shake_7", {.solver = ConstraintMethod::p_shake, .tolerance = 1e-7}},
+          {"p_shake_12", {.solver = ConstraintMethod::p_shake, .tolerance = 1e-12}},
+          {"lincs_4_1", {.solver = ConstraintMethod::lincs, .iterations = 1, .order = 4}},
+          {"lincs_8_2", {.solver = ConstraintMethod::lincs, .iterations = 2, .order = 8}},
+          {"lincs_4_4", {.solver = ConstraintMethod::lincs, .iterations = 4, .order = 4}},
+          {"lincs_5_4", {.solver = ConstraintMethod::lincs, .iterations = 4, .order = 5}},
+          {"p_lincs_4_1", {.solver = ConstraintMethod::p_lincs, .iterations = 1, .order = 4}}};
+}
+
+/// What one iteration leaves of the violation, by the cases of a molecule.
+void add_contractions(const bench::Rows& rows, const std::string& molecule, const std::vector<Case>& cases) {
+  const auto of = [&](const std::string& solver) -> const Case& {
+    return *std::find_if(cases.begin(), cases.end(),
+                         [&](const Case& one) { return one.name == molecule + "/" + solver; });
+  };
+  const Index n = of("newton").constraints();
+  for (const std::string solver : {"rattle", "p_shake"}) {
+    const double more = (of(solver + "_12").iterations() - of(solver + "_4").iterations()) / 2;
+    rows.add(molecule + "/" + solver, "contraction", bench::Measured({std::pow(1e-8, 1 / more)}), "1", n);
+  }
+  const double by_power = of("lincs_5_4").violation / of("lincs_4_4").violation;
+  rows.add(molecule + "/lincs", "contraction", bench::Measured({std::pow(by_power, 1.0 / 5)}), "1", n);
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
   const bench::Rows rows("constraints", count, arguments);
   set_thread_count(1);
-  const ConstraintOptions newton, sweeps{.solver = ConstraintMethod::rattle, .tolerance = 1e-7};
   std::vector<Case> cases;
-  const auto add = [&](const std::string& name, const Molecule& molecule, Index copies, bool sweeping) {
-    cases.push_back(made(name + "/newton", molecule, copies, newton));
-    if (sweeping) cases.push_back(made(name + "/rattle", molecule, copies, sweeps));
-  };
-  add("chain100", chain(100), 1, true);
-  add("chain10000", chain(10'000), 1, false);
-  add("chain10", chain(10), 1, true);
-  add("water", water(), 512, true);
+  for (const Index bonds : {100, 10'000, 10}) {
+    const std::string name = "chain" + std::to_string(bonds);
+    for (const Solver& solver : all_solvers()) {
+      const bool some = solver.name == "newton" || solver.name == "rattle_7" || solver.name == "p_lincs_4_1";
+      if (some) cases.push_back(made(name + "/" + solver.name, chain(bonds), 1, solver.options));
+    }
+  }
+  const std::vector<std::pair<std::string, Molecule>> molecules{{"water", water()},
+                                                                {"decane_united", chain(9)},
+                                                                {"decane", decane()},
+                                                                {"decane_hydrogens", decane_hydrogens()},
+                                                                {"cyclohexane", ring()}};
+  for (const auto& [name, molecule] : molecules) {
+    for (const Solver& solver : all_solvers())
+      cases.push_back(made(name + "/" + solver.name, molecule, name == "water" ? 512 : 256, solver.options));
+  }
   cases.push_back(made("water/settle", water(), 512, {.solver = ConstraintMethod::settle}));
-  add("decane_united", chain(9), 256, true);
-  add("decane", decane(), 256, true);
-  add("cyclohexane", ring(), 256, true);
   for (Case& one : cases) {  // warm-up
     one.slice();
     one.cost.clear();
@@ -165,11 +219,13 @@ int main(int count, char** arguments) {
   std::vector<double> scaling;
   for (int k = 0; k < 20; ++k) {
     for (Case& one : cases) one.slice();
-    scaling.push_back(cases[2].cost.back() / cases[0].cost.back());
+    scaling.push_back(cases[3].cost.back() / cases[0].cost.back());
   }
   for (const Case& one : cases) {
     rows.add(one.name, "ns_per_constraint_step", bench::Measured(one.cost), "ns", one.constraints());
     rows.add(one.name, "violation_max", bench::Measured({one.violation}), "1", one.constraints());
+    rows.add(one.name, "iterations", bench::Measured({one.iterations()}), "1", one.constraints());
   }
+  for (const auto& [name, molecule] : molecules) add_contractions(rows, name, cases);
   rows.add("chain10000_over_100", "cost_scaling", bench::Measured(scaling), "1", 10'000);
 }

@@ -1,7 +1,10 @@
 #include "constraints/constraint_equations.hpp"
 
+#include "numbers/parallel.hpp"
+
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <type_traits>
 #include <utility>
@@ -57,6 +60,7 @@ template <class Real> void ConstraintEquations<Real>::lay_out(const ParticleSyst
     }
   }
   matrix_.lay_out(layout_);
+  find_ties();
   const std::size_t entries = layout_.particle.size(), n = at(layout_.equations());
   for (ConstraintGradients<Real>* g : {&here_, &old_}) g->assign(entries, Vec3<Real>::Zero());
   g_.setZero(static_cast<Index>(n));
@@ -65,6 +69,26 @@ template <class Real> void ConstraintEquations<Real>::lay_out(const ParticleSyst
   masses_ = s.masses();
   check_reach(s);
   start_ = moved_ = s.box().is_periodic() ? VectorColumn<Real>(s.size()) : s.positions();
+}
+
+template <class Real> void ConstraintEquations<Real>::find_ties() {
+  std::vector<std::pair<Index, Index>> ties;  // particle and entry
+  for (Index a = 0; a < static_cast<Index>(layout_.particle.size()); ++a) ties.emplace_back(layout_.particle[at(a)], a);
+  std::sort(ties.begin(), ties.end());
+  std::vector<Index> equation_of(ties.size());
+  for (Index e = 0; e < layout_.equations(); ++e) {
+    for (Index a = layout_.first[at(e)]; a < layout_.first[at(e) + 1]; ++a) equation_of[at(a)] = e;
+  }
+  for (std::vector<Index>* list : {&tied_, &first_tie_, &tie_entry_, &tie_equation_}) list->clear();
+  for (const auto& [particle, entry] : ties) {
+    if (tied_.empty() || tied_.back() != particle) {
+      tied_.push_back(particle);
+      first_tie_.push_back(static_cast<Index>(tie_entry_.size()));
+    }
+    tie_entry_.push_back(entry);
+    tie_equation_.push_back(equation_of[at(entry)]);
+  }
+  first_tie_.push_back(static_cast<Index>(tie_entry_.size()));
 }
 
 /// From half of an edge on another image may be as near as the one that is meant.
@@ -97,16 +121,18 @@ template <class Real>
 void ConstraintEquations<Real>::find_gradients(const Positions& x, ConstraintGradients<Real>& out) const {
   Vec3<Real>* next = out.data();
   for (const auto& group : set_.groups()) {
-    group->gradients(x, 0, group->size(), next);
-    next += group->size() * group->equations() * group->particles();
+    const Index each = group->equations() * group->particles();
+    for_blocks(group->size(), [&](Index begin, Index end) { group->gradients(x, begin, end, next + begin * each); });
+    next += group->size() * each;
   }
 }
 
 template <class Real> void ConstraintEquations<Real>::find_values(const Positions& x) {
   Real* next = g_.data();
   for (const auto& group : set_.groups()) {
-    group->values(x, 0, group->size(), next);
-    next += group->size() * group->equations();
+    const Index each = group->equations();
+    for_blocks(group->size(), [&](Index begin, Index end) { group->values(x, begin, end, next + begin * each); });
+    next += group->size() * each;
   }
 }
 
@@ -153,12 +179,17 @@ template <class Real> bool ConstraintEquations<Real>::settled() const {
 template <class Real>
 void ConstraintEquations<Real>::push(VectorColumn<Real>& column, const ConstraintGradients<Real>& g,
                                      const Vector& multipliers, const Real& factor) const {
-  for (Index e = 0; e < layout_.equations(); ++e) {
-    const Real strength = factor * multipliers[e];
-    for (Index a = layout_.first[at(e)]; a < layout_.first[at(e) + 1]; ++a) {
-      column.add(layout_.particle[at(a)], -(layout_.inverse_mass[at(a)] * strength) * g[at(a)]);
+  // Particle by particle, so that threads share them: each takes what its constraints do in their order.
+  for_blocks(static_cast<Index>(tied_.size()), [&](Index begin, Index end) {
+    for (Index k = begin; k < end; ++k) {
+      Vec3<Real> sum = column[tied_[at(k)]];
+      for (Index tie = first_tie_[at(k)]; tie < first_tie_[at(k) + 1]; ++tie) {
+        const std::size_t a = at(tie_entry_[at(tie)]);
+        sum += -(layout_.inverse_mass[a] * (factor * multipliers[tie_equation_[at(tie)]])) * g[a];
+      }
+      column.set(tied_[at(k)], sum);
     }
-  }
+  });
 }
 
 template <class Real>

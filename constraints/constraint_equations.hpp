@@ -108,10 +108,14 @@ template <class Real> class ConstraintEquations {
 
  private:
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+  void find_ties();
   void check_reach(const ParticleSystem<Real>& s) const;
 
   ConstraintSet set_;
   ConstraintLayout<Real> layout_;
+  /// The entries of the layout by particle, with the equation of each: those of particle i of `tied_`, ascending, are
+  /// [first_tie_[i], first_tie_[i + 1]).
+  std::vector<Index> tied_, first_tie_, tie_entry_, tie_equation_;
   ScalarColumn<Real> masses_;
   std::vector<double> scales_, floors_;  ///< of each equation
   ConstraintMatrix<Real> matrix_;

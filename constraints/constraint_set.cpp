@@ -11,10 +11,33 @@ void ConstraintOptions::check() const {
   if (!(tolerance > 0 && tolerance < 1)) {
     refuse_field("tolerance", tolerance, "is not a valid relative violation; a number between 0 and 1 is expected");
   }
-  if (iterations < 1) {
-    refuse_field("iterations", static_cast<double>(iterations),
+  if (most_iterations() < 1) {
+    refuse_field("iterations", static_cast<double>(most_iterations()),
                  "is not a valid number of sweeps; at least 1 is expected");
   }
+  if (order < 1 || order > 1000) {
+    refuse_field("order", static_cast<double>(order),
+                 "is not a valid order of a series; a number from 1 to 1000 is expected");
+  }
+}
+
+double ConstraintOptions::violation() const {
+  switch (end()) {
+    case SolverEnd::rounding:
+      return 0;
+    case SolverEnd::tolerance:
+      return tolerance;
+    case SolverEnd::order:
+      break;
+  }
+  return 0.01 * std::pow(0.4, static_cast<double>(order));  // a bond turns by some degrees, and each term gains 2.5
+}
+
+std::string ConstraintOptions::signature() const {
+  std::string text = fmt::format("constraint_solver(solver = {}, tolerance = {}, iterations = {}",
+                                 static_cast<int>(solver), detail::value_text(tolerance), most_iterations());
+  if (end() == SolverEnd::order) text += fmt::format(", order = {}", order);
+  return text + ")";
 }
 
 ConstraintSet::ConstraintSet(ConstraintOptions options) : options_(options) { options_.check(); }

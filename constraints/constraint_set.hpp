@@ -7,6 +7,7 @@
 #include "engine/particle_system.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,21 +15,33 @@ namespace noether {
 
 struct ConstraintOptions {
   ConstraintMethod solver = ConstraintMethod::newton;
-  double tolerance = 1e-7;  ///< rattle: largest relative violation that is left [1]
-  Index iterations = 1000;  ///< rattle: most sweeps of one stage
+  double tolerance = 1e-7;               ///< rattle, p_shake: largest relative violation that is left [1]
+  std::optional<Index> iterations = {};  ///< rattle, p_shake: most sweeps of one stage; lincs: corrections of lengths
+  Index order = 4;                       ///< lincs: powers of the series
 
   static constexpr auto describe() {
     return part<ConstraintOptions>(
         "constraint_solver", "how constraints are solved",
         field<&ConstraintOptions::solver>("solver", "1",
                                           "newton: to rounding; rattle: by sweeps to a tolerance; settle: rigid "
-                                          "molecules of three sites in closed form"),
+                                          "molecules of three sites in closed form; m_shake: each molecule by a dense "
+                                          "matrix; p_shake: by a constant one, to a tolerance; lincs: by a series of "
+                                          "an order; p_lincs: the same of all molecules together"),
         field<&ConstraintOptions::tolerance>("tolerance", "1",
-                                             "for rattle: largest relative violation that may remain"),
-        field<&ConstraintOptions::iterations>("iterations", "1", "for rattle: largest number of sweeps per stage"));
+                                             "for rattle and p_shake: largest relative violation that may remain"),
+        field<&ConstraintOptions::iterations>("iterations", "1",
+                                              "for rattle and p_shake: largest number of sweeps per stage, default "
+                                              "1000; for lincs: corrections of lengths, default 1"),
+        field<&ConstraintOptions::order>("order", "1", "for lincs: number of terms of the series"));
   }
-  /// @throws Error  for a tolerance that is not above 0, a number of sweeps below 1
+  /// @throws Error  for a tolerance that is not above 0, a number of sweeps or an order below 1
   void check() const;
+  SolverEnd end() const { return info_of(solver).end; }
+  Index most_iterations() const { return iterations.value_or(info_of(solver).iterations); }
+  /// The relative violation that is left on purpose; 0: rounding. That of a series depends on the step: about what
+  /// bonds of molecules have at steps that are usual.
+  double violation() const;
+  std::string signature() const;
 };
 
 /// One equation of a set, found.
@@ -102,7 +115,7 @@ class ConstraintSet {
   template <class Real> Worst worst(const ParticleSystem<Real>& s) const;
 
   /// The relative violation that is left on purpose; 0: rounding.
-  double tolerance() const { return info_of(options_.solver).to_rounding ? 0 : options_.tolerance; }
+  double tolerance() const { return options_.violation(); }
   bool keeps_momentum() const;
   bool keeps_angular_momentum() const;
   /// Everything in text: a run goes on with the same set only.

@@ -1,6 +1,7 @@
 #include "constraints/constraint_solver.hpp"
 
 #include "constraints/dependent_constraints.hpp"
+#include "constraints/distance.hpp"
 #include "constraints/newton_constraints.hpp"
 
 #include <fmt/format.h>
@@ -48,6 +49,7 @@ template <class Real> void ConstraintSolver<Real>::bind(ParticleSystem<Real>& s)
   }
   others_.reset();
   equations_.lay_out(s);
+  check_served(s);
   lay_out_lanes(s);
   stages_ = stages_for(moving());
   prepared_ = false;
@@ -56,6 +58,18 @@ template <class Real> void ConstraintSolver<Real>::bind(ParticleSystem<Real>& s)
   check_independent(s);
   start_on_constraints(s);
   moving().restore_iterations(0);
+}
+
+template <class Real> void ConstraintSolver<Real>::check_served(const ParticleSystem<Real>& s) const {
+  const ConstraintMethodInfo& info = info_of(set().options().solver);
+  Index equation = 0;
+  for (const auto& group : set().groups()) {
+    if (info.distances_alone && dynamic_cast<const ConstraintsOf<Distance>*>(group.get()) == nullptr) {
+      throw BadConstraints(fmt::format("{} is not a distance, which solver = \"{}\" is for; use \"newton\"",
+                                       set().words(equation, s), info.name));
+    }
+    equation += group->size() * group->equations();
+  }
 }
 
 template <class Real> void ConstraintSolver<Real>::lay_out_lanes(const ParticleSystem<Real>& s) {

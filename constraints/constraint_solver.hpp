@@ -64,6 +64,8 @@ template <class Real> class ConstraintSolver {
   /// The equations that stages solve: all, or those that are not in lanes.
   ConstraintEquations<Real>& moving() { return others_ ? *others_ : equations_; }
   const ConstraintEquations<Real>& moving() const { return others_ ? *others_ : equations_; }
+  /// @throws BadConstraints  for a constraint that the solver is not for
+  void check_served(const ParticleSystem<Real>& s) const;
   void lay_out_lanes(const ParticleSystem<Real>& s);
   /// Stages of the molecules in lanes. @return whether all are solved
   bool solve_in_lanes(ParticleSystem<Real>& s, VectorColumn<Real>& x, const Real& h);

@@ -10,6 +10,12 @@ namespace noether {
 NOETHER_KERNELS(MoleculeKernels, newton_lanes)
 /// Constraint after constraint in sweeps, to a tolerance: SHAKE and RATTLE.
 NOETHER_KERNELS(MoleculeKernels, sweep_lanes)
+/// Newton's method with a dense matrix of the moment, to rounding.
+NOETHER_KERNELS(MoleculeKernels, m_shake_lanes)
+/// Sweeps of all constraints at once by a matrix that is constant, to a tolerance.
+NOETHER_KERNELS(MoleculeKernels, p_shake_lanes)
+/// A series for the matrix, and corrections of lengths, as many as are asked for.
+NOETHER_KERNELS(MoleculeKernels, lincs_lanes)
 /// Newton's method for rigid molecules of three sites, whose violation is quadratic in three multipliers; packs of
 /// eight.
 NOETHER_KERNELS(MoleculeKernels, triangle_lanes)

@@ -17,10 +17,6 @@ namespace noether {
 
 namespace {
 
-/// Constraints of which a pack of sixteen molecules still stays in the first-level cache.
-constexpr int most_of_sixteen = 32;
-/// Larger molecules are left to the sparse matrix of the whole set.
-constexpr std::size_t most_constraints = 256;
 /// Constraints that a thread takes at a time.
 constexpr Index share_of_thread = 256;
 
@@ -50,8 +46,9 @@ std::optional<MoleculeLanes::Molecule> MoleculeLanes::molecule_of(const Constrai
                                                                   const ParticleSystem<double>& s) const {
   const auto constraints = parts.constraints(component);
   const auto is_distance = [&](const Partition::Member& m) { return distances(*set.groups()[at(m.group)]) != nullptr; };
-  if (constraints.size() > most_constraints || !std::all_of(constraints.begin(), constraints.end(), is_distance))
-    return {};
+  const ConstraintMethodInfo& info = info_of(options_.solver);
+  const bool small = info.lanes == nullptr || constraints.size() <= at(info.lanes().most_constraints);
+  if (!small || !std::all_of(constraints.begin(), constraints.end(), is_distance)) return {};
   Molecule molecule{{parts.particles(component).begin(), parts.particles(component).end()}, {}, {}};
   std::vector<int> place(molecule.particles.size());
   for (std::size_t a = 0; a < place.size(); ++a) place[a] = static_cast<int>(a);
@@ -89,7 +86,9 @@ std::optional<RigidTriangle> MoleculeLanes::triangle_of(const std::vector<Index>
 ConstraintSet MoleculeLanes::lay_out(const ConstraintSet& set, const ParticleSystem<double>& s) {
   *this = {};
   options_ = set.options();
-  const bool all = info_of(options_.solver).lanes != nullptr;
+  const ConstraintMethodInfo& info = info_of(options_.solver);
+  const bool all = info.lanes != nullptr;
+  if (!all && info.triangles == nullptr) return set;
   const Partition parts(set, s.masses());
   std::vector<bool> left(at(set.equations()), true);
   std::map<std::vector<double>, std::vector<Index>> kinds;  // by all that makes a molecule what it is
@@ -101,7 +100,7 @@ ConstraintSet MoleculeLanes::lay_out(const ConstraintSet& set, const ParticleSys
     for (const Index i : molecule->particles) what.push_back(s.masses()[i]);
     for (const auto& [a, b] : molecule->pairs)
       what.insert(what.end(), {static_cast<double>(a), static_cast<double>(b)});
-    if (!all) what.insert(what.end(), molecule->lengths.begin(), molecule->lengths.end());
+    if (!all || info.equal_lengths) what.insert(what.end(), molecule->lengths.begin(), molecule->lengths.end());
     for (const Partition::Member& m : parts.constraints(component)) left[at(m.equation)] = false;
     auto [found, is_new] = kinds.emplace(what, std::vector<Index>{});
     if (is_new) order.push_back(what);
@@ -114,7 +113,7 @@ ConstraintSet MoleculeLanes::lay_out(const ConstraintSet& set, const ParticleSys
     throw BadConstraints(
         fmt::format("{} is not of a rigid molecule of three sites, two of them equal, which solver = "
                     "\"{}\" is for; use \"newton\"",
-                    words, info_of(options_.solver).name));
+                    words, info.name));
   };
   for (std::size_t e = 0; e < left.size(); ++e) {
     if (left[e]) refuse(set.words(static_cast<Index>(e), s));
@@ -136,8 +135,13 @@ void MoleculeLanes::add_kind(std::vector<Index> molecules, const ParticleSystem<
   const auto count = static_cast<Index>(kind.molecules.size());
   kind.triangle = triangle_of(kind.molecules, s);
   const ConstraintMethodInfo& info = info_of(options_.solver);
-  const bool by_triangle = kind.triangle && info.triangles != info.lanes;
-  if (count > 8 && lists.constraints <= most_of_sixteen && !by_triangle) kind.lanes = 16;
+  kind.kernels = kind.triangle ? info.triangles : info.lanes;
+  if (count > 8 && lists.constraints <= kind.kernels().most_of_sixteen) kind.lanes = 16;
+  if (info.equal_lengths) {
+    std::vector<double> lengths;
+    for (const int place : kind.elimination.places()) lengths.push_back(first.lengths[at(place)]);
+    kind.preconditioner = Preconditioner(lists, lengths);
+  }
   const Index lanes = kind.lanes, n = lists.constraints, atoms = lists.atoms;
   kind.packs = (count + lanes - 1) / lanes;
   kind.atoms.resize(at(kind.packs * atoms * lanes));
@@ -162,15 +166,15 @@ void MoleculeLanes::add_kind(std::vector<Index> molecules, const ParticleSystem<
 }
 
 template <class Work> void MoleculeLanes::for_packs(const Work& work) {
-  const ConstraintMethodInfo& info = info_of(options_.solver);
   for (const Kind& kind : kinds_) {
-    const MoleculeKernels& kernels = kind.triangle ? info.triangles() : info.lanes();
+    const MoleculeKernels& kernels = kind.kernels();
     const EliminationLists lists = kind.elimination.lists();
+    const PreconditionerLists preconditioner = kind.preconditioner.lists();
     const Index share = std::max<Index>(1, share_of_thread / (lists.constraints * kind.lanes));
     const Index shares = (kind.packs + share - 1) / share;
     for_blocks(shares * block_size, [&](Index begin, Index) {
       static thread_local AlignedVector<double> scratch;
-      const std::size_t needed = molecule_scratch(lists) * static_cast<std::size_t>(kind.lanes);
+      const std::size_t needed = (molecule_scratch(lists) + at(kernels.slots(lists))) * at(kind.lanes);
       if (scratch.size() < needed) scratch.resize(needed);
       const Index from = begin / block_size * share;
       for (Index p = from; p < std::min(kind.packs, from + share); ++p) {
@@ -185,6 +189,7 @@ template <class Work> void MoleculeLanes::for_packs(const Work& work) {
             .side_by_side = kind.side_by_side,
             .in_a_row = kind.side_by_side && full && atoms[kind.lanes - 1] - atoms[0] == lists.atoms * (kind.lanes - 1),
             .triangle = kind.triangle ? &*kind.triangle : nullptr,
+            .preconditioner = &preconditioner,
             .lengths2 = kind.lengths2.data() + p * 2 * lists.constraints * kind.lanes,
             .scratch = scratch.data()};
         work(kernels, pack, reports_[at(kind.first_report + p)]);
@@ -196,7 +201,8 @@ template <class Work> void MoleculeLanes::for_packs(const Work& work) {
 MoleculeTask MoleculeLanes::task(double h) const {
   return {.h = h,
           .tolerance = options_.tolerance,
-          .iterations = static_cast<int>(std::min<Index>(options_.iterations, 1 << 30))};
+          .iterations = static_cast<int>(std::min<Index>(options_.most_iterations(), 1 << 20)),
+          .order = static_cast<int>(options_.order)};
 }
 
 MoleculeLanes::Solved MoleculeLanes::solve_positions(const ParticleSystem<double>& s, const VectorColumn<double>& start,
@@ -235,6 +241,9 @@ const MoleculeKernels& newton_in_lanes() { return newton_lanes(); }
 const MoleculeKernels& sweeps_in_lanes() { return sweep_lanes(); }
 const MoleculeKernels& triangles_in_lanes() { return triangle_lanes(); }
 const MoleculeKernels& settle_in_lanes() { return settle_lanes(); }
+const MoleculeKernels& m_shake_in_lanes() { return m_shake_lanes(); }
+const MoleculeKernels& p_shake_in_lanes() { return p_shake_lanes(); }
+const MoleculeKernels& lincs_in_lanes() { return lincs_lanes(); }
 
 ConstraintSet MoleculeLanes::constraints(Index molecule, const ParticleSystem<double>& alone) const {
   const Molecule& of = molecules_[at(molecule)];

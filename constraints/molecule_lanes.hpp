@@ -4,6 +4,7 @@
 #include "constraints/constraint_set.hpp"
 #include "constraints/elimination.hpp"
 #include "constraints/molecule_row.hpp"
+#include "constraints/preconditioner.hpp"
 #include "engine/column.hpp"
 
 #include <cstddef>
@@ -15,10 +16,11 @@ namespace noether {
 
 class Partition;
 
-/// Solves the constraints of such molecules to rounding: Newton's method on a factorisation without fill, whose order
-/// of elimination is found once for each kind.
+/// Solves the constraints of such molecules by the kernels of a solver. The order in which constraints are eliminated
+/// is found once for each kind.
 ///
-/// Molecules are of one kind if they have as many atoms, of the same masses, and tie the same ones; lengths may differ.
+/// Molecules are of one kind if they have as many atoms, of the same masses, and tie the same ones; lengths may differ
+/// unless a solver wants them equal.
 /// Nothing is kept from stage to stage. Bits depend neither on which molecules are side by side nor on threads.
 /// @cost newton 15 to 20 ns a constraint and step, both stages, with AVX-512; no allocation after `lay_out`
 /// @source RyckaertCiccottiBerendsen1977, Davis2006
@@ -52,12 +54,14 @@ class MoleculeLanes {
   };
   struct Kind {
     Elimination elimination;
+    MoleculeKernelsInUse* kernels = nullptr;
     int lanes = 8;
     std::vector<Index> molecules;
     std::vector<std::int32_t> atoms = {};  ///< shape (packs, atoms, lanes)
     AlignedVector<double> lengths2 = {};   ///< shape (packs, 2, constraints, lanes)
     bool side_by_side = true;
     std::optional<RigidTriangle> triangle = {};
+    Preconditioner preconditioner = {};  ///< for those who need one
     Index packs = 0, first_report = 0;
   };
 

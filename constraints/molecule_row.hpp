@@ -2,6 +2,7 @@
 /// Molecules side by side in lanes: what the kernels of constraints work on.
 
 #include "constraints/elimination_row.hpp"
+#include "constraints/preconditioner_row.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -33,15 +34,16 @@ struct MoleculePack {
   int lanes;      ///< 8 or 16
   unsigned live;  ///< a bit for each lane that stands for a molecule of its own
   const EliminationLists* kind;
-  const std::int32_t* atoms;      ///< particle of atom a in lane l: [lanes a + l]
-  bool side_by_side;              ///< atoms of each molecule follow each other in the columns
-  bool in_a_row;                  ///< and molecules do
-  const RigidTriangle* triangle;  ///< of rigid molecules of three sites of equal lengths; else null
+  const std::int32_t* atoms;                  ///< particle of atom a in lane l: [lanes a + l]
+  bool side_by_side;                          ///< atoms of each molecule follow each other in the columns
+  bool in_a_row;                              ///< and molecules do
+  const RigidTriangle* triangle;              ///< of rigid molecules of three sites of equal lengths; else null
+  const PreconditionerLists* preconditioner;  ///< for those who need one
   const double* lengths2;  ///< squared, in the order of elimination, then 1 / squared, shape (2, constraints, lanes)
-  double* scratch;         ///< of the thread, `molecule_scratch` doubles a lane
+  double* scratch;         ///< of the thread: doubles a lane, `molecule_scratch` and what the kernels ask for
 };
 
-/// Doubles a lane that kernels need beside a pack.
+/// Doubles a lane that all kernels need beside a pack.
 constexpr std::size_t molecule_scratch(const EliminationLists& kind) {
   return static_cast<std::size_t>(9 * kind.constraints + kind.entries + 3 * kind.centers + kind.longest_row +
                                   4 * kind.atoms + 8);
@@ -51,7 +53,8 @@ constexpr std::size_t molecule_scratch(const EliminationLists& kind) {
 struct MoleculeTask {
   double h;          ///< duration of free motion [time]
   double tolerance;  ///< of methods that have one: largest relative violation that is left
-  int iterations;    ///< of these, the most
+  int iterations;    ///< of these, the most; of methods of a fixed order, how often lengths are corrected
+  int order;         ///< of these, powers of a series
 };
 
 /// How a stage went.
@@ -66,6 +69,10 @@ struct MoleculeKernels {
   /// Takes from velocities what is along gradients at `start`.
   MoleculeReport (*project_velocities)(const MoleculePack& pack, const MoleculeColumns& columns,
                                        const MoleculeTask& task);
+  /// Doubles a lane of scratch that this solver needs besides.
+  int (*slots)(const EliminationLists& kind) = [](const EliminationLists&) { return 0; };
+  int most_of_sixteen = 32;    ///< constraints of which a pack of sixteen molecules stays in the first-level cache
+  int most_constraints = 256;  ///< larger molecules are left to the solver of the whole set
 };
 
 }  // namespace noether

@@ -65,7 +65,7 @@ bool SweepConstraints<Real>::solve_positions(ConstraintEquations<Real>& equation
   free_ = x;
   const ConstraintOptions& options = equations.options();
   Worst worst;
-  for (Index k = 0; k <= options.iterations; ++k) {
+  for (Index k = 0; k <= options.most_iterations(); ++k) {
     worst.violation = 0;
     sweep(equations, s, x, worst);
     if (worst.violation <= options.tolerance) return true;
@@ -122,7 +122,7 @@ void SweepConstraints<Real>::fail(ConstraintEquations<Real>& equations, const Pa
     const ConstraintOptions& options = equations.options();
     equations.fail(s, worst.equation,
                    fmt::format("is not solved after {} sweeps: its violation is {:.3g}, but at most {} is allowed",
-                               options.iterations, worst.violation, options.tolerance));
+                               options.most_iterations(), worst.violation, options.tolerance));
   }
 }
 
@@ -135,7 +135,7 @@ void SweepConstraints<Real>::project_velocities(ConstraintEquations<Real>& equat
   const ConstraintGradients<Real>& here = equations.gradients();
   VectorColumn<Real>& v = s.velocities();
   Worst worst;
-  for (Index sweep = 0; sweep <= options.iterations; ++sweep) {
+  for (Index sweep = 0; sweep <= options.most_iterations(); ++sweep) {
     worst.violation = 0;
     for (Index e = 0; e < layout.equations(); ++e) {
       const Real rate = equations.along(e, v, here);
@@ -155,7 +155,7 @@ void SweepConstraints<Real>::project_velocities(ConstraintEquations<Real>& equat
       s, worst.equation,
       fmt::format(
           "still has a velocity across it after {} sweeps: {:.3g} of its scale in a step, but at most {} is allowed",
-          options.iterations, worst.violation, options.tolerance));
+          options.most_iterations(), worst.violation, options.tolerance));
 }
 
 }  // namespace

@@ -123,6 +123,6 @@ MoleculeReport project_velocities(const MoleculePack& pack, const MoleculeColumn
 }  // namespace
 
 extern const MoleculeKernels sweep_lanes;
-const MoleculeKernels sweep_lanes{solve_positions, project_velocities};
+const MoleculeKernels sweep_lanes{.solve_positions = solve_positions, .project_velocities = project_velocities};
 
 }  // namespace noether::NOETHER_SIMD_LEVEL

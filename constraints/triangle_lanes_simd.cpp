@@ -217,8 +217,10 @@ MoleculeReport project_velocities(const MoleculePack& pack, const MoleculeColumn
 }  // namespace
 
 extern const MoleculeKernels triangle_lanes;
-const MoleculeKernels triangle_lanes{solve_positions<false>, project_velocities};
+const MoleculeKernels triangle_lanes{
+    .solve_positions = solve_positions<false>, .project_velocities = project_velocities, .most_of_sixteen = 0};
 extern const MoleculeKernels settle_lanes;
-const MoleculeKernels settle_lanes{solve_positions<true>, project_velocities};
+const MoleculeKernels settle_lanes{
+    .solve_positions = solve_positions<true>, .project_velocities = project_velocities, .most_of_sixteen = 0};
 
 }  // namespace noether::NOETHER_SIMD_LEVEL

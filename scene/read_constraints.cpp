@@ -17,23 +17,45 @@ namespace {
 
 std::string path_of(std::size_t table) { return fmt::format("hamiltonian.constraint.{}", table); }
 
-/// Their names as a scene types them, "or" between them.
-std::string solvers_to_a_tolerance() {
+/// Keys of the options, all of which any table may have.
+constexpr std::array<const char*, 4> option_keys = {"solver", "tolerance", "iterations", "order"};
+
+/// Whether a solver that ends so reads a key beside `solver`.
+bool reads(SolverEnd end, std::string_view key) {
+  if (key == "tolerance") return end == SolverEnd::tolerance;
+  if (key == "order") return end == SolverEnd::order;
+  return end != SolverEnd::rounding;
+}
+
+/// The solvers that read a key, as a scene types them, "or" between them.
+std::string solvers_that_read(std::string_view key) {
   std::string names;
   for (const ConstraintMethodInfo& info : constraint_methods) {
-    if (!info.to_rounding) names += fmt::format("{}\"{}\"", names.empty() ? "" : " or ", info.name);
+    if (reads(info.end, key)) names += fmt::format("{}\"{}\"", names.empty() ? "" : " or ", info.name);
   }
   return names;
 }
 
+/// Where a solver ends, in words.
+std::string_view end_in_words(SolverEnd end) {
+  switch (end) {
+    case SolverEnd::rounding:
+      return "solves to rounding";
+    case SolverEnd::tolerance:
+      return "solves to a tolerance";
+    case SolverEnd::order:
+      break;
+  }
+  return "has an order and a number of iterations instead";
+}
+
 /// How all constraints are solved: keys that any of the tables may have, but only in one way.
 ConstraintOptions read_options(const SceneContext& context, const std::vector<const SceneValue*>& tables) {
-  constexpr std::array<const char*, 3> keys = {"solver", "tolerance", "iterations"};
   ConstraintOptions options;
   std::map<std::string, const SceneValue*> given;
   for (std::size_t k = 0; k < tables.size(); ++k) {
     TableReader reader(context, *tables[k], "[[hamiltonian.constraint]]", path_of(k));
-    for (const char* key : keys) {
+    for (const char* key : option_keys) {
       const SceneValue* value = reader.find(key);
       if (value == nullptr) continue;
       const auto [before, is_new] = given.emplace(key, value);
@@ -52,12 +74,12 @@ ConstraintOptions read_options(const SceneContext& context, const std::vector<co
       reader.refuse(error);
     }
   }
-  for (std::size_t k = 0; k < tables.size() && info_of(options.solver).to_rounding; ++k) {
+  for (std::size_t k = 0; k < tables.size(); ++k) {
     TableReader reader(context, *tables[k], "[[hamiltonian.constraint]]", path_of(k));
-    for (const char* key : {"tolerance", "iterations"}) {
-      if (!reader.has(key)) continue;
-      reader.fail(key, fmt::format("{} is for solver = {} only; {} solves to rounding", key, solvers_to_a_tolerance(),
-                                   info_of(options.solver).name));
+    for (const std::string_view key : option_keys) {
+      if (key == "solver" || reads(options.end(), key) || !reader.has(key)) continue;
+      reader.fail(key, fmt::format("{} is for solver = {} only; {} {}", key, solvers_that_read(key),
+                                   info_of(options.solver).name, end_in_words(options.end())));
     }
   }
   return options;
@@ -65,9 +87,12 @@ ConstraintOptions read_options(const SceneContext& context, const std::vector<co
 
 void put_options(const ConstraintOptions& options, const UnitSystem& units, SceneValue& effective) {
   effective.put("solver", detail::field_value(options.solver, "1", units));
-  if (info_of(options.solver).to_rounding) return;
-  effective.put("tolerance", detail::field_value(options.tolerance, "1", units));
-  effective.put("iterations", detail::field_value(options.iterations, "1", units));
+  const auto put = [&](const char* key, const auto& value) {
+    if (reads(options.end(), key)) effective.put(key, detail::field_value(value, "1", units));
+  };
+  put("tolerance", options.tolerance);
+  put("iterations", options.most_iterations());
+  put("order", options.order);
 }
 
 /// Takes the bonded terms that constraints of the structure hold out of the force `bonded`.
@@ -93,7 +118,7 @@ SceneValue::Array read_constraints(const SceneContext& context, const std::vecto
     reader.find("type");
     std::optional<TiedReader> tied;
     if (!kind->of_structure) tied.emplace(reader, kind->particles, scene.particles);
-    for (const char* key : {"solver", "tolerance", "iterations"}) reader.find(key);
+    for (const char* key : option_keys) reader.find(key);
     SceneConstraint constraint = kind->read(reader);
     SceneValue effective = SceneValue::table();
     effective.put("type", SceneValue::of(type, reader.line("type")));

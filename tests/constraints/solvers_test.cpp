@@ -1,0 +1,187 @@
+/// Solvers of constraints beside each other: how fast each converges, and what each refuses.
+
+#include "constraints/angle.hpp"
+#include "constraints/constraint_solver.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/crowd.hpp"
+#include "tests/support/settings.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace noether {
+namespace {
+
+using namespace noether::test;
+
+/// What a step of 2 fs of 21 molecules at 300 K comes to.
+struct Step {
+  ParticleSystem<double> particles;
+  std::int64_t iterations;
+  double violation;  ///< relative
+};
+Step step_of(const Molecule& molecule, const ConstraintOptions& options, double side = 0) {
+  Crowd crowd(options, side);
+  for (int k = 0; k < 21; ++k) crowd.add(molecule, k);
+  ParticleSystem<double> s = crowd.particles;
+  ConstraintSolver<double> solver(crowd.constraints);
+  solver.bind(s);
+  solver.advance_positions(s, 0.002);
+  const std::int64_t iterations = solver.iterations();
+  solver.project_velocities(s, 0.002);
+  if (solver.failure()) FAIL(solver.failure()->message);
+  const double violation = crowd.constraints.worst(s).residual;
+  return {std::move(s), iterations, violation};
+}
+
+/// The largest part of velocities across the constraints that LINCS leaves of them.
+double left_of_velocities(const Molecule& molecule, Index order) {
+  Crowd crowd({.solver = ConstraintMethod::lincs, .order = order});
+  for (int k = 0; k < 21; ++k) crowd.add(molecule, k);
+  ParticleSystem<double>& s = crowd.particles;
+  ConstraintSolver<double> solver(crowd.constraints);
+  s.phase().opened = true;  // else they would be projected to rounding here
+  solver.bind(s);
+  const auto across = [&] {
+    double worst = 0;
+    for (Index e = 0; e < crowd.constraints.equations(); ++e) {
+      const ConstraintPlace place = crowd.constraints.place(e);
+      const Index i = place.group->particle(place.constraint, 0), j = place.group->particle(place.constraint, 1);
+      const auto& c = std::as_const(s);
+      worst =
+          std::max(worst, std::abs(dot(c.positions()[i] - c.positions()[j], c.velocities()[i] - c.velocities()[j])));
+    }
+    return worst;
+  };
+  const double before = across();
+  solver.project_velocities(s, 0.002);
+  return across() / before;
+}
+
+TEST_CASE("each power of LINCS's series leaves less of velocities across, by a factor that depends on the molecule",
+          "[solvers]") {
+  struct Shape {
+    Molecule molecule;
+    double least, most;  ///< of the mean factor of a power
+  };
+  for (const auto& [molecule, least, most] : {Shape{chain(9), 0.3, 0.5}, Shape{with_hydrogens(9), 0.3, 0.6},
+                                              Shape{ring(6), 0.3, 0.6}, Shape{water(), 0.6, 0.9}}) {
+    double before = left_of_velocities(molecule, 2);
+    for (const Index order : {4, 6, 8, 10}) {
+      const double now = left_of_velocities(molecule, order);
+      CAPTURE(molecule.name, order, now);
+      CHECK(std::sqrt(now / before) > least);
+      CHECK(std::sqrt(now / before) < most);
+      before = now;
+    }
+  }
+}
+
+TEST_CASE("LINCS has the violation that its order and iterations leave, far below a turn's", "[solvers]") {
+  const auto violation = [](const Molecule& molecule, Index order, Index iterations) {
+    return step_of(molecule, {.solver = ConstraintMethod::lincs, .iterations = iterations, .order = order}).violation;
+  };
+  for (const Molecule& molecule : {chain(9), with_hydrogens(9), ring(6)}) {
+    CHECK(violation(molecule, 4, 1) < 1e-4);  // free motion violates by 4e-2
+    CHECK(violation(molecule, 4, 1) > 1e-6);
+    CHECK(violation(molecule, 8, 2) < 1e-6);
+    CHECK(violation(molecule, 8, 2) > 1e-9);
+    // With a series long enough each correction leaves some hundredths, as chord steps do.
+    double before = violation(molecule, 16, 1);
+    for (const Index iterations : {2, 3, 4}) {
+      const double now = violation(molecule, 16, iterations);
+      CHECK(now < 0.05 * before);
+      before = now;
+    }
+    CHECK(violation(molecule, 30, 12) < 1e-13);
+  }
+}
+
+TEST_CASE("p_lincs is LINCS of all molecules together, on any number of threads, in a box too", "[solvers]") {
+  for (const double side : {0.0, 2.8}) {
+    for (const Molecule& molecule : {with_hydrogens(9), ring(6)}) {
+      const ParticleSystem<double> one = step_of(molecule, {.solver = ConstraintMethod::lincs}, side).particles;
+      std::optional<ParticleSystem<double>> first;
+      for (const int threads : {1, 2, 3}) {
+        const Threads as(threads);
+        ParticleSystem<double> all = step_of(molecule, {.solver = ConstraintMethod::p_lincs}, side).particles;
+        for (Index i = 0; i < one.size(); ++i) {
+          REQUIRE((one.positions()[i] - all.positions()[i]).norm() < 4e-15);
+          REQUIRE((one.velocities()[i] - all.velocities()[i]).norm() < 4e-12);
+          if (first) REQUIRE(all.positions()[i] == first->positions()[i]);
+          if (first) REQUIRE(all.velocities()[i] == first->velocities()[i]);
+        }
+        if (!first) first = std::move(all);
+      }
+    }
+  }
+}
+
+TEST_CASE("p_shake needs at most half of the sweeps of rattle on decane, m_shake of the steps of newton", "[solvers]") {
+  for (const Molecule& molecule : {chain(9), with_hydrogens(9)}) {
+    for (const double tolerance : {1e-4, 1e-8, 1e-12}) {
+      const auto sweeps = [&](ConstraintMethod solver) {
+        return step_of(molecule, {.solver = solver, .tolerance = tolerance}).iterations;
+      };
+      CHECK(2 * sweeps(ConstraintMethod::p_shake) <= sweeps(ConstraintMethod::rattle));
+      CHECK(step_of(molecule, {.solver = ConstraintMethod::p_shake, .tolerance = tolerance}).violation <= tolerance);
+    }
+    const auto steps = [&](ConstraintMethod solver) { return step_of(molecule, {.solver = solver}).iterations; };
+    CHECK(2 * steps(ConstraintMethod::m_shake) <= steps(ConstraintMethod::newton));
+  }
+}
+
+TEST_CASE("a molecule too large for its solver's lanes is solved among the others", "[solvers]") {
+  const Molecule large = chain(300);
+  const ParticleSystem<double> right = step_of(large, {}).particles;
+  for (const ConstraintMethodInfo& info : constraint_methods) {
+    if (info.lanes == nullptr && info.triangles != nullptr) continue;  // for triangles alone
+    const Step step = step_of(large, {.solver = info.method, .tolerance = 1e-9});
+    const double allowed = info.end == SolverEnd::rounding ? 1e-12 : info.end == SolverEnd::tolerance ? 1e-9 : 1e-4;
+    CAPTURE(info.name, step.violation);
+    CHECK(step.violation <= allowed);
+    double apart = 0;
+    for (Index i = 0; i < right.size(); ++i)
+      apart = std::max(apart, (step.particles.positions()[i] - right.positions()[i]).norm());
+    CHECK(apart < 10 * allowed);
+  }
+}
+
+TEST_CASE("LINCS refuses what is no distance, and names it", "[solvers]") {
+  for (const ConstraintMethod solver : {ConstraintMethod::lincs, ConstraintMethod::p_lincs}) {
+    Crowd crowd({.solver = solver});
+    crowd.add(chain(3), 0);
+    crowd.constraints.add(crowd.particles, Angle{}, {0, 1, 2});
+    ConstraintSolver<double> made(crowd.constraints);
+    CHECK_THROWS_WITH(made.bind(crowd.particles), Catch::Contains("'chain0_0', 'chain0_1' and 'chain0_2'") &&
+                                                      Catch::Contains("is not a distance") &&
+                                                      Catch::Contains("newton"));
+  }
+}
+
+TEST_CASE("a molecule that LINCS cannot hold is named", "[solvers]") {
+  for (const ConstraintMethod solver : {ConstraintMethod::lincs, ConstraintMethod::p_lincs}) {
+    Crowd crowd({.solver = solver});
+    for (int k = 0; k < 21; ++k) crowd.add(chain(9), k, k == 13 ? 1e7 : 300);
+    std::optional<Failure> failure;
+    after_step<double>(crowd, 0.004, &failure);
+    REQUIRE(failure);
+    CHECK(failure->particle / 10 == 13);
+    CHECK_THAT(failure->message, Catch::Contains("'chain13_") && Catch::Contains("turns by more than 45 degrees"));
+    // Three bonds of an atom whose series does not converge, and no bond that turns: violations grow from step to step.
+    Crowd heavy({.solver = solver});
+    Molecule star{"star", {1, 100, 100, 100}, {{0, 0, 0}, {0.1, 0, 0}, {0.0999, 0.005, 0}, {0.0998, -0.006, 0}}, {}};
+    star.bonds = {{0, 1}, {0, 2}, {0, 3}};
+    for (int k = 0; k < 9; ++k) heavy.add(star, k);
+    ParticleSystem<double> s = heavy.particles;
+    ConstraintSolver<double> made(heavy.constraints);
+    made.bind(s);
+    for (int k = 0; k < 100 && !made.failure(); ++k)
+      made.advance_positions(s, 0.002), made.project_velocities(s, 0.002);
+    REQUIRE(made.failure());
+    CHECK_THAT(made.failure()->message, Catch::Contains("'star") && Catch::Contains("newton"));
+  }
+}
+
+}  // namespace
+}  // namespace noether
