@@ -25,17 +25,15 @@ class Angles {
   Angles(const EliminationLists& kind, std::span<const double> lengths) : kind_(kind), lengths_(lengths) {
     bonds_.assign(static_cast<std::size_t>(kind.atoms), 0);
     for (int k = 0; k < kind.constraints; ++k) {
-      const auto [a, b] = std::minmax(kind.i[k], kind.j[k]);
-      between_[{a, b}] = k;
-      ++bonds_[static_cast<std::size_t>(a)], ++bonds_[static_cast<std::size_t>(b)];
+      between_[sorted(kind.i[k], kind.j[k])] = k;
+      for (const int atom : {kind.i[k], kind.j[k]}) ++bonds_[static_cast<std::size_t>(atom)];
     }
   }
   /// The cosine of the angle between two constraints at the atom that they share.
   double cosine(int k, int l) const {
     const int shared = kind_.i[k] == kind_.i[l] || kind_.i[k] == kind_.j[l] ? kind_.i[k] : kind_.j[k];
     const auto other = [&](int c) { return kind_.i[c] == shared ? kind_.j[c] : kind_.i[c]; };
-    const auto [a, b] = std::minmax(other(k), other(l));
-    const auto opposite = between_.find({a, b});
+    const auto opposite = between_.find(sorted(other(k), other(l)));
     // So many bonds of one atom cannot all be further apart.
     if (opposite == between_.end()) return std::max(tetrahedral, -1.0 / (bonds_[static_cast<std::size_t>(shared)] - 1));
     const double c = length(opposite->second), d = length(k), e = length(l);
@@ -44,6 +42,8 @@ class Angles {
   double length(int k) const { return lengths_[static_cast<std::size_t>(k)]; }
 
  private:
+  static std::pair<int, int> sorted(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
+
   const EliminationLists& kind_;
   std::span<const double> lengths_;
   std::map<std::pair<int, int>, int> between_;  ///< the constraint of two atoms
