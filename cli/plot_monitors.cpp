@@ -328,14 +328,13 @@ std::optional<PlotPanel> plot_dihedrals(const PlotSource& source) {
   if (angles.size() != density.size() || parts.size() != 3) return {};
   PlotCurve curve;
   for (std::size_t k = 0; k < angles.size(); ++k) {
-    if (std::isfinite(density[k])) curve.points.push_back({angles[k] / one_degree, density[k] * one_degree});
+    if (std::isfinite(density[k])) curve.points.push_back({angles[k] / one_degree, 100 * density[k] * one_degree});
   }
   if (curve.points.empty()) return {};
   PlotPanel panel;
-  panel.title =
-      fmt::format("Dihedral angles: trans {:.3f}, gauche+ {:.3f}, gauche- {:.3f}", parts[0], parts[1], parts[2]);
+  panel.title = fmt::format("Dihedrals: trans {:.3f}, gauche+ {:.3f}, gauche- {:.3f}", parts[0], parts[1], parts[2]);
   panel.x = {.label = "phi (deg)", .low = -180, .high = 180};
-  panel.y.label = "density (1/deg)";
+  panel.y.label = "density (%/deg)";
   panel.curves = {std::move(curve)};
   fit_values(panel);
   panel.y.low = 0;

@@ -228,7 +228,7 @@ TEST_CASE("the monitors that pictures are drawn from are read, each with what it
   }
 }
 
-TEST_CASE("the panel of dihedral angles has their last histogram, in degrees", "[cli][plot]") {
+TEST_CASE("the panel of dihedral angles has their last histogram, in percent per degree", "[cli][plot]") {
   io::MonitorSeries monitor{
       .name = "dihedrals", .step = {}, .time = {0, 1}, .quantities = {}, .units = {}, .scale = {}, .orders = {}};
   const double quarter = std::numbers::pi / 4;
@@ -238,11 +238,11 @@ TEST_CASE("the panel of dihedral angles has their last histogram, in degrees", "
   PlotSource source{.file = {}, .scene = {}, .frames = {}, .monitors = {monitor}, .time = {}};
   const std::optional<PlotPanel> panel = plot_dihedrals(source);
   REQUIRE(panel);
-  CHECK(panel->title == "Dihedral angles: trans 0.600, gauche+ 0.300, gauche- 0.100");
+  CHECK(panel->title == "Dihedrals: trans 0.600, gauche+ 0.300, gauche- 0.100");
   REQUIRE(panel->curves.size() == 1);
   REQUIRE(panel->curves[0].points.size() == 2);
   CHECK(std::abs(panel->curves[0].points[1].x - 90) < 1e-12);
-  CHECK(std::abs(panel->curves[0].points[1].y - 0.75 / 180) < 1e-15);
+  CHECK(std::abs(panel->curves[0].points[1].y - 75.0 / 180) < 1e-12);
   source.monitors[0].name = "temperature";
   CHECK_FALSE(plot_dihedrals(source));
 }
