@@ -1,4 +1,4 @@
-/// Panels of what monitors have seen: errors, elements, temperature, pressure.
+/// Panels of what monitors have seen: errors, elements, temperature, pressure, dihedral angles.
 
 #include "cli/plot_source.hpp"
 #include "engine/orbital_elements.hpp"
@@ -155,6 +155,16 @@ std::optional<PlotPanel> value_panel(const PlotSource& source, std::string_view 
   return panel;
 }
 
+/// What a list of numbers was at the last look; nothing where there is no such list.
+std::vector<double> last_row(const io::MonitorSeries& monitor, const char* quantity) {
+  const auto found = monitor.quantities.find(quantity);
+  if (found == monitor.quantities.end() || found->second.first.size() != 1) return {};
+  const auto row = static_cast<std::size_t>(found->second.first[0]);
+  const std::vector<double>& values = found->second.second;
+  if (row == 0 || values.size() < row) return {};
+  return {values.end() - static_cast<std::ptrdiff_t>(row), values.end()};
+}
+
 /// a, e, inc of all bodies at one moment, shape (n, 3), NaN where there is no orbit.
 using ElementRows = std::vector<std::array<double, 3>>;
 
@@ -308,6 +318,27 @@ std::optional<PlotPanel> plot_temperature(const PlotSource& source) {
 
 std::optional<PlotPanel> plot_pressure(const PlotSource& source) {
   return value_panel(source, "pressure", "Pressure", source.pressure_unit, 1);
+}
+
+std::optional<PlotPanel> plot_dihedrals(const PlotSource& source) {
+  const io::MonitorSeries* monitor = find_monitor(source.monitors, "dihedrals");
+  if (monitor == nullptr) return {};
+  const std::vector<double> angles = last_row(*monitor, "angle"), density = last_row(*monitor, "density");
+  const std::vector<double> parts = last_row(*monitor, "fraction");
+  if (angles.size() != density.size() || parts.size() != 3) return {};
+  PlotCurve curve;
+  for (std::size_t k = 0; k < angles.size(); ++k) {
+    if (std::isfinite(density[k])) curve.points.push_back({angles[k] / one_degree, 100 * density[k] * one_degree});
+  }
+  if (curve.points.empty()) return {};
+  PlotPanel panel;
+  panel.title = fmt::format("Dihedrals: trans {:.3f}, gauche+ {:.3f}, gauche- {:.3f}", parts[0], parts[1], parts[2]);
+  panel.x = {.label = "phi (deg)", .low = -180, .high = 180};
+  panel.y.label = "density (%/deg)";
+  panel.curves = {std::move(curve)};
+  fit_values(panel);
+  panel.y.low = 0;
+  return panel;
 }
 
 }  // namespace noether

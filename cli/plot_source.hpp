@@ -69,6 +69,8 @@ std::vector<PlotPanel> plot_elements(const PlotSource& source);
 std::optional<PlotPanel> plot_temperature(const PlotSource& source);
 /// Pressure against time, from a monitor.
 std::optional<PlotPanel> plot_pressure(const PlotSource& source);
+/// The histogram of dihedral angles over the run, from a monitor.
+std::optional<PlotPanel> plot_dihedrals(const PlotSource& source);
 
 /// g(r) by pair of types where there are few types, each a mean of frames, up to half of the shortest edge.
 /// @param molecules  the number of each particle's; pairs within one are left out. Empty: all pairs count

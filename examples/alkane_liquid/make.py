@@ -1,6 +1,7 @@
 """Writes decane.data: 64 molecules of n-decane at the density of the liquid, united atoms, for LAMMPS and for noether.
 
     python3 make.py > decane.data
+    python3 make.py 10 > ../decane/decane.data      # the same places with so many decimals, for rigid bonds
 
 Each chain grows carbon by carbon: of a few places for the next one, trans or gauche, it takes the place farthest from
 all carbons that stand already. Some still overlap; a minimizer parts them. The same seed writes the same file.
@@ -8,8 +9,10 @@ all carbons that stand already. Some still overlap; a minimizer parts them. The 
 
 import math
 import random
+import sys
 
 CHAINS, CARBONS = 64, 10
+DECIMALS = int(sys.argv[1]) if len(sys.argv) > 1 else 4
 DENSITY = 0.726  # g/cm^3, of decane at 298 K
 BOND, ANGLE = 1.54, math.radians(114)  # angstrom
 TRANS, GAUCHE = math.pi, math.radians(65)
@@ -108,7 +111,7 @@ section("Bond Coeffs # harmonic", [(STRETCH, BOND)])
 section("Angle Coeffs # harmonic", [(f"{BEND / 2 * KELVIN:.6f}", 114)])
 section("Dihedral Coeffs # opls", [[f"{2 * c * KELVIN:.8f}" for c in TORSION] + [0]])
 section("Atoms # molecular",
-        [(chain + 1, 1 if k in (0, CARBONS - 1) else 2, *(f"{x % EDGE:.4f}" for x in chains[chain][k]))
+        [(chain + 1, 1 if k in (0, CARBONS - 1) else 2, *(f"{x % EDGE:.{DECIMALS}f}" for x in chains[chain][k]))
          for chain in range(CHAINS) for k in range(CARBONS)])
 for size, name in ((2, "Bonds"), (3, "Angles"), (4, "Dihedrals")):
     section(name, [(1, *row) for row in tuples(size)])

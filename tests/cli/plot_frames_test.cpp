@@ -195,6 +195,10 @@ steps = 10
 type = "radial_distribution"
 steps = 10
 [[every]]
+type = "dihedrals"
+quadruples = [["atom_1", "atom_2", "atom_3", "atom_9"], ["atom_5", "atom_6", "atom_7", "atom_12"]]
+steps = 10
+[[every]]
 type = "mean_square_displacement"
 steps = 2
 length = 20
@@ -213,7 +217,7 @@ TEST_CASE("the monitors that pictures are drawn from are read, each with what it
     const PlotOptions options{.frame = {}, .what = {what}, .projection = {}};
     return read_plot_data(folder / "scene.out/run.h5", standard_parts(), options).panels;
   };
-  for (const char* what : {"errors", "temperature", "pressure", "rdf", "msd"}) {
+  for (const char* what : {"errors", "temperature", "pressure", "dihedrals", "rdf", "msd"}) {
     CAPTURE(what);
     const std::vector<PlotPanel> panels = panels_of(what);
     REQUIRE(panels.size() == (what == std::string("errors") ? 2 : 1));  // energy and momentum
@@ -222,6 +226,25 @@ TEST_CASE("the monitors that pictures are drawn from are read, each with what it
       CHECK(panel.curves[0].points.size() > 2);
     }
   }
+}
+
+TEST_CASE("the panel of dihedral angles has their last histogram, in percent per degree", "[cli][plot]") {
+  io::MonitorSeries monitor{
+      .name = "dihedrals", .step = {}, .time = {0, 1}, .quantities = {}, .units = {}, .scale = {}, .orders = {}};
+  const double quarter = std::numbers::pi / 4;
+  monitor.quantities["angle"] = {{2}, {-2 * quarter, 2 * quarter, -2 * quarter, 2 * quarter}};
+  monitor.quantities["density"] = {{2}, {0, 0, 0.25 / std::numbers::pi, 0.75 / std::numbers::pi}};
+  monitor.quantities["fraction"] = {{3}, {1, 0, 0, 0.6, 0.3, 0.1}};
+  PlotSource source{.file = {}, .scene = {}, .frames = {}, .monitors = {monitor}, .time = {}};
+  const std::optional<PlotPanel> panel = plot_dihedrals(source);
+  REQUIRE(panel);
+  CHECK(panel->title == "Dihedrals: trans 0.600, gauche+ 0.300, gauche- 0.100");
+  REQUIRE(panel->curves.size() == 1);
+  REQUIRE(panel->curves[0].points.size() == 2);
+  CHECK(std::abs(panel->curves[0].points[1].x - 90) < 1e-12);
+  CHECK(std::abs(panel->curves[0].points[1].y - 75.0 / 180) < 1e-12);
+  source.monitors[0].name = "temperature";
+  CHECK_FALSE(plot_dihedrals(source));
 }
 
 /// Titles of the panels of a run's picture.

@@ -30,11 +30,13 @@
 #include "integrators/langevin.hpp"
 #include "integrators/minimize.hpp"
 #include "integrators/systems/heat_line.hpp"
+#include "integrators/velocity_rescaling.hpp"
 #include "integrators/wisdom_holman.hpp"
 #include "io/bodies.hpp"
 #include "io/digest.hpp"
 #include "io/structure.hpp"
 #include "io/trajectory.hpp"
+#include "monitors/dihedrals.hpp"
 #include "monitors/monitors.hpp"
 #include "monitors/orbital_monitors.hpp"
 #include "monitors/pressure.hpp"
@@ -59,6 +61,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace examples {
 
@@ -101,8 +104,20 @@ namespace examples::bead_on_wire {
 namespace examples::beads_on_sphere {
 #include "examples/beads_on_sphere/main.cpp"
 }
+namespace examples::butane {
+#include "examples/butane/main.cpp"
+}
 namespace examples::chain {
 #include "examples/chain/main.cpp"
+}
+namespace examples::chain_of_10000 {
+#include "examples/chain_of_10000/main.cpp"
+}
+namespace examples::cyclohexane {
+#include "examples/cyclohexane/main.cpp"
+}
+namespace examples::decane {
+#include "examples/decane/main.cpp"
 }
 namespace examples::double_pendulum {
 #include "examples/double_pendulum/main.cpp"
