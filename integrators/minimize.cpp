@@ -105,7 +105,7 @@ class Descent {
  public:
   Descent(ParticleSystem<double>& s, const AnyForce<double>& forces, const MinimizeOptions& options,
           MinimizeAlong* along)
-      : s_(s), forces_(forces), options_(options), along_(along), f_(s.size()), v_(s.size()) {
+      : s_(s), forces_(forces), options_(options), along_(along), f_(s.size()), v_(s.size()), still_(s.size()) {
     if (along_ != nullptr) along_->bind(s_);
     bind_force(forces_, s_);
     const double range = forces_.claims().range;
@@ -152,7 +152,8 @@ class Descent {
     // Forces of an overlap show the way out of it.
     (sink.failure() && sink.failure()->kind == Outcome::Kind::overlap ? overlap_ : failure_) = sink.failure();
     if (along_ != nullptr && !failure_) {
-      along_->constrain(s_, f_);
+      // At rest: what holds particles of a temperature on their circles is no force downhill.
+      with_velocities(still_, [&] { along_->constrain(s_, f_); });
       failure_ = along_->take_failure();  // of the step that led here as well
     }
     if (failure_) return false;
@@ -216,7 +217,7 @@ class Descent {
   void advance() {
     if (along_ != nullptr) saved_.assign_state(s_);
     v_.add_scaled(dt_, f_);
-    if (along_ != nullptr) with_velocities([&] { along_->project_velocities(s_, dt_); });
+    if (along_ != nullptr) with_velocities(v_, [&] { along_->project_velocities(s_, dt_); });
     const double fastest = largest_norm(v_);
     const double speed = fastest * std::sqrt(product(v_, fastest, v_, fastest));
     const double force = std::sqrt(product(f_, largest_, f_, largest_));
@@ -258,13 +259,13 @@ class Descent {
   }
   /// x += h v
   void shift(double h) {
-    with_velocities([&] { along_ != nullptr ? along_->advance_positions(s_, h) : s_.advance_positions(h); });
+    with_velocities(v_, [&] { along_ != nullptr ? along_->advance_positions(s_, h) : s_.advance_positions(h); });
   }
-  /// Acts where the particles have the velocities of the descent.
-  template <class Act> void with_velocities(const Act& act) {
-    std::swap(s_.velocities(), v_);
+  /// Acts where the particles have velocities `v`, those of the descent or none.
+  template <class Act> void with_velocities(VectorColumn<double>& v, const Act& act) {
+    std::swap(s_.velocities(), v);
     act();
-    std::swap(s_.velocities(), v_);
+    std::swap(s_.velocities(), v);
   }
 
   ParticleSystem<double>& s_;
@@ -272,7 +273,7 @@ class Descent {
   const MinimizeOptions& options_;
   MinimizeAlong* along_;
   Workspace workspace_;
-  VectorColumn<double> f_, v_, before_;
+  VectorColumn<double> f_, v_, still_, before_;
   ParticleSystem<double> saved_;  ///< before the last step along constraints
   double reach_ = 0, dt_ = 0, alpha_ = alpha_start, largest_ = 0;
   double curvature_ = 0;    ///< largest of late [mass/time^2]
