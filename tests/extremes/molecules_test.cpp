@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-namespace noether::test {
+namespace noether::test::molecules {
 namespace {
 
 using Long = long double;
@@ -517,4 +517,4 @@ TEST_CASE("the energy of free molecules of unequal masses, flat chains and rings
 }
 
 }  // namespace
-}  // namespace noether::test
+}  // namespace noether::test::molecules
