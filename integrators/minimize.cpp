@@ -119,6 +119,7 @@ class Descent {
     while (largest_ > options_.max_force) {
       if (made_ == options_.steps) return ended(unfinished());
       steer();
+      if (!(dt_ > 0 && std::isfinite(dt_))) return ended(stalled());
       advance();
       before_ = f_;
       const double before = largest_;
@@ -141,6 +142,15 @@ class Descent {
             .message = fmt::format("the largest force is {:.6g} after {} steps of the minimization, above max_force = "
                                    "{:.6g}; give more steps, or a better start",
                                    largest_, made_, options_.max_force)};
+  }
+
+  /// Time steps have grown, or shrunk, beyond all numbers: nothing moves any more.
+  Failure stalled() const {
+    return {
+        .quantity = "force",
+        .message = fmt::format("the largest force stays at {:.6g}, above max_force = {:.6g}: no step downhill moves "
+                               "a particle any more, after {} steps; give a larger max_force, or a better start",
+                               largest_, options_.max_force, made_)};
   }
 
   /// Forces at the present positions. @return whether they can be computed

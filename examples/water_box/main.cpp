@@ -28,7 +28,7 @@ using namespace noether::units::molecular;  // nm, ps, kJ/mol, K
 int main() {
   ParticleSystem water =
       WaterBox{
-          .model = WaterModel::spce, .molecules = 216, .density = 0.997 * g_per_cm3, .temperature = 100 * K, .seed = 7}
+          .model = WaterModel::spce, .molecules = 216, .density = 0.997 * g_per_cm3, .temperature = 175 * K, .seed = 7}
           .build();
   const ConstraintSet rigid = rigid_molecules(water);
 

@@ -3,6 +3,7 @@
 #include "scene/minimize.hpp"
 
 #include "forces/sum.hpp"
+#include "integrators/minimize.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/settings.hpp"
 
@@ -11,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 #include <string>
 
 namespace noether::test {
@@ -186,6 +188,30 @@ TEST_CASE("two molecules of rigid water come to one minimum by long steps and by
   CHECK(oxygens[0] > 0.26);  // as in the liquid
   CHECK(oxygens[0] < 0.29);
   CHECK(energies[0] < -20);
+}
+
+/// Holds all particles where they are, and lets a force on them stand that leads nowhere.
+class Nailed final : public MinimizeAlong {
+ public:
+  void bind(ParticleSystem<double>&) override {}
+  void advance_positions(ParticleSystem<double>&, double) override {}
+  void project_velocities(ParticleSystem<double>& s, double) override { s.velocities().set_zero(); }
+  void constrain(const ParticleSystem<double>&, VectorColumn<double>&) override {}
+  std::optional<Failure> take_failure() override { return {}; }
+};
+
+TEST_CASE("a minimization that no step takes further ends by name, with its particles where they were",
+          "[scene][minimize]") {
+  Scene scene = water(27, "max_force = '1 kJ/mol/nm'");
+  const ParticleSystem<double> before = scene.particles;
+  ForceField<double> forces;
+  for (const SceneForce& force : scene.hamiltonian.terms()) forces.add(force.force);
+  Nailed nailed;
+  const Minimized done = minimize(scene.particles, AnyForce<double>(forces), {.max_force = 1, .steps = 20000}, &nailed);
+  REQUIRE(done.failure);
+  CHECK_THAT(done.failure->message, Catch::Contains("no step downhill moves a particle any more"));
+  CHECK(done.steps < 20000);
+  for (Index i = 0; i < before.size(); ++i) CHECK(scene.particles.positions()[i] == before.positions()[i]);
 }
 
 }  // namespace noether::test
