@@ -146,11 +146,10 @@ class Descent {
 
   /// Time steps have grown, or shrunk, beyond all numbers: nothing moves any more.
   Failure stalled() const {
-    return {
-        .quantity = "force",
-        .message = fmt::format("the largest force stays at {:.6g}, above max_force = {:.6g}: no step downhill moves "
-                               "a particle any more, after {} steps; give a larger max_force, or a better start",
-                               largest_, options_.max_force, made_)};
+    return {.quantity = "force",
+            .message = fmt::format("the largest force stays at {:.6g}, above max_force = {:.6g}: no step downhill "
+                                   "changes it any more, after {} steps; give a larger max_force, or a better start",
+                                   largest_, options_.max_force, made_)};
   }
 
   /// Forces at the present positions. @return whether they can be computed

@@ -209,7 +209,7 @@ TEST_CASE("a minimization that no step takes further ends by name, with its part
   Nailed nailed;
   const Minimized done = minimize(scene.particles, AnyForce<double>(forces), {.max_force = 1, .steps = 20000}, &nailed);
   REQUIRE(done.failure);
-  CHECK_THAT(done.failure->message, Catch::Contains("no step downhill moves a particle any more"));
+  CHECK_THAT(done.failure->message, Catch::Contains("no step downhill changes it any more"));
   CHECK(done.steps < 20000);
   for (Index i = 0; i < before.size(); ++i) CHECK(scene.particles.positions()[i] == before.positions()[i]);
 }
