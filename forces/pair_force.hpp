@@ -107,6 +107,15 @@ struct PairEnd {
   double from2 = 0, inverse = 0;
 };
 
+/// Times a switch of t = (r2 - from2) inverse.
+template <class Real>
+PairTerms<Real> switched(const PairTerms<Real>& bare, Cutoff style, double from2, double inverse, const Real& r2) {
+  Real t = (r2 - Real(from2)) * Real(inverse);
+  t = t > Real(0) ? t : Real(0);
+  const Switch<Real> off(style, t);
+  return {bare.energy * off.value, off.value * bare.force - Real(2 * inverse) * bare.energy * off.slope};
+}
+
 template <class Real, class P>
 PairTerms<Real> ended(const P& potential, const PairEnd& end, const Real& r2, const Real& product) {
   const PairTerms<Real> bare = bare_terms(potential, r2, product);
@@ -122,10 +131,7 @@ PairTerms<Real> ended(const P& potential, const PairEnd& end, const Real& r2, co
     const Real r = sqrt(r2);
     return {bare.energy - last_energy + last_force * r, bare.force - last_force / r};
   }
-  Real t = (r2 - Real(end.from2)) * Real(end.inverse);
-  t = t > Real(0) ? t : Real(0);
-  const Switch<Real> off(end.style, t);
-  return {bare.energy * off.value, off.value * bare.force - Real(2 * end.inverse) * bare.energy * off.slope};
+  return switched(bare, end.style, end.from2, end.inverse, r2);
 }
 
 /// Distances of pairs, and what their charges multiply to, shape (count), a multiple of eight.

@@ -24,6 +24,8 @@ void ReactionField::check() const {
   if (dielectric && !(*dielectric >= 1)) {
     refuse_field("dielectric", *dielectric, "is not a valid relative permittivity; 1 or more is expected");
   }
+  if (switched_from && !(*switched_from > 0 && *switched_from < radius))
+    refuse_field("switch_from", *switched_from, fmt::format("does not lie between 0 and the cutoff {}", radius));
 }
 
 void Wca::check() const {

@@ -117,12 +117,14 @@ struct LennardJonesPair {
 ///     k radius^3 = (dielectric - 1) / (2 dielectric + 1)
 ///
 /// C is the factor of Coulomb's law in the units of the particles. Within a conductor forces are continuous at the
-/// radius; else they jump there. Excluded pairs feel neither their charges nor what the dielectric
-/// answers; scaled pairs both, scaled.
+/// radius; else they jump there. With a switch, that of Cutoff::switch_c4, four derivatives of the energy are
+/// continuous: without one each pair that crosses the radius takes a little of the energy, and liquids cool. Excluded
+/// pairs feel neither their charges nor what the dielectric answers; scaled pairs both, scaled.
 /// @source Tironi1995
 struct ReactionField {
   double radius = 0;                      ///< of the cavity [length]
   std::optional<double> dielectric = {};  ///< relative permittivity outside; default: a conductor, where it is infinite
+  std::optional<double> switched_from = {};  ///< where a switch begins [length]; default: there is none
 
   static constexpr auto describe() {
     return part<ReactionField>(
@@ -130,7 +132,9 @@ struct ReactionField {
         formula("U = C q_i q_j (1/r + k r^2 - 1/cutoff - k cutoff^2), k cutoff^3 = (dielectric - 1) / (2 dielectric + "
                 "1), r < cutoff"),
         source("Tironi1995"), field<&ReactionField::radius>("cutoff", "length", "radius of the cavity").required("1"),
-        field<&ReactionField::dielectric>("dielectric", "1", "relative permittivity outside; default: a conductor"));
+        field<&ReactionField::dielectric>("dielectric", "1", "relative permittivity outside; default: a conductor"),
+        field<&ReactionField::switched_from>("switch_from", "length",
+                                             "where a switch as that of switch_c4 begins; default: there is none"));
   }
   void check() const;
   double range() const { return radius; }
@@ -139,7 +143,11 @@ struct ReactionField {
     using std::sqrt;
     const double k = answer(), last = 1 / radius + k * radius * radius;
     const Real inverse = Real(1) / sqrt(r2);
-    return {product * (inverse + Real(k) * r2 - Real(last)), product * (inverse * inverse * inverse - Real(2 * k))};
+    const PairTerms<Real> bare{product * (inverse + Real(k) * r2 - Real(last)),
+                               product * (inverse * inverse * inverse - Real(2 * k))};
+    if (!switched_from) return bare;
+    const double from2 = *switched_from * *switched_from;
+    return detail::switched(bare, Cutoff::switch_c4, from2, 1 / (radius * radius - from2), r2);
   }
 
  private:

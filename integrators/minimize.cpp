@@ -105,7 +105,7 @@ class Descent {
  public:
   Descent(ParticleSystem<double>& s, const AnyForce<double>& forces, const MinimizeOptions& options,
           MinimizeAlong* along)
-      : s_(s), forces_(forces), options_(options), along_(along), f_(s.size()), v_(s.size()), rest_(s.size()) {
+      : s_(s), forces_(forces), options_(options), along_(along), f_(s.size()), v_(s.size()), still_(s.size()) {
     if (along_ != nullptr) along_->bind(s_);
     bind_force(forces_, s_);
     const double range = forces_.claims().range;
@@ -119,6 +119,7 @@ class Descent {
     while (largest_ > options_.max_force) {
       if (made_ == options_.steps) return ended(unfinished());
       steer();
+      if (!(dt_ > 0 && std::isfinite(dt_))) return ended(stalled());
       advance();
       before_ = f_;
       const double before = largest_;
@@ -143,6 +144,14 @@ class Descent {
                                    largest_, made_, options_.max_force)};
   }
 
+  /// Time steps have grown, or shrunk, beyond all numbers: nothing moves any more.
+  Failure stalled() const {
+    return {.quantity = "force",
+            .message = fmt::format("the largest force stays at {:.6g}, above max_force = {:.6g}: no step downhill "
+                                   "changes it any more, after {} steps; give a larger max_force, or a better start",
+                                   largest_, options_.max_force, made_)};
+  }
+
   /// Forces at the present positions. @return whether they can be computed
   bool evaluate() {
     ForceSink<double> sink(f_, s_, {}, &workspace_);
@@ -152,8 +161,9 @@ class Descent {
     // Forces of an overlap show the way out of it.
     (sink.failure() && sink.failure()->kind == Outcome::Kind::overlap ? overlap_ : failure_) = sink.failure();
     if (along_ != nullptr && !failure_) {
-      with(rest_, [&] { along_->constrain(s_, f_); });  // moving particles would press outwards
-      failure_ = along_->take_failure();                // of the step that led here as well
+      // At rest: what holds particles of a temperature on their circles is no force downhill.
+      with_velocities(still_, [&] { along_->constrain(s_, f_); });
+      failure_ = along_->take_failure();  // of the step that led here as well
     }
     if (failure_) return false;
     for (Index i = 0; i < s_.size(); ++i) f_.set(i, std::as_const(s_).masses()[i] * std::as_const(f_)[i]);
@@ -216,7 +226,7 @@ class Descent {
   void advance() {
     if (along_ != nullptr) saved_.assign_state(s_);
     v_.add_scaled(dt_, f_);
-    if (along_ != nullptr) with(v_, [&] { along_->project_velocities(s_, dt_); });
+    if (along_ != nullptr) with_velocities(v_, [&] { along_->project_velocities(s_, dt_); });
     const double fastest = largest_norm(v_);
     const double speed = fastest * std::sqrt(product(v_, fastest, v_, fastest));
     const double force = std::sqrt(product(f_, largest_, f_, largest_));
@@ -258,13 +268,13 @@ class Descent {
   }
   /// x += h v
   void shift(double h) {
-    with(v_, [&] { along_ != nullptr ? along_->advance_positions(s_, h) : s_.advance_positions(h); });
+    with_velocities(v_, [&] { along_ != nullptr ? along_->advance_positions(s_, h) : s_.advance_positions(h); });
   }
-  /// Acts where the particles have these velocities instead of their own.
-  template <class Act> void with(VectorColumn<double>& velocities, const Act& act) {
-    std::swap(s_.velocities(), velocities);
+  /// Acts where the particles have velocities `v`, those of the descent or none.
+  template <class Act> void with_velocities(VectorColumn<double>& v, const Act& act) {
+    std::swap(s_.velocities(), v);
     act();
-    std::swap(s_.velocities(), velocities);
+    std::swap(s_.velocities(), v);
   }
 
   ParticleSystem<double>& s_;
@@ -272,8 +282,7 @@ class Descent {
   const MinimizeOptions& options_;
   MinimizeAlong* along_;
   Workspace workspace_;
-  VectorColumn<double> f_, v_, before_;
-  VectorColumn<double> rest_;     ///< velocities of 0
+  VectorColumn<double> f_, v_, still_, before_;
   ParticleSystem<double> saved_;  ///< before the last step along constraints
   double reach_ = 0, dt_ = 0, alpha_ = alpha_start, largest_ = 0;
   double curvature_ = 0;    ///< largest of late [mass/time^2]

@@ -13,6 +13,7 @@
 
 #include <cmath>
 #include <optional>
+#include <utility>
 
 namespace noether {
 namespace {
@@ -32,7 +33,7 @@ Salt salt(Cutoff style, double dielectric = 78.3) { return {{{1.0, 1.0}, {2.2, d
 template <class F> void check_charges_in_lanes(const F& force, const ParticleSystem<double>& s, double scale) {
   const test::Evaluated lanes = test::evaluated<double>(force, s), exact = test::evaluated<Quad>(force, s);
   REQUIRE_FALSE(lanes.failure);
-  CHECK(exact.a.all().cwiseAbs().maxCoeff() > 0.01);
+  CHECK(exact.a.all().cwiseAbs().maxCoeff() > 0.005);
   const double largest = std::max(1.0, exact.a.all().cwiseAbs().maxCoeff());
   CHECK(test::largest_difference(lanes.a, exact.a) < 3e-13 * largest + 60 * scale * 0x1p-47);
   CHECK(std::abs(lanes.energy - exact.energy) < 1e-12 * scale * static_cast<double>(s.size()));
@@ -68,6 +69,33 @@ TEST_CASE("two charges in a cavity have the energy and the force of the closed f
   CHECK(test::evaluated<double>(ReactionFieldForce{{radius}}, s).energy == 0);
 }
 
+TEST_CASE("a switch takes the reaction field to 0 with four derivatives, and leaves it alone where it has not begun",
+          "[charged_pairs]") {
+  ParticleSystem<double> s(unit_system("molecular"));
+  s.add("Na", 22.99, {0, 0, 0}, {0, 0, 0});
+  s.add("Cl", 35.45, {0.3, 0, 0}, {0, 0, 0});
+  s.add_column<Charge>()[0] = 1;
+  s.column<Charge>()[1] = -1;
+  constexpr double radius = 0.9, from = 0.8;
+  const ReactionFieldForce bare{{radius}}, switched{{.radius = radius, .switched_from = from}};
+  const auto at = [&](const ReactionFieldForce& force, double r) {
+    s.positions().set(1, {r, 0, 0});
+    const test::Evaluated all = test::evaluated<double>(force, s);
+    return std::pair<double, double>(all.energy, 22.99 * all.a.component(0)[0]);
+  };
+  for (const double r : {0.1, 0.3, 0.5, from}) CHECK(at(switched, r) == at(bare, r));
+  for (const double r : {0.805, 0.83, 0.86, 0.89}) {
+    const double t = (r * r - from * from) / (radius * radius - from * from);
+    const double off = 1 + std::pow(t, 5) * (-126 + t * (420 + t * (-540 + t * (315 - 70 * t))));
+    CHECK(std::abs(at(switched, r).first - off * at(bare, r).first) < 1e-9);  // grains of a sum
+    const double h = 1e-5, slope = (at(switched, r + h).first - at(switched, r - h).first) / (2 * h);
+    CHECK(std::abs(at(switched, r).second - slope) < 1e-5);
+  }
+  // Near its end the bare force falls as the distance to it, the switched one as its fifth power and faster.
+  CHECK(std::abs(at(bare, radius - 1e-3).second) > 0.1);
+  CHECK(std::abs(at(switched, radius - 1e-3).second) < 1e-5);
+}
+
 TEST_CASE("charges in lanes are those of 113 bits, for every end of the range", "[charged_pairs]") {
   for (const SimdLevel level : test::all_levels()) {
     const test::AtLevel at(level);
@@ -76,6 +104,7 @@ TEST_CASE("charges in lanes are those of 113 bits, for every end of the range", 
           charged(test::liquid(1, 0.85, 1, 0.1))}) {
       CAPTURE(name(level), s.size());
       check_charges_in_lanes(ReactionFieldForce{{2.2, 78.3}}, s, 25);
+      check_charges_in_lanes(ReactionFieldForce{{2.2, 78.3, 2.0}}, s, 25);
       for (const Cutoff style : test::cutoff_styles) check_charges_in_lanes(salt(style), s, 50);
     }
   }
@@ -107,6 +136,7 @@ TEST_CASE("potentials in one loop are the sum of potentials in loops of their ow
 TEST_CASE("forces between charges are the gradients of their energies", "[charged_pairs]") {
   const auto s = charged(test::liquid(1, 0.6, 1, 0.05));
   CHECK(gradient_error(ReactionFieldForce{{2.2}}, s) < 1e-12);
+  CHECK(gradient_error(ReactionFieldForce{{2.2, 78.3, 1.9}}, s) < 1e-12);
   for (const Cutoff style : {Cutoff::shifted_force, Cutoff::switch_c2, Cutoff::switch_c4}) {
     CHECK(gradient_error(salt(style), s) < 1e-12);
   }
@@ -130,6 +160,8 @@ TEST_CASE("charged pairs that make no sense are refused by name", "[charged_pair
         "cutoff = 0 is not a valid length; a length above 0 is expected");
   CHECK(refusal(ReactionFieldForce{{2, 0.5}}, charged(neutral)) ==
         "dielectric = 0.5 is not a valid relative permittivity; 1 or more is expected");
+  CHECK(refusal(ReactionFieldForce{{2, {}, 2.5}}, charged(neutral)) ==
+        "switch_from = 2.5 does not lie between 0 and the cutoff 2");
   CHECK(refusal(Salt{{{0, 1}, {2}}, 2}, charged(neutral)) ==
         "epsilon = 0 is not a valid strength; an energy above 0 is expected");
   // All of them 0: nothing acts, and nothing is divided by.
