@@ -310,6 +310,10 @@ SOLVERS = {
     "newton": constrained(BAR, TIED + "; solver = 'newton'"),
     "rattle": constrained(BAR, TIED + "; solver = 'rattle'; tolerance = 1e-12; iterations = 1000"),
     "settle": water("type = 'rigid_molecules'; solver = 'settle'"),
+    "m_shake": water("type = 'rigid_molecules'; solver = 'm_shake'"),
+    "p_shake": constrained(BAR, TIED + "; solver = 'p_shake'; tolerance = 1e-12; iterations = 1000"),
+    "lincs": constrained(BAR, TIED + "; solver = 'lincs'; order = 30; iterations = 10"),
+    "p_lincs": constrained(BAR, TIED + "; solver = 'p_lincs'; order = 30; iterations = 10"),
 }
 
 SYSTEMS = {
