@@ -12,6 +12,32 @@ struct EliminationCenter {
   double inverse_mass;
 };
 
+/// Which constraints a center of a tree has: those it owns, `leaves` and `inner` ones, the last of these to the center
+/// just before it; and whether a later center owns one (`out`), which is then the `next` one and has it for its last.
+struct TreeShape {
+  int leaves, inner;
+  bool out, next;
+
+  constexpr int code() const { return ((leaves * 4 + inner) * 2 + (out ? 1 : 0)) * 2 + (next ? 1 : 0); }
+  static constexpr int codes = 4 * 4 * 2 * 2;
+  static constexpr TreeShape of(int code) { return {code / 16, code / 4 % 4, code / 2 % 2 != 0, code % 2 != 0}; }
+  /// Whether there are such centers in trees of several, with at most four bonds an atom.
+  constexpr bool exists() const {
+    if (out) return leaves + inner > 0 && leaves + inner < 4;
+    return !next && inner == 1 && leaves > 0 && leaves < 4;
+  }
+};
+/// A center of a tree as its kernels read it.
+struct TreeCenter {
+  int number;
+  int shape;      ///< code
+  int first;      ///< the constraints it owns, leaves first
+  int out;        ///< the one that a later center owns
+  int entry;      ///< where its factors begin
+  int before[2];  ///< the centers of its inner constraints but the last
+  double inverse_mass;
+};
+
 /// Constraints of a molecule in the order of elimination: k leads from its center, atom j[k], to atom i[k].
 ///
 /// The matrix couples two constraints that share an atom. Its factor L has rows of `entries`, columns ascending; where

@@ -8,6 +8,12 @@ namespace noether {
 
 /// Newton's method with chord steps, to rounding.
 NOETHER_KERNELS(MoleculeKernels, newton_lanes)
+/// The same for molecules whose bonds form one path.
+NOETHER_KERNELS(MoleculeKernels, path_lanes)
+/// The same for one long path, whose segments are side by side; packs of sixteen lanes.
+NOETHER_KERNELS(MoleculeKernels, segment_lanes)
+/// The same for trees of bonds with at most four an atom, on more than one; packs of eight.
+NOETHER_KERNELS(MoleculeKernels, tree_lanes)
 /// Constraint after constraint in sweeps, to a tolerance: SHAKE and RATTLE.
 NOETHER_KERNELS(MoleculeKernels, sweep_lanes)
 /// Newton's method with a dense matrix of the moment, to rounding.

@@ -1,5 +1,6 @@
 #include "constraints/molecule_lanes.hpp"
 
+#include "constraints/bond_tree.hpp"
 #include "constraints/distance.hpp"
 #include "constraints/molecule_kernels_simd.hpp"
 #include "constraints/partition.hpp"
@@ -17,6 +18,9 @@ namespace noether {
 
 namespace {
 
+/// Smaller trees are solved quicker as molecules of any shape, sixteen of them side by side.
+constexpr std::size_t least_tree = 8;
+constexpr int segments = 16;
 /// Constraints that a thread takes at a time.
 constexpr Index share_of_thread = 256;
 
@@ -40,6 +44,12 @@ MoleculeColumns columns_of(const ParticleSystem<double>& s, const VectorColumn<d
 
 }  // namespace
 
+std::vector<double> MoleculeLanes::inverse_masses(const Molecule& molecule, const ParticleSystem<double>& s) {
+  std::vector<double> inverse;
+  for (const Index i : molecule.particles) inverse.push_back(1 / s.masses()[i]);
+  return inverse;
+}
+
 /// A component that lanes take, a lone apex of three atoms in front.
 std::optional<MoleculeLanes::Molecule> MoleculeLanes::molecule_of(const ConstraintSet& set, const Partition& parts,
                                                                   Index component,
@@ -47,8 +57,9 @@ std::optional<MoleculeLanes::Molecule> MoleculeLanes::molecule_of(const Constrai
   const auto constraints = parts.constraints(component);
   const auto is_distance = [&](const Partition::Member& m) { return distances(*set.groups()[at(m.group)]) != nullptr; };
   const ConstraintMethodInfo& info = info_of(options_.solver);
-  const bool small = info.lanes == nullptr || constraints.size() <= at(info.lanes().most_constraints);
-  if (!small || !std::all_of(constraints.begin(), constraints.end(), is_distance)) return {};
+  const bool too_large = info.lanes != nullptr && constraints.size() > at(info.lanes().most_constraints);
+  const bool by_segments = info.lanes == newton_in_lanes;
+  if ((too_large && !by_segments) || !std::all_of(constraints.begin(), constraints.end(), is_distance)) return {};
   Molecule molecule{{parts.particles(component).begin(), parts.particles(component).end()}, {}, {}};
   std::vector<int> place(molecule.particles.size());
   for (std::size_t a = 0; a < place.size(); ++a) place[a] = static_cast<int>(a);
@@ -64,6 +75,7 @@ std::optional<MoleculeLanes::Molecule> MoleculeLanes::molecule_of(const Constrai
     molecule.pairs.emplace_back(place[at(places[2 * k])], place[at(places[2 * k + 1])]);
     molecule.lengths.push_back(*distances(*set.groups()[at(m.group)])->constraint(m.constraint).length);
   }
+  if (too_large && !bond_path(molecule.pairs, inverse_masses(molecule, s))) return {};
   return molecule;
 }
 
@@ -127,25 +139,67 @@ ConstraintSet MoleculeLanes::lay_out(const ConstraintSet& set, const ParticleSys
 }
 
 void MoleculeLanes::add_kind(std::vector<Index> molecules, const ParticleSystem<double>& s) {
-  const Molecule& first = molecules_[at(molecules.front())];
-  std::vector<double> inverse_masses;
-  for (const Index i : first.particles) inverse_masses.push_back(1 / s.masses()[i]);
-  Kind kind{.elimination = Elimination(first.pairs, std::move(inverse_masses)), .molecules = std::move(molecules)};
-  const EliminationLists lists = kind.elimination.lists();
-  const auto count = static_cast<Index>(kind.molecules.size());
-  kind.triangle = triangle_of(kind.molecules, s);
-  const ConstraintMethodInfo& info = info_of(options_.solver);
-  kind.kernels = kind.triangle ? info.triangles : info.lanes;
-  if (count > 8 && lists.constraints <= kind.kernels().most_of_sixteen) kind.lanes = 16;
-  if (info.equal_lengths) {
-    std::vector<double> lengths;
-    for (const int place : kind.elimination.places()) lengths.push_back(first.lengths[at(place)]);
-    kind.preconditioner = Preconditioner(lists, lengths);
+  Kind kind{.molecules = std::move(molecules)};
+  choose_kernels(kind, s);
+  if (kind.in_segments) {
+    lay_in_segments(kind);
+  } else {
+    lay_side_by_side(kind);
   }
+  kind.first_report = static_cast<Index>(reports_.size());
+  reports_.resize(reports_.size() + at(kind.packs));
+  kinds_.push_back(std::move(kind));
+}
+
+/// Those of the solver, and of Newton's method those for the shape of the molecules: nothing else of them matters, so
+/// that bits do not depend on company.
+void MoleculeLanes::choose_kernels(Kind& kind, const ParticleSystem<double>& s) const {
+  const ConstraintMethodInfo& info = info_of(options_.solver);
+  const Molecule& first = molecules_[at(kind.molecules.front())];
+  const std::size_t constraints = first.pairs.size();
+  std::vector<double> inverse = inverse_masses(first, s);
+  if (info.lanes == newton_in_lanes) kind.path = bond_path(first.pairs, inverse);
+  if (info.lanes != nullptr && constraints > at(info.lanes().most_constraints)) {
+    kind.kernels = segment_lanes;
+    kind.in_segments = true;
+    kind.lanes = segments;
+    return;
+  }
+  kind.triangle = triangle_of(kind.molecules, s);
+  kind.kernels = kind.triangle ? info.triangles : info.lanes;
+  if (kind.kernels == nullptr) kind.kernels = info.triangles;  // of molecules that will be refused
+  kind.elimination.emplace(first.pairs, std::move(inverse));
+  if (kind.kernels == newton_in_lanes) {
+    if (!kind.path && constraints >= least_tree) kind.tree = tree_centers(kind.lists());
+    if (kind.path) kind.kernels = path_lanes;
+    if (!kind.tree.empty()) kind.kernels = tree_lanes;
+  }
+  if (kind.molecules.size() > 8 && constraints <= at(kind.kernels().most_of_sixteen)) kind.lanes = 16;
+  if (!info.equal_lengths) return;
+  std::vector<double> lengths;
+  for (const int place : kind.elimination->places()) lengths.push_back(first.lengths[at(place)]);
+  kind.preconditioner = Preconditioner(kind.lists(), lengths);
+}
+
+EliminationLists MoleculeLanes::Kind::lists() const {
+  if (elimination) return elimination->lists();
+  EliminationLists lists{};
+  const int bonds = static_cast<int>(path->bonds.size());
+  lists.constraints = bonds / segments + 1;
+  lists.atoms = lists.constraints + 1;
+  return lists;
+}
+
+/// Where atoms of molecules are, and what lengths they have, as kernels read them.
+void MoleculeLanes::lay_side_by_side(Kind& kind) const {
+  const EliminationLists lists = kind.lists();
   const Index lanes = kind.lanes, n = lists.constraints, atoms = lists.atoms;
+  const auto count = static_cast<Index>(kind.molecules.size());
+  const Molecule& first = molecules_[at(kind.molecules.front())];
+  for (const Index m : kind.molecules) kind.alike = kind.alike && molecules_[at(m)].lengths == first.lengths;
   kind.packs = (count + lanes - 1) / lanes;
   kind.atoms.resize(at(kind.packs * atoms * lanes));
-  kind.lengths2.resize(at(kind.packs * 2 * n * lanes));
+  kind.lengths2.resize(at((kind.alike ? 1 : kind.packs) * 2 * n * lanes));
   for (Index slot = 0; slot < kind.packs * lanes; ++slot) {
     const Molecule& molecule = molecules_[at(kind.molecules[at(std::min(slot, count - 1))])];
     const Index pack = slot / lanes, lane = slot % lanes;
@@ -154,22 +208,54 @@ void MoleculeLanes::add_kind(std::vector<Index> molecules, const ParticleSystem<
       kind.atoms[at((pack * atoms + a) * lanes + lane)] = static_cast<std::int32_t>(particle);
       kind.side_by_side = kind.side_by_side && particle == molecule.particles.front() + a;
     }
+    if (kind.alike && pack > 0) continue;
     for (Index k = 0; k < n; ++k) {
-      const double length = molecule.lengths[at(kind.elimination.places()[at(k)])];
+      const double length = molecule.lengths[at(kind.order()[at(k)])];
       kind.lengths2[at((pack * 2 * n + k) * lanes + lane)] = length * length;
       kind.lengths2[at((pack * 2 * n + n + k) * lanes + lane)] = 1 / (length * length);
     }
   }
-  kind.first_report = static_cast<Index>(reports_.size());
-  reports_.resize(reports_.size() + at(kind.packs));
-  kinds_.push_back(std::move(kind));
+}
+
+/// The same for long paths: lane l has the bonds from l (m + 1) on, m + 1 of them, and behind the end of the path bonds
+/// from its last atom to itself.
+void MoleculeLanes::lay_in_segments(Kind& kind) const {
+  const EliminationLists lists = kind.lists();
+  const Index lanes = kind.lanes, n = lists.constraints, atoms = lists.atoms;
+  const Index bonds = static_cast<Index>(kind.path->bonds.size());
+  kind.packs = static_cast<Index>(kind.molecules.size());
+  kind.alike = false;
+  kind.atoms.resize(at(kind.packs * atoms * lanes));
+  kind.segment_masses.resize(at(atoms * lanes));
+  kind.lengths2.resize(at(kind.packs * 2 * n * lanes));
+  for (Index pack = 0; pack < kind.packs; ++pack) {
+    const Molecule& molecule = molecules_[at(kind.molecules[at(pack)])];
+    for (Index lane = 0; lane < lanes; ++lane) {
+      for (Index a = 0; a < atoms; ++a) {
+        const Index along = std::min(lane * n + a, bonds);
+        const Index particle = molecule.particles[at(kind.path->atoms[at(along)])];
+        kind.atoms[at((pack * atoms + a) * lanes + lane)] = static_cast<std::int32_t>(particle);
+        kind.segment_masses[at(a * lanes + lane)] = kind.path->inverse_masses[at(along)];
+        kind.side_by_side = kind.side_by_side && particle == molecule.particles.front() + along;
+      }
+      for (Index k = 0; k < n; ++k) {
+        const bool behind = lane * n + k >= bonds;
+        const double length = behind ? 1 : molecule.lengths[at(kind.path->bonds[at(lane * n + k)])];
+        kind.lengths2[at((pack * 2 * n + k) * lanes + lane)] = length * length;
+        kind.lengths2[at((pack * 2 * n + n + k) * lanes + lane)] = behind ? 0 : 1 / (length * length);
+      }
+    }
+  }
 }
 
 template <class Work> void MoleculeLanes::for_packs(const Work& work) {
   for (const Kind& kind : kinds_) {
     const MoleculeKernels& kernels = kind.kernels();
-    const EliminationLists lists = kind.elimination.lists();
+    const EliminationLists lists = kind.lists();
     const PreconditionerLists preconditioner = kind.preconditioner.lists();
+    const BondPathRow path = kind.path ? kind.path->row() : BondPathRow{};
+    const BondSegmentsRow in_segments{path.bonds, kind.segment_masses.data()};
+    const Index of_pack = kind.molecules_of_pack();
     const Index share = std::max<Index>(1, share_of_thread / (lists.constraints * kind.lanes));
     const Index shares = (kind.packs + share - 1) / share;
     for_blocks(shares * block_size, [&](Index begin, Index) {
@@ -178,7 +264,7 @@ template <class Work> void MoleculeLanes::for_packs(const Work& work) {
       if (scratch.size() < needed) scratch.resize(needed);
       const Index from = begin / block_size * share;
       for (Index p = from; p < std::min(kind.packs, from + share); ++p) {
-        const Index molecules = std::min<Index>(kind.lanes, static_cast<Index>(kind.molecules.size()) - p * kind.lanes);
+        const Index molecules = std::min(of_pack, static_cast<Index>(kind.molecules.size()) - p * of_pack);
         const std::int32_t* const atoms = kind.atoms.data() + p * lists.atoms * kind.lanes;
         const bool full = molecules == kind.lanes;
         const MoleculePack pack{
@@ -189,8 +275,11 @@ template <class Work> void MoleculeLanes::for_packs(const Work& work) {
             .side_by_side = kind.side_by_side,
             .in_a_row = kind.side_by_side && full && atoms[kind.lanes - 1] - atoms[0] == lists.atoms * (kind.lanes - 1),
             .triangle = kind.triangle ? &*kind.triangle : nullptr,
+            .path = kind.path ? &path : nullptr,
+            .segments = kind.in_segments ? &in_segments : nullptr,
+            .tree = kind.tree.data(),
             .preconditioner = &preconditioner,
-            .lengths2 = kind.lengths2.data() + p * 2 * lists.constraints * kind.lanes,
+            .lengths2 = kind.lengths2.data() + (kind.alike ? 0 : p * 2 * lists.constraints * kind.lanes),
             .scratch = scratch.data()};
         work(kernels, pack, reports_[at(kind.first_report + p)]);
       }
@@ -230,7 +319,8 @@ MoleculeLanes::Solved MoleculeLanes::solved() const {
       const MoleculeReport& report = reports_[at(kind.first_report + p)];
       solved.sweeps = std::max<std::int64_t>(solved.sweeps, report.sweeps);
       for (Index lane = 0; report.open >> lane != 0; ++lane) {
-        if ((report.open >> lane & 1U) != 0) solved.open.push_back(kind.molecules[at(p * kind.lanes + lane)]);
+        if ((report.open >> lane & 1U) != 0)
+          solved.open.push_back(kind.molecules[at(p * kind.molecules_of_pack() + lane)]);
       }
     }
   }

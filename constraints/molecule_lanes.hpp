@@ -1,6 +1,8 @@
 #pragma once
 /// Molecules whose constraints are distances alone, those of one kind side by side in lanes.
 
+#include "constraints/bond_path.hpp"
+#include "constraints/constraint_method.hpp"
 #include "constraints/constraint_set.hpp"
 #include "constraints/elimination.hpp"
 #include "constraints/molecule_row.hpp"
@@ -17,12 +19,14 @@ namespace noether {
 class Partition;
 
 /// Solves the constraints of such molecules by the kernels of a solver. The order in which constraints are eliminated
-/// is found once for each kind.
+/// is found once for each kind. Newton's method has kernels of their own for paths and trees of bonds; a path of more
+/// than 256 bonds is laid in segments side by side.
 ///
 /// Molecules are of one kind if they have as many atoms, of the same masses, and tie the same ones; lengths may differ
 /// unless a solver wants them equal.
 /// Nothing is kept from stage to stage. Bits depend neither on which molecules are side by side nor on threads.
-/// @cost newton 15 to 20 ns a constraint and step, both stages, with AVX-512; no allocation after `lay_out`
+/// @cost newton 15 to 20 ns a constraint and step, both stages, with AVX-512, long paths 25; no allocation after
+///       `lay_out`
 /// @source RyckaertCiccottiBerendsen1977, Davis2006
 class MoleculeLanes {
  public:
@@ -52,24 +56,39 @@ class MoleculeLanes {
     std::vector<Elimination::Pair> pairs;  ///< of places
     std::vector<double> lengths;           ///< of the pairs
   };
+  /// Molecules side by side, and the kernels that know their shape.
   struct Kind {
-    Elimination elimination;
-    MoleculeKernelsInUse* kernels = nullptr;
-    int lanes = 8;
     std::vector<Index> molecules;
-    std::vector<std::int32_t> atoms = {};  ///< shape (packs, atoms, lanes)
-    AlignedVector<double> lengths2 = {};   ///< shape (packs, 2, constraints, lanes)
-    bool side_by_side = true;
+    std::optional<Elimination> elimination = {};  ///< none of molecules in segments
     std::optional<RigidTriangle> triangle = {};
     Preconditioner preconditioner = {};  ///< for those who need one
+    std::optional<BondPath> path = {};
+    std::vector<TreeCenter> tree = {};  ///< of molecules that kernels for trees solve
+    MoleculeKernelsInUse* kernels = nullptr;
+    int lanes = 8;
+    bool in_segments = false;                   ///< each molecule fills the lanes of a pack
+    AlignedVector<double> segment_masses = {};  ///< inverse masses, shape (atoms, lanes)
+    std::vector<std::int32_t> atoms = {};       ///< shape (packs, atoms of a lane, lanes)
+    AlignedVector<double> lengths2 = {};  ///< shape (packs, 2, constraints, lanes); (1, ...) where packs are alike
+    bool side_by_side = true, alike = true;
     Index packs = 0, first_report = 0;
+
+    /// What a lane of a pack has.
+    EliminationLists lists() const;
+    Index molecules_of_pack() const { return in_segments ? 1 : lanes; }
+    /// Which of a molecule's pairs each constraint of the kernels is.
+    const std::vector<int>& order() const { return path ? path->bonds : elimination->places(); }
   };
 
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+  static std::vector<double> inverse_masses(const Molecule& molecule, const ParticleSystem<double>& s);
   std::optional<Molecule> molecule_of(const ConstraintSet& set, const Partition& parts, Index component,
                                       const ParticleSystem<double>& s) const;
   std::optional<RigidTriangle> triangle_of(const std::vector<Index>& molecules, const ParticleSystem<double>& s) const;
   void add_kind(std::vector<Index> molecules, const ParticleSystem<double>& s);
+  void choose_kernels(Kind& kind, const ParticleSystem<double>& s) const;
+  void lay_side_by_side(Kind& kind) const;
+  void lay_in_segments(Kind& kind) const;
   /// Calls `work(kernels, pack, report)` for all packs, by threads.
   template <class Work> void for_packs(const Work& work);
   MoleculeTask task(double h) const;

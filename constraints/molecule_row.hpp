@@ -29,6 +29,19 @@ struct RigidTriangle {
   bool isosceles;
 };
 
+/// Molecules whose bonds form one path: bond k leads from atom[k] to atom[k + 1].
+struct BondPathRow {
+  int bonds;
+  const int* atom;             ///< shape (bonds + 1)
+  const double* inverse_mass;  ///< of these atoms
+};
+
+/// A long path whose segments stand in the lanes of a pack, one atom and one bond of each at a time.
+struct BondSegmentsRow {
+  int bonds;                   ///< of the path
+  const double* inverse_mass;  ///< of atom a in lane l: [lanes a + l]
+};
+
 /// Some molecules of one kind, as many as there are lanes: where a kind has fewer, the last one stands several times.
 struct MoleculePack {
   int lanes;      ///< 8 or 16
@@ -38,8 +51,12 @@ struct MoleculePack {
   bool side_by_side;                          ///< atoms of each molecule follow each other in the columns
   bool in_a_row;                              ///< and molecules do
   const RigidTriangle* triangle;              ///< of rigid molecules of three sites of equal lengths; else null
+  const BondPathRow* path;                    ///< of molecules solved by kernels for paths; else null
+  const BondSegmentsRow* segments;            ///< of a molecule that fills a pack by itself; else null
+  const TreeCenter* tree;                     ///< of molecules solved by kernels for trees: shape (centers); else null
   const PreconditionerLists* preconditioner;  ///< for those who need one
-  const double* lengths2;  ///< squared, in the order of elimination, then 1 / squared, shape (2, constraints, lanes)
+  const double* lengths2;  ///< squared, in the order of elimination (along a path), then 1 / squared, shape (2,
+                           ///< constraints, lanes)
   double* scratch;         ///< of the thread: doubles a lane, `molecule_scratch` and what the kernels ask for
 };
 

@@ -35,7 +35,7 @@ template <int P> HWY_INLINE Pack<P> nearest(const Pack<P>& d, double edge) {
 
 /// Bond vectors r at the start.
 template <int P> HWY_INLINE void find_bonds(const MoleculePack& pack, const MoleculeColumns& c, const Slots<P>& s) {
-  const EliminationLists& p = *pack.kind;
+  const EliminationLists p = *pack.kind;
   for (int axis = 0; axis < 3; ++axis) {
     load_atoms<P>(pack, c.start[axis], s.one);
     for (int k = 0; k < p.constraints; ++k) {
@@ -48,7 +48,7 @@ template <int P> HWY_INLINE void find_bonds(const MoleculePack& pack, const Mole
 template <int P>
 HWY_INLINE void find_differences(const MoleculePack& pack, double* const (&column)[3], const double (&edge)[3],
                                  bool moved, const Slots<P>& s) {
-  const EliminationLists& p = *pack.kind;
+  const EliminationLists p = *pack.kind;
   for (int axis = 0; axis < 3; ++axis) {
     load_atoms<P>(pack, column[axis], s.one);
     for (int k = 0; k < p.constraints; ++k) {

@@ -1,142 +1,109 @@
 #include "constraints/molecule_kernels_simd.hpp"
-#include "constraints/molecule_multipliers_simd.hpp"
+#include "constraints/newton_stage_simd.hpp"
 
 namespace noether::NOETHER_SIMD_LEVEL {
 
 namespace {
 
-/// | |s|^2 - d^2 | / 2 d^2 where it is rounding of local vectors.
-constexpr double settled = 4e-15;
-/// A molecule that free motion violates by more, or whose violation a sweep makes less than so many times smaller, is
-/// left to those who can follow a solution.
-constexpr double hard_start = 0.25, slow_sweep = 0.5;
-/// A pivot this small beside its diagonal element: the constraint depends on others.
-constexpr double least_pivot = 1000 * 0x1p-52;
-constexpr int most_sweeps = 40;
+/// Molecules of any shape, entry by entry of the factors.
+template <int P> class ListedBonds {
+ public:
+  explicit ListedBonds(const MoleculePack& pack) : pack_(pack), s_(pack) {}
 
-/// L D L^T of G M^-1 G^T, entry by entry. @return where it is singular
-template <int P> HWY_INLINE Flags<P> factorize_bonds(const MoleculePack& pack, const Slots<P>& s) {
-  const EliminationLists p = *pack.kind;
-  double *const factors = s.factors, *const inverse = s.inverse;
-  Flags<P> singular = flags_of<P>(0);
-  for (int k = 0; k < p.constraints; ++k) {
-    const Vectors<P> r = load_vectors<P>(s.r + 3 * k * P);
-    const Pack<P> whole = same<P>(p.inverse_mass_i[k] + p.inverse_mass_j[k]) * load<P>(pack.lengths2 + k * P);
-    Pack<P> diagonal = whole;
-    const int begin = p.row[k];
-    for (int e = begin; e < p.row[k + 1]; ++e) {
-      const int l = p.column[e];
-      Pack<P> element = same<P>(p.coupling[e]) * dot(r, load_vectors<P>(s.r + 3 * l * P));
-      for (int m = p.product[e]; m < p.product[e + 1]; ++m) {
-        element =
-            take_product(load<P>(s.row + p.product_left[m] * P), load<P>(factors + p.product_right[m] * P), element);
+  HWY_INLINE void find(const MoleculeColumns& c) const { find_bonds<P>(pack_, c, s_); }
+  HWY_INLINE void find_differences(double* const (&column)[3], const double (&edge)[3], bool moved) const {
+    noether::NOETHER_SIMD_LEVEL::find_differences<P>(pack_, column, edge, moved, s_);
+  }
+  const double* vectors() const { return s_.r; }
+  HWY_INLINE Flags<P> idle() const { return idle_lanes<P>(pack_); }
+  HWY_INLINE Pack<P> of_molecule(const Pack<P>& worst) const { return worst; }
+  HWY_INLINE void leave_out(const Flags<P>& lanes) const { leave_out_of<P>(lanes, pack_.kind->constraints, s_.lambda); }
+  template <class MakeRow> HWY_INLINE void put(const MakeRow& make_row) const { put_pulls<P>(pack_, s_, make_row); }
+
+  /// L D L^T. @return where it is singular
+  Flags<P> factorize() const {
+    const EliminationLists p = *pack_.kind;
+    double *const factors = s_.factors, *const inverse = s_.inverse;
+    Flags<P> singular = flags_of<P>(0);
+    for (int k = 0; k < p.constraints; ++k) {
+      const Vectors<P> r = load_vectors<P>(s_.r + 3 * k * P);
+      const Pack<P> whole = same<P>(2 * (p.inverse_mass_i[k] + p.inverse_mass_j[k])) * load<P>(pack_.lengths2 + k * P);
+      Pack<P> diagonal = whole;
+      const int begin = p.row[k];
+      for (int e = begin; e < p.row[k + 1]; ++e) {
+        const int l = p.column[e];
+        Pack<P> element = same<P>(2 * p.coupling[e]) * dot(r, load_vectors<P>(s_.r + 3 * l * P));
+        for (int m = p.product[e]; m < p.product[e + 1]; ++m) {
+          element =
+              take_product(load<P>(s_.row + p.product_left[m] * P), load<P>(factors + p.product_right[m] * P), element);
+        }
+        store(element, s_.row + (e - begin) * P);
+        const Pack<P> factor = element * load<P>(inverse + l * P);
+        store(factor, factors + e * P);
+        diagonal = take_product(element, factor, diagonal);
       }
-      store(element, s.row + (e - begin) * P);
-      const Pack<P> factor = element * load<P>(inverse + l * P);
-      store(factor, factors + e * P);
-      diagonal = take_product(element, factor, diagonal);
+      singular = either(singular, exceeds(same<P>(least_pivot) * whole, diagonal));
+      store(same<P>(1) / diagonal, inverse + k * P);
     }
-    singular = either(singular, exceeds(same<P>(least_pivot) * whole, diagonal));
-    store(same<P>(1) / diagonal, inverse + k * P);
+    return singular;
   }
-  return singular;
-}
 
-/// y_k = g_k - sum L_kl y_l
-template <int P> HWY_INLINE void forward(const MoleculePack& pack, const Slots<P>& s, int k, Pack<P> g) {
-  const EliminationLists& p = *pack.kind;
-  for (int e = p.row[k]; e < p.row[k + 1]; ++e)
-    g = take_product(load<P>(s.factors + e * P), load<P>(s.y + p.column[e] * P), g);
-  store(g, s.y + k * P);
-}
-/// z = D^-1 y - L^T z, in place; `then(k, z_k)`.
-template <int P, class Then> HWY_INLINE void backward(const MoleculePack& pack, const Slots<P>& s, const Then& then) {
-  const EliminationLists p = *pack.kind;
-  const double *const factors = s.factors, *const inverse = s.inverse;
-  for (int k = p.constraints - 1; k >= 0; --k) {
-    Pack<P> z = load<P>(inverse + k * P) * load<P>(s.y + k * P);
-    for (int b = p.below[k]; b < p.below[k + 1]; ++b)
-      z = take_product(load<P>(factors + p.below_entry[b] * P), load<P>(s.y + p.below_row[b] * P), z);
-    store(z, s.y + k * P);
-    then(k, z);
+  template <bool moved, class Value> HWY_INLINE Pack<P> sweep(Value& value) const {
+    const EliminationLists p = *pack_.kind;
+    if constexpr (!moved) {
+      for (int k = 0; k < p.constraints; ++k) forward(p, k, value(k, load_vectors<P>(s_.s + 3 * k * P)));
+    } else {
+      for (int at = 0; at < p.centers; ++at) {
+        const EliminationCenter& c = p.center[at];
+        const Vectors<P> u = pull<P>(p, c, s_);
+        store(u, s_.u + 3 * at * P);
+        const Pack<P> w = same<P>(c.inverse_mass);
+        for (int k = c.first; k < c.end; ++k) {
+          const Vectors<P> before = load_vectors<P>(s_.s + 3 * k * P);
+          const Pack<P> own = same<P>(p.inverse_mass_i[k]);
+          const Vectors<P> other =
+              k < c.leaves_end
+                  ? add_product(own * load<P>(s_.lambda + k * P), load_vectors<P>(s_.r + 3 * k * P), before)
+                  : add_product(own, load_vectors<P>(s_.u + 3 * p.center_of[p.i[k]] * P), before);
+          forward(p, k, value(k, take_product(w, u, other)));
+        }
+      }
+    }
+    return load<P>(s_.y + (p.constraints - 1) * P);
   }
-}
 
-/// Violations with the multipliers at hand, and the first half of the next chord step. @return the worst of each lane
-template <int P> HWY_INLINE Pack<P> sweep(const MoleculePack& pack, const Slots<P>& s, bool first) {
-  Pack<P> worst = same<P>(0);
-  const auto look = [&](int k, const Vectors<P>& at) HWY_ATTR {
-    const Pack<P> d2 = load<P>(pack.lengths2 + k * P);
-    const Pack<P> g = same<P>(0.5) * take_product(at.x, at.x, take_product(at.y, at.y, take_product(at.z, at.z, d2)));
-    worst = larger(worst, absolute(g) * load<P>(pack.lengths2 + (pack.kind->constraints + k) * P));
-    forward<P>(pack, s, k, g);
-  };
-  if (first) {
-    for (int k = 0; k < pack.kind->constraints; ++k) look(k, load_vectors<P>(s.s + 3 * k * P));
-  } else {
-    with_multipliers<P>(pack, s, look);
+  /// z = D^-1 y - L^T z, in place.
+  template <bool first> HWY_INLINE void step(const Flags<P>& lanes) const {
+    const EliminationLists p = *pack_.kind;
+    const double *const factors = s_.factors, *const inverse = s_.inverse;
+    for (int k = p.constraints - 1; k >= 0; --k) {
+      Pack<P> z = load<P>(inverse + k * P) * load<P>(s_.y + k * P);
+      for (int b = p.below[k]; b < p.below[k + 1]; ++b)
+        z = take_product(load<P>(factors + p.below_entry[b] * P), load<P>(s_.y + p.below_row[b] * P), z);
+      store(z, s_.y + k * P);
+      add_step<P, first>(lanes, z, s_.lambda + k * P);
+    }
   }
-  return worst;
-}
 
-template <int P> MoleculeReport solve_pack(const MoleculePack& pack, const MoleculeColumns& c, double h) {
-  const Slots<P> s(pack);
-  find_bonds<P>(pack, c, s);
-  const Flags<P> singular = factorize_bonds<P>(pack, s);
-  find_differences<P>(pack, c.x, c.edge, true, s);
-  MoleculeReport report;
-  const Flags<P> idle = idle_lanes<P>(pack);
-  Pack<P> worst = sweep<P>(pack, s, true);
-  Flags<P> hard = but_not(either(singular, exceeds(worst, same<P>(hard_start))), idle);
-  for (int k = 0; k < pack.kind->constraints; ++k) store(same<P>(0), s.lambda + k * P);
-  Flags<P> open = but_not(exceeds(worst, same<P>(settled)), either(hard, idle));
-  while (any(open) && report.sweeps < most_sweeps) {
-    backward<P>(pack, s, [&](int k, const Pack<P>& z) HWY_ATTR {
-      store(add_where(open, load<P>(s.lambda + k * P), z), s.lambda + k * P);
-    });
-    ++report.sweeps;
-    const Pack<P> before = worst;
-    worst = sweep<P>(pack, s, false);
-    const Flags<P> slow = both(open, exceeds(worst, same<P>(slow_sweep) * before));
-    open = both(open, exceeds(worst, same<P>(settled)));
-    const Flags<P> lost = both(slow, exceeds(worst, same<P>(64 * settled)));  // else it is rounding itself
-    hard = either(hard, lost);
-    open = but_not(open, either(slow, lost));
+ private:
+  /// y_k = g_k - sum L_kl y_l
+  HWY_INLINE void forward(const EliminationLists& p, int k, Pack<P> g) const {
+    for (int e = p.row[k]; e < p.row[k + 1]; ++e)
+      g = take_product(load<P>(s_.factors + e * P), load<P>(s_.y + p.column[e] * P), g);
+    store(g, s_.y + k * P);
   }
-  hard = either(hard, open);
-  report.open = bits_of(hard);
-  const Flags<P> out = either(hard, idle);
-  if (any(out)) leave_out<P>(pack, out, s);
-  const double inverse_h = 1 / h;
-  put<P>(pack, s, [&](int a) { return PositionRow{c.x[a], c.v[a], inverse_h, c.magic[a]}; });
-  return report;
-}
 
-template <int P> MoleculeReport project_pack(const MoleculePack& pack, const MoleculeColumns& c) {
-  const Slots<P> s(pack);
-  find_bonds<P>(pack, c, s);
-  const Flags<P> singular = factorize_bonds<P>(pack, s), idle = idle_lanes<P>(pack);
-  find_differences<P>(pack, c.v, c.edge, false, s);
-  for (int k = 0; k < pack.kind->constraints; ++k) {
-    forward<P>(pack, s, k, same<P>(0) - dot(load_vectors<P>(s.r + 3 * k * P), load_vectors<P>(s.s + 3 * k * P)));
-  }
-  backward<P>(pack, s, [&](int k, const Pack<P>& z) HWY_ATTR { store(z, s.lambda + k * P); });
-  // The second time takes away what rounding has left of the first.
-  with_multipliers<P>(pack, s, [&](int k, const Vectors<P>& v) HWY_ATTR {
-    forward<P>(pack, s, k, same<P>(0) - dot(load_vectors<P>(s.r + 3 * k * P), v));
-  });
-  backward<P>(pack, s,
-              [&](int k, const Pack<P>& z) HWY_ATTR { store(load<P>(s.lambda + k * P) + z, s.lambda + k * P); });
-  leave_out<P>(pack, either(singular, idle), s);
-  put<P>(pack, s, [&](int a) { return VelocityRow{c.v[a]}; });
-  return {bits_of(but_not(singular, idle)), 0};
-}
+  const MoleculePack& pack_;
+  const Slots<P> s_;
+};
 
 MoleculeReport solve_positions(const MoleculePack& pack, const MoleculeColumns& columns, const MoleculeTask& task) {
-  return pack.lanes == 16 ? solve_pack<16>(pack, columns, task.h) : solve_pack<8>(pack, columns, task.h);
+  return pack.lanes == 16 ? solve_by_chords<16>(ListedBonds<16>(pack), pack, columns, task.h)
+                          : solve_by_chords<8>(ListedBonds<8>(pack), pack, columns, task.h);
 }
 MoleculeReport project_velocities(const MoleculePack& pack, const MoleculeColumns& columns, const MoleculeTask&) {
-  return pack.lanes == 16 ? project_pack<16>(pack, columns) : project_pack<8>(pack, columns);
+  return pack.lanes == 16 ? project_by_factors<16>(ListedBonds<16>(pack), columns)
+                          : project_by_factors<8>(ListedBonds<8>(pack), columns);
 }
 
 }  // namespace

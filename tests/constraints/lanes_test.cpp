@@ -1,47 +1,14 @@
 /// Molecules side by side in lanes: what they come to is that of the solver of all cases in 113 bits, and no molecule
 /// feels who is beside it.
 
-#include "constraints/constraint_solver.hpp"
-#include "constraints/elimination.hpp"
-#include "constraints/molecule_lanes.hpp"
+#include "tests/constraints/molecule_crowd.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/columns.hpp"
-#include "tests/support/crowd.hpp"
 #include "tests/support/settings.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <numeric>
 
 namespace noether {
 namespace {
 
 using namespace noether::test;
-
-TEST_CASE("a tree is eliminated without fill, a ring of n bonds with n - 3 entries at most", "[lanes]") {
-  const auto elimination = [](const Molecule& m) {
-    std::vector<Elimination::Pair> pairs;
-    for (const auto& [a, b] : m.bonds) pairs.emplace_back(static_cast<int>(a), static_cast<int>(b));
-    std::vector<double> inverse(m.masses.size());
-    std::transform(m.masses.begin(), m.masses.end(), inverse.begin(), [](double mass) { return 1 / mass; });
-    return Elimination(pairs, inverse);
-  };
-  for (std::uint64_t seed = 0; seed < 50; ++seed) {
-    const Molecule m = tree(2 + static_cast<int>(seed), seed);
-    const Elimination made = elimination(m);
-    CHECK(made.fill() == 0);
-    std::vector<int> places = made.places();
-    std::sort(places.begin(), places.end());
-    std::vector<int> all(m.bonds.size());
-    std::iota(all.begin(), all.end(), 0);
-    CHECK(places == all);
-  }
-  for (int n = 3; n < 12; ++n) {
-    Molecule m{"ring", {}, {}, {}};
-    for (int a = 0; a < n; ++a) m.masses.push_back(1), m.bonds.emplace_back(a, (a + 1) % n);
-    CHECK(elimination(m).fill() <= n - 3);
-  }
-}
 
 /// A step of crowds of a molecule, of several sizes, is that in 113 bits.
 void check_rounding(const Molecule& molecule, ConstraintMethod solver) {
@@ -139,13 +106,18 @@ TEST_CASE("a molecule has the same bits wherever it is, whoever is beside it, on
   for (const SimdLevel level : all_levels()) {
     const AtLevel at(level);
     for (const ConstraintMethodInfo& info : constraint_methods) {
+      const ConstraintMethod solver = info.method;
       for (const Molecule& molecule : all_molecules()) {
-        if (info.method == ConstraintMethod::settle && molecule.name != "water") continue;
-        // Random trees have atoms whose bonds nearly coincide: no series converges there.
-        if (info.end == SolverEnd::order && molecule.name == "tree") continue;
-        for (const int count : {2, 6, 10, 14, 18, 300}) {
-          for (const double edge : {0.0, 2.8}) check_bits(molecule, info.method, count, edge);
+        const bool random = molecule.name == "tree" || molecule.name == "path" || molecule.name == "star" ||
+                            molecule.name == "branched";
+        if (solver == ConstraintMethod::settle && molecule.name != "water") continue;
+        // Only Newton's method has kernels for shapes; of bonds that nearly coincide no series converges.
+        if (random && solver != ConstraintMethod::newton && (molecule.name != "tree" || info.end == SolverEnd::order))
+          continue;
+        for (const int count : {2, 6, 10, 14, 18}) {
+          for (const double edge : {0.0, 2.8}) check_bits(molecule, solver, count, edge);
         }
+        check_bits(molecule, solver, 300, 0);
       }
     }
   }
@@ -197,22 +169,27 @@ TEST_CASE("atoms of a molecule that are scattered among others end where they do
 }
 
 TEST_CASE("a molecule whose step is hard is solved by itself, and the others keep their bits", "[lanes]") {
-  const Molecule molecule = tree(10, 1);
-  Crowd cool, mixed;
-  for (int k = 0; k < 21; ++k) cool.add(molecule, k), mixed.add(molecule, k, k == 5 ? 6e4 : 300);
-  const ParticleSystem<double> right = after_step<double>(cool, 0.002);
-  const ParticleSystem<Quad> wide = after_step<Quad>(mixed, 0.002);
-  std::optional<Failure> failure;
-  const ParticleSystem<double> s = after_step<double>(mixed, 0.002, &failure);
-  REQUIRE(!failure);
-  for (Index i = 0; i < s.size(); ++i) {
-    if (i / 10 == 5) continue;
-    CHECK(s.positions()[i] == right.positions()[i]);
-    CHECK(s.velocities()[i] == right.velocities()[i]);
+  for (const Molecule& molecule : {tree(10, 1), path(9, 3), branched(14, 1), star(5), ring(6)}) {
+    Crowd cool, mixed;
+    for (int k = 0; k < 21; ++k) cool.add(molecule, k), mixed.add(molecule, k, k == 5 ? 6e4 : 300);
+    const ParticleSystem<Quad> wide = after_step<Quad>(mixed, 0.002);
+    for (const SimdLevel level : all_levels()) {
+      const AtLevel at(level);
+      const ParticleSystem<double> right = after_step<double>(cool, 0.002);
+      std::optional<Failure> failure;
+      const ParticleSystem<double> s = after_step<double>(mixed, 0.002, &failure);
+      CAPTURE(molecule.name);
+      REQUIRE(!failure);
+      for (Index i = 0; i < s.size(); ++i) {
+        if (i / static_cast<Index>(molecule.atoms.size()) == 5) continue;
+        CHECK(s.positions()[i] == right.positions()[i]);
+        CHECK(s.velocities()[i] == right.velocities()[i]);
+      }
+      const auto [x, v] = errors(s, wide);
+      CHECK(x < 1e-13);
+      CHECK(v < 1e-10);
+    }
   }
-  const auto [x, v] = errors(s, wide);
-  CHECK(x < 1e-13);
-  CHECK(v < 1e-10);
 }
 
 TEST_CASE("a step that has no solution names the molecule's atoms", "[lanes]") {

@@ -2,8 +2,8 @@
 
 #include "constraints/angle.hpp"
 #include "constraints/constraint_solver.hpp"
+#include "tests/constraints/molecule_crowd.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/crowd.hpp"
 #include "tests/support/settings.hpp"
 
 #include <algorithm>

@@ -1,12 +1,14 @@
 #pragma once
-/// Molecules held by distances, many of them, and a step of theirs.
+/// Molecules of all shapes, crowds of them, and a step of these by either solver.
 
 #include "constraints/constraint_solver.hpp"
 #include "constraints/distance.hpp"
+#include "constraints/elimination.hpp"
+#include "tests/support/columns.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
+#include <numeric>
 #include <optional>
 #include <random>
 #include <string>
@@ -45,6 +47,77 @@ inline Molecule tree(int atoms, std::uint64_t seed) {
                       0.15 * Vec3<double>(flat * std::cos(turn), flat * std::sin(turn), z));
     m.bonds.emplace_back(on, a);
   }
+  return m;
+}
+
+/// A new atom on one that is there, some way off.
+inline void hang(Molecule& m, Index on, std::mt19937_64& random, double bond = 0.15) {
+  const double z = 0.9 * (2 * static_cast<double>(random() >> 11U) * 0x1p-53 - 1),
+               turn = static_cast<double>(random() % 1000);
+  const double flat = std::sqrt(1 - z * z);
+  m.bonds.emplace_back(on, static_cast<Index>(m.atoms.size()));
+  m.masses.push_back(random() % 2 == 0 ? 1.008 : 14.027);
+  m.atoms.push_back(m.atoms[static_cast<std::size_t>(on)] +
+                    bond * Vec3<double>(flat * std::cos(turn), flat * std::sin(turn), z));
+}
+
+/// The same molecule with atoms and bonds in any order.
+inline Molecule shuffled(const Molecule& m, std::mt19937_64& random) {
+  std::vector<Index> place(m.atoms.size());
+  std::iota(place.begin(), place.end(), 0);
+  std::shuffle(place.begin(), place.end(), random);
+  Molecule mixed{m.name, std::vector<double>(place.size()), std::vector<Vec3<double>>(place.size()), m.bonds};
+  for (std::size_t a = 0; a < place.size(); ++a) {
+    mixed.masses[static_cast<std::size_t>(place[a])] = m.masses[a];
+    mixed.atoms[static_cast<std::size_t>(place[a])] = m.atoms[a];
+  }
+  for (auto& [a, b] : mixed.bonds) {
+    a = place[static_cast<std::size_t>(a)], b = place[static_cast<std::size_t>(b)];
+    if (random() % 2 == 0) std::swap(a, b);
+  }
+  std::shuffle(mixed.bonds.begin(), mixed.bonds.end(), random);
+  return mixed;
+}
+
+/// An unbranched chain.
+inline Molecule path(int bonds, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  Molecule m{"path", {12}, {{0, 0, 0}}, {}};
+  for (int a = 0; a < bonds; ++a) hang(m, a, random);
+  return shuffled(m, random);
+}
+
+/// A tree whose atoms have at most four bonds.
+inline Molecule branched(int atoms, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  Molecule m{"branched", {12}, {{0, 0, 0}}, {}};
+  std::vector<int> bonds{0};
+  while (static_cast<int>(m.atoms.size()) < atoms) {
+    const auto on = static_cast<std::size_t>(random() % m.atoms.size());
+    if (bonds[on] == 4) continue;
+    ++bonds[on];
+    bonds.push_back(1);
+    hang(m, static_cast<Index>(on), random);
+  }
+  return shuffled(m, random);
+}
+
+/// A middle with four atoms, three more on each of these: as many as kernels for trees take.
+inline Molecule full_tree() {
+  std::mt19937_64 random(1);
+  Molecule m{"full", {12}, {{0, 0, 0}}, {}};
+  for (int k = 0; k < 4; ++k) hang(m, 0, random);
+  for (Index a = 1; a <= 4; ++a) {
+    for (int k = 0; k < 3; ++k) hang(m, a, random);
+  }
+  return m;
+}
+
+/// The middle of a star is its first atom.
+inline Molecule star(int bonds, double middle = 12) {
+  std::mt19937_64 random(static_cast<std::uint64_t>(bonds));
+  Molecule m{"star", {middle}, {{0, 0, 0}}, {}};
+  for (int k = 0; k < bonds; ++k) hang(m, 0, random);
   return m;
 }
 
@@ -157,9 +230,23 @@ inline std::pair<double, double> errors(const ParticleSystem<double>& s, const P
   return {x, v};
 }
 
-/// A shape for every way through a solver.
+/// Of each kind of kernel: rigid triangles, paths, trees with at most four bonds an atom, all others.
 inline std::vector<Molecule> all_molecules() {
-  return {water(), tree(10, 1), tree(32, 2), tree(2, 3), ring(3), ring(6), with_hydrogens(3)};
+  return {water(),     tree(2, 3), path(2, 1), path(3, 2),       path(9, 3), path(40, 4),
+          star(3),     star(4),    tree(9, 8), branched(14, 1),  star(5),    branched(33, 2),
+          tree(32, 2), ring(3),    ring(6),    with_hydrogens(3)};
 }
+
+inline std::vector<Elimination::Pair> pairs_of(const Molecule& m) {
+  std::vector<Elimination::Pair> pairs;
+  for (const auto& [a, b] : m.bonds) pairs.emplace_back(static_cast<int>(a), static_cast<int>(b));
+  return pairs;
+}
+inline std::vector<double> inverse_masses_of(const Molecule& m) {
+  std::vector<double> inverse(m.masses.size());
+  std::transform(m.masses.begin(), m.masses.end(), inverse.begin(), [](double mass) { return 1 / mass; });
+  return inverse;
+}
+inline Elimination elimination(const Molecule& m) { return Elimination(pairs_of(m), inverse_masses_of(m)); }
 
 }  // namespace noether::test
