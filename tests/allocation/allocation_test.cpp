@@ -176,7 +176,8 @@ TEST_CASE("constraints allocate nothing inside advance, solved all at once or by
     integrator.settle(s, copy, {.energy = true}, std::nullopt, true);
     CHECK(allocations == start);
   };
-  for (const ConstraintMethod solver : {ConstraintMethod::newton, ConstraintMethod::rattle}) {
+  for (const ConstraintMethod solver :
+       {ConstraintMethod::newton, ConstraintMethod::rattle, ConstraintMethod::m_shake, ConstraintMethod::p_shake}) {
     for (const Scheme* scheme : {&schemes::verlet, &schemes::yoshida_4}) {
       check(test::hanging_chain(40, {.solver = solver}), *scheme);
       check(test::molecular_liquid(2, 4.0, {.solver = solver}), *scheme);

@@ -352,7 +352,7 @@ void check_small_step(const Molecule& m, const ConstraintMethodInfo& info, Flask
     const std::optional<Failure> failure = step(own, s, h);
     const Exactness exact(m, info, part);
     if (m.bonds.size() > 40) {  // too many for dense matrices
-      if (failure && !info.end == SolverEnd::rounding) continue;
+      if (failure && info.end != SolverEnd::rounding) continue;
       REQUIRE(!failure);
       check_kept(flask.constraints, flask.particles, s, exact);
       continue;

@@ -113,6 +113,8 @@ TEST_CASE("bits of a scene of molecules depend on no thread, skin or save; a bat
   const std::vector<std::vector<std::string>> ways = {
       {},
       {"hamiltonian.constraint.0.solver=rattle", "hamiltonian.constraint.0.tolerance=1e-9"},
+      {"hamiltonian.constraint.0.solver=p_shake", "hamiltonian.constraint.0.tolerance=1e-9"},
+      {"hamiltonian.constraint.0.solver=m_shake"},
       {"integrator.method=yoshida_4"},
       {"integrator.method=BAOAB", "hamiltonian.thermostat={type='langevin', temperature=0.7, friction=1, seed=4}"}};
   for (std::vector<std::string> way : ways) {
