@@ -72,18 +72,20 @@ HWY_INLINE Vectors<P> pull_of(const EliminationLists& p, const EliminationCenter
 template <int P, class MakeRow>
 HWY_INLINE void put_pulls(const MoleculePack& pack, const Slots<P>& s, const MakeRow& make_row) {
   const EliminationLists p = *pack.kind;
-  for (int at = 0; at < p.centers; ++at) store(pull_of<P>(p, p.center[at], s), s.u + 3 * at * P);
-  for (int axis = 0; axis < 3; ++axis) {
-    for (int at = 0; at < p.centers; ++at) {
-      const EliminationCenter& c = p.center[at];
-      store(same<P>(c.inverse_mass) * load<P>(s.u + (3 * at + axis) * P), s.one + c.atom * P);
-      for (int k = c.first; k < c.leaves_end; ++k) {
-        store((same<P>(p.inverse_mass_i[k]) * load<P>(s.lambda + k * P)) * load<P>(s.r + (3 * k + axis) * P),
-              s.one + p.i[k] * P);
-      }
+  double* const moved = s.more;  // shape (3, atoms)
+  const auto move = [&](int atom, const Pack<P>& by, const Vectors<P>& v) HWY_ATTR {
+    store(by * v.x, moved + atom * P);
+    store(by * v.y, moved + (p.atoms + atom) * P);
+    store(by * v.z, moved + (2 * p.atoms + atom) * P);
+  };
+  for (int at = 0; at < p.centers; ++at) {
+    const EliminationCenter& c = p.center[at];
+    move(c.atom, same<P>(c.inverse_mass), pull_of<P>(p, c, s));
+    for (int k = c.first; k < c.leaves_end; ++k) {
+      move(p.i[k], same<P>(p.inverse_mass_i[k]) * load<P>(s.lambda + k * P), load_vectors<P>(s.r + 3 * k * P));
     }
-    store_atoms<P>(pack, s.one, make_row(axis));
   }
+  for (int axis = 0; axis < 3; ++axis) store_atoms<P>(pack, moved + axis * p.atoms * P, make_row(axis));
 }
 
 /// The position stage of what knows the shape of its molecules:
