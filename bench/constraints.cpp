@@ -2,8 +2,8 @@
 ///
 /// The position stage, free motion with it, and the velocity stage of molecules at 300 K without forces, 2 fs, one
 /// thread: 512 rigid waters (SPC/E), 256 decanes with all bonds rigid (united atoms, 9 bonds, and all atoms, 31) and
-/// with those of hydrogens alone (22), 256 rings of six carbons with their hydrogens (18 bonds), chains of 10, 100 and
-/// 10 000 bonds, one of each.
+/// with those of hydrogens alone (22), 256 rings of six carbons with their hydrogens (18 bonds), 256 chains of 100
+/// bonds, and chains of 10, 100 and 10 000 bonds, one of each.
 ///
 /// Protocol: 20 slices, all cases in turn; medians of processor times. A slice is so many times ten steps from the
 /// start. `cost_scaling` is the cost of a bond in the chain of 10 000 over that in the chain of 100, slice by slice.
@@ -217,6 +217,7 @@ int main(int count, char** arguments) {
     }
   }
   cases.push_back(made("water/settle", water(), 512, {.solver = ConstraintMethod::settle}));
+  cases.push_back(made("chains/newton", chain(100), 256, {}));
   for (Case& one : cases) {  // warm-up
     one.slice();
     one.cost.clear();

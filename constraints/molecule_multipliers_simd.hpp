@@ -41,32 +41,31 @@ HWY_INLINE void with_multipliers(const MoleculePack& pack, const Slots<P>& s, co
   }
 }
 
-/// M^-1 G^T lambda into the columns, one axis after the other; u has the pulls of centers.
+/// M^-1 G^T lambda into the columns, one axis after the other.
 template <int P, class MakeRow>
 HWY_INLINE void put(const MoleculePack& pack, const Slots<P>& s, const MakeRow& make_row) {
-  const EliminationLists& p = *pack.kind;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (int at = 0; at < p.centers; ++at) {
-      const EliminationCenter& c = p.center[at];
-      store(same<P>(c.inverse_mass) * load<P>(s.u + (3 * at + axis) * P), s.one + c.atom * P);
-      for (int k = c.first; k < c.leaves_end; ++k) {
-        store((same<P>(p.inverse_mass_i[k]) * load<P>(s.lambda + k * P)) * load<P>(s.r + (3 * k + axis) * P),
-              s.one + p.i[k] * P);
-      }
+  const EliminationLists p = *pack.kind;
+  double* const moved = s.more;  // shape (3, atoms)
+  const auto move = [&](int atom, const Pack<P>& by, const Vectors<P>& v) HWY_ATTR {
+    store(by * v.x, moved + atom * P);
+    store(by * v.y, moved + (p.atoms + atom) * P);
+    store(by * v.z, moved + (2 * p.atoms + atom) * P);
+  };
+  for (int at = 0; at < p.centers; ++at) {
+    const EliminationCenter& c = p.center[at];
+    move(c.atom, same<P>(c.inverse_mass), pull<P>(p, c, s));
+    for (int k = c.first; k < c.leaves_end; ++k) {
+      move(p.i[k], same<P>(p.inverse_mass_i[k]) * load<P>(s.lambda + k * P), load_vectors<P>(s.r + 3 * k * P));
     }
-    store_atoms<P>(pack, s.one, make_row(axis));
   }
+  for (int axis = 0; axis < 3; ++axis) store_atoms<P>(pack, moved + axis * p.atoms * P, make_row(axis));
 }
-/// The pulls of all centers into u.
-template <int P> HWY_INLINE void find_pulls(const MoleculePack& pack, const Slots<P>& s) {
-  const EliminationLists& p = *pack.kind;
-  for (int at = 0; at < p.centers; ++at) store(pull<P>(p, p.center[at], s), s.u + 3 * at * P);
+/// Multipliers of lanes that are no molecule of their own, or not solved, become 0.
+template <int P> HWY_INLINE void leave_out_of(const Flags<P>& lanes, int constraints, double* lambda) {
+  for (int k = 0; k < constraints; ++k) store(none_where(lanes, load<P>(lambda + k * P)), lambda + k * P);
 }
-/// Lambda of lanes that are no molecule of their own, or not solved, becomes 0, and pulls follow.
 template <int P> HWY_INLINE void leave_out(const MoleculePack& pack, const Flags<P>& lanes, const Slots<P>& s) {
-  const EliminationLists& p = *pack.kind;
-  for (int k = 0; k < p.constraints; ++k) store(none_where(lanes, load<P>(s.lambda + k * P)), s.lambda + k * P);
-  find_pulls<P>(pack, s);
+  leave_out_of<P>(lanes, pack.kind->constraints, s.lambda);
 }
 
 }  // namespace

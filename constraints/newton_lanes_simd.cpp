@@ -18,7 +18,9 @@ template <int P> class ListedBonds {
   HWY_INLINE Flags<P> idle() const { return idle_lanes<P>(pack_); }
   HWY_INLINE Pack<P> of_molecule(const Pack<P>& worst) const { return worst; }
   HWY_INLINE void leave_out(const Flags<P>& lanes) const { leave_out_of<P>(lanes, pack_.kind->constraints, s_.lambda); }
-  template <class MakeRow> HWY_INLINE void put(const MakeRow& make_row) const { put_pulls<P>(pack_, s_, make_row); }
+  template <class MakeRow> HWY_INLINE void put(const MakeRow& make_row) const {
+    noether::NOETHER_SIMD_LEVEL::put<P>(pack_, s_, make_row);
+  }
 
   /// L D L^T. @return where it is singular
   Flags<P> factorize() const {

@@ -50,18 +50,6 @@ template <int P, bool first> HWY_INLINE void add_step(const Flags<P>& lanes, con
   store(first ? only_where(lanes, step) : add_where(lanes, load<P>(lambda), step), lambda);
 }
 
-/// Multipliers of lanes that are no molecule of their own, or not solved, become 0.
-template <int P> HWY_INLINE void leave_out_of(const Flags<P>& lanes, int constraints, double* lambda) {
-  for (int k = 0; k < constraints; ++k) store(none_where(lanes, load<P>(lambda + k * P)), lambda + k * P);
-}
-
-/// M^-1 G^T lambda into the columns, one axis after the other.
-template <int P, class MakeRow>
-HWY_INLINE void put_pulls(const MoleculePack& pack, const Slots<P>& s, const MakeRow& make_row) {
-  find_pulls<P>(pack, s);
-  put<P>(pack, s, make_row);
-}
-
 /// The position stage of what knows the shape of its molecules:
 ///
 ///     bonds.find(c)                    vectors r of bonds at the start

@@ -34,20 +34,21 @@ template <int P> struct Link {
 
 /// Visits the centers of one shape that follow each other: a loop of its own keeps the link in registers.
 template <int P, int way, class Shape, class Visit>
-HWY_INLINE void visit_run(const TreeCenter*& at, const TreeCenter* end, Link<P>& link, Visit& visit) {
-  const int shape = at->shape;
+HWY_INLINE int visit_run(const TreeCenter* centers, int at, int end, Link<P>& link, Visit& visit) {
+  const int shape = centers[at].shape;
   Link<P> own = link;
   do {
-    visit.template center<Shape>(*at, own);
+    visit.template center<Shape>(centers[at], own);
     at += way;
-  } while (at != end && at->shape == shape);
+  } while (at != end && centers[at].shape == shape);
   link = own;
+  return at;
 }
 template <int code, int P, int way, class Visit>
-HWY_INLINE bool visit_if(const TreeCenter*& at, const TreeCenter* end, Link<P>& link, Visit& visit) {
+HWY_INLINE bool visit_if(const TreeCenter* centers, int& at, int end, Link<P>& link, Visit& visit) {
   if constexpr (Shape<code>::exists) {
-    if (at->shape == code) {
-      visit_run<P, way, Shape<code>>(at, end, link, visit);
+    if (centers[at].shape == code) {
+      at = visit_run<P, way, Shape<code>>(centers, at, end, link, visit);
       return true;
     }
   }
@@ -55,20 +56,18 @@ HWY_INLINE bool visit_if(const TreeCenter*& at, const TreeCenter* end, Link<P>& 
 }
 /// Calls `visit.center<Shape>(center, link)` for centers from `at` on.
 template <int P, int way, class Visit, int... code>
-HWY_INLINE void visit_all(const TreeCenter* at, const TreeCenter* end, Visit& visit,
+HWY_INLINE void visit_all(const TreeCenter* centers, int at, int end, Visit& visit,
                           std::integer_sequence<int, code...>) {
   const Vectors<P> none{same<P>(0), same<P>(0), same<P>(0)};
   Link<P> link{none, none, same<P>(0), same<P>(0)};
-  while (at != end && (visit_if<code, P, way>(at, end, link, visit) || ...)) {
+  while (at != end && (visit_if<code, P, way>(centers, at, end, link, visit) || ...)) {
   }
 }
 template <int P, class Visit> HWY_INLINE void visit_inward(const MoleculePack& pack, Visit& visit) {
-  visit_all<P, 1>(pack.tree, pack.tree + pack.kind->centers, visit,
-                  std::make_integer_sequence<int, TreeShape::codes>());
+  visit_all<P, 1>(pack.tree, 0, pack.kind->centers, visit, std::make_integer_sequence<int, TreeShape::codes>());
 }
 template <int P, class Visit> HWY_INLINE void visit_outward(const MoleculePack& pack, Visit& visit) {
-  visit_all<P, -1>(pack.tree + pack.kind->centers - 1, pack.tree - 1, visit,
-                   std::make_integer_sequence<int, TreeShape::codes>());
+  visit_all<P, -1>(pack.tree, pack.kind->centers - 1, -1, visit, std::make_integer_sequence<int, TreeShape::codes>());
 }
 
 /// Inverts a symmetric block by cofactors. @return its determinant
@@ -257,7 +256,9 @@ template <int P> class TreeBonds {
   HWY_INLINE void leave_out(const Flags<P>& lanes) const {
     leave_out_of<P>(lanes, pack_.kind->constraints, all_.lambda);
   }
-  template <class MakeRow> HWY_INLINE void put(const MakeRow& make_row) const { put_pulls<P>(pack_, all_, make_row); }
+  template <class MakeRow> HWY_INLINE void put(const MakeRow& make_row) const {
+    noether::NOETHER_SIMD_LEVEL::put<P>(pack_, all_, make_row);
+  }
 
   Flags<P> factorize() const {
     Factorizing<P> visit{slots_};
