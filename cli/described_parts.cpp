@@ -60,8 +60,8 @@ std::string table_of(const std::string& kind) {
   if (kind == "thermostat") return "[hamiltonian.thermostat]";
   if (kind == "start") return "[minimize]";
   if (kind == "constraint") {
-    return "[[hamiltonian.constraint]], with the particles; solver = \"newton\", \"settle\" or \"rattle\" (with "
-           "tolerance, iterations)";
+    return "[[hamiltonian.constraint]], with the particles; solver = \"newton\" unless given, of the list under "
+           "[[hamiltonian.constraint]] above";
   }
   if (kind == "system") {
     return "[system], instead of [particles] and [hamiltonian]; start = [...] sets another start";

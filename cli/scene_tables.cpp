@@ -165,7 +165,9 @@ SceneTable force() {
 
 SceneTable constraint() {
   return {"[[hamiltonian.constraint]]",
-          "Constraints of one kind. All tables share one solver; `tolerance` and `iterations` belong to `rattle`.",
+          "Constraints of one kind. All tables share one solver; `tolerance` belongs to `rattle` and `p_shake`, "
+          "`order` to `lincs` and "
+          "`p_lincs`, `iterations` to all four.",
           and_of<ConstraintOptions>(fields({{"type", "text", "1", "", "a constraint", "\"distance\""}}))};
 }
 

@@ -162,7 +162,7 @@ void LincsConstraints::project_velocities(Equations& equations, ParticleSystem<d
     g_[at(e)] = equations.along(e, s.velocities(), equations.gradients());
     lost_[at(e)] = std::isfinite(g_[at(e)]) ? 0 : g_[at(e)];
   });
-  if (!check(equations, s, "has a velocity across it that is no finite number: {}")) return;
+  if (!check(equations, s, "has a velocity across it of {}, which is not a finite number")) return;
   expand(order);
   equations.count_iterations(order);
   for (Index e = 0; e < equations.size(); ++e) equations.values()[e] = sum_[at(e)];

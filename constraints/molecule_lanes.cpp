@@ -260,7 +260,8 @@ template <class Work> void MoleculeLanes::for_packs(const Work& work) {
     const Index shares = (kind.packs + share - 1) / share;
     for_blocks(shares * block_size, [&](Index begin, Index) {
       static thread_local AlignedVector<double> scratch;
-      const std::size_t needed = (molecule_scratch(lists) + at(kernels.slots(lists))) * at(kind.lanes);
+      const int own = kernels.slots != nullptr ? kernels.slots(lists) : 0;
+      const std::size_t needed = (molecule_scratch(lists) + at(own)) * at(kind.lanes);
       if (scratch.size() < needed) scratch.resize(needed);
       const Index from = begin / block_size * share;
       for (Index p = from; p < std::min(kind.packs, from + share); ++p) {

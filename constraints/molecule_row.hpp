@@ -86,8 +86,8 @@ struct MoleculeKernels {
   /// Takes from velocities what is along gradients at `start`.
   MoleculeReport (*project_velocities)(const MoleculePack& pack, const MoleculeColumns& columns,
                                        const MoleculeTask& task);
-  /// Doubles a lane of scratch that this solver needs besides.
-  int (*slots)(const EliminationLists& kind) = [](const EliminationLists&) { return 0; };
+  /// Doubles a lane of scratch that this solver needs besides; null: none.
+  int (*slots)(const EliminationLists& kind) = nullptr;
   int most_of_sixteen = 32;    ///< constraints of which a pack of sixteen molecules stays in the first-level cache
   int most_constraints = 256;  ///< larger molecules are left to the solver of the whole set
 };

@@ -135,7 +135,7 @@ constexpr std::array names_of_others = {
     ForeignName{" fput fpu ", NamePlace::force, "fermi_pasta_ulam"},
     // Constraints.
     ForeignName{" shake rattle lincs bond_constraint ", NamePlace::constraint, "distance",
-                "constraints are tables [[hamiltonian.constraint]]", true},
+                "constraints are tables [[hamiltonian.constraint]], whose key solver says how they are solved", true},
     ForeignName{" hbonds h_bonds hydrogens ", NamePlace::constraint, "hydrogen_bonds"},
     ForeignName{" all_bonds allbonds rigid_bonds ", NamePlace::constraint, "bonds"},
     ForeignName{" h_angles hangles all_angles allangles rigid_angles ", NamePlace::constraint, "bonds_and_angles"},

@@ -65,6 +65,8 @@ ConstraintOptions read_options(const SceneContext& context, const std::vector<co
           fmt::format("{} = {} differs from {} before; all constraints are solved together, so give the same value",
                       key, to_text(*value), to_text(*before->second)));
     }
+    if (const SceneValue* solver = reader.find("solver"); solver != nullptr && to_text(*solver) == "\"shake\"")
+      reader.fail("solver", "unknown solver 'shake' in [[hamiltonian.constraint]]; SHAKE's sweeps are \"rattle\" here");
     read_fields(reader, options);
     try {
       options.check();
