@@ -33,8 +33,9 @@ function(noether_simd target)
       # of whole registers stay such, not a memset that writes them in parts.
       $<$<CXX_COMPILER_ID:GNU>:-fschedule-insns -fsched-pressure -fno-tree-loop-distribute-patterns>)
     # Sanitizers run everything else without optimization; here each lane's operation would be a call. (At the base
-    # level there is one lane and nothing to gain, and clang takes minutes.)
-    if(NOT level STREQUAL "base")
+    # level there is one lane and nothing to gain, and clang takes minutes; so it does for kernels of constraints, of
+    # which sanitized tests run few steps.)
+    if(NOT level STREQUAL "base" AND NOT target STREQUAL "noether_constraints")
       target_compile_options(${objects} PRIVATE $<$<CONFIG:RelWithDebInfo>:-O1>)
     endif()
     set_target_properties(${objects} PROPERTIES POSITION_INDEPENDENT_CODE ON)

@@ -47,6 +47,13 @@ ConstraintSet::ConstraintSet(const ConstraintSet& other) : options_(other.option
 }
 ConstraintSet& ConstraintSet::operator=(const ConstraintSet& other) { return *this = ConstraintSet(other); }
 
+ConstraintSet ConstraintSet::solved_by(ConstraintOptions options) const {
+  options.check();
+  ConstraintSet same(*this);
+  same.options_ = options;
+  return same;
+}
+
 ConstraintSet ConstraintSet::only(const std::vector<bool>& keep) const {
   ConstraintSet kept(options_);
   std::size_t equation = 0;

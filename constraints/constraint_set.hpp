@@ -91,6 +91,8 @@ class ConstraintSet {
   const ConstraintOptions& options() const { return options_; }
   const std::vector<std::unique_ptr<ConstraintGroup>>& groups() const { return groups_; }
   bool empty() const { return groups_.empty(); }
+  /// The same constraints, solved in another way. @throws Error  see ConstraintOptions::check
+  ConstraintSet solved_by(ConstraintOptions options) const;
   /// A set of some of its constraints, solved in the same way. @param keep  by equation
   ConstraintSet only(const std::vector<bool>& keep) const;
   /// Number of equations: the degrees of freedom they take.

@@ -7,10 +7,11 @@ namespace noether {
 
 namespace {
 
-/// Constraints, for the minimizer.
+/// Constraints, for the minimizer: to rounding, whatever a run leaves of them, since runs begin on them.
 class AlongConstraints final : public MinimizeAlong {
  public:
-  explicit AlongConstraints(ConstraintSet set) : solver_(std::move(set)) {}
+  explicit AlongConstraints(const ConstraintSet& set)
+      : solver_(set.options().end() == SolverEnd::rounding ? set : set.solved_by({})) {}
   void bind(ParticleSystem<double>& s) override { solver_.bind(s); }
   void advance_positions(ParticleSystem<double>& s, double h) override { solver_.advance_positions(s, h); }
   void project_velocities(ParticleSystem<double>& s, double h) override { solver_.project_velocities(s, h); }
@@ -27,9 +28,9 @@ class AlongConstraints final : public MinimizeAlong {
 
 }  // namespace
 
-Minimized minimize(ParticleSystem<double>& s, const AnyForce<double>& forces, ConstraintSet constraints,
+Minimized minimize(ParticleSystem<double>& s, const AnyForce<double>& forces, const ConstraintSet& constraints,
                    const MinimizeOptions& options) {
-  AlongConstraints along(std::move(constraints));
+  AlongConstraints along(constraints);
   return minimize(s, forces, options, &along);
 }
 

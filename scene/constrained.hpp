@@ -10,7 +10,7 @@ namespace noether {
 
 /// Moves particles downhill along constraints (integrators/minimize.hpp).
 /// @throws Error  as without constraints; BadConstraints  where the particles do not start on them
-Minimized minimize(ParticleSystem<double>& s, const AnyForce<double>& forces, ConstraintSet constraints,
+Minimized minimize(ParticleSystem<double>& s, const AnyForce<double>& forces, const ConstraintSet& constraints,
                    const MinimizeOptions& options);
 
 using Constrained = KineticPotential<ForceField<double>, double, ConstraintSet>;
