@@ -28,7 +28,7 @@ enum class ConstraintMethod : std::uint8_t {
 /// Where a solver ends.
 enum class SolverEnd : std::uint8_t {
   rounding,
-  tolerance,  ///< ConstraintOptions::tolerance, or the most iterations
+  tolerance,  ///< ConstraintOptions::tolerance; a run that needs more than the most iterations ends
   order       ///< after ConstraintOptions::order powers of a series and as many corrections as there are iterations
 };
 
@@ -50,7 +50,7 @@ struct ConstraintMethodInfo {
   SolverEnd end;
   Index iterations = 1000;                ///< as many as it takes unless told otherwise, or makes at most
   bool distances_alone = false;           ///< whether it serves no other constraints
-  bool equal_lengths = false;             ///< whether molecules side by side must have the same
+  bool equal_lengths = false;             ///< whether lengths of molecules side by side must be the same within 1 %
   MoleculeKernelsInUse* lanes = nullptr;  ///< for molecules held by distances alone; null: for no others than triangles
   MoleculeKernelsInUse* triangles =
       nullptr;  ///< for rigid ones of three sites; null, and `lanes` too: nothing is in lanes
@@ -109,7 +109,7 @@ inline constexpr std::array constraint_methods{
                          .equal_lengths = true,
                          .lanes = p_shake_in_lanes,
                          .triangles = p_shake_in_lanes,
-                         .make = sweep_constraints,
+                         .make = newton_constraints,
                          .make_quad = newton_constraints},
     ConstraintMethodInfo{.method = ConstraintMethod::lincs,
                          .name = "lincs",

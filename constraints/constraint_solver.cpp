@@ -275,7 +275,7 @@ template <class Real> bool ConstraintSolver<Real>::project_in_lanes(ParticleSyst
 
 template <class Real> void ConstraintSolver<Real>::project_velocities(ParticleSystem<Real>& s, const Real& h) {
   if (failure() || !prepare(s)) return;
-  if (project_in_lanes(s, h)) stages_->project_velocities(moving(), s, h);
+  if (project_in_lanes(s, h) && moving().size() > 0) stages_->project_velocities(moving(), s, h);
 }
 
 // ---- forces of constraints -----------------------------------------------------------------------------------------

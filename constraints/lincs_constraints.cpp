@@ -15,7 +15,7 @@ namespace noether {
 
 namespace {
 
-/// A bond whose relative violation is larger where a step starts has been lost before.
+/// A bond whose relative violation is larger is lost.
 constexpr double lost_violation = 0.01;
 
 /// LINCS of distances, all of them together: the matrix by a series of its couplings, then corrections of lengths,
@@ -45,6 +45,7 @@ class LincsConstraints final : public ConstraintStages<double> {
   void take(Equations& equations, const ParticleSystem<double>& s, VectorColumn<double>& x) const;
   /// @return whether no bond is lost; else the first one is named
   bool check(Equations& equations, const ParticleSystem<double>& s, const char* why) const;
+  const char* why_lost(Equations& equations, const ParticleSystem<double>& s);
 
   // Neighbors of bond e, which share a particle with it, are [first_[e], first_[e + 1]).
   std::vector<Index> first_, neighbor_;
@@ -118,6 +119,25 @@ bool LincsConstraints::check(Equations& equations, const ParticleSystem<double>&
   return false;
 }
 
+/// Why a bond that is so many times as long as it ought to be cannot be corrected: it has turned, or the series
+/// diverges.
+const char* LincsConstraints::why_lost(Equations& equations, const ParticleSystem<double>& s) {
+  const auto lost = std::find_if(lost_.begin(), lost_.end(), [](double by) { return by != 0; });
+  if (lost == lost_.end()) return "";
+  const Index e = lost - lost_.begin();
+  const Vec3<double>& r = equations.start_gradients()[at(2 * e)];
+  equations.find_gradients(equations.seen(s, free_), now_);
+  const Vec3<double>& free = now_[at(2 * e)];
+  const double along = dot(free, r), across2 = norm2(free) - along * along / norm2(r);
+  if (across2 >= 0.5 * equations.scale(e)) {
+    return "turns by more than 45 degrees in a step, where lincs cannot correct its length (it would be {:.3g} times "
+           "as "
+           "long): the step is too large";
+  }
+  return "is {:.3g} times as long after the series of lincs, which does not converge for its neighbors; use solver = "
+         "\"newton\"";
+}
+
 bool LincsConstraints::solve_positions(Equations& equations, const ParticleSystem<double>& s, VectorColumn<double>& x,
                                        const double& /*h*/) {
   const ConstraintOptions& options = equations.options();
@@ -144,14 +164,16 @@ bool LincsConstraints::solve_positions(Equations& equations, const ParticleSyste
       lost_[at(e)] = left >= 0 ? 0 : std::sqrt(l2 / d2);
       g_[at(e)] = d2 - std::sqrt(d2 * left);
     });
-    if (!check(
-            equations, s,
-            "turns by more than 45 degrees in a step, where lincs cannot correct its length (it would be {:.3g} times "
-            "too long): the step is too large"))
-      return false;
+    if (!check(equations, s, why_lost(equations, s))) return false;
     expand(options.order);
     take(equations, s, x);
   }
+  equations.find_gradients(equations.seen(s, x), now_);
+  for_bonds([&](Index e) {
+    const double d2 = equations.scale(e), l2 = norm2(now_[at(2 * e)]);
+    lost_[at(e)] = std::abs(l2 - d2) <= 2 * lost_violation * d2 ? 0 : std::sqrt(l2 / d2);
+  });
+  if (!check(equations, s, why_lost(equations, s))) return false;
   equations.count_iterations((options.most_iterations() + 1) * options.order);
   return true;
 }

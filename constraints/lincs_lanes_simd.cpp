@@ -7,7 +7,7 @@ namespace noether::NOETHER_SIMD_LEVEL {
 
 namespace {
 
-/// A bond whose relative violation is larger where a step starts has been lost before.
+/// A bond whose relative violation is larger is lost.
 constexpr double lost_violation = 0.01;
 
 /// D + C = G M^-1 G^T: couplings C_kl of constraints that share an atom in place of factors, 1 / D in place of those of
@@ -78,6 +78,17 @@ template <int P> HWY_INLINE Flags<P> correct_lengths(const MoleculePack& pack, c
   return lost;
 }
 
+/// @return where a bond is lost by what the series has made of it, or points away from where it did
+template <int P> HWY_INLINE Flags<P> look_again(const MoleculePack& pack, const Slots<P>& s) {
+  Flags<P> lost = flags_of<P>(0);
+  with_multipliers<P>(pack, s, [&](int k, const Vectors<P>& at) HWY_ATTR {
+    const Pack<P> d2 = load<P>(pack.lengths2 + k * P);
+    lost = either(lost, exceeds(absolute(dot(at, at) - d2), same<P>(2 * lost_violation) * d2));
+    lost = either(lost, exceeds(same<P>(0), dot(at, load_vectors<P>(s.r + 3 * k * P))));
+  });
+  return lost;
+}
+
 /// Multipliers into the columns, but not those of some lanes. @return a bit for each of these that is a molecule
 template <int P, class MakeRow>
 HWY_INLINE unsigned end(const MoleculePack& pack, const Slots<P>& s, const Flags<P>& lost, const MakeRow& make_row) {
@@ -95,6 +106,7 @@ MoleculeReport solve_pack(const MoleculePack& pack, const MoleculeColumns& c, co
   find_differences<P>(pack, c.x, c.edge, true, s);
   Flags<P> lost = project_bonds<P>(pack, s, task.order);
   for (int k = 0; k < task.iterations; ++k) lost = either(lost, correct_lengths<P>(pack, s, task.order));
+  lost = either(lost, look_again<P>(pack, s));
   const double inverse_h = 1 / task.h;
   const unsigned open = end<P>(pack, s, lost, [&](int a) {
     return PositionRow{c.x[a], c.v[a], inverse_h, c.magic[a]};
@@ -115,7 +127,10 @@ MoleculeReport project_pack(const MoleculePack& pack, const MoleculeColumns& c, 
     store(same<P>(0) - rate, s.y + k * P);
   }
   const double* const found = expand<P>(pack, s, task.order);
-  for (int k = 0; k < pack.kind->constraints; ++k) store(load<P>(found + k * P), s.lambda + k * P);
+  for (int k = 0; k < pack.kind->constraints; ++k) {
+    lost = either(lost, exceeds(absolute(load<P>(found + k * P)), same<P>(std::numeric_limits<double>::max())));
+    store(load<P>(found + k * P), s.lambda + k * P);
+  }
   const unsigned open = end<P>(pack, s, lost, [&](int a) { return VelocityRow{c.v[a]}; });
   return {open, task.order};
 }

@@ -1,6 +1,8 @@
 #include "constraints/molecule_kernels_simd.hpp"
 #include "constraints/molecule_multipliers_simd.hpp"
 
+#include <limits>
+
 namespace noether::NOETHER_SIMD_LEVEL {
 
 namespace {
@@ -146,17 +148,20 @@ template <int P> MoleculeReport project_pack(const MoleculePack& pack, const Mol
     store(same<P>(0), s.lambda + k * P);
   }
   assemble<P>(pack, s, m);
-  const Flags<P> singular = factorize<P>(pack, m), idle = idle_lanes<P>(pack);
+  Flags<P> lost = factorize<P>(pack, m);
+  const Flags<P> idle = idle_lanes<P>(pack);
   for (int pass = 0; pass < 2; ++pass) {  // the second takes away what rounding has left of the first
     with_multipliers<P>(pack, s, [&](int k, const Vectors<P>& v) HWY_ATTR {
-      store(same<P>(0) - dot(load_vectors<P>(s.r + 3 * k * P), v), s.y + k * P);
+      const Pack<P> rate = dot(load_vectors<P>(s.r + 3 * k * P), v);
+      lost = either(lost, exceeds(absolute(rate), same<P>(std::numeric_limits<double>::max())));
+      store(same<P>(0) - rate, s.y + k * P);
     });
     solve<P>(m, s.y);
     add_multipliers<P>(s, m.n, flags_of<P>(~0U));
   }
-  leave_out<P>(pack, either(singular, idle), s);
+  leave_out<P>(pack, either(lost, idle), s);
   put<P>(pack, s, [&](int a) { return VelocityRow{c.v[a]}; });
-  return {bits_of(but_not(singular, idle)), 0};
+  return {bits_of(but_not(lost, idle)), 0};
 }
 
 MoleculeReport solve_positions(const MoleculePack& pack, const MoleculeColumns& columns, const MoleculeTask& task) {

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -112,7 +113,13 @@ ConstraintSet MoleculeLanes::lay_out(const ConstraintSet& set, const ParticleSys
     for (const Index i : molecule->particles) what.push_back(s.masses()[i]);
     for (const auto& [a, b] : molecule->pairs)
       what.insert(what.end(), {static_cast<double>(a), static_cast<double>(b)});
-    if (!all || info.equal_lengths) what.insert(what.end(), molecule->lengths.begin(), molecule->lengths.end());
+    // Kernels for triangles are for equal lengths: which of them serves a molecule must not depend on others.
+    const bool triangle = molecule->particles.size() == 3 && molecule->pairs.size() == 3;
+    if (triangle && info.triangles != info.lanes)
+      what.insert(what.end(), molecule->lengths.begin(), molecule->lengths.end());
+    if (info.equal_lengths)
+      std::transform(molecule->lengths.begin(), molecule->lengths.end(), std::back_inserter(what),
+                     Preconditioner::near);
     for (const Partition::Member& m : parts.constraints(component)) left[at(m.equation)] = false;
     auto [found, is_new] = kinds.emplace(what, std::vector<Index>{});
     if (is_new) order.push_back(what);
@@ -177,7 +184,7 @@ void MoleculeLanes::choose_kernels(Kind& kind, const ParticleSystem<double>& s) 
   if (kind.molecules.size() > 8 && constraints <= at(kind.kernels().most_of_sixteen)) kind.lanes = 16;
   if (!info.equal_lengths) return;
   std::vector<double> lengths;
-  for (const int place : kind.elimination->places()) lengths.push_back(first.lengths[at(place)]);
+  for (const int place : kind.elimination->places()) lengths.push_back(Preconditioner::near(first.lengths[at(place)]));
   kind.preconditioner = Preconditioner(kind.lists(), lengths);
 }
 

@@ -2,12 +2,11 @@
 
 #include "numbers/types.hpp"
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <optional>
 #include <utility>
 
 namespace noether {
@@ -65,18 +64,42 @@ Eigen::MatrixXd matrix_of(const EliminationLists& kind, const Angles& angles) {
   return a;
 }
 
+/// The inverse of a symmetric matrix by elimination in order: its bits depend on no cache, as those of blocks do.
+/// @return none where it is not positive definite
+std::optional<Eigen::MatrixXd> inverse_of(Eigen::MatrixXd a) {
+  const Index n = a.rows();
+  Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(n, n);
+  for (Index k = 0; k < n; ++k) {
+    if (!(a(k, k) > 0)) return {};
+    const double pivot = 1 / a(k, k);
+    for (Index j = 0; j < n; ++j) a(k, j) *= pivot, inverse(k, j) *= pivot;
+    for (Index i = 0; i < n; ++i) {
+      const double factor = a(i, k);
+      if (i == k || factor == 0) continue;
+      for (Index j = 0; j < n; ++j) a(i, j) -= factor * a(k, j), inverse(i, j) -= factor * inverse(k, j);
+    }
+  }
+  return inverse;
+}
+
 }  // namespace
+
+double Preconditioner::near(double length) {
+  int exponent = 0;
+  const double mantissa = std::frexp(length, &exponent);  // 1/2 to 1
+  return std::ldexp(std::round(mantissa * 128), exponent - 7);
+}
 
 Preconditioner::Preconditioner(const EliminationLists& kind, std::span<const double> lengths) {
   Eigen::MatrixXd a = matrix_of(kind, Angles(kind, lengths));
-  Eigen::LLT<Eigen::MatrixXd> factors(a);
-  while (factors.info() != Eigen::Success) {  // angles that no molecule has
+  std::optional<Eigen::MatrixXd> found = inverse_of(a);
+  while (!found) {  // angles that no molecule has
     const Eigen::VectorXd diagonal = a.diagonal();
     a *= 0.75;
     a.diagonal() = diagonal;
-    factors.compute(a);
+    found = inverse_of(a);
   }
-  const Eigen::MatrixXd inverse = factors.solve(Eigen::MatrixXd::Identity(a.rows(), a.cols()));
+  const Eigen::MatrixXd& inverse = *found;
   row_.push_back(0);
   for (int k = 0; k < kind.constraints; ++k) {
     for (int l = 0; l < kind.constraints; ++l) {

@@ -327,20 +327,20 @@ template <PairPotential P> struct PairForce : P {
   detail::PairEnd end() const {
     detail::PairEnd end{.style = cutoff_style};
     if (cutoff_style == Cutoff::plain) return end;
-    const double from = switch_from.value_or(0.9 * cutoff);
+    const double from = switch_from.value_or(0.9 * reach());
     end.last = last(0);
     end.charged = last(1);
     end.charged = {end.charged.energy - end.last.energy, end.charged.force - end.last.force};
     end.from2 = from * from;
-    end.inverse = 1 / (cutoff * cutoff - from * from);
+    end.inverse = 1 / (reach() * reach() - from * from);
     return end;
   }
   /// What is taken off at the cutoff from charges of this product.
   PairTerms<double> last(double product) const {
-    PairTerms<double> last = detail::bare_terms<double, P>(*this, cutoff * cutoff, product);
+    PairTerms<double> last = detail::bare_terms<double, P>(*this, reach() * reach(), product);
     if (cutoff_style != Cutoff::shifted_force) return last;
-    last.force *= cutoff;
-    last.energy += last.force * cutoff;
+    last.force *= reach();
+    last.energy += last.force * reach();
     return last;
   }
 };

@@ -130,7 +130,7 @@ struct ReactionField {
     return part<ReactionField>(
         "reaction_field", "charges in a cavity within a dielectric",
         formula("U = C q_i q_j (1/r + k r^2 - 1/cutoff - k cutoff^2), k cutoff^3 = (dielectric - 1) / (2 dielectric + "
-                "1), r < cutoff"),
+                "1), r < cutoff; from switch_from on times the polynomial of switch_c4"),
         source("Tironi1995"), field<&ReactionField::radius>("cutoff", "length", "radius of the cavity").required("1"),
         field<&ReactionField::dielectric>("dielectric", "1", "relative permittivity outside; default: a conductor"),
         field<&ReactionField::switched_from>("switch_from", "length",

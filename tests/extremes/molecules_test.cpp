@@ -354,7 +354,11 @@ void check_small_step(const Molecule& m, const ConstraintMethodInfo& info, Flask
     const std::optional<Failure> failure = step(own, s, h);
     const Exactness exact(m, info, part);
     if (m.bonds.size() > 40) {  // too many for dense matrices
-      if (failure && info.end != SolverEnd::rounding) continue;
+      if (failure && info.end != SolverEnd::rounding) {
+        CHECK(failure->kind == Outcome::Kind::constraint_failure);
+        CHECK(names_atoms(failure->message, m));
+        continue;
+      }
       REQUIRE(!failure);
       check_kept(flask.constraints, flask.particles, s, exact);
       continue;
@@ -365,6 +369,8 @@ void check_small_step(const Molecule& m, const ConstraintMethodInfo& info, Flask
       continue;
     }
     check_kept(flask.constraints, flask.particles, s, exact);
+    // What ends at a tolerance follows no solution from a step of 0: it may find one where that has ended.
+    if (!right.found && info.end == SolverEnd::tolerance) continue;
     REQUIRE(right.found);
     const double found = off(s, right);
     INFO(fmt::format("off by {:.3g}, allowed {:.3g}", found, exact.step));
