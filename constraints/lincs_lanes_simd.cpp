@@ -10,17 +10,14 @@ namespace {
 /// A bond whose relative violation is larger is lost.
 constexpr double lost_violation = 0.01;
 
-/// D + C = G M^-1 G^T: couplings C_kl of constraints that share an atom in place of factors, 1 / D in place of those of
+/// D + C = G M^-1 G^T: couplings C of constraints that share an atom in place of factors, 1 / D in place of those of
 /// pivots.
 template <int P> HWY_INLINE void couple(const MoleculePack& pack, const Slots<P>& s) {
   const EliminationLists p = *pack.kind;
-  double *const couplings = s.factors, *const inverse = s.inverse;
+  find_couplings<P>(pack, s);
   for (int k = 0; k < p.constraints; ++k) {
-    const Vectors<P> r = load_vectors<P>(s.r + 3 * k * P);
-    for (int e = p.row[k]; e < p.row[k + 1]; ++e)
-      store(same<P>(p.coupling[e]) * dot(r, load_vectors<P>(s.r + 3 * p.column[e] * P)), couplings + e * P);
     const double whole = 1 / (p.inverse_mass_i[k] + p.inverse_mass_j[k]);
-    store(same<P>(whole) * load<P>(pack.lengths2 + (p.constraints + k) * P), inverse + k * P);
+    store(same<P>(whole) * load<P>(pack.lengths2 + (p.constraints + k) * P), s.inverse + k * P);
   }
 }
 

@@ -1,5 +1,5 @@
 #include "constraints/molecule_kernels_simd.hpp"
-#include "constraints/molecule_multipliers_simd.hpp"
+#include "constraints/newton_stage_simd.hpp"
 
 #include <limits>
 
@@ -7,13 +7,7 @@ namespace noether::NOETHER_SIMD_LEVEL {
 
 namespace {
 
-/// | |s|^2 - d^2 | / 2 d^2 where it is rounding of local vectors.
-constexpr double settled = 4e-15;
-/// A molecule that free motion violates by more, or whose violation a step makes less than so many times smaller, is
-/// left to those who can follow a solution.
-constexpr double hard_start = 0.25, slow_step = 0.5;
-/// A pivot this small beside its diagonal element: the constraint depends on others.
-constexpr double least_pivot = 1000 * 0x1p-52;
+/// Newton's steps, of which a few do.
 constexpr int most_steps = 20;
 
 /// A dense matrix of a pack, row by row, in slots behind bond vectors of the moment.
@@ -124,7 +118,7 @@ template <int P> MoleculeReport solve_pack(const MoleculePack& pack, const Molec
     ++report.sweeps;
     const Pack<P> before = worst;
     worst = look<P>(pack, s, m);
-    const Flags<P> slow = both(open, exceeds(worst, same<P>(slow_step) * before));
+    const Flags<P> slow = both(open, exceeds(worst, same<P>(slow_sweep) * before));
     open = both(open, exceeds(worst, same<P>(settled)));
     const Flags<P> lost = both(slow, exceeds(worst, same<P>(64 * settled)));  // else it is rounding itself
     hard = either(hard, lost);

@@ -6,6 +6,16 @@
 namespace noether::NOETHER_SIMD_LEVEL {
 namespace {
 
+/// Elements of G M^-1 G^T for constraints that share an atom, by the bonds at the start, in place of factors.
+template <int P> HWY_INLINE void find_couplings(const MoleculePack& pack, const Slots<P>& s) {
+  const EliminationLists p = *pack.kind;
+  for (int k = 0; k < p.constraints; ++k) {
+    const Vectors<P> r = load_vectors<P>(s.r + 3 * k * P);
+    for (int e = p.row[k]; e < p.row[k + 1]; ++e)
+      store(same<P>(p.coupling[e]) * dot(r, load_vectors<P>(s.r + 3 * p.column[e] * P)), s.factors + e * P);
+  }
+}
+
 /// u = sum of lambda r over the constraints of a center, those it is atom j of with the other sign.
 template <int P> HWY_INLINE Vectors<P> pull(const EliminationLists& p, const EliminationCenter& c, const Slots<P>& s) {
   Vectors<P> u{same<P>(0), same<P>(0), same<P>(0)};

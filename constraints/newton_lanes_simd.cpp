@@ -55,21 +55,7 @@ template <int P> class ListedBonds {
     if constexpr (!moved) {
       for (int k = 0; k < p.constraints; ++k) forward(p, k, value(k, load_vectors<P>(s_.s + 3 * k * P)));
     } else {
-      for (int at = 0; at < p.centers; ++at) {
-        const EliminationCenter& c = p.center[at];
-        const Vectors<P> u = pull<P>(p, c, s_);
-        store(u, s_.u + 3 * at * P);
-        const Pack<P> w = same<P>(c.inverse_mass);
-        for (int k = c.first; k < c.end; ++k) {
-          const Vectors<P> before = load_vectors<P>(s_.s + 3 * k * P);
-          const Pack<P> own = same<P>(p.inverse_mass_i[k]);
-          const Vectors<P> other =
-              k < c.leaves_end
-                  ? add_product(own * load<P>(s_.lambda + k * P), load_vectors<P>(s_.r + 3 * k * P), before)
-                  : add_product(own, load_vectors<P>(s_.u + 3 * p.center_of[p.i[k]] * P), before);
-          forward(p, k, value(k, take_product(w, u, other)));
-        }
-      }
+      with_multipliers<P>(pack_, s_, [&](int k, const Vectors<P>& at) HWY_ATTR { forward(p, k, value(k, at)); });
     }
     return load<P>(s_.y + (p.constraints - 1) * P);
   }

@@ -11,16 +11,6 @@ template <int P> struct Violation {
   Flags<P> turned;  ///< where a bond points away from where it did: a root that does not go on from a step of 0
 };
 
-/// What G M^-1 G^T couples, by the bonds where they are, in place of factors.
-template <int P> HWY_INLINE void couple(const MoleculePack& pack, const Slots<P>& s) {
-  const EliminationLists p = *pack.kind;
-  for (int k = 0; k < p.constraints; ++k) {
-    const Vectors<P> r = load_vectors<P>(s.r + 3 * k * P);
-    for (int e = p.row[k]; e < p.row[k + 1]; ++e)
-      store(same<P>(p.coupling[e]) * dot(r, load_vectors<P>(s.r + 3 * p.column[e] * P)), s.factors + e * P);
-  }
-}
-
 /// An element of Q g.
 template <int P> HWY_INLINE Pack<P> preconditioned(const PreconditionerLists& q, int k, const double* g) {
   Pack<P> even = same<P>(0), odd = same<P>(0);
@@ -89,7 +79,7 @@ template <int P>
 MoleculeReport solve_pack(const MoleculePack& pack, const MoleculeColumns& c, const MoleculeTask& task) {
   const Slots<P> s(pack);
   find_bonds<P>(pack, c, s);
-  couple<P>(pack, s);
+  find_couplings<P>(pack, s);
   find_differences<P>(pack, c.x, c.edge, true, s);
   MoleculeReport report;
   const Flags<P> lost = iterate<P>(pack, s, task, report, [&]() HWY_ATTR {
@@ -113,7 +103,7 @@ template <int P>
 MoleculeReport project_pack(const MoleculePack& pack, const MoleculeColumns& c, const MoleculeTask& task) {
   const Slots<P> s(pack);
   find_bonds<P>(pack, c, s);
-  couple<P>(pack, s);
+  find_couplings<P>(pack, s);
   find_differences<P>(pack, c.v, c.edge, false, s);
   const Pack<P> span = same<P>(task.h < 0 ? -task.h : task.h);
   MoleculeReport report;
