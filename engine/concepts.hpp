@@ -61,6 +61,8 @@ struct HamiltonianClaims {
   bool counts_heat = false;  ///< dissipative, but `EnergyTerms::heat` has all of it: energy less heat is conserved
   std::string_view no_action = "";  ///< why no action tells the motion; empty: the flows give theirs
   bool columns = false;             ///< it moves columns beyond position and velocity
+  bool twists = false;              ///< its kicks pass the torques of forces on to the spins of bodies
+  bool turns = false;               ///< it turns rigid bodies
   std::uint8_t coordinates = 0;     ///< of the position and velocity columns while a run goes on; 0: inertial
   bool inertial = true;             ///< flows meet x and v as users see them, so that letters of velocities may join
   bool velocity_forces = false;     ///< its kicks take forces that depend on velocities, as symmetric maps of order 2

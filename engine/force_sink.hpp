@@ -123,6 +123,8 @@ template <class Real> class ForceSink {
   bool takes(std::string_view kicks) const { return kicks.find(letter_) != std::string_view::npos; }
   /// Whether forces of all kicks are.
   bool takes_all() const { return letter_ == 0; }
+  /// The letter whose kicks are summed; 0: of all.
+  char kick_letter() const { return letter_; }
 
   /// Lets forces write their torques into a column, set to zero here [mass length^2/time^2].
   void set_torques(VectorColumn<Real>& torques) {
@@ -191,6 +193,7 @@ struct ForceClaims {
   double softening = 0;                 ///< of `kepler` [length]
   bool bonded = false;                  ///< it acts on the bonds, angles and dihedrals of the structure
   bool pair_coefficients = false;       ///< it takes the coefficients that a structure has for pairs of types
+  bool on_bodies = false;               ///< it acts on rigid bodies themselves and gives their torques, not on sites
   std::optional<bool> charges = {};     ///< it looks at charges; empty: it does not say
   std::optional<bool> exclusions = {};  ///< it leaves excluded pairs out; empty: it does not say
   double drag = 0;                      ///< v' = - drag v, the same for all particles [1/time]

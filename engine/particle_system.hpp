@@ -19,6 +19,8 @@
 
 namespace noether {
 
+struct Bodies;
+
 /// Where in the word of its integrator a system stands.
 struct Phase {
   std::uint8_t coordinates = 0;  ///< of the position and velocity columns: 0 inertial; else a Hamiltonian's own
@@ -59,6 +61,7 @@ template <class Real = double> class ParticleSystem {
   void remove(Index i) {
     NOETHER_EXPECTS(!low_, "particles can be removed only in Simulation::edit");
     NOETHER_EXPECTS(!topology_, "bonds refer to particles by index, so no particle can be removed");
+    NOETHER_EXPECTS(!bodies_, "rigid bodies are known by index, so no particle can be removed");
     ids_.erase(ids_.begin() + i);
     names_.erase(names_.begin() + i);
     m_.erase(i);
@@ -152,6 +155,10 @@ template <class Real = double> class ParticleSystem {
   const Topology* topology() const { return topology_.get(); }
   const std::shared_ptr<const Topology>& shared_topology() const { return topology_; }
   void set_topology(std::shared_ptr<const Topology> topology) { topology_ = std::move(topology); }
+  /// Which particles are rigid bodies (engine/bodies.hpp); null where all are points. Copies share it.
+  const Bodies* bodies() const { return bodies_.get(); }
+  const std::shared_ptr<const Bodies>& shared_bodies() const { return bodies_; }
+  void set_bodies(std::shared_ptr<const Bodies> bodies) { bodies_ = std::move(bodies); }
 
   const Clock<Real>& clock() const { return clock_; }
   Clock<Real>& clock() { return clock_; }
@@ -270,6 +277,7 @@ template <class Real = double> class ParticleSystem {
     other.members_ = members_;
     other.set_box(box_);
     other.set_topology(topology_);
+    other.set_bodies(bodies_);
     other.restore_images(images_);
     other.columns_ = columns_.template as<Other>();
     std::vector<Other> variables;
@@ -384,6 +392,7 @@ template <class Real = double> class ParticleSystem {
   VectorColumn<Real> x_, v_;
   ScalarColumn<Real> m_;
   std::shared_ptr<const Topology> topology_;
+  std::shared_ptr<const Bodies> bodies_;
   Box box_;
   VectorColumn<std::int32_t> images_;
   std::vector<Real> variables_;

@@ -43,6 +43,7 @@ template <class Real> void Simulation<Real>::restore(const SavedRun& saved) {
   };
   ParticleSystem<Real> particles = load_particles<Real>(saved.particles);
   particles.set_topology(raw_.shared_topology());
+  particles.set_bodies(raw_.shared_bodies());
   if (particles.ids() != raw_.ids()) throw Error("the saved run has different particles from this one");
   if (particles.variables().size() != raw_.variables().size()) {
     throw Error(fmt::format("the saved run has {} variables, but this one has {}", particles.variables().size(),

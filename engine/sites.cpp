@@ -1,0 +1,162 @@
+#include "engine/sites.hpp"
+
+#include "engine/charge.hpp"
+#include "numbers/parallel.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <utility>
+
+namespace noether {
+
+namespace {
+
+/// What a site without mass has instead: forces on it stay in the range of doubles as accelerations, and what it pulls
+/// is nothing beside any rounding.
+constexpr double mass_of_none = 0x1p-200;
+
+/// Types, parameters and bonds of the sites.
+Topology topology_of_sites(const Topology* given, const Bodies& bodies, Index n, const std::vector<Index>& first) {
+  Topology t;
+  if (given != nullptr) {
+    t.type_names = given->type_names;
+    t.pair_kinds = given->pair_kinds;
+    t.mixing = given->mixing;
+    t.explicit_pairs = given->explicit_pairs;
+    t.bond_kinds = given->bond_kinds;
+    t.angle_kinds = given->angle_kinds;
+    t.dihedral_kinds = given->dihedral_kinds;
+    t.improper_kinds = given->improper_kinds;
+  }
+  const auto renamed = [&](const auto& terms, auto& to) {
+    for (auto term : terms) {
+      for (Index& i : term.particles) {
+        if (bodies.kind(i) != nullptr) throw Error("a bond ends at a rigid body; bodies have no bonds yet");
+        i = first[static_cast<std::size_t>(i)];
+      }
+      to.push_back(term);
+    }
+  };
+  if (given != nullptr) {
+    renamed(given->bonds, t.bonds);
+    renamed(given->angles, t.angles);
+    renamed(given->dihedrals, t.dihedrals);
+    renamed(given->impropers, t.impropers);
+    const auto at = [&](Index i) { return first[static_cast<std::size_t>(i)]; };
+    for (const auto& [i, j] : given->exclusions) t.exclusions.emplace_back(at(i), at(j));
+    for (const auto& one : given->scaled_pairs) {
+      t.scaled_pairs.push_back({{at(one.pair.first), at(one.pair.second)}, one.factor});
+    }
+  }
+  for (Index i = 0; i < n; ++i) {
+    const BodyKind* kind = bodies.kind(i);
+    const Index from = first[static_cast<std::size_t>(i)], to = first[static_cast<std::size_t>(i) + 1];
+    for (Index a = from; a < to; ++a) {
+      t.molecules.push_back(i + 1);  // 0 is no molecule
+      const int type = kind != nullptr    ? kind->sites[static_cast<std::size_t>(a - from)].type
+                       : given != nullptr ? given->type(i)
+                                          : 0;
+      t.types.push_back(type);
+      for (Index b = a + 1; b < to; ++b) t.exclusions.emplace_back(a, b);
+    }
+  }
+  std::sort(t.exclusions.begin(), t.exclusions.end());
+  return t;
+}
+
+}  // namespace
+
+template <class Real> Sites<Real>::Sites(const ParticleSystem<Real>& s) : particles_(s.units()) {
+  NOETHER_EXPECTS(s.bodies() != nullptr, "sites are those of rigid bodies");
+  const Bodies& bodies = *s.bodies();
+  const ScalarColumn<Real>* charges = s.template has<Charge>() ? &s.template column<Charge>() : nullptr;
+  bool charged = charges != nullptr;
+  for (const BodyKind& kind : bodies.kinds) {
+    for (const BodySite& site : kind.sites) charged = charged || site.charge != 0;
+  }
+  if (charged) particles_.template add_column<Charge>();
+  first_.push_back(0);
+  for (Index i = 0; i < s.size(); ++i) {
+    const BodyKind* kind = bodies.kind(i);
+    const auto add = [&](const std::string& name, const Real& mass, const Vec3<double>& place, const Real& charge) {
+      const Index a = particles_.add(name, mass, s.positions()[i], Vec3<Real>::Zero());
+      places_.append(Vec3<Real>(Real(place[0]), Real(place[1]), Real(place[2])));
+      if (charged) particles_.template column<Charge>()[a] = charge;
+    };
+    if (kind == nullptr) {
+      add(s.name(i), s.masses()[i], Vec3<double>::Zero(), charges != nullptr ? (*charges)[i] : Real(0));
+    } else {
+      for (const BodySite& site : kind->sites) {
+        const std::string name = fmt::format("{} of {}", site.name.empty() ? "site" : site.name, s.name(i));
+        add(name, Real(site.mass == 0 ? mass_of_none : site.mass), site.place, Real(site.charge));
+      }
+    }
+    first_.push_back(particles_.size());
+  }
+  arms_ = VectorColumn<Real>(particles_.size());
+  particles_.set_topology(std::make_shared<const Topology>(topology_of_sites(s.topology(), bodies, s.size(), first_)));
+  particles_.set_box(s.box());
+  follow(s);
+}
+
+template <class Real> void Sites<Real>::follow(const ParticleSystem<Real>& s) {
+  const auto& orientation = s.template column<BodyOrientation>();
+  const auto& x = s.positions();
+  const auto& places = std::as_const(places_);
+  VectorColumn<Real>& to = particles_.positions();
+  const bool periodic = s.box().is_periodic();
+  VectorColumn<std::int32_t> images(periodic ? particles_.size() : 0);  // of their bodies, before they are wrapped
+  for_blocks(s.size(), [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i) {
+      for (Index a = first(i); periodic && a < first(i + 1); ++a) images.set(a, s.images()[i]);
+      if (s.bodies()->kind(i) == nullptr) {
+        to.set(first(i), x[i]);
+        continue;
+      }
+      const Mat3<Real> r = rotation_matrix<Real>(orientation[i]);
+      for (Index a = first(i); a < first(i + 1); ++a) {
+        const Vec3<Real> arm = to_space<Real>(r, places[a]);
+        arms_.set(a, arm);
+        to.set(a, x[i] + arm);
+      }
+    }
+  });
+  particles_.clock() = s.clock();
+  particles_.restore_images(std::move(images));
+  particles_.wrap();
+}
+
+template <class Real>
+void Sites<Real>::gather(const VectorColumn<Real>& a, const Mat3<Real>& virial, ForceSink<Real>& out,
+                         const ParticleSystem<Real>& s) const {
+  const auto& masses = particles_.masses();
+  VectorColumn<Real>& to = out.accelerations();
+  for_blocks(s.size(), [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i) {
+      if (s.bodies()->kind(i) == nullptr) {
+        to.add(i, a[first(i)]);
+        continue;
+      }
+      Vec3<Real> force = Vec3<Real>::Zero(), torque = force;
+      for (Index at = first(i); at < first(i + 1); ++at) {
+        const Vec3<Real> one = masses[at] * a[at];
+        force += one;
+        torque += cross<Real>(arms_[at], one);
+      }
+      to.add(i, force / s.masses()[i]);
+      out.torque(i, torque);
+    }
+  });
+  if (!out.wants_virial()) return;
+  WideTensor<Real> of_arms;
+  for (Index at = 0; at < particles_.size(); ++at) of_arms.add_outer(arms_[at], masses[at] * a[at]);
+  out.virial(virial - of_arms.value());
+}
+
+template class Sites<double>;
+template class Sites<Quad>;
+
+}  // namespace noether

@@ -1,0 +1,144 @@
+#pragma once
+/// Jacobi's elliptic functions and elliptic integrals over any number type, as free bodies that turn need them.
+///
+/// The parameter is m = k^2, given by its complement m1 = 1 - m > 0 as well where it matters: beside m = 1 that is what
+/// must be known to all digits.
+
+#include "numbers/real.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace noether {
+
+/// sn u, cn u, dn u.
+template <class Real> struct JacobiFunctions { Real sn, cn, dn; };
+
+/// The Jacobi elliptic functions at `u`, for m1 = 1 - m in [0, 1], by Landen's transformation downwards.
+/// @cost a sine, a cosine, and a root and four divisions for each of up to seven rounds (nine in Quad)
+/// @source Bulirsch1965
+template <class Real> JacobiFunctions<Real> jacobi_functions(const Real& u, const Real& m1) {
+  using std::cos, std::cosh, std::sin, std::sqrt, std::tanh, std::fabs;
+  if (m1 == Real(0)) {
+    const Real sech = Real(1) / cosh(u);
+    return {tanh(u), sech, sech};
+  }
+  static constexpr int most = 16;
+  // The means agree to half the digits: the next round would make them agree to all.
+  const Real near_enough = sqrt(std::numeric_limits<Real>::epsilon()) / Real(16);
+  std::array<Real, most> mean, root;
+  Real a(1), square = m1, dn(1), c;
+  int last = 0;
+  for (int k = 0;; ++k) {
+    last = k;
+    mean[static_cast<std::size_t>(k)] = a;
+    const Real b = sqrt(square);
+    root[static_cast<std::size_t>(k)] = b;
+    c = (a + b) / Real(2);
+    if (fabs(a - b) <= near_enough * a || k + 1 == most) break;
+    square = b * a;
+    a = c;
+  }
+  const Real angle = c * u;
+  Real sn = sin(angle), cn = cos(angle);
+  if (sn == Real(0)) return {sn, cn, dn};
+  a = cn / sn;
+  c *= a;
+  for (int k = last; k >= 0; --k) {
+    const Real& b = mean[static_cast<std::size_t>(k)];
+    a *= c;
+    c *= dn;
+    dn = (root[static_cast<std::size_t>(k)] + a) / (b + a);
+    a = c / b;
+  }
+  a = Real(1) / sqrt(c * c + Real(1));
+  sn = sn < Real(0) ? Real(-a) : a;
+  return {sn, c * sn, dn};
+}
+
+/// The complete integral K of the first kind, for m1 = 1 - m in (0, 1], by the arithmetic-geometric mean.
+template <class Real> Real complete_elliptic(const Real& m1) {
+  using std::atan2, std::fabs, std::sqrt;
+  Real a(1), b = sqrt(m1);
+  const Real near_enough = sqrt(std::numeric_limits<Real>::epsilon()) / Real(16);
+  for (int k = 0; k < 16 && fabs(a - b) > near_enough * a; ++k) {
+    const Real mean = (a + b) / Real(2);
+    b = sqrt(a * b);
+    a = mean;
+  }
+  return atan2(Real(1), Real(0)) * Real(2) / (a + b);  // pi/2 over the mean
+}
+
+namespace detail {
+
+/// Carlson's R_C(1, 1 + e) = atan(sqrt e)/sqrt e for e >= 0.
+template <class Real> Real carlson_rc(const Real& e) {
+  using std::atan2, std::sqrt;
+  if (e < Real(1e-5)) {
+    Real sum(0);
+    const int terms = std::numeric_limits<Real>::digits > 60 ? 8 : 4;
+    for (int k = terms - 1; k >= 0; --k) sum = Real(1) / Real(2 * k + 1) - e * sum;
+    return sum;
+  }
+  const Real root = sqrt(e);
+  return atan2(root, Real(1)) / root;
+}
+
+}  // namespace detail
+
+/// Carlson's R_J(x, y, 1, p) for 0 <= x, y <= 1 <= p, of which at most one of x and y is 0.
+/// @cost three roots and an arc tangent for each of some five rounds (ten in Quad)
+/// @source Carlson1995
+template <class Real> Real carlson_rj(Real x, Real y, Real p) {
+  using std::fabs, std::max, std::sqrt;
+  Real z(1);
+  const Real first = (x + y + z + Real(2) * p) / Real(5);
+  Real delta = (p - x) * (p - y) * (p - z);
+  const Real dx = first - x, dy = first - y, dz = first - z;
+  // The series of seven terms leaves (1/4)^6 of the largest difference in its last power, 3/22 of it.
+  using std::pow;
+  Real reach = max(max(fabs(dx), fabs(dy)), max(fabs(dz), fabs(first - p))) * Real(1) /
+               pow(std::numeric_limits<Real>::epsilon() / Real(4), Real(1) / Real(8));
+  Real a = first, scale(1), sum(0);
+  for (int k = 0; k < 64 && reach >= a; ++k) {
+    const Real rx = sqrt(x), ry = sqrt(y), rz = sqrt(z), rp = sqrt(p);
+    const Real lambda = rx * ry + rx * rz + ry * rz;
+    const Real d = (rp + rx) * (rp + ry) * (rp + rz);
+    const Real e = delta / (d * d);
+    sum += scale / d * detail::carlson_rc(e);
+    a = (a + lambda) / Real(4);
+    x = (x + lambda) / Real(4);
+    y = (y + lambda) / Real(4);
+    z = (z + lambda) / Real(4);
+    p = (p + lambda) / Real(4);
+    delta /= Real(64);
+    scale /= Real(4);
+    reach /= Real(4);
+  }
+  const Real X = dx * scale / a, Y = dy * scale / a, Z = dz * scale / a, P = -(X + Y + Z) / Real(2);
+  const Real E2 = X * Y + X * Z + Y * Z - Real(3) * P * P;
+  const Real E3 = X * Y * Z + Real(2) * E2 * P + Real(4) * P * P * P;
+  const Real E4 = (Real(2) * X * Y * Z + E2 * P + Real(3) * P * P * P) * P, E5 = X * Y * Z * P * P;
+  const Real series = Real(1) - Real(3) * E2 / Real(14) + E3 / Real(6) + Real(9) * E2 * E2 / Real(88) -
+                      Real(3) * E4 / Real(22) - Real(9) * E2 * E3 / Real(52) + Real(3) * E5 / Real(26) -
+                      E2 * E2 * E2 / Real(16) + Real(3) * E3 * E3 / Real(40) + Real(3) * E2 * E4 / Real(20) +
+                      Real(45) * E2 * E2 * E3 / Real(272) - Real(9) * (E3 * E4 + E2 * E5) / Real(68);
+  return scale * series / (a * sqrt(a)) + Real(6) * sum;
+}
+
+/// The integral of the third kind, int_0^u dw/(1 - n sn^2 w) for n <= 0 and |u| <= K, from the functions at u.
+/// @source Carlson1995
+template <class Real> Real third_elliptic(const Real& u, const Real& n, const JacobiFunctions<Real>& at) {
+  if (n == Real(0)) return u;
+  const Real s2 = at.sn * at.sn;
+  return u + n / Real(3) * at.sn * s2 * carlson_rj<Real>(at.cn * at.cn, at.dn * at.dn, Real(1) - n * s2);
+}
+
+/// The same over a quarter period, int_0^K, for m1 = 1 - m in (0, 1].
+template <class Real> Real complete_third_elliptic(const Real& quarter, const Real& n, const Real& m1) {
+  return n == Real(0) ? quarter : quarter + n / Real(3) * carlson_rj<Real>(Real(0), m1, Real(1) - n);
+}
+
+}  // namespace noether
