@@ -30,6 +30,12 @@ template <class Real> IntegratorClaims Classical<Real>::claims() const {
 
 template <class Real> void Classical<Real>::bind(ParticleSystem<Real>& s) {
   const MethodClaims method = method_->claims();
+  if (s.bodies() != nullptr) {
+    throw SchemeMismatch(fmt::format(
+        "method '{}' moves points, but some particles are rigid bodies that turn; use a splitting scheme, such as "
+        "'verlet' or 'srkn14a'",
+        method.name));
+  }
   field_->bind(s);
   const FieldClaims field = field_->claims();
   if (method.second_order_only && !field.second_order) {

@@ -206,4 +206,14 @@ template class Composition<AnyHamiltonian<Quad>>;
 template struct detail::IntegratorModel<Composition<AnyHamiltonian<double>>>;
 template struct detail::IntegratorModel<Composition<AnyHamiltonian<Quad>>>;
 
+namespace detail {
+
+void expect_turns(bool bodies, bool turns, const std::string& hamiltonian) {
+  if (!bodies || turns) return;
+  throw SchemeMismatch(
+      fmt::format("some particles are rigid bodies, but '{}' does not turn them; put Rotating around it", hamiltonian));
+}
+
+}  // namespace detail
+
 }  // namespace noether

@@ -42,6 +42,11 @@ FittedWord fitted_word(const Scheme& scheme, const HamiltonianClaims& claims, co
 /// where a map of order 2 stands for a flow the weights of its letter must do for more.
 Order order_over(const Scheme& scheme, const HamiltonianClaims& claims);
 
+namespace detail {
+/// @throws SchemeMismatch  for rigid bodies under a Hamiltonian that does not turn them
+void expect_turns(bool bodies, bool turns, const std::string& hamiltonian);
+}  // namespace detail
+
 /// Advances a split Hamiltonian along a scheme.
 ///
 /// One step is the product of flows  phi_{p1}(w1 h), ..., phi_{pk}(wk h), first stage first. Where the first and the
@@ -82,6 +87,7 @@ template <SplitHamiltonian H> class Composition {
 
   void bind(ParticleSystem<real>& s) {
     s.keep_low_words(options_.compensated);
+    detail::expect_turns(s.bodies() != nullptr, hamiltonian_.claims().turns, detail::name_of(hamiltonian_));
     hamiltonian_.bind(s);
     const HamiltonianClaims claims = hamiltonian_.claims();
     if (s.phase().coordinates != 0 && s.phase().coordinates != claims.coordinates) {

@@ -1,6 +1,7 @@
 #pragma once
 /// H = T(p) + U(q): free motion and kicks, along constraints if there are any.
 
+#include "engine/bodies.hpp"
 #include "engine/concepts.hpp"
 #include "engine/erasure.hpp"
 #include "engine/signature.hpp"
@@ -72,10 +73,11 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
                              .energy = forces.energy,
                              .time_dependent = forces.time_dependent,
                              .dissipative = forces.dissipative,
+                             .twists = true,
                              .periodic = true,
                              .neighbors = true,
-                             .keeps_momentum = forces.keeps_momentum,
-                             .keeps_angular_momentum = forces.keeps_angular_momentum && !periodic_};
+                             .keeps_momentum = forces.keeps_momentum && !holds_,
+                             .keeps_angular_momentum = forces.keeps_angular_momentum && !periodic_ && !holds_};
     if constexpr (constrained) {
       claims.inexact = "A";
       claims.constraints = constraints_.set().equations();
@@ -91,7 +93,9 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     bind_force(forces_, s);
     const ForceClaims claims = claims_of(forces_);
     kicks_.clear();
-    for (const char letter : letters_of(claims)) kicks_.emplace_back(letter, s.size());
+    twists_ = s.template has<BodySpin>();
+    holds_ = s.bodies() != nullptr && s.bodies()->any_held();
+    for (const char letter : letters_of(claims)) kicks_.emplace_back(letter, s.size(), twists_);
     workspace_ = Workspace();
     workspace_.put(NeighborList(claims.range, neighbor_options_));
     periodic_ = s.box().is_periodic();
@@ -118,7 +122,7 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     }
     Kick& kick = kick_of(letter);
     evaluate(kick, s, observing_.value_or(Request{}));
-    s.advance_velocities(h, kick.acceleration);
+    push(kick, s, h);
     project(s, h);
     if (!observing_) count(kick);
   }
@@ -141,7 +145,7 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
         } else {
           Kick& kick = kick_of(letter);
           drifted ? sum(kick, s, {}) : evaluate(kick, s, {});
-          s.advance_velocities(weight * dt, kick.acceleration);
+          push(kick, s, weight * dt);
           count(kick);
         }
       });
@@ -263,11 +267,12 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
   };
   /// The forces of one letter, as they were evaluated last.
   struct Kick {
-    Kick(char of, Index n) : letter(of), acceleration(n) {}
+    Kick(char of, Index n, bool twists) : letter(of), acceleration(n), torque(twists ? n : 0) {}
 
     char letter;
     bool moved = true;  ///< since the last evaluation that was counted
     VectorColumn<Real> acceleration;
+    VectorColumn<Real> torque;  ///< of particles with spins; else empty
     Real potential = Real(0);
     Mat3<Real> virial = Mat3<Real>::Zero();
     std::optional<Known> known;
@@ -303,6 +308,11 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     if (observing_) return;
     for (Kick& kick : kicks_) kick.moved = true;
   }
+  /// v += h a, and where there are bodies S += h torque.
+  void push(const Kick& kick, ParticleSystem<Real>& s, const Real& h) {
+    s.advance_velocities(h, kick.acceleration);
+    if (twists_) s.template column<BodySpin>().add_scaled(h, kick.torque);
+  }
   void project(ParticleSystem<Real>& s, const Real& h) {
     if constexpr (constrained) {
       const Spent spent("constraints");
@@ -328,7 +338,11 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
     const Request of_forces{.energy = wanted.energy, .virial = wanted.virial};
     ForceSink<Real> sink(kick.acceleration, s, of_forces, &workspace_, longest_kick_);
     if (kicks_.size() > 1) sink.set_kick_letter(kick.letter);
+    if (twists_) sink.set_torques(kick.torque);
     forces_.add_to(sink, s);
+    for (Index i = 0; holds_ && i < s.size(); ++i) {
+      if (s.bodies()->is_held(i)) kick.acceleration.set(i, Vec3<Real>::Zero());
+    }
     if (wanted.energy) kick.potential = sink.potential();
     if (wanted.virial) kick.virial = sink.virial();
     kick.failure = sink.failure();
@@ -336,7 +350,9 @@ template <class F, class Real = double, class C = Unconstrained> class KineticPo
 
   F forces_;
   typename C::template Solver<Real> constraints_;
-  std::vector<Kick> kicks_{Kick('B', 0)};  ///< one for each letter
+  std::vector<Kick> kicks_{Kick('B', 0, false)};  ///< one for each letter
+  bool twists_ = false;                           ///< whether particles have spins
+  bool holds_ = false;                            ///< whether fixed points hold some of the bodies
   bool virial_wanted_ = false;
   std::optional<Request> observing_;
   std::optional<Failure> failure_;  ///< why the last flow could not be done

@@ -1,6 +1,7 @@
 #pragma once
 /// A Hamiltonian in a bath: friction and noise as one more letter.
 
+#include "engine/bodies.hpp"
 #include "engine/description.hpp"
 #include "engine/erasure.hpp"
 #include "integrators/kinetic_potential.hpp"
@@ -46,6 +47,8 @@ struct LangevinOptions {
 /// Adds the letter `O`, the exact Ornstein-Uhlenbeck flow of friction and noise, to a split Hamiltonian.
 ///
 ///     O:  v -> c v + sqrt(k_B T/m (1 - c^2)) xi,   c = exp(-friction h),   xi normal, three for each particle
+///
+/// and in the same way Pi_k -> c Pi_k + sqrt(k_B T I_k (1 - c^2)) xi of the principal axes of rigid bodies.
 ///
 /// `word("BAOAB")` keeps the distribution of positions of a harmonic oscillator exactly at every stable step, and to
 /// second order with a small error elsewhere; a word without an O, such as `verlet`, gets half an O at both ends
@@ -118,7 +121,34 @@ template <SplitHamiltonian H> class Langevin : public Noisy<Langevin<H>, H, 'O'>
         for (Index i = begin; i < end; ++i) low->v.component(c)[i] *= keep;
       }
     });
+    if (has_bodies(s)) mix_spins(s, keep, warmth, step, stage);
     detail::project_velocities(hamiltonian_, s, h);
+  }
+
+  /// The same for the spins of bodies, along their principal axes, by noise of its own; what a fixed point holds stays.
+  void mix_spins(ParticleSystem<real>& s, const real& keep, const real& warmth, std::int64_t step,
+                 std::uint32_t stage) {
+    using std::sqrt;
+    const std::array<std::uint32_t, 2> key = {key_[0] ^ 0x7475726eU, key_[1]};
+    const auto& inertia = std::as_const(s).template column<BodyInertia>();
+    const auto& orientation = std::as_const(s).template column<BodyOrientation>();
+    auto& spin = s.template column<BodySpin>();
+    auto& v = s.velocities();
+    for_blocks(s.size(), [&](Index begin, Index end) {
+      double xi[3][block_size];
+      noise(key, s.ids().data() + begin, end - begin, step, stage, xi[0], xi[1], xi[2]);
+      for (Index i = begin; i < end; ++i) {
+        const Vec3<real> moments = inertia[i];
+        if (turning_freedoms(moments) == 0) continue;
+        const Mat3<real> r = rotation_matrix<real>(orientation[i]);
+        Vec3<real> in_body = to_body<real>(r, std::as_const(spin)[i]);
+        for (int k = 0; k < 3; ++k) {
+          in_body[k] = keep * in_body[k] + real(sqrt(warmth * moments[k])) * real(xi[k][i - begin]);
+        }
+        spin.set(i, to_space<real>(r, in_body));
+        if (s.bodies()->is_held(i)) v.set(i, Vec3<real>::Zero());
+      }
+    });
   }
 
   LangevinOptions options_;

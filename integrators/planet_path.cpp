@@ -6,9 +6,9 @@ namespace noether {
 
 namespace {
 
-constexpr std::size_t lanes = 8;
+constexpr std::size_t in_row = 8;
 
-PlanetPath::Vector of(const double (&from)[3][lanes], std::size_t lane) {
+PlanetPath::Vector of(const double (&from)[3][in_row], std::size_t lane) {
   return {from[0][lane], from[1][lane], from[2][lane]};
 }
 void add_product(PlanetPath::Vector& sum, double a, const PlanetPath::Vector& b) {
@@ -19,8 +19,8 @@ void add_product(PlanetPath::Vector& sum, double a, const PlanetPath::Vector& b)
 PlanetPath::Vector jump_of(const PlanetRows& rows, std::size_t planets, double h) {
   PlanetPath::Vector sum{};
   for (std::size_t k = 0; k < planets; ++k) {
-    const PlanetRow& row = rows.row[k / lanes];
-    add_product(sum, row.share[k % lanes], of(row.v, k % lanes));
+    const PlanetRow& row = rows.row[k / in_row];
+    add_product(sum, row.share[k % in_row], of(row.v, k % in_row));
   }
   return {h * sum[0], h * sum[1], h * sum[2]};
 }
@@ -52,7 +52,7 @@ void PlanetPath::begin_kick(const PlanetRows& rows, std::size_t planets, double 
 }
 
 void PlanetPath::end_kick(const PlanetRows& rows, std::size_t planets, double star_mu) {
-  for (std::size_t k = 0; k < planets; ++k) add(of(rows.row[k / lanes].y, k % lanes));
+  for (std::size_t k = 0; k < planets; ++k) add(of(rows.row[k / in_row].y, k % in_row));
   if (rows.jacobi) {
     add_levels(rows, planets, star_mu);
     return;
@@ -68,9 +68,9 @@ void PlanetPath::add_levels(const PlanetRows& rows, std::size_t planets, double 
   levels_.assign(planets + 1, Vector{});
   Vector outer{};
   for (std::size_t k = planets; k-- > 0;) {
-    const PlanetRow& row = rows.row[k / lanes];
-    add_product(outer, 1, of(row.force, k % lanes));
-    add_product(levels_[k], -row.one_over_M[k % lanes], outer);
+    const PlanetRow& row = rows.row[k / in_row];
+    add_product(outer, 1, of(row.force, k % in_row));
+    add_product(levels_[k], -row.one_over_M[k % in_row], outer);
   }
   // The star's part of the innermost arc, which moves no center but that of level 0.
   const PlanetRow& inner = rows.row[0];
@@ -80,8 +80,8 @@ void PlanetPath::add_levels(const PlanetRows& rows, std::size_t planets, double 
   Vector center{};
   for (std::size_t w = 0; w <= planets; ++w) {
     if (w > 0) {
-      const PlanetRow& row = rows.row[(w - 1) / lanes];
-      add_product(center, row.share[(w - 1) % lanes], of(row.x, (w - 1) % lanes));
+      const PlanetRow& row = rows.row[(w - 1) / in_row];
+      add_product(center, row.share[(w - 1) % in_row], of(row.x, (w - 1) % in_row));
     }
     add(center);
     add(levels_[w]);

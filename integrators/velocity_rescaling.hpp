@@ -1,6 +1,7 @@
 #pragma once
 /// A Hamiltonian in a bath that rescales all velocities: one more letter, with its conserved energy.
 
+#include "engine/bodies.hpp"
 #include "engine/description.hpp"
 #include "engine/erasure.hpp"
 #include "engine/moments.hpp"
@@ -58,7 +59,7 @@ struct VelocityRescalingOptions {
 ///
 ///     dK = (f k_B T/2 - K) dt/tau + 2 sqrt(k_B T K/(2 tau)) dW
 ///
-/// of f degrees of freedom, by one factor for all velocities,
+/// of f degrees of freedom, by one factor for all velocities and the spins of rigid bodies,
 ///
 ///     V:  v -> a v,   a^2 = c + (1 - c) q (R^2 + S) + 2 R sqrt(c (1 - c) q),   q = k_B T/(2 K),   c = exp(-h/tau)
 ///
@@ -95,7 +96,7 @@ template <SplitHamiltonian H> class VelocityRescaling : public Noisy<VelocityRes
     Noisy<VelocityRescaling<H>, H, 'V'>::bind(s);
     const HamiltonianClaims claims = hamiltonian_.claims();
     about_center_ = claims.keeps_momentum;
-    freedom_ = 3 * s.size() - claims.constraints - (about_center_ ? 3 : 0);
+    freedom_ = 3 * s.size() + turning_freedoms(s) - claims.constraints - (about_center_ ? 3 : 0);
     heat_ += std::exchange(completing_, real(0));  // an edited run goes on from the copy that they completed
     if (freedom_ > 0) return;
     throw Error(std::string("no degree of freedom is left to have a temperature") +
@@ -141,9 +142,10 @@ template <SplitHamiltonian H> class VelocityRescaling : public Noisy<VelocityRes
         return std::as_const(s).masses()[i] * norm2(Vec3<real>(std::as_const(s).velocities()[i] - about));
       });
     };
-    const real twice = twice_kinetic(center), eps = std::numeric_limits<real>::epsilon();
+    const real turning = has_bodies(s) ? real(2) * turning_energy_of(s) : real(0);
+    const real twice = twice_kinetic(center) + turning, eps = std::numeric_limits<real>::epsilon();
     // What rounding leaves of particles that all move alike has no direction to be scaled along.
-    if (!(twice > real(16) * eps * eps * twice_kinetic(Vec3<real>::Zero()))) return;
+    if (!(twice > real(16) * eps * eps * (twice_kinetic(Vec3<real>::Zero()) + turning))) return;
     const real kT = real(s.units().k_B) * real(options_.temperature);
     const real factor = factor_of(kT / twice, h, step, stage);
     (observing_ ? completing_ : heat_) += (factor * factor - real(1)) * twice / real(2);
@@ -157,6 +159,7 @@ template <SplitHamiltonian H> class VelocityRescaling : public Noisy<VelocityRes
         for (Index i = begin; i < end; ++i) low->v.component(c)[i] *= factor;
       }
     });
+    if (has_bodies(s)) s.template column<BodySpin>().all() *= factor;
   }
 
   Vec3<real> velocity_of_center(const ParticleSystem<real>& s) const {

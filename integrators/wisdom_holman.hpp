@@ -1,6 +1,7 @@
 #pragma once
 /// H = Kepler + interaction: planets on Kepler arcs, kicked by each other.
 
+#include "engine/bodies.hpp"
 #include "engine/concepts.hpp"
 #include "engine/signature.hpp"
 #include "engine/word.hpp"
@@ -72,10 +73,11 @@ struct WisdomHolmanOptions {
 /// Both parts of the first two are exact. J does not commute with other forces, nor with K in the last two: B is then a
 /// symmetric map of order 2. Two bodies alone are followed exactly in all but the democratic ones. Where other forces
 /// depend on velocities, B is a step of the implicit midpoint rule over fixed positions, a symmetric map of order 2
-/// that is not symplectic and has no action. Action increments: Kepler arc h E + 2 mu s times the reduced mass (s the
-/// universal variable), free motion h T, jump h J, kick - h U.
+/// that is not symplectic and has no action. Kicks pass torques of other forces on to the spins of rigid bodies, which
+/// `Rotating` turns: with it A is exact for bodies that turn too (Touma and Wisdom). Action increments: Kepler arc h E
+/// + 2 mu s times the reduced mass (s the universal variable), free motion h T, jump h J, kick - h U.
 /// @cost one Kepler arc per body and A, one sum over pairs per B; no allocation after `bind`
-/// @source WisdomHolman1991, DuncanLevisonLee1998, ReinTamayo2015, HernandezDehnen2017
+/// @source WisdomHolman1991, DuncanLevisonLee1998, ReinTamayo2015, HernandezDehnen2017, ToumaWisdom1994
 template <class Real = double, class F = Sum<>> class WisdomHolman : private detail::AboutPrimary<Real> {
  public:
   using real = Real;
@@ -167,6 +169,7 @@ template <class Real = double, class F = Sum<>> class WisdomHolman : private det
   /// Of a million tracers, which do not stay in the cache, a step by itself costs 1.5 times as much.
   static constexpr std::int64_t steps_of_tracers = 16;
   void gather_arcs();
+  void bind_spins(const ParticleSystem<Real>& s);
 
   void inertial_velocities(const VectorColumn<Real>& from, VectorColumn<Real>& to) const;
   bool forces_in_lanes(const ParticleSystem<Real>& s);
@@ -194,6 +197,11 @@ template <class Real = double, class F = Sum<>> class WisdomHolman : private det
   /// Encounters are noted where a run goes, not on the way through the word before it.
   void begin_kick(const ParticleSystem<Real>& s) {
     noting_ = !observing_ && s.phase().opened;
+    if constexpr (has_forces) {
+      if (twists_) {
+        inertial_->template column<BodyOrientation>().assign(std::as_const(s).template column<BodyOrientation>());
+      }
+    }
     backward_ = s.clock().direction() == Direction::backward;
   }
   void note_failure(const std::optional<Failure>& failure) {
@@ -227,11 +235,13 @@ template <class Real = double, class F = Sum<>> class WisdomHolman : private det
   WisdomHolmanOptions options_;
   F forces_;
   bool velocity_dependent_ = false;
+  bool twists_ = false;  ///< whether particles have spins, which kicks by other forces turn
   Real g_ = Real(0);
   std::vector<Real> circled_;  ///< by particle, the mass that its Kepler arc goes round
   std::vector<Real> reduced_;  ///< by particle, the mass that makes its velocity a momentum
   double moment_ = 0;          ///< time of the kick
   VectorColumn<Real> scratch_, positions_, acceleration_, other_, along_;
+  VectorColumn<Real> torque_;                     ///< by other forces, of particles with spins; else empty
   std::optional<ParticleSystem<Real>> inertial_;  ///< for other forces
   std::optional<Along> forces_along_;             ///< where forces have derivatives and kernels ask for them
   std::optional<Place> pulled_;                   ///< where `acceleration_` is that of B

@@ -18,7 +18,7 @@ template <class Real, class F> HamiltonianClaims WisdomHolman<Real, F>::claims()
         "wisdom_holman has only kicks of the letter B; take the letter of the force out, or use "
         "kinetic_potential");
   }
-  const bool by_positions = !forces.velocity_dependent, lazy = jacobi() && by_positions;
+  const bool by_positions = !forces.velocity_dependent, lazy = jacobi() && by_positions && !forces.on_bodies;
   const bool gradient = lazy && has_derivative<Real>(forces_);
   return {.alphabet = gradient ? "ABGL"
                       : lazy   ? "ABL"
@@ -35,6 +35,7 @@ template <class Real, class F> HamiltonianClaims WisdomHolman<Real, F>::claims()
           .time_dependent = forces.time_dependent,
           .dissipative = forces.dissipative,
           .no_action = by_positions ? "" : "a force depends on velocities, so the motion has no action",
+          .twists = true,
           .coordinates = static_cast<std::uint8_t>(options_.coordinates),
           .inertial = false,
           .velocity_forces = true,
@@ -49,6 +50,7 @@ template <class Real, class F> void WisdomHolman<Real, F>::bind(ParticleSystem<R
   const auto& c = std::as_const(s);
   if constexpr (has_forces) bind_force(forces_, s);
   workspace_ = Workspace();
+  bind_spins(c);
   g_ = Real(options_.G ? *options_.G : s.units().G);
   const auto n = static_cast<std::size_t>(s.size());
   primary_.keep(c, "wisdom_holman");
@@ -103,6 +105,17 @@ template <class Real, class F> void WisdomHolman<Real, F>::bind(ParticleSystem<R
     lanes_have_forces_ = forces_in_lanes(c);
     bind_lanes();
   }
+}
+
+/// @throws Error  for a body that a fixed point holds, and for torques beside forces that depend on velocities
+template <class Real, class F> void WisdomHolman<Real, F>::bind_spins(const ParticleSystem<Real>& s) {
+  twists_ = s.template has<BodySpin>();
+  torque_ = VectorColumn<Real>(twists_ ? s.size() : 0);
+  if (s.bodies() != nullptr && s.bodies()->any_held()) {
+    throw Error("a fixed point holds one of the bodies, which cannot be on a Kepler arc; use kinetic_potential");
+  }
+  if (!twists_ || !velocity_dependent_) return;
+  throw Error("a force depends on velocities, which kicks of rigid bodies do not support; take it out");
 }
 
 /// What the arcs need of each particle. The mass of the star that a barycentric arc goes round is such that two bodies
@@ -375,6 +388,7 @@ Real WisdomHolman<Real, F>::other_forces(const VectorColumn<Real>& x, const Cloc
   inertial_->clock() = clock;
   inertial_positions(x, x[0], inertial_->positions());
   ForceSink<Real> sink(other_, *inertial_, {.energy = energy}, &workspace_);
+  if (twists_) sink.set_torques(torque_);
   forces_.add_to(sink, *inertial_);
   note_failure(sink.failure());
   acceleration_.all() += other_.all();

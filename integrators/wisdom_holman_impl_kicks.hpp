@@ -36,6 +36,8 @@ template <class Real, class F> std::string WisdomHolman<Real, F>::no_kernel() co
   const std::string moving =
       detail::first_force(forces_, [](const auto& f) { return claims_of(f).velocity_dependent; });
   if (!moving.empty()) return "because the force '" + moving + "' depends on velocities";
+  const std::string turning = detail::first_force(forces_, [](const auto& f) { return claims_of(f).on_bodies; });
+  if (!turning.empty()) return "because the force '" + turning + "' turns rigid bodies";
   const std::string plain = detail::first_force(forces_, [](const auto& f) { return !has_derivative<Real>(f); });
   if (!plain.empty()) return "because the force '" + plain + "' is written for doubles only and has no derivatives";
   return "";
@@ -52,6 +54,7 @@ template <class Real, class F> Real WisdomHolman<Real, F>::kick(ParticleSystem<R
   const Real potential = accelerate(std::as_const(s).positions(), s.clock(), action);
   pulled_ = Place{s.version(), s.clock().step(), s.clock().fraction()};
   s.advance_velocities(h, acceleration_);
+  if (has_forces && twists_) s.template column<BodySpin>().add_scaled(h, torque_);
   return -h * potential;
 }
 

@@ -1,0 +1,50 @@
+#include "forces/on_sites.hpp"
+
+#include "neighbors/neighbor_list.hpp"
+#include "numbers/cost_book.hpp"
+
+#include <optional>
+
+namespace noether {
+
+namespace {
+
+/// What the force keeps from one evaluation to the next.
+template <class Real> struct Expanded {
+  std::optional<Sites<Real>> sites;
+  std::uint64_t members = 0;
+  VectorColumn<Real> a;
+  Workspace workspace;
+};
+
+}  // namespace
+
+template <class Real> void OnSites<Real>::add_to(ForceSink<Real>& out, const ParticleSystem<Real>& s) const {
+  auto& here = out.workspace().template get<Expanded<Real>>();
+  if (!here.sites || here.members != s.members()) {
+    here.sites.emplace(s);
+    here.members = s.members();
+    here.a = VectorColumn<Real>(here.sites->particles().size());
+    here.workspace = Workspace();
+    here.workspace.put(NeighborList(forces_.claims().range));
+  } else {
+    const Spent spent("sites");
+    here.sites->follow(s);
+  }
+  const ParticleSystem<Real>& sites = here.sites->particles();
+  const Request wanted{.energy = out.wants_energy(), .virial = out.wants_virial()};
+  ForceSink<Real> sink(here.a, sites, wanted, &here.workspace, out.kick());
+  if (!out.takes_all()) sink.set_kick_letter(out.kick_letter());
+  forces_.add_to(sink, sites);
+  if (wanted.energy) out.energy(sink.potential());
+  if (sink.failure()) out.fail(*sink.failure());
+  const Spent spent("sites");
+  here.sites->gather(here.a, sink.virial(), out, s);
+}
+
+template class OnSites<double>;
+template class OnSites<Quad>;
+template struct detail::ForceModel<OnSites<double>, double>;
+template struct detail::ForceModel<OnSites<Quad>, Quad>;
+
+}  // namespace noether

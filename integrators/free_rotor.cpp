@@ -1,0 +1,220 @@
+#include "integrators/free_rotor.hpp"
+
+#include "numbers/elliptic.hpp"
+#include "numbers/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace noether {
+
+namespace {
+
+/// The rotation by `angle` about a unit vector.
+template <class Real> Quaternion<Real> rotation(const Real& angle, const Vec3<Real>& axis) {
+  using std::cos, std::sin;
+  const Real half = angle / Real(2), s = sin(half);
+  return quaternion(cos(half), Vec3<Real>(s * axis[0], s * axis[1], s * axis[2]));
+}
+template <class Real> Quaternion<Real> rotation(const Real& angle, int axis) {
+  Vec3<Real> along = Vec3<Real>::Zero();
+  along[axis] = Real(1);
+  return rotation(angle, along);
+}
+
+/// The axes of a body taken in another order, one or two of them turned round so that they stay right-handed.
+struct Relabeled {
+  std::array<int, 3> axis;  ///< of the body, for each new one
+  std::array<int, 3> sign;
+
+  template <class Real> Vec3<Real> to(const Vec3<Real>& v) const {
+    return Vec3<Real>(Real(sign[0]) * v[axis[0]], Real(sign[1]) * v[axis[1]], Real(sign[2]) * v[axis[2]]);
+  }
+  template <class Real> Vec3<Real> back(const Vec3<Real>& v) const {
+    Vec3<Real> old;
+    for (int k = 0; k < 3; ++k) old[axis[static_cast<std::size_t>(k)]] = Real(sign[static_cast<std::size_t>(k)]) * v[k];
+    return old;
+  }
+};
+
+/// @param third  the third new axis, of which `m` shall have a component above 0
+template <class Real> Relabeled relabeled(int first, int second, int third, const Vec3<Real>& m) {
+  const bool even = (second - first + 3) % 3 == 1;
+  const int sign = m[third] < Real(0) ? -1 : 1;
+  return {{first, second, third}, {even ? sign : -sign, 1, sign}};
+}
+
+/// The smallest rotation of a unit vector with m_3 > 0 onto the third axis.
+template <class Real> Quaternion<Real> onto_third(const Vec3<Real>& m) {
+  using std::sqrt;
+  const Real twice = Real(1) + m[2], scale = Real(1) / sqrt(m[0] * m[0] + m[1] * m[1] + twice * twice);
+  return Quaternion<Real>(twice * scale, m[1] * scale, -m[0] * scale, Real(0));
+}
+
+/// A body of two equal moments `across` and one `along` its axis.
+template <class Real>
+Quaternion<Real> turn_symmetric(const Quaternion<Real>& q, const Vec3<Real>& spin, const Real& length, int axis,
+                                const Real& along_axis, const Real& across, const Real& along, const Real& h) {
+  Quaternion<Real> turned = q;
+  if (along > Real(0)) {  // of a body in a line there is nothing to turn about its axis
+    const Real rate = along_axis * ((across - along) / (across * along));
+    if (rate != Real(0)) turned = product(q, rotation(Real(h * rate), axis));
+  }
+  return product(rotation<Real>(h * length / across, spin / length), turned);
+}
+
+/// What the motion of m = Pi/L between its turning points is made of; moments in the order of `Relabeled`.
+template <class Real> struct FreeMotion {
+  Real m, m1;                   ///< parameter of the elliptic functions and its complement
+  Real lambda;                  ///< du/dt [1/time]
+  Real a1, a2, a3;              ///< amplitudes
+  Real ratio;                   ///< a2/a1, also where both are 0
+  Real n, root;                 ///< characteristic of the third kind, and the root of n (1 - n)(n - m)
+  Real precession;              ///< (I_3 - I_1) L/(I_1 I_3 lambda)
+  JacobiFunctions<Real> start;  ///< at u_0
+  Real sense;                   ///< -1 where the third axis has the smallest moment: m circles the other way
+};
+
+template <class Real> FreeMotion<Real> free_motion(const Vec3<Real>& I, const Vec3<Real>& m, const Real& length) {
+  using std::sqrt;
+  const Real d21 = I[1] - I[0], d31 = I[2] - I[0], d32 = I[2] - I[1];
+  const Real p1 = m[0] * m[0], p2 = m[1] * m[1], p3 = m[2] * m[2];
+  const Real w1 = p2 * (d21 / I[1]) + p3 * (d31 / I[2]);  // 1 - 2 T I_1/L^2
+  const Real w2 = p3 * (d32 / I[2]) - p1 * (d21 / I[0]);
+  const Real w3 = p1 * (d31 / I[0]) + p2 * (d32 / I[1]);
+  FreeMotion<Real> f;
+  f.sense = d31 < Real(0) ? Real(-1) : Real(1);
+  f.m = (d21 / d32) * (w3 / w1);
+  f.m1 = (d31 / d32) * (w2 / w1);
+  f.lambda = length * sqrt((w1 / I[0]) * (d32 / I[1]) / I[2]);
+  f.a1 = sqrt(I[0] * (w3 / d31));
+  f.a2 = sqrt(I[1] * (w3 / d32));
+  f.a3 = sqrt(I[2] * (w1 / d31));
+  f.ratio = sqrt((I[1] / I[0]) * (d31 / d32));
+  f.n = -(I[2] / I[0]) * (d21 / d32);
+  const Real above = (I[1] / I[0]) * (d31 / d32);  // 1 - n
+  f.root = sqrt(-f.n * above * (f.m - f.n));
+  f.precession = (d31 / I[0]) / I[2] * length / f.lambda;
+  if (f.a1 > Real(0)) {
+    f.start = {f.sense * m[1] / f.a2, m[0] / f.a1, m[2] / f.a3};
+  } else {
+    f.start = {Real(0), Real(1), Real(1)};
+  }
+  return f;
+}
+
+/// The functions at u + v.
+template <class Real>
+JacobiFunctions<Real> at_sum(const JacobiFunctions<Real>& u, const JacobiFunctions<Real>& v, const Real& m) {
+  const Real both = m * u.sn * v.sn, below = Real(1) - both * u.sn * v.sn;
+  return {(u.sn * v.cn * v.dn + v.sn * u.cn * u.dn) / below, (u.cn * v.cn - u.sn * v.sn * u.dn * v.dn) / below,
+          (u.dn * v.dn - both * u.cn * v.cn) / below};
+}
+
+/// The turn of a body of three different moments.
+template <class Real>
+Quaternion<Real> turn_asymmetric(const Quaternion<Real>& q, const Vec3<Real>& inertia, const Vec3<Real>& m,
+                                 const Real& length, const Relabeled& labels, const Real& h) {
+  using std::atan2, std::fabs, std::floor;
+  const Vec3<Real> I(inertia[labels.axis[0]], inertia[labels.axis[1]], inertia[labels.axis[2]]), start = labels.to(m);
+  const FreeMotion<Real> f = free_motion(I, start, length);
+  Real rest = f.lambda * h, integral(0);  // of the third kind
+  bool odd = false;
+  Real halves(0);  // of the period of m: half turns about the third axis
+  if (f.m1 > Real(0)) {
+    const Real quarter = complete_elliptic(f.m1);
+    if (fabs(rest) > quarter) {
+      halves = floor(rest / (Real(2) * quarter) + Real(0.5));
+      rest -= halves * (Real(2) * quarter);
+      odd = halves - Real(2) * floor(halves / Real(2)) != Real(0);
+      integral = Real(2) * halves * complete_third_elliptic(quarter, f.n, f.m1);
+    }
+  }
+  const JacobiFunctions<Real> step = jacobi_functions(rest, f.m1), end = at_sum(f.start, step, f.m);
+  integral += third_elliptic(rest, f.n, step);
+  const Real sines = f.start.sn * step.sn * end.sn;
+  const Real beside = Real(1) - f.n * end.sn * end.sn + f.n * f.start.sn * step.sn * end.cn * end.dn;
+  const Real circled = atan2(f.ratio * (f.start.cn * end.sn - f.start.sn * end.cn),
+                             f.start.cn * end.cn + f.ratio * f.ratio * f.start.sn * end.sn);
+  const Real half_turn = atan2(Real(0), Real(-1));
+  const Real psi = length * h / I[2] + f.precession * integral -
+                   f.sense * (atan2(f.root * sines, beside) + circled + half_turn * halves);
+  const Real flip(odd ? -1 : 1);
+  const Vec3<Real> stop(flip * f.a1 * end.cn, flip * f.sense * f.a2 * end.sn, f.a3 * end.dn);
+  const Quaternion<Real> turn = product(product(conjugate(onto_third(start)), rotation(psi, 2)), onto_third(stop));
+  return product(q, quaternion(turn[0], labels.back(vector_part(turn))));
+}
+
+}  // namespace
+
+template <class Real>
+Turned<Real> turn_exactly(const Quaternion<Real>& q, const Vec3<Real>& spin, const Vec3<Real>& inertia, const Real& h) {
+  using std::sqrt;
+  const Vec3<Real> in_body = spin_in_body(q, spin);
+  const Real action = h * turning_energy(in_body, inertia), length = sqrt(norm2(spin));
+  if (!(length != Real(0)) || turning_freedoms(inertia) == 0) return {q, action};
+  std::array<int, 3> by = {0, 1, 2};  // ascending moments
+  std::sort(by.begin(), by.end(), [&](int a, int b) { return inertia[a] < inertia[b]; });
+  const Real low = inertia[by[0]], middle = inertia[by[1]], high = inertia[by[2]];
+  Quaternion<Real> turned;
+  if (low == middle) {
+    turned = turn_symmetric(q, spin, length, by[2], in_body[by[2]], low, high, h);
+  } else if (middle == high) {
+    turned = turn_symmetric(q, spin, length, by[0], in_body[by[0]], high, low, h);
+  } else {
+    const Vec3<Real> m = in_body / length;
+    const Real about_high = m[by[2]] * m[by[2]] * ((high - middle) / high);
+    const bool largest = about_high > m[by[0]] * m[by[0]] * ((middle - low) / low);
+    const Relabeled labels = largest ? relabeled(by[0], by[1], by[2], m) : relabeled(by[2], by[1], by[0], m);
+    turned = turn_asymmetric(q, inertia, m, length, labels, h);
+  }
+  return {renormalized(turned), action};
+}
+
+template <class Real>
+Turned<Real> turn_by_axes(const Quaternion<Real>& q, const Vec3<Real>& spin, const Vec3<Real>& inertia, const Real& h,
+                          const AxisOrder& order) {
+  using std::cos, std::sin;
+  Vec3<Real> in_body = spin_in_body(q, spin);
+  Turned<Real> turned{q, Real(0)};
+  for (int stage = 0; stage < 5; ++stage) {
+    const int k = order[static_cast<std::size_t>(stage < 3 ? stage : 4 - stage)];
+    if (!(inertia[k] > Real(0))) continue;
+    const Real time = stage == 2 ? h : Real(h / Real(2)), rate = in_body[k] / inertia[k];
+    const Real half = time * rate / Real(2), c = cos(half), s = sin(half);
+    turned.action += time * (in_body[k] * rate / Real(2));
+    Vec3<Real> axis = Vec3<Real>::Zero();
+    axis[k] = s;
+    turned.orientation = product(turned.orientation, quaternion(c, axis));
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    const Real cosine = (c - s) * (c + s), sine = Real(2) * c * s, first = in_body[i];
+    in_body[i] = cosine * first + sine * in_body[j];
+    in_body[j] = cosine * in_body[j] - sine * first;
+  }
+  turned.orientation = renormalized(turned.orientation);
+  return turned;
+}
+
+AxisOrder axis_order(const std::string& text) {
+  static constexpr std::string_view names = "xyz";
+  AxisOrder order{};
+  std::string sorted = text;
+  std::sort(sorted.begin(), sorted.end());
+  if (sorted != names) {
+    throw Error("axes = \"" + text + "\" is no order of three axes; \"xyz\", \"zyx\" or another one is expected",
+                {.key = "axes"});
+  }
+  for (std::size_t k = 0; k < 3; ++k) order[k] = static_cast<int>(names.find(text[k]));
+  return order;
+}
+
+template Turned<double> turn_exactly(const Quaternion<double>&, const Vec3<double>&, const Vec3<double>&,
+                                     const double&);
+template Turned<Quad> turn_exactly(const Quaternion<Quad>&, const Vec3<Quad>&, const Vec3<Quad>&, const Quad&);
+template Turned<double> turn_by_axes(const Quaternion<double>&, const Vec3<double>&, const Vec3<double>&, const double&,
+                                     const AxisOrder&);
+template Turned<Quad> turn_by_axes(const Quaternion<Quad>&, const Vec3<Quad>&, const Vec3<Quad>&, const Quad&,
+                                   const AxisOrder&);
+
+}  // namespace noether
