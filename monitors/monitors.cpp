@@ -1,5 +1,6 @@
 #include "monitors/monitors.hpp"
 
+#include "engine/bodies.hpp"
 #include "engine/moments.hpp"
 #include "engine/sums.hpp"
 
@@ -57,6 +58,15 @@ Vec3<Quad> wide_angular_momentum(const ParticleSystem<Real>& s, const typename P
   });
 }
 
+/// With the spins of bodies.
+template <class Real> Vec3<Quad> angular_momentum_of_bodies(const ParticleSystem<Real>& s) {
+  const auto& spin = s.template column<BodySpin>();
+  return wide_sum(s.size(), [&](Index i) {
+    const Vec3<Quad> x = wide(Vec3<Real>(s.unwrapped(i))), v = wide(Vec3<Real>(s.velocities()[i]));
+    return Vec3<Quad>(wide(s.masses()[i]) * cross(x, v) + wide(Vec3<Real>(spin[i])));
+  });
+}
+
 /// x - start - t speed; the difference of the large parts is exact where x lies near that line.
 double departure(const DoubleDouble& x, const DoubleDouble& start, const DoubleDouble& t, const DoubleDouble& speed) {
   const DoubleDouble way = DoubleDouble::product(t.high, speed.high), change = DoubleDouble::sum(x.high, -start.high);
@@ -97,7 +107,10 @@ template <class Real> AtomCount atoms_of(const ParticleSystem<Real>& s, const In
   if (reduced ? !s.box().is_periodic() && s.topology() == nullptr : s.units().name != "molecular") return {};
   AtomCount count;
   for (Index i = 0; i < s.size(); ++i) count.atoms += s.masses()[i] > Real(0) ? 1 : 0;
-  if (!reduced) count.freedom = 3 * count.atoms - claims.constraints - (claims.keeps_momentum ? 3 : 0);
+  if (!reduced) {
+    count.freedom = 3 * count.atoms + turning_freedoms(s) - claims.constraints - (claims.keeps_momentum ? 3 : 0);
+  }
+  if (has_bodies(s)) count.atoms = s.bodies()->massive_sites(s.size());
   return count;
 }
 
@@ -332,17 +345,22 @@ template <class Real> void Momentum::observe(const Snapshot<Real>& now) {
 template <class Real> void AngularMomentum::at_start(const Snapshot<Real>& start) {
   if (begun()) return;
   const ParticleSystem<Real>& s = start.state();
+  const auto* spin = has_bodies(s) ? &s.template column<BodySpin>() : nullptr;
   const auto size = [&](Index i) {
-    return wide(s.masses()[i]) * sqrt(norm2(wide(s.positions()[i])) * norm2(wide(s.velocities()[i])));
+    const Quad orbit = wide(s.masses()[i]) * sqrt(norm2(wide(s.positions()[i])) * norm2(wide(s.velocities()[i])));
+    return spin != nullptr ? orbit + sqrt(norm2(wide(Vec3<Real>((*spin)[i])))) : orbit;
   };
   const auto* low = second_words(start);
-  begin(low != nullptr ? wide_angular_momentum(s, *low) : wide(angular_momentum(s)), sum_over<Quad>(s.size(), size),
-        start.claims().keeps_angular_momentum);
+  begin(spin != nullptr  ? angular_momentum_of_bodies(s)
+        : low != nullptr ? wide_angular_momentum(s, *low)
+                         : wide(angular_momentum(s)),
+        sum_over<Quad>(s.size(), size), start.claims().keeps_angular_momentum);
   time_unit_ = std::string(start.units().time);
 }
 
 template <class Real> void AngularMomentum::observe(const Snapshot<Real>& now) {
   at_start(now);
+  if (has_bodies(now.state())) return add(now.time(), angular_momentum_of_bodies(now.state()));
   if (const auto* low = second_words(now)) return add(now.time(), wide_angular_momentum(now.state(), *low));
   add(now.time(), angular_momentum(now.state()));
 }

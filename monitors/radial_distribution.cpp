@@ -12,6 +12,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <unordered_map>
 
 namespace noether {
@@ -194,7 +195,9 @@ void RadialDistribution::check_in(const Box& box, const Topology* topology) cons
 }
 
 template <class Real> void RadialDistribution::observe(const Snapshot<Real>& now) {
-  const ParticleSystem<Real>& s = now.state();
+  std::optional<Sites<Real>> sites;  // of rigid bodies: their atoms
+  if (has_bodies(now.state())) sites.emplace(now.state());
+  const ParticleSystem<Real>& s = sites ? sites->particles() : now.state();
   if (samples_ == 0) {
     reach_ = range.value_or(s.box().edges().minCoeff() / 2);
     counts_.assign(static_cast<std::size_t>(bins), 0);

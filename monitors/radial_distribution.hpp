@@ -2,6 +2,7 @@
 /// The monitor of the radial distribution function.
 
 #include "engine/monitor.hpp"
+#include "engine/sites.hpp"
 
 #include <array>
 #include <cstdint>
@@ -23,6 +24,7 @@ namespace noether {
 /// hold together.
 /// @throws Error  when attached to a run without a periodic box, with a type that is not there, a range beyond half
 ///   of the shortest edge, or where pairs of one molecule are to be left out and there are neither molecules nor bonds
+/// Of rigid bodies the pairs are those of their sites.
 /// @cost O(n m) a look, m the number of particles in range of one; O(n) memory
 /// @source Allen2017
 class RadialDistribution {
@@ -56,7 +58,10 @@ class RadialDistribution {
   /// @throws Error  for no bins, more than 100 000 of them, a range that is no length, or other than no or two types
   void check() const;
   /// @throws Error  as the class says
-  template <class Real> void check(const ParticleSystem<Real>& s) const { check_in(s.box(), s.topology()); }
+  template <class Real> void check(const ParticleSystem<Real>& s) const {
+    if (has_bodies(s)) return check_in(s.box(), Sites<Real>(s).particles().topology());
+    check_in(s.box(), s.topology());
+  }
 
   template <class Real> void observe(const Snapshot<Real>& now);
   std::vector<Series> series() const;

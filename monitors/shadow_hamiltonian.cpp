@@ -25,13 +25,13 @@ double binomial(std::int64_t n, std::int64_t k) {
 
 [[noreturn]] void refuse_saved() { throw Error("the saved window of a shadow Hamiltonian is inconsistent"); }
 
-/// (q' - q) . (p' + p) of one particle without its mass, in differences.
-template <class Real> struct Difference {
-  const VectorColumn<Real>&x_old, &v_old, &x_new, &v_new;
+/// (q' - q) . (p' + p) of one particle without its mass, or of one body's turn, in differences.
+template <class Real, int width = 3> struct Difference {
+  const RowColumn<Real, width>&x_old, &v_old, &x_new, &v_new;
 
   Real at(Index i) const {
     Real sum(0);
-    for (int c = 0; c < 3; ++c) {
+    for (int c = 0; c < width; ++c) {
       sum += (x_new.component(c)[i] - x_old.component(c)[i]) * (v_new.component(c)[i] + v_old.component(c)[i]);
     }
     return sum;
@@ -87,10 +87,17 @@ template <class Real> void ShadowHamiltonian<Real>::begin(const Snapshot<Real>& 
   time_unit_ = std::string(now.units().time);
   // Positions are rounded at every step, so that momentum times distance is uncertain in proportion.
   const ParticleSystem<Real>& s = now.state();
-  const double distance = sum_over<double>(s.size(), [&](Index i) {
+  double distance = sum_over<double>(s.size(), [&](Index i) {
     using std::sqrt;
     return static_cast<double>(s.masses()[i] * sqrt(norm2(s.positions()[i]) * norm2(s.velocities()[i])));
   });
+  if (has_bodies(s)) {  // |q| |p| = 2 |S|
+    const auto& spin = s.template column<BodySpin>();
+    distance += sum_over<double>(s.size(), [&](Index i) {
+      using std::sqrt;
+      return 2 * static_cast<double>(sqrt(norm2(Vec3<Real>(spin[i]))));
+    });
+  }
   const auto epsilon = static_cast<double>(std::numeric_limits<Real>::epsilon());
   noise_ = 8 * epsilon * (distance / std::abs(s.clock().dt()) + t + std::abs(u)) / scale_;
   wear_ = 4 * epsilon * (t + std::abs(u)) / scale_;
@@ -164,24 +171,35 @@ template <class Real> void ShadowHamiltonian<Real>::append(const Snapshot<Real>&
   }
   point.v = s.velocities();
   if (s.low_words() != nullptr) point.x_low = s.low_words()->x;
+  if (has_bodies(s)) {
+    point.turn = s.template column<BodyOrientation>();
+    point.twist = RowColumn<Real, 4>(s.size());
+    const auto& spin = s.template column<BodySpin>();
+    for (Index i = 0; i < s.size(); ++i) {
+      const Quaternion<Real> q = std::as_const(point.turn)[i];
+      point.twist.set(i, product<Real>(quaternion<Real>(Real(0), Real(2) * Vec3<Real>(spin[i])), q));
+    }
+  }
   point.action = now.action() + (now.settling_action() - settling_);
   settling_ = now.settling_action();
   point.products.clear();
   Real action(0);
   for (std::int64_t age = 1; age < static_cast<std::int64_t>(points_.size()); ++age) {
     action += aged(age - 1).action;
-    point.products.push_back(product(aged(age), point, s.masses(), action));
+    point.products.push_back(difference(aged(age), point, s.masses(), action));
   }
 }
 
 /// w(newer, older) = (q' - q) . (p' + p) - 2 S.
 template <class Real>
-Real ShadowHamiltonian<Real>::product(const Point& older, const Point& newer, const ScalarColumn<Real>& masses,
-                                      const Real& action) const {
+Real ShadowHamiltonian<Real>::difference(const Point& older, const Point& newer, const ScalarColumn<Real>& masses,
+                                         const Real& action) const {
   const Difference<Real> high{older.x, older.v, newer.x, newer.v}, low{older.x_low, older.v, newer.x_low, newer.v};
   const bool compensated = newer.x_low.size() == masses.size() && older.x_low.size() == masses.size();
   Real sum = sum_over<Real>(masses.size(), [&](Index i) { return masses[i] * high.at(i); });
   if (compensated) sum += sum_over<Real>(masses.size(), [&](Index i) { return masses[i] * low.at(i); });
+  const Difference<Real, 4> turns{older.turn, older.twist, newer.turn, newer.twist};
+  if (newer.turn.size() > 0) sum += sum_over<Real>(newer.turn.size(), [&](Index i) { return turns.at(i); });
   return sum - Real(2) * action;
 }
 
@@ -312,6 +330,7 @@ template <class Real> void ShadowHamiltonian<Real>::save(SavedState& saved, cons
     columns.insert(columns.end(), point.products.begin(), point.products.begin() + static_cast<std::ptrdiff_t>(p));
   }
   for (const Figures& f : figures_) numbers.insert(numbers.end(), {f.first, f.mean, f.squares});
+  if (const std::vector<Real> of_bodies = turns(); !of_bodies.empty()) save_value(saved, name("turns"), of_bodies);
   save_value(saved, name("shape"), shape);
   save_value(saved, name("columns"), columns);
   save_value(saved, name("numbers"), numbers);
@@ -352,7 +371,35 @@ template <class Real> void ShadowHamiltonian<Real>::load(const SavedState& saved
     figures_[k].errors.load(saved, name("errors_" + std::to_string(k)));
   }
   load_points(shape, columns);
+  if (saved.contains(name("turns"))) {
+    std::vector<Real> of_bodies;
+    load_value(saved, name("turns"), of_bodies);
+    load_turns(of_bodies);
+  }
   values_.clear();
+}
+
+/// The quaternions of bodies and their momenta at all points of the window, in a row.
+template <class Real> std::vector<Real> ShadowHamiltonian<Real>::turns() const {
+  std::vector<Real> all;
+  for (const Point& point : points_) {
+    for (const RowColumn<Real, 4>* column : {&point.turn, &point.twist}) {
+      for (int c = 0; c < 4; ++c) all.insert(all.end(), column->component(c), column->component(c) + column->size());
+    }
+  }
+  return all;
+}
+
+template <class Real> void ShadowHamiltonian<Real>::load_turns(const std::vector<Real>& turns) {
+  auto next = turns.begin();
+  for (Point& point : points_) {
+    const Index n = point.x.size();
+    if (turns.end() - next < 8 * n) refuse_saved();
+    for (RowColumn<Real, 4>* column : {&point.turn, &point.twist}) {
+      *column = RowColumn<Real, 4>(n);
+      for (int c = 0; c < 4; ++c, next += n) std::copy_n(next, n, column->component(c));
+    }
+  }
 }
 
 /// The points of a window, from their shapes (step, particles, low words each) and all their numbers in a row.

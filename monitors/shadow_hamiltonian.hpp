@@ -1,6 +1,7 @@
 #pragma once
 /// The monitor of the shadow Hamiltonian: the energy that a symplectic method itself keeps.
 
+#include "engine/bodies.hpp"
 #include "engine/monitor.hpp"
 #include "engine/statistics.hpp"
 
@@ -78,8 +79,9 @@ template <class Real = double> class ShadowHamiltonian {
   struct Point {
     std::int64_t step = 0;
     VectorColumn<Real> x, v, x_low;
-    Real action = Real(0);       ///< from the point before to this one
-    std::vector<Real> products;  ///< w(this, the point m steps before) at m - 1
+    RowColumn<Real, 4> turn, twist;  ///< of bodies: orientations q and their momenta 2 (0, S) q; else empty
+    Real action = Real(0);           ///< from the point before to this one
+    std::vector<Real> products;      ///< w(this, the point m steps before) at m - 1
   };
   /// H_[2k] of one order over the whole run, as differences to its first value.
   struct Figures {
@@ -89,10 +91,12 @@ template <class Real = double> class ShadowHamiltonian {
 
   const Point& aged(std::int64_t age) const { return points_[points_.size() - 1 - static_cast<std::size_t>(age)]; }
   void append(const Snapshot<Real>& now);
-  Real product(const Point& older, const Point& newer, const ScalarColumn<Real>& masses, const Real& action) const;
+  Real difference(const Point& older, const Point& newer, const ScalarColumn<Real>& masses, const Real& action) const;
   void lay_out_weights();
   Real value(std::size_t at, const Real& h) const;
   void take(double time);
+  std::vector<Real> turns() const;
+  void load_turns(const std::vector<Real>& turns);
   void load_points(const std::vector<std::int64_t>& shape, const std::vector<Real>& numbers);
   void begin(const Snapshot<Real>& now);
   double rounding() const;

@@ -1,5 +1,6 @@
 #include "monitors/temperature.hpp"
 
+#include "engine/bodies.hpp"
 #include "engine/moments.hpp"
 #include "engine/sums.hpp"
 
@@ -18,9 +19,10 @@ template <class Real> void Temperature::observe(const Snapshot<Real>& now) {
     const Real mass = sum_over<Real>(s.size(), [&](Index i) { return s.masses()[i]; });
     drift = rounded(weighted_sum(s, s.velocities())) / mass;
   }
-  const Real twice =
+  Real twice =
       sum_over<Real>(s.size(), [&](Index i) { return s.masses()[i] * norm2(Vec3<Real>(s.velocities()[i] - drift)); });
-  freedom_ = 3 * massive - claims.constraints - (about_center ? 3 : 0);
+  if (has_bodies(s)) twice += Real(2) * turning_energy_of(s);
+  freedom_ = 3 * massive + turning_freedoms(s) - claims.constraints - (about_center ? 3 : 0);
   now_ = freedom_ > 0 ? static_cast<double>(twice) / (static_cast<double>(freedom_) * now.units().k_B)
                       : std::numeric_limits<double>::quiet_NaN();
   slope_unit_ = std::string(now.units().temperature) + "/" + std::string(now.units().time);
