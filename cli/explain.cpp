@@ -1,4 +1,5 @@
 #include "cli/commands.hpp"
+#include "cli/explain_bodies.hpp"
 
 #include "integrators/composition.hpp"
 #include "integrators/stiffness.hpp"
@@ -393,6 +394,7 @@ void print_text(const Scene& scene, const Explanation& e, bool all) {
     fmt::print("columns: {}; {} per particle\n", fmt::join(e.columns, ", "),
                counted(static_cast<std::int64_t>(e.bytes_per_particle), "byte"));
   }
+  if (const std::string bodies = bodies_text(scene); !bodies.empty()) fmt::print("{}\n", bodies);
   if (e.neighbors) {
     fmt::print("neighbors: {:.3g} listed for each particle with a skin of {:.3g}, {:.0f} bytes per particle\n",
                e.neighbors->pairs, e.neighbors->skin,
@@ -462,6 +464,7 @@ Json json_of(const Scene& scene, const Explanation& e) {
                                                  {"skin", e.neighbors->skin},
                                                  {"bytes", static_cast<std::int64_t>(e.neighbors->bytes)}})
                                  : Json()},
+       {"rigid_bodies", bodies_json(scene)},
        {"stiffness", stiffness_json(e)},
        {"constraints", std::int64_t{e.constraints}},
        {"flows_per_step", Json::object(flows)},

@@ -1,5 +1,6 @@
 #include "scene/scene.hpp"
 
+#include "forces/on_sites.hpp"
 #include "forces/sum.hpp"
 #include "integrators/classical.hpp"
 #include "integrators/composition.hpp"
@@ -110,6 +111,20 @@ void SceneHamiltonian::check_kicks(const std::string& kicks) const {
   }
 }
 
+template <class Real> ForceField<Real> SceneHamiltonian::on_bodies(const ForceField<Real>& all) const {
+  if (!rotating) return all;
+  ForceField<Real> parted, on_sites;
+  for (const AnyForce<Real>& force : all.terms()) (force.claims().on_bodies ? parted : on_sites).add(force);
+  if (!on_sites.terms().empty()) parted.add(OnSites<Real>(std::move(on_sites)));
+  return parted;
+}
+AnyForce<double> SceneHamiltonian::on_bodies(const AnyForce<double>& force) const {
+  if (!rotating || force.claims().on_bodies) return force;
+  return AnyForce<double>(OnSites<double>(ForceField<double>().add(force)));
+}
+template ForceField<double> SceneHamiltonian::on_bodies(const ForceField<double>&) const;
+template ForceField<Quad> SceneHamiltonian::on_bodies(const ForceField<Quad>&) const;
+
 AnyHamiltonian<double> SceneHamiltonian::make(const ParticleSystem<double>& particles) const {
   ForceField<double> kicking;
   for (const SceneForce& force : forces) {
@@ -122,10 +137,12 @@ AnyHamiltonian<double> SceneHamiltonian::make(const ParticleSystem<double>& part
     }
     kicking.add(force.force);
   }
+  kicking = on_bodies(kicking);
   AnyHamiltonian<double> hamiltonian = constraints.empty()
                                            ? splitting.make(std::move(kicking))
                                            : splitting.make_constrained(std::move(kicking), constraint_set(particles));
   if (neighbors) hamiltonian.set_neighbor_options(*neighbors);
+  if (rotating) hamiltonian = Rotating<AnyHamiltonian<double>>(std::move(hamiltonian), *rotating);
   for (const SceneForce& force : forces) {
     if (force.letter) hamiltonian = with_part(std::move(hamiltonian), force.letter, force.name);
   }

@@ -1,5 +1,6 @@
 #include "scene/evaluate.hpp"
 
+#include "engine/bodies.hpp"
 #include "forces/check_gradient.hpp"
 #include "integrators/kinetic_potential.hpp"
 #include "monitors/pressure.hpp"
@@ -84,13 +85,16 @@ Evaluation evaluate(const Scene& scene, bool check) {
   Evaluation result;
   result.forces = VectorColumn<double>(s.size());
   result.kinetic = kinetic_energy(s);
+  if (has_bodies(s)) result.kinetic += turning_energy_of(s);
   result.gradient_asked = check ? particles_asked(s.size()) : 0;
   VectorColumn<double> a(s.size());
   // Constraints have a part in the virial, which is not looked at here.
   bool has_pressure = s.box().is_periodic() && scene.hamiltonian.constraints.empty();
+  std::size_t own = scene.hamiltonian.splitting.own.size();  // these pull at centres of bodies
   for (const SceneForce& term : scene.hamiltonian.terms()) {
     ForceSink<double> sink(a, s, {.energy = true, .virial = true});
-    AnyForce<double> bound = term.force;
+    AnyForce<double> bound = own > 0 ? term.force : scene.hamiltonian.on_bodies(term.force);
+    if (own > 0) --own;
     bind_force(bound, s);
     bound.add_to(sink, s);
     const ForceClaims claims = term.force.claims();
@@ -104,7 +108,7 @@ Evaluation evaluate(const Scene& scene, bool check) {
     has_pressure = has_pressure && has_virial;
     for (Index i = 0; i < s.size(); ++i) result.forces.add(i, std::as_const(s).masses()[i] * a[i]);
     if (check && !failed && claims.energy)  // else it is the gradient of nothing
-      result.gradient_error = std::max(result.gradient_error.value_or(0), gradient_error(term.force, s));
+      result.gradient_error = std::max(result.gradient_error.value_or(0), gradient_error(bound, s));
   }
   if (!scene.hamiltonian.splitting.only_forces) {
     add_hamiltonian(scene, s, result);

@@ -99,7 +99,9 @@ V read_element(const TableReader& reader, const SceneValue& value, std::string_v
 }
 
 template <class E> E read_choice(TableReader& reader, std::string_view key) {
-  const std::string text = reader.text(key);
+  const SceneValue* given = reader.find(key);  // "2" or 2
+  const bool whole = given != nullptr && given->template get<std::int64_t>() != nullptr;
+  const std::string text = whole ? to_text(*given) : reader.text(key);
   for (const auto& [value, name] : EnumNames<E>::values) {
     if (name == text) return value;
   }

@@ -1,5 +1,6 @@
 #include "scene/scene.hpp"
 
+#include "forces/on_sites.hpp"
 #include "integrators/all_schemes.hpp"
 #include "io/files.hpp"
 #include "numbers/suggest.hpp"
@@ -200,12 +201,13 @@ class SceneReader {
     effective.put("G", context_.G ? *context_.G : SceneValue::of(scene_.units->G));
     const auto forces = tables_of(reader, "force"), constraints = tables_of(reader, "constraint");
     const SceneValue *thermostat = reader.find("thermostat"), *neighbors = reader.find("neighbors");
-    for (const char* key : {"type", "G", "force", "constraint"}) reader.find(key);
+    for (const char* key : {"type", "G", "force", "constraint", "rotor", "axes"}) reader.find(key);
     made.splitting = kind->read(reader);
     reader.finish();
     for (const auto& [key, value] : *made.splitting.effective.get<SceneValue::Table>()) {
       if (key != "G") effective.put(key, value).line = reader.line(key);
     }
+    read_rotor(reader, effective);
     check_splitting(reader, constraints);
     if (kind->needs_forces && forces.empty() && constraints.empty()) {
       reader.fail("type", fmt::format("{} has no force, so nothing would move anything; add a [[hamiltonian.force]] "
@@ -220,6 +222,31 @@ class SceneReader {
     if (thermostat != nullptr) effective.put("thermostat", read_thermostat(context_, *thermostat, parts_, scene_));
     if (neighbors != nullptr) effective.put("neighbors", read_neighbors(*neighbors));
     if (!held.empty()) effective.put("constraint", SceneValue::of(std::move(held)));
+  }
+
+  /// `rotor` and `axes`: how rigid bodies turn.
+  void read_rotor(TableReader& reader, SceneValue& effective) {
+    SceneHamiltonian& made = scene_.hamiltonian;
+    if (!has_bodies(scene_.particles)) {
+      for (const char* key : {"rotor", "axes"}) {
+        if (!reader.has(key)) continue;
+        reader.fail(key, fmt::format("{} is said of rigid bodies, but there are none; take it out", key));
+      }
+      return;
+    }
+    if (!made.splitting.claims().twists) {
+      reader.fail("type", fmt::format("{} moves points, but some particles are rigid bodies; use {}",
+                                      made.splitting.name, plain_hamiltonian()));
+    }
+    RotatingOptions options;
+    read_fields(reader, options);
+    detail::check_fields(reader, options);
+    if (reader.has("axes") && options.rotor != Rotor::axes) {
+      reader.fail("axes", "axes are those of rotor = \"axes\"; give that, or take axes out");
+    }
+    put_fields(reader, options, effective);
+    if (options.rotor != Rotor::axes) effective.erase("axes");
+    made.rotating = options;
   }
 
   /// Refuses a box or constraints that the splitting does not know.
@@ -262,9 +289,11 @@ class SceneReader {
     SceneForce force = noether::read_force(reader, *kind, &scene_.particles, effective);
     check_force_beside(reader, *kind, force, scene_.hamiltonian, parts_);
     set_kick(reader, force);
+    if (scene_.hamiltonian.rotating) check_force_on_bodies(reader, *kind, force, scene_.particles);
     if (!force.letter) {
       try {
-        force.force.check(scene_.particles);
+        const bool on_sites = scene_.hamiltonian.rotating && !force.force.claims().on_bodies;
+        force.force.check(on_sites ? Sites<double>(scene_.particles).particles() : scene_.particles);
       } catch (const Error& error) {
         const SceneValue* file = root_.find("particles")->find("structure");
         const bool of_file = error.key() == "structure" && file != nullptr;

@@ -9,6 +9,7 @@
 #include "forces/fermi_pasta_ulam.hpp"
 #include "forces/gr_potential.hpp"
 #include "forces/gravity.hpp"
+#include "forces/gravity_of_bodies.hpp"
 #include "forces/henon_heiles.hpp"
 #include "forces/lennard_jones.hpp"
 #include "forces/oblateness.hpp"
@@ -22,6 +23,7 @@
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/langevin.hpp"
 #include "integrators/minimize.hpp"
+#include "integrators/rotating.hpp"
 #include "integrators/systems/forced_damped_oscillator.hpp"
 #include "integrators/systems/heat_line.hpp"
 #include "integrators/systems/lorenz.hpp"
@@ -38,8 +40,10 @@
 #include "monitors/pressure.hpp"
 #include "monitors/radial_distribution.hpp"
 #include "monitors/shadow_hamiltonian.hpp"
+#include "monitors/spin.hpp"
 #include "monitors/temperature.hpp"
 #include "monitors/time_correlation.hpp"
+#include "monitors/turning.hpp"
 #include "monitors/variables.hpp"
 #include "scene/constrained.hpp"
 #include "scene/structure_parts.hpp"
@@ -122,6 +126,7 @@ Parts standard_parts() {
   parts.add_thermostat<LangevinOptions>();
   parts.add_thermostat<VelocityRescalingOptions>();
   parts.add_force<Gravity>();
+  parts.add_force<GravityOfBodies>();
   parts.add_force<Oblateness>();
   parts.add_force<GrPotential>();
   parts.add_force<PostNewtonian>();
@@ -162,6 +167,9 @@ Parts standard_parts() {
   parts.add_monitor<Momentum>();
   parts.add_monitor<AngularMomentum>();
   parts.add_monitor<CenterOfMass>();
+  parts.add_monitor<Spin>();
+  parts.add_monitor<OrientationDefect>();
+  parts.add_monitor<TurningEnergy>();
   parts.add_monitor<Elements>();
   parts.add_monitor<ClosestApproach>();
   parts.add_monitor<Temperature>();
@@ -224,6 +232,7 @@ std::vector<PartInfo> writer_parts() { return {part_info<io::TrajectoryWriter>()
 std::vector<std::pair<std::string, PartInfo>> other_parts() {
   return {
       {"start", part_info<MinimizeOptions>()},
+      {"hamiltonian", part_info<RotatingOptions>()},
       {"hamiltonian",
        {"damped", "the name of any Hamiltonian with friction: a force linear_drag in the scene adds it as the letter D",
         "D: v -> exp(-rate h) v", "", ""}}};

@@ -1,5 +1,6 @@
 #include "scene/read_builder.hpp"
 
+#include "engine/make_rigid.hpp"
 #include "scene/builders.hpp"
 #include "scene/foreign_names.hpp"
 #include "scene/water_box.hpp"
@@ -36,9 +37,19 @@ ParticleSystem<double> build_particles(TableReader& reader, SceneValue& effectiv
   for (const BuilderKind& kind : builders()) {
     if (kind.info.name != type) continue;
     TableReader fields(reader.context(), reader.table(), fmt::format("builder '{}'", type), reader.path());
-    fields.find("type");
+    for (const char* key : {"type", "rigid_bodies"}) fields.find(key);
     effective.put("type", SceneValue::of(type, reader.line("type")));
-    return kind.build(fields, effective);
+    ParticleSystem<double> s = kind.build(fields, effective);
+    if (!reader.has("rigid_bodies")) return s;
+    effective.put("rigid_bodies", *reader.find("rigid_bodies"));
+    if (!reader.flag("rigid_bodies", false)) return s;
+    try {
+      s = make_rigid(s);
+    } catch (const Error& error) {
+      reader.fail("rigid_bodies", error.message());
+    }
+    if (s.bodies() != nullptr) return s;
+    reader.fail("rigid_bodies", fmt::format("{} makes no molecules; take rigid_bodies out", type));
   }
   reader.fail("type", fmt::format("unknown builder '{}'{}", type, proposal(type, names_of(builders()))));
 }

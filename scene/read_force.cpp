@@ -1,5 +1,6 @@
 #include "scene/read_force.hpp"
 
+#include "engine/bodies.hpp"
 #include "scene/read_tied.hpp"
 
 #include <fmt/format.h>
@@ -78,6 +79,13 @@ void check_force_beside(const TableReader& reader, const Parts::ForceKind& kind,
     reader.fail("type", fmt::format("{} already includes {}; take this force out, or use {}", made.splitting.name,
                                     kind.info.name, parts.hamiltonians().front().info.name));
   }
+  const bool attracts = std::any_of(made.splitting.own.begin(), made.splitting.own.end(),
+                                    [](const SceneForce& other) { return other.force.claims().kepler; });
+  if (attracts && force.force.claims().on_bodies && force.force.claims().kepler) {
+    reader.fail("type", fmt::format("{} already attracts the masses, so {} would attract them twice; give point_masses "
+                                    "= false",
+                                    made.splitting.name, kind.info.name));
+  }
   // Forces of several names that must not stand twice for one reason are one effect.
   const auto has_its_effect = [&](const SceneForce& other) {
     return std::any_of(parts.forces().begin(), parts.forces().end(), [&](const Parts::ForceKind& known) {
@@ -102,6 +110,28 @@ void check_force_beside(const TableReader& reader, const Parts::ForceKind& kind,
         fmt::format(
             "{} appears twice in the scene, so {} would count twice; take one of them out", kind.info.name,
             twice.empty() ? "every pair" : fmt::format("pairs of '{}' and '{}'", *twice.begin(), *twice.rbegin())));
+  }
+}
+
+void check_force_on_bodies(const TableReader& reader, const Parts::ForceKind& kind, const SceneForce& force,
+                           const ParticleSystem<double>& s) {
+  const ForceClaims claims = force.force.claims();
+  if (claims.on_bodies) return;
+  if (force.letter) {
+    reader.fail("type", fmt::format("{} slows the velocities of points alone, but some particles are rigid bodies; "
+                                    "take it out",
+                                    kind.info.name));
+  }
+  if (kind.particles > 0) {
+    reader.fail("type", fmt::format("{} ties particles, and cannot tie the sites of rigid bodies; take it out",
+                                    kind.info.name));
+  }
+  const auto& kinds = s.bodies()->kinds;
+  const bool any_pair =
+      std::any_of(kinds.begin(), kinds.end(), [](const BodyKind& body) { return body.sites.size() > 1; });
+  if (any_pair && claims.kepler) {
+    reader.fail("type", fmt::format("{} would act between the sites of a rigid body too; use gravity_of_bodies",
+                                    kind.info.name));
   }
 }
 

@@ -22,4 +22,9 @@ void set_kick(TableReader& reader, SceneForce& force);
 void check_force_beside(const TableReader& reader, const Parts::ForceKind& kind, const SceneForce& force,
                         const SceneHamiltonian& made, const Parts& parts);
 
+/// Refuses a force that cannot act on the sites of rigid bodies, or on bodies themselves.
+/// @throws SceneError
+void check_force_on_bodies(const TableReader& reader, const Parts::ForceKind& kind, const SceneForce& force,
+                           const ParticleSystem<double>& s);
+
 }  // namespace noether

@@ -1,12 +1,11 @@
 #include "scene/read_particles.hpp"
 
 #include "engine/charge.hpp"
-#include "engine/given_orbit.hpp"
+#include "engine/make_rigid.hpp"
 #include "io/bodies.hpp"
 #include "io/frame_particles.hpp"
-#include "numbers/quantity.hpp"
 #include "numbers/suggest.hpp"
-#include "numbers/text.hpp"
+#include "scene/body_tables.hpp"
 #include "scene/particle_keys.hpp"
 #include "scene/read_builder.hpp"
 #include "scene/read_structure.hpp"
@@ -14,39 +13,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <memory>
-#include <unordered_map>
 
 namespace noether {
 
 namespace {
-
-double gravitation(const TableReader& reader) {
-  const SceneContext& context = reader.context();
-  return context.G ? reader.number(*context.G, "G", "length^3/mass/time^2") : context.units->G;
-}
-
-void check_mass(TableReader& reader, const std::string& name, double mass) {
-  if (mass >= 0) return;
-  reader.fail("mass", fmt::format("the mass of '{}' is {}; 0 (a tracer) or more is expected", name,
-                                  to_text(*reader.find("mass"))));
-}
-
-Vec3<double> column(const std::array<double, 3>& v) { return Vec3<double>(v[0], v[1], v[2]); }
-
-/// A Julian day and, where it says one, its scale of time: "JD 2451545 TDB"; empty for what is none.
-std::optional<io::BodyEpoch> julian_day_of(const SceneValue& value) {
-  const std::string* text = value.get<std::string>();
-  if (text == nullptr || !text->starts_with("JD ")) return {};
-  io::BodyEpoch epoch;
-  const char *first = text->data() + 3, *last = text->data() + text->size();
-  const auto [end, problem] = std::from_chars(first, last, epoch.julian_day);
-  if (problem != std::errc() || !std::isfinite(epoch.julian_day) || (end != last && *end != ' ')) return {};
-  if (end != last) epoch.scale.assign(end + 1, last);
-  return epoch;
-}
 
 /// `epoch = "JD 2451545 TDB"`, or without the scale. @throws SceneError
 std::optional<io::BodyEpoch> read_epoch(TableReader& reader) {
@@ -57,306 +27,6 @@ std::optional<io::BodyEpoch> read_epoch(TableReader& reader) {
                                    "2451545 TDB\"",
                                    to_text(*value)));
 }
-
-std::string text_of(const io::BodyEpoch& epoch) {
-  return fmt::format("JD {}{}{}", format_number(epoch.julian_day), epoch.scale.empty() ? "" : " ", epoch.scale);
-}
-
-/// Whether a text is a number of days, however it spells them: "3 day", "3d", "3 days ".
-bool is_in_days(std::string_view text, const UnitSystem& units) {
-  if (units.is_reduced()) return false;
-  const std::size_t begin = text.find_first_not_of(" \t+");
-  if (begin == std::string_view::npos) return false;
-  double number = 0;
-  const char* const last = text.data() + text.size();
-  const auto [end, problem] = std::from_chars(text.data() + begin, last, number);
-  if (problem != std::errc() || end == last) return false;
-  const double one = unit_value("1 " + std::string(end, last), units), day = unit_value("day", units);
-  return std::abs(one - day) <= 1e-12 * day;
-}
-
-/// T of a body: a time from the start, or a Julian day beside the epoch of the start [time]. @throws SceneError
-std::optional<double> time_of_pericenter(TableReader& body, const std::optional<io::BodyEpoch>& epoch) {
-  const SceneValue* value = body.find("T");
-  const auto day = value != nullptr ? julian_day_of(*value) : std::nullopt;
-  if (!day) {
-    const auto T = body.quantity("T", "time");
-    const std::string* text = value != nullptr ? value->get<std::string>() : nullptr;
-    const bool in_days = text != nullptr && is_in_days(*text, *body.context().units);
-    if (in_days && io::looks_like_julian_day(*T / unit_value("day", *body.context().units))) {
-      body.fail("T", fmt::format("T = {0} is counted from the start, but looks like a Julian day; give T = \"JD ...\" "
-                                 "and the epoch in [particles], or give the time in yr if it is a time",
-                                 to_text(*value)));
-    }
-    return T;
-  }
-  const UnitSystem& units = *body.context().units;
-  if (units.is_reduced())
-    body.fail("T", fmt::format("T = {} is a Julian day; the reduced system has none", to_text(*value)));
-  if (!epoch) {
-    body.fail("T",
-              fmt::format("T = {} is a Julian day, but the epoch of the start is not given; give epoch = \"JD ...\" in "
-                          "[particles]",
-                          to_text(*value)));
-  }
-  if (!day->scale.empty() && !epoch->scale.empty() && day->scale != epoch->scale) {
-    body.fail("T", fmt::format("T = {} is not in the time scale of the epoch, {}", to_text(*value), epoch->scale));
-  }
-  const double days = day->julian_day - epoch->julian_day;
-  if (io::is_modified_beside(days)) {
-    body.fail("T",
-              fmt::format("T = {} is {:.9g} days from the epoch, {}: one of them looks like a modified Julian day; "
-                          "add 2400000.5 to it",
-                          to_text(*value), std::abs(days), text_of(*epoch)));
-  }
-  return days * unit_value("day", units);
-}
-
-/// Types and charges of the bodies of `[[particles.body]]`.
-class TypedBodies {
- public:
-  /// @param before  bodies that are there already, without types and charges
-  TypedBodies(TableReader& reader, SceneValue& effective, Index before)
-      : types_(read_types(reader, effective)),
-        pairs_(read_pairs(reader, effective)),
-        charges_(static_cast<std::size_t>(before)) {
-    const auto mixing = read_mixing(reader, effective);
-    if (types_.empty() && (mixing || !pairs_.empty())) {
-      const char* key = mixing ? "mixing" : "pair";
-      reader.fail(key, fmt::format("{} needs types, but there are none; give [[particles.type]] tables", key));
-    }
-    topology_.mixing = mixing.value_or(Mixing::lorentz_berthelot);
-    for (const TypeParameters& type : types_) topology_.type_names.push_back(type.type);
-  }
-
-  /// Takes type and charge of one body; returns the mass of its type.
-  std::optional<double> add(TableReader& body) {
-    std::optional<double> charge = body.quantity("charge", "charge");
-    std::optional<double> mass;
-    if (!types_.empty()) {
-      const TypeParameters& type = types_[static_cast<std::size_t>(type_of(body))];
-      if (!charge) charge = type.charge;
-      mass = type.mass;
-    } else if (body.has("type")) {
-      body.fail("type",
-                fmt::format("{} has a type, but there are no types; give [[particles.type]] tables", body.what()));
-    }
-    charges_.push_back(charge);
-    return mass;
-  }
-
-  void give_to(ParticleSystem<double>& s, TableReader& reader) {
-    if (std::any_of(charges_.begin(), charges_.end(), [](const auto& charge) { return charge.has_value(); })) {
-      auto& column = s.add_column<Charge>();
-      for (std::size_t i = 0; i < charges_.size(); ++i) column[static_cast<Index>(i)] = charges_[i].value_or(0);
-    }
-    if (types_.empty()) return;
-    std::vector<TypeParameters> rest = types_;
-    for (TypeParameters& type : rest) type.charge.reset();
-    try {
-      // Checks masses as well; those that bodies give themselves are put back.
-      const ScalarColumn<double> masses = s.masses();
-      set_type_parameters(s, topology_, rest, pairs_);
-      s.masses() = masses;
-    } catch (const Error& error) {
-      refuse_particle_key(reader, error);
-    }
-    s.set_topology(std::make_shared<const Topology>(std::move(topology_)));
-  }
-
- private:
-  int type_of(TableReader& body) {
-    const SceneValue* value = body.find("type");
-    if (value == nullptr && types_.size() > 1) {
-      body.fail(nullptr, "type",
-                fmt::format("{} has no type, but there are {} types; give one", body.what(), types_.size()));
-    }
-    const std::string name = value == nullptr ? types_[0].type : body.text("type");
-    try {
-      const int type = type_of_name(topology_, name);
-      topology_.types.push_back(type);
-      return type;
-    } catch (const Error& error) {
-      body.fail("type", error.message());
-    }
-  }
-
-  std::vector<TypeParameters> types_;
-  std::vector<PairParameters> pairs_;
-  std::vector<std::optional<double>> charges_;
-  Topology topology_;
-};
-
-/// The bodies of `[[particles.body]]`, behind those of a file where there is one.
-class BodyTables {
- public:
-  BodyTables(TableReader& reader, SceneValue& effective, ParticleSystem<double> s, io::ElementsAbout elements,
-             std::optional<io::BodyEpoch> epoch)
-      : reader_(reader),
-        s_(std::move(s)),
-        elements_(elements),
-        epoch_(std::move(epoch)),
-        typed_(reader, effective, s_.size()) {
-    for (const ColumnInfo& column : reader.context().columns) s_.add_column(column);
-    for (Index i = 0; i < s_.size(); ++i) note(i);
-  }
-
-  /// Takes one in; returns its name.
-  std::string add(const SceneValue& table, std::size_t number) {
-    const SceneValue* given = table.find("name");
-    const std::string* text = given != nullptr ? given->get<std::string>() : nullptr;
-    const std::string called = text != nullptr ? *text : fmt::format("body_{}", s_.size() + 1);
-    TableReader body(reader_.context(), table, fmt::format("body '{}'", called),
-                     fmt::format("particles.body.{}", number));
-    add_body(body);
-    return called;
-  }
-
-  ParticleSystem<double> take() {
-    typed_.give_to(s_, reader_);
-    return std::move(s_);
-  }
-
- private:
-  using State = std::pair<Vec3<double>, Vec3<double>>;
-
-  void note(Index i) {
-    index_.emplace(s_.name(i), i);
-    before_.add(s_.masses()[i], s_.positions()[i], s_.velocities()[i]);
-  }
-
-  void add_body(TableReader& body) {
-    const std::vector<ColumnInfo>& columns = body.context().columns;
-    refuse_other_names(body, columns);
-    body.expect_only({"name", "mass", "about", "x", "v", "a", "P", "q", "e", "inc", "Omega", "omega", "pomega", "M",
-                      "f", "l", "T", "type", "charge"},
-                     columns);
-    const std::string name = body.text("name", fmt::format("body_{}", s_.size() + 1));
-    if (const std::string wrong = wrong_name(name); !wrong.empty()) body.fail("name", wrong);
-    const std::optional<double> of_type = typed_.add(body);
-    const auto given = body.quantity("mass", "mass"), mass = given ? given : of_type;
-    if (!mass) refuse_without_mass(body);
-    if (given) check_mass(body, name, *mass);
-    if (index_.count(name) != 0) {
-      body.fail("name", fmt::format("two bodies are named '{}'; names must differ", name));
-    }
-    const State state = state_of(body, *mass);
-    s_.add(name, *mass, state.first, state.second);
-    note(s_.size() - 1);
-    for (const ColumnInfo& declared : columns) {
-      if (const auto row = body.row(declared)) s_.set_row(declared.name, s_.size() - 1, *row);
-    }
-  }
-
-  /// Refuses keys by which others call elements, with what they mean here: "om" is nearest to M, and means Omega.
-  static void refuse_other_names(const TableReader& body, const std::vector<ColumnInfo>& columns) {
-    for (const auto& entry : *body.table().get<SceneValue::Table>()) {
-      const std::string& key = entry.first;
-      const OtherName other = other_name_of(key);
-      const bool declared =
-          std::any_of(columns.begin(), columns.end(), [&](const auto& one) { return one.name == key; });
-      if (other.told.empty() || declared) continue;
-      body.fail(key, fmt::format("unknown key '{}' in {}{}", key, body.what(), other.told));
-    }
-  }
-
-  State state_of(TableReader& body, double mass) const {
-    const auto x = body.vector("x", "length"), v = body.vector("v", "velocity");
-    const auto element =
-        std::find_if(orbit_keys.begin(), orbit_keys.end(), [&](const OrbitKey& key) { return body.has(key.name); });
-    const std::vector<Index> about = bodies_about(body);
-    if (element != orbit_keys.end() && (x || v)) {
-      body.fail(x ? "x" : "v",
-                fmt::format("{} has both elements and {}; give one or the other", body.what(), x ? "x" : "v"));
-    }
-    if (element != orbit_keys.end()) return by_elements(body, mass, about, element->name);
-    if (!x != !v || (!x && s_.size() > 0)) {
-      body.fail(
-          nullptr, x ? "v" : "x",
-          fmt::format("{} has no {}; give x and v, or elements about the first body", body.what(), x ? "v" : "x"));
-    }
-    State state(column(x.value_or(std::array<double, 3>{})), column(v.value_or(std::array<double, 3>{})));
-    return about.empty() ? state : moved(state, center_at(body, about));
-  }
-
-  static State moved(const State& state, const OrbitCenter& center) {
-    return {state.first + center.x(), state.second + center.v()};
-  }
-
-  /// Position and velocity from elements: about those that `about` names, else the first body or, of Jacobi's
-  /// elements, the barycenter of all before it.
-  State by_elements(TableReader& body, double mass, const std::vector<Index>& about, std::string_view first_key) const {
-    GivenOrbit orbit;
-    for (const OrbitKey& key : orbit_keys) {
-      orbit.*key.value = key.name == "T" ? time_of_pericenter(body, epoch_) : body.quantity(key.name, key.dimension);
-    }
-    if (s_.size() == 0) {
-      body.fail(
-          first_key,
-          "the first body has no other body to orbit; give its x and v, or neither to put it at rest at the origin");
-    }
-    if (!orbit.a && !orbit.P && !orbit.q) {
-      body.fail(nullptr, "a",
-                fmt::format("the elements of {} do not give a size; give the semi-major axis a, the period P or the "
-                            "pericenter distance q",
-                            body.what()));
-    }
-    const bool jacobi = about.empty() && elements_ == io::ElementsAbout::all_before_it;
-    const OrbitCenter center = jacobi ? before_ : center_at(body, about.empty() ? std::vector<Index>{0} : about);
-    if (!about.empty() && center.mass() + mass == 0) {
-      body.fail("about",
-                fmt::format("about = {} has no mass; a body with a mass is expected", to_text(*body.find("about"))));
-    }
-    try {
-      return moved(state_of_orbit(orbit, gravitation(body) * (center.mass() + mass)), center);
-    } catch (const Error& error) {
-      body.refuse(error);
-    }
-  }
-
-  /// The bodies that `about` names: one by a text, several by a list.
-  std::vector<Index> bodies_about(TableReader& body) const {
-    const SceneValue* value = body.find("about");
-    if (value == nullptr) return {};
-    const auto named = [&](const SceneValue& one) {
-      const std::string* name = one.get<std::string>();
-      if (name == nullptr) body.wrong_kind(*value, "about", "the name of a body, or a list of names,");
-      const auto found = index_.find(*name);
-      if (found == index_.end()) {
-        body.fail("about", fmt::format("about = {}: there is no body '{}' above {}{}", to_text(*value), *name,
-                                       body.what(), did_you_mean(*name, s_.names())));
-      }
-      return found->second;
-    };
-    const auto* list = value->get<SceneValue::Array>();
-    if (list == nullptr) return {named(*value)};
-    std::vector<Index> found;
-    for (const SceneValue& one : *list) found.push_back(named(one));
-    std::vector<Index> sorted = found;
-    std::sort(sorted.begin(), sorted.end());
-    if (found.empty() || std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
-      body.fail("about",
-                fmt::format("about = {} is not a valid barycenter; different bodies are expected", to_text(*value)));
-    }
-    return found;
-  }
-
-  OrbitCenter center_at(TableReader& body, const std::vector<Index>& about) const {
-    try {
-      return center_of(s_, about);
-    } catch (const Error& error) {
-      body.fail("about", fmt::format("about = {}: {}", to_text(*body.find("about")), error.message()));
-    }
-  }
-
-  TableReader& reader_;
-  ParticleSystem<double> s_;
-  io::ElementsAbout elements_;
-  std::optional<io::BodyEpoch> epoch_;
-  TypedBodies typed_;
-  std::unordered_map<std::string, Index> index_;
-  OrbitCenter before_;  ///< of all bodies so far
-};
 
 /// `elements = "jacobi"`: what elements are about. @throws SceneError
 io::ElementsAbout read_elements_about(TableReader& reader, SceneValue& effective) {
@@ -450,34 +120,27 @@ ParticleSystem<double> from_frame(TableReader& reader, const std::filesystem::pa
 ParticleSystem<double> from_bodies(TableReader& reader, const std::filesystem::path& folder, SceneValue& effective,
                                    std::vector<std::string>& warnings) {
   const bool file = reader.has("bodies"), frame = are_of_a_frame(reader, folder);
-  if (frame && !reader.has("body")) {  // so nobody has a passage at a date
+  if (frame && !reader.has("body") && !reader.has("rigid_body")) {  // so nobody has a passage at a date
     reader.expect_only({"bodies", "bodies_sha256", "elements", "frame", "box", "exclusions"});
   } else if (frame || file) {
-    reader.expect_only({"bodies", "bodies_sha256", "epoch", "elements", "body", "frame", "box", "exclusions"});
+    reader.expect_only(
+        {"bodies", "bodies_sha256", "epoch", "elements", "body", "rigid_body", "frame", "box", "exclusions"});
   } else {
-    reader.expect_only({"body", "epoch", "elements", "frame", "box", "type", "pair", "mixing", "exclusions"});
+    reader.expect_only(
+        {"body", "rigid_body", "epoch", "elements", "frame", "box", "type", "pair", "mixing", "exclusions"});
   }
-  const auto tables = tables_of(reader, "body");
+  const auto points = tables_of(reader, "body"), rigid = tables_of(reader, "rigid_body");
   const io::ElementsAbout elements = read_elements_about(reader, effective);
   ParticleSystem<double> s(*reader.context().units);
   std::optional<io::BodyEpoch> epoch = read_epoch(reader);
   if (frame) {
     s = from_frame(reader, folder, effective, warnings);
   } else if (file) {
-    s = from_file(reader, folder, elements, tables.empty(), epoch, effective, warnings);
+    s = from_file(reader, folder, elements, points.empty() && rigid.empty(), epoch, effective, warnings);
   }
   if (epoch) effective.put("epoch", SceneValue::of(text_of(*epoch), reader.line("epoch")));
-  if (tables.empty()) return s;
-  BodyTables bodies(reader, effective, std::move(s), elements, epoch);
-  SceneValue::Array list;
-  for (const SceneValue* table : tables) {
-    const std::string name = bodies.add(*table, list.size());
-    SceneValue entry = *table;
-    if (entry.find("name") == nullptr) entry.put("name", SceneValue::of(name));
-    list.push_back(std::move(entry));
-  }
-  effective.put("body", SceneValue::of(std::move(list)));
-  return bodies.take();
+  if (points.empty() && rigid.empty()) return s;
+  return add_body_tables(reader, effective, std::move(s), {elements, epoch, folder}, warnings);
 }
 
 /// For each particle its place in the order of x, y, z: equal positions become neighbors.
@@ -499,13 +162,16 @@ bool is_built(TableReader& reader) {
 
 /// Particles come from one place; only bodies of a file and of tables may stand together. @throws SceneError
 void check_sources(TableReader& reader) {
-  const auto bodies = tables_of(reader, "body");
+  const auto bodies = tables_of(reader, "body"), rigid = tables_of(reader, "rigid_body");
   std::vector<std::pair<const char*, const char*>> found;
   if (reader.has("bodies")) found.emplace_back("bodies", "from a file");
   if (reader.has("structure")) found.emplace_back("structure", "from a structure");
   if (is_built(reader)) found.emplace_back("type", "from a builder");
-  if (!bodies.empty()) found.emplace_back("body", "from [[particles.body]]");
-  const bool both = found.size() == 2 && reader.has("bodies") && !bodies.empty();
+  if (!bodies.empty() || !rigid.empty()) {
+    found.emplace_back(bodies.empty() ? "rigid_body" : "body",
+                       bodies.empty() ? "from [[particles.rigid_body]]" : "from [[particles.body]]");
+  }
+  const bool both = found.size() == 2 && reader.has("bodies");
   if (found.size() > 1 && !both) {
     reader.fail(found[0].first,
                 fmt::format("bodies come {} and {}; give one or the other", found[0].second, found[1].second));
@@ -513,7 +179,7 @@ void check_sources(TableReader& reader) {
   if (found.empty()) {
     reader.fail(nullptr, "bodies",
                 "there are no particles; give bodies = \"FILE.csv\", structure = \"FILE.data\", type = \"lattice\" or "
-                "another builder, or [[particles.body]] tables");
+                "another builder, or [[particles.body]] or [[particles.rigid_body]] tables");
   }
 }
 
@@ -547,6 +213,24 @@ void read_frame(TableReader& reader, ParticleSystem<double>& s, bool of_a_frame,
   effective.put("frame", SceneValue::of(frame, reader.line("frame")));
 }
 
+/// `molecules = "rigid"`: those of a structure or a builder become rigid bodies. @throws SceneError
+void read_molecules(TableReader& reader, ParticleSystem<double>& s, SceneValue& effective) {
+  if (!reader.has("molecules")) return;
+  const std::string text = reader.text("molecules");
+  if (text != "rigid") {
+    reader.fail("molecules", fmt::format("unknown molecules '{}'{}", text, did_you_mean(text, {"rigid"})));
+  }
+  try {
+    s = make_rigid(s);
+  } catch (const Error& error) {
+    reader.fail("molecules", error.message());
+  }
+  if (s.bodies() == nullptr) {
+    reader.fail("molecules", "there are no molecules, for no atoms are bonded; take molecules out");
+  }
+  effective.put("molecules", SceneValue::of(text, reader.line("molecules")));
+}
+
 }  // namespace
 
 std::string epoch_of(const SceneValue& effective) {
@@ -570,10 +254,11 @@ ParticleSystem<double> read_particles(const SceneContext& context, const SceneVa
                                       std::vector<std::string>& warnings) {
   TableReader reader(context, table, "[particles]", "particles");
   if (!is_built(reader)) {
-    reader.expect_only({"bodies",    "bodies_sha256",    "epoch",      "elements",     "body",
-                        "structure", "structure_sha256", "type",       "pair",         "mixing",
-                        "box",       "special",          "exclusions", "file_units",   "atom_style",
-                        "frame",     "temperature",      "seed",       "coefficients", "coefficients_sha256"});
+    reader.expect_only(
+        {"bodies",           "bodies_sha256", "epoch", "elements",    "body", "rigid_body",   "structure",
+         "structure_sha256", "type",          "pair",  "mixing",      "box",  "special",      "exclusions",
+         "file_units",       "atom_style",    "frame", "temperature", "seed", "coefficients", "coefficients_sha256",
+         "molecules"});
   }
   check_sources(reader);
   if (is_built(reader)) {
@@ -584,6 +269,7 @@ ParticleSystem<double> read_particles(const SceneContext& context, const SceneVa
   TableReader own(context, table, "[particles]", "particles");
   ParticleSystem<double> s = reader.has("structure") ? read_structure_particles(own, folder, effective, warnings)
                                                      : from_bodies(own, folder, effective, warnings);
+  if (reader.has("structure")) read_molecules(own, s, effective);
   if (!reader.has("structure")) {
     const auto box = read_box(own, effective);
     // A box that particles of run.h5 have already would only count their images anew.

@@ -66,7 +66,8 @@ std::vector<std::filesystem::path> read_coefficients(TableReader& reader, const 
 ParticleSystem<double> read_structure_particles(TableReader& reader, const std::filesystem::path& folder,
                                                 SceneValue& effective, std::vector<std::string>& notes) {
   reader.expect_only({"structure", "structure_sha256", "file_units", "special", "exclusions", "atom_style", "mixing",
-                      "box", "type", "pair", "temperature", "seed", "frame", "coefficients", "coefficients_sha256"});
+                      "box", "type", "pair", "temperature", "seed", "frame", "coefficients", "coefficients_sha256",
+                      "molecules"});
   io::StructureOptions options;
   options.units = reader.context().units;
   options.notes = &notes;

@@ -6,6 +6,7 @@
 #include "integrators/all_methods.hpp"
 #include "integrators/composition_options.hpp"
 #include "integrators/minimize.hpp"
+#include "integrators/rotating.hpp"
 #include "integrators/scheme.hpp"
 #include "numbers/simd.hpp"
 #include "scene/parts.hpp"
@@ -29,6 +30,7 @@ struct SceneHamiltonian {
   ConstraintOptions constraint_options;
   std::optional<SceneThermostat> thermostat;
   std::optional<NeighborOptions> neighbors;
+  std::optional<RotatingOptions> rotating;  ///< how rigid bodies turn, where there are some
 
   /// The Hamiltonian as it is walked: kicks by the forces, and every letter beside them.
   /// @param particles  those that constraints tie
@@ -39,6 +41,11 @@ struct SceneHamiltonian {
   /// The constraints of the first `tables` tables; all of them unless told.
   ConstraintSet constraint_set(const ParticleSystem<double>& particles,
                                std::size_t tables = std::numeric_limits<std::size_t>::max()) const;
+
+  /// Forces as a Hamiltonian of bodies takes them: those that act on bodies themselves, and the others on their sites;
+  /// without bodies as they are.
+  template <class Real> ForceField<Real> on_bodies(const ForceField<Real>& forces) const;
+  AnyForce<double> on_bodies(const AnyForce<double>& force) const;
 
   /// Every term that pulls: what the splitting has in itself, and the scene's forces that are no letters.
   std::vector<SceneForce> terms() const;

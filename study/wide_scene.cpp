@@ -3,6 +3,8 @@
 #include "forces/sum.hpp"
 #include "integrators/force_motion.hpp"
 #include "integrators/hamiltonian_motion.hpp"
+#include "integrators/kinetic_potential.hpp"
+#include "integrators/rotating.hpp"
 #include "study/sampling.hpp"
 
 #include <fmt/format.h>
@@ -10,6 +12,27 @@
 #include <utility>
 
 namespace noether {
+
+namespace {
+
+/// Bodies that turn have no y' = f: their truth is the splitting itself, with exact turns whatever rotor the run has.
+void split_bodies(const SceneHamiltonian& h, const ForceField<Quad>& forces, bool beside, WideScene& wide) {
+  if (!h.splitting.only_forces || beside) {
+    wide.reason = fmt::format("hamiltonian '{}' of rigid bodies is more than p^2/2m and forces", h.splitting.name);
+    return;
+  }
+  // What the splitting has in itself pulls at centres, not at sites.
+  ForceField<Quad> own, others;
+  for (std::size_t k = 0; k < forces.terms().size(); ++k) {
+    (k < h.splitting.own.size() ? own : others).add(forces.terms()[k]);
+  }
+  const ForceField<Quad> on_bodies = h.on_bodies(others);
+  for (const AnyForce<Quad>& force : on_bodies.terms()) own.add(force);
+  const AnyHamiltonian<Quad> points = KineticPotential<ForceField<Quad>, Quad>(std::move(own));
+  wide.splitting = Rotating<AnyHamiltonian<Quad>>(points);
+}
+
+}  // namespace
 
 WideScene wide_scene(const Scene& scene) {
   WideScene wide;
@@ -44,7 +67,9 @@ WideScene wide_scene(const Scene& scene) {
     }
   }
   wide.start = scene.particles.as<Quad>();
-  if (h.splitting.only_forces) {
+  if (h.rotating) {
+    split_bodies(h, all, !beside.terms().empty(), wide);
+  } else if (h.splitting.only_forces) {
     wide.field = std::make_unique<ForceMotion<ForceField<Quad>, Quad>>(std::move(all));
   } else if (!h.splitting.make_wide) {
     wide.reason = fmt::format("hamiltonian '{}' is written for doubles only", h.splitting.name);

@@ -1,0 +1,77 @@
+#include "cli/explain_bodies.hpp"
+
+#include "engine/bodies.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+namespace noether {
+
+namespace {
+
+/// Bodies of a scene in figures.
+struct BodyCount {
+  std::int64_t bodies = 0, held = 0, sites = 0, excluded = 0;
+  double turns = 0;  ///< of the fastest in a step, from its rate at the start; 0 where the method chooses the steps
+};
+
+BodyCount counted_bodies(const Scene& scene) {
+  const ParticleSystem<double>& s = scene.particles;
+  const auto& inertia = s.column<BodyInertia>();
+  BodyCount count;
+  double fastest = 0;
+  for (Index i = 0; i < s.size(); ++i) {
+    const BodyKind* kind = s.bodies()->kind(i);
+    if (kind == nullptr) continue;
+    const auto sites = static_cast<std::int64_t>(kind->sites.size());
+    ++count.bodies;
+    count.held += kind->held ? 1 : 0;
+    count.sites += sites;
+    count.excluded += sites * (sites - 1) / 2;
+    const Vec3<double> in_body = spin_in_body<double>(s.column<BodyOrientation>()[i], s.column<BodySpin>()[i]);
+    double rate2 = 0;
+    for (int k = 0; k < 3; ++k) {
+      if (inertia[i][k] > 0) rate2 += in_body[k] * in_body[k] / (inertia[i][k] * inertia[i][k]);
+    }
+    fastest = std::max(fastest, std::sqrt(rate2));
+  }
+  count.turns = fastest * std::abs(scene.integrator.step) / (2 * std::acos(-1.0));
+  return count;
+}
+
+std::string rotor_of(const Scene& scene) {
+  const RotatingOptions& options = *scene.hamiltonian.rotating;
+  if (options.rotor == Rotor::exact) return "exact";
+  const std::string_view axes = options.axes;
+  return fmt::format("axes {} {} {} {} {}", axes[0], axes[1], axes[2], axes[1], axes[0]);
+}
+
+}  // namespace
+
+std::string bodies_text(const Scene& scene) {
+  if (!has_bodies(scene.particles)) return "";
+  const BodyCount count = counted_bodies(scene);
+  std::string text =
+      fmt::format("rigid bodies: {} of {} site{}", count.bodies, count.sites, count.sites == 1 ? "" : "s");
+  if (count.held > 0) text += fmt::format(", {} held by fixed points", count.held);
+  if (count.excluded > 0) text += fmt::format("; {} pairs within a body are left out", count.excluded);
+  text += fmt::format("; rotor {}", rotor_of(scene));
+  if (count.turns > 0) text += fmt::format("; the fastest turns {:.2g} times in a step", count.turns);
+  return text;
+}
+
+Json bodies_json(const Scene& scene) {
+  if (!has_bodies(scene.particles)) return Json();
+  const BodyCount count = counted_bodies(scene);
+  return Json::object({{"bodies", count.bodies},
+                       {"held", count.held},
+                       {"sites", count.sites},
+                       {"excluded_pairs", count.excluded},
+                       {"rotor", rotor_of(scene)},
+                       {"turns_per_step", count.turns}});
+}
+
+}  // namespace noether
