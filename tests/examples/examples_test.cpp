@@ -31,6 +31,7 @@ struct Example {
 const std::vector<Example> all = {
     {"alkane_liquid", alkane_liquid::program, Length::slow, Bits::of_this_machine, 100},
     {"argon_crystal", argon_crystal::program, Length::quick, Bits::of_this_machine, 250},
+    {"asteroid_binary", asteroid_binary::program, Length::slow, Bits::of_this_machine, 100},
     {"bead_on_wire", bead_on_wire::program, Length::quick, Bits::of_this_machine, 100},
     {"beads_on_sphere", beads_on_sphere::program, Length::quick, Bits::everywhere, 250},
     {"butane", butane::program, Length::nightly, Bits::of_this_machine, 250},
@@ -43,6 +44,7 @@ const std::vector<Example> all = {
     {"fene_melt", fene_melt::program, Length::quick, Bits::of_this_machine, 100},
     {"figure_eight", figure_eight::program, Length::quick},
     {"heat_line", heat_line::program, Length::quick, Bits::of_this_machine, 0},
+    {"heavy_top", heavy_top::program, Length::quick, Bits::of_this_machine},
     {"henon_heiles", henon_heiles::program, Length::quick},
     {"kepler", kepler::program, Length::quick},
     {"lj_melt", lj_melt::program, Length::slow, Bits::of_this_machine, 100},
@@ -51,9 +53,12 @@ const std::vector<Example> all = {
     {"pendulum", pendulum::program, Length::quick},
     {"pythagorean", pythagorean::program, Length::nightly, Bits::everywhere, 20'000},
     {"robertson", robertson::program, Length::quick, Bits::of_this_machine, 0},
+    {"sleeping_top", sleeping_top::program, Length::quick, Bits::of_this_machine},
     {"solar_system", solar_system::program, Length::slow},
     {"spherical_pendulum", spherical_pendulum::program, Length::quick},
+    {"spin_orbit", spin_orbit::program, Length::slow, Bits::of_this_machine},
     {"template_project", template_project::program, Length::quick},
+    {"tennis_racket", tennis_racket::program, Length::quick, Bits::of_this_machine},
     {"two_phase_slab", two_phase_slab::program, Length::slow, Bits::of_this_machine, 100},
     {"water_box", water_box::program, Length::nightly, Bits::of_this_machine, 50},
 };

@@ -12,15 +12,19 @@
 #include "constraints/distance.hpp"
 #include "constraints/structure_constraints.hpp"
 #include "constraints/surfaces.hpp"
+#include "engine/bodies.hpp"
+#include "engine/given_orbit.hpp"
 #include "engine/simulation.hpp"
 #include "engine/statistics.hpp"
 #include "forces/bonded.hpp"
 #include "forces/check_gradient.hpp"
 #include "forces/external_fields.hpp"
 #include "forces/gravity.hpp"
+#include "forces/gravity_of_bodies.hpp"
 #include "forces/henon_heiles.hpp"
 #include "forces/lennard_jones.hpp"
 #include "forces/linear_drag.hpp"
+#include "forces/on_sites.hpp"
 #include "forces/pair_potentials.hpp"
 #include "forces/sum.hpp"
 #include "integrators/all_schemes.hpp"
@@ -29,6 +33,7 @@
 #include "integrators/kinetic_potential.hpp"
 #include "integrators/langevin.hpp"
 #include "integrators/minimize.hpp"
+#include "integrators/rotating.hpp"
 #include "integrators/systems/heat_line.hpp"
 #include "integrators/velocity_rescaling.hpp"
 #include "integrators/wisdom_holman.hpp"
@@ -42,9 +47,12 @@
 #include "monitors/pressure.hpp"
 #include "monitors/radial_distribution.hpp"
 #include "monitors/shadow_hamiltonian.hpp"
+#include "monitors/spin.hpp"
 #include "monitors/temperature.hpp"
 #include "monitors/time_correlation.hpp"
 #include "monitors/variables.hpp"
+#include "numbers/elliptic.hpp"
+#include "numbers/quantity.hpp"
 #include "numbers/units.hpp"
 #include "scene/builders.hpp"
 #include "scene/constrained.hpp"
@@ -57,6 +65,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -71,11 +80,17 @@ inline std::optional<std::int64_t> shortened;
 }  // namespace examples
 
 #define main program
+namespace examples::asteroid_binary {
+#include "examples/asteroid_binary/main.cpp"
+}
 namespace examples::bead_on_wire_from_scene {
 #include "examples/bead_on_wire/from_scene.cpp"
 }
 namespace examples::beads_on_sphere_from_scene {
 #include "examples/beads_on_sphere/from_scene.cpp"
+}
+namespace examples::heavy_top {
+#include "examples/heavy_top/main.cpp"
 }
 namespace examples::oblate_saturn_from_scene {
 #include "examples/oblate_saturn/from_scene.cpp"
@@ -152,14 +167,23 @@ namespace examples::pendulum {
 namespace examples::pythagorean {
 #include "examples/pythagorean/main.cpp"
 }
+namespace examples::sleeping_top {
+#include "examples/sleeping_top/main.cpp"
+}
 namespace examples::solar_system {
 #include "examples/solar_system/main.cpp"
 }
 namespace examples::spherical_pendulum {
 #include "examples/spherical_pendulum/main.cpp"
 }
+namespace examples::spin_orbit {
+#include "examples/spin_orbit/main.cpp"
+}
 namespace examples::template_project {
 #include "examples/template_project/main.cpp"
+}
+namespace examples::tennis_racket {
+#include "examples/tennis_racket/main.cpp"
 }
 namespace examples::two_phase_slab {
 #include "examples/two_phase_slab/main.cpp"

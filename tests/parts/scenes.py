@@ -181,6 +181,14 @@ def system(keys, **options):
 
 STIFF = {"method": "backward_euler", "flow": "bdf", "rivals": ("backward_euler", "trapezoidal")}
 
+# Two rigid bodies about each other, and a point.
+ROCKS = ("[[particles.rigid_body]]\nname = 'one'\nmass = 1.0\nx = [0.0, 0.0, 0.0]\nv = [0.0, -0.2, 0.0]\n"
+         "inertia = [0.02, 0.03, 0.04]\nangular_velocity = [0.3, 0.2, 1.0]\n"
+         "[[particles.rigid_body]]\nname = 'two'\nmass = 0.3\nx = [1.0, 0.0, 0.0]\nv = [0.0, 0.9, 0.1]\n"
+         "inertia = [0.002, 0.003, 0.003]\nangular_velocity = [0.0, 0.5, 1.0]\naxis = [0, 1, 0]\nangle = 0.3\n" +
+         body("stone", 0.001, (0.0, -2.0, 0.1), (0.7, 0.0, 0.0)))
+PULL = "type = 'gravity_of_bodies'; G = 1"
+
 HAMILTONIANS = {
     "kinetic_potential": Case(PLANETS, forces(GRAVITY)),
     "wisdom_holman": Case(PLANETS, '[hamiltonian]\ntype = "wisdom_holman"\nG = 1\n'),
@@ -188,6 +196,7 @@ HAMILTONIANS = {
 
 FORCES = {
     "gravity": Case(PLANETS, forces("type = 'gravity'; G = 1; softening = 0.01")),
+    "gravity_of_bodies": Case(ROCKS, forces(PULL)),
     "oblateness": Case(PLANETS, forces(GRAVITY, "type = 'oblateness'; J2 = 0.01; J4 = -0.001; radius = 0.1; G = 1")),
     "gr_potential": Case(PLANETS, forces(GRAVITY, "type = 'gr_potential'; c = 30; G = 1")),
     "post_newtonian": Case(PLANETS, forces(GRAVITY, "type = 'post_newtonian'; c = 30; G = 1"), method="rk4",
@@ -337,6 +346,9 @@ MONITORS = {
     "momentum": seen("type = 'momentum'; steps = {cadence}", Case(PLANETS, forces(GRAVITY))),
     "angular_momentum": seen("type = 'angular_momentum'; steps = {cadence}", Case(PLANETS, forces(GRAVITY))),
     "center_of_mass": seen("type = 'center_of_mass'; steps = {cadence}", Case(PLANETS, forces(GRAVITY))),
+    "spin": seen("type = 'spin'; body = 'two'; G = 1; steps = {cadence}", Case(ROCKS, forces(PULL))),
+    "orientation_defect": seen("type = 'orientation_defect'; steps = {cadence}", Case(ROCKS, forces(PULL))),
+    "turning_energy": seen("type = 'turning_energy'; steps = {cadence}", Case(ROCKS, forces(PULL))),
     "elements": seen("type = 'elements'; G = 1; steps = {cadence}", Case(PLANETS, forces(GRAVITY))),
     "closest_approach": seen("type = 'closest_approach'; steps = {cadence}", Case(PLANETS, forces(GRAVITY))),
     "temperature": seen("type = 'temperature'; steps = {cadence}", salt(LENNARD_JONES)),

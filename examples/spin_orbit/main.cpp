@@ -1,0 +1,96 @@
+// Mercury librates in its resonance of three turns in two orbits; Hyperion, of another shape on its orbit, tumbles.
+#include "engine/bodies.hpp"
+#include "engine/given_orbit.hpp"
+#include "engine/simulation.hpp"
+#include "forces/gravity_of_bodies.hpp"
+#include "integrators/all_schemes.hpp"
+#include "integrators/composition.hpp"
+#include "integrators/rotating.hpp"
+#include "integrators/wisdom_holman.hpp"
+#include "io/digest.hpp"
+#include "io/trajectory.hpp"
+#include "monitors/monitors.hpp"
+#include "monitors/spin.hpp"
+#include "numbers/quantity.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+using namespace noether;
+
+const double pi = std::acos(-1.0);
+
+/// Kepler arcs with spins: gravity beside that of point masses in the kicks.
+auto planet_that_turns() {
+  const GravityOfBodies figure{.point_masses = false};
+  return Rotating(WisdomHolman<double, Sum<GravityOfBodies>>({}, Sum{figure}));
+}
+
+/// A satellite of a mass of 1 about one of no size, on an orbit of period 2 pi, at its pericenter: its long axis at an
+/// angle from the line, turning `rate` times as fast as it goes round on the average.
+ParticleSystem<double> satellite(double e, double asphericity, double angle, double rate) {
+  ParticleSystem<double> s(unit_system("reduced"));
+  s.add("planet", 1, Vec3<double>::Zero(), Vec3<double>::Zero());
+  const double size2 = 1e-10, m = 1e-9;  // small beside the orbit, and light
+  const auto [x, v] = state_of_orbit({.a = 1, .e = e}, 1 + m);
+  const Vec3<double> moments = m * size2 * Vec3<double>(1 - asphericity, 1, 1);
+  add_body(s, body_of_inertia("moon", m, moments),
+           {.x = x,
+            .v = v,
+            .orientation = {std::cos(angle / 2), 0, 0, std::sin(angle / 2)},
+            .angular_velocity = Vec3<double>(0, 0, rate)});
+  return s;
+}
+
+/// Angle and rate of Hyperion's turn at each pericenter, from many starts: a surface of section.
+void write_section(const char* file) {
+  std::FILE* out = std::fopen(file, "w");
+  if (out == nullptr) return;
+  fmt::print(out, "angle,rate,start\n");
+  for (int start = 0; start < 15; ++start) {
+    // e = 0.1, (B - A)/C = 0.264 (WisdomPealeMignard1984): the regions of 1:1, 1:2 and 3:2 have grown together.
+    const double rate = 0.3 + 0.18 * start;
+    Simulation sim(satellite(0.1, 0.264, 0.3, rate), compose(planet_that_turns(), *schemes::find("aba_8_6_4")),
+                   2 * pi / 40);
+    for (int orbit = 0; orbit < 200; ++orbit) {
+      if (!sim.run(40).ok()) return;
+      const ParticleSystem<double>& now = sim.particles();
+      const Mat3<double> r = rotation_matrix<double>(now.column<BodyOrientation>()[1]);
+      const double angle = std::fmod(std::atan2(r(1, 0), r(0, 0)) + 2 * pi, pi);  // the axis has no front
+      fmt::print(out, "{:.5f},{:.5f},{}\n", angle, now.column<BodySpin>()[1][2] / now.column<BodyInertia>()[1][2],
+                 start);
+    }
+  }
+  std::fclose(out);
+}
+
+int main() {
+  const UnitSystem& solar = unit_system("solar");
+  const double km = unit_value("km", solar);
+  ParticleSystem<double> s(solar);
+  s.add("Sun", 1, Vec3<double>::Zero(), Vec3<double>::Zero());
+  const RigidBody mercury = ellipsoid("Mercury", 1.66012e-7, {2440.53 * km, 2440 * km, 2439 * km});
+  const double day = unit_value("day", solar);
+  const auto [x, v] = state_of_orbit({.P = 87.969 * day, .e = 0.2056}, solar.G * (1 + mercury.mass));
+  add_body(s, mercury,
+           {.x = x, .v = v, .orientation = {std::cos(0.05), 0, 0, std::sin(0.05)}, .spin_period = 58.646 * day});
+
+  Simulation sim(std::move(s), compose(planet_that_turns(), *schemes::find("aba_8_6_4")), 4 * day);
+  auto& energy = sim.every(1, Energy{});
+  sim.every(1, AngularMomentum{});
+  Spin resonance{"Mercury"};
+  resonance.resonance = {3, 2};
+  auto& spin = sim.every(5, std::move(resonance));
+  sim.every(50, io::TrajectoryWriter{"run.h5"});
+  const double until = 60 * unit_value("yr", solar);
+  const Outcome outcome = sim.run_until(until);
+  fmt::print("{}: energy within {:.1e}\n", outcome, energy.worst());
+  fmt::print("theta - 3/2 M of Mercury now: {:.4f} rad; its obliquity {:.1e}\n", spin.angle(), spin.obliquity());
+  write_section("section.csv");
+  fmt::print("{}\n", io::digest(sim.particles()));
+  return exit_code(outcome);
+}
