@@ -59,13 +59,14 @@ std::size_t shown_frame(const FramesInFile& found, std::optional<std::int64_t> w
 /// What the picture takes from monitors: without the numbers that nothing draws.
 std::vector<io::MonitorSeries> drawn_monitors(const std::filesystem::path& file) {
   static const std::vector<std::string> names = {
-      "energy",      "shadow_hamiltonian", "momentum",  "angular_momentum",    "constraint_residual",     "elements",
-      "temperature", "pressure",           "dihedrals", "radial_distribution", "mean_square_displacement"};
+      "energy",      "shadow_hamiltonian", "momentum",  "angular_momentum",    "constraint_residual",      "elements",
+      "temperature", "pressure",           "dihedrals", "radial_distribution", "mean_square_displacement", "spin"};
   const auto drawn = [](const std::string& monitor, const std::string& quantity) {
     const auto name =
         std::find_if(names.begin(), names.end(), [&](const auto& one) { return monitor.starts_with(one); });
     if (name == names.end()) return false;
     if (*name == "dihedrals") return quantity == "angle" || quantity == "density" || quantity == "fraction";
+    if (*name == "spin") return quantity == "angle" || quantity == "rate";
     const bool error = *name == "energy" || name->ends_with("momentum");
     return quantity == "relative_error" || quantity == "worst" ||
            (!error && (quantity == "value" || quantity == "lag" || quantity == "distance"));
@@ -290,8 +291,8 @@ const io::MonitorSeries* find_monitor(const std::vector<io::MonitorSeries>& moni
 }
 
 const std::vector<std::string>& plot_subjects() {
-  static const std::vector<std::string> subjects = {"positions", "errors",    "elements", "temperature",
-                                                    "pressure",  "dihedrals", "rdf",      "msd"};
+  static const std::vector<std::string> subjects = {"positions", "errors", "elements", "temperature", "pressure",
+                                                    "dihedrals", "rdf",    "msd",      "axes",        "spin"};
   return subjects;
 }
 
@@ -326,6 +327,8 @@ PlotData read_plot_data(const std::filesystem::path& file, const Parts& parts, c
   }
   if (page.wants("pressure", true)) page.add("pressure", plot_pressure(source), "the monitor pressure");
   if (page.wants("dihedrals", true)) page.add("dihedrals", plot_dihedrals(source), "the monitor dihedrals");
+  if (page.wants("axes", true)) page.add("axes", plot_axes(source), "frames of few rigid bodies whose axes move");
+  if (page.wants("spin", true)) page.add("spin", plot_spin(source), "the monitor spin");
   const bool crowd = periodic && is_crowd(source.frames);
   if (page.wants("rdf", crowd)) {
     page.add("rdf", plot_radial_distribution(source, options.frame.has_value()), "frames of a periodic box");

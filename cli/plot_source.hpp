@@ -69,6 +69,10 @@ std::vector<PlotPanel> plot_elements(const PlotSource& source);
 std::optional<PlotPanel> plot_temperature(const PlotSource& source);
 /// Pressure against time, from a monitor.
 std::optional<PlotPanel> plot_pressure(const PlotSource& source);
+/// The ways of the third axes of few rigid bodies, seen from above; nothing where they stay, or without frames.
+std::optional<PlotPanel> plot_axes(const PlotSource& source);
+/// The angle of a resonance of spin and orbit against time, or the rates of a body that has no orbit, from a monitor.
+std::optional<PlotPanel> plot_spin(const PlotSource& source);
 /// The histogram of dihedral angles over the run, from a monitor.
 std::optional<PlotPanel> plot_dihedrals(const PlotSource& source);
 

@@ -2,6 +2,7 @@
 
 #include "numbers/elliptic.hpp"
 #include "numbers/error.hpp"
+#include "numbers/small_angle.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,15 +14,39 @@ namespace {
 
 /// The rotation by `angle` about a unit vector.
 template <class Real> Quaternion<Real> rotation(const Real& angle, const Vec3<Real>& axis) {
-  using std::cos, std::sin;
-  const Real half = angle / Real(2), s = sin(half);
-  return quaternion(cos(half), Vec3<Real>(s * axis[0], s * axis[1], s * axis[2]));
+  const SineCosine<Real> of = sine_cosine<Real>(angle / Real(2));
+  return quaternion(of.cosine, Vec3<Real>(of.sine * axis[0], of.sine * axis[1], of.sine * axis[2]));
 }
 template <class Real> Quaternion<Real> rotation(const Real& angle, int axis) {
   Vec3<Real> along = Vec3<Real>::Zero();
   along[axis] = Real(1);
   return rotation(angle, along);
 }
+
+/// A body on its way through the turns about its axes.
+template <class Real> struct AxisTurn {
+  Quaternion<Real> q;
+  Vec3<Real> in_body;  ///< angular momentum in the principal axes
+
+  /// Turns it about axis `k` by twice the angle `half`.
+  template <int k> void about(const Real& half) {
+    constexpr int i = (k + 1) % 3, j = (k + 2) % 3;
+    const auto [s, c] = sine_cosine<Real>(half);
+    const Quaternion<Real> before = q;
+    q[0] = before[0] * c - before[1 + k] * s;
+    q[1 + k] = before[1 + k] * c + before[0] * s;
+    q[1 + i] = before[1 + i] * c + before[1 + j] * s;
+    q[1 + j] = before[1 + j] * c - before[1 + i] * s;
+    const Real cosine = (c - s) * (c + s), sine = Real(2) * c * s, first = in_body[i];
+    in_body[i] = cosine * first + sine * in_body[j];
+    in_body[j] = cosine * in_body[j] - sine * first;
+  }
+  void about(int k, const Real& half) {
+    if (k == 0) return about<0>(half);
+    if (k == 1) return about<1>(half);
+    about<2>(half);
+  }
+};
 
 /// The axes of a body taken in another order, one or two of them turned round so that they stay right-handed.
 struct Relabeled {
@@ -107,7 +132,8 @@ template <class Real> FreeMotion<Real> free_motion(const Vec3<Real>& I, const Ve
 /// The functions at u + v.
 template <class Real>
 JacobiFunctions<Real> at_sum(const JacobiFunctions<Real>& u, const JacobiFunctions<Real>& v, const Real& m) {
-  const Real both = m * u.sn * v.sn, below = Real(1) - both * u.sn * v.sn;
+  // 1 - m sn^2 sn'^2 without its cancellation near the separatrix.
+  const Real both = m * u.sn * v.sn, below = v.cn * v.cn + v.sn * v.sn * (u.dn * u.dn);
   return {(u.sn * v.cn * v.dn + v.sn * u.cn * u.dn) / below, (u.cn * v.cn - u.sn * v.sn * u.dn * v.dn) / below,
           (u.dn * v.dn - both * u.cn * v.cn) / below};
 }
@@ -175,25 +201,20 @@ Turned<Real> turn_exactly(const Quaternion<Real>& q, const Vec3<Real>& spin, con
 template <class Real>
 Turned<Real> turn_by_axes(const Quaternion<Real>& q, const Vec3<Real>& spin, const Vec3<Real>& inertia, const Real& h,
                           const AxisOrder& order) {
-  using std::cos, std::sin;
-  Vec3<Real> in_body = spin_in_body(q, spin);
-  Turned<Real> turned{q, Real(0)};
-  for (int stage = 0; stage < 5; ++stage) {
-    const int k = order[static_cast<std::size_t>(stage < 3 ? stage : 4 - stage)];
-    if (!(inertia[k] > Real(0))) continue;
-    const Real time = stage == 2 ? h : Real(h / Real(2)), rate = in_body[k] / inertia[k];
-    const Real half = time * rate / Real(2), c = cos(half), s = sin(half);
-    turned.action += time * (in_body[k] * rate / Real(2));
-    Vec3<Real> axis = Vec3<Real>::Zero();
-    axis[k] = s;
-    turned.orientation = product(turned.orientation, quaternion(c, axis));
-    const int i = (k + 1) % 3, j = (k + 2) % 3;
-    const Real cosine = (c - s) * (c + s), sine = Real(2) * c * s, first = in_body[i];
-    in_body[i] = cosine * first + sine * in_body[j];
-    in_body[j] = cosine * in_body[j] - sine * first;
+  AxisTurn<Real> turn{q, spin_in_body(q, spin)};
+  // Half angles are Pi_k times these in a whole step; an axis without a moment does not turn.
+  Vec3<Real> per_spin = Vec3<Real>::Zero();
+  for (int k = 0; k < 3; ++k) {
+    if (inertia[k] > Real(0)) per_spin[k] = h / (Real(2) * inertia[k]);
   }
-  turned.orientation = renormalized(turned.orientation);
-  return turned;
+  Real action(0);
+  for (std::size_t stage = 0; stage < 5; ++stage) {
+    const int k = order[stage < 3 ? stage : 4 - stage];
+    const Real along = turn.in_body[k], half = along * (stage == 2 ? per_spin[k] : Real(per_spin[k] / Real(2)));
+    action += along * half;
+    turn.about(k, half);
+  }
+  return {renormalized(turn.q), action};
 }
 
 AxisOrder axis_order(const std::string& text) {

@@ -88,11 +88,10 @@ template <class Real> void Spin::look_at_orbit(const ParticleSystem<Real>& s, In
   for (int k = 1; k < 3; ++k) axis = moments[k] < moments[axis] ? k : axis;
   const Vec3<Real> arm = rotation_matrix<Real>(s.template column<BodyOrientation>()[of]).col(axis);
   const Real theta = atan2(dot(arm, second), dot(arm, first));
-  const Real turn = detail::full_turn<Real>();
-  const Real apart =
-      theta - Real(static_cast<double>(resonance[0])) * orbit.M / Real(static_cast<double>(resonance[1]));
-  const Real positive = detail::positive_angle<Real>(apart);
-  angle_ = static_cast<double>(positive > turn / Real(2) ? Real(positive - turn) : positive);
+  const Real orbits = Real(static_cast<double>(resonance[0])) / Real(static_cast<double>(resonance[1]));
+  const Real half = detail::full_turn<Real>() / Real(2), apart = theta - orbits * orbit.M;
+  using std::floor;
+  angle_ = static_cast<double>(apart - half * floor(apart / half + Real(0.5)));  // the axis has no front
 }
 
 template <class Real> void Spin::observe(const Snapshot<Real>& now) {

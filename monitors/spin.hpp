@@ -35,7 +35,7 @@ class Spin {
   static constexpr auto describe() {
     return part<Spin>(
         "spin", "how a rigid body turns: spin, rate, energy, obliquity, the angle of a resonance with its orbit",
-        formula("Pi = R^T S,  rate_k = Pi_k/I_k;  angle = theta - (p/q) M - omega"),
+        formula("Pi = R^T S,  rate_k = Pi_k/I_k;  angle = theta - (p/q) M, modulo pi"),
         quantities("value[3] [mass length^2/time], in_body[3] [mass length^2/time], rate[3] [1/time], energy [energy], "
                    "defect [1], obliquity [angle], angle [angle]"),
         source("GoldreichPeale1966"),

@@ -5,6 +5,7 @@
 /// must be known to all digits.
 
 #include "numbers/real.hpp"
+#include "numbers/small_angle.hpp"
 
 #include <algorithm>
 #include <array>
@@ -20,7 +21,7 @@ template <class Real> struct JacobiFunctions { Real sn, cn, dn; };
 /// @cost a sine, a cosine, and a root and four divisions for each of up to seven rounds (nine in Quad)
 /// @source Bulirsch1965
 template <class Real> JacobiFunctions<Real> jacobi_functions(const Real& u, const Real& m1) {
-  using std::cos, std::cosh, std::sin, std::sqrt, std::tanh, std::fabs;
+  using std::cosh, std::fabs, std::sqrt, std::tanh;
   if (m1 == Real(0)) {
     const Real sech = Real(1) / cosh(u);
     return {tanh(u), sech, sech};
@@ -41,8 +42,7 @@ template <class Real> JacobiFunctions<Real> jacobi_functions(const Real& u, cons
     square = b * a;
     a = c;
   }
-  const Real angle = c * u;
-  Real sn = sin(angle), cn = cos(angle);
+  auto [sn, cn] = sine_cosine<Real>(c * u);
   if (sn == Real(0)) return {sn, cn, dn};
   a = cn / sn;
   c *= a;

@@ -209,7 +209,7 @@ class SceneReader {
     }
     read_rotor(reader, effective);
     check_splitting(reader, constraints);
-    if (kind->needs_forces && forces.empty() && constraints.empty()) {
+    if (kind->needs_forces && forces.empty() && constraints.empty() && !has_bodies(scene_.particles)) {
       reader.fail("type", fmt::format("{} has no force, so nothing would move anything; add a [[hamiltonian.force]] "
                                       "table",
                                       type));

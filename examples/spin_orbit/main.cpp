@@ -86,8 +86,7 @@ int main() {
   resonance.resonance = {3, 2};
   auto& spin = sim.every(5, std::move(resonance));
   sim.every(50, io::TrajectoryWriter{"run.h5"});
-  const double until = 60 * unit_value("yr", solar);
-  const Outcome outcome = sim.run_until(until);
+  const Outcome outcome = sim.run_until(21920 * day);
   fmt::print("{}: energy within {:.1e}\n", outcome, energy.worst());
   fmt::print("theta - 3/2 M of Mercury now: {:.4f} rad; its obliquity {:.1e}\n", spin.angle(), spin.obliquity());
   write_section("section.csv");

@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <vector>
@@ -57,10 +58,14 @@ int main() {
   const double w3 = p2 * d32 / inertia[1] + p1 * d31 / inertia[0];
   const double lambda = std::sqrt(w3 * d21 / (inertia[0] * inertia[1] * inertia[2]));
   const double half = 2 * complete_elliptic(d31 * p1 * d21 / inertia[0] / (d21 * w3)) / lambda;
-  fmt::print("{}: it turned over {} times\n", outcome, turnovers.times.size());
+  double shortest = 60, longest = 0;
   for (std::size_t k = 1; k < turnovers.times.size(); ++k) {
-    fmt::print("  after {:.4f} s more\n", turnovers.times[k] - turnovers.times[k - 1]);
+    const double between = turnovers.times[k] - turnovers.times[k - 1];
+    shortest = std::min(shortest, between);
+    longest = std::max(longest, between);
   }
+  fmt::print("{}: it turned over {} times, every {:.4f} to {:.4f} s\n", outcome, turnovers.times.size(), shortest,
+             longest);
   fmt::print("Jacobi's elliptic functions say {:.4f} s\n", half);
   fmt::print("energy within {:.0e}, angular momentum within {:.0e}\n", energy.worst(), *momentum.report().worst);
   fmt::print("{}\n", io::digest(sim.particles()));

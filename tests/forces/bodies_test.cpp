@@ -190,9 +190,7 @@ TEST_CASE("forces on sites act on bodies as on the atoms that they are made of",
   ForceField<double> all;
   LennardJonesForce lj;
   lj.cutoff = 0.8;
-  ReactionFieldForce rf;
-  rf.cutoff = 0.8;
-  all.add(lj).add(rf);
+  all.add(lj).add(ReactionFieldForce{{.radius = 0.8}});
   all.bind(Sites<double>(s).particles());
   const BodyForces e = body_forces(OnSites<double>(all), s);
   // The energy falls as bodies move and turn along forces and torques.

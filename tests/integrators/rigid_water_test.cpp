@@ -144,8 +144,7 @@ TEST_CASE("molecules become bodies that begin as their atoms did", "[integrators
   // In a box, and with another molecule that is bent.
   ParticleSystem<double> bent = dimer();
   bent.positions().add(4, {0.02, 0, 0});
-  CHECK_THROWS_WITH(make_rigid(bent),
-                    Catch::Matchers::Contains("has another shape than the first of its kind"));
+  CHECK_THROWS_WITH(make_rigid(bent), Catch::Matchers::Contains("has another shape than the first of its kind"));
   ParticleSystem<double> wrapped = dimer();
   wrapped.set_box(Box::periodic({3, 3, 3}));
   const Sites<double> again{make_rigid(wrapped)};
