@@ -327,7 +327,11 @@ PlotData read_plot_data(const std::filesystem::path& file, const Parts& parts, c
   }
   if (page.wants("pressure", true)) page.add("pressure", plot_pressure(source), "the monitor pressure");
   if (page.wants("dihedrals", true)) page.add("dihedrals", plot_dihedrals(source), "the monitor dihedrals");
-  if (page.wants("axes", true)) page.add("axes", plot_axes(source), "frames of few rigid bodies whose axes move");
+  if (page.wants("axes", true)) {
+    std::optional<PlotPanel> axes = plot_axes(source);
+    if (axes) axes->large = data.orbits.empty();
+    page.add("axes", std::move(axes), "frames of few rigid bodies whose axes move");
+  }
   if (page.wants("spin", true)) page.add("spin", plot_spin(source), "the monitor spin");
   const bool crowd = periodic && is_crowd(source.frames);
   if (page.wants("rdf", crowd)) {

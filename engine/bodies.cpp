@@ -227,7 +227,7 @@ Index add_body(ParticleSystem<double>& s, const RigidBody& body, const BodyState
   }
   Quaternion<double> given = state.orientation / std::sqrt(length2);
   if (length2 == 1) given = state.orientation;
-  const Quaternion<double> q = product(given, body.axes);
+  const Quaternion<double> q = quaternion_product(given, body.axes);
   const Vec3<double> spin = spin_of(body, state, q);
   for (const ColumnInfo& info : {column_info<BodyOrientation>(), column_info<BodySpin>(), column_info<BodyInertia>()}) {
     s.add_column(info);

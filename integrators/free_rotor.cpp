@@ -84,9 +84,9 @@ Quaternion<Real> turn_symmetric(const Quaternion<Real>& q, const Vec3<Real>& spi
   Quaternion<Real> turned = q;
   if (along > Real(0)) {  // of a body in a line there is nothing to turn about its axis
     const Real rate = along_axis * ((across - along) / (across * along));
-    if (rate != Real(0)) turned = product(q, rotation(Real(h * rate), axis));
+    if (rate != Real(0)) turned = quaternion_product(q, rotation(Real(h * rate), axis));
   }
-  return product(rotation<Real>(h * length / across, spin / length), turned);
+  return quaternion_product(rotation<Real>(h * length / across, spin / length), turned);
 }
 
 /// What the motion of m = Pi/L between its turning points is made of; moments in the order of `Relabeled`.
@@ -168,8 +168,9 @@ Quaternion<Real> turn_asymmetric(const Quaternion<Real>& q, const Vec3<Real>& in
                    f.sense * (atan2(f.root * sines, beside) + circled + half_turn * halves);
   const Real flip(odd ? -1 : 1);
   const Vec3<Real> stop(flip * f.a1 * end.cn, flip * f.sense * f.a2 * end.sn, f.a3 * end.dn);
-  const Quaternion<Real> turn = product(product(conjugate(onto_third(start)), rotation(psi, 2)), onto_third(stop));
-  return product(q, quaternion(turn[0], labels.back(vector_part(turn))));
+  const Quaternion<Real> turn =
+      quaternion_product(quaternion_product(conjugate(onto_third(start)), rotation(psi, 2)), onto_third(stop));
+  return quaternion_product(q, quaternion(turn[0], labels.back(vector_part(turn))));
 }
 
 }  // namespace

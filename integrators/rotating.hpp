@@ -72,10 +72,13 @@ template <SplitHamiltonian H> class Rotating : public Wrapped<H> {
     }
     return claims;
   }
-  /// @throws Error  for particles without bodies among them
+  /// @throws Error  for particles without bodies among them, and for constraints, which hold points
   void bind(ParticleSystem<real>& s) {
     if (!has_bodies(s)) throw Error("there are no rigid bodies to turn; add some, or take Rotating out");
     Wrapped<H>::bind(s);
+    if (Wrapped<H>::claims().constraints > 0) {
+      throw Error("constraints hold points, but some particles are rigid bodies; take one of the two out");
+    }
     turned_ = ScalarColumn<real>(s.size());
   }
   void flow(char letter, ParticleSystem<real>& s, const real& h) {

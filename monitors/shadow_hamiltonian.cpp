@@ -177,7 +177,7 @@ template <class Real> void ShadowHamiltonian<Real>::append(const Snapshot<Real>&
     const auto& spin = s.template column<BodySpin>();
     for (Index i = 0; i < s.size(); ++i) {
       const Quaternion<Real> q = std::as_const(point.turn)[i];
-      point.twist.set(i, product<Real>(quaternion<Real>(Real(0), Real(2) * Vec3<Real>(spin[i])), q));
+      point.twist.set(i, quaternion_product<Real>(quaternion<Real>(Real(0), Real(2) * Vec3<Real>(spin[i])), q));
     }
   }
   point.action = now.action() + (now.settling_action() - settling_);

@@ -15,7 +15,7 @@ template <class Real> Quaternion<Real> quaternion(const Real& w, const Vec3<Real
 template <class Real> Vec3<Real> vector_part(const Quaternion<Real>& q) { return Vec3<Real>(q[1], q[2], q[3]); }
 
 /// The product: the rotation b, then a.
-template <class Real> Quaternion<Real> product(const Quaternion<Real>& a, const Quaternion<Real>& b) {
+template <class Real> Quaternion<Real> quaternion_product(const Quaternion<Real>& a, const Quaternion<Real>& b) {
   return Quaternion<Real>(
       a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3], a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
       a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1], a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]);

@@ -255,6 +255,10 @@ class SceneReader {
     if (scene_.particles.box().is_periodic() && !splitting.claims().periodic) {
       reader.fail("type", fmt::format("{} does not support a periodic box; take the box out", splitting.name));
     }
+    if (scene_.hamiltonian.rotating && !constraints.empty()) {
+      reader.fail(constraints.front(), "constraint",
+                  "constraints hold points, but some particles are rigid bodies, which are rigid without; take it out");
+    }
     if (!splitting.make_constrained && !constraints.empty()) {
       reader.fail(constraints.front(), "constraint",
                   fmt::format("{} does not support constraints; use {}", splitting.name, plain_hamiltonian()));

@@ -10,6 +10,11 @@ namespace noether {
 SceneValue read_minimize(const SceneContext& context, const SceneValue& table, Scene& scene) {
   TableReader reader(context, table, "[minimize]", "minimize");
   if (table.get<SceneValue::Table>() == nullptr) reader.wrong_kind(table, "minimize", "a table");
+  if (scene.hamiltonian.rotating) {
+    reader.fail(nullptr, "minimize",
+                "some particles are rigid bodies, which [minimize] cannot turn; take [minimize] out, or minimize the "
+                "molecules along constraints first");
+  }
   MinimizeOptions options;
   read_part(reader, options);
   if (!scene.hamiltonian.splitting.claims().inertial) {

@@ -1,5 +1,6 @@
 #include "scene/read_particles.hpp"
 
+#include "engine/bodies.hpp"
 #include "engine/charge.hpp"
 #include "engine/make_rigid.hpp"
 #include "io/bodies.hpp"
@@ -104,6 +105,12 @@ ParticleSystem<double> from_frame(TableReader& reader, const std::filesystem::pa
                     reader.text("bodies")));
   }
   for (const std::string& name : found.left_out) {
+    if (name == BodyOrientation::name) {
+      reader.fail("bodies",
+                  fmt::format("{} has rigid bodies, and does not say what they are made of; go on with the run "
+                              "by --resume, or start from its scene",
+                              reader.text("bodies")));
+    }
     warnings.push_back(
         fmt::format("no part of this scene uses the column '{}' of {}: it is left out", name, reader.text("bodies")));
   }

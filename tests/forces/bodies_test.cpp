@@ -95,7 +95,7 @@ TEST_CASE("gravity of second degree is the slope of its energy", "[forces][bodie
     const Quaternion<double> q = std::as_const(s).column<BodyOrientation>()[1];
     Quaternion<double> by = quaternion<double>(1, turn / 2);
     by /= std::sqrt(norm_defect(by) + 1);
-    s.column<BodyOrientation>().set(1, product<double>(by, q));
+    s.column<BodyOrientation>().set(1, quaternion_product<double>(by, q));
     return body_forces(GravityOfBodies{}, s).energy;
   };
   for (int k = 0; k < 3; ++k) {
@@ -201,7 +201,7 @@ TEST_CASE("forces on sites act on bodies as on the atoms that they are made of",
     const Quaternion<double> q = std::as_const(moved).column<BodyOrientation>()[i];
     Quaternion<double> by = quaternion<double>(1, turn / 2);
     by /= std::sqrt(norm_defect(by) + 1);
-    moved.column<BodyOrientation>().set(i, product<double>(by, q));
+    moved.column<BodyOrientation>().set(i, quaternion_product<double>(by, q));
     return body_forces(OnSites<double>(all), moved).energy;
   };
   const double h = 1e-5;

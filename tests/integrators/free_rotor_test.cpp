@@ -116,7 +116,7 @@ TEST_CASE("free turns are one group with the generator of Euler's equations", "[
     const Quad e = Quad(1e-7) * Quad(b.inertia.minCoeff() / b.spin.norm());
     const Vec3<Quad> pi = spin_in_body<Quad>(q, widened<Quad>(b.spin));
     const Vec3<Quad> rate(pi[0] / Quad(b.inertia[0]), pi[1] / Quad(b.inertia[1]), pi[2] / Quad(b.inertia[2]));
-    const Quaternion<Quad> slope = product<Quad>(q, quaternion<Quad>(Quad(0), rate));
+    const Quaternion<Quad> slope = quaternion_product<Quad>(q, quaternion<Quad>(Quad(0), rate));
     const auto difference = [&](const Quad& by) {
       const Quaternion<Quad> up = in_quad(b, q, by), down = in_quad(b, q, -by);
       return Quaternion<Quad>(up[0] - down[0], up[1] - down[1], up[2] - down[2], up[3] - down[3]);
