@@ -224,7 +224,7 @@ AxisOrder axis_order(const std::string& text) {
   std::string sorted = text;
   std::sort(sorted.begin(), sorted.end());
   if (sorted != names) {
-    throw Error("axes = \"" + text + "\" is no order of three axes; \"xyz\", \"zyx\" or another one is expected",
+    throw Error("axes = \"" + text + "\" is not an order of three axes; \"xyz\", \"zyx\" or another one is expected",
                 {.key = "axes"});
   }
   for (std::size_t k = 0; k < 3; ++k) order[k] = static_cast<int>(names.find(text[k]));

@@ -61,7 +61,7 @@ template <SplitHamiltonian H> class Rotating : public Wrapped<H> {
       : Wrapped<H>(std::move(hamiltonian)), options_(std::move(options)), order_(axis_order(options_.axes)) {
     if (Wrapped<H>::claims().twists) return;
     throw SchemeMismatch("the kicks of '" + detail::name_of(this->hamiltonian_) +
-                         "' know no torques, so it cannot turn bodies; use kinetic_potential or wisdom_holman");
+                         "' do not pass on torques, so it cannot turn bodies; use kinetic_potential or wisdom_holman");
   }
 
   HamiltonianClaims claims() const {

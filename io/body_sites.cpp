@@ -69,7 +69,7 @@ class SiteTable {
                    heading.name);
       }
       const auto at = static_cast<std::size_t>(found - site_columns.begin());
-      if (has(found->name)) text_.fail(line, fmt::format("column '{}' stands twice", heading.name), heading.name);
+      if (has(found->name)) text_.fail(line, fmt::format("column '{}' appears twice", heading.name), heading.name);
       Found column{at};
       if (heading.unit) column.unit = unit_of(line, heading, *found);
       if (at < 3 && heading.unit) of_place = column.unit;

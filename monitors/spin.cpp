@@ -29,7 +29,7 @@ void Spin::check() const {
   check_constant_of_gravitation(G);
   if (resonance.size() == 2 && resonance[1] > 0) return;
   refuse_field("resonance", fmt::format("[{}]", fmt::join(resonance, ", ")),
-               "is no resonance; two whole numbers such as [3, 2], the second above 0, are expected");
+               "is not a valid resonance; two whole numbers such as [3, 2], the second above 0, are expected");
 }
 
 template <class Real> Index Spin::body_of(const ParticleSystem<Real>& s) const {

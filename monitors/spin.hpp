@@ -15,8 +15,8 @@ namespace noether {
 ///
 ///     value[3] = S,   in_body[3] = Pi = R^T S,   rate[3] = Pi_k/I_k,   energy = sum Pi_k^2/2 I_k
 ///     obliquity = the angle of S and of the angular momentum of the orbit about `about`
-///     angle = theta - (p/q) M in [-pi/2, pi/2): theta from the pericenter to the axis of the smallest moment, which has
-///     no front, in the plane of the orbit, M the mean anomaly, p : q the `resonance`
+///     angle = theta - (p/q) M in [-pi/2, pi/2): theta from the pericenter to the axis of the smallest moment, which
+///     has no front, in the plane of the orbit, M the mean anomaly, p : q the `resonance`
 ///
 /// @cost O(1), no force evaluation
 /// @source GoldreichPeale1966

@@ -107,7 +107,7 @@ ParticleSystem<double> from_frame(TableReader& reader, const std::filesystem::pa
   for (const std::string& name : found.left_out) {
     if (name == BodyOrientation::name) {
       reader.fail("bodies",
-                  fmt::format("{} has rigid bodies, and does not say what they are made of; go on with the run "
+                  fmt::format("{} has rigid bodies, and does not say what they are made of; continue the run "
                               "by --resume, or start from its scene",
                               reader.text("bodies")));
     }

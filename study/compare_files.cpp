@@ -55,7 +55,8 @@ Cells cells_of(const Comparison& c, const Row& row) {
           {"truth_error", row.truth_error},
           {"pareto_time", row.pareto_time},
           {"pareto_evaluations", row.pareto_evaluations},
-          {"digest", text_or_null(row.digest)}};
+          {"digest", text_or_null(row.digest)},
+          {"orientation_error_max", row.orientation_error_max}};
 }
 
 /// A cell of CSV: texts are quoted only where they must be, null is empty.

@@ -1,5 +1,6 @@
 #include "study/measure.hpp"
 
+#include "engine/bodies.hpp"
 #include "io/digest.hpp"
 #include "monitors/monitors.hpp"
 #include "monitors/shadow_hamiltonian.hpp"
@@ -249,10 +250,13 @@ void mark_diverged(Row& row, const Truth& truth, const Sampling& sampling, const
 
 Vector<double> state_of(const ParticleSystem<double>& s) {
   const auto n = s.size();
-  Vector<double> y(n > 0 ? 6 * n : static_cast<Index>(s.variables().size()));
+  Vector<double> y(n == 0 ? static_cast<Index>(s.variables().size()) : has_bodies(s) ? 10 * n : 6 * n);
   for (int k = 0; k < 3 && n > 0; ++k) {
     for (Index i = 0; i < n; ++i) y[k * n + i] = s.unwrapped(i)[k];
     std::copy_n(s.velocities().component(k), n, y.data() + (3 + k) * n);
+  }
+  for (int k = 0; k < 4 && has_bodies(s); ++k) {
+    std::copy_n(s.column<BodyOrientation>().component(k), n, y.data() + (6 + k) * n);
   }
   if (n == 0) std::copy(s.variables().begin(), s.variables().end(), y.data());
   return y;
@@ -328,6 +332,13 @@ void set_errors(Row& row, const Truth& truth, const Sampling& sampling, const Po
   row.position_errors.insert(row.position_errors.end(), errors.begin(), errors.end());
   row.position_error_max = worst_of(errors);
   row.position_error_rms = rms_of(errors);
+  if (error.any_turns()) {
+    std::vector<double> turned;
+    for (std::size_t j = 1; j < track.y.size() && j < truth.y.size(); ++j) {
+      turned.push_back(error.turned_apart(track.state(j), truth.y[j]));
+    }
+    row.orientation_error_max = worst_of(turned);
+  }
   row.position_error_end = errors.empty() || !row.completed() ? std::nullopt : finite(errors.back());
   const std::vector<double> energies = energy_errors(track, truth);
   row.energy_error_max = worst_of(energies);

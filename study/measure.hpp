@@ -40,6 +40,7 @@ struct Row {
   std::optional<double> wall_s = {}, wall_mad_s = {};  ///< of the run alone, nobody watching
   int repeats = 0;
   std::optional<double> position_error_max = {}, position_error_rms = {}, position_error_end = {};
+  std::optional<double> orientation_error_max = {};  ///< angle of the worst body, where some turn [rad]
   std::optional<double> energy_error_max = {}, energy_error_rms = {}, energy_slope = {}, energy_slope_error = {};
   std::optional<double> momentum_error_max = {}, angular_momentum_error_max = {}, shadow_fluctuation = {};
   std::optional<double> truth_error = {};  ///< of the reference this row was measured against
@@ -60,8 +61,8 @@ struct Spread {
 /// @param values  at least one
 Spread spread_of(std::vector<double> values);
 
-/// All coordinates of a run as they are compared: positions as if never wrapped, x then y then z, and velocities, or
-/// the variables of a first-order system.
+/// All coordinates of a run as they are compared: positions as if never wrapped, x then y then z, and velocities, of
+/// rigid bodies orientations too, w, x, y, z; or the variables of a first-order system.
 Vector<double> state_of(const ParticleSystem<double>& s);
 /// Further digits of the same, of particles that have second words.
 Vector<double> low_state_of(const ParticleSystem<double>::LowWords& low, Index n);

@@ -1,5 +1,6 @@
 #include "study/position_error.hpp"
 
+#include "engine/bodies.hpp"
 #include "engine/sums.hpp"
 
 #include <algorithm>
@@ -20,6 +21,25 @@ PositionError::PositionError(const ParticleSystem<double>& particles, bool about
   for (Index i = 0; i < particles.size(); ++i) masses_.emplace_back(particles.masses()[i]);
   const double total = sum_over<double>(particles.size(), [&](Index i) { return particles.masses()[i]; });
   if (!(total > 0)) about_center_ = false;
+  any_turns_ = only_turns_ = has_bodies(particles);
+  for (Index i = 0; i < particles.size(); ++i) only_turns_ = only_turns_ && particles.bodies()->is_held(i);
+}
+
+double PositionError::turned_apart(const Vector<Quad>& y, const Vector<Quad>& truth) const {
+  const auto n = static_cast<Index>(masses_.size());
+  double worst = 0;
+  for (Index i = 0; i < n; ++i) {
+    Quaternion<Quad> q, exact;
+    for (int k = 0; k < 4; ++k) {
+      q[k] = y[(6 + k) * n + i];
+      exact[k] = truth[(6 + k) * n + i];
+    }
+    const Quaternion<Quad> by = quaternion_product<Quad>(conjugate<Quad>(q), exact);
+    const double sine = static_cast<double>(sqrt(norm2(vector_part<Quad>(by))));
+    const double angle = 2 * std::atan2(sine, std::abs(static_cast<double>(by[0])));  // q and -q are one rotation
+    if (!(angle <= worst)) worst = angle;
+  }
+  return worst;
 }
 
 std::vector<Quad> PositionError::positions(const Vector<Quad>& y) const {
@@ -71,6 +91,7 @@ double PositionError::size(const Vector<Quad>& y) const {
 }
 
 double PositionError::operator()(const Vector<Quad>& y, const Vector<Quad>& truth) const {
+  if (only_turns_) return turned_apart(y, truth);
   const std::vector<Quad> x = positions(y), exact = positions(truth);
   if (!sizes_.empty() && sizes_[0] > 0) {
     double squares = 0;

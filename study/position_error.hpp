@@ -10,7 +10,8 @@ namespace noether {
 
 /// How positions (or the variables of a first-order system) are compared: over all bodies about the centre of mass,
 /// where the equations keep it moving straight, relative to |x*|; a single body, and bodies in an outer field, are
-/// compared where they stand, relative to the rms of |x*| over the moments, since x* may pass through 0.
+/// compared where they stand, relative to the rms of |x*| over the moments, since x* may pass through 0. Where all
+/// particles are bodies that fixed points hold, their error is that of their orientations.
 class PositionError {
  public:
   PositionError(const ParticleSystem<double>& particles, bool about_center);
@@ -24,12 +25,18 @@ class PositionError {
   double operator()(const Vector<Quad>& y, const Vector<Quad>& truth) const;
   /// norm(x), of what is compared.
   double size(const Vector<Quad>& y) const;
+  /// Whether some of the particles are rigid bodies.
+  bool any_turns() const { return any_turns_; }
+  /// The angle by which the worst of the bodies is turned from the truth [rad].
+  /// @param y, truth  shape (10 n), as `state_of` has them
+  double turned_apart(const Vector<Quad>& y, const Vector<Quad>& truth) const;
 
  private:
   std::vector<Quad> positions(const Vector<Quad>& y) const;
 
   std::vector<Quad> masses_;
   bool about_center_ = false;
+  bool any_turns_ = false, only_turns_ = false;
   double scale_ = 0;           ///< 0: relative to |x*| of the moment
   std::vector<double> sizes_;  ///< of the variables of a first-order system: largest |y*|
 };

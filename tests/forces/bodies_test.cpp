@@ -48,7 +48,7 @@ std::vector<BodySite> octahedron(double mass, const Vec3<double>& half_axes) {
   return sites;
 }
 
-/// Two octahedra of mass points about each other. @source geometry.md
+/// Two octahedra of mass points about each other. Reference by extrapolation in 28 to 40 digits
 ParticleSystem<double> two_octahedra() {
   ParticleSystem<double> s(unit_system("reduced"));
   add_body(s, body_of_sites("a", octahedron(1, {0.5, 0.4, 0.3})),

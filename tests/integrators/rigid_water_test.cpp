@@ -43,7 +43,7 @@ struct WaterPairs {
   }
 };
 
-/// The dimer A of the studies as atoms. @source geometry.md
+/// The dimer A of the studies as atoms. Reference by extrapolation in 28 to 40 digits
 ParticleSystem<double> dimer() {
   ParticleSystem<double> s(unit_system("molecular"));
   const std::vector<double> x = {0.0,

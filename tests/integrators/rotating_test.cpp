@@ -21,7 +21,7 @@ double error_of(const ParticleSystem<double>& s, const Mat3<double>& r, const Ve
                   (test::in_body_of(s) - in_body).cwiseAbs().maxCoeff() / size);
 }
 
-/// Of the heavy top A at t = 10. @source geometry.md, by extrapolation in 28 to 40 digits
+/// Of the heavy top A at t = 10. Reference by extrapolation in 28 to 40 digits, by extrapolation in 28 to 40 digits
 double top_error(const std::string& scheme, double h, RotatingOptions options = {}) {
   Simulation sim(heavy_top(), compose(turning(weight(), std::move(options)), *schemes::find(scheme)), h);
   REQUIRE(sim.run(std::lround(10 / h)).ok());

@@ -327,7 +327,8 @@ TEST_CASE("compare.csv has the columns that are promised, and one line for each 
       "scene,method,step,step_unit,tolerance,threads,simd,outcome,outcome_time,steps,rejected,force_evaluations,"
       "kepler_evaluations,jacobian_evaluations,wall_s,wall_mad_s,repeats,position_error_max,position_error_rms,"
       "position_error_end,energy_error_max,energy_error_rms,energy_slope,energy_slope_error,momentum_error_max,"
-      "angular_momentum_error_max,shadow_fluctuation,truth,truth_error,pareto_time,pareto_evaluations,digest\n"
+      "angular_momentum_error_max,shadow_fluctuation,truth,truth_error,pareto_time,pareto_evaluations,digest,"
+      "orientation_error_max\n"
       "\"a, \"\"quoted\"\" scene.toml\",verlet,0.1,1,,"));
   CHECK(std::count(csv.begin(), csv.end(), '\n') == 5);
   const std::string json = to_json(c);
@@ -509,4 +510,24 @@ TEST_CASE("errors below the rounding of doubles are measured, with their order",
 }
 
 }  // namespace
+TEST_CASE("orientations are compared with a truth of 113 bits, of one body too", "[study]") {
+  const Scene top = read_scene(
+      "units = 'reduced'\n[[particles.rigid_body]]\nname = 'top'\nmass = 1\ninertia = [2, 1.5, 1]\n"
+      "fixed_point = [0, 0, 0]\ncenter = [0.2, 0.3, 0.5]\nspin = [0.6, -0.4, 0.9]\n"
+      "[hamiltonian]\ntype = 'kinetic_potential'\n[[hamiltonian.force]]\ntype = 'uniform_field'\n"
+      "acceleration = [0, 0, -1]\n[integrator]\nmethod = 'verlet'\nstep = 0.1\nuntil = 4\n",
+      "top.toml");
+  CompareOptions options;
+  options.methods = {"verlet", "yoshida_4"};
+  options.steps = {0.1, 0.05};
+  options.repeats = 1;
+  const Comparison c = compare(top, options);
+  REQUIRE(c.rows.size() == 4);
+  REQUIRE(c.truth.kind == TruthKind::quad);
+  const auto error = [&](std::size_t k) { return c.rows[k].orientation_error_max.value(); };
+  CHECK(std::abs(std::log2(error(0) / error(1)) - 2) < 0.1);
+  CHECK(std::abs(std::log2(error(2) / error(3)) - 4) < 0.3);
+  for (const Row& row : c.rows) CHECK(row.position_error_max == row.orientation_error_max);  // it stands still
+}
+
 }  // namespace noether::test
