@@ -57,7 +57,7 @@ std::pair<double, double> after(int orbits, ParticleSystem<double> s, AnyHamilto
 }  // namespace
 
 TEST_CASE("a small body librates in 3:2 as the equation of its angle says", "[integrators][spin_orbit]") {
-  // e = 0.2056, (B - A)/C = 1e-3, from theta = 0.02, theta' = 1.5 n at the pericenter. Reference by extrapolation in 28 to 40 digits
+  // e = 0.2056, (B - A)/C = 1e-3, from theta = 0.02 and a rate of 1.5 n at the pericenter; references of 28 digits.
   struct Moment {
     int orbits;
     double angle, rate;
