@@ -95,6 +95,77 @@ NOETHER_EIGHT_INLINE EightWide square_root(const EightWide& a) {
   return ordered_sum(root, (((a.high - square.high) - square.low) + a.low) / (root + root));
 }
 
+/// Runs of `run` lanes of a and b by turns: the even runs of both, and the odd ones.
+struct EightMerged {
+  Eight even, odd;
+};
+#if NOETHER_EIGHT_REGISTERS == 1
+template <int run> NOETHER_EIGHT_INLINE EightMerged merged(const Eight& a, const Eight& b) {
+  EightMerged m;
+  const EightRegister &x = a.r[0], &y = b.r[0];
+  if constexpr (run == 1) {
+    m.even.r[0] = __builtin_shufflevector(x, y, 0, 8, 2, 10, 4, 12, 6, 14);
+    m.odd.r[0] = __builtin_shufflevector(x, y, 1, 9, 3, 11, 5, 13, 7, 15);
+  } else if constexpr (run == 2) {
+    m.even.r[0] = __builtin_shufflevector(x, y, 0, 1, 8, 9, 4, 5, 12, 13);
+    m.odd.r[0] = __builtin_shufflevector(x, y, 2, 3, 10, 11, 6, 7, 14, 15);
+  } else {
+    m.even.r[0] = __builtin_shufflevector(x, y, 0, 1, 2, 3, 8, 9, 10, 11);
+    m.odd.r[0] = __builtin_shufflevector(x, y, 4, 5, 6, 7, 12, 13, 14, 15);
+  }
+  return m;
+}
+#else
+template <int run> NOETHER_EIGHT_INLINE EightMerged merged(const Eight& a, const Eight& b) {
+  EightMerged m;
+  for (int k = 0; k < eight_registers; ++k) {
+    if constexpr (run < eight_width) {
+#if NOETHER_EIGHT_REGISTERS == 2
+      m.even.r[k] =
+          EightRegister(run == 1 ? _mm256_unpacklo_pd(a.r[k], b.r[k]) : _mm256_permute2f128_pd(a.r[k], b.r[k], 0x20));
+      m.odd.r[k] =
+          EightRegister(run == 1 ? _mm256_unpackhi_pd(a.r[k], b.r[k]) : _mm256_permute2f128_pd(a.r[k], b.r[k], 0x31));
+#else
+      m.even.r[k] = __builtin_shufflevector(a.r[k], b.r[k], 0, 2);
+      m.odd.r[k] = __builtin_shufflevector(a.r[k], b.r[k], 1, 3);
+#endif
+    } else {
+      constexpr int registers = run / eight_width;  // of a run
+      const Eight& from = k / registers % 2 == 0 ? a : b;
+      const int first = k / (2 * registers) * 2 * registers + k % registers;
+      m.even.r[k] = from.r[first];
+      m.odd.r[k] = from.r[first + registers];
+    }
+  }
+  return m;
+}
+#endif
+
+/// All lanes of eight rows joined, those of row k in lane k, in one order at every level. @param row  gives row k
+template <class Row, class Join, int rows = 8>
+NOETHER_EIGHT_INLINE Eight joined_lanes(const Row& row, const Join& join, int first = 0) {
+  if constexpr (rows == 1) {
+    return row(first);
+  } else {
+    const auto half = [&](int from) { return joined_lanes<Row, Join, rows / 2>(row, join, from); };
+    const EightMerged m = merged<rows / 2>(half(first), half(first + rows / 2));
+    return join(m.even, m.odd);
+  }
+}
+template <class Row> NOETHER_EIGHT_INLINE Eight sums_of_lanes(const Row& row) {
+  return joined_lanes(row, [](const Eight& a, const Eight& b) { return a + b; });
+}
+/// The same sums in two words.
+template <int rows = 8> NOETHER_EIGHT_INLINE EightWide sums_of_lanes(const EightWide (&row)[8], int first = 0) {
+  if constexpr (rows == 1) {
+    return row[first];
+  } else {
+    const EightWide a = sums_of_lanes<rows / 2>(row, first), b = sums_of_lanes<rows / 2>(row, first + rows / 2);
+    const EightMerged high = merged<rows / 2>(a.high, b.high), low = merged<rows / 2>(a.low, b.low);
+    return EightWide{high.even, low.even} + EightWide{high.odd, low.odd};
+  }
+}
+
 /// Vectors of eight bodies.
 struct EightWides {
   EightWide x, y, z;

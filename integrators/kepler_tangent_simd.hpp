@@ -36,6 +36,9 @@ constexpr double sixth = 1.0 / 6, sixth_low = static_cast<double>(1.0L / 6 - sta
 struct EightSixFunctions {
   Eight g0, g1, g2, g3, g4, g5;
 
+  NOETHER_EIGHT_INLINE EightSixFunctions(const Eight& at0, const Eight& at1, const Eight& at2, const Eight& at3,
+                                         const Eight& at4, const Eight& at5)
+      : g0(at0), g1(at1), g2(at2), g3(at3), g4(at4), g5(at5) {}
   NOETHER_EIGHT_INLINE EightSixFunctions(const Eight& beta, const Eight& s) {
     const Eight part = s * Eight(0.5), square = part * part, z = beta * square, z2 = z * z, third = part * square;
     g4 = square * square * fourth_series.at(z, z2);
@@ -100,6 +103,7 @@ struct EightTangents {
   const EightStarts& a;
   const EightSixFunctions& g;
   Eight t, r, r_inverse, g2_beta, g3_beta, minus_mu, by_r, twice;
+  Eight bend;  ///< f - 1
   EightSlopes s_by;
 
   NOETHER_EIGHT_INLINE EightTangents(const EightStarts& start, const EightSixFunctions& at, const Eight& s,
@@ -115,6 +119,7 @@ struct EightTangents {
     s_by.beta = (a.r * g.g3 - a.eta * g2_beta - a.zeta * g3_beta) * r_inverse;
     minus_mu = Eight(0.0) - a.mu;
     by_r = minus_mu * a.r_inverse;
+    bend = by_r * g.g2;
     twice = (a.mu + a.mu) * (a.r_inverse * a.r_inverse);
   }
   NOETHER_EIGHT_INLINE EightSlopes by(const Eight& along_s, const Eight& by_beta) const {
@@ -129,7 +134,7 @@ struct EightTangents {
   NOETHER_EIGHT_INLINE EightHalf upper() const {
     EightHalf h;
     const Eight part = g.g2 * a.r_inverse;
-    h.f = Eight(1.0) - a.mu * part;
+    h.f = Eight(1.0) + bend;
     h.g = t - a.mu * g.g3;
     EightSlopes of_f = by(g.g1 * a.r_inverse, g2_beta * a.r_inverse);
     of_f.r = of_f.r - part * a.r_inverse;

@@ -58,8 +58,8 @@ EnckeGauss::EnckeGauss(std::string_view name) : name_(name) {
   const auto ahead = last_polynomial(table);
   for (std::size_t i = 0; i < stages; ++i) {
     c_[i] = split_in_two(table.c[i], c_low_[i]);
-    b_[0][i] = split_in_two(table.b[i], b_[1][i]);
-    last_[i] = static_cast<double>(last[i]);
+    weights_.end[0][i] = split_in_two(table.b[i], weights_.end[1][i]);
+    weights_.last[i] = static_cast<double>(last[i]);
     twice_[0][i] = split_in_two(twice[i], twice_[1][i]);
     for (std::size_t j = 0; j < stages; ++j) ahead_[stages * j + i] = ahead[i][j];
     for (std::size_t j = 0; j < stages; ++j) a_[stages * j + i] = static_cast<double>(table.a[i][j]);
@@ -154,7 +154,7 @@ StepResult EnckeGauss::step(VectorField<double>& f, const double& t, Vector<doub
   if (made.failure) return made;
   if (h == h_) predict();
   made.failure = sweep(f, t, h);
-  if (!made.failure) made.failure = unresolved(h);
+  if (!made.failure) made.failure = end_stages(h);
   if (!made.failure) made.failure = close(y, h);
   if (made.failure) return made;
   h_ = h;
@@ -229,10 +229,7 @@ std::optional<Failure> EnckeGauss::find_orbits(const Body& body, EnckeBody& rows
 }
 
 /// Perturbations as the polynomial of the last step has them in this one.
-void EnckeGauss::predict() {
-  encke_kernels().predict(rows_.data(), std::ssize(rows_), ahead_.data());
-  encke_kernels().take(rows_.data(), std::ssize(rows_));
-}
+void EnckeGauss::predict() { encke_kernels().predict(rows_.data(), std::ssize(rows_), ahead_.data()); }
 
 /// Forces that are not gravity of points, at all stages; positions alone count, relative to the centre of mass and its
 /// even motion.
@@ -270,7 +267,7 @@ std::optional<Failure> EnckeGauss::sweep(VectorField<double>& f, double t, doubl
     f.evaluations().force += stages;
     if (beside_) add_forces_beside(f, t);
     if (beside_ && f.failure()) return f.failure();
-    const EnckeChange change = encke_kernels().take(rows_.data(), std::ssize(rows_));
+    const EnckeChange change = encke_kernels().take(rows_.data(), std::ssize(rows_), round == 1);
     const double relative = std::sqrt(change.relative2);
     if (!std::isfinite(relative)) break;
     const double shrinks = round > 1 ? relative / before : 1;
@@ -286,42 +283,35 @@ std::optional<Failure> EnckeGauss::sweep(VectorField<double>& f, double t, doubl
       fmt::format("the departures from Kepler orbits do not converge with a step of {:.6g}; {}", h, ways_out)};
 }
 
-/// Perturbations that a polynomial of degree 7 does not follow, unless they are too small to matter.
-std::optional<Failure> EnckeGauss::unresolved(double h) const {
-  for (std::size_t m = 0; m < bodies_.size(); ++m) {
-    const EnckeBody& rows = rows_[m];
-    double last2 = 0, largest2 = 0, nearest2 = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < 3; ++k) {
-      double last = 0;
-      for (std::size_t i = 0; i < stages; ++i) last += last_[i] * rows.perturbation[k][i];
-      last2 += last * last;
+/// Sums over the stages, for the end. @return what perturbations that a polynomial of degree 7 does not follow end the
+/// run, unless they are too small to matter
+std::optional<Failure> EnckeGauss::end_stages(double h) {
+  constexpr double negligible = 1e-14 * 1e-14, rough = rough_perturbations * rough_perturbations;
+  for (std::size_t e = 0; e < eights_.size(); ++e) {
+    EnckeEight& eight = eights_[e];
+    std::array<const EnckeBody*, stages> bodies{};
+    for (std::size_t lane = 0; lane < stages; ++lane) {
+      const EnckeBody& rows = rows_[in_lane(e * stages + lane)];
+      bodies[lane] = &rows;
+      eight.last_s[lane] = rows.last_s;
+      eight.last_r[lane] = rows.last_r;
+      eight.last_eta[lane] = rows.last_eta;
     }
-    for (std::size_t i = 0; i < stages; ++i) {
-      double size2 = 0;
-      for (std::size_t k = 0; k < 3; ++k) size2 += rows.perturbation[k][i] * rows.perturbation[k][i];
-      largest2 = std::max(largest2, size2);
-      nearest2 = std::min(nearest2, 1 / rows.inverse_r2[i]);
+    encke_word_kernels().sum(bodies.data(), weights_, eight);
+    for (std::size_t lane = 0; lane < stages; ++lane) {
+      const double last2 = eight.last2[lane];
+      const bool matters = h * h * h * h * last2 * eight.nearest[lane] > negligible;
+      if (!matters || last2 <= rough * eight.largest2[lane]) continue;
+      return Failure{
+          Outcome::Kind::solver_failure, bodies_[in_lane(e * stages + lane)].particle, "departure",
+          fmt::format("perturbations change too fast to be followed with a step of {:.6g}; {}", h, ways_out)};
     }
-    constexpr double negligible = 1e-14;
-    const bool matters = h * h * std::sqrt(last2) > negligible * std::sqrt(nearest2);
-    if (!matters || last2 <= rough_perturbations * rough_perturbations * largest2) continue;
-    return Failure{Outcome::Kind::solver_failure, bodies_[m].particle, "departure",
-                   fmt::format("perturbations change too fast to be followed with a step of {:.6g}; {}", h, ways_out)};
   }
   return {};
 }
 
 /// The arcs in double-double, the departures at the end, and the centre of mass.
 std::optional<Failure> EnckeGauss::close(Vector<double>& y, double h) {
-  for (std::size_t m = 0; m < eights_.size() * stages; ++m) {
-    EnckeEight& eight = eights_[m / stages];
-    const EnckeBody& rows = rows_[in_lane(m)];
-    const std::size_t lane = m % stages;
-    if (m < bodies_.size()) encke_word_kernels().sum(rows, b_, eight, static_cast<std::ptrdiff_t>(lane));
-    eight.last_s[lane] = rows.last_s;
-    eight.last_r[lane] = rows.last_r;
-    eight.last_eta[lane] = rows.last_eta;
-  }
   for (std::size_t e = 0; e < eights_.size(); ++e) {
     const unsigned missed = encke_word_kernels().advance(eights_[e], h, tau_[0][stages - 1]);
     for (std::size_t m = e * stages; m < std::min((e + 1) * stages, bodies_.size()); ++m) {
@@ -333,7 +323,7 @@ std::optional<Failure> EnckeGauss::close(Vector<double>& y, double h) {
     double way = 0, speed = 0;
     for (std::size_t i = 0; i < stages; ++i) {
       way += twice_[0][i] * drift_[k][i] + twice_[1][i] * drift_[k][i];
-      speed += b_[0][i] * drift_[k][i] + b_[1][i] * drift_[k][i];
+      speed += weights_.end[0][i] * drift_[k][i] + weights_.end[1][i] * drift_[k][i];
     }
     push[k] = h * h * way;
     push[k + 3] = h * speed;

@@ -3,7 +3,7 @@
 
 #include "integrators/kepler_tangent.hpp"
 #include "integrators/method.hpp"
-#include "integrators/methods/encke_row.hpp"
+#include "integrators/methods/encke_words_simd.hpp"
 #include "numbers/double_double.hpp"
 
 #include <array>
@@ -76,15 +76,16 @@ class EnckeGauss final : public Method<double> {
   void predict();
   void add_forces_beside(VectorField<double>& f, double t);
   std::optional<Failure> sweep(VectorField<double>& f, double t, double h);
-  std::optional<Failure> unresolved(double h) const;
+  std::optional<Failure> end_stages(double h);
   std::optional<Failure> close(Vector<double>& y, double h);
   bool advance_one(std::size_t body, double h);
   Failure no_arc(const Body& body, double h) const;
 
   std::string_view name_;
-  Lanes c_{}, c_low_{}, last_{};                ///< `last_`: weights of the last Legendre coefficient
-  alignas(64) EightWords b_ = {}, twice_ = {};  ///< of the end: b, b a; what rounding has taken is the second word
-  alignas(64) EightWords tau_ = {};             ///< times of stages in the step
+  Lanes c_{}, c_low_{};
+  EnckeWeights weights_;
+  std::array<Lanes, 2> twice_{};     ///< b a, and what rounding has taken
+  alignas(64) EightWords tau_ = {};  ///< times of stages in the step
   /// By columns: a_[8 j + i] is a_ij, ahead_[8 j + i] the weight of stage j of the last step in its polynomial at 1 +
   /// c_i.
   alignas(64) std::array<double, stages * stages> a_{}, ahead_{};

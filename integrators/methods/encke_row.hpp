@@ -11,8 +11,10 @@ struct alignas(64) EnckeBody {
   double away[3][8] = {}, place[3][8] = {}, pull[3][8] = {};  ///< d; q; G m q / |q|^3
   double perturbation[3][8] = {}, fresh[3][8] = {};           ///< p, as at hand, and by the sweep that goes on
   double rate[6][8] = {};                                     ///< y': of x, of v
+  double functions[6][8] = {};                                ///< G_0 to G_5 at the stages
   double arc[8] = {};                                         ///< universal variables of the arcs
   double x0[3] = {}, v0[3] = {};                ///< at the beginning of the step, relative to the heaviest body
+  double inverse_size2 = 0;                     ///< of p: 1 / |p|^2, the largest of the stages in the first sweep
   double gm = 0, mu = 0;                        ///< G m, G (M + m)
   double last_s = 0, last_r = 0, last_eta = 0;  ///< of the orbit at the last stage: s, |k|, k . k'
   unsigned missed = 0;  ///< a bit for each stage whose arc is too long, or was not found to rounding
@@ -29,6 +31,8 @@ struct alignas(64) EnckeEight {
   EightWords own[6] = {};                                   ///< relative to the heaviest body
   EightWords moved[6] = {};                                 ///< by the step, relative to the heaviest body
   EightWords sums[6] = {};                                  ///< of the stages' rates, by both words of weights
+  double last2[8] = {}, largest2[8] = {}, nearest[8] = {};  ///< of p: the last Legendre coefficient and the largest,
+                                                            ///< squared; the largest 1 / |k|^2
   double last_s[8] = {}, last_r[8] = {}, last_eta[8] = {};  ///< as bodies have them
 };
 

@@ -51,13 +51,8 @@ NOETHER_EIGHT_INLINE Eight first_look(const EightStarts& a, const Eight& t) {
   return wide - (wide - next);
 }
 
-void put_upper(const EightHalf& half, EnckeBody& body) {
-  const Eight* const rows[] = {&half.f, &half.g, &half.f_x, &half.f_eta, &half.f_v, &half.g_x, &half.g_eta, &half.g_v};
-  for (int k = 0; k < 8; ++k) store_eight(*rows[k], body.upper[k]);
-}
-
-/// The orbit from where the first look has led.
-void put_orbit(EnckeBody& body, const EightWords& tau) {
+/// Universal functions and their variable at the stages, from where the first look has led.
+NOETHER_EIGHT_INLINE void put_functions(EnckeBody& body, const EightWords& tau) {
   const EightStarts a = start_of(body);
   const Eight t = load_eight(tau[0]), cut = load_eight(body.arc);
   EightSixFunctions g(a.beta, cut);
@@ -66,27 +61,40 @@ void put_orbit(EnckeBody& body, const EightWords& tau) {
   const Eight first = missing * over, d = first - Eight(0.5) * eta * over * first * first;
   g.shift(a.beta, d);
   const Eight s = cut + d;
-  const EightTangents tangents(a, g, s, t);
-  put_upper(tangents.upper(), body);
-  const Eight along_x = Eight(0.0) - a.mu * g.g2 * a.r_inverse, along_v = t - a.mu * g.g3;
-  const Eights x0 = same(body.x0), place = x0 + (along_x * x0 + along_v * same(body.v0));
-  store_eights(place, body.orbit);
-  const Eight r2 = norm2(place), inverse = Eight(1.0) / r2;
-  store_eight(inverse, body.inverse_r2);
-  store_eight(a.mu * inverse * square_root(inverse), body.mu_r3);
   store_eight(s, body.arc);
-  alignas(64) double r[stages], slope[stages];
-  store_eight(tangents.r, r);
-  store_eight(a.eta * g.g0 + a.zeta * g.g1, slope);
-  body.last_s = body.arc[stages - 1], body.last_r = r[stages - 1], body.last_eta = slope[stages - 1];
+  const Eight* const all[] = {&g.g0, &g.g1, &g.g2, &g.g3, &g.g4, &g.g5};
+  for (int k = 0; k < 6; ++k) store_eight(*all[k], body.functions[k]);
   // What a shift leaves is of the order d^3, and beyond |beta s^2| = 4 the series is not good.
   body.missed = exceeding(absolute(a.beta * s * s), Eight(4.0)) | exceeding(absolute(d), Eight(0x1p-23) * absolute(s));
 }
 
-/// Bodies take turns in both parts, because each is one long chain of operations: those of two overlap.
+NOETHER_EIGHT_INLINE void put_orbit(EnckeBody& body, const EightWords& tau) {
+  const EightStarts a = start_of(body);
+  const Eight t = load_eight(tau[0]), s = load_eight(body.arc);
+  const auto function = [&](int k) { return load_eight(body.functions[k]); };
+  const EightSixFunctions g{function(0), function(1), function(2), function(3), function(4), function(5)};
+  const EightTangents tangents(a, g, s, t);
+  const EightHalf upper = tangents.upper();
+  const Eight* const rows[] = {&upper.f,   &upper.g,   &upper.f_x,   &upper.f_eta,
+                               &upper.f_v, &upper.g_x, &upper.g_eta, &upper.g_v};
+  for (int k = 0; k < 8; ++k) store_eight(*rows[k], body.upper[k]);
+  const Eights x0 = same(body.x0), place = x0 + (tangents.bend * x0 + upper.g * same(body.v0));
+  store_eights(place, body.orbit);
+  const Eight r2 = norm2(place), inverse = Eight(1.0) / r2;
+  store_eight(inverse, body.inverse_r2);
+  store_eight(a.mu * inverse * square_root(inverse), body.mu_r3);
+  const int last = stages - 1;
+  alignas(64) double r[stages];
+  store_eight(tangents.r, r);
+  body.last_s = body.arc[last], body.last_r = r[last];
+  body.last_eta = a.eta.r[0][0] * body.functions[0][last] + a.zeta.r[0][0] * body.functions[1][last];
+}
+
+/// Each part is a long chain of operations for a body: those of neighbours overlap where no part is too long.
 void orbits(EnckeBody* bodies, std::ptrdiff_t n, const EightWords& tau) {
-  for (std::ptrdiff_t m = 0; m < n; ++m)
-    store_eight(first_look(start_of(bodies[m]), load_eight(tau[0])), bodies[m].arc);
+  const Eight t = load_eight(tau[0]);
+  for (std::ptrdiff_t m = 0; m < n; ++m) store_eight(first_look(start_of(bodies[m]), t), bodies[m].arc);
+  for (std::ptrdiff_t m = 0; m < n; ++m) put_functions(bodies[m], tau);
   for (std::ptrdiff_t m = 0; m < n; ++m) put_orbit(bodies[m], tau);
 }
 
@@ -153,33 +161,39 @@ double attract(EnckeBody* bodies, std::ptrdiff_t n) {
   return largest_lane(most);
 }
 
-void predict(EnckeBody* bodies, std::ptrdiff_t n, const double* w) {
-  for (std::ptrdiff_t m = 0; m < n; ++m) store_eights(sums_over_stages(w, bodies[m].perturbation), bodies[m].fresh);
+/// Perturbations to be at hand, and the rates that follow.
+NOETHER_EIGHT_INLINE void put_perturbation(EnckeBody& body, const Eights& p) {
+  store_eights(p, body.perturbation);
+  const auto upper = [&](int k) { return load_eight(body.upper[k]); };
+  const Eight ax = dot(body.x0, p), av = dot(body.v0, p), across = upper(3) * ax + upper(6) * av;
+  const Eight along_x = upper(2) * ax + upper(5) * av, along_v = upper(4) * ax + upper(7) * av;
+  const Eights x0 = same(body.x0), v0 = same(body.v0), none{0.0, 0.0, 0.0};
+  store_eights(none - (upper(1) * p + (across * x0 + along_v * v0)), body.rate);
+  store_eights(upper(0) * p + (along_x * x0 + across * v0), body.rate + 3);
 }
 
-EnckeChange take(EnckeBody* bodies, std::ptrdiff_t n) {
-  EnckeChange worst;
+void predict(EnckeBody* bodies, std::ptrdiff_t n, const double* w) {
+  for (std::ptrdiff_t m = 0; m < n; ++m) put_perturbation(bodies[m], sums_over_stages(w, bodies[m].perturbation));
+}
+
+EnckeChange take(EnckeBody* bodies, std::ptrdiff_t n, bool first) {
+  Eight relative2(0.0), moves2(0.0), all(0.0);
   for (std::ptrdiff_t m = 0; m < n; ++m) {
     EnckeBody& body = bodies[m];
     const Eights p = load_eights(body.fresh), old = load_eights(body.perturbation);
-    store_eights(p, body.perturbation);
-    const auto upper = [&](int k) { return load_eight(body.upper[k]); };
-    const Eight ax = dot(body.x0, p), av = dot(body.v0, p), across = upper(3) * ax + upper(6) * av;
-    const Eight along_x = upper(2) * ax + upper(5) * av, along_v = upper(4) * ax + upper(7) * av;
-    const Eights x0 = same(body.x0), v0 = same(body.v0), none{0.0, 0.0, 0.0};
-    store_eights(none - (upper(1) * p + (across * x0 + along_v * v0)), body.rate);
-    store_eights(upper(0) * p + (along_x * x0 + across * v0), body.rate + 3);
-
-    const Eight change2 = norm2(p - old), size2 = larger(norm2(p), norm2(old));
-    constexpr double most = __DBL_MAX__;
-    if (exceeding(change2, Eight(most)) != 0) return {__builtin_inf(), __builtin_inf()};
-    const double change = largest_lane(change2);
-    if (change == 0) continue;
-    const double relative = change / largest_lane(size2), moves = change * largest_lane(load_eight(body.inverse_r2));
-    worst.relative2 = relative > worst.relative2 ? relative : worst.relative2;
-    worst.moves2 = moves > worst.moves2 ? moves : worst.moves2;
+    const Eight change2 = norm2(p - old);
+    if (first) {
+      const double size2 = largest_lane(larger(norm2(p), norm2(old)));
+      body.inverse_size2 = size2 > 0 ? 1 / size2 : 0;
+    }
+    all = all + change2;
+    relative2 = larger(change2 * Eight(body.inverse_size2), relative2);
+    moves2 = larger(change2 * load_eight(body.inverse_r2), moves2);
+    put_perturbation(body, p);
   }
-  return worst;
+  constexpr double most = __DBL_MAX__;
+  if (exceeding(all, Eight(most)) != 0) return {__builtin_inf(), __builtin_inf()};
+  return {largest_lane(relative2), largest_lane(moves2)};
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 
 namespace noether {
 
-/// The largest change of perturbations by a sweep, squared: relative to the largest of the body, and over the square of
-/// the body's distance from the heaviest one. Both are infinite where one is not a number.
+/// The largest change of perturbations by a sweep, squared: relative to the largest of the body in the first sweep, and
+/// over the square of the body's distance from the heaviest one. Both are infinite where one is not a number.
 struct EnckeChange {
   double relative2 = 0, moves2 = 0;
 };
@@ -23,10 +23,10 @@ struct EnckeKernels {
   void (*depart)(EnckeBody* bodies, std::ptrdiff_t n, const double* a, double h);
   /// Fresh perturbations by gravity. @return the largest G (m + m') / r^3 of two bodies
   double (*attract)(EnckeBody* bodies, std::ptrdiff_t n);
-  /// Fresh perturbations as a polynomial has them in the next step, from those at hand. @param w  as `a`
+  /// Perturbations as a polynomial has them in the next step, from those at hand, and rates. @param w  as `a`
   void (*predict)(EnckeBody* bodies, std::ptrdiff_t n, const double* w);
-  /// The fresh perturbations become those at hand, and the rates follow.
-  EnckeChange (*take)(EnckeBody* bodies, std::ptrdiff_t n);
+  /// The fresh perturbations become those at hand, and the rates follow. @param first  sweep of the step
+  EnckeChange (*take)(EnckeBody* bodies, std::ptrdiff_t n, bool first);
 };
 
 NOETHER_KERNELS(EnckeKernels, encke_kernels)

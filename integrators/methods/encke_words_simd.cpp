@@ -21,13 +21,28 @@ void relate(EnckeEight* eights, std::ptrdiff_t n, EightWords& primary) {
   }
 }
 
-void sum(const EnckeBody& body, const EightWords& weights, EnckeEight& eight, std::ptrdiff_t lane) {
-  const Eight b = load_eight(weights[0]), b_low = load_eight(weights[1]);
+void sum(const EnckeBody* const* bodies, const EnckeWeights& weights, EnckeEight& eight) {
+  const Eight b = load_eight(weights.end[0]), b_low = load_eight(weights.end[1]), last = load_eight(weights.last);
   for (int k = 0; k < 6; ++k) {
-    const Eight rate = load_eight(body.rate[k]);
-    eight.sums[k][0][lane] = sum_of_lanes(b * rate).r[0][0];
-    eight.sums[k][1][lane] = sum_of_lanes(b_low * rate).r[0][0];
+    const auto rate = [&](int m) { return load_eight(bodies[m]->rate[k]); };
+    store_eight(sums_of_lanes([&](int m) { return b * rate(m); }), eight.sums[k][0]);
+    store_eight(sums_of_lanes([&](int m) { return b_low * rate(m); }), eight.sums[k][1]);
   }
+  Eight last2(0.0);
+  for (int k = 0; k < 3; ++k) {
+    const Eight one = sums_of_lanes([&](int m) { return last * load_eight(bodies[m]->perturbation[k]); });
+    last2 = last2 + one * one;
+  }
+  const auto larger = [](const Eight& x, const Eight& y) {
+    return eight_of([&](int k) { return x.r[k] > y.r[k] ? x.r[k] : y.r[k]; });
+  };
+  const auto size2 = [&](int m) {
+    const Eights p = load_eights(bodies[m]->perturbation);
+    return dot(p, p);
+  };
+  store_eight(last2, eight.last2);
+  store_eight(joined_lanes(size2, larger), eight.largest2);
+  store_eight(joined_lanes([&](int m) { return load_eight(bodies[m]->inverse_r2); }, larger), eight.nearest);
 }
 
 /// Departures at the end, from one word of the sums.
@@ -71,28 +86,23 @@ unsigned advance(EnckeEight& eight, double length, double tau) {
   return ends.missed | arcs.extreme() | exceeding(absolute(d), Eight(0x1p-20) * absolute(s));
 }
 
-/// The sum of all lanes in each.
-NOETHER_EIGHT_INLINE EightWide sum_of_lanes(const EightWide& a) {
-  const EightWide four = a + EightWide{rotate<4>(a.high), rotate<4>(a.low)};
-  const EightWide two = four + EightWide{rotate<2>(four.high), rotate<2>(four.low)};
-  return two + EightWide{rotate<1>(two.high), rotate<1>(two.low)};
-}
-
 void place(EnckeEight* eights, std::ptrdiff_t n, EightWords& primary, const double* push, double h) {
-  alignas(64) EightWords change = {}, speed = {};
-  for (int k = 0; k < 6; ++k) {
-    EightWide sum{Eight(0.0), Eight(0.0)};
-    for (std::ptrdiff_t m = 0; m < n; ++m) {
-      const EightWide moved = load_wide(eights[m].moved[k]);
-      const EightWide left = k < 3 ? Eight(h) * load_wide(eights[m].own[k < 3 ? k + 3 : 0]) - moved : -moved;
-      sum = sum + load_wide(eights[m].share) * left;
-    }
-    const EightWide whole = sum_of_lanes(sum);
-    for (int word = 0; word < 2; ++word) {
-      change[word][k] = (word == 0 ? whole.high : whole.low).r[0][0];
-      if (k < 3) speed[word][k] = primary[word][k + 3];
+  alignas(64) EightWords change, speed = {};
+  EightWide left[8];
+  for (int k = 0; k < 8; ++k) left[k] = {Eight(0.0), Eight(0.0)};
+  for (std::ptrdiff_t m = 0; m < n; ++m) {
+    const EnckeEight& eight = eights[m];
+    const EightWide share = load_wide(eight.share);
+    for (int k = 0; k < 3; ++k) {
+      const EightWide even_way = Eight(h) * load_wide(eight.own[k + 3]);
+      left[k] = left[k] + share * (even_way - load_wide(eight.moved[k]));
+      left[k + 3] = left[k + 3] - share * load_wide(eight.moved[k + 3]);
     }
   }
+  for (int k = 0; k < 3; ++k) {
+    for (int word = 0; word < 2; ++word) speed[word][k] = primary[word][k + 3];
+  }
+  store_wide(sums_of_lanes(left), change);
   const EightWide moved = (load_wide(change) + Eight(h) * load_wide(speed)) + load_eight(push);
   store_wide(moved, change);
   store_wide(load_wide(primary) + moved, primary);

@@ -9,11 +9,17 @@
 
 namespace noether {
 
+/// Weights of stages.
+struct alignas(64) EnckeWeights {
+  EightWords end = {};  ///< b, in two words
+  double last[8] = {};  ///< of the last Legendre coefficient
+};
+
 struct EnckeWordKernels {
   /// Positions and velocities relative to the heaviest body. @param primary  its six numbers, one a lane
   void (*relate)(EnckeEight* eights, std::ptrdiff_t n, EightWords& primary);
-  /// Sums of a body's rates over the stages, as lane `lane`. @param weights  of the end of the step
-  void (*sum)(const EnckeBody& body, const EightWords& weights, EnckeEight& eight, std::ptrdiff_t lane);
+  /// Sums over the stages of eight bodies, and how well their perturbations are followed.
+  void (*sum)(const EnckeBody* const* bodies, const EnckeWeights& weights, EnckeEight& eight);
   /// What a step of length h moves: Kepler arcs in two words, and departures at their ends.
   /// @param tau  time of the last stage
   /// @return a bit for each lane whose arc is too long, or was not found: it is left to others
