@@ -81,6 +81,7 @@ void EnckeGauss::bind(const VectorField<double>& f) {
   beside_ = f.has_forces_beside_gravity();
   bodies_.clear();
   rows_.clear();
+  const bool alone = n_ == 2 && !beside_;  // an orbit without departures
   DoubleDouble total;
   for (Index i = 0; i < n_; ++i) total += DoubleDouble(masses_[i]);
   for (Index i = 0; i < n_; ++i) {
@@ -89,10 +90,14 @@ void EnckeGauss::bind(const VectorField<double>& f) {
     body.particle = i;
     body.mu = *G * DoubleDouble::sum(heaviest, masses_[i]);
     body.share = DoubleDouble(masses_[i]) / total;
-    bodies_.push_back(body);
     EnckeBody rows;
     rows.gm = *G * masses_[i];
     rows.mu = body.mu.high;
+    if (!alone) {
+      rows.mu_low = body.mu.low;
+      body.mu = DoubleDouble(rows.mu);
+    }
+    bodies_.push_back(body);
     rows_.push_back(rows);
   }
   eights_.assign((bodies_.size() + stages - 1) / stages, EnckeEight{});

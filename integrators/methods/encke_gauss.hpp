@@ -25,15 +25,19 @@ namespace noether {
 /// q is relative to the heaviest body, g what others and other forces add to it. y is zero at the beginning and found
 /// by Gauss's method with 8 stages, whose sweeps contract by the ratio of the perturbation to the attraction. Then the
 /// arc is added in double-double. Everything else is smaller than the motion by that ratio, and computed in doubles: so
-/// the state, of double-doubles, has errors far below the rounding of doubles, and they do not add up to a drift.
+/// the state, of double-doubles, has errors far below the rounding of doubles.
+///
+/// For these not to add up to a drift, what rounding takes from constants counts: weights of the end have two words, and
+/// mu is a double, the same in arcs and in their derivatives, whose low word pulls as a perturbation. Two bodies alone
+/// move along one orbit, whose mu has both words.
 ///
 /// A step that perturbations are too rough for, as in an encounter that it jumps over, ends the run: their last
 /// Legendre coefficient tells. One in which bodies are so near to each other that doubles do not tell their pull well
 /// enough is counted (`Evaluations::unsettled`).
 ///
 /// The centre of mass goes on evenly, or as the forces beside gravity push it. State: both words of y, which particles
-/// keep; the perturbations of the last step, where the next one begins its sweeps.
-/// Stages are in lanes, and so are eight bodies at the beginning and at the end of the step, which are in two words.
+/// keep; the perturbations of the last step, where the next one begins its sweeps. Stages are side by side in lanes, and
+/// so are eight bodies at the beginning and at the end of the step, where numbers have two words.
 /// @cost per step and body 9 Kepler arcs in doubles and one in double-double; 8 sums over pairs for each of 3 to 6
 /// sweeps
 /// @source Encke1852, HairerLubichWanner2006, ReinTamayo2015, Dekker1971
@@ -63,7 +67,7 @@ class EnckeGauss final : public Method<double> {
   /// A body that moves about the heaviest one: lane `number % 8` of row `number / 8`.
   struct Body {
     Index particle = 0;
-    DoubleDouble mu, share;  ///< G (M + m), and m / (sum of all masses)
+    DoubleDouble mu, share;  ///< mu of its orbits, and m / (sum of all masses)
   };
 
   /// The body whose numbers a lane has, counted over all rows of eight; the first of the row where there is none.

@@ -123,8 +123,9 @@ void depart(EnckeBody* bodies, std::ptrdiff_t n, const double* a, double h) {
     store_eights(d, body.away);
     const Eights place = load_eights(body.orbit) + d;
     store_eights(place, body.place);
-    const Eight r2 = norm2(place), pull = Eight(body.gm) / (r2 * square_root(r2));
-    store_eights(pull * place, body.pull);
+    const Eight r2 = norm2(place), cube = Eight(1.0) / (r2 * square_root(r2));
+    store_eights((Eight(body.gm) * cube) * place, body.pull);
+    store_eights((Eight(-body.mu_low) * cube) * place, body.fresh);
   }
 }
 
@@ -136,7 +137,7 @@ NOETHER_EIGHT_INLINE void begin_perturbation(EnckeBody& body) {
   const Eight e = Eight(2.0) * along + norm2(away) * inverse, up = Eight(1.0) + e, whole = up * square_root(up);
   const Eight steep = e * (Eight(3.0) + e * (Eight(3.0) + e)) / (whole * (Eight(1.0) + whole));
   const Eight beyond = steep - Eight(3.0) * along;
-  store_eights((pull * beyond) * orbit + (pull * steep) * away, body.fresh);
+  store_eights(((pull * beyond) * orbit + (pull * steep) * away) + load_eights(body.fresh), body.fresh);
 }
 
 double attract(EnckeBody* bodies, std::ptrdiff_t n) {

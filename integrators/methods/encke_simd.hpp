@@ -19,9 +19,10 @@ struct EnckeKernels {
   /// Arcs of bodies, and their derivatives by the start, at the times tau[0] after the beginning, in two words; bodies
   /// know which are `missed`.
   void (*orbits)(EnckeBody* bodies, std::ptrdiff_t n, const EightWords& tau);
-  /// Departures, places and pulls from the rates. @param a  of shape (8, 8), the stages that are reached side by side
+  /// Departures, places and pulls from the rates, and the first part of fresh perturbations, -mu_low q / |q|^3. @param
+  /// a  of shape (8, 8), the stages that are reached side by side
   void (*depart)(EnckeBody* bodies, std::ptrdiff_t n, const double* a, double h);
-  /// Fresh perturbations by gravity. @return the largest G (m + m') / r^3 of two bodies
+  /// Adds gravity to fresh perturbations. @return the largest G (m + m') / r^3 of two bodies
   double (*attract)(EnckeBody* bodies, std::ptrdiff_t n);
   /// Perturbations as a polynomial has them in the next step, from those at hand, and rates. @param w  as `a`
   void (*predict)(EnckeBody* bodies, std::ptrdiff_t n, const double* w);

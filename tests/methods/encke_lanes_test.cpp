@@ -130,3 +130,24 @@ TEST_CASE("attraction in lanes is Newton's, and pulls of both bodies cancel", "[
     CHECK(std::abs(strongest / largest - 1) < 1e-14);
   });
 }
+
+TEST_CASE("what rounding takes from mu pulls towards the heaviest body", "[encke][lanes]") {
+  at_each_level([] {
+    EnckeBody body = encke_body(0.1);
+    body.mu_low = 3e-17;
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t i = 0; i < 8; ++i) body.orbit[k][i] = body.x0[k] + stage_parts[i];
+    }
+    alignas(64) std::array<double, 64> weights{};
+    encke_kernels().depart(&body, 1, weights.data(), 0.1);
+    encke_kernels().attract(&body, 1);
+    for (std::size_t i = 0; i < 8; ++i) {
+      const Vec3<double> at(body.orbit[0][i], body.orbit[1][i], body.orbit[2][i]);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double pull = -3e-17 * body.orbit[k][i] / std::pow(norm2(at), 1.5);
+        CAPTURE(i, k);
+        CHECK(std::abs(body.fresh[k][i] - pull) < 1e-14 * std::abs(pull));
+      }
+    }
+  });
+}
