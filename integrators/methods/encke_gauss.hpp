@@ -3,7 +3,7 @@
 
 #include "integrators/kepler_tangent.hpp"
 #include "integrators/method.hpp"
-#include "integrators/methods/encke_words_simd.hpp"
+#include "integrators/methods/encke_row.hpp"
 #include "numbers/double_double.hpp"
 
 #include <array>
@@ -27,17 +27,17 @@ namespace noether {
 /// arc is added in double-double. Everything else is smaller than the motion by that ratio, and computed in doubles: so
 /// the state, of double-doubles, has errors far below the rounding of doubles.
 ///
-/// For these not to add up to a drift, what rounding takes from constants counts: weights of the end have two words, and
-/// mu is a double, the same in arcs and in their derivatives, whose low word pulls as a perturbation. Two bodies alone
-/// move along one orbit, whose mu has both words.
+/// For these not to add up to a drift, what rounding takes from constants counts: weights of the end have two words,
+/// and mu is a double, the same in arcs and in their derivatives, whose low word pulls as a perturbation. Two bodies
+/// alone move along one orbit, whose mu has both words.
 ///
 /// A step that perturbations are too rough for, as in an encounter that it jumps over, ends the run: their last
 /// Legendre coefficient tells. One in which bodies are so near to each other that doubles do not tell their pull well
 /// enough is counted (`Evaluations::unsettled`).
 ///
 /// The centre of mass goes on evenly, or as the forces beside gravity push it. State: both words of y, which particles
-/// keep; the perturbations of the last step, where the next one begins its sweeps. Stages are side by side in lanes, and
-/// so are eight bodies at the beginning and at the end of the step, where numbers have two words.
+/// keep; the perturbations of the last step, where the next one begins its sweeps. Stages are side by side in lanes,
+/// and so are eight bodies at the beginning and at the end of the step, where numbers have two words.
 /// @cost per step and body 9 Kepler arcs in doubles and one in double-double; 8 sums over pairs for each of 3 to 6
 /// sweeps
 /// @source Encke1852, HairerLubichWanner2006, ReinTamayo2015, Dekker1971

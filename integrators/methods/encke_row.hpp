@@ -36,4 +36,10 @@ struct alignas(64) EnckeEight {
   double last_s[8] = {}, last_r[8] = {}, last_eta[8] = {};  ///< as bodies have them
 };
 
+/// Weights of stages.
+struct alignas(64) EnckeWeights {
+  EightWords end = {};  ///< b, in two words
+  double last[8] = {};  ///< of the last Legendre coefficient
+};
+
 }  // namespace noether

@@ -9,12 +9,6 @@
 
 namespace noether {
 
-/// Weights of stages.
-struct alignas(64) EnckeWeights {
-  EightWords end = {};  ///< b, in two words
-  double last[8] = {};  ///< of the last Legendre coefficient
-};
-
 struct EnckeWordKernels {
   /// Positions and velocities relative to the heaviest body. @param primary  its six numbers, one a lane
   void (*relate)(EnckeEight* eights, std::ptrdiff_t n, EightWords& primary);
