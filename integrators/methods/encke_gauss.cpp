@@ -4,6 +4,7 @@
 #include "integrators/kepler_double_double.hpp"
 #include "integrators/methods/collocation_table.hpp"
 #include "integrators/methods/encke_simd.hpp"
+#include "integrators/methods/encke_words_simd.hpp"
 #include "integrators/methods/last_polynomial.hpp"
 
 #include <fmt/format.h>
@@ -35,7 +36,13 @@ constexpr double rough_perturbations = 0.03;
 /// A second mass above this part of the heaviest one perturbs orbits so much that doubles limit the departures.
 constexpr double dominated = 0.1;
 
-Vec3<double> high_words(const Vec3<DoubleDouble>& a) { return {a[0].high, a[1].high, a[2].high}; }
+Vec3<double> vector_of(const double (&from)[3]) { return {from[0], from[1], from[2]}; }
+
+void put_words(const DoubleDouble& value, EightWords& words, std::size_t lane) {
+  words[0][lane] = value.high;
+  words[1][lane] = value.low;
+}
+DoubleDouble words_at(const EightWords& words, std::size_t lane) { return {words[0][lane], words[1][lane]}; }
 
 double split_in_two(const Quad& x, double& low) {
   const auto high = static_cast<double>(x);
@@ -45,14 +52,14 @@ double split_in_two(const Quad& x, double& low) {
 
 }  // namespace
 
-EnckeGauss::EnckeGauss(std::string_view name) : name_(name), ahead_{} {
+EnckeGauss::EnckeGauss(std::string_view name) : name_(name) {
   const CollocationTable& table = gauss_table(stages);
   const auto twice = table.twice_end(), last = table.last_coefficient();
   const auto ahead = last_polynomial(table);
   for (std::size_t i = 0; i < stages; ++i) {
-    c_[i] = static_cast<double>(table.c[i]);
-    b_[i] = split_in_two(table.b[i], b_low_[i]);
-    last_[i] = static_cast<double>(last[i]);
+    c_[i] = split_in_two(table.c[i], c_low_[i]);
+    weights_.end[0][i] = split_in_two(table.b[i], weights_.end[1][i]);
+    weights_.last[i] = static_cast<double>(last[i]);
     twice_[0][i] = split_in_two(twice[i], twice_[1][i]);
     for (std::size_t j = 0; j < stages; ++j) ahead_[stages * j + i] = ahead[i][j];
     for (std::size_t j = 0; j < stages; ++j) a_[stages * j + i] = static_cast<double>(table.a[i][j]);
@@ -74,6 +81,7 @@ void EnckeGauss::bind(const VectorField<double>& f) {
   beside_ = f.has_forces_beside_gravity();
   bodies_.clear();
   rows_.clear();
+  const bool alone = n_ == 2 && !beside_;  // an orbit without departures
   DoubleDouble total;
   for (Index i = 0; i < n_; ++i) total += DoubleDouble(masses_[i]);
   for (Index i = 0; i < n_; ++i) {
@@ -82,11 +90,21 @@ void EnckeGauss::bind(const VectorField<double>& f) {
     body.particle = i;
     body.mu = *G * DoubleDouble::sum(heaviest, masses_[i]);
     body.share = DoubleDouble(masses_[i]) / total;
-    bodies_.push_back(body);
     EnckeBody rows;
     rows.gm = *G * masses_[i];
     rows.mu = body.mu.high;
+    if (!alone) {
+      rows.mu_low = body.mu.low;
+      body.mu = DoubleDouble(rows.mu);
+    }
+    bodies_.push_back(body);
     rows_.push_back(rows);
+  }
+  eights_.assign((bodies_.size() + stages - 1) / stages, EnckeEight{});
+  for (std::size_t m = 0; m < eights_.size() * stages; ++m) {
+    const Body& body = bodies_[in_lane(m)];
+    put_words(body.mu, eights_[m / stages].mu, m % stages);
+    if (m < bodies_.size()) put_words(body.share, eights_[m / stages].share, m % stages);
   }
   stage_.setZero(f.size());
   stage_push_.setZero(f.size() / 2);
@@ -107,20 +125,31 @@ void EnckeGauss::refuse_equals() const {
                   name_, second, masses_[second] / masses_[primary_], primary_));
 }
 
-EnckeGauss::WideVector EnckeGauss::wide(const Vector<double>& y, Index particle, Index half) const {
-  WideVector made;
-  for (Index k = 0; k < 3; ++k) {
-    const Index at = half + k * n_ + particle;
-    made[k] = DoubleDouble::sum(y[at], low_[at]);
+/// Both words of all particles, side by side.
+void EnckeGauss::gather(const Vector<double>& y) {
+  for (Index k = 0; k < 6; ++k) {
+    const double *const high = y.data() + k * n_, *const low = low_.data() + k * n_;
+    center_[0][k] = high[primary_];
+    center_[1][k] = low[primary_];
+    for (std::size_t m = 0; m < eights_.size() * stages; ++m) {
+      const Index particle = bodies_[in_lane(m)].particle;
+      EightWords& words = eights_[m / stages].at[k];
+      words[0][m % stages] = high[particle];
+      words[1][m % stages] = low[particle];
+    }
   }
-  return made;
 }
 
-void EnckeGauss::put(const WideVector& value, Vector<double>& y, Index particle, Index half) {
-  for (Index k = 0; k < 3; ++k) {
-    const Index at = half + k * n_ + particle;
-    y[at] = value[k].high;
-    low_[at] = value[k].low;
+void EnckeGauss::scatter(Vector<double>& y) {
+  for (Index k = 0; k < 6; ++k) {
+    double *const high = y.data() + k * n_, *const low = low_.data() + k * n_;
+    high[primary_] = center_[0][k];
+    low[primary_] = center_[1][k];
+    for (std::size_t m = 0; m < bodies_.size(); ++m) {
+      const EightWords& words = eights_[m / stages].at[k];
+      high[bodies_[m].particle] = words[0][m % stages];
+      low[bodies_[m].particle] = words[1][m % stages];
+    }
   }
 }
 
@@ -130,7 +159,7 @@ StepResult EnckeGauss::step(VectorField<double>& f, const double& t, Vector<doub
   if (made.failure) return made;
   if (h == h_) predict();
   made.failure = sweep(f, t, h);
-  if (!made.failure) made.failure = unresolved(h);
+  if (!made.failure) made.failure = end_stages(h);
   if (!made.failure) made.failure = close(y, h);
   if (made.failure) return made;
   h_ = h;
@@ -146,63 +175,72 @@ Failure EnckeGauss::no_arc(const Body& body, double h) const {
 
 /// Orbits of all bodies at the beginning of the step; no departures from them yet.
 std::optional<Failure> EnckeGauss::open(const Vector<double>& y, double h) {
-  const WideVector x = wide(y, primary_, 0), v = wide(y, primary_, 3 * n_);
+  gather(y);
+  encke_word_kernels().relate(eights_.data(), std::ssize(eights_), center_);
   for (std::size_t m = 0; m < bodies_.size(); ++m) {
-    Body& body = bodies_[m];
     EnckeBody& rows = rows_[m];
-    body.x = wide(y, body.particle, 0) - x;
-    body.v = wide(y, body.particle, 3 * n_) - v;
-    body.x0 = high_words(body.x);
-    body.v0 = high_words(body.v);
+    const EnckeEight& eight = eights_[m / stages];
     for (std::size_t k = 0; k < 3; ++k) {
-      rows.x0[k] = body.x0[static_cast<Index>(k)];
-      rows.v0[k] = body.v0[static_cast<Index>(k)];
-      std::fill_n(rows.rate_x[k], stages, 0.0);
-      std::fill_n(rows.rate_v[k], stages, 0.0);
-      if (h != h_) std::fill_n(rows.perturbation[k], stages, 0.0);
+      rows.x0[k] = eight.own[k][0][m % stages];
+      rows.v0[k] = eight.own[k + 3][0][m % stages];
     }
-    if (auto failure = find_orbits(body, rows, h)) return failure;
+    if (h == h_) continue;
+    for (auto& p : rows.perturbation) std::fill_n(p, stages, 0.0);
+    for (auto& rate : rows.rate) std::fill_n(rate, stages, 0.0);
+  }
+  for (std::size_t i = 0; i < stages; ++i) {
+    const DoubleDouble tau = DoubleDouble::product(c_[i], h);
+    put_words({tau.high, tau.low + c_low_[i] * h}, tau_, i);
+  }
+  encke_kernels().orbits(rows_.data(), std::ssize(rows_), tau_);
+  for (std::size_t m = 0; m < bodies_.size(); ++m) {
+    if (rows_[m].missed == 0) continue;
+    if (auto failure = find_orbits(bodies_[m], rows_[m], h)) return failure;
   }
   if (!beside_) return {};
-  center_ = {high_words(x), high_words(v)};
-  for (const Body& body : bodies_) {
-    center_.x += body.share.high * body.x0;
-    center_.v += body.share.high * body.v0;
+  for (Index k = 0; k < 3; ++k) {
+    mean_.x[k] = center_[0][k];
+    mean_.v[k] = center_[0][k + 3];
+    for (std::size_t m = 0; m < bodies_.size(); ++m) {
+      mean_.x[k] += bodies_[m].share.high * rows_[m].x0[k];
+      mean_.v[k] += bodies_[m].share.high * rows_[m].v0[k];
+    }
   }
   return {};
 }
 
+/// Orbits at the stages that lanes have missed.
 std::optional<Failure> EnckeGauss::find_orbits(const Body& body, EnckeBody& rows, double h) const {
-  Lanes tau{};
-  for (std::size_t i = 0; i < stages; ++i) tau[i] = c_[i] * h;
-  const unsigned missed = encke_kernels().orbits(rows, tau.data());
+  const Vec3<double> x0 = vector_of(rows.x0), v0 = vector_of(rows.v0);
   for (std::size_t i = 0; i < stages; ++i) {
-    if ((missed >> i & 1U) == 0) continue;
-    const KeplerArc<double> arc = kepler_arc(body.x0, body.v0, body.mu.high, tau[i]);
+    if ((rows.missed >> i & 1U) == 0) continue;
+    const double tau = tau_[0][i];
+    const KeplerArc<double> arc = kepler_arc(x0, v0, rows.mu, tau);
     if (arc.status != KeplerStatus::converged) return no_arc(body, h);
-    const KeplerTangent tangent(body.x0, body.v0, body.mu.high, tau[i], arc.s);
+    const KeplerTangent tangent(x0, v0, rows.mu, tau, arc.s);
     const std::array<double, 8> upper = tangent.upper();
     for (std::size_t k = 0; k < upper.size(); ++k) rows.upper[k][i] = upper[k];
-    const Vec3<double> x = body.x0 + arc.dx;
+    const Vec3<double> x = x0 + arc.dx;
     const double r2 = norm2(x);
     for (std::size_t k = 0; k < 3; ++k) rows.orbit[k][i] = x[static_cast<Index>(k)];
     rows.inverse_r2[i] = 1 / r2;
-    rows.mu_r3[i] = body.mu.high / (r2 * std::sqrt(r2));
+    rows.mu_r3[i] = rows.mu / (r2 * std::sqrt(r2));
+    if (i + 1 < stages) continue;
+    rows.last_s = arc.s;
+    rows.last_r = std::sqrt(r2);
+    rows.last_eta = dot(x, Vec3<double>(v0 + arc.dv));
   }
   return {};
 }
 
 /// Perturbations as the polynomial of the last step has them in this one.
-void EnckeGauss::predict() {
-  encke_kernels().predict(rows_.data(), std::ssize(rows_), ahead_.data());
-  take_perturbations(h_);
-}
+void EnckeGauss::predict() { encke_kernels().predict(rows_.data(), std::ssize(rows_), ahead_.data()); }
 
 /// Forces that are not gravity of points, at all stages; positions alone count, relative to the centre of mass and its
 /// even motion.
-void EnckeGauss::add_forces_beside(VectorField<double>& f, double t, double h) {
+void EnckeGauss::add_forces_beside(VectorField<double>& f, double t) {
   for (std::size_t i = 0; i < stages; ++i) {
-    Vec3<double> x = center_.x + c_[i] * h * center_.v;
+    Vec3<double> x = mean_.x + tau_[0][i] * mean_.v;
     for (std::size_t m = 0; m < bodies_.size(); ++m) {
       for (std::size_t k = 0; k < 3; ++k) x[static_cast<Index>(k)] -= bodies_[m].share.high * rows_[m].place[k][i];
     }
@@ -211,7 +249,7 @@ void EnckeGauss::add_forces_beside(VectorField<double>& f, double t, double h) {
       for (Index k = 0; k < 3; ++k)
         stage_[k * n_ + bodies_[m].particle] = x[k] + rows_[m].place[static_cast<std::size_t>(k)][i];
     }
-    f.accelerations_beside_gravity(t + c_[i] * h, stage_, stage_push_);
+    f.accelerations_beside_gravity(t + tau_[0][i], stage_, stage_push_);
     for (std::size_t k = 0; k < 3; ++k) {
       const double* const push = stage_push_.data() + static_cast<Index>(k) * n_;
       double mean = push[primary_];
@@ -225,25 +263,6 @@ void EnckeGauss::add_forces_beside(VectorField<double>& f, double t, double h) {
   }
 }
 
-/// The fresh perturbations become those at hand, and the rates follow.
-EnckeGauss::Change EnckeGauss::take_perturbations(double h) {
-  encke_kernels().take(rows_.data(), std::ssize(rows_));
-  Change worst;
-  for (const EnckeBody& rows : rows_) {
-    double change = 0, size = 0, inverse = 0;
-    for (std::size_t i = 0; i < stages; ++i) {
-      if (!(rows.change2[i] <= change)) change = rows.change2[i];  // a NaN stays
-      size = std::max(size, rows.size2[i]);
-      inverse = std::max(inverse, rows.inverse_r2[i]);
-    }
-    if (!std::isfinite(change)) return {change, change};
-    if (change == 0) continue;
-    worst.relative = std::max(worst.relative, std::sqrt(change / size));
-    worst.moves = std::max(worst.moves, h * h * std::sqrt(change * inverse));
-  }
-  return worst;
-}
-
 /// @return why perturbations do not stand still, if they do not
 std::optional<Failure> EnckeGauss::sweep(VectorField<double>& f, double t, double h) {
   double before = std::numeric_limits<double>::infinity();
@@ -251,94 +270,101 @@ std::optional<Failure> EnckeGauss::sweep(VectorField<double>& f, double t, doubl
     encke_kernels().depart(rows_.data(), std::ssize(rows_), a_.data(), h);
     strongest_ = encke_kernels().attract(rows_.data(), std::ssize(rows_));
     f.evaluations().force += stages;
-    if (beside_) add_forces_beside(f, t, h);
+    if (beside_) add_forces_beside(f, t);
     if (beside_ && f.failure()) return f.failure();
-    const Change change = take_perturbations(h);
-    if (!std::isfinite(change.relative)) break;
-    const double shrinks = round > 1 ? change.relative / before : 1;
-    if (change.relative * std::min(shrinks, 1.0) <= settled_departures) return {};
+    const EnckeChange change = encke_kernels().take(rows_.data(), std::ssize(rows_), round == 1);
+    const double relative = std::sqrt(change.relative2);
+    if (!std::isfinite(relative)) break;
+    const double shrinks = round > 1 ? relative / before : 1;
+    if (relative * std::min(shrinks, 1.0) <= settled_departures) return {};
     if (round > 2 && shrinks >= 1) {
-      if (change.moves <= departures_may_round) return {};
+      if (h * h * std::sqrt(change.moves2) <= departures_may_round) return {};
       if (round > patient_departures) break;
     }
-    before = change.relative;
+    before = relative;
   }
   return Failure{
       Outcome::Kind::solver_failure, -1, "departures",
       fmt::format("the departures from Kepler orbits do not converge with a step of {:.6g}; {}", h, ways_out)};
 }
 
-/// Perturbations that a polynomial of degree 7 does not follow, unless they are too small to matter.
-std::optional<Failure> EnckeGauss::unresolved(double h) const {
-  for (std::size_t m = 0; m < bodies_.size(); ++m) {
-    const EnckeBody& rows = rows_[m];
-    double last2 = 0, largest2 = 0, nearest2 = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < 3; ++k) {
-      double last = 0;
-      for (std::size_t i = 0; i < stages; ++i) last += last_[i] * rows.perturbation[k][i];
-      last2 += last * last;
+/// Sums over the stages, for the end. @return what perturbations that a polynomial of degree 7 does not follow end the
+/// run, unless they are too small to matter
+std::optional<Failure> EnckeGauss::end_stages(double h) {
+  constexpr double negligible = 1e-14 * 1e-14, rough = rough_perturbations * rough_perturbations;
+  for (std::size_t e = 0; e < eights_.size(); ++e) {
+    EnckeEight& eight = eights_[e];
+    std::array<const EnckeBody*, stages> bodies{};
+    for (std::size_t lane = 0; lane < stages; ++lane) {
+      const EnckeBody& rows = rows_[in_lane(e * stages + lane)];
+      bodies[lane] = &rows;
+      eight.last_s[lane] = rows.last_s;
+      eight.last_r[lane] = rows.last_r;
+      eight.last_eta[lane] = rows.last_eta;
     }
-    for (std::size_t i = 0; i < stages; ++i) {
-      double size2 = 0;
-      for (std::size_t k = 0; k < 3; ++k) size2 += rows.perturbation[k][i] * rows.perturbation[k][i];
-      largest2 = std::max(largest2, size2);
-      nearest2 = std::min(nearest2, 1 / rows.inverse_r2[i]);
+    encke_word_kernels().sum(bodies.data(), weights_, eight);
+    for (std::size_t lane = 0; lane < stages; ++lane) {
+      const double last2 = eight.last2[lane];
+      const bool matters = h * h * h * h * last2 * eight.nearest[lane] > negligible;
+      if (!matters || last2 <= rough * eight.largest2[lane]) continue;
+      return Failure{
+          Outcome::Kind::solver_failure, bodies_[in_lane(e * stages + lane)].particle, "departure",
+          fmt::format("perturbations change too fast to be followed with a step of {:.6g}; {}", h, ways_out)};
     }
-    constexpr double negligible = 1e-14;
-    const bool matters = h * h * std::sqrt(last2) > negligible * std::sqrt(nearest2);
-    if (!matters || last2 <= rough_perturbations * rough_perturbations * largest2) continue;
-    return Failure{Outcome::Kind::solver_failure, bodies_[m].particle, "departure",
-                   fmt::format("perturbations change too fast to be followed with a step of {:.6g}; {}", h, ways_out)};
   }
   return {};
 }
 
 /// The arcs in double-double, the departures at the end, and the centre of mass.
 std::optional<Failure> EnckeGauss::close(Vector<double>& y, double h) {
-  const DoubleDouble step(h);
-  WideVector dx = WideVector::Zero(), dv = WideVector::Zero(), center_v = wide(y, primary_, 3 * n_);
-  for (std::size_t m = 0; m < bodies_.size(); ++m) {
-    Body& body = bodies_[m];
-    const EnckeBody& rows = rows_[m];
-    const KeplerArc<DoubleDouble> arc = kepler_arc(body.x, body.v, body.mu, step);
-    if (arc.status != KeplerStatus::converged) return no_arc(body, h);
-    const KeplerTangent tangent(body.x0, body.v0, body.mu.high, h, arc.s.high);
-    KeplerChange sum{Vec3<double>::Zero(), Vec3<double>::Zero()};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto axis = static_cast<Index>(k);
-      for (std::size_t i = 0; i < stages; ++i) {
-        sum.x[axis] += b_[i] * rows.rate_x[k][i] + b_low_[i] * rows.rate_x[k][i];
-        sum.v[axis] += b_[i] * rows.rate_v[k][i] + b_low_[i] * rows.rate_v[k][i];
-      }
-    }
-    const Vec3<double> away = h * tangent.position(sum), faster = h * tangent.velocity(sum);
-    for (Index k = 0; k < 3; ++k) {
-      center_v[k] += body.share * body.v[k];
-      body.x[k] = arc.dx[k] + DoubleDouble(away[k]);
-      body.v[k] = arc.dv[k] + DoubleDouble(faster[k]);
-      dx[k] -= body.share * body.x[k];
-      dv[k] -= body.share * body.v[k];
+  for (std::size_t e = 0; e < eights_.size(); ++e) {
+    const unsigned missed = encke_word_kernels().advance(eights_[e], h, tau_[0][stages - 1]);
+    for (std::size_t m = e * stages; m < std::min((e + 1) * stages, bodies_.size()); ++m) {
+      if ((missed >> m % stages & 1U) != 0 && !advance_one(m, h)) return no_arc(bodies_[m], h);
     }
   }
-  for (std::size_t k = 0; k < 3; ++k) {
-    const auto axis = static_cast<Index>(k);
-    dx[axis] += step * center_v[axis];
-    if (!beside_) continue;
+  alignas(64) std::array<double, stages> push{};
+  for (std::size_t k = 0; k < 3 && beside_; ++k) {
     double way = 0, speed = 0;
     for (std::size_t i = 0; i < stages; ++i) {
       way += twice_[0][i] * drift_[k][i] + twice_[1][i] * drift_[k][i];
-      speed += b_[i] * drift_[k][i] + b_low_[i] * drift_[k][i];
+      speed += weights_.end[0][i] * drift_[k][i] + weights_.end[1][i] * drift_[k][i];
     }
-    dx[axis] += DoubleDouble(h * h * way);
-    dv[axis] += DoubleDouble(h * speed);
+    push[k] = h * h * way;
+    push[k + 3] = h * speed;
   }
-  for (const Body& body : bodies_) {
-    put(wide(y, body.particle, 0) + body.x + dx, y, body.particle, 0);
-    put(wide(y, body.particle, 3 * n_) + body.v + dv, y, body.particle, 3 * n_);
-  }
-  put(wide(y, primary_, 0) + dx, y, primary_, 0);
-  put(wide(y, primary_, 3 * n_) + dv, y, primary_, 3 * n_);
+  encke_word_kernels().place(eights_.data(), std::ssize(eights_), center_, push.data(), h);
+  scatter(y);
   return {};
+}
+
+/// How far a body moves, where lanes have missed its arc. @return whether there is one
+bool EnckeGauss::advance_one(std::size_t body, double h) {
+  EnckeEight& eight = eights_[body / stages];
+  const std::size_t lane = body % stages;
+  Vec3<DoubleDouble> x, v;
+  KeplerChange sum, low;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto axis = static_cast<Index>(k);
+    x[axis] = words_at(eight.own[k], lane);
+    v[axis] = words_at(eight.own[k + 3], lane);
+    sum.x[axis] = eight.sums[k][0][lane];
+    sum.v[axis] = eight.sums[k + 3][0][lane];
+    low.x[axis] = eight.sums[k][1][lane];
+    low.v[axis] = eight.sums[k + 3][1][lane];
+  }
+  const KeplerArc<DoubleDouble> arc = kepler_arc(x, v, bodies_[body].mu, DoubleDouble(h));
+  if (arc.status != KeplerStatus::converged) return false;
+  const EnckeBody& rows = rows_[body];
+  const KeplerTangent tangent(vector_of(rows.x0), vector_of(rows.v0), rows.mu, h, arc.s.high);
+  const Vec3<double> away = h * tangent.position(sum), faster = h * tangent.velocity(sum),
+                     away_low = h * tangent.position(low), faster_low = h * tangent.velocity(low);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto axis = static_cast<Index>(k);
+    put_words(arc.dx[axis] + DoubleDouble(away[axis], away_low[axis]), eight.moved[k], lane);
+    put_words(arc.dv[axis] + DoubleDouble(faster[axis], faster_low[axis]), eight.moved[k + 3], lane);
+  }
+  return true;
 }
 
 void EnckeGauss::save(SavedState& saved, const std::string& prefix) const {

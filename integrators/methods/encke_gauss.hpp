@@ -25,14 +25,19 @@ namespace noether {
 /// q is relative to the heaviest body, g what others and other forces add to it. y is zero at the beginning and found
 /// by Gauss's method with 8 stages, whose sweeps contract by the ratio of the perturbation to the attraction. Then the
 /// arc is added in double-double. Everything else is smaller than the motion by that ratio, and computed in doubles: so
-/// the state, of double-doubles, has errors far below the rounding of doubles, and they do not add up to a drift.
+/// the state, of double-doubles, has errors far below the rounding of doubles.
+///
+/// For these not to add up to a drift, what rounding takes from constants counts: weights of the end have two words,
+/// and mu is a double, the same in arcs and in their derivatives, whose low word pulls as a perturbation. Two bodies
+/// alone move along one orbit, whose mu has both words.
 ///
 /// A step that perturbations are too rough for, as in an encounter that it jumps over, ends the run: their last
 /// Legendre coefficient tells. One in which bodies are so near to each other that doubles do not tell their pull well
 /// enough is counted (`Evaluations::unsettled`).
 ///
 /// The centre of mass goes on evenly, or as the forces beside gravity push it. State: both words of y, which particles
-/// keep; the perturbations of the last step, where the next one begins its sweeps.
+/// keep; the perturbations of the last step, where the next one begins its sweeps. Stages are side by side in lanes,
+/// and so are eight bodies at the beginning and at the end of the step, where numbers have two words.
 /// @cost per step and body 9 Kepler arcs in doubles and one in double-double; 8 sums over pairs for each of 3 to 6
 /// sweeps
 /// @source Encke1852, HairerLubichWanner2006, ReinTamayo2015, Dekker1971
@@ -58,54 +63,48 @@ class EnckeGauss final : public Method<double> {
  private:
   static constexpr std::size_t stages = 8;
   using Lanes = std::array<double, stages>;
-  using LaneVector = std::array<Lanes, 3>;
-  using WideVector = Vec3<DoubleDouble>;
 
-  /// A body that moves about the heaviest one.
+  /// A body that moves about the heaviest one: lane `number % 8` of row `number / 8`.
   struct Body {
     Index particle = 0;
-    DoubleDouble mu, share;  ///< G (M + m), and m / (sum of all masses)
-    WideVector x, v;         ///< relative to the heaviest body, at the beginning of the step
-    Vec3<double> x0 = Vec3<double>::Zero(), v0 = Vec3<double>::Zero();  ///< the same, rounded
+    DoubleDouble mu, share;  ///< mu of its orbits, and m / (sum of all masses)
   };
 
-  /// The largest change of perturbations by a sweep: relative to the largest of the body, and how far it moves the
-  /// body, relative to its distance from the heaviest one.
-  struct Change {
-    double relative = 0, moves = 0;
-  };
-
+  /// The body whose numbers a lane has, counted over all rows of eight; the first of the row where there is none.
+  std::size_t in_lane(std::size_t m) const { return m < bodies_.size() ? m : m / stages * stages; }
   void refuse_equals() const;
+  void gather(const Vector<double>& y);
+  void scatter(Vector<double>& y);
   std::optional<Failure> open(const Vector<double>& y, double h);
   std::optional<Failure> find_orbits(const Body& body, EnckeBody& rows, double h) const;
   void predict();
-  void add_forces_beside(VectorField<double>& f, double t, double h);
-  Change take_perturbations(double h);
+  void add_forces_beside(VectorField<double>& f, double t);
   std::optional<Failure> sweep(VectorField<double>& f, double t, double h);
-  std::optional<Failure> unresolved(double h) const;
+  std::optional<Failure> end_stages(double h);
   std::optional<Failure> close(Vector<double>& y, double h);
+  bool advance_one(std::size_t body, double h);
   Failure no_arc(const Body& body, double h) const;
 
-  WideVector wide(const Vector<double>& y, Index particle, Index half) const;
-  void put(const WideVector& value, Vector<double>& y, Index particle, Index half);
-
   std::string_view name_;
-  Lanes c_{}, b_{}, b_low_{};
-  Lanes last_{};  ///< weights of the last Legendre coefficient
+  Lanes c_{}, c_low_{};
+  EnckeWeights weights_;
+  std::array<Lanes, 2> twice_{};     ///< b a, and what rounding has taken
+  alignas(64) EightWords tau_ = {};  ///< times of stages in the step
   /// By columns: a_[8 j + i] is a_ij, ahead_[8 j + i] the weight of stage j of the last step in its polynomial at 1 +
   /// c_i.
-  std::array<double, stages * stages> a_{}, ahead_{};
-  std::array<Lanes, 2> twice_{};  ///< b a, and what rounding has taken
+  alignas(64) std::array<double, stages * stages> a_{}, ahead_{};
   Index n_ = 0, primary_ = 0;
   bool beside_ = false;
   std::vector<Body> bodies_;
-  std::vector<EnckeBody> rows_;        ///< of the same bodies
-  KeplerChange center_{};              ///< of mass, at the beginning of the step, where there are forces beside
-  LaneVector drift_{};                 ///< its accelerations at the stages
-  Vector<double> stage_, stage_push_;  ///< a stage as fields see it, and what forces beside gravity add to it
-  Vector<double> low_;                 ///< second words of y
-  double h_ = 0;                       ///< of the perturbations at hand; 0: there are none
-  double strongest_ = 0;               ///< largest G (m + m') / r^3 of two bodies in the last sweep
+  std::vector<EnckeBody> rows_;         ///< of the same bodies
+  std::vector<EnckeEight> eights_;      ///< the same, eight by eight
+  alignas(64) EightWords center_ = {};  ///< position and velocity of the heaviest body
+  KeplerChange mean_{};                 ///< those of the centre of mass at the beginning of the step, for forces beside
+  std::array<Lanes, 3> drift_{};        ///< its accelerations at the stages
+  Vector<double> stage_, stage_push_;   ///< a stage as fields see it, and what forces beside gravity add to it
+  Vector<double> low_;                  ///< second words of y
+  double h_ = 0;                        ///< of the perturbations at hand; 0: there are none
+  double strongest_ = 0;                ///< largest G (m + m') / r^3 of two bodies in the last sweep
   Vector<double> masses_;
 };
 

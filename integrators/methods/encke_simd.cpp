@@ -1,292 +1,200 @@
 #include "integrators/methods/encke_simd.hpp"
 
-#include <hwy/highway.h>
-
-#include <cmath>
+#include "integrators/kepler_tangent_simd.hpp"
 
 namespace noether::NOETHER_SIMD_LEVEL {
 
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
+constexpr std::ptrdiff_t stages = 8;
 
-using Tag = hn::CappedTag<double, 8>;
-using Vector = hn::Vec<Tag>;
-constexpr std::ptrdiff_t stages = 8, lanes = hn::MaxLanes(Tag());
-
-/// Some stages side by side.
-struct Row {
-  Vector v;
-
-  HWY_INLINE Row() : v(hn::Zero(Tag())) {}
-  HWY_INLINE Row(Vector of) : v(of) {}                      // NOLINT: formulae read as on paper
-  HWY_INLINE Row(double same) : v(hn::Set(Tag(), same)) {}  // NOLINT
-  HWY_INLINE static Row load(const double* from) { return hn::LoadU(Tag(), from); }
-  HWY_INLINE void store(double* to) const { hn::StoreU(v, Tag(), to); }
-};
-HWY_INLINE Row operator+(Row a, Row b) { return hn::Add(a.v, b.v); }
-HWY_INLINE Row operator-(Row a, Row b) { return hn::Sub(a.v, b.v); }
-HWY_INLINE Row operator*(Row a, Row b) { return hn::Mul(a.v, b.v); }
-HWY_INLINE Row operator/(Row a, Row b) { return hn::Div(a.v, b.v); }
-HWY_INLINE Row operator-(Row a) { return hn::Neg(a.v); }
-HWY_INLINE Row root(Row a) { return hn::Sqrt(a.v); }
-HWY_INLINE Row larger(Row a, Row b) { return hn::Max(a.v, b.v); }
-
-HWY_INLINE Row dot(const double* a, const Row* b) { return Row(a[0]) * b[0] + Row(a[1]) * b[1] + Row(a[2]) * b[2]; }
-HWY_INLINE Row norm2(const Row* a) { return a[0] * a[0] + a[1] * a[1] + a[2] * a[2]; }
-HWY_INLINE void load(const double (*rows)[stages], std::ptrdiff_t i, Row* out) {
-  for (int k = 0; k < 3; ++k) out[k] = Row::load(rows[k] + i);
+NOETHER_EIGHT_INLINE Eight larger(const Eight& a, const Eight& b) {
+  return eight_of([&](int k) { return a.r[k] > b.r[k] ? a.r[k] : b.r[k]; });
 }
-
-/// n! c_n(z) = sum of (-1)^k n! / (2 k + n)! z^k for |z| up to 1, as `StumpffSeries` has it: `low` is what rounding
-/// takes from the first coefficients, which would be a drift.
-struct Series {
-  static constexpr int terms = 10;
-  double high[terms] = {}, low[3] = {};
-
-  constexpr explicit Series(int n) {
-    long double term = 1;
-    for (int k = 0; k < terms; ++k) {
-      high[k] = static_cast<double>(term);
-      if (k < 3) low[k] = static_cast<double>(term - static_cast<long double>(high[k]));
-      const int j = 2 * k + n;
-      term /= -static_cast<long double>(j + 1) * static_cast<long double>(j + 2);
-    }
-  }
-};
-constexpr Series fourth(4), fifth(5);
-
-HWY_INLINE Row sum_of(const Series& series, Row z) {
-  Row sum = series.high[Series::terms - 1];
-  for (int k = Series::terms - 2; k >= 3; --k) sum = Row(series.high[k]) + z * sum;
-  return Row(1) +
-         z * (Row(series.high[1]) + (Row(series.low[1]) + z * (Row(series.high[2]) + (Row(series.low[2]) + z * sum))));
+NOETHER_EIGHT_INLINE double largest_lane(const Eight& a) {
+  const Eight four = larger(a, rotate<4>(a)), two = larger(four, rotate<2>(four));
+  return larger(two, rotate<1>(two)).r[0][0];
 }
-
-/// G_0 to G_5 at s, as `KeplerTangent` computes them, with one doubling: for |beta s^2| up to 4.
-struct SixFunctions {
-  Row g0, g1, g2, g3, g4, g5;
-
-  HWY_INLINE SixFunctions(double beta, Row s) {
-    const Row part = s * Row(0.5), square = part * part, z = Row(beta) * square;
-    g4 = square * square * sum_of(fourth, z) * Row(1.0 / 24);
-    g5 = part * square * square * sum_of(fifth, z) / Row(120);
-    g2 = square * Row(0.5) - Row(beta) * g4;
-    g3 = part * square / Row(6) - Row(beta) * g5;
-    g1 = part - Row(beta) * g3;
-    g0 = Row(1) - Row(beta) * g2;
-    g5 = Row(2) * (g5 + part * g4 + g2 * g3);
-    g4 = Row(2) * (part + g1) * g3;
-    g3 = Row(2) * (g3 + g1 * g2);
-    g2 = Row(2) * g1 * g1;
-    g1 = Row(2) * g0 * g1;
-    g0 = Row(1) - Row(beta) * g2;
-  }
-  /// The same functions at s + d, to the second order in d.
-  HWY_INLINE void shift(double beta, Row d) {
-    const Row half = Row(0.5) * d, before = g1;
-    g5 = g5 + d * (g4 + half * g3);
-    g4 = g4 + d * (g3 + half * g2);
-    g3 = g3 + d * (g2 + half * g1);
-    g2 = g2 + d * (g1 + half * g0);
-    g1 = g1 + d * (g0 - half * (Row(beta) * before));
-    g0 = g0 - d * (Row(beta) * (before + half * g0));
-  }
-};
-
-/// The start of an arc: t(s) = r0 s + eta0 G2 + zeta0 G3.
-struct Start {
-  double mu, r0, eta0, zeta0, beta;
-};
-
-/// The step of s to the root of t(s) = tau, by reversion of order 5, from where `missing` is left.
-HWY_INLINE Row correction(Row missing, Row r, Row eta, Row zeta, double beta) {
-  const Row inverse = Row(1) / r, d = missing * inverse;
-  const Row p = eta * d * inverse, q = zeta * d * d * inverse, u = Row(beta) * d * d, p2 = p * p;
-  const Row first = p * (Row(-0.5) + (Row(10) * q - Row(15) * p2 + u) * Row(1.0 / 24));
-  return d + d * (first + (p2 * Row(0.5) - q * Row(1.0 / 6)));
+NOETHER_EIGHT_INLINE Eight dot(const double* a, const Eights& b) {
+  return Eight(a[0]) * b.x + Eight(a[1]) * b.y + Eight(a[2]) * b.z;
 }
+NOETHER_EIGHT_INLINE Eights same(const double* a) { return {a[0], a[1], a[2]}; }
+NOETHER_EIGHT_INLINE Eight norm2(const Eights& a) { return dot(a, a); }
 
-void put_tangent(EnckeBody& body, std::ptrdiff_t i, const Start& a, const SixFunctions& g, Row s, Row r, Row tau) {
-  const Row half(0.5), r0(a.r0), mu(a.mu);
-  const Row g2_beta = g.g4 - s * g.g3 * half, g3_beta = (Row(3) * g.g5 - s * g.g4) * half;
-  const Row over_r = Row(1) / r;
-  const Row s_r = -(g.g1 * over_r), s_eta = -(g.g2 * over_r);
-  const Row s_beta = -((Row(a.eta0) * g2_beta + Row(a.zeta0) * g3_beta - r0 * g.g3) * over_r);
-  const auto put = [&](int first, Row value, Row by_r, Row by_eta, Row by_beta) {
-    value.store(body.upper[first] + i);
-    const int at = first == 0 ? 2 : 5;
-    (-(mu * (by_r - Row(2 * a.mu / (a.r0 * a.r0)) * by_beta) / r0)).store(body.upper[at] + i);
-    (-(mu * by_eta)).store(body.upper[at + 1] + i);
-    (Row(2 * a.mu) * by_beta).store(body.upper[at + 2] + i);
-  };
-  const Row part = g.g2 / r0;
-  put(0, Row(1) - mu * part, (g.g1 * s_r - part) / r0, g.g1 * s_eta / r0, (g.g1 * s_beta + g2_beta) / r0);
-  put(1, tau - mu * g.g3, g.g2 * s_r, g.g2 * s_eta, g.g2 * s_beta + g3_beta);
-}
-
-std::uint8_t orbits(EnckeBody& body, const double* tau) {
+NOETHER_EIGHT_INLINE EightStarts start_of(const EnckeBody& body) {
   const double *x = body.x0, *v = body.v0;
-  Start a{};
-  a.mu = body.mu;
-  a.r0 = std::sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
-  a.eta0 = x[0] * v[0] + x[1] * v[1] + x[2] * v[2];
-  const double v2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-  a.beta = 2 * a.mu / a.r0 - v2;
-  a.zeta0 = a.r0 * v2 - a.mu;
-  unsigned missed = 0;
-  for (std::ptrdiff_t i = 0; i < stages; i += lanes) {
-    const Row t = Row::load(tau + i), r0(a.r0), eta0(a.eta0), zeta0(a.zeta0);
-    Row s = correction(t, r0, eta0, zeta0, a.beta);
-    const SixFunctions near(a.beta, s);
-    const Row near_r = r0 + (eta0 * near.g1 + zeta0 * near.g2);
-    // The last step begins where the lower half of the digits is cut off, so that it is many roundings long and of
-    // either sign: a fraction of one would be rounded off, always to the same side.
-    const Row next = s + correction((t - r0 * s) - (eta0 * near.g2 + zeta0 * near.g3), near_r,
-                                    eta0 * near.g0 + zeta0 * near.g1, Row(a.mu) - Row(a.beta) * near_r, a.beta);
-    const Row wide = Row(0x1p27 + 1) * next;
-    s = wide - (wide - next);
-    SixFunctions g(a.beta, s);
-    const Row missing = (t - r0 * s) - (eta0 * g.g2 + zeta0 * g.g3),
-              over = Row(1) / (r0 + (eta0 * g.g1 + zeta0 * g.g2));
-    const Row first = missing * over, d = first - Row(0.5) * (eta0 * g.g0 + zeta0 * g.g1) * over * first * first;
-    g.shift(a.beta, d);
-    s = s + d;
-    const Row r = r0 + (eta0 * g.g1 + zeta0 * g.g2);
-    put_tangent(body, i, a, g, s, r, t);
-    const Row along_x = -(Row(a.mu) * g.g2 / r0), along_v = t - Row(a.mu) * g.g3;
-    Row place[3];
-    for (int k = 0; k < 3; ++k) {
-      place[k] = Row(x[k]) + (along_x * Row(x[k]) + along_v * Row(v[k]));
-      place[k].store(body.orbit[k] + i);
-    }
-    const Row r2 = norm2(place);
-    (Row(1) / r2).store(body.inverse_r2 + i);
-    (Row(a.mu) / (r2 * root(r2))).store(body.mu_r3 + i);
-    // What a shift leaves is of the order d^3, and beyond |beta s^2| = 4 the series is not good.
-    const Row few = hn::Abs((Row(a.beta) * s * s).v), rest = hn::Abs(d.v);
-    const auto found = hn::And(hn::Le(few.v, Row(4).v), hn::Le(rest.v, (Row(0x1p-23) * Row(hn::Abs(s.v))).v));
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(Tag(), hn::Not(found), bits);
-    missed |= (bits[0] & ((1U << lanes) - 1)) << i;
-  }
-  return static_cast<std::uint8_t>(missed);
+  const double r = __builtin_sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+  const double eta = x[0] * v[0] + x[1] * v[1] + x[2] * v[2], v2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+  return {body.mu, r, 1 / r, eta, r * v2 - body.mu, 2 * body.mu / r - v2};
+}
+
+/// c_n(z) for |z| up to 4, as a first look at an arc asks for: right to 1e-11.
+template <int n> NOETHER_EIGHT_INLINE Eight rough_series(const Eight& z, const Eight& z2) {
+  constexpr auto over_factorial = [](int k) {
+    double f = k % 2 == 0 ? 1 : -1;
+    for (int j = 2; j <= 2 * k + n; ++j) f *= j;
+    return 1 / f;
+  };
+  const auto pair = [&](int k) { return Eight(over_factorial(k)) + Eight(over_factorial(k + 1)) * z; };
+  return pair(0) + z2 * (pair(2) + z2 * (pair(4) + z2 * (pair(6) + z2 * Eight(over_factorial(8)))));
+}
+
+/// A universal variable within some 1e-10 of the arc's, its lower half of digits cut off: the last step is then many
+/// roundings long and of either sign. A fraction of one would be rounded off, always to the same side.
+NOETHER_EIGHT_INLINE Eight first_look(const EightStarts& a, const Eight& t) {
+  const Eight s = reversion(t, a.r_inverse, a.eta, a.zeta, a.beta), s2 = s * s, z = a.beta * s2, z2 = z * z;
+  const Eight g2 = s2 * rough_series<2>(z, z2), g3 = (s2 * s) * rough_series<3>(z, z2);
+  const Eight g1 = s - a.beta * g3, g0 = Eight(1.0) - a.beta * g2, r = a.r + (a.eta * g1 + a.zeta * g2);
+  const Eight missing = (t - a.r * s) - (a.eta * g2 + a.zeta * g3);
+  const Eight next = s + reversion(missing, Eight(1.0) / r, a.eta * g0 + a.zeta * g1, a.mu - a.beta * r, a.beta);
+  const Eight wide = Eight(0x1p27 + 1) * next;
+  return wide - (wide - next);
+}
+
+/// Universal functions and their variable at the stages, from where the first look has led.
+NOETHER_EIGHT_INLINE void put_functions(EnckeBody& body, const EightWords& tau) {
+  const EightStarts a = start_of(body);
+  const Eight t = load_eight(tau[0]), cut = load_eight(body.arc);
+  EightSixFunctions g(a.beta, cut);
+  const Eight missing = ((t - a.r * cut) - (a.eta * g.g2 + a.zeta * g.g3)) + load_eight(tau[1]);
+  const Eight eta = a.eta * g.g0 + a.zeta * g.g1, over = Eight(1.0) / (a.r + (a.eta * g.g1 + a.zeta * g.g2));
+  const Eight first = missing * over, d = first - Eight(0.5) * eta * over * first * first;
+  g.shift(a.beta, d);
+  const Eight s = cut + d;
+  store_eight(s, body.arc);
+  const Eight* const all[] = {&g.g0, &g.g1, &g.g2, &g.g3, &g.g4, &g.g5};
+  for (int k = 0; k < 6; ++k) store_eight(*all[k], body.functions[k]);
+  // What a shift leaves is of the order d^3, and beyond |beta s^2| = 4 the series is not good.
+  body.missed = exceeding(absolute(a.beta * s * s), Eight(4.0)) | exceeding(absolute(d), Eight(0x1p-23) * absolute(s));
+}
+
+NOETHER_EIGHT_INLINE void put_orbit(EnckeBody& body, const EightWords& tau) {
+  const EightStarts a = start_of(body);
+  const Eight t = load_eight(tau[0]), s = load_eight(body.arc);
+  const auto function = [&](int k) { return load_eight(body.functions[k]); };
+  const EightSixFunctions g{function(0), function(1), function(2), function(3), function(4), function(5)};
+  const EightTangents tangents(a, g, s, t);
+  const EightHalf upper = tangents.upper();
+  const Eight* const rows[] = {&upper.f,   &upper.g,   &upper.f_x,   &upper.f_eta,
+                               &upper.f_v, &upper.g_x, &upper.g_eta, &upper.g_v};
+  for (int k = 0; k < 8; ++k) store_eight(*rows[k], body.upper[k]);
+  const Eights x0 = same(body.x0), place = x0 + (tangents.bend * x0 + upper.g * same(body.v0));
+  store_eights(place, body.orbit);
+  const Eight r2 = norm2(place), inverse = Eight(1.0) / r2;
+  store_eight(inverse, body.inverse_r2);
+  store_eight(a.mu * inverse * square_root(inverse), body.mu_r3);
+  const int last = stages - 1;
+  alignas(64) double r[stages];
+  store_eight(tangents.r, r);
+  body.last_s = body.arc[last], body.last_r = r[last];
+  body.last_eta = a.eta.r[0][0] * body.functions[0][last] + a.zeta.r[0][0] * body.functions[1][last];
+}
+
+/// Each part is a long chain of operations for a body: those of neighbours overlap where no part is too long.
+void orbits(EnckeBody* bodies, std::ptrdiff_t n, const EightWords& tau) {
+  const Eight t = load_eight(tau[0]);
+  for (std::ptrdiff_t m = 0; m < n; ++m) store_eight(first_look(start_of(bodies[m]), t), bodies[m].arc);
+  for (std::ptrdiff_t m = 0; m < n; ++m) put_functions(bodies[m], tau);
+  for (std::ptrdiff_t m = 0; m < n; ++m) put_orbit(bodies[m], tau);
 }
 
 /// sum_j a_ji of the rates of one coordinate.
-HWY_INLINE Row sum_over_stages(const double* a, std::ptrdiff_t i, const double* rates) {
-  Row even = Row::load(a + i) * Row(rates[0]), odd = Row::load(a + stages + i) * Row(rates[1]);
+NOETHER_EIGHT_INLINE Eight sum_over_stages(const double* a, const double* rates) {
+  Eight even = load_eight(a) * Eight(rates[0]), odd = load_eight(a + stages) * Eight(rates[1]);
   for (std::ptrdiff_t j = 2; j < stages; j += 2) {
-    even = even + Row::load(a + stages * j + i) * Row(rates[j]);
-    odd = odd + Row::load(a + stages * (j + 1) + i) * Row(rates[j + 1]);
+    even = even + load_eight(a + stages * j) * Eight(rates[j]);
+    odd = odd + load_eight(a + stages * (j + 1)) * Eight(rates[j + 1]);
   }
   return even + odd;
+}
+NOETHER_EIGHT_INLINE Eights sums_over_stages(const double* a, const double (*rates)[stages]) {
+  return {sum_over_stages(a, rates[0]), sum_over_stages(a, rates[1]), sum_over_stages(a, rates[2])};
 }
 
 void depart(EnckeBody* bodies, std::ptrdiff_t n, const double* a, double h) {
   for (std::ptrdiff_t m = 0; m < n; ++m) {
     EnckeBody& body = bodies[m];
-    for (std::ptrdiff_t i = 0; i < stages; i += lanes) {
-      Row x[3], v[3], place[3];
-      for (int k = 0; k < 3; ++k) {
-        x[k] = sum_over_stages(a, i, body.rate_x[k]);
-        v[k] = sum_over_stages(a, i, body.rate_v[k]);
-      }
-      const auto upper = [&](int k) { return Row::load(body.upper[k] + i); };
-      const Row xx = dot(body.x0, x), mixed = dot(body.v0, x) + dot(body.x0, v), vv = dot(body.v0, v);
-      const Row of_f = upper(2) * xx + upper(3) * mixed + upper(4) * vv;
-      const Row of_g = upper(5) * xx + upper(6) * mixed + upper(7) * vv;
-      for (int k = 0; k < 3; ++k) {
-        const Row d =
-            Row(h) * ((upper(0) * x[k] + upper(1) * v[k]) + (of_f * Row(body.x0[k]) + of_g * Row(body.v0[k])));
-        d.store(body.away[k] + i);
-        place[k] = Row::load(body.orbit[k] + i) + d;
-        place[k].store(body.place[k] + i);
-      }
-      const Row r2 = norm2(place), pull = Row(body.gm) / (r2 * root(r2));
-      for (int k = 0; k < 3; ++k) (pull * place[k]).store(body.pull[k] + i);
-    }
+    const Eights x = sums_over_stages(a, body.rate), v = sums_over_stages(a, body.rate + 3);
+    const auto upper = [&](int k) { return load_eight(body.upper[k]); };
+    const Eight xx = dot(body.x0, x), mixed = dot(body.v0, x) + dot(body.x0, v), vv = dot(body.v0, v);
+    const Eight of_f = upper(2) * xx + upper(3) * mixed + upper(4) * vv;
+    const Eight of_g = upper(5) * xx + upper(6) * mixed + upper(7) * vv;
+    const Eights d = Eight(h) * ((upper(0) * x + upper(1) * v) + (of_f * same(body.x0) + of_g * same(body.v0)));
+    store_eights(d, body.away);
+    const Eights place = load_eights(body.orbit) + d;
+    store_eights(place, body.place);
+    const Eight r2 = norm2(place), cube = Eight(1.0) / (r2 * square_root(r2));
+    store_eights((Eight(body.gm) * cube) * place, body.pull);
+    store_eights((Eight(-body.mu_low) * cube) * place, body.fresh);
   }
 }
 
 /// What the attraction by the heaviest body has beyond the tangent of the orbit: (1 + e)^(-3/2) - 1 with
 /// e = |k + d|^2 / |k|^2 - 1, without cancellation.
-HWY_INLINE void begin_perturbation(EnckeBody& body, std::ptrdiff_t i) {
-  Row orbit[3], away[3];
-  load(body.orbit, i, orbit);
-  load(body.away, i, away);
-  const Row inverse = Row::load(body.inverse_r2 + i), pull = Row::load(body.mu_r3 + i);
-  const Row along = (orbit[0] * away[0] + orbit[1] * away[1] + orbit[2] * away[2]) * inverse;
-  const Row e = Row(2) * along + norm2(away) * inverse, up = Row(1) + e, whole = up * root(up);
-  const Row fall = -(e * (Row(3) + e * (Row(3) + e)) / (whole * (Row(1) + whole))), beyond = fall + Row(3) * along;
-  for (int k = 0; k < 3; ++k) (-(pull * (beyond * orbit[k] + fall * away[k]))).store(body.fresh[k] + i);
+NOETHER_EIGHT_INLINE void begin_perturbation(EnckeBody& body) {
+  const Eights orbit = load_eights(body.orbit), away = load_eights(body.away);
+  const Eight inverse = load_eight(body.inverse_r2), pull = load_eight(body.mu_r3), along = dot(orbit, away) * inverse;
+  const Eight e = Eight(2.0) * along + norm2(away) * inverse, up = Eight(1.0) + e, whole = up * square_root(up);
+  const Eight steep = e * (Eight(3.0) + e * (Eight(3.0) + e)) / (whole * (Eight(1.0) + whole));
+  const Eight beyond = steep - Eight(3.0) * along;
+  store_eights(((pull * beyond) * orbit + (pull * steep) * away) + load_eights(body.fresh), body.fresh);
 }
 
 double attract(EnckeBody* bodies, std::ptrdiff_t n) {
-  double strongest[stages] = {};
-  for (std::ptrdiff_t i = 0; i < stages; i += lanes) {
-    Row most;
-    for (std::ptrdiff_t m = 0; m < n; ++m) begin_perturbation(bodies[m], i);
-    for (std::ptrdiff_t m = 1; m < n; ++m) {
-      EnckeBody& one = bodies[m];
-      Row place[3], fresh[3], pull[3];
-      load(one.place, i, place);
-      load(one.fresh, i, fresh);
-      load(one.pull, i, pull);
-      for (std::ptrdiff_t o = 0; o < m; ++o) {
-        EnckeBody& other = bodies[o];
-        if (one.gm == 0 && other.gm == 0) continue;
-        Row d[3];
-        for (int k = 0; k < 3; ++k) d[k] = Row::load(other.place[k] + i) - place[k];
-        const Row r2 = norm2(d), inverse = Row(1) / (r2 * root(r2));
-        const Row by_other = Row(other.gm) * inverse, by_one = Row(one.gm) * inverse;
-        most = larger(most, by_other + by_one);
-        for (int k = 0; k < 3; ++k) {
-          fresh[k] = fresh[k] + (by_other * d[k] - Row::load(other.pull[k] + i));
-          (Row::load(other.fresh[k] + i) - (by_one * d[k] + pull[k])).store(other.fresh[k] + i);
-        }
-      }
-      for (int k = 0; k < 3; ++k) fresh[k].store(one.fresh[k] + i);
+  Eight most(0.0);
+  for (std::ptrdiff_t m = 0; m < n; ++m) begin_perturbation(bodies[m]);
+  for (std::ptrdiff_t m = 1; m < n; ++m) {
+    EnckeBody& one = bodies[m];
+    const Eights place = load_eights(one.place), pull = load_eights(one.pull);
+    Eights fresh = load_eights(one.fresh);
+    for (std::ptrdiff_t o = 0; o < m; ++o) {
+      EnckeBody& other = bodies[o];
+      if (one.gm == 0 && other.gm == 0) continue;
+      const Eights d = load_eights(other.place) - place;
+      const Eight r2 = norm2(d), inverse = Eight(1.0) / (r2 * square_root(r2));
+      const Eight by_other = Eight(other.gm) * inverse, by_one = Eight(one.gm) * inverse;
+      most = larger(by_other + by_one, most);
+      fresh = fresh + (by_other * d - load_eights(other.pull));
+      store_eights(load_eights(other.fresh) - (by_one * d + pull), other.fresh);
     }
-    most.store(strongest + i);
+    store_eights(fresh, one.fresh);
   }
-  double worst = 0;
-  for (const double one : strongest) worst = one > worst ? one : worst;
-  return worst;
+  return largest_lane(most);
+}
+
+/// Perturbations to be at hand, and the rates that follow.
+NOETHER_EIGHT_INLINE void put_perturbation(EnckeBody& body, const Eights& p) {
+  store_eights(p, body.perturbation);
+  const auto upper = [&](int k) { return load_eight(body.upper[k]); };
+  const Eight ax = dot(body.x0, p), av = dot(body.v0, p), across = upper(3) * ax + upper(6) * av;
+  const Eight along_x = upper(2) * ax + upper(5) * av, along_v = upper(4) * ax + upper(7) * av;
+  const Eights x0 = same(body.x0), v0 = same(body.v0), none{0.0, 0.0, 0.0};
+  store_eights(none - (upper(1) * p + (across * x0 + along_v * v0)), body.rate);
+  store_eights(upper(0) * p + (along_x * x0 + across * v0), body.rate + 3);
 }
 
 void predict(EnckeBody* bodies, std::ptrdiff_t n, const double* w) {
-  for (std::ptrdiff_t m = 0; m < n; ++m) {
-    for (int k = 0; k < 3; ++k) {
-      for (std::ptrdiff_t i = 0; i < stages; i += lanes)
-        sum_over_stages(w, i, bodies[m].perturbation[k]).store(bodies[m].fresh[k] + i);
-    }
-  }
+  for (std::ptrdiff_t m = 0; m < n; ++m) put_perturbation(bodies[m], sums_over_stages(w, bodies[m].perturbation));
 }
 
-void take(EnckeBody* bodies, std::ptrdiff_t n) {
+EnckeChange take(EnckeBody* bodies, std::ptrdiff_t n, bool first) {
+  Eight relative2(0.0), moves2(0.0), all(0.0);
   for (std::ptrdiff_t m = 0; m < n; ++m) {
     EnckeBody& body = bodies[m];
-    for (std::ptrdiff_t i = 0; i < stages; i += lanes) {
-      Row p[3], old[3], change[3];
-      load(body.fresh, i, p);
-      load(body.perturbation, i, old);
-      for (int k = 0; k < 3; ++k) {
-        change[k] = p[k] - old[k];
-        p[k].store(body.perturbation[k] + i);
-      }
-      norm2(change).store(body.change2 + i);
-      larger(norm2(p), norm2(old)).store(body.size2 + i);
-      const auto upper = [&](int k) { return Row::load(body.upper[k] + i); };
-      const Row ax = dot(body.x0, p), av = dot(body.v0, p);
-      const Row along_x = upper(2) * ax + upper(5) * av, across = upper(3) * ax + upper(6) * av,
-                along_v = upper(4) * ax + upper(7) * av;
-      for (int k = 0; k < 3; ++k) {
-        (-(upper(1) * p[k] + (across * Row(body.x0[k]) + along_v * Row(body.v0[k])))).store(body.rate_x[k] + i);
-        (upper(0) * p[k] + (along_x * Row(body.x0[k]) + across * Row(body.v0[k]))).store(body.rate_v[k] + i);
-      }
+    const Eights p = load_eights(body.fresh), old = load_eights(body.perturbation);
+    const Eight change2 = norm2(p - old);
+    if (first) {
+      const double size2 = largest_lane(larger(norm2(p), norm2(old)));
+      body.inverse_size2 = size2 > 0 ? 1 / size2 : 0;
     }
+    all = all + change2;
+    relative2 = larger(change2 * Eight(body.inverse_size2), relative2);
+    moves2 = larger(change2 * load_eight(body.inverse_r2), moves2);
+    put_perturbation(body, p);
   }
+  constexpr double most = __DBL_MAX__;
+  if (exceeding(all, Eight(most)) != 0) return {__builtin_inf(), __builtin_inf()};
+  return {largest_lane(relative2), largest_lane(moves2)};
 }
 
 }  // namespace
